@@ -1,0 +1,17 @@
+/// Loops over all cores whose results do not depend on how many there are.
+#pragma once
+
+#include <cstddef>
+#include <functional>
+
+namespace skycap::geometry {
+
+/// The number of threads that a request for `threads` means: zero asks for all processors.
+unsigned thread_count(unsigned threads);
+
+/// Calls `work(i)` for each i in [0, count), from up to `threads` threads, in no fixed order. Each
+/// call must write only to its own slots. The first exception that a call throws is thrown on.
+void parallel_for(std::size_t count, unsigned threads,
+                  const std::function<void(std::size_t)>& work);
+
+}  // namespace skycap::geometry

@@ -1,0 +1,26 @@
+/// One measurement of the scene: the points a sensor returned and the pose it took them from. It is
+/// all that a planner ever learns of the world.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include <Eigen/Core>
+#include <Eigen/Geometry>
+
+namespace skycap::geometry {
+
+/// A scan in the world frame. Points are single precision (a world frame is local: at 100 m the
+/// rounding is 4 micrometres) and finite.
+struct Scan {
+  Eigen::Isometry3d world_from_sensor = Eigen::Isometry3d::Identity();  ///< optical frame
+  std::vector<Eigen::Vector3f> points;  ///< the returns, in the order the sensor measured them
+
+  /// For an organised scan: the pixel `row * width + column` of each point, strictly ascending;
+  /// every pixel that is not listed gave no return. Empty when the sensor has no image.
+  std::vector<std::uint32_t> pixels;
+
+  Eigen::Vector3d sensor_position() const { return world_from_sensor.translation(); }
+};
+
+}  // namespace skycap::geometry

@@ -1,0 +1,53 @@
+/// A scene made ready for ray casting: the truth, which only `sim/` and the evaluation may ask.
+///
+/// Embree works in single precision, so the mesh is moved to around the origin of its own frame in
+/// double precision first; every query takes and gives world coordinates. The BVH is built in
+/// Embree's robust mode: no ray slips between two triangles that share an edge.
+#pragma once
+
+#include <cstdint>
+#include <limits>
+#include <memory>
+#include <optional>
+
+#include <Eigen/Core>
+
+#include "geometry/mesh.h"
+
+namespace skycap::sim {
+
+/// Where a ray first meets the scene.
+struct Hit {
+  double distance;          ///< along the ray, in units of its direction's length
+  std::uint32_t triangle;   ///< index into the mesh's triangles
+  Eigen::Vector3d normal;   ///< unit normal of that triangle, by its orientation
+};
+
+/// Immutable; safe to query from any number of threads.
+class Scene {
+ public:
+  /// Builds the ray-casting structure on `threads` threads (zero: all processors). Keeps no
+  /// reference to `mesh`. Throws what geometry::validate() throws.
+  explicit Scene(const geometry::Mesh& mesh, unsigned threads = 0);
+  Scene(Scene&&) noexcept;
+  Scene& operator=(Scene&&) noexcept;
+  ~Scene();
+
+  /// The first surface that the ray from `origin` along `direction` (of any length) meets at a
+  /// distance in [0, max_distance].
+  std::optional<Hit> first_hit(
+      const Eigen::Vector3d& origin, const Eigen::Vector3d& direction,
+      double max_distance = std::numeric_limits<double>::infinity()) const;
+
+  /// Whether a surface cuts the segment between two points.
+  bool is_blocked(const Eigen::Vector3d& from, const Eigen::Vector3d& to) const;
+
+  /// What the sensors in this folder trace through; defined in scene_embree.h, for sources only.
+  struct Embree;
+  const Embree& embree() const { return *embree_; }
+
+ private:
+  std::unique_ptr<Embree> embree_;
+};
+
+}  // namespace skycap::sim

@@ -1,0 +1,54 @@
+/// The interface of every planner: it takes what the sensor measured and says where to look next.
+/// Nothing behind it knows whether the sensor is real or simulated.
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "geometry/point_cloud.h"
+#include "geometry/pose.h"
+#include "geometry/scan.h"
+
+namespace skycap::survey {
+
+/// Time one part of the planner took for one view.
+struct PartTime {
+  std::string part;  ///< such as "insert"
+  double seconds;
+};
+
+/// What a planner did with the last scan.
+struct PlanningStep {
+  std::size_t points_new = 0;      ///< points kept of the scan
+  std::size_t frontiers = 0;       ///< places still worth looking at
+  std::vector<PartTime> times;     ///< in the order of execution; their sum is the planning time
+};
+
+class Planner {
+ public:
+  virtual ~Planner() = default;
+
+  /// Takes in a scan and proposes the next view; nothing when the survey is complete. The scan may
+  /// be from another pose than was proposed. Throws Error{bad_geometry} if the first scan holds no
+  /// point of the scene: then there is nothing to plan from.
+  virtual std::optional<geometry::View> next_view(const geometry::Scan& scan) = 0;
+
+  /// Proposes another view in place of the last one, which cannot be reached; nothing when there
+  /// is none left. May be called repeatedly.
+  virtual std::optional<geometry::View> next_view_instead() = 0;
+
+  /// The measurements kept so far.
+  virtual const geometry::PointCloud& cloud() const = 0;
+
+  /// What the last next_view() did.
+  virtual const PlanningStep& last_step() const = 0;
+
+ protected:
+  Planner() = default;
+  Planner(const Planner&) = default;
+  Planner& operator=(const Planner&) = default;
+};
+
+}  // namespace skycap::survey
