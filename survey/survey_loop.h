@@ -14,11 +14,11 @@ namespace skycap::survey {
 
 /// Why a survey ended.
 enum class StopReason {
-  complete,          ///< the planner has nowhere left to look
+  complete,  ///< the planner has nowhere left to look
   view_limit,
   distance_limit,
-  nowhere_to_go,     ///< every view the planner still wanted was refused
-  interrupted,       ///< the user asked to stop
+  nowhere_to_go,  ///< every view the planner still wanted was refused
+  interrupted,    ///< the user asked to stop
 };
 
 struct SurveyLimits {
@@ -29,11 +29,11 @@ struct SurveyLimits {
 /// One view of a survey: where the sensor was, and what the planner made of the scan.
 struct SurveyedView {
   geometry::View view;
-  double distance = 0.0;        ///< travelled up to and including this view
-  std::size_t points = 0;       ///< kept so far
-  std::size_t returns = 0;      ///< points of the scan
-  double sensing_time = 0.0;    ///< [s], of the sensor function
-  double planning_time = 0.0;   ///< [s], of the planner's update
+  double distance = 0.0;       ///< travelled up to and including this view
+  std::size_t points = 0;      ///< kept so far
+  std::size_t returns = 0;     ///< points of the scan
+  double sensing_time = 0.0;   ///< [s], of the sensor function
+  double planning_time = 0.0;  ///< [s], of the planner's update
   PlanningStep step;
 };
 
