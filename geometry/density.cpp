@@ -83,10 +83,10 @@ bool DensityMap::is_frontier(std::uint32_t point) const {
     const PointLabel label = labels_[neighbour.index];
     has_core |= label == PointLabel::core;
     switch (config_.rule) {
-      case FrontierRule::any_non_core:
+      case OutlierRule::non_core:
         has_outlier |= label != PointLabel::core && neighbour.index != point;
         break;
-      case FrontierRule::labelled_outlier:
+      case OutlierRule::labelled:
         has_outlier |= label == PointLabel::outlier;
         break;
     }
@@ -104,7 +104,7 @@ DensityUpdate DensityMap::relabel() {
     labels_[point] = PointLabel::core;
   }
 
-  // The order matters to FrontierRule::labelled_outlier alone, which labels new points first.
+  // The order matters to OutlierRule::labelled alone, which labels new points first.
   std::vector<std::uint32_t> points = points_to_relabel(promoted);
   const auto first_new = std::lower_bound(points.begin(), points.end(), update.first_new);
   std::rotate(points.begin(), first_new, points.end());

@@ -21,18 +21,18 @@ namespace skycap::geometry {
 
 enum class PointLabel : std::uint8_t { core, frontier, outlier };
 
-/// What counts as the non-core neighbour that makes a frontier.
-enum class FrontierRule {
-  any_non_core,      ///< another non-core point. The labels follow from the cloud alone.
-  labelled_outlier,  ///< a point now labelled outlier, perhaps the point itself. The labels depend
-                     ///< on the order of points and updates, as in the authors' released code.
+/// Which neighbour, besides a core one, makes a point a frontier.
+enum class OutlierRule {
+  non_core,  ///< any other non-core point. The labels follow from the cloud alone.
+  labelled,  ///< a point now labelled outlier, perhaps the point itself. The labels depend on the
+             ///< order of points and updates, as in the authors' released code.
 };
 
 struct DensityConfig {
   double radius = 0.017;    ///< r
   int core_threshold = 4;   ///< k, counting the point itself
   double spacing = 0.0026;  ///< epsilon: points nearer than this to a kept one are not kept
-  FrontierRule rule = FrontierRule::any_non_core;
+  OutlierRule rule = OutlierRule::non_core;
 };
 
 /// What an update changed. All lists ascend.
@@ -45,7 +45,7 @@ struct DensityUpdate {
 /// A cloud kept at a least spacing, with the label of each point.
 ///
 /// After every update the labels are those that a computation from scratch would give (with
-/// FrontierRule::any_non_core), at a cost that depends on what is new, not on the cloud's size:
+/// OutlierRule::non_core), at a cost that depends on what is new, not on the cloud's size:
 /// core points stay core for ever, and only the others with new neighbours are looked at again.
 class DensityMap {
  public:

@@ -16,34 +16,14 @@
 #include <Eigen/Geometry>
 
 #include "geometry/camera.h"
+#include "geometry/density.h"
+#include "geometry/spherical_cap.h"
+#include "survey/nearest_views.h"
+#include "survey/occlusion.h"
 #include "survey/planner.h"
+#include "survey/view_adjustment.h"
 
 namespace skycap::survey {
-
-/// Which non-core neighbours make a point beside a core point a frontier.
-enum class OutlierRule {
-  non_core,  ///< any other non-core point: independent of the order of the points
-  labelled,  ///< a point now labelled outlier, itself included: the released code's, in order
-};
-
-/// How far from the frontier, and along which line, the clear offset (zeta) is looked for.
-enum class OffsetLine {
-  sight_line,  ///< towards the sensor that first measured the point (paper §III-A)
-  normal,      ///< along the surface normal (released code)
-};
-
-/// Where the occlusion test ends.
-enum class MarchEnd {
-  search_distance,              ///< at psi from the frontier, or at the sensor if nearer (paper)
-  search_distance_from_offset,  ///< at zeta + psi (released code)
-};
-
-/// Which direction the view optimiser proposes for an occluded frontier (§III-B).
-enum class CapPolicy {
-  local,              ///< the clearest direction downhill from the observing one (paper's basin)
-  global,             ///< the centre of the largest empty cap
-  nonlinear_program,  ///< the published program, solved with NLopt's SLSQP
-};
 
 /// What the optimiser calls the observing direction of a point.
 enum class ObservingDirection {
@@ -51,23 +31,10 @@ enum class ObservingDirection {
   image_axis,  ///< the optical axis of that sensor
 };
 
-/// How a view is moved after it failed to resolve its frontier.
-enum class Adjustment {
-  rotation,  ///< shift and turn about the frontier, gain doubling each time (released code)
-  shift,     ///< shift without the turn
-  none,      ///< give the frontier up at the first failure
-};
-
 /// Whose centroid tells the adjustment on which side of the frontier the surface was seen.
 enum class ScanCentroid {
   whole_scan,       ///< all points of the scan
   accepted_points,  ///< only those that were new at the spacing epsilon
-};
-
-/// How the nearest proposals are found.
-enum class NearestSearch {
-  exact,
-  octree,  ///< approximate, as in the released code: leaf edge psi, nearest child centre first
 };
 
 /// Everything about SEE and SEE++ that a mission file may set. The defaults are the paper's
@@ -83,17 +50,16 @@ struct SeeConfig {
   std::optional<double> view_distance;  ///< d; from the camera and rho (paper §IV-B)
   std::optional<Eigen::AlignedBox3d> scene_box;  ///< measurements outside are dropped first
 
-  OutlierRule outlier_rule = OutlierRule::non_core;
-  std::optional<int>
-      frame_neighbours;             ///< nearest points in a frontier's frame, itself included; k
-  bool free_space_normals = false;  ///< flip normals that point into measured surface
+  geometry::OutlierRule outlier_rule = geometry::OutlierRule::non_core;
+  std::optional<int> frame_neighbours;  ///< points in a frontier's frame, itself included; k
+  bool free_space_normals = false;      ///< flip normals that point into measured surface
 
   OffsetLine offset_line = OffsetLine::sight_line;
   std::optional<double> occlusion_radius;  ///< ball radius and step of the occlusion test; r
   MarchEnd march_end = MarchEnd::search_distance;
 
   bool optimise_views = true;  ///< propose clear views for occluded frontiers (SEE++)
-  CapPolicy cap_policy = CapPolicy::local;
+  geometry::CapConfig cap;     ///< how the clear view is found (§III-B)
   ObservingDirection observing_direction = ObservingDirection::ray;
   double occluder_spacing = 0.01;      ///< spacing of the sparse cloud that the cap is found in
   bool drop_if_still_occluded = true;  ///< give up frontiers that even the optimised view misses

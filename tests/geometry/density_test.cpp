@@ -145,14 +145,14 @@ TEST(DensityMap, RemembersGivenUpFrontiersUntilSomethingNewIsNear) {
 // R2 of the specification: an outlier that is tested again finds itself among the outliers.
 TEST(DensityMap, TheLabelledRuleLetsALonelyOutlierBecomeAFrontier) {
   const std::vector<Vector3f> core_group = {{0, 0, 0}, {0, 0.3F, 0}, {0, -0.3F, 0}, {0.3F, 0, 0}};
-  for (const FrontierRule rule : {FrontierRule::any_non_core, FrontierRule::labelled_outlier}) {
+  for (const OutlierRule rule : {OutlierRule::non_core, OutlierRule::labelled}) {
     DensityMap map({.radius = 1.0, .core_threshold = 4, .spacing = 0.01, .rule = rule});
     map.insert(std::vector<Vector3f>{{1.25F, 0, 0}}, 0);
     map.relabel();
     map.insert(core_group, 1);
     map.relabel();
     EXPECT_EQ(map.label(0),
-              rule == FrontierRule::any_non_core ? PointLabel::outlier : PointLabel::frontier);
+              rule == OutlierRule::non_core ? PointLabel::outlier : PointLabel::frontier);
   }
 }
 
