@@ -1,0 +1,91 @@
+#include "missions/cloud_file.h"
+
+#include <bit>
+#include <cstring>
+#include <fstream>
+#include <string>
+
+#include <Eigen/Eigenvalues>
+
+#include "geometry/error.h"
+#include "geometry/parallel.h"
+#include "geometry/point_grid.h"
+
+namespace skycap::missions {
+namespace {
+
+using Eigen::Vector3f;
+
+constexpr std::size_t points_in_a_task = 4096;
+
+/// The normal of the plane that fits `neighbours` best, towards `to_sensor`.
+Vector3f plane_normal(const geometry::PointCloud& cloud,
+                      std::span<const geometry::Neighbour> neighbours, const Vector3f& point,
+                      const Vector3f& to_sensor) {
+  if (neighbours.size() < 3) return to_sensor;
+  // Sums relative to the point itself: single precision is then enough.
+  Vector3f sum = Vector3f::Zero();
+  Eigen::Matrix3f squares = Eigen::Matrix3f::Zero();
+  for (const geometry::Neighbour& neighbour : neighbours) {
+    const Vector3f offset = cloud.positions[neighbour.index] - point;
+    sum += offset;
+    squares += offset * offset.transpose();
+  }
+  const Vector3f mean = sum / static_cast<float>(neighbours.size());
+  const Eigen::Matrix3f covariance = squares - sum * mean.transpose();
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3f> axes(covariance);
+  const Vector3f normal = axes.eigenvectors().col(0).normalized();
+  if (!normal.allFinite()) return to_sensor;
+  return normal.dot(to_sensor) < 0.0F ? Vector3f(-normal) : normal;
+}
+
+}  // namespace
+
+std::vector<Vector3f> cloud_normals(const geometry::PointCloud& cloud,
+                                    std::span<const Eigen::Vector3d> sensors, double radius,
+                                    unsigned threads) {
+  geometry::PointGrid grid(radius);
+  for (const Vector3f& point : cloud.positions) grid.insert(point);
+  std::vector<Vector3f> normals(cloud.size());
+  const std::size_t tasks = (cloud.size() + points_in_a_task - 1) / points_in_a_task;
+  geometry::parallel_for(tasks, threads, [&](std::size_t task) {
+    std::vector<geometry::Neighbour> neighbours;
+    const std::size_t end = std::min(cloud.size(), (task + 1) * points_in_a_task);
+    for (std::size_t i = task * points_in_a_task; i < end; ++i) {
+      const Vector3f& point = cloud.positions[i];
+      neighbours.clear();
+      grid.find_within(point, radius, neighbours);
+      const Vector3f to_sensor =
+          (sensors[cloud.views[i]] - point.cast<double>()).normalized().cast<float>();
+      normals[i] = plane_normal(cloud, neighbours, point, to_sensor);
+    }
+  });
+  return normals;
+}
+
+void write_cloud_file(const std::filesystem::path& file, const geometry::PointCloud& cloud,
+                      std::span<const Vector3f> normals) {
+  static_assert(std::endian::native == std::endian::little, "the file is little-endian");
+  std::string content =
+      "ply\nformat binary_little_endian 1.0\nelement vertex " + std::to_string(cloud.size()) +
+      "\nproperty float x\nproperty float y\nproperty float z\nproperty float nx\n"
+      "property float ny\nproperty float nz\nproperty uint view\nend_header\n";
+  constexpr std::size_t bytes_a_point = 7 * 4;
+  std::size_t end = content.size();
+  content.resize(end + bytes_a_point * cloud.size());
+  for (std::size_t i = 0; i < cloud.size(); ++i) {
+    std::memcpy(content.data() + end, cloud.positions[i].data(), 12);
+    std::memcpy(content.data() + end + 12, normals[i].data(), 12);
+    std::memcpy(content.data() + end + 24, &cloud.views[i], 4);
+    end += bytes_a_point;
+  }
+  std::ofstream stream(file, std::ios::binary);
+  stream.write(content.data(), static_cast<std::streamsize>(content.size()));
+  stream.close();
+  if (!stream) {
+    throw Error(ErrorKind::bad_file,
+                file.string() + ": cannot be written whole; is the disk full?");
+  }
+}
+
+}  // namespace skycap::missions
