@@ -12,8 +12,8 @@ int check(const CheckOptions& options, const Console& console) {
   const geometry::Mesh model = placed_model(mission.scene, options.mission.parent_path());
   const survey::SeeConfig& see = mission.planner.see;
   const Eigen::Vector3d size = geometry::bounding_box(model).sizes();
-  const double view_distance = see.view_distance.value_or(geometry::view_distance(
-      geometry::Camera(mission.sensor.camera.camera), see.density));
+  const double view_distance = see.view_distance.value_or(
+      geometry::view_distance(geometry::Camera(mission.sensor.camera.camera), see.density));
 
   char text[640];
   std::snprintf(text, sizeof text,

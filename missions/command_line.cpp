@@ -46,8 +46,9 @@ struct KeyOptions {
 };
 
 void add_set_option(CLI::App& verb, KeyOptions& keys) {
-  verb.add_option("--set", keys.set, "KEY=VALUE: any key of the mission file, such as "
-                                     "planner.density=213; may be given again")
+  verb.add_option("--set", keys.set,
+                  "KEY=VALUE: any key of the mission file, such as "
+                  "planner.density=213; may be given again")
       ->type_size(1)
       ->allow_extra_args(false);
 }
@@ -112,9 +113,8 @@ void add_evaluate(CLI::App& app, const Console& console, Action& action) {
   verb->add_option("--samples", options->samples, "Surface points; default 100000")
       ->check(CLI::Range(100, 100'000'000));
   verb->add_flag("--json", options->is_json, "Print JSON");
-  verb->callback([=, &console, &action] {
-    action = [=, &console] { return evaluate(*options, console); };
-  });
+  verb->callback(
+      [=, &console, &action] { action = [=, &console] { return evaluate(*options, console); }; });
 }
 
 void add_model(CLI::App& app, const Console& console, Action& action) {
@@ -125,9 +125,8 @@ void add_model(CLI::App& app, const Console& console, Action& action) {
       ->required();
   verb->add_option("--out", options->out, "Write the mesh to this PLY file");
   verb->add_option("--render", options->render, "Draw the model into this PNG file");
-  verb->callback([=, &console, &action] {
-    action = [=, &console] { return model(*options, console); };
-  });
+  verb->callback(
+      [=, &console, &action] { action = [=, &console] { return model(*options, console); }; });
 }
 
 /// One line for the user, whatever the message holds.

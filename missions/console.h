@@ -9,10 +9,10 @@ namespace skycap::missions {
 
 /// The program's surroundings, so that tests can put themselves in their place.
 struct Console {
-  std::ostream& out;              ///< results
-  std::ostream& err;              ///< progress, warnings and errors
-  bool err_is_terminal = false;   ///< whether progress is shown, in one line that is rewritten
-  std::stop_token stop = {};      ///< requested by Ctrl-C
+  std::ostream& out;             ///< results
+  std::ostream& err;             ///< progress, warnings and errors
+  bool err_is_terminal = false;  ///< whether progress is shown, in one line that is rewritten
+  std::stop_token stop = {};     ///< requested by Ctrl-C
 };
 
 /// One line on a terminal that each call overwrites; nothing where there is no terminal. Cleared

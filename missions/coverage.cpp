@@ -7,8 +7,7 @@
 
 namespace skycap::missions {
 
-CoverageMeter::CoverageMeter(std::span<const Eigen::Vector3f> samples,
-                             double registration_distance)
+CoverageMeter::CoverageMeter(std::span<const Eigen::Vector3f> samples, double registration_distance)
     // A ball of radius r_d then touches at most two cells on each axis. The margin is for the
     // rounding of coordinates to cells.
     : cell_size_(2.0 * registration_distance * (1.0 + 1e-6)),

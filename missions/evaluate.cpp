@@ -56,21 +56,20 @@ int evaluate(const EvaluateOptions& options, const Console& console) {
   const double density = static_cast<double>(points.size()) / area;
 
   if (options.is_json) {
-    const nlohmann::ordered_json json{
-        {"cloud", options.cloud.string()},
-        {"model", options.model},
-        {"points", points.size()},
-        {"registration_distance_m", truth.registration_distance},
-        {"samples", truth.samples},
-        {"coverage", meter.share()},
-        {"distance_to_model_m",
-         {{"mean", accuracy.mean},
-          {"root_mean_square", accuracy.root_mean_square},
-          {"median", accuracy.median},
-          {"percentile_95", accuracy.percentile_95},
-          {"largest", accuracy.largest}}},
-        {"area_m2", area},
-        {"points_per_m2", density}};
+    const nlohmann::ordered_json json{{"cloud", options.cloud.string()},
+                                      {"model", options.model},
+                                      {"points", points.size()},
+                                      {"registration_distance_m", truth.registration_distance},
+                                      {"samples", truth.samples},
+                                      {"coverage", meter.share()},
+                                      {"distance_to_model_m",
+                                       {{"mean", accuracy.mean},
+                                        {"root_mean_square", accuracy.root_mean_square},
+                                        {"median", accuracy.median},
+                                        {"percentile_95", accuracy.percentile_95},
+                                        {"largest", accuracy.largest}}},
+                                      {"area_m2", area},
+                                      {"points_per_m2", density}};
     console.out << json.dump(1) << "\n";
     return 0;
   }

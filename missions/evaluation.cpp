@@ -21,9 +21,9 @@ constexpr std::size_t samples_in_a_task = 1024;
 
 /// The first admissible position, trying `directions` from number `first` on and around, that has
 /// a free line of sight to `target`.
-std::optional<Vector3d> free_position(const Vector3d& target,
-                                      std::span<const Vector3d> directions, std::size_t first,
-                                      const sim::Scene& scene, const Admissible& admissible) {
+std::optional<Vector3d> free_position(const Vector3d& target, std::span<const Vector3d> directions,
+                                      std::size_t first, const sim::Scene& scene,
+                                      const Admissible& admissible) {
   for (std::size_t i = 0; i < directions.size(); ++i) {
     const Vector3d& direction = directions[(first + i) % directions.size()];
     const Vector3d position = target + admissible.view_distance * direction;
@@ -68,18 +68,18 @@ std::vector<std::uint8_t> visible_samples(std::span<const Vector3f> samples,
     for (std::size_t i = task * samples_in_a_task; i < end; ++i) {
       // Starting at another direction each time tells nothing about where "up" is, and finds a
       // free one as soon as any fixed order would.
-      const bool found = free_position(samples[i].cast<double>(), directions, i, scene, admissible)
-                             .has_value();
+      const bool found =
+          free_position(samples[i].cast<double>(), directions, i, scene, admissible).has_value();
       is_visible[i] = found ? 1 : 0;
     }
   });
   return is_visible;
 }
 
-double coverage_ceiling(std::span<const Vector3f> samples,
-                        std::span<const std::uint8_t> is_visible, const sim::Scene& scene,
-                        const sim::DepthCamera& camera, const Admissible& admissible,
-                        const CeilingConfig& config, unsigned threads) {
+double coverage_ceiling(std::span<const Vector3f> samples, std::span<const std::uint8_t> is_visible,
+                        const sim::Scene& scene, const sim::DepthCamera& camera,
+                        const Admissible& admissible, const CeilingConfig& config,
+                        unsigned threads) {
   const std::vector<Vector3d> directions = fibonacci_directions(admissible.directions);
   std::mt19937_64 random(config.seed);
   std::vector<std::uint32_t> targets;  // visible samples in random order
@@ -99,8 +99,7 @@ double coverage_ceiling(std::span<const Vector3f> samples,
     const auto position =
         free_position(target, directions, random() % directions.size(), scene, admissible);
     if (!position) continue;  // cannot be: the sample is visible
-    scan = camera.scan(scene, geometry::look_at(*position, target), view, threads,
-                       std::move(scan));
+    scan = camera.scan(scene, geometry::look_at(*position, target), view, threads, std::move(scan));
     meter.add(cloud.store(scan.points, config.box));
   }
   return meter.share();
@@ -126,8 +125,7 @@ CloudAccuracy cloud_accuracy(std::span<const Vector3f> points, const geometry::M
   const double sum = std::accumulate(distances.begin(), distances.end(), 0.0);
   const double squares =
       std::inner_product(distances.begin(), distances.end(), distances.begin(), 0.0);
-  return {sum / count, std::sqrt(squares / count), quantile(0.5), quantile(0.95),
-          distances.back()};
+  return {sum / count, std::sqrt(squares / count), quantile(0.5), quantile(0.95), distances.back()};
 }
 
 }  // namespace skycap::missions

@@ -19,10 +19,10 @@ namespace skycap::missions {
 
 /// Where a sensor may look at the scene from.
 struct Admissible {
-  double view_distance = 1.0;      ///< from the surface point looked at
-  double lowest_z = -1e9;          ///< of the sensor
-  std::size_t directions = 200;    ///< tried around a surface point, spread over the sphere
-  double clearance = 1e-4;         ///< a sight line may end this far before the surface point
+  double view_distance = 1.0;    ///< from the surface point looked at
+  double lowest_z = -1e9;        ///< of the sensor
+  std::size_t directions = 200;  ///< tried around a surface point, spread over the sphere
+  double clearance = 1e-4;       ///< a sight line may end this far before the surface point
 };
 
 /// For each sample, 1 if some admissible sensor position has a free line of sight to it, else 0.

@@ -23,8 +23,8 @@ struct SceneConfig {
   std::string model;  ///< builtin:NAME, model:NAME, or the path of a mesh
   UpAxis up_axis = UpAxis::z;
   Eigen::Vector3d rotation = Eigen::Vector3d::Zero();  ///< [rad], about x, then y, then z
-  std::optional<double> longest_side;  ///< of the bounding box, after rotation
-  std::optional<double> scale;         ///< factor; only one of the two is given
+  std::optional<double> longest_side;                  ///< of the bounding box, after rotation
+  std::optional<double> scale;                         ///< factor; only one of the two is given
   Eigen::Vector3d position = Eigen::Vector3d::Zero();
   bool ground = false;  ///< whether the sensor also sees a plane under the model
 };

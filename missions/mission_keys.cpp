@@ -160,141 +160,179 @@ Key scene_box_corner(std::string path, bool is_upper, std::string meaning) {
 
 std::vector<Key> general_keys() {
   return {
-      otherwise("the file's name", text("name", [](Mission& m) -> auto& { return m.name; },
-                                        "Names the folder of the results.")),
-      integer("seed", "", between(0, 1e15), [](Mission& m) -> auto& { return m.seed; },
-              "Of the start view and the sensor's noise; the same seed gives the same results."),
-      integer("threads", "", between(0, 1024), [](Mission& m) -> auto& { return m.threads; },
-              "How many threads to use, 0 for all processors; does not change the results."),
+      otherwise("the file's name", text(
+                                       "name", [](Mission & m) -> auto& { return m.name; },
+                                       "Names the folder of the results.")),
+      integer(
+          "seed", "", between(0, 1e15), [](Mission & m) -> auto& { return m.seed; },
+          "Of the start view and the sensor's noise; the same seed gives the same results."),
+      integer(
+          "threads", "", between(0, 1024), [](Mission & m) -> auto& { return m.threads; },
+          "How many threads to use, 0 for all processors; does not change the results."),
   };
 }
 
 std::vector<Key> scene_keys() {
   return {
-      required(text("scene.model", [](Mission& m) -> auto& { return m.scene.model; },
-                    "What is surveyed: builtin:NAME, model:NAME, or the path of a PLY, OBJ, STL or "
-                    "OFF file, relative to the mission file.")),
-      choice("scene.up_axis", {"z", "y"}, [](Mission& m) -> auto& { return m.scene.up_axis; },
-             "Which axis of the model's own frame points up."),
-      vector("scene.rotation_deg", "degrees", between(-360, 360),
-             [](Mission& m) -> auto& { return m.scene.rotation; },
-             "Turns the upright model about the x, then the y, then the z axis."),
+      required(text(
+          "scene.model", [](Mission & m) -> auto& { return m.scene.model; },
+          "What is surveyed: builtin:NAME, model:NAME, or the path of a PLY, OBJ, STL or "
+          "OFF file, relative to the mission file.")),
+      choice(
+          "scene.up_axis", {"z", "y"}, [](Mission & m) -> auto& { return m.scene.up_axis; },
+          "Which axis of the model's own frame points up."),
+      vector(
+          "scene.rotation_deg", "degrees", between(-360, 360),
+          [](Mission & m) -> auto& { return m.scene.rotation; },
+          "Turns the upright model about the x, then the y, then the z axis."),
       otherwise("the model's own size",
-                number("scene.longest_side", "m", above(0, 1e6),
-                       [](Mission& m) -> auto& { return m.scene.longest_side; },
-                       "Scales the model until the longest side of its bounding box has this "
-                       "length.")),
-      otherwise("1", number("scene.scale", "", above(0, far_away),
-                            [](Mission& m) -> auto& { return m.scene.scale; },
-                            "Scales the model by a factor, in place of longest_side.")),
-      vector("scene.position", "m", between(-1e6, 1e6),
-             [](Mission& m) -> auto& { return m.scene.position; },
-             "Where the middle of the base of the model's bounding box is put."),
-      boolean("scene.ground", [](Mission& m) -> auto& { return m.scene.ground; },
-              "Whether the sensor also sees a ground plane under the model. It is not part of the "
-              "coverage; planner.scene_box has to keep it out of the plan."),
+                number(
+                    "scene.longest_side", "m", above(0, 1e6),
+                    [](Mission & m) -> auto& { return m.scene.longest_side; },
+                    "Scales the model until the longest side of its bounding box has this "
+                    "length.")),
+      otherwise("1", number(
+                         "scene.scale", "", above(0, far_away),
+                         [](Mission & m) -> auto& { return m.scene.scale; },
+                         "Scales the model by a factor, in place of longest_side.")),
+      vector(
+          "scene.position", "m", between(-1e6, 1e6),
+          [](Mission & m) -> auto& { return m.scene.position; },
+          "Where the middle of the base of the model's bounding box is put."),
+      boolean(
+          "scene.ground", [](Mission & m) -> auto& { return m.scene.ground; },
+          "Whether the sensor also sees a ground plane under the model. It is not part of the "
+          "coverage; planner.scene_box has to keep it out of the plan."),
   };
 }
 
 std::vector<Key> sensor_keys() {
   return {
-      choice("sensor.preset", {"d435", "high_resolution"},
-             [](Mission& m) -> auto& { return m.sensor.preset; },
-             "Depth camera whose values the keys below override: d435 is an Intel RealSense D435 "
-             "(848 x 480 pixels, 69.4 x 42.5 degrees), high_resolution the paper's for buildings "
-             "(2400 x 1750 pixels, 60 x 40 degrees)."),
-      integer("sensor.width", "px", between(1, 32768),
-              [](Mission& m) -> auto& { return m.sensor.camera.camera.width; }, "Columns of the image."),
-      integer("sensor.height", "px", between(1, 32768),
-              [](Mission& m) -> auto& { return m.sensor.camera.camera.height; }, "Rows of the image."),
-      number("sensor.horizontal_fov_deg", "degrees", between(0.1, 179),
-             [](Mission& m) -> auto& { return m.sensor.camera.camera.horizontal_fov; },
-             "Full horizontal angle of view."),
-      number("sensor.vertical_fov_deg", "degrees", between(0.1, 179),
-             [](Mission& m) -> auto& { return m.sensor.camera.camera.vertical_fov; },
-             "Full vertical angle of view."),
-      number("sensor.min_range", "m", between(0, 1e6),
-             [](Mission& m) -> auto& { return m.sensor.camera.camera.min_range; },
-             "Nearest depth, along the optical axis, that is measured."),
-      number("sensor.max_range", "m", above(0, 1e6),
-             [](Mission& m) -> auto& { return m.sensor.camera.camera.max_range; },
-             "Farthest depth, along the optical axis, that is measured."),
-      number("sensor.max_incidence_deg", "degrees", above(0, 90),
-             [](Mission& m) -> auto& { return m.sensor.camera.max_incidence; },
-             "Surfaces whose normal makes a larger angle than this with the ray give no return; 90 "
-             "switches the limit off."),
-      number("sensor.noise.sigma", "m", between(0, 1e3),
-             [](Mission& m) -> auto& { return m.sensor.camera.noise.sigma; },
-             "Standard deviation of the Gaussian noise of the measured points."),
-      choice("sensor.noise.direction", {"isotropic", "along_ray"},
-             [](Mission& m) -> auto& { return m.sensor.camera.noise.direction; },
-             "Whether the noise moves a point in x, y and z alike or along its ray only."),
+      choice(
+          "sensor.preset", {"d435", "high_resolution"},
+          [](Mission & m) -> auto& { return m.sensor.preset; },
+          "Depth camera whose values the keys below override: d435 is an Intel RealSense D435 "
+          "(848 x 480 pixels, 69.4 x 42.5 degrees), high_resolution the paper's for buildings "
+          "(2400 x 1750 pixels, 60 x 40 degrees)."),
+      integer(
+          "sensor.width", "px", between(1, 32768),
+          [](Mission & m) -> auto& { return m.sensor.camera.camera.width; },
+          "Columns of the image."),
+      integer(
+          "sensor.height", "px", between(1, 32768),
+          [](Mission & m) -> auto& { return m.sensor.camera.camera.height; }, "Rows of the image."),
+      number(
+          "sensor.horizontal_fov_deg", "degrees", between(0.1, 179),
+          [](Mission & m) -> auto& { return m.sensor.camera.camera.horizontal_fov; },
+          "Full horizontal angle of view."),
+      number(
+          "sensor.vertical_fov_deg", "degrees", between(0.1, 179),
+          [](Mission & m) -> auto& { return m.sensor.camera.camera.vertical_fov; },
+          "Full vertical angle of view."),
+      number(
+          "sensor.min_range", "m", between(0, 1e6),
+          [](Mission & m) -> auto& { return m.sensor.camera.camera.min_range; },
+          "Nearest depth, along the optical axis, that is measured."),
+      number(
+          "sensor.max_range", "m", above(0, 1e6),
+          [](Mission & m) -> auto& { return m.sensor.camera.camera.max_range; },
+          "Farthest depth, along the optical axis, that is measured."),
+      number(
+          "sensor.max_incidence_deg", "degrees", above(0, 90),
+          [](Mission & m) -> auto& { return m.sensor.camera.max_incidence; },
+          "Surfaces whose normal makes a larger angle than this with the ray give no return; 90 "
+          "switches the limit off."),
+      number(
+          "sensor.noise.sigma", "m", between(0, 1e3),
+          [](Mission & m) -> auto& { return m.sensor.camera.noise.sigma; },
+          "Standard deviation of the Gaussian noise of the measured points."),
+      choice(
+          "sensor.noise.direction", {"isotropic", "along_ray"},
+          [](Mission & m) -> auto& { return m.sensor.camera.noise.direction; },
+          "Whether the noise moves a point in x, y and z alike or along its ray only."),
   };
 }
 
 std::vector<Key> survey_keys() {
   return {
       otherwise("at random",
-                vector("start.position", "m", between(-1e6, 1e6),
-                       [](Mission& m) -> auto& { return m.start.position; },
-                       "Where the first view is taken from. At random: in a direction drawn by the "
-                       "seed, as far from the surface's centroid as the view distance and the mean "
-                       "distance of the surface to it, looking at it.")),
-      otherwise("-", vector("start.look_at", "m", between(-1e6, 1e6),
-                            [](Mission& m) -> auto& { return m.start.look_at; },
-                            "A point that the first view looks at.")),
-      otherwise("-", vector("start.direction", "", between(-1e6, 1e6),
-                            [](Mission& m) -> auto& { return m.start.direction; },
-                            "Which way the first view looks, in place of look_at.")),
-      integer("limits.max_views", "", between(1, 1e6),
-              [](Mission& m) -> auto& { return m.limits.max_views; },
-              "The survey ends after this many views."),
-      number("limits.max_distance", "m", above(0, 1e9),
-             [](Mission& m) -> auto& { return m.limits.max_distance; },
-             "The survey ends when the straight lines between views add up to this."),
+                vector(
+                    "start.position", "m", between(-1e6, 1e6),
+                    [](Mission & m) -> auto& { return m.start.position; },
+                    "Where the first view is taken from. At random: in a direction drawn by the "
+                    "seed, as far from the surface's centroid as the view distance and the mean "
+                    "distance of the surface to it, looking at it.")),
+      otherwise("-", vector(
+                         "start.look_at", "m", between(-1e6, 1e6),
+                         [](Mission & m) -> auto& { return m.start.look_at; },
+                         "A point that the first view looks at.")),
+      otherwise("-", vector(
+                         "start.direction", "", between(-1e6, 1e6),
+                         [](Mission & m) -> auto& { return m.start.direction; },
+                         "Which way the first view looks, in place of look_at.")),
+      integer(
+          "limits.max_views", "", between(1, 1e6),
+          [](Mission & m) -> auto& { return m.limits.max_views; },
+          "The survey ends after this many views."),
+      number(
+          "limits.max_distance", "m", above(0, 1e9),
+          [](Mission & m) -> auto& { return m.limits.max_distance; },
+          "The survey ends when the straight lines between views add up to this."),
       otherwise("0 with ground, unlimited without",
-                number("limits.ground_clearance", "m", between(-1e6, 1e6),
-                       [](Mission& m) -> auto& { return m.limits.ground_clearance; },
-                       "Least height of a view above the scene's base.")),
-      required(number("evaluation.registration_distance", "m", above(0, 1e3),
-                      [](Mission& m) -> auto& { return m.evaluation.registration_distance; },
-                      "r_d: a surface sample with a stored measurement this near is covered.")),
-      integer("evaluation.samples", "", between(100, 1e8),
-              [](Mission& m) -> auto& { return m.evaluation.samples; },
-              "Points spread evenly over the surface, by which coverage is measured."),
-      integer("evaluation.visible_directions", "", between(1, 1e4),
-              [](Mission& m) -> auto& { return m.evaluation.visible_directions; },
-              "Directions, spread over the sphere, from which a sample may be seen at the view "
-              "distance; if none is free it does not count as visible."),
-      integer("evaluation.ceiling_views", "", between(0, 1e4),
-              [](Mission& m) -> auto& { return m.evaluation.ceiling_views; },
-              "Views that the attainable coverage is measured with; 0 leaves it out."),
-      otherwise("-", number("paper.views", "", above(0), [](Mission& m) -> auto& { return m.paper.views; },
-                            "Views a publication needed, printed beside the results of trials.")),
-      otherwise("-", number("paper.coverage", "share", between(0, 1),
-                            [](Mission& m) -> auto& { return m.paper.coverage; },
-                            "Coverage a publication reached.")),
-      otherwise("-", number("paper.planning_time", "s", above(0),
-                            [](Mission& m) -> auto& { return m.paper.planning_time; },
-                            "Planning time of a publication, for a survey.")),
-      otherwise("-", number("paper.distance", "m", above(0),
-                            [](Mission& m) -> auto& { return m.paper.distance; },
-                            "Distance a publication's sensor travelled.")),
+                number(
+                    "limits.ground_clearance", "m", between(-1e6, 1e6),
+                    [](Mission & m) -> auto& { return m.limits.ground_clearance; },
+                    "Least height of a view above the scene's base.")),
+      required(number(
+          "evaluation.registration_distance", "m", above(0, 1e3),
+          [](Mission & m) -> auto& { return m.evaluation.registration_distance; },
+          "r_d: a surface sample with a stored measurement this near is covered.")),
+      integer(
+          "evaluation.samples", "", between(100, 1e8),
+          [](Mission & m) -> auto& { return m.evaluation.samples; },
+          "Points spread evenly over the surface, by which coverage is measured."),
+      integer(
+          "evaluation.visible_directions", "", between(1, 1e4),
+          [](Mission & m) -> auto& { return m.evaluation.visible_directions; },
+          "Directions, spread over the sphere, from which a sample may be seen at the view "
+          "distance; if none is free it does not count as visible."),
+      integer(
+          "evaluation.ceiling_views", "", between(0, 1e4),
+          [](Mission & m) -> auto& { return m.evaluation.ceiling_views; },
+          "Views that the attainable coverage is measured with; 0 leaves it out."),
+      otherwise("-",
+                number(
+                    "paper.views", "", above(0), [](Mission & m) -> auto& { return m.paper.views; },
+                    "Views a publication needed, printed beside the results of trials.")),
+      otherwise("-", number(
+                         "paper.coverage", "share", between(0, 1),
+                         [](Mission & m) -> auto& { return m.paper.coverage; },
+                         "Coverage a publication reached.")),
+      otherwise("-", number(
+                         "paper.planning_time", "s", above(0),
+                         [](Mission & m) -> auto& { return m.paper.planning_time; },
+                         "Planning time of a publication, for a survey.")),
+      otherwise("-", number(
+                         "paper.distance", "m", above(0),
+                         [](Mission & m) -> auto& { return m.paper.distance; },
+                         "Distance a publication's sensor travelled.")),
   };
 }
 
 std::vector<Key> planner_keys() {
   const auto see = [](auto member) {
-    return [member](Mission& m) -> auto& { return m.planner.see.*member; };
+    return [member](Mission & m) -> auto& { return m.planner.see.*member; };
   };
   using See = survey::SeeConfig;
   return {
-      choice("planner.name", {"see++", "see"}, [](Mission& m) -> auto& { return m.planner.name; },
-             "The planner. see is see++ without optimise_views and visibility_graph."),
-      choice("planner.preset", {"paper", "building"},
-             [](Mission& m) -> auto& { return m.planner.preset; },
-             "Values that the keys below override: paper as published, building as described "
-             "below."),
+      choice(
+          "planner.name", {"see++", "see"}, [](Mission & m) -> auto& { return m.planner.name; },
+          "The planner. see is see++ without optimise_views and visibility_graph."),
+      choice(
+          "planner.preset", {"paper", "building"},
+          [](Mission & m) -> auto& { return m.planner.preset; },
+          "Values that the keys below override: paper as published, building as described "
+          "below."),
       number("planner.density", "points/m^3", above(0, 1e12), see(&See::density),
              "rho: wanted density of the measurements."),
       number("planner.resolution_radius", "m", above(0, 1e3), see(&See::resolution_radius),
@@ -305,13 +343,12 @@ std::vector<Key> planner_keys() {
       integer("planner.visibility_update_limit", "views", between(1, 1e6),
               see(&See::visibility_update_limit),
               "tau: how many views nearest the sensor are kept up to date after a scan."),
-      otherwise("ceil(4/3 pi r^3 rho)",
-                integer("planner.core_threshold", "points", between(1, 1e6),
-                        see(&See::core_threshold),
-                        "k: points within r, itself counted, that make a point core.")),
-      otherwise("rho^(-1/2)",
-                number("planner.spacing", "m", above(0, 1e3), see(&See::spacing),
-                       "epsilon: least distance of stored measurements.")),
+      otherwise(
+          "ceil(4/3 pi r^3 rho)",
+          integer("planner.core_threshold", "points", between(1, 1e6), see(&See::core_threshold),
+                  "k: points within r, itself counted, that make a point core.")),
+      otherwise("rho^(-1/2)", number("planner.spacing", "m", above(0, 1e3), see(&See::spacing),
+                                     "epsilon: least distance of stored measurements.")),
       otherwise("from the sensor and rho",
                 number("planner.view_distance", "m", above(0, 1e6), see(&See::view_distance),
                        "d: distance from a frontier to the view proposed for it.")),
@@ -329,20 +366,22 @@ std::vector<Key> planner_keys() {
               "Whether normals that point into measured surface are turned round."),
       choice("planner.offset_line", {"sight_line", "normal"}, see(&See::offset_line),
              "Along which line the start of the occlusion test (zeta) is looked for."),
-      otherwise("r", number("planner.occlusion_radius", "m", above(0, 1e3),
-                            see(&See::occlusion_radius),
-                            "Ball radius and step of the occlusion test.")),
+      otherwise("r",
+                number("planner.occlusion_radius", "m", above(0, 1e3), see(&See::occlusion_radius),
+                       "Ball radius and step of the occlusion test.")),
       choice("planner.march_end", {"search_distance", "search_distance_from_offset"},
              see(&See::march_end), "Whether the occlusion test ends at psi or at zeta + psi."),
       boolean("planner.optimise_views", see(&See::optimise_views),
               "Whether occluded frontiers are given a view from a clear direction (SEE++)."),
-      choice("planner.cap.policy", {"local", "global", "nonlinear_program"},
-             [](Mission& m) -> auto& { return m.planner.see.cap.policy; },
-             "Which clear direction: the one downhill from the observing direction, the centre of "
-             "the largest empty cap, or what the published program finds with NLopt."),
-      integer("planner.cap.max_evaluations", "", between(1, 1e6),
-              [](Mission& m) -> auto& { return m.planner.see.cap.max_evaluations; },
-              "Evaluations in each of the published program's two optimisations."),
+      choice(
+          "planner.cap.policy", {"local", "global", "nonlinear_program"},
+          [](Mission & m) -> auto& { return m.planner.see.cap.policy; },
+          "Which clear direction: the one downhill from the observing direction, the centre of "
+          "the largest empty cap, or what the published program finds with NLopt."),
+      integer(
+          "planner.cap.max_evaluations", "", between(1, 1e6),
+          [](Mission & m) -> auto& { return m.planner.see.cap.max_evaluations; },
+          "Evaluations in each of the published program's two optimisations."),
       choice("planner.observing_direction", {"ray", "image_axis"}, see(&See::observing_direction),
              "What is called the observing direction of a point: its ray, or the optical axis."),
       number("planner.occluder_spacing", "m", above(0, 1e3), see(&See::occluder_spacing),

@@ -207,9 +207,9 @@ void apply_presets(Mission& mission) {
 void derive_building_preset(const GivenValues& given, Mission& mission) {
   survey::SeeConfig& see = mission.planner.see;
   const double distance =
-      see.view_distance ? *see.view_distance
-                        : geometry::view_distance(geometry::Camera(mission.sensor.camera.camera),
-                                                  see.density);
+      see.view_distance
+          ? *see.view_distance
+          : geometry::view_distance(geometry::Camera(mission.sensor.camera.camera), see.density);
   const auto is_given = [&](const char* key) { return given.contains(key); };
   if (!is_given("planner.occlusion_search_distance")) see.occlusion_search_distance = distance;
   if (!is_given("planner.frontier_spacing")) see.frontier_spacing = 0.1 * distance;
@@ -246,7 +246,8 @@ void check_together(const GivenValues& given, const std::string& name, const Mis
     fail(place(key), key, "needs start.position; give it, or leave both out for a random start");
   }
   if (start.position && start.look_at.has_value() == start.direction.has_value()) {
-    fail(place("start.position"), "start.position", "needs either start.look_at or start.direction");
+    fail(place("start.position"), "start.position",
+         "needs either start.look_at or start.direction");
   }
   if (start.direction && start.direction->norm() < 1e-6) {
     fail(place("start.direction"), "start.direction", "has no length; give a vector that has");
@@ -291,9 +292,9 @@ GivenValues collected(const std::string& text, const std::string& name,
                       const std::vector<KeyOverride>& overrides) {
   const YamlNode root = parse_yaml(text, name);
   if (root.kind == YamlNode::Kind::null) {
-    throw Error(ErrorKind::bad_config,
-                name + ":1: is empty; a mission needs at least scene.model and "
-                       "evaluation.registration_distance");
+    throw Error(ErrorKind::bad_config, name +
+                                           ":1: is empty; a mission needs at least scene.model and "
+                                           "evaluation.registration_distance");
   }
   if (root.kind != YamlNode::Kind::map) {
     throw Error(ErrorKind::bad_config, name + ":" + std::to_string(root.line) +
@@ -336,8 +337,7 @@ Mission parse_mission(const std::string& text, const std::string& name,
   return mission;
 }
 
-Mission read_mission(const std::filesystem::path& file,
-                     const std::vector<KeyOverride>& overrides) {
+Mission read_mission(const std::filesystem::path& file, const std::vector<KeyOverride>& overrides) {
   const auto refuse = [&](const std::string& what) {
     throw Error(ErrorKind::bad_file, file.string() + ": " + what);
   };

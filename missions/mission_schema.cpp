@@ -73,10 +73,8 @@ Json value_schema(const Key& key) {
     case KeyType::vector:
       break;
   }
-  return {{"type", "array"},
-          {"items", number_schema(key, "number")},
-          {"minItems", 3},
-          {"maxItems", 3}};
+  return {
+      {"type", "array"}, {"items", number_schema(key, "number")}, {"minItems", 3}, {"maxItems", 3}};
 }
 
 Json section_schema() {

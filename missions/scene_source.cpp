@@ -17,7 +17,8 @@ using Eigen::Vector3d;
 geometry::Mesh named_model(const std::string& model, const std::filesystem::path& folder) {
   constexpr std::string_view builtin = "builtin:", stored = "model:";
   if (model.starts_with(builtin)) return sim::models::make_model(model.substr(builtin.size()));
-  if (model.starts_with(stored)) return geometry::read_mesh(find_model(model.substr(stored.size())));
+  if (model.starts_with(stored))
+    return geometry::read_mesh(find_model(model.substr(stored.size())));
   return geometry::read_mesh(folder / model);
 }
 
@@ -41,10 +42,9 @@ geometry::Mesh load_model(const std::string& model, const std::filesystem::path&
 void place_model(const SceneConfig& scene, geometry::Mesh& model) {
   const Vector3d& angles = scene.rotation;
   const double upright = scene.up_axis == UpAxis::y ? 0.5 * std::numbers::pi : 0.0;
-  const Eigen::Affine3d turn(AngleAxisd(angles.z(), Vector3d::UnitZ()) *
-                             AngleAxisd(angles.y(), Vector3d::UnitY()) *
-                             AngleAxisd(angles.x(), Vector3d::UnitX()) *
-                             AngleAxisd(upright, Vector3d::UnitX()));
+  const Eigen::Affine3d turn(
+      AngleAxisd(angles.z(), Vector3d::UnitZ()) * AngleAxisd(angles.y(), Vector3d::UnitY()) *
+      AngleAxisd(angles.x(), Vector3d::UnitX()) * AngleAxisd(upright, Vector3d::UnitX()));
   geometry::transform(model, turn);
 
   double scale = scene.scale.value_or(1.0);

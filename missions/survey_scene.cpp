@@ -20,7 +20,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr std::uint64_t sample_seed = 1;   // coverage is measured by the same samples in all runs
+constexpr std::uint64_t sample_seed = 1;  // coverage is measured by the same samples in all runs
 constexpr std::uint64_t ceiling_seed = 1;
 
 sim::Scene scene_of(const geometry::Mesh& model, const Mission& mission) {
@@ -83,9 +83,10 @@ geometry::View SurveyScene::first_view(std::uint64_t seed) const {
       return geometry::look_at(position, centroid);
     }
   }
-  throw Error(ErrorKind::bad_config,
-              "limits.ground_clearance leaves no place for a random start at the view distance of " +
-                  to_text(view_distance_) + " m; lower it or give start.position");
+  throw Error(
+      ErrorKind::bad_config,
+      "limits.ground_clearance leaves no place for a random start at the view distance of " +
+          to_text(view_distance_) + " m; lower it or give start.position");
 }
 
 Admissible SurveyScene::admissible() const {
@@ -111,9 +112,9 @@ std::optional<double> SurveyScene::ceiling(const std::vector<std::uint8_t>& is_v
   config.registration_distance = mission_.evaluation.registration_distance;
   if (mission_.planner.see.scene_box) config.box = *mission_.planner.see.scene_box;
   config.seed = ceiling_seed;
-  const double ceiling = coverage_ceiling(samples_.points, is_visible, scene_,
-                                          sim::DepthCamera(mission_.sensor.camera), admissible(),
-                                          config, threads);
+  const double ceiling =
+      coverage_ceiling(samples_.points, is_visible, scene_,
+                       sim::DepthCamera(mission_.sensor.camera), admissible(), config, threads);
   try {
     std::ostringstream text;
     text.precision(17);

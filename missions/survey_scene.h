@@ -23,8 +23,8 @@ class SurveyScene {
   /// load_model() and place_model() throw.
   SurveyScene(const Mission& mission, const std::filesystem::path& folder);
 
-  const geometry::Mesh& model() const { return model_; }       ///< as placed, without ground
-  const sim::Scene& scene() const { return scene_; }           ///< with ground, if there is one
+  const geometry::Mesh& model() const { return model_; }  ///< as placed, without ground
+  const sim::Scene& scene() const { return scene_; }      ///< with ground, if there is one
   const geometry::SurfaceSamples& samples() const { return samples_; }  ///< of the model
 
   /// d: as the mission gives it, or from its camera and density.

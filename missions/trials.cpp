@@ -44,15 +44,16 @@ Statistic statistic_of(const std::vector<Trial>& trials, const Figure& figure) {
 
 Trial trial_of(const SurveyRecord& record, std::span<const std::uint8_t> is_visible,
                std::optional<double> ceiling) {
-  Trial trial{.seed = record.seed,
-              .stop_reason = record.stop_reason,
-              .coverage = {record.coverage(), covered_share(record.is_covered, is_visible), ceiling},
-              .views = record.views.size(),
-              .points = record.cloud.size(),
-              .planning_time = record.planning_time(),
-              .distance = record.distance(),
-              .coverage_after = {},
-              .distance_after = {}};
+  Trial trial{
+      .seed = record.seed,
+      .stop_reason = record.stop_reason,
+      .coverage = {record.coverage(), covered_share(record.is_covered, is_visible), ceiling},
+      .views = record.views.size(),
+      .points = record.cloud.size(),
+      .planning_time = record.planning_time(),
+      .distance = record.distance(),
+      .coverage_after = {},
+      .distance_after = {}};
   for (const JudgedView& view : record.views) {
     trial.coverage_after.push_back(view.coverage);
     trial.distance_after.push_back(view.surveyed.distance);
@@ -91,8 +92,8 @@ std::string csv_of(const std::optional<double>& number) {
 }
 
 std::size_t completed(const std::vector<Trial>& trials) {
-  return static_cast<std::size_t>(std::ranges::count(trials, survey::StopReason::complete,
-                                                     &Trial::stop_reason));
+  return static_cast<std::size_t>(
+      std::ranges::count(trials, survey::StopReason::complete, &Trial::stop_reason));
 }
 
 }  // namespace

@@ -32,8 +32,8 @@ struct Trial {
 /// Mean of a figure over the trials, and how sure it is.
 struct Statistic {
   double mean = 0.0;
-  double deviation = 0.0;        ///< standard deviation, n - 1 in the denominator
-  double half_width_95 = 0.0;    ///< of the 95 % confidence interval of the mean, Student's t
+  double deviation = 0.0;      ///< standard deviation, n - 1 in the denominator
+  double half_width_95 = 0.0;  ///< of the 95 % confidence interval of the mean, Student's t
 };
 
 /// Zero deviation and an infinite half width for one number; `numbers` must not be empty.

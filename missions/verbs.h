@@ -36,7 +36,7 @@ int check(const CheckOptions& options, const Console& console);
 
 struct EvaluateOptions {
   std::filesystem::path cloud;
-  std::string model;  ///< builtin:NAME, model:NAME, a mesh, or a mission file
+  std::string model;               ///< builtin:NAME, model:NAME, a mesh, or a mission file
   std::optional<double> distance;  ///< r_d; a mission file says its own
   std::size_t samples = 100'000;
   bool is_json = false;

@@ -123,8 +123,8 @@ class TreeBuilder final : public YAML::EventHandler {
   void add_key(const YamlNode& key) {
     if (key.kind != YamlNode::Kind::scalar) fail(key.line, "a key must be a plain word");
     std::vector<YamlEntry>& entries = open_.back().node.entries;
-    const auto same =
-        std::ranges::find_if(entries, [&](const YamlEntry& entry) { return entry.key == key.text; });
+    const auto same = std::ranges::find_if(
+        entries, [&](const YamlEntry& entry) { return entry.key == key.text; });
     if (same != entries.end()) {
       fail(key.line, "key " + key.text + ": is given twice, first in line " +
                          std::to_string(same->line) + "; keep one");
@@ -154,8 +154,8 @@ YamlNode parse_yaml(const std::string& text, const std::string& name) {
     return root;
   } catch (const YAML::Exception& failure) {
     const int line = failure.mark.is_null() ? 1 : failure.mark.line + 1;
-    throw Error(ErrorKind::bad_config, name + ":" + std::to_string(line) +
-                                           ": is not valid YAML (" + failure.msg +
+    throw Error(ErrorKind::bad_config, name + ":" + std::to_string(line) + ": is not valid YAML (" +
+                                           failure.msg +
                                            "); check the line's indentation, colons and brackets");
   }
 }

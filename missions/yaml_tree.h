@@ -12,9 +12,9 @@ struct YamlEntry;
 struct YamlNode {
   enum class Kind { null, scalar, list, map };
   Kind kind = Kind::null;
-  int line = 1;           ///< counted from one
-  std::string text;       ///< of a scalar
-  bool is_quoted = false;  ///< a scalar in quotes is text, whatever it looks like
+  int line = 1;                    ///< counted from one
+  std::string text;                ///< of a scalar
+  bool is_quoted = false;          ///< a scalar in quotes is text, whatever it looks like
   std::vector<YamlNode> items;     ///< of a list
   std::vector<YamlEntry> entries;  ///< of a map, in the order of the file; keys are unique
 };
