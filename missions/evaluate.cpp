@@ -40,7 +40,9 @@ Truth truth_of(const EvaluateOptions& options) {
                 "--distance is missing; give the distance within which a surface point counts as "
                 "covered, in metres");
   }
-  return {load_model(options.model, ""), *options.distance, options.samples};
+  SceneConfig scene;
+  scene.model = options.model;
+  return {load_model(scene, ""), *options.distance, options.samples};
 }
 
 }  // namespace

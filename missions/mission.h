@@ -10,6 +10,7 @@
 #include <Eigen/Core>
 
 #include "sim/depth_camera.h"
+#include "sim/models/models.h"
 #include "survey/see.h"
 
 namespace skycap::missions {
@@ -21,6 +22,7 @@ enum class UpAxis { z, y };
 /// rotated, scaled, and moved so that the middle of the base of its bounding box is at `position`.
 struct SceneConfig {
   std::string model;  ///< builtin:NAME, model:NAME, or the path of a mesh
+  sim::LevelOfDetail detail = sim::LevelOfDetail::standard;  ///< of a builtin model
   UpAxis up_axis = UpAxis::z;
   Eigen::Vector3d rotation = Eigen::Vector3d::Zero();  ///< [rad], about x, then y, then z
   std::optional<double> longest_side;                  ///< of the bounding box, after rotation

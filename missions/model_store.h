@@ -16,6 +16,9 @@ std::filesystem::path user_cache();
 /// model, and its checksum, if it is nowhere.
 std::filesystem::path find_model(const std::string& name);
 
+/// Whether find_model() finds it.
+bool is_stored(const std::string& name);
+
 /// Names of the models that obtain_model() knows.
 std::vector<std::string> obtainable_models();
 

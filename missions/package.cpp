@@ -4,8 +4,9 @@
 
 #include <nlohmann/json.hpp>
 
+#include "geometry/cloud_io.h"
 #include "geometry/pose.h"
-#include "missions/cloud_file.h"
+#include "missions/cloud_normals.h"
 #include "missions/mission_keys.h"
 #include "missions/number_text.h"
 #include "missions/version.h"
@@ -159,8 +160,12 @@ std::string summary_json(const Mission& mission, const SurveyRecord& record,
 void stage_package(const Mission& mission, const SurveyRecord& record,
                    const CoverageFigures& coverage, unsigned threads, OutputFolder& folder) {
   const double radius = 2.0 * mission.planner.see.resolution_radius;
-  write_cloud_file(folder.stage("cloud.ply"), record.cloud,
-                   cloud_normals(record.cloud, sensor_positions(record), radius, threads));
+  std::vector<Eigen::Vector3f> normals =
+      cloud_normals(record.cloud, sensor_positions(record), radius, threads);
+  geometry::write_cloud(folder.stage("cloud.ply"), {.positions = record.cloud.positions,
+                                                    .normals = std::move(normals),
+                                                    .views = record.cloud.views,
+                                                    .colours = {}});
   folder.write("views.csv", views_csv(record));
   folder.write("trajectory.tum", trajectory_tum(record));
   // Last, so that whoever sees the summary sees the rest.

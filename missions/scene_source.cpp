@@ -14,11 +14,18 @@ namespace {
 using Eigen::AngleAxisd;
 using Eigen::Vector3d;
 
-geometry::Mesh named_model(const std::string& model, const std::filesystem::path& folder) {
+geometry::Mesh named_model(const SceneConfig& scene, const std::filesystem::path& folder) {
   constexpr std::string_view builtin = "builtin:", stored = "model:";
-  if (model.starts_with(builtin)) return sim::models::make_model(model.substr(builtin.size()));
-  if (model.starts_with(stored))
+  const std::string& model = scene.model;
+  if (model.starts_with(builtin)) {
+    sim::ModelOptions options;
+    options.detail = scene.detail;
+    if (scene.ground) options.has_ground = false;  // the one that is not judged takes its place
+    return sim::builtin_model(model.substr(builtin.size()), options);
+  }
+  if (model.starts_with(stored)) {
     return geometry::read_mesh(find_model(model.substr(stored.size())));
+  }
   return geometry::read_mesh(folder / model);
 }
 
@@ -29,12 +36,12 @@ Vector3d middle_of_base(const geometry::Mesh& mesh) {
 
 }  // namespace
 
-geometry::Mesh load_model(const std::string& model, const std::filesystem::path& folder) {
-  geometry::Mesh mesh = named_model(model, folder);
+geometry::Mesh load_model(const SceneConfig& scene, const std::filesystem::path& folder) {
+  geometry::Mesh mesh = named_model(scene, folder);
   try {
     geometry::validate(mesh);
   } catch (const Error& error) {
-    throw Error(error.kind(), model + ": " + error.what());
+    throw Error(error.kind(), scene.model + ": " + error.what());
   }
   return mesh;
 }

@@ -9,10 +9,10 @@
 
 namespace skycap::missions {
 
-/// The mesh that `model` names, in its own frame: builtin:NAME, model:NAME, or the path of a mesh,
-/// relative to `folder`. Throws Error{bad_file} or Error{bad_geometry}, naming the model, if it is
-/// not there, cannot be read, or is not a mesh with a surface.
-geometry::Mesh load_model(const std::string& model, const std::filesystem::path& folder);
+/// The mesh that `scene` names, in its own frame: builtin:NAME, model:NAME, or the path of a mesh,
+/// relative to `folder`. Throws Error{bad_file}, {bad_config} or {bad_geometry}, naming the model,
+/// if it is not there, cannot be read, or is not a mesh with a surface.
+geometry::Mesh load_model(const SceneConfig& scene, const std::filesystem::path& folder);
 
 /// Turns, scales and places a model as `scene` says. Throws Error{bad_geometry} if the model has
 /// no extent to be scaled by.

@@ -47,7 +47,7 @@ std::optional<double> number_in_file(const std::filesystem::path& file) {
 }  // namespace
 
 geometry::Mesh placed_model(const SceneConfig& scene, const std::filesystem::path& folder) {
-  geometry::Mesh model = load_model(scene.model, folder);
+  geometry::Mesh model = load_model(scene, folder);
   place_model(scene, model);
   return model;
 }

@@ -1,13 +1,9 @@
-#include "missions/cloud_file.h"
+#include "missions/cloud_normals.h"
 
-#include <bit>
-#include <cstring>
-#include <fstream>
-#include <string>
+#include <algorithm>
 
 #include <Eigen/Eigenvalues>
 
-#include "geometry/error.h"
 #include "geometry/parallel.h"
 #include "geometry/point_grid.h"
 
@@ -74,31 +70,6 @@ std::vector<Vector3f> cloud_normals(const geometry::PointCloud& cloud,
     }
   });
   return normals;
-}
-
-void write_cloud_file(const std::filesystem::path& file, const geometry::PointCloud& cloud,
-                      std::span<const Vector3f> normals) {
-  static_assert(std::endian::native == std::endian::little, "the file is little-endian");
-  std::string content =
-      "ply\nformat binary_little_endian 1.0\nelement vertex " + std::to_string(cloud.size()) +
-      "\nproperty float x\nproperty float y\nproperty float z\nproperty float nx\n"
-      "property float ny\nproperty float nz\nproperty uint view\nend_header\n";
-  constexpr std::size_t bytes_a_point = 7 * 4;
-  std::size_t end = content.size();
-  content.resize(end + bytes_a_point * cloud.size());
-  for (std::size_t i = 0; i < cloud.size(); ++i) {
-    std::memcpy(content.data() + end, cloud.positions[i].data(), 12);
-    std::memcpy(content.data() + end + 12, normals[i].data(), 12);
-    std::memcpy(content.data() + end + 24, &cloud.views[i], 4);
-    end += bytes_a_point;
-  }
-  std::ofstream stream(file, std::ios::binary);
-  stream.write(content.data(), static_cast<std::streamsize>(content.size()));
-  stream.close();
-  if (!stream) {
-    throw Error(ErrorKind::bad_file,
-                file.string() + ": cannot be written whole; is the disk full?");
-  }
 }
 
 }  // namespace skycap::missions

@@ -1,7 +1,5 @@
-/// The cloud of a mission package: points with normals and the view that each was taken from.
 #pragma once
 
-#include <filesystem>
 #include <span>
 #include <vector>
 
@@ -18,10 +16,5 @@ namespace skycap::missions {
 std::vector<Eigen::Vector3f> cloud_normals(const geometry::PointCloud& cloud,
                                            std::span<const Eigen::Vector3d> sensors, double radius,
                                            unsigned threads);
-
-/// Writes binary little-endian PLY: float x y z nx ny nz, uint view. Throws Error{bad_file} if the
-/// file cannot be written whole.
-void write_cloud_file(const std::filesystem::path& file, const geometry::PointCloud& cloud,
-                      std::span<const Eigen::Vector3f> normals);
 
 }  // namespace skycap::missions
