@@ -110,16 +110,16 @@ class Renderer {
       : mesh_(mesh),
         options_(options),
         scene_(mesh, options.threads),
-        normals_(corner_normals(mesh, options.smoothing_angle)),
-        to_sun_(options.to_sun.normalized()) {
+        normals_(corner_normals(mesh, options.smoothing_angle)) {
     const Eigen::AlignedBox3d box = bounding_box(mesh);
     size_ = box.diagonal().norm();
     centre_ = box.center();
     floor_ = box.min().z() - 1e-4 * size_;  // below a ground sheet of the mesh's own
   }
 
-  void draw(const RenderView& view, int left, int top, Image& image) const {
+  void draw(const RenderView& view, int left, int top, Image& image) {
     const Eigen::Isometry3d world_from_camera = camera_pose(view.view);
+    to_sun_ = sun_of(world_from_camera);
     const double slope = std::tan(0.5 * view.horizontal_fov) / (0.5 * options_.width);
     const auto draw_row = [&](std::size_t row) {
       for (int column = 0; column < options_.width; ++column) {
@@ -143,6 +143,15 @@ class Renderer {
   }
 
  private:
+  Vector3d sun_of(const Eigen::Isometry3d& world_from_camera) const {
+    // The image's right is level, so that up x right is the way ahead on the ground.
+    const Vector3d right = world_from_camera.linear().col(0), up = Vector3d::UnitZ();
+    const Vector3d back = right.cross(up);
+    const Vector3d on_ground =
+        std::cos(options_.sun_to_the_left) * back - std::sin(options_.sun_to_the_left) * right;
+    return std::cos(options_.sun_elevation) * on_ground + std::sin(options_.sun_elevation) * up;
+  }
+
   Vector3d light_along(const Vector3d& origin, const Vector3d& direction, Dice& dice) const {
     const std::optional<Hit> hit = scene_.first_hit(origin, direction);
     if (options_.has_floor && direction.z() < -1e-6 && origin.z() > floor_) {
@@ -213,7 +222,7 @@ class Renderer {
   const RenderOptions& options_;
   Scene scene_;
   std::vector<Eigen::Vector3f> normals_;
-  Vector3d to_sun_;
+  Vector3d to_sun_ = Vector3d::UnitZ();
   Vector3d centre_;
   double size_, floor_;
 };
@@ -250,8 +259,8 @@ void RenderOptions::validate() const {
   require(in_range(columns, 16), "columns", columns, "from 1 to 16");
   require(in_range(samples_per_side, 64), "samples_per_side", samples_per_side, "from 1 to 64");
   require(in_range(sky_rays, 1024), "sky_rays", sky_rays, "from 1 to 1024");
-  require(to_sun.allFinite() && to_sun.norm() > 0.0, "the length of to_sun", to_sun.norm(),
-          "finite and more than 0");
+  require(sun_elevation > 0.0 && sun_elevation < 0.5 * pi, "sun_elevation", sun_elevation,
+          "between 0 and pi/2 radians");
 }
 
 std::vector<RenderView> standard_views(const Mesh& mesh) {
@@ -273,7 +282,7 @@ std::vector<RenderView> standard_views(const Mesh& mesh) {
 
 Image render(const Mesh& mesh, std::span<const RenderView> views, const RenderOptions& options) {
   options.validate();
-  const Renderer renderer(mesh, options);
+  Renderer renderer(mesh, options);
   const int count = static_cast<int>(views.size());
   const int columns = std::min(options.columns, count);
   const int rows = columns == 0 ? 0 : (count + columns - 1) / columns;

@@ -41,7 +41,9 @@ struct RenderOptions {
   /// The rays through a pixel's square, evenly spread, are its side squared.
   int samples_per_side = 3;
   int sky_rays = 4;  ///< for each of those: rays that ask how much of the sky is open
-  Eigen::Vector3d to_sun{-0.55, -0.60, 0.62};  ///< of any length
+  /// Where the sun stands in each view: this far to the left of straight behind the viewer [rad],
+  double sun_to_the_left = 0.9;
+  double sun_elevation = 0.75;  ///< and this high [rad], in (0, pi/2)
   bool has_floor = true;  ///< adds a level floor under the lowest vertex that takes the shadow
   /// Corners between triangles flatter than this are shaded as if they were round [rad].
   double smoothing_angle = 0.5;

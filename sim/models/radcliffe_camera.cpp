@@ -33,6 +33,25 @@ Parts radcliffe_camera(const RadcliffeTable& table, const RadcliffeOptions& opti
   Parts parts;
   parts.push_back({"body", radcliffe::body(plan)});
 
+  radcliffe::add_pediments(plan, parts);
+  radcliffe::add_keystones(plan, parts);
+  radcliffe::add_arch_glazing(plan, parts);
+  radcliffe::add_north_steps(plan, parts);
+
+  radcliffe::add_columns(plan, parts);
+  radcliffe::add_window_frames(plan, parts);
+  radcliffe::add_niche_frames(plan, parts);
+  radcliffe::add_festoons(plan, parts);
+  radcliffe::add_cornice_blocks(plan, parts);
+
+  radcliffe::add_balustrade(plan, parts);
+  radcliffe::add_vases(plan, parts);
+
+  radcliffe::add_buttresses(plan, parts);
+  radcliffe::add_drum_window_frames(plan, parts);
+  radcliffe::add_dome_ribs(plan, parts);
+  radcliffe::add_lantern_order(plan, parts);
+
   for (Part& part : parts) transform(part.mesh, Eigen::Affine3d(Eigen::Scaling(scale)));
   return parts;
 }
