@@ -30,15 +30,21 @@ const Vector3d horizon(0.66, 0.76, 0.88);
 /// it: the SplitMix64 sequence, seeded with the sample's place.
 class Dice {
  public:
-  explicit Dice(std::uint64_t place) : state_(place * 0x9E3779B97F4A7C15ULL + 1) {}
+  // The place is mixed too: neighbours must not draw the same sequence, shifted.
+  explicit Dice(std::uint64_t place) : state_(mixed(place + step)) {}
   double operator()() {
-    std::uint64_t z = (state_ += 0x9E3779B97F4A7C15ULL);
-    z = (z ^ (z >> 30)) * 0xBF58476D1CE4E5B9ULL;
-    z = (z ^ (z >> 27)) * 0x94D049BB133111EBULL;
-    return static_cast<double>((z ^ (z >> 31)) >> 11) * 0x1.0p-53;
+    state_ += step;
+    return static_cast<double>(mixed(state_) >> 11) * 0x1.0p-53;
   }
 
  private:
+  static constexpr std::uint64_t step = 0x9E3779B97F4A7C15ULL;
+  static std::uint64_t mixed(std::uint64_t z) {
+    z = (z ^ (z >> 30)) * 0xBF58476D1CE4E5B9ULL;
+    z = (z ^ (z >> 27)) * 0x94D049BB133111EBULL;
+    return z ^ (z >> 31);
+  }
+
   std::uint64_t state_;
 };
 

@@ -118,8 +118,8 @@ void add_bell(const Capital& capital, const Fineness& fineness, Parts& parts) {
 /// over outwards.
 Mesh acanthus_leaf(const Capital& capital, double height, double half_width, double lean,
                    const Fineness& fineness) {
-  const int along = 4 * std::clamp(fineness.chords(0.25 * height, 1.4 * pi), 3, 14);
-  const int across = 2 * std::clamp(fineness.chords(half_width, 0.5 * pi), 2, 8);
+  const int along = 2 * std::clamp(fineness.chords(0.25 * height, 1.2 * pi), 2, 36);
+  const int across = 2 * fineness.chords(half_width, 0.25 * pi);
   const double curl = 0.13 * height, rise = height - curl, thickness = 0.11 * half_width;
   std::vector<Polyline3> rings;
   for (int i = 0; i <= along; ++i) {
@@ -146,7 +146,8 @@ Mesh acanthus_leaf(const Capital& capital, double height, double half_width, dou
     const double taper = t < upright ? 0.80 + 0.20 * std::sin(pi * t / upright)
                                      : 0.80 * std::sqrt(std::max(0.02, 1.0 - (t - upright) / 0.30));
     const double width = half_width * lobes * taper;
-    // The front with its midrib and veins, then the back, hollow towards the bell.
+    // The front with its midrib and veins, then the back, a keel
+    // against the bell.
     Polyline3& ring = rings.emplace_back();
     const auto add = [&](double v, double out) {
       const double wrap = -0.22 * half_width * v * v;  // the sides bend back round the bell
@@ -158,7 +159,7 @@ Mesh acanthus_leaf(const Capital& capital, double height, double half_width, dou
       const double veins = 0.55 + 0.45 * std::cos(3.0 * pi * v);
       add(v, thickness * (0.35 + (1.0 - v * v) * veins));
     }
-    for (int j = across; j >= 0; --j) add(-1.0 + 2.0 * j / across, -0.9 * thickness);
+    add(0.0, -2.0 * thickness);
   }
   return loft(rings);
 }
@@ -178,7 +179,7 @@ Mesh scroll(const Vector2d& from, const Vector2d& eye, double radius, double tur
   }
   const double end_radius = 0.30 * radius;
   const int chords =
-      std::max(static_cast<int>(8 * turns), fineness.chords(radius, 2.0 * pi * turns));
+      std::max(static_cast<int>(5 * turns), fineness.chords(radius, 2.0 * pi * turns));
   for (int i = 0; i <= chords; ++i) {
     const double share = static_cast<double>(i) / chords, angle = 2.0 * pi * turns * share;
     const double r = radius + (end_radius - radius) * share;
@@ -214,12 +215,13 @@ Mesh abacus(const Capital& capital, const Fineness& fineness) {
     }
   };
   const double foot = capital.foot + capital.bell_height(), h = capital.abacus;
-  add_ring(0.90, foot);
-  add_ring(0.91, foot + 0.25 * h);
-  add_ring(0.97, foot + 0.55 * h);
-  add_ring(0.97, foot + 0.62 * h);
-  add_ring(1.00, foot + 0.78 * h);
-  add_ring(1.00, foot + h + 0.02);  // into the architrave
+  Profile profile(fineness, 0.90 * capital.reach, foot);
+  profile.to(0.91 * capital.reach, foot + 0.25 * h)
+      .to(0.97 * capital.reach, foot + 0.55 * h)
+      .by(0.0, 0.07 * h)
+      .to(capital.reach, foot + 0.78 * h)
+      .to(capital.reach, foot + h + 0.02);  // into the architrave
+  for (const Vector2d& point : profile.points()) add_ring(point.x() / capital.reach, point.y());
   return loft(rings);
 }
 
@@ -247,12 +249,15 @@ void add_capital(const Column& column, const Capital& capital, const Fineness& f
                              0.13 * r, 0.014 * h, fineness);
   add_all_round("capital volute", corner, 4, 0.25 * pi);
   const double helix = 0.075 * h;
-  const Mesh inner = scroll({capital.bell_radius_at(0.6), foot + 0.60 * bell},
-                            {capital.bell_radius_at(1.0) + 0.06 * r, foot + bell - helix - 0.02},
-                            helix, 1.3, 0.09 * r, 0.012 * h, fineness);
-  for (const double side : {-0.24, 0.24}) {
-    add_all_round("capital helix", inner, 4, side);
+  if (fineness.shows(helix)) {
+    const Mesh inner = scroll({capital.bell_radius_at(0.6), foot + 0.60 * bell},
+                              {capital.bell_radius_at(1.0) + 0.06 * r, foot + bell - helix - 0.02},
+                              helix, 1.3, 0.09 * r, 0.012 * h, fineness);
+    for (const double side : {-0.24, 0.24}) {
+      add_all_round("capital helix", inner, 4, side);
+    }
   }
+  if (!fineness.shows(0.2 * r)) return;
   Profile flower(fineness, 0.0, -0.5);
   flower.to(0.20 * r, -0.5).to(0.20 * r, 0.06 * r).arc_to(0.0, 0.16 * r, 0.45 * pi);
   Mesh fleuron = revolve(flower.points(), fineness.circle(0.20 * r));

@@ -37,7 +37,7 @@ Value by_detail(LevelOfDetail detail, Value coarse, Value standard, Value fine) 
 
 Mesh radcliffe_camera(const ModelOptions& options) {
   models::RadcliffeOptions radcliffe;
-  radcliffe.fineness.chord_error = by_detail(options.detail, 0.02, 0.002, 0.0004);
+  radcliffe.fineness.chord_error = by_detail(options.detail, 0.1, 0.004, 0.00033);
   radcliffe.has_fluted_columns = options.has_fluted_columns;
   Mesh mesh = join(models::radcliffe_camera(models::RadcliffeTable{}, radcliffe));
   if (options.has_ground.value_or(false)) append(mesh, ground(120.0));

@@ -118,8 +118,9 @@ void add_frame(const std::string& name, const Frame& f, const Fineness& fineness
 }
 
 void add_glazing_bars(const std::string& name, double half_width, double sill, double head,
-                      double face, int columns, int rows, Parts& parts) {
+                      double face, int columns, int rows, const Fineness& fineness, Parts& parts) {
   constexpr double half_bar = 0.035;
+  if (!fineness.shows(2.0 * half_bar)) return;
   for (int i = 0; i <= columns; ++i) {
     const double y = half_width * (2.0 * i / columns - 1.0);
     parts.push_back({name, box({face - 0.1, y - half_bar, sill - 0.02},

@@ -36,7 +36,7 @@ void add_frame(const std::string& name, const Frame& frame, const Fineness& fine
 /// Glazing bars on a panel at x = `face`: `columns` x `rows` panes between y = -+half_width and z =
 /// sill to head.
 void add_glazing_bars(const std::string& name, double half_width, double sill, double head,
-                      double face, int columns, int rows, Parts& parts);
+                      double face, int columns, int rows, const Fineness& fineness, Parts& parts);
 
 /// An arched architrave: legs from the sill up to the springing and a half circle round the head.
 void add_arched_frame(const std::string& name, const Frame& frame, const Fineness& fineness,

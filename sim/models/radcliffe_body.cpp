@@ -13,8 +13,6 @@ namespace {
 
 using std::numbers::pi;
 
-constexpr double max_cell_height = 1.0;  // of plain walls [m]
-
 /// The rusticated storey up to the pediments: projecting arches and niches in turn.
 Band rusticated_storey(const Plan& plan) {
   const RadcliffeTable& t = plan.table;
@@ -116,10 +114,10 @@ Band middle_stage(const Plan& plan) {
     add_niche(t.lower_niche_sill, t.lower_niche_height);
     add_niche(t.upper_niche_sill, t.upper_niche_height);
   }
-  wall.tiles = plain_tiles(-0.25 * t.wall_radius * plan.bay_angle(),
-                           wall.plan.length() - 0.25 * t.wall_radius * plan.bay_angle(),
-                           wall.bottom, wall.top, wall.openings,
-                           chord_length(plan.fineness, t.wall_radius), max_cell_height);
+  wall.tiles =
+      plain_tiles(-0.25 * t.wall_radius * plan.bay_angle(),
+                  wall.plan.length() - 0.25 * t.wall_radius * plan.bay_angle(), wall.bottom,
+                  wall.top, wall.openings, chord_length(plan.fineness, t.wall_radius));
   return build(wall);
 }
 
@@ -184,8 +182,7 @@ Band drum(const Plan& plan) {
   }
   wall.tiles = plain_tiles(-0.5 * t.drum_radius * plan.bay_angle(),
                            wall.plan.length() - 0.5 * t.drum_radius * plan.bay_angle(), wall.bottom,
-                           wall.top, wall.openings, chord_length(plan.fineness, t.drum_radius),
-                           max_cell_height);
+                           wall.top, wall.openings, chord_length(plan.fineness, t.drum_radius));
   return build(wall);
 }
 
@@ -230,9 +227,8 @@ Band lantern(const Plan& plan) {
     wall.openings.push_back(arched(i * step, t.lantern_opening_width, opening_sill,
                                    t.cap_foot() - 0.62, 0.25, plan.fineness));
   }
-  wall.tiles =
-      plain_tiles(-0.5 * step, wall.plan.length() - 0.5 * step, wall.bottom, wall.top,
-                  wall.openings, chord_length(plan.fineness, t.lantern_radius), max_cell_height);
+  wall.tiles = plain_tiles(-0.5 * step, wall.plan.length() - 0.5 * step, wall.bottom, wall.top,
+                           wall.openings, chord_length(plan.fineness, t.lantern_radius));
   return build(wall);
 }
 
@@ -246,15 +242,22 @@ Polyline2 cap_and_finial(const Plan& plan) {
       .by(0.16, 0.0)
       .by(0.0, 0.08)
       .wave_by(0.06, 0.06, 0.4 * pi)
-      .to(r + 0.10, foot)
-      .arc_by(-0.55 * r, 0.45, 0.30 * pi)
-      .arc_to(0.20, foot + t.cap_height - 0.06, -0.25 * pi)
-      .by(0.04, 0.02)
-      .by(0.0, 0.04)
-      .to(0.12, foot + t.cap_height + 0.02)
-      .arc_to(0.09, foot + t.cap_height + 2.0 * ball - 0.02, 1.8 * pi * 0.88)
-      .to(0.07, foot + t.cap_height + 2.0 * ball + 0.08)
-      .to(0.03, t.total_height - 0.06);
+      .to(r + 0.10, foot);
+  // The cap: a bell that ends in a neck under the ball.
+  const double neck = 0.13, neck_top = foot + t.cap_height;
+  profile.arc_to(0.52 * r, foot + 0.62 * t.cap_height, 0.30 * pi)
+      .arc_to(neck, neck_top - 0.08, -0.30 * pi)
+      .by(0.07, 0.02)
+      .by(0.0, 0.05)
+      .to(neck, neck_top);
+  // The ball, from the neck to the foot of the spike.
+  const double spike = 0.07;
+  const double below = std::asin(neck / ball), above = std::asin(spike / ball);
+  const double ball_height = ball * (std::cos(below) + std::cos(above));
+  profile.arc_to(spike, neck_top + ball_height, pi - below - above)
+      .to(0.10, neck_top + ball_height + 0.03)
+      .to(0.06, neck_top + ball_height + 0.10)
+      .to(0.02, t.total_height - 0.02);
   return profile.points();
 }
 

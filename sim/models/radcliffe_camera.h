@@ -93,28 +93,28 @@ struct RadcliffeTable {
   double pier_width = 0.8;               ///< estimate
   double vase_height = 1.4;              ///< estimate; one on each pier, in line with the columns
 
-  // Drum, up to z = 30.4.
+  // Drum, up to z = 29.9.
   double drum_radius = 8.5;          ///< estimate
-  double drum_height = 6.0;          ///< estimate, above the balustrade's 24.4
+  double drum_height = 5.5;          ///< estimate, above the balustrade's 24.4
   double drum_window_width = 1.8;    ///< estimate; a window over each projecting bay
   double drum_window_height = 3.0;   ///< estimate
-  double drum_window_sill = 1.7;     ///< estimate, above z = 24.4
+  double drum_window_sill = 1.2;     ///< estimate, above z = 24.4
   double drum_window_reveal = 0.4;   ///< estimate
   double drum_cornice_height = 0.8;  ///< estimate
   double buttress_width = 1.8;       ///< estimate; a buttress over each niche bay (Summerson)
   double buttress_projection = 2.2;  ///< estimate
-  double buttress_height = 5.0;      ///< estimate, above z = 24.4
+  double buttress_height = 4.5;      ///< estimate, above z = 24.4
 
   // Dome, lantern, finial.
   double dome_radius = 8.2;             ///< estimate, at the springing
-  double dome_rise = 7.6;               ///< estimate; more than a hemisphere cut off at the lantern
+  double dome_rise = 8.4;               ///< estimate; Pevsner: elongated, so more than the radius
   int dome_ribs = 16;                   ///< estimate: 8 or 16
   double rib_width = 0.45;              ///< estimate, at the springing
   double rib_relief = 0.20;             ///< estimate
   int lead_rolls_between_ribs = 3;      ///< estimate
   double lead_roll_radius = 0.04;       ///< estimate
   double lantern_radius = 1.3;          ///< estimate
-  double lantern_height = 2.8;          ///< estimate
+  double lantern_height = 2.5;          ///< estimate
   int lantern_openings = 8;             ///< estimate
   double lantern_opening_width = 0.56;  ///< estimate
   double cap_height = 0.8;              ///< estimate

@@ -196,7 +196,7 @@ void add_drum_window_frames(const Plan& plan, Parts& parts) {
   Parts bay;
   add_frame("drum window", frame, plan.fineness, bay);
   add_glazing_bars("drum window bar", frame.half_width, frame.sill, frame.head,
-                   t.drum_radius - t.drum_window_reveal, 4, 5, bay);
+                   t.drum_radius - t.drum_window_reveal, 4, 5, plan.fineness, bay);
   bay.push_back({"drum window keystone", extrude({{-0.16, frame.head - 0.04},
                                                   {0.16, frame.head - 0.04},
                                                   {0.24, frame.head + 0.42},
@@ -224,7 +224,8 @@ void add_dome_ribs(const Plan& plan, Parts& parts) {
   const Polyline2 round{{-1.0, -0.08},  {1.0, -0.08},    {1.0, 0.3 * r},
                         {0.6, 0.9 * r}, {-0.6, 0.9 * r}, {-1.0, 0.3 * r}};
   const Mesh roll = on_meridian(plan, from, 0.86 * to, round, [&](double) { return r; });
-  const int rolls = t.lead_rolls_between_ribs;
+  // Too thin to show in a coarse model.
+  const int rolls = plan.fineness.shows(2.0 * r) ? t.lead_rolls_between_ribs : 0;
   for (int i = 0; i < t.dome_ribs; ++i) {
     const double step = 2.0 * pi / t.dome_ribs, azimuth = i * step;
     parts.push_back({"dome rib", turned(rib, azimuth)});

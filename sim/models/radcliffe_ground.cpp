@@ -74,6 +74,7 @@ void add_arch_glazing(const Plan& plan, Parts& parts) {
   const double face = t.projection_front - t.arch_depth;
   const double radius = 0.5 * t.arch_width, springing = t.arch_crown - radius;
   const double back = face - 0.15, front = face + 0.08;
+  if (!plan.fineness.shows(0.07)) return;
   for (int i = 0; i < t.projecting_bays; ++i) {
     const double sill =
         t.base_course_height + (is_north(plan, i) ? 2.0 * t.course_height : 0.0) - 0.03;

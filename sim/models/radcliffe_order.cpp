@@ -114,9 +114,10 @@ void add_window_frames(const Plan& plan, Parts& parts) {
     pediment.is_segmental = i % 2 == 1;
     add_pediment("window pediment", pediment, plan.fineness, bay);
     add_frame("mezzanine", mezzanine, plan.fineness, bay);
-    add_glazing_bars("window bar", window.half_width, window.sill, window.head, panel, 4, 8, bay);
+    add_glazing_bars("window bar", window.half_width, window.sill, window.head, panel, 4, 8,
+                     plan.fineness, bay);
     add_glazing_bars("mezzanine bar", mezzanine.half_width, mezzanine.sill, mezzanine.head, panel,
-                     4, 3, bay);
+                     4, 3, plan.fineness, bay);
     add_turned(bay, plan.arched_bay(i), parts);
   }
 }
@@ -189,7 +190,7 @@ void add_cornice_blocks(const Plan& plan, Parts& parts) {
   const Mesh bracket = modillion(face + 0.15, face + t.cornice_overhang - 0.20, top - 0.29, 0.22,
                                  0.30, plan.fineness);
   const int dentils = bays * t.dentils_in_a_bay, brackets = bays * t.modillions_in_a_bay;
-  for (int i = 0; i < dentils; ++i) {
+  for (int i = 0; i < dentils && plan.fineness.shows(0.13); ++i) {
     parts.push_back({"dentil", turned(dentil, 2.0 * pi * i / dentils)});
   }
   for (int i = 0; i < brackets; ++i) {

@@ -27,6 +27,39 @@ double roundness(const Vector2d& a, const Vector2d& b, const Vector2d& c) {
   return 2.0 * std::sqrt(3.0) * turn(a, b, c) / squares;
 }
 
+double distance_to_segment(const Vector2d& point, const Vector2d& a, const Vector2d& b) {
+  const double length = (b - a).squaredNorm();
+  const double share = length == 0.0 ? 0.0 : std::clamp((point - a).dot(b - a) / length, 0.0, 1.0);
+  return (point - a - share * (b - a)).norm();
+}
+
+/// Douglas and Peucker's simplification of a line: keeps both ends and whatever is farther than
+/// `tolerance` from the line without it.
+Polyline2 simplified(const Polyline2& line, double tolerance) {
+  std::vector<char> is_kept(line.size(), 0);
+  is_kept.front() = is_kept.back() = 1;
+  std::vector<std::pair<std::size_t, std::size_t>> pieces{{0, line.size() - 1}};
+  while (!pieces.empty()) {
+    const auto [first, last] = pieces.back();
+    pieces.pop_back();
+    std::size_t farthest = first;
+    double distance = tolerance;
+    for (std::size_t i = first + 1; i < last; ++i) {
+      const double away = distance_to_segment(line[i], line[first], line[last]);
+      if (away > distance) farthest = i, distance = away;
+    }
+    if (farthest == first) continue;
+    is_kept[farthest] = 1;
+    pieces.emplace_back(first, farthest);
+    pieces.emplace_back(farthest, last);
+  }
+  Polyline2 result;
+  for (std::size_t i = 0; i < line.size(); ++i) {
+    if (is_kept[i]) result.push_back(line[i]);
+  }
+  return result;
+}
+
 /// Turns the triangles round if the surface faces inwards.
 Mesh facing_outwards(Mesh mesh) {
   if (signed_volume(mesh) >= 0.0) return mesh;
@@ -114,6 +147,8 @@ Profile& Profile::wave_by(double dx, double dy, double angle) {
   return arc_by(0.5 * dx, 0.5 * dy, angle).arc_by(0.5 * dx, 0.5 * dy, -angle);
 }
 
+Polyline2 Profile::points() const { return simplified(points_, 0.5 * fineness_.chord_error); }
+
 std::vector<std::array<std::uint32_t, 3>> triangulate(const Polyline2& polygon) {
   const std::size_t size = polygon.size();
   std::vector<std::size_t> before(size), after(size);
@@ -133,12 +168,26 @@ std::vector<std::array<std::uint32_t, 3>> triangulate(const Polyline2& polygon) 
     return quality;
   };
 
+  // An ear that leaves nothing but corners in one line must wait for its last neighbour.
+  double area = 0.0;
+  for (std::size_t i = 1; i + 1 < size; ++i) area += turn(polygon[0], polygon[i], polygon[i + 1]);
+  const double nothing = 1e-9 * area;
+  const auto leaves_nothing = [&](std::size_t i) {
+    return area - turn(polygon[before[i]], polygon[i], polygon[after[i]]) < nothing;
+  };
+
   std::vector<double> qualities(size);
   for (std::size_t i = 0; i < size; ++i) qualities[i] = ear_quality(i);
   std::vector<std::array<std::uint32_t, 3>> triangles;
   for (std::size_t left = size; left > 3; --left) {
-    const auto best = std::max_element(qualities.begin(), qualities.end());
-    const auto ear = static_cast<std::size_t>(best - qualities.begin());
+    auto best = std::max_element(qualities.begin(), qualities.end());
+    auto ear = static_cast<std::size_t>(best - qualities.begin());
+    if (leaves_nothing(ear)) {
+      *best = -1.0;
+      best = std::max_element(qualities.begin(), qualities.end());
+      ear = static_cast<std::size_t>(best - qualities.begin());
+    }
+    area -= turn(polygon[before[ear]], polygon[ear], polygon[after[ear]]);
     assert(*best > 0.0 && "the polygon is not simple and counter-clockwise");
     const std::size_t a = before[ear], c = after[ear];
     triangles.push_back({static_cast<std::uint32_t>(a), static_cast<std::uint32_t>(ear),

@@ -29,6 +29,8 @@ struct Fineness {
   int chords(double radius, double angle) const;
   /// The number of chords for a full circle, a multiple of `multiple`.
   int circle(double radius, int multiple = 2) const;
+  /// Whether a detail of that size is worth modelling; smaller ones are left out.
+  bool shows(double size) const { return size > 1.5 * chord_error; }
 };
 
 /// The longest chord for an arc.
@@ -47,7 +49,9 @@ class Profile {
   Profile& arc_by(double dx, double dy, double angle);
   /// By two equal arcs, the first turning by `angle`, the second back: a cyma.
   Profile& wave_by(double dx, double dy, double angle);
-  const Polyline2& points() const { return points_; }
+  /// The outline so far, without the points that stay nearer than half a chord error to the outline
+  /// without them: small mouldings go where a coarse model cannot show them.
+  Polyline2 points() const;
 
  private:
   Fineness fineness_;

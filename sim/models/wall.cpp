@@ -133,21 +133,28 @@ class SideSplitter {
   std::map<Cell, Polyline2> cells_;
 };
 
-/// The polygon with each side moved inwards by its own distance.
+/// The polygon with each side moved inwards by its own distance. Corners within a straight side
+/// keep their share of its length, so that they stay between its ends however short it gets.
 Polyline2 inset(const Polyline2& polygon, const std::vector<double>& distances) {
   const std::size_t size = polygon.size();
-  Polyline2 result;
+  Polyline2 result(size);
+  std::vector<std::size_t> bends;
   for (std::size_t i = 0; i < size; ++i) {
     const std::size_t before = (i + size - 1) % size;
     const Vector2d in = (polygon[i] - polygon[before]).normalized();
     const Vector2d out = (polygon[(i + 1) % size] - polygon[i]).normalized();
     const double bend = cross(in, out);
-    if (std::abs(bend) < 1e-9) {
-      const double distance = std::max(distances[before], distances[i]);
-      result.push_back(polygon[i] + distance * Vector2d(-out.y(), out.x()));
-    } else {
-      // Where the two moved sides meet: a point at those distances to the left of both.
-      result.push_back(polygon[i] + (distances[before] * out - distances[i] * in) / bend);
+    if (std::abs(bend) < 1e-6) continue;
+    // Where the two moved sides meet: a point at those distances to the left of both.
+    result[i] = polygon[i] + (distances[before] * out - distances[i] * in) / bend;
+    bends.push_back(i);
+  }
+  for (std::size_t k = 0; k < bends.size(); ++k) {
+    const std::size_t first = bends[k], last = bends[(k + 1) % bends.size()];
+    const double length = (polygon[last] - polygon[first]).norm();
+    for (std::size_t i = (first + 1) % size; i != last; i = (i + 1) % size) {
+      const double share = (polygon[i] - polygon[first]).norm() / length;
+      result[i] = result[first] + share * (result[last] - result[first]);
     }
   }
   return result;
@@ -403,8 +410,8 @@ Opening arched(double centre, double width, double sill, double crown, double de
 }
 
 std::vector<Polyline2> plain_tiles(double start, double end, double bottom, double top,
-                                   const std::vector<Opening>& openings, double max_width,
-                                   double max_height) {
+                                   const std::vector<Opening>& openings, double max_width) {
+  const double max_height = 4.0 * max_width;  // slimmer triangles would slow ray casting down
   std::vector<double> stops{start, end};
   for (const Opening& opening : openings) {
     for (const Vector2d& corner : opening.outline()) stops.push_back(corner.x());

@@ -57,10 +57,9 @@ struct Wall {
 };
 
 /// Covers the face of a wall from `bottom` to `top` and s from `start` to `end` with tiles no wider
-/// and no higher than given, leaving out the openings.
+/// than given and not much higher than wide, leaving out the openings.
 std::vector<Polyline2> plain_tiles(double start, double end, double bottom, double top,
-                                   const std::vector<Opening>& openings, double max_width,
-                                   double max_height);
+                                   const std::vector<Opening>& openings, double max_width);
 
 /// The wall as a surface that is open below and above, openings filled.
 Band build(const Wall& wall);
