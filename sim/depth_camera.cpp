@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstring>
 #include <memory>
 #include <mutex>
 #include <optional>
@@ -72,13 +73,15 @@ float min_cosine_of(double max_incidence) {
 
 template <int width>
 void aim(const RayTable& table, int first_column, int first_row, Packet<width>& packet) {
-  using Group = Eigen::Array<float, packet_columns, 1>;
   float* const directions[] = {packet.rays.ray.dir_x, packet.rays.ray.dir_y, packet.rays.ray.dir_z};
   for (int axis = 0; axis < 3; ++axis) {
-    const auto column = Eigen::Map<const Group>(table.columns[axis].data() + first_column);
-    for (int row = 0; row < width / packet_columns; ++row) {
-      Eigen::Map<Group, Eigen::Aligned16>(directions[axis] + row * packet_columns) =
-          column + table.rows[axis][first_row + row];
+    const float* const column = table.columns[axis].data() + first_column;
+    const float* const row = table.rows[axis].data() + first_row;
+    FourFloats columns;
+    std::memcpy(&columns, column, sizeof columns);
+    for (int y = 0; y < width / packet_columns; ++y) {
+      const FourFloats sum = columns + row[y];
+      std::memcpy(directions[axis] + y * packet_columns, &sum, sizeof sum);
     }
   }
 }
@@ -94,13 +97,13 @@ bool is_too_slanted(const Packet<width>& packet, int lane, float min_cosine) {
 
 template <int width>
 void store_depths(const Packet<width>& packet, const Limits& limits, int stride, float* depths) {
+  const FourFloats none = FourFloats{} + no_return;
   for (int row = 0; row < width / packet_columns; ++row) {
-    for (int column = 0; column < packet_columns; ++column) {
-      const int lane = row * packet_columns + column;
-      const float depth = packet.rays.ray.tfar[lane];
-      const bool returned = packet.is_hit(lane) && depth >= limits.min_depth;
-      depths[row * stride + column] = returned ? depth : no_return;
-    }
+    const int lane = row * packet_columns;
+    const auto reached = four<FourFloats>(packet.rays.ray.tfar + lane);
+    const FourFloats hit = packet.is_hit_4(lane) ? reached : none;
+    const FourFloats depth = hit < limits.min_depth ? none : hit;
+    std::memcpy(depths + row * stride, &depth, sizeof depth);
   }
   if (limits.min_cosine <= 0.0F) return;
   for (int lane = 0; lane < width; ++lane) {
@@ -171,8 +174,16 @@ std::size_t count_returns(const RayTable& table, int first_row, const float* dep
   const int rows = std::min(band_rows, table.height - first_row);
   std::size_t returns = 0;
   for (int row = 0; row < rows; ++row) {
-    const float* const begin = depths + static_cast<std::size_t>(row) * table.stride;
-    returns += std::count_if(begin, begin + table.width, [](float depth) { return depth >= 0; });
+    const float* const row_depths = depths + static_cast<std::size_t>(row) * table.stride;
+    FourInts in_row = {};
+    int x = 0;
+    for (; x + 4 <= table.width; x += 4) {
+      FourFloats some;
+      std::memcpy(&some, row_depths + x, sizeof some);
+      in_row -= some >= 0.0F;
+    }
+    for (; x < table.width; ++x) in_row[0] += row_depths[x] >= 0.0F ? 1 : 0;
+    returns += sum(in_row);
   }
   return returns;
 }

@@ -43,6 +43,9 @@ struct BareRays {
 
 template <int width>
 void cast_packets(const BareRays& rays, int first_row, float* ranges) {
+  RTCIntersectContext context;
+  rtcInitIntersectContext(&context);
+  context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
   sim::Packet<width> packet;
   for (int lane = 0; lane < width; ++lane) {
     packet.rays.ray.org_x[lane] = rays.origin.x();
@@ -59,7 +62,12 @@ void cast_packets(const BareRays& rays, int first_row, float* ranges) {
           packet.rays.ray.dir_y[lane] = direction.y();
           packet.rays.ray.dir_z[lane] = direction.z();
         }
-        packet.cast(rays.embree, 1e4F);
+        for (int lane = 0; lane < width; ++lane) {
+          packet.rays.ray.tfar[lane] = 1e4F;
+          packet.rays.hit.geomID[lane] = RTC_INVALID_GEOMETRY_ID;
+        }
+        sim::PacketTypes<width>::intersect(packet.active, rays.embree.scene, &context,
+                                           &packet.rays);
         for (int lane = 0; lane < width; ++lane) {
           const int y = row + lane / 4;
           if (y < rows) ranges[y * columns + column + lane % 4] = packet.rays.ray.tfar[lane];
