@@ -44,8 +44,7 @@ class Camera {
   /// Direction, in the camera frame and with z = 1, of the ray through `pixel`: a point at depth
   /// `t` is `t * ray(pixel)`. Inverse of project().
   Eigen::Vector3d ray(const Eigen::Vector2d& pixel) const {
-    const Eigen::Vector2d slope =
-        (pixel - principal_point_px_).cwiseQuotient(focal_length_px_);
+    const Eigen::Vector2d slope = (pixel - principal_point_px_).cwiseQuotient(focal_length_px_);
     return {slope.x(), slope.y(), 1.0};
   }
 

@@ -22,17 +22,17 @@ Vector3d area_vector(const Mesh& mesh, const std::array<std::uint32_t, 3>& trian
 void validate(const Mesh& mesh) {
   for (std::size_t v = 0; v < mesh.vertices.size(); ++v) {
     if (!mesh.vertices[v].allFinite()) {
-      throw Error(ErrorKind::bad_geometry, "vertex " + std::to_string(v) +
-                                               " has a coordinate that is not a finite number");
+      throw Error(ErrorKind::bad_geometry,
+                  "vertex " + std::to_string(v) + " has a coordinate that is not a finite number");
     }
   }
   double area = 0.0;
   for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
     for (const std::uint32_t v : mesh.triangles[t]) {
       if (v >= mesh.vertices.size()) {
-        throw Error(ErrorKind::bad_geometry,
-                    "triangle " + std::to_string(t) + " names vertex " + std::to_string(v) +
-                        ", but there are only " + std::to_string(mesh.vertices.size()));
+        throw Error(ErrorKind::bad_geometry, "triangle " + std::to_string(t) + " names vertex " +
+                                                 std::to_string(v) + ", but there are only " +
+                                                 std::to_string(mesh.vertices.size()));
       }
     }
     area += area_vector(mesh, mesh.triangles[t]).norm();
@@ -91,8 +91,8 @@ SurfaceSamples sample_surface(const Mesh& mesh, std::size_t count, std::uint64_t
       double u = uniform(random), v = uniform(random);
       if (u + v > 1.0) u = 1.0 - u, v = 1.0 - v;
       const Vector3d& a = mesh.vertices[triangle[0]];
-      const Vector3d point = a + u * (mesh.vertices[triangle[1]] - a) +
-                             v * (mesh.vertices[triangle[2]] - a);
+      const Vector3d point =
+          a + u * (mesh.vertices[triangle[1]] - a) + v * (mesh.vertices[triangle[2]] - a);
       samples.points.push_back(point.cast<float>());
       samples.normals.push_back(normal.normalized().cast<float>());
       samples.triangles.push_back(t);

@@ -21,9 +21,11 @@ struct PartTime {
 
 /// What a planner did with the last scan.
 struct PlanningStep {
-  std::size_t points_new = 0;      ///< points kept of the scan
-  std::size_t frontiers = 0;       ///< places still worth looking at
-  std::vector<PartTime> times;     ///< in the order of execution; their sum is the planning time
+  std::size_t points_new = 0;           ///< points kept of the scan
+  std::size_t frontiers = 0;            ///< places still worth looking at
+  std::size_t frontiers_resolved = 0;   ///< that are no longer worth it because of this scan
+  std::optional<bool> target_resolved;  ///< whether the place that the view was for is among them
+  std::vector<PartTime> times;          ///< in the order of execution; their sum is the planning
 };
 
 class Planner {

@@ -76,10 +76,8 @@ TEST(ViewDistance, MatchesThePublishedSettings) {
   const Camera d435(CameraConfig{});
   EXPECT_NEAR(view_distance(d435, 146'000), 1.980, 5e-4);
   EXPECT_NEAR(view_distance(d435, 1e6), 1.043, 5e-4);
-  const Camera high_resolution(CameraConfig{.width = 2400,
-                                            .height = 1750,
-                                            .horizontal_fov = 60 * degree,
-                                            .vertical_fov = 40 * degree});
+  const Camera high_resolution(CameraConfig{
+      .width = 2400, .height = 1750, .horizontal_fov = 60 * degree, .vertical_fov = 40 * degree});
   EXPECT_NEAR(view_distance(high_resolution, 213), 41.29, 5e-3);
 }
 

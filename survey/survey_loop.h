@@ -1,0 +1,60 @@
+/// Planner and sensor in turn, until the planner is done or a limit is met.
+#pragma once
+
+#include <cstddef>
+#include <functional>
+#include <stop_token>
+#include <vector>
+
+#include "geometry/pose.h"
+#include "geometry/scan.h"
+#include "survey/planner.h"
+
+namespace skycap::survey {
+
+/// Why a survey ended.
+enum class StopReason {
+  complete,  ///< the planner has nowhere left to look
+  view_limit,
+  distance_limit,
+  nowhere_to_go,  ///< every view the planner still wanted was refused
+  interrupted,    ///< the user asked to stop
+};
+
+struct SurveyLimits {
+  std::size_t max_views = 1000;
+  double max_distance = 1e9;  ///< straight lines between views
+};
+
+/// One view of a survey: where the sensor was, and what the planner made of the scan.
+struct SurveyedView {
+  geometry::View view;
+  double distance = 0.0;       ///< travelled up to and including this view
+  std::size_t points = 0;      ///< kept so far
+  std::size_t returns = 0;     ///< points of the scan
+  double sensing_time = 0.0;   ///< [s], of the sensor function
+  double planning_time = 0.0;  ///< [s], of the planner's update
+  PlanningStep step;
+};
+
+struct SurveyResult {
+  StopReason stop_reason = StopReason::complete;
+  std::vector<SurveyedView> views;
+};
+
+/// What a survey needs from outside. The sensor may be a simulator or a drone.
+struct SurveyPorts {
+  /// Takes a scan from a view (or as near to it as it could).
+  std::function<geometry::Scan(const geometry::View&)> sense;
+  /// Whether the sensor can get from one place to a view. Empty: it always can.
+  std::function<bool(const Eigen::Vector3d& from, const geometry::View& to)> can_reach;
+  /// Told after each view. May be empty.
+  std::function<void(const SurveyedView&, const geometry::Scan&)> report;
+};
+
+/// Runs a survey from `first_view`. Throws what planner and sensor throw.
+SurveyResult run_survey(Planner& planner, const geometry::View& first_view,
+                        const SurveyLimits& limits, const SurveyPorts& ports,
+                        std::stop_token stop = {});
+
+}  // namespace skycap::survey
