@@ -8,9 +8,8 @@
 #include <string>
 #include <vector>
 
-#include <unistd.h>
-
 #include "missions/command_line.h"
+#include "tests/support/temporary_folder.h"
 
 namespace skycap::tests {
 
@@ -27,30 +26,19 @@ inline ProgramRun run_skycap(const std::vector<std::string>& arguments,
   return {exit_code, out.str(), err.str()};
 }
 
-/// An empty folder that goes with the test.
+/// A temporary folder whose paths are text, as on a command line.
 class TestFolder {
  public:
-  TestFolder() {
-    static int count = 0;
-    path_ = std::filesystem::temp_directory_path() /
-            ("skycap-test-" + std::to_string(::getpid()) + "-" + std::to_string(count++));
-    std::filesystem::create_directories(path_);
-  }
-  TestFolder(const TestFolder&) = delete;
-  TestFolder& operator=(const TestFolder&) = delete;
-  ~TestFolder() { std::filesystem::remove_all(path_); }
-
-  const std::filesystem::path& path() const { return path_; }
-  std::string operator/(const std::string& name) const { return (path_ / name).string(); }
+  const std::filesystem::path& path() const { return folder_.path(); }
+  std::string operator/(const std::string& name) const { return (path() / name).string(); }
 
   /// Writes a file into the folder; returns its path.
   std::string write(const std::string& name, const std::string& content) const {
-    std::ofstream(path_ / name, std::ios::binary) << content;
-    return *this / name;
+    return folder_.file(name, content).string();
   }
 
  private:
-  std::filesystem::path path_;
+  testing_support::TemporaryFolder folder_;
 };
 
 inline std::string content_of(const std::filesystem::path& file) {
