@@ -5,6 +5,7 @@
 #include <string>
 
 #include "geometry/error.h"
+#include "sim/models/city_block.h"
 #include "sim/models/radcliffe_camera.h"
 #include "sim/models/teapot.h"
 
@@ -13,7 +14,7 @@ namespace {
 
 using geometry::Mesh;
 
-constexpr std::array<std::string_view, 2> names{"radcliffe-camera", "teapot"};
+constexpr std::array<std::string_view, 3> names{"city-block", "radcliffe-camera", "teapot"};
 
 /// A level square sheet at z = 0, facing up.
 Mesh ground(double side) {
@@ -35,9 +36,17 @@ Value by_detail(LevelOfDetail detail, Value coarse, Value standard, Value fine) 
   return standard;
 }
 
+models::Fineness fineness(LevelOfDetail detail) { return {by_detail(detail, 0.1, 0.004, 0.00033)}; }
+
+Mesh city_block(const ModelOptions& options) {
+  Mesh mesh = join(models::city_block({options.seed, fineness(options.detail)}));
+  if (options.has_ground.value_or(true)) append(mesh, ground(220.0));
+  return mesh;
+}
+
 Mesh radcliffe_camera(const ModelOptions& options) {
   models::RadcliffeOptions radcliffe;
-  radcliffe.fineness.chord_error = by_detail(options.detail, 0.1, 0.004, 0.00033);
+  radcliffe.fineness = fineness(options.detail);
   radcliffe.has_fluted_columns = options.has_fluted_columns;
   Mesh mesh = join(models::radcliffe_camera(models::RadcliffeTable{}, radcliffe));
   if (options.has_ground.value_or(false)) append(mesh, ground(120.0));
@@ -55,6 +64,7 @@ Mesh teapot(const ModelOptions& options) {
 std::span<const std::string_view> builtin_models() { return names; }
 
 Mesh builtin_model(std::string_view name, const ModelOptions& options) {
+  if (name == "city-block") return city_block(options);
   if (name == "radcliffe-camera") return radcliffe_camera(options);
   if (name == "teapot") return teapot(options);
   std::string known;

@@ -63,6 +63,16 @@ PlanCurve PlanCurve::with_projections(double radius, int count, double width, do
   return plan;
 }
 
+PlanCurve PlanCurve::rectangle(double width, double depth) {
+  const double x = 0.5 * width, y = 0.5 * depth;
+  PlanCurve plan;
+  plan.add_leg({x, -y}, {x, y}, 0.0);
+  plan.add_leg({x, y}, {-x, y}, 0.0);
+  plan.add_leg({-x, y}, {-x, -y}, 0.0);
+  plan.add_leg({-x, -y}, {x, -y}, 0.0);
+  return plan;
+}
+
 double PlanCurve::wrapped(double s) const { return s - length_ * std::floor((s + same) / length_); }
 
 Vector2d PlanCurve::point(double s, double offset) const {

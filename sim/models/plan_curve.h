@@ -16,6 +16,10 @@ class PlanCurve {
   /// azimuth 0.
   static PlanCurve with_projections(double radius, int count, double width, double distance);
 
+  /// A rectangle round the origin, `width` along x and `depth` along y. s runs along its faces to
+  /// +x, +y, -x and -y, from the corner at +x, -y.
+  static PlanCurve rectangle(double width, double depth);
+
   double length() const { return length_; }
   /// The point at s, moved outwards by `offset`: along the normal, at a corner along the mitre.
   Eigen::Vector2d point(double s, double offset) const;
