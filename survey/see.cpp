@@ -167,7 +167,7 @@ std::optional<View> SeePlanner::Impl::update(const Scan& scan) {
 
 void SeePlanner::Impl::insert(std::span<const Vector3f> points) {
   first_new = static_cast<std::uint32_t>(map.cloud().size());
-  map.insert(points, static_cast<std::uint32_t>(scans.size() - 1));
+  map.insert(points, static_cast<std::uint32_t>(scans.size() - 1), config.threads);
   const auto& positions = map.cloud().positions;
   if (positions.empty()) {
     throw Error(ErrorKind::bad_geometry,
@@ -291,7 +291,7 @@ bool SeePlanner::Impl::avoid_occlusion(std::uint32_t point, Frontier& frontier) 
   std::vector<Vector3d> occluded;
   for (const std::uint32_t index :
        occluders.within(map.cloud().positions[point], config.occlusion_search_distance)) {
-    const Vector3d ray = occluders.points()[index].cast<double>() - centre;
+    const Vector3d ray = occluders.point(index).cast<double>() - centre;
     const double range = ray.norm();
     if (range > 1e-9) occluded.push_back(ray / range);
   }
