@@ -64,6 +64,37 @@ double rest_to_rest_time(double distance, double speed, double acceleration, dou
   return 4.0 * std::cbrt(distance / (2.0 * jerk));
 }
 
+MotionState rest_to_rest_state(double distance, double speed, double acceleration, double jerk,
+                               double time) {
+  const double total = rest_to_rest_time(distance, speed, acceleration, jerk);
+  if (time <= 0.0 || distance <= 0.0) return {};
+  if (time >= total) return {distance, 0.0, 0.0};
+  if (time > 0.5 * total) {  // braking mirrors the start
+    const MotionState mirrored =
+        rest_to_rest_state(distance, speed, acceleration, jerk, total - time);
+    return {distance - mirrored.distance, mirrored.speed, -mirrored.acceleration};
+  }
+  // Up to the peak speed: the acceleration rises, holds, falls; then the speed holds.
+  const double peak_ramp = std::min(0.5 * total, speed * jerk >= acceleration * acceleration
+                                                     ? acceleration / jerk + speed / acceleration
+                                                     : 2.0 * std::sqrt(speed / jerk));
+  const double rise = std::min(acceleration / jerk, 0.5 * peak_ramp);
+  MotionState state;
+  double left = time;
+  const auto advance = [&](double phase, double phase_jerk) {
+    const double t = std::min(left, phase);
+    state.distance += t * (state.speed + t * (state.acceleration / 2.0 + t * phase_jerk / 6.0));
+    state.speed += t * (state.acceleration + t * phase_jerk / 2.0);
+    state.acceleration += t * phase_jerk;
+    left -= t;
+  };
+  advance(rise, jerk);
+  advance(peak_ramp - 2.0 * rise, 0.0);
+  advance(rise, -jerk);
+  advance(left, 0.0);
+  return state;
+}
+
 double turn_time(double angle, double rate, double acceleration) {
   const double turn = std::abs(angle);
   const double ramp = rate / acceleration;

@@ -30,6 +30,13 @@ struct Conditions {
 /// From rest to rest over `distance` under limits of speed, acceleration and jerk (all positive).
 double rest_to_rest_time(double distance, double speed, double acceleration, double jerk);
 
+/// Where such a motion is after `time`; at rest at the end from then on.
+struct MotionState {
+  double distance = 0.0, speed = 0.0, acceleration = 0.0;
+};
+MotionState rest_to_rest_state(double distance, double speed, double acceleration, double jerk,
+                               double time);
+
 /// Turning by `angle` (either sign) under limits of rate and acceleration, from rest to rest.
 double turn_time(double angle, double rate, double acceleration);
 

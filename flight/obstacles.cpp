@@ -139,6 +139,12 @@ void validate(const Obstacles& obstacles) {
   }
 }
 
+Obstacles without_ground(Obstacles obstacles) {
+  obstacles.ground_height.reset();
+  if (obstacles.fence) obstacles.fence->floor = -std::numeric_limits<double>::infinity();
+  return obstacles;
+}
+
 bool contains(const Prism& prism, const Vector3d& point) {
   if (point.z() < prism.floor || point.z() > prism.ceiling) return false;
   const Vector2d p = point.head<2>();

@@ -45,6 +45,9 @@ struct Obstacles {
 /// that lies wholly below the ground.
 void validate(const Obstacles& obstacles);
 
+/// What a climb from a pad has to keep clear of: everything but the ground and the fence's floor.
+Obstacles without_ground(Obstacles obstacles);
+
 /// Whether a point is in the prism or on its boundary.
 bool contains(const Prism& prism, const Eigen::Vector3d& point);
 

@@ -44,9 +44,7 @@ RouteOptions options() {
 Route plan(const std::vector<Station>& stations, const Obstacles& obstacles,
            const RouteOptions& how = options(), const Vehicle& vehicle = {}) {
   const KnownSpace space(obstacles);
-  Obstacles no_ground = obstacles;
-  no_ground.ground_height.reset();
-  const KnownSpace pad_space(no_ground);
+  const KnownSpace pad_space(without_ground(obstacles));
   return plan_route(stations, vehicle, space, &pad_space, how);
 }
 

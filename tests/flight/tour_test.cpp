@@ -116,9 +116,9 @@ TEST(SortieSplit, IsTheBestOfAllSplitsAndItsBoundHolds) {
       problem.out.push_back({home, home});
       problem.back.push_back({home, home});
       problem.station.push_back({1, 1});
-      if (i > 0) problem.leg.push_back({uniform(random) / 3, uniform(random) / 3});
+      if (i > 0) problem.leg.push_back({uniform(random), uniform(random)});
     }
-    problem.energy_per_sortie = 24;
+    problem.energy_per_sortie = 26;
     problem.stations_per_sortie = 4;
     const double best = best_by_trying_all(problem);
     const SortieSplit split = split_into_sorties(problem);
