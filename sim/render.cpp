@@ -234,7 +234,8 @@ class Renderer {
 };
 
 /// The view along `direction` from just so far that all vertices are in the picture.
-RenderView view_of_all(const Mesh& mesh, const Vector3d& direction, double horizontal_fov) {
+RenderView view_of_all(const Mesh& mesh, const Vector3d& direction, double horizontal_fov,
+                       double aspect) {
   const Vector3d centre = bounding_box(mesh).center();
   const Eigen::Matrix3d camera_from_world =
       geometry::camera_pose({centre, direction.normalized()}).linear().transpose();
@@ -243,7 +244,7 @@ RenderView view_of_all(const Mesh& mesh, const Vector3d& direction, double horiz
   for (const auto& triangle : mesh.triangles) {
     for (const std::uint32_t v : triangle) {
       const Vector3d point = camera_from_world * (mesh.vertices[v] - centre);
-      const double width = std::max(std::abs(point.x()), std::abs(point.y()));
+      const double width = std::max(std::abs(point.x()), aspect * std::abs(point.y()));
       distance = std::max(distance, width / slope - point.z());
     }
   }
@@ -269,12 +270,12 @@ void RenderOptions::validate() const {
           "between 0 and pi/2 radians");
 }
 
-std::vector<RenderView> standard_views(const Mesh& mesh) {
+std::vector<RenderView> standard_views(const Mesh& mesh, double aspect) {
   geometry::validate(mesh);
   const double fov = 35.0 * pi / 180.0;
-  std::vector<RenderView> views{view_of_all(mesh, {0.0, -1.0, -0.04}, fov),
-                                view_of_all(mesh, {0.80, 0.60, -0.25}, fov),
-                                view_of_all(mesh, {0.62, 0.70, -0.85}, fov)};
+  std::vector<RenderView> views{view_of_all(mesh, {0.0, -1.0, -0.04}, fov, aspect),
+                                view_of_all(mesh, {0.80, 0.60, -0.25}, fov, aspect),
+                                view_of_all(mesh, {0.62, 0.70, -0.85}, fov, aspect)};
   // The detail: the second view through a longer lens, at a third of the height.
   RenderView detail = views[1];
   const Eigen::AlignedBox3d box = bounding_box(mesh);
@@ -301,7 +302,9 @@ Image render(const Mesh& mesh, std::span<const RenderView> views, const RenderOp
 }
 
 Image render(const Mesh& mesh, const RenderOptions& options) {
-  return render(mesh, standard_views(mesh), options);
+  options.validate();
+  const double aspect = static_cast<double>(options.width) / options.height;
+  return render(mesh, standard_views(mesh, aspect), options);
 }
 
 }  // namespace skycap::sim

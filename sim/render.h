@@ -53,9 +53,9 @@ struct RenderOptions {
   void validate() const;
 };
 
-/// Four views that show a scene whole and near: the front (from the south-west), a quarter turn
-/// on, from high up, and a detail.
-std::vector<RenderView> standard_views(const geometry::Mesh& mesh);
+/// Four views of a scene, for pictures whose width is `aspect` times their height: the north side,
+/// the south-west corner from higher up, the same from high up, and a detail of the second.
+std::vector<RenderView> standard_views(const geometry::Mesh& mesh, double aspect = 1.0);
 
 /// The views' pictures in rows of `options.columns`, from the top left. Throws what
 /// geometry::validate() and options.validate() throw.

@@ -97,11 +97,12 @@ Mesh box_at(double x, double y, double width, double depth, double low, double h
   return box({x - 0.5 * width, y - 0.5 * depth, low}, {x + 0.5 * width, y + 0.5 * depth, high});
 }
 
-void add_chimneys(double width, double foot, double ridge, Draw& draw, Parts& parts) {
+/// Chimneys along the ridge above the line y = `axis`.
+void add_chimneys(double width, double axis, double foot, double ridge, Draw& draw, Parts& parts) {
   const int count = draw.integer(1, 3);
   for (int i = 0; i < count; ++i) {
     const double x = width * ((i + 0.5) / count - 0.5) + draw.between(-0.8, 0.8);
-    const double y = draw.between(-1.2, 1.2), top = ridge + draw.between(0.8, 1.6);
+    const double y = axis + draw.between(-1.2, 1.2), top = ridge + draw.between(0.8, 1.6);
     parts.push_back({"chimney", box_at(x, y, 1.3, 0.7, foot, top)});
     parts.push_back({"chimney", box_at(x, y, 1.5, 0.9, top - 0.35, top - 0.12)});
     for (const double side : {-0.33, 0.33}) {
@@ -155,7 +156,7 @@ Parts town_house(const Lot& lot, Draw& draw, const Fineness&) {
   Parts parts;
   add_wing(width, depth, count, facade, 1.2, is_hipped, slope, {0.0, 0.0, 0.0}, 0.0, parts);
   const double eaves = count * facade.storey, half = 0.5 * depth + 0.5;
-  add_chimneys(0.7 * width, eaves, eaves + slope * half, draw, parts);
+  add_chimneys(0.7 * width, 0.0, eaves, eaves + slope * half, draw, parts);
   if (draw.integer(0, 1) == 0) {
     const double room = is_hipped ? width - depth : width - 2.0;
     add_dormers(std::max(0.0, room), half, eaves, slope, parts);
@@ -225,8 +226,8 @@ Parts courtyard_house(const Lot& lot, Draw& draw, const Fineness&) {
     add_wing(depth - 2.0 * wing + 3.0, wing - 0.6, count - 1, facade, 2.8, false, slope,
              {side * 0.5 * (width - wing), 0.0, 0.0}, 0.5 * pi, parts);
   }
-  add_chimneys(0.8 * width, count * facade.storey, count * facade.storey + 0.55 * slope * wing,
-               draw, parts);
+  add_chimneys(0.8 * width, -0.5 * (depth - wing), count * facade.storey,
+               count * facade.storey + 0.55 * slope * wing, draw, parts);
   return parts;
 }
 
