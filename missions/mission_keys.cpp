@@ -134,13 +134,12 @@ Key required(Key key) {
 }
 
 /// One corner of the box outside which measurements are dropped.
-Key scene_box_corner(std::string path, bool is_upper, std::string meaning) {
+Key scene_box_corner(std::string path, std::string unit, bool is_upper, std::string meaning) {
   Key key;
   key.path = std::move(path);
   key.type = KeyType::vector;
-  key.unit = "m";
+  key.unit = std::move(unit);
   key.range = between(-far_away, far_away);
-  key.fallback = "unlimited";
   key.meaning = std::move(meaning);
   key.set = [is_upper](Mission& mission, const KeyValue& value) {
     auto& box = mission.planner.see.scene_box;
@@ -352,9 +351,12 @@ std::vector<Key> planner_keys() {
       otherwise("from the sensor and rho",
                 number("planner.view_distance", "m", above(0, 1e6), see(&See::view_distance),
                        "d: distance from a frontier to the view proposed for it.")),
-      scene_box_corner("planner.scene_box.min", false,
-                       "Lower corner of the box outside which measurements are dropped."),
-      scene_box_corner("planner.scene_box.max", true, "Upper corner of that box."),
+      otherwise(
+          "unlimited",
+          scene_box_corner("planner.scene_box.min", "m", false,
+                           "Lower corner of the box outside which measurements are dropped.")),
+      otherwise("unlimited",
+                scene_box_corner("planner.scene_box.max", "m", true, "Upper corner of that box.")),
       choice("planner.outlier_rule", {"non_core", "labelled"}, see(&See::outlier_rule),
              "Which neighbours make a point beside a core point a frontier: any other that is not "
              "core, or one labelled outlier (released code, depends on the order)."),

@@ -26,16 +26,23 @@ using Json = nlohmann::ordered_json;
 struct Figure {
   const char* name;
   double (*of)(const Trial&);
-  std::optional<double> ReferenceConfig::*reference;
+  std::optional<double> ReferenceConfig::*reference;  ///< or null
 };
 
 constexpr std::array figures{
     Figure{"views", [](const Trial& t) { return static_cast<double>(t.views); },
            &ReferenceConfig::views},
     Figure{"coverage", [](const Trial& t) { return t.coverage.all; }, &ReferenceConfig::coverage},
+    // No reference: publications do not say which surface cannot be seen.
+    Figure{"coverage_visible", [](const Trial& t) { return t.coverage.visible.value_or(0.0); },
+           nullptr},
     Figure{"distance_m", [](const Trial& t) { return t.distance; }, &ReferenceConfig::distance},
     Figure{"planning_time_s", [](const Trial& t) { return t.planning_time; },
            &ReferenceConfig::planning_time}};
+
+std::optional<double> reference_of(const Mission& mission, const Figure& figure) {
+  return figure.reference ? mission.paper.*figure.reference : std::nullopt;
+}
 
 Statistic statistic_of(const std::vector<Trial>& trials, const Figure& figure) {
   std::vector<double> numbers;
@@ -163,7 +170,7 @@ std::string trials_json(const Mission& mission, const std::vector<Trial>& trials
   if (trials.empty()) return json_text(json);
   for (const Figure& figure : figures) {
     json[figure.name] = json_of(statistic_of(trials, figure));
-    if (const auto reference = mission.paper.*figure.reference) {
+    if (const auto reference = reference_of(mission, figure)) {
       json[figure.name]["paper"] = *reference;
     }
   }
@@ -184,7 +191,7 @@ std::string trials_table(const Mission& mission, const std::vector<Trial>& trial
   table += line;
   for (const Figure& figure : figures) {
     const Statistic statistic = statistic_of(trials, figure);
-    const auto reference = mission.paper.*figure.reference;
+    const auto reference = reference_of(mission, figure);
     char paper[32] = "-";
     if (reference) std::snprintf(paper, sizeof paper, "%.4g", *reference);
     std::snprintf(line, sizeof line, "%-18s %12.4g %10.2g %10.2g %12s\n", figure.name,
