@@ -149,9 +149,7 @@ std::optional<KeyValue> vector_in(const YamlNode& node, const KeyRange& range) {
   return vector;
 }
 
-bool has_control_characters(std::string_view text) {
-  return std::ranges::any_of(text, [](unsigned char c) { return c < 0x20 || c == 0x7f; });
-}
+bool is_control_character(unsigned char c) { return c < 0x20 || c == 0x7f; }
 
 /// The node's value as `key` takes it; nothing if it does not.
 std::optional<KeyValue> value_for(const Key& key, const YamlNode& node) {
@@ -174,7 +172,7 @@ std::optional<KeyValue> value_for(const Key& key, const YamlNode& node) {
       if (std::ranges::find(key.choices, node.text) == key.choices.end()) break;
       return node.text;
     default:
-      if (node.text.empty() || has_control_characters(node.text)) break;
+      if (node.text.empty() || std::ranges::any_of(node.text, is_control_character)) break;
       return node.text;
   }
   return std::nullopt;
@@ -309,10 +307,8 @@ GivenValues collected(const std::string& text, const std::string& name,
   return values;
 }
 
-}  // namespace
-
-Mission parse_mission(const std::string& text, const std::string& name,
-                      const std::vector<KeyOverride>& overrides) {
+Mission mission_from(const std::string& text, const std::string& name,
+                     const std::vector<KeyOverride>& overrides) {
   const GivenValues given = collected(text, name, overrides);
   Mission mission;
   mission.name = std::filesystem::path(name).stem().string();
@@ -335,6 +331,23 @@ Mission parse_mission(const std::string& text, const std::string& name,
   }
   check_planner(given, name, mission);
   return mission;
+}
+
+/// Keys and texts are shown as they were written; what would break the line becomes a space.
+std::string one_line(std::string message) {
+  std::ranges::replace_if(message, is_control_character, ' ');
+  return message;
+}
+
+}  // namespace
+
+Mission parse_mission(const std::string& text, const std::string& name,
+                      const std::vector<KeyOverride>& overrides) {
+  try {
+    return mission_from(text, name, overrides);
+  } catch (const Error& error) {
+    throw Error(error.kind(), one_line(error.what()));
+  }
 }
 
 Mission read_mission(const std::filesystem::path& file, const std::vector<KeyOverride>& overrides) {

@@ -7,6 +7,7 @@
 #include "geometry/cloud_io.h"
 #include "geometry/pose.h"
 #include "missions/cloud_normals.h"
+#include "missions/json_text.h"
 #include "missions/mission_keys.h"
 #include "missions/number_text.h"
 #include "missions/version.h"
@@ -154,7 +155,7 @@ std::string summary_json(const Mission& mission, const SurveyRecord& record,
   for (std::size_t i = 0; i < record.views.size(); ++i) {
     summary["per_view"].push_back(view_summary(i, record.views[i]));
   }
-  return summary.dump(1) + "\n";
+  return json_text(summary);
 }
 
 void stage_package(const Mission& mission, const SurveyRecord& record,

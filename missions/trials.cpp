@@ -12,6 +12,7 @@
 
 #include "geometry/parallel.h"
 #include "missions/coverage.h"
+#include "missions/json_text.h"
 #include "missions/mission_keys.h"
 #include "missions/number_text.h"
 #include "missions/version.h"
@@ -159,7 +160,7 @@ std::string trials_json(const Mission& mission, const std::vector<Trial>& trials
             {"trials", trials.size()},
             {"trials_complete", completed(trials)},
             {"coverage_ceiling", trials.empty() ? Json() : json_of(trials[0].coverage.ceiling)}};
-  if (trials.empty()) return json.dump(1) + "\n";
+  if (trials.empty()) return json_text(json);
   for (const Figure& figure : figures) {
     json[figure.name] = json_of(statistic_of(trials, figure));
     if (const auto reference = mission.paper.*figure.reference) {
@@ -168,7 +169,7 @@ std::string trials_json(const Mission& mission, const std::vector<Trial>& trials
   }
   json["mean_after_view"] = {{"coverage", mean_curve(trials, &Trial::coverage_after)},
                              {"distance_m", mean_curve(trials, &Trial::distance_after)}};
-  return json.dump(1) + "\n";
+  return json_text(json);
 }
 
 std::string trials_table(const Mission& mission, const std::vector<Trial>& trials) {
