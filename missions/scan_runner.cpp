@@ -1,6 +1,7 @@
 #include "missions/scan_runner.h"
 
 #include <algorithm>
+#include <utility>
 #include <vector>
 
 #include "geometry/parallel.h"
@@ -34,7 +35,9 @@ ScanResult run_scan(const sim::Scene& scene, const sim::Lidar& lidar,
       }
       const std::uint64_t first = next + (i - 1) * firings_in_piece;
       const std::uint64_t count = std::min(firings_in_piece, progress.all_firings - first);
-      measured[i - 1] = file.encode(lidar.measure(scene, flight, {first, count}));
+      thread_local sim::LidarReturns returns;
+      returns = lidar.measure(scene, flight, {first, count}, std::move(returns));
+      measured[i - 1] = file.encode(returns);
     });
     next = std::min(next + measured.size() * firings_in_piece, progress.all_firings);
     written.swap(measured);

@@ -1,7 +1,6 @@
 #include "sim/lidar.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstring>
 #include <optional>
@@ -23,93 +22,124 @@ constexpr std::uint32_t firings_in_block = ScanPattern::firings_in_block;
 constexpr double pose_spacing = 1e-4;  // [s]; how often a trajectory is asked
 enum Stream : std::uint32_t { bias_stream, azimuth_stream, elevation_stream, range_stream };
 
-// world_from_sensor relative to a fixed origin, in the precision of the rays.
-struct Pose {
-  Eigen::Matrix3f rotation;
-  Vector3f position;
+// world_from_sensor at the start of each firing of a block and of the next, relative to a fixed
+// origin: the nine entries of the rotation, row by row, and the position. Four firings lie
+// together, as their rays do.
+struct BlockPoses {
+  float entries[12][firings_in_block + 4];
+};
 
-  Pose between(const Pose& next, float share) const {
-    return {rotation + share * (next.rotation - rotation),
-            position + share * (next.position - position)};
+// The poses of four consecutive firings.
+struct FourPoses {
+  FourFloats entries[12];
+
+  FourPoses(const BlockPoses& poses, std::uint32_t firing) {
+    for (int i = 0; i < 12; ++i) {
+      std::memcpy(&entries[i], &poses.entries[i][firing], sizeof entries[i]);
+    }
+  }
+  void rotate(const FourFloats (&vector)[3], FourFloats (&rotated)[3]) const {
+    for (int row = 0; row < 3; ++row) {
+      rotated[row] = entries[3 * row] * vector[0] + entries[3 * row + 1] * vector[1] +
+                     entries[3 * row + 2] * vector[2];
+    }
+  }
+  void shift(FourFloats (&vector)[3]) const {
+    for (int row = 0; row < 3; ++row) vector[row] += entries[9 + row];
   }
 };
 
-// The poses at the start of each firing of a block, and at the start of the next block.
-using BlockPoses = std::array<Pose, firings_in_block + 1>;
-
-Pose pose_at(const Trajectory& trajectory, const Isometry3d& body_from_sensor, double time,
-             const Vector3d& origin) {
-  const Isometry3d pose = trajectory.pose(time) * body_from_sensor;
-  return {pose.linear().cast<float>(), (pose.translation() - origin).cast<float>()};
-}
-
-BlockPoses block_poses(const Trajectory& trajectory, const Isometry3d& body_from_sensor,
-                       double start, double firing_period, const Vector3d& origin) {
-  const double duration = firing_period * firings_in_block;
-  const int spans = std::clamp(static_cast<int>(std::ceil(duration / pose_spacing)), 1,
-                               static_cast<int>(firings_in_block));
-  std::array<Pose, firings_in_block + 1> knots;
-  for (int i = 0; i <= spans; ++i) {
-    knots[i] = pose_at(trajectory, body_from_sensor, start + duration * i / spans, origin);
-  }
-  BlockPoses poses;
-  for (int firing = 0; firing <= static_cast<int>(firings_in_block); ++firing) {
-    const int knot = std::min(firing * spans / static_cast<int>(firings_in_block), spans - 1);
-    const float share = static_cast<float>(firing * spans) / static_cast<float>(firings_in_block) -
-                        static_cast<float>(knot);
-    poses[firing] = knots[knot].between(knots[knot + 1], share);
+// Four firings of a channel that fires a share of the firing period later.
+FourPoses delayed(FourPoses poses, const FourPoses& next, float share) {
+  for (int i = 0; i < 12; ++i) {
+    poses.entries[i] += share * (next.entries[i] - poses.entries[i]);
   }
   return poses;
 }
 
-// Directions across a beam, sensor frame: along azimuth and along elevation.
+BlockPoses block_poses(const Trajectory& trajectory, const Isometry3d& body_from_sensor,
+                       double start, double firing_period, const Vector3d& origin) {
+  constexpr int firings = firings_in_block;
+  const double duration = firing_period * firings;
+  const int spans = std::clamp(static_cast<int>(std::ceil(duration / pose_spacing)), 1, firings);
+  float knots[firings + 1][12];
+  for (int i = 0; i <= spans; ++i) {
+    const Isometry3d pose = trajectory.pose(start + duration * i / spans) * body_from_sensor;
+    for (int entry = 0; entry < 9; ++entry) {
+      knots[i][entry] = static_cast<float>(pose.linear()(entry / 3, entry % 3));
+    }
+    for (int axis = 0; axis < 3; ++axis) {
+      knots[i][9 + axis] = static_cast<float>(pose.translation()[axis] - origin[axis]);
+    }
+  }
+  BlockPoses poses = {};
+  for (int firing = 0; firing <= firings; ++firing) {
+    const int knot = std::min(firing * spans / firings, spans - 1);
+    const float share =
+        static_cast<float>(firing * spans) / static_cast<float>(firings) - static_cast<float>(knot);
+    for (int entry = 0; entry < 12; ++entry) {
+      poses.entries[entry][firing] =
+          knots[knot][entry] + share * (knots[knot + 1][entry] - knots[knot][entry]);
+    }
+  }
+  return poses;
+}
+
+// Directions across a beam, along azimuth and along elevation; `up` is the sensor's z axis.
 struct AcrossBeam {
   Vector3f horizontal, vertical;
 };
-AcrossBeam across(const Vector3f& direction) {
-  const float length = std::hypot(direction.x(), direction.y());
-  const Vector3f horizontal = length > 1e-6F
-                                  ? Vector3f(-direction.y() / length, direction.x() / length, 0.0F)
-                                  : Vector3f::UnitY();
+AcrossBeam across(const Vector3f& direction, const Vector3f& up) {
+  const Vector3f sideways = up.cross(direction);
+  const float length = sideways.norm();
+  const Vector3f horizontal =
+      length > 1e-6F ? Vector3f(sideways / length) : direction.unitOrthogonal();
   return {horizontal, direction.cross(horizontal)};
 }
 
-// Rays in the frame of Embree's scene, in the order of the packets, and what they meet.
+// Rays relative to the origin of Embree's scene, slot by slot.
 struct Rays {
   std::vector<float> origin[3], direction[3];
-  std::vector<int> active;    // -1 or 0, as Embree wants it
+
+  void resize(std::size_t rays) {
+    for (int axis = 0; axis < 3; ++axis) {
+      origin[axis].resize(rays);
+      direction[axis].resize(rays);
+    }
+  }
+  Vector3f from(std::size_t ray) const { return {origin[0][ray], origin[1][ray], origin[2][ray]}; }
+  Vector3f towards(std::size_t ray) const {
+    return {direction[0][ray], direction[1][ray], direction[2][ray]};
+  }
+  Vector3f at(std::size_t ray, float range) const { return from(ray) + range * towards(ray); }
+  void set_direction(std::size_t ray, const Vector3f& towards) {
+    for (int axis = 0; axis < 3; ++axis) direction[axis][ray] = towards[axis];
+  }
+};
+
+// What rays meet.
+struct Hits {
+  std::vector<int> active;    // which rays to cast: -1 or 0, as Embree wants it
   std::vector<float> range;   // negative: nothing
   std::vector<float> cosine;  // of the angle of incidence
   std::vector<std::uint32_t> triangle;
 
   void resize(std::size_t rays) {
-    const std::size_t padded = (rays + 15) / 16 * 16;  // whole packets of any width
-    for (int axis = 0; axis < 3; ++axis) {
-      origin[axis].resize(padded);
-      direction[axis].resize(padded);
-    }
-    active.assign(padded, 0);
-    range.resize(padded);
-    cosine.resize(padded);
-    triangle.resize(padded);
-  }
-  void set(std::size_t ray, const Vector3f& from, const Vector3f& towards) {
-    for (int axis = 0; axis < 3; ++axis) {
-      origin[axis][ray] = from[axis];
-      direction[axis][ray] = towards[axis];
-    }
-    active[ray] = -1;
+    active.assign(rays, 0);
+    range.assign(rays, -1.0F);
+    cosine.resize(rays);
+    triangle.resize(rays);
   }
 };
 
 template <int width>
-void cast_rays(const Scene::Embree& embree, float reach, Rays& rays) {
+void cast_rays(const Scene::Embree& embree, float reach, const Rays& rays, Hits& hits) {
   Packet<width> packet;
   const auto load = [](float* lanes, const std::vector<float>& values, std::size_t first) {
     std::memcpy(lanes, values.data() + first, width * sizeof(float));
   };
-  for (std::size_t first = 0; first < rays.active.size(); first += width) {
-    std::memcpy(packet.active, rays.active.data() + first, width * sizeof(int));
+  for (std::size_t first = 0; first < hits.active.size(); first += width) {
+    std::memcpy(packet.active, hits.active.data() + first, width * sizeof(int));
     if (std::all_of(packet.active, packet.active + width, [](int lane) { return lane == 0; })) {
       continue;
     }
@@ -122,14 +152,16 @@ void cast_rays(const Scene::Embree& embree, float reach, Rays& rays) {
     load(ray.dir_y, rays.direction[1], first);
     load(ray.dir_z, rays.direction[2], first);
     packet.cast(embree, reach);
+    float* const range = hits.range.data() + first;
+    float* const cosine = hits.cosine.data() + first;
+    std::memcpy(hits.triangle.data() + first, hit.primID, sizeof hit.primID);
     for (int lane = 0; lane < width; ++lane) {
       const float projection = ray.dir_x[lane] * hit.Ng_x[lane] + ray.dir_y[lane] * hit.Ng_y[lane] +
                                ray.dir_z[lane] * hit.Ng_z[lane];
       const float square = hit.Ng_x[lane] * hit.Ng_x[lane] + hit.Ng_y[lane] * hit.Ng_y[lane] +
                            hit.Ng_z[lane] * hit.Ng_z[lane];
-      rays.range[first + lane] = packet.is_hit(lane) ? ray.tfar[lane] : -1.0F;
-      rays.cosine[first + lane] = std::min(1.0F, std::abs(projection) / std::sqrt(square));
-      rays.triangle[first + lane] = hit.primID[lane];
+      range[lane] = packet.is_hit(lane) ? ray.tfar[lane] : -1.0F;
+      cosine[lane] = std::abs(projection) / std::sqrt(square);
     }
   }
 }
@@ -138,7 +170,16 @@ void cast_rays(const Scene::Embree& embree, float reach, Rays& rays) {
 
 struct Lidar::Impl {
   explicit Impl(const LidarConfig& given)
-      : config((given.validate(), given)), pattern(config), beam(beam_samples(config.beam.rings)) {
+      : config((given.validate(), given)),
+        pattern(config),
+        beam(beam_samples(config.beam.rings)),
+        min_range(static_cast<float>(config.min_range)),
+        has_constant_sigma(config.errors.sigma_per_metre == 0.0 &&
+                           config.errors.sigma_per_square_metre == 0.0 &&
+                           config.errors.incidence_power == 0.0) {
+    for (const Channel& channel : config.channels) {
+      delay_shares.push_back(static_cast<float>(channel.delay / config.firing_period));
+    }
     std::vector<float> normals(config.channels.size());
     fill_normals(noise_key(config.seed, bias_stream, 0), 0, normals);
     for (const float normal : normals) {
@@ -149,7 +190,10 @@ struct Lidar::Impl {
   LidarConfig config;
   ScanPattern pattern;
   std::vector<BeamSample> beam;
-  std::vector<float> biases;  // of each channel
+  float min_range;
+  bool has_constant_sigma;
+  std::vector<float> biases;        // of each channel
+  std::vector<float> delay_shares;  // of each channel's delay in the firing period
 };
 
 namespace {
@@ -176,60 +220,122 @@ class BlockMeasurement {
                               config_.firing_period, origin_);
     }
     lidar_.pattern.aim(block, shots_);
-    cast(first, end);
     draw_noise(block);
+    place(poses_, shots_rays_);
+    cast(first, end);
+    if (has_own_belief_) place(believed_, reported_rays_);
+    if (config_.errors.angle_sigma > 0.0) mislead();
+    reserve(returns);
     for (std::uint32_t firing = first; firing < end; ++firing) {
       for (std::size_t channel = 0; channel < config_.channels.size(); ++channel) {
         const std::size_t slot = lidar_.pattern.slot(firing, channel);
         if (shots_.is_shot[slot] == 0) continue;
         const double time =
             start + firing * config_.firing_period + config_.channels[channel].delay;
-        report(firing, channel, slot, time, returns);
+        report(channel, slot, time, returns);
       }
     }
   }
 
  private:
-  Vector3f direction(std::size_t slot) const {
-    return {shots_.direction[0][slot], shots_.direction[1][slot], shots_.direction[2][slot]};
+  // The rays of all shots in the world, four firings of a channel at a time.
+  void place(const BlockPoses& poses, Rays& rays) const {
+    rays.resize(lidar_.pattern.slots());
+    for (std::uint32_t firing = 0; firing < firings_in_block; firing += 4) {
+      const FourPoses now(poses, firing), next(poses, firing + 1);
+      for (std::size_t channel = 0; channel < config_.channels.size(); ++channel) {
+        const std::size_t slot = lidar_.pattern.slot(firing, channel);
+        const float share = lidar_.delay_shares[channel];
+        const FourPoses at = share == 0.0F ? now : delayed(now, next, share);
+        FourFloats vector[3], placed[3];
+        for (int axis = 0; axis < 3; ++axis) {
+          std::memcpy(&vector[axis], &shots_.direction[axis][slot], sizeof vector[axis]);
+        }
+        at.rotate(vector, placed);
+        for (int axis = 0; axis < 3; ++axis) {
+          std::memcpy(&rays.direction[axis][slot], &placed[axis], sizeof placed[axis]);
+          std::memcpy(&vector[axis], &shots_.origin[axis][slot], sizeof vector[axis]);
+        }
+        at.rotate(vector, placed);
+        at.shift(placed);
+        for (int axis = 0; axis < 3; ++axis) {
+          std::memcpy(&rays.origin[axis][slot], &placed[axis], sizeof placed[axis]);
+        }
+      }
+    }
   }
-  Vector3f laser(std::size_t slot) const {
-    return {shots_.origin[0][slot], shots_.origin[1][slot], shots_.origin[2][slot]};
-  }
-  Pose pose(const BlockPoses& poses, std::uint32_t firing, std::size_t channel) const {
-    const double share = config_.channels[channel].delay / config_.firing_period;
-    return share == 0.0 ? poses[firing]
-                        : poses[firing].between(poses[firing + 1], static_cast<float>(share));
+
+  Vector3f up(const BlockPoses& poses, std::uint32_t firing) const {
+    return {poses.entries[2][firing], poses.entries[5][firing], poses.entries[8][firing]};
   }
 
   void cast(std::uint32_t first, std::uint32_t end) {
     const std::size_t samples = lidar_.beam.size();
-    rays_.resize(lidar_.pattern.slots() * samples);
-    const auto half_width = static_cast<float>(0.5 * config_.beam.divergence_horizontal);
-    const auto half_height = static_cast<float>(0.5 * config_.beam.divergence_vertical);
+    hits_.resize(lidar_.pattern.slots() * samples);
+    if (samples > 1) beam_rays_.resize(lidar_.pattern.slots() * samples);
     for (std::uint32_t firing = first; firing < end; ++firing) {
       for (std::size_t channel = 0; channel < config_.channels.size(); ++channel) {
         const std::size_t slot = lidar_.pattern.slot(firing, channel);
         if (shots_.is_shot[slot] == 0) continue;
-        const Pose at = pose(poses_, firing, channel);
-        const Vector3f from = at.position + at.rotation * laser(slot);
-        const Vector3f axis = direction(slot);
-        rays_.set(slot * samples, from, at.rotation * axis);
-        if (samples == 1) continue;
-        const AcrossBeam sides = across(axis);
-        const Vector3f right = at.rotation * (half_width * sides.horizontal);
-        const Vector3f up = at.rotation * (half_height * sides.vertical);
-        for (std::size_t i = 1; i < samples; ++i) {
-          const BeamSample& sample = lidar_.beam[i];
-          const Vector3f towards =
-              at.rotation * axis + sample.horizontal * right + sample.vertical * up;
-          rays_.set(slot * samples + i, from, towards.normalized());
-        }
+        std::fill_n(hits_.active.begin() + static_cast<std::ptrdiff_t>(slot * samples), samples,
+                    -1);
+        if (samples > 1) spread_beam(firing, slot);
       }
     }
     with_packet_width(scene_.embree(), [&]<int width>() {
-      cast_rays<width>(scene_.embree(), static_cast<float>(config_.max_range), rays_);
+      cast_rays<width>(scene_.embree(), static_cast<float>(config_.max_range),
+                       samples > 1 ? beam_rays_ : shots_rays_, hits_);
     });
+  }
+
+  void spread_beam(std::uint32_t firing, std::size_t slot) {
+    const Vector3f axis = shots_rays_.towards(slot);
+    const AcrossBeam sides = across(axis, up(poses_, firing));
+    const Vector3f right =
+        static_cast<float>(0.5 * config_.beam.divergence_horizontal) * sides.horizontal;
+    const Vector3f above =
+        static_cast<float>(0.5 * config_.beam.divergence_vertical) * sides.vertical;
+    std::size_t ray = slot * lidar_.beam.size();
+    for (const BeamSample& sample : lidar_.beam) {
+      const Vector3f towards = axis + sample.horizontal * right + sample.vertical * above;
+      beam_rays_.set_direction(ray, towards.normalized());
+      for (int i = 0; i < 3; ++i) beam_rays_.origin[i][ray] = shots_rays_.origin[i][slot];
+      ++ray;
+    }
+  }
+
+  // Turns the rays along which the sensor reports its points by the errors of its angles.
+  void mislead() {
+    if (!has_own_belief_) reported_rays_ = shots_rays_;
+    const auto sigma = static_cast<float>(config_.errors.angle_sigma);
+    const BlockPoses& poses = has_own_belief_ ? believed_ : poses_;
+    for (std::uint32_t firing = 0; firing < firings_in_block; ++firing) {
+      for (std::size_t channel = 0; channel < config_.channels.size(); ++channel) {
+        const std::size_t slot = lidar_.pattern.slot(firing, channel);
+        const Vector3f direction = reported_rays_.towards(slot);
+        const AcrossBeam sides = across(direction, up(poses, firing));
+        reported_rays_.set_direction(slot,
+                                     (direction + sigma * azimuth_noise_[slot] * sides.horizontal +
+                                      sigma * elevation_noise_[slot] * sides.vertical)
+                                         .normalized());
+      }
+    }
+  }
+
+  // Room for a block more. Growing by hand keeps the vectors' doubling.
+  void reserve(LidarReturns& returns) const {
+    const std::size_t needed = returns.size() + lidar_.pattern.slots();
+    if (needed <= returns.points.capacity()) return;
+    const std::size_t room = std::max(needed, 2 * returns.points.capacity());
+    returns.points.reserve(room);
+    returns.true_points.reserve(room);
+    returns.times.reserve(room);
+    returns.intensities.reserve(room);
+    returns.scan_angles.reserve(room);
+    returns.triangles.reserve(room);
+    returns.channels.reserve(room);
+    returns.return_numbers.reserve(room);
+    returns.returns_of_shots.reserve(room);
   }
 
   // One normal for each slot, error and return; only for the errors that are on.
@@ -253,13 +359,12 @@ class BlockMeasurement {
   }
 
   std::optional<RayHit> hit(std::size_t ray, float share) const {
-    if (rays_.range[ray] < static_cast<float>(config_.min_range)) return std::nullopt;
-    return RayHit{rays_.range[ray], rays_.cosine[ray], scene_.reflectance(rays_.triangle[ray]),
-                  share, rays_.triangle[ray]};
+    if (hits_.range[ray] < lidar_.min_range) return std::nullopt;
+    return RayHit{hits_.range[ray], std::min(1.0F, hits_.cosine[ray]),
+                  scene_.reflectance(hits_.triangle[ray]), share, hits_.triangle[ray]};
   }
 
-  void report(std::uint32_t firing, std::size_t channel, std::size_t slot, double time,
-              LidarReturns& returns) {
+  void report(std::size_t channel, std::size_t slot, double time, LidarReturns& returns) {
     const std::size_t samples = lidar_.beam.size();
     if (samples == 1) {
       const auto only = hit(slot, 1.0F);
@@ -268,43 +373,35 @@ class BlockMeasurement {
       if (power < 1.0F) return;
       const Echo echo = {only->range, only->cosine, only->reflectance * only->cosine, power,
                          only->triangle};
-      report(echo, 0, 1, firing, channel, slot, time, returns);
+      report(echo, 0, 1, channel, slot, time, returns);
       return;
     }
-    hits_.clear();
+    beam_hits_.clear();
     for (std::size_t i = 0; i < samples; ++i) {
-      if (const auto one = hit(slot * samples + i, lidar_.beam[i].share)) hits_.push_back(*one);
+      const auto one = hit(slot * samples + i, lidar_.beam[i].share);
+      if (one) beam_hits_.push_back(*one);
     }
-    const std::vector<Echo> echoes = form_echoes(hits_, config_.sensitivity, config_.beam);
+    const std::vector<Echo> echoes = form_echoes(beam_hits_, config_.sensitivity, config_.beam);
     for (std::size_t i = 0; i < echoes.size(); ++i) {
-      report(echoes[i], i, echoes.size(), firing, channel, slot, time, returns);
+      report(echoes[i], i, echoes.size(), channel, slot, time, returns);
     }
   }
 
-  void report(const Echo& echo, std::size_t number, std::size_t count, std::uint32_t firing,
-              std::size_t channel, std::size_t slot, double time, LidarReturns& returns) const {
+  void report(const Echo& echo, std::size_t number, std::size_t count, std::size_t channel,
+              std::size_t slot, double time, LidarReturns& returns) const {
     const RangeErrors& errors = config_.errors;
     float range = echo.range + lidar_.biases[channel];
     if (has_range_noise_) {
-      range += range_sigma(errors, echo.range, echo.cosine) * range_noise_[number][slot];
+      const float sigma = lidar_.has_constant_sigma ? static_cast<float>(errors.sigma)
+                                                    : range_sigma(errors, echo.range, echo.cosine);
+      range += sigma * range_noise_[number][slot];
     }
     if (errors.range_step > 0.0) {
       range = static_cast<float>(std::round(range / errors.range_step) * errors.range_step);
     }
-    Vector3f reported = direction(slot);
-    if (errors.angle_sigma > 0.0) {
-      const auto sigma = static_cast<float>(errors.angle_sigma);
-      const AcrossBeam sides = across(reported);
-      reported = (reported + sigma * azimuth_noise_[slot] * sides.horizontal +
-                  sigma * elevation_noise_[slot] * sides.vertical)
-                     .normalized();
-    }
-    const Pose true_pose = pose(poses_, firing, channel);
-    const Pose believed_pose = has_own_belief_ ? pose(believed_, firing, channel) : true_pose;
-    returns.points.emplace_back(believed_pose.position +
-                                believed_pose.rotation * (laser(slot) + range * reported));
-    returns.true_points.emplace_back(
-        true_pose.position + true_pose.rotation * (laser(slot) + echo.range * direction(slot)));
+    const bool reports_otherwise = has_own_belief_ || errors.angle_sigma > 0.0;
+    returns.points.push_back((reports_otherwise ? reported_rays_ : shots_rays_).at(slot, range));
+    returns.true_points.push_back(shots_rays_.at(slot, echo.range));
     returns.times.push_back(time);
     returns.intensities.push_back(echo.intensity);
     returns.scan_angles.push_back(shots_.azimuth[slot]);
@@ -324,13 +421,28 @@ class BlockMeasurement {
 
   BlockPoses poses_, believed_;
   Shots shots_;
-  Rays rays_;
+  Rays shots_rays_;     // the axes of the shots as they were
+  Rays reported_rays_;  // and as the sensor and its carrier believe; only if they differ
+  Rays beam_rays_;      // of beams with a width
+  Hits hits_;
   std::vector<float> azimuth_noise_, elevation_noise_;
   std::vector<std::vector<float>> range_noise_;  // for each return of a shot
-  std::vector<RayHit> hits_;
+  std::vector<RayHit> beam_hits_;
 };
 
 }  // namespace
+
+void LidarReturns::clear() {
+  points.clear();
+  true_points.clear();
+  times.clear();
+  intensities.clear();
+  scan_angles.clear();
+  triangles.clear();
+  channels.clear();
+  return_numbers.clear();
+  returns_of_shots.clear();
+}
 
 Lidar::Lidar(const LidarConfig& config) : impl_(std::make_unique<const Impl>(config)) {}
 Lidar::~Lidar() = default;
@@ -345,9 +457,10 @@ std::uint64_t Lidar::firings(const Trajectory& trajectory) const {
   return static_cast<std::uint64_t>(duration / impl_->config.firing_period + rounding);
 }
 
-LidarReturns Lidar::measure(const Scene& scene, const LidarFlight& flight,
-                            FiringRange firings) const {
-  LidarReturns returns;
+LidarReturns Lidar::measure(const Scene& scene, const LidarFlight& flight, FiringRange firings,
+                            LidarReturns recycled) const {
+  LidarReturns returns = std::move(recycled);
+  returns.clear();
   returns.origin = scene.embree().centre;
   BlockMeasurement measurement(*impl_, scene, flight);
   const std::uint64_t end = firings.first + firings.count;

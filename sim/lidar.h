@@ -48,6 +48,7 @@ struct LidarReturns {
   std::vector<std::uint8_t> returns_of_shots;  ///< how many returns the shot has in all
 
   std::size_t size() const { return points.size(); }
+  void clear();  ///< keeps the memory
 };
 
 /// A validated scanner. Immutable; safe to use from any number of threads.
@@ -66,8 +67,9 @@ class Lidar {
 
   /// What the scanner measures in some firings, on this thread. A pure function of the firings:
   /// measuring them in parts, on any threads, gives the same returns. Ranges that are multiples of
-  /// 32 firings waste nothing.
-  LidarReturns measure(const Scene& scene, const LidarFlight& flight, FiringRange firings) const;
+  /// 32 firings waste nothing. The memory of `recycled` is used again.
+  LidarReturns measure(const Scene& scene, const LidarFlight& flight, FiringRange firings,
+                       LidarReturns recycled = {}) const;
 
   struct Impl;  ///< defined in the source, where it serves helpers
 

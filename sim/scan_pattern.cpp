@@ -17,9 +17,6 @@ double turned(double rate, double time) {
   return turn * (turns - std::floor(turns));
 }
 
-// Into (-pi, pi].
-double wrapped(double angle) { return angle - turn * std::ceil((angle - std::numbers::pi) / turn); }
-
 // Snell's law in vectors; `normal` is unit and against the beam, `ratio` the refractive index
 // before the face over that behind it.
 Vector3d refract_at_face(const Vector3d& beam, const Vector3d& normal, double ratio) {
@@ -55,12 +52,13 @@ ScanPattern::ScanPattern(const LidarConfig& config) : config_(config) {
                          static_cast<float>(std::cos(encoder)),
                          static_cast<float>(std::sin(encoder)),
                          static_cast<float>(channel.height),
-                         azimuth,
+                         static_cast<float>(turned(1.0, azimuth / turn)),
                          channel.delay,
                          {cosine * std::cos(channel.azimuth), cosine * std::sin(channel.azimuth),
                           std::sin(channel.elevation)}});
   }
-  std::vector<std::size_t> by_elevation(config.channels.size());
+  std::vector<std::size_t>& by_elevation = channel_of_rank_;
+  by_elevation.resize(config.channels.size());
   std::iota(by_elevation.begin(), by_elevation.end(), 0U);
   std::stable_sort(by_elevation.begin(), by_elevation.end(), [&](std::size_t a, std::size_t b) {
     return config.channels[a].elevation < config.channels[b].elevation;
@@ -76,33 +74,50 @@ void ScanPattern::aim(std::uint64_t block, Shots& shots) const {
   }
   shots.azimuth.resize(slots());
   shots.is_shot.resize(slots());
+  if (config_.prisms.empty()) {
+    for (std::uint32_t firing = 0; firing < firings_in_block; firing += 4) {
+      aim_spinning(block * firings_in_block + firing, shots, slot(firing, channel_of_rank_[0]));
+    }
+    return;
+  }
   for (std::uint32_t firing = 0; firing < firings_in_block; ++firing) {
     const double time =
         static_cast<double>(block * firings_in_block + firing) * config_.firing_period;
-    config_.prisms.empty() ? aim_spinning(time, firing, shots) : aim_rosette(time, firing, shots);
+    aim_rosette(time, firing, shots);
   }
 }
 
-void ScanPattern::aim_spinning(double time, std::uint32_t firing, Shots& shots) const {
-  const double angle = turned(config_.rotation_rate, time);
-  const auto cosine = static_cast<float>(std::cos(angle));
-  const auto sine = static_cast<float>(std::sin(angle));
+// Four firings together, whose slots of a channel are neighbours.
+void ScanPattern::aim_spinning(std::uint64_t first_firing, Shots& shots, std::size_t at) const {
+  float angle[4], cosine[4], sine[4];
+  for (int i = 0; i < 4; ++i) {
+    const double time = static_cast<double>(first_firing + i) * config_.firing_period;
+    const double exact = turned(config_.rotation_rate, time);
+    angle[i] = static_cast<float>(exact);
+    cosine[i] = static_cast<float>(std::cos(exact));
+    sine[i] = static_cast<float>(std::sin(exact));
+  }
+  constexpr auto full = static_cast<float>(turn), half = static_cast<float>(0.5 * turn);
   const auto radius = static_cast<float>(config_.radial_offset);
-  const bool sees_all = config_.field_of_view >= turn;
-  for (std::size_t channel = 0; channel < channels_.size(); ++channel) {
+  const float half_view =
+      config_.field_of_view >= turn ? full : static_cast<float>(0.5 * config_.field_of_view);
+  for (const std::size_t channel : channel_of_rank_) {
     const ChannelTable& table = channels_[channel];
-    const std::size_t at = slot(firing, channel);
-    shots.direction[0][at] =
-        table.cos_elevation * (cosine * table.cos_azimuth - sine * table.sin_azimuth);
-    shots.direction[1][at] =
-        table.cos_elevation * (sine * table.cos_azimuth + cosine * table.sin_azimuth);
-    shots.direction[2][at] = table.sin_elevation;
-    shots.origin[0][at] = radius * (cosine * table.cos_encoder - sine * table.sin_encoder);
-    shots.origin[1][at] = radius * (sine * table.cos_encoder + cosine * table.sin_encoder);
-    shots.origin[2][at] = table.height;
-    const double azimuth = wrapped(angle + table.azimuth);
-    shots.azimuth[at] = static_cast<float>(azimuth);
-    shots.is_shot[at] = sees_all || std::abs(azimuth) <= 0.5 * config_.field_of_view;
+    for (int i = 0; i < 4; ++i, ++at) {
+      shots.direction[0][at] =
+          table.cos_elevation * (cosine[i] * table.cos_azimuth - sine[i] * table.sin_azimuth);
+      shots.direction[1][at] =
+          table.cos_elevation * (sine[i] * table.cos_azimuth + cosine[i] * table.sin_azimuth);
+      shots.direction[2][at] = table.sin_elevation;
+      shots.origin[0][at] = radius * (cosine[i] * table.cos_encoder - sine[i] * table.sin_encoder);
+      shots.origin[1][at] = radius * (sine[i] * table.cos_encoder + cosine[i] * table.sin_encoder);
+      shots.origin[2][at] = table.height;
+      float azimuth = angle[i] + table.azimuth;  // in [0, 4 pi)
+      azimuth -= azimuth > full ? full : 0.0F;
+      azimuth -= azimuth > half ? full : 0.0F;
+      shots.azimuth[at] = azimuth;
+      shots.is_shot[at] = std::abs(azimuth) <= half_view ? 1 : 0;
+    }
   }
 }
 

@@ -42,17 +42,18 @@ class ScanPattern {
     float cos_azimuth, sin_azimuth;  // of the laser, turned on during the delay
     float cos_encoder, sin_encoder;  // of the rotation during the delay
     float height;
-    double azimuth;
+    float azimuth;  // in [0, 2 pi)
     double delay;
     Eigen::Vector3d beam;  // before the prisms
   };
 
-  void aim_spinning(double time, std::uint32_t firing, Shots& shots) const;
+  void aim_spinning(std::uint64_t first_firing, Shots& shots, std::size_t first_slot) const;
   void aim_rosette(double time, std::uint32_t firing, Shots& shots) const;
 
   LidarConfig config_;
   std::vector<ChannelTable> channels_;
-  std::vector<std::size_t> rank_;  // of each channel by elevation
+  std::vector<std::size_t> rank_;             // of each channel by elevation
+  std::vector<std::size_t> channel_of_rank_;  // the inverse
 };
 
 /// A beam of direction `beam` (unit, about along x) after the turning prisms at `time`: Snell's law

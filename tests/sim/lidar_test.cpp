@@ -145,6 +145,9 @@ TEST(Lidar, PartsOfAScanAreTheScan) {
     parts.points.insert(parts.points.end(), some.points.begin(), some.points.end());
     parts.times.insert(parts.times.end(), some.times.begin(), some.times.end());
   }
+  const LidarReturns recycled = lidar.measure(scene, flight, {100, 150}, whole);
+  EXPECT_EQ(recycled.points, whole.points);
+  EXPECT_EQ(recycled.channels, whole.channels);
   EXPECT_EQ(parts.points, whole.points);
   EXPECT_EQ(parts.times, whole.times);
 }
