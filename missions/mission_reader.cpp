@@ -302,6 +302,10 @@ GivenValues collected(const std::string& text, const std::string& name,
   collect(root, "", name, values);
   for (const auto& [origin, path, value] : overrides) {
     if (!find_key(path)) fail(origin, path, unknown_key_message(path));
+    // What a publication reports is for the planner that the file names.
+    if (path == "planner.name") {
+      std::erase_if(values, [](const auto& entry) { return entry.first.starts_with("paper."); });
+    }
     values[path] = {origin, parse_yaml(value, origin)};
   }
   return values;
