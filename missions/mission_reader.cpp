@@ -5,13 +5,13 @@
 #include <cerrno>
 #include <charconv>
 #include <cmath>
-#include <cstring>
 #include <fstream>
 #include <iterator>
 #include <map>
 #include <numeric>
 #include <optional>
 #include <string_view>
+#include <system_error>
 
 #include "geometry/error.h"
 #include "missions/mission_keys.h"
@@ -361,7 +361,9 @@ Mission read_mission(const std::filesystem::path& file, const std::vector<KeyOve
   std::error_code failure;
   if (std::filesystem::is_directory(file, failure)) refuse("is a folder; name a mission file");
   std::ifstream stream(file, std::ios::binary);
-  if (!stream) refuse(std::string("cannot be read (") + std::strerror(errno) + "); check its name");
+  if (!stream)
+    refuse(std::string("cannot be read (") + std::generic_category().message(errno) +
+           "); check its name");
   std::string text(largest_file + 1, '\0');
   stream.read(text.data(), static_cast<std::streamsize>(text.size()));
   text.resize(static_cast<std::size_t>(stream.gcount()));
