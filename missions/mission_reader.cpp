@@ -194,14 +194,17 @@ void apply_presets(Mission& mission) {
     see.optimise_views = false;
     see.visibility_graph = false;
   }
-  if (mission.planner.preset == PlannerPreset::building) see.visibility_update_limit = 1000;
+  if (mission.planner.preset == PlannerPreset::building) {
+    see.visibility_update_limit = 1000;
+    see.adjustment = survey::Adjustment::none;
+  }
 }
 
 /// The building preset's lengths, which follow from other values, where no key says otherwise.
 ///
 /// At building scale the published psi looks at a small part of the sight line only, and targets
 /// hidden by the building itself are taken for visible; it is therefore the whole line. One view
-/// proposal within a tenth of d keeps the number of proposals below tau.
+/// proposal within a twentieth of d keeps the number of proposals below tau.
 void derive_building_preset(const GivenValues& given, Mission& mission) {
   survey::SeeConfig& see = mission.planner.see;
   const double distance =
@@ -210,7 +213,7 @@ void derive_building_preset(const GivenValues& given, Mission& mission) {
           : geometry::view_distance(geometry::Camera(mission.sensor.camera.camera), see.density);
   const auto is_given = [&](const char* key) { return given.contains(key); };
   if (!is_given("planner.occlusion_search_distance")) see.occlusion_search_distance = distance;
-  if (!is_given("planner.frontier_spacing")) see.frontier_spacing = 0.1 * distance;
+  if (!is_given("planner.frontier_spacing")) see.frontier_spacing = 0.05 * distance;
   if (!is_given("planner.occluder_spacing")) see.occluder_spacing = 2.0 * see.resolution_radius;
 }
 

@@ -90,7 +90,7 @@ TEST(MissionReader, DerivesTheBuildingPresetFromTheSensorAndTheDensity) {
       "planner: {preset: building, density: 213, resolution_radius: 0.15";
   const survey::SeeConfig see = parsed(building + "}").planner.see;
   EXPECT_NEAR(see.occlusion_search_distance, 41.29, 5e-3);  // d, as published
-  EXPECT_NEAR(see.frontier_spacing, 4.129, 5e-4);
+  EXPECT_NEAR(see.frontier_spacing, 2.0645, 5e-4);
   EXPECT_DOUBLE_EQ(see.occluder_spacing, 0.3);
   EXPECT_EQ(see.visibility_update_limit, 1000U);
   EXPECT_TRUE(see.drop_if_still_occluded);
@@ -99,7 +99,7 @@ TEST(MissionReader, DerivesTheBuildingPresetFromTheSensorAndTheDensity) {
       parsed(building + ", occlusion_search_distance: 10, visibility_update_limit: 5}").planner.see;
   EXPECT_EQ(overridden.occlusion_search_distance, 10.0);
   EXPECT_EQ(overridden.visibility_update_limit, 5U);
-  EXPECT_NEAR(overridden.frontier_spacing, 4.129, 5e-4);
+  EXPECT_NEAR(overridden.frontier_spacing, 2.0645, 5e-4);
 }
 
 TEST(MissionReader, MeasuresTheGroundClearanceFromTheScenesBase) {
