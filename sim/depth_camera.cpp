@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstddef>
 #include <cstring>
 #include <memory>
 #include <mutex>
@@ -104,7 +105,8 @@ bool is_too_slanted(const Packet<width>& packet, int lane, float min_cosine) {
 }
 
 template <int width>
-void store_depths(const Packet<width>& packet, const Limits& limits, int stride, float* depths) {
+void store_depths(const Packet<width>& packet, const Limits& limits, std::ptrdiff_t stride,
+                  float* depths) {
   const FourFloats none = FourFloats{} + no_return;
   for (int row = 0; row < width / packet_columns; ++row) {
     const int lane = row * packet_columns;
@@ -133,13 +135,14 @@ void cast_band(const Scene::Embree& embree, const RayTable& table, const Limits&
     packet.rays.ray.org_z[lane] = table.origin.z();
   }
   const int rows = std::min(band_rows, table.height - first_row);
+  const std::ptrdiff_t stride = table.stride;
   for (int tile = 0; tile < table.width; tile += tile_columns) {
     const int tile_end = std::min(tile + tile_columns, table.width);
     for (int row = 0; row < rows; row += width / packet_columns) {
       for (int column = tile; column < tile_end; column += packet_columns) {
         aim(table, column, first_row + row, packet);
         packet.cast(embree, limits.max_depth);
-        store_depths(packet, limits, table.stride, depths + row * table.stride + column);
+        store_depths(packet, limits, stride, depths + row * stride + column);
       }
     }
   }
