@@ -15,7 +15,7 @@ struct SamplingOptions {
   SamplingPlanner planner = SamplingPlanner::bit_star;
   /// Legs and places checked at most: the effort, in place of a time limit, which no result may
   /// depend on.
-  std::size_t max_checks = 20000;
+  std::size_t max_checks = 4000;
   double worthwhile_saving = 0.004;  ///< as in PathOptions
 };
 
