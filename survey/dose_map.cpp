@@ -1,0 +1,161 @@
+#include "survey/dose_map.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+
+#include "geometry/pose.h"
+
+namespace skycap::survey {
+namespace {
+
+using Eigen::Vector3f;
+
+// Lengths in units of the spacing h; areas in units of its square.
+constexpr float least_distance = 0.9F;     // between surfels
+constexpr float packed_area = 1.16F;       // area per surfel when randomly packed at that distance
+constexpr float largest_area = 3.5F;       // what an oblique block may claim at first
+constexpr float neighbour_reach = 2.5F;    // within which a surfel continues another
+constexpr float neighbour_cosine = 0.75F;  // and within 41 degrees of the direction
+constexpr float enlarged_reach = 1.6F;     // newcomers within it take area from enlarged surfels
+constexpr int most_merges = 8;
+constexpr float opposite_sides = -0.3F;    // below this cosine: two sides of something thin
+
+std::array<float, 2> direction_cosine_sine(int k) {
+  const float angle = static_cast<float>(k) * std::numbers::pi_v<float> / 3.0F;
+  return {std::cos(angle), std::sin(angle)};
+}
+
+}  // namespace
+
+float Surfels::covered_share(std::size_t i) const { return 1.0F - std::exp(-hazards[i]); }
+
+float Surfels::deficit(std::size_t i) const { return areas[i] * std::exp(-hazards[i]); }
+
+Vector3f open_direction(const Surfels& surfels, std::size_t i, int k) {
+  const auto [cosine, sine] = direction_cosine_sine(k);
+  const Vector3f& normal = surfels.normals[i];
+  const Vector3f& first = surfels.first_tangents[i];
+  // The normal may have moved since the tangent was chosen.
+  const Vector3f u = (first - normal * normal.dot(first)).normalized();
+  return cosine * u + sine * normal.cross(u);
+}
+
+DoseMap::DoseMap(float spacing) : spacing_(spacing), grid_(spacing) {}
+
+void DoseMap::add(const BlockImage& image, const DoseModel& dose, float jump,
+                  const std::optional<Eigen::AlignedBox3f>& region) {
+  add_looks(image, dose, jump);
+  add_surfels(image, dose, region);
+}
+
+void DoseMap::add_looks(const BlockImage& image, const DoseModel& dose, float jump) {
+  const BlockProjection& projection = image.projection;
+  const float across =
+      std::max(0.6F * spacing_, static_cast<float>(dose.noise().across(1.0)));
+  for (std::size_t i = 0; i < surfels_.size(); ++i) {
+    const auto hit = projection.project(surfels_.positions[i]);
+    if (!hit) continue;
+    const Block& block = image.blocks[hit->block];
+    if (block.returns == 0 || std::abs(hit->depth - block.depth) > jump) continue;
+    const Vector3f offset = block.mean - surfels_.positions[i];
+    const float off_plane = offset.dot(block.normal);
+    if (std::abs(off_plane) > across) continue;
+    const Vector3f towards_sensor =
+        (projection.sensor_position - surfels_.positions[i]).normalized();
+    const float cos_incidence = towards_sensor.dot(surfels_.normals[i]);
+    if (cos_incidence <= 0.0F) continue;
+
+    surfels_.hazards[i] += dose.hazard(
+        image.ray_density(block, surfels_.positions[i], cos_incidence), cos_incidence);
+    if (surfels_.merges[i] >= most_merges) continue;
+    const float share = 1.0F / static_cast<float>(++surfels_.merges[i]);
+    surfels_.positions[i] += share * off_plane * block.normal;
+    if (block.normal.dot(surfels_.normals[i]) > 0.5F) {
+      surfels_.normals[i] =
+          (surfels_.normals[i] * (1.0F - share) + block.normal * share).normalized();
+    }
+  }
+}
+
+void DoseMap::add_surfels(const BlockImage& image, const DoseModel& dose,
+                          const std::optional<Eigen::AlignedBox3f>& region) {
+  std::uint32_t full = 0;
+  for (const Block& block : image.blocks) full = std::max(full, block.returns);
+  for (const Block& block : image.blocks) {
+    if (block.returns == 0 || 6 * block.returns < full) continue;
+    if (region && !region->contains(block.mean)) continue;
+    bool is_taken = false;
+    grid_.for_each_near(block.mean, least_distance * spacing_, [&](std::uint32_t i) {
+      is_taken = is_taken || ((surfels_.positions[i] - block.mean).norm() < least_distance * spacing_ &&
+                              surfels_.normals[i].dot(block.normal) > opposite_sides);
+    });
+    if (is_taken) continue;
+
+    const Vector3f towards_sensor = (image.projection.sensor_position - block.mean).normalized();
+    const float cos_incidence = std::max(0.05F, towards_sensor.dot(block.normal));
+    const float density = image.ray_density(block, block.mean, cos_incidence);
+    const float square = spacing_ * spacing_;
+    const float footprint = static_cast<float>(block.returns) / density;
+    surfels_.positions.push_back(block.mean);
+    surfels_.normals.push_back(block.normal);
+    surfels_.areas.push_back(
+        std::clamp(footprint, packed_area * square, largest_area * square));
+    surfels_.hazards.push_back(dose.hazard(density, cos_incidence));
+    surfels_.trusts.push_back(1.0F);
+    surfels_.merges.push_back(1);
+    surfels_.open_directions.push_back(0b111111);
+    surfels_.first_tangents.push_back(
+        geometry::any_orthogonal(block.normal.cast<double>()).cast<float>());
+    close_directions(surfels_.size() - 1);
+    grid_.insert(block.mean);
+  }
+}
+
+void DoseMap::close_directions(std::size_t added) {
+  const Vector3f position = surfels_.positions[added];
+  const auto close = [&](std::size_t i, const Vector3f& towards) {
+    for (int k = 0; k < 6; ++k) {
+      if (open_direction(surfels_, i, k).dot(towards) > neighbour_cosine) {
+        surfels_.open_directions[i] &= static_cast<std::uint8_t>(~(1U << k));
+      }
+    }
+  };
+  const float reach = neighbour_reach * spacing_;
+  const float packed = packed_area * spacing_ * spacing_;
+  grid_.for_each_near(position, reach, [&](std::uint32_t i) {
+    const Vector3f offset = surfels_.positions[i] - position;
+    const float distance = offset.norm();
+    if (distance >= reach || distance <= 0.0F) return;
+    if (surfels_.open_directions[i] != 0) close(i, -offset / distance);
+    if (surfels_.open_directions[added] != 0) close(added, offset / distance);
+    if (distance < enlarged_reach * spacing_) {
+      surfels_.areas[i] = std::max(packed, 0.75F * surfels_.areas[i]);
+    }
+  });
+}
+
+bool DoseMap::has_surfel_near(const Vector3f& point, float radius, std::size_t first) const {
+  bool found = false;
+  grid_.for_each_near(point, radius, [&](std::uint32_t i) {
+    found = found || (i >= first && (surfels_.positions[i] - point).norm() < radius);
+  });
+  return found;
+}
+
+double DoseMap::area() const {
+  double sum = 0.0;
+  for (const float area : surfels_.areas) sum += area;
+  return sum;
+}
+
+double DoseMap::covered_area() const {
+  double sum = 0.0;
+  for (std::size_t i = 0; i < surfels_.size(); ++i) {
+    sum += surfels_.areas[i] * surfels_.covered_share(i);
+  }
+  return sum;
+}
+
+}  // namespace skycap::survey
