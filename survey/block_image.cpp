@@ -223,8 +223,8 @@ std::vector<BlockImage> make_cube_images(const geometry::Scan& scan, int face_bl
                         .rows = face_blocks,
                         .sensor_from_world = face_from_sensor * sensor_from_world,
                         .sensor_position = sensor_position,
-                        .focal_length = Eigen::Vector2f::Constant(0.5F * face_blocks),
-                        .principal_point = Eigen::Vector2f::Constant(0.5F * face_blocks)};
+                        .focal_length = Eigen::Vector2f::Constant(0.5F * static_cast<float>(face_blocks)),
+                        .principal_point = Eigen::Vector2f::Constant(0.5F * static_cast<float>(face_blocks))};
     std::vector<Return> returns;
     for (const Vector3f& point : scan.points) {
       if (const auto hit = image.projection.project(point)) {

@@ -42,7 +42,7 @@ Vector3f open_direction(const Surfels& surfels, std::size_t i, int k) {
   return cosine * u + sine * normal.cross(u);
 }
 
-DoseMap::DoseMap(float spacing) : spacing_(spacing), grid_(spacing) {}
+DoseMap::DoseMap(float spacing) : spacing_(spacing), grid_(neighbour_reach * spacing) {}
 
 void DoseMap::add(const BlockImage& image, const DoseModel& dose, float jump,
                   const std::optional<Eigen::AlignedBox3f>& region) {
@@ -86,12 +86,7 @@ void DoseMap::add_surfels(const BlockImage& image, const DoseModel& dose,
   for (const Block& block : image.blocks) {
     if (block.returns == 0 || 6 * block.returns < full) continue;
     if (region && !region->contains(block.mean)) continue;
-    bool is_taken = false;
-    grid_.for_each_near(block.mean, least_distance * spacing_, [&](std::uint32_t i) {
-      is_taken = is_taken || ((surfels_.positions[i] - block.mean).norm() < least_distance * spacing_ &&
-                              surfels_.normals[i].dot(block.normal) > opposite_sides);
-    });
-    if (is_taken) continue;
+    if (is_taken(block)) continue;
 
     const Vector3f towards_sensor = (image.projection.sensor_position - block.mean).normalized();
     const float cos_incidence = std::max(0.05F, towards_sensor.dot(block.normal));
@@ -113,6 +108,14 @@ void DoseMap::add_surfels(const BlockImage& image, const DoseModel& dose,
   }
 }
 
+bool DoseMap::is_taken(const Block& block) {
+  found_.clear();
+  grid_.find_within(block.mean, least_distance * spacing_, found_);
+  return std::any_of(found_.begin(), found_.end(), [&](const geometry::Neighbour& neighbour) {
+    return surfels_.normals[neighbour.index].dot(block.normal) > opposite_sides;
+  });
+}
+
 void DoseMap::close_directions(std::size_t added) {
   const Vector3f position = surfels_.positions[added];
   const auto close = [&](std::size_t i, const Vector3f& towards) {
@@ -124,24 +127,27 @@ void DoseMap::close_directions(std::size_t added) {
   };
   const float reach = neighbour_reach * spacing_;
   const float packed = packed_area * spacing_ * spacing_;
-  grid_.for_each_near(position, reach, [&](std::uint32_t i) {
+  found_.clear();
+  grid_.find_within(position, reach, found_);
+  for (const geometry::Neighbour& neighbour : found_) {
+    const std::uint32_t i = neighbour.index;
     const Vector3f offset = surfels_.positions[i] - position;
     const float distance = offset.norm();
-    if (distance >= reach || distance <= 0.0F) return;
+    if (distance <= 0.0F) continue;
     if (surfels_.open_directions[i] != 0) close(i, -offset / distance);
     if (surfels_.open_directions[added] != 0) close(added, offset / distance);
     if (distance < enlarged_reach * spacing_) {
       surfels_.areas[i] = std::max(packed, 0.75F * surfels_.areas[i]);
     }
-  });
+  }
 }
 
 bool DoseMap::has_surfel_near(const Vector3f& point, float radius, std::size_t first) const {
-  bool found = false;
-  grid_.for_each_near(point, radius, [&](std::uint32_t i) {
-    found = found || (i >= first && (surfels_.positions[i] - point).norm() < radius);
+  std::vector<geometry::Neighbour> found;
+  grid_.find_within(point, radius, found);
+  return std::any_of(found.begin(), found.end(), [&](const geometry::Neighbour& neighbour) {
+    return neighbour.index >= first;
   });
-  return found;
 }
 
 double DoseMap::area() const {

@@ -12,8 +12,8 @@
 #include <Eigen/Core>
 #include <Eigen/Geometry>
 
+#include "geometry/point_grid.h"
 #include "survey/block_image.h"
-#include "survey/cell_grid.h"
 #include "survey/dose_model.h"
 
 namespace skycap::survey {
@@ -45,8 +45,9 @@ class DoseMap {
   /// Surfels lie about `spacing` (h) apart.
   explicit DoseMap(float spacing);
 
-  /// Adds what the scan's blocks saw. Blocks outside `region`, if given, make no surfels. Neither
-  /// the number of threads nor the order of equal inputs matters.
+  /// Adds what the scan's blocks saw: looks at the surfels that are there, then surfels where there
+  /// are none yet. `jump` is the J of BlockSettings. Blocks outside `region`, if given, make no
+  /// surfels.
   void add(const BlockImage& image, const DoseModel& dose, float jump,
            const std::optional<Eigen::AlignedBox3f>& region);
 
@@ -67,10 +68,12 @@ class DoseMap {
   void add_surfels(const BlockImage& image, const DoseModel& dose,
                    const std::optional<Eigen::AlignedBox3f>& region);
   void close_directions(std::size_t added);
+  bool is_taken(const Block& block);
 
   float spacing_;
-  CellGrid grid_;
+  geometry::PointGrid grid_;  ///< of the surfels where they were made
   Surfels surfels_;
+  std::vector<geometry::Neighbour> found_;  // kept for its memory
 };
 
 }  // namespace skycap::survey

@@ -134,7 +134,7 @@ DoseModel::DoseModel(double coverage_radius, const Noise& noise)
     const double cosine = std::max(0.05, static_cast<double>(c) / (incidences_ - 1));
     for (int d = 0; d < densities_; ++d) {
       // Two nodes an octave, at 1 and 1.5 times its start: hazard() then interpolates in the density.
-      const double rays = std::exp2(first_octave_ + d / 2) * (d % 2 == 0 ? 1.0 : 1.5);
+      const double rays = std::exp2(static_cast<double>(first_octave_) + d / 2) * (d % 2 == 0 ? 1.0 : 1.5);
       const double spacing = coverage_radius * std::sqrt(cosine / rays);
       const bool even = noise.isotropic > 0.6 * spacing / cosine;
       const double uncovered = uncovered_share(ray, spacing, cosine, even);

@@ -26,10 +26,15 @@ std::uint64_t place_of(const Vector3f& position, const Vector3f& normal, float e
   Eigen::Index axis = 0;
   normal.cwiseAbs().maxCoeff(&axis);
   const std::uint64_t facing = static_cast<std::uint64_t>(2 * axis + (normal[axis] < 0.0F ? 1 : 0));
-  // cell_key() leaves the top bit free and its 21 bits a coordinate are never all used: mixing in
-  // facing and step by multiplication keeps distinct places distinct but for accidents.
-  return cell_key(cell_of(position, edge)) * 0x9E3779B97F4A7C15ULL + facing * 8U +
-         static_cast<std::uint64_t>(step) + 1U;
+  // 19 bits a coordinate, 3 for the facing, 3 for the step: distinct within 262,000 cells of the
+  // origin; beyond, far apart places share a name, which does little harm.
+  constexpr std::uint64_t mask = (1U << 19) - 1U;
+  const Eigen::Vector3i cell = (position / edge).array().floor().cast<int>();
+  std::uint64_t place = facing * 8U + static_cast<std::uint64_t>(step);
+  for (const int coordinate : {cell.x(), cell.y(), cell.z()}) {
+    place = place << 19 | (static_cast<std::uint64_t>(coordinate) & mask);
+  }
+  return place;
 }
 
 }  // namespace

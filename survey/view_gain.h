@@ -60,7 +60,7 @@ class GainField {
   template <typename Visit>
   void for_each_sight(const geometry::View& view, Visit visit) const;
 
-  const DoseModel& dose_;
+  DoseModel dose_;
   float spacing_;
   float least_cosine_;
   Eigen::Vector2f focal_length_px_;   ///< of the sensor
