@@ -104,7 +104,8 @@ class Reducer {
   void fit_row(std::size_t row) {
     const int columns = image_.projection.columns;
     for (int column = 0; column < columns; ++column) {
-      const std::size_t i = row * static_cast<std::size_t>(columns) + static_cast<std::size_t>(column);
+      const std::size_t i =
+          row * static_cast<std::size_t>(columns) + static_cast<std::size_t>(column);
       if (image_.blocks[i].returns > 0) fit_normal(static_cast<int>(row), column, i);
     }
   }
@@ -119,8 +120,8 @@ class Reducer {
     Moments pooled;
     int pooled_blocks = 0;
     for (int r = std::max(0, row - reach); r <= std::min(projection.rows - 1, row + reach); ++r) {
-      for (int c = std::max(0, column - reach); c <= std::min(projection.columns - 1, column + reach);
-           ++c) {
+      for (int c = std::max(0, column - reach);
+           c <= std::min(projection.columns - 1, column + reach); ++c) {
         const std::size_t j =
             static_cast<std::size_t>(r) * static_cast<std::size_t>(projection.columns) +
             static_cast<std::size_t>(c);
@@ -139,6 +140,8 @@ class Reducer {
     const Vector3f axis = projection.sensor_from_world.transpose() *
                           solver.eigenvectors().col(0).cast<float>().normalized();
     block.normal = axis.dot(towards_sensor) < 0.0F ? Vector3f(-axis) : axis;
+    block.quality = block.normal.dot(towards_sensor) * static_cast<float>(pooled_blocks) /
+                    static_cast<float>(window) * (block.is_edge ? 0.3F : 1.0F);
     if (pooled_blocks == window && !block.is_edge) {
       block.residual = static_cast<float>(std::sqrt(std::max(0.0, solver.eigenvalues()[0])));
     }
@@ -193,9 +196,9 @@ BlockImage make_block_image(const geometry::Scan& scan, const geometry::Camera& 
   geometry::parallel_for(starts.size() - 1, settings.threads, [&](std::size_t row) {
     for (std::size_t i = starts[row]; i < starts[row + 1]; ++i) {
       const std::uint32_t column = (scan.pixels[i] % width) / b;
-      returns[i] = {static_cast<std::uint32_t>(row) * static_cast<std::uint32_t>(projection.columns) +
-                        column,
-                    projection.sensor_from_world * (scan.points[i] - projection.sensor_position)};
+      returns[i] = {
+          static_cast<std::uint32_t>(row) * static_cast<std::uint32_t>(projection.columns) + column,
+          projection.sensor_from_world * (scan.points[i] - projection.sensor_position)};
     }
   });
   Reducer(image, settings).reduce(returns, starts);
@@ -219,17 +222,18 @@ std::vector<BlockImage> make_cube_images(const geometry::Scan& scan, int face_bl
 
     BlockImage image;
     image.lists_misses = false;
-    image.projection = {.columns = face_blocks,
-                        .rows = face_blocks,
-                        .sensor_from_world = face_from_sensor * sensor_from_world,
-                        .sensor_position = sensor_position,
-                        .focal_length = Eigen::Vector2f::Constant(0.5F * static_cast<float>(face_blocks)),
-                        .principal_point = Eigen::Vector2f::Constant(0.5F * static_cast<float>(face_blocks))};
+    image.projection = {
+        .columns = face_blocks,
+        .rows = face_blocks,
+        .sensor_from_world = face_from_sensor * sensor_from_world,
+        .sensor_position = sensor_position,
+        .focal_length = Eigen::Vector2f::Constant(0.5F * static_cast<float>(face_blocks)),
+        .principal_point = Eigen::Vector2f::Constant(0.5F * static_cast<float>(face_blocks))};
     std::vector<Return> returns;
     for (const Vector3f& point : scan.points) {
       if (const auto hit = image.projection.project(point)) {
-        returns.push_back({hit->block,
-                           image.projection.sensor_from_world * (point - sensor_position)});
+        returns.push_back(
+            {hit->block, image.projection.sensor_from_world * (point - sensor_position)});
       }
     }
     if (returns.empty()) continue;

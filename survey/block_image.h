@@ -56,12 +56,14 @@ struct BlockProjection {
 struct Block {
   std::uint32_t returns = 0;  ///< of the nearer group if the block straddles a jump in depth
   bool is_edge = false;       ///< straddles a jump: what lies behind is left out
-  Eigen::Vector3f mean = Eigen::Vector3f::Zero();     ///< world frame
-  Eigen::Vector3f normal = Eigen::Vector3f::Zero();   ///< unit, towards the sensor
-  float depth = 0.0F;                                 ///< mean
+  Eigen::Vector3f mean = Eigen::Vector3f::Zero();    ///< world frame
+  Eigen::Vector3f normal = Eigen::Vector3f::Zero();  ///< unit, towards the sensor
+  float depth = 0.0F;                                ///< mean
   float least_depth = std::numeric_limits<float>::infinity();
-  float depth_deviation = 0.0F;                       ///< standard deviation of the depths
-  float residual = 0.0F;      ///< standard deviation across the surface; 0 if not known
+  float depth_deviation = 0.0F;  ///< standard deviation of the depths
+  /// How far the normal can be relied on, 0 to 1: head-on, in the middle of a surface, no edge.
+  float quality = 0.0F;
+  float residual = 0.0F;  ///< standard deviation across the surface; 0 if not known
 };
 
 struct BlockImage {
@@ -75,9 +77,9 @@ struct BlockImage {
 };
 
 struct BlockSettings {
-  int block_px = 4;          ///< B [px]
-  float jump = 0.05F;        ///< J: a larger spread of depths in a block is an edge
-  unsigned threads = 1;      ///< zero: all processors
+  int block_px = 4;      ///< B [px]
+  float jump = 0.05F;    ///< J: a larger spread of depths in a block is an edge
+  unsigned threads = 1;  ///< zero: all processors
 };
 
 /// The block image of an organised scan.

@@ -23,11 +23,16 @@ const double golden_angle = std::numbers::pi * (3.0 - std::sqrt(5.0));
 constexpr std::array<double, 5> tilts = {0.0, 0.54, 0.54, 0.94, 0.94};
 /// How far refinement turns a view about its target, round by round [rad].
 constexpr std::array<double, 4> turns = {0.35, 0.2, 0.1, 0.05};
-constexpr int refined = 3;           // candidates that a round starts from
+constexpr int refined = 3;  // candidates that a round starts from
 constexpr int turned_directions = 6;
-constexpr int pool_size = 40;        // candidates that a batch is picked from
+constexpr int pool_size = 40;               // candidates that a batch is picked from
 constexpr double least_batch_share = 0.25;  // of the best gain, for a view to join the batch
-constexpr double impatience = 0.15;  // weight of early gain against the length of a tour
+constexpr double impatience = 0.15;         // weight of early gain against the length of a tour
+
+struct Candidate {
+  View view;
+  Gain gain;
+};
 
 struct Cluster {
   double weight = 0.0;
@@ -48,8 +53,7 @@ std::vector<Cluster> heaviest_clusters(const GainField& field, std::size_t count
   // Ordered, so that equal weights keep their order on every platform.
   std::map<std::array<int, 4>, Cluster> clusters;
   for (const auto& target : field.targets()) {
-    const Eigen::Vector3i at =
-        ((target.position - box.min()) / cell).array().floor().cast<int>();
+    const Eigen::Vector3i at = ((target.position - box.min()) / cell).array().floor().cast<int>();
     Eigen::Index axis = 0;
     target.normal.cwiseAbs().maxCoeff(&axis);
     const int facing = 2 * static_cast<int>(axis) + (target.normal[axis] < 0.0F ? 1 : 0);
@@ -90,9 +94,19 @@ class Chooser {
 
     double best_gain = 0.0;
     for (const Candidate& c : candidates_) best_gain = std::max(best_gain, c.gain.area);
-    const std::vector<Stop> batch = pick_batch(diverse_pool());
+    const std::vector<std::size_t> pool = diverse_pool();
+    std::vector<std::vector<Sight>> sights(pool.size());
+    geometry::parallel_for(pool.size(), settings_.threads, [&](std::size_t i) {
+      sights[i] = field_.sights(candidates_[pool[i]].view);
+    });
+    const std::vector<Stop> batch = pick_batch(pool, sights);
     const Candidate& first = candidates_[batch[first_stop(batch)].candidate];
-    return Choice{first.view, first.gain.area, best_gain};
+    Choice choice{first.view, first.gain.area, best_gain,
+                  std::vector<bool>(field_.targets().size(), false)};
+    for (const std::vector<Sight>& view : sights) {
+      for (const Sight& sight : view) choice.in_sight[sight.target] = true;
+    }
+    return choice;
   }
 
  private:
@@ -130,8 +144,7 @@ class Chooser {
       const double z = 1.0 - 2.0 * (i + 0.5) / settings_.global_directions;
       const double level = std::sqrt(1.0 - z * z);
       const double azimuth = golden_angle * i;
-      add_candidate(centroid / weight,
-                    {level * std::cos(azimuth), level * std::sin(azimuth), z});
+      add_candidate(centroid / weight, {level * std::cos(azimuth), level * std::sin(azimuth), z});
     }
   }
 
@@ -160,7 +173,8 @@ class Chooser {
   void refine(int round) {
     const std::size_t first = candidates_.size();
     const std::vector<std::size_t> order = ranking();
-    const double turn = turns[std::min<std::size_t>(static_cast<std::size_t>(round), turns.size() - 1)];
+    const double turn =
+        turns[std::min<std::size_t>(static_cast<std::size_t>(round), turns.size() - 1)];
     for (std::size_t k = 0; k < std::min<std::size_t>(refined, order.size()); ++k) {
       const Candidate best = candidates_[order[k]];
       const Vector3d gained = best.gain.centroid.cast<double>();
@@ -197,12 +211,8 @@ class Chooser {
 
   /// Greedy cover: each pick is the view that adds most, per metre of its price and of the way from
   /// the nearest place already on the list, to what the picks before it leave uncovered.
-  std::vector<Stop> pick_batch(const std::vector<std::size_t>& pool) const {
-    if (settings_.batch <= 1) return {{pool.front(), candidates_[pool.front()].gain.area}};
-    std::vector<std::vector<Sight>> sights(pool.size());
-    geometry::parallel_for(pool.size(), settings_.threads, [&](std::size_t i) {
-      sights[i] = field_.sights(candidates_[pool[i]].view);
-    });
+  std::vector<Stop> pick_batch(const std::vector<std::size_t>& pool,
+                               const std::vector<std::vector<Sight>>& sights) const {
     std::vector<float> weights;
     for (const auto& target : field_.targets()) weights.push_back(target.weight);
     std::vector<double> way(pool.size());
@@ -224,7 +234,7 @@ class Chooser {
           best_gain = gain;
         }
       }
-      if (best_score <= 0.0) break;
+      if (!(best_score > 0.0)) break;
       if (!batch.empty() && best_gain < least_batch_share * batch.front().gain) break;
       batch.push_back({pool[best], best_gain});
       for (const Sight& s : sights[best]) weights[s.target] *= 1.0F - s.covered_share;

@@ -24,15 +24,13 @@ struct ChooserSettings {
   unsigned threads = 1;        ///< zero: all processors
 };
 
-struct Candidate {
-  geometry::View view;
-  Gain gain;
-};
-
 struct Choice {
   geometry::View view;
   double gain;       ///< expected newly covered area of this view [m^2]
   double best_gain;  ///< that of the most rewarding view anywhere in reach
+  /// For each target of the field, whether one of the best views of different places sees it. What
+  /// none of them sees is hidden, or not there.
+  std::vector<bool> in_sight;
 };
 
 /// Whether the sensor can be there; must be safe to call from several threads.

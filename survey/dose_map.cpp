@@ -18,9 +18,11 @@ constexpr float packed_area = 1.16F;       // area per surfel when randomly pack
 constexpr float largest_area = 3.5F;       // what an oblique block may claim at first
 constexpr float neighbour_reach = 2.5F;    // within which a surfel continues another
 constexpr float neighbour_cosine = 0.75F;  // and within 41 degrees of the direction
-constexpr float enlarged_reach = 1.6F;     // newcomers within it take area from enlarged surfels
+constexpr float off_plane_tolerance = 0.6F;
+constexpr float sharing_reach = 1.6F;   // within which noise carries measurements over
+constexpr float enlarged_reach = 1.6F;  // newcomers within it take area from enlarged surfels
 constexpr int most_merges = 8;
-constexpr float opposite_sides = -0.3F;    // below this cosine: two sides of something thin
+constexpr float opposite_sides = -0.3F;  // below this cosine: two sides of something thin
 
 std::array<float, 2> direction_cosine_sine(int k) {
   const float angle = static_cast<float>(k) * std::numbers::pi_v<float> / 3.0F;
@@ -29,9 +31,9 @@ std::array<float, 2> direction_cosine_sine(int k) {
 
 }  // namespace
 
-float Surfels::covered_share(std::size_t i) const { return 1.0F - std::exp(-hazards[i]); }
+float Surfels::covered_share(std::size_t i) const { return 1.0F - std::exp(-blurred_hazards[i]); }
 
-float Surfels::deficit(std::size_t i) const { return areas[i] * std::exp(-hazards[i]); }
+float Surfels::deficit(std::size_t i) const { return areas[i] * std::exp(-blurred_hazards[i]); }
 
 Vector3f open_direction(const Surfels& surfels, std::size_t i, int k) {
   const auto [cosine, sine] = direction_cosine_sine(k);
@@ -48,12 +50,28 @@ void DoseMap::add(const BlockImage& image, const DoseModel& dose, float jump,
                   const std::optional<Eigen::AlignedBox3f>& region) {
   add_looks(image, dose, jump);
   add_surfels(image, dose, region);
+  blur_hazards(dose.noise().isotropic);
+}
+
+void DoseMap::blur_hazards(double sigma) {
+  surfels_.blurred_hazards = surfels_.hazards;
+  if (!(sigma > 0.0)) return;
+  const float scale = static_cast<float>(-0.5 / (sigma * sigma));
+  std::vector<float> weights(surfels_.size(), 1.0F);
+  for (const Pair& pair : pairs_) {
+    const float weight = std::exp(scale * pair.squared_distance);
+    surfels_.blurred_hazards[pair.first] += weight * surfels_.hazards[pair.second];
+    surfels_.blurred_hazards[pair.second] += weight * surfels_.hazards[pair.first];
+    weights[pair.first] += weight;
+    weights[pair.second] += weight;
+  }
+  for (std::size_t i = 0; i < surfels_.size(); ++i) surfels_.blurred_hazards[i] /= weights[i];
 }
 
 void DoseMap::add_looks(const BlockImage& image, const DoseModel& dose, float jump) {
   const BlockProjection& projection = image.projection;
   const float across =
-      std::max(0.6F * spacing_, static_cast<float>(dose.noise().across(1.0)));
+      std::max(off_plane_tolerance * spacing_, 2.0F * static_cast<float>(dose.noise().across(1.0)));
   for (std::size_t i = 0; i < surfels_.size(); ++i) {
     const auto hit = projection.project(surfels_.positions[i]);
     if (!hit) continue;
@@ -62,20 +80,28 @@ void DoseMap::add_looks(const BlockImage& image, const DoseModel& dose, float ju
     const Vector3f offset = block.mean - surfels_.positions[i];
     const float off_plane = offset.dot(block.normal);
     if (std::abs(off_plane) > across) continue;
+    const float agreement = block.normal.dot(surfels_.normals[i]);
+    const bool is_better = block.quality > 2.0F * surfels_.qualities[i];
+    // The other side of something thin.
+    if (agreement < opposite_sides && !is_better) continue;
     const Vector3f towards_sensor =
         (projection.sensor_position - surfels_.positions[i]).normalized();
-    const float cos_incidence = towards_sensor.dot(surfels_.normals[i]);
-    if (cos_incidence <= 0.0F) continue;
-
-    surfels_.hazards[i] += dose.hazard(
-        image.ray_density(block, surfels_.positions[i], cos_incidence), cos_incidence);
-    if (surfels_.merges[i] >= most_merges) continue;
-    const float share = 1.0F / static_cast<float>(++surfels_.merges[i]);
-    surfels_.positions[i] += share * off_plane * block.normal;
-    if (block.normal.dot(surfels_.normals[i]) > 0.5F) {
-      surfels_.normals[i] =
-          (surfels_.normals[i] * (1.0F - share) + block.normal * share).normalized();
+    const float cos_incidence = std::max(0.05F, towards_sensor.dot(block.normal));
+    surfels_.hazards[i] +=
+        dose.hazard(image.ray_density(block, surfels_.positions[i], cos_incidence), cos_incidence);
+    if (is_better) {
+      surfels_.positions[i] += off_plane * block.normal;
+      surfels_.normals[i] = block.normal;
+      surfels_.merges[i] = 1;
+    } else if (surfels_.merges[i] < most_merges) {
+      const float share = 1.0F / static_cast<float>(++surfels_.merges[i]);
+      surfels_.positions[i] += share * off_plane * block.normal;
+      if (agreement > 0.5F) {
+        surfels_.normals[i] =
+            (surfels_.normals[i] * (1.0F - share) + block.normal * share).normalized();
+      }
     }
+    surfels_.qualities[i] = std::max(surfels_.qualities[i], block.quality);
   }
 }
 
@@ -95,10 +121,10 @@ void DoseMap::add_surfels(const BlockImage& image, const DoseModel& dose,
     const float footprint = static_cast<float>(block.returns) / density;
     surfels_.positions.push_back(block.mean);
     surfels_.normals.push_back(block.normal);
-    surfels_.areas.push_back(
-        std::clamp(footprint, packed_area * square, largest_area * square));
+    surfels_.areas.push_back(std::clamp(footprint, packed_area * square, largest_area * square));
     surfels_.hazards.push_back(dose.hazard(density, cos_incidence));
     surfels_.trusts.push_back(1.0F);
+    surfels_.qualities.push_back(block.quality);
     surfels_.merges.push_back(1);
     surfels_.open_directions.push_back(0b111111);
     surfels_.first_tangents.push_back(
@@ -136,6 +162,9 @@ void DoseMap::close_directions(std::size_t added) {
     if (distance <= 0.0F) continue;
     if (surfels_.open_directions[i] != 0) close(i, -offset / distance);
     if (surfels_.open_directions[added] != 0) close(added, offset / distance);
+    if (distance < sharing_reach * spacing_) {
+      pairs_.push_back({i, static_cast<std::uint32_t>(added), distance * distance});
+    }
     if (distance < enlarged_reach * spacing_) {
       surfels_.areas[i] = std::max(packed, 0.75F * surfels_.areas[i]);
     }

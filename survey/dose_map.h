@@ -21,11 +21,13 @@ namespace skycap::survey {
 /// Structure of arrays; a surfel's index never changes.
 struct Surfels {
   std::vector<Eigen::Vector3f> positions;
-  std::vector<Eigen::Vector3f> normals;   ///< unit, towards the free side
+  std::vector<Eigen::Vector3f> normals;  ///< unit, towards the free side
   std::vector<float> areas;
-  std::vector<float> hazards;             ///< sum of the hazards of all looks
-  std::vector<float> trusts;              ///< in (0, 1]: falls when a look gives far less than hoped
-  std::vector<std::uint8_t> merges;       ///< looks averaged into position and normal, at most 8
+  std::vector<float> hazards;          ///< sum of the hazards of all looks
+  std::vector<float> blurred_hazards;  ///< the same, averaged as noise scatters the measurements
+  std::vector<float> trusts;           ///< in (0, 1]: falls when a look gives far less than hoped
+  std::vector<float> qualities;        ///< best Block::quality of a look
+  std::vector<std::uint8_t> merges;    ///< looks averaged into position and normal, at most 8
   /// Of the six directions in the surface plane, 60 degrees apart from tangent() on, those in which
   /// no other surfel follows: bit i set. The surface may go on there, unseen.
   std::vector<std::uint8_t> open_directions;
@@ -68,11 +70,18 @@ class DoseMap {
   void add_surfels(const BlockImage& image, const DoseModel& dose,
                    const std::optional<Eigen::AlignedBox3f>& region);
   void close_directions(std::size_t added);
+  void blur_hazards(double sigma);
   bool is_taken(const Block& block);
 
   float spacing_;
   geometry::PointGrid grid_;  ///< of the surfels where they were made
   Surfels surfels_;
+  /// Two surfels near enough to share measurements.
+  struct Pair {
+    std::uint32_t first, second;
+    float squared_distance;
+  };
+  std::vector<Pair> pairs_;
   std::vector<geometry::Neighbour> found_;  // kept for its memory
 };
 

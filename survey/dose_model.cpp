@@ -9,7 +9,8 @@ namespace skycap::survey {
 namespace {
 
 /// Probability that a point displaced by isotropic noise from a place at distance `offset` from
-/// the centre of a ball ends up in the ball: the non-central chi distribution, 3 degrees of freedom.
+/// the centre of a ball ends up in the ball: the non-central chi distribution, 3 degrees of
+/// freedom.
 double probability_in_ball(double offset, double radius, double sigma) {
   using std::numbers::pi;
   using std::numbers::sqrt2;
@@ -18,10 +19,11 @@ double probability_in_ball(double offset, double radius, double sigma) {
     const double ratio = radius / sigma;
     return std::erf(ratio / sqrt2) - std::sqrt(2.0 / pi) * ratio * std::exp(-0.5 * ratio * ratio);
   }
-  const double near = (offset - radius) / (sqrt2 * sigma), far = (offset + radius) / (sqrt2 * sigma);
-  const double probability = 0.5 * (std::erf(far) - std::erf(near)) -
-                             sigma / (offset * std::sqrt(2.0 * pi)) *
-                                 (std::exp(-near * near) - std::exp(-far * far));
+  const double near = (offset - radius) / (sqrt2 * sigma),
+               far = (offset + radius) / (sqrt2 * sigma);
+  const double probability =
+      0.5 * (std::erf(far) - std::erf(near)) -
+      sigma / (offset * std::sqrt(2.0 * pi)) * (std::exp(-near * near) - std::exp(-far * far));
   return std::clamp(probability, 0.0, 1.0);
 }
 
@@ -37,7 +39,8 @@ class BallTable {
     const double step = offset / reach_ * steps_;
     if (step >= steps_) return 0.0;
     const auto below = static_cast<std::size_t>(step);
-    return table_[below] + (step - static_cast<double>(below)) * (table_[below + 1] - table_[below]);
+    return table_[below] +
+           (step - static_cast<double>(below)) * (table_[below + 1] - table_[below]);
   }
   double reach() const { return reach_; }
 
@@ -105,12 +108,13 @@ double uncovered_share(const RayTable& ray, double spacing, double cosine, bool 
   double share = 0.0;
   for (int a = 0; a < offsets; ++a) {
     for (int b = 0; b < offsets; ++b) {
-      const double offset_across = 0.5 * (a + 0.5) / offsets, offset_along = 0.5 * (b + 0.5) / offsets;
+      const double offset_across = 0.5 * (a + 0.5) / offsets,
+                   offset_along = 0.5 * (b + 0.5) / offsets;
       double missed = 1.0;
       for (int i = -reach_across; i <= reach_across; ++i) {
         for (int j = -reach_along; j <= reach_along; ++j) {
-          missed *= 1.0 - ray((i + offset_across) * spacing, (j + offset_along) * step_along, cosine,
-                              sine);
+          missed *= 1.0 - ray((i + offset_across) * spacing, (j + offset_along) * step_along,
+                              cosine, sine);
         }
         if (missed <= 0.0) break;
       }
@@ -133,8 +137,10 @@ DoseModel::DoseModel(double coverage_radius, const Noise& noise)
     // At grazing incidence the grid degenerates; nothing useful is measured there.
     const double cosine = std::max(0.05, static_cast<double>(c) / (incidences_ - 1));
     for (int d = 0; d < densities_; ++d) {
-      // Two nodes an octave, at 1 and 1.5 times its start: hazard() then interpolates in the density.
-      const double rays = std::exp2(static_cast<double>(first_octave_) + d / 2) * (d % 2 == 0 ? 1.0 : 1.5);
+      // Two nodes an octave, at 1 and 1.5 times its start: hazard() then interpolates in the
+      // density.
+      const double rays =
+          std::exp2(static_cast<double>(first_octave_) + d / 2) * (d % 2 == 0 ? 1.0 : 1.5);
       const double spacing = coverage_radius * std::sqrt(cosine / rays);
       const bool even = noise.isotropic > 0.6 * spacing / cosine;
       const double uncovered = uncovered_share(ray, spacing, cosine, even);
@@ -146,8 +152,7 @@ DoseModel::DoseModel(double coverage_radius, const Noise& noise)
 }
 
 float DoseModel::hazard(float ray_density, float cos_incidence) const {
-  const float rays =
-      ray_density * static_cast<float>(coverage_radius_ * coverage_radius_);
+  const float rays = ray_density * static_cast<float>(coverage_radius_ * coverage_radius_);
   if (!(rays > 0.0F)) return 0.0F;
   int exponent = 0;
   const float mantissa = std::frexp(rays, &exponent);  // rays = mantissa * 2^exponent, in [0.5, 1)

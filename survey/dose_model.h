@@ -41,8 +41,8 @@ class DoseModel {
   static constexpr float most_hazard = 7.0F;
 
  private:
-  static constexpr int densities_ = 15;    // rays per r_d^2, from 2^-3 to 2^4, two an octave
-  static constexpr int incidences_ = 11;   // cosines from 0 to 1
+  static constexpr int densities_ = 15;   // rays per r_d^2, from 2^-3 to 2^4, two an octave
+  static constexpr int incidences_ = 11;  // cosines from 0 to 1
   static constexpr float first_octave_ = -3.0F;
 
   double coverage_radius_;

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <numbers>
+#include <numeric>
 #include <sstream>
 
 #include "geometry/error.h"
@@ -99,7 +99,7 @@ struct SkycapPlanner::Impl {
     distance = given.view_distance.value_or(0.5 * given.coverage_radius / ray_spacing(camera));
     gain.view_distance = distance;
     chooser.view_distance = distance;
-    chooser.view_price = given.view_price.value_or(2.0 * distance);
+    chooser.view_price = given.view_price.value_or(3.0 * distance);
     chooser.threads = given.threads;
     if (!given.ideas.targeted_views) chooser.clusters = 0;
     if (!given.ideas.refinement) chooser.refinements = 0;
@@ -109,8 +109,31 @@ struct SkycapPlanner::Impl {
 
   // --- taking in a scan ---
 
+  /// The returns tile by tile, so that consecutive ones are neighbours in space and their search
+  /// meets memory that is at hand.
+  std::vector<std::uint32_t> tile_order(const Scan& scan) const {
+    constexpr std::uint32_t tile_px = 32;
+    const auto width = static_cast<std::uint32_t>(camera.width());
+    const std::uint32_t columns = (width + tile_px - 1) / tile_px;
+    std::vector<std::uint32_t> order(scan.points.size());
+    if (scan.pixels.empty()) {
+      std::iota(order.begin(), order.end(), 0U);
+      return order;
+    }
+    const auto tile_of = [&](std::uint32_t pixel) {
+      return pixel / width / tile_px * columns + pixel % width / tile_px;
+    };
+    std::vector<std::uint32_t> starts(
+        tile_of(width * static_cast<std::uint32_t>(camera.height()) - 1) + 2);
+    for (const std::uint32_t pixel : scan.pixels) ++starts[tile_of(pixel) + 1];
+    std::partial_sum(starts.begin(), starts.end(), starts.begin());
+    for (std::uint32_t i = 0; i < order.size(); ++i) order[starts[tile_of(scan.pixels[i])]++] = i;
+    return order;
+  }
+
   void insert_points(const Scan& scan) {
-    for (const Vector3f& point : scan.points) {
+    for (const std::uint32_t index : tile_order(scan)) {
+      const Vector3f& point = scan.points[index];
       if (region && !region->contains(point)) continue;
       if (grid.any_within(point, spacing)) continue;
       grid.insert(point);
@@ -131,7 +154,8 @@ struct SkycapPlanner::Impl {
     const double extent =
         config.scene_box ? config.scene_box->sizes().maxCoeff() : seen.sizes().maxCoeff();
     const double pixel = distance * ray_spacing(camera);
-    const double h = config.resolution.value_or(std::clamp(extent / 150.0, 4.0 * pixel, 25.0 * pixel));
+    const double h =
+        config.resolution.value_or(std::clamp(extent / 150.0, 4.0 * pixel, 25.0 * pixel));
     blocks.block_px = std::max(4, static_cast<int>(0.8 * h / pixel));
     blocks.threads = config.threads;
     least_jump = 4.0 * blocks.block_px * pixel;
@@ -139,9 +163,9 @@ struct SkycapPlanner::Impl {
     map.emplace(static_cast<float>(h));
     space.emplace(static_cast<float>(0.6 * h), config.misses_are_empty);
     dose.emplace(config.coverage_radius, Noise{});
-    unseen.emplace(UnseenSurfaceSettings{
-        .steps = config.ideas.unseen_surface ? config.continuation_steps : 0,
-        .learns_rates = config.ideas.learned_rates});
+    unseen.emplace(
+        UnseenSurfaceSettings{.steps = config.ideas.unseen_surface ? config.continuation_steps : 0,
+                              .learns_rates = config.ideas.learned_rates});
   }
 
   std::vector<BlockImage> reduce(const Scan& scan) const {
@@ -160,8 +184,7 @@ struct SkycapPlanner::Impl {
     const double change = std::abs(estimate->isotropic - dose->noise().isotropic) +
                           std::abs(estimate->along_ray - dose->noise().along_ray);
     if (change > 0.03 * dose->noise().across(1.0)) dose.emplace(config.coverage_radius, *estimate);
-    blocks.jump =
-        static_cast<float>(std::max(least_jump, 6.0 * dose->noise().across(1.0)));
+    blocks.jump = static_cast<float>(std::max(least_jump, 6.0 * dose->noise().across(1.0)));
   }
 
   void take_in(const Scan& scan) {
@@ -213,7 +236,8 @@ struct SkycapPlanner::Impl {
   bool is_free(const View& view, const Eigen::AlignedBox3d& kept_clear_of) const {
     if (!kept_clear_of.contains(view.position)) return true;
     const Vector3f at = view.position.cast<float>();
-    const auto radius = static_cast<float>(std::max<double>(config.limits.stand_off, map->spacing()));
+    const auto radius =
+        static_cast<float>(std::max<double>(config.limits.stand_off, map->spacing()));
     return space->is_proven_empty(at, radius) && !map->has_surfel_near(at, radius, 0);
   }
 
@@ -243,15 +267,15 @@ struct SkycapPlanner::Impl {
   }
 
   std::optional<View> choose() {
-    stop = reason_to_stop();
-    if (stop != SkycapStop::running) return std::nullopt;
     const double way = most_way();
     const auto choice = choose_view(*field, config.limits, admission(), position, way, chooser);
+    in_sight = choice ? choice->in_sight : std::vector<bool>(field->targets().size(), false);
+    stop = reason_to_stop();
+    if (stop != SkycapStop::running) return std::nullopt;
     if (!choice) {
-      // Without the budget there may be views left: then it is the budget that ends the survey.
-      stop = way < 4.0 * distance
-                 ? (config.stop.most_length ? SkycapStop::most_length : SkycapStop::most_time)
-                 : SkycapStop::nothing_in_reach;
+      stop = config.stop.most_length && std::isfinite(way) ? SkycapStop::most_length
+             : std::isfinite(way)                          ? SkycapStop::most_time
+                                                           : SkycapStop::nothing_in_reach;
       return std::nullopt;
     }
     if (choice->best_gain < config.stop.least_gain * map->area()) {
@@ -272,14 +296,18 @@ struct SkycapPlanner::Impl {
     return SkycapStop::running;
   }
 
+  /// Of the guesses, only what could be seen: the others are as a rule inside of something.
   double guessed_area() const {
     double area = 0.0;
-    for (const UnseenPatch& patch : unseen->patches()) area += patch.weight;
+    for (std::size_t t = 0; t < in_sight.size(); ++t) {
+      if (in_sight[t] && field->is_patch(t)) area += field->targets()[t].weight;
+    }
     return area;
   }
 
   double predicted_coverage() const {
-    return map ? map->covered_area() / (map->area() + guessed_area()) : 0.0;
+    if (!map || map->surfels().size() == 0) return 0.0;
+    return map->covered_area() / (map->area() + guessed_area());
   }
 
   std::optional<View> next_view(const Scan& scan) {
@@ -295,7 +323,8 @@ struct SkycapPlanner::Impl {
     ++scans;
     refused.clear();
     proposed.reset();
-    idle_scans = map->covered_area() - covered_before < idle_gain * map->area() ? idle_scans + 1 : 0;
+    idle_scans =
+        map->covered_area() - covered_before < idle_gain * map->area() ? idle_scans + 1 : 0;
     stopwatch.lap("update");
     unseen->predict(*map, *space, region);
     field.emplace(*map, unseen->patches(), camera, *dose, gain);
@@ -307,8 +336,6 @@ struct SkycapPlanner::Impl {
   }
 
   SurveyBelief belief() const;
-  MissingReason reason_of(const Vector3f& position, const Vector3f& normal, bool is_seen,
-                          const Admission& admits) const;
 
   const SkycapConfig config;
   const geometry::Camera camera;
@@ -330,6 +357,7 @@ struct SkycapPlanner::Impl {
   std::optional<SpaceMemory> space;
   std::optional<UnseenSurface> unseen;
   std::optional<GainField> field;
+  std::vector<bool> in_sight;  ///< of the field's targets, from some good view
 
   std::size_t scans = 0;
   double length = 0.0;
@@ -340,51 +368,41 @@ struct SkycapPlanner::Impl {
   SkycapStop stop = SkycapStop::running;
 };
 
-MissingReason SkycapPlanner::Impl::reason_of(const Vector3f& at, const Vector3f& normal,
-                                             bool is_seen, const Admission& admits) const {
-  // The normal, and eight directions at each of two tilts, stand for all that face the patch.
-  const Vector3d target = at.cast<double>(), axis = normal.cast<double>().normalized();
-  const Vector3d u = geometry::any_orthogonal(axis), v = axis.cross(u);
-  for (const double tilt : {0.0, 0.7, 1.2}) {
-    for (int i = 0; i < (tilt == 0.0 ? 1 : 8); ++i) {
-      const double azimuth = 0.25 * std::numbers::pi * i;
-      const Vector3d towards =
-          std::cos(tilt) * axis +
-          std::sin(tilt) * (std::cos(azimuth) * u + std::sin(azimuth) * v);
-      const auto view = config.limits.view_of_target(target, towards, distance);
-      if (view && -view->direction.dot(axis) > std::cos(gain.most_incidence) && admits(*view)) {
-        return is_seen ? MissingReason::seen_too_thinly : MissingReason::never_seen;
-      }
-    }
-  }
-  return MissingReason::unreachable;
-}
-
 SurveyBelief SkycapPlanner::Impl::belief() const {
   SurveyBelief belief;
   if (!map) return belief;
-  constexpr float well_covered = 0.5F;  // a patch that is more likely covered than not is not missing
-  const Admission admits = admission();
+  constexpr float well_covered = 0.5F;  // more likely covered than not: not missing
   const Surfels& surfels = map->surfels();
   for (std::size_t i = 0; i < surfels.size(); ++i) {
-    const float share = surfels.covered_share(i);
-    belief.patches.push_back({surfels.positions[i], surfels.normals[i], surfels.areas[i], share,
-                              share >= well_covered
-                                  ? MissingReason::none
-                                  : reason_of(surfels.positions[i], surfels.normals[i], true, admits)});
+    belief.patches.push_back({surfels.positions[i], surfels.normals[i], surfels.areas[i],
+                              surfels.covered_share(i), MissingReason::none});
   }
-  for (const UnseenPatch& patch : unseen->patches()) {
-    belief.patches.push_back({patch.position, patch.normal, patch.weight, 0.0F,
-                              reason_of(patch.position, patch.normal, false, admits)});
+  for (std::size_t t = 0; t < field->targets().size(); ++t) {
+    const std::uint32_t source = field->source(t);
+    if (!field->is_patch(t)) {
+      BelievedPatch& patch = belief.patches[source];
+      if (patch.covered_share >= well_covered) continue;
+      patch.reason = in_sight[t] ? MissingReason::seen_too_thinly : MissingReason::unreachable;
+    } else if (in_sight[t]) {
+      const UnseenPatch& patch = unseen->patches()[source];
+      belief.patches.push_back(
+          {patch.position, patch.normal, patch.weight, 0.0F, MissingReason::never_seen});
+    }
   }
   for (const BelievedPatch& patch : belief.patches) belief.area += patch.area;
   for (const BelievedPatch& patch : belief.patches) {
     const double missing = patch.area * (1.0 - patch.covered_share) / belief.area;
     switch (patch.reason) {
-      case MissingReason::none:
-      case MissingReason::seen_too_thinly: belief.seen_too_thinly += missing; break;
-      case MissingReason::never_seen: belief.never_seen += missing; break;
-      case MissingReason::unreachable: belief.unreachable += missing; break;
+      case MissingReason::none:  // the rest that even well covered surface lacks
+      case MissingReason::seen_too_thinly:
+        belief.seen_too_thinly += missing;
+        break;
+      case MissingReason::never_seen:
+        belief.never_seen += missing;
+        break;
+      case MissingReason::unreachable:
+        belief.unreachable += missing;
+        break;
     }
   }
   belief.coverage = predicted_coverage();

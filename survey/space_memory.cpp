@@ -59,9 +59,8 @@ SpaceState SpaceMemory::query(const Eigen::Vector3f& point) const {
 }
 
 bool SpaceMemory::is_proven_empty(const Eigen::Vector3f& centre, float radius) const {
-  return std::any_of(images_.rbegin(), images_.rend(), [&](const DepthImage& image) {
-    return proves_empty(image, centre, radius);
-  });
+  return std::any_of(images_.rbegin(), images_.rend(),
+                     [&](const DepthImage& image) { return proves_empty(image, centre, radius); });
 }
 
 bool SpaceMemory::proves_empty(const DepthImage& image, const Eigen::Vector3f& centre,

@@ -40,9 +40,9 @@ class SpaceMemory {
  private:
   struct DepthImage {
     BlockProjection projection;
-    std::vector<float> empty_before;   ///< seen through up to here; -infinity: proves nothing
+    std::vector<float> empty_before;    ///< seen through up to here; -infinity: proves nothing
     std::vector<float> measured_until;  ///< measured between `empty_before` and here
-    std::vector<float> least;          ///< the nearest return; -infinity without one
+    std::vector<float> least;           ///< the nearest return; -infinity without one
   };
   static bool proves_empty(const DepthImage& image, const Eigen::Vector3f& centre, float radius);
 

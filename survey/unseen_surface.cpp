@@ -9,14 +9,14 @@ namespace {
 using Eigen::Vector3f;
 
 constexpr int most_steps = 5;
-constexpr double prior_strength = 40.0;    // patches' worth of evidence in the first guesses
+constexpr double prior_strength = 40.0;  // patches' worth of evidence in the first guesses
 constexpr double most_evidence = 60.0;
-constexpr double correlation = 0.2;        // neighbouring patches share their fate: five count as one
-constexpr float disappointment = 0.35F;    // factor on the trust in a place that stayed unknown
+constexpr double correlation = 0.2;      // neighbouring patches share their fate: five count as one
+constexpr float disappointment = 0.35F;  // factor on the trust in a place that stayed unknown
 
 // First guesses [continuation][step]: what tuning on three objects found, and only a start.
-constexpr std::array<std::array<double, most_steps>, 3> first_rates = {{
-    {0.8, 0.7, 0.6, 0.5, 0.4}, {0.5, 0.4, 0.3, 0.2, 0.15}, {0.4, 0.3, 0.2, 0.15, 0.1}}};
+constexpr std::array<std::array<double, most_steps>, 3> first_rates = {
+    {{0.8, 0.7, 0.6, 0.5, 0.4}, {0.5, 0.4, 0.3, 0.2, 0.15}, {0.4, 0.3, 0.2, 0.15, 0.1}}};
 
 std::uint8_t kind_of(Continuation continuation, int step) {
   return static_cast<std::uint8_t>(3 * step + static_cast<int>(continuation));
@@ -127,8 +127,7 @@ void UnseenSurface::grade(std::span<const std::uint32_t> expected, const DoseMap
     if (found[kind].tries == 0.0) continue;
     Rate& rate = rates_[kind];
     const double kept = settings_.memory;
-    const double weight =
-        std::min(correlation, most_evidence / found[kind].tries);
+    const double weight = std::min(correlation, most_evidence / found[kind].tries);
     rate.hits = kept * rate.hits + weight * found[kind].hits;
     rate.tries = kept * rate.tries + weight * found[kind].tries;
   }

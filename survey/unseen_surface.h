@@ -27,17 +27,17 @@ enum class Continuation : std::uint8_t { straight, convex, concave };
 
 struct UnseenPatch {
   Eigen::Vector3f position;
-  Eigen::Vector3f normal;    ///< unit
-  float edge;                ///< of the square that it stands for
-  float weight;              ///< area times the probability that there is surface
-  std::uint8_t kind;         ///< 3 * step + continuation
-  std::uint64_t place;       ///< names the hypothesis: same place, facing and step, same number
+  Eigen::Vector3f normal;  ///< unit
+  float edge;              ///< of the square that it stands for
+  float weight;            ///< area times the probability that there is surface
+  std::uint8_t kind;       ///< 3 * step + continuation
+  std::uint64_t place;     ///< names the hypothesis: same place, facing and step, same number
 };
 
 struct UnseenSurfaceSettings {
-  int steps = 3;              ///< patches in a chain, at most 5
-  bool learns_rates = true;   ///< otherwise the rates stay at their first guesses
-  float memory = 0.85F;       ///< share of the evidence on rates kept from scan to scan
+  int steps = 3;             ///< patches in a chain, at most 5
+  bool learns_rates = true;  ///< otherwise the rates stay at their first guesses
+  float memory = 0.85F;      ///< share of the evidence on rates kept from scan to scan
 };
 
 class UnseenSurface {

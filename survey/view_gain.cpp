@@ -12,7 +12,7 @@ using Eigen::Vector3f;
 /// Surfels whose missing area is a smaller share of the largest one's are not worth a look each;
 /// together they stay far below any stop rule.
 constexpr float least_weight_share = 2e-3F;
-constexpr float raster_spacing = 1.5F;  // pixel at the view distance, in units of h
+constexpr float raster_spacing = 1.0F;  // pixel at the view distance, in units of h
 
 /// Depths of the nearest surfels; reused between calls on one thread.
 struct Raster {
@@ -27,13 +27,16 @@ GainField::GainField(const DoseMap& map, std::span<const UnseenPatch> patches,
     : dose_(dose),
       spacing_(map.spacing()),
       least_cosine_(std::cos(settings.most_incidence)),
-      focal_length_px_(camera.focal_length_px().cast<float>()) {
+      focal_length_px_(camera.focal_length_px().cast<float>()),
+      least_range_(std::max(1e-6F, static_cast<float>(camera.config().min_range))),
+      most_range_(static_cast<float>(camera.config().max_range)) {
   half_slope_ = {0.5F * static_cast<float>(camera.width()) / focal_length_px_.x(),
                  0.5F * static_cast<float>(camera.height()) / focal_length_px_.y()};
   raster_focal_length_px_ =
       static_cast<float>(settings.view_distance) / (raster_spacing * spacing_);
   raster_width_ = static_cast<int>(std::ceil(2.0F * half_slope_.x() * raster_focal_length_px_)) + 1;
-  raster_height_ = static_cast<int>(std::ceil(2.0F * half_slope_.y() * raster_focal_length_px_)) + 1;
+  raster_height_ =
+      static_cast<int>(std::ceil(2.0F * half_slope_.y() * raster_focal_length_px_)) + 1;
 
   const Surfels& surfels = map.surfels();
   for (const Vector3f& p : surfels.positions) {
@@ -85,13 +88,15 @@ void GainField::for_each_sight(const geometry::View& view, Visit visit) const {
   const int stride = raster_width_ + 2;
   raster.depths.assign(static_cast<std::size_t>(stride) * (raster_height_ + 2),
                        std::numeric_limits<float>::infinity());
-  const float last_column = static_cast<float>(raster_width_), last_row = static_cast<float>(raster_height_);
+  const float last_column = static_cast<float>(raster_width_),
+              last_row = static_cast<float>(raster_height_);
   const auto pixel_of = [&](float column, float row) {
     return static_cast<std::size_t>(static_cast<int>(row) * stride + static_cast<int>(column));
   };
   for (std::size_t i = 0; i < count; ++i) {
     const float column = raster.columns[i], row = raster.rows[i], forward = raster.forward[i];
-    if (!(forward > 0.0F && column >= 0.0F && row >= 0.0F && column < last_column && row < last_row)) {
+    if (!(forward > 0.0F && column >= 0.0F && row >= 0.0F && column < last_column &&
+          row < last_row)) {
       continue;
     }
     // The 2 x 2 pixels nearest to the point; index (0, 0) is the border.
@@ -109,7 +114,8 @@ void GainField::for_each_sight(const geometry::View& view, Visit visit) const {
     if (facing <= 0.0F) continue;
     const Vector3f in_camera = camera_from_world * offset;
     const float forward = in_camera.z();
-    if (!(forward > 0.0F) || std::abs(in_camera.x()) > half_slope_.x() * forward ||
+    if (!(forward >= least_range_ && forward <= most_range_) ||
+        std::abs(in_camera.x()) > half_slope_.x() * forward ||
         std::abs(in_camera.y()) > half_slope_.y() * forward) {
       continue;
     }
@@ -124,8 +130,8 @@ void GainField::for_each_sight(const geometry::View& view, Visit visit) const {
     const float tolerance =
         t < surfel_targets_ ? spacing_ * (1.5F + 2.0F * std::min(slope, 4.0F)) : spacing_;
     if (forward > depth + tolerance) continue;
-    const float density = focal_length_px_.prod() * cosine * distance /
-                          (forward * forward * forward);
+    const float density =
+        focal_length_px_.prod() * cosine * distance / (forward * forward * forward);
     visit(t, 1.0F - std::exp(-dose_.hazard(density, cosine)));
   }
 }

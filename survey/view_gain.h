@@ -22,7 +22,7 @@ struct Sight {
 };
 
 struct Gain {
-  double area = 0.0;  ///< expected newly covered area [m^2]
+  double area = 0.0;                                   ///< expected newly covered area [m^2]
   Eigen::Vector3f centroid = Eigen::Vector3f::Zero();  ///< of it
 };
 
@@ -35,7 +35,7 @@ struct GainSettings {
 /// from any number of threads.
 ///
 /// Targets are the surfels with a deficit worth a look and the unseen patches. Occlusion is decided
-/// in a depth image of all surfels, splatted as points of 3 h at the view distance; unseen patches
+/// in a depth image of all surfels, splatted as points of 2 h at the view distance; unseen patches
 /// hide nothing.
 class GainField {
  public:
@@ -63,11 +63,12 @@ class GainField {
   DoseModel dose_;
   float spacing_;
   float least_cosine_;
-  Eigen::Vector2f focal_length_px_;   ///< of the sensor
-  Eigen::Vector2f half_slope_;        ///< tangents of half the angles of view
+  Eigen::Vector2f focal_length_px_;  ///< of the sensor
+  float least_range_, most_range_;
+  Eigen::Vector2f half_slope_;  ///< tangents of half the angles of view
   float raster_focal_length_px_;
   int raster_width_, raster_height_;
-  std::vector<float> x_, y_, z_;      ///< of all surfels, to occlude
+  std::vector<float> x_, y_, z_;  ///< of all surfels, to occlude
   std::size_t surfel_targets_ = 0;
   std::vector<Target> targets_;
   std::vector<std::uint32_t> sources_;

@@ -52,8 +52,9 @@ void ViewLimits::validate() const {
           "stand_off is " + std::to_string(stand_off) + "; it must be zero or more metres");
   require(!least_height || !most_height || *least_height < *most_height,
           "least_height is not below most_height; nothing is left to fly in");
-  require(least_pitch < most_pitch && std::abs(least_pitch) < 1.5708 && std::abs(most_pitch) < 1.5708,
-          "least_pitch must be below most_pitch, both between -pi/2 and pi/2");
+  require(
+      least_pitch < most_pitch && std::abs(least_pitch) < 1.5708 && std::abs(most_pitch) < 1.5708,
+      "least_pitch must be below most_pitch, both between -pi/2 and pi/2");
   require(geofence.empty() || geofence.size() >= 3,
           "geofence has " + std::to_string(geofence.size()) + " corners; it needs three or more");
   for (const Prism& prism : no_fly) {
@@ -100,7 +101,8 @@ std::optional<geometry::View> ViewLimits::view_of_target(const Vector3d& target,
   Vector3d towards = towards_view;
   if (elevation != wanted) {
     const Vector2d level = towards_view.head<2>();
-    const Vector2d azimuth = level.norm() > 1e-9 ? Vector2d(level.normalized()) : Vector2d(1.0, 0.0);
+    const Vector2d azimuth =
+        level.norm() > 1e-9 ? Vector2d(level.normalized()) : Vector2d(1.0, 0.0);
     towards << std::cos(elevation) * azimuth, std::sin(elevation);
   }
   const geometry::View view{target + distance * towards, -towards};
