@@ -1,8 +1,8 @@
 /// A scene made ready for ray casting: the truth, which only `sim/` and the evaluation may ask.
 ///
 /// Embree works in single precision, so the mesh is moved to around the origin of its own frame in
-/// double precision first; every query takes and gives world coordinates. The BVH is built in
-/// Embree's robust mode: no ray slips between two triangles that share an edge.
+/// double precision first; every query takes and gives world coordinates. No ray slips between
+/// triangles that share an edge or a vertex (scene_embree.h says how).
 #pragma once
 
 #include <cstdint>
@@ -18,9 +18,9 @@ namespace skycap::sim {
 
 /// Where a ray first meets the scene.
 struct Hit {
-  double distance;          ///< along the ray, in units of its direction's length
-  std::uint32_t triangle;   ///< index into the mesh's triangles
-  Eigen::Vector3d normal;   ///< unit normal of that triangle, by its orientation
+  double distance;         ///< along the ray, in units of its direction's length
+  std::uint32_t triangle;  ///< index into the mesh's triangles
+  Eigen::Vector3d normal;  ///< unit normal of that triangle, by its orientation
 };
 
 /// Immutable; safe to query from any number of threads.
@@ -34,12 +34,13 @@ class Scene {
   ~Scene();
 
   /// The first surface that the ray from `origin` along `direction` (of any length) meets at a
-  /// distance in [0, max_distance].
-  std::optional<Hit> first_hit(
-      const Eigen::Vector3d& origin, const Eigen::Vector3d& direction,
-      double max_distance = std::numeric_limits<double>::infinity()) const;
+  /// distance in [0, max_distance]. Exact to single precision of the scene's extent.
+  std::optional<Hit> first_hit(const Eigen::Vector3d& origin, const Eigen::Vector3d& direction,
+                               double max_distance = std::numeric_limits<double>::infinity()) const;
 
-  /// Whether a surface cuts the segment between two points.
+  /// Whether a surface cuts the segment between two points, its ends included. To ask whether a
+  /// point of the surface is visible, end the segment a little before it. Of segments aimed exactly
+  /// at a vertex one in a thousand may slip through.
   bool is_blocked(const Eigen::Vector3d& from, const Eigen::Vector3d& to) const;
 
   /// What the sensors in this folder trace through; defined in scene_embree.h, for sources only.

@@ -98,8 +98,9 @@ struct SeePlanner::Impl {
   std::optional<View> update(const Scan& scan);
   void insert(std::span<const Vector3f> points);
   void classify();
-  void propose_for_new_frontiers(std::span<const Vector3f> points);
-  geometry::LocalFrame frame_at(std::uint32_t point, const FreeSpace* free_space) const;
+  void propose_for_new_frontiers();
+  geometry::LocalFrame frame_at(std::uint32_t point) const;
+  void face_free_space(geometry::LocalFrame& frame, const Vector3d& position) const;
   void adjust_target(std::span<const Vector3f> points);
   void avoid_occlusions();
   bool avoid_occlusion(std::uint32_t point, Frontier& frontier);
@@ -118,8 +119,9 @@ struct SeePlanner::Impl {
   geometry::DensityMap map;
   geometry::SpatialIndex occluders;  // S: a sparse subset of the cloud, for the cap optimiser
   OcclusionTest occlusion;
-  std::vector<View> scans;      // where each scan was taken from
-  std::uint32_t first_new = 0;  // point of the last scan
+  std::vector<View> scans;              // where each scan was taken from
+  std::uint32_t first_new = 0;          // point of the last scan
+  std::optional<FreeSpace> free_space;  // of the last scan, if the configuration asks for it
 
   std::set<std::uint32_t> waiting;  // frontiers without a proposal, another one being too near
   FrontierMap frontiers;            // those with a proposal
@@ -148,7 +150,8 @@ std::optional<View> SeePlanner::Impl::update(const Scan& scan) {
   stopwatch.lap("insert");
   classify();
   stopwatch.lap("classify");
-  propose_for_new_frontiers(points);
+  if (config.free_space_normals) free_space.emplace(points, scans.back().position);
+  propose_for_new_frontiers();
   stopwatch.lap("frames");
   adjust_target(points);
   stopwatch.lap("controller");
@@ -164,7 +167,7 @@ std::optional<View> SeePlanner::Impl::update(const Scan& scan) {
 
 void SeePlanner::Impl::insert(std::span<const Vector3f> points) {
   first_new = static_cast<std::uint32_t>(map.cloud().size());
-  map.insert(points, static_cast<std::uint32_t>(scans.size() - 1));
+  map.insert(points, static_cast<std::uint32_t>(scans.size() - 1), config.threads);
   const auto& positions = map.cloud().positions;
   if (positions.empty()) {
     throw Error(ErrorKind::bad_geometry,
@@ -190,11 +193,7 @@ void SeePlanner::Impl::classify() {
 }
 
 // Every waiting frontier that has no proposal nearer than the frontier spacing gets one.
-void SeePlanner::Impl::propose_for_new_frontiers(std::span<const Vector3f> points) {
-  std::optional<FreeSpace> free_space;
-  if (config.free_space_normals && !waiting.empty()) {
-    free_space.emplace(points, scans.back().position);
-  }
+void SeePlanner::Impl::propose_for_new_frontiers() {
   const auto& positions = map.cloud().positions;
   const bool spaced = config.frontier_spacing > 0.0;
   geometry::PointGrid taken(spaced ? config.frontier_spacing : 1.0);
@@ -213,15 +212,14 @@ void SeePlanner::Impl::propose_for_new_frontiers(std::span<const Vector3f> point
     Frontier frontier{.position = positions[point].cast<double>(),
                       .observed_from = observer.position,
                       .observed_along = observer.direction,
-                      .frame = frame_at(point, free_space ? &*free_space : nullptr),
+                      .frame = frame_at(point),
                       .view = {}};
     frontier.view = place_view(frontier.position, frontier.frame.normal, placement);
     frontiers.emplace(point, frontier);
   }
 }
 
-geometry::LocalFrame SeePlanner::Impl::frame_at(std::uint32_t point,
-                                                const FreeSpace* free_space) const {
+geometry::LocalFrame SeePlanner::Impl::frame_at(std::uint32_t point) const {
   const auto& positions = map.cloud().positions;
   const auto count =
       static_cast<std::size_t>(config.frame_neighbours.value_or(map.config().core_threshold));
@@ -232,20 +230,22 @@ geometry::LocalFrame SeePlanner::Impl::frame_at(std::uint32_t point,
   const Vector3d position = positions[point].cast<double>();
   geometry::LocalFrame frame =
       geometry::local_frame(position, neighbours, scans[map.cloud().views[point]].position);
-  if (free_space == nullptr) return frame;
+  if (free_space) face_free_space(frame, position);
+  return frame;
+}
 
-  // Probe both sides outwards until one of them turns out to be free (released code).
+// Probes both sides of the surface, ever farther out, until one turns out to be free (released
+// code); a normal that points to the other side is turned round.
+void SeePlanner::Impl::face_free_space(geometry::LocalFrame& frame,
+                                       const Vector3d& position) const {
   const double probe_step = config.occluder_spacing;
   for (double along = probe_step; along <= config.occlusion_search_distance; along += probe_step) {
-    const bool front = free_space->is_free(position + along * frame.normal);
-    const bool back = free_space->is_free(position - along * frame.normal);
-    if (back && !front) {
-      frame.normal = -frame.normal;
-      frame.boundary = -frame.boundary;
-    }
-    if (front || back) break;
+    if (free_space->is_free(position + along * frame.normal)) return;
+    if (!free_space->is_free(position - along * frame.normal)) continue;
+    frame.normal = -frame.normal;
+    frame.boundary = -frame.boundary;
+    return;
   }
-  return frame;
 }
 
 // The reactive part: the last view was for a frontier that is still one.
@@ -277,7 +277,7 @@ void SeePlanner::Impl::avoid_occlusions() {
       dropped = true;
     }
     // What was given up makes room for the frontiers around it.
-    if (dropped && !waiting.empty()) propose_for_new_frontiers({});
+    if (dropped && !waiting.empty()) propose_for_new_frontiers();
   }
 }
 
@@ -291,7 +291,7 @@ bool SeePlanner::Impl::avoid_occlusion(std::uint32_t point, Frontier& frontier) 
   std::vector<Vector3d> occluded;
   for (const std::uint32_t index :
        occluders.within(map.cloud().positions[point], config.occlusion_search_distance)) {
-    const Vector3d ray = occluders.points()[index].cast<double>() - centre;
+    const Vector3d ray = occluders.point(index).cast<double>() - centre;
     const double range = ray.norm();
     if (range > 1e-9) occluded.push_back(ray / range);
   }
@@ -410,7 +410,7 @@ std::optional<View> SeePlanner::next_view(const Scan& scan) { return impl_->upda
 std::optional<View> SeePlanner::next_view_instead() {
   if (impl_->target && impl_->frontiers.contains(*impl_->target)) {
     impl_->give_up(*impl_->target);
-    impl_->propose_for_new_frontiers({});
+    impl_->propose_for_new_frontiers();
     impl_->list_proposals();
     impl_->graph.keep_only(impl_->proposal_points);
   }

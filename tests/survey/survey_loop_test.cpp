@@ -1,0 +1,117 @@
+#include "survey/survey_loop.h"
+
+#include <optional>
+#include <vector>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace skycap::survey {
+namespace {
+
+using Eigen::Vector3d;
+using geometry::Scan;
+using geometry::View;
+using testing::ElementsAre;
+
+/// Wants to be at x = 1, 2, 3, ... up to a last one; of a refused view it offers the next.
+class WalkingPlanner final : public Planner {
+ public:
+  explicit WalkingPlanner(int last) : last_(last) {}
+  std::optional<View> next_view(const Scan& scan) override {
+    cloud_.positions.insert(cloud_.positions.end(), scan.points.begin(), scan.points.end());
+    return walk_on();
+  }
+  std::optional<View> next_view_instead() override { return walk_on(); }
+  const geometry::PointCloud& cloud() const override { return cloud_; }
+  const PlanningStep& last_step() const override { return step_; }
+
+ private:
+  std::optional<View> walk_on() {
+    if (at_ == last_) return std::nullopt;
+    return View{{static_cast<double>(++at_), 0, 0}, {1, 0, 0}};
+  }
+  int at_ = 0, last_;
+  geometry::PointCloud cloud_;
+  PlanningStep step_;
+};
+
+const View start{{0, 0, 0}, {1, 0, 0}};
+
+/// A sensor that returns two points and ends up where it was sent.
+Scan sense(const View& view) {
+  return {.world_from_sensor = geometry::camera_pose(view), .points = {{0, 0, 0}, {1, 1, 1}}};
+}
+
+std::vector<double> places(const SurveyResult& result) {
+  std::vector<double> x;
+  for (const SurveyedView& view : result.views) x.push_back(view.view.position.x());
+  return x;
+}
+
+TEST(SurveyLoop, GoesOnUntilThePlannerIsDone) {
+  WalkingPlanner planner(3);
+  const SurveyResult result = run_survey(planner, start, {}, {.sense = sense});
+  EXPECT_EQ(result.stop_reason, StopReason::complete);
+  EXPECT_THAT(places(result), ElementsAre(0, 1, 2, 3));
+  EXPECT_EQ(result.views.back().points, 8U);
+  EXPECT_EQ(result.views.back().returns, 2U);
+}
+
+// Trap T10: the distance starts at the first view and is of straight segments.
+TEST(SurveyLoop, CountsDistanceFromTheFirstView) {
+  WalkingPlanner planner(2);
+  const SurveyResult result = run_survey(planner, {{-5, 0, 0}, {1, 0, 0}}, {}, {.sense = sense});
+  EXPECT_EQ(result.views[0].distance, 0.0);
+  EXPECT_EQ(result.views[1].distance, 6.0);
+  EXPECT_EQ(result.views[2].distance, 7.0);
+}
+
+TEST(SurveyLoop, StopsAtItsLimits) {
+  WalkingPlanner first(100);
+  EXPECT_EQ(run_survey(first, start, {.max_views = 4}, {.sense = sense}).stop_reason,
+            StopReason::view_limit);
+  WalkingPlanner second(100);
+  const SurveyResult result = run_survey(second, start, {.max_distance = 2.5}, {.sense = sense});
+  EXPECT_EQ(result.stop_reason, StopReason::distance_limit);
+  EXPECT_THAT(places(result), ElementsAre(0, 1, 2));
+}
+
+TEST(SurveyLoop, AsksForAnotherViewWhenOneCannotBeReached) {
+  WalkingPlanner planner(4);
+  const auto odd_places_only = [](const Vector3d&, const View& to) {
+    return static_cast<int>(to.position.x()) % 2 == 1;
+  };
+  const SurveyResult result =
+      run_survey(planner, start, {}, {.sense = sense, .can_reach = odd_places_only});
+  EXPECT_THAT(places(result), ElementsAre(0, 1, 3));
+  EXPECT_EQ(result.stop_reason, StopReason::nowhere_to_go);  // 4 was wanted, and refused
+}
+
+TEST(SurveyLoop, StopsBetweenViewsWhenAsked) {
+  WalkingPlanner planner(100);
+  std::stop_source stop;
+  const SurveyResult result = run_survey(planner, start, {},
+                                         {.sense = sense,
+                                          .report =
+                                              [&](const SurveyedView& view, const Scan&) {
+                                                if (view.view.position.x() == 2)
+                                                  stop.request_stop();
+                                              }},
+                                         stop.get_token());
+  EXPECT_EQ(result.stop_reason, StopReason::interrupted);
+  EXPECT_THAT(places(result), ElementsAre(0, 1, 2));
+}
+
+// A real drone stops where the wind lets it; the pose it reports is what counts.
+TEST(SurveyLoop, TakesThePoseThatTheSensorReached) {
+  WalkingPlanner planner(1);
+  const auto drift = [](const View& view) {
+    return sense({view.position + Vector3d(0, 0.5, 0), view.direction});
+  };
+  const SurveyResult result = run_survey(planner, start, {}, {.sense = drift});
+  EXPECT_EQ(result.views[1].view.position, Vector3d(1, 0.5, 0));
+}
+
+}  // namespace
+}  // namespace skycap::survey
