@@ -7,6 +7,7 @@
 #include <sstream>
 
 #include "geometry/error.h"
+#include "geometry/parallel.h"
 #include "geometry/point_grid.h"
 #include "survey/block_image.h"
 #include "survey/chooser.h"
@@ -131,11 +132,21 @@ struct SkycapPlanner::Impl {
     return order;
   }
 
+  /// Keeps the returns that are farther than the spacing from all kept before. The cloud so far
+  /// turns most of them away, on all threads; the rest are tried one after the other.
   void insert_points(const Scan& scan) {
-    for (const std::uint32_t index : tile_order(scan)) {
-      const Vector3f& point = scan.points[index];
-      if (region && !region->contains(point)) continue;
-      if (grid.any_within(point, spacing)) continue;
+    const std::vector<std::uint32_t> order = tile_order(scan);
+    constexpr std::size_t chunk = 4096;
+    std::vector<std::uint8_t> has_room(order.size());
+    geometry::parallel_for((order.size() + chunk - 1) / chunk, config.threads, [&](std::size_t c) {
+      for (std::size_t i = c * chunk; i < std::min(order.size(), (c + 1) * chunk); ++i) {
+        const Vector3f& point = scan.points[order[i]];
+        has_room[i] = (!region || region->contains(point)) && !grid.any_within(point, spacing);
+      }
+    });
+    for (std::size_t i = 0; i < order.size(); ++i) {
+      const Vector3f& point = scan.points[order[i]];
+      if (has_room[i] == 0 || grid.any_within(point, spacing)) continue;
       grid.insert(point);
       cloud.positions.push_back(point);
       cloud.views.push_back(static_cast<std::uint32_t>(scans));

@@ -91,7 +91,7 @@ TEST(DoseModel, CleanLooksCoverTheShareThatDiscsDo) {
   EXPECT_EQ(dose.hazard(static_cast<float>(1.0 / (radius * radius)), 1.0F), DoseModel::most_hazard);
   const double sparse = 0.125;  // rays in r_d^2: s = 2.8 r_d
   EXPECT_NEAR(1.0 - std::exp(-dose.hazard(static_cast<float>(sparse / (radius * radius)), 1.0F)),
-              std::numbers::pi * sparse, 0.01);  // the grid offset is sampled at 256 places
+              std::numbers::pi * sparse, 0.02);  // the grid's offset is sampled at 64 places
 }
 
 TEST(DoseModel, NothingIsCoveredWithoutRaysAndMoreRaysCoverMore) {
