@@ -323,10 +323,17 @@ std::vector<Key> planner_keys() {
     return [member](Mission & m) -> auto& { return m.planner.see.*member; };
   };
   using See = survey::SeeConfig;
+  const auto skycap_stop = [](auto member) {
+    return [member](Mission & m) -> auto& { return m.planner.skycap_stop.*member; };
+  };
+  using Stop = survey::StopRule;
   return {
       choice(
-          "planner.name", {"see++", "see"}, [](Mission & m) -> auto& { return m.planner.name; },
-          "The planner. see is see++ without optimise_views and visibility_graph."),
+          "planner.name", {"see++", "see", "skycap"},
+          [](Mission & m) -> auto& { return m.planner.name; },
+          "The planner. see is see++ without optimise_views and visibility_graph; skycap is our "
+          "own, which of the keys below uses spacing, view_distance, scene_box, wanted_coverage "
+          "and least_gain."),
       choice(
           "planner.preset", {"paper", "building"},
           [](Mission & m) -> auto& { return m.planner.preset; },
@@ -412,6 +419,10 @@ std::vector<Key> planner_keys() {
               "Whether views aim at one frontier until it is resolved or given up."),
       number("planner.frontier_spacing", "m", between(0, 1e3), see(&See::frontier_spacing),
              "Views are proposed for one frontier within this distance; 0 for every one."),
+      number("planner.wanted_coverage", "share", above(0, 1), skycap_stop(&Stop::wanted_coverage),
+             "skycap ends when it believes this share of the surface covered."),
+      number("planner.least_gain", "share", between(0, 1), skycap_stop(&Stop::least_gain),
+             "skycap ends when no view promises this share of the known surface."),
   };
 }
 

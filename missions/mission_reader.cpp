@@ -196,7 +196,7 @@ void apply_presets(Mission& mission) {
   }
   if (mission.planner.preset == PlannerPreset::building) {
     see.visibility_update_limit = 1000;
-    see.adjustment = survey::Adjustment::none;
+    see.max_attempts = 2;
   }
 }
 

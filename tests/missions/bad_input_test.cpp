@@ -76,7 +76,7 @@ std::vector<BadInput> bad_inputs() {
       {"YesForBoolean", whole + "planner: {facing_test: yes}\n",
        "key planner.facing_test: is yes; give true or false"},
       {"UnknownChoice", whole + "planner: {name: rsv}\n",
-       "MISSION:3: key planner.name: is rsv; give see++ or see"},
+       "MISSION:3: key planner.name: is rsv; give see++, see or skycap"},
       {"ShortVector", whole + "start: {position: [1, 2]}\n",
        "key start.position: is a list; give a list of three numbers"},
       {"AngleTooWide", whole + "sensor: {horizontal_fov_deg: 180}\n",

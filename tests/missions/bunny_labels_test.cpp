@@ -91,11 +91,12 @@ TEST(BunnySurvey, LabelsEqualAFullRecomputationAfterEveryView) {
         << "view " << frame;
     for (const PointLabel label : map.labels()) frontiers += label == PointLabel::frontier ? 1 : 0;
   };
-  survey::run_survey(
-      planner, scene->first_view(mission.seed), {.max_views = 40},
-      {.sense =
-           [&](const geometry::View& view) { return camera.scan(scene->scene(), view, frame++, 1); },
-       .report = check});
+  survey::run_survey(planner, scene->first_view(mission.seed), {.max_views = 40},
+                     {.sense =
+                          [&](const geometry::View& view) {
+                            return camera.scan(scene->scene(), view, frame++, 1);
+                          },
+                      .report = check});
   EXPECT_GT(frame, 5U);
   EXPECT_GT(frontiers, 20U);
 }

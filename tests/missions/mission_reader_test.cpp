@@ -83,7 +83,8 @@ TEST(MissionReader, TakesPresetsFirstWhereverTheyStand) {
   EXPECT_FALSE(mission.planner.see.optimise_views);
 }
 
-// spec: psi = d, one frontier a twentieth of d, occluders 2 r apart, tau above the number of clusters.
+// spec: psi = d, one frontier a twentieth of d, occluders 2 r apart, tau above the number of
+// clusters.
 TEST(MissionReader, DerivesTheBuildingPresetFromTheSensorAndTheDensity) {
   const std::string building =
       "sensor: {preset: high_resolution}\n"

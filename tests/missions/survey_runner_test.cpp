@@ -57,6 +57,17 @@ TEST(SurveyScene, KeepsRandomStartsAboveTheGroundClearance) {
   }
 }
 
+// Each planner that a mission can name surveys the quick mission's scene.
+TEST(RunSurvey, EveryPlannerCoversMostOfTheScene) {
+  for (const char* name : {"see++", "see", "skycap"}) {
+    const Mission mission =
+        parse_mission(quick_mission(), "m.yaml", {{"--planner", "planner.name", name}});
+    const SurveyRecord record = run_survey(mission, SurveyScene(mission, ""), 1, 1);
+    EXPECT_GT(record.coverage(), 0.6) << name;
+    EXPECT_GT(record.views.size(), 2U) << name;
+  }
+}
+
 // Coverage along the way is what the final cloud covers, and grows.
 TEST(RunSurvey, JudgesEveryView) {
   const Mission mission = parse_mission(quick_mission(), "m.yaml");
