@@ -8,6 +8,7 @@
 #include <limits>
 #include <numbers>
 #include <string_view>
+#include <system_error>
 #include <type_traits>
 #include <utility>
 
@@ -57,7 +58,7 @@ LasWriter::LasWriter(std::filesystem::path path, LasConfig config)
   file_.reset(std::fopen(temporary_.c_str(), "wb"));
   if (!file_) {
     throw Error(ErrorKind::bad_file,
-                path_.string() + ": cannot be written: " + std::strerror(errno));
+                path_.string() + ": cannot be written: " + std::generic_category().message(errno));
   }
   put(header());
 }
@@ -83,7 +84,7 @@ LasChunk LasWriter::encode(const sim::LidarReturns& returns) const {
     lowest = lowest.min(units);
     highest = highest.max(units);
     for (int axis = 0; axis < 3; ++axis) {
-      store(out + 4 * axis,
+      store(out + 4UL * axis,
             static_cast<std::int32_t>(std::clamp(units[axis], -2147483648.0, 2147483647.0)));
     }
     const float intensity = std::clamp(returns.intensities[i], 0.0F, 1.0F);
@@ -122,11 +123,13 @@ void LasWriter::append(const LasChunk& chunk) {
 
 void LasWriter::finish() {
   if (std::fseek(file_.get(), 0, SEEK_SET) != 0) {
-    throw Error(ErrorKind::bad_file, path_.string() + ": " + std::strerror(errno));
+    throw Error(ErrorKind::bad_file,
+                path_.string() + ": " + std::generic_category().message(errno));
   }
   put(header());
   if (std::fclose(file_.release()) != 0) {
-    throw Error(ErrorKind::bad_file, path_.string() + ": " + std::strerror(errno));
+    throw Error(ErrorKind::bad_file,
+                path_.string() + ": " + std::generic_category().message(errno));
   }
   std::filesystem::rename(temporary_, path_);
 }
@@ -166,7 +169,8 @@ std::vector<std::uint8_t> LasWriter::header() const {
 
 void LasWriter::put(const std::vector<std::uint8_t>& bytes) {
   if (std::fwrite(bytes.data(), 1, bytes.size(), file_.get()) == bytes.size()) return;
-  throw Error(ErrorKind::bad_file, path_.string() + ": cannot be written: " + std::strerror(errno));
+  throw Error(ErrorKind::bad_file,
+              path_.string() + ": cannot be written: " + std::generic_category().message(errno));
 }
 
 }  // namespace skycap::missions
