@@ -3,18 +3,82 @@
 #include <algorithm>
 #include <cassert>
 
+#include "geometry/parallel.h"
+
 namespace skycap::geometry {
 
-DensityMap::DensityMap(const DensityConfig& config) : config_(config), index_(config.radius) {
+DensityMap::NearbyPoints::NearbyPoints() {
+  constexpr float far_away = 1e18F;  // its square is finite, and no query reaches it
+  x_.fill(far_away);
+  y_.fill(far_away);
+  z_.fill(far_away);
+}
+
+void DensityMap::NearbyPoints::add(const Eigen::Vector3f& point) {
+  x_[next_] = point.x();
+  y_[next_] = point.y();
+  z_[next_] = point.z();
+  next_ = (next_ + 1) % count;
+}
+
+bool DensityMap::NearbyPoints::any_within(const Eigen::Vector3f& query,
+                                          float squared_radius) const {
+  int within = 0;
+  for (std::size_t i = 0; i < count; ++i) {
+    const float x = query.x() - x_[i], y = query.y() - y_[i], z = query.z() - z_[i];
+    within |= x * x + y * y + z * z <= squared_radius ? 1 : 0;
+  }
+  return within != 0;
+}
+
+// Cells twice as wide as the spacing: a ball of that radius reaches eight of them.
+DensityMap::DensityMap(const DensityConfig& config)
+    : config_(config),
+      index_(config.radius),
+      spacing_grid_(config.spacing > 0.0 ? 2.0 * config.spacing : config.radius) {
   assert(config.spacing < config.radius);
 }
 
-void DensityMap::insert(std::span<const Eigen::Vector3f> points, std::uint32_t view) {
-  if (cloud_.size() == labelled_) index_.grid().begin_batch();
+bool DensityMap::has_room_for(const Eigen::Vector3f& point, NearbyPoints& nearby) const {
+  const auto squared_spacing = static_cast<float>(config_.spacing * config_.spacing);
+  if (nearby.any_within(point, squared_spacing)) return false;
+  const std::uint32_t neighbour = spacing_grid_.first_within(point, config_.spacing);
+  if (neighbour == PointGrid::none) return true;
+  nearby.add(cloud_.positions[neighbour]);
+  return false;
+}
+
+void DensityMap::keep_if_room(std::span<const Eigen::Vector3f> points, std::uint32_t view) {
+  NearbyPoints nearby;
   for (const Eigen::Vector3f& point : points) {
-    if (!index_.insert_spaced(point, config_.spacing)) continue;
+    if (!has_room_for(point, nearby)) continue;
+    spacing_grid_.insert(point);
+    index_.insert(point);
     cloud_.positions.push_back(point);
     cloud_.views.push_back(view);
+  }
+}
+
+// Which points are kept depends on the order within a scan, but whether one is too near to an
+// earlier scan's does not: with several threads that is found out first, and turns most away.
+void DensityMap::insert(std::span<const Eigen::Vector3f> points, std::uint32_t view,
+                        unsigned threads) {
+  if (cloud_.size() == labelled_) index_.grid().begin_batch();
+  if (thread_count(threads) == 1 || cloud_.size() == 0) {
+    keep_if_room(points, view);
+  } else {
+    constexpr std::size_t part_size = 1 << 15;
+    const std::size_t parts = (points.size() + part_size - 1) / part_size;
+    std::vector<std::vector<Eigen::Vector3f>> remaining(parts);
+    parallel_for(parts, threads, [&](std::size_t part) {
+      NearbyPoints nearby;
+      const std::size_t first = part * part_size;
+      for (const Eigen::Vector3f& point :
+           points.subspan(first, std::min(part_size, points.size() - first))) {
+        if (has_room_for(point, nearby)) remaining[part].push_back(point);
+      }
+    });
+    for (const auto& part : remaining) keep_if_room(part, view);
   }
   labels_.resize(cloud_.size(), PointLabel::outlier);
   given_up_.resize(cloud_.size(), 0);
@@ -30,7 +94,7 @@ std::vector<std::uint32_t> DensityMap::promote_dense_points(std::uint32_t first_
   std::vector<NonCore> still_non_core;
   still_non_core.reserve(non_core_.size());
   for (NonCore entry : non_core_) {
-    if (grid.is_near_batch(entry.point)) {
+    if (grid.is_near_batch(cloud_.positions[entry.point])) {
       const auto count = static_cast<std::uint32_t>(
           grid.count_within(cloud_.positions[entry.point], config_.radius, threshold));
       if (count != entry.neighbours) given_up_[entry.point] = 0;
@@ -59,7 +123,7 @@ std::vector<std::uint32_t> DensityMap::points_to_relabel(
     const std::vector<std::uint32_t>& promoted) const {
   std::vector<std::uint32_t> points;
   for (const NonCore& entry : non_core_) {
-    if (index_.grid().is_near_batch(entry.point)) points.push_back(entry.point);
+    if (index_.grid().is_near_batch(cloud_.positions[entry.point])) points.push_back(entry.point);
   }
   std::vector<Neighbour> near;
   for (const std::uint32_t point : promoted) {

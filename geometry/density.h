@@ -7,6 +7,7 @@
 /// within r and so be core itself.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -58,8 +59,9 @@ class DensityMap {
   const std::vector<PointLabel>& labels() const { return labels_; }
 
   /// Keeps those of `points`, in order, that are farther than the spacing from every point kept
-  /// before; they are said to come from scan `view`. relabel() must follow.
-  void insert(std::span<const Eigen::Vector3f> points, std::uint32_t view);
+  /// before; they are said to come from scan `view`. relabel() must follow. What is kept does not
+  /// depend on `threads` (zero: all processors).
+  void insert(std::span<const Eigen::Vector3f> points, std::uint32_t view, unsigned threads = 1);
   /// Brings the labels up to date with all insertions since the last call.
   DensityUpdate relabel();
 
@@ -67,11 +69,26 @@ class DensityMap {
   void give_up(std::uint32_t frontier);
 
  private:
+  /// A few points to try first. Points come in the order of a scan, so what was too near to one is
+  /// often too near to the next.
+  class NearbyPoints {
+   public:
+    NearbyPoints();
+    void add(const Eigen::Vector3f& point);
+    bool any_within(const Eigen::Vector3f& query, float squared_radius) const;
+
+   private:
+    static constexpr std::size_t count = 8;
+    std::array<float, count> x_, y_, z_;
+    std::size_t next_ = 0;
+  };
   struct NonCore {
     std::uint32_t point;
     std::uint32_t neighbours;  // within r, itself included
   };
 
+  bool has_room_for(const Eigen::Vector3f& point, NearbyPoints& nearby) const;
+  void keep_if_room(std::span<const Eigen::Vector3f> points, std::uint32_t view);
   std::vector<std::uint32_t> promote_dense_points(std::uint32_t first_new);
   std::vector<std::uint32_t> points_to_relabel(const std::vector<std::uint32_t>& promoted) const;
   bool is_frontier(std::uint32_t point) const;
@@ -79,6 +96,8 @@ class DensityMap {
   DensityConfig config_;
   PointCloud cloud_;
   SpatialIndex index_;
+  PointGrid spacing_grid_;  // the same points in smaller cells, for the spacing
+  NearbyPoints nearby_;     // that turned points away lately
   std::vector<PointLabel> labels_;
   std::vector<NonCore> non_core_;  // ascending by point
   std::vector<std::uint8_t> given_up_;

@@ -1,9 +1,8 @@
 /// Unit directions made ready for many queries "which of them is nearest to s?".
 ///
-/// The directions lie on the surface of the cube [-1, 1]^3's inscribed sphere, so a coarse uniform
-/// grid over that cube has few occupied cells. For a cell with centre c and half-edge a, every
-/// direction q in it has s.q <= s.c + a |s|_1: one pass over the occupied cells excludes nearly all
-/// of them, and only the directions of the others are looked at.
+/// A coarse uniform grid over the cube [-1, 1]^3 has few cells that the unit sphere touches. One
+/// pass over the occupied ones excludes nearly all of them by their distance from s, and only the
+/// directions in the others are looked at.
 #pragma once
 
 #include <cstdint>
@@ -25,8 +24,8 @@ class DirectionIndex {
   explicit DirectionIndex(std::span<const Eigen::Vector3d> directions);
 
   /// The member q with the largest dot product q.s; exact, the same one for the same set and s. `s`
-  /// need not be of unit length. A few microseconds for 30,000 directions. Works in a scratch array
-  /// of the index: one index serves one thread.
+  /// is of unit length (to 1e-6). A few microseconds for 30,000 directions. Works in a scratch
+  /// array of the index: one index serves one thread.
   Nearest nearest(const Eigen::Vector3d& s);
 
  private:
@@ -34,10 +33,10 @@ class DirectionIndex {
                       std::size_t& best_member) const;
 
   // Members ordered by cell; cell i holds [cell_begin_[i], cell_begin_[i + 1]).
-  std::vector<double> x_, y_, z_;
+  std::vector<Eigen::Vector3d> members_;
   std::vector<std::uint32_t> cell_begin_;
   Eigen::ArrayXd cell_x_, cell_y_, cell_z_;  // centres of the occupied cells
-  Eigen::ArrayXd cell_cosine_;               // scratch: centre times s
+  Eigen::ArrayXd cell_distance2_;            // scratch: from s
   double half_edge_ = 0.0;
 };
 

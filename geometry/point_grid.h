@@ -1,10 +1,10 @@
 /// Neighbours within a small radius in a growing cloud: the inner loop of every planner.
 ///
-/// A hash grid whose cells are as wide as the largest radius that will be asked for. Inserting a
-/// point costs constant time and a query reads at most 27 cells, however large the cloud is. Cells
-/// hold their points in short blocks of coordinates, so that a compiler can compare several at
-/// once, and the cells around occupied ones are known, so that a query in empty space ends at its
-/// first look-up. SpatialIndex adds queries of any size.
+/// A sparse grid whose cells are as wide as the largest radius that is usual. Cells come in bricks
+/// of 8 x 8 x 8, found by hashing, so that a neighbourhood is looked up once and then read from
+/// memory that lies together. Inserting a point costs constant time, and a query reads at most 27
+/// cells, however large the cloud is. Bricks also know which of their cells are in or beside an
+/// occupied one: a query in empty space ends there. SpatialIndex adds queries of any size.
 ///
 /// Distances are single precision, as the points are: p is within r of q if
 /// squared_distance(p, q) <= float(r * r). Every query uses that one comparison.
@@ -37,35 +37,41 @@ struct Neighbour {
 
 class PointGrid {
  public:
+  /// What first_within() says when there is no such point.
+  static constexpr std::uint32_t none = ~std::uint32_t{0};
+
   /// A grid for queries of radius up to `cell_size`, which must be positive. Coordinates may reach
   /// a million cells from the origin in each direction; farther ones still work, only slower.
   explicit PointGrid(double cell_size);
 
-  std::size_t size() const { return cell_of_point_.size(); }
+  std::size_t size() const { return nodes_.size(); }
   double cell_size() const { return cell_size_; }
+
+  Eigen::Vector3f point(std::uint32_t index) const {
+    const Node& node = nodes_[index];
+    return {node.x, node.y, node.z};
+  }
 
   /// Adds a point, whose index is the number of points before it. Points must be finite.
   void insert(const Eigen::Vector3f& point);
 
   /// Starts a new batch of insertions, for is_near_batch().
   void begin_batch() { ++batch_; }
-  /// Whether a point was inserted in the current batch in the cell of point `index` or in one
-  /// beside it. Where this is false, nothing within cell_size() of the point is new.
-  bool is_near_batch(std::uint32_t index) const {
-    return cells_[cell_of_point_[index]].near_batch == batch_;
-  }
+  /// Whether a point was inserted in the current batch in the cell that holds `point` or in one
+  /// beside it. Where this is false, nothing within cell_size() of `point` is new.
+  bool is_near_batch(const Eigen::Vector3f& point) const;
 
-  /// Whether any point is within `radius` (at most cell_size()) of `query`.
+  /// A point within `radius` (at most cell_size()) of `query`, or none.
+  std::uint32_t first_within(const Eigen::Vector3f& query, double radius) const;
   bool any_within(const Eigen::Vector3f& query, double radius) const {
-    return count_within(query, radius, 1) != 0;
+    return first_within(query, radius) != none;
   }
-
-  /// The number of points within `radius` (at most cell_size()) of `query`; counting stops once
-  /// `limit` is reached, and what was counted by then is returned.
+  /// The number of points within `radius` (at most cell_size()) of `query`, or `limit` if it is
+  /// larger.
   std::size_t count_within(const Eigen::Vector3f& query, double radius, std::size_t limit) const;
 
-  /// Appends to `found` the points within `radius` of `query`, in no particular order. Reads every
-  /// cell that the ball touches, so a radius of several cells is slow.
+  /// Appends to `found` the points within `radius` of `query`, in an order that depends on the
+  /// insertions alone. Reads every brick that the ball touches, or every point if those are fewer.
   void find_within(const Eigen::Vector3f& query, double radius,
                    std::vector<Neighbour>& found) const;
 
@@ -75,28 +81,31 @@ class PointGrid {
   double empty_length(const Eigen::Vector3f& origin, const Eigen::Vector3f& direction) const;
 
  private:
-  static constexpr std::uint32_t none = ~std::uint32_t{0};
-  static constexpr std::size_t block_size = 8;
-  static constexpr int coarse_shift = 3;  // a coarse cell is 8 cells wide
+  static constexpr int brick_shift = 3;
+  static constexpr int brick_width = 1 << brick_shift;  // in cells
+  static constexpr std::size_t cells_in_brick = 512;
 
+  using Cell = std::array<std::int32_t, 3>;
   using Key = std::uint64_t;
-  using Cell3 = std::array<std::int32_t, 3>;
+  using CellSet = std::array<std::uint64_t, brick_width>;  // a bit a cell, a word an x
 
-  struct Block {
-    std::array<float, block_size> x, y, z;  // unused places are far away from everything
-    std::array<std::uint32_t, block_size> index;
+  /// A point, and the next one in its cell.
+  struct Node {
+    float x, y, z;
     std::uint32_t next;
   };
-  struct Cell {
-    std::uint32_t first_block = none;
-    std::uint32_t in_first_block = block_size;
-    std::uint32_t near_batch = 0;
-    std::uint32_t own_batch = 0;
+  struct Brick {
+    CellSet occupied{};       // cells that hold points
+    CellSet near_occupied{};  // cells in or beside an occupied one
+    CellSet near_new{};       // the same for points of batch `batch`
+    CellSet new_points{};     // cells with points of batch `batch`
+    std::uint32_t batch = 0;
+    std::uint32_t heads = none;  // where the first nodes of its cells stand in heads_
   };
-  /// Open addressing, linear probing, at most half full.
-  class KeyMap {
+  /// From a brick's key to its index: open addressing, linear probing, at most half full.
+  class BrickMap {
    public:
-    KeyMap();
+    BrickMap();
     std::uint32_t find(Key key) const;
     std::uint32_t find_or_add(Key key, std::uint32_t value);  // the value now stored
 
@@ -111,24 +120,26 @@ class PointGrid {
     std::size_t used_ = 0;
   };
 
-  Cell3 cell_at(const Eigen::Vector3f& point) const;
-  static Key key_of(const Cell3& cell);
-  std::uint32_t cell_index(const Cell3& cell);  // makes the cell if need be
-  void mark_neighbourhood(const Cell3& cell);
-  std::size_t count_in_cell(std::uint32_t cell, const Eigen::Vector3f& query, float squared_radius,
-                            std::size_t limit) const;
+  Cell cell_at(const Eigen::Vector3f& point) const;
+  static Key brick_key(const Cell& cell);
+  static std::size_t word_of(std::int32_t x);
+  static std::size_t place_in_brick(const Cell& cell);
+  std::uint32_t brick_of(const Cell& cell);  // made if need be
+  const Brick* find_brick(const Cell& cell) const;
+  void start_batch_in(Brick& brick) const;
+  void mark_surroundings(const Cell& cell);
+  template <typename Visit>
+  static bool visit_bricks(const Cell& lowest, const Cell& highest, Visit visit);
+  template <typename Visit>
+  void visit_near(const Eigen::Vector3f& query, double radius, Visit visit) const;
 
   double cell_size_;
   float inverse_cell_size_;
   std::uint32_t batch_ = 1;
-  KeyMap index_of_cell_;
-  KeyMap coarse_cells_;  // those that hold a cell which is occupied or beside an occupied one
-  std::vector<Cell> cells_;
-  std::vector<Block> blocks_;
-  std::vector<std::uint32_t> cell_of_point_;
-  // The last cell inserted into: a scan's points come in runs that share one.
-  Cell3 last_cell_{};
-  std::uint32_t last_index_ = none;
+  BrickMap index_of_brick_;
+  std::vector<Brick> bricks_;
+  std::vector<std::uint32_t> heads_;  // cells_in_brick for each brick that holds points
+  std::vector<Node> nodes_;           // by index of the point
 };
 
 }  // namespace skycap::geometry

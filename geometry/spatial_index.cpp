@@ -25,10 +25,10 @@ struct PointOfIndex {
   using key_type = std::uint32_t;
   using category = boost::readable_property_map_tag;
 
-  const std::vector<Eigen::Vector3f>* points;
+  const PointGrid* points;
 
   friend reference get(const PointOfIndex& map, key_type index) {
-    const Eigen::Vector3f& p = (*map.points)[index];
+    const Eigen::Vector3f p = map.points->point(index);
     return {p.x(), p.y(), p.z()};
   }
 };
@@ -51,7 +51,7 @@ struct SpatialIndex::Forest {
     std::unique_ptr<Tree> tree;
   };
 
-  void bring_up_to_date(const std::vector<Eigen::Vector3f>& points) {
+  void bring_up_to_date(const PointGrid& points) {
     std::size_t first = trees.empty() ? 0 : trees.back().last;
     if (points.size() - first < smallest_tree) return;
     while (!trees.empty() && 2 * (points.size() - first) > trees.back().last - trees.back().first) {
@@ -60,7 +60,7 @@ struct SpatialIndex::Forest {
     }
     std::vector<std::uint32_t> indices(points.size() - first);
     std::iota(indices.begin(), indices.end(), static_cast<std::uint32_t>(first));
-    // The tree keeps the address of the vector: that is why an index cannot be moved.
+    // The tree keeps the address of the grid: that is why an index cannot be moved.
     auto tree = std::make_unique<Tree>(indices.begin(), indices.end(), Tree::Splitter(),
                                        Traits(PointOfIndex{&points}));
     tree->build();
@@ -69,8 +69,8 @@ struct SpatialIndex::Forest {
 
   /// Calls `visit` with every point that may be within `radius`, and perhaps some a little farther.
   template <typename Visit>
-  void visit_ball(const std::vector<Eigen::Vector3f>& points, const Eigen::Vector3f& query,
-                  double radius, Visit visit) {
+  void visit_ball(const PointGrid& points, const Eigen::Vector3f& query, double radius,
+                  Visit visit) {
     const double reach = radius * (1.0 + 1e-5) + 1e-6 * query.cwiseAbs().maxCoeff();
     const Kernel::Point_3 centre(query.x(), query.y(), query.z());
     std::vector<std::uint32_t> found;
@@ -94,14 +94,18 @@ SpatialIndex::~SpatialIndex() = default;
 
 std::uint32_t SpatialIndex::insert(const Eigen::Vector3f& point) {
   grid_.insert(point);
-  points_.push_back(point);
-  return static_cast<std::uint32_t>(points_.size() - 1);
+  return static_cast<std::uint32_t>(size() - 1);
 }
 
 bool SpatialIndex::insert_spaced(const Eigen::Vector3f& point, double spacing) {
   if (any_within(point, spacing)) return false;
   insert(point);
   return true;
+}
+
+// The grid answers balls of a few bricks, and small clouds by comparing all points.
+bool SpatialIndex::suits_grid(double radius) const {
+  return radius <= 16.0 * grid_.cell_size() || size() <= 1U << 14;
 }
 
 bool SpatialIndex::any_within(const Eigen::Vector3f& query, double radius) const {
@@ -116,17 +120,17 @@ std::size_t SpatialIndex::count_within(const Eigen::Vector3f& query, double radi
 
 std::vector<std::uint32_t> SpatialIndex::within(const Eigen::Vector3f& query, double radius) const {
   std::vector<std::uint32_t> indices;
-  if (is_small(radius)) {
+  if (suits_grid(radius)) {
     std::vector<Neighbour> found;
     grid_.find_within(query, radius, found);
     indices.reserve(found.size());
     for (const Neighbour& neighbour : found) indices.push_back(neighbour.index);
   } else {
     const std::lock_guard lock(forest_->mutex);
-    forest_->bring_up_to_date(points_);
+    forest_->bring_up_to_date(grid_);
     const auto squared_radius = static_cast<float>(radius * radius);
-    forest_->visit_ball(points_, query, radius, [&](std::uint32_t index) {
-      if (squared_distance(query, points_[index]) <= squared_radius) indices.push_back(index);
+    forest_->visit_ball(grid_, query, radius, [&](std::uint32_t index) {
+      if (squared_distance(query, point(index)) <= squared_radius) indices.push_back(index);
     });
   }
   std::sort(indices.begin(), indices.end());
@@ -151,15 +155,15 @@ std::vector<Neighbour> SpatialIndex::nearest(const Eigen::Vector3f& query,
 
   // Far away: the forest says how far the last one is, and then who is within that distance.
   const std::lock_guard lock(forest_->mutex);
-  forest_->bring_up_to_date(points_);
+  forest_->bring_up_to_date(grid_);
   const Kernel::Point_3 centre(query.x(), query.y(), query.z());
   std::vector<Neighbour> candidates;
   const auto add = [&](std::uint32_t index) {
-    candidates.push_back({squared_distance(query, points_[index]), index});
+    candidates.push_back({squared_distance(query, point(index)), index});
   };
   for (const Forest::TreeOfRange& range : forest_->trees) {
     const NearestSearch search(*range.tree, centre, static_cast<unsigned>(count), 0.0, true,
-                               NearestSearch::Distance(PointOfIndex{&points_}));
+                               NearestSearch::Distance(PointOfIndex{&grid_}));
     for (const auto& [index, distance] : search) add(index);
   }
   const std::size_t in_trees = forest_->trees.empty() ? 0 : forest_->trees.back().last;
@@ -168,7 +172,7 @@ std::vector<Neighbour> SpatialIndex::nearest(const Eigen::Vector3f& query,
                    candidates.end());
   const double last = std::sqrt(static_cast<double>(candidates[count - 1].squared_distance));
   candidates.clear();
-  forest_->visit_ball(points_, query, last, add);
+  forest_->visit_ball(grid_, query, last, add);
   std::partial_sort(candidates.begin(), candidates.begin() + static_cast<std::ptrdiff_t>(count),
                     candidates.end());
   candidates.resize(count);

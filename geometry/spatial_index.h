@@ -27,8 +27,8 @@ class SpatialIndex {
   SpatialIndex& operator=(const SpatialIndex&) = delete;
   ~SpatialIndex();
 
-  std::size_t size() const { return points_.size(); }
-  const std::vector<Eigen::Vector3f>& points() const { return points_; }
+  std::size_t size() const { return grid_.size(); }
+  Eigen::Vector3f point(std::uint32_t index) const { return grid_.point(index); }
   const PointGrid& grid() const { return grid_; }
   PointGrid& grid() { return grid_; }
 
@@ -47,9 +47,8 @@ class SpatialIndex {
 
  private:
   struct Forest;
-  bool is_small(double radius) const { return radius <= 3.0 * grid_.cell_size(); }
+  bool suits_grid(double radius) const;
 
-  std::vector<Eigen::Vector3f> points_;
   PointGrid grid_;
   std::unique_ptr<Forest> forest_;
 };

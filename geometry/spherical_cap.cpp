@@ -51,9 +51,7 @@ std::optional<SphericalCap> cap_at_right_angles(std::span<const Vector3d> occlud
     return SphericalCap{pole, above.cosine};
   }
   seeds.insert(seeds.end(), {a, b, above.direction, below.direction});
-  const SphericalCap largest = largest_empty_cap(index, seeds, known_clear);
-  if (largest.cosine <= cap_tolerance) return largest;
-  return std::nullopt;
+  return largest_empty_cap(index, seeds, known_clear, cap_tolerance);
 }
 
 std::optional<SphericalCap> exact_cap(std::span<const Vector3d> occluded,
@@ -67,7 +65,7 @@ std::optional<SphericalCap> exact_cap(std::span<const Vector3d> occluded,
     return SphericalCap{direction, index.nearest(direction).cosine};
   }
   if (!origin.is_inside) {
-    if (const auto cap = cap_at_right_angles(occluded, index, known_clear, origin.supports)) {
+    if (auto cap = cap_at_right_angles(occluded, index, known_clear, origin.supports)) {
       return cap;
     }
   }

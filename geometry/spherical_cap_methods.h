@@ -35,10 +35,12 @@ struct OriginInHull {
 OriginInHull locate_origin(DirectionIndex& occluded);
 
 /// The largest empty cap, where conv(Q) is a body and holds the origin within cap_tolerance.
-/// `seeds` are members of Q that do not lie in one plane. Ties are won by the direction nearest to
-/// `known_clear`.
-SphericalCap largest_empty_cap(DirectionIndex& occluded, std::span<const Eigen::Vector3d> seeds,
-                               const Eigen::Vector3d& known_clear);
+/// `seeds` are members of Q that do not all lie in one plane. Ties are won by the direction nearest
+/// to `known_clear`. Nothing is returned, and soon, if the cap's cosine is above `largest_cosine`.
+std::optional<SphericalCap> largest_empty_cap(DirectionIndex& occluded,
+                                              std::span<const Eigen::Vector3d> seeds,
+                                              const Eigen::Vector3d& known_clear,
+                                              double largest_cosine = 1.0);
 
 /// A local minimum of h that is reached downhill from `known_clear`, where conv(Q) holds the origin
 /// deeper than cap_tolerance.

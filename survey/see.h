@@ -76,6 +76,8 @@ struct SeeConfig {
   bool stay_on_target = false;    ///< aim at a frontier until it is resolved or given up
   double frontier_spacing = 0.0;  ///< propose views for one frontier within this distance
 
+  unsigned threads = 1;  ///< for inserting scans; zero: all processors. Never changes a result
+
   double ground_clearance = -1e9;  ///< lowest z of a proposed view; far below: unconstrained
 
   /// Throws Error{bad_config} naming the first field that is out of its interval, or the density

@@ -156,6 +156,20 @@ TEST(DensityMap, TheLabelledRuleLetsALonelyOutlierBecomeAFrontier) {
   }
 }
 
+TEST(DensityMap, KeepsTheSamePointsOnAnyNumberOfThreads) {
+  DensityMap one({.radius = 0.02, .core_threshold = 4, .spacing = 0.01});
+  DensityMap three({.radius = 0.02, .core_threshold = 4, .spacing = 0.01});
+  for (std::uint32_t view = 0; view < 3; ++view) {
+    const auto points = tests::noisy_sphere(100'000, 0.01, view);
+    one.insert(points, view, 1);
+    one.relabel();
+    three.insert(points, view, 3);
+    three.relabel();
+    ASSERT_EQ(one.cloud().positions, three.cloud().positions);
+    ASSERT_EQ(one.labels(), three.labels());
+  }
+}
+
 TEST(DensityMap, KeepsTheSpacingAndTheScanOfEachPoint) {
   DensityMap map({.radius = 0.5, .core_threshold = 4, .spacing = 0.1});
   map.insert(std::vector<Vector3f>{{0, 0, 0}, {0.05F, 0, 0}, {0.2F, 0, 0}}, 7);

@@ -37,10 +37,10 @@ class SpatialIndexTwin : public testing::TestWithParam<double> {};
 TEST_P(SpatialIndexTwin, AgreesWithBruteForceAsItGrows) {
   const double cell = GetParam();
   SpatialIndex index(cell);
-  const auto points = random_points(3000, 1.0, 1);
-  const auto queries = random_points(15, 1.5, 2);
+  const auto points = random_points(20'000, 1.0, 1);
+  const auto queries = random_points(8, 1.5, 2);
   std::vector<Vector3f> inserted;
-  for (const std::size_t size : {1U, 10U, 300U, 700U, 3000U}) {
+  for (const std::size_t size : {1U, 10U, 300U, 3000U, 20'000U}) {
     for (std::size_t i = inserted.size(); i < size; ++i) {
       EXPECT_EQ(index.insert(points[i]), i);
       inserted.push_back(points[i]);
@@ -109,25 +109,27 @@ TEST(InsertSpaced, KeepsEveryPairFartherApartThanTheSpacingAndLeavesNoRoom) {
   for (const Vector3f& p : points) {
     if (index.insert_spaced(p, 0.07)) kept.push_back(p);
   }
-  EXPECT_EQ(index.points(), kept);
-  for (std::size_t i = 0; i < kept.size(); ++i) {
-    EXPECT_EQ(brute_force_within(kept, kept[i], 0.07),
-              (std::vector<Neighbour>{{0.0F, std::uint32_t(i)}}));
+  ASSERT_EQ(index.size(), kept.size());
+  for (std::uint32_t i = 0; i < kept.size(); ++i) {
+    EXPECT_EQ(index.point(i), kept[i]);
+    EXPECT_EQ(brute_force_within(kept, kept[i], 0.07), (std::vector<Neighbour>{{0.0F, i}}));
   }
   for (const Vector3f& p : points) EXPECT_FALSE(brute_force_within(kept, p, 0.07).empty());
 }
 
 TEST(PointGrid, BatchesMarkWhatIsBesideThem) {
   PointGrid grid(0.1);
+  const Vector3f old_point(0.05F, 0.05F, 0.05F), far_point(0.95F, 0.05F, 0.05F);
   grid.begin_batch();
-  grid.insert({0.05F, 0.05F, 0.05F});
-  grid.insert({0.95F, 0.05F, 0.05F});
+  grid.insert(old_point);
+  grid.insert(far_point);
   grid.begin_batch();
-  EXPECT_FALSE(grid.is_near_batch(0));
-  grid.insert({0.15F, 0.05F, 0.05F});
-  EXPECT_TRUE(grid.is_near_batch(0));
-  EXPECT_FALSE(grid.is_near_batch(1));
-  EXPECT_TRUE(grid.is_near_batch(2));
+  EXPECT_FALSE(grid.is_near_batch(old_point));
+  const Vector3f new_point(0.15F, 0.05F, 0.05F);
+  grid.insert(new_point);
+  EXPECT_TRUE(grid.is_near_batch(old_point));
+  EXPECT_FALSE(grid.is_near_batch(far_point));
+  EXPECT_TRUE(grid.is_near_batch(new_point));
 }
 
 // Property: no point is within a cell's width of the stretch that is said to be empty.

@@ -1,0 +1,66 @@
+/// The PLY format, for the mesh and the cloud reader: any elements and properties, in ascii and
+/// both binary byte orders. Source: Turk, "The PLY Polygon File Format", 1994, with the type names
+/// that came later (int8 ... float64).
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace skycap::geometry {
+
+enum class PlyType { int8, uint8, int16, uint16, int32, uint32, float32, float64 };
+
+struct PlyProperty {
+  std::string name;
+  PlyType type;                       ///< of the value, or of a list's values
+  std::optional<PlyType> count_type;  ///< set if it is a list
+};
+
+struct PlyElement {
+  std::string name;
+  std::uint64_t count = 0;
+  std::vector<PlyProperty> properties;
+};
+
+/// What was asked for of an element, row by row in the file's order.
+struct PlyTable {
+  std::vector<std::vector<double>> columns;  ///< as the names were given; empty if there is none
+  std::vector<std::uint64_t> list_begin;     ///< row i's list: [list_begin[i], list_begin[i + 1])
+  std::vector<std::int64_t> list_values;
+};
+
+/// Reads a PLY file from memory, element after element.
+class PlyReader {
+ public:
+  /// Reads the header. `name` (a path) opens every message; both must outlive the reader. Throws
+  /// Error{bad_file}, here and below, naming the line or the row.
+  PlyReader(std::string_view name, std::string_view bytes);
+
+  const std::vector<PlyElement>& elements() const { return elements_; }
+
+  /// The next element: of its properties, the scalars with these names, and the first list with one
+  /// of these names. Never allocates more than a small multiple of the file's size.
+  PlyTable read_element(std::span<const std::string_view> scalars,
+                        std::span<const std::string_view> lists);
+
+ private:
+  struct Wanted;
+  void read_header();
+  void read_binary(const PlyElement& element, const Wanted& wanted, PlyTable& table);
+  void read_ascii(const PlyElement& element, const Wanted& wanted, PlyTable& table);
+  [[noreturn]] void fail(const std::string& what) const;
+
+  std::string_view name_;
+  std::string_view bytes_;
+  std::size_t at_ = 0;    // of the first byte that is not read yet
+  std::size_t line_ = 1;  // of that byte, in ascii
+  enum class Format { ascii, little_endian, big_endian } format_ = Format::ascii;
+  std::vector<PlyElement> elements_;
+  std::size_t next_element_ = 0;
+};
+
+}  // namespace skycap::geometry

@@ -1,0 +1,182 @@
+#include "missions/command_line.h"
+
+#include <algorithm>
+#include <functional>
+#include <memory>
+
+#include <CLI/App.hpp>
+#include <CLI/Config.hpp>
+#include <CLI/Formatter.hpp>
+
+#include "geometry/error.h"
+#include "missions/mission_keys.h"
+#include "missions/verbs.h"
+#include "missions/version.h"
+
+namespace skycap::missions {
+namespace {
+
+/// A verb that is ready to run, once the arguments are read.
+using Action = std::function<int()>;
+
+/// Values for keys of the mission file, as given by options.
+struct KeyOptions {
+  std::string planner, seed, threads, max_views;
+  std::vector<std::string> set;  ///< KEY=VALUE
+
+  std::vector<KeyOverride> overrides() const {
+    std::vector<KeyOverride> all;
+    const auto add = [&](const char* option, const char* key, const std::string& value) {
+      if (!value.empty()) all.push_back({option, key, value});
+    };
+    add("--planner", "planner.name", planner);
+    add("--seed", "seed", seed);
+    add("--threads", "threads", threads);
+    add("--max-views", "limits.max_views", max_views);
+    for (const std::string& pair : set) {
+      const auto equals = pair.find('=');
+      if (equals == std::string::npos) {
+        throw Error(ErrorKind::bad_usage,
+                    "--set " + pair + ": has no '='; give KEY=VALUE, such as seed=2");
+      }
+      all.push_back({"--set " + pair, pair.substr(0, equals), pair.substr(equals + 1)});
+    }
+    return all;
+  }
+};
+
+void add_set_option(CLI::App& verb, KeyOptions& keys) {
+  verb.add_option("--set", keys.set,
+                  "KEY=VALUE: any key of the mission file, such as "
+                  "planner.density=213; may be given again")
+      ->type_size(1)
+      ->allow_extra_args(false);
+}
+
+void add_plan(CLI::App& app, const Console& console, Action& action) {
+  CLI::App* verb = app.add_subcommand(
+      "plan", "Survey a mission's scene in simulation and write the mission package");
+  const auto options = std::make_shared<PlanOptions>();
+  const auto keys = std::make_shared<KeyOptions>();
+  verb->add_option("mission", options->mission, "Mission file (docs/mission_file.md)")->required();
+  verb->add_option("--out", options->out, "Folder for the results; default results/NAME");
+  verb->add_option("--planner", keys->planner, "see++, see or skycap, in place of the mission's");
+  verb->add_option("--seed", keys->seed, "Seed, in place of the mission's");
+  verb->add_option("--threads", keys->threads, "Threads, 0 for all processors");
+  verb->add_option("--max-views", keys->max_views, "End after this many views");
+  verb->add_option("--trials", options->trials,
+                   "Run this many seeds; write trials.csv and trials.json")
+      ->check(CLI::Range(1, 100'000));
+  verb->add_flag("--quiet", options->is_quiet, "Print nothing but errors");
+  verb->add_flag("--verbose", options->is_verbose, "Print the planning time of each view by part");
+  add_set_option(*verb, *keys);
+  verb->callback([=, &console, &action] {
+    options->overrides = keys->overrides();
+    action = [=, &console] { return plan(*options, console); };
+  });
+}
+
+void add_check(CLI::App& app, const Console& console, Action& action) {
+  CLI::App* verb = app.add_subcommand("check", "Check a mission file and its scene");
+  const auto options = std::make_shared<CheckOptions>();
+  const auto keys = std::make_shared<KeyOptions>();
+  const auto prints_schema = std::make_shared<bool>(false);
+  const auto prints_keys = std::make_shared<bool>(false);
+  verb->add_option("mission", options->mission, "Mission file");
+  add_set_option(*verb, *keys);
+  verb->add_flag("--schema", *prints_schema, "Print the JSON Schema of mission files instead");
+  verb->add_flag("--keys", *prints_keys, "Print the table of all keys instead");
+  verb->callback([=, &console, &action] {
+    options->overrides = keys->overrides();
+    action = [=, &console] {
+      if (*prints_schema) return console.out << mission_json_schema(), 0;
+      if (*prints_keys) return console.out << mission_key_table(), 0;
+      if (options->mission.empty()) {
+        throw Error(ErrorKind::bad_usage, "check needs a mission file; name one");
+      }
+      return check(*options, console);
+    };
+  });
+}
+
+void add_evaluate(CLI::App& app, const Console& console, Action& action) {
+  CLI::App* verb =
+      app.add_subcommand("evaluate", "Coverage, accuracy and density of a cloud against a model");
+  const auto options = std::make_shared<EvaluateOptions>();
+  verb->add_option("--cloud", options->cloud, "Point cloud (PLY)")->required();
+  verb->add_option("--model", options->model,
+                   "Mesh, builtin:NAME, model:NAME, or a mission file for its scene as surveyed")
+      ->required();
+  verb->add_option("--distance", options->distance,
+                   "A surface point with a measurement this near is covered [m]")
+      ->check(CLI::Range(1e-9, 1e9));
+  verb->add_option("--samples", options->samples, "Surface points; default 100000")
+      ->check(CLI::Range(100, 100'000'000));
+  verb->add_flag("--json", options->is_json, "Print JSON");
+  verb->callback(
+      [=, &console, &action] { action = [=, &console] { return evaluate(*options, console); }; });
+}
+
+void add_model(CLI::App& app, const Console& console, Action& action) {
+  CLI::App* verb = app.add_subcommand("model", "Obtain, write or render a scene model");
+  const auto options = std::make_shared<ModelOptions>();
+  verb->add_option("name", options->name,
+                   "teapot, bunny, dragon, radcliffe-camera, ..., a mesh, or a mission file")
+      ->required();
+  verb->add_option("--out", options->out, "Write the mesh to this PLY file");
+  verb->add_option("--render", options->render, "Draw the model into this PNG file");
+  verb->callback(
+      [=, &console, &action] { action = [=, &console] { return model(*options, console); }; });
+}
+
+/// One line for the user, whatever the message holds.
+int report_failure(const Console& console, std::string message, int exit_code) {
+  while (!message.empty() && message.back() == '\n') message.pop_back();
+  std::ranges::replace(message, '\n', ' ');
+  std::ranges::replace(message, '\r', ' ');
+  console.err << "skycap: error: " << message << "\n" << std::flush;
+  return exit_code;
+}
+
+constexpr const char* verbs = "plan, check, evaluate, model";
+
+}  // namespace
+
+int run_command_line(const std::vector<std::string>& arguments, const Console& console) {
+  CLI::App app("Skycap plans aerial surveys of buildings and simulates them.", "skycap");
+  app.set_version_flag("--version", std::string("skycap ") + version);
+  app.require_subcommand(0, 1);
+  app.get_formatter()->column_width(28);
+  Action action;
+  try {
+    add_plan(app, console, action);
+    add_check(app, console, action);
+    add_evaluate(app, console, action);
+    add_model(app, console, action);
+    const auto known = app.get_subcommands({});
+    if (!arguments.empty() && !arguments[0].starts_with('-') &&
+        std::ranges::find(known, arguments[0], &CLI::App::get_name) == known.end()) {
+      throw Error(ErrorKind::bad_usage,
+                  "there is no verb '" + arguments[0] + "'; the verbs are " + verbs);
+    }
+    std::vector<std::string> reversed(arguments.rbegin(), arguments.rend());  // as CLI11 wants it
+    app.parse(reversed);
+    if (!action) {
+      throw Error(ErrorKind::bad_usage, std::string("says nothing to do; name one of the verbs ") +
+                                            verbs + ", or --help");
+    }
+    return action();
+  } catch (const CLI::Success& wish) {  // --help or --version
+    return app.exit(wish, console.out, console.err);
+  } catch (const CLI::ParseError& failure) {
+    return report_failure(console, std::string(failure.what()) + "; see --help", 2);
+  } catch (const Error& failure) {
+    return report_failure(console, failure.what(), 2);
+  } catch (const std::bad_alloc&) {
+    return report_failure(console, "there is not enough memory for this", 3);
+  } catch (const std::exception& failure) {
+    return report_failure(console, std::string("internal failure: ") + failure.what(), 3);
+  }
+}
+
+}  // namespace skycap::missions

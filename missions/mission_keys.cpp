@@ -1,0 +1,448 @@
+#include "missions/mission_keys.h"
+
+#include <algorithm>
+#include <numbers>
+#include <type_traits>
+#include <utility>
+
+namespace skycap::missions {
+namespace {
+
+constexpr double radians_per_degree = std::numbers::pi / 180.0;
+constexpr KeyRange any{};
+constexpr double far_away = 1e9;  // no survey is larger [m]
+
+constexpr KeyRange above(double least, double most = far_away) { return {least, most, true}; }
+constexpr KeyRange between(double least, double most) { return {least, most, false}; }
+
+template <class T>
+struct Unwrapped {
+  using Type = T;
+};
+template <class T>
+struct Unwrapped<std::optional<T>> {
+  using Type = T;
+};
+
+/// The key that stands for the field of Mission which `field` returns a reference to. A field of
+/// type std::optional is left to be derived when the key is missing.
+template <class Field>
+Key key_for(std::string path, KeyType type, Field field, std::string meaning) {
+  using Stored = std::remove_reference_t<decltype(field(std::declval<Mission&>()))>;
+  using Value = typename Unwrapped<Stored>::Type;
+
+  const double factor = path.ends_with("_deg") ? radians_per_degree : 1.0;
+  Key key;
+  key.path = std::move(path);
+  key.type = type;
+  key.meaning = std::move(meaning);
+  key.set = [field, factor](Mission& mission, const KeyValue& value) {
+    if constexpr (std::is_same_v<Value, double>) {
+      field(mission) = factor * std::get<double>(value);
+    } else if constexpr (std::is_same_v<Value, Eigen::Vector3d>) {
+      field(mission) = Value(factor * std::get<Eigen::Vector3d>(value));
+    } else if constexpr (std::is_integral_v<Value> && !std::is_same_v<Value, bool>) {
+      field(mission) = static_cast<Value>(std::get<std::int64_t>(value));
+    } else {
+      field(mission) = std::get<Value>(value);
+    }
+  };
+  key.get = [field, factor](const Mission& mission) -> std::optional<KeyValue> {
+    const Stored stored = field(const_cast<Mission&>(mission));
+    Value value;
+    if constexpr (std::is_same_v<Stored, Value>) {
+      value = stored;
+    } else {
+      if (!stored) return std::nullopt;
+      value = *stored;
+    }
+    if constexpr (std::is_same_v<Value, double>) {
+      return value / factor;
+    } else if constexpr (std::is_same_v<Value, Eigen::Vector3d>) {
+      return Eigen::Vector3d(value / factor);
+    } else if constexpr (std::is_integral_v<Value> && !std::is_same_v<Value, bool>) {
+      return static_cast<std::int64_t>(value);
+    } else {
+      return value;
+    }
+  };
+  return key;
+}
+
+template <class Field>
+Key text(std::string path, Field field, std::string meaning) {
+  return key_for(std::move(path), KeyType::text, field, std::move(meaning));
+}
+
+template <class Field>
+Key number(std::string path, std::string unit, KeyRange range, Field field, std::string meaning) {
+  Key key = key_for(std::move(path), KeyType::number, field, std::move(meaning));
+  key.unit = std::move(unit);
+  key.range = range;
+  return key;
+}
+
+template <class Field>
+Key integer(std::string path, std::string unit, KeyRange range, Field field, std::string meaning) {
+  Key key = key_for(std::move(path), KeyType::integer, field, std::move(meaning));
+  key.unit = std::move(unit);
+  key.range = range;
+  return key;
+}
+
+template <class Field>
+Key boolean(std::string path, Field field, std::string meaning) {
+  return key_for(std::move(path), KeyType::boolean, field, std::move(meaning));
+}
+
+template <class Field>
+Key vector(std::string path, std::string unit, KeyRange range, Field field, std::string meaning) {
+  Key key = key_for(std::move(path), KeyType::vector, field, std::move(meaning));
+  key.unit = std::move(unit);
+  key.range = range;
+  return key;
+}
+
+/// A key for an enumeration whose values, from 0 on, are called `choices`.
+template <class Field>
+Key choice(std::string path, std::vector<std::string> choices, Field field, std::string meaning) {
+  using Value = std::remove_reference_t<decltype(field(std::declval<Mission&>()))>;
+  Key key;
+  key.path = std::move(path);
+  key.type = KeyType::choice;
+  key.choices = std::move(choices);
+  key.meaning = std::move(meaning);
+  key.set = [field, names = key.choices](Mission& mission, const KeyValue& value) {
+    const auto name = std::ranges::find(names, std::get<std::string>(value));
+    field(mission) = static_cast<Value>(name - names.begin());
+  };
+  key.get = [field, names = key.choices](const Mission& mission) -> std::optional<KeyValue> {
+    return names[static_cast<std::size_t>(field(const_cast<Mission&>(mission)))];
+  };
+  return key;
+}
+
+/// Says in words what happens without the key.
+Key otherwise(std::string fallback, Key key) {
+  key.fallback = std::move(fallback);
+  return key;
+}
+
+Key required(Key key) {
+  key.is_required = true;
+  return key;
+}
+
+/// One corner of the box outside which measurements are dropped.
+Key scene_box_corner(std::string path, std::string unit, bool is_upper, std::string meaning) {
+  Key key;
+  key.path = std::move(path);
+  key.type = KeyType::vector;
+  key.unit = std::move(unit);
+  key.range = between(-far_away, far_away);
+  key.meaning = std::move(meaning);
+  key.set = [is_upper](Mission& mission, const KeyValue& value) {
+    auto& box = mission.planner.see.scene_box;
+    if (!box) {
+      box = Eigen::AlignedBox3d(Eigen::Vector3d::Constant(-far_away),
+                                Eigen::Vector3d::Constant(far_away));
+    }
+    (is_upper ? box->max() : box->min()) = std::get<Eigen::Vector3d>(value);
+  };
+  key.get = [is_upper](const Mission& mission) -> std::optional<KeyValue> {
+    const auto& box = mission.planner.see.scene_box;
+    if (!box) return std::nullopt;
+    return is_upper ? box->max() : box->min();
+  };
+  return key;
+}
+
+std::vector<Key> general_keys() {
+  return {
+      otherwise("the file's name", text(
+                                       "name", [](Mission & m) -> auto& { return m.name; },
+                                       "Names the folder of the results.")),
+      integer(
+          "seed", "", between(0, 1e15), [](Mission & m) -> auto& { return m.seed; },
+          "Of the start view and the sensor's noise; the same seed gives the same results."),
+      integer(
+          "threads", "", between(0, 1024), [](Mission & m) -> auto& { return m.threads; },
+          "How many threads to use, 0 for all processors; does not change the results."),
+  };
+}
+
+std::vector<Key> scene_keys() {
+  return {
+      required(text(
+          "scene.model", [](Mission & m) -> auto& { return m.scene.model; },
+          "What is surveyed: builtin:NAME, model:NAME, or the path of a PLY, OBJ, STL or "
+          "OFF file, relative to the mission file.")),
+      choice(
+          "scene.up_axis", {"z", "y"}, [](Mission & m) -> auto& { return m.scene.up_axis; },
+          "Which axis of the model's own frame points up."),
+      vector(
+          "scene.rotation_deg", "degrees", between(-360, 360),
+          [](Mission & m) -> auto& { return m.scene.rotation; },
+          "Turns the upright model about the x, then the y, then the z axis."),
+      otherwise("the model's own size",
+                number(
+                    "scene.longest_side", "m", above(0, 1e6),
+                    [](Mission & m) -> auto& { return m.scene.longest_side; },
+                    "Scales the model until the longest side of its bounding box has this "
+                    "length.")),
+      otherwise("1", number(
+                         "scene.scale", "", above(0, far_away),
+                         [](Mission & m) -> auto& { return m.scene.scale; },
+                         "Scales the model by a factor, in place of longest_side.")),
+      vector(
+          "scene.position", "m", between(-1e6, 1e6),
+          [](Mission & m) -> auto& { return m.scene.position; },
+          "Where the middle of the base of the model's bounding box is put."),
+      boolean(
+          "scene.ground", [](Mission & m) -> auto& { return m.scene.ground; },
+          "Whether the sensor also sees a ground plane under the model. It is not part of the "
+          "coverage; planner.scene_box has to keep it out of the plan."),
+  };
+}
+
+std::vector<Key> sensor_keys() {
+  return {
+      choice(
+          "sensor.preset", {"d435", "high_resolution"},
+          [](Mission & m) -> auto& { return m.sensor.preset; },
+          "Depth camera whose values the keys below override: d435 is an Intel RealSense D435 "
+          "(848 x 480 pixels, 69.4 x 42.5 degrees), high_resolution the paper's for buildings "
+          "(2400 x 1750 pixels, 60 x 40 degrees)."),
+      integer(
+          "sensor.width", "px", between(1, 32768),
+          [](Mission & m) -> auto& { return m.sensor.camera.camera.width; },
+          "Columns of the image."),
+      integer(
+          "sensor.height", "px", between(1, 32768),
+          [](Mission & m) -> auto& { return m.sensor.camera.camera.height; }, "Rows of the image."),
+      number(
+          "sensor.horizontal_fov_deg", "degrees", between(0.1, 179),
+          [](Mission & m) -> auto& { return m.sensor.camera.camera.horizontal_fov; },
+          "Full horizontal angle of view."),
+      number(
+          "sensor.vertical_fov_deg", "degrees", between(0.1, 179),
+          [](Mission & m) -> auto& { return m.sensor.camera.camera.vertical_fov; },
+          "Full vertical angle of view."),
+      number(
+          "sensor.min_range", "m", between(0, 1e6),
+          [](Mission & m) -> auto& { return m.sensor.camera.camera.min_range; },
+          "Nearest depth, along the optical axis, that is measured."),
+      number(
+          "sensor.max_range", "m", above(0, 1e6),
+          [](Mission & m) -> auto& { return m.sensor.camera.camera.max_range; },
+          "Farthest depth, along the optical axis, that is measured."),
+      number(
+          "sensor.max_incidence_deg", "degrees", above(0, 90),
+          [](Mission & m) -> auto& { return m.sensor.camera.max_incidence; },
+          "Surfaces whose normal makes a larger angle than this with the ray give no return; 90 "
+          "switches the limit off."),
+      number(
+          "sensor.noise.sigma", "m", between(0, 1e3),
+          [](Mission & m) -> auto& { return m.sensor.camera.noise.sigma; },
+          "Standard deviation of the Gaussian noise of the measured points."),
+      choice(
+          "sensor.noise.direction", {"isotropic", "along_ray"},
+          [](Mission & m) -> auto& { return m.sensor.camera.noise.direction; },
+          "Whether the noise moves a point in x, y and z alike or along its ray only."),
+  };
+}
+
+std::vector<Key> survey_keys() {
+  return {
+      otherwise("at random",
+                vector(
+                    "start.position", "m", between(-1e6, 1e6),
+                    [](Mission & m) -> auto& { return m.start.position; },
+                    "Where the first view is taken from. At random: in a direction drawn by the "
+                    "seed, as far from the surface's centroid as the view distance and the mean "
+                    "distance of the surface to it, looking at it.")),
+      otherwise("-", vector(
+                         "start.look_at", "m", between(-1e6, 1e6),
+                         [](Mission & m) -> auto& { return m.start.look_at; },
+                         "A point that the first view looks at.")),
+      otherwise("-", vector(
+                         "start.direction", "", between(-1e6, 1e6),
+                         [](Mission & m) -> auto& { return m.start.direction; },
+                         "Which way the first view looks, in place of look_at.")),
+      integer(
+          "limits.max_views", "", between(1, 1e6),
+          [](Mission & m) -> auto& { return m.limits.max_views; },
+          "The survey ends after this many views."),
+      number(
+          "limits.max_distance", "m", above(0, 1e9),
+          [](Mission & m) -> auto& { return m.limits.max_distance; },
+          "The survey ends when the straight lines between views add up to this."),
+      otherwise("0 with ground, unlimited without",
+                number(
+                    "limits.ground_clearance", "m", between(-1e6, 1e6),
+                    [](Mission & m) -> auto& { return m.limits.ground_clearance; },
+                    "Least height of a view above the scene's base.")),
+      required(number(
+          "evaluation.registration_distance", "m", above(0, 1e3),
+          [](Mission & m) -> auto& { return m.evaluation.registration_distance; },
+          "r_d: a surface sample with a stored measurement this near is covered.")),
+      integer(
+          "evaluation.samples", "", between(100, 1e8),
+          [](Mission & m) -> auto& { return m.evaluation.samples; },
+          "Points spread evenly over the surface, by which coverage is measured."),
+      integer(
+          "evaluation.visible_directions", "", between(1, 1e4),
+          [](Mission & m) -> auto& { return m.evaluation.visible_directions; },
+          "Directions, spread over the sphere, from which a sample may be seen at the view "
+          "distance; if none is free it does not count as visible."),
+      integer(
+          "evaluation.ceiling_views", "", between(0, 1e4),
+          [](Mission & m) -> auto& { return m.evaluation.ceiling_views; },
+          "Views that the attainable coverage is measured with; 0 leaves it out."),
+      otherwise("-",
+                number(
+                    "paper.views", "", above(0), [](Mission & m) -> auto& { return m.paper.views; },
+                    "Views a publication needed, printed beside the results of trials.")),
+      otherwise("-", number(
+                         "paper.coverage", "share", between(0, 1),
+                         [](Mission & m) -> auto& { return m.paper.coverage; },
+                         "Coverage a publication reached.")),
+      otherwise("-", number(
+                         "paper.planning_time", "s", above(0),
+                         [](Mission & m) -> auto& { return m.paper.planning_time; },
+                         "Planning time of a publication, for a survey.")),
+      otherwise("-", number(
+                         "paper.distance", "m", above(0),
+                         [](Mission & m) -> auto& { return m.paper.distance; },
+                         "Distance a publication's sensor travelled.")),
+  };
+}
+
+std::vector<Key> planner_keys() {
+  const auto see = [](auto member) {
+    return [member](Mission & m) -> auto& { return m.planner.see.*member; };
+  };
+  using See = survey::SeeConfig;
+  const auto skycap_stop = [](auto member) {
+    return [member](Mission & m) -> auto& { return m.planner.skycap_stop.*member; };
+  };
+  using Stop = survey::StopRule;
+  return {
+      choice(
+          "planner.name", {"see++", "see", "skycap"},
+          [](Mission & m) -> auto& { return m.planner.name; },
+          "The planner. see is see++ without optimise_views and visibility_graph; skycap is our "
+          "own, which of the keys below uses spacing, view_distance, scene_box, wanted_coverage "
+          "and least_gain."),
+      choice(
+          "planner.preset", {"paper", "building"},
+          [](Mission & m) -> auto& { return m.planner.preset; },
+          "Values that the keys below override: paper as published, building as described "
+          "below."),
+      number("planner.density", "points/m^3", above(0, 1e12), see(&See::density),
+             "rho: wanted density of the measurements."),
+      number("planner.resolution_radius", "m", above(0, 1e3), see(&See::resolution_radius),
+             "r: radius in which the density is counted."),
+      number("planner.occlusion_search_distance", "m", above(0, 1e6),
+             see(&See::occlusion_search_distance),
+             "psi: how far from a frontier occluding measurements are looked for."),
+      integer("planner.visibility_update_limit", "views", between(1, 1e6),
+              see(&See::visibility_update_limit),
+              "tau: how many views nearest the sensor are kept up to date after a scan."),
+      otherwise(
+          "ceil(4/3 pi r^3 rho)",
+          integer("planner.core_threshold", "points", between(1, 1e6), see(&See::core_threshold),
+                  "k: points within r, itself counted, that make a point core.")),
+      otherwise("rho^(-1/2)", number("planner.spacing", "m", above(0, 1e3), see(&See::spacing),
+                                     "epsilon: least distance of stored measurements.")),
+      otherwise("from the sensor and rho",
+                number("planner.view_distance", "m", above(0, 1e6), see(&See::view_distance),
+                       "d: distance from a frontier to the view proposed for it.")),
+      otherwise(
+          "unlimited",
+          scene_box_corner("planner.scene_box.min", "m", false,
+                           "Lower corner of the box outside which measurements are dropped.")),
+      otherwise("unlimited",
+                scene_box_corner("planner.scene_box.max", "m", true, "Upper corner of that box.")),
+      choice("planner.outlier_rule", {"non_core", "labelled"}, see(&See::outlier_rule),
+             "Which neighbours make a point beside a core point a frontier: any other that is not "
+             "core, or one labelled outlier (released code, depends on the order)."),
+      otherwise("k", integer("planner.frame_neighbours", "points", between(3, 1000),
+                             see(&See::frame_neighbours),
+                             "Nearest points, itself counted, that a frontier's normal is "
+                             "estimated from.")),
+      boolean("planner.free_space_normals", see(&See::free_space_normals),
+              "Whether normals that point into measured surface are turned round."),
+      choice("planner.offset_line", {"sight_line", "normal"}, see(&See::offset_line),
+             "Along which line the start of the occlusion test (zeta) is looked for."),
+      otherwise("r",
+                number("planner.occlusion_radius", "m", above(0, 1e3), see(&See::occlusion_radius),
+                       "Ball radius and step of the occlusion test.")),
+      choice("planner.march_end", {"search_distance", "search_distance_from_offset"},
+             see(&See::march_end), "Whether the occlusion test ends at psi or at zeta + psi."),
+      boolean("planner.optimise_views", see(&See::optimise_views),
+              "Whether occluded frontiers are given a view from a clear direction (SEE++)."),
+      choice(
+          "planner.cap.policy", {"local", "global", "nonlinear_program"},
+          [](Mission & m) -> auto& { return m.planner.see.cap.policy; },
+          "Which clear direction: the one downhill from the observing direction, the centre of "
+          "the largest empty cap, or what the published program finds with NLopt."),
+      integer(
+          "planner.cap.max_evaluations", "", between(1, 1e6),
+          [](Mission & m) -> auto& { return m.planner.see.cap.max_evaluations; },
+          "Evaluations in each of the published program's two optimisations."),
+      choice("planner.observing_direction", {"ray", "image_axis"}, see(&See::observing_direction),
+             "What is called the observing direction of a point: its ray, or the optical axis."),
+      number("planner.occluder_spacing", "m", above(0, 1e3), see(&See::occluder_spacing),
+             "Spacing of the sparse cloud in which the clear direction is looked for."),
+      boolean("planner.drop_if_still_occluded", see(&See::drop_if_still_occluded),
+              "Whether frontiers that even the optimised view does not see are given up."),
+      boolean("planner.visibility_graph", see(&See::visibility_graph),
+              "Whether views are weighed by how many frontiers they see (SEE++)."),
+      boolean("planner.facing_test", see(&See::facing_test),
+              "Whether a frontier counts as seen only from the side of its normal."),
+      boolean("planner.field_of_view_test", see(&See::field_of_view_test),
+              "Whether a frontier counts as seen only inside the view's image."),
+      number("planner.first_view_weight", "", between(0, 1e6), see(&See::first_view_weight),
+             "SEE adds this times the distance to the first view when it looks for the nearest."),
+      choice("planner.nearest", {"exact", "octree"}, see(&See::nearest),
+             "How the nearest view is found: exactly, or with an approximate octree as in the "
+             "released code."),
+      choice("planner.adjustment", {"rotation", "shift", "none"}, see(&See::adjustment),
+             "How a view is moved that failed to resolve its frontier."),
+      choice("planner.adjustment_centroid", {"whole_scan", "accepted_points"},
+             see(&See::adjustment_centroid),
+             "Whose centroid tells the adjustment where the surface was seen."),
+      integer("planner.max_attempts", "views", between(1, 1e6), see(&See::max_attempts),
+              "Views aimed at one frontier before it is given up."),
+      boolean("planner.stay_on_target", see(&See::stay_on_target),
+              "Whether views aim at one frontier until it is resolved or given up."),
+      number("planner.frontier_spacing", "m", between(0, 1e3), see(&See::frontier_spacing),
+             "Views are proposed for one frontier within this distance; 0 for every one."),
+      number("planner.wanted_coverage", "share", above(0, 1), skycap_stop(&Stop::wanted_coverage),
+             "skycap ends when it believes this share of the surface covered."),
+      number("planner.least_gain", "share", between(0, 1), skycap_stop(&Stop::least_gain),
+             "skycap ends when no view promises this share of the known surface."),
+  };
+}
+
+}  // namespace
+
+std::span<const Key> mission_keys() {
+  static const std::vector<Key> keys = [] {
+    std::vector<Key> all = general_keys();
+    for (auto section : {scene_keys, sensor_keys, planner_keys, survey_keys}) {
+      std::ranges::move(section(), std::back_inserter(all));
+    }
+    return all;
+  }();
+  return keys;
+}
+
+const Key* find_key(std::string_view path) {
+  const auto keys = mission_keys();
+  const auto key = std::ranges::find(keys, path, &Key::path);
+  return key == keys.end() ? nullptr : &*key;
+}
+
+}  // namespace skycap::missions

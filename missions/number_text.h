@@ -1,0 +1,15 @@
+#pragma once
+
+#include <charconv>
+#include <string>
+
+namespace skycap::missions {
+
+/// The shortest decimal text that reads back as the same number.
+inline std::string exact_text(double number) {
+  char text[32];
+  const auto result = std::to_chars(text, text + sizeof text, number);
+  return {text, result.ptr};
+}
+
+}  // namespace skycap::missions

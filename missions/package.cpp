@@ -1,0 +1,177 @@
+#include "missions/package.h"
+
+#include <algorithm>
+
+#include <nlohmann/json.hpp>
+
+#include "geometry/cloud_io.h"
+#include "geometry/pose.h"
+#include "missions/cloud_normals.h"
+#include "missions/json_text.h"
+#include "missions/mission_keys.h"
+#include "missions/number_text.h"
+#include "missions/version.h"
+
+namespace skycap::missions {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json json_of(const Eigen::Vector3d& vector) { return {vector.x(), vector.y(), vector.z()}; }
+
+Json json_of(const std::optional<double>& number) { return number ? Json(*number) : Json(); }
+
+Json json_of(const std::vector<survey::PartTime>& times) {
+  Json parts = Json::object();
+  for (const auto& [part, seconds] : times) parts[part] = seconds;
+  return parts;
+}
+
+Json json_of(const KeyValue& value) {
+  if (const auto* vector = std::get_if<Eigen::Vector3d>(&value)) return json_of(*vector);
+  return std::visit(
+      [](const auto& plain) -> Json {
+        if constexpr (std::is_same_v<std::decay_t<decltype(plain)>, Eigen::Vector3d>) {
+          return {};
+        } else {
+          return plain;
+        }
+      },
+      value);
+}
+
+std::string value_text(const Mission& mission, const char* key) {
+  return to_text(*find_key(key)->get(mission));
+}
+
+/// All keys as they were in force, so that the survey can be repeated from its package.
+Json settings(const Mission& mission) {
+  Json values = Json::object();
+  for (const Key& key : mission_keys()) {
+    if (const auto value = key.get(mission)) values[key.path] = json_of(*value);
+  }
+  return values;
+}
+
+Json view_summary(std::size_t number, const JudgedView& judged) {
+  const survey::SurveyedView& view = judged.surveyed;
+  return {{"view", number},
+          {"position", json_of(view.view.position)},
+          {"direction", json_of(view.view.direction)},
+          {"returns", view.returns},
+          {"points_new", view.step.points_new},
+          {"points", view.points},
+          {"frontiers", view.step.frontiers},
+          {"coverage", judged.coverage},
+          {"planning_time_s", view.planning_time},
+          {"planning_time_parts_s", json_of(view.step.times)},
+          {"sensing_time_s", view.sensing_time},
+          {"distance_m", view.distance}};
+}
+
+std::vector<Eigen::Vector3d> sensor_positions(const SurveyRecord& record) {
+  std::vector<Eigen::Vector3d> positions;
+  for (const JudgedView& judged : record.views) {
+    positions.push_back(judged.surveyed.view.position);
+  }
+  return positions;
+}
+
+}  // namespace
+
+std::string views_csv(const SurveyRecord& record) {
+  std::string csv =
+      "view,x,y,z,direction_x,direction_y,direction_z,returns,points_new,points,frontiers,"
+      "coverage,distance_m\n";
+  for (std::size_t i = 0; i < record.views.size(); ++i) {
+    const JudgedView& judged = record.views[i];
+    const survey::SurveyedView& view = judged.surveyed;
+    csv += std::to_string(i);
+    for (const Eigen::Vector3d& vector : {view.view.position, view.view.direction}) {
+      for (int axis = 0; axis < 3; ++axis) csv.append(",").append(exact_text(vector[axis]));
+    }
+    for (const std::size_t count :
+         {view.returns, view.step.points_new, view.points, view.step.frontiers}) {
+      csv.append(",").append(std::to_string(count));
+    }
+    csv.append(",").append(exact_text(judged.coverage));
+    csv.append(",").append(exact_text(view.distance)).append("\n");
+  }
+  return csv;
+}
+
+std::string trajectory_tum(const SurveyRecord& record) {
+  std::string tum = "# timestamp tx ty tz qx qy qz qw\n";
+  for (std::size_t i = 0; i < record.views.size(); ++i) {
+    const Eigen::Isometry3d world_from_camera =
+        geometry::camera_pose(record.views[i].surveyed.view);
+    const Eigen::Vector3d& position = world_from_camera.translation();
+    const Eigen::Quaterniond turn(world_from_camera.linear());
+    tum += std::to_string(i);
+    for (const double number :
+         {position.x(), position.y(), position.z(), turn.x(), turn.y(), turn.z(), turn.w()}) {
+      tum.append(" ").append(exact_text(number));
+    }
+    tum += "\n";
+  }
+  return tum;
+}
+
+std::vector<survey::PartTime> planning_time_by_part(const SurveyRecord& record) {
+  std::vector<survey::PartTime> sums;
+  for (const JudgedView& judged : record.views) {
+    for (const auto& [part, seconds] : judged.surveyed.step.times) {
+      const auto sum = std::ranges::find(sums, part, &survey::PartTime::part);
+      if (sum == sums.end()) {
+        sums.push_back({part, seconds});
+      } else {
+        sum->seconds += seconds;
+      }
+    }
+  }
+  return sums;
+}
+
+std::string summary_json(const Mission& mission, const SurveyRecord& record,
+                         const CoverageFigures& coverage) {
+  Json summary{{"mission", mission.name},
+               {"planner", value_text(mission, "planner.name")},
+               {"preset", value_text(mission, "planner.preset")},
+               {"seed", record.seed},
+               {"threads", record.threads},
+               {"version", version},
+               {"complete", record.is_complete()},
+               {"stop_reason", name_of(record.stop_reason)},
+               {"views", record.views.size()},
+               {"points", record.cloud.size()},
+               {"coverage", coverage.all},
+               {"coverage_visible", json_of(coverage.visible)},
+               {"coverage_ceiling", json_of(coverage.ceiling)},
+               {"planning_time_s", record.planning_time()},
+               {"planning_time_parts_s", json_of(planning_time_by_part(record))},
+               {"sensing_time_s", record.sensing_time()},
+               {"distance_m", record.distance()},
+               {"settings", settings(mission)},
+               {"per_view", Json::array()}};
+  for (std::size_t i = 0; i < record.views.size(); ++i) {
+    summary["per_view"].push_back(view_summary(i, record.views[i]));
+  }
+  return json_text(summary);
+}
+
+void stage_package(const Mission& mission, const SurveyRecord& record,
+                   const CoverageFigures& coverage, unsigned threads, OutputFolder& folder) {
+  const double radius = 2.0 * mission.planner.see.resolution_radius;
+  std::vector<Eigen::Vector3f> normals =
+      cloud_normals(record.cloud, sensor_positions(record), radius, threads);
+  geometry::write_cloud(folder.stage("cloud.ply"), {.positions = record.cloud.positions,
+                                                    .normals = std::move(normals),
+                                                    .views = record.cloud.views,
+                                                    .colours = {}});
+  folder.write("views.csv", views_csv(record));
+  folder.write("trajectory.tum", trajectory_tum(record));
+  // Last, so that whoever sees the summary sees the rest.
+  folder.write("summary.json", summary_json(mission, record, coverage));
+}
+
+}  // namespace skycap::missions

@@ -1,0 +1,40 @@
+/// The mission package: the files that a survey leaves behind. docs/mission_file.md is the manual.
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "missions/mission.h"
+#include "missions/output_folder.h"
+#include "missions/survey_runner.h"
+
+namespace skycap::missions {
+
+/// Coverage of a finished survey: shares of samples. What was not measured is missing.
+struct CoverageFigures {
+  double all = 0.0;               ///< of the whole surface
+  std::optional<double> visible;  ///< of what admissible views can see
+  std::optional<double> ceiling;  ///< of the whole surface, attainable
+};
+
+/// Stages summary.json, cloud.ply, views.csv and trajectory.tum in `folder`; the caller commits.
+/// Every number is written with as many digits as it takes to read the same number back, so equal
+/// surveys give equal files; only summary.json holds times.
+void stage_package(const Mission& mission, const SurveyRecord& record,
+                   const CoverageFigures& coverage, unsigned threads, OutputFolder& folder);
+
+/// views.csv: a line for each view.
+std::string views_csv(const SurveyRecord& record);
+
+/// trajectory.tum: "timestamp tx ty tz qx qy qz qw" of world_from_camera for each view, the
+/// format of the TUM RGB-D benchmark. Nothing was flown, so a view's number is its timestamp.
+std::string trajectory_tum(const SurveyRecord& record);
+
+/// summary.json, as docs/mission_file.md describes it.
+std::string summary_json(const Mission& mission, const SurveyRecord& record,
+                         const CoverageFigures& coverage);
+
+/// Planning time of a whole survey by part, in the order of execution.
+std::vector<survey::PartTime> planning_time_by_part(const SurveyRecord& record);
+
+}  // namespace skycap::missions

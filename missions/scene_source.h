@@ -1,0 +1,24 @@
+/// From the `scene` of a mission to the mesh that is surveyed.
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+#include "geometry/mesh.h"
+#include "missions/mission.h"
+
+namespace skycap::missions {
+
+/// The mesh that `scene` names, in its own frame: builtin:NAME, model:NAME, or the path of a mesh,
+/// relative to `folder`. Throws Error{bad_file}, {bad_config} or {bad_geometry}, naming the model,
+/// if it is not there, cannot be read, or is not a mesh with a surface.
+geometry::Mesh load_model(const SceneConfig& scene, const std::filesystem::path& folder);
+
+/// Turns, scales and places a model as `scene` says. Throws Error{bad_geometry} if the model has
+/// no extent to be scaled by.
+void place_model(const SceneConfig& scene, geometry::Mesh& model);
+
+/// A square in the plane of the scene's base, ten times as wide as the model.
+geometry::Mesh ground_under(const geometry::Mesh& placed_model);
+
+}  // namespace skycap::missions

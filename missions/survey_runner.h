@@ -1,0 +1,54 @@
+/// One simulated survey of a mission, judged while it runs.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <stop_token>
+#include <vector>
+
+#include "geometry/point_cloud.h"
+#include "missions/mission.h"
+#include "missions/survey_scene.h"
+#include "survey/planner.h"
+#include "survey/survey_loop.h"
+
+namespace skycap::missions {
+
+/// A view of the survey and the coverage after it.
+struct JudgedView {
+  survey::SurveyedView surveyed;
+  double coverage = 0.0;
+};
+
+/// What a survey left behind.
+struct SurveyRecord {
+  std::uint64_t seed = 1;
+  unsigned threads = 1;
+  survey::StopReason stop_reason = survey::StopReason::complete;
+  std::vector<JudgedView> views;
+  geometry::PointCloud cloud;
+  std::vector<std::uint8_t> is_covered;  ///< for each of the scene's samples
+
+  bool is_complete() const { return stop_reason == survey::StopReason::complete; }
+  double coverage() const { return views.empty() ? 0.0 : views.back().coverage; }
+  double distance() const { return views.empty() ? 0.0 : views.back().surveyed.distance; }
+  double planning_time() const;
+  double sensing_time() const;
+};
+
+/// The word for it in files: complete, view_limit, distance_limit, nowhere_to_go, interrupted.
+const char* name_of(survey::StopReason reason);
+
+/// The planner that the mission names, on so many threads (zero: all processors).
+std::unique_ptr<survey::Planner> make_planner(const Mission& mission, unsigned threads);
+
+/// Surveys the mission's scene with that seed and so many threads (zero: all processors). The
+/// record does not depend on the threads but for its times. `report` is told of each view; it may
+/// be empty. Throws what planner and sensor throw.
+SurveyRecord run_survey(const Mission& mission, const SurveyScene& scene, std::uint64_t seed,
+                        unsigned threads, std::stop_token stop = {},
+                        const std::function<void(const JudgedView&)>& report = {});
+
+}  // namespace skycap::missions

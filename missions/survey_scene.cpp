@@ -1,0 +1,148 @@
+#include "missions/survey_scene.h"
+
+#include <fstream>
+#include <random>
+#include <span>
+#include <sstream>
+#include <string>
+
+#include "geometry/camera.h"
+#include "geometry/error.h"
+#include "missions/mission_keys.h"
+#include "missions/model_store.h"
+#include "missions/output_folder.h"
+#include "missions/scene_source.h"
+#include "missions/sha256.h"
+#include "sim/depth_camera.h"
+
+namespace skycap::missions {
+namespace {
+
+using Eigen::Vector3d;
+
+constexpr std::uint64_t sample_seed = 1;  // coverage is measured by the same samples in all runs
+constexpr std::uint64_t ceiling_seed = 1;
+
+sim::Scene scene_of(const geometry::Mesh& model, const Mission& mission) {
+  if (!mission.scene.ground) return sim::Scene(model, mission.threads);
+  geometry::Mesh mesh = model;
+  geometry::append(mesh, ground_under(model));
+  return sim::Scene(mesh, mission.threads);
+}
+
+Vector3d uniform_direction(std::mt19937_64& random) {
+  std::normal_distribution<double> normal;
+  for (;;) {
+    const Vector3d direction(normal(random), normal(random), normal(random));
+    if (direction.norm() > 1e-3) return direction.normalized();
+  }
+}
+
+std::optional<double> number_in_file(const std::filesystem::path& file) {
+  std::ifstream stream(file);
+  double number = 0.0;
+  return stream >> number ? std::optional(number) : std::nullopt;
+}
+
+}  // namespace
+
+geometry::Mesh placed_model(const SceneConfig& scene, const std::filesystem::path& folder) {
+  geometry::Mesh model = load_model(scene, folder);
+  place_model(scene, model);
+  return model;
+}
+
+SurveyScene::SurveyScene(const Mission& mission, const std::filesystem::path& folder)
+    : mission_(mission),
+      model_(placed_model(mission.scene, folder)),
+      scene_(scene_of(model_, mission)),
+      samples_(geometry::sample_surface(model_, mission.evaluation.samples, sample_seed)),
+      view_distance_(mission.planner.see.view_distance.value_or(geometry::view_distance(
+          geometry::Camera(mission.sensor.camera.camera), mission.planner.see.density))) {}
+
+geometry::View SurveyScene::first_view(std::uint64_t seed) const {
+  const StartConfig& start = mission_.start;
+  if (start.position && start.look_at) return geometry::look_at(*start.position, *start.look_at);
+  if (start.position) return {*start.position, start.direction->normalized()};
+
+  Vector3d centroid = Vector3d::Zero();
+  for (const auto& point : samples_.points) centroid += point.cast<double>();
+  centroid /= static_cast<double>(samples_.points.size());
+  double mean_distance = 0.0;
+  for (const auto& point : samples_.points) {
+    mean_distance += (point.cast<double>() - centroid).norm();
+  }
+  mean_distance /= static_cast<double>(samples_.points.size());
+
+  std::mt19937_64 random(seed);
+  constexpr int most_attempts = 10'000;
+  for (int attempt = 0; attempt < most_attempts; ++attempt) {
+    const Vector3d position =
+        centroid + (view_distance_ + mean_distance) * uniform_direction(random);
+    if (position.z() >= mission_.planner.see.ground_clearance) {
+      return geometry::look_at(position, centroid);
+    }
+  }
+  throw Error(
+      ErrorKind::bad_config,
+      "limits.ground_clearance leaves no place for a random start at the view distance of " +
+          to_text(view_distance_) + " m; lower it or give start.position");
+}
+
+Admissible SurveyScene::admissible() const {
+  return {.view_distance = view_distance_,
+          .lowest_z = mission_.planner.see.ground_clearance,
+          .directions = mission_.evaluation.visible_directions,
+          .clearance = 0.01 * mission_.evaluation.registration_distance};
+}
+
+std::vector<std::uint8_t> SurveyScene::visible(unsigned threads) const {
+  return visible_samples(samples_.points, scene_, admissible(), threads);
+}
+
+std::optional<double> SurveyScene::ceiling(const std::vector<std::uint8_t>& is_visible,
+                                           unsigned threads) const {
+  if (mission_.evaluation.ceiling_views == 0) return std::nullopt;
+  const std::filesystem::path cached = user_cache() / "ceilings" / ceiling_key();
+  if (const auto known = number_in_file(cached)) return known;
+
+  CeilingConfig config;
+  config.views = mission_.evaluation.ceiling_views;
+  config.spacing = mission_.planner.see.effective_spacing();
+  config.registration_distance = mission_.evaluation.registration_distance;
+  if (mission_.planner.see.scene_box) config.box = *mission_.planner.see.scene_box;
+  config.seed = ceiling_seed;
+  const double ceiling =
+      coverage_ceiling(samples_.points, is_visible, scene_,
+                       sim::DepthCamera(mission_.sensor.camera), admissible(), config, threads);
+  try {
+    std::ostringstream text;
+    text.precision(17);
+    text << ceiling << "\n";
+    write_file(cached, text.str());
+  } catch (const Error&) {
+    // Without a cache it is computed again next time.
+  }
+  return ceiling;
+}
+
+std::string SurveyScene::ceiling_key() const {
+  std::ostringstream inputs;
+  inputs.precision(17);
+  inputs << "ceiling 1\n" << view_distance_ << " " << mission_.planner.see.effective_spacing();
+  for (const Key& key : mission_keys()) {
+    if (!key.path.starts_with("scene.") && !key.path.starts_with("sensor.") &&
+        !key.path.starts_with("evaluation.") && !key.path.starts_with("planner.scene_box") &&
+        key.path != "limits.ground_clearance") {
+      continue;
+    }
+    const auto value = key.get(mission_);
+    inputs << "\n" << key.path << " " << (value ? to_text(*value) : "-");
+  }
+  // The surface's samples stand for the mesh that was found under the model's name.
+  inputs << "\n" << sha256(std::as_bytes(std::span(samples_.points)));
+  const std::string text = inputs.str();
+  return sha256(std::as_bytes(std::span(text)));
+}
+
+}  // namespace skycap::missions

@@ -1,0 +1,61 @@
+/// A mission's scene made ready: the truth that the simulated sensor measures, and what the
+/// evaluation needs to know of it. Shared, unchanged, by all trials of a mission.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "geometry/mesh.h"
+#include "geometry/pose.h"
+#include "missions/evaluation.h"
+#include "missions/mission.h"
+#include "sim/scene.h"
+
+namespace skycap::missions {
+
+class SurveyScene {
+ public:
+  /// Loads and places the mission's model; `folder` is where relative paths start. Throws what
+  /// load_model() and place_model() throw.
+  SurveyScene(const Mission& mission, const std::filesystem::path& folder);
+
+  const geometry::Mesh& model() const { return model_; }  ///< as placed, without ground
+  const sim::Scene& scene() const { return scene_; }      ///< with ground, if there is one
+  const geometry::SurfaceSamples& samples() const { return samples_; }  ///< of the model
+
+  /// d: as the mission gives it, or from its camera and density.
+  double view_distance() const { return view_distance_; }
+
+  /// The first view of the survey with that seed: as the mission gives it, or at random on the
+  /// sphere around the surface's centroid whose radius is d and the surface's mean distance to the
+  /// centroid, above the ground clearance, looking at the centroid.
+  geometry::View first_view(std::uint64_t seed) const;
+
+  /// For each sample, 1 if an admissible sensor position sees it. Takes seconds.
+  std::vector<std::uint8_t> visible(unsigned threads) const;
+
+  /// The coverage that is attainable with the mission's sensor and spacing, see
+  /// missions::coverage_ceiling(). Takes seconds to minutes; kept in the user's cache under a
+  /// checksum of everything it depends on. Nothing if the mission leaves it out.
+  std::optional<double> ceiling(const std::vector<std::uint8_t>& is_visible,
+                                unsigned threads) const;
+
+ private:
+  Admissible admissible() const;
+  std::string ceiling_key() const;
+
+  Mission mission_;
+  geometry::Mesh model_;
+  sim::Scene scene_;
+  geometry::SurfaceSamples samples_;
+  double view_distance_;
+};
+
+/// The mission's mesh as surveyed: loaded and placed, without ground.
+geometry::Mesh placed_model(const SceneConfig& scene, const std::filesystem::path& folder);
+
+}  // namespace skycap::missions

@@ -1,0 +1,61 @@
+/// Many surveys of one mission with different seeds, and what they have in common.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <stop_token>
+#include <string>
+#include <vector>
+
+#include "missions/mission.h"
+#include "missions/package.h"
+#include "missions/survey_runner.h"
+#include "missions/survey_scene.h"
+
+namespace skycap::missions {
+
+/// The figures of one survey.
+struct Trial {
+  std::uint64_t seed = 0;
+  survey::StopReason stop_reason = survey::StopReason::complete;
+  CoverageFigures coverage;
+  std::size_t views = 0;
+  std::size_t points = 0;
+  double planning_time = 0.0;  ///< [s]
+  double distance = 0.0;
+  std::vector<double> coverage_after;  ///< each view
+  std::vector<double> distance_after;
+};
+
+/// Mean of a figure over the trials, and how sure it is.
+struct Statistic {
+  double mean = 0.0;
+  double deviation = 0.0;      ///< standard deviation, n - 1 in the denominator
+  double half_width_95 = 0.0;  ///< of the 95 % confidence interval of the mean, Student's t
+};
+
+/// Zero deviation and an infinite half width for one number; `numbers` must not be empty.
+Statistic statistic(const std::vector<double>& numbers);
+
+/// Runs `count` surveys with the mission's seed and those after it, up to `threads` at a time, each
+/// in one thread. The trials are those that separate runs would give. Trials that have not begun
+/// when `stop` is requested are left out, interrupted ones too. `report` is told of each that ends,
+/// from any thread, one at a time.
+std::vector<Trial> run_trials(const Mission& mission, const SurveyScene& scene, std::size_t count,
+                              unsigned threads, std::stop_token stop,
+                              const std::function<void(const Trial&)>& report);
+
+/// trials.csv: a line for each trial.
+std::string trials_csv(const std::vector<Trial>& trials);
+
+/// trials.json: statistics, mean curves over the views (a finished trial keeps its last coverage),
+/// and the mission's reference figures beside them.
+std::string trials_json(const Mission& mission, const std::vector<Trial>& trials,
+                        std::size_t requested, unsigned threads);
+
+/// The table for the terminal: means and half widths, and the mission's reference figures.
+std::string trials_table(const Mission& mission, const std::vector<Trial>& trials);
+
+}  // namespace skycap::missions

@@ -1,0 +1,57 @@
+/// The verbs of the program. Each takes its options, writes to the console, and returns the exit
+/// code: 0 done, 1 the answer is "no". Bad input is thrown as Error.
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "missions/console.h"
+#include "missions/mission_reader.h"
+
+namespace skycap::missions {
+
+struct PlanOptions {
+  std::filesystem::path mission;
+  std::optional<std::filesystem::path> out;  ///< default: results/NAME
+  std::vector<KeyOverride> overrides;
+  std::size_t trials = 0;  ///< zero: one survey, with a mission package
+  bool is_quiet = false;
+  bool is_verbose = false;
+};
+
+/// Surveys a mission's scene in simulation and writes the mission package, or the trials' files.
+/// Exit code 1 if the survey was interrupted or could not go on.
+int plan(const PlanOptions& options, const Console& console);
+
+struct CheckOptions {
+  std::filesystem::path mission;
+  std::vector<KeyOverride> overrides;
+};
+
+/// Checks a mission file and its scene; says what follows from it.
+int check(const CheckOptions& options, const Console& console);
+
+struct EvaluateOptions {
+  std::filesystem::path cloud;
+  std::string model;               ///< builtin:NAME, model:NAME, a mesh, or a mission file
+  std::optional<double> distance;  ///< r_d; a mission file says its own
+  std::size_t samples = 100'000;
+  bool is_json = false;
+};
+
+/// Says how much of a model a cloud covers, and how accurate and dense it is.
+int evaluate(const EvaluateOptions& options, const Console& console);
+
+struct ModelOptions {
+  std::string name;  ///< of a builtin or obtainable model, or a mission file
+  std::optional<std::filesystem::path> out;
+  std::optional<std::filesystem::path> render;
+};
+
+/// Obtains a model if it is not on the machine, and writes or renders it.
+int model(const ModelOptions& options, const Console& console);
+
+}  // namespace skycap::missions

@@ -1,0 +1,112 @@
+#include "survey/view_limits.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <sstream>
+
+#include "geometry/error.h"
+
+namespace skycap::survey {
+namespace {
+
+using Eigen::Vector2d;
+using Eigen::Vector3d;
+
+/// Rounding in the sine and cosine of a pitch, generously.
+constexpr double angle_tolerance = 1e-6;
+
+void require(bool holds, const std::string& what) {
+  if (!holds) throw Error(ErrorKind::bad_config, "limits." + what);
+}
+
+/// Even-odd rule: the ray from `point` along +x crosses the outline an odd number of times.
+bool is_inside(const std::vector<Vector2d>& polygon, const Vector2d& point) {
+  bool inside = false;
+  for (std::size_t i = 0, j = polygon.size() - 1; i < polygon.size(); j = i++) {
+    const Vector2d &a = polygon[i], &b = polygon[j];
+    if ((a.y() > point.y()) == (b.y() > point.y())) continue;
+    const double x = a.x() + (point.y() - a.y()) / (b.y() - a.y()) * (b.x() - a.x());
+    if (point.x() < x) inside = !inside;
+  }
+  return inside;
+}
+
+}  // namespace
+
+bool Prism::contains(const Vector3d& point) const {
+  return point.z() >= bottom && point.z() <= top && is_inside(corners, point.head<2>());
+}
+
+Prism box_prism(const Vector3d& lowest, const Vector3d& highest) {
+  return {.corners = {{lowest.x(), lowest.y()},
+                      {highest.x(), lowest.y()},
+                      {highest.x(), highest.y()},
+                      {lowest.x(), highest.y()}},
+          .bottom = lowest.z(),
+          .top = highest.z()};
+}
+
+void ViewLimits::validate() const {
+  require(stand_off >= 0.0 && std::isfinite(stand_off),
+          "stand_off is " + std::to_string(stand_off) + "; it must be zero or more metres");
+  require(!least_height || !most_height || *least_height < *most_height,
+          "least_height is not below most_height; nothing is left to fly in");
+  require(
+      least_pitch < most_pitch && std::abs(least_pitch) < 1.5708 && std::abs(most_pitch) < 1.5708,
+      "least_pitch must be below most_pitch, both between -pi/2 and pi/2");
+  require(geofence.empty() || geofence.size() >= 3,
+          "geofence has " + std::to_string(geofence.size()) + " corners; it needs three or more");
+  for (const Prism& prism : no_fly) {
+    require(prism.corners.size() >= 3, "no_fly has a volume of " +
+                                           std::to_string(prism.corners.size()) +
+                                           " corners; it needs three or more");
+    require(prism.bottom < prism.top, "no_fly has a volume whose bottom is not below its top");
+  }
+}
+
+bool ViewLimits::allow(const geometry::View& view) const {
+  const double pitch = std::asin(std::clamp(view.direction.z(), -1.0, 1.0));
+  if (pitch < least_pitch - angle_tolerance || pitch > most_pitch + angle_tolerance) return false;
+  const double height = view.position.z();
+  if ((least_height && height < *least_height) || (most_height && height > *most_height)) {
+    return false;
+  }
+  if (!geofence.empty() && !is_inside(geofence, view.position.head<2>())) return false;
+  return std::none_of(no_fly.begin(), no_fly.end(),
+                      [&](const Prism& prism) { return prism.contains(view.position); });
+}
+
+std::optional<geometry::View> ViewLimits::view_of_target(const Vector3d& target,
+                                                         const Vector3d& towards_view,
+                                                         double distance) const {
+  // Elevation of the view as seen from the target: the view looks down by as much.
+  double lowest = -most_pitch, highest = -least_pitch;
+  // A hair inside the limits, so that rounding does not carry the view across them.
+  const double margin = 1e-6 * distance;
+  if (least_height) {
+    const double sine = (*least_height + margin - target.z()) / distance;
+    if (sine > 1.0) return std::nullopt;
+    lowest = std::max(lowest, std::asin(std::max(sine, -1.0)));
+  }
+  if (most_height) {
+    const double sine = (*most_height - margin - target.z()) / distance;
+    if (sine < -1.0) return std::nullopt;
+    highest = std::min(highest, std::asin(std::min(sine, 1.0)));
+  }
+  if (lowest > highest) return std::nullopt;
+
+  const double wanted = std::asin(std::clamp(towards_view.z(), -1.0, 1.0));
+  const double elevation = std::clamp(wanted, lowest, highest);
+  Vector3d towards = towards_view;
+  if (elevation != wanted) {
+    const Vector2d level = towards_view.head<2>();
+    const Vector2d azimuth =
+        level.norm() > 1e-9 ? Vector2d(level.normalized()) : Vector2d(1.0, 0.0);
+    towards << std::cos(elevation) * azimuth, std::sin(elevation);
+  }
+  const geometry::View view{target + distance * towards, -towards};
+  return allow(view) ? std::optional(view) : std::nullopt;
+}
+
+}  // namespace skycap::survey

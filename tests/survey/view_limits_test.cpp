@@ -1,0 +1,99 @@
+#include "survey/view_limits.h"
+
+#include <cmath>
+#include <numbers>
+#include <random>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "geometry/error.h"
+
+namespace skycap::survey {
+namespace {
+
+using Eigen::Vector3d;
+using geometry::View;
+using testing::HasSubstr;
+
+constexpr double degree = std::numbers::pi / 180.0;
+
+TEST(ViewLimits, WithoutLimitsEveryViewIsAllowed) {
+  EXPECT_TRUE(ViewLimits{}.allow({{0, 0, -100}, {0, 0, 1}}));
+}
+
+TEST(ViewLimits, HeightPitchFenceAndNoFlyVolumesEachForbid) {
+  ViewLimits limits;
+  limits.least_height = 2.0;
+  limits.most_height = 50.0;
+  limits.least_pitch = -90 * degree;
+  limits.most_pitch = 30 * degree;
+  limits.geofence = {{-100, -100}, {100, -100}, {100, 100}, {-100, 100}};
+  limits.no_fly = {box_prism({10, 10, 0}, {20, 20, 30})};
+  limits.validate();
+  const Vector3d level = Vector3d::UnitX();
+  EXPECT_TRUE(limits.allow({{0, 0, 10}, level}));
+  EXPECT_FALSE(limits.allow({{0, 0, 1.9}, level}));
+  EXPECT_FALSE(limits.allow({{0, 0, 51}, level}));
+  EXPECT_FALSE(limits.allow({{0, 0, 10}, Vector3d(1, 0, 1).normalized()}));  // 45 degrees up
+  EXPECT_FALSE(limits.allow({{150, 0, 10}, level}));
+  EXPECT_FALSE(limits.allow({{15, 15, 10}, level}));
+  EXPECT_TRUE(limits.allow({{15, 15, 40}, level}));  // above the volume
+}
+
+// Property: whatever is returned is allowed, at the distance asked for, looking at the target.
+TEST(ViewLimits, ViewsOfATargetObeyTheLimits) {
+  ViewLimits limits;
+  limits.least_height = 2.0;
+  limits.most_height = 30.0;
+  limits.least_pitch = -80 * degree;
+  limits.most_pitch = 20 * degree;
+  std::mt19937_64 generator(3);
+  std::normal_distribution<double> normal;
+  int found = 0;
+  for (int i = 0; i < 1000; ++i) {
+    const Vector3d target(normal(generator), normal(generator), 5.0 + 10.0 * normal(generator));
+    const Vector3d towards =
+        Vector3d(normal(generator), normal(generator), normal(generator)).normalized();
+    const auto view = limits.view_of_target(target, towards, 20.0);
+    if (!view) continue;
+    ++found;
+    EXPECT_TRUE(limits.allow(*view));
+    EXPECT_NEAR((view->position - target).norm(), 20.0, 1e-9);
+    EXPECT_NEAR((target - view->position).normalized().dot(view->direction), 1.0, 1e-12);
+  }
+  EXPECT_GT(found, 500);
+}
+
+TEST(ViewLimits, ALowViewIsRaisedAtItsAzimuthAndAFreeOneIsKept) {
+  ViewLimits limits;
+  limits.least_height = 2.0;
+  const auto raised = limits.view_of_target({0, 0, 1}, Vector3d(1, 1, -1).normalized(), 10.0);
+  ASSERT_TRUE(raised);
+  EXPECT_NEAR(raised->position.z(), 2.0, 1e-4);  // the margin is a millionth of the distance
+  EXPECT_NEAR(raised->position.x(), raised->position.y(), 1e-9);
+  EXPECT_GT(raised->position.x(), 0.0);
+  const auto kept = limits.view_of_target({0, 0, 1}, Vector3d(0, 0, 1), 10.0);
+  ASSERT_TRUE(kept);
+  EXPECT_TRUE(kept->position.isApprox(Vector3d(0, 0, 11)));
+}
+
+TEST(ViewLimits, SaysWhichFieldIsWrong) {
+  const auto message_of = [](const ViewLimits& limits) -> std::string {
+    try {
+      limits.validate();
+    } catch (const Error& error) {
+      EXPECT_EQ(error.kind(), ErrorKind::bad_config);
+      return error.what();
+    }
+    return "accepted";
+  };
+  EXPECT_THAT(message_of({.stand_off = -1.0}), HasSubstr("stand_off"));
+  EXPECT_THAT(message_of({.least_height = 3.0, .most_height = 2.0}), HasSubstr("least_height"));
+  EXPECT_THAT(message_of({.geofence = {{0, 0}, {1, 0}}}), HasSubstr("geofence"));
+  EXPECT_THAT(message_of({.no_fly = {box_prism({0, 0, 1}, {1, 1, 0})}}), HasSubstr("no_fly"));
+  EXPECT_THAT(message_of({.least_pitch = 1.0, .most_pitch = 0.0}), HasSubstr("pitch"));
+}
+
+}  // namespace
+}  // namespace skycap::survey
