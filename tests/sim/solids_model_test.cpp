@@ -82,10 +82,10 @@ TEST(Solids, HaveTheirVolumesAndAreClosed) {
   EXPECT_EQ(why_not_closed(cuboid), "");
   EXPECT_NEAR(signed_volume(cuboid), 6.0, 1e-12);
 
-  const Fineness fine{1e-5};
+  const Fineness fine{1e-4};
   const Mesh ball = revolve(Profile(fine, 0, -1).arc_to(0, 1, pi).points(), fine.circle(1));
   EXPECT_EQ(why_not_closed(ball), "");
-  EXPECT_NEAR(signed_volume(ball), 4 * pi / 3, 1e-3);  // a shell of 3e-5 and less is missing
+  EXPECT_NEAR(signed_volume(ball), 4 * pi / 3, 4e-3);  // a shell of up to 3e-4 is missing
 
   // Pappus: area of the section times the way of its centroid; 1 - 1e-5 for the polygon.
   const Mesh ring = revolve_ring({{3, 0}, {4, 0}, {4, 2}, {3, 2}}, 1000);
