@@ -233,6 +233,10 @@ bool KnownSpace::continues_free(const Segment& leg, double clearance) const {
   return is_free;
 }
 
+double KnownSpace::surface_distance(const Vector3d& point, double up_to) const {
+  return impl_->surface_closest({point, point}, up_to).distance;
+}
+
 AlignedBox3d KnownSpace::extent() const { return impl_->extent; }
 
 std::string KnownSpace::name(const Closest& closest) const {
@@ -271,6 +275,11 @@ Closest JointSpace::closest(const Segment& leg, double up_to) const {
 bool JointSpace::continues_free(const Segment& leg, double clearance) const {
   return std::all_of(spaces_.begin(), spaces_.end(),
                      [&](const FreeSpace* space) { return space->continues_free(leg, clearance); });
+}
+
+double JointSpace::surface_distance(const Vector3d& point, double up_to) const {
+  for (const FreeSpace* space : spaces_) up_to = space->surface_distance(point, up_to);
+  return up_to;
 }
 
 AlignedBox3d JointSpace::extent() const {

@@ -53,6 +53,12 @@ class FreeSpace {
   /// What an obstacle is called in messages; empty if this space has no obstacles of its kind.
   virtual std::string name(const Closest& closest) const = 0;
 
+  /// Distance of a point to the nearest surface, up to `up_to`: distance() without the costly test
+  /// for being inside a solid. For searches that reach a place by proven legs only.
+  virtual double surface_distance(const Eigen::Vector3d& point, double up_to) const {
+    return distance(point, up_to);
+  }
+
   /// closest() and continues_free() without the assumption.
   bool is_free(const Segment& leg, double clearance) const;
   double distance(const Eigen::Vector3d& point, double up_to) const;
@@ -84,6 +90,7 @@ class KnownSpace : public FreeSpace {
 
   Closest closest(const Segment& leg, double up_to) const override;
   bool continues_free(const Segment& leg, double clearance) const override;
+  double surface_distance(const Eigen::Vector3d& point, double up_to) const override;
   Eigen::AlignedBox3d extent() const override;
   std::string name(const Closest& closest) const override;
 
@@ -107,6 +114,7 @@ class JointSpace : public FreeSpace {
 
   Closest closest(const Segment& leg, double up_to) const override;
   bool continues_free(const Segment& leg, double clearance) const override;
+  double surface_distance(const Eigen::Vector3d& point, double up_to) const override;
   Eigen::AlignedBox3d extent() const override;
   std::string name(const Closest& closest) const override;
 

@@ -39,7 +39,7 @@ class GridDistances {
   double distance(const Cell& cell) {
     Known& known = known_.at(cell, {});
     if (known.is_exact || known.bound >= needed_) return known.bound;
-    known = {space_->distance(position(cell), needed_ + 6.0 * cell_), true};
+    known = {space_->surface_distance(position(cell), needed_ + 6.0 * cell_), true};
     return known.bound;
   }
 

@@ -9,42 +9,45 @@ namespace {
 
 using Eigen::Vector3d;
 
-class BothPlanners : public testing::TestWithParam<SamplingPlanner> {};
-
 // Two engines that share no search: their paths are both proven, and as long to within 5 %, what
 // sampling with this effort comes to.
-TEST_P(BothPlanners, AgreeWithTheGridRoundABuildingAndThroughAWindow) {
-  Obstacles building, wall;
-  building.mesh = scenes::box({0, 0, -30}, {20, 20, 30});
+void expect_agreement(const Obstacles& obstacles, const Vector3d& from, const Vector3d& to,
+                      double clearance, const SamplingOptions& options) {
+  const KnownSpace space(obstacles);
+  const Path path = find_path_by_sampling(space, from, to, clearance, options);
+  const Path grid = PathFinder(space, clearance).find(from, to);
+  ASSERT_EQ(path.status, PathStatus::found);
+  ASSERT_EQ(grid.status, PathStatus::found);
+  EXPECT_LE(grid.length, 1.01 * path.length);
+  EXPECT_LE(path.length, 1.05 * grid.length);
+  for (std::size_t i = 1; i < path.points.size(); ++i) {
+    EXPECT_TRUE(prove(space, {path.points[i - 1], path.points[i]}, clearance).is_proven);
+  }
+}
+
+Obstacles building() {
+  Obstacles obstacles;
+  obstacles.mesh = scenes::box({0, 0, -30}, {20, 20, 30});
+  return obstacles;
+}
+
+TEST(SamplingPath, BitStarAgreesWithTheGridRoundABuilding) {
+  expect_agreement(building(), {10, -6, 0}, {26, 14, 0}, 2.0, {});
+}
+
+TEST(SamplingPath, AitStarAgreesWithTheGridRoundABuilding) {
+  expect_agreement(building(), {10, -6, 0}, {26, 14, 0}, 2.0,
+                   {.planner = SamplingPlanner::ait_star, .max_checks = 1500});
+}
+
+TEST(SamplingPath, BitStarAgreesWithTheGridThroughAWindow) {
+  Obstacles wall;
   wall.mesh = scenes::box({-30, 0, -30}, {0, 1, 30});
   geometry::append(wall.mesh, scenes::box({6, 0, -30}, {30, 1, 30}));
   geometry::append(wall.mesh, scenes::box({0, 0, -30}, {6, 1, -3}));
   geometry::append(wall.mesh, scenes::box({0, 0, 3}, {6, 1, 30}));
-  struct Case {
-    const Obstacles& obstacles;
-    Vector3d from, to;
-    double clearance;
-  };
-  // AIT* spends its time between the checks.
-  const std::size_t checks = GetParam() == SamplingPlanner::bit_star ? 4000 : 2000;
-  for (const Case& c : {Case{building, {10, -6, 0}, {26, 14, 0}, 2.0},
-                        Case{wall, {-8, -10, 0}, {-6, 12, 0}, 1.5}}) {
-    const KnownSpace space(c.obstacles);
-    const Path path = find_path_by_sampling(space, c.from, c.to, c.clearance,
-                                            {.planner = GetParam(), .max_checks = checks});
-    const Path grid = PathFinder(space, c.clearance).find(c.from, c.to);
-    ASSERT_EQ(path.status, PathStatus::found);
-    ASSERT_EQ(grid.status, PathStatus::found);
-    EXPECT_LE(grid.length, 1.01 * path.length);
-    EXPECT_LE(path.length, 1.05 * grid.length);
-    for (std::size_t i = 1; i < path.points.size(); ++i) {
-      EXPECT_TRUE(prove(space, {path.points[i - 1], path.points[i]}, c.clearance).is_proven);
-    }
-  }
+  expect_agreement(wall, {-8, -10, 0}, {-6, 12, 0}, 1.5, {});
 }
-
-INSTANTIATE_TEST_SUITE_P(Sampling, BothPlanners,
-                         testing::Values(SamplingPlanner::bit_star, SamplingPlanner::ait_star));
 
 TEST(SamplingPath, NoWayIsANormalAnswer) {
   Obstacles cage;
