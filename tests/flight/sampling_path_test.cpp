@@ -40,15 +40,6 @@ TEST(SamplingPath, AitStarAgreesWithTheGridRoundABuilding) {
                    {.planner = SamplingPlanner::ait_star, .max_checks = 1500});
 }
 
-TEST(SamplingPath, BitStarAgreesWithTheGridThroughAWindow) {
-  Obstacles wall;
-  wall.mesh = scenes::box({-30, 0, -30}, {0, 1, 30});
-  geometry::append(wall.mesh, scenes::box({6, 0, -30}, {30, 1, 30}));
-  geometry::append(wall.mesh, scenes::box({0, 0, -30}, {6, 1, -3}));
-  geometry::append(wall.mesh, scenes::box({0, 0, 3}, {6, 1, 30}));
-  expect_agreement(wall, {-8, -10, 0}, {-6, 12, 0}, 1.5, {});
-}
-
 TEST(SamplingPath, NoWayIsANormalAnswer) {
   Obstacles cage;
   cage.mesh = scenes::box({-5, -5, -5}, {5, 5, 5});
