@@ -11,7 +11,8 @@ namespace {
 constexpr double degree = 0.017453292519943295;
 
 /// Sources: makers' data sheets for speeds, mass, battery and endurance; WPML codes from DJI's
-/// Cloud API documentation. The X10's battery and mass are estimates: Skydio does not publish them.
+/// Cloud API documentation. Estimates: the X10 battery and mass,
+/// the M350 flown mass and endurance with payload, and all drag areas and avionics powers.
 std::vector<Vehicle> all_profiles() {
   std::vector<Vehicle> profiles;
 
