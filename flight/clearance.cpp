@@ -200,7 +200,7 @@ KnownSpace::KnownSpace(KnownSpace&&) noexcept = default;
 KnownSpace& KnownSpace::operator=(KnownSpace&&) noexcept = default;
 
 Closest KnownSpace::closest(const Segment& leg, double up_to) const {
-  const Closest found = impl_->surface_closest(leg, up_to);
+  Closest found = impl_->surface_closest(leg, up_to);
   if (found.distance == 0.0) return found;
   // The leg crosses no surface, so all of it is inside what its start is inside of.
   return impl_->container(leg.from).value_or(found);

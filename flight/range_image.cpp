@@ -12,6 +12,12 @@ namespace {
 using Eigen::Vector3d;
 using std::numbers::pi;
 
+/// Where a pixel of an image is stored.
+std::size_t slot(int row, int column, int width) {
+  return static_cast<std::size_t>(row) * static_cast<std::size_t>(width) +
+         static_cast<std::size_t>(column);
+}
+
 }  // namespace
 
 RangeImage::RangeImage(const geometry::Scan& scan, const geometry::Camera& camera,
@@ -59,7 +65,7 @@ RangeImage::RangeImage(const geometry::Scan& scan, double ray_spacing, double ma
     const double v =
         (std::asin(std::clamp(p.y() / range, -1.0, 1.0)) + pi / 2) * pixels_per_radian_;
     const int column = std::min(static_cast<int>(u), width_ - 1);
-    float& depth = depths[static_cast<std::size_t>(static_cast<int>(v) * width_ + column)];
+    float& depth = depths[slot(static_cast<int>(v), column, width_)];
     const auto seen = static_cast<float>(std::min(range, max_depth));
     depth = depth == 0.0F ? seen : std::min(depth, seen);
   }
@@ -74,16 +80,15 @@ void RangeImage::build_pyramid(std::vector<float> depths) {
   while (width > 1 || height > 1) {
     const int half_width = (width + 1) / 2, half_height = (height + 1) / 2;
     const std::vector<float>&low = least_.back(), &high = greatest_.back();
-    std::vector<float> lower(static_cast<std::size_t>(half_width * half_height));
+    std::vector<float> lower(slot(half_height, 0, half_width));
     std::vector<float> higher(lower.size());
     for (int row = 0; row < half_height; ++row) {
       for (int column = 0; column < half_width; ++column) {
-        const auto target = static_cast<std::size_t>(row * half_width + column);
+        const std::size_t target = slot(row, column, half_width);
         const int right = std::min(2 * column + 1, width - 1);
         const int bottom = std::min(2 * row + 1, height - 1);
-        const auto at = [&](int r, int c) { return static_cast<std::size_t>(r * width + c); };
-        const std::size_t quad[] = {at(2 * row, 2 * column), at(2 * row, right),
-                                    at(bottom, 2 * column), at(bottom, right)};
+        const std::size_t quad[] = {slot(2 * row, 2 * column, width), slot(2 * row, right, width),
+                                    slot(bottom, 2 * column, width), slot(bottom, right, width)};
         lower[target] = std::min({low[quad[0]], low[quad[1]], low[quad[2]], low[quad[3]]});
         higher[target] = std::max({high[quad[0]], high[quad[1]], high[quad[2]], high[quad[3]]});
       }
@@ -103,7 +108,7 @@ RangeImage::Depths RangeImage::over(int left, int right, int top, int bottom) co
   Depths depths{std::numeric_limits<float>::infinity(), 0.0F};
   for (int row = top >> level; row <= bottom >> level; ++row) {
     for (int column = left >> level; column <= right >> level; ++column) {
-      const auto i = static_cast<std::size_t>(row * level_widths_[level] + column);
+      const std::size_t i = slot(row, column, level_widths_[level]);
       depths.least = std::min(depths.least, least_[level][i]);
       depths.greatest = std::max(depths.greatest, greatest_[level][i]);
     }

@@ -183,6 +183,11 @@ class KmlChecker {
   RouteFile route;
 
  private:
+  void complain(const std::string& who, const char* has, const std::string& value,
+                const char* right) {
+    problems.push_back("\"" + who + "\" " + has + " \"" + value + "\"" + right);
+  }
+
   void check(pugi::xml_node mark) {
     const std::string name = mark.child("name").text().get();
     for (const pugi::xml_node shape : mark.children()) {
@@ -191,8 +196,8 @@ class KmlChecker {
         const std::string mode = shape.child("altitudeMode").text().get();
         // Without it heights are ignored: the path would be drawn on the ground.
         if (mode != "absolute") {
-          problems.push_back("\"" + name + "\" has altitudeMode \"" + mode +
-                             "\"; it must be absolute for its heights to count");
+          complain(name, "has altitudeMode", mode,
+                   "; it must be absolute for its heights to count");
         }
         const pugi::xpath_node found = shape.select_node(".//coordinates");
         const std::vector<FilePoint> places = check_places(found.node().text().get(), name);
@@ -219,8 +224,7 @@ class KmlChecker {
       const auto longitude = number(0), latitude = number(1), height = number(2);
       if (parts.size() != 3 || !longitude || !latitude || !height || std::abs(*longitude) > 180.0 ||
           std::abs(*latitude) > 90.0) {
-        problems.push_back("\"" + name + "\" has the coordinates \"" + tuple +
-                           "\"; they must be longitude,latitude,height");
+        complain(name, "has the coordinates", tuple, "; they must be longitude,latitude,height");
         return places;
       }
       places.push_back({*latitude, *longitude, *height});

@@ -8,7 +8,7 @@ namespace skycap::flight {
 namespace {
 
 constexpr double to_deg = 180.0 / std::numbers::pi;
-constexpr int actions_per_line = 15;
+constexpr std::size_t actions_per_line = 15;
 constexpr std::size_t most_waypoints = 99;  // of one mission, on the oldest firmware still flown
 constexpr double stop_like_curve = 0.2;     // the smallest curve at a corner that Litchi takes [m]
 
@@ -22,7 +22,7 @@ std::string header() {
   std::string text =
       "latitude,longitude,altitude(m),heading(deg),curvesize(m),rotationdir,gimbalmode,"
       "gimbalpitchangle";
-  for (int i = 1; i <= actions_per_line; ++i) {
+  for (std::size_t i = 1; i <= actions_per_line; ++i) {
     text += ",actiontype" + std::to_string(i) + ",actionparam" + std::to_string(i);
   }
   return text +
@@ -32,7 +32,7 @@ std::string header() {
 
 std::string actions_of(const Waypoint& waypoint) {
   std::string text;
-  int used = 0;
+  std::size_t used = 0;
   const auto act = [&](int action, const std::string& parameter) {
     text += "," + std::to_string(action) + "," + parameter;
     ++used;
@@ -82,7 +82,7 @@ struct Reading {
     for (const std::string& field : fields) {
       const std::optional<double> value = to_number(field);
       if (!value) {
-        problems.push_back(who + "has \"" + field + "\", which is not a number");
+        problems.push_back(not_a_number(who, field));
         return;
       }
       values.push_back(*value);
@@ -98,8 +98,8 @@ struct Reading {
     require(fields_before_actions + 2 * actions_per_line + 1, 0, 15, "speed");
 
     FilePoint point{values[0], values[1], values[2], values[3]};
-    for (int i = 0; i < actions_per_line; ++i) {
-      const std::size_t field = fields_before_actions + 2 * static_cast<std::size_t>(i);
+    for (std::size_t i = 0; i < actions_per_line; ++i) {
+      const std::size_t field = fields_before_actions + 2 * i;
       const double parameter = values[field + 1];
       require(field, -1, 5, "an action type");
       if (values[field] == stay) point.hold += parameter / 1000.0;

@@ -48,6 +48,10 @@ std::vector<std::string> lines_of(std::string_view text) {
   return lines;
 }
 
+std::string not_a_number(const std::string& place, const std::string& field) {
+  return place + "has \"" + field + "\", which is not a number";
+}
+
 void throw_first(const Problems& problems, const std::string& what) {
   if (!problems.empty()) {
     throw Error(ErrorKind::bad_file, what + ": " + problems.front());

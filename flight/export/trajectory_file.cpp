@@ -123,7 +123,7 @@ std::vector<std::vector<double>> rows_of(const std::vector<std::string>& lines, 
     for (const std::string& field : split(lines[i], separator)) {
       const std::optional<double> value = to_number(field);
       if (!value) {
-        problems.push_back(who + "has \"" + field + "\", which is not a number");
+        problems.push_back(not_a_number(who, field));
         return rows;
       }
       row.push_back(*value);
@@ -157,7 +157,7 @@ std::vector<std::vector<double>> csv_rows(const std::string& text, Frame& frame,
 }
 
 std::vector<std::vector<double>> tum_rows(const std::string& text, Problems& problems) {
-  const auto rows = rows_of(lines_of(text), 0, ' ', 8, problems);
+  auto rows = rows_of(lines_of(text), 0, ' ', 8, problems);
   for (const auto& row : rows) {
     const double norm = Eigen::Vector4d(row[4], row[5], row[6], row[7]).norm();
     if (std::abs(norm - 1.0) > 1e-6) {

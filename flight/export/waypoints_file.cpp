@@ -50,7 +50,7 @@ struct Reading {
     for (const std::string& field : fields) {
       const std::optional<double> value = to_number(field);
       if (!value) {
-        problems.push_back(who + "has \"" + field + "\", which is not a number");
+        problems.push_back(not_a_number(who, field));
         return;
       }
       values.push_back(*value);
