@@ -8,6 +8,7 @@
 #include <string>
 
 #include <Eigen/Core>
+#include <Eigen/Geometry>
 
 #include "sim/depth_camera.h"
 #include "sim/models/models.h"
@@ -76,6 +77,41 @@ struct EvaluationConfig {
   std::size_t ceiling_views = 100;       ///< views of the attainable coverage; zero leaves it out
 };
 
+/// Where the local frame (x east, y north, z up) is on the Earth. Missing: files that need it are
+/// not written.
+struct Georeference {
+  std::optional<double> latitude;          ///< of the frame's origin on WGS84 [rad]
+  std::optional<double> longitude;         ///< [rad]
+  double ellipsoid_height = 0.0;           ///< of the origin
+  std::optional<double> geoid_undulation;  ///< height of the geoid above the ellipsoid there
+};
+
+/// In which order the exported mission visits the survey's views.
+enum class VisitOrder { shortest, survey };
+
+/// How views become a flight. Without a vehicle nothing is flown: the sensor is taken to reach
+/// every view, and no route is written.
+struct FlightConfig {
+  std::string vehicle = "none";  ///< a profile's name
+  double clearance = 2.0;        ///< that every leg is proven at; the errors below are part of it
+  double position_error = 0.1;
+  double tracking_error = 0.3;
+  double map_error = 0.1;
+  std::optional<Eigen::AlignedBox3d> unknown_box;  ///< where space must be measured to be free
+  double free_without_return = 0.0;
+  std::optional<Eigen::Vector3d> takeoff;  ///< the pad
+  std::optional<double> takeoff_climb;     ///< else 5 m, or a metre more than the clearance
+  double cruise_speed = 4.0;
+  double hold = 1.0;          ///< at a view [s]
+  double wind_speed = 0.0;    ///< [m/s]
+  double wind_from = 0.0;     ///< where it blows from, clockwise from north [rad]
+  double temperature = 15.0;  ///< of the battery [degrees Celsius]
+  double reserve = 0.25;      ///< share of the battery left at landing
+  VisitOrder order = VisitOrder::shortest;
+
+  bool is_flown() const { return vehicle != "none"; }
+};
+
 /// What a publication reports for this scene, printed beside the results of trials.
 struct ReferenceConfig {
   std::optional<double> views;
@@ -91,6 +127,8 @@ struct Mission {
   PlannerConfig planner;
   StartConfig start;
   LimitsConfig limits;
+  Georeference georeference;
+  FlightConfig flight;
   EvaluationConfig evaluation;
   ReferenceConfig paper;
   std::uint64_t seed = 1;

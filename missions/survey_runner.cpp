@@ -73,12 +73,25 @@ SurveyRecord run_survey(const Mission& mission, const SurveyScene& scene, std::u
   SurveyRecord record;
   record.seed = seed;
   record.threads = geometry::thread_count(threads);
+  const geometry::View first_view = scene.first_view(seed);
+  std::optional<SurveyFlight> flight;
+  if (mission.flight.is_flown()) flight.emplace(mission, first_view);
+
   std::uint64_t frame = 0;
   std::size_t points_judged = 0;
   survey::SurveyPorts ports;
   ports.sense = [&](const geometry::View& view) {
     return camera.scan(scene.scene(), view, frame++, threads);
   };
+  if (flight) {
+    ports.sensed = [&](const geometry::Scan& scan) {
+      flight->fly();
+      flight->take_in(scan);
+    };
+    ports.can_reach = [&](const Eigen::Vector3d& from, const geometry::View& to) {
+      return flight->can_reach(from, to);
+    };
+  }
   ports.report = [&](const survey::SurveyedView& view, const geometry::Scan&) {
     const std::span stored(planner->cloud().positions);
     meter.add(stored.subspan(points_judged));
@@ -88,10 +101,10 @@ SurveyRecord run_survey(const Mission& mission, const SurveyScene& scene, std::u
   };
   const survey::SurveyLimits limits{mission.limits.max_views, mission.limits.max_distance};
   record.stop_reason =
-      survey::run_survey(*planner, scene.first_view(seed), limits, ports, std::move(stop))
-          .stop_reason;
+      survey::run_survey(*planner, first_view, limits, ports, std::move(stop)).stop_reason;
   record.cloud = planner->cloud();
   record.is_covered = meter.is_covered();
+  if (flight) record.flown = flight->finish();
   return record;
 }
 
