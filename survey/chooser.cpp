@@ -115,8 +115,8 @@ class Chooser {
     double gain;  // given the stops picked before it
   };
 
-  void add_candidate(const Vector3d& target, const Vector3d& towards_view) {
-    const auto view = limits_.view_of_target(target, towards_view, settings_.view_distance);
+  void add_candidate(const Vector3d& target, const Vector3d& towards_view, double distance) {
+    const auto view = limits_.view_of_target(target, towards_view, distance);
     if (!view || (view->position - position_).norm() > most_way_ || !admits_(*view)) return;
     candidates_.push_back({*view, {}});
   }
@@ -130,7 +130,7 @@ class Chooser {
                                   ? Vector3d(cluster.normal.normalized())
                                   : Vector3d::UnitZ();
       for (const double tilt : tilts) {
-        add_candidate(target, tilted(normal, tilt, golden_angle * turn++));
+        add_candidate(target, tilted(normal, tilt, golden_angle * turn++), settings_.view_distance);
       }
     }
     Vector3d centroid = Vector3d::Zero();
@@ -144,7 +144,8 @@ class Chooser {
       const double z = 1.0 - 2.0 * (i + 0.5) / settings_.global_directions;
       const double level = std::sqrt(1.0 - z * z);
       const double azimuth = golden_angle * i;
-      add_candidate(centroid / weight, {level * std::cos(azimuth), level * std::sin(azimuth), z});
+      add_candidate(centroid / weight, {level * std::cos(azimuth), level * std::sin(azimuth), z},
+                    settings_.view_distance);
     }
   }
 
@@ -185,9 +186,12 @@ class Chooser {
                   : Vector3d(best.view.position + settings_.view_distance * best.view.direction);
       const Vector3d towards = re_aims ? Vector3d((best.view.position - gained).normalized())
                                        : Vector3d(-best.view.direction);
+      // What a view of a whole object gains is nearer than the object's middle that it is aimed at.
+      const double distance =
+          std::min(settings_.view_distance, (best.view.position - target).norm());
       for (int i = 0; i < turned_directions; ++i) {
         const double azimuth = 2.0 * std::numbers::pi * i / turned_directions;
-        add_candidate(target, tilted(towards, turn, azimuth));
+        add_candidate(target, tilted(towards, turn, azimuth), distance);
       }
     }
     evaluate(first);
