@@ -28,7 +28,7 @@ struct StopRule {
   /// covered; in (0, 1].
   double wanted_coverage = 1.0;
   /// Another view is not worth it: the best one promises less than this share of the known area.
-  double least_gain = 0.005;
+  double least_gain = 0.004;
   std::optional<std::size_t> most_views;
   std::optional<double> most_length;  ///< of the straight lines between the views
   std::optional<double> most_time;    ///< of the flight [s], by `speed` and `time_per_view`
