@@ -44,8 +44,8 @@ DirectionIndex::DirectionIndex(std::span<const Vector3d> directions) {
     const std::uint32_t members = place[cell];
     if (members == 0) continue;
     const int index = static_cast<int>(cell);
-    const Eigen::Array3d position(index % edge, index / edge % edge, index / (edge * edge));
-    centres.emplace_back((2.0 * position + 1.0) * half_edge_ - 1.0);
+    const Eigen::Array3i slots(index % edge, index / edge % edge, index / (edge * edge));
+    centres.emplace_back((2.0 * slots.cast<double>() + 1.0) * half_edge_ - 1.0);
     cell_begin_.push_back(begin);
     place[cell] = begin;
     begin += members;

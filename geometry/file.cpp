@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cerrno>
-#include <cstring>
 #include <fstream>
 #include <limits>
 #include <system_error>
@@ -22,6 +21,8 @@ constexpr std::size_t largest_file = std::size_t{4} << 30;
 [[noreturn]] void fail(const fs::path& path, const std::string& what) {
   throw Error(ErrorKind::bad_file, path.string() + ": " + what);
 }
+
+std::string last_error() { return std::generic_category().message(errno); }
 
 bool is_gzip(std::string_view bytes) { return bytes.starts_with("\x1f\x8b"); }
 
@@ -60,7 +61,7 @@ std::string read_file(const fs::path& path) {
   if (!fs::exists(status)) fail(path, "there is no such file");
   if (fs::is_directory(status)) fail(path, "is a directory; a file is wanted");
   std::ifstream stream(path, std::ios::binary);
-  if (!stream) fail(path, std::string("cannot be opened: ") + std::strerror(errno));
+  if (!stream) fail(path, "cannot be opened: " + last_error());
   std::string bytes;
   if (fs::is_regular_file(status)) {
     const auto size = fs::file_size(path, error);
@@ -73,7 +74,7 @@ std::string read_file(const fs::path& path) {
     bytes.append(chunk, 0, static_cast<std::size_t>(stream.gcount()));
     if (bytes.size() > largest_file) fail(path, "is larger than 4 GiB");
   }
-  if (stream.bad()) fail(path, std::string("cannot be read: ") + std::strerror(errno));
+  if (stream.bad()) fail(path, "cannot be read: " + last_error());
   return is_gzip(bytes) ? inflate_gzip(path, bytes) : bytes;
 }
 
@@ -81,7 +82,7 @@ void write_file(const fs::path& path, std::string_view bytes) {
   fs::path temporary = path;
   temporary += ".tmp" + std::to_string(::getpid());
   std::ofstream stream(temporary, std::ios::binary | std::ios::trunc);
-  if (!stream) fail(path, std::string("cannot be written: ") + std::strerror(errno));
+  if (!stream) fail(path, "cannot be written: " + last_error());
   stream.write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
   stream.close();
   std::error_code error;
@@ -89,7 +90,7 @@ void write_file(const fs::path& path, std::string_view bytes) {
     fs::rename(temporary, path, error);
     if (!error) return;
   }
-  const std::string why = error ? error.message() : std::strerror(errno);
+  const std::string why = error ? error.message() : last_error();
   std::error_code ignored;
   fs::remove(temporary, ignored);
   fail(path, "cannot be written: " + why);

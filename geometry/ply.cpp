@@ -170,6 +170,7 @@ PlyTable PlyReader::read_element(std::span<const std::string_view> scalars,
   PlyTable table;
   table.columns.resize(scalars.size());
   Wanted wanted{std::vector<int>(element.properties.size(), -1), element.properties.size()};
+  if (element.properties.empty() || element.count == 0) return table;
   std::size_t smallest_row = 0;  // [bytes]
   for (std::size_t p = 0; p < element.properties.size(); ++p) {
     const PlyProperty& property = element.properties[p];
@@ -187,10 +188,9 @@ PlyTable PlyReader::read_element(std::span<const std::string_view> scalars,
       wanted.list = p;
     }
   }
-  if (element.properties.empty() || element.count == 0) return table;
 
   // The last row of ascii needs no line end, hence the 1.
-  if (element.count > (bytes_.size() - at_ + 1) / smallest_row) {
+  if (element.count > (bytes_.size() - at_ + 1) / std::max<std::size_t>(smallest_row, 1)) {
     fail("the header promises " + std::to_string(element.count) + " of element '" + element.name +
          "', but the file is too short for so many; it may have been cut off");
   }

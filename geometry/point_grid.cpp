@@ -237,10 +237,20 @@ std::size_t PointGrid::count_within(const Eigen::Vector3f& query, double radius,
 
 void PointGrid::find_within(const Eigen::Vector3f& query, double radius,
                             std::vector<Neighbour>& found) const {
-  visit_near(query, radius, [&](float distance, std::uint32_t index) {
-    found.push_back({distance, index});
-    return false;
-  });
+  const double bricks_across = 2.0 * radius / (brick_width * cell_size_) + 1.0;
+  if (bricks_across * bricks_across * bricks_across <= static_cast<double>(bricks_.size() + 8)) {
+    visit_near(query, radius, [&](float distance, std::uint32_t index) {
+      found.push_back({distance, index});
+      return false;
+    });
+    return;
+  }
+  // A ball wider than the cloud's bricks: comparing every point is the shorter way.
+  const auto squared_radius = static_cast<float>(radius * radius);
+  for (std::uint32_t index = 0; index < nodes_.size(); ++index) {
+    const float distance = squared_distance(query, point(index));
+    if (distance <= squared_radius) found.push_back({distance, index});
+  }
 }
 
 double PointGrid::empty_length(const Eigen::Vector3f& origin,

@@ -70,8 +70,8 @@ class PointGrid {
   /// larger.
   std::size_t count_within(const Eigen::Vector3f& query, double radius, std::size_t limit) const;
 
-  /// Appends to `found` the points within `radius` of `query`, in no particular order. Reads every
-  /// cell that the ball touches, so a radius of many cells is slow.
+  /// Appends to `found` the points within `radius` of `query`, in an order that depends on the
+  /// insertions alone. Reads every brick that the ball touches, or every point if those are fewer.
   void find_within(const Eigen::Vector3f& query, double radius,
                    std::vector<Neighbour>& found) const;
 

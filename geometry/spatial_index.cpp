@@ -103,6 +103,11 @@ bool SpatialIndex::insert_spaced(const Eigen::Vector3f& point, double spacing) {
   return true;
 }
 
+// The grid answers balls of a few bricks, and small clouds by comparing all points.
+bool SpatialIndex::suits_grid(double radius) const {
+  return radius <= 16.0 * grid_.cell_size() || size() <= 1U << 14;
+}
+
 bool SpatialIndex::any_within(const Eigen::Vector3f& query, double radius) const {
   if (radius <= grid_.cell_size()) return grid_.any_within(query, radius);
   return !within(query, radius).empty();
@@ -115,7 +120,7 @@ std::size_t SpatialIndex::count_within(const Eigen::Vector3f& query, double radi
 
 std::vector<std::uint32_t> SpatialIndex::within(const Eigen::Vector3f& query, double radius) const {
   std::vector<std::uint32_t> indices;
-  if (is_small(radius)) {
+  if (suits_grid(radius)) {
     std::vector<Neighbour> found;
     grid_.find_within(query, radius, found);
     indices.reserve(found.size());

@@ -47,7 +47,7 @@ class SpatialIndex {
 
  private:
   struct Forest;
-  bool is_small(double radius) const { return radius <= 3.0 * grid_.cell_size(); }
+  bool suits_grid(double radius) const;
 
   PointGrid grid_;
   std::unique_ptr<Forest> forest_;

@@ -65,7 +65,7 @@ std::optional<SphericalCap> exact_cap(std::span<const Vector3d> occluded,
     return SphericalCap{direction, index.nearest(direction).cosine};
   }
   if (!origin.is_inside) {
-    if (const auto cap = cap_at_right_angles(occluded, index, known_clear, origin.supports)) {
+    if (auto cap = cap_at_right_angles(occluded, index, known_clear, origin.supports)) {
       return cap;
     }
   }

@@ -28,7 +28,8 @@ namespace skycap::geometry {
 
 enum class CapPolicy {
   local,              ///< downhill from the known clear direction in finite steps, as the paper's
-                      ///< solver goes; ends in an exact local minimum of h
+                      ///< solver goes, and over to larger caps next to the one found; ends in an
+                      ///< exact local minimum of h
   global,             ///< the largest empty cap there is
   nonlinear_program,  ///< the paper's two programs, solved by NLopt, for comparison
 };
@@ -49,9 +50,10 @@ struct SphericalCap {
                   ///< these fit into an open hemisphere
 };
 
-/// The clearest direction. `occluded` and `known_clear` are of unit length. Nothing is returned
-/// only under `nonlinear_program`, when both of its programs fail. Deterministic. With 30,000
-/// directions `local` takes some 0.5 ms, `global` 3 ms.
+/// The clearest direction. `occluded` and `known_clear` are of unit length (to 1e-6). Nothing is
+/// returned only under `nonlinear_program`, when both of its programs fail. Deterministic. With
+/// 30,000 directions `local` and `global` take about 0.6 ms; where these cover the sphere evenly,
+/// so that there is no clear direction, `global` takes 50 ms. Cosines are exact to 1e-6.
 std::optional<SphericalCap> clearest_direction(std::span<const Eigen::Vector3d> occluded,
                                                const Eigen::Vector3d& known_clear,
                                                const CapConfig& config = {});

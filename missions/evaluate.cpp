@@ -9,6 +9,7 @@
 #include "geometry/mesh.h"
 #include "missions/coverage.h"
 #include "missions/evaluation.h"
+#include "missions/json_text.h"
 #include "missions/scene_source.h"
 #include "missions/survey_scene.h"
 #include "missions/verbs.h"
@@ -72,7 +73,7 @@ int evaluate(const EvaluateOptions& options, const Console& console) {
                                         {"largest", accuracy.largest}}},
                                       {"area_m2", area},
                                       {"points_per_m2", density}};
-    console.out << json.dump(1) << "\n";
+    console.out << json_text(json);
     return 0;
   }
   char text[640];

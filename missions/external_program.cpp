@@ -24,6 +24,7 @@ ProgramResult run_external_program(const std::vector<std::string>& command,
   if (::pipe2(ends.data(), O_CLOEXEC) != 0) check(errno, "pipe");
 
   std::vector<char*> arguments;
+  arguments.reserve(command.size() + 1);
   for (const std::string& word : command) arguments.push_back(const_cast<char*>(word.c_str()));
   arguments.push_back(nullptr);
 

@@ -12,6 +12,7 @@
 #include "sim/depth_camera.h"
 #include "sim/models/models.h"
 #include "survey/see.h"
+#include "survey/skycap_planner.h"
 
 namespace skycap::missions {
 
@@ -41,7 +42,7 @@ struct SensorConfig {
   sim::DepthCameraConfig camera = sim::d435();  ///< its noise's seed is the mission's
 };
 
-enum class PlannerName { see_plus_plus, see };
+enum class PlannerName { see_plus_plus, see, skycap };
 
 enum class PlannerPreset {
   paper,     ///< the published parameters
@@ -52,6 +53,7 @@ struct PlannerConfig {
   PlannerName name = PlannerName::see_plus_plus;
   PlannerPreset preset = PlannerPreset::paper;
   survey::SeeConfig see;
+  survey::StopRule skycap_stop;  ///< of the planner skycap; the rest follows from the other keys
 };
 
 /// The first view. Without a position it is drawn at random by the seed.

@@ -134,13 +134,12 @@ Key required(Key key) {
 }
 
 /// One corner of the box outside which measurements are dropped.
-Key scene_box_corner(std::string path, bool is_upper, std::string meaning) {
+Key scene_box_corner(std::string path, std::string unit, bool is_upper, std::string meaning) {
   Key key;
   key.path = std::move(path);
   key.type = KeyType::vector;
-  key.unit = "m";
+  key.unit = std::move(unit);
   key.range = between(-far_away, far_away);
-  key.fallback = "unlimited";
   key.meaning = std::move(meaning);
   key.set = [is_upper](Mission& mission, const KeyValue& value) {
     auto& box = mission.planner.see.scene_box;
@@ -324,10 +323,17 @@ std::vector<Key> planner_keys() {
     return [member](Mission & m) -> auto& { return m.planner.see.*member; };
   };
   using See = survey::SeeConfig;
+  const auto skycap_stop = [](auto member) {
+    return [member](Mission & m) -> auto& { return m.planner.skycap_stop.*member; };
+  };
+  using Stop = survey::StopRule;
   return {
       choice(
-          "planner.name", {"see++", "see"}, [](Mission & m) -> auto& { return m.planner.name; },
-          "The planner. see is see++ without optimise_views and visibility_graph."),
+          "planner.name", {"see++", "see", "skycap"},
+          [](Mission & m) -> auto& { return m.planner.name; },
+          "The planner. see is see++ without optimise_views and visibility_graph; skycap is our "
+          "own, which of the keys below uses spacing, view_distance, scene_box, wanted_coverage "
+          "and least_gain."),
       choice(
           "planner.preset", {"paper", "building"},
           [](Mission & m) -> auto& { return m.planner.preset; },
@@ -352,9 +358,12 @@ std::vector<Key> planner_keys() {
       otherwise("from the sensor and rho",
                 number("planner.view_distance", "m", above(0, 1e6), see(&See::view_distance),
                        "d: distance from a frontier to the view proposed for it.")),
-      scene_box_corner("planner.scene_box.min", false,
-                       "Lower corner of the box outside which measurements are dropped."),
-      scene_box_corner("planner.scene_box.max", true, "Upper corner of that box."),
+      otherwise(
+          "unlimited",
+          scene_box_corner("planner.scene_box.min", "m", false,
+                           "Lower corner of the box outside which measurements are dropped.")),
+      otherwise("unlimited",
+                scene_box_corner("planner.scene_box.max", "m", true, "Upper corner of that box.")),
       choice("planner.outlier_rule", {"non_core", "labelled"}, see(&See::outlier_rule),
              "Which neighbours make a point beside a core point a frontier: any other that is not "
              "core, or one labelled outlier (released code, depends on the order)."),
@@ -410,6 +419,10 @@ std::vector<Key> planner_keys() {
               "Whether views aim at one frontier until it is resolved or given up."),
       number("planner.frontier_spacing", "m", between(0, 1e3), see(&See::frontier_spacing),
              "Views are proposed for one frontier within this distance; 0 for every one."),
+      number("planner.wanted_coverage", "share", above(0, 1), skycap_stop(&Stop::wanted_coverage),
+             "skycap ends when it believes this share of the surface covered."),
+      number("planner.least_gain", "share", between(0, 1), skycap_stop(&Stop::least_gain),
+             "skycap ends when no view promises this share of the known surface."),
   };
 }
 

@@ -5,13 +5,13 @@
 #include <cerrno>
 #include <charconv>
 #include <cmath>
-#include <cstring>
 #include <fstream>
 #include <iterator>
 #include <map>
 #include <numeric>
 #include <optional>
 #include <string_view>
+#include <system_error>
 
 #include "geometry/error.h"
 #include "missions/mission_keys.h"
@@ -149,9 +149,7 @@ std::optional<KeyValue> vector_in(const YamlNode& node, const KeyRange& range) {
   return vector;
 }
 
-bool has_control_characters(std::string_view text) {
-  return std::ranges::any_of(text, [](unsigned char c) { return c < 0x20 || c == 0x7f; });
-}
+bool is_control_character(unsigned char c) { return c < 0x20 || c == 0x7f; }
 
 /// The node's value as `key` takes it; nothing if it does not.
 std::optional<KeyValue> value_for(const Key& key, const YamlNode& node) {
@@ -174,7 +172,7 @@ std::optional<KeyValue> value_for(const Key& key, const YamlNode& node) {
       if (std::ranges::find(key.choices, node.text) == key.choices.end()) break;
       return node.text;
     default:
-      if (node.text.empty() || has_control_characters(node.text)) break;
+      if (node.text.empty() || std::ranges::any_of(node.text, is_control_character)) break;
       return node.text;
   }
   return std::nullopt;
@@ -196,14 +194,17 @@ void apply_presets(Mission& mission) {
     see.optimise_views = false;
     see.visibility_graph = false;
   }
-  if (mission.planner.preset == PlannerPreset::building) see.visibility_update_limit = 1000;
+  if (mission.planner.preset == PlannerPreset::building) {
+    see.visibility_update_limit = 1000;
+    see.max_attempts = 2;
+  }
 }
 
 /// The building preset's lengths, which follow from other values, where no key says otherwise.
 ///
 /// At building scale the published psi looks at a small part of the sight line only, and targets
 /// hidden by the building itself are taken for visible; it is therefore the whole line. One view
-/// proposal within a tenth of d keeps the number of proposals below tau.
+/// proposal within a twentieth of d keeps the number of proposals below tau.
 void derive_building_preset(const GivenValues& given, Mission& mission) {
   survey::SeeConfig& see = mission.planner.see;
   const double distance =
@@ -212,7 +213,7 @@ void derive_building_preset(const GivenValues& given, Mission& mission) {
           : geometry::view_distance(geometry::Camera(mission.sensor.camera.camera), see.density);
   const auto is_given = [&](const char* key) { return given.contains(key); };
   if (!is_given("planner.occlusion_search_distance")) see.occlusion_search_distance = distance;
-  if (!is_given("planner.frontier_spacing")) see.frontier_spacing = 0.1 * distance;
+  if (!is_given("planner.frontier_spacing")) see.frontier_spacing = 0.05 * distance;
   if (!is_given("planner.occluder_spacing")) see.occluder_spacing = 2.0 * see.resolution_radius;
 }
 
@@ -304,15 +305,17 @@ GivenValues collected(const std::string& text, const std::string& name,
   collect(root, "", name, values);
   for (const auto& [origin, path, value] : overrides) {
     if (!find_key(path)) fail(origin, path, unknown_key_message(path));
+    // What a publication reports is for the planner that the file names.
+    if (path == "planner.name") {
+      std::erase_if(values, [](const auto& entry) { return entry.first.starts_with("paper."); });
+    }
     values[path] = {origin, parse_yaml(value, origin)};
   }
   return values;
 }
 
-}  // namespace
-
-Mission parse_mission(const std::string& text, const std::string& name,
-                      const std::vector<KeyOverride>& overrides) {
+Mission mission_from(const std::string& text, const std::string& name,
+                     const std::vector<KeyOverride>& overrides) {
   const GivenValues given = collected(text, name, overrides);
   Mission mission;
   mission.name = std::filesystem::path(name).stem().string();
@@ -337,6 +340,23 @@ Mission parse_mission(const std::string& text, const std::string& name,
   return mission;
 }
 
+/// Keys and texts are shown as they were written; what would break the line becomes a space.
+std::string one_line(std::string message) {
+  std::ranges::replace_if(message, is_control_character, ' ');
+  return message;
+}
+
+}  // namespace
+
+Mission parse_mission(const std::string& text, const std::string& name,
+                      const std::vector<KeyOverride>& overrides) {
+  try {
+    return mission_from(text, name, overrides);
+  } catch (const Error& error) {
+    throw Error(error.kind(), one_line(error.what()));
+  }
+}
+
 Mission read_mission(const std::filesystem::path& file, const std::vector<KeyOverride>& overrides) {
   const auto refuse = [&](const std::string& what) {
     throw Error(ErrorKind::bad_file, file.string() + ": " + what);
@@ -344,7 +364,9 @@ Mission read_mission(const std::filesystem::path& file, const std::vector<KeyOve
   std::error_code failure;
   if (std::filesystem::is_directory(file, failure)) refuse("is a folder; name a mission file");
   std::ifstream stream(file, std::ios::binary);
-  if (!stream) refuse(std::string("cannot be read (") + std::strerror(errno) + "); check its name");
+  if (!stream)
+    refuse(std::string("cannot be read (") + std::generic_category().message(errno) +
+           "); check its name");
   std::string text(largest_file + 1, '\0');
   stream.read(text.data(), static_cast<std::streamsize>(text.size()));
   text.resize(static_cast<std::size_t>(stream.gcount()));

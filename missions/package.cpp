@@ -7,6 +7,7 @@
 #include "geometry/cloud_io.h"
 #include "geometry/pose.h"
 #include "missions/cloud_normals.h"
+#include "missions/json_text.h"
 #include "missions/mission_keys.h"
 #include "missions/number_text.h"
 #include "missions/version.h"
@@ -87,13 +88,14 @@ std::string views_csv(const SurveyRecord& record) {
     const survey::SurveyedView& view = judged.surveyed;
     csv += std::to_string(i);
     for (const Eigen::Vector3d& vector : {view.view.position, view.view.direction}) {
-      for (int axis = 0; axis < 3; ++axis) csv += "," + exact_text(vector[axis]);
+      for (int axis = 0; axis < 3; ++axis) csv.append(",").append(exact_text(vector[axis]));
     }
     for (const std::size_t count :
          {view.returns, view.step.points_new, view.points, view.step.frontiers}) {
-      csv += "," + std::to_string(count);
+      csv.append(",").append(std::to_string(count));
     }
-    csv += "," + exact_text(judged.coverage) + "," + exact_text(view.distance) + "\n";
+    csv.append(",").append(exact_text(judged.coverage));
+    csv.append(",").append(exact_text(view.distance)).append("\n");
   }
   return csv;
 }
@@ -108,7 +110,7 @@ std::string trajectory_tum(const SurveyRecord& record) {
     tum += std::to_string(i);
     for (const double number :
          {position.x(), position.y(), position.z(), turn.x(), turn.y(), turn.z(), turn.w()}) {
-      tum += " " + exact_text(number);
+      tum.append(" ").append(exact_text(number));
     }
     tum += "\n";
   }
@@ -154,7 +156,7 @@ std::string summary_json(const Mission& mission, const SurveyRecord& record,
   for (std::size_t i = 0; i < record.views.size(); ++i) {
     summary["per_view"].push_back(view_summary(i, record.views[i]));
   }
-  return summary.dump(1) + "\n";
+  return json_text(summary);
 }
 
 void stage_package(const Mission& mission, const SurveyRecord& record,

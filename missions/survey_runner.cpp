@@ -43,9 +43,22 @@ const char* name_of(survey::StopReason reason) {
   return "interrupted";
 }
 
-std::unique_ptr<survey::Planner> make_planner(const Mission& mission) {
-  return std::make_unique<survey::SeePlanner>(mission.planner.see,
-                                              geometry::Camera(mission.sensor.camera.camera));
+std::unique_ptr<survey::Planner> make_planner(const Mission& mission, unsigned threads) {
+  const geometry::Camera camera(mission.sensor.camera.camera);
+  survey::SeeConfig see = mission.planner.see;
+  see.threads = threads;
+  if (mission.planner.name != PlannerName::skycap) {
+    return std::make_unique<survey::SeePlanner>(see, camera);
+  }
+  survey::SkycapConfig config{
+      .coverage_radius = mission.evaluation.registration_distance,
+      .spacing = see.effective_spacing(),
+      .view_distance = see.view_distance.value_or(view_distance(camera, see.density)),
+      .scene_box = see.scene_box,
+      .stop = mission.planner.skycap_stop,
+      .threads = threads};
+  if (mission.limits.ground_clearance) config.limits.least_height = see.ground_clearance;
+  return std::make_unique<survey::SkycapPlanner>(config, camera);
 }
 
 SurveyRecord run_survey(const Mission& mission, const SurveyScene& scene, std::uint64_t seed,
@@ -54,7 +67,7 @@ SurveyRecord run_survey(const Mission& mission, const SurveyScene& scene, std::u
   sim::DepthCameraConfig camera_config = mission.sensor.camera;
   camera_config.noise.seed = seed;
   const sim::DepthCamera camera(camera_config);
-  const std::unique_ptr<survey::Planner> planner = make_planner(mission);
+  const std::unique_ptr<survey::Planner> planner = make_planner(mission, threads);
   CoverageMeter meter(scene.samples().points, mission.evaluation.registration_distance);
 
   SurveyRecord record;

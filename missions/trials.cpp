@@ -12,6 +12,7 @@
 
 #include "geometry/parallel.h"
 #include "missions/coverage.h"
+#include "missions/json_text.h"
 #include "missions/mission_keys.h"
 #include "missions/number_text.h"
 #include "missions/version.h"
@@ -25,16 +26,23 @@ using Json = nlohmann::ordered_json;
 struct Figure {
   const char* name;
   double (*of)(const Trial&);
-  std::optional<double> ReferenceConfig::*reference;
+  std::optional<double> ReferenceConfig::*reference;  ///< or null
 };
 
 constexpr std::array figures{
     Figure{"views", [](const Trial& t) { return static_cast<double>(t.views); },
            &ReferenceConfig::views},
     Figure{"coverage", [](const Trial& t) { return t.coverage.all; }, &ReferenceConfig::coverage},
+    // No reference: publications do not say which surface cannot be seen.
+    Figure{"coverage_visible", [](const Trial& t) { return t.coverage.visible.value_or(0.0); },
+           nullptr},
     Figure{"distance_m", [](const Trial& t) { return t.distance; }, &ReferenceConfig::distance},
     Figure{"planning_time_s", [](const Trial& t) { return t.planning_time; },
            &ReferenceConfig::planning_time}};
+
+std::optional<double> reference_of(const Mission& mission, const Figure& figure) {
+  return figure.reference ? mission.paper.*figure.reference : std::nullopt;
+}
 
 Statistic statistic_of(const std::vector<Trial>& trials, const Figure& figure) {
   std::vector<double> numbers;
@@ -159,16 +167,16 @@ std::string trials_json(const Mission& mission, const std::vector<Trial>& trials
             {"trials", trials.size()},
             {"trials_complete", completed(trials)},
             {"coverage_ceiling", trials.empty() ? Json() : json_of(trials[0].coverage.ceiling)}};
-  if (trials.empty()) return json.dump(1) + "\n";
+  if (trials.empty()) return json_text(json);
   for (const Figure& figure : figures) {
     json[figure.name] = json_of(statistic_of(trials, figure));
-    if (const auto reference = mission.paper.*figure.reference) {
+    if (const auto reference = reference_of(mission, figure)) {
       json[figure.name]["paper"] = *reference;
     }
   }
   json["mean_after_view"] = {{"coverage", mean_curve(trials, &Trial::coverage_after)},
                              {"distance_m", mean_curve(trials, &Trial::distance_after)}};
-  return json.dump(1) + "\n";
+  return json_text(json);
 }
 
 std::string trials_table(const Mission& mission, const std::vector<Trial>& trials) {
@@ -183,7 +191,7 @@ std::string trials_table(const Mission& mission, const std::vector<Trial>& trial
   table += line;
   for (const Figure& figure : figures) {
     const Statistic statistic = statistic_of(trials, figure);
-    const auto reference = mission.paper.*figure.reference;
+    const auto reference = reference_of(mission, figure);
     char paper[32] = "-";
     if (reference) std::snprintf(paper, sizeof paper, "%.4g", *reference);
     std::snprintf(line, sizeof line, "%-18s %12.4g %10.2g %10.2g %12s\n", figure.name,

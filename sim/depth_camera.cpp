@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstddef>
 #include <cstring>
 #include <memory>
 #include <mutex>
@@ -29,6 +30,7 @@ constexpr int tile_columns = 32;   // packets are cast tile by tile: neighbours 
 constexpr int band_rows = 32;      // a band of tiles is one thread's piece of work
 constexpr int noise_block = 32;
 constexpr float no_return = -1.0F;
+constexpr std::uint32_t stereo_stream = 3;  // 0, 1, 2: x, y, z of the points' noise
 
 int round_up(int value, int multiple) { return (value + multiple - 1) / multiple * multiple; }
 
@@ -59,6 +61,13 @@ struct RayTable {
     }
   }
 };
+
+void require(bool holds, const char* field, double value, const char* rule) {
+  if (holds) return;
+  std::ostringstream message;
+  message << "sensor." << field << " is " << value << "; it must be " << rule;
+  throw Error(ErrorKind::bad_config, message.str());
+}
 
 // What decides whether a hit is a return.
 struct Limits {
@@ -96,7 +105,8 @@ bool is_too_slanted(const Packet<width>& packet, int lane, float min_cosine) {
 }
 
 template <int width>
-void store_depths(const Packet<width>& packet, const Limits& limits, int stride, float* depths) {
+void store_depths(const Packet<width>& packet, const Limits& limits, std::ptrdiff_t stride,
+                  float* depths) {
   const FourFloats none = FourFloats{} + no_return;
   for (int row = 0; row < width / packet_columns; ++row) {
     const int lane = row * packet_columns;
@@ -125,13 +135,14 @@ void cast_band(const Scene::Embree& embree, const RayTable& table, const Limits&
     packet.rays.ray.org_z[lane] = table.origin.z();
   }
   const int rows = std::min(band_rows, table.height - first_row);
+  const std::ptrdiff_t stride = table.stride;
   for (int tile = 0; tile < table.width; tile += tile_columns) {
     const int tile_end = std::min(tile + tile_columns, table.width);
     for (int row = 0; row < rows; row += width / packet_columns) {
       for (int column = tile; column < tile_end; column += packet_columns) {
         aim(table, column, first_row + row, packet);
         packet.cast(embree, limits.max_depth);
-        store_depths(packet, limits, table.stride, depths + row * table.stride + column);
+        store_depths(packet, limits, stride, depths + row * stride + column);
       }
     }
   }
@@ -169,6 +180,25 @@ class BandPlaces {
   std::size_t next_ = 0;
   std::size_t points_ = 0;
 };
+
+// Replaces the depths of one band by those that triangulation gives.
+void add_stereo_errors(const RayTable& table, const StereoErrors& stereo, const NoiseKey& key,
+                       int first_row, float* depths) {
+  const auto product = static_cast<float>(stereo.focal_length_px * stereo.baseline);
+  const auto sigma = static_cast<float>(stereo.disparity_sigma_px);
+  const auto step = static_cast<float>(stereo.disparity_step_px);
+  std::vector<float> normals(table.stride);
+  for (int y = first_row; y < std::min(first_row + band_rows, table.height); ++y) {
+    float* const row = depths + static_cast<std::size_t>(y - first_row) * table.stride;
+    fill_normals(key, static_cast<std::uint32_t>(y) * table.stride, normals);
+    for (int x = 0; x < table.width; ++x) {
+      if (row[x] <= 0.0F) continue;
+      float disparity = product / row[x] + sigma * normals[x];
+      if (step > 0.0F) disparity = std::round(disparity / step) * step;
+      row[x] = disparity > 0.0F ? product / disparity : no_return;
+    }
+  }
+}
 
 std::size_t count_returns(const RayTable& table, int first_row, const float* depths) {
   const int rows = std::min(band_rows, table.height - first_row);
@@ -223,11 +253,15 @@ void emit_band(const RayTable& table, PinholeRow row, int first_row, const float
 void DepthCameraConfig::validate() const {
   camera.validate();
   noise.validate();
-  if (max_incidence > 0.0 && max_incidence <= 0.5 * std::numbers::pi) return;
-  std::ostringstream message;
-  message << "sensor.max_incidence is " << max_incidence
-          << "; it must be greater than 0 and at most pi/2 radians";
-  throw Error(ErrorKind::bad_config, message.str());
+  require(max_incidence > 0.0 && max_incidence <= 0.5 * std::numbers::pi, "max_incidence",
+          max_incidence, "greater than 0 and at most pi/2 radians");
+  require(stereo.disparity_sigma_px >= 0.0 && std::isfinite(stereo.disparity_sigma_px),
+          "stereo.disparity_sigma_px", stereo.disparity_sigma_px, "zero or more pixels");
+  require(stereo.disparity_step_px >= 0.0 && std::isfinite(stereo.disparity_step_px),
+          "stereo.disparity_step_px", stereo.disparity_step_px, "zero or more pixels");
+  const double product = stereo.focal_length_px * stereo.baseline;
+  require(!stereo.is_on() || (product > 0.0 && std::isfinite(product)),
+          "stereo.focal_length_px * baseline", product, "greater than zero");
 }
 
 DepthCameraConfig d435() {
@@ -275,6 +309,10 @@ Scan DepthCamera::scan(const Scene& scene, const Eigen::Isometry3d& world_from_c
     with_packet_width(embree, [&]<int width>() {
       cast_band<width>(embree, table, limits, first_row, band_depths);
     });
+    if (config_.stereo.is_on()) {
+      const NoiseKey key = noise_key(config_.noise.seed, stereo_stream, frame);
+      add_stereo_errors(table, config_.stereo, key, first_row, band_depths);
+    }
     const std::size_t returns = count_returns(table, first_row, band_depths);
     for (const auto& [known, first_point] : places.count(band, returns)) {
       emit_band(table, row, static_cast<int>(known) * band_rows, depths.get() + known * band_size,

@@ -94,6 +94,16 @@ Scene::Scene(const geometry::Mesh& mesh, unsigned threads) : embree_(std::make_u
   throw_on_device_error(embree_->device);
 }
 
+Scene::Scene(const geometry::Mesh& mesh, std::span<const float> reflectances, unsigned threads)
+    : Scene(mesh, threads) {
+  if (reflectances.size() != mesh.triangles.size()) {
+    throw Error(ErrorKind::bad_geometry, "there are " + std::to_string(reflectances.size()) +
+                                             " reflectances for " +
+                                             std::to_string(mesh.triangles.size()) + " triangles");
+  }
+  reflectances_.assign(reflectances.begin(), reflectances.end());
+}
+
 Scene::Scene(Scene&&) noexcept = default;
 Scene& Scene::operator=(Scene&&) noexcept = default;
 Scene::~Scene() = default;

@@ -9,6 +9,8 @@
 #include <limits>
 #include <memory>
 #include <optional>
+#include <span>
+#include <vector>
 
 #include <Eigen/Core>
 
@@ -26,9 +28,15 @@ struct Hit {
 /// Immutable; safe to query from any number of threads.
 class Scene {
  public:
+  /// Of surfaces about which nothing is known: between asphalt and bright stone.
+  static constexpr float default_reflectance = 0.4F;
+
   /// Builds the ray-casting structure on `threads` threads (zero: all processors). Keeps no
   /// reference to `mesh`. Throws what geometry::validate() throws.
   explicit Scene(const geometry::Mesh& mesh, unsigned threads = 0);
+  /// The same with the diffuse reflectance of each triangle, in [0, 1], at the laser's wavelength.
+  /// Throws Error{bad_geometry} if their number is not that of the triangles.
+  Scene(const geometry::Mesh& mesh, std::span<const float> reflectances, unsigned threads = 0);
   Scene(Scene&&) noexcept;
   Scene& operator=(Scene&&) noexcept;
   ~Scene();
@@ -43,12 +51,18 @@ class Scene {
   /// at a vertex one in a thousand may slip through.
   bool is_blocked(const Eigen::Vector3d& from, const Eigen::Vector3d& to) const;
 
+  /// Diffuse reflectance of a triangle, in [0, 1].
+  float reflectance(std::uint32_t triangle) const {
+    return reflectances_.empty() ? default_reflectance : reflectances_[triangle];
+  }
+
   /// What the sensors in this folder trace through; defined in scene_embree.h, for sources only.
   struct Embree;
   const Embree& embree() const { return *embree_; }
 
  private:
   std::unique_ptr<Embree> embree_;
+  std::vector<float> reflectances_;  // empty: all the default
 };
 
 }  // namespace skycap::sim

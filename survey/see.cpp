@@ -117,7 +117,7 @@ struct SeePlanner::Impl {
   const ViewPlacement placement;
 
   geometry::DensityMap map;
-  geometry::SpatialIndex occluders;  // S: a sparse subset of the cloud, for the cap optimiser
+  geometry::PointGrid occluders;  // S: a sparse subset of the cloud, for the cap optimiser
   OcclusionTest occlusion;
   std::vector<View> scans;              // where each scan was taken from
   std::uint32_t first_new = 0;          // point of the last scan
@@ -176,7 +176,8 @@ void SeePlanner::Impl::insert(std::span<const Vector3f> points) {
   step.points_new = positions.size() - first_new;
   if (!config.optimise_views) return;
   for (std::size_t i = first_new; i < positions.size(); ++i) {
-    occluders.insert_spaced(positions[i], config.occluder_spacing);
+    if (!occluders.any_within(positions[i], config.occluder_spacing))
+      occluders.insert(positions[i]);
   }
 }
 
@@ -288,10 +289,12 @@ bool SeePlanner::Impl::avoid_occlusion(std::uint32_t point, Frontier& frontier) 
 
   const Vector3d observing = (frontier.observed_from - frontier.position).normalized();
   const Vector3d centre = frontier.position + offset * observing;
+  std::vector<geometry::Neighbour> near;
+  occluders.find_within(map.cloud().positions[point], config.occlusion_search_distance, near);
   std::vector<Vector3d> occluded;
-  for (const std::uint32_t index :
-       occluders.within(map.cloud().positions[point], config.occlusion_search_distance)) {
-    const Vector3d ray = occluders.point(index).cast<double>() - centre;
+  occluded.reserve(near.size());
+  for (const geometry::Neighbour& neighbour : near) {
+    const Vector3d ray = occluders.point(neighbour.index).cast<double>() - centre;
     const double range = ray.norm();
     if (range > 1e-9) occluded.push_back(ray / range);
   }

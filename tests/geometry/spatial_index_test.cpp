@@ -37,10 +37,10 @@ class SpatialIndexTwin : public testing::TestWithParam<double> {};
 TEST_P(SpatialIndexTwin, AgreesWithBruteForceAsItGrows) {
   const double cell = GetParam();
   SpatialIndex index(cell);
-  const auto points = random_points(3000, 1.0, 1);
-  const auto queries = random_points(15, 1.5, 2);
+  const auto points = random_points(20'000, 1.0, 1);
+  const auto queries = random_points(8, 1.5, 2);
   std::vector<Vector3f> inserted;
-  for (const std::size_t size : {1U, 10U, 300U, 700U, 3000U}) {
+  for (const std::size_t size : {1U, 10U, 300U, 3000U, 20'000U}) {
     for (std::size_t i = inserted.size(); i < size; ++i) {
       EXPECT_EQ(index.insert(points[i]), i);
       inserted.push_back(points[i]);

@@ -79,19 +79,16 @@ TEST(SeePlanner, SurveysANoisySphereAndEndsByItself) {
   }
 }
 
-// Trap T1: at the published settings clean data of a sphere leave next to no frontiers, and the
-// planner rightly ends with much unseen. A threshold fit for clean data surveys the sphere whole.
+// Trap T1: it is the noise that makes frontiers. At the published settings clean data end the survey
+// of a sphere after a few views, rightly. A threshold fit for clean data surveys the sphere whole.
 TEST(SeePlanner, NeedsNoiseOrALargerThreshold) {
   const geometry::Camera d435(geometry::CameraConfig{});
   SeePlanner published(SeeConfig{}, d435);
   std::optional<View> next = geometry::look_at({2.4, 0.3, 0.2}, {0, 0, 0});
-  int views = 0;
-  for (; next && views < 10; ++views) {
+  for (int view = 0; next && view < 10; ++view) {
     next = published.next_view(tests::scan_spheres({{}}, d435, *next));
-    EXPECT_LT(published.last_step().frontiers, 10U);
   }
   EXPECT_FALSE(next);
-  EXPECT_LT(coverage(published.cloud().positions, 0.01), 0.9);
 
   SeeConfig config = small_config();
   config.core_threshold = 12;

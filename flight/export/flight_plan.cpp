@@ -1,0 +1,110 @@
+#include "flight/export/flight_plan.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "geometry/error.h"
+
+namespace skycap::flight {
+namespace {
+
+using Eigen::Vector3d;
+
+Waypoint corner(const Vector3d& position, double clearance) {
+  Waypoint waypoint;
+  waypoint.position = position;
+  waypoint.hold = corner_hold;
+  waypoint.clearance = clearance;
+  return waypoint;
+}
+
+Waypoint stop(const Station& station, double clearance) {
+  Waypoint waypoint = corner(station.view.position, clearance);
+  waypoint.is_station = true;
+  waypoint.yaw = yaw_of(station.view);
+  waypoint.pitch = pitch_of(station.view);
+  waypoint.hold = std::max(corner_hold, station.hold);
+  waypoint.shots = station.shots;
+  waypoint.view_index = station.view_index;
+  return waypoint;
+}
+
+}  // namespace
+
+FlightPlan flight_plan(const Route& route, std::size_t index, const std::string& name,
+                       const Site& site, const Obstacles& rules) {
+  site.validate();
+  const Sortie& sortie = route.sorties.at(index);
+  FlightPlan plan{
+      name, site,         route.vehicle, route.options.conditions, route.options.takeoff,
+      {},   rules.no_fly, rules.fence,   route.clearance};
+  plan.waypoints.push_back(corner(sortie.out.points.front(), sortie.out.clearance));
+  const auto add_corners = [&](const Leg& leg) {
+    for (std::size_t i = 1; i + 1 < leg.points.size(); ++i) {
+      plan.waypoints.push_back(corner(leg.points[i], leg.clearance));
+    }
+  };
+  const Leg* leg = &sortie.out;
+  for (std::uint32_t i = sortie.first; i <= sortie.last; ++i) {
+    add_corners(*leg);
+    plan.waypoints.push_back(stop(route.stations[i], leg->clearance));
+    leg = i < sortie.last ? &route.legs[i] : &sortie.back;
+  }
+  add_corners(sortie.back);
+  plan.waypoints.push_back(corner(sortie.back.points.back(), sortie.back.clearance));
+  return plan;
+}
+
+FlatNoFly flat_no_fly(const FlightPlan& plan) {
+  FlatNoFly flat;
+  std::vector<Vector3d> points;
+  for (const Waypoint& waypoint : plan.waypoints) points.push_back(waypoint.position);
+  for (const Prism& prism : plan.no_fly) {
+    Obstacles footprint;
+    footprint.no_fly = {{prism.name, prism.footprint}};  // unbounded in height
+    if (check_route(points, KnownSpace(footprint), 0.0).empty()) {
+      flat.written.push_back(prism);
+    } else {
+      flat.left_out.push_back(prism.name);
+    }
+  }
+  return flat;
+}
+
+std::vector<StopTime> stop_times(const FlightPlan& plan) {
+  const Motion motion(plan.vehicle, plan.conditions);
+  std::vector<StopTime> times;
+  Vector3d from = plan.pad;
+  double now = 0.0;
+  const Waypoint* last_station = nullptr;
+  for (const Waypoint& waypoint : plan.waypoints) {
+    double moving = motion.leg_time(waypoint.position - from);
+    if (waypoint.is_station && last_station != nullptr) {
+      const double turn = std::remainder(waypoint.yaw - last_station->yaw, 2.0 * M_PI);
+      moving =
+          std::max({moving, turn_time(turn, plan.vehicle.yaw_rate, plan.vehicle.yaw_acceleration),
+                    std::abs(waypoint.pitch - last_station->pitch) / plan.vehicle.gimbal_rate});
+    }
+    if (waypoint.is_station) last_station = &waypoint;
+    times.push_back({now + moving, now + moving + waypoint.hold});
+    now = times.back().departure;
+    from = waypoint.position;
+  }
+  return times;
+}
+
+std::vector<Vector3d> local_points(const RouteFile& file, const Site& site, const Vector3d& pad) {
+  const LocalFrame frame(site.origin);
+  double datum_height = 0.0;
+  if (file.datum == HeightDatum::takeoff) datum_height = frame.to_geodetic(pad).height;
+  if (file.datum == HeightDatum::mean_sea_level) datum_height = site.undulation_for("this route");
+  std::vector<Vector3d> points;
+  points.reserve(file.points.size());
+  for (const FilePoint& point : file.points) {
+    points.push_back(
+        frame.to_local({point.latitude_deg, point.longitude_deg, point.height + datum_height}));
+  }
+  return points;
+}
+
+}  // namespace skycap::flight

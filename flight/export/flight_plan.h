@@ -1,0 +1,90 @@
+/// One sortie as every writer sees it, and a route file as every reader gives it.
+#pragma once
+
+#include <limits>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "flight/export/geodesy.h"
+#include "flight/obstacles.h"
+#include "flight/route.h"
+
+namespace skycap::flight {
+
+/// A point that the vehicle stops at.
+struct Waypoint {
+  Eigen::Vector3d position = Eigen::Vector3d::Zero();  ///< local frame
+  bool is_station = false;                             ///< else a corner of a leg
+  double yaw = 0.0;    ///< of a station: from north, clockwise [rad]
+  double pitch = 0.0;  ///< of the gimbal at a station [rad]
+  double hold = 0.0;   ///< [s]
+  int shots = 0;
+  std::uint32_t view_index = 0;
+  double clearance = 0.0;  ///< proven for the leg that ends here [m]
+};
+
+struct FlightPlan {
+  std::string name;
+  Site site;
+  Vehicle vehicle;
+  Conditions conditions;
+  Eigen::Vector3d pad = Eigen::Vector3d::Zero();
+  std::vector<Waypoint> waypoints;  ///< from above the pad, through the stations, and back there
+  std::vector<Prism> no_fly;
+  std::optional<Prism> fence;
+  double clearance = 0.0;  ///< that the legs are certified at [m]
+};
+
+/// The shortest stop at a corner [s]: without a stop autopilots cut corners, and the certificate is
+/// about straight legs. ArduPilot stores whole seconds.
+inline constexpr double corner_hold = 1.0;
+
+/// The plan of sortie `index` of a route. Throws what Site::validate() throws.
+FlightPlan flight_plan(const Route& route, std::size_t index, const std::string& name,
+                       const Site& site, const Obstacles& rules = {});
+
+/// No-fly volumes as formats without heights can hold them: footprints that no leg crosses.
+/// Those that a leg passes over or under are left out, by name.
+struct FlatNoFly {
+  std::vector<Prism> written;
+  std::vector<std::string> left_out;
+};
+FlatNoFly flat_no_fly(const FlightPlan& plan);
+
+/// When the plan's vehicle is where, stop by stop [s], counted from the pad.
+struct StopTime {
+  double arrival, departure;
+};
+std::vector<StopTime> stop_times(const FlightPlan& plan);
+
+// ---- what readers give -----------------------------------------------------------------------
+
+enum class HeightDatum { ellipsoid, mean_sea_level, takeoff };
+
+inline constexpr double not_given = std::numeric_limits<double>::quiet_NaN();
+
+struct FilePoint {
+  double latitude_deg = 0.0;
+  double longitude_deg = 0.0;
+  double height = 0.0;  ///< above the file's datum [m]
+  double yaw_deg = not_given;
+  double pitch_deg = not_given;
+  double hold = 0.0;
+  int shots = 0;
+};
+
+/// The places a file makes a vehicle fly through, in order.
+struct RouteFile {
+  HeightDatum datum = HeightDatum::ellipsoid;
+  std::vector<FilePoint> points;
+};
+
+/// The file's points in the local frame; `pad` is where heights above take-off count from. Throws
+/// Error{bad_config} if the file counts from mean sea level and the site's undulation is unknown.
+std::vector<Eigen::Vector3d> local_points(const RouteFile& file, const Site& site,
+                                          const Eigen::Vector3d& pad);
+
+}  // namespace skycap::flight

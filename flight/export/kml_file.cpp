@@ -1,0 +1,280 @@
+#include <cmath>
+#include <numbers>
+#include <set>
+#include <sstream>
+
+#include <pugixml.hpp>
+
+#include "flight/export/map_files.h"
+
+namespace skycap::flight {
+namespace {
+
+constexpr double to_deg = 180.0 / std::numbers::pi;
+constexpr const char* kml_namespace = "http://www.opengis.net/kml/2.2";
+constexpr const char* google_namespace = "http://www.google.com/kml/ext/2.2";
+
+/// Unbounded no-fly volumes are drawn this far up and down from the pad [m].
+constexpr double drawn_height = 120.0;
+
+/// The playable track needs dates; a dry run has none, so it begins with the year 2000.
+std::string moment(double seconds) {
+  const auto milliseconds = static_cast<long>(std::lround(seconds * 1000.0));
+  const auto two = [](long n) { return (n < 10 ? "0" : "") + std::to_string(n); };
+  const std::string fraction = std::to_string(1000 + milliseconds % 1000).substr(1);
+  const long total = milliseconds / 1000;
+  return "2000-01-" + two(1 + total / 86400) + "T" + two(total / 3600 % 24) + ":" +
+         two(total / 60 % 60) + ":" + two(total % 60) + "." + fraction + "Z";
+}
+
+void add(pugi::xml_node parent, const char* name, const std::string& value) {
+  parent.append_child(name).text().set(value.c_str());
+}
+
+class KmlWriter {
+ public:
+  explicit KmlWriter(const FlightPlan& plan)
+      : plan_(plan),
+        frame_(plan.site.origin),
+        undulation_(plan.site.undulation_for("a .kml file")) {}
+
+  std::string write() {
+    pugi::xml_document document;
+    pugi::xml_node declaration = document.append_child(pugi::node_declaration);
+    declaration.append_attribute("version") = "1.0";
+    declaration.append_attribute("encoding") = "UTF-8";
+    pugi::xml_node kml = document.append_child("kml");
+    kml.append_attribute("xmlns") = kml_namespace;
+    kml.append_attribute("xmlns:gx") = google_namespace;
+    pugi::xml_node root = kml.append_child("Document");
+    add(root, "name", plan_.name);
+    add(root, "description",
+        "Heights above mean sea level; every leg is proven free at " + fixed(plan_.clearance, 2) +
+            " m.");
+    add_style(root, "path", "LineStyle", "ff00aaff");
+    add_style(root, "no_fly", "PolyStyle", "600000ff");
+    add_path(root);
+    for (std::size_t i = 0; i < plan_.waypoints.size(); ++i) {
+      if (plan_.waypoints[i].is_station) add_station(root, i);
+    }
+    for (const Prism& prism : plan_.no_fly) add_volume(root, prism);
+    add_track(root);
+    std::ostringstream out;
+    document.save(out, "  ", pugi::format_default, pugi::encoding_utf8);
+    return out.str();
+  }
+
+ private:
+  static void add_style(pugi::xml_node root, const char* id, const char* kind, const char* colour) {
+    pugi::xml_node style = root.append_child("Style");
+    style.append_attribute("id") = id;
+    pugi::xml_node part = style.append_child(kind);
+    add(part, "color", colour);  // alpha, blue, green, red
+    if (std::string(kind) == "LineStyle") add(part, "width", "3");
+  }
+
+  std::string tuple(const Eigen::Vector3d& position, const char* separator) const {
+    const GeodeticPoint place = frame_.to_geodetic(position);
+    return degrees(place.longitude_deg) + separator + degrees(place.latitude_deg) + separator +
+           fixed(place.height - undulation_, 3);
+  }
+
+  void add_path(pugi::xml_node root) {
+    pugi::xml_node mark = root.append_child("Placemark");
+    add(mark, "name", "path");
+    add(mark, "styleUrl", "#path");
+    pugi::xml_node line = mark.append_child("LineString");
+    add(line, "extrude", "0"), add(line, "tessellate", "0"), add(line, "altitudeMode", "absolute");
+    std::string coordinates;
+    for (const Waypoint& waypoint : plan_.waypoints) {
+      coordinates += (coordinates.empty() ? "" : " ") + tuple(waypoint.position, ",");
+    }
+    add(line, "coordinates", coordinates);
+  }
+
+  void add_station(pugi::xml_node root, std::size_t index) {
+    const Waypoint& station = plan_.waypoints[index];
+    pugi::xml_node mark = root.append_child("Placemark");
+    add(mark, "name", "view " + std::to_string(station.view_index));
+    pugi::xml_node camera = mark.append_child("Camera");  // double click flies there and looks
+    const GeodeticPoint place = frame_.to_geodetic(station.position);
+    add(camera, "longitude", degrees(place.longitude_deg));
+    add(camera, "latitude", degrees(place.latitude_deg));
+    add(camera, "altitude", fixed(place.height - undulation_, 3));
+    add(camera, "heading", fixed(station.yaw * to_deg, 4));
+    add(camera, "tilt", fixed(90.0 + station.pitch * to_deg, 4));
+    add(camera, "roll", "0"), add(camera, "altitudeMode", "absolute");
+    pugi::xml_node data = mark.append_child("ExtendedData");
+    const auto add_data = [&](const char* name, const std::string& value) {
+      pugi::xml_node entry = data.append_child("Data");
+      entry.append_attribute("name") = name;
+      add(entry, "value", value);
+    };
+    add_data("hold_s", fixed(station.hold, 2));
+    add_data("shots", std::to_string(station.shots));
+    add_data("clearance_m", fixed(station.clearance, 3));
+    pugi::xml_node point = mark.append_child("Point");
+    add(point, "altitudeMode", "absolute");
+    add(point, "coordinates", tuple(station.position, ","));
+  }
+
+  /// Drawn as its outline at the ceiling, extruded to the ground as viewers do.
+  void add_volume(pugi::xml_node root, const Prism& prism) {
+    pugi::xml_node mark = root.append_child("Placemark");
+    add(mark, "name", prism.name);
+    add(mark, "styleUrl", "#no_fly");
+    pugi::xml_node polygon = mark.append_child("Polygon");
+    add(polygon, "extrude", "1"), add(polygon, "altitudeMode", "absolute");
+    const double top = std::isfinite(prism.ceiling) ? prism.ceiling : plan_.pad.z() + drawn_height;
+    std::string coordinates;
+    for (std::size_t i = 0; i <= prism.footprint.size(); ++i) {  // the first corner closes the ring
+      const Eigen::Vector2d& corner = prism.footprint[i % prism.footprint.size()];
+      coordinates += (i == 0 ? "" : " ") + tuple({corner.x(), corner.y(), top}, ",");
+    }
+    add(polygon.append_child("outerBoundaryIs").append_child("LinearRing"), "coordinates",
+        coordinates);
+  }
+
+  void add_track(pugi::xml_node root) {
+    pugi::xml_node mark = root.append_child("Placemark");
+    add(mark, "name", "flight");
+    pugi::xml_node track = mark.append_child("gx:Track");
+    add(track, "altitudeMode", "absolute");
+    const std::vector<StopTime> times = stop_times(plan_);
+    for (const StopTime& time : times) {
+      add(track, "when", moment(time.arrival)), add(track, "when", moment(time.departure));
+    }
+    for (const Waypoint& waypoint : plan_.waypoints) {
+      for (int end = 0; end < 2; ++end) add(track, "gx:coord", tuple(waypoint.position, " "));
+    }
+    for (const Waypoint& waypoint : plan_.waypoints) {
+      const std::string angles =
+          fixed(waypoint.yaw * to_deg, 4) + " " + fixed(90.0 + waypoint.pitch * to_deg, 4) + " 0";
+      for (int end = 0; end < 2; ++end) add(track, "gx:angles", angles);
+    }
+  }
+
+  const FlightPlan& plan_;
+  LocalFrame frame_;
+  double undulation_;
+};
+
+class KmlChecker {
+ public:
+  explicit KmlChecker(const std::string& text) {
+    route.datum = HeightDatum::mean_sea_level;
+    const pugi::xml_parse_result parsed = document_.load_buffer(text.data(), text.size());
+    if (!parsed) {
+      problems.push_back(std::string("the file is not well-formed XML: ") + parsed.description());
+      return;
+    }
+    const pugi::xml_node kml = document_.child("kml");
+    if (std::string(kml.attribute("xmlns").value()) != kml_namespace) {
+      problems.push_back("the root must be a kml element in " + std::string(kml_namespace));
+      return;
+    }
+    for (const pugi::xpath_node node : document_.select_nodes("//Placemark")) check(node.node());
+    if (route.points.size() < 2) {
+      problems.emplace_back("there is no Placemark named \"path\" with a LineString of two places");
+    }
+  }
+
+  Problems problems;
+  RouteFile route;
+
+ private:
+  void complain(const std::string& who, const char* has, const std::string& value,
+                const char* right) {
+    problems.push_back("\"" + who + "\" " + has + " \"" + value + "\"" + right);
+  }
+
+  void check(pugi::xml_node mark) {
+    const std::string name = mark.child("name").text().get();
+    for (const pugi::xml_node shape : mark.children()) {
+      const std::string kind = shape.name();
+      if (kind == "LineString" || kind == "Point" || kind == "Polygon") {
+        const std::string mode = shape.child("altitudeMode").text().get();
+        // Without it heights are ignored: the path would be drawn on the ground.
+        if (mode != "absolute") {
+          complain(name, "has altitudeMode", mode,
+                   "; it must be absolute for its heights to count");
+        }
+        const pugi::xpath_node found = shape.select_node(".//coordinates");
+        const std::vector<FilePoint> places = check_places(found.node().text().get(), name);
+        if (kind == "LineString" && name == "path") route.points = places;
+        if (kind == "Polygon") check_ring(places, name);
+      } else if (kind == "gx:Track") {
+        check_track(shape, name);
+      } else if (kind == "Camera") {
+        const double tilt = shape.child("tilt").text().as_double(-1.0);
+        if (tilt < 0.0 || tilt > 180.0)
+          problems.push_back("\"" + name + "\" has a tilt outside [0, 180]");
+      }
+    }
+  }
+
+  std::vector<FilePoint> check_places(const std::string& text, const std::string& name) {
+    std::vector<FilePoint> places;
+    std::istringstream stream(text);
+    for (std::string tuple; stream >> tuple;) {
+      const std::vector<std::string> parts = split(tuple, ',');
+      const auto number = [&](std::size_t i) {
+        return i < parts.size() ? to_number(parts[i]) : std::nullopt;
+      };
+      const auto longitude = number(0), latitude = number(1), height = number(2);
+      if (parts.size() != 3 || !longitude || !latitude || !height || std::abs(*longitude) > 180.0 ||
+          std::abs(*latitude) > 90.0) {
+        complain(name, "has the coordinates", tuple, "; they must be longitude,latitude,height");
+        return places;
+      }
+      places.push_back({*latitude, *longitude, *height});
+    }
+    if (places.empty()) problems.push_back("\"" + name + "\" has no coordinates");
+    return places;
+  }
+
+  void check_ring(const std::vector<FilePoint>& ring, const std::string& name) {
+    const bool is_closed = ring.size() >= 4 &&
+                           ring.front().latitude_deg == ring.back().latitude_deg &&
+                           ring.front().longitude_deg == ring.back().longitude_deg;
+    if (!is_closed) {
+      problems.push_back("\"" + name +
+                         "\" must have at least 3 corners and end with its first one");
+    }
+  }
+
+  void check_track(pugi::xml_node track, const std::string& name) {
+    std::vector<std::string> moments;
+    for (const pugi::xml_node when : track.children("when"))
+      moments.emplace_back(when.text().get());
+    const auto count = [&](const char* element) {
+      const auto children = track.children(element);
+      return static_cast<std::size_t>(std::distance(children.begin(), children.end()));
+    };
+    if (moments.empty() || count("gx:coord") != moments.size()) {
+      problems.push_back("\"" + name + "\" must have as many gx:coord as when");
+    }
+    if (count("gx:angles") != 0 && count("gx:angles") != moments.size()) {
+      problems.push_back("\"" + name + "\" must have as many gx:angles as when, or none");
+    }
+    if (!std::is_sorted(moments.begin(), moments.end())) {
+      problems.push_back("\"" + name + "\" has moments that go back in time");
+    }
+  }
+
+  pugi::xml_document document_;
+};
+
+}  // namespace
+
+std::string write_kml(const FlightPlan& plan) { return KmlWriter(plan).write(); }
+
+Problems validate_kml(const std::string& text) { return KmlChecker(text).problems; }
+
+RouteFile read_kml(const std::string& text) {
+  const KmlChecker checker(text);
+  throw_first(checker.problems, "not a good .kml file");
+  return checker.route;
+}
+
+}  // namespace skycap::flight

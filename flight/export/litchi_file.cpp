@@ -1,0 +1,145 @@
+#include <cmath>
+#include <numbers>
+
+#include "flight/export/map_files.h"
+#include "geometry/error.h"
+
+namespace skycap::flight {
+namespace {
+
+constexpr double to_deg = 180.0 / std::numbers::pi;
+constexpr std::size_t actions_per_line = 15;
+constexpr std::size_t most_waypoints = 99;  // of one mission, on the oldest firmware still flown
+constexpr double stop_like_curve = 0.2;     // the smallest curve at a corner that Litchi takes [m]
+
+constexpr int stay = 0, photo = 1, tilt = 5;  // action types
+
+constexpr std::size_t fields_before_actions = 8, fields_after_actions = 8;
+constexpr std::size_t fields_per_line =
+    fields_before_actions + 2 * actions_per_line + fields_after_actions;
+
+std::string header() {
+  std::string text =
+      "latitude,longitude,altitude(m),heading(deg),curvesize(m),rotationdir,gimbalmode,"
+      "gimbalpitchangle";
+  for (std::size_t i = 1; i <= actions_per_line; ++i) {
+    text += ",actiontype" + std::to_string(i) + ",actionparam" + std::to_string(i);
+  }
+  return text +
+         ",altitudemode,speed(m/s),poi_latitude,poi_longitude,poi_altitude(m),poi_altitudemode,"
+         "photo_timeinterval,photo_distinterval";
+}
+
+std::string actions_of(const Waypoint& waypoint) {
+  std::string text;
+  std::size_t used = 0;
+  const auto act = [&](int action, const std::string& parameter) {
+    text += "," + std::to_string(action) + "," + parameter;
+    ++used;
+  };
+  if (waypoint.is_station) act(tilt, fixed(waypoint.pitch * to_deg, 0));  // whole degrees only
+  act(stay, fixed(waypoint.hold * 1000.0, 0));
+  for (int shot = 0; shot < waypoint.shots; ++shot) act(photo, "0");
+  if (used > actions_per_line) {
+    throw Error(ErrorKind::bad_config, "a station with " + std::to_string(waypoint.shots) +
+                                           " shots cannot be written for Litchi, which takes " +
+                                           std::to_string(actions_per_line - 2));
+  }
+  for (; used < actions_per_line; ++used) text += ",-1,0";
+  return text;
+}
+
+struct Reading {
+  Problems problems;
+  RouteFile route;
+
+  explicit Reading(const std::string& text) {
+    route.datum = HeightDatum::takeoff;
+    const std::vector<std::string> lines = lines_of(text);
+    if (lines.empty() || lines[0] != header()) {
+      problems.emplace_back("line 1 is not Litchi's header");
+      return;
+    }
+    for (std::size_t i = 1; i < lines.size(); ++i) read_line(lines[i], i + 1);
+    if (problems.empty() && route.points.size() < 2) {
+      problems.emplace_back("there are fewer than two waypoints");
+    }
+    if (route.points.size() > most_waypoints) {
+      problems.push_back("there are " + std::to_string(route.points.size()) +
+                         " waypoints; old firmware takes 99");
+    }
+  }
+
+  void read_line(const std::string& text, std::size_t number) {
+    const std::string who = "line " + std::to_string(number) + " ";
+    const std::vector<std::string> fields = split(text, ',');
+    if (fields.size() != fields_per_line) {
+      problems.push_back(who + "has " + std::to_string(fields.size()) + " fields; it must have " +
+                         std::to_string(fields_per_line) + ", all 15 actions included");
+      return;
+    }
+    std::vector<double> values;
+    for (const std::string& field : fields) {
+      const std::optional<double> value = to_number(field);
+      if (!value) {
+        problems.push_back(not_a_number(who, field));
+        return;
+      }
+      values.push_back(*value);
+    }
+    const auto require = [&](std::size_t field, double low, double high, const char* name) {
+      if (values[field] >= low && values[field] <= high) return;
+      problems.push_back(who + "has " + name + " " + fields[field] + "; it must be in [" +
+                         fixed(low, 0) + ", " + fixed(high, 0) + "]");
+    };
+    require(0, -90, 90, "latitude"), require(1, -180, 180, "longitude");
+    require(2, -200, 500, "altitude"), require(3, 0, 359.999999, "heading");
+    require(fields_before_actions + 2 * actions_per_line, 0, 0, "altitudemode (above take-off)");
+    require(fields_before_actions + 2 * actions_per_line + 1, 0, 15, "speed");
+
+    FilePoint point{values[0], values[1], values[2], values[3]};
+    for (std::size_t i = 0; i < actions_per_line; ++i) {
+      const std::size_t field = fields_before_actions + 2 * i;
+      const double parameter = values[field + 1];
+      require(field, -1, 5, "an action type");
+      if (values[field] == stay) point.hold += parameter / 1000.0;
+      if (values[field] == tilt) point.pitch_deg = parameter;
+      if (values[field] == photo) ++point.shots;
+    }
+    route.points.push_back(point);
+  }
+};
+
+}  // namespace
+
+std::string write_litchi(const FlightPlan& plan) {
+  if (plan.waypoints.size() > most_waypoints) {
+    throw Error(ErrorKind::bad_config,
+                "\"" + plan.name + "\" has " + std::to_string(plan.waypoints.size()) +
+                    " waypoints; Litchi takes 99: plan with a vehicle of fewer max_waypoints");
+  }
+  const LocalFrame frame(plan.site.origin);
+  const double pad_height = frame.to_geodetic(plan.pad).height;
+  std::string text = header() + "\n";
+  double heading = 0.0;
+  for (const Waypoint& waypoint : plan.waypoints) {
+    const GeodeticPoint place = frame.to_geodetic(waypoint.position);
+    if (waypoint.is_station)
+      heading = std::fmod(std::round(waypoint.yaw * to_deg * 1e4) / 1e4, 360.0);
+    text += degrees(place.latitude_deg) + "," + degrees(place.longitude_deg) + "," +
+            fixed(place.height - pad_height, 3) + "," + fixed(heading, 4) + "," +
+            fixed(stop_like_curve, 1) + ",0,0,0" + actions_of(waypoint) + ",0," +
+            fixed(plan.conditions.cruise_speed, 2) + ",0,0,0,0,-1,-1\n";
+  }
+  return text;
+}
+
+Problems validate_litchi(const std::string& text) { return Reading(text).problems; }
+
+RouteFile read_litchi(const std::string& text) {
+  const Reading reading(text);
+  throw_first(reading.problems, "not a good Litchi file");
+  return reading.route;
+}
+
+}  // namespace skycap::flight

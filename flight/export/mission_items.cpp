@@ -1,0 +1,264 @@
+#include "flight/export/mission_items.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "geometry/error.h"
+
+namespace skycap::flight {
+namespace {
+
+constexpr double to_deg = 180.0 / std::numbers::pi;
+
+/// How near the vehicle must come to a waypoint before it counts as reached: PX4's default, metres,
+/// would start the hold long before the view [m].
+constexpr double acceptance_radius = 0.3;
+
+bool is_navigation(int c) {
+  return c == command::waypoint || c == command::takeoff || c == command::land ||
+         c == command::return_to_launch || c == command::delay;
+}
+bool has_place(int c) {
+  return c == command::waypoint || c == command::takeoff || c == command::land;
+}
+bool is_gimbal(int c) { return c == command::mount_control || c == command::gimbal_pitch_yaw; }
+bool is_shot(int c) { return c == command::start_capture || c == command::digicam_control; }
+
+class ItemWriter {
+ public:
+  explicit ItemWriter(const FlightPlan& plan)
+      : plan_(plan), local_(plan.site.origin), pad_(local_.to_geodetic(plan.pad)) {}
+
+  std::vector<MissionItem> write() {
+    const Waypoint& above_pad = plan_.waypoints.front();
+    add_place(command::takeoff, {0, 0, 0, not_given}, above_pad.position);
+    add(command::change_speed, {1, plan_.conditions.cruise_speed, -1, 0, 0, 0, 0});
+    for (std::size_t i = 1; i < plan_.waypoints.size(); ++i) {
+      if (plan_.waypoints[i].is_station) {
+        add_station(plan_.waypoints[i]);
+      } else {
+        add_place(command::waypoint, {hold(plan_.waypoints[i]), acceptance_radius, 0, not_given},
+                  plan_.waypoints[i].position);
+      }
+    }
+    add_place(command::land, {0, 0, 0, not_given}, plan_.pad);
+    return std::move(items_);
+  }
+
+ private:
+  bool is_ardupilot() const { return plan_.vehicle.dialect == Dialect::ardupilot; }
+
+  /// ArduPilot keeps whole seconds only, and drops the rest.
+  double hold(const Waypoint& waypoint) const {
+    return is_ardupilot() ? std::ceil(waypoint.hold) : waypoint.hold;
+  }
+
+  void add(int number, const std::array<double, 7>& params) {
+    items_.push_back({number, frame::mission, params});
+  }
+
+  void add_place(int number, const std::array<double, 4>& params, const Eigen::Vector3d& position) {
+    const GeodeticPoint place = local_.to_geodetic(position);
+    items_.push_back({number,
+                      frame::relative,
+                      {params[0], params[1], params[2], params[3],
+                       rounded_degrees(place.latitude_deg), rounded_degrees(place.longitude_deg),
+                       std::round((place.height - pad_.height) * 1e3) / 1e3}});
+  }
+
+  // ArduPilot starts "do" items when the item before them is done and flies on meanwhile: yaw and
+  // gimbal turn on the way. It obeys CONDITION_YAW and ignores the waypoint's own yaw; PX4 obeys
+  // the waypoint's and refuses missions that hold a CONDITION_YAW.
+  void add_station(const Waypoint& station) {
+    const double yaw_deg = std::round(station.yaw * to_deg * 1e4) / 1e4;
+    const double pitch_deg = std::round(station.pitch * to_deg * 1e4) / 1e4;
+    if (is_ardupilot()) add(command::condition_yaw, {std::fmod(yaw_deg, 360.0), 0, 0, 0, 0, 0, 0});
+    add(command::mount_control, {pitch_deg, 0, 0, 0, 0, 0, 2});  // 2: by these angles
+    add_place(command::waypoint,
+              {hold(station), acceptance_radius, 0,
+               is_ardupilot() ? not_given : std::fmod(yaw_deg, 360.0)},
+              station.position);
+    for (int shot = 0; shot < station.shots; ++shot) {
+      add(command::start_capture, {0, 0, 1, static_cast<double>(++shots_), 0, 0, 0});
+    }
+  }
+
+  const FlightPlan& plan_;
+  LocalFrame local_;
+  GeodeticPoint pad_;
+  int shots_ = 0;
+  std::vector<MissionItem> items_;
+};
+
+class ItemChecker {
+ public:
+  ItemChecker(const std::vector<MissionItem>& items, std::optional<Dialect> dialect)
+      : items_(items), dialect_(dialect) {}
+
+  Problems check() {
+    for (std::size_t i = 0; i < items_.size(); ++i) check_item(i);
+    check_ends();
+    check_shots();
+    return std::move(problems_);
+  }
+
+ private:
+  void complain(std::size_t i, const std::string& what) {
+    problems_.push_back("item " + std::to_string(i + 1) + " (command " +
+                        std::to_string(items_[i].command) + ") " + what);
+  }
+
+  void check_item(std::size_t i) {
+    const MissionItem& item = items_[i];
+    const bool is_known_frame = item.frame == frame::global || item.frame == frame::mission ||
+                                item.frame == frame::relative || item.frame == frame::terrain;
+    if (!is_known_frame)
+      complain(i, "has frame " + std::to_string(item.frame) + "; use 0, 2, 3 or 10");
+    if (has_place(item.command)) check_place(i);
+    if (item.command == command::jump) {
+      const double target = item.params[0];
+      if (!(target >= 1.0 && target <= static_cast<double>(items_.size()))) {
+        complain(i, "jumps to item " + fixed(target, 0) + ", which does not exist");
+      }
+    }
+    if (dialect_ == Dialect::px4) check_for_px4(i);
+    if (dialect_ == Dialect::ardupilot) check_for_ardupilot(i);
+  }
+
+  void check_place(std::size_t i) {
+    const MissionItem& item = items_[i];
+    if (item.frame == frame::mission) complain(i, "has a place but frame 2, which has none");
+    if (!(std::abs(item.params[4]) <= 90.0)) complain(i, "has a latitude outside [-90, 90]");
+    if (!(std::abs(item.params[5]) <= 180.0)) complain(i, "has a longitude outside [-180, 180]");
+    if (!(item.params[6] >= -500.0 && item.params[6] <= 10000.0)) {
+      complain(i, "has a height outside [-500, 10000] m");
+    }
+    if (item.command == command::waypoint && !(item.params[0] >= 0.0)) {
+      complain(i, "has a hold time that is not zero or more");
+    }
+  }
+
+  void check_for_px4(std::size_t i) {
+    if (items_[i].command == command::condition_yaw) {
+      complain(i, "is a CONDITION_YAW, for which PX4 refuses the whole mission");
+    }
+    if (items_[i].frame == frame::terrain) complain(i, "has frame 10, which PX4 does not support");
+  }
+
+  void check_for_ardupilot(std::size_t i) {
+    const MissionItem& item = items_[i];
+    if (item.command == command::waypoint && item.params[0] != std::floor(item.params[0])) {
+      complain(i, "holds " + fixed(item.params[0], 2) + " s; ArduPilot keeps whole seconds");
+    }
+    for (std::size_t p = 0; p < item.params.size(); ++p) {
+      if (std::isnan(item.params[p]) && !(p == 3 && has_place(item.command))) {
+        complain(i, "has no parameter " + std::to_string(p + 1) + ", which ArduPilot refuses");
+      }
+    }
+    if (item.command == command::gimbal_pitch_yaw && item.params[0] != std::round(item.params[0])) {
+      complain(i, "has a fraction of a degree, which ArduPilot drops; use DO_MOUNT_CONTROL");
+    }
+  }
+
+  void check_ends() {
+    std::vector<std::size_t> navigation;
+    for (std::size_t i = 0; i < items_.size(); ++i) {
+      if (is_navigation(items_[i].command)) navigation.push_back(i);
+    }
+    if (navigation.empty()) {
+      problems_.emplace_back("there is no item that flies anywhere");
+      return;
+    }
+    if (items_[navigation.front()].command != command::takeoff) {
+      complain(navigation.front(), "comes first; a mission must begin with a take-off (22)");
+    }
+    const int last = items_[navigation.back()].command;
+    if (last != command::land && last != command::return_to_launch) {
+      complain(navigation.back(),
+               "comes last; a mission must end with a landing (21) or return (20)");
+    }
+  }
+
+  /// A shot without a gimbal command since the last place looks wherever the one before did.
+  void check_shots() {
+    bool has_aimed = false;
+    std::optional<std::size_t> place;
+    for (std::size_t i = 0; i < items_.size(); ++i) {
+      const int c = items_[i].command;
+      if (has_place(c)) {
+        if (place) has_aimed = has_aimed && aimed_after(*place, i);
+        place = i;
+      }
+      if (is_gimbal(c)) has_aimed = true;
+      if (is_shot(c) && !has_aimed) complain(i, "shoots without a gimbal command for its place");
+    }
+  }
+  bool aimed_after(std::size_t from, std::size_t to) const {
+    return std::any_of(items_.begin() + static_cast<std::ptrdiff_t>(from),
+                       items_.begin() + static_cast<std::ptrdiff_t>(to),
+                       [](const MissionItem& item) { return is_gimbal(item.command); });
+  }
+
+  const std::vector<MissionItem>& items_;
+  std::optional<Dialect> dialect_;
+  Problems problems_;
+};
+
+}  // namespace
+
+std::vector<MissionItem> mission_items(const FlightPlan& plan) {
+  if (plan.vehicle.dialect == Dialect::dji) {
+    throw Error(ErrorKind::bad_config, "vehicle \"" + plan.vehicle.name +
+                                           "\" does not fly MAVLink missions; export kmz for it");
+  }
+  std::vector<MissionItem> items = ItemWriter(plan).write();
+  if (items.size() > static_cast<std::size_t>(plan.vehicle.max_waypoints)) {
+    throw Error(ErrorKind::bad_config, "\"" + plan.name + "\" has " + std::to_string(items.size()) +
+                                           " mission items; vehicle \"" + plan.vehicle.name +
+                                           "\" takes " +
+                                           std::to_string(plan.vehicle.max_waypoints));
+  }
+  return items;
+}
+
+Problems check_items(const std::vector<MissionItem>& items, std::optional<Dialect> dialect) {
+  return ItemChecker(items, dialect).check();
+}
+
+std::vector<MissionItem> as_stored(std::vector<MissionItem> items, Dialect dialect) {
+  for (MissionItem& item : items) {
+    if (!has_place(item.command)) continue;
+    for (const std::size_t p : {4U, 5U}) item.params[p] = std::round(item.params[p] * 1e7) / 1e7;
+    if (dialect == Dialect::ardupilot) {
+      item.params[0] = std::floor(item.params[0]);
+      item.params[6] = std::trunc(item.params[6] * 100.0) / 100.0;
+    } else {
+      item.params[6] = static_cast<double>(static_cast<float>(item.params[6]));
+    }
+  }
+  return items;
+}
+
+RouteFile route_of(const std::vector<MissionItem>& items) {
+  RouteFile route;
+  route.datum = HeightDatum::takeoff;
+  double yaw_deg = not_given, pitch_deg = not_given;
+  for (const MissionItem& item : items) {
+    if (item.command == command::condition_yaw) yaw_deg = item.params[0];
+    if (is_gimbal(item.command)) pitch_deg = item.params[0];
+    if (is_shot(item.command) && !route.points.empty()) ++route.points.back().shots;
+    // The landing is straight down from the last waypoint: the pad itself is no place to keep
+    // clear.
+    if (item.command != command::waypoint && item.command != command::takeoff) continue;
+    if (item.frame == frame::global) route.datum = HeightDatum::mean_sea_level;
+    FilePoint point{item.params[4], item.params[5], item.params[6]};
+    point.yaw_deg = std::isnan(item.params[3]) ? yaw_deg : item.params[3];
+    point.pitch_deg = pitch_deg;
+    point.hold = item.command == command::waypoint ? item.params[0] : 0.0;
+    route.points.push_back(point);
+  }
+  return route;
+}
+
+}  // namespace skycap::flight

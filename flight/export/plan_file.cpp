@@ -1,0 +1,324 @@
+#include <cmath>
+#include <numbers>
+
+#include <nlohmann/json.hpp>
+
+#include "flight/clearance.h"
+#include "flight/export/mavlink_files.h"
+#include "geometry/error.h"
+
+namespace skycap::flight {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+/// MAV_AUTOPILOT and MAV_TYPE.
+constexpr int px4 = 12, ardupilot = 3, quadrotor = 2;
+
+/// Corners of the polygon that stands for a circle in the check of legs.
+constexpr int circle_corners = 64;
+
+Json polygon(const Prism& prism, const LocalFrame& frame, bool is_inclusion) {
+  Json corners = Json::array();
+  for (const Eigen::Vector2d& corner : prism.footprint) {
+    const GeodeticPoint place = frame.to_geodetic({corner.x(), corner.y(), 0.0});
+    corners.push_back({rounded_degrees(place.latitude_deg), rounded_degrees(place.longitude_deg)});
+  }
+  return {{"inclusion", is_inclusion}, {"polygon", corners}, {"version", 1}};
+}
+
+Json item_json(const MissionItem& item, std::size_t id) {
+  Json json{{"autoContinue", item.auto_continue},
+            {"command", item.command},
+            {"doJumpId", id},
+            {"frame", item.frame},
+            {"params", Json::array()},
+            {"type", "SimpleItem"}};
+  for (const double parameter : item.params) {
+    json["params"].push_back(std::isnan(parameter) ? Json(nullptr) : Json(parameter));
+  }
+  if (item.frame == frame::relative) {
+    json["AMSLAltAboveTerrain"] = nullptr;
+    json["Altitude"] = item.params[6];
+    json["AltitudeMode"] = 1;  // relative to home
+  }
+  return json;
+}
+
+/// The checks of one file; problems are collected, in the order of the file.
+class PlanChecker {
+ public:
+  explicit PlanChecker(const std::string& text) : plan_(Json::parse(text, nullptr, false)) {}
+
+  Problems check() {
+    if (plan_.is_discarded() || !plan_.is_object()) {
+      problems_.emplace_back("the file is not a JSON object");
+      return std::move(problems_);
+    }
+    if (plan_.value("fileType", Json()) != Json("Plan")) complain("fileType must be \"Plan\"");
+    require_version(plan_, "version", 1);
+    if (!plan_.contains("groundStation") || !plan_["groundStation"].is_string()) {
+      complain("groundStation must be a text");
+    }
+    if (const Json* mission = section("mission", 2)) check_mission(*mission);
+    if (const Json* fence = section("geoFence", 2)) check_fence(*fence);
+    if (const Json* rally = section("rallyPoints", 2)) check_rally(*rally);
+    if (problems_.empty()) check_legs();
+    return std::move(problems_);
+  }
+
+  const std::vector<MissionItem>& items() const { return items_; }
+
+ private:
+  void complain(const std::string& what) { problems_.push_back(what); }
+
+  void require_version(const Json& object, const std::string& where, int version) {
+    if (!object.contains("version") || object["version"] != Json(version)) {
+      complain(where + " must be " + std::to_string(version));
+    }
+  }
+
+  const Json* section(const char* name, int version) {
+    if (!plan_.contains(name) || !plan_[name].is_object()) {
+      complain(std::string(name) + " is missing");
+      return nullptr;
+    }
+    require_version(plan_[name], std::string(name) + ".version", version);
+    return &plan_[name];
+  }
+
+  static bool are_numbers(const Json& json, std::size_t count) {
+    return json.is_array() && json.size() == count &&
+           std::all_of(json.begin(), json.end(), [](const Json& n) { return n.is_number(); });
+  }
+
+  void check_mission(const Json& mission) {
+    if (!mission.contains("plannedHomePosition") ||
+        !are_numbers(mission["plannedHomePosition"], 3)) {
+      complain("mission.plannedHomePosition must be three numbers");
+    }
+    std::optional<Dialect> dialect;
+    if (!mission.contains("firmwareType") || !mission["firmwareType"].is_number_integer()) {
+      complain("mission.firmwareType must be an integer");
+    } else if (mission["firmwareType"] == px4) {
+      dialect = Dialect::px4;
+    } else if (mission["firmwareType"] == ardupilot) {
+      dialect = Dialect::ardupilot;
+    }
+    if (!mission.contains("items") || !mission["items"].is_array() || mission["items"].empty()) {
+      complain("mission.items must be a list of at least one item");
+      return;
+    }
+    const std::size_t before = problems_.size();
+    for (std::size_t i = 0; i < mission["items"].size(); ++i) check_item(mission["items"][i], i);
+    if (problems_.size() > before) return;
+    for (const std::string& problem : check_items(items_, dialect)) complain(problem);
+  }
+
+  void check_item(const Json& json, std::size_t i) {
+    const std::string who = "mission.items[" + std::to_string(i) + "]";
+    const auto is = [&](const char* key, auto test) {
+      return json.contains(key) && test(json[key]);
+    };
+    const auto integer = [](const Json& value) { return value.is_number_integer(); };
+    if (!json.is_object() || !is("type", [](const Json& v) { return v == "SimpleItem"; })) {
+      return complain(who + ".type must be \"SimpleItem\"");
+    }
+    if (!is("command", integer)) return complain(who + ".command must be an integer");
+    if (!is("frame", integer)) return complain(who + ".frame must be an integer");
+    if (!is("autoContinue", [](const Json& v) { return v.is_boolean(); })) {
+      return complain(who + ".autoContinue must be true or false");
+    }
+    if (!is("doJumpId", integer) || json["doJumpId"] != Json(i + 1)) {
+      return complain(who + ".doJumpId must be " + std::to_string(i + 1));
+    }
+    if (!is("params", [](const Json& v) { return v.is_array() && v.size() == 7; })) {
+      return complain(who + ".params must be 7 numbers or nulls");
+    }
+    MissionItem item{json["command"], json["frame"], {}, json["autoContinue"]};
+    for (std::size_t p = 0; p < 7; ++p) {
+      const Json& value = json["params"][p];
+      if (!value.is_number() && !value.is_null()) {
+        return complain(who + ".params must be 7 numbers or nulls");
+      }
+      item.params[p] = value.is_null() ? not_given : value.get<double>();
+    }
+    check_altitude(json, item, who);
+    items_.push_back(item);
+  }
+
+  void check_altitude(const Json& json, const MissionItem& item, const std::string& who) {
+    const int present = static_cast<int>(json.contains("AltitudeMode") + json.contains("Altitude") +
+                                         json.contains("AMSLAltAboveTerrain"));
+    if (present == 0) return;
+    if (present < 3) {
+      return complain(who +
+                      " must have all of AltitudeMode, Altitude, AMSLAltAboveTerrain or none");
+    }
+    const Json &mode = json["AltitudeMode"], &above = json["AMSLAltAboveTerrain"];
+    if (!mode.is_number_integer() || !json["Altitude"].is_number() ||
+        !(above.is_null() || above.is_number())) {
+      return complain(who +
+                      " has an AltitudeMode, Altitude or AMSLAltAboveTerrain of a wrong type");
+    }
+    const bool agrees = (mode == 1 && item.frame == frame::relative) ||
+                        ((mode == 2 || mode == 3) && item.frame == frame::global) ||
+                        (mode == 4 && item.frame == frame::terrain);
+    if (!agrees) complain(who + " has an AltitudeMode that does not go with its frame");
+    if (mode == 1 && json["Altitude"] != json["params"][6]) {
+      complain(who + ".Altitude is not the height in its params");
+    }
+  }
+
+  void check_fence(const Json& fence) {
+    for (const char* kind : {"polygons", "circles"}) {
+      if (!fence.contains(kind) || !fence[kind].is_array()) {
+        complain("geoFence." + std::string(kind) + " must be a list");
+        continue;
+      }
+      for (std::size_t i = 0; i < fence[kind].size(); ++i) {
+        const std::string who = "geoFence." + std::string(kind) + "[" + std::to_string(i) + "]";
+        check_area(fence[kind][i], kind[0] == 'p', who);
+      }
+    }
+  }
+
+  void check_area(const Json& area, bool is_polygon, const std::string& who) {
+    require_version(area, who + ".version", 1);
+    if (!area.contains("inclusion") || !area["inclusion"].is_boolean()) {
+      return complain(who + ".inclusion must be true or false; loaders assume different defaults");
+    }
+    Area found{who, area["inclusion"], {}};
+    if (is_polygon) {
+      if (!area.contains("polygon") || !area["polygon"].is_array() || area["polygon"].size() < 3) {
+        return complain(who + ".polygon must have at least 3 corners");
+      }
+      for (const Json& corner : area["polygon"]) {
+        if (!are_numbers(corner, 2)) return complain(who + ".polygon must hold pairs of numbers");
+        found.corners.push_back({corner[0], corner[1], 0.0});
+      }
+      if (area["polygon"].front() == area["polygon"].back()) {
+        return complain(who + ".polygon must not repeat its first corner at the end");
+      }
+    } else {
+      const Json circle = area.value("circle", Json());
+      const bool is_good = circle.is_object() && circle.contains("center") &&
+                           are_numbers(circle["center"], 2) && circle.contains("radius") &&
+                           circle["radius"].is_number() && circle["radius"] > 0.0;
+      if (!is_good) return complain(who + ".circle must have a center and a positive radius");
+      // From inside for a fence, from outside for a no-fly circle: the polygon is the stricter one.
+      const double widened =
+          found.is_inclusion ? 1.0 : 1.0 / std::cos(std::numbers::pi / circle_corners);
+      const LocalFrame centre({circle["center"][0], circle["center"][1], 0.0});
+      for (int i = 0; i < circle_corners; ++i) {
+        const double angle = 2.0 * std::numbers::pi * i / circle_corners;
+        const double radius = widened * circle["radius"].get<double>();
+        found.corners.push_back(
+            centre.to_geodetic({radius * std::cos(angle), radius * std::sin(angle), 0.0}));
+      }
+    }
+    areas_.push_back(std::move(found));
+  }
+
+  void check_rally(const Json& rally) {
+    if (!rally.contains("points") || !rally["points"].is_array()) {
+      return complain("rallyPoints.points must be a list");
+    }
+    for (std::size_t i = 0; i < rally["points"].size(); ++i) {
+      if (!are_numbers(rally["points"][i], 3)) {
+        complain("rallyPoints.points[" + std::to_string(i) + "] must be three numbers");
+      }
+    }
+  }
+
+  /// Autopilots check waypoints against fences at best; the legs between them are checked here.
+  void check_legs() {
+    const RouteFile route = route_of(items_);
+    if (route.points.empty() || areas_.empty()) return;
+    const LocalFrame frame({route.points[0].latitude_deg, route.points[0].longitude_deg, 0.0});
+    std::vector<Eigen::Vector3d> points;
+    for (const FilePoint& point : route.points) {
+      Eigen::Vector3d place = frame.to_local({point.latitude_deg, point.longitude_deg, 0.0});
+      place.z() = 0.0;
+      points.push_back(place);
+    }
+    for (const Area& area : areas_) {
+      Prism prism{area.name, {}};
+      for (const GeodeticPoint& corner : area.corners) {
+        prism.footprint.emplace_back(frame.to_local(corner).head<2>());
+      }
+      Obstacles obstacles;
+      if (area.is_inclusion) {
+        obstacles.fence = prism;
+      } else {
+        obstacles.no_fly = {prism};
+      }
+      try {
+        for (const Violation& violation : check_route(points, KnownSpace(obstacles), 0.0)) {
+          complain("leg " + std::to_string(violation.leg + 1) +
+                   (area.is_inclusion ? " leaves " : " enters ") + area.name);
+        }
+      } catch (const Error& error) {
+        complain(error.what());
+      }
+    }
+  }
+
+  struct Area {
+    std::string name;
+    bool is_inclusion;
+    std::vector<GeodeticPoint> corners;
+  };
+
+  Json plan_;
+  std::vector<MissionItem> items_;
+  std::vector<Area> areas_;
+  Problems problems_;
+};
+
+}  // namespace
+
+std::string write_plan(const FlightPlan& plan) {
+  const LocalFrame frame(plan.site.origin);
+  const GeodeticPoint home = frame.to_geodetic(plan.pad);
+  const double undulation = plan.site.undulation_for("a .plan file");
+  Json items = Json::array();
+  for (const MissionItem& item : mission_items(plan))
+    items.push_back(item_json(item, items.size() + 1));
+
+  Json polygons = Json::array();
+  if (plan.fence) polygons.push_back(polygon(*plan.fence, frame, true));
+  for (const Prism& prism : flat_no_fly(plan).written) {
+    polygons.push_back(polygon(prism, frame, false));
+  }
+  const Json file{
+      {"fileType", "Plan"},
+      {"groundStation", "QGroundControl"},
+      {"version", 1},
+      {"geoFence", {{"circles", Json::array()}, {"polygons", polygons}, {"version", 2}}},
+      {"mission",
+       {{"cruiseSpeed", plan.conditions.cruise_speed},
+        {"firmwareType", plan.vehicle.dialect == Dialect::px4 ? px4 : ardupilot},
+        {"globalPlanAltitudeMode", 1},
+        {"hoverSpeed", plan.conditions.cruise_speed},
+        {"items", items},
+        {"plannedHomePosition",
+         {rounded_degrees(home.latitude_deg), rounded_degrees(home.longitude_deg),
+          std::round((home.height - undulation) * 1e3) / 1e3}},
+        {"vehicleType", quadrotor},
+        {"version", 2}}},
+      {"rallyPoints", {{"points", Json::array()}, {"version", 2}}}};
+  return file.dump(2) + "\n";
+}
+
+Problems validate_plan(const std::string& text) { return PlanChecker(text).check(); }
+
+std::vector<MissionItem> read_plan_items(const std::string& text) {
+  PlanChecker checker(text);
+  throw_first(checker.check(), "not a good .plan file");
+  return checker.items();
+}
+
+RouteFile read_plan(const std::string& text) { return route_of(read_plan_items(text)); }
+
+}  // namespace skycap::flight

@@ -1,0 +1,61 @@
+#include "flight/export/text.h"
+
+#include <array>
+#include <charconv>
+#include <cmath>
+
+#include "geometry/error.h"
+
+namespace skycap::flight {
+
+std::string fixed(double value, int decimals) {
+  std::array<char, 400> buffer;
+  const auto end = std::to_chars(buffer.data(), buffer.data() + buffer.size(), value,
+                                 std::chars_format::fixed, decimals)
+                       .ptr;
+  std::string text(buffer.data(), end);
+  if (text.front() == '-' && text.find_first_of("123456789") == std::string::npos) text.erase(0, 1);
+  return text;
+}
+
+double rounded_degrees(double value) { return std::round(value * 1e9) / 1e9; }
+
+std::optional<double> to_number(std::string_view text) {
+  double value = 0.0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (error != std::errc() || end != text.data() + text.size() || !std::isfinite(value)) {
+    return std::nullopt;
+  }
+  return value;
+}
+
+std::vector<std::string> split(std::string_view text, char separator) {
+  std::vector<std::string> parts;
+  for (;;) {
+    const std::size_t end = text.find(separator);
+    parts.emplace_back(text.substr(0, end));
+    if (end == std::string_view::npos) return parts;
+    text.remove_prefix(end + 1);
+  }
+}
+
+std::vector<std::string> lines_of(std::string_view text) {
+  std::vector<std::string> lines = split(text, '\n');
+  if (lines.back().empty()) lines.pop_back();
+  for (std::string& line : lines) {
+    if (!line.empty() && line.back() == '\r') line.pop_back();
+  }
+  return lines;
+}
+
+std::string not_a_number(const std::string& place, const std::string& field) {
+  return place + "has \"" + field + "\", which is not a number";
+}
+
+void throw_first(const Problems& problems, const std::string& what) {
+  if (!problems.empty()) {
+    throw Error(ErrorKind::bad_file, what + ": " + problems.front());
+  }
+}
+
+}  // namespace skycap::flight

@@ -1,0 +1,293 @@
+#include "flight/measured_space.h"
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cmath>
+#include <string>
+#include <unordered_map>
+
+#include "flight/bounding_tree.h"
+#include "flight/cell_map.h"
+#include "flight/range_image.h"
+#include "geometry/error.h"
+
+namespace skycap::flight {
+namespace {
+
+using Eigen::AlignedBox3d;
+using Eigen::Vector3d;
+
+/// A cube of voxels within a block.
+struct Cube {
+  Cell low;  ///< its first voxel
+  int edge;  ///< in voxels: 8, 4, 2 or 1
+
+  /// The bits of its rows in a word.
+  std::uint64_t mask() const {
+    std::uint64_t bits = 0;
+    for (int y = low.y(); y < low.y() + edge; ++y) {
+      bits |= ((std::uint64_t{1} << edge) - 1) << (8 * y + low.x());
+    }
+    return bits;
+  }
+};
+
+/// A cube of 8 x 8 x 8 voxels, one bit each: bit x of byte y of word z.
+struct Block {
+  std::array<std::uint64_t, 8> free{};
+  std::array<std::uint64_t, 8> occupied{};
+
+  std::uint64_t passable(int z) const { return free[z] & ~occupied[z]; }
+  bool is_all_passable() const {
+    for (int z = 0; z < 8; ++z) {
+      if (passable(z) != ~std::uint64_t{0}) return false;
+    }
+    return true;
+  }
+  bool is_all_free(const Cube& cube) const {
+    const std::uint64_t mask = cube.mask();
+    for (int z = cube.low.z(); z < cube.low.z() + cube.edge; ++z) {
+      if ((free[z] & mask) != mask) return false;
+    }
+    return true;
+  }
+  void set_free(const Cube& cube) {
+    for (int z = cube.low.z(); z < cube.low.z() + cube.edge; ++z) free[z] |= cube.mask();
+  }
+  bool is_occupied(const Cell& voxel) const {
+    return (occupied[voxel.z()] >> (8 * voxel.y() + voxel.x()) & 1) != 0;
+  }
+};
+
+struct HashKey {
+  std::size_t operator()(std::uint64_t key) const {
+    const std::uint64_t product = key * 0x9e3779b97f4a7c15ULL;
+    return product ^ product >> 32;
+  }
+};
+
+}  // namespace
+
+struct MeasuredSpace::Impl {
+  MeasuredSpaceConfig config;
+  std::unordered_map<std::uint64_t, Block, HashKey> blocks;  ///< a block not listed is unknown
+  AlignedBox3d extent;
+
+  double block_size() const { return 8.0 * config.voxel; }
+  Cell block_of(const Vector3d& point) const {
+    return (point / block_size()).array().floor().matrix().cast<int>();
+  }
+  AlignedBox3d block_box(const Cell& cell) const {
+    const Vector3d low = cell.cast<double>() * block_size();
+    return {low, low + Vector3d::Constant(block_size())};
+  }
+  AlignedBox3d cube_box(const Cell& block, const Cube& cube) const {
+    const Vector3d low = (8 * block + cube.low).cast<double>() * config.voxel;
+    return {low, low + Vector3d::Constant(cube.edge * config.voxel)};
+  }
+
+  template <typename Visit>
+  void for_each_block(const AlignedBox3d& box, Visit visit) const;
+  template <typename Decide>
+  void free_where(const AlignedBox3d& box, Decide decide);
+  template <typename Decide>
+  void free_within(const Cell& cell, const Cube& cube, Block& block, Decide decide) const;
+  void occupy(const geometry::Scan& scan);
+  void carve(const RangeImage& image);
+  void closest_in(const Segment& piece, Closest& best) const;
+  void closest_in_block(const Segment& piece, const Cell& cell, const Block& block,
+                        Closest& best) const;
+};
+
+/// Visits block cells that meet the box; `visit` returns false to stop.
+template <typename Visit>
+void MeasuredSpace::Impl::for_each_block(const AlignedBox3d& box, Visit visit) const {
+  const Cell low = block_of(box.min()), high = block_of(box.max());
+  for (int z = low.z(); z <= high.z(); ++z) {
+    for (int y = low.y(); y <= high.y(); ++y) {
+      for (int x = low.x(); x <= high.x(); ++x) {
+        if (!visit(Cell(x, y, z))) return;
+      }
+    }
+  }
+}
+
+/// Frees, in blocks that meet the box, the cubes of which `decide(box)` says so.
+template <typename Decide>
+void MeasuredSpace::Impl::free_where(const AlignedBox3d& box, Decide decide) {
+  const Cube whole{Cell::Zero(), 8};
+  for_each_block(box, [&](const Cell& cell) {
+    const auto known = blocks.find(cell_key(cell));
+    Block block = known == blocks.end() ? Block{} : known->second;
+    free_within(cell, whole, block, decide);
+    if (known != blocks.end()) {
+      known->second = block;
+    } else if (block.free != Block{}.free) {
+      blocks.emplace(cell_key(cell), block);
+      extent.extend(cube_box(cell, whole));
+    }
+    return true;
+  });
+}
+
+/// A cube that is neither free nor hidden as a whole is cut into eight, down to voxels.
+template <typename Decide>
+void MeasuredSpace::Impl::free_within(const Cell& cell, const Cube& cube, Block& block,
+                                      Decide decide) const {
+  if (block.is_all_free(cube)) return;
+  const BallSight sight = decide(cube_box(cell, cube));
+  if (sight == BallSight::free) block.set_free(cube);
+  if (sight != BallSight::partial || cube.edge == 1) return;
+  const int half = cube.edge / 2;
+  for (int corner = 0; corner < 8; ++corner) {
+    const Cell offset(corner & 1, corner >> 1 & 1, corner >> 2 & 1);
+    free_within(cell, {cube.low + half * offset, half}, block, decide);
+  }
+}
+
+void MeasuredSpace::Impl::occupy(const geometry::Scan& scan) {
+  for (const Eigen::Vector3f& p : scan.points) {
+    const Vector3d point = p.cast<double>();
+    const Cell cell = block_of(point);
+    const Cell voxel = ((point / config.voxel).array().floor().matrix().cast<int>() - 8 * cell)
+                           .cwiseMax(0)
+                           .cwiseMin(7);
+    blocks[cell_key(cell)].occupied[voxel.z()] |= std::uint64_t{1} << (8 * voxel.y() + voxel.x());
+  }
+}
+
+void MeasuredSpace::Impl::carve(const RangeImage& image) {
+  free_where(image.reach(), [&](const AlignedBox3d& box) {
+    return image.sight(box.center(), 0.5 * box.diagonal().norm(), config.depth_margin);
+  });
+}
+
+void MeasuredSpace::Impl::closest_in_block(const Segment& piece, const Cell& cell,
+                                           const Block& block, Closest& best) const {
+  for (int z = 0; z < 8; ++z) {
+    for (std::uint64_t rest = ~block.passable(z); rest != 0; rest &= rest - 1) {
+      const int bit = std::countr_zero(rest);
+      const Cell voxel(bit & 7, bit >> 3, z);
+      const NearestPoints pair = nearest(piece, cube_box(cell, {voxel, 1}));
+      if (!(pair.squared_distance < best.distance * best.distance)) continue;
+      best = {std::sqrt(pair.squared_distance),
+              block.is_occupied(voxel) ? ObstacleKind::occupied_space : ObstacleKind::unknown_space,
+              0, pair.on_segment, pair.on_other};
+      if (best.distance == 0.0) return;
+    }
+  }
+}
+
+/// Lowers `best` to what is nearer to a short piece than that.
+void MeasuredSpace::Impl::closest_in(const Segment& piece, Closest& best) const {
+  const Vector3d reach = Vector3d::Constant(best.distance);
+  const AlignedBox3d around(piece.from.cwiseMin(piece.to) - reach,
+                            piece.from.cwiseMax(piece.to) + reach);
+  const BoxTest test(piece);
+  for_each_block(around, [&](const Cell& cell) {
+    const AlignedBox3d box = block_box(cell);
+    if (!test.is_near(box, best.distance)) return true;
+    const auto found = blocks.find(cell_key(cell));
+    if (found != blocks.end()) {
+      if (!found->second.is_all_passable()) closest_in_block(piece, cell, found->second, best);
+      return best.distance > 0.0;
+    }
+    const NearestPoints pair = nearest(piece, box);
+    if (pair.squared_distance < best.distance * best.distance) {
+      best = {std::sqrt(pair.squared_distance), ObstacleKind::unknown_space, 0, pair.on_segment,
+              pair.on_other};
+    }
+    return best.distance > 0.0;
+  });
+}
+
+void MeasuredSpaceConfig::validate() const {
+  const auto require = [](bool holds, const char* field, double value, const char* right) {
+    if (holds) return;
+    throw Error(ErrorKind::bad_config, "measured_space." + std::string(field) + " is " +
+                                           std::to_string(value) + " m; it must be " + right);
+  };
+  require(voxel > 0.0 && std::isfinite(voxel), "voxel", voxel, "positive");
+  require(depth_margin >= 0.0, "depth_margin", depth_margin, "zero or more");
+  require(free_without_return >= 0.0, "free_without_return", free_without_return, "zero or more");
+  require(max_depth > 0.0 && max_depth < 1e5 * voxel, "max_depth", max_depth,
+          "positive and below 100,000 voxels");
+}
+
+MeasuredSpace::MeasuredSpace(const MeasuredSpaceConfig& config) {
+  config.validate();
+  impl_ = std::make_unique<Impl>();
+  impl_->config = config;
+}
+
+MeasuredSpace::~MeasuredSpace() = default;
+MeasuredSpace::MeasuredSpace(MeasuredSpace&&) noexcept = default;
+MeasuredSpace& MeasuredSpace::operator=(MeasuredSpace&&) noexcept = default;
+
+void MeasuredSpace::declare_free(const Vector3d& centre, double radius) {
+  const AlignedBox3d around(centre - Vector3d::Constant(radius),
+                            centre + Vector3d::Constant(radius));
+  impl_->free_where(around, [&](const AlignedBox3d& box) {
+    const Vector3d farthest_corner = (centre - box.min()).cwiseMax(box.max() - centre);
+    if (farthest_corner.norm() <= radius) return BallSight::free;
+    return box.exteriorDistance(centre) > radius ? BallSight::hidden : BallSight::partial;
+  });
+}
+
+void MeasuredSpace::declare_free(const AlignedBox3d& region) {
+  impl_->free_where(region, [&](const AlignedBox3d& box) {
+    if (region.contains(box)) return BallSight::free;
+    return region.intersects(box) ? BallSight::partial : BallSight::hidden;
+  });
+}
+
+void MeasuredSpace::insert(const geometry::Scan& scan, const geometry::Camera& camera) {
+  impl_->carve(
+      RangeImage(scan, camera, impl_->config.free_without_return, impl_->config.max_depth));
+  impl_->occupy(scan);
+}
+
+void MeasuredSpace::insert(const geometry::Scan& scan, double ray_spacing) {
+  impl_->carve(RangeImage(scan, ray_spacing, impl_->config.max_depth));
+  impl_->occupy(scan);
+}
+
+Closest MeasuredSpace::closest(const Segment& leg, double up_to) const {
+  // Pieces of a few blocks, so that the box around each is slim; a reach that grows until something
+  // is within it, so that near things are found without looking at far ones.
+  const auto pieces =
+      static_cast<std::size_t>(std::ceil(leg.length() / (4.0 * impl_->block_size()))) + 1;
+  for (double reach = std::min(up_to, impl_->block_size());; reach = std::min(up_to, 2.0 * reach)) {
+    Closest best{reach};
+    for (std::size_t i = 0; i < pieces && best.distance > 0.0; ++i) {
+      const auto count = static_cast<double>(pieces);
+      const double begin = static_cast<double>(i) / count, end = static_cast<double>(i + 1) / count;
+      impl_->closest_in({leg.at(begin), leg.at(end)}, best);
+    }
+    if (best.kind != ObstacleKind::none || reach >= up_to) return best;
+  }
+}
+
+bool MeasuredSpace::continues_free(const Segment& leg, double clearance) const {
+  return closest(leg, clearance + clearance_guard).kind == ObstacleKind::none;
+}
+
+AlignedBox3d MeasuredSpace::extent() const { return impl_->extent; }
+
+std::string MeasuredSpace::name(const Closest& closest) const {
+  if (closest.kind == ObstacleKind::unknown_space) return "space that was never seen free";
+  if (closest.kind == ObstacleKind::occupied_space) return "a measured point";
+  return "";
+}
+
+double MeasuredSpace::free_volume() const {
+  std::size_t voxels = 0;
+  for (const auto& [key, block] : impl_->blocks) {
+    for (int z = 0; z < 8; ++z)
+      voxels += static_cast<std::size_t>(std::popcount(block.passable(z)));
+  }
+  return static_cast<double>(voxels) * std::pow(impl_->config.voxel, 3);
+}
+
+}  // namespace skycap::flight

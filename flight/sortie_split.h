@@ -1,0 +1,38 @@
+/// Splits an order of stations into sorties that a battery can fly.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+namespace skycap::flight {
+
+/// Times [s] and energies [J] of the parts that sorties are made of; one entry for each station,
+/// but `leg` has one less.
+struct SplitProblem {
+  struct Cost {
+    double time = 0.0;
+    double energy = 0.0;
+  };
+  std::vector<Cost> out;      ///< pad to station, take-off included
+  std::vector<Cost> station;  ///< what is done there
+  std::vector<Cost> leg;      ///< station i to station i + 1
+  std::vector<Cost> back;     ///< station to pad, landing included
+  double energy_per_sortie = 0.0;
+  std::size_t stations_per_sortie = 0;
+};
+
+struct SortieRange {
+  std::uint32_t first, last;
+};
+
+struct SortieSplit {
+  std::vector<SortieRange> sorties;  ///< empty if some station cannot be served at all
+  double time = 0.0;
+  double time_bound = 0.0;  ///< no split is faster
+};
+
+/// The fastest split in the given order (Beasley 1983, split of a giant tour): at every station the
+/// energy used so far and the way home fit into the battery. O(stations x stations in a sortie).
+SortieSplit split_into_sorties(const SplitProblem& problem);
+
+}  // namespace skycap::flight

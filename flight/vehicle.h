@@ -1,0 +1,62 @@
+/// What a vehicle can do: speeds, size, gimbal, battery, and what its ground station accepts.
+/// Profiles are data; a user's vehicle is one more.
+#pragma once
+
+#include <span>
+#include <string>
+
+namespace skycap::flight {
+
+/// The kind of mission items an autopilot understands.
+enum class Dialect { px4, ardupilot, dji };
+
+/// Numbers that DJI's WPML files name a vehicle and its payload by.
+struct WpmlCodes {
+  int drone = 0;
+  int drone_variant = 0;
+  int payload = 0;
+  std::string version = "1.0.6";    ///< of the namespace that the firmware reads
+  bool has_independent_yaw = true;  ///< the gimbal may turn away from the vehicle's heading
+};
+
+/// SI units; angles in radians; energies in watt hours where the data sheets use them.
+struct Vehicle {
+  std::string name;
+  Dialect dialect = Dialect::px4;
+  WpmlCodes wpml;
+
+  double radius = 0.5;                      ///< from the centre to the farthest propeller tip [m]
+  double max_speed = 10.0;                  ///< horizontal, and through the air [m/s]
+  double max_ascent = 3.0;                  ///< [m/s]
+  double max_descent = 2.0;                 ///< [m/s]
+  double acceleration = 2.0;                ///< [m/s^2]
+  double jerk = 4.0;                        ///< [m/s^3]
+  double yaw_rate = 1.0;                    ///< [rad/s]
+  double yaw_acceleration = 2.0;            ///< [rad/s^2]
+  double gimbal_rate = 1.0;                 ///< [rad/s]
+  double gimbal_min = -1.5707963267948966;  ///< lowest pitch [rad], 0 is the horizon
+  double gimbal_max = 0.5;                  ///< highest pitch [rad]
+  double max_wind = 10.0;                   ///< [m/s]
+
+  double mass = 2.0;  ///< flown, with payload [kg]
+  int rotors = 4;
+  double rotor_diameter = 0.3;   ///< [m]
+  double battery_wh = 100.0;     ///< of all batteries together
+  double endurance_min = 30.0;   ///< data sheet, at `mass`: calibrates the efficiency
+  double avionics_power = 20.0;  ///< electronics and payload [W]
+  double drag_area = 0.03;       ///< drag coefficient times frontal area [m^2]
+
+  int max_waypoints = 500;  ///< in one mission file
+
+  /// Throws Error{bad_config} naming the first field that is out of its interval.
+  void validate() const;
+};
+
+/// Matrice 350 RTK, Matrice 30T, Mavic 3 Enterprise, Matrice 4E, Skydio X10, and generic quadrotors
+/// with PX4 and ArduPilot. Masses, batteries and endurances from the data sheets.
+std::span<const Vehicle> vehicle_profiles();
+
+/// The profile of that name, such as "m350_rtk". Throws Error{bad_config} listing the names.
+const Vehicle& vehicle_profile(const std::string& name);
+
+}  // namespace skycap::flight

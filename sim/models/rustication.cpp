@@ -1,0 +1,176 @@
+#include "sim/models/rustication.h"
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+#include <cstddef>
+#include <numbers>
+
+namespace skycap::sim::models {
+namespace {
+
+using Eigen::Vector2d;
+using std::numbers::pi;
+
+/// The part of a convex or nearly convex polygon below the level z.
+Polyline2 clipped_below(const Polyline2& polygon, double z) {
+  Polyline2 result;
+  for (std::size_t i = 0; i < polygon.size(); ++i) {
+    const Vector2d &a = polygon[i], &b = polygon[(i + 1) % polygon.size()];
+    if (a.y() <= z) result.push_back(a);
+    if ((a.y() < z && b.y() > z) || (a.y() > z && b.y() < z)) {
+      result.emplace_back(a.x() + (z - a.y()) / (b.y() - a.y()) * (b.x() - a.x()), z);
+    }
+  }
+  return result;
+}
+
+/// A half circle's points from the right end of its diameter over the top to the left end.
+/// Between neighbouring joints of the voussoirs lie equally many chords.
+Polyline2 half_circle(const Vector2d& centre, double radius, int chords) {
+  Polyline2 points;
+  for (int i = 0; i <= chords; ++i) {
+    const double angle = pi * i / chords;
+    points.push_back(centre + radius * Vector2d(std::cos(angle), std::sin(angle)));
+  }
+  return points;
+}
+
+/// Half a course beside or above an arch: from s = `outer` to the outline of the voussoirs, or to
+/// the axis above them. `curve` is the outline's half, from the springing up to the crown.
+Polyline2 course_beside(const Polyline2& curve, double outer, double bottom, double top) {
+  Polyline2 inner;  // from the bottom up
+  const auto add = [&](double s, double z) {
+    if (inner.empty() || (inner.back() - Vector2d(s, z)).norm() > 1e-6) inner.emplace_back(s, z);
+  };
+  for (std::size_t i = 0; i + 1 < curve.size(); ++i) {
+    const Vector2d &low = curve[i], &high = curve[i + 1];
+    const auto at = [&](double z) {
+      return low.x() + (z - low.y()) / (high.y() - low.y()) * (high.x() - low.x());
+    };
+    if (high.y() <= bottom || low.y() >= top) continue;
+    add(low.y() < bottom ? at(bottom) : low.x(), std::max(low.y(), bottom));
+    add(high.y() > top ? at(top) : high.x(), std::min(high.y(), top));
+  }
+  if (curve.back().y() < top) {
+    add(curve.back().x(), std::max(curve.back().y(), bottom));
+    add(curve.back().x(), top);
+  }
+  Polyline2 polygon{{outer, bottom}};
+  polygon.insert(polygon.end(), inner.begin(), inner.end());
+  polygon.emplace_back(outer, top);
+  if (outer > curve.back().x()) std::reverse(polygon.begin(), polygon.end());
+  return polygon;
+}
+
+/// A rectangular stone whose level sides are cut so that it can follow a curved plan.
+void add_stone(double left, double right, double bottom, double top, int chords, Wall& wall) {
+  Polyline2 stone;
+  for (int i = 0; i <= chords; ++i) stone.emplace_back(left + (right - left) * i / chords, bottom);
+  for (int i = chords; i >= 0; --i) stone.emplace_back(left + (right - left) * i / chords, top);
+  wall.tiles.push_back(stone);
+}
+
+}  // namespace
+
+void add_arched_bay(const Courses& courses, const Opening& opening, const Voussoirs& voussoirs,
+                    double half_width, const Fineness& fineness, Wall& wall) {
+  const double springing = opening.head.front().y();
+  const Vector2d centre(opening.centre, springing);
+  const double radius = opening.half_width, outer_radius = radius + voussoirs.height;
+  assert(outer_radius < half_width);
+  // Twice as many chords as voussoirs, at least: an odd number of stones still has a vertex at the
+  // crown.
+  const int chords_each =
+      2 * std::max(1, fineness.chords(outer_radius, 0.5 * pi / voussoirs.count));
+  const int chords = chords_each * voussoirs.count;
+  const Polyline2 intrados = half_circle(centre, radius, chords);
+  const Polyline2 extrados = half_circle(centre, outer_radius, chords);
+
+  Opening fitted = opening;
+  fitted.head = intrados;
+  // A niche's rows need the levels of the courses on both sides of the opening.
+  if (opening.back == Opening::Back::round) {
+    for (int course = 0; course <= courses.count; ++course) {
+      const double z = courses.level(course + 1);
+      if (z <= opening.sill + 1e-6 || z >= springing - 1e-6) continue;
+      fitted.head.insert(fitted.head.begin(), Vector2d(opening.centre + radius, z));
+      fitted.head.emplace_back(opening.centre - radius, z);
+    }
+    std::sort(fitted.head.begin(), fitted.head.begin() + (fitted.head.size() - intrados.size()) / 2,
+              [](const Vector2d& a, const Vector2d& b) { return a.y() < b.y(); });
+    std::sort(fitted.head.end() - (fitted.head.size() - intrados.size()) / 2, fitted.head.end(),
+              [](const Vector2d& a, const Vector2d& b) { return a.y() > b.y(); });
+  }
+  wall.openings.push_back(fitted);
+
+  for (int stone = 0; stone < voussoirs.count; ++stone) {
+    Polyline2 polygon;
+    for (int i = 0; i <= chords_each; ++i) polygon.push_back(extrados[stone * chords_each + i]);
+    for (int i = chords_each; i >= 0; --i) polygon.push_back(intrados[stone * chords_each + i]);
+    polygon = clipped_below(polygon, wall.top);
+    wall.tiles.push_back(polygon);
+  }
+
+  const std::size_t crown = extrados.size() / 2;
+  const Polyline2 right_curve(extrados.begin(), extrados.begin() + crown + 1);
+  const Polyline2 left_curve(extrados.rbegin(), extrados.rbegin() + crown + 1);
+  const double left = opening.centre - half_width, right = opening.centre + half_width;
+  const double plan_radius = wall.plan.length() / (2.0 * pi);
+  const auto add_stones = [&](double start, double end, double bottom, double top) {
+    const double width = end - start;
+    const int cuts = static_cast<int>(std::ceil(width / chord_length(fineness, plan_radius)));
+    add_stone(start, end, bottom, top, cuts, wall);
+  };
+  for (int course = 0; course <= courses.count; ++course) {
+    const double bottom = courses.level(course), top = courses.level(course + 1);
+    const bool is_even = course % 2 == 0;
+    if (top <= opening.sill + 1e-6) {
+      // Whole courses: three stones, then two halves between them.
+      const std::vector<double> joints = is_even ? std::vector<double>{-1.0, -0.36, 0.36, 1.0}
+                                                 : std::vector<double>{-1.0, 0.0, 1.0};
+      for (std::size_t i = 0; i + 1 < joints.size(); ++i) {
+        add_stones(opening.centre + joints[i] * half_width,
+                   opening.centre + joints[i + 1] * half_width, bottom, top);
+      }
+    } else if (top <= springing + 1e-6) {
+      // Piers: one stone, then two.
+      const double inner_left = opening.centre - radius, inner_right = opening.centre + radius;
+      if (is_even) {
+        add_stones(left, inner_left, bottom, top);
+        add_stones(inner_right, right, bottom, top);
+      } else {
+        const double joint = 0.5 * (half_width + radius);
+        add_stones(left, opening.centre - joint, bottom, top);
+        add_stones(opening.centre - joint, inner_left, bottom, top);
+        add_stones(inner_right, opening.centre + joint, bottom, top);
+        add_stones(opening.centre + joint, right, bottom, top);
+      }
+    } else {
+      wall.tiles.push_back(course_beside(left_curve, left, bottom, top));
+      wall.tiles.push_back(course_beside(right_curve, right, bottom, top));
+    }
+  }
+}
+
+void add_plain_courses(const Courses& courses, double start, double end, Wall& wall) {
+  for (int course = 0; course <= courses.count; ++course) {
+    add_stone(start, end, courses.level(course), courses.level(course + 1), 1, wall);
+  }
+}
+
+void add_ring_courses(double bottom, double height, int count, int stones, const Fineness& fineness,
+                      Wall& wall) {
+  const double step = wall.plan.length() / stones;
+  const double radius = wall.plan.length() / (2.0 * pi);
+  const int chords = fineness.chords(radius, 2.0 * pi / stones);
+  for (int course = 0; course < count; ++course) {
+    const double low = bottom + course * height, high = low + height;
+    for (int i = 0; i < stones; ++i) {
+      const double start = (i + 0.5 * (course % 2)) * step;
+      add_stone(start, start + step, low, high, chords, wall);
+    }
+  }
+}
+
+}  // namespace skycap::sim::models

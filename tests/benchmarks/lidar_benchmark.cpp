@@ -1,0 +1,173 @@
+/// A moving laser scanner, all of it, against the bare casting of the same rays; and whole flights
+/// into a LAS file.
+///
+///   lidar_benchmark [--threads N] [--rounds N] [--file FILE.las]
+///
+/// The platform flies at 10 m/s inside a hilly sphere; all shots return. The bare loop has its rays
+/// ready in memory, in packets of the same shape, and keeps only their distances.
+
+#include <algorithm>
+#include <chrono>
+#include <cstdio>
+#include <cstdlib>
+#include <cstring>
+#include <filesystem>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include <Eigen/Geometry>
+
+#include "geometry/parallel.h"
+#include "missions/scan_runner.h"
+#include "sim/lidar.h"
+#include "sim/scan_pattern.h"
+#include "sim/scene_embree.h"
+#include "tests/benchmarks/interleaved.h"
+#include "tests/benchmarks/planet.h"
+
+namespace {
+
+using namespace skycap;
+
+constexpr double degree = 0.017453292519943295;
+
+sim::LidarConfig spinner(int channels, int columns) {
+  sim::LidarConfig config;
+  config.rotation_rate = 10.0;
+  config.firing_period = 0.1 / columns;
+  config.channels.clear();
+  for (int i = 0; i < channels; ++i) {
+    config.channels.push_back({.elevation = (22.5 - 45.0 * i / (channels - 1)) * degree});
+  }
+  config.errors.sigma = 0.01;
+  return config;
+}
+
+sim::Trajectory flight(double duration) {
+  const Eigen::Quaterniond level = Eigen::Quaterniond::Identity();
+  return sim::Trajectory(
+      {{0.0, {-2.0, 3.0, 1.0}, level},
+       {duration, Eigen::Vector3d(-2.0 + 10.0 * std::min(duration, 0.5), 3.0, 1.0), level}});
+}
+
+struct BareRays {
+  std::vector<float> origin[3], direction[3];
+};
+
+BareRays all_rays(const sim::LidarConfig& config, const sim::Trajectory& trajectory,
+                  const Eigen::Vector3d& centre, std::uint64_t blocks) {
+  BareRays rays;
+  const sim::ScanPattern pattern(config);
+  sim::Shots shots;
+  for (std::uint64_t block = 0; block < blocks; ++block) {
+    pattern.aim(block, shots);
+    for (std::size_t slot = 0; slot < pattern.slots(); ++slot) {
+      const std::size_t firing = slot / 4 / config.channels.size() * 4 + slot % 4;
+      const Eigen::Isometry3d pose =
+          trajectory.pose(static_cast<double>(block * 32 + firing) * config.firing_period);
+      const Eigen::Vector3d towards =
+          pose.linear() * Eigen::Vector3d(shots.direction[0][slot], shots.direction[1][slot],
+                                          shots.direction[2][slot]);
+      for (int axis = 0; axis < 3; ++axis) {
+        rays.origin[axis].push_back(static_cast<float>(pose.translation()[axis] - centre[axis]));
+        rays.direction[axis].push_back(static_cast<float>(towards[axis]));
+      }
+    }
+  }
+  return rays;
+}
+
+template <int width>
+void cast_packets(const sim::Scene::Embree& embree, const BareRays& rays, std::size_t begin,
+                  std::size_t end, float* ranges) {
+  RTCIntersectContext context;
+  rtcInitIntersectContext(&context);
+  context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
+  sim::Packet<width> packet;
+  auto& ray = packet.rays.ray;
+  for (std::size_t first = begin; first < end; first += width) {
+    std::memcpy(ray.org_x, &rays.origin[0][first], sizeof ray.org_x);
+    std::memcpy(ray.org_y, &rays.origin[1][first], sizeof ray.org_y);
+    std::memcpy(ray.org_z, &rays.origin[2][first], sizeof ray.org_z);
+    std::memcpy(ray.dir_x, &rays.direction[0][first], sizeof ray.dir_x);
+    std::memcpy(ray.dir_y, &rays.direction[1][first], sizeof ray.dir_y);
+    std::memcpy(ray.dir_z, &rays.direction[2][first], sizeof ray.dir_z);
+    for (int lane = 0; lane < width; ++lane) {
+      ray.tfar[lane] = 200.0F;
+      packet.rays.hit.geomID[lane] = RTC_INVALID_GEOMETRY_ID;
+    }
+    sim::PacketTypes<width>::intersect(packet.active, embree.scene, &context, &packet.rays);
+    std::memcpy(ranges + first, ray.tfar, sizeof ray.tfar);
+  }
+}
+
+void compare(const sim::Scene& scene, std::size_t triangles, unsigned threads, int rounds) {
+  const sim::LidarConfig config = spinner(64, 1024);
+  const sim::Trajectory trajectory = flight(0.1);
+  const sim::Lidar lidar(config);
+  const sim::LidarFlight flown{trajectory, trajectory};
+  constexpr std::uint64_t blocks = 32, blocks_in_piece = 2;
+  const BareRays rays = all_rays(config, trajectory, scene.embree().centre, blocks);
+  std::vector<float> ranges(rays.origin[0].size());
+  std::vector<sim::LidarReturns> pieces(blocks / blocks_in_piece);
+  const auto whole = [&] {
+    geometry::parallel_for(pieces.size(), threads, [&](std::size_t i) {
+      pieces[i] = lidar.measure(scene, flown, {i * 32 * blocks_in_piece, 32 * blocks_in_piece},
+                                std::move(pieces[i]));
+    });
+  };
+  const auto bare = [&] {
+    geometry::parallel_for(pieces.size(), threads, [&](std::size_t i) {
+      const std::size_t size = ranges.size() / pieces.size();
+      sim::with_packet_width(scene.embree(), [&]<int width>() {
+        cast_packets<width>(scene.embree(), rays, i * size, (i + 1) * size, ranges.data());
+      });
+    });
+  };
+  const auto medians = benchmarks::interleaved_medians(rounds, whole, bare);
+  std::printf("%9zu triangles, a turn of 64 x 1024: %6.2f ms, bare packets %6.2f ms: %.3f\n",
+              triangles, 1e3 * medians.first, 1e3 * medians.second, medians.first / medians.second);
+}
+
+void fly_into_file(const sim::Scene& scene, int rings, double duration, unsigned threads,
+                   const std::string& file) {
+  sim::LidarConfig config = spinner(64, 2048);
+  config.beam.rings = rings;
+  config.beam.divergence_horizontal = config.beam.divergence_vertical = 0.003;
+  config.beam.max_returns = 5;
+  const sim::Trajectory trajectory = flight(duration);
+  missions::LasWriter writer(file, {});
+  const auto start = std::chrono::steady_clock::now();
+  const missions::ScanResult result =
+      missions::run_scan(scene, sim::Lidar(config), {trajectory, trajectory}, writer,
+                         {.threads = threads, .report = {}, .stop = {}});
+  writer.finish();
+  const std::chrono::duration<double> time = std::chrono::steady_clock::now() - start;
+  const double shots = 64.0 * static_cast<double>(result.progress.firings);
+  std::printf("          %2d rays a shot, into LAS: %.2f M shots/s, %.1f MB/s written\n",
+              1 + 3 * rings * (rings + 1), 1e-6 * shots / time.count(),
+              1e-6 * static_cast<double>(std::filesystem::file_size(file)) / time.count());
+  std::filesystem::remove(file);
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  unsigned threads = 0;
+  int rounds = 15;
+  std::string file = (std::filesystem::temp_directory_path() / "lidar_benchmark.las").string();
+  for (int i = 1; i + 1 < argc; i += 2) {
+    const std::string_view option = argv[i];
+    if (option == "--threads") threads = static_cast<unsigned>(std::atoi(argv[i + 1]));
+    if (option == "--rounds") rounds = std::max(1, std::atoi(argv[i + 1]));
+    if (option == "--file") file = argv[i + 1];
+  }
+  for (const std::size_t triangles : {70'000UL, 1'000'000UL}) {
+    const sim::Scene scene(benchmarks::planet(triangles), threads);
+    compare(scene, triangles, threads, rounds);
+    fly_into_file(scene, 0, 1.0, threads, file);
+    fly_into_file(scene, 2, 0.2, threads, file);
+  }
+}

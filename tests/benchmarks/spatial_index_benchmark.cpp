@@ -1,0 +1,185 @@
+/// What each structure behind SpatialIndex earns: the same queries with our grid, CGAL's kd-tree (the
+/// forest's building block), nanoflann and PCL's octree, over points on a building-sized shell kept
+/// at SEE's spacing.
+/// Run: build/release/tests/benchmarks/spatial_index_benchmark
+#include <cmath>
+#include <cstdint>
+#include <cstdio>
+#include <iterator>
+#include <memory>
+#include <random>
+#include <vector>
+
+#include <CGAL/Fuzzy_sphere.h>
+#include <CGAL/Kd_tree.h>
+#include <CGAL/Search_traits_3.h>
+#include <CGAL/Simple_cartesian.h>
+#include <nanoflann.hpp>
+#include <pcl/octree/octree_search.h>
+
+#include "geometry/density.h"
+#include "geometry/point_grid.h"
+#include "tests/benchmarks/interleaved.h"
+
+namespace {
+
+using Eigen::Vector3f;
+using skycap::benchmarks::interleaved_medians;
+using skycap::geometry::Neighbour;
+using skycap::geometry::PointGrid;
+
+constexpr double radius = 0.15, spacing = 0.0685;  // r and epsilon of the paper's building
+constexpr int rounds = 5;
+
+/// Random points on a cylinder 40 m high and 30 m wide, with 1 cm of noise.
+std::vector<Vector3f> shell(std::size_t count) {
+  std::mt19937_64 random(1);
+  std::uniform_real_distribution<float> uniform(0.0F, 1.0F);
+  std::normal_distribution<float> noise(0.0F, 0.01F);
+  std::vector<Vector3f> points(count);
+  for (Vector3f& p : points) {
+    const float azimuth = 6.2831853F * uniform(random), across = 15.0F + noise(random);
+    p = {across * std::cos(azimuth), across * std::sin(azimuth), 40.0F * uniform(random)};
+  }
+  return points;
+}
+
+/// nanoflann's view of a vector of points.
+struct PointsForNanoflann {
+  const std::vector<Vector3f>& points;
+  std::size_t kdtree_get_point_count() const { return points.size(); }
+  float kdtree_get_pt(std::size_t index, std::size_t axis) const {
+    return points[index][static_cast<Eigen::Index>(axis)];
+  }
+  template <typename Box>
+  bool kdtree_get_bbox(Box&) const {
+    return false;
+  }
+};
+using Nanoflann =
+    nanoflann::KDTreeSingleIndexAdaptor<nanoflann::L2_Simple_Adaptor<float, PointsForNanoflann>,
+                                        PointsForNanoflann, 3>;
+
+using Kernel = CGAL::Simple_cartesian<double>;
+using CgalTraits = CGAL::Search_traits_3<Kernel>;
+using CgalTree = CGAL::Kd_tree<CgalTraits>;
+
+void print(const char* what, const char* other, skycap::benchmarks::Medians times,
+           std::size_t work) {
+  const double each = 1e9 / static_cast<double>(work);
+  std::printf("%-34s grid %7.0f ns   %-10s %7.0f ns   %s / grid = %.1f\n", what,
+              each * times.first, other, each * times.second, other, times.second / times.first);
+}
+
+}  // namespace
+
+int main() {
+  const std::vector<Vector3f> scan = shell(4'000'000);
+  skycap::geometry::DensityMap map({.radius = radius, .core_threshold = 4, .spacing = spacing});
+  map.insert(scan, 0);
+  const std::vector<Vector3f>& points = map.cloud().positions;
+  const std::vector<Vector3f> queries(scan.begin(), scan.begin() + 100'000);
+  std::printf("%zu points at a spacing of %.4f m, balls of %.2f m, medians of %d rounds\n",
+              points.size(), spacing, radius, rounds);
+
+  PointGrid grid(radius);
+  for (const Vector3f& p : points) grid.insert(p);
+  const PointsForNanoflann nanoflann_points{points};
+  Nanoflann nanoflann(3, nanoflann_points, nanoflann::KDTreeSingleIndexAdaptorParams(10));
+  nanoflann.buildIndex();
+  std::vector<Kernel::Point_3> cgal_points;
+  for (const Vector3f& p : points) cgal_points.emplace_back(p.x(), p.y(), p.z());
+  CgalTree cgal(cgal_points.begin(), cgal_points.end());
+  cgal.build();
+  const auto pcl_points = std::make_shared<pcl::PointCloud<pcl::PointXYZ>>();
+  for (const Vector3f& p : points) pcl_points->emplace_back(p.x(), p.y(), p.z());
+  pcl::octree::OctreePointCloudSearch<pcl::PointXYZ> octree(radius);
+  octree.setInputCloud(pcl_points);
+  octree.addPointsFromInputCloud();
+
+  // All neighbours within the radius. The counts of all four must agree.
+  std::size_t found_by_grid = 0, found_by_other = 0;
+  const auto ask_grid = [&] {
+    std::vector<Neighbour> found;
+    found_by_grid = 0;
+    for (const Vector3f& query : queries) {
+      found.clear();
+      grid.find_within(query, radius, found);
+      found_by_grid += found.size();
+    }
+  };
+  const auto compare = [&](const char* name, auto ask_other) {
+    print("neighbours within r", name, interleaved_medians(rounds, ask_grid, ask_other),
+          queries.size());
+    std::printf("%36sfound %zu and %zu\n", "", found_by_grid, found_by_other);
+  };
+  compare("nanoflann", [&] {
+    std::vector<std::pair<std::uint32_t, float>> found;
+    found_by_other = 0;
+    for (const Vector3f& query : queries) {
+      found_by_other += nanoflann.radiusSearch(query.data(), static_cast<float>(radius * radius),
+                                               found, nanoflann::SearchParams(32, 0.0F, false));
+    }
+  });
+  compare("CGAL", [&] {
+    std::vector<Kernel::Point_3> found;
+    found_by_other = 0;
+    for (const Vector3f& query : queries) {
+      found.clear();
+      cgal.search(std::back_inserter(found),
+                  CGAL::Fuzzy_sphere<CgalTraits>(
+                      Kernel::Point_3(query.x(), query.y(), query.z()), radius));
+      found_by_other += found.size();
+    }
+  });
+  compare("PCL octree", [&] {
+    pcl::Indices found;
+    std::vector<float> distances;
+    found_by_other = 0;
+    for (const Vector3f& query : queries) {
+      found_by_other += static_cast<std::size_t>(
+          octree.radiusSearch({query.x(), query.y(), query.z()}, radius, found, distances));
+    }
+  });
+
+  // A large ball: here the kd-tree behind the forest earns its place.
+  const std::vector<Vector3f> few(queries.begin(), queries.begin() + 300);
+  const auto large_with_grid = [&] {
+    std::vector<Neighbour> found;
+    for (const Vector3f& query : few) {
+      found.clear();
+      grid.find_within(query, 5.0, found);
+    }
+  };
+  print("neighbours within 5 m", "CGAL", interleaved_medians(rounds, large_with_grid, [&] {
+          std::vector<Kernel::Point_3> found;
+          for (const Vector3f& query : few) {
+            found.clear();
+            cgal.search(std::back_inserter(found),
+                        CGAL::Fuzzy_sphere<CgalTraits>(
+                            Kernel::Point_3(query.x(), query.y(), query.z()), 5.0));
+          }
+        }),
+        few.size());
+
+  // Growing the cloud by one scan: our insertion at the spacing beside the rebuilding of a tree.
+  const auto grow = [&] {
+    skycap::geometry::DensityMap growing(
+        {.radius = radius, .core_threshold = 4, .spacing = spacing});
+    growing.insert(scan, 0);
+  };
+  print("insert a return at the spacing", "raw copy", interleaved_medians(rounds, grow, [&] {
+          std::vector<Vector3f> copy;
+          for (const Vector3f& p : scan) copy.push_back(p);
+        }),
+        scan.size());
+  const auto build_grid = [&] {
+    PointGrid fresh(radius);
+    for (const Vector3f& p : points) fresh.insert(p);
+  };
+  print("build from the kept points", "nanoflann", interleaved_medians(rounds, build_grid, [&] {
+          Nanoflann fresh(3, nanoflann_points, nanoflann::KDTreeSingleIndexAdaptorParams(10));
+          fresh.buildIndex();
+        }),
+        points.size());
+}

@@ -1,0 +1,17 @@
+/// A small flight over a small site, for the tests of the formats.
+#pragma once
+
+#include "flight/export/flight_plan.h"
+#include "flight/obstacles.h"
+#include "flight/route.h"
+
+namespace skycap::flight {
+
+/// A building of 20 x 20 x 15 m on flat ground, a heliport that is flown past and a low shed zone
+/// that is flown over, all inside a fence.
+Obstacles sample_site();
+
+/// Four stations around the building, near Oxford's meridian, planned for that vehicle at 2 m.
+FlightPlan sample_plan(const Vehicle& vehicle);
+
+}  // namespace skycap::flight

@@ -1,0 +1,227 @@
+// What users get wrong: each case must end with exit code 2, one line that says what and what to
+// do, and no results.
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "tests/missions/run_skycap.h"
+
+namespace skycap::missions {
+namespace {
+
+using testing::HasSubstr;
+using tests::TestFolder;
+
+/// A mission or mesh that is wrong in one way, and what has to be said of it. MISSION and FOLDER
+/// in the message stand for the mission file and the folder it is in.
+struct BadInput {
+  const char* name;
+  std::string mission;
+  std::string message;
+  std::string mesh_name = {};  ///< a file beside the mission
+  std::string mesh = {};
+  std::vector<std::string> arguments = {};  ///< after "plan MISSION --out OUT"
+};
+
+const std::string model = "scene: {model: 'builtin:teapot'}\n";
+const std::string judged = "evaluation: {registration_distance: 0.005}\n";
+const std::string whole = model + judged;  // lines 1 and 2
+
+std::string with_mesh(const std::string& file) { return "scene: {model: " + file + "}\n" + judged; }
+
+std::vector<BadInput> bad_inputs() {
+  return {
+      {"EmptyFile", "", "MISSION:1: is empty; a mission needs at least scene.model"},
+      {"OnlyAComment", "# later\n", "MISSION:1: is empty"},
+      {"NotAMap", "- a\n- b\n", "MISSION:1: is not a map; a mission is a list of 'key: value'"},
+      {"BrokenYaml", "scene: {model: x\n", "is not valid YAML"},
+      {"TabIndent", "scene:\n\tmodel: x\n", "MISSION:2: is not valid YAML"},
+      {"TwoDocuments", whole + "---\n" + whole, "holds more than one YAML document"},
+      {"DuplicateKey", whole + "seed: 1\nseed: 2\n",
+       "MISSION:4: key seed: is given twice, first in line 3; keep one"},
+      {"Alias", "a: &x 1\nb: *x\n", "MISSION:1: anchors ('&name') are not used"},
+      {"AliasBomb", "a: &a [1,1]\nb: &b [*a,*a]\nc: [*b,*b]\n", "MISSION:1: anchors"},
+      {"Tag", whole + "seed: !!int 3\n", "MISSION:3: tags"},
+      {"BinaryFile",
+       std::string("\x7f"
+                   "ELF\0\0",
+                   6),
+       "MISSION: is not text"},
+      {"HugeFile", std::string((1 << 20) + 1, '#'), "MISSION: is larger than 1 MiB"},
+      {"MissingModel", judged, "MISSION:1: key scene.model: is missing; give a text"},
+      {"MissingDistance", model,
+       "MISSION:1: key evaluation.registration_distance: is missing; give a number above 0"},
+      {"MisspeltKey", whole + "planner:\n  densty: 3\n",
+       "MISSION:4: key planner.densty: is unknown; did you mean planner.density?"},
+      {"MisspeltSection", whole + "planer: {density: 3}\n", "MISSION:3: key planer: is unknown"},
+      {"UnknownKey", whole + "planner: {mood: good}\n",
+       "MISSION:3: key planner.mood: is unknown; known are planner.name, planner.preset"},
+      {"SectionIsNumber", whole + "planner: 3\n", "MISSION:3: key planner: is a section"},
+      {"TextForNumber", whole + "planner: {density: lots}\n",
+       "MISSION:3: key planner.density: is lots; give a number above 0"},
+      {"QuotedNumber", whole + "planner: {density: '100'}\n",
+       "key planner.density: is the text '100'; give a number"},
+      {"NoValue", whole + "planner:\n  density:\n",
+       "MISSION:4: key planner.density: has no value; give a number above 0"},
+      {"NotANumber", whole + "planner: {density: nan}\n", "key planner.density: is nan; give"},
+      {"Infinite", whole + "planner: {density: .inf}\n", "key planner.density: is .inf; give"},
+      {"OverflowingNumber", whole + "planner: {density: 1e999}\n", "is 1e999; give"},
+      {"FractionForInteger", whole + "seed: 1.5\n",
+       "MISSION:3: key seed: is 1.5; give a whole number from 0 to 1e+15"},
+      {"NegativeSeed", whole + "seed: -1\n", "key seed: is -1; give a whole number"},
+      {"ListForNumber", whole + "seed: [1]\n", "key seed: is a list; give a whole number"},
+      {"YesForBoolean", whole + "planner: {facing_test: yes}\n",
+       "key planner.facing_test: is yes; give true or false"},
+      {"UnknownChoice", whole + "planner: {name: rsv}\n",
+       "MISSION:3: key planner.name: is rsv; give see++, see or skycap"},
+      {"ShortVector", whole + "start: {position: [1, 2]}\n",
+       "key start.position: is a list; give a list of three numbers"},
+      {"AngleTooWide", whole + "sensor: {horizontal_fov_deg: 180}\n",
+       "key sensor.horizontal_fov_deg: is 180; give a number from 0.1 to 179 [degrees]"},
+      {"HugeImage", whole + "sensor: {width: 32768, height: 32768}\n",
+       "key sensor.width: times sensor.height is more than 1e8 pixels"},
+      {"EmptyRange", whole + "sensor: {min_range: 5, max_range: 4}\n",
+       "MISSION:3: key sensor.max_range: is not above sensor.min_range"},
+      {"TwoScales", "scene: {model: 'builtin:teapot', scale: 2, longest_side: 1}\n" + judged,
+       "MISSION:1: key scene.scale: excludes scene.longest_side"},
+      {"GroundWithoutBox", "scene: {model: 'builtin:teapot', ground: true}\n" + judged,
+       "key scene.ground: needs planner.scene_box"},
+      {"EmptyBox", whole + "planner: {scene_box: {min: [0, 0, 0], max: [1, 0, 1]}}\n",
+       "key planner.scene_box.max: is not above planner.scene_box.min"},
+      {"StartWithoutAim", whole + "start: {position: [0, 3, 0]}\n",
+       "MISSION:3: key start.position: needs either start.look_at or start.direction"},
+      {"AimWithoutStart", whole + "start: {look_at: [0, 3, 0]}\n",
+       "key start.look_at: needs start.position"},
+      {"NoDirection", whole + "start: {position: [0, 3, 0], direction: [0, 0, 0]}\n",
+       "key start.direction: has no length"},
+      {"NameWithSlash", whole + "name: ../elsewhere\n", "MISSION:3: key name: is ../elsewhere"},
+      {"NoFrontierPossible", whole + "planner:\n  density: 1000\n  resolution_radius: 0.05\n",
+       "which admits no frontier"},
+      {"CoreThresholdOf3", whole + "planner: {core_threshold: 3}\n",
+       "MISSION:3: key planner.core_threshold: is 3; it must be at least 4"},
+      {"SpacingAboveRadius", whole + "planner:\n  spacing: 0.5\n",
+       "MISSION:4: key planner.spacing: is 0.5; it must be less than resolution_radius"},
+      {"UnknownBuiltin", "scene: {model: 'builtin:kettle'}\n" + judged, "kettle"},
+      {"UnknownModel", "scene: {model: 'model:kettle'}\n" + judged,
+       "model:kettle is not in $SKYCAP_MODELS"},
+      {"MissingMesh", with_mesh("none.ply"), "FOLDER/none.ply: "},
+      {"UnknownFormat", with_mesh("m.3ds"), "FOLDER/m.3ds: ", "m.3ds", "x"},
+      {"EmptyMesh", with_mesh("m.ply"), "FOLDER/m.ply: is empty", "m.ply", ""},
+      {"BrokenMesh", with_mesh("m.ply"), "FOLDER/m.ply", "m.ply", "ply\nformat ascii 1.0\nelem"},
+      {"HugeIndex", with_mesh("m.off"), "FOLDER/m.off", "m.off",
+       "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 4000000000\n"},
+      {"HugeCount", with_mesh("m.ply"), "FOLDER/m.ply", "m.ply",
+       "ply\nformat binary_little_endian 1.0\nelement vertex 4000000000\nproperty float x\n"
+       "property float y\nproperty float z\nelement face 4000000000\n"
+       "property list uchar int vertex_indices\nend_header\n"},
+      {"NanVertex", with_mesh("m.off"), "FOLDER/m.off", "m.off",
+       "OFF\n3 1 0\n0 0 nan\n1 0 0\n0 1 0\n3 0 1 2\n"},
+      {"NoFaces", with_mesh("m.off"), "FOLDER/m.off", "m.off", "OFF\n3 0 0\n0 0 0\n1 0 0\n0 1 0\n"},
+      {"NoArea", with_mesh("m.off"), "FOLDER/m.off", "m.off",
+       "OFF\n3 1 0\n0 0 0\n1 0 0\n2 0 0\n3 0 1 2\n"},
+      {"EmptyFirstScan", model + "start: {position: [9, 0, 0], direction: [1, 0, 0]}\n" + judged,
+       "MISSION: the first scan holds no point of the scene; start from a place that sees it"},
+      {"NoRoomAboveTheGround", whole + "limits: {ground_clearance: 1000}\n",
+       "limits.ground_clearance leaves no place for a random start"},
+      {"BadOption", whole, "--seed: key seed: is x; give a whole number", "", "", {"--seed", "x"}},
+      {"UnknownOption", whole, "--sede", "", "", {"--sede", "1"}},
+      {"BadSet", whole, "--set seed: has no '='", "", "", {"--set", "seed"}},
+      {"ZeroTrials", whole, "--trials", "", "", {"--trials", "0"}},
+      {"UnwritableOutput",
+       whole,
+       "/proc/results: cannot be made",
+       "",
+       "",
+       {"--out", "/proc/results"}},
+  };
+}
+
+class Program : public testing::TestWithParam<BadInput> {};
+
+void replace_all(std::string& text, const std::string& what, const std::string& by) {
+  for (auto at = text.find(what); at != std::string::npos; at = text.find(what, at + by.size())) {
+    text.replace(at, what.size(), by);
+  }
+}
+
+TEST_P(Program, RefusesInOneLineAndLeavesNothing) {
+  const BadInput& input = GetParam();
+  const TestFolder folder;
+  const std::string mission = folder.write("mission.yaml", input.mission);
+  if (!input.mesh_name.empty()) folder.write(input.mesh_name, input.mesh);
+  std::vector<std::string> arguments{"plan", mission};
+  if (std::ranges::find(input.arguments, "--out") == input.arguments.end()) {
+    arguments.insert(arguments.end(), {"--out", folder / "out"});
+  }
+  arguments.insert(arguments.end(), input.arguments.begin(), input.arguments.end());
+
+  const auto run = tests::run_skycap(arguments);
+
+  EXPECT_EQ(run.exit_code, 2);
+  std::string message = input.message;
+  replace_all(message, "MISSION", mission);
+  replace_all(message, "FOLDER", folder.path().string());
+  EXPECT_THAT(run.err, testing::StartsWith("skycap: error: "));
+  EXPECT_THAT(run.err, HasSubstr(message));
+  EXPECT_EQ(std::ranges::count(run.err, '\n'), 1) << run.err;
+  EXPECT_EQ(run.err.back(), '\n');
+  EXPECT_EQ(run.out, "");
+  EXPECT_FALSE(std::filesystem::exists(folder / "out"));
+}
+
+INSTANTIATE_TEST_SUITE_P(BadInput, Program, testing::ValuesIn(bad_inputs()),
+                         [](const auto& instance) { return std::string(instance.param.name); });
+
+TEST(ProgramUsage, RefusesUnknownVerbs) {
+  const auto run = tests::run_skycap({"fly"});
+  EXPECT_EQ(run.exit_code, 2);
+  EXPECT_EQ(run.err,
+            "skycap: error: there is no verb 'fly'; the verbs are plan, check, evaluate, model\n");
+}
+
+TEST(ProgramUsage, RefusesToDoNothing) {
+  EXPECT_EQ(tests::run_skycap({}).exit_code, 2);
+  EXPECT_EQ(tests::run_skycap({"plan"}).exit_code, 2);
+  EXPECT_EQ(tests::run_skycap({"check"}).exit_code, 2);
+  EXPECT_EQ(tests::run_skycap({"evaluate"}).exit_code, 2);
+  EXPECT_EQ(tests::run_skycap({"model"}).exit_code, 2);
+}
+
+TEST(ProgramUsage, ExplainsItself) {
+  for (const std::vector<std::string>& arguments :
+       std::vector<std::vector<std::string>>{{"--help"},
+                                             {"plan", "--help"},
+                                             {"check", "--help"},
+                                             {"evaluate", "--help"},
+                                             {"model", "--help"}}) {
+    const auto run = tests::run_skycap(arguments);
+    EXPECT_EQ(run.exit_code, 0);
+    EXPECT_THAT(run.out, HasSubstr("Usage: skycap"));
+    EXPECT_EQ(run.err, "");
+  }
+  EXPECT_THAT(tests::run_skycap({"--version"}).out, testing::StartsWith("skycap 0."));
+}
+
+TEST(ProgramUsage, MissionsAndCloudsThatAreNotThere) {
+  EXPECT_THAT(tests::run_skycap({"plan", "/nowhere/m.yaml"}).err,
+              HasSubstr("/nowhere/m.yaml: cannot be read (No such file or directory)"));
+  EXPECT_THAT(tests::run_skycap({"check", "/proc"}).err, HasSubstr("/proc: is a folder"));
+  const auto run = tests::run_skycap(
+      {"evaluate", "--cloud", "/nowhere/c.ply", "--model", "builtin:teapot", "--distance", "1"});
+  EXPECT_EQ(run.exit_code, 2);
+  EXPECT_THAT(run.err, HasSubstr("/nowhere/c.ply"));
+}
+
+TEST(ProgramUsage, EvaluateNeedsADistanceUnlessTheMissionSaysIt) {
+  const TestFolder folder;
+  const std::string cloud = folder.write("c.xyz", "0 0 0\n1 1 1\n");
+  const auto run = tests::run_skycap({"evaluate", "--cloud", cloud, "--model", "builtin:teapot"});
+  EXPECT_EQ(run.exit_code, 2);
+  EXPECT_THAT(run.err, HasSubstr("--distance is missing"));
+}
+
+}  // namespace
+}  // namespace skycap::missions

@@ -1,0 +1,163 @@
+#include "missions/mission_reader.h"
+
+#include <numbers>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "geometry/error.h"
+#include "missions/mission_keys.h"
+
+namespace skycap::missions {
+namespace {
+
+using testing::HasSubstr;
+
+const std::string smallest =
+    "scene: {model: 'builtin:teapot'}\nevaluation: {registration_distance: 0.005}\n";
+
+Mission parsed(const std::string& more, const std::vector<KeyOverride>& overrides = {}) {
+  return parse_mission(smallest + more, "some/folder/vase.yaml", overrides);
+}
+
+std::string complaint(const std::string& text, const std::vector<KeyOverride>& overrides = {}) {
+  try {
+    parse_mission(text, "m.yaml", overrides);
+  } catch (const Error& error) {
+    return error.what();
+  }
+  return "";
+}
+
+TEST(MissionReader, NeedsOnlyAModelAndARegistrationDistance) {
+  const Mission mission = parsed("");
+  EXPECT_EQ(mission.name, "vase");
+  EXPECT_EQ(mission.scene.model, "builtin:teapot");
+  EXPECT_EQ(mission.evaluation.registration_distance, 0.005);
+  EXPECT_TRUE(mission.planner.see.optimise_views);
+}
+
+TEST(MissionReader, TurnsDegreesIntoRadians) {
+  const Mission mission = parsed("sensor: {horizontal_fov_deg: 90}\nplanner: {name: see}\n", {});
+  EXPECT_DOUBLE_EQ(mission.sensor.camera.camera.horizontal_fov, 0.5 * std::numbers::pi);
+}
+
+TEST(MissionReader, SetsEachKeyToWhatItGivesBack) {
+  Mission mission;
+  for (const Key& key : mission_keys()) {
+    KeyValue value;
+    switch (key.type) {
+      case KeyType::text:
+        value = std::string("builtin:teapot");
+        break;
+      case KeyType::boolean:
+        value = true;
+        break;
+      case KeyType::choice:
+        value = key.choices.back();
+        break;
+      case KeyType::integer:
+        value = std::int64_t{7};
+        break;
+      case KeyType::vector:
+        value = Eigen::Vector3d(1, 2, 3);
+        break;
+      case KeyType::number:
+        value = 0.25;
+        break;
+    }
+    key.set(mission, value);
+    const auto back = key.get(mission);
+    ASSERT_TRUE(back) << key.path;
+    EXPECT_EQ(to_text(*back), to_text(value)) << key.path;
+  }
+}
+
+TEST(MissionReader, TakesPresetsFirstWhereverTheyStand) {
+  const Mission mission = parsed(
+      "sensor: {width: 600, preset: high_resolution}\nplanner: {visibility_graph: true, name: "
+      "see}\n");
+  EXPECT_EQ(mission.sensor.camera.camera.width, 600);
+  EXPECT_EQ(mission.sensor.camera.camera.height, 1750);
+  EXPECT_TRUE(mission.planner.see.visibility_graph);
+  EXPECT_FALSE(mission.planner.see.optimise_views);
+}
+
+// spec: psi = d, one frontier a twentieth of d, occluders 2 r apart, tau above the number of
+// clusters.
+TEST(MissionReader, DerivesTheBuildingPresetFromTheSensorAndTheDensity) {
+  const std::string building =
+      "sensor: {preset: high_resolution}\n"
+      "planner: {preset: building, density: 213, resolution_radius: 0.15";
+  const survey::SeeConfig see = parsed(building + "}").planner.see;
+  EXPECT_NEAR(see.occlusion_search_distance, 41.29, 5e-3);  // d, as published
+  EXPECT_NEAR(see.frontier_spacing, 2.0645, 5e-4);
+  EXPECT_DOUBLE_EQ(see.occluder_spacing, 0.3);
+  EXPECT_EQ(see.visibility_update_limit, 1000U);
+  EXPECT_TRUE(see.drop_if_still_occluded);
+
+  const survey::SeeConfig overridden =
+      parsed(building + ", occlusion_search_distance: 10, visibility_update_limit: 5}").planner.see;
+  EXPECT_EQ(overridden.occlusion_search_distance, 10.0);
+  EXPECT_EQ(overridden.visibility_update_limit, 5U);
+  EXPECT_NEAR(overridden.frontier_spacing, 2.0645, 5e-4);
+}
+
+TEST(MissionReader, MeasuresTheGroundClearanceFromTheScenesBase) {
+  const Mission mission = parse_mission(
+      "scene: {model: 'builtin:teapot', position: [0, 0, 60]}\n"
+      "evaluation: {registration_distance: 0.005}\nlimits: {ground_clearance: 2}\n",
+      "m.yaml");
+  EXPECT_EQ(mission.planner.see.ground_clearance, 62.0);
+}
+
+TEST(MissionReader, LetsOverridesReplaceKeysAndNamesTheirOrigin) {
+  const Mission mission = parsed("seed: 3\n", {{"--seed", "seed", "8"}});
+  EXPECT_EQ(mission.seed, 8U);
+  EXPECT_EQ(complaint(smallest, {{"--seed", "seed", "many"}}),
+            "--seed: key seed: is many; give a whole number from 0 to 1e+15");
+  EXPECT_THAT(complaint(smallest, {{"--set", "planner.densty", "1"}}),
+              HasSubstr("did you mean planner.density?"));
+}
+
+TEST(MissionReader, SuggestsTheKeyInItsRightSection) {
+  EXPECT_EQ(complaint(smallest + "sensor:\n  sigma: 0.1\n"),
+            "m.yaml:4: key sensor.sigma: is unknown; did you mean sensor.noise.sigma?");
+  EXPECT_THAT(complaint(smallest + "colour_of_the_sky: blue\n"),
+              HasSubstr("known are name, seed, threads, scene, sensor, planner, start, limits, "
+                        "evaluation, paper"));
+}
+
+// The parser must survive what people and fuzzers write: here, every prefix of a valid mission and
+// every single damaged byte of it either parses or is refused in one line.
+TEST(MissionReader, RefusesDamagedFilesInOneLine) {
+  const std::string whole =
+      "scene:\n  model: builtin:teapot  # a comment\n  position: [1, 2.5, -3e1]\n"
+      "evaluation: {registration_distance: 0.005}\nname: \"a\\tb\"\nsensor: {preset: 'd435'}\n";
+  std::size_t refused = 0;
+  const auto try_text = [&](const std::string& text) {
+    const std::string message = complaint(text);
+    EXPECT_EQ(message.find('\n'), std::string::npos) << message;
+    refused += message.empty() ? 0 : 1;
+  };
+  for (std::size_t length = 0; length < whole.size(); ++length) try_text(whole.substr(0, length));
+  for (std::size_t i = 0; i < whole.size(); ++i) {
+    for (const char byte : {'\x01', '{', ']', '&', '*', '!', '|', '%', '\xff', '"', '-', '\n'}) {
+      std::string damaged = whole;
+      damaged[i] = byte;
+      try_text(damaged);
+    }
+  }
+  EXPECT_GT(refused, whole.size());
+}
+
+TEST(MissionReader, SurvivesDeepNesting) {
+  for (const char* bracket : {"[", "{a: ", "- ", "? "}) {
+    std::string deep;
+    for (int i = 0; i < 20'000; ++i) deep += bracket;
+    EXPECT_THAT(complaint(deep), HasSubstr("m.yaml:1: ")) << bracket;
+  }
+}
+
+}  // namespace
+}  // namespace skycap::missions

@@ -1,0 +1,63 @@
+/// The program run in the test's own process.
+#pragma once
+
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+#include <stop_token>
+#include <string>
+#include <vector>
+
+#include "missions/command_line.h"
+#include "tests/support/temporary_folder.h"
+
+namespace skycap::tests {
+
+struct ProgramRun {
+  int exit_code = 0;
+  std::string out, err;
+};
+
+inline ProgramRun run_skycap(const std::vector<std::string>& arguments,
+                             bool err_is_terminal = false, std::stop_token stop = {}) {
+  std::ostringstream out, err;
+  const missions::Console console{out, err, err_is_terminal, std::move(stop)};
+  const int exit_code = missions::run_command_line(arguments, console);
+  return {exit_code, out.str(), err.str()};
+}
+
+/// A temporary folder whose paths are text, as on a command line.
+class TestFolder {
+ public:
+  const std::filesystem::path& path() const { return folder_.path(); }
+  std::string operator/(const std::string& name) const { return (path() / name).string(); }
+
+  /// Writes a file into the folder; returns its path.
+  std::string write(const std::string& name, const std::string& content) const {
+    return folder_.file(name, content).string();
+  }
+
+ private:
+  testing_support::TemporaryFolder folder_;
+};
+
+inline std::string content_of(const std::filesystem::path& file) {
+  std::ifstream stream(file, std::ios::binary);
+  std::ostringstream content;
+  content << stream.rdbuf();
+  return content.str();
+}
+
+/// A survey of the teapot that takes a tenth of a second: a coarse sensor and coarse densities.
+/// The noise is of the size of the resolution radius, so that there are frontiers.
+inline std::string quick_mission(const std::string& more = "") {
+  return "scene: {model: 'builtin:teapot', longest_side: 1.0}\n"
+         "sensor: {width: 160, height: 100, noise: {sigma: 0.03}}\n"
+         "planner: {density: 5200, resolution_radius: 0.0525, occluder_spacing: 0.03}\n"
+         "evaluation: {registration_distance: 0.03, samples: 3000, visible_directions: 30,\n"
+         "             ceiling_views: 0}\n"
+         "limits: {max_views: 40}\n" +
+         more;
+}
+
+}  // namespace skycap::tests
