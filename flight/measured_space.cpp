@@ -4,8 +4,13 @@
 #include <array>
 #include <bit>
 #include <cmath>
+#include <cstring>
+#include <istream>
+#include <limits>
+#include <ostream>
 #include <string>
 #include <unordered_map>
+#include <vector>
 
 #include "flight/bounding_tree.h"
 #include "flight/cell_map.h"
@@ -72,8 +77,17 @@ struct HashKey {
 struct MeasuredSpace::Impl {
   MeasuredSpaceConfig config;
   std::unordered_map<std::uint64_t, Block, HashKey> blocks;  ///< a block not listed is unknown
-  AlignedBox3d extent;
+  AlignedBox3d region;  ///< the configuration's, of whole voxels; without one all of space
+  AlignedBox3d extent;  ///< of all listed blocks
 
+  bool is_bounded() const { return !config.region.isEmpty(); }
+  /// Whether a cube of whole voxels has any inside the region.
+  bool touches_region(const AlignedBox3d& cube) const {
+    // Compared at the middle of voxels, where rounding decides nothing.
+    const Vector3d half = Vector3d::Constant(0.5 * config.voxel);
+    return ((cube.min() + half).array() < region.max().array()).all() &&
+           ((cube.max() - half).array() > region.min().array()).all();
+  }
   double block_size() const { return 8.0 * config.voxel; }
   Cell block_of(const Vector3d& point) const {
     return (point / block_size()).array().floor().matrix().cast<int>();
@@ -117,7 +131,7 @@ void MeasuredSpace::Impl::for_each_block(const AlignedBox3d& box, Visit visit) c
 template <typename Decide>
 void MeasuredSpace::Impl::free_where(const AlignedBox3d& box, Decide decide) {
   const Cube whole{Cell::Zero(), 8};
-  for_each_block(box, [&](const Cell& cell) {
+  for_each_block(box.intersection(region), [&](const Cell& cell) {
     const auto known = blocks.find(cell_key(cell));
     Block block = known == blocks.end() ? Block{} : known->second;
     free_within(cell, whole, block, decide);
@@ -153,7 +167,9 @@ void MeasuredSpace::Impl::occupy(const geometry::Scan& scan) {
     const Cell voxel = ((point / config.voxel).array().floor().matrix().cast<int>() - 8 * cell)
                            .cwiseMax(0)
                            .cwiseMin(7);
-    blocks[cell_key(cell)].occupied[voxel.z()] |= std::uint64_t{1} << (8 * voxel.y() + voxel.x());
+    const auto [block, is_new] = blocks.try_emplace(cell_key(cell));
+    block->second.occupied[voxel.z()] |= std::uint64_t{1} << (8 * voxel.y() + voxel.x());
+    if (is_new) extent.extend(block_box(cell));
   }
 }
 
@@ -165,11 +181,14 @@ void MeasuredSpace::Impl::carve(const RangeImage& image) {
 
 void MeasuredSpace::Impl::closest_in_block(const Segment& piece, const Cell& cell,
                                            const Block& block, Closest& best) const {
+  const bool is_cut = !region.contains(block_box(cell));
   for (int z = 0; z < 8; ++z) {
     for (std::uint64_t rest = ~block.passable(z); rest != 0; rest &= rest - 1) {
       const int bit = std::countr_zero(rest);
       const Cell voxel(bit & 7, bit >> 3, z);
-      const NearestPoints pair = nearest(piece, cube_box(cell, {voxel, 1}));
+      const AlignedBox3d box = cube_box(cell, {voxel, 1});
+      if (is_cut && !block.is_occupied(voxel) && !touches_region(box)) continue;
+      const NearestPoints pair = nearest(piece, box);
       if (!(pair.squared_distance < best.distance * best.distance)) continue;
       best = {std::sqrt(pair.squared_distance),
               block.is_occupied(voxel) ? ObstacleKind::occupied_space : ObstacleKind::unknown_space,
@@ -193,7 +212,8 @@ void MeasuredSpace::Impl::closest_in(const Segment& piece, Closest& best) const 
       if (!found->second.is_all_passable()) closest_in_block(piece, cell, found->second, best);
       return best.distance > 0.0;
     }
-    const NearestPoints pair = nearest(piece, box);
+    if (!touches_region(box)) return true;
+    const NearestPoints pair = nearest(piece, box.intersection(region));
     if (pair.squared_distance < best.distance * best.distance) {
       best = {std::sqrt(pair.squared_distance), ObstacleKind::unknown_space, 0, pair.on_segment,
               pair.on_other};
@@ -213,12 +233,23 @@ void MeasuredSpaceConfig::validate() const {
   require(free_without_return >= 0.0, "free_without_return", free_without_return, "zero or more");
   require(max_depth > 0.0 && max_depth < 1e5 * voxel, "max_depth", max_depth,
           "positive and below 100,000 voxels");
+  if (region.isEmpty()) return;
+  const double farthest = region.min().cwiseAbs().cwiseMax(region.max().cwiseAbs()).maxCoeff();
+  require(farthest < 1e5 * voxel, "region", farthest, "within 100,000 voxels of the origin");
 }
 
 MeasuredSpace::MeasuredSpace(const MeasuredSpaceConfig& config) {
   config.validate();
   impl_ = std::make_unique<Impl>();
   impl_->config = config;
+  if (impl_->is_bounded()) {
+    const auto& [low, high] = std::pair(config.region.min(), config.region.max());
+    impl_->region = {(low / config.voxel).array().floor().matrix() * config.voxel,
+                     (high / config.voxel).array().ceil().matrix() * config.voxel};
+  } else {
+    constexpr double infinity = std::numeric_limits<double>::infinity();
+    impl_->region = {Vector3d::Constant(-infinity), Vector3d::Constant(infinity)};
+  }
 }
 
 MeasuredSpace::~MeasuredSpace() = default;
@@ -273,7 +304,11 @@ bool MeasuredSpace::continues_free(const Segment& leg, double clearance) const {
   return closest(leg, clearance + clearance_guard).kind == ObstacleKind::none;
 }
 
-AlignedBox3d MeasuredSpace::extent() const { return impl_->extent; }
+AlignedBox3d MeasuredSpace::extent() const {
+  AlignedBox3d extent = impl_->extent;
+  if (impl_->is_bounded()) extent.extend(impl_->region);
+  return extent;
+}
 
 std::string MeasuredSpace::name(const Closest& closest) const {
   if (closest.kind == ObstacleKind::unknown_space) return "space that was never seen free";
@@ -288,6 +323,95 @@ double MeasuredSpace::free_volume() const {
       voxels += static_cast<std::size_t>(std::popcount(block.passable(z)));
   }
   return static_cast<double>(voxels) * std::pow(impl_->config.voxel, 3);
+}
+
+namespace {
+
+constexpr char file_mark[16] = "skycap free v1\n";
+
+/// What a file begins with. Plain numbers: it is written as it is in memory.
+struct FileHead {
+  char mark[16];
+  double voxel, depth_margin, free_without_return, max_depth;
+  double region[6];  ///< its two corners; the first above the second if there is none
+  std::uint64_t blocks;
+};
+
+struct FileBlock {
+  std::uint64_t key;
+  Block block;
+};
+
+template <typename Record>
+bool read_record(std::istream& stream, Record& record) {
+  return bool(stream.read(reinterpret_cast<char*>(&record), sizeof record));
+}
+
+Cell cell_of(std::uint64_t key) {
+  const auto part = [](std::uint64_t bits) {
+    return static_cast<int>(bits & 0x1fffff) - (1 << 20);
+  };
+  return {part(key), part(key >> 21), part(key >> 42)};
+}
+
+}  // namespace
+
+void MeasuredSpace::write(std::ostream& stream) const {
+  const MeasuredSpaceConfig& config = impl_->config;
+  FileHead head{};
+  std::memcpy(head.mark, file_mark, sizeof head.mark);
+  head.voxel = config.voxel, head.depth_margin = config.depth_margin;
+  head.free_without_return = config.free_without_return, head.max_depth = config.max_depth;
+  for (int axis = 0; axis < 3; ++axis) {
+    head.region[axis] = config.region.min()[axis];
+    head.region[axis + 3] = config.region.max()[axis];
+  }
+  head.blocks = impl_->blocks.size();
+  stream.write(reinterpret_cast<const char*>(&head), sizeof head);
+
+  // By place, so that equal spaces give equal files.
+  std::vector<FileBlock> blocks;
+  blocks.reserve(impl_->blocks.size());
+  for (const auto& [key, block] : impl_->blocks) blocks.push_back({key, block});
+  std::ranges::sort(blocks, {}, &FileBlock::key);
+  stream.write(reinterpret_cast<const char*>(blocks.data()),
+               static_cast<std::streamsize>(blocks.size() * sizeof(FileBlock)));
+}
+
+MeasuredSpace MeasuredSpace::read(std::istream& stream, const std::string& name) {
+  FileHead head{};
+  if (!read_record(stream, head) || std::memcmp(head.mark, file_mark, sizeof head.mark) != 0) {
+    throw Error(ErrorKind::bad_file,
+                name + ": is not a file of measured free space; give one that skycap plan wrote");
+  }
+  MeasuredSpaceConfig config{.voxel = head.voxel,
+                             .depth_margin = head.depth_margin,
+                             .free_without_return = head.free_without_return,
+                             .max_depth = head.max_depth,
+                             .region = {}};
+  const AlignedBox3d region(Eigen::Map<const Vector3d>(head.region),
+                            Eigen::Map<const Vector3d>(head.region + 3));
+  if (!region.isEmpty()) config.region = region;
+  try {
+    MeasuredSpace space(config);
+    FileBlock record{};
+    for (std::uint64_t i = 0; i < head.blocks; ++i) {
+      if (!read_record(stream, record)) {
+        throw Error(ErrorKind::bad_file, name + ": ends after " + std::to_string(i) + " of " +
+                                             std::to_string(head.blocks) +
+                                             " blocks; copy it again, or plan again");
+      }
+      space.impl_->blocks[record.key] = record.block;
+      space.impl_->extent.extend(space.impl_->block_box(cell_of(record.key)));
+    }
+    if (stream.peek() != std::istream::traits_type::eof()) {
+      throw Error(ErrorKind::bad_file, name + ": goes on after its last block; plan again");
+    }
+    return space;
+  } catch (const Error& error) {
+    if (error.kind() == ErrorKind::bad_file) throw;
+    throw Error(ErrorKind::bad_file, name + ": " + error.what());
+  }
 }
 
 }  // namespace skycap::flight

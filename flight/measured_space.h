@@ -9,7 +9,9 @@
 #pragma once
 
 #include <cstdint>
+#include <iosfwd>
 #include <memory>
+#include <string>
 
 #include <Eigen/Core>
 #include <Eigen/Geometry>
@@ -28,6 +30,10 @@ struct MeasuredSpaceConfig {
   /// is in range, that range.
   double free_without_return = 0.0;
   double max_depth = 60.0;  ///< measurements farther away prove free space up to here only
+  /// Where space has to be measured to be free. Outside of it somebody else vouches for the
+  /// airspace: there everything is free but measured points. Grows to whole voxels. Empty (as by
+  /// default): everywhere.
+  Eigen::AlignedBox3d region;
 
   /// Throws Error{bad_config} naming the first value that is out of its interval.
   void validate() const;
@@ -61,8 +67,14 @@ class MeasuredSpace : public FreeSpace {
   Eigen::AlignedBox3d extent() const override;  ///< of all that was ever free
   std::string name(const Closest& closest) const override;
 
-  /// Volume known to be free [m^3].
+  /// Volume known to be free [m^3], of the region if there is one.
   double free_volume() const;
+
+  /// Writes all that is known, for read() on a machine of the same byte order. A name and version
+  /// come first, then the configuration, then each block of 8 x 8 x 8 voxels by its place.
+  void write(std::ostream& stream) const;
+  /// Throws Error{bad_file} naming `name` unless it holds exactly what write() wrote.
+  static MeasuredSpace read(std::istream& stream, const std::string& name);
 
  private:
   struct Impl;

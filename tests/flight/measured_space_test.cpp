@@ -2,6 +2,8 @@
 
 #include <cmath>
 #include <random>
+#include <sstream>
+#include <string>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -165,6 +167,69 @@ TEST(MeasuredSpace, PathsNeverTouchTheUnseenSideOfABuilding) {
     ++reached;
   }
   EXPECT_GT(reached, 3);
+}
+
+MeasuredSpace space_with_region() {
+  MeasuredSpace space({.voxel = 0.25,
+                       .free_without_return = 0.0,
+                       .region = AlignedBox3d(Vector3d(-6.1, -6, -1), Vector3d(6, 6, 11))});
+  geometry::Mesh building = scenes::box({-5, -5, 0}, {5, 5, 10});
+  geometry::append(building, scenes::box({-1, -21, 0}, {1, -20, 10}));  // outside of the region
+  for (const Vector3d& place : {Vector3d(-15, -9, 5), Vector3d(12, -12, 6)}) {
+    space.insert(depth_image(building, small_camera, look_at(place, Vector3d(0, -8, 5))),
+                 small_camera);
+  }
+  return space;
+}
+
+TEST(MeasuredSpace, OutsideOfItsRegionEverythingIsFreeButMeasuredPoints) {
+  const MeasuredSpace space = space_with_region();
+  // Around the region, on the side that nobody has seen.
+  EXPECT_TRUE(space.is_free({{-20, 20, 5}, {20, 20, 5}}, 10.0));
+  const Closest unseen = space.closest({{-20, 10, 5}, {20, 10, 5}}, 9.0);
+  EXPECT_EQ(unseen.kind, ObstacleKind::unknown_space);
+  EXPECT_NEAR(unseen.distance, 4.0, 1e-9);  // to the region's face at y = 6, a whole voxel's edge
+  const Closest grown = space.closest({{-10, 3, 5}, {-10, 4, 5}}, 9.0);
+  EXPECT_NEAR(grown.distance, 10 - 6.25, 1e-9);  // x = -6.1 grows to the next voxel's edge
+  const Closest pillar = space.closest({{-3, -19, 5}, {3, -19, 5}}, 3.0);
+  EXPECT_EQ(pillar.kind, ObstacleKind::occupied_space);
+  EXPECT_NEAR(pillar.distance, 1.0, 0.25);
+  EXPECT_FALSE(space.is_free({{0, 0, 5}, {0, 1, 5}}, 0.0));
+  EXPECT_GT(space.free_volume(), 1.0);
+}
+
+TEST(MeasuredSpace, IsTheSameAfterWritingAndReading) {
+  const MeasuredSpace space = space_with_region();
+  std::stringstream file;
+  space.write(file);
+  const MeasuredSpace again = MeasuredSpace::read(file, "file");
+  EXPECT_EQ(again.free_volume(), space.free_volume());
+  EXPECT_TRUE(again.extent().isApprox(space.extent()));
+  std::mt19937_64 random(4);
+  const AlignedBox3d around(Vector3d(-25, -25, -2), Vector3d(25, 25, 14));
+  for (int i = 0; i < 300; ++i) {
+    const Segment leg{scenes::point_in(random, around), scenes::point_in(random, around)};
+    EXPECT_EQ(again.closest(leg, 5.0).distance, space.closest(leg, 5.0).distance);
+  }
+  std::stringstream same;
+  again.write(same);
+  EXPECT_EQ(same.str(), file.str());
+}
+
+TEST(MeasuredSpace, BrokenFilesAreRefusedByName) {
+  std::stringstream file;
+  space_with_region().write(file);
+  const std::string whole = file.str();
+  for (const std::string& broken : {std::string(), std::string("solid"), whole.substr(0, 60),
+                                    whole.substr(0, whole.size() - 1), whole + "x"}) {
+    std::istringstream stream(broken);
+    try {
+      MeasuredSpace::read(stream, "free.bin");
+      ADD_FAILURE() << "accepted " << broken.size() << " bytes";
+    } catch (const Error& error) {
+      EXPECT_THAT(error.what(), testing::StartsWith("free.bin: "));
+    }
+  }
 }
 
 TEST(MeasuredSpace, BadScansAndConfigurationsAreNamed) {
