@@ -125,7 +125,7 @@ std::vector<BadInput> bad_inputs() {
       {"EmptyFirstScan", model + "start: {position: [9, 0, 0], direction: [1, 0, 0]}\n" + judged,
        "MISSION: the first scan holds no point of the scene; start from a place that sees it"},
       {"NoRoomAboveTheGround", whole + "limits: {ground_clearance: 1000}\n",
-       "limits.ground_clearance leaves no place for a random start"},
+       "leave no place for a random start"},
       {"BadOption", whole, "--seed: key seed: is x; give a whole number", "", "", {"--seed", "x"}},
       {"UnknownOption", whole, "--sede", "", "", {"--sede", "1"}},
       {"BadSet", whole, "--set seed: has no '='", "", "", {"--set", "seed"}},
