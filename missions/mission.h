@@ -4,8 +4,10 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <numbers>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include <Eigen/Core>
 #include <Eigen/Geometry>
@@ -14,6 +16,7 @@
 #include "sim/models/models.h"
 #include "survey/see.h"
 #include "survey/skycap_planner.h"
+#include "survey/view_limits.h"
 
 namespace skycap::missions {
 
@@ -55,6 +58,7 @@ struct PlannerConfig {
   PlannerPreset preset = PlannerPreset::paper;
   survey::SeeConfig see;
   survey::StopRule skycap_stop;  ///< of the planner skycap; the rest follows from the other keys
+  survey::SkycapIdeas skycap_ideas;
 };
 
 /// The first view. Without a position it is drawn at random by the seed.
@@ -68,6 +72,20 @@ struct LimitsConfig {
   std::size_t max_views = 1000;
   double max_distance = 1e9;               ///< straight lines between views
   std::optional<double> ground_clearance;  ///< least height of a view above `scene.position`
+  double stand_off = 0.0;                  ///< least distance of a view from all that was measured
+  double lowest_pitch = -std::numbers::pi / 2.0;  ///< of the gimbal [rad], down is negative
+  double highest_pitch = std::numbers::pi / 2.0;  ///< [rad]
+  std::optional<double> max_minutes;              ///< of the flight, by the two below
+  double speed = 5.0;                             ///< between views [m/s]
+  double time_per_view = 5.0;                     ///< to stop, turn and measure [s]
+};
+
+/// The airspace over the site, in the mission's frame: x east, y north, z up.
+struct SiteConfig {
+  std::vector<Eigen::Vector2d> geofence;  ///< polygon to stay inside of; empty: none
+  std::vector<survey::Prism> no_fly;      ///< to stay outside of
+  std::optional<double> lowest_height;    ///< least z
+  std::optional<double> highest_height;   ///< greatest z
 };
 
 struct EvaluationConfig {
@@ -127,6 +145,7 @@ struct Mission {
   PlannerConfig planner;
   StartConfig start;
   LimitsConfig limits;
+  SiteConfig site;
   Georeference georeference;
   FlightConfig flight;
   EvaluationConfig evaluation;

@@ -53,6 +53,22 @@ flight::MeasuredSpaceConfig measured_space_of(const Mission& mission) {
 flight::Obstacles flight_rules(const Mission& mission) {
   flight::Obstacles rules;
   rules.ground_height = mission.scene.position.z();
+  const SiteConfig& site = mission.site;
+  for (const survey::Prism& volume : site.no_fly) {
+    const std::string name = std::to_string(rules.no_fly.size() + 1);
+    rules.no_fly.push_back({name, volume.corners, volume.bottom, volume.top});
+  }
+  if (!site.geofence.empty() || site.highest_height) {
+    flight::Prism fence{.name = "site.geofence", .footprint = site.geofence};
+    // The fence must not hold the vehicle up on its way from and to the pad.
+    if (site.highest_height) fence.ceiling = *site.highest_height;
+    if (fence.footprint.empty()) {
+      fence.name = "site.highest_height";
+      constexpr double far = 1e5;
+      fence.footprint = {{-far, -far}, {far, -far}, {far, far}, {-far, far}};
+    }
+    rules.fence = fence;
+  }
   return rules;
 }
 

@@ -17,6 +17,7 @@
 #include "missions/mission_flight.h"
 #include "missions/mission_keys.h"
 #include "missions/number_text.h"
+#include "missions/site.h"
 #include "missions/yaml_tree.h"
 
 namespace skycap::missions {
@@ -152,11 +153,48 @@ std::optional<KeyValue> vector_in(const YamlNode& node, const KeyRange& range) {
   return vector;
 }
 
+std::optional<std::vector<Eigen::Vector2d>> polygon_in(const YamlNode& node) {
+  std::vector<Eigen::Vector2d> polygon;
+  for (const YamlNode& corner : node.items) {
+    if (corner.items.size() != 2) return std::nullopt;
+    const auto x = number_in(corner.items[0], {}), y = number_in(corner.items[1], {});
+    if (!x || !y) return std::nullopt;
+    polygon.emplace_back(*x, *y);
+  }
+  return polygon.size() >= 3 ? std::optional(polygon) : std::nullopt;
+}
+
+std::optional<survey::Prism> volume_in(const YamlNode& node) {
+  const auto entry = [&](std::string_view name) {
+    const auto found = std::ranges::find(node.entries, name, &YamlEntry::key);
+    return found == node.entries.end() ? YamlNode{} : found->value;
+  };
+  const auto corners = polygon_in(entry("corners"));
+  const auto bottom = number_in(entry("bottom"), {}), top = number_in(entry("top"), {});
+  if (node.entries.size() != 3 || !corners || !bottom || !top || *bottom >= *top) {
+    return std::nullopt;
+  }
+  return survey::Prism{*corners, *bottom, *top};
+}
+
+std::optional<KeyValue> volumes_in(const YamlNode& node) {
+  if (node.kind != YamlNode::Kind::list) return std::nullopt;
+  std::vector<survey::Prism> volumes;
+  for (const YamlNode& item : node.items) {
+    auto volume = volume_in(item);
+    if (!volume) return std::nullopt;
+    volumes.push_back(std::move(*volume));
+  }
+  return volumes;
+}
+
 bool is_control_character(unsigned char c) { return c < 0x20 || c == 0x7f; }
 
 /// The node's value as `key` takes it; nothing if it does not.
 std::optional<KeyValue> value_for(const Key& key, const YamlNode& node) {
   if (key.type == KeyType::vector) return vector_in(node, key.range);
+  if (key.type == KeyType::polygon) return polygon_in(node);
+  if (key.type == KeyType::volumes) return volumes_in(node);
   if (key.type == KeyType::number) {
     const auto number = number_in(node, key.range);
     return number ? std::optional<KeyValue>(*number) : std::nullopt;
@@ -267,6 +305,23 @@ void check_together(const GivenValues& given, const std::string& name, const Mis
   if (static_cast<double>(camera.width) * camera.height > 1e8) {
     fail(place("sensor.width"), "sensor.width",
          "times sensor.height is more than 1e8 pixels; make the image smaller");
+  }
+}
+
+/// The same for where the sensor may be.
+void check_site(const GivenValues& given, const std::string& name, const Mission& mission) {
+  const auto complain = [&](const char* key, const std::string& what) {
+    const auto found = given.find(key);
+    fail(found == given.end() ? name + ":1" : found->second.place, key, what);
+  };
+  const survey::ViewLimits limits = view_limits(mission);
+  if (limits.least_height && limits.most_height && *limits.least_height >= *limits.most_height) {
+    complain("site.highest_height",
+             "is not above site.lowest_height and limits.ground_clearance; nothing is left to fly "
+             "in");
+  }
+  if (limits.least_pitch >= limits.most_pitch) {
+    complain("limits.highest_pitch_deg", "is not above limits.lowest_pitch_deg; raise it");
   }
 }
 
@@ -393,6 +448,7 @@ Mission mission_from(const std::string& text, const std::string& name,
     mission.planner.see.ground_clearance =
         mission.scene.position.z() + *mission.limits.ground_clearance;
   }
+  check_site(given, name, mission);
   check_planner(given, name, mission);
   return mission;
 }

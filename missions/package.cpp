@@ -4,6 +4,7 @@
 #include <fstream>
 #include <sstream>
 #include <string_view>
+#include <type_traits>
 #include <utility>
 
 #include <nlohmann/json.hpp>
@@ -34,14 +35,29 @@ Json json_of(const std::vector<survey::PartTime>& times) {
   return parts;
 }
 
+Json json_of(const std::vector<Eigen::Vector2d>& polygon) {
+  Json corners = Json::array();
+  for (const Eigen::Vector2d& corner : polygon) corners.push_back({corner.x(), corner.y()});
+  return corners;
+}
+
+Json json_of(const std::vector<survey::Prism>& volumes) {
+  Json list = Json::array();
+  for (const survey::Prism& volume : volumes) {
+    list.push_back(
+        {{"corners", json_of(volume.corners)}, {"bottom", volume.bottom}, {"top", volume.top}});
+  }
+  return list;
+}
+
 Json json_of(const KeyValue& value) {
-  if (const auto* vector = std::get_if<Eigen::Vector3d>(&value)) return json_of(*vector);
   return std::visit(
       [](const auto& plain) -> Json {
-        if constexpr (std::is_same_v<std::decay_t<decltype(plain)>, Eigen::Vector3d>) {
-          return {};
-        } else {
+        using Value = std::decay_t<decltype(plain)>;
+        if constexpr (std::is_arithmetic_v<Value> || std::is_same_v<Value, std::string>) {
           return plain;
+        } else {
+          return json_of(plain);
         }
       },
       value);

@@ -40,7 +40,8 @@ struct SurveyRecord {
   double sensing_time() const;
 };
 
-/// The word for it in files: complete, view_limit, distance_limit, nowhere_to_go, interrupted.
+/// The word for it in files: complete, view_limit, distance_limit, time_limit,
+/// nowhere_to_go, interrupted.
 const char* name_of(survey::StopReason reason);
 
 /// The planner that the mission names, on so many threads (zero: all processors).

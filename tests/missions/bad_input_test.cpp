@@ -159,7 +159,7 @@ std::vector<BadInput> bad_inputs() {
       {"PadInTheBuilding", whole + flown(around, "takeoff: [3, 0, 0]"),
        "MISSION: the place above the take-off pad at (3, 0, 5) is 0 m from space"},
       {"NoRoomAboveTheGround", whole + "limits: {ground_clearance: 1000}\n",
-       "limits.ground_clearance leaves no place for a random start"},
+       "leave no place for a random start"},
       {"BadOption", whole, "--seed: key seed: is x; give a whole number", "", "", {"--seed", "x"}},
       {"UnknownOption", whole, "--sede", "", "", {"--sede", "1"}},
       {"BadSet", whole, "--set seed: has no '='", "", "", {"--set", "seed"}},
