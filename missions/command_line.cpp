@@ -9,6 +9,7 @@
 #include <CLI/Formatter.hpp>
 
 #include "geometry/error.h"
+#include "missions/cloud_formats.h"
 #include "missions/mission_keys.h"
 #include "missions/verbs.h"
 #include "missions/version.h"
@@ -76,6 +77,32 @@ void add_plan(CLI::App& app, const Console& console, Action& action) {
   });
 }
 
+void add_scan(CLI::App& app, const Console& console, Action& action) {
+  CLI::App* verb = app.add_subcommand(
+      "scan", "Fly a route in the simulator and record what a sensor measures on the way");
+  const auto options = std::make_shared<ScanVerbOptions>();
+  const auto keys = std::make_shared<KeyOptions>();
+  verb->add_option("mission", options->mission, "Mission file (docs/scan.md)")->required();
+  verb->add_option("--route", options->route,
+                   "Route file, or the folder of a mission package; default: the mission's");
+  verb->add_option("--sensor", options->sensor,
+                   "Preset or description NAME.yaml, in place of the mission's");
+  verb->add_option("--out", options->out, "Folder for the results; default results/NAME/scan");
+  verb->add_option("--format", options->formats,
+                   "Of the points, one or more of " + cloud_format_names() + "; default las")
+      ->delimiter(',');
+  verb->add_flag("--with-truth", options->with_truth,
+                 "Write a second file with the points as they really were");
+  verb->add_option("--seed", keys->seed, "Seed, in place of the mission's");
+  verb->add_option("--threads", keys->threads, "Threads, 0 for all processors");
+  verb->add_flag("--quiet", options->is_quiet, "Print nothing but errors");
+  add_set_option(*verb, *keys);
+  verb->callback([=, &console, &action] {
+    options->overrides = keys->overrides();
+    action = [=, &console] { return scan(*options, console); };
+  });
+}
+
 void add_check(CLI::App& app, const Console& console, Action& action) {
   CLI::App* verb = app.add_subcommand("check", "Check a mission file and its scene");
   const auto options = std::make_shared<CheckOptions>();
@@ -138,7 +165,7 @@ int report_failure(const Console& console, std::string message, int exit_code) {
   return exit_code;
 }
 
-constexpr const char* verbs = "plan, check, evaluate, model";
+constexpr const char* verbs = "plan, scan, check, evaluate, model";
 
 }  // namespace
 
@@ -150,6 +177,7 @@ int run_command_line(const std::vector<std::string>& arguments, const Console& c
   Action action;
   try {
     add_plan(app, console, action);
+    add_scan(app, console, action);
     add_check(app, console, action);
     add_evaluate(app, console, action);
     add_model(app, console, action);

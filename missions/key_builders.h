@@ -138,4 +138,8 @@ inline Key required(Key key) {
   return key;
 }
 
+// ---- sections with a source of their own -----------------------------------------------------
+
+std::vector<Key> scan_keys();
+
 }  // namespace skycap::missions

@@ -178,8 +178,9 @@ INSTANTIATE_TEST_SUITE_P(BadInput, Program, testing::ValuesIn(bad_inputs()),
 TEST(ProgramUsage, RefusesUnknownVerbs) {
   const auto run = tests::run_skycap({"fly"});
   EXPECT_EQ(run.exit_code, 2);
-  EXPECT_EQ(run.err,
-            "skycap: error: there is no verb 'fly'; the verbs are plan, check, evaluate, model\n");
+  EXPECT_EQ(
+      run.err,
+      "skycap: error: there is no verb 'fly'; the verbs are plan, scan, check, evaluate, model\n");
 }
 
 TEST(ProgramUsage, RefusesToDoNothing) {
