@@ -126,14 +126,15 @@ std::shared_ptr<const CloudFormat> las_near(const Eigen::Vector3d& centre, int p
   return las_format({.point_format = point_format, .offset = offset});
 }
 
-const std::array<CloudFormatInfo, 5>& formats() {
+const std::array<CloudFormatInfo, 6>& formats() {
   using Context = CloudFormatContext;
-  static const std::array<CloudFormatInfo, 5> all = {{
+  static const std::array<CloudFormatInfo, 6> all = {{
       {"las", ".las", [](const Context& context) { return las_near(context.scene_centre, 6); }},
       {"las7", ".las", [](const Context& context) { return las_near(context.scene_centre, 7); }},
       {"ply", ".ply", [](const Context&) { return ply_format(); }},
       {"pcd", ".pcd", [](const Context&) { return pcd_format(); }},
       {"xyz", ".xyz", [](const Context&) { return xyz_format(); }},
+      {"rawlog", ".rawlog", rawlog_format},
   }};
   return all;
 }

@@ -22,12 +22,19 @@ std::shared_ptr<const CloudFormat> pcd_format();
 /// millimetre and of a microsecond.
 std::shared_ptr<const CloudFormat> xyz_format();
 
-/// What a format may need to know of the scan.
+/// What a format may need to know of the scan; the trajectories must outlive the format.
 struct CloudFormatContext {
+  std::string sensor_name;
   const sim::LidarConfig& sensor;
   const sim::LidarFlight& flight;
   Eigen::Vector3d scene_centre;
 };
+
+/// A rawlog of MRPT, for every piece of the scan: CObservationRobotPose "CARRIER" (of the believed
+/// trajectory), of spinning sensors CObservationRotatingScan "LIDAR_RANGES" (the range image of
+/// the strongest returns), and CObservationPointCloud "LIDAR_POINTS" (all returns in the sensor's
+/// frame, free of the motion within the piece). Throws Error{bad_file} if MRPT is not there.
+std::shared_ptr<const CloudFormat> rawlog_format(const CloudFormatContext& context);
 
 /// A format's name, its files' ending and how to make it.
 struct CloudFormatInfo {

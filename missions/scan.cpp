@@ -187,7 +187,8 @@ int scan_with_laser(const ScanVerbOptions& options, const Mission& mission,
   const sim::Scene scene(mesh, mission.threads);
   std::vector<OutputFile> outputs;
   std::vector<CloudFile> files =
-      open_files(options, {config, flight, geometry::bounding_box(mesh).center()}, folder, outputs);
+      open_files(options, {sensor_name, config, flight, geometry::bounding_box(mesh).center()},
+                 folder, outputs);
 
   const auto channels = static_cast<double>(config.channels.size());
   const Clock::time_point start = Clock::now();
