@@ -164,7 +164,9 @@ Key box_corner(std::string path, Field field, bool is_upper, std::string meaning
   return key;
 }
 
-/// The keys of the sections `site` and `flight`.
-std::vector<Key> flight_keys();
+// ---- sections with a source of their own -----------------------------------------------------
+
+std::vector<Key> flight_keys();  ///< and the place on the Earth, in `site`
+std::vector<Key> scan_keys();
 
 }  // namespace skycap::missions

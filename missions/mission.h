@@ -14,6 +14,7 @@
 
 #include "sim/depth_camera.h"
 #include "sim/models/models.h"
+#include "sim/trajectory.h"
 #include "survey/see.h"
 #include "survey/skycap_planner.h"
 #include "survey/view_limits.h"
@@ -130,6 +131,33 @@ struct FlightConfig {
   bool is_flown() const { return vehicle != "none"; }
 };
 
+/// Level circles round a point, from the lowest to the highest, with a straight climb between.
+struct OrbitConfig {
+  Eigen::Vector3d centre = Eigen::Vector3d::Zero();  ///< its z is what heights count from
+  double radius = 30.0;
+  double lowest = 10.0;   ///< height of the first circle
+  double highest = 30.0;  ///< of the last
+  int circles = 3;        ///< evenly spaced in height
+  double speed = 6.0;     ///< along circles and climbs [m/s]
+  double start = 0.0;     ///< where circles begin: from east, anticlockwise [rad]
+};
+
+/// What `skycap scan` records, and how well its carrier knows where it is. Body frame: x forward,
+/// y left, z up.
+struct ScanConfig {
+  std::string sensor = "ouster_os1_128";  ///< a preset, or the path of a description
+  std::optional<std::string> route;       ///< a file; in place of the orbit
+  OrbitConfig orbit;
+  double speed = 5.0;                                         ///< along routes without times [m/s]
+  Eigen::Vector3d mount_position = Eigen::Vector3d::Zero();   ///< of the sensor, body frame
+  Eigen::Vector3d mount_rotation = Eigen::Vector3d::Zero();   ///< [rad], about x, then y, then z
+  sim::NavigationErrors navigation;                           ///< its seed is the mission's
+  Eigen::Vector3d lever_arm_error = Eigen::Vector3d::Zero();  ///< of the believed mount_position
+  Eigen::Vector3d boresight_error = Eigen::Vector3d::Zero();  ///< of the believed rotation [rad]
+  double frame_period = 1.0;  ///< of a camera along a route with times [s]
+  double depth_unit = 0.001;  ///< of a depth image [m]
+};
+
 /// What a publication reports for this scene, printed beside the results of trials.
 struct ReferenceConfig {
   std::optional<double> views;
@@ -149,6 +177,7 @@ struct Mission {
   Georeference georeference;
   FlightConfig flight;
   EvaluationConfig evaluation;
+  ScanConfig scan;
   ReferenceConfig paper;
   std::uint64_t seed = 1;
   unsigned threads = 0;  ///< zero: all processors

@@ -282,8 +282,8 @@ std::vector<Key> planner_keys() {
 std::span<const Key> mission_keys() {
   static const std::vector<Key> keys = [] {
     std::vector<Key> all = general_keys();
-    for (auto section :
-         {scene_keys, sensor_keys, planner_keys, survey_keys, constraint_keys, flight_keys}) {
+    for (auto section : {scene_keys, sensor_keys, planner_keys, survey_keys, constraint_keys,
+                         flight_keys, scan_keys}) {
       std::ranges::move(section(), std::back_inserter(all));
     }
     return all;

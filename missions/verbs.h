@@ -48,6 +48,21 @@ struct ExportOptions {
 /// another vehicle. Exit code 1 if no view can be visited.
 int export_package(const ExportOptions& options, const Console& console);
 
+struct ScanVerbOptions {
+  std::filesystem::path mission;
+  std::optional<std::filesystem::path> route;  ///< in place of the mission's
+  std::optional<std::filesystem::path> out;    ///< default: results/NAME/scan
+  std::optional<std::string> sensor;           ///< in place of the mission's
+  std::vector<std::string> formats = {"las"};  ///< of a laser scanner's points
+  bool with_truth = false;                     ///< also where the surfaces really were
+  std::vector<KeyOverride> overrides;
+  bool is_quiet = false;
+};
+
+/// Flies a route in the simulator and records what the sensor measures on the way. Exit code 1 if
+/// the flight was interrupted.
+int scan(const ScanVerbOptions& options, const Console& console);
+
 struct EvaluateOptions {
   std::filesystem::path cloud;
   std::string model;               ///< builtin:NAME, model:NAME, a mesh, or a mission file
