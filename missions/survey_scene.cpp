@@ -38,6 +38,16 @@ Vector3d uniform_direction(std::mt19937_64& random) {
   }
 }
 
+ViewSphere sphere_around(std::span<const Eigen::Vector3f> surface, double view_distance) {
+  Vector3d centroid = Vector3d::Zero();
+  for (const auto& point : surface) centroid += point.cast<double>();
+  centroid /= static_cast<double>(surface.size());
+  double mean_distance = 0.0;
+  for (const auto& point : surface) mean_distance += (point.cast<double>() - centroid).norm();
+  mean_distance /= static_cast<double>(surface.size());
+  return {centroid, view_distance + mean_distance};
+}
+
 std::optional<double> number_in_file(const std::filesystem::path& file) {
   std::ifstream stream(file);
   double number = 0.0;
@@ -58,29 +68,20 @@ SurveyScene::SurveyScene(const Mission& mission, const std::filesystem::path& fo
       scene_(scene_of(model_, mission)),
       samples_(geometry::sample_surface(model_, mission.evaluation.samples, sample_seed)),
       view_distance_(mission.planner.see.view_distance.value_or(geometry::view_distance(
-          geometry::Camera(mission.sensor.camera.camera), mission.planner.see.density))) {}
+          geometry::Camera(mission.sensor.camera.camera), mission.planner.see.density))),
+      view_sphere_(sphere_around(samples_.points, view_distance_)) {}
 
 geometry::View SurveyScene::first_view(std::uint64_t seed) const {
   const StartConfig& start = mission_.start;
   if (start.position && start.look_at) return geometry::look_at(*start.position, *start.look_at);
   if (start.position) return {*start.position, start.direction->normalized()};
 
-  Vector3d centroid = Vector3d::Zero();
-  for (const auto& point : samples_.points) centroid += point.cast<double>();
-  centroid /= static_cast<double>(samples_.points.size());
-  double mean_distance = 0.0;
-  for (const auto& point : samples_.points) {
-    mean_distance += (point.cast<double>() - centroid).norm();
-  }
-  mean_distance /= static_cast<double>(samples_.points.size());
-
   std::mt19937_64 random(seed);
   constexpr int most_attempts = 10'000;
   for (int attempt = 0; attempt < most_attempts; ++attempt) {
-    const Vector3d position =
-        centroid + (view_distance_ + mean_distance) * uniform_direction(random);
+    const Vector3d position = view_sphere_.centre + view_sphere_.radius * uniform_direction(random);
     if (position.z() >= mission_.planner.see.ground_clearance) {
-      return geometry::look_at(position, centroid);
+      return geometry::look_at(position, view_sphere_.centre);
     }
   }
   throw Error(
