@@ -61,7 +61,8 @@ void add_plan(CLI::App& app, const Console& console, Action& action) {
   const auto keys = std::make_shared<KeyOptions>();
   verb->add_option("mission", options->mission, "Mission file (docs/mission_file.md)")->required();
   verb->add_option("--out", options->out, "Folder for the results; default results/NAME");
-  verb->add_option("--planner", keys->planner, "see++, see or skycap, in place of the mission's");
+  verb->add_option("--planner", keys->planner,
+                   "see++, see, skycap, rsv, rse, oa, uv, pc, af or ae, in place of the mission's");
   verb->add_option("--seed", keys->seed, "Seed, in place of the mission's");
   verb->add_option("--threads", keys->threads, "Threads, 0 for all processors");
   verb->add_option("--max-views", keys->max_views, "End after this many views");

@@ -18,6 +18,7 @@
 #include "survey/see.h"
 #include "survey/skycap_planner.h"
 #include "survey/view_limits.h"
+#include "survey/volumetric_planner.h"
 
 namespace skycap::missions {
 
@@ -47,7 +48,10 @@ struct SensorConfig {
   sim::DepthCameraConfig camera = sim::d435();  ///< its noise's seed is the mission's
 };
 
-enum class PlannerName { see_plus_plus, see, skycap };
+enum class PlannerName { see_plus_plus, see, skycap, rsv, rse, oa, uv, pc, af, ae };
+
+/// The gain that a volumetric planner goes by; nothing for the others.
+std::optional<survey::VolumetricMetric> volumetric_metric(PlannerName name);
 
 enum class PlannerPreset {
   paper,     ///< the published parameters
@@ -171,6 +175,7 @@ struct Mission {
   SceneConfig scene;
   SensorConfig sensor;
   PlannerConfig planner;
+  survey::VolumetricSettings volumetric;  ///< of the planners rsv to ae
   StartConfig start;
   LimitsConfig limits;
   SiteConfig site;

@@ -4,6 +4,7 @@
 #include <iterator>
 
 #include "missions/key_builders.h"
+#include "missions/volumetric_keys.h"
 
 namespace skycap::missions {
 namespace {
@@ -181,11 +182,13 @@ std::vector<Key> planner_keys() {
   using Stop = survey::StopRule;
   return {
       choice(
-          "planner.name", {"see++", "see", "skycap"},
+          "planner.name", {"see++", "see", "skycap", "rsv", "rse", "oa", "uv", "pc", "af", "ae"},
           [](Mission & m) -> auto& { return m.planner.name; },
           "The planner. see is see++ without optimise_views and visibility_graph; skycap is our "
           "own, which of the keys below uses spacing, view_distance, scene_box, wanted_coverage "
-          "and least_gain."),
+          "and least_gain. The others are volumetric: of the keys below they use "
+          "resolution_radius as the width of voxels, spacing, view_distance and scene_box, and "
+          "those of the section volumetric."),
       choice(
           "planner.preset", {"paper", "building"},
           [](Mission & m) -> auto& { return m.planner.preset; },
@@ -282,8 +285,8 @@ std::vector<Key> planner_keys() {
 std::span<const Key> mission_keys() {
   static const std::vector<Key> keys = [] {
     std::vector<Key> all = general_keys();
-    for (auto section : {scene_keys, sensor_keys, planner_keys, survey_keys, constraint_keys,
-                         flight_keys, scan_keys}) {
+    for (auto section : {scene_keys, sensor_keys, planner_keys, volumetric_keys, survey_keys,
+                         constraint_keys, flight_keys, scan_keys}) {
       std::ranges::move(section(), std::back_inserter(all));
     }
     return all;

@@ -44,7 +44,8 @@ struct SurveyRecord {
 /// nowhere_to_go, interrupted.
 const char* name_of(survey::StopReason reason);
 
-/// The planner that the mission names, on so many threads (zero: all processors).
+/// The planner that the mission names, on so many threads (zero: all processors). Throws
+/// Error{bad_config} if it is volumetric and the mission does not say where its sphere is.
 std::unique_ptr<survey::Planner> make_planner(const Mission& mission, unsigned threads);
 
 /// Surveys the mission's scene with that seed and so many threads (zero: all processors). The
