@@ -8,6 +8,7 @@
 #include "geometry/cloud_io.h"
 #include "geometry/pose.h"
 #include "missions/cloud_normals.h"
+#include "missions/coverage_map.h"
 #include "missions/json_text.h"
 #include "missions/mission_keys.h"
 #include "missions/number_text.h"
@@ -54,6 +55,21 @@ Json json_of(const KeyValue& value) {
         }
       },
       value);
+}
+
+/// What the planner believes at the end: shares are of the surface, seen and guessed.
+Json belief_summary(const SurveyRecord& record) {
+  if (!record.belief) return {};
+  const survey::SurveyBelief& belief = *record.belief;
+  return {{"stop", name_of(record.skycap_stop)},
+          {"predicted_coverage", belief.coverage},
+          {"area_m2", belief.area},
+          {"missing",
+           {{"seen_too_thinly", belief.seen_too_thinly},
+            {"never_seen", belief.never_seen},
+            {"unreachable", belief.unreachable}}},
+          {"next_gain", belief.next_gain},
+          {"noise_m", belief.noise}};
 }
 
 std::string value_text(const Mission& mission, const char* key) {
@@ -167,6 +183,7 @@ std::string summary_json(const Mission& mission, const SurveyRecord& record,
                {"planning_time_parts_s", json_of(planning_time_by_part(record))},
                {"sensing_time_s", record.sensing_time()},
                {"distance_m", record.distance()},
+               {"belief", belief_summary(record)},
                {"settings", settings(mission)},
                {"per_view", Json::array()}};
   for (std::size_t i = 0; i < record.views.size(); ++i) {
@@ -184,6 +201,9 @@ void stage_package(const Mission& mission, const SurveyRecord& record,
                                                     .normals = std::move(normals),
                                                     .views = record.cloud.views,
                                                     .colours = {}});
+  if (record.belief) {
+    geometry::write_cloud(folder.stage("coverage.ply"), coverage_map(*record.belief));
+  }
   folder.write("views.csv", views_csv(record));
   folder.write("trajectory.tum", trajectory_tum(record));
   // Last, so that whoever sees the summary sees the rest.
