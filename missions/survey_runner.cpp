@@ -25,13 +25,18 @@ double sum_over(const std::vector<JudgedView>& views, Field field) {
   return sum;
 }
 
-/// Which budget made the planner stop, if one did.
-survey::StopReason stop_reason(const survey::Planner& planner, survey::StopReason reason) {
+/// Takes over what only the planner skycap can say, such as which budget made it stop.
+void ask_skycap(const survey::Planner& planner, SurveyRecord& record) {
   const auto* skycap = dynamic_cast<const survey::SkycapPlanner*>(&planner);
-  if (skycap == nullptr || reason != survey::StopReason::complete) return reason;
-  if (skycap->stop() == survey::SkycapStop::most_length) return survey::StopReason::distance_limit;
-  if (skycap->stop() == survey::SkycapStop::most_time) return survey::StopReason::time_limit;
-  return reason;
+  if (skycap == nullptr) return;
+  record.belief = skycap->belief();
+  record.skycap_stop = skycap->stop();
+  if (!record.is_complete()) return;
+  if (record.skycap_stop == survey::SkycapStop::most_length) {
+    record.stop_reason = survey::StopReason::distance_limit;
+  } else if (record.skycap_stop == survey::SkycapStop::most_time) {
+    record.stop_reason = survey::StopReason::time_limit;
+  }
 }
 
 /// Keeps planners that know nothing of the mission's limits from breaking them.
@@ -162,6 +167,26 @@ const char* name_of(survey::StopReason reason) {
   return "interrupted";
 }
 
+const char* name_of(survey::SkycapStop stop) {
+  switch (stop) {
+    case survey::SkycapStop::wanted_coverage:
+      return "wanted_coverage";
+    case survey::SkycapStop::little_gain:
+      return "little_gain";
+    case survey::SkycapStop::most_views:
+      return "most_views";
+    case survey::SkycapStop::most_length:
+      return "most_length";
+    case survey::SkycapStop::most_time:
+      return "most_time";
+    case survey::SkycapStop::nothing_in_reach:
+      return "nothing_in_reach";
+    case survey::SkycapStop::running:
+      break;
+  }
+  return "running";
+}
+
 std::unique_ptr<survey::Planner> make_planner(const Mission& mission, unsigned threads) {
   const geometry::Camera camera(mission.sensor.camera.camera);
   survey::SeeConfig see = mission.planner.see;
@@ -244,9 +269,9 @@ SurveyRecord run_survey(const Mission& mission, const SurveyScene& scene, std::u
     if (report) report(record.views.back());
   };
   const survey::SurveyLimits limits = survey_limits(mission);
-  record.stop_reason = stop_reason(
-      *planner,
-      survey::run_survey(*planner, first_view, limits, ports, std::move(stop)).stop_reason);
+  record.stop_reason =
+      survey::run_survey(*planner, first_view, limits, ports, std::move(stop)).stop_reason;
+  ask_skycap(*planner, record);
   record.cloud = planner->cloud();
   record.is_covered = meter.is_covered();
   if (flight) record.flown = flight->finish();

@@ -54,8 +54,10 @@ class SurveyScene {
   std::optional<double> ceiling(const std::vector<std::uint8_t>& is_visible,
                                 unsigned threads) const;
 
- private:
+  /// Where the mission lets the sensor look at the scene from.
   Admissible admissible() const;
+
+ private:
   std::string ceiling_key() const;
 
   Mission mission_;
