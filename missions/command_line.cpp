@@ -110,6 +110,9 @@ void add_check(CLI::App& app, const Console& console, Action& action) {
   const auto prints_schema = std::make_shared<bool>(false);
   const auto prints_keys = std::make_shared<bool>(false);
   verb->add_option("mission", options->mission, "Mission file");
+  verb->add_option("--route", options->route,
+                   "Prove that this route (.plan, .waypoints, .kmz, .kml, .geojson, .csv, .tum) "
+                   "keeps flight.clearance from the scene");
   add_set_option(*verb, *keys);
   verb->add_flag("--schema", *prints_schema, "Print the JSON Schema of mission files instead");
   verb->add_flag("--keys", *prints_keys, "Print the table of all keys instead");
@@ -123,6 +126,26 @@ void add_check(CLI::App& app, const Console& console, Action& action) {
       }
       return check(*options, console);
     };
+  });
+}
+
+void add_export(CLI::App& app, const Console& console, Action& action) {
+  CLI::App* verb =
+      app.add_subcommand("export", "Write the flight of a mission package in another format");
+  const auto options = std::make_shared<ExportOptions>();
+  const auto keys = std::make_shared<KeyOptions>();
+  verb->add_option("package", options->package, "Folder that plan wrote")->required();
+  verb->add_option("--format", options->formats,
+                   "plan, waypoints, kmz, kml, geojson, litchi, csv, ned-csv or tum; may be given "
+                   "again")
+      ->required()
+      ->type_size(1)
+      ->allow_extra_args(false);
+  verb->add_option("--out", options->out, "Folder for the files; default the package");
+  add_set_option(*verb, *keys);
+  verb->callback([=, &console, &action] {
+    options->overrides = keys->overrides();
+    action = [=, &console] { return export_package(*options, console); };
   });
 }
 
@@ -165,8 +188,6 @@ int report_failure(const Console& console, std::string message, int exit_code) {
   return exit_code;
 }
 
-constexpr const char* verbs = "plan, scan, check, evaluate, model";
-
 }  // namespace
 
 int run_command_line(const std::vector<std::string>& arguments, const Console& console) {
@@ -179,9 +200,12 @@ int run_command_line(const std::vector<std::string>& arguments, const Console& c
     add_plan(app, console, action);
     add_scan(app, console, action);
     add_check(app, console, action);
+    add_export(app, console, action);
     add_evaluate(app, console, action);
     add_model(app, console, action);
     const auto known = app.get_subcommands({});
+    std::string verbs;
+    for (const CLI::App* verb : known) verbs += (verbs.empty() ? "" : ", ") + verb->get_name();
     if (!arguments.empty() && !arguments[0].starts_with('-') &&
         std::ranges::find(known, arguments[0], &CLI::App::get_name) == known.end()) {
       throw Error(ErrorKind::bad_usage,
@@ -190,8 +214,8 @@ int run_command_line(const std::vector<std::string>& arguments, const Console& c
     std::vector<std::string> reversed(arguments.rbegin(), arguments.rend());  // as CLI11 wants it
     app.parse(reversed);
     if (!action) {
-      throw Error(ErrorKind::bad_usage, std::string("says nothing to do; name one of the verbs ") +
-                                            verbs + ", or --help");
+      throw Error(ErrorKind::bad_usage,
+                  "says nothing to do; name one of the verbs " + verbs + ", or --help");
     }
     return action();
   } catch (const CLI::Success& wish) {  // --help or --version

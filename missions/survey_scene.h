@@ -4,12 +4,14 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <memory>
 #include <optional>
 #include <vector>
 
 #include <Eigen/Core>
 
 #include "geometry/mesh.h"
+#include "geometry/mesh_distance.h"
 #include "geometry/pose.h"
 #include "missions/evaluation.h"
 #include "missions/mission.h"
@@ -32,7 +34,7 @@ class SurveyScene {
 
   /// The first view of the survey with that seed: as the mission gives it, or at random on the
   /// sphere around the surface's centroid whose radius is d and the surface's mean distance to the
-  /// centroid, above the ground clearance, looking at the centroid.
+  /// centroid, within the mission's limits, looking at the centroid.
   geometry::View first_view(std::uint64_t seed) const;
 
   /// For each sample, 1 if an admissible sensor position sees it. Takes seconds.
@@ -53,6 +55,7 @@ class SurveyScene {
   sim::Scene scene_;
   geometry::SurfaceSamples samples_;
   double view_distance_;
+  std::shared_ptr<const geometry::MeshDistance> truth_;  ///< if a stand-off needs it
 };
 
 /// The mission's mesh as surveyed: loaded and placed, without ground.
