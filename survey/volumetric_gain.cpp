@@ -44,13 +44,14 @@ class Visibility {
 };
 
 /// Each gain takes in one ray of a view, as VolumetricMap::follow() tells it, after the other.
-/// `needs_surface` says that rays which meet nothing occupied do not count at all.
+/// `only_surfaces` says that rays which meet nothing occupied do not count.
 class RearSideVoxelGain {
  public:
-  static constexpr bool needs_surface = true;
+  static constexpr bool only_surfaces = true;
   explicit RearSideVoxelGain(const GainSettings&, double) {}
 
   void begin_ray() { is_behind_uncertain_ = false; }
+  bool is_content_with_last(bool) const { return true; }
   bool pass_untouched(std::size_t) {
     is_behind_uncertain_ = true;
     return true;
@@ -71,7 +72,7 @@ class RearSideVoxelGain {
 
 class RearSideEntropyGain {
  public:
-  static constexpr bool needs_surface = true;
+  static constexpr bool only_surfaces = true;
   explicit RearSideEntropyGain(const GainSettings& settings, double) : settings_(settings) {}
 
   void begin_ray() {
@@ -79,6 +80,7 @@ class RearSideEntropyGain {
     run_ = 0.0;
     is_in_run_ = false;
   }
+  bool is_content_with_last(bool) const { return false; }
   bool pass_untouched(std::size_t count) {
     run_ += visibility_.pass_untouched(count) * prior_entropy;
     is_in_run_ = true;
@@ -109,13 +111,14 @@ class RearSideEntropyGain {
 template <bool only_uncertain>
 class VisibleEntropyGain {
  public:
-  static constexpr bool needs_surface = false;
+  static constexpr bool only_surfaces = false;
   explicit VisibleEntropyGain(const GainSettings& settings, double) : settings_(settings) {}
 
   void begin_ray() {
     visibility_ = Visibility(settings_.visibility);
     ray_ = 0.0;
   }
+  bool is_content_with_last(bool) const { return false; }
   bool pass_untouched(std::size_t count) {
     ray_ += visibility_.pass_untouched(count) * prior_entropy;
     return go_on();
@@ -152,11 +155,12 @@ class VisibleEntropyGain {
 
 class ProximityCountGain {
  public:
-  static constexpr bool needs_surface = false;
+  static constexpr bool only_surfaces = false;
   explicit ProximityCountGain(const GainSettings&, double shadow_ceiling)
       : shadow_ceiling_(shadow_ceiling) {}
 
   void begin_ray() {}
+  bool is_content_with_last(bool has_shadows) const { return !has_shadows; }
   bool pass_untouched(std::size_t) { return true; }
   bool pass(const VoxelState& state) {
     if (state.kind == VoxelKind::shadowed) total_ += shadow_ceiling_ - state.shadow_depth;
@@ -172,10 +176,11 @@ class ProximityCountGain {
 
 class AreaFactorGain {
  public:
-  static constexpr bool needs_surface = false;
+  static constexpr bool only_surfaces = false;
   explicit AreaFactorGain(const GainSettings& settings, double) : share_(settings.area_share) {}
 
   void begin_ray() { is_from_free_ = true; }
+  bool is_content_with_last(bool has_shadows) const { return !has_shadows && !nothing_known_yet_; }
   bool pass_untouched(std::size_t) {
     is_from_free_ = nothing_known_yet_;
     return true;
@@ -219,10 +224,11 @@ class AreaFactorGain {
 
 class AverageEntropyGain {
  public:
-  static constexpr bool needs_surface = true;
+  static constexpr bool only_surfaces = true;
   explicit AverageEntropyGain(const GainSettings&, double) {}
 
   void begin_ray() { ray_ = ray_voxels_ = 0.0; }
+  bool is_content_with_last(bool) const { return false; }
   bool pass_untouched(std::size_t count) {
     ray_ += static_cast<double>(count) * prior_entropy;
     ray_voxels_ += static_cast<double>(count);
@@ -244,6 +250,19 @@ class AverageEntropyGain {
  private:
   double ray_ = 0.0, ray_voxels_ = 0.0;
   double entropy_ = 0.0, voxels_ = 0.0;
+};
+
+/// Whether a ray ends on an occupied voxel: quick to know.
+class OccupiedEnd {
+ public:
+  bool is_content_with_last(bool) const { return true; }
+  bool pass_untouched(std::size_t) { return true; }
+  bool pass(const VoxelState&) { return true; }
+  void finish(const VoxelState& state) { is_met_ = state.kind == VoxelKind::occupied; }
+  bool is_met() const { return is_met_; }
+
+ private:
+  bool is_met_ = false;
 };
 
 /// How far along a ray the box reaches; nothing of it lies on the ray if that is negative.
@@ -273,13 +292,17 @@ double gain_of(const VolumetricMap& map, const geometry::View& view,
   Gain gain(settings, map.shadow_ceiling());
   for (const Vector3d& in_camera : directions) {
     const Vector3d direction = world_from_camera * in_camera;
+    const Vector3f end = (view.position + depth * direction).cast<float>();
     double reach = std::numeric_limits<double>::infinity();
-    if (Gain::needs_surface) {
+    if (Gain::only_surfaces) {
       reach = surface.isEmpty() ? -1.0 : far_end(surface, view.position, direction);
       if (reach < 0.0) continue;
+      OccupiedEnd surface_end;
+      map.follow(origin, end, reach, surface_end);
+      if (!surface_end.is_met()) continue;
     }
     gain.begin_ray();
-    map.follow(origin, (view.position + depth * direction).cast<float>(), reach, gain);
+    map.follow(origin, end, reach, gain);
   }
   return gain.total();
 }

@@ -76,14 +76,23 @@ void VolumetricMap::update_touched() {
       update(word, touched.passed[word] & ~touched.hit[word], &OccupancyStates::after_miss);
       update(word, touched.hit[word], &OccupancyStates::after_hit);
     }
-    widen_surface_box(touched.key, touched.hit);
+    summarise(*touched.brick);
+    if (touched.brick->has_surface) widen_surface_box(touched.key);
     touched.brick->touched = none;
   }
   touched_.clear();
 }
 
-void VolumetricMap::widen_surface_box(BrickKey key, const std::array<std::uint64_t, 8>& hit) {
-  if (std::ranges::all_of(hit, [](std::uint64_t bits) { return bits == 0; })) return;
+void VolumetricMap::summarise(Brick& brick) const {
+  const VoxelState* const states = states_.table();
+  brick.has_surface = brick.has_shadows = false;
+  for (const Code code : brick.codes) {
+    brick.has_surface |= states[code].stops_rays;
+    brick.has_shadows |= states[code].kind == VoxelKind::shadowed;
+  }
+}
+
+void VolumetricMap::widen_surface_box(BrickKey key) {
   const Eigen::Vector3d brick(brick_on_axis(key, 0), brick_on_axis(key, 1), brick_on_axis(key, 2));
   const double width = resolution_ * (1 << brick_shift);
   surface_box_.extend(width * brick);
@@ -104,6 +113,7 @@ void VolumetricMap::cast_shadow(const Vector3f& origin, const Vector3f& point) {
       if (code == OccupancyStates::untouched ||
           (!OccupancyStates::is_measured(code) && depth < code)) {
         code = depth;
+        brick->has_shadows = true;
       }
     }
     walk.advance();

@@ -57,9 +57,11 @@ class VolumetricMap {
 
   /// Follows the ray from `origin` to `end`. Tells `ray` of the voxels passed, by
   /// `pass_untouched(count)` for voxels of bricks that do not exist and `pass(state)` for one
-  /// voxel; either returns false to say that it wants to know no more. Stops at the first voxel
-  /// that stops rays, or at the one of `end`, and hands that to `ray.finish(state)`. Beyond
-  /// `reach` from `origin` nothing is looked at, and finish() is not called.
+  /// voxel; either returns false to say that it wants to know no more. Of a brick in which nothing
+  /// stops rays, only the last voxel passed is told if `ray.is_content_with_last(has_shadows)`.
+  /// Stops at the first voxel that stops rays, or at the one of `end`, and hands that to
+  /// `ray.finish(state)`. Beyond `reach` from `origin` nothing is looked at, and finish() is not
+  /// called.
   template <typename Ray>
   void follow(const Eigen::Vector3f& origin, const Eigen::Vector3f& end, double reach,
               Ray& ray) const;
@@ -69,6 +71,8 @@ class VolumetricMap {
 
   struct Brick {
     std::array<Code, voxels_in_brick> codes{};
+    bool has_surface = false;  // something that stops rays
+    bool has_shadows = false;
     std::uint32_t touched = none;  // where it stands in touched_ while a scan is taken in
   };
   /// The voxels of a brick that a scan passed and hit, a bit each.
@@ -98,7 +102,8 @@ class VolumetricMap {
   void mark_passed(const Eigen::Vector3f& origin, const Eigen::Vector3f& end);
   void mark_hit(const Eigen::Vector3f& point);
   void update_touched();
-  void widen_surface_box(BrickKey key, const std::array<std::uint64_t, 8>& hit);
+  void summarise(Brick& brick) const;
+  void widen_surface_box(BrickKey key);
   void cast_shadow(const Eigen::Vector3f& origin, const Eigen::Vector3f& point);
   Code code_at(const Eigen::Vector3f& point) const;
 
@@ -122,21 +127,21 @@ void VolumetricMap::follow(const Eigen::Vector3f& origin, const Eigen::Vector3f&
   if (is_cut) walk.stop_at(reach);
   while (!walk.is_over()) {
     const Brick* const brick = find(walk.brick());
-    if (!brick) {
-      std::size_t count = 0;
-      do {
-        walk.advance();
-        ++count;
-      } while (!walk.is_over() && !walk.left_brick());
-      if (!ray.pass_untouched(count)) return;
-    } else {
-      do {
-        const VoxelState& state = states[brick->codes[walk.place()]];
-        if (state.stops_rays) return ray.finish(state);
-        if (!ray.pass(state)) return;
-        walk.advance();
-      } while (!walk.is_over() && !walk.left_brick());
+    if (!brick || (!brick->has_surface && ray.is_content_with_last(brick->has_shadows))) {
+      const VoxelWalk::Skipped skipped = walk.skip_brick();
+      if (skipped.voxels > 0) {
+        const bool goes_on = brick ? ray.pass(states[brick->codes[skipped.last_place]])
+                                   : ray.pass_untouched(skipped.voxels);
+        if (!goes_on) return;
+        continue;
+      }
     }
+    do {
+      const VoxelState& state = states[brick ? brick->codes[walk.place()] : Code{}];
+      if (state.stops_rays) return ray.finish(state);
+      if (!ray.pass(state)) return;
+      walk.advance();
+    } while (!walk.is_over() && !walk.left_brick());
     if (walk.left_brick()) walk.enter_brick();
   }
   if (!is_cut) ray.finish(state_at(end));

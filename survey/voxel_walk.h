@@ -65,6 +65,15 @@ class VoxelWalk {
   bool left_brick() const { return (local_ & guards) != 0; }
   void enter_brick();
 
+  /// What skip_brick() passed.
+  struct Skipped {
+    std::size_t voxels = 0;        ///< zero: the walk ends in this brick, and nothing was skipped
+    std::uint32_t last_place = 0;  ///< in the brick, of the last one
+  };
+  /// Walks through the rest of the brick at once, and enters the next. The same voxels are passed
+  /// as by advance().
+  Skipped skip_brick();
+
   /// Ends the walk where it is farther than `length` from its origin, if that is sooner.
   void stop_at(double length) {
     limit_ =
@@ -120,7 +129,7 @@ inline VoxelWalk::VoxelWalk(const Eigen::Vector3f& origin, const Eigen::Vector3f
   const float squares = way.x() * way.x() + way.y() * way.y() + way.z() * way.z();
   const auto length = static_cast<float>(std::sqrt(double{squares}));
   // 44 bits for the segment; borders that lie far beyond its end are all the same.
-  constexpr double units_in_segment = 0x1p44, beyond = 0x1p60;
+  constexpr double units_in_segment = 0x1p44, beyond = 0x1p58;
   units_per_metre_ = units_in_segment / length;
   for (int axis = 0; axis < 3; ++axis) {
     const float direction = way[axis] / length;
@@ -140,6 +149,40 @@ inline VoxelWalk::VoxelWalk(const Eigen::Vector3f& origin, const Eigen::Vector3f
   const double rounds_to_length =
       0.5 * (double{length} + double{std::nextafter(length, 2 * length)});
   limit_ = static_cast<std::int64_t>(rounds_to_length * units_per_metre_);
+}
+
+inline VoxelWalk::Skipped VoxelWalk::skip_brick() {
+  // Steps that stay in the brick on each axis, and where the one after them leaves it.
+  std::array<std::int64_t, 3> inside{}, leaves{};
+  for (int axis = 0; axis < 3; ++axis) {
+    const std::int64_t at = local_ >> 4 * axis & brick_mask;
+    inside[axis] = step_[axis] > 0 ? brick_mask - at : at;
+    leaves[axis] = next_[axis] + inside[axis] * spacing_[axis];
+  }
+  // As in advance(), of equal distances that of the later axis comes first.
+  const int last = leaves[0] < leaves[1] && leaves[0] < leaves[2] ? 0
+                   : leaves[1] < leaves[2]                        ? 1
+                                                                  : 2;
+  std::int64_t steps = inside[last] + 1;
+  for (int axis = 0; axis < 3; ++axis) {
+    if (axis == last) continue;
+    const std::int64_t before = leaves[last] - (axis < last ? 1 : 0) - next_[axis];
+    inside[axis] = before < 0 ? 0 : before / spacing_[axis] + 1;
+    steps += inside[axis];
+  }
+  if (steps >= steps_left_ || leaves[last] > limit_) return {};
+
+  for (int axis = 0; axis < 3; ++axis) {
+    next_[axis] += inside[axis] * spacing_[axis];
+    local_ += static_cast<std::uint32_t>(inside[axis] * step_[axis]);
+  }
+  const std::uint32_t last_place = place();
+  next_[last] += spacing_[last];
+  local_ += static_cast<std::uint32_t>(step_[last]);
+  steps_left_ -= steps;
+  is_over_ = std::min({next_[0], next_[1], next_[2]}) > limit_;
+  enter_brick();
+  return {static_cast<std::size_t>(steps), last_place};
 }
 
 inline void VoxelWalk::enter_brick() {

@@ -137,6 +137,38 @@ TEST(VoxelWalk, PassesFaceToFaceThroughVoxelsThatTheSegmentMeets) {
   }
 }
 
+// Twin: one walk step by step, the other by bricks where that is possible.
+TEST(VoxelWalk, SkipsBricksAlongTheSameVoxels) {
+  std::size_t skips = 0;
+  for (const double resolution : {0.1, 0.017}) {
+    auto points = tests::random_points(200, 1.3, 5);
+    points.insert(points.end(), {{0.05F, 0.05F, 0.05F}, {1.25F, 1.25F, 1.25F}});  // all ties
+    points.insert(points.end(), {{-1.0F, 0.3F, 0.2F}, {1.0F, 0.3F, -0.9F}});      // in a plane
+    for (std::size_t i = 0; i + 1 < points.size(); i += 2) {
+      VoxelWalk walk(points[i], points[i + 1], resolution);
+      VoxelWalk twin = walk;
+      while (!walk.is_over()) {
+        const VoxelWalk::Skipped skipped = walk.skip_brick();
+        if (skipped.voxels == 0) break;
+        ++skips;
+        for (std::size_t step = 0; step < skipped.voxels; ++step) {
+          ASSERT_FALSE(twin.is_over() || twin.left_brick());
+          if (step + 1 == skipped.voxels) {
+            EXPECT_EQ(twin.place(), skipped.last_place);
+          }
+          twin.advance();
+        }
+        ASSERT_TRUE(twin.left_brick());
+        twin.enter_brick();
+        ASSERT_EQ(twin.brick(), walk.brick());
+        ASSERT_EQ(twin.place(), walk.place());
+        ASSERT_EQ(twin.is_over(), walk.is_over());
+      }
+    }
+  }
+  EXPECT_GT(skips, 1000U);
+}
+
 TEST(VoxelWalk, WithinOneVoxelPassesNothing) {
   EXPECT_TRUE(VoxelWalk({0.01F, 0.02F, 0.03F}, {0.09F, 0.01F, 0.05F}, 0.1).is_over());
 }
