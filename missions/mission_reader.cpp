@@ -428,10 +428,14 @@ Mission mission_from(const std::string& text, const std::string& name,
   Mission mission;
   mission.name = std::filesystem::path(name).stem().string();
 
-  constexpr std::array presets{"sensor.preset", "planner.preset", "planner.name"};
+  constexpr std::array presets{"sensor.preset", "planner.preset", "planner.name", "flight.vehicle"};
   for (const char* path : presets) {
     const auto preset = given.find(path);
     if (preset != given.end()) apply(preset->second, *find_key(path), mission);
+  }
+  // What flies is there to be done soon: the paper's planners are for comparison.
+  if (mission.flight.is_flown() && !given.contains("planner.name")) {
+    mission.planner.name = PlannerName::skycap;
   }
   apply_presets(mission);
   for (const auto& [path, value] : given) apply(value, *find_key(path), mission);
