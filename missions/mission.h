@@ -35,7 +35,9 @@ struct SceneConfig {
   std::optional<double> longest_side;                  ///< of the bounding box, after rotation
   std::optional<double> scale;                         ///< factor; only one of the two is given
   Eigen::Vector3d position = Eigen::Vector3d::Zero();
-  bool ground = false;  ///< whether the sensor also sees a plane under the model
+  bool ground = false;       ///< whether the sensor also sees a plane under the model
+  double reflectance = 0.4;  ///< diffuse, at the laser's wavelength, where no other is given
+  std::optional<std::string> materials;  ///< a file of reflectances, by the names of the model's
 };
 
 enum class SensorPreset {
