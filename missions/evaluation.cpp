@@ -27,8 +27,8 @@ std::optional<Vector3d> free_position(const Vector3d& target, std::span<const Ve
   for (std::size_t i = 0; i < directions.size(); ++i) {
     const Vector3d& direction = directions[(first + i) % directions.size()];
     const Vector3d position = target + admissible.view_distance * direction;
-    if (position.z() < admissible.lowest_z) continue;
-    if (!scene.is_blocked(position, target + admissible.clearance * direction)) return position;
+    if (scene.is_blocked(position, target + admissible.clearance * direction)) continue;
+    if (!admissible.allows || admissible.allows({position, -direction})) return position;
   }
   return std::nullopt;
 }

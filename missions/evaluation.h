@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <span>
 #include <vector>
 
@@ -19,8 +20,10 @@ namespace skycap::missions {
 
 /// Where a sensor may look at the scene from.
 struct Admissible {
-  double view_distance = 1.0;    ///< from the surface point looked at
-  double lowest_z = -1e9;        ///< of the sensor
+  double view_distance = 1.0;  ///< from the surface point looked at
+  /// Whether the sensor may be there, on top of that; must be safe to call from several threads.
+  /// Empty: anywhere.
+  std::function<bool(const geometry::View&)> allows;
   std::size_t directions = 200;  ///< tried around a surface point, spread over the sphere
   double clearance = 1e-4;       ///< a sight line may end this far before the surface point
 };

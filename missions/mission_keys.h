@@ -18,7 +18,16 @@
 
 namespace skycap::missions {
 
-enum class KeyType { text, number, integer, boolean, choice, vector };
+enum class KeyType {
+  text,
+  number,
+  integer,
+  boolean,
+  choice,
+  vector,
+  polygon,  ///< corners [x, y], three or more
+  volumes,  ///< a list of {corners, bottom, top}
+};
 
 /// Which numbers a key takes; for a vector, each of its three.
 struct KeyRange {
@@ -28,7 +37,8 @@ struct KeyRange {
 };
 
 /// A value as the file says it, in the file's unit. Text and choices are both text.
-using KeyValue = std::variant<bool, std::int64_t, double, std::string, Eigen::Vector3d>;
+using KeyValue = std::variant<bool, std::int64_t, double, std::string, Eigen::Vector3d,
+                              std::vector<Eigen::Vector2d>, std::vector<survey::Prism>>;
 
 struct Key {
   std::string path;  ///< such as "planner.density"
@@ -48,6 +58,10 @@ struct Key {
 
 /// All keys, those of a section together.
 std::span<const Key> mission_keys();
+
+/// The part of them that says where the sensor may be, when a survey ends, and which of Skycap's
+/// ideas are on.
+std::vector<Key> constraint_keys();
 
 /// The key with that path, or null.
 const Key* find_key(std::string_view path);

@@ -58,6 +58,41 @@ Json number_schema(const Key& key, const char* type) {
   return schema;
 }
 
+Json polygon_schema() {
+  const Json corner{
+      {"type", "array"}, {"items", {{"type", "number"}}}, {"minItems", 2}, {"maxItems", 2}};
+  return {{"type", "array"}, {"items", corner}, {"minItems", 3}};
+}
+
+Json volumes_schema() {
+  const Json volume{{"type", "object"},
+                    {"additionalProperties", false},
+                    {"required", {"corners", "bottom", "top"}},
+                    {"properties",
+                     {{"corners", polygon_schema()},
+                      {"bottom", {{"type", "number"}}},
+                      {"top", {{"type", "number"}}}}}};
+  return {{"type", "array"}, {"items", volume}};
+}
+
+std::string polygon_text(const std::vector<Eigen::Vector2d>& polygon) {
+  std::string text;
+  for (const Eigen::Vector2d& corner : polygon) {
+    text += (text.empty() ? "[" : ", [") + number_text(corner.x()) + ", " +
+            number_text(corner.y()) + "]";
+  }
+  return "[" + text + "]";
+}
+
+std::string volumes_text(const std::vector<survey::Prism>& volumes) {
+  std::string text;
+  for (const survey::Prism& volume : volumes) {
+    text += (text.empty() ? "" : ", ") + std::string("{corners: ") + polygon_text(volume.corners) +
+            ", bottom: " + number_text(volume.bottom) + ", top: " + number_text(volume.top) + "}";
+  }
+  return "[" + text + "]";
+}
+
 Json value_schema(const Key& key) {
   switch (key.type) {
     case KeyType::text:
@@ -70,6 +105,10 @@ Json value_schema(const Key& key) {
       return {{"type", "boolean"}};
     case KeyType::choice:
       return {{"enum", key.choices}};
+    case KeyType::polygon:
+      return polygon_schema();
+    case KeyType::volumes:
+      return volumes_schema();
     case KeyType::vector:
       break;
   }
@@ -120,6 +159,10 @@ std::string expected_value(const Key& key) {
       return "true or false";
     case KeyType::choice:
       return listed(key.choices);
+    case KeyType::polygon:
+      return "three or more corners [x, y]" + unit;
+    case KeyType::volumes:
+      return "a list of {corners, bottom, top}" + unit;
     case KeyType::vector:
       break;
   }
@@ -131,6 +174,12 @@ std::string to_text(const KeyValue& value) {
   if (const auto* integer = std::get_if<std::int64_t>(&value)) return std::to_string(*integer);
   if (const auto* number = std::get_if<double>(&value)) return number_text(*number);
   if (const auto* text = std::get_if<std::string>(&value)) return *text;
+  if (const auto* volumes = std::get_if<std::vector<survey::Prism>>(&value)) {
+    return volumes_text(*volumes);
+  }
+  if (const auto* polygon = std::get_if<std::vector<Eigen::Vector2d>>(&value)) {
+    return polygon_text(*polygon);
+  }
   const auto& vector = std::get<Eigen::Vector3d>(value);
   return "[" + number_text(vector.x()) + ", " + number_text(vector.y()) + ", " +
          number_text(vector.z()) + "]";

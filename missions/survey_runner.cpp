@@ -7,7 +7,9 @@
 #include "geometry/camera.h"
 #include "geometry/error.h"
 #include "geometry/parallel.h"
+#include "geometry/point_grid.h"
 #include "missions/coverage.h"
+#include "missions/site.h"
 #include "sim/depth_camera.h"
 
 namespace skycap::missions {
@@ -67,6 +69,49 @@ Mission trial_mission(const Mission& mission, const SurveyScene& scene, std::uin
   return trial;
 }
 
+constexpr double seconds_per_minute = 60.0;
+
+survey::SurveyLimits survey_limits(const Mission& mission) {
+  const LimitsConfig& config = mission.limits;
+  survey::SurveyLimits limits{.max_views = view_limit(mission),
+                              .max_distance = config.max_distance,
+                              .speed = config.speed,
+                              .time_per_view = config.time_per_view};
+  if (config.max_minutes) limits.max_time = seconds_per_minute * *config.max_minutes;
+  return limits;
+}
+
+/// Which budget made the planner stop, if one did.
+survey::StopReason stop_reason(const survey::Planner& planner, survey::StopReason reason) {
+  const auto* skycap = dynamic_cast<const survey::SkycapPlanner*>(&planner);
+  if (skycap == nullptr || reason != survey::StopReason::complete) return reason;
+  if (skycap->stop() == survey::SkycapStop::most_length) return survey::StopReason::distance_limit;
+  if (skycap->stop() == survey::SkycapStop::most_time) return survey::StopReason::time_limit;
+  return reason;
+}
+
+/// Keeps planners that know nothing of the mission's limits from breaking them.
+class ViewGate {
+ public:
+  explicit ViewGate(const survey::ViewLimits& limits)
+      : limits_(limits), grid_(std::max(limits.stand_off, 1e-3)) {}
+
+  void add(std::span<const Eigen::Vector3f> measured) {
+    if (limits_.stand_off == 0.0) return;
+    for (const Eigen::Vector3f& point : measured) grid_.insert(point);
+  }
+
+  bool admits(const geometry::View& view) const {
+    return limits_.allow(view) &&
+           (limits_.stand_off == 0.0 ||
+            !grid_.any_within(view.position.cast<float>(), limits_.stand_off));
+  }
+
+ private:
+  survey::ViewLimits limits_;
+  geometry::PointGrid grid_;
+};
+
 }  // namespace
 
 std::optional<survey::VolumetricMetric> volumetric_metric(PlannerName name) {
@@ -107,6 +152,8 @@ const char* name_of(survey::StopReason reason) {
       return "view_limit";
     case survey::StopReason::distance_limit:
       return "distance_limit";
+    case survey::StopReason::time_limit:
+      return "time_limit";
     case survey::StopReason::nowhere_to_go:
       return "nowhere_to_go";
     case survey::StopReason::interrupted:
@@ -131,9 +178,18 @@ std::unique_ptr<survey::Planner> make_planner(const Mission& mission, unsigned t
       .spacing = see.effective_spacing(),
       .view_distance = see.view_distance.value_or(view_distance(camera, see.density)),
       .scene_box = see.scene_box,
+      .limits = view_limits(mission),
       .stop = mission.planner.skycap_stop,
+      .ideas = mission.planner.skycap_ideas,
       .threads = threads};
-  if (mission.limits.ground_clearance) config.limits.least_height = see.ground_clearance;
+  // Told of the budgets, it looks for the best view that is still in reach.
+  const LimitsConfig& limits = mission.limits;
+  if (limits.max_distance < LimitsConfig{}.max_distance) {
+    config.stop.most_length = limits.max_distance;
+  }
+  if (limits.max_minutes) config.stop.most_time = seconds_per_minute * *limits.max_minutes;
+  config.stop.speed = limits.speed;
+  config.stop.time_per_view = limits.time_per_view;
   return std::make_unique<survey::SkycapPlanner>(config, camera);
 }
 
@@ -150,12 +206,36 @@ SurveyRecord run_survey(const Mission& mission, const SurveyScene& scene, std::u
   SurveyRecord record;
   record.seed = seed;
   record.threads = geometry::thread_count(threads);
+  const geometry::View first_view = scene.first_view(seed);
+  std::optional<SurveyFlight> flight;
+  if (mission.flight.is_flown()) flight.emplace(mission, first_view);
+
   std::uint64_t frame = 0;
   std::size_t points_judged = 0;
   survey::SurveyPorts ports;
   ports.sense = [&](const geometry::View& view) {
     return camera.scan(scene.scene(), view, frame++, threads);
   };
+  ViewGate gate(view_limits(mission));
+  std::size_t points_gated = 0;
+  const bool is_gated = mission.planner.name != PlannerName::skycap;
+  if (flight) {
+    ports.sensed = [&](const geometry::Scan& scan) {
+      flight->fly();
+      flight->take_in(scan);
+    };
+  }
+  if (flight || is_gated) {
+    ports.can_reach = [&](const Eigen::Vector3d& from, const geometry::View& view) {
+      if (is_gated) {
+        const std::span stored(planner->cloud().positions);
+        gate.add(stored.subspan(points_gated));
+        points_gated = stored.size();
+        if (!gate.admits(view)) return false;
+      }
+      return !flight || flight->can_reach(from, view);
+    };
+  }
   ports.report = [&](const survey::SurveyedView& view, const geometry::Scan&) {
     const std::span stored(planner->cloud().positions);
     meter.add(stored.subspan(points_judged));
@@ -163,12 +243,13 @@ SurveyRecord run_survey(const Mission& mission, const SurveyScene& scene, std::u
     record.views.push_back({view, meter.share()});
     if (report) report(record.views.back());
   };
-  const survey::SurveyLimits limits{view_limit(mission), mission.limits.max_distance};
-  record.stop_reason =
-      survey::run_survey(*planner, scene.first_view(seed), limits, ports, std::move(stop))
-          .stop_reason;
+  const survey::SurveyLimits limits = survey_limits(mission);
+  record.stop_reason = stop_reason(
+      *planner,
+      survey::run_survey(*planner, first_view, limits, ports, std::move(stop)).stop_reason);
   record.cloud = planner->cloud();
   record.is_covered = meter.is_covered();
+  if (flight) record.flown = flight->finish();
   return record;
 }
 

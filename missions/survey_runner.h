@@ -10,6 +10,7 @@
 
 #include "geometry/point_cloud.h"
 #include "missions/mission.h"
+#include "missions/survey_flight.h"
 #include "missions/survey_scene.h"
 #include "survey/planner.h"
 #include "survey/survey_loop.h"
@@ -30,6 +31,7 @@ struct SurveyRecord {
   std::vector<JudgedView> views;
   geometry::PointCloud cloud;
   std::vector<std::uint8_t> is_covered;  ///< for each of the scene's samples
+  std::optional<FlownSurvey> flown;      ///< of a mission with a vehicle
 
   bool is_complete() const { return stop_reason == survey::StopReason::complete; }
   double coverage() const { return views.empty() ? 0.0 : views.back().coverage; }
@@ -38,7 +40,8 @@ struct SurveyRecord {
   double sensing_time() const;
 };
 
-/// The word for it in files: complete, view_limit, distance_limit, nowhere_to_go, interrupted.
+/// The word for it in files: complete, view_limit, distance_limit, time_limit,
+/// nowhere_to_go, interrupted.
 const char* name_of(survey::StopReason reason);
 
 /// The planner that the mission names, on so many threads (zero: all processors). Throws
@@ -46,8 +49,9 @@ const char* name_of(survey::StopReason reason);
 std::unique_ptr<survey::Planner> make_planner(const Mission& mission, unsigned threads);
 
 /// Surveys the mission's scene with that seed and so many threads (zero: all processors). The
-/// record does not depend on the threads but for its times. `report` is told of each view; it may
-/// be empty. Throws what planner and sensor throw.
+/// record does not depend on the threads but for its times. A mission with a vehicle goes only to
+/// views that it can safely reach. `report` is told of each view; it may be empty. Throws what
+/// planner, sensor and SurveyFlight throw.
 SurveyRecord run_survey(const Mission& mission, const SurveyScene& scene, std::uint64_t seed,
                         unsigned threads, std::stop_token stop = {},
                         const std::function<void(const JudgedView&)>& report = {});

@@ -13,6 +13,7 @@
 #include "missions/output_folder.h"
 #include "missions/scene_source.h"
 #include "missions/sha256.h"
+#include "missions/site.h"
 #include "sim/depth_camera.h"
 
 namespace skycap::missions {
@@ -69,30 +70,43 @@ SurveyScene::SurveyScene(const Mission& mission, const std::filesystem::path& fo
       samples_(geometry::sample_surface(model_, mission.evaluation.samples, sample_seed)),
       view_distance_(mission.planner.see.view_distance.value_or(geometry::view_distance(
           geometry::Camera(mission.sensor.camera.camera), mission.planner.see.density))),
-      view_sphere_(sphere_around(samples_.points, view_distance_)) {}
+      view_sphere_(sphere_around(samples_.points, view_distance_)) {
+  if (view_limits(mission).stand_off > 0.0)
+    truth_ = std::make_shared<geometry::MeshDistance>(model_);
+}
 
 geometry::View SurveyScene::first_view(std::uint64_t seed) const {
   const StartConfig& start = mission_.start;
   if (start.position && start.look_at) return geometry::look_at(*start.position, *start.look_at);
   if (start.position) return {*start.position, start.direction->normalized()};
 
+  const survey::ViewLimits limits = view_limits(mission_);
   std::mt19937_64 random(seed);
   constexpr int most_attempts = 10'000;
   for (int attempt = 0; attempt < most_attempts; ++attempt) {
     const Vector3d position = view_sphere_.centre + view_sphere_.radius * uniform_direction(random);
-    if (position.z() >= mission_.planner.see.ground_clearance) {
-      return geometry::look_at(position, view_sphere_.centre);
-    }
+    const geometry::View view = geometry::look_at(position, view_sphere_.centre);
+    if (limits.allow(view)) return view;
   }
   throw Error(
       ErrorKind::bad_config,
-      "limits.ground_clearance leaves no place for a random start at the view distance of " +
-          to_text(view_distance_) + " m; lower it or give start.position");
+      "limits.ground_clearance, the gimbal's pitch and the site leave no place for a random "
+      "start at the view distance of " +
+          to_text(view_distance_) + " m; loosen them or give start.position");
 }
 
 Admissible SurveyScene::admissible() const {
+  survey::ViewLimits limits = view_limits(mission_);
+  // A surface need not be in the middle of the image.
+  const double half_fov = 0.5 * mission_.sensor.camera.camera.vertical_fov;
+  limits.least_pitch -= half_fov;
+  limits.most_pitch += half_fov;
+  const auto allows = [limits, truth = truth_](const geometry::View& view) {
+    return limits.allow(view) &&
+           (limits.stand_off == 0.0 || truth->distance(view.position) >= limits.stand_off);
+  };
   return {.view_distance = view_distance_,
-          .lowest_z = mission_.planner.see.ground_clearance,
+          .allows = allows,
           .directions = mission_.evaluation.visible_directions,
           .clearance = 0.01 * mission_.evaluation.registration_distance};
 }
@@ -134,7 +148,9 @@ std::string SurveyScene::ceiling_key() const {
   for (const Key& key : mission_keys()) {
     if (!key.path.starts_with("scene.") && !key.path.starts_with("sensor.") &&
         !key.path.starts_with("evaluation.") && !key.path.starts_with("planner.scene_box") &&
-        key.path != "limits.ground_clearance") {
+        !key.path.starts_with("site.") && key.path != "limits.ground_clearance" &&
+        key.path != "limits.stand_off" && !key.path.ends_with("_pitch_deg") &&
+        key.path != "flight.vehicle" && key.path != "flight.clearance") {
       continue;
     }
     const auto value = key.get(mission_);

@@ -4,12 +4,14 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <memory>
 #include <optional>
 #include <vector>
 
 #include <Eigen/Core>
 
 #include "geometry/mesh.h"
+#include "geometry/mesh_distance.h"
 #include "geometry/pose.h"
 #include "missions/evaluation.h"
 #include "missions/mission.h"
@@ -40,7 +42,7 @@ class SurveyScene {
   const ViewSphere& view_sphere() const { return view_sphere_; }
 
   /// The first view of the survey with that seed: as the mission gives it, or at random on the
-  /// view sphere, above the ground clearance, looking at the sphere's centre.
+  /// view sphere within the mission's limits, looking at the sphere's centre.
   geometry::View first_view(std::uint64_t seed) const;
 
   /// For each sample, 1 if an admissible sensor position sees it. Takes seconds.
@@ -62,6 +64,7 @@ class SurveyScene {
   geometry::SurfaceSamples samples_;
   double view_distance_;
   ViewSphere view_sphere_;
+  std::shared_ptr<const geometry::MeshDistance> truth_;  ///< if a stand-off needs it
 };
 
 /// The mission's mesh as surveyed: loaded and placed, without ground.

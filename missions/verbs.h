@@ -23,16 +23,60 @@ struct PlanOptions {
 };
 
 /// Surveys a mission's scene in simulation and writes the mission package, or the trials' files.
-/// Exit code 1 if the survey was interrupted or could not go on.
+/// Exit code 1 if the survey was interrupted, or could not go anywhere from its first view.
 int plan(const PlanOptions& options, const Console& console);
+
+struct BenchmarkOptions {
+  std::vector<std::filesystem::path> missions;
+  std::vector<std::string> planners = {"all"};  ///< of contestants(), or "all"
+  std::size_t trials = 10;                      ///< of each planner on each mission
+  std::optional<std::filesystem::path> out;     ///< default: results/benchmark
+  std::vector<KeyOverride> overrides;
+  unsigned threads = 0;  ///< zero: all processors; a survey has one
+  bool is_quiet = false;
+};
+
+/// Compares planners on missions, as the paper does: surveys from the same starts, Tables 1 and 2,
+/// curves, plots. What an earlier run in the same folder has finished is not run again. Exit code 1
+/// if it was interrupted.
+int benchmark(const BenchmarkOptions& options, const Console& console);
 
 struct CheckOptions {
   std::filesystem::path mission;
+  std::optional<std::filesystem::path> route;
   std::vector<KeyOverride> overrides;
 };
 
-/// Checks a mission file and its scene; says what follows from it.
+/// Checks a mission file and its scene; says what follows from it. With a route: proves that each
+/// of its legs keeps the mission's clearance from the scene, the ground and the site's rules; exit
+/// code 1, with a list, if one does not.
 int check(const CheckOptions& options, const Console& console);
+
+struct ExportOptions {
+  std::filesystem::path package;             ///< folder that plan() wrote
+  std::vector<std::string> formats;          ///< flight::formats() by name
+  std::optional<std::filesystem::path> out;  ///< folder; default: the package
+  std::vector<KeyOverride> overrides;
+};
+
+/// Plans a flight through the views of a finished survey and writes it in other formats, or for
+/// another vehicle. Exit code 1 if no view can be visited.
+int export_package(const ExportOptions& options, const Console& console);
+
+struct ScanVerbOptions {
+  std::filesystem::path mission;
+  std::optional<std::filesystem::path> route;  ///< in place of the mission's
+  std::optional<std::filesystem::path> out;    ///< default: results/NAME/scan
+  std::optional<std::string> sensor;           ///< in place of the mission's
+  std::vector<std::string> formats = {"las"};  ///< of a laser scanner's points
+  bool with_truth = false;                     ///< also where the surfaces really were
+  std::vector<KeyOverride> overrides;
+  bool is_quiet = false;
+};
+
+/// Flies a route in the simulator and records what the sensor measures on the way. Exit code 1 if
+/// the flight was interrupted.
+int scan(const ScanVerbOptions& options, const Console& console);
 
 struct EvaluateOptions {
   std::filesystem::path cloud;

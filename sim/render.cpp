@@ -138,7 +138,9 @@ class Renderer {
         const int side = options_.samples_per_side;
         Vector3d sum = Vector3d::Zero();
         for (int i = 0; i < side * side; ++i) {
-          const Vector3d direction = pixel((i % side + dice()) / side, (i / side + dice()) / side);
+          const int row_in_pixel = i / side;
+          const Vector3d direction =
+              pixel((i % side + dice()) / side, (row_in_pixel + dice()) / side);
           // Clipped before the mean: one glaring sample shall not outshine an edge.
           sum += light_along(view.view.position, direction, dice).cwiseMin(2.5);
         }

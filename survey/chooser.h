@@ -26,8 +26,10 @@ struct ChooserSettings {
 
 struct Choice {
   geometry::View view;
-  double gain;       ///< expected newly covered area of this view [m^2]
-  double best_gain;  ///< that of the most rewarding view anywhere in reach
+  double gain;  ///< expected newly covered area of this view [m^2]
+  /// That of the most rewarding view anywhere in reach, guesses counted at what they are worth when
+  /// little is left to find (docs/skycap_planner.md): for stop rules.
+  double best_gain;
   /// For each target of the field, whether one of the best views of different places sees it. What
   /// none of them sees is hidden, or not there.
   std::vector<bool> in_sight;

@@ -50,7 +50,8 @@ void DoseMap::add(const BlockImage& image, const DoseModel& dose, float jump,
                   const std::optional<Eigen::AlignedBox3f>& region) {
   add_looks(image, dose, jump);
   add_surfels(image, dose, region);
-  blur_hazards(dose.noise().isotropic);
+  // Rays come from all sides: a third of the variance along them is along any one axis.
+  blur_hazards(std::hypot(dose.noise().isotropic, dose.noise().along_ray / std::sqrt(3.0)));
 }
 
 void DoseMap::blur_hazards(double sigma) {

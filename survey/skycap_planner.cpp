@@ -281,6 +281,7 @@ struct SkycapPlanner::Impl {
     const double way = most_way();
     const auto choice = choose_view(*field, config.limits, admission(), position, way, chooser);
     in_sight = choice ? choice->in_sight : std::vector<bool>(field->targets().size(), false);
+    next_gain = choice && map->area() > 0.0 ? choice->best_gain / map->area() : 0.0;
     stop = reason_to_stop();
     if (stop != SkycapStop::running) return std::nullopt;
     if (!choice) {
@@ -289,7 +290,7 @@ struct SkycapPlanner::Impl {
                                                            : SkycapStop::nothing_in_reach;
       return std::nullopt;
     }
-    if (choice->best_gain < config.stop.least_gain * map->area()) {
+    if (next_gain < config.stop.least_gain) {
       stop = SkycapStop::little_gain;
       return std::nullopt;
     }
@@ -370,6 +371,7 @@ struct SkycapPlanner::Impl {
   std::optional<GainField> field;
   std::vector<bool> in_sight;  ///< of the field's targets, from some good view
 
+  double next_gain = 0.0;  ///< of the best view, as a share of the known area
   std::size_t scans = 0;
   double length = 0.0;
   int idle_scans = 0;
@@ -417,6 +419,7 @@ SurveyBelief SkycapPlanner::Impl::belief() const {
     }
   }
   belief.coverage = predicted_coverage();
+  belief.next_gain = next_gain;
   belief.noise = dose->noise().across(1.0);
   return belief;
 }

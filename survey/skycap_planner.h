@@ -28,7 +28,7 @@ struct StopRule {
   /// covered; in (0, 1].
   double wanted_coverage = 1.0;
   /// Another view is not worth it: the best one promises less than this share of the known area.
-  double least_gain = 0.006;
+  double least_gain = 0.004;
   std::optional<std::size_t> most_views;
   std::optional<double> most_length;  ///< of the straight lines between the views
   std::optional<double> most_time;    ///< of the flight [s], by `speed` and `time_per_view`
@@ -99,7 +99,8 @@ struct SurveyBelief {
   double area = 0.0;      ///< seen and guessed [m^2]
   double coverage = 0.0;  ///< expected covered share of it
   double seen_too_thinly = 0.0, never_seen = 0.0, unreachable = 0.0;  ///< missing shares of it
-  double noise = 0.0;  ///< standard deviation of a measurement head-on, as learnt
+  double next_gain = 0.0;  ///< share of the known area that the best next view would newly cover
+  double noise = 0.0;      ///< standard deviation of a measurement head-on, as learnt
   std::vector<BelievedPatch> patches;
 };
 

@@ -27,6 +27,7 @@ SurveyResult run_survey(Planner& planner, const View& first_view, const SurveyLi
   while (true) {
     SurveyedView taken;
     const geometry::Scan scan = timed(taken.sensing_time, [&] { return ports.sense(*next); });
+    if (ports.sensed) ports.sensed(scan);
     taken.view = geometry::view_of(scan.world_from_sensor);
     if (!result.views.empty()) {
       distance += (taken.view.position - result.views.back().view.position).norm();
@@ -54,6 +55,10 @@ SurveyResult run_survey(Planner& planner, const View& first_view, const SurveyLi
       result.stop_reason = StopReason::view_limit;
     } else if (distance + way > limits.max_distance) {
       result.stop_reason = StopReason::distance_limit;
+    } else if ((distance + way) / limits.speed +
+                   static_cast<double>(result.views.size() + 1) * limits.time_per_view >
+               limits.max_time) {
+      result.stop_reason = StopReason::time_limit;
     } else if (stop.stop_requested()) {
       result.stop_reason = StopReason::interrupted;
     } else {

@@ -17,13 +17,17 @@ enum class StopReason {
   complete,  ///< the planner has nowhere left to look
   view_limit,
   distance_limit,
+  time_limit,
   nowhere_to_go,  ///< every view the planner still wanted was refused
   interrupted,    ///< the user asked to stop
 };
 
 struct SurveyLimits {
   std::size_t max_views = 1000;
-  double max_distance = 1e9;  ///< straight lines between views
+  double max_distance = 1e9;   ///< straight lines between views
+  double max_time = 1e12;      ///< of the flight [s], by the two below
+  double speed = 5.0;          ///< between views [m/s]
+  double time_per_view = 5.0;  ///< to stop, turn and measure [s]
 };
 
 /// One view of a survey: where the sensor was, and what the planner made of the scan.
@@ -46,6 +50,8 @@ struct SurveyResult {
 struct SurveyPorts {
   /// Takes a scan from a view (or as near to it as it could).
   std::function<geometry::Scan(const geometry::View&)> sense;
+  /// Told of each scan before the next view is planned. May be empty.
+  std::function<void(const geometry::Scan&)> sensed;
   /// Whether the sensor can get from one place to a view. Empty: it always can.
   std::function<bool(const Eigen::Vector3d& from, const geometry::View& to)> can_reach;
   /// Told after each view. May be empty.

@@ -142,6 +142,7 @@ Gain GainField::gain(const geometry::View& view) const {
   for_each_sight(view, [&](std::size_t t, float share) {
     const double area = targets_[t].weight * share;
     gain.area += area;
+    if (is_patch(t)) gain.unseen += area;
     moment += area * targets_[t].position.cast<double>();
   });
   if (gain.area > 0.0) gain.centroid = (moment / gain.area).cast<float>();

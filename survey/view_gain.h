@@ -22,7 +22,8 @@ struct Sight {
 };
 
 struct Gain {
-  double area = 0.0;                                   ///< expected newly covered area [m^2]
+  double area = 0.0;    ///< expected newly covered area [m^2]
+  double unseen = 0.0;  ///< the part of it that is only guessed to be there
   Eigen::Vector3f centroid = Eigen::Vector3f::Zero();  ///< of it
 };
 

@@ -18,6 +18,7 @@
 namespace skycap::sim::models {
 
 /// All lengths in metres at full size, angles in radians.
+// NOLINTNEXTLINE(clang-analyzer-optin.performance.Padding)
 struct RadcliffeTable {
   // The whole.
   double total_height = 42.672;  ///< stated: 140 ft, 80 to the balustrade and 60 above it

@@ -91,16 +91,16 @@ void add_arched_bay(const Courses& courses, const Opening& opening, const Vousso
   fitted.head = intrados;
   // A niche's rows need the levels of the courses on both sides of the opening.
   if (opening.back == Opening::Back::round) {
+    Polyline2 left_side;
+    fitted.head.clear();
     for (int course = 0; course <= courses.count; ++course) {
       const double z = courses.level(course + 1);
       if (z <= opening.sill + 1e-6 || z >= springing - 1e-6) continue;
-      fitted.head.insert(fitted.head.begin(), Vector2d(opening.centre + radius, z));
-      fitted.head.emplace_back(opening.centre - radius, z);
+      fitted.head.emplace_back(opening.centre + radius, z);
+      left_side.emplace_back(opening.centre - radius, z);
     }
-    std::sort(fitted.head.begin(), fitted.head.begin() + (fitted.head.size() - intrados.size()) / 2,
-              [](const Vector2d& a, const Vector2d& b) { return a.y() < b.y(); });
-    std::sort(fitted.head.end() - (fitted.head.size() - intrados.size()) / 2, fitted.head.end(),
-              [](const Vector2d& a, const Vector2d& b) { return a.y() > b.y(); });
+    fitted.head.insert(fitted.head.end(), intrados.begin(), intrados.end());
+    fitted.head.insert(fitted.head.end(), left_side.rbegin(), left_side.rend());
   }
   wall.openings.push_back(fitted);
 
@@ -112,7 +112,7 @@ void add_arched_bay(const Courses& courses, const Opening& opening, const Vousso
     wall.tiles.push_back(polygon);
   }
 
-  const std::size_t crown = extrados.size() / 2;
+  const std::ptrdiff_t crown = chords / 2;
   const Polyline2 right_curve(extrados.begin(), extrados.begin() + crown + 1);
   const Polyline2 left_curve(extrados.rbegin(), extrados.rbegin() + crown + 1);
   const double left = opening.centre - half_width, right = opening.centre + half_width;

@@ -74,16 +74,25 @@ void Tower::join_to(const Loop& next) {
   const auto lower = [&](std::size_t i) { return rim_[i % rim_.size()]; };
   const auto upper = [&](std::size_t j) { return next[(first + j) % next.size()]; };
 
-  // Go round both edges together, stepping on the one that gives the shorter edge between them.
-  // That keeps the triangles between the two also where the plan turns a corner.
-  const auto distance = [&](std::uint32_t a, std::uint32_t b) {
-    return (mesh_.vertices[a] - mesh_.vertices[b]).squaredNorm();
+  // Azimuths along each edge, growing past a full turn.
+  const auto azimuths = [&](const auto& vertex, std::size_t size, double start) {
+    std::vector<double> angles{start};
+    for (std::size_t i = 1; i <= size; ++i) {
+      const double step = azimuth(vertex(i)) - azimuth(vertex(i - 1));
+      angles.push_back(angles.back() + std::remainder(step, 2.0 * pi));
+    }
+    return angles;
   };
+  const double lag = std::remainder(azimuth(upper(0)) - azimuth(lower(0)), 2.0 * pi);
+  const std::vector<double> below = azimuths(lower, rim_.size(), 0.0);
+  const std::vector<double> above = azimuths(upper, next.size(), lag);
+
+  // Go round both edges together, always stepping on the one whose next side has its middle first:
+  // so no triangle reaches across a corner where the plan turns out or in.
   std::size_t i = 0, j = 0;
   while (i < rim_.size() || j < next.size()) {
     const bool step_below =
-        j == next.size() ||
-        (i < rim_.size() && distance(lower(i + 1), upper(j)) <= distance(lower(i), upper(j + 1)));
+        j == next.size() || (i < rim_.size() && below[i] + below[i + 1] <= above[j] + above[j + 1]);
     if (step_below) {
       mesh_.triangles.push_back({lower(i), lower(i + 1), upper(j)});
       ++i;

@@ -133,29 +133,49 @@ class SideSplitter {
   std::map<Cell, Polyline2> cells_;
 };
 
-/// The polygon with each side moved inwards by its own distance. Corners within a straight side
-/// keep their share of its length, so that they stay between its ends however short it gets.
-Polyline2 inset(const Polyline2& polygon, const std::vector<double>& distances) {
+/// Where a side ends up that lies between two corners: in proportion.
+void share_out(const Polyline2& polygon, const std::vector<std::size_t>& bends, Polyline2& moved) {
   const std::size_t size = polygon.size();
-  Polyline2 result(size);
-  std::vector<std::size_t> bends;
-  for (std::size_t i = 0; i < size; ++i) {
-    const std::size_t before = (i + size - 1) % size;
-    const Vector2d in = (polygon[i] - polygon[before]).normalized();
-    const Vector2d out = (polygon[(i + 1) % size] - polygon[i]).normalized();
-    const double bend = cross(in, out);
-    if (std::abs(bend) < 1e-6) continue;
-    // Where the two moved sides meet: a point at those distances to the left of both.
-    result[i] = polygon[i] + (distances[before] * out - distances[i] * in) / bend;
-    bends.push_back(i);
-  }
   for (std::size_t k = 0; k < bends.size(); ++k) {
     const std::size_t first = bends[k], last = bends[(k + 1) % bends.size()];
     const double length = (polygon[last] - polygon[first]).norm();
     for (std::size_t i = (first + 1) % size; i != last; i = (i + 1) % size) {
       const double share = (polygon[i] - polygon[first]).norm() / length;
-      result[i] = result[first] + share * (result[last] - result[first]);
+      moved[i] = moved[first] + share * (moved[last] - moved[first]);
     }
+  }
+}
+
+/// The polygon with each side moved inwards by its own distance. Corners within a straight side
+/// keep their share of its length, so that they stay between its ends however short it gets. So
+/// does the blunter end of a side that would be turned round, beside the tip of a narrow stone.
+Polyline2 inset(const Polyline2& polygon, const std::vector<double>& distances) {
+  const std::size_t size = polygon.size();
+  assert(size >= 3);
+  Polyline2 result(size);
+  std::vector<double> bend(size);
+  std::vector<std::size_t> bends;
+  for (std::size_t i = 0; i < size; ++i) {
+    const std::size_t before = (i + size - 1) % size;
+    const Vector2d in = (polygon[i] - polygon[before]).normalized();
+    const Vector2d out = (polygon[(i + 1) % size] - polygon[i]).normalized();
+    bend[i] = cross(in, out);
+    if (std::abs(bend[i]) < 1e-6) continue;
+    // Where the two moved sides meet: a point at those distances to the left of both.
+    result[i] = polygon[i] + (distances[before] * out - distances[i] * in) / bend[i];
+    bends.push_back(i);
+  }
+  share_out(polygon, bends, result);
+  for (std::size_t k = 0; k < bends.size() && bends.size() > 3;) {
+    const std::size_t first = bends[k], last = bends[(k + 1) % bends.size()];
+    if ((result[last] - result[first]).dot(polygon[last] - polygon[first]) > 0.0) {
+      ++k;
+      continue;
+    }
+    const std::size_t blunter = std::abs(bend[first]) < std::abs(bend[last]) ? first : last;
+    bends.erase(std::find(bends.begin(), bends.end(), blunter));
+    share_out(polygon, bends, result);
+    k = 0;
   }
   return result;
 }

@@ -34,7 +34,8 @@ geometry::Mesh cube_in_a_cube() {
   return mesh;
 }
 
-constexpr Admissible from_anywhere{.view_distance = 4.0, .directions = 200, .clearance = 1e-4};
+const Admissible from_anywhere{
+    .view_distance = 4.0, .allows = {}, .directions = 200, .clearance = 1e-4};
 
 TEST(VisibleSamples, AreThoseOutside) {
   const geometry::Mesh mesh = cube_in_a_cube();
@@ -54,7 +55,7 @@ TEST(VisibleSamples, ObeyTheGroundClearance) {
   const sim::Scene scene(mesh);
   const auto samples = geometry::sample_surface(mesh, 3000, 1);
   Admissible above = from_anywhere;
-  above.lowest_z = 0.0;
+  above.allows = [](const geometry::View& view) { return view.position.z() >= 0.0; };
   const auto is_visible = visible_samples(samples.points, scene, above);
   for (std::size_t i = 0; i < samples.points.size(); ++i) {
     ASSERT_EQ(is_visible[i], samples.normals[i].z() > -0.5F ? 1 : 0);

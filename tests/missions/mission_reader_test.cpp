@@ -7,6 +7,7 @@
 
 #include "geometry/error.h"
 #include "missions/mission_keys.h"
+#include "missions/site.h"
 
 namespace skycap::missions {
 namespace {
@@ -65,6 +66,12 @@ TEST(MissionReader, SetsEachKeyToWhatItGivesBack) {
       case KeyType::number:
         value = 0.25;
         break;
+      case KeyType::polygon:
+        value = std::vector<Eigen::Vector2d>{{0, 0}, {9, 0}, {0, 9.5}};
+        break;
+      case KeyType::volumes:
+        value = std::vector<survey::Prism>{{{{0, 0}, {1, 0}, {0, 1}}, -2.0, 30.0}};
+        break;
     }
     key.set(mission, value);
     const auto back = key.get(mission);
@@ -101,6 +108,45 @@ TEST(MissionReader, DerivesTheBuildingPresetFromTheSensorAndTheDensity) {
   EXPECT_EQ(overridden.occlusion_search_distance, 10.0);
   EXPECT_EQ(overridden.visibility_update_limit, 5U);
   EXPECT_NEAR(overridden.frontier_spacing, 2.0645, 5e-4);
+}
+
+TEST(MissionReader, ReadsTheSitesAirspace) {
+  const Mission mission = parsed(
+      "site:\n"
+      "  geofence: [[-50, -40], [50, -40], [50.5, 40]]\n"
+      "  no_fly:\n"
+      "    - {corners: [[0, 0], [5, 0], [0, 5]], bottom: 0, top: 30}\n"
+      "  lowest_height: 3\n"
+      "  highest_height: 120\n"
+      "limits: {ground_clearance: 5, stand_off: 2, lowest_pitch_deg: -90, highest_pitch_deg: "
+      "30}\n");
+  const survey::ViewLimits limits = view_limits(mission);
+  ASSERT_EQ(limits.geofence.size(), 3U);
+  EXPECT_EQ(limits.geofence[2], Eigen::Vector2d(50.5, 40.0));
+  ASSERT_EQ(limits.no_fly.size(), 1U);
+  EXPECT_EQ(limits.no_fly[0].corners[1], Eigen::Vector2d(5.0, 0.0));
+  EXPECT_EQ(limits.no_fly[0].top, 30.0);
+  EXPECT_EQ(limits.least_height, 5.0);  // the higher of the two
+  EXPECT_EQ(limits.most_height, 120.0);
+  EXPECT_EQ(limits.stand_off, 2.0);
+  EXPECT_NEAR(limits.most_pitch, 0.5235988, 1e-6);
+  EXPECT_NO_THROW(limits.validate());
+}
+
+TEST(MissionReader, RefusesAirspacesThatCannotBe) {
+  EXPECT_THAT(complaint("site: {geofence: [[0, 0], [1, 0]]}"), HasSubstr("three or more corners"));
+  EXPECT_THAT(complaint("site: {geofence: [[0, 0], [1, 0], [1, x]]}"), HasSubstr("site.geofence"));
+  const std::string corners = "corners: [[0, 0], [1, 0], [0, 1]]";
+  EXPECT_THAT(complaint("site: {no_fly: [{" + corners + ", bottom: 3, top: 3}]}"),
+              HasSubstr("site.no_fly"));
+  EXPECT_THAT(complaint("site: {no_fly: [{" + corners + ", bottom: 0, roof: 3}]}"),
+              HasSubstr("a list of {corners, bottom, top}"));
+  EXPECT_THAT(parsed("site: {no_fly: []}").site.no_fly, testing::IsEmpty());
+  EXPECT_THAT(complaint(std::string(smallest) + "site: {lowest_height: 5, highest_height: 5}"),
+              HasSubstr("site.highest_height: is not above"));
+  EXPECT_THAT(
+      complaint(std::string(smallest) + "limits: {lowest_pitch_deg: 9, highest_pitch_deg: -9}"),
+      HasSubstr("limits.highest_pitch_deg: is not above"));
 }
 
 TEST(MissionReader, MeasuresTheGroundClearanceFromTheScenesBase) {

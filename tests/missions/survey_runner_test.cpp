@@ -1,13 +1,16 @@
 #include "missions/survey_runner.h"
 
+#include <algorithm>
 #include <stop_token>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
+#include "geometry/mesh_distance.h"
 #include "missions/coverage.h"
 #include "missions/mission_reader.h"
+#include "missions/site.h"
 #include "missions/trials.h"
 #include "tests/missions/run_skycap.h"
 
@@ -66,6 +69,70 @@ TEST(RunSurvey, EveryPlannerCoversMostOfTheScene) {
     EXPECT_GT(record.coverage(), 0.6) << name;
     EXPECT_GT(record.views.size(), 2U) << name;
   }
+}
+
+// The fence leaves a half plane, the prism takes a bite out of it, the gimbal looks down only.
+TEST(RunSurvey, EveryPlannerKeepsToTheSiteAndTheLimits) {
+  const std::string site =
+      "site:\n"
+      "  geofence: [[-9, -9], [9, -9], [9, 0.5], [-9, 0.5]]\n"
+      "  no_fly: [{corners: [[1, -3], [3, -3], [3, 1], [1, 1]], bottom: -5, top: 1.5}]\n"
+      "  lowest_height: 0.2\n"
+      "  highest_height: 1.9\n";
+  for (const char* name : {"see++", "see", "skycap"}) {
+    const Mission mission = parse_mission(quick_mission(site), "m.yaml",
+                                          {{"--planner", "planner.name", name},
+                                           {"--set", "limits.stand_off", "0.4"},
+                                           {"--set", "limits.highest_pitch_deg", "0"}});
+    const SurveyScene scene(mission, "");
+    const SurveyRecord record = run_survey(mission, scene, 1, 1);
+    const geometry::MeshDistance truth(scene.model());
+    const survey::ViewLimits limits = view_limits(mission);
+    EXPECT_GT(record.views.size(), 2U) << name;
+    for (const JudgedView& judged : record.views) {
+      const geometry::View& view = judged.surveyed.view;
+      EXPECT_TRUE(limits.allow(view)) << name << " at " << view.position.transpose();
+      // Noise of 0.03 m brings measurements nearer to the sensor than the truth is, or farther.
+      EXPECT_GT(truth.distance(view.position), 0.4 - 0.1) << name;
+    }
+  }
+}
+
+TEST(RunSurvey, EndsWhenABudgetIsSpent) {
+  for (const char* name : {"see++", "skycap"}) {
+    const auto record_with = [&](const char* key, const char* value) {
+      const Mission mission = parse_mission(
+          quick_mission(), "m.yaml", {{"--planner", "planner.name", name}, {"--set", key, value}});
+      return run_survey(mission, SurveyScene(mission, ""), 1, 1);
+    };
+    const SurveyRecord by_length = record_with("limits.max_distance", "6");
+    EXPECT_EQ(by_length.stop_reason, survey::StopReason::distance_limit) << name;
+    EXPECT_LE(by_length.distance(), 6.0) << name;
+
+    const SurveyRecord by_time = record_with("limits.max_minutes", "0.4");
+    EXPECT_EQ(by_time.stop_reason, survey::StopReason::time_limit) << name;
+    // 5 m/s and 5 s a view, of 24 s.
+    EXPECT_LE(by_time.distance() / 5.0 + 5.0 * static_cast<double>(by_time.views.size()), 24.0);
+    EXPECT_GE(by_time.views.size(), 3U) << name;
+
+    const SurveyRecord by_views = record_with("limits.max_views", "3");
+    EXPECT_EQ(by_views.stop_reason, survey::StopReason::view_limit) << name;
+  }
+}
+
+// An admissible place is one that the mission's limits allow: from above only, tops are visible.
+TEST(SurveyScene, CountsAsVisibleWhatIsSeenFromAdmissiblePlaces) {
+  const auto share = [](const std::string& more) {
+    const Mission mission = parse_mission(quick_mission(more), "m.yaml");
+    const std::vector<std::uint8_t> visible = SurveyScene(mission, "").visible(1);
+    return static_cast<double>(std::ranges::count(visible, 1)) / double(visible.size());
+  };
+  const double anywhere = share(""), above = share("site: {lowest_height: 1.0}");
+  const double south = share("site: {geofence: [[-9, -9], [9, -9], [9, -1.5], [-9, -1.5]]}");
+  EXPECT_GT(anywhere, 0.75);  // the rest is inside the pot
+  EXPECT_LT(above, 0.9 * anywhere);
+  EXPECT_LT(south, 0.9 * anywhere);
+  EXPECT_GT(south, 0.3 * anywhere);
 }
 
 // Coverage along the way is what the final cloud covers, and grows.
