@@ -8,8 +8,8 @@
 
 #include "geometry/mesh_distance.h"
 #include "geometry/parallel.h"
-#include "geometry/point_grid.h"
 #include "missions/coverage.h"
+#include "missions/thinned_cloud.h"
 
 namespace skycap::missions {
 namespace {
@@ -19,8 +19,8 @@ using Eigen::Vector3f;
 
 constexpr std::size_t samples_in_a_task = 1024;
 
-/// The first admissible position, trying `directions` from number `first` on and around, that has
-/// a free line of sight to `target`.
+}  // namespace
+
 std::optional<Vector3d> free_position(const Vector3d& target, std::span<const Vector3d> directions,
                                       std::size_t first, const sim::Scene& scene,
                                       const Admissible& admissible) {
@@ -32,30 +32,6 @@ std::optional<Vector3d> free_position(const Vector3d& target, std::span<const Ve
   }
   return std::nullopt;
 }
-
-/// Points at spacing epsilon, as every planner stores them.
-class ThinnedCloud {
- public:
-  explicit ThinnedCloud(double spacing) : spacing_(spacing), grid_(spacing) {}
-
-  /// Stores those of `points` that are far enough from all stored ones; gives them back.
-  std::vector<Vector3f> store(std::span<const Vector3f> points, const Eigen::AlignedBox3d& box) {
-    std::vector<Vector3f> stored;
-    for (const Vector3f& point : points) {
-      if (!box.isEmpty() && !box.contains(point.cast<double>())) continue;
-      if (grid_.any_within(point, spacing_)) continue;
-      grid_.insert(point);
-      stored.push_back(point);
-    }
-    return stored;
-  }
-
- private:
-  double spacing_;
-  geometry::PointGrid grid_;
-};
-
-}  // namespace
 
 std::vector<std::uint8_t> visible_samples(std::span<const Vector3f> samples,
                                           const sim::Scene& scene, const Admissible& admissible,

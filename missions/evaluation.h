@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -27,6 +28,13 @@ struct Admissible {
   std::size_t directions = 200;  ///< tried around a surface point, spread over the sphere
   double clearance = 1e-4;       ///< a sight line may end this far before the surface point
 };
+
+/// The first admissible position, trying `directions` from number `first` on and around, that has
+/// a free line of sight to `target`; nothing if none has.
+std::optional<Eigen::Vector3d> free_position(const Eigen::Vector3d& target,
+                                             std::span<const Eigen::Vector3d> directions,
+                                             std::size_t first, const sim::Scene& scene,
+                                             const Admissible& admissible);
 
 /// For each sample, 1 if some admissible sensor position has a free line of sight to it, else 0.
 std::vector<std::uint8_t> visible_samples(std::span<const Eigen::Vector3f> samples,

@@ -181,14 +181,19 @@ std::vector<Key> planner_keys() {
   };
   using Stop = survey::StopRule;
   return {
-      choice(
-          "planner.name", {"see++", "see", "skycap", "rsv", "rse", "oa", "uv", "pc", "af", "ae"},
-          [](Mission & m) -> auto& { return m.planner.name; },
-          "The planner. see is see++ without optimise_views and visibility_graph; skycap is our "
-          "own, which of the keys below uses spacing, view_distance, scene_box, wanted_coverage "
-          "and least_gain. The others are volumetric: of the keys below they use "
-          "resolution_radius as the width of voxels, spacing, view_distance and scene_box, and "
-          "those of the section volumetric."),
+      otherwise(
+          "skycap with a vehicle, else see++",
+          choice(
+              "planner.name",
+              {"see++", "see", "skycap", "rsv", "rse", "oa", "uv", "pc", "af", "ae"},
+              [](Mission & m) -> auto& { return m.planner.name; },
+              "The planner. see is see++ without optimise_views and visibility_graph; skycap is "
+              "our "
+              "own, which of the keys below uses spacing, view_distance, scene_box, "
+              "wanted_coverage "
+              "and least_gain. The others are volumetric: of the keys below they use "
+              "resolution_radius as the width of voxels, spacing, view_distance and scene_box, and "
+              "those of the section volumetric.")),
       choice(
           "planner.preset", {"paper", "building"},
           [](Mission & m) -> auto& { return m.planner.preset; },

@@ -71,13 +71,14 @@ std::string unknown_key_message(const std::string& path) {
     return "is unknown; did you mean " + nearest->path + "?";
   }
   const std::string section = path.substr(0, path.rfind('.') + 1);
-  std::string known;
+  std::vector<std::string> children;
   for (const Key& key : mission_keys()) {
     if (!key.path.starts_with(section)) continue;
-    const std::string child = key.path.substr(0, key.path.find('.', section.size()));
-    if (known.ends_with(child)) continue;
-    known += (known.empty() ? "" : ", ") + child;
+    std::string child = key.path.substr(0, key.path.find('.', section.size()));
+    if (std::ranges::find(children, child) == children.end()) children.push_back(std::move(child));
   }
+  std::string known;
+  for (const std::string& child : children) known += (known.empty() ? "" : ", ") + child;
   return "is unknown; known are " + known;
 }
 
@@ -427,10 +428,14 @@ Mission mission_from(const std::string& text, const std::string& name,
   Mission mission;
   mission.name = std::filesystem::path(name).stem().string();
 
-  constexpr std::array presets{"sensor.preset", "planner.preset", "planner.name"};
+  constexpr std::array presets{"sensor.preset", "planner.preset", "planner.name", "flight.vehicle"};
   for (const char* path : presets) {
     const auto preset = given.find(path);
     if (preset != given.end()) apply(preset->second, *find_key(path), mission);
+  }
+  // What flies is there to be done soon: the paper's planners are for comparison.
+  if (mission.flight.is_flown() && !given.contains("planner.name")) {
+    mission.planner.name = PlannerName::skycap;
   }
   apply_presets(mission);
   for (const auto& [path, value] : given) apply(value, *find_key(path), mission);

@@ -13,6 +13,7 @@
 #include "geometry/error.h"
 #include "geometry/pose.h"
 #include "missions/cloud_normals.h"
+#include "missions/coverage_map.h"
 #include "missions/json_text.h"
 #include "missions/mission_keys.h"
 #include "missions/number_text.h"
@@ -72,6 +73,21 @@ std::string mission_text(const Json& settings) {
     nested[Json::json_pointer(pointer)] = value;
   }
   return nested.dump(1);
+}
+
+/// What the planner believes at the end: shares are of the surface, seen and guessed.
+Json belief_summary(const SurveyRecord& record) {
+  if (!record.belief) return {};
+  const survey::SurveyBelief& belief = *record.belief;
+  return {{"stop", name_of(record.skycap_stop)},
+          {"predicted_coverage", belief.coverage},
+          {"area_m2", belief.area},
+          {"missing",
+           {{"seen_too_thinly", belief.seen_too_thinly},
+            {"never_seen", belief.never_seen},
+            {"unreachable", belief.unreachable}}},
+          {"next_gain", belief.next_gain},
+          {"noise_m", belief.noise}};
 }
 
 std::string value_text(const Mission& mission, const char* key) {
@@ -244,7 +260,8 @@ std::string summary_json(const Mission& mission, const SurveyRecord& record,
                {"planning_time_s", record.planning_time()},
                {"planning_time_parts_s", json_of(planning_time_by_part(record))},
                {"sensing_time_s", record.sensing_time()},
-               {"distance_m", record.distance()}};
+               {"distance_m", record.distance()},
+               {"belief", belief_summary(record)}};
   if (flight) {
     summary["route_length_m"] = flight->route.length;
     summary["min_clearance_m"] = flight->route.min_clearance;
@@ -270,6 +287,9 @@ std::optional<SurveyMission> stage_package(const Mission& mission, const SurveyR
                                                     .normals = std::move(normals),
                                                     .views = record.cloud.views,
                                                     .colours = {}});
+  if (record.belief) {
+    geometry::write_cloud(folder.stage("coverage.ply"), coverage_map(*record.belief));
+  }
   folder.write("views.csv", views_csv(record));
   folder.write("trajectory.tum", trajectory_tum(record));
   std::optional<SurveyMission> flight;

@@ -11,6 +11,7 @@
 #include "geometry/error.h"
 #include "geometry/mesh.h"
 #include "missions/cloud_formats.h"
+#include "missions/frame_recorder.h"
 #include "missions/json_text.h"
 #include "missions/output_folder.h"
 #include "missions/scan_route.h"
@@ -229,6 +230,59 @@ int scan_with_laser(const ScanVerbOptions& options, const Mission& mission,
   return result.is_complete ? 0 : 1;
 }
 
+std::vector<double> image_times(const ScanRoute& route, double period) {
+  if (!route.image_times.empty()) return route.image_times;
+  constexpr double rounding = 1e-9;
+  std::vector<double> times;
+  const double start = route.carrier.start(), duration = route.carrier.end() - start;
+  for (std::size_t i = 0; static_cast<double>(i) * period <= duration + rounding; ++i) {
+    times.push_back(start + static_cast<double>(i) * period);
+  }
+  return times;
+}
+
+int scan_with_camera(const ScanVerbOptions& options, const Mission& mission,
+                     const std::string& sensor_name, sim::DepthCameraConfig config,
+                     OutputFolder& folder, const Console& console) {
+  config.noise.seed = mission.seed;
+  const ScanRoute route = route_of(options, mission, Carrier::gimbal);
+  const sim::Trajectory believed = believed_by(mission, route.carrier);
+  const Mount mount = mount_of(mission.scan);
+  std::vector<Frame> frames;
+  for (const double time : image_times(route, mission.scan.frame_period)) {
+    frames.push_back({time, route.carrier.pose(time) * mount.real * body_from_camera(),
+                      believed.pose(time) * mount.believed * body_from_camera()});
+  }
+  ProgressLine progress(console, options.is_quiet);
+  progress.show(mission.name + ": making the scene ready");
+  const sim::Scene scene(measured_mesh(mission, options.mission.parent_path()), mission.threads);
+  const auto report = [&](std::size_t taken, std::size_t points) {
+    char text[160];
+    std::snprintf(text, sizeof text, "%s: image %zu of %zu, %.1f M points", mission.name.c_str(),
+                  taken, frames.size(), 1e-6 * static_cast<double>(points));
+    progress.show(text);
+  };
+  const Clock::time_point start = Clock::now();
+  const FrameResult result = record_frames(scene, sim::DepthCamera(config), frames, folder,
+                                           {.depth_unit = mission.scan.depth_unit,
+                                            .threads = mission.threads,
+                                            .report = report,
+                                            .stop = console.stop});
+  const double time = std::chrono::duration<double>(Clock::now() - start).count();
+  folder.commit();
+  progress.clear();
+  const bool is_complete = result.frames == frames.size();
+  if (!options.is_quiet) {
+    char text[256];
+    std::snprintf(text, sizeof text,
+                  "%s: %s%s\n  scan      %zu depth images, %.2f M points in %.1f s\n",
+                  mission.name.c_str(), sensor_name.c_str(), is_complete ? "" : ", interrupted",
+                  result.frames, 1e-6 * static_cast<double>(result.points), time);
+    console.out << text << "  results   " << folder.path().string() << "\n" << std::flush;
+  }
+  return is_complete ? 0 : 1;
+}
+
 }  // namespace
 
 int scan(const ScanVerbOptions& options, const Console& console) {
@@ -239,7 +293,8 @@ int scan(const ScanVerbOptions& options, const Console& console) {
   if (auto* laser = std::get_if<sim::LidarConfig>(&sensor.sensor)) {
     return scan_with_laser(options, mission, sensor.name, std::move(*laser), folder, console);
   }
-  throw Error(ErrorKind::bad_config, sensor.name + " is a camera");
+  return scan_with_camera(options, mission, sensor.name,
+                          std::get<sim::DepthCameraConfig>(sensor.sensor), folder, console);
 }
 
 }  // namespace skycap::missions

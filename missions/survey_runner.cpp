@@ -4,19 +4,15 @@
 #include <cmath>
 #include <span>
 
-#include "geometry/camera.h"
-#include "geometry/error.h"
 #include "geometry/parallel.h"
 #include "geometry/point_grid.h"
 #include "missions/coverage.h"
+#include "missions/planner_factory.h"
 #include "missions/site.h"
 #include "sim/depth_camera.h"
 
 namespace skycap::missions {
 namespace {
-
-/// Keeps the candidates' random numbers apart from those of the first view.
-constexpr std::uint64_t candidates_stream = 0x766f6c756d657472;
 
 template <class Field>
 double sum_over(const std::vector<JudgedView>& views, Field field) {
@@ -25,69 +21,18 @@ double sum_over(const std::vector<JudgedView>& views, Field field) {
   return sum;
 }
 
-/// A volumetric survey's V where neither mission nor benchmark says it: the paper's for its last
-/// two models.
-constexpr std::size_t usual_view_limit = 130;
-
-std::size_t view_limit(const Mission& mission) {
-  const bool is_volumetric = volumetric_metric(mission.planner.name).has_value();
-  return is_volumetric ? std::min(mission.volumetric.view_limit.value_or(usual_view_limit),
-                                  mission.limits.max_views)
-                       : mission.limits.max_views;
-}
-
-survey::VolumetricConfig volumetric_config(const Mission& mission, survey::VolumetricMetric metric,
-                                           unsigned threads) {
-  const survey::VolumetricSettings& settings = mission.volumetric;
-  if (!settings.sphere_centre || !settings.sphere_radius) {
-    throw Error(ErrorKind::bad_config,
-                "the planner needs volumetric.sphere_centre and volumetric.sphere_radius where "
-                "there is no model to derive them from; give both");
-  }
-  const survey::SeeConfig& see = mission.planner.see;
-  const double views = static_cast<double>(view_limit(mission)) * settings.candidates_per_view;
-  return {.metric = metric,
-          .resolution = see.resolution_radius,
-          .spacing = see.effective_spacing(),
-          .scene_box = see.scene_box,
-          .candidates = static_cast<std::size_t>(std::lround(views)),
-          .sphere_centre = *settings.sphere_centre,
-          .sphere_radius = *settings.sphere_radius,
-          .least_height = see.ground_clearance,
-          .seed = mission.seed ^ candidates_stream,
-          .settings = settings,
-          .threads = threads};
-}
-
-/// The mission of one trial: what a volumetric planner takes from the scene is filled in.
-Mission trial_mission(const Mission& mission, const SurveyScene& scene, std::uint64_t seed) {
-  Mission trial = mission;
-  trial.seed = seed;
-  survey::VolumetricSettings& settings = trial.volumetric;
-  if (!settings.sphere_centre) settings.sphere_centre = scene.view_sphere().centre;
-  if (!settings.sphere_radius) settings.sphere_radius = scene.view_sphere().radius;
-  return trial;
-}
-
-constexpr double seconds_per_minute = 60.0;
-
-survey::SurveyLimits survey_limits(const Mission& mission) {
-  const LimitsConfig& config = mission.limits;
-  survey::SurveyLimits limits{.max_views = view_limit(mission),
-                              .max_distance = config.max_distance,
-                              .speed = config.speed,
-                              .time_per_view = config.time_per_view};
-  if (config.max_minutes) limits.max_time = seconds_per_minute * *config.max_minutes;
-  return limits;
-}
-
-/// Which budget made the planner stop, if one did.
-survey::StopReason stop_reason(const survey::Planner& planner, survey::StopReason reason) {
+/// Takes over what only the planner skycap can say, such as which budget made it stop.
+void ask_skycap(const survey::Planner& planner, SurveyRecord& record) {
   const auto* skycap = dynamic_cast<const survey::SkycapPlanner*>(&planner);
-  if (skycap == nullptr || reason != survey::StopReason::complete) return reason;
-  if (skycap->stop() == survey::SkycapStop::most_length) return survey::StopReason::distance_limit;
-  if (skycap->stop() == survey::SkycapStop::most_time) return survey::StopReason::time_limit;
-  return reason;
+  if (skycap == nullptr) return;
+  record.belief = skycap->belief();
+  record.skycap_stop = skycap->stop();
+  if (!record.is_complete()) return;
+  if (record.skycap_stop == survey::SkycapStop::most_length) {
+    record.stop_reason = survey::StopReason::distance_limit;
+  } else if (record.skycap_stop == survey::SkycapStop::most_time) {
+    record.stop_reason = survey::StopReason::time_limit;
+  }
 }
 
 /// Keeps planners that know nothing of the mission's limits from breaking them.
@@ -112,29 +57,29 @@ class ViewGate {
   geometry::PointGrid grid_;
 };
 
-}  // namespace
+constexpr double seconds_per_minute = 60.0;
 
-std::optional<survey::VolumetricMetric> volumetric_metric(PlannerName name) {
-  using enum survey::VolumetricMetric;
-  switch (name) {
-    case PlannerName::rsv:
-      return rear_side_voxel;
-    case PlannerName::rse:
-      return rear_side_entropy;
-    case PlannerName::oa:
-      return occlusion_aware;
-    case PlannerName::uv:
-      return unobserved_voxel;
-    case PlannerName::pc:
-      return proximity_count;
-    case PlannerName::af:
-      return area_factor;
-    case PlannerName::ae:
-      return average_entropy;
-    default:
-      return std::nullopt;
-  }
+survey::SurveyLimits survey_limits(const Mission& mission) {
+  const LimitsConfig& config = mission.limits;
+  survey::SurveyLimits limits{.max_views = view_limit(mission),
+                              .max_distance = config.max_distance,
+                              .speed = config.speed,
+                              .time_per_view = config.time_per_view};
+  if (config.max_minutes) limits.max_time = seconds_per_minute * *config.max_minutes;
+  return limits;
 }
+
+/// The mission of one trial: what a volumetric planner takes from the scene is filled in.
+Mission trial_mission(const Mission& mission, const SurveyScene& scene, std::uint64_t seed) {
+  Mission trial = mission;
+  trial.seed = seed;
+  survey::VolumetricSettings& settings = trial.volumetric;
+  if (!settings.sphere_centre) settings.sphere_centre = scene.view_sphere().centre;
+  if (!settings.sphere_radius) settings.sphere_radius = scene.view_sphere().radius;
+  return trial;
+}
+
+}  // namespace
 
 double SurveyRecord::planning_time() const {
   return sum_over(views, &survey::SurveyedView::planning_time);
@@ -162,35 +107,24 @@ const char* name_of(survey::StopReason reason) {
   return "interrupted";
 }
 
-std::unique_ptr<survey::Planner> make_planner(const Mission& mission, unsigned threads) {
-  const geometry::Camera camera(mission.sensor.camera.camera);
-  survey::SeeConfig see = mission.planner.see;
-  see.threads = threads;
-  if (const auto metric = volumetric_metric(mission.planner.name)) {
-    return std::make_unique<survey::VolumetricPlanner>(volumetric_config(mission, *metric, threads),
-                                                       camera);
+const char* name_of(survey::SkycapStop stop) {
+  switch (stop) {
+    case survey::SkycapStop::wanted_coverage:
+      return "wanted_coverage";
+    case survey::SkycapStop::little_gain:
+      return "little_gain";
+    case survey::SkycapStop::most_views:
+      return "most_views";
+    case survey::SkycapStop::most_length:
+      return "most_length";
+    case survey::SkycapStop::most_time:
+      return "most_time";
+    case survey::SkycapStop::nothing_in_reach:
+      return "nothing_in_reach";
+    case survey::SkycapStop::running:
+      break;
   }
-  if (mission.planner.name != PlannerName::skycap) {
-    return std::make_unique<survey::SeePlanner>(see, camera);
-  }
-  survey::SkycapConfig config{
-      .coverage_radius = mission.evaluation.registration_distance,
-      .spacing = see.effective_spacing(),
-      .view_distance = see.view_distance.value_or(view_distance(camera, see.density)),
-      .scene_box = see.scene_box,
-      .limits = view_limits(mission),
-      .stop = mission.planner.skycap_stop,
-      .ideas = mission.planner.skycap_ideas,
-      .threads = threads};
-  // Told of the budgets, it looks for the best view that is still in reach.
-  const LimitsConfig& limits = mission.limits;
-  if (limits.max_distance < LimitsConfig{}.max_distance) {
-    config.stop.most_length = limits.max_distance;
-  }
-  if (limits.max_minutes) config.stop.most_time = seconds_per_minute * *limits.max_minutes;
-  config.stop.speed = limits.speed;
-  config.stop.time_per_view = limits.time_per_view;
-  return std::make_unique<survey::SkycapPlanner>(config, camera);
+  return "running";
 }
 
 SurveyRecord run_survey(const Mission& mission, const SurveyScene& scene, std::uint64_t seed,
@@ -244,9 +178,9 @@ SurveyRecord run_survey(const Mission& mission, const SurveyScene& scene, std::u
     if (report) report(record.views.back());
   };
   const survey::SurveyLimits limits = survey_limits(mission);
-  record.stop_reason = stop_reason(
-      *planner,
-      survey::run_survey(*planner, first_view, limits, ports, std::move(stop)).stop_reason);
+  record.stop_reason =
+      survey::run_survey(*planner, first_view, limits, ports, std::move(stop)).stop_reason;
+  ask_skycap(*planner, record);
   record.cloud = planner->cloud();
   record.is_covered = meter.is_covered();
   if (flight) record.flown = flight->finish();

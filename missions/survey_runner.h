@@ -13,6 +13,7 @@
 #include "missions/survey_flight.h"
 #include "missions/survey_scene.h"
 #include "survey/planner.h"
+#include "survey/skycap_planner.h"
 #include "survey/survey_loop.h"
 
 namespace skycap::missions {
@@ -33,6 +34,10 @@ struct SurveyRecord {
   std::vector<std::uint8_t> is_covered;  ///< for each of the scene's samples
   std::optional<FlownSurvey> flown;      ///< of a mission with a vehicle
 
+  /// What the planner skycap believed at the end, and why it stopped; nothing with the others.
+  std::optional<survey::SurveyBelief> belief;
+  survey::SkycapStop skycap_stop = survey::SkycapStop::running;
+
   bool is_complete() const { return stop_reason == survey::StopReason::complete; }
   double coverage() const { return views.empty() ? 0.0 : views.back().coverage; }
   double distance() const { return views.empty() ? 0.0 : views.back().surveyed.distance; }
@@ -44,9 +49,9 @@ struct SurveyRecord {
 /// nowhere_to_go, interrupted.
 const char* name_of(survey::StopReason reason);
 
-/// The planner that the mission names, on so many threads (zero: all processors). Throws
-/// Error{bad_config} if it is volumetric and the mission does not say where its sphere is.
-std::unique_ptr<survey::Planner> make_planner(const Mission& mission, unsigned threads);
+/// The word for it in files: wanted_coverage, little_gain, ...; running if a limit of the survey
+/// came first.
+const char* name_of(survey::SkycapStop stop);
 
 /// Surveys the mission's scene with that seed and so many threads (zero: all processors). The
 /// record does not depend on the threads but for its times. A mission with a vehicle goes only to

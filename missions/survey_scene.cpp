@@ -71,8 +71,9 @@ SurveyScene::SurveyScene(const Mission& mission, const std::filesystem::path& fo
       view_distance_(mission.planner.see.view_distance.value_or(geometry::view_distance(
           geometry::Camera(mission.sensor.camera.camera), mission.planner.see.density))),
       view_sphere_(sphere_around(samples_.points, view_distance_)) {
-  if (view_limits(mission).stand_off > 0.0)
+  if (view_limits(mission).stand_off > 0.0) {
     truth_ = std::make_shared<geometry::MeshDistance>(model_);
+  }
 }
 
 geometry::View SurveyScene::first_view(std::uint64_t seed) const {

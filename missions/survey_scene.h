@@ -42,7 +42,7 @@ class SurveyScene {
   const ViewSphere& view_sphere() const { return view_sphere_; }
 
   /// The first view of the survey with that seed: as the mission gives it, or at random on the
-  /// view sphere within the mission's limits, looking at the sphere's centre.
+  /// view sphere, within the mission's limits, looking at the sphere's centre.
   geometry::View first_view(std::uint64_t seed) const;
 
   /// For each sample, 1 if an admissible sensor position sees it. Takes seconds.
@@ -54,8 +54,10 @@ class SurveyScene {
   std::optional<double> ceiling(const std::vector<std::uint8_t>& is_visible,
                                 unsigned threads) const;
 
- private:
+  /// Where the mission lets the sensor look at the scene from.
   Admissible admissible() const;
+
+ private:
   std::string ceiling_key() const;
 
   Mission mission_;

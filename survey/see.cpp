@@ -1,7 +1,6 @@
 #include "survey/see.h"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <set>
 #include <utility>
@@ -9,6 +8,7 @@
 #include "geometry/error.h"
 #include "geometry/spatial_index.h"
 #include "survey/frontier.h"
+#include "survey/stopwatch.h"
 #include "survey/visibility_graph.h"
 
 namespace skycap::survey {
@@ -18,22 +18,6 @@ using Eigen::Vector3d;
 using Eigen::Vector3f;
 using geometry::Scan;
 using geometry::View;
-
-/// Splits the time of an update into its parts.
-class Stopwatch {
- public:
-  explicit Stopwatch(std::vector<PartTime>& times) : times_(times) { times_.clear(); }
-  /// Books the time since the last call, or since construction, under `part`.
-  void lap(const char* part) {
-    const auto now = std::chrono::steady_clock::now();
-    times_.push_back({part, std::chrono::duration<double>(now - last_).count()});
-    last_ = now;
-  }
-
- private:
-  std::vector<PartTime>& times_;
-  std::chrono::steady_clock::time_point last_ = std::chrono::steady_clock::now();
-};
 
 Vector3d centroid(std::span<const Vector3f> points) {
   Vector3d sum = Vector3d::Zero();

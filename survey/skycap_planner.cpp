@@ -1,7 +1,6 @@
 #include "survey/skycap_planner.h"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <numeric>
 #include <sstream>
@@ -15,6 +14,7 @@
 #include "survey/dose_model.h"
 #include "survey/noise_estimate.h"
 #include "survey/space_memory.h"
+#include "survey/stopwatch.h"
 #include "survey/unseen_surface.h"
 #include "survey/view_gain.h"
 
@@ -46,20 +46,6 @@ bool is_positive(double value) { return value > 0.0 && std::isfinite(value); }
 double ray_spacing(const geometry::Camera& camera) {
   return 1.0 / camera.focal_length_px().minCoeff();
 }
-
-class Stopwatch {
- public:
-  explicit Stopwatch(std::vector<PartTime>& times) : times_(times) {}
-  void lap(const char* part) {
-    const auto now = std::chrono::steady_clock::now();
-    times_.push_back({part, std::chrono::duration<double>(now - start_).count()});
-    start_ = now;
-  }
-
- private:
-  std::vector<PartTime>& times_;
-  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
-};
 
 }  // namespace
 

@@ -166,12 +166,22 @@ TEST(MissionReader, LetsOverridesReplaceKeysAndNamesTheirOrigin) {
               HasSubstr("did you mean planner.density?"));
 }
 
+TEST(MissionReader, WhatFliesIsPlannedBySkycapUnlessTheMissionSaysOtherwise) {
+  const std::string flown = smallest +
+                            "flight: {vehicle: generic, unknown_box: {min: [0, 0, 0], "
+                            "max: [1, 1, 1]}}\n";
+  EXPECT_EQ(parse_mission(smallest, "m.yaml").planner.name, PlannerName::see_plus_plus);
+  EXPECT_EQ(parse_mission(flown, "m.yaml").planner.name, PlannerName::skycap);
+  EXPECT_EQ(parse_mission(flown + "planner: {name: see}\n", "m.yaml").planner.name,
+            PlannerName::see);
+}
+
 TEST(MissionReader, SuggestsTheKeyInItsRightSection) {
   EXPECT_EQ(complaint(smallest + "sensor:\n  sigma: 0.1\n"),
             "m.yaml:4: key sensor.sigma: is unknown; did you mean sensor.noise.sigma?");
   EXPECT_THAT(complaint(smallest + "colour_of_the_sky: blue\n"),
-              HasSubstr("known are name, seed, threads, scene, sensor, planner, start, limits, "
-                        "evaluation, paper"));
+              HasSubstr("known are name, seed, threads, scene, sensor, planner, volumetric, "
+                        "start, limits, evaluation, paper, site, flight, scan"));
 }
 
 // The parser must survive what people and fuzzers write: here, every prefix of a valid mission and

@@ -1,5 +1,6 @@
 #include "missions/package.h"
 
+#include <algorithm>
 #include <cmath>
 #include <random>
 #include <sstream>
@@ -13,6 +14,7 @@
 #include "geometry/pose.h"
 #include "missions/cloud_normals.h"
 #include "missions/coverage.h"
+#include "missions/mission_reader.h"
 #include "missions/sha256.h"
 #include "tests/missions/run_skycap.h"
 
@@ -21,6 +23,7 @@ namespace {
 
 using Eigen::Vector3d;
 using Eigen::Vector3f;
+using Json = nlohmann::json;
 using testing::HasSubstr;
 
 /// A survey of two views with numbers that have no short decimal form.
@@ -137,6 +140,48 @@ TEST(Package, CloudReadsBackWithNormalsTowardsItsSensors) {
   EXPECT_EQ(cloud.views, two_views().cloud.views);
   ASSERT_EQ(cloud.normals.size(), 3U);
   EXPECT_GT(cloud.normals[2].z(), 0.99F);  // seen from straight above
+}
+
+// The planner's belief is written as numbers that fit together and as a map coloured by them.
+TEST(Package, ShowsWhatThePlannerBelieves) {
+  const Mission mission =
+      parse_mission(tests::quick_mission(), "m.yaml",
+                    {{"--planner", "planner.name", "skycap"}, {"--set", "limits.max_views", "3"}});
+  const SurveyRecord record = run_survey(mission, SurveyScene(mission, ""), 1, 1);
+  const tests::TestFolder folder;
+  OutputFolder out(folder.path());
+  stage_package(mission, record, {}, 1, out);
+  out.commit();
+
+  const Json belief = Json::parse(tests::content_of(folder.path() / "summary.json"))["belief"];
+  double missing = 0.0;
+  for (const auto& [reason, share] : belief["missing"].items()) {
+    EXPECT_GE(share, 0.0) << reason;
+    missing += share.get<double>();
+  }
+  EXPECT_NEAR(missing + belief["predicted_coverage"].get<double>(), 1.0, 1e-5);  // float areas
+  EXPECT_EQ(belief["stop"], "running");  // the limit of views came first
+  EXPECT_GT(belief["next_gain"], 0.0);
+  EXPECT_EQ(belief["noise_m"], record.belief->noise);
+
+  const geometry::CloudFile map = geometry::read_cloud(folder / "coverage.ply");
+  ASSERT_EQ(map.colours.size(), map.positions.size());
+  const auto is_red = [](const auto& colour) { return colour[0] > 200 && colour[1] < 100; };
+  std::size_t guessed = 0;
+  for (const survey::BelievedPatch& patch : record.belief->patches) {
+    guessed += patch.reason == survey::MissingReason::never_seen;
+  }
+  EXPECT_GT(guessed, 0U);
+  EXPECT_EQ(std::ranges::count_if(map.colours, is_red), guessed);
+}
+
+TEST(Package, OfAPlannerWithoutBeliefsHasNoMapOfThem) {
+  const tests::TestFolder folder;
+  OutputFolder out(folder.path());
+  stage_package(Mission{}, two_views(), {}, 1, out);
+  out.commit();
+  EXPECT_FALSE(std::filesystem::exists(folder / "coverage.ply"));
+  EXPECT_TRUE(Json::parse(tests::content_of(folder.path() / "summary.json"))["belief"].is_null());
 }
 
 // On a sphere the normal at a point is the point itself; on its inside, seen from the centre, the

@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "geometry/cloud_io.h"
+#include "sim/depth_image.h"
 #include "tests/missions/run_skycap.h"
 
 namespace skycap::missions {
@@ -116,6 +117,32 @@ TEST_F(ScanVerb, FliesAGivenRouteWithAGivenSensor) {
   EXPECT_EQ(summary()["shots"], 64 * 1024);  // a turn
   EXPECT_EQ(summary()["sensor"], "Ideal spinning scanner");
   EXPECT_LT(largest_error(geometry::read_cloud(folder / "out/scan.xyz").positions), 6e-5F);
+}
+
+// Facing the cube's side at x = 1 from x = 5 and then x = 3: all depths there are 4 and 2 m.
+TEST_F(ScanVerb, ACameraLeavesADatasetOfDepthImages) {
+  folder.write("camera.yaml",
+               "name: Test camera\nkind: camera\nwidth_px: 20\nheight_px: 10\n"
+               "horizontal_fov_deg: 10\nvertical_fov_deg: 5\n");
+  folder.write("views.csv",
+               "view,x,y,z,direction_x,direction_y,direction_z\n0,5,0,1,-1,0,0\n1,3,0,1,-1,0,0\n");
+  const ProgramRun run = scan({"--route", folder.path(), "--sensor", folder / "camera.yaml",
+                               "--set", "scan.depth_unit=0.002", "--set", "scan.speed=4"});
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  EXPECT_THAT(run.out, HasSubstr("2 depth images"));
+  EXPECT_THAT(files(),
+              testing::ElementsAre("believed.txt", "camera.json", "depth.txt", "depth_000000.png",
+                                   "depth_000001.png", "groundtruth.txt"));
+  EXPECT_THAT(tests::content_of(folder / "out/depth.txt"),
+              HasSubstr("0.000000 depth_000000.png\n0.500000 depth_000001.png\n"));
+  EXPECT_THAT(sim::read_depth_png(folder / "out/depth_000000.png").values, testing::Each(2000));
+  const sim::DepthImage near = sim::read_depth_png(folder / "out/depth_000001.png");
+  EXPECT_EQ(near.width, 20);
+  EXPECT_EQ(near.height, 10);
+  EXPECT_THAT(near.values, testing::Each(1000));
+  const auto json = nlohmann::json::parse(tests::content_of(folder / "out/camera.json"));
+  EXPECT_NEAR(json["focal_length_px"][0], 10 / std::tan(5 * 3.14159265 / 180), 1e-6);
+  EXPECT_EQ(json["depth_unit_m"], 0.002);
 }
 
 TEST_F(ScanVerb, CtrlCLeavesWholeFilesOfTheBeginning) {
