@@ -25,8 +25,8 @@ constexpr Axis axes[] = {{CurveAxis::views, "views", "views", "unset logscale x"
 
 /// Colours that can be told apart with any kind of colour vision (Okabe and Ito), in the order of
 /// the contestants.
-constexpr const char* colours[] = {"#D55E00", "#0072B2", "#009E73", "#CC79A7", "#E69F00",
-                                   "#999999", "#56B4E9", "#8B4513", "#6A3D9A", "#000000"};
+constexpr const char* colours[] = {"#D55E00", "#0072B2", "#009E73", "#CC79A7", "#E69F00", "#999999",
+                                   "#56B4E9", "#8B4513", "#6A3D9A", "#000000", "#F0A0A0"};
 
 std::size_t number_of(const std::string& planner) {
   return static_cast<std::size_t>(find_contestant(planner) - contestants().data());

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "missions/omniscient.h"
+
 namespace skycap::missions {
 namespace {
 
@@ -13,6 +15,17 @@ Contestant planner(std::string name, std::string title, bool is_volumetric, bool
           .is_in_all = is_in_all,
           .is_volumetric = is_volumetric,
           .run = run_trial};
+}
+
+/// The reference that knows the scene.
+Contestant omniscient() {
+  const auto run = [](const Mission& mission, const SurveyScene& scene, const SceneTruth& truth,
+                      std::uint64_t seed, std::stop_token stop) -> std::optional<Trial> {
+    const SurveyRecord record = survey_omnisciently(mission, scene, seed, 1, {}, std::move(stop));
+    if (record.stop_reason == survey::StopReason::interrupted) return std::nullopt;
+    return trial_of(record, truth);
+  };
+  return {.name = "omniscient", .title = "Omniscient", .is_in_all = false, .run = run};
 }
 
 }  // namespace
@@ -29,6 +42,7 @@ const std::vector<Contestant>& contestants() {
       planner("af", "AF", true),
       planner("ae", "AE", true),
       planner("skycap", "Skycap", false, false),  // not of the paper
+      omniscient(),
   };
   return all;
 }

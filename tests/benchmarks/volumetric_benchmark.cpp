@@ -90,8 +90,9 @@ void run(const std::string& name, const std::string& mission_text, double resolu
     for (std::size_t i = 0; i < twin_candidates; ++i) {
       const geometry::View& view = views[clouds + 1 + i];
       double twin = 0.0;
-      theirs += timed([&] { twin = tree.gain(gain.metric, view, directions, radius); });
+      theirs += timed([&] { twin = tree.gain(gain.metric, view, directions, radius, true); });
       const double own = information_gain(gain.metric, map, view, directions, radius);
+      twin = tree.gain(gain.metric, view, directions, radius, false);
       if (twin != 0.0) difference = std::max(difference, std::abs(own - twin) / std::abs(twin));
     }
     std::printf("  %-4s %10.3f", gain.name, insert + ours);

@@ -11,6 +11,7 @@
 #include "geometry/mesh_distance.h"
 #include "missions/coverage.h"
 #include "missions/mission_reader.h"
+#include "missions/planner_factory.h"
 #include "missions/site.h"
 #include "missions/trials.h"
 #include "tests/missions/run_skycap.h"

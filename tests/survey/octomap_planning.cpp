@@ -167,7 +167,8 @@ void ShadowTree::measure(const octomap::OcTreeKey& key, bool is_hit) {
 }
 
 double ShadowTree::gain(VolumetricMetric metric, const geometry::View& view,
-                        const std::vector<Eigen::Vector3d>& directions, double depth) const {
+                        const std::vector<Eigen::Vector3d>& directions, double depth,
+                        bool aims_at_centres) const {
   const Eigen::Matrix3d world_from_camera = geometry::camera_pose(view).linear();
   const octomap::point3d origin = octomap_point(view.position.cast<float>());
   const double shadow_ceiling = 2.0 * shadow_length_ / resolution;
@@ -184,13 +185,19 @@ double ShadowTree::gain(VolumetricMetric metric, const geometry::View& view,
     const Eigen::Vector3d direction = world_from_camera * in_camera;
     octomap::point3d end = octomap_point((view.position + depth * direction).cast<float>());
     octomap::point3d surface;
-    if (castRay(origin, octomap_point(direction.cast<float>()), surface, true, depth)) {
+    if (aims_at_centres &&
+        castRay(origin, octomap_point(direction.cast<float>()), surface, true, depth)) {
       end = surface;
     }
     ray.clear();
     computeRayKeys(origin, end, keys);
-    for (const octomap::OcTreeKey& key : keys) ray.push_back(voxel_of(key));
-    ray.push_back(voxel_of(coordToKey(end)));
+    for (const octomap::OcTreeKey& key : keys) {
+      ray.push_back(voxel_of(key));
+      if (!aims_at_centres && ray.back().is_measured && ray.back().p >= 0.5) break;
+    }
+    const bool has_met_surface =
+        !aims_at_centres && !ray.empty() && ray.back().is_measured && ray.back().p >= 0.5;
+    if (!has_met_surface) ray.push_back(voxel_of(coordToKey(end)));
     add_ray(metric, ray, shadow_ceiling, sums);
   }
   if (metric == average_entropy) return sums.voxels > 0.0 ? sums.sum / sums.voxels : 0.0;

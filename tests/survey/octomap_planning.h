@@ -29,8 +29,11 @@ class ShadowTree : public octomap::OccupancyOcTreeBase<ShadowNode> {
   ShadowTree* create() const override { return new ShadowTree(resolution, shadow_length_); }
 
   void insert(const Eigen::Vector3f& origin, std::span<const Eigen::Vector3f> points);
+  /// The gain of a view. The published evaluation code casts each ray, and then takes the voxels on
+  /// the way to the centre of the voxel that it met; with `aims_at_centres` this does the same.
   double gain(survey::VolumetricMetric metric, const geometry::View& view,
-              const std::vector<Eigen::Vector3d>& directions, double depth) const;
+              const std::vector<Eigen::Vector3d>& directions, double depth,
+              bool aims_at_centres) const;
 
  private:
   void measure(const octomap::OcTreeKey& key, bool is_hit);
