@@ -113,8 +113,8 @@ TEST_F(BenchmarkVerb, IsTheSameForAnyNumberOfThreads) {
 // Paper, section IV-B.
 TEST_F(BenchmarkVerb, LimitsVolumetricSurveysToTheMostViewsThatSeeNeeded) {
   ASSERT_EQ(run("see,oa").exit_code, 0);
-  const std::size_t most =
-      std::max<std::size_t>(trial("see", 1)["views"], trial("see", 2)["views"]);
+  const int most =
+      std::max(trial("see", 1)["views"].get<int>(), trial("see", 2)["views"].get<int>());
   EXPECT_EQ(trial("oa", 1)["views"], most);
   EXPECT_EQ(trial("oa", 2)["views"], most);
 }
