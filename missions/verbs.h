@@ -23,7 +23,8 @@ struct PlanOptions {
 };
 
 /// Surveys a mission's scene in simulation and writes the mission package, or the trials' files.
-/// Exit code 1 if the survey was interrupted, or could not go anywhere from its first view.
+/// Exit code 1 if the survey was interrupted, could not go anywhere from its first view, or leaves
+/// no route.
 int plan(const PlanOptions& options, const Console& console);
 
 struct BenchmarkOptions {
