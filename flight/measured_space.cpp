@@ -38,10 +38,12 @@ struct Cube {
   }
 };
 
-/// A cube of 8 x 8 x 8 voxels, one bit each: bit x of byte y of word z.
+/// 8 x 8 x 8 voxels, one bit each: bit x of byte y of word z.
+using Slices = std::array<std::uint64_t, 8>;
+
 struct Block {
-  std::array<std::uint64_t, 8> free{};
-  std::array<std::uint64_t, 8> occupied{};
+  Slices free{};
+  Slices occupied{};
 
   std::uint64_t passable(int z) const { return free[z] & ~occupied[z]; }
   bool is_all_passable() const {
@@ -77,17 +79,11 @@ struct HashKey {
 struct MeasuredSpace::Impl {
   MeasuredSpaceConfig config;
   std::unordered_map<std::uint64_t, Block, HashKey> blocks;  ///< a block not listed is unknown
-  AlignedBox3d region;  ///< the configuration's, of whole voxels; without one all of space
-  AlignedBox3d extent;  ///< of all listed blocks
+  AlignedBox3d region;           ///< the configuration's, of whole voxels; without one all of space
+  Cell region_low, region_high;  ///< its voxels, the end excluded
+  AlignedBox3d extent;           ///< of all listed blocks
 
   bool is_bounded() const { return !config.region.isEmpty(); }
-  /// Whether a cube of whole voxels has any inside the region.
-  bool touches_region(const AlignedBox3d& cube) const {
-    // Compared at the middle of voxels, where rounding decides nothing.
-    const Vector3d half = Vector3d::Constant(0.5 * config.voxel);
-    return ((cube.min() + half).array() < region.max().array()).all() &&
-           ((cube.max() - half).array() > region.min().array()).all();
-  }
   double block_size() const { return 8.0 * config.voxel; }
   Cell block_of(const Vector3d& point) const {
     return (point / block_size()).array().floor().matrix().cast<int>();
@@ -110,8 +106,11 @@ struct MeasuredSpace::Impl {
   void occupy(const geometry::Scan& scan);
   void carve(const RangeImage& image);
   void closest_in(const Segment& piece, Closest& best) const;
-  void closest_in_block(const Segment& piece, const Cell& cell, const Block& block,
-                        Closest& best) const;
+  /// The voxels of a block that are not free, or outside of the region occupied.
+  Slices blocked(const Cell& cell, const Block& block) const;
+  void closest_in_cube(const Segment& piece, const BoxTest& test, const Cell& cell,
+                       const Cube& cube, const Block& block, const Slices& blocked,
+                       Closest& best) const;
 };
 
 /// Visits block cells that meet the box; `visit` returns false to stop.
@@ -161,15 +160,23 @@ void MeasuredSpace::Impl::free_within(const Cell& cell, const Cube& cube, Block&
 }
 
 void MeasuredSpace::Impl::occupy(const geometry::Scan& scan) {
+  // Neighbouring pixels mostly hit the same block.
+  Cell last_cell = Cell::Zero();
+  Block* last = nullptr;
   for (const Eigen::Vector3f& p : scan.points) {
     const Vector3d point = p.cast<double>();
+    if (point.z() < config.floor) continue;
     const Cell cell = block_of(point);
     const Cell voxel = ((point / config.voxel).array().floor().matrix().cast<int>() - 8 * cell)
                            .cwiseMax(0)
                            .cwiseMin(7);
-    const auto [block, is_new] = blocks.try_emplace(cell_key(cell));
-    block->second.occupied[voxel.z()] |= std::uint64_t{1} << (8 * voxel.y() + voxel.x());
-    if (is_new) extent.extend(block_box(cell));
+    if (last == nullptr || cell != last_cell) {
+      const auto [block, is_new] = blocks.try_emplace(cell_key(cell));
+      if (is_new) extent.extend(block_box(cell));
+      last = &block->second;
+      last_cell = cell;
+    }
+    last->occupied[voxel.z()] |= std::uint64_t{1} << (8 * voxel.y() + voxel.x());
   }
 }
 
@@ -179,22 +186,51 @@ void MeasuredSpace::Impl::carve(const RangeImage& image) {
   });
 }
 
-void MeasuredSpace::Impl::closest_in_block(const Segment& piece, const Cell& cell,
-                                           const Block& block, Closest& best) const {
+Slices MeasuredSpace::Impl::blocked(const Cell& cell, const Block& block) const {
+  Slices blocked{};
   const bool is_cut = !region.contains(block_box(cell));
+  const Cell low = (region_low - 8 * cell).cwiseMax(0), high = (region_high - 8 * cell).cwiseMin(8);
   for (int z = 0; z < 8; ++z) {
-    for (std::uint64_t rest = ~block.passable(z); rest != 0; rest &= rest - 1) {
-      const int bit = std::countr_zero(rest);
-      const Cell voxel(bit & 7, bit >> 3, z);
-      const AlignedBox3d box = cube_box(cell, {voxel, 1});
-      if (is_cut && !block.is_occupied(voxel) && !touches_region(box)) continue;
-      const NearestPoints pair = nearest(piece, box);
-      if (!(pair.squared_distance < best.distance * best.distance)) continue;
-      best = {std::sqrt(pair.squared_distance),
-              block.is_occupied(voxel) ? ObstacleKind::occupied_space : ObstacleKind::unknown_space,
-              0, pair.on_segment, pair.on_other};
-      if (best.distance == 0.0) return;
+    blocked[z] = ~block.passable(z);
+    if (!is_cut) continue;
+    std::uint64_t inside = 0;
+    for (int y = low.y(); y < high.y() && z >= low.z() && z < high.z(); ++y) {
+      for (int x = low.x(); x < high.x(); ++x) inside |= std::uint64_t{1} << (8 * y + x);
     }
+    blocked[z] &= inside | block.occupied[z];
+  }
+  return blocked;
+}
+
+void MeasuredSpace::Impl::closest_in_cube(const Segment& piece, const BoxTest& test,
+                                          const Cell& cell, const Cube& cube, const Block& block,
+                                          const Slices& blocked, Closest& best) const {
+  const std::uint64_t mask = cube.mask();
+  std::uint64_t any = 0, all = mask;
+  for (int z = cube.low.z(); z < cube.low.z() + cube.edge; ++z) {
+    any |= blocked[z] & mask;
+    all &= blocked[z];
+  }
+  if (any == 0) return;
+  const AlignedBox3d box = cube_box(cell, cube);
+  if (cube.edge < 8 && !test.is_near(box, best.distance)) return;
+  if (all == mask) {
+    const NearestPoints pair = nearest(piece, box);
+    if (!(pair.squared_distance < best.distance * best.distance)) return;
+    const Cell voxel =
+        (pair.on_other / config.voxel).array().floor().matrix().cast<int>() - 8 * cell;
+    const Cell last = cube.low + Cell::Constant(cube.edge - 1);
+    best = {std::sqrt(pair.squared_distance),
+            block.is_occupied(voxel.cwiseMax(cube.low).cwiseMin(last))
+                ? ObstacleKind::occupied_space
+                : ObstacleKind::unknown_space,
+            0, pair.on_segment, pair.on_other};
+    return;
+  }
+  const int half = cube.edge / 2;
+  for (int corner = 0; corner < 8 && best.distance > 0.0; ++corner) {
+    const Cell offset(corner & 1, corner >> 1 & 1, corner >> 2 & 1);
+    closest_in_cube(piece, test, cell, {cube.low + half * offset, half}, block, blocked, best);
   }
 }
 
@@ -209,10 +245,15 @@ void MeasuredSpace::Impl::closest_in(const Segment& piece, Closest& best) const 
     if (!test.is_near(box, best.distance)) return true;
     const auto found = blocks.find(cell_key(cell));
     if (found != blocks.end()) {
-      if (!found->second.is_all_passable()) closest_in_block(piece, cell, found->second, best);
+      const Block& block = found->second;
+      if (!block.is_all_passable()) {
+        closest_in_cube(piece, test, cell, {Cell::Zero(), 8}, block, blocked(cell, block), best);
+      }
       return best.distance > 0.0;
     }
-    if (!touches_region(box)) return true;
+    const bool is_inside = (8 * cell.array() < region_high.array()).all() &&
+                           (8 * cell.array() + 8 > region_low.array()).all();
+    if (!is_inside) return true;
     const NearestPoints pair = nearest(piece, box.intersection(region));
     if (pair.squared_distance < best.distance * best.distance) {
       best = {std::sqrt(pair.squared_distance), ObstacleKind::unknown_space, 0, pair.on_segment,
@@ -233,6 +274,7 @@ void MeasuredSpaceConfig::validate() const {
   require(free_without_return >= 0.0, "free_without_return", free_without_return, "zero or more");
   require(max_depth > 0.0 && max_depth < 1e5 * voxel, "max_depth", max_depth,
           "positive and below 100,000 voxels");
+  require(std::isfinite(floor), "floor", floor, "a finite number");
   if (region.isEmpty()) return;
   const double farthest = region.min().cwiseAbs().cwiseMax(region.max().cwiseAbs()).maxCoeff();
   require(farthest < 1e5 * voxel, "region", farthest, "within 100,000 voxels of the origin");
@@ -243,12 +285,16 @@ MeasuredSpace::MeasuredSpace(const MeasuredSpaceConfig& config) {
   impl_ = std::make_unique<Impl>();
   impl_->config = config;
   if (impl_->is_bounded()) {
-    const auto& [low, high] = std::pair(config.region.min(), config.region.max());
-    impl_->region = {(low / config.voxel).array().floor().matrix() * config.voxel,
-                     (high / config.voxel).array().ceil().matrix() * config.voxel};
+    impl_->region_low = (config.region.min() / config.voxel).array().floor().matrix().cast<int>();
+    impl_->region_high = (config.region.max() / config.voxel).array().ceil().matrix().cast<int>();
+    impl_->region = {impl_->region_low.cast<double>() * config.voxel,
+                     impl_->region_high.cast<double>() * config.voxel};
   } else {
     constexpr double infinity = std::numeric_limits<double>::infinity();
     impl_->region = {Vector3d::Constant(-infinity), Vector3d::Constant(infinity)};
+    // Far beyond all voxels, yet so that sums and differences of them are whole numbers still.
+    impl_->region_low = Cell::Constant(-(1 << 28));
+    impl_->region_high = Cell::Constant(1 << 28);
   }
 }
 
@@ -332,7 +378,7 @@ constexpr char file_mark[16] = "skycap free v1\n";
 /// What a file begins with. Plain numbers: it is written as it is in memory.
 struct FileHead {
   char mark[16];
-  double voxel, depth_margin, free_without_return, max_depth;
+  double voxel, depth_margin, free_without_return, max_depth, floor;
   double region[6];  ///< its two corners; the first above the second if there is none
   std::uint64_t blocks;
 };
@@ -362,6 +408,7 @@ void MeasuredSpace::write(std::ostream& stream) const {
   std::memcpy(head.mark, file_mark, sizeof head.mark);
   head.voxel = config.voxel, head.depth_margin = config.depth_margin;
   head.free_without_return = config.free_without_return, head.max_depth = config.max_depth;
+  head.floor = config.floor;
   for (int axis = 0; axis < 3; ++axis) {
     head.region[axis] = config.region.min()[axis];
     head.region[axis + 3] = config.region.max()[axis];
@@ -388,7 +435,8 @@ MeasuredSpace MeasuredSpace::read(std::istream& stream, const std::string& name)
                              .depth_margin = head.depth_margin,
                              .free_without_return = head.free_without_return,
                              .max_depth = head.max_depth,
-                             .region = {}};
+                             .region = {},
+                             .floor = head.floor};
   const AlignedBox3d region(Eigen::Map<const Vector3d>(head.region),
                             Eigen::Map<const Vector3d>(head.region + 3));
   if (!region.isEmpty()) config.region = region;

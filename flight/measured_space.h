@@ -34,6 +34,9 @@ struct MeasuredSpaceConfig {
   /// airspace: there everything is free but measured points. Grows to whole voxels. Empty (as by
   /// default): everywhere.
   Eigen::AlignedBox3d region;
+  /// Points below this height are not kept: they are of the ground, which is known from elsewhere
+  /// and exactly, not to a voxel.
+  double floor = -1e9;
 
   /// Throws Error{bad_config} naming the first value that is out of its interval.
   void validate() const;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <numbers>
 #include <optional>
 
@@ -24,6 +25,13 @@ std::string at(const Vector3d& p) {
     return text.substr(0, text.find('.') + 3);
   };
   return "(" + round(p.x()) + ", " + round(p.y()) + ", " + round(p.z()) + ")";
+}
+
+/// A length for messages, to the millimetre.
+std::string metres(double length) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.3f m", length);
+  return text;
 }
 
 double angle_between(double from, double to) {
@@ -63,18 +71,16 @@ class RoutePlanner {
     if (!space_.is_free({home_, home_}, clearance)) {
       const Closest closest = space_.closest({home_, home_}, clearance + 1.0);
       throw Error(ErrorKind::bad_config, "the place above the take-off pad, " + at(home_) +
-                                             ", is " + std::to_string(closest.distance) +
-                                             " m from " + space_.name(closest) +
-                                             "; the clearance is " + std::to_string(clearance) +
-                                             " m: move the pad or climb higher");
+                                             ", is " + metres(closest.distance) + " from " +
+                                             space_.name(closest) + "; the clearance is " +
+                                             metres(clearance) + ": move the pad or climb higher");
     }
     const Segment climb{home_, route_.options.takeoff};
     if (pad_space != nullptr && !pad_space->is_free(climb, clearance)) {
       const Closest closest = pad_space->closest(climb, clearance + 1.0);
-      throw Error(ErrorKind::bad_config, "the climb from the pad comes within " +
-                                             std::to_string(closest.distance) + " m of " +
-                                             pad_space->name(closest) + "; the clearance is " +
-                                             std::to_string(clearance) + " m");
+      throw Error(ErrorKind::bad_config,
+                  "the climb from the pad comes within " + metres(closest.distance) + " of " +
+                      pad_space->name(closest) + "; the clearance is " + metres(clearance));
     }
   }
 
@@ -96,8 +102,7 @@ class RoutePlanner {
       const Segment place{station.view.position, station.view.position};
       if (!space_.is_free(place, route_.clearance)) {
         const Closest closest = space_.closest(place, route_.clearance + 1.0);
-        refuse(station,
-               "it is " + std::to_string(closest.distance) + " m from " + space_.name(closest));
+        refuse(station, "it is " + metres(closest.distance) + " from " + space_.name(closest));
         continue;
       }
       allowed.push_back(station);
@@ -156,8 +161,7 @@ class RoutePlanner {
     for (const Station& station : stations) {
       const Path path = finder_.find(home_, station.view.position);
       if (path.status != PathStatus::found) {
-        refuse(station, "there is no way to it at a clearance of " +
-                            std::to_string(route_.clearance) + " m");
+        refuse(station, "there is no way to it at a clearance of " + metres(route_.clearance));
         continue;
       }
       route_.stations.push_back(station);
@@ -354,9 +358,8 @@ std::vector<Violation> check_route(const std::vector<Vector3d>& points, const Fr
 }
 
 std::string describe(const Violation& violation) {
-  return "leg " + std::to_string(violation.leg) + ": " +
-         std::to_string(violation.closest.distance) + " m from " + violation.obstacle + " at " +
-         at(violation.closest.on_leg);
+  return "leg " + std::to_string(violation.leg) + ": " + metres(violation.closest.distance) +
+         " from " + violation.obstacle + " at " + at(violation.closest.on_leg);
 }
 
 std::vector<Vector3d> sortie_points(const Route& route, const Sortie& sortie) {

@@ -1,15 +1,54 @@
+#include <algorithm>
 #include <cstdio>
 
+#include "flight/export/export.h"
+#include "flight/path.h"
+#include "flight/route.h"
 #include "geometry/mesh.h"
+#include "missions/mission_flight.h"
 #include "missions/mission_keys.h"
+#include "missions/number_text.h"
 #include "missions/survey_scene.h"
 #include "missions/verbs.h"
 
 namespace skycap::missions {
+namespace {
+
+/// Proves a route file's legs against the mission's scene as it truly is.
+int check_route_file(const CheckOptions& options, const Mission& mission,
+                     const geometry::Mesh& model, const Console& console) {
+  const std::filesystem::path& file = *options.route;
+  // Heights above take-off count from the pad's; where on the ground it is does not matter.
+  const Eigen::Vector3d pad = pad_of(mission, mission.scene.position);
+  const std::vector<Eigen::Vector3d> points = flight::read_route(file, site_of(mission), pad);
+  flight::Obstacles obstacles = flight_rules(mission);
+  obstacles.mesh = model;
+  const flight::KnownSpace space(obstacles);
+
+  const double asked_for = mission.flight.clearance;
+  const double clearance = std::max(0.0, asked_for - flight::rounding_bound);
+  const auto violations = flight::check_route(points, space, clearance);
+  for (const flight::Violation& violation : violations) {
+    console.out << file.string() << ": " << flight::describe(violation) << "\n";
+  }
+  double least = asked_for + flight::reported_surplus;
+  for (std::size_t i = 1; i < points.size(); ++i) {
+    least = std::min(least, space.closest({points[i - 1], points[i]}, least).distance);
+  }
+  console.out << file.string() << ": " << (violations.empty() ? "fine" : "not safe") << ", "
+              << violations.size() << " of " << std::max<std::size_t>(points.size(), 1) - 1
+              << " legs come nearer than " << short_text(asked_for) << " m, the nearest "
+              << short_text(least) << " m; " << short_text(flight::length(points)) << " m long\n"
+              << std::flush;
+  return violations.empty() ? 0 : 1;
+}
+
+}  // namespace
 
 int check(const CheckOptions& options, const Console& console) {
   const Mission mission = read_mission(options.mission, options.overrides);
   const geometry::Mesh model = placed_model(mission.scene, options.mission.parent_path());
+  if (options.route) return check_route_file(options, mission, model, console);
   const survey::SeeConfig& see = mission.planner.see;
   const Eigen::Vector3d size = geometry::bounding_box(model).sizes();
   const double view_distance = see.view_distance.value_or(

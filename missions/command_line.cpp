@@ -9,6 +9,7 @@
 #include <CLI/Formatter.hpp>
 
 #include "geometry/error.h"
+#include "missions/cloud_formats.h"
 #include "missions/mission_keys.h"
 #include "missions/verbs.h"
 #include "missions/version.h"
@@ -60,7 +61,8 @@ void add_plan(CLI::App& app, const Console& console, Action& action) {
   const auto keys = std::make_shared<KeyOptions>();
   verb->add_option("mission", options->mission, "Mission file (docs/mission_file.md)")->required();
   verb->add_option("--out", options->out, "Folder for the results; default results/NAME");
-  verb->add_option("--planner", keys->planner, "see++, see or skycap, in place of the mission's");
+  verb->add_option("--planner", keys->planner,
+                   "see++, see, skycap, rsv, rse, oa, uv, pc, af or ae, in place of the mission's");
   verb->add_option("--seed", keys->seed, "Seed, in place of the mission's");
   verb->add_option("--threads", keys->threads, "Threads, 0 for all processors");
   verb->add_option("--max-views", keys->max_views, "End after this many views");
@@ -76,6 +78,32 @@ void add_plan(CLI::App& app, const Console& console, Action& action) {
   });
 }
 
+void add_scan(CLI::App& app, const Console& console, Action& action) {
+  CLI::App* verb = app.add_subcommand(
+      "scan", "Fly a route in the simulator and record what a sensor measures on the way");
+  const auto options = std::make_shared<ScanVerbOptions>();
+  const auto keys = std::make_shared<KeyOptions>();
+  verb->add_option("mission", options->mission, "Mission file (docs/scan.md)")->required();
+  verb->add_option("--route", options->route,
+                   "Route file, or the folder of a mission package; default: the mission's");
+  verb->add_option("--sensor", options->sensor,
+                   "Preset or description NAME.yaml, in place of the mission's");
+  verb->add_option("--out", options->out, "Folder for the results; default results/NAME/scan");
+  verb->add_option("--format", options->formats,
+                   "Of the points, one or more of " + cloud_format_names() + "; default las")
+      ->delimiter(',');
+  verb->add_flag("--with-truth", options->with_truth,
+                 "Write a second file with the points as they really were");
+  verb->add_option("--seed", keys->seed, "Seed, in place of the mission's");
+  verb->add_option("--threads", keys->threads, "Threads, 0 for all processors");
+  verb->add_flag("--quiet", options->is_quiet, "Print nothing but errors");
+  add_set_option(*verb, *keys);
+  verb->callback([=, &console, &action] {
+    options->overrides = keys->overrides();
+    action = [=, &console] { return scan(*options, console); };
+  });
+}
+
 void add_check(CLI::App& app, const Console& console, Action& action) {
   CLI::App* verb = app.add_subcommand("check", "Check a mission file and its scene");
   const auto options = std::make_shared<CheckOptions>();
@@ -83,6 +111,9 @@ void add_check(CLI::App& app, const Console& console, Action& action) {
   const auto prints_schema = std::make_shared<bool>(false);
   const auto prints_keys = std::make_shared<bool>(false);
   verb->add_option("mission", options->mission, "Mission file");
+  verb->add_option("--route", options->route,
+                   "Prove that this route (.plan, .waypoints, .kmz, .kml, .geojson, .csv, .tum) "
+                   "keeps flight.clearance from the scene");
   add_set_option(*verb, *keys);
   verb->add_flag("--schema", *prints_schema, "Print the JSON Schema of mission files instead");
   verb->add_flag("--keys", *prints_keys, "Print the table of all keys instead");
@@ -96,6 +127,26 @@ void add_check(CLI::App& app, const Console& console, Action& action) {
       }
       return check(*options, console);
     };
+  });
+}
+
+void add_export(CLI::App& app, const Console& console, Action& action) {
+  CLI::App* verb =
+      app.add_subcommand("export", "Write the flight of a mission package in another format");
+  const auto options = std::make_shared<ExportOptions>();
+  const auto keys = std::make_shared<KeyOptions>();
+  verb->add_option("package", options->package, "Folder that plan wrote")->required();
+  verb->add_option("--format", options->formats,
+                   "plan, waypoints, kmz, kml, geojson, litchi, csv, ned-csv or tum; may be given "
+                   "again")
+      ->required()
+      ->type_size(1)
+      ->allow_extra_args(false);
+  verb->add_option("--out", options->out, "Folder for the files; default the package");
+  add_set_option(*verb, *keys);
+  verb->callback([=, &console, &action] {
+    options->overrides = keys->overrides();
+    action = [=, &console] { return export_package(*options, console); };
   });
 }
 
@@ -138,8 +189,6 @@ int report_failure(const Console& console, std::string message, int exit_code) {
   return exit_code;
 }
 
-constexpr const char* verbs = "plan, check, evaluate, model";
-
 }  // namespace
 
 int run_command_line(const std::vector<std::string>& arguments, const Console& console) {
@@ -150,10 +199,14 @@ int run_command_line(const std::vector<std::string>& arguments, const Console& c
   Action action;
   try {
     add_plan(app, console, action);
+    add_scan(app, console, action);
     add_check(app, console, action);
+    add_export(app, console, action);
     add_evaluate(app, console, action);
     add_model(app, console, action);
     const auto known = app.get_subcommands({});
+    std::string verbs;
+    for (const CLI::App* verb : known) verbs += (verbs.empty() ? "" : ", ") + verb->get_name();
     if (!arguments.empty() && !arguments[0].starts_with('-') &&
         std::ranges::find(known, arguments[0], &CLI::App::get_name) == known.end()) {
       throw Error(ErrorKind::bad_usage,
@@ -162,8 +215,8 @@ int run_command_line(const std::vector<std::string>& arguments, const Console& c
     std::vector<std::string> reversed(arguments.rbegin(), arguments.rend());  // as CLI11 wants it
     app.parse(reversed);
     if (!action) {
-      throw Error(ErrorKind::bad_usage, std::string("says nothing to do; name one of the verbs ") +
-                                            verbs + ", or --help");
+      throw Error(ErrorKind::bad_usage,
+                  "says nothing to do; name one of the verbs " + verbs + ", or --help");
     }
     return action();
   } catch (const CLI::Success& wish) {  // --help or --version

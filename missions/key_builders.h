@@ -2,6 +2,7 @@
 #pragma once
 
 #include <algorithm>
+#include <iterator>
 #include <limits>
 #include <numbers>
 #include <optional>
@@ -137,5 +138,35 @@ inline Key required(Key key) {
   key.is_required = true;
   return key;
 }
+
+/// A key for one corner of an optional box, which the first of the two keys brings about.
+template <class Field>
+Key box_corner(std::string path, Field field, bool is_upper, std::string meaning) {
+  Key key;
+  key.path = std::move(path);
+  key.type = KeyType::vector;
+  key.unit = "m";
+  key.range = between(-far_away, far_away);
+  key.meaning = std::move(meaning);
+  key.set = [field, is_upper](Mission& mission, const KeyValue& value) {
+    std::optional<Eigen::AlignedBox3d>& box = field(mission);
+    if (!box) {
+      box = Eigen::AlignedBox3d(Eigen::Vector3d::Constant(-far_away),
+                                Eigen::Vector3d::Constant(far_away));
+    }
+    (is_upper ? box->max() : box->min()) = std::get<Eigen::Vector3d>(value);
+  };
+  key.get = [field, is_upper](const Mission& mission) -> std::optional<KeyValue> {
+    const std::optional<Eigen::AlignedBox3d>& box = field(const_cast<Mission&>(mission));
+    if (!box) return std::nullopt;
+    return is_upper ? box->max() : box->min();
+  };
+  return key;
+}
+
+// ---- sections with a source of their own -----------------------------------------------------
+
+std::vector<Key> flight_keys();  ///< and the place on the Earth, in `site`
+std::vector<Key> scan_keys();
 
 }  // namespace skycap::missions

@@ -10,12 +10,15 @@
 #include <vector>
 
 #include <Eigen/Core>
+#include <Eigen/Geometry>
 
 #include "sim/depth_camera.h"
 #include "sim/models/models.h"
+#include "sim/trajectory.h"
 #include "survey/see.h"
 #include "survey/skycap_planner.h"
 #include "survey/view_limits.h"
+#include "survey/volumetric_planner.h"
 
 namespace skycap::missions {
 
@@ -45,7 +48,10 @@ struct SensorConfig {
   sim::DepthCameraConfig camera = sim::d435();  ///< its noise's seed is the mission's
 };
 
-enum class PlannerName { see_plus_plus, see, skycap };
+enum class PlannerName { see_plus_plus, see, skycap, rsv, rse, oa, uv, pc, af, ae };
+
+/// The gain that a volumetric planner goes by; nothing for the others.
+std::optional<survey::VolumetricMetric> volumetric_metric(PlannerName name);
 
 enum class PlannerPreset {
   paper,     ///< the published parameters
@@ -94,6 +100,68 @@ struct EvaluationConfig {
   std::size_t ceiling_views = 100;       ///< views of the attainable coverage; zero leaves it out
 };
 
+/// Where the local frame (x east, y north, z up) is on the Earth. Missing: files that need it are
+/// not written.
+struct Georeference {
+  std::optional<double> latitude;          ///< of the frame's origin on WGS84 [rad]
+  std::optional<double> longitude;         ///< [rad]
+  double ellipsoid_height = 0.0;           ///< of the origin
+  std::optional<double> geoid_undulation;  ///< height of the geoid above the ellipsoid there
+};
+
+/// In which order the exported mission visits the survey's views.
+enum class VisitOrder { shortest, survey };
+
+/// How views become a flight. Without a vehicle nothing is flown: the sensor is taken to reach
+/// every view, and no route is written.
+struct FlightConfig {
+  std::string vehicle = "none";  ///< a profile's name
+  double clearance = 2.0;        ///< that every leg is proven at; the errors below are part of it
+  double position_error = 0.1;
+  double tracking_error = 0.3;
+  double map_error = 0.1;
+  std::optional<Eigen::AlignedBox3d> unknown_box;  ///< where space must be measured to be free
+  double free_without_return = 0.0;
+  std::optional<Eigen::Vector3d> takeoff;  ///< the pad
+  std::optional<double> takeoff_climb;     ///< else 5 m, or a metre more than the clearance
+  double cruise_speed = 4.0;
+  double hold = 1.0;          ///< at a view [s]
+  double wind_speed = 0.0;    ///< [m/s]
+  double wind_from = 0.0;     ///< where it blows from, clockwise from north [rad]
+  double temperature = 15.0;  ///< of the battery [degrees Celsius]
+  double reserve = 0.25;      ///< share of the battery left at landing
+  VisitOrder order = VisitOrder::shortest;
+
+  bool is_flown() const { return vehicle != "none"; }
+};
+
+/// Level circles round a point, from the lowest to the highest, with a straight climb between.
+struct OrbitConfig {
+  Eigen::Vector3d centre = Eigen::Vector3d::Zero();  ///< its z is what heights count from
+  double radius = 30.0;
+  double lowest = 10.0;   ///< height of the first circle
+  double highest = 30.0;  ///< of the last
+  int circles = 3;        ///< evenly spaced in height
+  double speed = 6.0;     ///< along circles and climbs [m/s]
+  double start = 0.0;     ///< where circles begin: from east, anticlockwise [rad]
+};
+
+/// What `skycap scan` records, and how well its carrier knows where it is. Body frame: x forward,
+/// y left, z up.
+struct ScanConfig {
+  std::string sensor = "ouster_os1_128";  ///< a preset, or the path of a description
+  std::optional<std::string> route;       ///< a file; in place of the orbit
+  OrbitConfig orbit;
+  double speed = 5.0;                                         ///< along routes without times [m/s]
+  Eigen::Vector3d mount_position = Eigen::Vector3d::Zero();   ///< of the sensor, body frame
+  Eigen::Vector3d mount_rotation = Eigen::Vector3d::Zero();   ///< [rad], about x, then y, then z
+  sim::NavigationErrors navigation;                           ///< its seed is the mission's
+  Eigen::Vector3d lever_arm_error = Eigen::Vector3d::Zero();  ///< of the believed mount_position
+  Eigen::Vector3d boresight_error = Eigen::Vector3d::Zero();  ///< of the believed rotation [rad]
+  double frame_period = 1.0;  ///< of a camera along a route with times [s]
+  double depth_unit = 0.001;  ///< of a depth image [m]
+};
+
 /// What a publication reports for this scene, printed beside the results of trials.
 struct ReferenceConfig {
   std::optional<double> views;
@@ -107,10 +175,14 @@ struct Mission {
   SceneConfig scene;
   SensorConfig sensor;
   PlannerConfig planner;
+  survey::VolumetricSettings volumetric;  ///< of the planners rsv to ae
   StartConfig start;
   LimitsConfig limits;
   SiteConfig site;
+  Georeference georeference;
+  FlightConfig flight;
   EvaluationConfig evaluation;
+  ScanConfig scan;
   ReferenceConfig paper;
   std::uint64_t seed = 1;
   unsigned threads = 0;  ///< zero: all processors

@@ -4,33 +4,10 @@
 #include <iterator>
 
 #include "missions/key_builders.h"
+#include "missions/volumetric_keys.h"
 
 namespace skycap::missions {
 namespace {
-
-/// One corner of the box outside which measurements are dropped.
-Key scene_box_corner(std::string path, std::string unit, bool is_upper, std::string meaning) {
-  Key key;
-  key.path = std::move(path);
-  key.type = KeyType::vector;
-  key.unit = std::move(unit);
-  key.range = between(-far_away, far_away);
-  key.meaning = std::move(meaning);
-  key.set = [is_upper](Mission& mission, const KeyValue& value) {
-    auto& box = mission.planner.see.scene_box;
-    if (!box) {
-      box = Eigen::AlignedBox3d(Eigen::Vector3d::Constant(-far_away),
-                                Eigen::Vector3d::Constant(far_away));
-    }
-    (is_upper ? box->max() : box->min()) = std::get<Eigen::Vector3d>(value);
-  };
-  key.get = [is_upper](const Mission& mission) -> std::optional<KeyValue> {
-    const auto& box = mission.planner.see.scene_box;
-    if (!box) return std::nullopt;
-    return is_upper ? box->max() : box->min();
-  };
-  return key;
-}
 
 std::vector<Key> general_keys() {
   return {
@@ -152,7 +129,7 @@ std::vector<Key> survey_keys() {
           "limits.max_distance", "m", above(0, 1e9),
           [](Mission & m) -> auto& { return m.limits.max_distance; },
           "The survey ends when the straight lines between views add up to this."),
-      otherwise("0 with ground, unlimited without",
+      otherwise("with a vehicle flight.clearance and 0.01, with ground 0, else unlimited",
                 number(
                     "limits.ground_clearance", "m", between(-1e6, 1e6),
                     [](Mission & m) -> auto& { return m.limits.ground_clearance; },
@@ -197,6 +174,7 @@ std::vector<Key> planner_keys() {
   const auto see = [](auto member) {
     return [member](Mission & m) -> auto& { return m.planner.see.*member; };
   };
+  const auto scene_box = [](Mission & m) -> auto& { return m.planner.see.scene_box; };
   using See = survey::SeeConfig;
   const auto skycap_stop = [](auto member) {
     return [member](Mission & m) -> auto& { return m.planner.skycap_stop.*member; };
@@ -204,11 +182,13 @@ std::vector<Key> planner_keys() {
   using Stop = survey::StopRule;
   return {
       choice(
-          "planner.name", {"see++", "see", "skycap"},
+          "planner.name", {"see++", "see", "skycap", "rsv", "rse", "oa", "uv", "pc", "af", "ae"},
           [](Mission & m) -> auto& { return m.planner.name; },
           "The planner. see is see++ without optimise_views and visibility_graph; skycap is our "
           "own, which of the keys below uses spacing, view_distance, scene_box, wanted_coverage "
-          "and least_gain."),
+          "and least_gain. The others are volumetric: of the keys below they use "
+          "resolution_radius as the width of voxels, spacing, view_distance and scene_box, and "
+          "those of the section volumetric."),
       choice(
           "planner.preset", {"paper", "building"},
           [](Mission & m) -> auto& { return m.planner.preset; },
@@ -233,12 +213,11 @@ std::vector<Key> planner_keys() {
       otherwise("from the sensor and rho",
                 number("planner.view_distance", "m", above(0, 1e6), see(&See::view_distance),
                        "d: distance from a frontier to the view proposed for it.")),
-      otherwise(
-          "unlimited",
-          scene_box_corner("planner.scene_box.min", "m", false,
+      otherwise("unlimited",
+                box_corner("planner.scene_box.min", scene_box, false,
                            "Lower corner of the box outside which measurements are dropped.")),
       otherwise("unlimited",
-                scene_box_corner("planner.scene_box.max", "m", true, "Upper corner of that box.")),
+                box_corner("planner.scene_box.max", scene_box, true, "Upper corner of that box.")),
       choice("planner.outlier_rule", {"non_core", "labelled"}, see(&See::outlier_rule),
              "Which neighbours make a point beside a core point a frontier: any other that is not "
              "core, or one labelled outlier (released code, depends on the order)."),
@@ -306,7 +285,8 @@ std::vector<Key> planner_keys() {
 std::span<const Key> mission_keys() {
   static const std::vector<Key> keys = [] {
     std::vector<Key> all = general_keys();
-    for (auto section : {scene_keys, sensor_keys, planner_keys, survey_keys, constraint_keys}) {
+    for (auto section : {scene_keys, sensor_keys, planner_keys, volumetric_keys, survey_keys,
+                         constraint_keys, flight_keys, scan_keys}) {
       std::ranges::move(section(), std::back_inserter(all));
     }
     return all;

@@ -14,7 +14,9 @@
 #include <system_error>
 
 #include "geometry/error.h"
+#include "missions/mission_flight.h"
 #include "missions/mission_keys.h"
+#include "missions/number_text.h"
 #include "missions/site.h"
 #include "missions/yaml_tree.h"
 
@@ -59,22 +61,24 @@ std::string unknown_key_message(const std::string& path) {
   const Key* nearest = nullptr;
   std::size_t nearest_distance = 0;
   for (const Key& key : mission_keys()) {
-    // A key may be misspelt, or right but in the wrong section.
-    const std::size_t distance = std::min(edit_distance(path, key.path),
-                                          edit_distance(last_part(path), last_part(key.path)) + 1);
+    // A key may be misspelt, or right (but for a slip) in the wrong section.
+    const std::size_t slip = edit_distance(last_part(path), last_part(key.path));
+    std::size_t distance = edit_distance(path, key.path);
+    if (4 * slip <= last_part(path).size()) distance = std::min(distance, slip + 1);
     if (!nearest || distance < nearest_distance) nearest = &key, nearest_distance = distance;
   }
   if (nearest_distance <= std::max<std::size_t>(2, path.size() / 4)) {
     return "is unknown; did you mean " + nearest->path + "?";
   }
   const std::string section = path.substr(0, path.rfind('.') + 1);
-  std::string known;
+  std::vector<std::string> children;
   for (const Key& key : mission_keys()) {
     if (!key.path.starts_with(section)) continue;
-    const std::string child = key.path.substr(0, key.path.find('.', section.size()));
-    if (known.ends_with(child)) continue;
-    known += (known.empty() ? "" : ", ") + child;
+    std::string child = key.path.substr(0, key.path.find('.', section.size()));
+    if (std::ranges::find(children, child) == children.end()) children.push_back(std::move(child));
   }
+  std::string known;
+  for (const std::string& child : children) known += (known.empty() ? "" : ", ") + child;
   return "is unknown; known are " + known;
 }
 
@@ -322,6 +326,55 @@ void check_site(const GivenValues& given, const std::string& name, const Mission
   }
 }
 
+/// The same for what makes a flight.
+void check_flight(const GivenValues& given, const std::string& name, const Mission& mission) {
+  const auto complain = [&](const char* key, const std::string& what) {
+    const auto found = given.find(key);
+    fail(found == given.end() ? name + ":1" : found->second.place, key, what);
+  };
+  const Georeference& place = mission.georeference;
+  if (place.latitude.has_value() != place.longitude.has_value()) {
+    complain(place.latitude ? "site.latitude_deg" : "site.longitude_deg",
+             "is half a place; give site.latitude_deg and site.longitude_deg");
+  }
+  const FlightConfig& flight = mission.flight;
+  if (!flight.is_flown()) return;
+  if (const auto& box = flight.unknown_box;
+      box && !(box->min().array() < box->max().array()).all()) {
+    complain("flight.unknown_box.max",
+             "is not above flight.unknown_box.min on every axis; swap or widen the corners");
+  }
+  if (unknown_box_of(mission).isEmpty()) {
+    complain("flight.vehicle",
+             "needs flight.unknown_box, around the building: in it nothing is free until measured; "
+             "give the box's min and max");
+  }
+  const flight::ClearanceBudget budget = clearance_of(mission);
+  if (budget.margin < 0.0) {
+    complain("flight.clearance",
+             "is less than the vehicle's radius of " + short_text(budget.vehicle_radius) +
+                 " m and the position, tracking and map errors make together, " +
+                 short_text(budget.total() - budget.margin) +
+                 " m; make it larger or the errors smaller");
+  }
+  if (takeoff_climb_of(mission) <= flight.clearance) {
+    complain("flight.takeoff_climb", "of " + short_text(takeoff_climb_of(mission)) +
+                                         " m ends within the clearance of the ground; make it more "
+                                         "than flight.clearance");
+  }
+  const double sigma = mission.sensor.camera.noise.sigma;
+  if (flight.map_error < 3.0 * sigma) {
+    complain("flight.map_error",
+             "is below three standard deviations of the sensor's noise; make "
+             "it at least " +
+                 short_text(3.0 * sigma) + " m");
+  }
+  if (flight.wind_speed >= vehicle_of(mission).max_wind) {
+    complain("flight.wind_speed", "is not below the " + short_text(vehicle_of(mission).max_wind) +
+                                      " m/s that " + flight.vehicle + " is made for");
+  }
+}
+
 /// Lets the planner check its parameters, and finds the place of the key that it complains of.
 void check_planner(const GivenValues& given, const std::string& name, const Mission& mission) {
   try {
@@ -384,8 +437,13 @@ Mission mission_from(const std::string& text, const std::string& name,
   for (const auto& [path, value] : given) apply(value, *find_key(path), mission);
   check_required(given, name);
   check_together(given, name, mission);
+  check_flight(given, name, mission);
 
   if (mission.planner.preset == PlannerPreset::building) derive_building_preset(given, mission);
+  if (mission.flight.is_flown() && !mission.limits.ground_clearance) {
+    // A little more, so that a view at the limit can be proven.
+    mission.limits.ground_clearance = mission.flight.clearance + 0.01;
+  }
   if (mission.scene.ground && !mission.limits.ground_clearance) mission.limits.ground_clearance = 0;
   if (mission.limits.ground_clearance) {
     mission.planner.see.ground_clearance =

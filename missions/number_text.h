@@ -1,6 +1,7 @@
 #pragma once
 
 #include <charconv>
+#include <cstdio>
 #include <string>
 
 namespace skycap::missions {
@@ -10,6 +11,13 @@ inline std::string exact_text(double number) {
   char text[32];
   const auto result = std::to_chars(text, text + sizeof text, number);
   return {text, result.ptr};
+}
+
+/// Four significant digits, for people.
+inline std::string short_text(double number) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.4g", number);
+  return text;
 }
 
 }  // namespace skycap::missions

@@ -1,5 +1,6 @@
 #include "missions/output_folder.h"
 
+#include <algorithm>
 #include <fstream>
 
 #include <unistd.h>
@@ -56,7 +57,20 @@ void OutputFolder::write(const std::string& name, std::string_view content) {
   if (!stream) fail(folder_ / name, "cannot be written whole; is the disk full?");
 }
 
+void OutputFolder::replace(const std::function<bool(std::string_view)>& is_old) {
+  std::error_code ignored;
+  for (const fs::directory_entry& entry : fs::directory_iterator(folder_, ignored)) {
+    const std::string name = entry.path().filename().string();
+    if (is_old(name)) old_.push_back(name);
+  }
+}
+
 void OutputFolder::commit() {
+  for (const std::string& name : old_) {
+    std::error_code ignored;
+    if (std::ranges::find(staged_, name) == staged_.end()) fs::remove(folder_ / name, ignored);
+  }
+  old_.clear();
   for (const std::string& name : staged_) {
     std::error_code failure;
     fs::rename(temporary(name), folder_ / name, failure);

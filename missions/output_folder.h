@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -25,6 +26,10 @@ class OutputFolder {
   /// Stages a file with that content. Throws Error{bad_file} if it cannot be written whole.
   void write(const std::string& name, std::string_view content);
 
+  /// Has commit() remove files of an earlier run of which `is_old(name)` says that they belong to
+  /// what is staged here, unless they are staged again.
+  void replace(const std::function<bool(std::string_view)>& is_old);
+
   /// Gives the staged files their names, in the order in which they were staged.
   void commit();
 
@@ -33,6 +38,7 @@ class OutputFolder {
 
   std::filesystem::path folder_;
   std::vector<std::string> staged_;
+  std::vector<std::string> old_;
   bool is_new_ = false;  ///< the folder was made here
 };
 

@@ -1,11 +1,16 @@
 #include "missions/package.h"
 
 #include <algorithm>
+#include <fstream>
+#include <sstream>
+#include <string_view>
 #include <type_traits>
+#include <utility>
 
 #include <nlohmann/json.hpp>
 
 #include "geometry/cloud_io.h"
+#include "geometry/error.h"
 #include "geometry/pose.h"
 #include "missions/cloud_normals.h"
 #include "missions/coverage_map.h"
@@ -18,6 +23,8 @@ namespace skycap::missions {
 namespace {
 
 using Json = nlohmann::ordered_json;
+
+constexpr const char* free_space_name = "free_space.bin";
 
 Json json_of(const Eigen::Vector3d& vector) { return {vector.x(), vector.y(), vector.z()}; }
 
@@ -57,6 +64,17 @@ Json json_of(const KeyValue& value) {
       value);
 }
 
+/// Settings as a mission file has them. JSON is YAML, but keys are nested there.
+std::string mission_text(const Json& settings) {
+  Json nested = Json::object();
+  for (const auto& [path, value] : settings.items()) {
+    std::string pointer = "/" + path;
+    std::ranges::replace(pointer, '.', '/');
+    nested[Json::json_pointer(pointer)] = value;
+  }
+  return nested.dump(1);
+}
+
 /// What the planner believes at the end: shares are of the surface, seen and guessed.
 Json belief_summary(const SurveyRecord& record) {
   if (!record.belief) return {};
@@ -83,6 +101,65 @@ Json settings(const Mission& mission) {
     if (const auto value = key.get(mission)) values[key.path] = json_of(*value);
   }
   return values;
+}
+
+/// The flight of the survey and the route in the package, in metres, seconds and watt hours.
+Json flight_summary(const FlownSurvey& flown, const SurveyMission& flight) {
+  const flight::Route& route = flight.route;
+  const flight::ClearanceBudget& clearance = route.options.clearance;
+  Json sorties = Json::array(), unreached = Json::array(), files = Json::array();
+  for (const flight::Sortie& sortie : route.sorties) {
+    sorties.push_back({{"first_station", sortie.first},
+                       {"last_station", sortie.last},
+                       {"duration_s", sortie.duration},
+                       {"energy_wh", sortie.energy / 3600.0},
+                       {"energy_left_wh", sortie.energy_left / 3600.0}});
+  }
+  for (const flight::Unreached& missed : route.unreached) {
+    unreached.push_back({{"view", missed.station.view_index}, {"reason", missed.reason}});
+  }
+  for (const FlightFile& file : flight.files.written) {
+    files.push_back(
+        {{"name", file.name}, {"heights", file.heights}, {"min_clearance_m", file.min_clearance}});
+  }
+  Json order = Json::array();
+  for (const flight::Station& station : route.stations) order.push_back(station.view_index);
+  return {{"vehicle", route.vehicle.name},
+          {"clearance_m",
+           {{"total", clearance.total()},
+            {"vehicle_radius", clearance.vehicle_radius},
+            {"position_error", clearance.position_error},
+            {"tracking_error", clearance.tracking_error},
+            {"map_error", clearance.map_error},
+            {"margin", clearance.margin}}},
+          {"pad", json_of(flown.pad)},
+          {"survey",
+           {{"length_m", flown.length()},
+            {"min_clearance_m", flown.min_clearance()},
+            {"views_refused", flown.refused},
+            {"free_volume_m3", flown.measured->free_volume()}}},
+          {"route",
+           {{"stations", route.stations.size()},
+            {"order", order},
+            {"length_m", route.length},
+            {"station_length_m", route.station_length},
+            {"straight_length_m", route.straight_length},
+            {"order_length_m", route.order_length},
+            {"order_bound_m", route.order_bound},
+            {"duration_s", route.duration},
+            {"duration_bound_s", route.duration_bound},
+            {"energy_wh", route.energy / 3600.0},
+            {"min_clearance_m", route.min_clearance},
+            {"sorties", sorties},
+            {"unreached", unreached}}},
+          {"files", files},
+          {"notes", flight.files.notes}};
+}
+
+std::vector<geometry::View> views_of(const SurveyRecord& record) {
+  std::vector<geometry::View> views;
+  for (const JudgedView& judged : record.views) views.push_back(judged.surveyed.view);
+  return views;
 }
 
 Json view_summary(std::size_t number, const JudgedView& judged) {
@@ -165,7 +242,8 @@ std::vector<survey::PartTime> planning_time_by_part(const SurveyRecord& record) 
 }
 
 std::string summary_json(const Mission& mission, const SurveyRecord& record,
-                         const CoverageFigures& coverage) {
+                         const CoverageFigures& coverage,
+                         const std::optional<SurveyMission>& flight) {
   Json summary{{"mission", mission.name},
                {"planner", value_text(mission, "planner.name")},
                {"preset", value_text(mission, "planner.preset")},
@@ -183,17 +261,25 @@ std::string summary_json(const Mission& mission, const SurveyRecord& record,
                {"planning_time_parts_s", json_of(planning_time_by_part(record))},
                {"sensing_time_s", record.sensing_time()},
                {"distance_m", record.distance()},
-               {"belief", belief_summary(record)},
-               {"settings", settings(mission)},
-               {"per_view", Json::array()}};
+               {"belief", belief_summary(record)}};
+  if (flight) {
+    summary["route_length_m"] = flight->route.length;
+    summary["min_clearance_m"] = flight->route.min_clearance;
+    summary["flight"] = flight_summary(*record.flown, *flight);
+  }
+  summary["settings"] = settings(mission);
+  summary["per_view"] = Json::array();
   for (std::size_t i = 0; i < record.views.size(); ++i) {
     summary["per_view"].push_back(view_summary(i, record.views[i]));
   }
   return json_text(summary);
 }
 
-void stage_package(const Mission& mission, const SurveyRecord& record,
-                   const CoverageFigures& coverage, unsigned threads, OutputFolder& folder) {
+std::optional<SurveyMission> stage_package(const Mission& mission, const SurveyRecord& record,
+                                           const CoverageFigures& coverage, unsigned threads,
+                                           OutputFolder& folder) {
+  folder.replace(
+      [](std::string_view name) { return name == free_space_name || is_flight_file(name); });
   const double radius = 2.0 * mission.planner.see.resolution_radius;
   std::vector<Eigen::Vector3f> normals =
       cloud_normals(record.cloud, sensor_positions(record), radius, threads);
@@ -206,8 +292,54 @@ void stage_package(const Mission& mission, const SurveyRecord& record,
   }
   folder.write("views.csv", views_csv(record));
   folder.write("trajectory.tum", trajectory_tum(record));
+  std::optional<SurveyMission> flight;
+  if (record.flown) {
+    std::ostringstream free_space;
+    record.flown->measured->write(free_space);
+    folder.write(free_space_name, free_space.str());
+    flight.emplace();
+    flight->route =
+        plan_flight(mission, *record.flown->measured, record.flown->pad, views_of(record));
+    flight->files =
+        stage_flight(mission, flight->route, *record.flown->measured, package_formats(), folder);
+  }
   // Last, so that whoever sees the summary sees the rest.
-  folder.write("summary.json", summary_json(mission, record, coverage));
+  folder.write("summary.json", summary_json(mission, record, coverage, flight));
+  return flight;
+}
+
+PackagedSurvey read_package(const std::filesystem::path& folder,
+                            const std::vector<KeyOverride>& overrides) {
+  const std::filesystem::path summary_file = folder / "summary.json";
+  const auto fail = [](const std::filesystem::path& file, const std::string& what) {
+    throw Error(ErrorKind::bad_file, file.string() + ": " + what);
+  };
+  std::ifstream stream(summary_file);
+  if (!stream) fail(summary_file, "cannot be read; name the folder of a mission package");
+  PackagedSurvey survey;
+  try {
+    const Json summary = Json::parse(stream);
+    survey.mission =
+        parse_mission(mission_text(summary.at("settings")), summary_file.string(), overrides);
+    if (!summary.contains("flight")) {
+      fail(summary_file, "is of a survey without a vehicle; plan it with flight.vehicle");
+    }
+    const auto vector = [](const Json& json) {
+      return Eigen::Vector3d(json.at(0).get<double>(), json.at(1).get<double>(),
+                             json.at(2).get<double>());
+    };
+    survey.pad = survey.mission.flight.takeoff.value_or(vector(summary["flight"].at("pad")));
+    for (const Json& view : summary.at("per_view")) {
+      survey.views.push_back({vector(view.at("position")), vector(view.at("direction"))});
+    }
+  } catch (const Json::exception& error) {
+    fail(summary_file, std::string("is not a package's summary (") + error.what() + ")");
+  }
+  const std::filesystem::path space_file = folder / free_space_name;
+  std::ifstream space(space_file, std::ios::binary);
+  if (!space) fail(space_file, "cannot be read; plan the mission again");
+  survey.measured = flight::MeasuredSpace::read(space, space_file.string());
+  return survey;
 }
 
 }  // namespace skycap::missions

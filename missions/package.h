@@ -1,10 +1,16 @@
 /// The mission package: the files that a survey leaves behind. docs/mission_file.md is the manual.
 #pragma once
 
+#include <filesystem>
 #include <optional>
 #include <string>
+#include <vector>
 
+#include "flight/measured_space.h"
+#include "geometry/pose.h"
+#include "missions/flight_files.h"
 #include "missions/mission.h"
+#include "missions/mission_reader.h"
 #include "missions/output_folder.h"
 #include "missions/survey_runner.h"
 
@@ -17,11 +23,27 @@ struct CoverageFigures {
   std::optional<double> ceiling;  ///< of the whole surface, attainable
 };
 
-/// Stages summary.json, cloud.ply, views.csv and trajectory.tum in `folder`; the caller commits.
-/// Every number is written with as many digits as it takes to read the same number back, so equal
-/// surveys give equal files; only summary.json holds times.
-void stage_package(const Mission& mission, const SurveyRecord& record,
-                   const CoverageFigures& coverage, unsigned threads, OutputFolder& folder);
+/// Stages summary.json, cloud.ply, views.csv and trajectory.tum in `folder`; the caller commits. A
+/// flown survey's package also holds its route files and free_space.bin, which they were proven in
+/// (flight::MeasuredSpace::write()); what they say is returned. Every number is written with as
+/// many digits as it takes to read the same number back, so equal surveys give equal files; only
+/// summary.json holds times.
+std::optional<SurveyMission> stage_package(const Mission& mission, const SurveyRecord& record,
+                                           const CoverageFigures& coverage, unsigned threads,
+                                           OutputFolder& folder);
+
+/// What a package holds of a flown survey.
+struct PackagedSurvey {
+  Mission mission;  ///< with all keys as they were in force
+  std::vector<geometry::View> views;
+  Eigen::Vector3d pad = Eigen::Vector3d::Zero();
+  flight::MeasuredSpace measured;
+};
+
+/// Reads a package; `overrides` take the place of the mission's keys. Throws Error{bad_file} naming
+/// the file that is missing or not as stage_package() wrote it.
+PackagedSurvey read_package(const std::filesystem::path& folder,
+                            const std::vector<KeyOverride>& overrides);
 
 /// views.csv: a line for each view.
 std::string views_csv(const SurveyRecord& record);
@@ -32,7 +54,8 @@ std::string trajectory_tum(const SurveyRecord& record);
 
 /// summary.json, as docs/mission_file.md describes it.
 std::string summary_json(const Mission& mission, const SurveyRecord& record,
-                         const CoverageFigures& coverage);
+                         const CoverageFigures& coverage,
+                         const std::optional<SurveyMission>& flight = {});
 
 /// Planning time of a whole survey by part, in the order of execution.
 std::vector<survey::PartTime> planning_time_by_part(const SurveyRecord& record);

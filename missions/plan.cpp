@@ -4,6 +4,7 @@
 #include "geometry/error.h"
 #include "geometry/parallel.h"
 #include "missions/coverage.h"
+#include "missions/flight_report.h"
 #include "missions/output_folder.h"
 #include "missions/package.h"
 #include "missions/survey_runner.h"
@@ -61,7 +62,9 @@ std::string times_row(std::size_t view, const JudgedView& judged) {
 }
 
 std::string summary_text(const Mission& mission, const SurveyRecord& record,
-                         const CoverageFigures& coverage, const std::filesystem::path& folder) {
+                         const CoverageFigures& coverage,
+                         const std::optional<SurveyMission>& flight,
+                         const std::filesystem::path& folder) {
   std::string text = mission.name + ": " + name_of(record.stop_reason) + " after " +
                      std::to_string(record.views.size()) + " views, ";
   char distance[32];
@@ -76,7 +79,9 @@ std::string summary_text(const Mission& mission, const SurveyRecord& record,
     text += (is_first ? "" : ", ") + part + " " + seconds(time);
     is_first = false;
   }
-  return text + ")\n  results   " + folder.string() + "\n";
+  text += ")\n";
+  if (flight) text += flight_text(*flight);
+  return text + "  results   " + folder.string() + "\n";
 }
 
 int plan_once(const PlanOptions& options, const Mission& mission, const SurveyScene& scene,
@@ -100,14 +105,17 @@ int plan_once(const PlanOptions& options, const Mission& mission, const SurveySc
     coverage.ceiling = scene.ceiling(is_visible, mission.threads);
   }
   progress.show(mission.name + ": writing " + folder.path().string());
-  stage_package(mission, record, coverage, mission.threads, folder);
+  const std::optional<SurveyMission> flight =
+      stage_package(mission, record, coverage, mission.threads, folder);
   folder.commit();
   progress.clear();
   if (!options.is_quiet) {
-    console.out << summary_text(mission, record, coverage, folder.path()) << std::flush;
+    console.out << summary_text(mission, record, coverage, flight, folder.path()) << std::flush;
   }
-  const bool went_through = record.stop_reason != survey::StopReason::interrupted &&
-                            record.stop_reason != survey::StopReason::nowhere_to_go;
+  // A flown survey ends with views that nobody can reach; at the start it has not begun.
+  const bool went_through =
+      record.stop_reason != survey::StopReason::interrupted &&
+      (record.stop_reason != survey::StopReason::nowhere_to_go || record.views.size() > 1);
   return went_through ? 0 : 1;
 }
 

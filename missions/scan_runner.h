@@ -3,16 +3,17 @@
 
 #include <cstdint>
 #include <functional>
+#include <span>
 #include <stop_token>
 
-#include "missions/las_writer.h"
+#include "missions/cloud_file.h"
 #include "sim/lidar.h"
 #include "sim/scene.h"
 
 namespace skycap::missions {
 
 struct ScanProgress {
-  std::uint64_t firings = 0;      ///< measured so far
+  std::uint64_t firings = 0;      ///< measured and written so far
   std::uint64_t all_firings = 0;  ///< of the flight
   std::uint64_t points = 0;
 };
@@ -23,15 +24,17 @@ struct ScanResult {
 };
 
 struct ScanOptions {
-  unsigned threads = 0;                             ///< zero: all processors
-  std::function<void(const ScanProgress&)> report;  ///< called now and then; may be empty
+  unsigned threads = 0;  ///< zero: all processors
+  /// Called now and then, from one thread at a time; may be empty.
+  std::function<void(const ScanProgress&)> report;
   std::stop_token stop;
 };
 
-/// Measures the whole of `flight` and appends the returns to `file`, which the caller finishes, in
-/// the order of the shots. The bytes do not depend on the number of threads, and the memory that
-/// is needed does not on the length of the flight.
+/// Measures the whole of `flight` and appends the returns to each of `files`, which the caller
+/// finishes, in the order of the shots. The bytes do not depend on the number of threads, and the
+/// memory that is needed does not on the length of the flight.
 ScanResult run_scan(const sim::Scene& scene, const sim::Lidar& lidar,
-                    const sim::LidarFlight& flight, LasWriter& file, const ScanOptions& options);
+                    const sim::LidarFlight& flight, std::span<CloudFile> files,
+                    const ScanOptions& options);
 
 }  // namespace skycap::missions

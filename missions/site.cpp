@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "missions/mission_flight.h"
+
 namespace skycap::missions {
 
 survey::ViewLimits view_limits(const Mission& mission) {
@@ -16,6 +18,12 @@ survey::ViewLimits view_limits(const Mission& mission) {
   if (limits.ground_clearance) {
     const double least = mission.scene.position.z() + *limits.ground_clearance;
     result.least_height = std::max(least, result.least_height.value_or(least));
+  }
+  if (mission.flight.is_flown()) {
+    const flight::Vehicle& vehicle = vehicle_of(mission);
+    result.least_pitch = std::max(result.least_pitch, vehicle.gimbal_min);
+    result.most_pitch = std::min(result.most_pitch, vehicle.gimbal_max);
+    result.stand_off = std::max(result.stand_off, mission.flight.clearance);
   }
   return result;
 }

@@ -7,7 +7,8 @@
 
 namespace skycap::missions {
 
-/// The limits of mission.site and mission.limits together, heights as z in the mission's frame.
+/// The limits of mission.site, mission.limits and the vehicle together, heights as z in the
+/// mission's frame.
 survey::ViewLimits view_limits(const Mission& mission);
 
 }  // namespace skycap::missions

@@ -1,9 +1,11 @@
 #include "missions/survey_runner.h"
 
 #include <algorithm>
+#include <cmath>
 #include <span>
 
 #include "geometry/camera.h"
+#include "geometry/error.h"
 #include "geometry/parallel.h"
 #include "geometry/point_grid.h"
 #include "missions/coverage.h"
@@ -13,22 +15,14 @@
 namespace skycap::missions {
 namespace {
 
+/// Keeps the candidates' random numbers apart from those of the first view.
+constexpr std::uint64_t candidates_stream = 0x766f6c756d657472;
+
 template <class Field>
 double sum_over(const std::vector<JudgedView>& views, Field field) {
   double sum = 0.0;
   for (const JudgedView& view : views) sum += view.surveyed.*field;
   return sum;
-}
-
-constexpr double seconds_per_minute = 60.0;
-
-survey::SurveyLimits survey_limits(const LimitsConfig& config) {
-  survey::SurveyLimits limits{.max_views = config.max_views,
-                              .max_distance = config.max_distance,
-                              .speed = config.speed,
-                              .time_per_view = config.time_per_view};
-  if (config.max_minutes) limits.max_time = seconds_per_minute * *config.max_minutes;
-  return limits;
 }
 
 /// Takes over what only the planner skycap can say, such as which budget made it stop.
@@ -67,7 +61,85 @@ class ViewGate {
   geometry::PointGrid grid_;
 };
 
+/// A volumetric survey's V where neither mission nor benchmark says it: the paper's for its last
+/// two models.
+constexpr std::size_t usual_view_limit = 130;
+
+std::size_t view_limit(const Mission& mission) {
+  const bool is_volumetric = volumetric_metric(mission.planner.name).has_value();
+  return is_volumetric ? std::min(mission.volumetric.view_limit.value_or(usual_view_limit),
+                                  mission.limits.max_views)
+                       : mission.limits.max_views;
+}
+
+constexpr double seconds_per_minute = 60.0;
+
+survey::SurveyLimits survey_limits(const Mission& mission) {
+  const LimitsConfig& config = mission.limits;
+  survey::SurveyLimits limits{.max_views = view_limit(mission),
+                              .max_distance = config.max_distance,
+                              .speed = config.speed,
+                              .time_per_view = config.time_per_view};
+  if (config.max_minutes) limits.max_time = seconds_per_minute * *config.max_minutes;
+  return limits;
+}
+
+survey::VolumetricConfig volumetric_config(const Mission& mission, survey::VolumetricMetric metric,
+                                           unsigned threads) {
+  const survey::VolumetricSettings& settings = mission.volumetric;
+  if (!settings.sphere_centre || !settings.sphere_radius) {
+    throw Error(ErrorKind::bad_config,
+                "the planner needs volumetric.sphere_centre and volumetric.sphere_radius where "
+                "there is no model to derive them from; give both");
+  }
+  const survey::SeeConfig& see = mission.planner.see;
+  const double views = static_cast<double>(view_limit(mission)) * settings.candidates_per_view;
+  return {.metric = metric,
+          .resolution = see.resolution_radius,
+          .spacing = see.effective_spacing(),
+          .scene_box = see.scene_box,
+          .candidates = static_cast<std::size_t>(std::lround(views)),
+          .sphere_centre = *settings.sphere_centre,
+          .sphere_radius = *settings.sphere_radius,
+          .least_height = see.ground_clearance,
+          .seed = mission.seed ^ candidates_stream,
+          .settings = settings,
+          .threads = threads};
+}
+
+/// The mission of one trial: what a volumetric planner takes from the scene is filled in.
+Mission trial_mission(const Mission& mission, const SurveyScene& scene, std::uint64_t seed) {
+  Mission trial = mission;
+  trial.seed = seed;
+  survey::VolumetricSettings& settings = trial.volumetric;
+  if (!settings.sphere_centre) settings.sphere_centre = scene.view_sphere().centre;
+  if (!settings.sphere_radius) settings.sphere_radius = scene.view_sphere().radius;
+  return trial;
+}
+
 }  // namespace
+
+std::optional<survey::VolumetricMetric> volumetric_metric(PlannerName name) {
+  using enum survey::VolumetricMetric;
+  switch (name) {
+    case PlannerName::rsv:
+      return rear_side_voxel;
+    case PlannerName::rse:
+      return rear_side_entropy;
+    case PlannerName::oa:
+      return occlusion_aware;
+    case PlannerName::uv:
+      return unobserved_voxel;
+    case PlannerName::pc:
+      return proximity_count;
+    case PlannerName::af:
+      return area_factor;
+    case PlannerName::ae:
+      return average_entropy;
+    default:
+      return std::nullopt;
+  }
+}
 
 double SurveyRecord::planning_time() const {
   return sum_over(views, &survey::SurveyedView::planning_time);
@@ -119,6 +191,10 @@ std::unique_ptr<survey::Planner> make_planner(const Mission& mission, unsigned t
   const geometry::Camera camera(mission.sensor.camera.camera);
   survey::SeeConfig see = mission.planner.see;
   see.threads = threads;
+  if (const auto metric = volumetric_metric(mission.planner.name)) {
+    return std::make_unique<survey::VolumetricPlanner>(volumetric_config(mission, *metric, threads),
+                                                       camera);
+  }
   if (mission.planner.name != PlannerName::skycap) {
     return std::make_unique<survey::SeePlanner>(see, camera);
   }
@@ -148,12 +224,17 @@ SurveyRecord run_survey(const Mission& mission, const SurveyScene& scene, std::u
   sim::DepthCameraConfig camera_config = mission.sensor.camera;
   camera_config.noise.seed = seed;
   const sim::DepthCamera camera(camera_config);
-  const std::unique_ptr<survey::Planner> planner = make_planner(mission, threads);
+  const std::unique_ptr<survey::Planner> planner =
+      make_planner(trial_mission(mission, scene, seed), threads);
   CoverageMeter meter(scene.samples().points, mission.evaluation.registration_distance);
 
   SurveyRecord record;
   record.seed = seed;
   record.threads = geometry::thread_count(threads);
+  const geometry::View first_view = scene.first_view(seed);
+  std::optional<SurveyFlight> flight;
+  if (mission.flight.is_flown()) flight.emplace(mission, first_view);
+
   std::uint64_t frame = 0;
   std::size_t points_judged = 0;
   survey::SurveyPorts ports;
@@ -162,12 +243,22 @@ SurveyRecord run_survey(const Mission& mission, const SurveyScene& scene, std::u
   };
   ViewGate gate(view_limits(mission));
   std::size_t points_gated = 0;
-  if (mission.planner.name != PlannerName::skycap) {
-    ports.can_reach = [&](const Eigen::Vector3d&, const geometry::View& view) {
-      const std::span stored(planner->cloud().positions);
-      gate.add(stored.subspan(points_gated));
-      points_gated = stored.size();
-      return gate.admits(view);
+  const bool is_gated = mission.planner.name != PlannerName::skycap;
+  if (flight) {
+    ports.sensed = [&](const geometry::Scan& scan) {
+      flight->fly();
+      flight->take_in(scan);
+    };
+  }
+  if (flight || is_gated) {
+    ports.can_reach = [&](const Eigen::Vector3d& from, const geometry::View& view) {
+      if (is_gated) {
+        const std::span stored(planner->cloud().positions);
+        gate.add(stored.subspan(points_gated));
+        points_gated = stored.size();
+        if (!gate.admits(view)) return false;
+      }
+      return !flight || flight->can_reach(from, view);
     };
   }
   ports.report = [&](const survey::SurveyedView& view, const geometry::Scan&) {
@@ -177,13 +268,13 @@ SurveyRecord run_survey(const Mission& mission, const SurveyScene& scene, std::u
     record.views.push_back({view, meter.share()});
     if (report) report(record.views.back());
   };
-  const survey::SurveyLimits limits = survey_limits(mission.limits);
+  const survey::SurveyLimits limits = survey_limits(mission);
   record.stop_reason =
-      survey::run_survey(*planner, scene.first_view(seed), limits, ports, std::move(stop))
-          .stop_reason;
+      survey::run_survey(*planner, first_view, limits, ports, std::move(stop)).stop_reason;
   ask_skycap(*planner, record);
   record.cloud = planner->cloud();
   record.is_covered = meter.is_covered();
+  if (flight) record.flown = flight->finish();
   return record;
 }
 

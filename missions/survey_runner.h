@@ -10,6 +10,7 @@
 
 #include "geometry/point_cloud.h"
 #include "missions/mission.h"
+#include "missions/survey_flight.h"
 #include "missions/survey_scene.h"
 #include "survey/planner.h"
 #include "survey/skycap_planner.h"
@@ -31,6 +32,7 @@ struct SurveyRecord {
   std::vector<JudgedView> views;
   geometry::PointCloud cloud;
   std::vector<std::uint8_t> is_covered;  ///< for each of the scene's samples
+  std::optional<FlownSurvey> flown;      ///< of a mission with a vehicle
 
   /// What the planner skycap believed at the end, and why it stopped; nothing with the others.
   std::optional<survey::SurveyBelief> belief;
@@ -51,12 +53,14 @@ const char* name_of(survey::StopReason reason);
 /// came first.
 const char* name_of(survey::SkycapStop stop);
 
-/// The planner that the mission names, on so many threads (zero: all processors).
+/// The planner that the mission names, on so many threads (zero: all processors). Throws
+/// Error{bad_config} if it is volumetric and the mission does not say where its sphere is.
 std::unique_ptr<survey::Planner> make_planner(const Mission& mission, unsigned threads);
 
 /// Surveys the mission's scene with that seed and so many threads (zero: all processors). The
-/// record does not depend on the threads but for its times. `report` is told of each view; it may
-/// be empty. Throws what planner and sensor throw.
+/// record does not depend on the threads but for its times. A mission with a vehicle goes only to
+/// views that it can safely reach. `report` is told of each view; it may be empty. Throws what
+/// planner, sensor and SurveyFlight throw.
 SurveyRecord run_survey(const Mission& mission, const SurveyScene& scene, std::uint64_t seed,
                         unsigned threads, std::stop_token stop = {},
                         const std::function<void(const JudgedView&)>& report = {});

@@ -39,6 +39,16 @@ Vector3d uniform_direction(std::mt19937_64& random) {
   }
 }
 
+ViewSphere sphere_around(std::span<const Eigen::Vector3f> surface, double view_distance) {
+  Vector3d centroid = Vector3d::Zero();
+  for (const auto& point : surface) centroid += point.cast<double>();
+  centroid /= static_cast<double>(surface.size());
+  double mean_distance = 0.0;
+  for (const auto& point : surface) mean_distance += (point.cast<double>() - centroid).norm();
+  mean_distance /= static_cast<double>(surface.size());
+  return {centroid, view_distance + mean_distance};
+}
+
 std::optional<double> number_in_file(const std::filesystem::path& file) {
   std::ifstream stream(file);
   double number = 0.0;
@@ -59,8 +69,11 @@ SurveyScene::SurveyScene(const Mission& mission, const std::filesystem::path& fo
       scene_(scene_of(model_, mission)),
       samples_(geometry::sample_surface(model_, mission.evaluation.samples, sample_seed)),
       view_distance_(mission.planner.see.view_distance.value_or(geometry::view_distance(
-          geometry::Camera(mission.sensor.camera.camera), mission.planner.see.density))) {
-  if (mission.limits.stand_off > 0.0) truth_ = std::make_shared<geometry::MeshDistance>(model_);
+          geometry::Camera(mission.sensor.camera.camera), mission.planner.see.density))),
+      view_sphere_(sphere_around(samples_.points, view_distance_)) {
+  if (view_limits(mission).stand_off > 0.0) {
+    truth_ = std::make_shared<geometry::MeshDistance>(model_);
+  }
 }
 
 geometry::View SurveyScene::first_view(std::uint64_t seed) const {
@@ -68,22 +81,12 @@ geometry::View SurveyScene::first_view(std::uint64_t seed) const {
   if (start.position && start.look_at) return geometry::look_at(*start.position, *start.look_at);
   if (start.position) return {*start.position, start.direction->normalized()};
 
-  Vector3d centroid = Vector3d::Zero();
-  for (const auto& point : samples_.points) centroid += point.cast<double>();
-  centroid /= static_cast<double>(samples_.points.size());
-  double mean_distance = 0.0;
-  for (const auto& point : samples_.points) {
-    mean_distance += (point.cast<double>() - centroid).norm();
-  }
-  mean_distance /= static_cast<double>(samples_.points.size());
-
   const survey::ViewLimits limits = view_limits(mission_);
   std::mt19937_64 random(seed);
   constexpr int most_attempts = 10'000;
   for (int attempt = 0; attempt < most_attempts; ++attempt) {
-    const Vector3d position =
-        centroid + (view_distance_ + mean_distance) * uniform_direction(random);
-    const geometry::View view = geometry::look_at(position, centroid);
+    const Vector3d position = view_sphere_.centre + view_sphere_.radius * uniform_direction(random);
+    const geometry::View view = geometry::look_at(position, view_sphere_.centre);
     if (limits.allow(view)) return view;
   }
   throw Error(
@@ -147,7 +150,8 @@ std::string SurveyScene::ceiling_key() const {
     if (!key.path.starts_with("scene.") && !key.path.starts_with("sensor.") &&
         !key.path.starts_with("evaluation.") && !key.path.starts_with("planner.scene_box") &&
         !key.path.starts_with("site.") && key.path != "limits.ground_clearance" &&
-        key.path != "limits.stand_off" && !key.path.ends_with("_pitch_deg")) {
+        key.path != "limits.stand_off" && !key.path.ends_with("_pitch_deg") &&
+        key.path != "flight.vehicle" && key.path != "flight.clearance") {
       continue;
     }
     const auto value = key.get(mission_);

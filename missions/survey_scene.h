@@ -19,6 +19,13 @@
 
 namespace skycap::missions {
 
+/// Where the first view, and all views of the volumetric planners, are looked for: around the
+/// surface's centroid, as far as d and the surface's mean distance to it (paper §IV-B).
+struct ViewSphere {
+  Eigen::Vector3d centre = Eigen::Vector3d::Zero();
+  double radius = 0.0;
+};
+
 class SurveyScene {
  public:
   /// Loads and places the mission's model; `folder` is where relative paths start. Throws what
@@ -32,9 +39,10 @@ class SurveyScene {
   /// d: as the mission gives it, or from its camera and density.
   double view_distance() const { return view_distance_; }
 
+  const ViewSphere& view_sphere() const { return view_sphere_; }
+
   /// The first view of the survey with that seed: as the mission gives it, or at random on the
-  /// sphere around the surface's centroid whose radius is d and the surface's mean distance to the
-  /// centroid, within the mission's limits, looking at the centroid.
+  /// view sphere, within the mission's limits, looking at the sphere's centre.
   geometry::View first_view(std::uint64_t seed) const;
 
   /// For each sample, 1 if an admissible sensor position sees it. Takes seconds.
@@ -57,6 +65,7 @@ class SurveyScene {
   sim::Scene scene_;
   geometry::SurfaceSamples samples_;
   double view_distance_;
+  ViewSphere view_sphere_;
   std::shared_ptr<const geometry::MeshDistance> truth_;  ///< if a stand-off needs it
 };
 

@@ -23,16 +23,45 @@ struct PlanOptions {
 };
 
 /// Surveys a mission's scene in simulation and writes the mission package, or the trials' files.
-/// Exit code 1 if the survey was interrupted or could not go on.
+/// Exit code 1 if the survey was interrupted, or could not go anywhere from its first view.
 int plan(const PlanOptions& options, const Console& console);
 
 struct CheckOptions {
   std::filesystem::path mission;
+  std::optional<std::filesystem::path> route;
   std::vector<KeyOverride> overrides;
 };
 
-/// Checks a mission file and its scene; says what follows from it.
+/// Checks a mission file and its scene; says what follows from it. With a route: proves that each
+/// of its legs keeps the mission's clearance from the scene, the ground and the site's rules; exit
+/// code 1, with a list, if one does not.
 int check(const CheckOptions& options, const Console& console);
+
+struct ExportOptions {
+  std::filesystem::path package;             ///< folder that plan() wrote
+  std::vector<std::string> formats;          ///< flight::formats() by name
+  std::optional<std::filesystem::path> out;  ///< folder; default: the package
+  std::vector<KeyOverride> overrides;
+};
+
+/// Plans a flight through the views of a finished survey and writes it in other formats, or for
+/// another vehicle. Exit code 1 if no view can be visited.
+int export_package(const ExportOptions& options, const Console& console);
+
+struct ScanVerbOptions {
+  std::filesystem::path mission;
+  std::optional<std::filesystem::path> route;  ///< in place of the mission's
+  std::optional<std::filesystem::path> out;    ///< default: results/NAME/scan
+  std::optional<std::string> sensor;           ///< in place of the mission's
+  std::vector<std::string> formats = {"las"};  ///< of a laser scanner's points
+  bool with_truth = false;                     ///< also where the surfaces really were
+  std::vector<KeyOverride> overrides;
+  bool is_quiet = false;
+};
+
+/// Flies a route in the simulator and records what the sensor measures on the way. Exit code 1 if
+/// the flight was interrupted.
+int scan(const ScanVerbOptions& options, const Console& console);
 
 struct EvaluateOptions {
   std::filesystem::path cloud;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 namespace skycap::sim {
 namespace {
@@ -61,13 +62,17 @@ float received_power(const RayHit& hit, const Sensitivity& sensitivity) {
 }
 
 std::vector<Echo> form_echoes(std::span<RayHit> hits, const Sensitivity& sensitivity,
-                              const Beam& beam) {
-  std::sort(hits.begin(), hits.end(),
-            [](const RayHit& a, const RayHit& b) { return a.range < b.range; });
+                              const Beam& beam, std::vector<Echo> recycled) {
+  std::vector<Echo> echoes = std::move(recycled);
+  echoes.clear();
+  if (hits.empty()) return echoes;
+  const auto by_range = [](const RayHit& a, const RayHit& b) { return a.range < b.range; };
   const auto resolution = static_cast<float>(0.5 * speed_of_light * beam.pulse_length);
-  std::vector<Echo> echoes;
+  const auto [nearest, farthest] = std::minmax_element(hits.begin(), hits.end(), by_range);
+  const bool is_single = farthest->range - nearest->range < resolution;  // the usual case
+  if (!is_single) std::sort(hits.begin(), hits.end(), by_range);
   for (std::size_t first = 0; first < hits.size();) {
-    std::size_t end = first + 1;
+    std::size_t end = is_single ? hits.size() : first + 1;
     while (end < hits.size() && hits[end].range - hits[end - 1].range < resolution) ++end;
     const Echo echo = merge(hits.subspan(first, end - first), sensitivity);
     if (echo.power >= 1.0F) echoes.push_back(echo);

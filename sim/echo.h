@@ -31,9 +31,9 @@ struct Echo {
 float received_power(const RayHit& hit, const Sensitivity& sensitivity);
 
 /// The echoes that are reported, by ascending range. Rays nearer to the next than half the pulse
-/// length, c tau / 2, belong to one echo. Sorts `hits`.
+/// length, c tau / 2, belong to one echo. May sort `hits`; uses the memory of `recycled` again.
 std::vector<Echo> form_echoes(std::span<RayHit> hits, const Sensitivity& sensitivity,
-                              const Beam& beam);
+                              const Beam& beam, std::vector<Echo> recycled = {});
 
 /// Standard deviation of a measured range (RangeErrors).
 float range_sigma(const RangeErrors& errors, float range, float cosine);

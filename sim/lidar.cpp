@@ -2,14 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
-#include <optional>
 #include <utility>
 
 #include "sim/echo.h"
+#include "sim/lidar_rays.h"
 #include "sim/noise.h"
 #include "sim/scan_pattern.h"
-#include "sim/scene_embree.h"
 
 namespace skycap::sim {
 namespace {
@@ -18,153 +16,7 @@ using Eigen::Isometry3d;
 using Eigen::Vector3d;
 using Eigen::Vector3f;
 
-constexpr std::uint32_t firings_in_block = ScanPattern::firings_in_block;
-constexpr double pose_spacing = 1e-4;  // [s]; how often a trajectory is asked
 enum Stream : std::uint32_t { bias_stream, azimuth_stream, elevation_stream, range_stream };
-
-// world_from_sensor at the start of each firing of a block and of the next, relative to a fixed
-// origin: the nine entries of the rotation, row by row, and the position. Four firings lie
-// together, as their rays do.
-struct BlockPoses {
-  float entries[12][firings_in_block + 4];
-};
-
-// The poses of four consecutive firings.
-struct FourPoses {
-  FourFloats entries[12];
-
-  FourPoses(const BlockPoses& poses, std::uint32_t firing) {
-    for (int i = 0; i < 12; ++i) {
-      std::memcpy(&entries[i], &poses.entries[i][firing], sizeof entries[i]);
-    }
-  }
-  void rotate(const FourFloats (&vector)[3], FourFloats (&rotated)[3]) const {
-    for (int row = 0; row < 3; ++row) {
-      rotated[row] = entries[3 * row] * vector[0] + entries[3 * row + 1] * vector[1] +
-                     entries[3 * row + 2] * vector[2];
-    }
-  }
-  void shift(FourFloats (&vector)[3]) const {
-    for (int row = 0; row < 3; ++row) vector[row] += entries[9 + row];
-  }
-};
-
-// Four firings of a channel that fires a share of the firing period later.
-FourPoses delayed(FourPoses poses, const FourPoses& next, float share) {
-  for (int i = 0; i < 12; ++i) {
-    poses.entries[i] += share * (next.entries[i] - poses.entries[i]);
-  }
-  return poses;
-}
-
-BlockPoses block_poses(const Trajectory& trajectory, const Isometry3d& body_from_sensor,
-                       double start, double firing_period, const Vector3d& origin) {
-  constexpr int firings = firings_in_block;
-  const double duration = firing_period * firings;
-  const int spans = std::clamp(static_cast<int>(std::ceil(duration / pose_spacing)), 1, firings);
-  float knots[firings + 1][12];
-  for (int i = 0; i <= spans; ++i) {
-    const Isometry3d pose = trajectory.pose(start + duration * i / spans) * body_from_sensor;
-    for (int entry = 0; entry < 9; ++entry) {
-      knots[i][entry] = static_cast<float>(pose.linear()(entry / 3, entry % 3));
-    }
-    for (int axis = 0; axis < 3; ++axis) {
-      knots[i][9 + axis] = static_cast<float>(pose.translation()[axis] - origin[axis]);
-    }
-  }
-  BlockPoses poses = {};
-  for (int firing = 0; firing <= firings; ++firing) {
-    const int knot = std::min(firing * spans / firings, spans - 1);
-    const float share =
-        static_cast<float>(firing * spans) / static_cast<float>(firings) - static_cast<float>(knot);
-    for (int entry = 0; entry < 12; ++entry) {
-      poses.entries[entry][firing] =
-          knots[knot][entry] + share * (knots[knot + 1][entry] - knots[knot][entry]);
-    }
-  }
-  return poses;
-}
-
-// Directions across a beam, along azimuth and along elevation; `up` is the sensor's z axis.
-struct AcrossBeam {
-  Vector3f horizontal, vertical;
-};
-AcrossBeam across(const Vector3f& direction, const Vector3f& up) {
-  const Vector3f sideways = up.cross(direction);
-  const float length = sideways.norm();
-  const Vector3f horizontal =
-      length > 1e-6F ? Vector3f(sideways / length) : direction.unitOrthogonal();
-  return {horizontal, direction.cross(horizontal)};
-}
-
-// Rays relative to the origin of Embree's scene, slot by slot.
-struct Rays {
-  std::vector<float> origin[3], direction[3];
-
-  void resize(std::size_t rays) {
-    for (int axis = 0; axis < 3; ++axis) {
-      origin[axis].resize(rays);
-      direction[axis].resize(rays);
-    }
-  }
-  Vector3f from(std::size_t ray) const { return {origin[0][ray], origin[1][ray], origin[2][ray]}; }
-  Vector3f towards(std::size_t ray) const {
-    return {direction[0][ray], direction[1][ray], direction[2][ray]};
-  }
-  Vector3f at(std::size_t ray, float range) const { return from(ray) + range * towards(ray); }
-  void set_direction(std::size_t ray, const Vector3f& towards) {
-    for (int axis = 0; axis < 3; ++axis) direction[axis][ray] = towards[axis];
-  }
-};
-
-// What rays meet.
-struct Hits {
-  std::vector<int> active;    // which rays to cast: -1 or 0, as Embree wants it
-  std::vector<float> range;   // negative: nothing
-  std::vector<float> cosine;  // of the angle of incidence
-  std::vector<std::uint32_t> triangle;
-
-  void resize(std::size_t rays) {
-    active.assign(rays, 0);
-    range.assign(rays, -1.0F);
-    cosine.resize(rays);
-    triangle.resize(rays);
-  }
-};
-
-template <int width>
-void cast_rays(const Scene::Embree& embree, float reach, const Rays& rays, Hits& hits) {
-  Packet<width> packet;
-  const auto load = [](float* lanes, const std::vector<float>& values, std::size_t first) {
-    std::memcpy(lanes, values.data() + first, width * sizeof(float));
-  };
-  for (std::size_t first = 0; first < hits.active.size(); first += width) {
-    std::memcpy(packet.active, hits.active.data() + first, width * sizeof(int));
-    if (std::all_of(packet.active, packet.active + width, [](int lane) { return lane == 0; })) {
-      continue;
-    }
-    auto& ray = packet.rays.ray;
-    auto& hit = packet.rays.hit;
-    load(ray.org_x, rays.origin[0], first);
-    load(ray.org_y, rays.origin[1], first);
-    load(ray.org_z, rays.origin[2], first);
-    load(ray.dir_x, rays.direction[0], first);
-    load(ray.dir_y, rays.direction[1], first);
-    load(ray.dir_z, rays.direction[2], first);
-    packet.cast(embree, reach);
-    float* const range = hits.range.data() + first;
-    float* const cosine = hits.cosine.data() + first;
-    std::memcpy(hits.triangle.data() + first, hit.primID, sizeof hit.primID);
-    for (int lane = 0; lane < width; ++lane) {
-      const float projection = ray.dir_x[lane] * hit.Ng_x[lane] + ray.dir_y[lane] * hit.Ng_y[lane] +
-                               ray.dir_z[lane] * hit.Ng_z[lane];
-      const float square = hit.Ng_x[lane] * hit.Ng_x[lane] + hit.Ng_y[lane] * hit.Ng_y[lane] +
-                           hit.Ng_z[lane] * hit.Ng_z[lane];
-      range[lane] = packet.is_hit(lane) ? ray.tfar[lane] : -1.0F;
-      cosine[lane] = std::abs(projection) / std::sqrt(square);
-    }
-  }
-}
 
 }  // namespace
 
@@ -177,6 +29,14 @@ struct Lidar::Impl {
         has_constant_sigma(config.errors.sigma_per_metre == 0.0 &&
                            config.errors.sigma_per_square_metre == 0.0 &&
                            config.errors.incidence_power == 0.0) {
+    for (const BeamSample& sample : beam) {
+      const double across = 0.5 * config.beam.divergence_horizontal * sample.horizontal;
+      const double above = 0.5 * config.beam.divergence_vertical * sample.vertical;
+      const double length = std::sqrt(1.0 + across * across + above * above);
+      beam_along.push_back(static_cast<float>(1.0 / length));
+      beam_across.push_back(static_cast<float>(across / length));
+      beam_above.push_back(static_cast<float>(above / length));
+    }
     for (const Channel& channel : config.channels) {
       delay_shares.push_back(static_cast<float>(channel.delay / config.firing_period));
     }
@@ -190,6 +50,7 @@ struct Lidar::Impl {
   LidarConfig config;
   ScanPattern pattern;
   std::vector<BeamSample> beam;
+  std::vector<float> beam_along, beam_across, beam_above;  // its unit rays, in the beam's frame
   float min_range;
   bool has_constant_sigma;
   std::vector<float> biases;        // of each channel
@@ -224,17 +85,20 @@ class BlockMeasurement {
     place(poses_, shots_rays_);
     cast(first, end);
     if (has_own_belief_) place(believed_, reported_rays_);
-    if (config_.errors.angle_sigma > 0.0) mislead();
-    reserve(returns);
+
+    const std::size_t shots = (end - first) * config_.channels.size();
+    const std::size_t before = returns.size();
+    resize(returns, before + shots * range_noise_.size());
+    next_ = before;
     for (std::uint32_t firing = first; firing < end; ++firing) {
-      for (std::size_t channel = 0; channel < config_.channels.size(); ++channel) {
-        const std::size_t slot = lidar_.pattern.slot(firing, channel);
-        if (shots_.is_shot[slot] == 0) continue;
-        const double time =
-            start + firing * config_.firing_period + config_.channels[channel].delay;
-        report(channel, slot, time, returns);
+      const double time = start + firing * config_.firing_period;
+      if (lidar_.beam.size() == 1) {
+        report_rays(firing, time, returns);
+      } else {
+        report_beams(firing, time, returns);
       }
     }
+    resize(returns, next_);
   }
 
  private:
@@ -291,51 +155,28 @@ class BlockMeasurement {
   void spread_beam(std::uint32_t firing, std::size_t slot) {
     const Vector3f axis = shots_rays_.towards(slot);
     const AcrossBeam sides = across(axis, up(poses_, firing));
-    const Vector3f right =
-        static_cast<float>(0.5 * config_.beam.divergence_horizontal) * sides.horizontal;
-    const Vector3f above =
-        static_cast<float>(0.5 * config_.beam.divergence_vertical) * sides.vertical;
-    std::size_t ray = slot * lidar_.beam.size();
-    for (const BeamSample& sample : lidar_.beam) {
-      const Vector3f towards = axis + sample.horizontal * right + sample.vertical * above;
-      beam_rays_.set_direction(ray, towards.normalized());
-      for (int i = 0; i < 3; ++i) beam_rays_.origin[i][ray] = shots_rays_.origin[i][slot];
-      ++ray;
-    }
-  }
-
-  // Turns the rays along which the sensor reports its points by the errors of its angles.
-  void mislead() {
-    if (!has_own_belief_) reported_rays_ = shots_rays_;
-    const auto sigma = static_cast<float>(config_.errors.angle_sigma);
-    const BlockPoses& poses = has_own_belief_ ? believed_ : poses_;
-    for (std::uint32_t firing = 0; firing < firings_in_block; ++firing) {
-      for (std::size_t channel = 0; channel < config_.channels.size(); ++channel) {
-        const std::size_t slot = lidar_.pattern.slot(firing, channel);
-        const Vector3f direction = reported_rays_.towards(slot);
-        const AcrossBeam sides = across(direction, up(poses, firing));
-        reported_rays_.set_direction(slot,
-                                     (direction + sigma * azimuth_noise_[slot] * sides.horizontal +
-                                      sigma * elevation_noise_[slot] * sides.vertical)
-                                         .normalized());
+    const std::size_t samples = lidar_.beam.size(), first = slot * samples;
+    for (int i = 0; i < 3; ++i) {
+      float* const direction = beam_rays_.direction[i].data() + first;
+      for (std::size_t ray = 0; ray < samples; ++ray) {
+        direction[ray] = lidar_.beam_along[ray] * axis[i] +
+                         lidar_.beam_across[ray] * sides.horizontal[i] +
+                         lidar_.beam_above[ray] * sides.vertical[i];
       }
+      std::fill_n(beam_rays_.origin[i].data() + first, samples, shots_rays_.origin[i][slot]);
     }
   }
 
-  // Room for a block more. Growing by hand keeps the vectors' doubling.
-  void reserve(LidarReturns& returns) const {
-    const std::size_t needed = returns.size() + lidar_.pattern.slots();
-    if (needed <= returns.points.capacity()) return;
-    const std::size_t room = std::max(needed, 2 * returns.points.capacity());
-    returns.points.reserve(room);
-    returns.true_points.reserve(room);
-    returns.times.reserve(room);
-    returns.intensities.reserve(room);
-    returns.scan_angles.reserve(room);
-    returns.triangles.reserve(room);
-    returns.channels.reserve(room);
-    returns.return_numbers.reserve(room);
-    returns.returns_of_shots.reserve(room);
+  static void resize(LidarReturns& returns, std::size_t size) {
+    returns.points.resize(size);
+    returns.true_points.resize(size);
+    returns.times.resize(size);
+    returns.intensities.resize(size);
+    returns.scan_angles.resize(size);
+    returns.triangles.resize(size);
+    returns.channels.resize(size);
+    returns.return_numbers.resize(size);
+    returns.returns_of_shots.resize(size);
   }
 
   // One normal for each slot, error and return; only for the errors that are on.
@@ -351,46 +192,60 @@ class BlockMeasurement {
     }
     has_range_noise_ =
         errors.sigma > 0.0 || errors.sigma_per_metre > 0.0 || errors.sigma_per_square_metre > 0.0;
-    if (!has_range_noise_) return;
     range_noise_.resize(config_.beam.rings > 0 ? config_.beam.max_returns : 1);
+    if (!has_range_noise_) return;
     for (std::uint32_t i = 0; i < range_noise_.size(); ++i) {
       draw(range_stream + i, range_noise_[i]);
     }
   }
 
-  std::optional<RayHit> hit(std::size_t ray, float share) const {
-    if (hits_.range[ray] < lidar_.min_range) return std::nullopt;
-    return RayHit{hits_.range[ray], std::min(1.0F, hits_.cosine[ray]),
-                  scene_.reflectance(hits_.triangle[ray]), share, hits_.triangle[ray]};
+  RayHit hit(std::size_t ray, float share) const {
+    return {hits_.range[ray], std::min(1.0F, hits_.cosine[ray]),
+            scene_.reflectance(hits_.triangle[ray]), share, hits_.triangle[ray]};
   }
 
-  void report(std::size_t channel, std::size_t slot, double time, LidarReturns& returns) {
+  // A firing of beams without a width: a ray is its echo.
+  void report_rays(std::uint32_t firing, double time, LidarReturns& returns) {
+    for (std::size_t channel = 0; channel < config_.channels.size(); ++channel) {
+      const std::size_t slot = lidar_.pattern.slot(firing, channel);
+      if (hits_.range[slot] < lidar_.min_range) continue;
+      const RayHit only = hit(slot, 1.0F);
+      const float power = received_power(only, config_.sensitivity);
+      if (power < 1.0F) continue;
+      const Echo echo = {only.range, only.cosine, only.reflectance * only.cosine, power,
+                         only.triangle};
+      report(echo, 0, 1, {firing, channel, slot, time}, returns);
+    }
+  }
+
+  void report_beams(std::uint32_t firing, double time, LidarReturns& returns) {
     const std::size_t samples = lidar_.beam.size();
-    if (samples == 1) {
-      const auto only = hit(slot, 1.0F);
-      if (!only) return;
-      const float power = received_power(*only, config_.sensitivity);
-      if (power < 1.0F) return;
-      const Echo echo = {only->range, only->cosine, only->reflectance * only->cosine, power,
-                         only->triangle};
-      report(echo, 0, 1, channel, slot, time, returns);
-      return;
-    }
-    beam_hits_.clear();
-    for (std::size_t i = 0; i < samples; ++i) {
-      const auto one = hit(slot * samples + i, lidar_.beam[i].share);
-      if (one) beam_hits_.push_back(*one);
-    }
-    const std::vector<Echo> echoes = form_echoes(beam_hits_, config_.sensitivity, config_.beam);
-    for (std::size_t i = 0; i < echoes.size(); ++i) {
-      report(echoes[i], i, echoes.size(), channel, slot, time, returns);
+    for (std::size_t channel = 0; channel < config_.channels.size(); ++channel) {
+      const std::size_t slot = lidar_.pattern.slot(firing, channel);
+      beam_hits_.clear();
+      for (std::size_t i = 0; i < samples; ++i) {
+        const std::size_t ray = slot * samples + i;
+        if (hits_.range[ray] < lidar_.min_range) continue;
+        beam_hits_.push_back(hit(ray, lidar_.beam[i].share));
+      }
+      echoes_ = form_echoes(beam_hits_, config_.sensitivity, config_.beam, std::move(echoes_));
+      for (std::size_t i = 0; i < echoes_.size(); ++i) {
+        report(echoes_[i], i, echoes_.size(), {firing, channel, slot, time}, returns);
+      }
     }
   }
 
-  void report(const Echo& echo, std::size_t number, std::size_t count, std::size_t channel,
-              std::size_t slot, double time, LidarReturns& returns) const {
+  struct Shot {
+    std::uint32_t firing;
+    std::size_t channel, slot;
+    double firing_time;
+  };
+
+  void report(const Echo& echo, std::size_t number, std::size_t count, const Shot& shot,
+              LidarReturns& returns) {
     const RangeErrors& errors = config_.errors;
-    float range = echo.range + lidar_.biases[channel];
+    const std::size_t slot = shot.slot;
+    float range = echo.range + lidar_.biases[shot.channel];
     if (has_range_noise_) {
       const float sigma = lidar_.has_constant_sigma ? static_cast<float>(errors.sigma)
                                                     : range_sigma(errors, echo.range, echo.cosine);
@@ -399,16 +254,28 @@ class BlockMeasurement {
     if (errors.range_step > 0.0) {
       range = static_cast<float>(std::round(range / errors.range_step) * errors.range_step);
     }
-    const bool reports_otherwise = has_own_belief_ || errors.angle_sigma > 0.0;
-    returns.points.push_back((reports_otherwise ? reported_rays_ : shots_rays_).at(slot, range));
-    returns.true_points.push_back(shots_rays_.at(slot, echo.range));
-    returns.times.push_back(time);
-    returns.intensities.push_back(echo.intensity);
-    returns.scan_angles.push_back(shots_.azimuth[slot]);
-    returns.triangles.push_back(echo.triangle);
-    returns.channels.push_back(static_cast<std::uint16_t>(channel));
-    returns.return_numbers.push_back(static_cast<std::uint8_t>(number + 1));
-    returns.returns_of_shots.push_back(static_cast<std::uint8_t>(count));
+    const Rays& rays = has_own_belief_ ? reported_rays_ : shots_rays_;
+    const std::size_t i = next_++;
+    returns.points[i] = errors.angle_sigma > 0.0 ? misled(rays, shot, range) : rays.at(slot, range);
+    returns.true_points[i] = shots_rays_.at(slot, echo.range);
+    returns.times[i] = shot.firing_time + config_.channels[shot.channel].delay;
+    returns.intensities[i] = echo.intensity;
+    returns.scan_angles[i] = shots_.azimuth[slot];
+    returns.triangles[i] = echo.triangle;
+    returns.channels[i] = static_cast<std::uint16_t>(shot.channel);
+    returns.return_numbers[i] = static_cast<std::uint8_t>(number + 1);
+    returns.returns_of_shots[i] = static_cast<std::uint8_t>(count);
+  }
+
+  // A point along a ray that is turned by the errors of the sensor's angles.
+  Vector3f misled(const Rays& rays, const Shot& shot, float range) const {
+    const auto sigma = static_cast<float>(config_.errors.angle_sigma);
+    const Vector3f direction = rays.towards(shot.slot);
+    const AcrossBeam sides =
+        across(direction, up(has_own_belief_ ? believed_ : poses_, shot.firing));
+    const Vector3f turned = direction + sigma * azimuth_noise_[shot.slot] * sides.horizontal +
+                            sigma * elevation_noise_[shot.slot] * sides.vertical;
+    return rays.from(shot.slot) + range * turned.normalized();
   }
 
   const Lidar::Impl& lidar_;
@@ -428,6 +295,8 @@ class BlockMeasurement {
   std::vector<float> azimuth_noise_, elevation_noise_;
   std::vector<std::vector<float>> range_noise_;  // for each return of a shot
   std::vector<RayHit> beam_hits_;
+  std::vector<Echo> echoes_;
+  std::size_t next_ = 0;  // where the next return goes
 };
 
 }  // namespace

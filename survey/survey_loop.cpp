@@ -27,6 +27,7 @@ SurveyResult run_survey(Planner& planner, const View& first_view, const SurveyLi
   while (true) {
     SurveyedView taken;
     const geometry::Scan scan = timed(taken.sensing_time, [&] { return ports.sense(*next); });
+    if (ports.sensed) ports.sensed(scan);
     taken.view = geometry::view_of(scan.world_from_sensor);
     if (!result.views.empty()) {
       distance += (taken.view.position - result.views.back().view.position).norm();

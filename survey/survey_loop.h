@@ -50,6 +50,8 @@ struct SurveyResult {
 struct SurveyPorts {
   /// Takes a scan from a view (or as near to it as it could).
   std::function<geometry::Scan(const geometry::View&)> sense;
+  /// Told of each scan before the next view is planned. May be empty.
+  std::function<void(const geometry::Scan&)> sensed;
   /// Whether the sensor can get from one place to a view. Empty: it always can.
   std::function<bool(const Eigen::Vector3d& from, const geometry::View& to)> can_reach;
   /// Told after each view. May be empty.

@@ -102,6 +102,10 @@ std::vector<std::string> notes_of(const FlightPlan& plan, Format format) {
 
 std::span<const FormatInfo> formats() { return all_formats; }
 
+const FormatInfo& format_info(Format format) {
+  return *std::ranges::find(all_formats, format, &FormatInfo::format);
+}
+
 Format format_named(const std::string& name) {
   std::string names;
   for (const FormatInfo& info : all_formats) {

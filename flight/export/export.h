@@ -22,6 +22,7 @@ struct FormatInfo {
   const char* heights;
 };
 std::span<const FormatInfo> formats();
+const FormatInfo& format_info(Format format);
 
 /// The format of that name, such as "kmz". Throws Error{bad_usage} listing the names.
 Format format_named(const std::string& name);

@@ -20,6 +20,7 @@
 #include <Eigen/Geometry>
 
 #include "geometry/parallel.h"
+#include "missions/las_format.h"
 #include "missions/scan_runner.h"
 #include "sim/lidar.h"
 #include "sim/scan_pattern.h"
@@ -138,12 +139,13 @@ void fly_into_file(const sim::Scene& scene, int rings, double duration, unsigned
   config.beam.divergence_horizontal = config.beam.divergence_vertical = 0.003;
   config.beam.max_returns = 5;
   const sim::Trajectory trajectory = flight(duration);
-  missions::LasWriter writer(file, {});
+  std::vector<missions::CloudFile> files;
+  files.emplace_back(file, missions::las_format({}));
   const auto start = std::chrono::steady_clock::now();
   const missions::ScanResult result =
-      missions::run_scan(scene, sim::Lidar(config), {trajectory, trajectory}, writer,
+      missions::run_scan(scene, sim::Lidar(config), {trajectory, trajectory}, files,
                          {.threads = threads, .report = {}, .stop = {}});
-  writer.finish();
+  files[0].finish();
   const std::chrono::duration<double> time = std::chrono::steady_clock::now() - start;
   const double shots = 64.0 * static_cast<double>(result.progress.firings);
   std::printf("          %2d rays a shot, into LAS: %.2f M shots/s, %.1f MB/s written\n",

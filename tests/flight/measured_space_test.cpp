@@ -198,6 +198,18 @@ TEST(MeasuredSpace, OutsideOfItsRegionEverythingIsFreeButMeasuredPoints) {
   EXPECT_GT(space.free_volume(), 1.0);
 }
 
+TEST(MeasuredSpace, KeepsNoPointsBelowItsFloor) {
+  geometry::Scan scan;
+  scan.world_from_sensor.translation() = Vector3d(0, 0, 10);
+  scan.points = {{0, 0, 0.1F}, {3, 0, 0.3F}};
+  MeasuredSpace space(
+      {.region = AlignedBox3d(Vector3d(-1, -1, 5), Vector3d(1, 1, 6)), .floor = 0.2});
+  space.insert(scan, 0.1);
+  EXPECT_EQ(space.closest({{-9, 0, 1}, {-8, 0, 1}}, 20).kind, ObstacleKind::unknown_space);
+  EXPECT_EQ(space.closest({{3, 0, 1}, {4, 0, 1}}, 2).kind, ObstacleKind::occupied_space);
+  EXPECT_GT(space.closest({{0, 0, 1}, {0, 0, 1}}, 20).distance, 2.0);
+}
+
 TEST(MeasuredSpace, IsTheSameAfterWritingAndReading) {
   const MeasuredSpace space = space_with_region();
   std::stringstream file;

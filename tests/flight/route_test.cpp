@@ -167,7 +167,7 @@ TEST(CheckRoute, ListsLegPlaceAndDistance) {
       check_route({{-20, -20, 8}, {20, -20, 8}, {20, 20, 8}, {-20, -20, 8}}, space, 2.0);
   ASSERT_EQ(violations.size(), 1U);
   EXPECT_EQ(violations[0].leg, 2U);
-  EXPECT_THAT(describe(violations[0]), HasSubstr("leg 2: 0.000000 m from triangle"));
+  EXPECT_THAT(describe(violations[0]), HasSubstr("leg 2: 0.000 m from triangle"));
   EXPECT_EQ(check_route({{0, 0, 5}}, space, 1.0).size(), 1U);
   EXPECT_TRUE(check_route({}, space, 1.0).empty());
   EXPECT_THROW(check_route({{0, 0, std::nan("")}}, space, 1.0), Error);

@@ -13,6 +13,7 @@ namespace skycap::missions {
 namespace {
 
 using testing::HasSubstr;
+using testing::StartsWith;
 using tests::TestFolder;
 
 /// A mission or mesh that is wrong in one way, and what has to be said of it. MISSION and FOLDER
@@ -31,6 +32,12 @@ const std::string judged = "evaluation: {registration_distance: 0.005}\n";
 const std::string whole = model + judged;  // lines 1 and 2
 
 std::string with_mesh(const std::string& file) { return "scene: {model: " + file + "}\n" + judged; }
+
+/// A flight section, on one line.
+const std::string around = "min: [-20, -20, 0], max: [20, 20, 20]";
+std::string flown(const std::string& box, const std::string& more = "hold: 1") {
+  return "flight: {vehicle: generic, unknown_box: {" + box + "}, " + more + "}\n";
+}
 
 std::vector<BadInput> bad_inputs() {
   return {
@@ -75,8 +82,8 @@ std::vector<BadInput> bad_inputs() {
       {"ListForNumber", whole + "seed: [1]\n", "key seed: is a list; give a whole number"},
       {"YesForBoolean", whole + "planner: {facing_test: yes}\n",
        "key planner.facing_test: is yes; give true or false"},
-      {"UnknownChoice", whole + "planner: {name: rsv}\n",
-       "MISSION:3: key planner.name: is rsv; give see++, see or skycap"},
+      {"UnknownChoice", whole + "planner: {name: psychic}\n",
+       "MISSION:3: key planner.name: is psychic; give see++, see, skycap, "},
       {"ShortVector", whole + "start: {position: [1, 2]}\n",
        "key start.position: is a list; give a list of three numbers"},
       {"AngleTooWide", whole + "sensor: {horizontal_fov_deg: 180}\n",
@@ -124,6 +131,34 @@ std::vector<BadInput> bad_inputs() {
        "OFF\n3 1 0\n0 0 0\n1 0 0\n2 0 0\n3 0 1 2\n"},
       {"EmptyFirstScan", model + "start: {position: [9, 0, 0], direction: [1, 0, 0]}\n" + judged,
        "MISSION: the first scan holds no point of the scene; start from a place that sees it"},
+      {"FlightWithoutABox", whole + "flight: {vehicle: generic}\n",
+       "MISSION:3: key flight.vehicle: needs flight.unknown_box"},
+      {"UnknownVehicle", whole + "flight: {vehicle: kite}\n",
+       "MISSION:3: key flight.vehicle: is kite; give none, generic, "},
+      {"EmptyUnknownBox", whole + flown("min: [0, 0, 0], max: [0, 1, 1]"),
+       "key flight.unknown_box.max: is not above flight.unknown_box.min"},
+      {"ClearanceBelowItsTerms", whole + flown(around, "clearance: 0.5"),
+       "MISSION:3: key flight.clearance: is less than the vehicle's radius of 0.5 m and the "
+       "position, tracking and map errors make together, 1 m"},
+      {"MapErrorBelowTheNoise",
+       whole + flown(around, "map_error: 0.2") + "sensor: {noise: {sigma: 0.1}}\n",
+       "MISSION:3: key flight.map_error: is below three standard deviations of the sensor's noise; "
+       "make it at least 0.3 m"},
+      {"ClimbBelowTheClearance", whole + flown(around, "takeoff_climb: 1"),
+       "MISSION:3: key flight.takeoff_climb: of 1 m ends within the clearance of the ground"},
+      {"TooMuchWind", whole + flown(around, "wind_speed: 40"),
+       "MISSION:3: key flight.wind_speed: is not below the 10 m/s"},
+      {"HalfAPlace", whole + "site: {longitude_deg: 3}\n",
+       "MISSION:3: key site.longitude_deg: is half a place"},
+      {"FirstViewInTheBuilding",
+       whole + flown(around) + "start: {position: [1, 1, 9], look_at: [0, 0, 0]}\n",
+       "MISSION: the first view at (1, 1, 9) is 0 m from space that was never seen free"},
+      {"FirstViewTooNear",
+       whole + flown(around) + "start: {position: [0, -21, 9], look_at: [0, 0, 0]}\n",
+       "MISSION: the first view at (0, -21, 9) is 1 m from space that was never seen free, at a "
+       "clearance of 2 m"},
+      {"PadInTheBuilding", whole + flown(around, "takeoff: [3, 0, 0]"),
+       "MISSION: the place above the take-off pad at (3, 0, 5) is 0 m from space"},
       {"NoRoomAboveTheGround", whole + "limits: {ground_clearance: 1000}\n",
        "leave no place for a random start"},
       {"BadOption", whole, "--seed: key seed: is x; give a whole number", "", "", {"--seed", "x"}},
@@ -178,8 +213,7 @@ INSTANTIATE_TEST_SUITE_P(BadInput, Program, testing::ValuesIn(bad_inputs()),
 TEST(ProgramUsage, RefusesUnknownVerbs) {
   const auto run = tests::run_skycap({"fly"});
   EXPECT_EQ(run.exit_code, 2);
-  EXPECT_EQ(run.err,
-            "skycap: error: there is no verb 'fly'; the verbs are plan, check, evaluate, model\n");
+  EXPECT_THAT(run.err, StartsWith("skycap: error: there is no verb 'fly'; the verbs are plan, "));
 }
 
 TEST(ProgramUsage, RefusesToDoNothing) {

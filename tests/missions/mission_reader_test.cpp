@@ -170,8 +170,8 @@ TEST(MissionReader, SuggestsTheKeyInItsRightSection) {
   EXPECT_EQ(complaint(smallest + "sensor:\n  sigma: 0.1\n"),
             "m.yaml:4: key sensor.sigma: is unknown; did you mean sensor.noise.sigma?");
   EXPECT_THAT(complaint(smallest + "colour_of_the_sky: blue\n"),
-              HasSubstr("known are name, seed, threads, scene, sensor, planner, start, limits, "
-                        "evaluation, paper"));
+              HasSubstr("known are name, seed, threads, scene, sensor, planner, volumetric, "
+                        "start, limits, evaluation, paper, site, flight, scan"));
 }
 
 // The parser must survive what people and fuzzers write: here, every prefix of a valid mission and

@@ -9,6 +9,8 @@
 #include <unistd.h>
 
 #include "geometry/error.h"
+#include "missions/cloud_formats.h"
+#include "missions/las_format.h"
 #include "tests/sim/shapes.h"
 
 namespace skycap::missions {
@@ -35,12 +37,12 @@ struct LasPoint {
   double angle_deg, time;
 };
 
-/// A reader by the letter of the LAS 1.4 R15 specification, tables 3, 6 and 14.
+/// A reader by the letter of the LAS 1.4 R15 specification: header, point formats 6 and 7.
 struct LasFile {
   std::vector<LasPoint> points;
   std::string crs;
 
-  explicit LasFile(const std::filesystem::path& path) {
+  explicit LasFile(const std::filesystem::path& path, int point_format = 6) {
     const std::vector<char> bytes = bytes_of(path);
     EXPECT_EQ(std::string(bytes.data(), 4), "LASF");
     EXPECT_EQ(value_at<std::uint16_t>(bytes, 6), 0b10001);  // WKT, adjusted GPS time
@@ -49,13 +51,14 @@ struct LasFile {
     EXPECT_EQ(value_at<std::uint16_t>(bytes, 94), 375);
     const auto first_point = value_at<std::uint32_t>(bytes, 96);
     EXPECT_EQ(value_at<std::uint32_t>(bytes, 100), 1U);
-    EXPECT_EQ(bytes[104], 6);
-    EXPECT_EQ(value_at<std::uint16_t>(bytes, 105), 30);
+    EXPECT_EQ(bytes[104], point_format);
+    const std::size_t size = point_format == 7 ? 36 : 30;
+    EXPECT_EQ(value_at<std::uint16_t>(bytes, 105), size);
     for (std::size_t place = 107; place < 131; place += 4) {
       EXPECT_EQ(value_at<std::uint32_t>(bytes, place), 0U);
     }
     const auto count = value_at<std::uint64_t>(bytes, 247);
-    EXPECT_EQ(bytes.size(), first_point + 30 * count);
+    EXPECT_EQ(bytes.size(), first_point + size * count);
 
     EXPECT_EQ(std::string(bytes.data() + 377), "LASF_Projection");
     EXPECT_EQ(value_at<std::uint16_t>(bytes, 393), 2112);
@@ -67,7 +70,7 @@ struct LasFile {
     Eigen::AlignedBox3d bounds;
     std::array<std::uint64_t, 15> by_return = {};
     for (std::uint64_t i = 0; i < count; ++i) {
-      const std::size_t at = first_point + 30 * i;
+      const std::size_t at = first_point + size * i;
       LasPoint point;
       for (int axis = 0; axis < 3; ++axis) {
         point.position[axis] =
@@ -80,6 +83,9 @@ struct LasFile {
       point.channel = static_cast<std::uint8_t>(bytes[at + 17]);
       point.angle_deg = 0.006 * value_at<std::int16_t>(bytes, at + 18);
       point.time = value_at<double>(bytes, at + 22);
+      for (std::size_t colour = 30; colour < size; colour += 2) {
+        EXPECT_EQ(value_at<std::uint16_t>(bytes, at + colour), point.intensity);
+      }
       points.push_back(point);
       bounds.extend(point.position);
       ++by_return[point.return_number - 1];
@@ -108,11 +114,17 @@ class ScanRunner : public testing::Test {
   ~ScanRunner() override { std::filesystem::remove_all(folder); }
 
   ScanResult run(const std::filesystem::path& file, unsigned threads, std::stop_token stop = {}) {
-    LasWriter writer(file, {.offset = far});
-    const ScanResult result = run_scan(scene, sim::Lidar(config), {trajectory, trajectory}, writer,
+    std::vector<CloudFile> files = las_files(file);
+    const ScanResult result = run_scan(scene, sim::Lidar(config), {trajectory, trajectory}, files,
                                        {.threads = threads, .report = {}, .stop = std::move(stop)});
-    writer.finish();
+    files[0].finish();
     return result;
+  }
+
+  std::vector<CloudFile> las_files(const std::filesystem::path& file, int point_format = 6) const {
+    std::vector<CloudFile> files;
+    files.emplace_back(file, las_format({.point_format = point_format, .offset = far}));
+    return files;
   }
 
   const std::filesystem::path folder =
@@ -131,6 +143,10 @@ TEST_F(ScanRunner, TheFileHoldsEveryReturnFieldByField) {
   const ScanResult result = run(folder / "scan.las", 2);
   EXPECT_TRUE(result.is_complete);
   const LasFile file(folder / "scan.las");
+  std::vector<CloudFile> coloured = las_files(folder / "coloured.las", 7);
+  run_scan(scene, sim::Lidar(config), {trajectory, trajectory}, coloured, {});
+  coloured[0].finish();
+  EXPECT_EQ(LasFile(folder / "coloured.las", 7).points.size(), file.points.size());
   const sim::LidarReturns returns =
       sim::Lidar(config).measure(scene, {trajectory, trajectory}, {0, 10'000});
   ASSERT_EQ(file.points.size(), returns.size());
@@ -161,36 +177,36 @@ TEST_F(ScanRunner, GivesTheSameBytesForAnyNumberOfThreads) {
 
 TEST_F(ScanRunner, AStoppedScanLeavesAValidFileOfItsBeginning) {
   std::stop_source stop;
-  LasWriter writer(folder / "part.las", {.offset = far});
+  std::vector<CloudFile> files = las_files(folder / "part.las");
   const auto stop_at_once = [&](const ScanProgress&) { stop.request_stop(); };
   config.channels.resize(1);
   const sim::Trajectory longer(
       {{0.0, far, Eigen::Quaterniond::Identity()}, {1000.0, far, Eigen::Quaterniond::Identity()}});
   const ScanResult result =
-      run_scan(scene, sim::Lidar(config), {longer, longer}, writer,
+      run_scan(scene, sim::Lidar(config), {longer, longer}, files,
                {.threads = 1, .report = stop_at_once, .stop = stop.get_token()});
-  writer.finish();
+  files[0].finish();
   EXPECT_FALSE(result.is_complete);
   EXPECT_LT(result.progress.firings, result.progress.all_firings);
   EXPECT_EQ(LasFile(folder / "part.las").points.size(), result.progress.points);
   EXPECT_GT(result.progress.points, 0U);
 }
 
-TEST_F(ScanRunner, LeavesNothingUnderTheFinalNameUnlessFinished) {
-  { const LasWriter writer(folder / "never.las", {}); }
-  EXPECT_TRUE(std::filesystem::is_empty(folder));
-}
-
 TEST_F(ScanRunner, SaysWhatCannotBeWritten) {
   try {
-    const LasWriter writer(folder / "missing" / "scan.las", {});
+    const CloudFile file(folder / "missing" / "scan.las", las_format({}));
     FAIL() << "written";
   } catch (const Error& error) {
     EXPECT_EQ(error.kind(), ErrorKind::bad_file);
     EXPECT_THAT(error.what(), testing::HasSubstr("scan.las: cannot be written"));
   }
-  LasWriter near_zero(folder / "scan.las", {});
-  EXPECT_THROW(run_scan(scene, sim::Lidar(config), {trajectory, trajectory}, near_zero, {}), Error);
+  for (const auto& format : {las_format({}), ply_format(), pcd_format()}) {
+    std::vector<CloudFile> near_zero;
+    near_zero.emplace_back(folder / "scan", format);
+    EXPECT_THROW(run_scan(scene, sim::Lidar(config), {trajectory, trajectory}, near_zero, {}),
+                 Error);
+  }
+  EXPECT_THROW(las_format({.point_format = 5}), Error);
 }
 
 }  // namespace

@@ -1,0 +1,43 @@
+/// The images of a depth camera along a flight, as a dataset in the manner of the TUM RGB-D
+/// benchmark: depth_NNNNNN.png, depth.txt, groundtruth.txt.
+#pragma once
+
+#include <functional>
+#include <span>
+#include <stop_token>
+#include <vector>
+
+#include <Eigen/Geometry>
+
+#include "missions/output_folder.h"
+#include "sim/depth_camera.h"
+#include "sim/scene.h"
+
+namespace skycap::missions {
+
+/// An image to take, and where its camera believes that it was taken from.
+struct Frame {
+  double time = 0.0;                                                       ///< [s]
+  Eigen::Isometry3d world_from_camera = Eigen::Isometry3d::Identity();     ///< optical frame
+  Eigen::Isometry3d believed_from_camera = Eigen::Isometry3d::Identity();  ///< the same, believed
+};
+
+struct FrameOptions {
+  double depth_unit = 0.001;  ///< what one step of the images stands for [m]
+  unsigned threads = 0;
+  std::function<void(std::size_t frames, std::size_t points)> report;  ///< after each; may be empty
+  std::stop_token stop;
+};
+
+struct FrameResult {
+  std::size_t frames = 0;  ///< fewer than asked for if it was stopped
+  std::size_t points = 0;
+};
+
+/// Stages in `folder`, whose caller commits: the images, depth.txt (`time file` of each),
+/// groundtruth.txt and believed.txt (TUM poses of the camera), camera.json (intrinsics, unit).
+FrameResult record_frames(const sim::Scene& scene, const sim::DepthCamera& camera,
+                          std::span<const Frame> frames, OutputFolder& folder,
+                          const FrameOptions& options);
+
+}  // namespace skycap::missions

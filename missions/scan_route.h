@@ -1,0 +1,39 @@
+/// The way of a sensor's carrier: from a route file, or round a point as the mission says.
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <vector>
+
+#include "missions/mission.h"
+#include "sim/trajectory.h"
+
+namespace skycap::missions {
+
+/// What a sensor is fixed to. Routes that say where a gimbal looks carry both.
+enum class Carrier {
+  airframe,  ///< stays level, with the heading of the route
+  gimbal,    ///< looks where the camera of the route looks
+};
+
+struct ScanRoute {
+  sim::Trajectory carrier;          ///< world_from_body; body: x forward, y left, z up
+  std::vector<double> image_times;  ///< when a camera takes images; empty: the route does not say
+};
+
+/// Reads a route:
+///  - .tum, .txt: `time x y z qx qy qz qw` of world_from_camera, which the carrier is fixed to, be
+///    it a gimbal or not;
+///  - .csv: a trajectory as written by flight/export/trajectory_file.h, or views as in views.csv;
+///  - a folder: the views.csv of the mission package in it.
+/// Views are flown in order along straight lines at `speed`, with a turn of at most 1 rad/s, and
+/// an image is taken at each. Throws Error{bad_file} in one line.
+ScanRoute read_scan_route(const std::filesystem::path& path, double speed, Carrier carrier);
+
+/// Circles at constant speed, level, nose in the direction of flight. Time starts at zero.
+sim::Trajectory orbit_trajectory(const OrbitConfig& orbit);
+
+/// body_from_camera of a camera that looks forward: its optical axis is the body's x.
+Eigen::Isometry3d body_from_camera();
+
+}  // namespace skycap::missions

@@ -1,0 +1,171 @@
+/// The rays of a block of firings: poses of a moving sensor, rays slot by slot, and what they meet.
+/// For the source of lidar.h.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <cstring>
+#include <vector>
+
+#include <Eigen/Geometry>
+
+#include "sim/scan_pattern.h"
+#include "sim/scene_embree.h"
+#include "sim/trajectory.h"
+
+namespace skycap::sim {
+
+inline constexpr std::uint32_t firings_in_block = ScanPattern::firings_in_block;
+
+/// world_from_sensor at the start of each firing of a block and of the next, relative to a fixed
+/// origin: the nine entries of the rotation, row by row, and the position. Four firings lie
+/// together, as their rays do.
+struct BlockPoses {
+  float entries[12][firings_in_block + 4];
+};
+
+/// The poses of four consecutive firings.
+struct FourPoses {
+  FourFloats entries[12];
+
+  FourPoses(const BlockPoses& poses, std::uint32_t firing) {
+    for (int i = 0; i < 12; ++i) {
+      std::memcpy(&entries[i], &poses.entries[i][firing], sizeof entries[i]);
+    }
+  }
+  void rotate(const FourFloats (&vector)[3], FourFloats (&rotated)[3]) const {
+    for (int row = 0; row < 3; ++row) {
+      rotated[row] = entries[3 * row] * vector[0] + entries[3 * row + 1] * vector[1] +
+                     entries[3 * row + 2] * vector[2];
+    }
+  }
+  void shift(FourFloats (&vector)[3]) const {
+    for (int row = 0; row < 3; ++row) vector[row] += entries[9 + row];
+  }
+};
+
+/// Four firings of a channel that fires a share of the firing period later.
+inline FourPoses delayed(FourPoses poses, const FourPoses& next, float share) {
+  for (int i = 0; i < 12; ++i) {
+    poses.entries[i] += share * (next.entries[i] - poses.entries[i]);
+  }
+  return poses;
+}
+
+inline BlockPoses block_poses(const Trajectory& trajectory,
+                              const Eigen::Isometry3d& body_from_sensor, double start,
+                              double firing_period, const Eigen::Vector3d& origin) {
+  constexpr int firings = firings_in_block;
+  constexpr double pose_spacing = 1e-4;  // [s]; how often a trajectory is asked
+  const double duration = firing_period * firings;
+  const int spans = std::clamp(static_cast<int>(std::ceil(duration / pose_spacing)), 1, firings);
+  float knots[firings + 1][12];
+  for (int i = 0; i <= spans; ++i) {
+    const Eigen::Isometry3d pose = trajectory.pose(start + duration * i / spans) * body_from_sensor;
+    for (int entry = 0; entry < 9; ++entry) {
+      knots[i][entry] = static_cast<float>(pose.linear()(entry / 3, entry % 3));
+    }
+    for (int axis = 0; axis < 3; ++axis) {
+      knots[i][9 + axis] = static_cast<float>(pose.translation()[axis] - origin[axis]);
+    }
+  }
+  BlockPoses poses = {};
+  for (int firing = 0; firing <= firings; ++firing) {
+    const int knot = std::min(firing * spans / firings, spans - 1);
+    const float share =
+        static_cast<float>(firing * spans) / static_cast<float>(firings) - static_cast<float>(knot);
+    for (int entry = 0; entry < 12; ++entry) {
+      poses.entries[entry][firing] =
+          knots[knot][entry] + share * (knots[knot + 1][entry] - knots[knot][entry]);
+    }
+  }
+  return poses;
+}
+
+/// Directions across a beam, along azimuth and along elevation; `up` is the sensor's z axis.
+struct AcrossBeam {
+  Eigen::Vector3f horizontal, vertical;
+};
+inline AcrossBeam across(const Eigen::Vector3f& direction, const Eigen::Vector3f& up) {
+  const Eigen::Vector3f sideways = up.cross(direction);
+  const float length = sideways.norm();
+  const Eigen::Vector3f horizontal =
+      length > 1e-6F ? Eigen::Vector3f(sideways / length) : direction.unitOrthogonal();
+  return {horizontal, direction.cross(horizontal)};
+}
+
+/// Rays relative to the origin of Embree's scene, slot by slot.
+struct Rays {
+  std::vector<float> origin[3], direction[3];
+
+  void resize(std::size_t rays) {
+    for (int axis = 0; axis < 3; ++axis) {
+      origin[axis].resize(rays);
+      direction[axis].resize(rays);
+    }
+  }
+  Eigen::Vector3f from(std::size_t ray) const {
+    return {origin[0][ray], origin[1][ray], origin[2][ray]};
+  }
+  Eigen::Vector3f towards(std::size_t ray) const {
+    return {direction[0][ray], direction[1][ray], direction[2][ray]};
+  }
+  Eigen::Vector3f at(std::size_t ray, float range) const {
+    return from(ray) + range * towards(ray);
+  }
+  void set_direction(std::size_t ray, const Eigen::Vector3f& towards) {
+    for (int axis = 0; axis < 3; ++axis) direction[axis][ray] = towards[axis];
+  }
+};
+
+/// What rays meet.
+struct Hits {
+  std::vector<int> active;    // which rays to cast: -1 or 0, as Embree wants it
+  std::vector<float> range;   // negative: nothing
+  std::vector<float> cosine;  // of the angle of incidence
+  std::vector<std::uint32_t> triangle;
+
+  void resize(std::size_t rays) {
+    active.assign(rays, 0);
+    range.assign(rays, -1.0F);
+    cosine.resize(rays);
+    triangle.resize(rays);
+  }
+};
+
+template <int width>
+void cast_rays(const Scene::Embree& embree, float reach, const Rays& rays, Hits& hits) {
+  Packet<width> packet;
+  const auto load = [](float* lanes, const std::vector<float>& values, std::size_t first) {
+    std::memcpy(lanes, values.data() + first, width * sizeof(float));
+  };
+  for (std::size_t first = 0; first < hits.active.size(); first += width) {
+    std::memcpy(packet.active, hits.active.data() + first, width * sizeof(int));
+    if (std::all_of(packet.active, packet.active + width, [](int lane) { return lane == 0; })) {
+      continue;
+    }
+    auto& ray = packet.rays.ray;
+    auto& hit = packet.rays.hit;
+    load(ray.org_x, rays.origin[0], first);
+    load(ray.org_y, rays.origin[1], first);
+    load(ray.org_z, rays.origin[2], first);
+    load(ray.dir_x, rays.direction[0], first);
+    load(ray.dir_y, rays.direction[1], first);
+    load(ray.dir_z, rays.direction[2], first);
+    packet.cast(embree, reach);
+    float* const range = hits.range.data() + first;
+    float* const cosine = hits.cosine.data() + first;
+    std::memcpy(hits.triangle.data() + first, hit.primID, sizeof hit.primID);
+    for (int lane = 0; lane < width; ++lane) {
+      const float projection = ray.dir_x[lane] * hit.Ng_x[lane] + ray.dir_y[lane] * hit.Ng_y[lane] +
+                               ray.dir_z[lane] * hit.Ng_z[lane];
+      const float square = hit.Ng_x[lane] * hit.Ng_x[lane] + hit.Ng_y[lane] * hit.Ng_y[lane] +
+                           hit.Ng_z[lane] * hit.Ng_z[lane];
+      range[lane] = packet.is_hit(lane) ? ray.tfar[lane] : -1.0F;
+      cosine[lane] = std::abs(projection) / std::sqrt(square);
+    }
+  }
+}
+
+}  // namespace skycap::sim

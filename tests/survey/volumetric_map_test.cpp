@@ -1,0 +1,256 @@
+#include "survey/volumetric_map.h"
+
+#include <algorithm>
+#include <map>
+#include <random>
+#include <set>
+#include <vector>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <octomap/OcTree.h>
+
+#include "tests/support/clouds.h"
+#include "tests/support/sphere_sensor.h"
+
+namespace skycap::survey {
+namespace {
+
+using Eigen::Vector3d;
+using Eigen::Vector3f;
+using geometry::Camera;
+using geometry::look_at;
+using geometry::Scan;
+
+octomap::point3d octomap_point(const Vector3f& p) { return {p.x(), p.y(), p.z()}; }
+
+octomap::OcTree octomap_with_the_same_model(double resolution) {
+  octomap::OcTree tree(resolution);
+  tree.setProbHit(0.7);
+  tree.setProbMiss(0.4);
+  tree.setClampingThresMin(0.12);
+  tree.setClampingThresMax(0.97);
+  return tree;
+}
+
+/// A noisy depth camera around two spheres, one of which hides part of the other.
+std::vector<Scan> recorded_scans() {
+  const Camera camera({.width = 212, .height = 120});
+  const std::vector<tests::Sphere> spheres{{{0.0, 0.0, 0.5}, 0.4}, {{0.5, 0.2, 0.4}, 0.2}};
+  std::vector<Scan> scans;
+  const Vector3d centre(0.1, 0.05, 0.45);
+  for (const Vector3d& position :
+       {Vector3d(2.3, 0.1, 0.6), Vector3d(1.6, 1.5, 1.1), Vector3d(-0.4, 2.2, 0.3),
+        Vector3d(2.2, 0.4, 0.7), Vector3d(0.1, 0.3, 2.7), Vector3d(-2.0, -0.9, -0.2)}) {
+    scans.push_back(
+        tests::scan_spheres(spheres, camera, look_at(position, centre), 0.01, scans.size() + 1));
+  }
+  return scans;
+}
+
+class AgainstOctoMap : public testing::TestWithParam<double> {};
+
+// Independent twin: same voxels, same values, to the last bit.
+TEST_P(AgainstOctoMap, HoldsTheSameVoxelsAfterEveryScan) {
+  const double resolution = GetParam();
+  VolumetricMap map(resolution, 18.0 * resolution);
+  octomap::OcTree tree = octomap_with_the_same_model(resolution);
+  for (const Scan& scan : recorded_scans()) {
+    const Vector3f origin = scan.sensor_position().cast<float>();
+    map.insert(origin, scan.points);
+    octomap::Pointcloud cloud;
+    for (const Vector3f& point : scan.points) cloud.push_back(octomap_point(point));
+    tree.insertPointCloud(cloud, octomap_point(origin), -1.0, true);
+
+    std::size_t compared = 0, different = 0;
+    const auto compare = [&](const octomap::OcTreeKey& key) {
+      const octomap::point3d centre = tree.keyToCoord(key);
+      const auto ours = map.log_odds_at({centre.x(), centre.y(), centre.z()});
+      const octomap::OcTreeNode* theirs = tree.search(key);
+      ++compared;
+      if (ours.has_value() != (theirs != nullptr) || (theirs && *ours != theirs->getLogOdds())) {
+        ++different;
+      }
+    };
+    const octomap::OcTreeKey low = tree.coordToKey(-2.3, -2.3, -0.5);
+    const octomap::OcTreeKey high = tree.coordToKey(2.4, 2.4, 2.8);
+    for (unsigned x = low[0]; x <= high[0]; ++x) {
+      for (unsigned y = low[1]; y <= high[1]; ++y) {
+        for (unsigned z = low[2]; z <= high[2]; ++z) {
+          compare({static_cast<octomap::key_type>(x), static_cast<octomap::key_type>(y),
+                   static_cast<octomap::key_type>(z)});
+        }
+      }
+    }
+    EXPECT_GT(compared, 10'000U);
+    EXPECT_EQ(different, 0U) << "of " << compared;
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Resolutions, AgainstOctoMap, testing::Values(0.05, 0.034));
+
+/// The voxels that a walk passes.
+std::vector<VoxelIndex> passed(const Vector3f& origin, const Vector3f& end, double resolution) {
+  std::map<std::pair<BrickKey, std::uint32_t>, VoxelIndex> voxel_of;
+  const VoxelIndex first = voxel_at(origin, 1.0 / resolution);
+  const VoxelIndex last = voxel_at(end, 1.0 / resolution);
+  for (int x = std::min(first[0], last[0]) - 1; x <= std::max(first[0], last[0]) + 1; ++x) {
+    for (int y = std::min(first[1], last[1]) - 1; y <= std::max(first[1], last[1]) + 1; ++y) {
+      for (int z = std::min(first[2], last[2]) - 1; z <= std::max(first[2], last[2]) + 1; ++z) {
+        voxel_of[{brick_of({x, y, z}), place_in_brick({x, y, z})}] = {x, y, z};
+      }
+    }
+  }
+  std::vector<VoxelIndex> voxels;
+  for (VoxelWalk walk(origin, end, resolution); !walk.is_over();) {
+    voxels.push_back(voxel_of.at({walk.brick(), walk.place()}));
+    walk.advance();
+    if (walk.left_brick()) walk.enter_brick();
+  }
+  return voxels;
+}
+
+// Brute force: every passed voxel meets the segment, and neighbours share a face.
+TEST(VoxelWalk, PassesFaceToFaceThroughVoxelsThatTheSegmentMeets) {
+  const double resolution = 0.1;
+  const auto points = tests::random_points(200, 1.3, 4);
+  for (std::size_t i = 0; i + 1 < points.size(); i += 2) {
+    const Vector3d a = points[i].cast<double>(), b = points[i + 1].cast<double>();
+    const auto voxels = passed(points[i], points[i + 1], resolution);
+    ASSERT_FALSE(voxels.empty());
+    EXPECT_EQ(voxels.front(), voxel_at(points[i], 1.0 / resolution));
+    for (std::size_t k = 0; k < voxels.size(); ++k) {
+      const VoxelIndex& next =
+          k + 1 < voxels.size() ? voxels[k + 1] : voxel_at(points[i + 1], 1.0 / resolution);
+      int steps = 0;
+      double enters = 0.0, leaves = 1.0;
+      for (int axis = 0; axis < 3; ++axis) {
+        steps += std::abs(next[axis] - voxels[k][axis]);
+        const double low = (voxels[k][axis] * resolution - a[axis]) / (b[axis] - a[axis]);
+        const double high = ((voxels[k][axis] + 1) * resolution - a[axis]) / (b[axis] - a[axis]);
+        enters = std::max(enters, std::min(low, high));
+        leaves = std::min(leaves, std::max(low, high));
+      }
+      EXPECT_EQ(steps, 1);
+      EXPECT_LE(enters, leaves + 1e-5);  // directions are rounded to single precision
+    }
+  }
+}
+
+// Twin: one walk step by step, the other by bricks where that is possible.
+TEST(VoxelWalk, SkipsBricksAlongTheSameVoxels) {
+  std::size_t skips = 0;
+  for (const double resolution : {0.1, 0.017}) {
+    auto points = tests::random_points(200, 1.3, 5);
+    points.insert(points.end(), {{0.05F, 0.05F, 0.05F}, {1.25F, 1.25F, 1.25F}});  // all ties
+    points.insert(points.end(), {{-1.0F, 0.3F, 0.2F}, {1.0F, 0.3F, -0.9F}});      // in a plane
+    for (std::size_t i = 0; i + 1 < points.size(); i += 2) {
+      VoxelWalk walk(points[i], points[i + 1], resolution);
+      VoxelWalk twin = walk;
+      while (!walk.is_over()) {
+        const VoxelWalk::Skipped skipped = walk.skip_brick();
+        if (skipped.voxels == 0) break;
+        ++skips;
+        for (std::size_t step = 0; step < skipped.voxels; ++step) {
+          ASSERT_FALSE(twin.is_over() || twin.left_brick());
+          if (step + 1 == skipped.voxels) {
+            EXPECT_EQ(twin.place(), skipped.last_place);
+          }
+          twin.advance();
+        }
+        ASSERT_TRUE(twin.left_brick());
+        twin.enter_brick();
+        ASSERT_EQ(twin.brick(), walk.brick());
+        ASSERT_EQ(twin.place(), walk.place());
+        ASSERT_EQ(twin.is_over(), walk.is_over());
+      }
+    }
+  }
+  EXPECT_GT(skips, 1000U);
+}
+
+TEST(VoxelWalk, WithinOneVoxelPassesNothing) {
+  EXPECT_TRUE(VoxelWalk({0.01F, 0.02F, 0.03F}, {0.09F, 0.01F, 0.05F}, 0.1).is_over());
+}
+
+TEST(VoxelWalk, AlongAnAxisPassesOneRowInBothSenses) {
+  const auto there = passed({0.05F, 0.05F, 0.05F}, {2.05F, 0.05F, 0.05F}, 0.1);
+  const auto back = passed({2.05F, 0.05F, 0.05F}, {0.05F, 0.05F, 0.05F}, 0.1);
+  ASSERT_EQ(there.size(), 20U);
+  ASSERT_EQ(back.size(), 20U);
+  for (int i = 0; i < 20; ++i) {
+    EXPECT_EQ(there[i], (VoxelIndex{i, 0, 0}));
+    EXPECT_EQ(back[i], (VoxelIndex{20 - i, 0, 0}));
+  }
+}
+
+/// What lies along +x at the centres of voxels of 0.1 m.
+VoxelState state_on_x(const VolumetricMap& map, int voxel) {
+  return map.state_at({0.1F * static_cast<float>(voxel) + 0.05F, 0.05F, 0.05F});
+}
+
+const Vector3f at_origin(0.05F, 0.05F, 0.05F);
+const Vector3f ten_ahead(1.05F, 0.05F, 0.05F);
+
+TEST(VolumetricMap, MarksShadowsByTheirDepthInVoxels) {
+  VolumetricMap map(0.1, 0.5);
+  map.insert(at_origin, std::vector{ten_ahead});
+  EXPECT_EQ(map.shadow_ceiling(), 10.0);
+  for (int depth = 1; depth <= 4; ++depth) {
+    EXPECT_EQ(state_on_x(map, 10 + depth).kind, VoxelKind::shadowed);
+    EXPECT_EQ(state_on_x(map, 10 + depth).shadow_depth, depth);
+  }
+  // The shadow ends at 1.55 m, in voxel 15, and its last voxel is not marked.
+  EXPECT_EQ(state_on_x(map, 15).kind, VoxelKind::untouched);
+}
+
+TEST(VolumetricMap, KeepsTheSmallestShadowDepthUntilTheVoxelIsMeasured) {
+  VolumetricMap map(0.1, 0.5);
+  map.insert(at_origin, std::vector{ten_ahead});
+  map.insert({2.45F, 0.05F, 0.05F}, std::vector<Vector3f>{{1.55F, 0.05F, 0.05F}});
+  // Seen from the other side: 14 is one behind the new surface at 15, 11 is four behind it.
+  EXPECT_EQ(state_on_x(map, 14).shadow_depth, 1);
+  EXPECT_EQ(state_on_x(map, 11).shadow_depth, 1);
+  EXPECT_EQ(state_on_x(map, 12).shadow_depth, 2);
+  map.insert({0.05F, 0.05F, 0.95F}, std::vector<Vector3f>{{2.35F, 0.05F, -0.85F}});
+  EXPECT_EQ(state_on_x(map, 12).kind, VoxelKind::uncertain);  // passed once
+}
+
+TEST(VolumetricMap, LeavesMeasuredVoxelsOutOfShadows) {
+  VolumetricMap map(0.1, 0.5);
+  map.insert({1.35F, 1.05F, 0.05F}, std::vector<Vector3f>{{1.35F, -1.05F, 0.05F}});
+  map.insert(at_origin, std::vector{ten_ahead});
+  EXPECT_EQ(state_on_x(map, 12).kind, VoxelKind::shadowed);
+  EXPECT_EQ(state_on_x(map, 13).kind, VoxelKind::uncertain);
+  EXPECT_EQ(state_on_x(map, 14).kind, VoxelKind::shadowed);
+}
+
+TEST(VolumetricMap, ChangesAVoxelOnceAScan) {
+  VolumetricMap once(0.1, 0.5), often(0.1, 0.5);
+  once.insert(at_origin, std::vector{ten_ahead});
+  often.insert(at_origin, std::vector(50, ten_ahead));
+  for (int voxel = 0; voxel <= 10; ++voxel) {
+    EXPECT_EQ(state_on_x(often, voxel).occupancy, state_on_x(once, voxel).occupancy);
+  }
+}
+
+TEST(VolumetricMap, TakesEmptySegmentsAsFreeWithoutASurface) {
+  VolumetricMap map(0.1, 0.5);
+  map.insert(at_origin, {}, std::vector{ten_ahead});
+  EXPECT_LT(state_on_x(map, 9).occupancy, 0.5);
+  EXPECT_EQ(state_on_x(map, 10).kind, VoxelKind::untouched);
+  EXPECT_EQ(state_on_x(map, 11).kind, VoxelKind::untouched);
+  EXPECT_TRUE(map.surface_box().isEmpty());
+}
+
+TEST(VolumetricMap, BoxesEverythingThatStopsRays) {
+  VolumetricMap map(0.1, 0.5);
+  const auto points = tests::random_points(300, 3.0, 9);
+  map.insert({9.0F, 1.0F, 2.0F}, points);
+  for (const Vector3f& point : points) {
+    EXPECT_TRUE(map.surface_box().contains(point.cast<double>()));
+  }
+}
+
+}  // namespace
+}  // namespace skycap::survey
