@@ -78,6 +78,32 @@ void add_plan(CLI::App& app, const Console& console, Action& action) {
   });
 }
 
+void add_benchmark(CLI::App& app, const Console& console, Action& action) {
+  CLI::App* verb = app.add_subcommand(
+      "benchmark", "Compare planners on missions over many seeds: the paper's tables and plots");
+  const auto options = std::make_shared<BenchmarkOptions>();
+  const auto keys = std::make_shared<KeyOptions>();
+  verb->add_option("missions", options->missions, "Mission files")->required();
+  verb->add_option("--planners", options->planners,
+                   "all (those of the paper), or names such as see++,oa,skycap")
+      ->delimiter(',');
+  verb->add_option("--trials", options->trials, "Seeds for each planner and mission; default 10")
+      ->check(CLI::Range(1, 100'000));
+  verb->add_option("--out", options->out,
+                   "Folder for the results; default results/benchmark. What is finished there is "
+                   "not run again");
+  verb->add_option("--threads", options->threads, "Surveys at a time, 0 for all processors")
+      ->check(CLI::Range(0, 1024));
+  verb->add_option("--seed", keys->seed, "First seed, in place of the missions'");
+  verb->add_option("--max-views", keys->max_views, "End every survey after this many views");
+  verb->add_flag("--quiet", options->is_quiet, "Print nothing but errors");
+  add_set_option(*verb, *keys);
+  verb->callback([=, &console, &action] {
+    options->overrides = keys->overrides();
+    action = [=, &console] { return benchmark(*options, console); };
+  });
+}
+
 void add_scan(CLI::App& app, const Console& console, Action& action) {
   CLI::App* verb = app.add_subcommand(
       "scan", "Fly a route in the simulator and record what a sensor measures on the way");
@@ -223,6 +249,7 @@ int run_command_line(const std::vector<std::string>& arguments, const Console& c
   Action action;
   try {
     add_plan(app, console, action);
+    add_benchmark(app, console, action);
     add_scan(app, console, action);
     add_check(app, console, action);
     add_export(app, console, action);

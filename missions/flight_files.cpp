@@ -97,22 +97,31 @@ FlightFiles stage_flight(const Mission& mission, const flight::Route& route,
 
   for (const Format format : formats) {
     const flight::FormatInfo& info = flight::format_info(format);
-    if (const std::string lack = what_is_missing_for(format, mission); !lack.empty()) {
-      const std::string note = std::string("no mission") + info.ending + ": " + lack;
-      if (formats.size() == 1) throw Error(ErrorKind::bad_config, note);
+    const auto leave_out = [&](const std::string& why, ErrorKind kind) {
+      const std::string note = std::string("no mission") + info.ending + ": " + why;
+      if (formats.size() == 1) throw Error(kind, note);
       add_note(note);
+    };
+    if (const std::string lack = what_is_missing_for(format, mission); !lack.empty()) {
+      leave_out(lack, ErrorKind::bad_config);
       continue;
     }
     for (std::size_t i = 0; i < route.sorties.size(); ++i) {
       const std::string number = route.sorties.size() > 1 ? "-" + std::to_string(i + 1) : "";
       const std::string name = "mission" + number + info.ending;
-      std::vector<std::string> notes;
-      const flight::FlightPlan plan = in_dialect(
-          flight_plan(route, i, mission.name + number, site_of(mission), rules), format, notes);
-      const flight::ExportResult result = export_flight(plan, format, space, folder.stage(name));
-      files.written.push_back({name, info.heights, result.min_clearance});
-      std::ranges::for_each(notes, add_note);
-      std::ranges::for_each(result.notes, add_note);
+      const std::filesystem::path file = folder.stage(name);
+      try {
+        std::vector<std::string> notes;
+        const flight::FlightPlan plan = in_dialect(
+            flight_plan(route, i, mission.name + number, site_of(mission), rules), format, notes);
+        const flight::ExportResult result = export_flight(plan, format, space, file);
+        files.written.push_back({name, info.heights, result.min_clearance});
+        std::ranges::for_each(notes, add_note);
+        std::ranges::for_each(result.notes, add_note);
+      } catch (const Error& error) {
+        folder.drop(name);
+        leave_out(error.what(), error.kind());
+      }
     }
   }
   return files;

@@ -40,16 +40,17 @@ std::span<const flight::Format> package_formats();
 
 /// Stages the route in each of the formats; with several sorties a file for each, "mission-1.plan"
 /// and so on. Every file is read back and proved. A format that needs what the mission does not
-/// say, such as the geoid's height, is left out with a note, unless it is the only one: then
-/// Error{bad_config} says so. Throws what export_flight() throws.
+/// say, such as the geoid's height, or whose file fails its proof, is left out with a note, unless
+/// it is the only one: then that is thrown, as Error{bad_config} or what export_flight() throws.
 FlightFiles stage_flight(const Mission& mission, const flight::Route& route,
                          const flight::MeasuredSpace& measured,
                          std::span<const flight::Format> formats, OutputFolder& folder);
 
 /// The flight of a finished survey and where it was written to.
 struct SurveyMission {
-  flight::Route route;
+  flight::Route route;  ///< without stations if there is none
   FlightFiles files;
+  std::string failure;  ///< why there is no route; empty if there is one
 };
 
 /// Whether stage_flight() may have given a file this name: in any format, or in that one.

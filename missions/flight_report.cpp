@@ -16,6 +16,7 @@ std::string format(const char* pattern, auto... values) {
 }  // namespace
 
 std::string flight_text(const SurveyMission& flight) {
+  if (!flight.failure.empty()) return "  flight    no route: " + flight.failure + "\n";
   const flight::Route& route = flight.route;
   const flight::ClearanceBudget& clearance = route.options.clearance;
   std::string text =

@@ -49,6 +49,12 @@ fs::path OutputFolder::stage(const std::string& name) {
   return temporary(name);
 }
 
+void OutputFolder::drop(const std::string& name) {
+  std::error_code ignored;
+  fs::remove(temporary(name), ignored);
+  std::erase(staged_, name);
+}
+
 void OutputFolder::write(const std::string& name, std::string_view content) {
   const fs::path part = stage(name);
   std::ofstream stream(part, std::ios::binary);

@@ -23,6 +23,8 @@ class OutputFolder {
 
   /// Where to write the file that is to become `name`. Keeps its extension.
   std::filesystem::path stage(const std::string& name);
+  /// Takes back stage(name).
+  void drop(const std::string& name);
   /// Stages a file with that content. Throws Error{bad_file} if it cannot be written whole.
   void write(const std::string& name, std::string_view content);
 

@@ -262,10 +262,12 @@ std::string summary_json(const Mission& mission, const SurveyRecord& record,
                {"sensing_time_s", record.sensing_time()},
                {"distance_m", record.distance()},
                {"belief", belief_summary(record)}};
-  if (flight) {
+  if (flight && flight->failure.empty()) {
     summary["route_length_m"] = flight->route.length;
     summary["min_clearance_m"] = flight->route.min_clearance;
     summary["flight"] = flight_summary(*record.flown, *flight);
+  } else if (flight) {
+    summary["flight"] = {{"pad", json_of(record.flown->pad)}, {"failure", flight->failure}};
   }
   summary["settings"] = settings(mission);
   summary["per_view"] = Json::array();
@@ -297,11 +299,15 @@ std::optional<SurveyMission> stage_package(const Mission& mission, const SurveyR
     std::ostringstream free_space;
     record.flown->measured->write(free_space);
     folder.write(free_space_name, free_space.str());
-    flight.emplace();
-    flight->route =
-        plan_flight(mission, *record.flown->measured, record.flown->pad, views_of(record));
-    flight->files =
-        stage_flight(mission, flight->route, *record.flown->measured, package_formats(), folder);
+    flight = SurveyMission{};
+    try {
+      flight->route =
+          plan_flight(mission, *record.flown->measured, record.flown->pad, views_of(record));
+      flight->files =
+          stage_flight(mission, flight->route, *record.flown->measured, package_formats(), folder);
+    } catch (const Error& error) {
+      flight->failure = error.what();  // the survey itself shall not be lost
+    }
   }
   // Last, so that whoever sees the summary sees the rest.
   folder.write("summary.json", summary_json(mission, record, coverage, flight));

@@ -115,7 +115,8 @@ int plan_once(const PlanOptions& options, const Mission& mission, const SurveySc
   // A flown survey ends with views that nobody can reach; at the start it has not begun.
   const bool went_through =
       record.stop_reason != survey::StopReason::interrupted &&
-      (record.stop_reason != survey::StopReason::nowhere_to_go || record.views.size() > 1);
+      (record.stop_reason != survey::StopReason::nowhere_to_go || record.views.size() > 1) &&
+      (!flight || flight->failure.empty());
   return went_through ? 0 : 1;
 }
 

@@ -53,10 +53,6 @@ const char* name_of(survey::StopReason reason);
 /// came first.
 const char* name_of(survey::SkycapStop stop);
 
-/// The planner that the mission names, on so many threads (zero: all processors). Throws
-/// Error{bad_config} if it is volumetric and the mission does not say where its sphere is.
-std::unique_ptr<survey::Planner> make_planner(const Mission& mission, unsigned threads);
-
 /// Surveys the mission's scene with that seed and so many threads (zero: all processors). The
 /// record does not depend on the threads but for its times. A mission with a vehicle goes only to
 /// views that it can safely reach. `report` is told of each view; it may be empty. Throws what

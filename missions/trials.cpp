@@ -10,6 +10,7 @@
 #include <boost/math/distributions/students_t.hpp>
 #include <nlohmann/json.hpp>
 
+#include "geometry/error.h"
 #include "geometry/parallel.h"
 #include "missions/coverage.h"
 #include "missions/json_text.h"
@@ -50,23 +51,35 @@ Statistic statistic_of(const std::vector<Trial>& trials, const Figure& figure) {
   return statistic(numbers);
 }
 
-Trial trial_of(const SurveyRecord& record, std::span<const std::uint8_t> is_visible,
-               std::optional<double> ceiling) {
-  Trial trial{
-      .seed = record.seed,
-      .stop_reason = record.stop_reason,
-      .coverage = {record.coverage(), covered_share(record.is_covered, is_visible), ceiling},
-      .views = record.views.size(),
-      .points = record.cloud.size(),
-      .planning_time = record.planning_time(),
-      .distance = record.distance(),
-      .coverage_after = {},
-      .distance_after = {}};
-  for (const JudgedView& view : record.views) {
-    trial.coverage_after.push_back(view.coverage);
-    trial.distance_after.push_back(view.surveyed.distance);
+std::vector<ObservedTarget> observed_targets(const std::vector<JudgedView>& views) {
+  std::vector<ObservedTarget> observed;
+  ObservedTarget current;
+  double distance_before = 0.0;
+  for (const JudgedView& view : views) {
+    const double way = view.surveyed.distance - distance_before;
+    distance_before = view.surveyed.distance;
+    const std::optional<bool>& is_resolved = view.surveyed.step.target_resolved;
+    if (!is_resolved) continue;  // the first view has no target
+    ++current.views;
+    current.distance += way;
+    if (!*is_resolved) continue;
+    observed.push_back(current);
+    current = {};
   }
-  return trial;
+  return observed;
+}
+
+survey::StopReason stop_reason_of(const std::string& name) {
+  using enum survey::StopReason;
+  for (const auto reason :
+       {complete, view_limit, distance_limit, time_limit, nowhere_to_go, interrupted}) {
+    if (name == name_of(reason)) return reason;
+  }
+  throw Error(ErrorKind::bad_file, "'" + name + "' is no reason for a survey to stop");
+}
+
+std::optional<double> optional_number(const Json& json) {
+  return json.is_null() ? std::nullopt : std::optional(json.get<double>());
 }
 
 /// The mean over the trials of a curve at each view; a trial that has ended stays at its end.
@@ -118,19 +131,98 @@ Statistic statistic(const std::vector<double>& numbers) {
   return {mean, deviation, t * deviation / std::sqrt(count)};
 }
 
+SceneTruth scene_truth(const SurveyScene& scene, unsigned threads) {
+  SceneTruth truth{scene.visible(threads), {}};
+  truth.ceiling = scene.ceiling(truth.is_visible, threads);
+  return truth;
+}
+
+Trial trial_of(const SurveyRecord& record, const SceneTruth& truth) {
+  Trial trial;
+  trial.seed = record.seed;
+  trial.stop_reason = record.stop_reason;
+  trial.coverage = {record.coverage(), covered_share(record.is_covered, truth.is_visible),
+                    truth.ceiling};
+  trial.views = record.views.size();
+  trial.points = record.cloud.size();
+  trial.planning_time = record.planning_time();
+  trial.distance = record.distance();
+  double planning_time = 0.0;
+  for (const JudgedView& view : record.views) {
+    planning_time += view.surveyed.planning_time;
+    trial.coverage_after.push_back(view.coverage);
+    trial.distance_after.push_back(view.surveyed.distance);
+    trial.planning_time_after.push_back(planning_time);
+    trial.frontiers_resolved += view.surveyed.step.frontiers_resolved;
+  }
+  trial.targets = observed_targets(record.views);
+  return trial;
+}
+
+std::optional<Trial> run_trial(const Mission& mission, const SurveyScene& scene,
+                               const SceneTruth& truth, std::uint64_t seed, std::stop_token stop) {
+  const SurveyRecord record = run_survey(mission, scene, seed, 1, std::move(stop));
+  if (record.stop_reason == survey::StopReason::interrupted) return std::nullopt;
+  return trial_of(record, truth);
+}
+
+std::string trial_json(const Trial& trial) {
+  Json json{{"seed", trial.seed},
+            {"stop_reason", name_of(trial.stop_reason)},
+            {"coverage", trial.coverage.all},
+            {"coverage_visible", json_of(trial.coverage.visible)},
+            {"coverage_ceiling", json_of(trial.coverage.ceiling)},
+            {"views", trial.views},
+            {"points", trial.points},
+            {"planning_time_s", trial.planning_time},
+            {"distance_m", trial.distance},
+            {"frontiers_resolved", trial.frontiers_resolved},
+            {"coverage_after", trial.coverage_after},
+            {"distance_after_m", trial.distance_after},
+            {"planning_time_after_s", trial.planning_time_after},
+            {"targets", Json::array()}};
+  for (const ObservedTarget& target : trial.targets) {
+    json["targets"].push_back({target.views, target.distance});
+  }
+  return json_text(json);
+}
+
+Trial parse_trial(const std::string& text) {
+  try {
+    const Json json = Json::parse(text);
+    Trial trial;
+    trial.seed = json.at("seed").get<std::uint64_t>();
+    trial.stop_reason = stop_reason_of(json.at("stop_reason").get<std::string>());
+    trial.coverage = {json.at("coverage").get<double>(),
+                      optional_number(json.at("coverage_visible")),
+                      optional_number(json.at("coverage_ceiling"))};
+    trial.views = json.at("views").get<std::size_t>();
+    trial.points = json.at("points").get<std::size_t>();
+    trial.planning_time = json.at("planning_time_s").get<double>();
+    trial.distance = json.at("distance_m").get<double>();
+    trial.frontiers_resolved = json.at("frontiers_resolved").get<std::size_t>();
+    trial.coverage_after = json.at("coverage_after").get<std::vector<double>>();
+    trial.distance_after = json.at("distance_after_m").get<std::vector<double>>();
+    trial.planning_time_after = json.at("planning_time_after_s").get<std::vector<double>>();
+    for (const Json& target : json.at("targets")) {
+      trial.targets.push_back({target.at(0).get<std::size_t>(), target.at(1).get<double>()});
+    }
+    return trial;
+  } catch (const nlohmann::json::exception& failure) {
+    throw Error(ErrorKind::bad_file, std::string("is not a trial: ") + failure.what());
+  }
+}
+
 std::vector<Trial> run_trials(const Mission& mission, const SurveyScene& scene, std::size_t count,
                               unsigned threads, std::stop_token stop,
                               const std::function<void(const Trial&)>& report) {
-  const std::vector<std::uint8_t> is_visible = scene.visible(threads);
-  const std::optional<double> ceiling = scene.ceiling(is_visible, threads);
+  const SceneTruth truth = scene_truth(scene, threads);
   std::vector<std::optional<Trial>> slots(count);
   std::mutex reporting;
   geometry::parallel_for(count, threads, [&](std::size_t i) {
     if (stop.stop_requested()) return;
-    const SurveyRecord record = run_survey(mission, scene, mission.seed + i, 1, stop);
-    if (record.stop_reason == survey::StopReason::interrupted) return;
-    slots[i] = trial_of(record, is_visible, ceiling);
-    if (!report) return;
+    slots[i] = run_trial(mission, scene, truth, mission.seed + i, stop);
+    if (!slots[i] || !report) return;
     const std::lock_guard lock(reporting);
     report(*slots[i]);
   });

@@ -16,6 +16,21 @@
 
 namespace skycap::missions {
 
+/// What the coverage of a scene's surveys is read against; shared by all of them.
+struct SceneTruth {
+  std::vector<std::uint8_t> is_visible;  ///< for each of the scene's samples
+  std::optional<double> ceiling;         ///< attainable coverage
+};
+
+/// Takes seconds to minutes.
+SceneTruth scene_truth(const SurveyScene& scene, unsigned threads);
+
+/// What it took until a frontier that views were aimed at was observed: paper Figure 6.
+struct ObservedTarget {
+  std::size_t views = 0;  ///< since the last target was observed, this one's included
+  double distance = 0.0;  ///< travelled for them
+};
+
 /// The figures of one survey.
 struct Trial {
   std::uint64_t seed = 0;
@@ -27,7 +42,21 @@ struct Trial {
   double distance = 0.0;
   std::vector<double> coverage_after;  ///< each view
   std::vector<double> distance_after;
+  std::vector<double> planning_time_after;
+  std::size_t frontiers_resolved = 0;   ///< points that ceased to be frontiers
+  std::vector<ObservedTarget> targets;  ///< that were observed, in this order
 };
+
+/// One survey in one thread; nothing if `stop` interrupted it.
+std::optional<Trial> run_trial(const Mission& mission, const SurveyScene& scene,
+                               const SceneTruth& truth, std::uint64_t seed, std::stop_token stop);
+
+/// The figures of a survey that is over.
+Trial trial_of(const SurveyRecord& record, const SceneTruth& truth);
+
+/// A trial as text and back, to the last bit. Throws Error{bad_file} if the text is not a trial.
+std::string trial_json(const Trial& trial);
+Trial parse_trial(const std::string& json);
 
 /// Mean of a figure over the trials, and how sure it is.
 struct Statistic {

@@ -23,8 +23,24 @@ struct PlanOptions {
 };
 
 /// Surveys a mission's scene in simulation and writes the mission package, or the trials' files.
-/// Exit code 1 if the survey was interrupted, or could not go anywhere from its first view.
+/// Exit code 1 if the survey was interrupted, could not go anywhere from its first view, or leaves
+/// no route.
 int plan(const PlanOptions& options, const Console& console);
+
+struct BenchmarkOptions {
+  std::vector<std::filesystem::path> missions;
+  std::vector<std::string> planners = {"all"};  ///< of contestants(), or "all"
+  std::size_t trials = 10;                      ///< of each planner on each mission
+  std::optional<std::filesystem::path> out;     ///< default: results/benchmark
+  std::vector<KeyOverride> overrides;
+  unsigned threads = 0;  ///< zero: all processors; a survey has one
+  bool is_quiet = false;
+};
+
+/// Compares planners on missions, as the paper does: surveys from the same starts, Tables 1 and 2,
+/// curves, plots. What an earlier run in the same folder has finished is not run again. Exit code 1
+/// if it was interrupted.
+int benchmark(const BenchmarkOptions& options, const Console& console);
 
 struct CheckOptions {
   std::filesystem::path mission;

@@ -1,7 +1,9 @@
 #include "survey/skycap_planner.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <limits>
 #include <numeric>
 #include <sstream>
 
@@ -46,6 +48,40 @@ bool is_positive(double value) { return value > 0.0 && std::isfinite(value); }
 double ray_spacing(const geometry::Camera& camera) {
   return 1.0 / camera.focal_length_px().minCoeff();
 }
+
+constexpr std::uint32_t tile_px = 32;
+
+/// Asks a grid for points within a distance, for the pixels of a tile row by row: what turned away
+/// the pixel to the left or the one above mostly turns away this one too, and is tried first.
+class TileNeighbours {
+ public:
+  TileNeighbours(const geometry::PointGrid& grid, double distance)
+      : grid_(grid),
+        distance_(distance),
+        squared_distance_(static_cast<float>(distance * distance)) {
+    found_.fill(Vector3f::Constant(std::numeric_limits<float>::infinity()));
+  }
+
+  bool any_within(const Vector3f& point, std::size_t column) {
+    Vector3f& above = found_[column % tile_px];
+    const Vector3f& left = found_[(column + tile_px - 1) % tile_px];
+    if (geometry::squared_distance(above, point) <= squared_distance_) return true;
+    if (geometry::squared_distance(left, point) <= squared_distance_) {
+      above = left;
+      return true;
+    }
+    const std::uint32_t found = grid_.first_within(point, distance_);
+    if (found == geometry::PointGrid::none) return false;
+    above = grid_.point(found);
+    return true;
+  }
+
+ private:
+  const geometry::PointGrid& grid_;
+  double distance_;
+  float squared_distance_;
+  std::array<Vector3f, tile_px> found_;  // by the pixel's column in its tile
+};
 
 }  // namespace
 
@@ -99,7 +135,6 @@ struct SkycapPlanner::Impl {
   /// The returns tile by tile, so that consecutive ones are neighbours in space and their search
   /// meets memory that is at hand.
   std::vector<std::uint32_t> tile_order(const Scan& scan) const {
-    constexpr std::uint32_t tile_px = 32;
     const auto width = static_cast<std::uint32_t>(camera.width());
     const std::uint32_t columns = (width + tile_px - 1) / tile_px;
     std::vector<std::uint32_t> order(scan.points.size());
@@ -124,15 +159,21 @@ struct SkycapPlanner::Impl {
     const std::vector<std::uint32_t> order = tile_order(scan);
     constexpr std::size_t chunk = 4096;
     std::vector<std::uint8_t> has_room(order.size());
+    const auto column = [&](std::size_t i) {
+      return scan.pixels.empty() ? i
+                                 : scan.pixels[order[i]] % static_cast<std::size_t>(camera.width());
+    };
     geometry::parallel_for((order.size() + chunk - 1) / chunk, config.threads, [&](std::size_t c) {
+      TileNeighbours nearby(grid, spacing);
       for (std::size_t i = c * chunk; i < std::min(order.size(), (c + 1) * chunk); ++i) {
         const Vector3f& point = scan.points[order[i]];
-        has_room[i] = (!region || region->contains(point)) && !grid.any_within(point, spacing);
+        has_room[i] = (!region || region->contains(point)) && !nearby.any_within(point, column(i));
       }
     });
+    TileNeighbours nearby(grid, spacing);
     for (std::size_t i = 0; i < order.size(); ++i) {
       const Vector3f& point = scan.points[order[i]];
-      if (has_room[i] == 0 || grid.any_within(point, spacing)) continue;
+      if (has_room[i] == 0 || nearby.any_within(point, column(i))) continue;
       grid.insert(point);
       cloud.positions.push_back(point);
       cloud.views.push_back(static_cast<std::uint32_t>(scans));

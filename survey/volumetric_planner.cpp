@@ -1,18 +1,16 @@
 #include "survey/volumetric_planner.h"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
-#include <functional>
 #include <numeric>
 #include <random>
 #include <sstream>
 #include <string>
-#include <utility>
 
 #include "geometry/error.h"
 #include "geometry/parallel.h"
 #include "geometry/point_grid.h"
+#include "survey/stopwatch.h"
 
 namespace skycap::survey {
 namespace {
@@ -141,14 +139,6 @@ struct VolumetricPlanner::Impl {
     }
   }
 
-  template <typename Work>
-  void timed(const char* part, Work work) {
-    const auto start = std::chrono::steady_clock::now();
-    work();
-    const std::chrono::duration<double> time = std::chrono::steady_clock::now() - start;
-    step.times.push_back({part, time.count()});
-  }
-
   void insert(const Scan& scan);
   void score();
   std::optional<View> take_best();
@@ -176,13 +166,16 @@ const VolumetricMap& VolumetricPlanner::map() const { return impl_->map; }
 
 std::optional<View> VolumetricPlanner::next_view(const Scan& scan) {
   impl_->step = {};
-  impl_->timed("insert", [&] { impl_->insert(scan); });
+  Stopwatch stopwatch(impl_->step.times);
+  impl_->insert(scan);
+  stopwatch.lap("insert");
   if (impl_->cloud.positions.empty()) {
     throw Error(ErrorKind::bad_geometry,
                 "the first scan holds no point of the scene; start where the sensor sees it, or "
                 "widen the scene's box");
   }
-  impl_->timed("score", [&] { impl_->score(); });
+  impl_->score();
+  stopwatch.lap("score");
   return impl_->take_best();
 }
 

@@ -204,6 +204,27 @@ TEST(FlownPackage, SaysWhatAFormatLacks) {
   EXPECT_THAT(alone.err, HasSubstr("its heights count from sea level; give site.geoid_undulation"));
 }
 
+// The pilot vouched for the air above the pad, but the handle is there.
+TEST(FlownPackage, KeepsTheSurveyWhenThereIsNoRoute) {
+  const TestFolder folder;
+  const std::string mission = folder.write("m.yaml", flown_mission());
+  const auto run =
+      run_skycap({"plan", mission, "--out", folder / "out", "--max-views", "4", "--set",
+                  "flight.unknown_box.min=[0, -11, 0]", "--set", "flight.takeoff=[-8, 0, 0]",
+                  "--set", "start.position=[-32, 0, 8]", "--set", "start.look_at=[0, 0, 5]"});
+  EXPECT_EQ(run.exit_code, 1) << run.err;
+  EXPECT_THAT(run.out, HasSubstr("flight    no route: the place above the take-off pad"));
+  EXPECT_TRUE(std::filesystem::exists(folder / "out/cloud.ply"));
+  EXPECT_FALSE(std::filesystem::exists(folder / "out/mission.plan"));
+  const json summary = json::parse(content_of(folder / "out/summary.json"));
+  EXPECT_THAT(summary.at("flight").at("failure").get<std::string>(), HasSubstr("a measured point"));
+  // From another pad there is one.
+  EXPECT_EQ(run_skycap({"export", folder / "out", "--format", "plan", "--set",
+                        "flight.takeoff=[-30, 0, 0]"})
+                .exit_code,
+            0);
+}
+
 TEST(FlownPackage, BrokenPackagesAndRoutesAreNamed) {
   const TestFolder& folder = package();
   const auto message = [](const std::vector<std::string>& arguments) {

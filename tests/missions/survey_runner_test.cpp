@@ -7,9 +7,11 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
+#include "geometry/error.h"
 #include "geometry/mesh_distance.h"
 #include "missions/coverage.h"
 #include "missions/mission_reader.h"
+#include "missions/planner_factory.h"
 #include "missions/site.h"
 #include "missions/trials.h"
 #include "tests/missions/run_skycap.h"
@@ -96,6 +98,19 @@ TEST(RunSurvey, EveryPlannerKeepsToTheSiteAndTheLimits) {
       EXPECT_GT(truth.distance(view.position), 0.4 - 0.1) << name;
     }
   }
+}
+
+TEST(MakePlanner, NeedsToKnowTheSphereOfAVolumetricPlanner) {
+  Mission mission = parse_mission(quick_mission(), "m.yaml", {{"", "planner.name", "oa"}});
+  try {
+    make_planner(mission, 1);
+    FAIL();
+  } catch (const Error& error) {
+    EXPECT_THAT(error.what(), HasSubstr("volumetric.sphere_centre"));
+  }
+  mission.volumetric.sphere_centre = Eigen::Vector3d::Zero();
+  mission.volumetric.sphere_radius = 2.0;
+  EXPECT_NE(make_planner(mission, 1), nullptr);
 }
 
 TEST(RunSurvey, EndsWhenABudgetIsSpent) {

@@ -1,0 +1,170 @@
+#include "missions/benchmark_results.h"
+
+#include <cmath>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include "geometry/error.h"
+#include "missions/benchmark_plots.h"
+#include "missions/benchmark_report.h"
+#include "missions/paper_results.h"
+
+namespace skycap::missions {
+namespace {
+
+using testing::DoubleEq;
+using testing::ElementsAre;
+using testing::HasSubstr;
+
+/// A survey of three views: 0, 1 and 3 m, after 1, 2 and 4 s.
+Trial trial(double a, double b, double c) {
+  Trial trial;
+  trial.views = 3;
+  trial.coverage = {c, c + 0.1, 0.95};
+  trial.coverage_after = {a, b, c};
+  trial.distance_after = {0.0, 1.0, 3.0};
+  trial.planning_time_after = {1.0, 2.0, 4.0};
+  trial.distance = 3.0;
+  trial.planning_time = 4.0;
+  trial.frontiers_resolved = 6;
+  return trial;
+}
+
+TEST(CoverageCurve, AveragesStepsAtEvenPlaces) {
+  const std::vector<Trial> trials{trial(0.2, 0.4, 0.8), trial(0.4, 0.4, 0.6)};
+  const auto curve = coverage_curve(trials, CurveAxis::distance, 7);  // every half metre
+  ASSERT_EQ(curve.size(), 7U);
+  EXPECT_DOUBLE_EQ(curve[1].x, 0.5);
+  EXPECT_DOUBLE_EQ(curve[1].mean, 0.3);
+  EXPECT_DOUBLE_EQ(curve[1].deviation, std::sqrt(0.02));
+  EXPECT_DOUBLE_EQ(curve[2].mean, 0.4);  // the second view is at 1 m
+  EXPECT_DOUBLE_EQ(curve[5].mean, 0.4);
+  EXPECT_DOUBLE_EQ(curve[6].mean, 0.7);
+}
+
+TEST(CoverageCurve, SpreadsTimesByFactors) {
+  const auto curve = coverage_curve({trial(0.2, 0.4, 0.8)}, CurveAxis::planning_time, 3);
+  ASSERT_EQ(curve.size(), 3U);
+  EXPECT_DOUBLE_EQ(curve[0].x, 1.0);
+  EXPECT_DOUBLE_EQ(curve[1].x, 2.0);
+  EXPECT_DOUBLE_EQ(curve[2].x, 4.0);
+  EXPECT_DOUBLE_EQ(curve[2].mean, 0.8);
+}
+
+TEST(CoverageCurve, KeepsTheEndOfTrialsThatAreOver) {
+  Trial longer = trial(0.2, 0.4, 0.6);
+  longer.coverage_after.push_back(1.0);
+  longer.distance_after.push_back(9.0);
+  longer.planning_time_after.push_back(5.0);
+  const auto curve = coverage_curve({trial(0.2, 0.4, 0.6), longer}, CurveAxis::views, 4);
+  EXPECT_DOUBLE_EQ(curve.back().x, 4.0);
+  EXPECT_DOUBLE_EQ(curve.back().mean, 0.8);
+}
+
+TEST(CoverageCurve, WithoutTrialsIsEmpty) {
+  EXPECT_TRUE(coverage_curve({}, CurveAxis::views, 4).empty());
+}
+
+TEST(TargetFigures, CountViewsAndDistancesUntilATargetIsObserved) {
+  Trial a = trial(0.1, 0.2, 0.3);
+  a.targets = {{1, 0.4}, {2, 0.7}, {1, 1.6}, {40, 99.0}};
+  const TargetFigures figures = target_figures({a});
+  EXPECT_EQ(figures.targets, 4U);
+  EXPECT_DOUBLE_EQ(figures.share_by_views[0], 0.5);
+  EXPECT_DOUBLE_EQ(figures.share_by_views[1], 0.25);
+  EXPECT_DOUBLE_EQ(figures.share_by_views.back(), 0.25);  // ten or more
+  EXPECT_DOUBLE_EQ(figures.share_by_distance[0], 0.25);   // below 0.5 m
+  EXPECT_DOUBLE_EQ(figures.share_by_distance[1], 0.5);
+  EXPECT_DOUBLE_EQ(figures.share_by_distance.back(), 0.75);
+}
+
+TEST(ViewFigures, AreMeansOverTheTrials) {
+  const ViewFigures figures = view_figures({trial(0.1, 0.2, 0.6), trial(0.1, 0.2, 0.9)});
+  EXPECT_DOUBLE_EQ(figures.frontiers.mean, 2.0);
+  EXPECT_DOUBLE_EQ(figures.coverage.mean, 0.25);
+}
+
+// Table 1 as printed.
+TEST(PaperResults, AreThoseOfTheTables) {
+  const auto dragon = paper_result("dragon", "pc");
+  ASSERT_TRUE(dragon);
+  EXPECT_EQ(dragon->views, 130);
+  EXPECT_EQ(dragon->coverage, 0.972);
+  EXPECT_EQ(dragon->planning_time, 306);
+  EXPECT_EQ(dragon->distance, 59.2);
+  EXPECT_EQ(paper_result("radcliffe_camera", "see")->distance, 1302);
+  EXPECT_EQ(paper_result("teapot", "uv")->distance, paper_result("teapot", "oa")->distance);
+  EXPECT_FALSE(paper_result("teapot", "skycap"));
+  EXPECT_FALSE(paper_result("vase", "see"));
+  EXPECT_EQ(paper_view_result("see++")->frontiers, 6.51);
+  EXPECT_FALSE(paper_view_result("oa"));
+  EXPECT_TRUE(is_standard_model("bunny"));
+  EXPECT_FALSE(is_standard_model("radcliffe_camera"));
+}
+
+std::vector<BenchmarkCell> two_cells() {
+  Trial see = trial(0.2, 0.4, 0.8);
+  see.targets = {{1, 0.4}};
+  return {{"teapot", "see", {see, trial(0.4, 0.5, 0.6)}}, {"teapot", "oa", {trial(0, 0, 0.5)}}};
+}
+
+TEST(BenchmarkReport, PutsRatiosToThePaperBesideOurFigures) {
+  const auto json = nlohmann::json::parse(results_json(two_cells()));
+  const auto& see = json["results"][0];
+  EXPECT_EQ(see["views"]["mean"], 3.0);
+  EXPECT_EQ(see["views"]["paper"], 60.0);
+  EXPECT_DOUBLE_EQ(see["views"]["ratio_to_paper"], 0.05);
+  EXPECT_DOUBLE_EQ(see["coverage"]["mean"], 0.7);
+  EXPECT_DOUBLE_EQ(see["coverage_visible"]["mean"], 0.8);
+  EXPECT_TRUE(json["results"][1]["views"]["half_width_95"].is_null());  // one trial
+}
+
+TEST(BenchmarkReport, MarkdownHasBothTables) {
+  const std::string text = report_markdown(two_cells(), {"coverage_teapot"});
+  EXPECT_THAT(text, HasSubstr("| SEE | 3.0 (60.0) | 70.0 (98.1) | 4 (4.13) | 3.0 (42.8) |"));
+  EXPECT_THAT(text, HasSubstr("| OA | 3.0 (105.0) |"));
+  EXPECT_THAT(text, HasSubstr("| SEE | 2.00 | 4.49 | 23.33 | 1.39 |"));
+  EXPECT_THAT(text, HasSubstr("| SEE | 1 | 100.0 | 100.0 |"));
+  EXPECT_THAT(text, HasSubstr("![coverage_teapot](coverage_teapot.svg)"));
+}
+
+TEST(BenchmarkReport, CsvHasALineForEachCellAndTrial) {
+  const std::string table = table_1_csv(two_cells());
+  EXPECT_EQ(std::ranges::count(table, '\n'), 3);
+  EXPECT_THAT(table, HasSubstr("\nteapot,oa,1,3,0,,105,"));
+  const std::string trials = all_trials_csv(two_cells());
+  EXPECT_EQ(std::ranges::count(trials, '\n'), 4);
+  EXPECT_THAT(trials, HasSubstr("mission,planner,seed,"));
+  EXPECT_THAT(trials, HasSubstr("\nteapot,oa,0,complete,3,"));
+}
+
+TEST(BenchmarkPlots, AreOneAMissionAndOneForTargets) {
+  EXPECT_THAT(plot_script(two_cells()).plots, ElementsAre("coverage_teapot", "targets"));
+  EXPECT_TRUE(plot_script({{"teapot", "see", {}}}).plots.empty());
+}
+
+TEST(TrialText, GivesTheSameTrialBack) {
+  Trial before = trial(0.1 + 0.2, 1.0 / 3.0, 0.7);
+  before.seed = 18'000'000'000'000'000'001ULL;
+  before.stop_reason = survey::StopReason::view_limit;
+  before.points = 7;
+  before.targets = {{2, 1.0 / 7.0}};
+  before.coverage.ceiling = {};
+  const Trial after = parse_trial(trial_json(before));
+  EXPECT_EQ(trial_json(after), trial_json(before));
+  EXPECT_EQ(after.seed, before.seed);
+  EXPECT_EQ(after.coverage_after, before.coverage_after);
+  EXPECT_EQ(after.stop_reason, before.stop_reason);
+  EXPECT_FALSE(after.coverage.ceiling);
+}
+
+TEST(TrialText, RefusesWhatIsNoTrial) {
+  for (const char* text : {"", "{}", "[1, 2]", "{\"seed\": \"x\"}"}) {
+    EXPECT_THROW(parse_trial(text), Error) << text;
+  }
+}
+
+}  // namespace
+}  // namespace skycap::missions
