@@ -107,8 +107,15 @@ FlightFiles stage_flight(const Mission& mission, const flight::Route& route,
       const std::string number = route.sorties.size() > 1 ? "-" + std::to_string(i + 1) : "";
       const std::string name = "mission" + number + info.ending;
       std::vector<std::string> notes;
-      const flight::FlightPlan plan = in_dialect(
-          flight_plan(route, i, mission.name + number, site_of(mission), rules), format, notes);
+      const auto corners =
+          flight::holds_curves(format) ? flight::Corners::flown_round : flight::Corners::stopped_in;
+      if (!flight::holds_curves(format) && mission.flight.style != flight::FlightStyle::stop) {
+        notes.push_back(std::string("mission") + info.ending +
+                        " stops in every corner: the format cannot say which curve is flown");
+      }
+      const flight::FlightPlan plan =
+          in_dialect(flight_plan(route, i, mission.name + number, site_of(mission), rules, corners),
+                     format, notes);
       const flight::ExportResult result = export_flight(plan, format, space, folder.stage(name));
       files.written.push_back({name, info.heights, result.min_clearance});
       std::ranges::for_each(notes, add_note);
