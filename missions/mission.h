@@ -12,6 +12,7 @@
 #include <Eigen/Core>
 #include <Eigen/Geometry>
 
+#include "flight/smoothing.h"
 #include "sim/depth_camera.h"
 #include "sim/models/models.h"
 #include "sim/trajectory.h"
@@ -133,6 +134,7 @@ struct FlightConfig {
   double temperature = 15.0;  ///< of the battery [degrees Celsius]
   double reserve = 0.25;      ///< share of the battery left at landing
   VisitOrder order = VisitOrder::shortest;
+  flight::FlightStyle style = flight::FlightStyle::stop;  ///< of files that can hold curves
 
   bool is_flown() const { return vehicle != "none"; }
 };
