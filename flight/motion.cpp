@@ -10,7 +10,6 @@
 namespace skycap::flight {
 namespace {
 
-using Eigen::Vector2d;
 using Eigen::Vector3d;
 
 constexpr double gravity = 9.80665;
@@ -169,13 +168,19 @@ double Motion::leg_energy(const Vector3d& displacement, double duration) const {
   const double moving = leg_time(displacement);
   if (moving == 0.0) return hover_energy(duration);
   const double distance = displacement.norm();
-  const Vector2d ground_velocity = displacement.head<2>() / moving;
-  const double cruise = forward_power((ground_velocity - conditions_.wind).norm()) * moving;
-  // Climbing lifts the mass; descending slowly gives nothing back.
-  const double climb = std::max(0.0, displacement.z()) * vehicle_.mass * gravity / efficiency_;
   const double peak_speed = std::min(leg_speed(displacement / distance), 2.0 * distance / moving);
-  const double stop = 0.5 * vehicle_.mass * peak_speed * peak_speed / efficiency_;
-  return cruise + climb + stop + hover_energy(std::max(0.0, duration - moving));
+  return flight_power(displacement / moving) * moving + stopping_energy(peak_speed) +
+         hover_energy(std::max(0.0, duration - moving));
+}
+
+double Motion::flight_power(const Vector3d& velocity) const {
+  // Climbing lifts the mass; descending slowly gives nothing back.
+  const double climb = std::max(0.0, velocity.z()) * vehicle_.mass * gravity / efficiency_;
+  return forward_power((velocity.head<2>() - conditions_.wind).norm()) + climb;
+}
+
+double Motion::stopping_energy(double speed) const {
+  return 0.5 * vehicle_.mass * speed * speed / efficiency_;
 }
 
 double Motion::usable_energy() const {

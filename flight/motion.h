@@ -60,6 +60,11 @@ class Motion {
   /// spent hovering.
   double leg_energy(const Eigen::Vector3d& displacement, double duration) const;
 
+  /// Electrical power of flying steadily at a velocity over the ground, climbing included [W].
+  double flight_power(const Eigen::Vector3d& velocity) const;
+  /// What is lost in stopping from a speed [J].
+  double stopping_energy(double speed) const;
+
   double hover_power() const;                   ///< in still air [W]
   double forward_power(double airspeed) const;  ///< level flight [W]
   double hover_energy(double duration) const;   ///< holding position in the wind [J]

@@ -60,6 +60,7 @@ class RoutePlanner {
     keep_in_range();
     connect();
     split();
+    smooth_legs();
     return std::move(route_);
   }
 
@@ -129,18 +130,20 @@ class RoutePlanner {
     leg.points = points;
     leg.length = flight::length(points);
     leg.clearance = route_.clearance + reported_surplus;
+    const double turning = turning_time(from, to);
     for (std::size_t i = 1; i < points.size(); ++i) {
       const LegProof proof = prove(space_, {points[i - 1], points[i]}, route_.clearance,
                                    route_.clearance + reported_surplus);
       leg.clearance = std::min(leg.clearance, proof.clearance);
-      const double time = motion_.leg_time(points[i] - points[i - 1]);
-      leg.duration += time;
-      leg.energy += motion_.leg_energy(points[i] - points[i - 1], time);
-    }
-    const double turning = turning_time(from, to);
-    if (turning > leg.duration) {
-      leg.energy += motion_.hover_energy(turning - leg.duration);
-      leg.duration = turning;
+      // Autopilots begin to turn when they leave for the station, which is in the last corner.
+      const bool is_last = i + 1 == points.size();
+      const Vector3d way = points[i] - points[i - 1];
+      const double moving = std::max(motion_.leg_time(way), is_last ? turning : 0.0);
+      leg.duration += moving;
+      leg.energy += motion_.leg_energy(way, moving);
+      if (is_last) break;
+      leg.duration += corner_hold;
+      leg.energy += motion_.hover_energy(corner_hold);
     }
     return leg;
   }
@@ -172,16 +175,17 @@ class RoutePlanner {
   Cost pad_cost() const {
     const Vector3d climb(0.0, 0.0, route_.options.takeoff_climb);
     const double time = motion_.leg_time(climb);
-    return {time, motion_.leg_energy(climb, time)};
+    return {time + corner_hold, motion_.leg_energy(climb, time + corner_hold)};
   }
   Cost landing_cost() const {
     const Vector3d descent(0.0, 0.0, -route_.options.takeoff_climb);
     const double moving = motion_.leg_time(descent);
-    const double time = moving + route_.options.landing_time;
+    const double time = corner_hold + moving + route_.options.landing_time;
     return {time, motion_.leg_energy(descent, time)};
   }
   Cost station_cost(const Station& station) const {
-    return {station.hold, motion_.hover_energy(station.hold)};
+    const double hold = std::max(corner_hold, station.hold);
+    return {hold, motion_.hover_energy(hold)};
   }
   static Cost sum(const Cost& a, const Cost& b) { return {a.time + b.time, a.energy + b.energy}; }
   static Cost cost_of(const Leg& leg) { return {leg.duration, leg.energy}; }
@@ -274,6 +278,28 @@ class RoutePlanner {
     route_.energy += total.energy;
     route_.min_clearance = std::min(route_.min_clearance, clearance);
     route_.sorties.push_back(std::move(sortie));
+  }
+
+  void smooth_legs() {
+    for (Sortie& sortie : route_.sorties) {
+      smooth_leg(sortie.out, nullptr, nullptr);
+      for (std::uint32_t i = sortie.first; i < sortie.last; ++i) {
+        smooth_leg(route_.legs[i], &route_.stations[i], &route_.stations[i + 1]);
+      }
+      smooth_leg(sortie.back, nullptr, nullptr);
+    }
+  }
+
+  /// Keeps a curve only if it fits into what the sortie has set aside for the leg.
+  void smooth_leg(Leg& leg, const Station* from, const Station* to) {
+    std::optional<SmoothLeg> curve =
+        smooth(leg.points, space_, route_.clearance, route_.clearance + reported_surplus, motion_,
+               route_.options.style);
+    if (!curve) return;
+    const double waiting = std::max(0.0, turning_time(from, to) - curve->duration);
+    if (curve->duration + waiting > leg.duration) return;
+    if (curve->energy + motion_.hover_energy(waiting) > leg.energy) return;
+    leg.smooth = std::move(curve);
   }
 
   Motion motion_;

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -11,6 +12,7 @@
 #include "flight/clearance.h"
 #include "flight/motion.h"
 #include "flight/path.h"
+#include "flight/smoothing.h"
 #include "flight/vehicle.h"
 #include "geometry/pose.h"
 
@@ -49,20 +51,28 @@ struct RouteOptions {
   Conditions conditions;
   PathOptions path;
   Eigen::Vector3d takeoff = Eigen::Vector3d::Zero();  ///< the pad
-  double takeoff_climb = 5.0;  ///< straight up from the pad before the first leg [m]
-  double landing_time = 10.0;  ///< for the last metre of each sortie, spent hovering [s]
-  bool order_is_free = false;  ///< stations may be visited in a better order than given
+  double takeoff_climb = 5.0;             ///< straight up from the pad before the first leg [m]
+  double landing_time = 10.0;             ///< for the last metre of each sortie, spent hovering [s]
+  bool order_is_free = false;             ///< stations may be visited in a better order than given
+  FlightStyle style = FlightStyle::stop;  ///< of files that can hold curves
 
   void validate() const;  ///< throws Error{bad_config} naming the first value that is out of place
 };
+
+/// The shortest stop at a corner [s]: without a stop autopilots cut corners, and the certificate is
+/// about straight legs. ArduPilot stores whole seconds.
+inline constexpr double corner_hold = 1.0;
 
 /// A certified polyline between two places, flown with a stop at every point.
 struct Leg {
   std::vector<Eigen::Vector3d> points;
   double length = 0.0;
-  double duration = 0.0;   ///< moving, with yaw and gimbal turning meanwhile [s]
+  double duration = 0.0;   ///< with stops in corners, and yaw and gimbal turning meanwhile [s]
   double energy = 0.0;     ///< [J]
   double clearance = 0.0;  ///< proven lower bound over the whole leg, see LegProof
+  /// Another way to fly it, at least as fast and for no more energy. The figures above and the
+  /// sorties are about stops, which any autopilot can be told to make.
+  std::optional<SmoothLeg> smooth;
 };
 
 /// One battery: from the pad, through stations [first, last] of the route, and back.

@@ -75,6 +75,12 @@ PolygonSoup parse_obj(std::string_view name, std::string_view text) {
   TextScanner scanner(name, text);
   PolygonSoup soup;
   std::vector<std::uint32_t> lines;  // of each polygon, for the check of its corners
+  std::uint32_t material = 0;
+  const auto use_material = [&](const std::string& wanted) {
+    const auto known = std::ranges::find(soup.materials, wanted);
+    material = static_cast<std::uint32_t>(known - soup.materials.begin());
+    if (known == soup.materials.end()) soup.materials.push_back(wanted);
+  };
   do {
     const auto keyword = scanner.word_in_line();
     if (keyword == "v") {
@@ -83,7 +89,13 @@ PolygonSoup parse_obj(std::string_view name, std::string_view text) {
         coordinate = scanner.number<double>(scanner.word_in_line(), "a coordinate");
       }
       soup.vertices.push_back(vertex);
+    } else if (keyword == "usemtl") {
+      // Faces before the first one have the material without a name.
+      if (soup.materials.empty() && !lines.empty()) use_material("");
+      soup.polygon_materials.resize(lines.size(), 0);
+      use_material(std::string(scanner.word_in_line().value_or("")));
     } else if (keyword == "f") {
+      if (!soup.materials.empty()) soup.polygon_materials.push_back(material);
       lines.push_back(static_cast<std::uint32_t>(scanner.line()));
       while (auto corner = scanner.word_in_line()) {
         if (corner == "\\") {  // goes on in the next line

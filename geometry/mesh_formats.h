@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -17,6 +18,8 @@ struct PolygonSoup {
   std::vector<Eigen::Vector3d> vertices;
   std::vector<std::uint32_t> corners;         ///< vertex indices of all polygons
   std::vector<std::size_t> polygon_begin{0};  ///< polygon i is corners [begin[i], begin[i + 1])
+  std::vector<std::string> materials;  ///< names; empty: the file has none, or it is not an OBJ
+  std::vector<std::uint32_t> polygon_materials;  ///< of each polygon, if there are materials
 };
 
 PolygonSoup parse_ply(std::string_view name, std::string_view bytes);

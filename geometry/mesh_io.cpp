@@ -35,7 +35,8 @@ std::string format_of(fs::path path) {
   return lower(path.extension().string());
 }
 
-Mesh parse(const fs::path& path, const std::string& format) {
+PolygonSoup parse(const fs::path& path) {
+  const std::string format = format_of(path);
   if (format == ".drc") {
     const Mesh mesh = decode_draco(path.string(), read_file(path));
     PolygonSoup soup{mesh.vertices, {}};  // goes the way of the others, which checks it
@@ -43,7 +44,7 @@ Mesh parse(const fs::path& path, const std::string& format) {
       soup.corners.insert(soup.corners.end(), triangle.begin(), triangle.end());
       soup.polygon_begin.push_back(soup.corners.size());
     }
-    return triangulate(path.string(), soup);
+    return soup;
   }
   const auto parser = format == ".ply"   ? parse_ply
                       : format == ".obj" ? parse_obj
@@ -55,7 +56,40 @@ Mesh parse(const fs::path& path, const std::string& format) {
   }
   const std::string bytes = read_file(path);
   if (bytes.empty()) fail(path, "is empty");
-  return triangulate(path.string(), parser(path.string(), bytes));
+  return parser(path.string(), bytes);
+}
+
+/// The polygons of one material; those of all if there are none.
+PolygonSoup polygons_of(const PolygonSoup& soup, std::size_t material) {
+  if (soup.materials.empty()) return soup;
+  PolygonSoup part{soup.vertices, {}};
+  for (std::size_t i = 0; i + 1 < soup.polygon_begin.size(); ++i) {
+    if (soup.polygon_materials[i] != material) continue;
+    const auto corners = soup.corners.begin();
+    part.corners.insert(part.corners.end(),
+                        corners + static_cast<std::ptrdiff_t>(soup.polygon_begin[i]),
+                        corners + static_cast<std::ptrdiff_t>(soup.polygon_begin[i + 1]));
+    part.polygon_begin.push_back(part.corners.size());
+  }
+  return part;
+}
+
+Mesh clean_mesh(const fs::path& path, const PolygonSoup& soup) {
+  Mesh mesh = triangulate(path.string(), soup);
+  weld_vertices(mesh);
+  drop_degenerate_triangles(mesh);
+  return mesh;
+}
+
+void require_faces(const fs::path& path, const PolygonSoup& soup) {
+  const auto is_polygon = [&](std::size_t i) {
+    return soup.polygon_begin[i + 1] - soup.polygon_begin[i] >= 3;
+  };
+  for (std::size_t i = 0; i + 1 < soup.polygon_begin.size(); ++i) {
+    if (is_polygon(i)) return;
+  }
+  fail(path, soup.vertices.empty() ? "holds neither vertices nor faces; a mesh is wanted"
+                                   : "holds no faces; a mesh is wanted, not a point cloud");
 }
 
 template <typename Value>
@@ -151,16 +185,25 @@ std::string stl_of(const Mesh& mesh) {
 }  // namespace
 
 Mesh read_mesh(const fs::path& path, const MeshOptions& options) {
-  Mesh mesh = parse(path, format_of(path));
-  if (mesh.triangles.empty()) {
-    fail(path, mesh.vertices.empty() ? "holds neither vertices nor faces; a mesh is wanted"
-                                     : "holds no faces; a mesh is wanted, not a point cloud");
-  }
-  weld_vertices(mesh);
-  drop_degenerate_triangles(mesh);
+  const PolygonSoup soup = parse(path);
+  require_faces(path, soup);
+  Mesh mesh = clean_mesh(path, soup);
   if (mesh.triangles.empty()) fail(path, "holds no triangle with an area");
   if (options.orient_outward) orient_outward(mesh);
   return mesh;
+}
+
+std::vector<MaterialMesh> read_mesh_by_material(const fs::path& path) {
+  const PolygonSoup soup = parse(path);
+  require_faces(path, soup);
+  std::vector<MaterialMesh> parts;
+  for (std::size_t i = 0; i < std::max<std::size_t>(1, soup.materials.size()); ++i) {
+    Mesh mesh = clean_mesh(path, polygons_of(soup, i));
+    if (mesh.triangles.empty()) continue;
+    parts.push_back({soup.materials.empty() ? "" : soup.materials[i], std::move(mesh)});
+  }
+  if (parts.empty()) fail(path, "holds no triangle with an area");
+  return parts;
 }
 
 void write_mesh(const fs::path& path, const Mesh& mesh) {

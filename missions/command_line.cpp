@@ -177,10 +177,14 @@ void add_export(CLI::App& app, const Console& console, Action& action) {
 }
 
 void add_evaluate(CLI::App& app, const Console& console, Action& action) {
-  CLI::App* verb =
-      app.add_subcommand("evaluate", "Coverage, accuracy and density of a cloud against a model");
+  CLI::App* verb = app.add_subcommand(
+      "evaluate", "Coverage, accuracy and density of a cloud or mesh against a model");
   const auto options = std::make_shared<EvaluateOptions>();
-  verb->add_option("--cloud", options->cloud, "Point cloud (PLY)")->required();
+  CLI::App* what = verb->add_option_group("what is judged");
+  what->add_option("--cloud", options->cloud, "Point cloud (PLY)");
+  what->add_option("--mesh", options->mesh,
+                   "Mesh, in place of a cloud: of skycap reconstruct, say");
+  what->require_option(1);
   verb->add_option("--model", options->model,
                    "Mesh, builtin:NAME, model:NAME, or a mission file for its scene as surveyed")
       ->required();
@@ -192,6 +196,26 @@ void add_evaluate(CLI::App& app, const Console& console, Action& action) {
   verb->add_flag("--json", options->is_json, "Print JSON");
   verb->callback(
       [=, &console, &action] { action = [=, &console] { return evaluate(*options, console); }; });
+}
+
+void add_reconstruct(CLI::App& app, const Console& console, Action& action) {
+  CLI::App* verb = app.add_subcommand("reconstruct", "Make a surface mesh of a point cloud");
+  const auto options = std::make_shared<ReconstructOptions>();
+  verb->add_option("cloud", options->cloud, "Point cloud (PLY, xyz), with normals or without")
+      ->required();
+  verb->add_option("--out", options->out, "PLY, OBJ, STL or OFF; default CLOUD_mesh.ply");
+  verb->add_option("--spacing", options->spacing, "Thin the cloud to one point a cube [m]")
+      ->check(CLI::Range(0.0, 1e6));
+  verb->add_option("--depth", options->depth,
+                   "Of the octree, 2^depth cells a side; default: as the points are spaced")
+      ->check(CLI::Range(0, 12));
+  verb->add_option("--trim", options->least_density,
+                   "Drop surface with less than this share of the usual density; default 0.2")
+      ->check(CLI::Range(0.0, 0.99));
+  verb->add_option("--threads", options->threads, "Threads, 0 for all processors");
+  verb->callback([=, &console, &action] {
+    action = [=, &console] { return reconstruct_cloud(*options, console); };
+  });
 }
 
 void add_model(CLI::App& app, const Console& console, Action& action) {
@@ -230,6 +254,7 @@ int run_command_line(const std::vector<std::string>& arguments, const Console& c
     add_check(app, console, action);
     add_export(app, console, action);
     add_evaluate(app, console, action);
+    add_reconstruct(app, console, action);
     add_model(app, console, action);
     const auto known = app.get_subcommands({});
     std::string verbs;

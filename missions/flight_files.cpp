@@ -112,8 +112,16 @@ FlightFiles stage_flight(const Mission& mission, const flight::Route& route,
       const std::filesystem::path file = folder.stage(name);
       try {
         std::vector<std::string> notes;
+        const bool holds_curves = flight::holds_curves(format);
+        if (!holds_curves && mission.flight.style != flight::FlightStyle::stop) {
+          notes.push_back(std::string("mission") + info.ending +
+                          " stops in every corner: the format cannot say which curve is flown");
+        }
+        const auto corners =
+            holds_curves ? flight::Corners::flown_round : flight::Corners::stopped_in;
         const flight::FlightPlan plan = in_dialect(
-            flight_plan(route, i, mission.name + number, site_of(mission), rules), format, notes);
+            flight_plan(route, i, mission.name + number, site_of(mission), rules, corners), format,
+            notes);
         const flight::ExportResult result = export_flight(plan, format, space, file);
         files.written.push_back({name, info.heights, result.min_clearance});
         std::ranges::for_each(notes, add_note);

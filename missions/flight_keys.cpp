@@ -98,6 +98,10 @@ std::vector<Key> flight_keys() {
           choice("flight.order", {"shortest", "survey"}, field(&Flight::order),
                  "Order of the views in the exported mission: the shortest tour found, or as "
                  "surveyed."),
+          choice("flight.style", {"stop", "blend", "smooth"}, field(&Flight::style),
+                 "How legs with corners are flown: with a stop in each, round them, or along one "
+                 "smooth curve, where that is proven and faster. Trajectories (csv, ned-csv, tum) "
+                 "and KML hold curves; the other files stop in corners."),
       },
       std::back_inserter(keys));
   return keys;

@@ -12,6 +12,7 @@
 #include <Eigen/Core>
 #include <Eigen/Geometry>
 
+#include "flight/smoothing.h"
 #include "sim/depth_camera.h"
 #include "sim/models/models.h"
 #include "sim/trajectory.h"
@@ -35,7 +36,9 @@ struct SceneConfig {
   std::optional<double> longest_side;                  ///< of the bounding box, after rotation
   std::optional<double> scale;                         ///< factor; only one of the two is given
   Eigen::Vector3d position = Eigen::Vector3d::Zero();
-  bool ground = false;  ///< whether the sensor also sees a plane under the model
+  bool ground = false;       ///< whether the sensor also sees a plane under the model
+  double reflectance = 0.4;  ///< diffuse, at the laser's wavelength, where no other is given
+  std::optional<std::string> materials;  ///< a file of reflectances, by the names of the model's
 };
 
 enum class SensorPreset {
@@ -131,6 +134,7 @@ struct FlightConfig {
   double temperature = 15.0;  ///< of the battery [degrees Celsius]
   double reserve = 0.25;      ///< share of the battery left at landing
   VisitOrder order = VisitOrder::shortest;
+  flight::FlightStyle style = flight::FlightStyle::stop;  ///< of files that can hold curves
 
   bool is_flown() const { return vehicle != "none"; }
 };

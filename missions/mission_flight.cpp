@@ -107,6 +107,7 @@ flight::RouteOptions route_options_of(const Mission& mission, const Vector3d& pa
   options.takeoff = pad;
   options.takeoff_climb = takeoff_climb_of(mission);
   options.order_is_free = config.order == VisitOrder::shortest;
+  options.style = config.style;
   // The air moves away from where the wind comes from.
   options.conditions.wind =
       -config.wind_speed * Eigen::Vector2d(std::sin(config.wind_from), std::cos(config.wind_from));

@@ -18,7 +18,6 @@
 #include "missions/scan_runner.h"
 #include "missions/scene_source.h"
 #include "missions/sensor_reader.h"
-#include "missions/survey_scene.h"
 #include "missions/verbs.h"
 
 namespace skycap::missions {
@@ -40,18 +39,11 @@ SensorDescription sensor_of(const ScanVerbOptions& options, const Mission& missi
 }
 
 ScanRoute route_of(const ScanVerbOptions& options, const Mission& mission, Carrier carrier) {
-  if (options.route) return read_scan_route(*options.route, mission.scan.speed, carrier);
+  if (options.route) return read_scan_route(*options.route, mission, carrier);
   if (mission.scan.route) {
-    return read_scan_route(options.mission.parent_path() / *mission.scan.route, mission.scan.speed,
-                           carrier);
+    return read_scan_route(options.mission.parent_path() / *mission.scan.route, mission, carrier);
   }
   return {orbit_trajectory(mission.scan.orbit), {}};
-}
-
-geometry::Mesh measured_mesh(const Mission& mission, const std::filesystem::path& folder) {
-  geometry::Mesh mesh = placed_model(mission.scene, folder);
-  if (mission.scene.ground) geometry::append(mesh, ground_under(mesh));
-  return mesh;
 }
 
 Isometry3d turned(const Vector3d& position, const Vector3d& angles) {
@@ -184,12 +176,12 @@ int scan_with_laser(const ScanVerbOptions& options, const Mission& mission,
 
   ProgressLine progress(console, options.is_quiet);
   progress.show(mission.name + ": making the scene ready");
-  const geometry::Mesh mesh = measured_mesh(mission, options.mission.parent_path());
-  const sim::Scene scene(mesh, mission.threads);
+  const ReflectingMesh truth = reflecting_scene(mission.scene, options.mission.parent_path());
+  const sim::Scene scene(truth.mesh, truth.reflectances, mission.threads);
   std::vector<OutputFile> outputs;
-  std::vector<CloudFile> files =
-      open_files(options, {sensor_name, config, flight, geometry::bounding_box(mesh).center()},
-                 folder, outputs);
+  std::vector<CloudFile> files = open_files(
+      options, {sensor_name, config, flight, geometry::bounding_box(truth.mesh).center()}, folder,
+      outputs);
 
   const auto channels = static_cast<double>(config.channels.size());
   const Clock::time_point start = Clock::now();
@@ -255,7 +247,8 @@ int scan_with_camera(const ScanVerbOptions& options, const Mission& mission,
   }
   ProgressLine progress(console, options.is_quiet);
   progress.show(mission.name + ": making the scene ready");
-  const sim::Scene scene(measured_mesh(mission, options.mission.parent_path()), mission.threads);
+  const sim::Scene scene(reflecting_scene(mission.scene, options.mission.parent_path()).mesh,
+                         mission.threads);
   const auto report = [&](std::size_t taken, std::size_t points) {
     char text[160];
     std::snprintf(text, sizeof text, "%s: image %zu of %zu, %.1f M points", mission.name.c_str(),

@@ -17,6 +17,14 @@ std::vector<Key> scan_keys() {
   using Orbit = OrbitConfig;
   using Navigation = sim::NavigationErrors;
   return {
+      number(
+          "scene.reflectance", "", between(0, 1),
+          [](Mission & m) -> auto& { return m.scene.reflectance; },
+          "Diffuse reflectance of surfaces at the laser's wavelength, for skycap scan."),
+      otherwise("-", text(
+                         "scene.materials", [](Mission & m) -> auto& { return m.scene.materials; },
+                         "YAML file of reflectances, a line NAME: VALUE for each material of the "
+                         "model (usemtl of an OBJ), relative to the mission file.")),
       text("scan.sensor", scan(&Scan::sensor),
            "Sensor of skycap scan: a preset of sim/sensors, or the path of a description "
            "(NAME.yaml), relative to the mission file."),

@@ -6,11 +6,13 @@
 #include <string>
 #include <utility>
 
+#include "flight/export/export.h"
 #include "flight/export/text.h"
 #include "flight/export/trajectory_file.h"
 #include "geometry/error.h"
 #include "geometry/file.h"
 #include "geometry/pose.h"
+#include "missions/mission_flight.h"
 
 namespace skycap::missions {
 namespace {
@@ -107,26 +109,51 @@ ScanRoute from_views(const std::vector<View>& views, double speed, Carrier carri
   return {sim::Trajectory(std::move(poses)), std::move(image_times)};
 }
 
+/// Level, looking ahead; on climbs as before.
+ScanRoute from_points(const std::vector<Vector3d>& points, double speed) {
+  std::vector<View> views;  // each corner twice: as it is reached, and as it is left
+  Vector3d ahead = Vector3d::UnitX();
+  for (std::size_t i = 1; i < points.size(); ++i) {
+    const Vector3d way = points[i] - points[i - 1];
+    const Vector3d level(way.x(), way.y(), 0.0);
+    if (level.norm() > 1e-3) ahead = level.normalized();
+    views.push_back({points[i - 1], ahead});
+    views.push_back({points[i], ahead});
+  }
+  ScanRoute route = from_views(views, speed, Carrier::airframe);
+  route.image_times.clear();
+  return route;
+}
+
+std::filesystem::path route_file(const std::filesystem::path& path) {
+  if (!std::filesystem::is_directory(path)) return path;
+  const std::filesystem::path flown = path / "mission.csv";
+  return std::filesystem::exists(flown) ? flown : path / "views.csv";
+}
+
 }  // namespace
 
-ScanRoute read_scan_route(const std::filesystem::path& path, double speed, Carrier carrier) {
-  const std::filesystem::path file =
-      std::filesystem::is_directory(path) ? path / "views.csv" : path;
-  const std::string text = geometry::read_file(file);
+ScanRoute read_scan_route(const std::filesystem::path& path, const Mission& mission,
+                          Carrier carrier) {
+  const std::filesystem::path file = route_file(path);
   const std::string ending = file.extension().string();
-  try {
-    if (ending == ".tum" || ending == ".txt") return from_tum(text);
-    if (ending == ".csv" && text.starts_with("view,")) {
-      return from_views(views_of(text), speed, carrier);
+  const bool has_local_places = ending == ".tum" || ending == ".txt" || ending == ".csv";
+  if (!has_local_places) {
+    if (!has_place(mission)) {
+      throw Error(ErrorKind::bad_config,
+                  file.string() + ": has places on Earth; the mission needs a georeference");
     }
-    if (ending == ".csv") return from_states(text, carrier);
+    const Vector3d pad = mission.flight.takeoff.value_or(Vector3d::Zero());
+    return from_points(flight::read_route(file, site_of(mission), pad), mission.scan.speed);
+  }
+  const std::string text = geometry::read_file(file);
+  try {
+    if (ending != ".csv") return from_tum(text);
+    if (text.starts_with("view,")) return from_views(views_of(text), mission.scan.speed, carrier);
+    return from_states(text, carrier);
   } catch (const Error& error) {
     throw Error(ErrorKind::bad_file, file.string() + ": " + error.what());
   }
-  throw Error(ErrorKind::bad_file,
-              file.string() +
-                  ": is not a route; give a TUM trajectory (.tum, .txt), a trajectory "
-                  "or views (.csv), or the folder of a mission package");
 }
 
 sim::Trajectory orbit_trajectory(const OrbitConfig& orbit) {

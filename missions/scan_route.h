@@ -25,10 +25,14 @@ struct ScanRoute {
 ///  - .tum, .txt: `time x y z qx qy qz qw` of world_from_camera, which the carrier is fixed to, be
 ///    it a gimbal or not;
 ///  - .csv: a trajectory as written by flight/export/trajectory_file.h, or views as in views.csv;
-///  - a folder: the views.csv of the mission package in it.
-/// Views are flown in order along straight lines at `speed`, with a turn of at most 1 rad/s, and
-/// an image is taken at each. Throws Error{bad_file} in one line.
-ScanRoute read_scan_route(const std::filesystem::path& path, double speed, Carrier carrier);
+///  - .plan, .waypoints, .kmz, .kml, .geojson, .json: the points of any file that flight/export
+///    reads, by the mission's georeference, looking ahead;
+///  - a folder: the mission.csv of the mission package in it, or its views.csv if it is not flown.
+/// Views and points are flown in order along straight lines at the mission's scan.speed, with turns
+/// of 1 rad/s on the spot; an image is taken at each view. Throws Error{bad_file} in one line, and
+/// Error{bad_config} if the file's places are on Earth and the mission's are not.
+ScanRoute read_scan_route(const std::filesystem::path& path, const Mission& mission,
+                          Carrier carrier);
 
 /// Circles at constant speed, level, nose in the direction of flight. Time starts at zero.
 sim::Trajectory orbit_trajectory(const OrbitConfig& orbit);

@@ -1,11 +1,16 @@
 #include "missions/scene_source.h"
 
+#include <charconv>
 #include <cmath>
+#include <map>
 #include <numbers>
+#include <set>
 
 #include "geometry/error.h"
+#include "geometry/file.h"
 #include "geometry/mesh_io.h"
 #include "missions/model_store.h"
+#include "missions/yaml_tree.h"
 #include "sim/models/models.h"
 
 namespace skycap::missions {
@@ -32,6 +37,58 @@ geometry::Mesh named_model(const SceneConfig& scene, const std::filesystem::path
 Vector3d middle_of_base(const geometry::Mesh& mesh) {
   const Eigen::AlignedBox3d box = geometry::bounding_box(mesh);
   return {box.center().x(), box.center().y(), box.min().z()};
+}
+
+std::map<std::string, double> reflectances_of(const std::filesystem::path& file) {
+  const YamlNode root = parse_yaml(geometry::read_file(file), file.string());
+  const auto fail = [&](int line, const std::string& what) {
+    throw Error(ErrorKind::bad_config, file.string() + ":" + std::to_string(line) + ": " + what);
+  };
+  if (root.kind != YamlNode::Kind::map) fail(root.line, "is not a list of NAME: REFLECTANCE");
+  std::map<std::string, double> reflectances;
+  for (const YamlEntry& entry : root.entries) {
+    double value = -1.0;
+    const std::string& text = entry.value.text;
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+    if (error != std::errc() || end != text.data() + text.size() ||
+        !(value >= 0.0 && value <= 1.0)) {
+      fail(entry.line, "material " + entry.key + " has the reflectance '" + text +
+                           "'; it must be a number from 0 to 1");
+    }
+    reflectances[entry.key] = value;
+  }
+  return reflectances;
+}
+
+/// The model in its own frame, with reflectances by the names of its materials.
+ReflectingMesh mesh_of_materials(const SceneConfig& scene, const std::filesystem::path& folder) {
+  if (scene.model.starts_with("builtin:")) {
+    throw Error(ErrorKind::bad_config,
+                "scene.materials needs a model from a file; " + scene.model + " has no materials");
+  }
+  constexpr std::string_view stored = "model:";
+  const std::filesystem::path file = scene.model.starts_with(stored)
+                                         ? find_model(scene.model.substr(stored.size()))
+                                         : folder / scene.model;
+  const std::filesystem::path list = folder / *scene.materials;
+  std::map<std::string, double> reflectances = reflectances_of(list);
+  ReflectingMesh result;
+  std::string known;
+  std::set<std::string> unused;
+  for (const auto& [name, reflectance] : reflectances) unused.insert(name);
+  for (const geometry::MaterialMesh& part : geometry::read_mesh_by_material(file)) {
+    known += (known.empty() ? "" : ", ") + (part.material.empty() ? "(none)" : part.material);
+    unused.erase(part.material);
+    const auto given = reflectances.find(part.material);
+    const double reflectance = given == reflectances.end() ? scene.reflectance : given->second;
+    geometry::append(result.mesh, part.mesh);
+    result.reflectances.resize(result.mesh.triangles.size(), static_cast<float>(reflectance));
+  }
+  if (!unused.empty()) {
+    throw Error(ErrorKind::bad_config, list.string() + ": the model has no material " +
+                                           *unused.begin() + "; it has " + known);
+  }
+  return result;
 }
 
 }  // namespace
@@ -64,6 +121,19 @@ void place_model(const SceneConfig& scene, geometry::Mesh& model) {
   geometry::transform(model, Eigen::Affine3d(Eigen::Scaling(scale)));
   const Vector3d shift = scene.position - middle_of_base(model);
   geometry::transform(model, Eigen::Affine3d(Eigen::Translation3d(shift)));
+}
+
+ReflectingMesh reflecting_scene(const SceneConfig& scene, const std::filesystem::path& folder) {
+  ReflectingMesh result;
+  if (scene.materials) {
+    result = mesh_of_materials(scene, folder);
+  } else {
+    result.mesh = load_model(scene, folder);
+  }
+  place_model(scene, result.mesh);
+  if (scene.ground) geometry::append(result.mesh, ground_under(result.mesh));
+  result.reflectances.resize(result.mesh.triangles.size(), static_cast<float>(scene.reflectance));
+  return result;
 }
 
 geometry::Mesh ground_under(const geometry::Mesh& placed_model) {

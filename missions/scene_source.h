@@ -3,6 +3,7 @@
 
 #include <filesystem>
 #include <string>
+#include <vector>
 
 #include "geometry/mesh.h"
 #include "missions/mission.h"
@@ -17,6 +18,17 @@ geometry::Mesh load_model(const SceneConfig& scene, const std::filesystem::path&
 /// Turns, scales and places a model as `scene` says. Throws Error{bad_geometry} if the model has
 /// no extent to be scaled by.
 void place_model(const SceneConfig& scene, geometry::Mesh& model);
+
+/// A scene with what lasers see of its surfaces.
+struct ReflectingMesh {
+  geometry::Mesh mesh;
+  std::vector<float> reflectances;  ///< diffuse, of each triangle
+};
+
+/// What the sensors of `scene` measure: the model as placed, and the ground if there is one, with
+/// the reflectances of `scene`. Throws what load_model() and place_model() throw, and
+/// Error{bad_config} if the file of materials is wrong.
+ReflectingMesh reflecting_scene(const SceneConfig& scene, const std::filesystem::path& folder);
 
 /// A square in the plane of the scene's base, ten times as wide as the model.
 geometry::Mesh ground_under(const geometry::Mesh& placed_model);

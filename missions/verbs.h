@@ -80,15 +80,28 @@ struct ScanVerbOptions {
 int scan(const ScanVerbOptions& options, const Console& console);
 
 struct EvaluateOptions {
-  std::filesystem::path cloud;
+  std::filesystem::path cloud;     ///< either this
+  std::filesystem::path mesh;      ///< or this: a surface, by points spread over it
   std::string model;               ///< builtin:NAME, model:NAME, a mesh, or a mission file
   std::optional<double> distance;  ///< r_d; a mission file says its own
   std::size_t samples = 100'000;
   bool is_json = false;
 };
 
-/// Says how much of a model a cloud covers, and how accurate and dense it is.
+/// Says how much of a model a cloud or a mesh covers, and how accurate it is.
 int evaluate(const EvaluateOptions& options, const Console& console);
+
+struct ReconstructOptions {
+  std::filesystem::path cloud;
+  std::optional<std::filesystem::path> out;  ///< default: CLOUD_mesh.ply beside the cloud
+  int depth = 0;
+  double spacing = 0.0;
+  double least_density = 0.2;
+  unsigned threads = 0;
+};
+
+/// Writes the surface of a cloud as a mesh (reconstruction.h).
+int reconstruct_cloud(const ReconstructOptions& options, const Console& console);
 
 struct ModelOptions {
   std::string name;  ///< of a builtin or obtainable model, or a mission file

@@ -115,6 +115,11 @@ Format format_named(const std::string& name) {
   throw Error(ErrorKind::bad_usage, "format \"" + name + "\" is not known; there are " + names);
 }
 
+bool holds_curves(Format format) {
+  return format == Format::csv || format == Format::ned_csv || format == Format::tum ||
+         format == Format::kml;
+}
+
 std::string write(const FlightPlan& plan, Format format) {
   switch (format) {
     case Format::plan:

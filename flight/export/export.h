@@ -27,6 +27,11 @@ const FormatInfo& format_info(Format format);
 /// The format of that name, such as "kmz". Throws Error{bad_usage} listing the names.
 Format format_named(const std::string& name);
 
+/// Whether files of this format can hold curved legs: those that are lists of places close to one
+/// another. Of DJI's turn modes, which could also be told to round corners, it is not published
+/// which curve is flown, so nothing could be proven of it.
+bool holds_curves(Format format);
+
 /// The content of the file, its problems, and its places as a route.
 std::string write(const FlightPlan& plan, Format format);
 Problems validate(const std::string& content, Format format);

@@ -32,26 +32,30 @@ Waypoint stop(const Station& station, double clearance) {
 }  // namespace
 
 FlightPlan flight_plan(const Route& route, std::size_t index, const std::string& name,
-                       const Site& site, const Obstacles& rules) {
+                       const Site& site, const Obstacles& rules, Corners corners) {
   site.validate();
   const Sortie& sortie = route.sorties.at(index);
   FlightPlan plan{
       name, site,         route.vehicle, route.options.conditions, route.options.takeoff,
       {},   rules.no_fly, rules.fence,   route.clearance};
   plan.waypoints.push_back(corner(sortie.out.points.front(), sortie.out.clearance));
-  const auto add_corners = [&](const Leg& leg) {
-    for (std::size_t i = 1; i + 1 < leg.points.size(); ++i) {
-      plan.waypoints.push_back(corner(leg.points[i], leg.clearance));
+  const auto add = [&](const Leg& leg, Waypoint end) {
+    if (corners == Corners::flown_round && leg.smooth) {
+      end.curve = leg.smooth->curve;
+      end.clearance = leg.smooth->clearance;
+    } else {
+      for (std::size_t i = 1; i + 1 < leg.points.size(); ++i) {
+        plan.waypoints.push_back(corner(leg.points[i], leg.clearance));
+      }
     }
+    plan.waypoints.push_back(std::move(end));
   };
   const Leg* leg = &sortie.out;
   for (std::uint32_t i = sortie.first; i <= sortie.last; ++i) {
-    add_corners(*leg);
-    plan.waypoints.push_back(stop(route.stations[i], leg->clearance));
+    add(*leg, stop(route.stations[i], leg->clearance));
     leg = i < sortie.last ? &route.legs[i] : &sortie.back;
   }
-  add_corners(sortie.back);
-  plan.waypoints.push_back(corner(sortie.back.points.back(), sortie.back.clearance));
+  add(sortie.back, corner(sortie.back.points.back(), sortie.back.clearance));
   return plan;
 }
 
@@ -78,7 +82,8 @@ std::vector<StopTime> stop_times(const FlightPlan& plan) {
   double now = 0.0;
   const Waypoint* last_station = nullptr;
   for (const Waypoint& waypoint : plan.waypoints) {
-    double moving = motion.leg_time(waypoint.position - from);
+    double moving = waypoint.curve.empty() ? motion.leg_time(waypoint.position - from)
+                                           : duration(waypoint.curve);
     if (waypoint.is_station && last_station != nullptr) {
       const double turn = std::remainder(waypoint.yaw - last_station->yaw, 2.0 * M_PI);
       moving =

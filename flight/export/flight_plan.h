@@ -24,6 +24,7 @@ struct Waypoint {
   int shots = 0;
   std::uint32_t view_index = 0;
   double clearance = 0.0;  ///< proven for the leg that ends here [m]
+  Curve curve;             ///< how to get here from the stop before; empty: straight
 };
 
 struct FlightPlan {
@@ -38,13 +39,13 @@ struct FlightPlan {
   double clearance = 0.0;  ///< that the legs are certified at [m]
 };
 
-/// The shortest stop at a corner [s]: without a stop autopilots cut corners, and the certificate is
-/// about straight legs. ArduPilot stores whole seconds.
-inline constexpr double corner_hold = 1.0;
+/// Whether a plan's legs go round their corners where the route has a proven curve for that.
+enum class Corners { stopped_in, flown_round };
 
 /// The plan of sortie `index` of a route. Throws what Site::validate() throws.
 FlightPlan flight_plan(const Route& route, std::size_t index, const std::string& name,
-                       const Site& site, const Obstacles& rules = {});
+                       const Site& site, const Obstacles& rules = {},
+                       Corners corners = Corners::stopped_in);
 
 /// No-fly volumes as formats without heights can hold them: footprints that no leg crosses.
 /// Those that a leg passes over or under are left out, by name.

@@ -14,6 +14,10 @@ constexpr double to_deg = 180.0 / std::numbers::pi;
 constexpr const char* kml_namespace = "http://www.opengis.net/kml/2.2";
 constexpr const char* google_namespace = "http://www.google.com/kml/ext/2.2";
 
+/// Between the places that a curve is drawn through [s]: at the accelerations that vehicles fly
+/// with, its chords are some millimetres from it, less than rounding_bound.
+constexpr double curve_interval = 0.1;
+
 /// Unbounded no-fly volumes are drawn this far up and down from the pad [m].
 constexpr double drawn_height = 120.0;
 
@@ -87,9 +91,20 @@ class KmlWriter {
     add(line, "extrude", "0"), add(line, "tessellate", "0"), add(line, "altitudeMode", "absolute");
     std::string coordinates;
     for (const Waypoint& waypoint : plan_.waypoints) {
+      for (const double time : moments_on(waypoint.curve)) {
+        coordinates += " " + tuple(state_at(waypoint.curve, time).position, ",");
+      }
       coordinates += (coordinates.empty() ? "" : " ") + tuple(waypoint.position, ",");
     }
     add(line, "coordinates", coordinates);
+  }
+
+  /// Between the curve's ends; none on a straight way.
+  static std::vector<double> moments_on(const Curve& curve) {
+    std::vector<double> times;
+    const double end = duration(curve);
+    for (int i = 1; i * curve_interval < end; ++i) times.push_back(i * curve_interval);
+    return times;
   }
 
   void add_station(pugi::xml_node root, std::size_t index) {
@@ -141,17 +156,26 @@ class KmlWriter {
     pugi::xml_node track = mark.append_child("gx:Track");
     add(track, "altitudeMode", "absolute");
     const std::vector<StopTime> times = stop_times(plan_);
-    for (const StopTime& time : times) {
-      add(track, "when", moment(time.arrival)), add(track, "when", moment(time.departure));
+    double left = 0.0;
+    std::vector<std::string> moments, places, angles;
+    const auto add_place = [&](double time, const Eigen::Vector3d& place, const Waypoint& aim) {
+      moments.push_back(moment(time));
+      places.push_back(tuple(place, " "));
+      angles.push_back(fixed(aim.yaw * to_deg, 4) + " " + fixed(90.0 + aim.pitch * to_deg, 4) +
+                       " 0");
+    };
+    for (std::size_t i = 0; i < times.size(); ++i) {
+      const Waypoint& waypoint = plan_.waypoints[i];
+      for (const double time : moments_on(waypoint.curve)) {
+        add_place(left + time, state_at(waypoint.curve, time).position, waypoint);
+      }
+      add_place(times[i].arrival, waypoint.position, waypoint);
+      add_place(times[i].departure, waypoint.position, waypoint);
+      left = times[i].departure;
     }
-    for (const Waypoint& waypoint : plan_.waypoints) {
-      for (int end = 0; end < 2; ++end) add(track, "gx:coord", tuple(waypoint.position, " "));
-    }
-    for (const Waypoint& waypoint : plan_.waypoints) {
-      const std::string angles =
-          fixed(waypoint.yaw * to_deg, 4) + " " + fixed(90.0 + waypoint.pitch * to_deg, 4) + " 0";
-      for (int end = 0; end < 2; ++end) add(track, "gx:angles", angles);
-    }
+    for (const std::string& text : moments) add(track, "when", text);
+    for (const std::string& text : places) add(track, "gx:coord", text);
+    for (const std::string& text : angles) add(track, "gx:angles", text);
   }
 
   const FlightPlan& plan_;

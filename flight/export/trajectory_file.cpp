@@ -55,25 +55,30 @@ class TrajectorySampler {
     }
   }
 
+  CurveState straight_state(const Vector3d& from, const Waypoint& to, double time) const {
+    const double distance = (to.position - from).norm();
+    if (distance == 0.0) return {from};
+    const Vector3d direction = (to.position - from) / distance;
+    const MotionState along =
+        rest_to_rest_state(distance, motion_.leg_speed(direction), plan_.vehicle.acceleration,
+                           plan_.vehicle.jerk, time);
+    return {from + along.distance * direction, along.speed * direction,
+            along.acceleration * direction};
+  }
+
   void add_leg(const Vector3d& from, const Waypoint& to, double start, double end) {
     const double target_yaw = to.is_station ? to.yaw : yaw_;
     const double target_pitch = to.is_station ? to.pitch : pitch_;
     const double duration = end - start;
-    const Vector3d way = to.position - from;
-    const double distance = way.norm();
-    const Vector3d direction = distance > 0.0 ? Vector3d(way / distance) : Vector3d::Zero();
-    const double speed = distance > 0.0 ? motion_.leg_speed(direction) : 0.0;
     const auto first = static_cast<std::size_t>(std::ceil(start / interval_));
     for (std::size_t k = first; static_cast<double>(k) * interval_ < end; ++k) {
       TimedState state;
       state.time = static_cast<double>(k) * interval_;
-      const MotionState along =
-          distance > 0.0 ? rest_to_rest_state(distance, speed, plan_.vehicle.acceleration,
-                                              plan_.vehicle.jerk, state.time - start)
-                         : MotionState{};
-      state.position = from + along.distance * direction;
-      state.velocity = along.speed * direction;
-      state.acceleration = along.acceleration * direction;
+      const CurveState moved = to.curve.empty() ? straight_state(from, to, state.time - start)
+                                                : state_at(to.curve, state.time - start);
+      state.position = moved.position;
+      state.velocity = moved.velocity;
+      state.acceleration = moved.acceleration;
       const double share = duration > 0.0 ? (state.time - start) / duration : 1.0;
       state.yaw = yaw_ + share * turn(yaw_, target_yaw);
       state.yaw_rate = duration > 0.0 ? turn(yaw_, target_yaw) / duration : 0.0;

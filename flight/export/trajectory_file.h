@@ -11,7 +11,7 @@
 
 namespace skycap::flight {
 
-/// The vehicle at a moment of a straight, jerk-limited leg or a stop.
+/// The vehicle at a moment of a leg, straight or curved, or of a stop.
 struct TimedState {
   double time = 0.0;  ///< from leaving the pad [s]
   Eigen::Vector3d position, velocity, acceleration;

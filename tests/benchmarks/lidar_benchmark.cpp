@@ -1,10 +1,11 @@
-/// A moving laser scanner, all of it, against the bare casting of the same rays; and whole flights
-/// into a LAS file.
+/// A moving laser scanner, all of it, against the bare casting of the same rays; whole flights into
+/// a LAS file, against writing the same bytes; and what a scene costs.
 ///
-///   lidar_benchmark [--threads N] [--rounds N] [--file FILE.las]
+///   lidar_benchmark [--threads N] [--rounds N] [--file FILE.las] [--largest 1]
 ///
-/// The platform flies at 10 m/s inside a hilly sphere; all shots return. The bare loop has its rays
-/// ready in memory, in packets of the same shape, and keeps only their distances.
+/// The platform flies at 10 m/s inside a hilly sphere, where all shots return, and over a city. The
+/// bare loop has its rays ready in memory, in packets of the same shape, and keeps only their
+/// distances. --largest adds the making of a scene of 30 million triangles.
 
 #include <algorithm>
 #include <chrono>
@@ -12,17 +13,20 @@
 #include <cstdlib>
 #include <cstring>
 #include <filesystem>
+#include <fstream>
 #include <string>
 #include <string_view>
 #include <utility>
 #include <vector>
 
 #include <Eigen/Geometry>
+#include <unistd.h>
 
 #include "geometry/parallel.h"
 #include "missions/las_format.h"
 #include "missions/scan_runner.h"
 #include "sim/lidar.h"
+#include "sim/models/models.h"
 #include "sim/scan_pattern.h"
 #include "sim/scene_embree.h"
 #include "tests/benchmarks/interleaved.h"
@@ -132,26 +136,82 @@ void compare(const sim::Scene& scene, std::size_t triangles, unsigned threads, i
               triangles, 1e3 * medians.first, 1e3 * medians.second, medians.first / medians.second);
 }
 
-void fly_into_file(const sim::Scene& scene, int rings, double duration, unsigned threads,
-                   const std::string& file) {
-  sim::LidarConfig config = spinner(64, 2048);
+double seconds_since(std::chrono::steady_clock::time_point start) {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+/// Megabytes a second at which the disk takes as many bytes in blocks of the size of a chunk.
+double raw_write_speed(const std::string& path, std::uintmax_t bytes) {
+  const std::vector<char> block(1 << 20, 'x');
+  const auto start = std::chrono::steady_clock::now();
+  std::FILE* const file = std::fopen(path.c_str(), "wb");
+  if (file == nullptr) return 0.0;
+  std::setvbuf(file, nullptr, _IONBF, 0);
+  for (std::uintmax_t written = 0; written < bytes; written += block.size()) {
+    std::fwrite(block.data(), 1, block.size(), file);
+  }
+  std::fclose(file);
+  const double time = seconds_since(start);
+  std::filesystem::remove(path);
+  return 1e-6 * static_cast<double>(bytes) / time;
+}
+
+void fly_into_file(const sim::Scene& scene, sim::LidarConfig config,
+                   const sim::Trajectory& trajectory, int rings, unsigned threads,
+                   const std::string& path) {
   config.beam.rings = rings;
   config.beam.divergence_horizontal = config.beam.divergence_vertical = 0.003;
   config.beam.max_returns = 5;
-  const sim::Trajectory trajectory = flight(duration);
   std::vector<missions::CloudFile> files;
-  files.emplace_back(file, missions::las_format({}));
+  files.emplace_back(path, missions::las_format({}));
   const auto start = std::chrono::steady_clock::now();
   const missions::ScanResult result =
       missions::run_scan(scene, sim::Lidar(config), {trajectory, trajectory}, files,
                          {.threads = threads, .report = {}, .stop = {}});
   files[0].finish();
-  const std::chrono::duration<double> time = std::chrono::steady_clock::now() - start;
-  const double shots = 64.0 * static_cast<double>(result.progress.firings);
-  std::printf("          %2d rays a shot, into LAS: %.2f M shots/s, %.1f MB/s written\n",
-              1 + 3 * rings * (rings + 1), 1e-6 * shots / time.count(),
-              1e-6 * static_cast<double>(std::filesystem::file_size(file)) / time.count());
-  std::filesystem::remove(file);
+  const double time = seconds_since(start);
+  const auto channels = static_cast<double>(config.channels.size());
+  const double shots = channels * static_cast<double>(result.progress.firings);
+  std::filesystem::remove(path);
+  std::printf(
+      "          %2d rays a shot, into LAS: %5.2f M shots/s, %5.2f M points/s, %4.0f MB/s; "
+      "the disk alone %4.0f MB/s\n",
+      1 + 3 * rings * (rings + 1), 1e-6 * shots / time,
+      1e-6 * static_cast<double>(result.progress.points) / time,
+      1e-6 * static_cast<double>(files[0].bytes()) / time, raw_write_speed(path, files[0].bytes()));
+}
+
+/// Level flight over the city, all lasers looking down at it: as an airborne scanner does.
+void fly_over_city(unsigned threads, const std::string& path) {
+  const geometry::Mesh mesh =
+      sim::builtin_model("city-block", {.detail = sim::LevelOfDetail::fine});
+  const sim::Scene scene(mesh, threads);
+  std::printf("%9zu triangles, a city from 60 m above:\n", mesh.triangles.size());
+  sim::LidarConfig config = spinner(64, 2048);
+  for (sim::Channel& channel : config.channels) channel.elevation -= 60 * degree;
+  const Eigen::Quaterniond level = Eigen::Quaterniond::Identity();
+  const auto over = [&](double duration) {
+    return sim::Trajectory({{0.0, {-10, 0, 60}, level}, {duration, {10, 0, 60}, level}});
+  };
+  fly_into_file(scene, config, over(4.0), 0, threads, path);
+  fly_into_file(scene, config, over(0.4), 2, threads, path);
+}
+
+std::size_t resident_bytes() {
+  std::size_t pages = 0, resident = 0;
+  std::ifstream("/proc/self/statm") >> pages >> resident;
+  return resident * static_cast<std::size_t>(::sysconf(_SC_PAGESIZE));
+}
+
+void make_scene(std::size_t triangles, unsigned threads) {
+  const geometry::Mesh mesh = benchmarks::planet(triangles);
+  const std::size_t before = resident_bytes();
+  const auto start = std::chrono::steady_clock::now();
+  const sim::Scene scene(mesh, threads);
+  const double time = seconds_since(start);
+  const auto count = static_cast<double>(mesh.triangles.size());
+  std::printf("%9zu triangles made ready in %.2f s, %.0f bytes a triangle besides the mesh\n",
+              mesh.triangles.size(), time, static_cast<double>(resident_bytes() - before) / count);
 }
 
 }  // namespace
@@ -159,17 +219,22 @@ void fly_into_file(const sim::Scene& scene, int rings, double duration, unsigned
 int main(int argc, char** argv) {
   unsigned threads = 0;
   int rounds = 15;
+  bool is_largest = false;
   std::string file = (std::filesystem::temp_directory_path() / "lidar_benchmark.las").string();
   for (int i = 1; i + 1 < argc; i += 2) {
     const std::string_view option = argv[i];
     if (option == "--threads") threads = static_cast<unsigned>(std::atoi(argv[i + 1]));
     if (option == "--rounds") rounds = std::max(1, std::atoi(argv[i + 1]));
     if (option == "--file") file = argv[i + 1];
+    if (option == "--largest") is_largest = std::atoi(argv[i + 1]) != 0;
   }
   for (const std::size_t triangles : {70'000UL, 1'000'000UL}) {
     const sim::Scene scene(benchmarks::planet(triangles), threads);
     compare(scene, triangles, threads, rounds);
-    fly_into_file(scene, 0, 1.0, threads, file);
-    fly_into_file(scene, 2, 0.2, threads, file);
+    fly_into_file(scene, spinner(64, 2048), flight(2.0), 0, threads, file);
+    fly_into_file(scene, spinner(64, 2048), flight(0.2), 2, threads, file);
   }
+  fly_over_city(threads, file);
+  make_scene(1'000'000, threads);
+  if (is_largest) make_scene(30'000'000, threads);
 }

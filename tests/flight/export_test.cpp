@@ -109,6 +109,26 @@ INSTANTIATE_TEST_SUITE_P(Export, EveryFormat,
                            return name;
                          });
 
+// Curves in files are proved again between the places that they are written as.
+TEST(Export, CurvesAreHeldByTrajectoriesAndTracks) {
+  const FlightPlan stops = corner_plan(FlightStyle::stop);
+  for (const FlightStyle style : {FlightStyle::blend, FlightStyle::smooth}) {
+    const FlightPlan plan = corner_plan(style);
+    EXPECT_LT(plan.waypoints.size(), stops.waypoints.size());
+    EXPECT_LT(stop_times(plan).back().departure, stop_times(stops).back().departure - 1.0);
+    const Scratch scratch;
+    const KnownSpace space(sample_site());
+    for (const FormatInfo& info : formats()) {
+      if (!holds_curves(info.format)) continue;
+      const std::string name = std::string("mission") + info.ending;
+      EXPECT_GE(export_flight(plan, info.format, space, scratch / name).min_clearance,
+                plan.clearance - rounding_bound);
+      const auto points = read_route(scratch / name, plan.site, plan.pad);
+      EXPECT_GT(points.size(), 3 * plan.waypoints.size()) << info.name << " holds no curve";
+    }
+  }
+}
+
 TEST(Export, MeanSeaLevelIsRefusedWithoutTheUndulation) {
   for (const FormatInfo& info : formats()) {
     FlightPlan plan = sample_plan(vehicle_for(info.format));
@@ -157,8 +177,10 @@ TEST(Export, XmlIsWellFormedByXmllint) {
 // ---- trajectories ----------------------------------------------------------------------------
 
 // Derivatives by differences agree with what is stated: the profile is the motion that it says.
-TEST(Trajectory, VelocitiesAndAccelerationsAreTheDerivatives) {
-  const FlightPlan plan = sample_plan(vehicle_profile("generic"));
+class TrajectoryOf : public testing::TestWithParam<FlightStyle> {};
+
+TEST_P(TrajectoryOf, VelocitiesAndAccelerationsAreTheDerivatives) {
+  const FlightPlan plan = corner_plan(GetParam());
   constexpr double dt = 0.001;
   const std::vector<TimedState> states = trajectory(plan, dt);
   for (std::size_t i = 1; i + 1 < states.size(); ++i) {
@@ -172,6 +194,10 @@ TEST(Trajectory, VelocitiesAndAccelerationsAreTheDerivatives) {
   }
   EXPECT_NEAR(states.back().time, stop_times(plan).back().departure, 1e-9);
 }
+
+INSTANTIATE_TEST_SUITE_P(Styles, TrajectoryOf,
+                         testing::Values(FlightStyle::stop, FlightStyle::blend,
+                                         FlightStyle::smooth));
 
 TEST(Trajectory, CsvRoundTripsInBothFrames) {
   const std::vector<TimedState> states = trajectory(sample_plan(vehicle_profile("generic")), 0.5);

@@ -6,6 +6,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "flight/export/flight_plan.h"
 #include "geometry/error.h"
 #include "tests/flight/scenes.h"
 
@@ -72,6 +73,35 @@ TEST(Route, LegsGoRoundWhatTheStraightLineWouldHit) {
   ASSERT_EQ(route.legs.size(), 1U);
   EXPECT_GT(route.legs[0].points.size(), 2U);
   EXPECT_GE(route.legs[0].clearance, 2.0);
+}
+
+// Sorties are split for stops; a curve must fit into what they have set aside for its leg.
+TEST(Route, CurvesTakeNoMoreTimeAndEnergyThanTheStopsTheyReplace) {
+  const std::vector<Station> stations{{look_at({0, -14, 8}, {0, 0, 8})},
+                                      {look_at({0, 14, 8}, {0, 0, 8})}};
+  const Route stops = plan(stations, site());
+  for (const FlightStyle style : {FlightStyle::blend, FlightStyle::smooth}) {
+    RouteOptions how = options();
+    how.style = style;
+    const Route route = plan(stations, site(), how);
+    ASSERT_TRUE(route.legs[0].smooth);
+    EXPECT_EQ(route.legs[0].points, stops.legs[0].points);
+    EXPECT_EQ(route.duration, stops.duration);
+    EXPECT_LT(route.legs[0].smooth->duration, route.legs[0].duration);
+    EXPECT_LT(route.legs[0].smooth->energy, route.legs[0].energy);
+    EXPECT_GE(route.legs[0].smooth->clearance, 2.0);
+  }
+}
+
+// The sorties' times are those of the files: stops in corners included.
+TEST(Route, SortiesLastAsLongAsTheirPlans) {
+  const Route route = plan(ring(8, 16, 8), site());
+  ASSERT_EQ(route.sorties.size(), 1U);
+  const FlightPlan flown = flight_plan(route, 0, "ring", {{51.75, -1.25, 100.0}, {}}, site());
+  const Motion motion(route.vehicle, route.options.conditions);
+  const double landing =
+      motion.leg_time({0, 0, -route.options.takeoff_climb}) + route.options.landing_time;
+  EXPECT_NEAR(route.sorties[0].duration, stop_times(flown).back().departure + landing, 1e-6);
 }
 
 TEST(Route, AViewThatCannotBeReachedIsReportedAndTheRestIsFlown) {

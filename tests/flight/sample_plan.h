@@ -14,4 +14,7 @@ Obstacles sample_site();
 /// Four stations around the building, near Oxford's meridian, planned for that vehicle at 2 m.
 FlightPlan sample_plan(const Vehicle& vehicle);
 
+/// From one side of that building to the other and back: legs with corners, flown in that style.
+FlightPlan corner_plan(FlightStyle style);
+
 }  // namespace skycap::flight

@@ -70,6 +70,7 @@ class ScanRouteFile : public testing::Test {
   }
 
   const tests::TestFolder folder;
+  Mission mission;
   const View first = geometry::look_at({10, 0, 5}, {0, 0, 3});
   const View second = geometry::look_at({10, 8, 5}, {0, 0, 9});
 };
@@ -78,7 +79,7 @@ TEST_F(ScanRouteFile, ATumTrajectoryKeepsItsTimesAndPoses) {
   const std::string file =
       folder.write("flight.tum", flight::write_tum({{2.0, geometry::camera_pose(first)},
                                                     {3.5, geometry::camera_pose(second)}}));
-  const ScanRoute route = read_scan_route(file, 1.0, Carrier::airframe);
+  const ScanRoute route = read_scan_route(file, mission, Carrier::airframe);
   EXPECT_EQ(route.carrier.start(), 2.0);
   EXPECT_EQ(route.carrier.end(), 3.5);
   EXPECT_TRUE(route.image_times.empty());
@@ -87,10 +88,11 @@ TEST_F(ScanRouteFile, ATumTrajectoryKeepsItsTimesAndPoses) {
 }
 
 TEST_F(ScanRouteFile, ViewsAreFlownInAStraightLineAtTheGivenSpeed) {
+  mission.scan.speed = 4.0;
   folder.write("views.csv",
                "view,x,y,z,direction_x,direction_y,direction_z,points\n"
                "0,10,0,5,-1,0,0,7\n1,10,8,5,-1,0,0,9\n2,10,8,5,0,-1,0,9\n");
-  const ScanRoute route = read_scan_route(folder.path(), 4.0, Carrier::gimbal);
+  const ScanRoute route = read_scan_route(folder.path(), mission, Carrier::gimbal);
   // 8 m at 4 m/s, then a quarter turn at 1 rad/s.
   EXPECT_THAT(route.image_times, testing::Pointwise(testing::DoubleNear(1e-9),
                                                     std::vector<double>{0.0, 2.0, 2.0 + 0.5 * pi}));
@@ -108,17 +110,44 @@ TEST_F(ScanRouteFile, TheAirframeStaysLevelWhereTheGimbalLooksDown) {
   states[1].is_shot = true;
   const std::string file =
       folder.write("trajectory.csv", flight::write_trajectory_csv(states, flight::Frame::enu));
-  const ScanRoute gimbal = read_scan_route(file, 1.0, Carrier::gimbal);
+  const ScanRoute gimbal = read_scan_route(file, mission, Carrier::gimbal);
   expect_view(gimbal.carrier, 1.0, {{1, 2, 30}, {std::cos(0.8), 0, -std::sin(0.8)}});
   EXPECT_THAT(gimbal.image_times, testing::ElementsAre(testing::DoubleNear(4.0, 1e-6)));
-  const ScanRoute airframe = read_scan_route(file, 1.0, Carrier::airframe);
+  const ScanRoute airframe = read_scan_route(file, mission, Carrier::airframe);
   EXPECT_TRUE(airframe.carrier.pose(1.0).linear().isApprox(Eigen::Matrix3d::Identity(), 1e-5));
+}
+
+// 2e-5 degrees of longitude at the equator: 2.2264 m on WGS84.
+TEST_F(ScanRouteFile, PointsOnEarthAreFlownLookingAhead) {
+  const std::string file =
+      folder.write("route.waypoints",
+                   "QGC WPL 110\n"
+                   "0\t1\t0\t16\t0\t0\t0\t0\t0.0000000\t0.0000000\t0.000000\t1\n"
+                   "1\t0\t3\t22\t0\t0\t0\t0\t0.0000000\t0.0000000\t10.000000\t1\n"
+                   "2\t0\t3\t16\t0\t0\t0\t0\t0.0000000\t0.0000200\t10.000000\t1\n"
+                   "3\t0\t3\t16\t0\t0\t0\t0\t0.0000000\t0.0000200\t12.000000\t1\n"
+                   "4\t0\t3\t21\t0\t0\t0\t0\t0.0000000\t0.0000200\t0.000000\t1\n");
+  try {
+    read_scan_route(file, mission, Carrier::airframe);
+    FAIL() << "read without a georeference";
+  } catch (const Error& error) {
+    EXPECT_THAT(error.what(), testing::HasSubstr("the mission needs a georeference"));
+  }
+  mission.georeference.latitude = mission.georeference.longitude = 0.0;
+  mission.scan.speed = 2.0;
+  const ScanRoute route = read_scan_route(file, mission, Carrier::airframe);
+  const double way = 2e-5 * pi / 180.0 * 6378137.0;
+  EXPECT_NEAR(route.carrier.end() - route.carrier.start(), (way + 2.0) / 2.0, 0.01);
+  const Isometry3d last = route.carrier.pose(route.carrier.end());
+  EXPECT_TRUE(last.translation().isApprox(Vector3d(way, 0, 12), 1e-3));
+  EXPECT_TRUE(last.linear().isApprox(Eigen::Matrix3d::Identity(), 1e-6));  // still eastward
+  EXPECT_TRUE(route.image_times.empty());
 }
 
 TEST_F(ScanRouteFile, SaysWhatIsWrongWithARoute) {
   const auto message = [&](const std::string& name, const std::string& content) -> std::string {
     try {
-      read_scan_route(folder.write(name, content), 1.0, Carrier::gimbal);
+      read_scan_route(folder.write(name, content), mission, Carrier::gimbal);
     } catch (const Error& error) {
       EXPECT_EQ(error.kind(), ErrorKind::bad_file);
       return error.what();
@@ -131,7 +160,8 @@ TEST_F(ScanRouteFile, SaysWhatIsWrongWithARoute) {
   EXPECT_THAT(message("b.csv", "view,x\n0,1,2,3,0,0,0\n"), HasSubstr("without length"));
   EXPECT_THAT(message("c.csv", "view,x\n0,1,2,x,0,0,1\n"), HasSubstr("line 2"));
   EXPECT_THAT(message("d.csv", "view,x\n"), HasSubstr("the trajectory has no poses"));
-  EXPECT_THAT(message("a.plan", "{}"), HasSubstr("is not a route; give"));
+  mission.georeference.latitude = mission.georeference.longitude = 0.1;
+  EXPECT_THAT(message("a.plan", "{}"), HasSubstr("a.plan"));
 }
 
 }  // namespace

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <sstream>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -117,6 +118,46 @@ TEST_F(ScanVerb, FliesAGivenRouteWithAGivenSensor) {
   EXPECT_EQ(summary()["shots"], 64 * 1024);  // a turn
   EXPECT_EQ(summary()["sensor"], "Ideal spinning scanner");
   EXPECT_LT(largest_error(geometry::read_cloud(folder / "out/scan.xyz").positions), 6e-5F);
+}
+
+// The cube's lid is of lead, its sides of chalk; the ground has what the mission says.
+TEST_F(ScanVerb, IntensitiesAreThoseOfTheMaterials) {
+  folder.write("chalk.obj",
+               "v -1 -1 0\nv 1 -1 0\nv 1 1 0\nv -1 1 0\nv -1 -1 2\nv 1 -1 2\nv 1 1 2\nv -1 1 2\n"
+               "f 4 3 2 1\nusemtl lead\nf 5 6 7 8\nusemtl chalk\nf 1 2 6 5\nf 2 3 7 6\nf 3 4 8 7\n"
+               "f 4 1 5 8\n");
+  const std::string materials = folder.write("materials.yaml", "lead: 0.1\nchalk: 0.9\n");
+  const std::string route = folder.write("route.tum", "0 4 0 4 0 0 0 1\n0.1 4 1 4 0 0 0 1\n");
+  const std::vector<std::string> options = {"--route",  route,
+                                            "--format", "xyz",
+                                            "--sensor", "ideal_spinning",
+                                            "--set",    "scene.model=chalk.obj",
+                                            "--set",    "scene.materials=materials.yaml",
+                                            "--set",    "scene.reflectance=0.3",
+                                            "--set",    "scan.mount.rotation_deg=[0, 25, 0]"};
+  ASSERT_EQ(scan(options).exit_code, 0);
+  std::istringstream lines(tests::content_of(folder / "out/scan.xyz"));
+  std::string line;
+  std::getline(lines, line);
+  float brightest_lid = 0.0F, brightest_side = 0.0F;
+  while (std::getline(lines, line)) {
+    std::istringstream fields(line);
+    float x = 0, y = 0, z = 0, intensity = 0;
+    fields >> x >> y >> z >> intensity;
+    const bool is_lid = std::abs(x) < 0.99F && std::abs(y) < 0.99F;
+    float& brightest = is_lid ? brightest_lid : brightest_side;
+    brightest = std::max(brightest, intensity);
+  }
+  // Reflectance times the cosine of incidence: at most 45 degrees from the vertical here.
+  EXPECT_GT(brightest_lid, 0.04F);
+  EXPECT_LE(brightest_lid, 0.1F);
+  EXPECT_GT(brightest_side, 0.4F);
+  EXPECT_LE(brightest_side, 0.9F);
+
+  folder.write("materials.yaml", "lead: 0.1\nglass: 0.9\n");
+  EXPECT_THAT(scan(options).err, HasSubstr("no material glass; it has (none), lead, chalk"));
+  folder.write("materials.yaml", "lead: 1.1\n");
+  EXPECT_THAT(scan(options).err, HasSubstr("materials.yaml:1: material lead has the reflectance"));
 }
 
 // Facing the cube's side at x = 1 from x = 5 and then x = 3: all depths there are 4 and 2 m.
