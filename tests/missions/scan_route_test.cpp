@@ -131,7 +131,7 @@ TEST_F(ScanRouteFile, PointsOnEarthAreFlownLookingAhead) {
     read_scan_route(file, mission, Carrier::airframe);
     FAIL() << "read without a georeference";
   } catch (const Error& error) {
-    EXPECT_THAT(error.what(), testing::HasSubstr("the mission needs a georeference"));
+    EXPECT_THAT(error.what(), testing::HasSubstr("give site.latitude_deg and site.longitude_deg"));
   }
   mission.georeference.latitude = mission.georeference.longitude = 0.0;
   mission.scan.speed = 2.0;
