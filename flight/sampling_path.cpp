@@ -57,12 +57,12 @@ class ProvenMotion : public ob::MotionValidator {
   std::size_t& checks_;
 };
 
-void seed_once() {
-  static std::once_flag flag;
-  std::call_once(flag, [] {
-    ompl::msg::setLogLevel(ompl::msg::LOG_NONE);
-    ompl::RNG::setSeed(1);
-  });
+/// OMPL's generators take their seeds from one source for the whole process, when they are made. It
+/// can be set anew before each search, though OMPL warns of that, thinking of generators made
+/// before; a search makes its own.
+void seed_generators(std::uint32_t seed) {
+  ompl::msg::setLogLevel(ompl::msg::LOG_NONE);
+  ompl::RNG::setSeed(seed);
 }
 
 ob::RealVectorBounds bounds_around(const FreeSpace& space, const Vector3d& from, const Vector3d& to,
@@ -86,13 +86,18 @@ Path find_path_by_sampling(const FreeSpace& space, const Vector3d& from, const V
     throw Error(ErrorKind::bad_config, "the clearance is " + std::to_string(clearance) +
                                            " m; it must be a finite number, zero or more");
   }
+  if (options.seed == 0) {
+    throw Error(ErrorKind::bad_config, "the seed of a search by sampling is 0; it must be above");
+  }
   Path path;
   path.status = PathStatus::start_not_free;
   if (!space.is_free({from, from}, clearance)) return path;
   path.status = PathStatus::goal_not_free;
   if (!space.is_free({to, to}, clearance)) return path;
 
-  seed_once();
+  static std::mutex one_search_at_a_time;
+  const std::lock_guard lock(one_search_at_a_time);
+  seed_generators(options.seed);
   const auto states = std::make_shared<ob::RealVectorStateSpace>(3);
   states->setBounds(bounds_around(space, from, to, clearance));
   const auto information = std::make_shared<ob::SpaceInformation>(states);
@@ -118,7 +123,15 @@ Path find_path_by_sampling(const FreeSpace& space, const Vector3d& from, const V
                            : ob::PlannerPtr(std::make_shared<og::AITstar>(information));
   planner->setProblemDefinition(problem);
   planner->setup();
-  planner->solve(ob::PlannerTerminationCondition([&] { return checks >= options.max_checks; }));
+  // One of the planners tells the problem of each path it finds, the other calls back.
+  bool has_path = false;
+  problem->setIntermediateSolutionCallback([&](const ob::Planner*,
+                                               const std::vector<const ob::State*>&,
+                                               const ob::Cost) { has_path = true; });
+  planner->solve(ob::PlannerTerminationCondition([&] {
+    has_path = has_path || problem->hasExactSolution();
+    return checks >= (has_path ? options.max_checks : options.max_checks_for_first_path);
+  }));
 
   path.expansions = checks;
   path.status = PathStatus::unreachable;

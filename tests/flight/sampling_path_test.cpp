@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include "geometry/error.h"
+#include "geometry/mesh.h"
 #include "tests/flight/scenes.h"
 
 namespace skycap::flight {
@@ -40,12 +42,53 @@ TEST(SamplingPath, AitStarAgreesWithTheGridRoundABuilding) {
                    {.planner = SamplingPlanner::ait_star, .max_checks = 1500});
 }
 
+/// A wall of 60 x 40 m with a window of 6 x 6 m: at a clearance of 2 m a hole of 2 x 2 m, and
+/// within the fence the only way to the other side.
+Obstacles wall_with_window() {
+  Obstacles obstacles;
+  geometry::Mesh& mesh = obstacles.mesh;
+  geometry::append(mesh, scenes::box({-30, 0, 0}, {-3, 1, 40}));
+  geometry::append(mesh, scenes::box({3, 0, 0}, {30, 1, 40}));
+  geometry::append(mesh, scenes::box({-3, 0, 0}, {3, 1, 17}));
+  geometry::append(mesh, scenes::box({-3, 0, 23}, {3, 1, 40}));
+  obstacles.fence = Prism{"yard", {{-30, -15}, {30, -15}, {30, 16}, {-30, 16}}, 0.0, 40.0};
+  return obstacles;
+}
+
+// From one side of the window to the same side behind the wall: the straight line is in the way of
+// the wall, so the hole must be found, and by every seed, not only a lucky one.
+TEST(SamplingPath, FindsTheWindowInAWallWithEverySeed) {
+  const KnownSpace space(wall_with_window());
+  const Vector3d from(-8, -6, 20), to(-8, 7, 20);
+  const Path grid = PathFinder(space, 2.0).find(from, to);
+  ASSERT_EQ(grid.status, PathStatus::found);
+  for (std::uint32_t seed = 1; seed <= 3; ++seed) {
+    const Path path =
+        find_path_by_sampling(space, from, to, 2.0, {.max_checks = 2000, .seed = seed});
+    ASSERT_EQ(path.status, PathStatus::found) << "seed " << seed;
+    EXPECT_LE(path.length, 1.05 * grid.length) << "seed " << seed;
+    EXPECT_LE(grid.length, 1.01 * path.length) << "seed " << seed;
+  }
+}
+
+TEST(SamplingPath, IsTheSameWhateverWasAskedBefore) {
+  const KnownSpace space(building());
+  const SamplingOptions brief{.max_checks = 500};
+  const auto find = [&] {
+    return find_path_by_sampling(space, {10, -6, 0}, {26, 14, 0}, 2.0, brief).points;
+  };
+  const std::vector<Vector3d> first = find();
+  find_path_by_sampling(space, {-9, 3, 5}, {30, 14, 2}, 2.0, brief);
+  EXPECT_EQ(find(), first);
+  EXPECT_THROW(find_path_by_sampling(space, {-9, 3, 5}, {30, 14, 2}, 2.0, {.seed = 0}), Error);
+}
+
 TEST(SamplingPath, NoWayIsANormalAnswer) {
   Obstacles cage;
   cage.mesh = scenes::box({-5, -5, -5}, {5, 5, 5});
   cage.mesh_is_solid = false;
   const KnownSpace space(cage);
-  const SamplingOptions brief{.max_checks = 2000};
+  const SamplingOptions brief{.max_checks = 500, .max_checks_for_first_path = 2000};
   EXPECT_EQ(find_path_by_sampling(space, {0, 0, 0}, {20, 0, 0}, 1.0, brief).status,
             PathStatus::unreachable);
   EXPECT_EQ(find_path_by_sampling(space, {4.5, 0, 0}, {20, 0, 0}, 1.0, brief).status,
