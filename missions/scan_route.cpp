@@ -140,8 +140,9 @@ ScanRoute read_scan_route(const std::filesystem::path& path, const Mission& miss
   const bool has_local_places = ending == ".tum" || ending == ".txt" || ending == ".csv";
   if (!has_local_places) {
     if (!has_place(mission)) {
-      throw Error(ErrorKind::bad_config,
-                  file.string() + ": has places on Earth; give site.latitude_deg and site.longitude_deg");
+      throw Error(
+          ErrorKind::bad_config,
+          file.string() + ": has places on Earth; give site.latitude_deg and site.longitude_deg");
     }
     const Vector3d pad = mission.flight.takeoff.value_or(Vector3d::Zero());
     return from_points(flight::read_route(file, site_of(mission), pad), mission.scan.speed);
