@@ -145,7 +145,7 @@ Key box_corner(std::string path, Field field, bool is_upper, std::string meaning
   Key key;
   key.path = std::move(path);
   key.type = KeyType::vector;
-  key.unit = "m";
+  key.unit = std::string(1, 'm');  // of a literal, GCC 12 warns without cause
   key.range = between(-far_away, far_away);
   key.meaning = std::move(meaning);
   key.set = [field, is_upper](Mission& mission, const KeyValue& value) {
