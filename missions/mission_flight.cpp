@@ -15,6 +15,9 @@ constexpr double degrees_per_radian = 180.0 / std::numbers::pi;
 /// Voxels of a quarter of the clearance lose little of the free space beside what was measured.
 constexpr double voxels_per_clearance = 4.0;
 
+/// How far beside the unknown box places are proposed: more than the clearance and a voxel.
+double spare_of(const Mission& mission) { return 2.0 * mission.flight.clearance; }
+
 /// Grid vertices looked at before a view counts as out of reach: some tenths of a second.
 constexpr std::size_t most_expansions = 50'000;
 
@@ -38,6 +41,11 @@ flight::ClearanceBudget clearance_of(const Mission& mission) {
 AlignedBox3d unknown_box_of(const Mission& mission) {
   return mission.flight.unknown_box ? *mission.flight.unknown_box
                                     : mission.planner.see.scene_box.value_or(AlignedBox3d());
+}
+
+bool is_in_known_airspace(const Mission& mission, const Vector3d& place) {
+  return !mission.flight.is_flown() ||
+         unknown_box_of(mission).exteriorDistance(place) >= spare_of(mission);
 }
 
 flight::MeasuredSpaceConfig measured_space_of(const Mission& mission) {
@@ -74,9 +82,8 @@ flight::Obstacles flight_rules(const Mission& mission) {
 
 Vector3d pad_of(const Mission& mission, const Vector3d& first_view) {
   if (mission.flight.takeoff) return *mission.flight.takeoff;
-  // Beside the box by more than the clearance, with room for a voxel on its face.
   const AlignedBox3d box = unknown_box_of(mission);
-  const Vector3d spare = Vector3d::Constant(2.0 * mission.flight.clearance);
+  const Vector3d spare = Vector3d::Constant(spare_of(mission));
   const Vector3d low = box.min() - spare, high = box.max() + spare;
   Vector3d pad(first_view.x(), first_view.y(), mission.scene.position.z());
   if (pad.x() <= low.x() || pad.x() >= high.x() || pad.y() <= low.y() || pad.y() >= high.y()) {

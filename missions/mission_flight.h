@@ -22,6 +22,9 @@ flight::ClearanceBudget clearance_of(const Mission& mission);
 /// Where space must be measured to be free.
 Eigen::AlignedBox3d unknown_box_of(const Mission& mission);
 
+/// Whether a survey may begin there: outside of that box with room to spare, or with nothing flown.
+bool is_in_known_airspace(const Mission& mission, const Eigen::Vector3d& place);
+
 /// Measured space before anything is measured.
 flight::MeasuredSpaceConfig measured_space_of(const Mission& mission);
 

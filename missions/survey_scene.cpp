@@ -8,6 +8,7 @@
 
 #include "geometry/camera.h"
 #include "geometry/error.h"
+#include "missions/mission_flight.h"
 #include "missions/mission_keys.h"
 #include "missions/model_store.h"
 #include "missions/output_folder.h"
@@ -87,7 +88,7 @@ geometry::View SurveyScene::first_view(std::uint64_t seed) const {
   for (int attempt = 0; attempt < most_attempts; ++attempt) {
     const Vector3d position = view_sphere_.centre + view_sphere_.radius * uniform_direction(random);
     const geometry::View view = geometry::look_at(position, view_sphere_.centre);
-    if (limits.allow(view)) return view;
+    if (limits.allow(view) && is_in_known_airspace(mission_, position)) return view;
   }
   throw Error(
       ErrorKind::bad_config,

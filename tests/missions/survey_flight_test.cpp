@@ -87,6 +87,19 @@ TEST(SurveyFlight, DoesNotDependOnThreads) {
   EXPECT_EQ(one.flown->measured->free_volume(), two.flown->measured->free_volume());
 }
 
+// The shipped missions that fly, from any random start.
+TEST(SurveyFlight, ReachesTheFirstViewOfTheShippedMissions) {
+  const std::filesystem::path folder = std::filesystem::path(SKYCAP_SOURCE_DIR) / "missions";
+  for (const char* name : {"radcliffe_camera.yaml", "city_block.yaml"}) {
+    const Mission mission = read_mission(folder / name, {{"--set", "evaluation.samples", "1000"}});
+    ASSERT_TRUE(mission.flight.is_flown()) << name;
+    const SurveyScene scene(mission, folder);
+    for (std::uint64_t seed = 1; seed <= 20; ++seed) {
+      EXPECT_NO_THROW(SurveyFlight(mission, scene.first_view(seed))) << name << " " << seed;
+    }
+  }
+}
+
 TEST(SurveyFlight, LooksOnlyWhereTheGimbalCan) {
   const Mission mission = parse_mission(flown_mission(), "m.yaml");
   const geometry::View first = geometry::look_at({-30, 0, 8}, {0, 0, 5});
