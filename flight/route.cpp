@@ -6,6 +6,7 @@
 #include <numbers>
 #include <optional>
 
+#include "flight/sampling_path.h"
 #include "flight/sortie_split.h"
 #include "flight/tour.h"
 #include "geometry/error.h"
@@ -162,7 +163,11 @@ class RoutePlanner {
   /// same reversed.
   void keep_reachable(const std::vector<Station>& stations) {
     for (const Station& station : stations) {
-      const Path path = finder_.find(home_, station.view.position);
+      Path path = finder_.find(home_, station.view.position);
+      if (path.status == PathStatus::unreachable) {
+        // Perhaps by a passage too narrow for the grid.
+        path = find_path_by_sampling(space_, home_, station.view.position, route_.clearance);
+      }
       if (path.status != PathStatus::found) {
         refuse(station, "there is no way to it at a clearance of " + metres(route_.clearance));
         continue;

@@ -113,11 +113,11 @@ struct Route {
 /// Clearances are reported up to this much above what was asked for: proving more costs time.
 inline constexpr double reported_surplus = 10.0;
 
-/// Plans the flight. A station that cannot be reached safely is listed, not flown to; the route
-/// goes on from the one before it. `space` decides what is free; the climb from the pad is proven
-/// against `pad_space`, which should be the same without the ground (nullptr: the pilot answers for
-/// it). Throws what the validations throw, and Error{bad_config} if the place above the pad is not
-/// free.
+/// Plans the flight. A station that cannot be reached safely, neither by PathFinder nor by
+/// find_path_by_sampling(), is listed, not flown to; the route goes on from the one before it.
+/// `space` decides what is free; the climb from the pad is proven against `pad_space`, which should
+/// be the same without the ground (nullptr: the pilot answers for it). Throws what the validations
+/// throw, and Error{bad_config} if the place above the pad is not free.
 Route plan_route(std::vector<Station> stations, const Vehicle& vehicle, const FreeSpace& space,
                  const FreeSpace* pad_space, const RouteOptions& options);
 

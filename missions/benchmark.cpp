@@ -202,7 +202,7 @@ class Progress {
   Duration of_any_;
 };
 
-/// A mission's scene, ready when the first survey needs it and gone after the last.
+/// A mission's scene, made ready if a survey of it is still to be run.
 struct PreparedScene {
   SurveyScene scene;
   SceneTruth truth;

@@ -75,6 +75,30 @@ TEST(Route, LegsGoRoundWhatTheStraightLineWouldHit) {
   EXPECT_GE(route.legs[0].clearance, 2.0);
 }
 
+// The grid is made too coarse for the window, which leaves it to the second engine.
+TEST(Route, PassagesTooNarrowForTheGridAreFoundBySampling) {
+  Obstacles obstacles;
+  geometry::Mesh& mesh = obstacles.mesh;
+  geometry::append(mesh, scenes::box({-30, 0, 0}, {-3, 1, 40}));
+  geometry::append(mesh, scenes::box({3, 0, 0}, {30, 1, 40}));
+  geometry::append(mesh, scenes::box({-3, 0, 0}, {3, 1, 17}));
+  geometry::append(mesh, scenes::box({-3, 0, 23}, {3, 1, 40}));
+  obstacles.fence = Prism{"yard", {{-30, -15}, {30, -15}, {30, 16}, {-30, 16}}, 0.0, 40.0};
+  RouteOptions how = options();
+  how.takeoff = {-8, -6, 15};
+  how.path.finest_cell = 9.0;
+  const Vector3d home(-8, -6, 20), behind(-8, 7, 20);
+  const KnownSpace space(obstacles);
+  const double clearance = how.clearance.total();
+  ASSERT_EQ(PathFinder(space, clearance, how.path).find(home, behind).status,
+            PathStatus::unreachable);
+
+  const Route route = plan_route({{look_at(behind, {-8, 20, 20})}}, {}, space, nullptr, how);
+  ASSERT_EQ(route.stations.size(), 1U);
+  EXPECT_THAT(check_route(sortie_points(route, route.sorties[0]), space, clearance),
+              testing::IsEmpty());
+}
+
 // Sorties are split for stops; a curve must fit into what they have set aside for its leg.
 TEST(Route, CurvesTakeNoMoreTimeAndEnergyThanTheStopsTheyReplace) {
   const std::vector<Station> stations{{look_at({0, -14, 8}, {0, 0, 8})},
