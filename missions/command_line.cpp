@@ -225,6 +225,8 @@ void add_model(CLI::App& app, const Console& console, Action& action) {
                    "teapot, bunny, dragon, radcliffe-camera, ..., a mesh, or a mission file")
       ->required();
   verb->add_option("--out", options->out, "Write the mesh to this PLY file");
+  verb->add_option("--detail", options->detail, "Of a builtin model: coarse, standard or fine")
+      ->check(CLI::IsMember({"coarse", "standard", "fine"}));
   verb->add_option("--render", options->render, "Draw the model into this PNG file");
   verb->callback(
       [=, &console, &action] { action = [=, &console] { return model(*options, console); }; });

@@ -30,6 +30,10 @@ std::vector<Key> scene_keys() {
           "What is surveyed: builtin:NAME, model:NAME, or the path of a PLY, OBJ, STL or "
           "OFF file, relative to the mission file.")),
       choice(
+          "scene.detail", {"coarse", "standard", "fine"},
+          [](Mission & m) -> auto& { return m.scene.detail; },
+          "Level of detail of a builtin model: the same shape in more and smaller triangles."),
+      choice(
           "scene.up_axis", {"z", "y"}, [](Mission & m) -> auto& { return m.scene.up_axis; },
           "Which axis of the model's own frame points up."),
       vector(

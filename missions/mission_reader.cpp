@@ -270,6 +270,10 @@ void check_together(const GivenValues& given, const std::string& name, const Mis
          "is " + mission.name + "; it names a folder, give it without '/' and leading '.'");
   }
   const SceneConfig& scene = mission.scene;
+  if (given.contains("scene.detail") && !scene.model.starts_with("builtin:")) {
+    fail(place("scene.detail"), "scene.detail",
+         "needs a builtin model; " + scene.model + " is as detailed as its file");
+  }
   if (scene.longest_side && scene.scale) {
     fail(place("scene.scale"), "scene.scale", "excludes scene.longest_side; keep one of the two");
   }

@@ -4,6 +4,8 @@
 #include "geometry/error.h"
 #include "geometry/mesh.h"
 #include "geometry/mesh_io.h"
+#include "missions/mission_keys.h"
+#include "missions/mission_reader.h"
 #include "missions/model_store.h"
 #include "missions/scene_source.h"
 #include "missions/survey_scene.h"
@@ -16,38 +18,48 @@ namespace {
 
 namespace fs = std::filesystem;
 
-bool contains(const std::vector<std::string>& names, const std::string& name) {
+bool contains(const auto& names, const std::string& name) {
   return std::ranges::find(names, name) != names.end();
 }
 
-geometry::Mesh mesh_of(const std::string& model) {
-  SceneConfig scene;
-  scene.model = model;
-  return load_model(scene, "");
+geometry::Mesh mesh_of(const std::string& model, const std::optional<std::string>& detail) {
+  Mission mission;
+  mission.scene.model = model;
+  if (detail) {
+    if (!model.starts_with("builtin:")) {
+      throw Error(ErrorKind::bad_config,
+                  "--detail needs a builtin model; " + model + " is as detailed as its file");
+    }
+    find_key("scene.detail")->set(mission, *detail);
+  }
+  return load_model(mission.scene, "");
 }
 
-/// A model of the machine; obtained first if it is not there.
-geometry::Mesh stored_model(const std::string& name, const Console& console) {
+void obtain_if_missing(const std::string& name, const Console& console) {
   if (contains(obtainable_models(), name) && !is_stored(name)) {
     obtain_model(name, [&](const std::string& step) { console.err << "skycap: " << step << "\n"; });
   }
-  return mesh_of("model:" + name);
 }
 
-geometry::Mesh model_called(const std::string& name, const Console& console) {
+geometry::Mesh model_called(const ModelOptions& options, const Console& console) {
+  const std::string& name = options.name;
   if (name.ends_with(".yaml") || name.ends_with(".yml")) {
-    return placed_model(read_mission(name).scene, fs::path(name).parent_path());
+    std::vector<KeyOverride> overrides;
+    if (options.detail) overrides.push_back({"--detail", "scene.detail", *options.detail});
+    return placed_model(read_mission(name, overrides).scene, fs::path(name).parent_path());
   }
-  if (name.find(':') != std::string::npos || fs::path(name).has_extension()) return mesh_of(name);
-  const auto builtin = sim::builtin_models();
-  if (std::ranges::find(builtin, name) != builtin.end()) return mesh_of("builtin:" + name);
-  return stored_model(name, console);
+  if (name.find(':') != std::string::npos || fs::path(name).has_extension()) {
+    return mesh_of(name, options.detail);
+  }
+  if (contains(sim::builtin_models(), name)) return mesh_of("builtin:" + name, options.detail);
+  obtain_if_missing(name, console);
+  return mesh_of("model:" + name, options.detail);
 }
 
 }  // namespace
 
 int model(const ModelOptions& options, const Console& console) {
-  const geometry::Mesh mesh = model_called(options.name, console);
+  const geometry::Mesh mesh = model_called(options, console);
   if (options.out) geometry::write_mesh(*options.out, mesh);
   if (options.render) sim::write_png(sim::render(mesh), *options.render);
   const Eigen::Vector3d size = geometry::bounding_box(mesh).sizes();

@@ -92,8 +92,8 @@ geometry::View SurveyScene::first_view(std::uint64_t seed) const {
   }
   throw Error(
       ErrorKind::bad_config,
-      "limits.ground_clearance, the gimbal's pitch and the site leave no place for a random "
-      "start at the view distance of " +
+      "limits.ground_clearance, the gimbal's pitch, the site and flight.unknown_box leave no place "
+      "for a random start at the view distance of " +
           to_text(view_distance_) + " m; loosen them or give start.position");
 }
 

@@ -107,6 +107,7 @@ struct ModelOptions {
   std::string name;  ///< of a builtin or obtainable model, or a mission file
   std::optional<std::filesystem::path> out;
   std::optional<std::filesystem::path> render;
+  std::optional<std::string> detail;  ///< in place of scene.detail
 };
 
 /// Obtains a model if it is not on the machine, and writes or renders it.

@@ -27,6 +27,8 @@ struct BadInput {
   std::vector<std::string> arguments = {};  ///< after "plan MISSION --out OUT"
 };
 
+void PrintTo(const BadInput& input, std::ostream* stream) { *stream << input.name; }
+
 const std::string model = "scene: {model: 'builtin:teapot'}\n";
 const std::string judged = "evaluation: {registration_distance: 0.005}\n";
 const std::string whole = model + judged;  // lines 1 and 2
@@ -47,6 +49,8 @@ std::vector<BadInput> bad_inputs() {
       {"BrokenYaml", "scene: {model: x\n", "is not valid YAML"},
       {"TabIndent", "scene:\n\tmodel: x\n", "MISSION:2: is not valid YAML"},
       {"TwoDocuments", whole + "---\n" + whole, "holds more than one YAML document"},
+      {"DetailOfAFile", "scene: {model: a.ply, detail: fine}\n" + judged,
+       "MISSION:1: key scene.detail: needs a builtin model; a.ply is as detailed as its file"},
       {"DuplicateKey", whole + "seed: 1\nseed: 2\n",
        "MISSION:4: key seed: is given twice, first in line 3; keep one"},
       {"Alias", "a: &x 1\nb: *x\n", "MISSION:1: anchors ('&name') are not used"},
@@ -157,10 +161,14 @@ std::vector<BadInput> bad_inputs() {
        whole + flown(around) + "start: {position: [0, -21, 9], look_at: [0, 0, 0]}\n",
        "MISSION: the first view at (0, -21, 9) is 1 m from space that was never seen free, at a "
        "clearance of 2 m"},
-      {"PadInTheBuilding", whole + flown(around, "takeoff: [3, 0, 0]"),
+      {"PadInTheBuilding",
+       whole + flown(around, "takeoff: [3, 0, 0]") +
+           "start: {position: [0, -25, 9], look_at: [0, 0, 0]}\n",
        "MISSION: the place above the take-off pad at (3, 0, 5) is 0 m from space"},
       {"NoRoomAboveTheGround", whole + "limits: {ground_clearance: 1000}\n",
        "leave no place for a random start"},
+      {"NowhereOutsideTheUnknownBox", whole + flown("min: [-99, -99, 0], max: [99, 99, 99]"),
+       "flight.unknown_box leave no place for a random start"},
       {"BadOption", whole, "--seed: key seed: is x; give a whole number", "", "", {"--seed", "x"}},
       {"UnknownOption", whole, "--sede", "", "", {"--sede", "1"}},
       {"BadSet", whole, "--set seed: has no '='", "", "", {"--set", "seed"}},

@@ -284,6 +284,27 @@ TEST(Evaluate, AgreesWithThePlansOwnCoverage) {
   EXPECT_NEAR(evaluation["distance_to_model_m"]["root_mean_square"], 0.03, 0.008);
 }
 
+TEST(Model, HasLevelsOfDetailOfTheSameShape) {
+  const TestFolder folder;
+  const auto printed = [](const std::string& model, const char* detail) {
+    return run_skycap({"model", model, "--detail", detail});
+  };
+  const auto coarse = printed("radcliffe-camera", "coarse");
+  const auto fine = printed("radcliffe-camera", "fine");
+  EXPECT_THAT(coarse.out, HasSubstr(" 67296 triangles"));
+  EXPECT_THAT(fine.out, HasSubstr(" 2911324 triangles"));
+  EXPECT_THAT(coarse.out, HasSubstr(" x 40, area"));
+  EXPECT_THAT(fine.out, HasSubstr(" x 40, area"));
+
+  const std::string mission = folder.write("m.yaml", quick_mission());
+  EXPECT_NE(printed(mission, "coarse").out, printed(mission, "fine").out);
+
+  const auto refused = printed("scan.ply", "fine");
+  EXPECT_EQ(refused.exit_code, 2);
+  EXPECT_THAT(refused.err, HasSubstr("--detail needs a builtin model; scan.ply is as detailed"));
+  EXPECT_EQ(printed("radcliffe-camera", "finest").exit_code, 2);
+}
+
 TEST(Model, WritesAMissionsSceneAsSurveyed) {
   const TestFolder folder;
   const std::string mission = folder.write("m.yaml", quick_mission());
