@@ -1,6 +1,7 @@
 #include "survey/view_gain.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 
@@ -14,10 +15,23 @@ using Eigen::Vector3f;
 constexpr float least_weight_share = 2e-3F;
 constexpr float raster_spacing = 1.0F;  // pixel at the view distance, in units of h
 
-/// Depths of the nearest surfels; reused between calls on one thread.
-struct Raster {
-  std::vector<float> depths, columns, rows, forward;
+constexpr std::size_t chunk = 2048;  // points projected at a time: their arrays stay in the cache
+
+/// Depths of the nearest surfels, and what the kernels say of a chunk of points; reused between
+/// calls on one thread.
+struct Workspace {
+  std::vector<float> raster;
+  std::array<std::uint32_t, chunk> in_view, pixels, candidates;
+  std::array<float, chunk> depths, distances, cosines;
 };
+
+PointArrays arrays_of(const std::array<std::vector<float>, 3>& points, std::size_t first) {
+  return {points[0].data() + first, points[1].data() + first, points[2].data() + first};
+}
+
+void append(std::array<std::vector<float>, 3>& points, const Vector3f& point) {
+  for (int axis = 0; axis < 3; ++axis) points[axis].push_back(point[axis]);
+}
 
 }  // namespace
 
@@ -39,11 +53,7 @@ GainField::GainField(const DoseMap& map, std::span<const UnseenPatch> patches,
       static_cast<int>(std::ceil(2.0F * half_slope_.y() * raster_focal_length_px_)) + 1;
 
   const Surfels& surfels = map.surfels();
-  for (const Vector3f& p : surfels.positions) {
-    x_.push_back(p.x());
-    y_.push_back(p.y());
-    z_.push_back(p.z());
-  }
+  for (const Vector3f& position : surfels.positions) append(occluders_, position);
   const float least_weight = least_weight_share * spacing_ * spacing_;
   for (std::size_t i = 0; i < surfels.size(); ++i) {
     const float weight = surfels.deficit(i) * surfels.trusts[i];
@@ -56,83 +66,80 @@ GainField::GainField(const DoseMap& map, std::span<const UnseenPatch> patches,
     targets_.push_back({patches[i].position, patches[i].normal, patches[i].weight});
     sources_.push_back(static_cast<std::uint32_t>(i));
   }
+  for (const Target& target : targets_) {
+    append(positions_, target.position);
+    append(normals_, target.normal);
+  }
+}
+
+RasterView GainField::raster_view(const geometry::View& view) const {
+  const Eigen::Isometry3d world_from_camera = geometry::camera_pose(view);
+  const Eigen::Matrix3f axes = world_from_camera.linear().cast<float>();
+  RasterView raster{
+      .focal_length = raster_focal_length_px_,
+      .width = static_cast<float>(raster_width_),
+      .height = static_cast<float>(raster_height_),
+      .stride = raster_width_ + 2,
+      .outside = static_cast<std::uint32_t>((raster_width_ + 2) * (raster_height_ + 2)),
+      .half_slope = {half_slope_.x(), half_slope_.y()},
+      .least_range = least_range_,
+      .most_range = most_range_,
+      .least_cosine = least_cosine_};
+  const Vector3f position = view.position.cast<float>();
+  for (int axis = 0; axis < 3; ++axis) {
+    raster.position[axis] = position[axis];
+    raster.right[axis] = axes(axis, 0);
+    raster.down[axis] = axes(axis, 1);
+    raster.forward[axis] = axes(axis, 2);
+  }
+  return raster;
 }
 
 template <typename Visit>
 void GainField::for_each_sight(const geometry::View& view, Visit visit) const {
-  static thread_local Raster raster;
-  const Eigen::Isometry3d world_from_camera = geometry::camera_pose(view);
-  const Eigen::Matrix3f camera_from_world = world_from_camera.linear().transpose().cast<float>();
-  const Vector3f position = view.position.cast<float>();
-  const float focal = raster_focal_length_px_;
-  const float centre_column = 0.5F * static_cast<float>(raster_width_);
-  const float centre_row = 0.5F * static_cast<float>(raster_height_);
+  static thread_local Workspace work;
+  const RasterView raster = raster_view(view);
+  const auto stride = static_cast<std::size_t>(raster.stride);
 
-  // Project all surfels: plain arrays, so that the compiler vectorises.
-  const std::size_t count = x_.size();
-  raster.columns.resize(count);
-  raster.rows.resize(count);
-  raster.forward.resize(count);
-  const Eigen::Matrix3f& m = camera_from_world;
-  for (std::size_t i = 0; i < count; ++i) {
-    const float dx = x_[i] - position.x(), dy = y_[i] - position.y(), dz = z_[i] - position.z();
-    const float right = m(0, 0) * dx + m(0, 1) * dy + m(0, 2) * dz;
-    const float down = m(1, 0) * dx + m(1, 1) * dy + m(1, 2) * dz;
-    const float forward = m(2, 0) * dx + m(2, 1) * dy + m(2, 2) * dz;
-    const float scale = focal / forward;
-    raster.columns[i] = right * scale + centre_column;
-    raster.rows[i] = down * scale + centre_row;
-    raster.forward[i] = forward;
-  }
-  // A border of one pixel spares the splat its bounds checks.
-  const int stride = raster_width_ + 2;
-  raster.depths.assign(static_cast<std::size_t>(stride) * (raster_height_ + 2),
-                       std::numeric_limits<float>::infinity());
-  const float last_column = static_cast<float>(raster_width_),
-              last_row = static_cast<float>(raster_height_);
-  const auto pixel_of = [&](float column, float row) {
-    return static_cast<std::size_t>(static_cast<int>(row) * stride + static_cast<int>(column));
-  };
-  for (std::size_t i = 0; i < count; ++i) {
-    const float column = raster.columns[i], row = raster.rows[i], forward = raster.forward[i];
-    if (!(forward > 0.0F && column >= 0.0F && row >= 0.0F && column < last_column &&
-          row < last_row)) {
-      continue;
+  // Behind the raster there is room for what falls outside, splats included.
+  work.raster.assign(raster.outside + stride + 2, std::numeric_limits<float>::infinity());
+  for (std::size_t first = 0; first < occluders_[0].size(); first += chunk) {
+    const std::size_t count = std::min(chunk, occluders_[0].size() - first);
+    project_points(raster, count, arrays_of(occluders_, first), work.pixels.data(),
+                   work.depths.data());
+    for (std::size_t i = 0; i < count; ++i) {
+      float* pixel = &work.raster[work.pixels[i]];
+      const float depth = work.depths[i];
+      pixel[0] = std::min(pixel[0], depth);
+      pixel[1] = std::min(pixel[1], depth);
+      pixel[stride] = std::min(pixel[stride], depth);
+      pixel[stride + 1] = std::min(pixel[stride + 1], depth);
     }
-    // The 2 x 2 pixels nearest to the point; index (0, 0) is the border.
-    float* depth = &raster.depths[pixel_of(column + 0.5F, row + 0.5F)];
-    depth[0] = std::min(depth[0], forward);
-    depth[1] = std::min(depth[1], forward);
-    depth[stride] = std::min(depth[stride], forward);
-    depth[stride + 1] = std::min(depth[stride + 1], forward);
   }
 
-  for (std::size_t t = 0; t < targets_.size(); ++t) {
-    const Target& target = targets_[t];
-    const Vector3f offset = target.position - position;
-    const float facing = -offset.dot(target.normal);
-    if (facing <= 0.0F) continue;
-    const Vector3f in_camera = camera_from_world * offset;
-    const float forward = in_camera.z();
-    if (!(forward >= least_range_ && forward <= most_range_) ||
-        std::abs(in_camera.x()) > half_slope_.x() * forward ||
-        std::abs(in_camera.y()) > half_slope_.y() * forward) {
-      continue;
+  const TargetArrays projected{work.in_view.data(), work.pixels.data(), work.depths.data(),
+                               work.distances.data(), work.cosines.data()};
+  for (std::size_t first = 0; first < targets_.size(); first += chunk) {
+    const std::size_t count = std::min(chunk, targets_.size() - first);
+    project_targets(raster, count, arrays_of(positions_, first), arrays_of(normals_, first),
+                    projected);
+    std::size_t candidates = 0;
+    for (std::size_t i = 0; i < count; ++i) {
+      work.candidates[candidates] = static_cast<std::uint32_t>(i);
+      candidates += work.in_view[i];
     }
-    const float distance = offset.norm();
-    const float cosine = facing / distance;
-    if (cosine < least_cosine_) continue;
-    const float scale = focal / forward;
-    const float depth = raster.depths[pixel_of(in_camera.x() * scale + centre_column + 1.0F,
-                                               in_camera.y() * scale + centre_row + 1.0F)];
-    // A slanted surface hides itself by as much as it falls off over a splat.
-    const float slope = std::sqrt(std::max(0.0F, 1.0F - cosine * cosine)) / cosine;
-    const float tolerance =
-        t < surfel_targets_ ? spacing_ * (1.5F + 2.0F * std::min(slope, 4.0F)) : spacing_;
-    if (forward > depth + tolerance) continue;
-    const float density =
-        focal_length_px_.prod() * cosine * distance / (forward * forward * forward);
-    visit(t, 1.0F - std::exp(-dose_.hazard(density, cosine)));
+    for (std::size_t k = 0; k < candidates; ++k) {
+      const std::size_t i = work.candidates[k];
+      const float cosine = work.cosines[i], depth = work.depths[i];
+      // A slanted surface hides itself by as much as it falls off over a splat.
+      const float slope = std::sqrt(std::max(0.0F, 1.0F - cosine * cosine)) / cosine;
+      const float tolerance =
+          first + i < surfel_targets_ ? spacing_ * (1.5F + 2.0F * std::min(slope, 4.0F)) : spacing_;
+      if (depth > work.raster[work.pixels[i]] + tolerance) continue;
+      const float density =
+          focal_length_px_.prod() * cosine * work.distances[i] / (depth * depth * depth);
+      visit(first + i, 1.0F - std::exp(-dose_.hazard(density, cosine)));
+    }
   }
 }
 

@@ -1,6 +1,7 @@
 /// How much surface a view would newly cover, by what is known and guessed so far.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -11,6 +12,7 @@
 #include "geometry/pose.h"
 #include "survey/dose_map.h"
 #include "survey/dose_model.h"
+#include "survey/sight_kernels.h"
 #include "survey/unseen_surface.h"
 
 namespace skycap::survey {
@@ -58,6 +60,7 @@ class GainField {
   std::vector<Sight> sights(const geometry::View& view) const;
 
  private:
+  RasterView raster_view(const geometry::View& view) const;
   template <typename Visit>
   void for_each_sight(const geometry::View& view, Visit visit) const;
 
@@ -69,9 +72,10 @@ class GainField {
   Eigen::Vector2f half_slope_;  ///< tangents of half the angles of view
   float raster_focal_length_px_;
   int raster_width_, raster_height_;
-  std::vector<float> x_, y_, z_;  ///< of all surfels, to occlude
+  std::array<std::vector<float>, 3> occluders_;  ///< all surfels: their x, y and z
   std::size_t surfel_targets_ = 0;
   std::vector<Target> targets_;
+  std::array<std::vector<float>, 3> positions_, normals_;  ///< of the targets
   std::vector<std::uint32_t> sources_;
 };
 
