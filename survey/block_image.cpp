@@ -60,12 +60,13 @@ class Reducer {
   Reducer(BlockImage& image, const BlockSettings& settings)
       : image_(image), settings_(settings), moments_(image.blocks.size()) {}
 
-  /// `returns` grouped by row of blocks: row i is [starts[i], starts[i + 1]).
-  void reduce(std::span<const Return> returns, std::span<const std::size_t> starts) {
+  /// `returns_of(row)` gives the returns of a row of blocks; called from several threads, each of
+  /// which is done with a row before it asks for the next.
+  template <typename ReturnsOf>
+  void reduce(ReturnsOf returns_of) {
     const std::size_t rows = static_cast<std::size_t>(image_.projection.rows);
-    geometry::parallel_for(rows, settings_.threads, [&](std::size_t row) {
-      gather_row(returns.subspan(starts[row], starts[row + 1] - starts[row]), row);
-    });
+    geometry::parallel_for(rows, settings_.threads,
+                           [&](std::size_t row) { gather_row(returns_of(row), row); });
     geometry::parallel_for(rows, settings_.threads, [&](std::size_t row) { fit_row(row); });
   }
 
@@ -74,18 +75,29 @@ class Reducer {
     const auto columns = static_cast<std::size_t>(image_.projection.columns);
     const std::size_t first = row * columns;
     std::vector<float> farthest(columns, 0.0F);
-    for (const Return& r : returns) {
-      Block& block = image_.blocks[r.block];
-      block.least_depth = std::min(block.least_depth, r.point.z());
-      farthest[r.block - first] = std::max(farthest[r.block - first], r.point.z());
+    for (std::size_t i = 0; i < returns.size();) {
+      const std::uint32_t number = returns[i].block;
+      float nearest = image_.blocks[number].least_depth, deepest = farthest[number - first];
+      for (; i < returns.size() && returns[i].block == number; ++i) {
+        nearest = std::min(nearest, returns[i].point.z());
+        deepest = std::max(deepest, returns[i].point.z());
+      }
+      image_.blocks[number].least_depth = nearest;
+      farthest[number - first] = deepest;
     }
-    for (const Return& r : returns) {
-      Block& block = image_.blocks[r.block];
-      const float farthest_depth = farthest[r.block - first];
+    for (std::size_t i = 0; i < returns.size();) {
+      const std::uint32_t number = returns[i].block;
+      Block& block = image_.blocks[number];
+      const float farthest_depth = farthest[number - first];
       block.is_edge = farthest_depth - block.least_depth > settings_.jump;
-      const bool is_behind =
-          block.is_edge && r.point.z() > 0.5F * (block.least_depth + farthest_depth);
-      if (!is_behind) moments_[r.block].add(r.point);
+      const float behind = block.is_edge ? 0.5F * (block.least_depth + farthest_depth)
+                                         : std::numeric_limits<float>::infinity();
+      // Successive returns of a block are summed up in registers.
+      Moments moments = moments_[number];
+      for (; i < returns.size() && returns[i].block == number; ++i) {
+        if (returns[i].point.z() <= behind) moments.add(returns[i].point);
+      }
+      moments_[number] = moments;
     }
     for (std::size_t i = first; i < first + columns; ++i) {
       const Moments& m = moments_[i];
@@ -182,26 +194,29 @@ BlockImage make_block_image(const geometry::Scan& scan, const geometry::Camera& 
   image.blocks.resize(static_cast<std::size_t>(projection.columns) *
                       static_cast<std::size_t>(projection.rows));
 
-  // Pixels ascend, so the returns of a row of blocks are consecutive.
   const auto width = static_cast<std::uint32_t>(camera.width());
   const auto b = static_cast<std::uint32_t>(block_px);
-  std::vector<std::size_t> starts(static_cast<std::size_t>(projection.rows) + 1);
-  for (std::size_t row = 0; row < starts.size(); ++row) {
-    const auto first_pixel = static_cast<std::uint32_t>(row) * b * width;
-    starts[row] = static_cast<std::size_t>(
-        std::lower_bound(scan.pixels.begin(), scan.pixels.end(), first_pixel) -
-        scan.pixels.begin());
-  }
-  std::vector<Return> returns(scan.points.size());
-  geometry::parallel_for(starts.size() - 1, settings.threads, [&](std::size_t row) {
-    for (std::size_t i = starts[row]; i < starts[row + 1]; ++i) {
-      const std::uint32_t column = (scan.pixels[i] % width) / b;
-      returns[i] = {
-          static_cast<std::uint32_t>(row) * static_cast<std::uint32_t>(projection.columns) + column,
-          projection.sensor_from_world * (scan.points[i] - projection.sensor_position)};
+  const Matrix3f sensor_from_world = projection.sensor_from_world;
+  const Vector3f sensor_position = projection.sensor_position;
+  Reducer(image, settings).reduce([&](std::size_t row) {
+    static thread_local std::vector<Return> returns;
+    returns.clear();
+    const auto first_block =
+        static_cast<std::uint32_t>(row) * static_cast<std::uint32_t>(projection.columns);
+    // Pixels ascend, so the returns of a row of blocks are consecutive.
+    auto first_pixel = static_cast<std::uint32_t>(row) * b * width;
+    auto i = static_cast<std::size_t>(std::ranges::lower_bound(scan.pixels, first_pixel) -
+                                      scan.pixels.begin());
+    for (std::uint32_t r = 0; r < b; ++r, first_pixel += width) {
+      std::uint32_t block = first_block, end_of_block = first_pixel + b;
+      for (; i < scan.pixels.size() && scan.pixels[i] < first_pixel + width; ++i) {
+        for (; scan.pixels[i] >= end_of_block; end_of_block += b) ++block;
+        const Vector3f offset = scan.points[i] - sensor_position;
+        returns.push_back({block, sensor_from_world * offset});
+      }
     }
+    return std::span<const Return>(returns);
   });
-  Reducer(image, settings).reduce(returns, starts);
   return image;
 }
 
@@ -248,7 +263,9 @@ std::vector<BlockImage> make_cube_images(const geometry::Scan& scan, int face_bl
           returns.begin()));
     }
     image.blocks.resize(face_size);
-    Reducer(image, settings).reduce(returns, starts);
+    Reducer(image, settings).reduce([&](std::size_t row) {
+      return std::span<const Return>(returns).subspan(starts[row], starts[row + 1] - starts[row]);
+    });
     faces.push_back(std::move(image));
   }
   return faces;

@@ -56,11 +56,16 @@ class BallTable {
 class RayTable {
  public:
   RayTable(double radius, const Noise& noise) : ball_(radius, noise.isotropic) {
-    constexpr int nodes = 41;
     if (noise.along_ray <= 0.0) {
       nodes_.push_back({0.0, 1.0});
       return;
     }
+    // The integrand is a product of two bells of these widths. The rule is all but exact from one
+    // node per width of the product on; without isotropic noise the ball's rim is sharp.
+    constexpr int least_nodes = 7, most_nodes = 41;
+    const double ratio = noise.along_ray / std::max(noise.isotropic, 1e-9 * noise.along_ray);
+    const int nodes = static_cast<int>(std::clamp(std::ceil(6.0 * std::hypot(1.0, ratio)),
+                                                  double{least_nodes}, double{most_nodes}));
     double total = 0.0;
     for (int i = 0; i < nodes; ++i) {
       const double z = 3.0 * (2.0 * (i + 0.5) / nodes - 1.0);
@@ -149,25 +154,6 @@ DoseModel::DoseModel(double coverage_radius, const Noise& noise)
       hazard_per_ray_[c][d] = static_cast<float>(hazard / rays);
     }
   }
-}
-
-float DoseModel::hazard(float ray_density, float cos_incidence) const {
-  const float rays = ray_density * static_cast<float>(coverage_radius_ * coverage_radius_);
-  if (!(rays > 0.0F)) return 0.0F;
-  int exponent = 0;
-  const float mantissa = std::frexp(rays, &exponent);  // rays = mantissa * 2^exponent, in [0.5, 1)
-  const float octave = static_cast<float>(exponent - 1) + (2.0F * mantissa - 1.0F);
-  const float column =
-      std::clamp(2.0F * (octave - first_octave_), 0.0F, static_cast<float>(densities_) - 1.001F);
-  const float row = std::clamp(cos_incidence * static_cast<float>(incidences_ - 1), 0.0F,
-                               static_cast<float>(incidences_) - 1.001F);
-  const int d = static_cast<int>(column), c = static_cast<int>(row);
-  const float t = column - static_cast<float>(d), u = row - static_cast<float>(c);
-  const auto& low = hazard_per_ray_[c];
-  const auto& high = hazard_per_ray_[c + 1];
-  const float per_ray = (1.0F - u) * ((1.0F - t) * low[d] + t * low[d + 1]) +
-                        u * ((1.0F - t) * high[d] + t * high[d + 1]);
-  return std::min(per_ray * rays, most_hazard);
 }
 
 }  // namespace skycap::survey

@@ -8,7 +8,11 @@
 /// (one dense look covers everything) and noise several times r_d (many looks are needed).
 #pragma once
 
+#include <algorithm>
 #include <array>
+#include <bit>
+#include <cstddef>
+#include <cstdint>
 
 namespace skycap::survey {
 
@@ -26,14 +30,33 @@ struct Noise {
 /// For rays in a square grid (seen by the sensor) that meet a plane at the given incidence,
 /// 1 - f is the mean over the grid's offset of prod_i (1 - p_i), where p_i is the probability that
 /// the return of ray i falls into the ball of radius r_d about the place. It is tabulated at
-/// construction (a few milliseconds) and interpolated.
+/// construction (up to a tenth of a second) and interpolated.
 class DoseModel {
  public:
   DoseModel(double coverage_radius, const Noise& noise);
 
   /// -ln(1 - covered share) of a look with `ray_density` rays per square metre of surface (not of
   /// the plane across the rays), at most `most_hazard` (99.9 % covered).
-  float hazard(float ray_density, float cos_incidence) const;
+  float hazard(float ray_density, float cos_incidence) const {
+    const float rays = ray_density * static_cast<float>(coverage_radius_ * coverage_radius_);
+    if (!(rays > 0.0F)) return 0.0F;
+    // rays = mantissa * 2^octave with a mantissa in [1, 2), read off the number's bits.
+    const auto bits = std::bit_cast<std::uint32_t>(rays);
+    const auto mantissa = std::bit_cast<float>((bits & 0x7fffffU) | 0x3f800000U);
+    const float octave =
+        static_cast<float>(static_cast<std::int32_t>(bits >> 23U) - 127) + (mantissa - 1.0F);
+    const float column =
+        std::clamp(2.0F * (octave - first_octave_), 0.0F, static_cast<float>(densities_) - 1.001F);
+    const float row = std::clamp(cos_incidence * static_cast<float>(incidences_ - 1), 0.0F,
+                                 static_cast<float>(incidences_) - 1.001F);
+    const auto d = static_cast<std::size_t>(column), c = static_cast<std::size_t>(row);
+    const float t = column - static_cast<float>(d), u = row - static_cast<float>(c);
+    const auto& low = hazard_per_ray_[c];
+    const auto& high = hazard_per_ray_[c + 1];
+    const float per_ray = (1.0F - u) * ((1.0F - t) * low[d] + t * low[d + 1]) +
+                          u * ((1.0F - t) * high[d] + t * high[d + 1]);
+    return std::min(per_ray * rays, most_hazard);
+  }
 
   double coverage_radius() const { return coverage_radius_; }
   const Noise& noise() const { return noise_; }

@@ -50,6 +50,7 @@ double ray_spacing(const geometry::Camera& camera) {
 }
 
 constexpr std::uint32_t tile_px = 32;
+constexpr std::size_t sweep_chunk = 4096;  // returns without an image that a thread takes at a time
 
 /// Asks a grid for points within a distance, for the pixels of a tile row by row: what turned away
 /// the pixel to the left or the one above mostly turns away this one too, and is tried first.
@@ -63,11 +64,12 @@ class TileNeighbours {
   }
 
   bool any_within(const Vector3f& point, std::size_t column) {
-    Vector3f& above = found_[column % tile_px];
-    const Vector3f& left = found_[(column + tile_px - 1) % tile_px];
+    Vector3f& above = found_[column];
     if (geometry::squared_distance(above, point) <= squared_distance_) return true;
-    if (geometry::squared_distance(left, point) <= squared_distance_) {
-      above = left;
+    for (const std::size_t beside : {column + tile_px - 1, column + 1}) {
+      const Vector3f& other = found_[beside % tile_px];
+      if (geometry::squared_distance(other, point) > squared_distance_) continue;
+      above = other;
       return true;
     }
     const std::uint32_t found = grid_.first_within(point, distance_);
@@ -75,6 +77,9 @@ class TileNeighbours {
     above = grid_.point(found);
     return true;
   }
+
+  /// A point that is now in the grid.
+  void remember(const Vector3f& point, std::size_t column) { found_[column] = point; }
 
  private:
   const geometry::PointGrid& grid_;
@@ -118,7 +123,9 @@ struct SkycapPlanner::Impl {
       : config(given),
         camera(sensor),
         spacing(given.spacing.value_or(0.5 * given.coverage_radius)),
-        grid(spacing) {
+        // Cells no smaller than what pixels tell apart: of smaller ones each return would get its
+        // own.
+        grid(std::max(spacing, given.view_distance.value_or(0.0) * ray_spacing(camera))) {
     distance = given.view_distance.value_or(0.5 * given.coverage_radius / ray_spacing(camera));
     gain.view_distance = distance;
     chooser.view_distance = distance;
@@ -132,52 +139,66 @@ struct SkycapPlanner::Impl {
 
   // --- taking in a scan ---
 
-  /// The returns tile by tile, so that consecutive ones are neighbours in space and their search
-  /// meets memory that is at hand.
-  std::vector<std::uint32_t> tile_order(const Scan& scan) const {
-    const auto width = static_cast<std::uint32_t>(camera.width());
-    const std::uint32_t columns = (width + tile_px - 1) / tile_px;
-    std::vector<std::uint32_t> order(scan.points.size());
+  /// Calls `visit` with the index of each return of a row of tiles and its column in its tile, tile
+  /// by tile, so that consecutive returns are neighbours in space. Returns without an image go by
+  /// their order.
+  template <typename Visit>
+  void visit_tiles(const Scan& scan, std::size_t tile_row, Visit visit) const {
     if (scan.pixels.empty()) {
-      std::iota(order.begin(), order.end(), 0U);
-      return order;
+      const std::size_t end = std::min(scan.points.size(), (tile_row + 1) * sweep_chunk);
+      for (std::size_t i = tile_row * sweep_chunk; i < end; ++i) visit(i, i % tile_px);
+      return;
     }
-    const auto tile_of = [&](std::uint32_t pixel) {
-      return pixel / width / tile_px * columns + pixel % width / tile_px;
-    };
-    std::vector<std::uint32_t> starts(
-        tile_of(width * static_cast<std::uint32_t>(camera.height()) - 1) + 2);
-    for (const std::uint32_t pixel : scan.pixels) ++starts[tile_of(pixel) + 1];
-    std::partial_sum(starts.begin(), starts.end(), starts.begin());
-    for (std::uint32_t i = 0; i < order.size(); ++i) order[starts[tile_of(scan.pixels[i])]++] = i;
-    return order;
+    const auto width = static_cast<std::uint32_t>(camera.width());
+    const auto first_row = static_cast<std::uint32_t>(tile_row) * tile_px;
+    const auto rows = std::min(tile_px, static_cast<std::uint32_t>(camera.height()) - first_row);
+    std::array<std::size_t, tile_px> next;  // return of each row
+    for (std::uint32_t r = 0; r < rows; ++r) {
+      next[r] = static_cast<std::size_t>(
+          std::ranges::lower_bound(scan.pixels, (first_row + r) * width) - scan.pixels.begin());
+    }
+    for (std::uint32_t column = 0; column < width; column += tile_px) {
+      for (std::uint32_t r = 0; r < rows; ++r) {
+        const std::uint32_t first_pixel = (first_row + r) * width + column;
+        const std::uint32_t end_pixel = first_pixel + std::min(tile_px, width - column);
+        std::size_t& i = next[r];
+        for (; i < scan.pixels.size() && scan.pixels[i] < end_pixel; ++i) {
+          visit(i, scan.pixels[i] - first_pixel);
+        }
+      }
+    }
   }
 
   /// Keeps the returns that are farther than the spacing from all kept before. The cloud so far
   /// turns most of them away, on all threads; the rest are tried one after the other.
   void insert_points(const Scan& scan) {
-    const std::vector<std::uint32_t> order = tile_order(scan);
-    constexpr std::size_t chunk = 4096;
-    std::vector<std::uint8_t> has_room(order.size());
-    const auto column = [&](std::size_t i) {
-      return scan.pixels.empty() ? i
-                                 : scan.pixels[order[i]] % static_cast<std::size_t>(camera.width());
+    struct Candidate {
+      std::uint32_t point, column;
     };
-    geometry::parallel_for((order.size() + chunk - 1) / chunk, config.threads, [&](std::size_t c) {
+    const std::size_t tile_rows =
+        scan.pixels.empty() ? (scan.points.size() + sweep_chunk - 1) / sweep_chunk
+                            : (static_cast<std::size_t>(camera.height()) + tile_px - 1) / tile_px;
+    std::vector<std::vector<Candidate>> candidates(tile_rows);
+    geometry::parallel_for(tile_rows, config.threads, [&](std::size_t row) {
       TileNeighbours nearby(grid, spacing);
-      for (std::size_t i = c * chunk; i < std::min(order.size(), (c + 1) * chunk); ++i) {
-        const Vector3f& point = scan.points[order[i]];
-        has_room[i] = (!region || region->contains(point)) && !nearby.any_within(point, column(i));
-      }
+      visit_tiles(scan, row, [&](std::size_t i, std::size_t column) {
+        const Vector3f& point = scan.points[i];
+        if ((region && !region->contains(point)) || nearby.any_within(point, column)) return;
+        candidates[row].push_back(
+            {static_cast<std::uint32_t>(i), static_cast<std::uint32_t>(column)});
+      });
     });
     TileNeighbours nearby(grid, spacing);
-    for (std::size_t i = 0; i < order.size(); ++i) {
-      const Vector3f& point = scan.points[order[i]];
-      if (has_room[i] == 0 || nearby.any_within(point, column(i))) continue;
-      grid.insert(point);
-      cloud.positions.push_back(point);
-      cloud.views.push_back(static_cast<std::uint32_t>(scans));
-      ++step.points_new;
+    for (const std::vector<Candidate>& row : candidates) {
+      for (const Candidate& candidate : row) {
+        const Vector3f& point = scan.points[candidate.point];
+        if (nearby.any_within(point, candidate.column)) continue;
+        grid.insert(point);
+        nearby.remember(point, candidate.column);
+        cloud.positions.push_back(point);
+        cloud.views.push_back(static_cast<std::uint32_t>(scans));
+        ++step.points_new;
+      }
     }
     if (cloud.size() == 0) {
       throw Error(ErrorKind::bad_geometry,
