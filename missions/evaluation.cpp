@@ -53,9 +53,8 @@ std::vector<std::uint8_t> visible_samples(std::span<const Vector3f> samples,
 }
 
 double coverage_ceiling(std::span<const Vector3f> samples, std::span<const std::uint8_t> is_visible,
-                        const sim::Scene& scene, const sim::DepthCamera& camera,
-                        const Admissible& admissible, const CeilingConfig& config,
-                        unsigned threads) {
+                        const sim::Scene& scene, const TakeScan& take_scan,
+                        const Admissible& admissible, const CeilingConfig& config) {
   const std::vector<Vector3d> directions = fibonacci_directions(admissible.directions);
   std::mt19937_64 random(config.seed);
   std::vector<std::uint32_t> targets;  // visible samples in random order
@@ -75,7 +74,7 @@ double coverage_ceiling(std::span<const Vector3f> samples, std::span<const std::
     const auto position =
         free_position(target, directions, random() % directions.size(), scene, admissible);
     if (!position) continue;  // cannot be: the sample is visible
-    scan = camera.scan(scene, geometry::look_at(*position, target), view, threads, std::move(scan));
+    scan = take_scan(geometry::look_at(*position, target), view, std::move(scan));
     meter.add(cloud.store(scan.points, config.box));
   }
   return meter.share();

@@ -14,7 +14,7 @@
 
 #include "geometry/mesh.h"
 #include "geometry/pose.h"
-#include "sim/depth_camera.h"
+#include "geometry/scan.h"
 #include "sim/scene.h"
 
 namespace skycap::missions {
@@ -50,13 +50,18 @@ struct CeilingConfig {
   std::uint64_t seed = 1;
 };
 
+/// What the sensor measures from a view; `frame` numbers its scans, and the memory of `recycled`
+/// may be used again.
+using TakeScan = std::function<geometry::Scan(const geometry::View& view, std::uint64_t frame,
+                                              geometry::Scan recycled)>;
+
 /// The share of `samples` that a survey could cover at all, given sensor noise and the spacing of
 /// stored points: what up to `views` admissible views cover together, each aimed at a visible
 /// sample that the views before have left uncovered. Ends early when there is none left.
 double coverage_ceiling(std::span<const Eigen::Vector3f> samples,
                         std::span<const std::uint8_t> is_visible, const sim::Scene& scene,
-                        const sim::DepthCamera& camera, const Admissible& admissible,
-                        const CeilingConfig& config, unsigned threads = 0);
+                        const TakeScan& take_scan, const Admissible& admissible,
+                        const CeilingConfig& config);
 
 /// Distances of measured points from the true surface.
 struct CloudAccuracy {

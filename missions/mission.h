@@ -15,6 +15,7 @@
 #include "flight/smoothing.h"
 #include "sim/depth_camera.h"
 #include "sim/models/models.h"
+#include "sim/sensor.h"
 #include "sim/trajectory.h"
 #include "survey/see.h"
 #include "survey/skycap_planner.h"
@@ -49,6 +50,11 @@ enum class SensorPreset {
 struct SensorConfig {
   SensorPreset preset = SensorPreset::d435;
   sim::DepthCameraConfig camera = sim::d435();  ///< its noise's seed is the mission's
+  /// In place of the camera: a spinning scanner's preset, or the path of a description.
+  std::optional<std::string> lidar;
+  /// What `lidar` names; `camera` is then forward_camera() of it (survey_sensor.h), by which
+  /// planners choose views. Its seed is the mission's.
+  std::optional<sim::LidarConfig> scanner;
 };
 
 enum class PlannerName { see_plus_plus, see, skycap, rsv, rse, oa, uv, pc, af, ae };

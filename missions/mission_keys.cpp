@@ -69,6 +69,12 @@ std::vector<Key> sensor_keys() {
           "Depth camera whose values the keys below override: d435 is an Intel RealSense D435 "
           "(848 x 480 pixels, 69.4 x 42.5 degrees), high_resolution the paper's for buildings "
           "(2400 x 1750 pixels, 60 x 40 degrees)."),
+      otherwise("-", text(
+                         "sensor.lidar", [](Mission & m) -> auto& { return m.sensor.lidar; },
+                         "In place of a depth camera, a spinning laser scanner that stops at each "
+                         "view and turns once: a preset of sim/sensors, or the path of a "
+                         "description (NAME.yaml), relative to the mission file. No other key of "
+                         "the section sensor goes with it.")),
       integer(
           "sensor.width", "px", between(1, 32768),
           [](Mission & m) -> auto& { return m.sensor.camera.camera.width; },

@@ -8,7 +8,6 @@
 #include <fstream>
 #include <iterator>
 #include <map>
-#include <numeric>
 #include <optional>
 #include <string_view>
 #include <system_error>
@@ -18,6 +17,8 @@
 #include "missions/mission_keys.h"
 #include "missions/number_text.h"
 #include "missions/site.h"
+#include "missions/survey_sensor.h"
+#include "missions/unknown_key.h"
 #include "missions/yaml_tree.h"
 
 namespace skycap::missions {
@@ -36,50 +37,6 @@ using GivenValues = std::map<std::string, Given, std::less<>>;
 
 [[noreturn]] void fail(const std::string& place, std::string_view key, const std::string& what) {
   throw Error(ErrorKind::bad_config, place + ": key " + std::string(key) + ": " + what);
-}
-
-/// Levenshtein's distance: how many letters to insert, drop or change.
-std::size_t edit_distance(std::string_view a, std::string_view b) {
-  std::vector<std::size_t> row(b.size() + 1);
-  std::iota(row.begin(), row.end(), 0U);
-  for (std::size_t i = 0; i < a.size(); ++i) {
-    std::size_t diagonal = row[0];
-    row[0] = i + 1;
-    for (std::size_t j = 0; j < b.size(); ++j) {
-      const std::size_t changed = diagonal + (a[i] == b[j] ? 0 : 1);
-      diagonal = row[j + 1];
-      row[j + 1] = std::min({changed, row[j] + 1, row[j + 1] + 1});
-    }
-  }
-  return row.back();
-}
-
-std::string_view last_part(std::string_view path) { return path.substr(path.rfind('.') + 1); }
-
-/// What is wrong with an unknown key: the key that was probably meant, or those of its section.
-std::string unknown_key_message(const std::string& path) {
-  const Key* nearest = nullptr;
-  std::size_t nearest_distance = 0;
-  for (const Key& key : mission_keys()) {
-    // A key may be misspelt, or right (but for a slip) in the wrong section.
-    const std::size_t slip = edit_distance(last_part(path), last_part(key.path));
-    std::size_t distance = edit_distance(path, key.path);
-    if (4 * slip <= last_part(path).size()) distance = std::min(distance, slip + 1);
-    if (!nearest || distance < nearest_distance) nearest = &key, nearest_distance = distance;
-  }
-  if (nearest_distance <= std::max<std::size_t>(2, path.size() / 4)) {
-    return "is unknown; did you mean " + nearest->path + "?";
-  }
-  const std::string section = path.substr(0, path.rfind('.') + 1);
-  std::vector<std::string> children;
-  for (const Key& key : mission_keys()) {
-    if (!key.path.starts_with(section)) continue;
-    std::string child = key.path.substr(0, key.path.find('.', section.size()));
-    if (std::ranges::find(children, child) == children.end()) children.push_back(std::move(child));
-  }
-  std::string known;
-  for (const std::string& child : children) known += (known.empty() ? "" : ", ") + child;
-  return "is unknown; known are " + known;
 }
 
 bool is_section(const std::string& path) {
@@ -239,6 +196,26 @@ void apply_presets(Mission& mission) {
   if (mission.planner.preset == PlannerPreset::building) {
     see.visibility_update_limit = 1000;
     see.max_attempts = 2;
+  }
+}
+
+/// Reads the scanner that takes the camera's place.
+void apply_lidar(const GivenValues& given, const std::string& name, Mission& mission) {
+  for (const auto& [path, value] : given) {
+    if (path.starts_with("sensor.") && path != "sensor.lidar") {
+      fail(value.place, path, "does not go with sensor.lidar; leave one of the two out");
+    }
+  }
+  const std::string& place = given.at("sensor.lidar").place;
+  if (mission.flight.is_flown()) {
+    fail(place, "sensor.lidar",
+         "does not go with flight.vehicle: free space to fly in is proven by depth images; give "
+         "flight.vehicle: none, or a depth camera");
+  }
+  try {
+    use_lidar(mission.sensor, std::filesystem::path(name).parent_path());
+  } catch (const Error& error) {
+    fail(place, "sensor.lidar", error.what());
   }
 }
 
@@ -432,7 +409,8 @@ Mission mission_from(const std::string& text, const std::string& name,
   Mission mission;
   mission.name = std::filesystem::path(name).stem().string();
 
-  constexpr std::array presets{"sensor.preset", "planner.preset", "planner.name", "flight.vehicle"};
+  constexpr std::array presets{"sensor.preset", "sensor.lidar", "planner.preset", "planner.name",
+                               "flight.vehicle"};
   for (const char* path : presets) {
     const auto preset = given.find(path);
     if (preset != given.end()) apply(preset->second, *find_key(path), mission);
@@ -442,6 +420,7 @@ Mission mission_from(const std::string& text, const std::string& name,
     mission.planner.name = PlannerName::skycap;
   }
   apply_presets(mission);
+  if (mission.sensor.lidar) apply_lidar(given, name, mission);
   for (const auto& [path, value] : given) apply(value, *find_key(path), mission);
   check_required(given, name);
   check_together(given, name, mission);

@@ -12,6 +12,7 @@
 #include "geometry/pose.h"
 #include "missions/coverage.h"
 #include "missions/evaluation.h"
+#include "missions/survey_sensor.h"
 #include "missions/thinned_cloud.h"
 #include "sim/depth_camera.h"
 #include "survey/dose_model.h"
@@ -154,14 +155,14 @@ class Measurement {
               unsigned threads)
       : scene_(scene),
         threads_(threads),
-        camera_(with_seed(mission.sensor.camera, seed)),
+        sensor_(mission.sensor, seed),
         box_(mission.planner.see.scene_box.value_or(Eigen::AlignedBox3d())),
         cloud_(mission.planner.see.effective_spacing()),
         meter_(scene.samples().points, mission.evaluation.registration_distance) {}
 
   /// Frame `number` of the survey; the same view has the same noise whenever it is taken.
   std::vector<Vector3f> take(const View& view, std::size_t number) {
-    const geometry::Scan scan = camera_.scan(scene_.scene(), view, number, threads_);
+    const geometry::Scan scan = sensor_.scan(scene_.scene(), view, number, threads_);
     std::vector<Vector3f> stored = cloud_.store(scan.points, box_);
     meter_.add(stored);
     return stored;
@@ -170,14 +171,9 @@ class Measurement {
   const CoverageMeter& meter() const { return meter_; }
 
  private:
-  static sim::DepthCameraConfig with_seed(sim::DepthCameraConfig config, std::uint64_t seed) {
-    config.noise.seed = seed;
-    return config;
-  }
-
   const SurveyScene& scene_;
   unsigned threads_;
-  sim::DepthCamera camera_;
+  SurveySensor sensor_;
   Eigen::AlignedBox3d box_;
   ThinnedCloud cloud_;
   CoverageMeter meter_;

@@ -9,7 +9,7 @@
 #include "missions/coverage.h"
 #include "missions/planner_factory.h"
 #include "missions/site.h"
-#include "sim/depth_camera.h"
+#include "missions/survey_sensor.h"
 
 namespace skycap::missions {
 namespace {
@@ -130,9 +130,7 @@ const char* name_of(survey::SkycapStop stop) {
 SurveyRecord run_survey(const Mission& mission, const SurveyScene& scene, std::uint64_t seed,
                         unsigned threads, std::stop_token stop,
                         const std::function<void(const JudgedView&)>& report) {
-  sim::DepthCameraConfig camera_config = mission.sensor.camera;
-  camera_config.noise.seed = seed;
-  const sim::DepthCamera camera(camera_config);
+  const SurveySensor sensor(mission.sensor, seed);
   const std::unique_ptr<survey::Planner> planner =
       make_planner(trial_mission(mission, scene, seed), threads);
   CoverageMeter meter(scene.samples().points, mission.evaluation.registration_distance);
@@ -148,7 +146,7 @@ SurveyRecord run_survey(const Mission& mission, const SurveyScene& scene, std::u
   std::size_t points_judged = 0;
   survey::SurveyPorts ports;
   ports.sense = [&](const geometry::View& view) {
-    return camera.scan(scene.scene(), view, frame++, threads);
+    return sensor.scan(scene.scene(), view, frame++, threads);
   };
   ViewGate gate(view_limits(mission));
   std::size_t points_gated = 0;

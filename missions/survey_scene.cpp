@@ -15,7 +15,7 @@
 #include "missions/scene_source.h"
 #include "missions/sha256.h"
 #include "missions/site.h"
-#include "sim/depth_camera.h"
+#include "missions/survey_sensor.h"
 
 namespace skycap::missions {
 namespace {
@@ -25,7 +25,12 @@ using Eigen::Vector3d;
 constexpr std::uint64_t sample_seed = 1;  // coverage is measured by the same samples in all runs
 constexpr std::uint64_t ceiling_seed = 1;
 
-sim::Scene scene_of(const geometry::Mesh& model, const Mission& mission) {
+sim::Scene scene_of(const geometry::Mesh& model, const Mission& mission,
+                    const std::filesystem::path& folder) {
+  if (mission.sensor.scanner) {  // what a laser measures depends on the surfaces' reflectances
+    const ReflectingMesh truth = reflecting_scene(mission.scene, folder);
+    return {truth.mesh, truth.reflectances, mission.threads};
+  }
   if (!mission.scene.ground) return sim::Scene(model, mission.threads);
   geometry::Mesh mesh = model;
   geometry::append(mesh, ground_under(model));
@@ -67,7 +72,7 @@ geometry::Mesh placed_model(const SceneConfig& scene, const std::filesystem::pat
 SurveyScene::SurveyScene(const Mission& mission, const std::filesystem::path& folder)
     : mission_(mission),
       model_(placed_model(mission.scene, folder)),
-      scene_(scene_of(model_, mission)),
+      scene_(scene_of(model_, mission, folder)),
       samples_(geometry::sample_surface(model_, mission.evaluation.samples, sample_seed)),
       view_distance_(mission.planner.see.view_distance.value_or(geometry::view_distance(
           geometry::Camera(mission.sensor.camera.camera), mission.planner.see.density))),
@@ -129,9 +134,13 @@ std::optional<double> SurveyScene::ceiling(const std::vector<std::uint8_t>& is_v
   config.registration_distance = mission_.evaluation.registration_distance;
   if (mission_.planner.see.scene_box) config.box = *mission_.planner.see.scene_box;
   config.seed = ceiling_seed;
+  const SurveySensor sensor(mission_.sensor, mission_.sensor.camera.noise.seed);
+  const auto take_scan = [&](const geometry::View& view, std::uint64_t frame,
+                             geometry::Scan recycled) {
+    return sensor.scan(scene_, view, frame, threads, std::move(recycled));
+  };
   const double ceiling =
-      coverage_ceiling(samples_.points, is_visible, scene_,
-                       sim::DepthCamera(mission_.sensor.camera), admissible(), config, threads);
+      coverage_ceiling(samples_.points, is_visible, scene_, take_scan, admissible(), config);
   try {
     std::ostringstream text;
     text.precision(17);

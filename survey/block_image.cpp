@@ -164,6 +164,28 @@ class Reducer {
   std::vector<Moments> moments_;
 };
 
+/// Tangents of half the angles of view.
+Eigen::Vector2f half_slopes(const geometry::Camera& camera) {
+  return (0.5 * Eigen::Vector2d(camera.width(), camera.height()))
+      .cwiseQuotient(camera.focal_length_px())
+      .cast<float>();
+}
+
+/// Marks the blocks that lie wholly within these slopes about the optical axis.
+void mark_shots(BlockImage& image, const Eigen::Vector2f& half_slopes) {
+  const BlockProjection& p = image.projection;
+  const auto is_within = [&](int number, int axis) {
+    const float first =
+        (static_cast<float>(number) - p.principal_point[axis]) / p.focal_length[axis];
+    const float last = first + 1.0F / p.focal_length[axis];
+    return std::max(std::abs(first), std::abs(last)) <= half_slopes[axis] * (1.0F + 1e-5F);
+  };
+  for (std::size_t i = 0; i < image.blocks.size(); ++i) {
+    image.blocks[i].is_shot_at = is_within(static_cast<int>(i) % p.columns, 0) &&
+                                 is_within(static_cast<int>(i) / p.columns, 1);
+  }
+}
+
 }  // namespace
 
 float BlockImage::ray_density(const Block& block, const Eigen::Vector3f& point,
@@ -220,13 +242,14 @@ BlockImage make_block_image(const geometry::Scan& scan, const geometry::Camera& 
   return image;
 }
 
-std::vector<BlockImage> make_cube_images(const geometry::Scan& scan, int face_blocks,
-                                         const BlockSettings& settings) {
+std::vector<BlockImage> make_cube_images(const geometry::Scan& scan, const geometry::Camera& camera,
+                                         int face_blocks, const BlockSettings& settings) {
   const Matrix3f sensor_from_world = scan.world_from_sensor.linear().transpose().cast<float>();
   const Vector3f sensor_position = scan.sensor_position().cast<float>();
   const std::size_t face_size = static_cast<std::size_t>(face_blocks) * face_blocks;
 
   std::vector<BlockImage> faces;
+  constexpr int front_face = 4;  // along z
   for (int face = 0; face < 6; ++face) {
     const int axis = face / 2;
     const float sign = face % 2 == 0 ? 1.0F : -1.0F;
@@ -236,7 +259,6 @@ std::vector<BlockImage> make_cube_images(const geometry::Scan& scan, int face_bl
     face_from_sensor(1, (axis + 2) % 3) = 1.0F;
 
     BlockImage image;
-    image.lists_misses = false;
     image.projection = {
         .columns = face_blocks,
         .rows = face_blocks,
@@ -251,7 +273,7 @@ std::vector<BlockImage> make_cube_images(const geometry::Scan& scan, int face_bl
             {hit->block, image.projection.sensor_from_world * (point - sensor_position)});
       }
     }
-    if (returns.empty()) continue;
+    if (returns.empty() && face != front_face) continue;
     std::stable_sort(returns.begin(), returns.end(),
                      [](const Return& a, const Return& b) { return a.block < b.block; });
     std::vector<std::size_t> starts;
@@ -263,6 +285,7 @@ std::vector<BlockImage> make_cube_images(const geometry::Scan& scan, int face_bl
           returns.begin()));
     }
     image.blocks.resize(face_size);
+    mark_shots(image, face == front_face ? half_slopes(camera) : Eigen::Vector2f::Zero());
     Reducer(image, settings).reduce([&](std::size_t row) {
       return std::span<const Return>(returns).subspan(starts[row], starts[row + 1] - starts[row]);
     });

@@ -2,8 +2,9 @@
 ///
 /// A block of B x B pixels measures a place a quarter as noisily (B = 4) and two hundred times
 /// faster than its pixels would, and its spread tells the noise. A pinhole image gives one block
-/// image; a sweep without an image (a LiDAR's) is sorted into the six faces of a cube about the
-/// sensor, each of which is a pinhole image of a right angle. Blocks are numbered row by row.
+/// image; a sweep without an image (a LiDAR's) becomes a range image of the whole sphere: the six
+/// faces of a cube about the sensor, each of which is a pinhole image of a right angle. Blocks are
+/// numbered row by row.
 #pragma once
 
 #include <cmath>
@@ -64,13 +65,13 @@ struct Block {
   /// How far the normal can be relied on, 0 to 1: head-on, in the middle of a surface, no edge.
   float quality = 0.0F;
   float residual = 0.0F;  ///< standard deviation across the surface; 0 if not known
+  /// Whether rays are known to have gone all over it, so that no return means a miss.
+  bool is_shot_at = true;
 };
 
 struct BlockImage {
   BlockProjection projection;
   std::vector<Block> blocks;
-  /// Whether a ray without a return is known of (an image says so, a sweep does not).
-  bool lists_misses = true;
 
   /// Rays per square metre of a surface that block returns met at the given cosine of incidence.
   float ray_density(const Block& block, const Eigen::Vector3f& point, float cos_incidence) const;
@@ -86,9 +87,11 @@ struct BlockSettings {
 BlockImage make_block_image(const geometry::Scan& scan, const geometry::Camera& camera,
                             const BlockSettings& settings);
 
-/// The faces, of `face_blocks` x `face_blocks` blocks each, that hold a return of a scan without an
-/// image.
-std::vector<BlockImage> make_cube_images(const geometry::Scan& scan, int face_blocks,
-                                         const BlockSettings& settings);
+/// The face in front, and those others that hold a return, of a scan without an image;
+/// `face_blocks` x `face_blocks` blocks each. The sensor is known to shoot everywhere into the view
+/// of `camera`, whose axis is that of the face in front, and that no less densely than once a
+/// block; of what is beside, nothing is known but the returns.
+std::vector<BlockImage> make_cube_images(const geometry::Scan& scan, const geometry::Camera& camera,
+                                         int face_blocks, const BlockSettings& settings);
 
 }  // namespace skycap::survey

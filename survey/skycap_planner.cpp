@@ -229,10 +229,10 @@ struct SkycapPlanner::Impl {
 
   std::vector<BlockImage> reduce(const Scan& scan) const {
     if (!scan.pixels.empty()) return {make_block_image(scan, camera, blocks)};
-    // As many blocks on the sphere as give each about sixteen returns, but none below the camera's.
-    const double returns = static_cast<double>(scan.points.size());
-    const int face = std::clamp(static_cast<int>(std::sqrt(returns / (6.0 * 16.0))), 16, 512);
-    return make_cube_images(scan, face, blocks);
+    // Blocks as wide as those of the camera's image. A face's focal length is half its width.
+    const double focal_length = 1.0 / (ray_spacing(camera) * blocks.block_px);
+    const int face = std::clamp(static_cast<int>(2.0 * focal_length), 16, 512);
+    return make_cube_images(scan, camera, face, blocks);
   }
 
   void learn_noise(const std::vector<BlockImage>& images) {

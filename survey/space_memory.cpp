@@ -32,7 +32,7 @@ void SpaceMemory::add(const BlockImage& image, float noise) {
     if (block.returns == 0) {
       const int row = static_cast<int>(i) / image.projection.columns;
       const int column = static_cast<int>(i) % image.projection.columns;
-      if (misses_are_empty_ && image.lists_misses && is_amid_misses(image, row, column)) {
+      if (misses_are_empty_ && block.is_shot_at && is_amid_misses(image, row, column)) {
         depth.empty_before[i] = infinity;
       }
       continue;

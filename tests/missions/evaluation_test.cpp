@@ -70,12 +70,15 @@ TEST(VisibleSamples, AreTheSameForAnyNumberOfThreads) {
             visible_samples(samples.points, scene, from_anywhere, 3));
 }
 
-sim::DepthCamera quick_camera() {
+TakeScan quick_scans(const sim::Scene& scene) {
   sim::DepthCameraConfig config = sim::d435();
   config.camera.width = 212;
   config.camera.height = 120;
   config.noise.sigma = 0.0;
-  return sim::DepthCamera(config);
+  return [&scene, camera = sim::DepthCamera(config)](const geometry::View& view,
+                                                     std::uint64_t frame, geometry::Scan recycled) {
+    return camera.scan(scene, view, frame, 1, std::move(recycled));
+  };
 }
 
 // With a spacing well below r_d and no noise, all that can be seen can be covered; the cube inside
@@ -86,8 +89,8 @@ TEST(CoverageCeiling, IsTheVisibleShareWhenNothingElseLimits) {
   const auto samples = geometry::sample_surface(mesh, 3000, 1);
   const auto is_visible = visible_samples(samples.points, scene, from_anywhere);
   const CeilingConfig config{.views = 60, .spacing = 0.02, .registration_distance = 0.1, .box = {}};
-  const double ceiling =
-      coverage_ceiling(samples.points, is_visible, scene, quick_camera(), from_anywhere, config);
+  const double ceiling = coverage_ceiling(samples.points, is_visible, scene, quick_scans(scene),
+                                          from_anywhere, config);
   EXPECT_NEAR(ceiling, 1.0 / 1.09, 1e-3);  // one sample is 3e-4
 }
 
@@ -99,8 +102,8 @@ TEST(CoverageCeiling, IsLimitedByTheSpacingOfStoredPoints) {
   const auto samples = geometry::sample_surface(mesh, 3000, 1);
   const auto is_visible = visible_samples(samples.points, scene, from_anywhere);
   const CeilingConfig config{.views = 40, .spacing = 0.2, .registration_distance = 0.1, .box = {}};
-  const double ceiling =
-      coverage_ceiling(samples.points, is_visible, scene, quick_camera(), from_anywhere, config);
+  const double ceiling = coverage_ceiling(samples.points, is_visible, scene, quick_scans(scene),
+                                          from_anywhere, config);
   EXPECT_LT(ceiling, std::numbers::pi * 0.01 / (0.04 * std::sqrt(3.0) / 2.0));
   EXPECT_GT(ceiling, 0.5);  // random packings reach 0.55 of the plane
 }
@@ -112,8 +115,8 @@ TEST(CoverageCeiling, LeavesOutWhatLiesOutsideTheBox) {
   const auto is_visible = visible_samples(samples.points, scene, from_anywhere);
   CeilingConfig config{.views = 60, .spacing = 0.02, .registration_distance = 0.05, .box = {}};
   config.box = Eigen::AlignedBox3d(Vector3d(-2, -2, 0), Vector3d(2, 2, 2));
-  const double ceiling =
-      coverage_ceiling(samples.points, is_visible, scene, quick_camera(), from_anywhere, config);
+  const double ceiling = coverage_ceiling(samples.points, is_visible, scene, quick_scans(scene),
+                                          from_anywhere, config);
   // The upper half, and a rim of r_d below z = 0 on four sides of width 2: 0.4 / 24 of the area.
   EXPECT_NEAR(ceiling, 0.5 + 0.4 / 24.0, 4e-3);
 }

@@ -82,11 +82,10 @@ TEST(BlockImage, ASweepIsSortedIntoTheFacesOfACube) {
   const BlockImage organised = make_block_image(scan, camera, {.block_px = 8, .jump = 0.2F});
   const Block& middle = organised.blocks[7 * 27 + 13];
   scan.pixels.clear();
-  const auto faces = make_cube_images(scan, 32, {.jump = 10.0F});
+  const auto faces = make_cube_images(scan, camera, 32, {.jump = 10.0F});
   std::size_t returns = 0;
   double density = 0.0, blocks = 0.0;
   for (const BlockImage& face : faces) {
-    EXPECT_FALSE(face.lists_misses);
     for (const Block& block : face.blocks) {
       returns += block.returns;
       if (block.returns == 0 || (block.mean - middle.mean).norm() > 0.15F) continue;
@@ -97,6 +96,33 @@ TEST(BlockImage, ASweepIsSortedIntoTheFacesOfACube) {
   EXPECT_EQ(returns, scan.points.size());
   const double expected = organised.ray_density(middle, middle.mean, 1.0F);
   EXPECT_NEAR(density / blocks, expected, 0.15 * expected);  // a block holds 11 to 16 whole rays
+}
+
+// A miss is known only where the sensor is known to have shot: in the camera's view, of which no
+// block reaches out.
+TEST(BlockImage, ASweepsMissesAreKnownInFrontOnly) {
+  geometry::Scan scan = tests::scan_spheres(ball, camera, front);
+  scan.pixels.clear();
+  const auto faces = make_cube_images(scan, camera, 32, {.jump = 10.0F});
+  ASSERT_EQ(faces.size(), 1U);  // all returns are in front
+  const BlockProjection& p = faces[0].projection;
+  int shot_at = 0;
+  for (int row = 0; row < p.rows; ++row) {
+    for (int column = 0; column < p.columns; ++column) {
+      const auto is_in_view = [&](int right, int down) {
+        const Eigen::Vector2f slope(
+            (static_cast<float>(column + right) - p.principal_point.x()) / p.focal_length.x(),
+            (static_cast<float>(row + down) - p.principal_point.y()) / p.focal_length.y());
+        return camera.project({0.999 * slope.x(), 0.999 * slope.y(), 1.0}).has_value();
+      };
+      const bool is_wholly_in_view =
+          is_in_view(0, 0) && is_in_view(1, 0) && is_in_view(0, 1) && is_in_view(1, 1);
+      const Block& block = faces[0].blocks[static_cast<std::size_t>(row * p.columns + column)];
+      EXPECT_EQ(block.is_shot_at, is_wholly_in_view) << "row " << row << ", column " << column;
+      shot_at += block.is_shot_at ? 1 : 0;
+    }
+  }
+  EXPECT_GT(shot_at, 100);
 }
 
 TEST(BlockImage, DoesNotDependOnTheNumberOfThreads) {
