@@ -9,6 +9,7 @@
 #include <gtest/gtest.h>
 
 #include "missions/coverage.h"
+#include "sim/depth_camera.h"
 
 namespace skycap::missions {
 namespace {
