@@ -390,7 +390,7 @@ struct SkycapPlanner::Impl {
     field.emplace(*map, unseen->patches(), camera, *dose, gain);
     step.frontiers = unseen->patches().size();
     stopwatch.lap("predict");
-    const auto view = choose();
+    auto view = choose();
     stopwatch.lap("choose");
     return view;
   }
