@@ -125,7 +125,7 @@ struct SkycapPlanner::Impl {
         spacing(given.spacing.value_or(0.5 * given.coverage_radius)),
         // Cells no smaller than what pixels tell apart: of smaller ones each return would get its
         // own.
-        grid(std::max(spacing, given.view_distance.value_or(0.0) * ray_spacing(camera))) {
+        grid(2.0 * std::max(spacing, given.view_distance.value_or(0.0) * ray_spacing(camera))) {
     distance = given.view_distance.value_or(0.5 * given.coverage_radius / ray_spacing(camera));
     gain.view_distance = distance;
     chooser.view_distance = distance;
