@@ -123,10 +123,9 @@ struct SkycapPlanner::Impl {
       : config(given),
         camera(sensor),
         spacing(given.spacing.value_or(0.5 * given.coverage_radius)),
-        // Cells no smaller than what pixels tell apart: of smaller ones each return would get its
-        // own.
-        grid(2.0 * std::max(spacing, given.view_distance.value_or(0.0) * ray_spacing(camera))) {
-    distance = given.view_distance.value_or(0.5 * given.coverage_radius / ray_spacing(camera));
+        distance(given.view_distance.value_or(0.5 * given.coverage_radius / ray_spacing(camera))),
+        // Cells wider than pixels: else each return would have one, and a brick, of its own.
+        grid(2.0 * std::max(spacing, distance * ray_spacing(camera))) {
     gain.view_distance = distance;
     chooser.view_distance = distance;
     chooser.view_price = given.view_price.value_or(3.0 * distance);
@@ -400,7 +399,7 @@ struct SkycapPlanner::Impl {
   const SkycapConfig config;
   const geometry::Camera camera;
   const double spacing;
-  double distance = 0.0;
+  const double distance;
   GainSettings gain;
   ChooserSettings chooser;
   std::optional<Eigen::AlignedBox3f> region;
