@@ -19,7 +19,6 @@ namespace {
 using Eigen::Vector3d;
 using Eigen::Vector3f;
 using testing::HasSubstr;
-using tests::quick_mission;
 
 constexpr double degree = std::numbers::pi / 180.0;
 
