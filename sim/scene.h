@@ -56,6 +56,9 @@ class Scene {
     return reflectances_.empty() ? default_reflectance : reflectances_[triangle];
   }
 
+  /// Whether triangles have reflectances of their own.
+  bool has_reflectances() const { return !reflectances_.empty(); }
+
   /// What the sensors in this folder trace through; defined in scene_embree.h, for sources only.
   struct Embree;
   const Embree& embree() const { return *embree_; }

@@ -14,6 +14,7 @@
 
 #include <cmath>
 #include <cstdint>
+#include <cstring>
 
 #include <Eigen/Core>
 #include <embree3/rtcore.h>
@@ -46,7 +47,15 @@ template <typename Four, typename Lane>
 Four four(const Lane* lanes) {
   return *reinterpret_cast<const Four*>(lanes);  // Embree aligns its packets to 16 bytes and more
 }
+template <typename Four, typename Lane>
+void put_four(Lane* lanes, Four values) {
+  std::memcpy(lanes, &values, sizeof values);
+}
 inline int sum(FourInts lanes) { return lanes[0] + lanes[1] + lanes[2] + lanes[3]; }
+inline FourFloats square_root(FourFloats of) {
+  for (int lane = 0; lane < 4; ++lane) of[lane] = std::sqrt(of[lane]);
+  return of;
+}
 
 /// Turns a ray a little, as the comment above says, in a direction that few rays have.
 inline void turn(float& x, float& y, float& z) {
@@ -137,17 +146,21 @@ class Packet {
     }
     if (!some_hit) return;
 
-    auto turned = rays;
     alignas(64) int suspicious[width];
-    bool any = false;
+    FourInts any = {};
+    for (int lane = 0; lane < width; lane += 4) {
+      const FourInts is_settled = is_front_4(lane) | (some_front ? FourInts{} : is_hit_4(lane));
+      const FourInts lanes = ~is_settled & four<FourInts>(active + lane);
+      put_four(suspicious + lane, lanes);
+      any |= lanes;
+    }
+    if (sum(any) == 0) return;
+
+    auto turned = rays;
     for (int lane = 0; lane < width; ++lane) {
-      const bool is_front = is_front_4(lane / 4 * 4)[lane % 4] != 0;
-      suspicious[lane] = is_front || (is_hit(lane) && !some_front) ? 0 : active[lane];
-      any |= suspicious[lane] != 0;
       turn(turned.ray.dir_x[lane], turned.ray.dir_y[lane], turned.ray.dir_z[lane]);
       turned.hit.geomID[lane] = RTC_INVALID_GEOMETRY_ID;
     }
-    if (!any) return;
     PacketTypes<width>::intersect(suspicious, embree.scene, &context_, &turned);
     for (int lane = 0; lane < width; ++lane) {
       if (suspicious[lane] == 0 || turned.hit.geomID[lane] == RTC_INVALID_GEOMETRY_ID) continue;

@@ -84,9 +84,8 @@ sim::Rays all_rays(const sim::LidarConfig& config, const sim::Trajectory& trajec
                                                         shots.direction[2][slot]);
       const auto [horizontal, vertical] = sim::across(axis, pose.linear().col(2).cast<float>());
       for (const sim::BeamSample& sample : beam) {
-        const Eigen::Vector3f aside =
-            static_cast<float>(0.5 * config.beam.divergence_horizontal) *
-            (sample.horizontal * horizontal + sample.vertical * vertical);
+        const Eigen::Vector3f aside = static_cast<float>(0.5 * config.beam.divergence_horizontal) *
+                                      (sample.horizontal * horizontal + sample.vertical * vertical);
         rays.set_direction(next, (axis + aside).normalized());
         for (int i = 0; i < 3; ++i) rays.origin[i][next] = from[i];
         ++next;
