@@ -72,8 +72,30 @@ struct EchoRow {
   }
 };
 
-// Everything that measuring one block after another needs; its buffers are used again. Slots are
-// gone through in fours: the same channel in four consecutive firings.
+/// What a block of firings needs on its way. Every thread keeps one, so that a short scan does not
+/// begin with asking for memory.
+struct BlockBuffers {
+  BlockPoses poses, believed;
+  Shots shots;
+  Rays shots_rays;     // the axes of the shots as they were
+  Rays reported_rays;  // and as the sensor and its carrier believe; only if they differ
+  Rays beam_rays;      // of beams with a width
+  Hits hits;
+  std::vector<float> azimuth_noise, elevation_noise;
+  std::vector<std::vector<float>> range_noise;  // for each return of a shot
+  std::vector<RayHit> beam_hits;
+  std::vector<Echo> echoes;
+  std::vector<EchoRow> echo_rows;
+  std::vector<int> counts;  // of the echoes in each slot
+};
+
+BlockBuffers& buffers_of_thread() {
+  static thread_local BlockBuffers buffers;
+  return buffers;
+}
+
+// Measures one block after another. Slots are gone through in fours: the same channel in four
+// consecutive firings.
 class BlockMeasurement {
  public:
   BlockMeasurement(const Lidar::Impl& lidar, const Scene& scene, const LidarFlight& flight,
@@ -143,14 +165,22 @@ class BlockMeasurement {
   }
 
   void cast(std::uint32_t first, std::uint32_t end) {
-    const std::size_t samples = lidar_.beam.size(), fours = config_.channels.size();
+    const std::size_t samples = lidar_.beam.size();
     hits_.resize(lidar_.pattern.slots() * samples);
     if (samples > 1) beam_rays_.resize(lidar_.pattern.slots() * samples);
-    for (std::size_t slot = 0; slot < lidar_.pattern.slots(); ++slot) {
-      const std::size_t firing = slot / 4 / fours * 4 + slot % 4;
-      const bool is_cast = shots_.is_shot[slot] != 0 && firing >= first && firing < end;
-      std::fill_n(hits_.active.data() + slot * samples, samples, is_cast ? -1 : 0);
-      if (samples > 1 && is_cast) spread_beam(firing, slot);
+    std::size_t slot = 0;
+    for (std::uint32_t four = 0; four < firings_in_block; four += 4) {
+      for (std::size_t channel = 0; channel < config_.channels.size(); ++channel) {
+        for (std::uint32_t firing = four; firing < four + 4; ++firing, ++slot) {
+          const bool is_cast = shots_.is_shot[slot] != 0 && firing >= first && firing < end;
+          if (samples == 1) {
+            hits_.active[slot] = is_cast ? -1 : 0;
+            continue;
+          }
+          std::fill_n(hits_.active.data() + slot * samples, samples, is_cast ? -1 : 0);
+          if (is_cast) spread_beam(firing, slot);
+        }
+      }
     }
     with_packet_width(scene_.embree(), [&]<int width>() {
       cast_rays<width>(scene_.embree(), static_cast<float>(config_.max_range),
@@ -390,19 +420,20 @@ class BlockMeasurement {
   bool has_own_belief_;
   bool has_range_noise_ = false;
 
-  BlockPoses poses_, believed_;
-  Shots shots_;
-  Rays shots_rays_;     // the axes of the shots as they were
-  Rays reported_rays_;  // and as the sensor and its carrier believe; only if they differ
-  Rays beam_rays_;      // of beams with a width
-  Hits hits_;
-  std::vector<float> azimuth_noise_, elevation_noise_;
-  std::vector<std::vector<float>> range_noise_;  // for each return of a shot
-  std::vector<RayHit> beam_hits_;
-  std::vector<Echo> echoes_;
-  std::vector<EchoRow> echo_rows_;
-  std::vector<int> counts_;  // of the echoes in each slot
-  std::size_t next_ = 0;     // where the next return goes
+  BlockBuffers& buffers_ = buffers_of_thread();
+  BlockPoses &poses_ = buffers_.poses, &believed_ = buffers_.believed;
+  Shots& shots_ = buffers_.shots;
+  Rays &shots_rays_ = buffers_.shots_rays, &reported_rays_ = buffers_.reported_rays;
+  Rays& beam_rays_ = buffers_.beam_rays;
+  Hits& hits_ = buffers_.hits;
+  std::vector<float>&azimuth_noise_ = buffers_.azimuth_noise,
+  &elevation_noise_ = buffers_.elevation_noise;
+  std::vector<std::vector<float>>& range_noise_ = buffers_.range_noise;
+  std::vector<RayHit>& beam_hits_ = buffers_.beam_hits;
+  std::vector<Echo>& echoes_ = buffers_.echoes;
+  std::vector<EchoRow>& echo_rows_ = buffers_.echo_rows;
+  std::vector<int>& counts_ = buffers_.counts;
+  std::size_t next_ = 0;  // where the next return goes
 };
 
 }  // namespace
