@@ -140,10 +140,12 @@ class BlockMeasurement {
     rays.resize(lidar_.pattern.slots());
     for (std::uint32_t firing = 0; firing < firings_in_block; firing += 4) {
       const FourPoses now(poses, firing), next(poses, firing + 1);
+      FourPoses later = now;
       for (std::size_t channel = 0; channel < config_.channels.size(); ++channel) {
         const std::size_t slot = lidar_.pattern.slot(firing, channel);
         const float share = lidar_.delay_shares[channel];
-        const FourPoses at = share == 0.0F ? now : delayed(now, next, share);
+        if (share != 0.0F) later = delayed(now, next, share);
+        const FourPoses& at = share == 0.0F ? now : later;
         FourFloats vector[3], placed[3];
         for (int axis = 0; axis < 3; ++axis) {
           std::memcpy(&vector[axis], &shots_.direction[axis][slot], sizeof vector[axis]);
@@ -257,14 +259,15 @@ class BlockMeasurement {
     const std::size_t samples = lidar_.beam.size(), slots = lidar_.pattern.slots();
     for (EchoRow& row : echo_rows_) row.resize(slots);
     counts_.resize(slots);
+    beam_hits_.resize(samples);
     for (std::size_t slot = 0; slot < slots; ++slot) {
-      beam_hits_.clear();
-      for (std::size_t i = 0; i < samples; ++i) {
-        const std::size_t ray = slot * samples + i;
+      std::size_t hits = 0;
+      for (std::size_t i = 0, ray = slot * samples; i < samples; ++i, ++ray) {
         if (hits_.range[ray] < lidar_.min_range) continue;
-        beam_hits_.push_back(hit(ray, lidar_.beam[i].share));
+        beam_hits_[hits++] = hit(ray, lidar_.beam[i].share);
       }
-      echoes_ = form_echoes(beam_hits_, config_.sensitivity, config_.beam, std::move(echoes_));
+      echoes_ = form_echoes({beam_hits_.data(), hits}, config_.sensitivity, config_.beam,
+                            std::move(echoes_));
       counts_[slot] = static_cast<int>(echoes_.size());
       for (std::size_t i = 0; i < echoes_.size(); ++i) {
         EchoRow& row = echo_rows_[i];

@@ -14,11 +14,11 @@
 
 #include <cmath>
 #include <cstdint>
-#include <cstring>
 
 #include <Eigen/Core>
 #include <embree3/rtcore.h>
 
+#include "sim/four_lanes.h"
 #include "sim/scene.h"
 
 namespace skycap::sim {
@@ -37,25 +37,6 @@ struct Scene::Embree {
     if (device != nullptr) rtcReleaseDevice(device);
   }
 };
-
-/// Four lanes in one register of any processor: the compiler does not find them by itself in loops
-/// that compare. A comparison gives -1 for true and 0 for false.
-using FourFloats [[gnu::vector_size(16), gnu::may_alias]] = float;
-using FourInts [[gnu::vector_size(16), gnu::may_alias]] = int;
-
-template <typename Four, typename Lane>
-Four four(const Lane* lanes) {
-  return *reinterpret_cast<const Four*>(lanes);  // Embree aligns its packets to 16 bytes and more
-}
-template <typename Four, typename Lane>
-void put_four(Lane* lanes, Four values) {
-  std::memcpy(lanes, &values, sizeof values);
-}
-inline int sum(FourInts lanes) { return lanes[0] + lanes[1] + lanes[2] + lanes[3]; }
-inline FourFloats square_root(FourFloats of) {
-  for (int lane = 0; lane < 4; ++lane) of[lane] = std::sqrt(of[lane]);
-  return of;
-}
 
 /// Turns a ray a little, as the comment above says, in a direction that few rays have.
 inline void turn(float& x, float& y, float& z) {
