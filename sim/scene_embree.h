@@ -14,6 +14,7 @@
 
 #include <cmath>
 #include <cstdint>
+#include <vector>
 
 #include <Eigen/Core>
 #include <embree3/rtcore.h>
@@ -23,9 +24,17 @@
 
 namespace skycap::sim {
 
+/// One copy of a part of the scene: an instance of Embree's, by whose number it is found.
+struct SceneCopy {
+  Eigen::Matrix3f rotation;      ///< world from mesh
+  std::uint32_t first_triangle;  ///< number of its first triangle among those of all copies
+  std::uint32_t own_triangle;    ///< the same among those of all parts
+};
+
 struct Scene::Embree {
   RTCDevice device = nullptr;
   RTCScene scene = nullptr;
+  std::vector<SceneCopy> copies;  ///< none: the scene is a single mesh, not instanced
   Eigen::Vector3d centre = Eigen::Vector3d::Zero();  ///< world position of Embree's origin
   int packet_width = 4;  ///< the widest packets that this processor casts natively: 4, 8 or 16
 
@@ -44,6 +53,16 @@ inline void turn(float& x, float& y, float& z) {
   x += 1.1F * step;
   y -= 1.3F * step;
   z += 0.9F * step;
+}
+
+/// What Embree says of a hit on a copy, in the mesh's own frame, as a hit in the world.
+inline void take_to_world(const SceneCopy& copy, float& normal_x, float& normal_y, float& normal_z,
+                          unsigned& triangle) {
+  const Eigen::Vector3f normal = copy.rotation * Eigen::Vector3f(normal_x, normal_y, normal_z);
+  normal_x = normal.x();
+  normal_y = normal.y();
+  normal_z = normal.z();
+  triangle += copy.first_triangle;
 }
 
 template <int width>
@@ -94,7 +113,7 @@ class Packet {
       rays.ray.tfar[lane] = reach;
       rays.hit.geomID[lane] = RTC_INVALID_GEOMETRY_ID;
     }
-    PacketTypes<width>::intersect(active, embree.scene, &context_, &rays);
+    intersect(embree, active, rays);
     FourInts front_lanes = ~FourInts{};
     for (int lane = 0; lane < width; lane += 4) front_lanes &= is_front_4(lane);
     if (sum(front_lanes) != -4) mend(embree);
@@ -107,6 +126,19 @@ class Packet {
   }
 
  private:
+  // Hits become those of one mesh in the world, whatever copies the scene is made of.
+  void intersect(const Scene::Embree& embree, const int* lanes,
+                 typename PacketTypes<width>::RayHit& query) {
+    PacketTypes<width>::intersect(lanes, embree.scene, &context_, &query);
+    if (embree.copies.empty()) return;
+    auto& hit = query.hit;
+    for (int lane = 0; lane < width; ++lane) {
+      if (lanes[lane] == 0 || hit.geomID[lane] == RTC_INVALID_GEOMETRY_ID) continue;
+      const SceneCopy& copy = embree.copies[hit.instID[0][lane]];
+      take_to_world(copy, hit.Ng_x[lane], hit.Ng_y[lane], hit.Ng_z[lane], hit.primID[lane]);
+    }
+  }
+
   // Whether lanes have met a surface from the side that its normal points to.
   FourInts is_front_4(int first_lane) const {
     const auto& [ray, hit] = rays;
@@ -142,7 +174,7 @@ class Packet {
       turn(turned.ray.dir_x[lane], turned.ray.dir_y[lane], turned.ray.dir_z[lane]);
       turned.hit.geomID[lane] = RTC_INVALID_GEOMETRY_ID;
     }
-    PacketTypes<width>::intersect(suspicious, embree.scene, &context_, &turned);
+    intersect(embree, suspicious, turned);
     for (int lane = 0; lane < width; ++lane) {
       if (suspicious[lane] == 0 || turned.hit.geomID[lane] == RTC_INVALID_GEOMETRY_ID) continue;
       rays.ray.tfar[lane] = turned.ray.tfar[lane];  // the cast did not look farther than the first
