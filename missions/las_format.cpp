@@ -32,6 +32,11 @@ class LasFormat final : public CloudFormat {
               CloudChunk& chunk) const override;
 
  private:
+  /// `units` gives a point's coordinates in multiples of the scale from the offset.
+  template <typename Units>
+  void encode_points(const sim::LidarReturns& returns, const std::vector<Eigen::Vector3f>& points,
+                     const Units& units, CloudChunk& chunk) const;
+
   LasConfig config_;
   std::uint16_t point_size_;
 };
@@ -63,22 +68,39 @@ void LasFormat::encode(const sim::LidarReturns& returns, ReturnPosition position
   const auto& points = position == ReturnPosition::reported ? returns.points : returns.true_points;
   const Eigen::Vector3d shift = returns.origin - config_.offset;
   const double per_unit = 1.0 / config_.scale;
-  const auto units = [&](const Eigen::Vector3f& point) -> Eigen::Vector3d {
-    return (point.cast<double>() + shift) * per_unit;
-  };
-  const Eigen::AlignedBox3f box = box_of(points);
+  Eigen::AlignedBox3d box;  // in units
+  if (config_.projection == nullptr) {
+    const auto units = [&](const Eigen::Vector3f& point) -> Eigen::Vector3d {
+      return (point.cast<double>() + shift) * per_unit;
+    };
+    encode_points(returns, points, units, chunk);
+    const Eigen::AlignedBox3f relative = box_of(points);
+    box = {units(relative.min()), units(relative.max())};
+  } else {
+    const auto units = [&](const Eigen::Vector3f& point) -> Eigen::Vector3d {
+      const Eigen::Vector3d local = returns.origin + point.cast<double>();
+      const Eigen::Vector3d place = (config_.projection->to_map(local) - config_.offset) * per_unit;
+      box.extend(place);
+      return place;
+    };
+    encode_points(returns, points, units, chunk);
+  }
   constexpr double most = std::numeric_limits<std::int32_t>::max();
-  if (!(units(box.min()).array() >= -most).all() || !(units(box.max()).array() <= most).all()) {
+  if (!(box.min().array() >= -most).all() || !(box.max().array() <= most).all()) {
     throw Error(ErrorKind::bad_geometry,
                 "a point is farther than " + std::to_string(most * config_.scale) +
                     " m from the LAS file's offset; choose an offset near the scene");
   }
-  for (const Eigen::Vector3f& corner : {box.min(), box.max()}) {
-    const Eigen::Vector3d place = units(corner);
-    const Eigen::Vector3d whole(nearest(place.x()), nearest(place.y()), nearest(place.z()));
+  for (const Eigen::Vector3d& corner : {box.min(), box.max()}) {
+    const Eigen::Vector3d whole(nearest(corner.x()), nearest(corner.y()), nearest(corner.z()));
     chunk.totals.bounds.extend(whole * config_.scale + config_.offset);
   }
+}
 
+template <typename Units>
+void LasFormat::encode_points(const sim::LidarReturns& returns,
+                              const std::vector<Eigen::Vector3f>& points, const Units& units,
+                              CloudChunk& chunk) const {
   std::uint8_t* out = chunk.bytes.data();
   for (std::size_t i = 0; i < returns.size(); ++i, out += point_size_) {
     const Eigen::Vector3d place = units(points[i]);
