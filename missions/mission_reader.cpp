@@ -197,10 +197,7 @@ std::optional<KeyValue> value_for(const Key& key, const YamlNode& node) {
   if (key.type == KeyType::volumes) return list_in<survey::Prism>(node, volume_in);
   const auto vector = [&](const YamlNode& item) { return vector_in(item, key.range); };
   if (key.type == KeyType::vectors) return list_in<Eigen::Vector3d>(node, vector);
-  if (key.type == KeyType::number) {
-    const auto number = number_in(node, key.range);
-    return number ? std::optional<KeyValue>(*number) : std::nullopt;
-  }
+  if (key.type == KeyType::number) return number_in(node, key.range);
   if (node.kind != YamlNode::Kind::scalar) return std::nullopt;
   switch (key.type) {
     case KeyType::integer: {

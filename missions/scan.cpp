@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <chrono>
 #include <cstdio>
 #include <memory>
@@ -267,9 +268,11 @@ int scan_with_camera(const ScanVerbOptions& options, const Mission& mission,
                   taken, frames.size(), 1e-6 * static_cast<double>(points));
     progress.show(text);
   };
+  const bool has_rawlog = std::ranges::find(options.formats, "rawlog") != options.formats.end();
   const Clock::time_point start = Clock::now();
   const FrameResult result = record_frames(scene, sim::DepthCamera(config), frames, folder,
                                            {.depth_unit = mission.scan.depth_unit,
+                                            .has_rawlog = has_rawlog,
                                             .threads = mission.threads,
                                             .report = report,
                                             .stop = console.stop});
