@@ -145,14 +145,12 @@ Trial trial_of(const SurveyRecord& record, const SceneTruth& truth) {
                     truth.ceiling};
   trial.views = record.views.size();
   trial.points = record.cloud.size();
-  trial.planning_time = record.planning_time();
   trial.distance = record.distance();
-  double planning_time = 0.0;
   for (const JudgedView& view : record.views) {
-    planning_time += view.surveyed.planning_time;
+    trial.planning_time += view.surveyed.planning_processor_time;
     trial.coverage_after.push_back(view.coverage);
     trial.distance_after.push_back(view.surveyed.distance);
-    trial.planning_time_after.push_back(planning_time);
+    trial.planning_time_after.push_back(trial.planning_time);
     trial.frontiers_resolved += view.surveyed.step.frontiers_resolved;
   }
   trial.targets = observed_targets(record.views);

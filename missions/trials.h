@@ -38,7 +38,7 @@ struct Trial {
   CoverageFigures coverage;
   std::size_t views = 0;
   std::size_t points = 0;
-  double planning_time = 0.0;  ///< [s]
+  double planning_time = 0.0;  ///< [s] of a processor: other work beside it hardly counts
   double distance = 0.0;
   std::vector<double> coverage_after;  ///< each view
   std::vector<double> distance_after;

@@ -1,6 +1,7 @@
 #include "survey/survey_loop.h"
 
 #include <chrono>
+#include <ctime>
 #include <optional>
 
 namespace skycap::survey {
@@ -15,6 +16,13 @@ auto timed(double& elapsed, Work work) {
   auto result = work();
   elapsed += std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   return result;
+}
+
+/// [s] that this thread kept a processor busy.
+double processor_time() {
+  timespec time{};
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &time);
+  return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
 }
 
 }  // namespace
@@ -32,11 +40,16 @@ SurveyResult run_survey(Planner& planner, const View& first_view, const SurveyLi
     if (!result.views.empty()) {
       distance += (taken.view.position - result.views.back().view.position).norm();
     }
-    next = timed(taken.planning_time, [&] { return planner.next_view(scan); });
+    const auto plan = [&](auto work) {
+      const double begun = processor_time();
+      next = timed(taken.planning_time, work);
+      taken.planning_processor_time += processor_time() - begun;
+    };
+    plan([&] { return planner.next_view(scan); });
     bool refused = false;
     while (next && ports.can_reach && !ports.can_reach(taken.view.position, *next)) {
       refused = true;
-      next = timed(taken.planning_time, [&] { return planner.next_view_instead(); });
+      plan([&] { return planner.next_view_instead(); });
     }
 
     taken.distance = distance;

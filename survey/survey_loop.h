@@ -33,11 +33,12 @@ struct SurveyLimits {
 /// One view of a survey: where the sensor was, and what the planner made of the scan.
 struct SurveyedView {
   geometry::View view;
-  double distance = 0.0;       ///< travelled up to and including this view
-  std::size_t points = 0;      ///< kept so far
-  std::size_t returns = 0;     ///< points of the scan
-  double sensing_time = 0.0;   ///< [s], of the sensor function
-  double planning_time = 0.0;  ///< [s], of the planner's update
+  double distance = 0.0;                 ///< travelled up to and including this view
+  std::size_t points = 0;                ///< kept so far
+  std::size_t returns = 0;               ///< points of the scan
+  double sensing_time = 0.0;             ///< [s], of the sensor function
+  double planning_time = 0.0;            ///< [s], of the planner's update
+  double planning_processor_time = 0.0;  ///< [s], of this thread alone
   PlanningStep step;
 };
 

@@ -47,15 +47,12 @@ class Visibility {
 /// `only_surfaces` says that rays which meet nothing occupied do not count.
 class RearSideVoxelGain {
  public:
+  static constexpr Hears hears = Hears::what_it_leaves;
   static constexpr bool only_surfaces = true;
   explicit RearSideVoxelGain(const GainSettings&, double) {}
 
   void begin_ray() { is_behind_uncertain_ = false; }
-  bool is_content_with_last(bool) const { return true; }
-  bool pass_untouched(std::size_t) {
-    is_behind_uncertain_ = true;
-    return true;
-  }
+  bool may_miss(bool) const { return true; }
   bool pass(const VoxelState& state) {
     is_behind_uncertain_ = is_uncertain(state);  // an occupied voxel would have stopped the ray
     return true;
@@ -72,6 +69,7 @@ class RearSideVoxelGain {
 
 class RearSideEntropyGain {
  public:
+  static constexpr Hears hears = Hears::every_voxel;
   static constexpr bool only_surfaces = true;
   explicit RearSideEntropyGain(const GainSettings& settings, double) : settings_(settings) {}
 
@@ -80,7 +78,6 @@ class RearSideEntropyGain {
     run_ = 0.0;
     is_in_run_ = false;
   }
-  bool is_content_with_last(bool) const { return false; }
   bool pass_untouched(std::size_t count) {
     run_ += visibility_.pass_untouched(count) * prior_entropy;
     is_in_run_ = true;
@@ -111,6 +108,7 @@ class RearSideEntropyGain {
 template <bool only_uncertain>
 class VisibleEntropyGain {
  public:
+  static constexpr Hears hears = Hears::every_voxel;
   static constexpr bool only_surfaces = false;
   explicit VisibleEntropyGain(const GainSettings& settings, double) : settings_(settings) {}
 
@@ -118,7 +116,6 @@ class VisibleEntropyGain {
     visibility_ = Visibility(settings_.visibility);
     ray_ = 0.0;
   }
-  bool is_content_with_last(bool) const { return false; }
   bool pass_untouched(std::size_t count) {
     ray_ += visibility_.pass_untouched(count) * prior_entropy;
     return go_on();
@@ -155,13 +152,13 @@ class VisibleEntropyGain {
 
 class ProximityCountGain {
  public:
+  static constexpr Hears hears = Hears::only_its_end;
   static constexpr bool only_surfaces = false;
   explicit ProximityCountGain(const GainSettings&, double shadow_ceiling)
       : shadow_ceiling_(shadow_ceiling) {}
 
   void begin_ray() {}
-  bool is_content_with_last(bool has_shadows) const { return !has_shadows; }
-  bool pass_untouched(std::size_t) { return true; }
+  bool may_miss(bool has_shadows) const { return !has_shadows; }
   bool pass(const VoxelState& state) {
     if (state.kind == VoxelKind::shadowed) total_ += shadow_ceiling_ - state.shadow_depth;
     return true;
@@ -176,15 +173,12 @@ class ProximityCountGain {
 
 class AreaFactorGain {
  public:
+  static constexpr Hears hears = Hears::what_it_leaves;
   static constexpr bool only_surfaces = false;
   explicit AreaFactorGain(const GainSettings& settings, double) : share_(settings.area_share) {}
 
   void begin_ray() { is_from_free_ = true; }
-  bool is_content_with_last(bool has_shadows) const { return !has_shadows && !nothing_known_yet_; }
-  bool pass_untouched(std::size_t) {
-    is_from_free_ = nothing_known_yet_;
-    return true;
-  }
+  bool may_miss(bool has_shadows) const { return !has_shadows && !nothing_known_yet_; }
   bool pass(const VoxelState& state) {
     switch (state.kind) {
       case VoxelKind::untouched:
@@ -224,11 +218,11 @@ class AreaFactorGain {
 
 class AverageEntropyGain {
  public:
+  static constexpr Hears hears = Hears::every_voxel;
   static constexpr bool only_surfaces = true;
   explicit AverageEntropyGain(const GainSettings&, double) {}
 
   void begin_ray() { ray_ = ray_voxels_ = 0.0; }
-  bool is_content_with_last(bool) const { return false; }
   bool pass_untouched(std::size_t count) {
     ray_ += static_cast<double>(count) * prior_entropy;
     ray_voxels_ += static_cast<double>(count);
@@ -255,8 +249,8 @@ class AverageEntropyGain {
 /// Whether a ray ends on an occupied voxel: quick to know.
 class OccupiedEnd {
  public:
-  bool is_content_with_last(bool) const { return true; }
-  bool pass_untouched(std::size_t) { return true; }
+  static constexpr Hears hears = Hears::only_its_end;
+  bool may_miss(bool) const { return true; }
   bool pass(const VoxelState&) { return true; }
   void finish(const VoxelState& state) { is_met_ = state.kind == VoxelKind::occupied; }
   bool is_met() const { return is_met_; }

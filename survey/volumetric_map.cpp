@@ -3,18 +3,14 @@
 #include <algorithm>
 #include <bit>
 
+#include "survey/scan_voxels.h"
+
 namespace skycap::survey {
 namespace {
 
 using Eigen::Vector3f;
 
 constexpr int first_hash_bits = 10;
-
-/// The number of a brick on an axis, from its key.
-std::int32_t brick_on_axis(BrickKey key, int axis) {
-  const auto bits = static_cast<std::uint32_t>(key >> 21 * axis) << 11;
-  return static_cast<std::int32_t>(bits) >> 11;  // extends the sign
-}
 
 }  // namespace
 
@@ -27,76 +23,45 @@ VolumetricMap::VolumetricMap(double resolution, double shadow_length, const Occu
 
 void VolumetricMap::insert(const Vector3f& origin, std::span<const Vector3f> returns,
                            std::span<const Vector3f> empty_ends) {
-  for (const Vector3f& point : returns) {
-    mark_passed(origin, point);
-    mark_hit(point);
+  std::vector<Block*> changed;
+  Block* block = nullptr;  // of the last voxel
+  const ScanVoxels voxels(origin, returns, empty_ends, resolution_);
+  voxels.for_each([&](const VoxelIndex& voxel, bool is_hit) {
+    const VoxelIndex index = coarser(voxel, block_shift);
+    if (!block || block->index != index) block = &block_at(index);
+    if (block->changed == 0) changed.push_back(block);
+    const std::uint32_t brick = place_of(coarser(voxel, brick_shift));
+    block->changed |= std::uint64_t{1} << brick;
+    Code& code = block->codes[brick][place_of(voxel)];
+    code = is_hit ? states_.after_hit(code) : states_.after_miss(code);
+  });
+  for (Block* const touched : changed) {
+    for (; touched->changed != 0; touched->changed &= touched->changed - 1) {
+      summarise(*touched, static_cast<std::uint32_t>(std::countr_zero(touched->changed)));
+    }
   }
-  for (const Vector3f& end : empty_ends) mark_passed(origin, end);
-  update_touched();
   for (const Vector3f& point : returns) cast_shadow(origin, point);
 }
 
-void VolumetricMap::mark_passed(const Vector3f& origin, const Vector3f& end) {
-  VoxelWalk walk(origin, end, resolution_);
-  while (!walk.is_over()) {
-    Touched& touched = touch(walk.brick());
-    do {
-      const std::uint32_t place = walk.place();
-      touched.passed[place >> 6] |= std::uint64_t{1} << (place & 63);
-      walk.advance();
-    } while (!walk.is_over() && !walk.left_brick());
-    if (walk.left_brick()) walk.enter_brick();
-  }
-}
-
-void VolumetricMap::mark_hit(const Vector3f& point) {
-  const VoxelIndex voxel = voxel_at(point, 1.0 / resolution_);
-  const std::uint32_t place = place_in_brick(voxel);
-  touch(brick_of(voxel)).hit[place >> 6] |= std::uint64_t{1} << (place & 63);
-}
-
-VolumetricMap::Touched& VolumetricMap::touch(BrickKey key) {
-  Brick& brick = brick_at(key);
-  if (brick.touched == none) {
-    brick.touched = static_cast<std::uint32_t>(touched_.size());
-    touched_.push_back({&brick, key});
-  }
-  return touched_[brick.touched];
-}
-
-void VolumetricMap::update_touched() {
-  for (Touched& touched : touched_) {
-    const auto update = [&](std::size_t word, std::uint64_t bits, auto successor) {
-      for (; bits != 0; bits &= bits - 1) {
-        Code& code = touched.brick->codes[word * 64 + std::countr_zero(bits)];
-        code = (states_.*successor)(code);
-      }
-    };
-    for (std::size_t word = 0; word < touched.hit.size(); ++word) {
-      update(word, touched.passed[word] & ~touched.hit[word], &OccupancyStates::after_miss);
-      update(word, touched.hit[word], &OccupancyStates::after_hit);
-    }
-    summarise(*touched.brick);
-    if (touched.brick->has_surface) widen_surface_box(touched.key);
-    touched.brick->touched = none;
-  }
-  touched_.clear();
-}
-
-void VolumetricMap::summarise(Brick& brick) const {
+void VolumetricMap::summarise(Block& block, std::uint32_t brick) {
   const VoxelState* const states = states_.table();
-  brick.has_surface = brick.has_shadows = false;
-  for (const Code code : brick.codes) {
-    brick.has_surface |= states[code].stops_rays;
-    brick.has_shadows |= states[code].kind == VoxelKind::shadowed;
+  bool has_surface = false, has_shadows = false;
+  for (const Code code : block.codes[brick]) {
+    has_surface |= states[code].stops_rays;
+    has_shadows |= states[code].kind == VoxelKind::shadowed;
   }
-}
-
-void VolumetricMap::widen_surface_box(BrickKey key) {
-  const Eigen::Vector3d brick(brick_on_axis(key, 0), brick_on_axis(key, 1), brick_on_axis(key, 2));
+  const std::uint64_t bit = std::uint64_t{1} << brick;
+  block.known |= bit;
+  block.surfaces = has_surface ? block.surfaces | bit : block.surfaces & ~bit;
+  block.shadows = has_shadows ? block.shadows | bit : block.shadows & ~bit;
+  if (!has_surface) return;
+  constexpr int bits = block_shift - brick_shift;
+  const Eigen::Vector3d corner((block.index[0] << bits) + static_cast<int>(brick & 3),
+                               (block.index[1] << bits) + static_cast<int>(brick >> 2 & 3),
+                               (block.index[2] << bits) + static_cast<int>(brick >> 4));
   const double width = resolution_ * (1 << brick_shift);
-  surface_box_.extend(width * brick);
-  surface_box_.extend(width * (brick + Eigen::Vector3d::Ones()));
+  surface_box_.extend(width * corner);
+  surface_box_.extend(width * (corner + Eigen::Vector3d::Ones()));
 }
 
 void VolumetricMap::cast_shadow(const Vector3f& origin, const Vector3f& point) {
@@ -104,36 +69,41 @@ void VolumetricMap::cast_shadow(const Vector3f& origin, const Vector3f& point) {
   const float length = way.norm();
   if (length == 0.0F) return;
   const Vector3f end = point + way * (static_cast<float>(shadow_length_) / length);
-  VoxelWalk walk(point, end, resolution_);
-  Brick* brick = nullptr;
-  for (Code depth = 0; !walk.is_over(); ++depth) {
-    if (depth > 0) {  // the first voxel is the surface's own
-      if (!brick) brick = &brick_at(walk.brick());
-      Code& code = brick->codes[walk.place()];
+  const VoxelLine line(point, end, resolution_);
+  if (line.is_in_one_voxel()) return;
+  Block* block = nullptr;
+  Code depth = 0;  // the first voxel is the surface's own
+  const auto find_block = [&](const auto& blocks) {
+    block = &block_at(blocks.cell());
+    return false;
+  };
+  for_each_brick(line, find_block, [&](const auto& bricks) {
+    const std::uint32_t brick = place_of(bricks.cell());
+    VoxelWalk walk(line, bricks.entered());
+    for (; !walk.is_over() && !walk.left_brick(); walk.advance(), ++depth) {
+      if (depth == 0) continue;
+      Code& code = block->codes[brick][walk.place()];
       if (code == OccupancyStates::untouched ||
           (!OccupancyStates::is_measured(code) && depth < code)) {
         code = depth;
-        brick->has_shadows = true;
+        block->known |= std::uint64_t{1} << brick;
+        block->shadows |= std::uint64_t{1} << brick;
       }
     }
-    walk.advance();
-    if (walk.left_brick()) {
-      walk.enter_brick();
-      brick = nullptr;
-    }
-  }
+    return !walk.is_over();
+  });
 }
 
-VolumetricMap::Brick& VolumetricMap::brick_at(BrickKey key) {
-  if (Brick* const brick = find(key)) return *brick;
-  if (2 * (bricks_ + 1) > slots_.size()) grow();
-  if (bricks_ % bricks_in_chunk == 0) chunks_.push_back(std::make_unique<Brick[]>(bricks_in_chunk));
-  Brick* const brick = &chunks_.back()[bricks_ % bricks_in_chunk];
-  ++bricks_;
+VolumetricMap::Block& VolumetricMap::block_at(const VoxelIndex& index) {
+  if (Block* const block = find(index)) return *block;
+  if (2 * (blocks_.size() + 1) > slots_.size()) grow();
+  Block& block = blocks_.emplace_back();
+  block.index = index;
+  const std::uint64_t key = key_of(index);
   std::size_t i = slot_of(key);
-  while (slots_[i].brick) i = (i + 1) & (slots_.size() - 1);
-  slots_[i] = {key, brick};
-  return *brick;
+  while (slots_[i].block) i = (i + 1) & (slots_.size() - 1);
+  slots_[i] = {key, &block};
+  return block;
 }
 
 void VolumetricMap::grow() {
@@ -141,17 +111,17 @@ void VolumetricMap::grow() {
   old.swap(slots_);
   --hash_shift_;
   for (const Slot& slot : old) {
-    if (!slot.brick) continue;
+    if (!slot.block) continue;
     std::size_t i = slot_of(slot.key);
-    while (slots_[i].brick) i = (i + 1) & (slots_.size() - 1);
+    while (slots_[i].block) i = (i + 1) & (slots_.size() - 1);
     slots_[i] = slot;
   }
 }
 
-VolumetricMap::Code VolumetricMap::code_at(const Vector3f& point) const {
-  const VoxelIndex voxel = voxel_at(point, 1.0 / resolution_);
-  const Brick* const brick = find(brick_of(voxel));
-  return brick ? brick->codes[place_in_brick(voxel)] : OccupancyStates::untouched;
+VolumetricMap::Code VolumetricMap::code_of(const VoxelIndex& voxel) const {
+  const Block* const block = find(coarser(voxel, block_shift));
+  return block ? block->codes[place_of(coarser(voxel, brick_shift))][place_of(voxel)]
+               : OccupancyStates::untouched;
 }
 
 std::optional<float> VolumetricMap::log_odds_at(const Vector3f& point) const {
@@ -161,8 +131,8 @@ std::optional<float> VolumetricMap::log_odds_at(const Vector3f& point) const {
 }
 
 std::size_t VolumetricMap::memory() const {
-  return chunks_.size() * bricks_in_chunk * sizeof(Brick) + slots_.capacity() * sizeof(Slot) +
-         touched_.capacity() * sizeof(Touched) + states_.size() * (sizeof(VoxelState) + 40);
+  return blocks_.size() * sizeof(Block) + slots_.capacity() * sizeof(Slot) +
+         states_.size() * (sizeof(VoxelState) + 40);
 }
 
 }  // namespace skycap::survey

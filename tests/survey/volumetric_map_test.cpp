@@ -1,7 +1,6 @@
 #include "survey/volumetric_map.h"
 
 #include <algorithm>
-#include <map>
 #include <random>
 #include <set>
 #include <vector>
@@ -10,6 +9,8 @@
 #include <gtest/gtest.h>
 #include <octomap/OcTree.h>
 
+#include "geometry/error.h"
+#include "survey/scan_voxels.h"
 #include "tests/support/clouds.h"
 #include "tests/support/sphere_sensor.h"
 
@@ -89,25 +90,40 @@ TEST_P(AgainstOctoMap, HoldsTheSameVoxelsAfterEveryScan) {
 
 INSTANTIATE_TEST_SUITE_P(Resolutions, AgainstOctoMap, testing::Values(0.05, 0.034));
 
-/// The voxels that a walk passes.
+/// The voxels that a walk over bricks and their voxels passes.
 std::vector<VoxelIndex> passed(const Vector3f& origin, const Vector3f& end, double resolution) {
-  std::map<std::pair<BrickKey, std::uint32_t>, VoxelIndex> voxel_of;
-  const VoxelIndex first = voxel_at(origin, 1.0 / resolution);
-  const VoxelIndex last = voxel_at(end, 1.0 / resolution);
-  for (int x = std::min(first[0], last[0]) - 1; x <= std::max(first[0], last[0]) + 1; ++x) {
-    for (int y = std::min(first[1], last[1]) - 1; y <= std::max(first[1], last[1]) + 1; ++y) {
-      for (int z = std::min(first[2], last[2]) - 1; z <= std::max(first[2], last[2]) + 1; ++z) {
-        voxel_of[{brick_of({x, y, z}), place_in_brick({x, y, z})}] = {x, y, z};
-      }
-    }
-  }
   std::vector<VoxelIndex> voxels;
-  for (VoxelWalk walk(origin, end, resolution); !walk.is_over();) {
-    voxels.push_back(voxel_of.at({walk.brick(), walk.place()}));
-    walk.advance();
-    if (walk.left_brick()) walk.enter_brick();
-  }
+  const VoxelLine line(origin, end, resolution);
+  if (line.is_in_one_voxel()) return voxels;
+  for_each_brick(
+      line, [](const auto&) { return false; },
+      [&](const auto& bricks) {
+        VoxelWalk walk(line, bricks.entered());
+        for (; !walk.is_over() && !walk.left_brick(); walk.advance()) {
+          const auto place = static_cast<std::int32_t>(walk.place());
+          const VoxelIndex& brick = bricks.cell();
+          voxels.push_back(
+              {4 * brick[0] + place % 4, 4 * brick[1] + place / 4 % 4, 4 * brick[2] + place / 16});
+        }
+        return !walk.is_over();
+      });
   return voxels;
+}
+
+/// Segments in all directions, along an axis, in a plane, and through edges and corners of voxels.
+std::vector<std::pair<Vector3f, Vector3f>> segments() {
+  const auto points = tests::random_points(300, 2.6, 5);
+  std::vector<std::pair<Vector3f, Vector3f>> segments{
+      {{0.05F, 0.05F, 0.05F}, {1.25F, 1.25F, 1.25F}},
+      {{1.25F, 1.25F, 1.25F}, {-1.0F, -1.0F, -1.0F}},
+      {{-1.0F, 0.3F, 0.2F}, {1.0F, 0.3F, -0.9F}},
+      {{0.1F, 0.1F, 0.1F}, {1.1F, -0.9F, 0.1F}},
+      {{0.05F, 0.05F, 1.05F}, {0.05F, 0.05F, -1.45F}},
+      {{0.01F, 0.02F, 0.03F}, {0.02F, 0.01F, 0.3F}}};
+  for (std::size_t i = 0; i + 1 < points.size(); i += 2) {
+    segments.emplace_back(points[i], points[i + 1]);
+  }
+  return segments;
 }
 
 // Brute force: every passed voxel meets the segment, and neighbours share a face.
@@ -137,40 +153,56 @@ TEST(VoxelWalk, PassesFaceToFaceThroughVoxelsThatTheSegmentMeets) {
   }
 }
 
-// Twin: one walk step by step, the other by bricks where that is possible.
-TEST(VoxelWalk, SkipsBricksAlongTheSameVoxels) {
-  std::size_t skips = 0;
+// Twin: the one walks from voxel to voxel over the whole segment, the other begins anew in every
+// brick.
+TEST(VoxelWalk, PassesTheSameVoxelsAsAScan) {
   for (const double resolution : {0.1, 0.017}) {
-    auto points = tests::random_points(200, 1.3, 5);
-    points.insert(points.end(), {{0.05F, 0.05F, 0.05F}, {1.25F, 1.25F, 1.25F}});  // all ties
-    points.insert(points.end(), {{-1.0F, 0.3F, 0.2F}, {1.0F, 0.3F, -0.9F}});      // in a plane
-    for (std::size_t i = 0; i + 1 < points.size(); i += 2) {
-      VoxelWalk walk(points[i], points[i + 1], resolution);
-      VoxelWalk twin = walk;
-      while (!walk.is_over()) {
-        const VoxelWalk::Skipped skipped = walk.skip_brick();
-        if (skipped.voxels == 0) break;
-        ++skips;
-        for (std::size_t step = 0; step < skipped.voxels; ++step) {
-          ASSERT_FALSE(twin.is_over() || twin.left_brick());
-          if (step + 1 == skipped.voxels) {
-            EXPECT_EQ(twin.place(), skipped.last_place);
-          }
-          twin.advance();
-        }
-        ASSERT_TRUE(twin.left_brick());
-        twin.enter_brick();
-        ASSERT_EQ(twin.brick(), walk.brick());
-        ASSERT_EQ(twin.place(), walk.place());
-        ASSERT_EQ(twin.is_over(), walk.is_over());
-      }
+    for (const auto& [origin, end] : segments()) {
+      const auto voxels = passed(origin, end, resolution);
+      std::set<VoxelIndex> of_scan;
+      ScanVoxels({origin}, {}, std::vector{end}, resolution)
+          .for_each([&](const VoxelIndex& voxel, bool is_hit) {
+            EXPECT_FALSE(is_hit);
+            of_scan.insert(voxel);
+          });
+      EXPECT_EQ(std::set(voxels.begin(), voxels.end()), of_scan);
+      EXPECT_EQ(of_scan.size(), voxels.size());
     }
   }
-  EXPECT_GT(skips, 1000U);
+}
+
+TEST(VoxelWalk, KnowsWhatLiesBehindABrickWithoutLookingIntoIt) {
+  std::size_t skipped = 0;
+  for (const auto& [origin, end] : segments()) {
+    const double resolution = 0.03;
+    const auto voxels = passed(origin, end, resolution);
+    const VoxelLine line(origin, end, resolution);
+    for (CellWalk<brick_shift> bricks(line); bricks.may_be_skipped(); bricks.cross()) {
+      const auto before = static_cast<std::size_t>(line.voxels_before(bricks.leaving()));
+      ASSERT_LT(before, voxels.size());
+      EXPECT_EQ(coarser(voxels[before - 1], brick_shift), bricks.cell());
+      EXPECT_NE(coarser(voxels[before], brick_shift), bricks.cell());
+      EXPECT_EQ(line.voxel_before(bricks.leaving()), voxels[before - 1]);
+      ++skipped;
+    }
+    std::size_t in_blocks = 0;
+    for (CellWalk<block_shift> blocks(line); blocks.may_be_skipped(); blocks.cross()) {
+      const auto before = static_cast<std::size_t>(line.voxels_before(blocks.leaving()));
+      EXPECT_EQ(coarser(voxels[before - 1], block_shift), blocks.cell());
+      EXPECT_EQ(coarser(voxels[in_blocks], block_shift), blocks.cell());
+      in_blocks = before;
+    }
+  }
+  EXPECT_GT(skipped, 1000U);
 }
 
 TEST(VoxelWalk, WithinOneVoxelPassesNothing) {
-  EXPECT_TRUE(VoxelWalk({0.01F, 0.02F, 0.03F}, {0.09F, 0.01F, 0.05F}, 0.1).is_over());
+  EXPECT_TRUE(VoxelLine({0.01F, 0.02F, 0.03F}, {0.09F, 0.01F, 0.05F}, 0.1).is_in_one_voxel());
+}
+
+TEST(ScanVoxels, RefusesMoreVoxelsThanMemoryHolds) {
+  const std::vector<Vector3f> far_away{{9e3F, 9e3F, 9e3F}};
+  EXPECT_THROW(ScanVoxels({0.0F, 0.0F, 0.0F}, far_away, {}, 0.01), Error);
 }
 
 TEST(VoxelWalk, AlongAnAxisPassesOneRowInBothSenses) {
