@@ -243,7 +243,7 @@ TEST(ClosedForm, ALineScannersSpacingAndDensity) {
 /// Four units in the last place of a single-precision number of that size.
 double four_ulp(double size) {
   const auto single = static_cast<float>(size);
-  return 4.0 * (static_cast<double>(std::nextafter(single, 2.0F * single)) - size);
+  return 4.0 * static_cast<double>(std::nextafter(single, 2.0F * single) - single);
 }
 
 DepthCamera exact_camera() {
