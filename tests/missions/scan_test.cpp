@@ -227,19 +227,22 @@ TEST_F(ScanVerb, LasFilesAreOnTheMapOnDemand) {
   const ProgramRun judged = run_skycap({"evaluate", "--cloud", folder / "out/scan.las", "--model",
                                         folder / "cube.obj", "--distance", "0.1"});
   EXPECT_EQ(judged.exit_code, 2);
-  EXPECT_THAT(judged.err, HasSubstr("scan.las: point 0 is 5734"));
+  EXPECT_THAT(judged.err, HasSubstr("scan.las: point 0 is 573"));
   EXPECT_THAT(judged.err, HasSubstr("coordinates must be local"));
 }
 
 // A second cube, 6 m to the east and turned, is scanned and is part of what is evaluated.
 TEST_F(ScanVerb, AModelCanStandAtSeveralPlaces) {
-  const std::vector<std::string> copies = {"--set", "scene.copies=[[6, 1, 45]]"};
-  std::vector<std::string> options = {"--format", "xyz,las", "--set", "scan.orbit.radius=12"};
-  options.insert(options.end(), copies.begin(), copies.end());
-  const ProgramRun run = scan(options);
+  const std::string both = folder.write("both.yaml",
+                                        "scene: {model: cube.obj, copies: [[6, 1, 45]]}\n"
+                                        "scan:\n"
+                                        "  sensor: laser.yaml\n"
+                                        "  orbit: {radius: 12, lowest: 1, circles: 1, speed: 100}\n"
+                                        "evaluation: {registration_distance: 0.1}\n");
+  const auto run = run_skycap({"scan", both, "--out", folder / "both", "--format", "xyz"});
   ASSERT_EQ(run.exit_code, 0) << run.err;
   std::size_t first = 0, second = 0;
-  for (const Vector3f& point : geometry::read_cloud(folder / "out/scan.xyz").positions) {
+  for (const Vector3f& point : geometry::read_cloud(folder / "both/scan.xyz").positions) {
     const Vector3f own = point - Vector3f(0, 0, 1);
     const Vector3f other =
         Eigen::AngleAxisf(-0.785398163F, Vector3f::UnitZ()) * (point - Vector3f(6, 1, 1));
@@ -250,18 +253,19 @@ TEST_F(ScanVerb, AModelCanStandAtSeveralPlaces) {
   }
   EXPECT_GT(first, 500U);
   EXPECT_GT(second, 500U);
-  // Half of the surface is the other cube's.
-  const auto coverage = [&](const std::vector<std::string>& more) {
-    std::vector<std::string> arguments = {"evaluate", "--cloud", folder / "out/scan.las",
-                                          "--model",  mission,   "--json"};
-    arguments.insert(arguments.end(), more.begin(), more.end());
-    const ProgramRun judged = run_skycap(arguments);
+
+  // What covers a share of one cube covers half of that of two.
+  ASSERT_EQ(scan({"--format", "las"}).exit_code, 0);
+  const auto coverage = [&](const std::string& of) {
+    const ProgramRun judged =
+        run_skycap({"evaluate", "--cloud", folder / "out/scan.las", "--model", of, "--json"});
     EXPECT_EQ(judged.exit_code, 0) << judged.err;
     return nlohmann::json::parse(judged.out)["coverage"].get<double>();
   };
-  EXPECT_GT(coverage({}), 0.5);
-  const auto model = run_skycap(
-      {"model", mission, "--out", folder / "all.ply", "--set", "scene.copies=[[6, 1, 45]]"});
+  EXPECT_GT(coverage(mission), 0.2);
+  EXPECT_NEAR(coverage(both), 0.5 * coverage(mission), 0.01);  // of 100,000 samples
+
+  const auto model = run_skycap({"model", both, "--out", folder / "all.ply"});
   ASSERT_EQ(model.exit_code, 0) << model.err;
   const geometry::Mesh mesh = geometry::read_mesh(folder / "all.ply");
   EXPECT_EQ(mesh.triangles.size(), 24U);
