@@ -71,7 +71,7 @@ struct ScanVerbOptions {
   std::optional<std::string> sensor;           ///< in place of the mission's
   /// Of a laser scanner's points; of a camera's images only "rawlog" counts, beside the PNG files.
   std::vector<std::string> formats = {"las"};
-  bool with_truth = false;                     ///< also where the surfaces really were
+  bool with_truth = false;  ///< also where the surfaces really were
   std::vector<KeyOverride> overrides;
   bool is_quiet = false;
 };
