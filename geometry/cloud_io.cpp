@@ -4,9 +4,11 @@
 #include <cassert>
 #include <cmath>
 #include <limits>
+#include <map>
 #include <string>
 #include <string_view>
 
+#include "geometry/cloud_formats.h"
 #include "geometry/error.h"
 #include "geometry/file.h"
 #include "geometry/ply.h"
@@ -19,25 +21,6 @@ namespace fs = std::filesystem;
 
 // Beyond this, neighbouring single-precision numbers are 2 mm apart.
 constexpr double farthest_coordinate = 16384.0;
-
-[[noreturn]] void fail(const fs::path& path, const std::string& what) {
-  throw Error(ErrorKind::bad_file, path.string() + ": " + what);
-}
-
-Eigen::Vector3f checked_position(const fs::path& path, std::size_t point, double x, double y,
-                                 double z) {
-  const Eigen::Vector3d position(x, y, z);
-  if (!position.allFinite()) {
-    fail(path, "point " + std::to_string(point) + " has a coordinate that is not a finite number");
-  }
-  if (position.cwiseAbs().maxCoeff() > farthest_coordinate) {
-    fail(path, "point " + std::to_string(point) + " is " +
-                   std::to_string(position.cwiseAbs().maxCoeff()) +
-                   " m from the origin; coordinates must be local, within 16384 m: subtract an "
-                   "offset");
-  }
-  return position.cast<float>();
-}
 
 CloudFile parse_ply_cloud(const fs::path& path, std::string_view bytes) {
   constexpr std::array<std::string_view, 10> names{"x",  "y",    "z",   "nx",    "ny",
@@ -54,21 +37,22 @@ CloudFile parse_ply_cloud(const fs::path& path, std::string_view bytes) {
       }
       return true;
     };
-    if (!has(0, 2)) fail(path, "the element 'vertex' must have the properties x, y and z");
+    if (!has(0, 2)) fail_cloud(path, "the element 'vertex' must have the properties x, y and z");
     const bool has_normals = has(3, 5), has_views = has(6, 6), has_colours = has(7, 9);
     const auto integer = [&](std::size_t column, std::size_t row, double largest) {
       const double value = columns[column][row];
       if (!(value >= 0.0 && value <= largest && value == std::floor(value))) {
-        fail(path, "point " + std::to_string(row) + " has the " + std::string(names[column]) + " " +
-                       std::to_string(value) + "; it must be a whole number from 0 to " +
-                       std::to_string(static_cast<std::uint64_t>(largest)));
+        fail_cloud(path, "point " + std::to_string(row) + " has the " + std::string(names[column]) +
+                             " " + std::to_string(value) +
+                             "; it must be a whole number from 0 to " +
+                             std::to_string(static_cast<std::uint64_t>(largest)));
       }
       return value;
     };
     CloudFile cloud;
     for (std::size_t i = 0; i < element.count; ++i) {
       cloud.positions.push_back(
-          checked_position(path, i, columns[0][i], columns[1][i], columns[2][i]));
+          cloud_position(path, i, columns[0][i], columns[1][i], columns[2][i]));
       if (has_normals) {
         cloud.normals.push_back(
             Eigen::Vector3d(columns[3][i], columns[4][i], columns[5][i]).cast<float>());
@@ -85,7 +69,7 @@ CloudFile parse_ply_cloud(const fs::path& path, std::string_view bytes) {
     }
     return cloud;
   }
-  fail(path, "there is no element 'vertex'; a cloud must have one");
+  fail_cloud(path, "there is no element 'vertex'; a cloud must have one");
 }
 
 CloudFile parse_xyz_cloud(const fs::path& path, std::string_view text) {
@@ -100,7 +84,7 @@ CloudFile parse_xyz_cloud(const fs::path& path, std::string_view text) {
     position[1] = scanner.number<double>(scanner.word_in_line(), "a coordinate");
     position[2] = scanner.number<double>(scanner.word_in_line(), "a coordinate");
     cloud.positions.push_back(
-        checked_position(path, cloud.positions.size(), position[0], position[1], position[2]));
+        cloud_position(path, cloud.positions.size(), position[0], position[1], position[2]));
   } while (scanner.next_line());
   return cloud;
 }
@@ -113,17 +97,42 @@ void append_bytes(std::string& bytes, const Value& value) {
 
 }  // namespace
 
+void fail_cloud(const fs::path& path, const std::string& what) {
+  throw Error(ErrorKind::bad_file, path.string() + ": " + what);
+}
+
+Eigen::Vector3f cloud_position(const fs::path& path, std::size_t point, double x, double y,
+                               double z) {
+  const Eigen::Vector3d position(x, y, z);
+  if (!position.allFinite()) {
+    fail_cloud(path,
+               "point " + std::to_string(point) + " has a coordinate that is not a finite number");
+  }
+  if (position.cwiseAbs().maxCoeff() > farthest_coordinate) {
+    fail_cloud(path, "point " + std::to_string(point) + " is " +
+                         std::to_string(position.cwiseAbs().maxCoeff()) +
+                         " m from the origin; coordinates must be local, within 16384 m: subtract "
+                         "an offset");
+  }
+  return position.cast<float>();
+}
+
 CloudFile read_cloud(const fs::path& path) {
   fs::path inner = path;
   if (inner.extension() == ".gz") inner = inner.stem();
-  const std::string format = inner.extension().string();
-  const bool is_text = format == ".xyz" || format == ".txt" || format == ".asc";
-  if (!is_text && format != ".ply") {
-    fail(path, "a cloud file must end in .ply, .xyz, .txt or .asc (or with .gz after it)");
+  const std::string ending = inner.extension().string();
+  using Parse = CloudFile (*)(const fs::path&, std::string_view);
+  const std::map<std::string, Parse> formats = {
+      {".ply", parse_ply_cloud}, {".pcd", parse_pcd_cloud}, {".las", parse_las_cloud},
+      {".xyz", parse_xyz_cloud}, {".txt", parse_xyz_cloud}, {".asc", parse_xyz_cloud}};
+  const auto format = formats.find(ending);
+  if (format == formats.end()) {
+    fail_cloud(path,
+               "a cloud file must end in .ply, .pcd, .las, .xyz, .txt or .asc (or with .gz after "
+               "it)");
   }
-  const std::string bytes = read_file(path);
-  CloudFile cloud = is_text ? parse_xyz_cloud(path, bytes) : parse_ply_cloud(path, bytes);
-  if (cloud.positions.empty()) fail(path, "holds no points");
+  const CloudFile cloud = format->second(path, read_file(path));
+  if (cloud.positions.empty()) fail_cloud(path, "holds no points");
   return cloud;
 }
 

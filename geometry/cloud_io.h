@@ -1,5 +1,5 @@
-/// Point clouds from and to files: PLY (any properties in any order, ascii and binary) and XYZ
-/// text.
+/// Point clouds from and to files: PLY (any properties in any order, ascii and binary), PCD,
+/// LAS 1.4 and XYZ text.
 #pragma once
 
 #include <array>
@@ -20,8 +20,10 @@ struct CloudFile {
   std::vector<std::array<std::uint8_t, 3>> colours;  ///< red green blue
 };
 
-/// Reads .ply, or .xyz, .txt, .asc: lines of x y z (further columns are passed over, '#' begins a
-/// comment); also gzip-compressed. Other properties and elements are passed over. Throws
+/// Reads .ply; .pcd (text, binary or compressed; points of NaN are passed over); .las (version 1.4,
+/// points of format 6 or 7, not compressed); or .xyz, .txt, .asc: lines of x y z (further columns
+/// are passed over, '#' begins a comment); also gzip-compressed. Other properties and elements are
+/// passed over. Throws
 /// Error{bad_file} in one line, also for coordinates that are not finite, and for such so far from
 /// the origin that single precision would move them by a millimetre.
 CloudFile read_cloud(const std::filesystem::path& path);

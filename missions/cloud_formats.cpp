@@ -120,17 +120,24 @@ class XyzFormat final : public CloudFormat {
   }
 };
 
-std::shared_ptr<const CloudFormat> las_near(const Eigen::Vector3d& centre, int point_format) {
+std::shared_ptr<const CloudFormat> las_of(const CloudFormatContext& context, int point_format) {
+  LasConfig config = {.point_format = point_format};
+  Eigen::Vector3d centre = context.scene_centre;
+  if (context.projection != nullptr) {
+    config.projection = context.projection;
+    config.crs_wkt = context.projection->wkt();
+    centre = context.projection->to_map(centre);
+  }
   // Whole kilometres: a local scene keeps the offset zero.
-  const Eigen::Vector3d offset = 1000.0 * (centre / 1000.0).array().round().matrix();
-  return las_format({.point_format = point_format, .offset = offset});
+  config.offset = 1000.0 * (centre / 1000.0).array().round().matrix();
+  return las_format(config);
 }
 
 const std::array<CloudFormatInfo, 6>& formats() {
   using Context = CloudFormatContext;
   static const std::array<CloudFormatInfo, 6> all = {{
-      {"las", ".las", [](const Context& context) { return las_near(context.scene_centre, 6); }},
-      {"las7", ".las", [](const Context& context) { return las_near(context.scene_centre, 7); }},
+      {"las", ".las", [](const Context& context) { return las_of(context, 6); }},
+      {"las7", ".las", [](const Context& context) { return las_of(context, 7); }},
       {"ply", ".ply", [](const Context&) { return ply_format(); }},
       {"pcd", ".pcd", [](const Context&) { return pcd_format(); }},
       {"xyz", ".xyz", [](const Context&) { return xyz_format(); }},

@@ -6,6 +6,7 @@
 
 #include <Eigen/Core>
 
+#include "flight/export/utm.h"
 #include "missions/cloud_file.h"
 #include "sim/lidar.h"
 
@@ -28,6 +29,8 @@ struct CloudFormatContext {
   const sim::LidarConfig& sensor;
   const sim::LidarFlight& flight;
   Eigen::Vector3d scene_centre;
+  /// Where LAS files have their points; none: in the mission's frame, as all others do.
+  std::shared_ptr<const flight::UtmProjection> projection;
 };
 
 /// A rawlog of MRPT, for every piece of the scan: CObservationRobotPose "CARRIER" (of the believed

@@ -181,7 +181,7 @@ void add_evaluate(CLI::App& app, const Console& console, Action& action) {
       "evaluate", "Coverage, accuracy and density of a cloud or mesh against a model");
   const auto options = std::make_shared<EvaluateOptions>();
   CLI::App* what = verb->add_option_group("what is judged");
-  what->add_option("--cloud", options->cloud, "Point cloud (PLY)");
+  what->add_option("--cloud", options->cloud, "Point cloud: .ply, .pcd, .las or .xyz");
   what->add_option("--mesh", options->mesh,
                    "Mesh, in place of a cloud: of skycap reconstruct, say");
   what->require_option(1);
@@ -201,7 +201,8 @@ void add_evaluate(CLI::App& app, const Console& console, Action& action) {
 void add_reconstruct(CLI::App& app, const Console& console, Action& action) {
   CLI::App* verb = app.add_subcommand("reconstruct", "Make a surface mesh of a point cloud");
   const auto options = std::make_shared<ReconstructOptions>();
-  verb->add_option("cloud", options->cloud, "Point cloud (PLY, xyz), with normals or without")
+  verb->add_option("cloud", options->cloud,
+                   "Point cloud (.ply, .pcd, .las, .xyz), with normals or without")
       ->required();
   verb->add_option("--out", options->out, "PLY, OBJ, STL or OFF; default CLOUD_mesh.ply");
   verb->add_option("--spacing", options->spacing, "Thin the cloud to one point a cube [m]")

@@ -24,6 +24,7 @@ struct Frame {
 
 struct FrameOptions {
   double depth_unit = 0.001;  ///< what one step of the images stands for [m]
+  bool has_rawlog = false;    ///< whether frames.rawlog is written too
   unsigned threads = 0;
   std::function<void(std::size_t frames, std::size_t points)> report;  ///< after each; may be empty
   std::stop_token stop;
@@ -35,7 +36,10 @@ struct FrameResult {
 };
 
 /// Stages in `folder`, whose caller commits: the images, depth.txt (`time file` of each),
-/// groundtruth.txt and believed.txt (TUM poses of the camera), camera.json (intrinsics, unit).
+/// groundtruth.txt and believed.txt (TUM poses of the camera), camera.json (intrinsics, unit), and
+/// on demand frames.rawlog: for each image a CObservationRobotPose "CARRIER", where the camera is
+/// believed to be, with x forward, and a CObservation3DRangeScan "DEPTH". Throws Error{bad_file} if
+/// a file cannot be written or MRPT is not there.
 FrameResult record_frames(const sim::Scene& scene, const sim::DepthCamera& camera,
                           std::span<const Frame> frames, OutputFolder& folder,
                           const FrameOptions& options);

@@ -32,9 +32,32 @@ class LasFormat final : public CloudFormat {
               CloudChunk& chunk) const override;
 
  private:
+  /// `units` gives a point's coordinates in multiples of the scale from the offset.
+  template <typename Units>
+  void encode_points(const sim::LidarReturns& returns, const std::vector<Eigen::Vector3f>& points,
+                     const Units& units, CloudChunk& chunk) const;
+
   LasConfig config_;
   std::uint16_t point_size_;
 };
+
+/// Smallest and largest coordinates of some points, of which there is at least one.
+Eigen::AlignedBox3f box_of(const std::vector<Eigen::Vector3f>& points) {
+  using FourPoints = Eigen::Array<float, 12, 1>;  // whole registers
+  FourPoints lowest = points[0].replicate<4, 1>(), highest = lowest;
+  const std::size_t whole = points.size() / 4 * 4;
+  for (std::size_t i = 0; i < whole; i += 4) {
+    const FourPoints some = Eigen::Map<const FourPoints>(points[i].data());
+    lowest = lowest.min(some);
+    highest = highest.max(some);
+  }
+  Eigen::AlignedBox3f box;
+  for (int i = 0; i < 4; ++i) {
+    box.extend(lowest.segment<3>(3 * i).matrix()).extend(highest.segment<3>(3 * i).matrix());
+  }
+  for (std::size_t i = whole; i < points.size(); ++i) box.extend(points[i]);
+  return box;
+}
 
 void LasFormat::encode(const sim::LidarReturns& returns, ReturnPosition position,
                        CloudChunk& chunk) const {
@@ -43,41 +66,60 @@ void LasFormat::encode(const sim::LidarReturns& returns, ReturnPosition position
   chunk.bytes.resize(returns.size() * point_size_);
   if (returns.size() == 0) return;
   const auto& points = position == ReturnPosition::reported ? returns.points : returns.true_points;
-  const Eigen::Array3d shift = returns.origin - config_.offset;
+  const Eigen::Vector3d shift = returns.origin - config_.offset;
   const double per_unit = 1.0 / config_.scale;
-  Eigen::Array3d lowest = Eigen::Array3d::Constant(std::numeric_limits<double>::infinity());
-  Eigen::Array3d highest = -lowest;
-  std::uint8_t* out = chunk.bytes.data();
-  for (std::size_t i = 0; i < returns.size(); ++i, out += point_size_) {
-    const Eigen::Array3d units = (points[i].cast<double>().array() + shift) * per_unit;
-    lowest = lowest.min(units);
-    highest = highest.max(units);
-    for (int axis = 0; axis < 3; ++axis) store(out + 4UL * axis, nearest(units[axis]));
-    const double brightness = 65535.0 * std::clamp(returns.intensities[i], 0.0F, 1.0F);
-    const auto intensity = static_cast<std::uint16_t>(nearest(brightness));
-    store(out + 12, intensity);
-    out[14] =
-        static_cast<std::uint8_t>(returns.return_numbers[i] | (returns.returns_of_shots[i] << 4));
-    out[15] = 0;  // no flags
-    out[16] = 0;  // never classified
-    out[17] = static_cast<std::uint8_t>(returns.channels[i] & 0xFFU);
-    const double angle = static_cast<double>(returns.scan_angles[i]) / scan_angle_unit;
-    store(out + 18, static_cast<std::int16_t>(nearest(angle)));
-    store(out + 20, std::uint16_t{1});  // the first and only flight line
-    store(out + 22, returns.times[i]);
-    ++chunk.totals.points_by_return[returns.return_numbers[i] - 1];
-    if (point_size_ == 30) continue;
-    for (int colour = 0; colour < 3; ++colour) store(out + 30 + 2UL * colour, intensity);
+  Eigen::AlignedBox3d box;  // in units
+  if (config_.projection == nullptr) {
+    const auto units = [&](const Eigen::Vector3f& point) -> Eigen::Vector3d {
+      return (point.cast<double>() + shift) * per_unit;
+    };
+    encode_points(returns, points, units, chunk);
+    const Eigen::AlignedBox3f relative = box_of(points);
+    box = {units(relative.min()), units(relative.max())};
+  } else {
+    const auto units = [&](const Eigen::Vector3f& point) -> Eigen::Vector3d {
+      const Eigen::Vector3d local = returns.origin + point.cast<double>();
+      const Eigen::Vector3d place = (config_.projection->to_map(local) - config_.offset) * per_unit;
+      box.extend(place);
+      return place;
+    };
+    encode_points(returns, points, units, chunk);
   }
   constexpr double most = std::numeric_limits<std::int32_t>::max();
-  if (!(lowest >= -most).all() || !(highest <= most).all()) {
+  if (!(box.min().array() >= -most).all() || !(box.max().array() <= most).all()) {
     throw Error(ErrorKind::bad_geometry,
                 "a point is farther than " + std::to_string(most * config_.scale) +
                     " m from the LAS file's offset; choose an offset near the scene");
   }
-  for (const Eigen::Array3d& corner : {lowest, highest}) {
-    const Eigen::Array3d units(nearest(corner.x()), nearest(corner.y()), nearest(corner.z()));
-    chunk.totals.bounds.extend((units * config_.scale).matrix() + config_.offset);
+  for (const Eigen::Vector3d& corner : {box.min(), box.max()}) {
+    const Eigen::Vector3d whole(nearest(corner.x()), nearest(corner.y()), nearest(corner.z()));
+    chunk.totals.bounds.extend(whole * config_.scale + config_.offset);
+  }
+}
+
+template <typename Units>
+void LasFormat::encode_points(const sim::LidarReturns& returns,
+                              const std::vector<Eigen::Vector3f>& points, const Units& units,
+                              CloudChunk& chunk) const {
+  std::uint8_t* out = chunk.bytes.data();
+  for (std::size_t i = 0; i < returns.size(); ++i, out += point_size_) {
+    const Eigen::Vector3d place = units(points[i]);
+    for (int axis = 0; axis < 3; ++axis) store(out + 4UL * axis, nearest(place[axis]));
+    const double brightness = 65535.0 * std::clamp(returns.intensities[i], 0.0F, 1.0F);
+    const auto intensity = static_cast<std::uint16_t>(nearest(brightness));
+    store(out + 12, intensity);
+    const std::uint8_t number = returns.return_numbers[i];
+    out[14] = static_cast<std::uint8_t>(number | (returns.returns_of_shots[i] << 4));
+    out[15] = 0;  // no flags
+    out[16] = 0;  // never classified
+    out[17] = static_cast<std::uint8_t>(returns.channels[i] & 0xFFU);
+    const double angle = static_cast<double>(returns.scan_angles[i]) * (1.0 / scan_angle_unit);
+    store(out + 18, static_cast<std::int16_t>(nearest(angle)));
+    store(out + 20, std::uint16_t{1});  // the first and only flight line
+    store(out + 22, returns.times[i]);
+    ++chunk.totals.points_by_return[number - 1];
+    if (point_size_ == 30) continue;
+    for (int colour = 0; colour < 3; ++colour) store(out + 30 + 2UL * colour, intensity);
   }
 }
 

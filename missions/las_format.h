@@ -6,6 +6,7 @@
 
 #include <Eigen/Core>
 
+#include "flight/export/utm.h"
 #include "missions/cloud_file.h"
 
 namespace skycap::missions {
@@ -13,7 +14,9 @@ namespace skycap::missions {
 struct LasConfig {
   int point_format = 6;                              ///< 7 has a colour too: the intensity as grey
   double scale = 1e-4;                               ///< coordinates are multiples of it [m]
-  Eigen::Vector3d offset = Eigen::Vector3d::Zero();  ///< near the cloud: coordinates are 32 bits
+  Eigen::Vector3d offset = Eigen::Vector3d::Zero();  ///< near the points as written: 32 bits each
+  /// Puts points of the mission's frame on the map; without it they stay local.
+  std::shared_ptr<const flight::UtmProjection> projection;
   /// The coordinate reference system as OGC WKT; local east-north-up by default.
   std::string crs_wkt =
       "LOCAL_CS[\"local east-north-up\",LOCAL_DATUM[\"mission origin\",0],UNIT[\"metre\",1],"

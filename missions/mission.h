@@ -37,6 +37,8 @@ struct SceneConfig {
   std::optional<double> longest_side;                  ///< of the bounding box, after rotation
   std::optional<double> scale;                         ///< factor; only one of the two is given
   Eigen::Vector3d position = Eigen::Vector3d::Zero();
+  /// The model again: x and y from its position [m], and a turn about its own upright [rad].
+  std::vector<Eigen::Vector3d> copies;
   bool ground = false;       ///< whether the sensor also sees a plane under the model
   double reflectance = 0.4;  ///< diffuse, at the laser's wavelength, where no other is given
   std::optional<std::string> materials;  ///< a file of reflectances, by the names of the model's
@@ -156,12 +158,19 @@ struct OrbitConfig {
   double start = 0.0;     ///< where circles begin: from east, anticlockwise [rad]
 };
 
+/// In which coordinates a scan's LAS files are.
+enum class ScanCrs {
+  local,  ///< the mission's frame
+  utm,    ///< UTM on WGS84, in the zone of the frame's origin
+};
+
 /// What `skycap scan` records, and how well its carrier knows where it is. Body frame: x forward,
 /// y left, z up.
 struct ScanConfig {
   std::string sensor = "ouster_os1_128";  ///< a preset, or the path of a description
   std::optional<std::string> route;       ///< a file; in place of the orbit
   OrbitConfig orbit;
+  ScanCrs crs = ScanCrs::local;                               ///< utm needs the mission's place
   double speed = 5.0;                                         ///< along routes without times [m/s]
   Eigen::Vector3d mount_position = Eigen::Vector3d::Zero();   ///< of the sensor, body frame
   Eigen::Vector3d mount_rotation = Eigen::Vector3d::Zero();   ///< [rad], about x, then y, then z

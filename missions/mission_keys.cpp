@@ -23,6 +23,26 @@ std::vector<Key> general_keys() {
   };
 }
 
+Key copies_key() {
+  Key key = key_for(
+      "scene.copies", KeyType::vectors, [](Mission & m) -> auto& { return m.scene.copies; },
+      "The same model at more places, each [east, north, heading_deg]: metres from position, and "
+      "a turn anticlockwise about its own upright.");
+  key.range = between(-1e6, 1e6);
+  const auto turned = [](const KeyValue& value, double factor) {
+    auto copies = std::get<std::vector<Eigen::Vector3d>>(value);
+    for (Eigen::Vector3d& copy : copies) copy.z() *= factor;
+    return copies;
+  };
+  key.set = [set = key.set, turned](Mission& mission, const KeyValue& value) {
+    set(mission, turned(value, radians_per_degree));
+  };
+  key.get = [get = key.get, turned](const Mission& mission) -> std::optional<KeyValue> {
+    return turned(*get(mission), 1.0 / radians_per_degree);
+  };
+  return key;
+}
+
 std::vector<Key> scene_keys() {
   return {
       required(text(
@@ -54,6 +74,7 @@ std::vector<Key> scene_keys() {
           "scene.position", "m", between(-1e6, 1e6),
           [](Mission & m) -> auto& { return m.scene.position; },
           "Where the middle of the base of the model's bounding box is put."),
+      copies_key(),
       boolean(
           "scene.ground", [](Mission & m) -> auto& { return m.scene.ground; },
           "Whether the sensor also sees a ground plane under the model. It is not part of the "

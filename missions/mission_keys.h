@@ -27,6 +27,7 @@ enum class KeyType {
   vector,
   polygon,  ///< corners [x, y], three or more
   volumes,  ///< a list of {corners, bottom, top}
+  vectors,  ///< a list of lists of three numbers
 };
 
 /// Which numbers a key takes; for a vector, each of its three.
@@ -38,7 +39,8 @@ struct KeyRange {
 
 /// A value as the file says it, in the file's unit. Text and choices are both text.
 using KeyValue = std::variant<bool, std::int64_t, double, std::string, Eigen::Vector3d,
-                              std::vector<Eigen::Vector2d>, std::vector<survey::Prism>>;
+                              std::vector<Eigen::Vector2d>, std::vector<survey::Prism>,
+                              std::vector<Eigen::Vector3d>>;
 
 struct Key {
   std::string path;  ///< such as "planner.density"

@@ -82,9 +82,7 @@ std::string described(const YamlNode& node) {
     case YamlNode::Kind::scalar:
       break;
   }
-  constexpr std::size_t longest = 60;
-  const std::string text =
-      node.text.size() <= longest ? node.text : node.text.substr(0, longest) + "...";
+  const std::string text = node.text.size() <= 60 ? node.text : node.text.substr(0, 60) + "...";
   return node.is_quoted ? "is the text '" + text + "'" : "is " + text;
 }
 
@@ -100,7 +98,7 @@ std::optional<double> number_in(const YamlNode& node, const KeyRange& range) {
   return number;
 }
 
-std::optional<KeyValue> vector_in(const YamlNode& node, const KeyRange& range) {
+std::optional<Eigen::Vector3d> vector_in(const YamlNode& node, const KeyRange& range) {
   if (node.items.size() != 3) return std::nullopt;
   Eigen::Vector3d vector;
   for (int axis = 0; axis < 3; ++axis) {
@@ -117,7 +115,7 @@ std::optional<std::vector<Eigen::Vector2d>> polygon_in(const YamlNode& node) {
     if (corner.items.size() != 2) return std::nullopt;
     const auto x = number_in(corner.items[0], {}), y = number_in(corner.items[1], {});
     if (!x || !y) return std::nullopt;
-    polygon.emplace_back(*x, *y);
+    polygon.push_back({*x, *y});
   }
   return polygon.size() >= 3 ? std::optional(polygon) : std::nullopt;
 }
@@ -135,15 +133,16 @@ std::optional<survey::Prism> volume_in(const YamlNode& node) {
   return survey::Prism{*corners, *bottom, *top};
 }
 
-std::optional<KeyValue> volumes_in(const YamlNode& node) {
+template <typename Item, typename ReadItem>
+std::optional<KeyValue> list_in(const YamlNode& node, const ReadItem& read_item) {
   if (node.kind != YamlNode::Kind::list) return std::nullopt;
-  std::vector<survey::Prism> volumes;
+  std::vector<Item> list;
   for (const YamlNode& item : node.items) {
-    auto volume = volume_in(item);
-    if (!volume) return std::nullopt;
-    volumes.push_back(std::move(*volume));
+    std::optional<Item> value = read_item(item);
+    if (!value) return std::nullopt;
+    list.push_back(std::move(*value));
   }
-  return volumes;
+  return list;
 }
 
 bool is_control_character(unsigned char c) { return c < 0x20 || c == 0x7f; }
@@ -152,11 +151,10 @@ bool is_control_character(unsigned char c) { return c < 0x20 || c == 0x7f; }
 std::optional<KeyValue> value_for(const Key& key, const YamlNode& node) {
   if (key.type == KeyType::vector) return vector_in(node, key.range);
   if (key.type == KeyType::polygon) return polygon_in(node);
-  if (key.type == KeyType::volumes) return volumes_in(node);
-  if (key.type == KeyType::number) {
-    const auto number = number_in(node, key.range);
-    return number ? std::optional<KeyValue>(*number) : std::nullopt;
-  }
+  if (key.type == KeyType::volumes) return list_in<survey::Prism>(node, volume_in);
+  const auto vector = [&](const YamlNode& item) { return vector_in(item, key.range); };
+  if (key.type == KeyType::vectors) return list_in<Eigen::Vector3d>(node, vector);
+  if (key.type == KeyType::number) return number_in(node, key.range);
   if (node.kind != YamlNode::Kind::scalar) return std::nullopt;
   switch (key.type) {
     case KeyType::integer: {

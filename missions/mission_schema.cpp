@@ -58,6 +58,11 @@ Json number_schema(const Key& key, const char* type) {
   return schema;
 }
 
+Json vector_schema(const Key& key) {
+  return {
+      {"type", "array"}, {"items", number_schema(key, "number")}, {"minItems", 3}, {"maxItems", 3}};
+}
+
 Json polygon_schema() {
   const Json corner{
       {"type", "array"}, {"items", {{"type", "number"}}}, {"minItems", 2}, {"maxItems", 2}};
@@ -73,6 +78,11 @@ Json volumes_schema() {
                       {"bottom", {{"type", "number"}}},
                       {"top", {{"type", "number"}}}}}};
   return {{"type", "array"}, {"items", volume}};
+}
+
+std::string vector_text(const Eigen::Vector3d& vector) {
+  return "[" + number_text(vector.x()) + ", " + number_text(vector.y()) + ", " +
+         number_text(vector.z()) + "]";
 }
 
 std::string polygon_text(const std::vector<Eigen::Vector2d>& polygon) {
@@ -109,11 +119,12 @@ Json value_schema(const Key& key) {
       return polygon_schema();
     case KeyType::volumes:
       return volumes_schema();
+    case KeyType::vectors:
+      return {{"type", "array"}, {"items", vector_schema(key)}};
     case KeyType::vector:
       break;
   }
-  return {
-      {"type", "array"}, {"items", number_schema(key, "number")}, {"minItems", 3}, {"maxItems", 3}};
+  return vector_schema(key);
 }
 
 Json section_schema() {
@@ -163,6 +174,8 @@ std::string expected_value(const Key& key) {
       return "three or more corners [x, y]" + unit;
     case KeyType::volumes:
       return "a list of {corners, bottom, top}" + unit;
+    case KeyType::vectors:
+      return "a list of lists of three numbers" + range_text(key.range) + unit;
     case KeyType::vector:
       break;
   }
@@ -180,9 +193,14 @@ std::string to_text(const KeyValue& value) {
   if (const auto* polygon = std::get_if<std::vector<Eigen::Vector2d>>(&value)) {
     return polygon_text(*polygon);
   }
-  const auto& vector = std::get<Eigen::Vector3d>(value);
-  return "[" + number_text(vector.x()) + ", " + number_text(vector.y()) + ", " +
-         number_text(vector.z()) + "]";
+  if (const auto* vectors = std::get_if<std::vector<Eigen::Vector3d>>(&value)) {
+    std::string text;
+    for (const Eigen::Vector3d& vector : *vectors) {
+      text += (text.empty() ? "" : ", ") + vector_text(vector);
+    }
+    return "[" + text + "]";
+  }
+  return vector_text(std::get<Eigen::Vector3d>(value));
 }
 
 std::string mission_json_schema() {

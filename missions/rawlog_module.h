@@ -4,12 +4,15 @@
 /// module of their own, which the program loads when somebody asks for a rawlog.
 #pragma once
 
+#include <cstdint>
 #include <functional>
 #include <string>
+#include <vector>
 
 #include <Eigen/Geometry>
 
 #include "missions/cloud_file.h"
+#include "sim/depth_image.h"
 #include "sim/sensor.h"
 
 namespace skycap::missions {
@@ -27,7 +30,20 @@ struct RawlogSetup {
   SensorMotion reported, true_one;
 };
 
-/// The module's one function. The caller owns what it returns.
+/// An image of a depth camera. The sensor's frame has x forward, y left, z up, as MRPT's has.
+struct DepthFrame {
+  double time = 0.0;  ///< [s]
+  Eigen::Isometry3d world_from_sensor = Eigen::Isometry3d::Identity();
+  const sim::DepthImage& image;
+  Eigen::Vector2d focal_length_px, principal_point_px;
+  double unit = 0.001;     ///< what one step of the image stands for [m]
+  double max_range = 0.0;  ///< [m]
+};
+
+/// The module's functions. What the first returns is the caller's. The second replaces `bytes` by
+/// a CObservationRobotPose "CARRIER", of the sensor, and a CObservation3DRangeScan "DEPTH".
+using EncodeDepthFrame = void(const DepthFrame& frame, std::vector<std::uint8_t>& bytes);
+inline constexpr const char* encode_depth_frame_name = "skycap_encode_depth_frame";
 using MakeRawlogFormat = CloudFormat*(const RawlogSetup& setup);
 inline constexpr const char* make_rawlog_format_name = "skycap_make_rawlog_format";
 

@@ -1,5 +1,7 @@
+#include <algorithm>
 #include <chrono>
 #include <cstdio>
+#include <memory>
 #include <string>
 #include <utility>
 #include <variant>
@@ -9,10 +11,10 @@
 
 #include "flight/export/trajectory_file.h"
 #include "geometry/error.h"
-#include "geometry/mesh.h"
 #include "missions/cloud_formats.h"
 #include "missions/frame_recorder.h"
 #include "missions/json_text.h"
+#include "missions/mission_flight.h"
 #include "missions/output_folder.h"
 #include "missions/scan_route.h"
 #include "missions/scan_runner.h"
@@ -72,6 +74,16 @@ sim::Trajectory believed_by(const Mission& mission, const sim::Trajectory& flown
   sim::NavigationErrors errors = mission.scan.navigation;
   errors.seed = mission.seed;
   return sim::believed_trajectory(flown, errors);
+}
+
+std::shared_ptr<const flight::UtmProjection> projection_of(const Mission& mission) {
+  if (mission.scan.crs == ScanCrs::local) return nullptr;
+  if (!has_place(mission)) {
+    throw Error(ErrorKind::bad_config,
+                "scan.crs is utm, but the mission has no place; add site.latitude_deg and "
+                "site.longitude_deg, or say local");
+  }
+  return std::make_shared<const flight::UtmProjection>(site_of(mission));
 }
 
 /// The sensor's poses as a TUM file.
@@ -154,6 +166,7 @@ nlohmann::ordered_json scan_json(const Mission& mission, const std::string& sens
           {"flight_s", flown},
           {"shots", static_cast<std::uint64_t>(shots)},
           {"points", result.progress.points},
+          {"las_crs", mission.scan.crs == ScanCrs::utm ? "utm" : "local"},
           {"simulation_s", time},
           {"navigation",
            {{"horizontal_sigma_m", navigation.horizontal_sigma},
@@ -173,15 +186,15 @@ int scan_with_laser(const ScanVerbOptions& options, const Mission& mission,
   const sim::Trajectory believed = believed_by(mission, route.carrier);
   const Mount mount = mount_of(mission.scan);
   const sim::LidarFlight flight{route.carrier, believed, mount.real, mount.believed};
+  const std::shared_ptr<const flight::UtmProjection> projection = projection_of(mission);
 
   ProgressLine progress(console, options.is_quiet);
   progress.show(mission.name + ": making the scene ready");
-  const ReflectingMesh truth = reflecting_scene(mission.scene, options.mission.parent_path());
-  const sim::Scene scene(truth.mesh, truth.reflectances, mission.threads);
+  const ReflectingScene truth = reflecting_scene(mission.scene, options.mission.parent_path());
+  const sim::Scene scene = truth.scene(mission.threads);
   std::vector<OutputFile> outputs;
   std::vector<CloudFile> files = open_files(
-      options, {sensor_name, config, flight, geometry::bounding_box(truth.mesh).center()}, folder,
-      outputs);
+      options, {sensor_name, config, flight, truth.centre(), projection}, folder, outputs);
 
   const auto channels = static_cast<double>(config.channels.size());
   const Clock::time_point start = Clock::now();
@@ -247,17 +260,19 @@ int scan_with_camera(const ScanVerbOptions& options, const Mission& mission,
   }
   ProgressLine progress(console, options.is_quiet);
   progress.show(mission.name + ": making the scene ready");
-  const sim::Scene scene(reflecting_scene(mission.scene, options.mission.parent_path()).mesh,
-                         mission.threads);
+  const sim::Scene scene =
+      reflecting_scene(mission.scene, options.mission.parent_path()).scene(mission.threads);
   const auto report = [&](std::size_t taken, std::size_t points) {
     char text[160];
     std::snprintf(text, sizeof text, "%s: image %zu of %zu, %.1f M points", mission.name.c_str(),
                   taken, frames.size(), 1e-6 * static_cast<double>(points));
     progress.show(text);
   };
+  const bool has_rawlog = std::ranges::find(options.formats, "rawlog") != options.formats.end();
   const Clock::time_point start = Clock::now();
   const FrameResult result = record_frames(scene, sim::DepthCamera(config), frames, folder,
                                            {.depth_unit = mission.scan.depth_unit,
+                                            .has_rawlog = has_rawlog,
                                             .threads = mission.threads,
                                             .report = report,
                                             .stop = console.stop});

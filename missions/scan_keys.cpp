@@ -46,6 +46,10 @@ std::vector<Key> scan_keys() {
              "Speed along the circles and the climbs between them."),
       number("scan.orbit.start_deg", "degrees", between(-360, 360), orbit(&Orbit::start),
              "Where the circles begin: direction from the centre, anticlockwise from east."),
+      choice("scan.crs", {"local", "utm"}, scan(&Scan::crs),
+             "Coordinates of LAS files: the mission's frame, or UTM on WGS84, in the zone of the "
+             "site, which utm needs; heights are then above the EGM96 geoid if "
+             "site.geoid_undulation is known, else above the ellipsoid."),
       number("scan.speed", "m/s", above(0, 100), scan(&Scan::speed),
              "Speed along a route whose file has no times."),
       vector("scan.mount.position", "m", between(-10, 10), scan(&Scan::mount_position),

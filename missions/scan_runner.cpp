@@ -11,7 +11,7 @@
 namespace skycap::missions {
 namespace {
 
-/// Some ten thousand shots, ready to be appended to each file.
+/// Some thousand shots, ready to be appended to each file.
 struct Piece {
   std::vector<CloudChunk> chunks;  // one for each file
   std::uint64_t end_firing = 0;
@@ -26,7 +26,8 @@ class ScanRun {
   ScanRun(const sim::Scene& scene, const sim::Lidar& lidar, const sim::LidarFlight& flight,
           std::span<CloudFile> files, const ScanOptions& options)
       : scene_(scene), lidar_(lidar), flight_(flight), files_(files), options_(options) {
-    constexpr std::uint64_t shots_in_piece = 1 << 15, block = 32;
+    // So few that the returns and their bytes stay in a core's own cache.
+    constexpr std::uint64_t shots_in_piece = 1 << 12, block = 32;
     firings_in_piece_ =
         std::max<std::uint64_t>(1, shots_in_piece / (lidar.config().channels.size() * block)) *
         block;

@@ -61,7 +61,7 @@ std::map<std::string, double> reflectances_of(const std::filesystem::path& file)
 }
 
 /// The model in its own frame, with reflectances by the names of its materials.
-ReflectingMesh mesh_of_materials(const SceneConfig& scene, const std::filesystem::path& folder) {
+ReflectingScene model_of_materials(const SceneConfig& scene, const std::filesystem::path& folder) {
   if (scene.model.starts_with("builtin:")) {
     throw Error(ErrorKind::bad_config,
                 "scene.materials needs a model from a file; " + scene.model + " has no materials");
@@ -72,7 +72,7 @@ ReflectingMesh mesh_of_materials(const SceneConfig& scene, const std::filesystem
                                          : folder / scene.model;
   const std::filesystem::path list = folder / *scene.materials;
   std::map<std::string, double> reflectances = reflectances_of(list);
-  ReflectingMesh result;
+  ReflectingScene result;
   std::string known;
   std::set<std::string> unused;
   for (const auto& [name, reflectance] : reflectances) unused.insert(name);
@@ -81,8 +81,8 @@ ReflectingMesh mesh_of_materials(const SceneConfig& scene, const std::filesystem
     unused.erase(part.material);
     const auto given = reflectances.find(part.material);
     const double reflectance = given == reflectances.end() ? scene.reflectance : given->second;
-    geometry::append(result.mesh, part.mesh);
-    result.reflectances.resize(result.mesh.triangles.size(), static_cast<float>(reflectance));
+    geometry::append(result.model, part.mesh);
+    result.reflectances.resize(result.model.triangles.size(), static_cast<float>(reflectance));
   }
   if (!unused.empty()) {
     throw Error(ErrorKind::bad_config, list.string() + ": the model has no material " +
@@ -123,17 +123,63 @@ void place_model(const SceneConfig& scene, geometry::Mesh& model) {
   geometry::transform(model, Eigen::Affine3d(Eigen::Translation3d(shift)));
 }
 
-ReflectingMesh reflecting_scene(const SceneConfig& scene, const std::filesystem::path& folder) {
-  ReflectingMesh result;
-  if (scene.materials) {
-    result = mesh_of_materials(scene, folder);
-  } else {
-    result.mesh = load_model(scene, folder);
+std::vector<Eigen::Isometry3d> copies_of(const SceneConfig& scene) {
+  std::vector<Eigen::Isometry3d> places = {Eigen::Isometry3d::Identity()};
+  for (const Vector3d& copy : scene.copies) {
+    places.push_back(Eigen::Translation3d(scene.position + Vector3d(copy.x(), copy.y(), 0.0)) *
+                     AngleAxisd(copy.z(), Vector3d::UnitZ()) *
+                     Eigen::Translation3d(-scene.position));
   }
-  place_model(scene, result.mesh);
-  if (scene.ground) geometry::append(result.mesh, ground_under(result.mesh));
-  result.reflectances.resize(result.mesh.triangles.size(), static_cast<float>(scene.reflectance));
+  return places;
+}
+
+geometry::Mesh with_copies(const SceneConfig& scene, const geometry::Mesh& placed_model) {
+  geometry::Mesh all;
+  for (const Eigen::Isometry3d& place : copies_of(scene)) {
+    geometry::Mesh copy = placed_model;
+    geometry::transform(copy, Eigen::Affine3d(place));
+    geometry::append(all, copy);
+  }
+  return all;
+}
+
+ReflectingScene reflecting_scene(const SceneConfig& scene, const std::filesystem::path& folder) {
+  ReflectingScene result;
+  if (scene.materials) {
+    result = model_of_materials(scene, folder);
+  } else {
+    result.model = load_model(scene, folder);
+  }
+  place_model(scene, result.model);
+  const auto reflectance = static_cast<float>(scene.reflectance);
+  result.reflectances.resize(result.model.triangles.size(), reflectance);
+  result.places = copies_of(scene);
+  if (scene.ground) {
+    result.ground = ground_under(with_copies(scene, result.model));
+    result.ground_reflectances.resize(result.ground.triangles.size(), reflectance);
+  }
   return result;
+}
+
+sim::Scene ReflectingScene::scene(unsigned threads) const {
+  if (places.size() == 1) {  // a single mesh is met faster than a mesh at a place
+    geometry::Mesh mesh = model;
+    std::vector<float> all = reflectances;
+    geometry::append(mesh, ground);
+    all.insert(all.end(), ground_reflectances.begin(), ground_reflectances.end());
+    return sim::Scene(mesh, all, threads);
+  }
+  std::vector<sim::ScenePart> parts = {{model, reflectances, places}};
+  if (!ground.triangles.empty()) parts.push_back({ground, ground_reflectances, {}});
+  return sim::Scene(parts, threads);
+}
+
+Vector3d ReflectingScene::centre() const {
+  Eigen::AlignedBox3d box;
+  for (const Eigen::Isometry3d& place : places) {
+    box.extend(geometry::bounding_box(model).transformed(place));
+  }
+  return box.center();
 }
 
 geometry::Mesh ground_under(const geometry::Mesh& placed_model) {

@@ -7,6 +7,7 @@
 
 #include "geometry/mesh.h"
 #include "missions/mission.h"
+#include "sim/scene.h"
 
 namespace skycap::missions {
 
@@ -19,16 +20,31 @@ geometry::Mesh load_model(const SceneConfig& scene, const std::filesystem::path&
 /// no extent to be scaled by.
 void place_model(const SceneConfig& scene, geometry::Mesh& model);
 
-/// A scene with what lasers see of its surfaces.
-struct ReflectingMesh {
-  geometry::Mesh mesh;
-  std::vector<float> reflectances;  ///< diffuse, of each triangle
+/// world_from_world, from the first of the scene's models, as place_model() leaves it, to each; the
+/// first included.
+std::vector<Eigen::Isometry3d> copies_of(const SceneConfig& scene);
+
+/// All of the scene's models as one mesh.
+geometry::Mesh with_copies(const SceneConfig& scene, const geometry::Mesh& placed_model);
+
+/// What the sensors of a `scene` measure, with what lasers see of its surfaces.
+struct ReflectingScene {
+  geometry::Mesh model;             ///< the first
+  std::vector<float> reflectances;  ///< diffuse, of each of its triangles
+  std::vector<Eigen::Isometry3d> places;
+  geometry::Mesh ground;  ///< without triangles if there is none
+  std::vector<float> ground_reflectances;
+
+  /// Made ready for rays; copies take no memory to speak of.
+  sim::Scene scene(unsigned threads) const;
+  /// Of the models' bounding box.
+  Eigen::Vector3d centre() const;
 };
 
-/// What the sensors of `scene` measure: the model as placed, and the ground if there is one, with
-/// the reflectances of `scene`. Throws what load_model() and place_model() throw, and
-/// Error{bad_config} if the file of materials is wrong.
-ReflectingMesh reflecting_scene(const SceneConfig& scene, const std::filesystem::path& folder);
+/// The model as placed, its copies, and the ground if there is one, with the reflectances of
+/// `scene`. Throws what load_model() and place_model() throw, and Error{bad_config} if the file of
+/// materials is wrong.
+ReflectingScene reflecting_scene(const SceneConfig& scene, const std::filesystem::path& folder);
 
 /// A square in the plane of the scene's base, ten times as wide as the model.
 geometry::Mesh ground_under(const geometry::Mesh& placed_model);

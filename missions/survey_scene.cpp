@@ -66,7 +66,7 @@ std::optional<double> number_in_file(const std::filesystem::path& file) {
 geometry::Mesh placed_model(const SceneConfig& scene, const std::filesystem::path& folder) {
   geometry::Mesh model = load_model(scene, folder);
   place_model(scene, model);
-  return model;
+  return scene.copies.empty() ? model : with_copies(scene, model);
 }
 
 SurveyScene::SurveyScene(const Mission& mission, const std::filesystem::path& folder)

@@ -69,8 +69,9 @@ struct ScanVerbOptions {
   std::optional<std::filesystem::path> route;  ///< in place of the mission's
   std::optional<std::filesystem::path> out;    ///< default: results/NAME/scan
   std::optional<std::string> sensor;           ///< in place of the mission's
-  std::vector<std::string> formats = {"las"};  ///< of a laser scanner's points
-  bool with_truth = false;                     ///< also where the surfaces really were
+  /// Of a laser scanner's points; of a camera's images only "rawlog" counts, beside the PNG files.
+  std::vector<std::string> formats = {"las"};
+  bool with_truth = false;  ///< also where the surfaces really were
   std::vector<KeyOverride> overrides;
   bool is_quiet = false;
 };

@@ -48,7 +48,6 @@ struct LidarReturns {
   std::vector<std::uint8_t> returns_of_shots;  ///< how many returns the shot has in all
 
   std::size_t size() const { return points.size(); }
-  void clear();  ///< keeps the memory
 };
 
 /// A validated scanner. Immutable; safe to use from any number of threads.

@@ -123,30 +123,33 @@ struct Rays {
 struct Hits {
   std::vector<int> active;    // which rays to cast: -1 or 0, as Embree wants it
   std::vector<float> range;   // negative: nothing
-  std::vector<float> cosine;  // of the angle of incidence
+  std::vector<float> cosine;  // of the angle of incidence, at most 1
   std::vector<std::uint32_t> triangle;
 
   void resize(std::size_t rays) {
-    active.assign(rays, 0);
-    range.assign(rays, -1.0F);
+    active.resize(rays);
+    range.resize(rays);
     cosine.resize(rays);
     triangle.resize(rays);
   }
 };
 
+/// Casts the active rays; the ranges of the others become negative too. Their number is a multiple
+/// of the packets' width.
 template <int width>
 void cast_rays(const Scene::Embree& embree, float reach, const Rays& rays, Hits& hits) {
   Packet<width> packet;
+  auto& ray = packet.rays.ray;
+  auto& hit = packet.rays.hit;
   const auto load = [](float* lanes, const std::vector<float>& values, std::size_t first) {
     std::memcpy(lanes, values.data() + first, width * sizeof(float));
   };
   for (std::size_t first = 0; first < hits.active.size(); first += width) {
     std::memcpy(packet.active, hits.active.data() + first, width * sizeof(int));
     if (std::all_of(packet.active, packet.active + width, [](int lane) { return lane == 0; })) {
+      std::fill_n(hits.range.data() + first, width, -1.0F);
       continue;
     }
-    auto& ray = packet.rays.ray;
-    auto& hit = packet.rays.hit;
     load(ray.org_x, rays.origin[0], first);
     load(ray.org_y, rays.origin[1], first);
     load(ray.org_z, rays.origin[2], first);
@@ -154,16 +157,16 @@ void cast_rays(const Scene::Embree& embree, float reach, const Rays& rays, Hits&
     load(ray.dir_y, rays.direction[1], first);
     load(ray.dir_z, rays.direction[2], first);
     packet.cast(embree, reach);
-    float* const range = hits.range.data() + first;
-    float* const cosine = hits.cosine.data() + first;
     std::memcpy(hits.triangle.data() + first, hit.primID, sizeof hit.primID);
-    for (int lane = 0; lane < width; ++lane) {
-      const float projection = ray.dir_x[lane] * hit.Ng_x[lane] + ray.dir_y[lane] * hit.Ng_y[lane] +
-                               ray.dir_z[lane] * hit.Ng_z[lane];
-      const float square = hit.Ng_x[lane] * hit.Ng_x[lane] + hit.Ng_y[lane] * hit.Ng_y[lane] +
-                           hit.Ng_z[lane] * hit.Ng_z[lane];
-      range[lane] = packet.is_hit(lane) ? ray.tfar[lane] : -1.0F;
-      cosine[lane] = std::abs(projection) / std::sqrt(square);
+    for (int lane = 0; lane < width; lane += 4) {
+      const auto lanes = [&](const float* values) { return four<FourFloats>(values + lane); };
+      const FourFloats x = lanes(hit.Ng_x), y = lanes(hit.Ng_y), z = lanes(hit.Ng_z);
+      const FourFloats along = lanes(ray.dir_x) * x + lanes(ray.dir_y) * y + lanes(ray.dir_z) * z;
+      const FourFloats cosine =
+          (along < 0.0F ? -along : along) / square_root(x * x + y * y + z * z);
+      const FourFloats nothing = FourFloats{} - 1.0F, one = FourFloats{} + 1.0F;
+      put_four(hits.range.data() + first + lane, packet.is_hit_4(lane) ? lanes(ray.tfar) : nothing);
+      put_four(hits.cosine.data() + first + lane, cosine < one ? cosine : one);
     }
   }
 }

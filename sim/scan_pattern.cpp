@@ -4,6 +4,8 @@
 #include <cmath>
 #include <numeric>
 
+#include "sim/four_lanes.h"
+
 namespace skycap::sim {
 namespace {
 
@@ -89,7 +91,7 @@ void ScanPattern::aim(std::uint64_t block, Shots& shots) const {
 
 // Four firings together, whose slots of a channel are neighbours.
 void ScanPattern::aim_spinning(std::uint64_t first_firing, Shots& shots, std::size_t at) const {
-  float angle[4], cosine[4], sine[4];
+  FourFloats angle, cosine, sine;
   for (int i = 0; i < 4; ++i) {
     const double time = static_cast<double>(first_firing + i) * config_.firing_period;
     const double exact = turned(config_.rotation_rate, time);
@@ -98,27 +100,34 @@ void ScanPattern::aim_spinning(std::uint64_t first_firing, Shots& shots, std::si
     sine[i] = static_cast<float>(std::sin(exact));
   }
   constexpr auto full = static_cast<float>(turn), half = static_cast<float>(0.5 * turn);
+  const FourFloats none = {}, whole = none + full;
   const auto radius = static_cast<float>(config_.radial_offset);
   const float half_view =
       config_.field_of_view >= turn ? full : static_cast<float>(0.5 * config_.field_of_view);
+  // As locals the arrays' beginnings stay in registers.
+  float* const direction[3] = {shots.direction[0].data(), shots.direction[1].data(),
+                               shots.direction[2].data()};
+  float* const origin[3] = {shots.origin[0].data(), shots.origin[1].data(), shots.origin[2].data()};
+  float* const azimuths = shots.azimuth.data();
+  const std::size_t first = at;
   for (const std::size_t channel : channel_of_rank_) {
     const ChannelTable& table = channels_[channel];
-    for (int i = 0; i < 4; ++i, ++at) {
-      shots.direction[0][at] =
-          table.cos_elevation * (cosine[i] * table.cos_azimuth - sine[i] * table.sin_azimuth);
-      shots.direction[1][at] =
-          table.cos_elevation * (sine[i] * table.cos_azimuth + cosine[i] * table.sin_azimuth);
-      shots.direction[2][at] = table.sin_elevation;
-      shots.origin[0][at] = radius * (cosine[i] * table.cos_encoder - sine[i] * table.sin_encoder);
-      shots.origin[1][at] = radius * (sine[i] * table.cos_encoder + cosine[i] * table.sin_encoder);
-      shots.origin[2][at] = table.height;
-      float azimuth = angle[i] + table.azimuth;  // in [0, 4 pi)
-      azimuth -= azimuth > full ? full : 0.0F;
-      azimuth -= azimuth > half ? full : 0.0F;
-      shots.azimuth[at] = azimuth;
-      shots.is_shot[at] = std::abs(azimuth) <= half_view ? 1 : 0;
-    }
+    put_four(direction[0] + at,
+             table.cos_elevation * (cosine * table.cos_azimuth - sine * table.sin_azimuth));
+    put_four(direction[1] + at,
+             table.cos_elevation * (sine * table.cos_azimuth + cosine * table.sin_azimuth));
+    put_four(direction[2] + at, none + table.sin_elevation);
+    put_four(origin[0] + at, radius * (cosine * table.cos_encoder - sine * table.sin_encoder));
+    put_four(origin[1] + at, radius * (sine * table.cos_encoder + cosine * table.sin_encoder));
+    put_four(origin[2] + at, none + table.height);
+    FourFloats azimuth = angle + table.azimuth;  // in [0, 4 pi)
+    azimuth -= azimuth > full ? whole : none;
+    azimuth -= azimuth > half ? whole : none;
+    put_four(azimuths + at, azimuth);
+    at += 4;
   }
+  std::uint8_t* const is_shot = shots.is_shot.data();
+  for (std::size_t i = first; i < at; ++i) is_shot[i] = std::abs(azimuths[i]) <= half_view ? 1 : 0;
 }
 
 void ScanPattern::aim_rosette(double time, std::uint32_t firing, Shots& shots) const {

@@ -12,7 +12,7 @@
 #include <span>
 #include <vector>
 
-#include <Eigen/Core>
+#include <Eigen/Geometry>
 
 #include "geometry/mesh.h"
 
@@ -23,6 +23,15 @@ struct Hit {
   double distance;         ///< along the ray, in units of its direction's length
   std::uint32_t triangle;  ///< index into the mesh's triangles
   Eigen::Vector3d normal;  ///< unit normal of that triangle, by its orientation
+};
+
+/// A mesh of a scene, once or several times; all of it is the caller's.
+struct ScenePart {
+  const geometry::Mesh& mesh;
+  /// Diffuse reflectance of each triangle, in [0, 1], at the laser's wavelength; none: the default.
+  std::span<const float> reflectances;
+  /// world_from_mesh of each copy, turned and shifted but not scaled; none: once, as it is.
+  std::span<const Eigen::Isometry3d> places;
 };
 
 /// Immutable; safe to query from any number of threads.
@@ -37,6 +46,11 @@ class Scene {
   /// The same with the diffuse reflectance of each triangle, in [0, 1], at the laser's wavelength.
   /// Throws Error{bad_geometry} if their number is not that of the triangles.
   Scene(const geometry::Mesh& mesh, std::span<const float> reflectances, unsigned threads = 0);
+  /// Several meshes, each any number of times: copies take no memory to speak of. Triangles are
+  /// numbered as if every copy of every part had been appended to one mesh, in that order, and rays
+  /// meet what they would meet of that mesh, but for rounding. Throws the same, also when there
+  /// is no part.
+  explicit Scene(std::span<const ScenePart> parts, unsigned threads = 0);
   Scene(Scene&&) noexcept;
   Scene& operator=(Scene&&) noexcept;
   ~Scene();
@@ -53,16 +67,22 @@ class Scene {
 
   /// Diffuse reflectance of a triangle, in [0, 1].
   float reflectance(std::uint32_t triangle) const {
-    return reflectances_.empty() ? default_reflectance : reflectances_[triangle];
+    return reflectances_.empty() ? default_reflectance : reflectances_[own_triangle(triangle)];
   }
+
+  /// Whether triangles have reflectances of their own.
+  bool has_reflectances() const { return !reflectances_.empty(); }
 
   /// What the sensors in this folder trace through; defined in scene_embree.h, for sources only.
   struct Embree;
   const Embree& embree() const { return *embree_; }
 
  private:
+  // The triangle, among those of all parts without their copies, that a hit is on.
+  std::size_t own_triangle(std::uint32_t triangle) const;
+
   std::unique_ptr<Embree> embree_;
-  std::vector<float> reflectances_;  // empty: all the default
+  std::vector<float> reflectances_;  // of each part's triangles; empty: all the default
 };
 
 }  // namespace skycap::sim

@@ -14,17 +14,27 @@
 
 #include <cmath>
 #include <cstdint>
+#include <vector>
 
 #include <Eigen/Core>
 #include <embree3/rtcore.h>
 
+#include "sim/four_lanes.h"
 #include "sim/scene.h"
 
 namespace skycap::sim {
 
+/// One copy of a part of the scene: an instance of Embree's, by whose number it is found.
+struct SceneCopy {
+  Eigen::Matrix3f rotation;      ///< world from mesh
+  std::uint32_t first_triangle;  ///< number of its first triangle among those of all copies
+  std::uint32_t own_triangle;    ///< the same among those of all parts
+};
+
 struct Scene::Embree {
   RTCDevice device = nullptr;
   RTCScene scene = nullptr;
+  std::vector<SceneCopy> copies;  ///< none: the scene is a single mesh, not instanced
   Eigen::Vector3d centre = Eigen::Vector3d::Zero();  ///< world position of Embree's origin
   int packet_width = 4;  ///< the widest packets that this processor casts natively: 4, 8 or 16
 
@@ -37,23 +47,22 @@ struct Scene::Embree {
   }
 };
 
-/// Four lanes in one register of any processor: the compiler does not find them by itself in loops
-/// that compare. A comparison gives -1 for true and 0 for false.
-using FourFloats [[gnu::vector_size(16), gnu::may_alias]] = float;
-using FourInts [[gnu::vector_size(16), gnu::may_alias]] = int;
-
-template <typename Four, typename Lane>
-Four four(const Lane* lanes) {
-  return *reinterpret_cast<const Four*>(lanes);  // Embree aligns its packets to 16 bytes and more
-}
-inline int sum(FourInts lanes) { return lanes[0] + lanes[1] + lanes[2] + lanes[3]; }
-
 /// Turns a ray a little, as the comment above says, in a direction that few rays have.
 inline void turn(float& x, float& y, float& z) {
   const float step = 1e-6F * (std::abs(x) + std::abs(y) + std::abs(z));
   x += 1.1F * step;
   y -= 1.3F * step;
   z += 0.9F * step;
+}
+
+/// What Embree says of a hit on a copy, in the mesh's own frame, as a hit in the world.
+inline void take_to_world(const SceneCopy& copy, float& normal_x, float& normal_y, float& normal_z,
+                          unsigned& triangle) {
+  const Eigen::Vector3f normal = copy.rotation * Eigen::Vector3f(normal_x, normal_y, normal_z);
+  normal_x = normal.x();
+  normal_y = normal.y();
+  normal_z = normal.z();
+  triangle += copy.first_triangle;
 }
 
 template <int width>
@@ -104,7 +113,7 @@ class Packet {
       rays.ray.tfar[lane] = reach;
       rays.hit.geomID[lane] = RTC_INVALID_GEOMETRY_ID;
     }
-    PacketTypes<width>::intersect(active, embree.scene, &context_, &rays);
+    intersect(embree, active, rays);
     FourInts front_lanes = ~FourInts{};
     for (int lane = 0; lane < width; lane += 4) front_lanes &= is_front_4(lane);
     if (sum(front_lanes) != -4) mend(embree);
@@ -117,6 +126,19 @@ class Packet {
   }
 
  private:
+  // Hits become those of one mesh in the world, whatever copies the scene is made of.
+  void intersect(const Scene::Embree& embree, const int* lanes,
+                 typename PacketTypes<width>::RayHit& query) {
+    PacketTypes<width>::intersect(lanes, embree.scene, &context_, &query);
+    if (embree.copies.empty()) return;
+    auto& hit = query.hit;
+    for (int lane = 0; lane < width; ++lane) {
+      if (lanes[lane] == 0 || hit.geomID[lane] == RTC_INVALID_GEOMETRY_ID) continue;
+      const SceneCopy& copy = embree.copies[hit.instID[0][lane]];
+      take_to_world(copy, hit.Ng_x[lane], hit.Ng_y[lane], hit.Ng_z[lane], hit.primID[lane]);
+    }
+  }
+
   // Whether lanes have met a surface from the side that its normal points to.
   FourInts is_front_4(int first_lane) const {
     const auto& [ray, hit] = rays;
@@ -137,18 +159,22 @@ class Packet {
     }
     if (!some_hit) return;
 
-    auto turned = rays;
     alignas(64) int suspicious[width];
-    bool any = false;
+    FourInts any = {};
+    for (int lane = 0; lane < width; lane += 4) {
+      const FourInts is_settled = is_front_4(lane) | (some_front ? FourInts{} : is_hit_4(lane));
+      const FourInts lanes = ~is_settled & four<FourInts>(active + lane);
+      put_four(suspicious + lane, lanes);
+      any |= lanes;
+    }
+    if (sum(any) == 0) return;
+
+    auto turned = rays;
     for (int lane = 0; lane < width; ++lane) {
-      const bool is_front = is_front_4(lane / 4 * 4)[lane % 4] != 0;
-      suspicious[lane] = is_front || (is_hit(lane) && !some_front) ? 0 : active[lane];
-      any |= suspicious[lane] != 0;
       turn(turned.ray.dir_x[lane], turned.ray.dir_y[lane], turned.ray.dir_z[lane]);
       turned.hit.geomID[lane] = RTC_INVALID_GEOMETRY_ID;
     }
-    if (!any) return;
-    PacketTypes<width>::intersect(suspicious, embree.scene, &context_, &turned);
+    intersect(embree, suspicious, turned);
     for (int lane = 0; lane < width; ++lane) {
       if (suspicious[lane] == 0 || turned.hit.geomID[lane] == RTC_INVALID_GEOMETRY_ID) continue;
       rays.ray.tfar[lane] = turned.ray.tfar[lane];  // the cast did not look farther than the first

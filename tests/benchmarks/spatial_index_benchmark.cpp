@@ -1,7 +1,6 @@
-/// What each structure behind SpatialIndex earns: the same queries with our grid, CGAL's kd-tree (the
-/// forest's building block), nanoflann and PCL's octree, over points on a building-sized shell kept
-/// at SEE's spacing.
-/// Run: build/release/tests/benchmarks/spatial_index_benchmark
+/// What each structure behind SpatialIndex earns: the same queries with our grid, CGAL's kd-tree
+/// (the forest's building block), nanoflann and PCL's octree, over points on a building-sized shell
+/// kept at SEE's spacing. Run: build/release/tests/benchmarks/spatial_index_benchmark
 #include <cmath>
 #include <cstdint>
 #include <cstdio>
@@ -67,8 +66,8 @@ using CgalTree = CGAL::Kd_tree<CgalTraits>;
 void print(const char* what, const char* other, skycap::benchmarks::Medians times,
            std::size_t work) {
   const double each = 1e9 / static_cast<double>(work);
-  std::printf("%-34s grid %7.0f ns   %-10s %7.0f ns   %s / grid = %.1f\n", what,
-              each * times.first, other, each * times.second, other, times.second / times.first);
+  std::printf("%-34s grid %7.0f ns   %-10s %7.0f ns   %s / grid = %.1f\n", what, each * times.first,
+              other, each * times.second, other, times.second / times.first);
 }
 
 }  // namespace
@@ -126,9 +125,9 @@ int main() {
     found_by_other = 0;
     for (const Vector3f& query : queries) {
       found.clear();
-      cgal.search(std::back_inserter(found),
-                  CGAL::Fuzzy_sphere<CgalTraits>(
-                      Kernel::Point_3(query.x(), query.y(), query.z()), radius));
+      cgal.search(
+          std::back_inserter(found),
+          CGAL::Fuzzy_sphere<CgalTraits>(Kernel::Point_3(query.x(), query.y(), query.z()), radius));
       found_by_other += found.size();
     }
   });
@@ -151,15 +150,18 @@ int main() {
       grid.find_within(query, 5.0, found);
     }
   };
-  print("neighbours within 5 m", "CGAL", interleaved_medians(rounds, large_with_grid, [&] {
-          std::vector<Kernel::Point_3> found;
-          for (const Vector3f& query : few) {
-            found.clear();
-            cgal.search(std::back_inserter(found),
-                        CGAL::Fuzzy_sphere<CgalTraits>(
-                            Kernel::Point_3(query.x(), query.y(), query.z()), 5.0));
-          }
-        }),
+  print("neighbours within 5 m", "CGAL",
+        interleaved_medians(rounds, large_with_grid,
+                            [&] {
+                              std::vector<Kernel::Point_3> found;
+                              for (const Vector3f& query : few) {
+                                found.clear();
+                                cgal.search(
+                                    std::back_inserter(found),
+                                    CGAL::Fuzzy_sphere<CgalTraits>(
+                                        Kernel::Point_3(query.x(), query.y(), query.z()), 5.0));
+                              }
+                            }),
         few.size());
 
   // Growing the cloud by one scan: our insertion at the spacing beside the rebuilding of a tree.
@@ -168,18 +170,23 @@ int main() {
         {.radius = radius, .core_threshold = 4, .spacing = spacing});
     growing.insert(scan, 0);
   };
-  print("insert a return at the spacing", "raw copy", interleaved_medians(rounds, grow, [&] {
-          std::vector<Vector3f> copy;
-          for (const Vector3f& p : scan) copy.push_back(p);
-        }),
+  print("insert a return at the spacing", "raw copy",
+        interleaved_medians(rounds, grow,
+                            [&] {
+                              std::vector<Vector3f> copy;
+                              for (const Vector3f& p : scan) copy.push_back(p);
+                            }),
         scan.size());
   const auto build_grid = [&] {
     PointGrid fresh(radius);
     for (const Vector3f& p : points) fresh.insert(p);
   };
-  print("build from the kept points", "nanoflann", interleaved_medians(rounds, build_grid, [&] {
-          Nanoflann fresh(3, nanoflann_points, nanoflann::KDTreeSingleIndexAdaptorParams(10));
-          fresh.buildIndex();
-        }),
+  print("build from the kept points", "nanoflann",
+        interleaved_medians(rounds, build_grid,
+                            [&] {
+                              Nanoflann fresh(3, nanoflann_points,
+                                              nanoflann::KDTreeSingleIndexAdaptorParams(10));
+                              fresh.buildIndex();
+                            }),
         points.size());
 }

@@ -1,11 +1,14 @@
 // What `skycap scan` writes, read by the libraries that its users read it with: PCL and MRPT.
 #include <cmath>
 #include <filesystem>
+#include <limits>
 #include <map>
+#include <random>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <mrpt/maps/CSimplePointsMap.h>
+#include <mrpt/obs/CObservation3DRangeScan.h>
 #include <mrpt/obs/CObservationPointCloud.h>
 #include <mrpt/obs/CObservationRobotPose.h>
 #include <mrpt/obs/CObservationRotatingScan.h>
@@ -17,6 +20,9 @@
 
 #include "geometry/cloud_io.h"
 #include "missions/cloud_formats.h"
+#include "missions/frame_recorder.h"
+#include "missions/output_folder.h"
+#include "missions/scan_route.h"
 #include "missions/scan_runner.h"
 #include "tests/missions/las_file.h"
 #include "tests/sim/shapes.h"
@@ -219,6 +225,91 @@ TEST_F(ForeignReader, TheRangeImageOfARawlogIsThatOfTheSensor) {
     }
   }
   EXPECT_EQ(pixels, returns.size());
+}
+
+// The other way round: what PCL writes, in each of its three ways. A NaN is a pixel without return.
+TEST_F(ForeignReader, PclsOwnFilesAreRead) {
+  pcl::PointCloud<pcl::PointNormal> cloud;
+  std::mt19937_64 random(1);
+  std::uniform_real_distribution<float> any(-50.0F, 50.0F);
+  for (int i = 0; i < 2000; ++i) {
+    const float x = i % 100 == 7 ? std::numeric_limits<float>::quiet_NaN() : any(random);
+    cloud.emplace_back(x, std::round(any(random)), 3.0F, 0.0F, 0.6F, 0.8F);
+  }
+  const std::string path = folder.path() / "pcl.pcd";
+  for (int way = 0; way < 3; ++way) {
+    const int error = way == 0   ? pcl::io::savePCDFileASCII(path, cloud)
+                      : way == 1 ? pcl::io::savePCDFileBinary(path, cloud)
+                                 : pcl::io::savePCDFileBinaryCompressed(path, cloud);
+    ASSERT_EQ(error, 0);
+    const geometry::CloudFile read = geometry::read_cloud(path);
+    ASSERT_EQ(read.positions.size(), 1980U);
+    ASSERT_EQ(read.normals.size(), read.positions.size());
+    std::size_t next = 0;
+    for (const pcl::PointNormal& point : cloud) {
+      if (std::isnan(point.x)) continue;
+      // PCL writes eight digits of text.
+      ASSERT_LT((read.positions[next] - point.getVector3fMap()).norm(), way == 0 ? 1e-5F : 1e-30F);
+      ASSERT_LT((read.normals[next++] - Eigen::Vector3f(0.0F, 0.6F, 0.8F)).norm(), 1e-6F);
+    }
+  }
+}
+
+TEST_F(ForeignReader, OurOwnFilesAreReadBack) {
+  for (const std::string format : {"las", "las7", "pcd", "ply", "xyz"}) {
+    const geometry::CloudFile read = geometry::read_cloud(written(format));
+    ASSERT_EQ(read.positions.size(), returns.size()) << format;
+    for (std::size_t i = 0; i < returns.size(); ++i) {
+      const Vector3d world = returns.origin + returns.points[i].cast<double>();
+      ASSERT_LT((read.positions[i].cast<double>() - world).norm(), 1e-4) << format;
+    }
+  }
+}
+
+// MRPT turns the images into points by itself; they are on the sphere, where the carrier believes
+// that it is. Depths are rounded to 1 mm, half of which a slanted ray makes 0.7 mm; the largest of
+// the sphere's triangles are 6.2 mm inside of it.
+TEST_F(ForeignReader, MrptProjectsTheDepthImagesOfARawlogOntoTheSurface) {
+  sim::DepthCameraConfig camera;
+  camera.camera.width = 64;
+  camera.camera.height = 48;
+  std::vector<Frame> frames;
+  for (int i = 0; i < 3; ++i) {
+    const double time = 5.0 + 0.05 * i;
+    const Isometry3d pose = flown.pose(time) * mount * body_from_camera();
+    frames.push_back({time, pose, pose});
+  }
+  const std::string out = folder.path() / "frames";
+  OutputFolder output(out);
+  const FrameResult result = record_frames(scene, sim::DepthCamera(camera), frames, output,
+                                           {.has_rawlog = true, .report = {}, .stop = {}});
+  output.commit();
+  ASSERT_EQ(result.points, 3U * 64 * 48);
+
+  mrpt::obs::CRawlog rawlog;
+  ASSERT_TRUE(rawlog.loadFromRawLogFile(out + "/frames.rawlog"));
+  ASSERT_EQ(rawlog.size(), 6U);
+  for (std::size_t i = 0; i < 3; ++i) {
+    const auto pose =
+        std::dynamic_pointer_cast<mrpt::obs::CObservationRobotPose>(rawlog.getAsObservation(2 * i));
+    const auto image = std::dynamic_pointer_cast<mrpt::obs::CObservation3DRangeScan>(
+        rawlog.getAsObservation(2 * i + 1));
+    ASSERT_TRUE(pose && image);
+    EXPECT_NEAR(mrpt::Clock::toDouble(image->timestamp), frames[i].time, 1e-6);
+    mrpt::obs::T3DPointsProjectionParams projection;
+    projection.takeIntoAccountSensorPoseOnRobot = true;
+    projection.robotPoseInTheWorld = pose->pose.mean;
+    mrpt::maps::CSimplePointsMap points;
+    image->unprojectInto(points, projection);
+    ASSERT_EQ(points.size(), 64U * 48);
+    for (std::size_t j = 0; j < points.size(); ++j) {
+      Eigen::Vector3f point;
+      points.getPoint(j, point.x(), point.y(), point.z());
+      const double radius = (point.cast<double>() - Vector3d(1, 2, 3)).norm();
+      ASSERT_LT(radius, 20.0007);
+      ASSERT_GT(radius, 20.0 - 0.0062 - 0.0007);
+    }
+  }
 }
 
 }  // namespace

@@ -72,6 +72,9 @@ TEST(MissionReader, SetsEachKeyToWhatItGivesBack) {
       case KeyType::volumes:
         value = std::vector<survey::Prism>{{{{0, 0}, {1, 0}, {0, 1}}, -2.0, 30.0}};
         break;
+      case KeyType::vectors:
+        value = std::vector<Eigen::Vector3d>{{10, -20, 90}, {0.5, 0, -45}};
+        break;
     }
     key.set(mission, value);
     const auto back = key.get(mission);

@@ -8,8 +8,11 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
+#include "flight/export/utm.h"
 #include "geometry/cloud_io.h"
+#include "geometry/mesh_io.h"
 #include "sim/depth_image.h"
+#include "tests/missions/las_file.h"
 #include "tests/missions/run_skycap.h"
 
 namespace skycap::missions {
@@ -186,6 +189,89 @@ TEST_F(ScanVerb, ACameraLeavesADatasetOfDepthImages) {
   EXPECT_EQ(json["depth_unit_m"], 0.002);
 }
 
+// Beside the picture, with the rawlog that was asked for, the dataset is the same.
+TEST_F(ScanVerb, ACameraLeavesARawlogOnDemand) {
+  folder.write("views.csv",
+               "view,x,y,z,direction_x,direction_y,direction_z\n0,5,0,1,-1,0,0\n1,3,0,1,-1,0,0\n");
+  const ProgramRun run =
+      scan({"--route", folder.path(), "--sensor", "see_d435", "--format", "rawlog"});
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  EXPECT_THAT(files(), testing::Contains("frames.rawlog"));
+  // Two images of 848 x 480 pixels of 16 bits, and what belongs to them.
+  EXPECT_GT(std::filesystem::file_size(folder / "out/frames.rawlog"), 2 * 2 * 848 * 480);
+}
+
+// Known: EPSG 32630, Oxford's zone. East and north there are turned by 1.4 degrees and shrunk by
+// 0.03 % at most, so the cube stays a cube of 2 m to 0.1 m.
+TEST_F(ScanVerb, LasFilesAreOnTheMapOnDemand) {
+  const std::vector<std::string> place = {"--set", "site.latitude_deg=51.7534",
+                                          "--set", "site.longitude_deg=-1.254",
+                                          "--set", "site.ellipsoid_height=110"};
+  std::vector<std::string> options = {"--set", "scan.crs=utm", "--format", "las,xyz"};
+  options.insert(options.end(), place.begin(), place.end());
+  ASSERT_EQ(scan(options).exit_code, 0);
+  const LasFile las(folder / "out/scan.las");
+  EXPECT_THAT(las.crs, HasSubstr("AUTHORITY[\"EPSG\",\"32630\"]"));
+  EXPECT_THAT(las.crs, HasSubstr("ellipsoid height"));
+  EXPECT_EQ(summary()["las_crs"], "utm");
+  // The mission's other files stay local.
+  const auto local = geometry::read_cloud(folder / "out/scan.xyz").positions;
+  EXPECT_LT(largest_error(local), 0.068F);
+  ASSERT_EQ(las.points.size(), local.size());
+  const flight::UtmProjection utm({{51.7534, -1.254, 110.0}, {}});
+  for (std::size_t i = 0; i < local.size(); ++i) {
+    const Eigen::Vector3d expected = utm.to_map(local[i].cast<double>());
+    ASSERT_LT((las.points[i].position - expected).norm(), 2e-4);  // steps of 0.1 mm in both files
+  }
+  // The reader of clouds wants local coordinates, and says so.
+  const ProgramRun judged = run_skycap({"evaluate", "--cloud", folder / "out/scan.las", "--model",
+                                        folder / "cube.obj", "--distance", "0.1"});
+  EXPECT_EQ(judged.exit_code, 2);
+  EXPECT_THAT(judged.err, HasSubstr("scan.las: point 0 is 573"));
+  EXPECT_THAT(judged.err, HasSubstr("coordinates must be local"));
+}
+
+// A second cube, 6 m to the east and turned, is scanned and is part of what is evaluated.
+TEST_F(ScanVerb, AModelCanStandAtSeveralPlaces) {
+  const std::string both = folder.write("both.yaml",
+                                        "scene: {model: cube.obj, copies: [[6, 1, 45]]}\n"
+                                        "scan:\n"
+                                        "  sensor: laser.yaml\n"
+                                        "  orbit: {radius: 12, lowest: 1, circles: 1, speed: 100}\n"
+                                        "evaluation: {registration_distance: 0.1}\n");
+  const auto run = run_skycap({"scan", both, "--out", folder / "both", "--format", "xyz"});
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  std::size_t first = 0, second = 0;
+  for (const Vector3f& point : geometry::read_cloud(folder / "both/scan.xyz").positions) {
+    const Vector3f own = point - Vector3f(0, 0, 1);
+    const Vector3f other =
+        Eigen::AngleAxisf(-0.785398163F, Vector3f::UnitZ()) * (point - Vector3f(6, 1, 1));
+    const float off_first = std::abs(own.cwiseAbs().maxCoeff() - 1.0F);
+    const float off_second = std::abs(other.cwiseAbs().maxCoeff() - 1.0F);
+    EXPECT_LT(std::min(off_first, off_second), 0.068F);  // the noise of the range
+    ++(off_first < off_second ? first : second);
+  }
+  EXPECT_GT(first, 500U);
+  EXPECT_GT(second, 500U);
+
+  // What covers a share of one cube covers half of that of two.
+  ASSERT_EQ(scan({"--format", "las"}).exit_code, 0);
+  const auto coverage = [&](const std::string& of) {
+    const ProgramRun judged =
+        run_skycap({"evaluate", "--cloud", folder / "out/scan.las", "--model", of, "--json"});
+    EXPECT_EQ(judged.exit_code, 0) << judged.err;
+    return nlohmann::json::parse(judged.out)["coverage"].get<double>();
+  };
+  EXPECT_GT(coverage(mission), 0.2);
+  EXPECT_NEAR(coverage(both), 0.5 * coverage(mission), 0.01);  // of 100,000 samples
+
+  const auto model = run_skycap({"model", both, "--out", folder / "all.ply"});
+  ASSERT_EQ(model.exit_code, 0) << model.err;
+  const geometry::Mesh mesh = geometry::read_mesh(folder / "all.ply");
+  EXPECT_EQ(mesh.triangles.size(), 24U);
+  EXPECT_NEAR(geometry::bounding_box(mesh).max().x(), 6 + std::sqrt(2.0), 1e-6);
+}
+
 TEST_F(ScanVerb, CtrlCLeavesWholeFilesOfTheBeginning) {
   std::stop_source stop;
   stop.request_stop();
@@ -210,6 +296,9 @@ TEST_F(ScanVerb, RefusesInOneLineAndLeavesNothing) {
   EXPECT_THAT(refused({"--sensor", "sonar"}), HasSubstr("there is no sensor sonar"));
   EXPECT_THAT(refused({"--route", folder / "none.tum"}), HasSubstr("none.tum"));
   EXPECT_THAT(refused({"--set", "scan.orbit.radius=0"}), HasSubstr("key scan.orbit.radius"));
+  EXPECT_THAT(refused({"--set", "scan.crs=utm"}),
+              HasSubstr("scan.crs is utm, but the mission has no place"));
+  EXPECT_THAT(refused({"--set", "scene.copies=[[6, 1]]"}), HasSubstr("key scene.copies"));
 }
 
 }  // namespace
