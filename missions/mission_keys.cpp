@@ -26,7 +26,7 @@ std::vector<Key> general_keys() {
 Key copies_key() {
   Key key = key_for(
       "scene.copies", KeyType::vectors, [](Mission & m) -> auto& { return m.scene.copies; },
-      "The same model at more places, each [east, north, heading_deg]: metres from position, and "
+      "The same model at more places, each [east, north, turn_deg]: metres from position, and "
       "a turn anticlockwise about its own upright.");
   key.range = between(-1e6, 1e6);
   const auto turned = [](const KeyValue& value, double factor) {
@@ -43,16 +43,25 @@ Key copies_key() {
   return key;
 }
 
+Key detail_key() {
+  Key key = choice(
+      "scene.detail", {"coarse", "standard", "fine"},
+      [](Mission & m) -> auto& { return m.scene.detail; },
+      "Level of detail of a builtin model: the same shape in more and smaller triangles.");
+  key.get = [get = key.get](const Mission& mission) -> std::optional<KeyValue> {
+    if (!mission.scene.model.starts_with("builtin:")) return std::nullopt;
+    return get(mission);
+  };
+  return otherwise("standard", key);
+}
+
 std::vector<Key> scene_keys() {
   return {
       required(text(
           "scene.model", [](Mission & m) -> auto& { return m.scene.model; },
           "What is surveyed: builtin:NAME, model:NAME, or the path of a PLY, OBJ, STL or "
           "OFF file, relative to the mission file.")),
-      choice(
-          "scene.detail", {"coarse", "standard", "fine"},
-          [](Mission & m) -> auto& { return m.scene.detail; },
-          "Level of detail of a builtin model: the same shape in more and smaller triangles."),
+      detail_key(),
       choice(
           "scene.up_axis", {"z", "y"}, [](Mission & m) -> auto& { return m.scene.up_axis; },
           "Which axis of the model's own frame points up."),

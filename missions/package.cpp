@@ -51,7 +51,13 @@ Json json_of(const std::vector<survey::Prism>& volumes) {
   return list;
 }
 
-Json json_of(const KeyValue& value) {
+Json json_of(const std::vector<Eigen::Vector3d>& vectors) {
+  Json list = Json::array();
+  for (const Eigen::Vector3d& vector : vectors) list.push_back(json_of(vector));
+  return list;
+}
+
+Json setting_json(const KeyValue& value) {
   return std::visit(
       [](const auto& plain) -> Json {
         using Value = std::decay_t<decltype(plain)>;
@@ -98,7 +104,7 @@ std::string value_text(const Mission& mission, const char* key) {
 Json settings(const Mission& mission) {
   Json values = Json::object();
   for (const Key& key : mission_keys()) {
-    if (const auto value = key.get(mission)) values[key.path] = json_of(*value);
+    if (const auto value = key.get(mission)) values[key.path] = setting_json(*value);
   }
   return values;
 }

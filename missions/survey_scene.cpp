@@ -28,8 +28,7 @@ constexpr std::uint64_t ceiling_seed = 1;
 sim::Scene scene_of(const geometry::Mesh& model, const Mission& mission,
                     const std::filesystem::path& folder) {
   if (mission.sensor.scanner) {  // what a laser measures depends on the surfaces' reflectances
-    const ReflectingMesh truth = reflecting_scene(mission.scene, folder);
-    return {truth.mesh, truth.reflectances, mission.threads};
+    return reflecting_scene(mission.scene, folder).scene(mission.threads);
   }
   if (!mission.scene.ground) return sim::Scene(model, mission.threads);
   geometry::Mesh mesh = model;

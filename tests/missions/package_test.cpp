@@ -121,6 +121,16 @@ TEST(Package, SummaryHasTheContractsFields) {
   }
 }
 
+TEST(Package, SettingsAreThoseThatTheMissionMayHave) {
+  const auto settings = [](const std::string& model) {
+    Mission mission;
+    mission.scene.model = model;
+    return nlohmann::json::parse(summary_json(mission, two_views(), {}))["settings"];
+  };
+  EXPECT_EQ(settings("builtin:teapot")["scene.detail"], "standard");
+  EXPECT_FALSE(settings("house.ply").contains("scene.detail"));
+}
+
 TEST(Package, SummaryShowsNamesThatAreNotUtf8) {
   Mission mission;
   mission.name = "vase\xff";

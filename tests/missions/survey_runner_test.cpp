@@ -284,6 +284,16 @@ TEST(Evaluate, AgreesWithThePlansOwnCoverage) {
   EXPECT_NEAR(evaluation["distance_to_model_m"]["root_mean_square"], 0.03, 0.008);
 }
 
+TEST(Plan, SurveysCopiesOfTheModelAndKeepsThemInTheSettings) {
+  const TestFolder folder;
+  const std::string mission = folder.write("m.yaml", quick_mission());
+  const auto run = run_skycap({"plan", mission, "--set", "scene.copies=[[1.5, 0, 90]]",
+                               "--max-views", "2", "--out", folder / "out"});
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  const json summary = json::parse(content_of(folder.path() / "out" / "summary.json"));
+  EXPECT_EQ(summary["settings"]["scene.copies"], json::parse("[[1.5, 0.0, 90.0]]"));
+}
+
 TEST(Model, HasLevelsOfDetailOfTheSameShape) {
   const TestFolder folder;
   const auto printed = [](const std::string& model, const char* detail) {
