@@ -41,6 +41,7 @@ void CloudFile::finish() {
 }
 
 void CloudFile::put(const std::vector<std::uint8_t>& bytes) {
+  if (bytes.empty()) return;
   if (std::fwrite(bytes.data(), 1, bytes.size(), file_.get()) != bytes.size()) fail();
   bytes_ += bytes.size();
 }
