@@ -53,8 +53,10 @@ void ScanVoxels::mark_passed(const Vector3f& origin, std::span<const Vector3f> e
   for (const Vector3f& end : ends) {
     const VoxelLine::Steps steps = VoxelLine(origin, end, resolution_).steps();
     std::uint8_t* mark = marks_.data() + start;
-    auto [x, y, z] = steps.border;
-    const auto [x_spacing, y_spacing, z_spacing] = steps.spacing;
+    std::int64_t x = steps.border[0], y = steps.border[1], z = steps.border[2];
+    const std::int64_t x_spacing = steps.spacing[0];
+    const std::int64_t y_spacing = steps.spacing[1];
+    const std::int64_t z_spacing = steps.spacing[2];
     const std::int64_t x_stride = steps.sense[0] * strides_[0];
     const std::int64_t y_stride = steps.sense[1] * strides_[1];
     const std::int64_t z_stride = steps.sense[2] * strides_[2];
