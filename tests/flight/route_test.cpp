@@ -77,13 +77,7 @@ TEST(Route, LegsGoRoundWhatTheStraightLineWouldHit) {
 
 // The grid is made too coarse for the window, which leaves it to the second engine.
 TEST(Route, PassagesTooNarrowForTheGridAreFoundBySampling) {
-  Obstacles obstacles;
-  geometry::Mesh& mesh = obstacles.mesh;
-  geometry::append(mesh, scenes::box({-30, 0, 0}, {-3, 1, 40}));
-  geometry::append(mesh, scenes::box({3, 0, 0}, {30, 1, 40}));
-  geometry::append(mesh, scenes::box({-3, 0, 0}, {3, 1, 17}));
-  geometry::append(mesh, scenes::box({-3, 0, 23}, {3, 1, 40}));
-  obstacles.fence = Prism{"yard", {{-30, -15}, {30, -15}, {30, 16}, {-30, 16}}, 0.0, 40.0};
+  const Obstacles obstacles = scenes::wall_with_window();
   RouteOptions how = options();
   how.takeoff = {-8, -6, 15};
   how.path.finest_cell = 9.0;

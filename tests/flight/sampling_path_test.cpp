@@ -42,23 +42,10 @@ TEST(SamplingPath, AitStarAgreesWithTheGridRoundABuilding) {
                    {.planner = SamplingPlanner::ait_star, .max_checks = 1500});
 }
 
-/// A wall of 60 x 40 m with a window of 6 x 6 m: at a clearance of 2 m a hole of 2 x 2 m, and
-/// within the fence the only way to the other side.
-Obstacles wall_with_window() {
-  Obstacles obstacles;
-  geometry::Mesh& mesh = obstacles.mesh;
-  geometry::append(mesh, scenes::box({-30, 0, 0}, {-3, 1, 40}));
-  geometry::append(mesh, scenes::box({3, 0, 0}, {30, 1, 40}));
-  geometry::append(mesh, scenes::box({-3, 0, 0}, {3, 1, 17}));
-  geometry::append(mesh, scenes::box({-3, 0, 23}, {3, 1, 40}));
-  obstacles.fence = Prism{"yard", {{-30, -15}, {30, -15}, {30, 16}, {-30, 16}}, 0.0, 40.0};
-  return obstacles;
-}
-
 // From one side of the window to the same side behind the wall: the straight line is in the way of
 // the wall, so the hole must be found, and by every seed, not only a lucky one.
 TEST(SamplingPath, FindsTheWindowInAWallWithEverySeed) {
-  const KnownSpace space(wall_with_window());
+  const KnownSpace space(scenes::wall_with_window());
   const Vector3d from(-8, -6, 20), to(-8, 7, 20);
   const Path grid = PathFinder(space, 2.0).find(from, to);
   ASSERT_EQ(grid.status, PathStatus::found);

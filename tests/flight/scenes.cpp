@@ -113,6 +113,17 @@ Mesh city(int cells) {
   return mesh;
 }
 
+Obstacles wall_with_window() {
+  Obstacles obstacles;
+  geometry::Mesh& mesh = obstacles.mesh;
+  geometry::append(mesh, box({-30, 0, 0}, {-3, 1, 40}));
+  geometry::append(mesh, box({3, 0, 0}, {30, 1, 40}));
+  geometry::append(mesh, box({-3, 0, 0}, {3, 1, 17}));
+  geometry::append(mesh, box({-3, 0, 23}, {3, 1, 40}));
+  obstacles.fence = Prism{"yard", {{-30, -15}, {30, -15}, {30, 16}, {-30, 16}}, 0.0, 40.0};
+  return obstacles;
+}
+
 std::vector<Segment> legs(std::mt19937_64& random, std::size_t count, const AlignedBox3d& within) {
   std::vector<Segment> legs;
   while (legs.size() < count) {

@@ -7,6 +7,7 @@
 #include <Eigen/Core>
 #include <Eigen/Geometry>
 
+#include "flight/obstacles.h"
 #include "flight/segment_distance.h"
 #include "geometry/mesh.h"
 
@@ -26,6 +27,10 @@ geometry::Mesh wires(std::mt19937_64& random, int count);
 
 /// 10 x 10 buildings on 100 m x 100 m of street grid; `cells` as in box(): 1,200 cells^2 triangles.
 geometry::Mesh city(int cells);
+
+/// A wall of 60 x 40 m with a window of 6 x 6 m: at a clearance of 2 m a hole of 2 x 2 m, and
+/// within the fence the only way to the other side.
+Obstacles wall_with_window();
 
 /// Random legs, 5 to 30 m long, with both ends in the box.
 std::vector<Segment> legs(std::mt19937_64& random, std::size_t count,

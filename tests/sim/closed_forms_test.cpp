@@ -10,7 +10,7 @@
 #include "sim/depth_camera.h"
 #include "sim/depth_image.h"
 #include "sim/lidar.h"
-#include "sim/scene_embree.h"
+#include "tests/sim/packets.h"
 #include "tests/sim/shapes.h"
 
 namespace skycap::sim {
@@ -116,15 +116,8 @@ void expect_packets_agree(const Scene& scene, const Vector3d& origin,
   Packet<width> packet;
   int differing = 0;
   for (std::size_t first = 0; first + width <= directions.size(); first += width) {
-    const Vector3f local = (origin - scene.embree().centre).cast<float>();
     for (int lane = 0; lane < width; ++lane) {
-      const Vector3f direction = directions[first + lane].cast<float>();
-      packet.rays.ray.org_x[lane] = local.x();
-      packet.rays.ray.org_y[lane] = local.y();
-      packet.rays.ray.org_z[lane] = local.z();
-      packet.rays.ray.dir_x[lane] = direction.x();
-      packet.rays.ray.dir_y[lane] = direction.y();
-      packet.rays.ray.dir_z[lane] = direction.z();
+      aim(packet, lane, scene, origin, directions[first + lane]);
     }
     packet.cast(scene.embree(), 1000.0F);
     for (int lane = 0; lane < width; ++lane) {

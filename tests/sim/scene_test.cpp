@@ -11,7 +11,7 @@
 #include <unistd.h>
 
 #include "geometry/error.h"
-#include "sim/scene_embree.h"
+#include "tests/sim/packets.h"
 #include "tests/sim/shapes.h"
 
 namespace skycap::sim {
@@ -112,15 +112,8 @@ int count_leaks(const Scene& scene, const Vector3d& origin, const std::vector<Ve
   int leaks = 0;
   for (std::size_t first = 0; first < targets.size(); first += width) {
     for (int lane = 0; lane < width; ++lane) {
-      const Eigen::Vector3f local = (origin - scene.embree().centre).cast<float>();
       const Vector3d& target = targets[std::min(first + lane, targets.size() - 1)];
-      const Eigen::Vector3f direction = (target - origin).cast<float>();
-      packet.rays.ray.org_x[lane] = local.x();
-      packet.rays.ray.org_y[lane] = local.y();
-      packet.rays.ray.org_z[lane] = local.z();
-      packet.rays.ray.dir_x[lane] = direction.x();
-      packet.rays.ray.dir_y[lane] = direction.y();
-      packet.rays.ray.dir_z[lane] = direction.z();
+      aim(packet, lane, scene, origin, target - origin);
     }
     packet.cast(scene.embree(), std::numeric_limits<float>::infinity());
     for (int lane = 0; lane < width; ++lane) {
