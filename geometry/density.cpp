@@ -3,33 +3,10 @@
 #include <algorithm>
 #include <cassert>
 
+#include "geometry/nearby_points.h"
 #include "geometry/parallel.h"
 
 namespace skycap::geometry {
-
-DensityMap::NearbyPoints::NearbyPoints() {
-  constexpr float far_away = 1e18F;  // its square is finite, and no query reaches it
-  x_.fill(far_away);
-  y_.fill(far_away);
-  z_.fill(far_away);
-}
-
-void DensityMap::NearbyPoints::add(const Eigen::Vector3f& point) {
-  x_[next_] = point.x();
-  y_[next_] = point.y();
-  z_[next_] = point.z();
-  next_ = (next_ + 1) % count;
-}
-
-bool DensityMap::NearbyPoints::any_within(const Eigen::Vector3f& query,
-                                          float squared_radius) const {
-  int within = 0;
-  for (std::size_t i = 0; i < count; ++i) {
-    const float x = query.x() - x_[i], y = query.y() - y_[i], z = query.z() - z_[i];
-    within |= x * x + y * y + z * z <= squared_radius ? 1 : 0;
-  }
-  return within != 0;
-}
 
 // Cells twice as wide as the spacing: a ball of that radius reaches eight of them.
 DensityMap::DensityMap(const DensityConfig& config)
@@ -39,19 +16,10 @@ DensityMap::DensityMap(const DensityConfig& config)
   assert(config.spacing < config.radius);
 }
 
-bool DensityMap::has_room_for(const Eigen::Vector3f& point, NearbyPoints& nearby) const {
-  const auto squared_spacing = static_cast<float>(config_.spacing * config_.spacing);
-  if (nearby.any_within(point, squared_spacing)) return false;
-  const std::uint32_t neighbour = spacing_grid_.first_within(point, config_.spacing);
-  if (neighbour == PointGrid::none) return true;
-  nearby.add(cloud_.positions[neighbour]);
-  return false;
-}
-
 void DensityMap::keep_if_room(std::span<const Eigen::Vector3f> points, std::uint32_t view) {
-  NearbyPoints nearby;
+  NearbyPoints kept(spacing_grid_, config_.spacing);
   for (const Eigen::Vector3f& point : points) {
-    if (!has_room_for(point, nearby)) continue;
+    if (kept.any_near(point)) continue;
     spacing_grid_.insert(point);
     index_.insert(point);
     cloud_.positions.push_back(point);
@@ -71,11 +39,11 @@ void DensityMap::insert(std::span<const Eigen::Vector3f> points, std::uint32_t v
     const std::size_t parts = (points.size() + part_size - 1) / part_size;
     std::vector<std::vector<Eigen::Vector3f>> remaining(parts);
     parallel_for(parts, threads, [&](std::size_t part) {
-      NearbyPoints nearby;
+      NearbyPoints kept(spacing_grid_, config_.spacing);
       const std::size_t first = part * part_size;
       for (const Eigen::Vector3f& point :
            points.subspan(first, std::min(part_size, points.size() - first))) {
-        if (has_room_for(point, nearby)) remaining[part].push_back(point);
+        if (!kept.any_near(point)) remaining[part].push_back(point);
       }
     });
     for (const auto& part : remaining) keep_if_room(part, view);

@@ -69,25 +69,11 @@ class DensityMap {
   void give_up(std::uint32_t frontier);
 
  private:
-  /// A few points to try first. Points come in the order of a scan, so what was too near to one is
-  /// often too near to the next.
-  class NearbyPoints {
-   public:
-    NearbyPoints();
-    void add(const Eigen::Vector3f& point);
-    bool any_within(const Eigen::Vector3f& query, float squared_radius) const;
-
-   private:
-    static constexpr std::size_t count = 8;
-    std::array<float, count> x_, y_, z_;
-    std::size_t next_ = 0;
-  };
   struct NonCore {
     std::uint32_t point;
     std::uint32_t neighbours;  // within r, itself included
   };
 
-  bool has_room_for(const Eigen::Vector3f& point, NearbyPoints& nearby) const;
   void keep_if_room(std::span<const Eigen::Vector3f> points, std::uint32_t view);
   std::vector<std::uint32_t> promote_dense_points(std::uint32_t first_new);
   std::vector<std::uint32_t> points_to_relabel(const std::vector<std::uint32_t>& promoted) const;
@@ -97,7 +83,6 @@ class DensityMap {
   PointCloud cloud_;
   SpatialIndex index_;
   PointGrid spacing_grid_;  // the same points in smaller cells, for the spacing
-  NearbyPoints nearby_;     // that turned points away lately
   std::vector<PointLabel> labels_;
   std::vector<NonCore> non_core_;  // ascending by point
   std::vector<std::uint8_t> given_up_;

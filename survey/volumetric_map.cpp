@@ -25,22 +25,30 @@ void VolumetricMap::insert(const Vector3f& origin, std::span<const Vector3f> ret
                            std::span<const Vector3f> empty_ends) {
   std::vector<Block*> changed;
   Block* block = nullptr;  // of the last voxel
-  const ScanVoxels voxels(origin, returns, empty_ends, resolution_);
-  voxels.for_each([&](const VoxelIndex& voxel, bool is_hit) {
+  const ScanVoxels voxels(origin, returns, empty_ends, resolution_, shadow_length_);
+  voxels.for_each([&](const VoxelIndex& voxel, ScanVoxels::Mark mark) {
     const VoxelIndex index = coarser(voxel, block_shift);
     if (!block || block->index != index) block = &block_at(index);
-    if (block->changed == 0) changed.push_back(block);
     const std::uint32_t brick = place_of(coarser(voxel, brick_shift));
-    block->changed |= std::uint64_t{1} << brick;
+    const std::uint64_t bit = std::uint64_t{1} << brick;
     Code& code = block->codes[brick][place_of(voxel)];
-    code = is_hit ? states_.after_hit(code) : states_.after_miss(code);
+    if (ScanVoxels::is_shadow(mark)) {
+      const bool is_less_deep = code != OccupancyStates::untouched && code <= mark;
+      if (OccupancyStates::is_measured(code) || is_less_deep) return;
+      code = mark;
+      block->known |= bit;
+      block->shadows |= bit;
+      return;
+    }
+    if (block->changed == 0) changed.push_back(block);
+    block->changed |= bit;
+    code = mark == ScanVoxels::hit ? states_.after_hit(code) : states_.after_miss(code);
   });
   for (Block* const touched : changed) {
     for (; touched->changed != 0; touched->changed &= touched->changed - 1) {
       summarise(*touched, static_cast<std::uint32_t>(std::countr_zero(touched->changed)));
     }
   }
-  for (const Vector3f& point : returns) cast_shadow(origin, point);
 }
 
 void VolumetricMap::summarise(Block& block, std::uint32_t brick) {
@@ -62,36 +70,6 @@ void VolumetricMap::summarise(Block& block, std::uint32_t brick) {
   const double width = resolution_ * (1 << brick_shift);
   surface_box_.extend(width * corner);
   surface_box_.extend(width * (corner + Eigen::Vector3d::Ones()));
-}
-
-void VolumetricMap::cast_shadow(const Vector3f& origin, const Vector3f& point) {
-  const Vector3f way = point - origin;
-  const float length = way.norm();
-  if (length == 0.0F) return;
-  const Vector3f end = point + way * (static_cast<float>(shadow_length_) / length);
-  const VoxelLine line(point, end, resolution_);
-  if (line.is_in_one_voxel()) return;
-  Block* block = nullptr;
-  Code depth = 0;  // the first voxel is the surface's own
-  const auto find_block = [&](const auto& blocks) {
-    block = &block_at(blocks.cell());
-    return false;
-  };
-  for_each_brick(line, find_block, [&](const auto& bricks) {
-    const std::uint32_t brick = place_of(bricks.cell());
-    VoxelWalk walk(line, bricks.entered());
-    for (; !walk.is_over() && !walk.left_brick(); walk.advance(), ++depth) {
-      if (depth == 0) continue;
-      Code& code = block->codes[brick][walk.place()];
-      if (code == OccupancyStates::untouched ||
-          (!OccupancyStates::is_measured(code) && depth < code)) {
-        code = depth;
-        block->known |= std::uint64_t{1} << brick;
-        block->shadows |= std::uint64_t{1} << brick;
-      }
-    }
-    return !walk.is_over();
-  });
 }
 
 VolumetricMap::Block& VolumetricMap::block_at(const VoxelIndex& index) {

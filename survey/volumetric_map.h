@@ -107,7 +107,6 @@ class VolumetricMap {
   Block& block_at(const VoxelIndex& index);  // made if need be
   void grow();
   void summarise(Block& block, std::uint32_t brick);
-  void cast_shadow(const Eigen::Vector3f& origin, const Eigen::Vector3f& point);
   Code code_of(const VoxelIndex& voxel) const;
   Code code_at(const Eigen::Vector3f& point) const {
     return code_of(voxel_at(point, 1.0 / resolution_));

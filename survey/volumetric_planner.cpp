@@ -8,6 +8,7 @@
 #include <string>
 
 #include "geometry/error.h"
+#include "geometry/nearby_points.h"
 #include "geometry/parallel.h"
 #include "geometry/point_grid.h"
 #include "survey/stopwatch.h"
@@ -132,7 +133,7 @@ struct VolumetricPlanner::Impl {
         camera(its_camera),
         directions(ray_directions(camera, config.settings.rays)),
         map(config.resolution, shadow_length(config)),
-        kept(std::max(config.spacing, 1e-6)) {
+        kept(std::max(2.0 * config.spacing, 1e-6)) {
     for (const View& view : sphere_views(config.candidates, config.sphere_centre,
                                          config.sphere_radius, config.least_height, config.seed)) {
       candidates.push_back({view});
@@ -184,9 +185,10 @@ std::optional<View> VolumetricPlanner::next_view_instead() { return impl_->take_
 void VolumetricPlanner::Impl::insert(const Scan& scan) {
   position = scan.sensor_position();
   std::vector<Vector3f> measured;
+  geometry::NearbyPoints nearby(kept, config.spacing);
   for (const Vector3f& point : scan.points) {
     if (config.scene_box && !config.scene_box->contains(point.cast<double>())) continue;
-    const bool is_new = !kept.any_within(point, config.spacing);
+    const bool is_new = !nearby.any_near(point);
     if (is_new) {
       kept.insert(point);
       cloud.positions.push_back(point);
