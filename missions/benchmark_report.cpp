@@ -86,7 +86,30 @@ Json json_of(const std::vector<CurvePoint>& curve) {
   return {{"x", x}, {"coverage", mean}, {"standard_deviation", deviation}};
 }
 
-Json json_of(const BenchmarkCell& cell) {
+/// A coverage that planners are timed to.
+struct Mark {
+  std::string key;    ///< in results.json
+  std::string title;  ///< in the report
+  double coverage;
+  std::optional<CellFigures> whole;  ///< surveys that end with it
+};
+
+/// The paper's SEE++, and SEE++ and SEE as they are here.
+std::vector<Mark> marks_of(const std::vector<BenchmarkCell>& cells, const std::string& mission) {
+  std::vector<Mark> marks;
+  if (const auto paper = paper_result(mission, "see++")) {
+    marks.push_back({"paper", "the paper's SEE++", paper->coverage, {}});
+  }
+  for (const char* planner : {"see++", "see"}) {
+    const BenchmarkCell* cell = cell_of(cells, mission, planner);
+    if (!cell || cell->trials.empty()) continue;
+    const CellFigures whole = figures_of(*cell);
+    marks.push_back({planner, title_of(planner) + " here", whole.coverage.mean, whole});
+  }
+  return marks;
+}
+
+Json json_of(const BenchmarkCell& cell, const std::vector<BenchmarkCell>& cells) {
   Json json{{"mission", cell.mission}, {"planner", cell.planner}, {"trials", cell.trials.size()}};
   if (cell.trials.empty()) return json;
   json["trials_complete"] =
@@ -110,6 +133,16 @@ Json json_of(const BenchmarkCell& cell) {
                      {"share_by_views", targets.share_by_views},
                      {"distance_bin_m", target_distance_bin},
                      {"share_by_distance", targets.share_by_distance}};
+  for (const Mark& mark : marks_of(cells, cell.mission)) {
+    const auto reach = reach_figures(cell.trials, mark.coverage);
+    Json& to = json["until_coverage_of"][mark.key];
+    to["coverage"] = mark.coverage;
+    to["trials"] = reach ? reach->reached : 0;
+    if (!reach) continue;
+    to["views"] = json_of(reach->views);
+    to["distance_m"] = json_of(reach->distance);
+    to["planning_time_s"] = json_of(reach->planning_time);
+  }
   json["curves"] = {
       {"views", json_of(coverage_curve(cell.trials, CurveAxis::views, curve_points))},
       {"planning_time_s",
@@ -194,6 +227,40 @@ std::string details(const std::vector<BenchmarkCell>& cells, const std::string& 
   return text;
 }
 
+/// What it takes each planner to come to the coverage of others, and the ratio to what it took
+/// them.
+std::string reach_table(const std::vector<BenchmarkCell>& cells, const std::string& mission) {
+  std::string text;
+  for (const Mark& mark : marks_of(cells, mission)) {
+    const auto entry = [&](const Column& column, const Statistic& ours) {
+      const std::string number = formatted(column.format, ours.mean / column.unit);
+      if (!mark.whole) return number;
+      const double whole = ((*mark.whole).*column.ours).mean;
+      return number + (whole > 0.0 ? ", " + formatted("%.2f", ours.mean / whole) + "×" : "");
+    };
+    for (const BenchmarkCell& cell : cells) {
+      if (cell.mission != mission || cell.planner == mark.key) continue;
+      const auto reach = reach_figures(cell.trials, mark.coverage);
+      std::vector<std::string> line{
+          mark.title + ", " + formatted("%.1f", 100.0 * mark.coverage), title_of(cell.planner),
+          std::to_string(reach ? reach->reached : 0) + " of " + std::to_string(cell.trials.size())};
+      for (const Column& column : columns()) {
+        if (column.ours == &CellFigures::coverage) continue;
+        line.push_back(!reach                               ? "-"
+                       : column.ours == &CellFigures::views ? entry(column, reach->views)
+                       : column.ours == &CellFigures::distance
+                           ? entry(column, reach->distance)
+                           : entry(column, reach->planning_time));
+      }
+      text += row(line);
+    }
+  }
+  if (text.empty()) return text;
+  return row({"coverage of [%]", "planner", "trials that reach it", "Views", "Time [s]",
+              "Distance [m]"}) +
+         rule(6) + text;
+}
+
 /// All trials of a planner on the standard models.
 std::vector<Trial> standard_trials(const std::vector<BenchmarkCell>& cells,
                                    const std::string& planner) {
@@ -241,7 +308,7 @@ std::string figure_6(const std::vector<BenchmarkCell>& cells) {
 
 std::string results_json(const std::vector<BenchmarkCell>& cells) {
   Json json{{"version", version}, {"results", Json::array()}};
-  for (const BenchmarkCell& cell : cells) json["results"].push_back(json_of(cell));
+  for (const BenchmarkCell& cell : cells) json["results"].push_back(json_of(cell, cells));
   return json_text(json);
 }
 
@@ -298,6 +365,9 @@ std::string report_markdown(const std::vector<BenchmarkCell>& cells,
       table_1(cells);
   for (const std::string& mission : distinct(cells, &BenchmarkCell::mission)) {
     text += "\n### " + mission + "\n\n" + details(cells, mission);
+    const std::string reach = reach_table(cells, mission);
+    if (!reach.empty())
+      text += "\nUntil a coverage is reached; × is the ratio to all of its survey:\n\n" + reach;
   }
   const auto has_standard_see = [](const BenchmarkCell& cell) {
     return is_standard_model(cell.mission) && paper_view_result(cell.planner) &&

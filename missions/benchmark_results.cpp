@@ -84,6 +84,21 @@ ViewFigures view_figures(const std::vector<Trial>& trials) {
           over(trials, [](const Trial& t) { return ratio(t.coverage.all, t.views); })};
 }
 
+std::optional<ReachFigures> reach_figures(const std::vector<Trial>& trials, double coverage) {
+  std::vector<double> views, distances, times;
+  for (const Trial& trial : trials) {
+    const auto there = std::ranges::find_if(trial.coverage_after,
+                                            [&](double reached) { return reached >= coverage; });
+    if (there == trial.coverage_after.end()) continue;
+    const auto view = static_cast<std::size_t>(there - trial.coverage_after.begin());
+    views.push_back(static_cast<double>(view + 1));
+    distances.push_back(trial.distance_after[view]);
+    times.push_back(trial.planning_time_after[view]);
+  }
+  if (views.empty()) return std::nullopt;
+  return ReachFigures{views.size(), statistic(views), statistic(distances), statistic(times)};
+}
+
 std::vector<CurvePoint> coverage_curve(const std::vector<Trial>& trials, CurveAxis axis,
                                        std::size_t count) {
   std::vector<CurvePoint> curve;

@@ -38,6 +38,15 @@ struct ViewFigures {
 
 ViewFigures view_figures(const std::vector<Trial>& trials);
 
+/// What it took until trials had a coverage.
+struct ReachFigures {
+  std::size_t reached = 0;  ///< trials that came to it; the others are in none of the means
+  Statistic views, distance, planning_time;
+};
+
+/// Nothing if no trial comes to `coverage`, a share of the surface.
+std::optional<ReachFigures> reach_figures(const std::vector<Trial>& trials, double coverage);
+
 /// Along what coverage is drawn.
 enum class CurveAxis { views, planning_time, distance };
 

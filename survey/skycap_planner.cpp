@@ -34,6 +34,9 @@ constexpr float promise = 0.2F, kept_promise = 0.25F, broken_trust = 0.5F;
 /// Four successive scans that each add less than this share of the area end the survey.
 constexpr double idle_gain = 0.003;
 constexpr int most_idle_scans = 4;
+/// Shares are of the known area, or of this many times what one scan covered at most: objects take
+/// about as many, and a scene that takes many more is worth as small gains as an object.
+constexpr double scans_of_an_object = 7.0;
 
 void require(bool holds, const char* field, const char* rule, double value) {
   if (holds) return;
@@ -337,12 +340,17 @@ struct SkycapPlanner::Impl {
                                                            : SkycapStop::nothing_in_reach;
       return std::nullopt;
     }
-    if (next_gain < config.stop.least_gain) {
+    if (choice->best_gain < config.stop.least_gain * reference_area()) {
       stop = SkycapStop::little_gain;
       return std::nullopt;
     }
     proposed = choice->view;
     return proposed;
+  }
+
+  /// What the shares of the stop rule are of.
+  double reference_area() const {
+    return std::min(map->area(), scans_of_an_object * most_covered_at_once);
   }
 
   SkycapStop reason_to_stop() const {
@@ -382,8 +390,9 @@ struct SkycapPlanner::Impl {
     ++scans;
     refused.clear();
     proposed.reset();
-    idle_scans =
-        map->covered_area() - covered_before < idle_gain * map->area() ? idle_scans + 1 : 0;
+    const double newly_covered = map->covered_area() - covered_before;
+    most_covered_at_once = std::max(most_covered_at_once, newly_covered);
+    idle_scans = newly_covered < idle_gain * reference_area() ? idle_scans + 1 : 0;
     stopwatch.lap("update");
     unseen->predict(*map, *space, region);
     field.emplace(*map, unseen->patches(), camera, *dose, gain);
@@ -418,7 +427,8 @@ struct SkycapPlanner::Impl {
   std::optional<GainField> field;
   std::vector<bool> in_sight;  ///< of the field's targets, from some good view
 
-  double next_gain = 0.0;  ///< of the best view, as a share of the known area
+  double next_gain = 0.0;             ///< of the best view, as a share of the known area
+  double most_covered_at_once = 0.0;  ///< newly covered by one scan [m^2]
   std::size_t scans = 0;
   double length = 0.0;
   int idle_scans = 0;

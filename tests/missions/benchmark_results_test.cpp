@@ -80,6 +80,24 @@ TEST(TargetFigures, CountViewsAndDistancesUntilATargetIsObserved) {
   EXPECT_DOUBLE_EQ(figures.share_by_distance.back(), 0.75);
 }
 
+TEST(ReachFigures, AreOfTheFirstViewThatComesToTheCoverage) {
+  const auto reach = reach_figures({trial(0.2, 0.4, 0.8), trial(0.4, 0.5, 0.6)}, 0.4);
+  ASSERT_TRUE(reach);
+  EXPECT_EQ(reach->reached, 2U);
+  EXPECT_DOUBLE_EQ(reach->views.mean, 1.5);
+  EXPECT_DOUBLE_EQ(reach->distance.mean, 0.5);
+  EXPECT_DOUBLE_EQ(reach->planning_time.mean, 1.5);
+}
+
+TEST(ReachFigures, LeaveOutTrialsThatEndBefore) {
+  const std::vector<Trial> trials{trial(0.2, 0.4, 0.8), trial(0.4, 0.5, 0.6)};
+  const auto reach = reach_figures(trials, 0.7);
+  ASSERT_TRUE(reach);
+  EXPECT_EQ(reach->reached, 1U);
+  EXPECT_EQ(reach->views.mean, 3.0);
+  EXPECT_FALSE(reach_figures(trials, 0.9));
+}
+
 TEST(ViewFigures, AreMeansOverTheTrials) {
   const ViewFigures figures = view_figures({trial(0.1, 0.2, 0.6), trial(0.1, 0.2, 0.9)});
   EXPECT_DOUBLE_EQ(figures.frontiers.mean, 2.0);
@@ -128,6 +146,19 @@ TEST(BenchmarkReport, MarkdownHasBothTables) {
   EXPECT_THAT(text, HasSubstr("| SEE | 2.00 | 4.49 | 23.33 | 1.39 |"));
   EXPECT_THAT(text, HasSubstr("| SEE | 1 | 100.0 | 100.0 |"));
   EXPECT_THAT(text, HasSubstr("![coverage_teapot](coverage_teapot.svg)"));
+}
+
+TEST(BenchmarkReport, SaysWhatItTakesToReachTheCoverageOfSee) {
+  std::vector<BenchmarkCell> cells = two_cells();
+  cells[1].trials = {trial(0.1, 0.75, 0.9), trial(0.1, 0.2, 0.3)};
+  const std::string text = report_markdown(cells, {});
+  // SEE ends at 70 % after 3 views and 3 m; one of two surveys with OA is there at view 2, 1 m.
+  EXPECT_THAT(text,
+              HasSubstr("| SEE here, 70.0 | OA | 1 of 2 | 2.0, 0.67× | 2, 0.50× | 1.0, 0.33× |"));
+  EXPECT_THAT(text, HasSubstr("| the paper's SEE++, 97.1 | OA | 0 of 2 | - | - | - |"));
+  const auto json = nlohmann::json::parse(results_json(cells));
+  EXPECT_EQ(json["results"][1]["until_coverage_of"]["see"]["views"]["mean"], 2.0);
+  EXPECT_EQ(json["results"][1]["until_coverage_of"]["paper"]["trials"], 0);
 }
 
 TEST(BenchmarkReport, CsvHasALineForEachCellAndTrial) {
