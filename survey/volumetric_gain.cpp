@@ -291,6 +291,8 @@ double gain_of(const VolumetricMap& map, const geometry::View& view,
     if (Gain::only_surfaces) {
       reach = surface.isEmpty() ? -1.0 : far_end(surface, view.position, direction);
       if (reach < 0.0) continue;
+    }
+    if (Gain::only_surfaces && Gain::hears == Hears::every_voxel) {  // too slow to be for nothing
       OccupiedEnd surface_end;
       map.follow(origin, end, reach, surface_end);
       if (!surface_end.is_met()) continue;

@@ -158,10 +158,13 @@ class CellWalk {
 
  private:
   void aim() {
-    const bool on_x = (next_[0] < next_[1]) & (next_[0] < next_[2]);
-    const bool on_y = !on_x & (next_[1] < next_[2]);
-    leaving_.axis = on_x ? 0 : on_y ? 1 : 2;
-    leaving_.distance = std::min({next_[0], next_[1], next_[2]});
+    if (next_[0] < next_[1] && next_[0] < next_[2]) {
+      leaving_ = {next_[0], 0};
+    } else if (next_[1] < next_[2]) {
+      leaving_ = {next_[1], 1};
+    } else {
+      leaving_ = {next_[2], 2};
+    }
   }
 
   VoxelIndex cell_{};
