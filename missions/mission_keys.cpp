@@ -321,7 +321,8 @@ std::vector<Key> planner_keys() {
       number("planner.wanted_coverage", "share", above(0, 1), skycap_stop(&Stop::wanted_coverage),
              "skycap ends when it believes this share of the surface covered."),
       number("planner.least_gain", "share", between(0, 1), skycap_stop(&Stop::least_gain),
-             "skycap ends when no view promises this share of the known surface."),
+             "skycap ends when no view promises this share of the known surface, or of seven times "
+             "what one view covered at most, if that is less."),
   };
 }
 

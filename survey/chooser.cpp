@@ -25,12 +25,9 @@ constexpr std::array<double, 5> tilts = {0.0, 0.54, 0.54, 0.94, 0.94};
 constexpr std::array<double, 4> turns = {0.35, 0.2, 0.1, 0.05};
 constexpr int refined = 3;  // candidates that a round starts from
 constexpr int turned_directions = 6;
-constexpr int pool_size = 40;               // candidates that a batch is picked from
-constexpr double least_batch_share = 0.25;  // of the best gain, for a view to join the batch
-/// What came true of guessed gains in the last third of surveys of buildings and of the dragon: the
-/// easy guesses are settled by then.
-constexpr double late_yield = 0.3;
-constexpr double impatience = 0.15;  // weight of early gain against the length of a tour
+constexpr int pool_size = 40;              // candidates that a batch is picked from
+constexpr double least_batch_share = 0.5;  // of the best gain, for a view to join the batch
+constexpr double impatience = 0.15;        // weight of early gain against the length of a tour
 
 struct Candidate {
   View view;
@@ -97,7 +94,7 @@ class Chooser {
 
     double best_gain = 0.0;
     for (const Candidate& c : candidates_) {
-      best_gain = std::max(best_gain, c.gain.area - (1.0 - late_yield) * c.gain.unseen);
+      best_gain = std::max(best_gain, c.gain.area - (1.0 - settings_.unseen_yield) * c.gain.unseen);
     }
     const std::vector<std::size_t> pool = diverse_pool();
     std::vector<std::vector<Sight>> sights(pool.size());

@@ -21,14 +21,15 @@ struct ChooserSettings {
   int global_directions = 40;  ///< candidates spread evenly around all that is missing
   int refinements = 3;         ///< rounds of moving the best candidates
   int batch = 5;               ///< views planned ahead, at most 6; 1: the best next view only
+  double unseen_yield = 1.0;   ///< share of guessed gains that comes true, for best_gain
   unsigned threads = 1;        ///< zero: all processors
 };
 
 struct Choice {
   geometry::View view;
   double gain;  ///< expected newly covered area of this view [m^2]
-  /// That of the most rewarding view anywhere in reach, guesses counted at what they are worth when
-  /// little is left to find (docs/skycap_planner.md): for stop rules.
+  /// That of the most rewarding view anywhere in reach, guesses counted by `unseen_yield`: for stop
+  /// rules.
   double best_gain;
   /// For each target of the field, whether one of the best views of different places sees it. What
   /// none of them sees is hidden, or not there.

@@ -37,6 +37,9 @@ constexpr int most_idle_scans = 4;
 /// Shares are of the known area, or of this many times what one scan covered at most: objects take
 /// about as many, and a scene that takes many more is worth as small gains as an object.
 constexpr double scans_of_an_object = 7.0;
+/// How much of the evidence on guesses a scan keeps of those before it, and the least that guesses
+/// are ever counted for: a scan or two without any find must not end a survey.
+constexpr double yield_memory = 0.6, least_yield = 0.15;
 
 void require(bool holds, const char* field, const char* rule, double value) {
   if (holds) return;
@@ -254,6 +257,12 @@ struct SkycapPlanner::Impl {
     const View view = geometry::view_of(scan.world_from_sensor);
     std::vector<Sight> expected;
     if (field) expected = field->sights(view);
+    Promise promise;
+    for (const Sight& sight : expected) {
+      const double area = field->targets()[sight.target].weight * sight.covered_share;
+      (field->is_patch(sight.target) ? promise.unseen : promise.seen) += area;
+    }
+    const double covered_before = map->covered_area();
     const std::vector<float> hazards = map->surfels().hazards;
     const std::size_t first_new = map->surfels().size();
 
@@ -263,6 +272,24 @@ struct SkycapPlanner::Impl {
       map->add(image, *dose, blocks.jump, region);
     }
     grade(expected, hazards, first_new);
+    const double newly_covered = map->covered_area() - covered_before;
+    learn_yield(promise, newly_covered);
+    most_covered_at_once = std::max(most_covered_at_once, newly_covered);
+    idle_scans = newly_covered < idle_gain * reference_area() ? idle_scans + 1 : 0;
+  }
+
+  /// Area that a view was expected to cover newly.
+  struct Promise {
+    double seen = 0.0, unseen = 0.0;  // of known and of guessed surface
+  };
+
+  /// What guesses are worth: what came of those that the last scans should have shown.
+  void learn_yield(const Promise& promise, double newly_covered) {
+    if (promise.unseen <= 0.0) return;
+    guesses.promised = yield_memory * guesses.promised + promise.unseen;
+    guesses.found = yield_memory * guesses.found +
+                    std::clamp(newly_covered - promise.seen, 0.0, 2.0 * promise.unseen);
+    chooser.unseen_yield = std::clamp(guesses.found / guesses.promised, least_yield, 1.0);
   }
 
   /// Compares what the scan should have shown with what it did.
@@ -383,16 +410,12 @@ struct SkycapPlanner::Impl {
     insert_points(scan);
     stopwatch.lap("insert");
     if (!map) start();
-    const double covered_before = map->covered_area();
     take_in(scan);
     if (scans > 0) length += (scan.sensor_position() - position).norm();
     position = scan.sensor_position();
     ++scans;
     refused.clear();
     proposed.reset();
-    const double newly_covered = map->covered_area() - covered_before;
-    most_covered_at_once = std::max(most_covered_at_once, newly_covered);
-    idle_scans = newly_covered < idle_gain * reference_area() ? idle_scans + 1 : 0;
     stopwatch.lap("update");
     unseen->predict(*map, *space, region);
     field.emplace(*map, unseen->patches(), camera, *dose, gain);
@@ -429,6 +452,9 @@ struct SkycapPlanner::Impl {
 
   double next_gain = 0.0;             ///< of the best view, as a share of the known area
   double most_covered_at_once = 0.0;  ///< newly covered by one scan [m^2]
+  struct {
+    double promised = 0.0, found = 0.0;  // fading sums over the scans [m^2]
+  } guesses;
   std::size_t scans = 0;
   double length = 0.0;
   int idle_scans = 0;

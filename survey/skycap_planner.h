@@ -27,8 +27,9 @@ struct StopRule {
   /// Enough is covered: the share of the surface, seen and guessed, that the planner believes
   /// covered; in (0, 1].
   double wanted_coverage = 1.0;
-  /// Another view is not worth it: the best one promises less than this share of the known area.
-  double least_gain = 0.004;
+  /// Another view is not worth it: the best one promises less than this share of the known area, or
+  /// of seven times what one scan covered at most, if that is less.
+  double least_gain = 0.005;
   std::optional<std::size_t> most_views;
   std::optional<double> most_length;  ///< of the straight lines between the views
   std::optional<double> most_time;    ///< of the flight [s], by `speed` and `time_per_view`
