@@ -47,13 +47,14 @@ void SpaceMemory::add(const BlockImage& image, float noise) {
   images_.push_back(std::move(depth));
 }
 
-SpaceState SpaceMemory::query(const Eigen::Vector3f& point) const {
+SpaceState SpaceMemory::query(const Eigen::Vector3f& point, std::size_t first) const {
   bool is_measured = false;
-  for (auto image = images_.rbegin(); image != images_.rend(); ++image) {
-    const auto hit = image->projection.project(point);
+  for (std::size_t i = images_.size(); i-- > first;) {
+    const DepthImage& image = images_[i];
+    const auto hit = image.projection.project(point);
     if (!hit) continue;
-    if (hit->depth < image->empty_before[hit->block]) return SpaceState::empty;
-    is_measured = is_measured || hit->depth <= image->measured_until[hit->block];
+    if (hit->depth < image.empty_before[hit->block]) return SpaceState::empty;
+    is_measured = is_measured || hit->depth <= image.measured_until[hit->block];
   }
   return is_measured ? SpaceState::measured : SpaceState::unknown;
 }

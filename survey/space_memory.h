@@ -28,8 +28,8 @@ class SpaceMemory {
   void add(const BlockImage& image, float noise);
 
   /// What the scans say of the point, in this order: empty if one saw through it, measured if one
-  /// measured there, unknown otherwise.
-  SpaceState query(const Eigen::Vector3f& point) const;
+  /// measured there, unknown otherwise. Only images from the number `first` on are asked.
+  SpaceState query(const Eigen::Vector3f& point, std::size_t first = 0) const;
 
   /// Whether the ball is certainly empty: one scan's *returns*, the nearest of each block, all lie
   /// beyond it. Rays without a return prove nothing here, whatever the constructor was told.

@@ -59,8 +59,13 @@ void UnseenSurface::predict(const DoseMap& map, const SpaceMemory& space,
   patches_.clear();
   seen_places_.clear();
   const Surfels& surfels = map.surfels();
+  asked_.resize(surfels.size());
   for (std::size_t i = 0; i < surfels.size(); ++i) {
     if (surfels.open_directions[i] == 0) continue;
+    AskedChains& asked = asked_[i];
+    if (asked.position != surfels.positions[i] || asked.normal != surfels.normals[i]) {
+      asked = {surfels.positions[i], surfels.normals[i], {}};
+    }
     for (int k = 0; k < 6; ++k) {
       if ((surfels.open_directions[i] >> k & 1U) == 0) continue;
       for (const auto continuation :
@@ -79,6 +84,9 @@ void UnseenSurface::emit_chain(const DoseMap& map, const SpaceMemory& space, std
   const Vector3f& origin = surfels.positions[surfel];
   const Vector3f& up = surfels.normals[surfel];
   const Vector3f along = open_direction(surfels, surfel, direction);
+  AskedChain& asked = asked_[surfel].chains[3 * direction + static_cast<int>(continuation)];
+  const std::size_t first_image = asked.images;
+  asked.images = static_cast<std::uint32_t>(space.image_count());
   for (int step = 0; step < settings_.steps; ++step) {
     const float scale = static_cast<float>(1 << step);
     UnseenPatch patch;
@@ -97,7 +105,11 @@ void UnseenSurface::emit_chain(const DoseMap& map, const SpaceMemory& space, std
         break;
     }
     if (region && !region->contains(patch.position)) return;
-    if (space.query(patch.position) != SpaceState::unknown) return;
+    if (step >= asked.unknown_steps) return;
+    if (space.query(patch.position, first_image) != SpaceState::unknown) {
+      asked.unknown_steps = step;
+      return;
+    }
     patch.edge = std::max(h, 0.8F * h * scale);
     patch.kind = kind_of(continuation, step);
     patch.place = place_of(patch.position, patch.normal, patch.edge, step);

@@ -10,6 +10,7 @@
 
 #include <array>
 #include <cstdint>
+#include <limits>
 #include <optional>
 #include <span>
 #include <unordered_map>
@@ -63,12 +64,24 @@ class UnseenSurface {
   struct Rate {
     double hits, tries;
   };
+  /// What earlier predictions found out. Places become known, and never unknown again, so that only
+  /// new images have to be asked.
+  struct AskedChain {
+    std::uint32_t images = 0;                             ///< of the space memory that were asked
+    int unknown_steps = std::numeric_limits<int>::max();  ///< no patch from this step on
+  };
+  /// Those of one surfel, by direction and continuation, as long as it stays where it is.
+  struct AskedChains {
+    Eigen::Vector3f position = Eigen::Vector3f::Zero(), normal = Eigen::Vector3f::Zero();
+    std::array<AskedChain, 18> chains;
+  };
   void emit_chain(const DoseMap& map, const SpaceMemory& space, std::size_t surfel, int direction,
                   Continuation continuation, const std::optional<Eigen::AlignedBox3f>& region);
 
   UnseenSurfaceSettings settings_;
   std::array<Rate, 15> rates_;  ///< by UnseenPatch::kind
   std::vector<UnseenPatch> patches_;
+  std::vector<AskedChains> asked_;                   ///< by surfel
   std::unordered_set<std::uint64_t> seen_places_;    ///< of the prediction under way
   std::unordered_map<std::uint64_t, float> trusts_;  ///< of places that disappointed
 };

@@ -44,6 +44,25 @@ TEST(UnseenSurface, ContinuesBeyondTheOutlineIntoTheUnknownOnly) {
   EXPECT_GT(behind, 0.9 * all);
 }
 
+// Twin: the one predicted after every scan and asks only what is new; the other asks everything.
+TEST(UnseenSurface, RemembersWhatItAskedOfEarlierScans) {
+  Knowledge known;
+  UnseenSurface old({});
+  for (const Vector3d& station : {Vector3d(2, 0, 0), Vector3d(1.4, 1.4, 0), Vector3d(0, 1.4, 1.4),
+                                  Vector3d(0, -2, 0), Vector3d(-1.4, 0, -1.4)}) {
+    known.look_from(station);
+    old.predict(known.map, known.space, std::nullopt);
+    UnseenSurface anew({});
+    anew.predict(known.map, known.space, std::nullopt);
+    ASSERT_EQ(old.patches().size(), anew.patches().size());
+    EXPECT_GT(anew.patches().size(), 0U);
+    for (std::size_t i = 0; i < anew.patches().size(); ++i) {
+      EXPECT_EQ(old.patches()[i].position, anew.patches()[i].position);
+      EXPECT_EQ(old.patches()[i].place, anew.patches()[i].place);
+    }
+  }
+}
+
 TEST(UnseenSurface, IsGoneOnceAllWasSeen) {
   Knowledge known;
   UnseenSurface unseen({});
@@ -86,8 +105,8 @@ TEST(UnseenSurface, RatesFollowWhatAppeared) {
 
   // A view of the whole outline's surroundings shows what the straight patches promised.
   const std::size_t first_new = known.map.surfels().size();
-  for (const Vector3d& station : {Vector3d(0, 2, 0), Vector3d(0, -2, 0), Vector3d(0, 0, 2),
-                                  Vector3d(0, 0, -2)}) {
+  for (const Vector3d& station :
+       {Vector3d(0, 2, 0), Vector3d(0, -2, 0), Vector3d(0, 0, 2), Vector3d(0, 0, -2)}) {
     known.look_from(station);
   }
   hopeful.grade(all, known.map, known.space, first_new);
