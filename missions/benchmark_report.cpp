@@ -233,10 +233,10 @@ std::string reach_table(const std::vector<BenchmarkCell>& cells, const std::stri
   std::string text;
   for (const Mark& mark : marks_of(cells, mission)) {
     const auto entry = [&](const Column& column, const Statistic& ours) {
-      const std::string number = formatted(column.format, ours.mean / column.unit);
-      if (!mark.whole) return number;
-      const double whole = ((*mark.whole).*column.ours).mean;
-      return number + (whole > 0.0 ? ", " + formatted("%.2f", ours.mean / whole) + "×" : "");
+      std::string number = formatted(column.format, ours.mean / column.unit);
+      const double whole = mark.whole ? ((*mark.whole).*column.ours).mean : 0.0;
+      if (whole > 0.0) number += ", " + formatted("%.2f", ours.mean / whole) + "×";
+      return number;
     };
     for (const BenchmarkCell& cell : cells) {
       if (cell.mission != mission || cell.planner == mark.key) continue;
@@ -379,7 +379,7 @@ std::string report_markdown(const std::vector<BenchmarkCell>& cells,
             figure_6(cells);
   }
   if (!plots.empty()) text += "\n## Plots\n";
-  for (const std::string& plot : plots) text += "\n![" + plot + "](" + plot + ".svg)\n";
+  for (const std::string& plot : plots) text.append("\n![" + plot + "](" + plot + ".svg)\n");
   return text;
 }
 

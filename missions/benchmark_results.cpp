@@ -9,6 +9,7 @@ namespace {
 template <typename Figure>
 Statistic over(const std::vector<Trial>& trials, Figure figure) {
   std::vector<double> numbers;
+  numbers.reserve(trials.size());
   for (const Trial& trial : trials) numbers.push_back(figure(trial));
   return statistic(numbers);
 }

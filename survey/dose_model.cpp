@@ -138,14 +138,14 @@ double Noise::across(double cos_incidence) const {
 DoseModel::DoseModel(double coverage_radius, const Noise& noise)
     : coverage_radius_(coverage_radius), noise_(noise) {
   const RayTable ray(coverage_radius, noise);
-  for (int c = 0; c < incidences_; ++c) {
+  for (int c = 0; c < incidence_count; ++c) {
     // At grazing incidence the grid degenerates; nothing useful is measured there.
-    const double cosine = std::max(0.05, static_cast<double>(c) / (incidences_ - 1));
-    for (int d = 0; d < densities_; ++d) {
+    const double cosine = std::max(0.05, static_cast<double>(c) / (incidence_count - 1));
+    for (int d = 0; d < density_count; ++d) {
       // Two nodes an octave, at 1 and 1.5 times its start: hazard() then interpolates in the
       // density.
       const double rays =
-          std::exp2(static_cast<double>(first_octave_) + d / 2) * (d % 2 == 0 ? 1.0 : 1.5);
+          std::exp2(static_cast<double>(first_octave) + d / 2) * (d % 2 == 0 ? 1.0 : 1.5);
       const double spacing = coverage_radius * std::sqrt(cosine / rays);
       const bool even = noise.isotropic > 0.6 * spacing / cosine;
       const double uncovered = uncovered_share(ray, spacing, cosine, even);

@@ -45,10 +45,10 @@ class DoseModel {
     const auto mantissa = std::bit_cast<float>((bits & 0x7fffffU) | 0x3f800000U);
     const float octave =
         static_cast<float>(static_cast<std::int32_t>(bits >> 23U) - 127) + (mantissa - 1.0F);
-    const float column =
-        std::clamp(2.0F * (octave - first_octave_), 0.0F, static_cast<float>(densities_) - 1.001F);
-    const float row = std::clamp(cos_incidence * static_cast<float>(incidences_ - 1), 0.0F,
-                                 static_cast<float>(incidences_) - 1.001F);
+    const float column = std::clamp(2.0F * (octave - first_octave), 0.0F,
+                                    static_cast<float>(density_count) - 1.001F);
+    const float row = std::clamp(cos_incidence * static_cast<float>(incidence_count - 1), 0.0F,
+                                 static_cast<float>(incidence_count) - 1.001F);
     const auto d = static_cast<std::size_t>(column), c = static_cast<std::size_t>(row);
     const float t = column - static_cast<float>(d), u = row - static_cast<float>(c);
     const auto& low = hazard_per_ray_[c];
@@ -64,14 +64,14 @@ class DoseModel {
   static constexpr float most_hazard = 7.0F;
 
  private:
-  static constexpr int densities_ = 15;   // rays per r_d^2, from 2^-3 to 2^4, two an octave
-  static constexpr int incidences_ = 11;  // cosines from 0 to 1
-  static constexpr float first_octave_ = -3.0F;
+  static constexpr int density_count = 15;    // rays per r_d^2, from 2^-3 to 2^4, two an octave
+  static constexpr int incidence_count = 11;  // cosines from 0 to 1
+  static constexpr float first_octave = -3.0F;
 
   double coverage_radius_;
   Noise noise_;
   /// Hazard divided by the rays per r_d^2, which varies slowly.
-  std::array<std::array<float, densities_>, incidences_> hazard_per_ray_;
+  std::array<std::array<float, density_count>, incidence_count> hazard_per_ray_;
 };
 
 }  // namespace skycap::survey

@@ -84,7 +84,9 @@ void UnseenSurface::emit_chain(const DoseMap& map, const SpaceMemory& space, std
   const Vector3f& origin = surfels.positions[surfel];
   const Vector3f& up = surfels.normals[surfel];
   const Vector3f along = open_direction(surfels, surfel, direction);
-  AskedChain& asked = asked_[surfel].chains[3 * direction + static_cast<int>(continuation)];
+  AskedChain& asked =
+      asked_[surfel]
+          .chains[static_cast<std::size_t>(3 * direction) + static_cast<std::size_t>(continuation)];
   const std::size_t first_image = asked.images;
   asked.images = static_cast<std::uint32_t>(space.image_count());
   for (int step = 0; step < settings_.steps; ++step) {
