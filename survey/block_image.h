@@ -8,6 +8,7 @@
 #pragma once
 
 #include <cmath>
+#include <cstddef>
 #include <cstdint>
 #include <limits>
 #include <optional>
@@ -36,6 +37,11 @@ struct BlockProjection {
   Eigen::Vector2f focal_length = Eigen::Vector2f::Ones();           ///< [blocks]
   Eigen::Vector2f principal_point = Eigen::Vector2f::Zero();        ///< [blocks]
 
+  /// The number of a block, row by row.
+  std::size_t number_of(int row, int column) const {
+    return static_cast<std::size_t>(row) * static_cast<std::size_t>(columns) +
+           static_cast<std::size_t>(column);
+  }
   /// The block that a point in the world falls into; nothing outside the image.
   std::optional<BlockHit> project(const Eigen::Vector3f& point) const {
     const Eigen::Vector3f in_sensor = sensor_from_world * (point - sensor_position);

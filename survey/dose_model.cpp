@@ -31,13 +31,13 @@ double probability_in_ball(double offset, double radius, double sigma) {
 class BallTable {
  public:
   BallTable(double radius, double sigma) : reach_(radius + 4.0 * sigma) {
-    for (int i = 0; i <= steps_; ++i) {
-      table_[i] = probability_in_ball(reach_ * i / steps_, radius, sigma);
+    for (int i = 0; i <= step_count; ++i) {
+      table_[i] = probability_in_ball(reach_ * i / step_count, radius, sigma);
     }
   }
   double operator()(double offset) const {
-    const double step = offset / reach_ * steps_;
-    if (step >= steps_) return 0.0;
+    const double step = offset / reach_ * step_count;
+    if (step >= step_count) return 0.0;
     const auto below = static_cast<std::size_t>(step);
     return table_[below] +
            (step - static_cast<double>(below)) * (table_[below + 1] - table_[below]);
@@ -45,9 +45,9 @@ class BallTable {
   double reach() const { return reach_; }
 
  private:
-  static constexpr int steps_ = 512;
+  static constexpr int step_count = 512;
   double reach_;
-  std::array<double, steps_ + 1> table_;
+  std::array<double, step_count + 1> table_;
 };
 
 /// Probability that the return of a ray meeting the plane at (across, along) from the centre of the
@@ -144,8 +144,8 @@ DoseModel::DoseModel(double coverage_radius, const Noise& noise)
     for (int d = 0; d < density_count; ++d) {
       // Two nodes an octave, at 1 and 1.5 times its start: hazard() then interpolates in the
       // density.
-      const double rays =
-          std::exp2(static_cast<double>(first_octave) + d / 2) * (d % 2 == 0 ? 1.0 : 1.5);
+      const int octave = d / 2;
+      const double rays = std::exp2(double{first_octave} + octave) * (d % 2 == 0 ? 1.0 : 1.5);
       const double spacing = coverage_radius * std::sqrt(cosine / rays);
       const bool even = noise.isotropic > 0.6 * spacing / cosine;
       const double uncovered = uncovered_share(ray, spacing, cosine, even);

@@ -13,17 +13,18 @@ constexpr double least_cosine = 0.5;      // beyond 60 degrees few rays make the
 }  // namespace
 
 void NoiseEstimate::add(const BlockImage& image) {
-  std::array<std::vector<float>, ranges_> residuals;
+  std::array<std::vector<float>, range_count> residuals;
   for (const Block& block : image.blocks) {
     if (block.residual <= 0.0F) continue;
     const Eigen::Vector3f towards_sensor =
         (image.projection.sensor_position - block.mean).normalized();
     const double cosine = towards_sensor.dot(block.normal);
     if (cosine < least_cosine) continue;
-    const int range = static_cast<int>((cosine - least_cosine) / (1.0 - least_cosine) * ranges_);
-    residuals[std::min(range, ranges_ - 1)].push_back(block.residual);
+    const int range =
+        static_cast<int>((cosine - least_cosine) / (1.0 - least_cosine) * range_count);
+    residuals[std::min(range, range_count - 1)].push_back(block.residual);
   }
-  for (int i = 0; i < ranges_; ++i) {
+  for (int i = 0; i < range_count; ++i) {
     std::vector<float>& values = residuals[i];
     if (values.size() < least_blocks) continue;
     const auto quartile = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 4);
@@ -36,9 +37,9 @@ void NoiseEstimate::add(const BlockImage& image) {
 std::optional<Noise> NoiseEstimate::noise(double negligible) const {
   // Least squares for variance = a + b c^2, the line through the ranges' middles.
   double n = 0.0, sum_x = 0.0, sum_y = 0.0, sum_xx = 0.0, sum_xy = 0.0;
-  for (int i = 0; i < ranges_; ++i) {
+  for (int i = 0; i < range_count; ++i) {
     if (!least_variance_[i]) continue;
-    const double cosine = least_cosine + (1.0 - least_cosine) * (i + 0.5) / ranges_;
+    const double cosine = least_cosine + (1.0 - least_cosine) * (i + 0.5) / range_count;
     const double x = cosine * cosine, y = *least_variance_[i];
     n += 1.0;
     sum_x += x;

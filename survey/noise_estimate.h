@@ -23,8 +23,8 @@ class NoiseEstimate {
   std::optional<Noise> noise(double negligible) const;
 
  private:
-  static constexpr int ranges_ = 4;  // of the cosine, from one half to one
-  std::array<std::optional<double>, ranges_> least_variance_;
+  static constexpr int range_count = 4;  // of the cosine, from one half to one
+  std::array<std::optional<double>, range_count> least_variance_;
 };
 
 }  // namespace skycap::survey

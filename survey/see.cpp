@@ -143,7 +143,7 @@ std::optional<View> SeePlanner::Impl::update(const Scan& scan) {
   stopwatch.lap("occlusion");
   if (config.visibility_graph) update_graph();
   stopwatch.lap("graph");
-  const std::optional<View> view = select();
+  std::optional<View> view = select();
   stopwatch.lap("select");
   step.frontiers = frontiers.size() + waiting.size();
   return view;
@@ -224,12 +224,15 @@ geometry::LocalFrame SeePlanner::Impl::frame_at(std::uint32_t point) const {
 void SeePlanner::Impl::face_free_space(geometry::LocalFrame& frame,
                                        const Vector3d& position) const {
   const double probe_step = config.occluder_spacing;
-  for (double along = probe_step; along <= config.occlusion_search_distance; along += probe_step) {
+  double along = probe_step;
+  while (along <= config.occlusion_search_distance) {
     if (free_space->is_free(position + along * frame.normal)) return;
-    if (!free_space->is_free(position - along * frame.normal)) continue;
-    frame.normal = -frame.normal;
-    frame.boundary = -frame.boundary;
-    return;
+    if (free_space->is_free(position - along * frame.normal)) {
+      frame.normal = -frame.normal;
+      frame.boundary = -frame.boundary;
+      return;
+    }
+    along += probe_step;
   }
 }
 

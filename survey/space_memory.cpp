@@ -15,7 +15,7 @@ bool is_amid_misses(const BlockImage& image, int row, int column) {
   const BlockProjection& p = image.projection;
   for (int r = std::max(0, row - 1); r <= std::min(p.rows - 1, row + 1); ++r) {
     for (int c = std::max(0, column - 1); c <= std::min(p.columns - 1, column + 1); ++c) {
-      if (image.blocks[static_cast<std::size_t>(r * p.columns + c)].returns > 0) return false;
+      if (image.blocks[p.number_of(r, c)].returns > 0) return false;
     }
   }
   return true;
@@ -82,7 +82,7 @@ bool SpaceMemory::proves_empty(const DepthImage& image, const Eigen::Vector3f& c
   if (columns[0] < 0 || rows[0] < 0 || columns[1] >= p.columns || rows[1] >= p.rows) return false;
   for (int row = rows[0]; row <= rows[1]; ++row) {
     for (int column = columns[0]; column <= columns[1]; ++column) {
-      if (image.least[static_cast<std::size_t>(row * p.columns + column)] < farthest) return false;
+      if (image.least[p.number_of(row, column)] < farthest) return false;
     }
   }
   return true;

@@ -125,7 +125,7 @@ void UnseenSurface::emit_chain(const DoseMap& map, const SpaceMemory& space, std
 
 void UnseenSurface::grade(std::span<const std::uint32_t> expected, const DoseMap& map,
                           const SpaceMemory& space, std::size_t first_new) {
-  std::array<Rate, 3 * most_steps> found = {};
+  std::array<Rate, std::size_t{3}* most_steps> found = {};
   for (const std::uint32_t i : expected) {
     const UnseenPatch& patch = patches_[i];
     const float reach = 0.5F * map.spacing() + 0.75F * patch.edge;
