@@ -8,14 +8,13 @@
 #include <sstream>
 
 #include "geometry/error.h"
-#include "geometry/parallel.h"
-#include "geometry/point_grid.h"
 #include "survey/block_image.h"
 #include "survey/chooser.h"
 #include "survey/dose_map.h"
 #include "survey/dose_model.h"
 #include "survey/noise_estimate.h"
 #include "survey/space_memory.h"
+#include "survey/spaced_cloud.h"
 #include "survey/stopwatch.h"
 #include "survey/unseen_surface.h"
 #include "survey/view_gain.h"
@@ -55,45 +54,6 @@ double ray_spacing(const geometry::Camera& camera) {
   return 1.0 / camera.focal_length_px().minCoeff();
 }
 
-constexpr std::uint32_t tile_px = 32;
-constexpr std::size_t sweep_chunk = 4096;  // returns without an image that a thread takes at a time
-
-/// Asks a grid for points within a distance, for the pixels of a tile row by row: what turned away
-/// the pixel to the left or the one above mostly turns away this one too, and is tried first.
-class TileNeighbours {
- public:
-  TileNeighbours(const geometry::PointGrid& grid, double distance)
-      : grid_(grid),
-        distance_(distance),
-        squared_distance_(static_cast<float>(distance * distance)) {
-    found_.fill(Vector3f::Constant(std::numeric_limits<float>::infinity()));
-  }
-
-  bool any_within(const Vector3f& point, std::size_t column) {
-    Vector3f& above = found_[column];
-    if (geometry::squared_distance(above, point) <= squared_distance_) return true;
-    for (const std::size_t beside : {column + tile_px - 1, column + 1}) {
-      const Vector3f& other = found_[beside % tile_px];
-      if (geometry::squared_distance(other, point) > squared_distance_) continue;
-      above = other;
-      return true;
-    }
-    const std::uint32_t found = grid_.first_within(point, distance_);
-    if (found == geometry::PointGrid::none) return false;
-    above = grid_.point(found);
-    return true;
-  }
-
-  /// A point that is now in the grid.
-  void remember(const Vector3f& point, std::size_t column) { found_[column] = point; }
-
- private:
-  const geometry::PointGrid& grid_;
-  double distance_;
-  float squared_distance_;
-  std::array<Vector3f, tile_px> found_;  // by the pixel's column in its tile
-};
-
 }  // namespace
 
 void SkycapConfig::validate() const {
@@ -128,10 +88,8 @@ struct SkycapPlanner::Impl {
   Impl(const SkycapConfig& given, const geometry::Camera& sensor)
       : config(given),
         camera(sensor),
-        spacing(given.spacing.value_or(0.5 * given.coverage_radius)),
         distance(given.view_distance.value_or(0.5 * given.coverage_radius / ray_spacing(camera))),
-        // Cells wider than pixels: else each return would have one, and a brick, of its own.
-        grid(2.0 * std::max(spacing, distance * ray_spacing(camera))) {
+        kept(given.spacing.value_or(0.5 * given.coverage_radius), distance * ray_spacing(camera)) {
     gain.view_distance = distance;
     chooser.view_distance = distance;
     chooser.view_price = given.view_price.value_or(3.0 * distance);
@@ -144,77 +102,10 @@ struct SkycapPlanner::Impl {
 
   // --- taking in a scan ---
 
-  /// Calls `visit` with the index of each return of a row of tiles and its column in its tile, tile
-  /// by tile, so that consecutive returns are neighbours in space. Returns without an image go by
-  /// their order.
-  template <typename Visit>
-  void visit_tiles(const Scan& scan, std::size_t tile_row, Visit visit) const {
-    if (scan.pixels.empty()) {
-      const std::size_t end = std::min(scan.points.size(), (tile_row + 1) * sweep_chunk);
-      for (std::size_t i = tile_row * sweep_chunk; i < end; ++i) visit(i, i % tile_px);
-      return;
-    }
-    const auto width = static_cast<std::uint32_t>(camera.width());
-    const auto first_row = static_cast<std::uint32_t>(tile_row) * tile_px;
-    const auto rows = std::min(tile_px, static_cast<std::uint32_t>(camera.height()) - first_row);
-    std::array<std::size_t, tile_px> next;  // return of each row
-    for (std::uint32_t r = 0; r < rows; ++r) {
-      next[r] = static_cast<std::size_t>(
-          std::ranges::lower_bound(scan.pixels, (first_row + r) * width) - scan.pixels.begin());
-    }
-    for (std::uint32_t column = 0; column < width; column += tile_px) {
-      for (std::uint32_t r = 0; r < rows; ++r) {
-        const std::uint32_t first_pixel = (first_row + r) * width + column;
-        const std::uint32_t end_pixel = first_pixel + std::min(tile_px, width - column);
-        std::size_t& i = next[r];
-        for (; i < scan.pixels.size() && scan.pixels[i] < end_pixel; ++i) {
-          visit(i, scan.pixels[i] - first_pixel);
-        }
-      }
-    }
-  }
-
-  /// Keeps the returns that are farther than the spacing from all kept before. The cloud so far
-  /// turns most of them away, on all threads; the rest are tried one after the other.
-  void insert_points(const Scan& scan) {
-    struct Candidate {
-      std::uint32_t point, column;
-    };
-    const std::size_t tile_rows =
-        scan.pixels.empty() ? (scan.points.size() + sweep_chunk - 1) / sweep_chunk
-                            : (static_cast<std::size_t>(camera.height()) + tile_px - 1) / tile_px;
-    std::vector<std::vector<Candidate>> candidates(tile_rows);
-    geometry::parallel_for(tile_rows, config.threads, [&](std::size_t row) {
-      TileNeighbours nearby(grid, spacing);
-      visit_tiles(scan, row, [&](std::size_t i, std::size_t column) {
-        const Vector3f& point = scan.points[i];
-        if ((region && !region->contains(point)) || nearby.any_within(point, column)) return;
-        candidates[row].push_back(
-            {static_cast<std::uint32_t>(i), static_cast<std::uint32_t>(column)});
-      });
-    });
-    TileNeighbours nearby(grid, spacing);
-    for (const std::vector<Candidate>& row : candidates) {
-      for (const Candidate& candidate : row) {
-        const Vector3f& point = scan.points[candidate.point];
-        if (nearby.any_within(point, candidate.column)) continue;
-        grid.insert(point);
-        nearby.remember(point, candidate.column);
-        cloud.positions.push_back(point);
-        cloud.views.push_back(static_cast<std::uint32_t>(scans));
-        ++step.points_new;
-      }
-    }
-    if (cloud.size() == 0) {
-      throw Error(ErrorKind::bad_geometry,
-                  "the first scan holds no point of the scene; start from a view that sees it");
-    }
-  }
-
   /// Fixes the resolution by the first scan that holds a point.
   void start() {
     Eigen::AlignedBox3f seen;
-    for (const Vector3f& point : cloud.positions) seen.extend(point);
+    for (const Vector3f& point : kept.cloud().positions) seen.extend(point);
     const double extent =
         config.scene_box ? config.scene_box->sizes().maxCoeff() : seen.sizes().maxCoeff();
     const double pixel = distance * ray_spacing(camera);
@@ -407,7 +298,12 @@ struct SkycapPlanner::Impl {
   std::optional<View> next_view(const Scan& scan) {
     step = {};
     Stopwatch stopwatch(step.times);
-    insert_points(scan);
+    step.points_new =
+        kept.insert(scan, camera, region, static_cast<std::uint32_t>(scans), config.threads);
+    if (kept.cloud().size() == 0) {
+      throw Error(ErrorKind::bad_geometry,
+                  "the first scan holds no point of the scene; start from a view that sees it");
+    }
     stopwatch.lap("insert");
     if (!map) start();
     take_in(scan);
@@ -430,14 +326,12 @@ struct SkycapPlanner::Impl {
 
   const SkycapConfig config;
   const geometry::Camera camera;
-  const double spacing;
   const double distance;
   GainSettings gain;
   ChooserSettings chooser;
   std::optional<Eigen::AlignedBox3f> region;
 
-  geometry::PointGrid grid;
-  geometry::PointCloud cloud;
+  SpacedCloud kept;
   PlanningStep step;
 
   BlockSettings blocks;
@@ -522,7 +416,7 @@ std::optional<View> SkycapPlanner::next_view_instead() {
   return impl_->field ? impl_->choose() : std::nullopt;
 }
 
-const geometry::PointCloud& SkycapPlanner::cloud() const { return impl_->cloud; }
+const geometry::PointCloud& SkycapPlanner::cloud() const { return impl_->kept.cloud(); }
 const PlanningStep& SkycapPlanner::last_step() const { return impl_->step; }
 SkycapStop SkycapPlanner::stop() const { return impl_->stop; }
 double SkycapPlanner::predicted_coverage() const { return impl_->predicted_coverage(); }
