@@ -7,9 +7,9 @@
 #include <string>
 #include <vector>
 
-#include "geometry/point_cloud.h"
-#include "geometry/pose.h"
-#include "geometry/scan.h"
+#include "geometry/place/pose.h"
+#include "geometry/points/point_cloud.h"
+#include "geometry/points/scan.h"
 
 namespace skycap::survey {
 

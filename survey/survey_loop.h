@@ -6,8 +6,8 @@
 #include <stop_token>
 #include <vector>
 
-#include "geometry/pose.h"
-#include "geometry/scan.h"
+#include "geometry/place/pose.h"
+#include "geometry/points/scan.h"
 #include "survey/planner.h"
 
 namespace skycap::survey {

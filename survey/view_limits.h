@@ -6,7 +6,7 @@
 
 #include <Eigen/Core>
 
-#include "geometry/pose.h"
+#include "geometry/place/pose.h"
 
 namespace skycap::survey {
 

@@ -6,9 +6,9 @@
 #include <string>
 #include <vector>
 
-#include "flight/clearance.h"
 #include "flight/export/flight_plan.h"
 #include "flight/export/text.h"
+#include "flight/space/clearance.h"
 
 namespace skycap::flight {
 

@@ -9,8 +9,8 @@
 #include <Eigen/Core>
 
 #include "flight/export/geodesy.h"
-#include "flight/obstacles.h"
-#include "flight/route.h"
+#include "flight/route/route.h"
+#include "flight/space/obstacles.h"
 
 namespace skycap::flight {
 

@@ -3,8 +3,8 @@
 
 #include <nlohmann/json.hpp>
 
-#include "flight/clearance.h"
 #include "flight/export/mavlink_files.h"
+#include "flight/space/clearance.h"
 #include "geometry/error.h"
 
 namespace skycap::flight {

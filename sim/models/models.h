@@ -6,7 +6,7 @@
 #include <span>
 #include <string_view>
 
-#include "geometry/mesh.h"
+#include "geometry/surfaces/mesh.h"
 
 namespace skycap::sim {
 

@@ -14,7 +14,7 @@
 #include <Eigen/Core>
 #include <Eigen/Geometry>
 
-#include "geometry/mesh.h"
+#include "geometry/surfaces/mesh.h"
 
 namespace skycap::sim::models {
 

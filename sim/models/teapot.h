@@ -1,7 +1,7 @@
 /// Newell's teapot (University of Utah, 1975), tessellated from its 32 bicubic Bezier patches.
 #pragma once
 
-#include "geometry/mesh.h"
+#include "geometry/surfaces/mesh.h"
 
 namespace skycap::sim::models {
 

@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "geometry/mesh.h"
+#include "geometry/surfaces/mesh.h"
 #include "sim/models/solids.h"
 
 namespace skycap::sim::models {

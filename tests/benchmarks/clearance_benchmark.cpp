@@ -3,10 +3,10 @@
 #include <cstdio>
 #include <random>
 
-#include "flight/clearance.h"
+#include "flight/space/clearance.h"
 #include "tests/benchmarks/interleaved.h"
-#include "tests/flight/cgal_oracle.h"
 #include "tests/flight/scenes.h"
+#include "tests/flight/space/cgal_oracle.h"
 
 int main() {
   using namespace skycap::flight;

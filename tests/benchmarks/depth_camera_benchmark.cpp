@@ -16,9 +16,9 @@
 #include <Eigen/Geometry>
 
 #include "geometry/parallel.h"
-#include "geometry/pose.h"
-#include "sim/depth_camera.h"
-#include "sim/scene_embree.h"
+#include "geometry/place/pose.h"
+#include "sim/scene/scene_embree.h"
+#include "sim/sensors/depth_camera.h"
 #include "tests/benchmarks/interleaved.h"
 #include "tests/benchmarks/planet.h"
 

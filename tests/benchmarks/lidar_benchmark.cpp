@@ -25,14 +25,14 @@
 #include <unistd.h>
 
 #include "geometry/parallel.h"
-#include "missions/las_format.h"
-#include "missions/scan_runner.h"
-#include "sim/echo.h"
-#include "sim/lidar.h"
-#include "sim/lidar_rays.h"
+#include "missions/recording/las_format.h"
+#include "missions/recording/scan_runner.h"
 #include "sim/models/models.h"
-#include "sim/scan_pattern.h"
-#include "sim/scene_embree.h"
+#include "sim/scene/scene_embree.h"
+#include "sim/sensors/echo.h"
+#include "sim/sensors/lidar.h"
+#include "sim/sensors/lidar_rays.h"
+#include "sim/sensors/scan_pattern.h"
 #include "tests/benchmarks/interleaved.h"
 #include "tests/benchmarks/planet.h"
 #include "tests/benchmarks/town.h"
@@ -200,13 +200,13 @@ void fly_into_file(const sim::Scene& scene, sim::LidarConfig config, const Eigen
   const Eigen::Vector3d to = from + Eigen::Vector3d(10.0 * duration, 0, 0);
   const sim::Trajectory trajectory({{0.0, from, level}, {duration, to, level}});
   const sim::Lidar lidar(config);
-  missions::ScanResult result;
+  missions::recording::ScanResult result;
   std::uint64_t bytes = 0;
   const auto whole = [&] {
-    std::vector<missions::CloudFile> files;
-    files.emplace_back(path, missions::las_format({}));
-    result = missions::run_scan(scene, lidar, {trajectory, trajectory}, files,
-                                {.threads = threads, .report = {}, .stop = {}});
+    std::vector<missions::recording::CloudFile> files;
+    files.emplace_back(path, missions::recording::las_format({}));
+    result = missions::recording::run_scan(scene, lidar, {trajectory, trajectory}, files,
+                                           {.threads = threads, .report = {}, .stop = {}});
     files[0].finish();
     bytes = files[0].bytes();
   };

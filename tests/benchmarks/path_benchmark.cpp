@@ -6,8 +6,8 @@
 #include <random>
 #include <vector>
 
-#include "flight/path.h"
-#include "flight/sampling_path.h"
+#include "flight/paths/path.h"
+#include "flight/paths/sampling_path.h"
 #include "tests/flight/scenes.h"
 
 namespace {

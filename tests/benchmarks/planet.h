@@ -7,7 +7,7 @@
 
 #include <Eigen/Core>
 
-#include "geometry/mesh.h"
+#include "geometry/surfaces/mesh.h"
 
 namespace skycap::benchmarks {
 

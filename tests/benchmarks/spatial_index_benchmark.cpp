@@ -16,8 +16,8 @@
 #include <nanoflann.hpp>
 #include <pcl/octree/octree_search.h>
 
-#include "geometry/density.h"
-#include "geometry/point_grid.h"
+#include "geometry/points/density.h"
+#include "geometry/points/point_grid.h"
 #include "tests/benchmarks/interleaved.h"
 
 namespace {

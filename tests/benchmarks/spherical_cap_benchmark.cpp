@@ -16,7 +16,7 @@
 #include <CGAL/convex_hull_3.h>
 #include <Eigen/Geometry>
 
-#include "geometry/spherical_cap.h"
+#include "geometry/directions/spherical_cap.h"
 #include "tests/benchmarks/interleaved.h"
 
 namespace {

@@ -6,7 +6,7 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "geometry/mesh.h"
+#include "geometry/surfaces/mesh.h"
 
 namespace skycap::benchmarks {
 

@@ -11,17 +11,17 @@
 #include <filesystem>
 #include <string>
 
-#include "geometry/pose.h"
-#include "missions/mission_reader.h"
-#include "missions/survey_scene.h"
-#include "sim/depth_camera.h"
-#include "survey/volumetric_planner.h"
-#include "tests/survey/octomap_planning.h"
+#include "geometry/place/pose.h"
+#include "missions/file/mission_reader.h"
+#include "missions/scene/survey_scene.h"
+#include "sim/sensors/depth_camera.h"
+#include "survey/volumetric/volumetric_planner.h"
+#include "tests/survey/volumetric/octomap_planning.h"
 
 namespace {
 
 using namespace skycap;
-using survey::VolumetricMetric;
+using survey::volumetric::VolumetricMetric;
 
 constexpr std::size_t candidates = 130;
 
@@ -52,16 +52,17 @@ constexpr Gain gains[] = {
 
 void run(const std::string& name, const std::string& mission_text, double resolution,
          std::size_t clouds, std::size_t twin_candidates) {
-  const missions::Mission mission = missions::parse_mission(mission_text, name);
-  const missions::SurveyScene scene(mission, std::filesystem::current_path());
+  const missions::file::Mission mission = missions::file::parse_mission(mission_text, name);
+  const missions::scene::SurveyScene scene(mission, std::filesystem::current_path());
   const sim::DepthCamera camera(mission.sensor.camera);
   const auto [centre, radius] = scene.view_sphere();
-  const auto views = survey::sphere_views(clouds + 1 + candidates, centre, radius, -1e9, 1);
+  const auto views =
+      survey::volumetric::sphere_views(clouds + 1 + candidates, centre, radius, -1e9, 1);
   const auto directions =
-      survey::ray_directions(geometry::Camera(mission.sensor.camera.camera), {});
+      survey::volumetric::ray_directions(geometry::Camera(mission.sensor.camera.camera), {});
 
   const double shadow = 18.0 * resolution;
-  survey::VolumetricMap map(resolution, shadow);
+  survey::volumetric::VolumetricMap map(resolution, shadow);
   tests::ShadowTree tree(resolution, shadow);
   double insert = 0.0, twin_insert = 0.0;
   std::size_t returns = 0;

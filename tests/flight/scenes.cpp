@@ -2,7 +2,7 @@
 
 #include <numbers>
 
-#include "geometry/pose.h"
+#include "geometry/place/pose.h"
 
 namespace skycap::flight::scenes {
 namespace {

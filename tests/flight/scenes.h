@@ -7,9 +7,9 @@
 #include <Eigen/Core>
 #include <Eigen/Geometry>
 
-#include "flight/obstacles.h"
-#include "flight/segment_distance.h"
-#include "geometry/mesh.h"
+#include "flight/space/obstacles.h"
+#include "flight/space/segment_distance.h"
+#include "geometry/surfaces/mesh.h"
 
 namespace skycap::flight::scenes {
 

@@ -3,7 +3,7 @@
 
 #include <Eigen/Core>
 
-#include "sim/scene_embree.h"
+#include "sim/scene/scene_embree.h"
 
 namespace skycap::sim {
 

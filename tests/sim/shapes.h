@@ -7,8 +7,8 @@
 
 #include <Eigen/Geometry>
 
-#include "geometry/mesh.h"
-#include "geometry/pose.h"
+#include "geometry/place/pose.h"
+#include "geometry/surfaces/mesh.h"
 
 namespace skycap::sim {
 

@@ -6,9 +6,9 @@
 #include <random>
 #include <vector>
 
-#include "geometry/camera.h"
-#include "geometry/pose.h"
-#include "geometry/scan.h"
+#include "geometry/place/camera.h"
+#include "geometry/place/pose.h"
+#include "geometry/points/scan.h"
 
 namespace skycap::tests {
 

@@ -1,0 +1,223 @@
+#include "flight/motion/corner_blend.h"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+namespace skycap::flight {
+namespace {
+
+using Eigen::Vector3d;
+
+/// Share of a straight piece that the blends at its ends may use up each.
+constexpr double most_of_a_piece = 0.45;
+/// A blend that comes too near to something is tried smaller by this factor, so often.
+constexpr double shrinking = 0.8;
+constexpr int most_tries = 14;
+/// Blends that begin this near to their corner are not worth it [m].
+constexpr double least_reach = 0.02;
+/// No change of speed is done faster than in twice this time [s], no speed held for less: shorter
+/// pieces would lose digits of their jerk.
+constexpr double least_phase = 0.05;
+/// Halvings of an interval in which a speed is looked for.
+constexpr int bisections = 50;
+
+/// The largest value in [low, high] for which `holds`, which is true of low and changes once.
+template <class Predicate>
+double largest(double low, double high, const Predicate& holds) {
+  if (holds(high)) return high;
+  for (int i = 0; i < bisections; ++i) {
+    const double middle = 0.5 * (low + high);
+    (holds(middle) ? low : high) = middle;
+  }
+  return low;
+}
+
+/// A change of speed: the acceleration rises, holds and falls.
+struct Ramp {
+  double rise = 0.0, hold = 0.0;  ///< times [s]
+
+  double duration() const { return 2.0 * rise + hold; }
+  Ramp stretched(double factor) const { return {factor * rise, factor * hold}; }
+};
+
+Ramp ramp(double from, double to, const Vehicle& limits) {
+  const double change = std::abs(to - from);
+  if (change == 0.0) return {};
+  const double full_rise = limits.acceleration / limits.jerk;
+  if (change >= limits.acceleration * full_rise) {
+    const double hold = change / limits.acceleration - full_rise;
+    if (hold >= least_phase && full_rise >= least_phase) return {full_rise, hold};
+    // A short hold goes into the rise: less jerk at the same peak.
+    return {std::max(change / limits.acceleration, least_phase), 0.0};
+  }
+  return {std::max(std::sqrt(change / limits.jerk), least_phase), 0.0};
+}
+
+/// The ramp is symmetric, so its mean speed is that of its ends.
+double ramp_distance(double from, double to, const Vehicle& limits) {
+  return 0.5 * (from + to) * ramp(from, to, limits).duration();
+}
+
+/// Appends straight motion.
+class StraightMotion {
+ public:
+  StraightMotion(Curve& curve, const Vector3d& start, const Vector3d& direction, double speed)
+      : curve_(curve), direction_(direction), now_{start, speed * direction} {}
+
+  void change_speed(double to, const Ramp& how) {
+    if (how.rise == 0.0) return;
+    const double from = now_.velocity.dot(direction_);
+    const double peak = (to - from) / (how.rise + how.hold);
+    advance(how.rise, 0.0, peak), advance(how.hold, peak, peak), advance(how.rise, peak, 0.0);
+  }
+  void hold_speed(double time) { advance(time, 0.0, 0.0); }
+
+  /// Puts what rounding has left of the way into the last piece.
+  void end_in(const Vector3d& place) {
+    CurvePiece& last = curve_.back();
+    const Vector3d missing = place - last.control[5];
+    for (std::size_t i = 3; i < 6; ++i) last.control[i] += missing;
+  }
+
+ private:
+  void advance(double time, double from_acceleration, double to_acceleration) {
+    if (time == 0.0) return;
+    now_.acceleration = from_acceleration * direction_;
+    CurveState next;
+    next.acceleration = to_acceleration * direction_;
+    next.velocity = now_.velocity + 0.5 * time * (now_.acceleration + next.acceleration);
+    next.position = now_.position + time * now_.velocity +
+                    time * time / 6.0 * (2.0 * now_.acceleration + next.acceleration);
+    curve_.push_back(piece_between(now_, next, time));
+    now_ = next;
+  }
+
+  Curve& curve_;
+  Vector3d direction_;
+  CurveState now_;
+};
+
+/// How a corner is passed: from `reach` before to `reach` behind it. All zero: with a stop.
+struct Blend {
+  double reach = 0.0;
+  double handle = 0.0;  ///< of the way to the corner, from a control point to the next
+  double speed = 0.0;   ///< at both ends
+};
+
+class Blender {
+ public:
+  Blender(const std::vector<Vector3d>& points, const FreeSpace& space, double clearance,
+          const Motion& motion)
+      : points_(points), space_(space), clearance_(clearance), motion_(motion) {}
+
+  Curve blend() {
+    blends_.resize(points_.size());
+    for (std::size_t i = 1; i + 1 < points_.size(); ++i) blends_[i] = largest_blend(i);
+    match_speeds();
+    Curve curve;
+    for (std::size_t i = 0; i + 1 < points_.size(); ++i) {
+      if (blends_[i].reach > 0.0) curve.push_back(blend_piece(i, blends_[i]));
+      add_straight(i, curve);
+    }
+    return curve;
+  }
+
+ private:
+  Vector3d direction(std::size_t i) const { return (points_[i + 1] - points_[i]).normalized(); }
+  double piece_length(std::size_t i) const { return (points_[i + 1] - points_[i]).norm(); }
+  double straight_length(std::size_t i) const {
+    return piece_length(i) - blends_[i].reach - blends_[i + 1].reach;
+  }
+
+  /// Control points on both arms of the corner, evenly spaced as constant speed at the ends and no
+  /// acceleration there demand.
+  CurvePiece blend_piece(std::size_t corner, const Blend& blend) const {
+    const Vector3d before = direction(corner - 1), after = direction(corner);
+    const double step = blend.handle * blend.reach;
+    const Vector3d start = points_[corner] - blend.reach * before;
+    const Vector3d end = points_[corner] + blend.reach * after;
+    return {{start, start + step * before, start + 2.0 * step * before, end - 2.0 * step * after,
+             end - step * after, end},
+            5.0 * step / blend.speed};
+  }
+
+  /// The handle with which a blend of that reach is fastest.
+  Blend fastest_blend(std::size_t corner, double reach) const {
+    Blend best;
+    for (double handle = 0.30; handle < 0.501; handle += 0.02) {
+      Blend blend{reach, std::min(handle, 0.5), 1.0};
+      // Flown at one metre a second it may be sped up by the inverse of the slowdown it needs.
+      blend.speed = 1.0 / needed_slowdown({blend_piece(corner, blend)}, motion_);
+      if (blend.speed > best.speed) best = blend;
+    }
+    return best;
+  }
+
+  Blend largest_blend(std::size_t corner) const {
+    // Near a reversal the triangle is a line and a stop in its end is needed.
+    if (direction(corner - 1).dot(direction(corner)) < -0.95) return {};
+    double reach = most_of_a_piece * std::min(piece_length(corner - 1), piece_length(corner));
+    for (int i = 0; i < most_tries && reach > least_reach; ++i, reach *= shrinking) {
+      const Blend blend = fastest_blend(corner, reach);
+      if (prove(space_, {blend_piece(corner, blend)}, clearance_, clearance_).is_proven) {
+        return blend;
+      }
+    }
+    return {};
+  }
+
+  /// Lowers the speeds at corners until each follows from the one before within the straight piece
+  /// between them, forwards and backwards.
+  void match_speeds() {
+    const Vehicle& limits = motion_.vehicle();
+    const auto limit = [&](std::size_t from, std::size_t to, std::size_t piece) {
+      const double start = blends_[from].speed, room = straight_length(piece);
+      double& speed = blends_[to].speed;
+      if (speed <= start) return;
+      speed =
+          largest(start, speed, [&](double v) { return ramp_distance(start, v, limits) <= room; });
+    };
+    for (std::size_t i = 0; i + 1 < points_.size(); ++i) limit(i, i + 1, i);
+    for (std::size_t i = points_.size() - 1; i > 0; --i) limit(i, i - 1, i - 1);
+  }
+
+  void add_straight(std::size_t i, Curve& curve) const {
+    const Vehicle& limits = motion_.vehicle();
+    const Vector3d way = direction(i);
+    const double start = blends_[i].speed, end = blends_[i + 1].speed, room = straight_length(i);
+    StraightMotion motion(curve, points_[i] + blends_[i].reach * way, way, start);
+    const auto needed = [&](double peak) {
+      return ramp_distance(start, peak, limits) + ramp_distance(peak, end, limits) +
+             least_phase * peak;
+    };
+    const double least = std::max(start, end), most = std::max(least, motion_.leg_speed(way));
+    if (needed(least) <= room) {
+      const double peak = largest(least, most, [&](double v) { return needed(v) <= room; });
+      motion.change_speed(peak, ramp(start, peak, limits));
+      motion.hold_speed(least_phase + (room - needed(peak)) / peak);
+      motion.change_speed(end, ramp(peak, end, limits));
+    } else if (start == end) {
+      motion.hold_speed(room / start);
+    } else {  // one ramp, stretched to fill the room
+      const double factor = room / ramp_distance(start, end, limits);
+      motion.change_speed(end, ramp(start, end, limits).stretched(factor));
+    }
+    motion.end_in(points_[i + 1] - blends_[i + 1].reach * way);
+  }
+
+  const std::vector<Vector3d>& points_;
+  const FreeSpace& space_;
+  double clearance_;
+  const Motion& motion_;
+  std::vector<Blend> blends_;  ///< one for each point; none at the ends
+};
+
+}  // namespace
+
+Curve blend_corners(const std::vector<Vector3d>& points, const FreeSpace& space, double clearance,
+                    const Motion& motion) {
+  return Blender(points, space, clearance, motion).blend();
+}
+
+}  // namespace skycap::flight

@@ -1,0 +1,200 @@
+#include "flight/motion/curve.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace skycap::flight {
+namespace {
+
+using Eigen::Vector3d;
+using Control = std::array<Vector3d, 6>;
+
+/// Halvings before a part of a curve counts as grazing: a piece of 100 m is then in parts of 2 cm,
+/// which lie within 1e-5 m of their chords.
+constexpr int max_halvings = 12;
+/// Halvings of a piece for bounds on its derivatives: two leave them some percent from their least.
+constexpr int derivative_halvings = 2;
+/// A hull as thin as this is its chord: clearance_guard covers it.
+constexpr double thin = 1e-9;
+/// Halvings of a piece for its length: the error falls by sixteen with each.
+constexpr int length_halvings = 4;
+/// Steps of the energy's integral over a piece.
+constexpr int integral_steps = 16;
+
+/// de Casteljau at one half.
+std::array<Control, 2> halves(Control points) {
+  std::array<Control, 2> parts;
+  for (std::size_t level = 0; level < 6; ++level) {
+    parts[0][level] = points[0];
+    parts[1][5 - level] = points[5 - level];
+    for (std::size_t i = 0; i + 1 < 6 - level; ++i) points[i] = 0.5 * (points[i] + points[i + 1]);
+  }
+  return parts;
+}
+
+CurveState state_of(const CurvePiece& piece, double share) {
+  // Levels of de Casteljau hold the derivatives' points too.
+  Control points = piece.control;
+  const auto lower = [&](std::size_t count) {
+    for (std::size_t i = 0; i + 1 < count; ++i) {
+      points[i] = (1.0 - share) * points[i] + share * points[i + 1];
+    }
+  };
+  lower(6), lower(5), lower(4);
+  CurveState state;
+  const double rate = 1.0 / piece.duration;
+  state.acceleration = 20.0 * rate * rate * (points[2] - 2.0 * points[1] + points[0]);
+  lower(3);
+  state.velocity = 5.0 * rate * (points[1] - points[0]);
+  lower(2);
+  state.position = points[0];
+  return state;
+}
+
+/// Between the chord's length and that of the control polygon (Gravesen, Adaptive Subdivision and
+/// the Length and Energy of Bezier Curves, 1997: the weights are those for degree 5).
+double length_of(const Control& control, int halvings) {
+  if (halvings > 0) {
+    double sum = 0.0;
+    for (const Control& half : halves(control)) sum += length_of(half, halvings - 1);
+    return sum;
+  }
+  double polygon = 0.0;
+  for (std::size_t i = 0; i < 5; ++i) polygon += (control[i + 1] - control[i]).norm();
+  return ((control[5] - control[0]).norm() + 2.0 * polygon) / 3.0;
+}
+
+/// How far from its chord a hull reaches.
+double hull_radius(const Control& control) {
+  const Segment chord{control.front(), control.back()};
+  double squared = 0.0;
+  for (std::size_t i = 1; i < 5; ++i) {
+    squared = std::max(squared, nearest(chord, control[i]).squared_distance);
+  }
+  const double radius = std::sqrt(squared);
+  return radius < thin ? 0.0 : radius;
+}
+
+LegProof prove_part(const FreeSpace& space, const Control& control, double clearance, double up_to,
+                    int halvings_left) {
+  // All points within a radius of a chord are a convex set: with the control points in it, so is
+  // the curve. Hence its clearance is at least the chord's less the radius.
+  const double radius = hull_radius(control);
+  const LegProof chord =
+      prove(space, {control.front(), control.back()}, clearance + radius, up_to + radius);
+  if (chord.is_proven) return {true, chord.clearance - radius, chord.closest};
+  // Over every place of the chord the curve passes within the radius: if the chord is nearer than
+  // the clearance by more than that, so is the curve, and halving is in vain.
+  const bool is_hopeless = chord.clearance + radius < clearance || radius == 0.0;
+  if (is_hopeless || halvings_left == 0) return {false, 0.0, chord.closest};
+  LegProof proof{true, up_to, {up_to}};
+  for (const Control& half : halves(control)) {
+    const LegProof part = prove_part(space, half, clearance, up_to, halvings_left - 1);
+    if (!part.is_proven) return part;
+    if (part.clearance < proof.clearance) proof = part;
+  }
+  return proof;
+}
+
+double slowdown_of_part(const Control& c, double duration, const Motion& motion, int halvings) {
+  if (halvings > 0) {
+    double factor = 0.0;
+    for (const Control& half : halves(c)) {
+      factor = std::max(factor, slowdown_of_part(half, 0.5 * duration, motion, halvings - 1));
+    }
+    return factor;
+  }
+  const double rate = 1.0 / duration;
+  double factor = 0.0;
+  for (std::size_t i = 0; i < 5; ++i) {
+    const Vector3d velocity = 5.0 * rate * (c[i + 1] - c[i]);
+    const double speed = velocity.norm();
+    if (speed > 0.0) factor = std::max(factor, speed / motion.leg_speed(velocity / speed));
+  }
+  for (std::size_t i = 0; i < 4; ++i) {
+    const Vector3d acceleration = 20.0 * rate * rate * (c[i + 2] - 2.0 * c[i + 1] + c[i]);
+    const double share = acceleration.norm() / motion.vehicle().acceleration;
+    factor = std::max(factor, std::sqrt(share));
+  }
+  for (std::size_t i = 0; i < 3; ++i) {
+    const Vector3d jerk =
+        60.0 * rate * rate * rate * (c[i + 3] - 3.0 * c[i + 2] + 3.0 * c[i + 1] - c[i]);
+    factor = std::max(factor, std::cbrt(jerk.norm() / motion.vehicle().jerk));
+  }
+  return factor;
+}
+
+}  // namespace
+
+// Matches position, velocity and acceleration at both ends.
+CurvePiece piece_between(const CurveState& from, const CurveState& to, double duration) {
+  const double first = duration / 5.0, second = duration * duration / 20.0;
+  CurvePiece piece;
+  piece.duration = duration;
+  piece.control[0] = from.position;
+  piece.control[1] = from.position + first * from.velocity;
+  piece.control[2] = from.position + 2.0 * first * from.velocity + second * from.acceleration;
+  piece.control[3] = to.position - 2.0 * first * to.velocity + second * to.acceleration;
+  piece.control[4] = to.position - first * to.velocity;
+  piece.control[5] = to.position;
+  return piece;
+}
+
+double duration(const Curve& curve) {
+  double sum = 0.0;
+  for (const CurvePiece& piece : curve) sum += piece.duration;
+  return sum;
+}
+
+double length(const Curve& curve) {
+  double sum = 0.0;
+  for (const CurvePiece& piece : curve) sum += length_of(piece.control, length_halvings);
+  return sum;
+}
+
+CurveState state_at(const Curve& curve, double time) {
+  for (const CurvePiece& piece : curve) {
+    if (time < piece.duration) return state_of(piece, std::max(0.0, time / piece.duration));
+    time -= piece.duration;
+  }
+  return {curve.back().control.back()};
+}
+
+Curve slowed(Curve curve, double factor) {
+  for (CurvePiece& piece : curve) piece.duration *= factor;
+  return curve;
+}
+
+double needed_slowdown(const Curve& curve, const Motion& motion) {
+  double factor = 0.0;
+  for (const CurvePiece& piece : curve) {
+    factor = std::max(factor,
+                      slowdown_of_part(piece.control, piece.duration, motion, derivative_halvings));
+  }
+  return factor;
+}
+
+LegProof prove(const FreeSpace& space, const Curve& curve, double clearance, double up_to) {
+  LegProof proof{true, up_to, {up_to}};
+  for (const CurvePiece& piece : curve) {
+    const LegProof part = prove_part(space, piece.control, clearance, up_to, max_halvings);
+    if (!part.is_proven) return part;
+    if (part.clearance < proof.clearance) proof = part;
+  }
+  return proof;
+}
+
+double energy(const Curve& curve, const Motion& motion) {
+  double sum = 0.0, peak_speed = 0.0;
+  for (const CurvePiece& piece : curve) {
+    const double step = piece.duration / integral_steps;
+    for (int i = 0; i < integral_steps; ++i) {  // midpoints
+      const Vector3d velocity = state_of(piece, (i + 0.5) / integral_steps).velocity;
+      sum += step * motion.flight_power(velocity);
+      peak_speed = std::max(peak_speed, velocity.norm());
+    }
+  }
+  return sum + motion.stopping_energy(peak_speed);
+}
+
+}  // namespace skycap::flight

@@ -1,0 +1,234 @@
+#include "flight/motion/curve_refinement.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <vector>
+
+#include <ceres/autodiff_cost_function.h>
+#include <ceres/problem.h>
+#include <ceres/solver.h>
+
+namespace skycap::flight {
+namespace {
+
+using Eigen::Vector3d;
+
+/// Wanted duration of a piece, and the most pieces: a joint has nine numbers, and each step of the
+/// solver costs the cube of their sum.
+constexpr double piece_duration = 0.8;
+constexpr std::size_t least_pieces = 6, most_pieces = 32;
+constexpr int most_iterations = 20;
+/// Times that the problem is solved, each for a duration a little shorter than the last one needed.
+constexpr int rounds = 8;
+constexpr double haste = 0.92;
+
+/// Seconds that flying at full jerk all the time counts as.
+constexpr double jerk_weight = 1.0;
+/// Seconds that a squared speed of twice the limit's counts as, at each control point.
+constexpr double speed_weight = 10.0;
+/// Seconds that a metre into the wall costs, squared, at each of the places looked at.
+constexpr double wall_weight = 400.0;
+/// Places on a piece at which the distance is looked at, besides its start.
+constexpr int places = 5;
+
+/// A joint's position, and its velocity and acceleration by the pieces' common duration: so the way
+/// does not change with the duration, and both can be improved at once.
+using Joint = std::array<double, 9>;
+
+template <class T>
+using Vector = Eigen::Matrix<T, 3, 1>;
+
+template <class T>
+std::array<Vector<T>, 6> control_points(const T* from, const T* to) {
+  const auto part = [](const T* joint, int i) {
+    return Vector<T>(joint[3 * i], joint[3 * i + 1], joint[3 * i + 2]);
+  };
+  return {part(from, 0),
+          part(from, 0) + 0.2 * part(from, 1),
+          part(from, 0) + 0.4 * part(from, 1) + 0.05 * part(from, 2),
+          part(to, 0) - 0.4 * part(to, 1) + 0.05 * part(to, 2),
+          part(to, 0) - 0.2 * part(to, 1),
+          part(to, 0)};
+}
+
+template <class T>
+T hinge(const T& value) {
+  return value > T(0.0) ? value : T(0.0);
+}
+
+/// Jerk and speeds of one piece. Accelerations need no walls: least jerk spreads them evenly, and
+/// what is still too much is slowed.
+struct PieceCost {
+  static constexpr int residuals = 9 + 5 * 3;
+
+  double duration, speed, ascent, descent, jerk;
+
+  template <class T>
+  bool operator()(const T* from, const T* to, T* residual) const {
+    const double rate = 1.0 / duration;
+    const auto c = control_points(from, to);
+
+    // The integral of a squared Bezier curve of degree 2 is a quadratic form of its control points
+    // with this matrix, times the duration; its Cholesky factor turns it into a sum of squares.
+    static const Eigen::Matrix3d factor = [] {
+      Eigen::Matrix3d gram;
+      gram << 1.0 / 5, 1.0 / 10, 1.0 / 30, 1.0 / 10, 2.0 / 15, 1.0 / 10, 1.0 / 30, 1.0 / 10,
+          1.0 / 5;
+      return Eigen::Matrix3d(gram.llt().matrixU());
+    }();
+    std::array<Vector<T>, 3> jerks;
+    for (std::size_t i = 0; i < 3; ++i) {
+      jerks[i] = 60.0 * rate * rate * rate * (c[i + 3] - 3.0 * c[i + 2] + 3.0 * c[i + 1] - c[i]);
+    }
+    const double scale = std::sqrt(jerk_weight * duration) / jerk;
+    for (int row = 0; row < 3; ++row) {
+      for (int axis = 0; axis < 3; ++axis) {
+        T sum(0.0);
+        for (int i = row; i < 3; ++i)
+          sum += factor(row, i) * jerks[static_cast<std::size_t>(i)][axis];
+        *residual++ = scale * sum;
+      }
+    }
+
+    const double weight = std::sqrt(speed_weight);
+    const auto wall = [&](const T& squared_share) {
+      *residual++ = weight * hinge(T(squared_share - 1.0));
+    };
+    for (std::size_t i = 0; i < 5; ++i) {
+      const Vector<T> velocity = 5.0 * rate * (c[i + 1] - c[i]);
+      wall(velocity.squaredNorm() / (speed * speed));
+      wall(hinge(velocity.z()) * velocity.z() / (ascent * ascent));
+      wall(hinge(T(-velocity.z())) * -velocity.z() / (descent * descent));
+    }
+    return true;
+  }
+};
+
+/// How deep places of one piece are in the wall.
+struct WallCost {
+  const FreeSpace* space;
+  double wanted;
+
+  template <class T>
+  bool operator()(const T* from, const T* to, T* residual) const {
+    const auto c = control_points(from, to);
+    for (int i = 0; i < places; ++i) {
+      const double u = (i + 0.5) / places, w = 1.0 - u;
+      const Vector<T> place = w * w * w * w * w * c[0] + 5 * w * w * w * w * u * c[1] +
+                              10 * w * w * w * u * u * c[2] + 10 * w * w * u * u * u * c[3] +
+                              5 * w * u * u * u * u * c[4] + u * u * u * u * u * c[5];
+      residual[i] = std::sqrt(wall_weight) * hinge(T(wanted - distance(place)));
+    }
+    return true;
+  }
+
+  /// The distance, and its slope: away from the nearest place. Where the place itself is not free
+  /// there is no slope; the joints beside it have to pull it out.
+  template <class T>
+  T distance(const Vector<T>& place) const {
+    const Vector3d p(value(place.x()), value(place.y()), value(place.z()));
+    const Closest closest = space->closest({p, p}, wanted);
+    const Vector3d away = p - closest.on_obstacle;
+    if (closest.kind == ObstacleKind::none || closest.distance <= 0.0 || away.norm() == 0.0) {
+      return T(closest.distance);
+    }
+    const Vector3d slope = away.normalized();
+    return closest.distance + slope.x() * (place.x() - p.x()) + slope.y() * (place.y() - p.y()) +
+           slope.z() * (place.z() - p.z());
+  }
+
+  static double value(double number) { return number; }
+  template <class T>
+  static double value(const T& jet) {
+    return jet.a;
+  }
+};
+
+CurveState state_of(const Joint& joint, double duration) {
+  return {Vector3d(joint[0], joint[1], joint[2]), Vector3d(joint[3], joint[4], joint[5]) / duration,
+          Vector3d(joint[6], joint[7], joint[8]) / (duration * duration)};
+}
+
+Joint joint_of(const CurveState& state, double duration) {
+  Joint joint;
+  for (int axis = 0; axis < 3; ++axis) {
+    const auto i = static_cast<std::size_t>(axis);
+    joint[i] = state.position[axis];
+    joint[3 + i] = state.velocity[axis] * duration;
+    joint[6 + i] = state.acceleration[axis] * duration * duration;
+  }
+  return joint;
+}
+
+/// One problem of a given duration, solved from where the joints are.
+void solve(std::vector<Joint>& joints, const PieceCost& piece_cost, const WallCost& wall_cost) {
+  ceres::Problem problem;
+  for (std::size_t i = 0; i + 1 < joints.size(); ++i) {
+    double *from = joints[i].data(), *to = joints[i + 1].data();
+    problem.AddResidualBlock(new ceres::AutoDiffCostFunction<PieceCost, PieceCost::residuals, 9, 9>(
+                                 new PieceCost(piece_cost)),
+                             nullptr, from, to);
+    problem.AddResidualBlock(
+        new ceres::AutoDiffCostFunction<WallCost, places, 9, 9>(new WallCost(wall_cost)), nullptr,
+        from, to);
+  }
+  problem.SetParameterBlockConstant(joints.front().data());
+  problem.SetParameterBlockConstant(joints.back().data());
+  ceres::Solver::Options options;
+  options.num_threads = 1;  // sums in one order: the same curve every time
+  options.linear_solver_type = ceres::DENSE_NORMAL_CHOLESKY;
+  options.dense_linear_algebra_library_type = ceres::EIGEN;
+  options.max_num_iterations = most_iterations;
+  options.max_solver_time_in_seconds = 1e9;  // the iterations are the limit, not the clock
+  options.function_tolerance = 1e-4;
+  options.logging_type = ceres::SILENT;
+  ceres::Solver::Summary summary;
+  ceres::Solve(options, &problem, &summary);
+}
+
+Curve curve_through(const std::vector<Joint>& joints, double duration) {
+  Curve curve;
+  for (std::size_t i = 0; i + 1 < joints.size(); ++i) {
+    curve.push_back(
+        piece_between(state_of(joints[i], duration), state_of(joints[i + 1], duration), duration));
+  }
+  return curve;
+}
+
+}  // namespace
+
+Curve refine(const Curve& start, const FreeSpace& space, double wanted_clearance,
+             const Motion& motion) {
+  const double total = duration(start);
+  const std::size_t count =
+      std::clamp(static_cast<std::size_t>(total / piece_duration), least_pieces, most_pieces);
+  double step = total / static_cast<double>(count);
+  std::vector<Joint> joints;
+  for (std::size_t i = 0; i < count; ++i) {
+    joints.push_back(joint_of(state_at(start, static_cast<double>(i) * step), step));
+  }
+  joints.push_back(joint_of({start.back().control.back()}, step));
+
+  const Vehicle& vehicle = motion.vehicle();
+  const Conditions& conditions = motion.conditions();
+  // Against the wind the vehicle may not make its cruise speed. The few directions in which this is
+  // too careful are not worth a term of their own.
+  const double speed =
+      std::min(conditions.cruise_speed,
+               std::max(vehicle.max_speed - conditions.wind.norm(), 0.1 * vehicle.max_speed));
+  const WallCost wall_cost{&space, wanted_clearance};
+  Curve best;
+  for (int round = 0; round < rounds; ++round) {
+    solve(joints, {step, speed, vehicle.max_ascent, vehicle.max_descent, vehicle.jerk}, wall_cost);
+    Curve curve = curve_through(joints, step);
+    const double factor = needed_slowdown(curve, motion);
+    curve = slowed(std::move(curve), factor);
+    if (!best.empty() && duration(curve) > duration(best)) break;
+    best = std::move(curve);
+    step *= std::clamp(factor, 0.8, 1.0) * haste;
+  }
+  return best;
+}
+
+}  // namespace skycap::flight

@@ -1,0 +1,192 @@
+#include "flight/motion/motion.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <string>
+
+#include "geometry/error.h"
+
+namespace skycap::flight {
+namespace {
+
+using Eigen::Vector3d;
+
+constexpr double gravity = 9.80665;
+constexpr double sea_level_density = 1.225;
+constexpr double joules_per_wh = 3600.0;
+
+/// Endurances are stated to the last drop; a twentieth of a battery is lost to its age.
+constexpr double aged_capacity = 0.95;
+/// Batteries lose a hundredth of their capacity for each degree below 15 C.
+constexpr double loss_per_degree = 0.01;
+/// Share of the rotors' hover power that goes into blade drag, and the ratio of cruise to tip speed
+/// enters it by 3 (v / tip)^2 (Leishman, Principles of Helicopter Aerodynamics, section 5.4).
+constexpr double profile_share = 0.2;
+constexpr double tip_speed = 120.0;
+
+}  // namespace
+
+void Conditions::validate(const Vehicle& vehicle) const {
+  const auto fail = [](const std::string& what) { throw Error(ErrorKind::bad_config, what); };
+  if (!wind.allFinite() || wind.norm() > vehicle.max_wind) {
+    fail("the wind is " + std::to_string(wind.norm()) + " m/s; vehicle \"" + vehicle.name +
+         "\" flies up to " + std::to_string(vehicle.max_wind) + " m/s");
+  }
+  if (!(cruise_speed > 0.0) || !(cruise_speed <= vehicle.max_speed)) {
+    fail("the cruise speed is " + std::to_string(cruise_speed) + " m/s; for vehicle \"" +
+         vehicle.name + "\" it must be in (0, " + std::to_string(vehicle.max_speed) + "]");
+  }
+  if (!(reserve >= 0.0 && reserve < 1.0)) {
+    fail("the battery reserve is " + std::to_string(reserve) + "; it must be in [0, 1)");
+  }
+  if (!(air_density > 0.3 && air_density < 2.0)) {
+    fail("the air density is " + std::to_string(air_density) + " kg/m^3; it must be in (0.3, 2)");
+  }
+  if (!(temperature_c > -40.0 && temperature_c < 60.0)) {
+    fail("the temperature is " + std::to_string(temperature_c) + " C; it must be in (-40, 60)");
+  }
+}
+
+double rest_to_rest_time(double distance, double speed, double acceleration, double jerk) {
+  if (distance <= 0.0) return 0.0;
+  // Time to reach the speed: with a phase of constant acceleration, or without.
+  const double ramp = speed * jerk >= acceleration * acceleration
+                          ? acceleration / jerk + speed / acceleration
+                          : 2.0 * std::sqrt(speed / jerk);
+  if (distance >= speed * ramp) return ramp + distance / speed;
+  // The speed is not reached; the acceleration is, or not.
+  if (distance >= 2.0 * std::pow(acceleration, 3) / (jerk * jerk)) {
+    const double half_rise = 0.5 * acceleration / jerk;
+    return 2.0 * (half_rise + std::sqrt(half_rise * half_rise + distance / acceleration));
+  }
+  return 4.0 * std::cbrt(distance / (2.0 * jerk));
+}
+
+MotionState rest_to_rest_state(double distance, double speed, double acceleration, double jerk,
+                               double time) {
+  const double total = rest_to_rest_time(distance, speed, acceleration, jerk);
+  if (time <= 0.0 || distance <= 0.0) return {};
+  if (time >= total) return {distance, 0.0, 0.0};
+  if (time > 0.5 * total) {  // braking mirrors the start
+    const MotionState mirrored =
+        rest_to_rest_state(distance, speed, acceleration, jerk, total - time);
+    return {distance - mirrored.distance, mirrored.speed, -mirrored.acceleration};
+  }
+  // Up to the peak speed: the acceleration rises, holds, falls; then the speed holds.
+  const double peak_ramp = std::min(0.5 * total, speed * jerk >= acceleration * acceleration
+                                                     ? acceleration / jerk + speed / acceleration
+                                                     : 2.0 * std::sqrt(speed / jerk));
+  const double rise = std::min(acceleration / jerk, 0.5 * peak_ramp);
+  MotionState state;
+  double left = time;
+  const auto advance = [&](double phase, double phase_jerk) {
+    const double t = std::min(left, phase);
+    state.distance += t * (state.speed + t * (state.acceleration / 2.0 + t * phase_jerk / 6.0));
+    state.speed += t * (state.acceleration + t * phase_jerk / 2.0);
+    state.acceleration += t * phase_jerk;
+    left -= t;
+  };
+  advance(rise, jerk);
+  advance(peak_ramp - 2.0 * rise, 0.0);
+  advance(rise, -jerk);
+  advance(left, 0.0);
+  return state;
+}
+
+double turn_time(double angle, double rate, double acceleration) {
+  const double turn = std::abs(angle);
+  const double ramp = rate / acceleration;
+  if (turn >= rate * ramp) return ramp + turn / rate;
+  return 2.0 * std::sqrt(turn / acceleration);
+}
+
+Motion::Motion(const Vehicle& vehicle, const Conditions& conditions)
+    : vehicle_(vehicle), conditions_(conditions) {
+  vehicle.validate();
+  conditions.validate(vehicle);
+  const double thrust = vehicle.mass * gravity;
+  const double disc_area =
+      vehicle.rotors * std::numbers::pi * vehicle.rotor_diameter * vehicle.rotor_diameter / 4.0;
+  const double data_sheet_power = aged_capacity * vehicle.battery_wh * 60.0 / vehicle.endurance_min;
+  const double rotor_power = data_sheet_power - vehicle.avionics_power;
+  const double ideal_power = std::pow(thrust, 1.5) / std::sqrt(2.0 * sea_level_density * disc_area);
+  efficiency_ = ideal_power / ((1.0 - profile_share) * rotor_power);
+  if (!(rotor_power > 0.0) || !(efficiency_ < 1.0)) {
+    throw Error(ErrorKind::bad_config, "vehicle \"" + vehicle.name + "\": an endurance of " +
+                                           std::to_string(vehicle.endurance_min) +
+                                           " min would need " + std::to_string(data_sheet_power) +
+                                           " W, less than its mass takes to hover");
+  }
+  const double density_ratio = conditions.air_density / sea_level_density;
+  induced_speed_ = std::sqrt(thrust / (2.0 * conditions.air_density * disc_area));
+  induced_power_ = (1.0 - profile_share) * rotor_power / std::sqrt(density_ratio);
+  profile_power_ = profile_share * rotor_power * density_ratio;
+}
+
+double Motion::hover_power() const { return forward_power(0.0); }
+
+// Induced power falls with airspeed, profile and parasite power rise (Liu et al. 2017, Eq. (12)).
+double Motion::forward_power(double airspeed) const {
+  const double ratio = 0.5 * airspeed * airspeed / (induced_speed_ * induced_speed_);
+  const double induced = std::sqrt(std::sqrt(1.0 + ratio * ratio) - ratio);
+  const double parasite =
+      0.5 * conditions_.air_density * vehicle_.drag_area * std::pow(airspeed, 3) / efficiency_;
+  return induced_power_ * induced +
+         profile_power_ * (1.0 + 3.0 * std::pow(airspeed / tip_speed, 2)) + parasite +
+         vehicle_.avionics_power;
+}
+
+double Motion::leg_speed(const Vector3d& direction) const {
+  const double horizontal = direction.head<2>().norm();
+  double speed = conditions_.cruise_speed;
+  if (direction.z() > 0.0) speed = std::min(speed, vehicle_.max_ascent / direction.z());
+  if (direction.z() < 0.0) speed = std::min(speed, vehicle_.max_descent / -direction.z());
+  if (horizontal > 0.0) {
+    // |ground velocity - wind| <= max_speed, solved for the ground speed along the leg.
+    const double along = conditions_.wind.dot(direction.head<2>()) / horizontal;
+    const double across_squared = conditions_.wind.squaredNorm() - along * along;
+    const double root =
+        std::sqrt(std::max(0.0, vehicle_.max_speed * vehicle_.max_speed - across_squared));
+    speed = std::min(speed, (along + root) / horizontal);
+  }
+  return std::max(speed, 0.1);  // wind limits are below the top speed for every sane vehicle
+}
+
+double Motion::leg_time(const Vector3d& displacement) const {
+  const double distance = displacement.norm();
+  if (distance == 0.0) return 0.0;
+  return rest_to_rest_time(distance, leg_speed(displacement / distance), vehicle_.acceleration,
+                           vehicle_.jerk);
+}
+
+double Motion::hover_energy(double duration) const {
+  return forward_power(conditions_.wind.norm()) * duration;
+}
+
+double Motion::leg_energy(const Vector3d& displacement, double duration) const {
+  const double moving = leg_time(displacement);
+  if (moving == 0.0) return hover_energy(duration);
+  const double distance = displacement.norm();
+  const double peak_speed = std::min(leg_speed(displacement / distance), 2.0 * distance / moving);
+  return flight_power(displacement / moving) * moving + stopping_energy(peak_speed) +
+         hover_energy(std::max(0.0, duration - moving));
+}
+
+double Motion::flight_power(const Vector3d& velocity) const {
+  // Climbing lifts the mass; descending slowly gives nothing back.
+  const double climb = std::max(0.0, velocity.z()) * vehicle_.mass * gravity / efficiency_;
+  return forward_power((velocity.head<2>() - conditions_.wind).norm()) + climb;
+}
+
+double Motion::stopping_energy(double speed) const {
+  return 0.5 * vehicle_.mass * speed * speed / efficiency_;
+}
+
+double Motion::usable_energy() const {
+  const double cold = std::max(0.0, 15.0 - conditions_.temperature_c);
+  return joules_per_wh * vehicle_.battery_wh * aged_capacity *
+         std::max(0.0, 1.0 - loss_per_degree * cold) * (1.0 - conditions_.reserve);
+}
+
+}  // namespace skycap::flight

@@ -1,0 +1,396 @@
+#include "flight/paths/path.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <queue>
+#include <string>
+
+#include "flight/space/cell_map.h"
+#include "geometry/error.h"
+
+namespace skycap::flight {
+namespace {
+
+using Eigen::AlignedBox3d;
+using Eigen::Vector3d;
+
+/// The straight line is cut into about this many cells on the coarsest grid.
+constexpr double coarse_cells = 12.0;
+/// A path this near to the straight line is not worth improving on another grid.
+constexpr double good_enough = 1.005;
+/// A further grid is searched only for paths that are shorter by this factor.
+constexpr double worth_searching = 0.99;
+/// Grid vertices that each grid may expand in the first round, and the factor from round to round.
+constexpr std::size_t first_round_budget = 4000;
+constexpr std::size_t round_growth = 4;
+
+/// Distances at the vertices of one grid. A vertex holds a lower bound of its distance, which is
+/// made exact only when the bound does not decide.
+class GridDistances {
+ public:
+  GridDistances(const FreeSpace& space, double cell, double clearance)
+      : space_(&space), cell_(cell), needed_(clearance + clearance_guard) {}
+
+  double cell() const { return cell_; }
+  Vector3d position(const Cell& cell) const { return cell.cast<double>() * cell_; }
+
+  /// Distance of a vertex as far as it is known; at least enough to tell whether it is free.
+  double distance(const Cell& cell) {
+    Known& known = known_.at(cell, {});
+    if (known.is_exact || known.bound >= needed_) return known.bound;
+    known = {space_->surface_distance(position(cell), needed_ + 6.0 * cell_), true};
+    return known.bound;
+  }
+
+  /// Tells a vertex that a place `step` away is at `distance` from everything (1-Lipschitz).
+  void tell(const Cell& cell, double distance, double step) {
+    Known& known = known_.at(cell, {});
+    if (!known.is_exact) known.bound = std::max(known.bound, distance - step);
+  }
+
+  bool is_free(const Cell& cell) { return distance(cell) >= needed_; }
+
+ private:
+  struct Known {
+    double bound = -1.0;
+    bool is_exact = false;
+  };
+  const FreeSpace* space_;
+  double cell_;
+  double needed_;
+  CellMap<Known> known_;
+};
+
+/// One run of Lazy Theta* on one grid. Vertex 0 is the start and vertex 1 the goal, which need not
+/// lie on the grid.
+class Search {
+ public:
+  Search(const FreeSpace& space, double clearance, GridDistances& grid, const AlignedBox3d& region,
+         const Vector3d& from, const Vector3d& to)
+      : space_(space), clearance_(clearance), grid_(grid), region_(region) {
+    vertices_.push_back({from, Cell::Zero(), 0.0, 0});
+    vertices_.push_back({to, Cell::Zero(), unreached, 0});
+    for (int axis = 0; axis < 3; ++axis) {
+      start_cell_[axis] = static_cast<int>(std::floor(from[axis] / grid.cell()));
+      goal_cell_[axis] = static_cast<int>(std::floor(to[axis] / grid.cell()));
+    }
+  }
+
+  /// The path, or nothing if there is none shorter than `limit`. Counts down `expansions_left`.
+  std::vector<Vector3d> run(double limit, std::size_t& expansions_left) {
+    limit_ = limit;
+    push(0);
+    while (!open_.empty() && expansions_left > 0) {
+      const std::uint32_t current = open_.top().vertex;
+      const double queued_length = open_.top().length;
+      open_.pop();
+      Vertex& vertex = vertices_[current];
+      if (vertex.is_closed || queued_length != vertex.length) continue;  // an outdated entry
+      if (!settle(current)) continue;
+      if (current == 1) return trace();
+      --expansions_left;
+      expand(current);
+    }
+    return {};
+  }
+
+ private:
+  static constexpr double unreached = std::numeric_limits<double>::infinity();
+
+  struct Vertex {
+    Vector3d position;
+    Cell cell;
+    double length;  ///< of the best path known from the start
+    std::uint32_t parent;
+    bool is_closed = false;
+  };
+  struct Entry {
+    double estimate;  ///< of the whole path through the vertex
+    double length;
+    std::uint32_t vertex;
+    bool operator<(const Entry& other) const {  // the least estimate, then the farthest come, wins
+      if (estimate != other.estimate) return estimate > other.estimate;
+      if (length != other.length) return length < other.length;
+      return vertex > other.vertex;
+    }
+  };
+
+  void push(std::uint32_t v) {
+    const double estimate =
+        vertices_[v].length + (vertices_[1].position - vertices_[v].position).norm();
+    if (estimate < limit_) open_.push({estimate, vertices_[v].length, v});
+  }
+
+  bool is_leg_free(std::uint32_t from, std::uint32_t to) const {
+    return space_.continues_free({vertices_[from].position, vertices_[to].position}, clearance_);
+  }
+
+  /// Lazy Theta*, SetVertex: the leg from the parent was assumed free; if it is not, the best
+  /// settled neighbour becomes the parent. False if there is none.
+  bool settle(std::uint32_t v) {
+    if (v == 0 || is_leg_free(vertices_[v].parent, v)) {
+      vertices_[v].is_closed = true;
+      return true;
+    }
+    std::vector<Entry> candidates;
+    for_each_neighbour(v, [&](std::uint32_t n) {
+      if (!vertices_[n].is_closed) return;
+      const double length =
+          vertices_[n].length + (vertices_[v].position - vertices_[n].position).norm();
+      candidates.push_back({length, length, n});
+    });
+    std::sort(candidates.begin(), candidates.end(),
+              [](const Entry& a, const Entry& b) { return b < a; });
+    vertices_[v].length = unreached;
+    for (const Entry& candidate : candidates) {
+      if (!is_leg_free(candidate.vertex, v)) continue;
+      vertices_[v].length = candidate.length;
+      vertices_[v].parent = candidate.vertex;
+      vertices_[v].is_closed = true;
+      return true;
+    }
+    return false;
+  }
+
+  void expand(std::uint32_t v) {
+    if (v > 1) tell_neighbours(v);
+    for_each_neighbour(v, [&](std::uint32_t n) {
+      if (vertices_[n].is_closed) return;
+      const std::uint32_t parent = vertices_[v].parent;
+      const double length =
+          vertices_[parent].length + (vertices_[n].position - vertices_[parent].position).norm();
+      if (!(length < vertices_[n].length)) return;
+      vertices_[n].length = length;
+      vertices_[n].parent = parent;
+      push(n);
+    });
+  }
+
+  void tell_neighbours(std::uint32_t v) {
+    const Cell cell = vertices_[v].cell;
+    const double distance = grid_.distance(cell);
+    for_each_offset([&](const Cell& offset) {
+      grid_.tell(cell + offset, distance, offset.cast<double>().norm() * grid_.cell());
+    });
+  }
+
+  template <typename Visit>
+  static void for_each_offset(Visit visit) {
+    for (int x = -1; x <= 1; ++x) {
+      for (int y = -1; y <= 1; ++y) {
+        for (int z = -1; z <= 1; ++z) {
+          if (x != 0 || y != 0 || z != 0) visit(Cell(x, y, z));
+        }
+      }
+    }
+  }
+
+  /// The free grid vertices around a vertex, and the goal where it is near. Start and goal have the
+  /// corners of their cell as neighbours.
+  template <typename Visit>
+  void for_each_neighbour(std::uint32_t v, Visit visit) {
+    const auto visit_cell = [&](const Cell& cell) {
+      if (!region_.contains(grid_.position(cell)) || !grid_.is_free(cell)) return;
+      visit(vertex_at(cell));
+    };
+    if (v <= 1) {
+      const Cell low = v == 0 ? start_cell_ : goal_cell_;
+      for (int corner = 0; corner < 8; ++corner) {
+        visit_cell(low + Cell(corner & 1, corner >> 1 & 1, corner >> 2 & 1));
+      }
+      return;
+    }
+    const Cell cell = vertices_[v].cell;
+    for_each_offset([&](const Cell& offset) { visit_cell(cell + offset); });
+    const auto is_corner_of = [&](const Cell& low) {
+      const Eigen::Array3i offset = (cell - low).array();
+      return (offset >= 0).all() && (offset <= 1).all();
+    };
+    if (is_corner_of(goal_cell_)) visit(1);
+    if (is_corner_of(start_cell_)) visit(0);
+  }
+
+  std::uint32_t vertex_at(const Cell& cell) {
+    const auto fresh = static_cast<std::uint32_t>(vertices_.size());
+    const std::uint32_t v = index_.at(cell, fresh);
+    if (v == fresh) vertices_.push_back({grid_.position(cell), cell, unreached, 0});
+    return v;
+  }
+
+  std::vector<Vector3d> trace() const {
+    std::vector<Vector3d> points;
+    std::uint32_t v = 1;
+    for (; v != 0; v = vertices_[v].parent) points.push_back(vertices_[v].position);
+    points.push_back(vertices_[0].position);
+    std::reverse(points.begin(), points.end());
+    return points;
+  }
+
+  const FreeSpace& space_;
+  double clearance_;
+  GridDistances& grid_;
+  AlignedBox3d region_;
+  Cell start_cell_, goal_cell_;
+  double limit_ = unreached;
+  std::vector<Vertex> vertices_;
+  CellMap<std::uint32_t> index_;
+  std::priority_queue<Entry> open_;
+};
+
+}  // namespace
+
+void PathOptions::validate() const {
+  const auto require = [](bool holds, const std::string& what) {
+    if (!holds) throw Error(ErrorKind::bad_config, what);
+  };
+  require(finest_cell >= 0.0 && std::isfinite(finest_cell),
+          "path.finest_cell is " + std::to_string(finest_cell) + " m; it must be zero or more");
+  require(max_expansions > 0, "path.max_expansions is 0; at least 1 is needed to find a path");
+  require(
+      worthwhile_saving >= 0.0 && worthwhile_saving < 1.0,
+      "path.worthwhile_saving is " + std::to_string(worthwhile_saving) + "; it must be in [0, 1)");
+}
+
+double length(const std::vector<Vector3d>& points) {
+  double sum = 0.0;
+  for (std::size_t i = 1; i < points.size(); ++i) sum += (points[i] - points[i - 1]).norm();
+  return sum;
+}
+
+struct PathFinder::Impl {
+  const FreeSpace& space;
+  double clearance;
+  PathOptions options;
+  std::map<int, GridDistances> grids;  ///< by the exponent of two that is their cell
+
+  GridDistances& grid(int exponent) {
+    return grids.try_emplace(exponent, space, std::exp2(exponent), clearance).first->second;
+  }
+  AlignedBox3d region(const Vector3d& from, const Vector3d& to, double cell) const;
+  struct Exponents {
+    int finest, coarsest;
+  };
+  Exponents exponents(double straight) const;
+  /// `path.points` holds the two ends until a path is found.
+  bool search_grid(int exponent, std::size_t& budget, Path& path);
+  void search_grids(Path& path);
+};
+
+/// Beyond the obstacles' box nothing is in the way, so a shortest path never leaves it by more than
+/// the clearance; two cells more leave room for the grid.
+AlignedBox3d PathFinder::Impl::region(const Vector3d& from, const Vector3d& to, double cell) const {
+  AlignedBox3d box = space.extent();
+  const double grown = clearance + 2.0 * cell;
+  if (!box.isEmpty()) {
+    box.min() -= Vector3d::Constant(grown);
+    box.max() += Vector3d::Constant(grown);
+  }
+  for (const Vector3d& end : {from, to}) {
+    box.extend(Vector3d(end - Vector3d::Constant(2.0 * cell)));
+    box.extend(Vector3d(end + Vector3d::Constant(2.0 * cell)));
+  }
+  return box;
+}
+
+/// The exponents of two that are the cells of the finest and the coarsest grid.
+PathFinder::Impl::Exponents PathFinder::Impl::exponents(double straight) const {
+  const double finest = options.finest_cell > 0.0
+                            ? options.finest_cell
+                            : std::max({0.25 * clearance, straight / 400.0, 1e-3});
+  const int last = static_cast<int>(std::floor(std::log2(finest)));
+  return {last, std::max(last, static_cast<int>(std::floor(std::log2(straight / coarse_cells))))};
+}
+
+/// Searches one grid; keeps the path if it is shorter. Returns whether the grid was searched to the
+/// end, or a path was found: then there is nothing more to be had from it.
+bool PathFinder::Impl::search_grid(int exponent, std::size_t& budget, Path& path) {
+  const bool has_path = path.status == PathStatus::found;
+  const Vector3d from = path.points.front(), to = path.points.back();
+  GridDistances& distances = grid(exponent);
+  Search search(space, clearance, distances, region(from, to, distances.cell()), from, to);
+  const double limit =
+      has_path ? worth_searching * path.length : std::numeric_limits<double>::infinity();
+  const std::size_t before = budget;
+  std::vector<Vector3d> points = search.run(limit, budget);
+  path.expansions += before - budget;
+  if (points.empty()) return budget > 0;
+  points = pull_tight(space, clearance, std::move(points), options.worthwhile_saving);
+  const double pulled = length(points);
+  if (!has_path || pulled < path.length) {
+    path.points = std::move(points);
+    path.length = pulled;
+    path.status = PathStatus::found;
+  }
+  return true;
+}
+
+// The first path comes from the grid, coarse or fine, that finds one with the least work: all get
+// the same budget, which grows from round to round. It sets the length to beat. Then the finer
+// grids look for passages that the first one cannot see.
+void PathFinder::Impl::search_grids(Path& path) {
+  const double straight = (path.points.back() - path.points.front()).norm();
+  const auto [last, first] = exponents(straight);
+  std::vector<bool> is_exhausted(static_cast<std::size_t>(first - last + 1), false);
+  int found_on = last;
+  for (std::size_t round_budget = std::min(first_round_budget, options.max_expansions);
+       path.status != PathStatus::found; round_budget *= round_growth) {
+    for (int exponent = first; exponent >= last && path.status != PathStatus::found; --exponent) {
+      const auto slot = static_cast<std::size_t>(exponent - last);
+      if (is_exhausted[slot]) continue;
+      std::size_t budget = round_budget;
+      is_exhausted[slot] = search_grid(exponent, budget, path);
+      found_on = exponent;
+    }
+    const bool all_exhausted =
+        std::all_of(is_exhausted.begin(), is_exhausted.end(), [](bool is) { return is; });
+    if (all_exhausted || round_budget * round_growth > options.max_expansions) break;
+  }
+  if (path.status != PathStatus::found) return;
+  std::size_t budget = options.max_improving_expansions;
+  for (int exponent = found_on - 1; exponent >= last && budget > 0; --exponent) {
+    if (path.length <= good_enough * straight) return;
+    search_grid(exponent, budget, path);
+  }
+}
+
+PathFinder::PathFinder(const FreeSpace& space, double clearance, const PathOptions& options)
+    : impl_(new Impl{space, clearance, options, {}}) {
+  options.validate();
+  if (!(clearance >= 0.0) || !std::isfinite(clearance)) {
+    throw Error(ErrorKind::bad_config, "the clearance is " + std::to_string(clearance) +
+                                           " m; it must be a finite number, zero or more");
+  }
+}
+
+PathFinder::~PathFinder() = default;
+PathFinder::PathFinder(PathFinder&&) noexcept = default;
+PathFinder& PathFinder::operator=(PathFinder&&) noexcept = default;
+
+Path PathFinder::find(const Vector3d& from, const Vector3d& to) {
+  Path path;
+  if (!impl_->space.is_free({from, from}, impl_->clearance)) {
+    path.status = PathStatus::start_not_free;
+    return path;
+  }
+  if (!impl_->space.is_free({to, to}, impl_->clearance)) {
+    path.status = PathStatus::goal_not_free;
+    return path;
+  }
+  path.points = {from, to};
+  path.status = PathStatus::unreachable;
+  if (impl_->space.continues_free({from, to}, impl_->clearance)) {
+    path.status = PathStatus::found;
+    path.length = (to - from).norm();
+  } else {
+    impl_->search_grids(path);
+  }
+  if (path.status != PathStatus::found) path.points.clear();
+  return path;
+}
+
+void PathFinder::forget() { impl_->grids.clear(); }
+
+double PathFinder::clearance() const { return impl_->clearance; }
+
+}  // namespace skycap::flight

@@ -1,0 +1,406 @@
+#include "flight/route/route.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <numbers>
+#include <optional>
+
+#include "flight/paths/sampling_path.h"
+#include "flight/route/sortie_split.h"
+#include "flight/route/tour.h"
+#include "geometry/error.h"
+
+namespace skycap::flight {
+namespace {
+
+using Eigen::Vector3d;
+
+/// Autopilots need up to this many mission items for a station, and some around a sortie.
+constexpr int items_per_station = 5;
+constexpr int items_per_sortie = 12;
+
+std::string at(const Vector3d& p) {
+  const auto round = [](double value) {
+    std::string text = std::to_string(std::round(value * 100.0) / 100.0);
+    return text.substr(0, text.find('.') + 3);
+  };
+  return "(" + round(p.x()) + ", " + round(p.y()) + ", " + round(p.z()) + ")";
+}
+
+/// A length for messages, to the millimetre.
+std::string metres(double length) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.3f m", length);
+  return text;
+}
+
+double angle_between(double from, double to) {
+  return std::remainder(to - from, 2.0 * std::numbers::pi);
+}
+
+/// Plans one route; the members are its stages' intermediate results.
+class RoutePlanner {
+ public:
+  RoutePlanner(const Vehicle& vehicle, const FreeSpace& space, const RouteOptions& options)
+      : motion_(vehicle, options.conditions),
+        space_(space),
+        finder_(space, options.clearance.total(), options.path),
+        home_(options.takeoff + Vector3d(0.0, 0.0, options.takeoff_climb)) {
+    route_.vehicle = vehicle;
+    route_.options = options;
+    route_.clearance = options.clearance.total();
+    route_.min_clearance = route_.clearance + reported_surplus;
+  }
+
+  Route plan(std::vector<Station> stations, const FreeSpace* pad_space) {
+    check_pad(pad_space);
+    keep_allowed(stations);
+    if (route_.options.order_is_free) choose_order(stations);
+    keep_reachable(stations);
+    keep_in_range();
+    connect();
+    split();
+    smooth_legs();
+    return std::move(route_);
+  }
+
+ private:
+  using Cost = SplitProblem::Cost;
+
+  void check_pad(const FreeSpace* pad_space) {
+    const double clearance = route_.clearance;
+    if (!space_.is_free({home_, home_}, clearance)) {
+      const Closest closest = space_.closest({home_, home_}, clearance + 1.0);
+      throw Error(ErrorKind::bad_config, "the place above the take-off pad, " + at(home_) +
+                                             ", is " + metres(closest.distance) + " from " +
+                                             space_.name(closest) + "; the clearance is " +
+                                             metres(clearance) + ": move the pad or climb higher");
+    }
+    const Segment climb{home_, route_.options.takeoff};
+    if (pad_space != nullptr && !pad_space->is_free(climb, clearance)) {
+      const Closest closest = pad_space->closest(climb, clearance + 1.0);
+      throw Error(ErrorKind::bad_config,
+                  "the climb from the pad comes within " + metres(closest.distance) + " of " +
+                      pad_space->name(closest) + "; the clearance is " + metres(clearance));
+    }
+  }
+
+  void refuse(const Station& station, const std::string& reason) {
+    route_.unreached.push_back({station, reason});
+  }
+
+  /// Drops stations that the gimbal cannot look from, or that are not free themselves.
+  void keep_allowed(std::vector<Station>& stations) {
+    std::vector<Station> allowed;
+    for (const Station& station : stations) {
+      const double pitch = pitch_of(station.view);
+      const Vehicle& vehicle = motion_.vehicle();
+      // A millionth of a radian for the rounding of directions that are meant to be at the limit.
+      if (pitch < vehicle.gimbal_min - 1e-6 || pitch > vehicle.gimbal_max + 1e-6) {
+        refuse(station, "the gimbal of \"" + vehicle.name + "\" cannot look that way");
+        continue;
+      }
+      const Segment place{station.view.position, station.view.position};
+      if (!space_.is_free(place, route_.clearance)) {
+        const Closest closest = space_.closest(place, route_.clearance + 1.0);
+        refuse(station, "it is " + metres(closest.distance) + " from " + space_.name(closest));
+        continue;
+      }
+      allowed.push_back(station);
+    }
+    stations = std::move(allowed);
+  }
+
+  void choose_order(std::vector<Station>& stations) {
+    const auto place = [&](std::uint32_t i) {
+      return i == 0 ? home_ : stations[i - 1].view.position;
+    };
+    const Tour tour =
+        plan_tour(static_cast<std::uint32_t>(stations.size() + 1),
+                  [&](std::uint32_t a, std::uint32_t b) { return (place(a) - place(b)).norm(); });
+    std::vector<Station> ordered;
+    for (const std::uint32_t i : tour.order) ordered.push_back(stations[i - 1]);
+    stations = std::move(ordered);
+    route_.order_bound = tour.lower_bound;
+    route_.order_length = tour.cost;
+  }
+
+  Leg make_leg(const std::vector<Vector3d>& points, const Station* from, const Station* to) {
+    Leg leg;
+    leg.points = points;
+    leg.length = flight::length(points);
+    leg.clearance = route_.clearance + reported_surplus;
+    const double turning = turning_time(from, to);
+    for (std::size_t i = 1; i < points.size(); ++i) {
+      const LegProof proof = prove(space_, {points[i - 1], points[i]}, route_.clearance,
+                                   route_.clearance + reported_surplus);
+      leg.clearance = std::min(leg.clearance, proof.clearance);
+      // Autopilots begin to turn when they leave for the station, which is in the last corner.
+      const bool is_last = i + 1 == points.size();
+      const Vector3d way = points[i] - points[i - 1];
+      const double moving = std::max(motion_.leg_time(way), is_last ? turning : 0.0);
+      leg.duration += moving;
+      leg.energy += motion_.leg_energy(way, moving);
+      if (is_last) break;
+      leg.duration += corner_hold;
+      leg.energy += motion_.hover_energy(corner_hold);
+    }
+    return leg;
+  }
+
+  /// Yaw and gimbal turn in parallel with the leg; from and to the pad there is nothing to aim at.
+  double turning_time(const Station* from, const Station* to) const {
+    if (from == nullptr || to == nullptr) return 0.0;
+    const Vehicle& vehicle = motion_.vehicle();
+    const double yaw = angle_between(yaw_of(from->view), yaw_of(to->view));
+    const double pitch = pitch_of(to->view) - pitch_of(from->view);
+    return std::max(turn_time(yaw, vehicle.yaw_rate, vehicle.yaw_acceleration),
+                    std::abs(pitch) / vehicle.gimbal_rate);
+  }
+
+  /// A way from above the pad to each station decides which stations there are; the way back is the
+  /// same reversed.
+  void keep_reachable(const std::vector<Station>& stations) {
+    for (const Station& station : stations) {
+      Path path = finder_.find(home_, station.view.position);
+      if (path.status == PathStatus::unreachable) {
+        // Perhaps by a passage too narrow for the grid.
+        path = find_path_by_sampling(space_, home_, station.view.position, route_.clearance);
+      }
+      if (path.status != PathStatus::found) {
+        refuse(station, "there is no way to it at a clearance of " + metres(route_.clearance));
+        continue;
+      }
+      route_.stations.push_back(station);
+      ways_.push_back(path.points);
+    }
+  }
+
+  Cost pad_cost() const {
+    const Vector3d climb(0.0, 0.0, route_.options.takeoff_climb);
+    const double time = motion_.leg_time(climb);
+    return {time + corner_hold, motion_.leg_energy(climb, time + corner_hold)};
+  }
+  Cost landing_cost() const {
+    const Vector3d descent(0.0, 0.0, -route_.options.takeoff_climb);
+    const double moving = motion_.leg_time(descent);
+    const double time = corner_hold + moving + route_.options.landing_time;
+    return {time, motion_.leg_energy(descent, time)};
+  }
+  Cost station_cost(const Station& station) const {
+    const double hold = std::max(corner_hold, station.hold);
+    return {hold, motion_.hover_energy(hold)};
+  }
+  static Cost sum(const Cost& a, const Cost& b) { return {a.time + b.time, a.energy + b.energy}; }
+  static Cost cost_of(const Leg& leg) { return {leg.duration, leg.energy}; }
+
+  std::vector<Vector3d> way_home(std::size_t i) const {
+    return {ways_[i].rbegin(), ways_[i].rend()};
+  }
+
+  /// Drops stations that a full battery cannot reach and return from.
+  void keep_in_range() {
+    std::vector<Station> stations;
+    std::vector<std::vector<Vector3d>> ways;
+    for (std::size_t i = 0; i < route_.stations.size(); ++i) {
+      const Cost there = sum(pad_cost(), cost_of(make_leg(ways_[i], nullptr, nullptr)));
+      const Cost home = sum(landing_cost(), cost_of(make_leg(way_home(i), nullptr, nullptr)));
+      const double needed = there.energy + station_cost(route_.stations[i]).energy + home.energy;
+      if (needed > motion_.usable_energy()) {
+        refuse(route_.stations[i], "getting there and back takes " + std::to_string(needed / 3600) +
+                                       " Wh; the battery has " +
+                                       std::to_string(motion_.usable_energy() / 3600) +
+                                       " Wh above its reserve");
+        continue;
+      }
+      stations.push_back(route_.stations[i]);
+      ways.push_back(ways_[i]);
+    }
+    route_.stations = std::move(stations);
+    ways_ = std::move(ways);
+  }
+
+  void connect() {
+    for (std::size_t i = 1; i < route_.stations.size(); ++i) {
+      const Station &from = route_.stations[i - 1], &to = route_.stations[i];
+      Path path = finder_.find(from.view.position, to.view.position);
+      if (path.status != PathStatus::found) {
+        // Both are connected to the pad, so there is a way, though a long one.
+        path.points = way_home(i - 1);
+        path.points.insert(path.points.end(), ways_[i].begin() + 1, ways_[i].end());
+        path.points = pull_tight(space_, route_.clearance, path.points,
+                                 route_.options.path.worthwhile_saving);
+      }
+      route_.legs.push_back(make_leg(path.points, &from, &to));
+      route_.station_length += route_.legs.back().length;
+      route_.straight_length += (to.view.position - from.view.position).norm();
+    }
+  }
+
+  void split() {
+    const std::size_t count = route_.stations.size();
+    if (count == 0) return;
+    SplitProblem problem;
+    std::vector<Leg> out, back;
+    for (std::size_t i = 0; i < count; ++i) {
+      out.push_back(make_leg(ways_[i], nullptr, nullptr));
+      back.push_back(make_leg(way_home(i), nullptr, nullptr));
+      problem.out.push_back(sum(pad_cost(), cost_of(out[i])));
+      problem.back.push_back(sum(landing_cost(), cost_of(back[i])));
+      problem.station.push_back(station_cost(route_.stations[i]));
+      if (i > 0) problem.leg.push_back(cost_of(route_.legs[i - 1]));
+    }
+    problem.energy_per_sortie = motion_.usable_energy();
+    problem.stations_per_sortie = static_cast<std::size_t>(
+        std::max(1, (motion_.vehicle().max_waypoints - items_per_sortie) / items_per_station));
+
+    const SortieSplit split = split_into_sorties(problem);
+    route_.duration = split.time;
+    route_.duration_bound = split.time_bound;
+    for (const SortieRange& range : split.sorties) {
+      add_sortie(range, problem, out[range.first], back[range.last]);
+    }
+  }
+
+  void add_sortie(const SortieRange& range, const SplitProblem& problem, const Leg& out,
+                  const Leg& back) {
+    Sortie sortie{range.first, range.last, out, back};
+    Cost total = sum(problem.out[range.first], problem.back[range.last]);
+    double length = out.length + back.length + 2.0 * route_.options.takeoff_climb;
+    double clearance = std::min(out.clearance, back.clearance);
+    for (std::uint32_t i = range.first; i <= range.last; ++i) {
+      total = sum(total, problem.station[i]);
+      if (i == range.last) break;
+      total = sum(total, problem.leg[i]);
+      length += route_.legs[i].length;
+      clearance = std::min(clearance, route_.legs[i].clearance);
+    }
+    sortie.duration = total.time;
+    sortie.energy = total.energy;
+    sortie.energy_left = problem.energy_per_sortie - total.energy;
+    route_.length += length;
+    route_.energy += total.energy;
+    route_.min_clearance = std::min(route_.min_clearance, clearance);
+    route_.sorties.push_back(std::move(sortie));
+  }
+
+  void smooth_legs() {
+    for (Sortie& sortie : route_.sorties) {
+      smooth_leg(sortie.out, nullptr, nullptr);
+      for (std::uint32_t i = sortie.first; i < sortie.last; ++i) {
+        smooth_leg(route_.legs[i], &route_.stations[i], &route_.stations[i + 1]);
+      }
+      smooth_leg(sortie.back, nullptr, nullptr);
+    }
+  }
+
+  /// Keeps a curve only if it fits into what the sortie has set aside for the leg.
+  void smooth_leg(Leg& leg, const Station* from, const Station* to) {
+    std::optional<SmoothLeg> curve =
+        smooth(leg.points, space_, route_.clearance, route_.clearance + reported_surplus, motion_,
+               route_.options.style);
+    if (!curve) return;
+    const double waiting = std::max(0.0, turning_time(from, to) - curve->duration);
+    if (curve->duration + waiting > leg.duration) return;
+    if (curve->energy + motion_.hover_energy(waiting) > leg.energy) return;
+    leg.smooth = std::move(curve);
+  }
+
+  Motion motion_;
+  const FreeSpace& space_;
+  PathFinder finder_;
+  Vector3d home_;
+  std::vector<std::vector<Vector3d>> ways_;  ///< from above the pad to each station kept
+  Route route_;
+};
+
+}  // namespace
+
+double yaw_of(const geometry::View& view) {
+  if (view.direction.head<2>().norm() < 1e-9) return 0.0;
+  const double yaw = std::atan2(view.direction.x(), view.direction.y());
+  return yaw < 0.0 ? yaw + 2.0 * std::numbers::pi : yaw;
+}
+
+double pitch_of(const geometry::View& view) {
+  return std::asin(std::clamp(view.direction.z() / view.direction.norm(), -1.0, 1.0));
+}
+
+void ClearanceBudget::validate() const {
+  const auto require = [](double value, const char* field) {
+    if (value >= 0.0 && std::isfinite(value)) return;
+    throw Error(ErrorKind::bad_config, "clearance." + std::string(field) + " is " +
+                                           std::to_string(value) +
+                                           " m; it must be a finite number, zero or more");
+  };
+  require(vehicle_radius, "vehicle_radius"), require(position_error, "position_error");
+  require(tracking_error, "tracking_error"), require(map_error, "map_error");
+  require(margin, "margin");
+}
+
+void RouteOptions::validate() const {
+  clearance.validate();
+  path.validate();
+  if (!takeoff.allFinite()) {
+    throw Error(ErrorKind::bad_config, "the take-off place is not a finite position");
+  }
+  if (!(takeoff_climb >= 0.0) || !std::isfinite(takeoff_climb)) {
+    throw Error(ErrorKind::bad_config, "the climb after take-off is " +
+                                           std::to_string(takeoff_climb) +
+                                           " m; it must be a finite number, zero or more");
+  }
+  if (!(landing_time >= 0.0) || !std::isfinite(landing_time)) {
+    throw Error(ErrorKind::bad_config, "the landing time is " + std::to_string(landing_time) +
+                                           " s; it must be a finite number, zero or more");
+  }
+}
+
+Route plan_route(std::vector<Station> stations, const Vehicle& vehicle, const FreeSpace& space,
+                 const FreeSpace* pad_space, const RouteOptions& options) {
+  options.validate();
+  for (const Station& station : stations) {
+    if (!station.view.position.allFinite() || !station.view.direction.allFinite() ||
+        !(station.hold >= 0.0) || station.shots < 0) {
+      throw Error(ErrorKind::bad_geometry,
+                  "station " + std::to_string(station.view_index) +
+                      " has a pose that is not finite, or a negative hold or number of shots");
+    }
+  }
+  return RoutePlanner(vehicle, space, options).plan(std::move(stations), pad_space);
+}
+
+std::vector<Violation> check_route(const std::vector<Vector3d>& points, const FreeSpace& space,
+                                   double clearance) {
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    if (points[i].allFinite()) continue;
+    throw Error(ErrorKind::bad_geometry,
+                "point " + std::to_string(i) + " of the route is not a finite position");
+  }
+  std::vector<Violation> violations;
+  const std::size_t legs =
+      points.size() == 1 ? 1 : points.size() - std::min<std::size_t>(points.size(), 1);
+  for (std::size_t i = 0; i < legs; ++i) {
+    const Segment leg{points[i], points[std::min(i + 1, points.size() - 1)]};
+    const LegProof proof = prove(space, leg, clearance, clearance);
+    if (!proof.is_proven) violations.push_back({i, proof.closest, space.name(proof.closest)});
+  }
+  return violations;
+}
+
+std::string describe(const Violation& violation) {
+  return "leg " + std::to_string(violation.leg) + ": " + metres(violation.closest.distance) +
+         " from " + violation.obstacle + " at " + at(violation.closest.on_leg);
+}
+
+std::vector<Vector3d> sortie_points(const Route& route, const Sortie& sortie) {
+  std::vector<Vector3d> points = sortie.out.points;
+  const auto append = [&](const Leg& leg) {
+    points.insert(points.end(), leg.points.begin() + 1, leg.points.end());
+  };
+  for (std::uint32_t i = sortie.first; i < sortie.last; ++i) append(route.legs[i]);
+  append(sortie.back);
+  return points;
+}
+
+}  // namespace skycap::flight

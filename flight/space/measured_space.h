@@ -1,0 +1,87 @@
+/// Free space as far as it has been measured: what no measured ray has proven to be free is not
+/// free.
+///
+/// Space is cut into voxels. A voxel becomes free when, from one sensor position, *all* of it lies
+/// in front of what was measured: every pixel that its bounding ball touches, and a rim of one
+/// pixel around them, saw something farther away. That is exact up to what a sensor cannot see at
+/// all: things slimmer than the gap between two neighbouring rays. A voxel that holds a measured
+/// point is occupied, for good.
+#pragma once
+
+#include <cstdint>
+#include <iosfwd>
+#include <memory>
+#include <string>
+
+#include <Eigen/Core>
+#include <Eigen/Geometry>
+
+#include "flight/space/clearance.h"
+#include "geometry/place/camera.h"
+#include "geometry/points/scan.h"
+
+namespace skycap::flight {
+
+struct MeasuredSpaceConfig {
+  double voxel = 0.25;        ///< edge of a voxel [m]; a quarter of the clearance or less is fine
+  double depth_margin = 0.1;  ///< free space ends this far in front of a measurement: noise, pose
+  /// Depth up to which a pixel without a return proves free space. Zero: such pixels prove nothing;
+  /// right for sensors that may miss dark, shiny or thin things. For a sensor that returns all that
+  /// is in range, that range.
+  double free_without_return = 0.0;
+  double max_depth = 60.0;  ///< measurements farther away prove free space up to here only
+  /// Where space has to be measured to be free. Outside of it somebody else vouches for the
+  /// airspace: there everything is free but measured points. Grows to whole voxels. Empty (as by
+  /// default): everywhere.
+  Eigen::AlignedBox3d region;
+  /// Points below this height are not kept: they are of the ground, which is known from elsewhere
+  /// and exactly, not to a voxel.
+  double floor = -1e9;
+
+  /// Throws Error{bad_config} naming the first value that is out of its interval.
+  void validate() const;
+};
+
+/// Grows by insertion. Queries may run in parallel with each other, not with insertions.
+class MeasuredSpace : public FreeSpace {
+ public:
+  /// Throws what MeasuredSpaceConfig::validate() throws.
+  explicit MeasuredSpace(const MeasuredSpaceConfig& config = {});
+  ~MeasuredSpace() override;
+  MeasuredSpace(MeasuredSpace&&) noexcept;
+  MeasuredSpace& operator=(MeasuredSpace&&) noexcept;
+
+  /// What somebody vouches for, such as the place where the vehicle starts: all voxels wholly
+  /// inside become free.
+  void declare_free(const Eigen::Vector3d& centre, double radius);
+  void declare_free(const Eigen::AlignedBox3d& box);
+
+  /// Takes in an organised scan. Throws Error{bad_geometry} if the scan has points but no pixels,
+  /// or a pixel that the camera does not have.
+  void insert(const geometry::Scan& scan, const geometry::Camera& camera);
+
+  /// Takes in a scan of a sensor that looks around itself and has no image, such as a LiDAR whose
+  /// neighbouring rays are at most `ray_spacing` [rad] apart: directions in which a cell of that
+  /// size got no return prove nothing. Throws Error{bad_config} unless 0 < ray_spacing < 1.
+  void insert(const geometry::Scan& scan, double ray_spacing);
+
+  Closest closest(const Segment& leg, double up_to) const override;
+  bool continues_free(const Segment& leg, double clearance) const override;
+  Eigen::AlignedBox3d extent() const override;  ///< of all that was ever free
+  std::string name(const Closest& closest) const override;
+
+  /// Volume known to be free [m^3], of the region if there is one.
+  double free_volume() const;
+
+  /// Writes all that is known, for read() on a machine of the same byte order. A name and version
+  /// come first, then the configuration, then each block of 8 x 8 x 8 voxels by its place.
+  void write(std::ostream& stream) const;
+  /// Throws Error{bad_file} naming `name` unless it holds exactly what write() wrote.
+  static MeasuredSpace read(std::istream& stream, const std::string& name);
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace skycap::flight

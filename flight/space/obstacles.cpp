@@ -1,0 +1,204 @@
+#include "flight/space/obstacles.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+
+#include "geometry/error.h"
+
+namespace skycap::flight {
+namespace {
+
+using Eigen::Vector2d;
+using Eigen::Vector3d;
+
+constexpr double far_away = 1e5;  // stands for an infinite floor or ceiling
+
+double cross(const Vector2d& a, const Vector2d& b) { return a.x() * b.y() - a.y() * b.x(); }
+
+double turn(const Vector2d& a, const Vector2d& b, const Vector2d& c) { return cross(b - a, c - a); }
+
+double signed_area(const std::vector<Vector2d>& polygon) {
+  double area = 0.0;
+  for (std::size_t i = 0; i < polygon.size(); ++i) {
+    area += 0.5 * cross(polygon[i] - polygon[0], polygon[(i + 1) % polygon.size()] - polygon[0]);
+  }
+  return area;
+}
+
+bool properly_cross(const Vector2d& a, const Vector2d& b, const Vector2d& c, const Vector2d& d) {
+  return turn(a, b, c) * turn(a, b, d) < 0.0 && turn(c, d, a) * turn(c, d, b) < 0.0;
+}
+
+void validate(const Prism& prism, const std::string& role) {
+  const std::string who = role + " \"" + prism.name + "\"";
+  const auto& corners = prism.footprint;
+  const auto fail = [&](const std::string& what) {
+    throw Error(ErrorKind::bad_config, who + " " + what);
+  };
+  if (corners.size() < 3) {
+    fail("has " + std::to_string(corners.size()) + " corners; a footprint needs at least 3");
+  }
+  for (std::size_t i = 0; i < corners.size(); ++i) {
+    if (!corners[i].allFinite()) fail("has a corner that is not a finite number");
+    for (std::size_t j = i + 1; j < corners.size(); ++j) {
+      if (properly_cross(corners[i], corners[(i + 1) % corners.size()], corners[j],
+                         corners[(j + 1) % corners.size()])) {
+        fail("crosses itself between corners " + std::to_string(i) + " and " + std::to_string(j) +
+             "; a footprint must be a simple polygon");
+      }
+    }
+  }
+  if (!(std::abs(signed_area(corners)) > 0.0)) fail("has no area");
+  if (!(prism.floor < prism.ceiling)) {
+    fail("has floor " + std::to_string(prism.floor) + " m, which must be below its ceiling " +
+         std::to_string(prism.ceiling) + " m");
+  }
+}
+
+/// Ear clipping: indices of triangles, counter-clockwise, that fill a counter-clockwise polygon.
+std::vector<std::array<std::uint32_t, 3>> triangulate(const std::vector<Vector2d>& polygon) {
+  std::vector<std::uint32_t> rest(polygon.size());
+  for (std::size_t i = 0; i < rest.size(); ++i) rest[i] = static_cast<std::uint32_t>(i);
+  std::vector<std::array<std::uint32_t, 3>> triangles;
+
+  const auto is_ear = [&](std::size_t i) {
+    const std::uint32_t before = rest[(i + rest.size() - 1) % rest.size()];
+    const std::uint32_t after = rest[(i + 1) % rest.size()];
+    const Vector2d &a = polygon[before], &b = polygon[rest[i]], &c = polygon[after];
+    if (turn(a, b, c) <= 0.0) return false;
+    return std::none_of(rest.begin(), rest.end(), [&](std::uint32_t other) {
+      const Vector2d& p = polygon[other];
+      if (other == before || other == rest[i] || other == after) return false;
+      if (p == a || p == b || p == c) return false;
+      return turn(a, b, p) >= 0.0 && turn(b, c, p) >= 0.0 && turn(c, a, p) >= 0.0;
+    });
+  };
+  while (rest.size() > 3) {
+    std::size_t ear = 0;
+    while (ear < rest.size() && !is_ear(ear)) ++ear;
+    if (ear == rest.size()) ear = 0;  // only corners on a straight line are left: any will do
+    triangles.push_back(
+        {rest[(ear + rest.size() - 1) % rest.size()], rest[ear], rest[(ear + 1) % rest.size()]});
+    rest.erase(rest.begin() + static_cast<std::ptrdiff_t>(ear));
+  }
+  triangles.push_back({rest[0], rest[1], rest[2]});
+  return triangles;
+}
+
+/// FNV-1a, 64 bits.
+class Fingerprint {
+ public:
+  template <typename Number>
+  void add(const Number& number) {
+    unsigned char bytes[sizeof(Number)];
+    std::memcpy(bytes, &number, sizeof(Number));
+    for (const unsigned char byte : bytes) state_ = (state_ ^ byte) * 0x100000001b3ULL;
+  }
+  void add(const Prism& prism) {
+    add(prism.footprint.size());
+    for (const Vector2d& corner : prism.footprint) add(corner.x()), add(corner.y());
+    add(prism.floor), add(prism.ceiling);
+  }
+  std::uint64_t value() const { return state_; }
+
+ private:
+  std::uint64_t state_ = 0xcbf29ce484222325ULL;
+};
+
+}  // namespace
+
+void validate(const Obstacles& obstacles) {
+  // An empty mesh is no mesh; vertices without a triangle, or triangles without area, are a
+  // mistake.
+  if (!obstacles.mesh.triangles.empty() || !obstacles.mesh.vertices.empty()) {
+    geometry::validate(obstacles.mesh);
+  }
+  for (std::size_t i = 0; i < obstacles.cloud.points.size(); ++i) {
+    if (!obstacles.cloud.points[i].allFinite()) {
+      throw Error(ErrorKind::bad_geometry, "obstacle point " + std::to_string(i) +
+                                               " has a coordinate that is not a finite number");
+    }
+  }
+  if (!(obstacles.cloud.radius >= 0.0) || !std::isfinite(obstacles.cloud.radius)) {
+    throw Error(ErrorKind::bad_config, "the obstacle points' radius is " +
+                                           std::to_string(obstacles.cloud.radius) +
+                                           " m; it must be a finite number, zero or more");
+  }
+  for (const Prism& prism : obstacles.no_fly) validate(prism, "no-fly volume");
+  if (obstacles.ground_height && !std::isfinite(*obstacles.ground_height)) {
+    throw Error(ErrorKind::bad_config, "the ground height is not a finite number");
+  }
+  if (!obstacles.fence) return;
+  validate(*obstacles.fence, "fence");
+  if (obstacles.ground_height && obstacles.fence->ceiling <= *obstacles.ground_height) {
+    throw Error(ErrorKind::bad_config,
+                "fence \"" + obstacles.fence->name + "\" has its ceiling at " +
+                    std::to_string(obstacles.fence->ceiling) + " m, not above the ground at " +
+                    std::to_string(*obstacles.ground_height) + " m: nothing can fly in it");
+  }
+}
+
+Obstacles without_ground(Obstacles obstacles) {
+  obstacles.ground_height.reset();
+  if (obstacles.fence) obstacles.fence->floor = -std::numeric_limits<double>::infinity();
+  return obstacles;
+}
+
+bool contains(const Prism& prism, const Vector3d& point) {
+  if (point.z() < prism.floor || point.z() > prism.ceiling) return false;
+  const Vector2d p = point.head<2>();
+  bool inside = false;  // parity of the crossings of a ray towards +x
+  for (std::size_t i = 0; i < prism.footprint.size(); ++i) {
+    const Vector2d& a = prism.footprint[i];
+    const Vector2d& b = prism.footprint[(i + 1) % prism.footprint.size()];
+    if (turn(a, b, p) == 0.0 && (p - a).dot(p - b) <= 0.0) return true;  // on this edge
+    if ((a.y() > p.y()) == (b.y() > p.y())) continue;
+    const bool is_left_of_edge = (turn(a, b, p) > 0.0) == (b.y() > a.y());
+    if (is_left_of_edge) inside = !inside;
+  }
+  return inside;
+}
+
+geometry::Mesh surface(const Prism& prism) {
+  std::vector<Vector2d> corners = prism.footprint;
+  if (signed_area(corners) < 0.0) std::reverse(corners.begin(), corners.end());
+  const double floor = std::max(prism.floor, -far_away);
+  const double ceiling = std::min(prism.ceiling, far_away);
+  const auto count = static_cast<std::uint32_t>(corners.size());
+
+  geometry::Mesh mesh;
+  for (const double height : {floor, ceiling}) {
+    for (const Vector2d& corner : corners) {
+      mesh.vertices.emplace_back(corner.x(), corner.y(), height);
+    }
+  }
+  for (const auto& [a, b, c] : triangulate(corners)) {
+    mesh.triangles.push_back({a, c, b});
+    mesh.triangles.push_back({a + count, b + count, c + count});
+  }
+  for (std::uint32_t i = 0; i < count; ++i) {
+    const std::uint32_t next = (i + 1) % count;
+    mesh.triangles.push_back({i, next, next + count});
+    mesh.triangles.push_back({i, next + count, i + count});
+  }
+  return mesh;
+}
+
+std::uint64_t fingerprint(const Obstacles& obstacles) {
+  Fingerprint print;
+  for (const Vector3d& v : obstacles.mesh.vertices)
+    print.add(v.x()), print.add(v.y()), print.add(v.z());
+  for (const auto& triangle : obstacles.mesh.triangles) print.add(triangle);
+  print.add(obstacles.mesh_is_solid);
+  for (const Eigen::Vector3f& p : obstacles.cloud.points)
+    print.add(p.x()), print.add(p.y()), print.add(p.z());
+  print.add(obstacles.cloud.radius);
+  for (const Prism& prism : obstacles.no_fly) print.add(prism);
+  print.add(obstacles.fence.has_value());
+  if (obstacles.fence) print.add(*obstacles.fence);
+  print.add(obstacles.ground_height.value_or(std::numeric_limits<double>::quiet_NaN()));
+  return print.value();
+}
+
+}  // namespace skycap::flight

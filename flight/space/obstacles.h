@@ -1,0 +1,69 @@
+/// What a route must keep away from, as plain data: surfaces, measured points, no-fly volumes, the
+/// geofence, the ground.
+#pragma once
+
+#include <cstdint>
+#include <limits>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "geometry/surfaces/mesh.h"
+
+namespace skycap::flight {
+
+/// An upright prism over a polygon: a no-fly volume or a geofence.
+struct Prism {
+  std::string name;                        ///< for messages
+  std::vector<Eigen::Vector2d> footprint;  ///< simple polygon, either way round, not closed
+  double floor = -std::numeric_limits<double>::infinity();
+  double ceiling = std::numeric_limits<double>::infinity();
+};
+
+/// Points that stand for the surface around them: each is a ball.
+struct PointObstacles {
+  std::vector<Eigen::Vector3f> points;
+  double radius = 0.0;  ///< at least the distance from any surface point to the nearest of them
+};
+
+/// Everything known in advance. Any part may be missing.
+struct Obstacles {
+  geometry::Mesh mesh;
+  bool mesh_is_solid = true;  ///< being inside the mesh is as bad as touching it
+  PointObstacles cloud;
+  std::vector<Prism> no_fly;
+  std::optional<Prism> fence;           ///< the vehicle must stay inside
+  std::optional<double> ground_height;  ///< everything below is solid
+};
+
+/// Throws Error{bad_geometry} or Error{bad_config} on the first part that cannot be worked with: a
+/// mesh with bad indices or coordinates, a point that is not finite, a footprint with fewer than
+/// three corners, without area or crossing itself, a floor that is not below its ceiling, a fence
+/// that lies wholly below the ground.
+void validate(const Obstacles& obstacles);
+
+/// What a climb from a pad has to keep clear of: everything but the ground and the fence's floor.
+Obstacles without_ground(Obstacles obstacles);
+
+/// Whether a point is in the prism or on its boundary.
+bool contains(const Prism& prism, const Eigen::Vector3d& point);
+
+/// The prism's closed surface, facing outward. An infinite floor or ceiling becomes -/+ 100 km.
+geometry::Mesh surface(const Prism& prism);
+
+/// A watertight mesh that encloses `mesh`, or `points`, with at least nearly `offset` to spare, and
+/// bridges gaps that a ball of radius `alpha` cannot pass through (CGAL 3D alpha wrapping,
+/// Portaneri et al. 2022): dirty input becomes a solid that it is safe to keep away from.
+/// Throws Error{bad_geometry} if there is nothing to wrap, Error{bad_config} unless alpha and
+/// offset are positive.
+geometry::Mesh envelope(const geometry::Mesh& mesh, double alpha, double offset);
+geometry::Mesh envelope(std::span<const Eigen::Vector3f> points, double alpha, double offset);
+
+/// A number that changes when any obstacle does (FNV-1a of all of them): it ties a certificate to
+/// what it was proved against.
+std::uint64_t fingerprint(const Obstacles& obstacles);
+
+}  // namespace skycap::flight

@@ -1,0 +1,217 @@
+#include "flight/space/range_image.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "geometry/error.h"
+
+namespace skycap::flight {
+namespace {
+
+using Eigen::Vector3d;
+using std::numbers::pi;
+
+/// Where a pixel of an image is stored.
+std::size_t slot(int row, int column, int width) {
+  return static_cast<std::size_t>(row) * static_cast<std::size_t>(width) +
+         static_cast<std::size_t>(column);
+}
+
+}  // namespace
+
+RangeImage::RangeImage(const geometry::Scan& scan, const geometry::Camera& camera,
+                       double depth_without_return, double max_depth)
+    : sensor_from_world_(scan.world_from_sensor.inverse()),
+      camera_(camera),
+      width_(camera.width()),
+      height_(camera.height()) {
+  if (scan.pixels.size() != scan.points.size()) {
+    throw Error(ErrorKind::bad_geometry,
+                "a scan has " + std::to_string(scan.points.size()) + " points but " +
+                    std::to_string(scan.pixels.size()) +
+                    " pixels; free space can only be proven by an organised scan");
+  }
+  const auto count = static_cast<std::size_t>(width_) * static_cast<std::size_t>(height_);
+  std::vector<float> depths(count, static_cast<float>(std::min(depth_without_return, max_depth)));
+  for (std::size_t i = 0; i < scan.points.size(); ++i) {
+    if (scan.pixels[i] >= count) {
+      throw Error(ErrorKind::bad_geometry, "a scan names pixel " + std::to_string(scan.pixels[i]) +
+                                               ", but the camera has " + std::to_string(count));
+    }
+    const Vector3d in_sensor = sensor_from_world_ * scan.points[i].cast<double>();
+    depths[scan.pixels[i]] = static_cast<float>(std::min(in_sensor.z(), max_depth));
+  }
+  build_pyramid(std::move(depths));
+}
+
+RangeImage::RangeImage(const geometry::Scan& scan, double ray_spacing, double max_depth)
+    : sensor_from_world_(scan.world_from_sensor.inverse()) {
+  if (!(ray_spacing > 0.0 && ray_spacing < 1.0)) {
+    throw Error(ErrorKind::bad_config,
+                "the ray spacing is " + std::to_string(ray_spacing) + " rad; it must be in (0, 1)");
+  }
+  // Cells as wide as the spacing of the rays hold at least one ray each wherever the sensor looked.
+  width_ = static_cast<int>(std::floor(2.0 * pi / ray_spacing));
+  pixels_per_radian_ = width_ / (2.0 * pi);
+  height_ = static_cast<int>(std::ceil(pi * pixels_per_radian_)) + 1;
+  std::vector<float> depths(static_cast<std::size_t>(width_) * static_cast<std::size_t>(height_),
+                            0.0F);
+  for (const Eigen::Vector3f& point : scan.points) {
+    const Vector3d p = sensor_from_world_ * point.cast<double>();
+    const double range = p.norm();
+    if (range == 0.0) continue;
+    const double u = (std::atan2(p.x(), p.z()) + pi) * pixels_per_radian_;
+    const double v =
+        (std::asin(std::clamp(p.y() / range, -1.0, 1.0)) + pi / 2) * pixels_per_radian_;
+    const int column = std::min(static_cast<int>(u), width_ - 1);
+    float& depth = depths[slot(static_cast<int>(v), column, width_)];
+    const auto seen = static_cast<float>(std::min(range, max_depth));
+    depth = depth == 0.0F ? seen : std::min(depth, seen);
+  }
+  build_pyramid(std::move(depths));
+}
+
+void RangeImage::build_pyramid(std::vector<float> depths) {
+  least_.push_back(depths);
+  greatest_.push_back(std::move(depths));
+  level_widths_.push_back(width_);
+  int width = width_, height = height_;
+  while (width > 1 || height > 1) {
+    const int half_width = (width + 1) / 2, half_height = (height + 1) / 2;
+    const std::vector<float>&low = least_.back(), &high = greatest_.back();
+    std::vector<float> lower(slot(half_height, 0, half_width));
+    std::vector<float> higher(lower.size());
+    for (int row = 0; row < half_height; ++row) {
+      for (int column = 0; column < half_width; ++column) {
+        const std::size_t target = slot(row, column, half_width);
+        const int right = std::min(2 * column + 1, width - 1);
+        const int bottom = std::min(2 * row + 1, height - 1);
+        const std::size_t quad[] = {slot(2 * row, 2 * column, width), slot(2 * row, right, width),
+                                    slot(bottom, 2 * column, width), slot(bottom, right, width)};
+        lower[target] = std::min({low[quad[0]], low[quad[1]], low[quad[2]], low[quad[3]]});
+        higher[target] = std::max({high[quad[0]], high[quad[1]], high[quad[2]], high[quad[3]]});
+      }
+    }
+    least_.push_back(std::move(lower));
+    greatest_.push_back(std::move(higher));
+    level_widths_.push_back(half_width);
+    width = half_width, height = half_height;
+  }
+}
+
+RangeImage::Depths RangeImage::over(int left, int right, int top, int bottom) const {
+  // The level on which the patch spans at most three pixels each way. Its pixels may cover a little
+  // more than the patch, which errs towards "not free".
+  std::size_t level = 0;
+  while (((right - left) >> level) > 2 || ((bottom - top) >> level) > 2) ++level;
+  Depths depths{std::numeric_limits<float>::infinity(), 0.0F};
+  for (int row = top >> level; row <= bottom >> level; ++row) {
+    for (int column = left >> level; column <= right >> level; ++column) {
+      const std::size_t i = slot(row, column, level_widths_[level]);
+      depths.least = std::min(depths.least, least_[level][i]);
+      depths.greatest = std::max(depths.greatest, greatest_[level][i]);
+    }
+  }
+  return depths;
+}
+
+/// A patch of the spherical image that may reach over the seam behind the sensor.
+RangeImage::Depths RangeImage::over_wrapped(const Patch& patch) const {
+  const int top = static_cast<int>(patch.top), bottom = static_cast<int>(patch.bottom);
+  const int left = static_cast<int>(patch.left), right = static_cast<int>(patch.right);
+  if (right - left >= width_ - 1) return over(0, width_ - 1, top, bottom);
+  if (left >= 0 && right < width_) return over(left, right, top, bottom);
+  const int first = (left + width_) % width_, last = right % width_;
+  const Depths one = over(first, width_ - 1, top, bottom), two = over(0, last, top, bottom);
+  return {std::min(one.least, two.least), std::max(one.greatest, two.greatest)};
+}
+
+std::optional<RangeImage::Patch> RangeImage::pinhole_patch(const Vector3d& centre,
+                                                           double radius) const {
+  const double nearest = centre.z() - radius, farthest = centre.z() + radius;
+  if (nearest <= 0.0) return std::nullopt;
+  const auto bounds = [&](double offset, int axis, double& low, double& high) {
+    const double focal = camera_->focal_length_px()[axis];
+    const double centre_px = camera_->principal_point_px()[axis];
+    const double least = offset - radius, most = offset + radius;
+    low = centre_px + focal * least / (least < 0.0 ? nearest : farthest);
+    high = centre_px + focal * most / (most > 0.0 ? nearest : farthest);
+  };
+  Patch patch{};
+  bounds(centre.x(), 0, patch.left, patch.right);
+  bounds(centre.y(), 1, patch.top, patch.bottom);
+  // The rays through the pixels' centres that enclose the patch.
+  patch.left = std::floor(patch.left), patch.top = std::floor(patch.top);
+  patch.right = std::ceil(patch.right), patch.bottom = std::ceil(patch.bottom);
+  patch.nearest = nearest, patch.farthest = farthest;
+  return patch;
+}
+
+std::optional<RangeImage::Patch> RangeImage::spherical_patch(const Vector3d& centre,
+                                                             double radius) const {
+  const double range = centre.norm();
+  if (range <= radius) return std::nullopt;
+  const double half_angle = std::asin(radius / range);
+  const double elevation = std::asin(std::clamp(centre.y() / range, -1.0, 1.0));
+  const double azimuth = std::atan2(centre.x(), centre.z());
+  const double steepest = std::abs(elevation) + half_angle;
+  // Half the width in azimuth of a circle on the sphere; all of it if the circle holds a pole.
+  const double half_width =
+      steepest >= pi / 2 ? pi
+                         : std::asin(std::min(1.0, std::sin(half_angle) / std::cos(elevation)));
+  Patch patch{};
+  patch.left = std::floor((azimuth - half_width + pi) * pixels_per_radian_);
+  patch.right = std::floor((azimuth + half_width + pi) * pixels_per_radian_);
+  patch.top = std::max(0.0, std::floor((elevation - half_angle + pi / 2) * pixels_per_radian_));
+  patch.bottom =
+      std::min(height_ - 1.0, std::floor((elevation + half_angle + pi / 2) * pixels_per_radian_));
+  patch.nearest = range - radius, patch.farthest = range + radius;
+  return patch;
+}
+
+BallSight RangeImage::sight(const Vector3d& centre_in_world, double radius, double margin) const {
+  const Vector3d centre = sensor_from_world_ * centre_in_world;
+  if (!camera_) {
+    const std::optional<Patch> patch = spherical_patch(centre, radius);
+    if (!patch) return BallSight::partial;
+    const Depths depths = over_wrapped(*patch);
+    if (depths.least >= patch->farthest + margin) return BallSight::free;
+    return depths.greatest < patch->nearest ? BallSight::hidden : BallSight::partial;
+  }
+  if (centre.z() + radius <= 0.0) return BallSight::hidden;
+  const std::optional<Patch> patch = pinhole_patch(centre, radius);
+  if (!patch) return BallSight::partial;
+  if (patch->right < 0 || patch->bottom < 0 || patch->left > width_ - 1 ||
+      patch->top > height_ - 1) {
+    return BallSight::hidden;
+  }
+  const bool is_in_view = patch->left >= 0 && patch->top >= 0 && patch->right <= width_ - 1 &&
+                          patch->bottom <= height_ - 1;
+  const auto clip = [](double pixel, int size) {
+    return static_cast<int>(std::clamp(pixel, 0.0, size - 1.0));
+  };
+  const Depths depths = over(clip(patch->left, width_), clip(patch->right, width_),
+                             clip(patch->top, height_), clip(patch->bottom, height_));
+  if (is_in_view && depths.least >= patch->farthest + margin) return BallSight::free;
+  return depths.greatest < patch->nearest ? BallSight::hidden : BallSight::partial;
+}
+
+Eigen::AlignedBox3d RangeImage::reach() const {
+  const Eigen::Isometry3d world_from_sensor = sensor_from_world_.inverse();
+  const double depth = farthest();
+  Eigen::AlignedBox3d box(Vector3d(world_from_sensor.translation()));
+  if (!camera_) {
+    box.extend(Vector3d(box.min() - Vector3d::Constant(depth)));
+    box.extend(Vector3d(world_from_sensor.translation() + Vector3d::Constant(depth)));
+    return box;
+  }
+  for (const double u : {0.0, width_ - 1.0}) {
+    for (const double v : {0.0, height_ - 1.0}) {
+      box.extend(world_from_sensor * Vector3d(depth * camera_->ray({u, v})));
+    }
+  }
+  return box;
+}
+
+}  // namespace skycap::flight

@@ -1,0 +1,265 @@
+#include "geometry/io/mesh_formats.h"
+
+#include <algorithm>
+#include <array>
+#include <cstring>
+#include <limits>
+#include <optional>
+#include <string>
+#include <tuple>
+
+#include "geometry/error.h"
+#include "geometry/io/ply.h"
+#include "geometry/io/text_scanner.h"
+
+namespace skycap::geometry {
+namespace {
+
+using Eigen::Vector3d;
+
+constexpr std::uint64_t largest_index = std::numeric_limits<std::uint32_t>::max() - 1;
+
+[[noreturn]] void fail(std::string_view name, const std::string& what) {
+  throw Error(ErrorKind::bad_file, std::string(name) + ": " + what);
+}
+
+std::string no_such_vertex(std::int64_t vertex, std::size_t count) {
+  return "names vertex " + std::to_string(vertex) + ", but there are " + std::to_string(count) +
+         " vertices, counted from 0";
+}
+
+void close_polygon(PolygonSoup& soup) { soup.polygon_begin.push_back(soup.corners.size()); }
+
+}  // namespace
+
+PolygonSoup parse_ply(std::string_view name, std::string_view bytes) {
+  PlyReader reader(name, bytes);
+  constexpr std::array<std::string_view, 3> coordinates{"x", "y", "z"};
+  constexpr std::array<std::string_view, 2> corner_lists{"vertex_indices", "vertex_index"};
+  PolygonSoup soup;
+  const auto vertex_element =
+      std::find_if(reader.elements().begin(), reader.elements().end(),
+                   [](const PlyElement& element) { return element.name == "vertex"; });
+  if (vertex_element == reader.elements().end()) {
+    fail(name, "there is no element 'vertex'; a mesh must have one");
+  }
+  const std::uint64_t vertex_count = vertex_element->count;
+  for (const PlyElement& element : reader.elements()) {
+    PlyTable table = reader.read_element(coordinates, corner_lists);
+    if (&element == &*vertex_element) {
+      const auto& [x, y, z] = std::tie(table.columns[0], table.columns[1], table.columns[2]);
+      if (x.size() != element.count || y.size() != element.count || z.size() != element.count) {
+        fail(name, "the element 'vertex' must have the properties x, y and z");
+      }
+      soup.vertices.reserve(element.count);
+      for (std::size_t i = 0; i < x.size(); ++i) soup.vertices.emplace_back(x[i], y[i], z[i]);
+    } else if (element.name == "face") {
+      soup.corners.reserve(table.list_values.size());
+      soup.polygon_begin.reserve(table.list_begin.size());
+      for (std::size_t face = 0; face + 1 < table.list_begin.size(); ++face) {
+        for (std::uint64_t i = table.list_begin[face]; i < table.list_begin[face + 1]; ++i) {
+          const std::int64_t vertex = table.list_values[i];
+          if (vertex < 0 || static_cast<std::uint64_t>(vertex) >= vertex_count) {
+            fail(name, "face " + std::to_string(face) + " " + no_such_vertex(vertex, vertex_count));
+          }
+          soup.corners.push_back(static_cast<std::uint32_t>(vertex));
+        }
+        close_polygon(soup);
+      }
+    }
+  }
+  return soup;
+}
+
+PolygonSoup parse_obj(std::string_view name, std::string_view text) {
+  TextScanner scanner(name, text);
+  PolygonSoup soup;
+  std::vector<std::uint32_t> lines;  // of each polygon, for the check of its corners
+  std::uint32_t material = 0;
+  const auto use_material = [&](const std::string& wanted) {
+    const auto known = std::ranges::find(soup.materials, wanted);
+    material = static_cast<std::uint32_t>(known - soup.materials.begin());
+    if (known == soup.materials.end()) soup.materials.push_back(wanted);
+  };
+  do {
+    const auto keyword = scanner.word_in_line();
+    if (keyword == "v") {
+      Vector3d vertex;
+      for (double& coordinate : vertex) {
+        coordinate = scanner.number<double>(scanner.word_in_line(), "a coordinate");
+      }
+      soup.vertices.push_back(vertex);
+    } else if (keyword == "usemtl") {
+      // Faces before the first one have the material without a name.
+      if (soup.materials.empty() && !lines.empty()) use_material("");
+      soup.polygon_materials.resize(lines.size(), 0);
+      use_material(std::string(scanner.word_in_line().value_or("")));
+    } else if (keyword == "f") {
+      if (!soup.materials.empty()) soup.polygon_materials.push_back(material);
+      lines.push_back(static_cast<std::uint32_t>(scanner.line()));
+      while (auto corner = scanner.word_in_line()) {
+        if (corner == "\\") {  // goes on in the next line
+          scanner.next_line();
+          continue;
+        }
+        const auto position = corner->substr(0, corner->find('/'));
+        const auto index = scanner.number<std::int64_t>(position, "a vertex index");
+        // Counted from 1, or backwards from the latest vertex.
+        const auto count = static_cast<std::int64_t>(soup.vertices.size());
+        const std::int64_t vertex = index > 0 ? index - 1 : index + count;
+        if (index == 0 || vertex < 0 || vertex > static_cast<std::int64_t>(largest_index)) {
+          scanner.fail("the face names vertex " + std::to_string(index) + ", but the " +
+                       std::to_string(count) + " vertices so far are counted from 1, or from -1 " +
+                       "backwards");
+        }
+        soup.corners.push_back(static_cast<std::uint32_t>(vertex));
+      }
+      close_polygon(soup);
+    }
+  } while (scanner.next_line());
+
+  for (std::size_t polygon = 0; polygon < lines.size(); ++polygon) {
+    for (std::size_t i = soup.polygon_begin[polygon]; i < soup.polygon_begin[polygon + 1]; ++i) {
+      if (soup.corners[i] < soup.vertices.size()) continue;
+      scanner.fail_at(lines[polygon], "the face names vertex " +
+                                          std::to_string(soup.corners[i] + std::uint64_t{1}) +
+                                          ", but there are only " +
+                                          std::to_string(soup.vertices.size()));
+    }
+  }
+  return soup;
+}
+
+namespace {
+
+// The first word of the next line that is neither empty nor a comment.
+std::optional<std::string_view> off_line(TextScanner& scanner) {
+  while (scanner.next_line()) {
+    const auto word = scanner.word_in_line();
+    if (word && !word->starts_with('#')) return word;
+  }
+  return std::nullopt;
+}
+
+}  // namespace
+
+PolygonSoup parse_off(std::string_view name, std::string_view text) {
+  TextScanner scanner(name, text);
+  auto word = scanner.word_in_line();
+  while ((!word || word->starts_with('#')) && scanner.next_line()) word = scanner.word_in_line();
+  if (!word || !word->ends_with("OFF") || word->starts_with('4') || word->starts_with("n")) {
+    scanner.fail("an OFF file of points in space begins with 'OFF', 'COFF', 'NOFF' or 'STOFF'");
+  }
+  auto count = scanner.word_in_line();  // the counts may follow on the same line
+  if (!count || count->starts_with('#')) count = off_line(scanner);
+  if (count == "BINARY") scanner.fail("binary OFF is not read; save it as ascii OFF or as PLY");
+  const auto vertex_count = scanner.number<std::uint64_t>(count, "the number of vertices");
+  const auto face_count =
+      scanner.number<std::uint64_t>(scanner.word_in_line(), "the number of faces");
+  // A line of a vertex takes 6 characters or more, one of a face 2.
+  if (vertex_count > largest_index || vertex_count > scanner.remaining() / 6 + 1 ||
+      face_count > scanner.remaining() / 2 + 1) {
+    scanner.fail(std::to_string(vertex_count) + " vertices and " + std::to_string(face_count) +
+                 " faces are promised, but the file is too short for so many");
+  }
+
+  PolygonSoup soup;
+  soup.vertices.reserve(vertex_count);
+  for (std::uint64_t v = 0; v < vertex_count; ++v) {
+    Vector3d vertex;
+    vertex.x() = scanner.number<double>(off_line(scanner), "a coordinate");
+    vertex.y() = scanner.number<double>(scanner.word_in_line(), "a coordinate");
+    vertex.z() = scanner.number<double>(scanner.word_in_line(), "a coordinate");
+    soup.vertices.push_back(vertex);
+  }
+  for (std::uint64_t face = 0; face < face_count; ++face) {
+    const auto corners =
+        scanner.number<std::uint32_t>(off_line(scanner), "the number of a face's corners");
+    for (std::uint32_t i = 0; i < corners; ++i) {
+      const auto vertex = scanner.number<std::int64_t>(scanner.word_in_line(), "a vertex index");
+      if (vertex < 0 || static_cast<std::uint64_t>(vertex) >= vertex_count) {
+        scanner.fail("the face " + no_such_vertex(vertex, vertex_count));
+      }
+      soup.corners.push_back(static_cast<std::uint32_t>(vertex));
+    }
+    close_polygon(soup);
+  }
+  return soup;
+}
+
+namespace {
+
+constexpr std::size_t stl_header = 84;    // 80 bytes of anything, and the count
+constexpr std::size_t stl_triangle = 50;  // normal, three corners, two bytes of anything
+
+std::uint32_t stl_count(std::string_view bytes) {
+  std::uint32_t count = 0;
+  std::memcpy(&count, bytes.data() + 80, sizeof(count));
+  return count;
+}
+
+void add_corner(PolygonSoup& soup, const Vector3d& vertex) {
+  soup.corners.push_back(static_cast<std::uint32_t>(soup.vertices.size()));
+  soup.vertices.push_back(vertex);
+}
+
+PolygonSoup parse_binary_stl(std::string_view bytes) {
+  PolygonSoup soup;
+  const std::uint32_t count = stl_count(bytes);
+  soup.vertices.reserve(std::size_t{3} * count);
+  for (std::size_t triangle = 0; triangle < count; ++triangle) {
+    std::array<float, 12> numbers;  // normal and corners
+    std::memcpy(numbers.data(), bytes.data() + stl_header + triangle * stl_triangle,
+                sizeof(numbers));
+    for (std::size_t i = 3; i < 12; i += 3) {
+      add_corner(soup, Eigen::Vector3f(numbers[i], numbers[i + 1], numbers[i + 2]).cast<double>());
+    }
+    close_polygon(soup);
+  }
+  return soup;
+}
+
+PolygonSoup parse_ascii_stl(std::string_view name, std::string_view text) {
+  TextScanner scanner(name, text);
+  scanner.next_line();  // 'solid' and a name
+  PolygonSoup soup;
+  while (const auto word = scanner.word()) {
+    if (word == "vertex") {
+      Vector3d vertex;
+      for (double& coordinate : vertex) {
+        coordinate = scanner.number<double>(scanner.word_in_line(), "a coordinate");
+      }
+      add_corner(soup, vertex);
+    } else if (word == "endloop") {
+      close_polygon(soup);
+    } else if (word == "facet" || word == "solid" || word == "endsolid") {
+      scanner.next_line();  // the normal or the name
+    } else if (word != "outer" && word != "loop" && word != "endfacet") {
+      scanner.fail("'" + std::string(word->substr(0, 40)) + "' is no word of an STL file");
+    }
+  }
+  if (soup.corners.size() != soup.polygon_begin.back()) {
+    scanner.fail("ends within a facet; it may have been cut off");
+  }
+  return soup;
+}
+
+}  // namespace
+
+PolygonSoup parse_stl(std::string_view name, std::string_view bytes) {
+  // Some binary files begin with 'solid' too, so the length has the first say.
+  const bool has_count = bytes.size() >= stl_header;
+  const std::uint64_t count = has_count ? stl_count(bytes) : 0;
+  const std::uint64_t wanted = stl_header + count * stl_triangle;
+  if (has_count && wanted == bytes.size()) return parse_binary_stl(bytes);
+  if (bytes.starts_with("solid")) return parse_ascii_stl(name, bytes);
+  if (!has_count) fail(name, "is neither ascii STL, which begins with 'solid', nor binary STL");
+  if (wanted > bytes.size()) {
+    fail(name, "promises " + std::to_string(count) + " triangles in binary STL, but is " +
+                   std::to_string(bytes.size()) + " bytes long instead of " +
+                   std::to_string(wanted) + "; it may have been cut off");
+  }
+  return parse_binary_stl(bytes);
+}
+
+}  // namespace skycap::geometry

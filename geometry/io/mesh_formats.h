@@ -1,0 +1,35 @@
+/// The parsers behind read_mesh(), one for each format; for the sources of mesh_io and their tests.
+/// Each takes a file's name (which opens every message) and its bytes, and throws Error{bad_file}.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "geometry/surfaces/mesh.h"
+
+namespace skycap::geometry {
+
+/// Polygons as a file lists them: nothing of it is checked but that indices are those of vertices.
+struct PolygonSoup {
+  std::vector<Eigen::Vector3d> vertices;
+  std::vector<std::uint32_t> corners;         ///< vertex indices of all polygons
+  std::vector<std::size_t> polygon_begin{0};  ///< polygon i is corners [begin[i], begin[i + 1])
+  std::vector<std::string> materials;  ///< names; empty: the file has none, or it is not an OBJ
+  std::vector<std::uint32_t> polygon_materials;  ///< of each polygon, if there are materials
+};
+
+PolygonSoup parse_ply(std::string_view name, std::string_view bytes);
+PolygonSoup parse_obj(std::string_view name, std::string_view text);
+PolygonSoup parse_off(std::string_view name, std::string_view text);
+PolygonSoup parse_stl(std::string_view name, std::string_view bytes);  ///< ascii or binary
+
+/// The polygons cut into triangles of the same orientation, along the plane they are nearest to;
+/// polygons of fewer than three corners are left out. Throws Error{bad_file} if a polygon has a
+/// corner that is not finite, or is not convex and has more than 1000 corners.
+Mesh triangulate(std::string_view name, const PolygonSoup& soup);
+
+}  // namespace skycap::geometry

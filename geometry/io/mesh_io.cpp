@@ -1,0 +1,218 @@
+#include "geometry/io/mesh_io.h"
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cctype>
+#include <charconv>
+#include <cstring>
+#include <string>
+
+#include <Eigen/Geometry>
+
+#include "geometry/error.h"
+#include "geometry/io/file.h"
+#include "geometry/io/mesh_formats.h"
+#include "geometry/surfaces/mesh_repair.h"
+
+namespace skycap::geometry {
+namespace {
+
+namespace fs = std::filesystem;
+using Eigen::Vector3d;
+
+[[noreturn]] void fail(const fs::path& path, const std::string& what) {
+  throw Error(ErrorKind::bad_file, path.string() + ": " + what);
+}
+
+/// The name's ending in lower case, not counting ".gz".
+std::string format_of(fs::path path) {
+  const auto lower = [](std::string text) {
+    for (char& c : text) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+    return text;
+  };
+  if (lower(path.extension().string()) == ".gz") path = path.stem();
+  return lower(path.extension().string());
+}
+
+PolygonSoup parse(const fs::path& path) {
+  const std::string format = format_of(path);
+  if (format == ".drc") {
+    const Mesh mesh = decode_draco(path.string(), read_file(path));
+    PolygonSoup soup{mesh.vertices, {}};  // goes the way of the others, which checks it
+    for (const auto& triangle : mesh.triangles) {
+      soup.corners.insert(soup.corners.end(), triangle.begin(), triangle.end());
+      soup.polygon_begin.push_back(soup.corners.size());
+    }
+    return soup;
+  }
+  const auto parser = format == ".ply"   ? parse_ply
+                      : format == ".obj" ? parse_obj
+                      : format == ".stl" ? parse_stl
+                      : format == ".off" ? parse_off
+                                         : nullptr;
+  if (parser == nullptr) {
+    fail(path, "a mesh file must end in .ply, .obj, .stl, .off or .drc (or with .gz after it)");
+  }
+  const std::string bytes = read_file(path);
+  if (bytes.empty()) fail(path, "is empty");
+  return parser(path.string(), bytes);
+}
+
+/// The polygons of one material; those of all if there are none.
+PolygonSoup polygons_of(const PolygonSoup& soup, std::size_t material) {
+  if (soup.materials.empty()) return soup;
+  PolygonSoup part{soup.vertices, {}};
+  for (std::size_t i = 0; i + 1 < soup.polygon_begin.size(); ++i) {
+    if (soup.polygon_materials[i] != material) continue;
+    const auto corners = soup.corners.begin();
+    part.corners.insert(part.corners.end(),
+                        corners + static_cast<std::ptrdiff_t>(soup.polygon_begin[i]),
+                        corners + static_cast<std::ptrdiff_t>(soup.polygon_begin[i + 1]));
+    part.polygon_begin.push_back(part.corners.size());
+  }
+  return part;
+}
+
+Mesh clean_mesh(const fs::path& path, const PolygonSoup& soup) {
+  Mesh mesh = triangulate(path.string(), soup);
+  weld_vertices(mesh);
+  drop_degenerate_triangles(mesh);
+  return mesh;
+}
+
+void require_faces(const fs::path& path, const PolygonSoup& soup) {
+  const auto is_polygon = [&](std::size_t i) {
+    return soup.polygon_begin[i + 1] - soup.polygon_begin[i] >= 3;
+  };
+  for (std::size_t i = 0; i + 1 < soup.polygon_begin.size(); ++i) {
+    if (is_polygon(i)) return;
+  }
+  fail(path, soup.vertices.empty() ? "holds neither vertices nor faces; a mesh is wanted"
+                                   : "holds no faces; a mesh is wanted, not a point cloud");
+}
+
+template <typename Value>
+void append_bytes(std::string& bytes, const Value& value) {
+  static_assert(std::endian::native == std::endian::little, "binary files are little-endian");
+  bytes.append(reinterpret_cast<const char*>(&value), sizeof(value));
+}
+
+template <typename Number>
+void append_text(std::string& text, Number number) {
+  std::array<char, 32> digits;
+  const auto end = std::to_chars(digits.data(), digits.data() + digits.size(), number).ptr;
+  text += ' ';
+  text.append(digits.data(), end);
+}
+
+bool is_single_precision(const Mesh& mesh) {
+  return std::all_of(mesh.vertices.begin(), mesh.vertices.end(), [](const Vector3d& vertex) {
+    return vertex.cast<float>().cast<double>() == vertex;
+  });
+}
+
+std::string ply_of(const Mesh& mesh) {
+  const bool is_single = is_single_precision(mesh);
+  const std::string type = is_single ? "float" : "double";
+  std::string bytes = "ply\nformat binary_little_endian 1.0\ncomment written by Skycap\n";
+  bytes += "element vertex " + std::to_string(mesh.vertices.size()) + "\n";
+  for (const char* coordinate : {"x", "y", "z"}) {
+    bytes += "property " + type + " " + coordinate + "\n";
+  }
+  bytes += "element face " + std::to_string(mesh.triangles.size()) + "\n";
+  bytes += "property list uchar int vertex_indices\nend_header\n";
+  for (const Vector3d& vertex : mesh.vertices) {
+    if (is_single) {
+      append_bytes(bytes, Eigen::Vector3f(vertex.cast<float>()));
+    } else {
+      append_bytes(bytes, vertex);
+    }
+  }
+  for (const auto& triangle : mesh.triangles) {
+    append_bytes(bytes, std::uint8_t{3});
+    append_bytes(bytes, triangle);
+  }
+  return bytes;
+}
+
+std::string obj_of(const Mesh& mesh) {
+  std::string text = "# written by Skycap\n";
+  for (const Vector3d& vertex : mesh.vertices) {
+    text += 'v';
+    for (const double coordinate : vertex) append_text(text, coordinate);
+    text += '\n';
+  }
+  for (const auto& triangle : mesh.triangles) {
+    text += 'f';
+    for (const std::uint32_t v : triangle) append_text(text, v + std::uint64_t{1});
+    text += '\n';
+  }
+  return text;
+}
+
+std::string off_of(const Mesh& mesh) {
+  std::string text = "OFF\n" + std::to_string(mesh.vertices.size()) + " " +
+                     std::to_string(mesh.triangles.size()) + " 0\n";
+  for (const Vector3d& vertex : mesh.vertices) {
+    for (const double coordinate : vertex) append_text(text, coordinate);
+    text += '\n';
+  }
+  for (const auto& triangle : mesh.triangles) {
+    text += '3';
+    for (const std::uint32_t v : triangle) append_text(text, v);
+    text += '\n';
+  }
+  return text;
+}
+
+std::string stl_of(const Mesh& mesh) {
+  std::string bytes = "written by Skycap";
+  bytes.resize(80, ' ');
+  append_bytes(bytes, static_cast<std::uint32_t>(mesh.triangles.size()));
+  for (const auto& triangle : mesh.triangles) {
+    const Vector3d &a = mesh.vertices[triangle[0]], &b = mesh.vertices[triangle[1]],
+                   &c = mesh.vertices[triangle[2]];
+    append_bytes(bytes, Eigen::Vector3f((b - a).cross(c - a).normalized().cast<float>()));
+    for (const Vector3d* corner : {&a, &b, &c}) {
+      append_bytes(bytes, Eigen::Vector3f(corner->cast<float>()));
+    }
+    append_bytes(bytes, std::uint16_t{0});
+  }
+  return bytes;
+}
+
+}  // namespace
+
+Mesh read_mesh(const fs::path& path, const MeshOptions& options) {
+  const PolygonSoup soup = parse(path);
+  require_faces(path, soup);
+  Mesh mesh = clean_mesh(path, soup);
+  if (mesh.triangles.empty()) fail(path, "holds no triangle with an area");
+  if (options.orient_outward) orient_outward(mesh);
+  return mesh;
+}
+
+std::vector<MaterialMesh> read_mesh_by_material(const fs::path& path) {
+  const PolygonSoup soup = parse(path);
+  require_faces(path, soup);
+  std::vector<MaterialMesh> parts;
+  for (std::size_t i = 0; i < std::max<std::size_t>(1, soup.materials.size()); ++i) {
+    Mesh mesh = clean_mesh(path, polygons_of(soup, i));
+    if (mesh.triangles.empty()) continue;
+    parts.push_back({soup.materials.empty() ? "" : soup.materials[i], std::move(mesh)});
+  }
+  if (parts.empty()) fail(path, "holds no triangle with an area");
+  return parts;
+}
+
+void write_mesh(const fs::path& path, const Mesh& mesh) {
+  const std::string format = path.extension().string();
+  if (format == ".ply") return write_file(path, ply_of(mesh));
+  if (format == ".obj") return write_file(path, obj_of(mesh));
+  if (format == ".off") return write_file(path, off_of(mesh));
+  if (format == ".stl") return write_file(path, stl_of(mesh));
+  fail(path, "a mesh file to be written must end in .ply, .obj, .stl or .off");
+}
+
+}  // namespace skycap::geometry

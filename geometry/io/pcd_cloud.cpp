@@ -1,0 +1,268 @@
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cmath>
+#include <cstring>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "geometry/io/cloud_formats.h"
+#include "geometry/io/text_scanner.h"
+
+namespace skycap::geometry {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct PcdField {
+  std::string name;
+  std::size_t size = 0, count = 1;
+  char type = 'F';         // F, I or U
+  std::size_t before = 0;  // bytes of a point before it
+  std::size_t column = 0;  // words of a line before it
+};
+
+enum class PcdData { text, binary, compressed };
+
+struct PcdHeader {
+  std::vector<PcdField> fields;
+  std::size_t points = 0, point_size = 0, end = 0;  // `end`: where the data begin
+  std::size_t first_line = 1;                       // of the data, for messages
+  PcdData data = PcdData::text;
+};
+
+std::vector<std::string> words_of_line(TextScanner& scanner) {
+  std::vector<std::string> words;
+  while (const auto word = scanner.word_in_line()) words.emplace_back(*word);
+  return words;
+}
+
+// Gives each field its word; their number must be that of the fields.
+template <typename Set>
+void for_each_field(TextScanner& scanner, PcdHeader& header, const std::string& key, Set set) {
+  const std::vector<std::string> words = words_of_line(scanner);
+  if (words.size() != header.fields.size()) {
+    scanner.fail(key + " has " + std::to_string(words.size()) + " entries for " +
+                 std::to_string(header.fields.size()) + " fields");
+  }
+  for (std::size_t i = 0; i < words.size(); ++i) set(header.fields[i], words[i]);
+}
+
+void lay_out(TextScanner& scanner, PcdHeader& header) {
+  std::size_t column = 0;
+  for (PcdField& field : header.fields) {
+    const bool is_real = field.type == 'F' && (field.size == 4 || field.size == 8);
+    const bool is_whole =
+        (field.type == 'I' || field.type == 'U') &&
+        (field.size == 1 || field.size == 2 || field.size == 4 || field.size == 8);
+    if ((!is_real && !is_whole) || field.count > 1'000'000) {
+      scanner.fail("the field '" + field.name +
+                   "' has a SIZE, TYPE and COUNT that PCD does not "
+                   "have");
+    }
+    field.before = header.point_size;
+    field.column = column;
+    header.point_size += field.size * field.count;
+    column += field.count;
+  }
+}
+
+PcdHeader header_of(const fs::path& path, const std::string& name, std::string_view bytes) {
+  TextScanner scanner(name, bytes);
+  PcdHeader header;
+  std::optional<std::size_t> width, height, points;
+  do {
+    const auto key_word = scanner.word_in_line();
+    if (!key_word || key_word->starts_with('#')) continue;
+    const std::string key(*key_word);
+    const auto count = [&](const std::string& word) {
+      return scanner.number<std::size_t>(std::string_view(word), "a number of " + key);
+    };
+    if (key == "FIELDS") {
+      for (const std::string& field : words_of_line(scanner)) header.fields.push_back({field});
+    } else if (key == "SIZE") {
+      for_each_field(scanner, header, key,
+                     [&](auto& field, auto& word) { field.size = count(word); });
+    } else if (key == "TYPE") {
+      for_each_field(scanner, header, key, [](auto& field, auto& word) { field.type = word[0]; });
+    } else if (key == "COUNT") {
+      for_each_field(scanner, header, key,
+                     [&](auto& field, auto& word) { field.count = count(word); });
+    } else if (key == "WIDTH" || key == "HEIGHT" || key == "POINTS") {
+      const auto number = scanner.number<std::uint32_t>(scanner.word_in_line(), "a number");
+      (key == "WIDTH" ? width : key == "HEIGHT" ? height : points) = number;
+    } else if (key == "DATA") {
+      const std::string kind(scanner.word_in_line().value_or(""));
+      if (kind != "ascii" && kind != "binary" && kind != "binary_compressed") {
+        scanner.fail("DATA is '" + kind + "'; it must be ascii, binary or binary_compressed");
+      }
+      header.data = kind == "ascii"    ? PcdData::text
+                    : kind == "binary" ? PcdData::binary
+                                       : PcdData::compressed;
+      lay_out(scanner, header);
+      scanner.next_line();
+      header.end = bytes.size() - scanner.remaining();
+      header.first_line = scanner.line();
+      if (!points && !(width && height)) {
+        fail_cloud(path, "has neither POINTS nor WIDTH and HEIGHT in its header");
+      }
+      header.points = points ? *points : *width * *height;
+      return header;
+    } else if (key != "VERSION" && key != "VIEWPOINT") {
+      scanner.fail("'" + key.substr(0, 40) + "' is not a word of a PCD header");
+    }
+  } while (scanner.next_line());
+  fail_cloud(path, "is not a PCD file: its header has no DATA");
+}
+
+// M. Lehmann's LZF: runs of literals, and copies of up to 264 bytes from up to 8 KiB back.
+std::string decompressed(const fs::path& path, std::string_view from, std::size_t size) {
+  const auto damaged = [&]() { fail_cloud(path, "has compressed data that are damaged"); };
+  constexpr std::size_t most_per_byte = 132;  // a copy of 264 bytes takes two or more
+  if (size / most_per_byte > from.size()) damaged();
+  std::string to;
+  to.reserve(size);
+  std::size_t i = 0;
+  const auto next = [&]() -> std::size_t {
+    if (i >= from.size()) damaged();
+    return static_cast<std::uint8_t>(from[i++]);
+  };
+  while (i < from.size()) {
+    const std::size_t control = next();
+    if (control < 32) {
+      if (from.size() - i < control + 1) damaged();
+      to.append(from.substr(i, control + 1));
+      i += control + 1;
+    } else {
+      std::size_t length = control >> 5;
+      if (length == 7) length += next();
+      const std::size_t back = ((control & 31) << 8) + next() + 1;
+      if (back > to.size()) damaged();
+      for (std::size_t copied = 0; copied < length + 2; ++copied) to += to[to.size() - back];
+    }
+    if (to.size() > size) damaged();
+  }
+  if (to.size() != size) damaged();
+  return to;
+}
+
+double number_at(std::string_view bytes, std::size_t place, const PcdField& field) {
+  static_assert(std::endian::native == std::endian::little, "PCD files are little-endian");
+  const auto as = [&](auto value) {
+    std::memcpy(&value, bytes.data() + place, sizeof value);
+    return static_cast<double>(value);
+  };
+  if (field.type == 'F') return field.size == 4 ? as(0.0F) : as(0.0);
+  const bool is_signed = field.type == 'I';
+  switch (field.size) {
+    case 1:
+      return is_signed ? as(std::int8_t{}) : as(std::uint8_t{});
+    case 2:
+      return is_signed ? as(std::int16_t{}) : as(std::uint16_t{});
+    case 4:
+      return is_signed ? as(std::int32_t{}) : as(std::uint32_t{});
+    default:
+      return is_signed ? as(std::int64_t{}) : as(std::uint64_t{});
+  }
+}
+
+using Values = std::array<double, 6>;  // x y z and the normal
+
+class Points {
+ public:
+  Points(const fs::path& path, const PcdHeader& header) : path_(path), header_(header) {
+    constexpr std::array<std::string_view, 6> names{"x",        "y",        "z",
+                                                    "normal_x", "normal_y", "normal_z"};
+    for (std::size_t i = 0; i < names.size(); ++i) {
+      const auto field = std::ranges::find(header.fields, names[i], &PcdField::name);
+      if (field != header.fields.end() && field->count == 1) fields_[i] = *field;
+    }
+    if (!fields_[0] || !fields_[1] || !fields_[2]) {
+      fail_cloud(path, "must have the fields x, y and z");
+    }
+    has_normals_ = fields_[3] && fields_[4] && fields_[5];
+  }
+
+  CloudFile take() { return std::move(cloud_); }
+
+  void read_text(const std::string& name, std::string_view text) {
+    TextScanner scanner(name, text, header_.first_line);
+    std::size_t point = 0;
+    do {
+      const std::vector<std::string> words = words_of_line(scanner);
+      if (words.empty()) continue;
+      Values values{};
+      for (std::size_t i = 0; i < used(); ++i) {
+        const std::size_t column = fields_[i]->column;
+        values[i] = scanner.number<double>(
+            column < words.size() ? std::optional<std::string_view>(words[column]) : std::nullopt,
+            fields_[i]->name);
+      }
+      add(point++, values);
+    } while (scanner.next_line());
+    require(point);
+  }
+
+  // Point after point, or field after field.
+  void read_binary(std::string_view bytes, bool is_by_field) {
+    require(bytes.size() / std::max<std::size_t>(1, header_.point_size));
+    for (std::size_t point = 0; point < header_.points; ++point) {
+      Values values{};
+      for (std::size_t i = 0; i < used(); ++i) {
+        const PcdField& field = *fields_[i];
+        values[i] = number_at(bytes,
+                              is_by_field ? field.before * header_.points + point * field.size
+                                          : point * header_.point_size + field.before,
+                              field);
+      }
+      add(point, values);
+    }
+  }
+
+ private:
+  std::size_t used() const { return has_normals_ ? 6 : 3; }
+
+  void require(std::size_t points) const {
+    if (points >= header_.points) return;
+    fail_cloud(path_, "ends after " + std::to_string(points) + " of its " +
+                          std::to_string(header_.points) + " points");
+  }
+
+  void add(std::size_t point, const Values& values) {
+    if (point >= header_.points) return;
+    if (std::isnan(values[0]) || std::isnan(values[1]) || std::isnan(values[2])) return;
+    cloud_.positions.push_back(cloud_position(path_, point, values[0], values[1], values[2]));
+    if (!has_normals_) return;
+    cloud_.normals.push_back(Eigen::Vector3d(values[3], values[4], values[5]).cast<float>());
+  }
+
+  const fs::path& path_;
+  const PcdHeader& header_;
+  std::array<std::optional<PcdField>, 6> fields_;
+  bool has_normals_ = false;
+  CloudFile cloud_;
+};
+
+}  // namespace
+
+CloudFile parse_pcd_cloud(const fs::path& path, std::string_view bytes) {
+  const std::string name = path.string();
+  const PcdHeader header = header_of(path, name, bytes);
+  const std::string_view data = bytes.substr(header.end);
+  Points points(path, header);
+  if (header.data == PcdData::text) {
+    points.read_text(name, data);
+  } else if (header.data == PcdData::binary) {
+    points.read_binary(data, false);
+  } else {
+    std::array<std::uint32_t, 2> sizes{};  // compressed and not
+    if (data.size() < sizeof sizes) fail_cloud(path, "ends before its compressed data");
+    std::memcpy(sizes.data(), data.data(), sizeof sizes);
+    if (data.size() - sizeof sizes < sizes[0]) fail_cloud(path, "ends within its compressed data");
+    points.read_binary(decompressed(path, data.substr(sizeof sizes, sizes[0]), sizes[1]), true);
+  }
+  return points.take();
+}
+
+}  // namespace skycap::geometry

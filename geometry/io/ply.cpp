@@ -1,0 +1,274 @@
+#include "geometry/io/ply.h"
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cmath>
+#include <cstring>
+#include <utility>
+
+#include "geometry/error.h"
+#include "geometry/io/text_scanner.h"
+
+namespace skycap::geometry {
+namespace {
+
+static_assert(std::endian::native == std::endian::little, "binary PLY is read by copying bytes");
+
+constexpr std::array<std::pair<std::string_view, PlyType>, 16> type_names{{
+    {"char", PlyType::int8},
+    {"int8", PlyType::int8},
+    {"uchar", PlyType::uint8},
+    {"uint8", PlyType::uint8},
+    {"short", PlyType::int16},
+    {"int16", PlyType::int16},
+    {"ushort", PlyType::uint16},
+    {"uint16", PlyType::uint16},
+    {"int", PlyType::int32},
+    {"int32", PlyType::int32},
+    {"uint", PlyType::uint32},
+    {"uint32", PlyType::uint32},
+    {"float", PlyType::float32},
+    {"float32", PlyType::float32},
+    {"double", PlyType::float64},
+    {"float64", PlyType::float64},
+}};
+
+PlyType parse_type(const TextScanner& scanner, std::optional<std::string_view> word) {
+  for (const auto& [name, type] : type_names) {
+    if (word == name) return type;
+  }
+  scanner.fail("the property type '" + std::string(word.value_or("")) +
+               "' is unknown; it must be one of char, uchar, short, ushort, int, uint, float, "
+               "double, or int8 ... float64");
+}
+
+std::size_t size_of(PlyType type) {
+  switch (type) {
+    case PlyType::int8:
+    case PlyType::uint8:
+      return 1;
+    case PlyType::int16:
+    case PlyType::uint16:
+      return 2;
+    case PlyType::int32:
+    case PlyType::uint32:
+    case PlyType::float32:
+      return 4;
+    case PlyType::float64:
+      return 8;
+  }
+  return 8;
+}
+
+bool is_integer(PlyType type) { return type != PlyType::float32 && type != PlyType::float64; }
+
+template <typename Value>
+double load(const char* bytes, bool swap) {
+  std::array<char, sizeof(Value)> raw;
+  std::memcpy(raw.data(), bytes, raw.size());
+  if (swap) std::reverse(raw.begin(), raw.end());
+  return static_cast<double>(std::bit_cast<Value>(raw));
+}
+
+double load(PlyType type, const char* bytes, bool swap) {
+  switch (type) {
+    case PlyType::int8:
+      return load<std::int8_t>(bytes, swap);
+    case PlyType::uint8:
+      return load<std::uint8_t>(bytes, swap);
+    case PlyType::int16:
+      return load<std::int16_t>(bytes, swap);
+    case PlyType::uint16:
+      return load<std::uint16_t>(bytes, swap);
+    case PlyType::int32:
+      return load<std::int32_t>(bytes, swap);
+    case PlyType::uint32:
+      return load<std::uint32_t>(bytes, swap);
+    case PlyType::float32:
+      return load<float>(bytes, swap);
+    case PlyType::float64:
+      return load<double>(bytes, swap);
+  }
+  return 0.0;
+}
+
+}  // namespace
+
+// For each property of an element: the column it goes to, or -1; and which of them is the list.
+struct PlyReader::Wanted {
+  std::vector<int> column;
+  std::size_t list;
+};
+
+PlyReader::PlyReader(std::string_view name, std::string_view bytes) : name_(name), bytes_(bytes) {
+  read_header();
+}
+
+void PlyReader::fail(const std::string& what) const {
+  throw Error(ErrorKind::bad_file, std::string(name_) + ": " + what);
+}
+
+void PlyReader::read_header() {
+  TextScanner scanner(name_, bytes_);
+  if (scanner.word_in_line() != "ply") {
+    scanner.fail("a PLY file begins with a line 'ply'; this one does not");
+  }
+  bool has_format = false;
+  while (true) {
+    if (!scanner.next_line()) scanner.fail("the header ends without a line 'end_header'");
+    const auto keyword = scanner.word_in_line();
+    if (!keyword || keyword == "comment" || keyword == "obj_info") continue;
+    if (keyword == "end_header") break;
+    if (keyword == "format") {
+      const auto format = scanner.word_in_line();
+      if (format == "ascii") {
+        format_ = Format::ascii;
+      } else if (format == "binary_little_endian") {
+        format_ = Format::little_endian;
+      } else if (format == "binary_big_endian") {
+        format_ = Format::big_endian;
+      } else {
+        scanner.fail("the format '" + std::string(format.value_or("")) +
+                     "' is unknown; it must be ascii, binary_little_endian or binary_big_endian");
+      }
+      has_format = true;
+    } else if (keyword == "element") {
+      PlyElement element;
+      element.name = scanner.word_in_line().value_or("");
+      element.count = scanner.number<std::uint64_t>(scanner.word_in_line(), "a number of elements");
+      elements_.push_back(std::move(element));
+    } else if (keyword == "property") {
+      if (elements_.empty()) scanner.fail("a property must follow the element it belongs to");
+      PlyProperty property{};
+      auto type = scanner.word_in_line();
+      if (type == "list") {
+        property.count_type = parse_type(scanner, scanner.word_in_line());
+        if (!is_integer(*property.count_type)) {
+          scanner.fail("the length of a list must be of an integer type");
+        }
+        type = scanner.word_in_line();
+      }
+      property.type = parse_type(scanner, type);
+      property.name = scanner.word_in_line().value_or("");
+      elements_.back().properties.push_back(std::move(property));
+    } else {
+      scanner.fail("'" + std::string(keyword->substr(0, 40)) +
+                   "' is no PLY header keyword; it must be format, element, property, comment, "
+                   "obj_info or end_header");
+    }
+  }
+  if (!has_format) scanner.fail("the header must have a line 'format ...'");
+  scanner.next_line();
+  at_ = bytes_.size() - scanner.remaining();
+  line_ = scanner.line();
+}
+
+PlyTable PlyReader::read_element(std::span<const std::string_view> scalars,
+                                 std::span<const std::string_view> lists) {
+  const PlyElement& element = elements_.at(next_element_++);
+  PlyTable table;
+  table.columns.resize(scalars.size());
+  Wanted wanted{std::vector<int>(element.properties.size(), -1), element.properties.size()};
+  if (element.properties.empty() || element.count == 0) return table;
+  std::size_t smallest_row = 0;  // [bytes]
+  for (std::size_t p = 0; p < element.properties.size(); ++p) {
+    const PlyProperty& property = element.properties[p];
+    smallest_row +=
+        format_ == Format::ascii ? 2 : size_of(property.count_type.value_or(property.type));
+    const auto names = property.count_type ? lists : scalars;
+    const auto name = std::find(names.begin(), names.end(), property.name);
+    if (name == names.end()) continue;
+    if (!property.count_type) {
+      wanted.column[p] = static_cast<int>(name - names.begin());
+    } else if (wanted.list == element.properties.size()) {
+      if (!is_integer(property.type)) {
+        fail("the list '" + property.name + "' must be of an integer type");
+      }
+      wanted.list = p;
+    }
+  }
+
+  // The last row of ascii needs no line end, hence the 1.
+  if (element.count > (bytes_.size() - at_ + 1) / std::max<std::size_t>(smallest_row, 1)) {
+    fail("the header promises " + std::to_string(element.count) + " of element '" + element.name +
+         "', but the file is too short for so many; it may have been cut off");
+  }
+  for (const int column : wanted.column) {
+    if (column >= 0) table.columns[static_cast<std::size_t>(column)].reserve(element.count);
+  }
+  if (wanted.list < element.properties.size()) {
+    table.list_begin.reserve(element.count + 1);
+    table.list_begin.push_back(0);
+  }
+  format_ == Format::ascii ? read_ascii(element, wanted, table)
+                           : read_binary(element, wanted, table);
+  return table;
+}
+
+void PlyReader::read_binary(const PlyElement& element, const Wanted& wanted, PlyTable& table) {
+  const bool swap = format_ == Format::big_endian;
+  for (std::uint64_t row = 0; row < element.count; ++row) {
+    const auto take = [&](std::size_t size) {
+      if (size > bytes_.size() - at_) {
+        fail("ends within " + element.name + " " + std::to_string(row) + " of " +
+             std::to_string(element.count) + "; it may have been cut off");
+      }
+      const char* start = bytes_.data() + at_;
+      at_ += size;
+      return start;
+    };
+    for (std::size_t p = 0; p < element.properties.size(); ++p) {
+      const auto& [name, type, count_type] = element.properties[p];
+      const std::size_t size = size_of(type);
+      if (!count_type) {
+        const char* value = take(size);
+        if (wanted.column[p] < 0) continue;
+        table.columns[static_cast<std::size_t>(wanted.column[p])].push_back(
+            load(type, value, swap));
+        continue;
+      }
+      const double count = load(*count_type, take(size_of(*count_type)), swap);
+      if (count < 0.0) {
+        fail(element.name + " " + std::to_string(row) + " has a list of negative length");
+      }
+      const auto values = static_cast<std::size_t>(count);
+      const char* start = take(values * size);
+      if (p != wanted.list) continue;
+      for (std::size_t i = 0; i < values; ++i) {
+        table.list_values.push_back(static_cast<std::int64_t>(load(type, start + i * size, swap)));
+      }
+      table.list_begin.push_back(table.list_values.size());
+    }
+  }
+}
+
+void PlyReader::read_ascii(const PlyElement& element, const Wanted& wanted, PlyTable& table) {
+  TextScanner scanner(name_, bytes_.substr(at_), line_);
+  for (std::uint64_t row = 0; row < element.count; ++row) {
+    for (std::size_t p = 0; p < element.properties.size(); ++p) {
+      const PlyProperty& property = element.properties[p];
+      if (!property.count_type) {
+        const auto word = scanner.word();
+        if (wanted.column[p] < 0 && word) continue;
+        const auto value = scanner.number<double>(word, "a number (" + property.name + ")");
+        if (wanted.column[p] >= 0) {
+          table.columns[static_cast<std::size_t>(wanted.column[p])].push_back(value);
+        }
+        continue;
+      }
+      const auto count = scanner.number<std::uint32_t>(scanner.word(), "the length of a list");
+      for (std::uint32_t i = 0; i < count; ++i) {
+        const auto word = scanner.word();
+        if (p != wanted.list && word) continue;
+        const auto value = scanner.number<std::int64_t>(word, "an index");
+        if (p == wanted.list) table.list_values.push_back(value);
+      }
+      if (p == wanted.list) table.list_begin.push_back(table.list_values.size());
+    }
+  }
+  at_ = bytes_.size() - scanner.remaining();
+  line_ = scanner.line();
+}
+
+}  // namespace skycap::geometry

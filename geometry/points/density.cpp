@@ -1,0 +1,161 @@
+#include "geometry/points/density.h"
+
+#include <algorithm>
+#include <cassert>
+
+#include "geometry/parallel.h"
+#include "geometry/points/nearby_points.h"
+
+namespace skycap::geometry {
+
+// Cells twice as wide as the spacing: a ball of that radius reaches eight of them.
+DensityMap::DensityMap(const DensityConfig& config)
+    : config_(config),
+      index_(config.radius),
+      spacing_grid_(config.spacing > 0.0 ? 2.0 * config.spacing : config.radius) {
+  assert(config.spacing < config.radius);
+}
+
+void DensityMap::keep_if_room(std::span<const Eigen::Vector3f> points, std::uint32_t view) {
+  NearbyPoints kept(spacing_grid_, config_.spacing);
+  for (const Eigen::Vector3f& point : points) {
+    if (kept.any_near(point)) continue;
+    spacing_grid_.insert(point);
+    index_.insert(point);
+    cloud_.positions.push_back(point);
+    cloud_.views.push_back(view);
+  }
+}
+
+// Which points are kept depends on the order within a scan, but whether one is too near to an
+// earlier scan's does not: with several threads that is found out first, and turns most away.
+void DensityMap::insert(std::span<const Eigen::Vector3f> points, std::uint32_t view,
+                        unsigned threads) {
+  if (cloud_.size() == labelled_) index_.grid().begin_batch();
+  if (thread_count(threads) == 1 || cloud_.size() == 0) {
+    keep_if_room(points, view);
+  } else {
+    constexpr std::size_t part_size = 1 << 15;
+    const std::size_t parts = (points.size() + part_size - 1) / part_size;
+    std::vector<std::vector<Eigen::Vector3f>> remaining(parts);
+    parallel_for(parts, threads, [&](std::size_t part) {
+      NearbyPoints kept(spacing_grid_, config_.spacing);
+      const std::size_t first = part * part_size;
+      for (const Eigen::Vector3f& point :
+           points.subspan(first, std::min(part_size, points.size() - first))) {
+        if (!kept.any_near(point)) remaining[part].push_back(point);
+      }
+    });
+    for (const auto& part : remaining) keep_if_room(part, view);
+  }
+  labels_.resize(cloud_.size(), PointLabel::outlier);
+  given_up_.resize(cloud_.size(), 0);
+}
+
+// Counts the neighbours of new points, and of old non-core points that have new neighbours; labels
+// those that have enough as core. Returns the old points among them, whose promotion can change
+// labels farther than r from anything new.
+std::vector<std::uint32_t> DensityMap::promote_dense_points(std::uint32_t first_new) {
+  const PointGrid& grid = index_.grid();
+  const auto threshold = static_cast<std::size_t>(config_.core_threshold);
+  std::vector<std::uint32_t> promoted;
+  std::vector<NonCore> still_non_core;
+  still_non_core.reserve(non_core_.size());
+  for (NonCore entry : non_core_) {
+    if (grid.is_near_batch(cloud_.positions[entry.point])) {
+      const auto count = static_cast<std::uint32_t>(
+          grid.count_within(cloud_.positions[entry.point], config_.radius, threshold));
+      if (count != entry.neighbours) given_up_[entry.point] = 0;
+      entry.neighbours = count;
+    }
+    if (entry.neighbours >= threshold) {
+      promoted.push_back(entry.point);
+    } else {
+      still_non_core.push_back(entry);
+    }
+  }
+  for (auto point = first_new; point < cloud_.size(); ++point) {
+    const std::size_t count = grid.count_within(cloud_.positions[point], config_.radius, threshold);
+    if (count >= threshold) {
+      labels_[point] = PointLabel::core;
+    } else {
+      still_non_core.push_back({point, static_cast<std::uint32_t>(count)});
+    }
+  }
+  non_core_ = std::move(still_non_core);
+  return promoted;
+}
+
+// The non-core points within r of anything whose being core has changed or begun.
+std::vector<std::uint32_t> DensityMap::points_to_relabel(
+    const std::vector<std::uint32_t>& promoted) const {
+  std::vector<std::uint32_t> points;
+  for (const NonCore& entry : non_core_) {
+    if (index_.grid().is_near_batch(cloud_.positions[entry.point])) points.push_back(entry.point);
+  }
+  std::vector<Neighbour> near;
+  for (const std::uint32_t point : promoted) {
+    near.clear();
+    index_.grid().find_within(cloud_.positions[point], config_.radius, near);
+    for (const Neighbour& neighbour : near) {
+      if (labels_[neighbour.index] != PointLabel::core) points.push_back(neighbour.index);
+    }
+  }
+  std::sort(points.begin(), points.end());
+  points.erase(std::unique(points.begin(), points.end()), points.end());
+  return points;
+}
+
+bool DensityMap::is_frontier(std::uint32_t point) const {
+  if (given_up_[point] != 0) return false;
+  std::vector<Neighbour> near;
+  index_.grid().find_within(cloud_.positions[point], config_.radius, near);
+  bool has_core = false, has_outlier = false;
+  for (const Neighbour& neighbour : near) {
+    const PointLabel label = labels_[neighbour.index];
+    has_core |= label == PointLabel::core;
+    switch (config_.rule) {
+      case OutlierRule::non_core:
+        has_outlier |= label != PointLabel::core && neighbour.index != point;
+        break;
+      case OutlierRule::labelled:
+        has_outlier |= label == PointLabel::outlier;
+        break;
+    }
+  }
+  return has_core && has_outlier;
+}
+
+DensityUpdate DensityMap::relabel() {
+  DensityUpdate update;
+  update.first_new = labelled_;
+  labelled_ = static_cast<std::uint32_t>(cloud_.size());
+  const std::vector<std::uint32_t> promoted = promote_dense_points(update.first_new);
+  for (const std::uint32_t point : promoted) {
+    if (labels_[point] == PointLabel::frontier) update.lost_frontiers.push_back(point);
+    labels_[point] = PointLabel::core;
+  }
+
+  // The order matters to OutlierRule::labelled alone, which labels new points first.
+  std::vector<std::uint32_t> points = points_to_relabel(promoted);
+  const auto first_new = std::lower_bound(points.begin(), points.end(), update.first_new);
+  std::rotate(points.begin(), first_new, points.end());
+  for (const std::uint32_t point : points) {
+    const PointLabel before = labels_[point];
+    labels_[point] = is_frontier(point) ? PointLabel::frontier : PointLabel::outlier;
+    if (labels_[point] == before) continue;
+    auto& changed = before == PointLabel::frontier ? update.lost_frontiers : update.new_frontiers;
+    changed.push_back(point);
+  }
+  std::sort(update.new_frontiers.begin(), update.new_frontiers.end());
+  std::sort(update.lost_frontiers.begin(), update.lost_frontiers.end());
+  return update;
+}
+
+void DensityMap::give_up(std::uint32_t frontier) {
+  assert(labels_[frontier] == PointLabel::frontier);
+  labels_[frontier] = PointLabel::outlier;
+  given_up_[frontier] = 1;
+}
+
+}  // namespace skycap::geometry

@@ -1,0 +1,273 @@
+#include "geometry/points/point_grid.h"
+
+#include <algorithm>
+#include <bit>
+#include <cassert>
+#include <cmath>
+#include <limits>
+
+namespace skycap::geometry {
+namespace {
+
+constexpr std::uint64_t no_key = ~std::uint64_t{0};
+
+bool has(const auto& cells, std::size_t place) { return (cells[place >> 6] >> (place & 63)) & 1; }
+void add(auto& cells, std::size_t place) { cells[place >> 6] |= std::uint64_t{1} << (place & 63); }
+
+}  // namespace
+
+PointGrid::BrickMap::BrickMap() : slots_(256, Slot{no_key, none}) {}
+
+inline std::size_t PointGrid::BrickMap::slot_of(Key key) const {
+  // Fibonacci hashing: the high bits of the product depend on all bits of the key.
+  const Key mixed = (key ^ (key >> 32)) * 0x9e3779b97f4a7c15U;
+  std::size_t slot = static_cast<std::size_t>(mixed >> 24) & (slots_.size() - 1);
+  while (slots_[slot].key != key && slots_[slot].key != no_key) {
+    slot = (slot + 1) & (slots_.size() - 1);
+  }
+  return slot;
+}
+
+inline std::uint32_t PointGrid::BrickMap::find(Key key) const { return slots_[slot_of(key)].value; }
+
+std::uint32_t PointGrid::BrickMap::find_or_add(Key key, std::uint32_t value) {
+  std::size_t slot = slot_of(key);
+  if (slots_[slot].key == key) return slots_[slot].value;
+  if (2 * (used_ + 1) > slots_.size()) {
+    grow();
+    slot = slot_of(key);
+  }
+  slots_[slot] = {key, value};
+  ++used_;
+  return value;
+}
+
+void PointGrid::BrickMap::grow() {
+  std::vector<Slot> old(4 * slots_.size(), Slot{no_key, none});
+  old.swap(slots_);
+  for (const Slot& slot : old) {
+    if (slot.key != no_key) slots_[slot_of(slot.key)] = slot;
+  }
+}
+
+PointGrid::PointGrid(double cell_size)
+    : cell_size_(cell_size), inverse_cell_size_(static_cast<float>(1.0 / cell_size)) {
+  assert(cell_size > 0.0);
+}
+
+inline PointGrid::Cell PointGrid::cell_at(const Eigen::Vector3f& point) const {
+  // Clamped so that even absurd coordinates have a cell; such cells are merely crowded.
+  constexpr float limit = (1 << 20) - 64;
+  const auto along = [&](float coordinate) {
+    const float scaled = std::clamp(coordinate * inverse_cell_size_, -limit, limit);
+    const auto truncated = static_cast<std::int32_t>(scaled);
+    return truncated - (static_cast<float>(truncated) > scaled ? 1 : 0);
+  };
+  return {along(point.x()), along(point.y()), along(point.z())};
+}
+
+inline PointGrid::Key PointGrid::brick_key(const Cell& cell) {
+  constexpr std::int32_t offset = 1 << 20;
+  const auto part = [](std::int32_t coordinate) {
+    return static_cast<Key>(static_cast<std::uint32_t>((coordinate + offset) >> brick_shift));
+  };
+  return part(cell[0]) << 42 | part(cell[1]) << 21 | part(cell[2]);
+}
+
+std::size_t PointGrid::word_of(std::int32_t x) {
+  return static_cast<std::size_t>(x & (brick_width - 1));
+}
+
+inline std::size_t PointGrid::place_in_brick(const Cell& cell) {
+  constexpr std::int32_t mask = brick_width - 1;
+  return static_cast<std::size_t>((cell[0] & mask) << (2 * brick_shift) |
+                                  (cell[1] & mask) << brick_shift | (cell[2] & mask));
+}
+
+std::uint32_t PointGrid::brick_of(const Cell& cell) {
+  const auto next = static_cast<std::uint32_t>(bricks_.size());
+  const std::uint32_t index = index_of_brick_.find_or_add(brick_key(cell), next);
+  if (index == next) bricks_.emplace_back();
+  return index;
+}
+
+inline const PointGrid::Brick* PointGrid::find_brick(const Cell& cell) const {
+  const std::uint32_t index = index_of_brick_.find(brick_key(cell));
+  return index == none ? nullptr : &bricks_[index];
+}
+
+void PointGrid::start_batch_in(Brick& brick) const {
+  if (brick.batch == batch_) return;
+  brick.batch = batch_;
+  brick.near_new = {};
+  brick.new_points = {};
+}
+
+// Splits a box of cells into the bricks it reaches. Calls `visit` with a cell of each, the first
+// and last x there, and the pattern of the box in every CellSet word of these, until it returns
+// true; whether it did.
+template <typename Visit>
+bool PointGrid::visit_bricks(const Cell& lowest, const Cell& highest, Visit visit) {
+  const auto end_in_brick = [](std::int32_t from, std::int32_t last) {
+    return std::min(last, from | (brick_width - 1));
+  };
+  for (std::int32_t x = lowest[0], x_end; x <= highest[0]; x = x_end + 1) {
+    x_end = end_in_brick(x, highest[0]);
+    for (std::int32_t y = lowest[1], y_end; y <= highest[1]; y = y_end + 1) {
+      y_end = end_in_brick(y, highest[1]);
+      for (std::int32_t z = lowest[2], z_end; z <= highest[2]; z = z_end + 1) {
+        z_end = end_in_brick(z, highest[2]);
+        const std::uint64_t row = ((2U << (z_end - z)) - 1U) << (z & (brick_width - 1));
+        std::uint64_t pattern = 0;
+        for (std::int32_t i = y; i <= y_end; ++i) {
+          pattern |= row << ((i & (brick_width - 1)) << brick_shift);
+        }
+        if (visit(Cell{x, y, z}, x, x_end, pattern)) return true;
+      }
+    }
+  }
+  return false;
+}
+
+void PointGrid::mark_surroundings(const Cell& cell) {
+  const Cell lowest = {cell[0] - 1, cell[1] - 1, cell[2] - 1};
+  const Cell highest = {cell[0] + 1, cell[1] + 1, cell[2] + 1};
+  visit_bricks(lowest, highest,
+               [&](const Cell& corner, std::int32_t x, std::int32_t x_end, std::uint64_t pattern) {
+                 Brick& brick = bricks_[brick_of(corner)];
+                 start_batch_in(brick);
+                 for (; x <= x_end; ++x) {
+                   brick.near_occupied[word_of(x)] |= pattern;
+                   brick.near_new[word_of(x)] |= pattern;
+                 }
+                 return false;
+               });
+}
+
+void PointGrid::insert(const Eigen::Vector3f& point) {
+  const Cell cell = cell_at(point);
+  const std::size_t place = place_in_brick(cell);
+  const std::uint32_t index = brick_of(cell);
+  start_batch_in(bricks_[index]);
+  if (!has(bricks_[index].new_points, place)) {
+    add(bricks_[index].new_points, place);
+    mark_surroundings(cell);
+  }
+
+  Brick& brick = bricks_[index];
+  if (brick.heads == none) {
+    brick.heads = static_cast<std::uint32_t>(heads_.size());
+    heads_.resize(heads_.size() + cells_in_brick, none);
+  }
+  add(brick.occupied, place);
+  std::uint32_t& head = heads_[brick.heads + place];
+  nodes_.push_back({point.x(), point.y(), point.z(), head});
+  head = static_cast<std::uint32_t>(nodes_.size() - 1);
+}
+
+bool PointGrid::is_near_batch(const Eigen::Vector3f& point) const {
+  const Cell cell = cell_at(point);
+  const Brick* brick = find_brick(cell);
+  return brick != nullptr && brick->batch == batch_ && has(brick->near_new, place_in_brick(cell));
+}
+
+// Calls `visit` with the squared distance and index of each point within `radius` until it returns
+// true: first the points of the query's own cell, which most often decide, then those of the other
+// cells that the ball reaches, with a margin for the rounding of the cells' bounds.
+template <typename Visit>
+void PointGrid::visit_near(const Eigen::Vector3f& query, double radius, Visit visit) const {
+  const auto squared_radius = static_cast<float>(radius * radius);
+  const auto visit_cell = [&](std::uint32_t index) {
+    while (index != none) {
+      const Node& node = nodes_[index];
+      const float distance = squared_distance(query, {node.x, node.y, node.z});
+      if (distance <= squared_radius && visit(distance, index)) return true;
+      index = node.next;
+    }
+    return false;
+  };
+
+  const Cell own = cell_at(query);
+  const std::size_t own_place = place_in_brick(own);
+  const Brick* own_brick = find_brick(own);
+  if (own_brick == nullptr || !has(own_brick->near_occupied, own_place)) {
+    if (radius <= cell_size_) return;
+  } else if (has(own_brick->occupied, own_place)) {
+    if (visit_cell(heads_[own_brick->heads + own_place])) return;
+  }
+
+  const Eigen::Vector3f reach =
+      static_cast<float>(radius + 1e-5 * (radius + cell_size_)) * Eigen::Vector3f::Ones() +
+      1e-6F * query.cwiseAbs();
+  visit_bricks(
+      cell_at(query - reach), cell_at(query + reach),
+      [&](const Cell& corner, std::int32_t x, std::int32_t x_end, std::uint64_t pattern) {
+        const bool is_own =
+            ((corner[0] ^ own[0]) | (corner[1] ^ own[1]) | (corner[2] ^ own[2])) >> brick_shift ==
+            0;
+        const Brick* brick = is_own ? own_brick : find_brick(corner);
+        if (brick == nullptr || brick->heads == none) return false;
+        for (; x <= x_end; ++x) {
+          std::uint64_t cells = brick->occupied[word_of(x)] & pattern;
+          if (x == own[0] && is_own) cells &= ~(std::uint64_t{1} << (own_place & 63U));
+          for (; cells != 0; cells &= cells - 1) {
+            const auto place = 64 * word_of(x) + static_cast<std::size_t>(std::countr_zero(cells));
+            if (visit_cell(heads_[brick->heads + place])) return true;
+          }
+        }
+        return false;
+      });
+}
+
+std::uint32_t PointGrid::first_within(const Eigen::Vector3f& query, double radius) const {
+  std::uint32_t found = none;
+  visit_near(query, radius, [&](float, std::uint32_t index) {
+    found = index;
+    return true;
+  });
+  return found;
+}
+
+std::size_t PointGrid::count_within(const Eigen::Vector3f& query, double radius,
+                                    std::size_t limit) const {
+  std::size_t count = 0;
+  visit_near(query, radius, [&](float, std::uint32_t) { return ++count >= limit; });
+  return count;
+}
+
+void PointGrid::find_within(const Eigen::Vector3f& query, double radius,
+                            std::vector<Neighbour>& found) const {
+  const double bricks_across = 2.0 * radius / (brick_width * cell_size_) + 1.0;
+  if (bricks_across * bricks_across * bricks_across <= static_cast<double>(bricks_.size() + 8)) {
+    visit_near(query, radius, [&](float distance, std::uint32_t index) {
+      found.push_back({distance, index});
+      return false;
+    });
+    return;
+  }
+  // A ball wider than the cloud's bricks: comparing every point is the shorter way.
+  const auto squared_radius = static_cast<float>(radius * radius);
+  for (std::uint32_t index = 0; index < nodes_.size(); ++index) {
+    const float distance = squared_distance(query, point(index));
+    if (distance <= squared_radius) found.push_back({distance, index});
+  }
+}
+
+double PointGrid::empty_length(const Eigen::Vector3f& origin,
+                               const Eigen::Vector3f& direction) const {
+  const Cell cell = cell_at(origin);
+  if (find_brick(cell) != nullptr) return 0.0;
+  // Nothing occupied is in the brick or beside it: free to the brick's far side.
+  const double width = cell_size_ * brick_width;
+  double length = std::numeric_limits<double>::infinity();
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const double slope = direction[static_cast<Eigen::Index>(axis)];
+    if (slope == 0.0) continue;
+    const std::int32_t brick = cell[axis] >> brick_shift;
+    const double side = width * (brick + (slope > 0.0 ? 1 : 0));
+    length = std::min(length, (side - origin[static_cast<Eigen::Index>(axis)]) / slope);
+  }
+  return std::isfinite(length) ? std::max(0.0, length) : 0.0;
+}
+
+}  // namespace skycap::geometry

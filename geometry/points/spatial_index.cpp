@@ -1,0 +1,182 @@
+#include "geometry/points/spatial_index.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <mutex>
+#include <numeric>
+
+#include <CGAL/Fuzzy_sphere.h>
+#include <CGAL/Kd_tree.h>
+#include <CGAL/Orthogonal_k_neighbor_search.h>
+#include <CGAL/Search_traits_3.h>
+#include <CGAL/Search_traits_adapter.h>
+#include <CGAL/Simple_cartesian.h>
+
+namespace skycap::geometry {
+namespace {
+
+using Kernel = CGAL::Simple_cartesian<double>;
+
+/// Lets CGAL's trees hold indices instead of points.
+struct PointOfIndex {
+  using value_type = Kernel::Point_3;
+  using reference = value_type;
+  using key_type = std::uint32_t;
+  using category = boost::readable_property_map_tag;
+
+  const PointGrid* points;
+
+  friend reference get(const PointOfIndex& map, key_type index) {
+    const Eigen::Vector3f p = map.points->point(index);
+    return {p.x(), p.y(), p.z()};
+  }
+};
+
+using Traits =
+    CGAL::Search_traits_adapter<std::uint32_t, PointOfIndex, CGAL::Search_traits_3<Kernel>>;
+using Tree = CGAL::Kd_tree<Traits>;
+using NearestSearch = CGAL::Orthogonal_k_neighbor_search<Traits>;
+using Ball = CGAL::Fuzzy_sphere<Traits>;
+
+}  // namespace
+
+/// Trees over consecutive ranges of points, each at least twice as large as the next one; the last
+/// few points, not worth a tree, are compared one by one.
+struct SpatialIndex::Forest {
+  static constexpr std::size_t smallest_tree = 256;
+
+  struct TreeOfRange {
+    std::size_t first, last;
+    std::unique_ptr<Tree> tree;
+  };
+
+  void bring_up_to_date(const PointGrid& points) {
+    std::size_t first = trees.empty() ? 0 : trees.back().last;
+    if (points.size() - first < smallest_tree) return;
+    while (!trees.empty() && 2 * (points.size() - first) > trees.back().last - trees.back().first) {
+      first = trees.back().first;
+      trees.pop_back();
+    }
+    std::vector<std::uint32_t> indices(points.size() - first);
+    std::iota(indices.begin(), indices.end(), static_cast<std::uint32_t>(first));
+    // The tree keeps the address of the grid: that is why an index cannot be moved.
+    auto tree = std::make_unique<Tree>(indices.begin(), indices.end(), Tree::Splitter(),
+                                       Traits(PointOfIndex{&points}));
+    tree->build();
+    trees.push_back({first, points.size(), std::move(tree)});
+  }
+
+  /// Calls `visit` with every point that may be within `radius`, and perhaps some a little farther.
+  template <typename Visit>
+  void visit_ball(const PointGrid& points, const Eigen::Vector3f& query, double radius,
+                  Visit visit) {
+    const double reach = radius * (1.0 + 1e-5) + 1e-6 * query.cwiseAbs().maxCoeff();
+    const Kernel::Point_3 centre(query.x(), query.y(), query.z());
+    std::vector<std::uint32_t> found;
+    for (const TreeOfRange& range : trees) {
+      range.tree->search(std::back_inserter(found),
+                         Ball(centre, reach, 0.0, Traits(PointOfIndex{&points})));
+    }
+    for (const std::uint32_t index : found) visit(index);
+    for (std::size_t i = trees.empty() ? 0 : trees.back().last; i < points.size(); ++i) {
+      visit(static_cast<std::uint32_t>(i));
+    }
+  }
+
+  std::vector<TreeOfRange> trees;
+  std::mutex mutex;
+};
+
+SpatialIndex::SpatialIndex(double typical_radius)
+    : grid_(typical_radius), forest_(std::make_unique<Forest>()) {}
+SpatialIndex::~SpatialIndex() = default;
+
+std::uint32_t SpatialIndex::insert(const Eigen::Vector3f& point) {
+  grid_.insert(point);
+  return static_cast<std::uint32_t>(size() - 1);
+}
+
+bool SpatialIndex::insert_spaced(const Eigen::Vector3f& point, double spacing) {
+  if (any_within(point, spacing)) return false;
+  insert(point);
+  return true;
+}
+
+// The grid answers balls of a few bricks, and small clouds by comparing all points.
+bool SpatialIndex::suits_grid(double radius) const {
+  return radius <= 16.0 * grid_.cell_size() || size() <= 1U << 14;
+}
+
+bool SpatialIndex::any_within(const Eigen::Vector3f& query, double radius) const {
+  if (radius <= grid_.cell_size()) return grid_.any_within(query, radius);
+  return !within(query, radius).empty();
+}
+
+std::size_t SpatialIndex::count_within(const Eigen::Vector3f& query, double radius) const {
+  if (radius <= grid_.cell_size()) return grid_.count_within(query, radius, size() + 1);
+  return within(query, radius).size();
+}
+
+std::vector<std::uint32_t> SpatialIndex::within(const Eigen::Vector3f& query, double radius) const {
+  std::vector<std::uint32_t> indices;
+  if (suits_grid(radius)) {
+    std::vector<Neighbour> found;
+    grid_.find_within(query, radius, found);
+    indices.reserve(found.size());
+    for (const Neighbour& neighbour : found) indices.push_back(neighbour.index);
+  } else {
+    const std::lock_guard lock(forest_->mutex);
+    forest_->bring_up_to_date(grid_);
+    const auto squared_radius = static_cast<float>(radius * radius);
+    forest_->visit_ball(grid_, query, radius, [&](std::uint32_t index) {
+      if (squared_distance(query, point(index)) <= squared_radius) indices.push_back(index);
+    });
+  }
+  std::sort(indices.begin(), indices.end());
+  return indices;
+}
+
+std::vector<Neighbour> SpatialIndex::nearest(const Eigen::Vector3f& query,
+                                             std::size_t count) const {
+  count = std::min(count, size());
+  std::vector<Neighbour> found;
+  if (count == 0) return found;
+  // Near the cloud: balls of one, two, three cells. What lies within the ball is complete.
+  for (const double radius : {1.0, 2.0, 3.0}) {
+    found.clear();
+    grid_.find_within(query, radius * grid_.cell_size(), found);
+    if (found.size() < count) continue;
+    std::partial_sort(found.begin(), found.begin() + static_cast<std::ptrdiff_t>(count),
+                      found.end());
+    found.resize(count);
+    return found;
+  }
+
+  // Far away: the forest says how far the last one is, and then who is within that distance.
+  const std::lock_guard lock(forest_->mutex);
+  forest_->bring_up_to_date(grid_);
+  const Kernel::Point_3 centre(query.x(), query.y(), query.z());
+  std::vector<Neighbour> candidates;
+  const auto add = [&](std::uint32_t index) {
+    candidates.push_back({squared_distance(query, point(index)), index});
+  };
+  for (const Forest::TreeOfRange& range : forest_->trees) {
+    const NearestSearch search(*range.tree, centre, static_cast<unsigned>(count), 0.0, true,
+                               NearestSearch::Distance(PointOfIndex{&grid_}));
+    for (const auto& [index, distance] : search) add(index);
+  }
+  const std::size_t in_trees = forest_->trees.empty() ? 0 : forest_->trees.back().last;
+  for (std::size_t i = in_trees; i < size(); ++i) add(static_cast<std::uint32_t>(i));
+  std::nth_element(candidates.begin(), candidates.begin() + static_cast<std::ptrdiff_t>(count - 1),
+                   candidates.end());
+  const double last = std::sqrt(static_cast<double>(candidates[count - 1].squared_distance));
+  candidates.clear();
+  forest_->visit_ball(grid_, query, last, add);
+  std::partial_sort(candidates.begin(), candidates.begin() + static_cast<std::ptrdiff_t>(count),
+                    candidates.end());
+  candidates.resize(count);
+  return candidates;
+}
+
+}  // namespace skycap::geometry

@@ -1,0 +1,386 @@
+#include "missions/benchmark/benchmark_report.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <functional>
+
+#include <nlohmann/json.hpp>
+
+#include "missions/benchmark/contestants.h"
+#include "missions/benchmark/paper_results.h"
+#include "missions/file/json_text.h"
+#include "missions/file/number_text.h"
+#include "missions/version.h"
+
+namespace skycap::missions::benchmark {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr std::size_t curve_points = 100;
+
+/// The four figures of Table 1.
+struct Column {
+  const char* key;
+  const char* title;
+  double unit;  ///< what a printed figure is a multiple of
+  const char* format;
+  Statistic CellFigures::*ours;
+  double PaperResult::*papers;
+};
+
+const std::vector<Column>& columns() {
+  static const std::vector<Column> all{
+      {"views", "Views", 1.0, "%.1f", &CellFigures::views, &PaperResult::views},
+      {"coverage", "Coverage [%]", 0.01, "%.1f", &CellFigures::coverage, &PaperResult::coverage},
+      {"planning_time_s", "Time [s]", 1.0, "%.3g", &CellFigures::planning_time,
+       &PaperResult::planning_time},
+      {"distance_m", "Distance [m]", 1.0, "%.1f", &CellFigures::distance, &PaperResult::distance}};
+  return all;
+}
+
+std::string formatted(const char* format, double number) {
+  char text[64];
+  std::snprintf(text, sizeof text, format, number);
+  return text;
+}
+
+std::string title_of(const std::string& planner) {
+  const Contestant* contestant = find_contestant(planner);
+  return contestant ? contestant->title : planner;
+}
+
+template <typename Member>
+std::vector<std::string> distinct(const std::vector<BenchmarkCell>& cells, Member member) {
+  std::vector<std::string> values;
+  for (const BenchmarkCell& cell : cells) {
+    if (std::ranges::find(values, cell.*member) == values.end()) values.push_back(cell.*member);
+  }
+  return values;
+}
+
+const BenchmarkCell* cell_of(const std::vector<BenchmarkCell>& cells, const std::string& mission,
+                             const std::string& planner) {
+  const auto found = std::ranges::find_if(cells, [&](const BenchmarkCell& cell) {
+    return cell.mission == mission && cell.planner == planner;
+  });
+  return found == cells.end() ? nullptr : &*found;
+}
+
+Json json_of(const Statistic& statistic) {
+  // JSON has no infinity: one trial says nothing about the mean's certainty.
+  return {{"mean", statistic.mean},
+          {"standard_deviation", statistic.deviation},
+          {"half_width_95",
+           std::isfinite(statistic.half_width_95) ? Json(statistic.half_width_95) : Json()}};
+}
+
+Json json_of(const std::vector<CurvePoint>& curve) {
+  Json x = Json::array(), mean = Json::array(), deviation = Json::array();
+  for (const CurvePoint& point : curve) {
+    x.push_back(point.x);
+    mean.push_back(point.mean);
+    deviation.push_back(point.deviation);
+  }
+  return {{"x", x}, {"coverage", mean}, {"standard_deviation", deviation}};
+}
+
+/// A coverage that planners are timed to.
+struct Mark {
+  std::string key;    ///< in results.json
+  std::string title;  ///< in the report
+  double coverage;
+  std::optional<CellFigures> whole;  ///< surveys that end with it
+};
+
+/// The paper's SEE++, and SEE++ and SEE as they are here.
+std::vector<Mark> marks_of(const std::vector<BenchmarkCell>& cells, const std::string& mission) {
+  std::vector<Mark> marks;
+  if (const auto paper = paper_result(mission, "see++")) {
+    marks.push_back({"paper", "the paper's SEE++", paper->coverage, {}});
+  }
+  for (const char* planner : {"see++", "see"}) {
+    const BenchmarkCell* cell = cell_of(cells, mission, planner);
+    if (!cell || cell->trials.empty()) continue;
+    const CellFigures whole = figures_of(*cell);
+    marks.push_back({planner, title_of(planner) + " here", whole.coverage.mean, whole});
+  }
+  return marks;
+}
+
+Json json_of(const BenchmarkCell& cell, const std::vector<BenchmarkCell>& cells) {
+  Json json{{"mission", cell.mission}, {"planner", cell.planner}, {"trials", cell.trials.size()}};
+  if (cell.trials.empty()) return json;
+  json["trials_complete"] =
+      std::ranges::count(cell.trials, survey::StopReason::complete, &Trial::stop_reason);
+  const CellFigures figures = figures_of(cell);
+  const auto paper = paper_result(cell.mission, cell.planner);
+  for (const Column& column : columns()) {
+    const Statistic& ours = figures.*column.ours;
+    json[column.key] = json_of(ours);
+    if (!paper) continue;
+    json[column.key]["paper"] = (*paper).*column.papers;
+    json[column.key]["ratio_to_paper"] = ours.mean / (*paper).*column.papers;
+  }
+  if (figures.coverage_visible) json["coverage_visible"] = json_of(*figures.coverage_visible);
+  json["coverage_ceiling"] = figures.ceiling ? Json(*figures.ceiling) : Json();
+  const ViewFigures per_view = view_figures(cell.trials);
+  json["frontiers_per_view"] = json_of(per_view.frontiers);
+  json["coverage_per_view"] = json_of(per_view.coverage);
+  const TargetFigures targets = target_figures(cell.trials);
+  json["targets"] = {{"observed", targets.targets},
+                     {"share_by_views", targets.share_by_views},
+                     {"distance_bin_m", target_distance_bin},
+                     {"share_by_distance", targets.share_by_distance}};
+  for (const Mark& mark : marks_of(cells, cell.mission)) {
+    const auto reach = reach_figures(cell.trials, mark.coverage);
+    Json& to = json["until_coverage_of"][mark.key];
+    to["coverage"] = mark.coverage;
+    to["trials"] = reach ? reach->reached : 0;
+    if (!reach) continue;
+    to["views"] = json_of(reach->views);
+    to["distance_m"] = json_of(reach->distance);
+    to["planning_time_s"] = json_of(reach->planning_time);
+  }
+  json["curves"] = {
+      {"views", json_of(coverage_curve(cell.trials, CurveAxis::views, curve_points))},
+      {"planning_time_s",
+       json_of(coverage_curve(cell.trials, CurveAxis::planning_time, curve_points))},
+      {"distance_m", json_of(coverage_curve(cell.trials, CurveAxis::distance, curve_points))}};
+  return json;
+}
+
+/// A row of a Markdown table.
+std::string row(const std::vector<std::string>& cells) {
+  std::string text = "|";
+  for (const std::string& cell : cells) text += " " + cell + " |";
+  return text + "\n";
+}
+
+std::string rule(std::size_t columns) {
+  std::string text = "| --- |";
+  for (std::size_t i = 1; i < columns; ++i) text += " ---: |";
+  return text + "\n";
+}
+
+/// Table 1 as printed: a row for each planner, four columns for each model.
+std::string table_1(const std::vector<BenchmarkCell>& cells) {
+  const auto missions = distinct(cells, &BenchmarkCell::mission);
+  std::vector<std::string> head{"planner"};
+  for (const std::string& mission : missions) {
+    for (const Column& column : columns()) head.push_back(mission + ": " + column.title);
+  }
+  std::string text = row(head) + rule(head.size());
+  for (const std::string& planner : distinct(cells, &BenchmarkCell::planner)) {
+    std::vector<std::string> line{title_of(planner)};
+    for (const std::string& mission : missions) {
+      const BenchmarkCell* cell = cell_of(cells, mission, planner);
+      const auto paper = paper_result(mission, planner);
+      for (const Column& column : columns()) {
+        std::string entry = "-";
+        if (cell && !cell->trials.empty()) {
+          entry = formatted(column.format, (figures_of(*cell).*column.ours).mean / column.unit);
+        }
+        if (paper) {
+          entry += " (" + formatted(column.format, (*paper).*column.papers / column.unit) + ")";
+        }
+        line.push_back(entry);
+      }
+    }
+    text += row(line);
+  }
+  return text;
+}
+
+std::string with_certainty(const Column& column, const Statistic& ours,
+                           const std::optional<PaperResult>& paper) {
+  std::string entry = formatted(column.format, ours.mean / column.unit);
+  if (std::isfinite(ours.half_width_95)) {
+    entry += " ± " + formatted("%.2g", ours.half_width_95 / column.unit) + " (sd " +
+             formatted("%.2g", ours.deviation / column.unit) + ")";
+  }
+  if (paper) entry += ", " + formatted("%.2f", ours.mean / (*paper).*column.papers) + "×";
+  return entry;
+}
+
+std::string details(const std::vector<BenchmarkCell>& cells, const std::string& mission) {
+  std::vector<std::string> head{"planner", "trials"};
+  for (const Column& column : columns()) head.emplace_back(column.title);
+  head.insert(head.end(), {"of the visible surface [%]", "of the attainable [%]"});
+  std::string text = row(head) + rule(head.size());
+  for (const BenchmarkCell& cell : cells) {
+    if (cell.mission != mission || cell.trials.empty()) continue;
+    const CellFigures figures = figures_of(cell);
+    const auto paper = paper_result(mission, cell.planner);
+    std::vector<std::string> line{title_of(cell.planner), std::to_string(cell.trials.size())};
+    for (const Column& column : columns()) {
+      line.push_back(with_certainty(column, figures.*column.ours, paper));
+    }
+    line.push_back(
+        figures.coverage_visible ? formatted("%.1f", 100.0 * figures.coverage_visible->mean) : "-");
+    line.push_back(figures.ceiling
+                       ? formatted("%.1f", 100.0 * figures.coverage.mean / *figures.ceiling)
+                       : "-");
+    text += row(line);
+  }
+  return text;
+}
+
+/// What it takes each planner to come to the coverage of others, and the ratio to what it took
+/// them.
+std::string reach_table(const std::vector<BenchmarkCell>& cells, const std::string& mission) {
+  std::string text;
+  for (const Mark& mark : marks_of(cells, mission)) {
+    const auto entry = [&](const Column& column, const Statistic& ours) {
+      std::string number = formatted(column.format, ours.mean / column.unit);
+      const double whole = mark.whole ? ((*mark.whole).*column.ours).mean : 0.0;
+      if (whole > 0.0) number += ", " + formatted("%.2f", ours.mean / whole) + "×";
+      return number;
+    };
+    for (const BenchmarkCell& cell : cells) {
+      if (cell.mission != mission || cell.planner == mark.key) continue;
+      const auto reach = reach_figures(cell.trials, mark.coverage);
+      std::vector<std::string> line{
+          mark.title + ", " + formatted("%.1f", 100.0 * mark.coverage), title_of(cell.planner),
+          std::to_string(reach ? reach->reached : 0) + " of " + std::to_string(cell.trials.size())};
+      for (const Column& column : columns()) {
+        if (column.ours == &CellFigures::coverage) continue;
+        line.push_back(!reach                               ? "-"
+                       : column.ours == &CellFigures::views ? entry(column, reach->views)
+                       : column.ours == &CellFigures::distance
+                           ? entry(column, reach->distance)
+                           : entry(column, reach->planning_time));
+      }
+      text += row(line);
+    }
+  }
+  if (text.empty()) return text;
+  return row({"coverage of [%]", "planner", "trials that reach it", "Views", "Time [s]",
+              "Distance [m]"}) +
+         rule(6) + text;
+}
+
+/// All trials of a planner on the standard models.
+std::vector<Trial> standard_trials(const std::vector<BenchmarkCell>& cells,
+                                   const std::string& planner) {
+  std::vector<Trial> trials;
+  for (const BenchmarkCell& cell : cells) {
+    if (cell.planner != planner || !is_standard_model(cell.mission)) continue;
+    trials.insert(trials.end(), cell.trials.begin(), cell.trials.end());
+  }
+  return trials;
+}
+
+std::string table_2(const std::vector<BenchmarkCell>& cells) {
+  std::string text =
+      row({"planner", "frontiers observed per view", "paper", "coverage per view [%]", "paper"}) +
+      rule(5);
+  for (const char* planner : {"see", "see++"}) {
+    const std::vector<Trial> trials = standard_trials(cells, planner);
+    if (trials.empty()) continue;
+    const ViewFigures figures = view_figures(trials);
+    const auto paper = paper_view_result(planner);
+    text +=
+        row({title_of(planner), formatted("%.2f", figures.frontiers.mean),
+             formatted("%.2f", paper->frontiers), formatted("%.2f", 100.0 * figures.coverage.mean),
+             formatted("%.2f", 100.0 * paper->coverage)});
+  }
+  return text;
+}
+
+std::string figure_6(const std::vector<BenchmarkCell>& cells) {
+  constexpr double quoted_distance = 3.0;  // what the paper's text gives
+  const auto bin = static_cast<std::size_t>(quoted_distance / target_distance_bin) - 1;
+  std::string text =
+      row({"planner", "targets observed", "with a single view [%]", "within 3 m [%]"}) + rule(4);
+  for (const char* planner : {"see", "see++"}) {
+    const TargetFigures figures = target_figures(standard_trials(cells, planner));
+    if (figures.targets == 0) continue;
+    text += row({title_of(planner), std::to_string(figures.targets),
+                 formatted("%.1f", 100.0 * figures.share_by_views.front()),
+                 formatted("%.1f", 100.0 * figures.share_by_distance[bin])});
+  }
+  return text;
+}
+
+}  // namespace
+
+std::string results_json(const std::vector<BenchmarkCell>& cells) {
+  Json json{{"version", version}, {"results", Json::array()}};
+  for (const BenchmarkCell& cell : cells) json["results"].push_back(json_of(cell, cells));
+  return file::json_text(json);
+}
+
+std::string table_1_csv(const std::vector<BenchmarkCell>& cells) {
+  std::string csv = "mission,planner,trials";
+  for (const Column& column : columns()) {
+    for (const char* part : {"", "_sd", "_half_width_95", "_paper", "_ratio"}) {
+      csv += std::string(",") + column.key + part;
+    }
+  }
+  csv += ",coverage_visible,coverage_ceiling\n";
+  for (const BenchmarkCell& cell : cells) {
+    if (cell.trials.empty()) continue;
+    const CellFigures figures = figures_of(cell);
+    const auto paper = paper_result(cell.mission, cell.planner);
+    csv += cell.mission + "," + cell.planner + "," + std::to_string(cell.trials.size());
+    for (const Column& column : columns()) {
+      const Statistic& ours = figures.*column.ours;
+      csv += "," + file::exact_text(ours.mean) + "," + file::exact_text(ours.deviation) + ",";
+      if (std::isfinite(ours.half_width_95)) csv += file::exact_text(ours.half_width_95);
+      csv += paper ? "," + file::exact_text((*paper).*column.papers) + "," +
+                         file::exact_text(ours.mean / (*paper).*column.papers)
+                   : ",,";
+    }
+    csv += "," + (figures.coverage_visible ? file::exact_text(figures.coverage_visible->mean) : "");
+    csv += "," + (figures.ceiling ? file::exact_text(*figures.ceiling) : "") + "\n";
+  }
+  return csv;
+}
+
+std::string all_trials_csv(const std::vector<BenchmarkCell>& cells) {
+  std::string csv;
+  for (const BenchmarkCell& cell : cells) {
+    const std::string lines = trials_csv(cell.trials);
+    const std::size_t end_of_head = lines.find('\n') + 1;
+    if (csv.empty()) csv = "mission,planner," + lines.substr(0, end_of_head);
+    for (std::size_t begin = end_of_head; begin < lines.size();) {
+      const std::size_t end = lines.find('\n', begin) + 1;
+      csv += cell.mission + "," + cell.planner + "," + lines.substr(begin, end - begin);
+      begin = end;
+    }
+  }
+  return csv;
+}
+
+std::string report_markdown(const std::vector<BenchmarkCell>& cells,
+                            const std::vector<std::string>& plots) {
+  std::string text =
+      "# Benchmark\n\n"
+      "Means over the trials; in brackets the SEE++ paper's (100 trials). ± is the half width of "
+      "the mean's 95 % interval, sd the standard deviation over the trials, and × the ratio to the "
+      "paper. docs/benchmark.md explains the figures.\n\n"
+      "## Table 1\n\n" +
+      table_1(cells);
+  for (const std::string& mission : distinct(cells, &BenchmarkCell::mission)) {
+    text += "\n### " + mission + "\n\n" + details(cells, mission);
+    const std::string reach = reach_table(cells, mission);
+    if (!reach.empty())
+      text += "\nUntil a coverage is reached; × is the ratio to all of its survey:\n\n" + reach;
+  }
+  const auto has_standard_see = [](const BenchmarkCell& cell) {
+    return is_standard_model(cell.mission) && paper_view_result(cell.planner) &&
+           !cell.trials.empty();
+  };
+  if (std::ranges::any_of(cells, has_standard_see)) {
+    text += "\n## Table 2\n\nPer view, over the standard models.\n\n" + table_2(cells) +
+            "\n## Figure 6\n\nFrontiers that views were aimed at, until one was observed.\n\n" +
+            figure_6(cells);
+  }
+  if (!plots.empty()) text += "\n## Plots\n";
+  for (const std::string& plot : plots) text.append("\n![" + plot + "](" + plot + ".svg)\n");
+  return text;
+}
+
+}  // namespace skycap::missions::benchmark

@@ -1,0 +1,296 @@
+#include "missions/benchmark/trials.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <limits>
+#include <mutex>
+
+#include <boost/math/distributions/students_t.hpp>
+#include <nlohmann/json.hpp>
+
+#include "geometry/error.h"
+#include "geometry/parallel.h"
+#include "missions/file/json_text.h"
+#include "missions/file/mission_keys.h"
+#include "missions/file/number_text.h"
+#include "missions/judge/coverage.h"
+#include "missions/version.h"
+
+namespace skycap::missions::benchmark {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+/// One of the figures that trials are compared by.
+struct Figure {
+  const char* name;
+  double (*of)(const Trial&);
+  std::optional<double> file::ReferenceConfig::*reference;  ///< or null
+};
+
+constexpr std::array figures{
+    Figure{"views", [](const Trial& t) { return static_cast<double>(t.views); },
+           &file::ReferenceConfig::views},
+    Figure{"coverage", [](const Trial& t) { return t.coverage.all; },
+           &file::ReferenceConfig::coverage},
+    // No reference: publications do not say which surface cannot be seen.
+    Figure{"coverage_visible", [](const Trial& t) { return t.coverage.visible.value_or(0.0); },
+           nullptr},
+    Figure{"distance_m", [](const Trial& t) { return t.distance; },
+           &file::ReferenceConfig::distance},
+    Figure{"planning_time_s", [](const Trial& t) { return t.planning_time; },
+           &file::ReferenceConfig::planning_time}};
+
+std::optional<double> reference_of(const file::Mission& mission, const Figure& figure) {
+  return figure.reference ? mission.paper.*figure.reference : std::nullopt;
+}
+
+Statistic statistic_of(const std::vector<Trial>& trials, const Figure& figure) {
+  std::vector<double> numbers;
+  for (const Trial& trial : trials) numbers.push_back(figure.of(trial));
+  return statistic(numbers);
+}
+
+std::vector<ObservedTarget> observed_targets(const std::vector<run::JudgedView>& views) {
+  std::vector<ObservedTarget> observed;
+  ObservedTarget current;
+  double distance_before = 0.0;
+  for (const run::JudgedView& view : views) {
+    const double way = view.surveyed.distance - distance_before;
+    distance_before = view.surveyed.distance;
+    const std::optional<bool>& is_resolved = view.surveyed.step.target_resolved;
+    if (!is_resolved) continue;  // the first view has no target
+    ++current.views;
+    current.distance += way;
+    if (!*is_resolved) continue;
+    observed.push_back(current);
+    current = {};
+  }
+  return observed;
+}
+
+survey::StopReason stop_reason_of(const std::string& name) {
+  using enum survey::StopReason;
+  for (const auto reason :
+       {complete, view_limit, distance_limit, time_limit, nowhere_to_go, interrupted}) {
+    if (name == run::name_of(reason)) return reason;
+  }
+  throw Error(ErrorKind::bad_file, "'" + name + "' is no reason for a survey to stop");
+}
+
+std::optional<double> optional_number(const Json& json) {
+  return json.is_null() ? std::nullopt : std::optional(json.get<double>());
+}
+
+/// The mean over the trials of a curve at each view; a trial that has ended stays at its end.
+std::vector<double> mean_curve(const std::vector<Trial>& trials,
+                               std::vector<double> Trial::*curve) {
+  std::size_t longest = 0;
+  for (const Trial& trial : trials) longest = std::max(longest, (trial.*curve).size());
+  std::vector<double> means(longest, 0.0);
+  for (std::size_t view = 0; view < longest; ++view) {
+    for (const Trial& trial : trials) {
+      const std::vector<double>& values = trial.*curve;
+      if (!values.empty()) means[view] += values[std::min(view, values.size() - 1)];
+    }
+    means[view] /= static_cast<double>(trials.size());
+  }
+  return means;
+}
+
+Json json_of(const Statistic& statistic) {
+  Json json{{"mean", statistic.mean}, {"standard_deviation", statistic.deviation}};
+  // JSON has no infinity: one trial says nothing about the mean's certainty.
+  json["half_width_95"] =
+      std::isfinite(statistic.half_width_95) ? Json(statistic.half_width_95) : Json();
+  return json;
+}
+
+Json json_of(const std::optional<double>& number) { return number ? Json(*number) : Json(); }
+
+std::string csv_of(const std::optional<double>& number) {
+  return number ? file::exact_text(*number) : std::string();
+}
+
+std::size_t completed(const std::vector<Trial>& trials) {
+  return static_cast<std::size_t>(
+      std::ranges::count(trials, survey::StopReason::complete, &Trial::stop_reason));
+}
+
+}  // namespace
+
+Statistic statistic(const std::vector<double>& numbers) {
+  const auto count = static_cast<double>(numbers.size());
+  double sum = 0.0, squares = 0.0;
+  for (const double number : numbers) sum += number;
+  const double mean = sum / count;
+  if (numbers.size() < 2) return {mean, 0.0, std::numeric_limits<double>::infinity()};
+  for (const double number : numbers) squares += (number - mean) * (number - mean);
+  const double deviation = std::sqrt(squares / (count - 1.0));
+  const double t = boost::math::quantile(boost::math::students_t(count - 1.0), 0.975);
+  return {mean, deviation, t * deviation / std::sqrt(count)};
+}
+
+SceneTruth scene_truth(const scene::SurveyScene& scene, unsigned threads) {
+  SceneTruth truth{scene.visible(threads), {}};
+  truth.ceiling = scene.ceiling(truth.is_visible, threads);
+  return truth;
+}
+
+Trial trial_of(const run::SurveyRecord& record, const SceneTruth& truth) {
+  Trial trial;
+  trial.seed = record.seed;
+  trial.stop_reason = record.stop_reason;
+  trial.coverage = {record.coverage(), judge::covered_share(record.is_covered, truth.is_visible),
+                    truth.ceiling};
+  trial.views = record.views.size();
+  trial.points = record.cloud.size();
+  trial.distance = record.distance();
+  for (const run::JudgedView& view : record.views) {
+    trial.planning_time += view.surveyed.planning_processor_time;
+    trial.coverage_after.push_back(view.coverage);
+    trial.distance_after.push_back(view.surveyed.distance);
+    trial.planning_time_after.push_back(trial.planning_time);
+    trial.frontiers_resolved += view.surveyed.step.frontiers_resolved;
+  }
+  trial.targets = observed_targets(record.views);
+  return trial;
+}
+
+std::optional<Trial> run_trial(const file::Mission& mission, const scene::SurveyScene& scene,
+                               const SceneTruth& truth, std::uint64_t seed, std::stop_token stop) {
+  const run::SurveyRecord record = run::run_survey(mission, scene, seed, 1, std::move(stop));
+  if (record.stop_reason == survey::StopReason::interrupted) return std::nullopt;
+  return trial_of(record, truth);
+}
+
+std::string trial_json(const Trial& trial) {
+  Json json{{"seed", trial.seed},
+            {"stop_reason", run::name_of(trial.stop_reason)},
+            {"coverage", trial.coverage.all},
+            {"coverage_visible", json_of(trial.coverage.visible)},
+            {"coverage_ceiling", json_of(trial.coverage.ceiling)},
+            {"views", trial.views},
+            {"points", trial.points},
+            {"planning_time_s", trial.planning_time},
+            {"distance_m", trial.distance},
+            {"frontiers_resolved", trial.frontiers_resolved},
+            {"coverage_after", trial.coverage_after},
+            {"distance_after_m", trial.distance_after},
+            {"planning_time_after_s", trial.planning_time_after},
+            {"targets", Json::array()}};
+  for (const ObservedTarget& target : trial.targets) {
+    json["targets"].push_back({target.views, target.distance});
+  }
+  return file::json_text(json);
+}
+
+Trial parse_trial(const std::string& text) {
+  try {
+    const Json json = Json::parse(text);
+    Trial trial;
+    trial.seed = json.at("seed").get<std::uint64_t>();
+    trial.stop_reason = stop_reason_of(json.at("stop_reason").get<std::string>());
+    trial.coverage = {json.at("coverage").get<double>(),
+                      optional_number(json.at("coverage_visible")),
+                      optional_number(json.at("coverage_ceiling"))};
+    trial.views = json.at("views").get<std::size_t>();
+    trial.points = json.at("points").get<std::size_t>();
+    trial.planning_time = json.at("planning_time_s").get<double>();
+    trial.distance = json.at("distance_m").get<double>();
+    trial.frontiers_resolved = json.at("frontiers_resolved").get<std::size_t>();
+    trial.coverage_after = json.at("coverage_after").get<std::vector<double>>();
+    trial.distance_after = json.at("distance_after_m").get<std::vector<double>>();
+    trial.planning_time_after = json.at("planning_time_after_s").get<std::vector<double>>();
+    for (const Json& target : json.at("targets")) {
+      trial.targets.push_back({target.at(0).get<std::size_t>(), target.at(1).get<double>()});
+    }
+    return trial;
+  } catch (const nlohmann::json::exception& failure) {
+    throw Error(ErrorKind::bad_file, std::string("is not a trial: ") + failure.what());
+  }
+}
+
+std::vector<Trial> run_trials(const file::Mission& mission, const scene::SurveyScene& scene,
+                              std::size_t count, unsigned threads, std::stop_token stop,
+                              const std::function<void(const Trial&)>& report) {
+  const SceneTruth truth = scene_truth(scene, threads);
+  std::vector<std::optional<Trial>> slots(count);
+  std::mutex reporting;
+  geometry::parallel_for(count, threads, [&](std::size_t i) {
+    if (stop.stop_requested()) return;
+    slots[i] = run_trial(mission, scene, truth, mission.seed + i, stop);
+    if (!slots[i] || !report) return;
+    const std::lock_guard lock(reporting);
+    report(*slots[i]);
+  });
+  std::vector<Trial> trials;
+  for (std::optional<Trial>& trial : slots) {
+    if (trial) trials.push_back(std::move(*trial));
+  }
+  return trials;
+}
+
+std::string trials_csv(const std::vector<Trial>& trials) {
+  std::string csv =
+      "seed,stop_reason,views,coverage,coverage_visible,coverage_ceiling,distance_m,points,"
+      "planning_time_s\n";
+  for (const Trial& trial : trials) {
+    csv += std::to_string(trial.seed) + "," + run::name_of(trial.stop_reason) + "," +
+           std::to_string(trial.views) + "," + file::exact_text(trial.coverage.all) + "," +
+           csv_of(trial.coverage.visible) + "," + csv_of(trial.coverage.ceiling) + "," +
+           file::exact_text(trial.distance) + "," + std::to_string(trial.points) + "," +
+           file::exact_text(trial.planning_time) + "\n";
+  }
+  return csv;
+}
+
+std::string trials_json(const file::Mission& mission, const std::vector<Trial>& trials,
+                        std::size_t requested, unsigned threads) {
+  Json json{{"mission", mission.name},
+            {"planner", file::to_text(*file::find_key("planner.name")->get(mission))},
+            {"preset", file::to_text(*file::find_key("planner.preset")->get(mission))},
+            {"first_seed", mission.seed},
+            {"threads", geometry::thread_count(threads)},
+            {"version", version},
+            {"trials_requested", requested},
+            {"trials", trials.size()},
+            {"trials_complete", completed(trials)},
+            {"coverage_ceiling", trials.empty() ? Json() : json_of(trials[0].coverage.ceiling)}};
+  if (trials.empty()) return file::json_text(json);
+  for (const Figure& figure : figures) {
+    json[figure.name] = json_of(statistic_of(trials, figure));
+    if (const auto reference = reference_of(mission, figure)) {
+      json[figure.name]["paper"] = *reference;
+    }
+  }
+  json["mean_after_view"] = {{"coverage", mean_curve(trials, &Trial::coverage_after)},
+                             {"distance_m", mean_curve(trials, &Trial::distance_after)}};
+  return file::json_text(json);
+}
+
+std::string trials_table(const file::Mission& mission, const std::vector<Trial>& trials) {
+  if (trials.empty()) return "";
+  std::string table;
+  char line[160];
+  std::snprintf(line, sizeof line, "%s: %zu trials, %zu complete\n", mission.name.c_str(),
+                trials.size(), completed(trials));
+  table += line;
+  std::snprintf(line, sizeof line, "%-18s %12s %10s %10s %12s\n", "", "mean", "+- (95 %)", "sd",
+                "paper");
+  table += line;
+  for (const Figure& figure : figures) {
+    const Statistic statistic = statistic_of(trials, figure);
+    const auto reference = reference_of(mission, figure);
+    char paper[32] = "-";
+    if (reference) std::snprintf(paper, sizeof paper, "%.4g", *reference);
+    std::snprintf(line, sizeof line, "%-18s %12.4g %10.2g %10.2g %12s\n", figure.name,
+                  statistic.mean, statistic.half_width_95, statistic.deviation, paper);
+    table += line;
+  }
+  return table;
+}
+
+}  // namespace skycap::missions::benchmark

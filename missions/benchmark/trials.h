@@ -1,0 +1,90 @@
+/// Many surveys of one mission with different seeds, and what they have in common.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <stop_token>
+#include <string>
+#include <vector>
+
+#include "missions/file/mission.h"
+#include "missions/package/package.h"
+#include "missions/run/survey_runner.h"
+#include "missions/scene/survey_scene.h"
+
+namespace skycap::missions::benchmark {
+
+/// What the coverage of a scene's surveys is read against; shared by all of them.
+struct SceneTruth {
+  std::vector<std::uint8_t> is_visible;  ///< for each of the scene's samples
+  std::optional<double> ceiling;         ///< attainable coverage
+};
+
+/// Takes seconds to minutes.
+SceneTruth scene_truth(const scene::SurveyScene& scene, unsigned threads);
+
+/// What it took until a frontier that views were aimed at was observed: paper Figure 6.
+struct ObservedTarget {
+  std::size_t views = 0;  ///< since the last target was observed, this one's included
+  double distance = 0.0;  ///< travelled for them
+};
+
+/// The figures of one survey.
+struct Trial {
+  std::uint64_t seed = 0;
+  survey::StopReason stop_reason = survey::StopReason::complete;
+  package::CoverageFigures coverage;
+  std::size_t views = 0;
+  std::size_t points = 0;
+  double planning_time = 0.0;  ///< [s] of a processor: other work beside it hardly counts
+  double distance = 0.0;
+  std::vector<double> coverage_after;  ///< each view
+  std::vector<double> distance_after;
+  std::vector<double> planning_time_after;
+  std::size_t frontiers_resolved = 0;   ///< points that ceased to be frontiers
+  std::vector<ObservedTarget> targets;  ///< that were observed, in this order
+};
+
+/// One survey in one thread; nothing if `stop` interrupted it.
+std::optional<Trial> run_trial(const file::Mission& mission, const scene::SurveyScene& scene,
+                               const SceneTruth& truth, std::uint64_t seed, std::stop_token stop);
+
+/// The figures of a survey that is over.
+Trial trial_of(const run::SurveyRecord& record, const SceneTruth& truth);
+
+/// A trial as text and back, to the last bit. Throws Error{bad_file} if the text is not a trial.
+std::string trial_json(const Trial& trial);
+Trial parse_trial(const std::string& json);
+
+/// Mean of a figure over the trials, and how sure it is.
+struct Statistic {
+  double mean = 0.0;
+  double deviation = 0.0;      ///< standard deviation, n - 1 in the denominator
+  double half_width_95 = 0.0;  ///< of the 95 % confidence interval of the mean, Student's t
+};
+
+/// Zero deviation and an infinite half width for one number; `numbers` must not be empty.
+Statistic statistic(const std::vector<double>& numbers);
+
+/// Runs `count` surveys with the mission's seed and those after it, up to `threads` at a time, each
+/// in one thread. The trials are those that separate runs would give. Trials that have not begun
+/// when `stop` is requested are left out, interrupted ones too. `report` is told of each that ends,
+/// from any thread, one at a time.
+std::vector<Trial> run_trials(const file::Mission& mission, const scene::SurveyScene& scene,
+                              std::size_t count, unsigned threads, std::stop_token stop,
+                              const std::function<void(const Trial&)>& report);
+
+/// trials.csv: a line for each trial.
+std::string trials_csv(const std::vector<Trial>& trials);
+
+/// trials.json: statistics, mean curves over the views (a finished trial keeps its last coverage),
+/// and the mission's reference figures beside them.
+std::string trials_json(const file::Mission& mission, const std::vector<Trial>& trials,
+                        std::size_t requested, unsigned threads);
+
+/// The table for the terminal: means and half widths, and the mission's reference figures.
+std::string trials_table(const file::Mission& mission, const std::vector<Trial>& trials);
+
+}  // namespace skycap::missions::benchmark

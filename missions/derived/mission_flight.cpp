@@ -1,0 +1,140 @@
+#include "missions/derived/mission_flight.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace skycap::missions::derived {
+namespace {
+
+using Eigen::AlignedBox3d;
+using Eigen::Vector3d;
+
+constexpr double degrees_per_radian = 180.0 / std::numbers::pi;
+
+/// Voxels of a quarter of the clearance lose little of the free space beside what was measured.
+constexpr double voxels_per_clearance = 4.0;
+
+/// How far beside the unknown box places are proposed: more than the clearance and a voxel.
+double spare_of(const file::Mission& mission) { return 2.0 * mission.flight.clearance; }
+
+/// Grid vertices looked at before a view counts as out of reach: some tenths of a second.
+constexpr std::size_t most_expansions = 50'000;
+
+}  // namespace
+
+const flight::Vehicle& vehicle_of(const file::Mission& mission) {
+  return flight::vehicle_profile(mission.flight.vehicle);
+}
+
+flight::ClearanceBudget clearance_of(const file::Mission& mission) {
+  const file::FlightConfig& config = mission.flight;
+  flight::ClearanceBudget budget{.vehicle_radius = vehicle_of(mission).radius,
+                                 .position_error = config.position_error,
+                                 .tracking_error = config.tracking_error,
+                                 .map_error = config.map_error,
+                                 .margin = 0.0};
+  budget.margin = config.clearance - budget.total();
+  return budget;
+}
+
+AlignedBox3d unknown_box_of(const file::Mission& mission) {
+  return mission.flight.unknown_box ? *mission.flight.unknown_box
+                                    : mission.planner.see.scene_box.value_or(AlignedBox3d());
+}
+
+bool is_in_known_airspace(const file::Mission& mission, const Vector3d& place) {
+  return !mission.flight.is_flown() ||
+         unknown_box_of(mission).exteriorDistance(place) >= spare_of(mission);
+}
+
+flight::MeasuredSpaceConfig measured_space_of(const file::Mission& mission) {
+  const double voxel = mission.flight.clearance / voxels_per_clearance;
+  return {.voxel = voxel,
+          .depth_margin = mission.flight.map_error,
+          .free_without_return = mission.flight.free_without_return,
+          .max_depth = std::min(mission.sensor.camera.camera.max_range, 1e4 * voxel),
+          .region = unknown_box_of(mission),
+          .floor = mission.scene.position.z() + mission.flight.map_error};
+}
+
+flight::Obstacles flight_rules(const file::Mission& mission) {
+  flight::Obstacles rules;
+  rules.ground_height = mission.scene.position.z();
+  const file::SiteConfig& site = mission.site;
+  for (const survey::Prism& volume : site.no_fly) {
+    const std::string name = std::to_string(rules.no_fly.size() + 1);
+    rules.no_fly.push_back({name, volume.corners, volume.bottom, volume.top});
+  }
+  if (!site.geofence.empty() || site.highest_height) {
+    flight::Prism fence{.name = "site.geofence", .footprint = site.geofence};
+    // The fence must not hold the vehicle up on its way from and to the pad.
+    if (site.highest_height) fence.ceiling = *site.highest_height;
+    if (fence.footprint.empty()) {
+      fence.name = "site.highest_height";
+      constexpr double far = 1e5;
+      fence.footprint = {{-far, -far}, {far, -far}, {far, far}, {-far, far}};
+    }
+    rules.fence = fence;
+  }
+  return rules;
+}
+
+Vector3d pad_of(const file::Mission& mission, const Vector3d& first_view) {
+  if (mission.flight.takeoff) return *mission.flight.takeoff;
+  const AlignedBox3d box = unknown_box_of(mission);
+  const Vector3d spare = Vector3d::Constant(spare_of(mission));
+  const Vector3d low = box.min() - spare, high = box.max() + spare;
+  Vector3d pad(first_view.x(), first_view.y(), mission.scene.position.z());
+  if (pad.x() <= low.x() || pad.x() >= high.x() || pad.y() <= low.y() || pad.y() >= high.y()) {
+    return pad;
+  }
+  const double west = pad.x() - low.x(), east = high.x() - pad.x();
+  const double south = pad.y() - low.y(), north = high.y() - pad.y();
+  const double least = std::min({west, east, south, north});
+  if (least == west) {
+    pad.x() = low.x();
+  } else if (least == east) {
+    pad.x() = high.x();
+  } else {
+    pad.y() = least == south ? low.y() : high.y();
+  }
+  return pad;
+}
+
+double takeoff_climb_of(const file::Mission& mission) {
+  return mission.flight.takeoff_climb.value_or(std::max(5.0, mission.flight.clearance + 1.0));
+}
+
+flight::RouteOptions route_options_of(const file::Mission& mission, const Vector3d& pad) {
+  const file::FlightConfig& config = mission.flight;
+  flight::RouteOptions options;
+  options.clearance = clearance_of(mission);
+  options.path.max_expansions = most_expansions;
+  options.takeoff = pad;
+  options.takeoff_climb = takeoff_climb_of(mission);
+  options.order_is_free = config.order == file::VisitOrder::shortest;
+  options.style = config.style;
+  // The air moves away from where the wind comes from.
+  options.conditions.wind =
+      -config.wind_speed * Eigen::Vector2d(std::sin(config.wind_from), std::cos(config.wind_from));
+  options.conditions.temperature_c = config.temperature;
+  options.conditions.cruise_speed = config.cruise_speed;
+  options.conditions.reserve = config.reserve;
+  return options;
+}
+
+bool has_place(const file::Mission& mission) {
+  return mission.georeference.latitude && mission.georeference.longitude;
+}
+
+flight::Site site_of(const file::Mission& mission) {
+  const file::Georeference& place = mission.georeference;
+  flight::Site site;
+  site.origin = {place.latitude.value_or(0.0) * degrees_per_radian,
+                 place.longitude.value_or(0.0) * degrees_per_radian, place.ellipsoid_height};
+  site.geoid_undulation = place.geoid_undulation;
+  return site;
+}
+
+}  // namespace skycap::missions::derived

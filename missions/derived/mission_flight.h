@@ -1,0 +1,48 @@
+/// What the flight layer needs to know of a mission, in its own terms.
+#pragma once
+
+#include <Eigen/Core>
+#include <Eigen/Geometry>
+
+#include "flight/export/geodesy.h"
+#include "flight/motion/vehicle.h"
+#include "flight/route/route.h"
+#include "flight/space/measured_space.h"
+#include "flight/space/obstacles.h"
+#include "missions/file/mission.h"
+
+namespace skycap::missions::derived {
+
+/// The mission's vehicle. Throws Error{bad_config} if it has none.
+const flight::Vehicle& vehicle_of(const file::Mission& mission);
+
+/// The clearance's terms: the margin is what errors and vehicle leave of it.
+flight::ClearanceBudget clearance_of(const file::Mission& mission);
+
+/// Where space must be measured to be free.
+Eigen::AlignedBox3d unknown_box_of(const file::Mission& mission);
+
+/// Whether a survey may begin there: outside of that box with room to spare, or with nothing flown.
+bool is_in_known_airspace(const file::Mission& mission, const Eigen::Vector3d& place);
+
+/// Measured space before anything is measured.
+flight::MeasuredSpaceConfig measured_space_of(const file::Mission& mission);
+
+/// What holds whatever is measured: the ground, no-fly volumes, the geofence.
+flight::Obstacles flight_rules(const file::Mission& mission);
+
+/// The pad: as given, or on the ground beside the unknown box, as near to the first view as can be.
+Eigen::Vector3d pad_of(const file::Mission& mission, const Eigen::Vector3d& first_view);
+
+/// How far the vehicle climbs from the pad before its first leg.
+double takeoff_climb_of(const file::Mission& mission);
+
+flight::RouteOptions route_options_of(const file::Mission& mission, const Eigen::Vector3d& pad);
+
+/// Whether the mission says where on the Earth it is.
+bool has_place(const file::Mission& mission);
+
+/// The origin of the mission's frame; at 0 N 0 E if the mission has no place.
+flight::Site site_of(const file::Mission& mission);
+
+}  // namespace skycap::missions::derived

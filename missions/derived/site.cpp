@@ -1,0 +1,31 @@
+#include "missions/derived/site.h"
+
+#include <algorithm>
+
+#include "missions/derived/mission_flight.h"
+
+namespace skycap::missions::derived {
+
+survey::ViewLimits view_limits(const file::Mission& mission) {
+  const file::LimitsConfig& limits = mission.limits;
+  survey::ViewLimits result{.least_height = mission.site.lowest_height,
+                            .most_height = mission.site.highest_height,
+                            .geofence = mission.site.geofence,
+                            .no_fly = mission.site.no_fly,
+                            .stand_off = limits.stand_off,
+                            .least_pitch = limits.lowest_pitch,
+                            .most_pitch = limits.highest_pitch};
+  if (limits.ground_clearance) {
+    const double least = mission.scene.position.z() + *limits.ground_clearance;
+    result.least_height = std::max(least, result.least_height.value_or(least));
+  }
+  if (mission.flight.is_flown()) {
+    const flight::Vehicle& vehicle = vehicle_of(mission);
+    result.least_pitch = std::max(result.least_pitch, vehicle.gimbal_min);
+    result.most_pitch = std::min(result.most_pitch, vehicle.gimbal_max);
+    result.stand_off = std::max(result.stand_off, mission.flight.clearance);
+  }
+  return result;
+}
+
+}  // namespace skycap::missions::derived

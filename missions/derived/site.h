@@ -1,0 +1,14 @@
+/// Where a mission lets the sensor be: what its `site` and `limits` say, in one place for planners,
+/// start views and the evaluation.
+#pragma once
+
+#include "missions/file/mission.h"
+#include "survey/view_limits.h"
+
+namespace skycap::missions::derived {
+
+/// The limits of mission.site, mission.limits and the vehicle together, heights as z in the
+/// mission's frame.
+survey::ViewLimits view_limits(const file::Mission& mission);
+
+}  // namespace skycap::missions::derived

@@ -1,0 +1,17 @@
+/// The texts of sim/sensors/presets/*.yaml.
+#pragma once
+
+#include <string_view>
+#include <vector>
+
+namespace skycap::missions::file {
+
+struct SensorPreset {
+  std::string_view name;  ///< of the file, without its extension
+  std::string_view text;
+};
+
+/// In alphabetical order.
+const std::vector<SensorPreset>& preset_files();
+
+}  // namespace skycap::missions::file

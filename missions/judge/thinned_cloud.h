@@ -1,0 +1,37 @@
+/// Points at a least spacing, as every planner stores them.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include <Eigen/Core>
+#include <Eigen/Geometry>
+
+#include "geometry/points/point_grid.h"
+
+namespace skycap::missions::judge {
+
+class ThinnedCloud {
+ public:
+  explicit ThinnedCloud(double spacing) : spacing_(spacing), grid_(spacing) {}
+
+  /// Stores those of `points` that are in the box, if it is not empty, and farther than the spacing
+  /// from all stored ones; gives them back.
+  std::vector<Eigen::Vector3f> store(std::span<const Eigen::Vector3f> points,
+                                     const Eigen::AlignedBox3d& box) {
+    std::vector<Eigen::Vector3f> stored;
+    for (const Eigen::Vector3f& point : points) {
+      if (!box.isEmpty() && !box.contains(point.cast<double>())) continue;
+      if (grid_.any_within(point, spacing_)) continue;
+      grid_.insert(point);
+      stored.push_back(point);
+    }
+    return stored;
+  }
+
+ private:
+  double spacing_;
+  geometry::PointGrid grid_;
+};
+
+}  // namespace skycap::missions::judge

@@ -1,0 +1,75 @@
+#include "missions/package/cloud_normals.h"
+
+#include <algorithm>
+
+#include <Eigen/Eigenvalues>
+
+#include "geometry/parallel.h"
+#include "geometry/points/point_grid.h"
+
+namespace skycap::missions::package {
+namespace {
+
+using Eigen::Vector3f;
+
+constexpr std::size_t points_in_a_task = 4096;
+
+/// A subset of the points, no two nearer than `spacing`.
+std::vector<Vector3f> thinned(std::span<const Vector3f> points, double spacing) {
+  geometry::PointGrid grid(spacing);
+  std::vector<Vector3f> kept;
+  for (const Vector3f& point : points) {
+    if (grid.any_within(point, spacing)) continue;
+    grid.insert(point);
+    kept.push_back(point);
+  }
+  return kept;
+}
+
+/// The normal of the plane that fits `neighbours` best, towards `to_sensor`.
+Vector3f plane_normal(std::span<const Vector3f> surface,
+                      std::span<const geometry::Neighbour> neighbours, const Vector3f& point,
+                      const Vector3f& to_sensor) {
+  if (neighbours.size() < 3) return to_sensor;
+  // Sums relative to the point itself: single precision is then enough.
+  Vector3f sum = Vector3f::Zero();
+  Eigen::Matrix3f squares = Eigen::Matrix3f::Zero();
+  for (const geometry::Neighbour& neighbour : neighbours) {
+    const Vector3f offset = surface[neighbour.index] - point;
+    sum += offset;
+    squares += offset * offset.transpose();
+  }
+  const Vector3f mean = sum / static_cast<float>(neighbours.size());
+  const Eigen::Matrix3f covariance = squares - sum * mean.transpose();
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3f> axes(covariance);
+  const Vector3f normal = axes.eigenvectors().col(0).normalized();
+  if (!normal.allFinite()) return to_sensor;
+  return normal.dot(to_sensor) < 0.0F ? Vector3f(-normal) : normal;
+}
+
+}  // namespace
+
+std::vector<Vector3f> cloud_normals(const geometry::PointCloud& cloud,
+                                    std::span<const Eigen::Vector3d> sensors, double radius,
+                                    unsigned threads) {
+  const std::vector<Vector3f> surface = thinned(cloud.positions, 0.25 * radius);
+  geometry::PointGrid grid(radius);
+  for (const Vector3f& point : surface) grid.insert(point);
+  std::vector<Vector3f> normals(cloud.size());
+  const std::size_t tasks = (cloud.size() + points_in_a_task - 1) / points_in_a_task;
+  geometry::parallel_for(tasks, threads, [&](std::size_t task) {
+    std::vector<geometry::Neighbour> neighbours;
+    const std::size_t end = std::min(cloud.size(), (task + 1) * points_in_a_task);
+    for (std::size_t i = task * points_in_a_task; i < end; ++i) {
+      const Vector3f& point = cloud.positions[i];
+      neighbours.clear();
+      grid.find_within(point, radius, neighbours);
+      const Vector3f to_sensor =
+          (sensors[cloud.views[i]] - point.cast<double>()).normalized().cast<float>();
+      normals[i] = plane_normal(surface, neighbours, point, to_sensor);
+    }
+  });
+  return normals;
+}
+
+}  // namespace skycap::missions::package

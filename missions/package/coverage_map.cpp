@@ -1,0 +1,52 @@
+#include "missions/package/coverage_map.h"
+
+#include <algorithm>
+#include <array>
+#include <cstdint>
+
+namespace skycap::missions::package {
+namespace {
+
+using Colour = std::array<std::uint8_t, 3>;
+
+constexpr Colour covered_surely{0, 110, 60}, covered_hardly{170, 220, 120};
+constexpr Colour amber{255, 170, 0}, red{215, 30, 40}, violet{120, 60, 200};
+
+/// From covered as likely as not to covered for sure.
+Colour covered_colour(float covered_share) {
+  const float sure = std::clamp(2.0F * covered_share - 1.0F, 0.0F, 1.0F);
+  Colour colour{};
+  for (std::size_t i = 0; i < colour.size(); ++i) {
+    colour[i] =
+        static_cast<std::uint8_t>((1.0F - sure) * covered_hardly[i] + sure * covered_surely[i]);
+  }
+  return colour;
+}
+
+Colour colour_of(const survey::skycap::BelievedPatch& patch) {
+  switch (patch.reason) {
+    case survey::skycap::MissingReason::seen_too_thinly:
+      return amber;
+    case survey::skycap::MissingReason::never_seen:
+      return red;
+    case survey::skycap::MissingReason::unreachable:
+      return violet;
+    case survey::skycap::MissingReason::none:
+      break;
+  }
+  return covered_colour(patch.covered_share);
+}
+
+}  // namespace
+
+geometry::CloudFile coverage_map(const survey::skycap::SurveyBelief& belief) {
+  geometry::CloudFile map;
+  for (const survey::skycap::BelievedPatch& patch : belief.patches) {
+    map.positions.push_back(patch.position);
+    map.normals.push_back(patch.normal);
+    map.colours.push_back(colour_of(patch));
+  }
+  return map;
+}
+
+}  // namespace skycap::missions::package

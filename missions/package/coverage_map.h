@@ -1,0 +1,16 @@
+/// The map that a customer asks for before leaving the site: what is covered, what is missing, why.
+#pragma once
+
+#include "geometry/io/cloud_io.h"
+#include "survey/skycap/skycap_planner.h"
+
+namespace skycap::missions::package {
+
+/// A point with normal and colour for each piece of surface that the planner knows or guesses:
+///   green   covered, the darker the surer
+///   amber   seen, but too thinly for the noise
+///   red     never seen; only guessed to be there
+///   violet  known, but no place that the limits allow sees it well
+geometry::CloudFile coverage_map(const survey::skycap::SurveyBelief& belief);
+
+}  // namespace skycap::missions::package

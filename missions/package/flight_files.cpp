@@ -1,0 +1,154 @@
+#include "missions/package/flight_files.h"
+
+#include <algorithm>
+#include <array>
+#include <string_view>
+
+#include "flight/space/clearance.h"
+#include "geometry/error.h"
+#include "missions/derived/mission_flight.h"
+
+namespace skycap::missions::package {
+namespace {
+
+using flight::Dialect;
+using flight::Format;
+
+constexpr std::array formats_of_packages{Format::plan, Format::waypoints, Format::kmz,
+                                         Format::kml,  Format::geojson,   Format::csv};
+
+/// Whose codes a KMZ carries when the vehicle is not DJI's.
+constexpr const char* dji_stand_in = "m350_rtk";
+
+/// A file that is in the local frame needs no place on the Earth.
+bool is_local(Format format) {
+  return format == Format::csv || format == Format::ned_csv || format == Format::tum;
+}
+
+/// What the mission would have to say for a file of that format; empty if nothing.
+std::string what_is_missing_for(Format format, const file::Mission& mission) {
+  if (is_local(format)) return "";
+  if (!derived::has_place(mission)) {
+    return "it needs the place on the Earth; give site.latitude_deg and site.longitude_deg";
+  }
+  const bool has_sea_level =
+      format == Format::plan || format == Format::kml ||
+      (format == Format::waypoints && derived::vehicle_of(mission).dialect != Dialect::px4);
+  if (!has_sea_level || mission.georeference.geoid_undulation) return "";
+  return "its heights count from sea level; give site.geoid_undulation";
+}
+
+/// The plan as the format's programs want it: QGroundControl's files in the dialect of PX4 and
+/// Mission Planner's in that of ArduPilot if the vehicle is flown by neither, DJI's with the codes
+/// of one of theirs. Speeds, energy and limits stay the vehicle's.
+flight::FlightPlan in_dialect(flight::FlightPlan plan, Format format,
+                              std::vector<std::string>& notes) {
+  flight::Vehicle& vehicle = plan.vehicle;
+  const std::string name = vehicle.name;
+  const auto note = [&](const std::string& file, const std::string& written_for) {
+    notes.push_back(file + " is written for " + written_for + ": " + name +
+                    " does not read this format");
+  };
+  if (format == Format::plan && vehicle.dialect == Dialect::dji) {
+    vehicle.dialect = Dialect::px4;
+    note("the .plan file", "PX4");
+  } else if (format == Format::waypoints && vehicle.dialect == Dialect::dji) {
+    vehicle.dialect = Dialect::ardupilot;
+    note("the .waypoints file", "ArduPilot");
+  } else if (format == Format::kmz && vehicle.dialect != Dialect::dji) {
+    const flight::Vehicle& dji = flight::vehicle_profile(dji_stand_in);
+    vehicle.dialect = dji.dialect;
+    vehicle.wpml = dji.wpml;
+    note("the .kmz file", dji.name);
+  }
+  return plan;
+}
+
+}  // namespace
+
+std::span<const Format> package_formats() { return formats_of_packages; }
+
+flight::Route plan_flight(const file::Mission& mission, const flight::MeasuredSpace& measured,
+                          const Eigen::Vector3d& pad, const std::vector<geometry::View>& views) {
+  std::vector<flight::Station> stations;
+  for (const geometry::View& view : views) {
+    const auto index = static_cast<std::uint32_t>(stations.size());
+    stations.push_back({view, mission.flight.hold, 1, index});
+  }
+  flight::Obstacles rules = derived::flight_rules(mission);
+  const flight::KnownSpace known(rules);
+  // The climb starts on the measured ground: what was measured there is for the pilot to judge.
+  const flight::KnownSpace pad_space(without_ground(std::move(rules)));
+  const flight::JointSpace space({&measured, &known});
+  return plan_route(std::move(stations), derived::vehicle_of(mission), space, &pad_space,
+                    derived::route_options_of(mission, pad));
+}
+
+FlightFiles stage_flight(const file::Mission& mission, const flight::Route& route,
+                         const flight::MeasuredSpace& measured, std::span<const Format> formats,
+                         geometry::OutputFolder& folder) {
+  const flight::Obstacles rules = derived::flight_rules(mission);
+  const flight::KnownSpace known(rules);
+  const flight::JointSpace space({&measured, &known});
+  FlightFiles files;
+  const auto add_note = [&](const std::string& note) {
+    if (std::ranges::find(files.notes, note) == files.notes.end()) files.notes.push_back(note);
+  };
+
+  for (const Format format : formats) {
+    const flight::FormatInfo& info = flight::format_info(format);
+    const auto leave_out = [&](const std::string& why, ErrorKind kind) {
+      const std::string note = std::string("no mission") + info.ending + ": " + why;
+      if (formats.size() == 1) throw Error(kind, note);
+      add_note(note);
+    };
+    if (const std::string lack = what_is_missing_for(format, mission); !lack.empty()) {
+      leave_out(lack, ErrorKind::bad_config);
+      continue;
+    }
+    for (std::size_t i = 0; i < route.sorties.size(); ++i) {
+      const std::string number = route.sorties.size() > 1 ? "-" + std::to_string(i + 1) : "";
+      const std::string name = "mission" + number + info.ending;
+      const std::filesystem::path file = folder.stage(name);
+      try {
+        std::vector<std::string> notes;
+        const bool holds_curves = flight::holds_curves(format);
+        if (!holds_curves && mission.flight.style != flight::FlightStyle::stop) {
+          notes.push_back(std::string("mission") + info.ending +
+                          " stops in every corner: the format cannot say which curve is flown");
+        }
+        const auto corners =
+            holds_curves ? flight::Corners::flown_round : flight::Corners::stopped_in;
+        const flight::FlightPlan plan = in_dialect(
+            flight_plan(route, i, mission.name + number, derived::site_of(mission), rules, corners),
+            format, notes);
+        const flight::ExportResult result = export_flight(plan, format, space, file);
+        files.written.push_back({name, info.heights, result.min_clearance});
+        std::ranges::for_each(notes, add_note);
+        std::ranges::for_each(result.notes, add_note);
+      } catch (const Error& error) {
+        folder.drop(name);
+        leave_out(error.what(), error.kind());
+      }
+    }
+  }
+  return files;
+}
+
+bool is_flight_file(std::string_view name) {
+  return std::ranges::any_of(flight::formats(), [&](const flight::FormatInfo& info) {
+    return is_flight_file(name, info.format);
+  });
+}
+
+bool is_flight_file(std::string_view name, Format format) {
+  constexpr std::string_view stem = "mission";
+  if (!name.starts_with(stem)) return false;
+  name.remove_prefix(stem.size());
+  if (name.starts_with('-')) {
+    name.remove_prefix(std::min(name.size(), name.find_first_not_of("0123456789", 1)));
+  }
+  return name == flight::format_info(format).ending;
+}
+
+}  // namespace skycap::missions::package

@@ -1,0 +1,60 @@
+/// A finished survey as missions to be flown again: the route, and its files for autopilots, ground
+/// stations and maps.
+#pragma once
+
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "flight/export/export.h"
+#include "flight/route/route.h"
+#include "flight/space/measured_space.h"
+#include "geometry/io/output_folder.h"
+#include "geometry/place/pose.h"
+#include "missions/file/mission.h"
+
+namespace skycap::missions::package {
+
+/// The flight of a mission's vehicle through views of its survey, proven in what the survey has
+/// measured. Views that this flight cannot visit are listed in it. Throws what plan_route() throws.
+flight::Route plan_flight(const file::Mission& mission, const flight::MeasuredSpace& measured,
+                          const Eigen::Vector3d& pad, const std::vector<geometry::View>& views);
+
+/// A route file, and how near its flight as read back comes to anything.
+struct FlightFile {
+  std::string name;
+  std::string heights;         ///< what they count from
+  double min_clearance = 0.0;  ///< proven [m], see flight::LegProof
+};
+
+struct FlightFiles {
+  std::vector<FlightFile> written;
+  std::vector<std::string> notes;  ///< what was not written, or what a format leaves out, and why
+};
+
+/// The formats of a mission package.
+std::span<const flight::Format> package_formats();
+
+/// Stages the route in each of the formats; with several sorties a file for each, "mission-1.plan"
+/// and so on. Every file is read back and proved. A format that needs what the mission does not
+/// say, such as the geoid's height, or whose file fails its proof, is left out with a note, unless
+/// it is the only one: then that is thrown, as Error{bad_config} or what export_flight() throws.
+FlightFiles stage_flight(const file::Mission& mission, const flight::Route& route,
+                         const flight::MeasuredSpace& measured,
+                         std::span<const flight::Format> formats, geometry::OutputFolder& folder);
+
+/// The flight of a finished survey and where it was written to.
+struct SurveyMission {
+  flight::Route route;  ///< without stations if there is none
+  FlightFiles files;
+  std::string failure;  ///< why there is no route; empty if there is one
+};
+
+/// Whether stage_flight() may have given a file this name: in any format, or in that one.
+bool is_flight_file(std::string_view name);
+bool is_flight_file(std::string_view name, flight::Format format);
+
+}  // namespace skycap::missions::package

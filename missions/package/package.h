@@ -1,0 +1,64 @@
+/// The mission package: the files that a survey leaves behind. docs/mission_file.md is the manual.
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "flight/space/measured_space.h"
+#include "geometry/io/output_folder.h"
+#include "geometry/place/pose.h"
+#include "missions/file/mission.h"
+#include "missions/file/mission_reader.h"
+#include "missions/package/flight_files.h"
+#include "missions/run/survey_runner.h"
+
+namespace skycap::missions::package {
+
+/// Coverage of a finished survey: shares of samples. What was not measured is missing.
+struct CoverageFigures {
+  double all = 0.0;               ///< of the whole surface
+  std::optional<double> visible;  ///< of what admissible views can see
+  std::optional<double> ceiling;  ///< of the whole surface, attainable
+};
+
+/// Stages summary.json, cloud.ply, views.csv and trajectory.tum in `folder`; the caller commits. A
+/// flown survey's package also holds its route files and free_space.bin, which they were proven in
+/// (flight::MeasuredSpace::write()); what they say is returned. Every number is written with as
+/// many digits as it takes to read the same number back, so equal surveys give equal files; only
+/// summary.json holds times.
+std::optional<SurveyMission> stage_package(const file::Mission& mission,
+                                           const run::SurveyRecord& record,
+                                           const CoverageFigures& coverage, unsigned threads,
+                                           geometry::OutputFolder& folder);
+
+/// What a package holds of a flown survey.
+struct PackagedSurvey {
+  file::Mission mission;  ///< with all keys as they were in force
+  std::vector<geometry::View> views;
+  Eigen::Vector3d pad = Eigen::Vector3d::Zero();
+  flight::MeasuredSpace measured;
+};
+
+/// Reads a package; `overrides` take the place of the mission's keys. Throws Error{bad_file} naming
+/// the file that is missing or not as stage_package() wrote it.
+PackagedSurvey read_package(const std::filesystem::path& folder,
+                            const std::vector<file::KeyOverride>& overrides);
+
+/// views.csv: a line for each view.
+std::string views_csv(const run::SurveyRecord& record);
+
+/// trajectory.tum: "timestamp tx ty tz qx qy qz qw" of world_from_camera for each view, the
+/// format of the TUM RGB-D benchmark. Nothing was flown, so a view's number is its timestamp.
+std::string trajectory_tum(const run::SurveyRecord& record);
+
+/// summary.json, as docs/mission_file.md describes it.
+std::string summary_json(const file::Mission& mission, const run::SurveyRecord& record,
+                         const CoverageFigures& coverage,
+                         const std::optional<SurveyMission>& flight = {});
+
+/// Planning time of a whole survey by part, in the order of execution.
+std::vector<survey::PartTime> planning_time_by_part(const run::SurveyRecord& record);
+
+}  // namespace skycap::missions::package

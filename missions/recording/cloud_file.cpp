@@ -1,0 +1,54 @@
+#include "missions/recording/cloud_file.h"
+
+#include <cerrno>
+#include <system_error>
+#include <utility>
+
+#include "geometry/error.h"
+
+namespace skycap::missions::recording {
+
+void CloudTotals::add(const CloudTotals& more) {
+  points += more.points;
+  for (std::size_t i = 0; i < points_by_return.size(); ++i) {
+    points_by_return[i] += more.points_by_return[i];
+  }
+  bounds.extend(more.bounds);
+}
+
+CloudFile::CloudFile(std::filesystem::path path, std::shared_ptr<const CloudFormat> format,
+                     ReturnPosition position)
+    : path_(std::move(path)), format_(std::move(format)), position_(position) {
+  file_.reset(std::fopen(path_.c_str(), "wb"));
+  if (!file_) fail();
+  std::setvbuf(file_.get(), nullptr, _IONBF, 0);  // chunks are large: no second copy
+  put(format_->header(totals_));
+}
+
+void CloudFile::append(const CloudChunk& chunk) {
+  put(chunk.bytes);
+  totals_.add(chunk.totals);
+}
+
+void CloudFile::finish() {
+  const std::vector<std::uint8_t> header = format_->header(totals_);
+  if (!header.empty()) {
+    if (std::fseek(file_.get(), 0, SEEK_SET) != 0) fail();
+    put(header);
+    bytes_ -= header.size();  // in place of the first one
+  }
+  if (std::fclose(file_.release()) != 0) fail();
+}
+
+void CloudFile::put(const std::vector<std::uint8_t>& bytes) {
+  if (bytes.empty()) return;
+  if (std::fwrite(bytes.data(), 1, bytes.size(), file_.get()) != bytes.size()) fail();
+  bytes_ += bytes.size();
+}
+
+void CloudFile::fail() const {
+  throw Error(ErrorKind::bad_file,
+              path_.string() + ": cannot be written: " + std::generic_category().message(errno));
+}
+
+}  // namespace skycap::missions::recording

@@ -1,0 +1,95 @@
+/// Files of points that are written while they are measured: a scan may be larger than memory.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <cstdio>
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include <Eigen/Geometry>
+
+#include "sim/sensors/lidar.h"
+
+namespace skycap::missions::recording {
+
+/// What a file's header says of its points.
+struct CloudTotals {
+  std::uint64_t points = 0;
+  std::array<std::uint64_t, 15> points_by_return = {};
+  Eigen::AlignedBox3d bounds;  ///< of the coordinates as written
+
+  void add(const CloudTotals& more);
+};
+
+/// Points in the file's own bytes. Made on any thread, then appended in order.
+struct CloudChunk {
+  std::vector<std::uint8_t> bytes;
+  CloudTotals totals;
+};
+
+/// Which of its two positions a return is written with.
+enum class ReturnPosition {
+  reported,  ///< measured distance along the believed ray
+  true_one,  ///< of the surface that was met
+};
+
+/// How points become bytes. Immutable; encode() is safe on any number of threads.
+class CloudFormat {
+ public:
+  virtual ~CloudFormat() = default;
+
+  /// The beginning of a file with these points; its length does not depend on them.
+  virtual std::vector<std::uint8_t> header(const CloudTotals& totals) const = 0;
+
+  /// Replaces what is in `chunk`, whose memory is used again. Throws Error{bad_geometry} if the
+  /// format cannot hold a point.
+  virtual void encode(const sim::LidarReturns& returns, ReturnPosition position,
+                      CloudChunk& chunk) const = 0;
+
+ protected:
+  CloudFormat() = default;
+  CloudFormat(const CloudFormat&) = default;
+  CloudFormat& operator=(const CloudFormat&) = default;
+};
+
+/// A file that grows chunk by chunk, and is valid once it is finished.
+class CloudFile {
+ public:
+  /// Throws Error{bad_file} if the file cannot be written.
+  CloudFile(std::filesystem::path path, std::shared_ptr<const CloudFormat> format,
+            ReturnPosition position = ReturnPosition::reported);
+
+  void encode(const sim::LidarReturns& returns, CloudChunk& chunk) const {
+    format_->encode(returns, position_, chunk);
+  }
+
+  /// Throws Error{bad_file} if the disk does not take it.
+  void append(const CloudChunk& chunk);
+
+  /// Completes the header and closes the file. Also after an interrupted scan: what was appended is
+  /// then a valid file. Throws Error{bad_file} if the disk does not take it.
+  void finish();
+
+  std::uint64_t points() const { return totals_.points; }
+  std::uint64_t bytes() const { return bytes_; }
+
+ private:
+  struct Close {
+    void operator()(std::FILE* file) const { std::fclose(file); }
+  };
+
+  void put(const std::vector<std::uint8_t>& bytes);
+  [[noreturn]] void fail() const;
+
+  std::filesystem::path path_;
+  std::shared_ptr<const CloudFormat> format_;
+  ReturnPosition position_;
+  std::unique_ptr<std::FILE, Close> file_;
+  CloudTotals totals_;
+  std::uint64_t bytes_ = 0;
+};
+
+}  // namespace skycap::missions::recording

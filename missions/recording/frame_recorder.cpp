@@ -1,0 +1,117 @@
+#include "missions/recording/frame_recorder.h"
+
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
+#include <optional>
+#include <string>
+#include <utility>
+
+#include <nlohmann/json.hpp>
+
+#include "flight/export/text.h"
+#include "flight/export/trajectory_file.h"
+#include "geometry/error.h"
+#include "missions/file/json_text.h"
+#include "missions/plugins/module.h"
+#include "missions/recording/rawlog_module.h"
+#include "missions/recording/scan_route.h"
+#include "sim/sensors/depth_image.h"
+
+namespace skycap::missions::recording {
+namespace {
+
+nlohmann::ordered_json camera_json(const geometry::Camera& camera, double unit) {
+  return {
+      {"width_px", camera.width()},
+      {"height_px", camera.height()},
+      {"focal_length_px", {camera.focal_length_px().x(), camera.focal_length_px().y()}},
+      {"principal_point_px", {camera.principal_point_px().x(), camera.principal_point_px().y()}},
+      {"depth_unit_m", unit}};
+}
+
+std::string file_name(std::size_t frame) {
+  char name[32];
+  std::snprintf(name, sizeof name, "depth_%06zu.png", frame);
+  return name;
+}
+
+/// Images appended to a file as they are taken.
+class FrameRawlog {
+ public:
+  FrameRawlog(const std::filesystem::path& path, const geometry::Camera& camera, double unit)
+      : path_(path),
+        camera_(camera),
+        unit_(unit),
+        encode_(plugins::module_function<EncodeDepthFrame>("libskycap_rawlog.so",
+                                                           encode_depth_frame_name)),
+        file_(path, std::ios::binary) {
+    require_written();
+  }
+
+  void append(const Frame& frame, const sim::DepthImage& image) {
+    const Eigen::Isometry3d world_from_sensor =
+        frame.believed_from_camera * body_from_camera().inverse();
+    encode_({frame.time, world_from_sensor, image, camera_.focal_length_px(),
+             camera_.principal_point_px(), unit_, camera_.config().max_range},
+            bytes_);
+    file_.write(reinterpret_cast<const char*>(bytes_.data()),
+                static_cast<std::streamsize>(bytes_.size()));
+    require_written();
+  }
+
+  void finish() {
+    file_.close();
+    require_written();
+  }
+
+ private:
+  void require_written() const {
+    if (!file_) throw Error(ErrorKind::bad_file, path_.string() + ": cannot be written");
+  }
+
+  std::filesystem::path path_;
+  const geometry::Camera& camera_;
+  double unit_;
+  EncodeDepthFrame* encode_;
+  std::ofstream file_;
+  std::vector<std::uint8_t> bytes_;
+};
+
+}  // namespace
+
+FrameResult record_frames(const sim::Scene& scene, const sim::DepthCamera& camera,
+                          std::span<const Frame> frames, geometry::OutputFolder& folder,
+                          const FrameOptions& options) {
+  FrameResult result;
+  geometry::Scan scan;
+  std::vector<flight::TimedPose> truth, believed;
+  std::string list = "# timestamp filename\n";
+  std::optional<FrameRawlog> rawlog;
+  if (options.has_rawlog) {
+    rawlog.emplace(folder.stage("frames.rawlog"), camera.camera(), options.depth_unit);
+  }
+  for (const Frame& frame : frames) {
+    if (options.stop.stop_requested()) break;
+    scan = camera.scan(scene, frame.world_from_camera, result.frames, options.threads,
+                       std::move(scan));
+    const std::string name = file_name(result.frames);
+    const sim::DepthImage image = sim::depth_image(scan, camera.camera(), options.depth_unit);
+    sim::write_depth_png(image, folder.stage(name));
+    if (rawlog) rawlog->append(frame, image);
+    list += flight::fixed(frame.time, 6) + " " + name + "\n";
+    truth.push_back({frame.time, frame.world_from_camera});
+    believed.push_back({frame.time, frame.believed_from_camera});
+    ++result.frames;
+    result.points += scan.points.size();
+    if (options.report) options.report(result.frames, result.points);
+  }
+  if (rawlog) rawlog->finish();
+  folder.write("depth.txt", list);
+  folder.write("groundtruth.txt", flight::write_tum(truth));
+  folder.write("believed.txt", flight::write_tum(believed));
+  folder.write("camera.json", file::json_text(camera_json(camera.camera(), options.depth_unit)));
+  return result;
+}
+
+}  // namespace skycap::missions::recording

@@ -1,0 +1,40 @@
+/// A whole flight of a laser scanner, measured on all cores and handed on piece by piece.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <span>
+#include <stop_token>
+
+#include "missions/recording/cloud_file.h"
+#include "sim/scene/scene.h"
+#include "sim/sensors/lidar.h"
+
+namespace skycap::missions::recording {
+
+struct ScanProgress {
+  std::uint64_t firings = 0;      ///< measured and written so far
+  std::uint64_t all_firings = 0;  ///< of the flight
+  std::uint64_t points = 0;
+};
+
+struct ScanResult {
+  ScanProgress progress;
+  bool is_complete = false;  ///< false: it was stopped
+};
+
+struct ScanOptions {
+  unsigned threads = 0;  ///< zero: all processors
+  /// Called now and then, from one thread at a time; may be empty.
+  std::function<void(const ScanProgress&)> report;
+  std::stop_token stop;
+};
+
+/// Measures the whole of `flight` and appends the returns to each of `files`, which the caller
+/// finishes, in the order of the shots. The bytes do not depend on the number of threads, and the
+/// memory that is needed does not on the length of the flight.
+ScanResult run_scan(const sim::Scene& scene, const sim::Lidar& lidar,
+                    const sim::LidarFlight& flight, std::span<CloudFile> files,
+                    const ScanOptions& options);
+
+}  // namespace skycap::missions::recording

@@ -1,0 +1,116 @@
+#include "missions/run/survey_flight.h"
+
+#include <algorithm>
+#include <string>
+#include <utility>
+
+#include "flight/paths/path.h"
+#include "flight/route/route.h"
+#include "flight/space/clearance.h"
+#include "geometry/error.h"
+#include "geometry/place/camera.h"
+#include "missions/derived/mission_flight.h"
+#include "missions/file/number_text.h"
+
+namespace skycap::missions::run {
+
+using Eigen::Vector3d;
+
+double FlownSurvey::length() const {
+  double sum = 0.0;
+  for (const FlownLeg& leg : legs) sum += flight::length(leg.points);
+  return sum;
+}
+
+double FlownSurvey::min_clearance() const {
+  return std::ranges::min_element(legs, {}, &FlownLeg::clearance)->clearance;
+}
+
+struct SurveyFlight::Impl {
+  explicit Impl(const file::Mission& mission)
+      : vehicle(derived::vehicle_of(mission)),
+        camera(mission.sensor.camera.camera),
+        measured(std::make_shared<flight::MeasuredSpace>(derived::measured_space_of(mission))),
+        rules(derived::flight_rules(mission)),
+        space({measured.get(), &rules}),
+        finder(space, derived::clearance_of(mission).total(),
+               derived::route_options_of(mission, {}).path) {}
+
+  bool is_proven(const std::vector<Vector3d>& points) {
+    leg.points = points;
+    leg.clearance = finder.clearance() + flight::reported_surplus;
+    for (std::size_t i = 1; i < points.size(); ++i) {
+      const flight::LegProof proof =
+          flight::prove(space, {points[i - 1], points[i]}, finder.clearance(),
+                        finder.clearance() + flight::reported_surplus);
+      if (!proof.is_proven) return false;
+      leg.clearance = std::min(leg.clearance, proof.clearance);
+    }
+    return true;
+  }
+
+  flight::Vehicle vehicle;
+  geometry::Camera camera;
+  std::shared_ptr<flight::MeasuredSpace> measured;
+  flight::KnownSpace rules;
+  flight::JointSpace space;
+  flight::PathFinder finder;
+  FlownLeg leg;  ///< that the next fly() takes
+  FlownSurvey survey;
+};
+
+SurveyFlight::SurveyFlight(const file::Mission& mission, const geometry::View& first_view)
+    : impl_(std::make_unique<Impl>(mission)) {
+  impl_->survey.pad = derived::pad_of(mission, first_view.position);
+  const Vector3d home = impl_->survey.pad + Vector3d(0.0, 0.0, derived::takeoff_climb_of(mission));
+  const auto refuse = [&](const std::string& place, const Vector3d& at, const std::string& cure) {
+    const double clearance = impl_->finder.clearance();
+    const flight::Closest closest = impl_->space.closest({at, at}, clearance + 1e-3);
+    const std::string why =
+        closest.distance < clearance
+            ? "is " + file::short_text(closest.distance) + " m from " + impl_->space.name(closest)
+            : "cannot be reached through space that is known to be free";
+    throw Error(ErrorKind::bad_config,
+                place + " at (" + file::short_text(at.x()) + ", " + file::short_text(at.y()) +
+                    ", " + file::short_text(at.z()) + ") " + why + ", at a clearance of " +
+                    file::short_text(clearance) + " m; " + cure);
+  };
+  if (!impl_->space.is_free({home, home}, impl_->finder.clearance())) {
+    refuse("the place above the take-off pad", home,
+           "move flight.takeoff, raise flight.takeoff_climb, or shrink flight.unknown_box");
+  }
+  if (!can_reach(home, first_view)) {
+    refuse("the first view", first_view.position,
+           "give another start.position (or seed), within the gimbal's limits and outside of "
+           "flight.unknown_box");
+  }
+}
+
+SurveyFlight::~SurveyFlight() = default;
+
+bool SurveyFlight::can_reach(const Vector3d& from, const geometry::View& to) {
+  const double pitch = flight::pitch_of(to);
+  // A millionth of a radian for the rounding of directions that are meant to be at the limit.
+  const bool can_look =
+      pitch >= impl_->vehicle.gimbal_min - 1e-6 && pitch <= impl_->vehicle.gimbal_max + 1e-6;
+  if (can_look) {
+    const flight::Path path = impl_->finder.find(from, to.position);
+    if (path.status == flight::PathStatus::found && impl_->is_proven(path.points)) return true;
+  }
+  ++impl_->survey.refused;
+  return false;
+}
+
+void SurveyFlight::fly() { impl_->survey.legs.push_back(std::move(impl_->leg)); }
+
+void SurveyFlight::take_in(const geometry::Scan& scan) {
+  impl_->measured->insert(scan, impl_->camera);
+  impl_->finder.forget();
+}
+
+FlownSurvey SurveyFlight::finish() {
+  impl_->survey.measured = std::move(impl_->measured);
+  return std::move(impl_->survey);
+}
+
+}  // namespace skycap::missions::run

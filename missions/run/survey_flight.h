@@ -1,0 +1,59 @@
+/// The vehicle while a survey runs: it goes only where space was proven free with what was known at
+/// that moment.
+#pragma once
+
+#include <cstddef>
+#include <memory>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "flight/space/measured_space.h"
+#include "geometry/place/pose.h"
+#include "geometry/points/scan.h"
+#include "missions/file/mission.h"
+
+namespace skycap::missions::run {
+
+/// A leg as it was flown to a view.
+struct FlownLeg {
+  std::vector<Eigen::Vector3d> points;
+  double clearance = 0.0;  ///< proven, with what was known when it was flown [m], see LegProof
+};
+
+/// What a flown survey leaves behind.
+struct FlownSurvey {
+  std::shared_ptr<const flight::MeasuredSpace> measured;
+  Eigen::Vector3d pad = Eigen::Vector3d::Zero();
+  std::vector<FlownLeg> legs;  ///< legs[i] leads to view i, the first one from above the pad
+  std::size_t refused = 0;     ///< proposed views that could not be reached
+
+  double length() const;
+  double min_clearance() const;  ///< of all legs
+};
+
+class SurveyFlight {
+ public:
+  /// Throws Error{bad_config} if the first view cannot be reached from the pad through space that
+  /// the pilot vouches for.
+  SurveyFlight(const file::Mission& mission, const geometry::View& first_view);
+  ~SurveyFlight();
+
+  /// Whether the vehicle can look that way and get there along legs that are proven free.
+  bool can_reach(const Eigen::Vector3d& from, const geometry::View& to);
+
+  /// Flies the way that the last can_reach() found.
+  void fly();
+
+  /// Learns from a scan what is free.
+  void take_in(const geometry::Scan& scan);
+
+  /// The survey so far; further calls on this object are not allowed.
+  FlownSurvey finish();
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace skycap::missions::run

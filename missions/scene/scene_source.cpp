@@ -1,0 +1,196 @@
+#include "missions/scene/scene_source.h"
+
+#include <charconv>
+#include <cmath>
+#include <map>
+#include <numbers>
+#include <set>
+
+#include "geometry/error.h"
+#include "geometry/io/file.h"
+#include "geometry/io/mesh_io.h"
+#include "missions/file/yaml_tree.h"
+#include "missions/scene/model_store.h"
+#include "sim/models/models.h"
+
+namespace skycap::missions::scene {
+namespace {
+
+using Eigen::AngleAxisd;
+using Eigen::Vector3d;
+
+geometry::Mesh named_model(const file::SceneConfig& scene, const std::filesystem::path& folder) {
+  constexpr std::string_view builtin = "builtin:", stored = "model:";
+  const std::string& model = scene.model;
+  if (model.starts_with(builtin)) {
+    sim::ModelOptions options;
+    options.detail = scene.detail;
+    if (scene.ground) options.has_ground = false;  // the one that is not judged takes its place
+    return sim::builtin_model(model.substr(builtin.size()), options);
+  }
+  if (model.starts_with(stored)) {
+    return geometry::read_mesh(find_model(model.substr(stored.size())));
+  }
+  return geometry::read_mesh(folder / model);
+}
+
+Vector3d middle_of_base(const geometry::Mesh& mesh) {
+  const Eigen::AlignedBox3d box = geometry::bounding_box(mesh);
+  return {box.center().x(), box.center().y(), box.min().z()};
+}
+
+std::map<std::string, double> reflectances_of(const std::filesystem::path& file) {
+  const file::YamlNode root = file::parse_yaml(geometry::read_file(file), file.string());
+  const auto fail = [&](int line, const std::string& what) {
+    throw Error(ErrorKind::bad_config, file.string() + ":" + std::to_string(line) + ": " + what);
+  };
+  if (root.kind != file::YamlNode::Kind::map) fail(root.line, "is not a list of NAME: REFLECTANCE");
+  std::map<std::string, double> reflectances;
+  for (const file::YamlEntry& entry : root.entries) {
+    double value = -1.0;
+    const std::string& text = entry.value.text;
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+    if (error != std::errc() || end != text.data() + text.size() ||
+        !(value >= 0.0 && value <= 1.0)) {
+      fail(entry.line, "material " + entry.key + " has the reflectance '" + text +
+                           "'; it must be a number from 0 to 1");
+    }
+    reflectances[entry.key] = value;
+  }
+  return reflectances;
+}
+
+/// The model in its own frame, with reflectances by the names of its materials.
+ReflectingScene model_of_materials(const file::SceneConfig& scene,
+                                   const std::filesystem::path& folder) {
+  if (scene.model.starts_with("builtin:")) {
+    throw Error(ErrorKind::bad_config,
+                "scene.materials needs a model from a file; " + scene.model + " has no materials");
+  }
+  constexpr std::string_view stored = "model:";
+  const std::filesystem::path file = scene.model.starts_with(stored)
+                                         ? find_model(scene.model.substr(stored.size()))
+                                         : folder / scene.model;
+  const std::filesystem::path list = folder / *scene.materials;
+  std::map<std::string, double> reflectances = reflectances_of(list);
+  ReflectingScene result;
+  std::string known;
+  std::set<std::string> unused;
+  for (const auto& [name, reflectance] : reflectances) unused.insert(name);
+  for (const geometry::MaterialMesh& part : geometry::read_mesh_by_material(file)) {
+    known += (known.empty() ? "" : ", ") + (part.material.empty() ? "(none)" : part.material);
+    unused.erase(part.material);
+    const auto given = reflectances.find(part.material);
+    const double reflectance = given == reflectances.end() ? scene.reflectance : given->second;
+    geometry::append(result.model, part.mesh);
+    result.reflectances.resize(result.model.triangles.size(), static_cast<float>(reflectance));
+  }
+  if (!unused.empty()) {
+    throw Error(ErrorKind::bad_config, list.string() + ": the model has no material " +
+                                           *unused.begin() + "; it has " + known);
+  }
+  return result;
+}
+
+}  // namespace
+
+geometry::Mesh load_model(const file::SceneConfig& scene, const std::filesystem::path& folder) {
+  geometry::Mesh mesh = named_model(scene, folder);
+  try {
+    geometry::validate(mesh);
+  } catch (const Error& error) {
+    throw Error(error.kind(), scene.model + ": " + error.what());
+  }
+  return mesh;
+}
+
+void place_model(const file::SceneConfig& scene, geometry::Mesh& model) {
+  const Vector3d& angles = scene.rotation;
+  const double upright = scene.up_axis == file::UpAxis::y ? 0.5 * std::numbers::pi : 0.0;
+  const Eigen::Affine3d turn(
+      AngleAxisd(angles.z(), Vector3d::UnitZ()) * AngleAxisd(angles.y(), Vector3d::UnitY()) *
+      AngleAxisd(angles.x(), Vector3d::UnitX()) * AngleAxisd(upright, Vector3d::UnitX()));
+  geometry::transform(model, turn);
+
+  double scale = scene.scale.value_or(1.0);
+  if (scene.longest_side) {
+    scale = *scene.longest_side / geometry::bounding_box(model).sizes().maxCoeff();
+  }
+  if (!std::isfinite(scale)) {
+    throw Error(ErrorKind::bad_geometry, scene.model + ": is too small to be scaled");
+  }
+  geometry::transform(model, Eigen::Affine3d(Eigen::Scaling(scale)));
+  const Vector3d shift = scene.position - middle_of_base(model);
+  geometry::transform(model, Eigen::Affine3d(Eigen::Translation3d(shift)));
+}
+
+std::vector<Eigen::Isometry3d> copies_of(const file::SceneConfig& scene) {
+  std::vector<Eigen::Isometry3d> places = {Eigen::Isometry3d::Identity()};
+  for (const Vector3d& copy : scene.copies) {
+    places.push_back(Eigen::Translation3d(scene.position + Vector3d(copy.x(), copy.y(), 0.0)) *
+                     AngleAxisd(copy.z(), Vector3d::UnitZ()) *
+                     Eigen::Translation3d(-scene.position));
+  }
+  return places;
+}
+
+geometry::Mesh with_copies(const file::SceneConfig& scene, const geometry::Mesh& placed_model) {
+  geometry::Mesh all;
+  for (const Eigen::Isometry3d& place : copies_of(scene)) {
+    geometry::Mesh copy = placed_model;
+    geometry::transform(copy, Eigen::Affine3d(place));
+    geometry::append(all, copy);
+  }
+  return all;
+}
+
+ReflectingScene reflecting_scene(const file::SceneConfig& scene,
+                                 const std::filesystem::path& folder) {
+  ReflectingScene result;
+  if (scene.materials) {
+    result = model_of_materials(scene, folder);
+  } else {
+    result.model = load_model(scene, folder);
+  }
+  place_model(scene, result.model);
+  const auto reflectance = static_cast<float>(scene.reflectance);
+  result.reflectances.resize(result.model.triangles.size(), reflectance);
+  result.places = copies_of(scene);
+  if (scene.ground) {
+    result.ground = ground_under(with_copies(scene, result.model));
+    result.ground_reflectances.resize(result.ground.triangles.size(), reflectance);
+  }
+  return result;
+}
+
+sim::Scene ReflectingScene::scene(unsigned threads) const {
+  if (places.size() == 1) {  // a single mesh is met faster than a mesh at a place
+    geometry::Mesh mesh = model;
+    std::vector<float> all = reflectances;
+    geometry::append(mesh, ground);
+    all.insert(all.end(), ground_reflectances.begin(), ground_reflectances.end());
+    return sim::Scene(mesh, all, threads);
+  }
+  std::vector<sim::ScenePart> parts = {{model, reflectances, places}};
+  if (!ground.triangles.empty()) parts.push_back({ground, ground_reflectances, {}});
+  return sim::Scene(parts, threads);
+}
+
+Vector3d ReflectingScene::centre() const {
+  Eigen::AlignedBox3d box;
+  for (const Eigen::Isometry3d& place : places) {
+    box.extend(geometry::bounding_box(model).transformed(place));
+  }
+  return box.center();
+}
+
+geometry::Mesh ground_under(const geometry::Mesh& placed_model) {
+  const Eigen::AlignedBox3d box = geometry::bounding_box(placed_model);
+  const Vector3d middle = middle_of_base(placed_model);
+  const double half = 5.0 * box.sizes().maxCoeff();
+  return {{middle + Vector3d(-half, -half, 0), middle + Vector3d(half, -half, 0),
+           middle + Vector3d(half, half, 0), middle + Vector3d(-half, half, 0)},
+          {{0, 1, 2}, {0, 2, 3}}};
+}
+
+}  // namespace skycap::missions::scene

@@ -1,0 +1,53 @@
+/// From the `scene` of a mission to the mesh that is surveyed.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "geometry/surfaces/mesh.h"
+#include "missions/file/mission.h"
+#include "sim/scene/scene.h"
+
+namespace skycap::missions::scene {
+
+/// The mesh that `scene` names, in its own frame: builtin:NAME, model:NAME, or the path of a mesh,
+/// relative to `folder`. Throws Error{bad_file}, {bad_config} or {bad_geometry}, naming the model,
+/// if it is not there, cannot be read, or is not a mesh with a surface.
+geometry::Mesh load_model(const file::SceneConfig& scene, const std::filesystem::path& folder);
+
+/// Turns, scales and places a model as `scene` says. Throws Error{bad_geometry} if the model has
+/// no extent to be scaled by.
+void place_model(const file::SceneConfig& scene, geometry::Mesh& model);
+
+/// world_from_world, from the first of the scene's models, as place_model() leaves it, to each; the
+/// first included.
+std::vector<Eigen::Isometry3d> copies_of(const file::SceneConfig& scene);
+
+/// All of the scene's models as one mesh.
+geometry::Mesh with_copies(const file::SceneConfig& scene, const geometry::Mesh& placed_model);
+
+/// What the sensors of a `scene` measure, with what lasers see of its surfaces.
+struct ReflectingScene {
+  geometry::Mesh model;             ///< the first
+  std::vector<float> reflectances;  ///< diffuse, of each of its triangles
+  std::vector<Eigen::Isometry3d> places;
+  geometry::Mesh ground;  ///< without triangles if there is none
+  std::vector<float> ground_reflectances;
+
+  /// Made ready for rays; copies take no memory to speak of.
+  sim::Scene scene(unsigned threads) const;
+  /// Of the models' bounding box.
+  Eigen::Vector3d centre() const;
+};
+
+/// The model as placed, its copies, and the ground if there is one, with the reflectances of
+/// `scene`. Throws what load_model() and place_model() throw, and Error{bad_config} if the file of
+/// materials is wrong.
+ReflectingScene reflecting_scene(const file::SceneConfig& scene,
+                                 const std::filesystem::path& folder);
+
+/// A square in the plane of the scene's base, ten times as wide as the model.
+geometry::Mesh ground_under(const geometry::Mesh& placed_model);
+
+}  // namespace skycap::missions::scene

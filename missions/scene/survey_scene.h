@@ -1,0 +1,75 @@
+/// A mission's scene made ready: the truth that the simulated sensor measures, and what the
+/// evaluation needs to know of it. Shared, unchanged, by all trials of a mission.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "geometry/place/pose.h"
+#include "geometry/surfaces/mesh.h"
+#include "geometry/surfaces/mesh_distance.h"
+#include "missions/file/mission.h"
+#include "missions/judge/evaluation.h"
+#include "sim/scene/scene.h"
+
+namespace skycap::missions::scene {
+
+/// Where the first view, and all views of the volumetric planners, are looked for: around the
+/// surface's centroid, as far as d and the surface's mean distance to it (paper §IV-B).
+struct ViewSphere {
+  Eigen::Vector3d centre = Eigen::Vector3d::Zero();
+  double radius = 0.0;
+};
+
+class SurveyScene {
+ public:
+  /// Loads and places the mission's model; `folder` is where relative paths start. Throws what
+  /// load_model() and place_model() throw.
+  SurveyScene(const file::Mission& mission, const std::filesystem::path& folder);
+
+  const geometry::Mesh& model() const { return model_; }  ///< as placed, without ground
+  const sim::Scene& scene() const { return scene_; }      ///< with ground, if there is one
+  const geometry::SurfaceSamples& samples() const { return samples_; }  ///< of the model
+
+  /// d: as the mission gives it, or from its camera and density.
+  double view_distance() const { return view_distance_; }
+
+  const ViewSphere& view_sphere() const { return view_sphere_; }
+
+  /// The first view of the survey with that seed: as the mission gives it, or at random on the
+  /// view sphere, within the mission's limits, looking at the sphere's centre.
+  geometry::View first_view(std::uint64_t seed) const;
+
+  /// For each sample, 1 if an admissible sensor position sees it. Takes seconds.
+  std::vector<std::uint8_t> visible(unsigned threads) const;
+
+  /// The coverage that is attainable with the mission's sensor and spacing, see
+  /// missions::coverage_ceiling(). Takes seconds to minutes; kept in the user's cache under a
+  /// checksum of everything it depends on. Nothing if the mission leaves it out.
+  std::optional<double> ceiling(const std::vector<std::uint8_t>& is_visible,
+                                unsigned threads) const;
+
+  /// Where the mission lets the sensor look at the scene from.
+  judge::Admissible admissible() const;
+
+ private:
+  std::string ceiling_key() const;
+
+  file::Mission mission_;
+  geometry::Mesh model_;
+  sim::Scene scene_;
+  geometry::SurfaceSamples samples_;
+  double view_distance_;
+  ViewSphere view_sphere_;
+  std::shared_ptr<const geometry::MeshDistance> truth_;  ///< if a stand-off needs it
+};
+
+/// The mission's mesh as surveyed: loaded and placed, without ground.
+geometry::Mesh placed_model(const file::SceneConfig& scene, const std::filesystem::path& folder);
+
+}  // namespace skycap::missions::scene

@@ -1,0 +1,73 @@
+#include <algorithm>
+#include <cstdio>
+
+#include "flight/export/export.h"
+#include "flight/paths/path.h"
+#include "flight/route/route.h"
+#include "geometry/surfaces/mesh.h"
+#include "missions/derived/mission_flight.h"
+#include "missions/file/mission_keys.h"
+#include "missions/file/number_text.h"
+#include "missions/scene/survey_scene.h"
+#include "missions/verbs/verbs.h"
+
+namespace skycap::missions::verbs {
+namespace {
+
+/// Proves a route file's legs against the mission's scene as it truly is.
+int check_route_file(const CheckOptions& options, const file::Mission& mission,
+                     const geometry::Mesh& model, const Console& console) {
+  const std::filesystem::path& file = *options.route;
+  // Heights above take-off count from the pad's; where on the ground it is does not matter.
+  const Eigen::Vector3d pad = derived::pad_of(mission, mission.scene.position);
+  const std::vector<Eigen::Vector3d> points =
+      flight::read_route(file, derived::site_of(mission), pad);
+  flight::Obstacles obstacles = derived::flight_rules(mission);
+  obstacles.mesh = model;
+  const flight::KnownSpace space(obstacles);
+
+  const double asked_for = mission.flight.clearance;
+  const double clearance = std::max(0.0, asked_for - flight::rounding_bound);
+  const auto violations = flight::check_route(points, space, clearance);
+  for (const flight::Violation& violation : violations) {
+    console.out << file.string() << ": " << flight::describe(violation) << "\n";
+  }
+  double least = asked_for + flight::reported_surplus;
+  for (std::size_t i = 1; i < points.size(); ++i) {
+    least = std::min(least, space.closest({points[i - 1], points[i]}, least).distance);
+  }
+  console.out << file.string() << ": " << (violations.empty() ? "fine" : "not safe") << ", "
+              << violations.size() << " of " << std::max<std::size_t>(points.size(), 1) - 1
+              << " legs come nearer than " << file::short_text(asked_for) << " m, the nearest "
+              << file::short_text(least) << " m; " << file::short_text(flight::length(points))
+              << " m long\n"
+              << std::flush;
+  return violations.empty() ? 0 : 1;
+}
+
+}  // namespace
+
+int check(const CheckOptions& options, const Console& console) {
+  const file::Mission mission = file::read_mission(options.mission, options.overrides);
+  const geometry::Mesh model = scene::placed_model(mission.scene, options.mission.parent_path());
+  if (options.route) return check_route_file(options, mission, model, console);
+  const survey::see::SeeConfig& see = mission.planner.see;
+  const Eigen::Vector3d size = geometry::bounding_box(model).sizes();
+  const double view_distance = see.view_distance.value_or(
+      geometry::view_distance(geometry::Camera(mission.sensor.camera.camera), see.density));
+
+  char text[640];
+  std::snprintf(text, sizeof text,
+                "%s: fine\n"
+                "  scene     %zu triangles, %.4g x %.4g x %.4g m, %.4g m^2\n"
+                "  planner   %s, view distance d %.4g m, spacing epsilon %.4g m, core threshold "
+                "k %d\n",
+                options.mission.c_str(), model.triangles.size(), size.x(), size.y(), size.z(),
+                geometry::surface_area(model),
+                file::to_text(*file::find_key("planner.name")->get(mission)).c_str(), view_distance,
+                see.effective_spacing(), see.effective_core_threshold());
+  console.out << text << std::flush;
+  return 0;
+}
+
+}  // namespace skycap::missions::verbs

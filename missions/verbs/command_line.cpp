@@ -1,0 +1,291 @@
+#include "missions/verbs/command_line.h"
+
+#include <algorithm>
+#include <functional>
+#include <memory>
+
+#include <CLI/App.hpp>
+#include <CLI/Config.hpp>
+#include <CLI/Formatter.hpp>
+
+#include "geometry/error.h"
+#include "missions/file/mission_keys.h"
+#include "missions/recording/cloud_formats.h"
+#include "missions/verbs/verbs.h"
+#include "missions/version.h"
+
+namespace skycap::missions::verbs {
+namespace {
+
+/// A verb that is ready to run, once the arguments are read.
+using Action = std::function<int()>;
+
+/// Values for keys of the mission file, as given by options.
+struct KeyOptions {
+  std::string planner, seed, threads, max_views;
+  std::vector<std::string> set;  ///< KEY=VALUE
+
+  std::vector<file::KeyOverride> overrides() const {
+    std::vector<file::KeyOverride> all;
+    const auto add = [&](const char* option, const char* key, const std::string& value) {
+      if (!value.empty()) all.push_back({option, key, value});
+    };
+    add("--planner", "planner.name", planner);
+    add("--seed", "seed", seed);
+    add("--threads", "threads", threads);
+    add("--max-views", "limits.max_views", max_views);
+    for (const std::string& pair : set) {
+      const auto equals = pair.find('=');
+      if (equals == std::string::npos) {
+        throw Error(ErrorKind::bad_usage,
+                    "--set " + pair + ": has no '='; give KEY=VALUE, such as seed=2");
+      }
+      all.push_back({"--set " + pair, pair.substr(0, equals), pair.substr(equals + 1)});
+    }
+    return all;
+  }
+};
+
+void add_set_option(CLI::App& verb, KeyOptions& keys) {
+  verb.add_option("--set", keys.set,
+                  "KEY=VALUE: any key of the mission file, such as "
+                  "planner.density=213; may be given again")
+      ->type_size(1)
+      ->allow_extra_args(false);
+}
+
+void add_plan(CLI::App& app, const Console& console, Action& action) {
+  CLI::App* verb = app.add_subcommand(
+      "plan", "Survey a mission's scene in simulation and write the mission package");
+  const auto options = std::make_shared<PlanOptions>();
+  const auto keys = std::make_shared<KeyOptions>();
+  verb->add_option("mission", options->mission, "Mission file (docs/mission_file.md)")->required();
+  verb->add_option("--out", options->out, "Folder for the results; default results/NAME");
+  verb->add_option("--planner", keys->planner,
+                   "see++, see, skycap, rsv, rse, oa, uv, pc, af or ae, in place of the mission's");
+  verb->add_option("--seed", keys->seed, "Seed, in place of the mission's");
+  verb->add_option("--threads", keys->threads, "Threads, 0 for all processors");
+  verb->add_option("--max-views", keys->max_views, "End after this many views");
+  verb->add_option("--trials", options->trials,
+                   "Run this many seeds; write trials.csv and trials.json")
+      ->check(CLI::Range(1, 100'000));
+  verb->add_flag("--quiet", options->is_quiet, "Print nothing but errors");
+  verb->add_flag("--verbose", options->is_verbose, "Print the planning time of each view by part");
+  add_set_option(*verb, *keys);
+  verb->callback([=, &console, &action] {
+    options->overrides = keys->overrides();
+    action = [=, &console] { return plan(*options, console); };
+  });
+}
+
+void add_benchmark(CLI::App& app, const Console& console, Action& action) {
+  CLI::App* verb = app.add_subcommand(
+      "benchmark", "Compare planners on missions over many seeds: the paper's tables and plots");
+  const auto options = std::make_shared<BenchmarkOptions>();
+  const auto keys = std::make_shared<KeyOptions>();
+  verb->add_option("missions", options->missions, "Mission files")->required();
+  verb->add_option("--planners", options->planners,
+                   "all (those of the paper), or names such as see++,oa,skycap")
+      ->delimiter(',');
+  verb->add_option("--trials", options->trials, "Seeds for each planner and mission; default 10")
+      ->check(CLI::Range(1, 100'000));
+  verb->add_option("--out", options->out,
+                   "Folder for the results; default results/benchmark. What is finished there is "
+                   "not run again");
+  verb->add_option("--threads", options->threads, "Surveys at a time, 0 for all processors")
+      ->check(CLI::Range(0, 1024));
+  verb->add_option("--seed", keys->seed, "First seed, in place of the missions'");
+  verb->add_option("--max-views", keys->max_views, "End every survey after this many views");
+  verb->add_flag("--quiet", options->is_quiet, "Print nothing but errors");
+  add_set_option(*verb, *keys);
+  verb->callback([=, &console, &action] {
+    options->overrides = keys->overrides();
+    action = [=, &console] { return benchmark(*options, console); };
+  });
+}
+
+void add_scan(CLI::App& app, const Console& console, Action& action) {
+  CLI::App* verb = app.add_subcommand(
+      "scan", "Fly a route in the simulator and record what a sensor measures on the way");
+  const auto options = std::make_shared<ScanVerbOptions>();
+  const auto keys = std::make_shared<KeyOptions>();
+  verb->add_option("mission", options->mission, "Mission file (docs/scan.md)")->required();
+  verb->add_option("--route", options->route,
+                   "Route file, or the folder of a mission package; default: the mission's");
+  verb->add_option("--sensor", options->sensor,
+                   "Preset or description NAME.yaml, in place of the mission's");
+  verb->add_option("--out", options->out, "Folder for the results; default results/NAME/scan");
+  verb->add_option(
+          "--format", options->formats,
+          "Of the points, one or more of " + recording::cloud_format_names() + "; default las")
+      ->delimiter(',');
+  verb->add_flag("--with-truth", options->with_truth,
+                 "Write a second file with the points as they really were");
+  verb->add_option("--seed", keys->seed, "Seed, in place of the mission's");
+  verb->add_option("--threads", keys->threads, "Threads, 0 for all processors");
+  verb->add_flag("--quiet", options->is_quiet, "Print nothing but errors");
+  add_set_option(*verb, *keys);
+  verb->callback([=, &console, &action] {
+    options->overrides = keys->overrides();
+    action = [=, &console] { return scan(*options, console); };
+  });
+}
+
+void add_check(CLI::App& app, const Console& console, Action& action) {
+  CLI::App* verb = app.add_subcommand("check", "Check a mission file and its scene");
+  const auto options = std::make_shared<CheckOptions>();
+  const auto keys = std::make_shared<KeyOptions>();
+  const auto prints_schema = std::make_shared<bool>(false);
+  const auto prints_keys = std::make_shared<bool>(false);
+  verb->add_option("mission", options->mission, "Mission file");
+  verb->add_option("--route", options->route,
+                   "Prove that this route (.plan, .waypoints, .kmz, .kml, .geojson, .csv, .tum) "
+                   "keeps flight.clearance from the scene");
+  add_set_option(*verb, *keys);
+  verb->add_flag("--schema", *prints_schema, "Print the JSON Schema of mission files instead");
+  verb->add_flag("--keys", *prints_keys, "Print the table of all keys instead");
+  verb->callback([=, &console, &action] {
+    options->overrides = keys->overrides();
+    action = [=, &console] {
+      if (*prints_schema) return console.out << file::mission_json_schema(), 0;
+      if (*prints_keys) return console.out << file::mission_key_table(), 0;
+      if (options->mission.empty()) {
+        throw Error(ErrorKind::bad_usage, "check needs a mission file; name one");
+      }
+      return check(*options, console);
+    };
+  });
+}
+
+void add_export(CLI::App& app, const Console& console, Action& action) {
+  CLI::App* verb =
+      app.add_subcommand("export", "Write the flight of a mission package in another format");
+  const auto options = std::make_shared<ExportOptions>();
+  const auto keys = std::make_shared<KeyOptions>();
+  verb->add_option("package", options->package, "Folder that plan wrote")->required();
+  verb->add_option("--format", options->formats,
+                   "plan, waypoints, kmz, kml, geojson, litchi, csv, ned-csv or tum; may be given "
+                   "again")
+      ->required()
+      ->type_size(1)
+      ->allow_extra_args(false);
+  verb->add_option("--out", options->out, "Folder for the files; default the package");
+  add_set_option(*verb, *keys);
+  verb->callback([=, &console, &action] {
+    options->overrides = keys->overrides();
+    action = [=, &console] { return export_package(*options, console); };
+  });
+}
+
+void add_evaluate(CLI::App& app, const Console& console, Action& action) {
+  CLI::App* verb = app.add_subcommand(
+      "evaluate", "Coverage, accuracy and density of a cloud or mesh against a model");
+  const auto options = std::make_shared<EvaluateOptions>();
+  CLI::App* what = verb->add_option_group("what is judged");
+  what->add_option("--cloud", options->cloud, "Point cloud: .ply, .pcd, .las or .xyz");
+  what->add_option("--mesh", options->mesh,
+                   "Mesh, in place of a cloud: of skycap reconstruct, say");
+  what->require_option(1);
+  verb->add_option("--model", options->model,
+                   "Mesh, builtin:NAME, model:NAME, or a mission file for its scene as surveyed")
+      ->required();
+  verb->add_option("--distance", options->distance,
+                   "A surface point with a measurement this near is covered [m]")
+      ->check(CLI::Range(1e-9, 1e9));
+  verb->add_option("--samples", options->samples, "Surface points; default 100000")
+      ->check(CLI::Range(100, 100'000'000));
+  verb->add_flag("--json", options->is_json, "Print JSON");
+  verb->callback(
+      [=, &console, &action] { action = [=, &console] { return evaluate(*options, console); }; });
+}
+
+void add_reconstruct(CLI::App& app, const Console& console, Action& action) {
+  CLI::App* verb = app.add_subcommand("reconstruct", "Make a surface mesh of a point cloud");
+  const auto options = std::make_shared<ReconstructOptions>();
+  verb->add_option("cloud", options->cloud,
+                   "Point cloud (.ply, .pcd, .las, .xyz), with normals or without")
+      ->required();
+  verb->add_option("--out", options->out, "PLY, OBJ, STL or OFF; default CLOUD_mesh.ply");
+  verb->add_option("--spacing", options->spacing, "Thin the cloud to one point a cube [m]")
+      ->check(CLI::Range(0.0, 1e6));
+  verb->add_option("--depth", options->depth,
+                   "Of the octree, 2^depth cells a side; default: as the points are spaced")
+      ->check(CLI::Range(0, 12));
+  verb->add_option("--trim", options->least_density,
+                   "Drop surface with less than this share of the usual density; default 0.2")
+      ->check(CLI::Range(0.0, 0.99));
+  verb->add_option("--threads", options->threads, "Threads, 0 for all processors");
+  verb->callback([=, &console, &action] {
+    action = [=, &console] { return reconstruct_cloud(*options, console); };
+  });
+}
+
+void add_model(CLI::App& app, const Console& console, Action& action) {
+  CLI::App* verb = app.add_subcommand("model", "Obtain, write or render a scene model");
+  const auto options = std::make_shared<ModelOptions>();
+  verb->add_option("name", options->name,
+                   "teapot, bunny, dragon, radcliffe-camera, ..., a mesh, or a mission file")
+      ->required();
+  verb->add_option("--out", options->out, "Write the mesh to this PLY file");
+  verb->add_option("--detail", options->detail, "Of a builtin model: coarse, standard or fine")
+      ->check(CLI::IsMember({"coarse", "standard", "fine"}));
+  verb->add_option("--render", options->render, "Draw the model into this PNG file");
+  verb->callback(
+      [=, &console, &action] { action = [=, &console] { return model(*options, console); }; });
+}
+
+/// One line for the user, whatever the message holds.
+int report_failure(const Console& console, std::string message, int exit_code) {
+  while (!message.empty() && message.back() == '\n') message.pop_back();
+  std::ranges::replace(message, '\n', ' ');
+  std::ranges::replace(message, '\r', ' ');
+  console.err << "skycap: error: " << message << "\n" << std::flush;
+  return exit_code;
+}
+
+}  // namespace
+
+int run_command_line(const std::vector<std::string>& arguments, const Console& console) {
+  CLI::App app("Skycap plans aerial surveys of buildings and simulates them.", "skycap");
+  app.set_version_flag("--version", std::string("skycap ") + version);
+  app.require_subcommand(0, 1);
+  app.get_formatter()->column_width(28);
+  Action action;
+  try {
+    add_plan(app, console, action);
+    add_benchmark(app, console, action);
+    add_scan(app, console, action);
+    add_check(app, console, action);
+    add_export(app, console, action);
+    add_evaluate(app, console, action);
+    add_reconstruct(app, console, action);
+    add_model(app, console, action);
+    const auto known = app.get_subcommands({});
+    std::string verbs;
+    for (const CLI::App* verb : known) verbs += (verbs.empty() ? "" : ", ") + verb->get_name();
+    if (!arguments.empty() && !arguments[0].starts_with('-') &&
+        std::ranges::find(known, arguments[0], &CLI::App::get_name) == known.end()) {
+      throw Error(ErrorKind::bad_usage,
+                  "there is no verb '" + arguments[0] + "'; the verbs are " + verbs);
+    }
+    std::vector<std::string> reversed(arguments.rbegin(), arguments.rend());  // as CLI11 wants it
+    app.parse(reversed);
+    if (!action) {
+      throw Error(ErrorKind::bad_usage,
+                  "says nothing to do; name one of the verbs " + verbs + ", or --help");
+    }
+    return action();
+  } catch (const CLI::Success& wish) {  // --help or --version
+    return app.exit(wish, console.out, console.err);
+  } catch (const CLI::ParseError& failure) {
+    return report_failure(console, std::string(failure.what()) + "; see --help", 2);
+  } catch (const Error& failure) {
+    return report_failure(console, failure.what(), 2);
+  } catch (const std::bad_alloc&) {
+    return report_failure(console, "there is not enough memory for this", 3);
+  } catch (const std::exception& failure) {
+    return report_failure(console, std::string("internal failure: ") + failure.what(), 3);
+  }
+}
+
+}  // namespace skycap::missions::verbs

@@ -1,0 +1,45 @@
+/// Where a verb writes to, and how it is asked to stop.
+#pragma once
+
+#include <ostream>
+#include <stop_token>
+#include <string>
+
+namespace skycap::missions::verbs {
+
+/// The program's surroundings, so that tests can put themselves in their place.
+struct Console {
+  std::ostream& out;             ///< results
+  std::ostream& err;             ///< progress, warnings and errors
+  bool err_is_terminal = false;  ///< whether progress is shown, in one line that is rewritten
+  std::stop_token stop = {};     ///< requested by Ctrl-C
+};
+
+/// One line on a terminal that each call overwrites; nothing where there is no terminal. Cleared
+/// when it goes out of scope.
+class ProgressLine {
+ public:
+  ProgressLine(const Console& console, bool is_quiet)
+      : err_(console.err), is_shown_(console.err_is_terminal && !is_quiet) {}
+  ProgressLine(const ProgressLine&) = delete;
+  ProgressLine& operator=(const ProgressLine&) = delete;
+  ~ProgressLine() { clear(); }
+
+  void show(const std::string& text) {
+    if (!is_shown_) return;
+    err_ << "\r" << text << "\033[K" << std::flush;
+    has_text_ = true;
+  }
+
+  void clear() {
+    if (has_text_) err_ << "\r\033[K" << std::flush;
+    has_text_ = false;
+  }
+
+ private:
+  std::ostream& err_;
+  bool is_shown_;
+  bool has_text_ = false;
+};
+
+}  // namespace skycap::missions::verbs

@@ -1,0 +1,29 @@
+#include "flight/export/export.h"
+
+#include "geometry/io/output_folder.h"
+#include "missions/package/flight_report.h"
+#include "missions/package/package.h"
+#include "missions/verbs/verbs.h"
+
+namespace skycap::missions::verbs {
+
+int export_package(const ExportOptions& options, const Console& console) {
+  std::vector<flight::Format> formats;
+  for (const std::string& name : options.formats) formats.push_back(flight::format_named(name));
+
+  const package::PackagedSurvey survey = package::read_package(options.package, options.overrides);
+  geometry::OutputFolder folder(options.out.value_or(options.package));
+  package::SurveyMission flight;
+  flight.route = package::plan_flight(survey.mission, survey.measured, survey.pad, survey.views);
+  flight.files =
+      package::stage_flight(survey.mission, flight.route, survey.measured, formats, folder);
+  for (const flight::Format format : formats) {
+    folder.replace([&](std::string_view name) { return package::is_flight_file(name, format); });
+  }
+  folder.commit();
+  console.out << package::flight_text(flight) << "  results   " << folder.path().string() << "\n"
+              << std::flush;
+  return flight.route.sorties.empty() ? 1 : 0;
+}
+
+}  // namespace skycap::missions::verbs

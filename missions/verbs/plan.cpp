@@ -1,0 +1,166 @@
+#include <cstdio>
+#include <string>
+
+#include "geometry/error.h"
+#include "geometry/io/output_folder.h"
+#include "geometry/parallel.h"
+#include "missions/benchmark/trials.h"
+#include "missions/judge/coverage.h"
+#include "missions/package/flight_report.h"
+#include "missions/package/package.h"
+#include "missions/run/survey_runner.h"
+#include "missions/scene/survey_scene.h"
+#include "missions/verbs/verbs.h"
+
+namespace skycap::missions::verbs {
+namespace {
+
+std::string percent(double share) {
+  char text[16];
+  std::snprintf(text, sizeof text, "%.2f %%", 100.0 * share);
+  return text;
+}
+
+std::string seconds(double time) {
+  char text[32];
+  std::snprintf(text, sizeof text, time < 1.0 ? "%.1f ms" : "%.2f s",
+                time < 1.0 ? 1e3 * time : time);
+  return text;
+}
+
+std::string progress_text(const std::string& name, std::size_t views, const run::JudgedView& judged,
+                          double planning_time) {
+  char text[160];
+  std::snprintf(text, sizeof text,
+                "%s: view %zu, %zu points, %zu frontiers, %.2f %% covered, planned in %s",
+                name.c_str(), views, judged.surveyed.points, judged.surveyed.step.frontiers,
+                100.0 * judged.coverage, seconds(planning_time).c_str());
+  return text;
+}
+
+/// A line of the --verbose table: planning time of one view, in milliseconds by part.
+std::string times_row(std::size_t view, const run::JudgedView& judged) {
+  const survey::PlanningStep& step = judged.surveyed.step;
+  std::string row;
+  char cell[64];
+  if (view == 0) {
+    row = "view  frontiers  total ms";
+    for (const survey::PartTime& time : step.times) {
+      std::snprintf(cell, sizeof cell, " %10s", time.part.c_str());
+      row += cell;
+    }
+    row += "\n";
+  }
+  std::snprintf(cell, sizeof cell, "%4zu %10zu %9.2f", view, step.frontiers,
+                1e3 * judged.surveyed.planning_time);
+  row += cell;
+  for (const survey::PartTime& time : step.times) {
+    std::snprintf(cell, sizeof cell, " %10.3f", 1e3 * time.seconds);
+    row += cell;
+  }
+  return row + "\n";
+}
+
+std::string summary_text(const file::Mission& mission, const run::SurveyRecord& record,
+                         const package::CoverageFigures& coverage,
+                         const std::optional<package::SurveyMission>& flight,
+                         const std::filesystem::path& folder) {
+  std::string text = mission.name + ": " + run::name_of(record.stop_reason) + " after " +
+                     std::to_string(record.views.size()) + " views, ";
+  char distance[32];
+  std::snprintf(distance, sizeof distance, "%.2f m\n", record.distance());
+  text += distance;
+  text += "  coverage  " + percent(coverage.all) + " of the surface";
+  if (coverage.visible) text += ", " + percent(*coverage.visible) + " of what is visible";
+  if (coverage.ceiling) text += "; attainable " + percent(*coverage.ceiling);
+  text += "\n  planning  " + seconds(record.planning_time()) + " (";
+  bool is_first = true;
+  for (const auto& [part, time] : package::planning_time_by_part(record)) {
+    text += (is_first ? "" : ", ") + part + " " + seconds(time);
+    is_first = false;
+  }
+  text += ")\n";
+  if (flight) text += package::flight_text(*flight);
+  return text + "  results   " + folder.string() + "\n";
+}
+
+int plan_once(const PlanOptions& options, const file::Mission& mission,
+              const scene::SurveyScene& scene, geometry::OutputFolder& folder,
+              const Console& console) {
+  ProgressLine progress(console, options.is_quiet);
+  std::size_t views = 0;
+  double planning_time = 0.0;
+  const auto report = [&](const run::JudgedView& judged) {
+    planning_time += judged.surveyed.planning_time;
+    if (options.is_verbose) console.err << times_row(views, judged) << std::flush;
+    progress.show(progress_text(mission.name, ++views, judged, planning_time));
+  };
+  const run::SurveyRecord record =
+      run::run_survey(mission, scene, mission.seed, mission.threads, console.stop, report);
+
+  package::CoverageFigures coverage{record.coverage(), {}, {}};
+  if (record.stop_reason != survey::StopReason::interrupted) {  // the user wants to leave
+    progress.show(mission.name + ": measuring what could be covered at all");
+    const std::vector<std::uint8_t> is_visible = scene.visible(mission.threads);
+    coverage.visible = judge::covered_share(record.is_covered, is_visible);
+    coverage.ceiling = scene.ceiling(is_visible, mission.threads);
+  }
+  progress.show(mission.name + ": writing " + folder.path().string());
+  const std::optional<package::SurveyMission> flight =
+      package::stage_package(mission, record, coverage, mission.threads, folder);
+  folder.commit();
+  progress.clear();
+  if (!options.is_quiet) {
+    console.out << summary_text(mission, record, coverage, flight, folder.path()) << std::flush;
+  }
+  // A flown survey ends with views that nobody can reach; at the start it has not begun.
+  const bool went_through =
+      record.stop_reason != survey::StopReason::interrupted &&
+      (record.stop_reason != survey::StopReason::nowhere_to_go || record.views.size() > 1) &&
+      (!flight || flight->failure.empty());
+  return went_through ? 0 : 1;
+}
+
+int plan_trials(const PlanOptions& options, const file::Mission& mission,
+                const scene::SurveyScene& scene, geometry::OutputFolder& folder,
+                const Console& console) {
+  ProgressLine progress(console, options.is_quiet);
+  std::size_t ended = 0;
+  progress.show(mission.name + ": measuring what could be covered at all");
+  const auto report = [&](const benchmark::Trial& trial) {
+    progress.show(mission.name + ": trial " + std::to_string(++ended) + " of " +
+                  std::to_string(options.trials) + ", seed " + std::to_string(trial.seed) + ": " +
+                  std::to_string(trial.views) + " views, " + percent(trial.coverage.all));
+  };
+  const std::vector<benchmark::Trial> trials =
+      benchmark::run_trials(mission, scene, options.trials, mission.threads, console.stop, report);
+  progress.clear();
+  folder.write("trials.csv", benchmark::trials_csv(trials));
+  folder.write("trials.json",
+               benchmark::trials_json(mission, trials, options.trials, mission.threads));
+  folder.commit();
+  if (!options.is_quiet) {
+    console.out << benchmark::trials_table(mission, trials) << "  results   "
+                << folder.path().string() << "\n"
+                << std::flush;
+  }
+  return trials.size() == options.trials ? 0 : 1;
+}
+
+}  // namespace
+
+int plan(const PlanOptions& options, const Console& console) {
+  const file::Mission mission = file::read_mission(options.mission, options.overrides);
+  geometry::OutputFolder folder(
+      options.out.value_or(std::filesystem::path("results") / mission.name));
+  const scene::SurveyScene scene(mission, options.mission.parent_path());
+  try {
+    return options.trials > 0 ? plan_trials(options, mission, scene, folder, console)
+                              : plan_once(options, mission, scene, folder, console);
+  } catch (const Error& error) {
+    // What goes wrong during the survey follows from the mission; say which.
+    throw Error(error.kind(), options.mission.string() + ": " + error.what());
+  }
+}
+
+}  // namespace skycap::missions::verbs

@@ -1,0 +1,51 @@
+#include <chrono>
+#include <cstdio>
+#include <filesystem>
+
+#include "geometry/error.h"
+#include "geometry/io/cloud_io.h"
+#include "geometry/io/mesh_io.h"
+#include "missions/plugins/reconstruction.h"
+#include "missions/verbs/verbs.h"
+
+namespace skycap::missions::verbs {
+
+int reconstruct_cloud(const ReconstructOptions& options, const Console& console) {
+  plugins::ReconstructionConfig config;
+  config.depth = options.depth;
+  config.spacing = options.spacing;
+  config.least_density = options.least_density;
+  config.threads = options.threads;
+  config.validate();
+  std::filesystem::path out = options.cloud;
+  out.replace_extension();
+  out += "_mesh.ply";
+  out = options.out.value_or(out);
+
+  ProgressLine progress(console, false);
+  progress.show("reading " + options.cloud.string());
+  const geometry::CloudFile cloud = geometry::read_cloud(options.cloud);
+  progress.show("reconstructing the surface of " + options.cloud.string());
+  const auto start = std::chrono::steady_clock::now();
+  const plugins::Reconstruction result = [&] {
+    try {
+      return plugins::reconstruct(cloud.positions, cloud.normals, config);
+    } catch (const Error& error) {
+      throw Error(error.kind(), options.cloud.string() + ": " + error.what());
+    }
+  }();
+  const std::chrono::duration<double> time = std::chrono::steady_clock::now() - start;
+  geometry::write_mesh(out, result.mesh);
+  progress.clear();
+  char text[320];
+  std::snprintf(text, sizeof text,
+                "%s: %zu points, %.3g m apart%s\n"
+                "  surface   %zu triangles in %.1f s, octree of depth %d; %zu triangles trimmed\n",
+                options.cloud.filename().c_str(), result.points, result.spacing,
+                cloud.normals.empty() ? ", normals estimated" : "", result.mesh.triangles.size(),
+                time.count(), result.depth, result.trimmed_triangles);
+  console.out << text << "  results   " << out.string() << "\n";
+  return 0;
+}
+
+}  // namespace skycap::missions::verbs

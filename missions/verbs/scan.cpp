@@ -1,0 +1,317 @@
+#include <algorithm>
+#include <chrono>
+#include <cstdio>
+#include <memory>
+#include <string>
+#include <utility>
+#include <variant>
+#include <vector>
+
+#include <nlohmann/json.hpp>
+
+#include "flight/export/trajectory_file.h"
+#include "geometry/error.h"
+#include "geometry/io/output_folder.h"
+#include "missions/derived/mission_flight.h"
+#include "missions/file/json_text.h"
+#include "missions/file/sensor_reader.h"
+#include "missions/recording/cloud_formats.h"
+#include "missions/recording/frame_recorder.h"
+#include "missions/recording/scan_route.h"
+#include "missions/recording/scan_runner.h"
+#include "missions/scene/scene_source.h"
+#include "missions/verbs/verbs.h"
+
+namespace skycap::missions::verbs {
+namespace {
+
+using Eigen::AngleAxisd;
+using Eigen::Isometry3d;
+using Eigen::Vector3d;
+using Clock = std::chrono::steady_clock;
+
+/// A path that a mission gives is relative to the mission's folder.
+std::string beside(const std::filesystem::path& folder, const std::string& name) {
+  return name.ends_with(".yaml") ? (folder / name).string() : name;
+}
+
+file::SensorDescription sensor_of(const ScanVerbOptions& options, const file::Mission& mission) {
+  return file::find_sensor(
+      options.sensor.value_or(beside(options.mission.parent_path(), mission.scan.sensor)));
+}
+
+recording::ScanRoute route_of(const ScanVerbOptions& options, const file::Mission& mission,
+                              recording::Carrier carrier) {
+  if (options.route) return recording::read_scan_route(*options.route, mission, carrier);
+  if (mission.scan.route) {
+    return recording::read_scan_route(options.mission.parent_path() / *mission.scan.route, mission,
+                                      carrier);
+  }
+  return {recording::orbit_trajectory(mission.scan.orbit), {}};
+}
+
+Isometry3d turned(const Vector3d& position, const Vector3d& angles) {
+  Isometry3d pose = Isometry3d::Identity();
+  pose.translation() = position;
+  pose.linear() =
+      (AngleAxisd(angles.z(), Vector3d::UnitZ()) * AngleAxisd(angles.y(), Vector3d::UnitY()) *
+       AngleAxisd(angles.x(), Vector3d::UnitX()))
+          .toRotationMatrix();
+  return pose;
+}
+
+/// How the sensor sits on its carrier, and how the calibration says that it does.
+struct Mount {
+  Isometry3d real, believed;
+};
+
+Mount mount_of(const file::ScanConfig& scan) {
+  const Isometry3d real = turned(scan.mount_position, scan.mount_rotation);
+  Isometry3d believed = turned(Vector3d::Zero(), scan.boresight_error) * real;
+  believed.translation() = scan.mount_position + scan.lever_arm_error;
+  return {real, believed};
+}
+
+sim::Trajectory believed_by(const file::Mission& mission, const sim::Trajectory& flown) {
+  sim::NavigationErrors errors = mission.scan.navigation;
+  errors.seed = mission.seed;
+  return sim::believed_trajectory(flown, errors);
+}
+
+std::shared_ptr<const flight::UtmProjection> projection_of(const file::Mission& mission) {
+  if (mission.scan.crs == file::ScanCrs::local) return nullptr;
+  if (!derived::has_place(mission)) {
+    throw Error(ErrorKind::bad_config,
+                "scan.crs is utm, but the mission has no place; add site.latitude_deg and "
+                "site.longitude_deg, or say local");
+  }
+  return std::make_shared<const flight::UtmProjection>(derived::site_of(mission));
+}
+
+/// The sensor's poses as a TUM file.
+std::string sensor_tum(const sim::Trajectory& carrier, const Isometry3d& body_from_sensor) {
+  std::vector<flight::TimedPose> poses;
+  for (const sim::StampedPose& pose : carrier.poses()) {
+    poses.push_back({pose.time, carrier.pose(pose.time) * body_from_sensor});
+  }
+  return flight::write_tum(poses);
+}
+
+/// Shows how far a scan is, ten times a second at most.
+class ScanReport {
+ public:
+  ScanReport(ProgressLine& line, std::string name, double shots_in_firing)
+      : line_(line), name_(std::move(name)), shots_in_firing_(shots_in_firing) {}
+
+  void operator()(const recording::ScanProgress& progress) {
+    const Clock::time_point now = Clock::now();
+    if (now - shown_ < std::chrono::milliseconds(100)) return;
+    shown_ = now;
+    const double elapsed = std::chrono::duration<double>(now - start_).count();
+    const double share =
+        static_cast<double>(progress.firings) / static_cast<double>(progress.all_firings);
+    char text[160];
+    std::snprintf(text, sizeof text,
+                  "%s: %.1f %% flown, %.1f M points, %.1f M shots/s, %.0f s left", name_.c_str(),
+                  100.0 * share, 1e-6 * static_cast<double>(progress.points),
+                  1e-6 * shots_in_firing_ * static_cast<double>(progress.firings) / elapsed,
+                  elapsed * (1.0 - share) / share);
+    line_.show(text);
+  }
+
+ private:
+  ProgressLine& line_;
+  std::string name_;
+  double shots_in_firing_;
+  Clock::time_point start_ = Clock::now(), shown_;
+};
+
+struct OutputFile {
+  std::string name;
+  std::uint64_t bytes = 0;
+};
+
+std::vector<recording::CloudFile> open_files(const ScanVerbOptions& options,
+                                             const recording::CloudFormatContext& context,
+                                             geometry::OutputFolder& folder,
+                                             std::vector<OutputFile>& outputs) {
+  std::vector<recording::CloudFile> files;
+  const auto open = [&](const std::string& name, const auto& format,
+                        recording::ReturnPosition position) {
+    for (const OutputFile& output : outputs) {
+      if (output.name == name) {
+        throw Error(ErrorKind::bad_usage,
+                    "--format asks for two files " + name + "; leave one of the formats out");
+      }
+    }
+    outputs.push_back({name});
+    files.emplace_back(folder.stage(name), format, position);
+  };
+  for (const std::string& name : options.formats) {
+    const recording::CloudFormatInfo& info = recording::cloud_format_named(name);
+    const std::shared_ptr<const recording::CloudFormat> format = info.make(context);
+    open("scan" + info.ending, format, recording::ReturnPosition::reported);
+    if (options.with_truth)
+      open("scan_true" + info.ending, format, recording::ReturnPosition::true_one);
+  }
+  return files;
+}
+
+nlohmann::ordered_json scan_json(const file::Mission& mission, const std::string& sensor,
+                                 const recording::ScanResult& result, double shots, double flown,
+                                 double time, const std::vector<OutputFile>& outputs) {
+  nlohmann::ordered_json files = nlohmann::ordered_json::array();
+  for (const OutputFile& file : outputs) {
+    files.push_back({{"name", file.name}, {"bytes", file.bytes}});
+  }
+  const sim::NavigationErrors& navigation = mission.scan.navigation;
+  return {{"mission", mission.name},
+          {"sensor", sensor},
+          {"seed", mission.seed},
+          {"complete", result.is_complete},
+          {"flight_s", flown},
+          {"shots", static_cast<std::uint64_t>(shots)},
+          {"points", result.progress.points},
+          {"las_crs", mission.scan.crs == file::ScanCrs::utm ? "utm" : "local"},
+          {"simulation_s", time},
+          {"navigation",
+           {{"horizontal_sigma_m", navigation.horizontal_sigma},
+            {"vertical_sigma_m", navigation.vertical_sigma},
+            {"tilt_sigma_rad", navigation.tilt_sigma},
+            {"heading_sigma_rad", navigation.heading_sigma},
+            {"correlation_time_s", navigation.correlation_time}}},
+          {"files", files}};
+}
+
+int scan_with_laser(const ScanVerbOptions& options, const file::Mission& mission,
+                    const std::string& sensor_name, sim::LidarConfig config,
+                    geometry::OutputFolder& folder, const Console& console) {
+  config.seed = mission.seed;
+  const sim::Lidar lidar(config);
+  const recording::ScanRoute route = route_of(options, mission, recording::Carrier::airframe);
+  const sim::Trajectory believed = believed_by(mission, route.carrier);
+  const Mount mount = mount_of(mission.scan);
+  const sim::LidarFlight flight{route.carrier, believed, mount.real, mount.believed};
+  const std::shared_ptr<const flight::UtmProjection> projection = projection_of(mission);
+
+  ProgressLine progress(console, options.is_quiet);
+  progress.show(mission.name + ": making the scene ready");
+  const scene::ReflectingScene truth =
+      scene::reflecting_scene(mission.scene, options.mission.parent_path());
+  const sim::Scene scene = truth.scene(mission.threads);
+  std::vector<OutputFile> outputs;
+  std::vector<recording::CloudFile> files = open_files(
+      options, {sensor_name, config, flight, truth.centre(), projection}, folder, outputs);
+
+  const auto channels = static_cast<double>(config.channels.size());
+  const Clock::time_point start = Clock::now();
+  const recording::ScanResult result =
+      recording::run_scan(scene, lidar, flight, files,
+                          {.threads = mission.threads,
+                           .report = ScanReport(progress, mission.name, channels),
+                           .stop = console.stop});
+  for (std::size_t i = 0; i < files.size(); ++i) {
+    files[i].finish();
+    outputs[i].bytes = files[i].bytes();
+  }
+  const double time = std::chrono::duration<double>(Clock::now() - start).count();
+  folder.write("trajectory.tum", sensor_tum(route.carrier, mount.real));
+  folder.write("trajectory_believed.tum", sensor_tum(believed, mount.believed));
+  const auto firings = static_cast<double>(result.progress.firings);
+  const double shots = channels * firings, flown = firings * config.firing_period;
+  folder.write("scan.json", file::json_text(scan_json(mission, sensor_name, result, shots, flown,
+                                                      time, outputs)));
+  folder.commit();
+  progress.clear();
+
+  if (!options.is_quiet) {
+    char text[320];
+    std::snprintf(text, sizeof text,
+                  "%s: %s, %.1f s of flight%s\n"
+                  "  scan      %.2f M shots, %.2f M points in %.1f s, %.1f M shots/s\n",
+                  mission.name.c_str(), sensor_name.c_str(), flown,
+                  result.is_complete ? "" : ", interrupted", 1e-6 * shots,
+                  1e-6 * static_cast<double>(result.progress.points), time, 1e-6 * shots / time);
+    console.out << text << "  results   " << folder.path().string();
+    for (const OutputFile& file : outputs) {
+      std::snprintf(text, sizeof text, ", %s %.1f MB", file.name.c_str(),
+                    1e-6 * static_cast<double>(file.bytes));
+      console.out << text;
+    }
+    console.out << "\n" << std::flush;
+  }
+  return result.is_complete ? 0 : 1;
+}
+
+std::vector<double> image_times(const recording::ScanRoute& route, double period) {
+  if (!route.image_times.empty()) return route.image_times;
+  constexpr double rounding = 1e-9;
+  std::vector<double> times;
+  const double start = route.carrier.start(), duration = route.carrier.end() - start;
+  for (std::size_t i = 0; static_cast<double>(i) * period <= duration + rounding; ++i) {
+    times.push_back(start + static_cast<double>(i) * period);
+  }
+  return times;
+}
+
+int scan_with_camera(const ScanVerbOptions& options, const file::Mission& mission,
+                     const std::string& sensor_name, sim::DepthCameraConfig config,
+                     geometry::OutputFolder& folder, const Console& console) {
+  config.noise.seed = mission.seed;
+  const recording::ScanRoute route = route_of(options, mission, recording::Carrier::gimbal);
+  const sim::Trajectory believed = believed_by(mission, route.carrier);
+  const Mount mount = mount_of(mission.scan);
+  std::vector<recording::Frame> frames;
+  for (const double time : image_times(route, mission.scan.frame_period)) {
+    frames.push_back({time, route.carrier.pose(time) * mount.real * recording::body_from_camera(),
+                      believed.pose(time) * mount.believed * recording::body_from_camera()});
+  }
+  ProgressLine progress(console, options.is_quiet);
+  progress.show(mission.name + ": making the scene ready");
+  const sim::Scene scene =
+      scene::reflecting_scene(mission.scene, options.mission.parent_path()).scene(mission.threads);
+  const auto report = [&](std::size_t taken, std::size_t points) {
+    char text[160];
+    std::snprintf(text, sizeof text, "%s: image %zu of %zu, %.1f M points", mission.name.c_str(),
+                  taken, frames.size(), 1e-6 * static_cast<double>(points));
+    progress.show(text);
+  };
+  const bool has_rawlog = std::ranges::find(options.formats, "rawlog") != options.formats.end();
+  const Clock::time_point start = Clock::now();
+  const recording::FrameResult result =
+      recording::record_frames(scene, sim::DepthCamera(config), frames, folder,
+                               {.depth_unit = mission.scan.depth_unit,
+                                .has_rawlog = has_rawlog,
+                                .threads = mission.threads,
+                                .report = report,
+                                .stop = console.stop});
+  const double time = std::chrono::duration<double>(Clock::now() - start).count();
+  folder.commit();
+  progress.clear();
+  const bool is_complete = result.frames == frames.size();
+  if (!options.is_quiet) {
+    char text[256];
+    std::snprintf(text, sizeof text,
+                  "%s: %s%s\n  scan      %zu depth images, %.2f M points in %.1f s\n",
+                  mission.name.c_str(), sensor_name.c_str(), is_complete ? "" : ", interrupted",
+                  result.frames, 1e-6 * static_cast<double>(result.points), time);
+    console.out << text << "  results   " << folder.path().string() << "\n" << std::flush;
+  }
+  return is_complete ? 0 : 1;
+}
+
+}  // namespace
+
+int scan(const ScanVerbOptions& options, const Console& console) {
+  const file::Mission mission = file::read_mission(options.mission, options.overrides);
+  file::SensorDescription sensor = sensor_of(options, mission);
+  geometry::OutputFolder folder(
+      options.out.value_or(std::filesystem::path("results") / mission.name / "scan"));
+  if (auto* laser = std::get_if<sim::LidarConfig>(&sensor.sensor)) {
+    return scan_with_laser(options, mission, sensor.name, std::move(*laser), folder, console);
+  }
+  return scan_with_camera(options, mission, sensor.name,
+                          std::get<sim::DepthCameraConfig>(sensor.sensor), folder, console);
+}
+
+}  // namespace skycap::missions::verbs

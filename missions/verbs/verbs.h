@@ -1,0 +1,117 @@
+/// The verbs of the program. Each takes its options, writes to the console, and returns the exit
+/// code: 0 done, 1 the answer is "no". Bad input is thrown as Error.
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "missions/file/mission_reader.h"
+#include "missions/verbs/console.h"
+
+namespace skycap::missions::verbs {
+
+struct PlanOptions {
+  std::filesystem::path mission;
+  std::optional<std::filesystem::path> out;  ///< default: results/NAME
+  std::vector<file::KeyOverride> overrides;
+  std::size_t trials = 0;  ///< zero: one survey, with a mission package
+  bool is_quiet = false;
+  bool is_verbose = false;
+};
+
+/// Surveys a mission's scene in simulation and writes the mission package, or the trials' files.
+/// Exit code 1 if the survey was interrupted, could not go anywhere from its first view, or leaves
+/// no route.
+int plan(const PlanOptions& options, const Console& console);
+
+struct BenchmarkOptions {
+  std::vector<std::filesystem::path> missions;
+  std::vector<std::string> planners = {"all"};  ///< of contestants(), or "all"
+  std::size_t trials = 10;                      ///< of each planner on each mission
+  std::optional<std::filesystem::path> out;     ///< default: results/benchmark
+  std::vector<file::KeyOverride> overrides;
+  unsigned threads = 0;  ///< zero: all processors; a survey has one
+  bool is_quiet = false;
+};
+
+/// Compares planners on missions, as the paper does: surveys from the same starts, Tables 1 and 2,
+/// curves, plots. What an earlier run in the same folder has finished is not run again. Exit code 1
+/// if it was interrupted.
+int benchmark(const BenchmarkOptions& options, const Console& console);
+
+struct CheckOptions {
+  std::filesystem::path mission;
+  std::optional<std::filesystem::path> route;
+  std::vector<file::KeyOverride> overrides;
+};
+
+/// Checks a mission file and its scene; says what follows from it. With a route: proves that each
+/// of its legs keeps the mission's clearance from the scene, the ground and the site's rules; exit
+/// code 1, with a list, if one does not.
+int check(const CheckOptions& options, const Console& console);
+
+struct ExportOptions {
+  std::filesystem::path package;             ///< folder that plan() wrote
+  std::vector<std::string> formats;          ///< flight::formats() by name
+  std::optional<std::filesystem::path> out;  ///< folder; default: the package
+  std::vector<file::KeyOverride> overrides;
+};
+
+/// Plans a flight through the views of a finished survey and writes it in other formats, or for
+/// another vehicle. Exit code 1 if no view can be visited.
+int export_package(const ExportOptions& options, const Console& console);
+
+struct ScanVerbOptions {
+  std::filesystem::path mission;
+  std::optional<std::filesystem::path> route;  ///< in place of the mission's
+  std::optional<std::filesystem::path> out;    ///< default: results/NAME/scan
+  std::optional<std::string> sensor;           ///< in place of the mission's
+  /// Of a laser scanner's points; of a camera's images only "rawlog" counts, beside the PNG files.
+  std::vector<std::string> formats = {"las"};
+  bool with_truth = false;  ///< also where the surfaces really were
+  std::vector<file::KeyOverride> overrides;
+  bool is_quiet = false;
+};
+
+/// Flies a route in the simulator and records what the sensor measures on the way. Exit code 1 if
+/// the flight was interrupted.
+int scan(const ScanVerbOptions& options, const Console& console);
+
+struct EvaluateOptions {
+  std::filesystem::path cloud;     ///< either this
+  std::filesystem::path mesh;      ///< or this: a surface, by points spread over it
+  std::string model;               ///< builtin:NAME, model:NAME, a mesh, or a mission file
+  std::optional<double> distance;  ///< r_d; a mission file says its own
+  std::size_t samples = 100'000;
+  bool is_json = false;
+};
+
+/// Says how much of a model a cloud or a mesh covers, and how accurate it is.
+int evaluate(const EvaluateOptions& options, const Console& console);
+
+struct ReconstructOptions {
+  std::filesystem::path cloud;
+  std::optional<std::filesystem::path> out;  ///< default: CLOUD_mesh.ply beside the cloud
+  int depth = 0;
+  double spacing = 0.0;
+  double least_density = 0.2;
+  unsigned threads = 0;
+};
+
+/// Writes the surface of a cloud as a mesh (reconstruction.h).
+int reconstruct_cloud(const ReconstructOptions& options, const Console& console);
+
+struct ModelOptions {
+  std::string name;  ///< of a builtin or obtainable model, or a mission file
+  std::optional<std::filesystem::path> out;
+  std::optional<std::filesystem::path> render;
+  std::optional<std::string> detail;  ///< in place of scene.detail
+};
+
+/// Obtains a model if it is not on the machine, and writes or renders it.
+int model(const ModelOptions& options, const Console& console);
+
+}  // namespace skycap::missions::verbs

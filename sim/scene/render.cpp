@@ -1,0 +1,312 @@
+#include "sim/scene/render.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <numbers>
+#include <optional>
+#include <string>
+
+#include "geometry/error.h"
+#include "geometry/parallel.h"
+#include "sim/scene/scene.h"
+
+namespace skycap::sim {
+namespace {
+
+using Eigen::Vector2d;
+using Eigen::Vector3d;
+using geometry::Mesh;
+using std::numbers::pi;
+
+// Linear colours: sandstone, paving, and the light of sun, zenith, horizon and ground.
+const Vector3d stone(0.80, 0.71, 0.55);
+const Vector3d paving(0.42, 0.42, 0.38);
+const Vector3d sunlight(1.55, 1.42, 1.15);
+const Vector3d zenith(0.20, 0.36, 0.66);
+const Vector3d horizon(0.66, 0.76, 0.88);
+
+/// Numbers in [0, 1) that look random but depend on the sample only, so that any thread may draw
+/// it: the SplitMix64 sequence, seeded with the sample's place.
+class Dice {
+ public:
+  // The place is mixed too: neighbours must not draw the same sequence, shifted.
+  explicit Dice(std::uint64_t place) : state_(mixed(place + step)) {}
+  double operator()() {
+    state_ += step;
+    return static_cast<double>(mixed(state_) >> 11) * 0x1.0p-53;
+  }
+
+ private:
+  static constexpr std::uint64_t step = 0x9E3779B97F4A7C15ULL;
+  static std::uint64_t mixed(std::uint64_t z) {
+    z = (z ^ (z >> 30)) * 0xBF58476D1CE4E5B9ULL;
+    z = (z ^ (z >> 27)) * 0x94D049BB133111EBULL;
+    return z ^ (z >> 31);
+  }
+
+  std::uint64_t state_;
+};
+
+/// A unit vector about `normal`, with probability proportional to its cosine to it.
+Vector3d cosine_direction(const Vector3d& normal, double u, double v) {
+  const Vector3d right = geometry::any_orthogonal(normal), ahead = normal.cross(right);
+  const double angle = 2.0 * pi * u, radius = std::sqrt(v);
+  return radius * std::cos(angle) * right + radius * std::sin(angle) * ahead +
+         std::sqrt(1.0 - v) * normal;
+}
+
+Vector3d sky(const Vector3d& direction) {
+  const double height = std::clamp(direction.z(), 0.0, 1.0);
+  return horizon + std::sqrt(height) * (zenith - horizon);
+}
+
+/// The colour that a display shows: a soft shoulder for highlights, then the sRGB curve.
+Rgb display(const Vector3d& light) {
+  Rgb pixel;
+  for (int i = 0; i < 3; ++i) {
+    const double value = 1.0 - std::exp(-1.25 * light[i]);
+    const double coded =
+        value <= 0.0031308 ? 12.92 * value : 1.055 * std::pow(value, 1.0 / 2.4) - 0.055;
+    pixel[i] = static_cast<std::uint8_t>(std::lround(255.0 * std::clamp(coded, 0.0, 1.0)));
+  }
+  return pixel;
+}
+
+/// For every corner of every triangle the normal to shade with: the mean over the triangles round
+/// the vertex that are not bent away farther than the smoothing angle, weighted by area.
+std::vector<Eigen::Vector3f> corner_normals(const Mesh& mesh, double smoothing_angle) {
+  const std::size_t count = mesh.triangles.size();
+  std::vector<Eigen::Vector3f> areas(count);
+  std::vector<std::uint32_t> first(mesh.vertices.size() + 1, 0);
+  for (std::size_t t = 0; t < count; ++t) {
+    const auto& [a, b, c] = mesh.triangles[t];
+    areas[t] = (mesh.vertices[b] - mesh.vertices[a])
+                   .cross(mesh.vertices[c] - mesh.vertices[a])
+                   .cast<float>();
+    for (const std::uint32_t v : mesh.triangles[t]) ++first[v + 1];
+  }
+  for (std::size_t v = 0; v < mesh.vertices.size(); ++v) first[v + 1] += first[v];
+  std::vector<std::uint32_t> around(3 * count), fill(first.begin(), first.end() - 1);
+  for (std::size_t t = 0; t < count; ++t) {
+    for (const std::uint32_t v : mesh.triangles[t]) {
+      around[fill[v]++] = static_cast<std::uint32_t>(t);
+    }
+  }
+  const auto least_cosine = static_cast<float>(std::cos(smoothing_angle));
+  std::vector<Eigen::Vector3f> normals(3 * count);
+  for (std::size_t t = 0; t < count; ++t) {
+    for (std::size_t corner = 0; corner < 3; ++corner) {
+      const std::uint32_t v = mesh.triangles[t][corner];
+      Eigen::Vector3f sum = Eigen::Vector3f::Zero();
+      for (std::uint32_t i = first[v]; i < first[v + 1]; ++i) {
+        const Eigen::Vector3f& area = areas[around[i]];
+        if (area.dot(areas[t]) >= least_cosine * area.norm() * areas[t].norm()) sum += area;
+      }
+      normals[3 * t + corner] = sum.normalized();
+    }
+  }
+  return normals;
+}
+
+/// A scene with all that its shading needs.
+class Renderer {
+ public:
+  Renderer(const Mesh& mesh, const RenderOptions& options)
+      : mesh_(mesh),
+        options_(options),
+        scene_(mesh, options.threads),
+        normals_(corner_normals(mesh, options.smoothing_angle)) {
+    const Eigen::AlignedBox3d box = bounding_box(mesh);
+    size_ = box.diagonal().norm();
+    centre_ = box.center();
+    floor_ = box.min().z() - 1e-4 * size_;  // below a ground sheet of the mesh's own
+  }
+
+  void draw(const RenderView& view, int left, int top, Image& image) {
+    const Eigen::Isometry3d world_from_camera = camera_pose(view.view);
+    to_sun_ = sun_of(world_from_camera);
+    const double slope = std::tan(0.5 * view.horizontal_fov) / (0.5 * options_.width);
+    const auto draw_row = [&](std::size_t row) {
+      for (int column = 0; column < options_.width; ++column) {
+        const auto pixel = [&](double du, double dv) {
+          const Vector3d ray((column + du - 0.5 * options_.width) * slope,
+                             (static_cast<double>(row) + dv - 0.5 * options_.height) * slope, 1.0);
+          return Vector3d((world_from_camera.linear() * ray).normalized());
+        };
+        Dice dice(row * static_cast<std::uint64_t>(options_.width) + column);
+        const int side = options_.samples_per_side;
+        Vector3d sum = Vector3d::Zero();
+        for (int i = 0; i < side * side; ++i) {
+          const int row_in_pixel = i / side;
+          const Vector3d direction =
+              pixel((i % side + dice()) / side, (row_in_pixel + dice()) / side);
+          // Clipped before the mean: one glaring sample shall not outshine an edge.
+          sum += light_along(view.view.position, direction, dice).cwiseMin(2.5);
+        }
+        image.at(left + column, top + static_cast<int>(row)) = display(sum / (side * side));
+      }
+    };
+    geometry::parallel_for(static_cast<std::size_t>(options_.height), options_.threads, draw_row);
+  }
+
+ private:
+  Vector3d sun_of(const Eigen::Isometry3d& world_from_camera) const {
+    // The image's right is level, so that up x right is the way ahead on the ground.
+    const Vector3d right = world_from_camera.linear().col(0), up = Vector3d::UnitZ();
+    const Vector3d back = right.cross(up);
+    const Vector3d on_ground =
+        std::cos(options_.sun_to_the_left) * back - std::sin(options_.sun_to_the_left) * right;
+    return std::cos(options_.sun_elevation) * on_ground + std::sin(options_.sun_elevation) * up;
+  }
+
+  Vector3d light_along(const Vector3d& origin, const Vector3d& direction, Dice& dice) const {
+    const std::optional<Hit> hit = scene_.first_hit(origin, direction);
+    if (options_.has_floor && direction.z() < -1e-6 && origin.z() > floor_) {
+      const double distance = (floor_ - origin.z()) / direction.z();
+      if (!hit || distance < hit->distance) return floor_light(origin, direction, distance, dice);
+    }
+    if (!hit) return sky(direction);
+    const Vector3d point = origin + hit->distance * direction;
+    Vector3d normal = hit->normal;
+    if (normal.dot(direction) > 0.0) normal = -normal;  // the inner side of an open mesh
+    Vector3d smooth = smooth_normal(hit->triangle, point);
+    if (smooth.dot(normal) < 0.0) smooth = -smooth;
+    return stone.cwiseProduct(incoming(point, normal, smooth, dice));
+  }
+
+  Vector3d floor_light(const Vector3d& origin, const Vector3d& direction, double distance,
+                       Dice& dice) const {
+    const Vector3d point = origin + distance * direction;
+    const Vector3d up = Vector3d::UnitZ();
+    // The floor has no edge: it fades into the haze of the horizon.
+    const double away = (point - centre_).norm() / size_;
+    const double haze = 1.0 - std::exp(-0.01 * away * away);
+    if (haze > 0.99) return horizon;
+    return (1.0 - haze) * paving.cwiseProduct(incoming(point, up, up, dice)) + haze * horizon;
+  }
+
+  Vector3d smooth_normal(std::uint32_t triangle, const Vector3d& point) const {
+    const auto& [ia, ib, ic] = mesh_.triangles[triangle];
+    const Vector3d &a = mesh_.vertices[ia], &b = mesh_.vertices[ib], &c = mesh_.vertices[ic];
+    const Vector3d area = (b - a).cross(c - a);
+    // Barycentric weights, kept within the triangle against rounding.
+    const double wb = std::clamp((point - a).cross(c - a).dot(area) / area.squaredNorm(), 0.0, 1.0);
+    const double wc = std::clamp((b - a).cross(point - a).dot(area) / area.squaredNorm(), 0.0, 1.0);
+    const std::size_t first = 3 * static_cast<std::size_t>(triangle);
+    const Eigen::Vector3f normal = static_cast<float>(1.0 - wb - wc) * normals_[first] +
+                                   static_cast<float>(wb) * normals_[first + 1] +
+                                   static_cast<float>(wc) * normals_[first + 2];
+    return normal.cast<double>().normalized();
+  }
+
+  /// The light that arrives at a surface: from the sun unless something is in the way, from the
+  /// open sky, and a little thrown back by what covers the rest of it.
+  Vector3d incoming(const Vector3d& point, const Vector3d& normal, const Vector3d& smooth,
+                    Dice& dice) const {
+    const Vector3d start = point + 2e-5 * size_ * normal;
+    const double sine = smooth.dot(to_sun_);
+    Vector3d light = Vector3d::Zero();
+    if (sine > 0.0 && normal.dot(to_sun_) > 0.0) {
+      // The sun as a disc of a degree or so, for soft edges of shadows.
+      const Vector3d wobble(dice() - 0.5, dice() - 0.5, dice() - 0.5);
+      const Vector3d to_sun = to_sun_ + 0.015 * wobble;
+      if (!scene_.is_blocked(start, start + 2.0 * size_ * to_sun)) light += sine * sunlight;
+    }
+    for (int i = 0; i < options_.sky_rays; ++i) {
+      // Strata in u keep the few rays apart.
+      const double u = (i + dice()) / options_.sky_rays, v = dice();
+      const Vector3d direction = cosine_direction(smooth, u, v);
+      const bool is_open = direction.dot(normal) > 0.0 &&
+                           (direction.z() > 0.0 || !options_.has_floor) &&
+                           !scene_.is_blocked(start, start + 2.0 * size_ * direction);
+      const Vector3d from_there = is_open ? sky(direction) : 0.18 * stone;
+      light += from_there / options_.sky_rays;
+    }
+    return light;
+  }
+
+  const Mesh& mesh_;
+  const RenderOptions& options_;
+  Scene scene_;
+  std::vector<Eigen::Vector3f> normals_;
+  Vector3d to_sun_ = Vector3d::UnitZ();
+  Vector3d centre_;
+  double size_, floor_;
+};
+
+/// The view along `direction` from just so far that all vertices are in the picture.
+RenderView view_of_all(const Mesh& mesh, const Vector3d& direction, double horizontal_fov,
+                       double aspect) {
+  const Vector3d centre = bounding_box(mesh).center();
+  const Eigen::Matrix3d camera_from_world =
+      geometry::camera_pose({centre, direction.normalized()}).linear().transpose();
+  const double slope = 0.95 * std::tan(0.5 * horizontal_fov);  // leaves a margin
+  double distance = 0.0;
+  for (const auto& triangle : mesh.triangles) {
+    for (const std::uint32_t v : triangle) {
+      const Vector3d point = camera_from_world * (mesh.vertices[v] - centre);
+      const double width = std::max(std::abs(point.x()), aspect * std::abs(point.y()));
+      distance = std::max(distance, width / slope - point.z());
+    }
+  }
+  return {{centre - distance * direction.normalized(), direction.normalized()}, horizontal_fov};
+}
+
+void require(bool is_right, const std::string& field, double value, const std::string& demand) {
+  if (is_right) return;
+  throw Error(ErrorKind::bad_config,
+              field + " is " + std::to_string(value) + "; it must be " + demand);
+}
+
+}  // namespace
+
+void RenderOptions::validate() const {
+  const auto in_range = [](int value, int most) { return value >= 1 && value <= most; };
+  require(in_range(width, 16384), "width", width, "from 1 to 16384 pixels");
+  require(in_range(height, 16384), "height", height, "from 1 to 16384 pixels");
+  require(in_range(columns, 16), "columns", columns, "from 1 to 16");
+  require(in_range(samples_per_side, 64), "samples_per_side", samples_per_side, "from 1 to 64");
+  require(in_range(sky_rays, 1024), "sky_rays", sky_rays, "from 1 to 1024");
+  require(sun_elevation > 0.0 && sun_elevation < 0.5 * pi, "sun_elevation", sun_elevation,
+          "between 0 and pi/2 radians");
+}
+
+std::vector<RenderView> standard_views(const Mesh& mesh, double aspect) {
+  geometry::validate(mesh);
+  const double fov = 35.0 * pi / 180.0;
+  std::vector<RenderView> views{view_of_all(mesh, {0.0, -1.0, -0.04}, fov, aspect),
+                                view_of_all(mesh, {0.80, 0.60, -0.25}, fov, aspect),
+                                view_of_all(mesh, {0.62, 0.70, -0.85}, fov, aspect)};
+  // The detail: the second view through a longer lens, at a third of the height.
+  RenderView detail = views[1];
+  const Eigen::AlignedBox3d box = bounding_box(mesh);
+  Vector3d target = box.center();
+  target.z() = box.min().z() + 0.36 * box.sizes().z();
+  detail.view = geometry::look_at(detail.view.position, target);
+  detail.horizontal_fov = fov / 2.8;
+  views.push_back(detail);
+  return views;
+}
+
+Image render(const Mesh& mesh, std::span<const RenderView> views, const RenderOptions& options) {
+  options.validate();
+  Renderer renderer(mesh, options);
+  const int count = static_cast<int>(views.size());
+  const int columns = std::min(options.columns, count);
+  const int rows = columns == 0 ? 0 : (count + columns - 1) / columns;
+  Image image{columns * options.width, rows * options.height, {}};
+  image.pixels.resize(static_cast<std::size_t>(image.width) * image.height, Rgb{255, 255, 255});
+  for (int i = 0; i < count; ++i) {
+    renderer.draw(views[i], i % columns * options.width, i / columns * options.height, image);
+  }
+  return image;
+}
+
+Image render(const Mesh& mesh, const RenderOptions& options) {
+  options.validate();
+  const double aspect = static_cast<double>(options.width) / options.height;
+  return render(mesh, standard_views(mesh, aspect), options);
+}
+
+}  // namespace skycap::sim

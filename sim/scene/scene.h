@@ -1,0 +1,88 @@
+/// A scene made ready for ray casting: the truth, which only `sim/` and the evaluation may ask.
+///
+/// Embree works in single precision, so the mesh is moved to around the origin of its own frame in
+/// double precision first; every query takes and gives world coordinates. No ray slips between
+/// triangles that share an edge or a vertex (scene_embree.h says how).
+#pragma once
+
+#include <cstdint>
+#include <limits>
+#include <memory>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include <Eigen/Geometry>
+
+#include "geometry/surfaces/mesh.h"
+
+namespace skycap::sim {
+
+/// Where a ray first meets the scene.
+struct Hit {
+  double distance;         ///< along the ray, in units of its direction's length
+  std::uint32_t triangle;  ///< index into the mesh's triangles
+  Eigen::Vector3d normal;  ///< unit normal of that triangle, by its orientation
+};
+
+/// A mesh of a scene, once or several times; all of it is the caller's.
+struct ScenePart {
+  const geometry::Mesh& mesh;
+  /// Diffuse reflectance of each triangle, in [0, 1], at the laser's wavelength; none: the default.
+  std::span<const float> reflectances;
+  /// world_from_mesh of each copy, turned and shifted but not scaled; none: once, as it is.
+  std::span<const Eigen::Isometry3d> places;
+};
+
+/// Immutable; safe to query from any number of threads.
+class Scene {
+ public:
+  /// Of surfaces about which nothing is known: between asphalt and bright stone.
+  static constexpr float default_reflectance = 0.4F;
+
+  /// Builds the ray-casting structure on `threads` threads (zero: all processors). Keeps no
+  /// reference to `mesh`. Throws what geometry::validate() throws.
+  explicit Scene(const geometry::Mesh& mesh, unsigned threads = 0);
+  /// The same with the diffuse reflectance of each triangle, in [0, 1], at the laser's wavelength.
+  /// Throws Error{bad_geometry} if their number is not that of the triangles.
+  Scene(const geometry::Mesh& mesh, std::span<const float> reflectances, unsigned threads = 0);
+  /// Several meshes, each any number of times: copies take no memory to speak of. Triangles are
+  /// numbered as if every copy of every part had been appended to one mesh, in that order, and rays
+  /// meet what they would meet of that mesh, but for rounding. Throws the same, also when there
+  /// is no part.
+  explicit Scene(std::span<const ScenePart> parts, unsigned threads = 0);
+  Scene(Scene&&) noexcept;
+  Scene& operator=(Scene&&) noexcept;
+  ~Scene();
+
+  /// The first surface that the ray from `origin` along `direction` (of any length) meets at a
+  /// distance in [0, max_distance]. Exact to single precision of the scene's extent.
+  std::optional<Hit> first_hit(const Eigen::Vector3d& origin, const Eigen::Vector3d& direction,
+                               double max_distance = std::numeric_limits<double>::infinity()) const;
+
+  /// Whether a surface cuts the segment between two points, its ends included. To ask whether a
+  /// point of the surface is visible, end the segment a little before it. Of segments aimed exactly
+  /// at a vertex one in a thousand may slip through.
+  bool is_blocked(const Eigen::Vector3d& from, const Eigen::Vector3d& to) const;
+
+  /// Diffuse reflectance of a triangle, in [0, 1].
+  float reflectance(std::uint32_t triangle) const {
+    return reflectances_.empty() ? default_reflectance : reflectances_[own_triangle(triangle)];
+  }
+
+  /// Whether triangles have reflectances of their own.
+  bool has_reflectances() const { return !reflectances_.empty(); }
+
+  /// What the sensors in this folder trace through; defined in scene_embree.h, for sources only.
+  struct Embree;
+  const Embree& embree() const { return *embree_; }
+
+ private:
+  // The triangle, among those of all parts without their copies, that a hit is on.
+  std::size_t own_triangle(std::uint32_t triangle) const;
+
+  std::unique_ptr<Embree> embree_;
+  std::vector<float> reflectances_;  // of each part's triangles; empty: all the default
+};
+
+}  // namespace skycap::sim

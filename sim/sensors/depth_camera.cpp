@@ -1,0 +1,332 @@
+#include "sim/sensors/depth_camera.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <cstring>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <sstream>
+#include <utility>
+#include <vector>
+
+#include "geometry/error.h"
+#include "geometry/parallel.h"
+#include "sim/scene/scene_embree.h"
+#include "sim/sensors/vector_kernels.h"
+
+namespace skycap::sim {
+namespace {
+
+using Eigen::Vector3d;
+using Eigen::Vector3f;
+using geometry::Scan;
+
+constexpr double degree = std::numbers::pi / 180.0;
+constexpr int packet_columns = 4;  // a packet covers 4 columns of 4, 2 or 1 rows
+constexpr int tile_columns = 32;   // packets are cast tile by tile: neighbours share cached nodes
+constexpr int band_rows = 32;      // a band of tiles is one thread's piece of work
+constexpr int noise_block = 32;
+constexpr float no_return = -1.0F;
+constexpr std::uint32_t stereo_stream = 3;  // 0, 1, 2: x, y, z of the points' noise
+
+int round_up(int value, int multiple) { return (value + multiple - 1) / multiple * multiple; }
+
+// The rays of a whole image, in world axes and of depth 1, are sums of a column's and a row's part.
+struct RayTable {
+  int width, height;
+  int stride;  // columns are padded with copies of the last to whole packets
+  std::array<std::vector<float>, 3> columns;
+  std::array<std::vector<float>, 3> rows;
+  Vector3f origin;  // in the frame of Embree's scene
+
+  RayTable(const geometry::Camera& camera, const Eigen::Isometry3d& world_from_camera,
+           const Vector3d& scene_centre)
+      : width(camera.width()),
+        height(camera.height()),
+        stride(round_up(width, noise_block)),
+        origin((world_from_camera.translation() - scene_centre).cast<float>()) {
+    const Eigen::Matrix3d axes = world_from_camera.linear();
+    for (int axis = 0; axis < 3; ++axis) {
+      for (int x = 0; x < stride; ++x) {
+        const double slope = camera.ray({std::min(x, width - 1), 0}).x();
+        columns[axis].push_back(static_cast<float>(slope * axes(axis, 0) + axes(axis, 2)));
+      }
+      for (int y = 0; y < round_up(height, band_rows); ++y) {
+        const double slope = camera.ray({0, std::min(y, height - 1)}).y();
+        rows[axis].push_back(static_cast<float>(slope * axes(axis, 1)));
+      }
+    }
+  }
+};
+
+void require(bool holds, const char* field, double value, const char* rule) {
+  if (holds) return;
+  std::ostringstream message;
+  message << "sensor." << field << " is " << value << "; it must be " << rule;
+  throw Error(ErrorKind::bad_config, message.str());
+}
+
+// What decides whether a hit is a return.
+struct Limits {
+  float min_depth, max_depth;
+  float min_cosine;  // of the angle of incidence; zero: no limit
+};
+
+float min_cosine_of(double max_incidence) {
+  return max_incidence < 0.5 * std::numbers::pi ? static_cast<float>(std::cos(max_incidence))
+                                                : 0.0F;
+}
+
+template <int width>
+void aim(const RayTable& table, int first_column, int first_row, Packet<width>& packet) {
+  float* const directions[] = {packet.rays.ray.dir_x, packet.rays.ray.dir_y, packet.rays.ray.dir_z};
+  for (int axis = 0; axis < 3; ++axis) {
+    const float* const column = table.columns[axis].data() + first_column;
+    const float* const row = table.rows[axis].data() + first_row;
+    FourFloats columns;
+    std::memcpy(&columns, column, sizeof columns);
+    for (int y = 0; y < width / packet_columns; ++y) {
+      const FourFloats sum = columns + row[y];
+      std::memcpy(directions[axis] + y * packet_columns, &sum, sizeof sum);
+    }
+  }
+}
+
+template <int width>
+bool is_too_slanted(const Packet<width>& packet, int lane, float min_cosine) {
+  const auto& ray = packet.rays.ray;
+  const auto& hit = packet.rays.hit;
+  const Vector3f direction(ray.dir_x[lane], ray.dir_y[lane], ray.dir_z[lane]);
+  const Vector3f normal(hit.Ng_x[lane], hit.Ng_y[lane], hit.Ng_z[lane]);
+  return std::abs(direction.dot(normal)) < min_cosine * direction.norm() * normal.norm();
+}
+
+template <int width>
+void store_depths(const Packet<width>& packet, const Limits& limits, std::ptrdiff_t stride,
+                  float* depths) {
+  const FourFloats none = FourFloats{} + no_return;
+  for (int row = 0; row < width / packet_columns; ++row) {
+    const int lane = row * packet_columns;
+    const auto reached = four<FourFloats>(packet.rays.ray.tfar + lane);
+    const FourFloats hit = packet.is_hit_4(lane) ? reached : none;
+    const FourFloats depth = hit < limits.min_depth ? none : hit;
+    std::memcpy(depths + row * stride, &depth, sizeof depth);
+  }
+  if (limits.min_cosine <= 0.0F) return;
+  for (int lane = 0; lane < width; ++lane) {
+    if (packet.is_hit(lane) && is_too_slanted(packet, lane, limits.min_cosine)) {
+      depths[lane / packet_columns * stride + lane % packet_columns] = no_return;
+    }
+  }
+}
+
+// Casts the rays of one band, whose depths go to `depths`, row by row with the table's stride. Rays
+// of the padding are cast like the others, being copies, and their depths are never read.
+template <int width>
+void cast_band(const Scene::Embree& embree, const RayTable& table, const Limits& limits,
+               int first_row, float* depths) {
+  Packet<width> packet;
+  for (int lane = 0; lane < width; ++lane) {
+    packet.rays.ray.org_x[lane] = table.origin.x();
+    packet.rays.ray.org_y[lane] = table.origin.y();
+    packet.rays.ray.org_z[lane] = table.origin.z();
+  }
+  const int rows = std::min(band_rows, table.height - first_row);
+  const std::ptrdiff_t stride = table.stride;
+  for (int tile = 0; tile < table.width; tile += tile_columns) {
+    const int tile_end = std::min(tile + tile_columns, table.width);
+    for (int row = 0; row < rows; row += width / packet_columns) {
+      for (int column = tile; column < tile_end; column += packet_columns) {
+        aim(table, column, first_row + row, packet);
+        packet.cast(embree, limits.max_depth);
+        store_depths(packet, limits, stride, depths + row * stride + column);
+      }
+    }
+  }
+}
+
+// Gives each band its place in the scan. Bands are cast in any order but their points lie one after
+// the other, so a band has to wait until those before it are counted.
+class BandPlaces {
+ public:
+  struct Place {
+    std::size_t band;
+    std::size_t first_point;
+  };
+
+  explicit BandPlaces(std::size_t bands) : returns_(bands) {}
+
+  /// Counts a band; gives the bands, if any, whose place this makes known.
+  std::vector<Place> count(std::size_t band, std::size_t returns) {
+    const std::lock_guard lock(mutex_);
+    returns_[band] = returns;
+    std::vector<Place> known;
+    for (; next_ < returns_.size() && returns_[next_]; ++next_) {
+      known.push_back({next_, points_});
+      points_ += *returns_[next_];
+    }
+    return known;
+  }
+
+  /// The number of points of all placed bands.
+  std::size_t points() const { return points_; }
+
+ private:
+  std::mutex mutex_;
+  std::vector<std::optional<std::size_t>> returns_;
+  std::size_t next_ = 0;
+  std::size_t points_ = 0;
+};
+
+// Replaces the depths of one band by those that triangulation gives.
+void add_stereo_errors(const RayTable& table, const StereoErrors& stereo, const NoiseKey& key,
+                       int first_row, float* depths) {
+  const auto product = static_cast<float>(stereo.focal_length_px * stereo.baseline);
+  const auto sigma = static_cast<float>(stereo.disparity_sigma_px);
+  const auto step = static_cast<float>(stereo.disparity_step_px);
+  std::vector<float> normals(table.stride);
+  for (int y = first_row; y < std::min(first_row + band_rows, table.height); ++y) {
+    float* const row = depths + static_cast<std::size_t>(y - first_row) * table.stride;
+    fill_normals(key, static_cast<std::uint32_t>(y) * table.stride, normals);
+    for (int x = 0; x < table.width; ++x) {
+      if (row[x] <= 0.0F) continue;
+      float disparity = product / row[x] + sigma * normals[x];
+      if (step > 0.0F) disparity = std::round(disparity / step) * step;
+      row[x] = disparity > 0.0F ? product / disparity : no_return;
+    }
+  }
+}
+
+std::size_t count_returns(const RayTable& table, int first_row, const float* depths) {
+  const int rows = std::min(band_rows, table.height - first_row);
+  std::size_t returns = 0;
+  for (int row = 0; row < rows; ++row) {
+    const float* const row_depths = depths + static_cast<std::size_t>(row) * table.stride;
+    FourInts in_row = {};
+    int x = 0;
+    for (; x + 4 <= table.width; x += 4) {
+      FourFloats some;
+      std::memcpy(&some, row_depths + x, sizeof some);
+      in_row -= some >= 0.0F;
+    }
+    for (; x < table.width; ++x) in_row[0] += row_depths[x] >= 0.0F ? 1 : 0;
+    returns += sum(in_row);
+  }
+  return returns;
+}
+
+// What the kernel needs to know to turn any row of depths into points.
+PinholeRow row_template(const RayTable& table, const Vector3d& position, const NoiseConfig& noise,
+                        std::uint64_t frame) {
+  PinholeRow row{};
+  row.width = static_cast<std::size_t>(table.width);
+  for (int axis = 0; axis < 3; ++axis) {
+    row.column[axis] = table.columns[axis].data();
+    row.origin[axis] = static_cast<float>(position[axis]);
+    row.noise_keys[axis] = noise_key(noise.seed, axis, frame);
+  }
+  row.sigma = static_cast<float>(noise.sigma);
+  row.noise_direction = noise.direction;
+  return row;
+}
+
+// Writes the points of one band's depths to their place.
+void emit_band(const RayTable& table, PinholeRow row, int first_row, const float* depths,
+               std::size_t first_point, Scan& scan) {
+  static_assert(sizeof(Vector3f) == 3 * sizeof(float));
+  std::size_t next = first_point;
+  for (int y = first_row; y < std::min(first_row + band_rows, table.height); ++y) {
+    row.depth = depths + static_cast<std::size_t>(y - first_row) * table.stride;
+    for (int axis = 0; axis < 3; ++axis) row.row[axis] = table.rows[axis][y];
+    row.first_pixel = static_cast<std::uint32_t>(y) * table.width;
+    row.noise_index = static_cast<std::uint32_t>(y) * table.stride;
+    if (next == scan.points.size()) return;  // no returns are left
+    next += vector_kernels().emit_row(row, scan.points[next].data(), &scan.pixels[next]);
+  }
+}
+
+}  // namespace
+
+void DepthCameraConfig::validate() const {
+  camera.validate();
+  noise.validate();
+  require(max_incidence > 0.0 && max_incidence <= 0.5 * std::numbers::pi, "max_incidence",
+          max_incidence, "greater than 0 and at most pi/2 radians");
+  require(stereo.disparity_sigma_px >= 0.0 && std::isfinite(stereo.disparity_sigma_px),
+          "stereo.disparity_sigma_px", stereo.disparity_sigma_px, "zero or more pixels");
+  require(stereo.disparity_step_px >= 0.0 && std::isfinite(stereo.disparity_step_px),
+          "stereo.disparity_step_px", stereo.disparity_step_px, "zero or more pixels");
+  const double product = stereo.focal_length_px * stereo.baseline;
+  require(!stereo.is_on() || (product > 0.0 && std::isfinite(product)),
+          "stereo.focal_length_px * baseline", product, "greater than zero");
+}
+
+DepthCameraConfig d435() {
+  return {.camera = {.width = 848,
+                     .height = 480,
+                     .horizontal_fov = 69.4 * degree,
+                     .vertical_fov = 42.5 * degree},
+          .noise = {.sigma = 0.01}};
+}
+
+DepthCameraConfig high_resolution() {
+  return {.camera = {.width = 2400,
+                     .height = 1750,
+                     .horizontal_fov = 60.0 * degree,
+                     .vertical_fov = 40.0 * degree},
+          .noise = {.sigma = 0.01}};
+}
+
+DepthCamera::DepthCamera(const DepthCameraConfig& config)
+    : config_(config), camera_(config.camera) {
+  config.validate();
+}
+
+Scan DepthCamera::scan(const Scene& scene, const Eigen::Isometry3d& world_from_camera,
+                       std::uint64_t frame, unsigned threads, Scan recycled) const {
+  const Scene::Embree& embree = scene.embree();
+  const RayTable table(camera_, world_from_camera, embree.centre);
+  const Limits limits = {static_cast<float>(config_.camera.min_range),
+                         static_cast<float>(config_.camera.max_range),
+                         min_cosine_of(config_.max_incidence)};
+  const PinholeRow row = row_template(table, world_from_camera.translation(), config_.noise, frame);
+
+  Scan scan = std::move(recycled);
+  scan.world_from_sensor = world_from_camera;
+  const auto pixels = static_cast<std::size_t>(table.width) * table.height;
+  scan.points.resize(pixels);
+  scan.pixels.resize(pixels);
+  const std::size_t band_size = static_cast<std::size_t>(table.stride) * band_rows;
+  const std::size_t bands = round_up(table.height, band_rows) / band_rows;
+  const auto depths = std::make_unique_for_overwrite<float[]>(bands * band_size);
+  BandPlaces places(bands);
+  geometry::parallel_for(bands, threads, [&](std::size_t band) {
+    const int first_row = static_cast<int>(band) * band_rows;
+    float* const band_depths = depths.get() + band * band_size;
+    with_packet_width(embree, [&]<int width>() {
+      cast_band<width>(embree, table, limits, first_row, band_depths);
+    });
+    if (config_.stereo.is_on()) {
+      const NoiseKey key = noise_key(config_.noise.seed, stereo_stream, frame);
+      add_stereo_errors(table, config_.stereo, key, first_row, band_depths);
+    }
+    const std::size_t returns = count_returns(table, first_row, band_depths);
+    for (const auto& [known, first_point] : places.count(band, returns)) {
+      emit_band(table, row, static_cast<int>(known) * band_rows, depths.get() + known * band_size,
+                first_point, scan);
+    }
+  });
+  scan.points.resize(places.points());
+  scan.pixels.resize(places.points());
+  return scan;
+}
+
+Scan DepthCamera::scan(const Scene& scene, const geometry::View& view, std::uint64_t frame,
+                       unsigned threads, Scan recycled) const {
+  return scan(scene, geometry::camera_pose(view), frame, threads, std::move(recycled));
+}
+
+}  // namespace skycap::sim

@@ -1,0 +1,475 @@
+#include "sim/sensors/lidar.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "sim/sensors/echo.h"
+#include "sim/sensors/lidar_rays.h"
+#include "sim/sensors/noise.h"
+#include "sim/sensors/scan_pattern.h"
+
+namespace skycap::sim {
+namespace {
+
+using Eigen::Isometry3d;
+using Eigen::Vector3d;
+using Eigen::Vector3f;
+
+enum Stream : std::uint32_t { bias_stream, azimuth_stream, elevation_stream, range_stream };
+
+}  // namespace
+
+struct Lidar::Impl {
+  explicit Impl(const LidarConfig& given)
+      : config((given.validate(), given)),
+        pattern(config),
+        beam(beam_samples(config.beam.rings)),
+        min_range(static_cast<float>(config.min_range)),
+        has_constant_sigma(config.errors.sigma_per_metre == 0.0 &&
+                           config.errors.sigma_per_square_metre == 0.0 &&
+                           config.errors.incidence_power == 0.0) {
+    for (const BeamSample& sample : beam) {
+      const double across = 0.5 * config.beam.divergence_horizontal * sample.horizontal;
+      const double above = 0.5 * config.beam.divergence_vertical * sample.vertical;
+      const double length = std::sqrt(1.0 + across * across + above * above);
+      beam_along.push_back(static_cast<float>(1.0 / length));
+      beam_across.push_back(static_cast<float>(across / length));
+      beam_above.push_back(static_cast<float>(above / length));
+    }
+    for (const Channel& channel : config.channels) {
+      delay_shares.push_back(static_cast<float>(channel.delay / config.firing_period));
+    }
+    std::vector<float> normals(config.channels.size());
+    fill_normals(noise_key(config.seed, bias_stream, 0), 0, normals);
+    for (const float normal : normals) {
+      biases.push_back(static_cast<float>(config.errors.channel_bias_sigma) * normal);
+    }
+  }
+
+  LidarConfig config;
+  ScanPattern pattern;
+  std::vector<BeamSample> beam;
+  std::vector<float> beam_along, beam_across, beam_above;  // its unit rays, in the beam's frame
+  float min_range;
+  bool has_constant_sigma;
+  std::vector<float> biases;        // of each channel
+  std::vector<float> delay_shares;  // of each channel's delay in the firing period
+};
+
+namespace {
+
+/// The n-th echo of every shot of a block, slot by slot.
+struct EchoRow {
+  std::vector<float> range, cosine, intensity;
+  std::vector<std::uint32_t> triangle;
+
+  void resize(std::size_t slots) {
+    range.resize(slots);
+    cosine.resize(slots);
+    intensity.resize(slots);
+    triangle.resize(slots);
+  }
+};
+
+/// What a block of firings needs on its way. Every thread keeps one, so that a short scan does not
+/// begin with asking for memory.
+struct BlockBuffers {
+  BlockPoses poses, believed;
+  Shots shots;
+  Rays shots_rays;     // the axes of the shots as they were
+  Rays reported_rays;  // and as the sensor and its carrier believe; only if they differ
+  Rays beam_rays;      // of beams with a width
+  Hits hits;
+  std::vector<float> azimuth_noise, elevation_noise;
+  std::vector<std::vector<float>> range_noise;  // for each return of a shot
+  std::vector<RayHit> beam_hits;
+  std::vector<Echo> echoes;
+  std::vector<EchoRow> echo_rows;
+  std::vector<int> counts;  // of the echoes in each slot
+};
+
+BlockBuffers& buffers_of_thread() {
+  static thread_local BlockBuffers buffers;
+  return buffers;
+}
+
+// Measures one block after another. Slots are gone through in fours: the same channel in four
+// consecutive firings.
+class BlockMeasurement {
+ public:
+  BlockMeasurement(const Lidar::Impl& lidar, const Scene& scene, const LidarFlight& flight,
+                   LidarReturns& returns)
+      : lidar_(lidar),
+        config_(lidar.config),
+        scene_(scene),
+        flight_(flight),
+        returns_(returns),
+        origin_(scene.embree().centre),
+        has_own_belief_(&flight.flown != &flight.believed ||
+                        !flight.body_from_sensor.isApprox(flight.believed_body_from_sensor, 0.0)) {}
+
+  void measure(std::uint64_t block, std::uint32_t first, std::uint32_t end) {
+    const double start = flight_.flown.start() +
+                         static_cast<double>(block * firings_in_block) * config_.firing_period;
+    poses_ =
+        block_poses(flight_.flown, flight_.body_from_sensor, start, config_.firing_period, origin_);
+    if (has_own_belief_) {
+      believed_ = block_poses(flight_.believed, flight_.believed_body_from_sensor, start,
+                              config_.firing_period, origin_);
+    }
+    lidar_.pattern.aim(block, shots_);
+    draw_noise(block);
+    place(poses_, shots_rays_);
+    cast(first, end);
+    if (lidar_.beam.size() == 1) {
+      find_echoes_of_rays();
+    } else {
+      find_echoes_of_beams();
+    }
+    if (has_own_belief_) place(believed_, reported_rays_);
+    report(start);
+  }
+
+  /// Cuts off what an earlier use of the returns has left.
+  void finish() { resize(next_); }
+
+ private:
+  // The rays of all shots in the world.
+  void place(const BlockPoses& poses, Rays& rays) const {
+    rays.resize(lidar_.pattern.slots());
+    for (std::uint32_t firing = 0; firing < firings_in_block; firing += 4) {
+      const FourPoses now(poses, firing), next(poses, firing + 1);
+      FourPoses later = now;
+      for (std::size_t channel = 0; channel < config_.channels.size(); ++channel) {
+        const std::size_t slot = lidar_.pattern.slot(firing, channel);
+        const float share = lidar_.delay_shares[channel];
+        if (share != 0.0F) later = delayed(now, next, share);
+        const FourPoses& at = share == 0.0F ? now : later;
+        FourFloats vector[3], placed[3];
+        for (int axis = 0; axis < 3; ++axis) {
+          std::memcpy(&vector[axis], &shots_.direction[axis][slot], sizeof vector[axis]);
+        }
+        at.rotate(vector, placed);
+        for (int axis = 0; axis < 3; ++axis) {
+          put_four(&rays.direction[axis][slot], placed[axis]);
+          std::memcpy(&vector[axis], &shots_.origin[axis][slot], sizeof vector[axis]);
+        }
+        at.rotate(vector, placed);
+        at.shift(placed);
+        for (int axis = 0; axis < 3; ++axis) put_four(&rays.origin[axis][slot], placed[axis]);
+      }
+    }
+  }
+
+  Vector3f up(const BlockPoses& poses, std::size_t firing) const {
+    return {poses.entries[2][firing], poses.entries[5][firing], poses.entries[8][firing]};
+  }
+
+  void cast(std::uint32_t first, std::uint32_t end) {
+    const std::size_t samples = lidar_.beam.size();
+    hits_.resize(lidar_.pattern.slots() * samples);
+    if (samples > 1) beam_rays_.resize(lidar_.pattern.slots() * samples);
+    std::size_t slot = 0;
+    for (std::uint32_t four = 0; four < firings_in_block; four += 4) {
+      for (std::size_t channel = 0; channel < config_.channels.size(); ++channel) {
+        for (std::uint32_t firing = four; firing < four + 4; ++firing, ++slot) {
+          const bool is_cast = shots_.is_shot[slot] != 0 && firing >= first && firing < end;
+          if (samples == 1) {
+            hits_.active[slot] = is_cast ? -1 : 0;
+            continue;
+          }
+          std::fill_n(hits_.active.data() + slot * samples, samples, is_cast ? -1 : 0);
+          if (is_cast) spread_beam(firing, slot);
+        }
+      }
+    }
+    with_packet_width(scene_.embree(), [&]<int width>() {
+      cast_rays<width>(scene_.embree(), static_cast<float>(config_.max_range),
+                       samples > 1 ? beam_rays_ : shots_rays_, hits_);
+    });
+  }
+
+  void spread_beam(std::size_t firing, std::size_t slot) {
+    const Vector3f axis = shots_rays_.towards(slot);
+    const AcrossBeam sides = across(axis, up(poses_, firing));
+    const std::size_t samples = lidar_.beam.size(), first = slot * samples;
+    const float* const along = lidar_.beam_along.data();
+    const float* const aside = lidar_.beam_across.data();
+    const float* const above = lidar_.beam_above.data();
+    for (int i = 0; i < 3; ++i) {
+      float* const direction = beam_rays_.direction[i].data() + first;
+      for (std::size_t ray = 0; ray < samples; ++ray) {
+        direction[ray] = along[ray] * axis[i] + aside[ray] * sides.horizontal[i] +
+                         above[ray] * sides.vertical[i];
+      }
+      std::fill_n(beam_rays_.origin[i].data() + first, samples, shots_rays_.origin[i][slot]);
+    }
+  }
+
+  // One normal for each slot, error and return; only for the errors that are on.
+  void draw_noise(std::uint64_t block) {
+    const auto draw = [&](std::uint32_t stream, std::vector<float>& normals) {
+      normals.resize(lidar_.pattern.slots());
+      fill_normals(noise_key(config_.seed, stream, block), 0, normals);
+    };
+    const RangeErrors& errors = config_.errors;
+    if (errors.angle_sigma > 0.0) {
+      draw(azimuth_stream, azimuth_noise_);
+      draw(elevation_stream, elevation_noise_);
+    }
+    has_range_noise_ =
+        errors.sigma > 0.0 || errors.sigma_per_metre > 0.0 || errors.sigma_per_square_metre > 0.0;
+    echo_rows_.resize(lidar_.beam.size() > 1 ? config_.beam.max_returns : 1);
+    range_noise_.resize(echo_rows_.size());
+    if (!has_range_noise_) return;
+    for (std::uint32_t i = 0; i < range_noise_.size(); ++i) {
+      draw(range_stream + i, range_noise_[i]);
+    }
+  }
+
+  RayHit hit(std::size_t ray, float share) const {
+    return {hits_.range[ray], hits_.cosine[ray], scene_.reflectance(hits_.triangle[ray]), share,
+            hits_.triangle[ray]};
+  }
+
+  // Beams without a width: a ray is its echo.
+  void find_echoes_of_rays() {
+    const std::size_t slots = lidar_.pattern.slots();
+    EchoRow& row = echo_rows_[0];
+    row.resize(slots);
+    counts_.resize(slots);
+    const bool has_limit = config_.sensitivity.reference_range > 0.0;
+    for (std::size_t slot = 0; slot < slots; ++slot) {
+      counts_[slot] = hits_.range[slot] >= lidar_.min_range ? 1 : 0;
+      row.intensity[slot] = Scene::default_reflectance * hits_.cosine[slot];
+    }
+    for (std::size_t slot = 0; slot < slots && (has_limit || scene_.has_reflectances()); ++slot) {
+      if (counts_[slot] == 0) continue;
+      const RayHit only = hit(slot, 1.0F);
+      row.intensity[slot] = only.reflectance * only.cosine;
+      counts_[slot] = received_power(only, config_.sensitivity) >= 1.0F ? 1 : 0;
+    }
+    std::swap(row.range, hits_.range);
+    std::swap(row.cosine, hits_.cosine);
+    std::swap(row.triangle, hits_.triangle);
+  }
+
+  void find_echoes_of_beams() {
+    const std::size_t samples = lidar_.beam.size(), slots = lidar_.pattern.slots();
+    for (EchoRow& row : echo_rows_) row.resize(slots);
+    counts_.resize(slots);
+    beam_hits_.resize(samples);
+    for (std::size_t slot = 0; slot < slots; ++slot) {
+      std::size_t hits = 0;
+      for (std::size_t i = 0, ray = slot * samples; i < samples; ++i, ++ray) {
+        if (hits_.range[ray] < lidar_.min_range) continue;
+        beam_hits_[hits++] = hit(ray, lidar_.beam[i].share);
+      }
+      echoes_ = form_echoes({beam_hits_.data(), hits}, config_.sensitivity, config_.beam,
+                            std::move(echoes_));
+      counts_[slot] = static_cast<int>(echoes_.size());
+      for (std::size_t i = 0; i < echoes_.size(); ++i) {
+        EchoRow& row = echo_rows_[i];
+        row.range[slot] = echoes_[i].range;
+        row.cosine[slot] = echoes_[i].cosine;
+        row.intensity[slot] = echoes_[i].intensity;
+        row.triangle[slot] = echoes_[i].triangle;
+      }
+    }
+  }
+
+  // Appends the echoes as returns, in the order of firings and channels.
+  void report(double start) {
+    for (std::uint32_t firing = 0; firing < firings_in_block; firing += 4) {
+      const std::size_t fours = config_.channels.size(), first = firing * fours;
+      FourInts counts = {};
+      for (std::size_t four_of_slots = 0; four_of_slots < fours; ++four_of_slots) {
+        counts += load<FourInts>(counts_, first + 4 * four_of_slots);
+      }
+      const std::size_t all = next_ + static_cast<std::size_t>(sum(counts));
+      if (returns_.size() < all) resize(all);
+      std::size_t places[4];
+      for (int lane = 0; lane < 4; ++lane) {
+        places[lane] = next_;
+        next_ += static_cast<std::size_t>(counts[lane]);
+      }
+      const Destination to(returns_);
+      for (std::size_t channel = 0; channel < fours; ++channel) {
+        report_four(firing, channel, start, places, to);
+      }
+    }
+  }
+
+  /// The beginnings of the returns' arrays. As locals they stay in registers while bytes are
+  /// stored, which might be anything's for all the compiler knows.
+  struct Destination {
+    explicit Destination(LidarReturns& returns)
+        : points(returns.points.data()),
+          true_points(returns.true_points.data()),
+          times(returns.times.data()),
+          intensities(returns.intensities.data()),
+          scan_angles(returns.scan_angles.data()),
+          triangles(returns.triangles.data()),
+          channels(returns.channels.data()),
+          return_numbers(returns.return_numbers.data()),
+          returns_of_shots(returns.returns_of_shots.data()) {}
+
+    Vector3f *points, *true_points;
+    double* times;
+    float *intensities, *scan_angles;
+    std::uint32_t* triangles;
+    std::uint16_t* channels;
+    std::uint8_t *return_numbers, *returns_of_shots;
+  };
+
+  void report_four(std::uint32_t firing, std::size_t channel, double start,
+                   std::size_t (&places)[4], const Destination to) const {
+    const std::size_t slot = lidar_.pattern.slot(firing, channel);
+    const FourInts counts = load<FourInts>(counts_, slot);
+    const Rays& rays = has_own_belief_ ? reported_rays_ : shots_rays_;
+    const bool is_misled = config_.errors.angle_sigma > 0.0;
+    double times[4];
+    for (int lane = 0; lane < 4; ++lane) {
+      times[lane] =
+          start + (firing + lane) * config_.firing_period + config_.channels[channel].delay;
+    }
+    for (std::size_t number = 0; number < echo_rows_.size(); ++number) {
+      const FourInts is_there = counts > static_cast<int>(number);
+      if (sum(is_there) == 0) break;
+      const EchoRow& row = echo_rows_[number];
+      const FourFloats range = load<FourFloats>(row.range, slot);
+      const FourFloats measured = measured_range(number, channel, slot, range);
+      FourFloats point[3], true_point[3];
+      for (int axis = 0; axis < 3; ++axis) {
+        true_point[axis] = load<FourFloats>(shots_rays_.origin[axis], slot) +
+                           range * load<FourFloats>(shots_rays_.direction[axis], slot);
+        point[axis] = load<FourFloats>(rays.origin[axis], slot) +
+                      measured * load<FourFloats>(rays.direction[axis], slot);
+      }
+      for (int lane = 0; lane < 4; ++lane) {
+        if (is_there[lane] == 0) continue;
+        const std::size_t i = places[lane] + number, at = slot + static_cast<std::size_t>(lane);
+        to.points[i] =
+            is_misled ? misled(rays, at, firing + static_cast<std::size_t>(lane), measured[lane])
+                      : Vector3f(point[0][lane], point[1][lane], point[2][lane]);
+        to.true_points[i] = {true_point[0][lane], true_point[1][lane], true_point[2][lane]};
+        to.times[i] = times[lane];
+        to.intensities[i] = row.intensity[at];
+        to.scan_angles[i] = shots_.azimuth[at];
+        to.triangles[i] = row.triangle[at];
+        to.channels[i] = static_cast<std::uint16_t>(channel);
+        to.return_numbers[i] = static_cast<std::uint8_t>(number + 1);
+        to.returns_of_shots[i] = static_cast<std::uint8_t>(counts[lane]);
+      }
+    }
+    for (int lane = 0; lane < 4; ++lane) places[lane] += static_cast<std::size_t>(counts[lane]);
+  }
+
+  FourFloats measured_range(std::size_t number, std::size_t channel, std::size_t slot,
+                            FourFloats range) const {
+    const RangeErrors& errors = config_.errors;
+    FourFloats measured = range + lidar_.biases[channel];
+    if (has_range_noise_) {
+      FourFloats sigma = FourFloats{} + static_cast<float>(errors.sigma);
+      for (int lane = 0; lane < 4 && !lidar_.has_constant_sigma; ++lane) {
+        sigma[lane] = range_sigma(errors, range[lane], echo_rows_[number].cosine[slot + lane]);
+      }
+      measured += sigma * load<FourFloats>(range_noise_[number], slot);
+    }
+    if (errors.range_step <= 0.0) return measured;
+    for (int lane = 0; lane < 4; ++lane) {
+      const double steps = std::nearbyint(measured[lane] / errors.range_step);
+      measured[lane] = static_cast<float>(steps * errors.range_step);
+    }
+    return measured;
+  }
+
+  // A point along a ray that is turned by the errors of the sensor's angles.
+  Vector3f misled(const Rays& rays, std::size_t slot, std::size_t firing, float range) const {
+    const auto sigma = static_cast<float>(config_.errors.angle_sigma);
+    const Vector3f direction = rays.towards(slot);
+    const AcrossBeam sides = across(direction, up(has_own_belief_ ? believed_ : poses_, firing));
+    const Vector3f turned = direction + sigma * azimuth_noise_[slot] * sides.horizontal +
+                            sigma * elevation_noise_[slot] * sides.vertical;
+    return rays.from(slot) + range * turned.normalized();
+  }
+
+  template <typename Four, typename Lane>
+  static Four load(const std::vector<Lane>& values, std::size_t slot) {
+    Four lanes;
+    std::memcpy(&lanes, values.data() + slot, sizeof lanes);
+    return lanes;
+  }
+
+  void resize(std::size_t size) {
+    returns_.points.resize(size);
+    returns_.true_points.resize(size);
+    returns_.times.resize(size);
+    returns_.intensities.resize(size);
+    returns_.scan_angles.resize(size);
+    returns_.triangles.resize(size);
+    returns_.channels.resize(size);
+    returns_.return_numbers.resize(size);
+    returns_.returns_of_shots.resize(size);
+  }
+
+  const Lidar::Impl& lidar_;
+  const LidarConfig& config_;
+  const Scene& scene_;
+  const LidarFlight& flight_;
+  LidarReturns& returns_;
+  Vector3d origin_;
+  bool has_own_belief_;
+  bool has_range_noise_ = false;
+
+  BlockBuffers& buffers_ = buffers_of_thread();
+  BlockPoses &poses_ = buffers_.poses, &believed_ = buffers_.believed;
+  Shots& shots_ = buffers_.shots;
+  Rays &shots_rays_ = buffers_.shots_rays, &reported_rays_ = buffers_.reported_rays;
+  Rays& beam_rays_ = buffers_.beam_rays;
+  Hits& hits_ = buffers_.hits;
+  std::vector<float>&azimuth_noise_ = buffers_.azimuth_noise,
+  &elevation_noise_ = buffers_.elevation_noise;
+  std::vector<std::vector<float>>& range_noise_ = buffers_.range_noise;
+  std::vector<RayHit>& beam_hits_ = buffers_.beam_hits;
+  std::vector<Echo>& echoes_ = buffers_.echoes;
+  std::vector<EchoRow>& echo_rows_ = buffers_.echo_rows;
+  std::vector<int>& counts_ = buffers_.counts;
+  std::size_t next_ = 0;  // where the next return goes
+};
+
+}  // namespace
+
+Lidar::Lidar(const LidarConfig& config) : impl_(std::make_unique<const Impl>(config)) {}
+Lidar::~Lidar() = default;
+Lidar::Lidar(Lidar&&) noexcept = default;
+Lidar& Lidar::operator=(Lidar&&) noexcept = default;
+
+const LidarConfig& Lidar::config() const { return impl_->config; }
+
+std::uint64_t Lidar::firings(const Trajectory& trajectory) const {
+  constexpr double rounding = 1e-9;  // a duration of whole periods has them all
+  const double duration = trajectory.end() - trajectory.start();
+  return static_cast<std::uint64_t>(duration / impl_->config.firing_period + rounding);
+}
+
+LidarReturns Lidar::measure(const Scene& scene, const LidarFlight& flight, FiringRange firings,
+                            LidarReturns recycled) const {
+  LidarReturns returns = std::move(recycled);  // every entry that is kept is written anew
+  returns.origin = scene.embree().centre;
+  BlockMeasurement measurement(*impl_, scene, flight, returns);
+  const std::uint64_t end = firings.first + firings.count;
+  for (std::uint64_t first = firings.first; first < end;) {
+    const std::uint64_t block = first / firings_in_block;
+    const std::uint64_t block_start = block * firings_in_block;
+    const std::uint64_t block_end = std::min(block_start + firings_in_block, end);
+    measurement.measure(block, static_cast<std::uint32_t>(first - block_start),
+                        static_cast<std::uint32_t>(block_end - block_start));
+    first = block_end;
+  }
+  measurement.finish();
+  return returns;
+}
+
+}  // namespace skycap::sim

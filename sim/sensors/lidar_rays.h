@@ -1,0 +1,174 @@
+/// The rays of a block of firings: poses of a moving sensor, rays slot by slot, and what they meet.
+/// For the source of lidar.h.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <cstring>
+#include <vector>
+
+#include <Eigen/Geometry>
+
+#include "sim/scene/scene_embree.h"
+#include "sim/sensors/scan_pattern.h"
+#include "sim/sensors/trajectory.h"
+
+namespace skycap::sim {
+
+inline constexpr std::uint32_t firings_in_block = ScanPattern::firings_in_block;
+
+/// world_from_sensor at the start of each firing of a block and of the next, relative to a fixed
+/// origin: the nine entries of the rotation, row by row, and the position. Four firings lie
+/// together, as their rays do.
+struct BlockPoses {
+  float entries[12][firings_in_block + 4];
+};
+
+/// The poses of four consecutive firings.
+struct FourPoses {
+  FourFloats entries[12];
+
+  FourPoses(const BlockPoses& poses, std::uint32_t firing) {
+    for (int i = 0; i < 12; ++i) {
+      std::memcpy(&entries[i], &poses.entries[i][firing], sizeof entries[i]);
+    }
+  }
+  void rotate(const FourFloats (&vector)[3], FourFloats (&rotated)[3]) const {
+    for (int row = 0; row < 3; ++row) {
+      rotated[row] = entries[3 * row] * vector[0] + entries[3 * row + 1] * vector[1] +
+                     entries[3 * row + 2] * vector[2];
+    }
+  }
+  void shift(FourFloats (&vector)[3]) const {
+    for (int row = 0; row < 3; ++row) vector[row] += entries[9 + row];
+  }
+};
+
+/// Four firings of a channel that fires a share of the firing period later.
+inline FourPoses delayed(FourPoses poses, const FourPoses& next, float share) {
+  for (int i = 0; i < 12; ++i) {
+    poses.entries[i] += share * (next.entries[i] - poses.entries[i]);
+  }
+  return poses;
+}
+
+inline BlockPoses block_poses(const Trajectory& trajectory,
+                              const Eigen::Isometry3d& body_from_sensor, double start,
+                              double firing_period, const Eigen::Vector3d& origin) {
+  constexpr int firings = firings_in_block;
+  constexpr double pose_spacing = 1e-4;  // [s]; how often a trajectory is asked
+  const double duration = firing_period * firings;
+  const int spans = std::clamp(static_cast<int>(std::ceil(duration / pose_spacing)), 1, firings);
+  float knots[firings + 1][12];
+  for (int i = 0; i <= spans; ++i) {
+    const Eigen::Isometry3d pose = trajectory.pose(start + duration * i / spans) * body_from_sensor;
+    for (int entry = 0; entry < 9; ++entry) {
+      knots[i][entry] = static_cast<float>(pose.linear()(entry / 3, entry % 3));
+    }
+    for (int axis = 0; axis < 3; ++axis) {
+      knots[i][9 + axis] = static_cast<float>(pose.translation()[axis] - origin[axis]);
+    }
+  }
+  BlockPoses poses = {};
+  for (int firing = 0; firing <= firings; ++firing) {
+    const int knot = std::min(firing * spans / firings, spans - 1);
+    const float share =
+        static_cast<float>(firing * spans) / static_cast<float>(firings) - static_cast<float>(knot);
+    for (int entry = 0; entry < 12; ++entry) {
+      poses.entries[entry][firing] =
+          knots[knot][entry] + share * (knots[knot + 1][entry] - knots[knot][entry]);
+    }
+  }
+  return poses;
+}
+
+/// Directions across a beam, along azimuth and along elevation; `up` is the sensor's z axis.
+struct AcrossBeam {
+  Eigen::Vector3f horizontal, vertical;
+};
+inline AcrossBeam across(const Eigen::Vector3f& direction, const Eigen::Vector3f& up) {
+  const Eigen::Vector3f sideways = up.cross(direction);
+  const float length = sideways.norm();
+  const Eigen::Vector3f horizontal =
+      length > 1e-6F ? Eigen::Vector3f(sideways / length) : direction.unitOrthogonal();
+  return {horizontal, direction.cross(horizontal)};
+}
+
+/// Rays relative to the origin of Embree's scene, slot by slot.
+struct Rays {
+  std::vector<float> origin[3], direction[3];
+
+  void resize(std::size_t rays) {
+    for (int axis = 0; axis < 3; ++axis) {
+      origin[axis].resize(rays);
+      direction[axis].resize(rays);
+    }
+  }
+  Eigen::Vector3f from(std::size_t ray) const {
+    return {origin[0][ray], origin[1][ray], origin[2][ray]};
+  }
+  Eigen::Vector3f towards(std::size_t ray) const {
+    return {direction[0][ray], direction[1][ray], direction[2][ray]};
+  }
+  Eigen::Vector3f at(std::size_t ray, float range) const {
+    return from(ray) + range * towards(ray);
+  }
+  void set_direction(std::size_t ray, const Eigen::Vector3f& towards) {
+    for (int axis = 0; axis < 3; ++axis) direction[axis][ray] = towards[axis];
+  }
+};
+
+/// What rays meet.
+struct Hits {
+  std::vector<int> active;    // which rays to cast: -1 or 0, as Embree wants it
+  std::vector<float> range;   // negative: nothing
+  std::vector<float> cosine;  // of the angle of incidence, at most 1
+  std::vector<std::uint32_t> triangle;
+
+  void resize(std::size_t rays) {
+    active.resize(rays);
+    range.resize(rays);
+    cosine.resize(rays);
+    triangle.resize(rays);
+  }
+};
+
+/// Casts the active rays; the ranges of the others become negative too. Their number is a multiple
+/// of the packets' width.
+template <int width>
+void cast_rays(const Scene::Embree& embree, float reach, const Rays& rays, Hits& hits) {
+  Packet<width> packet;
+  auto& ray = packet.rays.ray;
+  auto& hit = packet.rays.hit;
+  const auto load = [](float* lanes, const std::vector<float>& values, std::size_t first) {
+    std::memcpy(lanes, values.data() + first, width * sizeof(float));
+  };
+  for (std::size_t first = 0; first < hits.active.size(); first += width) {
+    std::memcpy(packet.active, hits.active.data() + first, width * sizeof(int));
+    if (std::all_of(packet.active, packet.active + width, [](int lane) { return lane == 0; })) {
+      std::fill_n(hits.range.data() + first, width, -1.0F);
+      continue;
+    }
+    load(ray.org_x, rays.origin[0], first);
+    load(ray.org_y, rays.origin[1], first);
+    load(ray.org_z, rays.origin[2], first);
+    load(ray.dir_x, rays.direction[0], first);
+    load(ray.dir_y, rays.direction[1], first);
+    load(ray.dir_z, rays.direction[2], first);
+    packet.cast(embree, reach);
+    std::memcpy(hits.triangle.data() + first, hit.primID, sizeof hit.primID);
+    for (int lane = 0; lane < width; lane += 4) {
+      const auto lanes = [&](const float* values) { return four<FourFloats>(values + lane); };
+      const FourFloats x = lanes(hit.Ng_x), y = lanes(hit.Ng_y), z = lanes(hit.Ng_z);
+      const FourFloats along = lanes(ray.dir_x) * x + lanes(ray.dir_y) * y + lanes(ray.dir_z) * z;
+      const FourFloats cosine =
+          (along < 0.0F ? -along : along) / square_root(x * x + y * y + z * z);
+      const FourFloats nothing = FourFloats{} - 1.0F, one = FourFloats{} + 1.0F;
+      put_four(hits.range.data() + first + lane, packet.is_hit_4(lane) ? lanes(ray.tfar) : nothing);
+      put_four(hits.cosine.data() + first + lane, cosine < one ? cosine : one);
+    }
+  }
+}
+
+}  // namespace skycap::sim

@@ -1,0 +1,148 @@
+#include "sim/sensors/scan_pattern.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "sim/scene/four_lanes.h"
+
+namespace skycap::sim {
+namespace {
+
+using Eigen::Vector3d;
+
+constexpr double turn = 2.0 * std::numbers::pi;
+
+// Angle of something that turns at a constant rate; exact also after days of turning.
+double turned(double rate, double time) {
+  const double turns = rate * time;
+  return turn * (turns - std::floor(turns));
+}
+
+// Snell's law in vectors; `normal` is unit and against the beam, `ratio` the refractive index
+// before the face over that behind it.
+Vector3d refract_at_face(const Vector3d& beam, const Vector3d& normal, double ratio) {
+  const double cosine = -beam.dot(normal);
+  const double squared = 1.0 - ratio * ratio * (1.0 - cosine * cosine);
+  return ratio * beam + (ratio * cosine - std::sqrt(std::max(0.0, squared))) * normal;
+}
+
+}  // namespace
+
+Vector3d refract(const std::vector<Prism>& prisms, double time, Vector3d beam) {
+  for (const Prism& prism : prisms) {
+    const double angle = prism.phase + turned(prism.rotation_rate, time);
+    const double sine = prism.is_inclined_at_entry ? std::sin(prism.wedge) : -std::sin(prism.wedge);
+    const Vector3d inclined(-std::cos(prism.wedge), sine * std::cos(angle), sine * std::sin(angle));
+    const Vector3d square = -Vector3d::UnitX();
+    const double index = prism.refractive_index;
+    beam = refract_at_face(beam, prism.is_inclined_at_entry ? inclined : square, 1.0 / index);
+    beam = refract_at_face(beam, prism.is_inclined_at_entry ? square : inclined, index);
+  }
+  return beam.normalized();
+}
+
+ScanPattern::ScanPattern(const LidarConfig& config) : config_(config) {
+  for (const Channel& channel : config.channels) {
+    const double encoder = turn * config.rotation_rate * channel.delay;
+    const double azimuth = channel.azimuth + encoder;
+    const double cosine = std::cos(channel.elevation);
+    channels_.push_back({static_cast<float>(cosine),
+                         static_cast<float>(std::sin(channel.elevation)),
+                         static_cast<float>(std::cos(azimuth)),
+                         static_cast<float>(std::sin(azimuth)),
+                         static_cast<float>(std::cos(encoder)),
+                         static_cast<float>(std::sin(encoder)),
+                         static_cast<float>(channel.height),
+                         static_cast<float>(turned(1.0, azimuth / turn)),
+                         channel.delay,
+                         {cosine * std::cos(channel.azimuth), cosine * std::sin(channel.azimuth),
+                          std::sin(channel.elevation)}});
+  }
+  std::vector<std::size_t>& by_elevation = channel_of_rank_;
+  by_elevation.resize(config.channels.size());
+  std::iota(by_elevation.begin(), by_elevation.end(), 0U);
+  std::stable_sort(by_elevation.begin(), by_elevation.end(), [&](std::size_t a, std::size_t b) {
+    return config.channels[a].elevation < config.channels[b].elevation;
+  });
+  rank_.resize(by_elevation.size());
+  for (std::size_t i = 0; i < by_elevation.size(); ++i) rank_[by_elevation[i]] = i;
+}
+
+void ScanPattern::aim(std::uint64_t block, Shots& shots) const {
+  for (int axis = 0; axis < 3; ++axis) {
+    shots.origin[axis].resize(slots());
+    shots.direction[axis].resize(slots());
+  }
+  shots.azimuth.resize(slots());
+  shots.is_shot.resize(slots());
+  if (config_.prisms.empty()) {
+    for (std::uint32_t firing = 0; firing < firings_in_block; firing += 4) {
+      aim_spinning(block * firings_in_block + firing, shots, slot(firing, channel_of_rank_[0]));
+    }
+    return;
+  }
+  for (std::uint32_t firing = 0; firing < firings_in_block; ++firing) {
+    const double time =
+        static_cast<double>(block * firings_in_block + firing) * config_.firing_period;
+    aim_rosette(time, firing, shots);
+  }
+}
+
+// Four firings together, whose slots of a channel are neighbours.
+void ScanPattern::aim_spinning(std::uint64_t first_firing, Shots& shots, std::size_t at) const {
+  FourFloats angle, cosine, sine;
+  for (int i = 0; i < 4; ++i) {
+    const double time = static_cast<double>(first_firing + i) * config_.firing_period;
+    const double exact = turned(config_.rotation_rate, time);
+    angle[i] = static_cast<float>(exact);
+    cosine[i] = static_cast<float>(std::cos(exact));
+    sine[i] = static_cast<float>(std::sin(exact));
+  }
+  constexpr auto full = static_cast<float>(turn), half = static_cast<float>(0.5 * turn);
+  const FourFloats none = {}, whole = none + full;
+  const auto radius = static_cast<float>(config_.radial_offset);
+  const float half_view =
+      config_.field_of_view >= turn ? full : static_cast<float>(0.5 * config_.field_of_view);
+  // As locals the arrays' beginnings stay in registers.
+  float* const direction[3] = {shots.direction[0].data(), shots.direction[1].data(),
+                               shots.direction[2].data()};
+  float* const origin[3] = {shots.origin[0].data(), shots.origin[1].data(), shots.origin[2].data()};
+  float* const azimuths = shots.azimuth.data();
+  const std::size_t first = at;
+  for (const std::size_t channel : channel_of_rank_) {
+    const ChannelTable& table = channels_[channel];
+    put_four(direction[0] + at,
+             table.cos_elevation * (cosine * table.cos_azimuth - sine * table.sin_azimuth));
+    put_four(direction[1] + at,
+             table.cos_elevation * (sine * table.cos_azimuth + cosine * table.sin_azimuth));
+    put_four(direction[2] + at, none + table.sin_elevation);
+    put_four(origin[0] + at, radius * (cosine * table.cos_encoder - sine * table.sin_encoder));
+    put_four(origin[1] + at, radius * (sine * table.cos_encoder + cosine * table.sin_encoder));
+    put_four(origin[2] + at, none + table.height);
+    FourFloats azimuth = angle + table.azimuth;  // in [0, 4 pi)
+    azimuth -= azimuth > full ? whole : none;
+    azimuth -= azimuth > half ? whole : none;
+    put_four(azimuths + at, azimuth);
+    at += 4;
+  }
+  std::uint8_t* const is_shot = shots.is_shot.data();
+  for (std::size_t i = first; i < at; ++i) is_shot[i] = std::abs(azimuths[i]) <= half_view ? 1 : 0;
+}
+
+void ScanPattern::aim_rosette(double time, std::uint32_t firing, Shots& shots) const {
+  for (std::size_t channel = 0; channel < channels_.size(); ++channel) {
+    const ChannelTable& table = channels_[channel];
+    const Vector3d direction = refract(config_.prisms, time + table.delay, table.beam);
+    const std::size_t at = slot(firing, channel);
+    for (int axis = 0; axis < 3; ++axis) {
+      shots.direction[axis][at] = static_cast<float>(direction[axis]);
+      shots.origin[axis][at] = axis == 2 ? table.height : 0.0F;
+    }
+    const double azimuth = std::atan2(direction.y(), direction.x());
+    shots.azimuth[at] = static_cast<float>(azimuth);
+    shots.is_shot[at] = std::abs(azimuth) <= 0.5 * config_.field_of_view;
+  }
+}
+
+}  // namespace skycap::sim

@@ -1,0 +1,94 @@
+#include "sim/sensors/trajectory.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <sstream>
+#include <string>
+#include <utility>
+
+#include "geometry/error.h"
+#include "sim/sensors/noise.h"
+
+namespace skycap::sim {
+namespace {
+
+using Eigen::Quaterniond;
+using Eigen::Vector3d;
+
+void require(bool holds, std::size_t pose, const std::string& what) {
+  if (holds) return;
+  throw Error(ErrorKind::bad_geometry, "trajectory pose " + std::to_string(pose) + " " + what);
+}
+
+void require_sigma(double value, const char* field) {
+  if (value >= 0.0 && std::isfinite(value)) return;
+  std::ostringstream message;
+  message << "navigation." << field << " is " << value << "; it must be zero or more";
+  throw Error(ErrorKind::bad_config, message.str());
+}
+
+}  // namespace
+
+Trajectory::Trajectory(std::vector<StampedPose> poses) : poses_(std::move(poses)) {
+  if (poses_.empty()) throw Error(ErrorKind::bad_geometry, "the trajectory has no poses");
+  for (std::size_t i = 0; i < poses_.size(); ++i) {
+    StampedPose& pose = poses_[i];
+    require(
+        std::isfinite(pose.time) && pose.position.allFinite() && pose.attitude.coeffs().allFinite(),
+        i, "has a value that is not a finite number");
+    require(pose.attitude.norm() > 1e-6, i, "has an attitude of length zero");
+    require(i == 0 || pose.time > poses_[i - 1].time, i, "is not later than the one before it");
+    pose.attitude.normalize();
+  }
+}
+
+Eigen::Isometry3d Trajectory::pose(double time) const {
+  const auto next =
+      std::upper_bound(poses_.begin(), poses_.end(), time,
+                       [](double moment, const StampedPose& pose) { return moment < pose.time; });
+  StampedPose at = next == poses_.begin() ? poses_.front() : *(next - 1);
+  if (next != poses_.begin() && next != poses_.end()) {
+    const double share = (time - at.time) / (next->time - at.time);
+    at.position += share * (next->position - at.position);
+    at.attitude = at.attitude.slerp(share, next->attitude);
+  }
+  return Eigen::Translation3d(at.position) * at.attitude;
+}
+
+void NavigationErrors::validate() const {
+  require_sigma(horizontal_sigma, "horizontal_sigma");
+  require_sigma(vertical_sigma, "vertical_sigma");
+  require_sigma(tilt_sigma, "tilt_sigma");
+  require_sigma(heading_sigma, "heading_sigma");
+  require_sigma(correlation_time, "correlation_time");
+}
+
+Trajectory believed_trajectory(const Trajectory& flown, const NavigationErrors& errors) {
+  errors.validate();
+  constexpr std::uint32_t first_stream = 0x4E415600;  // apart from the sensors' streams
+  const std::array<double, 6> sigmas = {errors.horizontal_sigma, errors.horizontal_sigma,
+                                        errors.vertical_sigma,   errors.tilt_sigma,
+                                        errors.tilt_sigma,       errors.heading_sigma};
+  std::vector<StampedPose> poses(flown.poses().begin(), flown.poses().end());
+  std::vector<float> normals(poses.size());
+  for (std::uint32_t kind = 0; kind < sigmas.size(); ++kind) {
+    fill_normals(noise_key(errors.seed, first_stream + kind, 0), 0, normals);
+    double error = 0.0;  // in units of sigma
+    for (std::size_t i = 0; i < poses.size(); ++i) {
+      const double elapsed = i == 0 ? INFINITY : poses[i].time - poses[i - 1].time;
+      const double kept =
+          errors.correlation_time > 0.0 ? std::exp(-elapsed / errors.correlation_time) : 0.0;
+      error = kept * error + std::sqrt(1.0 - kept * kept) * static_cast<double>(normals[i]);
+      if (kind < 3) {
+        poses[i].position[kind] += sigmas[kind] * error;
+      } else {
+        poses[i].attitude *=
+            Quaterniond(Eigen::AngleAxisd(sigmas[kind] * error, Vector3d::Unit(kind - 3)));
+      }
+    }
+  }
+  return Trajectory(std::move(poses));
+}
+
+}  // namespace skycap::sim

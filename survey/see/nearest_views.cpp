@@ -1,0 +1,100 @@
+#include "survey/see/nearest_views.h"
+
+#include <algorithm>
+#include <cassert>
+#include <limits>
+#include <numeric>
+
+namespace skycap::survey::see {
+namespace {
+
+using Eigen::Vector3d;
+
+/// A cube of the octree.
+struct Cube {
+  Vector3d lowest;
+  double edge;
+
+  bool holds(const Vector3d& point) const {
+    return (point.array() >= lowest.array()).all() &&
+           (point.array() < (lowest.array() + edge)).all();
+  }
+  Cube child(int octant) const {
+    const double half = 0.5 * edge;
+    return {lowest + half * Vector3d(octant & 1, (octant >> 1) & 1, (octant >> 2) & 1), half};
+  }
+  int octant_of(const Vector3d& point) const {
+    const Vector3d middle = lowest + 0.5 * edge * Vector3d::Ones();
+    return (point.x() >= middle.x() ? 1 : 0) | (point.y() >= middle.y() ? 2 : 0) |
+           (point.z() >= middle.z() ? 4 : 0);
+  }
+  double squared_distance_of_centre(const Vector3d& point) const {
+    return (lowest + 0.5 * edge * Vector3d::Ones() - point).squaredNorm();
+  }
+};
+
+/// A leaf around the first position, doubled towards every other one until it is inside.
+Cube grow_root(std::span<const Vector3d> positions, double leaf_size) {
+  Cube root{positions[0] - 0.5 * leaf_size * Vector3d::Ones(), leaf_size};
+  for (const Vector3d& position : positions) {
+    while (!root.holds(position)) {
+      for (int axis = 0; axis < 3; ++axis) {
+        if (position[axis] < root.lowest[axis]) root.lowest[axis] -= root.edge;
+      }
+      root.edge *= 2.0;
+    }
+  }
+  return root;
+}
+
+}  // namespace
+
+std::vector<std::size_t> nearest_views(std::span<const Vector3d> positions, const Vector3d& query,
+                                       std::size_t count) {
+  count = std::min(count, positions.size());
+  std::vector<double> distances;
+  distances.reserve(positions.size());
+  for (const Vector3d& position : positions) distances.push_back((position - query).squaredNorm());
+
+  std::vector<std::size_t> order(positions.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  const auto nearer = [&](std::size_t a, std::size_t b) {
+    return distances[a] != distances[b] ? distances[a] < distances[b] : a < b;
+  };
+  const auto last = order.begin() + static_cast<std::ptrdiff_t>(count);
+  if (last != order.end()) std::nth_element(order.begin(), last, order.end(), nearer);
+  std::sort(order.begin(), last, nearer);
+  order.resize(count);
+  return order;
+}
+
+std::size_t approximately_nearest_view(std::span<const Vector3d> positions, const Vector3d& query,
+                                       double leaf_size) {
+  assert(!positions.empty());
+  Cube cube = grow_root(positions, leaf_size);
+  std::vector<std::size_t> inside(positions.size());
+  std::iota(inside.begin(), inside.end(), std::size_t{0});
+  while (cube.edge > 1.5 * leaf_size) {
+    std::vector<std::size_t> children[8];
+    for (const std::size_t index : inside)
+      children[cube.octant_of(positions[index])].push_back(index);
+    int nearest_child = -1;
+    double nearest_distance = std::numeric_limits<double>::infinity();
+    for (int octant = 0; octant < 8; ++octant) {
+      if (children[octant].empty()) continue;
+      const double distance = cube.child(octant).squared_distance_of_centre(query);
+      if (distance >= nearest_distance) continue;
+      nearest_distance = distance;
+      nearest_child = octant;
+    }
+    inside = std::move(children[nearest_child]);
+    cube = cube.child(nearest_child);
+  }
+  return *std::min_element(inside.begin(), inside.end(), [&](std::size_t a, std::size_t b) {
+    const double to_a = (positions[a] - query).squaredNorm();
+    const double to_b = (positions[b] - query).squaredNorm();
+    return to_a != to_b ? to_a < to_b : a < b;
+  });
+}
+
+}  // namespace skycap::survey::see

@@ -1,0 +1,42 @@
+#include "survey/see/occlusion.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace skycap::survey::see {
+
+using Eigen::Vector3d;
+
+double OcclusionTest::clear_offset(const Vector3d& frontier, const Vector3d& direction,
+                                   double limit) const {
+  const double end = std::min(config_.search_distance, limit);
+  for (int step = 0; step * config_.radius < end; ++step) {
+    const double along = step * config_.radius;
+    const Vector3d centre = frontier + along * direction;
+    if (!grid_.any_within(centre.cast<float>(), config_.radius)) return along;
+  }
+  return end;
+}
+
+bool OcclusionTest::is_occluded(const Vector3d& frontier, double offset,
+                                const Vector3d& sensor) const {
+  const Vector3d line = sensor - frontier;
+  const double length = line.norm();
+  if (length == 0.0) return false;
+  const Vector3d direction = line / length;
+  const double from = config_.end == MarchEnd::search_distance ? 0.0 : offset;
+  const double end = std::min(from + config_.search_distance, length);
+
+  // The samples are at offset + step * radius; a hair of tolerance keeps the last one, at the end.
+  const double last_step = std::floor((end - offset) / config_.radius + 1e-9);
+  for (double step = 0; step <= last_step; ++step) {
+    const Vector3d centre = frontier + (offset + step * config_.radius) * direction;
+    if (grid_.any_within(centre.cast<float>(), config_.radius)) return true;
+    // Wide empty space is passed in one go. One step is held back for the rounding of positions.
+    const double empty = grid_.empty_length(centre.cast<float>(), direction.cast<float>());
+    step += std::max(0.0, std::floor(empty / config_.radius) - 1.0);
+  }
+  return false;
+}
+
+}  // namespace skycap::survey::see

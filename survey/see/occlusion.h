@@ -1,0 +1,51 @@
+/// Whether measured points stand between a frontier and a view: the point-based occlusion test of
+/// SEE++ (§III-A).
+#pragma once
+
+#include <Eigen/Core>
+
+#include "geometry/points/point_grid.h"
+
+namespace skycap::survey::see {
+
+/// Along which line from a frontier the clear offset (zeta) is looked for.
+enum class OffsetLine {
+  sight_line,  ///< towards the sensor that first measured the point (paper §III-A)
+  normal,      ///< along the surface normal (released code)
+};
+
+/// Where the occlusion test ends. Never behind the sensor.
+enum class MarchEnd {
+  search_distance,              ///< at psi from the frontier (paper)
+  search_distance_from_offset,  ///< at zeta + psi (released code)
+};
+
+struct OcclusionConfig {
+  double radius = 0.017;         ///< of the ball that is marched, and its step; r
+  double search_distance = 1.0;  ///< psi
+  MarchEnd end = MarchEnd::search_distance;
+};
+
+/// A ball marched along sight lines through the measured points. Cheap to construct; the grid must
+/// outlive it and have cells no smaller than the ball's radius.
+class OcclusionTest {
+ public:
+  OcclusionTest(const geometry::PointGrid& grid, const OcclusionConfig& config)
+      : grid_(grid), config_(config) {}
+
+  /// zeta: the first multiple of the step at which the ball from `frontier` along the unit vector
+  /// `direction` holds no point. At most min(psi, limit), which is returned where none is clear.
+  double clear_offset(const Eigen::Vector3d& frontier, const Eigen::Vector3d& direction,
+                      double limit) const;
+
+  /// Whether some point is in one of the balls between `offset` (zeta) from `frontier` and the end
+  /// of the march towards `sensor`.
+  bool is_occluded(const Eigen::Vector3d& frontier, double offset,
+                   const Eigen::Vector3d& sensor) const;
+
+ private:
+  const geometry::PointGrid& grid_;
+  OcclusionConfig config_;
+};
+
+}  // namespace skycap::survey::see

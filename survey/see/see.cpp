@@ -1,0 +1,414 @@
+#include "survey/see/see.h"
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+#include <utility>
+
+#include "geometry/error.h"
+#include "geometry/points/spatial_index.h"
+#include "survey/see/frontier.h"
+#include "survey/see/visibility_graph.h"
+#include "survey/stopwatch.h"
+
+namespace skycap::survey::see {
+namespace {
+
+using Eigen::Vector3d;
+using Eigen::Vector3f;
+using geometry::Scan;
+using geometry::View;
+
+Vector3d centroid(std::span<const Vector3f> points) {
+  Vector3d sum = Vector3d::Zero();
+  for (const Vector3f& point : points) sum += point.cast<double>();
+  return sum / static_cast<double>(points.size());
+}
+
+std::vector<Vector3f> points_inside(const Scan& scan, const Eigen::AlignedBox3d& box) {
+  std::vector<Vector3f> inside;
+  for (const Vector3f& point : scan.points) {
+    if (box.contains(point.cast<double>())) inside.push_back(point);
+  }
+  return inside;
+}
+
+/// Whether a measured sight line passes a place: SEE's test of which side of a surface is free.
+/// All points of a scan, as directions from the sensor.
+class FreeSpace {
+ public:
+  FreeSpace(std::span<const Vector3f> points, const Vector3d& sensor)
+      : sensor_(sensor), directions_(chord) {
+    for (const Vector3f& point : points) {
+      const Vector3d ray = point.cast<double>() - sensor;
+      directions_.insert(ray.normalized().cast<float>());
+      ranges_.push_back(ray.norm());
+    }
+  }
+  /// Whether every measurement along the line to `place` is from behind it. False if there is none.
+  bool is_free(const Vector3d& place) const {
+    const Vector3d ray = place - sensor_;
+    const auto near = directions_.within(ray.normalized().cast<float>(), chord);
+    return !near.empty() && std::all_of(near.begin(), near.end(), [&](std::uint32_t index) {
+      return ranges_[index] > ray.norm();
+    });
+  }
+
+ private:
+  static constexpr double chord = 0.01;  // between unit directions that count as the same line
+  Vector3d sensor_;
+  geometry::SpatialIndex directions_;
+  std::vector<double> ranges_;
+};
+
+}  // namespace
+
+struct SeePlanner::Impl {
+  Impl(const SeeConfig& see_config, const geometry::Camera& sensor)
+      : config(see_config),
+        camera(sensor),
+        placement{config.view_distance.value_or(geometry::view_distance(camera, config.density)),
+                  config.ground_clearance},
+        map({.radius = config.resolution_radius,
+             .core_threshold = config.effective_core_threshold(),
+             .spacing = config.effective_spacing(),
+             .rule = config.outlier_rule}),
+        occluders(config.occluder_spacing),
+        occlusion(map.index().grid(),
+                  {.radius = config.occlusion_radius.value_or(config.resolution_radius),
+                   .search_distance = config.occlusion_search_distance,
+                   .end = config.march_end}) {}
+
+  std::optional<View> update(const Scan& scan);
+  void insert(std::span<const Vector3f> points);
+  void classify();
+  void propose_for_new_frontiers();
+  geometry::LocalFrame frame_at(std::uint32_t point) const;
+  void face_free_space(geometry::LocalFrame& frame, const Vector3d& position) const;
+  void adjust_target(std::span<const Vector3f> points);
+  void avoid_occlusions();
+  bool avoid_occlusion(std::uint32_t point, Frontier& frontier);
+  void update_graph();
+  bool sees(const Frontier& from, Frontier& to);
+  double clear_offset(Frontier& frontier);
+  std::optional<View> select();
+  std::size_t nearest_proposal() const;
+  void give_up(std::uint32_t point);
+  void list_proposals();
+
+  const SeeConfig config;
+  const geometry::Camera camera;
+  const ViewPlacement placement;
+
+  geometry::DensityMap map;
+  geometry::PointGrid occluders;  // S: a sparse subset of the cloud, for the cap optimiser
+  OcclusionTest occlusion;
+  std::vector<View> scans;              // where each scan was taken from
+  std::uint32_t first_new = 0;          // point of the last scan
+  std::optional<FreeSpace> free_space;  // of the last scan, if the configuration asks for it
+
+  std::set<std::uint32_t> waiting;  // frontiers without a proposal, another one being too near
+  FrontierMap frontiers;            // those with a proposal
+  std::map<std::uint32_t, AttemptRecord> attempts;
+  VisibilityGraph graph;
+  std::optional<std::uint32_t> target;  // the frontier that the last proposed view is for
+
+  // The proposals as lists, in the order of `frontiers`.
+  std::vector<std::uint32_t> proposal_points;
+  std::vector<Vector3d> proposal_positions;
+
+  PlanningStep step;
+};
+
+/// One update, in the order of the released code.
+std::optional<View> SeePlanner::Impl::update(const Scan& scan) {
+  Stopwatch stopwatch(step.times);
+  std::vector<Vector3f> cropped;
+  std::span<const Vector3f> points = scan.points;
+  if (config.scene_box) {
+    cropped = points_inside(scan, *config.scene_box);
+    points = cropped;
+  }
+  scans.push_back(geometry::view_of(scan.world_from_sensor));
+  insert(points);
+  stopwatch.lap("insert");
+  classify();
+  stopwatch.lap("classify");
+  if (config.free_space_normals) free_space.emplace(points, scans.back().position);
+  propose_for_new_frontiers();
+  stopwatch.lap("frames");
+  adjust_target(points);
+  stopwatch.lap("controller");
+  if (config.optimise_views) avoid_occlusions();
+  stopwatch.lap("occlusion");
+  if (config.visibility_graph) update_graph();
+  stopwatch.lap("graph");
+  std::optional<View> view = select();
+  stopwatch.lap("select");
+  step.frontiers = frontiers.size() + waiting.size();
+  return view;
+}
+
+void SeePlanner::Impl::insert(std::span<const Vector3f> points) {
+  first_new = static_cast<std::uint32_t>(map.cloud().size());
+  map.insert(points, static_cast<std::uint32_t>(scans.size() - 1), config.threads);
+  const auto& positions = map.cloud().positions;
+  if (positions.empty()) {
+    throw Error(ErrorKind::bad_geometry,
+                "the first scan holds no point of the scene; start from a place that sees it");
+  }
+  step.points_new = positions.size() - first_new;
+  if (!config.optimise_views) return;
+  for (std::size_t i = first_new; i < positions.size(); ++i) {
+    if (!occluders.any_within(positions[i], config.occluder_spacing))
+      occluders.insert(positions[i]);
+  }
+}
+
+void SeePlanner::Impl::classify() {
+  const geometry::DensityUpdate update = map.relabel();
+  for (const std::uint32_t point : update.lost_frontiers) {
+    frontiers.erase(point);
+    waiting.erase(point);
+  }
+  waiting.insert(update.new_frontiers.begin(), update.new_frontiers.end());
+  step.frontiers_resolved = update.lost_frontiers.size();
+  step.target_resolved.reset();
+  if (target) step.target_resolved = map.label(*target) != geometry::PointLabel::frontier;
+}
+
+// Every waiting frontier that has no proposal nearer than the frontier spacing gets one.
+void SeePlanner::Impl::propose_for_new_frontiers() {
+  const auto& positions = map.cloud().positions;
+  const bool spaced = config.frontier_spacing > 0.0;
+  geometry::PointGrid taken(spaced ? config.frontier_spacing : 1.0);
+  if (spaced) {
+    for (const auto& [point, frontier] : frontiers) taken.insert(positions[point]);
+  }
+  for (auto next = waiting.begin(); next != waiting.end();) {
+    const std::uint32_t point = *next;
+    if (spaced && taken.any_within(positions[point], config.frontier_spacing)) {
+      ++next;
+      continue;
+    }
+    if (spaced) taken.insert(positions[point]);
+    next = waiting.erase(next);
+    const View& observer = scans[map.cloud().views[point]];
+    Frontier frontier{.position = positions[point].cast<double>(),
+                      .observed_from = observer.position,
+                      .observed_along = observer.direction,
+                      .frame = frame_at(point),
+                      .view = {}};
+    frontier.view = place_view(frontier.position, frontier.frame.normal, placement);
+    frontiers.emplace(point, frontier);
+  }
+}
+
+geometry::LocalFrame SeePlanner::Impl::frame_at(std::uint32_t point) const {
+  const auto& positions = map.cloud().positions;
+  const auto count =
+      static_cast<std::size_t>(config.frame_neighbours.value_or(map.config().core_threshold));
+  std::vector<Vector3f> neighbours;
+  for (const geometry::Neighbour& near : map.index().nearest(positions[point], count)) {
+    neighbours.push_back(positions[near.index]);
+  }
+  const Vector3d position = positions[point].cast<double>();
+  geometry::LocalFrame frame =
+      geometry::local_frame(position, neighbours, scans[map.cloud().views[point]].position);
+  if (free_space) face_free_space(frame, position);
+  return frame;
+}
+
+// Probes both sides of the surface, ever farther out, until one turns out to be free (released
+// code); a normal that points to the other side is turned round.
+void SeePlanner::Impl::face_free_space(geometry::LocalFrame& frame,
+                                       const Vector3d& position) const {
+  const double probe_step = config.occluder_spacing;
+  double along = probe_step;
+  while (along <= config.occlusion_search_distance) {
+    if (free_space->is_free(position + along * frame.normal)) return;
+    if (free_space->is_free(position - along * frame.normal)) {
+      frame.normal = -frame.normal;
+      frame.boundary = -frame.boundary;
+      return;
+    }
+    along += probe_step;
+  }
+}
+
+// The reactive part: the last view was for a frontier that is still one.
+void SeePlanner::Impl::adjust_target(std::span<const Vector3f> points) {
+  if (!target) return;
+  const auto found = frontiers.find(*target);
+  if (found == frontiers.end()) return;
+  AttemptRecord& record = attempts[*target];
+  const auto accepted = std::span(map.cloud().positions).subspan(first_new);
+  const auto seen = config.adjustment_centroid == ScanCentroid::whole_scan ? points : accepted;
+  const bool adjusted =
+      !seen.empty() && record.views < config.max_attempts &&
+      adjust_view(found->second, record, centroid(seen), placement, config.adjustment);
+  if (!adjusted) give_up(*target);
+}
+
+// The proactive part (§III-B), for the proposals nearest to the sensor.
+void SeePlanner::Impl::avoid_occlusions() {
+  std::set<std::uint32_t> checked;
+  bool dropped = true;
+  while (std::exchange(dropped, false)) {
+    list_proposals();
+    for (const std::size_t i :
+         nearest_views(proposal_positions, scans.back().position, config.visibility_update_limit)) {
+      const std::uint32_t point = proposal_points[i];
+      if (!checked.insert(point).second) continue;
+      if (avoid_occlusion(point, frontiers.at(point))) continue;
+      give_up(point);
+      dropped = true;
+    }
+    // What was given up makes room for the frontiers around it.
+    if (dropped && !waiting.empty()) propose_for_new_frontiers();
+  }
+}
+
+/// Moves an occluded view to where it is clearest. False if the frontier should be given up.
+bool SeePlanner::Impl::avoid_occlusion(std::uint32_t point, Frontier& frontier) {
+  const double offset = clear_offset(frontier);
+  if (!occlusion.is_occluded(frontier.position, offset, frontier.view.position)) return true;
+
+  const Vector3d observing = (frontier.observed_from - frontier.position).normalized();
+  const Vector3d centre = frontier.position + offset * observing;
+  std::vector<geometry::Neighbour> near;
+  occluders.find_within(map.cloud().positions[point], config.occlusion_search_distance, near);
+  std::vector<Vector3d> occluded;
+  occluded.reserve(near.size());
+  for (const geometry::Neighbour& neighbour : near) {
+    const Vector3d ray = occluders.point(neighbour.index).cast<double>() - centre;
+    const double range = ray.norm();
+    if (range > 1e-9) occluded.push_back(ray / range);
+  }
+  const Vector3d known_clear =
+      config.observing_direction == ObservingDirection::ray ? observing : -frontier.observed_along;
+  const auto cap = geometry::clearest_direction(occluded, known_clear, config.cap);
+  if (cap) frontier.view = place_view(frontier.position, cap->direction, placement);
+  return !config.drop_if_still_occluded ||
+         !occlusion.is_occluded(frontier.position, offset, frontier.view.position);
+}
+
+/// zeta of a frontier, which depends on the frontier and the cloud alone.
+double SeePlanner::Impl::clear_offset(Frontier& frontier) {
+  if (frontier.offset_of_scan != scans.size()) {
+    frontier.offset_of_scan = scans.size();
+    const Vector3d line = frontier.observed_from - frontier.position;
+    const Vector3d direction = config.offset_line == OffsetLine::sight_line
+                                   ? Vector3d(line.normalized())
+                                   : frontier.frame.normal;
+    frontier.clear_offset = occlusion.clear_offset(frontier.position, direction, line.norm());
+  }
+  return frontier.clear_offset;
+}
+
+void SeePlanner::Impl::update_graph() {
+  list_proposals();
+  graph.keep_only(proposal_points);
+  const std::size_t limit = config.visibility_update_limit;
+  for (const std::size_t j : nearest_views(proposal_positions, scans.back().position, limit)) {
+    const Frontier& from = frontiers.at(proposal_points[j]);
+    std::vector<std::uint32_t> seen;
+    for (const std::size_t k : nearest_views(proposal_positions, proposal_positions[j], limit)) {
+      if (k != j && sees(from, frontiers.at(proposal_points[k]))) {
+        seen.push_back(proposal_points[k]);
+      }
+    }
+    graph.set_edges(proposal_points[j], std::move(seen));
+  }
+}
+
+/// Whether the view of one frontier sees another frontier.
+bool SeePlanner::Impl::sees(const Frontier& from, Frontier& to) {
+  const Vector3d& sensor = from.view.position;
+  if (config.facing_test && to.frame.normal.dot(sensor - to.position) <= 0.0) return false;
+  if (config.field_of_view_test &&
+      !camera.project(geometry::camera_pose(from.view).inverse() * to.position)) {
+    return false;
+  }
+  return !occlusion.is_occluded(to.position, clear_offset(to), sensor);
+}
+
+std::optional<View> SeePlanner::Impl::select() {
+  list_proposals();
+  if (proposal_points.empty()) {
+    target.reset();
+    return std::nullopt;
+  }
+  const bool keep_target = config.stay_on_target && target && frontiers.contains(*target);
+  if (!keep_target) {
+    std::size_t chosen = nearest_proposal();
+    if (config.visibility_graph) {
+      chosen = select_by_coverage(graph, proposal_points, proposal_positions, chosen,
+                                  scans.back().position);
+    }
+    target = proposal_points[chosen];
+  }
+  ++attempts[*target].views;
+  return frontiers.at(*target).view;
+}
+
+/// The place in the list of the proposal with the least way to it, SEE's choice.
+std::size_t SeePlanner::Impl::nearest_proposal() const {
+  const Vector3d& sensor = scans.back().position;
+  if (config.nearest == NearestSearch::octree) {
+    return approximately_nearest_view(proposal_positions, sensor, config.occlusion_search_distance);
+  }
+  constexpr double tie = 1e-9;
+  std::size_t best = 0;
+  double best_cost = std::numeric_limits<double>::infinity(), best_from_first = 0.0;
+  for (std::size_t i = 0; i < proposal_positions.size(); ++i) {
+    const double from_first = (proposal_positions[i] - scans.front().position).norm();
+    const double cost =
+        (proposal_positions[i] - sensor).norm() + config.first_view_weight * from_first;
+    const bool better =
+        cost < best_cost - tie || (cost < best_cost + tie && from_first < best_from_first - tie);
+    if (!better) continue;
+    best = i;
+    best_cost = cost;
+    best_from_first = from_first;
+  }
+  return best;
+}
+
+void SeePlanner::Impl::give_up(std::uint32_t point) {
+  map.give_up(point);
+  frontiers.erase(point);
+}
+
+void SeePlanner::Impl::list_proposals() {
+  proposal_points.clear();
+  proposal_positions.clear();
+  for (const auto& [point, frontier] : frontiers) {
+    proposal_points.push_back(point);
+    proposal_positions.push_back(frontier.view.position);
+  }
+}
+
+SeePlanner::SeePlanner(const SeeConfig& config, const geometry::Camera& camera) {
+  config.validate();
+  impl_ = std::make_unique<Impl>(config, camera);
+}
+SeePlanner::~SeePlanner() = default;
+
+std::optional<View> SeePlanner::next_view(const Scan& scan) { return impl_->update(scan); }
+
+std::optional<View> SeePlanner::next_view_instead() {
+  if (impl_->target && impl_->frontiers.contains(*impl_->target)) {
+    impl_->give_up(*impl_->target);
+    impl_->propose_for_new_frontiers();
+    impl_->list_proposals();
+    impl_->graph.keep_only(impl_->proposal_points);
+  }
+  return impl_->select();
+}
+
+const geometry::PointCloud& SeePlanner::cloud() const { return impl_->map.cloud(); }
+const PlanningStep& SeePlanner::last_step() const { return impl_->step; }
+double SeePlanner::view_distance() const { return impl_->placement.distance; }
+
+}  // namespace skycap::survey::see

@@ -1,0 +1,38 @@
+/// How SEE moves a view that did not resolve its frontier: the reactive handling of occlusions.
+///
+/// Source: the authors' released code, which SEE++ keeps from SEE; the paper says only that
+/// "incremental view adjustments" are applied. Letters as in docs/see.md.
+#pragma once
+
+#include <limits>
+
+#include <Eigen/Core>
+
+#include "survey/see/frontier.h"
+
+namespace skycap::survey::see {
+
+/// How a view is moved after it failed to resolve its frontier.
+enum class Adjustment {
+  rotation,  ///< shifted and turned about the frontier, with a gain that doubles (released code)
+  shift,     ///< shifted without the turn
+  none,      ///< the frontier is given up at the first failure
+};
+
+/// What has been tried for a frontier. Kept when the point loses its label, so that a frontier
+/// that comes back has only the attempts left that it had.
+struct AttemptRecord {
+  double gain = 1.0;                                               ///< s
+  double best_distance = std::numeric_limits<double>::infinity();  ///< of scan centroids so far
+  bool may_switch = true;  ///< whether the second start, from the observing line, is still to come
+  int views = 0;           ///< aimed at the frontier
+};
+
+/// Moves the view of a frontier that a scan with the centroid `scan_centroid` failed to resolve.
+/// While the centroids come nearer to the frontier, the view is shifted away from them, over the
+/// edge of the measured surface; once they do not, it starts again on the line that the point was
+/// first seen along; then there is nothing more to try. Whether there was something to try.
+bool adjust_view(Frontier& frontier, AttemptRecord& record, const Eigen::Vector3d& scan_centroid,
+                 const ViewPlacement& placement, Adjustment adjustment);
+
+}  // namespace skycap::survey::see

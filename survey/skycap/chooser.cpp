@@ -1,0 +1,298 @@
+#include "survey/skycap/chooser.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <numbers>
+#include <numeric>
+
+#include "geometry/parallel.h"
+
+namespace skycap::survey::skycap {
+namespace {
+
+using Eigen::Vector3d;
+using Eigen::Vector3f;
+using geometry::View;
+
+const double golden_angle = std::numbers::pi * (3.0 - std::sqrt(5.0));
+
+/// The directions in which a cluster is looked at: along its normal and tilted off it.
+constexpr std::array<double, 5> tilts = {0.0, 0.54, 0.54, 0.94, 0.94};
+/// How far refinement turns a view about its target, round by round [rad].
+constexpr std::array<double, 4> turns = {0.35, 0.2, 0.1, 0.05};
+constexpr int refined = 3;  // candidates that a round starts from
+constexpr int turned_directions = 6;
+constexpr int pool_size = 40;              // candidates that a batch is picked from
+constexpr double least_batch_share = 0.5;  // of the best gain, for a view to join the batch
+constexpr double impatience = 0.15;        // weight of early gain against the length of a tour
+
+struct Candidate {
+  View view;
+  Gain gain;
+};
+
+struct Cluster {
+  double weight = 0.0;
+  Vector3d position = Vector3d::Zero();  // weighted sums
+  Vector3d normal = Vector3d::Zero();
+};
+
+Vector3d tilted(const Vector3d& axis, double tilt, double azimuth) {
+  const Vector3d u = geometry::any_orthogonal(axis), v = axis.cross(u);
+  return std::cos(tilt) * axis + std::sin(tilt) * (std::cos(azimuth) * u + std::sin(azimuth) * v);
+}
+
+/// Targets by coarse cell and main axis of their normal, the heaviest first.
+std::vector<Cluster> heaviest_clusters(const GainField& field, std::size_t count) {
+  Eigen::AlignedBox3f box;
+  for (const auto& target : field.targets()) box.extend(target.position);
+  const float cell = std::max(box.sizes().maxCoeff() / 7.0F, 1e-6F);
+  // Ordered, so that equal weights keep their order on every platform.
+  std::map<std::array<int, 4>, Cluster> clusters;
+  for (const auto& target : field.targets()) {
+    const Eigen::Vector3i at = ((target.position - box.min()) / cell).array().floor().cast<int>();
+    Eigen::Index axis = 0;
+    target.normal.cwiseAbs().maxCoeff(&axis);
+    const int facing = 2 * static_cast<int>(axis) + (target.normal[axis] < 0.0F ? 1 : 0);
+    Cluster& cluster = clusters[{at.x(), at.y(), at.z(), facing}];
+    cluster.weight += target.weight;
+    cluster.position += target.weight * target.position.cast<double>();
+    cluster.normal += target.weight * target.normal.cast<double>();
+  }
+  std::vector<Cluster> sorted;
+  for (const auto& entry : clusters) {
+    if (entry.second.weight > 0.0) sorted.push_back(entry.second);
+  }
+  std::stable_sort(sorted.begin(), sorted.end(),
+                   [](const Cluster& a, const Cluster& b) { return a.weight > b.weight; });
+  if (sorted.size() > count) sorted.resize(count);
+  return sorted;
+}
+
+class Chooser {
+ public:
+  Chooser(const GainField& field, const ViewLimits& limits, const Admission& admits,
+          const Vector3d& position, double most_way, const ChooserSettings& settings)
+      : field_(field),
+        limits_(limits),
+        admits_(admits),
+        position_(position),
+        most_way_(most_way),
+        settings_(settings) {}
+
+  std::optional<Choice> choose() {
+    propose_candidates();
+    evaluate(0);
+    for (int round = 0; round < settings_.refinements; ++round) refine(round);
+    candidates_.erase(std::remove_if(candidates_.begin(), candidates_.end(),
+                                     [](const Candidate& c) { return !(c.gain.area > 0.0); }),
+                      candidates_.end());
+    if (candidates_.empty()) return std::nullopt;
+
+    double best_gain = 0.0;
+    for (const Candidate& c : candidates_) {
+      best_gain = std::max(best_gain, c.gain.area - (1.0 - settings_.unseen_yield) * c.gain.unseen);
+    }
+    const std::vector<std::size_t> pool = diverse_pool();
+    std::vector<std::vector<Sight>> sights(pool.size());
+    geometry::parallel_for(pool.size(), settings_.threads, [&](std::size_t i) {
+      sights[i] = field_.sights(candidates_[pool[i]].view);
+    });
+    const std::vector<Stop> batch = pick_batch(pool, sights);
+    const Candidate& first = candidates_[batch[first_stop(batch)].candidate];
+    Choice choice{first.view, first.gain.area, best_gain,
+                  std::vector<bool>(field_.targets().size(), false)};
+    for (const std::vector<Sight>& view : sights) {
+      for (const Sight& sight : view) choice.in_sight[sight.target] = true;
+    }
+    return choice;
+  }
+
+ private:
+  struct Stop {
+    std::size_t candidate;
+    double gain;  // given the stops picked before it
+  };
+
+  void add_candidate(const Vector3d& target, const Vector3d& towards_view, double distance) {
+    const auto view = limits_.view_of_target(target, towards_view, distance);
+    if (!view || (view->position - position_).norm() > most_way_ || !admits_(*view)) return;
+    candidates_.push_back({*view, {}});
+  }
+
+  void propose_candidates() {
+    int turn = 0;
+    for (const Cluster& cluster :
+         heaviest_clusters(field_, static_cast<std::size_t>(settings_.clusters))) {
+      const Vector3d target = cluster.position / cluster.weight;
+      const Vector3d normal = cluster.normal.norm() > 1e-6 * cluster.weight
+                                  ? Vector3d(cluster.normal.normalized())
+                                  : Vector3d::UnitZ();
+      for (const double tilt : tilts) {
+        add_candidate(target, tilted(normal, tilt, golden_angle * turn++), settings_.view_distance);
+      }
+    }
+    Vector3d centroid = Vector3d::Zero();
+    double weight = 0.0;
+    for (const auto& target : field_.targets()) {
+      centroid += target.weight * target.position.cast<double>();
+      weight += target.weight;
+    }
+    if (weight <= 0.0) return;
+    for (int i = 0; i < settings_.global_directions; ++i) {  // a Fibonacci lattice on the sphere
+      const double z = 1.0 - 2.0 * (i + 0.5) / settings_.global_directions;
+      const double level = std::sqrt(1.0 - z * z);
+      const double azimuth = golden_angle * i;
+      add_candidate(centroid / weight, {level * std::cos(azimuth), level * std::sin(azimuth), z},
+                    settings_.view_distance);
+    }
+  }
+
+  void evaluate(std::size_t first) {
+    geometry::parallel_for(candidates_.size() - first, settings_.threads, [&](std::size_t i) {
+      candidates_[first + i].gain = field_.gain(candidates_[first + i].view);
+    });
+  }
+
+  double score(const Candidate& c) const {
+    return c.gain.area / (settings_.view_price + (c.view.position - position_).norm());
+  }
+
+  /// Indices of the candidates, best first.
+  std::vector<std::size_t> ranking() const {
+    std::vector<std::size_t> order(candidates_.size());
+    std::iota(order.begin(), order.end(), std::size_t{0});
+    std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
+      return score(candidates_[a]) > score(candidates_[b]);
+    });
+    return order;
+  }
+
+  /// Turns the best candidates about what they look at, in every other round about the middle of
+  /// what they would gain.
+  void refine(int round) {
+    const std::size_t first = candidates_.size();
+    const std::vector<std::size_t> order = ranking();
+    const double turn =
+        turns[std::min<std::size_t>(static_cast<std::size_t>(round), turns.size() - 1)];
+    for (std::size_t k = 0; k < std::min<std::size_t>(refined, order.size()); ++k) {
+      const Candidate best = candidates_[order[k]];
+      const Vector3d gained = best.gain.centroid.cast<double>();
+      const bool re_aims = round % 2 == 0 && best.gain.area > 0.0 &&
+                           (best.view.position - gained).norm() > 1e-6 * settings_.view_distance;
+      const Vector3d target =
+          re_aims ? gained
+                  : Vector3d(best.view.position + settings_.view_distance * best.view.direction);
+      const Vector3d towards = re_aims ? Vector3d((best.view.position - gained).normalized())
+                                       : Vector3d(-best.view.direction);
+      // What a view of a whole object gains is nearer than the object's middle that it is aimed at.
+      const double distance =
+          std::min(settings_.view_distance, (best.view.position - target).norm());
+      for (int i = 0; i < turned_directions; ++i) {
+        const double azimuth = 2.0 * std::numbers::pi * i / turned_directions;
+        add_candidate(target, tilted(towards, turn, azimuth), distance);
+      }
+    }
+    evaluate(first);
+  }
+
+  /// The best candidates that differ from one another.
+  std::vector<std::size_t> diverse_pool() const {
+    std::vector<std::size_t> pool;
+    for (const std::size_t i : ranking()) {
+      const View& view = candidates_[i].view;
+      const bool is_new = std::none_of(pool.begin(), pool.end(), [&](std::size_t j) {
+        const View& other = candidates_[j].view;
+        return (view.position - other.position).norm() < 0.15 * settings_.view_distance &&
+               view.direction.dot(other.direction) > 0.97;
+      });
+      if (is_new) pool.push_back(i);
+      if (pool.size() == pool_size) break;
+    }
+    return pool;
+  }
+
+  /// Greedy cover: each pick is the view that adds most, per metre of its price and of the way from
+  /// the nearest place already on the list, to what the picks before it leave uncovered.
+  std::vector<Stop> pick_batch(const std::vector<std::size_t>& pool,
+                               const std::vector<std::vector<Sight>>& sights) const {
+    std::vector<float> weights;
+    for (const auto& target : field_.targets()) weights.push_back(target.weight);
+    std::vector<double> way(pool.size());
+    for (std::size_t i = 0; i < pool.size(); ++i) {
+      way[i] = (candidates_[pool[i]].view.position - position_).norm();
+    }
+
+    std::vector<Stop> batch;
+    while (batch.size() < static_cast<std::size_t>(settings_.batch)) {
+      std::size_t best = 0;
+      double best_score = 0.0, best_gain = 0.0;
+      for (std::size_t i = 0; i < pool.size(); ++i) {
+        double gain = 0.0;
+        for (const Sight& s : sights[i]) gain += weights[s.target] * s.covered_share;
+        const double value = gain / (settings_.view_price + way[i]);
+        if (value > best_score) {
+          best = i;
+          best_score = value;
+          best_gain = gain;
+        }
+      }
+      if (!(best_score > 0.0)) break;
+      if (!batch.empty() && best_gain < least_batch_share * batch.front().gain) break;
+      batch.push_back({pool[best], best_gain});
+      for (const Sight& s : sights[best]) weights[s.target] *= 1.0F - s.covered_share;
+      const Vector3d& stop = candidates_[pool[best]].view.position;
+      for (std::size_t i = 0; i < pool.size(); ++i) {
+        way[i] = std::min(way[i], (candidates_[pool[i]].view.position - stop).norm());
+      }
+    }
+    return batch;
+  }
+
+  /// Index into the batch of the first stop of its best open tour from the sensor.
+  std::size_t first_stop(const std::vector<Stop>& batch) const {
+    std::vector<std::size_t> order(batch.size());
+    std::iota(order.begin(), order.end(), std::size_t{0});
+    double total_gain = 0.0;
+    for (const Stop& stop : batch) total_gain += stop.gain;
+    std::size_t best_first = 0;
+    double best_cost = std::numeric_limits<double>::infinity();
+    do {
+      Vector3d at = position_;
+      double length = 0.0, waited = 0.0;
+      for (const std::size_t i : order) {
+        const Vector3d& next = candidates_[batch[i].candidate].view.position;
+        length += (next - at).norm();
+        waited += length * batch[i].gain / total_gain;
+        at = next;
+      }
+      const double cost = length + impatience * waited;
+      if (cost < best_cost) {
+        best_cost = cost;
+        best_first = order.front();
+      }
+    } while (std::next_permutation(order.begin(), order.end()));
+    return best_first;
+  }
+
+  const GainField& field_;
+  const ViewLimits& limits_;
+  const Admission& admits_;
+  const Vector3d position_;
+  const double most_way_;
+  const ChooserSettings& settings_;
+  std::vector<Candidate> candidates_;
+};
+
+}  // namespace
+
+std::optional<Choice> choose_view(const GainField& field, const ViewLimits& limits,
+                                  const Admission& admits, const Vector3d& position,
+                                  double most_way, const ChooserSettings& settings) {
+  return Chooser(field, limits, admits, position, most_way, settings).choose();
+}
+
+}  // namespace skycap::survey::skycap

@@ -1,0 +1,48 @@
+/// Which view to fly to next: candidates about the worthiest targets, a batch of views that
+/// complement each other, a short tour through them, of which the first stop is flown.
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "geometry/place/pose.h"
+#include "survey/skycap/view_gain.h"
+#include "survey/view_limits.h"
+
+namespace skycap::survey::skycap {
+
+struct ChooserSettings {
+  double view_distance = 2.0;  ///< d
+  double view_price = 4.0;     ///< what a view costs besides the way to it, in metres of way
+  int clusters = 40;           ///< groups of targets that candidates are made for
+  int global_directions = 40;  ///< candidates spread evenly around all that is missing
+  int refinements = 3;         ///< rounds of moving the best candidates
+  int batch = 5;               ///< views planned ahead, at most 6; 1: the best next view only
+  double unseen_yield = 1.0;   ///< share of guessed gains that comes true, for best_gain
+  unsigned threads = 1;        ///< zero: all processors
+};
+
+struct Choice {
+  geometry::View view;
+  double gain;  ///< expected newly covered area of this view [m^2]
+  /// That of the most rewarding view anywhere in reach, guesses counted by `unseen_yield`: for stop
+  /// rules.
+  double best_gain;
+  /// For each target of the field, whether one of the best views of different places sees it. What
+  /// none of them sees is hidden, or not there.
+  std::vector<bool> in_sight;
+};
+
+/// Whether the sensor can be there; must be safe to call from several threads.
+using Admission = std::function<bool(const geometry::View&)>;
+
+/// The next view from `position`; nothing if no admissible view has any gain. Views farther away
+/// than `most_way` are left out. The same inputs give the same choice for any number of threads.
+std::optional<Choice> choose_view(const GainField& field, const ViewLimits& limits,
+                                  const Admission& admits, const Eigen::Vector3d& position,
+                                  double most_way, const ChooserSettings& settings);
+
+}  // namespace skycap::survey::skycap

@@ -1,0 +1,197 @@
+#include "survey/skycap/dose_map.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+
+#include "geometry/place/pose.h"
+
+namespace skycap::survey::skycap {
+namespace {
+
+using Eigen::Vector3f;
+
+// Lengths in units of the spacing h; areas in units of its square.
+constexpr float least_distance = 0.9F;     // between surfels
+constexpr float packed_area = 1.16F;       // area per surfel when randomly packed at that distance
+constexpr float largest_area = 3.5F;       // what an oblique block may claim at first
+constexpr float neighbour_reach = 2.5F;    // within which a surfel continues another
+constexpr float neighbour_cosine = 0.75F;  // and within 41 degrees of the direction
+constexpr float off_plane_tolerance = 0.6F;
+constexpr float sharing_reach = 1.6F;   // within which noise carries measurements over
+constexpr float enlarged_reach = 1.6F;  // newcomers within it take area from enlarged surfels
+constexpr int most_merges = 8;
+constexpr float opposite_sides = -0.3F;  // below this cosine: two sides of something thin
+
+std::array<float, 2> direction_cosine_sine(int k) {
+  const float angle = static_cast<float>(k) * std::numbers::pi_v<float> / 3.0F;
+  return {std::cos(angle), std::sin(angle)};
+}
+
+}  // namespace
+
+float Surfels::covered_share(std::size_t i) const { return 1.0F - std::exp(-blurred_hazards[i]); }
+
+float Surfels::deficit(std::size_t i) const { return areas[i] * std::exp(-blurred_hazards[i]); }
+
+Vector3f open_direction(const Surfels& surfels, std::size_t i, int k) {
+  const auto [cosine, sine] = direction_cosine_sine(k);
+  const Vector3f& normal = surfels.normals[i];
+  const Vector3f& first = surfels.first_tangents[i];
+  // The normal may have moved since the tangent was chosen.
+  const Vector3f u = (first - normal * normal.dot(first)).normalized();
+  return cosine * u + sine * normal.cross(u);
+}
+
+DoseMap::DoseMap(float spacing) : spacing_(spacing), grid_(neighbour_reach * spacing) {}
+
+void DoseMap::add(const BlockImage& image, const DoseModel& dose, float jump,
+                  const std::optional<Eigen::AlignedBox3f>& region) {
+  add_looks(image, dose, jump);
+  add_surfels(image, dose, region);
+  // Rays come from all sides: a third of the variance along them is along any one axis.
+  blur_hazards(std::hypot(dose.noise().isotropic, dose.noise().along_ray / std::sqrt(3.0)));
+}
+
+void DoseMap::blur_hazards(double sigma) {
+  surfels_.blurred_hazards = surfels_.hazards;
+  if (!(sigma > 0.0)) return;
+  const float scale = static_cast<float>(-0.5 / (sigma * sigma));
+  std::vector<float> weights(surfels_.size(), 1.0F);
+  for (const Pair& pair : pairs_) {
+    const float weight = std::exp(scale * pair.squared_distance);
+    surfels_.blurred_hazards[pair.first] += weight * surfels_.hazards[pair.second];
+    surfels_.blurred_hazards[pair.second] += weight * surfels_.hazards[pair.first];
+    weights[pair.first] += weight;
+    weights[pair.second] += weight;
+  }
+  for (std::size_t i = 0; i < surfels_.size(); ++i) surfels_.blurred_hazards[i] /= weights[i];
+}
+
+void DoseMap::add_looks(const BlockImage& image, const DoseModel& dose, float jump) {
+  const BlockProjection& projection = image.projection;
+  const float across =
+      std::max(off_plane_tolerance * spacing_, 2.0F * static_cast<float>(dose.noise().across(1.0)));
+  for (std::size_t i = 0; i < surfels_.size(); ++i) {
+    const auto hit = projection.project(surfels_.positions[i]);
+    if (!hit) continue;
+    const Block& block = image.blocks[hit->block];
+    if (block.returns == 0 || std::abs(hit->depth - block.depth) > jump) continue;
+    const Vector3f offset = block.mean - surfels_.positions[i];
+    const float off_plane = offset.dot(block.normal);
+    if (std::abs(off_plane) > across) continue;
+    const float agreement = block.normal.dot(surfels_.normals[i]);
+    const bool is_better = block.quality > 2.0F * surfels_.qualities[i];
+    // The other side of something thin.
+    if (agreement < opposite_sides && !is_better) continue;
+    const Vector3f towards_sensor =
+        (projection.sensor_position - surfels_.positions[i]).normalized();
+    const float cos_incidence = std::max(0.05F, towards_sensor.dot(block.normal));
+    surfels_.hazards[i] +=
+        dose.hazard(image.ray_density(block, surfels_.positions[i], cos_incidence), cos_incidence);
+    if (is_better) {
+      surfels_.positions[i] += off_plane * block.normal;
+      surfels_.normals[i] = block.normal;
+      surfels_.merges[i] = 1;
+    } else if (surfels_.merges[i] < most_merges) {
+      const float share = 1.0F / static_cast<float>(++surfels_.merges[i]);
+      surfels_.positions[i] += share * off_plane * block.normal;
+      if (agreement > 0.5F) {
+        surfels_.normals[i] =
+            (surfels_.normals[i] * (1.0F - share) + block.normal * share).normalized();
+      }
+    }
+    surfels_.qualities[i] = std::max(surfels_.qualities[i], block.quality);
+  }
+}
+
+void DoseMap::add_surfels(const BlockImage& image, const DoseModel& dose,
+                          const std::optional<Eigen::AlignedBox3f>& region) {
+  std::uint32_t full = 0;
+  for (const Block& block : image.blocks) full = std::max(full, block.returns);
+  for (const Block& block : image.blocks) {
+    if (block.returns == 0 || 6 * block.returns < full) continue;
+    if (region && !region->contains(block.mean)) continue;
+    if (is_taken(block)) continue;
+
+    const Vector3f towards_sensor = (image.projection.sensor_position - block.mean).normalized();
+    const float cos_incidence = std::max(0.05F, towards_sensor.dot(block.normal));
+    const float density = image.ray_density(block, block.mean, cos_incidence);
+    const float square = spacing_ * spacing_;
+    const float footprint = static_cast<float>(block.returns) / density;
+    surfels_.positions.push_back(block.mean);
+    surfels_.normals.push_back(block.normal);
+    surfels_.areas.push_back(std::clamp(footprint, packed_area * square, largest_area * square));
+    surfels_.hazards.push_back(dose.hazard(density, cos_incidence));
+    surfels_.trusts.push_back(1.0F);
+    surfels_.qualities.push_back(block.quality);
+    surfels_.merges.push_back(1);
+    surfels_.open_directions.push_back(0b111111);
+    surfels_.first_tangents.push_back(
+        geometry::any_orthogonal(block.normal.cast<double>()).cast<float>());
+    close_directions(surfels_.size() - 1);
+    grid_.insert(block.mean);
+  }
+}
+
+bool DoseMap::is_taken(const Block& block) {
+  found_.clear();
+  grid_.find_within(block.mean, least_distance * spacing_, found_);
+  return std::any_of(found_.begin(), found_.end(), [&](const geometry::Neighbour& neighbour) {
+    return surfels_.normals[neighbour.index].dot(block.normal) > opposite_sides;
+  });
+}
+
+void DoseMap::close_directions(std::size_t added) {
+  const Vector3f position = surfels_.positions[added];
+  const auto close = [&](std::size_t i, const Vector3f& towards) {
+    for (int k = 0; k < 6; ++k) {
+      if (open_direction(surfels_, i, k).dot(towards) > neighbour_cosine) {
+        surfels_.open_directions[i] &= static_cast<std::uint8_t>(~(1U << k));
+      }
+    }
+  };
+  const float reach = neighbour_reach * spacing_;
+  const float packed = packed_area * spacing_ * spacing_;
+  found_.clear();
+  grid_.find_within(position, reach, found_);
+  for (const geometry::Neighbour& neighbour : found_) {
+    const std::uint32_t i = neighbour.index;
+    const Vector3f offset = surfels_.positions[i] - position;
+    const float distance = offset.norm();
+    if (distance <= 0.0F) continue;
+    if (surfels_.open_directions[i] != 0) close(i, -offset / distance);
+    if (surfels_.open_directions[added] != 0) close(added, offset / distance);
+    if (distance < sharing_reach * spacing_) {
+      pairs_.push_back({i, static_cast<std::uint32_t>(added), distance * distance});
+    }
+    if (distance < enlarged_reach * spacing_) {
+      surfels_.areas[i] = std::max(packed, 0.75F * surfels_.areas[i]);
+    }
+  }
+}
+
+bool DoseMap::has_surfel_near(const Vector3f& point, float radius, std::size_t first) const {
+  std::vector<geometry::Neighbour> found;
+  grid_.find_within(point, radius, found);
+  return std::any_of(found.begin(), found.end(), [&](const geometry::Neighbour& neighbour) {
+    return neighbour.index >= first;
+  });
+}
+
+double DoseMap::area() const {
+  double sum = 0.0;
+  for (const float area : surfels_.areas) sum += area;
+  return sum;
+}
+
+double DoseMap::covered_area() const {
+  double sum = 0.0;
+  for (std::size_t i = 0; i < surfels_.size(); ++i) {
+    sum += surfels_.areas[i] * surfels_.covered_share(i);
+  }
+  return sum;
+}
+
+}  // namespace skycap::survey::skycap

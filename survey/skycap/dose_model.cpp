@@ -1,0 +1,159 @@
+#include "survey/skycap/dose_model.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <vector>
+
+namespace skycap::survey::skycap {
+namespace {
+
+/// Probability that a point displaced by isotropic noise from a place at distance `offset` from
+/// the centre of a ball ends up in the ball: the non-central chi distribution, 3 degrees of
+/// freedom.
+double probability_in_ball(double offset, double radius, double sigma) {
+  using std::numbers::pi;
+  using std::numbers::sqrt2;
+  if (sigma < 1e-3 * radius) return offset < radius ? 1.0 : 0.0;
+  if (offset < 1e-3 * sigma) {
+    const double ratio = radius / sigma;
+    return std::erf(ratio / sqrt2) - std::sqrt(2.0 / pi) * ratio * std::exp(-0.5 * ratio * ratio);
+  }
+  const double near = (offset - radius) / (sqrt2 * sigma),
+               far = (offset + radius) / (sqrt2 * sigma);
+  const double probability =
+      0.5 * (std::erf(far) - std::erf(near)) -
+      sigma / (offset * std::sqrt(2.0 * pi)) * (std::exp(-near * near) - std::exp(-far * far));
+  return std::clamp(probability, 0.0, 1.0);
+}
+
+/// probability_in_ball() by look-up: it is asked for a million times.
+class BallTable {
+ public:
+  BallTable(double radius, double sigma) : reach_(radius + 4.0 * sigma) {
+    for (int i = 0; i <= step_count; ++i) {
+      table_[i] = probability_in_ball(reach_ * i / step_count, radius, sigma);
+    }
+  }
+  double operator()(double offset) const {
+    const double step = offset / reach_ * step_count;
+    if (step >= step_count) return 0.0;
+    const auto below = static_cast<std::size_t>(step);
+    return table_[below] +
+           (step - static_cast<double>(below)) * (table_[below + 1] - table_[below]);
+  }
+  double reach() const { return reach_; }
+
+ private:
+  static constexpr int step_count = 512;
+  double reach_;
+  std::array<double, step_count + 1> table_;
+};
+
+/// Probability that the return of a ray meeting the plane at (across, along) from the centre of the
+/// ball falls into it; `along` is in the plane of incidence. Noise along the ray is integrated by
+/// the midpoint rule over 3 standard deviations.
+class RayTable {
+ public:
+  RayTable(double radius, const Noise& noise) : ball_(radius, noise.isotropic) {
+    if (noise.along_ray <= 0.0) {
+      nodes_.push_back({0.0, 1.0});
+      return;
+    }
+    // The integrand is a product of two bells of these widths. The rule is all but exact from one
+    // node per width of the product on; without isotropic noise the ball's rim is sharp.
+    constexpr int least_nodes = 7, most_nodes = 41;
+    const double ratio = noise.along_ray / std::max(noise.isotropic, 1e-9 * noise.along_ray);
+    const int nodes = static_cast<int>(std::clamp(std::ceil(6.0 * std::hypot(1.0, ratio)),
+                                                  double{least_nodes}, double{most_nodes}));
+    double total = 0.0;
+    for (int i = 0; i < nodes; ++i) {
+      const double z = 3.0 * (2.0 * (i + 0.5) / nodes - 1.0);
+      nodes_.push_back({z * noise.along_ray, std::exp(-0.5 * z * z)});
+      total += nodes_.back().weight;
+    }
+    for (Node& node : nodes_) node.weight /= total;
+  }
+
+  double operator()(double across, double along, double cosine, double sine) const {
+    double probability = 0.0;
+    for (const Node& node : nodes_) {
+      const double lateral = along + node.displacement * sine;
+      const double normal = node.displacement * cosine;
+      const double squared = across * across + lateral * lateral + normal * normal;
+      if (squared < ball_.reach() * ball_.reach()) {
+        probability += node.weight * ball_(std::sqrt(squared));
+      }
+    }
+    return probability;
+  }
+
+  double reach_across() const { return ball_.reach(); }
+  double reach_along(double sine) const {
+    return ball_.reach() + std::abs(nodes_.front().displacement) * sine;
+  }
+
+ private:
+  struct Node {
+    double displacement, weight;
+  };
+  BallTable ball_;
+  std::vector<Node> nodes_;
+};
+
+/// 1 - f of the class comment, for a grid of that spacing across the rays.
+double uncovered_share(const RayTable& ray, double spacing, double cosine, bool even) {
+  const double sine = std::sqrt(1.0 - cosine * cosine);
+  const double step_along = spacing / cosine;
+  const int reach_across = static_cast<int>(ray.reach_across() / spacing) + 1;
+  const int reach_along = static_cast<int>(ray.reach_along(sine) / step_along) + 1;
+  // By symmetry a quarter of the grid's cell stands for all; where noise blurs the grid out, two
+  // offsets each way are plenty.
+  const int offsets = even ? 2 : 8;
+  double share = 0.0;
+  for (int a = 0; a < offsets; ++a) {
+    for (int b = 0; b < offsets; ++b) {
+      const double offset_across = 0.5 * (a + 0.5) / offsets,
+                   offset_along = 0.5 * (b + 0.5) / offsets;
+      double missed = 1.0;
+      for (int i = -reach_across; i <= reach_across; ++i) {
+        for (int j = -reach_along; j <= reach_along; ++j) {
+          missed *= 1.0 - ray((i + offset_across) * spacing, (j + offset_along) * step_along,
+                              cosine, sine);
+        }
+        if (missed <= 0.0) break;
+      }
+      share += missed / (offsets * offsets);
+    }
+  }
+  return share;
+}
+
+}  // namespace
+
+double Noise::across(double cos_incidence) const {
+  return std::hypot(isotropic, along_ray * cos_incidence);
+}
+
+DoseModel::DoseModel(double coverage_radius, const Noise& noise)
+    : coverage_radius_(coverage_radius), noise_(noise) {
+  const RayTable ray(coverage_radius, noise);
+  for (int c = 0; c < incidence_count; ++c) {
+    // At grazing incidence the grid degenerates; nothing useful is measured there.
+    const double cosine = std::max(0.05, static_cast<double>(c) / (incidence_count - 1));
+    for (int d = 0; d < density_count; ++d) {
+      // Two nodes an octave, at 1 and 1.5 times its start: hazard() then interpolates in the
+      // density.
+      const int octave = d / 2;
+      const double rays = std::exp2(double{first_octave} + octave) * (d % 2 == 0 ? 1.0 : 1.5);
+      const double spacing = coverage_radius * std::sqrt(cosine / rays);
+      const bool even = noise.isotropic > 0.6 * spacing / cosine;
+      const double uncovered = uncovered_share(ray, spacing, cosine, even);
+      const double hazard =
+          -std::log(std::max(uncovered, std::exp(-static_cast<double>(most_hazard))));
+      hazard_per_ray_[c][d] = static_cast<float>(hazard / rays);
+    }
+  }
+}
+
+}  // namespace skycap::survey::skycap

@@ -1,0 +1,425 @@
+#include "survey/skycap/skycap_planner.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <numeric>
+#include <sstream>
+
+#include "geometry/error.h"
+#include "survey/skycap/block_image.h"
+#include "survey/skycap/chooser.h"
+#include "survey/skycap/dose_map.h"
+#include "survey/skycap/dose_model.h"
+#include "survey/skycap/noise_estimate.h"
+#include "survey/skycap/space_memory.h"
+#include "survey/skycap/spaced_cloud.h"
+#include "survey/skycap/unseen_surface.h"
+#include "survey/skycap/view_gain.h"
+#include "survey/stopwatch.h"
+
+namespace skycap::survey::skycap {
+namespace {
+
+using Eigen::Vector3d;
+using Eigen::Vector3f;
+using geometry::Scan;
+using geometry::View;
+
+// A look that yields less than a quarter of what was promised, if that was worth mentioning, halves
+// the trust in its surfel.
+constexpr float promise = 0.2F, kept_promise = 0.25F, broken_trust = 0.5F;
+/// Four successive scans that each add less than this share of the area end the survey.
+constexpr double idle_gain = 0.003;
+constexpr int most_idle_scans = 4;
+/// Shares are of the known area, or of this many times what one scan covered at most: objects take
+/// about as many, and a scene that takes many more is worth as small gains as an object.
+constexpr double scans_of_an_object = 7.0;
+/// How much of the evidence on guesses a scan keeps of those before it, and the least that guesses
+/// are ever counted for: a scan or two without any find must not end a survey.
+constexpr double yield_memory = 0.6, least_yield = 0.15;
+
+void require(bool holds, const char* field, const char* rule, double value) {
+  if (holds) return;
+  std::ostringstream message;
+  message << "planner." << field << " is " << value << "; it must be " << rule;
+  throw Error(ErrorKind::bad_config, message.str());
+}
+
+bool is_positive(double value) { return value > 0.0 && std::isfinite(value); }
+
+/// Distance between neighbouring rays on a wall at distance 1, the coarser way.
+double ray_spacing(const geometry::Camera& camera) {
+  return 1.0 / camera.focal_length_px().minCoeff();
+}
+
+}  // namespace
+
+void SkycapConfig::validate() const {
+  require(is_positive(coverage_radius), "coverage_radius", "a positive number of metres",
+          coverage_radius);
+  const auto require_optional = [](const std::optional<double>& value, const char* field) {
+    require(!value || is_positive(*value), field, "a positive number of metres",
+            value.value_or(0.0));
+  };
+  require_optional(spacing, "spacing");
+  require_optional(view_distance, "view_distance");
+  require_optional(view_price, "view_price");
+  require_optional(resolution, "resolution");
+  require(stop.wanted_coverage > 0.0 && stop.wanted_coverage <= 1.0, "stop.wanted_coverage",
+          "above 0 and at most 1", stop.wanted_coverage);
+  require(stop.least_gain >= 0.0 && stop.least_gain < 1.0, "stop.least_gain",
+          "at least 0 and below 1", stop.least_gain);
+  require_optional(stop.most_length, "stop.most_length");
+  require(!stop.most_time || is_positive(*stop.most_time), "stop.most_time",
+          "a positive number of seconds", stop.most_time.value_or(0.0));
+  require(is_positive(stop.speed), "stop.speed", "a positive number of metres per second",
+          stop.speed);
+  require(stop.time_per_view >= 0.0 && std::isfinite(stop.time_per_view), "stop.time_per_view",
+          "zero or more seconds", stop.time_per_view);
+  require(continuation_steps >= 1 && continuation_steps <= 5, "continuation_steps",
+          "between 1 and 5", continuation_steps);
+  require(!scene_box || !scene_box->isEmpty(), "scene_box", "a box of positive size", 0.0);
+  limits.validate();
+}
+
+struct SkycapPlanner::Impl {
+  Impl(const SkycapConfig& given, const geometry::Camera& sensor)
+      : config(given),
+        camera(sensor),
+        distance(given.view_distance.value_or(0.5 * given.coverage_radius / ray_spacing(camera))),
+        kept(given.spacing.value_or(0.5 * given.coverage_radius), distance * ray_spacing(camera)) {
+    gain.view_distance = distance;
+    chooser.view_distance = distance;
+    chooser.view_price = given.view_price.value_or(3.0 * distance);
+    chooser.threads = given.threads;
+    if (!given.ideas.targeted_views) chooser.clusters = 0;
+    if (!given.ideas.refinement) chooser.refinements = 0;
+    if (!given.ideas.batch) chooser.batch = 1;
+    if (given.scene_box) region = given.scene_box->cast<float>();
+  }
+
+  // --- taking in a scan ---
+
+  /// Fixes the resolution by the first scan that holds a point.
+  void start() {
+    Eigen::AlignedBox3f seen;
+    for (const Vector3f& point : kept.cloud().positions) seen.extend(point);
+    const double extent =
+        config.scene_box ? config.scene_box->sizes().maxCoeff() : seen.sizes().maxCoeff();
+    const double pixel = distance * ray_spacing(camera);
+    const double h =
+        config.resolution.value_or(std::clamp(extent / 150.0, 4.0 * pixel, 25.0 * pixel));
+    blocks.block_px = std::max(4, static_cast<int>(0.8 * h / pixel));
+    blocks.threads = config.threads;
+    least_jump = 4.0 * blocks.block_px * pixel;
+    blocks.jump = static_cast<float>(std::max(least_jump, 0.05 * extent));
+    map.emplace(static_cast<float>(h));
+    space.emplace(static_cast<float>(0.6 * h), config.misses_are_empty);
+    dose.emplace(config.coverage_radius, Noise{});
+    unseen.emplace(
+        UnseenSurfaceSettings{.steps = config.ideas.unseen_surface ? config.continuation_steps : 0,
+                              .learns_rates = config.ideas.learned_rates});
+  }
+
+  std::vector<BlockImage> reduce(const Scan& scan) const {
+    if (!scan.pixels.empty()) return {make_block_image(scan, camera, blocks)};
+    // Blocks as wide as those of the camera's image. A face's focal length is half its width.
+    const double focal_length = 1.0 / (ray_spacing(camera) * blocks.block_px);
+    const int face = std::clamp(static_cast<int>(2.0 * focal_length), 16, 512);
+    return make_cube_images(scan, camera, face, blocks);
+  }
+
+  void learn_noise(const std::vector<BlockImage>& images) {
+    for (const BlockImage& image : images) noise.add(image);
+    if (!config.ideas.dose) return;
+    const auto estimate = noise.noise(0.12 * config.coverage_radius);
+    if (!estimate) return;
+    const double change = std::abs(estimate->isotropic - dose->noise().isotropic) +
+                          std::abs(estimate->along_ray - dose->noise().along_ray);
+    if (change > 0.03 * dose->noise().across(1.0)) dose.emplace(config.coverage_radius, *estimate);
+    blocks.jump = static_cast<float>(std::max(least_jump, 6.0 * dose->noise().across(1.0)));
+  }
+
+  void take_in(const Scan& scan) {
+    const std::vector<BlockImage> images = reduce(scan);
+    learn_noise(images);
+    const View view = geometry::view_of(scan.world_from_sensor);
+    std::vector<Sight> expected;
+    if (field) expected = field->sights(view);
+    Promise promise;
+    for (const Sight& sight : expected) {
+      const double area = field->targets()[sight.target].weight * sight.covered_share;
+      (field->is_patch(sight.target) ? promise.unseen : promise.seen) += area;
+    }
+    const double covered_before = map->covered_area();
+    const std::vector<float> hazards = map->surfels().hazards;
+    const std::size_t first_new = map->surfels().size();
+
+    const auto noise_along = static_cast<float>(dose->noise().across(1.0));
+    for (const BlockImage& image : images) {
+      if (config.ideas.free_space) space->add(image, noise_along);
+      map->add(image, *dose, blocks.jump, region);
+    }
+    grade(expected, hazards, first_new);
+    const double newly_covered = map->covered_area() - covered_before;
+    learn_yield(promise, newly_covered);
+    most_covered_at_once = std::max(most_covered_at_once, newly_covered);
+    idle_scans = newly_covered < idle_gain * reference_area() ? idle_scans + 1 : 0;
+  }
+
+  /// Area that a view was expected to cover newly.
+  struct Promise {
+    double seen = 0.0, unseen = 0.0;  // of known and of guessed surface
+  };
+
+  /// What guesses are worth: what came of those that the last scans should have shown.
+  void learn_yield(const Promise& promise, double newly_covered) {
+    if (promise.unseen <= 0.0) return;
+    guesses.promised = yield_memory * guesses.promised + promise.unseen;
+    guesses.found = yield_memory * guesses.found +
+                    std::clamp(newly_covered - promise.seen, 0.0, 2.0 * promise.unseen);
+    chooser.unseen_yield = std::clamp(guesses.found / guesses.promised, least_yield, 1.0);
+  }
+
+  /// Compares what the scan should have shown with what it did.
+  void grade(const std::vector<Sight>& expected, const std::vector<float>& hazards_before,
+             std::size_t first_new) {
+    std::vector<std::uint32_t> patches;
+    for (const Sight& sight : expected) {
+      const std::uint32_t source = field->source(sight.target);
+      if (field->is_patch(sight.target)) {
+        patches.push_back(source);
+        continue;
+      }
+      const float promised = -std::log(std::max(1.0F - sight.covered_share, 1e-3F));
+      const float given = map->surfels().hazards[source] - hazards_before[source];
+      if (promised > promise && given < kept_promise * promised) {
+        map->lower_trust(source, broken_trust);
+      }
+    }
+    unseen->grade(patches, *map, *space, first_new);
+  }
+
+  // --- choosing a view ---
+
+  /// The box in which unknown space may hold an obstacle.
+  Eigen::AlignedBox3d obstacle_box() const {
+    if (config.scene_box) return *config.scene_box;
+    Eigen::AlignedBox3f box;
+    for (const Vector3f& p : map->surfels().positions) box.extend(p);
+    return box.cast<double>();
+  }
+
+  bool is_free(const View& view, const Eigen::AlignedBox3d& kept_clear_of) const {
+    if (!kept_clear_of.contains(view.position)) return true;
+    const Vector3f at = view.position.cast<float>();
+    const auto radius =
+        static_cast<float>(std::max<double>(config.limits.stand_off, map->spacing()));
+    return space->is_proven_empty(at, radius) && !map->has_surfel_near(at, radius, 0);
+  }
+
+  Admission admission() const {
+    const double stand_off = config.limits.stand_off;
+    Eigen::AlignedBox3d box = obstacle_box();
+    box.min().array() -= stand_off;
+    box.max().array() += stand_off;
+    return [this, box](const View& view) {
+      const bool is_refused = std::any_of(refused.begin(), refused.end(), [&](const View& other) {
+        return (view.position - other.position).norm() < 0.1 * distance;
+      });
+      return !is_refused && is_free(view, box);
+    };
+  }
+
+  /// How far the next view may be away for the budgets of length and time.
+  double most_way() const {
+    double way = std::numeric_limits<double>::infinity();
+    if (config.stop.most_length) way = std::min(way, *config.stop.most_length - length);
+    if (config.stop.most_time) {
+      const double left = *config.stop.most_time - length / config.stop.speed -
+                          static_cast<double>(scans + 1) * config.stop.time_per_view;
+      way = std::min(way, left * config.stop.speed);
+    }
+    return way;
+  }
+
+  std::optional<View> choose() {
+    const double way = most_way();
+    const auto choice = choose_view(*field, config.limits, admission(), position, way, chooser);
+    in_sight = choice ? choice->in_sight : std::vector<bool>(field->targets().size(), false);
+    next_gain = choice && map->area() > 0.0 ? choice->best_gain / map->area() : 0.0;
+    stop = reason_to_stop();
+    if (stop != SkycapStop::running) return std::nullopt;
+    if (!choice) {
+      stop = config.stop.most_length && std::isfinite(way) ? SkycapStop::most_length
+             : std::isfinite(way)                          ? SkycapStop::most_time
+                                                           : SkycapStop::nothing_in_reach;
+      return std::nullopt;
+    }
+    if (choice->best_gain < config.stop.least_gain * reference_area()) {
+      stop = SkycapStop::little_gain;
+      return std::nullopt;
+    }
+    proposed = choice->view;
+    return proposed;
+  }
+
+  /// What the shares of the stop rule are of.
+  double reference_area() const {
+    return std::min(map->area(), scans_of_an_object * most_covered_at_once);
+  }
+
+  SkycapStop reason_to_stop() const {
+    const StopRule& rule = config.stop;
+    if (predicted_coverage() >= rule.wanted_coverage) return SkycapStop::wanted_coverage;
+    if (idle_scans >= most_idle_scans) return SkycapStop::little_gain;
+    if (rule.most_views && scans >= *rule.most_views) return SkycapStop::most_views;
+    if (rule.most_length && length >= *rule.most_length) return SkycapStop::most_length;
+    if (rule.most_time && most_way() <= 0.0) return SkycapStop::most_time;
+    return SkycapStop::running;
+  }
+
+  /// Of the guesses, only what could be seen: the others are as a rule inside of something.
+  double guessed_area() const {
+    double area = 0.0;
+    for (std::size_t t = 0; t < in_sight.size(); ++t) {
+      if (in_sight[t] && field->is_patch(t)) area += field->targets()[t].weight;
+    }
+    return area;
+  }
+
+  double predicted_coverage() const {
+    if (!map || map->surfels().size() == 0) return 0.0;
+    return map->covered_area() / (map->area() + guessed_area());
+  }
+
+  std::optional<View> next_view(const Scan& scan) {
+    step = {};
+    Stopwatch stopwatch(step.times);
+    step.points_new =
+        kept.insert(scan, camera, region, static_cast<std::uint32_t>(scans), config.threads);
+    if (kept.cloud().size() == 0) {
+      throw Error(ErrorKind::bad_geometry,
+                  "the first scan holds no point of the scene; start from a view that sees it");
+    }
+    stopwatch.lap("insert");
+    if (!map) start();
+    take_in(scan);
+    if (scans > 0) length += (scan.sensor_position() - position).norm();
+    position = scan.sensor_position();
+    ++scans;
+    refused.clear();
+    proposed.reset();
+    stopwatch.lap("update");
+    unseen->predict(*map, *space, region);
+    field.emplace(*map, unseen->patches(), camera, *dose, gain);
+    step.frontiers = unseen->patches().size();
+    stopwatch.lap("predict");
+    auto view = choose();
+    stopwatch.lap("choose");
+    return view;
+  }
+
+  SurveyBelief belief() const;
+
+  const SkycapConfig config;
+  const geometry::Camera camera;
+  const double distance;
+  GainSettings gain;
+  ChooserSettings chooser;
+  std::optional<Eigen::AlignedBox3f> region;
+
+  SpacedCloud kept;
+  PlanningStep step;
+
+  BlockSettings blocks;
+  double least_jump = 0.0;
+  NoiseEstimate noise;
+  std::optional<DoseModel> dose;
+  std::optional<DoseMap> map;
+  std::optional<SpaceMemory> space;
+  std::optional<UnseenSurface> unseen;
+  std::optional<GainField> field;
+  std::vector<bool> in_sight;  ///< of the field's targets, from some good view
+
+  double next_gain = 0.0;             ///< of the best view, as a share of the known area
+  double most_covered_at_once = 0.0;  ///< newly covered by one scan [m^2]
+  struct {
+    double promised = 0.0, found = 0.0;  // fading sums over the scans [m^2]
+  } guesses;
+  std::size_t scans = 0;
+  double length = 0.0;
+  int idle_scans = 0;
+  Vector3d position = Vector3d::Zero();
+  std::optional<View> proposed;
+  std::vector<View> refused;  ///< since the last scan
+  SkycapStop stop = SkycapStop::running;
+};
+
+SurveyBelief SkycapPlanner::Impl::belief() const {
+  SurveyBelief belief;
+  if (!map) return belief;
+  constexpr float well_covered = 0.5F;  // more likely covered than not: not missing
+  const Surfels& surfels = map->surfels();
+  for (std::size_t i = 0; i < surfels.size(); ++i) {
+    belief.patches.push_back({surfels.positions[i], surfels.normals[i], surfels.areas[i],
+                              surfels.covered_share(i), MissingReason::none});
+  }
+  for (std::size_t t = 0; t < field->targets().size(); ++t) {
+    const std::uint32_t source = field->source(t);
+    if (!field->is_patch(t)) {
+      BelievedPatch& patch = belief.patches[source];
+      if (patch.covered_share >= well_covered) continue;
+      patch.reason = in_sight[t] ? MissingReason::seen_too_thinly : MissingReason::unreachable;
+    } else if (in_sight[t]) {
+      const UnseenPatch& patch = unseen->patches()[source];
+      belief.patches.push_back(
+          {patch.position, patch.normal, patch.weight, 0.0F, MissingReason::never_seen});
+    }
+  }
+  for (const BelievedPatch& patch : belief.patches) belief.area += patch.area;
+  for (const BelievedPatch& patch : belief.patches) {
+    const double missing = patch.area * (1.0 - patch.covered_share) / belief.area;
+    switch (patch.reason) {
+      case MissingReason::none:  // the rest that even well covered surface lacks
+      case MissingReason::seen_too_thinly:
+        belief.seen_too_thinly += missing;
+        break;
+      case MissingReason::never_seen:
+        belief.never_seen += missing;
+        break;
+      case MissingReason::unreachable:
+        belief.unreachable += missing;
+        break;
+    }
+  }
+  belief.coverage = predicted_coverage();
+  belief.next_gain = next_gain;
+  belief.noise = dose->noise().across(1.0);
+  return belief;
+}
+
+SkycapPlanner::SkycapPlanner(const SkycapConfig& config, const geometry::Camera& camera) {
+  config.validate();
+  impl_ = std::make_unique<Impl>(config, camera);
+}
+
+SkycapPlanner::~SkycapPlanner() = default;
+
+std::optional<View> SkycapPlanner::next_view(const Scan& scan) { return impl_->next_view(scan); }
+
+std::optional<View> SkycapPlanner::next_view_instead() {
+  if (impl_->proposed) impl_->refused.push_back(*impl_->proposed);
+  impl_->proposed.reset();
+  return impl_->field ? impl_->choose() : std::nullopt;
+}
+
+const geometry::PointCloud& SkycapPlanner::cloud() const { return impl_->kept.cloud(); }
+const PlanningStep& SkycapPlanner::last_step() const { return impl_->step; }
+SkycapStop SkycapPlanner::stop() const { return impl_->stop; }
+double SkycapPlanner::predicted_coverage() const { return impl_->predicted_coverage(); }
+SurveyBelief SkycapPlanner::belief() const { return impl_->belief(); }
+
+}  // namespace skycap::survey::skycap

@@ -1,0 +1,91 @@
+#include "survey/skycap/space_memory.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace skycap::survey::skycap {
+namespace {
+
+constexpr float infinity = std::numeric_limits<float>::infinity();
+
+/// Whether no block around has a return: then a grazed surface that swallowed the rays is unlikely,
+/// since some of the neighbours would have hit it less obliquely.
+bool is_amid_misses(const BlockImage& image, int row, int column) {
+  const BlockProjection& p = image.projection;
+  for (int r = std::max(0, row - 1); r <= std::min(p.rows - 1, row + 1); ++r) {
+    for (int c = std::max(0, column - 1); c <= std::min(p.columns - 1, column + 1); ++c) {
+      if (image.blocks[p.number_of(r, c)].returns > 0) return false;
+    }
+  }
+  return true;
+}
+
+}  // namespace
+
+void SpaceMemory::add(const BlockImage& image, float noise) {
+  const std::size_t count = image.blocks.size();
+  DepthImage depth{image.projection, std::vector<float>(count, -infinity),
+                   std::vector<float>(count, -infinity), std::vector<float>(count, -infinity)};
+  for (std::size_t i = 0; i < count; ++i) {
+    const Block& block = image.blocks[i];
+    if (block.returns == 0) {
+      const int row = static_cast<int>(i) / image.projection.columns;
+      const int column = static_cast<int>(i) % image.projection.columns;
+      if (misses_are_empty_ && block.is_shot_at && is_amid_misses(image, row, column)) {
+        depth.empty_before[i] = infinity;
+      }
+      continue;
+    }
+    // A slanted surface spans depths of sqrt(3) standard deviations either side of their mean.
+    const float relief = std::sqrt(
+        3.0F * std::max(0.0F, block.depth_deviation * block.depth_deviation - noise * noise));
+    depth.empty_before[i] = block.depth - relief - tolerance_;
+    depth.measured_until[i] = block.depth + relief + tolerance_;
+    depth.least[i] = block.least_depth;
+  }
+  images_.push_back(std::move(depth));
+}
+
+SpaceState SpaceMemory::query(const Eigen::Vector3f& point, std::size_t first) const {
+  bool is_measured = false;
+  for (std::size_t i = images_.size(); i-- > first;) {
+    const DepthImage& image = images_[i];
+    const auto hit = image.projection.project(point);
+    if (!hit) continue;
+    if (hit->depth < image.empty_before[hit->block]) return SpaceState::empty;
+    is_measured = is_measured || hit->depth <= image.measured_until[hit->block];
+  }
+  return is_measured ? SpaceState::measured : SpaceState::unknown;
+}
+
+bool SpaceMemory::is_proven_empty(const Eigen::Vector3f& centre, float radius) const {
+  return std::any_of(images_.rbegin(), images_.rend(),
+                     [&](const DepthImage& image) { return proves_empty(image, centre, radius); });
+}
+
+bool SpaceMemory::proves_empty(const DepthImage& image, const Eigen::Vector3f& centre,
+                               float radius) {
+  const BlockProjection& p = image.projection;
+  const Eigen::Vector3f in_sensor = p.sensor_from_world * (centre - p.sensor_position);
+  const float nearest = in_sensor.z() - radius, farthest = in_sensor.z() + radius;
+  if (!(nearest > 0.0F)) return false;
+  // The ball's image lies within that of its bounding box's near and far faces.
+  const auto range = [&](int axis) {
+    const float low = in_sensor[axis] - radius, high = in_sensor[axis] + radius;
+    const float first = p.focal_length[axis] * std::min(low / nearest, low / farthest);
+    const float last = p.focal_length[axis] * std::max(high / nearest, high / farthest);
+    return Eigen::Vector2i(static_cast<int>(std::floor(first + p.principal_point[axis])),
+                           static_cast<int>(std::floor(last + p.principal_point[axis])));
+  };
+  const Eigen::Vector2i columns = range(0), rows = range(1);
+  if (columns[0] < 0 || rows[0] < 0 || columns[1] >= p.columns || rows[1] >= p.rows) return false;
+  for (int row = rows[0]; row <= rows[1]; ++row) {
+    for (int column = columns[0]; column <= columns[1]; ++column) {
+      if (image.least[p.number_of(row, column)] < farthest) return false;
+    }
+  }
+  return true;
+}
+
+}  // namespace skycap::survey::skycap

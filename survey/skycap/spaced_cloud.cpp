@@ -1,0 +1,127 @@
+#include "survey/skycap/spaced_cloud.h"
+
+#include <algorithm>
+#include <array>
+#include <limits>
+#include <vector>
+
+#include "geometry/parallel.h"
+
+namespace skycap::survey::skycap {
+namespace {
+
+using Eigen::Vector3f;
+using geometry::Scan;
+
+constexpr std::uint32_t tile_px = 32;
+constexpr std::size_t sweep_chunk = 4096;  // returns without an image that a thread takes at a time
+
+/// Asks a grid for points within a distance, for the pixels of a tile row by row: what turned away
+/// the pixel to the left or the one above mostly turns away this one too, and is tried first.
+class TileNeighbours {
+ public:
+  TileNeighbours(const geometry::PointGrid& grid, double distance)
+      : grid_(grid),
+        distance_(distance),
+        squared_distance_(static_cast<float>(distance * distance)) {
+    found_.fill(Vector3f::Constant(std::numeric_limits<float>::infinity()));
+  }
+
+  bool any_within(const Vector3f& point, std::size_t column) {
+    Vector3f& above = found_[column];
+    if (geometry::squared_distance(above, point) <= squared_distance_) return true;
+    for (const std::size_t beside : {column + tile_px - 1, column + 1}) {
+      const Vector3f& other = found_[beside % tile_px];
+      if (geometry::squared_distance(other, point) > squared_distance_) continue;
+      above = other;
+      return true;
+    }
+    const std::uint32_t found = grid_.first_within(point, distance_);
+    if (found == geometry::PointGrid::none) return false;
+    above = grid_.point(found);
+    return true;
+  }
+
+  /// A point that is now in the grid.
+  void remember(const Vector3f& point, std::size_t column) { found_[column] = point; }
+
+ private:
+  const geometry::PointGrid& grid_;
+  double distance_;
+  float squared_distance_;
+  std::array<Vector3f, tile_px> found_;  // by the pixel's column in its tile
+};
+
+/// Calls `visit` with the index of each return of a row of tiles and its column in its tile, tile
+/// by tile, so that consecutive returns are neighbours in space. Returns without an image go by
+/// their order.
+template <typename Visit>
+void visit_tiles(const Scan& scan, const geometry::Camera& camera, std::size_t tile_row,
+                 Visit visit) {
+  if (scan.pixels.empty()) {
+    const std::size_t end = std::min(scan.points.size(), (tile_row + 1) * sweep_chunk);
+    for (std::size_t i = tile_row * sweep_chunk; i < end; ++i) visit(i, i % tile_px);
+    return;
+  }
+  const auto width = static_cast<std::uint32_t>(camera.width());
+  const auto first_row = static_cast<std::uint32_t>(tile_row) * tile_px;
+  const auto rows = std::min(tile_px, static_cast<std::uint32_t>(camera.height()) - first_row);
+  std::array<std::size_t, tile_px> next;  // return of each row
+  for (std::uint32_t r = 0; r < rows; ++r) {
+    next[r] = static_cast<std::size_t>(
+        std::ranges::lower_bound(scan.pixels, (first_row + r) * width) - scan.pixels.begin());
+  }
+  for (std::uint32_t column = 0; column < width; column += tile_px) {
+    for (std::uint32_t r = 0; r < rows; ++r) {
+      const std::uint32_t first_pixel = (first_row + r) * width + column;
+      const std::uint32_t end_pixel = first_pixel + std::min(tile_px, width - column);
+      std::size_t& i = next[r];
+      for (; i < scan.pixels.size() && scan.pixels[i] < end_pixel; ++i) {
+        visit(i, scan.pixels[i] - first_pixel);
+      }
+    }
+  }
+}
+
+}  // namespace
+
+// Cells wider than pixels: else each return would have one, and a brick, of its own.
+SpacedCloud::SpacedCloud(double spacing, double pixel)
+    : spacing_(spacing), grid_(2.0 * std::max(spacing, pixel)) {}
+
+// The cloud so far turns most returns away, on all threads; the rest are tried one after the other.
+std::size_t SpacedCloud::insert(const Scan& scan, const geometry::Camera& camera,
+                                const std::optional<Eigen::AlignedBox3f>& region,
+                                std::uint32_t view, unsigned threads) {
+  struct Candidate {
+    std::uint32_t point, column;
+  };
+  const std::size_t tile_rows =
+      scan.pixels.empty() ? (scan.points.size() + sweep_chunk - 1) / sweep_chunk
+                          : (static_cast<std::size_t>(camera.height()) + tile_px - 1) / tile_px;
+  std::vector<std::vector<Candidate>> candidates(tile_rows);
+  geometry::parallel_for(tile_rows, threads, [&](std::size_t row) {
+    TileNeighbours nearby(grid_, spacing_);
+    visit_tiles(scan, camera, row, [&](std::size_t i, std::size_t column) {
+      const Vector3f& point = scan.points[i];
+      if ((region && !region->contains(point)) || nearby.any_within(point, column)) return;
+      candidates[row].push_back(
+          {static_cast<std::uint32_t>(i), static_cast<std::uint32_t>(column)});
+    });
+  });
+  const std::size_t before = cloud_.size();
+  TileNeighbours nearby(grid_, spacing_);
+  for (const std::vector<Candidate>& row : candidates) {
+    for (const Candidate& candidate : row) {
+      const Vector3f& point = scan.points[candidate.point];
+      if (nearby.any_within(point, candidate.column)) continue;
+      grid_.insert(point);
+      nearby.remember(point, candidate.column);
+      cloud_.positions.push_back(point);
+      cloud_.views.push_back(view);
+    }
+  }
+  return cloud_.size() - before;
+}
+
+}  // namespace skycap::survey::skycap

@@ -1,0 +1,150 @@
+#include "survey/skycap/unseen_surface.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace skycap::survey::skycap {
+namespace {
+
+using Eigen::Vector3f;
+
+constexpr int most_steps = 5;
+constexpr double prior_strength = 40.0;  // patches' worth of evidence in the first guesses
+constexpr double most_evidence = 60.0;
+constexpr double correlation = 0.2;      // neighbouring patches share their fate: five count as one
+constexpr float disappointment = 0.35F;  // factor on the trust in a place that stayed unknown
+
+// First guesses [continuation][step]: what tuning on three objects found, and only a start.
+constexpr std::array<std::array<double, most_steps>, 3> first_rates = {
+    {{0.8, 0.7, 0.6, 0.5, 0.4}, {0.5, 0.4, 0.3, 0.2, 0.15}, {0.4, 0.3, 0.2, 0.15, 0.1}}};
+
+std::uint8_t kind_of(Continuation continuation, int step) {
+  return static_cast<std::uint8_t>(3 * step + static_cast<int>(continuation));
+}
+
+std::uint64_t place_of(const Vector3f& position, const Vector3f& normal, float edge, int step) {
+  Eigen::Index axis = 0;
+  normal.cwiseAbs().maxCoeff(&axis);
+  const std::uint64_t facing = static_cast<std::uint64_t>(2 * axis + (normal[axis] < 0.0F ? 1 : 0));
+  // 19 bits a coordinate, 3 for the facing, 3 for the step: distinct within 262,000 cells of the
+  // origin; beyond, far apart places share a name, which does little harm.
+  constexpr std::uint64_t mask = (1U << 19) - 1U;
+  const Eigen::Vector3i cell = (position / edge).array().floor().cast<int>();
+  std::uint64_t place = facing * 8U + static_cast<std::uint64_t>(step);
+  for (const int coordinate : {cell.x(), cell.y(), cell.z()}) {
+    place = place << 19 | (static_cast<std::uint64_t>(coordinate) & mask);
+  }
+  return place;
+}
+
+}  // namespace
+
+UnseenSurface::UnseenSurface(const UnseenSurfaceSettings& settings) : settings_(settings) {
+  settings_.steps = std::clamp(settings.steps, 0, most_steps);
+  for (int continuation = 0; continuation < 3; ++continuation) {
+    for (int step = 0; step < most_steps; ++step) {
+      const double rate = first_rates[continuation][step];
+      rates_[3 * step + continuation] = {rate * prior_strength, prior_strength};
+    }
+  }
+}
+
+double UnseenSurface::hit_rate(Continuation continuation, int step) const {
+  const Rate& rate = rates_[kind_of(continuation, step)];
+  return rate.hits / rate.tries;
+}
+
+void UnseenSurface::predict(const DoseMap& map, const SpaceMemory& space,
+                            const std::optional<Eigen::AlignedBox3f>& region) {
+  patches_.clear();
+  seen_places_.clear();
+  const Surfels& surfels = map.surfels();
+  asked_.resize(surfels.size());
+  for (std::size_t i = 0; i < surfels.size(); ++i) {
+    if (surfels.open_directions[i] == 0) continue;
+    AskedChains& asked = asked_[i];
+    if (asked.position != surfels.positions[i] || asked.normal != surfels.normals[i]) {
+      asked = {surfels.positions[i], surfels.normals[i], {}};
+    }
+    for (int k = 0; k < 6; ++k) {
+      if ((surfels.open_directions[i] >> k & 1U) == 0) continue;
+      for (const auto continuation :
+           {Continuation::straight, Continuation::convex, Continuation::concave}) {
+        emit_chain(map, space, i, k, continuation, region);
+      }
+    }
+  }
+}
+
+void UnseenSurface::emit_chain(const DoseMap& map, const SpaceMemory& space, std::size_t surfel,
+                               int direction, Continuation continuation,
+                               const std::optional<Eigen::AlignedBox3f>& region) {
+  const Surfels& surfels = map.surfels();
+  const float h = map.spacing();
+  const Vector3f& origin = surfels.positions[surfel];
+  const Vector3f& up = surfels.normals[surfel];
+  const Vector3f along = open_direction(surfels, surfel, direction);
+  AskedChain& asked =
+      asked_[surfel]
+          .chains[static_cast<std::size_t>(3 * direction) + static_cast<std::size_t>(continuation)];
+  const std::size_t first_image = asked.images;
+  asked.images = static_cast<std::uint32_t>(space.image_count());
+  for (int step = 0; step < settings_.steps; ++step) {
+    const float scale = static_cast<float>(1 << step);
+    UnseenPatch patch;
+    switch (continuation) {
+      case Continuation::straight:
+        patch.position = origin + along * (1.6F * h * scale);
+        patch.normal = up;
+        break;
+      case Continuation::convex:
+        patch.position = origin + along * (1.1F * h) - up * (1.1F * h * scale);
+        patch.normal = along;
+        break;
+      case Continuation::concave:
+        patch.position = origin + along * (1.1F * h) + up * (1.1F * h * scale);
+        patch.normal = -along;
+        break;
+    }
+    if (region && !region->contains(patch.position)) return;
+    if (step >= asked.unknown_steps) return;
+    if (space.query(patch.position, first_image) != SpaceState::unknown) {
+      asked.unknown_steps = step;
+      return;
+    }
+    patch.edge = std::max(h, 0.8F * h * scale);
+    patch.kind = kind_of(continuation, step);
+    patch.place = place_of(patch.position, patch.normal, patch.edge, step);
+    if (!seen_places_.insert(patch.place).second) continue;
+    const auto trust = trusts_.find(patch.place);
+    patch.weight = patch.edge * patch.edge * static_cast<float>(hit_rate(continuation, step)) *
+                   (trust == trusts_.end() ? 1.0F : trust->second);
+    patches_.push_back(patch);
+  }
+}
+
+void UnseenSurface::grade(std::span<const std::uint32_t> expected, const DoseMap& map,
+                          const SpaceMemory& space, std::size_t first_new) {
+  std::array<Rate, std::size_t{3}* most_steps> found = {};
+  for (const std::uint32_t i : expected) {
+    const UnseenPatch& patch = patches_[i];
+    const float reach = 0.5F * map.spacing() + 0.75F * patch.edge;
+    const bool is_hit = map.has_surfel_near(patch.position, reach, first_new);
+    found[patch.kind].tries += 1.0;
+    found[patch.kind].hits += is_hit ? 1.0 : 0.0;
+    if (!is_hit && space.query(patch.position) == SpaceState::unknown) {
+      trusts_.try_emplace(patch.place, 1.0F).first->second *= disappointment;
+    }
+  }
+  if (!settings_.learns_rates) return;
+  for (std::size_t kind = 0; kind < rates_.size(); ++kind) {
+    if (found[kind].tries == 0.0) continue;
+    Rate& rate = rates_[kind];
+    const double kept = settings_.memory;
+    const double weight = std::min(correlation, most_evidence / found[kind].tries);
+    rate.hits = kept * rate.hits + weight * found[kind].hits;
+    rate.tries = kept * rate.tries + weight * found[kind].tries;
+  }
+}
+
+}  // namespace skycap::survey::skycap

@@ -1,0 +1,167 @@
+#include "survey/skycap/view_gain.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+namespace skycap::survey::skycap {
+namespace {
+
+using Eigen::Vector3f;
+
+/// Surfels whose missing area is a smaller share of the largest one's are not worth a look each;
+/// together they stay far below any stop rule.
+constexpr float least_weight_share = 2e-3F;
+constexpr float raster_spacing = 1.0F;  // pixel at the view distance, in units of h
+
+constexpr std::size_t chunk = 2048;  // points projected at a time: their arrays stay in the cache
+
+/// Depths of the nearest surfels, and what the kernels say of a chunk of points; reused between
+/// calls on one thread.
+struct Workspace {
+  std::vector<float> raster;
+  std::array<std::uint32_t, chunk> in_view, pixels, candidates;
+  std::array<float, chunk> depths, distances, cosines;
+};
+
+PointArrays arrays_of(const std::array<std::vector<float>, 3>& points, std::size_t first) {
+  return {points[0].data() + first, points[1].data() + first, points[2].data() + first};
+}
+
+void append(std::array<std::vector<float>, 3>& points, const Vector3f& point) {
+  for (int axis = 0; axis < 3; ++axis) points[axis].push_back(point[axis]);
+}
+
+}  // namespace
+
+GainField::GainField(const DoseMap& map, std::span<const UnseenPatch> patches,
+                     const geometry::Camera& camera, const DoseModel& dose,
+                     const GainSettings& settings)
+    : dose_(dose),
+      spacing_(map.spacing()),
+      least_cosine_(std::cos(settings.most_incidence)),
+      focal_length_px_(camera.focal_length_px().cast<float>()),
+      least_range_(std::max(1e-6F, static_cast<float>(camera.config().min_range))),
+      most_range_(static_cast<float>(camera.config().max_range)) {
+  half_slope_ = {0.5F * static_cast<float>(camera.width()) / focal_length_px_.x(),
+                 0.5F * static_cast<float>(camera.height()) / focal_length_px_.y()};
+  raster_focal_length_px_ =
+      static_cast<float>(settings.view_distance) / (raster_spacing * spacing_);
+  raster_width_ = static_cast<int>(std::ceil(2.0F * half_slope_.x() * raster_focal_length_px_)) + 1;
+  raster_height_ =
+      static_cast<int>(std::ceil(2.0F * half_slope_.y() * raster_focal_length_px_)) + 1;
+
+  const Surfels& surfels = map.surfels();
+  for (const Vector3f& position : surfels.positions) append(occluders_, position);
+  const float least_weight = least_weight_share * spacing_ * spacing_;
+  for (std::size_t i = 0; i < surfels.size(); ++i) {
+    const float weight = surfels.deficit(i) * surfels.trusts[i];
+    if (weight < least_weight) continue;
+    targets_.push_back({surfels.positions[i], surfels.normals[i], weight});
+    sources_.push_back(static_cast<std::uint32_t>(i));
+  }
+  surfel_targets_ = targets_.size();
+  for (std::size_t i = 0; i < patches.size(); ++i) {
+    targets_.push_back({patches[i].position, patches[i].normal, patches[i].weight});
+    sources_.push_back(static_cast<std::uint32_t>(i));
+  }
+  for (const Target& target : targets_) {
+    append(positions_, target.position);
+    append(normals_, target.normal);
+  }
+}
+
+RasterView GainField::raster_view(const geometry::View& view) const {
+  const Eigen::Isometry3d world_from_camera = geometry::camera_pose(view);
+  const Eigen::Matrix3f axes = world_from_camera.linear().cast<float>();
+  RasterView raster{
+      .focal_length = raster_focal_length_px_,
+      .width = static_cast<float>(raster_width_),
+      .height = static_cast<float>(raster_height_),
+      .stride = raster_width_ + 2,
+      .outside = static_cast<std::uint32_t>((raster_width_ + 2) * (raster_height_ + 2)),
+      .half_slope = {half_slope_.x(), half_slope_.y()},
+      .least_range = least_range_,
+      .most_range = most_range_,
+      .least_cosine = least_cosine_};
+  const Vector3f position = view.position.cast<float>();
+  for (int axis = 0; axis < 3; ++axis) {
+    raster.position[axis] = position[axis];
+    raster.right[axis] = axes(axis, 0);
+    raster.down[axis] = axes(axis, 1);
+    raster.forward[axis] = axes(axis, 2);
+  }
+  return raster;
+}
+
+template <typename Visit>
+void GainField::for_each_sight(const geometry::View& view, Visit visit) const {
+  static thread_local Workspace work;
+  const RasterView raster = raster_view(view);
+  const auto stride = static_cast<std::size_t>(raster.stride);
+
+  // Behind the raster there is room for what falls outside, splats included.
+  work.raster.assign(raster.outside + stride + 2, std::numeric_limits<float>::infinity());
+  for (std::size_t first = 0; first < occluders_[0].size(); first += chunk) {
+    const std::size_t count = std::min(chunk, occluders_[0].size() - first);
+    project_points(raster, count, arrays_of(occluders_, first), work.pixels.data(),
+                   work.depths.data());
+    for (std::size_t i = 0; i < count; ++i) {
+      float* pixel = &work.raster[work.pixels[i]];
+      const float depth = work.depths[i];
+      pixel[0] = std::min(pixel[0], depth);
+      pixel[1] = std::min(pixel[1], depth);
+      pixel[stride] = std::min(pixel[stride], depth);
+      pixel[stride + 1] = std::min(pixel[stride + 1], depth);
+    }
+  }
+
+  const TargetArrays projected{work.in_view.data(), work.pixels.data(), work.depths.data(),
+                               work.distances.data(), work.cosines.data()};
+  for (std::size_t first = 0; first < targets_.size(); first += chunk) {
+    const std::size_t count = std::min(chunk, targets_.size() - first);
+    project_targets(raster, count, arrays_of(positions_, first), arrays_of(normals_, first),
+                    projected);
+    std::size_t candidates = 0;
+    for (std::size_t i = 0; i < count; ++i) {
+      work.candidates[candidates] = static_cast<std::uint32_t>(i);
+      candidates += work.in_view[i];
+    }
+    for (std::size_t k = 0; k < candidates; ++k) {
+      const std::size_t i = work.candidates[k];
+      const float cosine = work.cosines[i], depth = work.depths[i];
+      // A slanted surface hides itself by as much as it falls off over a splat.
+      const float slope = std::sqrt(std::max(0.0F, 1.0F - cosine * cosine)) / cosine;
+      const float tolerance =
+          first + i < surfel_targets_ ? spacing_ * (1.5F + 2.0F * std::min(slope, 4.0F)) : spacing_;
+      if (depth > work.raster[work.pixels[i]] + tolerance) continue;
+      const float density =
+          focal_length_px_.prod() * cosine * work.distances[i] / (depth * depth * depth);
+      visit(first + i, 1.0F - std::exp(-dose_.hazard(density, cosine)));
+    }
+  }
+}
+
+Gain GainField::gain(const geometry::View& view) const {
+  Gain gain;
+  Eigen::Vector3d moment = Eigen::Vector3d::Zero();
+  for_each_sight(view, [&](std::size_t t, float share) {
+    const double area = targets_[t].weight * share;
+    gain.area += area;
+    if (is_patch(t)) gain.unseen += area;
+    moment += area * targets_[t].position.cast<double>();
+  });
+  if (gain.area > 0.0) gain.centroid = (moment / gain.area).cast<float>();
+  return gain;
+}
+
+std::vector<Sight> GainField::sights(const geometry::View& view) const {
+  std::vector<Sight> sights;
+  for_each_sight(view, [&](std::size_t t, float share) {
+    sights.push_back({static_cast<std::uint32_t>(t), share});
+  });
+  return sights;
+}
+
+}  // namespace skycap::survey::skycap

@@ -1,0 +1,82 @@
+/// How much surface a view would newly cover, by what is known and guessed so far.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "geometry/place/camera.h"
+#include "geometry/place/pose.h"
+#include "survey/skycap/dose_map.h"
+#include "survey/skycap/dose_model.h"
+#include "survey/skycap/sight_kernels.h"
+#include "survey/skycap/unseen_surface.h"
+
+namespace skycap::survey::skycap {
+
+/// A target in sight of a view.
+struct Sight {
+  std::uint32_t target;
+  float covered_share;  ///< of what is still uncovered of it
+};
+
+struct Gain {
+  double area = 0.0;    ///< expected newly covered area [m^2]
+  double unseen = 0.0;  ///< the part of it that is only guessed to be there
+  Eigen::Vector3f centroid = Eigen::Vector3f::Zero();  ///< of it
+};
+
+struct GainSettings {
+  double view_distance = 2.0;      ///< d: sets the resolution at which visibility is decided
+  float most_incidence = 1.3614F;  ///< beyond it a surface returns nothing [rad]; 78 degrees
+};
+
+/// A snapshot of all surfaces, seen and guessed, that answers for any view. Immutable; safe to ask
+/// from any number of threads.
+///
+/// Targets are the surfels with a deficit worth a look and the unseen patches. Occlusion is decided
+/// in a depth image of all surfels, splatted as points of 2 h at the view distance; unseen patches
+/// hide nothing.
+class GainField {
+ public:
+  GainField(const DoseMap& map, std::span<const UnseenPatch> patches,
+            const geometry::Camera& camera, const DoseModel& dose, const GainSettings& settings);
+
+  struct Target {
+    Eigen::Vector3f position;
+    Eigen::Vector3f normal;
+    float weight;  ///< uncovered area, expected
+  };
+  std::span<const Target> targets() const { return targets_; }
+  /// The surfel that target `i` is, or the unseen patch: see is_patch().
+  std::uint32_t source(std::size_t target) const { return sources_[target]; }
+  bool is_patch(std::size_t target) const { return target >= surfel_targets_; }
+
+  Gain gain(const geometry::View& view) const;
+  /// The targets in sight of the view, ascending.
+  std::vector<Sight> sights(const geometry::View& view) const;
+
+ private:
+  RasterView raster_view(const geometry::View& view) const;
+  template <typename Visit>
+  void for_each_sight(const geometry::View& view, Visit visit) const;
+
+  DoseModel dose_;
+  float spacing_;
+  float least_cosine_;
+  Eigen::Vector2f focal_length_px_;  ///< of the sensor
+  float least_range_, most_range_;
+  Eigen::Vector2f half_slope_;  ///< tangents of half the angles of view
+  float raster_focal_length_px_;
+  int raster_width_, raster_height_;
+  std::array<std::vector<float>, 3> occluders_;  ///< all surfels: their x, y and z
+  std::size_t surfel_targets_ = 0;
+  std::vector<Target> targets_;
+  std::array<std::vector<float>, 3> positions_, normals_;  ///< of the targets
+  std::vector<std::uint32_t> sources_;
+};
+
+}  // namespace skycap::survey::skycap

@@ -1,0 +1,187 @@
+#include "survey/volumetric/scan_voxels.h"
+
+#include <algorithm>
+#include <sstream>
+
+#include "geometry/error.h"
+#include "survey/vector_clones.h"
+
+namespace skycap::survey::volumetric {
+namespace {
+
+using Eigen::Vector3f;
+using Mark = ScanVoxels::Mark;
+
+constexpr std::size_t lane_count = 4;
+using Lanes [[gnu::vector_size(lane_count * sizeof(std::int64_t))]] = std::int64_t;
+// A comparison of lanes gives -1 for true and 0 for false.
+
+/// Where four rays are on their ways from voxel to voxel.
+struct FourWalks {
+  Lanes number{};                  // of the current voxels
+  std::array<Lanes, 3> border{};   // that is crossed next on each axis
+  std::array<Lanes, 3> spacing{};  // of the borders
+  std::array<Lanes, 3> stride{};   // from a voxel's number to its neighbours'
+};
+
+/// Marks the next `steps` voxels of each ray as passed.
+SKYCAP_VECTOR_CLONES
+void pass_four(FourWalks& walks, std::int64_t steps, Mark* marks) {
+  Lanes x = walks.border[0], y = walks.border[1], z = walks.border[2], number = walks.number;
+  const Lanes x_spacing = walks.spacing[0], x_stride = walks.stride[0];
+  const Lanes y_spacing = walks.spacing[1], y_stride = walks.stride[1];
+  const Lanes z_spacing = walks.spacing[2], z_stride = walks.stride[2];
+  for (std::int64_t step = 0; step < steps; ++step) {
+    for (std::size_t lane = 0; lane < lane_count; ++lane) marks[number[lane]] = ScanVoxels::passed;
+    const Lanes on_x = (x < y) & (x < z);
+    const Lanes on_y = ~on_x & (y < z);
+    const Lanes on_z = ~(on_x | on_y);
+    x += on_x & x_spacing;
+    y += on_y & y_spacing;
+    z += on_z & z_spacing;
+    number += (on_x & x_stride) | (on_y & y_stride) | (on_z & z_stride);
+  }
+  walks.border[0] = x, walks.border[1] = y, walks.border[2] = z, walks.number = number;
+}
+
+/// Where the shadow of a point ends.
+Vector3f end_of_shadow(const Vector3f& origin, const Vector3f& point, double length) {
+  const Vector3f way = point - origin;
+  const float distance = way.norm();
+  if (distance == 0.0F) return point;
+  return point + way * (static_cast<float>(length) / distance);
+}
+
+/// One ray on its way.
+struct Walk {
+  Walk(const VoxelLine::Steps& steps, const std::array<std::int64_t, 3>& strides, Mark* first)
+      : mark(first), border(steps.border) {
+    for (int axis = 0; axis < 3; ++axis) stride[axis] = steps.sense[axis] * strides[axis];
+  }
+
+  Mark* mark;
+  std::int64_t step = 0;
+  std::array<std::int64_t, 3> border;
+  std::array<std::int64_t, 3> stride{};
+};
+
+/// Calls `visit` with the marks that are still to be passed, in order.
+template <typename Visit>
+void finish(const Walk& walk, const VoxelLine::Steps& steps, Visit visit) {
+  Mark* mark = walk.mark;
+  std::int64_t x = walk.border[0], y = walk.border[1], z = walk.border[2];
+  // Processors guess these branches well where the ray before went much the same way.
+  const auto advance = [&] {
+    if (x < y && x < z) {
+      x += steps.spacing[0];
+      mark += walk.stride[0];
+    } else if (y < z) {
+      y += steps.spacing[1];
+      mark += walk.stride[1];
+    } else {
+      z += steps.spacing[2];
+      mark += walk.stride[2];
+    }
+  };
+  std::int64_t step = walk.step;
+  for (; step < steps.surely_passed; ++step) {
+    visit(*mark);
+    advance();
+  }
+  for (; step < steps.most; ++step) {
+    if (step > 0 && std::min({x, y, z}) > steps.limit) break;
+    visit(*mark);
+    advance();
+  }
+}
+
+}  // namespace
+
+ScanVoxels::ScanVoxels(const Vector3f& origin, std::span<const Vector3f> returns,
+                       std::span<const Vector3f> empty_ends, double resolution,
+                       double shadow_length)
+    : resolution_(resolution) {
+  low_ = voxel_at(origin, 1.0 / resolution);
+  VoxelIndex high = low_;
+  const auto extend = [&](const Vector3f& point) {
+    const VoxelIndex voxel = voxel_at(point, 1.0 / resolution);
+    for (int axis = 0; axis < 3; ++axis) {
+      low_[axis] = std::min(low_[axis], voxel[axis]);
+      high[axis] = std::max(high[axis], voxel[axis]);
+    }
+  };
+  for (const Vector3f& point : returns) {
+    extend(point);
+    extend(end_of_shadow(origin, point, shadow_length));
+  }
+  for (const Vector3f& end : empty_ends) extend(end);
+  // Rounding may lead a ray past the voxel of its end, by one voxel on some axis.
+  double voxels = 1.0;
+  for (int axis = 0; axis < 3; ++axis) {
+    low_[axis] -= 1;
+    std::int64_t width = std::int64_t{high[axis]} - low_[axis] + 2;
+    if (axis == 0) width = (width + marks_in_word - 1) / marks_in_word * marks_in_word;
+    voxels *= static_cast<double>(width);
+    if (axis < 2) strides_[axis + 1] = strides_[axis] * width;
+  }
+  if (voxels > most_voxels) {
+    std::ostringstream message;
+    message << "a scan spans " << voxels << " voxels of " << resolution
+            << " m; choose a larger planner.resolution_radius, or a smaller sensor.max_range";
+    throw Error(ErrorKind::bad_config, message.str());
+  }
+  marks_.resize(static_cast<std::size_t>(voxels));
+
+  // What is measured outweighs shadows, and hits what is passed.
+  for (const Vector3f& point : returns) mark_shadow(origin, point, shadow_length);
+  mark_passed(origin, returns);
+  mark_passed(origin, empty_ends);
+  for (const Vector3f& point : returns) {
+    marks_[static_cast<std::size_t>(number_of(voxel_at(point, 1.0 / resolution)))] = hit;
+  }
+}
+
+void ScanVoxels::mark_shadow(const Vector3f& origin, const Vector3f& point, double length) {
+  const auto steps = VoxelLine(point, end_of_shadow(origin, point, length), resolution_).steps();
+  Mark* const first = marks_.data() + number_of(voxel_at(point, 1.0 / resolution_));
+  Mark depth = 0;
+  finish(Walk(steps, strides_, first), steps, [&](Mark& mark) {
+    // Zero, for none, becomes the largest by going below it.
+    mark = static_cast<Mark>(std::min<Mark>(mark - 1, depth - 1) + 1);
+    ++depth;
+  });
+}
+
+void ScanVoxels::mark_passed(const Vector3f& origin, std::span<const Vector3f> ends) {
+  const auto pass = [](Mark& mark) { mark = passed; };
+  const std::int64_t start = number_of(voxel_at(origin, 1.0 / resolution_));
+  std::size_t next = 0;
+  for (; next + lane_count <= ends.size(); next += lane_count) {
+    std::array<VoxelLine::Steps, lane_count> steps;
+    FourWalks walks;
+    for (std::size_t lane = 0; lane < lane_count; ++lane) {
+      steps[lane] = VoxelLine(origin, ends[next + lane], resolution_).steps();
+      for (int axis = 0; axis < 3; ++axis) {
+        walks.border[axis][lane] = steps[lane].border[axis];
+        walks.spacing[axis][lane] = steps[lane].spacing[axis];
+        walks.stride[axis][lane] = steps[lane].sense[axis] * strides_[axis];
+      }
+      walks.number[lane] = start;
+    }
+    const std::int64_t together =
+        std::ranges::min(steps, {}, &VoxelLine::Steps::surely_passed).surely_passed;
+    pass_four(walks, together, marks_.data());
+    for (std::size_t lane = 0; lane < lane_count; ++lane) {
+      Walk walk(steps[lane], strides_, marks_.data() + walks.number[lane]);
+      walk.step = together;
+      for (int axis = 0; axis < 3; ++axis) walk.border[axis] = walks.border[axis][lane];
+      finish(walk, steps[lane], pass);
+    }
+  }
+  for (; next < ends.size(); ++next) {
+    const auto steps = VoxelLine(origin, ends[next], resolution_).steps();
+    finish(Walk(steps, strides_, marks_.data() + start), steps, pass);
+  }
+}
+
+}  // namespace skycap::survey::volumetric

@@ -1,0 +1,72 @@
+/// Which voxels the rays of one scan pass, hit and leave in the shadow, each once.
+#pragma once
+
+#include <cstdint>
+#include <cstring>
+#include <span>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "survey/volumetric/voxel_walk.h"
+
+namespace skycap::survey::volumetric {
+
+/// A mark for each voxel of a box around the scan. A million rays take half a thousand steps each,
+/// so a step has to cost little: it only writes, and never waits for what another step wrote.
+class ScanVoxels {
+ public:
+  /// What is said of a voxel: that it is passed or hit, or else how many voxels it is behind the
+  /// nearest surface in front of it.
+  using Mark = std::uint16_t;
+  static constexpr Mark passed = 0xfffe, hit = 0xffff;
+  static bool is_shadow(Mark mark) { return mark < passed; }
+
+  /// Of rays from `origin`, in the world frame. The voxels of `returns` are hit; those before them
+  /// and before `empty_ends` are passed. Shadows reach `shadow_length` behind returns, less than
+  /// 30,000 voxels. Throws if the scan spans more than most_voxels.
+  ScanVoxels(const Eigen::Vector3f& origin, std::span<const Eigen::Vector3f> returns,
+             std::span<const Eigen::Vector3f> empty_ends, double resolution, double shadow_length);
+
+  static constexpr double most_voxels = 0x1p32;  // 8 GiB
+
+  /// Calls f(voxel, mark) for all that have a mark, in a fixed order.
+  template <typename F>
+  void for_each(F f) const {
+    std::size_t row = 0;
+    VoxelIndex voxel = low_;
+    for (; row < marks_.size(); row += static_cast<std::size_t>(strides_[1])) {
+      for (std::int64_t x = 0; x < strides_[1]; x += marks_in_word) {
+        std::uint64_t any = 0;
+        std::memcpy(&any, &marks_[row + static_cast<std::size_t>(x)], sizeof any);
+        if (any == 0) continue;
+        for (std::int64_t i = x; i < x + marks_in_word; ++i) {
+          voxel[0] = low_[0] + static_cast<std::int32_t>(i);
+          const Mark mark = marks_[row + static_cast<std::size_t>(i)];
+          if (mark != 0) f(voxel, mark);
+        }
+      }
+      ++voxel[1];
+      if ((voxel[1] - low_[1]) * strides_[1] < strides_[2]) continue;
+      voxel[1] = low_[1];
+      ++voxel[2];
+    }
+  }
+
+ private:
+  static constexpr std::int64_t marks_in_word = sizeof(std::uint64_t) / sizeof(Mark);
+
+  std::int64_t number_of(const VoxelIndex& voxel) const {
+    return (voxel[0] - low_[0]) + (voxel[1] - low_[1]) * strides_[1] +
+           (voxel[2] - low_[2]) * strides_[2];
+  }
+  void mark_shadow(const Eigen::Vector3f& origin, const Eigen::Vector3f& point, double length);
+  void mark_passed(const Eigen::Vector3f& origin, std::span<const Eigen::Vector3f> ends);
+
+  double resolution_;
+  VoxelIndex low_{};                        // of the box
+  std::array<std::int64_t, 3> strides_{1};  // from a voxel's number to its neighbours'
+  std::vector<Mark> marks_;
+};
+
+}  // namespace skycap::survey::volumetric

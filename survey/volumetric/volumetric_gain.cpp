@@ -1,0 +1,360 @@
+#include "survey/volumetric/volumetric_gain.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <limits>
+
+namespace skycap::survey::volumetric {
+namespace {
+
+using Eigen::Vector3d;
+using Eigen::Vector3f;
+
+/// What the map does not know has this entropy, at occupancy 1/2.
+constexpr double prior_entropy = 0.6931471805599453;  // ln 2
+
+/// 0.2 <= p <= 0.8, the prior included.
+bool is_uncertain(const VoxelState& state) {
+  return state.kind != VoxelKind::free && state.kind != VoxelKind::occupied;
+}
+
+/// How likely light gets from the view to a voxel: a product over the voxels before it.
+class Visibility {
+ public:
+  explicit Visibility(VisibilityFactor factor) : factor_(factor) {}
+
+  double weight() const { return weight_; }
+  void pass(double occupancy) {
+    weight_ *= factor_ == VisibilityFactor::occupancy ? occupancy : 1.0 - occupancy;
+    if (weight_ < vanishing) weight_ = 0.0;  // subnormal numbers are slow
+  }
+  /// The sum of the weights of `count` untouched voxels, whose factor is 1/2 either way.
+  double pass_untouched(std::size_t count) {
+    const double before = weight_;
+    weight_ = std::ldexp(weight_, -static_cast<int>(std::min<std::size_t>(count, 2000)));
+    if (weight_ < vanishing) weight_ = 0.0;
+    return 2.0 * (before - weight_);
+  }
+
+ private:
+  static constexpr double vanishing = 1e-290;
+  VisibilityFactor factor_;
+  double weight_ = 1.0;
+};
+
+/// Each gain takes in one ray of a view, as VolumetricMap::follow() tells it, after the other.
+/// `only_surfaces` says that rays which meet nothing occupied do not count.
+class RearSideVoxelGain {
+ public:
+  static constexpr Hears hears = Hears::what_it_leaves;
+  static constexpr bool only_surfaces = true;
+  explicit RearSideVoxelGain(const GainSettings&, double) {}
+
+  void begin_ray() { is_behind_uncertain_ = false; }
+  bool may_miss(bool) const { return true; }
+  bool pass(const VoxelState& state) {
+    is_behind_uncertain_ = is_uncertain(state);  // an occupied voxel would have stopped the ray
+    return true;
+  }
+  void finish(const VoxelState& state) {
+    if (state.kind == VoxelKind::occupied && is_behind_uncertain_) total_ += 1.0;
+  }
+  double total() const { return total_; }
+
+ private:
+  bool is_behind_uncertain_ = false;
+  double total_ = 0.0;
+};
+
+class RearSideEntropyGain {
+ public:
+  static constexpr Hears hears = Hears::every_voxel;
+  static constexpr bool only_surfaces = true;
+  explicit RearSideEntropyGain(const GainSettings& settings, double) : settings_(settings) {}
+
+  void begin_ray() {
+    visibility_ = Visibility(settings_.visibility);
+    run_ = 0.0;
+    is_in_run_ = false;
+  }
+  bool pass_untouched(std::size_t count) {
+    run_ += visibility_.pass_untouched(count) * prior_entropy;
+    is_in_run_ = true;
+    return true;
+  }
+  bool pass(const VoxelState& state) {
+    is_in_run_ = is_uncertain(state);
+    run_ = is_in_run_ ? run_ + visibility_.weight() * state.entropy : 0.0;
+    visibility_.pass(state.occupancy);
+    return true;
+  }
+  void finish(const VoxelState& state) {
+    if (state.kind != VoxelKind::occupied) return;
+    if (settings_.rear_side_end == RearSideEnd::behind_uncertain && !is_in_run_) return;
+    total_ += run_ + visibility_.weight() * state.entropy;
+  }
+  double total() const { return total_; }
+
+ private:
+  GainSettings settings_;
+  Visibility visibility_{VisibilityFactor::occupancy};
+  double run_ = 0.0;  // of the uncertain voxels straight before the current one
+  bool is_in_run_ = false;
+  double total_ = 0.0;
+};
+
+/// OA, and UV if only uncertain voxels count.
+template <bool only_uncertain>
+class VisibleEntropyGain {
+ public:
+  static constexpr Hears hears = Hears::every_voxel;
+  static constexpr bool only_surfaces = false;
+  explicit VisibleEntropyGain(const GainSettings& settings, double) : settings_(settings) {}
+
+  void begin_ray() {
+    visibility_ = Visibility(settings_.visibility);
+    ray_ = 0.0;
+  }
+  bool pass_untouched(std::size_t count) {
+    ray_ += visibility_.pass_untouched(count) * prior_entropy;
+    return go_on();
+  }
+  bool pass(const VoxelState& state) {
+    add(state);
+    visibility_.pass(state.occupancy);
+    return go_on();
+  }
+  void finish(const VoxelState& state) {
+    add(state);
+    total_ += ray_;
+  }
+  double total() const { return total_; }
+
+ private:
+  /// What is left of a ray is at most ln 2 times a geometric series of factors up to 0.88; once
+  /// that cannot change the ray's sum any more, the ray is over.
+  bool go_on() {
+    constexpr double most_left = prior_entropy / (1.0 - 0.88);
+    if (visibility_.weight() * most_left > 1e-17 * ray_) return true;
+    total_ += ray_;
+    return false;
+  }
+  void add(const VoxelState& state) {
+    if (!only_uncertain || is_uncertain(state)) ray_ += visibility_.weight() * state.entropy;
+  }
+
+  GainSettings settings_;
+  Visibility visibility_{VisibilityFactor::occupancy};
+  double ray_ = 0.0;
+  double total_ = 0.0;
+};
+
+class ProximityCountGain {
+ public:
+  static constexpr Hears hears = Hears::only_its_end;
+  static constexpr bool only_surfaces = false;
+  explicit ProximityCountGain(const GainSettings&, double shadow_ceiling)
+      : shadow_ceiling_(shadow_ceiling) {}
+
+  void begin_ray() {}
+  bool may_miss(bool has_shadows) const { return !has_shadows; }
+  bool pass(const VoxelState& state) {
+    if (state.kind == VoxelKind::shadowed) total_ += shadow_ceiling_ - state.shadow_depth;
+    return true;
+  }
+  void finish(const VoxelState& state) { pass(state); }
+  double total() const { return total_; }
+
+ private:
+  double shadow_ceiling_;
+  double total_ = 0.0;
+};
+
+class AreaFactorGain {
+ public:
+  static constexpr Hears hears = Hears::what_it_leaves;
+  static constexpr bool only_surfaces = false;
+  explicit AreaFactorGain(const GainSettings& settings, double) : share_(settings.area_share) {}
+
+  void begin_ray() { is_from_free_ = true; }
+  bool may_miss(bool has_shadows) const { return !has_shadows && !nothing_known_yet_; }
+  bool pass(const VoxelState& state) {
+    switch (state.kind) {
+      case VoxelKind::untouched:
+        is_from_free_ = nothing_known_yet_;
+        return true;
+      case VoxelKind::shadowed:
+        ++shadowed_;
+        return false;
+      case VoxelKind::occupied:
+        nothing_known_yet_ = false;
+        if (is_from_free_) ++occupied_;
+        return false;
+      case VoxelKind::free:
+      case VoxelKind::uncertain:
+        break;
+    }
+    nothing_known_yet_ = false;
+    is_from_free_ = state.kind == VoxelKind::free;
+    return true;
+  }
+  void finish(const VoxelState& state) {
+    if (pass(state)) ++unobserved_;
+  }
+  double total() const {
+    const double votes =
+        occupied_ + shadowed_ + (share_ == AreaShare::all_rays ? unobserved_ : 0.0);
+    if (votes == 0.0) return 0.0;
+    return area_reward(occupied_ / votes, 0.2) + area_reward(shadowed_ / votes, 0.8);
+  }
+
+ private:
+  AreaShare share_;
+  bool is_from_free_ = true;
+  bool nothing_known_yet_ = true;  // of the whole view: rays depend on those before them
+  double occupied_ = 0.0, shadowed_ = 0.0, unobserved_ = 0.0;
+};
+
+class AverageEntropyGain {
+ public:
+  static constexpr Hears hears = Hears::every_voxel;
+  static constexpr bool only_surfaces = true;
+  explicit AverageEntropyGain(const GainSettings&, double) {}
+
+  void begin_ray() { ray_ = ray_voxels_ = 0.0; }
+  bool pass_untouched(std::size_t count) {
+    ray_ += static_cast<double>(count) * prior_entropy;
+    ray_voxels_ += static_cast<double>(count);
+    return true;
+  }
+  bool pass(const VoxelState& state) {
+    ray_ += state.entropy;
+    ray_voxels_ += 1.0;
+    return true;
+  }
+  void finish(const VoxelState& state) {
+    if (state.kind != VoxelKind::occupied) return;
+    pass(state);
+    entropy_ += ray_;
+    voxels_ += ray_voxels_;
+  }
+  double total() const { return voxels_ > 0.0 ? entropy_ / voxels_ : 0.0; }
+
+ private:
+  double ray_ = 0.0, ray_voxels_ = 0.0;
+  double entropy_ = 0.0, voxels_ = 0.0;
+};
+
+/// Whether a ray ends on an occupied voxel: quick to know.
+class OccupiedEnd {
+ public:
+  static constexpr Hears hears = Hears::only_its_end;
+  bool may_miss(bool) const { return true; }
+  bool pass(const VoxelState&) { return true; }
+  void finish(const VoxelState& state) { is_met_ = state.kind == VoxelKind::occupied; }
+  bool is_met() const { return is_met_; }
+
+ private:
+  bool is_met_ = false;
+};
+
+/// How far along a ray the box reaches; nothing of it lies on the ray if that is negative.
+double far_end(const Eigen::AlignedBox3d& box, const Vector3d& origin, const Vector3d& direction) {
+  double nearest = 0.0, farthest = std::numeric_limits<double>::infinity();
+  for (int axis = 0; axis < 3; ++axis) {
+    // A direction of zero gives infinities of the right signs.
+    const double a = (box.min()[axis] - origin[axis]) / direction[axis];
+    const double b = (box.max()[axis] - origin[axis]) / direction[axis];
+    nearest = std::max(nearest, std::min(a, b));
+    farthest = std::min(farthest, std::max(a, b));
+  }
+  return nearest <= farthest ? farthest : -1.0;
+}
+
+template <typename Gain>
+double gain_of(const VolumetricMap& map, const geometry::View& view,
+               const std::vector<Vector3d>& directions, double depth,
+               const GainSettings& settings) {
+  const Eigen::Matrix3d world_from_camera = geometry::camera_pose(view).linear();
+  const Vector3f origin = view.position.cast<float>();
+  Eigen::AlignedBox3d surface = map.surface_box();
+  if (!surface.isEmpty()) {  // a voxel wider, for what rounding does
+    surface.min().array() -= map.resolution();
+    surface.max().array() += map.resolution();
+  }
+  Gain gain(settings, map.shadow_ceiling());
+  for (const Vector3d& in_camera : directions) {
+    const Vector3d direction = world_from_camera * in_camera;
+    const Vector3f end = (view.position + depth * direction).cast<float>();
+    double reach = std::numeric_limits<double>::infinity();
+    if (Gain::only_surfaces) {
+      reach = surface.isEmpty() ? -1.0 : far_end(surface, view.position, direction);
+      if (reach < 0.0) continue;
+    }
+    if (Gain::only_surfaces && Gain::hears == Hears::every_voxel) {  // too slow to be for nothing
+      OccupiedEnd surface_end;
+      map.follow(origin, end, reach, surface_end);
+      if (!surface_end.is_met()) continue;
+    }
+    gain.begin_ray();
+    map.follow(origin, end, reach, gain);
+  }
+  return gain.total();
+}
+
+}  // namespace
+
+std::vector<Vector3d> ray_directions(const geometry::Camera& camera, const RayPattern& pattern) {
+  const auto pixels = [&](int size) {
+    constexpr double rounding = 1e-9;
+    const double extent = (pattern.window_end - pattern.window_begin) * size;
+    const auto count = static_cast<int>(extent * pattern.rays_per_pixel + rounding) + 1;
+    std::vector<double> chosen;
+    for (int i = 0; i < count; ++i) {
+      const double place = pattern.window_begin * size + i / pattern.rays_per_pixel;
+      chosen.push_back(std::trunc(place + rounding));
+    }
+    return chosen;
+  };
+  std::vector<Vector3d> directions;
+  for (const double column : pixels(camera.width())) {
+    for (const double row : pixels(camera.height())) {
+      directions.push_back(camera.ray({column, row}).normalized());
+    }
+  }
+  return directions;
+}
+
+double area_reward(double x, double wanted) {
+  // The share on the way from the nearer end of [0, 1] to the wanted one.
+  const double r = x <= wanted ? x / wanted : (1.0 - x) / (1.0 - wanted);
+  return r * r * (3.0 - 2.0 * r);
+}
+
+double information_gain(VolumetricMetric metric, const VolumetricMap& map,
+                        const geometry::View& view, const std::vector<Vector3d>& directions,
+                        double depth, const GainSettings& settings) {
+  const auto gain = [&]<typename Gain>() {
+    return gain_of<Gain>(map, view, directions, depth, settings);
+  };
+  switch (metric) {
+    case VolumetricMetric::rear_side_voxel:
+      return gain.operator()<RearSideVoxelGain>();
+    case VolumetricMetric::rear_side_entropy:
+      return gain.operator()<RearSideEntropyGain>();
+    case VolumetricMetric::occlusion_aware:
+      return gain.operator()<VisibleEntropyGain<false>>();
+    case VolumetricMetric::unobserved_voxel:
+      return gain.operator()<VisibleEntropyGain<true>>();
+    case VolumetricMetric::proximity_count:
+      return gain.operator()<ProximityCountGain>();
+    case VolumetricMetric::area_factor:
+      return gain.operator()<AreaFactorGain>();
+    case VolumetricMetric::average_entropy:
+      break;
+  }
+  return gain.operator()<AverageEntropyGain>();
+}
+
+}  // namespace skycap::survey::volumetric

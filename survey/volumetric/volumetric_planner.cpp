@@ -1,0 +1,230 @@
+#include "survey/volumetric/volumetric_planner.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <random>
+#include <sstream>
+#include <string>
+
+#include "geometry/error.h"
+#include "geometry/parallel.h"
+#include "geometry/points/nearby_points.h"
+#include "geometry/points/point_grid.h"
+#include "survey/stopwatch.h"
+
+namespace skycap::survey::volumetric {
+namespace {
+
+using Eigen::Vector3d;
+using Eigen::Vector3f;
+using geometry::Scan;
+using geometry::View;
+
+constexpr double default_shadow_in_voxels = 18.0;
+
+void require(bool holds, const char* field, const char* rule, double value) {
+  if (holds) return;
+  std::ostringstream message;
+  message << field << " is " << value << "; it must be " << rule;
+  throw Error(ErrorKind::bad_config, message.str());
+}
+
+double shadow_length(const VolumetricConfig& config) {
+  return config.settings.shadow_length.value_or(default_shadow_in_voxels * config.resolution);
+}
+
+double ray_depth(const VolumetricConfig& config) {
+  return config.settings.ray_depth.value_or(config.sphere_radius);
+}
+
+/// Where the rays of pixels without a return end, `depth` from the sensor.
+std::vector<Vector3f> ends_of_no_returns(const Scan& scan, const geometry::Camera& camera,
+                                         double depth) {
+  std::vector<Vector3f> ends;
+  const auto width = static_cast<std::uint32_t>(camera.width());
+  const std::uint32_t pixels = width * static_cast<std::uint32_t>(camera.height());
+  auto next_return = scan.pixels.begin();
+  for (std::uint32_t pixel = 0; pixel < pixels; ++pixel) {
+    if (next_return != scan.pixels.end() && *next_return == pixel) {
+      ++next_return;
+      continue;
+    }
+    const Vector3d direction = camera.ray({pixel % width, pixel / width}).normalized();
+    ends.push_back((scan.world_from_sensor * Vector3d(depth * direction)).cast<float>());
+  }
+  return ends;
+}
+
+}  // namespace
+
+void VolumetricConfig::validate() const {
+  constexpr const char* length = "a positive number of metres";
+  const auto is_length = [](double value) { return std::isfinite(value) && value > 0.0; };
+  require(is_length(resolution), "planner.resolution_radius", length, resolution);
+  require(std::isfinite(spacing) && spacing >= 0.0, "planner.spacing",
+          "zero or a positive number of metres", spacing);
+  require(is_length(sphere_radius), "volumetric.sphere_radius", length, sphere_radius);
+  require(candidates >= 1, "volumetric.candidates_per_view", "large enough for one candidate",
+          settings.candidates_per_view);
+  require(std::isfinite(settings.cost_weight) && settings.cost_weight >= 0.0,
+          "volumetric.cost_weight", "zero or more", settings.cost_weight);
+  require(is_length(ray_depth(*this)), "volumetric.ray_depth", length, ray_depth(*this));
+  // A diagonal shadow takes sqrt(3) times as many voxels.
+  constexpr double longest_shadow = OccupancyStates::deepest_shadow / 2.0;
+  require(is_length(shadow_length(*this)) && shadow_length(*this) < longest_shadow * resolution,
+          "volumetric.shadow_length", "positive and less than 2000 voxels", shadow_length(*this));
+  const RayPattern& rays = settings.rays;
+  require(rays.rays_per_pixel > 0.0 && rays.rays_per_pixel <= 1.0, "volumetric.rays_per_pixel",
+          "above 0 and at most 1", rays.rays_per_pixel);
+  require(rays.window_begin >= 0.0 && rays.window_begin < rays.window_end,
+          "volumetric.window_begin", "at least 0 and below window_end", rays.window_begin);
+  require(rays.window_end < 1.0 + 1e-12, "volumetric.window_end", "at most 1", rays.window_end);
+}
+
+std::vector<View> sphere_views(std::size_t count, const Vector3d& centre, double radius,
+                               double least_height, std::uint64_t seed) {
+  std::mt19937_64 random(seed);
+  std::normal_distribution<double> normal;
+  std::vector<View> views;
+  views.reserve(count);
+  const std::size_t most_attempts = 1000 * count;
+  for (std::size_t attempt = 0; views.size() < count; ++attempt) {
+    if (attempt == most_attempts) {
+      std::ostringstream message;
+      message << "the candidates' sphere reaches up to " << centre.z() + radius
+              << " m, of which less than a thousandth is above the least height of " << least_height
+              << " m; lower limits.ground_clearance";
+      throw Error(ErrorKind::bad_config, message.str());
+    }
+    const double x = normal(random), y = normal(random), z = normal(random);
+    const Vector3d direction(x, y, z);
+    if (direction.norm() < 1e-3) continue;
+    const Vector3d position = centre + radius * direction.normalized();
+    if (position.z() >= least_height) views.push_back(geometry::look_at(position, centre));
+  }
+  return views;
+}
+
+std::size_t most_useful(std::span<const double> gains, std::span<const double> distances,
+                        double cost_weight, TieRule ties) {
+  const double all_gains = std::accumulate(gains.begin(), gains.end(), 0.0);
+  const double all_distances = std::accumulate(distances.begin(), distances.end(), 0.0);
+  std::size_t best = 0;
+  double best_utility = 0.0;
+  for (std::size_t i = 0; i < gains.size(); ++i) {
+    double utility = all_gains == 0.0 ? gains[i] : gains[i] / all_gains;
+    if (all_distances > 0.0) utility -= cost_weight * distances[i] / all_distances;
+    const bool wins_tie =
+        ties == TieRule::nearest && utility == best_utility && distances[i] < distances[best];
+    if (i == 0 || utility > best_utility || wins_tie) best = i, best_utility = utility;
+  }
+  return best;
+}
+
+struct VolumetricPlanner::Impl {
+  struct Candidate {
+    View view;
+    double gain = 0.0;
+  };
+
+  Impl(const VolumetricConfig& given, const geometry::Camera& its_camera)
+      : config(given),
+        camera(its_camera),
+        directions(ray_directions(camera, config.settings.rays)),
+        map(config.resolution, shadow_length(config)),
+        kept(std::max(2.0 * config.spacing, 1e-6)) {
+    for (const View& view : sphere_views(config.candidates, config.sphere_centre,
+                                         config.sphere_radius, config.least_height, config.seed)) {
+      candidates.push_back({view});
+    }
+  }
+
+  void insert(const Scan& scan);
+  void score();
+  std::optional<View> take_best();
+
+  VolumetricConfig config;
+  geometry::Camera camera;
+  std::vector<Vector3d> directions;
+  VolumetricMap map;
+  geometry::PointGrid kept;
+  geometry::PointCloud cloud;
+  std::vector<Candidate> candidates;  // not yet proposed, in the order in which they were drawn
+  Vector3d position = Vector3d::Zero();
+  std::uint32_t scans = 0;
+  PlanningStep step;
+};
+
+VolumetricPlanner::VolumetricPlanner(const VolumetricConfig& config, const geometry::Camera& camera)
+    : impl_((config.validate(), std::make_unique<Impl>(config, camera))) {}
+
+VolumetricPlanner::~VolumetricPlanner() = default;
+
+const geometry::PointCloud& VolumetricPlanner::cloud() const { return impl_->cloud; }
+const PlanningStep& VolumetricPlanner::last_step() const { return impl_->step; }
+const VolumetricMap& VolumetricPlanner::map() const { return impl_->map; }
+
+std::optional<View> VolumetricPlanner::next_view(const Scan& scan) {
+  impl_->step = {};
+  Stopwatch stopwatch(impl_->step.times);
+  impl_->insert(scan);
+  stopwatch.lap("insert");
+  if (impl_->cloud.positions.empty()) {
+    throw Error(ErrorKind::bad_geometry,
+                "the first scan holds no point of the scene; start where the sensor sees it, or "
+                "widen the scene's box");
+  }
+  impl_->score();
+  stopwatch.lap("score");
+  return impl_->take_best();
+}
+
+std::optional<View> VolumetricPlanner::next_view_instead() { return impl_->take_best(); }
+
+void VolumetricPlanner::Impl::insert(const Scan& scan) {
+  position = scan.sensor_position();
+  std::vector<Vector3f> measured;
+  geometry::NearbyPoints nearby(kept, config.spacing);
+  for (const Vector3f& point : scan.points) {
+    if (config.scene_box && !config.scene_box->contains(point.cast<double>())) continue;
+    const bool is_new = !nearby.any_near(point);
+    if (is_new) {
+      kept.insert(point);
+      cloud.positions.push_back(point);
+      cloud.views.push_back(scans);
+      ++step.points_new;
+    }
+    if (is_new || !config.settings.thinned) measured.push_back(point);
+  }
+  ++scans;
+
+  std::vector<Vector3f> empty_ends;
+  if (config.settings.carve_no_returns && !scan.pixels.empty()) {
+    empty_ends = ends_of_no_returns(scan, camera, ray_depth(config));
+  }
+  map.insert(position.cast<float>(), measured, empty_ends);
+}
+
+void VolumetricPlanner::Impl::score() {
+  geometry::parallel_for(candidates.size(), config.threads, [&](std::size_t i) {
+    candidates[i].gain = information_gain(config.metric, map, candidates[i].view, directions,
+                                          ray_depth(config), config.settings.gain);
+  });
+}
+
+std::optional<View> VolumetricPlanner::Impl::take_best() {
+  if (candidates.empty()) return std::nullopt;
+  std::vector<double> gains, distances;
+  for (const Candidate& candidate : candidates) {
+    gains.push_back(candidate.gain);
+    distances.push_back((candidate.view.position - position).norm());
+  }
+  const std::size_t best =
+      most_useful(gains, distances, config.settings.cost_weight, config.settings.ties);
+  const View view = candidates[best].view;
+  candidates.erase(candidates.begin() + static_cast<std::ptrdiff_t>(best));
+  return view;
+}
+
+}  // namespace skycap::survey::volumetric

@@ -1,0 +1,284 @@
+// What all formats have in common: what is written is valid, reads back as the same flight, and is
+// proved again before it gets its name.
+#include "flight/export/export.h"
+
+#include <cmath>
+#include <cstdlib>
+#include <fstream>
+#include <iterator>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "flight/export/trajectory_file.h"
+#include "flight/export/wpml_file.h"
+#include "geometry/error.h"
+#include "tests/flight/export/sample_plan.h"
+
+namespace skycap::flight {
+namespace {
+
+using Eigen::Vector3d;
+using testing::HasSubstr;
+using testing::IsEmpty;
+
+Vehicle vehicle_for(Format format) {
+  return vehicle_profile(format == Format::kmz ? "m350_rtk" : "generic");
+}
+
+std::string content_of(const std::filesystem::path& path) {
+  std::ifstream file(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
+}
+
+/// A directory that goes with the test.
+class Scratch {
+ public:
+  Scratch() : path_(std::filesystem::temp_directory_path() / "skycap_export_XXXXXX") {
+    std::string name = path_.string();
+    path_ = mkdtemp(name.data());
+  }
+  ~Scratch() { std::filesystem::remove_all(path_); }
+  std::filesystem::path operator/(const std::string& name) const { return path_ / name; }
+  bool has(const std::string& name) const { return std::filesystem::exists(path_ / name); }
+
+ private:
+  std::filesystem::path path_;
+};
+
+const FormatInfo& info_of(Format format) { return formats()[static_cast<std::size_t>(format)]; }
+
+class EveryFormat : public testing::TestWithParam<Format> {};
+
+// The points flown are the plan's: to half a unit of the last digit written and of 1e-7 degrees.
+TEST_P(EveryFormat, IsValidAndReadsBackAsTheSameFlight) {
+  const Format format = GetParam();
+  const FlightPlan plan = sample_plan(vehicle_for(format));
+  const std::string content = write(plan, format);
+  EXPECT_THAT(validate(content, format), IsEmpty());
+  EXPECT_EQ(write(plan, format), content) << "not the same bytes each time";
+  const std::vector<Vector3d> flown = flown_points(content, format, plan);
+  for (const Waypoint& waypoint : plan.waypoints) {
+    double nearest = 1e9;
+    for (const Vector3d& point : flown)
+      nearest = std::min(nearest, (point - waypoint.position).norm());
+    EXPECT_LT(nearest, rounding_bound);
+  }
+  // And nowhere else: every point read lies on a leg of the plan.
+  for (const Vector3d& point : flown) {
+    double nearest_leg = 1e9;
+    for (std::size_t i = 1; i < plan.waypoints.size(); ++i) {
+      const Segment leg{plan.waypoints[i - 1].position, plan.waypoints[i].position};
+      nearest_leg = std::min(nearest_leg, std::sqrt(nearest(leg, point).squared_distance));
+    }
+    EXPECT_LT(nearest_leg, rounding_bound);
+  }
+}
+
+TEST_P(EveryFormat, GetsItsNameOnlyOnceProvedAgain) {
+  const Format format = GetParam();
+  const FlightPlan plan = sample_plan(vehicle_for(format));
+  const Scratch scratch;
+  const std::string name = std::string("mission") + info_of(format).ending;
+  const KnownSpace space(sample_site());
+  const ExportResult result = export_flight(plan, format, space, scratch / name);
+  EXPECT_GE(result.min_clearance, plan.clearance - rounding_bound);
+  EXPECT_EQ(content_of(scratch / name), write(plan, format));
+
+  // A crane appears after planning: the file must not change.
+  Obstacles changed = sample_site();
+  changed.cloud = {
+      {(0.5 * (plan.waypoints[1].position + plan.waypoints[2].position)).cast<float>()}, 0.1};
+  FlightPlan renamed = plan;
+  renamed.name = "another";
+  EXPECT_THROW(export_flight(renamed, format, KnownSpace(changed), scratch / name), Error);
+  EXPECT_EQ(content_of(scratch / name), write(plan, format));
+  EXPECT_FALSE(scratch.has(name + ".part"));
+
+  const auto points = read_route(scratch / name, plan.site, plan.pad);
+  EXPECT_THAT(check_route(points, space, plan.clearance - rounding_bound), IsEmpty());
+}
+
+INSTANTIATE_TEST_SUITE_P(Export, EveryFormat,
+                         testing::Values(Format::plan, Format::waypoints, Format::kmz, Format::kml,
+                                         Format::geojson, Format::litchi, Format::csv,
+                                         Format::ned_csv, Format::tum),
+                         [](const auto& parameter) {
+                           std::string name = info_of(parameter.param).name;
+                           std::replace(name.begin(), name.end(), '-', '_');
+                           return name;
+                         });
+
+// Curves in files are proved again between the places that they are written as.
+TEST(Export, CurvesAreHeldByTrajectoriesAndTracks) {
+  const FlightPlan stops = corner_plan(FlightStyle::stop);
+  for (const FlightStyle style : {FlightStyle::blend, FlightStyle::smooth}) {
+    const FlightPlan plan = corner_plan(style);
+    EXPECT_LT(plan.waypoints.size(), stops.waypoints.size());
+    EXPECT_LT(stop_times(plan).back().departure, stop_times(stops).back().departure - 1.0);
+    const Scratch scratch;
+    const KnownSpace space(sample_site());
+    for (const FormatInfo& info : formats()) {
+      if (!holds_curves(info.format)) continue;
+      const std::string name = std::string("mission") + info.ending;
+      EXPECT_GE(export_flight(plan, info.format, space, scratch / name).min_clearance,
+                plan.clearance - rounding_bound);
+      const auto points = read_route(scratch / name, plan.site, plan.pad);
+      EXPECT_GT(points.size(), 3 * plan.waypoints.size()) << info.name << " holds no curve";
+    }
+  }
+}
+
+TEST(Export, MeanSeaLevelIsRefusedWithoutTheUndulation) {
+  for (const FormatInfo& info : formats()) {
+    FlightPlan plan = sample_plan(vehicle_for(info.format));
+    plan.site.geoid_undulation.reset();
+    const bool needs_it = info.format == Format::plan || info.format == Format::kml;
+    try {
+      write(plan, info.format);
+      EXPECT_FALSE(needs_it) << info.name;
+    } catch (const Error& error) {
+      EXPECT_TRUE(needs_it) << info.name;
+      EXPECT_THAT(error.what(), HasSubstr("geoid undulation"));
+    }
+  }
+}
+
+TEST(Export, SaysWhatAFormatCannotHold) {
+  const Scratch scratch;
+  const KnownSpace space(sample_site());
+  const ExportResult plan = export_flight(sample_plan(vehicle_profile("generic")), Format::plan,
+                                          space, scratch / "mission.plan");
+  EXPECT_THAT(plan.notes, testing::ElementsAre(HasSubstr("\"shed\" is passed over")));
+}
+
+TEST(Export, UnknownFormatsAndFilesAreNamed) {
+  EXPECT_EQ(format_named("kmz"), Format::kmz);
+  EXPECT_THROW(format_named("gpx"), Error);
+  EXPECT_THROW(read_route("/nowhere/mission.plan", {}, Vector3d::Zero()), Error);
+  EXPECT_THROW(format_of_file("a.gpx", ""), Error);
+  EXPECT_EQ(format_of_file("a.csv", "latitude,longitude"), Format::litchi);
+  EXPECT_EQ(format_of_file("a.csv", "# frame: NED"), Format::csv);
+}
+
+// An independent reader of the XML formats, where it is installed.
+TEST(Export, XmlIsWellFormedByXmllint) {
+  if (std::system("command -v xmllint > /dev/null 2>&1") != 0) GTEST_SKIP() << "no xmllint";
+  const Scratch scratch;
+  const KmzContent kmz = unpack_kmz(write(sample_plan(vehicle_profile("m30t")), Format::kmz));
+  const std::string kml = write(sample_plan(vehicle_profile("generic")), Format::kml);
+  for (const std::string& content : {kmz.template_kml, kmz.waylines_wpml, kml}) {
+    const std::filesystem::path path = scratch / "file.xml";
+    std::ofstream(path, std::ios::binary) << content;
+    EXPECT_EQ(std::system(("xmllint --noout " + path.string()).c_str()), 0);
+  }
+}
+
+// ---- trajectories ----------------------------------------------------------------------------
+
+// Derivatives by differences agree with what is stated: the profile is the motion that it says.
+class TrajectoryOf : public testing::TestWithParam<FlightStyle> {};
+
+TEST_P(TrajectoryOf, VelocitiesAndAccelerationsAreTheDerivatives) {
+  const FlightPlan plan = corner_plan(GetParam());
+  constexpr double dt = 0.001;
+  const std::vector<TimedState> states = trajectory(plan, dt);
+  for (std::size_t i = 1; i + 1 < states.size(); ++i) {
+    const TimedState &before = states[i - 1], &now = states[i], &after = states[i + 1];
+    const double span = after.time - before.time;
+    // Jerk is limited to 4 m/s^3: errors of the differences are below its product with the step.
+    EXPECT_LT(((after.position - before.position) / span - now.velocity).norm(), 8e-3);
+    EXPECT_LT(((after.velocity - before.velocity) / span - now.acceleration).norm(), 2e-2);
+    EXPECT_LE(now.velocity.norm(), plan.conditions.cruise_speed + 1e-9);
+    EXPECT_LE(now.acceleration.norm(), plan.vehicle.acceleration + 1e-9);
+  }
+  EXPECT_NEAR(states.back().time, stop_times(plan).back().departure, 1e-9);
+}
+
+INSTANTIATE_TEST_SUITE_P(Styles, TrajectoryOf,
+                         testing::Values(FlightStyle::stop, FlightStyle::blend,
+                                         FlightStyle::smooth));
+
+TEST(Trajectory, CsvRoundTripsInBothFrames) {
+  const std::vector<TimedState> states = trajectory(sample_plan(vehicle_profile("generic")), 0.5);
+  for (const Frame frame : {Frame::enu, Frame::ned}) {
+    const std::vector<TimedState> read = read_trajectory_csv(write_trajectory_csv(states, frame));
+    ASSERT_EQ(read.size(), states.size());
+    for (std::size_t i = 0; i < read.size(); ++i) {
+      EXPECT_LT((read[i].position - states[i].position).norm(), 1e-5);
+      EXPECT_LT((read[i].velocity - states[i].velocity).norm(), 1e-5);
+      EXPECT_NEAR(std::remainder(read[i].yaw - states[i].yaw, 2 * M_PI), 0.0, 1e-5);
+      EXPECT_EQ(read[i].is_shot, states[i].is_shot);
+    }
+  }
+}
+
+TEST(Trajectory, NedIsNorthEastDownWithYawFromNorth) {
+  TimedState state{1.0, {10, 20, 30}, {1, 2, 3}, {0, 0, 0}, 0.5, 0.1, -0.2, true};
+  EXPECT_THAT(write_trajectory_csv({state}, Frame::ned),
+              HasSubstr("1.000000,20.000000,10.000000,-30.000000,2.000000,1.000000,-3.000000,"));
+  EXPECT_THAT(write_trajectory_csv({state}, Frame::ned),
+              HasSubstr(",0.500000,0.100000,-0.200000,1"));
+  EXPECT_THAT(write_trajectory_csv({state}, Frame::enu),
+              HasSubstr(",1.070796,-0.100000,-0.200000,1"));
+}
+
+TEST(Trajectory, TumKeepsPosesAndPutsWLast) {
+  const auto poses = camera_poses(trajectory(sample_plan(vehicle_profile("generic")), 0.5));
+  const auto read = read_tum(write_tum(poses));
+  ASSERT_EQ(read.size(), poses.size());
+  for (std::size_t i = 0; i < read.size(); ++i) {
+    EXPECT_TRUE(read[i].world_from_camera.isApprox(poses[i].world_from_camera, 1e-7));
+  }
+  TimedPose still;
+  EXPECT_THAT(write_tum({still}), HasSubstr(" 0.000000000 0.000000000 0.000000000 1.000000000\n"));
+  EXPECT_THAT(write_euroc({still}),
+              HasSubstr("\n0,0.000000000,0.000000000,0.000000000,1.000000000,0"));
+}
+
+TEST(Trajectory, BadFilesAreRefusedByLine) {
+  EXPECT_THAT(validate_tum("0 0 0 0 0 0 0 1\n0 0 0 0 0 0 0 1\n"),
+              testing::Contains(HasSubstr("line 2 goes back")));
+  EXPECT_THAT(validate_tum("0 0 0 0 0 0 0 2\n"), testing::Contains(HasSubstr("length 2")));
+  EXPECT_THAT(validate_tum("0 0 0 0 0 0 1\n"), testing::Contains(HasSubstr("7 numbers")));
+  EXPECT_THAT(validate_tum("0 0 x 0 0 0 0 1\n"), testing::Contains(HasSubstr("\"x\"")));
+  EXPECT_THAT(validate_tum("# only a comment\n"), testing::Contains(HasSubstr("no row")));
+  EXPECT_THAT(validate_trajectory_csv("t,x\n0,0\n"), testing::Contains(HasSubstr("frame")));
+  EXPECT_THROW(trajectory(sample_plan(vehicle_profile("generic")), 0.0), Error);
+}
+
+// ---- geodesy ---------------------------------------------------------------------------------
+
+// Analytic: on the equator and at the pole the ellipsoid's radii are known in closed form.
+TEST(Geodesy, AgreesWithTheEllipsoidInClosedForm) {
+  constexpr double a = 6378137.0, f = 1.0 / 298.257223563;
+  const LocalFrame equator({0, 0, 0});
+  const double angle = 0.01 * M_PI / 180.0;
+  const Vector3d east = equator.to_local({0, 0.01, 0});
+  EXPECT_NEAR(east.x(), a * std::sin(angle), 1e-6);
+  EXPECT_NEAR(east.z(), a * (std::cos(angle) - 1.0), 1e-6);
+  const LocalFrame pole({90, 0, 0});
+  EXPECT_NEAR(pole.to_local({90, 0, 100}).z(), 100.0, 1e-6);
+  EXPECT_NEAR(pole.to_local({-90, 0, 0}).z(), -2 * a * (1 - f), 1e-6);
+}
+
+TEST(Geodesy, RoundTripsEverywhere) {
+  for (double latitude = -85; latitude <= 85; latitude += 17) {
+    for (double longitude = -179; longitude <= 179; longitude += 53) {
+      const LocalFrame frame({latitude, longitude, 250});
+      const Vector3d local(523.4, -811.2, 77.7);
+      EXPECT_LT((frame.to_local(frame.to_geodetic(local)) - local).norm(), 1e-6);
+    }
+  }
+}
+
+TEST(Geodesy, AbsurdSitesAreNamed) {
+  EXPECT_THROW((Site{{91, 0, 0}, {}}.validate()), Error);
+  EXPECT_THROW((Site{{0, 181, 0}, {}}.validate()), Error);
+  EXPECT_THROW((Site{{0, 0, std::nan("")}, {}}.validate()), Error);
+  EXPECT_THROW((Site{{0, 0, 0}, 500.0}.validate()), Error);
+  EXPECT_THROW(geoid_undulation("/nowhere/egm96-5.pgm", {}), Error);
+}
+
+}  // namespace
+}  // namespace skycap::flight

@@ -1,0 +1,264 @@
+// Validation rules of .plan and .waypoints, each on a file that breaks just that rule.
+#include "flight/export/mavlink_files.h"
+
+#include <cmath>
+#include <functional>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include "geometry/error.h"
+#include "tests/flight/export/sample_plan.h"
+
+namespace skycap::flight {
+namespace {
+
+using nlohmann::json;
+using testing::Contains;
+using testing::HasSubstr;
+using testing::IsEmpty;
+
+const std::string& good_plan() {
+  static const std::string text = write_plan(sample_plan(vehicle_profile("generic")));
+  return text;
+}
+
+Problems after(const std::function<void(json&)>& change) {
+  json plan = json::parse(good_plan());
+  change(plan);
+  return validate_plan(plan.dump());
+}
+
+json& item(json& plan, std::size_t i) { return plan["mission"]["items"][i]; }
+
+TEST(PlanFile, TopLevelRules) {
+  EXPECT_THAT(validate_plan(good_plan()), IsEmpty());
+  EXPECT_THAT(validate_plan("{"), Contains(HasSubstr("not a JSON object")));
+  EXPECT_THAT(validate_plan("[]"), Contains(HasSubstr("not a JSON object")));
+  EXPECT_THAT(after([](json& p) { p["fileType"] = "Mission"; }), Contains(HasSubstr("fileType")));
+  EXPECT_THAT(after([](json& p) { p["version"] = 2; }), Contains("version must be 1"));
+  EXPECT_THAT(after([](json& p) { p["version"] = "1"; }), Contains("version must be 1"));
+  EXPECT_THAT(after([](json& p) { p.erase("groundStation"); }),
+              Contains(HasSubstr("groundStation")));
+  EXPECT_THAT(after([](json& p) { p.erase("mission"); }), Contains("mission is missing"));
+  EXPECT_THAT(after([](json& p) { p["mission"]["version"] = 1; }),
+              Contains("mission.version must be 2"));
+  EXPECT_THAT(after([](json& p) { p.erase("geoFence"); }), Contains("geoFence is missing"));
+  EXPECT_THAT(after([](json& p) { p["rallyPoints"]["version"] = 1; }),
+              Contains("rallyPoints.version must be 2"));
+  EXPECT_THAT(after([](json& p) {
+                p["rallyPoints"]["points"] = {{1, 2}};
+              }),
+              Contains(HasSubstr("rallyPoints.points[0]")));
+  EXPECT_THAT(after([](json& p) {
+                p["mission"]["plannedHomePosition"] = {1, 2};
+              }),
+              Contains(HasSubstr("plannedHomePosition")));
+  EXPECT_THAT(after([](json& p) { p["mission"]["firmwareType"] = "PX4"; }),
+              Contains(HasSubstr("firmwareType")));
+  EXPECT_THAT(after([](json& p) { p["mission"]["items"] = json::array(); }),
+              Contains(HasSubstr("at least one item")));
+}
+
+TEST(PlanFile, ItemRules) {
+  const auto bad = [](const char* key, const json& value) {
+    return after([&](json& p) { item(p, 2)[key] = value; });
+  };
+  EXPECT_THAT(bad("type", "ComplexItem"), Contains(HasSubstr("items[2].type")));
+  EXPECT_THAT(bad("command", "16"), Contains(HasSubstr("items[2].command")));
+  EXPECT_THAT(bad("frame", 3.5), Contains(HasSubstr("items[2].frame")));
+  EXPECT_THAT(bad("autoContinue", 1), Contains(HasSubstr("items[2].autoContinue")));
+  EXPECT_THAT(bad("doJumpId", 7), Contains(HasSubstr("doJumpId must be 3")));
+  EXPECT_THAT(bad("params", {1, 2, 3}), Contains(HasSubstr("7 numbers")));
+  EXPECT_THAT(bad("params", {"1", 2, 3, 4, 5, 6, 7}), Contains(HasSubstr("7 numbers")));
+  EXPECT_THAT(bad("frame", 7), Contains(HasSubstr("has frame 7")));
+  EXPECT_THAT(after([](json& p) { item(p, 0).erase("Altitude"); }), Contains(HasSubstr("or none")));
+  EXPECT_THAT(after([](json& p) { item(p, 0)["AltitudeMode"] = 2; }),
+              Contains(HasSubstr("does not go with its frame")));
+  EXPECT_THAT(after([](json& p) { item(p, 0)["Altitude"] = 99; }),
+              Contains(HasSubstr("is not the height in its params")));
+}
+
+TEST(PlanFile, RulesOnWhatTheItemsDo) {
+  EXPECT_THAT(after([](json& p) { item(p, 0)["params"][4] = 91; }),
+              Contains(HasSubstr("latitude")));
+  EXPECT_THAT(after([](json& p) { item(p, 0)["params"][5] = -181; }),
+              Contains(HasSubstr("longitude")));
+  EXPECT_THAT(after([](json& p) {
+                item(p, 0)["params"][6] = 20000;
+                item(p, 0)["Altitude"] = 20000;
+              }),
+              Contains(HasSubstr("height outside")));
+  EXPECT_THAT(after([](json& p) { item(p, 0)["params"][4] = nullptr; }),
+              Contains(HasSubstr("latitude")));
+  EXPECT_THAT(after([](json& p) { item(p, 0)["command"] = 16; }),
+              Contains(HasSubstr("must begin with a take-off")));
+  EXPECT_THAT(after([](json& p) { p["mission"]["items"].erase(p["mission"]["items"].size() - 1); }),
+              Contains(HasSubstr("must end with a landing")));
+  EXPECT_THAT(after([](json& p) {
+                for (json& i : p["mission"]["items"]) {
+                  if (i["command"] == 205) i["command"] = 530;
+                }
+              }),
+              Contains(HasSubstr("shoots without a gimbal command")));
+  EXPECT_THAT(after([](json& p) {
+                item(p, 1)["command"] = 177;
+                item(p, 1)["params"][0] = 500;
+              }),
+              Contains(HasSubstr("jumps to item 500")));
+  EXPECT_THAT(after([](json& p) { item(p, 1)["command"] = 115; }),
+              Contains(HasSubstr("PX4 refuses the whole mission")));
+}
+
+TEST(PlanFile, FenceRulesHoldForLegs) {
+  const auto polygon = [](json& p, std::size_t i) -> json& { return p["geoFence"]["polygons"][i]; };
+  EXPECT_THAT(after([&](json& p) { polygon(p, 0).erase("inclusion"); }),
+              Contains(HasSubstr("inclusion")));
+  EXPECT_THAT(after([&](json& p) { polygon(p, 0)["version"] = 2; }),
+              Contains(HasSubstr("version must be 1")));
+  EXPECT_THAT(after([&](json& p) {
+                polygon(p, 0)["polygon"] = {{1, 2}, {3, 4}};
+              }),
+              Contains(HasSubstr("at least 3 corners")));
+  EXPECT_THAT(after([&](json& p) {
+                json& corners = polygon(p, 0)["polygon"];
+                corners.push_back(corners[0]);
+              }),
+              Contains(HasSubstr("must not repeat")));
+  // The fence becomes a no-fly zone: every leg is in it.
+  EXPECT_THAT(after([&](json& p) { polygon(p, 0)["inclusion"] = false; }),
+              Contains(HasSubstr("enters geoFence.polygons[0]")));
+  EXPECT_THAT(after([&](json& p) { polygon(p, 1)["inclusion"] = true; }),
+              Contains(HasSubstr("leaves geoFence.polygons[1]")));
+}
+
+TEST(PlanFile, CirclesCountToo) {
+  const auto with_circle = [](double radius, bool is_inclusion) {
+    return after([&](json& p) {
+      const json home = p["mission"]["plannedHomePosition"];
+      p["geoFence"]["circles"] = {
+          {{"version", 1},
+           {"inclusion", is_inclusion},
+           {"circle", {{"center", {home[0], home[1]}}, {"radius", radius}}}}};
+    });
+  };
+  EXPECT_THAT(with_circle(200, true), IsEmpty());
+  EXPECT_THAT(with_circle(20, true), Contains(HasSubstr("leaves geoFence.circles[0]")));
+  EXPECT_THAT(with_circle(5, false), Contains(HasSubstr("enters geoFence.circles[0]")));
+  EXPECT_THAT(with_circle(-5, false), Contains(HasSubstr("positive radius")));
+}
+
+TEST(PlanFile, HoldsWhatThePilotExpects) {
+  const FlightPlan plan = sample_plan(vehicle_profile("generic"));
+  const RouteFile route = read_plan(good_plan());
+  EXPECT_EQ(route.datum, HeightDatum::takeoff);
+  ASSERT_EQ(route.points.size(), plan.waypoints.size());
+  for (std::size_t i = 0; i < route.points.size(); ++i) {
+    const Waypoint& waypoint = plan.waypoints[i];
+    if (!waypoint.is_station) continue;
+    EXPECT_NEAR(route.points[i].yaw_deg, waypoint.yaw * 180 / M_PI, 1e-4);
+    EXPECT_NEAR(route.points[i].pitch_deg, waypoint.pitch * 180 / M_PI, 1e-4);
+    EXPECT_EQ(route.points[i].shots, 2);
+    EXPECT_EQ(route.points[i].hold, 2.0);
+  }
+}
+
+// ---- the autopilots' dialects ----------------------------------------------------------------
+
+TEST(MissionItems, PX4TurnsByTheWaypointArduPilotByACommandOfItsOwn) {
+  const auto count = [](const std::vector<MissionItem>& items, int command) {
+    return std::count_if(items.begin(), items.end(),
+                         [&](const MissionItem& i) { return i.command == command; });
+  };
+  const auto px4 = mission_items(sample_plan(vehicle_profile("generic")));
+  const auto ardupilot = mission_items(sample_plan(vehicle_profile("generic_ardupilot")));
+  EXPECT_EQ(count(px4, command::condition_yaw), 0);
+  EXPECT_EQ(count(ardupilot, command::condition_yaw), 4);
+  EXPECT_THAT(check_items(px4, Dialect::px4), IsEmpty());
+  EXPECT_THAT(check_items(ardupilot, Dialect::ardupilot), IsEmpty());
+  EXPECT_THAT(check_items(ardupilot, Dialect::px4), testing::Not(IsEmpty()));
+  // In ArduPilot's order: yaw and gimbal before the waypoint that they turn on the way to.
+  for (std::size_t i = 0; i < ardupilot.size(); ++i) {
+    if (ardupilot[i].command != command::condition_yaw) continue;
+    EXPECT_EQ(ardupilot[i + 1].command, command::mount_control);
+    EXPECT_EQ(ardupilot[i + 2].command, command::waypoint);
+    EXPECT_GE(ardupilot[i + 2].params[0], 1.0);
+    EXPECT_EQ(ardupilot[i + 3].command, command::start_capture);
+  }
+}
+
+TEST(MissionItems, ArduPilotsMemoryIsForeseen) {
+  auto items = mission_items(sample_plan(vehicle_profile("generic_ardupilot")));
+  EXPECT_THAT(check_items(as_stored(items, Dialect::ardupilot), Dialect::ardupilot), IsEmpty());
+  for (MissionItem& item : items) {
+    if (item.command == command::waypoint) item.params[0] = 1.5;
+  }
+  EXPECT_THAT(check_items(items, Dialect::ardupilot), Contains(HasSubstr("whole seconds")));
+  MissionItem stored{
+      command::waypoint, frame::relative, {1.9, 0, 0, 0, 51.12345678, -1.23456789, 7.257}};
+  stored = as_stored({stored}, Dialect::ardupilot)[0];
+  EXPECT_EQ(stored.params[0], 1.0);
+  EXPECT_DOUBLE_EQ(stored.params[4], 51.1234568);
+  EXPECT_DOUBLE_EQ(stored.params[6], 7.25);
+}
+
+TEST(MissionItems, GimbalCommandsThatArduPilotWouldSpoilAreFound) {
+  auto items = mission_items(sample_plan(vehicle_profile("generic_ardupilot")));
+  const auto with = [&](std::array<double, 7> params) {
+    items[1] = {command::gimbal_pitch_yaw, frame::mission, params};
+    return check_items(items, Dialect::ardupilot);
+  };
+  EXPECT_THAT(with({-7, 0, 0, 0, 0, 0, 0}), IsEmpty());
+  EXPECT_THAT(with({-7.5, 0, 0, 0, 0, 0, 0}), Contains(HasSubstr("fraction of a degree")));
+  EXPECT_THAT(with({-7, 0, not_given, 0, 0, 0, 0}), Contains(HasSubstr("no parameter 3")));
+}
+
+TEST(MissionItems, TooManyForTheVehicleIsSaid) {
+  FlightPlan plan = sample_plan(vehicle_profile("generic"));
+  plan.vehicle.max_waypoints = 10;
+  EXPECT_THROW(mission_items(plan), Error);
+  EXPECT_THROW(write_plan(sample_plan(vehicle_profile("m30t"))), Error);
+}
+
+// ---- .waypoints ------------------------------------------------------------------------------
+
+TEST(WaypointsFile, HasTabsHomeForArduPilotAndNoNaN) {
+  const std::string px4 = write_waypoints(sample_plan(vehicle_profile("generic")));
+  const std::string ardupilot = write_waypoints(sample_plan(vehicle_profile("generic_ardupilot")));
+  EXPECT_TRUE(px4.starts_with("QGC WPL 110\n0\t1\t3\t22\t"));
+  EXPECT_TRUE(
+      ardupilot.starts_with("QGC WPL 110\n0\t1\t0\t16\t0.0000\t0.0000\t0.0000\t0.0000\t51.75"));
+  EXPECT_THAT(px4 + ardupilot, testing::Not(HasSubstr("nan")));
+  EXPECT_THAT(validate_waypoints(px4, Dialect::px4), IsEmpty());
+  EXPECT_THAT(validate_waypoints(ardupilot, Dialect::ardupilot), IsEmpty());
+  EXPECT_THAT(validate_waypoints(px4, Dialect::ardupilot), Contains(HasSubstr("must be home")));
+  EXPECT_THAT(validate_waypoints(ardupilot, Dialect::px4), Contains(HasSubstr("is a home")));
+  EXPECT_EQ(read_waypoints(px4).points.size(), read_waypoints(ardupilot).points.size());
+}
+
+TEST(WaypointsFile, RulesOfTheText) {
+  const std::string good = write_waypoints(sample_plan(vehicle_profile("generic")));
+  const auto with = [&](const std::string& from, const std::string& to) {
+    std::string text = good;
+    text.replace(text.find(from), from.size(), to);
+    return validate_waypoints(text, Dialect::px4);
+  };
+  std::string windows = good;
+  for (std::size_t i = 0; (i = windows.find('\n', i)) != std::string::npos; i += 2) {
+    windows.replace(i, 1, "\r\n");
+  }
+  EXPECT_THAT(validate_waypoints(windows, Dialect::px4), IsEmpty());
+  EXPECT_THAT(with("WPL 110", "WPL 120"), Contains(HasSubstr("line 1")));
+  EXPECT_THAT(with("\n0\t1\t3\t22", "\n0 1 3 22"), Contains(HasSubstr("separated by tabs")));
+  EXPECT_THAT(with("\n0\t1\t3", "\n# a comment\n0\t1\t3"),
+              Contains(HasSubstr("line 2 has 1 fields")));
+  EXPECT_THAT(with("\n1\t0\t", "\n7\t0\t"), Contains(HasSubstr("index 7")));
+  EXPECT_THAT(with("\n1\t0\t", "\n1\t1\t"), Contains(HasSubstr("current")));
+  EXPECT_THAT(with("\t22\t0.0000", "\t22\tNaN"), Contains(HasSubstr("\"NaN\"")));
+  EXPECT_THAT(with("\t22\t", "\t22.5\t"), Contains(HasSubstr("an integer belongs")));
+  EXPECT_THAT(with("\t22\t", "\t16\t"), Contains(HasSubstr("take-off")));
+}
+
+}  // namespace
+}  // namespace skycap::flight

@@ -1,0 +1,117 @@
+// What our mission files hold survives the upload to an autopilot and comes back the same.
+#include <cmath>
+
+#include <gtest/gtest.h>
+
+#include "flight/export/mavlink_files.h"
+#include "tests/flight/export/mavlink_link.h"
+#include "tests/flight/export/sample_plan.h"
+
+namespace skycap::flight {
+namespace {
+
+using mavlink::Kind;
+using mavlink::WireItem;
+
+bool has_place(const MissionItem& item) { return item.frame != frame::mission; }
+
+std::vector<WireItem> on_the_wire(const std::vector<MissionItem>& items) {
+  std::vector<WireItem> wire;
+  for (const MissionItem& item : items) {
+    WireItem to;
+    for (std::size_t i = 0; i < 4; ++i) to.params[i] = static_cast<float>(item.params[i]);
+    const double scale = has_place(item) ? 1e7 : 1.0;
+    to.x = static_cast<std::int32_t>(std::lround(item.params[4] * scale));
+    to.y = static_cast<std::int32_t>(std::lround(item.params[5] * scale));
+    to.z = static_cast<float>(item.params[6]);
+    to.sequence = static_cast<std::uint16_t>(wire.size());
+    to.command = static_cast<std::uint16_t>(item.command);
+    to.frame = static_cast<std::uint8_t>(item.frame);
+    to.current = wire.empty() ? 1 : 0;
+    to.autocontinue = item.auto_continue ? 1 : 0;
+    wire.push_back(to);
+  }
+  return wire;
+}
+
+void expect_same(const std::vector<MissionItem>& sent, const std::vector<WireItem>& back) {
+  ASSERT_EQ(back.size(), sent.size());
+  for (std::size_t i = 0; i < sent.size(); ++i) {
+    EXPECT_EQ(back[i].sequence, i);
+    EXPECT_EQ(back[i].command, sent[i].command);
+    EXPECT_EQ(back[i].frame, sent[i].frame);
+    EXPECT_EQ(back[i].autocontinue, 1);
+    for (std::size_t p = 0; p < 4; ++p) {
+      const auto wanted = static_cast<float>(sent[i].params[p]);
+      EXPECT_TRUE(back[i].params[p] == wanted ||
+                  (std::isnan(back[i].params[p]) && std::isnan(wanted)))
+          << "item " << i << ", parameter " << p + 1;
+    }
+    EXPECT_EQ(back[i].z, static_cast<float>(sent[i].params[6]));
+    if (!has_place(sent[i])) continue;
+    // 1e-7 degrees is the wire's unit: 11 mm.
+    EXPECT_NEAR(1e-7 * back[i].x, sent[i].params[4], 1e-7);
+    EXPECT_NEAR(1e-7 * back[i].y, sent[i].params[5], 1e-7);
+  }
+}
+
+// Published constants of the message set: our definitions of the messages are the right ones.
+TEST(Mavlink, TheExtraBytesAreThoseOfTheCommonMessageSet) {
+  EXPECT_EQ(mavlink::extra_byte(Kind::request_list), 132);
+  EXPECT_EQ(mavlink::extra_byte(Kind::count), 221);
+  EXPECT_EQ(mavlink::extra_byte(Kind::ack), 153);
+  EXPECT_EQ(mavlink::extra_byte(Kind::request_int), 196);
+  EXPECT_EQ(mavlink::extra_byte(Kind::item_int), 38);
+}
+
+// The check value of CRC-16/MCRF4XX in the catalogue of checksums.
+TEST(Mavlink, TheChecksumHasItsCheckValue) {
+  const std::uint8_t digits[] = {'1', '2', '3', '4', '5', '6', '7', '8', '9'};
+  EXPECT_EQ(mavlink::checksum(digits, sizeof digits), 0x6F91);
+}
+
+TEST(Mavlink, FramesAreTruncatedAndDamageIsNoticed) {
+  mavlink::Message message;
+  message.kind = Kind::ack;  // accepted: result and mission type are zeros at the end
+  mavlink::Bytes frame = mavlink::encode(message, 7);
+  EXPECT_EQ(frame.size(), 10U + 2U + 2U);
+  ASSERT_TRUE(mavlink::decode(frame));
+  EXPECT_EQ(mavlink::decode(frame)->result, 0);
+  for (std::size_t i = 0; i < frame.size(); ++i) {
+    mavlink::Bytes damaged = frame;
+    damaged[i] ^= 1;
+    EXPECT_FALSE(mavlink::decode(damaged)) << "byte " << i;
+  }
+}
+
+TEST(MavlinkUpload, APlanComesBackTheSame) {
+  const auto items = read_plan_items(write_plan(sample_plan(vehicle_profile("generic"))));
+  mavlink::Autopilot autopilot;
+  ASSERT_TRUE(mavlink::upload(autopilot, on_the_wire(items)));
+  expect_same(items, mavlink::download(autopilot));
+}
+
+TEST(MavlinkUpload, WaypointsFilesOfBothDialectsComeBackTheSame) {
+  for (const char* vehicle : {"generic", "generic_ardupilot"}) {
+    const auto items = read_waypoints_items(write_waypoints(sample_plan(vehicle_profile(vehicle))));
+    mavlink::Autopilot autopilot;
+    ASSERT_TRUE(mavlink::upload(autopilot, on_the_wire(items)));
+    expect_same(items, mavlink::download(autopilot));
+  }
+}
+
+TEST(MavlinkUpload, ADamagedFrameIsSentAgainAndAMissionIsWholeOrNotThere) {
+  const auto items = read_plan_items(write_plan(sample_plan(vehicle_profile("generic"))));
+  const std::vector<WireItem> wire = on_the_wire(items);
+  mavlink::Autopilot autopilot;
+  ASSERT_TRUE(mavlink::upload(autopilot, wire, 5));
+  expect_same(items, mavlink::download(autopilot));
+
+  std::vector<WireItem> shuffled = wire;
+  std::swap(shuffled[2].sequence, shuffled[3].sequence);
+  EXPECT_FALSE(mavlink::upload(autopilot, shuffled));
+  expect_same(items, autopilot.mission());  // the one before is still there
+}
+
+}  // namespace
+}  // namespace skycap::flight

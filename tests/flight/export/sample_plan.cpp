@@ -1,0 +1,53 @@
+#include "tests/flight/export/sample_plan.h"
+
+#include <stdexcept>
+
+#include "tests/flight/scenes.h"
+
+namespace skycap::flight {
+
+Obstacles sample_site() {
+  Obstacles obstacles;
+  obstacles.mesh = scenes::box({-10, -10, 0}, {10, 10, 15});
+  obstacles.ground_height = 0.0;
+  obstacles.no_fly = {{"heliport", {{30, -10}, {50, -10}, {50, 10}, {30, 10}}},
+                      {"shed", {{-25, -24}, {-20, -24}, {-20, -16}, {-25, -16}}, 0.0, 2.0}};
+  obstacles.fence = Prism{"site", {{-60, -60}, {60, -60}, {60, 60}, {-60, 60}}, -1.0, 60.0};
+  return obstacles;
+}
+
+namespace {
+
+/// Plans for stations that look at the middle of the building.
+FlightPlan plan_for(const Vehicle& vehicle, const std::vector<Eigen::Vector3d>& places,
+                    FlightStyle style) {
+  const Obstacles obstacles = sample_site();
+  const KnownSpace space(obstacles), pad_space(without_ground(obstacles));
+  std::vector<Station> stations;
+  for (const Eigen::Vector3d& place : places) {
+    stations.push_back({geometry::look_at(place, {0, 0, 7}), 2.0, 2,
+                        static_cast<std::uint32_t>(stations.size() + 10)});
+  }
+  RouteOptions options;
+  options.takeoff = {-30, -25, 0};
+  options.style = style;
+  const Route route = plan_route(stations, vehicle, space, &pad_space, options);
+  if (route.sorties.size() != 1 || !route.unreached.empty()) {
+    throw std::logic_error("the sample flight must be one sortie through all stations");
+  }
+  const Site site{{51.753458, -1.254022, 111.5}, 46.7};
+  return flight_plan(route, 0, "sample", site, obstacles, Corners::flown_round);
+}
+
+}  // namespace
+
+FlightPlan sample_plan(const Vehicle& vehicle) {
+  return plan_for(vehicle, {{-16, -12.5, 7.25}, {14, -16, 8}, {16, 14, 9.5}, {-14, 16, 18}},
+                  FlightStyle::stop);
+}
+
+FlightPlan corner_plan(FlightStyle style) {
+  return plan_for(vehicle_profile("generic"), {{0, -14, 8}, {0, 14, 8}, {-14, 0, 8}}, style);
+}
+
+}  // namespace skycap::flight

@@ -1,0 +1,20 @@
+/// A small flight over a small site, for the tests of the formats.
+#pragma once
+
+#include "flight/export/flight_plan.h"
+#include "flight/route/route.h"
+#include "flight/space/obstacles.h"
+
+namespace skycap::flight {
+
+/// A building of 20 x 20 x 15 m on flat ground, a heliport that is flown past and a low shed zone
+/// that is flown over, all inside a fence.
+Obstacles sample_site();
+
+/// Four stations around the building, near Oxford's meridian, planned for that vehicle at 2 m.
+FlightPlan sample_plan(const Vehicle& vehicle);
+
+/// From one side of that building to the other and back: legs with corners, flown in that style.
+FlightPlan corner_plan(FlightStyle style);
+
+}  // namespace skycap::flight

@@ -1,0 +1,157 @@
+#include "flight/motion/motion.h"
+
+#include <cmath>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "geometry/error.h"
+
+namespace skycap::flight {
+namespace {
+
+using Eigen::Vector3d;
+using testing::HasSubstr;
+
+/// Brute-force twin: integrates the fastest jerk-limited motion from rest by bang-bang jerk on a
+/// grid: accelerate as hard as allowed, mirror it to brake. Only the distance covered is compared.
+double distance_covered(double time, double speed, double acceleration, double jerk) {
+  // Forward half: raise the acceleration, hold it, lower it so that it ends at zero with speed v.
+  const double dt = time / 400000;
+  double a = 0, v = 0, half = 0;
+  for (double t = 0; t < time / 2; t += dt) {
+    // Lowering from a takes a / j and gains a^2 / (2 j) of speed; it must also end at half time.
+    const bool must_lower = v + a * a / (2 * jerk) >= speed || t + a / jerk >= time / 2;
+    a = must_lower ? std::max(0.0, a - jerk * dt) : std::min(acceleration, a + jerk * dt);
+    v += a * dt;
+    half += v * dt;
+  }
+  return 2 * half;
+}
+
+TEST(RestToRest, CoversTheDistanceInAllRegimes) {
+  for (const double distance : {0.01, 0.3, 2.0, 5.0, 20.0, 300.0}) {
+    for (const double speed : {1.0, 4.0, 15.0}) {
+      const double time = rest_to_rest_time(distance, speed, 2.0, 4.0);
+      // The grid overshoots the speed by one step's acceleration, 2 time / 400,000: at most 0.15 %.
+      EXPECT_NEAR(distance_covered(time, speed, 2.0, 4.0), distance, 1.5e-3 * distance)
+          << distance << " m at " << speed << " m/s";
+    }
+  }
+}
+
+TEST(RestToRest, IsMonotonousAndContinuousAcrossRegimes) {
+  double before = 0.0;
+  for (double distance = 0.001; distance < 60.0; distance *= 1.01) {
+    const double time = rest_to_rest_time(distance, 4.0, 2.0, 4.0);
+    EXPECT_GT(time, before);
+    EXPECT_LT(time - before, 0.35);
+    before = time;
+  }
+  EXPECT_EQ(rest_to_rest_time(0.0, 4.0, 2.0, 4.0), 0.0);
+}
+
+TEST(Turn, IsTriangularThenTrapezoidal) {
+  EXPECT_DOUBLE_EQ(turn_time(0.5, 1.0, 2.0), 1.0);  // reaches 1 rad/s at half way
+  EXPECT_DOUBLE_EQ(turn_time(-3.0, 1.0, 2.0), 3.5);
+  EXPECT_DOUBLE_EQ(turn_time(0.125, 1.0, 2.0), 0.5);
+}
+
+TEST(Motion, VerticalLegsHaveTheirOwnLimits) {
+  Vehicle vehicle;  // up 3 m/s, down 2 m/s
+  const Motion motion(vehicle, {.cruise_speed = 8.0});
+  EXPECT_DOUBLE_EQ(motion.leg_speed({1, 0, 0}), 8.0);
+  EXPECT_DOUBLE_EQ(motion.leg_speed({0, 0, 1}), 3.0);
+  EXPECT_DOUBLE_EQ(motion.leg_speed({0, 0, -1}), 2.0);
+  EXPECT_NEAR(motion.leg_speed(Vector3d(0.6, 0, -0.8)), 2.5, 1e-12);
+  EXPECT_GT(motion.leg_time({0, 0, -30}), motion.leg_time({0, 0, 30}));
+}
+
+TEST(Motion, HeadwindLimitsTheGroundSpeed) {
+  Vehicle vehicle;  // 10 m/s through the air
+  const Motion motion(vehicle, {.wind = {0, -6}, .cruise_speed = 10.0});
+  EXPECT_NEAR(motion.leg_speed({0, 1, 0}), 4.0, 1e-12);    // into it
+  EXPECT_NEAR(motion.leg_speed({1, 0, 0}), 8.0, 1e-12);    // across: 6-8-10
+  EXPECT_NEAR(motion.leg_speed({0, -1, 0}), 10.0, 1e-12);  // with it, as fast as wanted
+}
+
+// The model's calibration: a full battery, to the last drop, hovers as long as the data sheet says.
+TEST(Motion, HoversAsLongAsTheDataSheetSays) {
+  for (const Vehicle& vehicle : vehicle_profiles()) {
+    const Motion motion(vehicle, {.reserve = 0.0});
+    const double minutes = motion.usable_energy() / motion.hover_power() / 60.0;
+    EXPECT_NEAR(minutes, vehicle.endurance_min, 1e-6) << vehicle.name;
+  }
+}
+
+// Momentum theory: power has its least at some speed, a little below hover, and rises steeply
+// after.
+TEST(Motion, ForwardFlightSavesALittleAndThenCosts) {
+  for (const Vehicle& vehicle : vehicle_profiles()) {
+    const Motion motion(vehicle, {});
+    double least = motion.hover_power();
+    for (double speed = 0; speed <= 15; speed += 0.5) {
+      least = std::min(least, motion.forward_power(speed));
+    }
+    EXPECT_LT(least, 0.99 * motion.hover_power()) << vehicle.name;
+    EXPECT_GT(least, 0.5 * motion.hover_power()) << vehicle.name;
+    EXPECT_GT(motion.forward_power(30.0), motion.hover_power()) << vehicle.name;
+  }
+}
+
+TEST(Motion, ClimbingCostsAtLeastThePotentialEnergy) {
+  const Vehicle vehicle;
+  const Motion motion(vehicle, {});
+  const double up = motion.leg_energy({0, 0, 50}, 0.0);
+  const double level = motion.hover_power() * motion.leg_time({0, 0, 50});
+  EXPECT_GT(up - level, vehicle.mass * 9.8 * 50);
+}
+
+TEST(Motion, ColdAndReserveLeaveLess) {
+  const Vehicle vehicle;
+  const double warm = Motion(vehicle, {.reserve = 0.0}).usable_energy();
+  EXPECT_NEAR(Motion(vehicle, {.temperature_c = -5.0, .reserve = 0.0}).usable_energy(), 0.8 * warm,
+              1e-6);
+  EXPECT_NEAR(Motion(vehicle, {.reserve = 0.25}).usable_energy(), 0.75 * warm, 1e-6);
+}
+
+std::string complaint(const Vehicle& vehicle, const Conditions& conditions) {
+  try {
+    const Motion motion(vehicle, conditions);
+  } catch (const Error& error) {
+    return error.what();
+  }
+  return "";
+}
+
+TEST(Motion, AbsurdLimitsAreNamed) {
+  const Vehicle good;
+  EXPECT_EQ(complaint(good, {}), "");
+  EXPECT_THAT(complaint(good, {.wind = {20, 0}}), HasSubstr("the wind is 20"));
+  EXPECT_THAT(complaint(good, {.cruise_speed = 50}), HasSubstr("the cruise speed is 50"));
+  EXPECT_THAT(complaint(good, {.cruise_speed = std::nan("")}), HasSubstr("cruise speed"));
+  EXPECT_THAT(complaint(good, {.reserve = 1.0}), HasSubstr("reserve"));
+  Vehicle heavy = good;
+  heavy.mass = 20;
+  EXPECT_THAT(complaint(heavy, {}), HasSubstr("less than its mass takes to hover"));
+  Vehicle still = good;
+  still.acceleration = 0;
+  EXPECT_THAT(complaint(still, {}), HasSubstr("acceleration is 0"));
+}
+
+TEST(Vehicle, EveryProfileIsValidAndAnUnknownNameListsThem) {
+  EXPECT_GE(vehicle_profiles().size(), 6U);
+  for (const Vehicle& vehicle : vehicle_profiles()) {
+    EXPECT_NO_THROW(vehicle.validate()) << vehicle.name;
+    EXPECT_EQ(vehicle_profile(vehicle.name).mass, vehicle.mass);
+  }
+  try {
+    vehicle_profile("m600");
+    FAIL();
+  } catch (const Error& error) {
+    EXPECT_THAT(error.what(), HasSubstr("m350_rtk"));
+  }
+}
+
+}  // namespace
+}  // namespace skycap::flight

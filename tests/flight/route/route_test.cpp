@@ -1,0 +1,234 @@
+#include "flight/route/route.h"
+
+#include <cmath>
+#include <numbers>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "flight/export/flight_plan.h"
+#include "geometry/error.h"
+#include "tests/flight/scenes.h"
+
+namespace skycap::flight {
+namespace {
+
+using Eigen::Vector3d;
+using geometry::look_at;
+using testing::HasSubstr;
+
+/// A building of 20 x 20 x 15 m on flat ground.
+Obstacles site() {
+  Obstacles obstacles;
+  obstacles.mesh = scenes::box({-10, -10, 0}, {10, 10, 15});
+  obstacles.ground_height = 0.0;
+  return obstacles;
+}
+
+/// Views on a ring around the building, in an order that goes round it.
+std::vector<Station> ring(int count, double distance, double height) {
+  std::vector<Station> stations;
+  for (int i = 0; i < count; ++i) {
+    const double angle = 2.0 * std::numbers::pi * i / count;
+    const Vector3d place(distance * std::cos(angle), distance * std::sin(angle), height);
+    stations.push_back({look_at(place, {0, 0, height}), 2.0, 1, static_cast<std::uint32_t>(i)});
+  }
+  return stations;
+}
+
+RouteOptions options() {
+  RouteOptions result;
+  result.takeoff = {-30, -30, 0};
+  return result;
+}
+
+Route plan(const std::vector<Station>& stations, const Obstacles& obstacles,
+           const RouteOptions& how = options(), const Vehicle& vehicle = {}) {
+  const KnownSpace space(obstacles);
+  const KnownSpace pad_space(without_ground(obstacles));
+  return plan_route(stations, vehicle, space, &pad_space, how);
+}
+
+TEST(Route, VisitsAllStationsOnCertifiedLegs) {
+  const Obstacles obstacles = site();
+  const Route route = plan(ring(12, 16, 8), obstacles);
+  EXPECT_EQ(route.stations.size(), 12U);
+  EXPECT_TRUE(route.unreached.empty());
+  ASSERT_EQ(route.sorties.size(), 1U);
+  EXPECT_DOUBLE_EQ(route.clearance, 2.0);
+  EXPECT_GE(route.min_clearance, 2.0);
+  const KnownSpace space(obstacles);
+  EXPECT_THAT(check_route(sortie_points(route, route.sorties[0]), space, 2.0), testing::IsEmpty());
+  EXPECT_LE(route.straight_length, route.station_length + 1e-9);
+  EXPECT_LE(route.station_length, 1.25 * route.straight_length);
+  EXPECT_GE(route.length, route.station_length);
+}
+
+// Corner stations make straight legs cut through the building: the complaint that views stand off
+// and legs do not.
+TEST(Route, LegsGoRoundWhatTheStraightLineWouldHit) {
+  std::vector<Station> stations{{look_at({0, -14, 8}, {0, 0, 8})},
+                                {look_at({0, 14, 8}, {0, 0, 8})}};
+  const Route route = plan(stations, site());
+  ASSERT_EQ(route.legs.size(), 1U);
+  EXPECT_GT(route.legs[0].points.size(), 2U);
+  EXPECT_GE(route.legs[0].clearance, 2.0);
+}
+
+// The grid is made too coarse for the window, which leaves it to the second engine.
+TEST(Route, PassagesTooNarrowForTheGridAreFoundBySampling) {
+  const Obstacles obstacles = scenes::wall_with_window();
+  RouteOptions how = options();
+  how.takeoff = {-8, -6, 15};
+  how.path.finest_cell = 9.0;
+  const Vector3d home(-8, -6, 20), behind(-8, 7, 20);
+  const KnownSpace space(obstacles);
+  const double clearance = how.clearance.total();
+  ASSERT_EQ(PathFinder(space, clearance, how.path).find(home, behind).status,
+            PathStatus::unreachable);
+
+  const Route route = plan_route({{look_at(behind, {-8, 20, 20})}}, {}, space, nullptr, how);
+  ASSERT_EQ(route.stations.size(), 1U);
+  EXPECT_THAT(check_route(sortie_points(route, route.sorties[0]), space, clearance),
+              testing::IsEmpty());
+}
+
+// Sorties are split for stops; a curve must fit into what they have set aside for its leg.
+TEST(Route, CurvesTakeNoMoreTimeAndEnergyThanTheStopsTheyReplace) {
+  const std::vector<Station> stations{{look_at({0, -14, 8}, {0, 0, 8})},
+                                      {look_at({0, 14, 8}, {0, 0, 8})}};
+  const Route stops = plan(stations, site());
+  for (const FlightStyle style : {FlightStyle::blend, FlightStyle::smooth}) {
+    RouteOptions how = options();
+    how.style = style;
+    const Route route = plan(stations, site(), how);
+    ASSERT_TRUE(route.legs[0].smooth);
+    EXPECT_EQ(route.legs[0].points, stops.legs[0].points);
+    EXPECT_EQ(route.duration, stops.duration);
+    EXPECT_LT(route.legs[0].smooth->duration, route.legs[0].duration);
+    EXPECT_LT(route.legs[0].smooth->energy, route.legs[0].energy);
+    EXPECT_GE(route.legs[0].smooth->clearance, 2.0);
+  }
+}
+
+// The sorties' times are those of the files: stops in corners included.
+TEST(Route, SortiesLastAsLongAsTheirPlans) {
+  const Route route = plan(ring(8, 16, 8), site());
+  ASSERT_EQ(route.sorties.size(), 1U);
+  const FlightPlan flown = flight_plan(route, 0, "ring", {{51.75, -1.25, 100.0}, {}}, site());
+  const Motion motion(route.vehicle, route.options.conditions);
+  const double landing =
+      motion.leg_time({0, 0, -route.options.takeoff_climb}) + route.options.landing_time;
+  EXPECT_NEAR(route.sorties[0].duration, stop_times(flown).back().departure + landing, 1e-6);
+}
+
+TEST(Route, AViewThatCannotBeReachedIsReportedAndTheRestIsFlown) {
+  std::vector<Station> stations = ring(6, 16, 8);
+  stations.insert(stations.begin() + 2, {look_at({0, 0, 5}, {1, 0, 5}), 2, 1, 77});   // inside
+  stations.insert(stations.begin() + 4, {look_at({11, 0, 5}, {0, 0, 5}), 2, 1, 78});  // too near
+  stations.push_back({look_at({20, 0, 5}, {20, 0, 50}), 2, 1, 79});                   // straight up
+  const Route route = plan(stations, site());
+  EXPECT_EQ(route.stations.size(), 6U);
+  ASSERT_EQ(route.unreached.size(), 3U);
+  EXPECT_EQ(route.unreached[0].station.view_index, 77U);
+  EXPECT_THAT(route.unreached[1].reason, HasSubstr("it is 1.0"));
+  EXPECT_THAT(route.unreached[2].reason, HasSubstr("gimbal"));
+}
+
+// The bar: a small battery, no sortie below its reserve, at most 15 % over the printed bound.
+TEST(Route, SplitsIntoSortiesThatKeepTheirReserve) {
+  Vehicle small;
+  small.battery_wh = 12.0, small.endurance_min = 3.6;
+  const Route route = plan(ring(60, 18, 8), site(), options(), small);
+  EXPECT_EQ(route.stations.size(), 60U);
+  EXPECT_GT(route.sorties.size(), 2U);
+  std::uint32_t next = 0;
+  double duration = 0.0;
+  for (const Sortie& sortie : route.sorties) {
+    EXPECT_EQ(sortie.first, next);
+    next = sortie.last + 1;
+    EXPECT_GE(sortie.energy_left, 0.0);
+    duration += sortie.duration;
+  }
+  EXPECT_EQ(next, 60U);
+  EXPECT_NEAR(duration, route.duration, 1e-6);
+  EXPECT_LE(route.duration, 1.15 * route.duration_bound);
+}
+
+TEST(Route, WaypointLimitsSplitToo) {
+  Vehicle old;
+  old.max_waypoints = 62;  // ten stations
+  const Route route = plan(ring(24, 18, 8), site(), options(), old);
+  EXPECT_EQ(route.sorties.size(), 3U);
+}
+
+TEST(Route, AStationBeyondTheBatteryIsReported) {
+  std::vector<Station> stations = ring(3, 18, 8);
+  stations.push_back({look_at({40000, 0, 50}, {0, 0, 8}), 1, 1, 9});
+  const Route route = plan(stations, site());
+  ASSERT_EQ(route.unreached.size(), 1U);
+  EXPECT_THAT(route.unreached[0].reason, HasSubstr("Wh above its reserve"));
+}
+
+TEST(Route, AFreeOrderIsShorterAndItsBoundHolds) {
+  std::vector<Station> shuffled;
+  for (const Station& station : ring(20, 18, 8)) {
+    shuffled.insert(
+        shuffled.begin() + static_cast<std::ptrdiff_t>(7 * shuffled.size() % (shuffled.size() + 1)),
+        station);
+  }
+  RouteOptions free_order = options();
+  free_order.order_is_free = true;
+  const Route as_given = plan(shuffled, site()), ordered = plan(shuffled, site(), free_order);
+  EXPECT_LT(ordered.length, as_given.length);
+  EXPECT_LE(ordered.order_bound, ordered.order_length + 1e-9);
+  EXPECT_LE(ordered.order_length, 1.1 * ordered.order_bound);
+}
+
+TEST(Route, ABlockedPadIsRefusedWithAReason) {
+  RouteOptions inside = options();
+  inside.takeoff = {0, 0, 0};
+  EXPECT_THROW(plan(ring(3, 18, 8), site(), inside), Error);
+  Obstacles with_roof = site();
+  geometry::append(with_roof.mesh, scenes::box({-33, -33, 2}, {-31.5, -27, 2.5}));
+  try {
+    plan(ring(3, 18, 8), with_roof);
+    FAIL();
+  } catch (const Error& error) {
+    EXPECT_THAT(error.what(), HasSubstr("the climb from the pad"));
+  }
+}
+
+TEST(Route, AbsurdOptionsAreNamed) {
+  RouteOptions negative = options();
+  negative.clearance.margin = -1;
+  EXPECT_THROW(plan({}, site(), negative), Error);
+  RouteOptions nowhere = options();
+  nowhere.takeoff.x() = std::nan("");
+  EXPECT_THROW(plan({}, site(), nowhere), Error);
+  EXPECT_TRUE(plan({}, site()).sorties.empty());  // nothing to do is fine
+}
+
+TEST(CheckRoute, ListsLegPlaceAndDistance) {
+  const KnownSpace space(site());
+  const std::vector<Violation> violations =
+      check_route({{-20, -20, 8}, {20, -20, 8}, {20, 20, 8}, {-20, -20, 8}}, space, 2.0);
+  ASSERT_EQ(violations.size(), 1U);
+  EXPECT_EQ(violations[0].leg, 2U);
+  EXPECT_THAT(describe(violations[0]), HasSubstr("leg 2: 0.000 m from triangle"));
+  EXPECT_EQ(check_route({{0, 0, 5}}, space, 1.0).size(), 1U);
+  EXPECT_TRUE(check_route({}, space, 1.0).empty());
+  EXPECT_THROW(check_route({{0, 0, std::nan("")}}, space, 1.0), Error);
+}
+
+TEST(Station, YawIsClockwiseFromNorthAndPitchFromTheHorizon) {
+  const Vector3d eye = Vector3d::Zero();
+  EXPECT_DOUBLE_EQ(yaw_of(look_at(eye, {0, 5, 0})), 0.0);
+  EXPECT_DOUBLE_EQ(yaw_of(look_at(eye, {5, 0, 0})), std::numbers::pi / 2);
+  EXPECT_DOUBLE_EQ(yaw_of(look_at(eye, {-5, 0, 0})), 1.5 * std::numbers::pi);
+  EXPECT_DOUBLE_EQ(pitch_of(look_at(eye, {0, 1, -1})), -std::numbers::pi / 4);
+  EXPECT_DOUBLE_EQ(yaw_of(look_at(eye, {0, 0, -1})), 0.0);
+}
+
+}  // namespace
+}  // namespace skycap::flight

@@ -1,0 +1,145 @@
+#include "flight/route/tour.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <random>
+
+#include <gtest/gtest.h>
+
+#include "flight/route/sortie_split.h"
+#include "tests/flight/scenes.h"
+
+namespace skycap::flight {
+namespace {
+
+using Eigen::Vector3d;
+
+std::vector<Vector3d> places(std::uint64_t seed, int count) {
+  std::mt19937_64 random(seed);
+  std::vector<Vector3d> result;
+  for (int i = 0; i < count; ++i) {
+    result.push_back(scenes::point_in(random, {Vector3d::Zero(), Vector3d(60, 60, 20)}));
+  }
+  return result;
+}
+
+Tour tour_of(const std::vector<Vector3d>& where) {
+  return plan_tour(static_cast<std::uint32_t>(where.size()),
+                   [&](std::uint32_t a, std::uint32_t b) { return (where[a] - where[b]).norm(); });
+}
+
+double cost_of(const std::vector<Vector3d>& where, const std::vector<std::uint32_t>& order) {
+  double sum = 0.0;
+  std::uint32_t at = 0;
+  for (const std::uint32_t next : order)
+    sum += (where[next] - where[std::exchange(at, next)]).norm();
+  return sum + (where[0] - where[at]).norm();
+}
+
+TEST(Tour, VisitsEveryPlaceOnceAtTheCostItSays) {
+  const auto where = places(1, 100);
+  const Tour tour = tour_of(where);
+  std::vector<std::uint32_t> sorted = tour.order;
+  std::sort(sorted.begin(), sorted.end());
+  std::vector<std::uint32_t> all(99);
+  std::iota(all.begin(), all.end(), 1U);
+  EXPECT_EQ(sorted, all);
+  EXPECT_NEAR(tour.cost, cost_of(where, tour.order), 1e-9);
+  EXPECT_EQ(tour_of(where).order, tour.order);
+}
+
+// Against all 40,320 orders of nine places: the bound is one, and the tour is close to the best.
+TEST(Tour, IsNearTheOptimumOfSmallCasesAndItsBoundHolds) {
+  double worst = 1.0;
+  for (std::uint64_t seed = 1; seed <= 8; ++seed) {
+    const auto where = places(seed, 9);
+    std::vector<std::uint32_t> order(8);
+    std::iota(order.begin(), order.end(), 1U);
+    double best = cost_of(where, order);
+    while (std::next_permutation(order.begin(), order.end())) {
+      best = std::min(best, cost_of(where, order));
+    }
+    const Tour tour = tour_of(where);
+    EXPECT_GE(tour.cost, best - 1e-9);
+    EXPECT_LE(tour.lower_bound, best + 1e-9);
+    EXPECT_GT(tour.lower_bound, 0.95 * best);  // Held-Karp's bound is within 1 % as a rule
+    worst = std::max(worst, tour.cost / best);
+  }
+  EXPECT_LE(worst, 1.05);
+}
+
+TEST(Tour, GapToTheBoundIsSmallForAHundredPlaces) {
+  const Tour tour = tour_of(places(5, 150));
+  EXPECT_LE(tour.cost, 1.08 * tour.lower_bound);  // 2-opt with Or-opt is 5 % above the optimum
+}
+
+TEST(Tour, OfHardlyAnyPlacesIsTrivial) {
+  EXPECT_TRUE(tour_of(places(1, 1)).order.empty());
+  EXPECT_EQ(tour_of(places(1, 2)).order, std::vector<std::uint32_t>{1});
+  EXPECT_EQ(tour_of(places(1, 3)).order.size(), 2U);
+}
+
+/// Exhaustive twin of the split: every subset of the gaps between stations.
+double best_by_trying_all(const SplitProblem& problem) {
+  const std::size_t count = problem.out.size();
+  double best = std::numeric_limits<double>::infinity();
+  for (std::uint32_t cuts = 0; cuts < 1U << (count - 1); ++cuts) {
+    double total = 0.0;
+    bool is_possible = true;
+    for (std::size_t first = 0; first < count && is_possible;) {
+      std::size_t last = first;
+      while (last + 1 < count && (cuts >> last & 1) == 0) ++last;
+      double energy = problem.out[first].energy, time = problem.out[first].time;
+      for (std::size_t i = first; i <= last; ++i) {
+        if (i > first) energy += problem.leg[i - 1].energy, time += problem.leg[i - 1].time;
+        energy += problem.station[i].energy, time += problem.station[i].time;
+        is_possible &= energy + problem.back[i].energy <= problem.energy_per_sortie;
+      }
+      is_possible &= last - first + 1 <= problem.stations_per_sortie;
+      total += time + problem.back[last].time;
+      first = last + 1;
+    }
+    if (is_possible) best = std::min(best, total);
+  }
+  return best;
+}
+
+TEST(SortieSplit, IsTheBestOfAllSplitsAndItsBoundHolds) {
+  std::mt19937_64 random(9);
+  std::uniform_real_distribution<double> uniform(1.0, 10.0);
+  int split_cases = 0;
+  for (int round = 0; round < 60; ++round) {
+    SplitProblem problem;
+    for (int i = 0; i < 10; ++i) {
+      const double home = uniform(random);
+      problem.out.push_back({home, home});
+      problem.back.push_back({home, home});
+      problem.station.push_back({1, 1});
+      if (i > 0) problem.leg.push_back({uniform(random), uniform(random)});
+    }
+    problem.energy_per_sortie = 26;
+    problem.stations_per_sortie = 4;
+    const double best = best_by_trying_all(problem);
+    const SortieSplit split = split_into_sorties(problem);
+    ASSERT_FALSE(split.sorties.empty());
+    EXPECT_NEAR(split.time, best, 1e-9);
+    EXPECT_LE(split.time_bound, best + 1e-9);
+    split_cases += split.sorties.size() > 3 ? 1 : 0;
+    EXPECT_EQ(split.sorties.front().first, 0U);
+    EXPECT_EQ(split.sorties.back().last, 9U);
+  }
+  EXPECT_GT(split_cases, 5);
+}
+
+TEST(SortieSplit, SaysWhenAStationIsOutOfReach) {
+  SplitProblem problem;
+  problem.out = problem.back = {{1, 20}};
+  problem.station = {{1, 1}};
+  problem.energy_per_sortie = 30;
+  problem.stations_per_sortie = 10;
+  EXPECT_TRUE(split_into_sorties(problem).sorties.empty());
+}
+
+}  // namespace
+}  // namespace skycap::flight

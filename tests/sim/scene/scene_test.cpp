@@ -1,0 +1,286 @@
+#include "sim/scene/scene.h"
+
+#include <array>
+#include <fstream>
+#include <numbers>
+#include <random>
+#include <vector>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include "geometry/error.h"
+#include "tests/sim/packets.h"
+#include "tests/sim/shapes.h"
+
+namespace skycap::sim {
+namespace {
+
+using Eigen::Vector3d;
+
+Vector3d random_direction(std::mt19937_64& random) {
+  std::normal_distribution<double> normal;
+  return Vector3d(normal(random), normal(random), normal(random)).normalized();
+}
+
+TEST(Scene, FirstHitIsTheNearerFaceOfACube) {
+  const Scene scene(cube({1, 2, 3}, 2.0), 1);
+  const auto hit = scene.first_hit({-5, 2.3, 3.1}, {1, 0, 0});
+  ASSERT_TRUE(hit);
+  EXPECT_NEAR(hit->distance, 5.0, 1e-6);
+  EXPECT_TRUE(hit->normal.isApprox(-Vector3d::UnitX(), 1e-6)) << hit->normal.transpose();
+  EXPECT_THAT(hit->triangle, testing::AnyOf(8U, 9U));  // the triangles at x = 0
+  EXPECT_FALSE(scene.first_hit({-5, 2.3, 3.1}, {-1, 0, 0}));
+}
+
+// The distance counts in lengths of the direction, and so does its limit.
+TEST(Scene, DistanceIsInUnitsOfTheDirection) {
+  const Scene scene(cube({0, 0, 0}, 2.0), 1);
+  for (const double length : {1e-6, 0.5, 3.0, 1e6}) {
+    const auto hit = scene.first_hit({-5, 0.1, 0.2}, {length, 0, 0});
+    ASSERT_TRUE(hit);
+    EXPECT_NEAR(hit->distance * length, 4.0, 1e-6);
+    EXPECT_FALSE(scene.first_hit({-5, 0.1, 0.2}, {length, 0, 0}, 3.99 / length));
+    EXPECT_TRUE(scene.first_hit({-5, 0.1, 0.2}, {length, 0, 0}, 4.01 / length));
+  }
+}
+
+// Closed form: t = -b - sqrt(b^2 - c). Chords lie inside the sphere, so a ray from outside goes on
+// by at most the sagitta over the cosine of the incidence.
+TEST(Scene, RangesToASphereAreTheClosedFormOnes) {
+  const Vector3d centre(3, -2, 1);
+  const double radius = 2.0;
+  const int splits = 6;
+  const Scene scene(sphere(centre, radius, splits), 1);
+  // The longest edge is near a face's centre, 1.73 times the equator's 90 degrees / 2^splits.
+  const double edge_angle = 1.75 * 0.5 * std::numbers::pi / (1 << splits);
+  const double sagitta = radius * (1.0 - std::cos(edge_angle / std::sqrt(3.0)));
+  std::mt19937_64 random(1);
+  int hits = 0;
+  for (int i = 0; i < 2000; ++i) {
+    const Vector3d origin = centre + 7.0 * random_direction(random);
+    const Vector3d direction = (centre + 1.9 * random_direction(random) - origin).normalized();
+    const double b = direction.dot(origin - centre);
+    const double c = (origin - centre).squaredNorm() - radius * radius;
+    const double distance = -b - std::sqrt(b * b - c);
+    const double cosine = -direction.dot(origin + distance * direction - centre) / radius;
+    if (cosine < 0.3) continue;  // towards the silhouette the bound below is not valid
+    const auto hit = scene.first_hit(origin, direction);
+    ASSERT_TRUE(hit);
+    EXPECT_GT(hit->distance, distance - 1e-5);  // single precision at 10 m
+    EXPECT_LT(hit->distance, distance + 1.1 * sagitta / cosine + 1e-5);
+    ++hits;
+  }
+  EXPECT_GT(hits, 1500);
+}
+
+TEST(Scene, KnowsWhichSegmentsASurfaceCuts) {
+  const Scene scene(cube({0, 0, 0}, 2.0), 1);
+  EXPECT_TRUE(scene.is_blocked({-5, 0, 0}, {5, 0, 0}));
+  EXPECT_TRUE(scene.is_blocked({-5, 0, 0}, {0, 0, 0}));
+  EXPECT_FALSE(scene.is_blocked({-5, 0, 0}, {-1.001, 0, 0}));
+  EXPECT_FALSE(scene.is_blocked({-5, 0, 0}, {-5, 5, 5}));
+  EXPECT_FALSE(scene.is_blocked({-5, 0, 0}, {-5, 0, 0}));
+}
+
+// A square hole of 0.2 m in a wall: exactly the rays that pass it reach the wall behind.
+TEST(Scene, AHoleLetsThroughExactlyTheRaysInsideIt) {
+  geometry::Mesh mesh;
+  for (const auto& [y, z] : {std::pair{-1.1, 0.0}, {1.1, 0.0}, {0.0, -1.1}, {0.0, 1.1}}) {
+    geometry::append(mesh, square({5, y, z}, {-1, 0, 0}, 2.0));
+  }
+  geometry::append(mesh, square({8, 0, 0}, {-1, 0, 0}, 20.0));
+  const Scene scene(mesh, 1);
+  for (int row = -20; row <= 20; ++row) {
+    for (int column = -20; column <= 20; ++column) {
+      const double y = 0.0101 * column, z = 0.0103 * row;  // no ray meets the rim
+      const auto hit = scene.first_hit({0, 0, 0}, Vector3d(5, y, z));
+      ASSERT_TRUE(hit);
+      const bool passes = std::abs(y) < 0.1 && std::abs(z) < 0.1;
+      EXPECT_NEAR(hit->distance, passes ? 1.6 : 1.0, 1e-6) << y << ", " << z;
+    }
+  }
+}
+
+// Rays that pass through the surface without meeting it within `reach` times the way to their
+// target.
+template <int width>
+int count_leaks(const Scene& scene, const Vector3d& origin, const std::vector<Vector3d>& targets,
+                double reach) {
+  Packet<width> packet;
+  int leaks = 0;
+  for (std::size_t first = 0; first < targets.size(); first += width) {
+    for (int lane = 0; lane < width; ++lane) {
+      const Vector3d& target = targets[std::min(first + lane, targets.size() - 1)];
+      aim(packet, lane, scene, origin, target - origin);
+    }
+    packet.cast(scene.embree(), std::numeric_limits<float>::infinity());
+    for (int lane = 0; lane < width; ++lane) {
+      leaks += packet.is_hit(lane) && packet.rays.ray.tfar[lane] < reach ? 0 : 1;
+    }
+  }
+  return leaks;
+}
+
+void expect_no_leaks(const Scene& scene, const Vector3d& origin,
+                     const std::vector<Vector3d>& targets) {
+  constexpr double reach = 1.0 + 1e-4;
+  int leaks = 0;
+  for (const Vector3d& target : targets) {
+    const auto hit = scene.first_hit(origin, target - origin);
+    leaks += hit && hit->distance < reach ? 0 : 1;
+  }
+  EXPECT_EQ(leaks, 0) << "single rays";
+  EXPECT_EQ(count_leaks<4>(scene, origin, targets, reach), 0);
+  EXPECT_EQ(count_leaks<8>(scene, origin, targets, reach), 0);
+  EXPECT_EQ(count_leaks<16>(scene, origin, targets, reach), 0);
+}
+
+// Every ray aimed at a vertex of a closed surface, or at a point of an edge, must meet it there or
+// before, seen from inside and from outside.
+TEST(Scene, NoRayLeaksThroughVerticesAndEdgesOfAClosedSurface) {
+  const geometry::Mesh mesh = sphere({4, 5, 6}, 3.0, 5);
+  const Scene scene(mesh, 1);
+  std::vector<Vector3d> targets = mesh.vertices;
+  for (const auto& [a, b, c] : mesh.triangles) {
+    for (const double along : {0.5, 0.25, 0.1234}) {
+      targets.push_back(mesh.vertices[a] + along * (mesh.vertices[b] - mesh.vertices[a]));
+      targets.push_back(mesh.vertices[b] + along * (mesh.vertices[c] - mesh.vertices[b]));
+    }
+  }
+  for (const Vector3d& inside : {Vector3d(4, 5, 6), Vector3d(4.3, 5.2, 5.1), Vector3d(2, 4, 7)}) {
+    expect_no_leaks(scene, inside, targets);
+  }
+  for (const Vector3d& outside : {Vector3d(9, 5, 6), Vector3d(-3, 20, 31)}) {
+    // The far side's targets are hidden, and rays past the silhouette may go by in rounding.
+    std::vector<Vector3d> facing;
+    std::copy_if(
+        targets.begin(), targets.end(), std::back_inserter(facing), [&](const Vector3d& t) {
+          return (outside - t).normalized().dot((t - Vector3d(4, 5, 6)).normalized()) > 0.1;
+        });
+    ASSERT_GT(facing.size(), 8'000U);
+    expect_no_leaks(scene, outside, facing);
+  }
+}
+
+// A scene in UTM coordinates, where single precision has steps of half a metre.
+TEST(Scene, FarFromTheOriginRangesStayThoseNearIt) {
+  const Vector3d far(474'500.0, 5'474'500.0, 120.0);
+  const Scene here(sphere({0, 0, 0}, 20.0, 4), 1), there(sphere(far, 20.0, 4), 1);
+  std::mt19937_64 random(3);
+  for (int i = 0; i < 500; ++i) {
+    const Vector3d origin = 60.0 * random_direction(random);
+    const Vector3d direction = (15.0 * random_direction(random) - origin).normalized();
+    const auto hit_here = here.first_hit(origin, direction);
+    const auto hit_there = there.first_hit(origin + far, direction);
+    ASSERT_TRUE(hit_here && hit_there);
+    EXPECT_NEAR(hit_there->distance, hit_here->distance, 1e-4);
+  }
+}
+
+Eigen::Isometry3d place(const Vector3d& position, double heading) {
+  return Eigen::Translation3d(position) * Eigen::AngleAxisd(heading, Vector3d::UnitZ());
+}
+
+/// Three spheres and a cube under them, as copies and as one mesh.
+struct Copies {
+  geometry::Mesh ball = sphere({0.5, 0, 2}, 1.5, 4), base = cube({0, 0, -1}, 2.0);
+  std::vector<Eigen::Isometry3d> places = {place({0, 0, 0}, 0.3), place({20, -7, 1}, 2.0),
+                                           place({-9, 11, 0.5}, -1.0)};
+  std::vector<float> base_reflectances = std::vector<float>(base.triangles.size(), 0.9F);
+
+  Scene scene() const {
+    return Scene(std::array{ScenePart{ball, {}, places}, ScenePart{base, base_reflectances, {}}},
+                 1);
+  }
+  geometry::Mesh flattened() const {
+    geometry::Mesh all;
+    for (const Eigen::Isometry3d& world_from_ball : places) {
+      geometry::Mesh moved = ball;
+      geometry::transform(moved, Eigen::Affine3d(world_from_ball));
+      geometry::append(all, moved);
+    }
+    geometry::append(all, base);
+    return all;
+  }
+};
+
+// Twin: the same surfaces as a single mesh. Single precision at 40 m leaves 4e-6 m, more where a
+// ray grazes; along edges either triangle may be the one that is met.
+TEST(Scene, OfCopiesIsMetWhereTheirOneMeshWouldBe) {
+  const Copies copies;
+  const geometry::Mesh mesh = copies.flattened();
+  const Scene scene = copies.scene(), twin(mesh, 1);
+  std::mt19937_64 random(5);
+  std::uniform_int_distribution<std::size_t> any(0, mesh.vertices.size() - 1);
+  int hits = 0, other_triangles = 0;
+  for (int i = 0; i < 5000; ++i) {
+    const Vector3d origin = 30.0 * random_direction(random);
+    const Vector3d target = mesh.vertices[any(random)] + 0.3 * random_direction(random);
+    const auto hit = scene.first_hit(origin, target - origin);
+    const auto expected = twin.first_hit(origin, target - origin);
+    if (expected.has_value() != hit.has_value()) {
+      ++other_triangles;  // past a silhouette
+      continue;
+    }
+    if (!hit) continue;
+    ++hits;
+    if (hit->triangle != expected->triangle) {
+      ++other_triangles;
+      continue;
+    }
+    const double cosine = std::abs(hit->normal.dot((target - origin).normalized()));
+    EXPECT_NEAR(hit->distance, expected->distance, 1e-6 / std::max(cosine, 0.01));
+    EXPECT_TRUE(hit->normal.isApprox(expected->normal, 1e-4));
+    EXPECT_EQ(scene.reflectance(hit->triangle),
+              hit->triangle < 3 * copies.ball.triangles.size() ? Scene::default_reflectance : 0.9F);
+    EXPECT_EQ(scene.is_blocked(origin, target), twin.is_blocked(origin, target));
+  }
+  EXPECT_GT(hits, 3000);
+  EXPECT_LT(other_triangles, 10);
+}
+
+TEST(Scene, NoRayLeaksThroughVerticesAndEdgesOfACopy) {
+  const Copies copies;
+  const Scene scene = copies.scene();
+  for (const Eigen::Isometry3d& world_from_ball : copies.places) {
+    std::vector<Vector3d> targets;
+    for (const auto& [a, b, c] : copies.ball.triangles) {
+      const Vector3d& from = copies.ball.vertices[a];
+      targets.push_back(world_from_ball * from);
+      for (const double along : {0.5, 0.1234}) {
+        targets.push_back(world_from_ball * (from + along * (copies.ball.vertices[b] - from)));
+      }
+    }
+    expect_no_leaks(scene, world_from_ball * Vector3d(0.5, 0, 2), targets);
+    expect_no_leaks(scene, world_from_ball * Vector3d(0.9, -0.4, 2.7), targets);
+  }
+}
+
+// 131,072 triangles take some ten megabytes; two hundred times, they would take two gigabytes.
+TEST(Scene, CopiesTakeNoMemoryToSpeakOf) {
+  const auto resident_bytes = [] {
+    std::size_t pages = 0, resident = 0;
+    std::ifstream("/proc/self/statm") >> pages >> resident;
+    return resident * static_cast<std::size_t>(::sysconf(_SC_PAGESIZE));
+  };
+  const geometry::Mesh ball = sphere({0, 0, 0}, 1.0, 7);
+  ASSERT_EQ(ball.triangles.size(), 131'072U);
+  std::vector<Eigen::Isometry3d> places;
+  for (int i = 0; i < 200; ++i) places.push_back(place({3.0 * i, 0, 0}, 0.1 * i));
+  const std::size_t before = resident_bytes();
+  const Scene scene(std::array{ScenePart{ball, {}, places}}, 1);
+  EXPECT_LT(resident_bytes() - before, 100'000'000U);
+  const auto hit = scene.first_hit({3.0 * 150, -10, 0}, {0, 1, 0});
+  ASSERT_TRUE(hit);
+  EXPECT_NEAR(hit->distance, 9.0, 1e-3);
+  EXPECT_EQ(hit->triangle / ball.triangles.size(), 150U);
+}
+
+TEST(Scene, RejectsToHaveNoParts) { EXPECT_THROW(Scene(std::span<const ScenePart>(), 1), Error); }
+
+TEST(Scene, RejectsAMeshWithoutSurface) { EXPECT_THROW(Scene(geometry::Mesh{}, 1), Error); }
+
+}  // namespace
+}  // namespace skycap::sim

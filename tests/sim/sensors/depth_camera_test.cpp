@@ -1,0 +1,360 @@
+#include "sim/sensors/depth_camera.h"
+
+#include <cmath>
+#include <numbers>
+#include <set>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "geometry/error.h"
+#include "sim/sensors/vector_kernels.h"
+#include "tests/sim/shapes.h"
+
+namespace skycap::sim {
+namespace {
+
+using Eigen::Isometry3d;
+using Eigen::Vector2d;
+using Eigen::Vector3d;
+using geometry::Scan;
+using testing::HasSubstr;
+
+constexpr double degree = std::numbers::pi / 180.0;
+
+// Neither 101 nor 67 is a multiple of a packet, tile or block.
+DepthCameraConfig exact_config(int width = 101, int height = 67) {
+  return {.camera = {.width = width,
+                     .height = height,
+                     .horizontal_fov = 60 * degree,
+                     .vertical_fov = 40 * degree,
+                     .max_range = 100.0},
+          .noise = {},
+          .stereo = {}};
+}
+
+// Rolled and pitched, so that no symmetry hides a mistake.
+Isometry3d tilted_pose(const Vector3d& position = {0.5, -0.3, 0.2}) {
+  Isometry3d pose = geometry::camera_pose({position, Vector3d(1.0, 0.2, -0.1).normalized()});
+  pose.rotate(Eigen::AngleAxisd(0.3, Vector3d::UnitZ()));
+  pose.rotate(Eigen::AngleAxisd(-0.2, Vector3d::UnitX()));
+  return pose;
+}
+
+std::uint32_t pixel_number(const DepthCamera& camera, int column, int row) {
+  return static_cast<std::uint32_t>(row) * camera.camera().width() + column;
+}
+
+TEST(DepthCamera, RangesToATiltedPlaneAreExactInEveryCornerOfTheImage) {
+  const Vector3d normal = Vector3d(-1.0, 0.3, 0.2).normalized();
+  const Scene scene(square({10, 0, 0}, normal, 100.0), 1);
+  const DepthCamera camera(exact_config());
+  const Isometry3d pose = tilted_pose();
+  const Scan scan = camera.scan(scene, pose, 0, 1);
+  ASSERT_EQ(scan.points.size(), 101U * 67U);  // the plane fills the image
+  for (const auto& [column, row] : {std::pair{0, 0},
+                                    {50, 0},
+                                    {100, 0},
+                                    {0, 33},
+                                    {50, 33},
+                                    {100, 33},
+                                    {0, 66},
+                                    {50, 66},
+                                    {100, 66}}) {
+    const Vector3d ray = pose.linear() * camera.camera().ray(Vector2d(column, row));
+    const double depth = normal.dot(Vector3d(10, 0, 0) - pose.translation()) / normal.dot(ray);
+    const Vector3d expected = pose * (depth * camera.camera().ray(Vector2d(column, row)));
+    const Vector3d measured = scan.points[pixel_number(camera, column, row)].cast<double>();
+    EXPECT_LT((measured - expected).norm(), 1e-4 * (expected - pose.translation()).norm())
+        << column << ", " << row;
+  }
+}
+
+TEST(DepthCamera, RangesToASphereAreTheClosedFormOnes) {
+  const Vector3d centre(10, 1, -1);
+  const Scene scene(sphere(centre, 3.0, 8), 1);  // sagitta 3 (1 - cos(0.3 deg)) = 4e-5 m
+  const DepthCamera camera(exact_config());
+  const Isometry3d pose = tilted_pose();
+  const Scan scan = camera.scan(scene, pose, 0, 1);
+  ASSERT_GT(scan.points.size(), 500U);
+  std::size_t compared = 0;
+  for (const auto& point : scan.points) {
+    const Vector3d measured = point.cast<double>();
+    const Vector3d direction = (measured - pose.translation()).normalized();
+    const double b = direction.dot(pose.translation() - centre);
+    const double c = (pose.translation() - centre).squaredNorm() - 9.0;
+    const double expected = -b - std::sqrt(std::max(0.0, b * b - c));
+    const double cosine = -direction.dot(measured - centre) / 3.0;
+    if (cosine < 0.3) continue;  // the silhouette of the mesh is not the sphere's
+    EXPECT_NEAR((measured - pose.translation()).norm(), expected, 1e-4 * expected);
+    ++compared;
+  }
+  EXPECT_GT(compared, 400U);
+}
+
+// Every return is in the middle of its own pixel, and no pixel that should return is left out.
+TEST(DepthCamera, PointsProjectBackToTheirPixels) {
+  const Scene scene(sphere({10, 1, -1}, 4.0, 5), 1);
+  const DepthCamera camera(exact_config());
+  const Isometry3d pose = tilted_pose();
+  const Scan scan = camera.scan(scene, pose, 0, 1);
+  ASSERT_EQ(scan.points.size(), scan.pixels.size());
+  std::size_t next = 0;
+  for (int row = 0; row < 67; ++row) {
+    for (int column = 0; column < 101; ++column) {
+      const Vector3d ray = pose.linear() * camera.camera().ray(Vector2d(column, row));
+      if (!scene.first_hit(pose.translation(), ray, 100.0)) continue;
+      ASSERT_LT(next, scan.points.size());
+      ASSERT_EQ(scan.pixels[next], pixel_number(camera, column, row));
+      const auto pixel = camera.camera().project(pose.inverse() * scan.points[next].cast<double>());
+      ASSERT_TRUE(pixel);
+      EXPECT_NEAR((*pixel - Vector2d(column, row)).norm(), 0.0, 1e-3);
+      ++next;
+    }
+  }
+  EXPECT_EQ(next, scan.points.size());
+}
+
+TEST(DepthCamera, RangeLimitsCountAlongTheOpticalAxis) {
+  DepthCameraConfig config = exact_config();
+  config.camera.min_range = 4.0;
+  config.camera.max_range = 6.0;
+  const DepthCamera camera(config);
+  const geometry::View view{{0, 0, 0}, {1, 0, 0}};
+  // Facing walls: all pixels have the wall's depth, though corners are 1.2 times as far.
+  const auto returns_from_wall_at = [&](double depth) {
+    const Scene scene(square({depth, 0, 0}, {-1, 0, 0}, 100.0), 1);
+    return camera.scan(scene, view, 0, 1).points.size();
+  };
+  EXPECT_EQ(returns_from_wall_at(3.99), 0U);
+  EXPECT_EQ(returns_from_wall_at(4.01), 101U * 67U);
+  EXPECT_EQ(returns_from_wall_at(5.99), 101U * 67U);
+  EXPECT_EQ(returns_from_wall_at(6.01), 0U);
+}
+
+TEST(DepthCamera, WhatIsTooNearStillHidesWhatIsBehind) {
+  DepthCameraConfig config = exact_config();
+  config.camera.min_range = 4.0;
+  geometry::Mesh mesh = square({2, 0, 0}, {-1, 0, 0}, 100.0);
+  geometry::append(mesh, square({5, 0, 0}, {-1, 0, 0}, 100.0));
+  const Scene scene(mesh, 1);
+  EXPECT_TRUE(DepthCamera(config).scan(scene, {{0, 0, 0}, {1, 0, 0}}, 0, 1).points.empty());
+}
+
+// On a floor seen from height 2, the angle of incidence at distance d is atan(d / 2).
+TEST(DepthCamera, SlantedSurfacesGiveNoReturn) {
+  DepthCameraConfig config = exact_config();
+  config.max_incidence = 70 * degree;
+  const Scene scene(square({0, 0, 0}, {0, 0, 1}, 80.0), 1);
+  const geometry::View view{{0, 0, 2}, Vector3d(1, 0, -0.4).normalized()};
+  const Scan all = DepthCamera(exact_config()).scan(scene, view, 0, 1);
+  const Scan steep = DepthCamera(config).scan(scene, view, 0, 1);
+  std::size_t expected = 0;
+  for (const auto& point : all.points)
+    expected += std::atan(point.head<2>().norm() / 2) < 70 * degree;
+  EXPECT_LT(expected, all.points.size());
+  EXPECT_EQ(steep.points.size(), expected);
+  for (const auto& point : steep.points) {
+    EXPECT_LT(std::atan(point.head<2>().norm() / 2), 70.001 * degree);
+  }
+}
+
+struct Statistics {
+  Vector3d mean = Vector3d::Zero(), variance = Vector3d::Zero();
+  double skew = 0.0, excess_kurtosis = 0.0;  // of all axes together
+  std::size_t count = 0;
+};
+
+// Of the differences between a noisy scan and the exact one, in `axes` (columns).
+template <typename Difference>
+Statistics statistics(const Scan& noisy, const Scan& exact, double sigma, Difference difference) {
+  Statistics result;
+  double third = 0.0, fourth = 0.0;
+  result.count = noisy.points.size();
+  const auto n = static_cast<double>(result.count);
+  for (std::size_t i = 0; i < result.count; ++i) {
+    const Vector3d d = difference(noisy.points[i].cast<double>(), exact.points[i].cast<double>());
+    result.mean += d / n;
+    result.variance += d.cwiseAbs2() / n;
+    third += (d / sigma).array().cube().sum() / (3.0 * n);
+    fourth += (d / sigma).array().square().square().sum() / (3.0 * n);
+  }
+  result.skew = third;
+  result.excess_kurtosis = fourth - 3.0;
+  return result;
+}
+
+class NoisyCamera : public testing::Test {
+ protected:
+  static constexpr double sigma = 0.02;
+  const Scene scene{square({10, 0, 0}, Vector3d(-1.0, 0.3, 0.2), 100.0), 1};
+  const Isometry3d pose = tilted_pose();
+  const Scan exact = DepthCamera(exact_config(640, 400)).scan(scene, pose, 3, 1);
+
+  DepthCamera camera(NoiseDirection direction, std::uint64_t seed = 5) const {
+    DepthCameraConfig config = exact_config(640, 400);
+    config.noise = {.sigma = sigma, .direction = direction, .seed = seed};
+    return DepthCamera(config);
+  }
+};
+
+// Bounds are four standard deviations of each statistic over N = 256,000 points: sigma / sqrt(N)
+// of a mean, sigma^2 sqrt(2/N) of a variance, sqrt(15/3N) and sqrt(96/3N) of the higher moments of
+// three axes.
+TEST_F(NoisyCamera, IsotropicNoiseHasSigmaOnEachAxis) {
+  const Scan noisy = camera(NoiseDirection::isotropic).scan(scene, pose, 3, 1);
+  ASSERT_EQ(noisy.pixels, exact.pixels);
+  const Statistics s = statistics(
+      noisy, exact, sigma, [](const Vector3d& a, const Vector3d& b) -> Vector3d { return a - b; });
+  const auto n = static_cast<double>(s.count);
+  for (int axis = 0; axis < 3; ++axis) {
+    EXPECT_NEAR(s.mean[axis], 0.0, 4.0 * sigma / std::sqrt(n));
+    EXPECT_NEAR(s.variance[axis], sigma * sigma, 4.0 * sigma * sigma * std::sqrt(2.0 / n));
+  }
+  EXPECT_NEAR(s.skew, 0.0, 4.0 * std::sqrt(15.0 / (3.0 * n)));
+  EXPECT_NEAR(s.excess_kurtosis, 0.0, 4.0 * std::sqrt(96.0 / (3.0 * n)));
+}
+
+TEST_F(NoisyCamera, NoiseAlongTheRayHasNothingAcrossIt) {
+  const Scan noisy = camera(NoiseDirection::along_ray).scan(scene, pose, 3, 1);
+  ASSERT_EQ(noisy.pixels, exact.pixels);
+  const Statistics s =
+      statistics(noisy, exact, sigma, [&](const Vector3d& a, const Vector3d& b) -> Vector3d {
+        const Vector3d along = (b - pose.translation()).normalized();
+        const double error = along.dot(a - b);
+        EXPECT_LT((a - b - error * along).norm(), 2e-5);  // rounding at 20 m
+        return Vector3d::Constant(error);
+      });
+  const auto n = static_cast<double>(s.count);
+  EXPECT_NEAR(s.mean.x(), 0.0, 4.0 * sigma / std::sqrt(n));
+  EXPECT_NEAR(s.variance.x(), sigma * sigma, 4.0 * sigma * sigma * std::sqrt(2.0 / n));
+  EXPECT_NEAR(s.skew, 0.0, 4.0 * std::sqrt(15.0 / n));
+  EXPECT_NEAR(s.excess_kurtosis, 0.0, 4.0 * std::sqrt(96.0 / n));
+}
+
+TEST_F(NoisyCamera, FrameAndSeedDecideTheNoise) {
+  const DepthCamera first = camera(NoiseDirection::isotropic);
+  const Scan scan = first.scan(scene, pose, 3, 1);
+  EXPECT_EQ(first.scan(scene, pose, 3, 1).points, scan.points);
+  EXPECT_NE(first.scan(scene, pose, 4, 1).points, scan.points);
+  EXPECT_NE(camera(NoiseDirection::isotropic, 6).scan(scene, pose, 3, 1).points, scan.points);
+}
+
+// A wall that faces the camera at depth z has disparity f B / z: errors of s px in it, and only
+// multiples of the step. Four standard deviations of the variance of 256,000 pixels are 1.1 %; the
+// square of the step over 12 is added.
+TEST(DepthCamera, StereoErrorsAreThoseOfTheDisparity) {
+  DepthCameraConfig config = exact_config(640, 400);
+  config.stereo = {.focal_length_px = 424.0,
+                   .baseline = 0.05,
+                   .disparity_sigma_px = 0.08,
+                   .disparity_step_px = 1.0 / 32};
+  for (const double depth : {1.0, 2.0, 4.0}) {
+    const Scene scene(square({depth, 0, 0}, {-1, 0, 0}, 100.0), 1);
+    const Scan scan = DepthCamera(config).scan(scene, {{0, 0, 0}, {1, 0, 0}}, 2, 1);
+    ASSERT_EQ(scan.points.size(), 640U * 400U);
+    double mean = 0.0, variance = 0.0;
+    for (const auto& point : scan.points) {
+      const double disparity = 424.0 * 0.05 / point.x();
+      EXPECT_NEAR(disparity * 32.0, std::round(disparity * 32.0), 1e-3);
+      const double error = disparity - 424.0 * 0.05 / depth;
+      mean += error / 256'000;
+      variance += error * error / 256'000;
+    }
+    const double expected = 0.08 * 0.08 + 1.0 / (32 * 32 * 12);
+    EXPECT_NEAR(mean, 0.0, 4.0 * std::sqrt(expected / 256'000));
+    EXPECT_NEAR(variance, expected, 0.011 * expected);
+  }
+}
+
+// Also with rows and tiles without any return, which change where each band's points go.
+TEST(DepthCamera, GivesTheSameBitsForAnyNumberOfThreads) {
+  const Scene scene(sphere({10, 1, -1}, 2.0, 5), 2);
+  DepthCameraConfig config = exact_config(501, 333);
+  config.noise = {.sigma = 0.01, .seed = 9};
+  const DepthCamera camera(config);
+  const Scan expected = camera.scan(scene, tilted_pose(), 1, 1);
+  ASSERT_GT(expected.points.size(), 10'000U);
+  for (const unsigned threads : {2U, 4U, 7U}) {
+    const Scan scan = camera.scan(scene, tilted_pose(), 1, threads);
+    EXPECT_EQ(scan.points, expected.points) << threads;
+    EXPECT_EQ(scan.pixels, expected.pixels) << threads;
+  }
+}
+
+TEST(DepthCamera, ARecycledScanLeavesNoTrace) {
+  const Scene scene(sphere({10, 1, -1}, 2.0, 5), 1);
+  const DepthCamera camera(exact_config());
+  const Scan expected = camera.scan(scene, tilted_pose(), 1, 1);
+  Scan used = DepthCamera(exact_config(400, 300)).scan(scene, tilted_pose(), 5, 1);
+  const Scan scan = camera.scan(scene, tilted_pose(), 1, 1, std::move(used));
+  EXPECT_EQ(scan.points, expected.points);
+  EXPECT_EQ(scan.pixels, expected.pixels);
+}
+
+// The kernel behind the points, on every instruction set, with and without gaps in the row.
+TEST(DepthCamera, PointsAreTheSameOnEveryInstructionSet) {
+#ifdef SKYCAP_X86_64_KERNELS
+  constexpr std::size_t width = 333;
+  std::vector<float> depth(width), column(width);
+  for (std::size_t i = 0; i < width; ++i) {
+    depth[i] = i % 97 < 40 || i % 7 == 0 ? 5.0F + 0.01F * static_cast<float>(i) : -1.0F;
+    column[i] = 0.003F * static_cast<float>(i) - 0.5F;
+  }
+  PinholeRow row{.width = width,
+                 .depth = depth.data(),
+                 .column = {column.data(), column.data(), column.data()},
+                 .row = {0.1F, 0.2F, 1.0F},
+                 .origin = {1.0F, 2.0F, 3.0F},
+                 .first_pixel = 1000,
+                 .sigma = 0.01F,
+                 .noise_direction = NoiseDirection::isotropic,
+                 .noise_keys = {noise_key(1, 0, 0), noise_key(1, 1, 0), noise_key(1, 2, 0)},
+                 .noise_index = 64};
+  const auto emit = [&](const VectorKernels& kernels) {
+    std::vector<float> points(3 * width);
+    std::vector<std::uint32_t> pixels(width);
+    const std::size_t written = kernels.emit_row(row, points.data(), pixels.data());
+    points.resize(3 * written);
+    pixels.resize(written);
+    return std::pair(points, pixels);
+  };
+  for (const auto direction : {NoiseDirection::isotropic, NoiseDirection::along_ray}) {
+    row.noise_direction = direction;
+    const auto expected = emit(baseline_kernels);
+    EXPECT_GT(expected.second.size(), 100U);
+    for (const VectorKernels* kernels : {&avx2_kernels, &avx512_kernels}) {
+      if (!can_run(*kernels)) continue;
+      EXPECT_EQ(emit(*kernels), expected) << kernels->name;
+    }
+  }
+#else
+  GTEST_SKIP() << "there is only one on this processor";
+#endif
+}
+
+// Known answers: 1200 / tan 30 and 875 / tan 20; 424 / tan 34.7 and 240 / tan 21.25.
+TEST(DepthCamera, PresetsHaveThePublishedGeometry) {
+  const DepthCamera high(high_resolution()), small(d435());
+  EXPECT_NEAR(high.camera().focal_length_px().x(), 2078.46, 0.01);
+  EXPECT_NEAR(high.camera().focal_length_px().y(), 2404.04, 0.01);
+  EXPECT_EQ(high.camera().width() * high.camera().height(), 2400 * 1750);
+  EXPECT_NEAR(small.camera().focal_length_px().x(), 612.33, 0.01);
+  EXPECT_NEAR(small.camera().focal_length_px().y(), 617.16, 0.01);
+  EXPECT_EQ(small.config().noise.sigma, 0.01);
+}
+
+TEST(DepthCamera, RejectsAnImpossibleIncidenceLimit) {
+  DepthCameraConfig config = exact_config();
+  config.max_incidence = 0.0;
+  try {
+    const DepthCamera camera(config);
+    FAIL() << "accepted";
+  } catch (const Error& error) {
+    EXPECT_EQ(error.kind(), ErrorKind::bad_config);
+    EXPECT_THAT(error.what(), HasSubstr("max_incidence is 0"));
+  }
+}
+
+}  // namespace
+}  // namespace skycap::sim

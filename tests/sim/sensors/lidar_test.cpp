@@ -1,0 +1,332 @@
+#include "sim/sensors/lidar.h"
+
+#include <cmath>
+#include <set>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "geometry/error.h"
+#include "sim/sensors/scan_pattern.h"
+#include "tests/sim/shapes.h"
+
+namespace skycap::sim {
+namespace {
+
+using Eigen::AngleAxisd;
+using Eigen::Isometry3d;
+using Eigen::Quaterniond;
+using Eigen::Vector3d;
+using Eigen::Vector3f;
+
+constexpr double degree = std::numbers::pi / 180.0;
+
+Trajectory standing(const Vector3d& position = {0, 0, 0}, double duration = 1.0) {
+  return Trajectory(
+      {{0.0, position, Quaterniond::Identity()}, {duration, position, Quaterniond::Identity()}});
+}
+
+// 16 lasers, 500 firings a turn at 20 turns a second.
+LidarConfig spinner(int channels = 16) {
+  LidarConfig config;
+  config.firing_period = 1e-4;
+  config.rotation_rate = 20.0;
+  config.channels.clear();
+  for (int i = 0; i < channels; ++i) {
+    config.channels.push_back({.elevation = (2.0 * i - 15.0) * degree, .delay = 2e-6 * i});
+  }
+  return config;
+}
+
+Vector3d world(const LidarReturns& returns, const Vector3f& point) {
+  return returns.origin + point.cast<double>();
+}
+
+LidarReturns measure_standing(const LidarConfig& config, const Scene& scene,
+                              const Vector3d& position = {0, 0, 0}, std::uint64_t firings = 500) {
+  const Trajectory trajectory = standing(position);
+  return Lidar(config).measure(scene, {trajectory, trajectory}, {0, firings});
+}
+
+TEST(Lidar, PointsLieOnATiltedWallInEveryDirection) {
+  const Vector3d normal = Vector3d(-1.0, 0.3, 0.2).normalized();
+  const Scene scene(square({10, 0, 0}, normal, 400.0), 1);
+  LidarConfig config = spinner();
+  config.max_range = 100.0;
+  const LidarReturns returns = measure_standing(config, scene);
+  ASSERT_GT(returns.size(), 2000U);
+  std::set<std::uint16_t> channels;
+  for (std::size_t i = 0; i < returns.size(); ++i) {
+    EXPECT_NEAR(normal.dot(world(returns, returns.points[i]) - Vector3d(10, 0, 0)), 0.0, 3e-5);
+    EXPECT_EQ(returns.points[i], returns.true_points[i]);
+    channels.insert(returns.channels[i]);
+  }
+  EXPECT_EQ(channels.size(), 16U);
+}
+
+// Sampling in closed form: channels / firing period shots a second, all of which return inside a
+// sphere. OS1-128 at 2048 columns and 10 Hz: 2,621,440 a second; here a 64th of it.
+TEST(Lidar, ReturnsExactlyAsManyPointsAsTheSensorFires) {
+  LidarConfig config = spinner(128);
+  for (int i = 0; i < 128; ++i)
+    config.channels[i] = {.elevation = (i * 45.0 / 127 - 22.5) * degree};
+  config.firing_period = 1.0 / 20'480;
+  config.rotation_rate = 10.0;
+  const Scene scene(sphere({0, 0, 0}, 30.0, 4), 1);
+  const Trajectory trajectory = standing({1, 2, 3}, 1.0 / 64);
+  const Lidar lidar(config);
+  ASSERT_EQ(lidar.firings(trajectory), 320U);
+  const LidarReturns returns = lidar.measure(scene, {trajectory, trajectory}, {0, 320});
+  EXPECT_EQ(returns.size(), 2'621'440U / 64);
+  EXPECT_EQ(returns.times.size(), returns.size());
+  EXPECT_EQ(lidar.firings(standing({0, 0, 0}, 1.0)), 20'480U);
+}
+
+class MovingLidar : public testing::Test {
+ protected:
+  // 10 m/s along x while turning by 30 degrees a second, past a wall at y = 20.
+  static constexpr double speed = 10.0, yaw_rate = 30 * degree;
+  const Scene scene{square({0, 20, 0}, {0, -1, 0}, 400.0), 1};
+  static StampedPose pose_at(double time) {
+    return {
+        time, {speed * time, 0, 0}, Quaterniond(AngleAxisd(yaw_rate * time, Vector3d::UnitZ()))};
+  }
+  const Trajectory trajectory{{pose_at(0.0), pose_at(0.05), pose_at(0.1)}};
+  const LidarReturns returns = Lidar(spinner()).measure(scene, {trajectory, trajectory}, {0, 1000});
+};
+
+// Every shot against the closed form: its own time, pose and direction, met with the wall.
+TEST_F(MovingLidar, EveryShotHasItsOwnTimeAndPose) {
+  ASSERT_GT(returns.size(), 5000U);
+  const LidarConfig config = spinner();
+  for (std::size_t i = 0; i < returns.size(); ++i) {
+    const double time = returns.times[i];
+    const Channel& laser = config.channels[returns.channels[i]];
+    const double azimuth = 2.0 * std::numbers::pi * config.rotation_rate * time;
+    const Isometry3d pose = trajectory.pose(time);
+    const Vector3d direction =
+        pose.linear() * Vector3d(std::cos(laser.elevation) * std::cos(azimuth),
+                                 std::cos(laser.elevation) * std::sin(azimuth),
+                                 std::sin(laser.elevation));
+    const Vector3d expected = pose.translation() + 20.0 / direction.y() * direction;
+    const Vector3d measured = world(returns, returns.points[i]);
+    const double range = (expected - pose.translation()).norm();
+    // Across the ray by single precision of its direction, along it more where it grazes the wall.
+    EXPECT_LT((measured - expected).norm(), 1e-6 * range * range / 20.0 + 2e-5);
+    EXPECT_NEAR(measured.y(), 20.0, 5e-5);
+  }
+}
+
+// Seen from the pose at the scan's start, points are displaced by exactly what the platform did
+// since: v t and the turn. Undoing it with the reported times restores the wall.
+TEST_F(MovingLidar, TheReportedTimesUndoTheMotion) {
+  for (std::size_t i = 0; i < returns.size(); i += 7) {
+    const Isometry3d pose = trajectory.pose(returns.times[i]);
+    const Vector3d in_sensor = pose.inverse() * world(returns, returns.points[i]);
+    const Vector3d skewed = trajectory.pose(0.0) * in_sensor;
+    const Vector3d turned = AngleAxisd(yaw_rate * returns.times[i], Vector3d::UnitZ()) * skewed;
+    EXPECT_NEAR(turned.y(), 20.0, 5e-5);
+    EXPECT_NEAR((world(returns, returns.points[i]) - turned).x(), speed * returns.times[i], 1e-4);
+  }
+}
+
+TEST(Lidar, PartsOfAScanAreTheScan) {
+  LidarConfig config = spinner();
+  config.errors = {.sigma = 0.01, .channel_bias_sigma = 0.01, .angle_sigma = 1e-4};
+  const Scene scene(sphere({0, 0, 0}, 30.0, 3), 1);
+  const Trajectory trajectory({{0.0, {0, 0, 0}, Quaterniond::Identity()},
+                               {1.0, {9, 0, 0}, Quaterniond(AngleAxisd(1.0, Vector3d::UnitX()))}});
+  const Lidar lidar(config);
+  const LidarFlight flight{trajectory, trajectory};
+  const LidarReturns whole = lidar.measure(scene, flight, {100, 150});
+  LidarReturns parts;
+  for (const FiringRange part : {FiringRange{100, 1}, {101, 59}, {160, 32}, {192, 58}}) {
+    const LidarReturns some = lidar.measure(scene, flight, part);
+    parts.points.insert(parts.points.end(), some.points.begin(), some.points.end());
+    parts.times.insert(parts.times.end(), some.times.begin(), some.times.end());
+  }
+  const LidarReturns recycled = lidar.measure(scene, flight, {100, 150}, whole);
+  EXPECT_EQ(recycled.points, whole.points);
+  EXPECT_EQ(recycled.channels, whole.channels);
+  EXPECT_EQ(parts.points, whole.points);
+  EXPECT_EQ(parts.times, whole.times);
+}
+
+// The last angle at which a floor returns is where R^2 / cos reaches R_ref^2 rho / rho_ref.
+TEST(Lidar, GrazingReturnsDropOutWhereTheLidarEquationSays) {
+  const double height = 4.0, reference = 20.0, reflectance = 0.3;
+  const geometry::Mesh floor = square({0, 0, -height}, {0, 0, 1}, 4000.0);
+  const Scene scene(floor, std::vector<float>{0.3F, 0.3F}, 1);
+  LidarConfig config = spinner(400);
+  for (int i = 0; i < 400; ++i) config.channels[i] = {.elevation = -(1.0 + 0.05 * i) * degree};
+  config.max_range = 1000.0;
+  config.sensitivity = {.reference_range = reference, .reference_reflectance = 0.1};
+  const LidarReturns returns = measure_standing(config, scene, {0, 0, 0}, 5);
+  // cos = h / R, so R^3 = h R_ref^2 rho / rho_ref.
+  const double farthest = std::cbrt(height * reference * reference * reflectance / 0.1);
+  double last = 0.0;
+  for (const Vector3f& point : returns.points) {
+    last = std::max(last, world(returns, point).norm());
+  }
+  EXPECT_LE(last, farthest + 1e-4);
+  EXPECT_GT(last, farthest - 0.2);  // channels are 0.05 degrees or 0.15 m apart there
+}
+
+// A hole of 1 cm in a wall, a beam of 13.5 cm: one ray falls through, the beam meets the wall too.
+TEST(Lidar, AWideBeamBlursASmallHole) {
+  geometry::Mesh mesh;
+  for (const auto& [y, z] : {std::pair{-1.005, 0.0}, {1.005, 0.0}, {0.0, -1.005}, {0.0, 1.005}}) {
+    geometry::append(mesh, square({10, y, z}, {-1, 0, 0}, 2.0));
+  }
+  geometry::append(mesh, square({20, 0, 0}, {-1, 0, 0}, 50.0));
+  const Scene scene(mesh, 1);
+  LidarConfig config;
+  config.rotation_rate = 0.0;
+  const LidarReturns one_ray = measure_standing(config, scene, {0, 0, 0}, 1);
+  ASSERT_EQ(one_ray.size(), 1U);
+  EXPECT_NEAR(world(one_ray, one_ray.points[0]).x(), 20.0, 1e-5);
+
+  config.beam = {
+      .rings = 2, .divergence_horizontal = 0.0135, .divergence_vertical = 0.0135, .max_returns = 3};
+  const LidarReturns wide = measure_standing(config, scene, {0, 0, 0}, 1);
+  ASSERT_EQ(wide.size(), 2U);
+  EXPECT_NEAR(world(wide, wide.points[0]).x(), 10.0, 1e-3);
+  EXPECT_NEAR(world(wide, wide.points[1]).x(), 20.0, 1e-5);
+  EXPECT_THAT(wide.return_numbers, testing::ElementsAre(1, 2));
+  EXPECT_THAT(wide.returns_of_shots, testing::ElementsAre(2, 2));
+  // Only the axis of 19 rays passes the hole, with its share of the Gaussian.
+  const double axis = 1.0 / (1.0 + 6.0 * std::exp(-0.5) + 12.0 * std::exp(-2.0));
+  EXPECT_NEAR(wide.intensities[1] / (wide.intensities[0] + wide.intensities[1]), axis, 1e-3);
+}
+
+// gamma R / 2 across and gamma R / (2 cos theta) along the slope: half of the beam beyond an edge
+// that is moved through the footprint.
+TEST(Lidar, TheFootprintHasTheWidthOfTheDivergence) {
+  LidarConfig config;
+  config.rotation_rate = 0.0;
+  config.beam = {
+      .rings = 8, .divergence_horizontal = 0.004, .divergence_vertical = 0.010, .max_returns = 2};
+  const auto share_beyond = [&](const Vector3d& edge_shift) {
+    const Scene scene(square(Vector3d(50, 0, 0) + edge_shift, {-1, 0, 0}, 20.0), 1);
+    const LidarReturns returns = measure_standing(config, scene, {0, 0, 0}, 1);
+    return returns.size() == 0 ? 0.0 : returns.intensities[0] / Scene::default_reflectance;
+  };
+  // The square's left edge is at y = shift - 10; the footprint's radii are 0.1 and 0.25 m.
+  EXPECT_NEAR(share_beyond({0, 10.0, 0}), 0.5, 0.08);
+  EXPECT_NEAR(share_beyond({0, 9.89, 0}), 1.0, 1e-3);
+  EXPECT_EQ(share_beyond({0, 10.101, 0}), 0.0);
+  EXPECT_GT(share_beyond({0, 10.09, 0}), 0.0);
+  EXPECT_NEAR(share_beyond({0, 0, 10.0}), 0.5, 0.08);
+  EXPECT_EQ(share_beyond({0, 0, 10.251}), 0.0);
+  EXPECT_GT(share_beyond({0, 0, 10.22}), 0.0);
+}
+
+TEST(Lidar, RangesAreMultiplesOfTheRangeStep) {
+  LidarConfig config = spinner();
+  config.errors = {.sigma = 0.02, .range_step = 0.004};
+  const LidarReturns returns = measure_standing(config, Scene(sphere({0, 0, 0}, 10.0, 5), 1));
+  for (const Vector3f& point : returns.points) {
+    const double steps = world(returns, point).norm() / 0.004;
+    EXPECT_NEAR(steps, std::round(steps), 1e-3);  // single precision at 10 m
+  }
+}
+
+// Range errors along the ray: the mean of each channel is its bias, the rest is the noise. Four
+// standard deviations of each statistic over N = 5000 firings.
+TEST(Lidar, SeparatesTheBiasOfAChannelFromTheNoiseOfAShot) {
+  LidarConfig config = spinner(64);
+  for (int i = 0; i < 64; ++i) config.channels[i] = {.elevation = 0.3 * i * degree};
+  config.errors = {.sigma = 0.01, .channel_bias_sigma = 0.03};
+  const std::uint64_t firings = 5000;
+  const LidarReturns returns =
+      measure_standing(config, Scene(sphere({0, 0, 0}, 10.0, 4), 1), {0, 0, 0}, firings);
+  ASSERT_EQ(returns.size(), 64 * firings);
+  std::vector<double> mean(64, 0.0), square(64, 0.0);
+  for (std::size_t i = 0; i < returns.size(); ++i) {
+    const Vector3d truth = world(returns, returns.true_points[i]);
+    const Vector3d difference = world(returns, returns.points[i]) - truth;
+    const double error = difference.dot(truth.normalized());
+    EXPECT_LT((difference - error * truth.normalized()).norm(), 1e-5);
+    mean[returns.channels[i]] += error / static_cast<double>(firings);
+    square[returns.channels[i]] += error * error / static_cast<double>(firings);
+  }
+  double between = 0.0, inside = 0.0;
+  for (int i = 0; i < 64; ++i) {
+    between += mean[i] * mean[i] / 64;
+    inside += (square[i] - mean[i] * mean[i]) / 64;
+  }
+  EXPECT_NEAR(inside, 1e-4, 4e-4 * std::sqrt(2.0 / (64.0 * firings)) + 1e-7);
+  EXPECT_NEAR(between, 9e-4, 4 * 9e-4 * std::sqrt(2.0 / 64.0));
+}
+
+TEST(Lidar, NoiseDoesNotDecideWhichRaysHit) {
+  const Scene scene(sphere({5, 0, 0}, 3.0, 4), 1);
+  LidarConfig config = spinner();
+  const LidarReturns exact = measure_standing(config, scene);
+  config.errors = {.sigma = 0.5, .channel_bias_sigma = 0.5, .angle_sigma = 0.01};
+  config.seed = 8;
+  const LidarReturns noisy = measure_standing(config, scene);
+  EXPECT_EQ(noisy.true_points, exact.true_points);
+  EXPECT_EQ(noisy.times, exact.times);
+  EXPECT_NE(noisy.points, exact.points);
+}
+
+// Straight down from height h: a roll of phi, believed to be zero, moves the point by h tan(phi).
+TEST(Lidar, UnknownRollLeverArmAndBoresightMoveThePointsAsTheyMust) {
+  const double height = 40.0;
+  const Scene scene(square({0, 0, 0}, {0, 0, 1}, 400.0), 1);
+  LidarConfig config;
+  config.rotation_rate = 0.0;
+  const Lidar lidar(config);
+  // The sensor's x axis, along which it shoots, points down.
+  Isometry3d down = Isometry3d::Identity();
+  down.rotate(AngleAxisd(90 * degree, Vector3d::UnitY()));
+  const Trajectory level = standing({0, 0, height});
+  const double roll = 0.02;
+  const Quaterniond rolled(AngleAxisd(roll, Vector3d::UnitX()));
+  const Trajectory really({{0.0, {0, 0, height}, rolled}, {1.0, {0, 0, height}, rolled}});
+
+  const LidarReturns returns = lidar.measure(scene, {really, level, down, down}, {0, 1});
+  ASSERT_EQ(returns.size(), 1U);
+  EXPECT_NEAR(world(returns, returns.true_points[0]).y(), height * std::tan(roll), 1e-5);
+  EXPECT_NEAR(world(returns, returns.points[0]).y(), 0.0, 1e-5);
+  EXPECT_NEAR(world(returns, returns.points[0]).z(), height - height / std::cos(roll), 1e-5);
+
+  Isometry3d displaced = down;
+  displaced.pretranslate(Vector3d(0.1, -0.2, 0.3));
+  const LidarReturns moved = lidar.measure(scene, {level, level, down, displaced}, {0, 1});
+  EXPECT_TRUE(world(moved, moved.points[0]).isApprox(Vector3d(0.1, -0.2, 0.3), 1e-4));
+
+  Isometry3d turned = down;
+  turned.prerotate(AngleAxisd(0.001, Vector3d::UnitX()));
+  const LidarReturns off = lidar.measure(scene, {level, level, down, turned}, {0, 1});
+  EXPECT_NEAR(world(off, off.points[0]).y(), height * std::sin(0.001), 1e-5);
+  EXPECT_NEAR(world(off, off.true_points[0]).norm(), 0.0, 1e-5);
+}
+
+TEST(Lidar, FarFromTheOriginPointsStayThoseNearIt) {
+  const Vector3d far(474'500.0, 5'474'500.0, 120.0);
+  const Scene here(sphere({0, 0, 0}, 20.0, 4), 1), there(sphere(far, 20.0, 4), 1);
+  const LidarReturns near_returns = measure_standing(spinner(), here, {1, 2, 3});
+  const LidarReturns far_returns = measure_standing(spinner(), there, far + Vector3d(1, 2, 3));
+  ASSERT_EQ(far_returns.size(), near_returns.size());
+  for (std::size_t i = 0; i < near_returns.size(); ++i) {
+    const Vector3d moved = world(far_returns, far_returns.points[i]) - far;
+    EXPECT_LT((moved - world(near_returns, near_returns.points[i])).norm(), 1e-4);
+  }
+}
+
+TEST(Lidar, WhatIsTooNearHidesWhatIsBehind) {
+  geometry::Mesh mesh = sphere({0, 0, 0}, 1.0, 3);
+  geometry::append(mesh, sphere({0, 0, 0}, 5.0, 3));
+  LidarConfig config = spinner();
+  config.min_range = 2.0;
+  EXPECT_EQ(measure_standing(config, Scene(mesh, 1)).size(), 0U);
+}
+
+TEST(Scene, RejectsReflectancesThatAreNotOneForEachTriangle) {
+  EXPECT_THROW(Scene(square({0, 0, 0}, {0, 0, 1}, 1.0), std::vector<float>{0.5F}, 1), Error);
+}
+
+}  // namespace
+}  // namespace skycap::sim

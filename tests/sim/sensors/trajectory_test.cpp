@@ -1,0 +1,108 @@
+#include "sim/sensors/trajectory.h"
+
+#include <cmath>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "geometry/error.h"
+
+namespace skycap::sim {
+namespace {
+
+using Eigen::AngleAxisd;
+using Eigen::Quaterniond;
+using Eigen::Vector3d;
+using testing::HasSubstr;
+
+Quaterniond yaw(double angle) { return Quaterniond(AngleAxisd(angle, Vector3d::UnitZ())); }
+
+TEST(Trajectory, InterpolatesPositionLinearlyAndTurnsAtConstantRate) {
+  const Trajectory trajectory({{1.0, {0, 0, 0}, yaw(0.2)}, {3.0, {4, 2, 0}, yaw(1.2)}});
+  for (const double time : {1.0, 1.3, 2.0, 2.9, 3.0}) {
+    const double share = (time - 1.0) / 2.0;
+    const Eigen::Isometry3d pose = trajectory.pose(time);
+    EXPECT_TRUE(pose.translation().isApprox(share * Vector3d(4, 2, 0), 1e-12));
+    EXPECT_TRUE(pose.linear().isApprox(yaw(0.2 + share).toRotationMatrix(), 1e-12));
+  }
+}
+
+TEST(Trajectory, StandsStillBeforeTheStartAndAfterTheEnd) {
+  const Trajectory trajectory({{1.0, {1, 0, 0}, yaw(0.2)}, {3.0, {4, 2, 0}, yaw(1.2)}});
+  EXPECT_TRUE(trajectory.pose(0.0).isApprox(trajectory.pose(1.0)));
+  EXPECT_TRUE(trajectory.pose(9.0).isApprox(trajectory.pose(3.0)));
+}
+
+// A quaternion and its negative are the same attitude; the way between must stay the short one.
+TEST(Trajectory, TakesTheShorterWayRound) {
+  Quaterniond negative = yaw(0.4);
+  negative.coeffs() *= -1.0;
+  const Trajectory trajectory({{0.0, {0, 0, 0}, yaw(0.2)}, {1.0, {0, 0, 0}, negative}});
+  EXPECT_TRUE(trajectory.pose(0.5).linear().isApprox(yaw(0.3).toRotationMatrix(), 1e-12));
+}
+
+TEST(Trajectory, NamesThePoseThatIsOutOfOrder) {
+  try {
+    const Trajectory trajectory({{.time = 0.0}, {.time = 1.0}, {.time = 1.0}});
+    FAIL() << "accepted";
+  } catch (const Error& error) {
+    EXPECT_THAT(error.what(), HasSubstr("pose 2 is not later"));
+  }
+  EXPECT_THROW(Trajectory(std::vector<StampedPose>{}), Error);
+  EXPECT_THROW(Trajectory(std::vector<StampedPose>{{.time = NAN}}), Error);
+  EXPECT_THROW(Trajectory(std::vector<StampedPose>{{.attitude = Quaterniond(0, 0, 0, 0)}}), Error);
+}
+
+// A Gauss-Markov process sampled every tau has correlation 1/e between neighbours; N = 40,000
+// samples with 1/e memory are as good as N (1 - 1/e^2) / (1 + 1/e^2) = 30,000 independent ones, so
+// four standard deviations of the variance are 4 sqrt(2 / 30,000) = 3.3 %.
+TEST(BelievedTrajectory, HasErrorsOfTheStatedSizeAndMemory) {
+  std::vector<StampedPose> poses;
+  for (int i = 0; i < 40'000; ++i) poses.push_back({5.0 * i, {1, 2, 3}, yaw(0.7)});
+  const Trajectory flown(poses);
+  const NavigationErrors errors{.horizontal_sigma = 0.02,
+                                .vertical_sigma = 0.05,
+                                .tilt_sigma = 0.001,
+                                .heading_sigma = 0.004,
+                                .correlation_time = 5.0,
+                                .seed = 3};
+  const Trajectory believed = believed_trajectory(flown, errors);
+  Vector3d square = Vector3d::Zero(), turn_square = Vector3d::Zero();
+  double neighbours = 0.0, before = 0.0;
+  for (const StampedPose& pose : believed.poses()) {
+    const Vector3d error = pose.position - Vector3d(1, 2, 3);
+    const AngleAxisd turned(yaw(0.7).conjugate() * pose.attitude);
+    square += error.cwiseAbs2() / 40'000;
+    turn_square += (turned.angle() * turned.axis()).cwiseAbs2() / 40'000;
+    neighbours += error.x() * before / 40'000;
+    before = error.x();
+  }
+  const auto expect_variance = [](double variance, double sigma) {
+    EXPECT_NEAR(variance, sigma * sigma, 0.033 * sigma * sigma);
+  };
+  expect_variance(square.x(), 0.02);
+  expect_variance(square.y(), 0.02);
+  expect_variance(square.z(), 0.05);
+  expect_variance(turn_square.x(), 0.001);
+  expect_variance(turn_square.y(), 0.001);
+  expect_variance(turn_square.z(), 0.004);
+  EXPECT_NEAR(neighbours / square.x(), std::exp(-1.0), 0.03);
+}
+
+TEST(BelievedTrajectory, IsTheFlownOneWithoutErrors) {
+  const Trajectory flown({{0.0, {1, 2, 3}, yaw(0.7)}, {2.0, {2, 2, 3}, yaw(0.9)}});
+  const Trajectory believed = believed_trajectory(flown, {});
+  EXPECT_TRUE(believed.pose(1.3).isApprox(flown.pose(1.3), 1e-15));
+}
+
+TEST(NavigationErrors, RejectsANegativeSigma) {
+  try {
+    NavigationErrors{.tilt_sigma = -1.0}.validate();
+    FAIL() << "accepted";
+  } catch (const Error& error) {
+    EXPECT_THAT(error.what(), HasSubstr("navigation.tilt_sigma is -1"));
+  }
+}
+
+}  // namespace
+}  // namespace skycap::sim

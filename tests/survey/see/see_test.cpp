@@ -1,0 +1,249 @@
+#include "survey/see/see.h"
+
+#include <cmath>
+#include <numbers>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "geometry/error.h"
+#include "geometry/place/pose.h"
+#include "tests/support/sphere_sensor.h"
+
+namespace skycap::survey {
+namespace {
+
+using Eigen::Vector3d;
+using geometry::View;
+using testing::HasSubstr;
+
+/// A sixteenth of a D435's pixels; the density goes down alike, so distances stay as published.
+const geometry::Camera small_camera(geometry::CameraConfig{.width = 212, .height = 120});
+
+see::SeeConfig small_config() {
+  return {.density = 146'000.0 / 16, .resolution_radius = 0.017 * std::cbrt(16.0)};
+}
+
+struct Outcome {
+  std::vector<View> views;
+  std::vector<Eigen::Vector3f> cloud;
+  std::size_t frontiers_resolved = 0;
+  bool ended = false;
+};
+
+/// Surveys spheres until the planner is done, at most `most_views` views.
+Outcome survey(const see::SeeConfig& config, double sigma, std::size_t most_views = 200,
+               const std::vector<tests::Sphere>& spheres = {{}}, std::uint64_t seed = 1) {
+  see::SeePlanner planner(config, small_camera);
+  Outcome run;
+  std::optional<View> next = geometry::look_at({2.4, 0.3, 0.2}, {0, 0, 0});
+  while (next && run.views.size() < most_views) {
+    run.views.push_back(*next);
+    next = planner.next_view(
+        tests::scan_spheres(spheres, small_camera, *next, sigma, 1000 * seed + run.views.size()));
+    run.frontiers_resolved += planner.last_step().frontiers_resolved;
+  }
+  run.ended = !next;
+  run.cloud = planner.cloud().positions;
+  return run;
+}
+
+/// Share of 1,000 directions from the origin in which a sphere of radius 0.5 has a point nearby.
+double coverage(const std::vector<Eigen::Vector3f>& cloud, double distance) {
+  int covered = 0;
+  for (int i = 0; i < 1000; ++i) {
+    const double z = 1.0 - (2.0 * i + 1.0) / 1000, azimuth = 2.399963229728653 * i;
+    const double across = std::sqrt(1.0 - z * z);
+    const Eigen::Vector3f sample =
+        (0.5 * Vector3d(across * std::cos(azimuth), across * std::sin(azimuth), z)).cast<float>();
+    for (const Eigen::Vector3f& p : cloud) {
+      if ((p - sample).norm() > distance) continue;
+      ++covered;
+      break;
+    }
+  }
+  return covered / 1000.0;
+}
+
+TEST(SeePlanner, SurveysANoisySphereAndEndsByItself) {
+  for (const bool plus_plus : {false, true}) {
+    see::SeeConfig config = small_config();
+    config.optimise_views = config.visibility_graph = plus_plus;
+    const Outcome run = survey(config, 0.02);
+    EXPECT_TRUE(run.ended) << run.views.size() << " views";
+    EXPECT_GT(run.views.size(), 4U);
+    EXPECT_GT(coverage(run.cloud, 0.03), 0.97);
+  }
+}
+
+// Trap T1: it is the noise that makes frontiers. At the published settings clean data end the
+// survey of a sphere after a few views, rightly. A threshold fit for clean data surveys the sphere
+// whole.
+TEST(SeePlanner, NeedsNoiseOrALargerThreshold) {
+  const geometry::Camera d435(geometry::CameraConfig{});
+  see::SeePlanner published(see::SeeConfig{}, d435);
+  std::optional<View> next = geometry::look_at({2.4, 0.3, 0.2}, {0, 0, 0});
+  for (int view = 0; next && view < 10; ++view) {
+    next = published.next_view(tests::scan_spheres({{}}, d435, *next));
+  }
+  EXPECT_FALSE(next);
+
+  see::SeeConfig config = small_config();
+  config.core_threshold = 12;
+  const Outcome larger_threshold = survey(config, 0.0);
+  EXPECT_TRUE(larger_threshold.ended);
+  EXPECT_GT(coverage(larger_threshold.cloud, 0.03), 0.99);
+}
+
+// Trap T2, and what the user is told.
+TEST(SeePlanner, RefusesParametersThatAdmitNoFrontier) {
+  const auto complaint = [](const see::SeeConfig& config) -> std::string {
+    try {
+      config.validate();
+      return "";
+    } catch (const Error& error) {
+      return error.what();
+    }
+  };
+  EXPECT_EQ(complaint(see::SeeConfig{}), "");
+  EXPECT_EQ(see::SeeConfig{}.effective_core_threshold(), 4);  // the paper's 3.0046, rounded up
+  EXPECT_THAT(complaint({.resolution_radius = 0.01}), HasSubstr("admits no frontier"));
+  EXPECT_THAT(complaint({.core_threshold = 3}), HasSubstr("core_threshold"));
+  EXPECT_THAT(complaint({.spacing = 0.02}), HasSubstr("spacing"));
+  EXPECT_THAT(complaint({.density = NAN}), HasSubstr("density"));
+}
+
+// The bar of the method: without optimiser and graph SEE++ is SEE, view for view.
+TEST(SeePlanner, WithoutOptimiserAndGraphIsNearestView) {
+  see::SeeConfig config = small_config();
+  config.optimise_views = config.visibility_graph = false;
+  const Outcome exact = survey(config, 0.02, 12);
+  config.occlusion_search_distance = 0.3;  // parameters of SEE++ alone change nothing
+  config.visibility_update_limit = 3;
+  config.drop_if_still_occluded = false;
+  const Outcome same = survey(config, 0.02, 12);
+  ASSERT_EQ(exact.views.size(), same.views.size());
+  for (std::size_t i = 0; i < exact.views.size(); ++i) {
+    EXPECT_EQ(exact.views[i].position, same.views[i].position);
+  }
+  EXPECT_EQ(exact.cloud, same.cloud);
+}
+
+TEST(SeePlanner, GivesTheSameViewsForTheSameScans) {
+  const Outcome first = survey(small_config(), 0.02, 15), second = survey(small_config(), 0.02, 15);
+  ASSERT_EQ(first.views.size(), second.views.size());
+  for (std::size_t i = 0; i < first.views.size(); ++i) {
+    EXPECT_EQ(first.views[i].position, second.views[i].position);
+    EXPECT_EQ(first.views[i].direction, second.views[i].direction);
+  }
+}
+
+// Trap T6: every proposal is at the view distance from the surface, outside, looking in.
+TEST(SeePlanner, ProposesViewsFromOutsideAtTheViewDistance) {
+  const Outcome run = survey(small_config(), 0.02, 15);
+  for (std::size_t i = 1; i < run.views.size(); ++i) {
+    const Vector3d target = run.views[i].position + 1.98 * run.views[i].direction;
+    EXPECT_NEAR(target.norm(), 0.5, 0.15) << "view " << i;  // the frontier, in the noise
+    EXPECT_GT(run.views[i].position.norm(), 1.4) << "view " << i;
+  }
+}
+
+// Trap T9: the first scan must show something; a later empty one only costs the target.
+TEST(SeePlanner, SaysThatAnEmptyFirstScanIsTheUsersAffair) {
+  see::SeePlanner planner(small_config(), small_camera);
+  try {
+    planner.next_view(geometry::Scan{});
+    FAIL();
+  } catch (const Error& error) {
+    EXPECT_EQ(error.kind(), ErrorKind::bad_geometry);
+    EXPECT_THAT(error.what(), HasSubstr("first scan"));
+  }
+}
+
+TEST(SeePlanner, EndsWhenEveryLaterScanIsEmpty) {
+  see::SeePlanner planner(small_config(), small_camera);
+  const View first = geometry::look_at({2.4, 0.3, 0.2}, {0, 0, 0});
+  std::optional<View> next =
+      planner.next_view(tests::scan_spheres({{}}, small_camera, first, 0.02));
+  std::size_t views = 0;
+  const std::size_t frontiers = planner.last_step().frontiers;
+  ASSERT_GT(frontiers, 0U);
+  for (; next && views <= frontiers; ++views) {
+    geometry::Scan nothing;
+    nothing.world_from_sensor = geometry::camera_pose(*next);
+    next = planner.next_view(nothing);
+  }
+  EXPECT_FALSE(next);  // each empty scan gave its frontier up
+}
+
+TEST(SeePlanner, OffersEveryFrontierInTurnWhenViewsAreRefused) {
+  see::SeePlanner planner(small_config(), small_camera);
+  const View first = geometry::look_at({2.4, 0.3, 0.2}, {0, 0, 0});
+  std::optional<View> next =
+      planner.next_view(tests::scan_spheres({{}}, small_camera, first, 0.02));
+  const std::size_t frontiers = planner.last_step().frontiers;
+  std::vector<Vector3d> offered;
+  while (next && offered.size() <= frontiers) {
+    EXPECT_THAT(offered, testing::Not(testing::Contains(next->position)));
+    offered.push_back(next->position);
+    next = planner.next_view_instead();
+  }
+  EXPECT_FALSE(next);
+  EXPECT_EQ(offered.size(), frontiers);
+}
+
+TEST(SeePlanner, DropsMeasurementsOutsideTheSceneBox) {
+  see::SeeConfig config = small_config();
+  config.scene_box = Eigen::AlignedBox3d(Vector3d(-1, -1, 0), Vector3d(1, 1, 1));
+  const Outcome run = survey(config, 0.02, 3);
+  ASSERT_FALSE(run.cloud.empty());
+  for (const Eigen::Vector3f& p : run.cloud) EXPECT_GE(p.z(), 0.0F);
+}
+
+TEST(SeePlanner, KeepsViewsAboveTheGroundClearance) {
+  see::SeeConfig config = small_config();
+  config.ground_clearance = -0.2;
+  const Outcome run = survey(config, 0.02, 40);
+  for (std::size_t i = 1; i < run.views.size(); ++i) {
+    EXPECT_GE(run.views[i].position.z(), -0.2 - 1e-9);
+  }
+}
+
+// Every reading of the paper that a mission file can choose plans the same sphere whole.
+TEST(SeePlanner, EveryAlternativeReadingWorks) {
+  const std::vector<std::pair<const char*, void (*)(see::SeeConfig&)>> alternatives = {
+      {"frame_neighbours", [](see::SeeConfig& c) { c.frame_neighbours = 16; }},
+      {"free_space_normals", [](see::SeeConfig& c) { c.free_space_normals = true; }},
+      {"offset_line", [](see::SeeConfig& c) { c.offset_line = see::OffsetLine::normal; }},
+      {"occlusion_radius", [](see::SeeConfig& c) { c.occlusion_radius = 0.02; }},
+      {"march_end",
+       [](see::SeeConfig& c) { c.march_end = see::MarchEnd::search_distance_from_offset; }},
+      {"cap global", [](see::SeeConfig& c) { c.cap.policy = geometry::CapPolicy::global; }},
+      {"cap program",
+       [](see::SeeConfig& c) { c.cap.policy = geometry::CapPolicy::nonlinear_program; }},
+      {"observing_direction",
+       [](see::SeeConfig& c) { c.observing_direction = see::ObservingDirection::image_axis; }},
+      {"keep if still occluded", [](see::SeeConfig& c) { c.drop_if_still_occluded = false; }},
+      {"facing and field of view",
+       [](see::SeeConfig& c) { c.facing_test = c.field_of_view_test = true; }},
+      {"octree", [](see::SeeConfig& c) { c.nearest = see::NearestSearch::octree; }},
+      {"shift", [](see::SeeConfig& c) { c.adjustment = see::Adjustment::shift; }},
+      {"accepted points",
+       [](see::SeeConfig& c) { c.adjustment_centroid = see::ScanCentroid::accepted_points; }},
+      {"stay_on_target", [](see::SeeConfig& c) { c.stay_on_target = true; }},
+      {"frontier_spacing", [](see::SeeConfig& c) { c.frontier_spacing = 0.1; }},
+  };
+  for (const auto& [name, choose] : alternatives) {
+    see::SeeConfig config = small_config();
+    choose(config);
+    const Outcome run = survey(config, 0.02);
+    EXPECT_TRUE(run.ended) << name;
+    EXPECT_GT(coverage(run.cloud, 0.03), 0.9) << name;
+  }
+}
+
+}  // namespace
+}  // namespace skycap::survey

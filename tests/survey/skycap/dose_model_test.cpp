@@ -1,0 +1,111 @@
+#include "survey/skycap/dose_model.h"
+
+#include <cmath>
+#include <numbers>
+#include <random>
+
+#include <gtest/gtest.h>
+
+namespace skycap::survey {
+namespace {
+
+constexpr double radius = 0.005;
+constexpr double degree = std::numbers::pi / 180.0;
+
+/// The uncovered share by simulation: a square grid of rays at a random offset meets the plane
+/// z = 0, each return is displaced by noise, and the origin is covered if one comes near it.
+double simulated_uncovered_share(double ray_density, double incidence, const skycap::Noise& noise,
+                                 int trials) {
+  std::mt19937_64 generator(1);
+  std::uniform_real_distribution<double> uniform(0.0, 1.0);
+  std::normal_distribution<double> normal;
+  const double cosine = std::cos(incidence), sine = std::sin(incidence);
+  const double across = std::sqrt(cosine / ray_density), along = across / cosine;
+  // Returns from farther away than this reach the ball with a probability below 1e-5.
+  const double reach = radius + 4.5 * std::hypot(noise.isotropic, noise.along_ray);
+  const int rows = static_cast<int>(reach / across) + 1;
+  const int columns = static_cast<int>(reach / along) + 1;
+  int uncovered = 0;
+  for (int trial = 0; trial < trials; ++trial) {
+    const double u = uniform(generator), v = uniform(generator);
+    bool is_covered = false;
+    for (int i = -rows; i <= rows && !is_covered; ++i) {
+      for (int j = -columns; j <= columns && !is_covered; ++j) {
+        const double t = noise.along_ray * normal(generator);
+        const double x = (i + u) * across + noise.isotropic * normal(generator);
+        const double y = (j + v) * along + noise.isotropic * normal(generator) + t * sine;
+        const double z = noise.isotropic * normal(generator) + t * cosine;
+        is_covered = x * x + y * y + z * z < radius * radius;
+      }
+    }
+    uncovered += is_covered ? 0 : 1;
+  }
+  return static_cast<double>(uncovered) / trials;
+}
+
+/// Four standard deviations of the simulated share, and 0.02 for the table's interpolation.
+double tolerance(double share, int trials) {
+  return 4.0 * std::sqrt(share * (1.0 - share) / trials) + 0.02;
+}
+
+class DoseModelAgainstSimulation : public testing::TestWithParam<double> {};
+
+TEST_P(DoseModelAgainstSimulation, IsotropicNoiseAtEveryIncidence) {
+  const skycap::Noise noise{.isotropic = GetParam() * radius};
+  const skycap::DoseModel dose(radius, noise);
+  constexpr int trials = 1500;
+  for (const double degrees : {0.0, 30.0, 60.0, 75.0}) {
+    for (const double rays : {0.3, 2.44}) {  // in r_d^2; 2.44: the depth camera at 1.98 m
+      const double cosine = std::cos(degrees * degree);
+      const double density = rays * cosine / (radius * radius);
+      const double expected = simulated_uncovered_share(density, degrees * degree, noise, trials);
+      const double share =
+          std::exp(-dose.hazard(static_cast<float>(density), static_cast<float>(cosine)));
+      EXPECT_NEAR(share, expected, tolerance(expected, trials))
+          << degrees << " degrees, " << rays << " rays";
+    }
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(NoiseInCoverageRadii, DoseModelAgainstSimulation,
+                         testing::Values(0.0, 0.5, 1.0, 2.0, 4.0));
+
+TEST(DoseModel, NoiseAlongTheRayAgreesWithSimulation) {
+  const skycap::Noise noise{.along_ray = 2.0 * radius};
+  const skycap::DoseModel dose(radius, noise);
+  constexpr int trials = 4000;
+  for (const double degrees : {0.0, 45.0, 75.0}) {
+    const double cosine = std::cos(degrees * degree);
+    const double density = 2.44 * cosine / (radius * radius);
+    const double expected = simulated_uncovered_share(density, degrees * degree, noise, trials);
+    const double share =
+        std::exp(-dose.hazard(static_cast<float>(density), static_cast<float>(cosine)));
+    EXPECT_NEAR(share, expected, tolerance(expected, trials)) << degrees << " degrees";
+  }
+}
+
+// The discs of radius r_d about a grid of spacing s cover the plane if s <= r_d sqrt(2), and
+// pi r_d^2 / s^2 of it if they do not touch.
+TEST(DoseModel, CleanLooksCoverTheShareThatDiscsDo) {
+  const skycap::DoseModel dose(radius, {});
+  EXPECT_EQ(dose.hazard(static_cast<float>(1.0 / (radius * radius)), 1.0F),
+            skycap::DoseModel::most_hazard);
+  const double sparse = 0.125;  // rays in r_d^2: s = 2.8 r_d
+  EXPECT_NEAR(1.0 - std::exp(-dose.hazard(static_cast<float>(sparse / (radius * radius)), 1.0F)),
+              std::numbers::pi * sparse, 0.02);  // the grid's offset is sampled at 64 places
+}
+
+TEST(DoseModel, NothingIsCoveredWithoutRaysAndMoreRaysCoverMore) {
+  const skycap::DoseModel dose(radius, {.isotropic = 0.01});
+  EXPECT_EQ(dose.hazard(0.0F, 1.0F), 0.0F);
+  float before = 0.0F;
+  for (float density = 100.0F; density < 3e6F; density *= 1.3F) {
+    const float hazard = dose.hazard(density, 0.7F);
+    EXPECT_GE(hazard, before) << density;
+    before = hazard;
+  }
+  EXPECT_LE(before, skycap::DoseModel::most_hazard);
+}
+
+}  // namespace
+}  // namespace skycap::survey

@@ -1,0 +1,121 @@
+#include "survey/skycap/sight_kernels.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <random>
+#include <vector>
+
+#include <Eigen/Core>
+#include <gtest/gtest.h>
+
+#include "geometry/place/pose.h"
+
+namespace skycap::survey {
+namespace {
+
+using Eigen::Vector3d;
+
+constexpr std::size_t count = 1003;  // no multiple of a vector's length
+
+class SightKernels : public testing::Test {
+ protected:
+  SightKernels() {
+    std::mt19937_64 random(7);
+    std::uniform_real_distribution<float> coordinate(-4.0F, 4.0F);
+    for (auto* points : {&positions, &normals}) {
+      for (auto& axis : *points) {
+        for (std::size_t i = 0; i < count; ++i) axis.push_back(coordinate(random));
+      }
+    }
+    for (std::size_t i = 0; i < count; ++i) {
+      const float length = std::hypot(normals[0][i], normals[1][i], normals[2][i]);
+      for (auto& axis : normals) axis[i] /= length;
+    }
+    for (int axis = 0; axis < 3; ++axis) {
+      raster.position[axis] = static_cast<float>(view.position[axis]);
+      raster.right[axis] = static_cast<float>(axes(axis, 0));
+      raster.down[axis] = static_cast<float>(axes(axis, 1));
+      raster.forward[axis] = static_cast<float>(axes(axis, 2));
+    }
+  }
+
+  static skycap::PointArrays arrays_of(const std::array<std::vector<float>, 3>& points) {
+    return {points[0].data(), points[1].data(), points[2].data()};
+  }
+  Vector3d in_camera(std::size_t i) const {
+    const Vector3d point(positions[0][i], positions[1][i], positions[2][i]);
+    return axes.transpose() * (point - view.position);
+  }
+  Vector3d normal(std::size_t i) const {
+    return axes.transpose() * Vector3d(normals[0][i], normals[1][i], normals[2][i]);
+  }
+
+  const geometry::View view = geometry::look_at({-5.0, 0.5, 1.0}, {0.0, 0.0, 0.0});
+  const Eigen::Matrix3d axes = geometry::camera_pose(view).linear();
+  std::array<std::vector<float>, 3> positions, normals;
+  skycap::RasterView raster{.focal_length = 40.0F,
+                            .width = 60.0F,
+                            .height = 50.0F,
+                            .stride = 62,
+                            .outside = 62 * 52,
+                            .half_slope = {0.75F, 0.62F},
+                            .least_range = 2.0F,
+                            .most_range = 7.0F,
+                            .least_cosine = 0.2F};
+};
+
+// Twin in double precision. Coordinates within a thousandth of a pixel's edge may round either way.
+TEST_F(SightKernels, PointsFallIntoThePixelsThatAPinholeCameraSays) {
+  std::vector<std::uint32_t> pixels(count);
+  std::vector<float> depths(count);
+  skycap::project_points(raster, count, arrays_of(positions), pixels.data(), depths.data());
+  int inside = 0;
+  for (std::size_t i = 0; i < count; ++i) {
+    const Vector3d p = in_camera(i);
+    EXPECT_NEAR(depths[i], p.z(), 1e-5);
+    const double column = 40.0 * p.x() / p.z() + 30.0, row = 40.0 * p.y() / p.z() + 25.0;
+    const auto is_near_edge = [](double x) {
+      return std::abs(x + 0.5 - std::round(x + 0.5)) < 1e-3;
+    };
+    if (is_near_edge(column) || is_near_edge(row) || is_near_edge(column + 0.5) ||
+        is_near_edge(row + 0.5)) {
+      continue;
+    }
+    const bool is_inside =
+        p.z() > 0.0 && column >= 0.0 && row >= 0.0 && column < 60.0 && row < 50.0;
+    const auto pixel =
+        static_cast<std::uint32_t>(std::floor(row + 0.5) * 62.0 + std::floor(column + 0.5));
+    EXPECT_EQ(pixels[i], is_inside ? pixel : raster.outside) << "point " << i;
+    inside += is_inside ? 1 : 0;
+  }
+  EXPECT_GT(inside, 300);
+}
+
+TEST_F(SightKernels, TargetsAreInViewWhenTheyFaceTheSensorInsideTheFrustum) {
+  std::vector<std::uint32_t> in_view(count), pixels(count);
+  std::vector<float> depths(count), distances(count), cosines(count);
+  skycap::project_targets(
+      raster, count, arrays_of(positions), arrays_of(normals),
+      {in_view.data(), pixels.data(), depths.data(), distances.data(), cosines.data()});
+  std::uint32_t seen = 0;
+  for (std::size_t i = 0; i < count; ++i) {
+    const Vector3d p = in_camera(i);
+    const double cosine = -p.normalized().dot(normal(i));
+    EXPECT_NEAR(distances[i], p.norm(), 1e-5);
+    EXPECT_NEAR(cosines[i], cosine, 1e-5);
+    const std::array<double, 5> margins = {p.z() - 2.0, 7.0 - p.z(), 0.75 * p.z() - std::abs(p.x()),
+                                           0.62 * p.z() - std::abs(p.y()), cosine - 0.2};
+    const double least = *std::ranges::min_element(margins);
+    if (std::abs(least) < 1e-4) continue;  // single precision may decide otherwise
+    EXPECT_EQ(in_view[i], least > 0.0 ? 1U : 0U) << "target " << i;
+    if (in_view[i] == 0) {
+      EXPECT_EQ(pixels[i], raster.outside);
+    }
+    seen += in_view[i];
+  }
+  EXPECT_GT(seen, 50U);
+}
+
+}  // namespace
+}  // namespace skycap::survey

@@ -1,0 +1,275 @@
+#include "survey/skycap/skycap_planner.h"
+
+#include <cmath>
+#include <functional>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "geometry/error.h"
+#include "geometry/points/point_grid.h"
+#include "tests/support/sphere_sensor.h"
+
+namespace skycap::survey {
+namespace {
+
+using Eigen::Vector3d;
+using Eigen::Vector3f;
+using geometry::View;
+using testing::HasSubstr;
+
+// A quarter of the depth camera's pixels, and a coverage radius to match: tests take a second.
+const geometry::Camera camera{geometry::CameraConfig{.width = 212, .height = 120}};
+const std::vector<tests::Sphere> ball = {{}};
+const std::vector<tests::Sphere> two_balls = {{{0, 0, 0}, 0.4}, {{0.75, 0, 0.2}, 0.3}};
+const View start = geometry::look_at({2.2, 0.3, 0.4}, {0, 0, 0});
+
+skycap::SkycapConfig small_config() {
+  return {.coverage_radius = 0.02, .view_distance = 2.0, .scene_box = std::nullopt};
+}
+
+struct Flight {
+  std::vector<View> views;
+  double length = 0.0;
+};
+
+/// Flies until the planner stops or `most_views` were taken.
+Flight fly(skycap::SkycapPlanner& planner, const std::vector<tests::Sphere>& scene, double sigma,
+           std::size_t most_views = 40, bool is_organised = true) {
+  Flight flight{{start}};
+  for (std::optional<View> next = start; next;) {
+    geometry::Scan scan =
+        tests::scan_spheres(scene, camera, *next, sigma, 100 + flight.views.size());
+    if (!is_organised) scan.pixels.clear();
+    next = planner.next_view(scan);
+    if (!next || flight.views.size() == most_views) break;
+    flight.length += (next->position - flight.views.back().position).norm();
+    flight.views.push_back(*next);
+  }
+  return flight;
+}
+
+/// Share of the spheres' outside that has a measurement within the coverage radius.
+double true_coverage(const skycap::SkycapPlanner& planner, const std::vector<tests::Sphere>& scene,
+                     double radius) {
+  geometry::PointGrid grid(radius);
+  for (const Vector3f& p : planner.cloud().positions) grid.insert(p);
+  int covered = 0, all = 0;
+  for (const tests::Sphere& sphere : scene) {
+    constexpr int count = 4000;  // a Fibonacci lattice
+    for (int i = 0; i < count; ++i) {
+      const double z = 1.0 - 2.0 * (i + 0.5) / count, azimuth = 2.399963229728653 * i;
+      const double level = std::sqrt(1.0 - z * z);
+      const Vector3d p = sphere.centre + sphere.radius * Vector3d(level * std::cos(azimuth),
+                                                                  level * std::sin(azimuth), z);
+      bool is_outside = true;
+      for (const tests::Sphere& other : scene) {
+        is_outside = is_outside && (p - other.centre).norm() > other.radius - 1e-9;
+      }
+      if (!is_outside) continue;
+      ++all;
+      covered += grid.any_within(p.cast<float>(), radius) ? 1 : 0;
+    }
+  }
+  return static_cast<double>(covered) / all;
+}
+
+class SkycapPlannerWithNoise : public testing::TestWithParam<double> {};
+
+TEST_P(SkycapPlannerWithNoise, CoversTheSceneAndStopsByItself) {
+  for (const auto& scene : {ball, two_balls}) {
+    skycap::SkycapPlanner planner(small_config(), camera);
+    const Flight flight = fly(planner, scene, GetParam());
+    EXPECT_LT(flight.views.size(), 20U);
+    EXPECT_EQ(planner.stop(), skycap::SkycapStop::little_gain);
+    const double coverage = true_coverage(planner, scene, 0.02);
+    EXPECT_GT(coverage, 0.97);
+    // The belief is a model's: five points either way is what makes it of use to a pilot.
+    EXPECT_NEAR(planner.predicted_coverage(), coverage, 0.05);
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Sigmas, SkycapPlannerWithNoise, testing::Values(0.0, 0.01, 0.03));
+
+TEST(SkycapPlanner, RepeatsItselfBitForBitOnAnyNumberOfThreads) {
+  skycap::SkycapConfig config = small_config();
+  skycap::SkycapPlanner one(config, camera);
+  config.threads = 3;
+  skycap::SkycapPlanner three(config, camera);
+  const Flight first = fly(one, two_balls, 0.01, 6), second = fly(three, two_balls, 0.01, 6);
+  ASSERT_EQ(first.views.size(), second.views.size());
+  for (std::size_t i = 0; i < first.views.size(); ++i) {
+    EXPECT_EQ(first.views[i].position, second.views[i].position) << i;
+    EXPECT_EQ(first.views[i].direction, second.views[i].direction) << i;
+  }
+  EXPECT_EQ(one.cloud().positions, three.cloud().positions);
+  EXPECT_EQ(one.predicted_coverage(), three.predicted_coverage());
+}
+
+TEST(SkycapPlanner, KeepsMeasurementsAtTheSpacing) {
+  skycap::SkycapConfig config = small_config();
+  config.spacing = 0.015;
+  skycap::SkycapPlanner planner(config, camera);
+  fly(planner, ball, 0.01, 3);
+  geometry::PointGrid grid(*config.spacing);
+  for (const Vector3f& p : planner.cloud().positions) {
+    ASSERT_FALSE(grid.any_within(p, *config.spacing));
+    grid.insert(p);
+  }
+  EXPECT_EQ(planner.cloud().views.size(), planner.cloud().size());
+}
+
+TEST(SkycapPlanner, ObeysTheLimits) {
+  skycap::SkycapConfig config = small_config();
+  config.limits.least_height = -0.3;
+  config.limits.most_height = 1.9;
+  config.limits.least_pitch = -1.2;
+  config.limits.most_pitch = 0.1;
+  config.limits.stand_off = 0.5;
+  config.limits.geofence = {{-3, -3}, {3, -3}, {3, 3}, {-3, 3}};
+  config.limits.no_fly = {box_prism({-3, 0.5, -1}, {-0.5, 3, 3})};
+  skycap::SkycapPlanner planner(config, camera);
+  const Flight flight = fly(planner, two_balls, 0.01);
+  ASSERT_GT(flight.views.size(), 4U);
+  for (std::size_t i = 1; i < flight.views.size(); ++i) {
+    EXPECT_TRUE(config.limits.allow(flight.views[i])) << flight.views[i].position.transpose();
+    for (const tests::Sphere& sphere : two_balls) {
+      // Measured points scatter by three standard deviations about the surface.
+      EXPECT_GT((flight.views[i].position - sphere.centre).norm(), sphere.radius + 0.5 - 0.03);
+    }
+  }
+}
+
+TEST(SkycapPlanner, StopsAtTheBudgetsTheUserStates) {
+  skycap::SkycapConfig config = small_config();
+  config.stop.most_views = 3;
+  skycap::SkycapPlanner few(config, camera);
+  EXPECT_EQ(fly(few, ball, 0.01).views.size(), 3U);
+  EXPECT_EQ(few.stop(), skycap::SkycapStop::most_views);
+
+  config = small_config();
+  config.stop.most_length = 4.0;
+  skycap::SkycapPlanner brief(config, camera);
+  EXPECT_LE(fly(brief, ball, 0.01).length, 4.0);
+  EXPECT_EQ(brief.stop(), skycap::SkycapStop::most_length);
+
+  config = small_config();
+  config.stop.most_time = 20.0;
+  config.stop.speed = 1.0;
+  config.stop.time_per_view = 5.0;
+  skycap::SkycapPlanner quick(config, camera);
+  const Flight flight = fly(quick, ball, 0.01);
+  EXPECT_LE(flight.length + 5.0 * static_cast<double>(flight.views.size()), 20.0 + 1e-9);
+  EXPECT_EQ(quick.stop(), skycap::SkycapStop::most_time);
+
+  config = small_config();
+  config.stop.wanted_coverage = 0.7;
+  skycap::SkycapPlanner content(config, camera);
+  fly(content, ball, 0.01);
+  EXPECT_EQ(content.stop(), skycap::SkycapStop::wanted_coverage);
+  EXPECT_GE(content.predicted_coverage(), 0.7);
+  EXPECT_NEAR(content.belief().coverage, content.predicted_coverage(), 1e-12);
+}
+
+TEST(SkycapPlanner, ProposesOthersInsteadOfViewsThatCannotBeReached) {
+  skycap::SkycapPlanner planner(small_config(), camera);
+  const auto first = planner.next_view(tests::scan_spheres(ball, camera, start, 0.01));
+  ASSERT_TRUE(first);
+  std::vector<View> proposed = {*first};
+  for (int i = 0; i < 5; ++i) {
+    const auto other = planner.next_view_instead();
+    ASSERT_TRUE(other);
+    for (const View& view : proposed) {
+      EXPECT_GE((other->position - view.position).norm(), 0.19);  // a tenth of the view distance
+    }
+    proposed.push_back(*other);
+  }
+}
+
+TEST(SkycapPlanner, SaysWhatIsMissingAndWhy) {
+  skycap::SkycapConfig config = small_config();
+  config.limits.least_height = 0.3;
+  config.limits.most_pitch = -0.5;  // only looks down: the lower half cannot be seen
+  skycap::SkycapPlanner planner(config, camera);
+  fly(planner, ball, 0.0);
+  const skycap::SurveyBelief belief = planner.belief();
+  double area = 0.0;
+  for (const skycap::BelievedPatch& patch : belief.patches) {
+    area += patch.area;
+    EXPECT_GE(patch.covered_share, 0.0F);
+    EXPECT_LE(patch.covered_share, 1.0F);
+  }
+  EXPECT_NEAR(belief.area, area, 1e-9 * area);
+  // Covered and missing shares make up all of it.
+  double covered = 0.0;
+  for (const skycap::BelievedPatch& patch : belief.patches)
+    covered += patch.area * patch.covered_share;
+  EXPECT_NEAR(
+      covered / belief.area + belief.seen_too_thinly + belief.never_seen + belief.unreachable, 1.0,
+      1e-6);
+}
+
+TEST(SkycapPlanner, PlansFromSweepsWithoutAnImage) {
+  skycap::SkycapPlanner planner(small_config(), camera);
+  fly(planner, ball, 0.01, 15, false);
+  EXPECT_GT(true_coverage(planner, ball, 0.02), 0.95);
+}
+
+TEST(SkycapPlanner, RefusesAFirstScanWithoutAPoint) {
+  skycap::SkycapPlanner planner(small_config(), camera);
+  try {
+    planner.next_view(tests::scan_spheres({}, camera, start));
+    FAIL() << "accepted a first scan without a point";
+  } catch (const Error& error) {
+    EXPECT_EQ(error.kind(), ErrorKind::bad_geometry);
+    EXPECT_THAT(error.what(), HasSubstr("first scan"));
+  }
+}
+
+TEST(SkycapPlanner, SurvivesALaterScanWithoutAPoint) {
+  skycap::SkycapPlanner planner(small_config(), camera);
+  ASSERT_TRUE(planner.next_view(tests::scan_spheres(ball, camera, start, 0.01)));
+  const std::size_t points = planner.cloud().size();
+  EXPECT_TRUE(planner.next_view(tests::scan_spheres({}, camera, start)));
+  EXPECT_EQ(planner.cloud().size(), points);
+}
+
+TEST(SkycapPlanner, EveryIdeaCanBeSwitchedOff) {
+  for (const auto idea : {&skycap::SkycapIdeas::dose, &skycap::SkycapIdeas::unseen_surface,
+                          &skycap::SkycapIdeas::free_space, &skycap::SkycapIdeas::learned_rates,
+                          &skycap::SkycapIdeas::targeted_views, &skycap::SkycapIdeas::refinement,
+                          &skycap::SkycapIdeas::batch}) {
+    skycap::SkycapConfig config = small_config();
+    config.ideas.*idea = false;
+    skycap::SkycapPlanner planner(config, camera);
+    EXPECT_GE(fly(planner, ball, 0.01, 4).views.size(), 2U);
+  }
+}
+
+TEST(SkycapConfig, SaysWhichFieldIsWrong) {
+  const auto message_of =
+      [](const std::function<void(skycap::SkycapConfig&)>& change) -> std::string {
+    skycap::SkycapConfig config;
+    change(config);
+    try {
+      skycap::SkycapPlanner planner(config, camera);
+    } catch (const Error& error) {
+      EXPECT_EQ(error.kind(), ErrorKind::bad_config);
+      return error.what();
+    }
+    return "accepted";
+  };
+  EXPECT_THAT(message_of([](skycap::SkycapConfig& c) { c.coverage_radius = 0.0; }),
+              HasSubstr("coverage_radius"));
+  EXPECT_THAT(message_of([](skycap::SkycapConfig& c) { c.view_distance = -1.0; }),
+              HasSubstr("view_distance"));
+  EXPECT_THAT(message_of([](skycap::SkycapConfig& c) { c.stop.wanted_coverage = 97.0; }),
+              HasSubstr("wanted_coverage"));
+  EXPECT_THAT(message_of([](skycap::SkycapConfig& c) { c.continuation_steps = 9; }),
+              HasSubstr("continuation_steps"));
+  EXPECT_THAT(message_of([](skycap::SkycapConfig& c) { c.limits.stand_off = -2.0; }),
+              HasSubstr("stand_off"));
+}
+
+}  // namespace
+}  // namespace skycap::survey

@@ -1,0 +1,118 @@
+#include "survey/skycap/unseen_surface.h"
+
+#include <gtest/gtest.h>
+
+#include "tests/support/sphere_sensor.h"
+
+namespace skycap::survey {
+namespace {
+
+using Eigen::Vector3d;
+using Eigen::Vector3f;
+
+const geometry::Camera camera{geometry::CameraConfig{}};
+const std::vector<tests::Sphere> ball = {{}};
+constexpr float spacing = 0.02F;
+constexpr float jump = 0.06F;
+
+struct Knowledge {
+  skycap::DoseMap map{spacing};
+  skycap::SpaceMemory space{0.6F * spacing, true};
+  void look_from(const Vector3d& station) {
+    const skycap::BlockImage image = skycap::make_block_image(
+        tests::scan_spheres(ball, camera, geometry::look_at(station, {0, 0, 0})), camera,
+        {.block_px = 4, .jump = jump});
+    space.add(image, 0.0F);
+    map.add(image, skycap::DoseModel(0.005, {}), jump, std::nullopt);
+  }
+};
+
+TEST(UnseenSurface, ContinuesBeyondTheOutlineIntoTheUnknownOnly) {
+  Knowledge known;
+  known.look_from({2, 0, 0});
+  skycap::UnseenSurface unseen({});
+  unseen.predict(known.map, known.space, std::nullopt);
+  ASSERT_GT(unseen.patches().size(), 50U);
+  double behind = 0.0, all = 0.0;
+  for (const skycap::UnseenPatch& patch : unseen.patches()) {
+    EXPECT_EQ(known.space.query(patch.position), skycap::SpaceState::unknown);
+    EXPECT_GT(patch.weight, 0.0F);
+    all += patch.weight;
+    // The sensor at (2, 0, 0) saw the ball up to x = 0.125.
+    if (patch.position.x() < 0.2F) behind += patch.weight;
+  }
+  EXPECT_GT(behind, 0.9 * all);
+}
+
+// Twin: the one predicted after every scan and asks only what is new; the other asks everything.
+TEST(UnseenSurface, RemembersWhatItAskedOfEarlierScans) {
+  Knowledge known;
+  skycap::UnseenSurface old({});
+  for (const Vector3d& station : {Vector3d(2, 0, 0), Vector3d(1.4, 1.4, 0), Vector3d(0, 1.4, 1.4),
+                                  Vector3d(0, -2, 0), Vector3d(-1.4, 0, -1.4)}) {
+    known.look_from(station);
+    old.predict(known.map, known.space, std::nullopt);
+    skycap::UnseenSurface anew({});
+    anew.predict(known.map, known.space, std::nullopt);
+    ASSERT_EQ(old.patches().size(), anew.patches().size());
+    EXPECT_GT(anew.patches().size(), 0U);
+    for (std::size_t i = 0; i < anew.patches().size(); ++i) {
+      EXPECT_EQ(old.patches()[i].position, anew.patches()[i].position);
+      EXPECT_EQ(old.patches()[i].place, anew.patches()[i].place);
+    }
+  }
+}
+
+TEST(UnseenSurface, IsGoneOnceAllWasSeen) {
+  Knowledge known;
+  skycap::UnseenSurface unseen({});
+  known.look_from({2, 0, 0});
+  unseen.predict(known.map, known.space, std::nullopt);
+  const auto weight = [&] {
+    double sum = 0.0;
+    for (const skycap::UnseenPatch& patch : unseen.patches()) sum += patch.weight;
+    return sum;
+  };
+  const double after_one = weight();
+  for (const Vector3d& station : {Vector3d(-2, 0, 0), Vector3d(0, 2, 0), Vector3d(0, -2, 0),
+                                  Vector3d(0, 0, 2), Vector3d(0, 0, -2)}) {
+    known.look_from(station);
+  }
+  unseen.predict(known.map, known.space, std::nullopt);
+  EXPECT_LT(weight(), 0.05 * after_one);
+}
+
+TEST(UnseenSurface, RatesFollowWhatAppeared) {
+  Knowledge known;
+  known.look_from({2, 0, 0});
+  skycap::UnseenSurface hopeful({}), disappointed({}), stubborn({.learns_rates = false});
+  std::vector<std::uint32_t> all;
+  for (skycap::UnseenSurface* unseen : {&hopeful, &disappointed, &stubborn}) {
+    unseen->predict(known.map, known.space, std::nullopt);
+  }
+  for (std::uint32_t i = 0; i < hopeful.patches().size(); ++i) all.push_back(i);
+  const double before = hopeful.hit_rate(skycap::Continuation::straight, 0);
+  const float weight_before = disappointed.patches().front().weight;
+
+  // Nothing new appeared: all expectations failed, and the places are still unknown.
+  disappointed.grade(all, known.map, known.space, known.map.surfels().size());
+  stubborn.grade(all, known.map, known.space, known.map.surfels().size());
+  EXPECT_LT(disappointed.hit_rate(skycap::Continuation::straight, 0), before);
+  EXPECT_EQ(stubborn.hit_rate(skycap::Continuation::straight, 0), before);
+  disappointed.predict(known.map, known.space, std::nullopt);
+  EXPECT_LT(disappointed.patches().front().weight, 0.4F * weight_before);
+  EXPECT_GT(disappointed.patches().front().weight, 0.0F);
+
+  // A view of the whole outline's surroundings shows what the straight patches promised.
+  const std::size_t first_new = known.map.surfels().size();
+  for (const Vector3d& station :
+       {Vector3d(0, 2, 0), Vector3d(0, -2, 0), Vector3d(0, 0, 2), Vector3d(0, 0, -2)}) {
+    known.look_from(station);
+  }
+  hopeful.grade(all, known.map, known.space, first_new);
+  EXPECT_GT(hopeful.hit_rate(skycap::Continuation::straight, 0),
+            disappointed.hit_rate(skycap::Continuation::straight, 0) + 0.1);
+}
+
+}  // namespace
+}  // namespace skycap::survey
