@@ -79,6 +79,8 @@ std::string read_file(const fs::path& path) {
 }
 
 void write_file(const fs::path& path, std::string_view bytes) {
+  std::error_code unmade;  // a folder that is not there says so when the file is opened
+  if (path.has_parent_path()) fs::create_directories(path.parent_path(), unmade);
   fs::path temporary = path;
   temporary += ".tmp" + std::to_string(::getpid());
   std::ofstream stream(temporary, std::ios::binary | std::ios::trunc);

@@ -13,7 +13,8 @@ namespace skycap::geometry {
 std::string read_file(const std::filesystem::path& path);
 
 /// Replaces the file by one with these bytes: they are written under a temporary name beside it,
-/// and renamed when complete, so that no reader ever finds half a file. Throws Error{bad_file}.
+/// and renamed when complete, so that no reader ever finds half a file. Makes the folder if need
+/// be. Throws Error{bad_file}.
 void write_file(const std::filesystem::path& path, std::string_view bytes);
 
 }  // namespace skycap::geometry
