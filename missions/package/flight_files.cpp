@@ -4,6 +4,7 @@
 #include <array>
 #include <string_view>
 
+#include "flight/interpreter/certified_export.h"
 #include "flight/space/clearance.h"
 #include "geometry/error.h"
 #include "missions/derived/mission_flight.h"

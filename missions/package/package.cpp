@@ -26,6 +26,10 @@ using Json = nlohmann::ordered_json;
 
 constexpr const char* free_space_name = "free_space.bin";
 
+[[noreturn]] void fail(const std::filesystem::path& file, const std::string& what) {
+  throw Error(ErrorKind::bad_file, file.string() + ": " + what);
+}
+
 Json json_of(const Eigen::Vector3d& vector) { return {vector.x(), vector.y(), vector.z()}; }
 
 Json json_of(const std::optional<double>& number) { return number ? Json(*number) : Json(); }
@@ -317,42 +321,47 @@ std::optional<SurveyMission> stage_package(const file::Mission& mission,
     }
   }
   // Last, so that whoever sees the summary sees the rest.
-  folder.write("summary.json", summary_json(mission, record, coverage, flight));
+  folder.write(summary_name, summary_json(mission, record, coverage, flight));
   return flight;
+}
+
+PackageSummary read_summary(const std::filesystem::path& folder,
+                            const std::vector<file::KeyOverride>& overrides) {
+  const std::filesystem::path file = folder / summary_name;
+  std::ifstream stream(file);
+  if (!stream) fail(file, "cannot be read; name the folder of a mission package");
+  try {
+    const Json json = Json::parse(stream);
+    PackageSummary summary;
+    summary.mission =
+        file::parse_mission(mission_text(json.at("settings")), file.string(), overrides);
+    const auto vector = [](const Json& values) {
+      return Eigen::Vector3d(values.at(0).get<double>(), values.at(1).get<double>(),
+                             values.at(2).get<double>());
+    };
+    if (json.contains("flight")) {
+      summary.pad = summary.mission.flight.takeoff.value_or(vector(json["flight"].at("pad")));
+    }
+    for (const Json& view : json.at("per_view")) {
+      summary.views.push_back({vector(view.at("position")), vector(view.at("direction"))});
+    }
+    return summary;
+  } catch (const Json::exception& error) {
+    fail(file, std::string("is not a package's summary (") + error.what() + ")");
+  }
 }
 
 PackagedSurvey read_package(const std::filesystem::path& folder,
                             const std::vector<file::KeyOverride>& overrides) {
-  const std::filesystem::path summary_file = folder / "summary.json";
-  const auto fail = [](const std::filesystem::path& file, const std::string& what) {
-    throw Error(ErrorKind::bad_file, file.string() + ": " + what);
-  };
-  std::ifstream stream(summary_file);
-  if (!stream) fail(summary_file, "cannot be read; name the folder of a mission package");
-  PackagedSurvey survey;
-  try {
-    const Json summary = Json::parse(stream);
-    survey.mission =
-        file::parse_mission(mission_text(summary.at("settings")), summary_file.string(), overrides);
-    if (!summary.contains("flight")) {
-      fail(summary_file, "is of a survey without a vehicle; plan it with flight.vehicle");
-    }
-    const auto vector = [](const Json& json) {
-      return Eigen::Vector3d(json.at(0).get<double>(), json.at(1).get<double>(),
-                             json.at(2).get<double>());
-    };
-    survey.pad = survey.mission.flight.takeoff.value_or(vector(summary["flight"].at("pad")));
-    for (const Json& view : summary.at("per_view")) {
-      survey.views.push_back({vector(view.at("position")), vector(view.at("direction"))});
-    }
-  } catch (const Json::exception& error) {
-    fail(summary_file, std::string("is not a package's summary (") + error.what() + ")");
+  PackageSummary summary = read_summary(folder, overrides);
+  if (!summary.pad) {
+    fail(folder / summary_name, "is of a survey without a vehicle; plan it with flight.vehicle");
   }
   const std::filesystem::path space_file = folder / free_space_name;
   std::ifstream space(space_file, std::ios::binary);
   if (!space) fail(space_file, "cannot be read; plan the mission again");
-  survey.measured = flight::MeasuredSpace::read(space, space_file.string());
-  return survey;
+  return {std::move(summary.mission), std::move(summary.views), *summary.pad,
+          flight::MeasuredSpace::read(space, space_file.string())};
 }
 
 }  // namespace skycap::missions::package

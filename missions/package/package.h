@@ -33,6 +33,21 @@ std::optional<SurveyMission> stage_package(const file::Mission& mission,
                                            const CoverageFigures& coverage, unsigned threads,
                                            geometry::OutputFolder& folder);
 
+/// The file of a package that says what the rest is.
+inline constexpr const char* summary_name = "summary.json";
+
+/// What a package's summary says of its survey.
+struct PackageSummary {
+  file::Mission mission;  ///< with all keys as they were in force
+  std::vector<geometry::View> views;
+  std::optional<Eigen::Vector3d> pad;  ///< of a survey that was flown
+};
+
+/// Reads a package's summary; `overrides` take the place of the mission's keys. Throws
+/// Error{bad_file} naming the file if it is missing or not as stage_package() wrote it.
+PackageSummary read_summary(const std::filesystem::path& folder,
+                            const std::vector<file::KeyOverride>& overrides);
+
 /// What a package holds of a flown survey.
 struct PackagedSurvey {
   file::Mission mission;  ///< with all keys as they were in force
@@ -41,8 +56,7 @@ struct PackagedSurvey {
   flight::MeasuredSpace measured;
 };
 
-/// Reads a package; `overrides` take the place of the mission's keys. Throws Error{bad_file} naming
-/// the file that is missing or not as stage_package() wrote it.
+/// Reads the package of a flown survey, as read_summary() does.
 PackagedSurvey read_package(const std::filesystem::path& folder,
                             const std::vector<file::KeyOverride>& overrides);
 
