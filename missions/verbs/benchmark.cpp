@@ -20,6 +20,7 @@
 #include "missions/benchmark/benchmark_report.h"
 #include "missions/benchmark/benchmark_results.h"
 #include "missions/benchmark/contestants.h"
+#include "missions/derived/resolved_mission.h"
 #include "missions/file/json_text.h"
 #include "missions/file/mission_keys.h"
 #include "missions/scene/sha256.h"
@@ -76,7 +77,7 @@ file::Mission mission_for(const fs::path& file, const benchmark::Contestant& con
   if (std::ranges::find(names, contestant.name) != names.end()) {
     overrides.push_back({"--planners", "planner.name", contestant.name});
   }
-  return file::read_mission(file, overrides);
+  return derived::read_mission(file, overrides);
 }
 
 std::vector<Entry> entries_of(const BenchmarkOptions& options) {

@@ -6,6 +6,7 @@
 #include "flight/route/route.h"
 #include "geometry/surfaces/mesh.h"
 #include "missions/derived/mission_flight.h"
+#include "missions/derived/resolved_mission.h"
 #include "missions/file/mission_keys.h"
 #include "missions/file/number_text.h"
 #include "missions/scene/survey_scene.h"
@@ -48,7 +49,7 @@ int check_route_file(const CheckOptions& options, const file::Mission& mission,
 }  // namespace
 
 int check(const CheckOptions& options, const Console& console) {
-  const file::Mission mission = file::read_mission(options.mission, options.overrides);
+  const file::Mission mission = derived::read_mission(options.mission, options.overrides);
   const geometry::Mesh model = scene::placed_model(mission.scene, options.mission.parent_path());
   if (options.route) return check_route_file(options, mission, model, console);
   const survey::see::SeeConfig& see = mission.planner.see;

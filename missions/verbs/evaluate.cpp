@@ -12,6 +12,7 @@
 #include "geometry/parallel.h"
 #include "geometry/surfaces/mesh.h"
 #include "geometry/surfaces/mesh_distance.h"
+#include "missions/derived/resolved_mission.h"
 #include "missions/file/json_text.h"
 #include "missions/judge/coverage.h"
 #include "missions/judge/evaluation.h"
@@ -36,7 +37,7 @@ bool is_mission_file(const std::filesystem::path& file) {
 Truth truth_of(const EvaluateOptions& options) {
   if (is_mission_file(options.model)) {
     const std::filesystem::path file = options.model;
-    const file::Mission mission = file::read_mission(file);
+    const file::Mission mission = derived::read_mission(file);
     return {scene::placed_model(mission.scene, file.parent_path()),
             options.distance.value_or(mission.evaluation.registration_distance),
             mission.evaluation.samples};

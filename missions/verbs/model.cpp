@@ -4,8 +4,8 @@
 #include "geometry/error.h"
 #include "geometry/io/mesh_io.h"
 #include "geometry/surfaces/mesh.h"
+#include "missions/derived/resolved_mission.h"
 #include "missions/file/mission_keys.h"
-#include "missions/file/mission_reader.h"
 #include "missions/scene/model_store.h"
 #include "missions/scene/scene_source.h"
 #include "missions/scene/survey_scene.h"
@@ -47,7 +47,7 @@ geometry::Mesh model_called(const ModelOptions& options, const Console& console)
   if (name.ends_with(".yaml") || name.ends_with(".yml")) {
     std::vector<file::KeyOverride> overrides;
     if (options.detail) overrides.push_back({"--detail", "scene.detail", *options.detail});
-    return scene::placed_model(file::read_mission(name, overrides).scene,
+    return scene::placed_model(derived::read_mission(name, overrides).scene,
                                fs::path(name).parent_path());
   }
   if (name.find(':') != std::string::npos || fs::path(name).has_extension()) {

@@ -5,6 +5,7 @@
 #include "geometry/io/output_folder.h"
 #include "geometry/parallel.h"
 #include "missions/benchmark/trials.h"
+#include "missions/derived/resolved_mission.h"
 #include "missions/judge/coverage.h"
 #include "missions/package/flight_report.h"
 #include "missions/package/package.h"
@@ -150,7 +151,7 @@ int plan_trials(const PlanOptions& options, const file::Mission& mission,
 }  // namespace
 
 int plan(const PlanOptions& options, const Console& console) {
-  const file::Mission mission = file::read_mission(options.mission, options.overrides);
+  const file::Mission mission = derived::read_mission(options.mission, options.overrides);
   geometry::OutputFolder folder(
       options.out.value_or(std::filesystem::path("results") / mission.name));
   const scene::SurveyScene scene(mission, options.mission.parent_path());

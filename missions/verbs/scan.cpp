@@ -13,6 +13,7 @@
 #include "geometry/error.h"
 #include "geometry/io/output_folder.h"
 #include "missions/derived/mission_flight.h"
+#include "missions/derived/resolved_mission.h"
 #include "missions/file/json_text.h"
 #include "missions/file/sensor_reader.h"
 #include "missions/recording/cloud_formats.h"
@@ -303,7 +304,7 @@ int scan_with_camera(const ScanVerbOptions& options, const file::Mission& missio
 }  // namespace
 
 int scan(const ScanVerbOptions& options, const Console& console) {
-  const file::Mission mission = file::read_mission(options.mission, options.overrides);
+  const file::Mission mission = derived::read_mission(options.mission, options.overrides);
   file::SensorDescription sensor = sensor_of(options, mission);
   geometry::OutputFolder folder(
       options.out.value_or(std::filesystem::path("results") / mission.name / "scan"));
