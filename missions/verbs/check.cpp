@@ -1,5 +1,6 @@
 #include <algorithm>
-#include <cstdio>
+
+#include <fmt/format.h>
 
 #include "flight/export/export.h"
 #include "flight/paths/path.h"
@@ -57,17 +58,16 @@ int check(const CheckOptions& options, const Console& console) {
   const double view_distance = see.view_distance.value_or(
       geometry::view_distance(geometry::Camera(mission.sensor.camera.camera), see.density));
 
-  char text[640];
-  std::snprintf(text, sizeof text,
-                "%s: fine\n"
-                "  scene     %zu triangles, %.4g x %.4g x %.4g m, %.4g m^2\n"
-                "  planner   %s, view distance d %.4g m, spacing epsilon %.4g m, core threshold "
-                "k %d\n",
-                options.mission.c_str(), model.triangles.size(), size.x(), size.y(), size.z(),
-                geometry::surface_area(model),
-                file::to_text(*file::find_key("planner.name")->get(mission)).c_str(), view_distance,
-                see.effective_spacing(), see.effective_core_threshold());
-  console.out << text << std::flush;
+  console.out << fmt::format(
+                     "{}: fine\n"
+                     "  scene     {} triangles, {:.4g} x {:.4g} x {:.4g} m, {:.4g} m^2\n"
+                     "  planner   {}, view distance d {:.4g} m, spacing epsilon {:.4g} m, core "
+                     "threshold k {}\n",
+                     options.mission.string(), model.triangles.size(), size.x(), size.y(), size.z(),
+                     geometry::surface_area(model),
+                     file::to_text(*file::find_key("planner.name")->get(mission)), view_distance,
+                     see.effective_spacing(), see.effective_core_threshold())
+              << std::flush;
   return 0;
 }
 

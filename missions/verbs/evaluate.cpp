@@ -1,9 +1,9 @@
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <filesystem>
 #include <vector>
 
+#include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include "geometry/error.h"
@@ -120,18 +120,15 @@ int evaluate(const EvaluateOptions& options, const Console& console) {
     console.out << file::json_text(json);
     return 0;
   }
-  char text[640];
-  std::snprintf(text, sizeof text,
-                "%s: %zu points against %s\n"
-                "  coverage  %.2f %% of the surface within %g m\n"
-                "  accuracy  mean %.4g m, rms %.4g m, median %.4g m, 95 %% below %.4g m, largest "
-                "%.4g m\n"
-                "  density   %.4g points per m^2 of the surface's %.4g m^2\n",
-                judged.file.filename().c_str(), points.size(), options.model.c_str(),
-                100.0 * judged.coverage, truth.registration_distance, accuracy.mean,
-                accuracy.root_mean_square, accuracy.median, accuracy.percentile_95,
-                accuracy.largest, density, area);
-  console.out << text;
+  console.out << fmt::format(
+      "{}: {} points against {}\n"
+      "  coverage  {:.2f} % of the surface within {:g} m\n"
+      "  accuracy  mean {:.4g} m, rms {:.4g} m, median {:.4g} m, 95 % below {:.4g} m, largest "
+      "{:.4g} m\n"
+      "  density   {:.4g} points per m^2 of the surface's {:.4g} m^2\n",
+      judged.file.filename().string(), points.size(), options.model, 100.0 * judged.coverage,
+      truth.registration_distance, accuracy.mean, accuracy.root_mean_square, accuracy.median,
+      accuracy.percentile_95, accuracy.largest, density, area);
   return 0;
 }
 

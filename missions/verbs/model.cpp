@@ -1,5 +1,6 @@
 #include <algorithm>
-#include <cstdio>
+
+#include <fmt/format.h>
 
 #include "geometry/error.h"
 #include "geometry/io/mesh_io.h"
@@ -65,11 +66,9 @@ int model(const ModelOptions& options, const Console& console) {
   if (options.out) geometry::write_mesh(*options.out, mesh);
   if (options.render) sim::write_png(sim::render(mesh), *options.render);
   const Eigen::Vector3d size = geometry::bounding_box(mesh).sizes();
-  char text[320];
-  std::snprintf(text, sizeof text, "%s: %zu triangles, %.4g x %.4g x %.4g, area %.4g\n",
-                options.name.c_str(), mesh.triangles.size(), size.x(), size.y(), size.z(),
-                geometry::surface_area(mesh));
-  console.out << text;
+  console.out << fmt::format("{}: {} triangles, {:.4g} x {:.4g} x {:.4g}, area {:.4g}\n",
+                             options.name, mesh.triangles.size(), size.x(), size.y(), size.z(),
+                             geometry::surface_area(mesh));
   return 0;
 }
 
