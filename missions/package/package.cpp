@@ -12,6 +12,7 @@
 #include "geometry/error.h"
 #include "geometry/io/cloud_io.h"
 #include "geometry/place/pose.h"
+#include "missions/derived/resolved_mission.h"
 #include "missions/file/json_text.h"
 #include "missions/file/mission_keys.h"
 #include "missions/file/number_text.h"
@@ -334,7 +335,7 @@ PackageSummary read_summary(const std::filesystem::path& folder,
     const Json json = Json::parse(stream);
     PackageSummary summary;
     summary.mission =
-        file::parse_mission(mission_text(json.at("settings")), file.string(), overrides);
+        derived::parse_mission(mission_text(json.at("settings")), file.string(), overrides);
     const auto vector = [](const Json& values) {
       return Eigen::Vector3d(values.at(0).get<double>(), values.at(1).get<double>(),
                              values.at(2).get<double>());
