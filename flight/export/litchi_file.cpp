@@ -40,10 +40,11 @@ std::string actions_of(const Waypoint& waypoint) {
   if (waypoint.is_station) act(tilt, fixed(waypoint.pitch * to_deg, 0));  // whole degrees only
   act(stay, fixed(waypoint.hold * 1000.0, 0));
   for (int shot = 0; shot < waypoint.shots; ++shot) act(photo, "0");
+  if (waypoint.hold_after > 0.0) act(stay, fixed(waypoint.hold_after * 1000.0, 0));
   if (used > actions_per_line) {
     throw Error(ErrorKind::bad_config, "a station with " + std::to_string(waypoint.shots) +
                                            " shots cannot be written for Litchi, which takes " +
-                                           std::to_string(actions_per_line - 2));
+                                           std::to_string(actions_per_line - 3));
   }
   for (; used < actions_per_line; ++used) text += ",-1,0";
   return text;
@@ -107,7 +108,8 @@ struct Reading {
       const std::size_t field = fields_before_actions + 2 * i;
       const double parameter = values[field + 1];
       require(field, -1, 5, "an action type");
-      if (values[field] == stay && point.shots == 0) point.hold += parameter / 1000.0;
+      if (values[field] == stay) point.hold += parameter / 1000.0;
+      if (values[field] == stay && point.shots == 0) point.hold_before += parameter / 1000.0;
       if (values[field] == tilt) point.pitch_deg = parameter;
       if (values[field] == rotate) point.yaw_deg = parameter;
       if (values[field] == photo) ++point.shots;

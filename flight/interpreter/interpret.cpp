@@ -55,7 +55,7 @@ FlownRoute interpret_litchi(const RouteFile& file, const FlightFacts& facts) {
     }
     if (point.shots == 0) continue;
     route.stops.push_back(
-        {places[i], name(i), point.hold, point.yaw_deg, point.pitch_deg, point.shots});
+        {places[i], name(i), point.hold_before, point.yaw_deg, point.pitch_deg, point.shots});
   }
   for (const std::string& problem : check_photographs(route.stops, facts)) {
     route.problems.push_back(problem);

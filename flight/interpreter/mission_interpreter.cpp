@@ -260,7 +260,8 @@ class MissionFlight {
     std::string whose = "the mission's cruise speed";
     if (type == 2.0 || type == 3.0) {
       if (!facts_.vehicle) return;
-      limit = type == 2.0 ? facts_.vehicle->max_ascent : facts_.vehicle->max_descent;
+      limit = type == 2.0 ? facts_.vehicle->mode.max_ascent
+                          : facts_.vehicle->mode.max_descent;
       whose = "the vehicle's limit";
     } else if (type == 0.0 || type == 1.0) {
       is_speed_set_ = true;
