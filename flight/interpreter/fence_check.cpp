@@ -104,6 +104,7 @@ Problems check_fence(const MissionFile& file, const FlownRoute& route, const Fli
     problems.push_back("geoFence lacks the mission's fence \"" + facts.fence->name + "\"");
   }
   for (const Prism& prism : facts.no_fly) {
+    if (std::isfinite(prism.ceiling)) continue;  // a return may pass over it
     Obstacles footprint;
     footprint.no_fly = {{prism.name, prism.footprint}};  // unbounded in height
     if (holds(file, prism, false, frame) || touch(route, footprint).distance < grazing) continue;

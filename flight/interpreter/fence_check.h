@@ -9,8 +9,8 @@ namespace skycap::flight {
 
 /// Stretches that leave or enter an area of the file, named by their items, and volumes of the
 /// mission that a file with a geofence does not hold. Fences have no heights: a no-fly volume that
-/// a stretch passes over or under cannot be in it. Formats without a geofence hold none: there the
-/// route alone is judged.
+/// a stretch passes over or under cannot be in it, and one with a ceiling need not. Formats without
+/// a geofence hold none: there the route alone is judged.
 Problems check_fence(const MissionFile& file, const FlownRoute& route, const FlightFacts& facts);
 
 }  // namespace skycap::flight

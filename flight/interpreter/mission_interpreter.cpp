@@ -5,6 +5,7 @@
 #include <deque>
 #include <utility>
 
+#include "flight/autopilot/mission_mode.h"
 #include "flight/interpreter/command_table.h"
 #include "flight/interpreter/fence_check.h"
 #include "flight/interpreter/item_order.h"
@@ -15,9 +16,6 @@ namespace skycap::flight {
 namespace {
 
 using Eigen::Vector3d;
-
-/// Covered by every tracking error: what our own files ask for [m].
-constexpr double covered_radius = 0.3;
 
 /// PX4's NAV_ACC_RAD where an item gives no radius [m].
 constexpr double default_radius_px4 = 10.0;
@@ -78,8 +76,10 @@ class MissionFlight {
       return complain(
           item, std::string("is a ") + row->name + ", which " + autopilot() + " does not fly");
     }
-    if (!check_frame(item, *row)) return;
-    execute(item, *row);
+    if (row->meaning == Meaning::refused) {
+      return complain(item, std::string("is a ") + row->name + ": " + row->why);
+    }
+    if (check_frame(item, *row)) execute(item, *row);
   }
 
   bool is_flown_by(const CommandRow& row) const {
@@ -109,9 +109,6 @@ class MissionFlight {
   }
 
   void execute(const MissionItem& item, const CommandRow& row) {
-    if (row.meaning == Meaning::refused) {
-      return complain(item, std::string("is a ") + row.name + ": " + row.why);
-    }
     if (!has_taken_off_ && row.meaning != Meaning::take_off && is_motion(row.meaning)) {
       return complain(item, "flies before the take-off (22)");
     }
@@ -179,23 +176,23 @@ class MissionFlight {
     position_ = target;
     hold_ = item.params[0];
     const bool stops = hold_ > 0.0 || stops_for_the_next();
-    const double radius = acceptance_radius(item);
+    const double radius = radius_of(item);
     const double way = (target - from).norm();
     Segment departure{target, target};
     if (!stops) {
       departure.from = from;  // corners are cut anywhere within the triangle of both legs
-    } else if (radius > covered_radius && way > 0.0) {
+    } else if (radius > acceptance_radius && way > 0.0) {
       departure.from = target + std::min(1.0, radius / way) * (from - target);
     }
     if (is_early && departure.length() > 0.0) {
       complain(item, "is passed without a stop right after another; what is flown is not proven");
     }
-    arrive(item, departure, stops && radius <= covered_radius);
+    arrive(item, departure, stops && radius <= acceptance_radius);
   }
 
   /// ArduCopter has one radius for all waypoints, which it comes within at stops; a larger one in
   /// the file is refused as well, in case another vehicle reads it.
-  double acceptance_radius(const MissionItem& item) const {
+  double radius_of(const MissionItem& item) const {
     const bool counts = item.command == command::waypoint;
     const double radius = counts && std::isfinite(item.params[1]) ? item.params[1] : 0.0;
     return radius > 0.0 || dialect_ != Dialect::px4 ? radius : default_radius_px4;
@@ -260,8 +257,7 @@ class MissionFlight {
     std::string whose = "the mission's cruise speed";
     if (type == 2.0 || type == 3.0) {
       if (!facts_.vehicle) return;
-      limit = type == 2.0 ? facts_.vehicle->mode.max_ascent
-                          : facts_.vehicle->mode.max_descent;
+      limit = type == 2.0 ? facts_.vehicle->mode.max_ascent : facts_.vehicle->mode.max_descent;
       whose = "the vehicle's limit";
     } else if (type == 0.0 || type == 1.0) {
       is_speed_set_ = true;

@@ -103,10 +103,15 @@ TEST_P(BothAutopilots, LandingsAreOnThePadOrRefused) {
 }
 
 TEST_P(BothAutopilots, HoldsRadiiAndSpeedsAreTheMissions) {
-  std::size_t station = index_of(good(), command::start_capture) - 1;
-  EXPECT_THAT(after([&](MissionFile& f) { f.items[station].params[0] = 0.0; }),
-              Contains(HasSubstr("photographs where the vehicle does not stop")));
-  EXPECT_THAT(after([&](MissionFile& f) { f.items[station].params[0] = 1.0; }),
+  const std::size_t station = station_of(good()), hold = hold_of(good());
+  EXPECT_THAT(after([&](MissionFile& f) {
+                f.items[station].params[0] = 0.0;
+                if (hold != station) {
+                  f.items.erase(f.items.begin() + static_cast<std::ptrdiff_t>(hold));
+                }
+              }),
+              Not(IsEmpty()));
+  EXPECT_THAT(after([&](MissionFile& f) { f.items[hold].params[0] = 1.0; }),
               names(good(), station, "holds 1.00 s before its photograph"));
   EXPECT_THAT(after([&](MissionFile& f) { f.items[station].params[1] = 20.0; }),
               Contains(HasSubstr("photographs where the vehicle does not stop")));
@@ -123,7 +128,7 @@ TEST_P(BothAutopilots, HoldsRadiiAndSpeedsAreTheMissions) {
 
 TEST_P(BothAutopilots, PhotographsLookWhereTheViewsDo) {
   const bool is_px4 = GetParam() == Dialect::px4;
-  const std::size_t station = index_of(good(), command::start_capture) - 1;
+  const std::size_t station = station_of(good());
   const std::size_t yaw = is_px4 ? station : index_of(good(), command::condition_yaw);
   const std::size_t field = is_px4 ? 3 : 0;
   EXPECT_THAT(after([&](MissionFile& f) {
@@ -171,7 +176,7 @@ TEST_P(BothAutopilots, HeightsCountItemByItem) {
   EXPECT_THAT(after([&](MissionFile& f) {
                 f.items[i].frame = frame::global;
                 f.items[i].params[6] += pad_amsl;
-                move(f.items[i + 3], {-9.5, 0, 8});
+                move(f.items[station_of(f, 1)], {-9.5, 0, 8});
               }),
               Not(IsEmpty()));
   EXPECT_THAT(after([&](MissionFile& f) { f.items[i].frame = frame::terrain; }),
@@ -200,8 +205,7 @@ TEST_P(BothAutopilots, JumpsAreFlown) {
                      {command::jump, frame::mission, {number, repeats, 0, 0, 0, 0, 0}, true, 999});
     });
   };
-  const double second =
-      static_cast<double>(good().items[index_of(good(), command::start_capture, 2) - 1].number);
+  const auto second = static_cast<double>(good().items[station_of(good(), 1)].number);
   EXPECT_THAT(jump_to(second, 2), Contains(HasSubstr("leg from item")));
   EXPECT_THAT(jump_to(second, 0), IsEmpty());
   EXPECT_THAT(jump_to(second, -1), Contains(HasSubstr("item 999 jumps -1.0 times")));
@@ -284,10 +288,10 @@ TEST_P(BothAutopilots, CornersWithoutAStopAreProvenAsTriangles) {
 
 TEST(Interpreter, ArduPilotStopsWithoutAHoldBeforeADelay) {
   MissionFile file = sample_file(Dialect::ardupilot);
-  const std::size_t station = index_of(file, command::start_capture) - 1;
+  const std::size_t station = station_of(file);
   file.items[station].params[0] = 0.0;
-  file.items.insert(file.items.begin() + static_cast<std::ptrdiff_t>(station) + 1,
-                    {command::delay, frame::mission, {2.0, -1, -1, -1, 0, 0, 0}, true, 999});
+  const MissionItem delay{command::delay, frame::mission, {4.0, -1, -1, -1, 0, 0, 0}, true, 999};
+  file.items.insert(file.items.begin() + static_cast<std::ptrdiff_t>(station) + 1, delay);
   EXPECT_THAT(problems_of(file, Dialect::ardupilot), IsEmpty());
 }
 

@@ -40,6 +40,17 @@ std::size_t index_of(const MissionFile& file, int command, std::size_t n) {
   throw std::logic_error("the sample has no such item");
 }
 
+std::size_t station_of(const MissionFile& file, std::size_t n) {
+  std::size_t i = index_of(file, command::mount_control, n);
+  while (file.items[i].command != command::waypoint) ++i;
+  return i;
+}
+
+std::size_t hold_of(const MissionFile& file, std::size_t n) {
+  const std::size_t i = station_of(file, n);
+  return file.items[i + 1].command == command::delay ? i + 1 : i;
+}
+
 GeodeticPoint place_at(const Eigen::Vector3d& local) {
   return LocalFrame(plan_for(Dialect::px4).site.origin).to_geodetic(local);
 }

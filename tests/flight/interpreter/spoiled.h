@@ -20,6 +20,10 @@ Problems problems_of(const MissionFile& file, Dialect dialect);
 /// The index of the n-th item with that command.
 std::size_t index_of(const MissionFile& file, int command, std::size_t n = 0);
 
+/// The index of the waypoint of the n-th station, and of the item that holds before its shots.
+std::size_t station_of(const MissionFile& file, std::size_t n = 0);
+std::size_t hold_of(const MissionFile& file, std::size_t n = 0);
+
 /// The place of a local position in the sample's frame: latitude and longitude.
 GeodeticPoint place_at(const Eigen::Vector3d& local);
 
