@@ -89,6 +89,7 @@ std::unique_ptr<survey::Planner> make_planner(const file::Mission& mission, unsi
       .spacing = see.effective_spacing(),
       .view_distance = see.view_distance.value_or(view_distance(camera, see.density)),
       .scene_box = see.scene_box,
+      .max_incidence = mission.sensor.camera.max_incidence,
       .limits = view_limits(mission),
       .stop = mission.planner.skycap_stop,
       .ideas = mission.planner.skycap_ideas,

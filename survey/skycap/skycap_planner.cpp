@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <numbers>
 #include <numeric>
 #include <sstream>
 
@@ -39,6 +40,19 @@ constexpr double scans_of_an_object = 7.0;
 /// How much of the evidence on guesses a scan keeps of those before it, and the least that guesses
 /// are ever counted for: a scan or two without any find must not end a survey.
 constexpr double yield_memory = 0.6, least_yield = 0.15;
+/// The resolution: this many surfels across the scene, and pixels to a surfel, between a block's
+/// and what still shows the relief that a view must see.
+constexpr double surfels_across = 150.0, least_pixels = 4.0, most_pixels = 25.0;
+/// A block is a little narrower than a surfel, so that no surfel falls between blocks, and of at
+/// least so many pixels each way: fewer would not tell the noise.
+constexpr double blocks_to_surfel = 0.8;
+constexpr int least_block_px = 4;
+/// Jumps in depth: what a slope of 76 degrees drops over a block; while the noise is not known, a
+/// share of the scene; then six deviations, which noise alone seldom spans in a block.
+constexpr double jump_slope = 4.0, unknown_noise_jump = 0.05, noise_jump = 6.0;
+/// Noise below the first share of r_d is as good as none; a change of the estimate by less than the
+/// second share of itself is not worth a new dose table.
+constexpr double negligible_noise = 0.12, noise_change = 0.03;
 
 void require(bool holds, const char* field, const char* rule, double value) {
   if (holds) return;
@@ -67,6 +81,8 @@ void SkycapConfig::validate() const {
   require_optional(view_distance, "view_distance");
   require_optional(view_price, "view_price");
   require_optional(resolution, "resolution");
+  require(max_incidence > 0.0 && max_incidence <= 0.5 * std::numbers::pi, "max_incidence",
+          "above 0 and at most pi/2 radians", max_incidence);
   require(stop.wanted_coverage > 0.0 && stop.wanted_coverage <= 1.0, "stop.wanted_coverage",
           "above 0 and at most 1", stop.wanted_coverage);
   require(stop.least_gain >= 0.0 && stop.least_gain < 1.0, "stop.least_gain",
@@ -91,6 +107,7 @@ struct SkycapPlanner::Impl {
         distance(given.view_distance.value_or(0.5 * given.coverage_radius / ray_spacing(camera))),
         kept(given.spacing.value_or(0.5 * given.coverage_radius), distance * ray_spacing(camera)) {
     gain.view_distance = distance;
+    gain.max_incidence = std::min(gain.max_incidence, static_cast<float>(given.max_incidence));
     chooser.view_distance = distance;
     chooser.view_price = given.view_price.value_or(3.0 * distance);
     chooser.threads = given.threads;
@@ -109,12 +126,12 @@ struct SkycapPlanner::Impl {
     const double extent =
         config.scene_box ? config.scene_box->sizes().maxCoeff() : seen.sizes().maxCoeff();
     const double pixel = distance * ray_spacing(camera);
-    const double h =
-        config.resolution.value_or(std::clamp(extent / 150.0, 4.0 * pixel, 25.0 * pixel));
-    blocks.block_px = std::max(4, static_cast<int>(0.8 * h / pixel));
+    const double h = config.resolution.value_or(
+        std::clamp(extent / surfels_across, least_pixels * pixel, most_pixels * pixel));
+    blocks.block_px = std::max(least_block_px, static_cast<int>(blocks_to_surfel * h / pixel));
     blocks.threads = config.threads;
-    least_jump = 4.0 * blocks.block_px * pixel;
-    blocks.jump = static_cast<float>(std::max(least_jump, 0.05 * extent));
+    least_jump = jump_slope * blocks.block_px * pixel;
+    blocks.jump = static_cast<float>(std::max(least_jump, unknown_noise_jump * extent));
     map.emplace(static_cast<float>(h));
     space.emplace(static_cast<float>(0.6 * h), config.misses_are_empty);
     dose.emplace(config.coverage_radius, Noise{});
@@ -134,12 +151,14 @@ struct SkycapPlanner::Impl {
   void learn_noise(const std::vector<BlockImage>& images) {
     for (const BlockImage& image : images) noise.add(image);
     if (!config.ideas.dose) return;
-    const auto estimate = noise.noise(0.12 * config.coverage_radius);
+    const auto estimate = noise.noise(negligible_noise * config.coverage_radius);
     if (!estimate) return;
     const double change = std::abs(estimate->isotropic - dose->noise().isotropic) +
                           std::abs(estimate->along_ray - dose->noise().along_ray);
-    if (change > 0.03 * dose->noise().across(1.0)) dose.emplace(config.coverage_radius, *estimate);
-    blocks.jump = static_cast<float>(std::max(least_jump, 6.0 * dose->noise().across(1.0)));
+    if (change > noise_change * dose->noise().across(1.0)) {
+      dose.emplace(config.coverage_radius, *estimate);
+    }
+    blocks.jump = static_cast<float>(std::max(least_jump, noise_jump * dose->noise().across(1.0)));
   }
 
   void take_in(const Scan& scan) {

@@ -55,13 +55,16 @@ struct SkycapConfig {
   std::optional<double> view_distance;
   std::optional<double> view_price;  ///< what a view costs, in metres of way; 3 d
   std::optional<double> resolution;  ///< h of the surfels; from the pixels and the first scan
+  /// Angle between ray and normal beyond which the sensor gets no return [rad], in (0, pi/2]. Looks
+  /// at more than 78 degrees are not counted on, whatever it is.
+  double max_incidence = 1.5707963267948966;
   /// Where the scene is. What lies outside is no surface of interest, and its space is free.
   /// Not given: all that was measured so far.
   std::optional<Eigen::AlignedBox3d> scene_box;
   ViewLimits limits;
   StopRule stop;
   SkycapIdeas ideas;
-  int continuation_steps = 3;  ///< how far guesses reach: h, 3 h, 6 h ... ; 1 to 5
+  int continuation_steps = 3;  ///< how far guesses reach: 1.6 h, 3.2 h, 6.4 h ... ; 1 to 5
   /// Whether a ray without a return shows empty space, to drop guesses. Never for where to fly.
   bool misses_are_empty = true;
   unsigned threads = 1;  ///< zero: all processors; the plan does not depend on it

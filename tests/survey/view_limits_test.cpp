@@ -52,9 +52,9 @@ TEST(ViewLimits, ViewsOfATargetObeyTheLimits) {
   std::normal_distribution<double> normal;
   int found = 0;
   for (int i = 0; i < 1000; ++i) {
-    const Vector3d target(normal(generator), normal(generator), 5.0 + 10.0 * normal(generator));
+    const Vector3d target{normal(generator), normal(generator), 5.0 + 10.0 * normal(generator)};
     const Vector3d towards =
-        Vector3d(normal(generator), normal(generator), normal(generator)).normalized();
+        Vector3d{normal(generator), normal(generator), normal(generator)}.normalized();
     const auto view = limits.view_of_target(target, towards, 20.0);
     if (!view) continue;
     ++found;

@@ -209,6 +209,20 @@ TEST(SkycapPlanner, SaysWhatIsMissingAndWhy) {
       1e-6);
 }
 
+// A sensor that gets no return from slanted surfaces covers less of a ball with a view.
+TEST(SkycapPlanner, ExpectsNothingBeyondTheSensorsIncidence) {
+  const geometry::Scan scan = tests::scan_spheres(ball, camera, start, 0.01);
+  const auto next_gain = [&](double max_incidence) {
+    skycap::SkycapConfig config = small_config();
+    config.max_incidence = max_incidence;
+    skycap::SkycapPlanner planner(config, camera);
+    planner.next_view(scan);
+    return planner.belief().next_gain;
+  };
+  EXPECT_LT(next_gain(0.5), 0.9 * next_gain(1.5707));
+  EXPECT_EQ(next_gain(1.4), next_gain(1.5707));  // so far off nothing is counted on anyway
+}
+
 TEST(SkycapPlanner, PlansFromSweepsWithoutAnImage) {
   skycap::SkycapPlanner planner(small_config(), camera);
   fly(planner, ball, 0.01, 15, false);
@@ -267,6 +281,8 @@ TEST(SkycapConfig, SaysWhichFieldIsWrong) {
               HasSubstr("wanted_coverage"));
   EXPECT_THAT(message_of([](skycap::SkycapConfig& c) { c.continuation_steps = 9; }),
               HasSubstr("continuation_steps"));
+  EXPECT_THAT(message_of([](skycap::SkycapConfig& c) { c.max_incidence = 2.0; }),
+              HasSubstr("max_incidence"));
   EXPECT_THAT(message_of([](skycap::SkycapConfig& c) { c.limits.stand_off = -2.0; }),
               HasSubstr("stand_off"));
 }
