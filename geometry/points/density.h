@@ -11,6 +11,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include <Eigen/Core>
@@ -54,6 +55,8 @@ class DensityMap {
 
   const DensityConfig& config() const { return config_; }
   const PointCloud& cloud() const { return cloud_; }
+  /// Hands the points over; nothing may be asked afterwards.
+  PointCloud release_cloud() { return std::move(cloud_); }
   const SpatialIndex& index() const { return index_; }
   PointLabel label(std::uint32_t point) const { return labels_[point]; }
   const std::vector<PointLabel>& labels() const { return labels_; }

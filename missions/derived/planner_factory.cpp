@@ -35,7 +35,7 @@ survey::volumetric::VolumetricConfig volumetric_config(const file::Mission& miss
           .candidates = static_cast<std::size_t>(std::lround(views)),
           .sphere_centre = *settings.sphere_centre,
           .sphere_radius = *settings.sphere_radius,
-          .least_height = see.ground_clearance,
+          .least_height = see.least_height,
           .seed = mission.seed ^ candidates_stream,
           .settings = settings,
           .threads = threads};
@@ -88,17 +88,15 @@ std::unique_ptr<survey::Planner> make_planner(const file::Mission& mission, unsi
       .coverage_radius = mission.evaluation.registration_distance,
       .spacing = see.effective_spacing(),
       .view_distance = see.view_distance.value_or(view_distance(camera, see.density)),
-      .scene_box = see.scene_box,
       .max_incidence = mission.sensor.camera.max_incidence,
+      .scene_box = see.scene_box,
       .limits = view_limits(mission),
       .stop = mission.planner.skycap_stop,
       .ideas = mission.planner.skycap_ideas,
       .threads = threads};
   // Told of the budgets, it looks for the best view that is still in reach.
   const file::LimitsConfig& limits = mission.limits;
-  if (limits.max_distance < file::LimitsConfig{}.max_distance) {
-    config.stop.most_length = limits.max_distance;
-  }
+  config.stop.most_length = limits.max_distance;
   if (limits.max_minutes) config.stop.most_time = 60.0 * *limits.max_minutes;
   config.stop.speed = limits.speed;
   config.stop.time_per_view = limits.time_per_view;

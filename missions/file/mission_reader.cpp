@@ -432,7 +432,7 @@ Mission mission_from(const std::string& text, const std::string& name,
   }
   if (mission.scene.ground && !mission.limits.ground_clearance) mission.limits.ground_clearance = 0;
   if (mission.limits.ground_clearance) {
-    mission.planner.see.ground_clearance =
+    mission.planner.see.least_height =
         mission.scene.position.z() + *mission.limits.ground_clearance;
   }
   check_site(given, name, mission);

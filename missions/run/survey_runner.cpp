@@ -146,8 +146,8 @@ SurveyRecord run_survey(const file::Mission& mission, const scene::SurveyScene& 
   std::uint64_t frame = 0;
   std::size_t points_judged = 0;
   survey::SurveyPorts ports;
-  ports.sense = [&](const geometry::View& view) {
-    return sensor.scan(scene.scene(), view, frame++, threads);
+  ports.sense = [&](const geometry::View& view, geometry::Scan recycled) {
+    return sensor.scan(scene.scene(), view, frame++, threads, std::move(recycled));
   };
   ViewGate gate(derived::view_limits(mission));
   std::size_t points_gated = 0;
@@ -180,7 +180,7 @@ SurveyRecord run_survey(const file::Mission& mission, const scene::SurveyScene& 
   record.stop_reason =
       survey::run_survey(*planner, first_view, limits, ports, std::move(stop)).stop_reason;
   ask_skycap(*planner, record);
-  record.cloud = planner->cloud();
+  record.cloud = planner->release_cloud();
   record.is_covered = meter.is_covered();
   if (flight) record.flown = flight->finish();
   return record;

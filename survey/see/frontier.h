@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <limits>
 #include <map>
+#include <optional>
 
 #include <Eigen/Core>
 
@@ -29,8 +30,8 @@ using FrontierMap = std::map<std::uint32_t, Frontier>;
 
 /// Where views may be.
 struct ViewPlacement {
-  double distance = 2.0;        ///< d, from the frontier
-  double lowest_height = -1e9;  ///< z of the sensor
+  double distance = 2.0;               ///< d, from the frontier
+  std::optional<double> least_height;  ///< z of the sensor
 };
 
 /// The view of `frontier` from `placement.distance` away along the unit vector `direction`. If that

@@ -68,7 +68,7 @@ struct SeePlanner::Impl {
       : config(see_config),
         camera(sensor),
         placement{config.view_distance.value_or(geometry::view_distance(camera, config.density)),
-                  config.ground_clearance},
+                  config.least_height},
         map({.radius = config.resolution_radius,
              .core_threshold = config.effective_core_threshold(),
              .spacing = config.effective_spacing(),
@@ -408,6 +408,7 @@ std::optional<View> SeePlanner::next_view_instead() {
 }
 
 const geometry::PointCloud& SeePlanner::cloud() const { return impl_->map.cloud(); }
+geometry::PointCloud SeePlanner::release_cloud() { return impl_->map.release_cloud(); }
 const PlanningStep& SeePlanner::last_step() const { return impl_->step; }
 double SeePlanner::view_distance() const { return impl_->placement.distance; }
 

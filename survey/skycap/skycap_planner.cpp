@@ -436,6 +436,7 @@ std::optional<View> SkycapPlanner::next_view_instead() {
 }
 
 const geometry::PointCloud& SkycapPlanner::cloud() const { return impl_->kept.cloud(); }
+geometry::PointCloud SkycapPlanner::release_cloud() { return impl_->kept.release_cloud(); }
 const PlanningStep& SkycapPlanner::last_step() const { return impl_->step; }
 SkycapStop SkycapPlanner::stop() const { return impl_->stop; }
 double SkycapPlanner::predicted_coverage() const { return impl_->predicted_coverage(); }

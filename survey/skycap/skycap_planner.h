@@ -120,6 +120,7 @@ class SkycapPlanner final : public Planner {
   std::optional<geometry::View> next_view(const geometry::Scan& scan) override;
   std::optional<geometry::View> next_view_instead() override;
   const geometry::PointCloud& cloud() const override;
+  geometry::PointCloud release_cloud() override;
   const PlanningStep& last_step() const override;
 
   /// Why the last call proposed nothing.

@@ -83,7 +83,7 @@ void VolumetricConfig::validate() const {
 }
 
 std::vector<View> sphere_views(std::size_t count, const Vector3d& centre, double radius,
-                               double least_height, std::uint64_t seed) {
+                               const std::optional<double>& least_height, std::uint64_t seed) {
   std::mt19937_64 random(seed);
   std::normal_distribution<double> normal;
   std::vector<View> views;
@@ -93,7 +93,8 @@ std::vector<View> sphere_views(std::size_t count, const Vector3d& centre, double
     if (attempt == most_attempts) {
       std::ostringstream message;
       message << "the candidates' sphere reaches up to " << centre.z() + radius
-              << " m, of which less than a thousandth is above the least height of " << least_height
+              << " m, of which less than a thousandth is above the least height of "
+              << least_height.value_or(0.0)
               << " m; lower limits.ground_clearance";
       throw Error(ErrorKind::bad_config, message.str());
     }
@@ -101,7 +102,8 @@ std::vector<View> sphere_views(std::size_t count, const Vector3d& centre, double
     const Vector3d direction(x, y, z);
     if (direction.norm() < 1e-3) continue;
     const Vector3d position = centre + radius * direction.normalized();
-    if (position.z() >= least_height) views.push_back(geometry::look_at(position, centre));
+    if (least_height && position.z() < *least_height) continue;
+    views.push_back(geometry::look_at(position, centre));
   }
   return views;
 }

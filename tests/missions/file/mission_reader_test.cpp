@@ -160,7 +160,7 @@ TEST(MissionReader, MeasuresTheGroundClearanceFromTheScenesBase) {
       "scene: {model: 'builtin:teapot', position: [0, 0, 60]}\n"
       "evaluation: {registration_distance: 0.005}\nlimits: {ground_clearance: 2}\n",
       "m.yaml");
-  EXPECT_EQ(mission.planner.see.ground_clearance, 62.0);
+  EXPECT_EQ(mission.planner.see.least_height, 62.0);
 }
 
 TEST(MissionReader, LetsOverridesReplaceKeysAndNamesTheirOrigin) {

@@ -205,7 +205,7 @@ TEST(SeePlanner, DropsMeasurementsOutsideTheSceneBox) {
 
 TEST(SeePlanner, KeepsViewsAboveTheGroundClearance) {
   see::SeeConfig config = small_config();
-  config.ground_clearance = -0.2;
+  config.least_height = -0.2;
   const Outcome run = survey(config, 0.02, 40);
   for (std::size_t i = 1; i < run.views.size(); ++i) {
     EXPECT_GE(run.views[i].position.z(), -0.2 - 1e-9);
