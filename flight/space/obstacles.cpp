@@ -11,12 +11,11 @@ namespace {
 
 using Eigen::Vector2d;
 using Eigen::Vector3d;
+using geometry::turn;
 
 constexpr double far_away = 1e5;  // stands for an infinite floor or ceiling
 
 double cross(const Vector2d& a, const Vector2d& b) { return a.x() * b.y() - a.y() * b.x(); }
-
-double turn(const Vector2d& a, const Vector2d& b, const Vector2d& c) { return cross(b - a, c - a); }
 
 double signed_area(const std::vector<Vector2d>& polygon) {
   double area = 0.0;
@@ -143,21 +142,6 @@ Obstacles without_ground(Obstacles obstacles) {
   obstacles.ground_height.reset();
   if (obstacles.fence) obstacles.fence->floor = -std::numeric_limits<double>::infinity();
   return obstacles;
-}
-
-bool contains(const Prism& prism, const Vector3d& point) {
-  if (point.z() < prism.floor || point.z() > prism.ceiling) return false;
-  const Vector2d p = point.head<2>();
-  bool inside = false;  // parity of the crossings of a ray towards +x
-  for (std::size_t i = 0; i < prism.footprint.size(); ++i) {
-    const Vector2d& a = prism.footprint[i];
-    const Vector2d& b = prism.footprint[(i + 1) % prism.footprint.size()];
-    if (turn(a, b, p) == 0.0 && (p - a).dot(p - b) <= 0.0) return true;  // on this edge
-    if ((a.y() > p.y()) == (b.y() > p.y())) continue;
-    const bool is_left_of_edge = (turn(a, b, p) > 0.0) == (b.y() > a.y());
-    if (is_left_of_edge) inside = !inside;
-  }
-  return inside;
 }
 
 geometry::Mesh surface(const Prism& prism) {

@@ -11,17 +11,12 @@
 
 #include <Eigen/Core>
 
+#include "geometry/place/prism.h"
 #include "geometry/surfaces/mesh.h"
 
 namespace skycap::flight {
 
-/// An upright prism over a polygon: a no-fly volume or a geofence.
-struct Prism {
-  std::string name;                        ///< for messages
-  std::vector<Eigen::Vector2d> footprint;  ///< simple polygon, either way round, not closed
-  double floor = -std::numeric_limits<double>::infinity();
-  double ceiling = std::numeric_limits<double>::infinity();
-};
+using geometry::Prism;
 
 /// Points that stand for the surface around them: each is a ball.
 struct PointObstacles {
@@ -47,9 +42,6 @@ void validate(const Obstacles& obstacles);
 
 /// What a climb from a pad has to keep clear of: everything but the ground and the fence's floor.
 Obstacles without_ground(Obstacles obstacles);
-
-/// Whether a point is in the prism or on its boundary.
-bool contains(const Prism& prism, const Eigen::Vector3d& point);
 
 /// The prism's closed surface, facing outward. An infinite floor or ceiling becomes -/+ 100 km.
 geometry::Mesh surface(const Prism& prism);

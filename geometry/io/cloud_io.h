@@ -13,7 +13,7 @@ namespace skycap::geometry {
 
 /// Points and what a file says of them. An attribute that is absent is an empty vector, otherwise
 /// it has one entry for each position.
-struct CloudFile {
+struct AttributedCloud {
   std::vector<Eigen::Vector3f> positions;
   std::vector<Eigen::Vector3f> normals;              ///< nx ny nz
   std::vector<std::uint32_t> views;                  ///< view: the scan, counted from 0
@@ -26,10 +26,10 @@ struct CloudFile {
 /// passed over. Throws
 /// Error{bad_file} in one line, also for coordinates that are not finite, and for such so far from
 /// the origin that single precision would move them by a millimetre.
-CloudFile read_cloud(const std::filesystem::path& path);
+AttributedCloud read_cloud(const std::filesystem::path& path);
 
 /// Writes binary little-endian PLY: x y z as float and then, of what is there, nx ny nz as float,
 /// view as uint, red green blue as uchar. Complete or not at all. Throws Error{bad_file}.
-void write_cloud(const std::filesystem::path& path, const CloudFile& cloud);
+void write_cloud(const std::filesystem::path& path, const AttributedCloud& cloud);
 
 }  // namespace skycap::geometry

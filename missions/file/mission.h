@@ -97,7 +97,7 @@ struct LimitsConfig {
 /// The airspace over the site, in the mission's frame: x east, y north, z up.
 struct SiteConfig {
   std::vector<Eigen::Vector2d> geofence;  ///< polygon to stay inside of; empty: none
-  std::vector<survey::Prism> no_fly;      ///< to stay outside of
+  std::vector<geometry::Prism> no_fly;    ///< to stay outside of
   std::optional<double> lowest_height;    ///< least z
   std::optional<double> highest_height;   ///< greatest z
 };

@@ -42,11 +42,12 @@ Json json_of(const std::vector<Eigen::Vector2d>& polygon) {
   return corners;
 }
 
-Json json_of(const std::vector<survey::Prism>& volumes) {
+Json json_of(const std::vector<geometry::Prism>& volumes) {
   Json list = Json::array();
-  for (const survey::Prism& volume : volumes) {
-    list.push_back(
-        {{"corners", json_of(volume.corners)}, {"bottom", volume.bottom}, {"top", volume.top}});
+  for (const geometry::Prism& volume : volumes) {
+    list.push_back({{"corners", json_of(volume.footprint)},
+                    {"bottom", volume.floor},
+                    {"top", volume.ceiling}});
   }
   return list;
 }

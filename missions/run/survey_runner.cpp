@@ -114,8 +114,6 @@ const char* name_of(survey::skycap::SkycapStop stop) {
       return "wanted_coverage";
     case survey::skycap::SkycapStop::little_gain:
       return "little_gain";
-    case survey::skycap::SkycapStop::most_views:
-      return "most_views";
     case survey::skycap::SkycapStop::most_length:
       return "most_length";
     case survey::skycap::SkycapStop::most_time:

@@ -10,7 +10,7 @@
 #include <Eigen/Core>
 
 #include "geometry/place/pose.h"
-#include "geometry/points/local_frame.h"
+#include "geometry/points/surface_frame.h"
 
 namespace skycap::survey::see {
 
@@ -19,7 +19,7 @@ struct Frontier {
   Eigen::Vector3d position;
   Eigen::Vector3d observed_from;   ///< the sensor's position when the point was measured
   Eigen::Vector3d observed_along;  ///< unit: the optical axis of that sensor
-  geometry::LocalFrame frame;
+  geometry::SurfaceFrame frame;
   geometry::View view;
   double clear_offset = 0.0;  ///< zeta; see OcclusionTest
   std::size_t offset_of_scan = std::numeric_limits<std::size_t>::max();  ///< when it was computed

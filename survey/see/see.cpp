@@ -83,8 +83,8 @@ struct SeePlanner::Impl {
   void insert(std::span<const Vector3f> points);
   void classify();
   void propose_for_new_frontiers();
-  geometry::LocalFrame frame_at(std::uint32_t point) const;
-  void face_free_space(geometry::LocalFrame& frame, const Vector3d& position) const;
+  geometry::SurfaceFrame frame_at(std::uint32_t point) const;
+  void face_free_space(geometry::SurfaceFrame& frame, const Vector3d& position) const;
   void adjust_target(std::span<const Vector3f> points);
   void avoid_occlusions();
   bool avoid_occlusion(std::uint32_t point, Frontier& frontier);
@@ -204,7 +204,7 @@ void SeePlanner::Impl::propose_for_new_frontiers() {
   }
 }
 
-geometry::LocalFrame SeePlanner::Impl::frame_at(std::uint32_t point) const {
+geometry::SurfaceFrame SeePlanner::Impl::frame_at(std::uint32_t point) const {
   const auto& positions = map.cloud().positions;
   const auto count =
       static_cast<std::size_t>(config.frame_neighbours.value_or(map.config().core_threshold));
@@ -213,15 +213,15 @@ geometry::LocalFrame SeePlanner::Impl::frame_at(std::uint32_t point) const {
     neighbours.push_back(positions[near.index]);
   }
   const Vector3d position = positions[point].cast<double>();
-  geometry::LocalFrame frame =
-      geometry::local_frame(position, neighbours, scans[map.cloud().views[point]].position);
+  geometry::SurfaceFrame frame =
+      geometry::surface_frame(position, neighbours, scans[map.cloud().views[point]].position);
   if (free_space) face_free_space(frame, position);
   return frame;
 }
 
 // Probes both sides of the surface, ever farther out, until one turns out to be free (released
 // code); a normal that points to the other side is turned round.
-void SeePlanner::Impl::face_free_space(geometry::LocalFrame& frame,
+void SeePlanner::Impl::face_free_space(geometry::SurfaceFrame& frame,
                                        const Vector3d& position) const {
   const double probe_step = config.occluder_spacing;
   double along = probe_step;

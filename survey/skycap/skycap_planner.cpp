@@ -294,7 +294,6 @@ struct SkycapPlanner::Impl {
     const StopRule& rule = config.stop;
     if (predicted_coverage() >= rule.wanted_coverage) return SkycapStop::wanted_coverage;
     if (idle_scans >= most_idle_scans) return SkycapStop::little_gain;
-    if (rule.most_views && scans >= *rule.most_views) return SkycapStop::most_views;
     if (rule.most_length && length >= *rule.most_length) return SkycapStop::most_length;
     if (rule.most_time && most_way() <= 0.0) return SkycapStop::most_time;
     return SkycapStop::running;

@@ -30,7 +30,6 @@ struct StopRule {
   /// Another view is not worth it: the best one promises less than this share of the known area, or
   /// of seven times what one scan covered at most, if that is less.
   double least_gain = 0.005;
-  std::optional<std::size_t> most_views;
   std::optional<double> most_length;  ///< of the straight lines between the views
   std::optional<double> most_time;    ///< of the flight [s], by `speed` and `time_per_view`
   double speed = 5.0;                 ///< between views [m/s]
@@ -77,7 +76,6 @@ enum class SkycapStop {
   running,
   wanted_coverage,
   little_gain,  ///< no view promises enough, or the last four brought almost nothing
-  most_views,
   most_length,
   most_time,
   nothing_in_reach,  ///< no admissible view sees anything that is missing

@@ -94,8 +94,7 @@ std::vector<View> sphere_views(std::size_t count, const Vector3d& centre, double
       std::ostringstream message;
       message << "the candidates' sphere reaches up to " << centre.z() + radius
               << " m, of which less than a thousandth is above the least height of "
-              << least_height.value_or(0.0)
-              << " m; lower limits.ground_clearance";
+              << least_height.value_or(0.0) << " m; lower limits.ground_clearance";
       throw Error(ErrorKind::bad_config, message.str());
     }
     const double x = normal(random), y = normal(random), z = normal(random);
@@ -164,6 +163,7 @@ VolumetricPlanner::VolumetricPlanner(const VolumetricConfig& config, const geome
 VolumetricPlanner::~VolumetricPlanner() = default;
 
 const geometry::PointCloud& VolumetricPlanner::cloud() const { return impl_->cloud; }
+geometry::PointCloud VolumetricPlanner::release_cloud() { return std::move(impl_->cloud); }
 const PlanningStep& VolumetricPlanner::last_step() const { return impl_->step; }
 const VolumetricMap& VolumetricPlanner::map() const { return impl_->map; }
 

@@ -75,14 +75,6 @@ TEST(Prism, ContainsAgreesWithTheWindingOfItsSurface) {
   }
 }
 
-TEST(Prism, ItsBoundaryBelongsToIt) {
-  const Prism prism{"square", square, 0, 10};
-  EXPECT_TRUE(contains(prism, {0, 5, 5}));
-  EXPECT_TRUE(contains(prism, {10, 10, 10}));
-  EXPECT_FALSE(contains(prism, {10.001, 5, 5}));
-  EXPECT_FALSE(contains(prism, {5, 5, 10.001}));
-}
-
 TEST(Prism, AFootprintWithCornersOnALineIsFilledCompletely) {
   const Prism prism{"T", {{0, 0}, {5, 0}, {10, 0}, {10, 5}, {10, 10}, {5, 10}, {0, 10}}, 0, 1};
   EXPECT_NEAR(geometry::surface_area(surface(prism)), 2 * 100 + 40, 1e-9);

@@ -73,7 +73,7 @@ TEST(MissionReader, SetsEachKeyToWhatItGivesBack) {
         value = std::vector<Eigen::Vector2d>{{0, 0}, {9, 0}, {0, 9.5}};
         break;
       case file::KeyType::volumes:
-        value = std::vector<survey::Prism>{{{{0, 0}, {1, 0}, {0, 1}}, -2.0, 30.0}};
+        value = std::vector<geometry::Prism>{{"", {{0, 0}, {1, 0}, {0, 1}}, -2.0, 30.0}};
         break;
       case file::KeyType::vectors:
         value = std::vector<Eigen::Vector3d>{{10, -20, 90}, {0.5, 0, -45}};
@@ -130,8 +130,8 @@ TEST(MissionReader, ReadsTheSitesAirspace) {
   ASSERT_EQ(limits.geofence.size(), 3U);
   EXPECT_EQ(limits.geofence[2], Eigen::Vector2d(50.5, 40.0));
   ASSERT_EQ(limits.no_fly.size(), 1U);
-  EXPECT_EQ(limits.no_fly[0].corners[1], Eigen::Vector2d(5.0, 0.0));
-  EXPECT_EQ(limits.no_fly[0].top, 30.0);
+  EXPECT_EQ(limits.no_fly[0].footprint[1], Eigen::Vector2d(5.0, 0.0));
+  EXPECT_EQ(limits.no_fly[0].ceiling, 30.0);
   EXPECT_EQ(limits.least_height, 5.0);  // the higher of the two
   EXPECT_EQ(limits.most_height, 120.0);
   EXPECT_EQ(limits.stand_off, 2.0);
