@@ -17,6 +17,7 @@
 #include <Eigen/Core>
 
 #include "geometry/points/point_cloud.h"
+#include "geometry/points/spaced_points.h"
 #include "geometry/points/spatial_index.h"
 
 namespace skycap::geometry {
@@ -85,7 +86,7 @@ class DensityMap {
   DensityConfig config_;
   PointCloud cloud_;
   SpatialIndex index_;
-  PointGrid spacing_grid_;  // the same points in smaller cells, for the spacing
+  SpacedPoints spaced_;  // the same points in smaller cells, for the spacing
   std::vector<PointLabel> labels_;
   std::vector<NonCore> non_core_;  // ascending by point
   std::vector<std::uint8_t> given_up_;

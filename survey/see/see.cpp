@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "geometry/error.h"
+#include "geometry/points/spaced_points.h"
 #include "geometry/points/spatial_index.h"
 #include "survey/see/frontier.h"
 #include "survey/see/visibility_graph.h"
@@ -73,7 +74,7 @@ struct SeePlanner::Impl {
              .core_threshold = config.effective_core_threshold(),
              .spacing = config.effective_spacing(),
              .rule = config.outlier_rule}),
-        occluders(config.occluder_spacing),
+        occluders(config.occluder_spacing, config.occluder_spacing),
         occlusion(map.index().grid(),
                   {.radius = config.occlusion_radius.value_or(config.resolution_radius),
                    .search_distance = config.occlusion_search_distance,
@@ -101,7 +102,7 @@ struct SeePlanner::Impl {
   const ViewPlacement placement;
 
   geometry::DensityMap map;
-  geometry::PointGrid occluders;  // S: a sparse subset of the cloud, for the cap optimiser
+  geometry::SpacedPoints occluders;  // S: a sparse subset of the cloud, for the cap optimiser
   OcclusionTest occlusion;
   std::vector<View> scans;              // where each scan was taken from
   std::uint32_t first_new = 0;          // point of the last scan
@@ -159,10 +160,7 @@ void SeePlanner::Impl::insert(std::span<const Vector3f> points) {
   }
   step.points_new = positions.size() - first_new;
   if (!config.optimise_views) return;
-  for (std::size_t i = first_new; i < positions.size(); ++i) {
-    if (!occluders.any_within(positions[i], config.occluder_spacing))
-      occluders.insert(positions[i]);
-  }
+  for (std::size_t i = first_new; i < positions.size(); ++i) occluders.keep(positions[i]);
 }
 
 void SeePlanner::Impl::classify() {
@@ -277,11 +275,11 @@ bool SeePlanner::Impl::avoid_occlusion(std::uint32_t point, Frontier& frontier) 
   const Vector3d observing = (frontier.observed_from - frontier.position).normalized();
   const Vector3d centre = frontier.position + offset * observing;
   std::vector<geometry::Neighbour> near;
-  occluders.find_within(map.cloud().positions[point], config.occlusion_search_distance, near);
+  occluders.grid().find_within(map.cloud().positions[point], config.occlusion_search_distance, near);
   std::vector<Vector3d> occluded;
   occluded.reserve(near.size());
   for (const geometry::Neighbour& neighbour : near) {
-    const Vector3d ray = occluders.point(neighbour.index).cast<double>() - centre;
+    const Vector3d ray = occluders.grid().point(neighbour.index).cast<double>() - centre;
     const double range = ray.norm();
     if (range > 1e-9) occluded.push_back(ray / range);
   }

@@ -9,7 +9,7 @@
 
 #include "geometry/error.h"
 #include "geometry/parallel.h"
-#include "geometry/points/nearby_points.h"
+#include "geometry/points/spaced_points.h"
 #include "geometry/points/point_grid.h"
 #include "survey/stopwatch.h"
 
@@ -134,7 +134,7 @@ struct VolumetricPlanner::Impl {
         camera(its_camera),
         directions(ray_directions(camera, config.settings.rays)),
         map(config.resolution, shadow_length(config)),
-        kept(std::max(2.0 * config.spacing, 1e-6)) {
+        kept(config.spacing, std::max(2.0 * config.spacing, 1e-6)) {
     for (const View& view : sphere_views(config.candidates, config.sphere_centre,
                                          config.sphere_radius, config.least_height, config.seed)) {
       candidates.push_back({view});
@@ -149,7 +149,7 @@ struct VolumetricPlanner::Impl {
   geometry::Camera camera;
   std::vector<Vector3d> directions;
   VolumetricMap map;
-  geometry::PointGrid kept;
+  geometry::SpacedPoints kept;
   geometry::PointCloud cloud;
   std::vector<Candidate> candidates;  // not yet proposed, in the order in which they were drawn
   Vector3d position = Vector3d::Zero();
@@ -187,12 +187,10 @@ std::optional<View> VolumetricPlanner::next_view_instead() { return impl_->take_
 void VolumetricPlanner::Impl::insert(const Scan& scan) {
   position = scan.sensor_position();
   std::vector<Vector3f> measured;
-  geometry::NearbyPoints nearby(kept, config.spacing);
   for (const Vector3f& point : scan.points) {
     if (config.scene_box && !config.scene_box->contains(point.cast<double>())) continue;
-    const bool is_new = !nearby.any_near(point);
+    const bool is_new = kept.keep(point);
     if (is_new) {
-      kept.insert(point);
       cloud.positions.push_back(point);
       cloud.views.push_back(scans);
       ++step.points_new;
