@@ -203,6 +203,26 @@ TEST(SkycapPlanner, SaysWhatIsMissingAndWhy) {
       1e-6);
 }
 
+// The first scan is from a place that the fence forbids: what it saw too thinly for the noise, no
+// view that is allowed sees again. What the allowed views see is none of that.
+TEST(SkycapPlanner, CallsUnreachableWhatNoAllowedViewSees) {
+  skycap::SkycapConfig config = small_config();
+  config.limits.geofence = {{-9, -9}, {-1, -9}, {-1, 9}, {-9, 9}};
+  skycap::SkycapPlanner planner(config, camera);
+  fly(planner, ball, 0.03, 10);
+  const skycap::SurveyBelief belief = planner.belief();
+  EXPECT_GT(belief.unreachable, 0.05);
+  for (const skycap::BelievedPatch& patch : belief.patches) {
+    if (patch.reason == skycap::MissingReason::unreachable) {
+      EXPECT_GT(patch.position.x(), -0.2F);
+    }
+  }
+  // Without the fence nothing of a ball is out of reach.
+  skycap::SkycapPlanner free(small_config(), camera);
+  fly(free, ball, 0.03, 10);
+  EXPECT_LT(free.belief().unreachable, 0.01);
+}
+
 // A sensor that gets no return from slanted surfaces covers less of a ball with a view.
 TEST(SkycapPlanner, ExpectsNothingBeyondTheSensorsIncidence) {
   const geometry::Scan scan = tests::scan_spheres(ball, camera, start, 0.01);
@@ -242,15 +262,24 @@ TEST(SkycapPlanner, SurvivesALaterScanWithoutAPoint) {
   EXPECT_EQ(planner.cloud().size(), points);
 }
 
+// A switch that does nothing would leave the flight as it is.
 TEST(SkycapPlanner, EveryIdeaCanBeSwitchedOff) {
+  const auto flown = [](const skycap::SkycapConfig& config) {
+    skycap::SkycapPlanner planner(config, camera);
+    std::vector<Vector3d> places;
+    for (const View& view : fly(planner, two_balls, 0.01, 6).views) places.push_back(view.position);
+    return places;
+  };
+  const std::vector<Vector3d> with_all = flown(small_config());
   for (const auto idea : {&skycap::SkycapIdeas::dose, &skycap::SkycapIdeas::unseen_surface,
                           &skycap::SkycapIdeas::free_space, &skycap::SkycapIdeas::learned_rates,
                           &skycap::SkycapIdeas::targeted_views, &skycap::SkycapIdeas::refinement,
                           &skycap::SkycapIdeas::batch}) {
     skycap::SkycapConfig config = small_config();
     config.ideas.*idea = false;
-    skycap::SkycapPlanner planner(config, camera);
-    EXPECT_GE(fly(planner, ball, 0.01, 4).views.size(), 2U);
+    const std::vector<Vector3d> without = flown(config);
+    EXPECT_GE(without.size(), 2U);
+    EXPECT_NE(without, with_all);
   }
 }
 
