@@ -131,12 +131,12 @@ AttributedCloud read_cloud(const fs::path& path) {
                "a cloud file must end in .ply, .pcd, .las, .xyz, .txt or .asc (or with .gz after "
                "it)");
   }
-  const AttributedCloud cloud = format->second(path, read_file(path));
+  AttributedCloud cloud = format->second(path, read_file(path));
   if (cloud.positions.empty()) fail_cloud(path, "holds no points");
   return cloud;
 }
 
-void write_cloud(const fs::path& path, const AttributedCloud& cloud) {
+void write_cloud(const fs::path& path, const CloudColumns& cloud) {
   const std::size_t count = cloud.positions.size();
   assert(cloud.normals.empty() || cloud.normals.size() == count);
   assert(cloud.views.empty() || cloud.views.size() == count);

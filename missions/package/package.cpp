@@ -291,14 +291,14 @@ std::optional<SurveyMission> stage_package(const file::Mission& mission,
   folder.replace(
       [](std::string_view name) { return name == free_space_name || is_flight_file(name); });
   const double radius = 2.0 * mission.planner.see.resolution_radius;
-  std::vector<Eigen::Vector3f> normals =
+  const std::vector<Eigen::Vector3f> normals =
       cloud_normals(record.cloud, sensor_positions(record), radius, threads);
   geometry::write_cloud(folder.stage("cloud.ply"), {.positions = record.cloud.positions,
-                                                    .normals = std::move(normals),
+                                                    .normals = normals,
                                                     .views = record.cloud.views,
                                                     .colours = {}});
   if (record.belief) {
-    geometry::write_cloud(folder.stage("coverage.ply"), coverage_map(*record.belief));
+    geometry::write_cloud(folder.stage("coverage.ply"), columns_of(coverage_map(*record.belief)));
   }
   folder.write("views.csv", views_csv(record));
   folder.write("trajectory.tum", trajectory_tum(record));

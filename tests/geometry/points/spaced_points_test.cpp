@@ -10,7 +10,7 @@ namespace skycap::geometry {
 namespace {
 
 using Eigen::Vector3f;
-
+using tests::random_points;
 
 // Brute-force twin: what is kept is what comparing with every point kept before would keep,
 // whatever the width of the cells.

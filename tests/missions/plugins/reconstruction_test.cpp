@@ -100,7 +100,7 @@ class ReconstructVerb : public testing::Test {
 };
 
 TEST_F(ReconstructVerb, WritesAMeshThatEvaluateComparesWithTheModel) {
-  geometry::write_cloud(folder / "ball.ply", ball_cloud());
+  geometry::write_cloud(folder / "ball.ply", columns_of(ball_cloud()));
   geometry::write_mesh(folder / "truth.ply", sim::sphere({1, 2, 3}, 2.0, 5));
   const tests::ProgramRun run = tests::run_skycap({"reconstruct", folder / "ball.ply"});
   ASSERT_EQ(run.exit_code, 0) << run.err;
