@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 
 #include "geometry/error.h"
 
@@ -85,26 +84,6 @@ std::vector<std::array<std::uint32_t, 3>> triangulate(const std::vector<Vector2d
   return triangles;
 }
 
-/// FNV-1a, 64 bits.
-class Fingerprint {
- public:
-  template <typename Number>
-  void add(const Number& number) {
-    unsigned char bytes[sizeof(Number)];
-    std::memcpy(bytes, &number, sizeof(Number));
-    for (const unsigned char byte : bytes) state_ = (state_ ^ byte) * 0x100000001b3ULL;
-  }
-  void add(const Prism& prism) {
-    add(prism.footprint.size());
-    for (const Vector2d& corner : prism.footprint) add(corner.x()), add(corner.y());
-    add(prism.floor), add(prism.ceiling);
-  }
-  std::uint64_t value() const { return state_; }
-
- private:
-  std::uint64_t state_ = 0xcbf29ce484222325ULL;
-};
-
 }  // namespace
 
 void validate(const Obstacles& obstacles) {
@@ -167,22 +146,6 @@ geometry::Mesh surface(const Prism& prism) {
     mesh.triangles.push_back({i, next + count, i + count});
   }
   return mesh;
-}
-
-std::uint64_t fingerprint(const Obstacles& obstacles) {
-  Fingerprint print;
-  for (const Vector3d& v : obstacles.mesh.vertices)
-    print.add(v.x()), print.add(v.y()), print.add(v.z());
-  for (const auto& triangle : obstacles.mesh.triangles) print.add(triangle);
-  print.add(obstacles.mesh_is_solid);
-  for (const Eigen::Vector3f& p : obstacles.cloud.points)
-    print.add(p.x()), print.add(p.y()), print.add(p.z());
-  print.add(obstacles.cloud.radius);
-  for (const Prism& prism : obstacles.no_fly) print.add(prism);
-  print.add(obstacles.fence.has_value());
-  if (obstacles.fence) print.add(*obstacles.fence);
-  print.add(obstacles.ground_height.value_or(std::numeric_limits<double>::quiet_NaN()));
-  return print.value();
 }
 
 }  // namespace skycap::flight

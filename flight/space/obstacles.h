@@ -2,7 +2,6 @@
 /// geofence, the ground.
 #pragma once
 
-#include <cstdint>
 #include <limits>
 #include <optional>
 #include <span>
@@ -53,9 +52,5 @@ geometry::Mesh surface(const Prism& prism);
 /// offset are positive.
 geometry::Mesh envelope(const geometry::Mesh& mesh, double alpha, double offset);
 geometry::Mesh envelope(std::span<const Eigen::Vector3f> points, double alpha, double offset);
-
-/// A number that changes when any obstacle does (FNV-1a of all of them): it ties a certificate to
-/// what it was proved against.
-std::uint64_t fingerprint(const Obstacles& obstacles);
 
 }  // namespace skycap::flight
