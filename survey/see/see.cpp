@@ -9,6 +9,7 @@
 #include "geometry/points/spaced_points.h"
 #include "geometry/points/spatial_index.h"
 #include "survey/see/frontier.h"
+#include "survey/see/seen_through.h"
 #include "survey/see/visibility_graph.h"
 #include "survey/stopwatch.h"
 
@@ -33,34 +34,6 @@ std::vector<Vector3f> points_inside(const Scan& scan, const Eigen::AlignedBox3d&
   }
   return inside;
 }
-
-/// Whether a measured sight line passes a place: SEE's test of which side of a surface is free.
-/// All points of a scan, as directions from the sensor.
-class FreeSpace {
- public:
-  FreeSpace(std::span<const Vector3f> points, const Vector3d& sensor)
-      : sensor_(sensor), directions_(chord) {
-    for (const Vector3f& point : points) {
-      const Vector3d ray = point.cast<double>() - sensor;
-      directions_.insert(ray.normalized().cast<float>());
-      ranges_.push_back(ray.norm());
-    }
-  }
-  /// Whether every measurement along the line to `place` is from behind it. False if there is none.
-  bool is_free(const Vector3d& place) const {
-    const Vector3d ray = place - sensor_;
-    const auto near = directions_.within(ray.normalized().cast<float>(), chord);
-    return !near.empty() && std::all_of(near.begin(), near.end(), [&](std::uint32_t index) {
-      return ranges_[index] > ray.norm();
-    });
-  }
-
- private:
-  static constexpr double chord = 0.01;  // between unit directions that count as the same line
-  Vector3d sensor_;
-  geometry::SpatialIndex directions_;
-  std::vector<double> ranges_;
-};
 
 }  // namespace
 
@@ -104,9 +77,9 @@ struct SeePlanner::Impl {
   geometry::DensityMap map;
   geometry::SpacedPoints occluders;  // S: a sparse subset of the cloud, for the cap optimiser
   OcclusionTest occlusion;
-  std::vector<View> scans;              // where each scan was taken from
-  std::uint32_t first_new = 0;          // point of the last scan
-  std::optional<FreeSpace> free_space;  // of the last scan, if the configuration asks for it
+  std::vector<View> scans;                // where each scan was taken from
+  std::uint32_t first_new = 0;            // point of the last scan
+  std::optional<SeenThrough> free_space;  // of the last scan, if the configuration asks for it
 
   std::set<std::uint32_t> waiting;  // frontiers without a proposal, another one being too near
   FrontierMap frontiers;            // those with a proposal
@@ -275,7 +248,8 @@ bool SeePlanner::Impl::avoid_occlusion(std::uint32_t point, Frontier& frontier) 
   const Vector3d observing = (frontier.observed_from - frontier.position).normalized();
   const Vector3d centre = frontier.position + offset * observing;
   std::vector<geometry::Neighbour> near;
-  occluders.grid().find_within(map.cloud().positions[point], config.occlusion_search_distance, near);
+  occluders.grid().find_within(map.cloud().positions[point], config.occlusion_search_distance,
+                               near);
   std::vector<Vector3d> occluded;
   occluded.reserve(near.size());
   for (const geometry::Neighbour& neighbour : near) {
