@@ -126,7 +126,9 @@ class RoutePlanner {
     route_.order_length = tour.cost;
   }
 
-  Leg make_leg(const std::vector<Vector3d>& points, const Station* from, const Station* to) {
+  /// Nothing if one of its lines cannot be proven.
+  std::optional<Leg> make_leg(const std::vector<Vector3d>& points, const Station* from,
+                              const Station* to) const {
     Leg leg;
     leg.points = points;
     leg.length = flight::length(points);
@@ -135,6 +137,7 @@ class RoutePlanner {
     for (std::size_t i = 1; i < points.size(); ++i) {
       const LegProof proof = prove(space_, {points[i - 1], points[i]}, route_.clearance,
                                    route_.clearance + reported_surplus);
+      if (!proof.is_proven) return std::nullopt;
       leg.clearance = std::min(leg.clearance, proof.clearance);
       // Autopilots begin to turn when they leave for the station, which is in the last corner.
       const bool is_last = i + 1 == points.size();
@@ -199,13 +202,21 @@ class RoutePlanner {
     return {ways_[i].rbegin(), ways_[i].rend()};
   }
 
-  /// Drops stations that a full battery cannot reach and return from.
+  /// Drops stations whose way cannot be proven in both directions, and those that a full battery
+  /// cannot reach and return from.
   void keep_in_range() {
     std::vector<Station> stations;
     std::vector<std::vector<Vector3d>> ways;
     for (std::size_t i = 0; i < route_.stations.size(); ++i) {
-      const Cost there = sum(pad_cost(), cost_of(make_leg(ways_[i], nullptr, nullptr)));
-      const Cost home = sum(landing_cost(), cost_of(make_leg(way_home(i), nullptr, nullptr)));
+      const std::optional<Leg> out = make_leg(ways_[i], nullptr, nullptr);
+      const std::optional<Leg> back = make_leg(way_home(i), nullptr, nullptr);
+      if (!out || !back) {
+        refuse(route_.stations[i],
+               "the way to it cannot be proven at a clearance of " + metres(route_.clearance));
+        continue;
+      }
+      const Cost there = sum(pad_cost(), cost_of(*out));
+      const Cost home = sum(landing_cost(), cost_of(*back));
       const double needed = there.energy + station_cost(route_.stations[i]).energy + home.energy;
       if (needed > motion_.usable_energy()) {
         refuse(route_.stations[i], "getting there and back takes " + std::to_string(needed / 3600) +
@@ -216,23 +227,33 @@ class RoutePlanner {
       }
       stations.push_back(route_.stations[i]);
       ways.push_back(ways_[i]);
+      outward_.push_back(*out);
+      homeward_.push_back(*back);
     }
     route_.stations = std::move(stations);
     ways_ = std::move(ways);
   }
 
+  /// The leg from station i - 1 to station i.
+  Leg connection(std::size_t i) {
+    const Station &from = route_.stations[i - 1], &to = route_.stations[i];
+    const Path path = finder_.find(from.view.position, to.view.position);
+    if (path.status == PathStatus::found) {
+      if (std::optional<Leg> leg = make_leg(path.points, &from, &to)) return *std::move(leg);
+    }
+    // Both are connected to the pad, so there is a way, though a long one.
+    std::vector<Vector3d> points = way_home(i - 1);
+    points.insert(points.end(), ways_[i].begin() + 1, ways_[i].end());
+    const std::vector<Vector3d> tight =
+        pull_tight(space_, route_.clearance, points, route_.options.path.worthwhile_saving);
+    if (std::optional<Leg> leg = make_leg(tight, &from, &to)) return *std::move(leg);
+    return make_leg(points, &from, &to).value();  // its two parts were proven
+  }
+
   void connect() {
     for (std::size_t i = 1; i < route_.stations.size(); ++i) {
       const Station &from = route_.stations[i - 1], &to = route_.stations[i];
-      Path path = finder_.find(from.view.position, to.view.position);
-      if (path.status != PathStatus::found) {
-        // Both are connected to the pad, so there is a way, though a long one.
-        path.points = way_home(i - 1);
-        path.points.insert(path.points.end(), ways_[i].begin() + 1, ways_[i].end());
-        path.points = pull_tight(space_, route_.clearance, path.points,
-                                 route_.options.path.worthwhile_saving);
-      }
-      route_.legs.push_back(make_leg(path.points, &from, &to));
+      route_.legs.push_back(connection(i));
       route_.station_length += route_.legs.back().length;
       route_.straight_length += (to.view.position - from.view.position).norm();
     }
@@ -242,12 +263,9 @@ class RoutePlanner {
     const std::size_t count = route_.stations.size();
     if (count == 0) return;
     SplitProblem problem;
-    std::vector<Leg> out, back;
     for (std::size_t i = 0; i < count; ++i) {
-      out.push_back(make_leg(ways_[i], nullptr, nullptr));
-      back.push_back(make_leg(way_home(i), nullptr, nullptr));
-      problem.out.push_back(sum(pad_cost(), cost_of(out[i])));
-      problem.back.push_back(sum(landing_cost(), cost_of(back[i])));
+      problem.out.push_back(sum(pad_cost(), cost_of(outward_[i])));
+      problem.back.push_back(sum(landing_cost(), cost_of(homeward_[i])));
       problem.station.push_back(station_cost(route_.stations[i]));
       if (i > 0) problem.leg.push_back(cost_of(route_.legs[i - 1]));
     }
@@ -259,7 +277,7 @@ class RoutePlanner {
     route_.duration = split.time;
     route_.duration_bound = split.time_bound;
     for (const SortieRange& range : split.sorties) {
-      add_sortie(range, problem, out[range.first], back[range.last]);
+      add_sortie(range, problem, outward_[range.first], homeward_[range.last]);
     }
   }
 
@@ -312,6 +330,7 @@ class RoutePlanner {
   PathFinder finder_;
   Vector3d home_;
   std::vector<std::vector<Vector3d>> ways_;  ///< from above the pad to each station kept
+  std::vector<Leg> outward_, homeward_;      ///< along them, once the stations are in range
   Route route_;
 };
 

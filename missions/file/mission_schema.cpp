@@ -1,7 +1,7 @@
 // The table of keys in words: for error messages, for editors, and for the manual.
-#include <cstdio>
 #include <sstream>
 
+#include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include "missions/file/mission_keys.h"
@@ -14,11 +14,7 @@ using Json = nlohmann::ordered_json;
 constexpr double unlimited = std::numeric_limits<double>::max();
 
 /// Twelve digits: more would show that degrees are stored as radians.
-std::string number_text(double value) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.12g", value);
-  return text;
-}
+std::string number_text(double value) { return fmt::format("{:.12g}", value); }
 
 std::string range_text(const KeyRange& range) {
   const bool has_least = range.least > -unlimited;

@@ -12,6 +12,7 @@
 #include "geometry/error.h"
 #include "geometry/io/cloud_io.h"
 #include "geometry/place/pose.h"
+#include "missions/derived/resolved_mission.h"
 #include "missions/file/json_text.h"
 #include "missions/file/mission_keys.h"
 #include "missions/file/number_text.h"
@@ -333,8 +334,8 @@ PackagedSurvey read_package(const std::filesystem::path& folder,
   PackagedSurvey survey;
   try {
     const Json summary = Json::parse(stream);
-    survey.mission =
-        file::parse_mission(mission_text(summary.at("settings")), summary_file.string(), overrides);
+    survey.mission = derived::parse_mission(mission_text(summary.at("settings")),
+                                            summary_file.string(), overrides);
     if (!summary.contains("flight")) {
       fail(summary_file, "is of a survey without a vehicle; plan it with flight.vehicle");
     }

@@ -11,6 +11,7 @@
 #include "geometry/io/cloud_io.h"
 #include "geometry/io/mesh_io.h"
 #include "geometry/surfaces/mesh_distance.h"
+#include "missions/plugins/external_program.h"
 #include "tests/missions/run_skycap.h"
 #include "tests/sim/shapes.h"
 
@@ -118,6 +119,40 @@ TEST_F(ReconstructVerb, SaysWhichCloudHasTooFewPoints) {
   EXPECT_EQ(run.exit_code, 2);
   EXPECT_THAT(run.err, testing::HasSubstr("few.xyz: there are 3 points; a surface needs"));
   EXPECT_FALSE(std::filesystem::exists(folder / "few_mesh.ply"));
+}
+
+/// The program in a folder of its own, far from where it was built.
+class MovedProgram : public testing::Test {
+ protected:
+  MovedProgram() {
+    std::filesystem::copy_file(built_, folder_ / "skycap");
+    geometry::write_cloud(folder_ / "ball.ply", ball_cloud());
+  }
+  void add_module() {
+    const char* module = "libskycap_reconstruction.so";
+    std::filesystem::copy_file(built_.parent_path() / module, folder_ / module);
+  }
+  plugins::ProgramResult reconstruct() const {
+    return plugins::run_external_program({folder_ / "skycap", "reconstruct", "ball.ply"},
+                                         folder_.path());
+  }
+
+  const std::filesystem::path built_ = SKYCAP_PROGRAM;
+  const tests::TestFolder folder_;
+};
+
+TEST_F(MovedProgram, LoadsTheModuleBesideIt) {
+  add_module();
+  const plugins::ProgramResult result = reconstruct();
+  EXPECT_EQ(result.exit_code, 0) << result.output;
+  EXPECT_LT(largest_error(geometry::read_mesh(folder_ / "ball_mesh.ply")), 0.02);
+}
+
+TEST_F(MovedProgram, SaysWhichModuleItMisses) {
+  const plugins::ProgramResult result = reconstruct();
+  EXPECT_EQ(result.exit_code, 2);
+  EXPECT_THAT(result.output, testing::HasSubstr((folder_ / "libskycap_reconstruction.so") +
+                                                ": this part of the program cannot be loaded"));
 }
 
 }  // namespace

@@ -10,7 +10,7 @@
 
 #include "geometry/error.h"
 #include "geometry/points/density.h"
-#include "missions/file/mission_reader.h"
+#include "missions/derived/resolved_mission.h"
 #include "missions/scene/survey_scene.h"
 #include "sim/sensors/depth_camera.h"
 #include "survey/see/see.h"
@@ -62,7 +62,7 @@ std::vector<PointLabel> recomputed_labels(const std::vector<Eigen::Vector3f>& po
 
 // A sixteenth of the D435's pixels and of the density, so that the recomputation takes a second.
 TEST(BunnySurvey, LabelsEqualAFullRecomputationAfterEveryView) {
-  const file::Mission mission = file::read_mission(
+  const file::Mission mission = derived::read_mission(
       SKYCAP_SOURCE_DIR "/missions/bunny.yaml", {{"--set", "sensor.width", "212"},
                                                  {"--set", "sensor.height", "120"},
                                                  {"--set", "planner.density", "9125"},
