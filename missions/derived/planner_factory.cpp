@@ -53,7 +53,7 @@ survey::volumetric::VolumetricConfig volumetric_config(const file::Mission& miss
       .spacing = see.effective_spacing(),
       .scene_box = see.scene_box,
       .candidates = static_cast<std::size_t>(std::lround(views)),
-      .least_height = see.ground_clearance,
+      .least_height = see.least_height,
       .seed = mission.seed ^ candidates_stream,
       .settings = settings,
       .threads = threads};
@@ -75,6 +75,7 @@ survey::skycap::SkycapConfig skycap_config(const file::Mission& mission, unsigne
       .coverage_radius = mission.evaluation.registration_distance,
       .spacing = see.effective_spacing(),
       .view_distance = see.view_distance.value_or(view_distance(camera, see.density)),
+      .max_incidence = mission.sensor.camera.max_incidence,
       .scene_box = see.scene_box,
       .limits = view_limits(mission),
       .stop = mission.planner.skycap_stop,
@@ -82,9 +83,7 @@ survey::skycap::SkycapConfig skycap_config(const file::Mission& mission, unsigne
       .threads = threads};
   // Told of the budgets, it looks for the best view that is still in reach.
   const file::LimitsConfig& limits = mission.limits;
-  if (limits.max_distance < file::LimitsConfig{}.max_distance) {
-    config.stop.most_length = limits.max_distance;
-  }
+  config.stop.most_length = limits.max_distance;
   if (limits.max_minutes) config.stop.most_time = 60.0 * *limits.max_minutes;
   config.stop.speed = limits.speed;
   config.stop.time_per_view = limits.time_per_view;
@@ -94,13 +93,13 @@ survey::skycap::SkycapConfig skycap_config(const file::Mission& mission, unsigne
 /// Throws if the candidates' sphere, where both of its keys are given, is below the least height.
 void validate_sphere(const survey::volumetric::VolumetricConfig& config) {
   const survey::volumetric::VolumetricSettings& settings = config.settings;
-  if (!settings.sphere_centre || !settings.sphere_radius) return;
+  if (!settings.sphere_centre || !settings.sphere_radius || !config.least_height) return;
   const double highest = config.sphere_centre.z() + config.sphere_radius;
-  if (highest > config.least_height) return;
+  if (highest > *config.least_height) return;
   throw Error(ErrorKind::bad_config,
               "volumetric.sphere_radius is " + file::short_text(config.sphere_radius) +
                   "; it must be large enough for the sphere to reach above the least height of " +
-                  file::short_text(config.least_height) +
+                  file::short_text(*config.least_height) +
                   " m, which limits.ground_clearance gives");
 }
 

@@ -52,7 +52,7 @@ void derive_ground_clearance(file::Mission& mission) {
   if (mission.flight.is_flown() && !clearance) clearance = mission.flight.clearance + 0.01;
   if (mission.scene.ground && !clearance) clearance = 0.0;
   if (clearance) {
-    mission.planner.see.ground_clearance = mission.scene.position.z() + *clearance;
+    mission.planner.see.least_height = mission.scene.position.z() + *clearance;
   }
 }
 

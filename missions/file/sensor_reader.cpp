@@ -174,8 +174,8 @@ std::vector<sim::Channel> read_channels(Section section) {
   return channels;
 }
 
-sim::Prism read_prism(Section section) {
-  sim::Prism prism;
+sim::WedgePrism read_prism(Section section) {
+  sim::WedgePrism prism;
   prism.wedge = degree * section.number("wedge_deg");
   prism.refractive_index = section.number("refractive_index", prism.refractive_index);
   prism.rotation_rate = section.number("rotation_rate_hz");

@@ -62,8 +62,8 @@ TEST(ResolvedMission, ReadsTheSitesAirspace) {
   ASSERT_EQ(limits.geofence.size(), 3U);
   EXPECT_EQ(limits.geofence[2], Eigen::Vector2d(50.5, 40.0));
   ASSERT_EQ(limits.no_fly.size(), 1U);
-  EXPECT_EQ(limits.no_fly[0].corners[1], Eigen::Vector2d(5.0, 0.0));
-  EXPECT_EQ(limits.no_fly[0].top, 30.0);
+  EXPECT_EQ(limits.no_fly[0].footprint[1], Eigen::Vector2d(5.0, 0.0));
+  EXPECT_EQ(limits.no_fly[0].ceiling, 30.0);
   EXPECT_EQ(limits.least_height, 5.0);  // the higher of the two
   EXPECT_EQ(limits.most_height, 120.0);
   EXPECT_EQ(limits.stand_off, 2.0);
@@ -92,7 +92,7 @@ TEST(ResolvedMission, MeasuresTheGroundClearanceFromTheScenesBase) {
       "scene: {model: 'builtin:teapot', position: [0, 0, 60]}\n"
       "evaluation: {registration_distance: 0.005}\nlimits: {ground_clearance: 2}\n",
       "m.yaml");
-  EXPECT_EQ(mission.planner.see.ground_clearance, 62.0);
+  EXPECT_EQ(mission.planner.see.least_height, 62.0);
 }
 
 TEST(ResolvedMission, WhatFliesIsPlannedBySkycapUnlessTheMissionSaysOtherwise) {
