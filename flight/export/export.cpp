@@ -178,4 +178,10 @@ std::vector<Vector3d> read_route(const std::filesystem::path& path, const Site& 
   }
 }
 
+std::optional<double> read_return_height(const std::filesystem::path& path) {
+  const std::string content = geometry::read_file(path);
+  if (format_of_file(path, content) != Format::kmz) return std::nullopt;
+  return read_kmz(content).return_height;
+}
+
 }  // namespace skycap::flight

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -48,6 +49,9 @@ Format format_of_file(const std::filesystem::path& path, const std::string& cont
 /// places_of() of a file of any format above, whoever wrote it. Errors name it.
 std::vector<Eigen::Vector3d> read_route(const std::filesystem::path& path, const Site& site,
                                         const Eigen::Vector3d& pad);
+
+/// How high above take-off the vehicle returns by that route file; nothing if it does not say.
+std::optional<double> read_return_height(const std::filesystem::path& path);
 
 /// Rounding moves a place by less than this: half of 1e-7 degrees each way and a centimetre up [m].
 inline constexpr double rounding_bound = 0.02;

@@ -115,7 +115,7 @@ std::optional<std::vector<Eigen::Vector2d>> polygon_in(const YamlNode& node) {
   return polygon.size() >= 3 ? std::optional(polygon) : std::nullopt;
 }
 
-std::optional<survey::Prism> volume_in(const YamlNode& node) {
+std::optional<geometry::Prism> volume_in(const YamlNode& node) {
   const auto entry = [&](std::string_view name) {
     const auto found = std::ranges::find(node.entries, name, &YamlEntry::key);
     return found == node.entries.end() ? YamlNode{} : found->value;
@@ -125,7 +125,7 @@ std::optional<survey::Prism> volume_in(const YamlNode& node) {
   if (node.entries.size() != 3 || !corners || !bottom || !top || *bottom >= *top) {
     return std::nullopt;
   }
-  return survey::Prism{*corners, *bottom, *top};
+  return geometry::Prism{.name = "", .footprint = *corners, .floor = *bottom, .ceiling = *top};
 }
 
 template <typename Item, typename ReadItem>
@@ -146,7 +146,7 @@ bool is_control_character(unsigned char c) { return c < 0x20 || c == 0x7f; }
 std::optional<KeyValue> value_for(const Key& key, const YamlNode& node) {
   if (key.type == KeyType::vector) return vector_in(node, key.range);
   if (key.type == KeyType::polygon) return polygon_in(node);
-  if (key.type == KeyType::volumes) return list_in<survey::Prism>(node, volume_in);
+  if (key.type == KeyType::volumes) return list_in<geometry::Prism>(node, volume_in);
   const auto vector = [&](const YamlNode& item) { return vector_in(item, key.range); };
   if (key.type == KeyType::vectors) return list_in<Eigen::Vector3d>(node, vector);
   if (key.type == KeyType::number) return number_in(node, key.range);

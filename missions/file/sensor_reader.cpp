@@ -10,6 +10,7 @@
 #include <set>
 #include <utility>
 
+#include "geometry/angle.h"
 #include "geometry/error.h"
 #include "missions/file/sensor_presets.h"
 #include "missions/file/yaml_tree.h"
@@ -17,7 +18,7 @@
 namespace skycap::missions::file {
 namespace {
 
-constexpr double degree = std::numbers::pi / 180.0;
+constexpr double degree = geometry::radians_per_degree;
 constexpr double fwhm_to_full_width = 1.69864;  // sqrt(2 / ln 2): half maximum to 1/e^2
 
 /// A map of a description. Every key that is asked for is known; finish() refuses the others.
@@ -174,8 +175,8 @@ std::vector<sim::Channel> read_channels(Section section) {
   return channels;
 }
 
-sim::Prism read_prism(Section section) {
-  sim::Prism prism;
+sim::WedgePrism read_prism(Section section) {
+  sim::WedgePrism prism;
   prism.wedge = degree * section.number("wedge_deg");
   prism.refractive_index = section.number("refractive_index", prism.refractive_index);
   prism.rotation_rate = section.number("rotation_rate_hz");

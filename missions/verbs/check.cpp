@@ -8,10 +8,11 @@
 #include "geometry/surfaces/mesh.h"
 #include "missions/derived/mission_flight.h"
 #include "missions/derived/resolved_mission.h"
-#include "missions/file/mission_keys.h"
 #include "missions/file/number_text.h"
+#include "missions/file/planner_titles.h"
 #include "missions/package/package.h"
 #include "missions/scene/survey_scene.h"
+#include "missions/verbs/check_returns.h"
 #include "missions/verbs/verbs.h"
 
 namespace skycap::missions::verbs {
@@ -43,6 +44,17 @@ geometry::Mesh above(geometry::Mesh mesh, double height) {
   return mesh;
 }
 
+/// The corners of all that is flown beside the pad.
+std::vector<Eigen::Vector3d> places_of(const flight::FlownRoute& route) {
+  std::vector<Eigen::Vector3d> places;
+  for (const flight::FlownPiece& piece : route.pieces) {
+    if (piece.is_over_pad) continue;
+    if (places.empty()) places.push_back(piece.start.to);
+    places.push_back(piece.to);
+  }
+  return places;
+}
+
 /// Proves what a route file's vehicle flies against the mission's scene as it truly is.
 int check_route_file(const CheckOptions& options, const file::Mission& mission,
                      const geometry::Mesh& model, const Console& console) {
@@ -72,8 +84,11 @@ int check_route_file(const CheckOptions& options, const file::Mission& mission,
   if (facts.views.empty() && !route.stops.empty()) {
     console.out << "; where its photographs look is not checked: it is not in its package";
   }
-  console.out << "\n" << std::flush;
-  return is_fine ? 0 : 1;
+  console.out << "\n";
+  const ReturnCheck returns =
+      check_returns(*options.route, options.return_height, mission, space, places_of(route));
+  console.out << file << ": " << returns.text << "\n" << std::flush;
+  return is_fine && returns.is_safe ? 0 : 1;
 }
 
 }  // namespace
@@ -93,9 +108,8 @@ int check(const CheckOptions& options, const Console& console) {
                      "  planner   {}, view distance d {:.4g} m, spacing epsilon {:.4g} m, core "
                      "threshold k {}\n",
                      options.mission.string(), model.triangles.size(), size.x(), size.y(), size.z(),
-                     geometry::surface_area(model),
-                     file::to_text(*file::find_key("planner.name")->get(mission)), view_distance,
-                     see.effective_spacing(), see.effective_core_threshold())
+                     geometry::surface_area(model), file::title_of(mission.planner.name).word,
+                     view_distance, see.effective_spacing(), see.effective_core_threshold())
               << std::flush;
   return 0;
 }

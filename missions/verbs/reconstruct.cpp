@@ -25,7 +25,7 @@ int reconstruct_cloud(const ReconstructOptions& options, const Console& console)
 
   ProgressLine progress(console, false);
   progress.show("reading " + options.cloud.string());
-  const geometry::CloudFile cloud = geometry::read_cloud(options.cloud);
+  const geometry::AttributedCloud cloud = geometry::read_cloud(options.cloud);
   progress.show("reconstructing the surface of " + options.cloud.string());
   const auto start = std::chrono::steady_clock::now();
   const plugins::Reconstruction result = [&] {

@@ -57,7 +57,7 @@ void run(const std::string& name, const std::string& mission_text, double resolu
   const sim::DepthCamera camera(mission.sensor.camera);
   const auto [centre, radius] = scene.view_sphere();
   const auto views =
-      survey::volumetric::sphere_views(clouds + 1 + candidates, centre, radius, -1e9, 1);
+      survey::volumetric::sphere_views(clouds + 1 + candidates, centre, radius, std::nullopt, 1);
   const auto directions =
       survey::volumetric::ray_directions(geometry::Camera(mission.sensor.camera.camera), {});
 

@@ -33,7 +33,8 @@ Rooms house() {
     rooms[room] = std::move(others);
   };
   add("sim/scene", {});
-  add("sim/models", {});
+  add("sim/models/masonry", {});
+  add("sim/models", {"sim/models/masonry"});
   add("sim/sensors", {"sim/scene"});
 
   add("survey", {});

@@ -4,8 +4,9 @@
 #include <gtest/gtest.h>
 
 #include "geometry/error.h"
+#include "missions/derived/mission_flight.h"
 #include "missions/derived/site.h"
-#include "missions/file/mission_keys.h"
+#include "missions/file/number_text.h"
 
 namespace skycap::missions {
 namespace {
@@ -62,8 +63,8 @@ TEST(ResolvedMission, ReadsTheSitesAirspace) {
   ASSERT_EQ(limits.geofence.size(), 3U);
   EXPECT_EQ(limits.geofence[2], Eigen::Vector2d(50.5, 40.0));
   ASSERT_EQ(limits.no_fly.size(), 1U);
-  EXPECT_EQ(limits.no_fly[0].corners[1], Eigen::Vector2d(5.0, 0.0));
-  EXPECT_EQ(limits.no_fly[0].top, 30.0);
+  EXPECT_EQ(limits.no_fly[0].footprint[1], Eigen::Vector2d(5.0, 0.0));
+  EXPECT_EQ(limits.no_fly[0].ceiling, 30.0);
   EXPECT_EQ(limits.least_height, 5.0);  // the higher of the two
   EXPECT_EQ(limits.most_height, 120.0);
   EXPECT_EQ(limits.stand_off, 2.0);
@@ -92,7 +93,8 @@ TEST(ResolvedMission, MeasuresTheGroundClearanceFromTheScenesBase) {
       "scene: {model: 'builtin:teapot', position: [0, 0, 60]}\n"
       "evaluation: {registration_distance: 0.005}\nlimits: {ground_clearance: 2}\n",
       "m.yaml");
-  EXPECT_EQ(mission.planner.see.ground_clearance, 62.0);
+  EXPECT_EQ(derived::least_height_above_ground(mission), 62.0);
+  EXPECT_EQ(derived::view_limits(mission).least_height, 62.0);
 }
 
 TEST(ResolvedMission, WhatFliesIsPlannedBySkycapUnlessTheMissionSaysOtherwise) {
@@ -114,6 +116,16 @@ TEST(ResolvedMission, ChecksSeesDensityOnlyForSee) {
   }
   for (const char* name : {"skycap", "rsv", "rse", "oa", "uv", "pc", "af", "ae"}) {
     EXPECT_EQ(complaint(sparse + name + "}\n"), "") << name;
+  }
+}
+
+// 51.7534 is no binary fraction: by way of radians it came back as 51.753399999999999.
+TEST(ResolvedMission, KeepsThePlaceAsItIsWritten) {
+  for (const double latitude : {51.7534, -33.856784, 0.1, 47.3}) {
+    const file::Mission mission =
+        parsed("site: {latitude_deg: " + file::exact_text(latitude) + ", longitude_deg: -1.254}\n");
+    EXPECT_EQ(derived::site_of(mission).origin.latitude_deg, latitude);
+    EXPECT_EQ(derived::site_of(mission).origin.longitude_deg, -1.254);
   }
 }
 

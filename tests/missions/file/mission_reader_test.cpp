@@ -72,7 +72,7 @@ TEST(MissionReader, SetsEachKeyToWhatItGivesBack) {
         value = std::vector<Eigen::Vector2d>{{0, 0}, {9, 0}, {0, 9.5}};
         break;
       case file::KeyType::volumes:
-        value = std::vector<survey::Prism>{{{{0, 0}, {1, 0}, {0, 1}}, -2.0, 30.0}};
+        value = std::vector<geometry::Prism>{{"", {{0, 0}, {1, 0}, {0, 1}}, -2.0, 30.0}};
         break;
       case file::KeyType::vectors:
         value = std::vector<Eigen::Vector3d>{{10, -20, 90}, {0.5, 0, -45}};

@@ -175,7 +175,7 @@ TEST(Package, ShowsWhatThePlannerBelieves) {
   EXPECT_GT(belief["next_gain"], 0.0);
   EXPECT_EQ(belief["noise_m"], record.belief->noise);
 
-  const geometry::CloudFile map = geometry::read_cloud(folder / "coverage.ply");
+  const geometry::AttributedCloud map = geometry::read_cloud(folder / "coverage.ply");
   ASSERT_EQ(map.colours.size(), map.positions.size());
   const auto is_red = [](const auto& colour) { return colour[0] > 200 && colour[1] < 100; };
   std::size_t guessed = 0;

@@ -93,8 +93,9 @@ TEST(BunnySurvey, LabelsEqualAFullRecomputationAfterEveryView) {
   };
   survey::run_survey(planner, scene->first_view(mission.seed), {.max_views = 40},
                      {.sense =
-                          [&](const geometry::View& view) {
-                            return camera.scan(scene->scene(), view, frame++, 1);
+                          [&](const geometry::View& view, geometry::Scan recycled) {
+                            return camera.scan(scene->scene(), view, frame++, 1,
+                                               std::move(recycled));
                           },
                       .report = check});
   EXPECT_GT(frame, 5U);

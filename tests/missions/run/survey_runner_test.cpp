@@ -1,6 +1,7 @@
 #include "missions/run/survey_runner.h"
 
 #include <algorithm>
+#include <random>
 #include <stop_token>
 
 #include <gmock/gmock.h>
@@ -13,6 +14,7 @@
 #include "missions/derived/planner_factory.h"
 #include "missions/derived/resolved_mission.h"
 #include "missions/derived/site.h"
+#include "missions/file/mission_keys.h"
 #include "missions/judge/coverage.h"
 #include "tests/missions/run_skycap.h"
 
@@ -53,6 +55,19 @@ TEST(SurveyScene, StartsWhereTheMissionSaysOrAtRandomAtTheStatedDistance) {
   EXPECT_LT((view.direction + Eigen::Vector3d::UnitY()).norm(), 1e-12);
 }
 
+// The order of the draws is part of a seed's meaning: the same start from every compiler.
+TEST(SurveyScene, DrawsRandomStartsInAStatedOrder) {
+  const file::Mission mission = derived::parse_mission(quick_mission(), "m.yaml");
+  const scene::SurveyScene scene(mission, "");
+  for (std::uint64_t seed = 0; seed < 5; ++seed) {
+    std::mt19937_64 random(seed);
+    std::normal_distribution<double> normal;
+    Eigen::Vector3d from_centre;
+    for (const int axis : {2, 1, 0}) from_centre[axis] = normal(random);
+    EXPECT_LT((scene.first_view(seed).direction + from_centre.normalized()).norm(), 1e-12) << seed;
+  }
+}
+
 TEST(SurveyScene, KeepsRandomStartsAboveTheGroundClearance) {
   const file::Mission mission = derived::parse_mission(
       quick_mission(), "m.yaml", {{"--set", "limits.ground_clearance", "0.5"}});
@@ -62,11 +77,22 @@ TEST(SurveyScene, KeepsRandomStartsAboveTheGroundClearance) {
   }
 }
 
+/// All that planner.name knows.
+std::vector<std::string> planner_names() {
+  std::vector<std::string> names;
+  for (const file::Key& key : file::mission_keys()) {
+    if (key.path == "planner.name") names.assign(key.choices.begin(), key.choices.end());
+  }
+  return names;
+}
+
 // Each planner that a mission can name surveys the quick mission's scene.
 TEST(RunSurvey, EveryPlannerCoversMostOfTheScene) {
-  for (const char* name : {"see++", "see", "skycap"}) {
-    const file::Mission mission =
-        derived::parse_mission(quick_mission(), "m.yaml", {{"--planner", "planner.name", name}});
+  EXPECT_EQ(planner_names().size(), 10U);
+  for (const std::string& name : planner_names()) {
+    const file::Mission mission = derived::parse_mission(
+        quick_mission(), "m.yaml",
+        {{"--planner", "planner.name", name}, {"--set", "volumetric.view_limit", "8"}});
     const run::SurveyRecord record =
         run::run_survey(mission, scene::SurveyScene(mission, ""), 1, 1);
     EXPECT_GT(record.coverage(), 0.6) << name;
@@ -82,10 +108,11 @@ TEST(RunSurvey, EveryPlannerKeepsToTheSiteAndTheLimits) {
       "  no_fly: [{corners: [[1, -3], [3, -3], [3, 1], [1, 1]], bottom: -5, top: 1.5}]\n"
       "  lowest_height: 0.2\n"
       "  highest_height: 1.9\n";
-  for (const char* name : {"see++", "see", "skycap"}) {
+  for (const std::string& name : planner_names()) {
     const file::Mission mission =
         derived::parse_mission(quick_mission(site), "m.yaml",
                                {{"--planner", "planner.name", name},
+                                {"--set", "volumetric.view_limit", "8"},
                                 {"--set", "limits.stand_off", "0.4"},
                                 {"--set", "limits.highest_pitch_deg", "0"}});
     const scene::SurveyScene scene(mission, "");
@@ -302,12 +329,17 @@ TEST(Model, HasLevelsOfDetailOfTheSameShape) {
   const auto printed = [](const std::string& model, const char* detail) {
     return run_skycap({"model", model, "--detail", detail});
   };
+  const auto number_after = [](const std::string& text, const std::string& word) {
+    return std::stod(text.substr(text.find(word) + word.size()));
+  };
   const auto coarse = printed("radcliffe-camera", "coarse");
   const auto fine = printed("radcliffe-camera", "fine");
-  EXPECT_THAT(coarse.out, HasSubstr(" 67296 triangles"));
-  EXPECT_THAT(fine.out, HasSubstr(" 2911324 triangles"));
+  EXPECT_GT(number_after(fine.out, ": "), 10.0 * number_after(coarse.out, ": "));  // triangles
   EXPECT_THAT(coarse.out, HasSubstr(" x 40, area"));
   EXPECT_THAT(fine.out, HasSubstr(" x 40, area"));
+  // Coarse ornaments are plain boxes and curves of few chords.
+  const double area = number_after(fine.out, "area ");
+  EXPECT_NEAR(number_after(coarse.out, "area "), area, 0.25 * area);
 
   const std::string mission = folder.write("m.yaml", quick_mission());
   EXPECT_NE(printed(mission, "coarse").out, printed(mission, "fine").out);
