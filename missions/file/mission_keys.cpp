@@ -175,11 +175,11 @@ std::vector<Key> survey_keys() {
                     [](Mission & m) -> auto& { return m.limits.ground_clearance; },
                     "Least height of a view above the scene's base.")),
       required(number(
-          "evaluation.registration_distance", "m", above(0, 1e3),
+          "evaluation.registration_distance", "m", between(1e-6, 1e3),
           [](Mission & m) -> auto& { return m.evaluation.registration_distance; },
           "r_d: a surface sample with a stored measurement this near is covered.")),
       integer(
-          "evaluation.samples", "", between(100, 1e8),
+          "evaluation.samples", "", between(100, 1e7),
           [](Mission & m) -> auto& { return m.evaluation.samples; },
           "Points spread evenly over the surface, by which coverage is measured."),
       integer(
@@ -275,8 +275,8 @@ std::vector<Key> planner_keys() {
       choice("planner.offset_line", {"sight_line", "normal"}, see(&See::offset_line),
              "Along which line the start of the occlusion test (zeta) is looked for."),
       otherwise("r",
-                number("planner.occlusion_radius", "m", above(0, 1e3), see(&See::occlusion_radius),
-                       "Ball radius and step of the occlusion test.")),
+                number("planner.occlusion_radius", "m", between(1e-4, 1e3),
+                       see(&See::occlusion_radius), "Ball radius and step of the occlusion test.")),
       choice("planner.march_end", {"search_distance", "search_distance_from_offset"},
              see(&See::march_end), "Whether the occlusion test ends at psi or at zeta + psi."),
       boolean("planner.optimise_views", see(&See::optimise_views),

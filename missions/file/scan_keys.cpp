@@ -72,7 +72,7 @@ std::vector<Key> scan_keys() {
              "Error of the believed mount.position."),
       vector("scan.boresight_error_deg", "degrees", between(-45, 45), scan(&Scan::boresight_error),
              "Error of the believed rotation, small angles about the carrier's axes."),
-      number("scan.frame_period", "s", above(0, 1e5), scan(&Scan::frame_period),
+      number("scan.frame_period", "s", between(1e-6, 1e5), scan(&Scan::frame_period),
              "Time between the images of a camera, along a route that does not say where."),
       number("scan.depth_unit", "m", above(0, 1), scan(&Scan::depth_unit),
              "What one step of a 16-bit depth image stands for."),

@@ -20,7 +20,7 @@ std::vector<Key> volumetric_keys() {
           "130; in a benchmark, the most views that see needed",
           integer("volumetric.view_limit", "views", between(1, 1e6), setting(&Settings::view_limit),
                   "V: a volumetric survey ends after this many views.")),
-      number("volumetric.candidates_per_view", "", above(0, 1e6),
+      number("volumetric.candidates_per_view", "", above(0, 1e4),
              setting(&Settings::candidates_per_view),
              "Candidate views on the sphere for each view of the limit."),
       otherwise("the surface's centroid",
