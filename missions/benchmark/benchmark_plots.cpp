@@ -1,10 +1,11 @@
 #include "missions/benchmark/benchmark_plots.h"
 
 #include <algorithm>
-#include <cstdio>
 #include <filesystem>
 #include <system_error>
 #include <utility>
+
+#include <fmt/format.h>
 
 #include "geometry/error.h"
 #include "geometry/io/file.h"
@@ -49,9 +50,7 @@ std::string block_name(const std::string& plot, const BenchmarkCell& cell, const
 std::string numbers(std::initializer_list<double> values) {
   std::string line;
   for (const double value : values) {
-    char text[32];
-    std::snprintf(text, sizeof text, "%.6g ", value);
-    line += text;
+    line += fmt::format("{:.6g} ", value);
   }
   line.back() = '\n';
   return line;

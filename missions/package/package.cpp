@@ -15,6 +15,7 @@
 #include "geometry/io/json.h"
 #include "geometry/place/pose.h"
 #include "geometry/place/world.h"
+#include "missions/derived/resolved_mission.h"
 #include "missions/file/json_text.h"
 #include "missions/file/mission_keys.h"
 #include "missions/file/number_text.h"
@@ -45,11 +46,12 @@ Json json_of(const std::vector<Eigen::Vector2d>& polygon) {
   return corners;
 }
 
-Json json_of(const std::vector<survey::Prism>& volumes) {
+Json json_of(const std::vector<geometry::Prism>& volumes) {
   Json list = Json::array();
-  for (const survey::Prism& volume : volumes) {
-    list.push_back(
-        {{"corners", json_of(volume.corners)}, {"bottom", volume.bottom}, {"top", volume.top}});
+  for (const geometry::Prism& volume : volumes) {
+    list.push_back({{"corners", json_of(volume.footprint)},
+                    {"bottom", volume.floor},
+                    {"top", volume.ceiling}});
   }
   return list;
 }
@@ -114,6 +116,21 @@ Json settings(const file::Mission& mission) {
   return values;
 }
 
+/// How the vehicle comes home when its link, its battery or its pilot asks for it.
+Json return_summary(const SurveyMission& flight) {
+  if (!flight.route.returns) return {};
+  const flight::Returns& returns = *flight.route.returns;
+  return {{"height_m", returns.height},
+          {"clearance_m", returns.clearance},
+          {"nearest",
+           {{"from", json_of(returns.nearest.from)},
+            {"part", name_of(returns.nearest.piece.part)},
+            {"obstacle", returns.obstacle}}},
+          {"landings", json_of(returns.law.landings)},
+          {"energy_wh", returns.energy / 3600.0},
+          {"parameters", flight.files.parameters}};
+}
+
 /// The flight of the survey and the route in the package, in metres, seconds and watt hours.
 Json flight_summary(const run::FlownSurvey& flown, const SurveyMission& flight) {
   const flight::Route& route = flight.route;
@@ -163,6 +180,7 @@ Json flight_summary(const run::FlownSurvey& flown, const SurveyMission& flight) 
             {"min_clearance_m", route.min_clearance},
             {"sorties", sorties},
             {"unreached", unreached}}},
+          {"return", return_summary(flight)},
           {"files", files},
           {"notes", flight.files.notes}};
 }
@@ -310,14 +328,14 @@ std::optional<SurveyMission> stage_package(const file::Mission& mission,
   folder.replace(
       [](std::string_view name) { return name == free_space_name || is_flight_file(name); });
   const double radius = 2.0 * mission.planner.see.resolution_radius;
-  std::vector<Eigen::Vector3f> normals =
+  const std::vector<Eigen::Vector3f> normals =
       cloud_normals(record.cloud, sensor_positions(record), radius, threads);
   geometry::write_cloud(folder.stage("cloud.ply"), {.positions = record.cloud.positions,
-                                                    .normals = std::move(normals),
+                                                    .normals = normals,
                                                     .views = record.cloud.views,
                                                     .colours = {}});
   if (record.belief) {
-    geometry::write_cloud(folder.stage("coverage.ply"), coverage_map(*record.belief));
+    geometry::write_cloud(folder.stage("coverage.ply"), columns_of(coverage_map(*record.belief)));
   }
   folder.write("views.csv", views_csv(record));
   folder.write("trajectory.tum", trajectory_tum(record));
@@ -329,7 +347,13 @@ std::optional<SurveyMission> stage_package(const file::Mission& mission,
     flight = SurveyMission{};
     try {
       flight->route =
-          plan_flight(mission, *record.flown->measured, record.flown->pad, views_of(record), stop);
+          plan_flight(mission, *record.flown->measured, record.flown->pad, views_of(record));
+      if (flight->route.sorties.empty() && !flight->route.unreached.empty()) {
+        const flight::Unreached& first = flight->route.unreached.front();
+        throw Error(ErrorKind::bad_config, "no view can be flown to; view " +
+                                               std::to_string(first.station.view_index) + ": " +
+                                               first.reason);
+      }
       flight->files =
           stage_flight(mission, flight->route, *record.flown->measured, package_formats(), folder);
     } catch (const Error& error) {
@@ -362,8 +386,8 @@ PackagedSurvey read_package(const std::filesystem::path& folder,
   PackagedSurvey survey;
   try {
     const Json summary = read_summary(summary_file);
-    survey.mission =
-        file::parse_mission(mission_text(summary.at("settings")), summary_file.string(), overrides);
+    survey.mission = derived::parse_mission(mission_text(summary.at("settings")),
+                                            summary_file.string(), overrides);
     if (!summary.contains("flight")) {
       fail(summary_file, "is of a survey without a vehicle; plan it with flight.vehicle");
     }

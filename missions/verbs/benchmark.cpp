@@ -1,13 +1,13 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <cstdio>
 #include <map>
 #include <memory>
 #include <mutex>
 #include <optional>
 #include <string>
 
+#include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include "geometry/error.h"
@@ -18,6 +18,7 @@
 #include "missions/benchmark/benchmark_results.h"
 #include "missions/benchmark/contestants.h"
 #include "missions/benchmark/trial_files.h"
+#include "missions/derived/resolved_mission.h"
 #include "missions/file/json_text.h"
 #include "missions/file/mission_keys.h"
 #include "missions/scene/survey_scene.h"
@@ -73,7 +74,7 @@ file::Mission mission_for(const fs::path& file, const benchmark::Contestant& con
   if (std::ranges::find(names, contestant.name) != names.end()) {
     overrides.push_back({"--planners", "planner.name", contestant.name});
   }
-  return file::read_mission(file, overrides);
+  return derived::read_mission(file, overrides);
 }
 
 std::vector<Entry> entries_of(const BenchmarkOptions& options) {
@@ -149,12 +150,9 @@ class Progress {
       const Duration& known = own.count > 0 ? own : of_any_;
       work += static_cast<double>(left) * known.seconds / known.count;
     }
-    char text[200];
     const auto minutes = static_cast<int>(std::ceil(work / threads_ / 60.0));
-    std::snprintf(text, sizeof text, "benchmark: %zu of %zu surveys, about %d min left; %s %s",
-                  done_, total_, minutes, item.entry->mission.name.c_str(),
-                  item.entry->contestant->title.c_str());
-    line_.show(text);
+    line_.show(fmt::format("benchmark: {} of {} surveys, about {} min left; {} {}", done_, total_,
+                           minutes, item.entry->mission.name, item.entry->contestant->title));
   }
 
  private:
