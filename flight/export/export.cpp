@@ -10,6 +10,7 @@
 #include "flight/export/wpml_file.h"
 #include "geometry/error.h"
 #include "geometry/io/file.h"
+#include "geometry/place/world.h"
 
 namespace skycap::flight {
 namespace {
@@ -169,10 +170,14 @@ Format format_of_file(const std::filesystem::path& path, const std::string& cont
 
 std::vector<Vector3d> read_route(const std::filesystem::path& path, const Site& site,
                                  const Vector3d& pad) {
-  const std::string content = geometry::read_file(path);
+  const std::string content = geometry::read_file(path, largest_route_file);
   const Format format = format_of_file(path, content);
   try {
-    return places_of(content, format, site, pad);
+    std::vector<Vector3d> points = places_of(content, format, site, pad);
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      geometry::require_place(points[i], "place " + std::to_string(i + 1));
+    }
+    return points;
   } catch (const Error& error) {
     throw Error(error.kind(), path.string() + ": " + error.what());
   }

@@ -1,6 +1,7 @@
 #include "flight/interpreter/certified_export.h"
 
 #include <algorithm>
+#include <system_error>
 
 #include "flight/interpreter/flight_facts.h"
 #include "flight/interpreter/flown_route.h"
@@ -29,7 +30,7 @@ ExportResult export_flight(const FlightPlan& plan, Format format, const FreeSpac
     if (problems.empty()) return;
     std::error_code ignored;
     std::filesystem::remove(temporary, ignored);
-    throw Error(ErrorKind::bad_file,
+    throw Error(ErrorKind::bad_geometry,
                 path.string() + " is not written: read back, " + problems.front());
   };
   geometry::write_file(temporary, write(plan, format));
@@ -41,7 +42,11 @@ ExportResult export_flight(const FlightPlan& plan, Format format, const FreeSpac
   const FlownProof proof =
       prove(route, space, space_over_pad(plan), clearance, plan.clearance + reported_surplus);
   refuse(proof.problems);
-  std::filesystem::rename(temporary, path);
+  std::error_code failure;
+  std::filesystem::rename(temporary, path, failure);
+  if (failure) {
+    throw Error(ErrorKind::bad_file, path.string() + " cannot be written: " + failure.message());
+  }
   return {proof.clearance, notes_of(plan, format)};
 }
 

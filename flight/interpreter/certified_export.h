@@ -18,7 +18,7 @@ struct ExportResult {
 
 /// Writes the file under a temporary name, reads it back, interprets it as its target would fly it,
 /// and proves that in `space` again, at the plan's clearance less `rounding_bound`; only then it
-/// gets its name. Throws Error{bad_file} if any of that fails: the name then stays as it was.
+/// gets its name. Throws Error{bad_geometry} if any of that fails: the name then stays as it was.
 ExportResult export_flight(const FlightPlan& plan, Format format, const FreeSpace& space,
                            const std::filesystem::path& path);
 

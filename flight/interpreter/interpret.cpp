@@ -74,7 +74,7 @@ FlownRoute interpret(const std::string& content, Format format, const FlightFact
 }
 
 FlownRoute interpret_file(const std::filesystem::path& path, const FlightFacts& facts) {
-  const std::string content = geometry::read_file(path);
+  const std::string content = geometry::read_file(path, largest_route_file);
   const Format format = format_of_file(path, content);
   try {
     return interpret(content, format, facts);

@@ -11,7 +11,10 @@
 
 #include "geometry/error.h"
 #include "geometry/io/cloud_io.h"
+#include "geometry/io/file.h"
+#include "geometry/io/json.h"
 #include "geometry/place/pose.h"
+#include "geometry/place/world.h"
 #include "missions/derived/resolved_mission.h"
 #include "missions/file/json_text.h"
 #include "missions/file/mission_keys.h"
@@ -80,11 +83,13 @@ Json setting_json(const file::KeyValue& value) {
 std::string mission_text(const Json& settings) {
   Json nested = Json::object();
   for (const auto& [path, value] : settings.items()) {
+    // A pointer with a number in it would grow a list; no key of ours has one.
+    if (!file::find_key(path)) throw Error(ErrorKind::bad_file, "settings." + path + " is unknown");
     std::string pointer = "/" + path;
     std::ranges::replace(pointer, '.', '/');
     nested[Json::json_pointer(pointer)] = value;
   }
-  return nested.dump(1);
+  return nested.dump(1, ' ', false, Json::error_handler_t::replace);
 }
 
 /// What the planner believes at the end: shares are of the surface, seen and guessed.
@@ -184,6 +189,21 @@ Json flight_summary(const run::FlownSurvey& flown, const SurveyMission& flight) 
           {"return", return_summary(flight)},
           {"files", files},
           {"notes", flight.files.notes}};
+}
+
+Eigen::Vector3d vector_of(const Json& json) {
+  return {json.at(0).get<double>(), json.at(1).get<double>(), json.at(2).get<double>()};
+}
+
+/// The summary of a package. Throws Error{bad_file}.
+Json read_summary(const std::filesystem::path& file) {
+  constexpr std::size_t largest = std::size_t{256} << 20;  // of a million views
+  Json summary = geometry::parse_json<Json>(geometry::read_file(file, largest));
+  if (summary.is_object()) return summary;
+  throw Error(ErrorKind::bad_file,
+              file.string() +
+                  ": is not a package's summary, but no JSON or nested too deep; name the folder "
+                  "of a mission package");
 }
 
 std::vector<geometry::View> views_of(const run::SurveyRecord& record) {
@@ -310,7 +330,7 @@ std::string summary_json(const file::Mission& mission, const run::SurveyRecord& 
 std::optional<SurveyMission> stage_package(const file::Mission& mission,
                                            const run::SurveyRecord& record,
                                            const CoverageFigures& coverage, unsigned threads,
-                                           geometry::OutputFolder& folder) {
+                                           geometry::OutputFolder& folder, std::stop_token stop) {
   folder.replace(
       [](std::string_view name) { return name == free_space_name || is_flight_file(name); });
   const double radius = 2.0 * mission.planner.see.resolution_radius;
@@ -343,7 +363,9 @@ std::optional<SurveyMission> stage_package(const file::Mission& mission,
       flight->files =
           stage_flight(mission, flight->route, *record.flown->measured, package_formats(), folder);
     } catch (const Error& error) {
-      flight->failure = error.what();  // the survey itself shall not be lost
+      // The survey itself shall not be lost.
+      flight->failure =
+          stop.stop_requested() ? "interrupted; skycap export makes it" : error.what();
     }
   }
   // Last, so that whoever sees the summary sees the rest.
@@ -351,25 +373,25 @@ std::optional<SurveyMission> stage_package(const file::Mission& mission,
   return flight;
 }
 
-PackageSummary read_summary(const std::filesystem::path& folder,
-                            const std::vector<file::KeyOverride>& overrides) {
+PackageSummary read_package_summary(const std::filesystem::path& folder,
+                                    const std::vector<file::KeyOverride>& overrides) {
   const std::filesystem::path file = folder / summary_name;
-  std::ifstream stream(file);
-  if (!stream) fail(file, "cannot be read; name the folder of a mission package");
+  geometry::finish_commit(folder);
   try {
-    const Json json = Json::parse(stream);
+    const Json json = read_summary(file);
     PackageSummary summary;
     summary.mission =
         derived::parse_mission(mission_text(json.at("settings")), file.string(), overrides);
-    const auto vector = [](const Json& values) {
-      return Eigen::Vector3d(values.at(0).get<double>(), values.at(1).get<double>(),
-                             values.at(2).get<double>());
-    };
     if (json.contains("flight")) {
-      summary.pad = summary.mission.flight.takeoff.value_or(vector(json["flight"].at("pad")));
+      summary.pad = summary.mission.flight.takeoff.value_or(vector_of(json["flight"].at("pad")));
+      geometry::require_place(*summary.pad, file.string() + ": flight.pad");
     }
     for (const Json& view : json.at("per_view")) {
-      summary.views.push_back({vector(view.at("position")), vector(view.at("direction"))});
+      summary.views.push_back({vector_of(view.at("position")), vector_of(view.at("direction"))});
+      const std::string place =
+          file.string() + ": per_view[" + std::to_string(summary.views.size() - 1) + "].";
+      geometry::require_place(summary.views.back().position, place + "position");
+      geometry::require_direction(summary.views.back().direction, place + "direction");
     }
     return summary;
   } catch (const Json::exception& error) {
@@ -377,9 +399,18 @@ PackageSummary read_summary(const std::filesystem::path& folder,
   }
 }
 
+bool is_complete_result(const std::filesystem::path& json_file) {
+  try {
+    const Json json = geometry::parse_json<Json>(geometry::read_file(json_file));
+    return json.is_object() && json.value("complete", Json()) == Json(true);
+  } catch (const Error&) {
+    return false;  // there is none
+  }
+}
+
 PackagedSurvey read_package(const std::filesystem::path& folder,
                             const std::vector<file::KeyOverride>& overrides) {
-  PackageSummary summary = read_summary(folder, overrides);
+  PackageSummary summary = read_package_summary(folder, overrides);
   if (!summary.pad) {
     fail(folder / summary_name, "is of a survey without a vehicle; plan it with flight.vehicle");
   }

@@ -26,7 +26,7 @@ flight::FlightFacts facts_of(const file::Mission& mission, const std::filesystem
   flight::FlightFacts facts = derived::flight_facts(mission);
   const std::filesystem::path folder = route.parent_path();
   if (!std::filesystem::exists(folder / package::summary_name)) return facts;
-  package::PackageSummary summary = package::read_summary(folder, {});
+  package::PackageSummary summary = package::read_package_summary(folder, {});
   facts.views = std::move(summary.views);
   if (!facts.is_pad_known && summary.pad) {
     facts.pad = *summary.pad;

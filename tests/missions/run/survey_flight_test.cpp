@@ -275,7 +275,7 @@ TEST(FlownPackage, BrokenPackagesAndRoutesAreNamed) {
     return run.err;
   };
   EXPECT_THAT(message({"export", folder / "nowhere", "--format", "kml"}),
-              HasSubstr("summary.json: cannot be read; name the folder of a mission package"));
+              HasSubstr("summary.json: there is no such file"));
   EXPECT_THAT(message({"export", folder / "out", "--format", "pdf"}),
               HasSubstr("format \"pdf\" is not known; there are plan, "));
   const TestFolder broken;
