@@ -13,9 +13,6 @@ using Eigen::Vector3d;
 /// braking and two corners are left [s].
 constexpr double waiting_time = 12.0;
 
-/// DJI's applications take no lower height of return [m above the pad].
-constexpr double least_of_dji = 20.0;
-
 double least_height(const ReturnLaw& law) {
   const bool has_dji = std::ranges::find(law.dialects, Dialect::dji) != law.dialects.end();
   return std::ceil(std::max(law.landing_climb, has_dji ? least_of_dji : 0.0));

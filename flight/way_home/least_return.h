@@ -28,6 +28,9 @@ struct ReturnSearch {
   std::string why;  ///< what is in the way of the last height tried, if none is found
 };
 
+/// DJI's applications take no lower height of return [m above the pad].
+inline constexpr double least_of_dji = 20.0;
+
 /// Looks for the least whole metre above the pad at which the returns from every point of all legs
 /// are proven at the clearance, up to the height `highest` (z). Heights are tried one by one, for a
 /// greater one need not be safer where the airspace has a ceiling. `law.level` is not used.
