@@ -271,20 +271,4 @@ std::vector<TimedPose> read_tum(const std::string& text) {
   return poses;
 }
 
-std::string write_euroc(const std::vector<TimedPose>& poses) {
-  std::string text =
-      "#timestamp [ns],p_RS_R_x [m],p_RS_R_y [m],p_RS_R_z [m],q_RS_w [],q_RS_x [],q_RS_y [],"
-      "q_RS_z []\n";
-  for (const TimedPose& pose : poses) {
-    const Eigen::Quaterniond q(pose.world_from_camera.linear());
-    const Vector3d p = pose.world_from_camera.translation();
-    text += std::to_string(std::llround(pose.time * 1e9));
-    for (const double number : {p.x(), p.y(), p.z(), q.w(), q.x(), q.y(), q.z()}) {
-      text += "," + fixed(number, 9);
-    }
-    text += "\n";
-  }
-  return text;
-}
-
 }  // namespace skycap::flight

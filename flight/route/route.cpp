@@ -121,7 +121,9 @@ class RoutePlanner {
     route_.order_length = tour.cost;
   }
 
-  Leg make_leg(const std::vector<Vector3d>& points, const Station* from, const Station* to) {
+  /// Nothing if one of its lines cannot be proven.
+  std::optional<Leg> make_leg(const std::vector<Vector3d>& points, const Station* from,
+                              const Station* to) const {
     Leg leg;
     leg.points = points;
     leg.length = flight::length(points);
@@ -130,6 +132,7 @@ class RoutePlanner {
     for (std::size_t i = 1; i < points.size(); ++i) {
       const LegProof proof = prove(space_, {points[i - 1], points[i]}, route_.clearance,
                                    route_.clearance + reported_surplus);
+      if (!proof.is_proven) return std::nullopt;
       leg.clearance = std::min(leg.clearance, proof.clearance);
       // Autopilots begin to turn when they leave for the station, which is in the last corner.
       const bool is_last = i + 1 == points.size();
@@ -203,13 +206,21 @@ class RoutePlanner {
     return {ways_[i].rbegin(), ways_[i].rend()};
   }
 
-  /// Drops stations that a full battery cannot reach and return from.
+  /// Drops stations whose way cannot be proven in both directions, and those that a full battery
+  /// cannot reach and return from.
   void keep_in_range() {
     std::vector<Station> stations;
     std::vector<std::vector<Vector3d>> ways;
     for (std::size_t i = 0; i < route_.stations.size(); ++i) {
-      const Cost there = sum(pad_cost(), cost_of(make_leg(ways_[i], nullptr, nullptr)));
-      const Cost home = sum(cost_of(make_leg(way_home(i), nullptr, nullptr)), landing_cost());
+      const std::optional<Leg> out = make_leg(ways_[i], nullptr, nullptr);
+      const std::optional<Leg> back = make_leg(way_home(i), nullptr, nullptr);
+      if (!out || !back) {
+        refuse(route_.stations[i],
+               "the way to it cannot be proven at a clearance of " + length_text(route_.clearance));
+        continue;
+      }
+      const Cost there = sum(pad_cost(), cost_of(*out));
+      const Cost home = sum(cost_of(*back), landing_cost());
       const Cost total = sum(sum(there, station_cost(route_.stations[i])), home);
       const double needed = std::max(total.energy, total.emergency);
       if (needed > motion_.usable_energy()) {
@@ -221,23 +232,37 @@ class RoutePlanner {
       }
       stations.push_back(route_.stations[i]);
       ways.push_back(ways_[i]);
+      outward_.push_back(*out);
+      homeward_.push_back(*back);
     }
     route_.stations = std::move(stations);
     ways_ = std::move(ways);
   }
 
+  /// The leg from station i - 1 to station i.
+  Leg connection(std::size_t i) {
+    const Station &from = route_.stations[i - 1], &to = route_.stations[i];
+    const Path path = finder_.find(from.view.position, to.view.position);
+    if (path.status == PathStatus::found) {
+      if (std::optional<Leg> leg = make_leg(with_returns(path.points), &from, &to)) {
+        return *std::move(leg);
+      }
+    }
+    // Both are connected to the pad, so there is a way, though a long one.
+    std::vector<Vector3d> points = way_home(i - 1);
+    points.insert(points.end(), ways_[i].begin() + 1, ways_[i].end());
+    const std::vector<Vector3d> tight =
+        pull_tight(space_, route_.clearance, points, route_.options.path.worthwhile_saving);
+    if (std::optional<Leg> leg = make_leg(with_returns(tight), &from, &to)) {
+      return *std::move(leg);
+    }
+    return make_leg(points, &from, &to).value();  // its two parts were proven
+  }
+
   void connect() {
     for (std::size_t i = 1; i < route_.stations.size(); ++i) {
       const Station &from = route_.stations[i - 1], &to = route_.stations[i];
-      Path path = finder_.find(from.view.position, to.view.position);
-      if (path.status != PathStatus::found) {
-        // Both are connected to the pad, so there is a way, though a long one.
-        path.points = way_home(i - 1);
-        path.points.insert(path.points.end(), ways_[i].begin() + 1, ways_[i].end());
-        path.points = pull_tight(space_, route_.clearance, path.points,
-                                 route_.options.path.worthwhile_saving);
-      }
-      route_.legs.push_back(make_leg(with_returns(std::move(path.points)), &from, &to));
+      route_.legs.push_back(connection(i));
       route_.station_length += route_.legs.back().length;
       route_.straight_length += (to.view.position - from.view.position).norm();
     }
@@ -253,12 +278,9 @@ class RoutePlanner {
 
   void split_once() {
     SplitProblem problem;
-    std::vector<Leg> out, back;
     for (std::size_t i = 0; i < route_.stations.size(); ++i) {
-      out.push_back(make_leg(ways_[i], nullptr, nullptr));
-      back.push_back(make_leg(way_home(i), nullptr, nullptr));
-      problem.out.push_back(sum(pad_cost(), cost_of(out[i])));
-      problem.back.push_back(sum(cost_of(back[i]), landing_cost()));
+      problem.out.push_back(sum(pad_cost(), cost_of(outward_[i])));
+      problem.back.push_back(sum(cost_of(homeward_[i]), landing_cost()));
       problem.station.push_back(station_cost(route_.stations[i]));
       if (i > 0) problem.leg.push_back(cost_of(route_.legs[i - 1]));
     }
@@ -271,7 +293,7 @@ class RoutePlanner {
     route_.duration_bound = split.time_bound;
     route_.sorties.clear();
     for (const SortieRange& range : split.sorties) {
-      add_sortie(range, problem, out[range.first], back[range.last]);
+      add_sortie(range, problem, outward_[range.first], homeward_[range.last]);
     }
   }
 
@@ -283,10 +305,19 @@ class RoutePlanner {
     for (const Sortie& sortie : route_.sorties) {
       for (const std::uint32_t i : {sortie.first, sortie.last}) {
         if (has_returns_[i]) continue;
-        std::vector<Vector3d> way = with_returns(ways_[i]);
-        has_changed = has_changed || way != ways_[i];
-        ways_[i] = std::move(way);
         has_returns_[i] = true;
+        std::vector<Vector3d> way = with_returns(ways_[i]);
+        if (way == ways_[i]) continue;
+        std::swap(way, ways_[i]);
+        std::optional<Leg> out = make_leg(ways_[i], nullptr, nullptr);
+        std::optional<Leg> back = make_leg(way_home(i), nullptr, nullptr);
+        if (!out || !back) {  // the returns' own proof will name the place
+          std::swap(way, ways_[i]);
+          continue;
+        }
+        outward_[i] = *std::move(out);
+        homeward_[i] = *std::move(back);
+        has_changed = true;
       }
     }
     return has_changed;
@@ -399,6 +430,7 @@ class RoutePlanner {
   Vector3d home_;
   std::optional<WaysHome> ways_home_;        ///< if returns are asked for
   std::vector<std::vector<Vector3d>> ways_;  ///< from above the pad to each station kept
+  std::vector<Leg> outward_, homeward_;      ///< along them, once the stations are in range
   std::vector<bool> has_returns_;            ///< the ways that have been looked at for returns
   Route route_;
 };

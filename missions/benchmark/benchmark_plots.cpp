@@ -1,7 +1,8 @@
 #include "missions/benchmark/benchmark_plots.h"
 
 #include <algorithm>
-#include <cstdio>
+
+#include <fmt/format.h>
 
 #include "missions/benchmark/contestants.h"
 #include "missions/benchmark/paper_results.h"
@@ -47,9 +48,7 @@ std::string block_name(const BenchmarkCell& cell, const char* what) {
 std::string numbers(std::initializer_list<double> values) {
   std::string line;
   for (const double value : values) {
-    char text[32];
-    std::snprintf(text, sizeof text, "%.6g ", value);
-    line += text;
+    line += fmt::format("{:.6g} ", value);
   }
   line.back() = '\n';
   return line;

@@ -3,11 +3,11 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdio>
 #include <limits>
 #include <mutex>
 
 #include <boost/math/distributions/students_t.hpp>
+#include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include "geometry/error.h"
@@ -273,22 +273,15 @@ std::string trials_json(const file::Mission& mission, const std::vector<Trial>& 
 
 std::string trials_table(const file::Mission& mission, const std::vector<Trial>& trials) {
   if (trials.empty()) return "";
-  std::string table;
-  char line[160];
-  std::snprintf(line, sizeof line, "%s: %zu trials, %zu complete\n", mission.name.c_str(),
-                trials.size(), completed(trials));
-  table += line;
-  std::snprintf(line, sizeof line, "%-18s %12s %10s %10s %12s\n", "", "mean", "+- (95 %)", "sd",
-                "paper");
-  table += line;
+  std::string table =
+      fmt::format("{}: {} trials, {} complete\n{:<18} {:>12} {:>10} {:>10} {:>12}\n", mission.name,
+                  trials.size(), completed(trials), "", "mean", "+- (95 %)", "sd", "paper");
   for (const Figure& figure : figures) {
     const Statistic statistic = statistic_of(trials, figure);
     const auto reference = reference_of(mission, figure);
-    char paper[32] = "-";
-    if (reference) std::snprintf(paper, sizeof paper, "%.4g", *reference);
-    std::snprintf(line, sizeof line, "%-18s %12.4g %10.2g %10.2g %12s\n", figure.name,
-                  statistic.mean, statistic.half_width_95, statistic.deviation, paper);
-    table += line;
+    table += fmt::format("{:<18} {:12.4g} {:10.2g} {:10.2g} {:>12}\n", figure.name, statistic.mean,
+                         statistic.half_width_95, statistic.deviation,
+                         reference ? fmt::format("{:.4g}", *reference) : "-");
   }
   return table;
 }

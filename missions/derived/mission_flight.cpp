@@ -65,12 +65,12 @@ flight::Obstacles flight_rules(const file::Mission& mission) {
   flight::Obstacles rules;
   rules.ground_height = mission.scene.position.z();
   const file::SiteConfig& site = mission.site;
-  for (const survey::Prism& volume : site.no_fly) {
-    const std::string name = std::to_string(rules.no_fly.size() + 1);
-    rules.no_fly.push_back({name, volume.corners, volume.bottom, volume.top});
+  for (const geometry::Prism& volume : site.no_fly) {
+    rules.no_fly.push_back(volume);
+    rules.no_fly.back().name = std::to_string(rules.no_fly.size());
   }
   if (!site.geofence.empty() || site.highest_height) {
-    flight::Prism fence{.name = "site.geofence", .footprint = site.geofence};
+    geometry::Prism fence{.name = "site.geofence", .footprint = site.geofence};
     // The fence must not hold the vehicle up on its way from and to the pad.
     if (site.highest_height) fence.ceiling = *site.highest_height;
     if (fence.footprint.empty()) {

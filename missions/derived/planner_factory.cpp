@@ -6,6 +6,7 @@
 #include "geometry/error.h"
 #include "geometry/place/camera.h"
 #include "missions/derived/site.h"
+#include "missions/file/number_text.h"
 
 namespace skycap::missions::derived {
 namespace {
@@ -16,30 +17,6 @@ constexpr std::uint64_t candidates_stream = 0x766f6c756d657472;
 /// A volumetric survey's V where neither mission nor benchmark says it: the paper's for its last
 /// two models.
 constexpr std::size_t usual_view_limit = 130;
-
-survey::volumetric::VolumetricConfig volumetric_config(const file::Mission& mission,
-                                                       survey::volumetric::VolumetricMetric metric,
-                                                       unsigned threads) {
-  const survey::volumetric::VolumetricSettings& settings = mission.volumetric;
-  if (!settings.sphere_centre || !settings.sphere_radius) {
-    throw Error(ErrorKind::bad_config,
-                "the planner needs volumetric.sphere_centre and volumetric.sphere_radius where "
-                "there is no model to derive them from; give both");
-  }
-  const survey::see::SeeConfig& see = mission.planner.see;
-  const double views = static_cast<double>(view_limit(mission)) * settings.candidates_per_view;
-  return {.metric = metric,
-          .resolution = see.resolution_radius,
-          .spacing = see.effective_spacing(),
-          .scene_box = see.scene_box,
-          .candidates = static_cast<std::size_t>(std::lround(views)),
-          .sphere_centre = *settings.sphere_centre,
-          .sphere_radius = *settings.sphere_radius,
-          .least_height = see.ground_clearance,
-          .seed = mission.seed ^ candidates_stream,
-          .settings = settings,
-          .threads = threads};
-}
 
 /// The gain that a volumetric planner goes by; nothing for the others.
 std::optional<survey::volumetric::VolumetricMetric> volumetric_metric(file::PlannerName name) {
@@ -64,6 +41,68 @@ std::optional<survey::volumetric::VolumetricMetric> volumetric_metric(file::Plan
   }
 }
 
+survey::volumetric::VolumetricConfig volumetric_config(const file::Mission& mission,
+                                                       survey::volumetric::VolumetricMetric metric,
+                                                       unsigned threads) {
+  const survey::volumetric::VolumetricSettings& settings = mission.volumetric;
+  const survey::see::SeeConfig& see = mission.planner.see;
+  const double views = static_cast<double>(view_limit(mission)) * settings.candidates_per_view;
+  survey::volumetric::VolumetricConfig config{
+      .metric = metric,
+      .resolution = see.resolution_radius,
+      .spacing = see.effective_spacing(),
+      .scene_box = see.scene_box,
+      .candidates = static_cast<std::size_t>(std::lround(views)),
+      .least_height = see.least_height,
+      .seed = mission.seed ^ candidates_stream,
+      .settings = settings,
+      .threads = threads};
+  if (settings.sphere_centre) config.sphere_centre = *settings.sphere_centre;
+  if (settings.sphere_radius) config.sphere_radius = *settings.sphere_radius;
+  return config;
+}
+
+survey::see::SeeConfig see_config(const file::Mission& mission, unsigned threads) {
+  survey::see::SeeConfig config = mission.planner.see;
+  config.threads = threads;
+  return config;
+}
+
+survey::skycap::SkycapConfig skycap_config(const file::Mission& mission, unsigned threads) {
+  const geometry::Camera camera(mission.sensor.camera.camera);
+  const survey::see::SeeConfig& see = mission.planner.see;
+  survey::skycap::SkycapConfig config{
+      .coverage_radius = mission.evaluation.registration_distance,
+      .spacing = see.effective_spacing(),
+      .view_distance = see.view_distance.value_or(view_distance(camera, see.density)),
+      .max_incidence = mission.sensor.camera.max_incidence,
+      .scene_box = see.scene_box,
+      .limits = view_limits(mission),
+      .stop = mission.planner.skycap_stop,
+      .ideas = mission.planner.skycap_ideas,
+      .threads = threads};
+  // Told of the budgets, it looks for the best view that is still in reach.
+  const file::LimitsConfig& limits = mission.limits;
+  config.stop.most_length = limits.max_distance;
+  if (limits.max_minutes) config.stop.most_time = 60.0 * *limits.max_minutes;
+  config.stop.speed = limits.speed;
+  config.stop.time_per_view = limits.time_per_view;
+  return config;
+}
+
+/// Throws if the candidates' sphere, where both of its keys are given, is below the least height.
+void validate_sphere(const survey::volumetric::VolumetricConfig& config) {
+  const survey::volumetric::VolumetricSettings& settings = config.settings;
+  if (!settings.sphere_centre || !settings.sphere_radius || !config.least_height) return;
+  const double highest = config.sphere_centre.z() + config.sphere_radius;
+  if (highest > *config.least_height) return;
+  throw Error(ErrorKind::bad_config,
+              "volumetric.sphere_radius is " + file::short_text(config.sphere_radius) +
+                  "; it must be large enough for the sphere to reach above the least height of " +
+                  file::short_text(*config.least_height) +
+                  " m, which limits.ground_clearance gives");
+}
+
 }  // namespace
 
 std::size_t view_limit(const file::Mission& mission) {
@@ -73,35 +112,33 @@ std::size_t view_limit(const file::Mission& mission) {
                        : mission.limits.max_views;
 }
 
+void validate_planner(const file::Mission& mission) {
+  if (const auto metric = volumetric_metric(mission.planner.name)) {
+    const auto config = volumetric_config(mission, *metric, 1);
+    config.validate();
+    validate_sphere(config);
+  } else if (mission.planner.name == file::PlannerName::skycap) {
+    skycap_config(mission, 1).validate();
+  } else {
+    see_config(mission, 1).validate();
+  }
+}
+
 std::unique_ptr<survey::Planner> make_planner(const file::Mission& mission, unsigned threads) {
   const geometry::Camera camera(mission.sensor.camera.camera);
-  survey::see::SeeConfig see = mission.planner.see;
-  see.threads = threads;
   if (const auto metric = volumetric_metric(mission.planner.name)) {
+    if (!mission.volumetric.sphere_centre || !mission.volumetric.sphere_radius) {
+      throw Error(ErrorKind::bad_config,
+                  "the planner needs volumetric.sphere_centre and volumetric.sphere_radius where "
+                  "there is no model to derive them from; give both");
+    }
     return std::make_unique<survey::volumetric::VolumetricPlanner>(
         volumetric_config(mission, *metric, threads), camera);
   }
-  if (mission.planner.name != file::PlannerName::skycap) {
-    return std::make_unique<survey::see::SeePlanner>(see, camera);
+  if (mission.planner.name == file::PlannerName::skycap) {
+    return std::make_unique<survey::skycap::SkycapPlanner>(skycap_config(mission, threads), camera);
   }
-  survey::skycap::SkycapConfig config{
-      .coverage_radius = mission.evaluation.registration_distance,
-      .spacing = see.effective_spacing(),
-      .view_distance = see.view_distance.value_or(view_distance(camera, see.density)),
-      .scene_box = see.scene_box,
-      .limits = view_limits(mission),
-      .stop = mission.planner.skycap_stop,
-      .ideas = mission.planner.skycap_ideas,
-      .threads = threads};
-  // Told of the budgets, it looks for the best view that is still in reach.
-  const file::LimitsConfig& limits = mission.limits;
-  if (limits.max_distance < file::LimitsConfig{}.max_distance) {
-    config.stop.most_length = limits.max_distance;
-  }
-  if (limits.max_minutes) config.stop.most_time = 60.0 * *limits.max_minutes;
-  config.stop.speed = limits.speed;
-  config.stop.time_per_view = limits.time_per_view;
-  return std::make_unique<survey::skycap::SkycapPlanner>(config, camera);
+  return std::make_unique<survey::see::SeePlanner>(see_config(mission, threads), camera);
 }
 
 }  // namespace skycap::missions::derived

@@ -84,7 +84,7 @@ struct StartConfig {
 
 struct LimitsConfig {
   std::size_t max_views = 1000;
-  double max_distance = 1e9;               ///< straight lines between views
+  std::optional<double> max_distance;      ///< straight lines between views
   std::optional<double> ground_clearance;  ///< least height of a view above `scene.position`
   double stand_off = 0.0;                  ///< least distance of a view from all that was measured
   double lowest_pitch = -std::numbers::pi / 2.0;  ///< of the gimbal [rad], down is negative
@@ -97,7 +97,7 @@ struct LimitsConfig {
 /// The airspace over the site, in the mission's frame: x east, y north, z up.
 struct SiteConfig {
   std::vector<Eigen::Vector2d> geofence;  ///< polygon to stay inside of; empty: none
-  std::vector<survey::Prism> no_fly;      ///< to stay outside of
+  std::vector<geometry::Prism> no_fly;    ///< to stay outside of
   std::optional<double> lowest_height;    ///< least z
   std::optional<double> highest_height;   ///< greatest z
 };

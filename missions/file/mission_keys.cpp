@@ -165,10 +165,11 @@ std::vector<Key> survey_keys() {
           "limits.max_views", "", between(1, 1e6),
           [](Mission & m) -> auto& { return m.limits.max_views; },
           "The survey ends after this many views."),
-      number(
-          "limits.max_distance", "m", above(0, 1e9),
-          [](Mission & m) -> auto& { return m.limits.max_distance; },
-          "The survey ends when the straight lines between views add up to this."),
+      otherwise("unlimited",
+                number(
+                    "limits.max_distance", "m", above(0, 1e9),
+                    [](Mission & m) -> auto& { return m.limits.max_distance; },
+                    "The survey ends when the straight lines between views add up to this.")),
       otherwise("with a vehicle flight.clearance and 0.01, with ground 0, else unlimited",
                 number(
                     "limits.ground_clearance", "m", between(-1e6, 1e6),

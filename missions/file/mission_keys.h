@@ -39,7 +39,7 @@ struct KeyRange {
 
 /// A value as the file says it, in the file's unit. Text and choices are both text.
 using KeyValue = std::variant<bool, std::int64_t, double, std::string, Eigen::Vector3d,
-                              std::vector<Eigen::Vector2d>, std::vector<survey::Prism>,
+                              std::vector<Eigen::Vector2d>, std::vector<geometry::Prism>,
                               std::vector<Eigen::Vector3d>>;
 
 struct Key {

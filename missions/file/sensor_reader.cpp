@@ -174,8 +174,8 @@ std::vector<sim::Channel> read_channels(Section section) {
   return channels;
 }
 
-sim::Prism read_prism(Section section) {
-  sim::Prism prism;
+sim::WedgePrism read_prism(Section section) {
+  sim::WedgePrism prism;
   prism.wedge = degree * section.number("wedge_deg");
   prism.refractive_index = section.number("refractive_index", prism.refractive_index);
   prism.rotation_rate = section.number("rotation_rate_hz");
@@ -317,7 +317,7 @@ SensorDescription read_sensor(const std::string& text, const std::string& file) 
 
 std::vector<std::string_view> sensor_presets() {
   std::vector<std::string_view> names;
-  for (const SensorPreset& preset : preset_files()) names.push_back(preset.name);
+  for (const PresetFile& preset : preset_files()) names.push_back(preset.name);
   return names;
 }
 
@@ -331,7 +331,7 @@ SensorDescription find_sensor(const std::string& name_or_file) {
     return read_sensor(text, name_or_file);
   }
   std::string known;
-  for (const SensorPreset& preset : preset_files()) {
+  for (const PresetFile& preset : preset_files()) {
     if (preset.name == name_or_file) {
       return read_sensor(std::string(preset.text), name_or_file + ".yaml");
     }

@@ -12,6 +12,7 @@
 #include "geometry/error.h"
 #include "geometry/io/cloud_io.h"
 #include "geometry/place/pose.h"
+#include "missions/derived/resolved_mission.h"
 #include "missions/file/json_text.h"
 #include "missions/file/mission_keys.h"
 #include "missions/file/number_text.h"
@@ -42,11 +43,12 @@ Json json_of(const std::vector<Eigen::Vector2d>& polygon) {
   return corners;
 }
 
-Json json_of(const std::vector<survey::Prism>& volumes) {
+Json json_of(const std::vector<geometry::Prism>& volumes) {
   Json list = Json::array();
-  for (const survey::Prism& volume : volumes) {
-    list.push_back(
-        {{"corners", json_of(volume.corners)}, {"bottom", volume.bottom}, {"top", volume.top}});
+  for (const geometry::Prism& volume : volumes) {
+    list.push_back({{"corners", json_of(volume.footprint)},
+                    {"bottom", volume.floor},
+                    {"top", volume.ceiling}});
   }
   return list;
 }
@@ -306,14 +308,14 @@ std::optional<SurveyMission> stage_package(const file::Mission& mission,
   folder.replace(
       [](std::string_view name) { return name == free_space_name || is_flight_file(name); });
   const double radius = 2.0 * mission.planner.see.resolution_radius;
-  std::vector<Eigen::Vector3f> normals =
+  const std::vector<Eigen::Vector3f> normals =
       cloud_normals(record.cloud, sensor_positions(record), radius, threads);
   geometry::write_cloud(folder.stage("cloud.ply"), {.positions = record.cloud.positions,
-                                                    .normals = std::move(normals),
+                                                    .normals = normals,
                                                     .views = record.cloud.views,
                                                     .colours = {}});
   if (record.belief) {
-    geometry::write_cloud(folder.stage("coverage.ply"), coverage_map(*record.belief));
+    geometry::write_cloud(folder.stage("coverage.ply"), columns_of(coverage_map(*record.belief)));
   }
   folder.write("views.csv", views_csv(record));
   folder.write("trajectory.tum", trajectory_tum(record));
@@ -354,8 +356,8 @@ PackagedSurvey read_package(const std::filesystem::path& folder,
   PackagedSurvey survey;
   try {
     const Json summary = Json::parse(stream);
-    survey.mission =
-        file::parse_mission(mission_text(summary.at("settings")), summary_file.string(), overrides);
+    survey.mission = derived::parse_mission(mission_text(summary.at("settings")),
+                                            summary_file.string(), overrides);
     if (!summary.contains("flight")) {
       fail(summary_file, "is of a survey without a vehicle; plan it with flight.vehicle");
     }

@@ -1,7 +1,6 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <cstdio>
 #include <fstream>
 #include <map>
 #include <memory>
@@ -10,6 +9,7 @@
 #include <sstream>
 #include <string>
 
+#include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include "geometry/error.h"
@@ -20,6 +20,7 @@
 #include "missions/benchmark/benchmark_report.h"
 #include "missions/benchmark/benchmark_results.h"
 #include "missions/benchmark/contestants.h"
+#include "missions/derived/resolved_mission.h"
 #include "missions/file/json_text.h"
 #include "missions/file/mission_keys.h"
 #include "missions/scene/sha256.h"
@@ -76,7 +77,7 @@ file::Mission mission_for(const fs::path& file, const benchmark::Contestant& con
   if (std::ranges::find(names, contestant.name) != names.end()) {
     overrides.push_back({"--planners", "planner.name", contestant.name});
   }
-  return file::read_mission(file, overrides);
+  return derived::read_mission(file, overrides);
 }
 
 std::vector<Entry> entries_of(const BenchmarkOptions& options) {
@@ -184,12 +185,9 @@ class Progress {
       const Duration& known = own.count > 0 ? own : of_any_;
       work += static_cast<double>(left) * known.seconds / known.count;
     }
-    char text[200];
     const auto minutes = static_cast<int>(std::ceil(work / threads_ / 60.0));
-    std::snprintf(text, sizeof text, "benchmark: %zu of %zu surveys, about %d min left; %s %s",
-                  done_, total_, minutes, item.entry->mission.name.c_str(),
-                  item.entry->contestant->title.c_str());
-    line_.show(text);
+    line_.show(fmt::format("benchmark: {} of {} surveys, about {} min left; {} {}", done_, total_,
+                           minutes, item.entry->mission.name, item.entry->contestant->title));
   }
 
  private:

@@ -1,11 +1,13 @@
 #include <algorithm>
-#include <cstdio>
+
+#include <fmt/format.h>
 
 #include "flight/export/export.h"
 #include "flight/paths/path.h"
 #include "flight/route/route.h"
 #include "geometry/surfaces/mesh.h"
 #include "missions/derived/mission_flight.h"
+#include "missions/derived/resolved_mission.h"
 #include "missions/file/mission_keys.h"
 #include "missions/file/number_text.h"
 #include "missions/scene/survey_scene.h"
@@ -50,7 +52,7 @@ int check_route_file(const CheckOptions& options, const file::Mission& mission,
 }  // namespace
 
 int check(const CheckOptions& options, const Console& console) {
-  const file::Mission mission = file::read_mission(options.mission, options.overrides);
+  const file::Mission mission = derived::read_mission(options.mission, options.overrides);
   const geometry::Mesh model = scene::placed_model(mission.scene, options.mission.parent_path());
   if (options.route) return check_route_file(options, mission, model, console);
   const survey::see::SeeConfig& see = mission.planner.see;
@@ -58,17 +60,16 @@ int check(const CheckOptions& options, const Console& console) {
   const double view_distance = see.view_distance.value_or(
       geometry::view_distance(geometry::Camera(mission.sensor.camera.camera), see.density));
 
-  char text[640];
-  std::snprintf(text, sizeof text,
-                "%s: fine\n"
-                "  scene     %zu triangles, %.4g x %.4g x %.4g m, %.4g m^2\n"
-                "  planner   %s, view distance d %.4g m, spacing epsilon %.4g m, core threshold "
-                "k %d\n",
-                options.mission.c_str(), model.triangles.size(), size.x(), size.y(), size.z(),
-                geometry::surface_area(model),
-                file::to_text(*file::find_key("planner.name")->get(mission)).c_str(), view_distance,
-                see.effective_spacing(), see.effective_core_threshold());
-  console.out << text << std::flush;
+  console.out << fmt::format(
+                     "{}: fine\n"
+                     "  scene     {} triangles, {:.4g} x {:.4g} x {:.4g} m, {:.4g} m^2\n"
+                     "  planner   {}, view distance d {:.4g} m, spacing epsilon {:.4g} m, core "
+                     "threshold k {}\n",
+                     options.mission.string(), model.triangles.size(), size.x(), size.y(), size.z(),
+                     geometry::surface_area(model),
+                     file::to_text(*file::find_key("planner.name")->get(mission)), view_distance,
+                     see.effective_spacing(), see.effective_core_threshold())
+              << std::flush;
   return 0;
 }
 

@@ -1,10 +1,12 @@
-#include <cstdio>
 #include <string>
+
+#include <fmt/format.h>
 
 #include "geometry/error.h"
 #include "geometry/io/output_folder.h"
 #include "geometry/parallel.h"
 #include "missions/benchmark/trials.h"
+#include "missions/derived/resolved_mission.h"
 #include "missions/judge/coverage.h"
 #include "missions/package/flight_report.h"
 #include "missions/package/package.h"
@@ -15,48 +17,34 @@
 namespace skycap::missions::verbs {
 namespace {
 
-std::string percent(double share) {
-  char text[16];
-  std::snprintf(text, sizeof text, "%.2f %%", 100.0 * share);
-  return text;
-}
+std::string percent(double share) { return fmt::format("{:.2f} %", 100.0 * share); }
 
 std::string seconds(double time) {
-  char text[32];
-  std::snprintf(text, sizeof text, time < 1.0 ? "%.1f ms" : "%.2f s",
-                time < 1.0 ? 1e3 * time : time);
-  return text;
+  return time < 1.0 ? fmt::format("{:.1f} ms", 1e3 * time) : fmt::format("{:.2f} s", time);
 }
 
 std::string progress_text(const std::string& name, std::size_t views, const run::JudgedView& judged,
                           double planning_time) {
-  char text[160];
-  std::snprintf(text, sizeof text,
-                "%s: view %zu, %zu points, %zu frontiers, %.2f %% covered, planned in %s",
-                name.c_str(), views, judged.surveyed.points, judged.surveyed.step.frontiers,
-                100.0 * judged.coverage, seconds(planning_time).c_str());
-  return text;
+  return fmt::format("{}: view {}, {} points, {} frontiers, {} covered, planned in {}", name, views,
+                     judged.surveyed.points, judged.surveyed.step.frontiers,
+                     percent(judged.coverage), seconds(planning_time));
 }
 
 /// A line of the --verbose table: planning time of one view, in milliseconds by part.
 std::string times_row(std::size_t view, const run::JudgedView& judged) {
   const survey::PlanningStep& step = judged.surveyed.step;
   std::string row;
-  char cell[64];
   if (view == 0) {
     row = "view  frontiers  total ms";
     for (const survey::PartTime& time : step.times) {
-      std::snprintf(cell, sizeof cell, " %10s", time.part.c_str());
-      row += cell;
+      row += fmt::format(" {:>10}", time.part);
     }
     row += "\n";
   }
-  std::snprintf(cell, sizeof cell, "%4zu %10zu %9.2f", view, step.frontiers,
-                1e3 * judged.surveyed.planning_time);
-  row += cell;
+  row +=
+      fmt::format("{:4} {:10} {:9.2f}", view, step.frontiers, 1e3 * judged.surveyed.planning_time);
   for (const survey::PartTime& time : step.times) {
-    std::snprintf(cell, sizeof cell, " %10.3f", 1e3 * time.seconds);
-    row += cell;
+    row += fmt::format(" {:10.3f}", 1e3 * time.seconds);
   }
   return row + "\n";
 }
@@ -65,11 +53,9 @@ std::string summary_text(const file::Mission& mission, const run::SurveyRecord& 
                          const package::CoverageFigures& coverage,
                          const std::optional<package::SurveyMission>& flight,
                          const std::filesystem::path& folder) {
-  std::string text = mission.name + ": " + run::name_of(record.stop_reason) + " after " +
-                     std::to_string(record.views.size()) + " views, ";
-  char distance[32];
-  std::snprintf(distance, sizeof distance, "%.2f m\n", record.distance());
-  text += distance;
+  std::string text =
+      fmt::format("{}: {} after {} views, {:.2f} m\n", mission.name,
+                  run::name_of(record.stop_reason), record.views.size(), record.distance());
   text += "  coverage  " + percent(coverage.all) + " of the surface";
   if (coverage.visible) text += ", " + percent(*coverage.visible) + " of what is visible";
   if (coverage.ceiling) text += "; attainable " + percent(*coverage.ceiling);
@@ -150,7 +136,7 @@ int plan_trials(const PlanOptions& options, const file::Mission& mission,
 }  // namespace
 
 int plan(const PlanOptions& options, const Console& console) {
-  const file::Mission mission = file::read_mission(options.mission, options.overrides);
+  const file::Mission mission = derived::read_mission(options.mission, options.overrides);
   geometry::OutputFolder folder(
       options.out.value_or(std::filesystem::path("results") / mission.name));
   const scene::SurveyScene scene(mission, options.mission.parent_path());

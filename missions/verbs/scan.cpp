@@ -1,18 +1,19 @@
 #include <algorithm>
 #include <chrono>
-#include <cstdio>
 #include <memory>
 #include <string>
 #include <utility>
 #include <variant>
 #include <vector>
 
+#include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include "flight/export/trajectory_file.h"
 #include "geometry/error.h"
 #include "geometry/io/output_folder.h"
 #include "missions/derived/mission_flight.h"
+#include "missions/derived/resolved_mission.h"
 #include "missions/file/json_text.h"
 #include "missions/file/sensor_reader.h"
 #include "missions/recording/cloud_formats.h"
@@ -110,13 +111,11 @@ class ScanReport {
     const double elapsed = std::chrono::duration<double>(now - start_).count();
     const double share =
         static_cast<double>(progress.firings) / static_cast<double>(progress.all_firings);
-    char text[160];
-    std::snprintf(text, sizeof text,
-                  "%s: %.1f %% flown, %.1f M points, %.1f M shots/s, %.0f s left", name_.c_str(),
-                  100.0 * share, 1e-6 * static_cast<double>(progress.points),
-                  1e-6 * shots_in_firing_ * static_cast<double>(progress.firings) / elapsed,
-                  elapsed * (1.0 - share) / share);
-    line_.show(text);
+    line_.show(
+        fmt::format("{}: {:.1f} % flown, {:.1f} M points, {:.1f} M shots/s, {:.0f} s left", name_,
+                    100.0 * share, 1e-6 * static_cast<double>(progress.points),
+                    1e-6 * shots_in_firing_ * static_cast<double>(progress.firings) / elapsed,
+                    elapsed * (1.0 - share) / share));
   }
 
  private:
@@ -225,18 +224,17 @@ int scan_with_laser(const ScanVerbOptions& options, const file::Mission& mission
   progress.clear();
 
   if (!options.is_quiet) {
-    char text[320];
-    std::snprintf(text, sizeof text,
-                  "%s: %s, %.1f s of flight%s\n"
-                  "  scan      %.2f M shots, %.2f M points in %.1f s, %.1f M shots/s\n",
-                  mission.name.c_str(), sensor_name.c_str(), flown,
-                  result.is_complete ? "" : ", interrupted", 1e-6 * shots,
-                  1e-6 * static_cast<double>(result.progress.points), time, 1e-6 * shots / time);
-    console.out << text << "  results   " << folder.path().string();
+    console.out
+        << fmt::format(
+               "{}: {}, {:.1f} s of flight{}\n"
+               "  scan      {:.2f} M shots, {:.2f} M points in {:.1f} s, {:.1f} M shots/s\n",
+               mission.name, sensor_name, flown, result.is_complete ? "" : ", interrupted",
+               1e-6 * shots, 1e-6 * static_cast<double>(result.progress.points), time,
+               1e-6 * shots / time)
+        << "  results   " << folder.path().string();
     for (const OutputFile& file : outputs) {
-      std::snprintf(text, sizeof text, ", %s %.1f MB", file.name.c_str(),
-                    1e-6 * static_cast<double>(file.bytes));
-      console.out << text;
+      console.out << fmt::format(", {} {:.1f} MB", file.name,
+                                 1e-6 * static_cast<double>(file.bytes));
     }
     console.out << "\n" << std::flush;
   }
@@ -271,10 +269,8 @@ int scan_with_camera(const ScanVerbOptions& options, const file::Mission& missio
   const sim::Scene scene =
       scene::reflecting_scene(mission.scene, options.mission.parent_path()).scene(mission.threads);
   const auto report = [&](std::size_t taken, std::size_t points) {
-    char text[160];
-    std::snprintf(text, sizeof text, "%s: image %zu of %zu, %.1f M points", mission.name.c_str(),
-                  taken, frames.size(), 1e-6 * static_cast<double>(points));
-    progress.show(text);
+    progress.show(fmt::format("{}: image {} of {}, {:.1f} M points", mission.name, taken,
+                              frames.size(), 1e-6 * static_cast<double>(points)));
   };
   const bool has_rawlog = std::ranges::find(options.formats, "rawlog") != options.formats.end();
   const Clock::time_point start = Clock::now();
@@ -290,12 +286,12 @@ int scan_with_camera(const ScanVerbOptions& options, const file::Mission& missio
   progress.clear();
   const bool is_complete = result.frames == frames.size();
   if (!options.is_quiet) {
-    char text[256];
-    std::snprintf(text, sizeof text,
-                  "%s: %s%s\n  scan      %zu depth images, %.2f M points in %.1f s\n",
-                  mission.name.c_str(), sensor_name.c_str(), is_complete ? "" : ", interrupted",
-                  result.frames, 1e-6 * static_cast<double>(result.points), time);
-    console.out << text << "  results   " << folder.path().string() << "\n" << std::flush;
+    console.out << fmt::format(
+                       "{}: {}{}\n  scan      {} depth images, {:.2f} M points in {:.1f} s\n",
+                       mission.name, sensor_name, is_complete ? "" : ", interrupted", result.frames,
+                       1e-6 * static_cast<double>(result.points), time)
+                << "  results   " << folder.path().string() << "\n"
+                << std::flush;
   }
   return is_complete ? 0 : 1;
 }
@@ -303,7 +299,7 @@ int scan_with_camera(const ScanVerbOptions& options, const file::Mission& missio
 }  // namespace
 
 int scan(const ScanVerbOptions& options, const Console& console) {
-  const file::Mission mission = file::read_mission(options.mission, options.overrides);
+  const file::Mission mission = derived::read_mission(options.mission, options.overrides);
   file::SensorDescription sensor = sensor_of(options, mission);
   geometry::OutputFolder folder(
       options.out.value_or(std::filesystem::path("results") / mission.name / "scan"));

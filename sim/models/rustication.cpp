@@ -71,86 +71,134 @@ void add_stone(double left, double right, double bottom, double top, int chords,
   wall.tiles.push_back(stone);
 }
 
+/// One bay of a rusticated wall: an arched opening, its voussoirs, and the courses beside it.
+class ArchedBay {
+ public:
+  ArchedBay(const Courses& courses, const Opening& opening, const Voussoirs& voussoirs,
+            double half_width, const Fineness& fineness, Wall& wall)
+      : courses_(courses),
+        opening_(opening),
+        voussoirs_(voussoirs),
+        half_width_(half_width),
+        springing_(opening.head.front().y()),
+        radius_(opening.half_width),
+        widest_chord_(chord_length(fineness, wall.plan.length() / (2.0 * pi))),
+        wall_(wall) {
+    const Vector2d centre(opening.centre, springing_);
+    const double outer_radius = radius_ + voussoirs.height;
+    assert(outer_radius < half_width);
+    // Twice as many chords as voussoirs, at least: an odd number of stones still has a vertex at
+    // the crown.
+    chords_each_ = 2 * std::max(1, fineness.chords(outer_radius, 0.5 * pi / voussoirs.count));
+    const int chords = chords_each_ * voussoirs.count;
+    intrados_ = half_circle(centre, radius_, chords);
+    extrados_ = half_circle(centre, outer_radius, chords);
+  }
+
+  void build() {
+    add_opening();
+    add_voussoirs();
+    for (int course = 0; course <= courses_.count; ++course) add_course(course);
+  }
+
+ private:
+  void add_opening() {
+    Opening fitted = opening_;
+    fitted.head = intrados_;
+    // A niche's rows need the levels of the courses on both sides of the opening.
+    if (opening_.back == Opening::Back::round) {
+      Polyline2 left_side;
+      fitted.head.clear();
+      for (int course = 0; course <= courses_.count; ++course) {
+        const double z = courses_.level(course + 1);
+        if (z <= opening_.sill + 1e-6 || z >= springing_ - 1e-6) continue;
+        fitted.head.emplace_back(opening_.centre + radius_, z);
+        left_side.emplace_back(opening_.centre - radius_, z);
+      }
+      fitted.head.insert(fitted.head.end(), intrados_.begin(), intrados_.end());
+      fitted.head.insert(fitted.head.end(), left_side.rbegin(), left_side.rend());
+    }
+    wall_.openings.push_back(fitted);
+  }
+
+  void add_voussoirs() {
+    for (int stone = 0; stone < voussoirs_.count; ++stone) {
+      Polyline2 polygon;
+      const int first = stone * chords_each_;
+      for (int i = 0; i <= chords_each_; ++i) polygon.push_back(extrados_[first + i]);
+      for (int i = chords_each_; i >= 0; --i) polygon.push_back(intrados_[first + i]);
+      polygon = clipped_below(polygon, wall_.top);
+      wall_.tiles.push_back(polygon);
+    }
+  }
+
+  void add_course(int course) {
+    const double bottom = courses_.level(course), top = courses_.level(course + 1);
+    const bool is_even = course % 2 == 0;
+    if (top <= opening_.sill + 1e-6) {
+      add_whole_course(is_even, bottom, top);
+    } else if (top <= springing_ + 1e-6) {
+      add_piers(is_even, bottom, top);
+    } else {
+      add_beside_the_arch(bottom, top);
+    }
+  }
+
+  /// Three stones, then two halves between them.
+  void add_whole_course(bool is_even, double bottom, double top) {
+    const std::vector<double> joints =
+        is_even ? std::vector<double>{-1.0, -0.36, 0.36, 1.0} : std::vector<double>{-1.0, 0.0, 1.0};
+    for (std::size_t i = 0; i + 1 < joints.size(); ++i) {
+      add_stones(opening_.centre + joints[i] * half_width_,
+                 opening_.centre + joints[i + 1] * half_width_, bottom, top);
+    }
+  }
+
+  /// One stone, then two.
+  void add_piers(bool is_even, double bottom, double top) {
+    const double centre = opening_.centre;
+    const double left = centre - half_width_, right = centre + half_width_;
+    const double inner_left = centre - radius_, inner_right = centre + radius_;
+    if (is_even) {
+      add_stones(left, inner_left, bottom, top);
+      add_stones(inner_right, right, bottom, top);
+      return;
+    }
+    const double joint = 0.5 * (half_width_ + radius_);
+    add_stones(left, centre - joint, bottom, top);
+    add_stones(centre - joint, inner_left, bottom, top);
+    add_stones(inner_right, centre + joint, bottom, top);
+    add_stones(centre + joint, right, bottom, top);
+  }
+
+  void add_beside_the_arch(double bottom, double top) {
+    const auto crown = static_cast<std::ptrdiff_t>(extrados_.size() / 2);
+    const Polyline2 right_curve(extrados_.begin(), extrados_.begin() + crown + 1);
+    const Polyline2 left_curve(extrados_.rbegin(), extrados_.rbegin() + crown + 1);
+    const double left = opening_.centre - half_width_, right = opening_.centre + half_width_;
+    wall_.tiles.push_back(course_beside(left_curve, left, bottom, top));
+    wall_.tiles.push_back(course_beside(right_curve, right, bottom, top));
+  }
+
+  void add_stones(double start, double end, double bottom, double top) {
+    const int cuts = static_cast<int>(std::ceil((end - start) / widest_chord_));
+    add_stone(start, end, bottom, top, cuts, wall_);
+  }
+
+  const Courses& courses_;
+  const Opening& opening_;
+  const Voussoirs& voussoirs_;
+  double half_width_, springing_, radius_, widest_chord_;
+  Wall& wall_;
+  int chords_each_ = 0;
+  Polyline2 intrados_, extrados_;  ///< of the voussoirs, from the right springing to the left one
+};
+
 }  // namespace
 
 void add_arched_bay(const Courses& courses, const Opening& opening, const Voussoirs& voussoirs,
                     double half_width, const Fineness& fineness, Wall& wall) {
-  const double springing = opening.head.front().y();
-  const Vector2d centre(opening.centre, springing);
-  const double radius = opening.half_width, outer_radius = radius + voussoirs.height;
-  assert(outer_radius < half_width);
-  // Twice as many chords as voussoirs, at least: an odd number of stones still has a vertex at the
-  // crown.
-  const int chords_each =
-      2 * std::max(1, fineness.chords(outer_radius, 0.5 * pi / voussoirs.count));
-  const int chords = chords_each * voussoirs.count;
-  const Polyline2 intrados = half_circle(centre, radius, chords);
-  const Polyline2 extrados = half_circle(centre, outer_radius, chords);
-
-  Opening fitted = opening;
-  fitted.head = intrados;
-  // A niche's rows need the levels of the courses on both sides of the opening.
-  if (opening.back == Opening::Back::round) {
-    Polyline2 left_side;
-    fitted.head.clear();
-    for (int course = 0; course <= courses.count; ++course) {
-      const double z = courses.level(course + 1);
-      if (z <= opening.sill + 1e-6 || z >= springing - 1e-6) continue;
-      fitted.head.emplace_back(opening.centre + radius, z);
-      left_side.emplace_back(opening.centre - radius, z);
-    }
-    fitted.head.insert(fitted.head.end(), intrados.begin(), intrados.end());
-    fitted.head.insert(fitted.head.end(), left_side.rbegin(), left_side.rend());
-  }
-  wall.openings.push_back(fitted);
-
-  for (int stone = 0; stone < voussoirs.count; ++stone) {
-    Polyline2 polygon;
-    for (int i = 0; i <= chords_each; ++i) polygon.push_back(extrados[stone * chords_each + i]);
-    for (int i = chords_each; i >= 0; --i) polygon.push_back(intrados[stone * chords_each + i]);
-    polygon = clipped_below(polygon, wall.top);
-    wall.tiles.push_back(polygon);
-  }
-
-  const std::ptrdiff_t crown = chords / 2;
-  const Polyline2 right_curve(extrados.begin(), extrados.begin() + crown + 1);
-  const Polyline2 left_curve(extrados.rbegin(), extrados.rbegin() + crown + 1);
-  const double left = opening.centre - half_width, right = opening.centre + half_width;
-  const double plan_radius = wall.plan.length() / (2.0 * pi);
-  const auto add_stones = [&](double start, double end, double bottom, double top) {
-    const double width = end - start;
-    const int cuts = static_cast<int>(std::ceil(width / chord_length(fineness, plan_radius)));
-    add_stone(start, end, bottom, top, cuts, wall);
-  };
-  for (int course = 0; course <= courses.count; ++course) {
-    const double bottom = courses.level(course), top = courses.level(course + 1);
-    const bool is_even = course % 2 == 0;
-    if (top <= opening.sill + 1e-6) {
-      // Whole courses: three stones, then two halves between them.
-      const std::vector<double> joints = is_even ? std::vector<double>{-1.0, -0.36, 0.36, 1.0}
-                                                 : std::vector<double>{-1.0, 0.0, 1.0};
-      for (std::size_t i = 0; i + 1 < joints.size(); ++i) {
-        add_stones(opening.centre + joints[i] * half_width,
-                   opening.centre + joints[i + 1] * half_width, bottom, top);
-      }
-    } else if (top <= springing + 1e-6) {
-      // Piers: one stone, then two.
-      const double inner_left = opening.centre - radius, inner_right = opening.centre + radius;
-      if (is_even) {
-        add_stones(left, inner_left, bottom, top);
-        add_stones(inner_right, right, bottom, top);
-      } else {
-        const double joint = 0.5 * (half_width + radius);
-        add_stones(left, opening.centre - joint, bottom, top);
-        add_stones(opening.centre - joint, inner_left, bottom, top);
-        add_stones(inner_right, opening.centre + joint, bottom, top);
-        add_stones(opening.centre + joint, right, bottom, top);
-      }
-    } else {
-      wall.tiles.push_back(course_beside(left_curve, left, bottom, top));
-      wall.tiles.push_back(course_beside(right_curve, right, bottom, top));
-    }
-  }
+  ArchedBay(courses, opening, voussoirs, half_width, fineness, wall).build();
 }
 
 void add_plain_courses(const Courses& courses, double start, double end, Wall& wall) {

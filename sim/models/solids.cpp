@@ -16,17 +16,6 @@ using Eigen::Vector3d;
 using geometry::Mesh;
 using std::numbers::pi;
 
-double cross(const Vector2d& a, const Vector2d& b) { return a.x() * b.y() - a.y() * b.x(); }
-
-/// Twice the signed area of a triangle.
-double turn(const Vector2d& a, const Vector2d& b, const Vector2d& c) { return cross(b - a, c - a); }
-
-/// 1 for an equilateral triangle, 0 for a collapsed one, negative for a clockwise one.
-double roundness(const Vector2d& a, const Vector2d& b, const Vector2d& c) {
-  const double squares = (b - a).squaredNorm() + (c - b).squaredNorm() + (a - c).squaredNorm();
-  return 2.0 * std::sqrt(3.0) * turn(a, b, c) / squares;
-}
-
 double distance_to_segment(const Vector2d& point, const Vector2d& a, const Vector2d& b) {
   const double length = (b - a).squaredNorm();
   const double share = length == 0.0 ? 0.0 : std::clamp((point - a).dot(b - a) / length, 0.0, 1.0);
@@ -148,67 +137,6 @@ Profile& Profile::wave_by(double dx, double dy, double angle) {
 }
 
 Polyline2 Profile::points() const { return simplified(points_, 0.5 * fineness_.chord_error); }
-
-std::vector<std::array<std::uint32_t, 3>> triangulate(const Polyline2& polygon) {
-  const std::size_t size = polygon.size();
-  std::vector<std::size_t> before(size), after(size);
-  for (std::size_t i = 0; i < size; ++i) {
-    before[i] = (i + size - 1) % size;
-    after[i] = (i + 1) % size;
-  }
-  // The quality of the ear at a corner; negative if it cannot be cut off.
-  const auto ear_quality = [&](std::size_t i) {
-    const Vector2d &a = polygon[before[i]], &b = polygon[i], &c = polygon[after[i]];
-    const double quality = roundness(a, b, c);
-    if (quality <= 1e-12) return -1.0;
-    for (std::size_t j = after[after[i]]; j != before[i]; j = after[j]) {
-      const Vector2d& p = polygon[j];
-      if (turn(a, b, p) >= 0.0 && turn(b, c, p) >= 0.0 && turn(c, a, p) >= 0.0) return -1.0;
-    }
-    return quality;
-  };
-
-  // An ear that leaves nothing but corners in one line must wait for its last neighbour.
-  double area = 0.0;
-  for (std::size_t i = 1; i + 1 < size; ++i) area += turn(polygon[0], polygon[i], polygon[i + 1]);
-  const double nothing = 1e-9 * area;
-  const auto leaves_nothing = [&](std::size_t i) {
-    return area - turn(polygon[before[i]], polygon[i], polygon[after[i]]) < nothing;
-  };
-
-  std::vector<double> qualities(size);
-  for (std::size_t i = 0; i < size; ++i) qualities[i] = ear_quality(i);
-  std::vector<std::array<std::uint32_t, 3>> triangles;
-  for (std::size_t left = size; left > 3; --left) {
-    auto best = std::max_element(qualities.begin(), qualities.end());
-    auto ear = static_cast<std::size_t>(best - qualities.begin());
-    if (leaves_nothing(ear)) {
-      *best = -1.0;
-      best = std::max_element(qualities.begin(), qualities.end());
-      ear = static_cast<std::size_t>(best - qualities.begin());
-    }
-    area -= turn(polygon[before[ear]], polygon[ear], polygon[after[ear]]);
-    assert(*best > 0.0 && "the polygon is not simple and counter-clockwise");
-    const std::size_t a = before[ear], c = after[ear];
-    triangles.push_back({static_cast<std::uint32_t>(a), static_cast<std::uint32_t>(ear),
-                         static_cast<std::uint32_t>(c)});
-    after[a] = c;
-    before[c] = a;
-    qualities[ear] = -std::numeric_limits<double>::infinity();
-    qualities[a] = ear_quality(a);
-    qualities[c] = ear_quality(c);
-    // What was cut off may have been all that stood in the way of another ear.
-    for (std::size_t j = after[c]; j != a; j = after[j]) {
-      if (qualities[j] < 0.0) qualities[j] = ear_quality(j);
-    }
-    if (left == 4) {
-      triangles.push_back({static_cast<std::uint32_t>(a), static_cast<std::uint32_t>(c),
-                           static_cast<std::uint32_t>(after[c])});
-    }
-  }
-  if (size == 3) triangles.push_back({0, 1, 2});
-  return triangles;
-}
 
 Mesh revolve(const Polyline2& profile, int chords) {
   assert(profile.size() >= 3 && profile.front().x() == 0.0 && profile.back().x() == 0.0);

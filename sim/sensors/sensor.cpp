@@ -30,7 +30,7 @@ void validate_channel(const Channel& channel, std::size_t number, double firing_
           "between zero and firing_period");
 }
 
-void validate_prism(const Prism& prism, std::size_t number) {
+void validate_prism(const WedgePrism& prism, std::size_t number) {
   const std::string name = "prisms[" + std::to_string(number) + "].";
   require(prism.wedge > 0.0 && prism.wedge < 0.25 * std::numbers::pi, name + "wedge", prism.wedge,
           "between 0 and pi/4 radians");

@@ -232,8 +232,6 @@ TEST(Trajectory, TumKeepsPosesAndPutsWLast) {
   }
   TimedPose still;
   EXPECT_THAT(write_tum({still}), HasSubstr(" 0.000000000 0.000000000 0.000000000 1.000000000\n"));
-  EXPECT_THAT(write_euroc({still}),
-              HasSubstr("\n0,0.000000000,0.000000000,0.000000000,1.000000000,0"));
 }
 
 TEST(Trajectory, BadFilesAreRefusedByLine) {

@@ -62,6 +62,13 @@ TEST(Trials, PutThePapersFiguresBesideTheirs) {
   EXPECT_THAT(table, HasSubstr("22.3"));
 }
 
+TEST(Trials, TableHoldsNamesOfAnyLength) {
+  file::Mission mission;
+  mission.name = std::string(1000, 'v');
+  EXPECT_THAT(benchmark::trials_table(mission, two_trials()),
+              testing::StartsWith(mission.name + ": 2 trials, 1 complete\n"));
+}
+
 TEST(Trials, CsvHasALineForEach) {
   EXPECT_EQ(benchmark::trials_csv(two_trials()),
             "seed,stop_reason,views,coverage,coverage_visible,coverage_ceiling,distance_m,points,"

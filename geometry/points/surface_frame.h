@@ -11,7 +11,7 @@
 namespace skycap::geometry {
 
 /// An orthonormal, right-handed frame at a boundary point of the measured surface.
-struct LocalFrame {
+struct SurfaceFrame {
   Eigen::Vector3d normal;    ///< n: unit, on the side of the sensor that measured the point
   Eigen::Vector3d outward;   ///< e_f: unit, along the surface, from the measured side outwards
   Eigen::Vector3d boundary;  ///< e_b = n x e_f: unit, along the boundary
@@ -25,7 +25,8 @@ struct LocalFrame {
 /// the middle spread; neighbours on one line have as normal the direction to the sensor made
 /// orthogonal to the line; of fewer than three or of identical neighbours the normal is the
 /// direction to the sensor. The sensor must not be at the point.
-LocalFrame local_frame(const Eigen::Vector3d& point, std::span<const Eigen::Vector3f> neighbours,
-                       const Eigen::Vector3d& sensor);
+SurfaceFrame surface_frame(const Eigen::Vector3d& point,
+                           std::span<const Eigen::Vector3f> neighbours,
+                           const Eigen::Vector3d& sensor);
 
 }  // namespace skycap::geometry

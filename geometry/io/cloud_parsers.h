@@ -18,9 +18,9 @@ Eigen::Vector3f cloud_position(const std::filesystem::path& path, std::size_t po
 
 /// The Point Cloud Library's PCD 0.7, text, binary or compressed: x y z and normal_x normal_y
 /// normal_z. Points of NaN, by which PCL marks pixels without a measurement, are passed over.
-CloudFile parse_pcd_cloud(const std::filesystem::path& path, std::string_view bytes);
+AttributedCloud parse_pcd_cloud(const std::filesystem::path& path, std::string_view bytes);
 
 /// LAS 1.4 (ASPRS specification R15) with points of format 6 or 7. Withheld points are passed over.
-CloudFile parse_las_cloud(const std::filesystem::path& path, std::string_view bytes);
+AttributedCloud parse_las_cloud(const std::filesystem::path& path, std::string_view bytes);
 
 }  // namespace skycap::geometry

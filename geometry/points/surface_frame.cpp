@@ -1,4 +1,4 @@
-#include "geometry/points/local_frame.h"
+#include "geometry/points/surface_frame.h"
 
 #include <cassert>
 #include <cmath>
@@ -42,15 +42,15 @@ Vector3d across(const Vector3d& axis, const Vector3d& wanted) {
 }
 
 /// The frame with the given normal, whose outward axis is as near as can be to `wanted_outward`.
-LocalFrame frame_of(const Vector3d& normal, const Vector3d& wanted_outward) {
+SurfaceFrame frame_of(const Vector3d& normal, const Vector3d& wanted_outward) {
   const Vector3d outward = across(normal, wanted_outward);
   return {normal, outward, normal.cross(outward)};
 }
 
 }  // namespace
 
-LocalFrame local_frame(const Vector3d& point, std::span<const Eigen::Vector3f> neighbours,
-                       const Vector3d& sensor) {
+SurfaceFrame surface_frame(const Vector3d& point, std::span<const Eigen::Vector3f> neighbours,
+                           const Vector3d& sensor) {
   const Vector3d to_sensor = (sensor - point).normalized();
   assert(to_sensor.allFinite());
   if (neighbours.size() < 3) return frame_of(to_sensor, Vector3d::Zero());

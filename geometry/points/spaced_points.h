@@ -1,4 +1,5 @@
-/// Which points of a scan have room beside those kept before: the first thing every planner asks.
+/// Clouds at a least spacing: which points of a scan have room beside those kept before is the first
+/// thing every planner asks.
 #pragma once
 
 #include <array>
@@ -49,6 +50,35 @@ class NearbyPoints {
   float squared_radius_;
   std::array<float, count> x_, y_, z_;  // the last points found
   std::size_t next_ = 0;
+};
+
+/// Points of which none is nearer to an earlier one than a spacing. What is kept depends on the
+/// order of the points alone, not on the cells of the grid.
+class SpacedPoints {
+ public:
+  /// Cells twice as wide as the spacing by default: a ball of that radius then reaches eight of
+  /// them. Points nearer together than the spacing do not exist, however small the cells.
+  explicit SpacedPoints(double spacing) : SpacedPoints(spacing, 2.0 * spacing) {}
+  SpacedPoints(double spacing, double cell_size)
+      : spacing_(spacing), grid_(cell_size), nearby_(grid_, spacing) {}
+  SpacedPoints(const SpacedPoints&) = delete;
+  SpacedPoints& operator=(const SpacedPoints&) = delete;
+
+  /// Keeps the point if none that was kept is within the spacing; says whether it did.
+  bool keep(const Eigen::Vector3f& point) {
+    if (nearby_.any_near(point)) return false;
+    grid_.insert(point);
+    return true;
+  }
+
+  /// The points that were kept, in that order.
+  const PointGrid& grid() const { return grid_; }
+  double spacing() const { return spacing_; }
+
+ private:
+  double spacing_;
+  PointGrid grid_;
+  NearbyPoints nearby_;
 };
 
 }  // namespace skycap::geometry
