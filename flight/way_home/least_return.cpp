@@ -91,23 +91,20 @@ ReturnSearch least_return(const FreeSpace& space, const std::vector<Segment>& le
   return result;
 }
 
-double return_energy(const Motion& motion, const ReturnLaw& law, const Vector3d& place,
-                     double landing_time) {
+double return_energy(const Motion& motion, const ReturnLaw& law, const Vector3d& place) {
+  // Every landing place is somewhere on the ground: the lowest makes the longest descent.
+  double ground = law.landings.front().z();
+  for (const Vector3d& landing : law.landings) ground = std::min(ground, landing.z());
+  const double top = std::max(law.level, place.z());
+  const auto flown = [&](const Vector3d& way) {
+    return motion.leg_energy(way, motion.leg_time(way));
+  };
+  const double upright = flown({0.0, 0.0, top - place.z()}) +
+                         motion.hover_energy(waiting_time + motion.landing_time(top - ground));
   double most = 0.0;
-  for (const ReturnPiece& level : return_pieces(law, place)) {
-    if (level.part != ReturnPart::level) continue;
-    const double top = std::max(law.level, place.z());
-    double sum = motion.hover_energy(waiting_time + landing_time);
-    const auto fly = [&](const Vector3d& way) {
-      sum += motion.leg_energy(way, motion.leg_time(way));
-    };
-    fly({0.0, 0.0, top - place.z()});
-    fly(level.line.to - level.line.from);
-    // Every landing place is somewhere on the ground: the lowest makes the longest descent.
-    double ground = law.landings.front().z();
-    for (const Vector3d& landing : law.landings) ground = std::min(ground, landing.z());
-    fly({0.0, 0.0, ground - top});
-    most = std::max(most, sum);
+  for (const ReturnPiece& piece : return_pieces(law, place)) {
+    if (piece.part != ReturnPart::level) continue;
+    most = std::max(most, upright + flown(piece.line.to - piece.line.from));
   }
   return most;
 }

@@ -41,9 +41,8 @@ ReturnSearch least_return(const FreeSpace& space, const std::vector<Segment>& le
 ReturnSearch prove_returns(const FreeSpace& space, const std::vector<Segment>& legs,
                            const ReturnLaw& law, double clearance);
 
-/// Electrical energy of the dearest return from a place, with the waits that autopilots make before
-/// it and over the landing place, and `landing_time` near the ground [J].
-double return_energy(const Motion& motion, const ReturnLaw& law, const Eigen::Vector3d& place,
-                     double landing_time);
+/// Electrical energy of the dearest return from a place, landing included, with the waits that
+/// autopilots make before it and over the landing place [J].
+double return_energy(const Motion& motion, const ReturnLaw& law, const Eigen::Vector3d& place);
 
 }  // namespace skycap::flight

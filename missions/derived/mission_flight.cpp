@@ -144,8 +144,8 @@ flight::RouteOptions route_options_of(const file::Mission& mission, const Vector
   options.conditions.temperature_c = config.temperature;
   options.conditions.cruise_speed = config.cruise_speed;
   options.conditions.reserve = config.reserve;
-  options.returns = flight::ReturnOptions{
-      dialects_of(vehicle_of(mission)), highest_return(mission, pad.z(), pad.z()), {}};
+  options.returns = flight::ReturnOptions{dialects_of(vehicle_of(mission)),
+                                          highest_return(mission, pad.z(), pad.z())};
   return options;
 }
 

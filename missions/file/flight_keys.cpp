@@ -85,8 +85,11 @@ std::vector<Key> flight_keys() {
                      "Straight up from the pad before the first leg.")),
           number("flight.cruise_speed", "m/s", above(0, 100), field(&Flight::cruise_speed),
                  "Wanted speed on legs."),
-          number("flight.hold", "s", between(1, 3600), field(&Flight::hold),
-                 "Time at rest at each view before the capture; ArduPilot keeps whole seconds."),
+          number("flight.hold", "s", between(0, 3600), field(&Flight::hold),
+                 "Time at rest at each view before the capture, when the vehicle has settled and "
+                 "heading and gimbal have turned."),
+          number("flight.hold_after", "s", between(0, 3600), field(&Flight::hold_after),
+                 "Time at rest after the capture, for shutter lag, exposure and readout."),
           number("flight.wind_speed", "m/s", between(0, 100), field(&Flight::wind_speed),
                  "Steady wind, for times and energy."),
           number("flight.wind_from_deg", "degrees", between(0, 360), field(&Flight::wind_from),

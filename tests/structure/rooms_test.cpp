@@ -42,7 +42,8 @@ Rooms house() {
   }
 
   add("flight/space", {});
-  add("flight/motion", {"flight/space"});
+  add("flight/autopilot", {});
+  add("flight/motion", {"flight/space", "flight/autopilot"});
   add("flight/paths", {"flight/space"});
   add("flight/way_home", {"flight/space", "flight/motion", "flight/paths"});
   add("flight/route", {"flight/space", "flight/motion", "flight/paths", "flight/way_home"});
