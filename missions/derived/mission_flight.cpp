@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace skycap::missions::derived {
 namespace {
@@ -112,8 +113,8 @@ double highest_return(const file::Mission& mission, double pad_z, double obstacl
   const AlignedBox3d box = unknown_box_of(mission);
   double top = std::max(obstacles_top, mission.scene.position.z());
   if (!box.isEmpty()) top = std::max(top, box.max().z());
-  for (const auto& volume : mission.site.no_fly) {
-    if (volume.top < no_flight_is_higher) top = std::max(top, volume.top);
+  for (const geometry::Prism& volume : mission.site.no_fly) {
+    if (volume.ceiling < no_flight_is_higher) top = std::max(top, volume.ceiling);
   }
   const double highest =
       std::max(top + mission.flight.clearance + spare, pad_z + flight::least_of_dji);
@@ -157,6 +158,21 @@ flight::Site site_of(const file::Mission& mission) {
                  place.ellipsoid_height};
   site.geoid_undulation = place.geoid_undulation;
   return site;
+}
+
+flight::FlightFacts flight_facts(const file::Mission& mission) {
+  flight::FlightFacts facts;
+  facts.site = site_of(mission);
+  facts.pad = mission.flight.takeoff.value_or(mission.scene.position);
+  facts.is_pad_known = mission.flight.takeoff.has_value();
+  if (mission.flight.is_flown()) facts.vehicle = vehicle_of(mission);
+  facts.takeoff_climb = takeoff_climb_of(mission);
+  facts.cruise_speed = mission.flight.cruise_speed;
+  facts.hold = mission.flight.hold;
+  flight::Obstacles rules = flight_rules(mission);
+  facts.no_fly = std::move(rules.no_fly);
+  facts.fence = std::move(rules.fence);
+  return facts;
 }
 
 }  // namespace skycap::missions::derived

@@ -3,6 +3,7 @@
 
 #include <filesystem>
 #include <optional>
+#include <stop_token>
 #include <string>
 #include <vector>
 
@@ -27,11 +28,28 @@ struct CoverageFigures {
 /// flown survey's package also holds its route files and free_space.bin, which they were proven in
 /// (flight::MeasuredSpace::write()); what they say is returned. Every number is written with as
 /// many digits as it takes to read the same number back, so equal surveys give equal files; only
-/// summary.json holds times.
+/// summary.json holds times. A stop that is requested while the route is made leaves the survey
+/// without one, and its failure says so: `skycap export` makes it later.
 std::optional<SurveyMission> stage_package(const file::Mission& mission,
                                            const run::SurveyRecord& record,
                                            const CoverageFigures& coverage, unsigned threads,
-                                           geometry::OutputFolder& folder);
+                                           geometry::OutputFolder& folder,
+                                           std::stop_token stop = {});
+
+/// The file of a package that says what the rest is.
+inline constexpr const char* summary_name = "summary.json";
+
+/// What a package's summary says of its survey.
+struct PackageSummary {
+  file::Mission mission;  ///< with all keys as they were in force
+  std::vector<geometry::View> views;
+  std::optional<Eigen::Vector3d> pad;  ///< of a survey that was flown
+};
+
+/// Reads a package's summary; `overrides` take the place of the mission's keys. Throws
+/// Error{bad_file} naming the file if it is missing or not as stage_package() wrote it.
+PackageSummary read_package_summary(const std::filesystem::path& folder,
+                                    const std::vector<file::KeyOverride>& overrides);
 
 /// What a package holds of a flown survey.
 struct PackagedSurvey {
@@ -41,8 +59,10 @@ struct PackagedSurvey {
   flight::MeasuredSpace measured;
 };
 
-/// Reads a package; `overrides` take the place of the mission's keys. Throws Error{bad_file} naming
-/// the file that is missing or not as stage_package() wrote it.
+/// Whether a JSON file of results is there and says "complete": true.
+bool is_complete_result(const std::filesystem::path& json_file);
+
+/// Reads the package of a flown survey, as read_package_summary() does.
 PackagedSurvey read_package(const std::filesystem::path& folder,
                             const std::vector<file::KeyOverride>& overrides);
 

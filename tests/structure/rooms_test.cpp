@@ -33,7 +33,8 @@ Rooms house() {
     rooms[room] = std::move(others);
   };
   add("sim/scene", {});
-  add("sim/models", {});
+  add("sim/models/masonry", {});
+  add("sim/models", {"sim/models/masonry"});
   add("sim/sensors", {"sim/scene"});
 
   add("survey", {});
@@ -49,6 +50,7 @@ Rooms house() {
   add("flight/route", {"flight/space", "flight/motion", "flight/paths", "flight/way_home"});
   add("flight/export",
       {"flight/space", "flight/motion", "flight/paths", "flight/way_home", "flight/route"});
+  add("flight/interpreter", {"flight/space", "flight/autopilot", "flight/motion", "flight/export"});
 
   std::vector<std::string> below;  // what missions/ composes
   for (const auto& [room, others] : rooms) {
