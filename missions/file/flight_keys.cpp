@@ -87,8 +87,11 @@ std::vector<Key> conduct_keys() {
                            "Straight up from the pad before the first leg.")),
       number_key("flight.cruise_speed", "m/s", above(0, 100), flight(&FlightConfig::cruise_speed),
                  "Wanted speed on legs."),
-      number_key("flight.hold", "s", between(1, 3600), flight(&FlightConfig::hold),
-                 "Time at rest at each view before the capture; ArduPilot keeps whole seconds."),
+      number_key("flight.hold", "s", between(0, 3600), flight(&FlightConfig::hold),
+                 "Time at rest at each view before the capture, when the vehicle has settled and "
+                 "heading and gimbal have turned."),
+      number_key("flight.hold_after", "s", between(0, 3600), flight(&FlightConfig::hold_after),
+                 "Time at rest after the capture, for shutter lag, exposure and readout."),
       number_key("flight.wind_speed", "m/s", between(0, 100), flight(&FlightConfig::wind_speed),
                  "Steady wind, for times and energy."),
       angle_key("flight.wind_from_deg", between(0, 360), flight(&FlightConfig::wind_from),

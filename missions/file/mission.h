@@ -134,7 +134,8 @@ struct FlightConfig {
   std::optional<Eigen::Vector3d> takeoff;  ///< the pad
   std::optional<double> takeoff_climb;     ///< else 5 m, or a metre more than the clearance
   double cruise_speed = 4.0;
-  double hold = 1.0;          ///< at a view [s]
+  double hold = 0.5;          ///< at a view, before the capture [s]
+  double hold_after = 0.5;    ///< and after it [s]
   double wind_speed = 0.0;    ///< [m/s]
   double wind_from = 0.0;     ///< where it blows from, clockwise from north [rad]
   double temperature = 15.0;  ///< of the battery [degrees Celsius]
