@@ -81,7 +81,12 @@ ReturnSearch least_return(const FreeSpace& space, const std::vector<Segment>& le
   char text[96];
   std::snprintf(text, sizeof text, "no height of return fits below %.1f m", highest);
   ReturnSearch result{std::nullopt, text};
-  for (double height = least_height(law); ground + height <= highest; height += 1.0) {
+  // No lower than the route: a vehicle above the height of return would go home at its own.
+  double top = ground;
+  for (const Segment& leg : legs) top = std::max({top, leg.from.z(), leg.to.z()});
+  const double least = std::max(least_height(law), std::ceil(top - ground));
+  highest = std::max(highest, ground + std::ceil(top - ground));
+  for (double height = least; ground + height <= highest; height += 1.0) {
     law.level = ground + height;
     result = search.prove(law);
     if (result.found) return result;
