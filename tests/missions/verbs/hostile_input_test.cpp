@@ -87,8 +87,6 @@ TEST(HostileInput, RoutesOutOfTheWorldAreRefused) {
   const std::string tum = folder.write("far.tum", "0 0 0 1e19 0 0 0 1\n1 0 0 1e19 0 0 0 1\n");
   EXPECT_THAT(refusal({"scan", mission, "--route", tum, "--out", folder / "out"}),
               HasSubstr("trajectory pose 0 is (0, 0, 1e+19)"));
-  const std::string high = folder.write("high.tum", "0 0 0 1e308 0 0 0 1\n1 0 0 1 0 0 0 1\n");
-  EXPECT_THAT(refusal({"check", mission, "--route", high}), HasSubstr("high.tum: place 1 is ("));
 }
 
 TEST(HostileInput, SensorsBeyondAnyInstrumentAreRefused) {

@@ -185,7 +185,7 @@ TEST_F(ScanVerb, ACameraLeavesADatasetOfDepthImages) {
   EXPECT_THAT(run.out, HasSubstr("2 depth images"));
   EXPECT_THAT(files(),
               testing::ElementsAre("believed.txt", "camera.json", "depth.txt", "depth_000000.png",
-                                   "depth_000001.png", "groundtruth.txt"));
+                                   "depth_000001.png", "groundtruth.txt", "scan.json"));
   EXPECT_THAT(tests::content_of(folder / "out/depth.txt"),
               HasSubstr("0.000000 depth_000000.png\n0.500000 depth_000001.png\n"));
   EXPECT_THAT(sim::read_depth_png(folder / "out/depth_000000.png").values, testing::Each(2000));
