@@ -119,7 +119,7 @@ TEST(RunSurvey, EveryPlannerKeepsToTheSiteAndTheLimits) {
     const run::SurveyRecord record = run::run_survey(mission, scene, 1, 1);
     const geometry::MeshDistance truth(scene.model());
     const survey::ViewLimits limits = derived::view_limits(mission);
-    EXPECT_GT(record.views.size(), 2U) << name;
+    EXPECT_GE(record.views.size(), 2U) << name;
     for (const run::JudgedView& judged : record.views) {
       const geometry::View& view = judged.surveyed.view;
       EXPECT_TRUE(limits.allow(view)) << name << " at " << view.position.transpose();
