@@ -42,7 +42,7 @@ Key key_for(std::string path, KeyType type, Field field, std::string meaning) {
   key.path = std::move(path);
   key.type = type;
   key.meaning = std::move(meaning);
-  key.set = [field, factor](Mission& mission, const KeyValue& value) {
+  key.set = [=](Mission& mission, const KeyValue& value) {
     if constexpr (std::is_same_v<Value, double>) {
       field(mission) = factor * std::get<double>(value);
     } else if constexpr (std::is_same_v<Value, Eigen::Vector3d>) {
@@ -53,7 +53,7 @@ Key key_for(std::string path, KeyType type, Field field, std::string meaning) {
       field(mission) = std::get<Value>(value);
     }
   };
-  key.get = [field, factor](const Mission& mission) -> std::optional<KeyValue> {
+  key.get = [=](const Mission& mission) -> std::optional<KeyValue> {
     const Stored stored = field(const_cast<Mission&>(mission));
     Value value;
     if constexpr (std::is_same_v<Stored, Value>) {
