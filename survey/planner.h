@@ -44,6 +44,9 @@ class Planner {
   /// The measurements kept so far.
   virtual const geometry::PointCloud& cloud() const = 0;
 
+  /// Hands them over at the end of the survey. Nothing may be asked of the planner afterwards.
+  virtual geometry::PointCloud release_cloud() = 0;
+
   /// What the last next_view() did.
   virtual const PlanningStep& last_step() const = 0;
 

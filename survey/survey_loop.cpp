@@ -25,6 +25,17 @@ double processor_time() {
   return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
 }
 
+/// The limit that one more view would break, after so many and with all ways this long.
+std::optional<StopReason> broken_limit(const SurveyLimits& limits, std::size_t views,
+                                       double distance) {
+  if (views >= limits.max_views) return StopReason::view_limit;
+  if (limits.max_distance && distance > *limits.max_distance) return StopReason::distance_limit;
+  const double time =
+      distance / limits.speed + static_cast<double>(views + 1) * limits.time_per_view;
+  if (limits.max_time && time > *limits.max_time) return StopReason::time_limit;
+  return std::nullopt;
+}
+
 }  // namespace
 
 SurveyResult run_survey(Planner& planner, const View& first_view, const SurveyLimits& limits,
@@ -32,9 +43,10 @@ SurveyResult run_survey(Planner& planner, const View& first_view, const SurveyLi
   SurveyResult result;
   std::optional<View> next = first_view;
   double distance = 0.0;
+  geometry::Scan scan;
   while (true) {
     SurveyedView taken;
-    const geometry::Scan scan = timed(taken.sensing_time, [&] { return ports.sense(*next); });
+    scan = timed(taken.sensing_time, [&] { return ports.sense(*next, std::move(scan)); });
     if (ports.sensed) ports.sensed(scan);
     taken.view = geometry::view_of(scan.world_from_sensor);
     if (!result.views.empty()) {
@@ -64,19 +76,10 @@ SurveyResult run_survey(Planner& planner, const View& first_view, const SurveyLi
       return result;
     }
     const double way = (next->position - result.views.back().view.position).norm();
-    if (result.views.size() >= limits.max_views) {
-      result.stop_reason = StopReason::view_limit;
-    } else if (distance + way > limits.max_distance) {
-      result.stop_reason = StopReason::distance_limit;
-    } else if ((distance + way) / limits.speed +
-                   static_cast<double>(result.views.size() + 1) * limits.time_per_view >
-               limits.max_time) {
-      result.stop_reason = StopReason::time_limit;
-    } else if (stop.stop_requested()) {
-      result.stop_reason = StopReason::interrupted;
-    } else {
-      continue;
-    }
+    std::optional<StopReason> reason = broken_limit(limits, result.views.size(), distance + way);
+    if (!reason && stop.stop_requested()) reason = StopReason::interrupted;
+    if (!reason) continue;
+    result.stop_reason = *reason;
     return result;
   }
 }

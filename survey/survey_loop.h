@@ -24,10 +24,10 @@ enum class StopReason {
 
 struct SurveyLimits {
   std::size_t max_views = 1000;
-  double max_distance = 1e9;   ///< straight lines between views
-  double max_time = 1e12;      ///< of the flight [s], by the two below
-  double speed = 5.0;          ///< between views [m/s]
-  double time_per_view = 5.0;  ///< to stop, turn and measure [s]
+  std::optional<double> max_distance;  ///< straight lines between views
+  std::optional<double> max_time;      ///< of the flight [s], by the two below
+  double speed = 5.0;                  ///< between views [m/s]
+  double time_per_view = 5.0;          ///< to stop, turn and measure [s]
 };
 
 /// One view of a survey: where the sensor was, and what the planner made of the scan.
@@ -49,8 +49,9 @@ struct SurveyResult {
 
 /// What a survey needs from outside. The sensor may be a simulator or a drone.
 struct SurveyPorts {
-  /// Takes a scan from a view (or as near to it as it could).
-  std::function<geometry::Scan(const geometry::View&)> sense;
+  /// Takes a scan from a view (or as near to it as it could). The memory of `recycled`, the scan
+  /// before it, may be used again.
+  std::function<geometry::Scan(const geometry::View&, geometry::Scan recycled)> sense;
   /// Told of each scan before the next view is planned. May be empty.
   std::function<void(const geometry::Scan&)> sensed;
   /// Whether the sensor can get from one place to a view. Empty: it always can.

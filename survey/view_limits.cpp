@@ -20,32 +20,7 @@ void require(bool holds, const std::string& what) {
   if (!holds) throw Error(ErrorKind::bad_config, "limits." + what);
 }
 
-/// Even-odd rule: the ray from `point` along +x crosses the outline an odd number of times.
-bool is_inside(const std::vector<Vector2d>& polygon, const Vector2d& point) {
-  bool inside = false;
-  for (std::size_t i = 0, j = polygon.size() - 1; i < polygon.size(); j = i++) {
-    const Vector2d &a = polygon[i], &b = polygon[j];
-    if ((a.y() > point.y()) == (b.y() > point.y())) continue;
-    const double x = a.x() + (point.y() - a.y()) / (b.y() - a.y()) * (b.x() - a.x());
-    if (point.x() < x) inside = !inside;
-  }
-  return inside;
-}
-
 }  // namespace
-
-bool Prism::contains(const Vector3d& point) const {
-  return point.z() >= bottom && point.z() <= top && is_inside(corners, point.head<2>());
-}
-
-Prism box_prism(const Vector3d& lowest, const Vector3d& highest) {
-  return {.corners = {{lowest.x(), lowest.y()},
-                      {highest.x(), lowest.y()},
-                      {highest.x(), highest.y()},
-                      {lowest.x(), highest.y()}},
-          .bottom = lowest.z(),
-          .top = highest.z()};
-}
 
 void ViewLimits::validate() const {
   require(stand_off >= 0.0 && std::isfinite(stand_off),
@@ -57,11 +32,11 @@ void ViewLimits::validate() const {
       "least_pitch must be below most_pitch, both between -pi/2 and pi/2");
   require(geofence.empty() || geofence.size() >= 3,
           "geofence has " + std::to_string(geofence.size()) + " corners; it needs three or more");
-  for (const Prism& prism : no_fly) {
-    require(prism.corners.size() >= 3, "no_fly has a volume of " +
-                                           std::to_string(prism.corners.size()) +
-                                           " corners; it needs three or more");
-    require(prism.bottom < prism.top, "no_fly has a volume whose bottom is not below its top");
+  for (const geometry::Prism& prism : no_fly) {
+    require(prism.footprint.size() >= 3, "no_fly has a volume of " +
+                                             std::to_string(prism.footprint.size()) +
+                                             " corners; it needs three or more");
+    require(prism.floor < prism.ceiling, "no_fly has a volume whose bottom is not below its top");
   }
 }
 
@@ -72,9 +47,10 @@ bool ViewLimits::allow(const geometry::View& view) const {
   if ((least_height && height < *least_height) || (most_height && height > *most_height)) {
     return false;
   }
-  if (!geofence.empty() && !is_inside(geofence, view.position.head<2>())) return false;
-  return std::none_of(no_fly.begin(), no_fly.end(),
-                      [&](const Prism& prism) { return prism.contains(view.position); });
+  if (!geofence.empty() && !geometry::contains(geofence, view.position.head<2>())) return false;
+  return std::ranges::none_of(no_fly, [&](const geometry::Prism& prism) {
+    return geometry::contains(prism, view.position);
+  });
 }
 
 std::optional<geometry::View> ViewLimits::view_of_target(const Vector3d& target,

@@ -7,27 +7,17 @@
 #include <Eigen/Core>
 
 #include "geometry/place/pose.h"
+#include "geometry/place/prism.h"
 
 namespace skycap::survey {
-
-/// A vertical prism over a simple polygon, such as a no-fly volume.
-struct Prism {
-  std::vector<Eigen::Vector2d> corners;  ///< east and north, in either sense, three or more
-  double bottom = 0.0;                   ///< lowest z
-  double top = 0.0;                      ///< highest z
-
-  bool contains(const Eigen::Vector3d& point) const;
-};
-
-/// The prism over an axis-aligned box.
-Prism box_prism(const Eigen::Vector3d& lowest, const Eigen::Vector3d& highest);
 
 /// All limits hold at once; those not given do not limit. Heights are world z.
 struct ViewLimits {
   std::optional<double> least_height;  ///< ground plus clearance
   std::optional<double> most_height;
-  std::vector<Eigen::Vector2d> geofence;  ///< polygon to stay inside of; empty: none
-  std::vector<Prism> no_fly;              ///< to stay outside of
+  /// Simple polygon to stay inside of, its border included; empty: none.
+  std::vector<Eigen::Vector2d> geofence;
+  std::vector<geometry::Prism> no_fly;  ///< to stay outside of, their boundaries included
   double stand_off = 0.0;  ///< least distance from everything measured and from unknown space
   double least_pitch = -1.5707963267948966;  ///< of the viewing direction, down is negative [rad]
   double most_pitch = 1.5707963267948966;    ///< [rad]

@@ -18,9 +18,10 @@ namespace skycap::flight {
 struct Waypoint {
   Eigen::Vector3d position = Eigen::Vector3d::Zero();  ///< local frame
   bool is_station = false;                             ///< else a corner of a leg
-  double yaw = 0.0;    ///< of a station: from north, clockwise [rad]
-  double pitch = 0.0;  ///< of the gimbal at a station [rad]
-  double hold = 0.0;   ///< [s]
+  double yaw = 0.0;         ///< of a station: from north, clockwise [rad]
+  double pitch = 0.0;       ///< of the gimbal at a station [rad]
+  double hold = 0.0;        ///< at rest and aimed before the shots, or at a corner [s]
+  double hold_after = 0.0;  ///< and after them [s]
   int shots = 0;
   std::uint32_t view_index = 0;
   double clearance = 0.0;  ///< proven for the leg that ends here [m]
@@ -36,7 +37,11 @@ struct FlightPlan {
   std::vector<Waypoint> waypoints;  ///< from above the pad, through the stations, and back there
   std::vector<Prism> no_fly;
   std::optional<Prism> fence;
-  double clearance = 0.0;  ///< that the legs are certified at [m]
+  double clearance = 0.0;          ///< that the legs are certified at [m]
+  std::optional<Returns> returns;  ///< of the whole mission that the sortie is a part of
+
+  /// Throws Error{bad_config} if there are none.
+  const Returns& certified_returns() const;
 };
 
 /// Whether a plan's legs go round their corners where the route has a proven curve for that.
@@ -47,8 +52,8 @@ FlightPlan flight_plan(const Route& route, std::size_t index, const std::string&
                        const Site& site, const Obstacles& rules = {},
                        Corners corners = Corners::stopped_in);
 
-/// No-fly volumes as formats without heights can hold them: footprints that no leg crosses.
-/// Those that a leg passes over or under are left out, by name.
+/// No-fly volumes as formats without heights can hold them: footprints that no leg crosses, and no
+/// return. Those that one passes over or under are left out, by name.
 struct FlatNoFly {
   std::vector<Prism> written;
   std::vector<std::string> left_out;
@@ -57,9 +62,15 @@ FlatNoFly flat_no_fly(const FlightPlan& plan);
 
 /// When the plan's vehicle is where, stop by stop [s], counted from the pad.
 struct StopTime {
-  double arrival, departure;
+  double arrival;    ///< settled in place
+  double aimed;      ///< heading and gimbal are right, too
+  double shot;       ///< the hold is over
+  double departure;  ///< and the hold after the shots
 };
 std::vector<StopTime> stop_times(const FlightPlan& plan);
+
+/// From leaving the pad until the motors stop there [s].
+double flight_time(const FlightPlan& plan);
 
 // ---- what readers give -----------------------------------------------------------------------
 
@@ -81,6 +92,7 @@ struct FilePoint {
 struct RouteFile {
   HeightDatum datum = HeightDatum::ellipsoid;
   std::vector<FilePoint> points;
+  std::optional<double> return_height;  ///< above take-off, where the format says it [m]
 };
 
 /// The file's points in the local frame; `pad` is where heights above take-off count from. Throws

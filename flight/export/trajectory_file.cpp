@@ -38,7 +38,7 @@ class TrajectorySampler {
     Vector3d from = plan_.waypoints.front().position;
     double left = times.front().arrival;
     for (std::size_t i = 0; i < plan_.waypoints.size(); ++i) {
-      add_leg(from, plan_.waypoints[i], left, times[i].arrival);
+      add_leg(from, plan_.waypoints[i], left, times[i].aimed);
       add_stop(plan_.waypoints[i], times[i]);
       from = plan_.waypoints[i].position;
       left = times[i].departure;
@@ -60,8 +60,8 @@ class TrajectorySampler {
     if (distance == 0.0) return {from};
     const Vector3d direction = (to.position - from) / distance;
     const MotionState along =
-        rest_to_rest_state(distance, motion_.leg_speed(direction), plan_.vehicle.acceleration,
-                           plan_.vehicle.jerk, time);
+        rest_to_rest_state(distance, motion_.leg_speed(direction),
+                           motion_.leg_acceleration(direction), plan_.vehicle.mode.jerk, time);
     return {from + along.distance * direction, along.speed * direction,
             along.acceleration * direction};
   }
@@ -90,11 +90,15 @@ class TrajectorySampler {
 
   void add_stop(const Waypoint& waypoint, const StopTime& times) {
     TimedState state{
-        times.arrival, waypoint.position, Vector3d::Zero(), Vector3d::Zero(), yaw_, 0.0, pitch_,
+        times.aimed, waypoint.position, Vector3d::Zero(), Vector3d::Zero(), yaw_, 0.0, pitch_,
         false};
     add(state);
+    state.time = times.shot;
+    state.is_shot = waypoint.shots > 0;
+    add(state);
+    if (!(times.departure > times.shot)) return;
     state.time = times.departure;
-    state.is_shot = waypoint.shots > 0;  // at the end of the hold
+    state.is_shot = false;
     add(state);
   }
 
@@ -269,22 +273,6 @@ std::vector<TimedPose> read_tum(const std::string& text) {
     poses.push_back(pose);
   }
   return poses;
-}
-
-std::string write_euroc(const std::vector<TimedPose>& poses) {
-  std::string text =
-      "#timestamp [ns],p_RS_R_x [m],p_RS_R_y [m],p_RS_R_z [m],q_RS_w [],q_RS_x [],q_RS_y [],"
-      "q_RS_z []\n";
-  for (const TimedPose& pose : poses) {
-    const Eigen::Quaterniond q(pose.world_from_camera.linear());
-    const Vector3d p = pose.world_from_camera.translation();
-    text += std::to_string(std::llround(pose.time * 1e9));
-    for (const double number : {p.x(), p.y(), p.z(), q.w(), q.x(), q.y(), q.z()}) {
-      text += "," + fixed(number, 9);
-    }
-    text += "\n";
-  }
-  return text;
 }
 
 }  // namespace skycap::flight

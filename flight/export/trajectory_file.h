@@ -43,10 +43,9 @@ struct TimedPose {
 /// The cameras' poses of those states.
 std::vector<TimedPose> camera_poses(const std::vector<TimedState>& states);
 
-/// TUM: `timestamp tx ty tz qx qy qz qw`. EuRoC: nanoseconds and w first.
+/// TUM: `timestamp tx ty tz qx qy qz qw`.
 std::string write_tum(const std::vector<TimedPose>& poses);
 Problems validate_tum(const std::string& text);
 std::vector<TimedPose> read_tum(const std::string& text);
-std::string write_euroc(const std::vector<TimedPose>& poses);
 
 }  // namespace skycap::flight

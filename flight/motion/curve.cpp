@@ -113,13 +113,15 @@ double slowdown_of_part(const Control& c, double duration, const Motion& motion,
   }
   for (std::size_t i = 0; i < 4; ++i) {
     const Vector3d acceleration = 20.0 * rate * rate * (c[i + 2] - 2.0 * c[i + 1] + c[i]);
-    const double share = acceleration.norm() / motion.vehicle().acceleration;
-    factor = std::max(factor, std::sqrt(share));
+    const double size = acceleration.norm();
+    if (size > 0.0) {
+      factor = std::max(factor, std::sqrt(size / motion.leg_acceleration(acceleration / size)));
+    }
   }
   for (std::size_t i = 0; i < 3; ++i) {
     const Vector3d jerk =
         60.0 * rate * rate * rate * (c[i + 3] - 3.0 * c[i + 2] + 3.0 * c[i + 1] - c[i]);
-    factor = std::max(factor, std::cbrt(jerk.norm() / motion.vehicle().jerk));
+    factor = std::max(factor, std::cbrt(jerk.norm() / motion.vehicle().mode.jerk));
   }
   return factor;
 }
@@ -139,6 +141,13 @@ CurvePiece piece_between(const CurveState& from, const CurveState& to, double du
   piece.control[5] = to.position;
   return piece;
 }
+
+std::array<CurvePiece, 2> halves(const CurvePiece& piece) {
+  const std::array<Control, 2> parts = halves(piece.control);
+  return {CurvePiece{parts[0], 0.5 * piece.duration}, CurvePiece{parts[1], 0.5 * piece.duration}};
+}
+
+double hull_radius(const CurvePiece& piece) { return hull_radius(piece.control); }
 
 double duration(const Curve& curve) {
   double sum = 0.0;

@@ -78,6 +78,69 @@ ob::RealVectorBounds bounds_around(const FreeSpace& space, const Vector3d& from,
   return bounds;
 }
 
+ob::ScopedState<> state_at(const ob::StateSpacePtr& states, const Vector3d& place) {
+  ob::ScopedState<> state(states);
+  for (unsigned axis = 0; axis < 3; ++axis) state[axis] = place[axis];
+  return state;
+}
+
+/// One search: OMPL's objects, with our proof in the place of its samples.
+class OmplSearch {
+ public:
+  OmplSearch(const FreeSpace& space, const Vector3d& from, const Vector3d& to, double clearance,
+             const SamplingOptions& options)
+      : options_(options), states_(std::make_shared<ob::RealVectorStateSpace>(3)) {
+    states_->setBounds(bounds_around(space, from, to, clearance));
+    information_ = std::make_shared<ob::SpaceInformation>(states_);
+    information_->setStateValidityChecker([this, &space, clearance](const ob::State* state) {
+      ++checks_;
+      const Vector3d place = place_of(state);
+      return space.is_free({place, place}, clearance);
+    });
+    information_->setMotionValidator(
+        std::make_shared<ProvenMotion>(information_, space, clearance, checks_));
+    information_->setup();
+    problem_ = std::make_shared<ob::ProblemDefinition>(information_);
+    problem_->setStartAndGoalStates(state_at(states_, from), state_at(states_, to));
+    problem_->setOptimizationObjective(
+        std::make_shared<ob::PathLengthOptimizationObjective>(information_));
+  }
+
+  /// The best way found within the options' effort; empty if there is none.
+  std::vector<Vector3d> solve() {
+    const auto planner = options_.planner == SamplingPlanner::bit_star
+                             ? ob::PlannerPtr(std::make_shared<og::BITstar>(information_))
+                             : ob::PlannerPtr(std::make_shared<og::AITstar>(information_));
+    planner->setProblemDefinition(problem_);
+    planner->setup();
+    // One of the planners tells the problem of each path it finds, the other calls back.
+    bool has_path = false;
+    problem_->setIntermediateSolutionCallback([&](const ob::Planner*,
+                                                  const std::vector<const ob::State*>&,
+                                                  const ob::Cost) { has_path = true; });
+    planner->solve(ob::PlannerTerminationCondition([&] {
+      has_path = has_path || problem_->hasExactSolution();
+      return checks_ >= (has_path ? options_.max_checks : options_.max_checks_for_first_path);
+    }));
+    std::vector<Vector3d> points;
+    if (!problem_->hasExactSolution()) return points;
+    for (const ob::State* state :
+         problem_->getSolutionPath()->as<og::PathGeometric>()->getStates()) {
+      points.push_back(place_of(state));
+    }
+    return points;
+  }
+
+  std::size_t checks() const { return checks_; }
+
+ private:
+  const SamplingOptions& options_;
+  std::shared_ptr<ob::RealVectorStateSpace> states_;
+  ob::SpaceInformationPtr information_;
+  ob::ProblemDefinitionPtr problem_;
+  std::size_t checks_ = 0;
+};
+
 }  // namespace
 
 Path find_path_by_sampling(const FreeSpace& space, const Vector3d& from, const Vector3d& to,
@@ -98,47 +161,11 @@ Path find_path_by_sampling(const FreeSpace& space, const Vector3d& from, const V
   static std::mutex one_search_at_a_time;
   const std::lock_guard lock(one_search_at_a_time);
   seed_generators(options.seed);
-  const auto states = std::make_shared<ob::RealVectorStateSpace>(3);
-  states->setBounds(bounds_around(space, from, to, clearance));
-  const auto information = std::make_shared<ob::SpaceInformation>(states);
-  std::size_t checks = 0;
-  information->setStateValidityChecker([&](const ob::State* state) {
-    ++checks;
-    const Vector3d place = place_of(state);
-    return space.is_free({place, place}, clearance);
-  });
-  information->setMotionValidator(
-      std::make_shared<ProvenMotion>(information, space, clearance, checks));
-  information->setup();
-
-  const auto problem = std::make_shared<ob::ProblemDefinition>(information);
-  ob::ScopedState<> start(states), goal(states);
-  for (unsigned axis = 0; axis < 3; ++axis) start[axis] = from[axis], goal[axis] = to[axis];
-  problem->setStartAndGoalStates(start, goal);
-  problem->setOptimizationObjective(
-      std::make_shared<ob::PathLengthOptimizationObjective>(information));
-
-  const auto planner = options.planner == SamplingPlanner::bit_star
-                           ? ob::PlannerPtr(std::make_shared<og::BITstar>(information))
-                           : ob::PlannerPtr(std::make_shared<og::AITstar>(information));
-  planner->setProblemDefinition(problem);
-  planner->setup();
-  // One of the planners tells the problem of each path it finds, the other calls back.
-  bool has_path = false;
-  problem->setIntermediateSolutionCallback([&](const ob::Planner*,
-                                               const std::vector<const ob::State*>&,
-                                               const ob::Cost) { has_path = true; });
-  planner->solve(ob::PlannerTerminationCondition([&] {
-    has_path = has_path || problem->hasExactSolution();
-    return checks >= (has_path ? options.max_checks : options.max_checks_for_first_path);
-  }));
-
-  path.expansions = checks;
+  OmplSearch search(space, from, to, clearance, options);
+  path.points = search.solve();
+  path.expansions = search.checks();
   path.status = PathStatus::unreachable;
-  if (!problem->hasExactSolution()) return path;
-  for (const ob::State* state : problem->getSolutionPath()->as<og::PathGeometric>()->getStates()) {
-    path.points.push_back(place_of(state));
-  }
+  if (path.points.empty()) return path;
   path.points = pull_tight(space, clearance, std::move(path.points), options.worthwhile_saving);
   path.length = length(path.points);
   path.status = PathStatus::found;

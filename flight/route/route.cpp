@@ -2,13 +2,14 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <numbers>
 #include <optional>
 
 #include "flight/paths/sampling_path.h"
 #include "flight/route/sortie_split.h"
 #include "flight/route/tour.h"
+#include "flight/space/place_text.h"
+#include "flight/way_home/ways_home.h"
 #include "geometry/error.h"
 
 namespace skycap::flight {
@@ -17,23 +18,8 @@ namespace {
 using Eigen::Vector3d;
 
 /// Autopilots need up to this many mission items for a station, and some around a sortie.
-constexpr int items_per_station = 5;
-constexpr int items_per_sortie = 12;
-
-std::string at(const Vector3d& p) {
-  const auto round = [](double value) {
-    std::string text = std::to_string(std::round(value * 100.0) / 100.0);
-    return text.substr(0, text.find('.') + 3);
-  };
-  return "(" + round(p.x()) + ", " + round(p.y()) + ", " + round(p.z()) + ")";
-}
-
-/// A length for messages, to the millimetre.
-std::string metres(double length) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.3f m", length);
-  return text;
-}
+constexpr int items_per_station = 8;
+constexpr int items_per_sortie = 14;
 
 double angle_between(double from, double to) {
   return std::remainder(to - from, 2.0 * std::numbers::pi);
@@ -51,6 +37,7 @@ class RoutePlanner {
     route_.options = options;
     route_.clearance = options.clearance.total();
     route_.min_clearance = route_.clearance + reported_surplus;
+    if (options.returns) ask_for_returns(*options.returns);
   }
 
   Route plan(std::vector<Station> stations, const FreeSpace* pad_space) {
@@ -61,6 +48,8 @@ class RoutePlanner {
     keep_in_range();
     connect();
     split();
+    add_up();
+    if (ways_home_ && !route_.sorties.empty()) certify_returns();
     smooth_legs();
     return std::move(route_);
   }
@@ -72,17 +61,18 @@ class RoutePlanner {
     const double clearance = route_.clearance;
     if (!space_.is_free({home_, home_}, clearance)) {
       const Closest closest = space_.closest({home_, home_}, clearance + 1.0);
-      throw Error(ErrorKind::bad_config, "the place above the take-off pad, " + at(home_) +
-                                             ", is " + metres(closest.distance) + " from " +
+      throw Error(ErrorKind::bad_config, "the place above the take-off pad, " + place_text(home_) +
+                                             ", is " + length_text(closest.distance) + " from " +
                                              space_.name(closest) + "; the clearance is " +
-                                             metres(clearance) + ": move the pad or climb higher");
+                                             length_text(clearance) +
+                                             ": move the pad or climb higher");
     }
     const Segment climb{home_, route_.options.takeoff};
     if (pad_space != nullptr && !pad_space->is_free(climb, clearance)) {
       const Closest closest = pad_space->closest(climb, clearance + 1.0);
       throw Error(ErrorKind::bad_config,
-                  "the climb from the pad comes within " + metres(closest.distance) + " of " +
-                      pad_space->name(closest) + "; the clearance is " + metres(clearance));
+                  "the climb from the pad comes within " + length_text(closest.distance) + " of " +
+                      pad_space->name(closest) + "; the clearance is " + length_text(clearance));
     }
   }
 
@@ -104,7 +94,12 @@ class RoutePlanner {
       const Segment place{station.view.position, station.view.position};
       if (!space_.is_free(place, route_.clearance)) {
         const Closest closest = space_.closest(place, route_.clearance + 1.0);
-        refuse(station, "it is " + metres(closest.distance) + " from " + space_.name(closest));
+        refuse(station, "it is " + length_text(closest.distance) + " from " + space_.name(closest));
+        continue;
+      }
+      const std::string why = ways_home_ ? ways_home_->why_none(station.view.position) : "";
+      if (!why.empty()) {
+        refuse(station, "there is no certified way home: " + why);
         continue;
       }
       allowed.push_back(station);
@@ -126,22 +121,29 @@ class RoutePlanner {
     route_.order_length = tour.cost;
   }
 
-  Leg make_leg(const std::vector<Vector3d>& points, const Station* from, const Station* to) {
+  /// Nothing if one of its lines cannot be proven.
+  std::optional<Leg> make_leg(const std::vector<Vector3d>& points, const Station* from,
+                              const Station* to) const {
     Leg leg;
     leg.points = points;
     leg.length = flight::length(points);
     leg.clearance = route_.clearance + reported_surplus;
-    const double turning = turning_time(from, to);
     for (std::size_t i = 1; i < points.size(); ++i) {
       const LegProof proof = prove(space_, {points[i - 1], points[i]}, route_.clearance,
                                    route_.clearance + reported_surplus);
+      if (!proof.is_proven) return std::nullopt;
       leg.clearance = std::min(leg.clearance, proof.clearance);
       // Autopilots begin to turn when they leave for the station, which is in the last corner.
       const bool is_last = i + 1 == points.size();
       const Vector3d way = points[i] - points[i - 1];
-      const double moving = std::max(motion_.leg_time(way), is_last ? turning : 0.0);
+      const double leg_time = motion_.leg_time(way);
+      const double moving = is_last ? aimed_time(leg_time, from, to) : leg_time;
       leg.duration += moving;
       leg.energy += motion_.leg_energy(way, moving);
+      // Between two points a return costs no more than from the dearer of them: level flight grows
+      // with a distance, which is convex, climb and descent evenly.
+      const double home = std::max(return_cost(points[i - 1]), return_cost(points[i]));
+      leg.emergency = std::max(leg.emergency, leg.energy + home);
       if (is_last) break;
       leg.duration += corner_hold;
       leg.energy += motion_.hover_energy(corner_hold);
@@ -149,14 +151,11 @@ class RoutePlanner {
     return leg;
   }
 
-  /// Yaw and gimbal turn in parallel with the leg; from and to the pad there is nothing to aim at.
-  double turning_time(const Station* from, const Station* to) const {
-    if (from == nullptr || to == nullptr) return 0.0;
-    const Vehicle& vehicle = motion_.vehicle();
-    const double yaw = angle_between(yaw_of(from->view), yaw_of(to->view));
-    const double pitch = pitch_of(to->view) - pitch_of(from->view);
-    return std::max(turn_time(yaw, vehicle.yaw_rate, vehicle.yaw_acceleration),
-                    std::abs(pitch) / vehicle.gimbal_rate);
+  /// A leg's time until the camera looks right; from and to the pad there is nothing to aim at.
+  double aimed_time(double leg, const Station* from, const Station* to) const {
+    if (from == nullptr || to == nullptr) return leg;
+    return motion_.aimed_time(leg, angle_between(yaw_of(from->view), yaw_of(to->view)),
+                              pitch_of(to->view) - pitch_of(from->view));
   }
 
   /// A way from above the pad to each station decides which stations there are; the way back is the
@@ -169,7 +168,7 @@ class RoutePlanner {
         path = find_path_by_sampling(space_, home_, station.view.position, route_.clearance);
       }
       if (path.status != PathStatus::found) {
-        refuse(station, "there is no way to it at a clearance of " + metres(route_.clearance));
+        refuse(station, "there is no way to it at a clearance of " + length_text(route_.clearance));
         continue;
       }
       route_.stations.push_back(station);
@@ -178,35 +177,47 @@ class RoutePlanner {
   }
 
   Cost pad_cost() const {
-    const Vector3d climb(0.0, 0.0, route_.options.takeoff_climb);
-    const double time = motion_.leg_time(climb);
-    return {time + corner_hold, motion_.leg_energy(climb, time + corner_hold)};
+    const double climb = route_.options.takeoff_climb;
+    return {motion_.takeoff_time(climb) + corner_hold,
+            motion_.takeoff_energy(climb) + motion_.hover_energy(corner_hold)};
   }
   Cost landing_cost() const {
-    const Vector3d descent(0.0, 0.0, -route_.options.takeoff_climb);
-    const double moving = motion_.leg_time(descent);
-    const double time = corner_hold + moving + route_.options.landing_time;
-    return {time, motion_.leg_energy(descent, time)};
+    const double time = corner_hold + motion_.landing_time(route_.options.takeoff_climb);
+    return {time, motion_.hover_energy(time)};
   }
   Cost station_cost(const Station& station) const {
-    const double hold = std::max(corner_hold, station.hold);
-    return {hold, motion_.hover_energy(hold)};
+    const double hold = std::max(corner_hold, station.hold) + station.hold_after;
+    const double energy = motion_.hover_energy(hold);
+    return {hold, energy, energy + return_cost(station.view.position)};
   }
-  static Cost sum(const Cost& a, const Cost& b) { return {a.time + b.time, a.energy + b.energy}; }
-  static Cost cost_of(const Leg& leg) { return {leg.duration, leg.energy}; }
+  /// One after the other.
+  static Cost sum(const Cost& first, const Cost& second) {
+    return {first.time + second.time, first.energy + second.energy,
+            std::max(first.emergency, first.energy + second.emergency)};
+  }
+  static Cost cost_of(const Leg& leg) { return {leg.duration, leg.energy, leg.emergency}; }
 
   std::vector<Vector3d> way_home(std::size_t i) const {
     return {ways_[i].rbegin(), ways_[i].rend()};
   }
 
-  /// Drops stations that a full battery cannot reach and return from.
+  /// Drops stations whose way cannot be proven in both directions, and those that a full battery
+  /// cannot reach and return from.
   void keep_in_range() {
     std::vector<Station> stations;
     std::vector<std::vector<Vector3d>> ways;
     for (std::size_t i = 0; i < route_.stations.size(); ++i) {
-      const Cost there = sum(pad_cost(), cost_of(make_leg(ways_[i], nullptr, nullptr)));
-      const Cost home = sum(landing_cost(), cost_of(make_leg(way_home(i), nullptr, nullptr)));
-      const double needed = there.energy + station_cost(route_.stations[i]).energy + home.energy;
+      const std::optional<Leg> out = make_leg(ways_[i], nullptr, nullptr);
+      const std::optional<Leg> back = make_leg(way_home(i), nullptr, nullptr);
+      if (!out || !back) {
+        refuse(route_.stations[i],
+               "the way to it cannot be proven at a clearance of " + length_text(route_.clearance));
+        continue;
+      }
+      const Cost there = sum(pad_cost(), cost_of(*out));
+      const Cost home = sum(cost_of(*back), landing_cost());
+      const Cost total = sum(sum(there, station_cost(route_.stations[i])), home);
+      const double needed = std::max(total.energy, total.emergency);
       if (needed > motion_.usable_energy()) {
         refuse(route_.stations[i], "getting there and back takes " + std::to_string(needed / 3600) +
                                        " Wh; the battery has " +
@@ -216,38 +227,55 @@ class RoutePlanner {
       }
       stations.push_back(route_.stations[i]);
       ways.push_back(ways_[i]);
+      outward_.push_back(*out);
+      homeward_.push_back(*back);
     }
     route_.stations = std::move(stations);
     ways_ = std::move(ways);
   }
 
+  /// The leg from station i - 1 to station i.
+  Leg connection(std::size_t i) {
+    const Station &from = route_.stations[i - 1], &to = route_.stations[i];
+    const Path path = finder_.find(from.view.position, to.view.position);
+    if (path.status == PathStatus::found) {
+      if (std::optional<Leg> leg = make_leg(with_returns(path.points), &from, &to)) {
+        return *std::move(leg);
+      }
+    }
+    // Both are connected to the pad, so there is a way, though a long one.
+    std::vector<Vector3d> points = way_home(i - 1);
+    points.insert(points.end(), ways_[i].begin() + 1, ways_[i].end());
+    const std::vector<Vector3d> tight =
+        pull_tight(space_, route_.clearance, points, route_.options.path.worthwhile_saving);
+    if (std::optional<Leg> leg = make_leg(with_returns(tight), &from, &to)) {
+      return *std::move(leg);
+    }
+    return make_leg(points, &from, &to).value();  // its two parts were proven
+  }
+
   void connect() {
     for (std::size_t i = 1; i < route_.stations.size(); ++i) {
       const Station &from = route_.stations[i - 1], &to = route_.stations[i];
-      Path path = finder_.find(from.view.position, to.view.position);
-      if (path.status != PathStatus::found) {
-        // Both are connected to the pad, so there is a way, though a long one.
-        path.points = way_home(i - 1);
-        path.points.insert(path.points.end(), ways_[i].begin() + 1, ways_[i].end());
-        path.points = pull_tight(space_, route_.clearance, path.points,
-                                 route_.options.path.worthwhile_saving);
-      }
-      route_.legs.push_back(make_leg(path.points, &from, &to));
+      route_.legs.push_back(connection(i));
       route_.station_length += route_.legs.back().length;
       route_.straight_length += (to.view.position - from.view.position).norm();
     }
   }
 
   void split() {
-    const std::size_t count = route_.stations.size();
-    if (count == 0) return;
+    if (route_.stations.empty()) return;
+    // Ways that no sortie takes need no returns.
+    do {
+      split_once();
+    } while (certify_ways());
+  }
+
+  void split_once() {
     SplitProblem problem;
-    std::vector<Leg> out, back;
-    for (std::size_t i = 0; i < count; ++i) {
-      out.push_back(make_leg(ways_[i], nullptr, nullptr));
-      back.push_back(make_leg(way_home(i), nullptr, nullptr));
-      problem.out.push_back(sum(pad_cost(), cost_of(out[i])));
-      problem.back.push_back(sum(landing_cost(), cost_of(back[i])));
+    for (std::size_t i = 0; i < route_.stations.size(); ++i) {
+      problem.out.push_back(sum(pad_cost(), cost_of(outward_[i])));
+      problem.back.push_back(sum(cost_of(homeward_[i]), landing_cost()));
       problem.station.push_back(station_cost(route_.stations[i]));
       if (i > 0) problem.leg.push_back(cost_of(route_.legs[i - 1]));
     }
@@ -258,9 +286,36 @@ class RoutePlanner {
     const SortieSplit split = split_into_sorties(problem);
     route_.duration = split.time;
     route_.duration_bound = split.time_bound;
+    route_.sorties.clear();
     for (const SortieRange& range : split.sorties) {
-      add_sortie(range, problem, out[range.first], back[range.last]);
+      add_sortie(range, problem, outward_[range.first], homeward_[range.last]);
     }
+  }
+
+  /// Whether a way that a sortie takes had to be changed.
+  bool certify_ways() {
+    if (!ways_home_) return false;
+    has_returns_.resize(ways_.size(), false);
+    bool has_changed = false;
+    for (const Sortie& sortie : route_.sorties) {
+      for (const std::uint32_t i : {sortie.first, sortie.last}) {
+        if (has_returns_[i]) continue;
+        has_returns_[i] = true;
+        std::vector<Vector3d> way = with_returns(ways_[i]);
+        if (way == ways_[i]) continue;
+        std::swap(way, ways_[i]);
+        std::optional<Leg> out = make_leg(ways_[i], nullptr, nullptr);
+        std::optional<Leg> back = make_leg(way_home(i), nullptr, nullptr);
+        if (!out || !back) {  // the returns' own proof will name the place
+          std::swap(way, ways_[i]);
+          continue;
+        }
+        outward_[i] = *std::move(out);
+        homeward_[i] = *std::move(back);
+        has_changed = true;
+      }
+    }
+    return has_changed;
   }
 
   void add_sortie(const SortieRange& range, const SplitProblem& problem, const Leg& out,
@@ -279,11 +334,64 @@ class RoutePlanner {
     sortie.duration = total.time;
     sortie.energy = total.energy;
     sortie.energy_left = problem.energy_per_sortie - total.energy;
-    route_.length += length;
-    route_.energy += total.energy;
-    route_.min_clearance = std::min(route_.min_clearance, clearance);
+    sortie.length = length;
+    sortie.clearance = clearance;
     route_.sorties.push_back(std::move(sortie));
   }
+
+  void add_up() {
+    for (const Sortie& sortie : route_.sorties) {
+      route_.length += sortie.length;
+      route_.energy += sortie.energy;
+      route_.min_clearance = std::min(route_.min_clearance, sortie.clearance);
+    }
+  }
+
+  // ---- ways home -----------------------------------------------------------------------------
+
+  void ask_for_returns(const ReturnOptions& asked) {
+    const Vector3d& pad = route_.options.takeoff;
+    ReturnLaw law{.dialects = asked.dialects,
+                  .level = pad.z() + std::floor(asked.highest - pad.z()),
+                  .landings = {pad},
+                  .landing_climb = route_.options.takeoff_climb};
+    law.landings.insert(law.landings.end(), asked.rally.begin(), asked.rally.end());
+    ways_home_.emplace(space_, law, home_, route_.clearance);
+  }
+
+  double return_cost(const Vector3d& place) const {
+    if (!ways_home_) return 0.0;
+    return return_energy(motion_, ways_home_->law(), place);
+  }
+
+  std::vector<Vector3d> with_returns(std::vector<Vector3d> way) const {
+    if (!ways_home_) return way;
+    return ways_home_->with_returns(std::move(way), route_.options.path.worthwhile_saving);
+  }
+
+  void certify_returns() {
+    std::vector<Segment> legs;
+    for (const Sortie& sortie : route_.sorties) {
+      const std::vector<Vector3d> points = sortie_points(route_, sortie);
+      for (std::size_t i = 1; i < points.size(); ++i) legs.push_back({points[i - 1], points[i]});
+    }
+    const ReturnLaw& law = ways_home_->law();
+    ReturnSearch search =
+        least_return(space_, legs, law, law.level, return_clearance(route_.clearance));
+    if (!search.found) {
+      throw Error(ErrorKind::bad_config,
+                  "there is no certified way home: " + search.why +
+                      "; move flight.takeoff, give flight.rally or raise site.highest_height");
+    }
+    route_.returns = std::move(search.found);
+    for (const Segment& leg : legs) {
+      const double energy =
+          return_energy(motion_, route_.returns->law, leg.to);
+      route_.returns->energy = std::max(route_.returns->energy, energy);
+    }
+  }
+
+  // ---- curves --------------------------------------------------------------------------------
 
   void smooth_legs() {
     for (Sortie& sortie : route_.sorties) {
@@ -301,9 +409,14 @@ class RoutePlanner {
         smooth(leg.points, space_, route_.clearance, route_.clearance + reported_surplus, motion_,
                route_.options.style);
     if (!curve) return;
-    const double waiting = std::max(0.0, turning_time(from, to) - curve->duration);
-    if (curve->duration + waiting > leg.duration) return;
-    if (curve->energy + motion_.hover_energy(waiting) > leg.energy) return;
+    if (route_.returns && !has_returns(space_, curve->curve, route_.returns->law,
+                                       return_clearance(route_.clearance))) {
+      return;
+    }
+    const double in_place = curve->duration + motion_.vehicle().mode.settle_time;
+    const double aimed = aimed_time(in_place, from, to);
+    if (aimed > leg.duration) return;
+    if (curve->energy + motion_.hover_energy(aimed - curve->duration) > leg.energy) return;
     leg.smooth = std::move(curve);
   }
 
@@ -311,86 +424,27 @@ class RoutePlanner {
   const FreeSpace& space_;
   PathFinder finder_;
   Vector3d home_;
+  std::optional<WaysHome> ways_home_;        ///< if returns are asked for
   std::vector<std::vector<Vector3d>> ways_;  ///< from above the pad to each station kept
+  std::vector<Leg> outward_, homeward_;      ///< along them, once the stations are in range
+  std::vector<bool> has_returns_;            ///< the ways that have been looked at for returns
   Route route_;
 };
 
 }  // namespace
-
-double yaw_of(const geometry::View& view) {
-  if (view.direction.head<2>().norm() < 1e-9) return 0.0;
-  const double yaw = std::atan2(view.direction.x(), view.direction.y());
-  return yaw < 0.0 ? yaw + 2.0 * std::numbers::pi : yaw;
-}
-
-double pitch_of(const geometry::View& view) {
-  return std::asin(std::clamp(view.direction.z() / view.direction.norm(), -1.0, 1.0));
-}
-
-void ClearanceBudget::validate() const {
-  const auto require = [](double value, const char* field) {
-    if (value >= 0.0 && std::isfinite(value)) return;
-    throw Error(ErrorKind::bad_config, "clearance." + std::string(field) + " is " +
-                                           std::to_string(value) +
-                                           " m; it must be a finite number, zero or more");
-  };
-  require(vehicle_radius, "vehicle_radius"), require(position_error, "position_error");
-  require(tracking_error, "tracking_error"), require(map_error, "map_error");
-  require(margin, "margin");
-}
-
-void RouteOptions::validate() const {
-  clearance.validate();
-  path.validate();
-  if (!takeoff.allFinite()) {
-    throw Error(ErrorKind::bad_config, "the take-off place is not a finite position");
-  }
-  if (!(takeoff_climb >= 0.0) || !std::isfinite(takeoff_climb)) {
-    throw Error(ErrorKind::bad_config, "the climb after take-off is " +
-                                           std::to_string(takeoff_climb) +
-                                           " m; it must be a finite number, zero or more");
-  }
-  if (!(landing_time >= 0.0) || !std::isfinite(landing_time)) {
-    throw Error(ErrorKind::bad_config, "the landing time is " + std::to_string(landing_time) +
-                                           " s; it must be a finite number, zero or more");
-  }
-}
 
 Route plan_route(std::vector<Station> stations, const Vehicle& vehicle, const FreeSpace& space,
                  const FreeSpace* pad_space, const RouteOptions& options) {
   options.validate();
   for (const Station& station : stations) {
     if (!station.view.position.allFinite() || !station.view.direction.allFinite() ||
-        !(station.hold >= 0.0) || station.shots < 0) {
+        !(station.hold >= 0.0) || !(station.hold_after >= 0.0) || station.shots < 0) {
       throw Error(ErrorKind::bad_geometry,
                   "station " + std::to_string(station.view_index) +
                       " has a pose that is not finite, or a negative hold or number of shots");
     }
   }
   return RoutePlanner(vehicle, space, options).plan(std::move(stations), pad_space);
-}
-
-std::vector<Violation> check_route(const std::vector<Vector3d>& points, const FreeSpace& space,
-                                   double clearance) {
-  for (std::size_t i = 0; i < points.size(); ++i) {
-    if (points[i].allFinite()) continue;
-    throw Error(ErrorKind::bad_geometry,
-                "point " + std::to_string(i) + " of the route is not a finite position");
-  }
-  std::vector<Violation> violations;
-  const std::size_t legs =
-      points.size() == 1 ? 1 : points.size() - std::min<std::size_t>(points.size(), 1);
-  for (std::size_t i = 0; i < legs; ++i) {
-    const Segment leg{points[i], points[std::min(i + 1, points.size() - 1)]};
-    const LegProof proof = prove(space, leg, clearance, clearance);
-    if (!proof.is_proven) violations.push_back({i, proof.closest, space.name(proof.closest)});
-  }
-  return violations;
-}
-
-std::string describe(const Violation& violation) {
-  return "leg " + std::to_string(violation.leg) + ": " + metres(violation.closest.distance) +
-         " from " + violation.obstacle + " at " + at(violation.closest.on_leg);
 }
 
 std::vector<Vector3d> sortie_points(const Route& route, const Sortie& sortie) {

@@ -65,7 +65,6 @@ struct KnownSpace::Impl {
   std::optional<Prism> fence;
   std::optional<double> ground_height;
   AlignedBox3d extent;
-  std::uint64_t fingerprint = 0;
 
   explicit Impl(const Obstacles& obstacles);
   void add_rule(const Prism& prism, std::uint32_t owner);
@@ -81,8 +80,7 @@ KnownSpace::Impl::Impl(const Obstacles& obstacles)
       mesh_is_solid(obstacles.mesh_is_solid),
       no_fly(obstacles.no_fly),
       fence(obstacles.fence),
-      ground_height(obstacles.ground_height),
-      fingerprint(flight::fingerprint(obstacles)) {
+      ground_height(obstacles.ground_height) {
   mesh.triangles = triangles_of(obstacles.mesh);
   mesh.index();
   if (mesh_is_solid) winding = WindingNumber(mesh.tree, mesh.triangles);
@@ -260,8 +258,6 @@ double KnownSpace::winding_number(const Vector3d& point) const {
   if (!impl_->mesh_is_solid) return 0.0;
   return impl_->winding.at(impl_->mesh.tree, impl_->mesh.triangles, point);
 }
-
-std::uint64_t KnownSpace::fingerprint() const { return impl_->fingerprint; }
 
 Closest JointSpace::closest(const Segment& leg, double up_to) const {
   Closest best{up_to};

@@ -99,8 +99,6 @@ class KnownSpace : public FreeSpace {
   /// one half. Zero when the mesh is not solid.
   double winding_number(const Eigen::Vector3d& point) const;
 
-  std::uint64_t fingerprint() const;
-
  private:
   struct Impl;
   std::unique_ptr<Impl> impl_;

@@ -15,6 +15,7 @@
 #include "flight/space/bounding_tree.h"
 #include "flight/space/cell_map.h"
 #include "flight/space/range_image.h"
+#include "flight/space/voxel_block.h"
 #include "geometry/error.h"
 
 namespace skycap::flight {
@@ -22,50 +23,6 @@ namespace {
 
 using Eigen::AlignedBox3d;
 using Eigen::Vector3d;
-
-/// A cube of voxels within a block.
-struct Cube {
-  Cell low;  ///< its first voxel
-  int edge;  ///< in voxels: 8, 4, 2 or 1
-
-  /// The bits of its rows in a word.
-  std::uint64_t mask() const {
-    std::uint64_t bits = 0;
-    for (int y = low.y(); y < low.y() + edge; ++y) {
-      bits |= ((std::uint64_t{1} << edge) - 1) << (8 * y + low.x());
-    }
-    return bits;
-  }
-};
-
-/// 8 x 8 x 8 voxels, one bit each: bit x of byte y of word z.
-using Slices = std::array<std::uint64_t, 8>;
-
-struct Block {
-  Slices free{};
-  Slices occupied{};
-
-  std::uint64_t passable(int z) const { return free[z] & ~occupied[z]; }
-  bool is_all_passable() const {
-    for (int z = 0; z < 8; ++z) {
-      if (passable(z) != ~std::uint64_t{0}) return false;
-    }
-    return true;
-  }
-  bool is_all_free(const Cube& cube) const {
-    const std::uint64_t mask = cube.mask();
-    for (int z = cube.low.z(); z < cube.low.z() + cube.edge; ++z) {
-      if ((free[z] & mask) != mask) return false;
-    }
-    return true;
-  }
-  void set_free(const Cube& cube) {
-    for (int z = cube.low.z(); z < cube.low.z() + cube.edge; ++z) free[z] |= cube.mask();
-  }
-  bool is_occupied(const Cell& voxel) const {
-    return (occupied[voxel.z()] >> (8 * voxel.y() + voxel.x()) & 1) != 0;
-  }
-};
 
 struct HashKey {
   std::size_t operator()(std::uint64_t key) const {
@@ -78,7 +35,7 @@ struct HashKey {
 
 struct MeasuredSpace::Impl {
   MeasuredSpaceConfig config;
-  std::unordered_map<std::uint64_t, Block, HashKey> blocks;  ///< a block not listed is unknown
+  std::unordered_map<std::uint64_t, VoxelBlock, HashKey> blocks;  ///< a block not listed is unknown
   AlignedBox3d region;           ///< the configuration's, of whole voxels; without one all of space
   Cell region_low, region_high;  ///< its voxels, the end excluded
   AlignedBox3d extent;           ///< of all listed blocks
@@ -102,14 +59,14 @@ struct MeasuredSpace::Impl {
   template <typename Decide>
   void free_where(const AlignedBox3d& box, Decide decide);
   template <typename Decide>
-  void free_within(const Cell& cell, const Cube& cube, Block& block, Decide decide) const;
+  void free_within(const Cell& cell, const Cube& cube, VoxelBlock& block, Decide decide) const;
   void occupy(const geometry::Scan& scan);
   void carve(const RangeImage& image);
   void closest_in(const Segment& piece, Closest& best) const;
   /// The voxels of a block that are not free, or outside of the region occupied.
-  Slices blocked(const Cell& cell, const Block& block) const;
+  Slices blocked(const Cell& cell, const VoxelBlock& block) const;
   void closest_in_cube(const Segment& piece, const BoxTest& test, const Cell& cell,
-                       const Cube& cube, const Block& block, const Slices& blocked,
+                       const Cube& cube, const VoxelBlock& block, const Slices& blocked,
                        Closest& best) const;
 };
 
@@ -132,11 +89,11 @@ void MeasuredSpace::Impl::free_where(const AlignedBox3d& box, Decide decide) {
   const Cube whole{Cell::Zero(), 8};
   for_each_block(box.intersection(region), [&](const Cell& cell) {
     const auto known = blocks.find(cell_key(cell));
-    Block block = known == blocks.end() ? Block{} : known->second;
+    VoxelBlock block = known == blocks.end() ? VoxelBlock{} : known->second;
     free_within(cell, whole, block, decide);
     if (known != blocks.end()) {
       known->second = block;
-    } else if (block.free != Block{}.free) {
+    } else if (block.free != VoxelBlock{}.free) {
       blocks.emplace(cell_key(cell), block);
       extent.extend(cube_box(cell, whole));
     }
@@ -146,7 +103,7 @@ void MeasuredSpace::Impl::free_where(const AlignedBox3d& box, Decide decide) {
 
 /// A cube that is neither free nor hidden as a whole is cut into eight, down to voxels.
 template <typename Decide>
-void MeasuredSpace::Impl::free_within(const Cell& cell, const Cube& cube, Block& block,
+void MeasuredSpace::Impl::free_within(const Cell& cell, const Cube& cube, VoxelBlock& block,
                                       Decide decide) const {
   if (block.is_all_free(cube)) return;
   const BallSight sight = decide(cube_box(cell, cube));
@@ -162,7 +119,7 @@ void MeasuredSpace::Impl::free_within(const Cell& cell, const Cube& cube, Block&
 void MeasuredSpace::Impl::occupy(const geometry::Scan& scan) {
   // Neighbouring pixels mostly hit the same block.
   Cell last_cell = Cell::Zero();
-  Block* last = nullptr;
+  VoxelBlock* last = nullptr;
   for (const Eigen::Vector3f& p : scan.points) {
     const Vector3d point = p.cast<double>();
     if (point.z() < config.floor) continue;
@@ -186,7 +143,7 @@ void MeasuredSpace::Impl::carve(const RangeImage& image) {
   });
 }
 
-Slices MeasuredSpace::Impl::blocked(const Cell& cell, const Block& block) const {
+Slices MeasuredSpace::Impl::blocked(const Cell& cell, const VoxelBlock& block) const {
   Slices blocked{};
   const bool is_cut = !region.contains(block_box(cell));
   const Cell low = (region_low - 8 * cell).cwiseMax(0), high = (region_high - 8 * cell).cwiseMin(8);
@@ -203,8 +160,9 @@ Slices MeasuredSpace::Impl::blocked(const Cell& cell, const Block& block) const 
 }
 
 void MeasuredSpace::Impl::closest_in_cube(const Segment& piece, const BoxTest& test,
-                                          const Cell& cell, const Cube& cube, const Block& block,
-                                          const Slices& blocked, Closest& best) const {
+                                          const Cell& cell, const Cube& cube,
+                                          const VoxelBlock& block, const Slices& blocked,
+                                          Closest& best) const {
   const std::uint64_t mask = cube.mask();
   std::uint64_t any = 0, all = mask;
   for (int z = cube.low.z(); z < cube.low.z() + cube.edge; ++z) {
@@ -245,7 +203,7 @@ void MeasuredSpace::Impl::closest_in(const Segment& piece, Closest& best) const 
     if (!test.is_near(box, best.distance)) return true;
     const auto found = blocks.find(cell_key(cell));
     if (found != blocks.end()) {
-      const Block& block = found->second;
+      const VoxelBlock& block = found->second;
       if (!block.is_all_passable()) {
         closest_in_cube(piece, test, cell, {Cell::Zero(), 8}, block, blocked(cell, block), best);
       }
@@ -385,7 +343,7 @@ struct FileHead {
 
 struct FileBlock {
   std::uint64_t key;
-  Block block;
+  VoxelBlock block;
 };
 
 template <typename Record>

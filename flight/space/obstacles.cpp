@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 
 #include "geometry/error.h"
 
@@ -11,12 +10,11 @@ namespace {
 
 using Eigen::Vector2d;
 using Eigen::Vector3d;
+using geometry::turn;
 
 constexpr double far_away = 1e5;  // stands for an infinite floor or ceiling
 
 double cross(const Vector2d& a, const Vector2d& b) { return a.x() * b.y() - a.y() * b.x(); }
-
-double turn(const Vector2d& a, const Vector2d& b, const Vector2d& c) { return cross(b - a, c - a); }
 
 double signed_area(const std::vector<Vector2d>& polygon) {
   double area = 0.0;
@@ -86,26 +84,6 @@ std::vector<std::array<std::uint32_t, 3>> triangulate(const std::vector<Vector2d
   return triangles;
 }
 
-/// FNV-1a, 64 bits.
-class Fingerprint {
- public:
-  template <typename Number>
-  void add(const Number& number) {
-    unsigned char bytes[sizeof(Number)];
-    std::memcpy(bytes, &number, sizeof(Number));
-    for (const unsigned char byte : bytes) state_ = (state_ ^ byte) * 0x100000001b3ULL;
-  }
-  void add(const Prism& prism) {
-    add(prism.footprint.size());
-    for (const Vector2d& corner : prism.footprint) add(corner.x()), add(corner.y());
-    add(prism.floor), add(prism.ceiling);
-  }
-  std::uint64_t value() const { return state_; }
-
- private:
-  std::uint64_t state_ = 0xcbf29ce484222325ULL;
-};
-
 }  // namespace
 
 void validate(const Obstacles& obstacles) {
@@ -145,21 +123,6 @@ Obstacles without_ground(Obstacles obstacles) {
   return obstacles;
 }
 
-bool contains(const Prism& prism, const Vector3d& point) {
-  if (point.z() < prism.floor || point.z() > prism.ceiling) return false;
-  const Vector2d p = point.head<2>();
-  bool inside = false;  // parity of the crossings of a ray towards +x
-  for (std::size_t i = 0; i < prism.footprint.size(); ++i) {
-    const Vector2d& a = prism.footprint[i];
-    const Vector2d& b = prism.footprint[(i + 1) % prism.footprint.size()];
-    if (turn(a, b, p) == 0.0 && (p - a).dot(p - b) <= 0.0) return true;  // on this edge
-    if ((a.y() > p.y()) == (b.y() > p.y())) continue;
-    const bool is_left_of_edge = (turn(a, b, p) > 0.0) == (b.y() > a.y());
-    if (is_left_of_edge) inside = !inside;
-  }
-  return inside;
-}
-
 geometry::Mesh surface(const Prism& prism) {
   std::vector<Vector2d> corners = prism.footprint;
   if (signed_area(corners) < 0.0) std::reverse(corners.begin(), corners.end());
@@ -183,22 +146,6 @@ geometry::Mesh surface(const Prism& prism) {
     mesh.triangles.push_back({i, next + count, i + count});
   }
   return mesh;
-}
-
-std::uint64_t fingerprint(const Obstacles& obstacles) {
-  Fingerprint print;
-  for (const Vector3d& v : obstacles.mesh.vertices)
-    print.add(v.x()), print.add(v.y()), print.add(v.z());
-  for (const auto& triangle : obstacles.mesh.triangles) print.add(triangle);
-  print.add(obstacles.mesh_is_solid);
-  for (const Eigen::Vector3f& p : obstacles.cloud.points)
-    print.add(p.x()), print.add(p.y()), print.add(p.z());
-  print.add(obstacles.cloud.radius);
-  for (const Prism& prism : obstacles.no_fly) print.add(prism);
-  print.add(obstacles.fence.has_value());
-  if (obstacles.fence) print.add(*obstacles.fence);
-  print.add(obstacles.ground_height.value_or(std::numeric_limits<double>::quiet_NaN()));
-  return print.value();
 }
 
 }  // namespace skycap::flight

@@ -2,7 +2,6 @@
 /// geofence, the ground.
 #pragma once
 
-#include <cstdint>
 #include <limits>
 #include <optional>
 #include <span>
@@ -11,17 +10,12 @@
 
 #include <Eigen/Core>
 
+#include "geometry/place/prism.h"
 #include "geometry/surfaces/mesh.h"
 
 namespace skycap::flight {
 
-/// An upright prism over a polygon: a no-fly volume or a geofence.
-struct Prism {
-  std::string name;                        ///< for messages
-  std::vector<Eigen::Vector2d> footprint;  ///< simple polygon, either way round, not closed
-  double floor = -std::numeric_limits<double>::infinity();
-  double ceiling = std::numeric_limits<double>::infinity();
-};
+using geometry::Prism;
 
 /// Points that stand for the surface around them: each is a ball.
 struct PointObstacles {
@@ -48,9 +42,6 @@ void validate(const Obstacles& obstacles);
 /// What a climb from a pad has to keep clear of: everything but the ground and the fence's floor.
 Obstacles without_ground(Obstacles obstacles);
 
-/// Whether a point is in the prism or on its boundary.
-bool contains(const Prism& prism, const Eigen::Vector3d& point);
-
 /// The prism's closed surface, facing outward. An infinite floor or ceiling becomes -/+ 100 km.
 geometry::Mesh surface(const Prism& prism);
 
@@ -61,9 +52,5 @@ geometry::Mesh surface(const Prism& prism);
 /// offset are positive.
 geometry::Mesh envelope(const geometry::Mesh& mesh, double alpha, double offset);
 geometry::Mesh envelope(std::span<const Eigen::Vector3f> points, double alpha, double offset);
-
-/// A number that changes when any obstacle does (FNV-1a of all of them): it ties a certificate to
-/// what it was proved against.
-std::uint64_t fingerprint(const Obstacles& obstacles);
 
 }  // namespace skycap::flight

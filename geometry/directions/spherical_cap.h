@@ -11,12 +11,12 @@
 /// There are many; the policy says which.
 ///
 /// Degenerate sets, for all but `nonlinear_program`:
-///   empty                        known_clear, cosine -1
-///   one direction (or copies)    its antipode
-///   an antipodal pair            the direction at right angles to it that is nearest to
-///   known_clear on a great circle            the pole nearest to known_clear, cosine 0 fills a
-///   closed hemisphere    its pole, cosine 0 covers the sphere            some direction, cosine
-///   near 1: there is no clear direction
+/// - empty: known_clear, cosine -1;
+/// - one direction (or copies): its antipode;
+/// - an antipodal pair: the direction at right angles to it that is nearest to known_clear;
+/// - on a great circle: the pole nearest to known_clear, cosine 0;
+/// - fills a closed hemisphere: its pole, cosine 0;
+/// - covers the sphere: some direction, cosine near 1; there is no clear direction.
 #pragma once
 
 #include <optional>

@@ -9,7 +9,7 @@
 #include <string_view>
 
 #include "geometry/error.h"
-#include "geometry/io/cloud_formats.h"
+#include "geometry/io/cloud_parsers.h"
 #include "geometry/io/file.h"
 #include "geometry/io/ply.h"
 #include "geometry/io/text_scanner.h"
@@ -22,7 +22,7 @@ namespace fs = std::filesystem;
 // Beyond this, neighbouring single-precision numbers are 2 mm apart.
 constexpr double farthest_coordinate = 16384.0;
 
-CloudFile parse_ply_cloud(const fs::path& path, std::string_view bytes) {
+AttributedCloud parse_ply_cloud(const fs::path& path, std::string_view bytes) {
   constexpr std::array<std::string_view, 10> names{"x",  "y",    "z",   "nx",    "ny",
                                                    "nz", "view", "red", "green", "blue"};
   const std::string name = path.string();
@@ -49,7 +49,7 @@ CloudFile parse_ply_cloud(const fs::path& path, std::string_view bytes) {
       }
       return value;
     };
-    CloudFile cloud;
+    AttributedCloud cloud;
     for (std::size_t i = 0; i < element.count; ++i) {
       cloud.positions.push_back(
           cloud_position(path, i, columns[0][i], columns[1][i], columns[2][i]));
@@ -72,10 +72,10 @@ CloudFile parse_ply_cloud(const fs::path& path, std::string_view bytes) {
   fail_cloud(path, "there is no element 'vertex'; a cloud must have one");
 }
 
-CloudFile parse_xyz_cloud(const fs::path& path, std::string_view text) {
+AttributedCloud parse_xyz_cloud(const fs::path& path, std::string_view text) {
   const std::string name = path.string();
   TextScanner scanner(name, text);
-  CloudFile cloud;
+  AttributedCloud cloud;
   do {
     const auto x = scanner.word_in_line();
     if (!x || x->starts_with('#')) continue;
@@ -117,11 +117,11 @@ Eigen::Vector3f cloud_position(const fs::path& path, std::size_t point, double x
   return position.cast<float>();
 }
 
-CloudFile read_cloud(const fs::path& path) {
+AttributedCloud read_cloud(const fs::path& path) {
   fs::path inner = path;
   if (inner.extension() == ".gz") inner = inner.stem();
   const std::string ending = inner.extension().string();
-  using Parse = CloudFile (*)(const fs::path&, std::string_view);
+  using Parse = AttributedCloud (*)(const fs::path&, std::string_view);
   const std::map<std::string, Parse> formats = {
       {".ply", parse_ply_cloud}, {".pcd", parse_pcd_cloud}, {".las", parse_las_cloud},
       {".xyz", parse_xyz_cloud}, {".txt", parse_xyz_cloud}, {".asc", parse_xyz_cloud}};
@@ -131,12 +131,12 @@ CloudFile read_cloud(const fs::path& path) {
                "a cloud file must end in .ply, .pcd, .las, .xyz, .txt or .asc (or with .gz after "
                "it)");
   }
-  const CloudFile cloud = format->second(path, read_file(path));
+  AttributedCloud cloud = format->second(path, read_file(path));
   if (cloud.positions.empty()) fail_cloud(path, "holds no points");
   return cloud;
 }
 
-void write_cloud(const fs::path& path, const CloudFile& cloud) {
+void write_cloud(const fs::path& path, const CloudColumns& cloud) {
   const std::size_t count = cloud.positions.size();
   assert(cloud.normals.empty() || cloud.normals.size() == count);
   assert(cloud.views.empty() || cloud.views.size() == count);

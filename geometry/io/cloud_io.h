@@ -5,6 +5,7 @@
 #include <array>
 #include <cstdint>
 #include <filesystem>
+#include <span>
 #include <vector>
 
 #include <Eigen/Core>
@@ -13,12 +14,24 @@ namespace skycap::geometry {
 
 /// Points and what a file says of them. An attribute that is absent is an empty vector, otherwise
 /// it has one entry for each position.
-struct CloudFile {
+struct AttributedCloud {
   std::vector<Eigen::Vector3f> positions;
   std::vector<Eigen::Vector3f> normals;              ///< nx ny nz
   std::vector<std::uint32_t> views;                  ///< view: the scan, counted from 0
   std::vector<std::array<std::uint8_t, 3>> colours;  ///< red green blue
 };
+
+/// The same where it stands elsewhere. What is absent is empty.
+struct CloudColumns {
+  std::span<const Eigen::Vector3f> positions;
+  std::span<const Eigen::Vector3f> normals;
+  std::span<const std::uint32_t> views;
+  std::span<const std::array<std::uint8_t, 3>> colours;
+};
+
+inline CloudColumns columns_of(const AttributedCloud& cloud) {
+  return {cloud.positions, cloud.normals, cloud.views, cloud.colours};
+}
 
 /// Reads .ply; .pcd (text, binary or compressed; points of NaN are passed over); .las (version 1.4,
 /// points of format 6 or 7, not compressed); or .xyz, .txt, .asc: lines of x y z (further columns
@@ -26,10 +39,10 @@ struct CloudFile {
 /// passed over. Throws
 /// Error{bad_file} in one line, also for coordinates that are not finite, and for such so far from
 /// the origin that single precision would move them by a millimetre.
-CloudFile read_cloud(const std::filesystem::path& path);
+AttributedCloud read_cloud(const std::filesystem::path& path);
 
 /// Writes binary little-endian PLY: x y z as float and then, of what is there, nx ny nz as float,
 /// view as uint, red green blue as uchar. Complete or not at all. Throws Error{bad_file}.
-void write_cloud(const std::filesystem::path& path, const CloudFile& cloud);
+void write_cloud(const std::filesystem::path& path, const CloudColumns& cloud);
 
 }  // namespace skycap::geometry

@@ -3,7 +3,7 @@
 #include <cstring>
 #include <string>
 
-#include "geometry/io/cloud_formats.h"
+#include "geometry/io/cloud_parsers.h"
 
 namespace skycap::geometry {
 namespace {
@@ -75,10 +75,10 @@ LasHeader header_of(const fs::path& path, std::string_view bytes) {
 
 }  // namespace
 
-CloudFile parse_las_cloud(const fs::path& path, std::string_view bytes) {
+AttributedCloud parse_las_cloud(const fs::path& path, std::string_view bytes) {
   const LasHeader header = header_of(path, bytes);
   constexpr std::uint8_t withheld = 1 << 2;
-  CloudFile cloud;
+  AttributedCloud cloud;
   for (std::size_t i = 0; i < header.points; ++i) {
     const std::size_t place = header.first_point + i * header.point_size;
     if ((at<std::uint8_t>(bytes, place + 15) & withheld) != 0) continue;

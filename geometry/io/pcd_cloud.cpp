@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "geometry/io/cloud_formats.h"
+#include "geometry/io/cloud_parsers.h"
 #include "geometry/io/text_scanner.h"
 
 namespace skycap::geometry {
@@ -184,7 +184,7 @@ class Points {
     has_normals_ = fields_[3] && fields_[4] && fields_[5];
   }
 
-  CloudFile take() { return std::move(cloud_); }
+  AttributedCloud take() { return std::move(cloud_); }
 
   void read_text(const std::string& name, std::string_view text) {
     TextScanner scanner(name, text, header_.first_line);
@@ -241,12 +241,12 @@ class Points {
   const PcdHeader& header_;
   std::array<std::optional<PcdField>, 6> fields_;
   bool has_normals_ = false;
-  CloudFile cloud_;
+  AttributedCloud cloud_;
 };
 
 }  // namespace
 
-CloudFile parse_pcd_cloud(const fs::path& path, std::string_view bytes) {
+AttributedCloud parse_pcd_cloud(const fs::path& path, std::string_view bytes) {
   const std::string name = path.string();
   const PcdHeader header = header_of(path, name, bytes);
   const std::string_view data = bytes.substr(header.end);

@@ -4,23 +4,19 @@
 #include <cassert>
 
 #include "geometry/parallel.h"
-#include "geometry/points/nearby_points.h"
 
 namespace skycap::geometry {
 
-// Cells twice as wide as the spacing: a ball of that radius reaches eight of them.
 DensityMap::DensityMap(const DensityConfig& config)
     : config_(config),
       index_(config.radius),
-      spacing_grid_(config.spacing > 0.0 ? 2.0 * config.spacing : config.radius) {
+      spaced_(config.spacing, config.spacing > 0.0 ? 2.0 * config.spacing : config.radius) {
   assert(config.spacing < config.radius);
 }
 
 void DensityMap::keep_if_room(std::span<const Eigen::Vector3f> points, std::uint32_t view) {
-  NearbyPoints kept(spacing_grid_, config_.spacing);
   for (const Eigen::Vector3f& point : points) {
-    if (kept.any_near(point)) continue;
-    spacing_grid_.insert(point);
+    if (!spaced_.keep(point)) continue;
     index_.insert(point);
     cloud_.positions.push_back(point);
     cloud_.views.push_back(view);
@@ -39,7 +35,7 @@ void DensityMap::insert(std::span<const Eigen::Vector3f> points, std::uint32_t v
     const std::size_t parts = (points.size() + part_size - 1) / part_size;
     std::vector<std::vector<Eigen::Vector3f>> remaining(parts);
     parallel_for(parts, threads, [&](std::size_t part) {
-      NearbyPoints kept(spacing_grid_, config_.spacing);
+      NearbyPoints kept(spaced_.grid(), config_.spacing);
       const std::size_t first = part * part_size;
       for (const Eigen::Vector3f& point :
            points.subspan(first, std::min(part_size, points.size() - first))) {

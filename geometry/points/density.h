@@ -11,11 +11,13 @@
 #include <cstddef>
 #include <cstdint>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include <Eigen/Core>
 
 #include "geometry/points/point_cloud.h"
+#include "geometry/points/spaced_points.h"
 #include "geometry/points/spatial_index.h"
 
 namespace skycap::geometry {
@@ -54,6 +56,8 @@ class DensityMap {
 
   const DensityConfig& config() const { return config_; }
   const PointCloud& cloud() const { return cloud_; }
+  /// Hands the points over; nothing may be asked afterwards.
+  PointCloud release_cloud() { return std::move(cloud_); }
   const SpatialIndex& index() const { return index_; }
   PointLabel label(std::uint32_t point) const { return labels_[point]; }
   const std::vector<PointLabel>& labels() const { return labels_; }
@@ -82,7 +86,7 @@ class DensityMap {
   DensityConfig config_;
   PointCloud cloud_;
   SpatialIndex index_;
-  PointGrid spacing_grid_;  // the same points in smaller cells, for the spacing
+  SpacedPoints spaced_;  // the same points in smaller cells, for the spacing
   std::vector<PointLabel> labels_;
   std::vector<NonCore> non_core_;  // ascending by point
   std::vector<std::uint8_t> given_up_;

@@ -97,12 +97,6 @@ std::uint32_t SpatialIndex::insert(const Eigen::Vector3f& point) {
   return static_cast<std::uint32_t>(size() - 1);
 }
 
-bool SpatialIndex::insert_spaced(const Eigen::Vector3f& point, double spacing) {
-  if (any_within(point, spacing)) return false;
-  insert(point);
-  return true;
-}
-
 // The grid answers balls of a few bricks, and small clouds by comparing all points.
 bool SpatialIndex::suits_grid(double radius) const {
   return radius <= 16.0 * grid_.cell_size() || size() <= 1U << 14;

@@ -34,8 +34,6 @@ class SpatialIndex {
 
   /// Adds a point; returns its index, the number of points before it. Points must be finite.
   std::uint32_t insert(const Eigen::Vector3f& point);
-  /// Adds the point unless one within `spacing` is there already; whether it was added.
-  bool insert_spaced(const Eigen::Vector3f& point, double spacing);
 
   bool any_within(const Eigen::Vector3f& query, double radius) const;
   /// The number of points within `radius`.

@@ -2,9 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <functional>
 
+#include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include "missions/benchmark/contestants.h"
@@ -32,18 +32,17 @@ struct Column {
 
 const std::vector<Column>& columns() {
   static const std::vector<Column> all{
-      {"views", "Views", 1.0, "%.1f", &CellFigures::views, &PaperResult::views},
-      {"coverage", "Coverage [%]", 0.01, "%.1f", &CellFigures::coverage, &PaperResult::coverage},
-      {"planning_time_s", "Time [s]", 1.0, "%.3g", &CellFigures::planning_time,
+      {"views", "Views", 1.0, "{:.1f}", &CellFigures::views, &PaperResult::views},
+      {"coverage", "Coverage [%]", 0.01, "{:.1f}", &CellFigures::coverage, &PaperResult::coverage},
+      {"planning_time_s", "Time [s]", 1.0, "{:.3g}", &CellFigures::planning_time,
        &PaperResult::planning_time},
-      {"distance_m", "Distance [m]", 1.0, "%.1f", &CellFigures::distance, &PaperResult::distance}};
+      {"distance_m", "Distance [m]", 1.0, "{:.1f}", &CellFigures::distance,
+       &PaperResult::distance}};
   return all;
 }
 
 std::string formatted(const char* format, double number) {
-  char text[64];
-  std::snprintf(text, sizeof text, format, number);
-  return text;
+  return fmt::format(fmt::runtime(format), number);
 }
 
 std::string title_of(const std::string& planner) {
@@ -197,10 +196,10 @@ std::string with_certainty(const Column& column, const Statistic& ours,
                            const std::optional<PaperResult>& paper) {
   std::string entry = formatted(column.format, ours.mean / column.unit);
   if (std::isfinite(ours.half_width_95)) {
-    entry += " ± " + formatted("%.2g", ours.half_width_95 / column.unit) + " (sd " +
-             formatted("%.2g", ours.deviation / column.unit) + ")";
+    entry += " ± " + formatted("{:.2g}", ours.half_width_95 / column.unit) + " (sd " +
+             formatted("{:.2g}", ours.deviation / column.unit) + ")";
   }
-  if (paper) entry += ", " + formatted("%.2f", ours.mean / (*paper).*column.papers) + "×";
+  if (paper) entry += ", " + formatted("{:.2f}", ours.mean / (*paper).*column.papers) + "×";
   return entry;
 }
 
@@ -217,10 +216,11 @@ std::string details(const std::vector<BenchmarkCell>& cells, const std::string& 
     for (const Column& column : columns()) {
       line.push_back(with_certainty(column, figures.*column.ours, paper));
     }
-    line.push_back(
-        figures.coverage_visible ? formatted("%.1f", 100.0 * figures.coverage_visible->mean) : "-");
+    line.push_back(figures.coverage_visible
+                       ? formatted("{:.1f}", 100.0 * figures.coverage_visible->mean)
+                       : "-");
     line.push_back(figures.ceiling
-                       ? formatted("%.1f", 100.0 * figures.coverage.mean / *figures.ceiling)
+                       ? formatted("{:.1f}", 100.0 * figures.coverage.mean / *figures.ceiling)
                        : "-");
     text += row(line);
   }
@@ -235,14 +235,14 @@ std::string reach_table(const std::vector<BenchmarkCell>& cells, const std::stri
     const auto entry = [&](const Column& column, const Statistic& ours) {
       std::string number = formatted(column.format, ours.mean / column.unit);
       const double whole = mark.whole ? ((*mark.whole).*column.ours).mean : 0.0;
-      if (whole > 0.0) number += ", " + formatted("%.2f", ours.mean / whole) + "×";
+      if (whole > 0.0) number += ", " + formatted("{:.2f}", ours.mean / whole) + "×";
       return number;
     };
     for (const BenchmarkCell& cell : cells) {
       if (cell.mission != mission || cell.planner == mark.key) continue;
       const auto reach = reach_figures(cell.trials, mark.coverage);
       std::vector<std::string> line{
-          mark.title + ", " + formatted("%.1f", 100.0 * mark.coverage), title_of(cell.planner),
+          mark.title + ", " + formatted("{:.1f}", 100.0 * mark.coverage), title_of(cell.planner),
           std::to_string(reach ? reach->reached : 0) + " of " + std::to_string(cell.trials.size())};
       for (const Column& column : columns()) {
         if (column.ours == &CellFigures::coverage) continue;
@@ -281,10 +281,10 @@ std::string table_2(const std::vector<BenchmarkCell>& cells) {
     if (trials.empty()) continue;
     const ViewFigures figures = view_figures(trials);
     const auto paper = paper_view_result(planner);
-    text +=
-        row({title_of(planner), formatted("%.2f", figures.frontiers.mean),
-             formatted("%.2f", paper->frontiers), formatted("%.2f", 100.0 * figures.coverage.mean),
-             formatted("%.2f", 100.0 * paper->coverage)});
+    text += row({title_of(planner), formatted("{:.2f}", figures.frontiers.mean),
+                 formatted("{:.2f}", paper->frontiers),
+                 formatted("{:.2f}", 100.0 * figures.coverage.mean),
+                 formatted("{:.2f}", 100.0 * paper->coverage)});
   }
   return text;
 }
@@ -298,8 +298,8 @@ std::string figure_6(const std::vector<BenchmarkCell>& cells) {
     const TargetFigures figures = target_figures(standard_trials(cells, planner));
     if (figures.targets == 0) continue;
     text += row({title_of(planner), std::to_string(figures.targets),
-                 formatted("%.1f", 100.0 * figures.share_by_views.front()),
-                 formatted("%.1f", 100.0 * figures.share_by_distance[bin])});
+                 formatted("{:.1f}", 100.0 * figures.share_by_views.front()),
+                 formatted("{:.1f}", 100.0 * figures.share_by_distance[bin])});
   }
   return text;
 }

@@ -3,18 +3,20 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdio>
 #include <limits>
-#include <mutex>
 
 #include <boost/math/distributions/students_t.hpp>
+#include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include "geometry/error.h"
+#include "geometry/io/json.h"
 #include "geometry/parallel.h"
+#include "missions/benchmark/paper_results.h"
 #include "missions/file/json_text.h"
 #include "missions/file/mission_keys.h"
 #include "missions/file/number_text.h"
+#include "missions/file/planner_titles.h"
 #include "missions/judge/coverage.h"
 #include "missions/version.h"
 
@@ -28,23 +30,28 @@ struct Figure {
   const char* name;
   double (*of)(const Trial&);
   std::optional<double> file::ReferenceConfig::*reference;  ///< or null
+  double PaperResult::*in_table_1;                          ///< or null
 };
 
 constexpr std::array figures{
     Figure{"views", [](const Trial& t) { return static_cast<double>(t.views); },
-           &file::ReferenceConfig::views},
+           &file::ReferenceConfig::views, &PaperResult::views},
     Figure{"coverage", [](const Trial& t) { return t.coverage.all; },
-           &file::ReferenceConfig::coverage},
+           &file::ReferenceConfig::coverage, &PaperResult::coverage},
     // No reference: publications do not say which surface cannot be seen.
     Figure{"coverage_visible", [](const Trial& t) { return t.coverage.visible.value_or(0.0); },
-           nullptr},
+           nullptr, nullptr},
     Figure{"distance_m", [](const Trial& t) { return t.distance; },
-           &file::ReferenceConfig::distance},
+           &file::ReferenceConfig::distance, &PaperResult::distance},
     Figure{"planning_time_s", [](const Trial& t) { return t.planning_time; },
-           &file::ReferenceConfig::planning_time}};
+           &file::ReferenceConfig::planning_time, &PaperResult::planning_time}};
 
+/// What the mission says of a publication, or else what the SEE++ paper has of its model.
 std::optional<double> reference_of(const file::Mission& mission, const Figure& figure) {
-  return figure.reference ? mission.paper.*figure.reference : std::nullopt;
+  if (figure.reference == nullptr) return std::nullopt;
+  if (const auto& given = mission.paper.*figure.reference) return given;
+  const auto paper = paper_result(mission.name, file::title_of(mission.planner.name).word);
+  return paper ? std::optional((*paper).*figure.in_table_1) : std::nullopt;
 }
 
 Statistic statistic_of(const std::vector<Trial>& trials, const Figure& figure) {
@@ -189,7 +196,7 @@ std::string trial_json(const Trial& trial) {
 
 Trial parse_trial(const std::string& text) {
   try {
-    const Json json = Json::parse(text);
+    const Json json = geometry::parse_json<Json>(text);
     Trial trial;
     trial.seed = json.at("seed").get<std::uint64_t>();
     trial.stop_reason = stop_reason_of(json.at("stop_reason").get<std::string>());
@@ -213,26 +220,6 @@ Trial parse_trial(const std::string& text) {
   }
 }
 
-std::vector<Trial> run_trials(const file::Mission& mission, const scene::SurveyScene& scene,
-                              std::size_t count, unsigned threads, std::stop_token stop,
-                              const std::function<void(const Trial&)>& report) {
-  const SceneTruth truth = scene_truth(scene, threads);
-  std::vector<std::optional<Trial>> slots(count);
-  std::mutex reporting;
-  geometry::parallel_for(count, threads, [&](std::size_t i) {
-    if (stop.stop_requested()) return;
-    slots[i] = run_trial(mission, scene, truth, mission.seed + i, stop);
-    if (!slots[i] || !report) return;
-    const std::lock_guard lock(reporting);
-    report(*slots[i]);
-  });
-  std::vector<Trial> trials;
-  for (std::optional<Trial>& trial : slots) {
-    if (trial) trials.push_back(std::move(*trial));
-  }
-  return trials;
-}
-
 std::string trials_csv(const std::vector<Trial>& trials) {
   std::string csv =
       "seed,stop_reason,views,coverage,coverage_visible,coverage_ceiling,distance_m,points,"
@@ -250,11 +237,12 @@ std::string trials_csv(const std::vector<Trial>& trials) {
 std::string trials_json(const file::Mission& mission, const std::vector<Trial>& trials,
                         std::size_t requested, unsigned threads) {
   Json json{{"mission", mission.name},
-            {"planner", file::to_text(*file::find_key("planner.name")->get(mission))},
+            {"planner", file::title_of(mission.planner.name).word},
             {"preset", file::to_text(*file::find_key("planner.preset")->get(mission))},
             {"first_seed", mission.seed},
             {"threads", geometry::thread_count(threads)},
             {"version", version},
+            {"complete", trials.size() == requested},
             {"trials_requested", requested},
             {"trials", trials.size()},
             {"trials_complete", completed(trials)},
@@ -273,22 +261,15 @@ std::string trials_json(const file::Mission& mission, const std::vector<Trial>& 
 
 std::string trials_table(const file::Mission& mission, const std::vector<Trial>& trials) {
   if (trials.empty()) return "";
-  std::string table;
-  char line[160];
-  std::snprintf(line, sizeof line, "%s: %zu trials, %zu complete\n", mission.name.c_str(),
-                trials.size(), completed(trials));
-  table += line;
-  std::snprintf(line, sizeof line, "%-18s %12s %10s %10s %12s\n", "", "mean", "+- (95 %)", "sd",
-                "paper");
-  table += line;
+  std::string table =
+      fmt::format("{}: {} trials, {} complete\n{:<18} {:>12} {:>10} {:>10} {:>12}\n", mission.name,
+                  trials.size(), completed(trials), "", "mean", "+- (95 %)", "sd", "paper");
   for (const Figure& figure : figures) {
     const Statistic statistic = statistic_of(trials, figure);
     const auto reference = reference_of(mission, figure);
-    char paper[32] = "-";
-    if (reference) std::snprintf(paper, sizeof paper, "%.4g", *reference);
-    std::snprintf(line, sizeof line, "%-18s %12.4g %10.2g %10.2g %12s\n", figure.name,
-                  statistic.mean, statistic.half_width_95, statistic.deviation, paper);
-    table += line;
+    table += fmt::format("{:<18} {:12.4g} {:10.2g} {:10.2g} {:>12}\n", figure.name, statistic.mean,
+                         statistic.half_width_95, statistic.deviation,
+                         reference ? fmt::format("{:.4g}", *reference) : "-");
   }
   return table;
 }

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 namespace skycap::missions::derived {
 namespace {
@@ -10,13 +9,14 @@ namespace {
 using Eigen::AlignedBox3d;
 using Eigen::Vector3d;
 
-constexpr double degrees_per_radian = 180.0 / std::numbers::pi;
-
 /// Voxels of a quarter of the clearance lose little of the free space beside what was measured.
 constexpr double voxels_per_clearance = 4.0;
 
 /// How far beside the unknown box places are proposed: more than the clearance and a voxel.
 double spare_of(const file::Mission& mission) { return 2.0 * mission.flight.clearance; }
+
+/// No-fly volumes with their top above this are not flown over [m].
+constexpr double no_flight_is_higher = 500.0;
 
 /// Grid vertices looked at before a view counts as out of reach: some tenths of a second.
 constexpr std::size_t most_expansions = 50'000;
@@ -62,12 +62,12 @@ flight::Obstacles flight_rules(const file::Mission& mission) {
   flight::Obstacles rules;
   rules.ground_height = mission.scene.position.z();
   const file::SiteConfig& site = mission.site;
-  for (const survey::Prism& volume : site.no_fly) {
-    const std::string name = std::to_string(rules.no_fly.size() + 1);
-    rules.no_fly.push_back({name, volume.corners, volume.bottom, volume.top});
+  for (const geometry::Prism& volume : site.no_fly) {
+    rules.no_fly.push_back(volume);
+    rules.no_fly.back().name = std::to_string(rules.no_fly.size());
   }
   if (!site.geofence.empty() || site.highest_height) {
-    flight::Prism fence{.name = "site.geofence", .footprint = site.geofence};
+    geometry::Prism fence{.name = "site.geofence", .footprint = site.geofence};
     // The fence must not hold the vehicle up on its way from and to the pad.
     if (site.highest_height) fence.ceiling = *site.highest_height;
     if (fence.footprint.empty()) {
@@ -106,6 +106,25 @@ double takeoff_climb_of(const file::Mission& mission) {
   return mission.flight.takeoff_climb.value_or(std::max(5.0, mission.flight.clearance + 1.0));
 }
 
+double highest_return(const file::Mission& mission, double obstacles_top) {
+  /// A whole metre is lost in rounding, and autopilots may fly level up to 2 m lower.
+  constexpr double spare = 3.0;
+  const AlignedBox3d box = unknown_box_of(mission);
+  double top = std::max(obstacles_top, mission.scene.position.z());
+  if (!box.isEmpty()) top = std::max(top, box.max().z());
+  for (const geometry::Prism& volume : mission.site.no_fly) {
+    if (volume.ceiling < no_flight_is_higher) top = std::max(top, volume.ceiling);
+  }
+  const double highest = top + mission.flight.clearance + spare;
+  if (!mission.site.highest_height) return highest;
+  return std::min(highest, *mission.site.highest_height - mission.flight.clearance);
+}
+
+std::vector<flight::Dialect> dialects_of(const flight::Vehicle& vehicle) {
+  if (vehicle.dialect != flight::Dialect::dji) return {vehicle.dialect};
+  return {flight::Dialect::dji, flight::Dialect::px4, flight::Dialect::ardupilot};
+}
+
 flight::RouteOptions route_options_of(const file::Mission& mission, const Vector3d& pad) {
   const file::FlightConfig& config = mission.flight;
   flight::RouteOptions options;
@@ -121,18 +140,20 @@ flight::RouteOptions route_options_of(const file::Mission& mission, const Vector
   options.conditions.temperature_c = config.temperature;
   options.conditions.cruise_speed = config.cruise_speed;
   options.conditions.reserve = config.reserve;
+  options.returns = flight::ReturnOptions{
+      dialects_of(vehicle_of(mission)), highest_return(mission, mission.scene.position.z()), {}};
   return options;
 }
 
 bool has_place(const file::Mission& mission) {
-  return mission.georeference.latitude && mission.georeference.longitude;
+  return mission.georeference.latitude_deg && mission.georeference.longitude_deg;
 }
 
 flight::Site site_of(const file::Mission& mission) {
   const file::Georeference& place = mission.georeference;
   flight::Site site;
-  site.origin = {place.latitude.value_or(0.0) * degrees_per_radian,
-                 place.longitude.value_or(0.0) * degrees_per_radian, place.ellipsoid_height};
+  site.origin = {place.latitude_deg.value_or(0.0), place.longitude_deg.value_or(0.0),
+                 place.ellipsoid_height};
   site.geoid_undulation = place.geoid_undulation;
   return site;
 }

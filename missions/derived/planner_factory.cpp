@@ -6,6 +6,8 @@
 #include "geometry/error.h"
 #include "geometry/place/camera.h"
 #include "missions/derived/site.h"
+#include "missions/file/number_text.h"
+#include "missions/file/planner_titles.h"
 
 namespace skycap::missions::derived {
 namespace {
@@ -21,73 +23,38 @@ survey::volumetric::VolumetricConfig volumetric_config(const file::Mission& miss
                                                        survey::volumetric::VolumetricMetric metric,
                                                        unsigned threads) {
   const survey::volumetric::VolumetricSettings& settings = mission.volumetric;
-  if (!settings.sphere_centre || !settings.sphere_radius) {
-    throw Error(ErrorKind::bad_config,
-                "the planner needs volumetric.sphere_centre and volumetric.sphere_radius where "
-                "there is no model to derive them from; give both");
-  }
   const survey::see::SeeConfig& see = mission.planner.see;
   const double views = static_cast<double>(view_limit(mission)) * settings.candidates_per_view;
-  return {.metric = metric,
-          .resolution = see.resolution_radius,
-          .spacing = see.effective_spacing(),
-          .scene_box = see.scene_box,
-          .candidates = static_cast<std::size_t>(std::lround(views)),
-          .sphere_centre = *settings.sphere_centre,
-          .sphere_radius = *settings.sphere_radius,
-          .least_height = see.ground_clearance,
-          .seed = mission.seed ^ candidates_stream,
-          .settings = settings,
-          .threads = threads};
+  survey::volumetric::VolumetricConfig config{
+      .metric = metric,
+      .resolution = see.resolution_radius,
+      .spacing = see.effective_spacing(),
+      .scene_box = see.scene_box,
+      .candidates = static_cast<std::size_t>(std::lround(views)),
+      .least_height = least_height_above_ground(mission),
+      .seed = mission.seed ^ candidates_stream,
+      .settings = settings,
+      .threads = threads};
+  if (settings.sphere_centre) config.sphere_centre = *settings.sphere_centre;
+  if (settings.sphere_radius) config.sphere_radius = *settings.sphere_radius;
+  return config;
 }
 
-/// The gain that a volumetric planner goes by; nothing for the others.
-std::optional<survey::volumetric::VolumetricMetric> volumetric_metric(file::PlannerName name) {
-  using enum survey::volumetric::VolumetricMetric;
-  switch (name) {
-    case file::PlannerName::rsv:
-      return rear_side_voxel;
-    case file::PlannerName::rse:
-      return rear_side_entropy;
-    case file::PlannerName::oa:
-      return occlusion_aware;
-    case file::PlannerName::uv:
-      return unobserved_voxel;
-    case file::PlannerName::pc:
-      return proximity_count;
-    case file::PlannerName::af:
-      return area_factor;
-    case file::PlannerName::ae:
-      return average_entropy;
-    default:
-      return std::nullopt;
-  }
+survey::see::SeeConfig see_config(const file::Mission& mission, unsigned threads) {
+  survey::see::SeeConfig config = mission.planner.see;
+  config.threads = threads;
+  config.least_height = least_height_above_ground(mission);
+  return config;
 }
 
-}  // namespace
-
-std::size_t view_limit(const file::Mission& mission) {
-  const bool is_volumetric = volumetric_metric(mission.planner.name).has_value();
-  return is_volumetric ? std::min(mission.volumetric.view_limit.value_or(usual_view_limit),
-                                  mission.limits.max_views)
-                       : mission.limits.max_views;
-}
-
-std::unique_ptr<survey::Planner> make_planner(const file::Mission& mission, unsigned threads) {
+survey::skycap::SkycapConfig skycap_config(const file::Mission& mission, unsigned threads) {
   const geometry::Camera camera(mission.sensor.camera.camera);
-  survey::see::SeeConfig see = mission.planner.see;
-  see.threads = threads;
-  if (const auto metric = volumetric_metric(mission.planner.name)) {
-    return std::make_unique<survey::volumetric::VolumetricPlanner>(
-        volumetric_config(mission, *metric, threads), camera);
-  }
-  if (mission.planner.name != file::PlannerName::skycap) {
-    return std::make_unique<survey::see::SeePlanner>(see, camera);
-  }
+  const survey::see::SeeConfig& see = mission.planner.see;
   survey::skycap::SkycapConfig config{
       .coverage_radius = mission.evaluation.registration_distance,
       .spacing = see.effective_spacing(),
       .view_distance = see.view_distance.value_or(view_distance(camera, see.density)),
+      .max_incidence = mission.sensor.camera.max_incidence,
       .scene_box = see.scene_box,
       .limits = view_limits(mission),
       .stop = mission.planner.skycap_stop,
@@ -95,13 +62,62 @@ std::unique_ptr<survey::Planner> make_planner(const file::Mission& mission, unsi
       .threads = threads};
   // Told of the budgets, it looks for the best view that is still in reach.
   const file::LimitsConfig& limits = mission.limits;
-  if (limits.max_distance < file::LimitsConfig{}.max_distance) {
-    config.stop.most_length = limits.max_distance;
-  }
+  config.stop.most_length = limits.max_distance;
   if (limits.max_minutes) config.stop.most_time = 60.0 * *limits.max_minutes;
   config.stop.speed = limits.speed;
   config.stop.time_per_view = limits.time_per_view;
-  return std::make_unique<survey::skycap::SkycapPlanner>(config, camera);
+  return config;
+}
+
+/// Throws if the candidates' sphere, where both of its keys are given, is below the least height.
+void validate_sphere(const survey::volumetric::VolumetricConfig& config) {
+  const survey::volumetric::VolumetricSettings& settings = config.settings;
+  if (!settings.sphere_centre || !settings.sphere_radius || !config.least_height) return;
+  const double highest = config.sphere_centre.z() + config.sphere_radius;
+  if (highest > *config.least_height) return;
+  throw Error(ErrorKind::bad_config,
+              "volumetric.sphere_radius is " + file::short_text(config.sphere_radius) +
+                  "; it must be large enough for the sphere to reach above the least height of " +
+                  file::short_text(*config.least_height) +
+                  " m, which limits.ground_clearance gives");
+}
+
+}  // namespace
+
+std::size_t view_limit(const file::Mission& mission) {
+  const bool is_volumetric = file::title_of(mission.planner.name).metric.has_value();
+  return is_volumetric ? std::min(mission.volumetric.view_limit.value_or(usual_view_limit),
+                                  mission.limits.max_views)
+                       : mission.limits.max_views;
+}
+
+void validate_planner(const file::Mission& mission) {
+  if (const auto metric = file::title_of(mission.planner.name).metric) {
+    const auto config = volumetric_config(mission, *metric, 1);
+    config.validate();
+    validate_sphere(config);
+  } else if (mission.planner.name == file::PlannerName::skycap) {
+    skycap_config(mission, 1).validate();
+  } else {
+    see_config(mission, 1).validate();
+  }
+}
+
+std::unique_ptr<survey::Planner> make_planner(const file::Mission& mission, unsigned threads) {
+  const geometry::Camera camera(mission.sensor.camera.camera);
+  if (const auto metric = file::title_of(mission.planner.name).metric) {
+    if (!mission.volumetric.sphere_centre || !mission.volumetric.sphere_radius) {
+      throw Error(ErrorKind::bad_config,
+                  "the planner needs volumetric.sphere_centre and volumetric.sphere_radius where "
+                  "there is no model to derive them from; give both");
+    }
+    return std::make_unique<survey::volumetric::VolumetricPlanner>(
+        volumetric_config(mission, *metric, threads), camera);
+  }
+  if (mission.planner.name == file::PlannerName::skycap) {
+    return std::make_unique<survey::skycap::SkycapPlanner>(skycap_config(mission, threads), camera);
+  }
+  return std::make_unique<survey::see::SeePlanner>(see_config(mission, threads), camera);
 }
 
 }  // namespace skycap::missions::derived

@@ -13,6 +13,11 @@ namespace skycap::missions::derived {
 /// Error{bad_config} if it is volumetric and the mission does not say where its sphere is.
 std::unique_ptr<survey::Planner> make_planner(const file::Mission& mission, unsigned threads);
 
+/// Throws Error{bad_config}, "SETTING is ...; it must be ...", for the first setting that the named
+/// planner cannot work with. What only other planners use is not looked at; where the sphere of a
+/// volumetric planner follows from the scene, it is taken to be fine.
+void validate_planner(const file::Mission& mission);
+
 /// The most views of a survey: the mission's, and for volumetric planners V if that is less.
 std::size_t view_limit(const file::Mission& mission);
 

@@ -1,8 +1,12 @@
-/// Reads and checks mission files. docs/mission_file.md is the manual of the format.
+/// Reads mission files and checks each key by itself. docs/mission_file.md is the manual of the
+/// format; derived/resolved_mission.h checks the keys against each other and completes them.
 #pragma once
 
 #include <filesystem>
+#include <functional>
+#include <map>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "missions/file/mission.h"
@@ -16,17 +20,31 @@ struct KeyOverride {
   std::string value;   ///< as the file would say it
 };
 
-/// Reads a mission. Presets come first, keys override them wherever they stand. Every field is
-/// checked; the planner's parameters by SeeConfig::validate() too.
+/// A mission as far as its file says it, and where the file says what.
+struct MissionFile {
+  std::string name;  ///< what messages call the file
+  Mission mission;   ///< presets and keys; all else is as by default
+  std::map<std::string, std::string, std::less<>> places;  ///< of the keys given: "FILE:LINE", or
+                                                           ///< an override's origin
+
+  bool gives(std::string_view key) const;
+
+  /// Throws Error{bad_config}, one line: "FILE:LINE: key KEY: WHAT". A key that is not given stands
+  /// in the first line.
+  [[noreturn]] void refuse(std::string_view key, const std::string& what) const;
+};
+
+/// Reads a mission. Presets come first, keys override them wherever they stand. Every value is
+/// checked to be of its key's type and in its range.
 ///
 /// Throws Error{bad_file} if the file cannot be read, and Error{bad_config} with one line,
 /// "FILE:LINE: key PATH: what is wrong; what would be right", for the first thing that is unknown,
-/// missing, mistyped, out of range or contradictory.
-Mission read_mission(const std::filesystem::path& file,
-                     const std::vector<KeyOverride>& overrides = {});
+/// missing, mistyped or out of range.
+MissionFile read_mission_file(const std::filesystem::path& file,
+                              const std::vector<KeyOverride>& overrides = {});
 
 /// The same for a mission that is already in memory; `name` stands for the file in messages.
-Mission parse_mission(const std::string& text, const std::string& name,
-                      const std::vector<KeyOverride>& overrides = {});
+MissionFile parse_mission_file(const std::string& text, const std::string& name,
+                               const std::vector<KeyOverride>& overrides = {});
 
 }  // namespace skycap::missions::file

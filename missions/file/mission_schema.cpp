@@ -1,7 +1,7 @@
 // The table of keys in words: for error messages, for editors, and for the manual.
-#include <cstdio>
 #include <sstream>
 
+#include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include "missions/file/mission_keys.h"
@@ -14,11 +14,7 @@ using Json = nlohmann::ordered_json;
 constexpr double unlimited = std::numeric_limits<double>::max();
 
 /// Twelve digits: more would show that degrees are stored as radians.
-std::string number_text(double value) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.12g", value);
-  return text;
-}
+std::string number_text(double value) { return fmt::format("{:.12g}", value); }
 
 std::string range_text(const KeyRange& range) {
   const bool has_least = range.least > -unlimited;
@@ -94,11 +90,12 @@ std::string polygon_text(const std::vector<Eigen::Vector2d>& polygon) {
   return "[" + text + "]";
 }
 
-std::string volumes_text(const std::vector<survey::Prism>& volumes) {
+std::string volumes_text(const std::vector<geometry::Prism>& volumes) {
   std::string text;
-  for (const survey::Prism& volume : volumes) {
-    text += (text.empty() ? "" : ", ") + std::string("{corners: ") + polygon_text(volume.corners) +
-            ", bottom: " + number_text(volume.bottom) + ", top: " + number_text(volume.top) + "}";
+  for (const geometry::Prism& volume : volumes) {
+    text += (text.empty() ? "" : ", ") + std::string("{corners: ") +
+            polygon_text(volume.footprint) + ", bottom: " + number_text(volume.floor) +
+            ", top: " + number_text(volume.ceiling) + "}";
   }
   return "[" + text + "]";
 }
@@ -187,7 +184,7 @@ std::string to_text(const KeyValue& value) {
   if (const auto* integer = std::get_if<std::int64_t>(&value)) return std::to_string(*integer);
   if (const auto* number = std::get_if<double>(&value)) return number_text(*number);
   if (const auto* text = std::get_if<std::string>(&value)) return *text;
-  if (const auto* volumes = std::get_if<std::vector<survey::Prism>>(&value)) {
+  if (const auto* volumes = std::get_if<std::vector<geometry::Prism>>(&value)) {
     return volumes_text(*volumes);
   }
   if (const auto* polygon = std::get_if<std::vector<Eigen::Vector2d>>(&value)) {

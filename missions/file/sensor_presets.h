@@ -6,12 +6,13 @@
 
 namespace skycap::missions::file {
 
-struct SensorPreset {
+/// A description that comes with the program.
+struct PresetFile {
   std::string_view name;  ///< of the file, without its extension
   std::string_view text;
 };
 
 /// In alphabetical order.
-const std::vector<SensorPreset>& preset_files();
+const std::vector<PresetFile>& preset_files();
 
 }  // namespace skycap::missions::file

@@ -3,21 +3,21 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
-#include <fstream>
 #include <initializer_list>
-#include <iterator>
 #include <optional>
 #include <set>
 #include <utility>
 
+#include "geometry/angle.h"
 #include "geometry/error.h"
+#include "geometry/io/file.h"
 #include "missions/file/sensor_presets.h"
 #include "missions/file/yaml_tree.h"
 
 namespace skycap::missions::file {
 namespace {
 
-constexpr double degree = std::numbers::pi / 180.0;
+constexpr double degree = geometry::radians_per_degree;
 constexpr double fwhm_to_full_width = 1.69864;  // sqrt(2 / ln 2): half maximum to 1/e^2
 
 /// A map of a description. Every key that is asked for is known; finish() refuses the others.
@@ -174,8 +174,8 @@ std::vector<sim::Channel> read_channels(Section section) {
   return channels;
 }
 
-sim::Prism read_prism(Section section) {
-  sim::Prism prism;
+sim::WedgePrism read_prism(Section section) {
+  sim::WedgePrism prism;
   prism.wedge = degree * section.number("wedge_deg");
   prism.refractive_index = section.number("refractive_index", prism.refractive_index);
   prism.rotation_rate = section.number("rotation_rate_hz");
@@ -317,21 +317,19 @@ SensorDescription read_sensor(const std::string& text, const std::string& file) 
 
 std::vector<std::string_view> sensor_presets() {
   std::vector<std::string_view> names;
-  for (const SensorPreset& preset : preset_files()) names.push_back(preset.name);
+  for (const PresetFile& preset : preset_files()) names.push_back(preset.name);
   return names;
 }
 
 SensorDescription find_sensor(const std::string& name_or_file) {
   if (name_or_file.ends_with(".yaml")) {
-    std::ifstream file(name_or_file);
-    const std::string text{std::istreambuf_iterator<char>(file), {}};
-    if (!file || text.empty()) {
-      throw Error(ErrorKind::bad_file, name_or_file + ": cannot be read, or is empty");
-    }
+    constexpr std::size_t largest = 1 << 20;  // [byte]; a description has about a thousand
+    const std::string text = geometry::read_file(name_or_file, largest);
+    if (text.empty()) throw Error(ErrorKind::bad_file, name_or_file + ": is empty");
     return read_sensor(text, name_or_file);
   }
   std::string known;
-  for (const SensorPreset& preset : preset_files()) {
+  for (const PresetFile& preset : preset_files()) {
     if (preset.name == name_or_file) {
       return read_sensor(std::string(preset.text), name_or_file + ".yaml");
     }

@@ -7,13 +7,13 @@
 #include <Eigen/Core>
 #include <Eigen/Geometry>
 
-#include "geometry/points/point_grid.h"
+#include "geometry/points/spaced_points.h"
 
 namespace skycap::missions::judge {
 
 class ThinnedCloud {
  public:
-  explicit ThinnedCloud(double spacing) : spacing_(spacing), grid_(spacing) {}
+  explicit ThinnedCloud(double spacing) : kept_(spacing) {}
 
   /// Stores those of `points` that are in the box, if it is not empty, and farther than the spacing
   /// from all stored ones; gives them back.
@@ -22,16 +22,13 @@ class ThinnedCloud {
     std::vector<Eigen::Vector3f> stored;
     for (const Eigen::Vector3f& point : points) {
       if (!box.isEmpty() && !box.contains(point.cast<double>())) continue;
-      if (grid_.any_within(point, spacing_)) continue;
-      grid_.insert(point);
-      stored.push_back(point);
+      if (kept_.keep(point)) stored.push_back(point);
     }
     return stored;
   }
 
  private:
-  double spacing_;
-  geometry::PointGrid grid_;
+  geometry::SpacedPoints kept_;
 };
 
 }  // namespace skycap::missions::judge

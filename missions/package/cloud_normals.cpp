@@ -5,7 +5,7 @@
 #include <Eigen/Eigenvalues>
 
 #include "geometry/parallel.h"
-#include "geometry/points/point_grid.h"
+#include "geometry/points/spaced_points.h"
 
 namespace skycap::missions::package {
 namespace {
@@ -14,20 +14,8 @@ using Eigen::Vector3f;
 
 constexpr std::size_t points_in_a_task = 4096;
 
-/// A subset of the points, no two nearer than `spacing`.
-std::vector<Vector3f> thinned(std::span<const Vector3f> points, double spacing) {
-  geometry::PointGrid grid(spacing);
-  std::vector<Vector3f> kept;
-  for (const Vector3f& point : points) {
-    if (grid.any_within(point, spacing)) continue;
-    grid.insert(point);
-    kept.push_back(point);
-  }
-  return kept;
-}
-
 /// The normal of the plane that fits `neighbours` best, towards `to_sensor`.
-Vector3f plane_normal(std::span<const Vector3f> surface,
+Vector3f plane_normal(const geometry::PointGrid& surface,
                       std::span<const geometry::Neighbour> neighbours, const Vector3f& point,
                       const Vector3f& to_sensor) {
   if (neighbours.size() < 3) return to_sensor;
@@ -35,7 +23,7 @@ Vector3f plane_normal(std::span<const Vector3f> surface,
   Vector3f sum = Vector3f::Zero();
   Eigen::Matrix3f squares = Eigen::Matrix3f::Zero();
   for (const geometry::Neighbour& neighbour : neighbours) {
-    const Vector3f offset = surface[neighbour.index] - point;
+    const Vector3f offset = surface.point(neighbour.index) - point;
     sum += offset;
     squares += offset * offset.transpose();
   }
@@ -52,9 +40,11 @@ Vector3f plane_normal(std::span<const Vector3f> surface,
 std::vector<Vector3f> cloud_normals(const geometry::PointCloud& cloud,
                                     std::span<const Eigen::Vector3d> sensors, double radius,
                                     unsigned threads) {
-  const std::vector<Vector3f> surface = thinned(cloud.positions, 0.25 * radius);
+  geometry::SpacedPoints surface(0.25 * radius);
   geometry::PointGrid grid(radius);
-  for (const Vector3f& point : surface) grid.insert(point);
+  for (const Vector3f& point : cloud.positions) {
+    if (surface.keep(point)) grid.insert(point);
+  }
   std::vector<Vector3f> normals(cloud.size());
   const std::size_t tasks = (cloud.size() + points_in_a_task - 1) / points_in_a_task;
   geometry::parallel_for(tasks, threads, [&](std::size_t task) {
@@ -66,7 +56,7 @@ std::vector<Vector3f> cloud_normals(const geometry::PointCloud& cloud,
       grid.find_within(point, radius, neighbours);
       const Vector3f to_sensor =
           (sensors[cloud.views[i]] - point.cast<double>()).normalized().cast<float>();
-      normals[i] = plane_normal(surface, neighbours, point, to_sensor);
+      normals[i] = plane_normal(grid, neighbours, point, to_sensor);
     }
   });
   return normals;

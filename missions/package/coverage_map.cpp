@@ -39,8 +39,8 @@ Colour colour_of(const survey::skycap::BelievedPatch& patch) {
 
 }  // namespace
 
-geometry::CloudFile coverage_map(const survey::skycap::SurveyBelief& belief) {
-  geometry::CloudFile map;
+geometry::AttributedCloud coverage_map(const survey::skycap::SurveyBelief& belief) {
+  geometry::AttributedCloud map;
   for (const survey::skycap::BelievedPatch& patch : belief.patches) {
     map.positions.push_back(patch.position);
     map.normals.push_back(patch.normal);

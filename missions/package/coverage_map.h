@@ -11,6 +11,6 @@ namespace skycap::missions::package {
 ///   amber   seen, but too thinly for the noise
 ///   red     never seen; only guessed to be there
 ///   violet  known, but no place that the limits allow sees it well
-geometry::CloudFile coverage_map(const survey::skycap::SurveyBelief& belief);
+geometry::AttributedCloud coverage_map(const survey::skycap::SurveyBelief& belief);
 
 }  // namespace skycap::missions::package

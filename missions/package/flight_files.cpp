@@ -2,9 +2,13 @@
 
 #include <algorithm>
 #include <array>
+#include <map>
 #include <string_view>
+#include <utility>
 
+#include "flight/export/parameters.h"
 #include "flight/space/clearance.h"
+#include "flight/space/interruptible_space.h"
 #include "geometry/error.h"
 #include "missions/derived/mission_flight.h"
 
@@ -39,8 +43,9 @@ std::string what_is_missing_for(Format format, const file::Mission& mission) {
 }
 
 /// The plan as the format's programs want it: QGroundControl's files in the dialect of PX4 and
-/// Mission Planner's in that of ArduPilot if the vehicle is flown by neither, DJI's with the codes
-/// of one of theirs. Speeds, energy and limits stay the vehicle's.
+/// Mission Planner's in that of ArduPilot if the vehicle is flown by neither, as those autopilots
+/// fly by default; DJI's with the codes of one of theirs. Size, energy and gimbal stay the
+/// vehicle's.
 flight::FlightPlan in_dialect(flight::FlightPlan plan, Format format,
                               std::vector<std::string>& notes) {
   flight::Vehicle& vehicle = plan.vehicle;
@@ -51,17 +56,54 @@ flight::FlightPlan in_dialect(flight::FlightPlan plan, Format format,
   };
   if (format == Format::plan && vehicle.dialect == Dialect::dji) {
     vehicle.dialect = Dialect::px4;
+    vehicle.mode = flight::vehicle_profile("generic").mode;
     note("the .plan file", "PX4");
   } else if (format == Format::waypoints && vehicle.dialect == Dialect::dji) {
     vehicle.dialect = Dialect::ardupilot;
+    vehicle.mode = flight::vehicle_profile("generic_ardupilot").mode;
     note("the .waypoints file", "ArduPilot");
   } else if (format == Format::kmz && vehicle.dialect != Dialect::dji) {
     const flight::Vehicle& dji = flight::vehicle_profile(dji_stand_in);
     vehicle.dialect = dji.dialect;
     vehicle.wpml = dji.wpml;
+    vehicle.mode = dji.mode;
     note("the .kmz file", dji.name);
   }
   return plan;
+}
+
+/// The plan with the ways home of its dialect: those of the route, unless it is written for another
+/// autopilot than those that the route was planned for. Throws Error{bad_config} if there are none.
+void certify_dialect(flight::FlightPlan& plan, const flight::FreeSpace& space, double highest) {
+  if (!plan.returns) return;
+  flight::ReturnLaw law = plan.returns->law;
+  if (std::ranges::find(law.dialects, plan.vehicle.dialect) != law.dialects.end()) return;
+  law.dialects = {plan.vehicle.dialect};
+  std::vector<flight::Segment> legs;
+  for (std::size_t i = 1; i < plan.waypoints.size(); ++i) {
+    legs.push_back({plan.waypoints[i - 1].position, plan.waypoints[i].position});
+  }
+  flight::ReturnSearch search =
+      least_return(space, legs, law, highest, flight::return_clearance(plan.clearance));
+  if (!search.found) {
+    throw Error(ErrorKind::bad_config, "there is no certified way home: " + search.why);
+  }
+  search.found->energy = plan.returns->energy;
+  plan.returns = std::move(search.found);
+}
+
+bool has_parameters(Format format) { return format == Format::plan || format == Format::waypoints; }
+
+/// The parameter file, read back: it must say what was proven.
+std::string checked_parameters(const flight::FlightPlan& plan) {
+  const std::string text = flight::write_parameters(plan);
+  const flight::Dialect dialect = plan.vehicle.dialect;
+  const std::vector<flight::Parameter> read = flight::read_parameters(text);
+  flight::throw_first(flight::return_problems(read, dialect), "not good parameters");
+  if (flight::return_height(read, dialect) != plan.returns->height) {
+    throw Error(ErrorKind::bad_file, "the parameters do not hold the certified height of return");
+  }
+  return text;
 }
 
 }  // namespace
@@ -69,17 +111,19 @@ flight::FlightPlan in_dialect(flight::FlightPlan plan, Format format,
 std::span<const Format> package_formats() { return formats_of_packages; }
 
 flight::Route plan_flight(const file::Mission& mission, const flight::MeasuredSpace& measured,
-                          const Eigen::Vector3d& pad, const std::vector<geometry::View>& views) {
+                          const Eigen::Vector3d& pad, const std::vector<geometry::View>& views,
+                          std::stop_token stop) {
   std::vector<flight::Station> stations;
   for (const geometry::View& view : views) {
     const auto index = static_cast<std::uint32_t>(stations.size());
-    stations.push_back({view, mission.flight.hold, 1, index});
+    stations.push_back({view, mission.flight.hold, 1, index, mission.flight.hold_after});
   }
   flight::Obstacles rules = derived::flight_rules(mission);
   const flight::KnownSpace known(rules);
   // The climb starts on the measured ground: what was measured there is for the pilot to judge.
   const flight::KnownSpace pad_space(without_ground(std::move(rules)));
-  const flight::JointSpace space({&measured, &known});
+  const flight::JointSpace joint({&measured, &known});
+  const flight::InterruptibleSpace space(joint, std::move(stop));
   return plan_route(std::move(stations), derived::vehicle_of(mission), space, &pad_space,
                     derived::route_options_of(mission, pad));
 }
@@ -91,6 +135,7 @@ FlightFiles stage_flight(const file::Mission& mission, const flight::Route& rout
   const flight::KnownSpace known(rules);
   const flight::JointSpace space({&measured, &known});
   FlightFiles files;
+  std::map<std::string, std::string> parameters;  // of all sorties: a pilot sets them once
   const auto add_note = [&](const std::string& note) {
     if (std::ranges::find(files.notes, note) == files.notes.end()) files.notes.push_back(note);
   };
@@ -119,26 +164,40 @@ FlightFiles stage_flight(const file::Mission& mission, const flight::Route& rout
         }
         const auto corners =
             holds_curves ? flight::Corners::flown_round : flight::Corners::stopped_in;
-        const flight::FlightPlan plan = in_dialect(
+        flight::FlightPlan plan = in_dialect(
             flight_plan(route, i, mission.name + number, derived::site_of(mission), rules, corners),
             format, notes);
+        certify_dialect(plan, space, derived::highest_return(mission, plan.pad.z()));
+        if (has_parameters(format) && plan.returns) {
+          parameters[flight::parameters_name(plan.vehicle.dialect)] = checked_parameters(plan);
+        }
         const flight::ExportResult result = export_flight(plan, format, space, file);
-        files.written.push_back({name, info.heights, result.min_clearance});
+        files.written.push_back({name, info.heights, result.min_clearance, i, flight_time(plan)});
         std::ranges::for_each(notes, add_note);
         std::ranges::for_each(result.notes, add_note);
       } catch (const Error& error) {
         folder.drop(name);
+        if (error.kind() == ErrorKind::bad_file) {  // the disk's fault, not the mission's
+          for (const FlightFile& written : files.written) folder.drop(written.name);
+          throw;
+        }
         leave_out(error.what(), error.kind());
       }
     }
+  }
+  for (const auto& [name, text] : parameters) {
+    folder.write(name, text);
+    files.parameters.push_back(name);
   }
   return files;
 }
 
 bool is_flight_file(std::string_view name) {
-  return std::ranges::any_of(flight::formats(), [&](const flight::FormatInfo& info) {
-    return is_flight_file(name, info.format);
-  });
+  return name == flight::parameters_name(Dialect::ardupilot) ||
+         name == flight::parameters_name(Dialect::px4) ||
+         std::ranges::any_of(flight::formats(), [&](const flight::FormatInfo& info) {
+           return is_flight_file(name, info.format);
+         });
 }
 
 bool is_flight_file(std::string_view name, Format format) {

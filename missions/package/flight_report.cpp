@@ -1,16 +1,23 @@
 #include "missions/package/flight_report.h"
 
-#include <cstdio>
+#include <cmath>
+
+#include <fmt/format.h>
 
 #include "flight/route/route.h"
 
 namespace skycap::missions::package {
 namespace {
 
-std::string format(const char* pattern, auto... values) {
-  char text[240];
-  std::snprintf(text, sizeof text, pattern, values...);
-  return text;
+std::string return_text(const SurveyMission& flight) {
+  if (!flight.route.returns) return "";
+  const flight::Returns& returns = *flight.route.returns;
+  std::string text = fmt::format("  return    certified at {:.0f} m above the pad, least {:.2f} m",
+                                 returns.height, returns.clearance);
+  if (!returns.obstacle.empty()) text += " from " + returns.obstacle;
+  const std::vector<std::string>& files = flight.files.parameters;
+  for (std::size_t i = 0; i < files.size(); ++i) text += (i == 0 ? "; set by " : ", ") + files[i];
+  return text + "\n";
 }
 
 }  // namespace
@@ -20,23 +27,31 @@ std::string flight_text(const SurveyMission& flight) {
   const flight::Route& route = flight.route;
   const flight::ClearanceBudget& clearance = route.options.clearance;
   std::string text =
-      format("  flight    %s, %zu views, %.1f m in %.1f min, %zu %s", route.vehicle.name.c_str(),
-             route.stations.size(), route.length, route.duration / 60.0, route.sorties.size(),
-             route.sorties.size() == 1 ? "sortie" : "sorties");
+      fmt::format("  flight    {}, {} views, {:.1f} m in {:.1f} min, {} {}", route.vehicle.name,
+                  route.stations.size(), route.length, route.duration / 60.0, route.sorties.size(),
+                  route.sorties.size() == 1 ? "sortie" : "sorties");
   if (route.options.order_is_free && route.order_bound > 0.0) {
-    text += format("; order within %.1f %% of the shortest",
-                   100.0 * (route.order_length / route.order_bound - 1.0));
+    text += fmt::format("; order within {:.1f} % of the shortest",
+                        100.0 * (route.order_length / route.order_bound - 1.0));
   }
-  text += format(
-      "\n  clearance every leg proven at %.2f m, least %.2f m (vehicle %.2f + position %.2f + "
-      "tracking %.2f + map %.2f + margin %.2f)\n",
+  text += fmt::format(
+      "\n  clearance every leg proven at {:.2f} m, least {:.2f} m (vehicle {:.2f} + position "
+      "{:.2f} "
+      "+ tracking {:.2f} + map {:.2f} + margin {:.2f})\n",
       clearance.total(), route.min_clearance, clearance.vehicle_radius, clearance.position_error,
       clearance.tracking_error, clearance.map_error, clearance.margin);
+  text += return_text(flight);
   for (const flight::Unreached& missed : route.unreached) {
-    text += format("  left out  view %u: ", missed.station.view_index) + missed.reason + "\n";
+    text += fmt::format("  left out  view {}: {}\n", missed.station.view_index, missed.reason);
   }
   std::string files;
-  for (const FlightFile& file : flight.files.written) files += " " + file.name;
+  for (const FlightFile& file : flight.files.written) {
+    files += " " + file.name;
+    // Another autopilot than the vehicle's takes another time.
+    const double planned = route.sorties[file.sortie].duration;
+    if (std::abs(file.duration - planned) < 0.01 * planned) continue;
+    files += fmt::format(" ({:.1f} min)", file.duration / 60.0);
+  }
   if (!files.empty()) text += "  files    " + files + "\n";
   for (const std::string& note : flight.files.notes) text += "  note      " + note + "\n";
   return text;

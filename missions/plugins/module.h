@@ -1,5 +1,6 @@
 /// Parts of the program that are loaded when they are needed, because the libraries behind them
-/// take longer to load than most verbs take to run.
+/// take longer to load than most verbs take to run. They are looked for beside the running program,
+/// or in $SKYCAP_PLUGINS.
 #pragma once
 
 #include <string>

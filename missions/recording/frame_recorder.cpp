@@ -1,12 +1,12 @@
 #include "missions/recording/frame_recorder.h"
 
-#include <cstdio>
 #include <filesystem>
 #include <fstream>
 #include <optional>
 #include <string>
 #include <utility>
 
+#include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include "flight/export/text.h"
@@ -30,11 +30,7 @@ nlohmann::ordered_json camera_json(const geometry::Camera& camera, double unit) 
       {"depth_unit_m", unit}};
 }
 
-std::string file_name(std::size_t frame) {
-  char name[32];
-  std::snprintf(name, sizeof name, "depth_%06zu.png", frame);
-  return name;
-}
+std::string file_name(std::size_t frame) { return fmt::format("depth_{:06}.png", frame); }
 
 /// Images appended to a file as they are taken.
 class FrameRawlog {

@@ -22,7 +22,7 @@ double sum_over(const std::vector<JudgedView>& views, Field field) {
 }
 
 /// Takes over what only the planner skycap can say, such as which budget made it stop.
-void ask_skycap(const survey::Planner& planner, SurveyRecord& record) {
+void record_belief(const survey::Planner& planner, SurveyRecord& record) {
   const auto* skycap = dynamic_cast<const survey::skycap::SkycapPlanner*>(&planner);
   if (skycap == nullptr) return;
   record.belief = skycap->belief();
@@ -114,8 +114,6 @@ const char* name_of(survey::skycap::SkycapStop stop) {
       return "wanted_coverage";
     case survey::skycap::SkycapStop::little_gain:
       return "little_gain";
-    case survey::skycap::SkycapStop::most_views:
-      return "most_views";
     case survey::skycap::SkycapStop::most_length:
       return "most_length";
     case survey::skycap::SkycapStop::most_time:
@@ -146,8 +144,8 @@ SurveyRecord run_survey(const file::Mission& mission, const scene::SurveyScene& 
   std::uint64_t frame = 0;
   std::size_t points_judged = 0;
   survey::SurveyPorts ports;
-  ports.sense = [&](const geometry::View& view) {
-    return sensor.scan(scene.scene(), view, frame++, threads);
+  ports.sense = [&](const geometry::View& view, geometry::Scan recycled) {
+    return sensor.scan(scene.scene(), view, frame++, threads, std::move(recycled));
   };
   ViewGate gate(derived::view_limits(mission));
   std::size_t points_gated = 0;
@@ -179,8 +177,8 @@ SurveyRecord run_survey(const file::Mission& mission, const scene::SurveyScene& 
   const survey::SurveyLimits limits = survey_limits(mission);
   record.stop_reason =
       survey::run_survey(*planner, first_view, limits, ports, std::move(stop)).stop_reason;
-  ask_skycap(*planner, record);
-  record.cloud = planner->cloud();
+  record_belief(*planner, record);
+  record.cloud = planner->release_cloud();
   record.is_covered = meter.is_covered();
   if (flight) record.flown = flight->finish();
   return record;

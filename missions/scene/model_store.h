@@ -11,9 +11,8 @@ namespace skycap::missions::scene {
 /// The folder for what may be deleted and made again: $XDG_CACHE_HOME/skycap or ~/.cache/skycap.
 std::filesystem::path user_cache();
 
-/// The file of model:NAME, looked for in $SKYCAP_MODELS, the user's cache and ../shared/models
-/// beside the current directory and the project. Throws Error{bad_file} saying how to get the
-/// model, and its checksum, if it is nowhere.
+/// The file of model:NAME, looked for in $SKYCAP_MODELS and the user's cache. Throws
+/// Error{bad_file} saying where it looked, how to get the model and its checksum, if it is nowhere.
 std::filesystem::path find_model(const std::string& name);
 
 /// Whether find_model() finds it.

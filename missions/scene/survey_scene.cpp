@@ -39,7 +39,10 @@ sim::Scene scene_of(const geometry::Mesh& model, const file::Mission& mission,
 Vector3d uniform_direction(std::mt19937_64& random) {
   std::normal_distribution<double> normal;
   for (;;) {
-    const Vector3d direction(normal(random), normal(random), normal(random));
+    // From z to x, one a declarator: arguments of a call are drawn in an order that is each
+    // compiler's own.
+    const double z = normal(random), y = normal(random), x = normal(random);
+    const Vector3d direction(x, y, z);
     if (direction.norm() > 1e-3) return direction.normalized();
   }
 }
@@ -125,7 +128,9 @@ std::optional<double> SurveyScene::ceiling(const std::vector<std::uint8_t>& is_v
                                            unsigned threads) const {
   if (mission_.evaluation.ceiling_views == 0) return std::nullopt;
   const std::filesystem::path cached = user_cache() / "ceilings" / ceiling_key();
-  if (const auto known = number_in_file(cached)) return known;
+  if (const auto known = number_in_file(cached); known && *known >= 0.0 && *known <= 1.0) {
+    return known;
+  }
 
   judge::CeilingConfig config;
   config.views = mission_.evaluation.ceiling_views;

@@ -1,14 +1,17 @@
 #include <algorithm>
-#include <cstdio>
+
+#include <fmt/format.h>
 
 #include "flight/export/export.h"
 #include "flight/paths/path.h"
 #include "flight/route/route.h"
 #include "geometry/surfaces/mesh.h"
 #include "missions/derived/mission_flight.h"
-#include "missions/file/mission_keys.h"
+#include "missions/derived/resolved_mission.h"
 #include "missions/file/number_text.h"
+#include "missions/file/planner_titles.h"
 #include "missions/scene/survey_scene.h"
+#include "missions/verbs/check_returns.h"
 #include "missions/verbs/verbs.h"
 
 namespace skycap::missions::verbs {
@@ -37,18 +40,19 @@ int check_route_file(const CheckOptions& options, const file::Mission& mission,
     least = std::min(least, space.closest({points[i - 1], points[i]}, least).distance);
   }
   console.out << file.string() << ": " << (violations.empty() ? "fine" : "not safe") << ", "
-              << violations.size() << " of " << std::max<std::size_t>(points.size(), 1) - 1
+              << violations.size() << " of " << std::max<std::size_t>(points.size(), 2) - 1
               << " legs come nearer than " << file::short_text(asked_for) << " m, the nearest "
               << file::short_text(least) << " m; " << file::short_text(flight::length(points))
-              << " m long\n"
-              << std::flush;
-  return violations.empty() ? 0 : 1;
+              << " m long\n";
+  const ReturnCheck returns = check_returns(file, options.return_height, mission, space, points);
+  console.out << file.string() << ": " << returns.text << "\n" << std::flush;
+  return violations.empty() && returns.is_safe ? 0 : 1;
 }
 
 }  // namespace
 
 int check(const CheckOptions& options, const Console& console) {
-  const file::Mission mission = file::read_mission(options.mission, options.overrides);
+  const file::Mission mission = derived::read_mission(options.mission, options.overrides);
   const geometry::Mesh model = scene::placed_model(mission.scene, options.mission.parent_path());
   if (options.route) return check_route_file(options, mission, model, console);
   const survey::see::SeeConfig& see = mission.planner.see;
@@ -56,17 +60,15 @@ int check(const CheckOptions& options, const Console& console) {
   const double view_distance = see.view_distance.value_or(
       geometry::view_distance(geometry::Camera(mission.sensor.camera.camera), see.density));
 
-  char text[640];
-  std::snprintf(text, sizeof text,
-                "%s: fine\n"
-                "  scene     %zu triangles, %.4g x %.4g x %.4g m, %.4g m^2\n"
-                "  planner   %s, view distance d %.4g m, spacing epsilon %.4g m, core threshold "
-                "k %d\n",
-                options.mission.c_str(), model.triangles.size(), size.x(), size.y(), size.z(),
-                geometry::surface_area(model),
-                file::to_text(*file::find_key("planner.name")->get(mission)).c_str(), view_distance,
-                see.effective_spacing(), see.effective_core_threshold());
-  console.out << text << std::flush;
+  console.out << fmt::format(
+                     "{}: fine\n"
+                     "  scene     {} triangles, {:.4g} x {:.4g} x {:.4g} m, {:.4g} m^2\n"
+                     "  planner   {}, view distance d {:.4g} m, spacing epsilon {:.4g} m, core "
+                     "threshold k {}\n",
+                     options.mission.string(), model.triangles.size(), size.x(), size.y(), size.z(),
+                     geometry::surface_area(model), file::title_of(mission.planner.name).word,
+                     view_distance, see.effective_spacing(), see.effective_core_threshold())
+              << std::flush;
   return 0;
 }
 

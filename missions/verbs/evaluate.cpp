@@ -1,9 +1,9 @@
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <filesystem>
 #include <vector>
 
+#include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include "geometry/error.h"
@@ -12,6 +12,7 @@
 #include "geometry/parallel.h"
 #include "geometry/surfaces/mesh.h"
 #include "geometry/surfaces/mesh_distance.h"
+#include "missions/derived/resolved_mission.h"
 #include "missions/file/json_text.h"
 #include "missions/judge/coverage.h"
 #include "missions/judge/evaluation.h"
@@ -36,7 +37,7 @@ bool is_mission_file(const std::filesystem::path& file) {
 Truth truth_of(const EvaluateOptions& options) {
   if (is_mission_file(options.model)) {
     const std::filesystem::path file = options.model;
-    const file::Mission mission = file::read_mission(file);
+    const file::Mission mission = derived::read_mission(file);
     return {scene::placed_model(mission.scene, file.parent_path()),
             options.distance.value_or(mission.evaluation.registration_distance),
             mission.evaluation.samples};
@@ -119,18 +120,15 @@ int evaluate(const EvaluateOptions& options, const Console& console) {
     console.out << file::json_text(json);
     return 0;
   }
-  char text[640];
-  std::snprintf(text, sizeof text,
-                "%s: %zu points against %s\n"
-                "  coverage  %.2f %% of the surface within %g m\n"
-                "  accuracy  mean %.4g m, rms %.4g m, median %.4g m, 95 %% below %.4g m, largest "
-                "%.4g m\n"
-                "  density   %.4g points per m^2 of the surface's %.4g m^2\n",
-                judged.file.filename().c_str(), points.size(), options.model.c_str(),
-                100.0 * judged.coverage, truth.registration_distance, accuracy.mean,
-                accuracy.root_mean_square, accuracy.median, accuracy.percentile_95,
-                accuracy.largest, density, area);
-  console.out << text;
+  console.out << fmt::format(
+      "{}: {} points against {}\n"
+      "  coverage  {:.2f} % of the surface within {:g} m\n"
+      "  accuracy  mean {:.4g} m, rms {:.4g} m, median {:.4g} m, 95 % below {:.4g} m, largest "
+      "{:.4g} m\n"
+      "  density   {:.4g} points per m^2 of the surface's {:.4g} m^2\n",
+      judged.file.filename().string(), points.size(), options.model, 100.0 * judged.coverage,
+      truth.registration_distance, accuracy.mean, accuracy.root_mean_square, accuracy.median,
+      accuracy.percentile_95, accuracy.largest, density, area);
   return 0;
 }
 

@@ -1,11 +1,12 @@
 #include <algorithm>
-#include <cstdio>
+
+#include <fmt/format.h>
 
 #include "geometry/error.h"
 #include "geometry/io/mesh_io.h"
 #include "geometry/surfaces/mesh.h"
+#include "missions/derived/resolved_mission.h"
 #include "missions/file/mission_keys.h"
-#include "missions/file/mission_reader.h"
 #include "missions/scene/model_store.h"
 #include "missions/scene/scene_source.h"
 #include "missions/scene/survey_scene.h"
@@ -47,7 +48,7 @@ geometry::Mesh model_called(const ModelOptions& options, const Console& console)
   if (name.ends_with(".yaml") || name.ends_with(".yml")) {
     std::vector<file::KeyOverride> overrides;
     if (options.detail) overrides.push_back({"--detail", "scene.detail", *options.detail});
-    return scene::placed_model(file::read_mission(name, overrides).scene,
+    return scene::placed_model(derived::read_mission(name, overrides).scene,
                                fs::path(name).parent_path());
   }
   if (name.find(':') != std::string::npos || fs::path(name).has_extension()) {
@@ -65,11 +66,9 @@ int model(const ModelOptions& options, const Console& console) {
   if (options.out) geometry::write_mesh(*options.out, mesh);
   if (options.render) sim::write_png(sim::render(mesh), *options.render);
   const Eigen::Vector3d size = geometry::bounding_box(mesh).sizes();
-  char text[320];
-  std::snprintf(text, sizeof text, "%s: %zu triangles, %.4g x %.4g x %.4g, area %.4g\n",
-                options.name.c_str(), mesh.triangles.size(), size.x(), size.y(), size.z(),
-                geometry::surface_area(mesh));
-  console.out << text;
+  console.out << fmt::format("{}: {} triangles, {:.4g} x {:.4g} x {:.4g}, area {:.4g}\n",
+                             options.name, mesh.triangles.size(), size.x(), size.y(), size.z(),
+                             geometry::surface_area(mesh));
   return 0;
 }
 

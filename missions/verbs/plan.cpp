@@ -1,10 +1,13 @@
-#include <cstdio>
 #include <string>
+
+#include <fmt/format.h>
 
 #include "geometry/error.h"
 #include "geometry/io/output_folder.h"
 #include "geometry/parallel.h"
+#include "missions/benchmark/trial_files.h"
 #include "missions/benchmark/trials.h"
+#include "missions/derived/resolved_mission.h"
 #include "missions/judge/coverage.h"
 #include "missions/package/flight_report.h"
 #include "missions/package/package.h"
@@ -15,48 +18,34 @@
 namespace skycap::missions::verbs {
 namespace {
 
-std::string percent(double share) {
-  char text[16];
-  std::snprintf(text, sizeof text, "%.2f %%", 100.0 * share);
-  return text;
-}
+std::string percent(double share) { return fmt::format("{:.2f} %", 100.0 * share); }
 
 std::string seconds(double time) {
-  char text[32];
-  std::snprintf(text, sizeof text, time < 1.0 ? "%.1f ms" : "%.2f s",
-                time < 1.0 ? 1e3 * time : time);
-  return text;
+  return time < 1.0 ? fmt::format("{:.1f} ms", 1e3 * time) : fmt::format("{:.2f} s", time);
 }
 
 std::string progress_text(const std::string& name, std::size_t views, const run::JudgedView& judged,
                           double planning_time) {
-  char text[160];
-  std::snprintf(text, sizeof text,
-                "%s: view %zu, %zu points, %zu frontiers, %.2f %% covered, planned in %s",
-                name.c_str(), views, judged.surveyed.points, judged.surveyed.step.frontiers,
-                100.0 * judged.coverage, seconds(planning_time).c_str());
-  return text;
+  return fmt::format("{}: view {}, {} points, {} frontiers, {} covered, planned in {}", name, views,
+                     judged.surveyed.points, judged.surveyed.step.frontiers,
+                     percent(judged.coverage), seconds(planning_time));
 }
 
 /// A line of the --verbose table: planning time of one view, in milliseconds by part.
 std::string times_row(std::size_t view, const run::JudgedView& judged) {
   const survey::PlanningStep& step = judged.surveyed.step;
   std::string row;
-  char cell[64];
   if (view == 0) {
     row = "view  frontiers  total ms";
     for (const survey::PartTime& time : step.times) {
-      std::snprintf(cell, sizeof cell, " %10s", time.part.c_str());
-      row += cell;
+      row += fmt::format(" {:>10}", time.part);
     }
     row += "\n";
   }
-  std::snprintf(cell, sizeof cell, "%4zu %10zu %9.2f", view, step.frontiers,
-                1e3 * judged.surveyed.planning_time);
-  row += cell;
+  row +=
+      fmt::format("{:4} {:10} {:9.2f}", view, step.frontiers, 1e3 * judged.surveyed.planning_time);
   for (const survey::PartTime& time : step.times) {
-    std::snprintf(cell, sizeof cell, " %10.3f", 1e3 * time.seconds);
-    row += cell;
+    row += fmt::format(" {:10.3f}", 1e3 * time.seconds);
   }
   return row + "\n";
 }
@@ -65,11 +54,9 @@ std::string summary_text(const file::Mission& mission, const run::SurveyRecord& 
                          const package::CoverageFigures& coverage,
                          const std::optional<package::SurveyMission>& flight,
                          const std::filesystem::path& folder) {
-  std::string text = mission.name + ": " + run::name_of(record.stop_reason) + " after " +
-                     std::to_string(record.views.size()) + " views, ";
-  char distance[32];
-  std::snprintf(distance, sizeof distance, "%.2f m\n", record.distance());
-  text += distance;
+  std::string text =
+      fmt::format("{}: {} after {} views, {:.2f} m\n", mission.name,
+                  run::name_of(record.stop_reason), record.views.size(), record.distance());
   text += "  coverage  " + percent(coverage.all) + " of the surface";
   if (coverage.visible) text += ", " + percent(*coverage.visible) + " of what is visible";
   if (coverage.ceiling) text += "; attainable " + percent(*coverage.ceiling);
@@ -107,7 +94,11 @@ int plan_once(const PlanOptions& options, const file::Mission& mission,
   }
   progress.show(mission.name + ": writing " + folder.path().string());
   const std::optional<package::SurveyMission> flight =
-      package::stage_package(mission, record, coverage, mission.threads, folder);
+      package::stage_package(mission, record, coverage, mission.threads, folder, console.stop);
+  const bool is_over = record.stop_reason != survey::StopReason::interrupted;
+  if (!is_over && package::is_complete_result(folder.path() / "summary.json")) {
+    folder.move_to("interrupted");  // a complete survey is not overwritten by a part of one
+  }
   folder.commit();
   progress.clear();
   if (!options.is_quiet) {
@@ -115,7 +106,7 @@ int plan_once(const PlanOptions& options, const file::Mission& mission,
   }
   // A flown survey ends with views that nobody can reach; at the start it has not begun.
   const bool went_through =
-      record.stop_reason != survey::StopReason::interrupted &&
+      is_over &&
       (record.stop_reason != survey::StopReason::nowhere_to_go || record.views.size() > 1) &&
       (!flight || flight->failure.empty());
   return went_through ? 0 : 1;
@@ -133,11 +124,16 @@ int plan_trials(const PlanOptions& options, const file::Mission& mission,
                   std::to_string(trial.views) + " views, " + percent(trial.coverage.all));
   };
   const std::vector<benchmark::Trial> trials =
-      benchmark::run_trials(mission, scene, options.trials, mission.threads, console.stop, report);
+      benchmark::run_trials(mission, scene, options.trials, mission.threads,
+                            folder.path() / "items", console.stop, report);
   progress.clear();
   folder.write("trials.csv", benchmark::trials_csv(trials));
   folder.write("trials.json",
                benchmark::trials_json(mission, trials, options.trials, mission.threads));
+  if (trials.size() < options.trials &&
+      package::is_complete_result(folder.path() / "trials.json")) {
+    folder.move_to("interrupted");  // the trials themselves are kept, and not run again
+  }
   folder.commit();
   if (!options.is_quiet) {
     console.out << benchmark::trials_table(mission, trials) << "  results   "
@@ -150,11 +146,11 @@ int plan_trials(const PlanOptions& options, const file::Mission& mission,
 }  // namespace
 
 int plan(const PlanOptions& options, const Console& console) {
-  const file::Mission mission = file::read_mission(options.mission, options.overrides);
+  const file::Mission mission = derived::read_mission(options.mission, options.overrides);
   geometry::OutputFolder folder(
       options.out.value_or(std::filesystem::path("results") / mission.name));
-  const scene::SurveyScene scene(mission, options.mission.parent_path());
   try {
+    const scene::SurveyScene scene(mission, options.mission.parent_path());
     return options.trials > 0 ? plan_trials(options, mission, scene, folder, console)
                               : plan_once(options, mission, scene, folder, console);
   } catch (const Error& error) {

@@ -1,6 +1,7 @@
 #include <chrono>
-#include <cstdio>
 #include <filesystem>
+
+#include <fmt/format.h>
 
 #include "geometry/error.h"
 #include "geometry/io/cloud_io.h"
@@ -24,7 +25,7 @@ int reconstruct_cloud(const ReconstructOptions& options, const Console& console)
 
   ProgressLine progress(console, false);
   progress.show("reading " + options.cloud.string());
-  const geometry::CloudFile cloud = geometry::read_cloud(options.cloud);
+  const geometry::AttributedCloud cloud = geometry::read_cloud(options.cloud);
   progress.show("reconstructing the surface of " + options.cloud.string());
   const auto start = std::chrono::steady_clock::now();
   const plugins::Reconstruction result = [&] {
@@ -37,14 +38,14 @@ int reconstruct_cloud(const ReconstructOptions& options, const Console& console)
   const std::chrono::duration<double> time = std::chrono::steady_clock::now() - start;
   geometry::write_mesh(out, result.mesh);
   progress.clear();
-  char text[320];
-  std::snprintf(text, sizeof text,
-                "%s: %zu points, %.3g m apart%s\n"
-                "  surface   %zu triangles in %.1f s, octree of depth %d; %zu triangles trimmed\n",
-                options.cloud.filename().c_str(), result.points, result.spacing,
-                cloud.normals.empty() ? ", normals estimated" : "", result.mesh.triangles.size(),
-                time.count(), result.depth, result.trimmed_triangles);
-  console.out << text << "  results   " << out.string() << "\n";
+  console.out
+      << fmt::format(
+             "{}: {} points, {:.3g} m apart{}\n"
+             "  surface   {} triangles in {:.1f} s, octree of depth {}; {} triangles trimmed\n",
+             options.cloud.filename().string(), result.points, result.spacing,
+             cloud.normals.empty() ? ", normals estimated" : "", result.mesh.triangles.size(),
+             time.count(), result.depth, result.trimmed_triangles)
+      << "  results   " << out.string() << "\n";
   return 0;
 }
 

@@ -1,20 +1,23 @@
 #include <algorithm>
 #include <chrono>
-#include <cstdio>
 #include <memory>
 #include <string>
 #include <utility>
 #include <variant>
 #include <vector>
 
+#include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include "flight/export/trajectory_file.h"
 #include "geometry/error.h"
 #include "geometry/io/output_folder.h"
 #include "missions/derived/mission_flight.h"
+#include "missions/derived/resolved_mission.h"
 #include "missions/file/json_text.h"
+#include "missions/file/number_text.h"
 #include "missions/file/sensor_reader.h"
+#include "missions/package/package.h"
 #include "missions/recording/cloud_formats.h"
 #include "missions/recording/frame_recorder.h"
 #include "missions/recording/scan_route.h"
@@ -29,6 +32,8 @@ using Eigen::AngleAxisd;
 using Eigen::Isometry3d;
 using Eigen::Vector3d;
 using Clock = std::chrono::steady_clock;
+
+constexpr const char* scan_name = "scan.json";
 
 /// A path that a mission gives is relative to the mission's folder.
 std::string beside(const std::filesystem::path& folder, const std::string& name) {
@@ -97,6 +102,27 @@ std::string sensor_tum(const sim::Trajectory& carrier, const Isometry3d& body_fr
   return flight::write_tum(poses);
 }
 
+/// Refuses what no scan would ever finish, before it begins.
+void require_measurable(const sim::Lidar& lidar, const sim::Trajectory& flown) {
+  constexpr double most_firings = 1e11;
+  const double duration = flown.end() - flown.start();
+  const double firings = duration / lidar.config().firing_period;
+  if (firings <= most_firings) return;
+  throw Error(ErrorKind::bad_config,
+              "scan: the route takes " + file::short_text(duration) + " s, in which the sensor's " +
+                  "firing period of " + file::short_text(lidar.config().firing_period) +
+                  " s makes " + file::short_text(firings) + " firings; at most " +
+                  file::short_text(most_firings) + " are simulated");
+}
+
+/// Commits a scan; one that was interrupted goes beside a complete one instead of over it.
+void commit_scan(geometry::OutputFolder& folder, bool is_complete) {
+  if (!is_complete && package::is_complete_result(folder.path() / scan_name)) {
+    folder.move_to("interrupted");
+  }
+  folder.commit();
+}
+
 /// Shows how far a scan is, ten times a second at most.
 class ScanReport {
  public:
@@ -110,13 +136,11 @@ class ScanReport {
     const double elapsed = std::chrono::duration<double>(now - start_).count();
     const double share =
         static_cast<double>(progress.firings) / static_cast<double>(progress.all_firings);
-    char text[160];
-    std::snprintf(text, sizeof text,
-                  "%s: %.1f %% flown, %.1f M points, %.1f M shots/s, %.0f s left", name_.c_str(),
-                  100.0 * share, 1e-6 * static_cast<double>(progress.points),
-                  1e-6 * shots_in_firing_ * static_cast<double>(progress.firings) / elapsed,
-                  elapsed * (1.0 - share) / share);
-    line_.show(text);
+    line_.show(
+        fmt::format("{}: {:.1f} % flown, {:.1f} M points, {:.1f} M shots/s, {:.0f} s left", name_,
+                    100.0 * share, 1e-6 * static_cast<double>(progress.points),
+                    1e-6 * shots_in_firing_ * static_cast<double>(progress.firings) / elapsed,
+                    elapsed * (1.0 - share) / share));
   }
 
  private:
@@ -152,7 +176,7 @@ std::vector<recording::CloudFile> open_files(const ScanVerbOptions& options,
     const std::shared_ptr<const recording::CloudFormat> format = info.make(context);
     open("scan" + info.ending, format, recording::ReturnPosition::reported);
     if (options.with_truth)
-      open("scan_true" + info.ending, format, recording::ReturnPosition::true_one);
+      open("scan_true" + info.ending, format, recording::ReturnPosition::actual);
   }
   return files;
 }
@@ -189,6 +213,7 @@ int scan_with_laser(const ScanVerbOptions& options, const file::Mission& mission
   config.seed = mission.seed;
   const sim::Lidar lidar(config);
   const recording::ScanRoute route = route_of(options, mission, recording::Carrier::airframe);
+  require_measurable(lidar, route.carrier);
   const sim::Trajectory believed = believed_by(mission, route.carrier);
   const Mount mount = mount_of(mission.scan);
   const sim::LidarFlight flight{route.carrier, believed, mount.real, mount.believed};
@@ -219,24 +244,23 @@ int scan_with_laser(const ScanVerbOptions& options, const file::Mission& mission
   folder.write("trajectory_believed.tum", sensor_tum(believed, mount.believed));
   const auto firings = static_cast<double>(result.progress.firings);
   const double shots = channels * firings, flown = firings * config.firing_period;
-  folder.write("scan.json", file::json_text(scan_json(mission, sensor_name, result, shots, flown,
-                                                      time, outputs)));
-  folder.commit();
+  folder.write(scan_name, file::json_text(scan_json(mission, sensor_name, result, shots, flown,
+                                                    time, outputs)));
+  commit_scan(folder, result.is_complete);
   progress.clear();
 
   if (!options.is_quiet) {
-    char text[320];
-    std::snprintf(text, sizeof text,
-                  "%s: %s, %.1f s of flight%s\n"
-                  "  scan      %.2f M shots, %.2f M points in %.1f s, %.1f M shots/s\n",
-                  mission.name.c_str(), sensor_name.c_str(), flown,
-                  result.is_complete ? "" : ", interrupted", 1e-6 * shots,
-                  1e-6 * static_cast<double>(result.progress.points), time, 1e-6 * shots / time);
-    console.out << text << "  results   " << folder.path().string();
+    console.out
+        << fmt::format(
+               "{}: {}, {:.1f} s of flight{}\n"
+               "  scan      {:.2f} M shots, {:.2f} M points in {:.1f} s, {:.1f} M shots/s\n",
+               mission.name, sensor_name, flown, result.is_complete ? "" : ", interrupted",
+               1e-6 * shots, 1e-6 * static_cast<double>(result.progress.points), time,
+               1e-6 * shots / time)
+        << "  results   " << folder.path().string();
     for (const OutputFile& file : outputs) {
-      std::snprintf(text, sizeof text, ", %s %.1f MB", file.name.c_str(),
-                    1e-6 * static_cast<double>(file.bytes));
-      console.out << text;
+      console.out << fmt::format(", {} {:.1f} MB", file.name,
+                                 1e-6 * static_cast<double>(file.bytes));
     }
     console.out << "\n" << std::flush;
   }
@@ -246,8 +270,16 @@ int scan_with_laser(const ScanVerbOptions& options, const file::Mission& mission
 std::vector<double> image_times(const recording::ScanRoute& route, double period) {
   if (!route.image_times.empty()) return route.image_times;
   constexpr double rounding = 1e-9;
+  constexpr double most_images = 1e6;
   std::vector<double> times;
   const double start = route.carrier.start(), duration = route.carrier.end() - start;
+  if (!(duration / period <= most_images)) {
+    throw Error(ErrorKind::bad_config, "scan.frame_period: every " + file::short_text(period) +
+                                           " s of a flight of " + file::short_text(duration) +
+                                           " s would be " + file::short_text(duration / period) +
+                                           " images; at most " + file::short_text(most_images) +
+                                           " are taken");
+  }
   for (std::size_t i = 0; static_cast<double>(i) * period <= duration + rounding; ++i) {
     times.push_back(start + static_cast<double>(i) * period);
   }
@@ -271,10 +303,8 @@ int scan_with_camera(const ScanVerbOptions& options, const file::Mission& missio
   const sim::Scene scene =
       scene::reflecting_scene(mission.scene, options.mission.parent_path()).scene(mission.threads);
   const auto report = [&](std::size_t taken, std::size_t points) {
-    char text[160];
-    std::snprintf(text, sizeof text, "%s: image %zu of %zu, %.1f M points", mission.name.c_str(),
-                  taken, frames.size(), 1e-6 * static_cast<double>(points));
-    progress.show(text);
+    progress.show(fmt::format("{}: image {} of {}, {:.1f} M points", mission.name, taken,
+                              frames.size(), 1e-6 * static_cast<double>(points)));
   };
   const bool has_rawlog = std::ranges::find(options.formats, "rawlog") != options.formats.end();
   const Clock::time_point start = Clock::now();
@@ -286,16 +316,24 @@ int scan_with_camera(const ScanVerbOptions& options, const file::Mission& missio
                                 .report = report,
                                 .stop = console.stop});
   const double time = std::chrono::duration<double>(Clock::now() - start).count();
-  folder.commit();
-  progress.clear();
   const bool is_complete = result.frames == frames.size();
+  folder.write(scan_name, file::json_text({{"mission", mission.name},
+                                           {"sensor", sensor_name},
+                                           {"seed", mission.seed},
+                                           {"complete", is_complete},
+                                           {"images", result.frames},
+                                           {"images_planned", frames.size()},
+                                           {"points", result.points},
+                                           {"simulation_s", time}}));
+  commit_scan(folder, is_complete);
+  progress.clear();
   if (!options.is_quiet) {
-    char text[256];
-    std::snprintf(text, sizeof text,
-                  "%s: %s%s\n  scan      %zu depth images, %.2f M points in %.1f s\n",
-                  mission.name.c_str(), sensor_name.c_str(), is_complete ? "" : ", interrupted",
-                  result.frames, 1e-6 * static_cast<double>(result.points), time);
-    console.out << text << "  results   " << folder.path().string() << "\n" << std::flush;
+    console.out << fmt::format(
+                       "{}: {}{}\n  scan      {} depth images, {:.2f} M points in {:.1f} s\n",
+                       mission.name, sensor_name, is_complete ? "" : ", interrupted", result.frames,
+                       1e-6 * static_cast<double>(result.points), time)
+                << "  results   " << folder.path().string() << "\n"
+                << std::flush;
   }
   return is_complete ? 0 : 1;
 }
@@ -303,7 +341,7 @@ int scan_with_camera(const ScanVerbOptions& options, const file::Mission& missio
 }  // namespace
 
 int scan(const ScanVerbOptions& options, const Console& console) {
-  const file::Mission mission = file::read_mission(options.mission, options.overrides);
+  const file::Mission mission = derived::read_mission(options.mission, options.overrides);
   file::SensorDescription sensor = sensor_of(options, mission);
   geometry::OutputFolder folder(
       options.out.value_or(std::filesystem::path("results") / mission.name / "scan"));

@@ -29,8 +29,8 @@ Vector3d refract_at_face(const Vector3d& beam, const Vector3d& normal, double ra
 
 }  // namespace
 
-Vector3d refract(const std::vector<Prism>& prisms, double time, Vector3d beam) {
-  for (const Prism& prism : prisms) {
+Vector3d refract(const std::vector<WedgePrism>& prisms, double time, Vector3d beam) {
+  for (const WedgePrism& prism : prisms) {
     const double angle = prism.phase + turned(prism.rotation_rate, time);
     const double sine = prism.is_inclined_at_entry ? std::sin(prism.wedge) : -std::sin(prism.wedge);
     const Vector3d inclined(-std::cos(prism.wedge), sine * std::cos(angle), sine * std::sin(angle));

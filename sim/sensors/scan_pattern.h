@@ -58,6 +58,6 @@ class ScanPattern {
 
 /// A beam of direction `beam` (unit, about along x) after the turning prisms at `time`: Snell's law
 /// at each face, no small-angle formula. Unit.
-Eigen::Vector3d refract(const std::vector<Prism>& prisms, double time, Eigen::Vector3d beam);
+Eigen::Vector3d refract(const std::vector<WedgePrism>& prisms, double time, Eigen::Vector3d beam);
 
 }  // namespace skycap::sim

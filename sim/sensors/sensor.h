@@ -21,7 +21,7 @@ struct Channel {
 };
 
 /// A turning wedge of glass: one face square to the optical axis, one inclined.
-struct Prism {
+struct WedgePrism {
   double wedge = 0.0;  ///< angle between the faces [rad]
   double refractive_index = 1.51;
   double rotation_rate = 0.0;        ///< about the optical axis, signed [turns per second]
@@ -75,9 +75,9 @@ struct LidarConfig {
   double rotation_rate = 10.0;                    ///< signed [turns per second]
   double radial_offset = 0.0;                     ///< of the lasers from the axis of rotation [m]
   double field_of_view = 2.0 * std::numbers::pi;  ///< around x: no shots outside of it [rad]
-  std::vector<Prism> prisms;  ///< not empty: a rosette sensor, which does not spin
-  double min_range = 0.0;     ///< [m]; nearer surfaces hide what is behind and give no return
-  double max_range = 200.0;   ///< [m]
+  std::vector<WedgePrism> prisms;  ///< not empty: a rosette sensor, which does not spin
+  double min_range = 0.0;          ///< [m]; nearer surfaces hide what is behind and give no return
+  double max_range = 200.0;        ///< [m]
   RangeErrors errors;
   Sensitivity sensitivity;
   Beam beam;

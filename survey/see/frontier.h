@@ -5,11 +5,12 @@
 #include <cstdint>
 #include <limits>
 #include <map>
+#include <optional>
 
 #include <Eigen/Core>
 
 #include "geometry/place/pose.h"
-#include "geometry/points/local_frame.h"
+#include "geometry/points/surface_frame.h"
 
 namespace skycap::survey::see {
 
@@ -18,7 +19,7 @@ struct Frontier {
   Eigen::Vector3d position;
   Eigen::Vector3d observed_from;   ///< the sensor's position when the point was measured
   Eigen::Vector3d observed_along;  ///< unit: the optical axis of that sensor
-  geometry::LocalFrame frame;
+  geometry::SurfaceFrame frame;
   geometry::View view;
   double clear_offset = 0.0;  ///< zeta; see OcclusionTest
   std::size_t offset_of_scan = std::numeric_limits<std::size_t>::max();  ///< when it was computed
@@ -29,8 +30,8 @@ using FrontierMap = std::map<std::uint32_t, Frontier>;
 
 /// Where views may be.
 struct ViewPlacement {
-  double distance = 2.0;        ///< d, from the frontier
-  double lowest_height = -1e9;  ///< z of the sensor
+  double distance = 2.0;               ///< d, from the frontier
+  std::optional<double> least_height;  ///< z of the sensor
 };
 
 /// The view of `frontier` from `placement.distance` away along the unit vector `direction`. If that

@@ -6,8 +6,10 @@
 #include <utility>
 
 #include "geometry/error.h"
+#include "geometry/points/spaced_points.h"
 #include "geometry/points/spatial_index.h"
 #include "survey/see/frontier.h"
+#include "survey/see/seen_through.h"
 #include "survey/see/visibility_graph.h"
 #include "survey/stopwatch.h"
 
@@ -33,34 +35,6 @@ std::vector<Vector3f> points_inside(const Scan& scan, const Eigen::AlignedBox3d&
   return inside;
 }
 
-/// Whether a measured sight line passes a place: SEE's test of which side of a surface is free.
-/// All points of a scan, as directions from the sensor.
-class FreeSpace {
- public:
-  FreeSpace(std::span<const Vector3f> points, const Vector3d& sensor)
-      : sensor_(sensor), directions_(chord) {
-    for (const Vector3f& point : points) {
-      const Vector3d ray = point.cast<double>() - sensor;
-      directions_.insert(ray.normalized().cast<float>());
-      ranges_.push_back(ray.norm());
-    }
-  }
-  /// Whether every measurement along the line to `place` is from behind it. False if there is none.
-  bool is_free(const Vector3d& place) const {
-    const Vector3d ray = place - sensor_;
-    const auto near = directions_.within(ray.normalized().cast<float>(), chord);
-    return !near.empty() && std::all_of(near.begin(), near.end(), [&](std::uint32_t index) {
-      return ranges_[index] > ray.norm();
-    });
-  }
-
- private:
-  static constexpr double chord = 0.01;  // between unit directions that count as the same line
-  Vector3d sensor_;
-  geometry::SpatialIndex directions_;
-  std::vector<double> ranges_;
-};
-
 }  // namespace
 
 struct SeePlanner::Impl {
@@ -68,12 +42,12 @@ struct SeePlanner::Impl {
       : config(see_config),
         camera(sensor),
         placement{config.view_distance.value_or(geometry::view_distance(camera, config.density)),
-                  config.ground_clearance},
+                  config.least_height},
         map({.radius = config.resolution_radius,
              .core_threshold = config.effective_core_threshold(),
              .spacing = config.effective_spacing(),
              .rule = config.outlier_rule}),
-        occluders(config.occluder_spacing),
+        occluders(config.occluder_spacing, config.occluder_spacing),
         occlusion(map.index().grid(),
                   {.radius = config.occlusion_radius.value_or(config.resolution_radius),
                    .search_distance = config.occlusion_search_distance,
@@ -83,8 +57,8 @@ struct SeePlanner::Impl {
   void insert(std::span<const Vector3f> points);
   void classify();
   void propose_for_new_frontiers();
-  geometry::LocalFrame frame_at(std::uint32_t point) const;
-  void face_free_space(geometry::LocalFrame& frame, const Vector3d& position) const;
+  geometry::SurfaceFrame frame_at(std::uint32_t point) const;
+  void face_free_space(geometry::SurfaceFrame& frame, const Vector3d& position) const;
   void adjust_target(std::span<const Vector3f> points);
   void avoid_occlusions();
   bool avoid_occlusion(std::uint32_t point, Frontier& frontier);
@@ -101,11 +75,11 @@ struct SeePlanner::Impl {
   const ViewPlacement placement;
 
   geometry::DensityMap map;
-  geometry::PointGrid occluders;  // S: a sparse subset of the cloud, for the cap optimiser
+  geometry::SpacedPoints occluders;  // S: a sparse subset of the cloud, for the cap optimiser
   OcclusionTest occlusion;
-  std::vector<View> scans;              // where each scan was taken from
-  std::uint32_t first_new = 0;          // point of the last scan
-  std::optional<FreeSpace> free_space;  // of the last scan, if the configuration asks for it
+  std::vector<View> scans;                // where each scan was taken from
+  std::uint32_t first_new = 0;            // point of the last scan
+  std::optional<SeenThrough> free_space;  // of the last scan, if the configuration asks for it
 
   std::set<std::uint32_t> waiting;  // frontiers without a proposal, another one being too near
   FrontierMap frontiers;            // those with a proposal
@@ -159,10 +133,7 @@ void SeePlanner::Impl::insert(std::span<const Vector3f> points) {
   }
   step.points_new = positions.size() - first_new;
   if (!config.optimise_views) return;
-  for (std::size_t i = first_new; i < positions.size(); ++i) {
-    if (!occluders.any_within(positions[i], config.occluder_spacing))
-      occluders.insert(positions[i]);
-  }
+  for (std::size_t i = first_new; i < positions.size(); ++i) occluders.keep(positions[i]);
 }
 
 void SeePlanner::Impl::classify() {
@@ -204,7 +175,7 @@ void SeePlanner::Impl::propose_for_new_frontiers() {
   }
 }
 
-geometry::LocalFrame SeePlanner::Impl::frame_at(std::uint32_t point) const {
+geometry::SurfaceFrame SeePlanner::Impl::frame_at(std::uint32_t point) const {
   const auto& positions = map.cloud().positions;
   const auto count =
       static_cast<std::size_t>(config.frame_neighbours.value_or(map.config().core_threshold));
@@ -213,15 +184,15 @@ geometry::LocalFrame SeePlanner::Impl::frame_at(std::uint32_t point) const {
     neighbours.push_back(positions[near.index]);
   }
   const Vector3d position = positions[point].cast<double>();
-  geometry::LocalFrame frame =
-      geometry::local_frame(position, neighbours, scans[map.cloud().views[point]].position);
+  geometry::SurfaceFrame frame =
+      geometry::surface_frame(position, neighbours, scans[map.cloud().views[point]].position);
   if (free_space) face_free_space(frame, position);
   return frame;
 }
 
 // Probes both sides of the surface, ever farther out, until one turns out to be free (released
 // code); a normal that points to the other side is turned round.
-void SeePlanner::Impl::face_free_space(geometry::LocalFrame& frame,
+void SeePlanner::Impl::face_free_space(geometry::SurfaceFrame& frame,
                                        const Vector3d& position) const {
   const double probe_step = config.occluder_spacing;
   double along = probe_step;
@@ -277,11 +248,12 @@ bool SeePlanner::Impl::avoid_occlusion(std::uint32_t point, Frontier& frontier) 
   const Vector3d observing = (frontier.observed_from - frontier.position).normalized();
   const Vector3d centre = frontier.position + offset * observing;
   std::vector<geometry::Neighbour> near;
-  occluders.find_within(map.cloud().positions[point], config.occlusion_search_distance, near);
+  occluders.grid().find_within(map.cloud().positions[point], config.occlusion_search_distance,
+                               near);
   std::vector<Vector3d> occluded;
   occluded.reserve(near.size());
   for (const geometry::Neighbour& neighbour : near) {
-    const Vector3d ray = occluders.point(neighbour.index).cast<double>() - centre;
+    const Vector3d ray = occluders.grid().point(neighbour.index).cast<double>() - centre;
     const double range = ray.norm();
     if (range > 1e-9) occluded.push_back(ray / range);
   }
@@ -408,6 +380,7 @@ std::optional<View> SeePlanner::next_view_instead() {
 }
 
 const geometry::PointCloud& SeePlanner::cloud() const { return impl_->map.cloud(); }
+geometry::PointCloud SeePlanner::release_cloud() { return impl_->map.release_cloud(); }
 const PlanningStep& SeePlanner::last_step() const { return impl_->step; }
 double SeePlanner::view_distance() const { return impl_->placement.distance; }
 

@@ -78,7 +78,7 @@ struct SeeConfig {
 
   unsigned threads = 1;  ///< for inserting scans; zero: all processors. Never changes a result
 
-  double ground_clearance = -1e9;  ///< lowest z of a proposed view; far below: unconstrained
+  std::optional<double> least_height;  ///< lowest z of a proposed view
 
   /// Throws Error{bad_config} naming the first field that is out of its interval, or the density
   /// and radius if they admit no frontier (k < 4, see docs/see.md).
@@ -100,6 +100,7 @@ class SeePlanner final : public Planner {
   std::optional<geometry::View> next_view(const geometry::Scan& scan) override;
   std::optional<geometry::View> next_view_instead() override;
   const geometry::PointCloud& cloud() const override;
+  geometry::PointCloud release_cloud() override;
   const PlanningStep& last_step() const override;
 
   /// d, the distance from a frontier to the view proposed for it.

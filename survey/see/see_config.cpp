@@ -58,7 +58,8 @@ void SeeConfig::validate() const {
   require(max_attempts >= 1, "max_attempts", "at least 1", max_attempts);
   require(std::isfinite(frontier_spacing) && frontier_spacing >= 0.0, "frontier_spacing",
           "zero or a positive number of metres", frontier_spacing);
-  require(std::isfinite(ground_clearance), "ground_clearance", "a finite height", ground_clearance);
+  require(!least_height || std::isfinite(*least_height), "least_height", "a finite height",
+          least_height.value_or(0.0));
   cap.validate();
 
   const int k = effective_core_threshold();

@@ -3,12 +3,13 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 #include <map>
 #include <numbers>
 #include <numeric>
+#include <utility>
 
 #include "geometry/parallel.h"
+#include "survey/skycap/view_batch.h"
 
 namespace skycap::survey::skycap {
 namespace {
@@ -25,9 +26,7 @@ constexpr std::array<double, 5> tilts = {0.0, 0.54, 0.54, 0.94, 0.94};
 constexpr std::array<double, 4> turns = {0.35, 0.2, 0.1, 0.05};
 constexpr int refined = 3;  // candidates that a round starts from
 constexpr int turned_directions = 6;
-constexpr int pool_size = 40;              // candidates that a batch is picked from
-constexpr double least_batch_share = 0.5;  // of the best gain, for a view to join the batch
-constexpr double impatience = 0.15;        // weight of early gain against the length of a tour
+constexpr std::size_t pool_size = 40;  // candidates that a batch is picked from
 
 struct Candidate {
   View view;
@@ -97,26 +96,21 @@ class Chooser {
       best_gain = std::max(best_gain, c.gain.area - (1.0 - settings_.unseen_yield) * c.gain.unseen);
     }
     const std::vector<std::size_t> pool = diverse_pool();
-    std::vector<std::vector<Sight>> sights(pool.size());
+    std::vector<BatchView> views(pool.size());
     geometry::parallel_for(pool.size(), settings_.threads, [&](std::size_t i) {
-      sights[i] = field_.sights(candidates_[pool[i]].view);
+      const View& view = candidates_[pool[i]].view;
+      views[i] = {view.position, field_.sights(view)};
     });
-    const std::vector<Stop> batch = pick_batch(pool, sights);
-    const Candidate& first = candidates_[batch[first_stop(batch)].candidate];
+    const Candidate& first = candidates_[pool[first_of_batch(views)]];
     Choice choice{first.view, first.gain.area, best_gain,
                   std::vector<bool>(field_.targets().size(), false)};
-    for (const std::vector<Sight>& view : sights) {
-      for (const Sight& sight : view) choice.in_sight[sight.target] = true;
+    for (const BatchView& view : views) {
+      for (const Sight& sight : view.sights) choice.in_sight[sight.target] = true;
     }
     return choice;
   }
 
  private:
-  struct Stop {
-    std::size_t candidate;
-    double gain;  // given the stops picked before it
-  };
-
   void add_candidate(const Vector3d& target, const Vector3d& towards_view, double distance) {
     const auto view = limits_.view_of_target(target, towards_view, distance);
     if (!view || (view->position - position_).norm() > most_way_ || !admits_(*view)) return;
@@ -215,67 +209,14 @@ class Chooser {
     return pool;
   }
 
-  /// Greedy cover: each pick is the view that adds most, per metre of its price and of the way from
-  /// the nearest place already on the list, to what the picks before it leave uncovered.
-  std::vector<Stop> pick_batch(const std::vector<std::size_t>& pool,
-                               const std::vector<std::vector<Sight>>& sights) const {
+  /// Index into the views of the first stop of a batch of them.
+  std::size_t first_of_batch(const std::vector<BatchView>& views) const {
     std::vector<float> weights;
     for (const auto& target : field_.targets()) weights.push_back(target.weight);
-    std::vector<double> way(pool.size());
-    for (std::size_t i = 0; i < pool.size(); ++i) {
-      way[i] = (candidates_[pool[i]].view.position - position_).norm();
-    }
-
-    std::vector<Stop> batch;
-    while (batch.size() < static_cast<std::size_t>(settings_.batch)) {
-      std::size_t best = 0;
-      double best_score = 0.0, best_gain = 0.0;
-      for (std::size_t i = 0; i < pool.size(); ++i) {
-        double gain = 0.0;
-        for (const Sight& s : sights[i]) gain += weights[s.target] * s.covered_share;
-        const double value = gain / (settings_.view_price + way[i]);
-        if (value > best_score) {
-          best = i;
-          best_score = value;
-          best_gain = gain;
-        }
-      }
-      if (!(best_score > 0.0)) break;
-      if (!batch.empty() && best_gain < least_batch_share * batch.front().gain) break;
-      batch.push_back({pool[best], best_gain});
-      for (const Sight& s : sights[best]) weights[s.target] *= 1.0F - s.covered_share;
-      const Vector3d& stop = candidates_[pool[best]].view.position;
-      for (std::size_t i = 0; i < pool.size(); ++i) {
-        way[i] = std::min(way[i], (candidates_[pool[i]].view.position - stop).norm());
-      }
-    }
-    return batch;
-  }
-
-  /// Index into the batch of the first stop of its best open tour from the sensor.
-  std::size_t first_stop(const std::vector<Stop>& batch) const {
-    std::vector<std::size_t> order(batch.size());
-    std::iota(order.begin(), order.end(), std::size_t{0});
-    double total_gain = 0.0;
-    for (const Stop& stop : batch) total_gain += stop.gain;
-    std::size_t best_first = 0;
-    double best_cost = std::numeric_limits<double>::infinity();
-    do {
-      Vector3d at = position_;
-      double length = 0.0, waited = 0.0;
-      for (const std::size_t i : order) {
-        const Vector3d& next = candidates_[batch[i].candidate].view.position;
-        length += (next - at).norm();
-        waited += length * batch[i].gain / total_gain;
-        at = next;
-      }
-      const double cost = length + impatience * waited;
-      if (cost < best_cost) {
-        best_cost = cost;
-        best_first = order.front();
-      }
-    } while (std::next_permutation(order.begin(), order.end()));
-    return best_first;
+    const BatchSettings batch{.size = static_cast<std::size_t>(settings_.batch),
+                              .view_price = settings_.view_price};
+    const std::vector<Stop> stops = pick_batch(views, std::move(weights), position_, batch);
+    return stops[first_stop(views, stops, position_, batch.impatience)].view;
   }
 
   const GainField& field_;

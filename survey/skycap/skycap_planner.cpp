@@ -1,11 +1,8 @@
 #include "survey/skycap/skycap_planner.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
-#include <numeric>
-#include <sstream>
 
 #include "geometry/error.h"
 #include "survey/skycap/block_image.h"
@@ -39,15 +36,19 @@ constexpr double scans_of_an_object = 7.0;
 /// How much of the evidence on guesses a scan keeps of those before it, and the least that guesses
 /// are ever counted for: a scan or two without any find must not end a survey.
 constexpr double yield_memory = 0.6, least_yield = 0.15;
-
-void require(bool holds, const char* field, const char* rule, double value) {
-  if (holds) return;
-  std::ostringstream message;
-  message << "planner." << field << " is " << value << "; it must be " << rule;
-  throw Error(ErrorKind::bad_config, message.str());
-}
-
-bool is_positive(double value) { return value > 0.0 && std::isfinite(value); }
+/// The resolution: this many surfels across the scene, and pixels to a surfel, between a block's
+/// and what still shows the relief that a view must see.
+constexpr double surfels_across = 150.0, least_pixels = 4.0, most_pixels = 25.0;
+/// A block is a little narrower than a surfel, so that no surfel falls between blocks, and of at
+/// least so many pixels each way: fewer would not tell the noise.
+constexpr double blocks_to_surfel = 0.8;
+constexpr int least_block_px = 4;
+/// Jumps in depth: what a slope of 76 degrees drops over a block; while the noise is not known, a
+/// share of the scene; then six deviations, which noise alone seldom spans in a block.
+constexpr double jump_slope = 4.0, unknown_noise_jump = 0.05, noise_jump = 6.0;
+/// Noise below the first share of r_d is as good as none; a change of the estimate by less than the
+/// second share of itself is not worth a new dose table.
+constexpr double negligible_noise = 0.12, noise_change = 0.03;
 
 /// Distance between neighbouring rays on a wall at distance 1, the coarser way.
 double ray_spacing(const geometry::Camera& camera) {
@@ -56,34 +57,6 @@ double ray_spacing(const geometry::Camera& camera) {
 
 }  // namespace
 
-void SkycapConfig::validate() const {
-  require(is_positive(coverage_radius), "coverage_radius", "a positive number of metres",
-          coverage_radius);
-  const auto require_optional = [](const std::optional<double>& value, const char* field) {
-    require(!value || is_positive(*value), field, "a positive number of metres",
-            value.value_or(0.0));
-  };
-  require_optional(spacing, "spacing");
-  require_optional(view_distance, "view_distance");
-  require_optional(view_price, "view_price");
-  require_optional(resolution, "resolution");
-  require(stop.wanted_coverage > 0.0 && stop.wanted_coverage <= 1.0, "stop.wanted_coverage",
-          "above 0 and at most 1", stop.wanted_coverage);
-  require(stop.least_gain >= 0.0 && stop.least_gain < 1.0, "stop.least_gain",
-          "at least 0 and below 1", stop.least_gain);
-  require_optional(stop.most_length, "stop.most_length");
-  require(!stop.most_time || is_positive(*stop.most_time), "stop.most_time",
-          "a positive number of seconds", stop.most_time.value_or(0.0));
-  require(is_positive(stop.speed), "stop.speed", "a positive number of metres per second",
-          stop.speed);
-  require(stop.time_per_view >= 0.0 && std::isfinite(stop.time_per_view), "stop.time_per_view",
-          "zero or more seconds", stop.time_per_view);
-  require(continuation_steps >= 1 && continuation_steps <= 5, "continuation_steps",
-          "between 1 and 5", continuation_steps);
-  require(!scene_box || !scene_box->isEmpty(), "scene_box", "a box of positive size", 0.0);
-  limits.validate();
-}
-
 struct SkycapPlanner::Impl {
   Impl(const SkycapConfig& given, const geometry::Camera& sensor)
       : config(given),
@@ -91,6 +64,7 @@ struct SkycapPlanner::Impl {
         distance(given.view_distance.value_or(0.5 * given.coverage_radius / ray_spacing(camera))),
         kept(given.spacing.value_or(0.5 * given.coverage_radius), distance * ray_spacing(camera)) {
     gain.view_distance = distance;
+    gain.max_incidence = std::min(gain.max_incidence, static_cast<float>(given.max_incidence));
     chooser.view_distance = distance;
     chooser.view_price = given.view_price.value_or(3.0 * distance);
     chooser.threads = given.threads;
@@ -100,8 +74,6 @@ struct SkycapPlanner::Impl {
     if (given.scene_box) region = given.scene_box->cast<float>();
   }
 
-  // --- taking in a scan ---
-
   /// Fixes the resolution by the first scan that holds a point.
   void start() {
     Eigen::AlignedBox3f seen;
@@ -109,12 +81,12 @@ struct SkycapPlanner::Impl {
     const double extent =
         config.scene_box ? config.scene_box->sizes().maxCoeff() : seen.sizes().maxCoeff();
     const double pixel = distance * ray_spacing(camera);
-    const double h =
-        config.resolution.value_or(std::clamp(extent / 150.0, 4.0 * pixel, 25.0 * pixel));
-    blocks.block_px = std::max(4, static_cast<int>(0.8 * h / pixel));
+    const double h = config.resolution.value_or(
+        std::clamp(extent / surfels_across, least_pixels * pixel, most_pixels * pixel));
+    blocks.block_px = std::max(least_block_px, static_cast<int>(blocks_to_surfel * h / pixel));
     blocks.threads = config.threads;
-    least_jump = 4.0 * blocks.block_px * pixel;
-    blocks.jump = static_cast<float>(std::max(least_jump, 0.05 * extent));
+    least_jump = jump_slope * blocks.block_px * pixel;
+    blocks.jump = static_cast<float>(std::max(least_jump, unknown_noise_jump * extent));
     map.emplace(static_cast<float>(h));
     space.emplace(static_cast<float>(0.6 * h), config.misses_are_empty);
     dose.emplace(config.coverage_radius, Noise{});
@@ -134,12 +106,14 @@ struct SkycapPlanner::Impl {
   void learn_noise(const std::vector<BlockImage>& images) {
     for (const BlockImage& image : images) noise.add(image);
     if (!config.ideas.dose) return;
-    const auto estimate = noise.noise(0.12 * config.coverage_radius);
+    const auto estimate = noise.noise(negligible_noise * config.coverage_radius);
     if (!estimate) return;
     const double change = std::abs(estimate->isotropic - dose->noise().isotropic) +
                           std::abs(estimate->along_ray - dose->noise().along_ray);
-    if (change > 0.03 * dose->noise().across(1.0)) dose.emplace(config.coverage_radius, *estimate);
-    blocks.jump = static_cast<float>(std::max(least_jump, 6.0 * dose->noise().across(1.0)));
+    if (change > noise_change * dose->noise().across(1.0)) {
+      dose.emplace(config.coverage_radius, *estimate);
+    }
+    blocks.jump = static_cast<float>(std::max(least_jump, noise_jump * dose->noise().across(1.0)));
   }
 
   void take_in(const Scan& scan) {
@@ -201,8 +175,6 @@ struct SkycapPlanner::Impl {
     }
     unseen->grade(patches, *map, *space, first_new);
   }
-
-  // --- choosing a view ---
 
   /// The box in which unknown space may hold an obstacle.
   Eigen::AlignedBox3d obstacle_box() const {
@@ -275,7 +247,6 @@ struct SkycapPlanner::Impl {
     const StopRule& rule = config.stop;
     if (predicted_coverage() >= rule.wanted_coverage) return SkycapStop::wanted_coverage;
     if (idle_scans >= most_idle_scans) return SkycapStop::little_gain;
-    if (rule.most_views && scans >= *rule.most_views) return SkycapStop::most_views;
     if (rule.most_length && length >= *rule.most_length) return SkycapStop::most_length;
     if (rule.most_time && most_way() <= 0.0) return SkycapStop::most_time;
     return SkycapStop::running;
@@ -417,6 +388,7 @@ std::optional<View> SkycapPlanner::next_view_instead() {
 }
 
 const geometry::PointCloud& SkycapPlanner::cloud() const { return impl_->kept.cloud(); }
+geometry::PointCloud SkycapPlanner::release_cloud() { return impl_->kept.release_cloud(); }
 const PlanningStep& SkycapPlanner::last_step() const { return impl_->step; }
 SkycapStop SkycapPlanner::stop() const { return impl_->stop; }
 double SkycapPlanner::predicted_coverage() const { return impl_->predicted_coverage(); }

@@ -30,7 +30,6 @@ struct StopRule {
   /// Another view is not worth it: the best one promises less than this share of the known area, or
   /// of seven times what one scan covered at most, if that is less.
   double least_gain = 0.005;
-  std::optional<std::size_t> most_views;
   std::optional<double> most_length;  ///< of the straight lines between the views
   std::optional<double> most_time;    ///< of the flight [s], by `speed` and `time_per_view`
   double speed = 5.0;                 ///< between views [m/s]
@@ -55,13 +54,16 @@ struct SkycapConfig {
   std::optional<double> view_distance;
   std::optional<double> view_price;  ///< what a view costs, in metres of way; 3 d
   std::optional<double> resolution;  ///< h of the surfels; from the pixels and the first scan
+  /// Angle between ray and normal beyond which the sensor gets no return [rad], in (0, pi/2]. Looks
+  /// at more than 78 degrees are not counted on, whatever it is.
+  double max_incidence = 1.5707963267948966;
   /// Where the scene is. What lies outside is no surface of interest, and its space is free.
   /// Not given: all that was measured so far.
   std::optional<Eigen::AlignedBox3d> scene_box;
   ViewLimits limits;
   StopRule stop;
   SkycapIdeas ideas;
-  int continuation_steps = 3;  ///< how far guesses reach: h, 3 h, 6 h ... ; 1 to 5
+  int continuation_steps = 3;  ///< how far guesses reach: 1.6 h, 3.2 h, 6.4 h ... ; 1 to 5
   /// Whether a ray without a return shows empty space, to drop guesses. Never for where to fly.
   bool misses_are_empty = true;
   unsigned threads = 1;  ///< zero: all processors; the plan does not depend on it
@@ -74,7 +76,6 @@ enum class SkycapStop {
   running,
   wanted_coverage,
   little_gain,  ///< no view promises enough, or the last four brought almost nothing
-  most_views,
   most_length,
   most_time,
   nothing_in_reach,  ///< no admissible view sees anything that is missing
@@ -117,6 +118,7 @@ class SkycapPlanner final : public Planner {
   std::optional<geometry::View> next_view(const geometry::Scan& scan) override;
   std::optional<geometry::View> next_view_instead() override;
   const geometry::PointCloud& cloud() const override;
+  geometry::PointCloud release_cloud() override;
   const PlanningStep& last_step() const override;
 
   /// Why the last call proposed nothing.

@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <optional>
+#include <utility>
 
 #include <Eigen/Core>
 #include <Eigen/Geometry>
@@ -28,6 +29,8 @@ class SpacedCloud {
                      unsigned threads);
 
   const geometry::PointCloud& cloud() const { return cloud_; }
+  /// Hands the points over; nothing may be asked afterwards.
+  geometry::PointCloud release_cloud() { return std::move(cloud_); }
 
  private:
   double spacing_;

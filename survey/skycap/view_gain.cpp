@@ -40,7 +40,7 @@ GainField::GainField(const DoseMap& map, std::span<const UnseenPatch> patches,
                      const GainSettings& settings)
     : dose_(dose),
       spacing_(map.spacing()),
-      least_cosine_(std::cos(settings.most_incidence)),
+      least_cosine_(std::cos(settings.max_incidence)),
       focal_length_px_(camera.focal_length_px().cast<float>()),
       least_range_(std::max(1e-6F, static_cast<float>(camera.config().min_range))),
       most_range_(static_cast<float>(camera.config().max_range)) {

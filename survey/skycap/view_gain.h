@@ -30,8 +30,9 @@ struct Gain {
 };
 
 struct GainSettings {
-  double view_distance = 2.0;      ///< d: sets the resolution at which visibility is decided
-  float most_incidence = 1.3614F;  ///< beyond it a surface returns nothing [rad]; 78 degrees
+  double view_distance = 2.0;     ///< d: sets the resolution at which visibility is decided
+  float max_incidence = 1.3614F;  ///< beyond it no return is counted on [rad]; 78 degrees: there a
+                                  ///< head-on look's rays per area are down to a fifth
 };
 
 /// A snapshot of all surfaces, seen and guessed, that answers for any view. Immutable; safe to ask

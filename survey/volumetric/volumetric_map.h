@@ -29,9 +29,9 @@ namespace skycap::survey::volumetric {
 
 /// What a ray that VolumetricMap::follow() follows is told of.
 enum class Hears {
-  every_voxel,     ///< that it passes, and the one where it stops
-  what_it_leaves,  ///< before anything that it may not miss: the last voxel of what was left out
-  only_its_end,    ///< beside what it may not miss
+  every_voxel,    ///< that it passes, and the one where it stops
+  last_left_out,  ///< before anything that it may not miss: the last voxel of what was left out
+  only_its_end,   ///< beside what it may not miss
 };
 
 class VolumetricMap {
@@ -121,6 +121,39 @@ class VolumetricMap {
   Eigen::AlignedBox3d surface_box_;
 };
 
+/// The cells that a walk has passed over without a word to the ray, and what it is told of them
+/// before it hears of anything else.
+template <typename Ray, typename StateOf>
+class UntoldStretch {
+ public:
+  /// `state_of(voxel)` gives the state of a voxel of the map.
+  UntoldStretch(const VoxelLine& line, Ray& ray, StateOf state_of)
+      : line_(line), ray_(ray), state_of_(state_of) {}
+
+  template <typename Walk>
+  void pass_over(const Walk& walk) {
+    if (!since_) since_ = walk.entered();
+  }
+
+  /// Tells the ray of what lies before `entered`; false if it wants to know no more.
+  bool tell_before(const Crossing& entered) {
+    const std::optional<Crossing> since = std::exchange(since_, std::nullopt);
+    if constexpr (Ray::hears == Hears::every_voxel) {
+      return !since || ray_.pass_untouched(static_cast<std::size_t>(line_.voxels_before(entered) -
+                                                                    line_.voxels_before(*since)));
+    } else if constexpr (Ray::hears == Hears::last_left_out) {
+      return !since || ray_.pass(state_of_(line_.voxel_before(entered)));
+    }
+    return true;
+  }
+
+ private:
+  const VoxelLine& line_;
+  Ray& ray_;
+  StateOf state_of_;
+  std::optional<Crossing> since_;  // into the first of the cells
+};
+
 template <typename Ray>
 void VolumetricMap::follow(const Eigen::Vector3f& origin, const Eigen::Vector3f& end, double reach,
                            Ray& ray) const {
@@ -139,28 +172,19 @@ void VolumetricMap::follow(const Eigen::Vector3f& origin, const Eigen::Vector3f&
     else
       return !exists || (surfaces == 0 && ray.may_miss(shadows != 0));
   };
-  std::optional<Crossing> untold;  // into the first of the cells of which nothing was told
-  const auto tell_before = [&](const Crossing& entered) {
-    const std::optional<Crossing> since = std::exchange(untold, std::nullopt);
-    if constexpr (Ray::hears == Hears::every_voxel) {
-      return !since || ray.pass_untouched(static_cast<std::size_t>(line.voxels_before(entered) -
-                                                                   line.voxels_before(*since)));
-    } else if constexpr (Ray::hears == Hears::what_it_leaves) {
-      return !since || ray.pass(states[code_of(line.voxel_before(entered))]);
-    }
-    return true;
+  const auto state_of = [&](const VoxelIndex& voxel) -> const VoxelState& {
+    return states[code_of(voxel)];
   };
-  const auto pass_over = [&](const auto& walk) {
-    if (!untold) untold = walk.entered();
-    return true;
-  };
+  UntoldStretch untold(line, ray, state_of);
 
   const Block* block = nullptr;
   const auto pass_block = [&](const auto& blocks) {
     block = find(blocks.cell());
-    return blocks.may_be_skipped() &&
-           is_quiet(block != nullptr, block ? block->surfaces : 0, block ? block->shadows : 0) &&
-           pass_over(blocks);
+    const bool is_passed =
+        blocks.may_be_skipped() &&
+        is_quiet(block != nullptr, block ? block->surfaces : 0, block ? block->shadows : 0);
+    if (is_passed) untold.pass_over(blocks);
+    return is_passed;
   };
   for_each_brick(line, pass_block, [&](const auto& bricks) {
     const std::uint32_t brick = place_of(bricks.cell());
@@ -168,9 +192,10 @@ void VolumetricMap::follow(const Eigen::Vector3f& origin, const Eigen::Vector3f&
     const bool is_known = block && (block->known & bit) != 0;
     if (bricks.may_be_skipped() && is_quiet(is_known, is_known ? block->surfaces & bit : 0,
                                             is_known ? block->shadows & bit : 0)) {
-      return pass_over(bricks);
+      untold.pass_over(bricks);
+      return true;
     }
-    if (!tell_before(bricks.entered())) return false;
+    if (!untold.tell_before(bricks.entered())) return false;
     VoxelWalk walk(line, bricks.entered());
     while (!walk.is_over()) {
       const VoxelState& state = states[block ? block->codes[brick][walk.place()] : Code{}];

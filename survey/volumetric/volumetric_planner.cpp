@@ -9,8 +9,8 @@
 
 #include "geometry/error.h"
 #include "geometry/parallel.h"
-#include "geometry/points/nearby_points.h"
 #include "geometry/points/point_grid.h"
+#include "geometry/points/spaced_points.h"
 #include "survey/stopwatch.h"
 
 namespace skycap::survey::volumetric {
@@ -83,7 +83,7 @@ void VolumetricConfig::validate() const {
 }
 
 std::vector<View> sphere_views(std::size_t count, const Vector3d& centre, double radius,
-                               double least_height, std::uint64_t seed) {
+                               const std::optional<double>& least_height, std::uint64_t seed) {
   std::mt19937_64 random(seed);
   std::normal_distribution<double> normal;
   std::vector<View> views;
@@ -93,15 +93,16 @@ std::vector<View> sphere_views(std::size_t count, const Vector3d& centre, double
     if (attempt == most_attempts) {
       std::ostringstream message;
       message << "the candidates' sphere reaches up to " << centre.z() + radius
-              << " m, of which less than a thousandth is above the least height of " << least_height
-              << " m; lower limits.ground_clearance";
+              << " m, of which less than a thousandth is above the least height of "
+              << least_height.value_or(0.0) << " m; lower limits.ground_clearance";
       throw Error(ErrorKind::bad_config, message.str());
     }
     const double x = normal(random), y = normal(random), z = normal(random);
     const Vector3d direction(x, y, z);
     if (direction.norm() < 1e-3) continue;
     const Vector3d position = centre + radius * direction.normalized();
-    if (position.z() >= least_height) views.push_back(geometry::look_at(position, centre));
+    if (least_height && position.z() < *least_height) continue;
+    views.push_back(geometry::look_at(position, centre));
   }
   return views;
 }
@@ -128,12 +129,12 @@ struct VolumetricPlanner::Impl {
     double gain = 0.0;
   };
 
-  Impl(const VolumetricConfig& given, const geometry::Camera& its_camera)
+  Impl(const VolumetricConfig& given, const geometry::Camera& sensor)
       : config(given),
-        camera(its_camera),
+        camera(sensor),
         directions(ray_directions(camera, config.settings.rays)),
         map(config.resolution, shadow_length(config)),
-        kept(std::max(2.0 * config.spacing, 1e-6)) {
+        kept(config.spacing, std::max(2.0 * config.spacing, 1e-6)) {
     for (const View& view : sphere_views(config.candidates, config.sphere_centre,
                                          config.sphere_radius, config.least_height, config.seed)) {
       candidates.push_back({view});
@@ -148,7 +149,7 @@ struct VolumetricPlanner::Impl {
   geometry::Camera camera;
   std::vector<Vector3d> directions;
   VolumetricMap map;
-  geometry::PointGrid kept;
+  geometry::SpacedPoints kept;
   geometry::PointCloud cloud;
   std::vector<Candidate> candidates;  // not yet proposed, in the order in which they were drawn
   Vector3d position = Vector3d::Zero();
@@ -162,6 +163,7 @@ VolumetricPlanner::VolumetricPlanner(const VolumetricConfig& config, const geome
 VolumetricPlanner::~VolumetricPlanner() = default;
 
 const geometry::PointCloud& VolumetricPlanner::cloud() const { return impl_->cloud; }
+geometry::PointCloud VolumetricPlanner::release_cloud() { return std::move(impl_->cloud); }
 const PlanningStep& VolumetricPlanner::last_step() const { return impl_->step; }
 const VolumetricMap& VolumetricPlanner::map() const { return impl_->map; }
 
@@ -185,12 +187,10 @@ std::optional<View> VolumetricPlanner::next_view_instead() { return impl_->take_
 void VolumetricPlanner::Impl::insert(const Scan& scan) {
   position = scan.sensor_position();
   std::vector<Vector3f> measured;
-  geometry::NearbyPoints nearby(kept, config.spacing);
   for (const Vector3f& point : scan.points) {
     if (config.scene_box && !config.scene_box->contains(point.cast<double>())) continue;
-    const bool is_new = !nearby.any_near(point);
+    const bool is_new = kept.keep(point);
     if (is_new) {
-      kept.insert(point);
       cloud.positions.push_back(point);
       cloud.views.push_back(scans);
       ++step.points_new;

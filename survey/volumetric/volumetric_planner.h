@@ -53,8 +53,8 @@ struct VolumetricConfig {
   std::size_t candidates = 312;
   Eigen::Vector3d sphere_centre = Eigen::Vector3d::Zero();
   double sphere_radius = 1.0;
-  double least_height = -1e9;  ///< no candidate is lower
-  std::uint64_t seed = 1;      ///< of the candidates
+  std::optional<double> least_height;  ///< no candidate is lower
+  std::uint64_t seed = 1;              ///< of the candidates
   VolumetricSettings settings;
   unsigned threads = 1;  ///< for scoring; zero: all processors. Never changes a result
 
@@ -63,9 +63,11 @@ struct VolumetricConfig {
 };
 
 /// `count` views of the sphere's centre from places drawn independently, uniformly over the part
-/// of the sphere that is not below `least_height`. Throws Error{bad_config} if nothing is left.
+/// of the sphere that is not below `least_height`, if that is given. Throws Error{bad_config} if
+/// nothing is left.
 std::vector<geometry::View> sphere_views(std::size_t count, const Eigen::Vector3d& centre,
-                                         double radius, double least_height, std::uint64_t seed);
+                                         double radius, const std::optional<double>& least_height,
+                                         std::uint64_t seed);
 
 /// The index of the largest utility, gain / sum of gains - cost_weight * distance / sum of
 /// distances, where a sum of zero makes its term zero. The two spans are equally long, and not
@@ -84,6 +86,7 @@ class VolumetricPlanner final : public Planner {
   std::optional<geometry::View> next_view(const geometry::Scan& scan) override;
   std::optional<geometry::View> next_view_instead() override;
   const geometry::PointCloud& cloud() const override;
+  geometry::PointCloud release_cloud() override;
   const PlanningStep& last_step() const override;
 
   const VolumetricMap& map() const;

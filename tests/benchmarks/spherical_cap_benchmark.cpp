@@ -35,7 +35,7 @@ struct Case {
 
 Vector3d random_direction(std::mt19937_64& random) {
   std::normal_distribution<double> coordinate;
-  return Vector3d(coordinate(random), coordinate(random), coordinate(random)).normalized();
+  return Vector3d{coordinate(random), coordinate(random), coordinate(random)}.normalized();
 }
 
 Case directions_around_holes(int count, int holes, std::mt19937_64& random) {

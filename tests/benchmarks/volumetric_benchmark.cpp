@@ -12,7 +12,7 @@
 #include <string>
 
 #include "geometry/place/pose.h"
-#include "missions/file/mission_reader.h"
+#include "missions/derived/resolved_mission.h"
 #include "missions/scene/survey_scene.h"
 #include "sim/sensors/depth_camera.h"
 #include "survey/volumetric/volumetric_planner.h"
@@ -52,12 +52,12 @@ constexpr Gain gains[] = {
 
 void run(const std::string& name, const std::string& mission_text, double resolution,
          std::size_t clouds, std::size_t twin_candidates) {
-  const missions::file::Mission mission = missions::file::parse_mission(mission_text, name);
+  const missions::file::Mission mission = missions::derived::parse_mission(mission_text, name);
   const missions::scene::SurveyScene scene(mission, std::filesystem::current_path());
   const sim::DepthCamera camera(mission.sensor.camera);
   const auto [centre, radius] = scene.view_sphere();
   const auto views =
-      survey::volumetric::sphere_views(clouds + 1 + candidates, centre, radius, -1e9, 1);
+      survey::volumetric::sphere_views(clouds + 1 + candidates, centre, radius, std::nullopt, 1);
   const auto directions =
       survey::volumetric::ray_directions(geometry::Camera(mission.sensor.camera.camera), {});
 

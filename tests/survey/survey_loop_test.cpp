@@ -24,6 +24,7 @@ class WalkingPlanner final : public Planner {
   }
   std::optional<View> next_view_instead() override { return walk_on(); }
   const geometry::PointCloud& cloud() const override { return cloud_; }
+  geometry::PointCloud release_cloud() override { return std::move(cloud_); }
   const PlanningStep& last_step() const override { return step_; }
 
  private:
@@ -39,7 +40,7 @@ class WalkingPlanner final : public Planner {
 const View start{{0, 0, 0}, {1, 0, 0}};
 
 /// A sensor that returns two points and ends up where it was sent.
-Scan sense(const View& view) {
+Scan sense(const View& view, const Scan& = {}) {
   return {.world_from_sensor = geometry::camera_pose(view), .points = {{0, 0, 0}, {1, 1, 1}}};
 }
 
@@ -103,10 +104,33 @@ TEST(SurveyLoop, StopsBetweenViewsWhenAsked) {
   EXPECT_THAT(places(result), ElementsAre(0, 1, 2));
 }
 
+TEST(SurveyLoop, StopsWhenTheTimeIsUp) {
+  WalkingPlanner planner(100);
+  // A metre of way and a second a view: places 0, 1 and 2 take 5 s.
+  const SurveyResult result = run_survey(
+      planner, start, {.max_time = 5.5, .speed = 1.0, .time_per_view = 1.0}, {.sense = sense});
+  EXPECT_EQ(result.stop_reason, StopReason::time_limit);
+  EXPECT_THAT(places(result), ElementsAre(0, 1, 2));
+}
+
+TEST(SurveyLoop, HandsEachScanBackForItsMemory) {
+  WalkingPlanner planner(2);
+  std::vector<const void*> taken, given_back;
+  const auto recycling = [&](const View& view, Scan recycled) {
+    given_back.push_back(recycled.points.empty() ? nullptr : recycled.points.data());
+    recycled.world_from_sensor = geometry::camera_pose(view);
+    recycled.points.resize(2, Eigen::Vector3f::Zero());
+    taken.push_back(recycled.points.data());
+    return recycled;
+  };
+  run_survey(planner, start, {}, {.sense = recycling});
+  EXPECT_THAT(given_back, ElementsAre(nullptr, taken[0], taken[1]));
+}
+
 // A real drone stops where the wind lets it; the pose it reports is what counts.
 TEST(SurveyLoop, TakesThePoseThatTheSensorReached) {
   WalkingPlanner planner(1);
-  const auto drift = [](const View& view) {
+  const auto drift = [](const View& view, const Scan&) {
     return sense({view.position + Vector3d(0, 0.5, 0), view.direction});
   };
   const SurveyResult result = run_survey(planner, start, {}, {.sense = drift});

@@ -29,7 +29,7 @@ TEST(ViewLimits, HeightPitchFenceAndNoFlyVolumesEachForbid) {
   limits.least_pitch = -90 * degree;
   limits.most_pitch = 30 * degree;
   limits.geofence = {{-100, -100}, {100, -100}, {100, 100}, {-100, 100}};
-  limits.no_fly = {box_prism({10, 10, 0}, {20, 20, 30})};
+  limits.no_fly = {{"", {{10, 10}, {20, 10}, {20, 20}, {10, 20}}, 0, 30}};
   limits.validate();
   const Vector3d level = Vector3d::UnitX();
   EXPECT_TRUE(limits.allow({{0, 0, 10}, level}));
@@ -37,8 +37,10 @@ TEST(ViewLimits, HeightPitchFenceAndNoFlyVolumesEachForbid) {
   EXPECT_FALSE(limits.allow({{0, 0, 51}, level}));
   EXPECT_FALSE(limits.allow({{0, 0, 10}, Vector3d(1, 0, 1).normalized()}));  // 45 degrees up
   EXPECT_FALSE(limits.allow({{150, 0, 10}, level}));
+  EXPECT_TRUE(limits.allow({{100, 0, 10}, level}));  // on the fence
   EXPECT_FALSE(limits.allow({{15, 15, 10}, level}));
-  EXPECT_TRUE(limits.allow({{15, 15, 40}, level}));  // above the volume
+  EXPECT_FALSE(limits.allow({{10, 15, 30}, level}));  // on the volume's edge
+  EXPECT_TRUE(limits.allow({{15, 15, 40}, level}));   // above the volume
 }
 
 // Property: whatever is returned is allowed, at the distance asked for, looking at the target.
@@ -52,9 +54,9 @@ TEST(ViewLimits, ViewsOfATargetObeyTheLimits) {
   std::normal_distribution<double> normal;
   int found = 0;
   for (int i = 0; i < 1000; ++i) {
-    const Vector3d target(normal(generator), normal(generator), 5.0 + 10.0 * normal(generator));
+    const Vector3d target{normal(generator), normal(generator), 5.0 + 10.0 * normal(generator)};
     const Vector3d towards =
-        Vector3d(normal(generator), normal(generator), normal(generator)).normalized();
+        Vector3d{normal(generator), normal(generator), normal(generator)}.normalized();
     const auto view = limits.view_of_target(target, towards, 20.0);
     if (!view) continue;
     ++found;
@@ -91,7 +93,7 @@ TEST(ViewLimits, SaysWhichFieldIsWrong) {
   EXPECT_THAT(message_of({.stand_off = -1.0}), HasSubstr("stand_off"));
   EXPECT_THAT(message_of({.least_height = 3.0, .most_height = 2.0}), HasSubstr("least_height"));
   EXPECT_THAT(message_of({.geofence = {{0, 0}, {1, 0}}}), HasSubstr("geofence"));
-  EXPECT_THAT(message_of({.no_fly = {box_prism({0, 0, 1}, {1, 1, 0})}}), HasSubstr("no_fly"));
+  EXPECT_THAT(message_of({.no_fly = {{"", {{0, 0}, {1, 0}, {1, 1}}, 1, 0}}}), HasSubstr("no_fly"));
   EXPECT_THAT(message_of({.least_pitch = 1.0, .most_pitch = 0.0}), HasSubstr("pitch"));
 }
 

@@ -75,34 +75,9 @@ TEST(Prism, ContainsAgreesWithTheWindingOfItsSurface) {
   }
 }
 
-TEST(Prism, ItsBoundaryBelongsToIt) {
-  const Prism prism{"square", square, 0, 10};
-  EXPECT_TRUE(contains(prism, {0, 5, 5}));
-  EXPECT_TRUE(contains(prism, {10, 10, 10}));
-  EXPECT_FALSE(contains(prism, {10.001, 5, 5}));
-  EXPECT_FALSE(contains(prism, {5, 5, 10.001}));
-}
-
 TEST(Prism, AFootprintWithCornersOnALineIsFilledCompletely) {
   const Prism prism{"T", {{0, 0}, {5, 0}, {10, 0}, {10, 5}, {10, 10}, {5, 10}, {0, 10}}, 0, 1};
   EXPECT_NEAR(geometry::surface_area(surface(prism)), 2 * 100 + 40, 1e-9);
-}
-
-TEST(Fingerprint, ChangesWithEveryPart) {
-  Obstacles obstacles;
-  obstacles.mesh = scenes::box(Vector3d::Zero(), Vector3d::Ones());
-  obstacles.no_fly = {{"a", square, 0, 10}};
-  const std::uint64_t before = fingerprint(obstacles);
-  EXPECT_EQ(fingerprint(obstacles), before);
-  Obstacles moved = obstacles;
-  moved.mesh.vertices[3].x() += 1e-9;
-  EXPECT_NE(fingerprint(moved), before);
-  Obstacles raised = obstacles;
-  raised.no_fly[0].ceiling = 11;
-  EXPECT_NE(fingerprint(raised), before);
-  Obstacles on_ground = obstacles;
-  on_ground.ground_height = 0.0;
-  EXPECT_NE(fingerprint(on_ground), before);
 }
 
 // A box with a face torn out and another turned inward becomes a closed solid that encloses it.

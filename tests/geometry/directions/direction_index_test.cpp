@@ -14,7 +14,7 @@ using Eigen::Vector3d;
 
 Vector3d random_direction(std::mt19937_64& random) {
   std::normal_distribution<double> coordinate;
-  return Vector3d(coordinate(random), coordinate(random), coordinate(random)).normalized();
+  return Vector3d{coordinate(random), coordinate(random), coordinate(random)}.normalized();
 }
 
 void expect_equal_to_brute_force(const std::vector<Vector3d>& directions, const Vector3d& s) {

@@ -27,7 +27,7 @@ constexpr double rounding = 1e-12;
 
 Vector3d random_direction(std::mt19937_64& random) {
   std::normal_distribution<double> coordinate;
-  return Vector3d(coordinate(random), coordinate(random), coordinate(random)).normalized();
+  return Vector3d{coordinate(random), coordinate(random), coordinate(random)}.normalized();
 }
 
 double h(const Directions& occluded, const Vector3d& s) {

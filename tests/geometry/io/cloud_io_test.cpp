@@ -18,7 +18,7 @@ using Eigen::Vector3f;
 using testing::HasSubstr;
 using testing_support::TemporaryFolder;
 
-CloudFile three_points() {
+AttributedCloud three_points() {
   return {{{1.5F, 2, -3}, {0.1F, 0, 0}, {4, 5, 6}},
           {{0, 0, 1}, {0, 1, 0}, {1, 0, 0}},
           {0, 7, 4294967295U},
@@ -28,9 +28,9 @@ CloudFile three_points() {
 TEST(CloudIo, RoundTripKeepsEveryAttribute) {
   const TemporaryFolder folder;
   const auto path = folder.path() / "cloud.ply";
-  const CloudFile cloud = three_points();
-  write_cloud(path, cloud);
-  const CloudFile again = read_cloud(path);
+  const AttributedCloud cloud = three_points();
+  write_cloud(path, columns_of(cloud));
+  const AttributedCloud again = read_cloud(path);
   EXPECT_EQ(again.positions, cloud.positions);
   EXPECT_EQ(again.normals, cloud.normals);
   EXPECT_EQ(again.views, cloud.views);
@@ -40,8 +40,9 @@ TEST(CloudIo, RoundTripKeepsEveryAttribute) {
 TEST(CloudIo, AbsentAttributesStayAbsent) {
   const TemporaryFolder folder;
   const auto path = folder.path() / "cloud.ply";
-  write_cloud(path, {three_points().positions, {}, {}, {}});
-  const CloudFile again = read_cloud(path);
+  const AttributedCloud cloud = three_points();
+  write_cloud(path, {.positions = cloud.positions});
+  const AttributedCloud again = read_cloud(path);
   EXPECT_EQ(again.positions, three_points().positions);
   EXPECT_TRUE(again.normals.empty() && again.views.empty() && again.colours.empty());
 }
@@ -51,8 +52,8 @@ TEST(CloudIo, IsReadByCgal) {
   using Kernel = CGAL::Simple_cartesian<float>;
   const TemporaryFolder folder;
   const auto path = folder.path() / "cloud.ply";
-  const CloudFile cloud = three_points();
-  write_cloud(path, cloud);
+  const AttributedCloud cloud = three_points();
+  write_cloud(path, columns_of(cloud));
   using Read = std::tuple<Kernel::Point_3, Kernel::Vector_3, std::uint32_t, std::uint8_t>;
   std::vector<Read> points;
   std::ifstream stream(path, std::ios::binary);
@@ -76,7 +77,7 @@ TEST(CloudIo, IsReadByCgal) {
 
 TEST(CloudIo, ReadsOtherPropertyOrdersTypesAndTheVerticesOfAMesh) {
   const TemporaryFolder folder;
-  const CloudFile cloud = read_cloud(
+  const AttributedCloud cloud = read_cloud(
       folder.file("a.ply",
                   "ply\nformat ascii 1.0\nelement vertex 2\nproperty double z\nproperty int x\n"
                   "property float y\nproperty uchar intensity\nelement face 1\n"
@@ -86,7 +87,7 @@ TEST(CloudIo, ReadsOtherPropertyOrdersTypesAndTheVerticesOfAMesh) {
 
 TEST(CloudIo, ReadsTextColumns) {
   const TemporaryFolder folder;
-  const CloudFile cloud =
+  const AttributedCloud cloud =
       read_cloud(folder.file("a.xyz", "# x y z i\n1 2 3 99\r\n\n  4\t5 6\n-1e1 +2 .5"));
   EXPECT_THAT(cloud.positions,
               testing::ElementsAre(Vector3f(1, 2, 3), Vector3f(4, 5, 6), Vector3f(-10, 2, 0.5F)));
@@ -94,7 +95,7 @@ TEST(CloudIo, ReadsTextColumns) {
 
 TEST(CloudIo, ReadsPcdTextWithFieldsInAnyOrder) {
   const TemporaryFolder folder;
-  const CloudFile cloud = read_cloud(folder.file(
+  const AttributedCloud cloud = read_cloud(folder.file(
       "a.pcd",
       "# .PCD v0.7\nVERSION 0.7\nFIELDS z rgb y x histogram normal_x normal_y normal_z\n"
       "SIZE 4 4 8 4 4 4 4 4\nTYPE F U F I F F F F\nCOUNT 1 1 1 1 2 1 1 1\nWIDTH 3\nHEIGHT 1\n"
@@ -134,7 +135,7 @@ TEST(CloudIo, ReadsLasPointsByScaleAndOffset) {
   const TemporaryFolder folder;
   std::string bytes = las_bytes(7, 3, 3);
   bytes[375 + 36 + 15] = 4;  // the second is withheld
-  const CloudFile cloud = read_cloud(folder.file("a.las", bytes));
+  const AttributedCloud cloud = read_cloud(folder.file("a.las", bytes));
   EXPECT_THAT(cloud.positions, testing::ElementsAre(Vector3f(1.5F, -2, 3), Vector3f(1.5F, -2, 3)));
   ASSERT_EQ(cloud.colours.size(), 2U);
   EXPECT_THAT(cloud.colours[0], testing::ElementsAre(0, 0xAB, 0));

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <random>
 #include <string>
 
@@ -294,8 +295,7 @@ TEST_F(MeshIo, ReaderSaysWhatIsWrongWithAFile) {
       {"cut.ply", ply(three + face + points + "3 0 1"), "line 13: ends where an index is expected"},
       {"text.ply", ply(three + face + "0 0 0\n1 zero 0\n0 1 0\n3 0 1 2\n"),
        "line 11: 'zero' stands where a number (y) is expected"},
-      {"nan.ply", ply(three + face + "0 0 0\n1 nan 0\n0 1 0\n3 0 1 2\n"),
-       "face 0 has a corner, vertex 1, with a coordinate that is not a finite number"},
+      {"nan.ply", ply(three + face + "0 0 0\n1 nan 0\n0 1 0\n3 0 1 2\n"), "face 0: vertex 1 is ("},
       {"cloud.ply", ply(three + "end_header\n" + points), "holds no faces"},
       {"flat.ply", ply(three + face + "0 0 0\n1 0 0\n2 0 0\n3 0 1 2\n"),
        "holds no triangle with an area"},
@@ -332,8 +332,8 @@ TEST_F(MeshIo, ReaderSaysWhatIsWrongWithAFile) {
               testing::ThrowsMessage<Error>(HasSubstr("is a directory")));
 }
 
-// Whatever bytes come, the reader returns a mesh or throws its one exception; a crash, a hang or a
-// sanitizer report fails the test.
+// Whatever bytes come, the reader returns a mesh that can be used or throws its one exception; any
+// other exception, a crash, a hang or a sanitizer report fails the test.
 TEST_F(MeshIo, DamagedFilesNeverDoWorseThanThrow) {
   std::mt19937_64 random(7);
   std::vector<std::pair<std::string, std::string>> originals{{"a.ply", std::string(ascii_ply)},
@@ -344,15 +344,25 @@ TEST_F(MeshIo, DamagedFilesNeverDoWorseThanThrow) {
     originals.emplace_back(name, std::string(std::istreambuf_iterator<char>(file), {}));
   }
   for (const auto& [name, original] : originals) {
+    int read_anyway = 0, refused = 0;
     for (int trial = 0; trial < 300; ++trial) {
       std::string bytes = original;
       for (int i = 0; i < 3; ++i) bytes[random() % bytes.size()] = static_cast<char>(random());
       if (trial % 4 == 0) bytes.resize(random() % bytes.size());
+      std::optional<Mesh> mesh;
       try {
-        validate(read(name, bytes));
-      } catch (const Error&) {
+        mesh = read(name, bytes);
+      } catch (const Error& error) {
+        EXPECT_THAT(error.what(), HasSubstr(name));  // which file it is
+        ++refused;
+        continue;
       }
+      EXPECT_NO_THROW(validate(*mesh)) << name << ", trial " << trial;
+      ++read_anyway;
     }
+    // A cut file is refused, a changed coordinate is not.
+    EXPECT_GT(refused, 50) << name;
+    EXPECT_GT(read_anyway, 5) << name;
   }
 }
 

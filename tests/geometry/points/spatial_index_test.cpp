@@ -102,21 +102,6 @@ TEST(SpatialIndex, HandlesCoordinatesFarFromTheOrigin) {
   EXPECT_FALSE(index.any_within({0, 0, 0}, 0.01));
 }
 
-TEST(InsertSpaced, KeepsEveryPairFartherApartThanTheSpacingAndLeavesNoRoom) {
-  SpatialIndex index(0.1);
-  const auto points = random_points(20'000, 0.3, 5);
-  std::vector<Vector3f> kept;
-  for (const Vector3f& p : points) {
-    if (index.insert_spaced(p, 0.07)) kept.push_back(p);
-  }
-  ASSERT_EQ(index.size(), kept.size());
-  for (std::uint32_t i = 0; i < kept.size(); ++i) {
-    EXPECT_EQ(index.point(i), kept[i]);
-    EXPECT_EQ(brute_force_within(kept, kept[i], 0.07), (std::vector<Neighbour>{{0.0F, i}}));
-  }
-  for (const Vector3f& p : points) EXPECT_FALSE(brute_force_within(kept, p, 0.07).empty());
-}
-
 TEST(PointGrid, BatchesMarkWhatIsBesideThem) {
   PointGrid grid(0.1);
   const Vector3f old_point(0.05F, 0.05F, 0.05F), far_point(0.95F, 0.05F, 0.05F);

@@ -9,7 +9,7 @@
 
 #include "geometry/error.h"
 #include "geometry/place/camera.h"
-#include "missions/file/mission_reader.h"
+#include "missions/derived/resolved_mission.h"
 #include "missions/run/survey_runner.h"
 #include "tests/missions/run_skycap.h"
 
@@ -121,7 +121,7 @@ TEST(RunSurvey, EveryPlannerTakesSweeps) {
       "channels: {count: 64, lowest_deg: -20, highest_deg: 20}\nrange: {min: 0.1, max: 20}\n"
       "errors: {sigma: 0.01}\n");
   for (const char* name : {"see++", "see", "skycap", "rsv"}) {
-    const file::Mission mission = file::parse_mission(
+    const file::Mission mission = derived::parse_mission(
         "scene: {model: builtin:teapot, longest_side: 1}\nsensor: {lidar: " + lidar +
             "}\nplanner: {name: " + name +
             ", density: 20000, resolution_radius: 0.08, spacing: 0.02, view_distance: 1.5}\n"
@@ -138,11 +138,11 @@ TEST(RunSurvey, EveryPlannerTakesSweeps) {
 TEST(SensorLidar, IsRefusedWithOneSentenceWhereItDoesNotFit) {
   const auto message_of = [](const std::string& sensor, const std::string& more) -> std::string {
     try {
-      file::parse_mission("scene: {model: builtin:teapot}\nsensor: " + sensor +
-                              "\nplanner: {density: 100, resolution_radius: 0.2}\n"
-                              "evaluation: {registration_distance: 0.2}\n" +
-                              more,
-                          "m.yaml");
+      derived::parse_mission("scene: {model: builtin:teapot}\nsensor: " + sensor +
+                                 "\nplanner: {density: 100, resolution_radius: 0.2}\n"
+                                 "evaluation: {registration_distance: 0.2}\n" +
+                                 more,
+                             "m.yaml");
     } catch (const Error& error) {
       EXPECT_EQ(error.kind(), ErrorKind::bad_config);
       return error.what();

@@ -6,7 +6,6 @@
 #include <gtest/gtest.h>
 
 #include "geometry/error.h"
-#include "missions/derived/site.h"
 #include "missions/file/mission_keys.h"
 
 namespace skycap::missions {
@@ -19,13 +18,13 @@ const std::string smallest =
 
 file::Mission parsed(const std::string& more,
                      const std::vector<file::KeyOverride>& overrides = {}) {
-  return file::parse_mission(smallest + more, "some/folder/vase.yaml", overrides);
+  return file::parse_mission_file(smallest + more, "some/folder/vase.yaml", overrides).mission;
 }
 
 std::string complaint(const std::string& text,
                       const std::vector<file::KeyOverride>& overrides = {}) {
   try {
-    file::parse_mission(text, "m.yaml", overrides);
+    file::parse_mission_file(text, "m.yaml", overrides);
   } catch (const Error& error) {
     return error.what();
   }
@@ -73,7 +72,7 @@ TEST(MissionReader, SetsEachKeyToWhatItGivesBack) {
         value = std::vector<Eigen::Vector2d>{{0, 0}, {9, 0}, {0, 9.5}};
         break;
       case file::KeyType::volumes:
-        value = std::vector<survey::Prism>{{{{0, 0}, {1, 0}, {0, 1}}, -2.0, 30.0}};
+        value = std::vector<geometry::Prism>{{"", {{0, 0}, {1, 0}, {0, 1}}, -2.0, 30.0}};
         break;
       case file::KeyType::vectors:
         value = std::vector<Eigen::Vector3d>{{10, -20, 90}, {0.5, 0, -45}};
@@ -96,73 +95,6 @@ TEST(MissionReader, TakesPresetsFirstWhereverTheyStand) {
   EXPECT_FALSE(mission.planner.see.optimise_views);
 }
 
-// spec: psi = d, one frontier a twentieth of d, occluders 2 r apart, tau above the number of
-// clusters.
-TEST(MissionReader, DerivesTheBuildingPresetFromTheSensorAndTheDensity) {
-  const std::string building =
-      "sensor: {preset: high_resolution}\n"
-      "planner: {preset: building, density: 213, resolution_radius: 0.15";
-  const survey::see::SeeConfig see = parsed(building + "}").planner.see;
-  EXPECT_NEAR(see.occlusion_search_distance, 41.29, 5e-3);  // d, as published
-  EXPECT_NEAR(see.frontier_spacing, 2.0645, 5e-4);
-  EXPECT_DOUBLE_EQ(see.occluder_spacing, 0.3);
-  EXPECT_EQ(see.visibility_update_limit, 1000U);
-  EXPECT_TRUE(see.drop_if_still_occluded);
-
-  const survey::see::SeeConfig overridden =
-      parsed(building + ", occlusion_search_distance: 10, visibility_update_limit: 5}").planner.see;
-  EXPECT_EQ(overridden.occlusion_search_distance, 10.0);
-  EXPECT_EQ(overridden.visibility_update_limit, 5U);
-  EXPECT_NEAR(overridden.frontier_spacing, 2.0645, 5e-4);
-}
-
-TEST(MissionReader, ReadsTheSitesAirspace) {
-  const file::Mission mission = parsed(
-      "site:\n"
-      "  geofence: [[-50, -40], [50, -40], [50.5, 40]]\n"
-      "  no_fly:\n"
-      "    - {corners: [[0, 0], [5, 0], [0, 5]], bottom: 0, top: 30}\n"
-      "  lowest_height: 3\n"
-      "  highest_height: 120\n"
-      "limits: {ground_clearance: 5, stand_off: 2, lowest_pitch_deg: -90, highest_pitch_deg: "
-      "30}\n");
-  const survey::ViewLimits limits = derived::view_limits(mission);
-  ASSERT_EQ(limits.geofence.size(), 3U);
-  EXPECT_EQ(limits.geofence[2], Eigen::Vector2d(50.5, 40.0));
-  ASSERT_EQ(limits.no_fly.size(), 1U);
-  EXPECT_EQ(limits.no_fly[0].corners[1], Eigen::Vector2d(5.0, 0.0));
-  EXPECT_EQ(limits.no_fly[0].top, 30.0);
-  EXPECT_EQ(limits.least_height, 5.0);  // the higher of the two
-  EXPECT_EQ(limits.most_height, 120.0);
-  EXPECT_EQ(limits.stand_off, 2.0);
-  EXPECT_NEAR(limits.most_pitch, 0.5235988, 1e-6);
-  EXPECT_NO_THROW(limits.validate());
-}
-
-TEST(MissionReader, RefusesAirspacesThatCannotBe) {
-  EXPECT_THAT(complaint("site: {geofence: [[0, 0], [1, 0]]}"), HasSubstr("three or more corners"));
-  EXPECT_THAT(complaint("site: {geofence: [[0, 0], [1, 0], [1, x]]}"), HasSubstr("site.geofence"));
-  const std::string corners = "corners: [[0, 0], [1, 0], [0, 1]]";
-  EXPECT_THAT(complaint("site: {no_fly: [{" + corners + ", bottom: 3, top: 3}]}"),
-              HasSubstr("site.no_fly"));
-  EXPECT_THAT(complaint("site: {no_fly: [{" + corners + ", bottom: 0, roof: 3}]}"),
-              HasSubstr("a list of {corners, bottom, top}"));
-  EXPECT_THAT(parsed("site: {no_fly: []}").site.no_fly, testing::IsEmpty());
-  EXPECT_THAT(complaint(std::string(smallest) + "site: {lowest_height: 5, highest_height: 5}"),
-              HasSubstr("site.highest_height: is not above"));
-  EXPECT_THAT(
-      complaint(std::string(smallest) + "limits: {lowest_pitch_deg: 9, highest_pitch_deg: -9}"),
-      HasSubstr("limits.highest_pitch_deg: is not above"));
-}
-
-TEST(MissionReader, MeasuresTheGroundClearanceFromTheScenesBase) {
-  const file::Mission mission = file::parse_mission(
-      "scene: {model: 'builtin:teapot', position: [0, 0, 60]}\n"
-      "evaluation: {registration_distance: 0.005}\nlimits: {ground_clearance: 2}\n",
-      "m.yaml");
-  EXPECT_EQ(mission.planner.see.ground_clearance, 62.0);
-}
-
 TEST(MissionReader, LetsOverridesReplaceKeysAndNamesTheirOrigin) {
   const file::Mission mission = parsed("seed: 3\n", {{"--seed", "seed", "8"}});
   EXPECT_EQ(mission.seed, 8U);
@@ -170,16 +102,6 @@ TEST(MissionReader, LetsOverridesReplaceKeysAndNamesTheirOrigin) {
             "--seed: key seed: is many; give a whole number from 0 to 1e+15");
   EXPECT_THAT(complaint(smallest, {{"--set", "planner.densty", "1"}}),
               HasSubstr("did you mean planner.density?"));
-}
-
-TEST(MissionReader, WhatFliesIsPlannedBySkycapUnlessTheMissionSaysOtherwise) {
-  const std::string flown = smallest +
-                            "flight: {vehicle: generic, unknown_box: {min: [0, 0, 0], "
-                            "max: [1, 1, 1]}}\n";
-  EXPECT_EQ(file::parse_mission(smallest, "m.yaml").planner.name, file::PlannerName::see_plus_plus);
-  EXPECT_EQ(file::parse_mission(flown, "m.yaml").planner.name, file::PlannerName::skycap);
-  EXPECT_EQ(file::parse_mission(flown + "planner: {name: see}\n", "m.yaml").planner.name,
-            file::PlannerName::see);
 }
 
 TEST(MissionReader, SuggestsTheKeyInItsRightSection) {

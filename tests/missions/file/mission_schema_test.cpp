@@ -7,8 +7,9 @@
 #include <nlohmann/json.hpp>
 
 #include "geometry/error.h"
+#include "missions/derived/resolved_mission.h"
+#include "missions/file/key_sections.h"
 #include "missions/file/mission_keys.h"
-#include "missions/file/mission_reader.h"
 #include "tests/missions/run_skycap.h"
 
 namespace skycap::missions {
@@ -51,6 +52,18 @@ TEST(MissionSchema, KnowsExactlyTheKeysOfTheReader) {
   EXPECT_EQ(in_schema, in_reader);
 }
 
+TEST(MissionKeys, StandInTheirSectionAndOnce) {
+  std::set<std::string> paths;
+  for (const file::KeySection& section : file::key_sections) {
+    for (const file::Key& key : section.keys()) {
+      EXPECT_EQ(key.path.substr(0, key.path.find('.')) == section.name, !section.name.empty())
+          << key.path;
+      EXPECT_TRUE(paths.insert(key.path).second) << key.path;
+    }
+  }
+  EXPECT_EQ(paths.size(), file::mission_keys().size());
+}
+
 // For each key, what the schema calls the limits is where the reader starts to refuse.
 TEST(MissionSchema, HasTheReadersTypesAndRanges) {
   const Json schema = shipped_schema();
@@ -65,7 +78,7 @@ TEST(MissionSchema, HasTheReadersTypesAndRanges) {
                                    ? "[" + value + ", " + value + ", " + value + "]"
                                    : value;
       try {
-        file::parse_mission("seed: 1", "m", {{"--set", key.path, text}});
+        derived::parse_mission("seed: 1", "m", {{"--set", key.path, text}});
       } catch (const Error& error) {
         return std::string(error.what()).find("; give ") != std::string::npos &&
                std::string(error.what()).starts_with("--set: key " + key.path + ":");
@@ -106,7 +119,7 @@ TEST(ShippedMissions, AreValid) {
   std::size_t count = 0;
   for (const auto& entry : std::filesystem::directory_iterator(source / "missions")) {
     if (entry.path().extension() != ".yaml") continue;
-    EXPECT_NO_THROW(file::read_mission(entry.path())) << entry.path();
+    EXPECT_NO_THROW(derived::read_mission(entry.path())) << entry.path();
     ++count;
   }
   EXPECT_GE(count, 4U);
@@ -116,20 +129,21 @@ TEST(ShippedMissions, AreValid) {
 TEST(ShippedMissions, HaveThePapersParameters) {
   for (const char* name : {"teapot", "bunny", "dragon"}) {
     const file::Mission mission =
-        file::read_mission(source / "missions" / (std::string(name) + ".yaml"));
+        derived::read_mission(source / "missions" / (std::string(name) + ".yaml"));
     EXPECT_EQ(mission.planner.see.density, 146'000.0);
     EXPECT_EQ(mission.planner.see.resolution_radius, 0.017);
     EXPECT_EQ(mission.planner.see.effective_core_threshold(), 4);
     EXPECT_EQ(mission.evaluation.registration_distance, 0.005);
     EXPECT_EQ(mission.scene.longest_side, 1.0);
   }
-  const file::Mission radcliffe = file::read_mission(source / "missions" / "radcliffe_camera.yaml");
+  const file::Mission radcliffe =
+      derived::read_mission(source / "missions" / "radcliffe_camera.yaml");
   EXPECT_EQ(radcliffe.planner.see.density, 213.0);
   EXPECT_EQ(radcliffe.planner.see.resolution_radius, 0.15);
   EXPECT_EQ(radcliffe.sensor.camera.camera.width, 2400);
   EXPECT_EQ(radcliffe.evaluation.registration_distance, 0.05);
-  const file::Mission published = file::read_mission(source / "missions" / "radcliffe_camera.yaml",
-                                                     {{"--set", "planner.preset", "paper"}});
+  const file::Mission published = derived::read_mission(
+      source / "missions" / "radcliffe_camera.yaml", {{"--set", "planner.preset", "paper"}});
   EXPECT_EQ(published.planner.see.occlusion_search_distance, 1.0);
   EXPECT_EQ(published.planner.see.visibility_update_limit, 100U);
 }

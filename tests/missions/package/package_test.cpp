@@ -12,7 +12,7 @@
 #include "geometry/error.h"
 #include "geometry/io/cloud_io.h"
 #include "geometry/place/pose.h"
-#include "missions/file/mission_reader.h"
+#include "missions/derived/resolved_mission.h"
 #include "missions/judge/coverage.h"
 #include "missions/package/cloud_normals.h"
 #include "missions/scene/sha256.h"
@@ -155,7 +155,7 @@ TEST(Package, CloudReadsBackWithNormalsTowardsItsSensors) {
 
 // The planner's belief is written as numbers that fit together and as a map coloured by them.
 TEST(Package, ShowsWhatThePlannerBelieves) {
-  const file::Mission mission = file::parse_mission(
+  const file::Mission mission = derived::parse_mission(
       tests::quick_mission(), "m.yaml",
       {{"--planner", "planner.name", "skycap"}, {"--set", "limits.max_views", "3"}});
   const run::SurveyRecord record = run::run_survey(mission, scene::SurveyScene(mission, ""), 1, 1);
@@ -175,7 +175,7 @@ TEST(Package, ShowsWhatThePlannerBelieves) {
   EXPECT_GT(belief["next_gain"], 0.0);
   EXPECT_EQ(belief["noise_m"], record.belief->noise);
 
-  const geometry::CloudFile map = geometry::read_cloud(folder / "coverage.ply");
+  const geometry::AttributedCloud map = geometry::read_cloud(folder / "coverage.ply");
   ASSERT_EQ(map.colours.size(), map.positions.size());
   const auto is_red = [](const auto& colour) { return colour[0] > 200 && colour[1] < 100; };
   std::size_t guessed = 0;

@@ -11,6 +11,7 @@
 #include "geometry/io/cloud_io.h"
 #include "geometry/io/mesh_io.h"
 #include "geometry/surfaces/mesh_distance.h"
+#include "missions/plugins/external_program.h"
 #include "tests/missions/run_skycap.h"
 #include "tests/sim/shapes.h"
 
@@ -21,10 +22,10 @@ using Eigen::Vector3d;
 using Eigen::Vector3f;
 
 /// Points of a sphere of 2 m, some 0.07 m apart, without those below `least_z`.
-geometry::CloudFile ball_cloud(float least_z = -10.0F) {
+geometry::AttributedCloud ball_cloud(float least_z = -10.0F) {
   const geometry::SurfaceSamples samples =
       geometry::sample_surface(sim::sphere({1, 2, 3}, 2.0, 5), 8000, 4);
-  geometry::CloudFile cloud;
+  geometry::AttributedCloud cloud;
   for (std::size_t i = 0; i < samples.points.size(); ++i) {
     if (samples.points[i].z() < least_z) continue;
     cloud.positions.push_back(samples.points[i]);
@@ -43,7 +44,7 @@ double largest_error(const geometry::Mesh& mesh) {
 
 // A sphere has area 4 pi r^2, and its triangles face away from its centre.
 TEST(Reconstruct, ASphereIsClosedRoundAndFacesOutward) {
-  const geometry::CloudFile cloud = ball_cloud();
+  const geometry::AttributedCloud cloud = ball_cloud();
   const plugins::Reconstruction result = plugins::reconstruct(cloud.positions, cloud.normals, {});
   EXPECT_EQ(result.points, cloud.positions.size());
   EXPECT_EQ(result.trimmed_triangles, 0U);
@@ -66,7 +67,7 @@ TEST(Reconstruct, NormalsAreEstimatedAndAgreeWhereNoneAreGiven) {
 // Of the sphere above z = 2, a height of 3 of its 4 m: area 2 pi r h. Poisson closes the hole
 // below; what has no points around it goes.
 TEST(Reconstruct, HolesStayHoles) {
-  const geometry::CloudFile cloud = ball_cloud(2.0F);
+  const geometry::AttributedCloud cloud = ball_cloud(2.0F);
   const plugins::Reconstruction trimmed = plugins::reconstruct(cloud.positions, cloud.normals, {});
   EXPECT_GT(trimmed.trimmed_triangles, 100U);
   EXPECT_NEAR(geometry::surface_area(trimmed.mesh), 12.0 * std::numbers::pi, 1.5);
@@ -79,7 +80,7 @@ TEST(Reconstruct, HolesStayHoles) {
 }
 
 TEST(Reconstruct, ThinsTheCloudToTheSpacing) {
-  const geometry::CloudFile cloud = ball_cloud();
+  const geometry::AttributedCloud cloud = ball_cloud();
   const plugins::Reconstruction result =
       plugins::reconstruct(cloud.positions, cloud.normals, {.spacing = 0.3});
   EXPECT_LT(result.points, cloud.positions.size() / 5);
@@ -100,7 +101,7 @@ class ReconstructVerb : public testing::Test {
 };
 
 TEST_F(ReconstructVerb, WritesAMeshThatEvaluateComparesWithTheModel) {
-  geometry::write_cloud(folder / "ball.ply", ball_cloud());
+  geometry::write_cloud(folder / "ball.ply", columns_of(ball_cloud()));
   geometry::write_mesh(folder / "truth.ply", sim::sphere({1, 2, 3}, 2.0, 5));
   const tests::ProgramRun run = tests::run_skycap({"reconstruct", folder / "ball.ply"});
   ASSERT_EQ(run.exit_code, 0) << run.err;
@@ -118,6 +119,40 @@ TEST_F(ReconstructVerb, SaysWhichCloudHasTooFewPoints) {
   EXPECT_EQ(run.exit_code, 2);
   EXPECT_THAT(run.err, testing::HasSubstr("few.xyz: there are 3 points; a surface needs"));
   EXPECT_FALSE(std::filesystem::exists(folder / "few_mesh.ply"));
+}
+
+/// The program in a folder of its own, far from where it was built.
+class MovedProgram : public testing::Test {
+ protected:
+  MovedProgram() {
+    std::filesystem::copy_file(built_, folder_ / "skycap");
+    geometry::write_cloud(folder_ / "ball.ply", ball_cloud());
+  }
+  void add_module() {
+    const char* module = "libskycap_reconstruction.so";
+    std::filesystem::copy_file(built_.parent_path() / module, folder_ / module);
+  }
+  plugins::ProgramResult reconstruct() const {
+    return plugins::run_external_program({folder_ / "skycap", "reconstruct", "ball.ply"},
+                                         folder_.path());
+  }
+
+  const std::filesystem::path built_ = SKYCAP_PROGRAM;
+  const tests::TestFolder folder_;
+};
+
+TEST_F(MovedProgram, LoadsTheModuleBesideIt) {
+  add_module();
+  const plugins::ProgramResult result = reconstruct();
+  EXPECT_EQ(result.exit_code, 0) << result.output;
+  EXPECT_LT(largest_error(geometry::read_mesh(folder_ / "ball_mesh.ply")), 0.02);
+}
+
+TEST_F(MovedProgram, SaysWhichModuleItMisses) {
+  const plugins::ProgramResult result = reconstruct();
+  EXPECT_EQ(result.exit_code, 2);
+  EXPECT_THAT(result.output, testing::HasSubstr((folder_ / "libskycap_reconstruction.so") +
+                                                ": this part of the program cannot be loaded"));
 }
 
 }  // namespace

@@ -243,7 +243,7 @@ TEST_F(ForeignReader, PclsOwnFilesAreRead) {
                       : way == 1 ? pcl::io::savePCDFileBinary(path, cloud)
                                  : pcl::io::savePCDFileBinaryCompressed(path, cloud);
     ASSERT_EQ(error, 0);
-    const geometry::CloudFile read = geometry::read_cloud(path);
+    const geometry::AttributedCloud read = geometry::read_cloud(path);
     ASSERT_EQ(read.positions.size(), 1980U);
     ASSERT_EQ(read.normals.size(), read.positions.size());
     std::size_t next = 0;
@@ -258,7 +258,7 @@ TEST_F(ForeignReader, PclsOwnFilesAreRead) {
 
 TEST_F(ForeignReader, OurOwnFilesAreReadBack) {
   for (const std::string format : {"las", "las7", "pcd", "ply", "xyz"}) {
-    const geometry::CloudFile read = geometry::read_cloud(written(format));
+    const geometry::AttributedCloud read = geometry::read_cloud(written(format));
     ASSERT_EQ(read.positions.size(), returns.size()) << format;
     for (std::size_t i = 0; i < returns.size(); ++i) {
       const Vector3d world = returns.origin + returns.points[i].cast<double>();

@@ -10,7 +10,7 @@
 
 #include "geometry/error.h"
 #include "geometry/points/density.h"
-#include "missions/file/mission_reader.h"
+#include "missions/derived/resolved_mission.h"
 #include "missions/scene/survey_scene.h"
 #include "sim/sensors/depth_camera.h"
 #include "survey/see/see.h"
@@ -62,7 +62,7 @@ std::vector<PointLabel> recomputed_labels(const std::vector<Eigen::Vector3f>& po
 
 // A sixteenth of the D435's pixels and of the density, so that the recomputation takes a second.
 TEST(BunnySurvey, LabelsEqualAFullRecomputationAfterEveryView) {
-  const file::Mission mission = file::read_mission(
+  const file::Mission mission = derived::read_mission(
       SKYCAP_SOURCE_DIR "/missions/bunny.yaml", {{"--set", "sensor.width", "212"},
                                                  {"--set", "sensor.height", "120"},
                                                  {"--set", "planner.density", "9125"},
@@ -93,8 +93,9 @@ TEST(BunnySurvey, LabelsEqualAFullRecomputationAfterEveryView) {
   };
   survey::run_survey(planner, scene->first_view(mission.seed), {.max_views = 40},
                      {.sense =
-                          [&](const geometry::View& view) {
-                            return camera.scan(scene->scene(), view, frame++, 1);
+                          [&](const geometry::View& view, geometry::Scan recycled) {
+                            return camera.scan(scene->scene(), view, frame++, 1,
+                                               std::move(recycled));
                           },
                       .report = check});
   EXPECT_GT(frame, 5U);

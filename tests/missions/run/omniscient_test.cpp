@@ -5,7 +5,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "missions/file/mission_reader.h"
+#include "missions/derived/resolved_mission.h"
 #include "missions/judge/coverage.h"
 #include "tests/missions/run_skycap.h"
 
@@ -17,8 +17,8 @@ using tests::quick_mission;
 constexpr run::OmniscientConfig quick{.candidates = 200, .samples = 1500, .wanted_coverage = {}};
 
 TEST(Omniscient, NeedsFewerViewsThanAPlannerForTheSameCoverage) {
-  const file::Mission mission = file::parse_mission(quick_mission("seed: 3\n"), "m.yaml",
-                                                    {{"--planner", "planner.name", "skycap"}});
+  const file::Mission mission = derived::parse_mission(quick_mission("seed: 3\n"), "m.yaml",
+                                                       {{"--planner", "planner.name", "skycap"}});
   const scene::SurveyScene scene(mission, "");
   const run::SurveyRecord planned = run::run_survey(mission, scene, 3, 1);
   // The last places are found by luck among so few candidates.
@@ -36,7 +36,7 @@ TEST(Omniscient, NeedsFewerViewsThanAPlannerForTheSameCoverage) {
 
 TEST(Omniscient, StartsWhereThePlannersStartAndKeepsTheLimits) {
   const file::Mission mission =
-      file::parse_mission(quick_mission("site: {lowest_height: 0.3}\n"), "m.yaml");
+      derived::parse_mission(quick_mission("site: {lowest_height: 0.3}\n"), "m.yaml");
   const scene::SurveyScene scene(mission, "");
   const run::SurveyRecord record = run::survey_omnisciently(mission, scene, 1, 1, quick);
   EXPECT_EQ(record.views.front().surveyed.view.position, scene.first_view(1).position);
@@ -50,7 +50,7 @@ TEST(Omniscient, StartsWhereThePlannersStartAndKeepsTheLimits) {
 }
 
 TEST(Omniscient, IsTheSameForAnyNumberOfThreads) {
-  const file::Mission mission = file::parse_mission(quick_mission(), "m.yaml");
+  const file::Mission mission = derived::parse_mission(quick_mission(), "m.yaml");
   const scene::SurveyScene scene(mission, "");
   const run::SurveyRecord one = run::survey_omnisciently(mission, scene, 2, 1, quick);
   const run::SurveyRecord three = run::survey_omnisciently(mission, scene, 2, 3, quick);
@@ -60,7 +60,7 @@ TEST(Omniscient, IsTheSameForAnyNumberOfThreads) {
 
 TEST(Omniscient, EndsAtTheLimitOfViews) {
   const file::Mission mission =
-      file::parse_mission(quick_mission(), "m.yaml", {{"--max-views", "limits.max_views", "2"}});
+      derived::parse_mission(quick_mission(), "m.yaml", {{"--max-views", "limits.max_views", "2"}});
   const run::SurveyRecord record =
       run::survey_omnisciently(mission, scene::SurveyScene(mission, ""), 1, 1, quick);
   EXPECT_EQ(record.views.size(), 2U);

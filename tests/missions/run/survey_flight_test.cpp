@@ -10,7 +10,7 @@
 #include "flight/route/route.h"
 #include "flight/space/clearance.h"
 #include "missions/derived/mission_flight.h"
-#include "missions/file/mission_reader.h"
+#include "missions/derived/resolved_mission.h"
 #include "missions/package/package.h"
 #include "missions/run/survey_runner.h"
 #include "tests/missions/run_skycap.h"
@@ -57,7 +57,7 @@ flight::KnownSpace truth_of(const file::Mission& mission, const scene::SurveySce
 
 // The planner's and the flight's world is what was measured. This is the other one.
 TEST(SurveyFlight, NeverComesNearWhatItHasNotSeen) {
-  const file::Mission mission = file::parse_mission(flown_mission(), "m.yaml");
+  const file::Mission mission = derived::parse_mission(flown_mission(), "m.yaml");
   const scene::SurveyScene scene(mission, "");
   const flight::KnownSpace truth = truth_of(mission, scene);
   for (const std::uint64_t seed : {1, 2}) {
@@ -80,7 +80,7 @@ TEST(SurveyFlight, NeverComesNearWhatItHasNotSeen) {
 }
 
 TEST(SurveyFlight, DoesNotDependOnThreads) {
-  const file::Mission mission = file::parse_mission(flown_mission(), "m.yaml");
+  const file::Mission mission = derived::parse_mission(flown_mission(), "m.yaml");
   const scene::SurveyScene scene(mission, "");
   const run::SurveyRecord one = run::run_survey(mission, scene, 1, 1),
                           two = run::run_survey(mission, scene, 1, 2);
@@ -94,7 +94,7 @@ TEST(SurveyFlight, ReachesTheFirstViewOfTheShippedMissions) {
   const std::filesystem::path folder = std::filesystem::path(SKYCAP_SOURCE_DIR) / "missions";
   for (const char* name : {"radcliffe_camera.yaml", "city_block.yaml"}) {
     const file::Mission mission =
-        file::read_mission(folder / name, {{"--set", "evaluation.samples", "1000"}});
+        derived::read_mission(folder / name, {{"--set", "evaluation.samples", "1000"}});
     ASSERT_TRUE(mission.flight.is_flown()) << name;
     const scene::SurveyScene scene(mission, folder);
     for (std::uint64_t seed = 1; seed <= 20; ++seed) {
@@ -104,7 +104,7 @@ TEST(SurveyFlight, ReachesTheFirstViewOfTheShippedMissions) {
 }
 
 TEST(SurveyFlight, LooksOnlyWhereTheGimbalCan) {
-  const file::Mission mission = file::parse_mission(flown_mission(), "m.yaml");
+  const file::Mission mission = derived::parse_mission(flown_mission(), "m.yaml");
   const geometry::View first = geometry::look_at({-30, 0, 8}, {0, 0, 5});
   run::SurveyFlight flight(mission, first);
   const Vector3d place(-30, 4, 8);
@@ -179,7 +179,7 @@ TEST(FlownPackage, IsExportedAgainForAnotherVehicle) {
 TEST(FlownPackage, ReadsBackAsItWasPlanned) {
   const TestFolder& folder = package();
   const package::PackagedSurvey survey = package::read_package(folder / "out", {});
-  const file::Mission mission = file::read_mission(folder / "m.yaml");
+  const file::Mission mission = derived::read_mission(folder / "m.yaml");
   EXPECT_EQ(survey.mission.flight.clearance, mission.flight.clearance);
   EXPECT_EQ(survey.mission.planner.see.view_distance, mission.planner.see.view_distance);
   const json summary = json::parse(content_of(folder / "out/summary.json"));
@@ -250,7 +250,7 @@ TEST(FlownPackage, BrokenPackagesAndRoutesAreNamed) {
     return run.err;
   };
   EXPECT_THAT(message({"export", folder / "nowhere", "--format", "kml"}),
-              HasSubstr("summary.json: cannot be read; name the folder of a mission package"));
+              HasSubstr("summary.json: there is no such file"));
   EXPECT_THAT(message({"export", folder / "out", "--format", "pdf"}),
               HasSubstr("format \"pdf\" is not known; there are plan, "));
   const TestFolder broken;
@@ -266,7 +266,7 @@ TEST(FlownPackage, BrokenPackagesAndRoutesAreNamed) {
   EXPECT_THAT(message({"check", folder / "m.yaml", "--route", folder / "out/cloud.ply"}),
               HasSubstr("cloud.ply is no route file: its name must end in .plan"));
   EXPECT_THAT(message({"check", folder / "m.yaml", "--route", folder / "no.plan"}),
-              HasSubstr("no.plan cannot be read"));
+              HasSubstr("no.plan: there is no such file"));
 }
 
 }  // namespace

@@ -1,6 +1,7 @@
 #include "missions/run/survey_runner.h"
 
 #include <algorithm>
+#include <random>
 #include <stop_token>
 
 #include <gmock/gmock.h>
@@ -11,8 +12,9 @@
 #include "geometry/surfaces/mesh_distance.h"
 #include "missions/benchmark/trials.h"
 #include "missions/derived/planner_factory.h"
+#include "missions/derived/resolved_mission.h"
 #include "missions/derived/site.h"
-#include "missions/file/mission_reader.h"
+#include "missions/file/mission_keys.h"
 #include "missions/judge/coverage.h"
 #include "tests/missions/run_skycap.h"
 
@@ -27,7 +29,7 @@ using tests::run_skycap;
 using tests::TestFolder;
 
 TEST(SurveyScene, StartsWhereTheMissionSaysOrAtRandomAtTheStatedDistance) {
-  const file::Mission mission = file::parse_mission(quick_mission(), "m.yaml");
+  const file::Mission mission = derived::parse_mission(quick_mission(), "m.yaml");
   const scene::SurveyScene scene(mission, "");
   const geometry::View a = scene.first_view(1), b = scene.first_view(2);
   EXPECT_EQ(a.position, scene.first_view(1).position);
@@ -46,27 +48,51 @@ TEST(SurveyScene, StartsWhereTheMissionSaysOrAtRandomAtTheStatedDistance) {
     EXPECT_LT((view.position + distance * view.direction - centroid).norm(), 1e-6);
   }
 
-  const file::Mission given = file::parse_mission(
+  const file::Mission given = derived::parse_mission(
       quick_mission("start: {position: [0, 3, 1], look_at: [0, 0, 1]}"), "m.yaml");
   const geometry::View view = scene::SurveyScene(given, "").first_view(1);
   EXPECT_EQ(view.position, Eigen::Vector3d(0, 3, 1));
   EXPECT_LT((view.direction + Eigen::Vector3d::UnitY()).norm(), 1e-12);
 }
 
+// The order of the draws is part of a seed's meaning: the same start from every compiler.
+TEST(SurveyScene, DrawsRandomStartsInAStatedOrder) {
+  const file::Mission mission = derived::parse_mission(quick_mission(), "m.yaml");
+  const scene::SurveyScene scene(mission, "");
+  for (std::uint64_t seed = 0; seed < 5; ++seed) {
+    std::mt19937_64 random(seed);
+    std::normal_distribution<double> normal;
+    Eigen::Vector3d from_centre;
+    for (const int axis : {2, 1, 0}) from_centre[axis] = normal(random);
+    EXPECT_LT((scene.first_view(seed).direction + from_centre.normalized()).norm(), 1e-12) << seed;
+  }
+}
+
 TEST(SurveyScene, KeepsRandomStartsAboveTheGroundClearance) {
-  const file::Mission mission =
-      file::parse_mission(quick_mission(), "m.yaml", {{"--set", "limits.ground_clearance", "0.5"}});
+  const file::Mission mission = derived::parse_mission(
+      quick_mission(), "m.yaml", {{"--set", "limits.ground_clearance", "0.5"}});
   const scene::SurveyScene scene(mission, "");
   for (std::uint64_t seed = 0; seed < 50; ++seed) {
     EXPECT_GE(scene.first_view(seed).position.z(), 0.5);
   }
 }
 
+/// All that planner.name knows.
+std::vector<std::string> planner_names() {
+  std::vector<std::string> names;
+  for (const file::Key& key : file::mission_keys()) {
+    if (key.path == "planner.name") names.assign(key.choices.begin(), key.choices.end());
+  }
+  return names;
+}
+
 // Each planner that a mission can name surveys the quick mission's scene.
 TEST(RunSurvey, EveryPlannerCoversMostOfTheScene) {
-  for (const char* name : {"see++", "see", "skycap"}) {
-    const file::Mission mission =
-        file::parse_mission(quick_mission(), "m.yaml", {{"--planner", "planner.name", name}});
+  EXPECT_EQ(planner_names().size(), 10U);
+  for (const std::string& name : planner_names()) {
+    const file::Mission mission = derived::parse_mission(
+        quick_mission(), "m.yaml",
+        {{"--planner", "planner.name", name}, {"--set", "volumetric.view_limit", "8"}});
     const run::SurveyRecord record =
         run::run_survey(mission, scene::SurveyScene(mission, ""), 1, 1);
     EXPECT_GT(record.coverage(), 0.6) << name;
@@ -82,11 +108,13 @@ TEST(RunSurvey, EveryPlannerKeepsToTheSiteAndTheLimits) {
       "  no_fly: [{corners: [[1, -3], [3, -3], [3, 1], [1, 1]], bottom: -5, top: 1.5}]\n"
       "  lowest_height: 0.2\n"
       "  highest_height: 1.9\n";
-  for (const char* name : {"see++", "see", "skycap"}) {
-    const file::Mission mission = file::parse_mission(quick_mission(site), "m.yaml",
-                                                      {{"--planner", "planner.name", name},
-                                                       {"--set", "limits.stand_off", "0.4"},
-                                                       {"--set", "limits.highest_pitch_deg", "0"}});
+  for (const std::string& name : planner_names()) {
+    const file::Mission mission =
+        derived::parse_mission(quick_mission(site), "m.yaml",
+                               {{"--planner", "planner.name", name},
+                                {"--set", "volumetric.view_limit", "8"},
+                                {"--set", "limits.stand_off", "0.4"},
+                                {"--set", "limits.highest_pitch_deg", "0"}});
     const scene::SurveyScene scene(mission, "");
     const run::SurveyRecord record = run::run_survey(mission, scene, 1, 1);
     const geometry::MeshDistance truth(scene.model());
@@ -103,7 +131,7 @@ TEST(RunSurvey, EveryPlannerKeepsToTheSiteAndTheLimits) {
 
 TEST(MakePlanner, NeedsToKnowTheSphereOfAVolumetricPlanner) {
   file::Mission mission =
-      file::parse_mission(quick_mission(), "m.yaml", {{"", "planner.name", "oa"}});
+      derived::parse_mission(quick_mission(), "m.yaml", {{"", "planner.name", "oa"}});
   try {
     derived::make_planner(mission, 1);
     FAIL();
@@ -118,7 +146,7 @@ TEST(MakePlanner, NeedsToKnowTheSphereOfAVolumetricPlanner) {
 TEST(RunSurvey, EndsWhenABudgetIsSpent) {
   for (const char* name : {"see++", "skycap"}) {
     const auto record_with = [&](const char* key, const char* value) {
-      const file::Mission mission = file::parse_mission(
+      const file::Mission mission = derived::parse_mission(
           quick_mission(), "m.yaml", {{"--planner", "planner.name", name}, {"--set", key, value}});
       return run::run_survey(mission, scene::SurveyScene(mission, ""), 1, 1);
     };
@@ -140,7 +168,7 @@ TEST(RunSurvey, EndsWhenABudgetIsSpent) {
 // An admissible place is one that the mission's limits allow: from above only, tops are visible.
 TEST(SurveyScene, CountsAsVisibleWhatIsSeenFromAdmissiblePlaces) {
   const auto share = [](const std::string& more) {
-    const file::Mission mission = file::parse_mission(quick_mission(more), "m.yaml");
+    const file::Mission mission = derived::parse_mission(quick_mission(more), "m.yaml");
     const std::vector<std::uint8_t> visible = scene::SurveyScene(mission, "").visible(1);
     return static_cast<double>(std::ranges::count(visible, 1)) / double(visible.size());
   };
@@ -154,7 +182,7 @@ TEST(SurveyScene, CountsAsVisibleWhatIsSeenFromAdmissiblePlaces) {
 
 // Coverage along the way is what the final cloud covers, and grows.
 TEST(RunSurvey, JudgesEveryView) {
-  const file::Mission mission = file::parse_mission(quick_mission(), "m.yaml");
+  const file::Mission mission = derived::parse_mission(quick_mission(), "m.yaml");
   const scene::SurveyScene scene(mission, "");
   std::size_t reported = 0;
   const run::SurveyRecord record =
@@ -301,12 +329,17 @@ TEST(Model, HasLevelsOfDetailOfTheSameShape) {
   const auto printed = [](const std::string& model, const char* detail) {
     return run_skycap({"model", model, "--detail", detail});
   };
+  const auto number_after = [](const std::string& text, const std::string& word) {
+    return std::stod(text.substr(text.find(word) + word.size()));
+  };
   const auto coarse = printed("radcliffe-camera", "coarse");
   const auto fine = printed("radcliffe-camera", "fine");
-  EXPECT_THAT(coarse.out, HasSubstr(" 67296 triangles"));
-  EXPECT_THAT(fine.out, HasSubstr(" 2911324 triangles"));
+  EXPECT_GT(number_after(fine.out, ": "), 10.0 * number_after(coarse.out, ": "));  // triangles
   EXPECT_THAT(coarse.out, HasSubstr(" x 40, area"));
   EXPECT_THAT(fine.out, HasSubstr(" x 40, area"));
+  // Coarse ornaments are plain boxes and curves of few chords.
+  const double area = number_after(fine.out, "area ");
+  EXPECT_NEAR(number_after(coarse.out, "area "), area, 0.25 * area);
 
   const std::string mission = folder.write("m.yaml", quick_mission());
   EXPECT_NE(printed(mission, "coarse").out, printed(mission, "fine").out);

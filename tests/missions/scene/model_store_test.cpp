@@ -84,7 +84,20 @@ TEST_F(ModelStore, PrefersTheUsersFolderToTheCache) {
 
 TEST_F(ModelStore, SaysWhereAMissingModelBelongs) {
   EXPECT_THAT(complaint([] { scene::find_model("vase"); }),
-              AllOf(HasSubstr("model:vase"), HasSubstr("put vase.ply there"), HasSubstr("bunny")));
+              AllOf(HasSubstr("model:vase is not in $SKYCAP_MODELS (" + (folder_ / "models") +
+                              ") or " + (folder_ / "cache/skycap") + "; put vase.ply there"),
+                    HasSubstr("bunny")));
+}
+
+// A model in a folder beside the current one, which no user has, is not the user's.
+TEST_F(ModelStore, LooksNowhereElse) {
+  fs::create_directories(folder_.path() / "shared/models");
+  fs::create_directories(folder_.path() / "project");
+  folder_.write("shared/models/vase.off", triangle);
+  const fs::path before = fs::current_path();
+  fs::current_path(folder_.path() / "project");
+  EXPECT_FALSE(scene::is_stored("vase"));
+  fs::current_path(before);
 }
 
 TEST_F(ModelStore, SaysHowToInstallNpm) {

@@ -73,6 +73,15 @@ class ScanVerb : public testing::Test {
   std::string mission;
 };
 
+// A name may be as long as a folder's; what comes after it must not be lost.
+TEST_F(ScanVerb, SaysAllOfTheSummaryWhateverTheNamesLength) {
+  const std::string name(250, 'n');
+  const ProgramRun run = scan({"--set", "name=" + name});
+  EXPECT_EQ(run.exit_code, 0) << run.err;
+  EXPECT_THAT(run.out, testing::StartsWith(name + ": Test laser, 0.3 s of flight\n"));
+  EXPECT_THAT(run.out, HasSubstr(" M shots/s\n  results   "));
+}
+
 TEST_F(ScanVerb, LeavesTheCloudBothTrajectoriesAndASummary) {
   const ProgramRun run = scan();
   EXPECT_EQ(run.exit_code, 0) << run.err;

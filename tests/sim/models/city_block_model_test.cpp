@@ -71,8 +71,8 @@ TEST(CityBlock, NoRayFromAboveMeetsABackFace) {
   std::uniform_real_distribution<double> place(-100.0, 100.0), height(0.5, 60.0);
   int backs = 0, hits = 0;
   for (int i = 0; i < 100000; ++i) {
-    const Vector3d from(place(random), place(random), 80.0);
-    const Vector3d to(place(random), place(random), height(random) * 0.2);
+    const Vector3d from{place(random), place(random), 80.0};
+    const Vector3d to{place(random), place(random), height(random) * 0.2};
     const auto hit = scene.first_hit(from, (to - from).normalized());
     if (!hit) continue;
     ++hits;

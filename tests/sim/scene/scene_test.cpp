@@ -21,7 +21,7 @@ using Eigen::Vector3d;
 
 Vector3d random_direction(std::mt19937_64& random) {
   std::normal_distribution<double> normal;
-  return Vector3d(normal(random), normal(random), normal(random)).normalized();
+  return Vector3d{normal(random), normal(random), normal(random)}.normalized();
 }
 
 TEST(Scene, FirstHitIsTheNearerFaceOfACube) {

@@ -30,7 +30,7 @@ std::vector<Vector3d> random_directions(int count, std::uint64_t seed) {
   std::normal_distribution<double> normal;
   std::vector<Vector3d> directions;
   for (int i = 0; i < count; ++i) {
-    directions.push_back(Vector3d(normal(random), normal(random), normal(random)).normalized());
+    directions.push_back(Vector3d{normal(random), normal(random), normal(random)}.normalized());
   }
   return directions;
 }

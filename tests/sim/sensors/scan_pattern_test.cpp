@@ -113,7 +113,7 @@ TEST(Refract, OnePrismTurnsTheBeamBySnellsLaw) {
   const double wedge = 12 * degree, index = 1.51;
   // Square at the entry: the beam meets the inclined face at `wedge` from inside the glass.
   const double expected = std::asin(index * std::sin(wedge)) - wedge;
-  const std::vector<Prism> prisms = {{wedge, index, 0.0, 0.0, false}};
+  const std::vector<WedgePrism> prisms = {{wedge, index, 0.0, 0.0, false}};
   const Vector3d beam = refract(prisms, 0.0, Vector3d::UnitX());
   EXPECT_NEAR(std::acos(beam.x()), expected, 1e-12);
   EXPECT_NEAR(beam.norm(), 1.0, 1e-12);
@@ -122,12 +122,12 @@ TEST(Refract, OnePrismTurnsTheBeamBySnellsLaw) {
 // Small wedges: theta = (n - 1) (w1 exp(i a1) + w2 exp(i a2)), the paraxial formula of a rosette.
 TEST(Refract, ThinPrismsFollowTheParaxialFormula) {
   const double index = 1.51, wedge = 0.2 * degree;
-  const std::vector<Prism> prisms = {{wedge, index, -77.7, 0.3, false},
-                                     {wedge, index, 121.6, 1.1, true}};
+  const std::vector<WedgePrism> prisms = {{wedge, index, -77.7, 0.3, false},
+                                          {wedge, index, 121.6, 1.1, true}};
   for (const double time : {0.0, 0.0123, 1.7}) {
     const Vector3d beam = refract(prisms, time, Vector3d::UnitX());
     double y = 0.0, z = 0.0;
-    for (const Prism& prism : prisms) {
+    for (const WedgePrism& prism : prisms) {
       const double angle = prism.phase + 2.0 * std::numbers::pi * prism.rotation_rate * time;
       y -= (index - 1.0) * wedge * std::cos(angle);
       z -= (index - 1.0) * wedge * std::sin(angle);
@@ -141,8 +141,8 @@ TEST(Refract, ThinPrismsFollowTheParaxialFormula) {
 
 // Livox Mid-70: two prisms of 29.7 degrees reach the edge of a 70.4 degree field when aligned.
 TEST(Refract, MidSeventyReachesItsFieldOfView) {
-  std::vector<Prism> prisms = {{29.7 * degree, 1.51, 0.0, 0.0, false},
-                               {29.7 * degree, 1.51, 0.0, 0.0, true}};
+  std::vector<WedgePrism> prisms = {{29.7 * degree, 1.51, 0.0, 0.0, false},
+                                    {29.7 * degree, 1.51, 0.0, 0.0, true}};
   EXPECT_NEAR(std::acos(refract(prisms, 0.0, Vector3d::UnitX()).x()), 35.2 * degree, 0.1 * degree);
   prisms[1].phase = std::numbers::pi;  // opposed, they cancel
   EXPECT_NEAR(std::acos(refract(prisms, 0.0, Vector3d::UnitX()).x()), 0.0, 1e-6);

@@ -116,8 +116,28 @@ TEST(SeePlanner, RefusesParametersThatAdmitNoFrontier) {
   EXPECT_THAT(complaint({.density = NAN}), HasSubstr("density"));
 }
 
+// SEE flies to the nearest proposal. Refusing one view after the other lists them all, each time
+// the nearest of what is left, and without the frontier spacing there are as many as frontiers.
+TEST(SeePlanner, WithoutOptimiserAndGraphTakesTheNearestView) {
+  see::SeeConfig config = small_config();
+  config.optimise_views = config.visibility_graph = false;
+  see::SeePlanner planner(config, small_camera);
+  const View start = geometry::look_at({2.4, 0.3, 0.2}, {0, 0, 0});
+  std::optional<View> next =
+      planner.next_view(tests::scan_spheres({{}}, small_camera, start, 0.02));
+  std::size_t proposals = 0;
+  double last = 0.0;
+  for (; next; next = planner.next_view_instead(), ++proposals) {
+    const double distance = (next->position - start.position).norm();
+    EXPECT_GE(distance, last - 1e-8) << "proposal " << proposals;  // ties go by the first view
+    last = distance;
+  }
+  EXPECT_EQ(proposals, planner.last_step().frontiers);
+  EXPECT_GT(proposals, 20U);
+}
+
 // The bar of the method: without optimiser and graph SEE++ is SEE, view for view.
-TEST(SeePlanner, WithoutOptimiserAndGraphIsNearestView) {
+TEST(SeePlanner, WithoutOptimiserAndGraphIsSee) {
   see::SeeConfig config = small_config();
   config.optimise_views = config.visibility_graph = false;
   const Outcome exact = survey(config, 0.02, 12);
@@ -205,7 +225,7 @@ TEST(SeePlanner, DropsMeasurementsOutsideTheSceneBox) {
 
 TEST(SeePlanner, KeepsViewsAboveTheGroundClearance) {
   see::SeeConfig config = small_config();
-  config.ground_clearance = -0.2;
+  config.least_height = -0.2;
   const Outcome run = survey(config, 0.02, 40);
   for (std::size_t i = 1; i < run.views.size(); ++i) {
     EXPECT_GE(run.views[i].position.z(), -0.2 - 1e-9);

@@ -57,6 +57,20 @@ TEST(GainField, SeesOnlyWhatFacesTheView) {
   }
 }
 
+TEST(GainField, SeesNothingBeyondTheIncidence) {
+  const Known known({2, 0, 0});
+  const skycap::GainField field(known.map, known.unseen.patches(), camera, known.dose,
+                                {.view_distance = 2.0, .max_incidence = 0.7F});
+  const Eigen::Vector3f eye(2, 0, 0);
+  const auto sights = field.sights(geometry::look_at({2, 0, 0}, {0, 0, 0}));
+  EXPECT_GT(sights.size(), 50U);
+  for (const skycap::Sight& sight : sights) {
+    const auto& target = field.targets()[sight.target];
+    const float cosine = target.normal.dot((eye - target.position).normalized());
+    EXPECT_GT(cosine, std::cos(0.7F) - 1e-5F);
+  }
+}
+
 TEST(GainField, TheGainIsTheSumOfItsSights) {
   const Known known({2, 0, 0});
   const skycap::GainField field = known.field();

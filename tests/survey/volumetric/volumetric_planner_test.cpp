@@ -78,7 +78,7 @@ TEST(MostUseful, BreaksTiesAsToldTo) {
 
 TEST(SphereViews, LookAtTheCentreFromTheSphere) {
   const Vector3d centre(1.0, -2.0, 3.0);
-  for (const View& view : volumetric::sphere_views(100, centre, 4.0, -1e9, 3)) {
+  for (const View& view : volumetric::sphere_views(100, centre, 4.0, std::nullopt, 3)) {
     EXPECT_NEAR((view.position - centre).norm(), 4.0, 1e-12);
     EXPECT_LT((view.position + 4.0 * view.direction - centre).norm(), 1e-12);
   }
@@ -89,7 +89,7 @@ TEST(SphereViews, LookAtTheCentreFromTheSphere) {
 TEST(SphereViews, AreUniform) {
   const std::size_t count = 20'000;
   Vector3d mean = Vector3d::Zero(), squares = Vector3d::Zero();
-  for (const View& view : volumetric::sphere_views(count, Vector3d::Zero(), 1.0, -1e9, 5)) {
+  for (const View& view : volumetric::sphere_views(count, Vector3d::Zero(), 1.0, std::nullopt, 5)) {
     mean += view.position / static_cast<double>(count);
     squares += view.position.cwiseAbs2() / static_cast<double>(count);
   }
@@ -110,7 +110,7 @@ TEST(VolumetricPlanner, VisitsEveryCandidateOnce) {
   const std::vector<View> views = surveyed(config);
   ASSERT_EQ(views.size(), 1 + config.candidates);
   for (const View& candidate :
-       volumetric::sphere_views(config.candidates, Vector3d::Zero(), 2.0, -1e9, config.seed)) {
+       volumetric::sphere_views(config.candidates, Vector3d::Zero(), 2.0, std::nullopt, config.seed)) {
     EXPECT_EQ(std::ranges::count(views, candidate.position, &View::position), 1);
   }
 }

@@ -1,0 +1,55 @@
+/// 512 voxels and what is known of each: one bit for free, one for occupied.
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+#include "flight/space/cell_map.h"
+
+namespace skycap::flight {
+
+/// A cube of voxels within a block.
+struct Cube {
+  Cell low;  ///< its first voxel
+  int edge;  ///< in voxels: 8, 4, 2 or 1
+
+  /// The bits of its rows in a word.
+  std::uint64_t mask() const {
+    std::uint64_t bits = 0;
+    for (int y = low.y(); y < low.y() + edge; ++y) {
+      bits |= ((std::uint64_t{1} << edge) - 1) << (8 * y + low.x());
+    }
+    return bits;
+  }
+};
+
+/// 8 x 8 x 8 voxels, one bit each: bit x of byte y of word z.
+using Slices = std::array<std::uint64_t, 8>;
+
+struct VoxelBlock {
+  Slices free{};
+  Slices occupied{};
+
+  std::uint64_t passable(int z) const { return free[z] & ~occupied[z]; }
+  bool is_all_passable() const {
+    for (int z = 0; z < 8; ++z) {
+      if (passable(z) != ~std::uint64_t{0}) return false;
+    }
+    return true;
+  }
+  bool is_all_free(const Cube& cube) const {
+    const std::uint64_t mask = cube.mask();
+    for (int z = cube.low.z(); z < cube.low.z() + cube.edge; ++z) {
+      if ((free[z] & mask) != mask) return false;
+    }
+    return true;
+  }
+  void set_free(const Cube& cube) {
+    for (int z = cube.low.z(); z < cube.low.z() + cube.edge; ++z) free[z] |= cube.mask();
+  }
+  bool is_occupied(const Cell& voxel) const {
+    return (occupied[voxel.z()] >> (8 * voxel.y() + voxel.x()) & 1) != 0;
+  }
+};
+
+}  // namespace skycap::flight

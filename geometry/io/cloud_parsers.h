@@ -1,0 +1,26 @@
+/// Readers of single cloud formats, for the source of cloud_io.h. `path` opens every message.
+#pragma once
+
+#include <filesystem>
+#include <string_view>
+
+#include "geometry/io/cloud_io.h"
+
+namespace skycap::geometry {
+
+/// Throws Error{bad_file} in one line that begins with the path.
+[[noreturn]] void fail_cloud(const std::filesystem::path& path, const std::string& what);
+
+/// A file's coordinates in single precision. Throws Error{bad_file} if one is not finite, or so
+/// large that single precision would move the point by a millimetre.
+Eigen::Vector3f cloud_position(const std::filesystem::path& path, std::size_t point, double x,
+                               double y, double z);
+
+/// The Point Cloud Library's PCD 0.7, text, binary or compressed: x y z and normal_x normal_y
+/// normal_z. Points of NaN, by which PCL marks pixels without a measurement, are passed over.
+AttributedCloud parse_pcd_cloud(const std::filesystem::path& path, std::string_view bytes);
+
+/// LAS 1.4 (ASPRS specification R15) with points of format 6 or 7. Withheld points are passed over.
+AttributedCloud parse_las_cloud(const std::filesystem::path& path, std::string_view bytes);
+
+}  // namespace skycap::geometry

@@ -1,0 +1,84 @@
+/// Clouds at a least spacing: which points of a scan have room beside those kept before is the first
+/// thing every planner asks.
+#pragma once
+
+#include <array>
+#include <cstddef>
+
+#include <Eigen/Core>
+
+#include "geometry/points/point_grid.h"
+
+namespace skycap::geometry {
+
+/// Asks a grid whether it has a point within a radius, for queries in the order of a scan: what was
+/// near to one is often near to the next, and is tried first. The grid may grow meanwhile.
+class NearbyPoints {
+ public:
+  /// For queries of a radius up to the grid's cell_size().
+  NearbyPoints(const PointGrid& grid, double radius)
+      : grid_(grid), radius_(radius), squared_radius_(static_cast<float>(radius * radius)) {
+    constexpr float far_away = 1e18F;  // its square is finite, and no query reaches it
+    x_.fill(far_away);
+    y_.fill(far_away);
+    z_.fill(far_away);
+  }
+
+  /// Whether the grid has a point within the radius of `query`.
+  bool any_near(const Eigen::Vector3f& query) {
+    int near = 0;
+    for (std::size_t i = 0; i < count; ++i) {
+      const float x = query.x() - x_[i], y = query.y() - y_[i], z = query.z() - z_[i];
+      near |= x * x + y * y + z * z <= squared_radius_ ? 1 : 0;
+    }
+    if (near != 0) return true;
+    const std::uint32_t found = grid_.first_within(query, radius_);
+    if (found == PointGrid::none) return false;
+    const Eigen::Vector3f point = grid_.point(found);
+    x_[next_] = point.x();
+    y_[next_] = point.y();
+    z_[next_] = point.z();
+    next_ = (next_ + 1) % count;
+    return true;
+  }
+
+ private:
+  static constexpr std::size_t count = 8;  // a vector of floats
+
+  const PointGrid& grid_;
+  double radius_;
+  float squared_radius_;
+  std::array<float, count> x_, y_, z_;  // the last points found
+  std::size_t next_ = 0;
+};
+
+/// Points of which none is nearer to an earlier one than a spacing. What is kept depends on the
+/// order of the points alone, not on the cells of the grid.
+class SpacedPoints {
+ public:
+  /// Cells twice as wide as the spacing by default: a ball of that radius then reaches eight of
+  /// them. Points nearer together than the spacing do not exist, however small the cells.
+  explicit SpacedPoints(double spacing) : SpacedPoints(spacing, 2.0 * spacing) {}
+  SpacedPoints(double spacing, double cell_size)
+      : spacing_(spacing), grid_(cell_size), nearby_(grid_, spacing) {}
+  SpacedPoints(const SpacedPoints&) = delete;
+  SpacedPoints& operator=(const SpacedPoints&) = delete;
+
+  /// Keeps the point if none that was kept is within the spacing; says whether it did.
+  bool keep(const Eigen::Vector3f& point) {
+    if (nearby_.any_near(point)) return false;
+    grid_.insert(point);
+    return true;
+  }
+
+  /// The points that were kept, in that order.
+  const PointGrid& grid() const { return grid_; }
+  double spacing() const { return spacing_; }
+
+ private:
+  double spacing_;
+  PointGrid grid_;
+  NearbyPoints nearby_;
+};
+
+}  // namespace skycap::geometry

@@ -1,0 +1,86 @@
+#include "missions/derived/resolved_mission.h"
+
+#include <utility>
+
+#include "geometry/error.h"
+#include "geometry/place/camera.h"
+#include "missions/derived/mission_rules.h"
+#include "missions/derived/survey_sensor.h"
+
+namespace skycap::missions::derived {
+namespace {
+
+/// Reads the scanner that takes the camera's place.
+void read_lidar(file::MissionFile& given) {
+  for (const auto& [path, place] : given.places) {
+    if (path.starts_with("sensor.") && path != "sensor.lidar") {
+      given.refuse(path, "does not go with sensor.lidar; leave one of the two out");
+    }
+  }
+  if (given.mission.flight.is_flown()) {
+    given.refuse("sensor.lidar",
+                 "does not go with flight.vehicle: free space to fly in is proven by depth images; "
+                 "give flight.vehicle: none, or a depth camera");
+  }
+  try {
+    use_lidar(given.mission.sensor, std::filesystem::path(given.name).parent_path());
+  } catch (const Error& error) {
+    given.refuse("sensor.lidar", error.what());
+  }
+}
+
+/// The building preset's lengths, which follow from other values, where no key says otherwise.
+///
+/// At building scale the published psi looks at a small part of the sight line only, and targets
+/// hidden by the building itself are taken for visible; it is therefore the whole line. One view
+/// proposal within a twentieth of d keeps the number of proposals below tau.
+void derive_building_preset(file::MissionFile& given) {
+  survey::see::SeeConfig& see = given.mission.planner.see;
+  const double distance =
+      see.view_distance ? *see.view_distance
+                        : geometry::view_distance(
+                              geometry::Camera(given.mission.sensor.camera.camera), see.density);
+  if (!given.gives("planner.occlusion_search_distance")) see.occlusion_search_distance = distance;
+  if (!given.gives("planner.frontier_spacing")) see.frontier_spacing = 0.05 * distance;
+  if (!given.gives("planner.occluder_spacing")) see.occluder_spacing = 2.0 * see.resolution_radius;
+}
+
+/// The least height of views where no key says it.
+void derive_ground_clearance(file::Mission& mission) {
+  std::optional<double>& clearance = mission.limits.ground_clearance;
+  // A little more, so that a view at the limit can be proven.
+  if (mission.flight.is_flown() && !clearance) clearance = mission.flight.clearance + 0.01;
+  if (mission.scene.ground && !clearance) clearance = 0.0;
+}
+
+}  // namespace
+
+file::Mission resolved(file::MissionFile given) {
+  file::Mission& mission = given.mission;
+  // What flies is there to be done soon: the paper's planners are for comparison.
+  if (mission.flight.is_flown() && !given.gives("planner.name")) {
+    mission.planner.name = file::PlannerName::skycap;
+  }
+  if (mission.sensor.lidar) read_lidar(given);
+  check_scene(given);
+  check_start(given);
+  check_sensor(given);
+  check_flight(given);
+  if (mission.planner.preset == file::PlannerPreset::building) derive_building_preset(given);
+  derive_ground_clearance(mission);
+  check_view_limits(given);
+  check_planner(given);
+  return std::move(given.mission);
+}
+
+file::Mission read_mission(const std::filesystem::path& file,
+                           const std::vector<file::KeyOverride>& overrides) {
+  return resolved(file::read_mission_file(file, overrides));
+}
+
+file::Mission parse_mission(const std::string& text, const std::string& name,
+                            const std::vector<file::KeyOverride>& overrides) {
+  return resolved(file::parse_mission_file(text, name, overrides));
+}
+
+}  // namespace skycap::missions::derived

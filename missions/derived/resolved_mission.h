@@ -1,0 +1,26 @@
+/// A mission ready to be run: what its file says, checked as a whole and completed by what follows
+/// from it.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "missions/file/mission_reader.h"
+
+namespace skycap::missions::derived {
+
+/// Reads the scanner that the mission names, fills in the values that follow from others, and
+/// checks that the keys go together and that the mission's planner can work with its settings.
+/// Throws Error{bad_config} as MissionFile::refuse() for the first that is wrong.
+file::Mission resolved(file::MissionFile given);
+
+/// read_mission_file() and resolved(); throws what they throw.
+file::Mission read_mission(const std::filesystem::path& file,
+                           const std::vector<file::KeyOverride>& overrides = {});
+
+/// The same for a mission that is already in memory; `name` stands for the file in messages.
+file::Mission parse_mission(const std::string& text, const std::string& name,
+                            const std::vector<file::KeyOverride>& overrides = {});
+
+}  // namespace skycap::missions::derived

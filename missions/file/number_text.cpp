@@ -1,0 +1,18 @@
+#include "missions/file/number_text.h"
+
+#include <array>
+#include <charconv>
+
+#include <fmt/format.h>
+
+namespace skycap::missions::file {
+
+std::string exact_text(double number) {
+  std::array<char, 32> text{};
+  const auto result = std::to_chars(text.data(), text.data() + text.size(), number);
+  return {text.data(), result.ptr};
+}
+
+std::string short_text(double number) { return fmt::format("{:.4g}", number); }
+
+}  // namespace skycap::missions::file

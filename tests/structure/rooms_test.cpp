@@ -1,0 +1,162 @@
+// The house: which room may know which. docs/architecture.md draws the same table.
+
+#include <fstream>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "tests/structure/source_tree.h"
+#include "tests/support/temporary_folder.h"
+
+namespace skycap::structure {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
+
+/// The rows, each with all that it may use; "geometry" and its rooms are open to every room.
+Rooms house() {
+  const std::vector<std::string> geometry = {"geometry",          "geometry/place",
+                                             "geometry/points",   "geometry/directions",
+                                             "geometry/surfaces", "geometry/io"};
+  Rooms rooms = {
+      {"geometry", {}},
+      {"geometry/place", {"geometry"}},
+      {"geometry/points", {"geometry", "geometry/place"}},
+      {"geometry/directions", {"geometry", "geometry/place"}},
+      {"geometry/surfaces", {"geometry", "geometry/place"}},
+      {"geometry/io", {"geometry", "geometry/place", "geometry/points", "geometry/surfaces"}},
+  };
+  const auto add = [&](const std::string& room, std::vector<std::string> others) {
+    others.insert(others.end(), geometry.begin(), geometry.end());
+    rooms[room] = std::move(others);
+  };
+  add("sim/scene", {});
+  add("sim/models/masonry", {});
+  add("sim/models", {"sim/models/masonry"});
+  add("sim/sensors", {"sim/scene"});
+
+  add("survey", {});
+  for (const char* planner : {"survey/see", "survey/skycap", "survey/volumetric"}) {
+    add(planner, {"survey"});
+  }
+
+  add("flight/space", {});
+  add("flight/autopilot", {});
+  add("flight/motion", {"flight/space", "flight/autopilot"});
+  add("flight/paths", {"flight/space"});
+  add("flight/way_home", {"flight/space", "flight/motion", "flight/paths"});
+  add("flight/route", {"flight/space", "flight/motion", "flight/paths", "flight/way_home"});
+  add("flight/export",
+      {"flight/space", "flight/motion", "flight/paths", "flight/way_home", "flight/route"});
+
+  std::vector<std::string> below;  // what missions/ composes
+  for (const auto& [room, others] : rooms) {
+    if (!room.starts_with("geometry")) below.push_back(room);
+  }
+  const std::string m = "missions/";
+  const auto add_mission_room = [&](const std::string& room, const auto&... others) {
+    std::vector<std::string> all = below;
+    all.push_back("missions");  // version.h alone
+    (all.push_back(m + others), ...);
+    add(m + room, std::move(all));
+  };
+  add_mission_room("file");
+  add_mission_room("plugins");
+  add_mission_room("judge");
+  add_mission_room("derived", "file");
+  add_mission_room("scene", "file", "derived", "judge", "plugins");
+  add_mission_room("recording", "file", "derived", "plugins");
+  add_mission_room("run", "file", "derived", "judge", "scene");
+  add_mission_room("package", "file", "derived", "run");
+  add_mission_room("benchmark", "file", "derived", "judge", "plugins", "scene", "run", "package");
+  add_mission_room("verbs", "file", "derived", "judge", "plugins", "scene", "recording", "run",
+                   "package", "benchmark");
+  return rooms;
+}
+
+std::vector<SourceFile> product() {
+  return read_sources(SKYCAP_SOURCE_DIR, {"geometry", "sim", "survey", "flight", "missions"});
+}
+
+TEST(Rooms, AreEnteredInOneDirectionOnly) {
+  EXPECT_THAT(forbidden_includes(product(), house()), IsEmpty());
+  EXPECT_THAT(circular_rooms(house()), IsEmpty());
+  EXPECT_THAT(circular_headers(product()), IsEmpty());
+}
+
+TEST(Rooms, KeepHeavyHeadersInSources) {
+  std::vector<SourceFile> sources = product();
+  // The rays' inner loop, which only sources of sim/ include: a call across it would cost a third.
+  std::erase_if(sources,
+                [](const SourceFile& source) { return source.path == "sim/scene/scene_embree.h"; });
+  EXPECT_THAT(heavy_headers(sources, {"CGAL/", "pcl/", "mrpt/", "ompl/", "embree3/", "gdal", "ogr",
+                                      "cpl_", "ceres/", "nlopt"}),
+              IsEmpty());
+}
+
+TEST(Rooms, AreNotCrowded) { EXPECT_THAT(crowded_rooms(product(), 30), IsEmpty()); }
+
+/// A mesh is the truth; points measured of it are not.
+TEST(Rooms, HideTheTruthFromPlanners) {
+  for (const SourceFile& source : product()) {
+    if (!source.path.starts_with("survey/")) continue;
+    EXPECT_THAT(source.own, testing::Not(testing::Contains(HasSubstr("surfaces/mesh"))))
+        << source.path;
+  }
+}
+
+/// A tree of two rooms, upper and lower, with whatever fault a test plants.
+class PlantedFault : public testing::Test {
+ protected:
+  void write(const std::string& path, const std::string& text) {
+    const std::filesystem::path file = folder_.path() / path;
+    std::filesystem::create_directories(file.parent_path());
+    std::ofstream(file) << text;
+  }
+  std::vector<SourceFile> sources() const { return read_sources(folder_.path(), {"house"}); }
+
+  const Rooms rooms_ = {{"house/lower", {}}, {"house/upper", {"house/lower"}}};
+
+ private:
+  testing_support::TemporaryFolder folder_;
+};
+
+TEST_F(PlantedFault, AnIncludeAgainstTheDirectionIsFound) {
+  write("house/upper/roof.h", "#include \"house/lower/floor.h\"\n");
+  write("house/lower/floor.h", "");
+  EXPECT_THAT(forbidden_includes(sources(), rooms_), IsEmpty());
+  write("house/lower/floor.cpp", "#include \"house/upper/roof.h\"\n");
+  EXPECT_THAT(forbidden_includes(sources(), rooms_),
+              ElementsAre("house/lower/floor.cpp: house/lower may not use house/upper/roof.h"));
+}
+
+TEST_F(PlantedFault, AFileWithoutARoomIsFound) {
+  write("house/shed/tool.h", "");
+  EXPECT_THAT(forbidden_includes(sources(), rooms_), ElementsAre(HasSubstr("in no room")));
+}
+
+TEST_F(PlantedFault, CirclesAreFound) {
+  write("house/lower/egg.h", "#include \"house/lower/hen.h\"\n");
+  write("house/lower/hen.h", "#include \"house/lower/egg.h\"\n");
+  EXPECT_THAT(circular_headers(sources()), ElementsAre("house/lower/egg.h", "house/lower/hen.h"));
+  EXPECT_THAT(circular_rooms({{"a", {"b"}}, {"b", {"c"}}, {"c", {"a"}}}),
+              ElementsAre("a", "b", "c"));
+}
+
+TEST_F(PlantedFault, AHeavyHeaderIsFoundInHeadersOnly) {
+  write("house/lower/tree.cpp", "#include <CGAL/Kd_tree.h>\n");
+  EXPECT_THAT(heavy_headers(sources(), {"CGAL/"}), IsEmpty());
+  write("house/lower/tree.h", "#include <CGAL/Kd_tree.h>\n");
+  EXPECT_THAT(heavy_headers(sources(), {"CGAL/"}), ElementsAre(HasSubstr("house/lower/tree.h")));
+}
+
+TEST_F(PlantedFault, ACrowdIsFound) {
+  for (const char* name : {"a.h", "b.h", "c.h"}) write(std::string("house/lower/") + name, "");
+  EXPECT_THAT(crowded_rooms(sources(), 3), IsEmpty());
+  EXPECT_THAT(crowded_rooms(sources(), 2), ElementsAre("house/lower has 3 files"));
+}
+
+}  // namespace
+}  // namespace skycap::structure
