@@ -385,8 +385,7 @@ class RoutePlanner {
     }
     route_.returns = std::move(search.found);
     for (const Segment& leg : legs) {
-      const double energy =
-          return_energy(motion_, route_.returns->law, leg.to);
+      const double energy = return_energy(motion_, route_.returns->law, leg.to);
       route_.returns->energy = std::max(route_.returns->energy, energy);
     }
   }
