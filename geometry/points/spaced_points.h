@@ -1,5 +1,5 @@
-/// Clouds at a least spacing: which points of a scan have room beside those kept before is the first
-/// thing every planner asks.
+/// Clouds at a least spacing: which points of a scan have room beside those kept before is the
+/// first thing every planner asks.
 #pragma once
 
 #include <array>

@@ -26,7 +26,7 @@ using geometry::View;
 
 // A look that yields less than a quarter of what was promised, if that was worth mentioning, halves
 // the trust in its surfel.
-constexpr float promise = 0.2F, kept_promise = 0.25F, broken_trust = 0.5F;
+constexpr float least_promise = 0.2F, kept_promise = 0.25F, broken_trust = 0.5F;
 /// Four successive scans that each add less than this share of the area end the survey.
 constexpr double idle_gain = 0.003;
 constexpr int most_idle_scans = 4;
@@ -169,7 +169,7 @@ struct SkycapPlanner::Impl {
       }
       const float promised = -std::log(std::max(1.0F - sight.covered_share, 1e-3F));
       const float given = map->surfels().hazards[source] - hazards_before[source];
-      if (promised > promise && given < kept_promise * promised) {
+      if (promised > least_promise && given < kept_promise * promised) {
         map->lower_trust(source, broken_trust);
       }
     }

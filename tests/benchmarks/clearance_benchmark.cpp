@@ -1,6 +1,9 @@
 // The clearance proof of a leg against bisection on CGAL's point distances, in a city block of a
-// quarter of a million triangles: 20,000 random legs of 5 to 30 m at 2 m clearance.
+// quarter of a million triangles: random legs of 5 to 30 m at 2 m clearance.
+//
+//   clearance_benchmark [legs, 20000]
 #include <cstdio>
+#include <cstdlib>
 #include <random>
 
 #include "flight/space/clearance.h"
@@ -8,14 +11,15 @@
 #include "tests/flight/scenes.h"
 #include "tests/flight/space/cgal_oracle.h"
 
-int main() {
+int main(int argc, char** argv) {
   using namespace skycap::flight;
   constexpr double clearance = 2.0;
+  const int count = argc > 1 ? std::atoi(argv[1]) : 20000;
   Obstacles obstacles;
   obstacles.mesh = scenes::city(15);  // 270,000 triangles
   std::mt19937_64 random(1);
   const Eigen::AlignedBox3d around(Eigen::Vector3d(-10, -10, 0), Eigen::Vector3d(110, 110, 30));
-  const std::vector<Segment> legs = scenes::legs(random, 20000, around);
+  const std::vector<Segment> legs = scenes::legs(random, count, around);
   const CgalOracle oracle(obstacles.mesh);
 
   const auto start = std::chrono::steady_clock::now();

@@ -1,9 +1,13 @@
 /// What each structure behind SpatialIndex earns: the same queries with our grid, CGAL's kd-tree
 /// (the forest's building block), nanoflann and PCL's octree, over points on a building-sized shell
-/// kept at SEE's spacing. Run: build/release/tests/benchmarks/spatial_index_benchmark
+/// kept at SEE's spacing.
+///
+///   spatial_index_benchmark [points of the scan, 4000000]
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <cstdio>
+#include <cstdlib>
 #include <iterator>
 #include <memory>
 #include <random>
@@ -72,12 +76,13 @@ void print(const char* what, const char* other, skycap::benchmarks::Medians time
 
 }  // namespace
 
-int main() {
-  const std::vector<Vector3f> scan = shell(4'000'000);
+int main(int argc, char** argv) {
+  const std::vector<Vector3f> scan =
+      shell(argc > 1 ? std::strtoul(argv[1], nullptr, 10) : 4'000'000);
   skycap::geometry::DensityMap map({.radius = radius, .core_threshold = 4, .spacing = spacing});
   map.insert(scan, 0);
   const std::vector<Vector3f>& points = map.cloud().positions;
-  const std::vector<Vector3f> queries(scan.begin(), scan.begin() + 100'000);
+  const std::vector<Vector3f> queries(scan.begin(), scan.begin() + scan.size() / 40);
   std::printf("%zu points at a spacing of %.4f m, balls of %.2f m, medians of %d rounds\n",
               points.size(), spacing, radius, rounds);
 
@@ -142,7 +147,8 @@ int main() {
   });
 
   // A large ball: here the kd-tree behind the forest earns its place.
-  const std::vector<Vector3f> few(queries.begin(), queries.begin() + 300);
+  const std::vector<Vector3f> few(queries.begin(),
+                                  queries.begin() + std::min<std::size_t>(300, queries.size()));
   const auto large_with_grid = [&] {
     std::vector<Neighbour> found;
     for (const Vector3f& query : few) {

@@ -109,8 +109,8 @@ TEST(VolumetricPlanner, VisitsEveryCandidateOnce) {
   const volumetric::VolumetricConfig config = config_for(proximity_count);
   const std::vector<View> views = surveyed(config);
   ASSERT_EQ(views.size(), 1 + config.candidates);
-  for (const View& candidate :
-       volumetric::sphere_views(config.candidates, Vector3d::Zero(), 2.0, std::nullopt, config.seed)) {
+  for (const View& candidate : volumetric::sphere_views(config.candidates, Vector3d::Zero(), 2.0,
+                                                        std::nullopt, config.seed)) {
     EXPECT_EQ(std::ranges::count(views, candidate.position, &View::position), 1);
   }
 }

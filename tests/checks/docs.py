@@ -1,0 +1,91 @@
+"""Checks README.md and docs/*.md, or the pages that are named: runs their checked blocks
+(docs_blocks.py) and looks up the names they mention (docs_names.py). With --write it puts what the
+commands print into the pages. Exit code 1: something is stale."""
+
+import argparse
+import difflib
+import os
+import pathlib
+import sys
+import tempfile
+
+import docs_blocks
+import docs_names
+
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+
+
+def scratch_folder(folder, program):
+    """Lays out what the commands of the pages expect to find where they run."""
+    for name in ("missions", "docs"):
+        (folder / name).symlink_to(ROOT / name)
+    (folder / "build").mkdir()
+    (folder / "build" / "release").symlink_to(program)
+    (folder / "skycap").symlink_to(program / "skycap")
+    return dict(os.environ, PATH=f"{program}:{os.environ['PATH']}")
+
+
+def run_block(block, folder, environment):
+    """The block's lines as they should be."""
+    if block.kind == "as":
+        (folder / block.argument).write_text("\n".join(block.lines) + "\n", encoding="utf-8")
+        return block.lines
+    words_of_times = block.argument.split(", ") if block.argument else []
+    lines = []
+    for step in docs_blocks.steps(block):
+        printed = docs_blocks.run(step, folder, environment)
+        lines += step.command + docs_blocks.renewed(step, printed, words_of_times)
+    return lines
+
+
+def run_page(text, program):
+    """The page as it should be, and the blocks that were run."""
+    lines = text.split("\n")
+    blocks = docs_blocks.blocks(lines)
+    with tempfile.TemporaryDirectory() as name:
+        environment = scratch_folder(pathlib.Path(name), program)
+        renewed = [run_block(block, pathlib.Path(name), environment) for block in blocks]
+    for block, new in reversed(list(zip(blocks, renewed))):
+        indented = [(block.indent + line).rstrip() for line in new]
+        lines[block.first:block.first + len(block.lines)] = indented
+    return "\n".join(lines), blocks
+
+
+def check(page, names, program, write):
+    """Whether the page is right, and how many of its blocks were run."""
+    text = (ROOT / page).read_text(encoding="utf-8")
+    renewed, run = run_page(text, program)
+    checked = {block.first + 1 + i for block in run for i in range(len(block.lines))}
+    wrong = [(number, complaint) for number, complaint in docs_names.complaints(page, text, names)
+             if number not in checked]
+    for number, complaint in wrong:
+        print(f"{page}:{number}: {complaint}")
+    if renewed != text and write:
+        (ROOT / page).write_text(renewed, encoding="utf-8")
+    elif renewed != text:
+        sys.stdout.writelines(difflib.unified_diff(
+            text.splitlines(True), renewed.splitlines(True), f"{page} as written",
+            f"{page} as the program has it", n=1))
+    return not wrong and (write or renewed == text), len(run)
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--program", type=pathlib.Path, required=True, help="build folder")
+    parser.add_argument("--write", action="store_true", help="renew the pages")
+    parser.add_argument("pages", nargs="*", help="relative to the root; default all")
+    arguments = parser.parse_args()
+    program = (ROOT / arguments.program).resolve()
+    names = docs_names.Names(ROOT, program)
+    pages = arguments.pages or sorted(
+        name for name in names.files
+        if name == "README.md" or (name.startswith("docs/") and name.endswith(".md")))
+    results = [check(pathlib.PurePosixPath(page), names, program, arguments.write)
+               for page in pages]
+    print(f"docs: {len(pages)} pages, {sum(count for _, count in results)} blocks run, "
+          f"{sum(not good for good, _ in results)} pages stale")
+    return 0 if all(good for good, _ in results) else 1
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,202 @@
+"""The names that a page mentions and that must exist: links, paths, commands with their options,
+keys of mission files, tests, and identifiers of the sources."""
+
+import functools
+import json
+import pathlib
+import re
+import shlex
+import subprocess
+
+CODE_SPAN = re.compile(r"`([^`]+)`")
+LINK = re.compile(r"\]\(([^)\s]+)\)")
+COMMAND = re.compile(r"(?<!\S)(?:(?:\./)?skycap |cmake --|ctest --|build/|tests/checks/)")
+PATH = re.compile(r"[\w./-]+/[\w.-]+\.\w+")
+TEST_NAME = re.compile(r"[A-Z]\w+\.[A-Z]\w+\*?")
+KEY = re.compile(r"[a-z_]+(?:\.[a-z_]+)+")
+IDENTIFIER = re.compile(r"(?:\w+::)*([a-z]+(?:_[a-z0-9]+)+)(?:\(\))?|(?:\w+::)+(\w+)")
+FILE_TYPES = ("bin", "csv", "json", "las", "pcd", "plan", "ply", "rawlog", "tum", "xyz")
+PLACEHOLDER = re.compile(r"[A-Z]{2,}|\.\.\.|\bN\b")
+
+
+class Names:
+    """What there is: the tracked files, the program's verbs and options, the keys, the tests."""
+
+    def __init__(self, root, program):
+        self.root, self.program = root, program
+        listed = subprocess.run(["git", "ls-files"], cwd=root, capture_output=True, text=True,
+                                check=True).stdout.split("\n")
+        self.files = {name for name in listed if name}
+        sources = [root / name for name in self.files
+                   if name.endswith((".cpp", ".h", ".in", ".txt", ".yaml", ".json"))]
+        self.words = set()
+        self.tests = set()
+        for source in sources:
+            text = source.read_text(encoding="utf-8")
+            self.words.update(re.findall(r"\w+", text))
+            self.tests.update(f"{suite}.{name}" for suite, name in re.findall(
+                r"TEST(?:_F|_P)?\(\s*(\w+),\s*(\w+)\)", text))
+        schema = json.loads((root / "missions/mission.schema.json").read_text())
+        self.keys = set(keys_of(schema))
+        self.presets = {preset["name"] for preset in json.loads(
+            (root / "CMakePresets.json").read_text())["configurePresets"]}
+
+    @functools.cache
+    def help(self, verb):
+        """What `skycap VERB --help` prints; nothing if there is no such verb."""
+        if verb not in self.verbs():
+            return None
+        return subprocess.run([self.program / "skycap", verb, "--help"], capture_output=True,
+                              text=True, check=True).stdout
+
+    @functools.cache
+    def verbs(self):
+        text = subprocess.run([self.program / "skycap", "--help"], capture_output=True, text=True,
+                              check=True).stdout
+        return re.findall(r"^  (\w+) ", text[text.index("Subcommands"):], re.MULTILINE)
+
+    def has_path(self, path):
+        path = path.rstrip("/")
+        return path in self.files or any(name.startswith(path + "/") for name in self.files)
+
+
+def keys_of(schema, prefix=""):
+    for name, property in schema.get("properties", {}).items():
+        yield prefix + name
+        yield from keys_of(property, prefix + name + ".")
+
+
+def complaints(page, text, names):
+    """Yields (line number from 1, what is wrong) for a page, a path relative to the root."""
+    lines = text.split("\n")
+    for number, line in enumerate(lines, 1):
+        for target in LINK.findall(line):
+            yield from ((number, wrong) for wrong in link_complaints(page, target, names))
+    for number, code in code_of(lines):
+        yield from ((number, wrong) for wrong in code_complaints(code, names))
+
+
+def code_of(lines):
+    """(line number, code) for spans of paragraphs, and for the commands of blocks, with the lines
+    that continue them."""
+    paragraph, fenced, number = [], False, 0
+    while number < len(lines):
+        line = lines[number]
+        number += 1
+        fenced ^= line.startswith("```")
+        if not fenced and not line.startswith(("    ", "```")):
+            paragraph.append(line)
+            if line.strip() and number < len(lines):
+                continue
+        yield from spans(paragraph, number - len(paragraph))
+        paragraph = []
+        first = number
+        while line.endswith("\\") and number < len(lines):
+            line = line[:-1] + lines[number].strip()
+            number += 1
+        if command := command_in(line):
+            yield first, command
+
+
+def spans(paragraph, lines_before):
+    text = "\n".join(paragraph)
+    for span in CODE_SPAN.finditer(text):
+        yield lines_before + 1 + text.count("\n", 0, span.start()), span[1].replace("\n", " ")
+
+
+def command_in(block_line):
+    """The command of a block's line without its prompt, comment and what it is run under."""
+    text = re.split(r"\s{3,}|\s#\s", block_line.strip().removeprefix("$ "))[0]
+    start = COMMAND.search(text)
+    return text[start.start():] if start else None
+
+
+def code_complaints(code, names):
+    if COMMAND.match(code):
+        for command in code.split(" && "):
+            yield from command_complaints(command, names)
+    elif code.startswith("--"):
+        option = re.split(r"[ =]", code)[0]
+        if not any(option in names.help(verb) for verb in names.verbs()):
+            yield f"no verb has the option {option}"
+    elif TEST_NAME.fullmatch(code):
+        if not any(re.fullmatch(code.replace("*", ".*"), test) for test in names.tests):
+            yield f"there is no test {code}"
+    elif KEY.fullmatch(code) and code.split(".")[0] in names.keys:
+        if code not in names.keys and code.split(".")[-1] not in FILE_TYPES:
+            yield f"there is no key {code}"
+    elif PATH.fullmatch(code):
+        if code.split("/")[0] in {name.split("/")[0] for name in names.files}:
+            if not names.has_path(code):
+                yield f"there is no file {code}"
+    elif found := IDENTIFIER.fullmatch(code):
+        word = found[1] or found[2]
+        if word not in names.words:
+            yield f"no source mentions {word}"
+
+
+def command_complaints(command, names):
+    words = shlex.split(command)
+    if words[0] in ("skycap", "./skycap"):
+        yield from skycap_complaints(words[1:], names)
+    elif "--preset" in words:
+        preset = words[words.index("--preset") + 1]
+        if preset not in names.presets:
+            yield f"there is no preset {preset}"
+    elif words[0].startswith("build/"):
+        if not names.has_path(source_of(words[0].split("/", 2)[2])):
+            yield f"nothing builds {words[0]}"
+    elif words[0].startswith("tests/") and not names.has_path(words[0]):
+        yield f"there is no {words[0]}"
+
+
+def source_of(program):
+    """The source of a benchmark, the folder of a test program."""
+    return program.removesuffix("_test") if program.endswith("_test") else program + ".cpp"
+
+
+def skycap_complaints(words, names):
+    if not words or words[0] in ("test", "install") or PLACEHOLDER.search(words[0]):
+        return
+    help_text = names.help(words[0]) if not words[0].startswith("-") else ""
+    if help_text is None:
+        yield f"skycap has no verb {words[0]}"
+        return
+    for option in (word.split("=")[0] for word in words[1:] if word.startswith("--")):
+        if not re.search(rf"(?<![\w-]){re.escape(option)}(?![\w-])", help_text):
+            yield f"skycap {words[0]} has no option {option}"
+    for word, value in zip(words, words[1:]):
+        key = value.split("=")[0]
+        if word == "--set" and not PLACEHOLDER.search(key) and key not in names.keys:
+            yield f"there is no key {key}"
+    for word in words:
+        if re.match(r"(?:\.\./)?missions/", word) and not PLACEHOLDER.search(word):
+            if not names.has_path(word):
+                yield f"there is no file {word}"
+
+
+def link_complaints(page, target, names):
+    if re.match(r"\w+:", target):
+        return
+    path, _, anchor = target.partition("#")
+    linked = (page.parent / path) if path else page
+    linked = pathlib.PurePosixPath(*normal_parts(linked))
+    if not names.has_path(str(linked)):
+        yield f"the link to {target} leads nowhere"
+    elif anchor and anchor not in anchors(names.root / linked):
+        yield f"{linked} has no heading #{anchor}"
+
+
+def normal_parts(path):
+    parts = []
+    for part in path.parts:
+        if part == "..":
+            parts.pop()
+        else:
+            parts.append(part)
+    return parts
+
+
+def anchors(page):
+    headings = re.findall(r"^#+ (.+)$", page.read_text(encoding="utf-8"), re.MULTILINE)
+    return {re.sub(r"[^\w\- ]", "", heading.lower()).replace(" ", "-") for heading in headings}
