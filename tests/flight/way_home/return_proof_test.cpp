@@ -24,7 +24,7 @@ ReturnLaw law_of(std::vector<Dialect> dialects, double level, const Vector3d& pa
 }
 
 /// A free-standing upright slab, whose face toward -x is at `x`.
-Obstacles wall_at(double x, double height) {
+Obstacles wall_at(double x, double height = 60.0) {
   Obstacles obstacles;
   obstacles.mesh = scenes::box({x, -50, 0}, {x + 1, 50, height});
   return obstacles;
@@ -46,8 +46,8 @@ TEST(ReturnProof, KeepsTheDistanceOfAColumnBesideAWall) {
 TEST(ReturnProof, ProvesALegBesideAWallToWithinTheSlack) {
   const ReturnLaw law = law_of({Dialect::ardupilot}, 30.0, {-40, 0, 0});
   const Segment leg{{0, -20, 10}, {0, 20, 12}};
-  const KnownSpace enough(wall_at(2.0 + return_slack + 1e-3, 20.0)),
-      too_near(wall_at(2.0 - 1e-3, 20.0));
+  const KnownSpace enough(wall_at(2.0 + return_slack + 1e-3, 20.0));
+  const KnownSpace too_near(wall_at(2.0 - 1e-3, 20.0));
   const ReturnProof proof = prove_returns(enough, leg, law, clearance);
   EXPECT_TRUE(proof.is_proven);
   EXPECT_GE(proof.clearance, 2.0 - 1e-9);
@@ -66,16 +66,6 @@ TEST(ReturnProof, NamesThePieceThePlaceAndTheObstacle) {
                     HasSubstr("within 0.000 m"), HasSubstr("triangle"), HasSubstr("14.60)")));
   EXPECT_TRUE(
       prove_returns(space, place, law_of({Dialect::px4}, 23.0, {-40, 0, 0}), clearance).is_proven);
-}
-
-// Somewhere along a long leg DJI's vehicles may land at once, or stay as low as they are, and
-// somewhere else along it there is a wall in the way of that: no return has both.
-TEST(ReturnProof, AsksOfNoPlaceWhatOnlyOthersDo) {
-  const KnownSpace space(wall_at(-20.0, 20.0));
-  const ReturnLaw law = law_of({Dialect::dji}, 40.0, {-40, 0, 0});
-  const Segment over{{-40, 0, 40}, {60, 0, 40}}, down{{60, 0, 40}, {60, 0, 10}};
-  EXPECT_TRUE(prove_returns(space, over, law, clearance).is_proven);
-  EXPECT_TRUE(prove_returns(space, down, law, clearance).is_proven);
 }
 
 // DJI's vehicles fly home level when near; with the wall between, no height of return helps them.
@@ -153,7 +143,7 @@ TEST_P(RandomScenes, ProofAgreesWithReturnsFromRandomPoints) {
     }
   }
   EXPECT_GT(proven, 5);
-  EXPECT_GT(refused, 0);
+  EXPECT_GT(refused, 5);
 }
 
 INSTANTIATE_TEST_SUITE_P(ReturnProof, RandomScenes, testing::Range(1, 6));
