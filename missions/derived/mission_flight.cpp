@@ -16,6 +16,16 @@ constexpr double voxels_per_clearance = 4.0;
 /// How far beside the unknown box places are proposed: more than the clearance and a voxel.
 double spare_of(const file::Mission& mission) { return 2.0 * mission.flight.clearance; }
 
+/// The same for pads. Within 8 m DJI's vehicles may land where they are instead of on the pad
+/// (ReturnLaw): those columns must not lead into the box, which grows to whole voxels.
+double pad_spare_of(const file::Mission& mission) {
+  constexpr double landing_at_once = 8.0, voxel_spare = 1.0;
+  const bool is_dji =
+      mission.flight.is_flown() && vehicle_of(mission).dialect == flight::Dialect::dji;
+  const double needed = mission.flight.clearance + landing_at_once + voxel_spare;
+  return is_dji ? std::max(spare_of(mission), needed) : spare_of(mission);
+}
+
 /// No-fly volumes with their top above this are not flown over [m].
 constexpr double no_flight_is_higher = 500.0;
 
@@ -84,7 +94,7 @@ flight::Obstacles flight_rules(const file::Mission& mission) {
 Vector3d pad_of(const file::Mission& mission, const Vector3d& first_view) {
   if (mission.flight.takeoff) return *mission.flight.takeoff;
   const AlignedBox3d box = unknown_box_of(mission);
-  const Vector3d spare = Vector3d::Constant(spare_of(mission));
+  const Vector3d spare = Vector3d::Constant(pad_spare_of(mission));
   const Vector3d low = box.min() - spare, high = box.max() + spare;
   Vector3d pad(first_view.x(), first_view.y(), mission.scene.position.z());
   if (pad.x() <= low.x() || pad.x() >= high.x() || pad.y() <= low.y() || pad.y() >= high.y()) {
