@@ -2,15 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 namespace skycap::missions::derived {
 namespace {
 
 using Eigen::AlignedBox3d;
 using Eigen::Vector3d;
-
-constexpr double degrees_per_radian = 180.0 / std::numbers::pi;
 
 /// Voxels of a quarter of the clearance lose little of the free space beside what was measured.
 constexpr double voxels_per_clearance = 4.0;
@@ -115,7 +112,7 @@ double highest_return(const file::Mission& mission, double obstacles_top) {
   const AlignedBox3d box = unknown_box_of(mission);
   double top = std::max(obstacles_top, mission.scene.position.z());
   if (!box.isEmpty()) top = std::max(top, box.max().z());
-  for (const survey::Prism& volume : mission.site.no_fly) {
+  for (const geometry::Prism& volume : mission.site.no_fly) {
     if (volume.top < no_flight_is_higher) top = std::max(top, volume.top);
   }
   const double highest = top + mission.flight.clearance + spare;
@@ -149,14 +146,14 @@ flight::RouteOptions route_options_of(const file::Mission& mission, const Vector
 }
 
 bool has_place(const file::Mission& mission) {
-  return mission.georeference.latitude && mission.georeference.longitude;
+  return mission.georeference.latitude_deg && mission.georeference.longitude_deg;
 }
 
 flight::Site site_of(const file::Mission& mission) {
   const file::Georeference& place = mission.georeference;
   flight::Site site;
-  site.origin = {place.latitude.value_or(0.0) * degrees_per_radian,
-                 place.longitude.value_or(0.0) * degrees_per_radian, place.ellipsoid_height};
+  site.origin = {place.latitude_deg.value_or(0.0), place.longitude_deg.value_or(0.0),
+                 place.ellipsoid_height};
   site.geoid_undulation = place.geoid_undulation;
   return site;
 }
