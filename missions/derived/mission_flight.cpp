@@ -113,7 +113,7 @@ double highest_return(const file::Mission& mission, double obstacles_top) {
   double top = std::max(obstacles_top, mission.scene.position.z());
   if (!box.isEmpty()) top = std::max(top, box.max().z());
   for (const geometry::Prism& volume : mission.site.no_fly) {
-    if (volume.top < no_flight_is_higher) top = std::max(top, volume.top);
+    if (volume.ceiling < no_flight_is_higher) top = std::max(top, volume.ceiling);
   }
   const double highest = top + mission.flight.clearance + spare;
   if (!mission.site.highest_height) return highest;
