@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace skycap::missions::derived {
 namespace {
@@ -106,7 +107,7 @@ double takeoff_climb_of(const file::Mission& mission) {
   return mission.flight.takeoff_climb.value_or(std::max(5.0, mission.flight.clearance + 1.0));
 }
 
-double highest_return(const file::Mission& mission, double obstacles_top) {
+double highest_return(const file::Mission& mission, double pad_z, double obstacles_top) {
   /// A whole metre is lost in rounding, and autopilots may fly level up to 2 m lower.
   constexpr double spare = 3.0;
   const AlignedBox3d box = unknown_box_of(mission);
@@ -115,7 +116,8 @@ double highest_return(const file::Mission& mission, double obstacles_top) {
   for (const geometry::Prism& volume : mission.site.no_fly) {
     if (volume.ceiling < no_flight_is_higher) top = std::max(top, volume.ceiling);
   }
-  const double highest = top + mission.flight.clearance + spare;
+  const double highest =
+      std::max(top + mission.flight.clearance + spare, pad_z + flight::least_of_dji);
   if (!mission.site.highest_height) return highest;
   return std::min(highest, *mission.site.highest_height - mission.flight.clearance);
 }
@@ -140,8 +142,8 @@ flight::RouteOptions route_options_of(const file::Mission& mission, const Vector
   options.conditions.temperature_c = config.temperature;
   options.conditions.cruise_speed = config.cruise_speed;
   options.conditions.reserve = config.reserve;
-  options.returns = flight::ReturnOptions{
-      dialects_of(vehicle_of(mission)), highest_return(mission, mission.scene.position.z()), {}};
+  options.returns = flight::ReturnOptions{dialects_of(vehicle_of(mission)),
+                                          highest_return(mission, pad.z(), pad.z())};
   return options;
 }
 
@@ -156,6 +158,21 @@ flight::Site site_of(const file::Mission& mission) {
                  place.ellipsoid_height};
   site.geoid_undulation = place.geoid_undulation;
   return site;
+}
+
+flight::FlightFacts flight_facts(const file::Mission& mission) {
+  flight::FlightFacts facts;
+  facts.site = site_of(mission);
+  facts.pad = mission.flight.takeoff.value_or(mission.scene.position);
+  facts.is_pad_known = mission.flight.takeoff.has_value();
+  if (mission.flight.is_flown()) facts.vehicle = vehicle_of(mission);
+  facts.takeoff_climb = takeoff_climb_of(mission);
+  facts.cruise_speed = mission.flight.cruise_speed;
+  facts.hold = mission.flight.hold;
+  flight::Obstacles rules = flight_rules(mission);
+  facts.no_fly = std::move(rules.no_fly);
+  facts.fence = std::move(rules.fence);
+  return facts;
 }
 
 }  // namespace skycap::missions::derived

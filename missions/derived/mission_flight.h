@@ -7,6 +7,7 @@
 #include <Eigen/Geometry>
 
 #include "flight/export/geodesy.h"
+#include "flight/interpreter/flight_facts.h"
 #include "flight/motion/vehicle.h"
 #include "flight/route/route.h"
 #include "flight/space/measured_space.h"
@@ -39,9 +40,10 @@ Eigen::Vector3d pad_of(const file::Mission& mission, const Eigen::Vector3d& firs
 /// How far the vehicle climbs from the pad before its first leg.
 double takeoff_climb_of(const file::Mission& mission);
 
-/// The greatest z at which a height of return is looked for: over the unknown box, no-fly volumes
-/// and `obstacles_top`, and under the greatest height that the site allows.
-double highest_return(const file::Mission& mission, double obstacles_top);
+/// The greatest z at which a height of return is looked for, of a vehicle whose pad is at `pad_z`:
+/// over the unknown box, no-fly volumes and `obstacles_top`, under the greatest height that the
+/// site allows.
+double highest_return(const file::Mission& mission, double pad_z, double obstacles_top);
 
 /// The autopilots that the mission's files are written for: a DJI vehicle's .plan and .waypoints
 /// are for others.
@@ -54,5 +56,9 @@ bool has_place(const file::Mission& mission);
 
 /// The origin of the mission's frame; at 0 N 0 E if the mission has no place.
 flight::Site site_of(const file::Mission& mission);
+
+/// What the mission's route files must agree with. Where the pad is not given, heights above it
+/// count from the foot of the scene. The views are not known.
+flight::FlightFacts flight_facts(const file::Mission& mission);
 
 }  // namespace skycap::missions::derived

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "flight/export/parameters.h"
+#include "flight/interpreter/certified_export.h"
 #include "flight/space/clearance.h"
 #include "flight/space/interruptible_space.h"
 #include "geometry/error.h"
@@ -167,7 +168,7 @@ FlightFiles stage_flight(const file::Mission& mission, const flight::Route& rout
         flight::FlightPlan plan = in_dialect(
             flight_plan(route, i, mission.name + number, derived::site_of(mission), rules, corners),
             format, notes);
-        certify_dialect(plan, space, derived::highest_return(mission, plan.pad.z()));
+        certify_dialect(plan, space, derived::highest_return(mission, plan.pad.z(), plan.pad.z()));
         if (has_parameters(format) && plan.returns) {
           parameters[flight::parameters_name(plan.vehicle.dialect)] = checked_parameters(plan);
         }
