@@ -102,9 +102,9 @@ TEST(PickBatch, GainsAddUpToWhatTheBatchCovers) {
 }
 
 TEST(PickBatch, IsEmptyWhereNothingIsToBeSeen) {
-  EXPECT_THAT(pick_batch({}, {}, Vector3d::Zero(), {}), testing::IsEmpty());
+  EXPECT_THAT(skycap::pick_batch({}, {}, Vector3d::Zero(), {}), testing::IsEmpty());
   const std::vector<BatchView> blind = {{Vector3d::Zero(), {}}};
-  EXPECT_THAT(pick_batch(blind, {1.0F}, Vector3d::Zero(), {}), testing::IsEmpty());
+  EXPECT_THAT(skycap::pick_batch(blind, {1.0F}, Vector3d::Zero(), {}), testing::IsEmpty());
 }
 
 /// The least cost of a tour through `left`, by recursion over what comes next.
