@@ -202,6 +202,12 @@ std::vector<Vector3d> read_route(const std::filesystem::path& path, const Site& 
   }
 }
 
+std::optional<double> read_return_height(const std::filesystem::path& path) {
+  const std::string content = load(path);
+  if (format_of_file(path, content) != Format::kmz) return std::nullopt;
+  return read_kmz(content).return_height;
+}
+
 ExportResult export_flight(const FlightPlan& plan, Format format, const FreeSpace& space,
                            const std::filesystem::path& path) {
   const std::filesystem::path temporary = path.string() + ".part";

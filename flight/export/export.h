@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -46,6 +47,9 @@ Format format_of_file(const std::filesystem::path& path, const std::string& cont
 /// heights above take-off count from. Throws Error{bad_file} naming the file and its first problem.
 std::vector<Eigen::Vector3d> read_route(const std::filesystem::path& path, const Site& site,
                                         const Eigen::Vector3d& pad);
+
+/// How high above take-off the vehicle returns by that route file; nothing if it does not say.
+std::optional<double> read_return_height(const std::filesystem::path& path);
 
 /// What an export leaves unsaid or undone, for the user to read.
 struct ExportResult {

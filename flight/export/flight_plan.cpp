@@ -37,7 +37,7 @@ FlightPlan flight_plan(const Route& route, std::size_t index, const std::string&
   const Sortie& sortie = route.sorties.at(index);
   FlightPlan plan{
       name, site,         route.vehicle, route.options.conditions, route.options.takeoff,
-      {},   rules.no_fly, rules.fence,   route.clearance};
+      {},   rules.no_fly, rules.fence,   route.clearance,          route.returns};
   plan.waypoints.push_back(corner(sortie.out.points.front(), sortie.out.clearance));
   const auto add = [&](const Leg& leg, Waypoint end) {
     if (corners == Corners::flown_round && leg.smooth) {
@@ -59,6 +59,13 @@ FlightPlan flight_plan(const Route& route, std::size_t index, const std::string&
   return plan;
 }
 
+const Returns& FlightPlan::certified_returns() const {
+  if (returns) return *returns;
+  throw Error(ErrorKind::bad_config, "\"" + name +
+                                         "\" has no certified way home, and the file says how high "
+                                         "the vehicle returns");
+}
+
 FlatNoFly flat_no_fly(const FlightPlan& plan) {
   FlatNoFly flat;
   std::vector<Vector3d> points;
@@ -66,7 +73,13 @@ FlatNoFly flat_no_fly(const FlightPlan& plan) {
   for (const Prism& prism : plan.no_fly) {
     Obstacles footprint;
     footprint.no_fly = {{prism.name, prism.footprint}};  // unbounded in height
-    if (check_route(points, KnownSpace(footprint), 0.0).empty()) {
+    const KnownSpace space(footprint);
+    bool is_kept_out = check_route(points, space, 0.0).empty();
+    for (std::size_t i = 1; plan.returns && is_kept_out && i < points.size(); ++i) {
+      is_kept_out =
+          prove_returns(space, {points[i - 1], points[i]}, plan.returns->law, 0.0).is_proven;
+    }
+    if (is_kept_out) {
       flat.written.push_back(prism);
     } else {
       flat.left_out.push_back(prism.name);

@@ -36,7 +36,11 @@ struct FlightPlan {
   std::vector<Waypoint> waypoints;  ///< from above the pad, through the stations, and back there
   std::vector<Prism> no_fly;
   std::optional<Prism> fence;
-  double clearance = 0.0;  ///< that the legs are certified at [m]
+  double clearance = 0.0;          ///< that the legs are certified at [m]
+  std::optional<Returns> returns;  ///< of the whole mission that the sortie is a part of
+
+  /// Throws Error{bad_config} if there are none.
+  const Returns& certified_returns() const;
 };
 
 /// Whether a plan's legs go round their corners where the route has a proven curve for that.
@@ -47,8 +51,8 @@ FlightPlan flight_plan(const Route& route, std::size_t index, const std::string&
                        const Site& site, const Obstacles& rules = {},
                        Corners corners = Corners::stopped_in);
 
-/// No-fly volumes as formats without heights can hold them: footprints that no leg crosses.
-/// Those that a leg passes over or under are left out, by name.
+/// No-fly volumes as formats without heights can hold them: footprints that no leg crosses, and no
+/// return. Those that one passes over or under are left out, by name.
 struct FlatNoFly {
   std::vector<Prism> written;
   std::vector<std::string> left_out;
@@ -81,6 +85,7 @@ struct FilePoint {
 struct RouteFile {
   HeightDatum datum = HeightDatum::ellipsoid;
   std::vector<FilePoint> points;
+  std::optional<double> return_height;  ///< above take-off, where the format says it [m]
 };
 
 /// The file's points in the local frame; `pad` is where heights above take-off count from. Throws

@@ -18,9 +18,6 @@ constexpr const char* kml_namespace = "http://www.opengis.net/kml/2.2";
 constexpr const char* wpml_namespace = "http://www.dji.com/wpmz/";
 constexpr const char* stop_turn = "toPointAndStopWithDiscontinuityCurvature";
 
-/// Return-to-home climbs at least so high above take-off [m].
-constexpr double least_return_height = 20.0;
-
 std::string xml_text(const pugi::xml_document& document) {
   std::ostringstream out;
   document.save(out, "  ", pugi::format_default, pugi::encoding_utf8);
@@ -84,7 +81,7 @@ class WpmlWriter {
     const double first = height(plan_.waypoints.front());
     add(config, "takeOffSecurityHeight", fixed(std::clamp(first, 1.2, 1500.0), 2));
     add(config, "globalTransitionalSpeed", speed());
-    add(config, "globalRTHHeight", fixed(std::max(highest_, least_return_height), 2));
+    add(config, "globalRTHHeight", fixed(plan_.certified_returns().height, 0));
     if (is_template_) {
       add(config, "takeOffRefPoint",
           degrees(pad_.latitude_deg) + "," + degrees(pad_.longitude_deg) + "," +
@@ -320,7 +317,7 @@ class WpmlChecker {
     }
     require_number(config, "takeOffSecurityHeight", 1.2, 1500);
     require_number(config, "globalTransitionalSpeed", 0.01, 15);
-    if (!is_template_) require_number(config, "globalRTHHeight", 2, 1500);
+    if (!is_template_) route.return_height = require_number(config, "globalRTHHeight", 2, 1500);
     require_one_of(config.child("wpml:droneInfo"), "droneEnumValue",
                    {"60", "67", "77", "89", "91", "99", "100", "103"});
     require_number(config.child("wpml:droneInfo"), "droneSubEnumValue", 0, 3);

@@ -140,6 +140,13 @@ CurvePiece piece_between(const CurveState& from, const CurveState& to, double du
   return piece;
 }
 
+std::array<CurvePiece, 2> halves(const CurvePiece& piece) {
+  const std::array<Control, 2> parts = halves(piece.control);
+  return {CurvePiece{parts[0], 0.5 * piece.duration}, CurvePiece{parts[1], 0.5 * piece.duration}};
+}
+
+double hull_radius(const CurvePiece& piece) { return hull_radius(piece.control); }
+
 double duration(const Curve& curve) {
   double sum = 0.0;
   for (const CurvePiece& piece : curve) sum += piece.duration;

@@ -37,6 +37,12 @@ using Curve = std::vector<CurvePiece>;
 /// of lower degree between the same states is that same motion.
 CurvePiece piece_between(const CurveState& from, const CurveState& to, double duration);
 
+/// The two halves of a piece, each flown in half of its time.
+std::array<CurvePiece, 2> halves(const CurvePiece& piece);
+
+/// How far from the straight line between its ends the hull of a piece reaches.
+double hull_radius(const CurvePiece& piece);
+
 double duration(const Curve& curve);
 /// Length to about 1e-6 of it.
 double length(const Curve& curve);

@@ -2,13 +2,14 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <numbers>
 #include <optional>
 
 #include "flight/paths/sampling_path.h"
 #include "flight/route/sortie_split.h"
 #include "flight/route/tour.h"
+#include "flight/space/place_text.h"
+#include "flight/way_home/ways_home.h"
 #include "geometry/error.h"
 
 namespace skycap::flight {
@@ -19,21 +20,6 @@ using Eigen::Vector3d;
 /// Autopilots need up to this many mission items for a station, and some around a sortie.
 constexpr int items_per_station = 5;
 constexpr int items_per_sortie = 12;
-
-std::string at(const Vector3d& p) {
-  const auto round = [](double value) {
-    std::string text = std::to_string(std::round(value * 100.0) / 100.0);
-    return text.substr(0, text.find('.') + 3);
-  };
-  return "(" + round(p.x()) + ", " + round(p.y()) + ", " + round(p.z()) + ")";
-}
-
-/// A length for messages, to the millimetre.
-std::string metres(double length) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.3f m", length);
-  return text;
-}
 
 double angle_between(double from, double to) {
   return std::remainder(to - from, 2.0 * std::numbers::pi);
@@ -51,6 +37,7 @@ class RoutePlanner {
     route_.options = options;
     route_.clearance = options.clearance.total();
     route_.min_clearance = route_.clearance + reported_surplus;
+    if (options.returns) ask_for_returns(*options.returns);
   }
 
   Route plan(std::vector<Station> stations, const FreeSpace* pad_space) {
@@ -61,6 +48,8 @@ class RoutePlanner {
     keep_in_range();
     connect();
     split();
+    add_up();
+    if (ways_home_ && !route_.sorties.empty()) certify_returns();
     smooth_legs();
     return std::move(route_);
   }
@@ -72,17 +61,18 @@ class RoutePlanner {
     const double clearance = route_.clearance;
     if (!space_.is_free({home_, home_}, clearance)) {
       const Closest closest = space_.closest({home_, home_}, clearance + 1.0);
-      throw Error(ErrorKind::bad_config, "the place above the take-off pad, " + at(home_) +
-                                             ", is " + metres(closest.distance) + " from " +
+      throw Error(ErrorKind::bad_config, "the place above the take-off pad, " + place_text(home_) +
+                                             ", is " + length_text(closest.distance) + " from " +
                                              space_.name(closest) + "; the clearance is " +
-                                             metres(clearance) + ": move the pad or climb higher");
+                                             length_text(clearance) +
+                                             ": move the pad or climb higher");
     }
     const Segment climb{home_, route_.options.takeoff};
     if (pad_space != nullptr && !pad_space->is_free(climb, clearance)) {
       const Closest closest = pad_space->closest(climb, clearance + 1.0);
       throw Error(ErrorKind::bad_config,
-                  "the climb from the pad comes within " + metres(closest.distance) + " of " +
-                      pad_space->name(closest) + "; the clearance is " + metres(clearance));
+                  "the climb from the pad comes within " + length_text(closest.distance) + " of " +
+                      pad_space->name(closest) + "; the clearance is " + length_text(clearance));
     }
   }
 
@@ -104,7 +94,12 @@ class RoutePlanner {
       const Segment place{station.view.position, station.view.position};
       if (!space_.is_free(place, route_.clearance)) {
         const Closest closest = space_.closest(place, route_.clearance + 1.0);
-        refuse(station, "it is " + metres(closest.distance) + " from " + space_.name(closest));
+        refuse(station, "it is " + length_text(closest.distance) + " from " + space_.name(closest));
+        continue;
+      }
+      const std::string why = ways_home_ ? ways_home_->why_none(station.view.position) : "";
+      if (!why.empty()) {
+        refuse(station, "there is no certified way home: " + why);
         continue;
       }
       allowed.push_back(station);
@@ -145,6 +140,10 @@ class RoutePlanner {
       const double moving = std::max(motion_.leg_time(way), is_last ? turning : 0.0);
       leg.duration += moving;
       leg.energy += motion_.leg_energy(way, moving);
+      // Between two points a return costs no more than from the dearer of them: level flight grows
+      // with a distance, which is convex, climb and descent evenly.
+      const double home = std::max(return_cost(points[i - 1]), return_cost(points[i]));
+      leg.emergency = std::max(leg.emergency, leg.energy + home);
       if (is_last) break;
       leg.duration += corner_hold;
       leg.energy += motion_.hover_energy(corner_hold);
@@ -172,7 +171,7 @@ class RoutePlanner {
         path = find_path_by_sampling(space_, home_, station.view.position, route_.clearance);
       }
       if (path.status != PathStatus::found) {
-        refuse(station, "there is no way to it at a clearance of " + metres(route_.clearance));
+        refuse(station, "there is no way to it at a clearance of " + length_text(route_.clearance));
         continue;
       }
       route_.stations.push_back(station);
@@ -193,10 +192,15 @@ class RoutePlanner {
   }
   Cost station_cost(const Station& station) const {
     const double hold = std::max(corner_hold, station.hold);
-    return {hold, motion_.hover_energy(hold)};
+    const double energy = motion_.hover_energy(hold);
+    return {hold, energy, energy + return_cost(station.view.position)};
   }
-  static Cost sum(const Cost& a, const Cost& b) { return {a.time + b.time, a.energy + b.energy}; }
-  static Cost cost_of(const Leg& leg) { return {leg.duration, leg.energy}; }
+  /// One after the other.
+  static Cost sum(const Cost& first, const Cost& second) {
+    return {first.time + second.time, first.energy + second.energy,
+            std::max(first.emergency, first.energy + second.emergency)};
+  }
+  static Cost cost_of(const Leg& leg) { return {leg.duration, leg.energy, leg.emergency}; }
 
   std::vector<Vector3d> way_home(std::size_t i) const {
     return {ways_[i].rbegin(), ways_[i].rend()};
@@ -212,12 +216,13 @@ class RoutePlanner {
       const std::optional<Leg> back = make_leg(way_home(i), nullptr, nullptr);
       if (!out || !back) {
         refuse(route_.stations[i],
-               "the way to it cannot be proven at a clearance of " + metres(route_.clearance));
+               "the way to it cannot be proven at a clearance of " + length_text(route_.clearance));
         continue;
       }
       const Cost there = sum(pad_cost(), cost_of(*out));
-      const Cost home = sum(landing_cost(), cost_of(*back));
-      const double needed = there.energy + station_cost(route_.stations[i]).energy + home.energy;
+      const Cost home = sum(cost_of(*back), landing_cost());
+      const Cost total = sum(sum(there, station_cost(route_.stations[i])), home);
+      const double needed = std::max(total.energy, total.emergency);
       if (needed > motion_.usable_energy()) {
         refuse(route_.stations[i], "getting there and back takes " + std::to_string(needed / 3600) +
                                        " Wh; the battery has " +
@@ -239,14 +244,18 @@ class RoutePlanner {
     const Station &from = route_.stations[i - 1], &to = route_.stations[i];
     const Path path = finder_.find(from.view.position, to.view.position);
     if (path.status == PathStatus::found) {
-      if (std::optional<Leg> leg = make_leg(path.points, &from, &to)) return *std::move(leg);
+      if (std::optional<Leg> leg = make_leg(with_returns(path.points), &from, &to)) {
+        return *std::move(leg);
+      }
     }
     // Both are connected to the pad, so there is a way, though a long one.
     std::vector<Vector3d> points = way_home(i - 1);
     points.insert(points.end(), ways_[i].begin() + 1, ways_[i].end());
     const std::vector<Vector3d> tight =
         pull_tight(space_, route_.clearance, points, route_.options.path.worthwhile_saving);
-    if (std::optional<Leg> leg = make_leg(tight, &from, &to)) return *std::move(leg);
+    if (std::optional<Leg> leg = make_leg(with_returns(tight), &from, &to)) {
+      return *std::move(leg);
+    }
     return make_leg(points, &from, &to).value();  // its two parts were proven
   }
 
@@ -260,12 +269,18 @@ class RoutePlanner {
   }
 
   void split() {
-    const std::size_t count = route_.stations.size();
-    if (count == 0) return;
+    if (route_.stations.empty()) return;
+    // Ways that no sortie takes need no returns.
+    do {
+      split_once();
+    } while (certify_ways());
+  }
+
+  void split_once() {
     SplitProblem problem;
-    for (std::size_t i = 0; i < count; ++i) {
+    for (std::size_t i = 0; i < route_.stations.size(); ++i) {
       problem.out.push_back(sum(pad_cost(), cost_of(outward_[i])));
-      problem.back.push_back(sum(landing_cost(), cost_of(homeward_[i])));
+      problem.back.push_back(sum(cost_of(homeward_[i]), landing_cost()));
       problem.station.push_back(station_cost(route_.stations[i]));
       if (i > 0) problem.leg.push_back(cost_of(route_.legs[i - 1]));
     }
@@ -276,9 +291,36 @@ class RoutePlanner {
     const SortieSplit split = split_into_sorties(problem);
     route_.duration = split.time;
     route_.duration_bound = split.time_bound;
+    route_.sorties.clear();
     for (const SortieRange& range : split.sorties) {
       add_sortie(range, problem, outward_[range.first], homeward_[range.last]);
     }
+  }
+
+  /// Whether a way that a sortie takes had to be changed.
+  bool certify_ways() {
+    if (!ways_home_) return false;
+    has_returns_.resize(ways_.size(), false);
+    bool has_changed = false;
+    for (const Sortie& sortie : route_.sorties) {
+      for (const std::uint32_t i : {sortie.first, sortie.last}) {
+        if (has_returns_[i]) continue;
+        has_returns_[i] = true;
+        std::vector<Vector3d> way = with_returns(ways_[i]);
+        if (way == ways_[i]) continue;
+        std::swap(way, ways_[i]);
+        std::optional<Leg> out = make_leg(ways_[i], nullptr, nullptr);
+        std::optional<Leg> back = make_leg(way_home(i), nullptr, nullptr);
+        if (!out || !back) {  // the returns' own proof will name the place
+          std::swap(way, ways_[i]);
+          continue;
+        }
+        outward_[i] = *std::move(out);
+        homeward_[i] = *std::move(back);
+        has_changed = true;
+      }
+    }
+    return has_changed;
   }
 
   void add_sortie(const SortieRange& range, const SplitProblem& problem, const Leg& out,
@@ -297,11 +339,64 @@ class RoutePlanner {
     sortie.duration = total.time;
     sortie.energy = total.energy;
     sortie.energy_left = problem.energy_per_sortie - total.energy;
-    route_.length += length;
-    route_.energy += total.energy;
-    route_.min_clearance = std::min(route_.min_clearance, clearance);
+    sortie.length = length;
+    sortie.clearance = clearance;
     route_.sorties.push_back(std::move(sortie));
   }
+
+  void add_up() {
+    for (const Sortie& sortie : route_.sorties) {
+      route_.length += sortie.length;
+      route_.energy += sortie.energy;
+      route_.min_clearance = std::min(route_.min_clearance, sortie.clearance);
+    }
+  }
+
+  // ---- ways home -----------------------------------------------------------------------------
+
+  void ask_for_returns(const ReturnOptions& asked) {
+    const Vector3d& pad = route_.options.takeoff;
+    ReturnLaw law{.dialects = asked.dialects,
+                  .level = pad.z() + std::floor(asked.highest - pad.z()),
+                  .landings = {pad},
+                  .landing_climb = route_.options.takeoff_climb};
+    law.landings.insert(law.landings.end(), asked.rally.begin(), asked.rally.end());
+    ways_home_.emplace(space_, law, home_, route_.clearance);
+  }
+
+  double return_cost(const Vector3d& place) const {
+    if (!ways_home_) return 0.0;
+    return return_energy(motion_, ways_home_->law(), place, route_.options.landing_time);
+  }
+
+  std::vector<Vector3d> with_returns(std::vector<Vector3d> way) const {
+    if (!ways_home_) return way;
+    return ways_home_->with_returns(std::move(way), route_.options.path.worthwhile_saving);
+  }
+
+  void certify_returns() {
+    std::vector<Segment> legs;
+    for (const Sortie& sortie : route_.sorties) {
+      const std::vector<Vector3d> points = sortie_points(route_, sortie);
+      for (std::size_t i = 1; i < points.size(); ++i) legs.push_back({points[i - 1], points[i]});
+    }
+    const ReturnLaw& law = ways_home_->law();
+    ReturnSearch search =
+        least_return(space_, legs, law, law.level, return_clearance(route_.clearance));
+    if (!search.found) {
+      throw Error(ErrorKind::bad_config,
+                  "there is no certified way home: " + search.why +
+                      "; move flight.takeoff, give flight.rally or raise site.highest_height");
+    }
+    route_.returns = std::move(search.found);
+    for (const Segment& leg : legs) {
+      const double energy =
+          return_energy(motion_, route_.returns->law, leg.to, route_.options.landing_time);
+      route_.returns->energy = std::max(route_.returns->energy, energy);
+    }
+  }
+
+  // ---- curves --------------------------------------------------------------------------------
 
   void smooth_legs() {
     for (Sortie& sortie : route_.sorties) {
@@ -319,6 +414,10 @@ class RoutePlanner {
         smooth(leg.points, space_, route_.clearance, route_.clearance + reported_surplus, motion_,
                route_.options.style);
     if (!curve) return;
+    if (route_.returns && !has_returns(space_, curve->curve, route_.returns->law,
+                                       return_clearance(route_.clearance))) {
+      return;
+    }
     const double waiting = std::max(0.0, turning_time(from, to) - curve->duration);
     if (curve->duration + waiting > leg.duration) return;
     if (curve->energy + motion_.hover_energy(waiting) > leg.energy) return;
@@ -329,51 +428,14 @@ class RoutePlanner {
   const FreeSpace& space_;
   PathFinder finder_;
   Vector3d home_;
+  std::optional<WaysHome> ways_home_;        ///< if returns are asked for
   std::vector<std::vector<Vector3d>> ways_;  ///< from above the pad to each station kept
   std::vector<Leg> outward_, homeward_;      ///< along them, once the stations are in range
+  std::vector<bool> has_returns_;            ///< the ways that have been looked at for returns
   Route route_;
 };
 
 }  // namespace
-
-double yaw_of(const geometry::View& view) {
-  if (view.direction.head<2>().norm() < 1e-9) return 0.0;
-  const double yaw = std::atan2(view.direction.x(), view.direction.y());
-  return yaw < 0.0 ? yaw + 2.0 * std::numbers::pi : yaw;
-}
-
-double pitch_of(const geometry::View& view) {
-  return std::asin(std::clamp(view.direction.z() / view.direction.norm(), -1.0, 1.0));
-}
-
-void ClearanceBudget::validate() const {
-  const auto require = [](double value, const char* field) {
-    if (value >= 0.0 && std::isfinite(value)) return;
-    throw Error(ErrorKind::bad_config, "clearance." + std::string(field) + " is " +
-                                           std::to_string(value) +
-                                           " m; it must be a finite number, zero or more");
-  };
-  require(vehicle_radius, "vehicle_radius"), require(position_error, "position_error");
-  require(tracking_error, "tracking_error"), require(map_error, "map_error");
-  require(margin, "margin");
-}
-
-void RouteOptions::validate() const {
-  clearance.validate();
-  path.validate();
-  if (!takeoff.allFinite()) {
-    throw Error(ErrorKind::bad_config, "the take-off place is not a finite position");
-  }
-  if (!(takeoff_climb >= 0.0) || !std::isfinite(takeoff_climb)) {
-    throw Error(ErrorKind::bad_config, "the climb after take-off is " +
-                                           std::to_string(takeoff_climb) +
-                                           " m; it must be a finite number, zero or more");
-  }
-  if (!(landing_time >= 0.0) || !std::isfinite(landing_time)) {
-    throw Error(ErrorKind::bad_config, "the landing time is " + std::to_string(landing_time) +
-                                           " s; it must be a finite number, zero or more");
-  }
-}
 
 Route plan_route(std::vector<Station> stations, const Vehicle& vehicle, const FreeSpace& space,
                  const FreeSpace* pad_space, const RouteOptions& options) {
@@ -387,29 +449,6 @@ Route plan_route(std::vector<Station> stations, const Vehicle& vehicle, const Fr
     }
   }
   return RoutePlanner(vehicle, space, options).plan(std::move(stations), pad_space);
-}
-
-std::vector<Violation> check_route(const std::vector<Vector3d>& points, const FreeSpace& space,
-                                   double clearance) {
-  for (std::size_t i = 0; i < points.size(); ++i) {
-    if (points[i].allFinite()) continue;
-    throw Error(ErrorKind::bad_geometry,
-                "point " + std::to_string(i) + " of the route is not a finite position");
-  }
-  std::vector<Violation> violations;
-  const std::size_t legs =
-      points.size() == 1 ? 1 : points.size() - std::min<std::size_t>(points.size(), 1);
-  for (std::size_t i = 0; i < legs; ++i) {
-    const Segment leg{points[i], points[std::min(i + 1, points.size() - 1)]};
-    const LegProof proof = prove(space, leg, clearance, clearance);
-    if (!proof.is_proven) violations.push_back({i, proof.closest, space.name(proof.closest)});
-  }
-  return violations;
-}
-
-std::string describe(const Violation& violation) {
-  return "leg " + std::to_string(violation.leg) + ": " + metres(violation.closest.distance) +
-         " from " + violation.obstacle + " at " + at(violation.closest.on_leg);
 }
 
 std::vector<Vector3d> sortie_points(const Route& route, const Sortie& sortie) {

@@ -14,6 +14,7 @@
 #include "flight/motion/vehicle.h"
 #include "flight/paths/path.h"
 #include "flight/space/clearance.h"
+#include "flight/way_home/least_return.h"
 #include "geometry/place/pose.h"
 
 namespace skycap::flight {
@@ -46,6 +47,13 @@ struct ClearanceBudget {
   void validate() const;
 };
 
+/// What is asked of the ways home that an autopilot flies by itself.
+struct ReturnOptions {
+  std::vector<Dialect> dialects;       ///< whose ways home are to be proven
+  double highest = 0.0;                ///< z up to which a height of return is looked for
+  std::vector<Eigen::Vector3d> rally;  ///< landing places beside the pad, vouched for as it is
+};
+
 struct RouteOptions {
   ClearanceBudget clearance;
   Conditions conditions;
@@ -55,6 +63,8 @@ struct RouteOptions {
   double landing_time = 10.0;             ///< for the last metre of each sortie, spent hovering [s]
   bool order_is_free = false;             ///< stations may be visited in a better order than given
   FlightStyle style = FlightStyle::stop;  ///< of files that can hold curves
+  /// From every point of the route there is a proven way home; without: the pilot answers for that.
+  std::optional<ReturnOptions> returns;
 
   void validate() const;  ///< throws Error{bad_config} naming the first value that is out of place
 };
@@ -70,6 +80,7 @@ struct Leg {
   double duration = 0.0;   ///< with stops in corners, and yaw and gimbal turning meanwhile [s]
   double energy = 0.0;     ///< [J]
   double clearance = 0.0;  ///< proven lower bound over the whole leg, see LegProof
+  double emergency = 0.0;  ///< see SplitProblem::Cost [J]
   /// Another way to fly it, at least as fast and for no more energy. The figures above and the
   /// sorties are about stops, which any autopilot can be told to make.
   std::optional<SmoothLeg> smooth;
@@ -83,6 +94,8 @@ struct Sortie {
   double duration = 0.0;     ///< from take-off to landing [s]
   double energy = 0.0;       ///< [J]
   double energy_left = 0.0;  ///< above the reserve, at landing [J]
+  double length = 0.0;       ///< climb and descent at the pad included
+  double clearance = 0.0;    ///< proven lower bound of all its legs
 };
 
 /// A station that is not in the route, and why.
@@ -108,6 +121,7 @@ struct Route {
   double duration_bound = 0.0;   ///< no split of this order into sorties is faster [s]
   double order_bound = 0.0;      ///< of a free order: no tour of straight lines is shorter [m]
   double order_length = 0.0;     ///< of a free order: straight lines in the order chosen [m]
+  std::optional<Returns> returns;  ///< if they were asked for and there is a route
 };
 
 /// Clearances are reported up to this much above what was asked for: proving more costs time.
@@ -116,8 +130,10 @@ inline constexpr double reported_surplus = 10.0;
 /// Plans the flight. A station that cannot be reached safely, neither by PathFinder nor by
 /// find_path_by_sampling(), is listed, not flown to; the route goes on from the one before it.
 /// `space` decides what is free; the climb from the pad is proven against `pad_space`, which should
-/// be the same without the ground (nullptr: the pilot answers for it). Throws what the validations
-/// throw, and Error{bad_config} if the place above the pad is not free.
+/// be the same without the ground (nullptr: the pilot answers for it). With `options.returns`, legs
+/// lead where every point has a proven way home, and stations that have none are listed too. Throws
+/// what the validations throw, and Error{bad_config} if the place above the pad is not free or if
+/// no height of return is safe for the whole route.
 Route plan_route(std::vector<Station> stations, const Vehicle& vehicle, const FreeSpace& space,
                  const FreeSpace* pad_space, const RouteOptions& options);
 

@@ -45,16 +45,19 @@ SortieSplit split_into_sorties(const SplitProblem& problem) {
     if (best_time[first] == never) continue;
     double time = problem.out[first].time, energy = problem.out[first].energy;
     const std::size_t end = std::min(count, first + problem.stations_per_sortie);
+    double worst = problem.out[first].emergency;
+    const auto add = [&](const SplitProblem::Cost& part) {
+      worst = std::max(worst, energy + part.emergency);
+      time += part.time;
+      energy += part.energy;
+    };
     for (std::size_t last = first; last < end; ++last) {
-      if (last > first) {
-        time += problem.leg[last - 1].time;
-        energy += problem.leg[last - 1].energy;
-      }
-      time += problem.station[last].time;
-      energy += problem.station[last].energy;
-      if (energy > problem.energy_per_sortie) break;
+      if (last > first) add(problem.leg[last - 1]);
+      add(problem.station[last]);
+      if (std::max(energy, worst) > problem.energy_per_sortie) break;
       // The way home from here must be affordable, or the vehicle should not have come this far.
-      if (energy + problem.back[last].energy > problem.energy_per_sortie) break;
+      const SplitProblem::Cost& back = problem.back[last];
+      if (energy + std::max(back.energy, back.emergency) > problem.energy_per_sortie) break;
       const double total = best_time[first] + time + problem.back[last].time;
       if (total < best_time[last + 1]) {
         best_time[last + 1] = total;

@@ -12,6 +12,9 @@ struct SplitProblem {
   struct Cost {
     double time = 0.0;
     double energy = 0.0;
+    /// What must be left when the part begins, so that wherever in it something goes wrong there is
+    /// energy for the return that the autopilot flies then.
+    double emergency = 0.0;
   };
   std::vector<Cost> out;      ///< pad to station, take-off included
   std::vector<Cost> station;  ///< what is done there
@@ -32,7 +35,8 @@ struct SortieSplit {
 };
 
 /// The fastest split in the given order (Beasley 1983, split of a giant tour): at every station the
-/// energy used so far and the way home fit into the battery. O(stations x stations in a sortie).
+/// energy used so far and the way home fit into the battery, and so does what each part asks for an
+/// emergency. O(stations x stations in a sortie).
 SortieSplit split_into_sorties(const SplitProblem& problem);
 
 }  // namespace skycap::flight

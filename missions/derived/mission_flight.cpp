@@ -18,6 +18,9 @@ constexpr double voxels_per_clearance = 4.0;
 /// How far beside the unknown box places are proposed: more than the clearance and a voxel.
 double spare_of(const file::Mission& mission) { return 2.0 * mission.flight.clearance; }
 
+/// No-fly volumes with their top above this are not flown over [m].
+constexpr double no_flight_is_higher = 500.0;
+
 /// Grid vertices looked at before a view counts as out of reach: some tenths of a second.
 constexpr std::size_t most_expansions = 50'000;
 
@@ -106,6 +109,25 @@ double takeoff_climb_of(const file::Mission& mission) {
   return mission.flight.takeoff_climb.value_or(std::max(5.0, mission.flight.clearance + 1.0));
 }
 
+double highest_return(const file::Mission& mission, double obstacles_top) {
+  /// A whole metre is lost in rounding, and autopilots may fly level up to 2 m lower.
+  constexpr double spare = 3.0;
+  const AlignedBox3d box = unknown_box_of(mission);
+  double top = std::max(obstacles_top, mission.scene.position.z());
+  if (!box.isEmpty()) top = std::max(top, box.max().z());
+  for (const survey::Prism& volume : mission.site.no_fly) {
+    if (volume.top < no_flight_is_higher) top = std::max(top, volume.top);
+  }
+  const double highest = top + mission.flight.clearance + spare;
+  if (!mission.site.highest_height) return highest;
+  return std::min(highest, *mission.site.highest_height - mission.flight.clearance);
+}
+
+std::vector<flight::Dialect> dialects_of(const flight::Vehicle& vehicle) {
+  if (vehicle.dialect != flight::Dialect::dji) return {vehicle.dialect};
+  return {flight::Dialect::dji, flight::Dialect::px4, flight::Dialect::ardupilot};
+}
+
 flight::RouteOptions route_options_of(const file::Mission& mission, const Vector3d& pad) {
   const file::FlightConfig& config = mission.flight;
   flight::RouteOptions options;
@@ -121,6 +143,8 @@ flight::RouteOptions route_options_of(const file::Mission& mission, const Vector
   options.conditions.temperature_c = config.temperature;
   options.conditions.cruise_speed = config.cruise_speed;
   options.conditions.reserve = config.reserve;
+  options.returns = flight::ReturnOptions{
+      dialects_of(vehicle_of(mission)), highest_return(mission, mission.scene.position.z()), {}};
   return options;
 }
 

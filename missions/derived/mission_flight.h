@@ -1,6 +1,8 @@
 /// What the flight layer needs to know of a mission, in its own terms.
 #pragma once
 
+#include <vector>
+
 #include <Eigen/Core>
 #include <Eigen/Geometry>
 
@@ -36,6 +38,14 @@ Eigen::Vector3d pad_of(const file::Mission& mission, const Eigen::Vector3d& firs
 
 /// How far the vehicle climbs from the pad before its first leg.
 double takeoff_climb_of(const file::Mission& mission);
+
+/// The greatest z at which a height of return is looked for: over the unknown box, no-fly volumes
+/// and `obstacles_top`, and under the greatest height that the site allows.
+double highest_return(const file::Mission& mission, double obstacles_top);
+
+/// The autopilots that the mission's files are written for: a DJI vehicle's .plan and .waypoints
+/// are for others.
+std::vector<flight::Dialect> dialects_of(const flight::Vehicle& vehicle);
 
 flight::RouteOptions route_options_of(const file::Mission& mission, const Eigen::Vector3d& pad);
 

@@ -317,7 +317,7 @@ SensorDescription read_sensor(const std::string& text, const std::string& file) 
 
 std::vector<std::string_view> sensor_presets() {
   std::vector<std::string_view> names;
-  for (const SensorPreset& preset : preset_files()) names.push_back(preset.name);
+  for (const PresetFile& preset : preset_files()) names.push_back(preset.name);
   return names;
 }
 
@@ -331,7 +331,7 @@ SensorDescription find_sensor(const std::string& name_or_file) {
     return read_sensor(text, name_or_file);
   }
   std::string known;
-  for (const SensorPreset& preset : preset_files()) {
+  for (const PresetFile& preset : preset_files()) {
     if (preset.name == name_or_file) {
       return read_sensor(std::string(preset.text), name_or_file + ".yaml");
     }

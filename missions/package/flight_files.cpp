@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <array>
+#include <map>
 #include <string_view>
 
+#include "flight/export/parameters.h"
 #include "flight/space/clearance.h"
 #include "geometry/error.h"
 #include "missions/derived/mission_flight.h"
@@ -64,6 +66,40 @@ flight::FlightPlan in_dialect(flight::FlightPlan plan, Format format,
   return plan;
 }
 
+/// The plan with the ways home of its dialect: those of the route, unless it is written for another
+/// autopilot than those that the route was planned for. Throws Error{bad_config} if there are none.
+void certify_dialect(flight::FlightPlan& plan, const flight::FreeSpace& space, double highest) {
+  if (!plan.returns) return;
+  flight::ReturnLaw law = plan.returns->law;
+  if (std::ranges::find(law.dialects, plan.vehicle.dialect) != law.dialects.end()) return;
+  law.dialects = {plan.vehicle.dialect};
+  std::vector<flight::Segment> legs;
+  for (std::size_t i = 1; i < plan.waypoints.size(); ++i) {
+    legs.push_back({plan.waypoints[i - 1].position, plan.waypoints[i].position});
+  }
+  flight::ReturnSearch search =
+      least_return(space, legs, law, highest, flight::return_clearance(plan.clearance));
+  if (!search.found) {
+    throw Error(ErrorKind::bad_config, "there is no certified way home: " + search.why);
+  }
+  search.found->energy = plan.returns->energy;
+  plan.returns = std::move(search.found);
+}
+
+bool has_parameters(Format format) { return format == Format::plan || format == Format::waypoints; }
+
+/// The parameter file, read back: it must say what was proven.
+std::string checked_parameters(const flight::FlightPlan& plan) {
+  const std::string text = flight::write_parameters(plan);
+  const flight::Dialect dialect = plan.vehicle.dialect;
+  const std::vector<flight::Parameter> read = flight::read_parameters(text);
+  flight::throw_first(flight::return_problems(read, dialect), "not good parameters");
+  if (flight::return_height(read, dialect) != plan.returns->height) {
+    throw Error(ErrorKind::bad_file, "the parameters do not hold the certified height of return");
+  }
+  return text;
+}
+
 }  // namespace
 
 std::span<const Format> package_formats() { return formats_of_packages; }
@@ -91,6 +127,7 @@ FlightFiles stage_flight(const file::Mission& mission, const flight::Route& rout
   const flight::KnownSpace known(rules);
   const flight::JointSpace space({&measured, &known});
   FlightFiles files;
+  std::map<std::string, std::string> parameters;  // of all sorties: a pilot sets them once
   const auto add_note = [&](const std::string& note) {
     if (std::ranges::find(files.notes, note) == files.notes.end()) files.notes.push_back(note);
   };
@@ -119,9 +156,13 @@ FlightFiles stage_flight(const file::Mission& mission, const flight::Route& rout
         }
         const auto corners =
             holds_curves ? flight::Corners::flown_round : flight::Corners::stopped_in;
-        const flight::FlightPlan plan = in_dialect(
+        flight::FlightPlan plan = in_dialect(
             flight_plan(route, i, mission.name + number, derived::site_of(mission), rules, corners),
             format, notes);
+        certify_dialect(plan, space, derived::highest_return(mission, plan.pad.z()));
+        if (has_parameters(format) && plan.returns) {
+          parameters[flight::parameters_name(plan.vehicle.dialect)] = checked_parameters(plan);
+        }
         const flight::ExportResult result = export_flight(plan, format, space, file);
         files.written.push_back({name, info.heights, result.min_clearance});
         std::ranges::for_each(notes, add_note);
@@ -132,13 +173,19 @@ FlightFiles stage_flight(const file::Mission& mission, const flight::Route& rout
       }
     }
   }
+  for (const auto& [name, text] : parameters) {
+    folder.write(name, text);
+    files.parameters.push_back(name);
+  }
   return files;
 }
 
 bool is_flight_file(std::string_view name) {
-  return std::ranges::any_of(flight::formats(), [&](const flight::FormatInfo& info) {
-    return is_flight_file(name, info.format);
-  });
+  return name == flight::parameters_name(Dialect::ardupilot) ||
+         name == flight::parameters_name(Dialect::px4) ||
+         std::ranges::any_of(flight::formats(), [&](const flight::FormatInfo& info) {
+           return is_flight_file(name, info.format);
+         });
 }
 
 bool is_flight_file(std::string_view name, Format format) {

@@ -32,6 +32,7 @@ struct FlightFile {
 
 struct FlightFiles {
   std::vector<FlightFile> written;
+  std::vector<std::string> parameters;  ///< names of the parameter files written with them
   std::vector<std::string> notes;  ///< what was not written, or what a format leaves out, and why
 };
 
@@ -42,6 +43,7 @@ std::span<const flight::Format> package_formats();
 /// and so on. Every file is read back and proved. A format that needs what the mission does not
 /// say, such as the geoid's height, or whose file fails its proof, is left out with a note, unless
 /// it is the only one: then that is thrown, as Error{bad_config} or what export_flight() throws.
+/// Beside files for MAVLink vehicles their parameters are staged, which say how high to return.
 FlightFiles stage_flight(const file::Mission& mission, const flight::Route& route,
                          const flight::MeasuredSpace& measured,
                          std::span<const flight::Format> formats, geometry::OutputFolder& folder);

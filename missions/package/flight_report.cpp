@@ -5,6 +5,21 @@
 #include "flight/route/route.h"
 
 namespace skycap::missions::package {
+namespace {
+
+std::string return_text(const SurveyMission& flight) {
+  if (!flight.route.returns) return "";
+  const flight::Returns& returns = *flight.route.returns;
+  std::string text = fmt::format("  return    certified at {:.0f} m above the pad, least {:.2f} m",
+                                 returns.height, returns.clearance);
+  if (!returns.obstacle.empty()) text += " from " + returns.obstacle;
+  const std::vector<std::string>& files = flight.files.parameters;
+  for (std::size_t i = 0; i < files.size(); ++i) text += (i == 0 ? "; set by " : ", ") + files[i];
+  return text + "\n";
+}
+
+}  // namespace
+
 std::string flight_text(const SurveyMission& flight) {
   if (!flight.failure.empty()) return "  flight    no route: " + flight.failure + "\n";
   const flight::Route& route = flight.route;
@@ -23,6 +38,7 @@ std::string flight_text(const SurveyMission& flight) {
       "+ tracking {:.2f} + map {:.2f} + margin {:.2f})\n",
       clearance.total(), route.min_clearance, clearance.vehicle_radius, clearance.position_error,
       clearance.tracking_error, clearance.map_error, clearance.margin);
+  text += return_text(flight);
   for (const flight::Unreached& missed : route.unreached) {
     text += fmt::format("  left out  view {}: {}\n", missed.station.view_index, missed.reason);
   }

@@ -111,6 +111,21 @@ Json settings(const file::Mission& mission) {
   return values;
 }
 
+/// How the vehicle comes home when its link, its battery or its pilot asks for it.
+Json return_summary(const SurveyMission& flight) {
+  if (!flight.route.returns) return {};
+  const flight::Returns& returns = *flight.route.returns;
+  return {{"height_m", returns.height},
+          {"clearance_m", returns.clearance},
+          {"nearest",
+           {{"from", json_of(returns.nearest.from)},
+            {"part", name_of(returns.nearest.piece.part)},
+            {"obstacle", returns.obstacle}}},
+          {"landings", json_of(returns.law.landings)},
+          {"energy_wh", returns.energy / 3600.0},
+          {"parameters", flight.files.parameters}};
+}
+
 /// The flight of the survey and the route in the package, in metres, seconds and watt hours.
 Json flight_summary(const run::FlownSurvey& flown, const SurveyMission& flight) {
   const flight::Route& route = flight.route;
@@ -160,6 +175,7 @@ Json flight_summary(const run::FlownSurvey& flown, const SurveyMission& flight) 
             {"min_clearance_m", route.min_clearance},
             {"sorties", sorties},
             {"unreached", unreached}}},
+          {"return", return_summary(flight)},
           {"files", files},
           {"notes", flight.files.notes}};
 }
@@ -312,6 +328,12 @@ std::optional<SurveyMission> stage_package(const file::Mission& mission,
     try {
       flight->route =
           plan_flight(mission, *record.flown->measured, record.flown->pad, views_of(record));
+      if (flight->route.sorties.empty() && !flight->route.unreached.empty()) {
+        const flight::Unreached& first = flight->route.unreached.front();
+        throw Error(ErrorKind::bad_config, "no view can be flown to; view " +
+                                               std::to_string(first.station.view_index) + ": " +
+                                               first.reason);
+      }
       flight->files =
           stage_flight(mission, flight->route, *record.flown->measured, package_formats(), folder);
     } catch (const Error& error) {

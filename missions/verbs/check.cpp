@@ -11,6 +11,7 @@
 #include "missions/file/mission_keys.h"
 #include "missions/file/number_text.h"
 #include "missions/scene/survey_scene.h"
+#include "missions/verbs/check_returns.h"
 #include "missions/verbs/verbs.h"
 
 namespace skycap::missions::verbs {
@@ -42,9 +43,10 @@ int check_route_file(const CheckOptions& options, const file::Mission& mission,
               << violations.size() << " of " << std::max<std::size_t>(points.size(), 1) - 1
               << " legs come nearer than " << file::short_text(asked_for) << " m, the nearest "
               << file::short_text(least) << " m; " << file::short_text(flight::length(points))
-              << " m long\n"
-              << std::flush;
-  return violations.empty() ? 0 : 1;
+              << " m long\n";
+  const ReturnCheck returns = check_returns(file, options.return_height, mission, space, points);
+  console.out << file.string() << ": " << returns.text << "\n" << std::flush;
+  return violations.empty() && returns.is_safe ? 0 : 1;
 }
 
 }  // namespace

@@ -141,6 +141,9 @@ void add_check(CLI::App& app, const Console& console, Action& action) {
   verb->add_option("--route", options->route,
                    "Prove that this route (.plan, .waypoints, .kmz, .kml, .geojson, .csv, .tum) "
                    "keeps flight.clearance from the scene");
+  verb->add_option("--return-height", options->return_height,
+                   "The height of return that the vehicle is set to, above take-off [m]")
+      ->check(CLI::Range(0.0, 10'000.0));
   add_set_option(*verb, *keys);
   verb->add_flag("--schema", *prints_schema, "Print the JSON Schema of mission files instead");
   verb->add_flag("--keys", *prints_keys, "Print the table of all keys instead");

@@ -45,12 +45,13 @@ int benchmark(const BenchmarkOptions& options, const Console& console);
 struct CheckOptions {
   std::filesystem::path mission;
   std::optional<std::filesystem::path> route;
+  std::optional<double> return_height;  ///< that the vehicle is set to, above take-off
   std::vector<file::KeyOverride> overrides;
 };
 
 /// Checks a mission file and its scene; says what follows from it. With a route: proves that each
-/// of its legs keeps the mission's clearance from the scene, the ground and the site's rules; exit
-/// code 1, with a list, if one does not.
+/// of its legs, and each return from it, keeps the mission's clearance from the scene, the ground
+/// and the site's rules; exit code 1, with a list, if one does not.
 int check(const CheckOptions& options, const Console& console);
 
 struct ExportOptions {

@@ -1,0 +1,277 @@
+#include "flight/export/parameters.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <span>
+
+#include "flight/way_home/least_return.h"
+#include "geometry/error.h"
+
+namespace skycap::flight {
+namespace {
+
+enum class Type { whole = 6, real = 9 };  ///< of a value, as MAVLink numbers them
+
+/// What an autopilot's settings must be for its returns to be those that were proven.
+struct Requirement {
+  const char* name;
+  double least, most;
+  double by_default;
+};
+
+constexpr std::array ardupilot_requirements{
+    Requirement{"RTL_CONE_SLOPE", 0.0, 0.0, 3.0},   Requirement{"RTL_CLIMB_MIN", 0.0, 0.0, 0.0},
+    Requirement{"RTL_CLIMB_MIN_M", 0.0, 0.0, 0.0},  Requirement{"RTL_ALT_TYPE", 0.0, 0.0, 0.0},
+    Requirement{"RTL_ALT_FINAL", 0.0, 0.0, 0.0},    Requirement{"RTL_ALT_FINAL_M", 0.0, 0.0, 0.0},
+    Requirement{"WPNAV_RADIUS", 5.0, 200.0, 200.0}, Requirement{"WP_RADIUS_M", 0.05, 2.0, 2.0},
+};
+constexpr std::array px4_requirements{
+    Requirement{"RTL_TYPE", 0.0, 0.0, 0.0},
+    Requirement{"RTL_CONE_ANG", 0.0, 0.0, 45.0},
+    Requirement{"NAV_ACC_RAD", 0.05, 1.0, 10.0},
+    Requirement{"NAV_MC_ALT_RAD", 0.05, 0.8, 0.8},
+};
+
+std::span<const Requirement> requirements(Dialect dialect) {
+  if (dialect == Dialect::ardupilot) return ardupilot_requirements;
+  if (dialect == Dialect::px4) return px4_requirements;
+  return {};
+}
+
+/// The shortest text of a number with up to four decimals.
+std::string plain(double value) {
+  std::string text = fixed(value, 4);
+  text.erase(text.find_last_not_of('0') + 1);
+  if (text.ends_with('.')) text.pop_back();
+  return text;
+}
+
+/// Writes one file, heading by heading.
+class ParameterWriter {
+ public:
+  ParameterWriter(const FlightPlan& plan, const Returns& returns)
+      : plan_(plan), returns_(returns), is_px4_(plan.vehicle.dialect == Dialect::px4) {}
+
+  std::string write() {
+    comment("Onboard parameters for Vehicle 1");
+    comment("");
+    comment("Mission \"" + plan_.name + "\": the way home is proven at " + plain(returns_.height) +
+            " m above the pad, and only there.");
+    comment(
+        "Upload in this order: these parameters; restart if the station asks for it; read back");
+    comment(std::string(is_px4_ ? "RTL_RETURN_ALT and RTL_CONE_ANG"
+                                : "RTL_ALT (cm) or RTL_ALT_M (m), and RTL_CONE_SLOPE") +
+            "; fence; rally points; mission. After arming,");
+    comment("check that home is within 2 m of the planned pad: returns end at home.");
+    comment("");
+    if (is_px4_) comment("Vehicle-Id Component-Id Name Value Type");
+    is_px4_ ? write_px4() : write_ardupilot();
+    return std::move(text_);
+  }
+
+ private:
+  void comment(const std::string& line) { text_ += line.empty() ? "#\n" : "# " + line + "\n"; }
+
+  void set(const std::string& name, double value, Type type = Type::whole) {
+    if (is_px4_) {
+      text_ += "1\t1\t" + name + "\t" + plain(value) + "\t" +
+               std::to_string(static_cast<int>(type)) + "\n";
+    } else {
+      text_ += name + "," + plain(value) + "\n";
+    }
+  }
+  void real(const std::string& name, double value) { set(name, value, Type::real); }
+
+  /// Under its old name in centimetres, and under the name since 4.7 in metres.
+  void both(const std::string& old_name, const std::string& new_name, double metres) {
+    set(old_name, std::round(100.0 * metres));
+    set(new_name, metres);
+  }
+
+  /// Share of the battery that the dearest return needs; at most what is left at landing anyway, so
+  /// that a flight as planned does not set it off.
+  double battery_share() const {
+    const double full = plan_.vehicle.battery_wh * 3600.0;
+    return std::max(0.07, std::min(1.2 * returns_.energy / full, plan_.conditions.reserve));
+  }
+
+  double ceiling() const {
+    const bool has_ceiling = plan_.fence && plan_.fence->ceiling < 1e4;
+    return has_ceiling ? plan_.fence->ceiling - plan_.pad.z() : 0.0;
+  }
+
+  void write_ardupilot() {
+    comment(
+        "Return: names and centimetres up to 4.6, then names and metres since 4.7. An autopilot");
+    comment("knows one of each pair; the station may say that the other is missing.");
+    both("RTL_ALT", "RTL_ALT_M", returns_.height);
+    set("RTL_CONE_SLOPE", 0);  // else it climbs less near home
+    both("RTL_CLIMB_MIN", "RTL_CLIMB_MIN_M", 0);
+    both("RTL_ALT_FINAL", "RTL_ALT_FINAL_M", 0);  // lands
+    set("RTL_ALT_TYPE", 0);                       // above home
+    set("RTL_OPTIONS", 0);
+    set("RTL_LOIT_TIME", 5000);
+    both("RTL_SPEED", "RTL_SPEED_MS", plan_.conditions.cruise_speed);
+    comment("Speeds [m/s], accelerations [m/s^2] and jerk of missions");
+    both("WPNAV_SPEED_UP", "WP_SPD_UP", 2.5);
+    both("WPNAV_SPEED_DN", "WP_SPD_DN", 1.5);
+    both("WPNAV_ACCEL", "WP_ACC", 2.5);
+    both("WPNAV_ACCEL_Z", "WP_ACC_Z", 1.0);
+    set("WPNAV_JERK", 1);
+    set("WP_JERK", 1);
+    both("WPNAV_RADIUS", "WP_RADIUS_M", 2.0);
+    both("LAND_SPEED", "LAND_SPD_MS", 0.5);
+    both("LAND_ALT_LOW", "LAND_ALT_LOW_M", 10.0);
+    set("WP_YAW_BEHAVIOR", 0);  // headings are the mission's
+    set("OA_TYPE", 0);          // no other ways than those that were proven
+    comment("Link lost, pilot's or station's: return");
+    set("FS_THR_ENABLE", 1);
+    set("FS_GCS_ENABLE", 1);
+    set("FS_OPTIONS", 0);
+    comment(
+        "Battery low: return; critical: land where it is. Set BATT_CAPACITY to the pack's [mAh],");
+    comment("BATT_LOW_MAH to " + plain(std::ceil(100.0 * battery_share())) +
+            " % of it, what the dearest return needs, and BATT_CRT_MAH to what a landing needs.");
+    set("BATT_FS_LOW_ACT", 2);
+    set("BATT_FS_CRT_ACT", 1);
+    set("RALLY_INCL_HOME", 1);
+    write_ardupilot_fence();
+  }
+
+  void write_ardupilot_fence() {
+    if (!plan_.fence && plan_.no_fly.empty()) return;
+    constexpr int altitude = 1, polygon = 4;
+    comment(
+        "Fence: the polygons are in the .plan file. Out of it: return, which is proven from the");
+    comment("route only, not from outside of the fence.");
+    set("FENCE_ENABLE", 1);
+    set("FENCE_TYPE", polygon + (ceiling() > 0.0 ? altitude : 0));
+    set("FENCE_ACTION", 1);
+    set("FENCE_MARGIN", 2);
+    if (ceiling() > 0.0) set("FENCE_ALT_MAX", std::floor(ceiling()));
+  }
+
+  void write_px4() {
+    set("RTL_TYPE", 0);  // to home or a rally point, straight
+    real("RTL_RETURN_ALT", returns_.height);
+    set("RTL_CONE_ANG", 0);  // else it climbs less near home
+    real("RTL_MIN_DIST", 0.5);
+    real("RTL_DESCEND_ALT", 10);
+    real("RTL_LAND_DELAY", 0);
+    real("NAV_ACC_RAD", 1);
+    real("NAV_MC_ALT_RAD", 0.8);
+    comment("Speeds [m/s], accelerations [m/s^2] and jerk");
+    real("MPC_XY_CRUISE", std::max(3.0, plan_.conditions.cruise_speed));
+    real("MPC_Z_V_AUTO_UP", 3);
+    real("MPC_Z_V_AUTO_DN", 1.5);
+    real("MPC_ACC_HOR", 3);
+    real("MPC_JERK_AUTO", 4);
+    real("MPC_LAND_SPEED", 0.7);
+    comment("Headings are the mission's; a view is taken within a degree of its own");
+    set("MPC_YAW_MODE", 0);
+    real("MIS_YAW_ERR", 1);
+    real("MIS_YAW_TMT", 10);
+    comment("Link lost, pilot's or station's: return");
+    set("NAV_RCL_ACT", 2);
+    set("NAV_DLL_ACT", 2);
+    set("COM_RCL_EXCEPT", 0);
+    comment("Battery critical: return, on what the dearest return needs; emergency: land");
+    set("COM_LOW_BAT_ACT", 3);
+    const double share = std::ceil(100.0 * battery_share()) / 100.0;
+    real("BAT_CRIT_THR", share);
+    real("BAT_LOW_THR", std::min(share + 0.05, 0.5));
+    if (!plan_.fence && plan_.no_fly.empty()) return;
+    comment(
+        "Fence: the polygons are in the .plan file. Out of it: return, which is proven from the");
+    comment("route only, not from outside of the fence.");
+    set("GF_ACTION", 3);
+    if (ceiling() > 0.0) real("GF_MAX_VER_DIST", std::floor(ceiling()));
+  }
+
+  const FlightPlan& plan_;
+  const Returns& returns_;
+  bool is_px4_;
+  std::string text_;
+};
+
+/// The parameter in a line of either kind; nothing if it is none.
+std::optional<Parameter> parameter_in(const std::string& line) {
+  const std::vector<std::string> tabbed = split(line, '\t'), plain_fields = split(line, ',');
+  const bool is_qgc = tabbed.size() == 5;
+  if (!is_qgc && plain_fields.size() != 2) return std::nullopt;
+  const std::optional<double> value = to_number(is_qgc ? tabbed[3] : plain_fields[1]);
+  if (!value) return std::nullopt;
+  return Parameter{is_qgc ? tabbed[2] : plain_fields[0], *value};
+}
+
+const Parameter* find(const std::vector<Parameter>& parameters, const std::string& name) {
+  const auto found = std::ranges::find(parameters, name, &Parameter::name);
+  return found == parameters.end() ? nullptr : &*found;
+}
+
+}  // namespace
+
+std::string parameters_name(Dialect dialect) {
+  if (dialect == Dialect::dji) return "";
+  return dialect == Dialect::px4 ? "mission.params" : "mission.param";
+}
+
+std::string write_parameters(const FlightPlan& plan) {
+  if (plan.vehicle.dialect == Dialect::dji) {
+    throw Error(ErrorKind::bad_config, "vehicle \"" + plan.vehicle.name +
+                                           "\" takes no parameter files; export kmz for it");
+  }
+  return ParameterWriter(plan, plan.certified_returns()).write();
+}
+
+std::vector<Parameter> read_parameters(const std::string& text) {
+  std::vector<Parameter> parameters;
+  std::size_t number = 0;
+  for (const std::string& line : lines_of(text)) {
+    ++number;
+    if (line.empty() || line.starts_with('#')) continue;
+    const std::optional<Parameter> parameter = parameter_in(line);
+    if (!parameter) {
+      throw Error(ErrorKind::bad_file,
+                  "line " + std::to_string(number) + " is \"" + line +
+                      "\"; it must be NAME,VALUE or QGroundControl's five fields between tabs");
+    }
+    parameters.push_back(*parameter);
+  }
+  return parameters;
+}
+
+std::optional<double> return_height(const std::vector<Parameter>& parameters, Dialect dialect) {
+  if (dialect == Dialect::px4) {
+    const Parameter* height = find(parameters, "RTL_RETURN_ALT");
+    return height == nullptr ? std::nullopt : std::optional(height->value);
+  }
+  const Parameter* metres = find(parameters, "RTL_ALT_M");
+  const Parameter* centimetres = find(parameters, "RTL_ALT");
+  if (metres != nullptr) return metres->value;
+  return centimetres == nullptr ? std::nullopt : std::optional(centimetres->value / 100.0);
+}
+
+Problems return_problems(const std::vector<Parameter>& parameters, Dialect dialect) {
+  Problems problems;
+  for (const Requirement& required : requirements(dialect)) {
+    const Parameter* given = find(parameters, required.name);
+    const double value = given == nullptr ? required.by_default : given->value;
+    if (value >= required.least && value <= required.most) continue;
+    problems.push_back(std::string(required.name) + " is " + plain(value) + "; it must be " +
+                       (required.least == required.most
+                            ? plain(required.most)
+                            : "in [" + plain(required.least) + ", " + plain(required.most) + "]"));
+  }
+  const Parameter* metres = find(parameters, "RTL_ALT_M");
+  const Parameter* centimetres = find(parameters, "RTL_ALT");
+  if (metres != nullptr && centimetres != nullptr &&
+      std::abs(100.0 * metres->value - centimetres->value) > 0.5) {
+    problems.push_back("RTL_ALT is " + plain(centimetres->value) + " cm and RTL_ALT_M " +
+                       plain(metres->value) + " m; they must be the same height");
+  }
+  return problems;
+}
+
+}  // namespace skycap::flight

@@ -1,0 +1,28 @@
+/// Places and lengths for messages.
+#pragma once
+
+#include <cmath>
+#include <cstdio>
+#include <string>
+
+#include <Eigen/Core>
+
+namespace skycap::flight {
+
+/// "(1.25, -3.00, 12.50)".
+inline std::string place_text(const Eigen::Vector3d& place) {
+  char text[96];
+  const auto hundredths = [](double value) { return std::round(value * 100.0) / 100.0 + 0.0; };
+  std::snprintf(text, sizeof text, "(%.2f, %.2f, %.2f)", hundredths(place.x()),
+                hundredths(place.y()), hundredths(place.z()));
+  return text;
+}
+
+/// To the millimetre: "1.995 m".
+inline std::string length_text(double length) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.3f m", length);
+  return text;
+}
+
+}  // namespace skycap::flight

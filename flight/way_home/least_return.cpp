@@ -1,0 +1,118 @@
+#include "flight/way_home/least_return.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+namespace skycap::flight {
+namespace {
+
+using Eigen::Vector3d;
+
+/// PX4 holds for 5 s before it returns (COM_FAIL_ACT_T), ArduCopter 5 s over home (RTL_LOIT_TIME);
+/// braking and two corners are left [s].
+constexpr double waiting_time = 12.0;
+
+/// DJI's applications take no lower height of return [m above the pad].
+constexpr double least_of_dji = 20.0;
+
+double least_height(const ReturnLaw& law) {
+  const bool has_dji = std::ranges::find(law.dialects, Dialect::dji) != law.dialects.end();
+  return std::ceil(std::max(law.landing_climb, has_dji ? least_of_dji : 0.0));
+}
+
+double top_of(const std::vector<Segment>& legs, const ReturnLaw& law) {
+  double top = law.level;
+  for (const Segment& leg : legs) top = std::max({top, leg.from.z(), leg.to.z()});
+  return top;
+}
+
+/// Proves height after height, and first the leg that has failed last.
+class LeastReturn {
+ public:
+  LeastReturn(const FreeSpace& space, const std::vector<Segment>& legs, double clearance)
+      : space_(space), legs_(legs), clearance_(clearance), order_(legs.size()) {
+    for (std::size_t i = 0; i < order_.size(); ++i) order_[i] = i;
+  }
+
+  ReturnSearch prove(const ReturnLaw& law) {
+    Returns returns{.law = law, .height = law.level - law.landings.front().z()};
+    returns.nearest = prove_landings(space_, law, top_of(legs_, law), clearance_);
+    queries_ += returns.nearest.queries;
+    if (!returns.nearest.is_proven) return failure(returns.nearest);
+    for (std::size_t i = 0; i < order_.size(); ++i) {
+      const ReturnProof proof = prove_returns(space_, legs_[order_[i]], law, clearance_);
+      queries_ += proof.queries;
+      if (!proof.is_proven) {
+        std::rotate(order_.begin(), order_.begin() + static_cast<std::ptrdiff_t>(i),
+                    order_.begin() + static_cast<std::ptrdiff_t>(i) + 1);
+        return failure(proof);
+      }
+      if (proof.clearance < returns.nearest.clearance) returns.nearest = proof;
+    }
+    returns.clearance = returns.nearest.clearance;
+    returns.queries = queries_;
+    if (returns.nearest.closest.kind != ObstacleKind::none) {
+      returns.obstacle = space_.name(returns.nearest.closest);
+    }
+    return {returns, ""};
+  }
+
+ private:
+  ReturnSearch failure(const ReturnProof& proof) const {
+    return {std::nullopt, describe(proof, space_)};
+  }
+
+  const FreeSpace& space_;
+  const std::vector<Segment>& legs_;
+  double clearance_;
+  std::vector<std::size_t> order_;  ///< of the legs
+  std::size_t queries_ = 0;
+};
+
+}  // namespace
+
+ReturnSearch prove_returns(const FreeSpace& space, const std::vector<Segment>& legs,
+                           const ReturnLaw& law, double clearance) {
+  return LeastReturn(space, legs, clearance).prove(law);
+}
+
+ReturnSearch least_return(const FreeSpace& space, const std::vector<Segment>& legs, ReturnLaw law,
+                          double highest, double clearance) {
+  const double ground = law.landings.front().z();
+  LeastReturn search(space, legs, clearance);
+  char text[96];
+  std::snprintf(text, sizeof text, "no height of return fits below %.1f m", highest);
+  ReturnSearch result{std::nullopt, text};
+  for (double height = least_height(law); ground + height <= highest; height += 1.0) {
+    law.level = ground + height;
+    result = search.prove(law);
+    if (result.found) return result;
+    std::snprintf(text, sizeof text, "at a height of return of %.0f m ", height);
+    result.why = text + result.why;
+  }
+  return result;
+}
+
+double return_energy(const Motion& motion, const ReturnLaw& law, const Vector3d& place,
+                     double landing_time) {
+  double most = 0.0;
+  for (const ReturnPiece& level : return_pieces(law, place)) {
+    if (level.part != ReturnPart::level) continue;
+    const double top = std::max(law.level, place.z());
+    double sum = motion.hover_energy(waiting_time + landing_time);
+    const auto fly = [&](const Vector3d& way) {
+      sum += motion.leg_energy(way, motion.leg_time(way));
+    };
+    fly({0.0, 0.0, top - place.z()});
+    fly(level.line.to - level.line.from);
+    // Every landing place is somewhere on the ground: the lowest makes the longest descent.
+    double ground = law.landings.front().z();
+    for (const Vector3d& landing : law.landings) ground = std::min(ground, landing.z());
+    fly({0.0, 0.0, ground - top});
+    most = std::max(most, sum);
+  }
+  return most;
+}
+
+}  // namespace skycap::flight

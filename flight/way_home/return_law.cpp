@@ -1,0 +1,124 @@
+#include "flight/way_home/return_law.h"
+
+#include <algorithm>
+#include <limits>
+
+namespace skycap::flight {
+namespace {
+
+using Eigen::Vector3d;
+
+/// What an autopilot does beside climbing, flying level and landing [m].
+struct Habits {
+  double level_below = 0.0;     ///< level flight may begin this far below the height of return
+  double landing_radius = 0.0;  ///< the descent may begin this far beside the landing place
+  double level_as_it_is = 0.0;  ///< nearer than this it may fly home level, without a climb
+  double lands_at_once = 0.0;   ///< nearer than this it may land where it is
+};
+
+/// Distances at which DJI's vehicles change their way of flying are taken 3 m wider than the
+/// manuals say: they measure with their own error, and from where they have come to rest.
+constexpr double dji_tolerance = 3.0;
+
+constexpr Habits habits_of(Dialect dialect) {
+  switch (dialect) {
+    case Dialect::ardupilot:
+      return {.level_below = 2.0};
+    case Dialect::px4:
+      return {.level_below = 0.8, .landing_radius = 1.0};
+    case Dialect::dji:
+      break;
+  }
+  return {.level_as_it_is = 50.0 + dji_tolerance, .lands_at_once = 5.0 + dji_tolerance};
+}
+
+/// The widest of what the law's autopilots do.
+Habits habits_of(const ReturnLaw& law) {
+  Habits all;
+  for (const Dialect dialect : law.dialects) {
+    const Habits one = habits_of(dialect);
+    all.level_below = std::max(all.level_below, one.level_below);
+    all.landing_radius = std::max(all.landing_radius, one.landing_radius);
+    all.level_as_it_is = std::max(all.level_as_it_is, one.level_as_it_is);
+    all.lands_at_once = std::max(all.lands_at_once, one.lands_at_once);
+  }
+  return all;
+}
+
+double distance_over_ground(const Vector3d& a, const Vector3d& b) {
+  return (a - b).head<2>().norm();
+}
+
+Vector3d at_height(const Vector3d& place, double z) { return {place.x(), place.y(), z}; }
+
+/// A landing place is taken if it is the nearest by the autopilot's own reckoning, which may be
+/// off by this [m].
+constexpr double choice_tolerance = 10.0;
+
+/// The landing places that are, or may be taken for, the nearest from some place within `reach`.
+std::vector<Vector3d> landings_near(const ReturnLaw& law, const Vector3d& place, double reach) {
+  double nearest = std::numeric_limits<double>::infinity();
+  for (const Vector3d& landing : law.landings) {
+    nearest = std::min(nearest, distance_over_ground(place, landing));
+  }
+  std::vector<Vector3d> chosen;
+  for (const Vector3d& landing : law.landings) {
+    const double surplus = distance_over_ground(place, landing) - nearest;
+    if (surplus <= 2.0 * reach + choice_tolerance) chosen.push_back(landing);
+  }
+  return chosen;
+}
+
+}  // namespace
+
+const char* name_of(ReturnPart part) {
+  switch (part) {
+    case ReturnPart::climb:
+      return "the climb";
+    case ReturnPart::level:
+      return "the level flight";
+    case ReturnPart::level_as_it_is:
+      return "the level flight without a climb";
+    case ReturnPart::descent:
+      return "the descent";
+    case ReturnPart::landing:
+      break;
+  }
+  return "the landing where it is";
+}
+
+std::vector<ReturnPiece> return_pieces(const ReturnLaw& law, const Vector3d& place, double reach) {
+  const Habits habits = habits_of(law);
+  const double top = std::max(law.level, place.z());
+  std::vector<ReturnPiece> pieces{{{place, at_height(place, top)}, 0.0, ReturnPart::climb}};
+  // A band of heights is the line through its middle, half of it spread to either side.
+  const double spread = 0.5 * habits.level_below, level = top - spread;
+  for (const Vector3d& landing : landings_near(law, place, reach)) {
+    pieces.push_back(
+        {{at_height(place, level), at_height(landing, level)}, spread, ReturnPart::level});
+    const double nearest = distance_over_ground(place, landing) - reach;
+    if (nearest < habits.level_as_it_is) {
+      pieces.push_back({{place, at_height(landing, place.z())}, 0.0, ReturnPart::level_as_it_is});
+    }
+    const double low = landing.z() + law.landing_climb;
+    if (nearest < habits.lands_at_once && place.z() + reach > low) {
+      pieces.push_back(
+          {{place, at_height(place, std::min(low, place.z()))}, 0.0, ReturnPart::landing});
+    }
+  }
+  return pieces;
+}
+
+std::vector<ReturnPiece> landing_columns(const ReturnLaw& law, double top) {
+  const double spread = habits_of(law).landing_radius;
+  std::vector<ReturnPiece> columns;
+  for (const Vector3d& landing : law.landings) {
+    columns.push_back(
+        {{at_height(landing, top), at_height(landing, landing.z() + law.landing_climb)},
+         spread,
+         ReturnPart::descent});
+  }
+  return columns;
+}
+
+}  // namespace skycap::flight

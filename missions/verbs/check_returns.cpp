@@ -1,0 +1,111 @@
+#include "missions/verbs/check_returns.h"
+
+#include <algorithm>
+#include <fstream>
+#include <iterator>
+
+#include "flight/export/export.h"
+#include "flight/export/parameters.h"
+#include "flight/way_home/least_return.h"
+#include "geometry/error.h"
+#include "missions/derived/mission_flight.h"
+#include "missions/file/number_text.h"
+
+namespace skycap::missions::verbs {
+namespace {
+
+using Eigen::Vector3d;
+using flight::Dialect;
+
+/// Who flies such a file; nobody by itself if it is for maps or set-point followers.
+std::optional<Dialect> dialect_of(const std::filesystem::path& file,
+                                  const flight::Vehicle& vehicle) {
+  const std::string ending = file.extension().string();
+  if (ending == ".kmz" || file.string().ends_with(".litchi.csv")) return Dialect::dji;
+  if (ending != ".plan" && ending != ".waypoints" && ending != ".txt") return std::nullopt;
+  if (vehicle.dialect != Dialect::dji) return vehicle.dialect;
+  return ending == ".plan" ? Dialect::px4 : Dialect::ardupilot;
+}
+
+/// A height of return, and who says so.
+struct StatedHeight {
+  double height = 0.0;
+  std::string by;
+  flight::Problems problems;  ///< settings by which the vehicle would return in another way
+};
+
+std::optional<StatedHeight> stated_by_parameters(const std::filesystem::path& route,
+                                                 Dialect dialect) {
+  const std::string name = flight::parameters_name(dialect);
+  const std::filesystem::path file = route.parent_path() / name;
+  if (name.empty() || !std::filesystem::exists(file)) return std::nullopt;
+  std::ifstream stream(file, std::ios::binary);
+  const std::string text{std::istreambuf_iterator<char>(stream), {}};
+  try {
+    const std::vector<flight::Parameter> parameters = flight::read_parameters(text);
+    const std::optional<double> height = flight::return_height(parameters, dialect);
+    if (!height) return std::nullopt;
+    return StatedHeight{*height, name, flight::return_problems(parameters, dialect)};
+  } catch (const Error& error) {
+    throw Error(error.kind(), file.string() + ": " + error.what());
+  }
+}
+
+std::optional<StatedHeight> stated_height(const std::filesystem::path& route,
+                                          const std::optional<double>& given, Dialect dialect) {
+  if (given) return StatedHeight{*given, "--return-height", {}};
+  if (const auto height = flight::read_return_height(route)) {
+    return StatedHeight{*height, "globalRTHHeight", {}};
+  }
+  return stated_by_parameters(route, dialect);
+}
+
+std::string metres(double length) { return file::short_text(length) + " m"; }
+
+}  // namespace
+
+ReturnCheck check_returns(const std::filesystem::path& file,
+                          const std::optional<double>& return_height, const file::Mission& mission,
+                          const flight::FreeSpace& space, const std::vector<Vector3d>& points) {
+  const std::optional<Dialect> dialect =
+      mission.flight.is_flown() ? dialect_of(file, derived::vehicle_of(mission)) : std::nullopt;
+  if (!dialect || points.size() < 2) {
+    return {true, "returns are not checked: no autopilot flies home by this file"};
+  }
+  std::vector<flight::Segment> legs;
+  for (std::size_t i = 1; i < points.size(); ++i) legs.push_back({points[i - 1], points[i]});
+  const double ground = derived::pad_of(mission, mission.scene.position).z();
+  flight::ReturnLaw law{.dialects = {*dialect},
+                        .landings = {{points[0].x(), points[0].y(), ground}},
+                        .landing_climb = derived::takeoff_climb_of(mission)};
+  const double clearance =
+      std::max(0.0, flight::return_clearance(mission.flight.clearance) - flight::rounding_bound);
+
+  const auto stated = stated_height(file, return_height, *dialect);
+  if (stated && !stated->problems.empty()) {
+    return {false, "not safe, " + stated->by + ": " + stated->problems.front()};
+  }
+  std::string fault;
+  if (stated) {
+    law.level = ground + stated->height;
+    const flight::ReturnSearch proof = prove_returns(space, legs, law, clearance);
+    if (proof.found) {
+      return {true, "all returns at " + metres(stated->height) + " (" + stated->by +
+                        ") are proven, the nearest at " + metres(proof.found->clearance)};
+    }
+    fault = "not safe, at " + metres(stated->height) + " (" + stated->by + ") " + proof.why + "; ";
+  }
+  const double top = space.extent().isEmpty() ? ground : space.extent().max().z();
+  const flight::ReturnSearch least =
+      least_return(space, legs, law, derived::highest_return(mission, top), clearance);
+  if (!least.found) {
+    return {false, fault.empty() ? "not safe, no height of return is: " + least.why
+                                 : fault + "no other height is safe"};
+  }
+  const std::string needed = metres(least.found->height);
+  if (!fault.empty()) return {false, fault + "the least safe height of return is " + needed};
+  return {true, "the file does not say how high the vehicle returns: set it to " + needed +
+                    " above take-off, the least that is safe"};
+}
+
+}  // namespace skycap::missions::verbs

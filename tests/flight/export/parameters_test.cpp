@@ -1,0 +1,137 @@
+#include "flight/export/parameters.h"
+
+#include <map>
+#include <set>
+#include <sstream>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "geometry/error.h"
+#include "tests/flight/export/sample_plan.h"
+
+namespace skycap::flight {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
+
+FlightPlan plan_of(const char* vehicle) {
+  FlightPlan plan = sample_plan(vehicle_profile(vehicle));
+  plan.returns->height = 47.0;
+  return plan;
+}
+
+/// Mission Planner's reading (ParamFile.loadParamFile): lines split at commas, tabs and spaces, "#"
+/// begins a comment line, a name at most 16 characters long as in MAVLink's PARAM_SET.
+std::map<std::string, double> read_as_mission_planner(const std::string& text) {
+  std::map<std::string, double> values;
+  std::istringstream stream(text);
+  for (std::string line; std::getline(stream, line);) {
+    if (line.empty() || line[0] == '#') continue;
+    const std::size_t comma = line.find(',');
+    EXPECT_NE(comma, std::string::npos) << line;
+    EXPECT_LE(comma, 16U) << line;
+    EXPECT_TRUE(values.emplace(line.substr(0, comma), std::stod(line.substr(comma + 1))).second)
+        << line << " is there twice";
+  }
+  return values;
+}
+
+/// QGroundControl's reading (ParameterManager::readParametersFromStream): five fields between tabs,
+/// the type 6 (int32) or 9 (float), an integer without a fraction.
+std::map<std::string, double> read_as_qgroundcontrol(const std::string& text) {
+  std::map<std::string, double> values;
+  std::istringstream stream(text);
+  for (std::string line; std::getline(stream, line);) {
+    if (line.starts_with('#')) continue;
+    std::vector<std::string> fields;
+    std::istringstream parts(line);
+    for (std::string field; std::getline(parts, field, '\t');) fields.push_back(field);
+    EXPECT_EQ(fields.size(), 5U) << line;
+    if (fields.size() != 5) continue;
+    EXPECT_EQ(fields[0], "1");
+    EXPECT_EQ(fields[1], "1");
+    EXPECT_LE(fields[2].size(), 16U) << line;
+    EXPECT_TRUE(fields[4] == "6" || fields[4] == "9") << line;
+    EXPECT_TRUE(fields[4] != "6" || fields[3].find('.') == std::string::npos) << line;
+    values[fields[2]] = std::stod(fields[3]);
+  }
+  return values;
+}
+
+// Centimetres under the old names, metres under those since 4.7.
+TEST(Parameters, ArduPilotReturnsAtTheCertifiedHeightByEitherName) {
+  const auto values = read_as_mission_planner(write_parameters(plan_of("generic_ardupilot")));
+  EXPECT_EQ(values.at("RTL_ALT"), 4700);
+  EXPECT_EQ(values.at("RTL_ALT_M"), 47);
+  EXPECT_EQ(values.at("RTL_CONE_SLOPE"), 0);
+  EXPECT_EQ(values.at("RTL_CLIMB_MIN"), 0);
+  EXPECT_EQ(values.at("RTL_SPEED"), 400);
+  EXPECT_EQ(values.at("RTL_SPEED_MS"), 4);
+  EXPECT_EQ(values.at("FS_THR_ENABLE"), 1);
+  EXPECT_EQ(values.at("FS_GCS_ENABLE"), 1);
+  EXPECT_EQ(values.at("BATT_FS_LOW_ACT"), 2);
+  EXPECT_EQ(values.at("FENCE_ENABLE"), 1);
+  EXPECT_EQ(values.at("FENCE_TYPE"), 5);  // the sample's fence has a ceiling and corners
+  EXPECT_EQ(values.at("FENCE_ALT_MAX"), 60);
+}
+
+TEST(Parameters, Px4ReturnsAtTheCertifiedHeight) {
+  const auto values = read_as_qgroundcontrol(write_parameters(plan_of("generic")));
+  EXPECT_EQ(values.at("RTL_RETURN_ALT"), 47);
+  EXPECT_EQ(values.at("RTL_CONE_ANG"), 0);
+  EXPECT_EQ(values.at("RTL_TYPE"), 0);
+  EXPECT_EQ(values.at("NAV_ACC_RAD"), 1);
+  EXPECT_EQ(values.at("NAV_RCL_ACT"), 2);
+  EXPECT_EQ(values.at("NAV_DLL_ACT"), 2);
+  EXPECT_EQ(values.at("COM_LOW_BAT_ACT"), 3);
+  EXPECT_GE(values.at("BAT_CRIT_THR"), 0.07);
+  EXPECT_EQ(values.at("GF_ACTION"), 3);
+}
+
+TEST(Parameters, AreReadBackAsWritten) {
+  for (const char* vehicle : {"generic_ardupilot", "generic"}) {
+    const FlightPlan plan = plan_of(vehicle);
+    const Dialect dialect = plan.vehicle.dialect;
+    const std::vector<Parameter> read = read_parameters(write_parameters(plan));
+    EXPECT_EQ(return_height(read, dialect), 47.0);
+    EXPECT_THAT(return_problems(read, dialect), IsEmpty());
+    const auto twin = dialect == Dialect::px4 ? read_as_qgroundcontrol(write_parameters(plan))
+                                              : read_as_mission_planner(write_parameters(plan));
+    EXPECT_EQ(read.size(), twin.size());
+    for (const Parameter& parameter : read) EXPECT_EQ(twin.at(parameter.name), parameter.value);
+  }
+}
+
+TEST(Parameters, SaysWhichSettingsChangeTheWayHome) {
+  EXPECT_THAT(return_problems({{"RTL_ALT", 4700}, {"RTL_CONE_SLOPE", 0}}, Dialect::ardupilot),
+              IsEmpty());
+  EXPECT_THAT(return_problems({{"RTL_ALT", 4700}}, Dialect::ardupilot),
+              ElementsAre("RTL_CONE_SLOPE is 3; it must be 0"));
+  EXPECT_THAT(return_problems({{"RTL_ALT", 4700}, {"RTL_ALT_M", 4700}, {"RTL_CONE_SLOPE", 0}},
+                              Dialect::ardupilot),
+              ElementsAre("RTL_ALT is 4700 cm and RTL_ALT_M 4700 m; they must be the same height"));
+  EXPECT_THAT(return_problems({{"RTL_RETURN_ALT", 47}, {"RTL_CONE_ANG", 0}}, Dialect::px4),
+              ElementsAre("NAV_ACC_RAD is 10; it must be in [0.05, 1]"));
+}
+
+TEST(Parameters, NamesTheLineThatIsNone) {
+  try {
+    read_parameters("# fine\nRTL_ALT,4700\nRTL_CONE_SLOPE=0\n");
+    FAIL() << "must not be taken";
+  } catch (const Error& error) {
+    EXPECT_THAT(error.what(), HasSubstr("line 3 is \"RTL_CONE_SLOPE=0\""));
+  }
+}
+
+TEST(Parameters, AreNotWrittenWithoutCertifiedReturns) {
+  FlightPlan plan = plan_of("generic");
+  plan.returns.reset();
+  EXPECT_THROW(write_parameters(plan), Error);
+  EXPECT_THROW(write_parameters(plan_of("m350_rtk")), Error);
+}
+
+}  // namespace
+}  // namespace skycap::flight
