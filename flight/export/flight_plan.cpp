@@ -24,6 +24,7 @@ Waypoint stop(const Station& station, double clearance) {
   waypoint.yaw = yaw_of(station.view);
   waypoint.pitch = pitch_of(station.view);
   waypoint.hold = std::max(corner_hold, station.hold);
+  waypoint.hold_after = station.hold_after;
   waypoint.shots = station.shots;
   waypoint.view_index = station.view_index;
   return waypoint;
@@ -90,25 +91,32 @@ FlatNoFly flat_no_fly(const FlightPlan& plan) {
 
 std::vector<StopTime> stop_times(const FlightPlan& plan) {
   const Motion motion(plan.vehicle, plan.conditions);
-  std::vector<StopTime> times;
-  Vector3d from = plan.pad;
-  double now = 0.0;
+  const Waypoint& above_pad = plan.waypoints.front();
+  double now = motion.takeoff_time((above_pad.position - plan.pad).norm());
+  std::vector<StopTime> times{{now, now, now + above_pad.hold, now + above_pad.hold}};
   const Waypoint* last_station = nullptr;
-  for (const Waypoint& waypoint : plan.waypoints) {
-    double moving = waypoint.curve.empty() ? motion.leg_time(waypoint.position - from)
-                                           : duration(waypoint.curve);
+  for (std::size_t i = 1; i < plan.waypoints.size(); ++i) {
+    const Waypoint& waypoint = plan.waypoints[i];
+    now = times.back().departure;
+    const double leg = waypoint.curve.empty()
+                           ? motion.leg_time(waypoint.position - plan.waypoints[i - 1].position)
+                           : duration(waypoint.curve) + plan.vehicle.mode.settle_time;
+    double aimed = now + leg;
     if (waypoint.is_station && last_station != nullptr) {
       const double turn = std::remainder(waypoint.yaw - last_station->yaw, 2.0 * M_PI);
-      moving =
-          std::max({moving, turn_time(turn, plan.vehicle.yaw_rate, plan.vehicle.yaw_acceleration),
-                    std::abs(waypoint.pitch - last_station->pitch) / plan.vehicle.gimbal_rate});
+      aimed = now + motion.aimed_time(leg, turn, waypoint.pitch - last_station->pitch);
     }
     if (waypoint.is_station) last_station = &waypoint;
-    times.push_back({now + moving, now + moving + waypoint.hold});
-    now = times.back().departure;
-    from = waypoint.position;
+    const double shot = aimed + waypoint.hold;
+    times.push_back({now + leg, aimed, shot, shot + waypoint.hold_after});
   }
   return times;
+}
+
+double flight_time(const FlightPlan& plan) {
+  const Motion motion(plan.vehicle, plan.conditions);
+  const double descent = (plan.waypoints.back().position - plan.pad).norm();
+  return stop_times(plan).back().departure + motion.landing_time(descent);
 }
 
 std::vector<Vector3d> local_points(const RouteFile& file, const Site& site, const Vector3d& pad) {

@@ -18,9 +18,10 @@ namespace skycap::flight {
 struct Waypoint {
   Eigen::Vector3d position = Eigen::Vector3d::Zero();  ///< local frame
   bool is_station = false;                             ///< else a corner of a leg
-  double yaw = 0.0;    ///< of a station: from north, clockwise [rad]
-  double pitch = 0.0;  ///< of the gimbal at a station [rad]
-  double hold = 0.0;   ///< [s]
+  double yaw = 0.0;         ///< of a station: from north, clockwise [rad]
+  double pitch = 0.0;       ///< of the gimbal at a station [rad]
+  double hold = 0.0;        ///< at rest and aimed before the shots, or at a corner [s]
+  double hold_after = 0.0;  ///< and after them [s]
   int shots = 0;
   std::uint32_t view_index = 0;
   double clearance = 0.0;  ///< proven for the leg that ends here [m]
@@ -61,9 +62,15 @@ FlatNoFly flat_no_fly(const FlightPlan& plan);
 
 /// When the plan's vehicle is where, stop by stop [s], counted from the pad.
 struct StopTime {
-  double arrival, departure;
+  double arrival;    ///< settled in place
+  double aimed;      ///< heading and gimbal are right, too
+  double shot;       ///< the hold is over
+  double departure;  ///< and the hold after the shots
 };
 std::vector<StopTime> stop_times(const FlightPlan& plan);
+
+/// From leaving the pad until the motors stop there [s].
+double flight_time(const FlightPlan& plan);
 
 // ---- what readers give -----------------------------------------------------------------------
 

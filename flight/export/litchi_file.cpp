@@ -40,10 +40,11 @@ std::string actions_of(const Waypoint& waypoint) {
   if (waypoint.is_station) act(tilt, fixed(waypoint.pitch * to_deg, 0));  // whole degrees only
   act(stay, fixed(waypoint.hold * 1000.0, 0));
   for (int shot = 0; shot < waypoint.shots; ++shot) act(photo, "0");
+  if (waypoint.hold_after > 0.0) act(stay, fixed(waypoint.hold_after * 1000.0, 0));
   if (used > actions_per_line) {
     throw Error(ErrorKind::bad_config, "a station with " + std::to_string(waypoint.shots) +
                                            " shots cannot be written for Litchi, which takes " +
-                                           std::to_string(actions_per_line - 2));
+                                           std::to_string(actions_per_line - 3));
   }
   for (; used < actions_per_line; ++used) text += ",-1,0";
   return text;

@@ -11,10 +11,6 @@ namespace {
 
 constexpr double to_deg = 180.0 / std::numbers::pi;
 
-/// How near the vehicle must come to a waypoint before it counts as reached: PX4's default, metres,
-/// would start the hold long before the view [m].
-constexpr double acceptance_radius = 0.3;
-
 bool is_navigation(int c) {
   return c == command::waypoint || c == command::takeoff || c == command::land ||
          c == command::return_to_launch || c == command::delay;
@@ -28,19 +24,17 @@ bool is_shot(int c) { return c == command::start_capture || c == command::digica
 class ItemWriter {
  public:
   explicit ItemWriter(const FlightPlan& plan)
-      : plan_(plan), local_(plan.site.origin), pad_(local_.to_geodetic(plan.pad)) {}
+      : plan_(plan),
+        times_(stop_times(plan)),
+        local_(plan.site.origin),
+        pad_(local_.to_geodetic(plan.pad)) {}
 
   std::vector<MissionItem> write() {
     const Waypoint& above_pad = plan_.waypoints.front();
     add_place(command::takeoff, {0, 0, 0, not_given}, above_pad.position);
-    add(command::change_speed, {1, plan_.conditions.cruise_speed, -1, 0, 0, 0, 0});
+    add_speeds();
     for (std::size_t i = 1; i < plan_.waypoints.size(); ++i) {
-      if (plan_.waypoints[i].is_station) {
-        add_station(plan_.waypoints[i]);
-      } else {
-        add_place(command::waypoint, {hold(plan_.waypoints[i]), acceptance_radius, 0, not_given},
-                  plan_.waypoints[i].position);
-      }
+      plan_.waypoints[i].is_station ? add_station(i) : add_stop(i, not_given);
     }
     add_place(command::land, {0, 0, 0, not_given}, plan_.pad);
     return std::move(items_);
@@ -48,11 +42,6 @@ class ItemWriter {
 
  private:
   bool is_ardupilot() const { return plan_.vehicle.dialect == Dialect::ardupilot; }
-
-  /// ArduPilot keeps whole seconds only, and drops the rest.
-  double hold(const Waypoint& waypoint) const {
-    return is_ardupilot() ? std::ceil(waypoint.hold) : waypoint.hold;
-  }
 
   void add(int number, const std::array<double, 7>& params) {
     items_.push_back({number, frame::mission, params});
@@ -67,24 +56,48 @@ class ItemWriter {
                        std::round((place.height - pad_.height) * 1e3) / 1e3}});
   }
 
-  // ArduPilot starts "do" items when the item before them is done and flies on meanwhile: yaw and
-  // gimbal turn on the way. It obeys CONDITION_YAW and ignores the waypoint's own yaw; PX4 obeys
-  // the waypoint's and refuses missions that hold a CONDITION_YAW.
-  void add_station(const Waypoint& station) {
-    const double yaw_deg = std::round(station.yaw * to_deg * 1e4) / 1e4;
+  /// All that the times and the tracking depend on, whatever the vehicle is set to. PX4 knows no
+  /// vertical speeds in a mission and ignores them.
+  void add_speeds() {
+    add(command::change_speed, {1, plan_.conditions.cruise_speed, -1, 0, 0, 0, 0});
+    if (!is_ardupilot()) return;
+    add(command::change_speed, {2, plan_.vehicle.mode.max_ascent, -1, 0, 0, 0, 0});
+    add(command::change_speed, {3, plan_.vehicle.mode.max_descent, -1, 0, 0, 0, 0});
+  }
+
+  void add_delay(double seconds) {
+    if (seconds > 0.0) add(command::delay, {seconds, -1, -1, -1, 0, 0, 0});
+  }
+
+  /// The place, and the wait there until the shots, if there are any. ArduPilot keeps whole seconds
+  /// of a waypoint's own hold but all of a delay's, which makes the waypoint before it a stop too.
+  void add_stop(std::size_t i, double yaw_deg) {
+    const double wait = std::round((times_[i].shot - times_[i].arrival) * 1e3) / 1e3;
+    add_place(command::waypoint, {is_ardupilot() ? 0.0 : wait, acceptance_radius, 0, yaw_deg},
+              plan_.waypoints[i].position);
+    if (is_ardupilot()) add_delay(wait);
+  }
+
+  // ArduPilot starts "do" items when the item before them is done and flies on meanwhile: gimbal
+  // and yaw turn on the way, the gimbal first since whatever comes after a CONDITION_YAW waits
+  // until the vehicle has turned. It obeys that and ignores the waypoint's own yaw; PX4 obeys the
+  // waypoint's and refuses missions that hold a CONDITION_YAW. The delay after the shots keeps the
+  // vehicle there until the shutter has closed.
+  void add_station(std::size_t i) {
+    const Waypoint& station = plan_.waypoints[i];
+    const double yaw_deg = std::fmod(std::round(station.yaw * to_deg * 1e4) / 1e4, 360.0);
     const double pitch_deg = std::round(station.pitch * to_deg * 1e4) / 1e4;
-    if (is_ardupilot()) add(command::condition_yaw, {std::fmod(yaw_deg, 360.0), 0, 0, 0, 0, 0, 0});
     add(command::mount_control, {pitch_deg, 0, 0, 0, 0, 0, 2});  // 2: by these angles
-    add_place(command::waypoint,
-              {hold(station), acceptance_radius, 0,
-               is_ardupilot() ? not_given : std::fmod(yaw_deg, 360.0)},
-              station.position);
+    if (is_ardupilot()) add(command::condition_yaw, {yaw_deg, 0, 0, 0, 0, 0, 0});
+    add_stop(i, is_ardupilot() ? not_given : yaw_deg);
     for (int shot = 0; shot < station.shots; ++shot) {
       add(command::start_capture, {0, 0, 1, static_cast<double>(++shots_), 0, 0, 0});
     }
+    add_delay(station.hold_after);
   }
 
   const FlightPlan& plan_;
+  std::vector<StopTime> times_;
   LocalFrame local_;
   GeodeticPoint pad_;
   int shots_ = 0;
@@ -248,6 +261,9 @@ RouteFile route_of(const std::vector<MissionItem>& items) {
     if (item.command == command::condition_yaw) yaw_deg = item.params[0];
     if (is_gimbal(item.command)) pitch_deg = item.params[0];
     if (is_shot(item.command) && !route.points.empty()) ++route.points.back().shots;
+    if (item.command == command::delay && !route.points.empty()) {
+      route.points.back().hold += std::max(0.0, item.params[0]);
+    }
     // The landing is straight down from the last waypoint: the pad itself is no place to keep
     // clear.
     if (item.command != command::waypoint && item.command != command::takeoff) continue;

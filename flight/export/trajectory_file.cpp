@@ -38,7 +38,7 @@ class TrajectorySampler {
     Vector3d from = plan_.waypoints.front().position;
     double left = times.front().arrival;
     for (std::size_t i = 0; i < plan_.waypoints.size(); ++i) {
-      add_leg(from, plan_.waypoints[i], left, times[i].arrival);
+      add_leg(from, plan_.waypoints[i], left, times[i].aimed);
       add_stop(plan_.waypoints[i], times[i]);
       from = plan_.waypoints[i].position;
       left = times[i].departure;
@@ -60,8 +60,8 @@ class TrajectorySampler {
     if (distance == 0.0) return {from};
     const Vector3d direction = (to.position - from) / distance;
     const MotionState along =
-        rest_to_rest_state(distance, motion_.leg_speed(direction), plan_.vehicle.acceleration,
-                           plan_.vehicle.jerk, time);
+        rest_to_rest_state(distance, motion_.leg_speed(direction),
+                           motion_.leg_acceleration(direction), plan_.vehicle.mode.jerk, time);
     return {from + along.distance * direction, along.speed * direction,
             along.acceleration * direction};
   }
@@ -90,11 +90,15 @@ class TrajectorySampler {
 
   void add_stop(const Waypoint& waypoint, const StopTime& times) {
     TimedState state{
-        times.arrival, waypoint.position, Vector3d::Zero(), Vector3d::Zero(), yaw_, 0.0, pitch_,
+        times.aimed, waypoint.position, Vector3d::Zero(), Vector3d::Zero(), yaw_, 0.0, pitch_,
         false};
     add(state);
+    state.time = times.shot;
+    state.is_shot = waypoint.shots > 0;
+    add(state);
+    if (!(times.departure > times.shot)) return;
     state.time = times.departure;
-    state.is_shot = waypoint.shots > 0;  // at the end of the hold
+    state.is_shot = false;
     add(state);
   }
 

@@ -196,6 +196,7 @@ class WpmlWriter {
       add(photo, "fileSuffix", "view_" + std::to_string(waypoint.view_index));
       add(photo, "useGlobalPayloadLensIndex", "1");
     }
+    if (waypoint.hold_after > 0.0) add(action("hover"), "hoverTime", fixed(waypoint.hold_after, 2));
   }
 
   static void add_gimbal(pugi::xml_node gimbal, const Waypoint& waypoint) {

@@ -41,7 +41,7 @@ struct Ramp {
   Ramp stretched(double factor) const { return {factor * rise, factor * hold}; }
 };
 
-Ramp ramp(double from, double to, const Vehicle& limits) {
+Ramp ramp(double from, double to, const MissionMode& limits) {
   const double change = std::abs(to - from);
   if (change == 0.0) return {};
   const double full_rise = limits.acceleration / limits.jerk;
@@ -55,7 +55,7 @@ Ramp ramp(double from, double to, const Vehicle& limits) {
 }
 
 /// The ramp is symmetric, so its mean speed is that of its ends.
-double ramp_distance(double from, double to, const Vehicle& limits) {
+double ramp_distance(double from, double to, const MissionMode& limits) {
   return 0.5 * (from + to) * ramp(from, to, limits).duration();
 }
 
@@ -170,7 +170,7 @@ class Blender {
   /// Lowers the speeds at corners until each follows from the one before within the straight piece
   /// between them, forwards and backwards.
   void match_speeds() {
-    const Vehicle& limits = motion_.vehicle();
+    const MissionMode& limits = motion_.vehicle().mode;
     const auto limit = [&](std::size_t from, std::size_t to, std::size_t piece) {
       const double start = blends_[from].speed, room = straight_length(piece);
       double& speed = blends_[to].speed;
@@ -183,7 +183,7 @@ class Blender {
   }
 
   void add_straight(std::size_t i, Curve& curve) const {
-    const Vehicle& limits = motion_.vehicle();
+    const MissionMode& limits = motion_.vehicle().mode;
     const Vector3d way = direction(i);
     const double start = blends_[i].speed, end = blends_[i + 1].speed, room = straight_length(i);
     StraightMotion motion(curve, points_[i] + blends_[i].reach * way, way, start);

@@ -113,13 +113,15 @@ double slowdown_of_part(const Control& c, double duration, const Motion& motion,
   }
   for (std::size_t i = 0; i < 4; ++i) {
     const Vector3d acceleration = 20.0 * rate * rate * (c[i + 2] - 2.0 * c[i + 1] + c[i]);
-    const double share = acceleration.norm() / motion.vehicle().acceleration;
-    factor = std::max(factor, std::sqrt(share));
+    const double size = acceleration.norm();
+    if (size > 0.0) {
+      factor = std::max(factor, std::sqrt(size / motion.leg_acceleration(acceleration / size)));
+    }
   }
   for (std::size_t i = 0; i < 3; ++i) {
     const Vector3d jerk =
         60.0 * rate * rate * rate * (c[i + 3] - 3.0 * c[i + 2] + 3.0 * c[i + 1] - c[i]);
-    factor = std::max(factor, std::cbrt(jerk.norm() / motion.vehicle().jerk));
+    factor = std::max(factor, std::cbrt(jerk.norm() / motion.vehicle().mode.jerk));
   }
   return factor;
 }

@@ -220,7 +220,9 @@ Curve refine(const Curve& start, const FreeSpace& space, double wanted_clearance
   const WallCost wall_cost{&space, wanted_clearance};
   Curve best;
   for (int round = 0; round < rounds; ++round) {
-    solve(joints, {step, speed, vehicle.max_ascent, vehicle.max_descent, vehicle.jerk}, wall_cost);
+    solve(joints,
+          {step, speed, vehicle.mode.max_ascent, vehicle.mode.max_descent, vehicle.mode.jerk},
+          wall_cost);
     Curve curve = curve_through(joints, step);
     const double factor = needed_slowdown(curve, motion);
     curve = slowed(std::move(curve), factor);

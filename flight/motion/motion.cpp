@@ -140,8 +140,8 @@ double Motion::forward_power(double airspeed) const {
 double Motion::leg_speed(const Vector3d& direction) const {
   const double horizontal = direction.head<2>().norm();
   double speed = conditions_.cruise_speed;
-  if (direction.z() > 0.0) speed = std::min(speed, vehicle_.max_ascent / direction.z());
-  if (direction.z() < 0.0) speed = std::min(speed, vehicle_.max_descent / -direction.z());
+  if (direction.z() > 0.0) speed = std::min(speed, vehicle_.mode.max_ascent / direction.z());
+  if (direction.z() < 0.0) speed = std::min(speed, vehicle_.mode.max_descent / -direction.z());
   if (horizontal > 0.0) {
     // |ground velocity - wind| <= max_speed, solved for the ground speed along the leg.
     const double along = conditions_.wind.dot(direction.head<2>()) / horizontal;
@@ -153,11 +153,54 @@ double Motion::leg_speed(const Vector3d& direction) const {
   return std::max(speed, 0.1);  // wind limits are below the top speed for every sane vehicle
 }
 
-double Motion::leg_time(const Vector3d& displacement) const {
+double Motion::leg_acceleration(const Vector3d& direction) const {
+  const double horizontal = direction.head<2>().norm(), vertical = std::abs(direction.z());
+  const MissionMode& mode = vehicle_.mode;
+  if (vertical * mode.acceleration > horizontal * mode.vertical_acceleration) {
+    return mode.vertical_acceleration / vertical;
+  }
+  return mode.acceleration / horizontal;
+}
+
+double Motion::moving_time(const Vector3d& displacement) const {
   const double distance = displacement.norm();
   if (distance == 0.0) return 0.0;
-  return rest_to_rest_time(distance, leg_speed(displacement / distance), vehicle_.acceleration,
-                           vehicle_.jerk);
+  const Vector3d direction = displacement / distance;
+  const LegLimits limits{leg_speed(direction), leg_acceleration(direction)};
+  const MissionMode& mode = vehicle_.mode;
+  if (mode.law == LegLaw::s_curve) {
+    return s_curve_time(distance, limits, mode.jerk, mode.jerk_rise);
+  }
+  // On shorter ways than it takes to be near enough, the vehicle still goes to the place.
+  return std::max(braking_distance_time(distance, limits, mode.jerk),
+                  rest_to_rest_time(distance, limits.speed, limits.acceleration, mode.jerk));
+}
+
+double Motion::leg_time(const Vector3d& displacement) const {
+  const double moving = moving_time(displacement);
+  return moving == 0.0 ? 0.0 : moving + vehicle_.mode.settle_time;
+}
+
+double Motion::aimed_time(double leg, double yaw, double pitch) const {
+  const double turning = turn_time(yaw, vehicle_.mode.yaw_rate, vehicle_.mode.yaw_acceleration);
+  const double tilting = std::abs(pitch) / vehicle_.gimbal_rate;
+  if (vehicle_.dialect == Dialect::dji) return std::max(leg, turning) + tilting;
+  return std::max({leg, turning, tilting});
+}
+
+double Motion::takeoff_time(double climb) const {
+  const MissionMode& mode = vehicle_.mode;
+  return climb / mode.takeoff_speed + mode.takeoff_ramp + mode.settle_time;
+}
+
+double Motion::landing_time(double descent) const {
+  const MissionMode& mode = vehicle_.mode;
+  const double slow = std::min(descent, mode.landing_height);
+  return (descent - slow) / mode.max_descent + slow / mode.landing_speed + mode.touchdown_time;
+}
+
+double Motion::takeoff_energy(double climb) const {
+  return hover_energy(takeoff_time(climb)) + vehicle_.mass * gravity * climb / efficiency_;
 }
 
 double Motion::hover_energy(double duration) const {
@@ -165,7 +208,7 @@ double Motion::hover_energy(double duration) const {
 }
 
 double Motion::leg_energy(const Vector3d& displacement, double duration) const {
-  const double moving = leg_time(displacement);
+  const double moving = moving_time(displacement);
   if (moving == 0.0) return hover_energy(duration);
   const double distance = displacement.norm();
   const double peak_speed = std::min(leg_speed(displacement / distance), 2.0 * distance / moving);
@@ -186,7 +229,8 @@ double Motion::stopping_energy(double speed) const {
 double Motion::usable_energy() const {
   const double cold = std::max(0.0, 15.0 - conditions_.temperature_c);
   return joules_per_wh * vehicle_.battery_wh * aged_capacity *
-         std::max(0.0, 1.0 - loss_per_degree * cold) * (1.0 - conditions_.reserve);
+         std::max(0.0, 1.0 - loss_per_degree * cold) * (1.0 - conditions_.reserve) /
+         (1.0 + vehicle_.energy_error);
 }
 
 }  // namespace skycap::flight

@@ -1,8 +1,8 @@
 /// How long a straight leg takes from rest to rest, and what it costs in energy.
 ///
-/// Time: the jerk-limited profile of seven phases (Biagiotti & Melchiorri, Trajectory Planning for
-/// Automatic Machines and Robots, section 3.4) along the leg, whose limits are those of the slower
-/// of the horizontal and the vertical axis. Yaw and gimbal turn meanwhile.
+/// Time: the law of the vehicle's autopilot (flight/autopilot/mission_mode.h) along the leg, whose
+/// limits are those of the slower of the horizontal and the vertical axis; then it settles. Yaw and
+/// gimbal turn meanwhile.
 ///
 /// Energy: momentum theory of a rotor in forward flight plus profile and parasite power (Liu et al.
 /// 2017; Bauersfeld & Scaramuzza 2022); hover power is calibrated to the data sheet's endurance.
@@ -27,7 +27,9 @@ struct Conditions {
   void validate(const Vehicle& vehicle) const;
 };
 
-/// From rest to rest over `distance` under limits of speed, acceleration and jerk (all positive).
+/// From rest to rest over `distance` under limits of speed, acceleration and jerk (all positive):
+/// the profile of seven phases (Biagiotti & Melchiorri, Trajectory Planning for Automatic Machines
+/// and Robots, section 3.4). No autopilot's law below is faster.
 double rest_to_rest_time(double distance, double speed, double acceleration, double jerk);
 
 /// Where such a motion is after `time`; at rest at the end from then on.
@@ -53,8 +55,20 @@ class Motion {
   /// limits or the airspeed limit against the wind are lower.
   double leg_speed(const Eigen::Vector3d& direction) const;
 
-  /// From rest to rest along a straight piece; zero for no displacement.
+  /// Acceleration along a leg in this direction (unit), within the horizontal and vertical limits.
+  double leg_acceleration(const Eigen::Vector3d& direction) const;
+
+  /// From one stop to the next along a straight piece, until settled; zero for no displacement.
   double leg_time(const Eigen::Vector3d& displacement) const;
+
+  /// From leaving a stop after which the camera turns by `yaw` and `pitch` until it looks right,
+  /// `leg` later at the least [s]. DJI's gimbals turn on arrival only, as an action there.
+  double aimed_time(double leg, double yaw, double pitch) const;
+
+  /// Straight up from the pad to rest, and from rest straight down until the motors stop.
+  double takeoff_time(double climb) const;
+  double landing_time(double descent) const;
+  double takeoff_energy(double climb) const;  ///< [J]
 
   /// Electrical energy of that piece, flown in `duration`, at least leg_time() [J]. The surplus is
   /// spent hovering.
@@ -68,9 +82,14 @@ class Motion {
   double hover_power() const;                   ///< in still air [W]
   double forward_power(double airspeed) const;  ///< level flight [W]
   double hover_energy(double duration) const;   ///< holding position in the wind [J]
-  double usable_energy() const;                 ///< of full batteries, above the reserve [J]
+  /// Of full batteries, above the reserve, and if flights take as much more than this model says
+  /// as the vehicle's energy_error allows [J].
+  double usable_energy() const;
 
  private:
+  /// Until at rest, or as near as its autopilot asks.
+  double moving_time(const Eigen::Vector3d& displacement) const;
+
   Vehicle vehicle_;
   Conditions conditions_;
   double induced_power_;  ///< electrical, in hover

@@ -5,6 +5,8 @@
 #include <span>
 #include <string>
 
+#include "flight/autopilot/mission_mode.h"
+
 namespace skycap::flight {
 
 /// The kind of mission items an autopilot understands.
@@ -24,15 +26,10 @@ struct Vehicle {
   std::string name;
   Dialect dialect = Dialect::px4;
   WpmlCodes wpml;
+  MissionMode mode;  ///< how its autopilot flies
 
   double radius = 0.5;                      ///< from the centre to the farthest propeller tip [m]
   double max_speed = 10.0;                  ///< horizontal, and through the air [m/s]
-  double max_ascent = 3.0;                  ///< [m/s]
-  double max_descent = 2.0;                 ///< [m/s]
-  double acceleration = 2.0;                ///< [m/s^2]
-  double jerk = 4.0;                        ///< [m/s^3]
-  double yaw_rate = 1.0;                    ///< [rad/s]
-  double yaw_acceleration = 2.0;            ///< [rad/s^2]
   double gimbal_rate = 1.0;                 ///< [rad/s]
   double gimbal_min = -1.5707963267948966;  ///< lowest pitch [rad], 0 is the horizon
   double gimbal_max = 0.5;                  ///< highest pitch [rad]
@@ -45,6 +42,7 @@ struct Vehicle {
   double endurance_min = 30.0;   ///< data sheet, at `mass`: calibrates the efficiency
   double avionics_power = 20.0;  ///< electronics and payload [W]
   double drag_area = 0.03;       ///< drag coefficient times frontal area [m^2]
+  double energy_error = 0.1;     ///< share that flights may take more than the model says
 
   int max_waypoints = 500;  ///< in one mission file
 

@@ -18,8 +18,8 @@ namespace {
 using Eigen::Vector3d;
 
 /// Autopilots need up to this many mission items for a station, and some around a sortie.
-constexpr int items_per_station = 5;
-constexpr int items_per_sortie = 12;
+constexpr int items_per_station = 8;
+constexpr int items_per_sortie = 14;
 
 double angle_between(double from, double to) {
   return std::remainder(to - from, 2.0 * std::numbers::pi);
@@ -128,7 +128,6 @@ class RoutePlanner {
     leg.points = points;
     leg.length = flight::length(points);
     leg.clearance = route_.clearance + reported_surplus;
-    const double turning = turning_time(from, to);
     for (std::size_t i = 1; i < points.size(); ++i) {
       const LegProof proof = prove(space_, {points[i - 1], points[i]}, route_.clearance,
                                    route_.clearance + reported_surplus);
@@ -137,7 +136,8 @@ class RoutePlanner {
       // Autopilots begin to turn when they leave for the station, which is in the last corner.
       const bool is_last = i + 1 == points.size();
       const Vector3d way = points[i] - points[i - 1];
-      const double moving = std::max(motion_.leg_time(way), is_last ? turning : 0.0);
+      const double leg_time = motion_.leg_time(way);
+      const double moving = is_last ? aimed_time(leg_time, from, to) : leg_time;
       leg.duration += moving;
       leg.energy += motion_.leg_energy(way, moving);
       // Between two points a return costs no more than from the dearer of them: level flight grows
@@ -151,14 +151,11 @@ class RoutePlanner {
     return leg;
   }
 
-  /// Yaw and gimbal turn in parallel with the leg; from and to the pad there is nothing to aim at.
-  double turning_time(const Station* from, const Station* to) const {
-    if (from == nullptr || to == nullptr) return 0.0;
-    const Vehicle& vehicle = motion_.vehicle();
-    const double yaw = angle_between(yaw_of(from->view), yaw_of(to->view));
-    const double pitch = pitch_of(to->view) - pitch_of(from->view);
-    return std::max(turn_time(yaw, vehicle.yaw_rate, vehicle.yaw_acceleration),
-                    std::abs(pitch) / vehicle.gimbal_rate);
+  /// A leg's time until the camera looks right; from and to the pad there is nothing to aim at.
+  double aimed_time(double leg, const Station* from, const Station* to) const {
+    if (from == nullptr || to == nullptr) return leg;
+    return motion_.aimed_time(leg, angle_between(yaw_of(from->view), yaw_of(to->view)),
+                              pitch_of(to->view) - pitch_of(from->view));
   }
 
   /// A way from above the pad to each station decides which stations there are; the way back is the
@@ -180,18 +177,16 @@ class RoutePlanner {
   }
 
   Cost pad_cost() const {
-    const Vector3d climb(0.0, 0.0, route_.options.takeoff_climb);
-    const double time = motion_.leg_time(climb);
-    return {time + corner_hold, motion_.leg_energy(climb, time + corner_hold)};
+    const double climb = route_.options.takeoff_climb;
+    return {motion_.takeoff_time(climb) + corner_hold,
+            motion_.takeoff_energy(climb) + motion_.hover_energy(corner_hold)};
   }
   Cost landing_cost() const {
-    const Vector3d descent(0.0, 0.0, -route_.options.takeoff_climb);
-    const double moving = motion_.leg_time(descent);
-    const double time = corner_hold + moving + route_.options.landing_time;
-    return {time, motion_.leg_energy(descent, time)};
+    const double time = corner_hold + motion_.landing_time(route_.options.takeoff_climb);
+    return {time, motion_.hover_energy(time)};
   }
   Cost station_cost(const Station& station) const {
-    const double hold = std::max(corner_hold, station.hold);
+    const double hold = std::max(corner_hold, station.hold) + station.hold_after;
     const double energy = motion_.hover_energy(hold);
     return {hold, energy, energy + return_cost(station.view.position)};
   }
@@ -366,7 +361,7 @@ class RoutePlanner {
 
   double return_cost(const Vector3d& place) const {
     if (!ways_home_) return 0.0;
-    return return_energy(motion_, ways_home_->law(), place, route_.options.landing_time);
+    return return_energy(motion_, ways_home_->law(), place);
   }
 
   std::vector<Vector3d> with_returns(std::vector<Vector3d> way) const {
@@ -391,7 +386,7 @@ class RoutePlanner {
     route_.returns = std::move(search.found);
     for (const Segment& leg : legs) {
       const double energy =
-          return_energy(motion_, route_.returns->law, leg.to, route_.options.landing_time);
+          return_energy(motion_, route_.returns->law, leg.to);
       route_.returns->energy = std::max(route_.returns->energy, energy);
     }
   }
@@ -418,9 +413,10 @@ class RoutePlanner {
                                        return_clearance(route_.clearance))) {
       return;
     }
-    const double waiting = std::max(0.0, turning_time(from, to) - curve->duration);
-    if (curve->duration + waiting > leg.duration) return;
-    if (curve->energy + motion_.hover_energy(waiting) > leg.energy) return;
+    const double in_place = curve->duration + motion_.vehicle().mode.settle_time;
+    const double aimed = aimed_time(in_place, from, to);
+    if (aimed > leg.duration) return;
+    if (curve->energy + motion_.hover_energy(aimed - curve->duration) > leg.energy) return;
     leg.smooth = std::move(curve);
   }
 
@@ -442,7 +438,7 @@ Route plan_route(std::vector<Station> stations, const Vehicle& vehicle, const Fr
   options.validate();
   for (const Station& station : stations) {
     if (!station.view.position.allFinite() || !station.view.direction.allFinite() ||
-        !(station.hold >= 0.0) || station.shots < 0) {
+        !(station.hold >= 0.0) || !(station.hold_after >= 0.0) || station.shots < 0) {
       throw Error(ErrorKind::bad_geometry,
                   "station " + std::to_string(station.view_index) +
                       " has a pose that is not finite, or a negative hold or number of shots");

@@ -22,9 +22,10 @@ namespace skycap::flight {
 /// A view and what to do there. The vehicle's position is taken to be the camera's.
 struct Station {
   geometry::View view;
-  double hold = 1.0;             ///< at rest before the capture [s]
+  double hold = 0.5;             ///< at rest and aimed before the capture [s]
   int shots = 1;                 ///< images or scans to take; none at a mere waypoint
   std::uint32_t view_index = 0;  ///< which of the survey's views it is
+  double hold_after = 0.5;       ///< at rest after the capture, for shutter and readout [s]
 };
 
 /// Heading of a view, clockwise from true north, in [0, 2 pi). Straight up or down: north.
@@ -60,7 +61,6 @@ struct RouteOptions {
   PathOptions path;
   Eigen::Vector3d takeoff = Eigen::Vector3d::Zero();  ///< the pad
   double takeoff_climb = 5.0;             ///< straight up from the pad before the first leg [m]
-  double landing_time = 10.0;             ///< for the last metre of each sortie, spent hovering [s]
   bool order_is_free = false;             ///< stations may be visited in a better order than given
   FlightStyle style = FlightStyle::stop;  ///< of files that can hold curves
   /// From every point of the route there is a proven way home; without: the pilot answers for that.
@@ -70,8 +70,8 @@ struct RouteOptions {
 };
 
 /// The shortest stop at a corner [s]: without a stop autopilots cut corners, and the certificate is
-/// about straight legs. ArduPilot stores whole seconds.
-inline constexpr double corner_hold = 1.0;
+/// about straight legs.
+inline constexpr double corner_hold = 0.1;
 
 /// A certified polyline between two places, flown with a stop at every point.
 struct Leg {

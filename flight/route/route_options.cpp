@@ -40,10 +40,6 @@ void RouteOptions::validate() const {
                                            std::to_string(takeoff_climb) +
                                            " m; it must be a finite number, zero or more");
   }
-  if (!(landing_time >= 0.0) || !std::isfinite(landing_time)) {
-    throw Error(ErrorKind::bad_config, "the landing time is " + std::to_string(landing_time) +
-                                           " s; it must be a finite number, zero or more");
-  }
 }
 
 }  // namespace skycap::flight

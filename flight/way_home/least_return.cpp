@@ -94,13 +94,12 @@ ReturnSearch least_return(const FreeSpace& space, const std::vector<Segment>& le
   return result;
 }
 
-double return_energy(const Motion& motion, const ReturnLaw& law, const Vector3d& place,
-                     double landing_time) {
+double return_energy(const Motion& motion, const ReturnLaw& law, const Vector3d& place) {
   double most = 0.0;
   for (const ReturnPiece& level : return_pieces(law, place)) {
     if (level.part != ReturnPart::level) continue;
     const double top = std::max(law.level, place.z());
-    double sum = motion.hover_energy(waiting_time + landing_time);
+    double sum = motion.hover_energy(waiting_time);
     const auto fly = [&](const Vector3d& way) {
       sum += motion.leg_energy(way, motion.leg_time(way));
     };
@@ -109,7 +108,7 @@ double return_energy(const Motion& motion, const ReturnLaw& law, const Vector3d&
     // Every landing place is somewhere on the ground: the lowest makes the longest descent.
     double ground = law.landings.front().z();
     for (const Vector3d& landing : law.landings) ground = std::min(ground, landing.z());
-    fly({0.0, 0.0, ground - top});
+    sum += motion.hover_energy(motion.landing_time(top - ground));
     most = std::max(most, sum);
   }
   return most;

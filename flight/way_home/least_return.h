@@ -39,8 +39,7 @@ ReturnSearch prove_returns(const FreeSpace& space, const std::vector<Segment>& l
                            const ReturnLaw& law, double clearance);
 
 /// Electrical energy of the dearest return from a place, with the waits that autopilots make before
-/// it and over the landing place, and `landing_time` near the ground [J].
-double return_energy(const Motion& motion, const ReturnLaw& law, const Eigen::Vector3d& place,
-                     double landing_time);
+/// it and over the landing place; the descent as dear as hovering [J].
+double return_energy(const Motion& motion, const ReturnLaw& law, const Eigen::Vector3d& place);
 
 }  // namespace skycap::flight

@@ -3,17 +3,18 @@
 #include <algorithm>
 #include <utility>
 
+#include "missions/file/planner_titles.h"
 #include "missions/run/omniscient.h"
 
 namespace skycap::missions::benchmark {
 namespace {
 
 /// A planner that planner.name knows.
-Contestant planner(std::string name, std::string title, bool is_volumetric, bool is_in_all = true) {
-  return {.name = std::move(name),
-          .title = std::move(title),
-          .is_in_all = is_in_all,
-          .is_volumetric = is_volumetric,
+Contestant contestant_of(const file::PlannerTitle& planner) {
+  return {.name = std::string(planner.word),
+          .title = std::string(planner.title),
+          .is_in_all = planner.name != file::PlannerName::skycap,  // not of the paper
+          .is_volumetric = planner.metric.has_value(),
           .run = run_trial};
 }
 
@@ -33,19 +34,15 @@ Contestant omniscient() {
 }  // namespace
 
 const std::vector<Contestant>& contestants() {
-  static const std::vector<Contestant> all{
-      planner("see++", "SEE++", false),
-      planner("see", "SEE", false),
-      planner("rsv", "RSV", true),
-      planner("rse", "RSE", true),
-      planner("oa", "OA", true),
-      planner("uv", "UV", true),
-      planner("pc", "PC", true),
-      planner("af", "AF", true),
-      planner("ae", "AE", true),
-      planner("skycap", "Skycap", false, false),  // not of the paper
-      omniscient(),
-  };
+  static const std::vector<Contestant> all = [] {
+    std::vector<Contestant> list;
+    for (const file::PlannerTitle& planner : file::planner_titles) {
+      list.push_back(contestant_of(planner));
+    }
+    std::ranges::stable_partition(list, &Contestant::is_in_all);
+    list.push_back(omniscient());
+    return list;
+  }();
   return all;
 }
 

@@ -12,9 +12,11 @@
 
 #include "geometry/error.h"
 #include "geometry/parallel.h"
+#include "missions/benchmark/paper_results.h"
 #include "missions/file/json_text.h"
 #include "missions/file/mission_keys.h"
 #include "missions/file/number_text.h"
+#include "missions/file/planner_titles.h"
 #include "missions/judge/coverage.h"
 #include "missions/version.h"
 
@@ -28,23 +30,28 @@ struct Figure {
   const char* name;
   double (*of)(const Trial&);
   std::optional<double> file::ReferenceConfig::*reference;  ///< or null
+  double PaperResult::*in_table_1;                          ///< or null
 };
 
 constexpr std::array figures{
     Figure{"views", [](const Trial& t) { return static_cast<double>(t.views); },
-           &file::ReferenceConfig::views},
+           &file::ReferenceConfig::views, &PaperResult::views},
     Figure{"coverage", [](const Trial& t) { return t.coverage.all; },
-           &file::ReferenceConfig::coverage},
+           &file::ReferenceConfig::coverage, &PaperResult::coverage},
     // No reference: publications do not say which surface cannot be seen.
     Figure{"coverage_visible", [](const Trial& t) { return t.coverage.visible.value_or(0.0); },
-           nullptr},
+           nullptr, nullptr},
     Figure{"distance_m", [](const Trial& t) { return t.distance; },
-           &file::ReferenceConfig::distance},
+           &file::ReferenceConfig::distance, &PaperResult::distance},
     Figure{"planning_time_s", [](const Trial& t) { return t.planning_time; },
-           &file::ReferenceConfig::planning_time}};
+           &file::ReferenceConfig::planning_time, &PaperResult::planning_time}};
 
+/// What the mission says of a publication, or else what the SEE++ paper has of its model.
 std::optional<double> reference_of(const file::Mission& mission, const Figure& figure) {
-  return figure.reference ? mission.paper.*figure.reference : std::nullopt;
+  if (figure.reference == nullptr) return std::nullopt;
+  if (const auto& given = mission.paper.*figure.reference) return given;
+  const auto paper = paper_result(mission.name, file::title_of(mission.planner.name).word);
+  return paper ? std::optional((*paper).*figure.in_table_1) : std::nullopt;
 }
 
 Statistic statistic_of(const std::vector<Trial>& trials, const Figure& figure) {
@@ -250,7 +257,7 @@ std::string trials_csv(const std::vector<Trial>& trials) {
 std::string trials_json(const file::Mission& mission, const std::vector<Trial>& trials,
                         std::size_t requested, unsigned threads) {
   Json json{{"mission", mission.name},
-            {"planner", file::to_text(*file::find_key("planner.name")->get(mission))},
+            {"planner", file::title_of(mission.planner.name).word},
             {"preset", file::to_text(*file::find_key("planner.preset")->get(mission))},
             {"first_seed", mission.seed},
             {"threads", geometry::thread_count(threads)},

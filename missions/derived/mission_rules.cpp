@@ -107,8 +107,8 @@ void check_sensor(const file::MissionFile& given) {
 void check_flight(const file::MissionFile& given) {
   const file::Mission& mission = given.mission;
   const file::Georeference& place = mission.georeference;
-  if (place.latitude.has_value() != place.longitude.has_value()) {
-    given.refuse(place.latitude ? "site.latitude_deg" : "site.longitude_deg",
+  if (place.latitude_deg.has_value() != place.longitude_deg.has_value()) {
+    given.refuse(place.latitude_deg ? "site.latitude_deg" : "site.longitude_deg",
                  "is half a place; give site.latitude_deg and site.longitude_deg");
   }
   const file::FlightConfig& flight = mission.flight;

@@ -7,6 +7,7 @@
 #include "geometry/place/camera.h"
 #include "missions/derived/site.h"
 #include "missions/file/number_text.h"
+#include "missions/file/planner_titles.h"
 
 namespace skycap::missions::derived {
 namespace {
@@ -17,29 +18,6 @@ constexpr std::uint64_t candidates_stream = 0x766f6c756d657472;
 /// A volumetric survey's V where neither mission nor benchmark says it: the paper's for its last
 /// two models.
 constexpr std::size_t usual_view_limit = 130;
-
-/// The gain that a volumetric planner goes by; nothing for the others.
-std::optional<survey::volumetric::VolumetricMetric> volumetric_metric(file::PlannerName name) {
-  using enum survey::volumetric::VolumetricMetric;
-  switch (name) {
-    case file::PlannerName::rsv:
-      return rear_side_voxel;
-    case file::PlannerName::rse:
-      return rear_side_entropy;
-    case file::PlannerName::oa:
-      return occlusion_aware;
-    case file::PlannerName::uv:
-      return unobserved_voxel;
-    case file::PlannerName::pc:
-      return proximity_count;
-    case file::PlannerName::af:
-      return area_factor;
-    case file::PlannerName::ae:
-      return average_entropy;
-    default:
-      return std::nullopt;
-  }
-}
 
 survey::volumetric::VolumetricConfig volumetric_config(const file::Mission& mission,
                                                        survey::volumetric::VolumetricMetric metric,
@@ -53,7 +31,7 @@ survey::volumetric::VolumetricConfig volumetric_config(const file::Mission& miss
       .spacing = see.effective_spacing(),
       .scene_box = see.scene_box,
       .candidates = static_cast<std::size_t>(std::lround(views)),
-      .least_height = see.least_height,
+      .least_height = least_height_above_ground(mission),
       .seed = mission.seed ^ candidates_stream,
       .settings = settings,
       .threads = threads};
@@ -65,6 +43,7 @@ survey::volumetric::VolumetricConfig volumetric_config(const file::Mission& miss
 survey::see::SeeConfig see_config(const file::Mission& mission, unsigned threads) {
   survey::see::SeeConfig config = mission.planner.see;
   config.threads = threads;
+  config.least_height = least_height_above_ground(mission);
   return config;
 }
 
@@ -106,14 +85,14 @@ void validate_sphere(const survey::volumetric::VolumetricConfig& config) {
 }  // namespace
 
 std::size_t view_limit(const file::Mission& mission) {
-  const bool is_volumetric = volumetric_metric(mission.planner.name).has_value();
+  const bool is_volumetric = file::title_of(mission.planner.name).metric.has_value();
   return is_volumetric ? std::min(mission.volumetric.view_limit.value_or(usual_view_limit),
                                   mission.limits.max_views)
                        : mission.limits.max_views;
 }
 
 void validate_planner(const file::Mission& mission) {
-  if (const auto metric = volumetric_metric(mission.planner.name)) {
+  if (const auto metric = file::title_of(mission.planner.name).metric) {
     const auto config = volumetric_config(mission, *metric, 1);
     config.validate();
     validate_sphere(config);
@@ -126,7 +105,7 @@ void validate_planner(const file::Mission& mission) {
 
 std::unique_ptr<survey::Planner> make_planner(const file::Mission& mission, unsigned threads) {
   const geometry::Camera camera(mission.sensor.camera.camera);
-  if (const auto metric = volumetric_metric(mission.planner.name)) {
+  if (const auto metric = file::title_of(mission.planner.name).metric) {
     if (!mission.volumetric.sphere_centre || !mission.volumetric.sphere_radius) {
       throw Error(ErrorKind::bad_config,
                   "the planner needs volumetric.sphere_centre and volumetric.sphere_radius where "

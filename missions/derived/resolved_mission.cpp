@@ -51,9 +51,6 @@ void derive_ground_clearance(file::Mission& mission) {
   // A little more, so that a view at the limit can be proven.
   if (mission.flight.is_flown() && !clearance) clearance = mission.flight.clearance + 0.01;
   if (mission.scene.ground && !clearance) clearance = 0.0;
-  if (clearance) {
-    mission.planner.see.least_height = mission.scene.position.z() + *clearance;
-  }
 }
 
 }  // namespace

@@ -6,6 +6,11 @@
 
 namespace skycap::missions::derived {
 
+std::optional<double> least_height_above_ground(const file::Mission& mission) {
+  const std::optional<double>& clearance = mission.limits.ground_clearance;
+  return clearance ? std::optional(mission.scene.position.z() + *clearance) : std::nullopt;
+}
+
 survey::ViewLimits view_limits(const file::Mission& mission) {
   const file::LimitsConfig& limits = mission.limits;
   survey::ViewLimits result{.least_height = mission.site.lowest_height,
@@ -15,9 +20,8 @@ survey::ViewLimits view_limits(const file::Mission& mission) {
                             .stand_off = limits.stand_off,
                             .least_pitch = limits.lowest_pitch,
                             .most_pitch = limits.highest_pitch};
-  if (limits.ground_clearance) {
-    const double least = mission.scene.position.z() + *limits.ground_clearance;
-    result.least_height = std::max(least, result.least_height.value_or(least));
+  if (const std::optional<double> least = least_height_above_ground(mission)) {
+    result.least_height = std::max(*least, result.least_height.value_or(*least));
   }
   if (mission.flight.is_flown()) {
     const flight::Vehicle& vehicle = vehicle_of(mission);

@@ -1,9 +1,35 @@
-/// The keys of the sections `site` and `flight`: where the survey is, and how it is flown.
+// The keys of `site` and `flight`: where the survey is, and how it is flown.
 #include "flight/motion/vehicle.h"
 #include "missions/file/key_builders.h"
+#include "missions/file/key_sections.h"
 
 namespace skycap::missions::file {
 namespace {
+
+/// A key whose value is a list; an empty one stands for none.
+template <class Field>
+Key list_key(std::string path, KeyType type, Field field, std::string meaning) {
+  using List = std::remove_reference_t<decltype(field(std::declval<Mission&>()))>;
+  Key key;
+  key.path = std::move(path);
+  key.type = type;
+  key.unit = "m";
+  key.fallback = "none";
+  key.meaning = std::move(meaning);
+  key.set = [field](Mission& mission, const KeyValue& value) {
+    field(mission) = std::get<List>(value);
+  };
+  key.get = [field](const Mission& mission) -> std::optional<KeyValue> {
+    const List& stored = field(const_cast<Mission&>(mission));
+    return stored.empty() ? std::nullopt : std::optional<KeyValue>(stored);
+  };
+  return key;
+}
+
+/// The field of the flight's settings that `member` points to.
+auto flight(auto member) {
+  return [member](Mission & m) -> auto& { return m.flight.*member; };
+}
 
 /// The key `flight.vehicle`: a profile's name, or none.
 Key vehicle_key() {
@@ -18,24 +44,107 @@ Key vehicle_key() {
   return key;
 }
 
+/// What proves a leg.
+std::vector<Key> safety_keys() {
+  return {
+      vehicle_key(),
+      number_key("flight.clearance", "m", above(0, 1000), flight(&FlightConfig::clearance),
+                 "Every leg is proven to keep this from everything that is not known to be free: "
+                 "the vehicle's radius, the three errors below, and what is left as margin."),
+      number_key("flight.position_error", "m", between(0, 100),
+                 flight(&FlightConfig::position_error),
+                 "How far off the vehicle may take itself to be: 0.05 with RTK, 1.5 to 3 without."),
+      number_key("flight.tracking_error", "m", between(0, 100),
+                 flight(&FlightConfig::tracking_error),
+                 "How far the vehicle may stray from a straight leg with stops."),
+      number_key("flight.map_error", "m", between(0, 100), flight(&FlightConfig::map_error),
+                 "How far off measured obstacles may be: noise and registration."),
+      otherwise(
+          "planner.scene_box",
+          box_corner("flight.unknown_box.min", flight(&FlightConfig::unknown_box), false,
+                     "Lower corner of the box around the building in which only what has been "
+                     "measured free is flown through. Outside of it the pilot vouches for the "
+                     "airspace above the ground.")),
+      otherwise("planner.scene_box",
+                box_corner("flight.unknown_box.max", flight(&FlightConfig::unknown_box), true,
+                           "Upper corner of that box.")),
+      number_key("flight.free_without_return", "m", between(0, 1e4),
+                 flight(&FlightConfig::free_without_return),
+                 "Up to this depth pixels without a return prove space free. 0: they prove "
+                 "nothing, right for sensors that may miss dark, shiny or thin things."),
+  };
+}
+
+/// How the legs are flown.
+std::vector<Key> conduct_keys() {
+  return {
+      otherwise("on the ground beside unknown_box, at the first view",
+                vector_key("flight.takeoff", "m", between(-1e6, 1e6),
+                           flight(&FlightConfig::takeoff), "The pad for take-off and landing.")),
+      otherwise("5, or flight.clearance and 1 more",
+                number_key("flight.takeoff_climb", "m", between(0, 1000),
+                           flight(&FlightConfig::takeoff_climb),
+                           "Straight up from the pad before the first leg.")),
+      number_key("flight.cruise_speed", "m/s", above(0, 100), flight(&FlightConfig::cruise_speed),
+                 "Wanted speed on legs."),
+      number_key("flight.hold", "s", between(0, 3600), flight(&FlightConfig::hold),
+                 "Time at rest at each view before the capture, when the vehicle has settled and "
+                 "heading and gimbal have turned."),
+      number_key("flight.hold_after", "s", between(0, 3600), flight(&FlightConfig::hold_after),
+                 "Time at rest after the capture, for shutter lag, exposure and readout."),
+      number_key("flight.wind_speed", "m/s", between(0, 100), flight(&FlightConfig::wind_speed),
+                 "Steady wind, for times and energy."),
+      angle_key("flight.wind_from_deg", between(0, 360), flight(&FlightConfig::wind_from),
+                "Where the wind blows from, clockwise from north."),
+      number_key("flight.temperature", "degrees Celsius", between(-40, 60),
+                 flight(&FlightConfig::temperature), "Of the battery; cold ones hold less."),
+      number_key("flight.reserve", "share", between(0, 0.9), flight(&FlightConfig::reserve),
+                 "Of the battery, left at landing of every sortie."),
+      choice_key("flight.order", {"shortest", "survey"}, flight(&FlightConfig::order),
+                 "Order of the views in the exported mission: the shortest tour found, or as "
+                 "surveyed."),
+      choice_key("flight.style", {"stop", "blend", "smooth"}, flight(&FlightConfig::style),
+                 "How legs with corners are flown: with a stop in each, round them, or along one "
+                 "smooth curve, where that is proven and faster. Trajectories (csv, ned-csv, tum) "
+                 "and KML hold curves; the other files stop in corners."),
+  };
+}
+
+}  // namespace
+
 std::vector<Key> site_keys() {
   return {
+      list_key(
+          "site.geofence", KeyType::polygon, [](Mission & m) -> auto& { return m.site.geofence; },
+          "Polygon, east and north in the mission's frame, that views stay inside of."),
+      list_key(
+          "site.no_fly", KeyType::volumes, [](Mission & m) -> auto& { return m.site.no_fly; },
+          "Upright prisms that views stay outside of; bottom and top are z in the mission's "
+          "frame."),
+      otherwise("unlimited", number_key(
+                                 "site.lowest_height", "m", between(-1e6, 1e6),
+                                 [](Mission & m) -> auto& { return m.site.lowest_height; },
+                                 "Least z of a view in the mission's frame.")),
+      otherwise("unlimited", number_key(
+                                 "site.highest_height", "m", between(-1e6, 1e6),
+                                 [](Mission & m) -> auto& { return m.site.highest_height; },
+                                 "Greatest z of a view in the mission's frame.")),
       otherwise("not known",
-                number(
+                number_key(
                     "site.latitude_deg", "degrees", between(-90, 90),
-                    [](Mission & m) -> auto& { return m.georeference.latitude; },
+                    [](Mission & m) -> auto& { return m.georeference.latitude_deg; },
                     "WGS84 latitude of the origin of the mission's frame (x east, y north, z up). "
                     "Without a place no mission files are written, only local coordinates.")),
-      otherwise("not known", number(
+      otherwise("not known", number_key(
                                  "site.longitude_deg", "degrees", between(-180, 180),
-                                 [](Mission & m) -> auto& { return m.georeference.longitude; },
+                                 [](Mission & m) -> auto& { return m.georeference.longitude_deg; },
                                  "WGS84 longitude of the origin, east positive.")),
-      number(
+      number_key(
           "site.ellipsoid_height", "m", between(-1000, 10000),
           [](Mission & m) -> auto& { return m.georeference.ellipsoid_height; },
           "Height of the origin above the WGS84 ellipsoid."),
       otherwise("not known",
-                number(
+                number_key(
                     "site.geoid_undulation", "m", between(-120, 120),
                     [](Mission & m) -> auto& { return m.georeference.geoid_undulation; },
                     "Height of the geoid (EGM96) above the ellipsoid at the site. Formats with "
@@ -43,68 +152,6 @@ std::vector<Key> site_keys() {
   };
 }
 
-}  // namespace
-
-std::vector<Key> flight_keys() {
-  const auto field = [](auto member) {
-    return [member](Mission & m) -> auto& { return m.flight.*member; };
-  };
-  using Flight = FlightConfig;
-  std::vector<Key> keys = site_keys();
-  std::ranges::move(
-      std::vector<Key>{
-          vehicle_key(),
-          number("flight.clearance", "m", above(0, 1000), field(&Flight::clearance),
-                 "Every leg is proven to keep this from everything that is not known to be free: "
-                 "the vehicle's radius, the three errors below, and what is left as margin."),
-          number("flight.position_error", "m", between(0, 100), field(&Flight::position_error),
-                 "How far off the vehicle may take itself to be: 0.05 with RTK, 1.5 to 3 without."),
-          number("flight.tracking_error", "m", between(0, 100), field(&Flight::tracking_error),
-                 "How far the vehicle may stray from a straight leg with stops."),
-          number("flight.map_error", "m", between(0, 100), field(&Flight::map_error),
-                 "How far off measured obstacles may be: noise and registration."),
-          otherwise(
-              "planner.scene_box",
-              box_corner("flight.unknown_box.min", field(&Flight::unknown_box), false,
-                         "Lower corner of the box around the building in which only what has been "
-                         "measured free is flown through. Outside of it the pilot vouches for the "
-                         "airspace above the ground.")),
-          otherwise("planner.scene_box",
-                    box_corner("flight.unknown_box.max", field(&Flight::unknown_box), true,
-                               "Upper corner of that box.")),
-          number("flight.free_without_return", "m", between(0, 1e4),
-                 field(&Flight::free_without_return),
-                 "Up to this depth pixels without a return prove space free. 0: they prove "
-                 "nothing, right for sensors that may miss dark, shiny or thin things."),
-          otherwise("on the ground beside unknown_box, at the first view",
-                    vector("flight.takeoff", "m", between(-1e6, 1e6), field(&Flight::takeoff),
-                           "The pad for take-off and landing.")),
-          otherwise(
-              "5, or flight.clearance and 1 more",
-              number("flight.takeoff_climb", "m", between(0, 1000), field(&Flight::takeoff_climb),
-                     "Straight up from the pad before the first leg.")),
-          number("flight.cruise_speed", "m/s", above(0, 100), field(&Flight::cruise_speed),
-                 "Wanted speed on legs."),
-          number("flight.hold", "s", between(1, 3600), field(&Flight::hold),
-                 "Time at rest at each view before the capture; ArduPilot keeps whole seconds."),
-          number("flight.wind_speed", "m/s", between(0, 100), field(&Flight::wind_speed),
-                 "Steady wind, for times and energy."),
-          number("flight.wind_from_deg", "degrees", between(0, 360), field(&Flight::wind_from),
-                 "Where the wind blows from, clockwise from north."),
-          number("flight.temperature", "degrees Celsius", between(-40, 60),
-                 field(&Flight::temperature), "Of the battery; cold ones hold less."),
-          number("flight.reserve", "share", between(0, 0.9), field(&Flight::reserve),
-                 "Of the battery, left at landing of every sortie."),
-          choice("flight.order", {"shortest", "survey"}, field(&Flight::order),
-                 "Order of the views in the exported mission: the shortest tour found, or as "
-                 "surveyed."),
-          choice("flight.style", {"stop", "blend", "smooth"}, field(&Flight::style),
-                 "How legs with corners are flown: with a stop in each, round them, or along one "
-                 "smooth curve, where that is proven and faster. Trajectories (csv, ned-csv, tum) "
-                 "and KML hold curves; the other files stop in corners."),
-      },
-      std::back_inserter(keys));
-  return keys;
-}
+std::vector<Key> flight_keys() { return joined({safety_keys(), conduct_keys()}); }
 
 }  // namespace skycap::missions::file

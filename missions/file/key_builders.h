@@ -2,20 +2,19 @@
 #pragma once
 
 #include <algorithm>
-#include <iterator>
+#include <initializer_list>
 #include <limits>
-#include <numbers>
 #include <optional>
 #include <string>
 #include <type_traits>
 #include <utility>
 #include <vector>
 
-#include "missions/file/mission_keys.h"
+#include "geometry/angle.h"
+#include "missions/file/key.h"
 
 namespace skycap::missions::file {
 
-inline constexpr double radians_per_degree = std::numbers::pi / 180.0;
 inline constexpr double far_away = 1e9;  // no survey is larger [m]
 
 constexpr KeyRange above(double least, double most = far_away) { return {least, most, true}; }
@@ -31,18 +30,18 @@ struct Unwrapped<std::optional<T>> {
 };
 
 /// The key that stands for the field of Mission which `field` returns a reference to. A field of
-/// type std::optional is left to be derived when the key is missing.
+/// type std::optional is left to be derived when the key is missing. `factor` turns the file's
+/// numbers into the field's.
 template <class Field>
-Key key_for(std::string path, KeyType type, Field field, std::string meaning) {
+Key key_for(std::string path, KeyType type, Field field, std::string meaning, double factor = 1.0) {
   using Stored = std::remove_reference_t<decltype(field(std::declval<Mission&>()))>;
   using Value = typename Unwrapped<Stored>::Type;
 
-  const double factor = path.ends_with("_deg") ? radians_per_degree : 1.0;
   Key key;
   key.path = std::move(path);
   key.type = type;
   key.meaning = std::move(meaning);
-  key.set = [field, factor](Mission& mission, const KeyValue& value) {
+  key.set = [=](Mission& mission, const KeyValue& value) {
     if constexpr (std::is_same_v<Value, double>) {
       field(mission) = factor * std::get<double>(value);
     } else if constexpr (std::is_same_v<Value, Eigen::Vector3d>) {
@@ -53,7 +52,7 @@ Key key_for(std::string path, KeyType type, Field field, std::string meaning) {
       field(mission) = std::get<Value>(value);
     }
   };
-  key.get = [field, factor](const Mission& mission) -> std::optional<KeyValue> {
+  key.get = [=](const Mission& mission) -> std::optional<KeyValue> {
     const Stored stored = field(const_cast<Mission&>(mission));
     Value value;
     if constexpr (std::is_same_v<Stored, Value>) {
@@ -76,20 +75,32 @@ Key key_for(std::string path, KeyType type, Field field, std::string meaning) {
 }
 
 template <class Field>
-Key text(std::string path, Field field, std::string meaning) {
+Key text_key(std::string path, Field field, std::string meaning) {
   return key_for(std::move(path), KeyType::text, field, std::move(meaning));
 }
 
 template <class Field>
-Key number(std::string path, std::string unit, KeyRange range, Field field, std::string meaning) {
+Key number_key(std::string path, std::string unit, KeyRange range, Field field,
+               std::string meaning) {
   Key key = key_for(std::move(path), KeyType::number, field, std::move(meaning));
   key.unit = std::move(unit);
   key.range = range;
   return key;
 }
 
+/// A number of degrees whose field is in radians.
 template <class Field>
-Key integer(std::string path, std::string unit, KeyRange range, Field field, std::string meaning) {
+Key angle_key(std::string path, KeyRange range, Field field, std::string meaning) {
+  Key key = key_for(std::move(path), KeyType::number, field, std::move(meaning),
+                    geometry::radians_per_degree);
+  key.unit = "degrees";
+  key.range = range;
+  return key;
+}
+
+template <class Field>
+Key integer_key(std::string path, std::string unit, KeyRange range, Field field,
+                std::string meaning) {
   Key key = key_for(std::move(path), KeyType::integer, field, std::move(meaning));
   key.unit = std::move(unit);
   key.range = range;
@@ -97,21 +108,33 @@ Key integer(std::string path, std::string unit, KeyRange range, Field field, std
 }
 
 template <class Field>
-Key boolean(std::string path, Field field, std::string meaning) {
+Key boolean_key(std::string path, Field field, std::string meaning) {
   return key_for(std::move(path), KeyType::boolean, field, std::move(meaning));
 }
 
 template <class Field>
-Key vector(std::string path, std::string unit, KeyRange range, Field field, std::string meaning) {
+Key vector_key(std::string path, std::string unit, KeyRange range, Field field,
+               std::string meaning) {
   Key key = key_for(std::move(path), KeyType::vector, field, std::move(meaning));
   key.unit = std::move(unit);
   key.range = range;
   return key;
 }
 
+/// Three numbers of degrees whose field is in radians.
+template <class Field>
+Key angles_key(std::string path, KeyRange range, Field field, std::string meaning) {
+  Key key = key_for(std::move(path), KeyType::vector, field, std::move(meaning),
+                    geometry::radians_per_degree);
+  key.unit = "degrees";
+  key.range = range;
+  return key;
+}
+
 /// A key for an enumeration whose values, from 0 on, are called `choices`.
 template <class Field>
-Key choice(std::string path, std::vector<std::string> choices, Field field, std::string meaning) {
+Key choice_key(std::string path, std::vector<std::string> choices, Field field,
+               std::string meaning) {
   using Value = std::remove_reference_t<decltype(field(std::declval<Mission&>()))>;
   Key key;
   key.path = std::move(path);
@@ -164,9 +187,11 @@ Key box_corner(std::string path, Field field, bool is_upper, std::string meaning
   return key;
 }
 
-// ---- sections with a source of their own -----------------------------------------------------
-
-std::vector<Key> flight_keys();  ///< and the place on the Earth, in `site`
-std::vector<Key> scan_keys();
+/// One list of several.
+inline std::vector<Key> joined(std::initializer_list<std::vector<Key>> lists) {
+  std::vector<Key> all;
+  for (const std::vector<Key>& list : lists) all.insert(all.end(), list.begin(), list.end());
+  return all;
+}
 
 }  // namespace skycap::missions::file

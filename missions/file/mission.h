@@ -85,7 +85,7 @@ struct StartConfig {
 struct LimitsConfig {
   std::size_t max_views = 1000;
   std::optional<double> max_distance;      ///< straight lines between views
-  std::optional<double> ground_clearance;  ///< least height of a view above `scene.position`
+  std::optional<double> ground_clearance;  ///< of a view, above the z of `scene.position`
   double stand_off = 0.0;                  ///< least distance of a view from all that was measured
   double lowest_pitch = -std::numbers::pi / 2.0;  ///< of the gimbal [rad], down is negative
   double highest_pitch = std::numbers::pi / 2.0;  ///< [rad]
@@ -112,8 +112,8 @@ struct EvaluationConfig {
 /// Where the local frame (x east, y north, z up) is on the Earth. Missing: files that need it are
 /// not written.
 struct Georeference {
-  std::optional<double> latitude;          ///< of the frame's origin on WGS84 [rad]
-  std::optional<double> longitude;         ///< [rad]
+  std::optional<double> latitude_deg;      ///< of the frame's origin on WGS84
+  std::optional<double> longitude_deg;     ///< east positive
   double ellipsoid_height = 0.0;           ///< of the origin
   std::optional<double> geoid_undulation;  ///< height of the geoid above the ellipsoid there
 };
@@ -134,7 +134,8 @@ struct FlightConfig {
   std::optional<Eigen::Vector3d> takeoff;  ///< the pad
   std::optional<double> takeoff_climb;     ///< else 5 m, or a metre more than the clearance
   double cruise_speed = 4.0;
-  double hold = 1.0;          ///< at a view [s]
+  double hold = 0.5;          ///< at a view, before the capture [s]
+  double hold_after = 0.5;    ///< and after it [s]
   double wind_speed = 0.0;    ///< [m/s]
   double wind_from = 0.0;     ///< where it blows from, clockwise from north [rad]
   double temperature = 15.0;  ///< of the battery [degrees Celsius]

@@ -2,68 +2,16 @@
 /// docs/mission_file.md are all made from it.
 #pragma once
 
-#include <cstdint>
-#include <functional>
-#include <limits>
-#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
-#include <variant>
-#include <vector>
 
-#include <Eigen/Core>
-
-#include "missions/file/mission.h"
+#include "missions/file/key.h"
 
 namespace skycap::missions::file {
 
-enum class KeyType {
-  text,
-  number,
-  integer,
-  boolean,
-  choice,
-  vector,
-  polygon,  ///< corners [x, y], three or more
-  volumes,  ///< a list of {corners, bottom, top}
-  vectors,  ///< a list of lists of three numbers
-};
-
-/// Which numbers a key takes; for a vector, each of its three.
-struct KeyRange {
-  double least = -std::numeric_limits<double>::max();
-  double most = std::numeric_limits<double>::max();
-  bool excludes_least = false;
-};
-
-/// A value as the file says it, in the file's unit. Text and choices are both text.
-using KeyValue = std::variant<bool, std::int64_t, double, std::string, Eigen::Vector3d,
-                              std::vector<Eigen::Vector2d>, std::vector<geometry::Prism>,
-                              std::vector<Eigen::Vector3d>>;
-
-struct Key {
-  std::string path;  ///< such as "planner.density"
-  KeyType type = KeyType::text;
-  std::string unit;  ///< as printed; empty for pure numbers
-  KeyRange range;
-  std::vector<std::string> choices;
-  bool is_required = false;
-  std::string fallback;  ///< in words, when the default is not a value
-  std::string meaning;   ///< one sentence for the user
-
-  /// Puts a value of the right type and range into a mission.
-  std::function<void(Mission&, const KeyValue&)> set;
-  /// The value in a mission; nothing if it is left to be derived.
-  std::function<std::optional<KeyValue>(const Mission&)> get;
-};
-
 /// All keys, those of a section together.
 std::span<const Key> mission_keys();
-
-/// The part of them that says where the sensor may be, when a survey ends, and which of Skycap's
-/// ideas are on.
-std::vector<Key> constraint_keys();
 
 /// The key with that path, or null.
 const Key* find_key(std::string_view path);

@@ -10,6 +10,7 @@
 #include <set>
 #include <utility>
 
+#include "geometry/angle.h"
 #include "geometry/error.h"
 #include "missions/file/sensor_presets.h"
 #include "missions/file/yaml_tree.h"
@@ -17,7 +18,7 @@
 namespace skycap::missions::file {
 namespace {
 
-constexpr double degree = std::numbers::pi / 180.0;
+constexpr double degree = geometry::radians_per_degree;
 constexpr double fwhm_to_full_width = 1.69864;  // sqrt(2 / ln 2): half maximum to 1/e^2
 
 /// A map of a description. Every key that is asked for is known; finish() refuses the others.

@@ -1,6 +1,6 @@
-#include "missions/file/volumetric_keys.h"
-
+// The keys of `volumetric`.
 #include "missions/file/key_builders.h"
+#include "missions/file/key_sections.h"
 
 namespace skycap::missions::file {
 
@@ -16,56 +16,60 @@ std::vector<Key> volumetric_keys() {
     return [member](Mission & m) -> auto& { return m.volumetric.rays.*member; };
   };
   return {
-      otherwise(
-          "130; in a benchmark, the most views that see needed",
-          integer("volumetric.view_limit", "views", between(1, 1e6), setting(&Settings::view_limit),
-                  "V: a volumetric survey ends after this many views.")),
-      number("volumetric.candidates_per_view", "", above(0, 1e6),
-             setting(&Settings::candidates_per_view),
-             "Candidate views on the sphere for each view of the limit."),
+      otherwise("130; in a benchmark, the most views that see needed",
+                integer_key("volumetric.view_limit", "views", between(1, 1e6),
+                            setting(&Settings::view_limit),
+                            "V: a volumetric survey ends after this many views.")),
+      number_key("volumetric.candidates_per_view", "", above(0, 1e6),
+                 setting(&Settings::candidates_per_view),
+                 "Candidate views on the sphere for each view of the limit."),
       otherwise("the surface's centroid",
-                vector("volumetric.sphere_centre", "m", between(-1e6, 1e6),
-                       setting(&Settings::sphere_centre), "Centre of the candidates' sphere.")),
+                vector_key("volumetric.sphere_centre", "m", between(-1e6, 1e6),
+                           setting(&Settings::sphere_centre), "Centre of the candidates' sphere.")),
       otherwise("the view distance and the surface's mean distance to its centroid",
-                number("volumetric.sphere_radius", "m", above(0, 1e6),
-                       setting(&Settings::sphere_radius), "Radius of the candidates' sphere.")),
-      number("volumetric.cost_weight", "", between(0, 1e6), setting(&Settings::cost_weight),
-             "Weight of the way to a candidate against its gain, both as shares of their sums over "
-             "the candidates."),
-      choice("volumetric.ties", {"first", "nearest"}, setting(&Settings::ties),
-             "Which of equally useful candidates is taken."),
-      choice(
+                number_key("volumetric.sphere_radius", "m", above(0, 1e6),
+                           setting(&Settings::sphere_radius), "Radius of the candidates' sphere.")),
+      number_key(
+          "volumetric.cost_weight", "", between(0, 1e6), setting(&Settings::cost_weight),
+          "Weight of the way to a candidate against its gain, both as shares of their sums over "
+          "the candidates."),
+      choice_key("volumetric.ties", {"first", "nearest"}, setting(&Settings::ties),
+                 "Which of equally useful candidates is taken."),
+      choice_key(
           "volumetric.visibility", {"code", "paper"},
           gain(&survey::volumetric::GainSettings::visibility),
           "What rse, oa and uv multiply the visibility weight by at a voxel of occupancy p: p as "
           "the evaluation code, or 1 - p as published."),
-      choice("volumetric.rse_end", {"code", "paper"},
-             gain(&survey::volumetric::GainSettings::rear_side_end),
-             "Which rays that end on a surface rse counts: all as the evaluation code, or those "
-             "from an uncertain voxel as published."),
-      choice("volumetric.af_share", {"all_rays", "hitting_rays"},
-             gain(&survey::volumetric::GainSettings::area_share), "Of which rays af takes shares."),
-      number("volumetric.rays_per_pixel", "1/px", above(0, 1),
-             rays(&survey::volumetric::RayPattern::rays_per_pixel),
-             "Rays of a candidate, in a row and in a column of its image."),
-      number("volumetric.window_begin", "share", between(0, 1),
-             rays(&survey::volumetric::RayPattern::window_begin),
-             "First column and row with rays, as a share of the image."),
-      number("volumetric.window_end", "share", between(0, 1),
-             rays(&survey::volumetric::RayPattern::window_end), "Last column and row with rays."),
+      choice_key(
+          "volumetric.rse_end", {"code", "paper"},
+          gain(&survey::volumetric::GainSettings::rear_side_end),
+          "Which rays that end on a surface rse counts: all as the evaluation code, or those "
+          "from an uncertain voxel as published."),
+      choice_key("volumetric.af_share", {"all_rays", "hitting_rays"},
+                 gain(&survey::volumetric::GainSettings::area_share),
+                 "Of which rays af takes shares."),
+      number_key("volumetric.rays_per_pixel", "1/px", above(0, 1),
+                 rays(&survey::volumetric::RayPattern::rays_per_pixel),
+                 "Rays of a candidate, in a row and in a column of its image."),
+      number_key("volumetric.window_begin", "share", between(0, 1),
+                 rays(&survey::volumetric::RayPattern::window_begin),
+                 "First column and row with rays, as a share of the image."),
+      number_key("volumetric.window_end", "share", between(0, 1),
+                 rays(&survey::volumetric::RayPattern::window_end),
+                 "Last column and row with rays."),
       otherwise("the sphere's radius",
-                number("volumetric.ray_depth", "m", above(0, 1e6), setting(&Settings::ray_depth),
-                       "Where rays end that meet nothing.")),
-      otherwise(
-          "18 voxels",
-          number("volumetric.shadow_length", "m", above(0, 1e6), setting(&Settings::shadow_length),
-                 "s: how far behind measurements voxels are marked as occluded.")),
-      boolean(
+                number_key("volumetric.ray_depth", "m", above(0, 1e6),
+                           setting(&Settings::ray_depth), "Where rays end that meet nothing.")),
+      otherwise("18 voxels",
+                number_key("volumetric.shadow_length", "m", above(0, 1e6),
+                           setting(&Settings::shadow_length),
+                           "s: how far behind measurements voxels are marked as occluded.")),
+      boolean_key(
           "volumetric.thinned", setting(&Settings::thinned),
           "Whether the voxels take in only the points that are kept at the spacing, in place of "
           "whole scans."),
-      boolean("volumetric.carve_no_returns", setting(&Settings::carve_no_returns),
-              "Whether space along pixels without a return counts as free up to ray_depth."),
+      boolean_key("volumetric.carve_no_returns", setting(&Settings::carve_no_returns),
+                  "Whether space along pixels without a return counts as free up to ray_depth."),
   };
 }
 

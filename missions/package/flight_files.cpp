@@ -41,8 +41,9 @@ std::string what_is_missing_for(Format format, const file::Mission& mission) {
 }
 
 /// The plan as the format's programs want it: QGroundControl's files in the dialect of PX4 and
-/// Mission Planner's in that of ArduPilot if the vehicle is flown by neither, DJI's with the codes
-/// of one of theirs. Speeds, energy and limits stay the vehicle's.
+/// Mission Planner's in that of ArduPilot if the vehicle is flown by neither, as those autopilots
+/// fly by default; DJI's with the codes of one of theirs. Size, energy and gimbal stay the
+/// vehicle's.
 flight::FlightPlan in_dialect(flight::FlightPlan plan, Format format,
                               std::vector<std::string>& notes) {
   flight::Vehicle& vehicle = plan.vehicle;
@@ -53,14 +54,17 @@ flight::FlightPlan in_dialect(flight::FlightPlan plan, Format format,
   };
   if (format == Format::plan && vehicle.dialect == Dialect::dji) {
     vehicle.dialect = Dialect::px4;
+    vehicle.mode = flight::vehicle_profile("generic").mode;
     note("the .plan file", "PX4");
   } else if (format == Format::waypoints && vehicle.dialect == Dialect::dji) {
     vehicle.dialect = Dialect::ardupilot;
+    vehicle.mode = flight::vehicle_profile("generic_ardupilot").mode;
     note("the .waypoints file", "ArduPilot");
   } else if (format == Format::kmz && vehicle.dialect != Dialect::dji) {
     const flight::Vehicle& dji = flight::vehicle_profile(dji_stand_in);
     vehicle.dialect = dji.dialect;
     vehicle.wpml = dji.wpml;
+    vehicle.mode = dji.mode;
     note("the .kmz file", dji.name);
   }
   return plan;
@@ -109,7 +113,7 @@ flight::Route plan_flight(const file::Mission& mission, const flight::MeasuredSp
   std::vector<flight::Station> stations;
   for (const geometry::View& view : views) {
     const auto index = static_cast<std::uint32_t>(stations.size());
-    stations.push_back({view, mission.flight.hold, 1, index});
+    stations.push_back({view, mission.flight.hold, 1, index, mission.flight.hold_after});
   }
   flight::Obstacles rules = derived::flight_rules(mission);
   const flight::KnownSpace known(rules);
@@ -164,7 +168,7 @@ FlightFiles stage_flight(const file::Mission& mission, const flight::Route& rout
           parameters[flight::parameters_name(plan.vehicle.dialect)] = checked_parameters(plan);
         }
         const flight::ExportResult result = export_flight(plan, format, space, file);
-        files.written.push_back({name, info.heights, result.min_clearance});
+        files.written.push_back({name, info.heights, result.min_clearance, i, flight_time(plan)});
         std::ranges::for_each(notes, add_note);
         std::ranges::for_each(result.notes, add_note);
       } catch (const Error& error) {

@@ -28,6 +28,8 @@ struct FlightFile {
   std::string name;
   std::string heights;         ///< what they count from
   double min_clearance = 0.0;  ///< proven [m], see flight::LegProof
+  std::size_t sortie = 0;      ///< of the route
+  double duration = 0.0;       ///< as the autopilot that it is written for flies it [s]
 };
 
 struct FlightFiles {

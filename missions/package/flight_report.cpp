@@ -1,5 +1,7 @@
 #include "missions/package/flight_report.h"
 
+#include <cmath>
+
 #include <fmt/format.h>
 
 #include "flight/route/route.h"
@@ -43,7 +45,13 @@ std::string flight_text(const SurveyMission& flight) {
     text += fmt::format("  left out  view {}: {}\n", missed.station.view_index, missed.reason);
   }
   std::string files;
-  for (const FlightFile& file : flight.files.written) files += " " + file.name;
+  for (const FlightFile& file : flight.files.written) {
+    files += " " + file.name;
+    // Another autopilot than the vehicle's takes another time.
+    const double planned = route.sorties[file.sortie].duration;
+    if (std::abs(file.duration - planned) < 0.01 * planned) continue;
+    files += fmt::format(" ({:.1f} min)", file.duration / 60.0);
+  }
   if (!files.empty()) text += "  files    " + files + "\n";
   for (const std::string& note : flight.files.notes) text += "  note      " + note + "\n";
   return text;

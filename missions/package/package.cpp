@@ -142,8 +142,10 @@ Json flight_summary(const run::FlownSurvey& flown, const SurveyMission& flight) 
     unreached.push_back({{"view", missed.station.view_index}, {"reason", missed.reason}});
   }
   for (const FlightFile& file : flight.files.written) {
-    files.push_back(
-        {{"name", file.name}, {"heights", file.heights}, {"min_clearance_m", file.min_clearance}});
+    files.push_back({{"name", file.name},
+                     {"heights", file.heights},
+                     {"min_clearance_m", file.min_clearance},
+                     {"duration_s", file.duration}});
   }
   Json order = Json::array();
   for (const flight::Station& station : route.stations) order.push_back(station.view_index);

@@ -33,7 +33,7 @@ struct CloudChunk {
 /// Which of its two positions a return is written with.
 enum class ReturnPosition {
   reported,  ///< measured distance along the believed ray
-  true_one,  ///< of the surface that was met
+  actual,    ///< of the surface that was met
 };
 
 /// How points become bytes. Immutable; encode() is safe on any number of threads.

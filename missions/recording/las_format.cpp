@@ -4,8 +4,8 @@
 #include <bit>
 #include <cmath>
 #include <limits>
-#include <numbers>
 
+#include "geometry/angle.h"
 #include "geometry/error.h"
 #include "missions/recording/little_endian.h"
 
@@ -14,7 +14,7 @@ namespace {
 
 constexpr std::uint16_t header_size = 375;
 constexpr std::uint16_t record_header_size = 54;
-constexpr double scan_angle_unit = 0.006 * std::numbers::pi / 180.0;
+constexpr double scan_angle_unit = 0.006 * geometry::radians_per_degree;
 
 /// The nearest whole number of one that fits into 32 bits. Adding 1.5 * 2^52 leaves no place for
 /// fractions in a double, and the whole number in its lowest bits: no call, no branch.

@@ -42,7 +42,7 @@ class RawlogFormat final : public CloudFormat {
     chunk.bytes.clear();
     if (returns.size() == 0) return;
     const SensorMotion& motion =
-        position == ReturnPosition::reported ? setup_.reported : setup_.true_one;
+        position == ReturnPosition::reported ? setup_.reported : setup_.actual;
     const Piece piece = piece_of(returns, position, motion);
     mrpt::io::CMemoryStream stream;
     auto archive = mrpt::serialization::archiveFrom(stream);

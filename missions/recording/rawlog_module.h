@@ -27,7 +27,7 @@ struct RawlogSetup {
   std::string sensor_name;
   sim::LidarConfig sensor;
   double start = 0.0;  ///< time of firing 0 [s]
-  SensorMotion reported, true_one;
+  SensorMotion reported, actual;
 };
 
 /// An image of a depth camera. The sensor's frame has x forward, y left, z up, as MRPT's has.

@@ -22,7 +22,7 @@ double sum_over(const std::vector<JudgedView>& views, Field field) {
 }
 
 /// Takes over what only the planner skycap can say, such as which budget made it stop.
-void ask_skycap(const survey::Planner& planner, SurveyRecord& record) {
+void record_belief(const survey::Planner& planner, SurveyRecord& record) {
   const auto* skycap = dynamic_cast<const survey::skycap::SkycapPlanner*>(&planner);
   if (skycap == nullptr) return;
   record.belief = skycap->belief();
@@ -177,7 +177,7 @@ SurveyRecord run_survey(const file::Mission& mission, const scene::SurveyScene& 
   const survey::SurveyLimits limits = survey_limits(mission);
   record.stop_reason =
       survey::run_survey(*planner, first_view, limits, ports, std::move(stop)).stop_reason;
-  ask_skycap(*planner, record);
+  record_belief(*planner, record);
   record.cloud = planner->release_cloud();
   record.is_covered = meter.is_covered();
   if (flight) record.flown = flight->finish();

@@ -8,8 +8,8 @@
 #include "geometry/surfaces/mesh.h"
 #include "missions/derived/mission_flight.h"
 #include "missions/derived/resolved_mission.h"
-#include "missions/file/mission_keys.h"
 #include "missions/file/number_text.h"
+#include "missions/file/planner_titles.h"
 #include "missions/scene/survey_scene.h"
 #include "missions/verbs/check_returns.h"
 #include "missions/verbs/verbs.h"
@@ -66,9 +66,8 @@ int check(const CheckOptions& options, const Console& console) {
                      "  planner   {}, view distance d {:.4g} m, spacing epsilon {:.4g} m, core "
                      "threshold k {}\n",
                      options.mission.string(), model.triangles.size(), size.x(), size.y(), size.z(),
-                     geometry::surface_area(model),
-                     file::to_text(*file::find_key("planner.name")->get(mission)), view_distance,
-                     see.effective_spacing(), see.effective_core_threshold())
+                     geometry::surface_area(model), file::title_of(mission.planner.name).word,
+                     view_distance, see.effective_spacing(), see.effective_core_threshold())
               << std::flush;
   return 0;
 }

@@ -151,7 +151,7 @@ std::vector<recording::CloudFile> open_files(const ScanVerbOptions& options,
     const std::shared_ptr<const recording::CloudFormat> format = info.make(context);
     open("scan" + info.ending, format, recording::ReturnPosition::reported);
     if (options.with_truth)
-      open("scan_true" + info.ending, format, recording::ReturnPosition::true_one);
+      open("scan_true" + info.ending, format, recording::ReturnPosition::actual);
   }
   return files;
 }

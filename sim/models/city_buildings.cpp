@@ -5,8 +5,8 @@
 #include <numbers>
 #include <utility>
 
-#include "sim/models/tower.h"
-#include "sim/models/wall.h"
+#include "sim/models/masonry/tower.h"
+#include "sim/models/masonry/wall.h"
 
 namespace skycap::sim::models::city {
 namespace {

@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <random>
 
-#include "sim/models/solids.h"
+#include "sim/models/masonry/solids.h"
 
 namespace skycap::sim::models::city {
 

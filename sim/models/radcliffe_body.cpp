@@ -2,11 +2,11 @@
 #include <numbers>
 #include <utility>
 
+#include "sim/models/masonry/rustication.h"
+#include "sim/models/masonry/tower.h"
+#include "sim/models/masonry/wall.h"
 #include "sim/models/radcliffe_dome.h"
 #include "sim/models/radcliffe_elements.h"
-#include "sim/models/rustication.h"
-#include "sim/models/tower.h"
-#include "sim/models/wall.h"
 
 namespace skycap::sim::models::radcliffe {
 namespace {

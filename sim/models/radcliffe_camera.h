@@ -13,7 +13,7 @@
 /// z up. Projecting arched bays at azimuths 0, 45, 90 ... degrees, niche bays between them.
 #pragma once
 
-#include "sim/models/solids.h"
+#include "sim/models/masonry/solids.h"
 
 namespace skycap::sim::models {
 

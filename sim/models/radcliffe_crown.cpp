@@ -2,7 +2,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "sim/models/mouldings.h"
+#include "sim/models/masonry/mouldings.h"
 #include "sim/models/radcliffe_dome.h"
 #include "sim/models/radcliffe_elements.h"
 

@@ -2,8 +2,8 @@
 /// Each function adds every instance of its element all round the building.
 #pragma once
 
+#include "sim/models/masonry/solids.h"
 #include "sim/models/radcliffe_camera.h"
-#include "sim/models/solids.h"
 
 namespace skycap::sim::models::radcliffe {
 

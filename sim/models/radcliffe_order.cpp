@@ -3,8 +3,8 @@
 #include <cstddef>
 #include <numbers>
 
-#include "sim/models/corinthian.h"
-#include "sim/models/mouldings.h"
+#include "sim/models/masonry/corinthian.h"
+#include "sim/models/masonry/mouldings.h"
 #include "sim/models/radcliffe_elements.h"
 
 namespace skycap::sim::models::radcliffe {

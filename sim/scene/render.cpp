@@ -7,6 +7,7 @@
 #include <optional>
 #include <string>
 
+#include "geometry/angle.h"
 #include "geometry/error.h"
 #include "geometry/parallel.h"
 #include "sim/scene/scene.h"
@@ -274,7 +275,7 @@ void RenderOptions::validate() const {
 
 std::vector<RenderView> standard_views(const Mesh& mesh, double aspect) {
   geometry::validate(mesh);
-  const double fov = 35.0 * pi / 180.0;
+  const double fov = 35.0 * geometry::radians_per_degree;
   std::vector<RenderView> views{view_of_all(mesh, {0.0, -1.0, -0.04}, fov, aspect),
                                 view_of_all(mesh, {0.80, 0.60, -0.25}, fov, aspect),
                                 view_of_all(mesh, {0.62, 0.70, -0.85}, fov, aspect)};

@@ -47,7 +47,7 @@ class Visibility {
 /// `only_surfaces` says that rays which meet nothing occupied do not count.
 class RearSideVoxelGain {
  public:
-  static constexpr Hears hears = Hears::what_it_leaves;
+  static constexpr Hears hears = Hears::last_left_out;
   static constexpr bool only_surfaces = true;
   explicit RearSideVoxelGain(const GainSettings&, double) {}
 
@@ -173,7 +173,7 @@ class ProximityCountGain {
 
 class AreaFactorGain {
  public:
-  static constexpr Hears hears = Hears::what_it_leaves;
+  static constexpr Hears hears = Hears::last_left_out;
   static constexpr bool only_surfaces = false;
   explicit AreaFactorGain(const GainSettings& settings, double) : share_(settings.area_share) {}
 

@@ -29,9 +29,9 @@ namespace skycap::survey::volumetric {
 
 /// What a ray that VolumetricMap::follow() follows is told of.
 enum class Hears {
-  every_voxel,     ///< that it passes, and the one where it stops
-  what_it_leaves,  ///< before anything that it may not miss: the last voxel of what was left out
-  only_its_end,    ///< beside what it may not miss
+  every_voxel,    ///< that it passes, and the one where it stops
+  last_left_out,  ///< before anything that it may not miss: the last voxel of what was left out
+  only_its_end,   ///< beside what it may not miss
 };
 
 class VolumetricMap {
@@ -141,7 +141,7 @@ class UntoldStretch {
     if constexpr (Ray::hears == Hears::every_voxel) {
       return !since || ray_.pass_untouched(static_cast<std::size_t>(line_.voxels_before(entered) -
                                                                     line_.voxels_before(*since)));
-    } else if constexpr (Ray::hears == Hears::what_it_leaves) {
+    } else if constexpr (Ray::hears == Hears::last_left_out) {
       return !since || ray_.pass(state_of_(line_.voxel_before(entered)));
     }
     return true;

@@ -9,8 +9,8 @@
 
 #include "geometry/error.h"
 #include "geometry/parallel.h"
-#include "geometry/points/spaced_points.h"
 #include "geometry/points/point_grid.h"
+#include "geometry/points/spaced_points.h"
 #include "survey/stopwatch.h"
 
 namespace skycap::survey::volumetric {
@@ -129,9 +129,9 @@ struct VolumetricPlanner::Impl {
     double gain = 0.0;
   };
 
-  Impl(const VolumetricConfig& given, const geometry::Camera& its_camera)
+  Impl(const VolumetricConfig& given, const geometry::Camera& sensor)
       : config(given),
-        camera(its_camera),
+        camera(sensor),
         directions(ray_directions(camera, config.settings.rays)),
         map(config.resolution, shadow_length(config)),
         kept(config.spacing, std::max(2.0 * config.spacing, 1e-6)) {

@@ -124,7 +124,7 @@ TEST(Kmz, HoldsWhatThePilotExpects) {
     EXPECT_NEAR(route.points[i].yaw_deg, plan.waypoints[i].yaw * 180 / M_PI, 1e-4);
     EXPECT_NEAR(route.points[i].pitch_deg, plan.waypoints[i].pitch * 180 / M_PI, 1e-4);
     EXPECT_EQ(route.points[i].shots, 2);
-    EXPECT_EQ(route.points[i].hold, 2.0);
+    EXPECT_EQ(route.points[i].hold, plan.waypoints[i].hold + plan.waypoints[i].hold_after);
   }
   EXPECT_THROW(write_kmz(sample_plan(vehicle_profile("generic"))), Error);
 }
@@ -226,7 +226,7 @@ TEST(Litchi, Rules) {
     EXPECT_NEAR(route.points[i].yaw_deg, plan.waypoints[i].yaw * 180 / M_PI, 1e-4);
     EXPECT_NEAR(route.points[i].pitch_deg, plan.waypoints[i].pitch * 180 / M_PI, 0.5);
     EXPECT_EQ(route.points[i].shots, 2);
-    EXPECT_EQ(route.points[i].hold, 2.0);
+    EXPECT_EQ(route.points[i].hold, plan.waypoints[i].hold + plan.waypoints[i].hold_after);
   }
 }
 

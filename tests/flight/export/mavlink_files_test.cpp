@@ -151,6 +151,7 @@ TEST(PlanFile, CirclesCountToo) {
 
 TEST(PlanFile, HoldsWhatThePilotExpects) {
   const FlightPlan plan = sample_plan(vehicle_profile("generic"));
+  const std::vector<StopTime> times = stop_times(plan);
   const RouteFile route = read_plan(good_plan());
   EXPECT_EQ(route.datum, HeightDatum::takeoff);
   ASSERT_EQ(route.points.size(), plan.waypoints.size());
@@ -160,7 +161,7 @@ TEST(PlanFile, HoldsWhatThePilotExpects) {
     EXPECT_NEAR(route.points[i].yaw_deg, waypoint.yaw * 180 / M_PI, 1e-4);
     EXPECT_NEAR(route.points[i].pitch_deg, waypoint.pitch * 180 / M_PI, 1e-4);
     EXPECT_EQ(route.points[i].shots, 2);
-    EXPECT_EQ(route.points[i].hold, 2.0);
+    EXPECT_NEAR(route.points[i].hold, times[i].departure - times[i].arrival, 1e-3);
   }
 }
 
@@ -178,13 +179,68 @@ TEST(MissionItems, PX4TurnsByTheWaypointArduPilotByACommandOfItsOwn) {
   EXPECT_THAT(check_items(px4, Dialect::px4), IsEmpty());
   EXPECT_THAT(check_items(ardupilot, Dialect::ardupilot), IsEmpty());
   EXPECT_THAT(check_items(ardupilot, Dialect::px4), testing::Not(IsEmpty()));
-  // In ArduPilot's order: yaw and gimbal before the waypoint that they turn on the way to.
-  for (std::size_t i = 0; i < ardupilot.size(); ++i) {
-    if (ardupilot[i].command != command::condition_yaw) continue;
-    EXPECT_EQ(ardupilot[i + 1].command, command::mount_control);
-    EXPECT_EQ(ardupilot[i + 2].command, command::waypoint);
-    EXPECT_GE(ardupilot[i + 2].params[0], 1.0);
-    EXPECT_EQ(ardupilot[i + 3].command, command::start_capture);
+}
+
+std::vector<int> commands(const std::vector<MissionItem>& items, std::size_t first,
+                          std::size_t count) {
+  std::vector<int> result;
+  for (std::size_t i = first; i < first + count; ++i) result.push_back(items.at(i).command);
+  return result;
+}
+
+// ArduPilot starts gimbal and yaw on the way to the waypoint, in this order or the gimbal waits for
+// the yaw, and takes the picture between two delays, or the vehicle leaves while the shutter is
+// open.
+TEST(MissionItems, ArduPilotAimsOnTheWayAndStaysAfterTheShot) {
+  const FlightPlan plan = sample_plan(vehicle_profile("generic_ardupilot"));
+  const std::vector<StopTime> times = stop_times(plan);
+  const auto items = mission_items(plan);
+  using namespace command;
+  EXPECT_EQ(commands(items, 0, 4),
+            (std::vector{takeoff, change_speed, change_speed, change_speed}));
+  std::size_t next = 4, stop = 1, stations = 0;
+  for (; items[next].command != land; ++stop) {
+    const Waypoint& waypoint = plan.waypoints[stop];
+    if (!waypoint.is_station) {
+      EXPECT_EQ(commands(items, next, 2), (std::vector{command::waypoint, delay}));
+      EXPECT_EQ(items[next].params[0], 0.0);
+      EXPECT_DOUBLE_EQ(items[next + 1].params[0], corner_hold);
+      next += 2;
+      continue;
+    }
+    EXPECT_EQ(commands(items, next, 7),
+              (std::vector{mount_control, condition_yaw, command::waypoint, delay, start_capture,
+                           start_capture, delay}));
+    EXPECT_EQ(items[next + 2].params[0], 0.0);
+    EXPECT_NEAR(items[next + 3].params[0], times[stop].shot - times[stop].arrival, 1e-3);
+    EXPECT_GE(items[next + 3].params[0], waypoint.hold - 1e-3);
+    EXPECT_DOUBLE_EQ(items[next + 6].params[0], waypoint.hold_after);
+    ++stations, next += 7;
+  }
+  EXPECT_EQ(stations, 4U);
+  EXPECT_EQ(stop, plan.waypoints.size());
+}
+
+// The speeds that the times are made with are in the file, whatever the vehicle is set to.
+TEST(MissionItems, SpeedsOfThePlanAreWritten) {
+  const FlightPlan plan = sample_plan(vehicle_profile("generic_ardupilot"));
+  const auto items = mission_items(plan);
+  const double speeds[] = {plan.conditions.cruise_speed, plan.vehicle.mode.max_ascent,
+                           plan.vehicle.mode.max_descent};
+  for (std::size_t i = 0; i < 3; ++i) {
+    EXPECT_EQ(items[1 + i].params[0], static_cast<double>(i + 1));
+    EXPECT_EQ(items[1 + i].params[1], speeds[i]);
+  }
+}
+
+TEST(MissionItems, PX4HoldsInTheWaypointAndDelaysAfterTheShot) {
+  const auto items = mission_items(sample_plan(vehicle_profile("generic")));
+  using namespace command;
+  for (std::size_t i = 0; i < items.size(); ++i) {
+    if (items[i].command != mount_control) continue;
+    EXPECT_EQ(commands(items, i, 5),
+              (std::vector{mount_control, waypoint, start_capture, start_capture, delay}));
+    EXPECT_GE(items[i + 1].params[0], 2.0);
   }
 }
 

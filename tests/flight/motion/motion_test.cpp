@@ -58,13 +58,67 @@ TEST(Turn, IsTriangularThenTrapezoidal) {
 }
 
 TEST(Motion, VerticalLegsHaveTheirOwnLimits) {
-  Vehicle vehicle;  // up 3 m/s, down 2 m/s
+  Vehicle vehicle;
+  vehicle.mode.max_descent = 2.0;  // up 3 m/s
   const Motion motion(vehicle, {.cruise_speed = 8.0});
   EXPECT_DOUBLE_EQ(motion.leg_speed({1, 0, 0}), 8.0);
   EXPECT_DOUBLE_EQ(motion.leg_speed({0, 0, 1}), 3.0);
   EXPECT_DOUBLE_EQ(motion.leg_speed({0, 0, -1}), 2.0);
   EXPECT_NEAR(motion.leg_speed(Vector3d(0.6, 0, -0.8)), 2.5, 1e-12);
   EXPECT_GT(motion.leg_time({0, 0, -30}), motion.leg_time({0, 0, 30}));
+}
+
+// Straight up the vertical acceleration, level the horizontal, and on a slope as much of both as
+// the one that is used up first allows.
+TEST(Motion, AccelerationsAreLimitedByTheSlowerAxis) {
+  Vehicle vehicle;
+  vehicle.mode.acceleration = 2.5, vehicle.mode.vertical_acceleration = 1.0;
+  const Motion motion(vehicle, {});
+  EXPECT_DOUBLE_EQ(motion.leg_acceleration({1, 0, 0}), 2.5);
+  EXPECT_DOUBLE_EQ(motion.leg_acceleration({0, 0, -1}), 1.0);
+  for (double slope = 0.02; slope < 1.6; slope += 0.02) {
+    const Vector3d way(std::cos(slope), 0.0, std::sin(slope));
+    const Vector3d acceleration = motion.leg_acceleration(way) * way;
+    EXPECT_LE(acceleration.x(), 2.5 + 1e-12);
+    EXPECT_LE(acceleration.z(), 1.0 + 1e-12);
+    EXPECT_TRUE(acceleration.x() > 2.5 - 1e-12 || acceleration.z() > 1.0 - 1e-12) << slope;
+  }
+}
+
+// The trajectories that are written are the seven phases, which must end before the autopilot does.
+TEST(Motion, NoLawIsFasterThanTheSevenPhases) {
+  for (const Vehicle& vehicle : vehicle_profiles()) {
+    const Motion motion(vehicle, {});
+    for (const Vector3d& way : {Vector3d(0.05, 0, 0), Vector3d(0, 0.7, 0.1), Vector3d(3, 0, -2),
+                                Vector3d(0, 0, 12), Vector3d(40, 30, 5)}) {
+      const Vector3d direction = way.normalized();
+      const double least = rest_to_rest_time(way.norm(), motion.leg_speed(direction),
+                                             motion.leg_acceleration(direction), vehicle.mode.jerk);
+      EXPECT_GE(motion.leg_time(way), least + vehicle.mode.settle_time - 1e-9) << vehicle.name;
+    }
+    EXPECT_EQ(motion.leg_time(Vector3d::Zero()), 0.0);
+  }
+}
+
+TEST(Motion, LandsInTwoStages) {
+  Vehicle vehicle;
+  vehicle.mode.max_descent = 1.5, vehicle.mode.landing_speed = 0.5;
+  vehicle.mode.landing_height = 10.0, vehicle.mode.touchdown_time = 2.0;
+  const Motion motion(vehicle, {});
+  EXPECT_DOUBLE_EQ(motion.landing_time(5.0), 12.0);
+  EXPECT_DOUBLE_EQ(motion.landing_time(40.0), 20.0 + 20.0 + 2.0);
+}
+
+// Aiming takes as long as the slowest of leg, heading and gimbal; DJI's gimbal starts on arrival.
+TEST(Motion, AimsOnTheWay) {
+  Vehicle vehicle;
+  vehicle.mode.yaw_rate = 1.0, vehicle.mode.yaw_acceleration = 2.0, vehicle.gimbal_rate = 0.5;
+  const Motion other(vehicle, {});
+  EXPECT_DOUBLE_EQ(other.aimed_time(9.0, 2.0, 1.0), 9.0);
+  EXPECT_DOUBLE_EQ(other.aimed_time(1.0, 3.0, 1.0), 3.5);
+  EXPECT_DOUBLE_EQ(other.aimed_time(1.0, 0.0, -1.0), 2.0);
+  vehicle.dialect = Dialect::dji;
+  EXPECT_DOUBLE_EQ(Motion(vehicle, {}).aimed_time(9.0, 2.0, -1.0), 11.0);
 }
 
 TEST(Motion, HeadwindLimitsTheGroundSpeed) {
@@ -79,7 +133,8 @@ TEST(Motion, HeadwindLimitsTheGroundSpeed) {
 TEST(Motion, HoversAsLongAsTheDataSheetSays) {
   for (const Vehicle& vehicle : vehicle_profiles()) {
     const Motion motion(vehicle, {.reserve = 0.0});
-    const double minutes = motion.usable_energy() / motion.hover_power() / 60.0;
+    const double battery = motion.usable_energy() * (1.0 + vehicle.energy_error);
+    const double minutes = battery / motion.hover_power() / 60.0;
     EXPECT_NEAR(minutes, vehicle.endurance_min, 1e-6) << vehicle.name;
   }
 }
@@ -113,6 +168,9 @@ TEST(Motion, ColdAndReserveLeaveLess) {
   EXPECT_NEAR(Motion(vehicle, {.temperature_c = -5.0, .reserve = 0.0}).usable_energy(), 0.8 * warm,
               1e-6);
   EXPECT_NEAR(Motion(vehicle, {.reserve = 0.25}).usable_energy(), 0.75 * warm, 1e-6);
+  Vehicle unsure = vehicle;
+  unsure.energy_error = 2 * vehicle.energy_error + 0.05;
+  EXPECT_LT(Motion(unsure, {.reserve = 0.0}).usable_energy(), warm);
 }
 
 std::string complaint(const Vehicle& vehicle, const Conditions& conditions) {
@@ -135,7 +193,7 @@ TEST(Motion, AbsurdLimitsAreNamed) {
   heavy.mass = 20;
   EXPECT_THAT(complaint(heavy, {}), HasSubstr("less than its mass takes to hover"));
   Vehicle still = good;
-  still.acceleration = 0;
+  still.mode.acceleration = 0;
   EXPECT_THAT(complaint(still, {}), HasSubstr("acceleration is 0"));
 }
 

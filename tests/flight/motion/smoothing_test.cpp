@@ -45,15 +45,16 @@ void expect_flyable(const Curve& curve, const Motion& motion) {
     const double speed = now.velocity.norm();
     const double top = speed > 0.0 ? motion.leg_speed(now.velocity / speed) : 0.0;
     ASSERT_LE(speed, top * (1 + 1e-6)) << t;
-    ASSERT_LE(now.acceleration.norm(), vehicle.acceleration * (1 + 1e-6)) << t;
+    ASSERT_LE(now.acceleration.norm(), vehicle.mode.acceleration * (1 + 1e-6)) << t;
     // A difference of accelerations is the mean jerk between them, whatever joints there are: also
     // proves that the acceleration does not jump.
-    ASSERT_LE((next.acceleration - now.acceleration).norm(), dt * vehicle.jerk * (1 + 1e-6)) << t;
+    ASSERT_LE((next.acceleration - now.acceleration).norm(), dt * vehicle.mode.jerk * (1 + 1e-6))
+        << t;
     // Position and velocity follow from it, to the second order of the step.
     ASSERT_LE((next.velocity - now.velocity - dt * now.acceleration).norm(),
-              dt * dt * vehicle.jerk);
+              dt * dt * vehicle.mode.jerk);
     ASSERT_LE((next.position - now.position - dt * now.velocity).norm(),
-              dt * dt * vehicle.acceleration);
+              dt * dt * vehicle.mode.acceleration);
   }
 }
 
@@ -88,8 +89,9 @@ TEST(Curve, SlowdownIsThatOfTheMinimumJerkMotion) {
   const Motion motion = calm();
   const Curve curve{piece_between({Vector3d::Zero()}, {Vector3d(10, 0, 0)}, 1.0)};
   const double by_speed = 10.0 * 15.0 / 8.0 / motion.conditions().cruise_speed;
-  const double by_acceleration = std::sqrt(100.0 / std::sqrt(3.0) / motion.vehicle().acceleration);
-  const double by_jerk = std::cbrt(600.0 / motion.vehicle().jerk);
+  const double by_acceleration =
+      std::sqrt(100.0 / std::sqrt(3.0) / motion.vehicle().mode.acceleration);
+  const double by_jerk = std::cbrt(600.0 / motion.vehicle().mode.jerk);
   const double least = std::max({by_speed, by_acceleration, by_jerk});
   const double bound = needed_slowdown(curve, motion);
   EXPECT_GE(bound, least * (1 - 1e-12));

@@ -168,9 +168,10 @@ TEST(ReturnEnergy, IsThatOfThePiecesAndTheWaits) {
   const auto energy = [&](const Vector3d& way) {
     return motion.leg_energy(way, motion.leg_time(way));
   };
-  const double pieces = energy({0, 0, 20}) + energy({-60, 0, 0}) + energy({0, 0, -30});
-  const double total = return_energy(motion, law, {0, 0, 10}, 10.0);
-  EXPECT_GT(total, pieces + motion.hover_energy(10.0));
+  const double pieces = energy({0, 0, 20}) + energy({-60, 0, 0}) +
+                        motion.hover_energy(motion.landing_time(30.0));
+  const double total = return_energy(motion, law, {0, 0, 10});
+  EXPECT_GT(total, pieces);
   EXPECT_LT(total, pieces + motion.hover_energy(30.0));
 }
 

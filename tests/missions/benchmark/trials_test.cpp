@@ -62,6 +62,19 @@ TEST(Trials, PutThePapersFiguresBesideTheirs) {
   EXPECT_THAT(table, HasSubstr("22.3"));
 }
 
+// Table 1, where the mission is one of its models and names no other publication.
+TEST(Trials, TakeThePapersRowOfTheirPlanner) {
+  file::Mission mission;
+  mission.name = "bunny";
+  mission.planner.name = file::PlannerName::see;
+  mission.paper.coverage = 0.5;
+  const auto json = nlohmann::json::parse(benchmark::trials_json(mission, two_trials(), 2, 1));
+  EXPECT_EQ(json["views"]["paper"], 75.3);
+  EXPECT_EQ(json["coverage"]["paper"], 0.5);
+  EXPECT_EQ(json["distance_m"]["paper"], 56.3);
+  EXPECT_FALSE(json["coverage_visible"].contains("paper"));
+}
+
 TEST(Trials, TableHoldsNamesOfAnyLength) {
   file::Mission mission;
   mission.name = std::string(1000, 'v');

@@ -4,8 +4,9 @@
 #include <gtest/gtest.h>
 
 #include "geometry/error.h"
+#include "missions/derived/mission_flight.h"
 #include "missions/derived/site.h"
-#include "missions/file/mission_keys.h"
+#include "missions/file/number_text.h"
 
 namespace skycap::missions {
 namespace {
@@ -92,7 +93,8 @@ TEST(ResolvedMission, MeasuresTheGroundClearanceFromTheScenesBase) {
       "scene: {model: 'builtin:teapot', position: [0, 0, 60]}\n"
       "evaluation: {registration_distance: 0.005}\nlimits: {ground_clearance: 2}\n",
       "m.yaml");
-  EXPECT_EQ(mission.planner.see.least_height, 62.0);
+  EXPECT_EQ(derived::least_height_above_ground(mission), 62.0);
+  EXPECT_EQ(derived::view_limits(mission).least_height, 62.0);
 }
 
 TEST(ResolvedMission, WhatFliesIsPlannedBySkycapUnlessTheMissionSaysOtherwise) {
@@ -114,6 +116,16 @@ TEST(ResolvedMission, ChecksSeesDensityOnlyForSee) {
   }
   for (const char* name : {"skycap", "rsv", "rse", "oa", "uv", "pc", "af", "ae"}) {
     EXPECT_EQ(complaint(sparse + name + "}\n"), "") << name;
+  }
+}
+
+// 51.7534 is no binary fraction: by way of radians it came back as 51.753399999999999.
+TEST(ResolvedMission, KeepsThePlaceAsItIsWritten) {
+  for (const double latitude : {51.7534, -33.856784, 0.1, 47.3}) {
+    const file::Mission mission =
+        parsed("site: {latitude_deg: " + file::exact_text(latitude) + ", longitude_deg: -1.254}\n");
+    EXPECT_EQ(derived::site_of(mission).origin.latitude_deg, latitude);
+    EXPECT_EQ(derived::site_of(mission).origin.longitude_deg, -1.254);
   }
 }
 

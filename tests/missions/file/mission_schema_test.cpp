@@ -8,6 +8,7 @@
 
 #include "geometry/error.h"
 #include "missions/derived/resolved_mission.h"
+#include "missions/file/key_sections.h"
 #include "missions/file/mission_keys.h"
 #include "tests/missions/run_skycap.h"
 
@@ -49,6 +50,18 @@ TEST(MissionSchema, KnowsExactlyTheKeysOfTheReader) {
   collect_paths(shipped_schema(), "", in_schema);
   for (const file::Key& key : file::mission_keys()) in_reader.insert(key.path);
   EXPECT_EQ(in_schema, in_reader);
+}
+
+TEST(MissionKeys, StandInTheirSectionAndOnce) {
+  std::set<std::string> paths;
+  for (const file::KeySection& section : file::key_sections) {
+    for (const file::Key& key : section.keys()) {
+      EXPECT_EQ(key.path.substr(0, key.path.find('.')) == section.name, !section.name.empty())
+          << key.path;
+      EXPECT_TRUE(paths.insert(key.path).second) << key.path;
+    }
+  }
+  EXPECT_EQ(paths.size(), file::mission_keys().size());
 }
 
 // For each key, what the schema calls the limits is where the reader starts to refuse.

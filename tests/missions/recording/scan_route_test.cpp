@@ -137,7 +137,7 @@ TEST_F(ScanRouteFile, PointsOnEarthAreFlownLookingAhead) {
   } catch (const Error& error) {
     EXPECT_THAT(error.what(), testing::HasSubstr("give site.latitude_deg and site.longitude_deg"));
   }
-  mission.georeference.latitude = mission.georeference.longitude = 0.0;
+  mission.georeference.latitude_deg = mission.georeference.longitude_deg = 0.0;
   mission.scan.speed = 2.0;
   const recording::ScanRoute route =
       recording::read_scan_route(file, mission, recording::Carrier::airframe);
@@ -165,7 +165,7 @@ TEST_F(ScanRouteFile, SaysWhatIsWrongWithARoute) {
   EXPECT_THAT(message("b.csv", "view,x\n0,1,2,3,0,0,0\n"), HasSubstr("without length"));
   EXPECT_THAT(message("c.csv", "view,x\n0,1,2,x,0,0,1\n"), HasSubstr("line 2"));
   EXPECT_THAT(message("d.csv", "view,x\n"), HasSubstr("the trajectory has no poses"));
-  mission.georeference.latitude = mission.georeference.longitude = 0.1;
+  mission.georeference.latitude_deg = mission.georeference.longitude_deg = 0.1;
   EXPECT_THAT(message("a.plan", "{}"), HasSubstr("a.plan"));
 }
 

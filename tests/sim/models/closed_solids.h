@@ -9,7 +9,7 @@
 
 #include <Eigen/Geometry>
 
-#include "sim/models/solids.h"
+#include "sim/models/masonry/solids.h"
 
 namespace skycap::sim::models {
 

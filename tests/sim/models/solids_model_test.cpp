@@ -5,11 +5,11 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "sim/models/corinthian.h"
-#include "sim/models/rustication.h"
-#include "sim/models/solids.h"
-#include "sim/models/tower.h"
-#include "sim/models/wall.h"
+#include "sim/models/masonry/corinthian.h"
+#include "sim/models/masonry/rustication.h"
+#include "sim/models/masonry/solids.h"
+#include "sim/models/masonry/tower.h"
+#include "sim/models/masonry/wall.h"
 #include "tests/sim/models/closed_solids.h"
 
 namespace skycap::sim::models {

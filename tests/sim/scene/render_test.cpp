@@ -10,7 +10,7 @@
 #include <gtest/gtest.h>
 
 #include "geometry/error.h"
-#include "sim/models/solids.h"
+#include "sim/models/masonry/solids.h"
 
 namespace skycap::sim {
 namespace {

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "geometry/surfaces/mesh.h"
-#include "sim/models/solids.h"
+#include "sim/models/masonry/solids.h"
 
 namespace skycap::sim::models {
 

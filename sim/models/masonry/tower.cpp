@@ -1,4 +1,4 @@
-#include "sim/models/tower.h"
+#include "sim/models/masonry/tower.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,8 +1,8 @@
 /// Courses of cut stones round arched openings: tiles for a wall with joints.
 #pragma once
 
-#include "sim/models/solids.h"
-#include "sim/models/wall.h"
+#include "sim/models/masonry/solids.h"
+#include "sim/models/masonry/wall.h"
 
 namespace skycap::sim::models {
 

@@ -1,4 +1,4 @@
-#include "sim/models/corinthian.h"
+#include "sim/models/masonry/corinthian.h"
 
 #include <algorithm>
 #include <cmath>

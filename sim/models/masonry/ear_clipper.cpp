@@ -5,7 +5,7 @@
 #include <limits>
 #include <utility>
 
-#include "sim/models/solids.h"
+#include "sim/models/masonry/solids.h"
 
 namespace skycap::sim::models {
 namespace {

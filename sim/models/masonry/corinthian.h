@@ -3,7 +3,7 @@
 /// Architecture (1732), in modules of the diameter at the foot.
 #pragma once
 
-#include "sim/models/solids.h"
+#include "sim/models/masonry/solids.h"
 
 namespace skycap::sim::models {
 

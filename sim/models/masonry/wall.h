@@ -9,9 +9,9 @@
 
 #include <Eigen/Core>
 
-#include "sim/models/plan_curve.h"
-#include "sim/models/solids.h"
-#include "sim/models/tower.h"
+#include "sim/models/masonry/plan_curve.h"
+#include "sim/models/masonry/solids.h"
+#include "sim/models/masonry/tower.h"
 
 namespace skycap::sim::models {
 

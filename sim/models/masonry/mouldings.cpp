@@ -1,4 +1,4 @@
-#include "sim/models/mouldings.h"
+#include "sim/models/masonry/mouldings.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "sim/models/rustication.h"
+#include "sim/models/masonry/rustication.h"
 
 #include <algorithm>
 #include <cassert>

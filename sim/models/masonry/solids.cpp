@@ -1,4 +1,4 @@
-#include "sim/models/solids.h"
+#include "sim/models/masonry/solids.h"
 
 #include <algorithm>
 #include <cassert>

@@ -1,4 +1,4 @@
-#include "sim/models/wall_tiles.h"
+#include "sim/models/masonry/wall_tiles.h"
 
 #include <algorithm>
 #include <cassert>

@@ -1,4 +1,4 @@
-#include "sim/models/plan_curve.h"
+#include "sim/models/masonry/plan_curve.h"
 
 #include <algorithm>
 #include <cmath>

@@ -9,7 +9,7 @@
 
 #include <Eigen/Core>
 
-#include "sim/models/wall.h"
+#include "sim/models/masonry/wall.h"
 
 namespace skycap::sim::models {
 

@@ -4,7 +4,7 @@
 
 #include <string>
 
-#include "sim/models/solids.h"
+#include "sim/models/masonry/solids.h"
 
 namespace skycap::sim::models {
 

@@ -1,4 +1,4 @@
-#include "sim/models/wall.h"
+#include "sim/models/masonry/wall.h"
 
 #include <algorithm>
 #include <array>
@@ -9,7 +9,7 @@
 #include <numbers>
 #include <utility>
 
-#include "sim/models/wall_tiles.h"
+#include "sim/models/masonry/wall_tiles.h"
 
 namespace skycap::sim::models {
 namespace {

@@ -1,0 +1,59 @@
+// The keys of `sensor`.
+#include "missions/file/key_builders.h"
+#include "missions/file/key_sections.h"
+
+namespace skycap::missions::file {
+std::vector<Key> sensor_keys() {
+  return {
+      choice_key(
+          "sensor.preset", {"d435", "high_resolution"},
+          [](Mission & m) -> auto& { return m.sensor.preset; },
+          "Depth camera whose values the keys below override: d435 is an Intel RealSense D435 "
+          "(848 x 480 pixels, 69.4 x 42.5 degrees), high_resolution the paper's for buildings "
+          "(2400 x 1750 pixels, 60 x 40 degrees)."),
+      otherwise("-", text_key(
+                         "sensor.lidar", [](Mission & m) -> auto& { return m.sensor.lidar; },
+                         "In place of a depth camera, a spinning laser scanner that stops at each "
+                         "view and turns once: a preset of sim/sensors/presets, or the path of a "
+                         "description (NAME.yaml), relative to the mission file. No other key of "
+                         "the section sensor goes with it.")),
+      integer_key(
+          "sensor.width", "px", between(1, 32768),
+          [](Mission & m) -> auto& { return m.sensor.camera.camera.width; },
+          "Columns of the image."),
+      integer_key(
+          "sensor.height", "px", between(1, 32768),
+          [](Mission & m) -> auto& { return m.sensor.camera.camera.height; }, "Rows of the image."),
+      angle_key(
+          "sensor.horizontal_fov_deg", between(0.1, 179),
+          [](Mission & m) -> auto& { return m.sensor.camera.camera.horizontal_fov; },
+          "Full horizontal angle of view."),
+      angle_key(
+          "sensor.vertical_fov_deg", between(0.1, 179),
+          [](Mission & m) -> auto& { return m.sensor.camera.camera.vertical_fov; },
+          "Full vertical angle of view."),
+      number_key(
+          "sensor.min_range", "m", between(0, 1e6),
+          [](Mission & m) -> auto& { return m.sensor.camera.camera.min_range; },
+          "Nearest depth, along the optical axis, that is measured."),
+      number_key(
+          "sensor.max_range", "m", above(0, 1e6),
+          [](Mission & m) -> auto& { return m.sensor.camera.camera.max_range; },
+          "Farthest depth, along the optical axis, that is measured."),
+      angle_key(
+          "sensor.max_incidence_deg", above(0, 90),
+          [](Mission & m) -> auto& { return m.sensor.camera.max_incidence; },
+          "Surfaces whose normal makes a larger angle than this with the ray give no return; 90 "
+          "switches the limit off."),
+      number_key(
+          "sensor.noise.sigma", "m", between(0, 1e3),
+          [](Mission & m) -> auto& { return m.sensor.camera.noise.sigma; },
+          "Standard deviation of the Gaussian noise of the measured points."),
+      choice_key(
+          "sensor.noise.direction", {"isotropic", "along_ray"},
+          [](Mission & m) -> auto& { return m.sensor.camera.noise.direction; },
+          "Whether the noise moves a point in x, y and z alike or along its ray only."),
+  };
+}
+
+}  // namespace skycap::missions::file
