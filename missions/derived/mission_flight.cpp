@@ -2,15 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 namespace skycap::missions::derived {
 namespace {
 
 using Eigen::AlignedBox3d;
 using Eigen::Vector3d;
-
-constexpr double degrees_per_radian = 180.0 / std::numbers::pi;
 
 /// Voxels of a quarter of the clearance lose little of the free space beside what was measured.
 constexpr double voxels_per_clearance = 4.0;
@@ -149,14 +146,14 @@ flight::RouteOptions route_options_of(const file::Mission& mission, const Vector
 }
 
 bool has_place(const file::Mission& mission) {
-  return mission.georeference.latitude && mission.georeference.longitude;
+  return mission.georeference.latitude_deg && mission.georeference.longitude_deg;
 }
 
 flight::Site site_of(const file::Mission& mission) {
   const file::Georeference& place = mission.georeference;
   flight::Site site;
-  site.origin = {place.latitude.value_or(0.0) * degrees_per_radian,
-                 place.longitude.value_or(0.0) * degrees_per_radian, place.ellipsoid_height};
+  site.origin = {place.latitude_deg.value_or(0.0), place.longitude_deg.value_or(0.0),
+                 place.ellipsoid_height};
   site.geoid_undulation = place.geoid_undulation;
   return site;
 }
