@@ -3,15 +3,14 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
-#include <fstream>
 #include <initializer_list>
-#include <iterator>
 #include <optional>
 #include <set>
 #include <utility>
 
 #include "geometry/angle.h"
 #include "geometry/error.h"
+#include "geometry/io/file.h"
 #include "missions/file/sensor_presets.h"
 #include "missions/file/yaml_tree.h"
 
@@ -324,11 +323,9 @@ std::vector<std::string_view> sensor_presets() {
 
 SensorDescription find_sensor(const std::string& name_or_file) {
   if (name_or_file.ends_with(".yaml")) {
-    std::ifstream file(name_or_file);
-    const std::string text{std::istreambuf_iterator<char>(file), {}};
-    if (!file || text.empty()) {
-      throw Error(ErrorKind::bad_file, name_or_file + ": cannot be read, or is empty");
-    }
+    constexpr std::size_t largest = 1 << 20;  // [byte]; a description has about a thousand
+    const std::string text = geometry::read_file(name_or_file, largest);
+    if (text.empty()) throw Error(ErrorKind::bad_file, name_or_file + ": is empty");
     return read_sensor(text, name_or_file);
   }
   std::string known;
