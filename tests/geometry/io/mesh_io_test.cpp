@@ -343,8 +343,9 @@ TEST_F(MeshIo, DamagedFilesNeverDoWorseThanThrow) {
     std::ifstream file(folder_.path() / name, std::ios::binary);
     originals.emplace_back(name, std::string(std::istreambuf_iterator<char>(file), {}));
   }
+  int read_anyway = 0;
   for (const auto& [name, original] : originals) {
-    int read_anyway = 0, refused = 0;
+    int refused = 0;
     for (int trial = 0; trial < 300; ++trial) {
       std::string bytes = original;
       for (int i = 0; i < 3; ++i) bytes[random() % bytes.size()] = static_cast<char>(random());
@@ -360,10 +361,9 @@ TEST_F(MeshIo, DamagedFilesNeverDoWorseThanThrow) {
       EXPECT_NO_THROW(validate(*mesh)) << name << ", trial " << trial;
       ++read_anyway;
     }
-    // A cut file is refused, a changed coordinate is not.
-    EXPECT_GT(refused, 50) << name;
-    EXPECT_GT(read_anyway, 5) << name;
+    EXPECT_GT(refused, 50) << name;  // all that were cut, at least
   }
+  EXPECT_GT(read_anyway, 50);  // a coordinate of a binary file can be any
 }
 
 TEST_F(MeshIo, WriterRefusesWhatItCannotWrite) {
