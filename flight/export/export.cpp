@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <system_error>
 
 #include "flight/export/map_files.h"
 #include "flight/export/mavlink_files.h"
@@ -17,8 +16,6 @@ namespace skycap::flight {
 namespace {
 
 using Eigen::Vector3d;
-
-constexpr std::size_t largest_route_file = std::size_t{256} << 20;
 
 /// Between the rows of trajectory files [s].
 constexpr double trajectory_interval = 0.1;
@@ -43,9 +40,9 @@ std::vector<TimedState> states_of(const FlightPlan& plan) {
 RouteFile route_file(const std::string& content, Format format) {
   switch (format) {
     case Format::plan:
-      return read_plan(content);
+      return route_of(read_plan(content).items);
     case Format::waypoints:
-      return read_waypoints(content);
+      return route_of(read_waypoints(content).items);
     case Format::kmz:
       return read_kmz(content);
     case Format::kml:
@@ -55,37 +52,6 @@ RouteFile route_file(const std::string& content, Format format) {
     default:
       return read_litchi(content);
   }
-}
-
-std::vector<Vector3d> local_route(const std::string& content, Format format, const Site& site,
-                                  const Vector3d& pad) {
-  std::vector<Vector3d> points;
-  if (format == Format::csv || format == Format::ned_csv) {
-    for (const TimedState& state : read_trajectory_csv(content)) points.push_back(state.position);
-  } else if (format == Format::tum) {
-    for (const TimedPose& pose : read_tum(content)) {
-      points.emplace_back(pose.world_from_camera.translation());
-    }
-  } else {
-    return local_points(route_file(content, format), site, pad);
-  }
-  return points;
-}
-
-std::vector<std::string> notes_of(const FlightPlan& plan, Format format) {
-  std::vector<std::string> notes;
-  if (format == Format::plan) {
-    for (const std::string& name : flat_no_fly(plan).left_out) {
-      notes.push_back("no-fly volume \"" + name +
-                      "\" is passed over or under; the format has no heights, so it is left out");
-    }
-  }
-  if (format == Format::litchi) {
-    notes.emplace_back(
-        "Litchi's mission settings are not in the file: set heading mode \"Custom\" and path mode "
-        "\"Straight Lines\"; gimbal pitch is in whole degrees");
-  }
-  return notes;
 }
 
 }  // namespace
@@ -134,6 +100,22 @@ std::string write(const FlightPlan& plan, Format format) {
   return {};
 }
 
+std::vector<std::string> notes_of(const FlightPlan& plan, Format format) {
+  std::vector<std::string> notes;
+  if (format == Format::plan) {
+    for (const std::string& name : flat_no_fly(plan).left_out) {
+      notes.push_back("no-fly volume \"" + name +
+                      "\" is passed over or under; the format has no heights, so it is left out");
+    }
+  }
+  if (format == Format::litchi) {
+    notes.emplace_back(
+        "Litchi's mission settings are not in the file: set heading mode \"Custom\" and path mode "
+        "\"Straight Lines\"; gimbal pitch is in whole degrees");
+  }
+  return notes;
+}
+
 Problems validate(const std::string& content, Format format) {
   switch (format) {
     case Format::plan:
@@ -157,14 +139,19 @@ Problems validate(const std::string& content, Format format) {
   return {};
 }
 
-std::vector<Vector3d> flown_points(const std::string& content, Format format,
-                                   const FlightPlan& plan) {
-  if (format == Format::plan || format == Format::waypoints) {
-    const std::vector<MissionItem> items =
-        format == Format::plan ? read_plan_items(content) : read_waypoints_items(content);
-    return local_points(route_of(as_stored(items, plan.vehicle.dialect)), plan.site, plan.pad);
+std::vector<Vector3d> places_of(const std::string& content, Format format, const Site& site,
+                                const Vector3d& pad) {
+  std::vector<Vector3d> points;
+  if (format == Format::csv || format == Format::ned_csv) {
+    for (const TimedState& state : read_trajectory_csv(content)) points.push_back(state.position);
+  } else if (format == Format::tum) {
+    for (const TimedPose& pose : read_tum(content)) {
+      points.emplace_back(pose.world_from_camera.translation());
+    }
+  } else {
+    return local_points(route_file(content, format), site, pad);
   }
-  return local_route(content, format, plan.site, plan.pad);
+  return points;
 }
 
 Format format_of_file(const std::filesystem::path& path, const std::string& content) {
@@ -186,7 +173,7 @@ std::vector<Vector3d> read_route(const std::filesystem::path& path, const Site& 
   const std::string content = geometry::read_file(path, largest_route_file);
   const Format format = format_of_file(path, content);
   try {
-    std::vector<Vector3d> points = local_route(content, format, site, pad);
+    std::vector<Vector3d> points = places_of(content, format, site, pad);
     for (std::size_t i = 0; i < points.size(); ++i) {
       geometry::require_place(points[i], "place " + std::to_string(i + 1));
     }
@@ -197,42 +184,9 @@ std::vector<Vector3d> read_route(const std::filesystem::path& path, const Site& 
 }
 
 std::optional<double> read_return_height(const std::filesystem::path& path) {
-  const std::string content = load(path);
+  const std::string content = geometry::read_file(path);
   if (format_of_file(path, content) != Format::kmz) return std::nullopt;
   return read_kmz(content).return_height;
-}
-
-ExportResult export_flight(const FlightPlan& plan, Format format, const FreeSpace& space,
-                           const std::filesystem::path& path) {
-  const std::filesystem::path temporary = path.string() + ".part";
-  const auto refuse = [&](const std::string& what) {
-    std::error_code ignored;
-    std::filesystem::remove(temporary, ignored);
-    throw Error(ErrorKind::bad_geometry, path.string() + " is not written: " + what);
-  };
-  geometry::write_file(temporary, write(plan, format));
-  const std::string content = geometry::read_file(temporary);
-  if (const Problems problems = validate(content, format); !problems.empty()) {
-    refuse(problems.front());
-  }
-  const double clearance = std::max(0.0, plan.clearance - rounding_bound);
-  const double up_to = plan.clearance + reported_surplus;
-  const std::vector<Vector3d> points = flown_points(content, format, plan);
-  if (points.size() < 2) refuse("it holds no legs when read back");
-  ExportResult result{up_to, notes_of(plan, format)};
-  for (std::size_t i = 1; i < points.size(); ++i) {
-    const LegProof proof = prove(space, {points[i - 1], points[i]}, clearance, up_to);
-    if (!proof.is_proven) {
-      refuse("read back, " + describe({i - 1, proof.closest, space.name(proof.closest)}));
-    }
-    result.min_clearance = std::min(result.min_clearance, proof.clearance);
-  }
-  std::error_code failure;
-  std::filesystem::rename(temporary, path, failure);
-  if (failure) {
-    throw Error(ErrorKind::bad_file, path.string() + " cannot be written: " + failure.message());
-  }
-  return result;
 }
 
 }  // namespace skycap::flight

@@ -121,14 +121,13 @@ double flight_time(const FlightPlan& plan) {
 
 std::vector<Vector3d> local_points(const RouteFile& file, const Site& site, const Vector3d& pad) {
   const LocalFrame frame(site.origin);
-  double datum_height = 0.0;
-  if (file.datum == HeightDatum::takeoff) datum_height = frame.to_geodetic(pad).height;
-  if (file.datum == HeightDatum::mean_sea_level) datum_height = site.undulation_for("this route");
   std::vector<Vector3d> points;
   points.reserve(file.points.size());
   for (const FilePoint& point : file.points) {
-    points.push_back(
-        frame.to_local({point.latitude_deg, point.longitude_deg, point.height + datum_height}));
+    double height = point.height;
+    if (point.datum == HeightDatum::takeoff) height += frame.to_geodetic(pad).height;
+    if (point.datum == HeightDatum::mean_sea_level) height += site.undulation_for("this route");
+    points.push_back(frame.to_local({point.latitude_deg, point.longitude_deg, height}));
   }
   return points;
 }

@@ -81,22 +81,25 @@ inline constexpr double not_given = std::numeric_limits<double>::quiet_NaN();
 struct FilePoint {
   double latitude_deg = 0.0;
   double longitude_deg = 0.0;
-  double height = 0.0;  ///< above the file's datum [m]
+  double height = 0.0;  ///< above the point's datum [m]
   double yaw_deg = not_given;
   double pitch_deg = not_given;
-  double hold = 0.0;
+  double hold = 0.0;         ///< in all [s]
+  double hold_before = 0.0;  ///< before the first shot, where the format says [s]
   int shots = 0;
+  double speed = not_given;  ///< towards it, where the format says [m/s]
+  double curve = 0.0;        ///< how far from it the vehicle may turn [m]
+  HeightDatum datum = HeightDatum::ellipsoid;
 };
 
 /// The places a file makes a vehicle fly through, in order.
 struct RouteFile {
-  HeightDatum datum = HeightDatum::ellipsoid;
   std::vector<FilePoint> points;
   std::optional<double> return_height;  ///< above take-off, where the format says it [m]
 };
 
 /// The file's points in the local frame; `pad` is where heights above take-off count from. Throws
-/// Error{bad_config} if the file counts from mean sea level and the site's undulation is unknown.
+/// Error{bad_config} if one counts from mean sea level and the site's undulation is unknown.
 std::vector<Eigen::Vector3d> local_points(const RouteFile& file, const Site& site,
                                           const Eigen::Vector3d& pad);
 

@@ -106,7 +106,6 @@ class GeoJsonWriter {
 class GeoJsonChecker {
  public:
   explicit GeoJsonChecker(const std::string& text) {
-    route.datum = HeightDatum::ellipsoid;
     const Json file = geometry::parse_json<Json>(text);
     if (file.is_discarded() || !file.is_object() ||
         file.value("type", Json()) != "FeatureCollection" || !file.contains("features") ||

@@ -186,7 +186,6 @@ class KmlWriter {
 class KmlChecker {
  public:
   explicit KmlChecker(const std::string& text) {
-    route.datum = HeightDatum::mean_sea_level;
     const pugi::xml_parse_result parsed = document_.load_buffer(text.data(), text.size());
     if (!parsed) {
       problems.push_back(std::string("the file is not well-formed XML: ") + parsed.description());
@@ -251,7 +250,9 @@ class KmlChecker {
         complain(name, "has the coordinates", tuple, "; they must be longitude,latitude,height");
         return places;
       }
-      places.push_back({*latitude, *longitude, *height});
+      FilePoint point{*latitude, *longitude, *height};
+      point.datum = HeightDatum::mean_sea_level;
+      places.push_back(point);
     }
     if (places.empty()) problems.push_back("\"" + name + "\" has no coordinates");
     return places;

@@ -12,7 +12,7 @@ constexpr std::size_t actions_per_line = 15;
 constexpr std::size_t most_waypoints = 99;  // of one mission, on the oldest firmware still flown
 constexpr double stop_like_curve = 0.2;     // the smallest curve at a corner that Litchi takes [m]
 
-constexpr int stay = 0, photo = 1, tilt = 5;  // action types
+constexpr int stay = 0, photo = 1, rotate = 4, tilt = 5;  // action types
 
 constexpr std::size_t fields_before_actions = 8, fields_after_actions = 8;
 constexpr std::size_t fields_per_line =
@@ -55,7 +55,6 @@ struct Reading {
   RouteFile route;
 
   explicit Reading(const std::string& text) {
-    route.datum = HeightDatum::takeoff;
     const std::vector<std::string> lines = lines_of(text);
     if (lines.empty() || lines[0] != header()) {
       problems.emplace_back("line 1 is not Litchi's header");
@@ -97,14 +96,22 @@ struct Reading {
     require(2, -200, 500, "altitude"), require(3, 0, 359.999999, "heading");
     require(fields_before_actions + 2 * actions_per_line, 0, 0, "altitudemode (above take-off)");
     require(fields_before_actions + 2 * actions_per_line + 1, 0, 15, "speed");
+    require(6, 0, 0, "gimbalmode (by actions)");
+    require(fields_per_line - 2, -1, 0, "photo_timeinterval (by actions)");
+    require(fields_per_line - 1, -1, 0, "photo_distinterval (by actions)");
 
     FilePoint point{values[0], values[1], values[2], values[3]};
+    point.datum = HeightDatum::takeoff;
+    point.curve = values[4];
+    point.speed = values[fields_before_actions + 2 * actions_per_line + 1];
     for (std::size_t i = 0; i < actions_per_line; ++i) {
       const std::size_t field = fields_before_actions + 2 * i;
       const double parameter = values[field + 1];
       require(field, -1, 5, "an action type");
       if (values[field] == stay) point.hold += parameter / 1000.0;
+      if (values[field] == stay && point.shots == 0) point.hold_before += parameter / 1000.0;
       if (values[field] == tilt) point.pitch_deg = parameter;
+      if (values[field] == rotate) point.yaw_deg = parameter;
       if (values[field] == photo) ++point.shots;
     }
     route.points.push_back(point);

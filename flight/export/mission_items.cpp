@@ -13,10 +13,11 @@ constexpr double to_deg = 180.0 / std::numbers::pi;
 
 bool is_navigation(int c) {
   return c == command::waypoint || c == command::takeoff || c == command::land ||
-         c == command::return_to_launch || c == command::delay;
+         c == command::return_to_launch || c == command::delay || c == command::loiter_time;
 }
 bool has_place(int c) {
-  return c == command::waypoint || c == command::takeoff || c == command::land;
+  return c == command::waypoint || c == command::loiter_time || c == command::takeoff ||
+         c == command::land;
 }
 bool is_gimbal(int c) { return c == command::mount_control || c == command::gimbal_pitch_yaw; }
 bool is_shot(int c) { return c == command::start_capture || c == command::digicam_control; }
@@ -37,6 +38,7 @@ class ItemWriter {
       plan_.waypoints[i].is_station ? add_station(i) : add_stop(i, not_given);
     }
     add_place(command::land, {0, 0, 0, not_given}, plan_.pad);
+    for (std::size_t i = 0; i < items_.size(); ++i) items_[i].number = i + 1;
     return std::move(items_);
   }
 
@@ -118,20 +120,21 @@ class ItemChecker {
 
  private:
   void complain(std::size_t i, const std::string& what) {
-    problems_.push_back("item " + std::to_string(i + 1) + " (command " +
-                        std::to_string(items_[i].command) + ") " + what);
+    problems_.push_back(name_of(items_[i]) + " (command " + std::to_string(items_[i].command) +
+                        ") " + what);
   }
 
   void check_item(std::size_t i) {
     const MissionItem& item = items_[i];
-    const bool is_known_frame = item.frame == frame::global || item.frame == frame::mission ||
-                                item.frame == frame::relative || item.frame == frame::terrain;
+    const bool is_known_frame = is_above_sea(item) || item.frame == frame::mission ||
+                                is_above_home(item) || item.frame == frame::terrain;
     if (!is_known_frame)
-      complain(i, "has frame " + std::to_string(item.frame) + "; use 0, 2, 3 or 10");
+      complain(i, "has frame " + std::to_string(item.frame) + "; use 0, 2, 3, 5, 6 or 10");
     if (has_place(item.command)) check_place(i);
     if (item.command == command::jump) {
       const double target = item.params[0];
-      if (!(target >= 1.0 && target <= static_cast<double>(items_.size()))) {
+      if (!(target >= static_cast<double>(items_.front().number) &&
+            target <= static_cast<double>(items_.back().number))) {
         complain(i, "jumps to item " + fixed(target, 0) + ", which does not exist");
       }
     }
@@ -220,6 +223,16 @@ class ItemChecker {
 
 }  // namespace
 
+std::string name_of(const MissionItem& item) { return "item " + std::to_string(item.number); }
+
+bool is_above_sea(const MissionItem& item) {
+  return item.frame == frame::global || item.frame == frame::global_int;
+}
+
+bool is_above_home(const MissionItem& item) {
+  return item.frame == frame::relative || item.frame == frame::relative_int;
+}
+
 std::vector<MissionItem> mission_items(const FlightPlan& plan) {
   if (plan.vehicle.dialect == Dialect::dji) {
     throw Error(ErrorKind::bad_config, "vehicle \"" + plan.vehicle.name +
@@ -255,7 +268,6 @@ std::vector<MissionItem> as_stored(std::vector<MissionItem> items, Dialect diale
 
 RouteFile route_of(const std::vector<MissionItem>& items) {
   RouteFile route;
-  route.datum = HeightDatum::takeoff;
   double yaw_deg = not_given, pitch_deg = not_given;
   for (const MissionItem& item : items) {
     if (item.command == command::condition_yaw) yaw_deg = item.params[0];
@@ -266,12 +278,12 @@ RouteFile route_of(const std::vector<MissionItem>& items) {
     }
     // The landing is straight down from the last waypoint: the pad itself is no place to keep
     // clear.
-    if (item.command != command::waypoint && item.command != command::takeoff) continue;
-    if (item.frame == frame::global) route.datum = HeightDatum::mean_sea_level;
+    if (!has_place(item.command) || item.command == command::land) continue;
     FilePoint point{item.params[4], item.params[5], item.params[6]};
+    point.datum = is_above_sea(item) ? HeightDatum::mean_sea_level : HeightDatum::takeoff;
     point.yaw_deg = std::isnan(item.params[3]) ? yaw_deg : item.params[3];
     point.pitch_deg = pitch_deg;
-    point.hold = item.command == command::waypoint ? item.params[0] : 0.0;
+    point.hold = item.command == command::takeoff ? 0.0 : item.params[0];
     route.points.push_back(point);
   }
   return route;

@@ -4,7 +4,6 @@
 #include <nlohmann/json.hpp>
 
 #include "flight/export/mavlink_files.h"
-#include "flight/space/clearance.h"
 #include "geometry/error.h"
 #include "geometry/io/json.h"
 
@@ -16,7 +15,7 @@ using Json = nlohmann::ordered_json;
 /// MAV_AUTOPILOT and MAV_TYPE.
 constexpr int px4 = 12, ardupilot = 3, quadrotor = 2;
 
-/// Corners of the polygon that stands for a circle in the check of legs.
+/// Corners of the polygon that stands for a circle.
 constexpr int circle_corners = 64;
 
 Json polygon(const Prism& prism, const LocalFrame& frame, bool is_inclusion) {
@@ -64,11 +63,10 @@ class PlanChecker {
     if (const Json* mission = section("mission", 2)) check_mission(*mission);
     if (const Json* fence = section("geoFence", 2)) check_fence(*fence);
     if (const Json* rally = section("rallyPoints", 2)) check_rally(*rally);
-    if (problems_.empty()) check_legs();
     return std::move(problems_);
   }
 
-  const std::vector<MissionItem>& items() const { return items_; }
+  const MissionFile& file() const { return file_; }
 
  private:
   void complain(const std::string& what) { problems_.push_back(what); }
@@ -97,14 +95,16 @@ class PlanChecker {
     if (!mission.contains("plannedHomePosition") ||
         !are_numbers(mission["plannedHomePosition"], 3)) {
       complain("mission.plannedHomePosition must be three numbers");
+    } else {
+      const Json& home = mission["plannedHomePosition"];
+      file_.home = GeodeticPoint{home[0], home[1], home[2]};
     }
-    std::optional<Dialect> dialect;
     if (!mission.contains("firmwareType") || !mission["firmwareType"].is_number_integer()) {
       complain("mission.firmwareType must be an integer");
     } else if (mission["firmwareType"] == px4) {
-      dialect = Dialect::px4;
+      file_.dialect = Dialect::px4;
     } else if (mission["firmwareType"] == ardupilot) {
-      dialect = Dialect::ardupilot;
+      file_.dialect = Dialect::ardupilot;
     }
     if (!mission.contains("items") || !mission["items"].is_array() || mission["items"].empty()) {
       complain("mission.items must be a list of at least one item");
@@ -113,7 +113,7 @@ class PlanChecker {
     const std::size_t before = problems_.size();
     for (std::size_t i = 0; i < mission["items"].size(); ++i) check_item(mission["items"][i], i);
     if (problems_.size() > before) return;
-    for (const std::string& problem : check_items(items_, dialect)) complain(problem);
+    for (const std::string& problem : check_items(file_.items, file_.dialect)) complain(problem);
   }
 
   void check_item(const Json& json, std::size_t i) {
@@ -136,7 +136,7 @@ class PlanChecker {
     if (!is("params", [](const Json& v) { return v.is_array() && v.size() == 7; })) {
       return complain(who + ".params must be 7 numbers or nulls");
     }
-    MissionItem item{json["command"], json["frame"], {}, json["autoContinue"]};
+    MissionItem item{json["command"], json["frame"], {}, json["autoContinue"], i + 1};
     for (std::size_t p = 0; p < 7; ++p) {
       const Json& value = json["params"][p];
       if (!value.is_number() && !value.is_null()) {
@@ -145,7 +145,7 @@ class PlanChecker {
       item.params[p] = value.is_null() ? not_given : value.get<double>();
     }
     check_altitude(json, item, who);
-    items_.push_back(item);
+    file_.items.push_back(item);
   }
 
   void check_altitude(const Json& json, const MissionItem& item, const std::string& who) {
@@ -189,7 +189,7 @@ class PlanChecker {
     if (!area.contains("inclusion") || !area["inclusion"].is_boolean()) {
       return complain(who + ".inclusion must be true or false; loaders assume different defaults");
     }
-    Area found{who, area["inclusion"], {}};
+    FenceArea found{who, area["inclusion"], {}};
     if (is_polygon) {
       if (!area.contains("polygon") || !area["polygon"].is_array() || area["polygon"].size() < 3) {
         return complain(who + ".polygon must have at least 3 corners");
@@ -218,13 +218,14 @@ class PlanChecker {
             centre.to_geodetic({radius * std::cos(angle), radius * std::sin(angle), 0.0}));
       }
     }
-    areas_.push_back(std::move(found));
+    file_.fence.push_back(std::move(found));
   }
 
   void check_rally(const Json& rally) {
     if (!rally.contains("points") || !rally["points"].is_array()) {
       return complain("rallyPoints.points must be a list");
     }
+    file_.rally_points = rally["points"].size();
     for (std::size_t i = 0; i < rally["points"].size(); ++i) {
       if (!are_numbers(rally["points"][i], 3)) {
         complain("rallyPoints.points[" + std::to_string(i) + "] must be three numbers");
@@ -232,48 +233,8 @@ class PlanChecker {
     }
   }
 
-  /// Autopilots check waypoints against fences at best; the legs between them are checked here.
-  void check_legs() {
-    const RouteFile route = route_of(items_);
-    if (route.points.empty() || areas_.empty()) return;
-    const LocalFrame frame({route.points[0].latitude_deg, route.points[0].longitude_deg, 0.0});
-    std::vector<Eigen::Vector3d> points;
-    for (const FilePoint& point : route.points) {
-      Eigen::Vector3d place = frame.to_local({point.latitude_deg, point.longitude_deg, 0.0});
-      place.z() = 0.0;
-      points.push_back(place);
-    }
-    for (const Area& area : areas_) {
-      Prism prism{area.name, {}};
-      for (const GeodeticPoint& corner : area.corners) {
-        prism.footprint.emplace_back(frame.to_local(corner).head<2>());
-      }
-      Obstacles obstacles;
-      if (area.is_inclusion) {
-        obstacles.fence = prism;
-      } else {
-        obstacles.no_fly = {prism};
-      }
-      try {
-        for (const Violation& violation : check_route(points, KnownSpace(obstacles), 0.0)) {
-          complain("leg " + std::to_string(violation.leg + 1) +
-                   (area.is_inclusion ? " leaves " : " enters ") + area.name);
-        }
-      } catch (const Error& error) {
-        complain(error.what());
-      }
-    }
-  }
-
-  struct Area {
-    std::string name;
-    bool is_inclusion;
-    std::vector<GeodeticPoint> corners;
-  };
-
   Json plan_;
-  std::vector<MissionItem> items_;
-  std::vector<Area> areas_;
+  MissionFile file_{.home_name = "mission.plannedHomePosition", .holds_fence = true};
   Problems problems_;
 };
 
@@ -314,12 +275,10 @@ std::string write_plan(const FlightPlan& plan) {
 
 Problems validate_plan(const std::string& text) { return PlanChecker(text).check(); }
 
-std::vector<MissionItem> read_plan_items(const std::string& text) {
+MissionFile read_plan(const std::string& text) {
   PlanChecker checker(text);
   throw_first(checker.check(), "not a good .plan file");
-  return checker.items();
+  return checker.file();
 }
-
-RouteFile read_plan(const std::string& text) { return route_of(read_plan_items(text)); }
 
 }  // namespace skycap::flight

@@ -22,7 +22,7 @@ std::string line(std::size_t index, bool is_current, const MissionItem& item) {
 struct Reading {
   Problems problems;
   std::vector<MissionItem> items;
-  bool has_home_line = false;
+  std::optional<MissionItem> home;
 
   explicit Reading(const std::string& text) {
     const std::vector<std::string> lines = lines_of(text);
@@ -33,9 +33,11 @@ struct Reading {
     for (std::size_t i = 1; i < lines.size(); ++i) read_line(lines[i], i);
     if (!problems.empty()) return;
     // ArduPilot's files begin with home: a waypoint in absolute height before the take-off.
-    has_home_line =
+    const bool has_home =
         !items.empty() && items[0].command == command::waypoint && items[0].frame == frame::global;
-    if (has_home_line) items.erase(items.begin());
+    if (!has_home) return;
+    home = items.front();
+    items.erase(items.begin());
   }
 
   void read_line(const std::string& text, std::size_t number) {
@@ -68,7 +70,8 @@ struct Reading {
         return;
       }
     }
-    MissionItem item{static_cast<int>(values[3]), static_cast<int>(values[2]), {}, values[11] == 1};
+    MissionItem item{
+        static_cast<int>(values[3]), static_cast<int>(values[2]), {}, values[11] == 1, number - 1};
     std::copy(values.begin() + 4, values.begin() + 11, item.params.begin());
     items.push_back(item);
   }
@@ -104,10 +107,10 @@ std::string write_waypoints(const FlightPlan& plan) {
 Problems validate_waypoints(const std::string& text, std::optional<Dialect> dialect) {
   Reading reading(text);
   if (!reading.problems.empty()) return reading.problems;
-  if (dialect == Dialect::ardupilot && !reading.has_home_line) {
+  if (dialect == Dialect::ardupilot && !reading.home) {
     reading.problems.emplace_back("line 2 must be home: frame 0, command 16");
   }
-  if (dialect == Dialect::px4 && reading.has_home_line) {
+  if (dialect == Dialect::px4 && reading.home) {
     reading.problems.emplace_back("line 2 is a home, which PX4's files do not have");
   }
   for (const std::string& problem : check_items(reading.items, dialect)) {
@@ -116,11 +119,17 @@ Problems validate_waypoints(const std::string& text, std::optional<Dialect> dial
   return reading.problems;
 }
 
-std::vector<MissionItem> read_waypoints_items(const std::string& text) {
+MissionFile read_waypoints(const std::string& text) {
   throw_first(validate_waypoints(text), "not a good .waypoints file");
-  return Reading(text).items;
+  const Reading reading(text);
+  MissionFile file{.items = reading.items,
+                   .dialect = reading.home ? Dialect::ardupilot : Dialect::px4};
+  if (reading.home) {
+    const std::array<double, 7>& place = reading.home->params;
+    file.home = GeodeticPoint{place[4], place[5], place[6]};
+    file.home_name = "item 0";
+  }
+  return file;
 }
-
-RouteFile read_waypoints(const std::string& text) { return route_of(read_waypoints_items(text)); }
 
 }  // namespace skycap::flight

@@ -304,9 +304,9 @@ class WpmlChecker {
   }
 
   void set_datum(const std::string& mode) {
-    if (mode == "EGM96") route.datum = HeightDatum::mean_sea_level;
-    if (mode == "WGS84") route.datum = HeightDatum::ellipsoid;
-    if (mode == "relativeToStartPoint") route.datum = HeightDatum::takeoff;
+    if (mode == "EGM96") datum_ = HeightDatum::mean_sea_level;
+    if (mode == "WGS84") datum_ = HeightDatum::ellipsoid;
+    if (mode == "relativeToStartPoint") datum_ = HeightDatum::takeoff;
   }
 
   void check_config(pugi::xml_node config) {
@@ -332,6 +332,7 @@ class WpmlChecker {
     const std::optional<double> longitude = to_number(parts[0]);
     const std::optional<double> latitude = to_number(parts.size() == 2 ? parts[1] : "");
     FilePoint point;
+    point.datum = datum_;
     if (!longitude || !latitude || std::abs(*longitude) > 180.0 || std::abs(*latitude) > 90.0) {
       complain("has coordinates \"" + place + "\"; they must be longitude,latitude in degrees");
     } else {
@@ -403,6 +404,7 @@ class WpmlChecker {
   bool is_template_;
   pugi::xml_document document_;
   std::set<double> group_ids_;
+  HeightDatum datum_ = HeightDatum::ellipsoid;
 };
 
 }  // namespace
@@ -434,12 +436,12 @@ Problems validate_kmz(const std::string& bytes) {
   problems.insert(problems.end(), flown.problems.begin(), flown.problems.end());
   if (!problems.empty()) return problems;
   // Pilot 2 may make the waylines anew from the template: the two must say the same.
-  bool agree = edited.version == flown.version && edited.route.datum == flown.route.datum &&
-               edited.route.points.size() == flown.route.points.size();
+  bool agree =
+      edited.version == flown.version && edited.route.points.size() == flown.route.points.size();
   for (std::size_t i = 0; agree && i < flown.route.points.size(); ++i) {
     const FilePoint &a = edited.route.points[i], &b = flown.route.points[i];
     agree = a.latitude_deg == b.latitude_deg && a.longitude_deg == b.longitude_deg &&
-            a.height == b.height && a.shots == b.shots;
+            a.height == b.height && a.datum == b.datum && a.shots == b.shots;
   }
   if (!agree) problems.emplace_back("template.kml and waylines.wpml do not agree");
   return problems;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace skycap::missions::derived {
 namespace {
@@ -156,6 +157,21 @@ flight::Site site_of(const file::Mission& mission) {
                  place.ellipsoid_height};
   site.geoid_undulation = place.geoid_undulation;
   return site;
+}
+
+flight::FlightFacts flight_facts(const file::Mission& mission) {
+  flight::FlightFacts facts;
+  facts.site = site_of(mission);
+  facts.pad = mission.flight.takeoff.value_or(mission.scene.position);
+  facts.is_pad_known = mission.flight.takeoff.has_value();
+  if (mission.flight.is_flown()) facts.vehicle = vehicle_of(mission);
+  facts.takeoff_climb = takeoff_climb_of(mission);
+  facts.cruise_speed = mission.flight.cruise_speed;
+  facts.hold = mission.flight.hold;
+  flight::Obstacles rules = flight_rules(mission);
+  facts.no_fly = std::move(rules.no_fly);
+  facts.fence = std::move(rules.fence);
+  return facts;
 }
 
 }  // namespace skycap::missions::derived

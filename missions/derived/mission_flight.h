@@ -7,6 +7,7 @@
 #include <Eigen/Geometry>
 
 #include "flight/export/geodesy.h"
+#include "flight/interpreter/flight_facts.h"
 #include "flight/motion/vehicle.h"
 #include "flight/route/route.h"
 #include "flight/space/measured_space.h"
@@ -54,5 +55,9 @@ bool has_place(const file::Mission& mission);
 
 /// The origin of the mission's frame; at 0 N 0 E if the mission has no place.
 flight::Site site_of(const file::Mission& mission);
+
+/// What the mission's route files must agree with. Where the pad is not given, heights above it
+/// count from the foot of the scene. The views are not known.
+flight::FlightFacts flight_facts(const file::Mission& mission);
 
 }  // namespace skycap::missions::derived

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "flight/export/parameters.h"
+#include "flight/interpreter/certified_export.h"
 #include "flight/space/clearance.h"
 #include "flight/space/interruptible_space.h"
 #include "geometry/error.h"

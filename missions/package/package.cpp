@@ -30,6 +30,10 @@ using Json = nlohmann::ordered_json;
 
 constexpr const char* free_space_name = "free_space.bin";
 
+[[noreturn]] void fail(const std::filesystem::path& file, const std::string& what) {
+  throw Error(ErrorKind::bad_file, file.string() + ": " + what);
+}
+
 Json json_of(const Eigen::Vector3d& vector) { return {vector.x(), vector.y(), vector.z()}; }
 
 Json json_of(const std::optional<double>& number) { return number ? Json(*number) : Json(); }
@@ -365,8 +369,34 @@ std::optional<SurveyMission> stage_package(const file::Mission& mission,
     }
   }
   // Last, so that whoever sees the summary sees the rest.
-  folder.write("summary.json", summary_json(mission, record, coverage, flight));
+  folder.write(summary_name, summary_json(mission, record, coverage, flight));
   return flight;
+}
+
+PackageSummary read_package_summary(const std::filesystem::path& folder,
+                                    const std::vector<file::KeyOverride>& overrides) {
+  const std::filesystem::path file = folder / summary_name;
+  geometry::finish_commit(folder);
+  try {
+    const Json json = read_summary(file);
+    PackageSummary summary;
+    summary.mission =
+        derived::parse_mission(mission_text(json.at("settings")), file.string(), overrides);
+    if (json.contains("flight")) {
+      summary.pad = summary.mission.flight.takeoff.value_or(vector_of(json["flight"].at("pad")));
+      geometry::require_place(*summary.pad, file.string() + ": flight.pad");
+    }
+    for (const Json& view : json.at("per_view")) {
+      summary.views.push_back({vector_of(view.at("position")), vector_of(view.at("direction"))});
+      const std::string place =
+          file.string() + ": per_view[" + std::to_string(summary.views.size() - 1) + "].";
+      geometry::require_place(summary.views.back().position, place + "position");
+      geometry::require_direction(summary.views.back().direction, place + "direction");
+    }
+    return summary;
+  } catch (const Json::exception& error) {
+    fail(file, std::string("is not a package's summary (") + error.what() + ")");
+  }
 }
 
 bool is_complete_result(const std::filesystem::path& json_file) {
@@ -380,36 +410,15 @@ bool is_complete_result(const std::filesystem::path& json_file) {
 
 PackagedSurvey read_package(const std::filesystem::path& folder,
                             const std::vector<file::KeyOverride>& overrides) {
-  const std::filesystem::path summary_file = folder / "summary.json";
-  const auto fail = [](const std::filesystem::path& file, const std::string& what) {
-    throw Error(ErrorKind::bad_file, file.string() + ": " + what);
-  };
-  geometry::finish_commit(folder);
-  PackagedSurvey survey;
-  try {
-    const Json summary = read_summary(summary_file);
-    survey.mission = derived::parse_mission(mission_text(summary.at("settings")),
-                                            summary_file.string(), overrides);
-    if (!summary.contains("flight")) {
-      fail(summary_file, "is of a survey without a vehicle; plan it with flight.vehicle");
-    }
-    survey.pad = survey.mission.flight.takeoff.value_or(vector_of(summary["flight"].at("pad")));
-    geometry::require_place(survey.pad, summary_file.string() + ": flight.pad");
-    for (const Json& view : summary.at("per_view")) {
-      survey.views.push_back({vector_of(view.at("position")), vector_of(view.at("direction"))});
-      const std::string place =
-          summary_file.string() + ": per_view[" + std::to_string(survey.views.size() - 1) + "].";
-      geometry::require_place(survey.views.back().position, place + "position");
-      geometry::require_direction(survey.views.back().direction, place + "direction");
-    }
-  } catch (const Json::exception& error) {
-    fail(summary_file, std::string("is not a package's summary (") + error.what() + ")");
+  PackageSummary summary = read_package_summary(folder, overrides);
+  if (!summary.pad) {
+    fail(folder / summary_name, "is of a survey without a vehicle; plan it with flight.vehicle");
   }
   const std::filesystem::path space_file = folder / free_space_name;
   std::ifstream space(space_file, std::ios::binary);
   if (!space) fail(space_file, "cannot be read; plan the mission again");
-  survey.measured = flight::MeasuredSpace::read(space, space_file.string());
-  return survey;
+  return {std::move(summary.mission), std::move(summary.views), *summary.pad,
+          flight::MeasuredSpace::read(space, space_file.string())};
 }
 
 }  // namespace skycap::missions::package

@@ -36,6 +36,21 @@ std::optional<SurveyMission> stage_package(const file::Mission& mission,
                                            geometry::OutputFolder& folder,
                                            std::stop_token stop = {});
 
+/// The file of a package that says what the rest is.
+inline constexpr const char* summary_name = "summary.json";
+
+/// What a package's summary says of its survey.
+struct PackageSummary {
+  file::Mission mission;  ///< with all keys as they were in force
+  std::vector<geometry::View> views;
+  std::optional<Eigen::Vector3d> pad;  ///< of a survey that was flown
+};
+
+/// Reads a package's summary; `overrides` take the place of the mission's keys. Throws
+/// Error{bad_file} naming the file if it is missing or not as stage_package() wrote it.
+PackageSummary read_package_summary(const std::filesystem::path& folder,
+                                    const std::vector<file::KeyOverride>& overrides);
+
 /// What a package holds of a flown survey.
 struct PackagedSurvey {
   file::Mission mission;  ///< with all keys as they were in force
@@ -47,8 +62,7 @@ struct PackagedSurvey {
 /// Whether a JSON file of results is there and says "complete": true.
 bool is_complete_result(const std::filesystem::path& json_file);
 
-/// Reads a package; `overrides` take the place of the mission's keys. Throws Error{bad_file} naming
-/// the file that is missing or not as stage_package() wrote it.
+/// Reads the package of a flown survey, as read_package_summary() does.
 PackagedSurvey read_package(const std::filesystem::path& folder,
                             const std::vector<file::KeyOverride>& overrides);
 

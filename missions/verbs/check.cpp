@@ -1,15 +1,16 @@
 #include <algorithm>
+#include <filesystem>
 
 #include <fmt/format.h>
 
 #include "flight/export/export.h"
-#include "flight/paths/path.h"
-#include "flight/route/route.h"
+#include "flight/interpreter/interpret.h"
 #include "geometry/surfaces/mesh.h"
 #include "missions/derived/mission_flight.h"
 #include "missions/derived/resolved_mission.h"
 #include "missions/file/number_text.h"
 #include "missions/file/planner_titles.h"
+#include "missions/package/package.h"
 #include "missions/scene/survey_scene.h"
 #include "missions/verbs/check_returns.h"
 #include "missions/verbs/verbs.h"
@@ -17,36 +18,77 @@
 namespace skycap::missions::verbs {
 namespace {
 
-/// Proves a route file's legs against the mission's scene as it truly is.
+/// A pad's own ground is no obstacle to it, nor is what stands no higher above it [m].
+constexpr double pad_roughness = 0.3;
+
+/// What the mission says of a file; the pad and the views are those of the package it lies in.
+flight::FlightFacts facts_of(const file::Mission& mission, const std::filesystem::path& route) {
+  flight::FlightFacts facts = derived::flight_facts(mission);
+  const std::filesystem::path folder = route.parent_path();
+  if (!std::filesystem::exists(folder / package::summary_name)) return facts;
+  package::PackageSummary summary = package::read_package_summary(folder, {});
+  facts.views = std::move(summary.views);
+  if (!facts.is_pad_known && summary.pad) {
+    facts.pad = *summary.pad;
+    facts.is_pad_known = true;
+  }
+  return facts;
+}
+
+/// The triangles of which some part is above that height.
+geometry::Mesh above(geometry::Mesh mesh, double height) {
+  std::erase_if(mesh.triangles, [&](const auto& triangle) {
+    return std::ranges::all_of(triangle,
+                               [&](auto vertex) { return mesh.vertices[vertex].z() < height; });
+  });
+  return mesh;
+}
+
+/// The corners of all that is flown beside the pad.
+std::vector<Eigen::Vector3d> places_of(const flight::FlownRoute& route) {
+  std::vector<Eigen::Vector3d> places;
+  for (const flight::FlownPiece& piece : route.pieces) {
+    if (piece.is_over_pad) continue;
+    if (places.empty()) places.push_back(piece.start.to);
+    places.push_back(piece.to);
+  }
+  return places;
+}
+
+/// Proves what a route file's vehicle flies against the mission's scene as it truly is.
 int check_route_file(const CheckOptions& options, const file::Mission& mission,
                      const geometry::Mesh& model, const Console& console) {
-  const std::filesystem::path& file = *options.route;
-  // Heights above take-off count from the pad's; where on the ground it is does not matter.
-  const Eigen::Vector3d pad = derived::pad_of(mission, mission.scene.position);
-  const std::vector<Eigen::Vector3d> points =
-      flight::read_route(file, derived::site_of(mission), pad);
+  const std::string file = options.route->string();
+  const flight::FlightFacts facts = facts_of(mission, *options.route);
+  const flight::FlownRoute route = flight::interpret_file(*options.route, facts);
   flight::Obstacles obstacles = derived::flight_rules(mission);
   obstacles.mesh = model;
   const flight::KnownSpace space(obstacles);
+  obstacles.mesh = above(model, facts.pad.z() + pad_roughness);
+  const flight::KnownSpace pad_space(without_ground(obstacles));
 
   const double asked_for = mission.flight.clearance;
-  const double clearance = std::max(0.0, asked_for - flight::rounding_bound);
-  const auto violations = flight::check_route(points, space, clearance);
-  for (const flight::Violation& violation : violations) {
-    console.out << file.string() << ": " << flight::describe(violation) << "\n";
+  const flight::FlownProof proof =
+      prove(route, space, pad_space, std::max(0.0, asked_for - flight::rounding_bound),
+            asked_for + flight::reported_surplus);
+  for (const flight::Problems& problems : {route.problems, proof.problems}) {
+    for (const std::string& problem : problems) console.out << file << ": " << problem << "\n";
   }
-  double least = asked_for + flight::reported_surplus;
-  for (std::size_t i = 1; i < points.size(); ++i) {
-    least = std::min(least, space.closest({points[i - 1], points[i]}, least).distance);
+  const bool is_fine = route.problems.empty() && proof.problems.empty();
+  console.out << file << ": " << (is_fine ? "fine" : "not safe") << ", " << proof.problems.size()
+              << " of " << route.pieces.size() << " legs come nearer than "
+              << file::short_text(asked_for) << " m, the nearest "
+              << file::short_text(proof.clearance) << " m; "
+              << file::short_text(flight::length(route)) << " m long";
+  if (!route.problems.empty()) console.out << "; " << route.problems.size() << " other problems";
+  if (facts.views.empty() && !route.stops.empty()) {
+    console.out << "; where its photographs look is not checked: it is not in its package";
   }
-  console.out << file.string() << ": " << (violations.empty() ? "fine" : "not safe") << ", "
-              << violations.size() << " of " << std::max<std::size_t>(points.size(), 2) - 1
-              << " legs come nearer than " << file::short_text(asked_for) << " m, the nearest "
-              << file::short_text(least) << " m; " << file::short_text(flight::length(points))
-              << " m long\n";
-  const ReturnCheck returns = check_returns(file, options.return_height, mission, space, points);
-  console.out << file.string() << ": " << returns.text << "\n" << std::flush;
-  return violations.empty() && returns.is_safe ? 0 : 1;
+  console.out << "\n";
+  const ReturnCheck returns =
+      check_returns(*options.route, options.return_height, mission, space, places_of(route));
+  console.out << file << ": " << returns.text << "\n" << std::flush;
+  return is_fine && returns.is_safe ? 0 : 1;
 }
 
 }  // namespace

@@ -50,6 +50,7 @@ Rooms house() {
   add("flight/route", {"flight/space", "flight/motion", "flight/paths", "flight/way_home"});
   add("flight/export",
       {"flight/space", "flight/motion", "flight/paths", "flight/way_home", "flight/route"});
+  add("flight/interpreter", {"flight/space", "flight/autopilot", "flight/motion", "flight/export"});
 
   std::vector<std::string> below;  // what missions/ composes
   for (const auto& [room, others] : rooms) {

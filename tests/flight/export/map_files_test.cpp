@@ -117,9 +117,9 @@ TEST(Kmz, ActionRules) {
 TEST(Kmz, HoldsWhatThePilotExpects) {
   const FlightPlan plan = sample_plan(vehicle_profile("m350_rtk"));
   const RouteFile route = read_kmz(write_kmz(plan));
-  EXPECT_EQ(route.datum, HeightDatum::takeoff);
   ASSERT_EQ(route.points.size(), plan.waypoints.size());
   for (std::size_t i = 0; i < route.points.size(); ++i) {
+    EXPECT_EQ(route.points[i].datum, HeightDatum::takeoff);
     if (!plan.waypoints[i].is_station) continue;
     EXPECT_NEAR(route.points[i].yaw_deg, plan.waypoints[i].yaw * 180 / M_PI, 1e-4);
     EXPECT_NEAR(route.points[i].pitch_deg, plan.waypoints[i].pitch * 180 / M_PI, 1e-4);
@@ -155,7 +155,7 @@ TEST(Kml, Rules) {
               Contains(HasSubstr("end with its first one")));
   // Heights are above mean sea level: the ellipsoid's less the undulation of 46.7 m.
   const RouteFile route = read_kml(good);
-  EXPECT_EQ(route.datum, HeightDatum::mean_sea_level);
+  EXPECT_EQ(route.points[0].datum, HeightDatum::mean_sea_level);
   EXPECT_NEAR(route.points[0].height, 111.5 - 46.7 + plan.waypoints[0].position.z(), 1e-2);
 }
 

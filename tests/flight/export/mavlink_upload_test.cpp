@@ -85,7 +85,7 @@ TEST(Mavlink, FramesAreTruncatedAndDamageIsNoticed) {
 }
 
 TEST(MavlinkUpload, APlanComesBackTheSame) {
-  const auto items = read_plan_items(write_plan(sample_plan(vehicle_profile("generic"))));
+  const auto items = read_plan(write_plan(sample_plan(vehicle_profile("generic")))).items;
   mavlink::Autopilot autopilot;
   ASSERT_TRUE(mavlink::upload(autopilot, on_the_wire(items)));
   expect_same(items, mavlink::download(autopilot));
@@ -93,7 +93,7 @@ TEST(MavlinkUpload, APlanComesBackTheSame) {
 
 TEST(MavlinkUpload, WaypointsFilesOfBothDialectsComeBackTheSame) {
   for (const char* vehicle : {"generic", "generic_ardupilot"}) {
-    const auto items = read_waypoints_items(write_waypoints(sample_plan(vehicle_profile(vehicle))));
+    const auto items = read_waypoints(write_waypoints(sample_plan(vehicle_profile(vehicle)))).items;
     mavlink::Autopilot autopilot;
     ASSERT_TRUE(mavlink::upload(autopilot, on_the_wire(items)));
     expect_same(items, mavlink::download(autopilot));
@@ -101,7 +101,7 @@ TEST(MavlinkUpload, WaypointsFilesOfBothDialectsComeBackTheSame) {
 }
 
 TEST(MavlinkUpload, ADamagedFrameIsSentAgainAndAMissionIsWholeOrNotThere) {
-  const auto items = read_plan_items(write_plan(sample_plan(vehicle_profile("generic"))));
+  const auto items = read_plan(write_plan(sample_plan(vehicle_profile("generic")))).items;
   const std::vector<WireItem> wire = on_the_wire(items);
   mavlink::Autopilot autopilot;
   ASSERT_TRUE(mavlink::upload(autopilot, wire, 5));

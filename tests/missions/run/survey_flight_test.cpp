@@ -164,6 +164,31 @@ TEST(FlownPackage, ChecksFindTheLegsThatAScenesOtherShapeMakesUnsafe) {
   EXPECT_THAT(run.out, HasSubstr(": not safe, "));
 }
 
+// In its package a file is held to the package's pad; items are named as the ground station does.
+TEST(FlownPackage, ChecksNameTheItemsOfSpoiledFiles) {
+  const TestFolder& folder = package();
+  json plan = json::parse(content_of(folder / "out/mission.plan"));
+  const auto check = [&](const json& spoiled) {
+    std::filesystem::create_directory(folder / "spoiled");
+    std::filesystem::copy_file(folder / "out/summary.json", folder / "spoiled/summary.json",
+                               std::filesystem::copy_options::overwrite_existing);
+    folder.write("spoiled/mission.plan", spoiled.dump());
+    return run_skycap({"check", folder / "m.yaml", "--route", folder / "spoiled/mission.plan"});
+  };
+  EXPECT_EQ(check(plan).exit_code, 0);
+  json moved = plan;
+  moved["mission"]["plannedHomePosition"][2] =
+      moved["mission"]["plannedHomePosition"][2].get<double>() + 30.0;
+  EXPECT_EQ(check(moved).exit_code, 1);
+  EXPECT_THAT(check(moved).out, HasSubstr("mission.plannedHomePosition is 30.0 m above the pad"));
+  json skipping = plan;
+  const std::size_t last = skipping["mission"]["items"].size() - 2;
+  skipping["mission"]["items"][last]["command"] = 82;
+  EXPECT_EQ(check(skipping).exit_code, 1);
+  EXPECT_THAT(check(skipping).out, HasSubstr("mission.plan: item " + std::to_string(last + 1) +
+                                             " (command 82) is a NAV_SPLINE_WAYPOINT"));
+}
+
 TEST(FlownPackage, IsExportedAgainForAnotherVehicle) {
   const TestFolder& folder = package();
   const auto run = run_skycap({"export", folder / "out", "--format", "kmz", "--format", "litchi",

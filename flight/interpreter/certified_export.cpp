@@ -1,0 +1,53 @@
+#include "flight/interpreter/certified_export.h"
+
+#include <algorithm>
+#include <system_error>
+
+#include "flight/interpreter/flight_facts.h"
+#include "flight/interpreter/flown_route.h"
+#include "flight/interpreter/interpret.h"
+#include "geometry/error.h"
+#include "geometry/io/file.h"
+
+namespace skycap::flight {
+namespace {
+
+/// What the climb from the pad has to keep clear of: the rules; what was measured there is for the
+/// pilot to judge.
+KnownSpace space_over_pad(const FlightPlan& plan) {
+  Obstacles rules;
+  rules.no_fly = plan.no_fly;
+  rules.fence = plan.fence;
+  return KnownSpace(without_ground(std::move(rules)));
+}
+
+}  // namespace
+
+ExportResult export_flight(const FlightPlan& plan, Format format, const FreeSpace& space,
+                           const std::filesystem::path& path) {
+  const std::filesystem::path temporary = path.string() + ".part";
+  const auto refuse = [&](const Problems& problems) {
+    if (problems.empty()) return;
+    std::error_code ignored;
+    std::filesystem::remove(temporary, ignored);
+    throw Error(ErrorKind::bad_geometry,
+                path.string() + " is not written: read back, " + problems.front());
+  };
+  geometry::write_file(temporary, write(plan, format));
+  const std::string content = geometry::read_file(temporary);
+  refuse(validate(content, format));
+  const FlownRoute route = interpret(content, format, facts_of(plan));
+  refuse(route.problems);
+  const double clearance = std::max(0.0, plan.clearance - rounding_bound);
+  const FlownProof proof =
+      prove(route, space, space_over_pad(plan), clearance, plan.clearance + reported_surplus);
+  refuse(proof.problems);
+  std::error_code failure;
+  std::filesystem::rename(temporary, path, failure);
+  if (failure) {
+    throw Error(ErrorKind::bad_file, path.string() + " cannot be written: " + failure.message());
+  }
+  return {proof.clearance, notes_of(plan, format)};
+}
+
+}  // namespace skycap::flight

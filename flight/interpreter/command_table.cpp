@@ -1,0 +1,70 @@
+#include "flight/interpreter/command_table.h"
+
+#include <algorithm>
+#include <array>
+
+namespace skycap::flight {
+namespace {
+
+constexpr FlownBy both = FlownBy::both, ardupilot = FlownBy::ardupilot;
+
+constexpr std::array<CommandRow, 36> table{{
+    {16, "NAV_WAYPOINT", Meaning::fly_to, both, ""},
+    {17, "NAV_LOITER_UNLIM", Meaning::refused, both,
+     "it holds for ever, so nothing later is flown"},
+    {18, "NAV_LOITER_TURNS", Meaning::refused, both, "its circles are not proven"},
+    {19, "NAV_LOITER_TIME", Meaning::fly_to, both, ""},
+    {20, "NAV_RETURN_TO_LAUNCH", Meaning::refused, both,
+     "the way home is flown at a height that the file does not say; end with a landing (21)"},
+    {21, "NAV_LAND", Meaning::land, both, ""},
+    {22, "NAV_TAKEOFF", Meaning::take_off, both, ""},
+    {30, "NAV_CONTINUE_AND_CHANGE_ALT", Meaning::refused, both,
+     "ArduPilot skips it, PX4 refuses the mission"},
+    {31, "NAV_LOITER_TO_ALT", Meaning::refused, both, "its way to the height is not proven"},
+    {80, "NAV_ROI", Meaning::refused, both, "it turns vehicle and gimbal after a place"},
+    {82, "NAV_SPLINE_WAYPOINT", Meaning::refused, both, "its curve is not proven"},
+    {92, "NAV_GUIDED_ENABLE", Meaning::refused, both, "it hands the vehicle to another computer"},
+    {93, "NAV_DELAY", Meaning::wait, both, ""},
+    {112, "CONDITION_DELAY", Meaning::refused, both,
+     "it puts off turns and photographs until the vehicle is elsewhere"},
+    {113, "CONDITION_CHANGE_ALT", Meaning::refused, both, "ArduPilot skips it"},
+    {114, "CONDITION_DISTANCE", Meaning::refused, both,
+     "it puts off turns and photographs until the vehicle is elsewhere"},
+    {115, "CONDITION_YAW", Meaning::turn, ardupilot, ""},
+    {177, "DO_JUMP", Meaning::jump, both, ""},
+    {178, "DO_CHANGE_SPEED", Meaning::set_speed, both, ""},
+    {179, "DO_SET_HOME", Meaning::refused, both, "it moves what heights above home count from"},
+    {185, "DO_FLIGHTTERMINATION", Meaning::refused, both, "it stops the motors"},
+    {189, "DO_LAND_START", Meaning::no_motion, both, ""},
+    {195, "DO_SET_ROI_LOCATION", Meaning::refused, both,
+     "it turns vehicle and gimbal after a place"},
+    {197, "DO_SET_ROI_NONE", Meaning::no_motion, both, ""},
+    {201, "DO_SET_ROI", Meaning::refused, both, "it turns vehicle and gimbal after a place"},
+    {203, "DO_DIGICAM_CONTROL", Meaning::trigger_photo, both, ""},
+    {205, "DO_MOUNT_CONTROL", Meaning::aim_by_mount, both, ""},
+    {206, "DO_SET_CAM_TRIGG_DIST", Meaning::no_motion, both, ""},
+    {207, "DO_FENCE_ENABLE", Meaning::hold_fence, ardupilot, ""},
+    {222, "DO_GUIDED_LIMITS", Meaning::refused, both, "it hands the vehicle to another computer"},
+    {400, "COMPONENT_ARM_DISARM", Meaning::refused, both, "it may stop the motors"},
+    {530, "SET_CAMERA_MODE", Meaning::no_motion, both, ""},
+    {1000, "DO_GIMBAL_MANAGER_PITCHYAW", Meaning::aim_by_gimbal, both, ""},
+    {2000, "IMAGE_START_CAPTURE", Meaning::take_photo, both, ""},
+    {2001, "IMAGE_STOP_CAPTURE", Meaning::no_motion, both, ""},
+    {42700, "DO_SEND_SCRIPT_MESSAGE", Meaning::refused, both, "a script may do anything"},
+}};
+static_assert(std::ranges::is_sorted(table, {}, &CommandRow::id));
+
+}  // namespace
+
+std::span<const CommandRow> known_commands() { return table; }
+
+const CommandRow* find_command(int id) {
+  const auto row = std::ranges::lower_bound(table, id, {}, &CommandRow::id);
+  return row != table.end() && row->id == id ? &*row : nullptr;
+}
+
+bool has_place(Meaning meaning) {
+  return meaning == Meaning::take_off || meaning == Meaning::fly_to || meaning == Meaning::land;
+}
+
+}  // namespace skycap::flight

@@ -1,0 +1,116 @@
+#include "flight/interpreter/fence_check.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "geometry/error.h"
+
+namespace skycap::flight {
+namespace {
+
+using Eigen::Vector3d;
+
+/// A corner is the same if it is no farther away than this [degrees]: a tenth of a metre.
+constexpr double same_corner = 1e-6;
+
+/// A no-fly footprint that a leg comes nearer to than this may be left out of the file [m].
+constexpr double grazing = 0.05;
+
+/// The stretch as seen from above.
+Segment flat(const FlownPiece& piece) {
+  Segment leg{piece.start.to, piece.to};
+  leg.from.z() = leg.to.z() = 0.0;
+  return leg;
+}
+
+/// The least distance of any stretch from a footprint, and the stretches that touch it.
+struct Touch {
+  double distance = std::numeric_limits<double>::infinity();
+  std::vector<const FlownPiece*> pieces;
+};
+
+Touch touch(const FlownRoute& route, const Obstacles& footprint) {
+  const KnownSpace space(footprint);
+  Touch result;
+  for (const FlownPiece& piece : route.pieces) {
+    const double distance = space.closest(flat(piece), grazing).distance;
+    result.distance = std::min(result.distance, distance);
+    if (distance <= clearance_guard) result.pieces.push_back(&piece);
+  }
+  return result;
+}
+
+bool is_same(const GeodeticPoint& a, const GeodeticPoint& b) {
+  return std::abs(a.latitude_deg - b.latitude_deg) < same_corner &&
+         std::abs(a.longitude_deg - b.longitude_deg) < same_corner;
+}
+
+/// Whether the polygons have the same corners, either way round, whichever comes first.
+bool is_same(const std::vector<GeodeticPoint>& a, const std::vector<GeodeticPoint>& b) {
+  const std::size_t n = a.size();
+  if (b.size() != n) return false;
+  for (std::size_t shift = 0; shift < n; ++shift) {
+    bool forward = true, backward = true;
+    for (std::size_t i = 0; i < n && (forward || backward); ++i) {
+      forward = forward && is_same(a[i], b[(i + shift) % n]);
+      backward = backward && is_same(a[i], b[(shift + n - i) % n]);
+    }
+    if (forward || backward) return true;
+  }
+  return false;
+}
+
+bool holds(const MissionFile& file, const Prism& prism, bool is_inclusion,
+           const LocalFrame& frame) {
+  std::vector<GeodeticPoint> corners;
+  for (const Eigen::Vector2d& corner : prism.footprint) {
+    corners.push_back(frame.to_geodetic({corner.x(), corner.y(), 0.0}));
+  }
+  return std::ranges::any_of(file.fence, [&](const FenceArea& area) {
+    return area.is_inclusion == is_inclusion && is_same(area.corners, corners);
+  });
+}
+
+void check_area(const FenceArea& area, const FlownRoute& route, const LocalFrame& frame,
+                Problems& problems) {
+  Prism prism{area.name, {}};
+  for (const GeodeticPoint& corner : area.corners) {
+    prism.footprint.emplace_back(frame.to_local(corner).head<2>());
+  }
+  Obstacles footprint;
+  if (area.is_inclusion) {
+    footprint.fence = prism;
+  } else {
+    footprint.no_fly = {prism};
+  }
+  try {
+    for (const FlownPiece* piece : touch(route, footprint).pieces) {
+      problems.push_back("leg from " + piece->from_item + " to " + piece->to_item +
+                         (area.is_inclusion ? " leaves " : " enters ") + area.name);
+    }
+  } catch (const Error& error) {
+    problems.emplace_back(error.what());
+  }
+}
+
+}  // namespace
+
+Problems check_fence(const MissionFile& file, const FlownRoute& route, const FlightFacts& facts) {
+  Problems problems;
+  if (!file.holds_fence) return problems;
+  const LocalFrame frame(facts.site.origin);
+  for (const FenceArea& area : file.fence) check_area(area, route, frame, problems);
+  if (facts.fence && !holds(file, *facts.fence, true, frame)) {
+    problems.push_back("geoFence lacks the mission's fence \"" + facts.fence->name + "\"");
+  }
+  for (const Prism& prism : facts.no_fly) {
+    if (std::isfinite(prism.ceiling)) continue;  // a return may pass over it
+    Obstacles footprint;
+    footprint.no_fly = {{prism.name, prism.footprint}};  // unbounded in height
+    if (holds(file, prism, false, frame) || touch(route, footprint).distance < grazing) continue;
+    problems.push_back("geoFence lacks the mission's no-fly volume \"" + prism.name + "\"");
+  }
+  return problems;
+}
+
+}  // namespace skycap::flight

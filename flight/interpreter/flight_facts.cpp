@@ -1,0 +1,30 @@
+#include "flight/interpreter/flight_facts.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace skycap::flight {
+
+FlightFacts facts_of(const FlightPlan& plan) {
+  FlightFacts facts;
+  facts.site = plan.site;
+  facts.pad = plan.pad;
+  facts.vehicle = plan.vehicle;
+  facts.takeoff_climb = plan.waypoints.front().position.z() - plan.pad.z();
+  facts.cruise_speed = plan.conditions.cruise_speed;
+  facts.no_fly = plan.no_fly;
+  facts.fence = plan.fence;
+  bool is_first = true;
+  for (const Waypoint& waypoint : plan.waypoints) {
+    if (!waypoint.is_station || waypoint.shots == 0) continue;
+    facts.hold = is_first ? waypoint.hold : std::min(facts.hold, waypoint.hold);
+    is_first = false;
+    const double level = std::cos(waypoint.pitch);
+    facts.views.push_back({waypoint.position,
+                           {level * std::sin(waypoint.yaw), level * std::cos(waypoint.yaw),
+                            std::sin(waypoint.pitch)}});
+  }
+  return facts;
+}
+
+}  // namespace skycap::flight

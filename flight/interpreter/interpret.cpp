@@ -1,0 +1,86 @@
+#include "flight/interpreter/interpret.h"
+
+#include "flight/export/map_files.h"
+#include "flight/interpreter/mission_interpreter.h"
+#include "flight/interpreter/photographs.h"
+#include "flight/interpreter/wpml_interpreter.h"
+#include "geometry/error.h"
+#include "geometry/io/file.h"
+
+namespace skycap::flight {
+namespace {
+
+/// Litchi's curves stay this near to their corners: covered by every tracking error [m].
+constexpr double covered_curve = 0.3;
+
+/// What a place is called in messages: by `word` and its number, counted from `first`.
+struct Naming {
+  std::string word;
+  std::size_t first = 0;
+
+  std::string operator()(std::size_t i) const { return word + std::to_string(first + i); }
+};
+
+/// One place after the other.
+FlownRoute in_a_row(const std::vector<Eigen::Vector3d>& places, const Naming& name) {
+  FlownRoute route;
+  for (std::size_t i = 0; i < places.size(); ++i) {
+    if (!places[i].allFinite()) {
+      throw Error(ErrorKind::bad_geometry, name(i) + " is not a finite position");
+    }
+    if (i == 0) continue;
+    route.pieces.push_back({{places[i - 1], places[i - 1]}, places[i], name(i - 1), name(i)});
+  }
+  if (route.pieces.empty()) route.problems.emplace_back("the file holds no legs");
+  return route;
+}
+
+/// Litchi flies straight lines, with a small curve at each corner, and acts where it stops.
+FlownRoute interpret_litchi(const RouteFile& file, const FlightFacts& facts) {
+  const std::vector<Eigen::Vector3d> places = local_points(file, facts.site, facts.pad);
+  const Naming name{"line ", 2};
+  FlownRoute route = in_a_row(places, name);
+  for (std::size_t i = 0; i < places.size(); ++i) {
+    const FilePoint& point = file.points[i];
+    const auto complain = [&](const std::string& what) {
+      route.problems.push_back(name(i) + " " + what);
+    };
+    if (point.curve > covered_curve) {
+      complain("has a curve of " + fixed(point.curve, 1) + " m, which is not proven; it must be " +
+               "at most 0.3 m");
+    }
+    if (!(point.speed > 0.0 && point.speed <= facts.cruise_speed + 1e-3)) {
+      complain("has speed " + fixed(point.speed, 2) + " m/s; it must be above 0 and at most the " +
+               "mission's cruise speed, " + fixed(facts.cruise_speed, 2) + " m/s");
+    }
+    if (point.shots == 0) continue;
+    route.stops.push_back(
+        {places[i], name(i), point.hold_before, point.yaw_deg, point.pitch_deg, point.shots});
+  }
+  for (const std::string& problem : check_photographs(route.stops, facts)) {
+    route.problems.push_back(problem);
+  }
+  return route;
+}
+
+}  // namespace
+
+FlownRoute interpret(const std::string& content, Format format, const FlightFacts& facts) {
+  if (format == Format::plan) return interpret(read_plan(content), facts);
+  if (format == Format::waypoints) return interpret(read_waypoints(content), facts);
+  if (format == Format::kmz) return interpret(unpack_kmz(content), facts);
+  if (format == Format::litchi) return interpret_litchi(read_litchi(content), facts);
+  return in_a_row(places_of(content, format, facts.site, facts.pad), {"point "});
+}
+
+FlownRoute interpret_file(const std::filesystem::path& path, const FlightFacts& facts) {
+  const std::string content = geometry::read_file(path, largest_route_file);
+  const Format format = format_of_file(path, content);
+  try {
+    return interpret(content, format, facts);
+  } catch (const Error& error) {
+    throw Error(error.kind(), path.string() + ": " + error.what());
+  }
+}
+
+}  // namespace skycap::flight

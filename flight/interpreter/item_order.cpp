@@ -1,0 +1,53 @@
+#include "flight/interpreter/item_order.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace skycap::flight {
+namespace {
+
+constexpr double most_repeats = 20.0;    // more are taken for a mistake
+constexpr std::size_t most_growth = 10;  // of a mission by its jumps
+
+/// The index that a jump leads to; the size of `items` if there is none.
+std::size_t target_of(const MissionItem& jump, const std::vector<MissionItem>& items) {
+  const auto target = std::ranges::find_if(items, [&](const MissionItem& item) {
+    return static_cast<double>(item.number) == jump.params[0];
+  });
+  return static_cast<std::size_t>(target - items.begin());
+}
+
+std::string what_is_wrong(const MissionItem& jump, const std::vector<MissionItem>& items) {
+  const double repeats = jump.params[1];
+  if (target_of(jump, items) == items.size()) return "jumps to an item that does not exist";
+  if (!(repeats >= 0.0 && repeats <= most_repeats) || repeats != std::floor(repeats)) {
+    return "jumps " + fixed(repeats, 1) + " times; it must be a whole number from 0 to 20";
+  }
+  return "";
+}
+
+}  // namespace
+
+ItemOrder order_of(const std::vector<MissionItem>& items) {
+  ItemOrder order;
+  std::vector<double> jumped(items.size(), 0.0);
+  for (std::size_t i = 0; i < items.size();) {
+    const MissionItem& item = items[i];
+    if (item.command != command::jump) {
+      order.indices.push_back(i++);
+      continue;
+    }
+    if (const std::string what = what_is_wrong(item, items); !what.empty()) {
+      order.problems.push_back(name_of(item) + " " + what);
+      return order;
+    }
+    if (order.indices.size() > most_growth * items.size()) {
+      order.problems.push_back(name_of(item) + " makes the mission more than ten times as long");
+      return order;
+    }
+    i = jumped[i]++ < item.params[1] ? target_of(item, items) : i + 1;
+  }
+  return order;
+}
+
+}  // namespace skycap::flight

@@ -1,0 +1,366 @@
+#include "flight/interpreter/mission_interpreter.h"
+
+#include <algorithm>
+#include <cmath>
+#include <deque>
+#include <utility>
+
+#include "flight/autopilot/mission_mode.h"
+#include "flight/interpreter/command_table.h"
+#include "flight/interpreter/fence_check.h"
+#include "flight/interpreter/item_order.h"
+#include "flight/interpreter/pad_column.h"
+#include "flight/interpreter/photographs.h"
+
+namespace skycap::flight {
+namespace {
+
+using Eigen::Vector3d;
+
+/// PX4's NAV_ACC_RAD where an item gives no radius [m].
+constexpr double default_radius_px4 = 10.0;
+
+/// WPNAV_SPEED and MPC_XY_CRUISE where no item sets a speed [m/s].
+constexpr double default_speed_ardupilot = 10.0, default_speed_px4 = 5.0;
+
+/// MAV_MOUNT_MODE_MAVLINK_TARGETING.
+constexpr double aims_by_angles = 2.0;
+
+constexpr double longest_wait = 600.0;  // more is taken for a mistake [s]
+
+/// One flight through the items of a file.
+class MissionFlight {
+ public:
+  MissionFlight(const MissionFile& file, Dialect dialect, const FlightFacts& facts)
+      : file_(file),
+        dialect_(dialect),
+        facts_(facts),
+        frame_(facts.site.origin),
+        items_(as_stored(file.items, dialect)) {}
+
+  FlownRoute fly() {
+    for (const std::string& problem : check_items(file_.items, dialect_)) add(problem);
+    const ItemOrder order = order_of(items_);
+    for (const std::string& problem : order.problems) add(problem);
+    for (const std::size_t i : order.indices) upcoming_.push_back(&items_[i]);
+    while (!upcoming_.empty()) {
+      const MissionItem& item = *upcoming_.front();
+      upcoming_.pop_front();
+      step(item);
+    }
+    if (!has_landed_) add("the mission ends in the air, without a landing (21)");
+    check_home();
+    if (file_.rally_points > 0) {
+      add("rallyPoints.points[0] would be returned to by a way that is not proven; leave it out");
+    }
+    for (const std::string& problem : check_photographs(route_.stops, facts_)) add(problem);
+    for (const std::string& problem : check_fence(file_, route_, facts_)) add(problem);
+    return std::move(route_);
+  }
+
+ private:
+  void add(const std::string& problem) { route_.problems.push_back(problem); }
+
+  void complain(const MissionItem& item, const std::string& what) {
+    add(name_of(item) + " (command " + std::to_string(item.command) + ") " + what);
+  }
+
+  void step(const MissionItem& item) {
+    const CommandRow* row = find_command(item.command);
+    if (row == nullptr) {
+      return complain(item, "is a command that is not known here; remove it");
+    }
+    if (has_landed_) return complain(item, "comes after the landing");
+    if (!item.auto_continue) complain(item, "does not go on to the next item (autocontinue is 0)");
+    if (!is_flown_by(*row)) {
+      return complain(
+          item, std::string("is a ") + row->name + ", which " + autopilot() + " does not fly");
+    }
+    if (row->meaning == Meaning::refused) {
+      return complain(item, std::string("is a ") + row->name + ": " + row->why);
+    }
+    if (check_frame(item, *row)) execute(item, *row);
+  }
+
+  bool is_flown_by(const CommandRow& row) const {
+    return row.flown_by == FlownBy::both ||
+           (row.flown_by == FlownBy::ardupilot) == (dialect_ == Dialect::ardupilot);
+  }
+  std::string autopilot() const { return dialect_ == Dialect::px4 ? "PX4" : "ArduPilot"; }
+
+  bool check_frame(const MissionItem& item, const CommandRow& row) {
+    if (has_place(row.meaning)) {
+      if (is_above_sea(item) || is_above_home(item)) return check_place(item, row);
+      complain(item, "has frame " + std::to_string(item.frame) +
+                         ", whose height is not known here; use 3 (above home) or 0 (sea level)");
+      return false;
+    }
+    if (dialect_ != Dialect::px4 || item.frame == frame::mission) return true;
+    complain(item, "has frame " + std::to_string(item.frame) + "; PX4 takes it in frame 2 only");
+    return false;
+  }
+
+  bool check_place(const MissionItem& item, const CommandRow& row) {
+    const bool is_nowhere = item.params[4] == 0.0 && item.params[5] == 0.0;
+    if (is_nowhere) complain(item, "has no place: 0 degrees north and east mean \"as before\"");
+    const bool is_without_height = row.meaning == Meaning::fly_to && item.params[6] == 0.0;
+    if (is_without_height) complain(item, "has height 0, which ArduPilot takes for \"as before\"");
+    return !is_nowhere && !is_without_height;
+  }
+
+  void execute(const MissionItem& item, const CommandRow& row) {
+    if (!has_taken_off_ && row.meaning != Meaning::take_off && is_motion(row.meaning)) {
+      return complain(item, "flies before the take-off (22)");
+    }
+    switch (row.meaning) {
+      case Meaning::take_off:
+        return take_off(item);
+      case Meaning::fly_to:
+        return fly_to(item);
+      case Meaning::land:
+        return land(item);
+      case Meaning::wait:
+        return wait(item);
+      case Meaning::turn:
+        return turn(item);
+      case Meaning::set_speed:
+        return set_speed(item);
+      case Meaning::aim_by_mount:
+      case Meaning::aim_by_gimbal:
+        return aim(item, row.meaning);
+      case Meaning::take_photo:
+      case Meaning::trigger_photo:
+        return photograph(item, row.meaning);
+      case Meaning::hold_fence:
+        if (item.params[0] != 1.0) complain(item, "switches the fence off");
+        return;
+      default:
+        return;
+    }
+  }
+
+  static bool is_motion(Meaning meaning) {
+    return has_place(meaning) || meaning == Meaning::wait || meaning == Meaning::take_photo ||
+           meaning == Meaning::trigger_photo;
+  }
+
+  Vector3d place_of(const MissionItem& item) const {
+    double height = item.params[6];
+    height += is_above_sea(item) ? facts_.site.undulation_for(name_of(item) + ", above sea level,")
+                                 : frame_.to_geodetic(facts_.pad).height;
+    return frame_.to_local({item.params[4], item.params[5], height});
+  }
+
+  // Autopilots climb where they stand: of a take-off only the height counts.
+  void take_off(const MissionItem& item) {
+    if (has_taken_off_) return complain(item, "takes off again in mid-flight");
+    has_taken_off_ = true;
+    const Vector3d place = place_of(item);
+    pad_ = facts_.pad;
+    if (!facts_.is_pad_known) pad_.head<2>() = place.head<2>();
+    if (const double away = (place - pad_).head<2>().norm(); away > pad_tolerance) {
+      complain(item, "takes off " + fixed(away, 1) + " m from the mission's pad");
+    }
+    position_ = Vector3d(pad_.x(), pad_.y(), place.z());
+    if (position_.z() <= pad_.z()) complain(item, "climbs to a height that is not above the pad");
+    append_column(route_, {pad_, position_}, {"the pad", name_of(item)}, facts_.takeoff_climb);
+    arrive(item, {position_, position_}, true);
+  }
+
+  void fly_to(const MissionItem& item) {
+    check_default_speed(item);
+    const Vector3d target = place_of(item);
+    const bool is_early = departure_.length() > 0.0;
+    route_.pieces.push_back({departure_, target, name_of(*last_), name_of(item)});
+    const Vector3d from = position_;
+    position_ = target;
+    hold_ = item.params[0];
+    const bool stops = hold_ > 0.0 || stops_for_the_next();
+    const double radius = radius_of(item);
+    const double way = (target - from).norm();
+    Segment departure{target, target};
+    if (!stops) {
+      departure.from = from;  // corners are cut anywhere within the triangle of both legs
+    } else if (radius > acceptance_radius && way > 0.0) {
+      departure.from = target + std::min(1.0, radius / way) * (from - target);
+    }
+    if (is_early && departure.length() > 0.0) {
+      complain(item, "is passed without a stop right after another; what is flown is not proven");
+    }
+    arrive(item, departure, stops && radius <= acceptance_radius);
+  }
+
+  /// ArduCopter has one radius for all waypoints, which it comes within at stops; a larger one in
+  /// the file is refused as well, in case another vehicle reads it.
+  double radius_of(const MissionItem& item) const {
+    const bool counts = item.command == command::waypoint;
+    const double radius = counts && std::isfinite(item.params[1]) ? item.params[1] : 0.0;
+    return radius > 0.0 || dialect_ != Dialect::px4 ? radius : default_radius_px4;
+  }
+
+  /// ArduPilot stops at waypoints without a hold unless the next thing that it flies is one, too.
+  bool stops_for_the_next() const {
+    if (dialect_ != Dialect::ardupilot) return false;
+    for (const MissionItem* item : upcoming_) {
+      const CommandRow* row = find_command(item->command);
+      if (row == nullptr || row->meaning == Meaning::fly_to) return false;
+      if (row->meaning == Meaning::land || row->meaning == Meaning::wait) return true;
+    }
+    return false;
+  }
+
+  void arrive(const MissionItem& item, const Segment& departure, bool is_exact) {
+    last_ = &item;
+    departure_ = departure;
+    is_exact_ = is_exact;
+    shoots_ = false;
+    // ArduPilot turns the nose to the next waypoint unless a CONDITION_YAW came since the last.
+    yaw_deg_ = dialect_ == Dialect::ardupilot ? next_yaw_deg_ : item.params[3];
+    next_yaw_deg_ = not_given;
+  }
+
+  // Level to the place at the height that it has, then down: the item's own height is ignored.
+  void land(const MissionItem& item) {
+    check_default_speed(item);
+    has_landed_ = true;
+    const Vector3d place = place_of(item);
+    const Vector3d above(place.x(), place.y(), position_.z());
+    route_.pieces.push_back({departure_, above, name_of(*last_), name_of(item)});
+    const Vector3d ground(place.x(), place.y(), pad_.z());
+    append_column(route_, {ground, above}, {name_of(item), "the ground"}, facts_.takeoff_climb);
+    if (const double away = (place - pad_).head<2>().norm(); away > pad_tolerance) {
+      complain(item, "lands " + fixed(away, 1) +
+                         " m from the pad, where nobody has looked at the " + "ground");
+    }
+  }
+
+  void wait(const MissionItem& item) {
+    const double seconds = item.params[0];
+    if (!(seconds > 0.0 && seconds <= longest_wait)) {
+      return complain(item, "waits for " + fixed(seconds, 1) +
+                                " s; it must be above 0 and at most 600: else it is a time of day");
+    }
+    if (departure_.length() == 0.0) hold_ += seconds;
+  }
+
+  void turn(const MissionItem& item) {
+    if (item.params[3] != 0.0) return complain(item, "turns by an angle, not to a heading");
+    if (!(item.params[0] >= 0.0 && item.params[0] <= 360.0)) {
+      return complain(item, "turns to a heading outside [0, 360] degrees");
+    }
+    next_yaw_deg_ = item.params[0];
+  }
+
+  void set_speed(const MissionItem& item) {
+    const double type = item.params[0], speed = item.params[1];
+    double limit = facts_.cruise_speed;
+    std::string whose = "the mission's cruise speed";
+    if (type == 2.0 || type == 3.0) {
+      if (!facts_.vehicle) return;
+      limit = type == 2.0 ? facts_.vehicle->mode.max_ascent : facts_.vehicle->mode.max_descent;
+      whose = "the vehicle's limit";
+    } else if (type == 0.0 || type == 1.0) {
+      is_speed_set_ = true;
+    } else {
+      return complain(item, "sets a speed of a type that is not known here; use 0, 1, 2 or 3");
+    }
+    if (speed > 0.0 && speed <= limit + 1e-3) return;
+    complain(item, "sets " + fixed(speed, 2) + " m/s; it must be above 0 and at most " + whose +
+                       ", " + fixed(limit, 2) + " m/s");
+  }
+
+  void check_default_speed(const MissionItem& item) {
+    const double speed = dialect_ == Dialect::px4 ? default_speed_px4 : default_speed_ardupilot;
+    if (is_speed_set_ || speed <= facts_.cruise_speed) return;
+    is_speed_set_ = true;  // said once
+    complain(item, "is flown to at " + autopilot() + "'s default of " + fixed(speed, 0) +
+                       " m/s: no item before it sets the speed (178)");
+  }
+
+  void aim(const MissionItem& item, Meaning meaning) {
+    const auto& p = item.params;
+    if (meaning == Meaning::aim_by_mount) {
+      if (p[6] != aims_by_angles) return complain(item, "does not aim by angles (mode 2)");
+      if (p[1] != 0.0 || p[2] != 0.0) {
+        return complain(item, "rolls or turns the gimbal; only its pitch is known here");
+      }
+    } else if (p[1] != 0.0 && !std::isnan(p[1])) {
+      return complain(item, "turns the gimbal; only its pitch is known here");
+    }
+    pitch_deg_ = p[0];
+  }
+
+  void photograph(const MissionItem& item, Meaning meaning) {
+    if (meaning == Meaning::take_photo && item.params[2] != 1.0) {
+      return complain(
+          item, "takes " + fixed(item.params[2], 0) + " images; more than one are taken under way");
+    }
+    if (meaning == Meaning::trigger_photo && item.params[4] != 1.0) return;  // focus or zoom
+    if (!is_exact_) return complain(item, "photographs where the vehicle does not stop");
+    if (std::exchange(shoots_, true)) {
+      ++route_.stops.back().shots;
+      return;
+    }
+    route_.stops.push_back({position_, name_of(*last_), hold_, yaw_deg_, pitch_deg_, 1});
+  }
+
+  /// The file's home is what the pilot sees; relative heights count from the real one.
+  void check_home() {
+    if (!file_.home) return;
+    if (!facts_.site.geoid_undulation) {
+      return add(file_.home_name +
+                 " is above sea level; give site.geoid_undulation to compare it with the pad");
+    }
+    GeodeticPoint home = *file_.home;
+    home.height += *facts_.site.geoid_undulation;
+    const Vector3d away = frame_.to_local(home) - (has_taken_off_ ? pad_ : facts_.pad);
+    const double level = away.head<2>().norm();
+    if (level > pad_tolerance && (has_taken_off_ || facts_.is_pad_known)) {
+      add(file_.home_name + " is " + fixed(level, 1) + " m from the pad");
+    }
+    if (std::abs(away.z()) > pad_height_tolerance) {
+      add(file_.home_name + " is " + fixed(std::abs(away.z()), 1) + " m " +
+          (away.z() > 0.0 ? "above" : "below") + " the pad");
+    }
+  }
+
+  const MissionFile& file_;
+  const Dialect dialect_;
+  const FlightFacts& facts_;
+  LocalFrame frame_;
+  std::vector<MissionItem> items_;
+  std::deque<const MissionItem*> upcoming_;  ///< in the order flown
+  FlownRoute route_;
+
+  bool has_taken_off_ = false, has_landed_ = false;
+  bool is_speed_set_ = false;
+  bool is_exact_ = false;              ///< whether it comes to rest in `position_`
+  bool shoots_ = false;                ///< whether the last of the stops is the present one
+  const MissionItem* last_ = nullptr;  ///< that it flew to
+  Vector3d pad_ = Vector3d::Zero();
+  Vector3d position_ = Vector3d::Zero();
+  Segment departure_{Vector3d::Zero(), Vector3d::Zero()};  ///< where the next leg may begin
+  double hold_ = 0.0;
+  double yaw_deg_ = not_given, next_yaw_deg_ = not_given, pitch_deg_ = not_given;
+};
+
+}  // namespace
+
+FlownRoute interpret(const MissionFile& file, const FlightFacts& facts) {
+  std::optional<Dialect> flown_by;  // the vehicle's own autopilot; DJI's fly no such files
+  if (facts.vehicle && facts.vehicle->dialect != Dialect::dji) flown_by = facts.vehicle->dialect;
+  const Dialect dialect = file.dialect.value_or(flown_by.value_or(Dialect::px4));
+  FlownRoute route = MissionFlight(file, dialect, facts).fly();
+  if (!file.dialect && !flown_by) {
+    route.problems.insert(route.problems.begin(), "the file does not say which autopilot flies it");
+  }
+  if (flown_by && *flown_by != dialect) {
+    route.problems.insert(route.problems.begin(),
+                          std::string("the file is written for ") +
+                              (dialect == Dialect::px4 ? "PX4" : "ArduPilot") + "; vehicle \"" +
+                              facts.vehicle->name + "\" flies another autopilot");
+  }
+  return route;
+}
+
+}  // namespace skycap::flight

@@ -1,0 +1,75 @@
+#include "flight/interpreter/photographs.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "flight/export/export.h"
+
+namespace skycap::flight {
+namespace {
+
+constexpr double degree = std::numbers::pi / 180.0;
+
+/// How far a photograph's direction may be from its view's: Litchi has whole degrees of pitch.
+constexpr double direction_tolerance = 1.0 * degree;
+
+/// Photographs nearer than this to a view are meant to be of it [m]: rounding, and ArduPilot's
+/// centimetres of height.
+constexpr double place_tolerance = 2.0 * rounding_bound;
+
+/// Time that formats round away [s].
+constexpr double hold_tolerance = 0.005;
+
+Eigen::Vector3d direction_of(const FlownStop& stop) {
+  const double yaw = stop.yaw_deg * degree, pitch = stop.pitch_deg * degree;
+  return {std::cos(pitch) * std::sin(yaw), std::cos(pitch) * std::cos(yaw), std::sin(pitch)};
+}
+
+double angle_between(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
+  return std::atan2(a.cross(b).norm(), a.dot(b));
+}
+
+/// What is wrong with a photograph for the views; empty if it is one of them.
+std::string compare(const FlownStop& stop, const std::vector<geometry::View>& views) {
+  double nearest = place_tolerance, turned = std::numbers::pi;
+  bool has_place = false;
+  for (const geometry::View& view : views) {
+    if ((view.position - stop.position).norm() > nearest) continue;
+    has_place = true;
+    turned = std::min(turned, angle_between(direction_of(stop), view.direction));
+  }
+  if (!has_place) return "photographs from a place that is none of the mission's views";
+  if (std::isnan(stop.yaw_deg)) return "photographs without a heading of its own";
+  if (std::isnan(stop.pitch_deg)) return "photographs without a gimbal pitch of its own";
+  if (turned <= direction_tolerance) return "";
+  return "photographs " + fixed(turned / degree, 1) + " degrees beside its view";
+}
+
+}  // namespace
+
+Problems check_photographs(const std::vector<FlownStop>& stops, const FlightFacts& facts) {
+  Problems problems;
+  for (const FlownStop& stop : stops) {
+    const auto complain = [&](const std::string& what) {
+      problems.push_back(stop.item + " " + what);
+    };
+    if (stop.hold < facts.hold - hold_tolerance) {
+      complain("holds " + fixed(stop.hold, 2) + " s before its photograph; the mission's hold is " +
+               fixed(facts.hold, 2) + " s");
+    }
+    if (facts.vehicle) {
+      const double pitch = stop.pitch_deg * degree;
+      if (pitch < facts.vehicle->gimbal_min - direction_tolerance ||
+          pitch > facts.vehicle->gimbal_max + direction_tolerance) {
+        complain("pitches the gimbal to " + fixed(stop.pitch_deg, 1) + " degrees, which \"" +
+                 facts.vehicle->name + "\" cannot");
+      }
+    }
+    if (facts.views.empty()) continue;
+    if (const std::string what = compare(stop, facts.views); !what.empty()) complain(what);
+  }
+  return problems;
+}
+
+}  // namespace skycap::flight

@@ -1,0 +1,361 @@
+#include "flight/interpreter/wpml_interpreter.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <span>
+#include <string_view>
+
+#include <pugixml.hpp>
+
+#include "flight/interpreter/pad_column.h"
+#include "flight/interpreter/photographs.h"
+#include "geometry/error.h"
+
+namespace skycap::flight {
+namespace {
+
+using Eigen::Vector3d;
+
+/// Speeds and heights are written with two decimals.
+constexpr double rounding = 0.01;
+
+/// The one value of an element whose flight is proven, and what another one does.
+struct OnlyValue {
+  const char* element;
+  std::string_view right;
+  const char* otherwise;
+};
+
+constexpr std::array mission_rules{
+    OnlyValue{"flyToWaylineMode", "safely", "flies a slant to the first waypoint"},
+    OnlyValue{"exitOnRCLost", "executeLostAction", "flies on without a link"},
+    OnlyValue{"executeRCLostAction", "goBack", "stays or lands where the link is lost"}};
+
+constexpr std::array template_rules{
+    OnlyValue{"globalWaypointTurnMode", "toPointAndStopWithDiscontinuityCurvature",
+              "leaves the straight legs"},
+    OnlyValue{"globalUseStraightLine", "1", "leaves the straight legs"},
+    OnlyValue{"caliFlightEnable", "0", "flies a calibration that nobody has proven"},
+    OnlyValue{"gimbalPitchMode", "manual", "pitches the gimbal between waypoints"}};
+
+constexpr std::array template_waypoint_rules{
+    OnlyValue{"useGlobalHeight", "0", "takes another height"},
+    OnlyValue{"useGlobalSpeed", "1", "takes a speed of its own"},
+    OnlyValue{"useGlobalTurnParam", "1", "takes a turn of its own"},
+    OnlyValue{"useStraightLine", "1", "leaves the straight legs"}};
+
+constexpr std::array wayline_waypoint_rules{
+    OnlyValue{"useStraightLine", "1", "leaves the straight legs"}};
+
+constexpr std::array group_rules{OnlyValue{"actionGroupMode", "sequence", "acts at any time"}};
+
+constexpr std::array gimbal_rules{
+    OnlyValue{"gimbalRotateMode", "absoluteAngle", "pitches by an angle, not to one"},
+    OnlyValue{"gimbalRollRotateEnable", "0", "rolls the gimbal"},
+    OnlyValue{"gimbalYawRotateEnable", "0", "turns the gimbal away from the heading"}};
+
+/// Every element that is known below each of these; all others are refused.
+constexpr std::array<std::string_view, 16> of_config{"flyToWaylineMode",
+                                                     "finishAction",
+                                                     "exitOnRCLost",
+                                                     "executeRCLostAction",
+                                                     "takeOffSecurityHeight",
+                                                     "globalTransitionalSpeed",
+                                                     "globalRTHHeight",
+                                                     "takeOffRefPoint",
+                                                     "takeOffRefPointAGLHeight",
+                                                     "droneInfo",
+                                                     "payloadInfo",
+                                                     "author",
+                                                     "createTime",
+                                                     "updateTime",
+                                                     "waylineAvoidLimitAreaMode",
+                                                     "isFixedFinishAction"};
+constexpr std::array<std::string_view, 17> of_folder{"templateType",
+                                                     "templateId",
+                                                     "waylineCoordinateSysParam",
+                                                     "autoFlightSpeed",
+                                                     "globalHeight",
+                                                     "caliFlightEnable",
+                                                     "gimbalPitchMode",
+                                                     "globalWaypointHeadingParam",
+                                                     "globalWaypointTurnMode",
+                                                     "globalUseStraightLine",
+                                                     "payloadParam",
+                                                     "Placemark",
+                                                     "executeHeightMode",
+                                                     "waylineId",
+                                                     "distance",
+                                                     "duration",
+                                                     "name"};
+constexpr std::array<std::string_view, 18> of_waypoint{"Point",
+                                                       "index",
+                                                       "useGlobalHeight",
+                                                       "ellipsoidHeight",
+                                                       "height",
+                                                       "useGlobalSpeed",
+                                                       "useGlobalHeadingParam",
+                                                       "useGlobalTurnParam",
+                                                       "executeHeight",
+                                                       "waypointSpeed",
+                                                       "waypointHeadingParam",
+                                                       "waypointTurnParam",
+                                                       "useStraightLine",
+                                                       "actionGroup",
+                                                       "isRisky",
+                                                       "waypointWorkType",
+                                                       "name",
+                                                       "visibility"};
+
+/// One of the two files.
+class WpmlFlight {
+ public:
+  WpmlFlight(const std::string& text, std::string file, const FlightFacts& facts)
+      : file_(std::move(file)), facts_(facts), frame_(facts.site.origin) {
+    document_.load_buffer(text.data(), text.size());
+    const pugi::xml_node root = document_.child("kml").child("Document");
+    config_ = root.child("wpml:missionConfig");
+    folder_ = root.child("Folder");
+    if (folder_.next_sibling("Folder")) complain("has more than one wayline");
+  }
+
+  /// Where heights count from, by the template.
+  std::optional<Vector3d> reference_pad() {
+    const std::vector<std::string> parts = split(text_of(config_, "takeOffRefPoint"), ',');
+    if (parts.size() != 3) return std::nullopt;
+    const auto latitude = to_number(parts[0]), longitude = to_number(parts[1]),
+               height = to_number(parts[2]);
+    if (!latitude || !longitude || !height) return std::nullopt;
+    return frame_.to_local({*latitude, *longitude, *height});
+  }
+
+  /// `places` are the waypoints' in the local frame.
+  FlownRoute fly(const std::vector<Vector3d>& places, const Vector3d& pad) {
+    check_known(config_, of_config, "");
+    check_known(folder_, of_folder, "");
+    check_mission(places, pad);
+    climb(places.front(), pad);
+    std::size_t index = 0;
+    for (const pugi::xml_node mark : folder_.children("Placemark")) {
+      if (index > 0) {
+        route_.pieces.push_back({{places[index - 1], places[index - 1]},
+                                 places[index],
+                                 waypoint(index - 1),
+                                 waypoint(index)});
+      }
+      check_waypoint(mark, index);
+      act(mark, places[index], index);
+      ++index;
+    }
+    descend(places.back(), pad, waypoint(index - 1));
+    for (const std::string& problem : check_photographs(route_.stops, facts_)) {
+      route_.problems.push_back(problem);
+    }
+    return std::move(route_);
+  }
+
+ private:
+  bool is_template() const { return file_ == "template.kml"; }
+
+  static std::string waypoint(std::size_t index) { return "waypoint " + std::to_string(index); }
+
+  static std::string text_of(pugi::xml_node node, const char* name) {
+    return node.child((std::string("wpml:") + name).c_str()).text().get();
+  }
+
+  /// `who` is the waypoint; empty: the file.
+  void complain(const std::string& what, const std::string& who = "") {
+    route_.problems.push_back(who.empty() ? file_ + " " + what
+                                          : who + " " + what + " (" + file_ + ")");
+  }
+
+  void check_known(pugi::xml_node node, std::span<const std::string_view> known,
+                   const std::string& who) {
+    for (const pugi::xml_node child : node.children()) {
+      if (child.type() != pugi::node_element) continue;
+      std::string_view name = child.name();
+      if (name.starts_with("wpml:")) name.remove_prefix(5);
+      if (std::ranges::find(known, name) != known.end()) continue;
+      complain("has " + std::string(child.name()) + ", which is not known here; remove it", who);
+    }
+  }
+
+  /// Elements that are missing are judged by the format's validator.
+  void check_values(pugi::xml_node node, std::span<const OnlyValue> rules,
+                    const std::string& who = "") {
+    for (const OnlyValue& rule : rules) {
+      const std::string value = text_of(node, rule.element);
+      if (value.empty() || value == rule.right) continue;
+      complain("has wpml:" + std::string(rule.element) + " " + value + ", which " + rule.otherwise +
+                   "; it must be " + std::string(rule.right),
+               who);
+    }
+  }
+
+  double number_of(pugi::xml_node node, const char* name) const {
+    return to_number(text_of(node, name)).value_or(not_given);
+  }
+
+  void check_speed(pugi::xml_node node, const char* name, const std::string& who = "") {
+    const double speed = number_of(node, name);
+    if (std::isnan(speed) || speed <= facts_.cruise_speed + rounding) return;
+    complain("has wpml:" + std::string(name) + " " + fixed(speed, 2) +
+                 " m/s; the mission's cruise speed is " + fixed(facts_.cruise_speed, 2) + " m/s",
+             who);
+  }
+
+  void check_height(const char* name, double least, const std::string& why) {
+    const double height = number_of(config_, name);
+    if (std::isnan(height) || height >= least - rounding) return;
+    complain("has wpml:" + std::string(name) + " " + fixed(height, 2) + " m; it must be at least " +
+             fixed(least, 2) + " m, " + why);
+  }
+
+  void check_mission(const std::vector<Vector3d>& places, const Vector3d& pad) {
+    check_values(config_, mission_rules);
+    const std::string finish = text_of(config_, "finishAction");
+    if (finish != "goHome" && finish != "autoLand") {
+      complain("has wpml:finishAction " + finish +
+               ", which ends the mission in the air; it must be goHome or autoLand");
+    }
+    double highest = 0.0;
+    const double foot = frame_.to_geodetic(pad).height;
+    for (const Vector3d& place : places) {
+      highest = std::max(highest, frame_.to_geodetic(place).height - foot);
+    }
+    check_height("takeOffSecurityHeight", facts_.takeoff_climb, "the climb from the pad");
+    check_height("globalRTHHeight", highest, "the height of the highest waypoint");
+    check_speed(config_, "globalTransitionalSpeed");
+    check_speed(folder_, "autoFlightSpeed");
+    if (is_template()) check_values(folder_, template_rules);
+    for (const char* mode : {"aboveGroundLevel", "realTimeFollowSurface"}) {
+      const pugi::xml_node system = folder_.child("wpml:waylineCoordinateSysParam");
+      if (text_of(folder_, "executeHeightMode") == mode || text_of(system, "heightMode") == mode) {
+        complain(std::string("counts heights as ") + mode + ", from a ground that is not known");
+      }
+    }
+    if (!facts_.vehicle || facts_.vehicle->dialect != Dialect::dji) return;
+    const std::string drone = text_of(config_.child("wpml:droneInfo"), "droneEnumValue");
+    if (drone == std::to_string(facts_.vehicle->wpml.drone)) return;
+    complain("is for the aircraft with droneEnumValue " + drone + "; \"" + facts_.vehicle->name +
+             "\" is " + std::to_string(facts_.vehicle->wpml.drone));
+  }
+
+  // flyToWaylineMode safely: up, level, then down to the first waypoint if that is lower.
+  void climb(const Vector3d& first, const Vector3d& pad) {
+    const double security = number_of(config_, "takeOffSecurityHeight");
+    const double top = std::max(first.z(), pad.z() + (std::isnan(security) ? 0.0 : security));
+    const Vector3d over_pad(pad.x(), pad.y(), top), over_first(first.x(), first.y(), top);
+    append_column(route_, {pad, over_pad}, {"the pad", waypoint(0)}, facts_.takeoff_climb);
+    for (const Segment& leg : {Segment{over_pad, over_first}, Segment{over_first, first}}) {
+      if (leg.length() < rounding) continue;
+      route_.pieces.push_back({{leg.from, leg.from}, leg.to, "the pad", waypoint(0)});
+    }
+  }
+
+  // Within 5 m of home, going there is landing at once.
+  void descend(const Vector3d& last, const Vector3d& pad, const std::string& who) {
+    append_column(route_, {{last.x(), last.y(), pad.z()}, last}, {who, "the ground"},
+                  facts_.takeoff_climb);
+    const double away = (last - pad).head<2>().norm();
+    if (away <= pad_tolerance) return;
+    complain("is the last, " + fixed(away, 1) +
+                 " m from the pad: the way home is not proven, nor the ground below it",
+             who);
+  }
+
+  void check_waypoint(pugi::xml_node mark, std::size_t index) {
+    const std::string who = waypoint(index);
+    check_known(mark, of_waypoint, who);
+    check_speed(mark, "waypointSpeed", who);
+    if (is_template()) {
+      check_values(mark, template_waypoint_rules, who);
+    } else {
+      check_values(mark, wayline_waypoint_rules, who);
+    }
+  }
+
+  /// What happens at a waypoint, in the order of its actions.
+  void act(pugi::xml_node mark, const Vector3d& place, std::size_t index) {
+    const std::string who = waypoint(index);
+    const pugi::xml_node heading = mark.child("wpml:waypointHeadingParam");
+    const bool is_set = text_of(heading, "waypointHeadingMode") == "smoothTransition" &&
+                        text_of(mark, "useGlobalHeadingParam") != "1";
+    double yaw_deg = is_set ? number_of(heading, "waypointHeadingAngle") : not_given;
+    double hold = 0.0;
+    int shots = 0;
+    for (const pugi::xml_node group : mark.children("wpml:actionGroup")) {
+      check_group(group, index);
+      for (const pugi::xml_node action : group.children("wpml:action")) {
+        const std::string function = text_of(action, "actionActuatorFunc");
+        const pugi::xml_node param = action.child("wpml:actionActuatorFuncParam");
+        if (function == "hover") hold += number_of(param, "hoverTime");
+        if (function == "rotateYaw") yaw_deg = number_of(param, "aircraftHeading");
+        if (function == "gimbalRotate") aim(param, who);
+        if (function != "takePhoto") continue;
+        if (shots++ == 0) route_.stops.push_back({place, who, hold, yaw_deg, pitch_deg_, 0});
+        ++route_.stops.back().shots;
+      }
+    }
+  }
+
+  void aim(pugi::xml_node param, const std::string& who) {
+    check_values(param, gimbal_rules, who);
+    if (text_of(param, "gimbalPitchRotateEnable") == "0") return;
+    pitch_deg_ = number_of(param, "gimbalPitchRotateAngle");
+  }
+
+  void check_group(pugi::xml_node group, std::size_t index) {
+    check_values(group, group_rules, waypoint(index));
+    for (const char* end : {"actionGroupStartIndex", "actionGroupEndIndex"}) {
+      if (text_of(group, end) == std::to_string(index)) continue;
+      complain("has wpml:" + std::string(end) + " " + text_of(group, end) +
+                   ": its actions run at other waypoints",
+               waypoint(index));
+    }
+    const std::string trigger = text_of(group.child("wpml:actionTrigger"), "actionTriggerType");
+    if (trigger != "reachPoint") {
+      complain("acts by wpml:actionTriggerType " + trigger + "; it must be reachPoint",
+               waypoint(index));
+    }
+  }
+
+  std::string file_;
+  const FlightFacts& facts_;
+  LocalFrame frame_;
+  pugi::xml_document document_;
+  pugi::xml_node config_, folder_;
+  FlownRoute route_;
+  double pitch_deg_ = not_given;
+};
+
+/// The pad that the file says, if it says one, must be the mission's.
+void check_pad(const Vector3d& said, const Vector3d& pad, Problems& problems) {
+  const double level = (said - pad).head<2>().norm(), up = said.z() - pad.z();
+  if (level <= pad_tolerance && std::abs(up) <= pad_height_tolerance) return;
+  problems.push_back("template.kml has wpml:takeOffRefPoint " + fixed(level, 1) + " m from and " +
+                     fixed(up, 1) + " m above the pad");
+}
+
+}  // namespace
+
+FlownRoute interpret(const KmzContent& kmz, const FlightFacts& facts) {
+  const RouteFile file = read_kmz(pack_kmz(kmz));
+  WpmlFlight edited(kmz.template_kml, "template.kml", facts);
+  WpmlFlight flown(kmz.waylines_wpml, "waylines.wpml", facts);
+  const std::optional<Vector3d> said = edited.reference_pad();
+  const std::vector<Vector3d> places = local_points(file, facts.site, facts.pad);
+  Vector3d pad = facts.pad;
+  if (!facts.is_pad_known) pad.head<2>() = said.value_or(places.front()).head<2>();
+  FlownRoute route = flown.fly(places, pad);
+  if (said) check_pad(*said, pad, route.problems);
+  for (const std::string& problem : edited.fly(places, pad).problems) {
+    if (std::ranges::find(route.problems, problem) == route.problems.end()) {
+      route.problems.push_back(problem);
+    }
+  }
+  return route;
+}
+
+}  // namespace skycap::flight
