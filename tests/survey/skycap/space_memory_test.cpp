@@ -34,7 +34,8 @@ std::vector<Vector3f> points_in_ball(float radius, int count) {
   std::uniform_real_distribution<float> uniform(-radius, radius);
   std::vector<Vector3f> points;
   while (points.size() < static_cast<std::size_t>(count)) {
-    const Vector3f p{uniform(random), uniform(random), uniform(random)};
+    const float z = uniform(random), y = uniform(random), x = uniform(random);
+    const Vector3f p(x, y, z);
     if (p.norm() < radius) points.push_back(p);
   }
   return points;

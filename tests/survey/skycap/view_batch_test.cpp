@@ -80,7 +80,7 @@ TEST(PickBatch, IsTheGreedyCoverComputedFromScratch) {
       expected.push_back(best);
     }
     std::vector<std::size_t> picked;
-    for (const Stop& s : pick_batch(problem.views, problem.weights, position, settings)) {
+    for (const Stop& s : skycap::pick_batch(problem.views, problem.weights, position, settings)) {
       picked.push_back(s.view);
     }
     EXPECT_EQ(picked, expected) << seed;
@@ -94,7 +94,7 @@ TEST(PickBatch, GainsAddUpToWhatTheBatchCovers) {
   const Problem problem = random_problem(7);
   double sum = 0.0;
   std::vector<std::size_t> picked;
-  for (const Stop& s : pick_batch(problem.views, problem.weights, Vector3d::Zero(), {})) {
+  for (const Stop& s : skycap::pick_batch(problem.views, problem.weights, Vector3d::Zero(), {})) {
     sum += s.gain;
     picked.push_back(s.view);
   }
@@ -131,7 +131,7 @@ TEST(FirstStop, BeginsATourThatIsAsCheapAsAny) {
   for (std::uint64_t seed = 0; seed < 20; ++seed) {
     const Problem problem = random_problem(seed);
     const std::vector<Stop> batch =
-        pick_batch(problem.views, problem.weights, position, {.least_share = 0.0});
+        skycap::pick_batch(problem.views, problem.weights, position, {.least_share = 0.0});
     double total_gain = 0.0;
     for (const Stop& s : batch) total_gain += s.gain;
     const auto cost_from = [&](std::vector<std::size_t> left, const Vector3d& at, double length) {
