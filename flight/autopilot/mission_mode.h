@@ -47,8 +47,9 @@ struct LegLimits {
 inline constexpr double acceptance_radius = 0.3;
 
 /// From rest to rest by ArduCopter's S-curve; zero for no distance. `jerk_rise` 0 leaves the seven
-/// phases of constant jerk. Exact for its law (AP_Math/SCurve.cpp, calculate_path): without limits
-/// of length it is distance / speed + speed / acceleration + acceleration / jerk + jerk_rise.
+/// phases of constant jerk. Exact for its law (AP_Math/SCurve.cpp, calculate_path): where length
+/// and speed let the acceleration reach its limit it is distance / speed + speed / acceleration +
+/// acceleration / jerk + jerk_rise.
 double s_curve_time(double distance, const LegLimits& limits, double jerk, double jerk_rise);
 
 /// From rest until PX4 counts the place as reached; zero nearer than that. Speeding up is jerk

@@ -114,15 +114,16 @@ class ParameterWriter {
     set("RTL_LOIT_TIME", 5000);
     both("RTL_SPEED", "RTL_SPEED_MS", plan_.conditions.cruise_speed);
     comment("Speeds [m/s], accelerations [m/s^2] and jerk of missions");
-    both("WPNAV_SPEED_UP", "WP_SPD_UP", 2.5);
-    both("WPNAV_SPEED_DN", "WP_SPD_DN", 1.5);
-    both("WPNAV_ACCEL", "WP_ACC", 2.5);
-    both("WPNAV_ACCEL_Z", "WP_ACC_Z", 1.0);
-    set("WPNAV_JERK", 1);
-    set("WP_JERK", 1);
+    const MissionMode& mode = plan_.vehicle.mode;
+    both("WPNAV_SPEED_UP", "WP_SPD_UP", mode.max_ascent);
+    both("WPNAV_SPEED_DN", "WP_SPD_DN", mode.max_descent);
+    both("WPNAV_ACCEL", "WP_ACC", mode.acceleration);
+    both("WPNAV_ACCEL_Z", "WP_ACC_Z", mode.vertical_acceleration);
+    set("WPNAV_JERK", mode.jerk);
+    set("WP_JERK", mode.jerk);
     both("WPNAV_RADIUS", "WP_RADIUS_M", 2.0);
-    both("LAND_SPEED", "LAND_SPD_MS", 0.5);
-    both("LAND_ALT_LOW", "LAND_ALT_LOW_M", 10.0);
+    both("LAND_SPEED", "LAND_SPD_MS", mode.landing_speed);
+    both("LAND_ALT_LOW", "LAND_ALT_LOW_M", mode.landing_height);
     set("WP_YAW_BEHAVIOR", 0);  // headings are the mission's
     set("OA_TYPE", 0);          // no other ways than those that were proven
     comment("Link lost, pilot's or station's: return");
@@ -163,11 +164,12 @@ class ParameterWriter {
     real("NAV_MC_ALT_RAD", 0.8);
     comment("Speeds [m/s], accelerations [m/s^2] and jerk");
     real("MPC_XY_CRUISE", std::max(3.0, plan_.conditions.cruise_speed));
-    real("MPC_Z_V_AUTO_UP", 3);
-    real("MPC_Z_V_AUTO_DN", 1.5);
-    real("MPC_ACC_HOR", 3);
-    real("MPC_JERK_AUTO", 4);
-    real("MPC_LAND_SPEED", 0.7);
+    const MissionMode& mode = plan_.vehicle.mode;
+    real("MPC_Z_V_AUTO_UP", mode.max_ascent);
+    real("MPC_Z_V_AUTO_DN", mode.max_descent);
+    real("MPC_ACC_HOR", mode.acceleration);
+    real("MPC_JERK_AUTO", mode.jerk);
+    real("MPC_LAND_SPEED", mode.landing_speed);
     comment("Headings are the mission's; a view is taken within a degree of its own");
     set("MPC_YAW_MODE", 0);
     real("MIS_YAW_ERR", 1);

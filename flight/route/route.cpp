@@ -351,11 +351,10 @@ class RoutePlanner {
 
   void ask_for_returns(const ReturnOptions& asked) {
     const Vector3d& pad = route_.options.takeoff;
-    ReturnLaw law{.dialects = asked.dialects,
-                  .level = pad.z() + std::floor(asked.highest - pad.z()),
-                  .landings = {pad},
-                  .landing_climb = route_.options.takeoff_climb};
-    law.landings.insert(law.landings.end(), asked.rally.begin(), asked.rally.end());
+    const ReturnLaw law{.dialects = asked.dialects,
+                        .level = pad.z() + std::floor(asked.highest - pad.z()),
+                        .landings = {pad},
+                        .landing_climb = route_.options.takeoff_climb};
     ways_home_.emplace(space_, law, home_, route_.clearance);
   }
 
@@ -379,14 +378,12 @@ class RoutePlanner {
     ReturnSearch search =
         least_return(space_, legs, law, law.level, return_clearance(route_.clearance));
     if (!search.found) {
-      throw Error(ErrorKind::bad_config,
-                  "there is no certified way home: " + search.why +
-                      "; move flight.takeoff, give flight.rally or raise site.highest_height");
+      throw Error(ErrorKind::bad_config, "there is no certified way home: " + search.why +
+                                             "; move flight.takeoff or raise site.highest_height");
     }
     route_.returns = std::move(search.found);
     for (const Segment& leg : legs) {
-      const double energy =
-          return_energy(motion_, route_.returns->law, leg.to);
+      const double energy = return_energy(motion_, route_.returns->law, leg.to);
       route_.returns->energy = std::max(route_.returns->energy, energy);
     }
   }

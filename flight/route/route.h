@@ -50,9 +50,8 @@ struct ClearanceBudget {
 
 /// What is asked of the ways home that an autopilot flies by itself.
 struct ReturnOptions {
-  std::vector<Dialect> dialects;       ///< whose ways home are to be proven
-  double highest = 0.0;                ///< z up to which a height of return is looked for
-  std::vector<Eigen::Vector3d> rally;  ///< landing places beside the pad, vouched for as it is
+  std::vector<Dialect> dialects;  ///< whose ways home are to be proven
+  double highest = 0.0;           ///< z up to which a height of return is looked for
 };
 
 struct RouteOptions {

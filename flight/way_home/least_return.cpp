@@ -13,9 +13,6 @@ using Eigen::Vector3d;
 /// braking and two corners are left [s].
 constexpr double waiting_time = 12.0;
 
-/// DJI's applications take no lower height of return [m above the pad].
-constexpr double least_of_dji = 20.0;
-
 double least_height(const ReturnLaw& law) {
   const bool has_dji = std::ranges::find(law.dialects, Dialect::dji) != law.dialects.end();
   return std::ceil(std::max(law.landing_climb, has_dji ? least_of_dji : 0.0));
@@ -84,7 +81,12 @@ ReturnSearch least_return(const FreeSpace& space, const std::vector<Segment>& le
   char text[96];
   std::snprintf(text, sizeof text, "no height of return fits below %.1f m", highest);
   ReturnSearch result{std::nullopt, text};
-  for (double height = least_height(law); ground + height <= highest; height += 1.0) {
+  // No lower than the route: a vehicle above the height of return would go home at its own.
+  double top = ground;
+  for (const Segment& leg : legs) top = std::max({top, leg.from.z(), leg.to.z()});
+  const double least = std::max(least_height(law), std::ceil(top - ground));
+  highest = std::max(highest, ground + std::ceil(top - ground));
+  for (double height = least; ground + height <= highest; height += 1.0) {
     law.level = ground + height;
     result = search.prove(law);
     if (result.found) return result;
@@ -95,21 +97,19 @@ ReturnSearch least_return(const FreeSpace& space, const std::vector<Segment>& le
 }
 
 double return_energy(const Motion& motion, const ReturnLaw& law, const Vector3d& place) {
+  // Every landing place is somewhere on the ground: the lowest makes the longest descent.
+  double ground = law.landings.front().z();
+  for (const Vector3d& landing : law.landings) ground = std::min(ground, landing.z());
+  const double top = std::max(law.level, place.z());
+  const auto flown = [&](const Vector3d& way) {
+    return motion.leg_energy(way, motion.leg_time(way));
+  };
+  const double upright = flown({0.0, 0.0, top - place.z()}) +
+                         motion.hover_energy(waiting_time + motion.landing_time(top - ground));
   double most = 0.0;
-  for (const ReturnPiece& level : return_pieces(law, place)) {
-    if (level.part != ReturnPart::level) continue;
-    const double top = std::max(law.level, place.z());
-    double sum = motion.hover_energy(waiting_time);
-    const auto fly = [&](const Vector3d& way) {
-      sum += motion.leg_energy(way, motion.leg_time(way));
-    };
-    fly({0.0, 0.0, top - place.z()});
-    fly(level.line.to - level.line.from);
-    // Every landing place is somewhere on the ground: the lowest makes the longest descent.
-    double ground = law.landings.front().z();
-    for (const Vector3d& landing : law.landings) ground = std::min(ground, landing.z());
-    sum += motion.hover_energy(motion.landing_time(top - ground));
-    most = std::max(most, sum);
+  for (const ReturnPiece& piece : return_pieces(law, place)) {
+    if (piece.part != ReturnPart::level) continue;
+    most = std::max(most, upright + flown(piece.line.to - piece.line.from));
   }
   return most;
 }

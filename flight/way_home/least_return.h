@@ -28,6 +28,9 @@ struct ReturnSearch {
   std::string why;  ///< what is in the way of the last height tried, if none is found
 };
 
+/// DJI's applications take no lower height of return [m above the pad].
+inline constexpr double least_of_dji = 20.0;
+
 /// Looks for the least whole metre above the pad at which the returns from every point of all legs
 /// are proven at the clearance, up to the height `highest` (z). Heights are tried one by one, for a
 /// greater one need not be safer where the airspace has a ceiling. `law.level` is not used.
@@ -38,8 +41,8 @@ ReturnSearch least_return(const FreeSpace& space, const std::vector<Segment>& le
 ReturnSearch prove_returns(const FreeSpace& space, const std::vector<Segment>& legs,
                            const ReturnLaw& law, double clearance);
 
-/// Electrical energy of the dearest return from a place, with the waits that autopilots make before
-/// it and over the landing place; the descent as dear as hovering [J].
+/// Electrical energy of the dearest return from a place, landing included, with the waits that
+/// autopilots make before it and over the landing place [J].
 double return_energy(const Motion& motion, const ReturnLaw& law, const Eigen::Vector3d& place);
 
 }  // namespace skycap::flight

@@ -78,7 +78,7 @@ const char* name_of(ReturnPart part) {
     case ReturnPart::level:
       return "the level flight";
     case ReturnPart::level_as_it_is:
-      return "the level flight without a climb";
+      return "the level flight without a climb, as within 50 m of the pad,";
     case ReturnPart::descent:
       return "the descent";
     case ReturnPart::landing:

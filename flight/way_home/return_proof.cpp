@@ -53,7 +53,17 @@ ReturnProof prove_returns(const FreeSpace& space, const Segment& leg, const Retu
     found.queries += all.queries;
     const double covered = found.clearance - clearance;  // so far around it the returns are free
     all.queries = found.queries;
-    if (covered < std::min(reach, return_slack)) {
+    const double needed = std::min(reach, return_slack);
+    if (covered < needed) {
+      // Pieces that are flown from other places than this one decide nothing about it.
+      const ReturnProof here =
+          nearest_of(space, return_pieces(law, place, 0.0), place, clearance, reach);
+      all.queries += here.queries;
+      if (reach > return_slack && here.clearance - clearance >= needed) {
+        open.push_back({begin, middle});
+        open.push_back({middle, end});
+        continue;
+      }
       found.is_proven = false;
       found.clearance = std::max(0.0, found.clearance);
       return found;

@@ -107,7 +107,7 @@ double takeoff_climb_of(const file::Mission& mission) {
   return mission.flight.takeoff_climb.value_or(std::max(5.0, mission.flight.clearance + 1.0));
 }
 
-double highest_return(const file::Mission& mission, double obstacles_top) {
+double highest_return(const file::Mission& mission, double pad_z, double obstacles_top) {
   /// A whole metre is lost in rounding, and autopilots may fly level up to 2 m lower.
   constexpr double spare = 3.0;
   const AlignedBox3d box = unknown_box_of(mission);
@@ -116,7 +116,8 @@ double highest_return(const file::Mission& mission, double obstacles_top) {
   for (const geometry::Prism& volume : mission.site.no_fly) {
     if (volume.ceiling < no_flight_is_higher) top = std::max(top, volume.ceiling);
   }
-  const double highest = top + mission.flight.clearance + spare;
+  const double highest =
+      std::max(top + mission.flight.clearance + spare, pad_z + flight::least_of_dji);
   if (!mission.site.highest_height) return highest;
   return std::min(highest, *mission.site.highest_height - mission.flight.clearance);
 }
@@ -141,8 +142,8 @@ flight::RouteOptions route_options_of(const file::Mission& mission, const Vector
   options.conditions.temperature_c = config.temperature;
   options.conditions.cruise_speed = config.cruise_speed;
   options.conditions.reserve = config.reserve;
-  options.returns = flight::ReturnOptions{
-      dialects_of(vehicle_of(mission)), highest_return(mission, mission.scene.position.z()), {}};
+  options.returns = flight::ReturnOptions{dialects_of(vehicle_of(mission)),
+                                          highest_return(mission, pad.z(), pad.z())};
   return options;
 }
 

@@ -40,9 +40,10 @@ Eigen::Vector3d pad_of(const file::Mission& mission, const Eigen::Vector3d& firs
 /// How far the vehicle climbs from the pad before its first leg.
 double takeoff_climb_of(const file::Mission& mission);
 
-/// The greatest z at which a height of return is looked for: over the unknown box, no-fly volumes
-/// and `obstacles_top`, and under the greatest height that the site allows.
-double highest_return(const file::Mission& mission, double obstacles_top);
+/// The greatest z at which a height of return is looked for, of a vehicle whose pad is at `pad_z`:
+/// over the unknown box, no-fly volumes and `obstacles_top`, under the greatest height that the
+/// site allows.
+double highest_return(const file::Mission& mission, double pad_z, double obstacles_top);
 
 /// The autopilots that the mission's files are written for: a DJI vehicle's .plan and .waypoints
 /// are for others.

@@ -168,7 +168,7 @@ FlightFiles stage_flight(const file::Mission& mission, const flight::Route& rout
         flight::FlightPlan plan = in_dialect(
             flight_plan(route, i, mission.name + number, derived::site_of(mission), rules, corners),
             format, notes);
-        certify_dialect(plan, space, derived::highest_return(mission, plan.pad.z()));
+        certify_dialect(plan, space, derived::highest_return(mission, plan.pad.z(), plan.pad.z()));
         if (has_parameters(format) && plan.returns) {
           parameters[flight::parameters_name(plan.vehicle.dialect)] = checked_parameters(plan);
         }

@@ -97,7 +97,7 @@ ReturnCheck check_returns(const std::filesystem::path& file,
   }
   const double top = space.extent().isEmpty() ? ground : space.extent().max().z();
   const flight::ReturnSearch least =
-      least_return(space, legs, law, derived::highest_return(mission, top), clearance);
+      least_return(space, legs, law, derived::highest_return(mission, ground, top), clearance);
   if (!least.found) {
     return {false, fault.empty() ? "not safe, no height of return is: " + least.why
                                  : fault + "no other height is safe"};

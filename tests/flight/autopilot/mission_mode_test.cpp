@@ -105,7 +105,7 @@ TEST(SCurve, IsSevenPhasesWhenTheJerkJumps) {
 }
 
 TEST(SCurve, LongLegsTakeTheSumOfTheirParts) {
-  EXPECT_NEAR(s_curve_time(100.0, {4.0, 2.5}, 1.0, 0.3), 25.0 + 1.6 + 2.5 + 0.3, 1e-9);
+  EXPECT_NEAR(s_curve_time(100.0, {4.0, 1.6}, 1.0, 0.3), 25.0 + 2.5 + 1.6 + 0.3, 1e-9);
   EXPECT_EQ(s_curve_time(0.0, {4.0, 2.5}, 1.0, 0.3), 0.0);
 }
 

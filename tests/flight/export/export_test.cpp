@@ -206,7 +206,8 @@ TEST_P(TrajectoryOf, VelocitiesAndAccelerationsAreTheDerivatives) {
     EXPECT_LT(((after.position - before.position) / span - now.velocity).norm(), 8e-3);
     EXPECT_LT(((after.velocity - before.velocity) / span - now.acceleration).norm(), 2e-2);
     EXPECT_LE(now.velocity.norm(), plan.conditions.cruise_speed + 1e-9);
-    EXPECT_LE(now.acceleration.norm(), plan.vehicle.mode.acceleration + 1e-9);
+    EXPECT_LE(now.acceleration.head<2>().norm(), plan.vehicle.mode.acceleration + 1e-9);
+    EXPECT_LE(std::abs(now.acceleration.z()), plan.vehicle.mode.vertical_acceleration + 1e-9);
   }
   EXPECT_NEAR(states.back().time, stop_times(plan).back().departure, 1e-9);
 }

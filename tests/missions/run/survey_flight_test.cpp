@@ -1,6 +1,7 @@
 #include "missions/run/survey_flight.h"
 
 #include <algorithm>
+#include <random>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -27,7 +28,8 @@ using tests::run_skycap;
 using tests::TestFolder;
 
 /// A teapot of 20 m, which takes a second to survey. Its spout and handle are what nobody sees from
-/// the first view.
+/// the first view. The pad is so far away that DJI's vehicles, too, climb before they return from
+/// behind it.
 std::string flown_mission(const std::string& more = "") {
   return "scene: {model: 'builtin:teapot', longest_side: 20.0, ground: true}\n"
          "sensor: {width: 160, height: 120, max_range: 100, noise: {sigma: 0.02}}\n"
@@ -39,7 +41,8 @@ std::string flown_mission(const std::string& more = "") {
          "  view_distance: 16\n"
          "  scene_box: {min: [-14, -11, 0.3], max: [14, 11, 13]}\n"
          "  least_gain: 0.02\n"
-         "flight: {vehicle: generic, unknown_box: {min: [-14, -11, 0], max: [14, 11, 13]}}\n"
+         "flight: {vehicle: generic, takeoff: [-75, 0, 0],\n"
+         "         unknown_box: {min: [-14, -11, 0], max: [14, 11, 13]}}\n"
          "site: {latitude_deg: 47.1, longitude_deg: 8.2, ellipsoid_height: 480,\n"
          "       geoid_undulation: 48}\n"
          "evaluation: {registration_distance: 0.6, samples: 3000, visible_directions: 30,\n"
@@ -151,6 +154,69 @@ TEST(FlownPackage, HoldsTheRouteInEveryFormatAndEachFileIsProvenAgainstTheTruth)
     EXPECT_EQ(check.exit_code, 0) << ending << check.out << check.err;
     EXPECT_THAT(check.out, HasSubstr(": fine, 0 of "));
   }
+}
+
+// Returns as PX4 flies them, from anywhere on the route, against the teapot as it is: a point every
+// 10 cm, asked for its distance alone.
+TEST(FlownPackage, NoReturnFromAnywhereComesNearTheTruth) {
+  const TestFolder& folder = package();
+  const package::PackagedSurvey survey = package::read_package(folder / "out", {});
+  const flight::Route route =
+      package::plan_flight(survey.mission, survey.measured, survey.pad, survey.views);
+  ASSERT_TRUE(route.returns);
+  const json stated =
+      json::parse(content_of(folder / "out/summary.json")).at("flight").at("return");
+  EXPECT_EQ(stated.at("height_m").get<double>(), route.returns->height);
+  EXPECT_EQ(stated.at("parameters"), json::array({"mission.params"}));
+
+  const scene::SurveyScene scene(survey.mission, "");
+  const flight::KnownSpace truth = truth_of(survey.mission, scene);
+  std::mt19937_64 random(3);
+  std::uniform_real_distribution<double> share(0.0, 1.0);
+  const std::vector<Vector3d> points = flight::sortie_points(route, route.sorties.at(0));
+  const double level = survey.pad.z() + route.returns->height;
+  for (int i = 0; i < 1000; ++i) {
+    const std::size_t leg = 1 + random() % (points.size() - 1);
+    const Vector3d from = flight::Segment{points[leg - 1], points[leg]}.at(share(random));
+    // PX4 begins to fly level from up to 0.8 m below the height of return on.
+    const double top = std::max(from.z(), level - 0.8 * share(random));
+    const Vector3d above(from.x(), from.y(), top), home(survey.pad.x(), survey.pad.y(), top);
+    for (const flight::Segment& piece : {flight::Segment{from, above}, {above, home}}) {
+      const int steps = 1 + static_cast<int>(piece.length() / 0.1);
+      for (int step = 0; step <= steps; ++step) {
+        const Vector3d place = piece.at(static_cast<double>(step) / steps);
+        ASSERT_GE(truth.distance(place, 3.0), route.returns->clearance - 1e-6)
+            << place.transpose() << " from " << from.transpose();
+      }
+    }
+  }
+}
+
+TEST(FlownPackage, ChecksProveReturnsAtTheHeightThatIsStated) {
+  const TestFolder& folder = package();
+  const auto check = [&](const std::string& file, const std::vector<std::string>& more) {
+    std::vector<std::string> arguments{"check", folder / "m.yaml", "--route", file};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return run_skycap(arguments);
+  };
+  EXPECT_THAT(check(folder / "out/mission.plan", {}).out, HasSubstr("(mission.params) are proven"));
+  EXPECT_THAT(check(folder / "out/mission.kmz", {}).out, HasSubstr("(globalRTHHeight) are proven"));
+  EXPECT_THAT(check(folder / "out/mission.csv", {}).out, HasSubstr("returns are not checked"));
+  const auto low = check(folder / "out/mission.kmz", {"--return-height", "3"});
+  EXPECT_EQ(low.exit_code, 1);
+  EXPECT_THAT(low.out, HasSubstr("not safe, at 3 m (--return-height) the level flight"));
+  EXPECT_THAT(low.out, HasSubstr("the least safe height of return is 20 m"));
+
+  // Alone, the file says nothing of returns; beside other parameters those count.
+  const TestFolder alone;
+  const std::string plan = alone.write("mission.plan", content_of(folder / "out/mission.plan"));
+  const auto unsaid = check(plan, {});
+  EXPECT_EQ(unsaid.exit_code, 0);
+  EXPECT_THAT(unsaid.out, HasSubstr("does not say how high the vehicle returns: set it to "));
+  alone.write("mission.params", "1\t1\tRTL_RETURN_ALT\t40\t9\n");
+  const auto cone = check(plan, {});
+  EXPECT_EQ(cone.exit_code, 1);
+  EXPECT_THAT(cone.out, HasSubstr("not safe, mission.params: RTL_CONE_ANG is 45; it must be 0"));
 }
 
 TEST(FlownPackage, ChecksFindTheLegsThatAScenesOtherShapeMakesUnsafe) {
