@@ -35,7 +35,7 @@ Obstacles wall_at(double x, double height = 60.0) {
 TEST(ReturnProof, KeepsTheDistanceOfAColumnBesideAWall) {
   const ReturnLaw law = law_of({Dialect::px4}, 30.0, {-40, 0, 0});
   const Segment place{{0, 0, 10}, {0, 0, 10}};
-  const KnownSpace enough(wall_at(2.0 + 1e-3)), too_near(wall_at(2.0 - 1e-3));
+  const KnownSpace enough(wall_at(2.0 + 1e-3, 20.0)), too_near(wall_at(2.0 - 1e-3, 20.0));
   const ReturnProof proof = prove_returns(enough, place, law, clearance);
   EXPECT_TRUE(proof.is_proven);
   EXPECT_NEAR(proof.clearance, 2.0 + 1e-3, 1e-5);
@@ -46,7 +46,8 @@ TEST(ReturnProof, KeepsTheDistanceOfAColumnBesideAWall) {
 TEST(ReturnProof, ProvesALegBesideAWallToWithinTheSlack) {
   const ReturnLaw law = law_of({Dialect::ardupilot}, 30.0, {-40, 0, 0});
   const Segment leg{{0, -20, 10}, {0, 20, 12}};
-  const KnownSpace enough(wall_at(2.0 + return_slack + 1e-3)), too_near(wall_at(2.0 - 1e-3));
+  const KnownSpace enough(wall_at(2.0 + return_slack + 1e-3, 20.0));
+  const KnownSpace too_near(wall_at(2.0 - 1e-3, 20.0));
   const ReturnProof proof = prove_returns(enough, leg, law, clearance);
   EXPECT_TRUE(proof.is_proven);
   EXPECT_GE(proof.clearance, 2.0 - 1e-9);

@@ -361,9 +361,9 @@ TEST_F(MeshIo, DamagedFilesNeverDoWorseThanThrow) {
       EXPECT_NO_THROW(validate(*mesh)) << name << ", trial " << trial;
       ++read_anyway;
     }
-    EXPECT_GT(refused, 50) << name;  // all that were cut, at least
+    EXPECT_GT(refused, 50) << name;  // a cut file
   }
-  EXPECT_GT(read_anyway, 50);  // a coordinate of a binary file can be any
+  EXPECT_GT(read_anyway, 50);  // a changed coordinate of a binary file
 }
 
 TEST_F(MeshIo, WriterRefusesWhatItCannotWrite) {

@@ -126,7 +126,7 @@ class MovedProgram : public testing::Test {
  protected:
   MovedProgram() {
     std::filesystem::copy_file(built_, folder_ / "skycap");
-    geometry::write_cloud(folder_ / "ball.ply", ball_cloud());
+    geometry::write_cloud(folder_ / "ball.ply", geometry::columns_of(ball_cloud()));
   }
   void add_module() {
     const char* module = "libskycap_reconstruction.so";
