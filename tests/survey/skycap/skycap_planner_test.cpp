@@ -212,6 +212,7 @@ TEST(SkycapPlanner, CallsUnreachableWhatNoAllowedViewSees) {
   skycap::SkycapPlanner planner(config, camera);
   fly(planner, ball, 0.03, 10);
   const skycap::SurveyBelief belief = planner.belief();
+  EXPECT_GT(belief.unreachable, 0.05);
   for (const skycap::BelievedPatch& patch : belief.patches) {
     if (patch.reason == skycap::MissingReason::unreachable) {
       EXPECT_GT(patch.position.x(), 0.0F);
@@ -263,6 +264,7 @@ TEST(SkycapPlanner, SurvivesALaterScanWithoutAPoint) {
   EXPECT_EQ(planner.cloud().size(), points);
 }
 
+// A switch that does nothing would leave the flight as it is.
 TEST(SkycapPlanner, EveryIdeaCanBeSwitchedOff) {
   const auto flown = [](const skycap::SkycapConfig& config) {
     skycap::SkycapPlanner planner(config, camera);
@@ -271,6 +273,7 @@ TEST(SkycapPlanner, EveryIdeaCanBeSwitchedOff) {
       places.push_back(view.position);
     return places;
   };
+  const std::vector<Vector3d> with_all = flown(small_config());
   for (const auto idea : {&skycap::SkycapIdeas::dose, &skycap::SkycapIdeas::unseen_surface,
                           &skycap::SkycapIdeas::free_space, &skycap::SkycapIdeas::learned_rates,
                           &skycap::SkycapIdeas::targeted_views, &skycap::SkycapIdeas::refinement,
@@ -279,6 +282,7 @@ TEST(SkycapPlanner, EveryIdeaCanBeSwitchedOff) {
     config.ideas.*idea = false;
     const std::vector<Vector3d> without = flown(config);
     EXPECT_GE(without.size(), 2U);
+    EXPECT_NE(without, with_all);
   }
 }
 
