@@ -1,10 +1,21 @@
-/// For the functions that most of the planning time is spent in.
+/// For the functions that most of the planning time is spent in: compiled twice, for every
+/// processor and for AVX2. Contraction is off (see CMakeLists.txt), so that both give the same
+/// bits.
+///
+/// Such a function is a body that is always inlined, and two functions that do nothing but call it,
+/// one of them with SKYCAP_FOR_AVX2 before it.
 #pragma once
 
-/// One copy of a function for each instruction set; the loader picks. Contraction is off (see
-/// CMakeLists.txt), so that all give the same bits.
-#if defined(__x86_64__) && defined(__gnu_linux__)
-#define SKYCAP_VECTOR_CLONES __attribute__((target_clones("default", "arch=x86-64-v3")))
+#include "geometry/instruction_set.h"
+
+#if defined(__x86_64__)
+#define SKYCAP_FOR_AVX2 __attribute__((target("arch=x86-64-v3")))
 #else
-#define SKYCAP_VECTOR_CLONES
+#define SKYCAP_FOR_AVX2
 #endif
+
+namespace skycap::survey {
+
+inline bool has_avx2() { return geometry::instruction_set() >= geometry::InstructionSet::avx2; }
+
+}  // namespace skycap::survey

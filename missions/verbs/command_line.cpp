@@ -1,14 +1,18 @@
 #include "missions/verbs/command_line.h"
 
 #include <algorithm>
+#include <cstdlib>
 #include <functional>
 #include <memory>
+#include <string_view>
+#include <utility>
 
 #include <CLI/App.hpp>
 #include <CLI/Config.hpp>
 #include <CLI/Formatter.hpp>
 
 #include "geometry/error.h"
+#include "geometry/instruction_set.h"
 #include "missions/file/mission_keys.h"
 #include "missions/recording/cloud_formats.h"
 #include "missions/verbs/printable.h"
@@ -256,6 +260,22 @@ int report_failure(const Console& console, const std::string& message, int exit_
   return exit_code;
 }
 
+/// So that tests and comparisons can do on this processor what another one would: the results are
+/// the same, which they are there to show.
+void limit_instruction_set_as_asked() {
+  const char* const asked = std::getenv("SKYCAP_INSTRUCTION_SET");
+  if (asked == nullptr) return;
+  using enum geometry::InstructionSet;
+  for (const auto& [name, set] :
+       {std::pair("baseline", baseline), {"avx2", avx2}, {"avx512", avx512}}) {
+    if (std::string_view(asked) != name) continue;
+    geometry::limit_instruction_set(set);
+    return;
+  }
+  throw Error(ErrorKind::bad_usage, std::string("SKYCAP_INSTRUCTION_SET is '") + asked +
+                                        "'; it must be baseline, avx2 or avx512");
+}
+
 int parse_and_run(const std::vector<std::string>& arguments, const Console& console) {
   CLI::App app("Skycap plans aerial surveys of buildings and simulates them.", "skycap");
   app.set_version_flag("--version", std::string("skycap ") + version);
@@ -263,6 +283,7 @@ int parse_and_run(const std::vector<std::string>& arguments, const Console& cons
   app.get_formatter()->column_width(28);
   Action action;
   try {
+    limit_instruction_set_as_asked();
     add_plan(app, console, action);
     add_benchmark(app, console, action);
     add_scan(app, console, action);

@@ -1,8 +1,9 @@
 /// A scene made ready for ray casting: the truth, which only `sim/` and the evaluation may ask.
 ///
-/// Embree works in single precision, so the mesh is moved to around the origin of its own frame in
+/// Rays are cast in single precision, so the mesh is moved to around the origin of its own frame in
 /// double precision first; every query takes and gives world coordinates. No ray slips between
-/// triangles that share an edge or a vertex (scene_embree.h says how).
+/// triangles that share an edge or a vertex, and what a ray meets depends on nothing but the ray
+/// and the triangles (scene/ray_kernels.h says how).
 #pragma once
 
 #include <cstdint>
@@ -61,8 +62,7 @@ class Scene {
                                double max_distance = std::numeric_limits<double>::infinity()) const;
 
   /// Whether a surface cuts the segment between two points, its ends included. To ask whether a
-  /// point of the surface is visible, end the segment a little before it. Of segments aimed exactly
-  /// at a vertex one in a thousand may slip through.
+  /// point of the surface is visible, end the segment a little before it.
   bool is_blocked(const Eigen::Vector3d& from, const Eigen::Vector3d& to) const;
 
   /// Diffuse reflectance of a triangle, in [0, 1].
@@ -73,15 +73,16 @@ class Scene {
   /// Whether triangles have reflectances of their own.
   bool has_reflectances() const { return !reflectances_.empty(); }
 
-  /// What the sensors in this folder trace through; defined in scene_embree.h, for sources only.
-  struct Embree;
-  const Embree& embree() const { return *embree_; }
+  /// What the sensors in this folder cast their rays at; defined in scene/scene_trees.h, for
+  /// sources only.
+  struct Trees;
+  const Trees& trees() const { return *trees_; }
 
  private:
   // The triangle, among those of all parts without their copies, that a hit is on.
   std::size_t own_triangle(std::uint32_t triangle) const;
 
-  std::unique_ptr<Embree> embree_;
+  std::unique_ptr<Trees> trees_;
   std::vector<float> reflectances_;  // of each part's triangles; empty: all the default
 };
 

@@ -14,7 +14,8 @@
 
 #include "geometry/error.h"
 #include "geometry/parallel.h"
-#include "sim/scene/scene_embree.h"
+#include "sim/scene/four_lanes.h"
+#include "sim/scene/scene_trees.h"
 #include "sim/sensors/vector_kernels.h"
 
 namespace skycap::sim {
@@ -25,9 +26,10 @@ using Eigen::Vector3f;
 using geometry::Scan;
 
 constexpr double degree = std::numbers::pi / 180.0;
-constexpr int packet_columns = 4;  // a packet covers 4 columns of 4, 2 or 1 rows
-constexpr int tile_columns = 32;   // packets are cast tile by tile: neighbours share cached nodes
-constexpr int band_rows = 32;      // a band of tiles is one thread's piece of work
+constexpr int packet_columns = 4;
+constexpr int packet_rows = RayPacket::width / packet_columns;
+constexpr int tile_columns = 32;  // packets are cast tile by tile: neighbours share cached nodes
+constexpr int band_rows = 32;     // a band of tiles is one thread's piece of work
 constexpr int noise_block = 32;
 constexpr float no_return = -1.0F;
 constexpr std::uint32_t stereo_stream = 3;  // 0, 1, 2: x, y, z of the points' noise
@@ -40,7 +42,7 @@ struct RayTable {
   int stride;  // columns are padded with copies of the last to whole packets
   std::array<std::vector<float>, 3> columns;
   std::array<std::vector<float>, 3> rows;
-  Vector3f origin;  // in the frame of Embree's scene
+  Vector3f origin;  // in the frame of the scene's trees
 
   RayTable(const geometry::Camera& camera, const Eigen::Isometry3d& world_from_camera,
            const Vector3d& scene_centre)
@@ -80,44 +82,37 @@ float min_cosine_of(double max_incidence) {
                                                 : 0.0F;
 }
 
-template <int width>
-void aim(const RayTable& table, int first_column, int first_row, Packet<width>& packet) {
-  float* const directions[] = {packet.rays.ray.dir_x, packet.rays.ray.dir_y, packet.rays.ray.dir_z};
+void aim(const RayTable& table, int first_column, int first_row, RayPacket& packet) {
   for (int axis = 0; axis < 3; ++axis) {
     const float* const column = table.columns[axis].data() + first_column;
     const float* const row = table.rows[axis].data() + first_row;
     FourFloats columns;
     std::memcpy(&columns, column, sizeof columns);
-    for (int y = 0; y < width / packet_columns; ++y) {
-      const FourFloats sum = columns + row[y];
-      std::memcpy(directions[axis] + y * packet_columns, &sum, sizeof sum);
+    for (int y = 0; y < packet_rows; ++y) {
+      put_four(packet.direction[axis] + y * packet_columns, columns + row[y]);
     }
   }
 }
 
-template <int width>
-bool is_too_slanted(const Packet<width>& packet, int lane, float min_cosine) {
-  const auto& ray = packet.rays.ray;
-  const auto& hit = packet.rays.hit;
-  const Vector3f direction(ray.dir_x[lane], ray.dir_y[lane], ray.dir_z[lane]);
-  const Vector3f normal(hit.Ng_x[lane], hit.Ng_y[lane], hit.Ng_z[lane]);
+bool is_too_slanted(const RayPacket& packet, int lane, float min_cosine) {
+  const auto lane_of = [lane](const auto& vectors) {
+    return Vector3f(vectors[0][lane], vectors[1][lane], vectors[2][lane]);
+  };
+  const Vector3f direction = lane_of(packet.direction), normal = lane_of(packet.normal);
   return std::abs(direction.dot(normal)) < min_cosine * direction.norm() * normal.norm();
 }
 
-template <int width>
-void store_depths(const Packet<width>& packet, const Limits& limits, std::ptrdiff_t stride,
+void store_depths(const RayPacket& packet, const Limits& limits, std::ptrdiff_t stride,
                   float* depths) {
   const FourFloats none = FourFloats{} + no_return;
-  for (int row = 0; row < width / packet_columns; ++row) {
-    const int lane = row * packet_columns;
-    const auto reached = four<FourFloats>(packet.rays.ray.tfar + lane);
-    const FourFloats hit = packet.is_hit_4(lane) ? reached : none;
+  for (int row = 0; row < packet_rows; ++row) {
+    const auto hit = four<FourFloats>(packet.distance + row * packet_columns);
     const FourFloats depth = hit < limits.min_depth ? none : hit;
     std::memcpy(depths + row * stride, &depth, sizeof depth);
   }
   if (limits.min_cosine <= 0.0F) return;
-  for (int lane = 0; lane < width; ++lane) {
-    if (packet.is_hit(lane) && is_too_slanted(packet, lane, limits.min_cosine)) {
+  for (int lane = 0; lane < RayPacket::width; ++lane) {
+    if (packet.distance[lane] >= 0.0F && is_too_slanted(packet, lane, limits.min_cosine)) {
       depths[lane / packet_columns * stride + lane % packet_columns] = no_return;
     }
   }
@@ -125,23 +120,22 @@ void store_depths(const Packet<width>& packet, const Limits& limits, std::ptrdif
 
 // Casts the rays of one band, whose depths go to `depths`, row by row with the table's stride. Rays
 // of the padding are cast like the others, being copies, and their depths are never read.
-template <int width>
-void cast_band(const Scene::Embree& embree, const RayTable& table, const Limits& limits,
-               int first_row, float* depths) {
-  Packet<width> packet;
-  for (int lane = 0; lane < width; ++lane) {
-    packet.rays.ray.org_x[lane] = table.origin.x();
-    packet.rays.ray.org_y[lane] = table.origin.y();
-    packet.rays.ray.org_z[lane] = table.origin.z();
+void cast_band(const RayTarget& target, const RayTable& table, const Limits& limits, int first_row,
+               float* depths) {
+  RayPacket packet;
+  for (int axis = 0; axis < 3; ++axis) {
+    std::fill_n(packet.origin[axis], RayPacket::width, table.origin[axis]);
   }
+  const RayKernels& kernels = ray_kernels();
+  const auto cast = limits.min_cosine > 0.0F ? kernels.cast : kernels.cast_distances;
   const int rows = std::min(band_rows, table.height - first_row);
   const std::ptrdiff_t stride = table.stride;
   for (int tile = 0; tile < table.width; tile += tile_columns) {
     const int tile_end = std::min(tile + tile_columns, table.width);
-    for (int row = 0; row < rows; row += width / packet_columns) {
+    for (int row = 0; row < rows; row += packet_rows) {
       for (int column = tile; column < tile_end; column += packet_columns) {
         aim(table, column, first_row + row, packet);
-        packet.cast(embree, limits.max_depth);
+        cast(target, packet, RayPacket::all_lanes, limits.max_depth);
         store_depths(packet, limits, stride, depths + row * stride + column);
       }
     }
@@ -287,8 +281,8 @@ DepthCamera::DepthCamera(const DepthCameraConfig& config)
 
 Scan DepthCamera::scan(const Scene& scene, const Eigen::Isometry3d& world_from_camera,
                        std::uint64_t frame, unsigned threads, Scan recycled) const {
-  const Scene::Embree& embree = scene.embree();
-  const RayTable table(camera_, world_from_camera, embree.centre);
+  const Scene::Trees& trees = scene.trees();
+  const RayTable table(camera_, world_from_camera, trees.centre);
   const Limits limits = {static_cast<float>(config_.camera.min_range),
                          static_cast<float>(config_.camera.max_range),
                          min_cosine_of(config_.max_incidence)};
@@ -306,9 +300,7 @@ Scan DepthCamera::scan(const Scene& scene, const Eigen::Isometry3d& world_from_c
   geometry::parallel_for(bands, threads, [&](std::size_t band) {
     const int first_row = static_cast<int>(band) * band_rows;
     float* const band_depths = depths.get() + band * band_size;
-    with_packet_width(embree, [&]<int width>() {
-      cast_band<width>(embree, table, limits, first_row, band_depths);
-    });
+    cast_band(trees.target, table, limits, first_row, band_depths);
     if (config_.stereo.is_on()) {
       const NoiseKey key = noise_key(config_.noise.seed, stereo_stream, frame);
       add_stereo_errors(table, config_.stereo, key, first_row, band_depths);

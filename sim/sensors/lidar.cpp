@@ -105,7 +105,7 @@ class BlockMeasurement {
         scene_(scene),
         flight_(flight),
         returns_(returns),
-        origin_(scene.embree().centre),
+        origin_(scene.trees().centre),
         has_own_belief_(&flight.flown != &flight.believed ||
                         !flight.body_from_sensor.isApprox(flight.believed_body_from_sensor, 0.0)) {}
 
@@ -184,10 +184,8 @@ class BlockMeasurement {
         }
       }
     }
-    with_packet_width(scene_.embree(), [&]<int width>() {
-      cast_rays<width>(scene_.embree(), static_cast<float>(config_.max_range),
-                       samples > 1 ? beam_rays_ : shots_rays_, hits_);
-    });
+    cast_rays(scene_.trees().target, static_cast<float>(config_.max_range),
+              samples > 1 ? beam_rays_ : shots_rays_, hits_);
   }
 
   void spread_beam(std::size_t firing, std::size_t slot) {
@@ -457,7 +455,7 @@ std::uint64_t Lidar::firings(const Trajectory& trajectory) const {
 LidarReturns Lidar::measure(const Scene& scene, const LidarFlight& flight, FiringRange firings,
                             LidarReturns recycled) const {
   LidarReturns returns = std::move(recycled);  // every entry that is kept is written anew
-  returns.origin = scene.embree().centre;
+  returns.origin = scene.trees().centre;
   BlockMeasurement measurement(*impl_, scene, flight, returns);
   const std::uint64_t end = firings.first + firings.count;
   for (std::uint64_t first = firings.first; first < end;) {

@@ -10,7 +10,8 @@
 
 #include <Eigen/Geometry>
 
-#include "sim/scene/scene_embree.h"
+#include "sim/scene/four_lanes.h"
+#include "sim/scene/scene_trees.h"
 #include "sim/sensors/scan_pattern.h"
 #include "sim/sensors/trajectory.h"
 
@@ -95,7 +96,7 @@ inline AcrossBeam across(const Eigen::Vector3f& direction, const Eigen::Vector3f
   return {horizontal, direction.cross(horizontal)};
 }
 
-/// Rays relative to the origin of Embree's scene, slot by slot.
+/// Rays relative to the centre of the scene's trees, slot by slot.
 struct Rays {
   std::vector<float> origin[3], direction[3];
 
@@ -121,7 +122,7 @@ struct Rays {
 
 /// What rays meet.
 struct Hits {
-  std::vector<int> active;    // which rays to cast: -1 or 0, as Embree wants it
+  std::vector<int> active;    // which rays to cast: not 0
   std::vector<float> range;   // negative: nothing
   std::vector<float> cosine;  // of the angle of incidence, at most 1
   std::vector<std::uint32_t> triangle;
@@ -136,36 +137,36 @@ struct Hits {
 
 /// Casts the active rays; the ranges of the others become negative too. Their number is a multiple
 /// of the packets' width.
-template <int width>
-void cast_rays(const Scene::Embree& embree, float reach, const Rays& rays, Hits& hits) {
-  Packet<width> packet;
-  auto& ray = packet.rays.ray;
-  auto& hit = packet.rays.hit;
-  const auto load = [](float* lanes, const std::vector<float>& values, std::size_t first) {
-    std::memcpy(lanes, values.data() + first, width * sizeof(float));
-  };
+inline void cast_rays(const RayTarget& target, float reach, const Rays& rays, Hits& hits) {
+  constexpr int width = RayPacket::width;
+  const RayKernels& kernels = ray_kernels();
+  RayPacket packet;
   for (std::size_t first = 0; first < hits.active.size(); first += width) {
-    std::memcpy(packet.active, hits.active.data() + first, width * sizeof(int));
-    if (std::all_of(packet.active, packet.active + width, [](int lane) { return lane == 0; })) {
+    std::uint32_t lanes = 0;
+    for (int lane = 0; lane < width; ++lane) {
+      lanes |= (hits.active[first + lane] != 0 ? 1U : 0U) << lane;
+    }
+    if (lanes == 0) {
       std::fill_n(hits.range.data() + first, width, -1.0F);
       continue;
     }
-    load(ray.org_x, rays.origin[0], first);
-    load(ray.org_y, rays.origin[1], first);
-    load(ray.org_z, rays.origin[2], first);
-    load(ray.dir_x, rays.direction[0], first);
-    load(ray.dir_y, rays.direction[1], first);
-    load(ray.dir_z, rays.direction[2], first);
-    packet.cast(embree, reach);
-    std::memcpy(hits.triangle.data() + first, hit.primID, sizeof hit.primID);
+    for (int axis = 0; axis < 3; ++axis) {
+      std::copy_n(rays.origin[axis].data() + first, width, packet.origin[axis]);
+      std::copy_n(rays.direction[axis].data() + first, width, packet.direction[axis]);
+    }
+    kernels.cast(target, packet, lanes, reach);
+    std::copy_n(packet.triangle, width, hits.triangle.data() + first);
+    std::copy_n(packet.distance, width, hits.range.data() + first);
     for (int lane = 0; lane < width; lane += 4) {
-      const auto lanes = [&](const float* values) { return four<FourFloats>(values + lane); };
-      const FourFloats x = lanes(hit.Ng_x), y = lanes(hit.Ng_y), z = lanes(hit.Ng_z);
-      const FourFloats along = lanes(ray.dir_x) * x + lanes(ray.dir_y) * y + lanes(ray.dir_z) * z;
-      const FourFloats cosine =
-          (along < 0.0F ? -along : along) / square_root(x * x + y * y + z * z);
-      const FourFloats nothing = FourFloats{} - 1.0F, one = FourFloats{} + 1.0F;
-      put_four(hits.range.data() + first + lane, packet.is_hit_4(lane) ? lanes(ray.tfar) : nothing);
+      const auto lanes_of = [&](const float* values) { return four<FourFloats>(values + lane); };
+      FourFloats along = {}, squared = {};
+      for (int axis = 0; axis < 3; ++axis) {
+        const FourFloats normal = lanes_of(packet.normal[axis]);
+        along += lanes_of(packet.direction[axis]) * normal;
+        squared += normal * normal;
+      }
+      const FourFloats cosine = (along < 0.0F ? -along : along) / square_root(squared);
+      const FourFloats one = FourFloats{} + 1.0F;
       put_four(hits.cosine.data() + first + lane, cosine < one ? cosine : one);
     }
   }

@@ -28,7 +28,6 @@ struct PinholeRow {
 
 /// What the functions below compute for one instruction set.
 struct VectorKernels {
-  const char* name;
   void (*fill_normals)(const NoiseKey& key, std::uint32_t first, float* normals, std::size_t count);
   /// Writes x, y, z and pixel number of each return of the row, one after the other; gives their
   /// number. There must be room for `width` of them.
@@ -41,10 +40,7 @@ extern const VectorKernels avx2_kernels;
 extern const VectorKernels avx512_kernels;
 #endif
 
-/// The fastest kernels this processor can run.
+/// Those for geometry::instruction_set().
 const VectorKernels& vector_kernels();
-
-/// Whether this processor can run `kernels`.
-bool can_run(const VectorKernels& kernels);
 
 }  // namespace skycap::sim

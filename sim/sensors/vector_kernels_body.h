@@ -186,7 +186,6 @@ std::size_t emit_row_kernel(const PinholeRow& row, float* points, std::uint32_t*
 
 }  // namespace
 
-const VectorKernels SKYCAP_KERNELS_NAME = {SKYCAP_KERNELS_LABEL, fill_normals_kernel,
-                                           emit_row_kernel};
+const VectorKernels SKYCAP_KERNELS_NAME = {fill_normals_kernel, emit_row_kernel};
 
 }  // namespace skycap::sim

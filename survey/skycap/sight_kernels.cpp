@@ -5,10 +5,11 @@
 #include "survey/vector_clones.h"
 
 namespace skycap::survey::skycap {
+namespace {
 
-SKYCAP_VECTOR_CLONES
-void project_points(const RasterView& given, std::size_t count, const PointArrays& points,
-                    std::uint32_t* pixels, float* depths) {
+[[gnu::always_inline]] inline void project_points_body(const RasterView& given, std::size_t count,
+                                                       const PointArrays& points,
+                                                       std::uint32_t* pixels, float* depths) {
   const RasterView view = given;  // a copy of our own: nothing that is written can alias it
   const float *const x = points.x, *const y = points.y, *const z = points.z;
   const float centre_column = 0.5F * view.width, centre_row = 0.5F * view.height;
@@ -31,9 +32,10 @@ void project_points(const RasterView& given, std::size_t count, const PointArray
   }
 }
 
-SKYCAP_VECTOR_CLONES
-void project_targets(const RasterView& given, std::size_t count, const PointArrays& positions,
-                     const PointArrays& normals, const TargetArrays& projected) {
+[[gnu::always_inline]] inline void project_targets_body(const RasterView& given, std::size_t count,
+                                                        const PointArrays& positions,
+                                                        const PointArrays& normals,
+                                                        const TargetArrays& projected) {
   const RasterView view = given;
   const TargetArrays out = projected;
   const float *const x = positions.x, *const y = positions.y, *const z = positions.z;
@@ -63,6 +65,42 @@ void project_targets(const RasterView& given, std::size_t count, const PointArra
     out.distances[i] = distance;
     out.cosines[i] = cosine;
   }
+}
+
+void project_points_anywhere(const RasterView& view, std::size_t count, const PointArrays& points,
+                             std::uint32_t* pixels, float* depths) {
+  project_points_body(view, count, points, pixels, depths);
+}
+SKYCAP_FOR_AVX2 void project_points_with_avx2(const RasterView& view, std::size_t count,
+                                              const PointArrays& points, std::uint32_t* pixels,
+                                              float* depths) {
+  project_points_body(view, count, points, pixels, depths);
+}
+
+void project_targets_anywhere(const RasterView& view, std::size_t count,
+                              const PointArrays& positions, const PointArrays& normals,
+                              const TargetArrays& projected) {
+  project_targets_body(view, count, positions, normals, projected);
+}
+SKYCAP_FOR_AVX2 void project_targets_with_avx2(const RasterView& view, std::size_t count,
+                                               const PointArrays& positions,
+                                               const PointArrays& normals,
+                                               const TargetArrays& projected) {
+  project_targets_body(view, count, positions, normals, projected);
+}
+
+}  // namespace
+
+void project_points(const RasterView& view, std::size_t count, const PointArrays& points,
+                    std::uint32_t* pixels, float* depths) {
+  const auto project = has_avx2() ? project_points_with_avx2 : project_points_anywhere;
+  project(view, count, points, pixels, depths);
+}
+
+void project_targets(const RasterView& view, std::size_t count, const PointArrays& positions,
+                     const PointArrays& normals, const TargetArrays& projected) {
+  const auto project = has_avx2() ? project_targets_with_avx2 : project_targets_anywhere;
+  project(view, count, positions, normals, projected);
 }
 
 }  // namespace skycap::survey::skycap

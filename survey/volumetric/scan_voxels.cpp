@@ -25,8 +25,8 @@ struct FourWalks {
 };
 
 /// Marks the next `steps` voxels of each ray as passed.
-SKYCAP_VECTOR_CLONES
-void pass_four(FourWalks& walks, std::int64_t steps, Mark* marks) {
+[[gnu::always_inline]] inline void pass_four_body(FourWalks& walks, std::int64_t steps,
+                                                  Mark* marks) {
   Lanes x = walks.border[0], y = walks.border[1], z = walks.border[2], number = walks.number;
   const Lanes x_spacing = walks.spacing[0], x_stride = walks.stride[0];
   const Lanes y_spacing = walks.spacing[1], y_stride = walks.stride[1];
@@ -42,6 +42,12 @@ void pass_four(FourWalks& walks, std::int64_t steps, Mark* marks) {
     number += (on_x & x_stride) | (on_y & y_stride) | (on_z & z_stride);
   }
   walks.border[0] = x, walks.border[1] = y, walks.border[2] = z, walks.number = number;
+}
+void pass_four_anywhere(FourWalks& walks, std::int64_t steps, Mark* marks) {
+  pass_four_body(walks, steps, marks);
+}
+SKYCAP_FOR_AVX2 void pass_four_with_avx2(FourWalks& walks, std::int64_t steps, Mark* marks) {
+  pass_four_body(walks, steps, marks);
 }
 
 /// Where the shadow of a point ends.
@@ -154,6 +160,7 @@ void ScanVoxels::mark_shadow(const Vector3f& origin, const Vector3f& point, doub
 
 void ScanVoxels::mark_passed(const Vector3f& origin, std::span<const Vector3f> ends) {
   const auto pass = [](Mark& mark) { mark = passed; };
+  const auto pass_four = has_avx2() ? pass_four_with_avx2 : pass_four_anywhere;
   const std::int64_t start = number_of(voxel_at(origin, 1.0 / resolution_));
   std::size_t next = 0;
   for (; next + lane_count <= ends.size(); next += lane_count) {

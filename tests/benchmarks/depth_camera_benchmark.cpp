@@ -1,10 +1,10 @@
-/// A whole frame of the depth camera, noise and cloud included, against the bare ray casting
-/// below it and against the loop over single rays that most simulators have.
+/// A whole frame of the depth camera, noise and cloud included, against Embree's bare casting of
+/// its rays and against the loop over single rays that most simulators have.
 ///
 ///   depth_camera_benchmark [--threads N] [--rounds N] [--largest]
 ///
 /// The frame has 2400 x 1750 pixels, all of which return; meshes have 70 thousand, 1 million and,
-/// with --largest, 10 million triangles. The bare loop casts the same rays in the same packets and
+/// with --largest, 10 million triangles. The bare loop casts the same rays in packets and the same
 /// tiles, also on all threads, and keeps only their distances.
 
 #include <algorithm>
@@ -17,8 +17,8 @@
 
 #include "geometry/parallel.h"
 #include "geometry/place/pose.h"
-#include "sim/scene/scene_embree.h"
 #include "sim/sensors/depth_camera.h"
+#include "tests/benchmarks/embree_packets.h"
 #include "tests/benchmarks/interleaved.h"
 #include "tests/benchmarks/planet.h"
 
@@ -27,10 +27,10 @@ namespace {
 using namespace skycap;
 
 struct BareRays {
-  const sim::Scene::Embree& embree;
+  const benchmarks::EmbreeMesh& mesh;
   const geometry::Camera& camera;
   Eigen::Isometry3d world_from_camera;
-  Eigen::Vector3f origin = (world_from_camera.translation() - embree.centre).cast<float>();
+  Eigen::Vector3f origin = (world_from_camera.translation() - mesh.centre).cast<float>();
   Eigen::Matrix3f axes = world_from_camera.linear().cast<float>();
   Eigen::Vector2f scale = camera.focal_length_px().cast<float>().cwiseInverse();
   Eigen::Vector2f offset = -camera.principal_point_px().cast<float>().cwiseProduct(scale);
@@ -43,10 +43,7 @@ struct BareRays {
 
 template <int width>
 void cast_packets(const BareRays& rays, int first_row, float* ranges) {
-  RTCIntersectContext context;
-  rtcInitIntersectContext(&context);
-  context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
-  sim::Packet<width> packet;
+  benchmarks::EmbreePacket<width> packet;
   for (int lane = 0; lane < width; ++lane) {
     packet.rays.ray.org_x[lane] = rays.origin.x();
     packet.rays.ray.org_y[lane] = rays.origin.y();
@@ -62,12 +59,7 @@ void cast_packets(const BareRays& rays, int first_row, float* ranges) {
           packet.rays.ray.dir_y[lane] = direction.y();
           packet.rays.ray.dir_z[lane] = direction.z();
         }
-        for (int lane = 0; lane < width; ++lane) {
-          packet.rays.ray.tfar[lane] = 1e4F;
-          packet.rays.hit.geomID[lane] = RTC_INVALID_GEOMETRY_ID;
-        }
-        sim::PacketTypes<width>::intersect(packet.active, rays.embree.scene, &context,
-                                           &packet.rays);
+        packet.cast(rays.mesh, 1e4F);
         for (int lane = 0; lane < width; ++lane) {
           const int y = row + lane / 4;
           if (y < rows) ranges[y * columns + column + lane % 4] = packet.rays.ray.tfar[lane];
@@ -79,7 +71,7 @@ void cast_packets(const BareRays& rays, int first_row, float* ranges) {
 
 void cast_bare(const BareRays& rays, unsigned threads, std::vector<float>& ranges) {
   geometry::parallel_for((rays.camera.height() + 31) / 32, threads, [&](std::size_t band) {
-    sim::with_packet_width(rays.embree, [&]<int width>() {
+    rays.mesh.with_packet_width([&]<int width>() {
       cast_packets<width>(rays, static_cast<int>(band) * 32, ranges.data());
     });
   });
@@ -101,7 +93,7 @@ void cast_one_by_one(const BareRays& rays, unsigned threads, std::vector<float>&
       ray.ray.tfar = 1e4F;
       ray.ray.mask = ~0U;
       ray.hit.geomID = RTC_INVALID_GEOMETRY_ID;
-      rtcIntersect1(rays.embree.scene, &context, &ray);
+      rtcIntersect1(rays.mesh.scene, &context, &ray);
       ranges[row * rays.camera.width() + column] = ray.ray.tfar;
     }
   });
@@ -113,7 +105,8 @@ void run(std::size_t triangles, unsigned threads, int rounds) {
   const sim::DepthCamera camera(sim::high_resolution());
   const Eigen::Isometry3d pose =
       geometry::camera_pose(geometry::look_at({25.0, 16.0, 9.0}, Eigen::Vector3d::Zero()));
-  const BareRays rays{scene.embree(), camera.camera(), pose};
+  const benchmarks::EmbreeMesh embree(mesh, threads);
+  const BareRays rays{embree, camera.camera(), pose};
 
   geometry::Scan scan;
   std::vector<float> ranges(static_cast<std::size_t>(camera.camera().width()) *
@@ -130,7 +123,7 @@ void run(std::size_t triangles, unsigned threads, int rounds) {
       benchmarks::interleaved_medians(std::max(1, rounds / 4), whole, single);
   std::printf("%9zu triangles, %.1f %% return, packets of %d\n", mesh.triangles.size(),
               100.0 * static_cast<double>(scan.points.size()) / static_cast<double>(ranges.size()),
-              scene.embree().packet_width);
+              embree.packet_width());
   std::printf("  whole frame %7.1f ms, bare packets %7.1f ms: %.3f\n", 1e3 * against_bare.first,
               1e3 * against_bare.second, against_bare.first / against_bare.second);
   std::printf("  in new memory %5.1f ms, bare packets %7.1f ms: %.3f\n", 1e3 * against_fresh.first,

@@ -1,5 +1,6 @@
-/// A moving laser scanner, all of it, against the bare casting of the same rays; whole flights into
-/// a LAS file, against the same and against writing the same bytes; and what a scene costs.
+/// A moving laser scanner, all of it, against the bare casting of the same rays by Embree; whole
+/// flights into a LAS file, against the same and against writing the same bytes; and what a scene
+/// costs.
 ///
 ///   lidar_benchmark [--threads N] [--rounds N] [--file FILE.las] [--only turns|flights|scenes]
 ///                   [--largest 1]
@@ -28,11 +29,11 @@
 #include "missions/recording/las_format.h"
 #include "missions/recording/scan_runner.h"
 #include "sim/models/models.h"
-#include "sim/scene/scene_embree.h"
 #include "sim/sensors/echo.h"
 #include "sim/sensors/lidar.h"
 #include "sim/sensors/lidar_rays.h"
 #include "sim/sensors/scan_pattern.h"
+#include "tests/benchmarks/embree_packets.h"
 #include "tests/benchmarks/interleaved.h"
 #include "tests/benchmarks/planet.h"
 #include "tests/benchmarks/town.h"
@@ -96,12 +97,9 @@ sim::Rays all_rays(const sim::LidarConfig& config, const sim::Trajectory& trajec
 }
 
 template <int width>
-void cast_packets(const sim::Scene::Embree& embree, const sim::Rays& rays, std::size_t begin,
+void cast_packets(const benchmarks::EmbreeMesh& mesh, const sim::Rays& rays, std::size_t begin,
                   std::size_t end, float reach, float* ranges) {
-  RTCIntersectContext context;
-  rtcInitIntersectContext(&context);
-  context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
-  sim::Packet<width> packet;
+  benchmarks::EmbreePacket<width> packet;
   auto& ray = packet.rays.ray;
   for (std::size_t first = begin; first < end; first += width) {
     std::memcpy(ray.org_x, &rays.origin[0][first], sizeof ray.org_x);
@@ -110,24 +108,20 @@ void cast_packets(const sim::Scene::Embree& embree, const sim::Rays& rays, std::
     std::memcpy(ray.dir_x, &rays.direction[0][first], sizeof ray.dir_x);
     std::memcpy(ray.dir_y, &rays.direction[1][first], sizeof ray.dir_y);
     std::memcpy(ray.dir_z, &rays.direction[2][first], sizeof ray.dir_z);
-    for (int lane = 0; lane < width; ++lane) {
-      ray.tfar[lane] = reach;
-      packet.rays.hit.geomID[lane] = RTC_INVALID_GEOMETRY_ID;
-    }
-    sim::PacketTypes<width>::intersect(packet.active, embree.scene, &context, &packet.rays);
+    packet.cast(mesh, reach);
     std::memcpy(ranges + first, ray.tfar, sizeof ray.tfar);
   }
 }
 
-/// Bare casting on all threads, piece by piece.
+/// Bare casting by Embree on all threads, piece by piece.
 class BareLoop {
  public:
-  BareLoop(const sim::Scene& scene, const sim::LidarConfig& config,
+  BareLoop(const geometry::Mesh& mesh, const sim::LidarConfig& config,
            const sim::Trajectory& trajectory, std::uint64_t blocks, unsigned threads)
-      : scene_(scene),
+      : mesh_(mesh, threads),
         threads_(threads),
         reach_(static_cast<float>(config.max_range)),
-        rays_(all_rays(config, trajectory, scene.embree().centre, blocks)),
+        rays_(all_rays(config, trajectory, mesh_.centre, blocks)),
         ranges_(rays_.origin[0].size()) {}
 
   std::size_t rays() const { return ranges_.size(); }
@@ -135,28 +129,28 @@ class BareLoop {
     constexpr std::size_t pieces = 16;
     geometry::parallel_for(pieces, threads_, [&](std::size_t i) {
       const std::size_t size = ranges_.size() / pieces;
-      sim::with_packet_width(scene_.embree(), [&]<int width>() {
-        cast_packets<width>(scene_.embree(), rays_, i * size, (i + 1) * size, reach_,
-                            ranges_.data());
+      mesh_.with_packet_width([&]<int width>() {
+        cast_packets<width>(mesh_, rays_, i * size, (i + 1) * size, reach_, ranges_.data());
       });
     });
   }
 
  private:
-  const sim::Scene& scene_;
+  benchmarks::EmbreeMesh mesh_;
   unsigned threads_;
   float reach_;
   sim::Rays rays_;
   std::vector<float> ranges_;
 };
 
-void compare(const sim::Scene& scene, std::size_t triangles, unsigned threads, int rounds) {
+void compare(const geometry::Mesh& mesh, unsigned threads, int rounds) {
+  const sim::Scene scene(mesh, threads);
   const sim::LidarConfig config = spinner(64, 1024);
   const sim::Trajectory trajectory = flight(0.1);
   const sim::Lidar lidar(config);
   const sim::LidarFlight flown{trajectory, trajectory};
   constexpr std::uint64_t blocks = 32, blocks_in_piece = 2;
-  BareLoop bare(scene, config, trajectory, blocks, threads);
+  BareLoop bare(mesh, config, trajectory, blocks, threads);
   std::vector<sim::LidarReturns> pieces(blocks / blocks_in_piece);
   const auto whole = [&] {
     geometry::parallel_for(pieces.size(), threads, [&](std::size_t i) {
@@ -164,9 +158,10 @@ void compare(const sim::Scene& scene, std::size_t triangles, unsigned threads, i
                                 std::move(pieces[i]));
     });
   };
-  const auto medians = benchmarks::interleaved_medians(rounds, whole, bare);
+  const auto medians = benchmarks::interleaved_medians(rounds, whole, [&] { bare(); });
   std::printf("%9zu triangles, a turn of 64 x 1024: %6.2f ms, bare packets %6.2f ms: %.3f\n",
-              triangles, 1e3 * medians.first, 1e3 * medians.second, medians.first / medians.second);
+              mesh.triangles.size(), 1e3 * medians.first, 1e3 * medians.second,
+              medians.first / medians.second);
 }
 
 double seconds_since(std::chrono::steady_clock::time_point start) {
@@ -189,8 +184,16 @@ double raw_write_speed(const std::string& path, std::uintmax_t bytes) {
   return 1e-6 * static_cast<double>(bytes) / time;
 }
 
+/// What is flown over.
+struct Ground {
+  Ground(geometry::Mesh surface, unsigned threads)
+      : mesh(std::move(surface)), scene(mesh, threads) {}
+  geometry::Mesh mesh;
+  sim::Scene scene;
+};
+
 /// Whole flights of `turns` turns, and the bare casting of one turn's rays.
-void fly_into_file(const sim::Scene& scene, sim::LidarConfig config, const Eigen::Vector3d& from,
+void fly_into_file(const Ground& ground, sim::LidarConfig config, const Eigen::Vector3d& from,
                    int turns, int rings, unsigned threads, int rounds, const std::string& path) {
   config.beam.rings = rings;
   config.beam.divergence_horizontal = config.beam.divergence_vertical = 0.0005;
@@ -205,13 +208,14 @@ void fly_into_file(const sim::Scene& scene, sim::LidarConfig config, const Eigen
   const auto whole = [&] {
     std::vector<missions::recording::CloudFile> files;
     files.emplace_back(path, missions::recording::las_format({}));
-    result = missions::recording::run_scan(scene, lidar, {trajectory, trajectory}, files,
+    result = missions::recording::run_scan(ground.scene, lidar, {trajectory, trajectory}, files,
                                            {.threads = threads, .report = {}, .stop = {}});
     files[0].finish();
     bytes = files[0].bytes();
   };
-  BareLoop bare(scene, config, trajectory, lidar.firings(trajectory) / (32U * turns), threads);
-  const auto medians = benchmarks::interleaved_medians(rounds, whole, bare);
+  BareLoop bare(ground.mesh, config, trajectory, lidar.firings(trajectory) / (32U * turns),
+                threads);
+  const auto medians = benchmarks::interleaved_medians(rounds, whole, [&] { bare(); });
   std::filesystem::remove(path);
   const auto channels = static_cast<double>(config.channels.size());
   const double shots = channels * static_cast<double>(result.progress.firings);
@@ -225,10 +229,10 @@ void fly_into_file(const sim::Scene& scene, sim::LidarConfig config, const Eigen
       1e-6 * static_cast<double>(bytes) / medians.first, raw_write_speed(path, bytes));
 }
 
-void fly_both(const sim::Scene& scene, const sim::LidarConfig& config, const Eigen::Vector3d& from,
+void fly_both(const Ground& ground, const sim::LidarConfig& config, const Eigen::Vector3d& from,
               unsigned threads, int rounds, const std::string& path) {
-  fly_into_file(scene, config, from, 10, 0, threads, rounds, path);
-  fly_into_file(scene, config, from, 1, 2, threads, rounds, path);
+  fly_into_file(ground, config, from, 10, 0, threads, rounds, path);
+  fly_into_file(ground, config, from, 1, 2, threads, rounds, path);
 }
 
 /// Level flights over built-up ground: from so high that one turn sees all of it, and from 60 m.
@@ -239,13 +243,13 @@ void fly_over_towns(unsigned threads, int rounds, const std::string& path) {
     high.channels[i].elevation = (-79.5 - 10.0 * static_cast<double>(i) / 63) * degree;
     low.channels[i].elevation -= 60 * degree;
   }
-  const geometry::Mesh town = benchmarks::town(1'000'000);
-  std::printf("%9zu triangles, a town from 600 m above:\n", town.triangles.size());
-  fly_both(sim::Scene(town, threads), high, {-5, 0, 600}, threads, rounds, path);
-  const geometry::Mesh city =
-      sim::builtin_model("city-block", {.detail = sim::LevelOfDetail::fine});
-  std::printf("%9zu triangles, the builtin city from 60 m above:\n", city.triangles.size());
-  fly_both(sim::Scene(city, threads), low, {-5, 0, 60}, threads, rounds, path);
+  const Ground town(benchmarks::town(1'000'000), threads);
+  std::printf("%9zu triangles, a town from 600 m above:\n", town.mesh.triangles.size());
+  fly_both(town, high, {-5, 0, 600}, threads, rounds, path);
+  const Ground city(sim::builtin_model("city-block", {.detail = sim::LevelOfDetail::fine}),
+                    threads);
+  std::printf("%9zu triangles, the builtin city from 60 m above:\n", city.mesh.triangles.size());
+  fly_both(city, low, {-5, 0, 60}, threads, rounds, path);
 }
 
 std::size_t resident_bytes() {
@@ -284,12 +288,12 @@ int main(int argc, char** argv) {
   const auto is_asked = [&](std::string_view part) { return only.empty() || only == part; };
   for (const std::size_t triangles : {70'000UL, 1'000'000UL}) {
     if (!is_asked("turns")) break;
-    compare(sim::Scene(benchmarks::planet(triangles), threads), triangles, threads, rounds);
+    compare(benchmarks::planet(triangles), threads, rounds);
   }
   if (is_asked("flights")) {
-    const sim::Scene scene(benchmarks::planet(1'000'000), threads);
+    const Ground planet(benchmarks::planet(1'000'000), threads);
     std::printf("  1000000 triangles, inside a hilly sphere:\n");
-    fly_both(scene, spinner(64, 2048), {-2, 3, 1}, threads, rounds, file);
+    fly_both(planet, spinner(64, 2048), {-2, 3, 1}, threads, rounds, file);
     fly_over_towns(threads, rounds, file);
   }
   if (is_asked("scenes")) make_scene(1'000'000, threads);

@@ -1,24 +1,20 @@
-/// Rays in packets, for tests of every packet's width.
+/// Rays in packets, for tests.
 #pragma once
 
 #include <Eigen/Core>
 
-#include "sim/scene/scene_embree.h"
+#include "sim/scene/scene_trees.h"
 
 namespace skycap::sim {
 
-/// Puts a ray into a lane; origin and direction are in the scene's frame.
-template <int width>
-void aim(Packet<width>& packet, int lane, const Scene& scene, const Eigen::Vector3d& origin,
-         const Eigen::Vector3d& towards) {
-  const Eigen::Vector3f local = (origin - scene.embree().centre).cast<float>();
-  const Eigen::Vector3f direction = towards.cast<float>();
-  packet.rays.ray.org_x[lane] = local.x();
-  packet.rays.ray.org_y[lane] = local.y();
-  packet.rays.ray.org_z[lane] = local.z();
-  packet.rays.ray.dir_x[lane] = direction.x();
-  packet.rays.ray.dir_y[lane] = direction.y();
-  packet.rays.ray.dir_z[lane] = direction.z();
+/// Puts a ray into a lane; origin and direction are in the world.
+inline void aim(RayPacket& packet, int lane, const Scene& scene, const Eigen::Vector3d& origin,
+                const Eigen::Vector3d& towards) {
+  const Eigen::Vector3f local = (origin - scene.trees().centre).cast<float>();
+  for (int axis = 0; axis < 3; ++axis) {
+    packet.origin[axis][lane] = local[axis];
+    packet.direction[axis][lane] = static_cast<float>(towards[axis]);
+  }
 }
 
 }  // namespace skycap::sim

@@ -48,6 +48,7 @@ LidarReturns measure_standing(const LidarConfig& config, const Scene& scene,
   return Lidar(config).measure(scene, {trajectory, trajectory}, {0, firings});
 }
 
+// Single precision of triangles that reach 280 m has steps of 3e-5 m.
 TEST(Lidar, PointsLieOnATiltedWallInEveryDirection) {
   const Vector3d normal = Vector3d(-1.0, 0.3, 0.2).normalized();
   const Scene scene(square({10, 0, 0}, normal, 400.0), 1);
@@ -57,7 +58,7 @@ TEST(Lidar, PointsLieOnATiltedWallInEveryDirection) {
   ASSERT_GT(returns.size(), 2000U);
   std::set<std::uint16_t> channels;
   for (std::size_t i = 0; i < returns.size(); ++i) {
-    EXPECT_NEAR(normal.dot(world(returns, returns.points[i]) - Vector3d(10, 0, 0)), 0.0, 3e-5);
+    EXPECT_NEAR(normal.dot(world(returns, returns.points[i]) - Vector3d(10, 0, 0)), 0.0, 6e-5);
     EXPECT_EQ(returns.points[i], returns.true_points[i]);
     channels.insert(returns.channels[i]);
   }

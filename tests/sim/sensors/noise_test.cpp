@@ -10,6 +10,7 @@
 
 #include "geometry/error.h"
 #include "sim/sensors/vector_kernels.h"
+#include "tests/support/instruction_sets.h"
 
 namespace skycap::sim {
 namespace {
@@ -105,20 +106,16 @@ TEST(Noise, IsAFunctionOfKeyAndIndex) {
 
 // Bit for bit, on every instruction set of this processor and for every length of array.
 TEST(Noise, IsTheSameOnEveryInstructionSet) {
-#ifdef SKYCAP_X86_64_KERNELS
   const NoiseKey key = noise_key(99, 2, 3);
   for (const std::size_t length : {1UL, 31UL, 32UL, 127UL, 128UL, 129UL, count}) {
     std::vector<float> expected(length), sample(length);
     baseline_kernels.fill_normals(key, 64, expected.data(), length);
-    for (const VectorKernels* kernels : {&avx2_kernels, &avx512_kernels}) {
-      if (!can_run(*kernels)) continue;
-      kernels->fill_normals(key, 64, sample.data(), length);
-      EXPECT_EQ(sample, expected) << kernels->name << ", " << length;
+    for (const geometry::InstructionSet set : instruction_sets()) {
+      const InstructionSetLimit limit(set);
+      fill_normals(key, 64, sample);
+      EXPECT_EQ(sample, expected) << static_cast<int>(set) << ", " << length;
     }
   }
-#else
-  GTEST_SKIP() << "there is only one on this processor";
-#endif
 }
 
 TEST(NoiseConfig, RejectsANegativeSigma) {

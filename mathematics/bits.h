@@ -1,0 +1,46 @@
+/// The fields of a double.
+#pragma once
+
+#include <bit>
+#include <cstdint>
+#include <limits>
+
+namespace skycap::mathematics {
+
+inline constexpr double infinity = std::numeric_limits<double>::infinity();
+inline constexpr double not_a_number = std::numeric_limits<double>::quiet_NaN();
+
+inline constexpr int mantissa_bits = 52;
+inline constexpr int exponent_bias = 1023;
+
+constexpr std::uint64_t bits_of(double x) { return std::bit_cast<std::uint64_t>(x); }
+constexpr bool is_negative(double x) { return bits_of(x) >> 63 != 0; }
+constexpr double magnitude(double x) { return std::bit_cast<double>(bits_of(x) & ~(1ULL << 63)); }
+constexpr double with_sign_of(double x, double sign) {
+  return std::bit_cast<double>(bits_of(magnitude(x)) | (bits_of(sign) & (1ULL << 63)));
+}
+constexpr bool is_nan(double x) { return x != x; }
+constexpr bool is_finite(double x) { return magnitude(x) < infinity; }
+
+/// Of a normal number: the e of 2^e <= |x| < 2^(e + 1).
+constexpr int exponent_of(double x) {
+  return static_cast<int>(bits_of(x) >> mantissa_bits & 0x7FF) - exponent_bias;
+}
+/// 2^e, e in [-1022, 1023].
+constexpr double power_of_two(int e) {
+  return std::bit_cast<double>(static_cast<std::uint64_t>(e + exponent_bias) << mantissa_bits);
+}
+
+/// x * 2^e, rounded once unless the result is subnormal. e in [-2044, 2046].
+constexpr double scaled(double x, int e) {
+  const int half = e / 2;
+  return x * power_of_two(half) * power_of_two(e - half);
+}
+
+/// The nearest whole number, |x| < 2^51.
+constexpr double rounded(double x) {
+  constexpr double shift = 0x1.8p52;
+  return (x + shift) - shift;
+}
+
+}  // namespace skycap::mathematics

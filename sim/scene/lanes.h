@@ -1,0 +1,225 @@
+/// Sixteen numbers at a time, in as many registers as the instruction set needs that the including
+/// source is compiled for; and the same operations for one number. All is internal to that source.
+/// Every operation is exact or rounds as IEEE 754 says, so all instruction sets give the same bits.
+/// No argument is ever NaN where least() and greatest() are used.
+#pragma once
+
+#include <cstdint>
+
+#if defined(__x86_64__)
+#include <immintrin.h>
+#endif
+
+namespace skycap::sim {
+namespace {
+
+constexpr int lane_count = 16;
+#if defined(__AVX512F__)
+constexpr int part_lanes = 16;
+#elif defined(__AVX2__)
+constexpr int part_lanes = 8;
+#else
+constexpr int part_lanes = 4;
+#endif
+constexpr int part_count = lane_count / part_lanes;
+
+// One register, and in which of its lanes a comparison holds: a bit or all bits of each.
+using Part [[gnu::vector_size(4 * part_lanes), gnu::may_alias]] = float;
+#if defined(__AVX512F__)
+using PartMask = __mmask16;
+#else
+using PartMask [[gnu::vector_size(4 * part_lanes), gnu::may_alias]] = std::int32_t;
+#endif
+
+#if defined(__AVX512F__)
+
+inline Part every_lane(float value) { return _mm512_set1_ps(value); }
+inline Part least(Part a, Part b) { return _mm512_min_ps(a, b); }
+inline Part greatest(Part a, Part b) { return _mm512_max_ps(a, b); }
+inline PartMask is_less(Part a, Part b) { return _mm512_cmp_ps_mask(a, b, _CMP_LT_OQ); }
+inline PartMask is_at_most(Part a, Part b) { return _mm512_cmp_ps_mask(a, b, _CMP_LE_OQ); }
+inline PartMask is_equal(Part a, Part b) { return _mm512_cmp_ps_mask(a, b, _CMP_EQ_OQ); }
+inline PartMask inverse(PartMask mask) { return static_cast<PartMask>(~mask); }
+inline Part chosen(PartMask mask, Part a, Part b) { return _mm512_mask_blend_ps(mask, b, a); }
+inline std::uint32_t bits(PartMask mask) { return mask; }
+inline PartMask part_mask(std::uint32_t bits) { return static_cast<PartMask>(bits); }
+
+#else
+
+inline PartMask is_less(Part a, Part b) { return a < b; }
+inline PartMask is_at_most(Part a, Part b) { return a <= b; }
+inline PartMask is_equal(Part a, Part b) { return a == b; }
+inline PartMask inverse(PartMask mask) { return ~mask; }
+inline PartMask part_mask(std::uint32_t bits) {
+  PartMask bit_of_lane;
+  for (int lane = 0; lane < part_lanes; ++lane) bit_of_lane[lane] = 1 << lane;
+  return (static_cast<std::int32_t>(bits) & bit_of_lane) == bit_of_lane;
+}
+
+#if defined(__AVX2__)
+inline Part every_lane(float value) { return _mm256_set1_ps(value); }
+inline Part least(Part a, Part b) { return _mm256_min_ps(a, b); }
+inline Part greatest(Part a, Part b) { return _mm256_max_ps(a, b); }
+inline Part chosen(PartMask mask, Part a, Part b) { return _mm256_blendv_ps(b, a, (Part)mask); }
+inline std::uint32_t bits(PartMask mask) {
+  return static_cast<std::uint32_t>(_mm256_movemask_ps((Part)mask));
+}
+#else
+inline Part every_lane(float value) { return Part{value, value, value, value}; }
+inline Part chosen(PartMask mask, Part a, Part b) {
+  return (Part)(((PartMask)a & mask) | ((PartMask)b & ~mask));
+}
+#if defined(__SSE2__)
+inline Part least(Part a, Part b) { return _mm_min_ps(a, b); }
+inline Part greatest(Part a, Part b) { return _mm_max_ps(a, b); }
+inline std::uint32_t bits(PartMask mask) {
+  return static_cast<std::uint32_t>(_mm_movemask_ps((Part)mask));
+}
+#else
+inline Part least(Part a, Part b) { return chosen(a < b, a, b); }
+inline Part greatest(Part a, Part b) { return chosen(a > b, a, b); }
+inline std::uint32_t bits(PartMask mask) {
+  const PartMask bit = mask & PartMask{1, 2, 4, 8};
+  return static_cast<std::uint32_t>(bit[0] | bit[1] | bit[2] | bit[3]);
+}
+#endif
+#endif
+#endif
+
+struct Floats {
+  Part part[part_count];
+};
+struct Mask {
+  PartMask part[part_count];
+};
+
+template <typename Lanes, typename Operation>
+[[gnu::always_inline]] inline Lanes each_part(Operation&& operation) {
+  Lanes result;
+#pragma GCC unroll 4
+  for (int i = 0; i < part_count; ++i) result.part[i] = operation(i);
+  return result;
+}
+
+inline Floats operator+(const Floats& a, const Floats& b) {
+  return each_part<Floats>([&](int i) { return a.part[i] + b.part[i]; });
+}
+inline Floats operator-(const Floats& a, const Floats& b) {
+  return each_part<Floats>([&](int i) { return a.part[i] - b.part[i]; });
+}
+inline Floats operator*(const Floats& a, const Floats& b) {
+  return each_part<Floats>([&](int i) { return a.part[i] * b.part[i]; });
+}
+inline Floats operator/(const Floats& a, const Floats& b) {
+  return each_part<Floats>([&](int i) { return a.part[i] / b.part[i]; });
+}
+inline Floats operator-(const Floats& a) {
+  return each_part<Floats>([&](int i) { return -a.part[i]; });
+}
+inline Floats least(const Floats& a, const Floats& b) {
+  return each_part<Floats>([&](int i) { return least(a.part[i], b.part[i]); });
+}
+inline Floats greatest(const Floats& a, const Floats& b) {
+  return each_part<Floats>([&](int i) { return greatest(a.part[i], b.part[i]); });
+}
+inline Floats magnitude(const Floats& a) { return greatest(a, -a); }
+
+inline Mask is_less(const Floats& a, const Floats& b) {
+  return each_part<Mask>([&](int i) { return is_less(a.part[i], b.part[i]); });
+}
+inline Mask is_at_most(const Floats& a, const Floats& b) {
+  return each_part<Mask>([&](int i) { return is_at_most(a.part[i], b.part[i]); });
+}
+inline Mask is_equal(const Floats& a, const Floats& b) {
+  return each_part<Mask>([&](int i) { return is_equal(a.part[i], b.part[i]); });
+}
+inline Mask operator&(const Mask& a, const Mask& b) {
+  return each_part<Mask>([&](int i) { return static_cast<PartMask>(a.part[i] & b.part[i]); });
+}
+inline Mask operator|(const Mask& a, const Mask& b) {
+  return each_part<Mask>([&](int i) { return static_cast<PartMask>(a.part[i] | b.part[i]); });
+}
+inline Mask operator!(const Mask& a) {
+  return each_part<Mask>([&](int i) { return inverse(a.part[i]); });
+}
+inline Floats chosen(const Mask& mask, const Floats& a, const Floats& b) {
+  return each_part<Floats>([&](int i) { return chosen(mask.part[i], a.part[i], b.part[i]); });
+}
+
+// One bit for each lane, and back.
+inline std::uint32_t bits(const Mask& mask) {
+  std::uint32_t all = 0;
+#pragma GCC unroll 4
+  for (int i = 0; i < part_count; ++i) all |= bits(mask.part[i]) << (i * part_lanes);
+  return all;
+}
+inline Mask mask_of(std::uint32_t bits) {
+  return each_part<Mask>([&](int i) { return part_mask(bits >> (i * part_lanes)); });
+}
+inline bool any(const Mask& mask) {
+  PartMask all = mask.part[0];
+#pragma GCC unroll 4
+  for (int i = 1; i < part_count; ++i) all |= mask.part[i];
+  return bits(all) != 0;
+}
+
+// Of and to lanes that are aligned to 64 bytes.
+inline Floats load(const float* lanes) {
+  return each_part<Floats>([&](int i) { return reinterpret_cast<const Part*>(lanes)[i]; });
+}
+inline void store(const Floats& values, float* lanes) {
+#pragma GCC unroll 4
+  for (int i = 0; i < part_count; ++i) reinterpret_cast<Part*>(lanes)[i] = values.part[i];
+}
+
+inline float least_lane(const Floats& values) {
+  Part least_of_parts = values.part[0];
+#pragma GCC unroll 4
+  for (int i = 1; i < part_count; ++i) least_of_parts = least(least_of_parts, values.part[i]);
+#if defined(__AVX512F__)
+  return _mm512_reduce_min_ps(least_of_parts);
+#else
+  float result = least_of_parts[0];
+  for (int i = 1; i < part_lanes; ++i) {
+    result = least_of_parts[i] < result ? least_of_parts[i] : result;
+  }
+  return result;
+#endif
+}
+inline float greatest_lane(const Floats& values) { return -least_lane(-values); }
+
+// One number, where a template takes either.
+struct Truth {
+  bool holds;
+};
+inline Truth operator&(Truth a, Truth b) { return {a.holds && b.holds}; }
+inline Truth operator|(Truth a, Truth b) { return {a.holds || b.holds}; }
+inline Truth operator!(Truth a) { return {!a.holds}; }
+inline bool any(Truth truth) { return truth.holds; }
+inline Truth is_less(float a, float b) { return {a < b}; }
+inline Truth is_at_most(float a, float b) { return {a <= b}; }
+inline Truth is_equal(float a, float b) { return {a == b}; }
+inline float least(float a, float b) { return a < b ? a : b; }
+inline float greatest(float a, float b) { return a > b ? a : b; }
+inline float magnitude(float a) { return a < 0.0F ? -a : a; }
+inline float chosen(Truth truth, float a, float b) { return truth.holds ? a : b; }
+inline float least_lane(float value) { return value; }
+inline float greatest_lane(float value) { return value; }
+
+// The same number in all lanes.
+template <typename Lanes>
+Lanes every(float value);
+template <>
+inline Floats every<Floats>(float value) {
+  return each_part<Floats>([&](int) { return every_lane(value); });
+}
+template <>
+inline float every<float>(float value) {
+  return value;
+}
+
+template <typename Lanes>
+using MaskOf = decltype(is_less(Lanes{}, Lanes{}));
+
+}  // namespace
+}  // namespace skycap::sim

@@ -1,0 +1,139 @@
+/// Body of ray_kernels_*.cpp, which define SKYCAP_KERNELS_NAME and include it once each. Those
+/// sources are compiled for different processors, so everything here and in the headers below is
+/// internal to them, and no inline function of a library may be called: the linker would keep any
+/// one copy of it. Contraction to fused multiply-adds is off (CMakeLists.txt).
+
+#include "sim/scene/lanes.h"
+#include "sim/scene/ray_kernels.h"
+#include "sim/scene/tree_walk.h"
+#include "sim/scene/triangle_test.h"
+
+namespace skycap::sim {
+namespace {
+
+// Takes rays through a tree, those together whose directions have the same signs.
+template <typename Work>
+inline void for_each_bundle(const TreeRoot& tree, float padding, const Rays<Floats>& rays,
+                            std::uint32_t lanes, Work&& work) {
+  std::uint32_t backwards[3];
+  for (int axis = 0; axis < 3; ++axis) {
+    backwards[axis] = bits(is_less(rays.direction[axis], every<Floats>(0.0F)));
+  }
+  while (lanes != 0) {
+    const int first = __builtin_ctz(lanes);
+    std::uint32_t alike = lanes;
+    bool is_backwards[3];
+    for (int axis = 0; axis < 3; ++axis) {
+      is_backwards[axis] = (backwards[axis] >> first & 1U) != 0;
+      alike &= is_backwards[axis] ? backwards[axis] : ~backwards[axis];
+    }
+    lanes &= ~alike;
+    work(make_bundle(rays, mask_of(alike), is_backwards, tree.extent, padding));
+  }
+}
+template <typename Work>
+inline void for_each_bundle(const TreeRoot& tree, float padding, const Rays<float>& rays, Truth,
+                            Work&& work) {
+  const bool is_backwards[] = {rays.direction[0] < 0.0F, rays.direction[1] < 0.0F,
+                               rays.direction[2] < 0.0F};
+  work(make_bundle(rays, Truth{true}, is_backwards, tree.extent, padding));
+}
+
+inline std::uint32_t lanes_of(const Mask& mask) { return bits(mask); }
+inline Truth lanes_of(Truth truth) { return truth; }
+
+template <Wish wish, typename Lanes, typename Set>
+[[gnu::noinline]] void cast_at_triangles(const TreeRoot& tree, const SceneCopy* copy,
+                                         const Rays<Lanes>& rays, Set lanes,
+                                         Nearest<Lanes>& nearest) {
+  for_each_bundle(tree, triangle_padding, rays, lanes, [&](const Bundle<Lanes>& bundle) {
+    const TriangleTest<Lanes, wish> test(rays, bundle.active, tree.extent, copy);
+    Walk<Lanes>(bundle, nearest).template operator()<wish>(tree.ref, test);
+  });
+}
+
+template <typename Lanes>
+inline Rays<Lanes> in_frame_of(const SceneCopy& copy, const Rays<Lanes>& rays) {
+  Rays<Lanes> local;
+  for (int axis = 0; axis < 3; ++axis) {
+    const float(&row)[4] = copy.local_from_scene[axis];
+    const auto rotated = [&](const Lanes(&vector)[3]) {
+      return (every<Lanes>(row[0]) * vector[0] + every<Lanes>(row[1]) * vector[1]) +
+             every<Lanes>(row[2]) * vector[2];
+    };
+    local.origin[axis] = rotated(rays.origin) + every<Lanes>(row[3]);
+    local.direction[axis] = rotated(rays.direction);
+  }
+  return local;
+}
+
+template <Wish wish, typename Lanes, typename Set>
+void cast_at_copies(const RayTarget& target, const Rays<Lanes>& rays, Set lanes,
+                    Nearest<Lanes>& nearest) {
+  const auto test = [&](TreeRef leaf, const MaskOf<Lanes>& active, Nearest<Lanes>& found) {
+    const auto* const numbers = reinterpret_cast<const std::uint32_t*>(leaf & ~tree_ref_entries);
+    for (TreeRef i = 0; i < (leaf & tree_ref_entries); ++i) {
+      const SceneCopy& copy = target.copies[numbers[i]];
+      cast_at_triangles<wish>(copy.part, &copy, in_frame_of(copy, rays), lanes_of(active), found);
+    }
+    return any(found.is_hit);
+  };
+  for_each_bundle(target.tree, copy_padding, rays, lanes, [&](const Bundle<Lanes>& bundle) {
+    Walk<Lanes>(bundle, nearest).template operator()<wish>(target.tree.ref, test);
+  });
+}
+
+template <Wish wish, typename Lanes, typename Set>
+inline Nearest<Lanes> nearest_hits(const RayTarget& target, const Rays<Lanes>& rays, Set lanes,
+                                   float reach) {
+  const Lanes zero = every<Lanes>(0.0F);
+  Nearest<Lanes> nearest = {every<Lanes>(reach), is_less(zero, zero), zero, {zero, zero, zero}};
+  if (target.copies == nullptr) {
+    cast_at_triangles<wish>(target.tree, nullptr, rays, lanes, nearest);
+  } else {
+    cast_at_copies<wish>(target, rays, lanes, nearest);
+  }
+  return nearest;
+}
+
+template <Wish wish>
+void cast_packet(const RayTarget& target, RayPacket& packet, std::uint32_t lanes, float reach) {
+  Rays<Floats> rays;
+  for (int axis = 0; axis < 3; ++axis) {
+    rays.origin[axis] = load(packet.origin[axis]);
+    rays.direction[axis] = load(packet.direction[axis]);
+  }
+  const Nearest<Floats> nearest = nearest_hits<wish>(target, rays, lanes, reach);
+  store(chosen(nearest.is_hit, nearest.distance, every<Floats>(-1.0F)), packet.distance);
+  if constexpr (wish == Wish::surface) {
+    store(nearest.triangle, reinterpret_cast<float*>(packet.triangle));
+    for (int axis = 0; axis < 3; ++axis) store(nearest.normal[axis], packet.normal[axis]);
+  }
+}
+
+inline Rays<float> rays_of(const SingleRay& ray) {
+  Rays<float> rays;
+  for (int axis = 0; axis < 3; ++axis) {
+    rays.origin[axis] = ray.origin[axis];
+    rays.direction[axis] = ray.direction[axis];
+  }
+  return rays;
+}
+
+void cast_single(const RayTarget& target, SingleRay& ray, float reach) {
+  const auto nearest = nearest_hits<Wish::surface>(target, rays_of(ray), Truth{true}, reach);
+  ray.distance = any(nearest.is_hit) ? nearest.distance : -1.0F;
+  ray.triangle = __builtin_bit_cast(std::uint32_t, nearest.triangle);
+  for (int axis = 0; axis < 3; ++axis) ray.normal[axis] = nearest.normal[axis];
+}
+
+bool is_blocked(const RayTarget& target, const SingleRay& ray, float reach) {
+  return any(nearest_hits<Wish::any>(target, rays_of(ray), Truth{true}, reach).is_hit);
+}
+
+}  // namespace
+
+const RayKernels SKYCAP_KERNELS_NAME = {cast_packet<Wish::surface>, cast_packet<Wish::distance>,
+                                        cast_single, is_blocked};
+
+}  // namespace skycap::sim

@@ -1,0 +1,244 @@
+/// The way of rays down a tree. For the sources that are compiled for one instruction set each.
+///
+/// A packet walks as one. The boxes of a node's eight children are met with the bounds of all its
+/// rays at once, and those that pass with every ray. Boxes are padded, so that no ray passes by a
+/// triangle that it hits, and left out only where every ray has met something nearer.
+///
+/// An axis along which the rays run backwards is mirrored; a box then has its upper bound, negated,
+/// in the place of the lower one.
+#pragma once
+
+#include <cstdint>
+
+#include "sim/scene/lanes.h"
+#include "sim/scene/tree_layout.h"
+#include "sim/scene/triangle_test.h"
+
+namespace skycap::sim {
+namespace {
+
+constexpr float infinity = __builtin_inff();
+
+// How the rays of a tree of triangles, and of one of copies, pad its boxes, in shares of the
+// greatest coordinate; see TriangleTest::least_area(). A copy's box has to hold all that its own
+// tree's padding and the way into its own frame may add.
+constexpr float triangle_padding = 0x1p-16F, copy_padding = 0x1p-13F;
+
+// Rays whose directions have the same signs, as they meet boxes.
+template <typename Lanes>
+struct Bundle {
+  MaskOf<Lanes> active;
+  int nearer[3];             // where in a node's planes the nearer bounds begin
+  Lanes origin_for_near[3];  // mirrored and padded
+  Lanes origin_for_far[3];   // the same, negated
+  Lanes inverse[3];          // of the direction's magnitude
+  // The same for whole nodes, nearer bounds and then farther ones: the greatest origins, and the
+  // bounds of the inverse directions.
+  Floats bounding_origin[3], least_inverse[3], greatest_inverse[3];
+};
+
+template <typename Lanes>
+struct Interval {
+  float least, greatest;
+  Interval(const Lanes& values, const MaskOf<Lanes>& active)
+      : least(least_lane(chosen(active, values, every<Lanes>(infinity)))),
+        greatest(greatest_lane(chosen(active, values, every<Lanes>(-infinity)))) {}
+};
+
+template <typename Lanes>
+[[gnu::always_inline]] inline Bundle<Lanes> make_bundle(const Rays<Lanes>& rays,
+                                                        const MaskOf<Lanes>& active,
+                                                        const bool (&is_backwards)[3], float extent,
+                                                        float padding_share) {
+  using All = Interval<Lanes>;
+  const All origins[3] = {
+      {rays.origin[0], active}, {rays.origin[1], active}, {rays.origin[2], active}};
+  Bundle<Lanes> bundle;
+  bundle.active = active;
+  float farthest = 0.0F;
+  for (const All& origin : origins) {
+    farthest = greatest(farthest, greatest(origin.greatest, -origin.least));
+  }
+  const float padding = padding_share * (farthest + extent);
+  constexpr float least_direction = 1e-18F;  // keeps the inverse and products with it finite
+  for (int axis = 0; axis < 3; ++axis) {
+    const bool mirrored = is_backwards[axis];
+    bundle.nearer[axis] = mirrored ? TreeNode::arity : 0;
+    const Lanes origin = mirrored ? -rays.origin[axis] : rays.origin[axis];
+    bundle.origin_for_near[axis] = origin + every<Lanes>(padding);
+    bundle.origin_for_far[axis] = every<Lanes>(padding) - origin;
+    bundle.inverse[axis] = every<Lanes>(1.0F) /
+                           greatest(magnitude(rays.direction[axis]), every<Lanes>(least_direction));
+    const All inverses(bundle.inverse[axis], active);
+    bundle.least_inverse[axis] = every<Floats>(inverses.least);
+    bundle.greatest_inverse[axis] = every<Floats>(inverses.greatest);
+    const float least_origin = mirrored ? -origins[axis].greatest : origins[axis].least;
+    const float greatest_origin = mirrored ? -origins[axis].least : origins[axis].greatest;
+    bundle.bounding_origin[axis] = chosen(mask_of(0xFF), every<Floats>(greatest_origin + padding),
+                                          every<Floats>(padding - least_origin));
+  }
+  return bundle;
+}
+
+// The nearer bounds of eight children along an axis, and their farther ones, both mirrored if need
+// be, the farther ones negated.
+inline Floats near_and_far(const float* planes, int nearer) {
+#if defined(__AVX512F__)
+  return {{(Part)_mm512_insertf32x8(_mm512_castps256_ps512(_mm256_load_ps(planes + nearer)),
+                                    _mm256_load_ps(planes + (nearer ^ TreeNode::arity)), 1)}};
+#else
+  return each_part<Floats>([&](int i) {
+    return *reinterpret_cast<const Part*>(planes + ((nearer + i * part_lanes) & (lane_count - 1)));
+  });
+#endif
+}
+
+// Of distances at which eight boxes are entered and, negated, left again: which boxes rays enter
+// that go no farther than `most`, and where.
+inline std::uint32_t entered(const Floats& near_and_far, float most, float (&near)[8]) {
+#if defined(__AVX512F__)
+  const __m512 both = near_and_far.part[0];
+  const __m256 enter = _mm256_max_ps(_mm512_castps512_ps256(both), _mm256_setzero_ps());
+  const __m256 leave = _mm256_min_ps(-_mm512_extractf32x8_ps(both, 1), _mm256_set1_ps(most));
+  _mm256_store_ps(near, enter);
+  return _mm256_cmp_ps_mask(enter, leave, _CMP_LE_OQ);
+#else
+  std::uint32_t boxes = 0;
+#pragma GCC unroll 2
+  for (int i = 0; i < part_count / 2; ++i) {
+    const Part enter = greatest(near_and_far.part[i], every_lane(0.0F));
+    const Part leave = least(-near_and_far.part[i + part_count / 2], every_lane(most));
+    reinterpret_cast<Part*>(near)[i] = enter;
+    boxes |= bits(is_at_most(enter, leave)) << (i * part_lanes);
+  }
+  return boxes;
+#endif
+}
+
+inline void prefetch(TreeRef ref) {
+  const auto* const memory = reinterpret_cast<const char*>(ref & ~tree_ref_entries);
+  for (int line = 0; line < 256; line += 64) __builtin_prefetch(memory + line);
+}
+
+// What is still to be visited, the nearest of the latest node last.
+struct ToVisit {
+  struct Place {
+    TreeRef ref;
+    float near;
+  };
+  Place places[TreeNode::arity * max_tree_depth];
+  Place* end = places;
+
+  void push(TreeRef ref, float near) { *end++ = {ref, near}; }
+  // Behind the places from `first` on that are farther.
+  void insert(const Place* first, TreeRef ref, float near) {
+    Place* place = end++;
+    for (; place != first && place[-1].near < near; --place) *place = place[-1];
+    *place = {ref, near};
+  }
+  // Nothing: all that is left is farther than `most`.
+  TreeRef pop(float most) {
+    while (end != places) {
+      --end;
+      if (end->near <= most) return end->ref;
+    }
+    return 0;
+  }
+};
+
+template <typename Lanes>
+class Walk {
+ public:
+  Walk(const Bundle<Lanes>& bundle, Nearest<Lanes>& nearest) : bundle_(bundle), nearest_(nearest) {}
+
+  // `test(leaf, active, nearest)` says whether it has found something nearer.
+  template <Wish wish, typename LeafTest>
+  [[gnu::always_inline]] void operator()(TreeRef root, const LeafTest& test) {
+    float most = farthest();
+    for (TreeRef at = root; at != 0;) {
+      if ((at & tree_ref_entries) == 0) {
+        at = enter(*reinterpret_cast<const TreeNode*>(at), most);
+        if (at != 0) continue;
+      } else if (test(at, bundle_.active, nearest_)) {
+        if constexpr (wish == Wish::any) return;
+        most = farthest();
+      }
+      at = to_visit_.pop(most);
+    }
+  }
+
+ private:
+  float farthest() const {
+    return greatest_lane(chosen(bundle_.active, nearest_.distance, every<Lanes>(-infinity)));
+  }
+
+  // The child to visit next; the others that have to be visited are noted.
+  [[gnu::always_inline]] TreeRef enter(const TreeNode& node, float most) {
+    alignas(64) float near[TreeNode::arity];
+    std::uint32_t children = entered(bounds(node), most, near);
+    if constexpr (__is_same(Lanes, float)) {
+      if (children == 0) return 0;
+      const auto* const first = to_visit_.end;
+      for (; children != 0; children &= children - 1) {
+        const int child = __builtin_ctz(children);
+        prefetch(node.children[child]);
+        to_visit_.insert(first, node.children[child], near[child]);
+      }
+      return (--to_visit_.end)->ref;
+    }
+    TreeRef nearest = 0;
+    float nearest_near = 0.0F;
+    for (; children != 0; children &= children - 1) {
+      const int child = __builtin_ctz(children);
+      if (!is_entered(node, child)) continue;
+      const TreeRef ref = node.children[child];
+      prefetch(ref);
+      if (nearest != 0 && near[child] >= nearest_near) {
+        to_visit_.push(ref, near[child]);
+        continue;
+      }
+      if (nearest != 0) to_visit_.push(nearest, nearest_near);
+      nearest = ref;
+      nearest_near = near[child];
+    }
+    return nearest;
+  }
+
+  // No later than any of the rays enters a child, no sooner than any leaves it.
+  [[gnu::always_inline]] Floats bounds(const TreeNode& node) const {
+    Floats all;
+#pragma GCC unroll 3
+    for (int axis = 0; axis < 3; ++axis) {
+      const Floats way =
+          near_and_far(node.planes[axis], bundle_.nearer[axis]) - bundle_.bounding_origin[axis];
+      Floats distance = way * bundle_.least_inverse[axis];
+      if constexpr (!__is_same(Lanes, float)) {
+        distance = least(distance, way * bundle_.greatest_inverse[axis]);
+      }
+      all = axis == 0 ? distance : greatest(all, distance);
+    }
+    return all;
+  }
+
+  // Whether one of the rays enters a child.
+  [[gnu::always_inline]] bool is_entered(const TreeNode& node, int child) const {
+    Lanes enter = every<Lanes>(0.0F), leave = -nearest_.distance;  // the latter negated
+#pragma GCC unroll 3
+    for (int axis = 0; axis < 3; ++axis) {
+      const float* const near = node.planes[axis] + bundle_.nearer[axis] + child;
+      const float* const far = node.planes[axis] + (bundle_.nearer[axis] ^ TreeNode::arity) + child;
+      enter = greatest(
+          enter, (every<Lanes>(*near) - bundle_.origin_for_near[axis]) * bundle_.inverse[axis]);
+      leave = greatest(leave,
+                       (every<Lanes>(*far) - bundle_.origin_for_far[axis]) * bundle_.inverse[axis]);
+    }
+    return any(is_at_most(enter, -leave) & bundle_.active);
+  }
+
+  const Bundle<Lanes>& bundle_;
+  Nearest<Lanes>& nearest_;
+  ToVisit to_visit_;
+};
+
+}  // namespace
+}  // namespace skycap::sim

@@ -1,0 +1,51 @@
+# Fails, naming the files, if what a processor can do, the number of threads, the C library's choice
+# of functions, or the place where it runs has a say in what comes out. Run by ctest with PROGRAM,
+# MISSIONS and FOLDER; the missions are shipped ones, cut short.
+function(survey folder)
+  cmake_parse_arguments(PARSE_ARGV 1 under "" "THREADS" "ENVIRONMENT")
+  set(run ${CMAKE_COMMAND} -E env ${under_ENVIRONMENT} ${PROGRAM})
+  set(options --threads ${under_THREADS} --quiet --out)
+  file(REMOVE_RECURSE ${folder})
+  foreach(command IN ITEMS
+      "plan teapot.yaml --max-views 4 @options@ @folder@/see"
+      "plan teapot.yaml --planner skycap --max-views 4 @options@ @folder@/skycap"
+      "plan teapot.yaml --planner rsv --max-views 2 @options@ @folder@/rsv"
+      "scan radcliffe_camera_lidar.yaml --set scan.orbit.circles=1 --set scan.orbit.speed=120 @options@ @folder@/scan")
+    string(CONFIGURE "${command}" command @ONLY)
+    separate_arguments(command)
+    execute_process(COMMAND ${run} ${command} WORKING_DIRECTORY ${MISSIONS} OUTPUT_QUIET
+                    RESULT_VARIABLE result ERROR_VARIABLE errors)
+    if(NOT result EQUAL 0)
+      message(FATAL_ERROR "skycap ${command}: ${errors}")
+    endif()
+  endforeach()
+endfunction()
+
+set(reference ${FOLDER}/reference)
+survey(${reference} THREADS 1 ENVIRONMENT SKYCAP_INSTRUCTION_SET=baseline)
+
+# summary.json and scan.json tell how long it took and on how many threads.
+file(GLOB_RECURSE results RELATIVE ${reference} ${reference}/*.csv ${reference}/*.ply
+     ${reference}/*.las ${reference}/*.tum)
+list(LENGTH results count)
+if(count LESS 10)
+  message(FATAL_ERROR "only ${count} files to compare")
+endif()
+
+function(expect_same name)
+  set(other ${FOLDER}/${name})
+  survey(${other} ${ARGN})
+  foreach(file IN LISTS results)
+    file(SHA256 ${reference}/${file} expected)
+    file(SHA256 ${other}/${file} found)
+    if(NOT found STREQUAL expected)
+      message(SEND_ERROR "${name}: ${file} is another one")
+    endif()
+  endforeach()
+endfunction()
+
+expect_same(avx2 THREADS 2 ENVIRONMENT SKYCAP_INSTRUCTION_SET=avx2)
+expect_same(avx512 THREADS 4 ENVIRONMENT SKYCAP_INSTRUCTION_SET=avx512)
+expect_same(no_fma THREADS 2 ENVIRONMENT GLIBC_TUNABLES=glibc.cpu.hwcaps=-AVX2,-FMA,-AVX512F
+                                         LC_ALL=C TZ=Asia/Tokyo)
+file(REMOVE_RECURSE ${FOLDER})

@@ -1,0 +1,31 @@
+/// Doing the same with every vector instruction set.
+#pragma once
+
+#include <vector>
+
+#include "geometry/instruction_set.h"
+
+namespace skycap {
+
+/// Those that this processor has, from the narrowest to the widest.
+inline std::vector<geometry::InstructionSet> instruction_sets() {
+  using enum geometry::InstructionSet;
+  std::vector<geometry::InstructionSet> all;
+  for (const auto set : {baseline, avx2, avx512}) {
+    if (set <= geometry::instruction_set()) all.push_back(set);
+  }
+  return all;
+}
+
+/// Limits the process to one, for as long as it lives.
+class InstructionSetLimit {
+ public:
+  explicit InstructionSetLimit(geometry::InstructionSet widest) {
+    geometry::limit_instruction_set(widest);
+  }
+  InstructionSetLimit(const InstructionSetLimit&) = delete;
+  InstructionSetLimit& operator=(const InstructionSetLimit&) = delete;
+  ~InstructionSetLimit() { geometry::limit_instruction_set(geometry::InstructionSet::avx512); }
+};
+
+}  // namespace skycap
