@@ -1,6 +1,8 @@
 # Fails, naming the files, if what a processor can do, the number of threads, the C library's choice
 # of functions, or the place where it runs has a say in what comes out. Run by ctest with PROGRAM,
 # MISSIONS and FOLDER; the missions are shipped ones, cut short.
+cmake_minimum_required(VERSION 3.25)
+
 function(survey folder)
   cmake_parse_arguments(PARSE_ARGV 1 under "" "THREADS" "ENVIRONMENT")
   set(run ${CMAKE_COMMAND} -E env ${under_ENVIRONMENT} ${PROGRAM})
@@ -10,7 +12,7 @@ function(survey folder)
       "plan teapot.yaml --max-views 4 @options@ @folder@/see"
       "plan teapot.yaml --planner skycap --max-views 4 @options@ @folder@/skycap"
       "plan teapot.yaml --planner rsv --max-views 2 @options@ @folder@/rsv"
-      "scan radcliffe_camera_lidar.yaml --set scan.orbit.circles=1 --set scan.orbit.speed=120 @options@ @folder@/scan")
+      "scan radcliffe_camera_lidar.yaml --set scan.orbit.circles=1 --set scan.orbit.speed=100 @options@ @folder@/scan")
     string(CONFIGURE "${command}" command @ONLY)
     separate_arguments(command)
     execute_process(COMMAND ${run} ${command} WORKING_DIRECTORY ${MISSIONS} OUTPUT_QUIET
