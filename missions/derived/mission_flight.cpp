@@ -110,7 +110,7 @@ double highest_return(const file::Mission& mission, double obstacles_top) {
   const AlignedBox3d box = unknown_box_of(mission);
   double top = std::max(obstacles_top, mission.scene.position.z());
   if (!box.isEmpty()) top = std::max(top, box.max().z());
-  for (const survey::Prism& volume : mission.site.no_fly) {
+  for (const geometry::Prism& volume : mission.site.no_fly) {
     if (volume.top < no_flight_is_higher) top = std::max(top, volume.top);
   }
   const double highest = top + mission.flight.clearance + spare;

@@ -43,10 +43,13 @@ Rooms house() {
   }
 
   add("flight/space", {});
-  add("flight/motion", {"flight/space"});
+  add("flight/autopilot", {});
+  add("flight/motion", {"flight/space", "flight/autopilot"});
   add("flight/paths", {"flight/space"});
-  add("flight/route", {"flight/space", "flight/motion", "flight/paths"});
-  add("flight/export", {"flight/space", "flight/motion", "flight/paths", "flight/route"});
+  add("flight/way_home", {"flight/space", "flight/motion", "flight/paths"});
+  add("flight/route", {"flight/space", "flight/motion", "flight/paths", "flight/way_home"});
+  add("flight/export",
+      {"flight/space", "flight/motion", "flight/paths", "flight/way_home", "flight/route"});
 
   std::vector<std::string> below;  // what missions/ composes
   for (const auto& [room, others] : rooms) {
