@@ -3,19 +3,22 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <fstream>
-#include <iterator>
+#include <system_error>
 
 #include "flight/export/map_files.h"
 #include "flight/export/mavlink_files.h"
 #include "flight/export/trajectory_file.h"
 #include "flight/export/wpml_file.h"
 #include "geometry/error.h"
+#include "geometry/io/file.h"
+#include "geometry/place/world.h"
 
 namespace skycap::flight {
 namespace {
 
 using Eigen::Vector3d;
+
+constexpr std::size_t largest_route_file = std::size_t{256} << 20;
 
 /// Between the rows of trajectory files [s].
 constexpr double trajectory_interval = 0.1;
@@ -31,19 +34,6 @@ constexpr std::array<FormatInfo, 9> all_formats{{
     {Format::ned_csv, "ned-csv", ".ned.csv", "local frame, down"},
     {Format::tum, "tum", ".tum", "local frame"},
 }};
-
-std::string load(const std::filesystem::path& path) {
-  std::ifstream file(path, std::ios::binary);
-  if (!file) throw Error(ErrorKind::bad_file, path.string() + " cannot be read");
-  return {std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
-}
-
-void save(const std::filesystem::path& path, const std::string& content) {
-  std::ofstream file(path, std::ios::binary);
-  file.write(content.data(), static_cast<std::streamsize>(content.size()));
-  file.close();
-  if (!file) throw Error(ErrorKind::bad_file, path.string() + " cannot be written");
-}
 
 std::vector<TimedState> states_of(const FlightPlan& plan) {
   return trajectory(plan, trajectory_interval);
@@ -193,10 +183,14 @@ Format format_of_file(const std::filesystem::path& path, const std::string& cont
 
 std::vector<Vector3d> read_route(const std::filesystem::path& path, const Site& site,
                                  const Vector3d& pad) {
-  const std::string content = load(path);
+  const std::string content = geometry::read_file(path, largest_route_file);
   const Format format = format_of_file(path, content);
   try {
-    return local_route(content, format, site, pad);
+    std::vector<Vector3d> points = local_route(content, format, site, pad);
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      geometry::require_place(points[i], "place " + std::to_string(i + 1));
+    }
+    return points;
   } catch (const Error& error) {
     throw Error(error.kind(), path.string() + ": " + error.what());
   }
@@ -214,10 +208,10 @@ ExportResult export_flight(const FlightPlan& plan, Format format, const FreeSpac
   const auto refuse = [&](const std::string& what) {
     std::error_code ignored;
     std::filesystem::remove(temporary, ignored);
-    throw Error(ErrorKind::bad_file, path.string() + " is not written: " + what);
+    throw Error(ErrorKind::bad_geometry, path.string() + " is not written: " + what);
   };
-  save(temporary, write(plan, format));
-  const std::string content = load(temporary);
+  geometry::write_file(temporary, write(plan, format));
+  const std::string content = geometry::read_file(temporary);
   if (const Problems problems = validate(content, format); !problems.empty()) {
     refuse(problems.front());
   }
@@ -233,7 +227,11 @@ ExportResult export_flight(const FlightPlan& plan, Format format, const FreeSpac
     }
     result.min_clearance = std::min(result.min_clearance, proof.clearance);
   }
-  std::filesystem::rename(temporary, path);
+  std::error_code failure;
+  std::filesystem::rename(temporary, path, failure);
+  if (failure) {
+    throw Error(ErrorKind::bad_file, path.string() + " cannot be written: " + failure.message());
+  }
   return result;
 }
 

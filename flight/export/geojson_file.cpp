@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "flight/export/map_files.h"
+#include "geometry/io/json.h"
 
 namespace skycap::flight {
 namespace {
@@ -34,7 +35,9 @@ class GeoJsonWriter {
     }
     for (const Prism& prism : plan_.no_fly) features.push_back(area(prism, false));
     if (plan_.fence) features.push_back(area(*plan_.fence, true));
-    return Json{{"type", "FeatureCollection"}, {"features", features}}.dump(1) + "\n";
+    return Json{{"type", "FeatureCollection"}, {"features", features}}.dump(
+               1, ' ', false, Json::error_handler_t::replace) +
+           "\n";
   }
 
  private:
@@ -104,7 +107,7 @@ class GeoJsonChecker {
  public:
   explicit GeoJsonChecker(const std::string& text) {
     route.datum = HeightDatum::ellipsoid;
-    const Json file = Json::parse(text, nullptr, false);
+    const Json file = geometry::parse_json<Json>(text);
     if (file.is_discarded() || !file.is_object() ||
         file.value("type", Json()) != "FeatureCollection" || !file.contains("features") ||
         !file["features"].is_array()) {

@@ -6,6 +6,7 @@
 #include "flight/export/mavlink_files.h"
 #include "flight/space/clearance.h"
 #include "geometry/error.h"
+#include "geometry/io/json.h"
 
 namespace skycap::flight {
 namespace {
@@ -48,7 +49,7 @@ Json item_json(const MissionItem& item, std::size_t id) {
 /// The checks of one file; problems are collected, in the order of the file.
 class PlanChecker {
  public:
-  explicit PlanChecker(const std::string& text) : plan_(Json::parse(text, nullptr, false)) {}
+  explicit PlanChecker(const std::string& text) : plan_(geometry::parse_json<Json>(text)) {}
 
   Problems check() {
     if (plan_.is_discarded() || !plan_.is_object()) {
@@ -308,7 +309,7 @@ std::string write_plan(const FlightPlan& plan) {
         {"vehicleType", quadrotor},
         {"version", 2}}},
       {"rallyPoints", {{"points", Json::array()}, {"version", 2}}}};
-  return file.dump(2) + "\n";
+  return file.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 
 Problems validate_plan(const std::string& text) { return PlanChecker(text).check(); }

@@ -5,7 +5,11 @@
 #include <fstream>
 #include <limits>
 #include <system_error>
+#include <utility>
 
+#include <fcntl.h>
+#include <sys/file.h>
+#include <sys/stat.h>
 #include <unistd.h>
 #include <zlib.h>
 
@@ -16,7 +20,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::size_t largest_file = std::size_t{4} << 30;
+constexpr std::size_t largest_inflated = std::size_t{1} << 30;
 
 [[noreturn]] void fail(const fs::path& path, const std::string& what) {
   throw Error(ErrorKind::bad_file, path.string() + ": " + what);
@@ -26,7 +30,12 @@ std::string last_error() { return std::generic_category().message(errno); }
 
 bool is_gzip(std::string_view bytes) { return bytes.starts_with("\x1f\x8b"); }
 
-std::string inflate_gzip(const fs::path& path, std::string_view bytes) {
+std::string size_text(std::size_t bytes) {
+  return bytes >= std::size_t{1} << 30 ? std::to_string(bytes >> 30) + " GiB"
+                                       : std::to_string(bytes >> 20) + " MiB";
+}
+
+std::string inflate_gzip(const fs::path& path, std::string_view bytes, std::size_t most_bytes) {
   z_stream stream{};
   constexpr int gzip_only = 16 + MAX_WBITS;
   if (inflateInit2(&stream, gzip_only) != Z_OK) fail(path, "zlib cannot start");
@@ -43,59 +52,108 @@ std::string inflate_gzip(const fs::path& path, std::string_view bytes) {
     status = inflate(&stream, Z_NO_FLUSH);
     bytes.remove_prefix(given - stream.avail_in);
     inflated.append(chunk, 0, chunk.size() - stream.avail_out);
-    if (inflated.size() > largest_file) break;
+    if (inflated.size() > most_bytes) break;
   }
   inflateEnd(&stream);
-  if (inflated.size() > largest_file) fail(path, "is larger than 4 GiB when decompressed");
+  if (inflated.size() > most_bytes) {
+    fail(path, "is larger than " + size_text(most_bytes) + " when decompressed");
+  }
   if (status != Z_STREAM_END) {
     fail(path, "is not a complete gzip file (damaged or cut short); obtain it again");
   }
   return inflated;
 }
 
+/// A file that this process alone writes to, beside the one that it is to replace.
+class TemporaryFile {
+ public:
+  explicit TemporaryFile(const fs::path& target) {
+    // Another writer may be at it, or have renamed its file between our opening and locking it.
+    for (int number = 0; handle_ < 0; ++number) {
+      path_ = target.parent_path() /
+              (".part-" + std::to_string(number) + "-" + target.filename().string());
+      handle_ = ::open(path_.c_str(), O_WRONLY | O_CREAT | O_CLOEXEC | O_NOFOLLOW, 0666);
+      if (handle_ < 0) fail(target, "cannot be written: " + last_error());
+      const bool is_taken = ::flock(handle_, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK;
+      if (!is_taken && is_still_there()) break;
+      ::close(std::exchange(handle_, -1));
+    }
+  }
+  TemporaryFile(const TemporaryFile&) = delete;
+  TemporaryFile& operator=(const TemporaryFile&) = delete;
+  ~TemporaryFile() {
+    if (!is_named_) ::unlink(path_.c_str());
+    ::close(handle_);
+  }
+
+  /// False, with errno set, if the bytes are not on the disk under the new name.
+  bool put(std::string_view bytes, const fs::path& name) {
+    if (::ftruncate(handle_, 0) != 0) return false;
+    while (!bytes.empty()) {
+      const ssize_t count = ::write(handle_, bytes.data(), bytes.size());
+      if (count < 0 && errno != EINTR) return false;
+      if (count > 0) bytes.remove_prefix(static_cast<std::size_t>(count));
+    }
+    if (::fsync(handle_) != 0) return false;
+    is_named_ = ::rename(path_.c_str(), name.c_str()) == 0;
+    return is_named_;
+  }
+
+ private:
+  bool is_still_there() const {
+    struct stat ours {
+    }, named{};
+    return ::fstat(handle_, &ours) == 0 && ::lstat(path_.c_str(), &named) == 0 &&
+           ours.st_ino == named.st_ino && ours.st_dev == named.st_dev;
+  }
+
+  fs::path path_;
+  int handle_ = -1;
+  bool is_named_ = false;
+};
+
 }  // namespace
 
-std::string read_file(const fs::path& path) {
+std::string read_file(const fs::path& path, std::size_t most_bytes) {
   std::error_code error;
   const fs::file_status status = fs::status(path, error);
+  if (error && status.type() == fs::file_type::none) {
+    fail(path, "cannot be opened: " + error.message());
+  }
   if (!fs::exists(status)) fail(path, "there is no such file");
   if (fs::is_directory(status)) fail(path, "is a directory; a file is wanted");
+  if (!fs::is_regular_file(status)) fail(path, "is a device or a pipe; a regular file is wanted");
   std::ifstream stream(path, std::ios::binary);
   if (!stream) fail(path, "cannot be opened: " + last_error());
+  const auto refuse_size = [&] { fail(path, "is larger than " + size_text(most_bytes)); };
+  const auto size = fs::file_size(path, error);
+  if (!error && size > most_bytes) refuse_size();
   std::string bytes;
-  if (fs::is_regular_file(status)) {
-    const auto size = fs::file_size(path, error);
-    if (!error && size > largest_file) fail(path, "is larger than 4 GiB");
-    if (!error) bytes.reserve(size);
-  }
+  if (!error) bytes.reserve(size);
   std::string chunk(1 << 20, '\0');
   while (stream.read(chunk.data(), static_cast<std::streamsize>(chunk.size())),
          stream.gcount() > 0) {
     bytes.append(chunk, 0, static_cast<std::size_t>(stream.gcount()));
-    if (bytes.size() > largest_file) fail(path, "is larger than 4 GiB");
+    if (bytes.size() > most_bytes) refuse_size();
   }
   if (stream.bad()) fail(path, "cannot be read: " + last_error());
-  return is_gzip(bytes) ? inflate_gzip(path, bytes) : bytes;
+  if (!is_gzip(bytes)) return bytes;
+  return inflate_gzip(path, bytes, std::min(most_bytes, largest_inflated));
 }
 
 void write_file(const fs::path& path, std::string_view bytes) {
   std::error_code unmade;  // a folder that is not there says so when the file is opened
   if (path.has_parent_path()) fs::create_directories(path.parent_path(), unmade);
-  fs::path temporary = path;
-  temporary += ".tmp" + std::to_string(::getpid());
-  std::ofstream stream(temporary, std::ios::binary | std::ios::trunc);
-  if (!stream) fail(path, "cannot be written: " + last_error());
-  stream.write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
-  stream.close();
-  std::error_code error;
-  if (stream) {
-    fs::rename(temporary, path, error);
-    if (!error) return;
-  }
-  const std::string why = error ? error.message() : last_error();
-  std::error_code ignored;
-  fs::remove(temporary, ignored);
-  fail(path, "cannot be written: " + why);
+  if (!TemporaryFile(path).put(bytes, path)) fail(path, "cannot be written: " + last_error());
+}
+
+void sync_to_disk(const fs::path& path) {
+  const int handle = ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
+  // Some file systems cannot synchronise folders; they need not, either.
+  const bool is_done = handle >= 0 && (::fsync(handle) == 0 || errno == EINVAL);
+  const std::string why = is_done ? "" : last_error();
+  if (handle >= 0) ::close(handle);
+  if (!is_done) fail(path, "cannot be brought to the disk: " + why);
 }
 
 }  // namespace skycap::geometry

@@ -1,6 +1,7 @@
 /// Whole files in and out.
 #pragma once
 
+#include <cstddef>
 #include <filesystem>
 #include <string>
 #include <string_view>
@@ -8,13 +9,18 @@
 namespace skycap::geometry {
 
 /// The bytes of a file; one that gzip has compressed comes back decompressed, whatever its name.
-/// Throws Error{bad_file} if it is missing, not a regular file, unreadable, damaged, or larger than
-/// 4 GiB when decompressed.
-std::string read_file(const std::filesystem::path& path);
+/// Throws Error{bad_file} if it is missing, not a regular file (devices and pipes may never end),
+/// unreadable, damaged, or larger than `most_bytes`; decompressed also if larger than 1 GiB.
+std::string read_file(const std::filesystem::path& path,
+                      std::size_t most_bytes = std::size_t{4} << 30);
 
 /// Replaces the file by one with these bytes: they are written under a temporary name beside it,
-/// and renamed when complete, so that no reader ever finds half a file. Makes the folder if need
-/// be. Throws Error{bad_file}.
+/// brought to the disk, and renamed when complete, so that no reader ever finds half a file, not
+/// even after a power cut. Makes the folder if need be. What a killed program left under the
+/// temporary name is used up. Throws Error{bad_file}.
 void write_file(const std::filesystem::path& path, std::string_view bytes);
+
+/// Brings a file's content, or a folder's names, to the disk. Throws Error{bad_file}.
+void sync_to_disk(const std::filesystem::path& path);
 
 }  // namespace skycap::geometry

@@ -9,6 +9,7 @@
 #include "geometry/error.h"
 #include "geometry/io/mesh_formats.h"
 #include "geometry/place/pose.h"
+#include "geometry/place/world.h"
 
 namespace skycap::geometry {
 namespace {
@@ -100,10 +101,11 @@ Mesh triangulate(std::string_view name, const PolygonSoup& soup) {
     const std::span polygon(soup.corners.data() + soup.polygon_begin[i],
                             soup.polygon_begin[i + 1] - soup.polygon_begin[i]);
     for (const std::uint32_t v : polygon) {
-      if (!mesh.vertices[v].allFinite()) {
-        fail(i, "has a corner, vertex " + std::to_string(v) +
-                    ", with a coordinate that is not a finite number");
-      }
+      if (is_place(mesh.vertices[v], farthest_vertex)) continue;
+      require_place(
+          mesh.vertices[v],
+          std::string(name) + ": face " + std::to_string(i) + ": vertex " + std::to_string(v),
+          farthest_vertex);
     }
     if (polygon.size() < 3) continue;
     if (polygon.size() == 3) {

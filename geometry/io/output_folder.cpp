@@ -1,19 +1,128 @@
 #include "geometry/io/output_folder.h"
 
 #include <algorithm>
-#include <fstream>
+#include <cerrno>
+#include <ranges>
+#include <utility>
 
+#include <fcntl.h>
+#include <sys/file.h>
 #include <unistd.h>
 
 #include "geometry/error.h"
+#include "geometry/io/file.h"
 
 namespace skycap::geometry {
 namespace {
 
 namespace fs = std::filesystem;
 
+constexpr std::string_view journal_name = ".commit", part_prefix = ".part-", old_prefix = ".old-";
+constexpr std::size_t largest_journal = std::size_t{64} << 20;
+
 [[noreturn]] void fail(const fs::path& path, const std::string& what) {
   throw Error(ErrorKind::bad_file, path.string() + ": " + what);
+}
+
+/// One name that a commit changes.
+struct Change {
+  std::string part;  ///< what gets the name; empty: nothing, the file is removed
+  std::string name;
+};
+
+fs::path old_path(const fs::path& folder, const std::string& name) {
+  return folder / (std::string(old_prefix) + name);
+}
+
+void require_renamed(const fs::path& from, const fs::path& to) {
+  std::error_code failure;
+  fs::rename(from, to, failure);
+  if (failure) fail(to, "cannot be put in place (" + failure.message() + ")");
+}
+
+bool is_there(const fs::path& path) {
+  std::error_code ignored;
+  return fs::symlink_status(path, ignored).type() != fs::file_type::not_found;
+}
+
+/// A name without folders that a commit could have written down.
+bool is_plain(std::string_view name) {
+  return !name.empty() && name.find('/') == std::string_view::npos && name != "." && name != "..";
+}
+
+std::string journal_of(const std::vector<Change>& changes) {
+  std::string text;  // NUL ends each name: names may hold anything else
+  for (const Change& change : changes) text += change.part + '\0' + change.name + '\0';
+  return text;
+}
+
+/// Those of a journal; names that a commit of ours cannot have written are left out.
+std::vector<Change> changes_of(std::string_view text) {
+  std::vector<Change> changes;
+  const auto next = [&] {
+    const std::string_view name = text.substr(0, text.find('\0'));
+    text.remove_prefix(std::min(text.size(), name.size() + 1));
+    return std::string(name);
+  };
+  while (!text.empty()) {
+    Change change{next(), next()};
+    const bool is_ours =
+        change.part.empty() || (is_plain(change.part) && change.part.starts_with(part_prefix));
+    if (is_ours && is_plain(change.name)) changes.push_back(std::move(change));
+  }
+  return changes;
+}
+
+/// First everything old goes aside, what was staged last first, then everything new comes: whoever
+/// finds the file that was staged last finds the others of its run. Repeated after an interruption
+/// it goes on where it was.
+void carry_out(const fs::path& folder, const std::vector<Change>& changes) {
+  for (const auto& [part, name] : std::views::reverse(changes)) {
+    const bool is_next = part.empty() || is_there(folder / part);
+    if (is_next && is_there(folder / name)) require_renamed(folder / name, old_path(folder, name));
+  }
+  for (const auto& [part, name] : changes) {
+    if (!part.empty() && is_there(folder / part)) require_renamed(folder / part, folder / name);
+  }
+}
+
+/// As it was before carry_out(); false if that fails, too.
+bool undo(const fs::path& folder, const std::vector<Change>& changes) {
+  bool is_undone = true;
+  const auto move_back = [&](const fs::path& from, const fs::path& to) {
+    std::error_code failure;
+    fs::rename(from, to, failure);
+    is_undone = is_undone && !failure;
+  };
+  for (const auto& [part, name] : changes) {
+    if (!part.empty() && !is_there(folder / part)) move_back(folder / name, folder / part);
+  }
+  for (const auto& [part, name] : changes) {
+    if (is_there(old_path(folder, name))) move_back(old_path(folder, name), folder / name);
+  }
+  return is_undone;
+}
+
+void remove_file(const fs::path& path) {
+  std::error_code ignored;  // a leftover at worst, for the next program to remove
+  fs::remove(path, ignored);
+}
+
+void finish_journal(const fs::path& folder) {
+  const fs::path journal = folder / journal_name;
+  if (!is_there(journal)) return;
+  carry_out(folder, changes_of(read_file(journal, largest_journal)));
+  sync_to_disk(folder);
+  remove_file(journal);
+}
+
+/// A handle that keeps others out, or -1. On file systems without locks everyone gets in.
+int locked(const fs::path& folder) {
+  const int handle = ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+  if (handle < 0) fail(folder, "cannot be opened; name a folder you may write to");
+  if (::flock(handle, LOCK_EX | LOCK_NB) == 0 || errno != EWOULDBLOCK) return handle;
+  ::close(handle);
+  return -1;
 }
 
 }  // namespace
@@ -27,21 +136,44 @@ OutputFolder::OutputFolder(fs::path folder) : folder_(std::move(folder)) {
   if (failure) {
     fail(folder_, "cannot be made (" + failure.message() + "); name a folder you may write to");
   }
-  // Better to find out now than after the survey.
-  const fs::path probe = temporary("probe");
-  const bool is_writable = std::ofstream(probe).put('\n').flush().good();
-  fs::remove(probe, failure);
-  if (!is_writable) fail(folder_, "cannot be written to; name a folder you may write to");
+  lock_and_clean();
+}
+
+void OutputFolder::lock_and_clean() {
+  lock_ = locked(folder_);
+  if (lock_ < 0) {
+    fail(folder_, "is being written to by another skycap; wait for it or name another folder");
+  }
+  try {
+    finish_journal(folder_);
+    std::error_code ignored;
+    for (const fs::directory_entry& entry : fs::directory_iterator(folder_, ignored)) {
+      const std::string name = entry.path().filename().string();
+      const bool is_leftover = name.starts_with(part_prefix) || name.starts_with(old_prefix);
+      if (is_leftover && !entry.is_directory(ignored)) remove_file(entry.path());
+    }
+    // Better to find out now than after the survey.
+    const fs::path probe = temporary("probe");
+    write_file(probe, "\n");
+    remove_file(probe);
+  } catch (const Error& error) {
+    ::close(lock_);
+    throw Error(error.kind(), folder_.string() + ": cannot be written to (" + error.what() +
+                                  "); name a folder you may write to");
+  }
 }
 
 OutputFolder::~OutputFolder() {
-  std::error_code ignored;
-  for (const std::string& name : staged_) fs::remove(temporary(name), ignored);
-  if (is_new_) fs::remove(folder_, ignored);  // does nothing if there are files in it
+  // What an unfinished commit still needs stays for the next program to finish it.
+  if (!is_there(folder_ / journal_name)) {
+    for (const std::string& name : staged_) remove_file(temporary(name));
+  }
+  if (is_new_) remove_file(folder_);  // does nothing if there are files in it
+  ::close(lock_);
 }
 
 fs::path OutputFolder::temporary(const std::string& name) const {
-  return folder_ / (".part-" + std::to_string(::getpid()) + "-" + name);
+  return folder_ / (std::string(part_prefix) + std::to_string(::getpid()) + "-" + name);
 }
 
 fs::path OutputFolder::stage(const std::string& name) {
@@ -50,17 +182,12 @@ fs::path OutputFolder::stage(const std::string& name) {
 }
 
 void OutputFolder::drop(const std::string& name) {
-  std::error_code ignored;
-  fs::remove(temporary(name), ignored);
+  remove_file(temporary(name));
   std::erase(staged_, name);
 }
 
 void OutputFolder::write(const std::string& name, std::string_view content) {
-  const fs::path part = stage(name);
-  std::ofstream stream(part, std::ios::binary);
-  stream.write(content.data(), static_cast<std::streamsize>(content.size()));
-  stream.close();
-  if (!stream) fail(folder_ / name, "cannot be written whole; is the disk full?");
+  write_file(stage(name), content);
 }
 
 void OutputFolder::replace(const std::function<bool(std::string_view)>& is_old) {
@@ -71,19 +198,59 @@ void OutputFolder::replace(const std::function<bool(std::string_view)>& is_old) 
   }
 }
 
-void OutputFolder::commit() {
-  for (const std::string& name : old_) {
-    std::error_code ignored;
-    if (std::ranges::find(staged_, name) == staged_.end()) fs::remove(folder_ / name, ignored);
-  }
-  old_.clear();
+void OutputFolder::move_to(const std::string& subfolder) {
+  OutputFolder target(folder_ / subfolder);
   for (const std::string& name : staged_) {
-    std::error_code failure;
-    fs::rename(temporary(name), folder_ / name, failure);
-    if (failure) fail(folder_ / name, "cannot be put in place (" + failure.message() + ")");
+    require_renamed(temporary(name), target.temporary(name));
   }
+  target.staged_ = std::exchange(staged_, {});
+  std::swap(folder_, target.folder_);
+  std::swap(staged_, target.staged_);
+  std::swap(lock_, target.lock_);
+  std::swap(is_new_, target.is_new_);
+  old_.clear();
+}
+
+void OutputFolder::commit() {
+  std::vector<Change> changes;
+  for (const std::string& name : old_) {
+    if (std::ranges::find(staged_, name) == staged_.end()) changes.push_back({"", name});
+  }
+  for (const std::string& name : staged_) {
+    sync_to_disk(temporary(name));
+    if (fs::is_directory(fs::symlink_status(folder_ / name))) {
+      fail(folder_ / name, "is a folder where a result belongs; move it away");
+    }
+    changes.push_back({temporary(name).filename().string(), name});
+  }
+  const fs::path journal = folder_ / journal_name;
+  write_file(journal, journal_of(changes));
+  try {
+    sync_to_disk(folder_);  // the journal's name, before anything is moved
+    carry_out(folder_, changes);
+    sync_to_disk(folder_);
+  } catch (const Error&) {
+    if (undo(folder_, changes)) remove_file(journal);
+    throw;
+  }
+  remove_file(journal);
+  for (const Change& change : changes) remove_file(old_path(folder_, change.name));
+  old_.clear();
   staged_.clear();
   is_new_ = false;
+}
+
+void finish_commit(const fs::path& folder) {
+  if (!is_there(folder / journal_name)) return;
+  const int lock = locked(folder);
+  if (lock < 0) return;
+  try {
+    finish_journal(folder);
+  } catch (const Error&) {
+    ::close(lock);
+    throw;
+  }
+  ::close(lock);
 }
 
 }  // namespace skycap::geometry

@@ -9,11 +9,18 @@
 
 namespace skycap::geometry {
 
-/// Files are staged under temporary names beside their final ones, and renamed by commit(), so
-/// that whoever finds a file finds all of it. What is not committed is removed again.
+/// Files are staged under temporary names beside their final ones; commit() gives all of them
+/// their names, or none. What is not committed is removed again, if the program is killed by the
+/// next one that opens the folder.
+///
+/// A commit brings the files to the disk, writes down what it will do (a journal), moves what it
+/// replaces aside, and renames. A failure on the way is undone. After a kill or a power cut the
+/// journal stands, and the next program that opens or finishes the folder completes the commit.
 class OutputFolder {
  public:
-  /// Makes the folder if need be. Throws Error{bad_file} if it cannot be written to.
+  /// Makes the folder if need be, finishes what a killed program left there, and keeps other
+  /// writers out. Throws Error{bad_file} if the folder cannot be written to or another program
+  /// (or object) is at it.
   explicit OutputFolder(std::filesystem::path folder);
   OutputFolder(const OutputFolder&) = delete;
   OutputFolder& operator=(const OutputFolder&) = delete;
@@ -32,16 +39,25 @@ class OutputFolder {
   /// what is staged here, unless they are staged again.
   void replace(const std::function<bool(std::string_view)>& is_old);
 
-  /// Gives the staged files their names, in the order in which they were staged.
+  /// Has commit() put the files into a folder within this one. What replace() was told is void.
+  void move_to(const std::string& subfolder);
+
+  /// Gives the staged files their names. Throws Error{bad_file}: then the folder is as it was.
   void commit();
 
  private:
   std::filesystem::path temporary(const std::string& name) const;
+  void lock_and_clean();
 
   std::filesystem::path folder_;
   std::vector<std::string> staged_;
   std::vector<std::string> old_;
+  int lock_ = -1;        ///< a handle of the folder; others cannot lock it while it is open
   bool is_new_ = false;  ///< the folder was made here
 };
+
+/// Completes a commit that a kill or a power cut has interrupted, for whoever is about to read the
+/// folder. Does nothing while a program is writing there. Throws Error{bad_file}.
+void finish_commit(const std::filesystem::path& folder);
 
 }  // namespace skycap::geometry

@@ -24,6 +24,8 @@ void CameraConfig::validate() const {
   constexpr int most_pixels = 1 << 15;
   require(width > 0 && width <= most_pixels, "width", "between 1 and 32768 pixels", width);
   require(height > 0 && height <= most_pixels, "height", "between 1 and 32768 pixels", height);
+  require(static_cast<double>(width) * height <= 1e8, "width",
+          "such that width times height is at most 1e8 pixels", width);
   require(is_angle_of_view(horizontal_fov), "horizontal_fov",
           "between 0 and pi radians (exclusive)", horizontal_fov);
   require(is_angle_of_view(vertical_fov), "vertical_fov", "between 0 and pi radians (exclusive)",

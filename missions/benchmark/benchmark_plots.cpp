@@ -1,9 +1,14 @@
 #include "missions/benchmark/benchmark_plots.h"
 
 #include <algorithm>
+#include <filesystem>
+#include <system_error>
+#include <utility>
 
 #include <fmt/format.h>
 
+#include "geometry/error.h"
+#include "geometry/io/file.h"
 #include "missions/benchmark/contestants.h"
 #include "missions/benchmark/paper_results.h"
 #include "missions/plugins/external_program.h"
@@ -37,12 +42,9 @@ std::string colour_of(const std::string& planner) {
   return colours[number_of(planner) % std::size(colours)];
 }
 
-/// The name of a block of data: letters, digits and underscores.
-std::string block_name(const BenchmarkCell& cell, const char* what) {
-  std::string name = "$" + cell.mission + "_" + std::to_string(number_of(cell.planner)) + what;
-  std::ranges::replace_if(
-      name, [](unsigned char c) { return c != '$' && std::isalnum(c) == 0; }, '_');
-  return name;
+/// The name of a block of data; `plot` is the name of the plot's files.
+std::string block_name(const std::string& plot, const BenchmarkCell& cell, const char* what) {
+  return "$" + plot + "_" + std::to_string(number_of(cell.planner)) + what;
 }
 
 std::string numbers(std::initializer_list<double> values) {
@@ -54,23 +56,22 @@ std::string numbers(std::initializer_list<double> values) {
   return line;
 }
 
-std::string quoted(std::string text) {
-  std::erase_if(text, [](char c) { return c == '"' || c == '\\'; });
-  return '"' + text + '"';
-}
-
 /// Draws the commands in `body` into NAME.svg and NAME.png.
 std::string into_both_files(const std::string& name, int width, int height,
                             const std::string& body) {
   const std::string size = std::to_string(width) + "," + std::to_string(height);
   return "set terminal svg size " + size + " font 'Helvetica,12' background '#ffffff'\n" +
-         "set output " + quoted(name + ".svg") + "\n" + body + "set terminal pngcairo size " +
-         size + " font 'Helvetica,10'\n" + "set output " + quoted(name + ".png") + "\n" + body +
-         "unset output\n";
+         "set output '" + name + ".svg'\n" + body + "set terminal pngcairo size " + size +
+         " font 'Helvetica,10'\n" + "set output '" + name + ".png'\n" + body + "unset output\n";
 }
 
-std::string curve_data(const BenchmarkCell& cell, const Axis& axis) {
-  std::string text = block_name(cell, axis.name) + " << EOD\n";
+/// One of our own titles, without quotes in it.
+std::string title_of(const std::string& planner) {
+  return "'" + find_contestant(planner)->title + "'";
+}
+
+std::string curve_data(const std::string& plot, const BenchmarkCell& cell, const Axis& axis) {
+  std::string text = block_name(plot, cell, axis.name) + " << EOD\n";
   for (const CurvePoint& point : coverage_curve(cell.trials, axis.axis, curve_points)) {
     text += numbers({point.x, 100.0 * point.mean, 100.0 * (point.mean - point.deviation),
                      100.0 * std::min(1.0, point.mean + point.deviation)});
@@ -85,15 +86,14 @@ std::string coverage_plot(const std::vector<const BenchmarkCell*>& cells, const 
   for (const Axis& axis : axes) {
     body += std::string(axis.setting) + "\nset xlabel '" + axis.label + "'\nplot ";
     for (const BenchmarkCell* cell : cells) {
-      text += curve_data(*cell, axis);
-      body += block_name(*cell, axis.name) +
+      text += curve_data(name, *cell, axis);
+      body += block_name(name, *cell, axis.name) +
               " using 1:3:4 with filledcurves fs transparent solid " + "0.15 noborder lc rgb '" +
               colour_of(cell->planner) + "' notitle, ";
     }
     for (const BenchmarkCell* cell : cells) {
-      body += block_name(*cell, axis.name) + " using 1:2 with lines lw 1.5 lc rgb '" +
-              colour_of(cell->planner) + "' title " +
-              quoted(find_contestant(cell->planner)->title) + ", ";
+      body += block_name(name, *cell, axis.name) + " using 1:2 with lines lw 1.5 lc rgb '" +
+              colour_of(cell->planner) + "' title " + title_of(cell->planner) + ", ";
     }
     body += "\nunset key\n";
   }
@@ -119,21 +119,21 @@ std::string target_plot(const std::vector<BenchmarkCell>& cells, const std::stri
   double offset = -0.2;
   for (const BenchmarkCell& cell : cells) {
     const TargetFigures figures = target_figures(cell.trials);
-    text += block_name(cell, "views") + " << EOD\n";
+    text += block_name(name, cell, "views") + " << EOD\n";
     for (std::size_t i = 0; i < figures.share_by_views.size(); ++i) {
       text += numbers({static_cast<double>(i + 1) + offset, 100.0 * figures.share_by_views[i]});
     }
-    text += "EOD\n" + block_name(cell, "distance") + " << EOD\n0 0\n";
+    text += "EOD\n" + block_name(name, cell, "distance") + " << EOD\n0 0\n";
     for (std::size_t i = 0; i < figures.share_by_distance.size(); ++i) {
       text += numbers(
           {target_distance_bin * static_cast<double>(i + 1), 100.0 * figures.share_by_distance[i]});
     }
     text += "EOD\n";
     offset += 0.4;
-    const std::string style = " lc rgb '" + colour_of(cell.planner) + "' title " +
-                              quoted(find_contestant(cell.planner)->title) + ", ";
-    views += block_name(cell, "views") + " using 1:2 with boxes fs solid 0.6" + style;
-    distances += block_name(cell, "distance") + " using 1:2 with linespoints lw 2" + style;
+    const std::string style =
+        " lc rgb '" + colour_of(cell.planner) + "' title " + title_of(cell.planner) + ", ";
+    views += block_name(name, cell, "views") + " using 1:2 with boxes fs solid 0.6" + style;
+    distances += block_name(name, cell, "distance") + " using 1:2 with linespoints lw 2" + style;
   }
   const std::string body =
       "set multiplot layout 1,2\nset grid\nset boxwidth 0.4\n"
@@ -146,6 +146,41 @@ std::string target_plot(const std::vector<BenchmarkCell>& cells, const std::stri
       distances + "\nunset multiplot\n";
   return text + into_both_files(name, 900, 380, body);
 }
+
+/// A folder for gnuplot to work in: what it leaves there may be torn.
+class ScratchFolder {
+ public:
+  explicit ScratchFolder(std::filesystem::path path) : path_(std::move(path)) {
+    std::error_code failure;
+    std::filesystem::remove_all(path_, failure);  // of a killed run
+    std::filesystem::create_directory(path_, failure);
+    if (failure) {
+      throw Error(ErrorKind::bad_file, path_.string() + ": cannot be made: " + failure.message());
+    }
+  }
+  ScratchFolder(const ScratchFolder&) = delete;
+  ScratchFolder& operator=(const ScratchFolder&) = delete;
+  ~ScratchFolder() {
+    std::error_code ignored;
+    std::filesystem::remove_all(path_, ignored);
+  }
+  const std::filesystem::path& path() const { return path_; }
+
+ private:
+  std::filesystem::path path_;
+};
+
+/// Whether a picture has its end: gnuplot does not always notice a full disk.
+bool is_whole(const std::filesystem::path& file) {
+  std::error_code failure;
+  if (!std::filesystem::is_regular_file(file, failure)) return false;
+  std::string bytes = geometry::read_file(file);
+  while (bytes.ends_with('\n')) bytes.pop_back();
+  return file.extension() == ".png" ? bytes.ends_with("IEND\xAE\x42\x60\x82")
+                                    : bytes.ends_with("</svg>");
+}
+
+std::string plot_name(std::size_t number) { return "plot_" + std::to_string(number); }
 
 }  // namespace
 
@@ -163,20 +198,38 @@ PlotScript plot_script(const std::vector<BenchmarkCell>& cells) {
       if (cell.mission == mission && !cell.trials.empty()) drawn.push_back(&cell);
     }
     script.plots.push_back("coverage_" + mission);
-    script.text += coverage_plot(drawn, script.plots.back());
+    script.text += coverage_plot(drawn, plot_name(script.plots.size()));
   }
   if (const auto joined = standard_cells(cells); !joined.empty()) {
     script.plots.emplace_back("targets");
-    script.text += target_plot(joined, script.plots.back());
+    script.text += target_plot(joined, plot_name(script.plots.size()));
   }
   return script;
 }
 
-std::string draw_plots(const std::filesystem::path& folder, const std::string& script) {
-  const plugins::ProgramResult result = plugins::run_external_program({"gnuplot", script}, folder);
+std::string draw_plots(const PlotScript& script, geometry::OutputFolder& folder) {
+  if (script.plots.empty()) return "";
+  const ScratchFolder scratch(folder.path() / ".plots");
+  geometry::write_file(scratch.path() / "plots.gp", script.text);
+  // -d: not what the user's own settings say.
+  const plugins::ProgramResult result =
+      plugins::run_external_program({"gnuplot", "-d", "plots.gp"}, scratch.path());
   if (result.exit_code == 127) return "gnuplot is not installed; install it (gnuplot-nox)";
-  if (result.exit_code == 0) return "";
-  return "gnuplot failed: " + result.output;
+  if (result.exit_code != 0) return "gnuplot failed: " + result.output;
+  for (const char* ending : {".svg", ".png"}) {
+    for (std::size_t i = 1; i <= script.plots.size(); ++i) {
+      if (!is_whole(scratch.path() / (plot_name(i) + ending))) {
+        return "gnuplot left a plot unfinished; is the disk full? " + result.output;
+      }
+    }
+  }
+  for (const char* ending : {".svg", ".png"}) {
+    for (std::size_t i = 1; i <= script.plots.size(); ++i) {
+      folder.write(script.plots[i - 1] + ending,
+                   geometry::read_file(scratch.path() / (plot_name(i) + ending)));
+    }
+  }
+  return "";
 }
 
 }  // namespace skycap::missions::benchmark

@@ -1,27 +1,29 @@
 /// A benchmark's plots, drawn by gnuplot.
 #pragma once
 
-#include <filesystem>
 #include <string>
 #include <vector>
 
+#include "geometry/io/output_folder.h"
 #include "missions/benchmark/benchmark_results.h"
 
 namespace skycap::missions::benchmark {
 
-/// A script for gnuplot, data included, and the plots that it draws: for each name an SVG and a
-/// PNG file.
+/// A script for gnuplot, data included. It holds numbers and words of ours only, nothing that a
+/// user has named: gnuplot runs what it finds between backquotes. Plot i is drawn into plot_i.svg
+/// and plot_i.png, i counted from one.
 struct PlotScript {
   std::string text;
-  std::vector<std::string> plots;
+  std::vector<std::string> plots;  ///< the names that the files are to have, without ending
 };
 
 /// For each mission coverage against views, planning time and distance, with bands of one
 /// standard deviation; for SEE and SEE++ the statistics of their targets.
 PlotScript plot_script(const std::vector<BenchmarkCell>& cells);
 
-/// Runs a script that is in `folder`. What gnuplot complained of, or empty; that it is not
-/// installed is a complaint, too.
-std::string draw_plots(const std::filesystem::path& folder, const std::string& script);
+/// Draws the plots and stages them in `folder`, an SVG and a PNG file each. What gnuplot complained
+/// of, or empty; then all are there. That it is not installed is a complaint, too. Throws
+/// Error{bad_file} if a file cannot be written.
+std::string draw_plots(const PlotScript& script, geometry::OutputFolder& folder);
 
 }  // namespace skycap::missions::benchmark

@@ -4,13 +4,13 @@
 #include <array>
 #include <cmath>
 #include <limits>
-#include <mutex>
 
 #include <boost/math/distributions/students_t.hpp>
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include "geometry/error.h"
+#include "geometry/io/json.h"
 #include "geometry/parallel.h"
 #include "missions/benchmark/paper_results.h"
 #include "missions/file/json_text.h"
@@ -196,7 +196,7 @@ std::string trial_json(const Trial& trial) {
 
 Trial parse_trial(const std::string& text) {
   try {
-    const Json json = Json::parse(text);
+    const Json json = geometry::parse_json<Json>(text);
     Trial trial;
     trial.seed = json.at("seed").get<std::uint64_t>();
     trial.stop_reason = stop_reason_of(json.at("stop_reason").get<std::string>());
@@ -218,26 +218,6 @@ Trial parse_trial(const std::string& text) {
   } catch (const nlohmann::json::exception& failure) {
     throw Error(ErrorKind::bad_file, std::string("is not a trial: ") + failure.what());
   }
-}
-
-std::vector<Trial> run_trials(const file::Mission& mission, const scene::SurveyScene& scene,
-                              std::size_t count, unsigned threads, std::stop_token stop,
-                              const std::function<void(const Trial&)>& report) {
-  const SceneTruth truth = scene_truth(scene, threads);
-  std::vector<std::optional<Trial>> slots(count);
-  std::mutex reporting;
-  geometry::parallel_for(count, threads, [&](std::size_t i) {
-    if (stop.stop_requested()) return;
-    slots[i] = run_trial(mission, scene, truth, mission.seed + i, stop);
-    if (!slots[i] || !report) return;
-    const std::lock_guard lock(reporting);
-    report(*slots[i]);
-  });
-  std::vector<Trial> trials;
-  for (std::optional<Trial>& trial : slots) {
-    if (trial) trials.push_back(std::move(*trial));
-  }
-  return trials;
 }
 
 std::string trials_csv(const std::vector<Trial>& trials) {
@@ -262,6 +242,7 @@ std::string trials_json(const file::Mission& mission, const std::vector<Trial>& 
             {"first_seed", mission.seed},
             {"threads", geometry::thread_count(threads)},
             {"version", version},
+            {"complete", trials.size() == requested},
             {"trials_requested", requested},
             {"trials", trials.size()},
             {"trials_complete", completed(trials)},

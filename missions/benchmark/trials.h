@@ -3,7 +3,6 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <functional>
 #include <optional>
 #include <stop_token>
 #include <string>
@@ -67,14 +66,6 @@ struct Statistic {
 
 /// Zero deviation and an infinite half width for one number; `numbers` must not be empty.
 Statistic statistic(const std::vector<double>& numbers);
-
-/// Runs `count` surveys with the mission's seed and those after it, up to `threads` at a time, each
-/// in one thread. The trials are those that separate runs would give. Trials that have not begun
-/// when `stop` is requested are left out, interrupted ones too. `report` is told of each that ends,
-/// from any thread, one at a time.
-std::vector<Trial> run_trials(const file::Mission& mission, const scene::SurveyScene& scene,
-                              std::size_t count, unsigned threads, std::stop_token stop,
-                              const std::function<void(const Trial&)>& report);
 
 /// trials.csv: a line for each trial.
 std::string trials_csv(const std::vector<Trial>& trials);

@@ -94,7 +94,7 @@ std::vector<Key> occlusion_keys() {
   return {
       choice_key("planner.offset_line", {"sight_line", "normal"}, see(&See::offset_line),
                  "Along which line the start of the occlusion test (zeta) is looked for."),
-      otherwise("r", number_key("planner.occlusion_radius", "m", above(0, 1e3),
+      otherwise("r", number_key("planner.occlusion_radius", "m", between(1e-4, 1e3),
                                 see(&See::occlusion_radius),
                                 "Ball radius and step of the occlusion test.")),
       choice_key("planner.march_end", {"search_distance", "search_distance_from_offset"},

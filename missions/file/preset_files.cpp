@@ -1,20 +1,16 @@
 #include "missions/file/preset_files.h"
 
-#include <fstream>
-#include <iterator>
-
 #include "geometry/error.h"
+#include "geometry/io/file.h"
 
 namespace skycap::missions::file {
 
 PresetText preset_text(const std::string& kind, const std::string& name_or_file,
                        std::span<const PresetFile> presets) {
   if (name_or_file.ends_with(".yaml")) {
-    std::ifstream file(name_or_file);
-    const std::string text{std::istreambuf_iterator<char>(file), {}};
-    if (!file || text.empty()) {
-      throw Error(ErrorKind::bad_file, name_or_file + ": cannot be read, or is empty");
-    }
+    constexpr std::size_t largest = 1 << 20;  // [byte]; a description has about a thousand
+    const std::string text = geometry::read_file(name_or_file, largest);
+    if (text.empty()) throw Error(ErrorKind::bad_file, name_or_file + ": is empty");
     return {text, name_or_file};
   }
   std::string known;

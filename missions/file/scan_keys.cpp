@@ -90,7 +90,7 @@ std::vector<Key> recording_keys() {
                  "Error of the believed mount.position."),
       angles_key("scan.boresight_error_deg", between(-45, 45), scan(&ScanConfig::boresight_error),
                  "Error of the believed rotation, small angles about the carrier's axes."),
-      number_key("scan.frame_period", "s", above(0, 1e5), scan(&ScanConfig::frame_period),
+      number_key("scan.frame_period", "s", between(1e-6, 1e5), scan(&ScanConfig::frame_period),
                  "Time between the images of a camera, along a route that does not say where."),
       number_key("scan.depth_unit", "m", above(0, 1), scan(&ScanConfig::depth_unit),
                  "What one step of a 16-bit depth image stands for."),

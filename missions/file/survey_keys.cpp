@@ -76,11 +76,11 @@ std::vector<Key> limits_keys() {
 std::vector<Key> evaluation_keys() {
   return {
       required(number_key(
-          "evaluation.registration_distance", "m", above(0, 1e3),
+          "evaluation.registration_distance", "m", between(1e-6, 1e3),
           [](Mission & m) -> auto& { return m.evaluation.registration_distance; },
           "r_d: a surface sample with a stored measurement this near is covered.")),
       integer_key(
-          "evaluation.samples", "", between(100, 1e8),
+          "evaluation.samples", "", between(100, 1e7),
           [](Mission & m) -> auto& { return m.evaluation.samples; },
           "Points spread evenly over the surface, by which coverage is measured."),
       integer_key(

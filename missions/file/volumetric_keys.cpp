@@ -20,7 +20,7 @@ std::vector<Key> volumetric_keys() {
                 integer_key("volumetric.view_limit", "views", between(1, 1e6),
                             setting(&Settings::view_limit),
                             "V: a volumetric survey ends after this many views.")),
-      number_key("volumetric.candidates_per_view", "", above(0, 1e6),
+      number_key("volumetric.candidates_per_view", "", above(0, 1e4),
                  setting(&Settings::candidates_per_view),
                  "Candidate views on the sphere for each view of the limit."),
       otherwise("the surface's centroid",

@@ -4,9 +4,11 @@
 #include <array>
 #include <map>
 #include <string_view>
+#include <utility>
 
 #include "flight/export/parameters.h"
 #include "flight/space/clearance.h"
+#include "flight/space/interruptible_space.h"
 #include "geometry/error.h"
 #include "missions/derived/mission_flight.h"
 #include "missions/file/vehicle_reader.h"
@@ -110,7 +112,8 @@ std::string checked_parameters(const flight::FlightPlan& plan) {
 std::span<const Format> package_formats() { return formats_of_packages; }
 
 flight::Route plan_flight(const file::Mission& mission, const flight::MeasuredSpace& measured,
-                          const Eigen::Vector3d& pad, const std::vector<geometry::View>& views) {
+                          const Eigen::Vector3d& pad, const std::vector<geometry::View>& views,
+                          std::stop_token stop) {
   std::vector<flight::Station> stations;
   for (const geometry::View& view : views) {
     const auto index = static_cast<std::uint32_t>(stations.size());
@@ -120,7 +123,8 @@ flight::Route plan_flight(const file::Mission& mission, const flight::MeasuredSp
   const flight::KnownSpace known(rules);
   // The climb starts on the measured ground: what was measured there is for the pilot to judge.
   const flight::KnownSpace pad_space(without_ground(std::move(rules)));
-  const flight::JointSpace space({&measured, &known});
+  const flight::JointSpace joint({&measured, &known});
+  const flight::InterruptibleSpace space(joint, std::move(stop));
   return plan_route(std::move(stations), derived::vehicle_of(mission), space, &pad_space,
                     derived::route_options_of(mission, pad));
 }
@@ -174,6 +178,10 @@ FlightFiles stage_flight(const file::Mission& mission, const flight::Route& rout
         std::ranges::for_each(result.notes, add_note);
       } catch (const Error& error) {
         folder.drop(name);
+        if (error.kind() == ErrorKind::bad_file) {  // the disk's fault, not the mission's
+          for (const FlightFile& written : files.written) folder.drop(written.name);
+          throw;
+        }
         leave_out(error.what(), error.kind());
       }
     }

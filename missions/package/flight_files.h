@@ -3,6 +3,7 @@
 #pragma once
 
 #include <span>
+#include <stop_token>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -19,9 +20,11 @@
 namespace skycap::missions::package {
 
 /// The flight of a mission's vehicle through views of its survey, proven in what the survey has
-/// measured. Views that this flight cannot visit are listed in it. Throws what plan_route() throws.
+/// measured. Views that this flight cannot visit are listed in it. Throws what plan_route() throws,
+/// and Error{bad_usage} soon after a stop is requested.
 flight::Route plan_flight(const file::Mission& mission, const flight::MeasuredSpace& measured,
-                          const Eigen::Vector3d& pad, const std::vector<geometry::View>& views);
+                          const Eigen::Vector3d& pad, const std::vector<geometry::View>& views,
+                          std::stop_token stop = {});
 
 /// A route file, and how near its flight as read back comes to anything.
 struct FlightFile {
@@ -44,8 +47,9 @@ std::span<const flight::Format> package_formats();
 /// Stages the route in each of the formats; with several sorties a file for each, "mission-1.plan"
 /// and so on. Every file is read back and proved. A format that needs what the mission does not
 /// say, such as the geoid's height, or whose file fails its proof, is left out with a note, unless
-/// it is the only one: then that is thrown, as Error{bad_config} or what export_flight() throws.
-/// Beside files for MAVLink vehicles their parameters are staged, which say how high to return.
+/// it is the only one: then that is thrown, as Error{bad_config} or what export_flight() throws. A
+/// file that cannot be written is thrown as Error{bad_file}. Beside files for MAVLink vehicles their
+/// parameters are staged, which say how high to return.
 FlightFiles stage_flight(const file::Mission& mission, const flight::Route& route,
                          const flight::MeasuredSpace& measured,
                          std::span<const flight::Format> formats, geometry::OutputFolder& folder);

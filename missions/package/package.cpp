@@ -11,7 +11,10 @@
 
 #include "geometry/error.h"
 #include "geometry/io/cloud_io.h"
+#include "geometry/io/file.h"
+#include "geometry/io/json.h"
 #include "geometry/place/pose.h"
+#include "geometry/place/world.h"
 #include "missions/derived/resolved_mission.h"
 #include "missions/file/json_text.h"
 #include "missions/file/mission_keys.h"
@@ -76,11 +79,13 @@ Json setting_json(const file::KeyValue& value) {
 std::string mission_text(const Json& settings) {
   Json nested = Json::object();
   for (const auto& [path, value] : settings.items()) {
+    // A pointer with a number in it would grow a list; no key of ours has one.
+    if (!file::find_key(path)) throw Error(ErrorKind::bad_file, "settings." + path + " is unknown");
     std::string pointer = "/" + path;
     std::ranges::replace(pointer, '.', '/');
     nested[Json::json_pointer(pointer)] = value;
   }
-  return nested.dump(1);
+  return nested.dump(1, ' ', false, Json::error_handler_t::replace);
 }
 
 /// What the planner believes at the end: shares are of the surface, seen and guessed.
@@ -180,6 +185,21 @@ Json flight_summary(const run::FlownSurvey& flown, const SurveyMission& flight) 
           {"return", return_summary(flight)},
           {"files", files},
           {"notes", flight.files.notes}};
+}
+
+Eigen::Vector3d vector_of(const Json& json) {
+  return {json.at(0).get<double>(), json.at(1).get<double>(), json.at(2).get<double>()};
+}
+
+/// The summary of a package. Throws Error{bad_file}.
+Json read_summary(const std::filesystem::path& file) {
+  constexpr std::size_t largest = std::size_t{256} << 20;  // of a million views
+  Json summary = geometry::parse_json<Json>(geometry::read_file(file, largest));
+  if (summary.is_object()) return summary;
+  throw Error(ErrorKind::bad_file,
+              file.string() +
+                  ": is not a package's summary, but no JSON or nested too deep; name the folder "
+                  "of a mission package");
 }
 
 std::vector<geometry::View> views_of(const run::SurveyRecord& record) {
@@ -306,7 +326,7 @@ std::string summary_json(const file::Mission& mission, const run::SurveyRecord& 
 std::optional<SurveyMission> stage_package(const file::Mission& mission,
                                            const run::SurveyRecord& record,
                                            const CoverageFigures& coverage, unsigned threads,
-                                           geometry::OutputFolder& folder) {
+                                           geometry::OutputFolder& folder, std::stop_token stop) {
   folder.replace(
       [](std::string_view name) { return name == free_space_name || is_flight_file(name); });
   const double radius = 2.0 * mission.planner.see.resolution_radius;
@@ -339,12 +359,23 @@ std::optional<SurveyMission> stage_package(const file::Mission& mission,
       flight->files =
           stage_flight(mission, flight->route, *record.flown->measured, package_formats(), folder);
     } catch (const Error& error) {
-      flight->failure = error.what();  // the survey itself shall not be lost
+      // The survey itself shall not be lost.
+      flight->failure =
+          stop.stop_requested() ? "interrupted; skycap export makes it" : error.what();
     }
   }
   // Last, so that whoever sees the summary sees the rest.
   folder.write("summary.json", summary_json(mission, record, coverage, flight));
   return flight;
+}
+
+bool is_complete_result(const std::filesystem::path& json_file) {
+  try {
+    const Json json = geometry::parse_json<Json>(geometry::read_file(json_file));
+    return json.is_object() && json.value("complete", Json()) == Json(true);
+  } catch (const Error&) {
+    return false;  // there is none
+  }
 }
 
 PackagedSurvey read_package(const std::filesystem::path& folder,
@@ -353,23 +384,23 @@ PackagedSurvey read_package(const std::filesystem::path& folder,
   const auto fail = [](const std::filesystem::path& file, const std::string& what) {
     throw Error(ErrorKind::bad_file, file.string() + ": " + what);
   };
-  std::ifstream stream(summary_file);
-  if (!stream) fail(summary_file, "cannot be read; name the folder of a mission package");
+  geometry::finish_commit(folder);
   PackagedSurvey survey;
   try {
-    const Json summary = Json::parse(stream);
+    const Json summary = read_summary(summary_file);
     survey.mission = derived::parse_mission(mission_text(summary.at("settings")),
                                             summary_file.string(), overrides);
     if (!summary.contains("flight")) {
       fail(summary_file, "is of a survey without a vehicle; plan it with flight.vehicle");
     }
-    const auto vector = [](const Json& json) {
-      return Eigen::Vector3d(json.at(0).get<double>(), json.at(1).get<double>(),
-                             json.at(2).get<double>());
-    };
-    survey.pad = survey.mission.flight.takeoff.value_or(vector(summary["flight"].at("pad")));
+    survey.pad = survey.mission.flight.takeoff.value_or(vector_of(summary["flight"].at("pad")));
+    geometry::require_place(survey.pad, summary_file.string() + ": flight.pad");
     for (const Json& view : summary.at("per_view")) {
-      survey.views.push_back({vector(view.at("position")), vector(view.at("direction"))});
+      survey.views.push_back({vector_of(view.at("position")), vector_of(view.at("direction"))});
+      const std::string place =
+          summary_file.string() + ": per_view[" + std::to_string(survey.views.size() - 1) + "].";
+      geometry::require_place(survey.views.back().position, place + "position");
+      geometry::require_direction(survey.views.back().direction, place + "direction");
     }
   } catch (const Json::exception& error) {
     fail(summary_file, std::string("is not a package's summary (") + error.what() + ")");

@@ -3,6 +3,7 @@
 
 #include <filesystem>
 #include <optional>
+#include <stop_token>
 #include <string>
 #include <vector>
 
@@ -27,11 +28,13 @@ struct CoverageFigures {
 /// flown survey's package also holds its route files and free_space.bin, which they were proven in
 /// (flight::MeasuredSpace::write()); what they say is returned. Every number is written with as
 /// many digits as it takes to read the same number back, so equal surveys give equal files; only
-/// summary.json holds times.
+/// summary.json holds times. A stop that is requested while the route is made leaves the survey
+/// without one, and its failure says so: `skycap export` makes it later.
 std::optional<SurveyMission> stage_package(const file::Mission& mission,
                                            const run::SurveyRecord& record,
                                            const CoverageFigures& coverage, unsigned threads,
-                                           geometry::OutputFolder& folder);
+                                           geometry::OutputFolder& folder,
+                                           std::stop_token stop = {});
 
 /// What a package holds of a flown survey.
 struct PackagedSurvey {
@@ -40,6 +43,9 @@ struct PackagedSurvey {
   Eigen::Vector3d pad = Eigen::Vector3d::Zero();
   flight::MeasuredSpace measured;
 };
+
+/// Whether a JSON file of results is there and says "complete": true.
+bool is_complete_result(const std::filesystem::path& json_file);
 
 /// Reads a package; `overrides` take the place of the mission's keys. Throws Error{bad_file} naming
 /// the file that is missing or not as stage_package() wrote it.

@@ -13,6 +13,7 @@
 #include "geometry/io/file.h"
 #include "geometry/place/pose.h"
 #include "missions/derived/mission_flight.h"
+#include "missions/file/number_text.h"
 
 namespace skycap::missions::recording {
 namespace {
@@ -148,7 +149,8 @@ ScanRoute read_scan_route(const std::filesystem::path& path, const file::Mission
     return from_points(flight::read_route(file, derived::site_of(mission), pad),
                        mission.scan.speed);
   }
-  const std::string text = geometry::read_file(file);
+  constexpr std::size_t largest = std::size_t{1} << 30;
+  const std::string text = geometry::read_file(file, largest);
   try {
     if (ending != ".csv") return from_tum(text);
     if (text.starts_with("view,")) return from_views(views_of(text), mission.scan.speed, carrier);
@@ -176,6 +178,14 @@ sim::Trajectory orbit_trajectory(const file::OrbitConfig& orbit) {
                       angle + 0.5 * std::numbers::pi);
   };
   const double duration = length / orbit.speed;
+  constexpr double most_poses = 3e6;  // 16 hours
+  if (!(duration / interval <= most_poses)) {
+    throw Error(ErrorKind::bad_config,
+                "scan.orbit.speed: these circles would take " + file::short_text(duration) +
+                    " s and " + file::short_text(duration / interval) +
+                    " poses, of which at most " + file::short_text(most_poses) +
+                    " are made; fly faster, or fewer or smaller circles");
+  }
   std::vector<sim::StampedPose> poses;
   for (double time = 0.0; time < duration - 1e-6;
        time = interval * static_cast<double>(poses.size())) {

@@ -9,6 +9,7 @@
 #include "geometry/error.h"
 #include "geometry/io/file.h"
 #include "geometry/io/mesh_io.h"
+#include "geometry/place/world.h"
 #include "missions/file/yaml_tree.h"
 #include "missions/scene/model_store.h"
 #include "sim/models/models.h"
@@ -122,6 +123,10 @@ void place_model(const file::SceneConfig& scene, geometry::Mesh& model) {
   geometry::transform(model, Eigen::Affine3d(Eigen::Scaling(scale)));
   const Vector3d shift = scene.position - middle_of_base(model);
   geometry::transform(model, Eigen::Affine3d(Eigen::Translation3d(shift)));
+  const Eigen::AlignedBox3d box = geometry::bounding_box(model);
+  for (const Vector3d& corner : {box.min(), box.max()}) {
+    geometry::require_place(corner, scene.model + ": a corner of the placed model");
+  }
 }
 
 std::vector<Eigen::Isometry3d> copies_of(const file::SceneConfig& scene) {

@@ -128,7 +128,9 @@ std::optional<double> SurveyScene::ceiling(const std::vector<std::uint8_t>& is_v
                                            unsigned threads) const {
   if (mission_.evaluation.ceiling_views == 0) return std::nullopt;
   const std::filesystem::path cached = user_cache() / "ceilings" / ceiling_key();
-  if (const auto known = number_in_file(cached)) return known;
+  if (const auto known = number_in_file(cached); known && *known >= 0.0 && *known <= 1.0) {
+    return known;
+  }
 
   judge::CeilingConfig config;
   config.views = mission_.evaluation.ceiling_views;

@@ -1,29 +1,26 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
-#include <fstream>
 #include <map>
 #include <memory>
 #include <mutex>
 #include <optional>
-#include <sstream>
 #include <string>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include "geometry/error.h"
-#include "geometry/io/file.h"
 #include "geometry/io/output_folder.h"
 #include "geometry/parallel.h"
 #include "missions/benchmark/benchmark_plots.h"
 #include "missions/benchmark/benchmark_report.h"
 #include "missions/benchmark/benchmark_results.h"
 #include "missions/benchmark/contestants.h"
+#include "missions/benchmark/trial_files.h"
 #include "missions/derived/resolved_mission.h"
 #include "missions/file/json_text.h"
 #include "missions/file/mission_keys.h"
-#include "missions/scene/sha256.h"
 #include "missions/scene/survey_scene.h"
 #include "missions/verbs/verbs.h"
 #include "missions/version.h"
@@ -98,18 +95,8 @@ std::vector<Entry> entries_of(const BenchmarkOptions& options) {
   return entries;
 }
 
-/// Stands for everything that a result depends on but the seed and the model's file.
 std::string fingerprint(const Entry& entry) {
-  std::string inputs = std::string(version) + "\n" + entry.contestant->name;
-  for (const file::Key& key : file::mission_keys()) {
-    if (key.path == "name" || key.path == "seed" || key.path == "threads" ||
-        key.path.starts_with("paper.")) {
-      continue;
-    }
-    const auto value = key.get(entry.mission);
-    inputs += "\n" + key.path + " " + (value ? file::to_text(*value) : "-");
-  }
-  return scene::sha256(std::as_bytes(std::span(inputs)));
+  return benchmark::trial_fingerprint(entry.mission, entry.contestant->name);
 }
 
 fs::path item_file(const fs::path& folder, const Entry& entry, std::size_t trial) {
@@ -117,34 +104,12 @@ fs::path item_file(const fs::path& folder, const Entry& entry, std::size_t trial
          ("seed_" + std::to_string(entry.mission.seed + trial) + ".json");
 }
 
-/// The trial in a file, if it is there, whole, and of the same fingerprint.
-std::optional<benchmark::Trial> finished_trial(const fs::path& file, const std::string& wanted) {
-  std::ifstream stream(file);
-  if (!stream) return std::nullopt;
-  std::stringstream text;
-  text << stream.rdbuf();
-  try {
-    const Json json = Json::parse(text.str());
-    if (json.at("fingerprint") != wanted) return std::nullopt;
-    return benchmark::parse_trial(json.at("trial").dump());
-  } catch (const nlohmann::json::exception&) {
-    return std::nullopt;  // not ours: it is overwritten
-  } catch (const Error&) {
-    return std::nullopt;
-  }
-}
-
-void write_trial(const fs::path& file, const std::string& its_fingerprint,
-                 const benchmark::Trial& trial) {
-  geometry::write_file(file,
-                       file::json_text({{"fingerprint", its_fingerprint},
-                                        {"trial", Json::parse(benchmark::trial_json(trial))}}));
-}
-
-std::string manifest(const BenchmarkOptions& options, const std::vector<Entry>& entries) {
+std::string manifest(const BenchmarkOptions& options, const std::vector<Entry>& entries,
+                     bool is_whole) {
   Json json{{"version", version},
             {"trials", options.trials},
             {"threads", geometry::thread_count(options.threads)},
+            {"complete", is_whole},
             {"entries", Json::array()}};
   for (const Entry& entry : entries) {
     json["entries"].push_back({{"mission", entry.mission.name},
@@ -236,7 +201,7 @@ class Benchmark {
       for (Entry& entry : entries_) {
         if (!is_chosen(entry)) continue;
         entry.trials[trial] =
-            finished_trial(item_file(folder_.path(), entry, trial), fingerprint(entry));
+            benchmark::finished_trial(item_file(folder_.path(), entry, trial), fingerprint(entry));
         if (!entry.trials[trial]) items.push_back({&entry, trial});
       }
     }
@@ -267,7 +232,8 @@ class Benchmark {
       auto trial = entry.contestant->run(entry.mission, prepared.scene, prepared.truth,
                                          entry.mission.seed + item.trial, console_.stop);
       if (!trial) return;
-      write_trial(item_file(folder_.path(), entry, item.trial), fingerprint(entry), *trial);
+      benchmark::write_trial(item_file(folder_.path(), entry, item.trial), fingerprint(entry),
+                             *trial);
       entry.trials[item.trial] = std::move(trial);
     } catch (const Error& error) {
       throw Error(error.kind(),
@@ -305,18 +271,18 @@ class Benchmark {
       cells.push_back(std::move(cell));
     }
     const benchmark::PlotScript plots = benchmark::plot_script(cells);
-    folder_.write("manifest.json", manifest(options_, entries_));
+    folder_.write("manifest.json", manifest(options_, entries_, is_whole()));
     folder_.write("trials.csv", benchmark::all_trials_csv(cells));
     folder_.write("table1.csv", benchmark::table_1_csv(cells));
     folder_.write("plots.gp", plots.text);
     folder_.write("results.json", benchmark::results_json(cells));
     const std::string markdown = benchmark::report_markdown(cells, plots.plots);
     folder_.write("report.md", markdown);
+    const std::string complaint = benchmark::draw_plots(plots, folder_);
     folder_.commit();
-    const std::string complaint =
-        plots.plots.empty() ? "" : benchmark::draw_plots(folder_.path(), "plots.gp");
     progress_.say("");
-    if (!complaint.empty()) console_.err << "skycap: warning: no plots: " << complaint << "\n";
+    if (!complaint.empty())
+      console_.err << "skycap: warning: no plots: " << printable_line(complaint) << "\n";
     if (options_.is_quiet) return;
     console_.out << markdown << "\nresults: " << folder_.path().string() << "\n" << std::flush;
   }

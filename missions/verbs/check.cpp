@@ -40,7 +40,7 @@ int check_route_file(const CheckOptions& options, const file::Mission& mission,
     least = std::min(least, space.closest({points[i - 1], points[i]}, least).distance);
   }
   console.out << file.string() << ": " << (violations.empty() ? "fine" : "not safe") << ", "
-              << violations.size() << " of " << std::max<std::size_t>(points.size(), 1) - 1
+              << violations.size() << " of " << std::max<std::size_t>(points.size(), 2) - 1
               << " legs come nearer than " << file::short_text(asked_for) << " m, the nearest "
               << file::short_text(least) << " m; " << file::short_text(flight::length(points))
               << " m long\n";

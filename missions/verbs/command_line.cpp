@@ -11,6 +11,7 @@
 #include "geometry/error.h"
 #include "missions/file/mission_keys.h"
 #include "missions/recording/cloud_formats.h"
+#include "missions/verbs/printable.h"
 #include "missions/verbs/verbs.h"
 #include "missions/version.h"
 
@@ -52,6 +53,17 @@ void add_set_option(CLI::App& verb, KeyOptions& keys) {
                   "planner.density=213; may be given again")
       ->type_size(1)
       ->allow_extra_args(false);
+}
+
+/// A number between two others; unlike CLI::Range it takes no NaN for one.
+CLI::Validator number_between(double least, double most) {
+  const CLI::Range range(least, most);
+  return {[range](std::string& text) {
+            double number = 0.0;
+            const bool is_number = CLI::detail::lexical_cast(text, number) && number == number;
+            return is_number ? range(text) : text + " is not a number";
+          },
+          range.get_description()};
 }
 
 void add_plan(CLI::App& app, const Console& console, Action& action) {
@@ -194,9 +206,9 @@ void add_evaluate(CLI::App& app, const Console& console, Action& action) {
       ->required();
   verb->add_option("--distance", options->distance,
                    "A surface point with a measurement this near is covered [m]")
-      ->check(CLI::Range(1e-9, 1e9));
+      ->check(number_between(1e-6, 1e9));
   verb->add_option("--samples", options->samples, "Surface points; default 100000")
-      ->check(CLI::Range(100, 100'000'000));
+      ->check(CLI::Range(100, 10'000'000));
   verb->add_flag("--json", options->is_json, "Print JSON");
   verb->callback(
       [=, &console, &action] { action = [=, &console] { return evaluate(*options, console); }; });
@@ -210,14 +222,15 @@ void add_reconstruct(CLI::App& app, const Console& console, Action& action) {
       ->required();
   verb->add_option("--out", options->out, "PLY, OBJ, STL or OFF; default CLOUD_mesh.ply");
   verb->add_option("--spacing", options->spacing, "Thin the cloud to one point a cube [m]")
-      ->check(CLI::Range(0.0, 1e6));
+      ->check(number_between(0.0, 1e6));
   verb->add_option("--depth", options->depth,
                    "Of the octree, 2^depth cells a side; default: as the points are spaced")
       ->check(CLI::Range(0, 12));
   verb->add_option("--trim", options->least_density,
                    "Drop surface with less than this share of the usual density; default 0.2")
-      ->check(CLI::Range(0.0, 0.99));
-  verb->add_option("--threads", options->threads, "Threads, 0 for all processors");
+      ->check(number_between(0.0, 0.99));
+  verb->add_option("--threads", options->threads, "Threads, 0 for all processors")
+      ->check(CLI::Range(0, 1024));
   verb->callback([=, &console, &action] {
     action = [=, &console] { return reconstruct_cloud(*options, console); };
   });
@@ -238,17 +251,12 @@ void add_model(CLI::App& app, const Console& console, Action& action) {
 }
 
 /// One line for the user, whatever the message holds.
-int report_failure(const Console& console, std::string message, int exit_code) {
-  while (!message.empty() && message.back() == '\n') message.pop_back();
-  std::ranges::replace(message, '\n', ' ');
-  std::ranges::replace(message, '\r', ' ');
-  console.err << "skycap: error: " << message << "\n" << std::flush;
+int report_failure(const Console& console, const std::string& message, int exit_code) {
+  console.err << "skycap: error: " << printable_line(message) << "\n" << std::flush;
   return exit_code;
 }
 
-}  // namespace
-
-int run_command_line(const std::vector<std::string>& arguments, const Console& console) {
+int parse_and_run(const std::vector<std::string>& arguments, const Console& console) {
   CLI::App app("Skycap plans aerial surveys of buildings and simulates them.", "skycap");
   app.set_version_flag("--version", std::string("skycap ") + version);
   app.require_subcommand(0, 1);
@@ -289,6 +297,17 @@ int run_command_line(const std::vector<std::string>& arguments, const Console& c
   } catch (const std::exception& failure) {
     return report_failure(console, std::string("internal failure: ") + failure.what(), 3);
   }
+}
+
+}  // namespace
+
+int run_command_line(const std::vector<std::string>& arguments, const Console& console) {
+  PrintableBuffer buffer(*console.out.rdbuf());
+  std::ostream out(&buffer);
+  const int exit_code =
+      parse_and_run(arguments, {out, console.err, console.err_is_terminal, console.stop});
+  if (out.flush()) return exit_code;
+  return report_failure(console, "the results cannot be written to the standard output", 3);
 }
 
 }  // namespace skycap::missions::verbs

@@ -5,6 +5,8 @@
 #include <stop_token>
 #include <string>
 
+#include "missions/verbs/printable.h"
+
 namespace skycap::missions::verbs {
 
 /// The program's surroundings, so that tests can put themselves in their place.
@@ -27,7 +29,7 @@ class ProgressLine {
 
   void show(const std::string& text) {
     if (!is_shown_) return;
-    err_ << "\r" << text << "\033[K" << std::flush;
+    err_ << "\r" << printable_line(text) << "\033[K" << std::flush;
     has_text_ = true;
   }
 

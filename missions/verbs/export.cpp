@@ -14,7 +14,8 @@ int export_package(const ExportOptions& options, const Console& console) {
   const package::PackagedSurvey survey = package::read_package(options.package, options.overrides);
   geometry::OutputFolder folder(options.out.value_or(options.package));
   package::SurveyMission flight;
-  flight.route = package::plan_flight(survey.mission, survey.measured, survey.pad, survey.views);
+  flight.route =
+      package::plan_flight(survey.mission, survey.measured, survey.pad, survey.views, console.stop);
   flight.files =
       package::stage_flight(survey.mission, flight.route, survey.measured, formats, folder);
   for (const flight::Format format : formats) {

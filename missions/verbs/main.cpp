@@ -12,12 +12,15 @@
 
 namespace {
 
+/// Ctrl-C, what ends services and batch jobs, and a terminal that is closed.
+constexpr int ending_signals[] = {SIGINT, SIGTERM, SIGHUP};
+
 /// A signal handler may do next to nothing, but it may post a semaphore.
 sem_t interrupted;
 
 extern "C" void on_interrupt(int) {
   ::sem_post(&interrupted);
-  std::signal(SIGINT, SIG_DFL);  // the second Ctrl-C ends the program at once
+  for (const int signal : ending_signals) std::signal(signal, SIG_DFL);  // the second one ends it
 }
 
 }  // namespace
@@ -30,7 +33,10 @@ int main(int argc, char** argv) {
     }
     if (!end.stop_requested()) stop.request_stop();
   });
-  std::signal(SIGINT, on_interrupt);
+  for (const int signal : ending_signals) {
+    // What a parent has the program ignore, as nohup does, it goes on ignoring.
+    if (std::signal(signal, on_interrupt) == SIG_IGN) std::signal(signal, SIG_IGN);
+  }
 
   const std::vector<std::string> arguments(argv + 1, argv + argc);
   const bool is_terminal = ::isatty(STDERR_FILENO) == 1;

@@ -5,6 +5,7 @@
 #include "geometry/error.h"
 #include "geometry/io/output_folder.h"
 #include "geometry/parallel.h"
+#include "missions/benchmark/trial_files.h"
 #include "missions/benchmark/trials.h"
 #include "missions/derived/resolved_mission.h"
 #include "missions/judge/coverage.h"
@@ -93,7 +94,11 @@ int plan_once(const PlanOptions& options, const file::Mission& mission,
   }
   progress.show(mission.name + ": writing " + folder.path().string());
   const std::optional<package::SurveyMission> flight =
-      package::stage_package(mission, record, coverage, mission.threads, folder);
+      package::stage_package(mission, record, coverage, mission.threads, folder, console.stop);
+  const bool is_over = record.stop_reason != survey::StopReason::interrupted;
+  if (!is_over && package::is_complete_result(folder.path() / "summary.json")) {
+    folder.move_to("interrupted");  // a complete survey is not overwritten by a part of one
+  }
   folder.commit();
   progress.clear();
   if (!options.is_quiet) {
@@ -101,7 +106,7 @@ int plan_once(const PlanOptions& options, const file::Mission& mission,
   }
   // A flown survey ends with views that nobody can reach; at the start it has not begun.
   const bool went_through =
-      record.stop_reason != survey::StopReason::interrupted &&
+      is_over &&
       (record.stop_reason != survey::StopReason::nowhere_to_go || record.views.size() > 1) &&
       (!flight || flight->failure.empty());
   return went_through ? 0 : 1;
@@ -119,11 +124,16 @@ int plan_trials(const PlanOptions& options, const file::Mission& mission,
                   std::to_string(trial.views) + " views, " + percent(trial.coverage.all));
   };
   const std::vector<benchmark::Trial> trials =
-      benchmark::run_trials(mission, scene, options.trials, mission.threads, console.stop, report);
+      benchmark::run_trials(mission, scene, options.trials, mission.threads,
+                            folder.path() / "items", console.stop, report);
   progress.clear();
   folder.write("trials.csv", benchmark::trials_csv(trials));
   folder.write("trials.json",
                benchmark::trials_json(mission, trials, options.trials, mission.threads));
+  if (trials.size() < options.trials &&
+      package::is_complete_result(folder.path() / "trials.json")) {
+    folder.move_to("interrupted");  // the trials themselves are kept, and not run again
+  }
   folder.commit();
   if (!options.is_quiet) {
     console.out << benchmark::trials_table(mission, trials) << "  results   "
@@ -139,8 +149,8 @@ int plan(const PlanOptions& options, const Console& console) {
   const file::Mission mission = derived::read_mission(options.mission, options.overrides);
   geometry::OutputFolder folder(
       options.out.value_or(std::filesystem::path("results") / mission.name));
-  const scene::SurveyScene scene(mission, options.mission.parent_path());
   try {
+    const scene::SurveyScene scene(mission, options.mission.parent_path());
     return options.trials > 0 ? plan_trials(options, mission, scene, folder, console)
                               : plan_once(options, mission, scene, folder, console);
   } catch (const Error& error) {

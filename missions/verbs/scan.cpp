@@ -15,7 +15,9 @@
 #include "missions/derived/mission_flight.h"
 #include "missions/derived/resolved_mission.h"
 #include "missions/file/json_text.h"
+#include "missions/file/number_text.h"
 #include "missions/file/sensor_reader.h"
+#include "missions/package/package.h"
 #include "missions/recording/cloud_formats.h"
 #include "missions/recording/frame_recorder.h"
 #include "missions/recording/scan_route.h"
@@ -30,6 +32,8 @@ using Eigen::AngleAxisd;
 using Eigen::Isometry3d;
 using Eigen::Vector3d;
 using Clock = std::chrono::steady_clock;
+
+constexpr const char* scan_name = "scan.json";
 
 /// A path that a mission gives is relative to the mission's folder.
 std::string beside(const std::filesystem::path& folder, const std::string& name) {
@@ -96,6 +100,27 @@ std::string sensor_tum(const sim::Trajectory& carrier, const Isometry3d& body_fr
     poses.push_back({pose.time, carrier.pose(pose.time) * body_from_sensor});
   }
   return flight::write_tum(poses);
+}
+
+/// Refuses what no scan would ever finish, before it begins.
+void require_measurable(const sim::Lidar& lidar, const sim::Trajectory& flown) {
+  constexpr double most_firings = 1e11;
+  const double duration = flown.end() - flown.start();
+  const double firings = duration / lidar.config().firing_period;
+  if (firings <= most_firings) return;
+  throw Error(ErrorKind::bad_config,
+              "scan: the route takes " + file::short_text(duration) + " s, in which the sensor's " +
+                  "firing period of " + file::short_text(lidar.config().firing_period) +
+                  " s makes " + file::short_text(firings) + " firings; at most " +
+                  file::short_text(most_firings) + " are simulated");
+}
+
+/// Commits a scan; one that was interrupted goes beside a complete one instead of over it.
+void commit_scan(geometry::OutputFolder& folder, bool is_complete) {
+  if (!is_complete && package::is_complete_result(folder.path() / scan_name)) {
+    folder.move_to("interrupted");
+  }
+  folder.commit();
 }
 
 /// Shows how far a scan is, ten times a second at most.
@@ -188,6 +213,7 @@ int scan_with_laser(const ScanVerbOptions& options, const file::Mission& mission
   config.seed = mission.seed;
   const sim::Lidar lidar(config);
   const recording::ScanRoute route = route_of(options, mission, recording::Carrier::airframe);
+  require_measurable(lidar, route.carrier);
   const sim::Trajectory believed = believed_by(mission, route.carrier);
   const Mount mount = mount_of(mission.scan);
   const sim::LidarFlight flight{route.carrier, believed, mount.real, mount.believed};
@@ -218,9 +244,9 @@ int scan_with_laser(const ScanVerbOptions& options, const file::Mission& mission
   folder.write("trajectory_believed.tum", sensor_tum(believed, mount.believed));
   const auto firings = static_cast<double>(result.progress.firings);
   const double shots = channels * firings, flown = firings * config.firing_period;
-  folder.write("scan.json", file::json_text(scan_json(mission, sensor_name, result, shots, flown,
-                                                      time, outputs)));
-  folder.commit();
+  folder.write(scan_name, file::json_text(scan_json(mission, sensor_name, result, shots, flown,
+                                                    time, outputs)));
+  commit_scan(folder, result.is_complete);
   progress.clear();
 
   if (!options.is_quiet) {
@@ -244,8 +270,16 @@ int scan_with_laser(const ScanVerbOptions& options, const file::Mission& mission
 std::vector<double> image_times(const recording::ScanRoute& route, double period) {
   if (!route.image_times.empty()) return route.image_times;
   constexpr double rounding = 1e-9;
+  constexpr double most_images = 1e6;
   std::vector<double> times;
   const double start = route.carrier.start(), duration = route.carrier.end() - start;
+  if (!(duration / period <= most_images)) {
+    throw Error(ErrorKind::bad_config, "scan.frame_period: every " + file::short_text(period) +
+                                           " s of a flight of " + file::short_text(duration) +
+                                           " s would be " + file::short_text(duration / period) +
+                                           " images; at most " + file::short_text(most_images) +
+                                           " are taken");
+  }
   for (std::size_t i = 0; static_cast<double>(i) * period <= duration + rounding; ++i) {
     times.push_back(start + static_cast<double>(i) * period);
   }
@@ -282,9 +316,17 @@ int scan_with_camera(const ScanVerbOptions& options, const file::Mission& missio
                                 .report = report,
                                 .stop = console.stop});
   const double time = std::chrono::duration<double>(Clock::now() - start).count();
-  folder.commit();
-  progress.clear();
   const bool is_complete = result.frames == frames.size();
+  folder.write(scan_name, file::json_text({{"mission", mission.name},
+                                           {"sensor", sensor_name},
+                                           {"seed", mission.seed},
+                                           {"complete", is_complete},
+                                           {"images", result.frames},
+                                           {"images_planned", frames.size()},
+                                           {"points", result.points},
+                                           {"simulation_s", time}}));
+  commit_scan(folder, is_complete);
+  progress.clear();
   if (!options.is_quiet) {
     console.out << fmt::format(
                        "{}: {}{}\n  scan      {} depth images, {:.2f} M points in {:.1f} s\n",

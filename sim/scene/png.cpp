@@ -1,10 +1,10 @@
 #include <filesystem>
 #include <string>
-#include <system_error>
 
 #include <png.h>
 
 #include "geometry/error.h"
+#include "geometry/io/file.h"
 #include "sim/scene/render.h"
 
 namespace skycap::sim {
@@ -23,15 +23,18 @@ void write_png(const Image& image, const std::filesystem::path& path) {
   png.width = static_cast<png_uint_32>(image.width);
   png.height = static_cast<png_uint_32>(image.height);
   png.format = PNG_FORMAT_RGB;
-  const std::filesystem::path unfinished = path.string() + ".part";
-  const bool is_written =
-      png_image_write_to_file(&png, unfinished.c_str(), 0, image.pixels.data(), 0, nullptr) != 0;
-  std::error_code failure;
-  if (is_written) std::filesystem::rename(unfinished, path, failure);
-  if (is_written && !failure) return;
-  const std::string reason = is_written ? failure.message() : png.message;
-  std::filesystem::remove(unfinished, failure);
-  throw Error(ErrorKind::bad_file, "cannot write the picture '" + path.string() + "': " + reason);
+  png_alloc_size_t size = 0;
+  std::string bytes;
+  const auto encode = [&](void* memory) {
+    return png_image_write_to_memory(&png, memory, &size, 0, image.pixels.data(), 0, nullptr) != 0;
+  };
+  bool is_encoded = encode(nullptr);
+  if (is_encoded) bytes.resize(size), is_encoded = encode(bytes.data());
+  if (!is_encoded) {
+    throw Error(ErrorKind::bad_file,
+                "cannot write the picture '" + path.string() + "': " + png.message);
+  }
+  geometry::write_file(path, bytes);
 }
 
 Image read_png(const std::filesystem::path& path) {

@@ -16,16 +16,31 @@ void require(bool holds, const std::string& field, double value, const char* rul
   throw Error(ErrorKind::bad_config, message.str());
 }
 
-void require_not_negative(double value, const char* field) {
-  require(value >= 0.0 && std::isfinite(value), field, value, "zero or more");
+/// No instrument's lengths, angles and rates come near these; beyond them rays would have no
+/// finite origin or direction.
+constexpr double longest_arm = 100.0;      // between lasers and origin [m]
+constexpr double farthest_range = 1e6;     // [m]
+constexpr double fastest_rotation = 1e6;   // [turns per second]
+constexpr double largest_angle = 100.0;    // [rad]
+constexpr double shortest_period = 1e-9;   // between firings [s]
+constexpr double longest_period = 3600.0;  // [s]
+
+void require_between(double value, double least, double most, const std::string& field) {
+  std::ostringstream rule;
+  rule << "between " << least << " and " << most;
+  require(value >= least && value <= most, field, value, rule.str().c_str());
+}
+
+void require_within(double value, double most, const std::string& field) {
+  require_between(value, -most, most, field);
 }
 
 void validate_channel(const Channel& channel, std::size_t number, double firing_period) {
   const std::string name = "channels[" + std::to_string(number) + "].";
   require(std::abs(channel.elevation) <= 0.5 * std::numbers::pi, name + "elevation",
           channel.elevation, "between -pi/2 and pi/2 radians");
-  require(std::isfinite(channel.azimuth), name + "azimuth", channel.azimuth, "a finite angle");
-  require(std::isfinite(channel.height), name + "height", channel.height, "a finite length");
+  require_within(channel.azimuth, largest_angle, name + "azimuth");
+  require_within(channel.height, longest_arm, name + "height");
   require(channel.delay >= 0.0 && channel.delay <= firing_period, name + "delay", channel.delay,
           "between zero and firing_period");
 }
@@ -36,44 +51,42 @@ void validate_prism(const WedgePrism& prism, std::size_t number) {
           "between 0 and pi/4 radians");
   require(prism.refractive_index > 1.0 && prism.refractive_index < 3.0, name + "refractive_index",
           prism.refractive_index, "between 1 and 3");
-  require(std::isfinite(prism.rotation_rate), name + "rotation_rate", prism.rotation_rate,
-          "a finite number of turns per second");
-  require(std::isfinite(prism.phase), name + "phase", prism.phase, "a finite angle");
+  require_within(prism.rotation_rate, fastest_rotation, name + "rotation_rate");
+  require_within(prism.phase, largest_angle, name + "phase");
 }
 
 }  // namespace
 
 void LidarConfig::validate() const {
-  require(firing_period > 0.0 && std::isfinite(firing_period), "firing_period", firing_period,
-          "more than zero seconds");
+  require_between(firing_period, shortest_period, longest_period, "firing_period");
   require(!channels.empty() && channels.size() <= 1024, "channels",
           static_cast<double>(channels.size()), "a list of 1 to 1024 lasers");
   for (std::size_t i = 0; i < channels.size(); ++i) validate_channel(channels[i], i, firing_period);
   for (std::size_t i = 0; i < prisms.size(); ++i) validate_prism(prisms[i], i);
-  require(std::isfinite(rotation_rate), "rotation_rate", rotation_rate,
-          "a finite number of turns per second");
-  require(std::isfinite(radial_offset), "radial_offset", radial_offset, "a finite length");
+  require_within(rotation_rate, fastest_rotation, "rotation_rate");
+  require_within(radial_offset, longest_arm, "radial_offset");
   require(field_of_view > 0.0 && field_of_view <= 2.0 * std::numbers::pi, "field_of_view",
           field_of_view, "more than zero and at most 2 pi radians");
-  require_not_negative(min_range, "min_range");
-  require(max_range > min_range && std::isfinite(max_range), "max_range", max_range,
-          "finite and greater than min_range");
-  require_not_negative(errors.sigma, "errors.sigma");
-  require_not_negative(errors.sigma_per_metre, "errors.sigma_per_metre");
-  require_not_negative(errors.sigma_per_square_metre, "errors.sigma_per_square_metre");
-  require_not_negative(errors.incidence_power, "errors.incidence_power");
-  require_not_negative(errors.channel_bias_sigma, "errors.channel_bias_sigma");
-  require_not_negative(errors.range_step, "errors.range_step");
-  require_not_negative(errors.angle_sigma, "errors.angle_sigma");
-  require_not_negative(sensitivity.reference_range, "sensitivity.reference_range");
+  require_between(min_range, 0.0, farthest_range, "min_range");
+  require(max_range > min_range && max_range <= farthest_range, "max_range", max_range,
+          "greater than min_range and at most 1e6 m");
+  require_between(errors.sigma, 0.0, farthest_range, "errors.sigma");
+  require_between(errors.sigma_per_metre, 0.0, farthest_range, "errors.sigma_per_metre");
+  require_between(errors.sigma_per_square_metre, 0.0, farthest_range,
+                  "errors.sigma_per_square_metre");
+  require_between(errors.incidence_power, 0.0, 100.0, "errors.incidence_power");
+  require_between(errors.channel_bias_sigma, 0.0, farthest_range, "errors.channel_bias_sigma");
+  require_between(errors.range_step, 0.0, farthest_range, "errors.range_step");
+  require_between(errors.angle_sigma, 0.0, largest_angle, "errors.angle_sigma");
+  require_between(sensitivity.reference_range, 0.0, farthest_range, "sensitivity.reference_range");
   require(sensitivity.reference_reflectance > 0.0 && sensitivity.reference_reflectance <= 1.0,
           "sensitivity.reference_reflectance", sensitivity.reference_reflectance,
           "above 0 and at most 1");
-  require_not_negative(sensitivity.attenuation, "sensitivity.attenuation");
+  require_between(sensitivity.attenuation, 0.0, 1e3, "sensitivity.attenuation");
   require(beam.rings >= 0 && beam.rings <= 8, "beam.rings", beam.rings, "between 0 and 8");
-  require_not_negative(beam.divergence_horizontal, "beam.divergence_horizontal");
-  require_not_negative(beam.divergence_vertical, "beam.divergence_vertical");
-  require_not_negative(beam.pulse_length, "beam.pulse_length");
+  require_between(beam.divergence_horizontal, 0.0, std::numbers::pi, "beam.divergence_horizontal");
+  require_between(beam.divergence_vertical, 0.0, std::numbers::pi, "beam.divergence_vertical");
+  require_between(beam.pulse_length, 0.0, 1.0, "beam.pulse_length");
   require(beam.max_returns >= 1 && beam.max_returns <= 15, "beam.max_returns", beam.max_returns,
           "between 1 and 15");
 }

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "geometry/error.h"
+#include "geometry/place/world.h"
 #include "sim/sensors/noise.h"
 
 namespace skycap::sim {
@@ -34,9 +35,9 @@ Trajectory::Trajectory(std::vector<StampedPose> poses) : poses_(std::move(poses)
   if (poses_.empty()) throw Error(ErrorKind::bad_geometry, "the trajectory has no poses");
   for (std::size_t i = 0; i < poses_.size(); ++i) {
     StampedPose& pose = poses_[i];
-    require(
-        std::isfinite(pose.time) && pose.position.allFinite() && pose.attitude.coeffs().allFinite(),
-        i, "has a value that is not a finite number");
+    require(std::isfinite(pose.time) && pose.attitude.coeffs().allFinite(), i,
+            "has a value that is not a finite number");
+    geometry::require_place(pose.position, "trajectory pose " + std::to_string(i));
     require(pose.attitude.norm() > 1e-6, i, "has an attitude of length zero");
     require(i == 0 || pose.time > poses_[i - 1].time, i, "is not later than the one before it");
     pose.attitude.normalize();

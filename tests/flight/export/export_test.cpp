@@ -110,6 +110,15 @@ INSTANTIATE_TEST_SUITE_P(Export, EveryFormat,
                          });
 
 // Curves in files are proved again between the places that they are written as.
+// Missions without a name key are called as their file, which may be called anything.
+TEST(Export, ANameThatIsNotUtf8IsNoFailure) {
+  for (const Format format : {Format::plan, Format::geojson}) {
+    FlightPlan plan = sample_plan(vehicle_for(format));
+    plan.name = "caf\xE9";
+    EXPECT_THAT(validate(write(plan, format), format), IsEmpty());
+  }
+}
+
 TEST(Export, CurvesAreHeldByTrajectoriesAndTracks) {
   const FlightPlan stops = corner_plan(FlightStyle::stop);
   for (const FlightStyle style : {FlightStyle::blend, FlightStyle::smooth}) {

@@ -250,7 +250,7 @@ TEST(FlownPackage, BrokenPackagesAndRoutesAreNamed) {
     return run.err;
   };
   EXPECT_THAT(message({"export", folder / "nowhere", "--format", "kml"}),
-              HasSubstr("summary.json: cannot be read; name the folder of a mission package"));
+              HasSubstr("summary.json: there is no such file"));
   EXPECT_THAT(message({"export", folder / "out", "--format", "pdf"}),
               HasSubstr("format \"pdf\" is not known; there are plan, "));
   const TestFolder broken;
@@ -266,7 +266,7 @@ TEST(FlownPackage, BrokenPackagesAndRoutesAreNamed) {
   EXPECT_THAT(message({"check", folder / "m.yaml", "--route", folder / "out/cloud.ply"}),
               HasSubstr("cloud.ply is no route file: its name must end in .plan"));
   EXPECT_THAT(message({"check", folder / "m.yaml", "--route", folder / "no.plan"}),
-              HasSubstr("no.plan cannot be read"));
+              HasSubstr("no.plan: there is no such file"));
 }
 
 }  // namespace

@@ -1,0 +1,205 @@
+// What has once crashed the program, made it hang, or lost results: one test for each class.
+#include <algorithm>
+#include <filesystem>
+#include <sstream>
+#include <stop_token>
+#include <string>
+#include <vector>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "missions/benchmark/benchmark_plots.h"
+#include "missions/verbs/printable.h"
+#include "tests/missions/run_skycap.h"
+
+namespace skycap::missions {
+namespace {
+
+using testing::AllOf;
+using testing::HasSubstr;
+using testing::Not;
+using tests::content_of;
+using tests::quick_mission;
+using tests::run_skycap;
+using tests::TestFolder;
+
+/// The one line that the program refuses its arguments with.
+std::string refusal(const std::vector<std::string>& arguments) {
+  const tests::ProgramRun run = run_skycap(arguments);
+  EXPECT_EQ(run.exit_code, 2) << run.err << run.out;
+  EXPECT_EQ(std::ranges::count(run.err, '\n'), 1) << run.err;
+  return run.err;
+}
+
+std::string summary_with(const std::string& settings, const std::string& rest) {
+  return "{\"settings\": {\"scene.model\": \"builtin:teapot\", "
+         "\"evaluation.registration_distance\": 0.03" +
+         settings + "}, " + rest + "}";
+}
+
+TEST(HostileInput, NoNameOfAUserReachesGnuplot) {
+  const auto script_of = [](const std::string& mission) {
+    benchmark::Trial trial;
+    trial.coverage_after = {0.5, 0.8}, trial.distance_after = {0, 3};
+    trial.planning_time_after = {1, 2};
+    return benchmark::plot_script({{mission, "oa", {trial}}});
+  };
+  EXPECT_EQ(script_of("`touch pwned`$(x)\n'\"").text, script_of("teapot").text);
+  EXPECT_EQ(script_of("a b").plots, std::vector<std::string>{"coverage_a b"});
+}
+
+TEST(HostileInput, DeeplyNestedJsonIsRefused) {
+  const TestFolder folder;
+  const std::string deep(200'000, '[');
+  const std::string mission = folder.write("m.yaml", quick_mission());
+  for (const char* name : {"deep.plan", "deep.geojson"}) {
+    EXPECT_THAT(refusal({"check", mission, "--route", folder.write(name, deep)}), HasSubstr(name));
+  }
+  folder.write("summary.json", deep);
+  EXPECT_THAT(refusal({"export", folder.path().string(), "--format", "csv"}),
+              HasSubstr("summary.json: is not a package's summary"));
+}
+
+TEST(HostileInput, PackagesWithPlacesOutOfTheWorldAreRefused) {
+  const TestFolder folder;
+  const auto message = [&](const std::string& summary) {
+    folder.write("summary.json", summary);
+    return refusal({"export", folder.path().string(), "--format", "csv"});
+  };
+  EXPECT_THAT(message(summary_with("", "\"flight\": {\"pad\": [1e300, 0, 0]}, \"per_view\": []")),
+              HasSubstr("summary.json: flight.pad is (1e+300, 0, 0)"));
+  EXPECT_THAT(message(summary_with("",
+                                   "\"flight\": {\"pad\": [0, 0, 0]}, \"per_view\": "
+                                   "[{\"position\": [0, 0, 2e7], \"direction\": [1, 0, 0]}]")),
+              HasSubstr("per_view[0].position is (0, 0, 2e+07)"));
+  EXPECT_THAT(message(summary_with("",
+                                   "\"flight\": {\"pad\": [0, 0, 0]}, \"per_view\": "
+                                   "[{\"position\": [0, 0, 2], \"direction\": [0, 0, 0]}]")),
+              HasSubstr("per_view[0].direction is (0, 0, 0)"));
+  EXPECT_THAT(message(summary_with(", \"zzz.4000000000\": 1", "\"flight\": {}")),
+              HasSubstr("settings.zzz.4000000000 is unknown"));
+}
+
+TEST(HostileInput, RoutesOutOfTheWorldAreRefused) {
+  const TestFolder folder;
+  const std::string mission = folder.write("m.yaml", quick_mission());
+  const std::string tum = folder.write("far.tum", "0 0 0 1e19 0 0 0 1\n1 0 0 1e19 0 0 0 1\n");
+  EXPECT_THAT(refusal({"scan", mission, "--route", tum, "--out", folder / "out"}),
+              HasSubstr("trajectory pose 0 is (0, 0, 1e+19)"));
+  const std::string high = folder.write("high.tum", "0 0 0 1e308 0 0 0 1\n1 0 0 1 0 0 0 1\n");
+  EXPECT_THAT(refusal({"check", mission, "--route", high}), HasSubstr("high.tum: place 1 is ("));
+}
+
+TEST(HostileInput, SensorsBeyondAnyInstrumentAreRefused) {
+  const TestFolder folder;
+  const std::string mission = folder.write("m.yaml", quick_mission());
+  const auto message = [&](const std::string& more) {
+    const std::string sensor = folder.write(
+        "s.yaml",
+        "name: S\nkind: spinning\nchannels: {count: 2, lowest_deg: -1, highest_deg: 1}\n"
+        "range: {min: 0.1, max: 50}\n" +
+            more);
+    return refusal({"scan", mission, "--sensor", sensor, "--out", folder / "out"});
+  };
+  const std::string rate = "rotation_rate_hz: 10\n", columns = "columns_per_turn: 100\n";
+  EXPECT_THAT(message(rate + columns + "radial_offset_mm: 1e300\n"), HasSubstr("radial_offset"));
+  EXPECT_THAT(message(rate + "columns_per_turn: 1e300\n"), HasSubstr("firing_period"));
+  EXPECT_THAT(message(rate + "firing_period_us: 1e-9\n"), HasSubstr("firing_period"));
+  EXPECT_THAT(message(rate + columns + "errors: {angle_sigma_deg: 1e300}\n"),
+              HasSubstr("errors.angle_sigma"));
+  EXPECT_THAT(refusal({"scan", mission, "--sensor", "/dev/zero.yaml"}), HasSubstr("no such file"));
+  std::filesystem::create_directory(folder.path() / "folder.yaml");
+  EXPECT_THAT(refusal({"scan", mission, "--sensor", folder / "folder.yaml"}),
+              HasSubstr("folder.yaml: is a directory"));
+}
+
+TEST(HostileInput, MeshesBeyondSinglePrecisionAreRefused) {
+  const TestFolder folder;
+  const std::string mesh = folder.write("far.obj", "v 0 0 0\nv 1e39 0 0\nv 0 1 0\nf 1 2 3\n");
+  EXPECT_THAT(refusal({"model", mesh}), HasSubstr("far.obj: face 0: vertex 1 is (1e+39, 0, 0)"));
+  EXPECT_THAT(
+      refusal({"evaluate", "--mesh", mesh, "--model", "builtin:teapot", "--distance", "0.1"}),
+      HasSubstr("far.obj: face 0: vertex 1"));
+  EXPECT_THAT(
+      refusal({"evaluate", "--mesh", mesh, "--model", "builtin:teapot", "--distance", "nan"}),
+      HasSubstr("nan is not a number"));
+}
+
+TEST(HostileInput, WorkWithoutEndIsRefusedBeforeItBegins) {
+  const TestFolder folder;
+  const std::string mission = folder.write("m.yaml", quick_mission());
+  const auto message = [&](const std::vector<std::string>& options) {
+    std::vector<std::string> arguments{"scan", mission, "--out", folder / "out"};
+    arguments.insert(arguments.end(), options.begin(), options.end());
+    return refusal(arguments);
+  };
+  EXPECT_THAT(message({"--set", "scan.orbit.speed=1e-6"}), HasSubstr("scan.orbit.speed: "));
+  EXPECT_THAT(message({"--sensor", "see_d435", "--set", "scan.frame_period=1e-6"}),
+              HasSubstr("scan.frame_period: "));
+  const std::string gap = folder.write("gap.tum", "0 0 0 1 0 0 0 1\n1e9 0 0 1 0 0 0 1\n");
+  EXPECT_THAT(message({"--route", gap}), HasSubstr("firings"));
+  EXPECT_THAT(refusal({"plan", mission, "--set", "evaluation.registration_distance=1e-300"}),
+              HasSubstr("registration_distance"));
+}
+
+TEST(HostileInput, ControlCharactersNeverReachTheTerminal) {
+  const tests::ProgramRun run = run_skycap({"plan", "/nowhere/\x1b[2J\x07.yaml"});
+  EXPECT_EQ(run.exit_code, 2);
+  EXPECT_THAT(run.err, AllOf(Not(HasSubstr("\x1b")), Not(HasSubstr("\x07"))));
+  EXPECT_EQ(verbs::printable_line("a\x1b[31m\tb\xC2\x9B\x7f\n"), "a [31m b\xC2  ");
+  EXPECT_LT(verbs::printable_line(std::string(100'000, 'x')).size(), 2000U);
+  std::ostringstream text;
+  verbs::PrintableBuffer buffer(*text.rdbuf());
+  std::ostream(&buffer) << "h\xC3\xA9\x1b\n";
+  EXPECT_EQ(text.str(), "h\xC3\xA9 \n");
+}
+
+/// A disk that is full.
+class FullBuffer : public std::streambuf {};
+
+TEST(HostileInput, ResultsThatCannotBePrintedAreAFailure) {
+  FullBuffer full;
+  std::ostream out(&full);
+  std::ostringstream err;
+  EXPECT_EQ(verbs::run_command_line({"check", "--keys"}, {out, err}), 3);
+  EXPECT_THAT(err.str(), HasSubstr("cannot be written to the standard output"));
+}
+
+TEST(HostileInput, TrialsThatAreDoneAreNotRunAgain) {
+  const TestFolder folder;
+  const std::string mission = folder.write("m.yaml", quick_mission());
+  const auto trials = [&](const std::string& count, const std::string& seed,
+                          const std::stop_token& stop = {}) {
+    return run_skycap(
+        {"plan", mission, "--trials", count, "--seed", seed, "--quiet", "--out", folder / "out"},
+        false, stop);
+  };
+  ASSERT_EQ(trials("2", "1").exit_code, 0);
+  const std::string before = content_of(folder / "out/trials.csv");  // with planning times
+  ASSERT_EQ(trials("3", "1").exit_code, 0);
+  EXPECT_TRUE(content_of(folder / "out/trials.csv").starts_with(before));
+  std::stop_source stopped;
+  stopped.request_stop();
+  const std::string all = content_of(folder / "out/trials.csv");
+  EXPECT_EQ(trials("3", "7", stopped.get_token()).exit_code, 1);
+  EXPECT_EQ(content_of(folder / "out/trials.csv"), all);
+  EXPECT_TRUE(std::filesystem::exists(folder / "out/interrupted/trials.csv"));
+}
+
+TEST(HostileInput, AnInterruptedSurveyDoesNotReplaceACompleteOne) {
+  const TestFolder folder;
+  const std::string mission = folder.write("m.yaml", quick_mission());
+  const std::vector<std::string> plan{"plan", mission, "--quiet", "--out", folder / "out"};
+  ASSERT_EQ(run_skycap(plan).exit_code, 0);
+  const std::string whole = content_of(folder / "out/summary.json");
+  std::stop_source stopped;
+  stopped.request_stop();
+  EXPECT_EQ(run_skycap(plan, false, stopped.get_token()).exit_code, 1);
+  ASSERT_THAT(whole, HasSubstr("\"complete\": true"));
+  EXPECT_EQ(content_of(folder / "out/summary.json"), whole);
+  EXPECT_TRUE(std::filesystem::exists(folder / "out/interrupted/summary.json"));
+}
+
+}  // namespace
+}  // namespace skycap::missions
