@@ -1,5 +1,5 @@
 /// What a vehicle can do: speeds, size, gimbal, battery, and what its ground station accepts.
-/// Profiles are data: flight/vehicles/*.yaml, and what a user writes beside a mission.
+/// Profiles are data: flight/motion/presets/*.yaml, and what a user writes beside a mission.
 #pragma once
 
 #include <string>

@@ -6,7 +6,7 @@
 #include "geometry/place/camera.h"
 #include "missions/derived/mission_rules.h"
 #include "missions/derived/survey_sensor.h"
-#include "missions/file/vehicle_reader.h"
+#include "missions/equipment/vehicle_reader.h"
 
 namespace skycap::missions::derived {
 namespace {
@@ -39,7 +39,7 @@ void read_vehicle(file::MissionFile& given) {
     vehicle = std::filesystem::absolute(folder / vehicle).string();
   }
   try {
-    given.mission.flight.described = file::find_vehicle(vehicle);
+    given.mission.flight.described = equipment::find_vehicle(vehicle);
   } catch (const Error& error) {
     given.refuse("flight.vehicle", error.what());
   }

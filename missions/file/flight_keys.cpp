@@ -34,10 +34,10 @@ auto flight(auto member) {
 std::vector<Key> safety_keys() {
   return {
       text_key("flight.vehicle", flight(&FlightConfig::vehicle),
-               "What flies: a preset of flight/vehicles, or the path of a description (NAME.yaml), "
-               "relative to the mission file. With a vehicle the survey goes only where it can "
-               "fly, and the package holds the route; with none the sensor is taken to reach every "
-               "view."),
+               "What flies: a preset of flight/motion/presets, or the path of a description "
+               "(NAME.yaml), relative to the mission file. With a vehicle the survey goes only "
+               "where it can fly, and the package holds the route; with none the sensor is taken "
+               "to reach every view."),
       number_key("flight.clearance", "m", above(0, 1000), flight(&FlightConfig::clearance),
                  "Every leg is proven to keep this from everything that is not known to be free: "
                  "the vehicle's radius, the three errors below, and what is left as margin."),

@@ -11,14 +11,14 @@
 
 #include "missions/file/yaml_tree.h"
 
-namespace skycap::missions::file {
+namespace skycap::missions::equipment {
 
 /// Refers to the tree and to the file's name, which must outlive it. Everything throws
 /// Error{bad_config} if a key is missing that has no fallback, or of another type.
 class YamlSection {
  public:
   /// `path` goes before the names of keys, such as "beam.".
-  YamlSection(const YamlNode& node, std::string path, const std::string& file);
+  YamlSection(const file::YamlNode& node, std::string path, const std::string& file);
 
   std::optional<YamlSection> section(const std::string& key);
   std::vector<YamlSection> sections(const std::string& key);  ///< of a list; empty without the key
@@ -50,14 +50,14 @@ class YamlSection {
   [[noreturn]] void fail_at(const std::string& key, const std::string& what);
 
  private:
-  const YamlNode* find(const std::string& key);
-  double to_number(const YamlNode& value, const std::string& key) const;
+  const file::YamlNode* find(const std::string& key);
+  double to_number(const file::YamlNode& value, const std::string& key) const;
   [[noreturn]] void fail(int line, const std::string& key, const std::string& what) const;
 
-  const YamlNode& node_;
+  const file::YamlNode& node_;
   std::string path_;
   const std::string& file_;
   std::set<std::string> asked_;
 };
 
-}  // namespace skycap::missions::file
+}  // namespace skycap::missions::equipment

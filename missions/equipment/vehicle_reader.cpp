@@ -1,4 +1,4 @@
-#include "missions/file/vehicle_reader.h"
+#include "missions/equipment/vehicle_reader.h"
 
 #include <array>
 #include <optional>
@@ -7,11 +7,11 @@
 #include "flight/motion/motion.h"
 #include "geometry/angle.h"
 #include "geometry/error.h"
+#include "missions/equipment/preset_files.h"
+#include "missions/equipment/yaml_section.h"
 #include "missions/file/number_text.h"
-#include "missions/file/preset_files.h"
-#include "missions/file/yaml_section.h"
 
-namespace skycap::missions::file {
+namespace skycap::missions::equipment {
 namespace {
 
 using flight::MissionMode;
@@ -108,8 +108,8 @@ class VehicleReader {
   static void check_range(YamlSection& section, const std::string& key, double value, double least,
                           double most) {
     if (value >= least && value <= most) return;
-    section.fail_at(key, "is " + short_text(value) + "; it must be from " + short_text(least) +
-                             " to " + short_text(most));
+    section.fail_at(key, "is " + file::short_text(value) + "; it must be from " +
+                             file::short_text(least) + " to " + file::short_text(most));
   }
 
   int whole_number(const std::string& key, int least, int most) {
@@ -151,7 +151,7 @@ class VehicleReader {
 }  // namespace
 
 flight::Vehicle read_vehicle(const std::string& text, const std::string& file) {
-  const YamlNode tree = parse_yaml(text, file);
+  const file::YamlNode tree = file::parse_yaml(text, file);
   YamlSection root(tree, "", file);
   Vehicle vehicle;
   const bool is_like_another = root.has("like");
@@ -188,4 +188,4 @@ flight::Vehicle find_vehicle(const std::string& name_or_file) {
   return read_vehicle(found.text, found.file);
 }
 
-}  // namespace skycap::missions::file
+}  // namespace skycap::missions::equipment

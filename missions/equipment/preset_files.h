@@ -1,12 +1,12 @@
 /// The texts of the descriptions that come with the program: sim/sensors/presets/*.yaml and
-/// flight/vehicles/*.yaml.
+/// flight/motion/presets/*.yaml.
 #pragma once
 
 #include <span>
 #include <string>
 #include <string_view>
 
-namespace skycap::missions::file {
+namespace skycap::missions::equipment {
 
 struct PresetFile {
   std::string_view name;  ///< of the file, without its extension
@@ -28,4 +28,4 @@ struct PresetText {
 PresetText preset_text(const std::string& kind, const std::string& name_or_file,
                        std::span<const PresetFile> presets);
 
-}  // namespace skycap::missions::file
+}  // namespace skycap::missions::equipment

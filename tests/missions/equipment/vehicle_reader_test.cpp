@@ -1,4 +1,4 @@
-#include "missions/file/vehicle_reader.h"
+#include "missions/equipment/vehicle_reader.h"
 
 #include <fstream>
 #include <numbers>
@@ -21,7 +21,7 @@ constexpr double degree = std::numbers::pi / 180.0;
 
 std::string complaint(const std::string& text) {
   try {
-    file::read_vehicle(text, "kite.yaml");
+    equipment::read_vehicle(text, "kite.yaml");
   } catch (const Error& error) {
     return error.what();
   }
@@ -29,9 +29,9 @@ std::string complaint(const std::string& text) {
 }
 
 TEST(VehiclePresets, AllAreValidAndNamedAsTheirFiles) {
-  EXPECT_EQ(file::vehicle_presets().size(), 7U);
-  for (const std::string_view preset : file::vehicle_presets()) {
-    const flight::Vehicle vehicle = file::find_vehicle(std::string(preset));
+  EXPECT_EQ(equipment::vehicle_presets().size(), 7U);
+  for (const std::string_view preset : equipment::vehicle_presets()) {
+    const flight::Vehicle vehicle = equipment::find_vehicle(std::string(preset));
     EXPECT_EQ(vehicle.name, preset);
     EXPECT_NO_THROW(vehicle.validate()) << preset;
     EXPECT_EQ(vehicle.dialect == Dialect::dji, vehicle.wpml.drone > 0) << preset;
@@ -41,8 +41,8 @@ TEST(VehiclePresets, AllAreValidAndNamedAsTheirFiles) {
 // The energy model's calibration holds for every one: a full battery hovers as long as the sheet
 // says.
 TEST(VehiclePresets, HoverAsLongAsTheDataSheetsSay) {
-  for (const std::string_view preset : file::vehicle_presets()) {
-    const flight::Vehicle vehicle = file::find_vehicle(std::string(preset));
+  for (const std::string_view preset : equipment::vehicle_presets()) {
+    const flight::Vehicle vehicle = equipment::find_vehicle(std::string(preset));
     const flight::Motion motion(vehicle, {.reserve = 0.0});
     const double battery = motion.usable_energy() * (1.0 + vehicle.energy_error);
     EXPECT_NEAR(battery / motion.hover_power() / 60.0, vehicle.endurance_min, 1e-6) << preset;
@@ -51,7 +51,7 @@ TEST(VehiclePresets, HoverAsLongAsTheDataSheetsSay) {
 
 // ArduPilot's documentation: WP_SPD_UP, WP_SPD_DN, WP_ACC, WP_ACC_Z, WP_JERK, LAND_SPD_MS.
 TEST(VehiclePresets, ArduCopterFliesByItsDefaults) {
-  const flight::Vehicle vehicle = file::find_vehicle("generic_ardupilot");
+  const flight::Vehicle vehicle = equipment::find_vehicle("generic_ardupilot");
   EXPECT_EQ(vehicle.dialect, Dialect::ardupilot);
   EXPECT_EQ(vehicle.mode.law, LegLaw::s_curve);
   EXPECT_EQ(vehicle.mode.max_ascent, 2.5);
@@ -64,8 +64,8 @@ TEST(VehiclePresets, ArduCopterFliesByItsDefaults) {
 }
 
 TEST(VehicleReader, ADescriptionMaySayWhatIsDifferent) {
-  const flight::Vehicle like = file::find_vehicle("m350_rtk");
-  const flight::Vehicle vehicle = file::read_vehicle(
+  const flight::Vehicle like = equipment::find_vehicle("m350_rtk");
+  const flight::Vehicle vehicle = equipment::read_vehicle(
       "name: mine\nlike: m350_rtk\nmass: 8\ngimbal_rate_deg: 45\nwpml: {payload: 65534}\n"
       "mode: {max_ascent: 4}\n",
       "mine.yaml");
@@ -101,8 +101,8 @@ TEST(VehicleReader, ReadsFiles) {
   const testing_support::TemporaryFolder folder;
   const std::string path = (folder.path() / "mine.yaml").string();
   std::ofstream(path) << "name: mine\nlike: skydio_x10\nmax_speed: 12\n";
-  EXPECT_EQ(file::find_vehicle(path).max_speed, 12.0);
-  EXPECT_THROW(file::find_vehicle((folder.path() / "none.yaml").string()), Error);
+  EXPECT_EQ(equipment::find_vehicle(path).max_speed, 12.0);
+  EXPECT_THROW(equipment::find_vehicle((folder.path() / "none.yaml").string()), Error);
 }
 
 }  // namespace

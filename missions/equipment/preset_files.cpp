@@ -1,9 +1,9 @@
-#include "missions/file/preset_files.h"
+#include "missions/equipment/preset_files.h"
 
 #include "geometry/error.h"
 #include "geometry/io/file.h"
 
-namespace skycap::missions::file {
+namespace skycap::missions::equipment {
 
 PresetText preset_text(const std::string& kind, const std::string& name_or_file,
                        std::span<const PresetFile> presets) {
@@ -22,4 +22,4 @@ PresetText preset_text(const std::string& kind, const std::string& name_or_file,
                                          known + ", or give a file NAME.yaml");
 }
 
-}  // namespace skycap::missions::file
+}  // namespace skycap::missions::equipment

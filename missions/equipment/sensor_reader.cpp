@@ -1,4 +1,4 @@
-#include "missions/file/sensor_reader.h"
+#include "missions/equipment/sensor_reader.h"
 
 #include <algorithm>
 #include <cmath>
@@ -7,10 +7,10 @@
 
 #include "geometry/angle.h"
 #include "geometry/error.h"
-#include "missions/file/preset_files.h"
-#include "missions/file/yaml_section.h"
+#include "missions/equipment/preset_files.h"
+#include "missions/equipment/yaml_section.h"
 
-namespace skycap::missions::file {
+namespace skycap::missions::equipment {
 namespace {
 
 constexpr double degree = geometry::radians_per_degree;
@@ -172,7 +172,7 @@ sim::DepthCameraConfig read_camera(YamlSection& root) {
 }  // namespace
 
 SensorDescription read_sensor(const std::string& text, const std::string& file) {
-  const YamlNode tree = parse_yaml(text, file);
+  const file::YamlNode tree = file::parse_yaml(text, file);
   YamlSection root(tree, "", file);
   SensorDescription description;
   description.name = root.text("name");
@@ -204,4 +204,4 @@ SensorDescription find_sensor(const std::string& name_or_file) {
   return read_sensor(found.text, found.file);
 }
 
-}  // namespace skycap::missions::file
+}  // namespace skycap::missions::equipment

@@ -1,31 +1,31 @@
-#include "missions/file/yaml_section.h"
+#include "missions/equipment/yaml_section.h"
 
 #include <charconv>
 #include <cmath>
 
 #include "geometry/error.h"
 
-namespace skycap::missions::file {
+namespace skycap::missions::equipment {
 
-YamlSection::YamlSection(const YamlNode& node, std::string path, const std::string& file)
+YamlSection::YamlSection(const file::YamlNode& node, std::string path, const std::string& file)
     : node_(node), path_(std::move(path)), file_(file) {
-  if (node.kind != YamlNode::Kind::map) {
+  if (node.kind != file::YamlNode::Kind::map) {
     fail(node.line, path_.empty() ? "name" : path_.substr(0, path_.size() - 1),
          "must be a map of keys");
   }
 }
 
 std::optional<YamlSection> YamlSection::section(const std::string& key) {
-  const YamlNode* value = find(key);
+  const file::YamlNode* value = find(key);
   if (value == nullptr) return std::nullopt;
   return YamlSection(*value, path_ + key + ".", file_);
 }
 
 std::vector<YamlSection> YamlSection::sections(const std::string& key) {
-  const YamlNode* value = find(key);
+  const file::YamlNode* value = find(key);
   std::vector<YamlSection> result;
   if (value == nullptr) return result;
-  if (value->kind != YamlNode::Kind::list) fail(value->line, path_ + key, "must be a list");
+  if (value->kind != file::YamlNode::Kind::list) fail(value->line, path_ + key, "must be a list");
   for (std::size_t i = 0; i < value->items.size(); ++i) {
     result.emplace_back(value->items[i], path_ + key + "[" + std::to_string(i) + "].", file_);
   }
@@ -33,7 +33,7 @@ std::vector<YamlSection> YamlSection::sections(const std::string& key) {
 }
 
 double YamlSection::number(const std::string& key) {
-  const YamlNode* value = find(key);
+  const file::YamlNode* value = find(key);
   if (value == nullptr) fail(node_.line, path_ + key, "is missing");
   return to_number(*value, path_ + key);
 }
@@ -52,18 +52,18 @@ int YamlSection::integer(const std::string& key, int fallback) {
 }
 
 std::vector<double> YamlSection::numbers(const std::string& key) {
-  const YamlNode* value = find(key);
+  const file::YamlNode* value = find(key);
   std::vector<double> result;
   if (value == nullptr) return result;
-  if (value->kind != YamlNode::Kind::list) fail(value->line, path_ + key, "must be a list");
-  for (const YamlNode& item : value->items) result.push_back(to_number(item, path_ + key));
+  if (value->kind != file::YamlNode::Kind::list) fail(value->line, path_ + key, "must be a list");
+  for (const file::YamlNode& item : value->items) result.push_back(to_number(item, path_ + key));
   return result;
 }
 
 std::string YamlSection::text(const std::string& key) {
-  const YamlNode* value = find(key);
+  const file::YamlNode* value = find(key);
   if (value == nullptr) fail(node_.line, path_ + key, "is missing");
-  if (value->kind != YamlNode::Kind::scalar) fail(value->line, path_ + key, "must be a text");
+  if (value->kind != file::YamlNode::Kind::scalar) fail(value->line, path_ + key, "must be a text");
   return value->text;
 }
 
@@ -72,7 +72,7 @@ bool YamlSection::boolean(const std::string& key, bool fallback) {
 }
 
 void YamlSection::finish() const {
-  for (const YamlEntry& entry : node_.entries) {
+  for (const file::YamlEntry& entry : node_.entries) {
     if (asked_.contains(entry.key)) continue;
     std::string known;
     for (const std::string& key : asked_) known += (known.empty() ? "" : ", ") + key;
@@ -81,23 +81,23 @@ void YamlSection::finish() const {
 }
 
 void YamlSection::fail_at(const std::string& key, const std::string& what) {
-  const YamlNode* value = find(key);
+  const file::YamlNode* value = find(key);
   fail(value ? value->line : node_.line, path_ + key, what);
 }
 
-const YamlNode* YamlSection::find(const std::string& key) {
+const file::YamlNode* YamlSection::find(const std::string& key) {
   asked_.insert(key);
-  for (const YamlEntry& entry : node_.entries) {
+  for (const file::YamlEntry& entry : node_.entries) {
     if (entry.key == key) return &entry.value;
   }
   return nullptr;
 }
 
-double YamlSection::to_number(const YamlNode& value, const std::string& key) const {
+double YamlSection::to_number(const file::YamlNode& value, const std::string& key) const {
   double result = 0.0;
   const char* const end = value.text.data() + value.text.size();
   const auto [stop, error] = std::from_chars(value.text.data(), end, result);
-  if (value.kind != YamlNode::Kind::scalar || error != std::errc() || stop != end ||
+  if (value.kind != file::YamlNode::Kind::scalar || error != std::errc() || stop != end ||
       !std::isfinite(result)) {
     fail(value.line, key, "must be a number");
   }
@@ -109,4 +109,4 @@ void YamlSection::fail(int line, const std::string& key, const std::string& what
               file_ + ":" + std::to_string(line) + ": key " + key + ": " + what);
 }
 
-}  // namespace skycap::missions::file
+}  // namespace skycap::missions::equipment

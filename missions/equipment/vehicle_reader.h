@@ -1,5 +1,5 @@
 /// Vehicle descriptions: YAML files that say what a vehicle can do and how its autopilot flies it,
-/// and the presets that come with the program (flight/vehicles/*.yaml, compiled into it).
+/// and the presets that come with the program (flight/motion/presets/*.yaml, compiled into it).
 #pragma once
 
 #include <string>
@@ -8,7 +8,7 @@
 
 #include "flight/motion/vehicle.h"
 
-namespace skycap::missions::file {
+namespace skycap::missions::equipment {
 
 /// Reads the text of a description; `file` is what messages call it. A description with the key
 /// `like` starts from that preset and says what is different; any other says everything. Throws
@@ -23,4 +23,4 @@ std::vector<std::string_view> vehicle_presets();
 /// Error{bad_config} with the known names, or Error{bad_file}.
 flight::Vehicle find_vehicle(const std::string& name_or_file);
 
-}  // namespace skycap::missions::file
+}  // namespace skycap::missions::equipment
