@@ -30,8 +30,8 @@ int main() {
   const sim::Lidar lidar(config);
 
   // Half a second along x, eight metres before the scene.
-  const sim::Trajectory path({{.time = 0.0, .position = {-1.0, -8.0, 1.5}},
-                              {.time = 0.5, .position = {1.0, -8.0, 1.5}}});
+  const sim::Trajectory path(
+      {{.time = 0.0, .position = {-1.0, -8.0, 1.5}}, {.time = 0.5, .position = {1.0, -8.0, 1.5}}});
   const sim::LidarFlight flight{.flown = path, .believed = path};
 
   std::vector<MyPoint> buffer;
@@ -39,8 +39,8 @@ int main() {
   constexpr std::uint64_t piece = 1024;  // of firings: memory stays small, however long the flight
   sim::LidarReturns returns;
   for (std::uint64_t first = 0; first < firings; first += piece) {
-    returns = lidar.measure(scene, flight, {first, std::min(piece, firings - first)},
-                            std::move(returns));
+    returns =
+        lidar.measure(scene, flight, {first, std::min(piece, firings - first)}, std::move(returns));
     for (std::size_t i = 0; i < returns.size(); ++i) {
       const Eigen::Vector3d point = returns.origin + returns.points[i].cast<double>();
       buffer.push_back({point.x(), point.y(), point.z(), returns.intensities[i]});
