@@ -179,8 +179,8 @@ class LogBuilder {
   void add_sample(const Message& message) {
     const auto volts = message.number("Volt"), amperes = message.number("Curr");
     if (!volts || !amperes || !has_velocity_) return;
-    const int battery =
-        static_cast<int>(message.number_or("Inst", message.number_or("Instance", 0.0)));
+    const double battery = message.number_or("Inst", message.number_or("Instance", 0.0));
+    if (!(battery >= 0.0 && battery <= 255.0)) return;
     power_[battery] = *volts * *amperes;
     double power = 0.0;
     for (const auto& [number, one] : power_) power += one;
@@ -191,7 +191,9 @@ class LogBuilder {
   }
 
   void add_command(const Message& message) {
-    log_.commands.push_back({message.time(), static_cast<int>(message.number_or("CId", 0.0)),
+    const double command = message.number_or("CId", 0.0);
+    if (!(command >= 0.0 && command <= 65535.0)) return;
+    log_.commands.push_back({message.time(), static_cast<int>(command),
                              message.number_or("Prm1", 0.0), message.number_or("Prm2", 0.0),
                              message.number_or("Lat", 0.0), message.number_or("Lng", 0.0),
                              message.number_or("Alt", 0.0)});
@@ -200,7 +202,7 @@ class LogBuilder {
   FlightLog log_;
   Eigen::Vector3d velocity_ = Eigen::Vector3d::Zero();
   bool has_velocity_ = false;
-  std::map<int, double> power_;  ///< by battery
+  std::map<double, double> power_;  ///< by battery
 };
 
 }  // namespace

@@ -61,7 +61,7 @@ class ScriptWriter {
     return i == last || (i + 1 == last && is_down(route_.pieces[i]));
   }
 
-  /// What turning vehicle and gimbal takes longer than the leg.
+  /// What turning vehicle and gimbal takes longer than the leg. MAVLink files wait for that.
   double turning(const FlownPiece& piece, double moving) {
     if (next_stop_ == route_.stops.size()) return 0.0;
     const FlownStop& stop = route_.stops[next_stop_];
@@ -70,6 +70,7 @@ class ScriptWriter {
     const double yaw = turn_between(yaw_deg_, stop.yaw_deg);
     const double pitch = turn_between(pitch_deg_, stop.pitch_deg);
     yaw_deg_ = stop.yaw_deg, pitch_deg_ = stop.pitch_deg;
+    if (motion_.vehicle().dialect != Dialect::dji) return 0.0;
     return motion_.aimed_time(moving, yaw, pitch) - moving;
   }
 
@@ -124,12 +125,13 @@ SetPoint set_point(const ScriptedLeg& leg, double jerk, double time) {
 }
 
 double braking_time(const ScriptedLeg& leg, double jerk, double time) {
-  return state_on(leg, jerk, time).speed / leg.acceleration;
+  const double speed = state_on(leg, jerk, time).speed;
+  return speed > 0.0 ? speed / leg.acceleration : 0.0;
 }
 
 SetPoint braking_point(const ScriptedLeg& leg, double jerk, double time, double braking) {
   const MotionState begin = state_on(leg, jerk, time);
-  const double t = std::min(braking, begin.speed / leg.acceleration);
+  const double t = std::min(braking, braking_time(leg, jerk, time));
   const double length = (leg.to - leg.from).norm();
   MotionState state{begin.distance + t * (begin.speed - 0.5 * leg.acceleration * t),
                     begin.speed - leg.acceleration * t, 0.0};

@@ -19,6 +19,9 @@ constexpr double dji_least_level = 20.0, dji_most_level = 50.0, dji_landing = 5.
 /// PX4 holds before a return (COM_FAIL_ACT_T), ArduCopter over home (RTL_LOIT_TIME) [s].
 constexpr double px4_hold = 5.0, ardupilot_hold = 5.0;
 
+/// So near the pad's middle a vehicle is over the pad [m].
+constexpr double over_the_pad = 2.0;
+
 double distance_over_ground(const Vector3d& a, const Vector3d& b) {
   return (a - b).head<2>().norm();
 }
@@ -75,18 +78,28 @@ FlightScript return_script(const ReturnLaw& law, const Motion& motion, const Vec
                            RandomNumbers& random) {
   const Dialect dialect = law.dialects.front();
   const std::vector<Vector3d> way = return_way(law, place, random);
-  FlightScript script{
-      {.from = place, .to = place, .wait = dialect == Dialect::px4 ? px4_hold : 1.0}};
-  const double foot = way.back().z();
+  const Vector3d over = way[way.size() - 2];
+  const double foot = way.back().z(), seam = foot + law.landing_climb;
+  FlightScript script;
+  const auto append = [&](const ScriptedLeg& leg, bool is_over_pad) {
+    script.push_back(leg);
+    script.back().is_over_pad = is_over_pad;
+  };
+  // Called home while it takes off, it is where the pilot vouches for the air.
+  const bool begins_over_pad =
+      place.z() < seam && distance_over_ground(place, way.back()) < over_the_pad;
+  append({.from = place, .to = place, .wait = dialect == Dialect::px4 ? px4_hold : 1.0},
+         begins_over_pad);
   for (std::size_t i = 1; i + 1 < way.size(); ++i) {
-    script.push_back(scripted_leg(motion, way[i - 1], way[i]));
+    const bool is_first_climb = begins_over_pad && i == 1 && way[i].z() > seam;
+    const Vector3d middle = is_first_climb ? at_height(place, seam) : way[i - 1];
+    if (is_first_climb) append(scripted_leg(motion, place, middle), true);
+    append(scripted_leg(motion, middle, way[i]), false);
   }
   if (dialect == Dialect::ardupilot) script.back().wait += ardupilot_hold;
-  const Vector3d over = way[way.size() - 2];
-  const double vouched = std::min(over.z(), foot + law.landing_climb);
-  script.push_back(landing_leg(motion, over, vouched, foot));
-  script.push_back(landing_leg(motion, at_height(over, vouched), foot, foot));
-  script.back().is_over_pad = true;
+  const double vouched = std::min(over.z(), seam);
+  append(landing_leg(motion, over, vouched, foot), false);
+  append(landing_leg(motion, at_height(over, vouched), foot, foot), true);
   return script;
 }
 

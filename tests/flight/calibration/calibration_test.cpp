@@ -38,7 +38,7 @@ std::vector<Vector3d> velocities() {
   const auto fly = [&](const Vector3d& velocity, double time) {
     for (double t = 0.0; t < time; t += period) all.push_back(velocity);
   };
-  fly({0, 0, 0}, 60);
+  fly({0, 0, 0}, 70);
   fly({0, 0, 2.5}, 20);
   for (const double speed : {3.0, 6.0, 9.0}) {
     for (const Vector2d& way : {Vector2d(1, 0), Vector2d(0, 1), Vector2d(-1, 0), Vector2d(0, -1)}) {
@@ -46,7 +46,7 @@ std::vector<Vector3d> velocities() {
     }
   }
   fly({0, 0, -1.5}, 33);
-  fly({0, 0, 0}, 60);
+  fly({0, 0, 0}, 70);
   return all;
 }
 
