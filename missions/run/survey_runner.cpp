@@ -128,7 +128,8 @@ const char* name_of(survey::skycap::SkycapStop stop) {
 
 SurveyRecord run_survey(const file::Mission& mission, const scene::SurveyScene& scene,
                         std::uint64_t seed, unsigned threads, std::stop_token stop,
-                        const std::function<void(const JudgedView&)>& report) {
+                        const std::function<void(const JudgedView&)>& report,
+                        SurveyJournal* journal) {
   const derived::SurveySensor sensor(mission.sensor, seed);
   const std::unique_ptr<survey::Planner> planner =
       derived::make_planner(trial_mission(mission, scene, seed), threads);
@@ -174,6 +175,7 @@ SurveyRecord run_survey(const file::Mission& mission, const scene::SurveyScene& 
     record.views.push_back({view, meter.share()});
     if (report) report(record.views.back());
   };
+  if (journal != nullptr) journal->attach(ports, flight ? &*flight : nullptr);
   const survey::SurveyLimits limits = survey_limits(mission);
   record.stop_reason =
       survey::run_survey(*planner, first_view, limits, ports, std::move(stop)).stop_reason;

@@ -11,6 +11,7 @@
 #include "geometry/points/point_cloud.h"
 #include "missions/file/mission.h"
 #include "missions/run/survey_flight.h"
+#include "missions/run/survey_journal.h"
 #include "missions/scene/survey_scene.h"
 #include "survey/planner.h"
 #include "survey/skycap/skycap_planner.h"
@@ -56,9 +57,11 @@ const char* name_of(survey::skycap::SkycapStop stop);
 /// Surveys the mission's scene with that seed and so many threads (zero: all processors). The
 /// record does not depend on the threads but for its times. A mission with a vehicle goes only to
 /// views that it can safely reach. `report` is told of each view; it may be empty. Throws what
-/// planner, sensor and SurveyFlight throw.
+/// planner, sensor and SurveyFlight throw. With a journal the survey is written down, and goes on
+/// where the journal's ended: the record is the same but for its times.
 SurveyRecord run_survey(const file::Mission& mission, const scene::SurveyScene& scene,
                         std::uint64_t seed, unsigned threads, std::stop_token stop = {},
-                        const std::function<void(const JudgedView&)>& report = {});
+                        const std::function<void(const JudgedView&)>& report = {},
+                        SurveyJournal* journal = nullptr);
 
 }  // namespace skycap::missions::run

@@ -85,6 +85,8 @@ void add_plan(CLI::App& app, const Console& console, Action& action) {
   verb->add_option("--trials", options->trials,
                    "Run this many seeds; write trials.csv and trials.json")
       ->check(CLI::Range(1, 100'000));
+  verb->add_flag("--resume", options->resumes,
+                 "Go on with the survey that was interrupted in that folder, if there is one");
   verb->add_flag("--quiet", options->is_quiet, "Print nothing but errors");
   verb->add_flag("--verbose", options->is_verbose, "Print the planning time of each view by part");
   add_set_option(*verb, *keys);

@@ -18,6 +18,7 @@ struct PlanOptions {
   std::optional<std::filesystem::path> out;  ///< default: results/NAME
   std::vector<file::KeyOverride> overrides;
   std::size_t trials = 0;  ///< zero: one survey, with a mission package
+  bool resumes = false;  ///< goes on with an interrupted survey, if there is one; trials always do
   bool is_quiet = false;
   bool is_verbose = false;
 };
