@@ -9,12 +9,13 @@
 
 #include <cstddef>
 #include <filesystem>
-#include <memory>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "geometry/io/record_log.h"
 #include "missions/file/mission.h"
+#include "missions/run/reach_record.h"
 #include "missions/run/survey_flight.h"
 #include "missions/scene/survey_scene.h"
 #include "survey/survey_loop.h"
@@ -41,15 +42,12 @@ class SurveyJournal {
   void attach(survey::SurveyPorts& ports, SurveyFlight* flight);
 
  private:
-  /// What came of a view.
+  /// A view that was taken and what came of it.
   struct ViewRecord {
     geometry::View view;
-    std::size_t returns = 0;    ///< of the scan
-    std::size_t points = 0;     ///< kept so far
-    std::size_t refused = 0;    ///< proposals after it
-    bool is_reached = false;    ///< whether one was found that can be flown to
-    FlownLeg way;               ///< to it
-    std::size_t unreached = 0;  ///< SurveyFlight::refused() by then
+    std::size_t returns = 0;  ///< of the scan
+    std::size_t points = 0;   ///< kept so far
+    ReachRecord reach;        ///< of the views proposed after it
   };
 
   static std::string text_of(const ViewRecord& record);
@@ -57,8 +55,7 @@ class SurveyJournal {
   void read_known(const std::vector<std::string>& records);
   bool is_known() const { return at_ < known_.size(); }
   void begin_view(const geometry::View& view);
-  bool known_answer(SurveyFlight* flight);
-  void end_view(const survey::SurveyedView& view, const SurveyFlight* flight);
+  void end_view(const survey::SurveyedView& view);
   [[noreturn]] void fail(const std::string& what) const;
 
   std::filesystem::path file_;
@@ -67,6 +64,7 @@ class SurveyJournal {
   std::vector<ViewRecord> known_;
   std::size_t at_ = 0;  ///< number of the view that the survey is at
   ViewRecord current_;
+  ReachMemory reach_;
 };
 
 }  // namespace skycap::missions::run
