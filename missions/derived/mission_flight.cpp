@@ -34,9 +34,7 @@ constexpr std::size_t most_expansions = 50'000;
 
 }  // namespace
 
-const flight::Vehicle& vehicle_of(const file::Mission& mission) {
-  return flight::vehicle_profile(mission.flight.vehicle);
-}
+const flight::Vehicle& vehicle_of(const file::Mission& mission) { return mission.flight.described; }
 
 flight::ClearanceBudget clearance_of(const file::Mission& mission) {
   const file::FlightConfig& config = mission.flight;

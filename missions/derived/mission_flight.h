@@ -16,7 +16,7 @@
 
 namespace skycap::missions::derived {
 
-/// The mission's vehicle. Throws Error{bad_config} if it has none.
+/// What flies the mission, which must be one that is flown.
 const flight::Vehicle& vehicle_of(const file::Mission& mission);
 
 /// The clearance's terms: the margin is what errors and vehicle leave of it.

@@ -12,6 +12,7 @@
 #include "flight/space/interruptible_space.h"
 #include "geometry/error.h"
 #include "missions/derived/mission_flight.h"
+#include "missions/equipment/vehicle_reader.h"
 
 namespace skycap::missions::package {
 namespace {
@@ -57,14 +58,14 @@ flight::FlightPlan in_dialect(flight::FlightPlan plan, Format format,
   };
   if (format == Format::plan && vehicle.dialect == Dialect::dji) {
     vehicle.dialect = Dialect::px4;
-    vehicle.mode = flight::vehicle_profile("generic").mode;
+    vehicle.mode = equipment::find_vehicle("generic").mode;
     note("the .plan file", "PX4");
   } else if (format == Format::waypoints && vehicle.dialect == Dialect::dji) {
     vehicle.dialect = Dialect::ardupilot;
-    vehicle.mode = flight::vehicle_profile("generic_ardupilot").mode;
+    vehicle.mode = equipment::find_vehicle("generic_ardupilot").mode;
     note("the .waypoints file", "ArduPilot");
   } else if (format == Format::kmz && vehicle.dialect != Dialect::dji) {
-    const flight::Vehicle& dji = flight::vehicle_profile(dji_stand_in);
+    const flight::Vehicle dji = equipment::find_vehicle(dji_stand_in);
     vehicle.dialect = dji.dialect;
     vehicle.wpml = dji.wpml;
     vehicle.mode = dji.mode;

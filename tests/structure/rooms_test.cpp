@@ -66,15 +66,16 @@ Rooms house() {
   add_mission_room("file");
   add_mission_room("plugins");
   add_mission_room("judge");
-  add_mission_room("derived", "file");
+  add_mission_room("equipment", "file");
+  add_mission_room("derived", "file", "equipment");
   add_mission_room("scene", "file", "derived", "judge", "plugins");
   add_mission_room("recording", "file", "derived", "plugins");
   add_mission_room("run", "file", "derived", "judge", "scene");
-  add_mission_room("package", "file", "derived", "run");
+  add_mission_room("package", "file", "equipment", "derived", "run");
   add_mission_room("live", "file", "derived", "scene", "run");
   add_mission_room("benchmark", "file", "derived", "judge", "plugins", "scene", "run", "package");
-  add_mission_room("verbs", "file", "derived", "judge", "plugins", "scene", "recording", "run",
-                   "package", "live", "benchmark");
+  add_mission_room("verbs", "file", "equipment", "derived", "judge", "plugins", "scene",
+                   "recording", "run", "package", "live", "benchmark");
   return rooms;
 }
 
