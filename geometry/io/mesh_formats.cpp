@@ -7,6 +7,7 @@
 #include <optional>
 #include <string>
 #include <tuple>
+#include <unordered_map>
 
 #include "geometry/error.h"
 #include "geometry/io/ply.h"
@@ -76,10 +77,12 @@ PolygonSoup parse_obj(std::string_view name, std::string_view text) {
   PolygonSoup soup;
   std::vector<std::uint32_t> lines;  // of each polygon, for the check of its corners
   std::uint32_t material = 0;
+  std::unordered_map<std::string, std::uint32_t> materials;  // numbers by names
   const auto use_material = [&](const std::string& wanted) {
-    const auto known = std::ranges::find(soup.materials, wanted);
-    material = static_cast<std::uint32_t>(known - soup.materials.begin());
-    if (known == soup.materials.end()) soup.materials.push_back(wanted);
+    const auto number = static_cast<std::uint32_t>(soup.materials.size());
+    const auto [known, is_new] = materials.emplace(wanted, number);
+    material = known->second;
+    if (is_new) soup.materials.push_back(wanted);
   };
   do {
     const auto keyword = scanner.word_in_line();

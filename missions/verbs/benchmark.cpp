@@ -218,7 +218,7 @@ class Benchmark {
       if (prepared) continue;
       progress_.say(item.entry->mission.name + ": measuring what could be covered at all");
       scene::SurveyScene scene(item.entry->mission, item.entry->file.parent_path());
-      benchmark::SceneTruth truth = benchmark::scene_truth(scene, options_.threads);
+      benchmark::SceneTruth truth = benchmark::scene_truth(scene, options_.threads, console_.stop);
       prepared.reset(new PreparedScene{std::move(scene), std::move(truth)});
     }
   }
@@ -298,6 +298,7 @@ class Benchmark {
 }  // namespace
 
 int benchmark(const BenchmarkOptions& options, const Console& console) {
+  const HoldsResults results(console);
   return Benchmark(options, console).run();
 }
 

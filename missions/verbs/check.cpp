@@ -5,6 +5,7 @@
 
 #include "flight/export/export.h"
 #include "flight/interpreter/interpret.h"
+#include "geometry/error.h"
 #include "geometry/surfaces/mesh.h"
 #include "missions/derived/mission_flight.h"
 #include "missions/derived/resolved_mission.h"
@@ -55,6 +56,15 @@ std::vector<Eigen::Vector3d> places_of(const flight::FlownRoute& route) {
   return places;
 }
 
+/// Errors of the mission's model name the mission, too.
+geometry::Mesh model_of(const file::Mission& mission, const std::filesystem::path& file) {
+  try {
+    return scene::placed_model(mission.scene, file.parent_path());
+  } catch (const Error& error) {
+    throw Error(error.kind(), file.string() + ": " + error.what());
+  }
+}
+
 /// Proves what a route file's vehicle flies against the mission's scene as it truly is.
 int check_route_file(const CheckOptions& options, const file::Mission& mission,
                      const geometry::Mesh& model, const Console& console) {
@@ -95,7 +105,7 @@ int check_route_file(const CheckOptions& options, const file::Mission& mission,
 
 int check(const CheckOptions& options, const Console& console) {
   const file::Mission mission = derived::read_mission(options.mission, options.overrides);
-  const geometry::Mesh model = scene::placed_model(mission.scene, options.mission.parent_path());
+  const geometry::Mesh model = model_of(mission, options.mission);
   if (options.route) return check_route_file(options, mission, model, console);
   const survey::see::SeeConfig& see = mission.planner.see;
   const Eigen::Vector3d size = geometry::bounding_box(model).sizes();

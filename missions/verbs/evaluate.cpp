@@ -49,7 +49,11 @@ Truth truth_of(const EvaluateOptions& options) {
   }
   file::SceneConfig scene;
   scene.model = options.model;
-  return {scene::load_model(scene, ""), *options.distance, options.samples};
+  try {
+    return {scene::load_model(scene, ""), *options.distance, options.samples};
+  } catch (const Error& error) {
+    throw Error(error.kind(), std::string("--model: ") + error.what());
+  }
 }
 
 /// What is compared with the truth.

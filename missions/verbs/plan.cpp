@@ -82,15 +82,18 @@ int plan_once(const PlanOptions& options, const file::Mission& mission,
     if (options.is_verbose) console.err << times_row(views, judged) << std::flush;
     progress.show(progress_text(mission.name, ++views, judged, planning_time));
   };
+  const HoldsResults results(console);
   const run::SurveyRecord record =
       run::run_survey(mission, scene, mission.seed, mission.threads, console.stop, report);
 
   package::CoverageFigures coverage{record.coverage(), {}, {}};
   if (record.stop_reason != survey::StopReason::interrupted) {  // the user wants to leave
     progress.show(mission.name + ": measuring what could be covered at all");
-    const std::vector<std::uint8_t> is_visible = scene.visible(mission.threads);
-    coverage.visible = judge::covered_share(record.is_covered, is_visible);
-    coverage.ceiling = scene.ceiling(is_visible, mission.threads);
+    const std::vector<std::uint8_t> is_visible = scene.visible(mission.threads, console.stop);
+    coverage.ceiling = scene.ceiling(is_visible, mission.threads, console.stop);
+    if (!console.stop.stop_requested()) {
+      coverage.visible = judge::covered_share(record.is_covered, is_visible);
+    }
   }
   progress.show(mission.name + ": writing " + folder.path().string());
   const std::optional<package::SurveyMission> flight =
@@ -116,6 +119,7 @@ int plan_trials(const PlanOptions& options, const file::Mission& mission,
                 const scene::SurveyScene& scene, geometry::OutputFolder& folder,
                 const Console& console) {
   ProgressLine progress(console, options.is_quiet);
+  const HoldsResults results(console);
   std::size_t ended = 0;
   progress.show(mission.name + ": measuring what could be covered at all");
   const auto report = [&](const benchmark::Trial& trial) {
