@@ -77,10 +77,13 @@ int check_route_file(const CheckOptions& options, const file::Mission& mission,
   obstacles.mesh = above(model, facts.pad.z() + pad_roughness);
   const flight::KnownSpace pad_space(without_ground(obstacles));
 
+  ProgressLine progress(console, false);
+  progress.show(file + ": proving " + std::to_string(route.pieces.size()) + " legs");
   const double asked_for = mission.flight.clearance;
   const flight::FlownProof proof =
       prove(route, space, pad_space, std::max(0.0, asked_for - flight::rounding_bound),
             asked_for + flight::reported_surplus);
+  progress.clear();
   for (const flight::Problems& problems : {route.problems, proof.problems}) {
     for (const std::string& problem : problems) console.out << file << ": " << problem << "\n";
   }
@@ -105,7 +108,10 @@ int check_route_file(const CheckOptions& options, const file::Mission& mission,
 
 int check(const CheckOptions& options, const Console& console) {
   const file::Mission mission = derived::read_mission(options.mission, options.overrides);
+  ProgressLine progress(console, false);
+  progress.show(mission.name + ": making the scene ready");
   const geometry::Mesh model = model_of(mission, options.mission);
+  progress.clear();
   if (options.route) return check_route_file(options, mission, model, console);
   const survey::see::SeeConfig& see = mission.planner.see;
   const Eigen::Vector3d size = geometry::bounding_box(model).sizes();

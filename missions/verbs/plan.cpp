@@ -153,6 +153,8 @@ int plan(const PlanOptions& options, const Console& console) {
   const file::Mission mission = derived::read_mission(options.mission, options.overrides);
   geometry::OutputFolder folder(
       options.out.value_or(std::filesystem::path("results") / mission.name));
+  ProgressLine progress(console, options.is_quiet);
+  progress.show(mission.name + ": making the scene ready");
   try {
     const scene::SurveyScene scene(mission, options.mission.parent_path());
     return options.trials > 0 ? plan_trials(options, mission, scene, folder, console)
