@@ -10,9 +10,9 @@
 
 namespace skycap::missions::derived {
 
-/// Reads the scanner that the mission names, fills in the values that follow from others, and
-/// checks that the keys go together and that the mission's planner can work with its settings.
-/// Throws Error{bad_config} as MissionFile::refuse() for the first that is wrong.
+/// Reads the scanner and the vehicle that the mission names, fills in the values that follow from
+/// others, and checks that the keys go together and that the mission's planner can work with its
+/// settings. Throws Error{bad_config} as MissionFile::refuse() for the first that is wrong.
 file::Mission resolved(file::MissionFile given);
 
 /// read_mission_file() and resolved(); throws what they throw.

@@ -196,6 +196,58 @@ void add_export(CLI::App& app, const Console& console, Action& action) {
   });
 }
 
+void add_fly_test(CLI::App& app, const Console& console, Action& action) {
+  CLI::App* verb = app.add_subcommand(
+      "fly-test", "Fly a mission package's routes many times in wind, with failsafes");
+  const auto options = std::make_shared<FlyTestVerbOptions>();
+  const auto keys = std::make_shared<KeyOptions>();
+  verb->add_option("package", options->package, "Folder that plan wrote")->required();
+  verb->add_option("--flights", options->flights, "Of each route file; default 100")
+      ->check(CLI::Range(1, 1'000'000));
+  verb->add_option("--returns", options->returns,
+                   "Ways home from places at random; default 1000. 0: none")
+      ->check(CLI::Range(0, 100'000'000));
+  verb->add_option("--wind", options->wind_speed,
+                   "Strongest steady wind, which gusts come on top of [m/s]; default the "
+                   "mission's, at least 5")
+      ->check(number_between(0.0, 100.0));
+  verb->add_option("--position-error", options->position_error,
+                   "Greatest error of the receiver [m]; default the mission's")
+      ->check(number_between(0.0, 1000.0));
+  verb->add_option("--return-height", options->return_height,
+                   "The height of return that the vehicle is set to, above take-off [m]")
+      ->check(number_between(0.0, 10'000.0));
+  verb->add_option("--truth", options->truth,
+                   "Mission file: judge the flights against its scene as it truly is, too");
+  verb->add_option("--out", options->out, "Folder for fly_test.json; default the package");
+  verb->add_option("--seed", keys->seed, "Seed, in place of the mission's");
+  verb->add_option("--threads", keys->threads, "Threads, 0 for all processors");
+  verb->add_flag("--quiet", options->is_quiet, "Print nothing but errors");
+  add_set_option(*verb, *keys);
+  verb->callback([=, &console, &action] {
+    options->overrides = keys->overrides();
+    action = [=, &console] { return fly_test(*options, console); };
+  });
+}
+
+void add_calibrate(CLI::App& app, const Console& console, Action& action) {
+  CLI::App* verb =
+      app.add_subcommand("calibrate", "Make a vehicle file from a log of the vehicle's own flight");
+  const auto options = std::make_shared<CalibrateOptions>();
+  verb->add_option("log", options->log, "ArduPilot's dataflash log (.bin), or .csv")->required();
+  verb->add_option("--vehicle", options->vehicle, "Preset that it is like, such as m350_rtk")
+      ->required();
+  verb->add_option("--mass", options->mass, "Flown, with payload, in place of the preset's [kg]")
+      ->check(number_between(0.01, 1000.0));
+  verb->add_option("--battery", options->battery_wh, "In place of the preset's [Wh]")
+      ->check(number_between(0.1, 1e5));
+  verb->add_option("--air-density", options->air_density, "Of that day; default 1.225 kg/m^3")
+      ->check(number_between(0.4, 1.9));
+  verb->add_option("--out", options->out, "Vehicle file; default LOG.yaml");
+  verb->callback(
+      [=, &console, &action] { action = [=, &console] { return calibrate(*options, console); }; });
+}
+
 void add_evaluate(CLI::App& app, const Console& console, Action& action) {
   CLI::App* verb = app.add_subcommand(
       "evaluate", "Coverage, accuracy and density of a cloud or mesh against a model");
@@ -289,6 +341,8 @@ int parse_and_run(const std::vector<std::string>& arguments, const Console& cons
     add_scan(app, console, action);
     add_check(app, console, action);
     add_export(app, console, action);
+    add_fly_test(app, console, action);
+    add_calibrate(app, console, action);
     add_evaluate(app, console, action);
     add_reconstruct(app, console, action);
     add_model(app, console, action);
