@@ -8,8 +8,9 @@
 #include "geometry/place/world.h"
 #include "missions/benchmark/trial_files.h"
 #include "missions/derived/resolved_mission.h"
+#include "missions/equipment/sensor_reader.h"
+#include "missions/equipment/vehicle_reader.h"
 #include "missions/file/mission_keys.h"
-#include "missions/file/sensor_reader.h"
 #include "missions/package/package.h"
 #include "tests/fuzz/readers.h"
 #include "tests/fuzz/trial_run.h"
@@ -45,8 +46,14 @@ int run_mission(const std::uint8_t* bytes, std::size_t size) {
 
 int run_sensor(const std::uint8_t* bytes, std::size_t size) {
   return run_reader("s.yaml", [&] {
-    const auto sensor = file::read_sensor(text_of(bytes, size), "s.yaml");
+    const auto sensor = missions::equipment::read_sensor(text_of(bytes, size), "s.yaml");
     std::visit([](const auto& config) { config.validate(); }, sensor.sensor);
+  });
+}
+
+int run_vehicle(const std::uint8_t* bytes, std::size_t size) {
+  return run_reader("v.yaml", [&] {
+    missions::equipment::read_vehicle(text_of(bytes, size), "v.yaml").validate();
   });
 }
 
@@ -86,11 +93,9 @@ int run_journal(const std::uint8_t* bytes, std::size_t size) {
   return 0;
 }
 
-constexpr Reader readers[] = {{"mission", run_mission},
-                              {"sensor", run_sensor},
-                              {"summary", run_summary},
-                              {"trial", run_trial},
-                              {"journal", run_journal}};
+constexpr Reader readers[] = {{"mission", run_mission}, {"sensor", run_sensor},
+                              {"vehicle", run_vehicle}, {"summary", run_summary},
+                              {"trial", run_trial},     {"journal", run_journal}};
 
 }  // namespace
 

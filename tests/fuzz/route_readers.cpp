@@ -1,10 +1,12 @@
 #include <cmath>
+#include <limits>
 
+#include "flight/calibration/flight_log.h"
 #include "flight/export/export.h"
 #include "flight/export/parameters.h"
 #include "flight/interpreter/interpret.h"
-#include "flight/motion/vehicle.h"
 #include "geometry/place/world.h"
+#include "missions/equipment/vehicle_reader.h"
 #include "missions/recording/scan_route.h"
 #include "tests/fuzz/readers.h"
 #include "tests/fuzz/trial_run.h"
@@ -24,7 +26,7 @@ int run_route(const char* name, const std::uint8_t* bytes, std::size_t size) {
     const auto height = flight::read_return_height(path);
     require(!height || std::isfinite(*height), "a height of return that is no number");
     flight::FlightFacts facts{.site = site};
-    facts.vehicle = flight::vehicle_profile("generic");
+    facts.vehicle = missions::equipment::find_vehicle("generic");
     for (const flight::FlownPiece& piece : flight::interpret_file(path, facts).pieces) {
       require(piece.to.allFinite(), "a stretch to nowhere");
     }
@@ -65,6 +67,18 @@ int run_parameters(const std::uint8_t* bytes, std::size_t size) {
   });
 }
 
+int run_log(const char* name, const std::uint8_t* bytes, std::size_t size) {
+  return run_reader(name, [&] {
+    double last = -std::numeric_limits<double>::infinity();
+    const auto log = flight::read_flight_log(file_with(name, text_of(bytes, size)));
+    for (const flight::LogSample& sample : log.samples) {
+      require(sample.time >= last, "a log that goes back in time");
+      require(sample.velocity.allFinite() && std::isfinite(sample.power), "a sample of no number");
+      last = sample.time;
+    }
+  });
+}
+
 constexpr Reader readers[] = {
     {"plan", [](const std::uint8_t* b, std::size_t n) { return run_route("m.plan", b, n); }},
     {"waypoints",
@@ -78,6 +92,8 @@ constexpr Reader readers[] = {
     {"tum", [](const std::uint8_t* b, std::size_t n) { return run_trajectory("m.tum", b, n); }},
     {"views",
      [](const std::uint8_t* b, std::size_t n) { return run_scan_route("views.csv", b, n); }},
+    {"dataflash", [](const std::uint8_t* b, std::size_t n) { return run_log("log.bin", b, n); }},
+    {"log", [](const std::uint8_t* b, std::size_t n) { return run_log("log.csv", b, n); }},
     {"parameters", run_parameters},
 };
 
