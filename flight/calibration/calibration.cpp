@@ -119,7 +119,7 @@ std::size_t take_over(const std::vector<LogParameter>& parameters, MissionMode& 
 std::vector<double> settlings(const std::vector<LogCommand>& commands, const Vehicle& vehicle) {
   constexpr int last_navigation = 95;
   std::vector<double> excesses;
-  std::optional<Vector3d> place;
+  std::vector<Vector3d> way;  // where legs have ended since take-off
   const LogCommand* under_way = nullptr;
   Conditions conditions;
   conditions.cruise_speed = std::min(conditions.cruise_speed, vehicle.max_speed);
@@ -137,15 +137,15 @@ std::vector<double> settlings(const std::vector<LogCommand>& commands, const Veh
       const Vector3d end =
           frame->to_local({under_way->latitude_deg, under_way->longitude_deg, under_way->height});
       const bool stops = under_way->first_parameter > 0.0 || item.command == command::delay;
-      if (place && stops && (end - *place).norm() > 1.0) {
+      if (!way.empty() && stops && (end - way.back()).norm() > 1.0) {
         const Motion motion(vehicle, conditions);
-        const double law = motion.leg_time(end - *place) - vehicle.mode.settle_time;
+        const double law = motion.leg_time(end - way.back()) - vehicle.mode.settle_time;
         excesses.push_back(item.time - under_way->time - under_way->first_parameter - law);
       }
-      place = end;
+      way.push_back(end);
     }
     under_way = item.command == command::waypoint ? &item : nullptr;
-    if (item.command == command::takeoff || item.command == command::land) place.reset();
+    if (item.command == command::takeoff || item.command == command::land) way.clear();
   }
   return excesses;
 }

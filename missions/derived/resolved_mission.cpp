@@ -92,7 +92,21 @@ file::Mission resolved(file::MissionFile given) {
 
 file::Mission read_mission(const std::filesystem::path& file,
                            const std::vector<file::KeyOverride>& overrides) {
-  return resolved(file::read_mission_file(file, overrides));
+  file::MissionFile given = file::read_mission_file(file, overrides);
+  if (given.mission.scene.model.empty()) {
+    given.refuse(
+        "scene.model",
+        "is missing; give a text, such as builtin:teapot. Without a scene a mission is for "
+        "live surveys: skycap next, serve and finish");
+  }
+  return resolved(std::move(given));
+}
+
+file::Mission read_live_mission(const std::filesystem::path& file,
+                                const std::vector<file::KeyOverride>& overrides) {
+  file::MissionFile given = file::read_mission_file(file, overrides);
+  if (given.mission.scene.model.empty()) check_live(given);
+  return resolved(std::move(given));
 }
 
 file::Mission parse_mission(const std::string& text, const std::string& name,

@@ -18,6 +18,7 @@ struct PlanOptions {
   std::optional<std::filesystem::path> out;  ///< default: results/NAME
   std::vector<file::KeyOverride> overrides;
   std::size_t trials = 0;  ///< zero: one survey, with a mission package
+  bool resumes = false;  ///< goes on with an interrupted survey, if there is one; trials always do
   bool is_quiet = false;
   bool is_verbose = false;
 };
@@ -26,6 +27,35 @@ struct PlanOptions {
 /// Exit code 1 if the survey was interrupted, could not go anywhere from its first view, or leaves
 /// no route.
 int plan(const PlanOptions& options, const Console& console);
+
+/// Of which live survey.
+struct LiveOptions {
+  std::filesystem::path mission;
+  std::filesystem::path survey;  ///< its folder
+  std::vector<file::KeyOverride> overrides;
+};
+
+struct NextOptions {
+  LiveOptions live;
+  std::optional<std::filesystem::path> scan;       ///< to be taken in first
+  std::string pose;                                ///< of the scan's sensor; either this
+  std::optional<std::filesystem::path> pose_file;  ///< or this
+  std::string lens;                                ///< of a depth image
+  double depth_unit = 0.001;                       ///< of a depth image [m]
+  bool is_in_world = false;                        ///< the points of a cloud
+  std::string id;                                  ///< of the scan; default: its digest
+  std::optional<std::string> refusal;              ///< why the proposed view is not wanted
+  bool is_json = false;
+  bool is_quiet = false;
+};
+
+/// Says where a live survey is to measure next. Exit code 0: there; 10: nowhere, it is over; 11:
+/// every view that is wanted was refused.
+int next(const NextOptions& options, const Console& console);
+
+/// Writes the mission package of a live survey into its folder; exit code 1 if it has no route. The
+/// survey may go on afterwards.
+int finish(const LiveOptions& options, const Console& console);
 
 struct BenchmarkOptions {
   std::vector<std::filesystem::path> missions;

@@ -43,7 +43,7 @@ build_against_installed(own_sensor ${SOURCE}/examples/own_sensor ${heavy} Ceres 
 expect_output(own_sensor "views, [0-9]+ points, (9[0-9]|100)[.][0-9] % believed covered\n$")
 build_against_installed(certify_route ${SOURCE}/examples/certify_route ${heavy} embree PNG)
 # Only the third leg is too near: it crosses the roof, which is 30 m high, at 31 m.
-expect_output(certify_route "^leg 2: 1[.]00 m from [^\n]*\n3 of 4 legs keep 2 m\n$")
+expect_output(certify_route "^leg 2: 1[.]000 m from [^\n]*\n3 of 4 legs keep 2 m\n$")
 build_against_installed(simulate_lidar ${SOURCE}/examples/simulate_lidar ${heavy} Ceres)
 expect_output(simulate_lidar "^[1-9][0-9]* returns of 80000 shots\n$")
 
