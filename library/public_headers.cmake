@@ -36,6 +36,7 @@ set(supporting_headers
   flight/autopilot/mission_mode.h
   flight/export/text.h
   flight/motion/curve.h
+  flight/motion/flight_style.h
   flight/motion/motion.h
   flight/motion/smoothing.h
   flight/paths/path.h
@@ -44,13 +45,10 @@ set(supporting_headers
   flight/way_home/return_law.h
   flight/way_home/return_proof.h
   geometry/directions/spherical_cap.h
-  geometry/points/density.h
-  geometry/points/point_grid.h
-  geometry/points/spaced_points.h
-  geometry/points/spatial_index.h
-  geometry/points/surface_frame.h
+  geometry/points/outlier_rule.h
+  sim/sensors/depth_camera_config.h
+  sim/sensors/navigation_errors.h
   sim/sensors/noise.h
-  survey/see/frontier.h
-  survey/see/nearest_views.h
-  survey/see/occlusion.h
-  survey/see/view_adjustment.h)
+  survey/see/readings.h
+  survey/see/see_config.h
+  survey/skycap/skycap_config.h)

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <numbers>
 #include <vector>
 
 #include "flight/calibration/power_fit.h"
@@ -11,6 +10,7 @@
 #include "flight/export/mission_items.h"
 #include "flight/export/text.h"
 #include "flight/motion/motion.h"
+#include "geometry/angle.h"
 #include "geometry/error.h"
 
 namespace skycap::flight {
@@ -18,7 +18,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr double degree = std::numbers::pi / 180.0;
+constexpr double degree = geometry::radians_per_degree;
 
 /// How much of a kind of flight a log must hold [s], and what is counted as that kind.
 struct Needed {

@@ -3,21 +3,19 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <numbers>
 
 #include "flight/autopilot/mission_mode.h"
+#include "geometry/angle.h"
 
 namespace skycap::flight {
 namespace {
 
 using Eigen::Vector3d;
 
-constexpr double radian = std::numbers::pi / 180.0;
-
 /// The shorter way from one heading to another [rad]; nothing to do where one is not given.
 double turn_between(double from_deg, double to_deg) {
   if (std::isnan(from_deg) || std::isnan(to_deg)) return 0.0;
-  return std::remainder(to_deg - from_deg, 360.0) * radian;
+  return std::remainder(to_deg - from_deg, 360.0) * geometry::radians_per_degree;
 }
 
 /// Follows a route's pieces, and its stops beside them.

@@ -81,8 +81,7 @@ TEST_F(ResumedPlan, EndsAsIfNothingHadHappened) {
   };
   for (const auto& [mission, planner] : {Case{quick_mission(), "see++"},
                                          {quick_mission(), "oa"},
-                                         {flown_mission(), "skycap"},
-                                         {flown_mission(), "see++"}}) {
+                                         {flown_mission(), "skycap"}}) {
     folder_.write("m.yaml", mission);
     const std::vector<std::string> more{"--planner", planner, "--max-views", "9"};
     ASSERT_EQ(run_skycap(plan("whole", more)).exit_code, 0) << planner;
