@@ -19,7 +19,7 @@ using Eigen::Isometry3d;
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 
-constexpr double farthest_point = 8192.0;  // [m]: beyond, single precision moves by half a mm
+constexpr double farthest_point = 16384.0;  // [m]: beyond, single precision moves by a millimetre
 
 std::vector<double> numbers_of(const std::string& text, const std::string& what) {
   geometry::TextScanner scanner(what, text);
@@ -203,7 +203,7 @@ void require_usable(const geometry::Scan& scan, const file::Mission& mission) {
   for (std::size_t i = 0; i < scan.points.size(); ++i) {
     if (geometry::is_place(scan.points[i].cast<double>(), farthest_point)) continue;
     refuse("has point " + std::to_string(i) +
-           " that is not finite or farther than 8192 m from the "
+           " that is not finite or farther than 16384 m from the "
            "origin; give points and pose in a local frame");
   }
   const bool is_organised = !scan.pixels.empty();

@@ -75,6 +75,18 @@ bool send_all(int handle, const Message& message) {
 
 Message error_message(const std::string& what) { return {{{"type", "error"}, {"what", what}}, {}}; }
 
+/// Says something to a client that is let go, and waits a moment for it to listen: what it has sent
+/// and nobody reads would otherwise have the connection torn down before.
+void dismiss(int handle, const Message& message) {
+  send_all(handle, message);
+  ::shutdown(handle, SHUT_WR);
+  std::array<char, 4096> unread{};
+  constexpr int most_reads = 16, moment = 50;  // [ms]
+  for (int i = 0; i < most_reads && is_readable(handle, moment); ++i) {
+    if (::recv(handle, unread.data(), unread.size(), MSG_DONTWAIT) <= 0) return;
+  }
+}
+
 /// A client, from its coming to its going.
 class Client {
  public:
@@ -86,7 +98,7 @@ class Client {
       return receive(reason) && answer(session, reason);
     } catch (const Error& failure) {  // what it sends are no messages
       reason = failure.what();
-      send_all(handle_.get(), error_message(reason));
+      dismiss(handle_.get(), error_message(reason));
       return false;
     }
   }
@@ -97,7 +109,7 @@ class Client {
       const bool is_late = reader_.is_within_message() && Clock::now() - heard_ > patience;
       if (!is_late) return true;
       reason = "sent a part of a message and no more for 30 s";
-      send_all(handle_.get(), error_message(reason));
+      dismiss(handle_.get(), error_message(reason));
       return false;
     }
     const ssize_t count = ::recv(handle_.get(), chunk_.data(), chunk_.size(), MSG_DONTWAIT);
@@ -204,7 +216,7 @@ void Server::run(Session& session, const std::function<void(const std::string&)>
     if (is_readable(listener_, client ? 0 : poll_period)) {
       Handle visitor(::accept4(listener_, nullptr, nullptr, SOCK_CLOEXEC));
       if (visitor.is_open() && client) {
-        send_all(visitor.get(), error_message("another client is served; come back later"));
+        dismiss(visitor.get(), error_message("another client is served; come back later"));
         note("a second client was sent away");
       } else if (visitor.is_open()) {
         client.emplace(std::move(visitor));

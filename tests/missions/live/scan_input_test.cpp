@@ -187,8 +187,8 @@ TEST(RequireUsable, RefusesScansThatWouldHarm) {
   scan.pixels = {5, 6};
   scan.points[1].x() = NAN;
   EXPECT_THAT(message(scan), HasSubstr("point 1"));
-  scan.points[1].x() = 9000;
-  EXPECT_THAT(message(scan), HasSubstr("8192 m"));
+  scan.points[1].x() = 20000;
+  EXPECT_THAT(message(scan), HasSubstr("16384 m"));
 }
 
 }  // namespace

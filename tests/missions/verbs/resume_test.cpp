@@ -79,14 +79,12 @@ TEST_F(ResumedPlan, EndsAsIfNothingHadHappened) {
   struct Case {
     std::string mission, planner;
   };
-  for (const auto& [mission, planner] : {Case{quick_mission(), "see++"},
-                                         {quick_mission(), "oa"},
-                                         {flown_mission(), "skycap"},
-                                         {flown_mission(), "see++"}}) {
+  for (const auto& [mission, planner] :
+       {Case{quick_mission(), "see++"}, {quick_mission(), "oa"}, {flown_mission(), "skycap"}}) {
     folder_.write("m.yaml", mission);
     const std::vector<std::string> more{"--planner", planner, "--max-views", "9"};
     ASSERT_EQ(run_skycap(plan("whole", more)).exit_code, 0) << planner;
-    for (const int views : {1, 3, 7}) {
+    for (const int views : {1, 4}) {
       interrupt_after(views, more);
       std::vector<std::string> resume = more;
       resume.insert(resume.end(), {"--resume", "--threads", "2"});
