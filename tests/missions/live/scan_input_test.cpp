@@ -88,6 +88,18 @@ TEST(PoseText, IsReadInEveryLayout) {
   }
 }
 
+/// As trackers write it; of the data set 7-Scenes.
+TEST(PoseText, IsMadeARotation) {
+  const Isometry3d pose = parse_pose_text(
+      "0.9093129 0.2726223 -0.3142243 -0.34\n-0.2724862 0.9610498 0.0452796 0.016\n"
+      "0.3143392 0.0444496 0.9482094 0.297\n0 0 0 1\n",
+      "pose");
+  EXPECT_LT((pose.linear() * pose.linear().transpose() - Eigen::Matrix3d::Identity()).norm(),
+            1e-14);
+  EXPECT_NEAR(pose.linear()(0, 0), 0.9093, 1e-3);
+  EXPECT_EQ(pose.translation(), Vector3d(-0.34, 0.016, 0.297));
+}
+
 TEST(PoseText, ThatIsNoPoseIsRefused) {
   for (const std::string text :
        {"", "1 2 3", "1 2 3 0 0 0 0", "1 2 3 0 0 0 2", "nan 0 0 0 0 0 1", "1e300 0 0 0 0 0 1",
