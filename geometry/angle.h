@@ -6,5 +6,6 @@
 namespace skycap::geometry {
 
 inline constexpr double radians_per_degree = std::numbers::pi / 180.0;
+inline constexpr double degrees_per_radian = 180.0 / std::numbers::pi;
 
 }  // namespace skycap::geometry

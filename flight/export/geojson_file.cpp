@@ -1,9 +1,9 @@
 #include <cmath>
-#include <numbers>
 
 #include <nlohmann/json.hpp>
 
 #include "flight/export/map_files.h"
+#include "geometry/angle.h"
 #include "geometry/io/json.h"
 
 namespace skycap::flight {
@@ -11,7 +11,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr double to_deg = 180.0 / std::numbers::pi;
+using geometry::degrees_per_radian;
 
 double rounded(double value, double steps) { return std::round(value * steps) / steps; }
 
@@ -61,8 +61,8 @@ class GeoJsonWriter {
         "Point", coordinates(stop.position),
         {{"seq", index},
          {"view", stop.view_index},
-         {"yaw_deg", rounded(stop.yaw * to_deg, 1e4)},
-         {"gimbal_pitch_deg", rounded(stop.pitch * to_deg, 1e4)},
+         {"yaw_deg", rounded(stop.yaw * degrees_per_radian, 1e4)},
+         {"gimbal_pitch_deg", rounded(stop.pitch * degrees_per_radian, 1e4)},
          {"hold_s", rounded(stop.hold, 1e3)},
          {"shots", stop.shots},
          {"speed_mps", plan_.conditions.cruise_speed},

@@ -1,17 +1,17 @@
 #include <cmath>
-#include <numbers>
 #include <set>
 #include <sstream>
 
 #include <pugixml.hpp>
 
+#include "flight/export/kml_document.h"
 #include "flight/export/map_files.h"
+#include "geometry/angle.h"
 
 namespace skycap::flight {
 namespace {
 
-constexpr double to_deg = 180.0 / std::numbers::pi;
-constexpr const char* kml_namespace = "http://www.opengis.net/kml/2.2";
+using geometry::degrees_per_radian;
 constexpr const char* google_namespace = "http://www.google.com/kml/ext/2.2";
 
 /// Between the places that a curve is drawn through [s]: at the accelerations that vehicles fly
@@ -44,12 +44,7 @@ class KmlWriter {
 
   std::string write() {
     pugi::xml_document document;
-    pugi::xml_node declaration = document.append_child(pugi::node_declaration);
-    declaration.append_attribute("version") = "1.0";
-    declaration.append_attribute("encoding") = "UTF-8";
-    pugi::xml_node kml = document.append_child("kml");
-    kml.append_attribute("xmlns") = kml_namespace;
-    kml.append_attribute("xmlns:gx") = google_namespace;
+    pugi::xml_node kml = begin_kml(document, "xmlns:gx", google_namespace);
     pugi::xml_node root = kml.append_child("Document");
     add(root, "name", plan_.name);
     add(root, "description",
@@ -63,9 +58,7 @@ class KmlWriter {
     }
     for (const Prism& prism : plan_.no_fly) add_volume(root, prism);
     add_track(root);
-    std::ostringstream out;
-    document.save(out, "  ", pugi::format_default, pugi::encoding_utf8);
-    return out.str();
+    return xml_text(document);
   }
 
  private:
@@ -116,8 +109,8 @@ class KmlWriter {
     add(camera, "longitude", degrees(place.longitude_deg));
     add(camera, "latitude", degrees(place.latitude_deg));
     add(camera, "altitude", fixed(place.height - undulation_, 3));
-    add(camera, "heading", fixed(station.yaw * to_deg, 4));
-    add(camera, "tilt", fixed(90.0 + station.pitch * to_deg, 4));
+    add(camera, "heading", fixed(station.yaw * degrees_per_radian, 4));
+    add(camera, "tilt", fixed(90.0 + station.pitch * degrees_per_radian, 4));
     add(camera, "roll", "0"), add(camera, "altitudeMode", "absolute");
     pugi::xml_node data = mark.append_child("ExtendedData");
     const auto add_data = [&](const char* name, const std::string& value) {
@@ -161,8 +154,8 @@ class KmlWriter {
     const auto add_place = [&](double time, const Eigen::Vector3d& place, const Waypoint& aim) {
       moments.push_back(moment(time));
       places.push_back(tuple(place, " "));
-      angles.push_back(fixed(aim.yaw * to_deg, 4) + " " + fixed(90.0 + aim.pitch * to_deg, 4) +
-                       " 0");
+      angles.push_back(fixed(aim.yaw * degrees_per_radian, 4) + " " +
+                       fixed(90.0 + aim.pitch * degrees_per_radian, 4) + " 0");
     };
     for (std::size_t i = 0; i < times.size(); ++i) {
       const Waypoint& waypoint = plan_.waypoints[i];

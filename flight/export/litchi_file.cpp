@@ -1,13 +1,13 @@
 #include <cmath>
-#include <numbers>
 
 #include "flight/export/map_files.h"
+#include "geometry/angle.h"
 #include "geometry/error.h"
 
 namespace skycap::flight {
 namespace {
 
-constexpr double to_deg = 180.0 / std::numbers::pi;
+using geometry::degrees_per_radian;
 constexpr std::size_t actions_per_line = 15;
 constexpr std::size_t most_waypoints = 99;  // of one mission, on the oldest firmware still flown
 constexpr double stop_like_curve = 0.2;     // the smallest curve at a corner that Litchi takes [m]
@@ -37,7 +37,8 @@ std::string actions_of(const Waypoint& waypoint) {
     text += "," + std::to_string(action) + "," + parameter;
     ++used;
   };
-  if (waypoint.is_station) act(tilt, fixed(waypoint.pitch * to_deg, 0));  // whole degrees only
+  if (waypoint.is_station)
+    act(tilt, fixed(waypoint.pitch * degrees_per_radian, 0));  // whole degrees only
   act(stay, fixed(waypoint.hold * 1000.0, 0));
   for (int shot = 0; shot < waypoint.shots; ++shot) act(photo, "0");
   if (waypoint.hold_after > 0.0) act(stay, fixed(waypoint.hold_after * 1000.0, 0));
@@ -78,15 +79,9 @@ struct Reading {
                          std::to_string(fields_per_line) + ", all 15 actions included");
       return;
     }
-    std::vector<double> values;
-    for (const std::string& field : fields) {
-      const std::optional<double> value = to_number(field);
-      if (!value) {
-        problems.push_back(not_a_number(who, field));
-        return;
-      }
-      values.push_back(*value);
-    }
+    const std::optional<std::vector<double>> numbers = to_numbers(fields, who, problems);
+    if (!numbers) return;
+    const std::vector<double>& values = *numbers;
     const auto require = [&](std::size_t field, double low, double high, const char* name) {
       if (values[field] >= low && values[field] <= high) return;
       problems.push_back(who + "has " + name + " " + fields[field] + "; it must be in [" +
@@ -133,7 +128,7 @@ std::string write_litchi(const FlightPlan& plan) {
   for (const Waypoint& waypoint : plan.waypoints) {
     const GeodeticPoint place = frame.to_geodetic(waypoint.position);
     if (waypoint.is_station)
-      heading = std::fmod(std::round(waypoint.yaw * to_deg * 1e4) / 1e4, 360.0);
+      heading = std::fmod(std::round(waypoint.yaw * degrees_per_radian * 1e4) / 1e4, 360.0);
     text += degrees(place.latitude_deg) + "," + degrees(place.longitude_deg) + "," +
             fixed(place.height - pad_height, 3) + "," + fixed(heading, 4) + "," +
             fixed(stop_like_curve, 1) + ",0,0,0" + actions_of(waypoint) + ",0," +

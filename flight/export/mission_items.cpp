@@ -2,14 +2,14 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
+#include "geometry/angle.h"
 #include "geometry/error.h"
 
 namespace skycap::flight {
 namespace {
 
-constexpr double to_deg = 180.0 / std::numbers::pi;
+using geometry::degrees_per_radian;
 
 bool is_navigation(int c) {
   return c == command::waypoint || c == command::takeoff || c == command::land ||
@@ -87,8 +87,9 @@ class ItemWriter {
   // vehicle there until the shutter has closed.
   void add_station(std::size_t i) {
     const Waypoint& station = plan_.waypoints[i];
-    const double yaw_deg = std::fmod(std::round(station.yaw * to_deg * 1e4) / 1e4, 360.0);
-    const double pitch_deg = std::round(station.pitch * to_deg * 1e4) / 1e4;
+    const double yaw_deg =
+        std::fmod(std::round(station.yaw * degrees_per_radian * 1e4) / 1e4, 360.0);
+    const double pitch_deg = std::round(station.pitch * degrees_per_radian * 1e4) / 1e4;
     add(command::mount_control, {pitch_deg, 0, 0, 0, 0, 0, 2});  // 2: by these angles
     if (is_ardupilot()) add(command::condition_yaw, {yaw_deg, 0, 0, 0, 0, 0, 0});
     add_stop(i, is_ardupilot() ? not_given : yaw_deg);

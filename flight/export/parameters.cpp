@@ -6,6 +6,7 @@
 #include <span>
 
 #include "flight/way_home/least_return.h"
+#include "flight/way_home/return_law.h"
 #include "geometry/error.h"
 
 namespace skycap::flight {
@@ -21,16 +22,20 @@ struct Requirement {
 };
 
 constexpr std::array ardupilot_requirements{
-    Requirement{"RTL_CONE_SLOPE", 0.0, 0.0, 3.0},   Requirement{"RTL_CLIMB_MIN", 0.0, 0.0, 0.0},
-    Requirement{"RTL_CLIMB_MIN_M", 0.0, 0.0, 0.0},  Requirement{"RTL_ALT_TYPE", 0.0, 0.0, 0.0},
-    Requirement{"RTL_ALT_FINAL", 0.0, 0.0, 0.0},    Requirement{"RTL_ALT_FINAL_M", 0.0, 0.0, 0.0},
-    Requirement{"WPNAV_RADIUS", 5.0, 200.0, 200.0}, Requirement{"WP_RADIUS_M", 0.05, 2.0, 2.0},
+    Requirement{"RTL_CONE_SLOPE", 0.0, 0.0, 3.0},
+    Requirement{"RTL_CLIMB_MIN", 0.0, 0.0, 0.0},
+    Requirement{"RTL_CLIMB_MIN_M", 0.0, 0.0, 0.0},
+    Requirement{"RTL_ALT_TYPE", 0.0, 0.0, 0.0},
+    Requirement{"RTL_ALT_FINAL", 0.0, 0.0, 0.0},
+    Requirement{"RTL_ALT_FINAL_M", 0.0, 0.0, 0.0},
+    Requirement{"WPNAV_RADIUS", 5.0, 100.0 * ardupilot_waypoint_radius, 200.0},
+    Requirement{"WP_RADIUS_M", 0.05, ardupilot_waypoint_radius, 2.0},
 };
 constexpr std::array px4_requirements{
     Requirement{"RTL_TYPE", 0.0, 0.0, 0.0},
     Requirement{"RTL_CONE_ANG", 0.0, 0.0, 45.0},
-    Requirement{"NAV_ACC_RAD", 0.05, 1.0, 10.0},
-    Requirement{"NAV_MC_ALT_RAD", 0.05, 0.8, 0.8},
+    Requirement{"NAV_ACC_RAD", 0.05, px4_landing_radius, 10.0},
+    Requirement{"NAV_MC_ALT_RAD", 0.05, px4_altitude_radius, 0.8},
 };
 
 std::span<const Requirement> requirements(Dialect dialect) {
@@ -97,7 +102,7 @@ class ParameterWriter {
   }
 
   double ceiling() const {
-    const bool has_ceiling = plan_.fence && plan_.fence->ceiling < 1e4;
+    const bool has_ceiling = plan_.fence && std::isfinite(plan_.fence->ceiling);
     return has_ceiling ? plan_.fence->ceiling - plan_.pad.z() : 0.0;
   }
 
@@ -121,7 +126,7 @@ class ParameterWriter {
     both("WPNAV_ACCEL_Z", "WP_ACC_Z", mode.vertical_acceleration);
     set("WPNAV_JERK", mode.jerk);
     set("WP_JERK", mode.jerk);
-    both("WPNAV_RADIUS", "WP_RADIUS_M", 2.0);
+    both("WPNAV_RADIUS", "WP_RADIUS_M", ardupilot_waypoint_radius);
     both("LAND_SPEED", "LAND_SPD_MS", mode.landing_speed);
     both("LAND_ALT_LOW", "LAND_ALT_LOW_M", mode.landing_height);
     set("WP_YAW_BEHAVIOR", 0);  // headings are the mission's
@@ -160,8 +165,8 @@ class ParameterWriter {
     real("RTL_MIN_DIST", 0.5);
     real("RTL_DESCEND_ALT", 10);
     real("RTL_LAND_DELAY", 0);
-    real("NAV_ACC_RAD", 1);
-    real("NAV_MC_ALT_RAD", 0.8);
+    real("NAV_ACC_RAD", px4_landing_radius);
+    real("NAV_MC_ALT_RAD", px4_altitude_radius);
     comment("Speeds [m/s], accelerations [m/s^2] and jerk");
     real("MPC_XY_CRUISE", std::max(3.0, plan_.conditions.cruise_speed));
     const MissionMode& mode = plan_.vehicle.mode;

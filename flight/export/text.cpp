@@ -48,8 +48,18 @@ std::vector<std::string> lines_of(std::string_view text) {
   return lines;
 }
 
-std::string not_a_number(const std::string& place, const std::string& field) {
-  return place + "has \"" + field + "\", which is not a number";
+std::optional<std::vector<double>> to_numbers(const std::vector<std::string>& fields,
+                                              const std::string& place, Problems& problems) {
+  std::vector<double> values;
+  for (const std::string& field : fields) {
+    const std::optional<double> value = to_number(field);
+    if (!value) {
+      problems.push_back(place + "has \"" + field + "\", which is not a number");
+      return std::nullopt;
+    }
+    values.push_back(*value);
+  }
+  return values;
 }
 
 void throw_first(const Problems& problems, const std::string& what) {

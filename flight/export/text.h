@@ -28,8 +28,9 @@ std::vector<std::string> lines_of(std::string_view text);
 /// What a validator found. Each entry names the place and what is wrong with it.
 using Problems = std::vector<std::string>;
 
-/// The problem of a field at `place` that should be a number.
-std::string not_a_number(const std::string& place, const std::string& field);
+/// The fields at `place` as numbers. Nothing if one of them is none, which is then a problem.
+std::optional<std::vector<double>> to_numbers(const std::vector<std::string>& fields,
+                                              const std::string& place, Problems& problems);
 
 /// Throws Error{bad_file} with the first problem, if there is one; `what` names the format.
 void throw_first(const Problems& problems, const std::string& what);

@@ -128,23 +128,17 @@ std::vector<std::vector<double>> rows_of(const std::vector<std::string>& lines, 
   for (std::size_t i = first; i < lines.size(); ++i) {
     if (is_comment(lines[i])) continue;
     const std::string who = "line " + std::to_string(i + 1) + " ";
-    std::vector<double> row;
-    for (const std::string& field : split(lines[i], separator)) {
-      const std::optional<double> value = to_number(field);
-      if (!value) {
-        problems.push_back(not_a_number(who, field));
-        return rows;
-      }
-      row.push_back(*value);
-    }
-    if (row.size() != count) {
-      problems.push_back(who + "has " + std::to_string(row.size()) + " numbers; it must have " +
+    const std::optional<std::vector<double>> row =
+        to_numbers(split(lines[i], separator), who, problems);
+    if (!row) return rows;
+    if (row->size() != count) {
+      problems.push_back(who + "has " + std::to_string(row->size()) + " numbers; it must have " +
                          std::to_string(count));
       return rows;
     }
-    if (row[0] <= last_time) problems.push_back(who + "goes back in time");
-    last_time = row[0];
-    rows.push_back(row);
+    if (row->front() <= last_time) problems.push_back(who + "goes back in time");
+    last_time = row->front();
+    rows.push_back(*row);
   }
   if (rows.empty()) problems.emplace_back("there is no row");
   return rows;

@@ -48,15 +48,9 @@ struct Reading {
                          " fields separated by tabs; it must have 12");
       return;
     }
-    std::vector<double> values;
-    for (const std::string& field : fields) {
-      const std::optional<double> value = to_number(field);
-      if (!value) {
-        problems.push_back(not_a_number(who, field));
-        return;
-      }
-      values.push_back(*value);
-    }
+    const std::optional<std::vector<double>> numbers = to_numbers(fields, who, problems);
+    if (!numbers) return;
+    const std::vector<double>& values = *numbers;
     if (values[0] != static_cast<double>(number - 1)) {
       problems.push_back(who + "has index " + fields[0] + "; it must be " +
                          std::to_string(number - 1));

@@ -1,224 +1,16 @@
 #include "flight/export/wpml_file.h"
 
-#include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <set>
-#include <sstream>
 
 #include <pugixml.hpp>
 
+#include "flight/export/kml_document.h"
+#include "flight/export/wpml_writer.h"
 #include "geometry/error.h"
 
 namespace skycap::flight {
 namespace {
-
-constexpr double to_deg = 180.0 / std::numbers::pi;
-constexpr const char* kml_namespace = "http://www.opengis.net/kml/2.2";
-constexpr const char* wpml_namespace = "http://www.dji.com/wpmz/";
-constexpr const char* stop_turn = "toPointAndStopWithDiscontinuityCurvature";
-
-std::string xml_text(const pugi::xml_document& document) {
-  std::ostringstream out;
-  document.save(out, "  ", pugi::format_default, pugi::encoding_utf8);
-  return out.str();
-}
-
-void add(pugi::xml_node parent, const std::string& name, const std::string& value) {
-  parent.append_child(("wpml:" + name).c_str()).text().set(value.c_str());
-}
-pugi::xml_node add(pugi::xml_node parent, const std::string& name) {
-  return parent.append_child(("wpml:" + name).c_str());
-}
-
-/// Writes either file; they share most of their elements.
-class WpmlWriter {
- public:
-  WpmlWriter(const FlightPlan& plan, bool is_template)
-      : plan_(plan),
-        is_template_(is_template),
-        frame_(plan.site.origin),
-        pad_(frame_.to_geodetic(plan.pad)) {
-    for (const Waypoint& waypoint : plan.waypoints) highest_ = std::max(highest_, height(waypoint));
-  }
-
-  std::string write() {
-    pugi::xml_document document;
-    pugi::xml_node declaration = document.append_child(pugi::node_declaration);
-    declaration.append_attribute("version") = "1.0";
-    declaration.append_attribute("encoding") = "UTF-8";
-    pugi::xml_node kml = document.append_child("kml");
-    kml.append_attribute("xmlns") = kml_namespace;
-    kml.append_attribute("xmlns:wpml") = (wpml_namespace + plan_.vehicle.wpml.version).c_str();
-    pugi::xml_node root = kml.append_child("Document");
-    if (is_template_) add(root, "author", "skycap");
-    add_config(root);
-    pugi::xml_node folder = root.append_child("Folder");
-    is_template_ ? add_template_head(folder) : add_wayline_head(folder);
-    for (std::size_t i = 0; i < plan_.waypoints.size(); ++i) add_waypoint(folder, i);
-    if (is_template_) {
-      pugi::xml_node payload = add(folder, "payloadParam");
-      add(payload, "payloadPositionIndex", "0");
-      add(payload, "imageFormat", "visable");  // spelt so by the format
-    }
-    return xml_text(document);
-  }
-
- private:
-  double height(const Waypoint& waypoint) const {
-    return frame_.to_geodetic(waypoint.position).height - pad_.height;
-  }
-  std::string speed() const {
-    return fixed(std::clamp(plan_.conditions.cruise_speed, 0.1, 15.0), 2);
-  }
-
-  void add_config(pugi::xml_node root) {
-    pugi::xml_node config = add(root, "missionConfig");
-    add(config, "flyToWaylineMode", "safely");
-    add(config, "finishAction", "goHome");
-    add(config, "exitOnRCLost", "executeLostAction");
-    add(config, "executeRCLostAction", "goBack");
-    const double first = height(plan_.waypoints.front());
-    add(config, "takeOffSecurityHeight", fixed(std::clamp(first, 1.2, 1500.0), 2));
-    add(config, "globalTransitionalSpeed", speed());
-    add(config, "globalRTHHeight", fixed(plan_.certified_returns().height, 0));
-    if (is_template_) {
-      add(config, "takeOffRefPoint",
-          degrees(pad_.latitude_deg) + "," + degrees(pad_.longitude_deg) + "," +
-              fixed(pad_.height, 3));
-      add(config, "takeOffRefPointAGLHeight", "0");
-    }
-    pugi::xml_node drone = add(config, "droneInfo");
-    add(drone, "droneEnumValue", std::to_string(plan_.vehicle.wpml.drone));
-    add(drone, "droneSubEnumValue", std::to_string(plan_.vehicle.wpml.drone_variant));
-    pugi::xml_node payload = add(config, "payloadInfo");
-    add(payload, "payloadEnumValue", std::to_string(plan_.vehicle.wpml.payload));
-    add(payload, "payloadSubEnumValue", "0");
-    add(payload, "payloadPositionIndex", "0");
-  }
-
-  void add_template_head(pugi::xml_node folder) {
-    add(folder, "templateType", "waypoint");
-    add(folder, "templateId", "0");
-    pugi::xml_node system = add(folder, "waylineCoordinateSysParam");
-    add(system, "coordinateMode", "WGS84");
-    add(system, "heightMode", "relativeToStartPoint");
-    add(system, "positioningType", "GPS");
-    add(folder, "autoFlightSpeed", speed());
-    add(folder, "globalHeight", fixed(highest_, 2));
-    add(folder, "caliFlightEnable", "0");
-    add(folder, "gimbalPitchMode", "manual");
-    pugi::xml_node heading = add(folder, "globalWaypointHeadingParam");
-    add(heading, "waypointHeadingMode", "smoothTransition");
-    add(heading, "waypointHeadingAngle", "0");
-    add(heading, "waypointHeadingPathMode", "followBadArc");
-    add(folder, "globalWaypointTurnMode", stop_turn);
-    add(folder, "globalUseStraightLine", "1");
-  }
-
-  void add_wayline_head(pugi::xml_node folder) {
-    add(folder, "templateId", "0");
-    add(folder, "executeHeightMode", "relativeToStartPoint");
-    add(folder, "waylineId", "0");
-    double distance = 0.0;
-    for (std::size_t i = 1; i < plan_.waypoints.size(); ++i) {
-      distance += (plan_.waypoints[i].position - plan_.waypoints[i - 1].position).norm();
-    }
-    add(folder, "distance", fixed(distance, 2));
-    add(folder, "duration", fixed(stop_times(plan_).back().departure, 2));
-    add(folder, "autoFlightSpeed", speed());
-  }
-
-  void add_waypoint(pugi::xml_node folder, std::size_t index) {
-    const Waypoint& waypoint = plan_.waypoints[index];
-    const GeodeticPoint place = frame_.to_geodetic(waypoint.position);
-    pugi::xml_node mark = folder.append_child("Placemark");
-    mark.append_child("Point")
-        .append_child("coordinates")
-        .text()
-        .set((degrees(place.longitude_deg) + "," + degrees(place.latitude_deg)).c_str());
-    add(mark, "index", std::to_string(index));
-    if (is_template_) {
-      add(mark, "useGlobalHeight", "0");
-      add(mark, "ellipsoidHeight", fixed(height(waypoint), 3));
-      add(mark, "height", fixed(height(waypoint), 3));
-      add(mark, "useGlobalSpeed", "1");
-      add(mark, "useGlobalHeadingParam", "0");
-      add(mark, "useGlobalTurnParam", "1");
-    } else {
-      add(mark, "executeHeight", fixed(height(waypoint), 3));
-      add(mark, "waypointSpeed", speed());
-    }
-    add_heading(mark, index);
-    if (!is_template_) {
-      pugi::xml_node turn = add(mark, "waypointTurnParam");
-      add(turn, "waypointTurnMode", stop_turn);
-      add(turn, "waypointTurnDampingDist", "0");
-    }
-    add(mark, "useStraightLine", "1");
-    add_actions(mark, index);
-  }
-
-  /// A corner keeps the heading of the station to come.
-  void add_heading(pugi::xml_node mark, std::size_t index) {
-    auto station = std::find_if(plan_.waypoints.begin() + static_cast<std::ptrdiff_t>(index),
-                                plan_.waypoints.end(),
-                                [](const Waypoint& waypoint) { return waypoint.is_station; });
-    const double yaw = station == plan_.waypoints.end() ? 0.0 : station->yaw;
-    pugi::xml_node heading = add(mark, "waypointHeadingParam");
-    add(heading, "waypointHeadingMode", "smoothTransition");
-    add(heading, "waypointHeadingAngle",
-        fixed(std::remainder(yaw, 2.0 * std::numbers::pi) * to_deg, 4));
-    add(heading, "waypointHeadingPathMode", "followBadArc");  // the shortest way round
-  }
-
-  void add_actions(pugi::xml_node mark, std::size_t index) {
-    const Waypoint& waypoint = plan_.waypoints[index];
-    const std::string number = std::to_string(index);
-    pugi::xml_node group = add(mark, "actionGroup");
-    add(group, "actionGroupId", number);
-    add(group, "actionGroupStartIndex", number);
-    add(group, "actionGroupEndIndex", number);
-    add(group, "actionGroupMode", "sequence");
-    add(add(group, "actionTrigger"), "actionTriggerType", "reachPoint");
-    int id = 0;
-    const auto action = [&](const char* function) {
-      pugi::xml_node node = add(group, "action");
-      add(node, "actionId", std::to_string(id++));
-      add(node, "actionActuatorFunc", function);
-      return add(node, "actionActuatorFuncParam");
-    };
-    if (waypoint.is_station) add_gimbal(action("gimbalRotate"), waypoint);
-    add(action("hover"), "hoverTime", fixed(waypoint.hold, 2));
-    for (int shot = 0; shot < waypoint.shots; ++shot) {
-      pugi::xml_node photo = action("takePhoto");
-      add(photo, "payloadPositionIndex", "0");
-      add(photo, "fileSuffix", "view_" + std::to_string(waypoint.view_index));
-      add(photo, "useGlobalPayloadLensIndex", "1");
-    }
-    if (waypoint.hold_after > 0.0) add(action("hover"), "hoverTime", fixed(waypoint.hold_after, 2));
-  }
-
-  static void add_gimbal(pugi::xml_node gimbal, const Waypoint& waypoint) {
-    add(gimbal, "gimbalHeadingYawBase", "north");
-    add(gimbal, "gimbalRotateMode", "absoluteAngle");
-    add(gimbal, "gimbalPitchRotateEnable", "1");
-    add(gimbal, "gimbalPitchRotateAngle", fixed(waypoint.pitch * to_deg, 4));
-    add(gimbal, "gimbalRollRotateEnable", "0");
-    add(gimbal, "gimbalRollRotateAngle", "0");
-    add(gimbal, "gimbalYawRotateEnable", "0");  // the vehicle's heading aims the camera
-    add(gimbal, "gimbalYawRotateAngle", "0");
-    add(gimbal, "gimbalRotateTimeEnable", "0");
-    add(gimbal, "gimbalRotateTime", "0");
-    add(gimbal, "payloadPositionIndex", "0");
-  }
-
-  const FlightPlan& plan_;
-  bool is_template_;
-  LocalFrame frame_;
-  GeodeticPoint pad_;
-  double highest_ = 0.0;
-};
 
 /// Checks either file and reads its places.
 class WpmlChecker {
@@ -271,8 +63,8 @@ class WpmlChecker {
     if (std::string(kml.attribute("xmlns").value()) != kml_namespace) {
       complain("must be in the namespace " + std::string(kml_namespace));
     }
-    if (!space.starts_with(wpml_namespace)) {
-      complain("must declare xmlns:wpml as " + std::string(wpml_namespace) + "VERSION");
+    if (!space.starts_with(wpml::wpml_namespace)) {
+      complain("must declare xmlns:wpml as " + std::string(wpml::wpml_namespace) + "VERSION");
     }
     version = space;
     const pugi::xml_node root = kml.child("Document"), folder = root.child("Folder");
@@ -291,7 +83,7 @@ class WpmlChecker {
       set_datum(text_of(system, "heightMode"));
       require_one_of(folder, "gimbalPitchMode", {"manual", "usePointSetting"});
       require_one_of(folder, "globalWaypointTurnMode",
-                     {stop_turn, "coordinateTurn", "toPointAndStopWithContinuityCurvature",
+                     {wpml::stop_turn, "coordinateTurn", "toPointAndStopWithContinuityCurvature",
                       "toPointAndPassWithContinuityCurvature"});
     } else {
       require_number(folder, "waylineId", 0, 65535);
@@ -364,10 +156,10 @@ class WpmlChecker {
   void check_turn(pugi::xml_node mark) {
     const pugi::xml_node turn = mark.child("wpml:waypointTurnParam");
     require_one_of(turn, "waypointTurnMode",
-                   {stop_turn, "coordinateTurn", "toPointAndStopWithContinuityCurvature",
+                   {wpml::stop_turn, "coordinateTurn", "toPointAndStopWithContinuityCurvature",
                     "toPointAndPassWithContinuityCurvature"});
     require_number(turn, "waypointTurnDampingDist", 0, 10000);
-    if (text_of(turn, "waypointTurnMode") != stop_turn) {
+    if (text_of(turn, "waypointTurnMode") != wpml::stop_turn) {
       complain("has a turn that leaves the straight legs, so that no clearance can be proven");
     }
   }
@@ -420,7 +212,7 @@ std::string write_kmz(const FlightPlan& plan) {
                     " waypoints; vehicle \"" + plan.vehicle.name + "\" takes " +
                     std::to_string(plan.vehicle.max_waypoints));
   }
-  return pack_kmz({WpmlWriter(plan, true).write(), WpmlWriter(plan, false).write()});
+  return pack_kmz({template_kml(plan), waylines_wpml(plan)});
 }
 
 Problems validate_kmz(const std::string& bytes) {

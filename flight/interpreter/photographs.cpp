@@ -5,11 +5,12 @@
 #include <numbers>
 
 #include "flight/export/export.h"
+#include "geometry/angle.h"
 
 namespace skycap::flight {
 namespace {
 
-constexpr double degree = std::numbers::pi / 180.0;
+constexpr double degree = geometry::radians_per_degree;
 
 /// How far a photograph's direction may be from its view's: Litchi has whole degrees of pitch.
 constexpr double direction_tolerance = 1.0 * degree;

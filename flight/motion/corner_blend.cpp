@@ -144,8 +144,10 @@ class Blender {
 
   /// The handle with which a blend of that reach is fastest.
   Blend fastest_blend(std::size_t corner, double reach) const {
+    constexpr int tries = 11;
+    double handle = 0.30;
     Blend best;
-    for (double handle = 0.30; handle < 0.501; handle += 0.02) {
+    for (int i = 0; i < tries; ++i, handle += 0.02) {
       Blend blend{reach, std::min(handle, 0.5), 1.0};
       // Flown at one metre a second it may be sped up by the inverse of the slowdown it needs.
       blend.speed = 1.0 / needed_slowdown({blend_piece(corner, blend)}, motion_);

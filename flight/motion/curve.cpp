@@ -89,7 +89,7 @@ LegProof prove_part(const FreeSpace& space, const Control& control, double clear
   if (is_hopeless || halvings_left == 0) return {false, 0.0, chord.closest};
   LegProof proof{true, up_to, {up_to}};
   for (const Control& half : halves(control)) {
-    const LegProof part = prove_part(space, half, clearance, up_to, halvings_left - 1);
+    LegProof part = prove_part(space, half, clearance, up_to, halvings_left - 1);
     if (!part.is_proven) return part;
     if (part.clearance < proof.clearance) proof = part;
   }
@@ -186,7 +186,7 @@ double needed_slowdown(const Curve& curve, const Motion& motion) {
 LegProof prove(const FreeSpace& space, const Curve& curve, double clearance, double up_to) {
   LegProof proof{true, up_to, {up_to}};
   for (const CurvePiece& piece : curve) {
-    const LegProof part = prove_part(space, piece.control, clearance, up_to, max_halvings);
+    LegProof part = prove_part(space, piece.control, clearance, up_to, max_halvings);
     if (!part.is_proven) return part;
     if (part.clearance < proof.clearance) proof = part;
   }

@@ -41,7 +41,7 @@ using Vector = Eigen::Matrix<T, 3, 1>;
 
 template <class T>
 std::array<Vector<T>, 6> control_points(const T* from, const T* to) {
-  const auto part = [](const T* joint, int i) {
+  const auto part = [](const T* joint, std::size_t i) {
     return Vector<T>(joint[3 * i], joint[3 * i + 1], joint[3 * i + 2]);
   };
   return {part(from, 0),

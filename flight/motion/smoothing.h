@@ -7,17 +7,11 @@
 #include <Eigen/Core>
 
 #include "flight/motion/curve.h"
+#include "flight/motion/flight_style.h"
 #include "flight/motion/motion.h"
 #include "flight/space/clearance.h"
 
 namespace skycap::flight {
-
-/// How legs are flown between two stops.
-enum class FlightStyle {
-  stop,    ///< straight, with a stop in every corner: what every autopilot can be told
-  blend,   ///< round the corners
-  smooth,  ///< along one curve, or round the corners where that is faster
-};
 
 /// A leg flown along a curve, from rest to rest.
 struct SmoothLeg {

@@ -16,8 +16,7 @@ struct WpmlCodes {
   int drone = 0;
   int drone_variant = 0;
   int payload = 0;
-  std::string version = "1.0.6";    ///< of the namespace that the firmware reads
-  bool has_independent_yaw = true;  ///< the gimbal may turn away from the vehicle's heading
+  std::string version = "1.0.6";  ///< of the namespace that the firmware reads
 };
 
 /// SI units; angles in radians; energies in watt hours where the data sheets use them.

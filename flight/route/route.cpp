@@ -2,10 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <optional>
 
 #include "flight/paths/sampling_path.h"
+#include "flight/route/leg_certifier.h"
 #include "flight/route/sortie_split.h"
 #include "flight/route/tour.h"
 #include "flight/space/place_text.h"
@@ -21,10 +21,6 @@ using Eigen::Vector3d;
 constexpr int items_per_station = 8;
 constexpr int items_per_sortie = 14;
 
-double angle_between(double from, double to) {
-  return std::remainder(to - from, 2.0 * std::numbers::pi);
-}
-
 /// Plans one route; the members are its stages' intermediate results.
 class RoutePlanner {
  public:
@@ -32,7 +28,10 @@ class RoutePlanner {
       : motion_(vehicle, options.conditions),
         space_(space),
         finder_(space, options.clearance.total(), options.path),
-        home_(options.takeoff + Vector3d(0.0, 0.0, options.takeoff_climb)) {
+        home_(options.takeoff + Vector3d(0.0, 0.0, options.takeoff_climb)),
+        legs_(space, motion_, options.clearance.total(), ways_home_),
+        takeoff_cost_(legs_.takeoff_cost(options.takeoff_climb)),
+        landing_cost_(legs_.landing_cost(options.takeoff_climb)) {
     route_.vehicle = vehicle;
     route_.options = options;
     route_.clearance = options.clearance.total();
@@ -55,8 +54,6 @@ class RoutePlanner {
   }
 
  private:
-  using Cost = SplitProblem::Cost;
-
   void check_pad(const FreeSpace* pad_space) {
     const double clearance = route_.clearance;
     if (!space_.is_free({home_, home_}, clearance)) {
@@ -84,10 +81,8 @@ class RoutePlanner {
   void keep_allowed(std::vector<Station>& stations) {
     std::vector<Station> allowed;
     for (const Station& station : stations) {
-      const double pitch = pitch_of(station.view);
       const Vehicle& vehicle = motion_.vehicle();
-      // A millionth of a radian for the rounding of directions that are meant to be at the limit.
-      if (pitch < vehicle.gimbal_min - 1e-6 || pitch > vehicle.gimbal_max + 1e-6) {
+      if (!can_look(vehicle, station.view)) {
         refuse(station, "the gimbal of \"" + vehicle.name + "\" cannot look that way");
         continue;
       }
@@ -121,43 +116,6 @@ class RoutePlanner {
     route_.order_length = tour.cost;
   }
 
-  /// Nothing if one of its lines cannot be proven.
-  std::optional<Leg> make_leg(const std::vector<Vector3d>& points, const Station* from,
-                              const Station* to) const {
-    Leg leg;
-    leg.points = points;
-    leg.length = flight::length(points);
-    leg.clearance = route_.clearance + reported_surplus;
-    for (std::size_t i = 1; i < points.size(); ++i) {
-      const LegProof proof = prove(space_, {points[i - 1], points[i]}, route_.clearance,
-                                   route_.clearance + reported_surplus);
-      if (!proof.is_proven) return std::nullopt;
-      leg.clearance = std::min(leg.clearance, proof.clearance);
-      // Autopilots begin to turn when they leave for the station, which is in the last corner.
-      const bool is_last = i + 1 == points.size();
-      const Vector3d way = points[i] - points[i - 1];
-      const double leg_time = motion_.leg_time(way);
-      const double moving = is_last ? aimed_time(leg_time, from, to) : leg_time;
-      leg.duration += moving;
-      leg.energy += motion_.leg_energy(way, moving);
-      // Between two points a return costs no more than from the dearer of them: level flight grows
-      // with a distance, which is convex, climb and descent evenly.
-      const double home = std::max(return_cost(points[i - 1]), return_cost(points[i]));
-      leg.emergency = std::max(leg.emergency, leg.energy + home);
-      if (is_last) break;
-      leg.duration += corner_hold;
-      leg.energy += motion_.hover_energy(corner_hold);
-    }
-    return leg;
-  }
-
-  /// A leg's time until the camera looks right; from and to the pad there is nothing to aim at.
-  double aimed_time(double leg, const Station* from, const Station* to) const {
-    if (from == nullptr || to == nullptr) return leg;
-    return motion_.aimed_time(leg, angle_between(yaw_of(from->view), yaw_of(to->view)),
-                              pitch_of(to->view) - pitch_of(from->view));
-  }
-
   /// A way from above the pad to each station decides which stations there are; the way back is the
   /// same reversed.
   void keep_reachable(const std::vector<Station>& stations) {
@@ -176,27 +134,6 @@ class RoutePlanner {
     }
   }
 
-  Cost pad_cost() const {
-    const double climb = route_.options.takeoff_climb;
-    return {motion_.takeoff_time(climb) + corner_hold,
-            motion_.takeoff_energy(climb) + motion_.hover_energy(corner_hold)};
-  }
-  Cost landing_cost() const {
-    const double time = corner_hold + motion_.landing_time(route_.options.takeoff_climb);
-    return {time, motion_.hover_energy(time)};
-  }
-  Cost station_cost(const Station& station) const {
-    const double hold = std::max(corner_hold, station.hold) + station.hold_after;
-    const double energy = motion_.hover_energy(hold);
-    return {hold, energy, energy + return_cost(station.view.position)};
-  }
-  /// One after the other.
-  static Cost sum(const Cost& first, const Cost& second) {
-    return {first.time + second.time, first.energy + second.energy,
-            std::max(first.emergency, first.energy + second.emergency)};
-  }
-  static Cost cost_of(const Leg& leg) { return {leg.duration, leg.energy, leg.emergency}; }
-
   std::vector<Vector3d> way_home(std::size_t i) const {
     return {ways_[i].rbegin(), ways_[i].rend()};
   }
@@ -207,16 +144,16 @@ class RoutePlanner {
     std::vector<Station> stations;
     std::vector<std::vector<Vector3d>> ways;
     for (std::size_t i = 0; i < route_.stations.size(); ++i) {
-      const std::optional<Leg> out = make_leg(ways_[i], nullptr, nullptr);
-      const std::optional<Leg> back = make_leg(way_home(i), nullptr, nullptr);
+      const std::optional<Leg> out = legs_.leg(ways_[i], nullptr, nullptr);
+      const std::optional<Leg> back = legs_.leg(way_home(i), nullptr, nullptr);
       if (!out || !back) {
         refuse(route_.stations[i],
                "the way to it cannot be proven at a clearance of " + length_text(route_.clearance));
         continue;
       }
-      const Cost there = sum(pad_cost(), cost_of(*out));
-      const Cost home = sum(cost_of(*back), landing_cost());
-      const Cost total = sum(sum(there, station_cost(route_.stations[i])), home);
+      const LegCost there = in_turn(takeoff_cost_, cost_of(*out));
+      const LegCost home = in_turn(cost_of(*back), landing_cost_);
+      const LegCost total = in_turn(in_turn(there, legs_.station_cost(route_.stations[i])), home);
       const double needed = std::max(total.energy, total.emergency);
       if (needed > motion_.usable_energy()) {
         refuse(route_.stations[i], "getting there and back takes " + std::to_string(needed / 3600) +
@@ -239,7 +176,7 @@ class RoutePlanner {
     const Station &from = route_.stations[i - 1], &to = route_.stations[i];
     const Path path = finder_.find(from.view.position, to.view.position);
     if (path.status == PathStatus::found) {
-      if (std::optional<Leg> leg = make_leg(with_returns(path.points), &from, &to)) {
+      if (std::optional<Leg> leg = legs_.leg(with_returns(path.points), &from, &to)) {
         return *std::move(leg);
       }
     }
@@ -248,10 +185,10 @@ class RoutePlanner {
     points.insert(points.end(), ways_[i].begin() + 1, ways_[i].end());
     const std::vector<Vector3d> tight =
         pull_tight(space_, route_.clearance, points, route_.options.path.worthwhile_saving);
-    if (std::optional<Leg> leg = make_leg(with_returns(tight), &from, &to)) {
+    if (std::optional<Leg> leg = legs_.leg(with_returns(tight), &from, &to)) {
       return *std::move(leg);
     }
-    return make_leg(points, &from, &to).value();  // its two parts were proven
+    return legs_.leg(points, &from, &to).value();  // its two parts were proven
   }
 
   void connect() {
@@ -274,9 +211,9 @@ class RoutePlanner {
   void split_once() {
     SplitProblem problem;
     for (std::size_t i = 0; i < route_.stations.size(); ++i) {
-      problem.out.push_back(sum(pad_cost(), cost_of(outward_[i])));
-      problem.back.push_back(sum(cost_of(homeward_[i]), landing_cost()));
-      problem.station.push_back(station_cost(route_.stations[i]));
+      problem.out.push_back(in_turn(takeoff_cost_, cost_of(outward_[i])));
+      problem.back.push_back(in_turn(cost_of(homeward_[i]), landing_cost_));
+      problem.station.push_back(legs_.station_cost(route_.stations[i]));
       if (i > 0) problem.leg.push_back(cost_of(route_.legs[i - 1]));
     }
     problem.energy_per_sortie = motion_.usable_energy();
@@ -304,8 +241,8 @@ class RoutePlanner {
         std::vector<Vector3d> way = with_returns(ways_[i]);
         if (way == ways_[i]) continue;
         std::swap(way, ways_[i]);
-        std::optional<Leg> out = make_leg(ways_[i], nullptr, nullptr);
-        std::optional<Leg> back = make_leg(way_home(i), nullptr, nullptr);
+        std::optional<Leg> out = legs_.leg(ways_[i], nullptr, nullptr);
+        std::optional<Leg> back = legs_.leg(way_home(i), nullptr, nullptr);
         if (!out || !back) {  // the returns' own proof will name the place
           std::swap(way, ways_[i]);
           continue;
@@ -321,13 +258,13 @@ class RoutePlanner {
   void add_sortie(const SortieRange& range, const SplitProblem& problem, const Leg& out,
                   const Leg& back) {
     Sortie sortie{range.first, range.last, out, back};
-    Cost total = sum(problem.out[range.first], problem.back[range.last]);
+    LegCost total = in_turn(problem.out[range.first], problem.back[range.last]);
     double length = out.length + back.length + 2.0 * route_.options.takeoff_climb;
     double clearance = std::min(out.clearance, back.clearance);
     for (std::uint32_t i = range.first; i <= range.last; ++i) {
-      total = sum(total, problem.station[i]);
+      total = in_turn(total, problem.station[i]);
       if (i == range.last) break;
-      total = sum(total, problem.leg[i]);
+      total = in_turn(total, problem.leg[i]);
       length += route_.legs[i].length;
       clearance = std::min(clearance, route_.legs[i].clearance);
     }
@@ -356,11 +293,6 @@ class RoutePlanner {
                         .landings = {pad},
                         .landing_climb = route_.options.takeoff_climb};
     ways_home_.emplace(space_, law, home_, route_.clearance);
-  }
-
-  double return_cost(const Vector3d& place) const {
-    if (!ways_home_) return 0.0;
-    return return_energy(motion_, ways_home_->law(), place);
   }
 
   std::vector<Vector3d> with_returns(std::vector<Vector3d> way) const {
@@ -411,7 +343,7 @@ class RoutePlanner {
       return;
     }
     const double in_place = curve->duration + motion_.vehicle().mode.settle_time;
-    const double aimed = aimed_time(in_place, from, to);
+    const double aimed = legs_.aimed_time(in_place, from, to);
     if (aimed > leg.duration) return;
     if (curve->energy + motion_.hover_energy(aimed - curve->duration) > leg.energy) return;
     leg.smooth = std::move(curve);
@@ -421,7 +353,9 @@ class RoutePlanner {
   const FreeSpace& space_;
   PathFinder finder_;
   Vector3d home_;
-  std::optional<WaysHome> ways_home_;        ///< if returns are asked for
+  std::optional<WaysHome> ways_home_;  ///< if returns are asked for
+  LegCertifier legs_;
+  LegCost takeoff_cost_, landing_cost_;
   std::vector<std::vector<Vector3d>> ways_;  ///< from above the pad to each station kept
   std::vector<Leg> outward_, homeward_;      ///< along them, once the stations are in range
   std::vector<bool> has_returns_;            ///< the ways that have been looked at for returns

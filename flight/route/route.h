@@ -32,13 +32,16 @@ struct Station {
 double yaw_of(const geometry::View& view);
 /// Pitch of a view, 0 at the horizon, -pi/2 straight down.
 double pitch_of(const geometry::View& view);
+/// Whether the vehicle's gimbal can look that way, but for the rounding of directions that are
+/// meant to be at its limits.
+bool can_look(const Vehicle& vehicle, const geometry::View& view);
 
 /// What the clearance has to cover, term by term [m].
 struct ClearanceBudget {
   double vehicle_radius = 0.5;
   double position_error = 0.1;  ///< 0.05 with RTK, 1.5 to 3 without
   double tracking_error = 0.3;  ///< how far the vehicle strays from a leg with stops
-  double map_error = 0.1;       ///< of the obstacles: noise, registration, envelope
+  double map_error = 0.1;       ///< of the obstacles: noise, registration
   double margin = 1.0;
 
   double total() const {

@@ -17,6 +17,12 @@ double pitch_of(const geometry::View& view) {
   return std::asin(std::clamp(view.direction.z() / view.direction.norm(), -1.0, 1.0));
 }
 
+bool can_look(const Vehicle& vehicle, const geometry::View& view) {
+  constexpr double rounding = 1e-6;  // [rad]
+  const double pitch = pitch_of(view);
+  return pitch >= vehicle.gimbal_min - rounding && pitch <= vehicle.gimbal_max + rounding;
+}
+
 void ClearanceBudget::validate() const {
   const auto require = [](double value, const char* field) {
     if (value >= 0.0 && std::isfinite(value)) return;

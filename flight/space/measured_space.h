@@ -11,6 +11,7 @@
 #include <cstdint>
 #include <iosfwd>
 #include <memory>
+#include <optional>
 #include <string>
 
 #include <Eigen/Core>
@@ -34,9 +35,9 @@ struct MeasuredSpaceConfig {
   /// airspace: there everything is free but measured points. Grows to whole voxels. Empty (as by
   /// default): everywhere.
   Eigen::AlignedBox3d region;
-  /// Points below this height are not kept: they are of the ground, which is known from elsewhere
-  /// and exactly, not to a voxel.
-  double floor = -1e9;
+  /// Points below this height, if it is given, are not kept: they are of the ground, which is known
+  /// from elsewhere and exactly, not to a voxel.
+  std::optional<double> floor;
 
   /// Throws Error{bad_config} naming the first value that is out of its interval.
   void validate() const;

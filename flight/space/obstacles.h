@@ -4,7 +4,6 @@
 
 #include <limits>
 #include <optional>
-#include <span>
 #include <string>
 #include <vector>
 
@@ -44,13 +43,5 @@ Obstacles without_ground(Obstacles obstacles);
 
 /// The prism's closed surface, facing outward. An infinite floor or ceiling becomes -/+ 100 km.
 geometry::Mesh surface(const Prism& prism);
-
-/// A watertight mesh that encloses `mesh`, or `points`, with at least nearly `offset` to spare, and
-/// bridges gaps that a ball of radius `alpha` cannot pass through (CGAL 3D alpha wrapping,
-/// Portaneri et al. 2022): dirty input becomes a solid that it is safe to keep away from.
-/// Throws Error{bad_geometry} if there is nothing to wrap, Error{bad_config} unless alpha and
-/// offset are positive.
-geometry::Mesh envelope(const geometry::Mesh& mesh, double alpha, double offset);
-geometry::Mesh envelope(std::span<const Eigen::Vector3f> points, double alpha, double offset);
 
 }  // namespace skycap::flight

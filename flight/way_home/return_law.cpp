@@ -23,9 +23,9 @@ constexpr double dji_tolerance = 3.0;
 constexpr Habits habits_of(Dialect dialect) {
   switch (dialect) {
     case Dialect::ardupilot:
-      return {.level_below = 2.0};
+      return {.level_below = ardupilot_waypoint_radius};
     case Dialect::px4:
-      return {.level_below = 0.8, .landing_radius = 1.0};
+      return {.level_below = px4_altitude_radius, .landing_radius = px4_landing_radius};
     case Dialect::dji:
       break;
   }

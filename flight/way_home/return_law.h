@@ -26,6 +26,11 @@
 
 namespace skycap::flight {
 
+/// Settings that the law counts on [m]; parameter files make them, and checks ask for no more.
+inline constexpr double ardupilot_waypoint_radius = 2.0;  ///< WP_RADIUS_M
+inline constexpr double px4_altitude_radius = 0.8;        ///< NAV_MC_ALT_RAD
+inline constexpr double px4_landing_radius = 1.0;         ///< NAV_ACC_RAD
+
 /// Where and how high vehicles return. Heights are z in the local frame.
 struct ReturnLaw {
   std::vector<Dialect> dialects;          ///< the autopilots whose ways home are all meant

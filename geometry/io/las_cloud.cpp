@@ -4,6 +4,7 @@
 #include <string>
 
 #include "geometry/io/cloud_parsers.h"
+#include "geometry/io/las_layout.h"
 
 namespace skycap::geometry {
 namespace {
@@ -27,12 +28,12 @@ struct LasHeader {
 };
 
 LasHeader header_of(const fs::path& path, std::string_view bytes) {
-  constexpr std::size_t header_size = 375;
-  if (bytes.size() < 104 || !bytes.starts_with("LASF")) {
+  if (bytes.size() <= las::header::point_format || !bytes.starts_with("LASF")) {
     fail_cloud(path, "is not a LAS file: it does not begin with a LAS header");
   }
-  const int major = at<std::uint8_t>(bytes, 24), minor = at<std::uint8_t>(bytes, 25);
-  const int format = at<std::uint8_t>(bytes, 104);
+  const int major = at<std::uint8_t>(bytes, las::header::major),
+            minor = at<std::uint8_t>(bytes, las::header::minor);
+  const int format = at<std::uint8_t>(bytes, las::header::point_format);
   const std::string what = "is LAS " + std::to_string(major) + "." + std::to_string(minor) +
                            " with points of format " + std::to_string(format & 0x3F) +
                            ((format & 0x80) != 0 ? ", compressed (LAZ)" : "");
@@ -41,17 +42,17 @@ LasHeader header_of(const fs::path& path, std::string_view bytes) {
                          "; only LAS 1.4 with points of format 6 or 7, not compressed, can be "
                          "read: convert it");
   }
-  if (bytes.size() < header_size) fail_cloud(path, "ends within the header");
+  if (bytes.size() < las::header::end) fail_cloud(path, "ends within the header");
   LasHeader header;
-  header.first_point = at<std::uint32_t>(bytes, 96);
-  header.point_size = at<std::uint16_t>(bytes, 105);
-  header.points = at<std::uint64_t>(bytes, 247);
+  header.first_point = at<std::uint32_t>(bytes, las::header::first_point);
+  header.point_size = at<std::uint16_t>(bytes, las::header::point_size);
+  header.points = at<std::uint64_t>(bytes, las::header::points);
   header.has_colours = format == 7;
   for (int axis = 0; axis < 3; ++axis) {
-    header.scale[axis] = at<double>(bytes, 131 + 8UL * axis);
-    header.offset[axis] = at<double>(bytes, 155 + 8UL * axis);
+    header.scale[axis] = at<double>(bytes, las::header::scale + 8UL * axis);
+    header.offset[axis] = at<double>(bytes, las::header::offset + 8UL * axis);
   }
-  const std::size_t least_size = header.has_colours ? 36 : 30;
+  const std::size_t least_size = las::point_size(format);
   if (header.point_size < least_size) {
     fail_cloud(path, "has points of " + std::to_string(header.point_size) +
                          " bytes; those of format " + std::to_string(format) + " have " +
@@ -61,7 +62,7 @@ LasHeader header_of(const fs::path& path, std::string_view bytes) {
       !header.offset.allFinite()) {
     fail_cloud(path, "has a scale or an offset of coordinates that is not a usable number");
   }
-  if (header.first_point < header_size) {
+  if (header.first_point < las::header::end) {
     fail_cloud(path, "says that its points begin within its header");
   }
   const std::size_t room =
@@ -77,22 +78,22 @@ LasHeader header_of(const fs::path& path, std::string_view bytes) {
 
 AttributedCloud parse_las_cloud(const fs::path& path, std::string_view bytes) {
   const LasHeader header = header_of(path, bytes);
-  constexpr std::uint8_t withheld = 1 << 2;
   AttributedCloud cloud;
   for (std::size_t i = 0; i < header.points; ++i) {
     const std::size_t place = header.first_point + i * header.point_size;
-    if ((at<std::uint8_t>(bytes, place + 15) & withheld) != 0) continue;
+    if ((at<std::uint8_t>(bytes, place + las::point::flags) & las::point::withheld) != 0) continue;
     Eigen::Vector3d position;
     for (int axis = 0; axis < 3; ++axis) {
       position[axis] =
-          at<std::int32_t>(bytes, place + 4UL * axis) * header.scale[axis] + header.offset[axis];
+          at<std::int32_t>(bytes, place + las::point::position + 4UL * axis) * header.scale[axis] +
+          header.offset[axis];
     }
     cloud.positions.push_back(cloud_position(path, i, position.x(), position.y(), position.z()));
     if (!header.has_colours) continue;
     auto& colour = cloud.colours.emplace_back();
     for (std::size_t channel = 0; channel < 3; ++channel) {
-      colour[channel] =
-          static_cast<std::uint8_t>(at<std::uint16_t>(bytes, place + 30 + 2 * channel) >> 8);
+      colour[channel] = static_cast<std::uint8_t>(
+          at<std::uint16_t>(bytes, place + las::point::colour + 2 * channel) >> 8);
     }
   }
   return cloud;

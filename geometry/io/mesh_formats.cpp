@@ -71,63 +71,96 @@ PolygonSoup parse_ply(std::string_view name, std::string_view bytes) {
   return soup;
 }
 
-PolygonSoup parse_obj(std::string_view name, std::string_view text) {
-  TextScanner scanner(name, text);
-  PolygonSoup soup;
-  std::vector<std::uint32_t> lines;  // of each polygon, for the check of its corners
-  std::uint32_t material = 0;
-  const auto use_material = [&](const std::string& wanted) {
-    const auto known = std::ranges::find(soup.materials, wanted);
-    material = static_cast<std::uint32_t>(known - soup.materials.begin());
-    if (known == soup.materials.end()) soup.materials.push_back(wanted);
-  };
-  do {
-    const auto keyword = scanner.word_in_line();
-    if (keyword == "v") {
-      Vector3d vertex;
-      for (double& coordinate : vertex) {
-        coordinate = scanner.number<double>(scanner.word_in_line(), "a coordinate");
-      }
-      soup.vertices.push_back(vertex);
-    } else if (keyword == "usemtl") {
-      // Faces before the first one have the material without a name.
-      if (soup.materials.empty() && !lines.empty()) use_material("");
-      soup.polygon_materials.resize(lines.size(), 0);
-      use_material(std::string(scanner.word_in_line().value_or("")));
-    } else if (keyword == "f") {
-      if (!soup.materials.empty()) soup.polygon_materials.push_back(material);
-      lines.push_back(static_cast<std::uint32_t>(scanner.line()));
-      while (auto corner = scanner.word_in_line()) {
-        if (corner == "\\") {  // goes on in the next line
-          scanner.next_line();
-          continue;
-        }
-        const auto position = corner->substr(0, corner->find('/'));
-        const auto index = scanner.number<std::int64_t>(position, "a vertex index");
-        // Counted from 1, or backwards from the latest vertex.
-        const auto count = static_cast<std::int64_t>(soup.vertices.size());
-        const std::int64_t vertex = index > 0 ? index - 1 : index + count;
-        if (index == 0 || vertex < 0 || vertex > static_cast<std::int64_t>(largest_index)) {
-          scanner.fail("the face names vertex " + std::to_string(index) + ", but the " +
-                       std::to_string(count) + " vertices so far are counted from 1, or from -1 " +
-                       "backwards");
-        }
-        soup.corners.push_back(static_cast<std::uint32_t>(vertex));
-      }
-      close_polygon(soup);
-    }
-  } while (scanner.next_line());
+namespace {
 
-  for (std::size_t polygon = 0; polygon < lines.size(); ++polygon) {
-    for (std::size_t i = soup.polygon_begin[polygon]; i < soup.polygon_begin[polygon + 1]; ++i) {
-      if (soup.corners[i] < soup.vertices.size()) continue;
-      scanner.fail_at(lines[polygon], "the face names vertex " +
-                                          std::to_string(soup.corners[i] + std::uint64_t{1}) +
-                                          ", but there are only " +
-                                          std::to_string(soup.vertices.size()));
+class ObjReader {
+ public:
+  ObjReader(std::string_view name, std::string_view text) : scanner_(name, text) {}
+
+  PolygonSoup read() {
+    do {
+      const auto keyword = scanner_.word_in_line();
+      if (keyword == "v") read_vertex();
+      if (keyword == "usemtl") read_material();
+      if (keyword == "f") read_face();
+    } while (scanner_.next_line());
+    check_corners();
+    return std::move(soup_);
+  }
+
+ private:
+  void read_vertex() {
+    Vector3d vertex;
+    for (double& coordinate : vertex) {
+      coordinate = scanner_.number<double>(scanner_.word_in_line(), "a coordinate");
+    }
+    soup_.vertices.push_back(vertex);
+  }
+
+  void read_material() {
+    // Faces before the first one have the material without a name.
+    if (soup_.materials.empty() && !lines_.empty()) use_material("");
+    soup_.polygon_materials.resize(lines_.size(), 0);
+    use_material(std::string(scanner_.word_in_line().value_or("")));
+  }
+
+  void use_material(const std::string& wanted) {
+    const auto known = std::ranges::find(soup_.materials, wanted);
+    material_ = static_cast<std::uint32_t>(known - soup_.materials.begin());
+    if (known == soup_.materials.end()) soup_.materials.push_back(wanted);
+  }
+
+  void read_face() {
+    if (!soup_.materials.empty()) soup_.polygon_materials.push_back(material_);
+    lines_.push_back(static_cast<std::uint32_t>(scanner_.line()));
+    while (const auto corner = scanner_.word_in_line()) {
+      if (corner == "\\") {  // goes on in the next line
+        scanner_.next_line();
+      } else {
+        soup_.corners.push_back(vertex_of(*corner));
+      }
+    }
+    close_polygon(soup_);
+  }
+
+  std::uint32_t vertex_of(std::string_view corner) {
+    const auto position = corner.substr(0, corner.find('/'));
+    const auto index = scanner_.number<std::int64_t>(position, "a vertex index");
+    // Counted from 1, or backwards from the latest vertex.
+    const auto count = static_cast<std::int64_t>(soup_.vertices.size());
+    const std::int64_t vertex = index > 0 ? index - 1 : index + count;
+    if (index == 0 || vertex < 0 || vertex > static_cast<std::int64_t>(largest_index)) {
+      scanner_.fail("the face names vertex " + std::to_string(index) + ", but the " +
+                    std::to_string(count) + " vertices so far are counted from 1, or from -1 " +
+                    "backwards");
+    }
+    return static_cast<std::uint32_t>(vertex);
+  }
+
+  /// Faces may come before their vertices.
+  void check_corners() const {
+    for (std::size_t polygon = 0; polygon < lines_.size(); ++polygon) {
+      for (std::size_t i = soup_.polygon_begin[polygon]; i < soup_.polygon_begin[polygon + 1];
+           ++i) {
+        if (soup_.corners[i] < soup_.vertices.size()) continue;
+        scanner_.fail_at(lines_[polygon], "the face names vertex " +
+                                              std::to_string(soup_.corners[i] + std::uint64_t{1}) +
+                                              ", but there are only " +
+                                              std::to_string(soup_.vertices.size()));
+      }
     }
   }
-  return soup;
+
+  TextScanner scanner_;
+  PolygonSoup soup_;
+  std::vector<std::uint32_t> lines_;  // of each polygon, for the check of its corners
+  std::uint32_t material_ = 0;
+};
+
+}  // namespace
+
+PolygonSoup parse_obj(std::string_view name, std::string_view text) {
+  return ObjReader(name, text).read();
 }
 
 namespace {

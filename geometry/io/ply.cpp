@@ -93,6 +93,21 @@ double load(PlyType type, const char* bytes, bool swap) {
   return 0.0;
 }
 
+PlyProperty parse_property(TextScanner& scanner) {
+  PlyProperty property{};
+  auto type = scanner.word_in_line();
+  if (type == "list") {
+    property.count_type = parse_type(scanner, scanner.word_in_line());
+    if (!is_integer(*property.count_type)) {
+      scanner.fail("the length of a list must be of an integer type");
+    }
+    type = scanner.word_in_line();
+  }
+  property.type = parse_type(scanner, type);
+  property.name = scanner.word_in_line().value_or("");
+  return property;
+}
+
 }  // namespace
 
 // For each property of an element: the column it goes to, or -1; and which of them is the list.
@@ -140,18 +155,7 @@ void PlyReader::read_header() {
       elements_.push_back(std::move(element));
     } else if (keyword == "property") {
       if (elements_.empty()) scanner.fail("a property must follow the element it belongs to");
-      PlyProperty property{};
-      auto type = scanner.word_in_line();
-      if (type == "list") {
-        property.count_type = parse_type(scanner, scanner.word_in_line());
-        if (!is_integer(*property.count_type)) {
-          scanner.fail("the length of a list must be of an integer type");
-        }
-        type = scanner.word_in_line();
-      }
-      property.type = parse_type(scanner, type);
-      property.name = scanner.word_in_line().value_or("");
-      elements_.back().properties.push_back(std::move(property));
+      elements_.back().properties.push_back(parse_property(scanner));
     } else {
       scanner.fail("'" + std::string(keyword->substr(0, 40)) +
                    "' is no PLY header keyword; it must be format, element, property, comment, "

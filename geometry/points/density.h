@@ -16,6 +16,7 @@
 
 #include <Eigen/Core>
 
+#include "geometry/points/outlier_rule.h"
 #include "geometry/points/point_cloud.h"
 #include "geometry/points/spaced_points.h"
 #include "geometry/points/spatial_index.h"
@@ -23,13 +24,6 @@
 namespace skycap::geometry {
 
 enum class PointLabel : std::uint8_t { core, frontier, outlier };
-
-/// Which neighbour, besides a core one, makes a point a frontier.
-enum class OutlierRule {
-  non_core,  ///< any other non-core point. The labels follow from the cloud alone.
-  labelled,  ///< a point now labelled outlier, perhaps the point itself. The labels depend on the
-             ///< order of points and updates, as in the authors' released code.
-};
 
 struct DensityConfig {
   double radius = 0.017;    ///< r

@@ -8,6 +8,9 @@
 #include "missions/derived/site.h"
 #include "missions/file/number_text.h"
 #include "missions/file/planner_titles.h"
+#include "survey/see/see.h"
+#include "survey/skycap/skycap_planner.h"
+#include "survey/volumetric/volumetric_planner.h"
 
 namespace skycap::missions::derived {
 namespace {

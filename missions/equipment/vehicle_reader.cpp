@@ -139,7 +139,6 @@ class VehicleReader {
     codes.drone = section->integer("drone", codes.drone);
     codes.drone_variant = section->integer("drone_variant", codes.drone_variant);
     codes.payload = section->integer("payload", codes.payload);
-    codes.has_independent_yaw = section->boolean("independent_yaw", codes.has_independent_yaw);
     section->finish();
   }
 

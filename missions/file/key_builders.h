@@ -79,32 +79,35 @@ Key text_key(std::string path, Field field, std::string meaning) {
   return key_for(std::move(path), KeyType::text, field, std::move(meaning));
 }
 
+/// A key whose values have a unit and a range. The field holds them times `factor`.
 template <class Field>
-Key number_key(std::string path, std::string unit, KeyRange range, Field field,
-               std::string meaning) {
-  Key key = key_for(std::move(path), KeyType::number, field, std::move(meaning));
+Key quantity_key(KeyType type, std::string path, std::string unit, KeyRange range, Field field,
+                 std::string meaning, double factor = 1.0) {
+  Key key = key_for(std::move(path), type, field, std::move(meaning), factor);
   key.unit = std::move(unit);
   key.range = range;
   return key;
+}
+
+template <class Field>
+Key number_key(std::string path, std::string unit, KeyRange range, Field field,
+               std::string meaning) {
+  return quantity_key(KeyType::number, std::move(path), std::move(unit), range, field,
+                      std::move(meaning));
 }
 
 /// A number of degrees whose field is in radians.
 template <class Field>
 Key angle_key(std::string path, KeyRange range, Field field, std::string meaning) {
-  Key key = key_for(std::move(path), KeyType::number, field, std::move(meaning),
-                    geometry::radians_per_degree);
-  key.unit = "degrees";
-  key.range = range;
-  return key;
+  return quantity_key(KeyType::number, std::move(path), "degrees", range, field, std::move(meaning),
+                      geometry::radians_per_degree);
 }
 
 template <class Field>
 Key integer_key(std::string path, std::string unit, KeyRange range, Field field,
                 std::string meaning) {
-  Key key = key_for(std::move(path), KeyType::integer, field, std::move(meaning));
-  key.unit = std::move(unit);
-  key.range = range;
-  return key;
+  return quantity_key(KeyType::integer, std::move(path), std::move(unit), range, field,
+                      std::move(meaning));
 }
 
 template <class Field>
@@ -115,20 +118,15 @@ Key boolean_key(std::string path, Field field, std::string meaning) {
 template <class Field>
 Key vector_key(std::string path, std::string unit, KeyRange range, Field field,
                std::string meaning) {
-  Key key = key_for(std::move(path), KeyType::vector, field, std::move(meaning));
-  key.unit = std::move(unit);
-  key.range = range;
-  return key;
+  return quantity_key(KeyType::vector, std::move(path), std::move(unit), range, field,
+                      std::move(meaning));
 }
 
 /// Three numbers of degrees whose field is in radians.
 template <class Field>
 Key angles_key(std::string path, KeyRange range, Field field, std::string meaning) {
-  Key key = key_for(std::move(path), KeyType::vector, field, std::move(meaning),
-                    geometry::radians_per_degree);
-  key.unit = "degrees";
-  key.range = range;
-  return key;
+  return quantity_key(KeyType::vector, std::move(path), "degrees", range, field, std::move(meaning),
+                      geometry::radians_per_degree);
 }
 
 /// A key for an enumeration whose values, from 0 on, are called `choices`.

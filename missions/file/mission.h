@@ -12,16 +12,16 @@
 #include <Eigen/Core>
 #include <Eigen/Geometry>
 
-#include "flight/motion/smoothing.h"
+#include "flight/motion/flight_style.h"
 #include "flight/motion/vehicle.h"
+#include "geometry/place/prism.h"
 #include "sim/models/models.h"
-#include "sim/sensors/depth_camera.h"
+#include "sim/sensors/depth_camera_config.h"
+#include "sim/sensors/navigation_errors.h"
 #include "sim/sensors/sensor.h"
-#include "sim/sensors/trajectory.h"
-#include "survey/see/see.h"
-#include "survey/skycap/skycap_planner.h"
-#include "survey/view_limits.h"
-#include "survey/volumetric/volumetric_planner.h"
+#include "survey/see/see_config.h"
+#include "survey/skycap/skycap_config.h"
+#include "survey/volumetric/volumetric_config.h"
 
 namespace skycap::missions::file {
 

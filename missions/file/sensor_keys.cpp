@@ -3,6 +3,17 @@
 #include "missions/file/key_sections.h"
 
 namespace skycap::missions::file {
+namespace {
+
+auto image(auto member) {
+  return [member](Mission & m) -> auto& { return m.sensor.camera.camera.*member; };
+}
+auto noise(auto member) {
+  return [member](Mission & m) -> auto& { return m.sensor.camera.noise.*member; };
+}
+
+}  // namespace
+
 std::vector<Key> sensor_keys() {
   return {
       choice_key(
@@ -17,42 +28,29 @@ std::vector<Key> sensor_keys() {
                          "view and turns once: a preset of sim/sensors/presets, or the path of a "
                          "description (NAME.yaml), relative to the mission file. No other key of "
                          "the section sensor goes with it.")),
-      integer_key(
-          "sensor.width", "px", between(1, 32768),
-          [](Mission & m) -> auto& { return m.sensor.camera.camera.width; },
-          "Columns of the image."),
-      integer_key(
-          "sensor.height", "px", between(1, 32768),
-          [](Mission & m) -> auto& { return m.sensor.camera.camera.height; }, "Rows of the image."),
-      angle_key(
-          "sensor.horizontal_fov_deg", between(0.1, 179),
-          [](Mission & m) -> auto& { return m.sensor.camera.camera.horizontal_fov; },
-          "Full horizontal angle of view."),
-      angle_key(
-          "sensor.vertical_fov_deg", between(0.1, 179),
-          [](Mission & m) -> auto& { return m.sensor.camera.camera.vertical_fov; },
-          "Full vertical angle of view."),
-      number_key(
-          "sensor.min_range", "m", between(0, 1e6),
-          [](Mission & m) -> auto& { return m.sensor.camera.camera.min_range; },
-          "Nearest depth, along the optical axis, that is measured."),
-      number_key(
-          "sensor.max_range", "m", above(0, 1e6),
-          [](Mission & m) -> auto& { return m.sensor.camera.camera.max_range; },
-          "Farthest depth, along the optical axis, that is measured."),
+      integer_key("sensor.width", "px", between(1, 32768), image(&geometry::CameraConfig::width),
+                  "Columns of the image."),
+      integer_key("sensor.height", "px", between(1, 32768), image(&geometry::CameraConfig::height),
+                  "Rows of the image."),
+      angle_key("sensor.horizontal_fov_deg", between(0.1, 179),
+                image(&geometry::CameraConfig::horizontal_fov), "Full horizontal angle of view."),
+      angle_key("sensor.vertical_fov_deg", between(0.1, 179),
+                image(&geometry::CameraConfig::vertical_fov), "Full vertical angle of view."),
+      number_key("sensor.min_range", "m", between(0, 1e6),
+                 image(&geometry::CameraConfig::min_range),
+                 "Nearest depth, along the optical axis, that is measured."),
+      number_key("sensor.max_range", "m", above(0, 1e6), image(&geometry::CameraConfig::max_range),
+                 "Farthest depth, along the optical axis, that is measured."),
       angle_key(
           "sensor.max_incidence_deg", above(0, 90),
           [](Mission & m) -> auto& { return m.sensor.camera.max_incidence; },
           "Surfaces whose normal makes a larger angle than this with the ray give no return; 90 "
           "switches the limit off."),
-      number_key(
-          "sensor.noise.sigma", "m", between(0, 1e3),
-          [](Mission & m) -> auto& { return m.sensor.camera.noise.sigma; },
-          "Standard deviation of the Gaussian noise of the measured points."),
-      choice_key(
-          "sensor.noise.direction", {"isotropic", "along_ray"},
-          [](Mission & m) -> auto& { return m.sensor.camera.noise.direction; },
-          "Whether the noise moves a point in x, y and z alike or along its ray only."),
+      number_key("sensor.noise.sigma", "m", between(0, 1e3), noise(&sim::NoiseConfig::sigma),
+                 "Standard deviation of the Gaussian noise of the measured points."),
+      choice_key("sensor.noise.direction", {"isotropic", "along_ray"},
+                 noise(&sim::NoiseConfig::direction),
+                 "Whether the noise moves a point in x, y and z alike or along its ray only."),
   };
 }
 

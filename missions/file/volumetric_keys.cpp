@@ -4,17 +4,24 @@
 
 namespace skycap::missions::file {
 
-std::vector<Key> volumetric_keys() {
-  using Settings = survey::volumetric::VolumetricSettings;
-  const auto setting = [](auto member) {
-    return [member](Mission & m) -> auto& { return m.volumetric.*member; };
-  };
-  const auto gain = [](auto member) {
-    return [member](Mission & m) -> auto& { return m.volumetric.gain.*member; };
-  };
-  const auto rays = [](auto member) {
-    return [member](Mission & m) -> auto& { return m.volumetric.rays.*member; };
-  };
+namespace {
+
+using survey::volumetric::GainSettings;
+using survey::volumetric::RayPattern;
+using Settings = survey::volumetric::VolumetricSettings;
+
+auto setting(auto member) {
+  return [member](Mission & m) -> auto& { return m.volumetric.*member; };
+}
+auto gain(auto member) {
+  return [member](Mission & m) -> auto& { return m.volumetric.gain.*member; };
+}
+auto rays(auto member) {
+  return [member](Mission & m) -> auto& { return m.volumetric.rays.*member; };
+}
+
+/// Which views are candidates, and which of them is taken.
+std::vector<Key> candidate_keys() {
   return {
       otherwise("130; in a benchmark, the most views that see needed",
                 integer_key("volumetric.view_limit", "views", between(1, 1e6),
@@ -35,27 +42,34 @@ std::vector<Key> volumetric_keys() {
           "the candidates."),
       choice_key("volumetric.ties", {"first", "nearest"}, setting(&Settings::ties),
                  "Which of equally useful candidates is taken."),
+  };
+}
+
+/// How the readings of a gain differ.
+std::vector<Key> gain_keys() {
+  return {
       choice_key(
-          "volumetric.visibility", {"code", "paper"},
-          gain(&survey::volumetric::GainSettings::visibility),
+          "volumetric.visibility", {"code", "paper"}, gain(&GainSettings::visibility),
           "What rse, oa and uv multiply the visibility weight by at a voxel of occupancy p: p as "
           "the evaluation code, or 1 - p as published."),
       choice_key(
-          "volumetric.rse_end", {"code", "paper"},
-          gain(&survey::volumetric::GainSettings::rear_side_end),
+          "volumetric.rse_end", {"code", "paper"}, gain(&GainSettings::rear_side_end),
           "Which rays that end on a surface rse counts: all as the evaluation code, or those "
           "from an uncertain voxel as published."),
       choice_key("volumetric.af_share", {"all_rays", "hitting_rays"},
-                 gain(&survey::volumetric::GainSettings::area_share),
-                 "Of which rays af takes shares."),
+                 gain(&GainSettings::area_share), "Of which rays af takes shares."),
+  };
+}
+
+/// Rays of a candidate, and what the map takes in.
+std::vector<Key> map_keys() {
+  return {
       number_key("volumetric.rays_per_pixel", "1/px", above(0, 1),
-                 rays(&survey::volumetric::RayPattern::rays_per_pixel),
+                 rays(&RayPattern::rays_per_pixel),
                  "Rays of a candidate, in a row and in a column of its image."),
-      number_key("volumetric.window_begin", "share", between(0, 1),
-                 rays(&survey::volumetric::RayPattern::window_begin),
+      number_key("volumetric.window_begin", "share", between(0, 1), rays(&RayPattern::window_begin),
                  "First column and row with rays, as a share of the image."),
-      number_key("volumetric.window_end", "share", between(0, 1),
-                 rays(&survey::volumetric::RayPattern::window_end),
+      number_key("volumetric.window_end", "share", between(0, 1), rays(&RayPattern::window_end),
                  "Last column and row with rays."),
       otherwise("the sphere's radius",
                 number_key("volumetric.ray_depth", "m", above(0, 1e6),
@@ -72,5 +86,9 @@ std::vector<Key> volumetric_keys() {
                   "Whether space along pixels without a return counts as free up to ray_depth."),
   };
 }
+
+}  // namespace
+
+std::vector<Key> volumetric_keys() { return joined({candidate_keys(), gain_keys(), map_keys()}); }
 
 }  // namespace skycap::missions::file

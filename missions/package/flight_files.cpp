@@ -12,7 +12,6 @@
 #include "flight/space/interruptible_space.h"
 #include "geometry/error.h"
 #include "missions/derived/mission_flight.h"
-#include "missions/equipment/vehicle_reader.h"
 
 namespace skycap::missions::package {
 namespace {
@@ -22,9 +21,6 @@ using flight::Format;
 
 constexpr std::array formats_of_packages{Format::plan, Format::waypoints, Format::kmz,
                                          Format::kml,  Format::geojson,   Format::csv};
-
-/// Whose codes a KMZ carries when the vehicle is not DJI's.
-constexpr const char* dji_stand_in = "m350_rtk";
 
 /// A file that is in the local frame needs no place on the Earth.
 bool is_local(Format format) {
@@ -50,26 +46,18 @@ std::string what_is_missing_for(Format format, const file::Mission& mission) {
 /// vehicle's.
 flight::FlightPlan in_dialect(flight::FlightPlan plan, Format format,
                               std::vector<std::string>& notes) {
-  flight::Vehicle& vehicle = plan.vehicle;
-  const std::string name = vehicle.name;
-  const auto note = [&](const std::string& file, const std::string& written_for) {
-    notes.push_back(file + " is written for " + written_for + ": " + name +
+  const bool is_dji = plan.vehicle.dialect == Dialect::dji;
+  const auto write_for = [&](Dialect dialect, const std::string& file, const std::string& whom) {
+    notes.push_back(file + " is written for " + whom + ": " + plan.vehicle.name +
                     " does not read this format");
+    plan.vehicle = derived::flown_by(std::move(plan.vehicle), dialect);
   };
-  if (format == Format::plan && vehicle.dialect == Dialect::dji) {
-    vehicle.dialect = Dialect::px4;
-    vehicle.mode = equipment::find_vehicle("generic").mode;
-    note("the .plan file", "PX4");
-  } else if (format == Format::waypoints && vehicle.dialect == Dialect::dji) {
-    vehicle.dialect = Dialect::ardupilot;
-    vehicle.mode = equipment::find_vehicle("generic_ardupilot").mode;
-    note("the .waypoints file", "ArduPilot");
-  } else if (format == Format::kmz && vehicle.dialect != Dialect::dji) {
-    const flight::Vehicle dji = equipment::find_vehicle(dji_stand_in);
-    vehicle.dialect = dji.dialect;
-    vehicle.wpml = dji.wpml;
-    vehicle.mode = dji.mode;
-    note("the .kmz file", dji.name);
+  if (format == Format::plan && is_dji) write_for(Dialect::px4, "the .plan file", "PX4");
+  if (format == Format::waypoints && is_dji) {
+    write_for(Dialect::ardupilot, "the .waypoints file", "ArduPilot");
+  }
+  if (format == Format::kmz && !is_dji) {
+    write_for(Dialect::dji, "the .kmz file", derived::stand_in(Dialect::dji).name);
   }
   return plan;
 }
@@ -108,6 +96,97 @@ std::string checked_parameters(const flight::FlightPlan& plan) {
   return text;
 }
 
+/// Stages a route format by format, sortie by sortie.
+class RouteFiles {
+ public:
+  RouteFiles(const file::Mission& mission, const flight::Route& route,
+             const flight::MeasuredSpace& measured, geometry::OutputFolder& folder)
+      : mission_(mission),
+        route_(route),
+        folder_(folder),
+        rules_(derived::flight_rules(mission)),
+        known_(rules_),
+        space_({&measured, &known_}) {}
+
+  FlightFiles stage(std::span<const Format> formats) {
+    has_one_format_ = formats.size() == 1;
+    for (const Format format : formats) {
+      if (const std::string lack = what_is_missing_for(format, mission_); !lack.empty()) {
+        leave_out(format, lack, ErrorKind::bad_config);
+        continue;
+      }
+      for (std::size_t i = 0; i < route_.sorties.size(); ++i) stage_sortie(format, i);
+    }
+    for (const auto& [name, text] : parameters_) {
+      folder_.write(name, text);
+      files_.parameters.push_back(name);
+    }
+    return std::move(files_);
+  }
+
+ private:
+  void add_note(const std::string& note) {
+    if (std::ranges::find(files_.notes, note) == files_.notes.end()) files_.notes.push_back(note);
+  }
+
+  void leave_out(Format format, const std::string& why, ErrorKind kind) {
+    const std::string note =
+        std::string("no mission") + flight::format_info(format).ending + ": " + why;
+    if (has_one_format_) throw Error(kind, note);
+    add_note(note);
+  }
+
+  void stage_sortie(Format format, std::size_t sortie) {
+    const std::string number = route_.sorties.size() > 1 ? "-" + std::to_string(sortie + 1) : "";
+    const std::string name = "mission" + number + flight::format_info(format).ending;
+    const std::filesystem::path file = folder_.stage(name);
+    try {
+      write_sortie(format, sortie, number, name, file);
+    } catch (const Error& error) {
+      folder_.drop(name);
+      if (error.kind() == ErrorKind::bad_file) {  // the disk's fault, not the mission's
+        for (const FlightFile& written : files_.written) folder_.drop(written.name);
+        throw;
+      }
+      leave_out(format, error.what(), error.kind());
+    }
+  }
+
+  /// Notes and files are listed only once the file is proven.
+  void write_sortie(Format format, std::size_t sortie, const std::string& number,
+                    const std::string& name, const std::filesystem::path& file) {
+    const flight::FormatInfo& info = flight::format_info(format);
+    std::vector<std::string> notes;
+    const bool holds_curves = flight::holds_curves(format);
+    if (!holds_curves && mission_.flight.style != flight::FlightStyle::stop) {
+      notes.push_back(std::string("mission") + info.ending +
+                      " stops in every corner: the format cannot say which curve is flown");
+    }
+    const auto corners = holds_curves ? flight::Corners::flown_round : flight::Corners::stopped_in;
+    flight::FlightPlan plan = in_dialect(flight_plan(route_, sortie, mission_.name + number,
+                                                     derived::site_of(mission_), rules_, corners),
+                                         format, notes);
+    certify_dialect(plan, space_, derived::highest_return(mission_, plan.pad.z(), plan.pad.z()));
+    if (has_parameters(format) && plan.returns) {
+      parameters_[flight::parameters_name(plan.vehicle.dialect)] = checked_parameters(plan);
+    }
+    const flight::ExportResult result = export_flight(plan, format, space_, file);
+    files_.written.push_back({name, info.heights, result.min_clearance, sortie, flight_time(plan)});
+    for (const std::string& note : notes) add_note(note);
+    for (const std::string& note : result.notes) add_note(note);
+  }
+
+  const file::Mission& mission_;
+  const flight::Route& route_;
+  geometry::OutputFolder& folder_;
+  flight::Obstacles rules_;
+  flight::KnownSpace known_;
+  flight::JointSpace space_;
+  bool has_one_format_ = false;
+  std::map<std::string, std::string> parameters_;  ///< of all sorties: a pilot sets them once
+  FlightFiles files_;
+};
+
 }  // namespace
 
 std::span<const Format> package_formats() { return formats_of_packages; }
@@ -133,65 +212,7 @@ flight::Route plan_flight(const file::Mission& mission, const flight::MeasuredSp
 FlightFiles stage_flight(const file::Mission& mission, const flight::Route& route,
                          const flight::MeasuredSpace& measured, std::span<const Format> formats,
                          geometry::OutputFolder& folder) {
-  const flight::Obstacles rules = derived::flight_rules(mission);
-  const flight::KnownSpace known(rules);
-  const flight::JointSpace space({&measured, &known});
-  FlightFiles files;
-  std::map<std::string, std::string> parameters;  // of all sorties: a pilot sets them once
-  const auto add_note = [&](const std::string& note) {
-    if (std::ranges::find(files.notes, note) == files.notes.end()) files.notes.push_back(note);
-  };
-
-  for (const Format format : formats) {
-    const flight::FormatInfo& info = flight::format_info(format);
-    const auto leave_out = [&](const std::string& why, ErrorKind kind) {
-      const std::string note = std::string("no mission") + info.ending + ": " + why;
-      if (formats.size() == 1) throw Error(kind, note);
-      add_note(note);
-    };
-    if (const std::string lack = what_is_missing_for(format, mission); !lack.empty()) {
-      leave_out(lack, ErrorKind::bad_config);
-      continue;
-    }
-    for (std::size_t i = 0; i < route.sorties.size(); ++i) {
-      const std::string number = route.sorties.size() > 1 ? "-" + std::to_string(i + 1) : "";
-      const std::string name = "mission" + number + info.ending;
-      const std::filesystem::path file = folder.stage(name);
-      try {
-        std::vector<std::string> notes;
-        const bool holds_curves = flight::holds_curves(format);
-        if (!holds_curves && mission.flight.style != flight::FlightStyle::stop) {
-          notes.push_back(std::string("mission") + info.ending +
-                          " stops in every corner: the format cannot say which curve is flown");
-        }
-        const auto corners =
-            holds_curves ? flight::Corners::flown_round : flight::Corners::stopped_in;
-        flight::FlightPlan plan = in_dialect(
-            flight_plan(route, i, mission.name + number, derived::site_of(mission), rules, corners),
-            format, notes);
-        certify_dialect(plan, space, derived::highest_return(mission, plan.pad.z(), plan.pad.z()));
-        if (has_parameters(format) && plan.returns) {
-          parameters[flight::parameters_name(plan.vehicle.dialect)] = checked_parameters(plan);
-        }
-        const flight::ExportResult result = export_flight(plan, format, space, file);
-        files.written.push_back({name, info.heights, result.min_clearance, i, flight_time(plan)});
-        std::ranges::for_each(notes, add_note);
-        std::ranges::for_each(result.notes, add_note);
-      } catch (const Error& error) {
-        folder.drop(name);
-        if (error.kind() == ErrorKind::bad_file) {  // the disk's fault, not the mission's
-          for (const FlightFile& written : files.written) folder.drop(written.name);
-          throw;
-        }
-        leave_out(error.what(), error.kind());
-      }
-    }
-  }
-  for (const auto& [name, text] : parameters) {
-    folder.write(name, text);
-    files.parameters.push_back(name);
-  }
-  return files;
+  return RouteFiles(mission, route, measured, folder).stage(formats);
 }
 
 bool is_flight_file(std::string_view name) {

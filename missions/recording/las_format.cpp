@@ -4,16 +4,18 @@
 #include <bit>
 #include <cmath>
 #include <limits>
+#include <string_view>
 
 #include "geometry/angle.h"
 #include "geometry/error.h"
+#include "geometry/io/las_layout.h"
 #include "missions/recording/little_endian.h"
 
 namespace skycap::missions::recording {
 namespace {
 
-constexpr std::uint16_t header_size = 375;
-constexpr std::uint16_t record_header_size = 54;
+namespace las = geometry::las;
+
 constexpr double scan_angle_unit = 0.006 * geometry::radians_per_degree;
 
 /// The nearest whole number of one that fits into 32 bits. Adding 1.5 * 2^52 leaves no place for
@@ -25,7 +27,7 @@ std::int32_t nearest(double number) {
 class LasFormat final : public CloudFormat {
  public:
   explicit LasFormat(const LasConfig& config)
-      : config_(config), point_size_(config.point_format == 7 ? 36 : 30) {}
+      : config_(config), point_size_(las::point_size(config.point_format)) {}
 
   std::vector<std::uint8_t> header(const CloudTotals& totals) const override;
   void encode(const sim::LidarReturns& returns, ReturnPosition position,
@@ -104,57 +106,71 @@ void LasFormat::encode_points(const sim::LidarReturns& returns,
   std::uint8_t* out = chunk.bytes.data();
   for (std::size_t i = 0; i < returns.size(); ++i, out += point_size_) {
     const Eigen::Vector3d place = units(points[i]);
-    for (int axis = 0; axis < 3; ++axis) store(out + 4UL * axis, nearest(place[axis]));
+    for (int axis = 0; axis < 3; ++axis) {
+      store(out + las::point::position + 4UL * axis, nearest(place[axis]));
+    }
     const double brightness = 65535.0 * std::clamp(returns.intensities[i], 0.0F, 1.0F);
     const auto intensity = static_cast<std::uint16_t>(nearest(brightness));
-    store(out + 12, intensity);
+    store(out + las::point::intensity, intensity);
     const std::uint8_t number = returns.return_numbers[i];
-    out[14] = static_cast<std::uint8_t>(number | (returns.returns_of_shots[i] << 4));
-    out[15] = 0;  // no flags
-    out[16] = 0;  // never classified
-    out[17] = static_cast<std::uint8_t>(returns.channels[i] & 0xFFU);
+    out[las::point::returns] =
+        static_cast<std::uint8_t>(number | (returns.returns_of_shots[i] << 4));
+    out[las::point::flags] = 0;
+    out[las::point::classification] = 0;  // never classified
+    out[las::point::user_data] = static_cast<std::uint8_t>(returns.channels[i] & 0xFFU);
     const double angle = static_cast<double>(returns.scan_angles[i]) * (1.0 / scan_angle_unit);
-    store(out + 18, static_cast<std::int16_t>(nearest(angle)));
-    store(out + 20, std::uint16_t{1});  // the first and only flight line
-    store(out + 22, returns.times[i]);
+    store(out + las::point::scan_angle, static_cast<std::int16_t>(nearest(angle)));
+    store(out + las::point::source, std::uint16_t{1});  // the first and only flight line
+    store(out + las::point::time, returns.times[i]);
     ++chunk.totals.points_by_return[number - 1];
-    if (point_size_ == 30) continue;
-    for (int colour = 0; colour < 3; ++colour) store(out + 30 + 2UL * colour, intensity);
+    if (config_.point_format == 6) continue;
+    for (int colour = 0; colour < 3; ++colour) {
+      store(out + las::point::colour + 2UL * colour, intensity);
+    }
   }
 }
 
-// Public header block and the one variable length record, that of the reference system.
+/// Public header block and the one variable length record, that of the reference system. What is
+/// not put is zero: the creation date, so that the same input gives the same bytes; the counts of
+/// older versions, as from point format 6 on; waveforms and extended records, of which there are
+/// none.
 std::vector<std::uint8_t> LasFormat::header(const CloudTotals& totals) const {
-  const auto wkt_size = static_cast<std::uint16_t>(config_.crs_wkt.size() + 1);  // ends with zero
-  const std::uint32_t first_point = header_size + record_header_size + wkt_size;
-  constexpr std::uint16_t adjusted_time = 1, wkt = 1 << 4;
-  Bytes bytes;
-  bytes.add_text("LASF", 4)
-      .add(std::uint16_t{0})
-      .add(static_cast<std::uint16_t>(adjusted_time | wkt));
-  bytes.add_text("", 16);  // project identifier
-  bytes.add(std::uint8_t{1}).add(std::uint8_t{4});
-  bytes.add_text("simulation", 32).add_text("Skycap", 32);
-  bytes.add(std::uint16_t{0}).add(std::uint16_t{0});  // no creation date: same input, same bytes
-  bytes.add(header_size).add(first_point).add(std::uint32_t{1});
-  bytes.add(static_cast<std::uint8_t>(config_.point_format)).add(point_size_);
-  for (int i = 0; i < 6; ++i)
-    bytes.add(std::uint32_t{0});  // counts of older versions, zero from point format 6 on
-  for (int axis = 0; axis < 3; ++axis) bytes.add(config_.scale);
-  for (int axis = 0; axis < 3; ++axis) bytes.add(config_.offset[axis]);
+  const std::size_t wkt_size = config_.crs_wkt.size() + 1;  // ends with zero
+  constexpr std::size_t record = las::header::end, wkt = record + las::record::end;
+  constexpr std::uint16_t adjusted_time = 1, is_wkt = 1 << 4, wkt_record = 2112;
+  std::vector<std::uint8_t> bytes(wkt + wkt_size);
+  const auto put = [&](std::size_t place, auto value) { store(bytes.data() + place, value); };
+  const auto put_text = [&](std::size_t place, std::string_view text) {
+    std::ranges::copy(text, bytes.begin() + static_cast<std::ptrdiff_t>(place));
+  };
+  put_text(las::header::signature, "LASF");
+  put(las::header::encoding, static_cast<std::uint16_t>(adjusted_time | is_wkt));
+  put(las::header::major, std::uint8_t{1});
+  put(las::header::minor, std::uint8_t{4});
+  put_text(las::header::system, "simulation");
+  put_text(las::header::software, "Skycap");
+  put(las::header::size, static_cast<std::uint16_t>(las::header::end));
+  put(las::header::first_point, static_cast<std::uint32_t>(bytes.size()));
+  put(las::header::records, std::uint32_t{1});
+  put(las::header::point_format, static_cast<std::uint8_t>(config_.point_format));
+  put(las::header::point_size, point_size_);
   for (int axis = 0; axis < 3; ++axis) {
-    bytes.add(totals.points > 0 ? totals.bounds.max()[axis] : 0.0)
-        .add(totals.points > 0 ? totals.bounds.min()[axis] : 0.0);
+    put(las::header::scale + 8UL * axis, config_.scale);
+    put(las::header::offset + 8UL * axis, config_.offset[axis]);
+    if (totals.points == 0) continue;
+    put(las::header::bounds + 16UL * axis, totals.bounds.max()[axis]);
+    put(las::header::bounds + 16UL * axis + 8, totals.bounds.min()[axis]);
   }
-  bytes.add(std::uint64_t{0});                        // no waveforms
-  bytes.add(std::uint64_t{0}).add(std::uint32_t{0});  // no extended records
-  bytes.add(totals.points);
-  for (const std::uint64_t count : totals.points_by_return) bytes.add(count);
-
-  bytes.add(std::uint16_t{0}).add_text("LASF_Projection", 16).add(std::uint16_t{2112});
-  bytes.add(wkt_size).add_text("OGC coordinate system WKT", 32);
-  bytes.add_text(config_.crs_wkt, wkt_size);
-  return bytes.take();
+  put(las::header::points, totals.points);
+  for (std::size_t i = 0; i < totals.points_by_return.size(); ++i) {
+    put(las::header::points_by_return + 8 * i, totals.points_by_return[i]);
+  }
+  put_text(record + las::record::user, "LASF_Projection");
+  put(record + las::record::id, wkt_record);
+  put(record + las::record::length, static_cast<std::uint16_t>(wkt_size));
+  put_text(record + las::record::description, "OGC coordinate system WKT");
+  put_text(wkt, config_.crs_wkt);
+  return bytes;
 }
 
 }  // namespace

@@ -5,10 +5,7 @@
 #include <bit>
 #include <cstdint>
 #include <cstring>
-#include <string_view>
 #include <type_traits>
-#include <utility>
-#include <vector>
 
 namespace skycap::missions::recording {
 
@@ -19,27 +16,5 @@ void store(std::uint8_t* bytes, Value value) {
   std::memcpy(bytes, &value, sizeof value);
   if constexpr (std::endian::native == std::endian::big) std::reverse(bytes, bytes + sizeof value);
 }
-
-/// Bytes that grow value by value.
-class Bytes {
- public:
-  template <typename Value>
-  Bytes& add(Value value) {
-    bytes_.resize(bytes_.size() + sizeof value);
-    store(bytes_.data() + bytes_.size() - sizeof value, value);
-    return *this;
-  }
-  /// The text, cut or filled with zeros to `size` bytes.
-  Bytes& add_text(std::string_view text, std::size_t size) {
-    const std::size_t kept = std::min(text.size(), size);
-    bytes_.insert(bytes_.end(), text.begin(), text.begin() + static_cast<std::ptrdiff_t>(kept));
-    bytes_.resize(bytes_.size() + size - kept, 0);
-    return *this;
-  }
-  std::vector<std::uint8_t> take() { return std::move(bytes_); }
-
- private:
-  std::vector<std::uint8_t> bytes_;
-};
 
 }  // namespace skycap::missions::recording

@@ -89,11 +89,7 @@ SurveyFlight::SurveyFlight(const file::Mission& mission, const geometry::View& f
 SurveyFlight::~SurveyFlight() = default;
 
 bool SurveyFlight::can_reach(const Vector3d& from, const geometry::View& to) {
-  const double pitch = flight::pitch_of(to);
-  // A millionth of a radian for the rounding of directions that are meant to be at the limit.
-  const bool can_look =
-      pitch >= impl_->vehicle.gimbal_min - 1e-6 && pitch <= impl_->vehicle.gimbal_max + 1e-6;
-  if (can_look) {
+  if (flight::can_look(impl_->vehicle, to)) {
     const flight::Path path = impl_->finder.find(from, to.position);
     if (path.status == flight::PathStatus::found && impl_->is_proven(path.points)) return true;
   }

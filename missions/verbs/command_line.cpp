@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cstdlib>
-#include <functional>
 #include <memory>
 #include <string_view>
 #include <utility>
@@ -16,59 +15,12 @@
 #include "missions/file/mission_keys.h"
 #include "missions/recording/cloud_formats.h"
 #include "missions/verbs/printable.h"
+#include "missions/verbs/verb_options.h"
 #include "missions/verbs/verbs.h"
 #include "missions/version.h"
 
 namespace skycap::missions::verbs {
 namespace {
-
-/// A verb that is ready to run, once the arguments are read.
-using Action = std::function<int()>;
-
-/// Values for keys of the mission file, as given by options.
-struct KeyOptions {
-  std::string planner, seed, threads, max_views;
-  std::vector<std::string> set;  ///< KEY=VALUE
-
-  std::vector<file::KeyOverride> overrides() const {
-    std::vector<file::KeyOverride> all;
-    const auto add = [&](const char* option, const char* key, const std::string& value) {
-      if (!value.empty()) all.push_back({option, key, value});
-    };
-    add("--planner", "planner.name", planner);
-    add("--seed", "seed", seed);
-    add("--threads", "threads", threads);
-    add("--max-views", "limits.max_views", max_views);
-    for (const std::string& pair : set) {
-      const auto equals = pair.find('=');
-      if (equals == std::string::npos) {
-        throw Error(ErrorKind::bad_usage,
-                    "--set " + pair + ": has no '='; give KEY=VALUE, such as seed=2");
-      }
-      all.push_back({"--set " + pair, pair.substr(0, equals), pair.substr(equals + 1)});
-    }
-    return all;
-  }
-};
-
-void add_set_option(CLI::App& verb, KeyOptions& keys) {
-  verb.add_option("--set", keys.set,
-                  "KEY=VALUE: any key of the mission file, such as "
-                  "planner.density=213; may be given again")
-      ->type_size(1)
-      ->allow_extra_args(false);
-}
-
-/// A number between two others; unlike CLI::Range it takes no NaN for one.
-CLI::Validator number_between(double least, double most) {
-  const CLI::Range range(least, most);
-  return {[range](std::string& text) {
-            double number = 0.0;
-            const bool is_number = CLI::detail::lexical_cast(text, number) && number == number;
-            return is_number ? range(text) : text + " is not a number";
-          },
-          range.get_description()};
-}
 
 void add_plan(CLI::App& app, const Console& console, Action& action) {
   CLI::App* verb = app.add_subcommand(
@@ -90,10 +42,7 @@ void add_plan(CLI::App& app, const Console& console, Action& action) {
   verb->add_flag("--quiet", options->is_quiet, "Print nothing but errors");
   verb->add_flag("--verbose", options->is_verbose, "Print the planning time of each view by part");
   add_set_option(*verb, *keys);
-  verb->callback([=, &console, &action] {
-    options->overrides = keys->overrides();
-    action = [=, &console] { return plan(*options, console); };
-  });
+  run_with_keys(*verb, options, keys, plan, console, action);
 }
 
 void add_live_options(CLI::App& verb, LiveOptions& options, KeyOptions& keys) {
@@ -151,10 +100,7 @@ void add_finish(CLI::App& app, const Console& console, Action& action) {
   const auto options = std::make_shared<LiveOptions>();
   const auto keys = std::make_shared<KeyOptions>();
   add_live_options(*verb, *options, *keys);
-  verb->callback([=, &console, &action] {
-    options->overrides = keys->overrides();
-    action = [=, &console] { return finish(*options, console); };
-  });
+  run_with_keys(*verb, options, keys, finish, console, action);
 }
 
 void add_benchmark(CLI::App& app, const Console& console, Action& action) {
@@ -177,10 +123,7 @@ void add_benchmark(CLI::App& app, const Console& console, Action& action) {
   verb->add_option("--max-views", keys->max_views, "End every survey after this many views");
   verb->add_flag("--quiet", options->is_quiet, "Print nothing but errors");
   add_set_option(*verb, *keys);
-  verb->callback([=, &console, &action] {
-    options->overrides = keys->overrides();
-    action = [=, &console] { return benchmark(*options, console); };
-  });
+  run_with_keys(*verb, options, keys, benchmark, console, action);
 }
 
 void add_scan(CLI::App& app, const Console& console, Action& action) {
@@ -204,10 +147,7 @@ void add_scan(CLI::App& app, const Console& console, Action& action) {
   verb->add_option("--threads", keys->threads, "Threads, 0 for all processors");
   verb->add_flag("--quiet", options->is_quiet, "Print nothing but errors");
   add_set_option(*verb, *keys);
-  verb->callback([=, &console, &action] {
-    options->overrides = keys->overrides();
-    action = [=, &console] { return scan(*options, console); };
-  });
+  run_with_keys(*verb, options, keys, scan, console, action);
 }
 
 void add_check(CLI::App& app, const Console& console, Action& action) {
@@ -253,10 +193,55 @@ void add_export(CLI::App& app, const Console& console, Action& action) {
       ->allow_extra_args(false);
   verb->add_option("--out", options->out, "Folder for the files; default the package");
   add_set_option(*verb, *keys);
-  verb->callback([=, &console, &action] {
-    options->overrides = keys->overrides();
-    action = [=, &console] { return export_package(*options, console); };
-  });
+  run_with_keys(*verb, options, keys, export_package, console, action);
+}
+
+void add_fly_test(CLI::App& app, const Console& console, Action& action) {
+  CLI::App* verb = app.add_subcommand(
+      "fly-test", "Fly a mission package's routes many times in wind, with failsafes");
+  const auto options = std::make_shared<FlyTestVerbOptions>();
+  const auto keys = std::make_shared<KeyOptions>();
+  verb->add_option("package", options->package, "Folder that plan wrote")->required();
+  verb->add_option("--flights", options->flights, "Of each route file; default 100")
+      ->check(CLI::Range(1, 1'000'000));
+  verb->add_option("--returns", options->returns,
+                   "Ways home from places at random; default 1000. 0: none")
+      ->check(CLI::Range(0, 100'000'000));
+  verb->add_option("--wind", options->wind_speed,
+                   "Strongest steady wind, which gusts come on top of [m/s]; default the "
+                   "mission's, at least 5")
+      ->check(number_between(0.0, 100.0));
+  verb->add_option("--position-error", options->position_error,
+                   "Greatest error of the receiver [m]; default the mission's")
+      ->check(number_between(0.0, 1000.0));
+  verb->add_option("--return-height", options->return_height,
+                   "The height of return that the vehicle is set to, above take-off [m]")
+      ->check(number_between(0.0, 10'000.0));
+  verb->add_option("--truth", options->truth,
+                   "Mission file: judge the flights against its scene as it truly is, too");
+  verb->add_option("--out", options->out, "Folder for fly_test.json; default the package");
+  verb->add_option("--seed", keys->seed, "Seed, in place of the mission's");
+  verb->add_option("--threads", keys->threads, "Threads, 0 for all processors");
+  verb->add_flag("--quiet", options->is_quiet, "Print nothing but errors");
+  add_set_option(*verb, *keys);
+  run_with_keys(*verb, options, keys, fly_test, console, action);
+}
+
+void add_calibrate(CLI::App& app, const Console& console, Action& action) {
+  CLI::App* verb =
+      app.add_subcommand("calibrate", "Make a vehicle file from a log of the vehicle's own flight");
+  const auto options = std::make_shared<CalibrateOptions>();
+  verb->add_option("log", options->log, "ArduPilot's dataflash log (.bin), or .csv")->required();
+  verb->add_option("--vehicle", options->vehicle, "Preset that it is like, such as m350_rtk")
+      ->required();
+  verb->add_option("--mass", options->mass, "Flown, with payload, in place of the preset's [kg]")
+      ->check(number_between(0.01, 1000.0));
+  verb->add_option("--battery", options->battery_wh, "In place of the preset's [Wh]")
+      ->check(number_between(0.1, 1e5));
+  verb->add_option("--air-density", options->air_density, "Of that day; default 1.225 kg/m^3")
+      ->check(number_between(0.4, 1.9));
+  verb->add_option("--out", options->out, "Vehicle file; default LOG.yaml");
+  run(*verb, options, calibrate, console, action);
 }
 
 void add_evaluate(CLI::App& app, const Console& console, Action& action) {
@@ -277,8 +262,7 @@ void add_evaluate(CLI::App& app, const Console& console, Action& action) {
   verb->add_option("--samples", options->samples, "Surface points; default 100000")
       ->check(CLI::Range(100, 10'000'000));
   verb->add_flag("--json", options->is_json, "Print JSON");
-  verb->callback(
-      [=, &console, &action] { action = [=, &console] { return evaluate(*options, console); }; });
+  run(*verb, options, evaluate, console, action);
 }
 
 void add_reconstruct(CLI::App& app, const Console& console, Action& action) {
@@ -298,9 +282,7 @@ void add_reconstruct(CLI::App& app, const Console& console, Action& action) {
       ->check(number_between(0.0, 0.99));
   verb->add_option("--threads", options->threads, "Threads, 0 for all processors")
       ->check(CLI::Range(0, 1024));
-  verb->callback([=, &console, &action] {
-    action = [=, &console] { return reconstruct_cloud(*options, console); };
-  });
+  run(*verb, options, reconstruct_cloud, console, action);
 }
 
 void add_model(CLI::App& app, const Console& console, Action& action) {
@@ -313,8 +295,7 @@ void add_model(CLI::App& app, const Console& console, Action& action) {
   verb->add_option("--detail", options->detail, "Of a builtin model: coarse, standard or fine")
       ->check(CLI::IsMember({"coarse", "standard", "fine"}));
   verb->add_option("--render", options->render, "Draw the model into this PNG file");
-  verb->callback(
-      [=, &console, &action] { action = [=, &console] { return model(*options, console); }; });
+  run(*verb, options, model, console, action);
 }
 
 /// One line for the user, whatever the message holds.
@@ -355,6 +336,8 @@ int parse_and_run(const std::vector<std::string>& arguments, const Console& cons
     add_scan(app, console, action);
     add_check(app, console, action);
     add_export(app, console, action);
+    add_fly_test(app, console, action);
+    add_calibrate(app, console, action);
     add_evaluate(app, console, action);
     add_reconstruct(app, console, action);
     add_model(app, console, action);

@@ -182,23 +182,31 @@ std::vector<recording::CloudFile> open_files(const ScanVerbOptions& options,
   return files;
 }
 
-nlohmann::ordered_json scan_json(const file::Mission& mission, const std::string& sensor,
-                                 const recording::ScanResult& result, double shots, double flown,
-                                 double time, const std::vector<OutputFile>& outputs) {
+/// What a laser scanner has recorded.
+struct LaserRecording {
+  std::string sensor;
+  recording::ScanResult result;
+  double shots = 0.0;
+  double flown = 0.0;  ///< [s]
+  double time = 0.0;   ///< that the simulation took [s]
+  std::vector<OutputFile> outputs;
+};
+
+nlohmann::ordered_json scan_json(const file::Mission& mission, const LaserRecording& recorded) {
   nlohmann::ordered_json files = nlohmann::ordered_json::array();
-  for (const OutputFile& file : outputs) {
+  for (const OutputFile& file : recorded.outputs) {
     files.push_back({{"name", file.name}, {"bytes", file.bytes}});
   }
   const sim::NavigationErrors& navigation = mission.scan.navigation;
   return {{"mission", mission.name},
-          {"sensor", sensor},
+          {"sensor", recorded.sensor},
           {"seed", mission.seed},
-          {"complete", result.is_complete},
-          {"flight_s", flown},
-          {"shots", static_cast<std::uint64_t>(shots)},
-          {"points", result.progress.points},
+          {"complete", recorded.result.is_complete},
+          {"flight_s", recorded.flown},
+          {"shots", static_cast<std::uint64_t>(recorded.shots)},
+          {"points", recorded.result.progress.points},
           {"las_crs", mission.scan.crs == file::ScanCrs::utm ? "utm" : "local"},
-          {"simulation_s", time},
+          {"simulation_s", recorded.time},
           {"navigation",
            {{"horizontal_sigma_m", navigation.horizontal_sigma},
             {"vertical_sigma_m", navigation.vertical_sigma},
@@ -206,6 +214,22 @@ nlohmann::ordered_json scan_json(const file::Mission& mission, const std::string
             {"heading_sigma_rad", navigation.heading_sigma},
             {"correlation_time_s", navigation.correlation_time}}},
           {"files", files}};
+}
+
+void print(const LaserRecording& recorded, const file::Mission& mission,
+           const std::filesystem::path& folder, std::ostream& out) {
+  out << fmt::format(
+             "{}: {}, {:.1f} s of flight{}\n"
+             "  scan      {:.2f} M shots, {:.2f} M points in {:.1f} s, {:.1f} M shots/s\n",
+             mission.name, recorded.sensor, recorded.flown,
+             recorded.result.is_complete ? "" : ", interrupted", 1e-6 * recorded.shots,
+             1e-6 * static_cast<double>(recorded.result.progress.points), recorded.time,
+             1e-6 * recorded.shots / recorded.time)
+      << "  results   " << folder.string();
+  for (const OutputFile& file : recorded.outputs) {
+    out << fmt::format(", {} {:.1f} MB", file.name, 1e-6 * static_cast<double>(file.bytes));
+  }
+  out << "\n" << std::flush;
 }
 
 int scan_with_laser(const ScanVerbOptions& options, const file::Mission& mission,
@@ -225,47 +249,30 @@ int scan_with_laser(const ScanVerbOptions& options, const file::Mission& mission
   const scene::ReflectingScene truth =
       scene::reflecting_scene(mission.scene, options.mission.parent_path());
   const sim::Scene scene = truth.scene(mission.threads);
-  std::vector<OutputFile> outputs;
+  LaserRecording recorded{.sensor = sensor_name};
   std::vector<recording::CloudFile> files = open_files(
-      options, {sensor_name, config, flight, truth.centre(), projection}, folder, outputs);
+      options, {sensor_name, config, flight, truth.centre(), projection}, folder, recorded.outputs);
 
   const auto channels = static_cast<double>(config.channels.size());
   const Clock::time_point start = Clock::now();
-  const recording::ScanResult result =
-      recording::run_scan(scene, lidar, flight, files,
-                          {.threads = mission.threads,
-                           .report = ScanReport(progress, mission.name, channels),
-                           .stop = console.stop});
+  recorded.result = recording::run_scan(scene, lidar, flight, files,
+                                        {.threads = mission.threads,
+                                         .report = ScanReport(progress, mission.name, channels),
+                                         .stop = console.stop});
   for (std::size_t i = 0; i < files.size(); ++i) {
     files[i].finish();
-    outputs[i].bytes = files[i].bytes();
+    recorded.outputs[i].bytes = files[i].bytes();
   }
-  const double time = std::chrono::duration<double>(Clock::now() - start).count();
+  recorded.time = std::chrono::duration<double>(Clock::now() - start).count();
+  const auto firings = static_cast<double>(recorded.result.progress.firings);
+  recorded.shots = channels * firings, recorded.flown = firings * config.firing_period;
   folder.write("trajectory.tum", sensor_tum(route.carrier, mount.real));
   folder.write("trajectory_believed.tum", sensor_tum(believed, mount.believed));
-  const auto firings = static_cast<double>(result.progress.firings);
-  const double shots = channels * firings, flown = firings * config.firing_period;
-  folder.write(scan_name, file::json_text(scan_json(mission, sensor_name, result, shots, flown,
-                                                    time, outputs)));
-  commit_scan(folder, result.is_complete);
+  folder.write(scan_name, file::json_text(scan_json(mission, recorded)));
+  commit_scan(folder, recorded.result.is_complete);
   progress.clear();
-
-  if (!options.is_quiet) {
-    console.out
-        << fmt::format(
-               "{}: {}, {:.1f} s of flight{}\n"
-               "  scan      {:.2f} M shots, {:.2f} M points in {:.1f} s, {:.1f} M shots/s\n",
-               mission.name, sensor_name, flown, result.is_complete ? "" : ", interrupted",
-               1e-6 * shots, 1e-6 * static_cast<double>(result.progress.points), time,
-               1e-6 * shots / time)
-        << "  results   " << folder.path().string();
-    for (const OutputFile& file : outputs) {
-      console.out << fmt::format(", {} {:.1f} MB", file.name,
-                                 1e-6 * static_cast<double>(file.bytes));
-    }
-    console.out << "\n" << std::flush;
-  }
-  return result.is_complete ? 0 : 1;
+  if (!options.is_quiet) print(recorded, mission, folder.path(), console.out);
+  return recorded.result.is_complete ? 0 : 1;
 }
 
 std::vector<double> image_times(const recording::ScanRoute& route, double period) {

@@ -107,6 +107,36 @@ struct ExportOptions {
 /// another vehicle. Exit code 1 if no view can be visited.
 int export_package(const ExportOptions& options, const Console& console);
 
+struct FlyTestVerbOptions {
+  std::filesystem::path package;               ///< folder that plan() wrote
+  std::optional<std::filesystem::path> out;    ///< folder; default: the package
+  std::optional<std::filesystem::path> truth;  ///< mission file whose scene is judged against, too
+  std::size_t flights = 100;
+  std::size_t returns = 1000;            ///< from anywhere; one more from each second of the flight
+  std::optional<double> wind_speed;      ///< the strongest; default: the mission's, at least 5 m/s
+  std::optional<double> position_error;  ///< the greatest; default: the mission's
+  std::optional<double> return_height;   ///< that the vehicle is set to, above take-off
+  std::vector<file::KeyOverride> overrides;
+  bool is_quiet = false;
+};
+
+/// Flies every route file of a package many times in the simulator, in wind and with failsafes.
+/// Writes fly_test.json. Exit code 1 if a flight came nearer to anything than the clearance less
+/// the errors that it allows for, if its battery would not have lasted, or if it was interrupted.
+int fly_test(const FlyTestVerbOptions& options, const Console& console);
+
+struct CalibrateOptions {
+  std::filesystem::path log;                 ///< ArduPilot's .bin, or .csv
+  std::string vehicle;                       ///< preset that the one that flew is like
+  std::optional<std::filesystem::path> out;  ///< default: LOG.yaml, without the log's own ending
+  std::optional<double> mass;                ///< flown, in place of the preset's [kg]
+  std::optional<double> battery_wh;          ///< in place of the preset's
+  double air_density = 1.225;                ///< of that day [kg/m^3]
+};
+
+/// Fits a vehicle's power and minutes to a log of its flight and writes it as a vehicle file.
+int calibrate(const CalibrateOptions& options, const Console& console);
+
 struct ScanVerbOptions {
   std::filesystem::path mission;
   std::optional<std::filesystem::path> route;  ///< in place of the mission's

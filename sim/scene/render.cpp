@@ -10,6 +10,7 @@
 #include "geometry/angle.h"
 #include "geometry/error.h"
 #include "geometry/parallel.h"
+#include "geometry/requirement.h"
 #include "sim/scene/scene.h"
 
 namespace skycap::sim {
@@ -252,12 +253,6 @@ RenderView view_of_all(const Mesh& mesh, const Vector3d& direction, double horiz
     }
   }
   return {{centre - distance * direction.normalized(), direction.normalized()}, horizontal_fov};
-}
-
-void require(bool is_right, const std::string& field, double value, const std::string& demand) {
-  if (is_right) return;
-  throw Error(ErrorKind::bad_config,
-              field + " is " + std::to_string(value) + "; it must be " + demand);
 }
 
 }  // namespace

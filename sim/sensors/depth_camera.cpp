@@ -8,11 +8,9 @@
 #include <memory>
 #include <mutex>
 #include <optional>
-#include <sstream>
 #include <utility>
 #include <vector>
 
-#include "geometry/error.h"
 #include "geometry/parallel.h"
 #include "sim/scene/four_lanes.h"
 #include "sim/scene/scene_trees.h"
@@ -25,7 +23,6 @@ using Eigen::Vector3d;
 using Eigen::Vector3f;
 using geometry::Scan;
 
-constexpr double degree = std::numbers::pi / 180.0;
 constexpr int packet_columns = 4;
 constexpr int packet_rows = RayPacket::width / packet_columns;
 constexpr int tile_columns = 32;  // packets are cast tile by tile: neighbours share cached nodes
@@ -63,13 +60,6 @@ struct RayTable {
     }
   }
 };
-
-void require(bool holds, const char* field, double value, const char* rule) {
-  if (holds) return;
-  std::ostringstream message;
-  message << "sensor." << field << " is " << value << "; it must be " << rule;
-  throw Error(ErrorKind::bad_config, message.str());
-}
 
 // What decides whether a hit is a return.
 struct Limits {
@@ -243,36 +233,6 @@ void emit_band(const RayTable& table, PinholeRow row, int first_row, const float
 }
 
 }  // namespace
-
-void DepthCameraConfig::validate() const {
-  camera.validate();
-  noise.validate();
-  require(max_incidence > 0.0 && max_incidence <= 0.5 * std::numbers::pi, "max_incidence",
-          max_incidence, "greater than 0 and at most pi/2 radians");
-  require(stereo.disparity_sigma_px >= 0.0 && std::isfinite(stereo.disparity_sigma_px),
-          "stereo.disparity_sigma_px", stereo.disparity_sigma_px, "zero or more pixels");
-  require(stereo.disparity_step_px >= 0.0 && std::isfinite(stereo.disparity_step_px),
-          "stereo.disparity_step_px", stereo.disparity_step_px, "zero or more pixels");
-  const double product = stereo.focal_length_px * stereo.baseline;
-  require(!stereo.is_on() || (product > 0.0 && std::isfinite(product)),
-          "stereo.focal_length_px * baseline", product, "greater than zero");
-}
-
-DepthCameraConfig d435() {
-  return {.camera = {.width = 848,
-                     .height = 480,
-                     .horizontal_fov = 69.4 * degree,
-                     .vertical_fov = 42.5 * degree},
-          .noise = {.sigma = 0.01}};
-}
-
-DepthCameraConfig high_resolution() {
-  return {.camera = {.width = 2400,
-                     .height = 1750,
-                     .horizontal_fov = 60.0 * degree,
-                     .vertical_fov = 40.0 * degree},
-          .noise = {.sigma = 0.01}};
-}
 
 DepthCamera::DepthCamera(const DepthCameraConfig& config)
     : config_(config), camera_(config.camera) {

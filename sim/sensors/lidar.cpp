@@ -4,6 +4,7 @@
 #include <cmath>
 #include <utility>
 
+#include "sim/sensors/block_echoes.h"
 #include "sim/sensors/echo.h"
 #include "sim/sensors/lidar_rays.h"
 #include "sim/sensors/noise.h"
@@ -25,7 +26,6 @@ struct Lidar::Impl {
       : config((given.validate(), given)),
         pattern(config),
         beam(beam_samples(config.beam.rings)),
-        min_range(static_cast<float>(config.min_range)),
         has_constant_sigma(config.errors.sigma_per_metre == 0.0 &&
                            config.errors.sigma_per_square_metre == 0.0 &&
                            config.errors.incidence_power == 0.0) {
@@ -51,26 +51,12 @@ struct Lidar::Impl {
   ScanPattern pattern;
   std::vector<BeamSample> beam;
   std::vector<float> beam_along, beam_across, beam_above;  // its unit rays, in the beam's frame
-  float min_range;
   bool has_constant_sigma;
   std::vector<float> biases;        // of each channel
   std::vector<float> delay_shares;  // of each channel's delay in the firing period
 };
 
 namespace {
-
-/// The n-th echo of every shot of a block, slot by slot.
-struct EchoRow {
-  std::vector<float> range, cosine, intensity;
-  std::vector<std::uint32_t> triangle;
-
-  void resize(std::size_t slots) {
-    range.resize(slots);
-    cosine.resize(slots);
-    intensity.resize(slots);
-    triangle.resize(slots);
-  }
-};
 
 /// What a block of firings needs on its way. Every thread keeps one, so that a short scan does not
 /// begin with asking for memory.
@@ -83,10 +69,7 @@ struct BlockBuffers {
   Hits hits;
   std::vector<float> azimuth_noise, elevation_noise;
   std::vector<std::vector<float>> range_noise;  // for each return of a shot
-  std::vector<RayHit> beam_hits;
-  std::vector<Echo> echoes;
-  std::vector<EchoRow> echo_rows;
-  std::vector<int> counts;  // of the echoes in each slot
+  BlockEchoes echoes;
 };
 
 BlockBuffers& buffers_of_thread() {
@@ -123,16 +106,16 @@ class BlockMeasurement {
     place(poses_, shots_rays_);
     cast(first, end);
     if (lidar_.beam.size() == 1) {
-      find_echoes_of_rays();
+      echoes_.find_of_rays(hits_, scene_, config_);
     } else {
-      find_echoes_of_beams();
+      echoes_.find_of_beams(hits_, lidar_.beam, scene_, config_);
     }
     if (has_own_belief_) place(believed_, reported_rays_);
     report(start);
   }
 
   /// Cuts off what an earlier use of the returns has left.
-  void finish() { resize(next_); }
+  void finish() { returns_.resize(next_); }
 
  private:
   // The rays of all shots in the world.
@@ -218,62 +201,11 @@ class BlockMeasurement {
     }
     has_range_noise_ =
         errors.sigma > 0.0 || errors.sigma_per_metre > 0.0 || errors.sigma_per_square_metre > 0.0;
-    echo_rows_.resize(lidar_.beam.size() > 1 ? config_.beam.max_returns : 1);
-    range_noise_.resize(echo_rows_.size());
+    echoes_.rows.resize(lidar_.beam.size() > 1 ? config_.beam.max_returns : 1);
+    range_noise_.resize(echoes_.rows.size());
     if (!has_range_noise_) return;
     for (std::uint32_t i = 0; i < range_noise_.size(); ++i) {
       draw(range_stream + i, range_noise_[i]);
-    }
-  }
-
-  RayHit hit(std::size_t ray, float share) const {
-    return {hits_.range[ray], hits_.cosine[ray], scene_.reflectance(hits_.triangle[ray]), share,
-            hits_.triangle[ray]};
-  }
-
-  // Beams without a width: a ray is its echo.
-  void find_echoes_of_rays() {
-    const std::size_t slots = lidar_.pattern.slots();
-    EchoRow& row = echo_rows_[0];
-    row.resize(slots);
-    counts_.resize(slots);
-    const bool has_limit = config_.sensitivity.reference_range > 0.0;
-    for (std::size_t slot = 0; slot < slots; ++slot) {
-      counts_[slot] = hits_.range[slot] >= lidar_.min_range ? 1 : 0;
-      row.intensity[slot] = Scene::default_reflectance * hits_.cosine[slot];
-    }
-    for (std::size_t slot = 0; slot < slots && (has_limit || scene_.has_reflectances()); ++slot) {
-      if (counts_[slot] == 0) continue;
-      const RayHit only = hit(slot, 1.0F);
-      row.intensity[slot] = only.reflectance * only.cosine;
-      counts_[slot] = received_power(only, config_.sensitivity) >= 1.0F ? 1 : 0;
-    }
-    std::swap(row.range, hits_.range);
-    std::swap(row.cosine, hits_.cosine);
-    std::swap(row.triangle, hits_.triangle);
-  }
-
-  void find_echoes_of_beams() {
-    const std::size_t samples = lidar_.beam.size(), slots = lidar_.pattern.slots();
-    for (EchoRow& row : echo_rows_) row.resize(slots);
-    counts_.resize(slots);
-    beam_hits_.resize(samples);
-    for (std::size_t slot = 0; slot < slots; ++slot) {
-      std::size_t hits = 0;
-      for (std::size_t i = 0, ray = slot * samples; i < samples; ++i, ++ray) {
-        if (hits_.range[ray] < lidar_.min_range) continue;
-        beam_hits_[hits++] = hit(ray, lidar_.beam[i].share);
-      }
-      echoes_ = form_echoes({beam_hits_.data(), hits}, config_.sensitivity, config_.beam,
-                            std::move(echoes_));
-      counts_[slot] = static_cast<int>(echoes_.size());
-      for (std::size_t i = 0; i < echoes_.size(); ++i) {
-        EchoRow& row = echo_rows_[i];
-        row.range[slot] = echoes_[i].range;
-        row.cosine[slot] = echoes_[i].cosine;
-        row.intensity[slot] = echoes_[i].intensity;
-        row.triangle[slot] = echoes_[i].triangle;
-      }
     }
   }
 
@@ -283,10 +215,10 @@ class BlockMeasurement {
       const std::size_t fours = config_.channels.size(), first = firing * fours;
       FourInts counts = {};
       for (std::size_t four_of_slots = 0; four_of_slots < fours; ++four_of_slots) {
-        counts += load<FourInts>(counts_, first + 4 * four_of_slots);
+        counts += load<FourInts>(echoes_.counts, first + 4 * four_of_slots);
       }
       const std::size_t all = next_ + static_cast<std::size_t>(sum(counts));
-      if (returns_.size() < all) resize(all);
+      if (returns_.size() < all) returns_.resize(all);
       std::size_t places[4];
       for (int lane = 0; lane < 4; ++lane) {
         places[lane] = next_;
@@ -324,7 +256,7 @@ class BlockMeasurement {
   void report_four(std::uint32_t firing, std::size_t channel, double start,
                    std::size_t (&places)[4], const Destination to) const {
     const std::size_t slot = lidar_.pattern.slot(firing, channel);
-    const FourInts counts = load<FourInts>(counts_, slot);
+    const FourInts counts = load<FourInts>(echoes_.counts, slot);
     const Rays& rays = has_own_belief_ ? reported_rays_ : shots_rays_;
     const bool is_misled = config_.errors.angle_sigma > 0.0;
     double times[4];
@@ -332,10 +264,10 @@ class BlockMeasurement {
       times[lane] =
           start + (firing + lane) * config_.firing_period + config_.channels[channel].delay;
     }
-    for (std::size_t number = 0; number < echo_rows_.size(); ++number) {
+    for (std::size_t number = 0; number < echoes_.rows.size(); ++number) {
       const FourInts is_there = counts > static_cast<int>(number);
       if (sum(is_there) == 0) break;
-      const EchoRow& row = echo_rows_[number];
+      const EchoRow& row = echoes_.rows[number];
       const FourFloats range = load<FourFloats>(row.range, slot);
       const FourFloats measured = measured_range(number, channel, slot, range);
       FourFloats point[3], true_point[3];
@@ -371,7 +303,7 @@ class BlockMeasurement {
     if (has_range_noise_) {
       FourFloats sigma = FourFloats{} + static_cast<float>(errors.sigma);
       for (int lane = 0; lane < 4 && !lidar_.has_constant_sigma; ++lane) {
-        sigma[lane] = range_sigma(errors, range[lane], echo_rows_[number].cosine[slot + lane]);
+        sigma[lane] = range_sigma(errors, range[lane], echoes_.rows[number].cosine[slot + lane]);
       }
       measured += sigma * load<FourFloats>(range_noise_[number], slot);
     }
@@ -400,18 +332,6 @@ class BlockMeasurement {
     return lanes;
   }
 
-  void resize(std::size_t size) {
-    returns_.points.resize(size);
-    returns_.true_points.resize(size);
-    returns_.times.resize(size);
-    returns_.intensities.resize(size);
-    returns_.scan_angles.resize(size);
-    returns_.triangles.resize(size);
-    returns_.channels.resize(size);
-    returns_.return_numbers.resize(size);
-    returns_.returns_of_shots.resize(size);
-  }
-
   const Lidar::Impl& lidar_;
   const LidarConfig& config_;
   const Scene& scene_;
@@ -430,10 +350,7 @@ class BlockMeasurement {
   std::vector<float>&azimuth_noise_ = buffers_.azimuth_noise,
   &elevation_noise_ = buffers_.elevation_noise;
   std::vector<std::vector<float>>& range_noise_ = buffers_.range_noise;
-  std::vector<RayHit>& beam_hits_ = buffers_.beam_hits;
-  std::vector<Echo>& echoes_ = buffers_.echoes;
-  std::vector<EchoRow>& echo_rows_ = buffers_.echo_rows;
-  std::vector<int>& counts_ = buffers_.counts;
+  BlockEchoes& echoes_ = buffers_.echoes;
   std::size_t next_ = 0;  // where the next return goes
 };
 

@@ -48,6 +48,17 @@ struct LidarReturns {
   std::vector<std::uint8_t> returns_of_shots;  ///< how many returns the shot has in all
 
   std::size_t size() const { return points.size(); }
+  void resize(std::size_t size) {
+    points.resize(size);
+    true_points.resize(size);
+    times.resize(size);
+    intensities.resize(size);
+    scan_angles.resize(size);
+    triangles.resize(size);
+    channels.resize(size);
+    return_numbers.resize(size);
+    returns_of_shots.resize(size);
+  }
 };
 
 /// A validated scanner. Immutable; safe to use from any number of threads.

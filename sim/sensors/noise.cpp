@@ -2,9 +2,8 @@
 
 #include <cassert>
 #include <cmath>
-#include <sstream>
 
-#include "geometry/error.h"
+#include "geometry/requirement.h"
 #include "sim/sensors/vector_kernels.h"
 
 namespace skycap::sim {
@@ -33,10 +32,7 @@ void fill_normals(const NoiseKey& key, std::uint32_t first, std::span<float> nor
 }
 
 void NoiseConfig::validate() const {
-  if (sigma >= 0.0 && std::isfinite(sigma)) return;
-  std::ostringstream message;
-  message << "sensor.noise.sigma is " << sigma << "; it must be zero or more metres";
-  throw Error(ErrorKind::bad_config, message.str());
+  require(sigma >= 0.0 && std::isfinite(sigma), "sensor.noise.sigma", sigma, "zero or more metres");
 }
 
 }  // namespace skycap::sim

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <sstream>
 #include <string>
 #include <utility>
 
@@ -20,13 +19,6 @@ using Eigen::Vector3d;
 void require(bool holds, std::size_t pose, const std::string& what) {
   if (holds) return;
   throw Error(ErrorKind::bad_geometry, "trajectory pose " + std::to_string(pose) + " " + what);
-}
-
-void require_sigma(double value, const char* field) {
-  if (value >= 0.0 && std::isfinite(value)) return;
-  std::ostringstream message;
-  message << "navigation." << field << " is " << value << "; it must be zero or more";
-  throw Error(ErrorKind::bad_config, message.str());
 }
 
 }  // namespace
@@ -55,14 +47,6 @@ Eigen::Isometry3d Trajectory::pose(double time) const {
     at.attitude = at.attitude.slerp(share, next->attitude);
   }
   return Eigen::Translation3d(at.position) * at.attitude;
-}
-
-void NavigationErrors::validate() const {
-  require_sigma(horizontal_sigma, "horizontal_sigma");
-  require_sigma(vertical_sigma, "vertical_sigma");
-  require_sigma(tilt_sigma, "tilt_sigma");
-  require_sigma(heading_sigma, "heading_sigma");
-  require_sigma(correlation_time, "correlation_time");
 }
 
 Trajectory believed_trajectory(const Trajectory& flown, const NavigationErrors& errors) {

@@ -4,11 +4,12 @@
 /// Body frame: x forward, y left, z up.
 #pragma once
 
-#include <cstdint>
 #include <span>
 #include <vector>
 
 #include <Eigen/Geometry>
+
+#include "sim/sensors/navigation_errors.h"
 
 namespace skycap::sim {
 
@@ -35,20 +36,6 @@ class Trajectory {
 
  private:
   std::vector<StampedPose> poses_;
-};
-
-/// Errors of a navigation solution, each a stationary first-order Gauss-Markov process: standard
-/// deviation sigma, and a correlation that falls to 1/e within `correlation_time`.
-struct NavigationErrors {
-  double horizontal_sigma = 0.0;   ///< of east and of north [m]
-  double vertical_sigma = 0.0;     ///< [m]
-  double tilt_sigma = 0.0;         ///< of roll and of pitch [rad]
-  double heading_sigma = 0.0;      ///< [rad]
-  double correlation_time = 60.0;  ///< [s]
-  std::uint64_t seed = 0;
-
-  /// Throws Error{bad_config} naming the first field that is out of its interval.
-  void validate() const;
 };
 
 /// The trajectory that the navigation of a platform flying `flown` believes in, at the same times:

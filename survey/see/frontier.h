@@ -3,7 +3,6 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <limits>
 #include <map>
 #include <optional>
 
@@ -21,8 +20,8 @@ struct Frontier {
   Eigen::Vector3d observed_along;  ///< unit: the optical axis of that sensor
   geometry::SurfaceFrame frame;
   geometry::View view;
-  double clear_offset = 0.0;  ///< zeta; see OcclusionTest
-  std::size_t offset_of_scan = std::numeric_limits<std::size_t>::max();  ///< when it was computed
+  double clear_offset = 0.0;                  ///< zeta; see OcclusionTest
+  std::optional<std::size_t> offset_of_scan;  ///< the number of scans when it was computed
 };
 
 /// By index of the point, so that every loop over them has the same order.

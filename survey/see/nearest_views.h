@@ -9,12 +9,6 @@
 
 namespace skycap::survey::see {
 
-/// How the view nearest to the sensor is found.
-enum class NearestSearch {
-  exact,
-  octree,  ///< approximate, as in the released code
-};
-
 /// The indices of the `count` positions nearest to `query`, nearest first, equally near ones by
 /// index; all if there are fewer.
 std::vector<std::size_t> nearest_views(std::span<const Eigen::Vector3d> positions,

@@ -5,20 +5,9 @@
 #include <Eigen/Core>
 
 #include "geometry/points/point_grid.h"
+#include "survey/see/readings.h"
 
 namespace skycap::survey::see {
-
-/// Along which line from a frontier the clear offset (zeta) is looked for.
-enum class OffsetLine {
-  sight_line,  ///< towards the sensor that first measured the point (paper §III-A)
-  normal,      ///< along the surface normal (released code)
-};
-
-/// Where the occlusion test ends. Never behind the sensor.
-enum class MarchEnd {
-  search_distance,              ///< at psi from the frontier (paper)
-  search_distance_from_offset,  ///< at zeta + psi (released code)
-};
 
 struct OcclusionConfig {
   double radius = 0.017;         ///< of the ball that is marched, and its step; r

@@ -6,10 +6,14 @@
 #include <utility>
 
 #include "geometry/error.h"
+#include "geometry/points/density.h"
 #include "geometry/points/spaced_points.h"
 #include "geometry/points/spatial_index.h"
 #include "survey/see/frontier.h"
+#include "survey/see/nearest_views.h"
+#include "survey/see/occlusion.h"
 #include "survey/see/seen_through.h"
+#include "survey/see/view_adjustment.h"
 #include "survey/see/visibility_graph.h"
 #include "survey/stopwatch.h"
 

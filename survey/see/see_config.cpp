@@ -1,20 +1,15 @@
+#include "survey/see/see_config.h"
+
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <sstream>
 
 #include "geometry/error.h"
-#include "survey/see/see.h"
+#include "geometry/requirement.h"
 
 namespace skycap::survey::see {
 namespace {
-
-template <typename Value>
-void require(bool holds, const char* field, const char* rule, const Value& value) {
-  if (holds) return;
-  std::ostringstream message;
-  message << "planner." << field << " is " << value << "; it must be " << rule;
-  throw Error(ErrorKind::bad_config, message.str());
-}
 
 bool is_length(double value) { return std::isfinite(value) && value > 0.0; }
 
@@ -30,41 +25,43 @@ double SeeConfig::effective_spacing() const { return spacing.value_or(1.0 / std:
 
 void SeeConfig::validate() const {
   constexpr const char* length = "a positive number of metres";
-  require(std::isfinite(density) && density > 0.0, "density",
-          "a positive number of points per cubic metre", density);
-  require(is_length(resolution_radius), "resolution_radius", length, resolution_radius);
-  require(is_length(occlusion_search_distance), "occlusion_search_distance", length,
-          occlusion_search_distance);
-  require(visibility_update_limit > 0, "visibility_update_limit", "at least 1",
-          visibility_update_limit);
-  require(std::isfinite(effective_spacing()) && effective_spacing() >= 0.0, "spacing",
-          "zero or a positive number of metres", effective_spacing());
-  require(effective_spacing() < resolution_radius, "spacing",
+  require(std::isfinite(density) && density > 0.0, "planner.density", density,
+          "a positive number of points per cubic metre");
+  require(is_length(resolution_radius), "planner.resolution_radius", resolution_radius, length);
+  require(is_length(occlusion_search_distance), "planner.occlusion_search_distance",
+          occlusion_search_distance, length);
+  require(visibility_update_limit > 0, "planner.visibility_update_limit",
+          static_cast<double>(visibility_update_limit), "at least 1");
+  require(std::isfinite(effective_spacing()) && effective_spacing() >= 0.0, "planner.spacing",
+          effective_spacing(), "zero or a positive number of metres");
+  require(effective_spacing() < resolution_radius, "planner.spacing", effective_spacing(),
           "less than resolution_radius, or no point has neighbours (by default it is "
-          "density^(-1/2))",
-          effective_spacing());
-  require(!view_distance || is_length(*view_distance), "view_distance", length,
-          view_distance.value_or(0.0));
-  require(!scene_box || (!scene_box->isEmpty() && scene_box->diagonal().allFinite()), "scene_box",
-          "a box whose minimum is below its maximum", "empty");
-  require(!frame_neighbours || *frame_neighbours >= 3, "frame_neighbours", "at least 3",
-          frame_neighbours.value_or(0));
+          "density^(-1/2))");
+  require(!view_distance || is_length(*view_distance), "planner.view_distance",
+          view_distance.value_or(0.0), length);
+  if (scene_box && (scene_box->isEmpty() || !scene_box->diagonal().allFinite())) {
+    throw Error(ErrorKind::bad_config,
+                "planner.scene_box is empty; it must be a box whose minimum is below its maximum");
+  }
+  require(!frame_neighbours || *frame_neighbours >= 3, "planner.frame_neighbours",
+          frame_neighbours.value_or(0), "at least 3");
   require(
       !occlusion_radius || (is_length(*occlusion_radius) && *occlusion_radius <= resolution_radius),
-      "occlusion_radius", "positive and at most resolution_radius", occlusion_radius.value_or(0.0));
-  require(is_length(occluder_spacing), "occluder_spacing", length, occluder_spacing);
-  require(std::isfinite(first_view_weight) && first_view_weight >= 0.0, "first_view_weight",
-          "zero or more", first_view_weight);
-  require(max_attempts >= 1, "max_attempts", "at least 1", max_attempts);
-  require(std::isfinite(frontier_spacing) && frontier_spacing >= 0.0, "frontier_spacing",
-          "zero or a positive number of metres", frontier_spacing);
-  require(!least_height || std::isfinite(*least_height), "least_height", "a finite height",
-          least_height.value_or(0.0));
+      "planner.occlusion_radius", occlusion_radius.value_or(0.0),
+      "positive and at most resolution_radius");
+  require(is_length(occluder_spacing), "planner.occluder_spacing", occluder_spacing, length);
+  require(std::isfinite(first_view_weight) && first_view_weight >= 0.0, "planner.first_view_weight",
+          first_view_weight, "zero or more");
+  require(max_attempts >= 1, "planner.max_attempts", max_attempts, "at least 1");
+  require(std::isfinite(frontier_spacing) && frontier_spacing >= 0.0, "planner.frontier_spacing",
+          frontier_spacing, "zero or a positive number of metres");
+  require(!least_height || std::isfinite(*least_height), "planner.least_height",
+          least_height.value_or(0.0), "a finite height");
   cap.validate();
 
   const int k = effective_core_threshold();
   if (core_threshold) {
-    require(k >= 4, "core_threshold", "at least 4, or no point can be a frontier", k);
+    require(k >= 4, "planner.core_threshold", k, "at least 4, or no point can be a frontier");
   } else if (k < 4) {
     std::ostringstream message;
     message << "planner.density " << density << " and planner.resolution_radius "

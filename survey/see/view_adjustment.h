@@ -9,15 +9,9 @@
 #include <Eigen/Core>
 
 #include "survey/see/frontier.h"
+#include "survey/see/readings.h"
 
 namespace skycap::survey::see {
-
-/// How a view is moved after it failed to resolve its frontier.
-enum class Adjustment {
-  rotation,  ///< shifted and turned about the frontier, with a gain that doubles (released code)
-  shift,     ///< shifted without the turn
-  none,      ///< the frontier is given up at the first failure
-};
 
 /// What has been tried for a frontier. Kept when the point loses its label, so that a frontier
 /// that comes back has only the attempts left that it had.

@@ -7,57 +7,16 @@
 /// computes them, as the SEE++ paper compares them, unless GainSettings says otherwise.
 #pragma once
 
-#include <optional>
 #include <vector>
 
 #include <Eigen/Core>
 
 #include "geometry/place/camera.h"
 #include "geometry/place/pose.h"
+#include "survey/volumetric/volumetric_config.h"
 #include "survey/volumetric/volumetric_map.h"
 
 namespace skycap::survey::volumetric {
-
-enum class VolumetricMetric {
-  rear_side_voxel,    ///< RSV: occupied voxels met from behind
-  rear_side_entropy,  ///< RSE: entropy of what lies before such voxels
-  occlusion_aware,    ///< OA: entropy of voxels, weighted by how likely they are visible
-  unobserved_voxel,   ///< UV: the same, of uncertain voxels only
-  proximity_count,    ///< PC: shadowed voxels, more the nearer they are to the surface
-  area_factor,        ///< AF: wanted shares of occupied and shadowed ends of rays
-  average_entropy,    ///< AE: mean entropy along rays that end on a surface
-};
-
-/// By what the visibility weight of OA, UV and RSE is multiplied at a voxel of occupancy p.
-enum class VisibilityFactor {
-  occupancy,  ///< p: the evaluation code
-  freedom,    ///< 1 - p: the published formula
-};
-
-/// Which rays that end on a surface RSE counts.
-enum class RearSideEnd {
-  any,               ///< those that come from a measured-free voxel too: the evaluation code
-  behind_uncertain,  ///< only those that come from an uncertain voxel: the published definition
-};
-
-/// What AF takes shares of.
-enum class AreaShare {
-  all_rays,      ///< the evaluation code
-  hitting_rays,  ///< only rays that meet a surface or a shadow: Vasquez-Gomez' own code
-};
-
-struct GainSettings {
-  VisibilityFactor visibility = VisibilityFactor::occupancy;
-  RearSideEnd rear_side_end = RearSideEnd::any;
-  AreaShare area_share = AreaShare::all_rays;
-};
-
-/// Which of a camera's pixels a view is judged by.
-struct RayPattern {
-  double rays_per_pixel = 0.1;  ///< in a row and in a column
-  double window_begin = 0.25;   ///< first column and row, as shares of the image
-  double window_end = 0.75;     ///< last column and row
-};
 
 /// Unit directions in the camera frame, column by column: x = x0, x0 + 1/k, ... up to and with
 /// x1, rounded down to pixels, and likewise the rows.

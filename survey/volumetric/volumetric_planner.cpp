@@ -12,6 +12,7 @@
 #include "geometry/points/point_grid.h"
 #include "geometry/points/spaced_points.h"
 #include "survey/stopwatch.h"
+#include "survey/volumetric/volumetric_gain.h"
 
 namespace skycap::survey::volumetric {
 namespace {
@@ -20,23 +21,6 @@ using Eigen::Vector3d;
 using Eigen::Vector3f;
 using geometry::Scan;
 using geometry::View;
-
-constexpr double default_shadow_in_voxels = 18.0;
-
-void require(bool holds, const char* field, const char* rule, double value) {
-  if (holds) return;
-  std::ostringstream message;
-  message << field << " is " << value << "; it must be " << rule;
-  throw Error(ErrorKind::bad_config, message.str());
-}
-
-double shadow_length(const VolumetricConfig& config) {
-  return config.settings.shadow_length.value_or(default_shadow_in_voxels * config.resolution);
-}
-
-double ray_depth(const VolumetricConfig& config) {
-  return config.settings.ray_depth.value_or(config.sphere_radius);
-}
 
 /// Where the rays of pixels without a return end, `depth` from the sensor.
 std::vector<Vector3f> ends_of_no_returns(const Scan& scan, const geometry::Camera& camera,
@@ -57,30 +41,6 @@ std::vector<Vector3f> ends_of_no_returns(const Scan& scan, const geometry::Camer
 }
 
 }  // namespace
-
-void VolumetricConfig::validate() const {
-  constexpr const char* length = "a positive number of metres";
-  const auto is_length = [](double value) { return std::isfinite(value) && value > 0.0; };
-  require(is_length(resolution), "planner.resolution_radius", length, resolution);
-  require(std::isfinite(spacing) && spacing >= 0.0, "planner.spacing",
-          "zero or a positive number of metres", spacing);
-  require(is_length(sphere_radius), "volumetric.sphere_radius", length, sphere_radius);
-  require(candidates >= 1, "volumetric.candidates_per_view", "large enough for one candidate",
-          settings.candidates_per_view);
-  require(std::isfinite(settings.cost_weight) && settings.cost_weight >= 0.0,
-          "volumetric.cost_weight", "zero or more", settings.cost_weight);
-  require(is_length(ray_depth(*this)), "volumetric.ray_depth", length, ray_depth(*this));
-  // A diagonal shadow takes sqrt(3) times as many voxels.
-  constexpr double longest_shadow = OccupancyStates::deepest_shadow / 2.0;
-  require(is_length(shadow_length(*this)) && shadow_length(*this) < longest_shadow * resolution,
-          "volumetric.shadow_length", "positive and less than 2000 voxels", shadow_length(*this));
-  const RayPattern& rays = settings.rays;
-  require(rays.rays_per_pixel > 0.0 && rays.rays_per_pixel <= 1.0, "volumetric.rays_per_pixel",
-          "above 0 and at most 1", rays.rays_per_pixel);
-  require(rays.window_begin >= 0.0 && rays.window_begin < rays.window_end,
-          "volumetric.window_begin", "at least 0 and below window_end", rays.window_begin);
-  require(rays.window_end < 1.0 + 1e-12, "volumetric.window_end", "at most 1", rays.window_end);
-}
 
 std::vector<View> sphere_views(std::size_t count, const Vector3d& centre, double radius,
                                const std::optional<double>& least_height, std::uint64_t seed) {
@@ -133,7 +93,7 @@ struct VolumetricPlanner::Impl {
       : config(given),
         camera(sensor),
         directions(ray_directions(camera, config.settings.rays)),
-        map(config.resolution, shadow_length(config)),
+        map(config.resolution, config.shadow_length()),
         kept(config.spacing, std::max(2.0 * config.spacing, 1e-6)) {
     for (const View& view : sphere_views(config.candidates, config.sphere_centre,
                                          config.sphere_radius, config.least_height, config.seed)) {
@@ -201,7 +161,7 @@ void VolumetricPlanner::Impl::insert(const Scan& scan) {
 
   std::vector<Vector3f> empty_ends;
   if (config.settings.carve_no_returns && !scan.pixels.empty()) {
-    empty_ends = ends_of_no_returns(scan, camera, ray_depth(config));
+    empty_ends = ends_of_no_returns(scan, camera, config.ray_depth());
   }
   map.insert(position.cast<float>(), measured, empty_ends);
 }
@@ -209,7 +169,7 @@ void VolumetricPlanner::Impl::insert(const Scan& scan) {
 void VolumetricPlanner::Impl::score() {
   geometry::parallel_for(candidates.size(), config.threads, [&](std::size_t i) {
     candidates[i].gain = information_gain(config.metric, map, candidates[i].view, directions,
-                                          ray_depth(config), config.settings.gain);
+                                          config.ray_depth(), config.settings.gain);
   });
 }
 

@@ -13,54 +13,13 @@
 #include <vector>
 
 #include <Eigen/Core>
-#include <Eigen/Geometry>
 
 #include "geometry/place/camera.h"
 #include "survey/planner.h"
-#include "survey/volumetric/volumetric_gain.h"
+#include "survey/volumetric/volumetric_config.h"
+#include "survey/volumetric/volumetric_map.h"
 
 namespace skycap::survey::volumetric {
-
-/// Which of equally useful candidates is taken.
-enum class TieRule {
-  first,    ///< in the order in which they were drawn
-  nearest,  ///< to the sensor
-};
-
-/// What a mission file may set about a volumetric planner. The defaults are those with which the
-/// evaluation code gives the SEE++ paper's figures, as far as the paper lets one tell.
-struct VolumetricSettings {
-  std::optional<std::size_t> view_limit;  ///< V; a comparison takes SEE's largest number of views
-  double candidates_per_view = 2.4;       ///< candidates are V times this (paper §IV-B)
-  std::optional<Eigen::Vector3d> sphere_centre;  ///< of the candidates; world frame
-  std::optional<double> sphere_radius;
-
-  double cost_weight = 1.0;  ///< of the way, against the gain; both are shares of their sums
-  TieRule ties = TieRule::first;
-  GainSettings gain;
-  RayPattern rays;
-  std::optional<double> ray_depth;      ///< where rays end; the sphere's radius
-  std::optional<double> shadow_length;  ///< s, of the shadows behind measurements; 18 voxels
-  bool thinned = false;           ///< the map takes only points that are kept, not whole scans
-  bool carve_no_returns = false;  ///< the map takes pixels without return as free up to ray_depth
-};
-
-struct VolumetricConfig {
-  VolumetricMetric metric = VolumetricMetric::occlusion_aware;
-  double resolution = 0.017;       ///< width of a voxel; the paper takes SEE's radius r
-  double spacing = 0.00261711877;  ///< epsilon, least distance of kept points; rho^(-1/2)
-  std::optional<Eigen::AlignedBox3d> scene_box;  ///< measurements outside are dropped first
-  std::size_t candidates = 312;
-  Eigen::Vector3d sphere_centre = Eigen::Vector3d::Zero();
-  double sphere_radius = 1.0;
-  std::optional<double> least_height;  ///< no candidate is lower
-  std::uint64_t seed = 1;              ///< of the candidates
-  VolumetricSettings settings;
-  unsigned threads = 1;  ///< for scoring; zero: all processors. Never changes a result
-
-  /// Throws Error{bad_config} naming the first field that is out of its interval.
-  void validate() const;
-};
 
 /// `count` views of the sphere's centre from places drawn independently, uniformly over the part
 /// of the sphere that is not below `least_height`, if that is given. Throws Error{bad_config} if

@@ -46,7 +46,7 @@ std::vector<Vehicle> test_vehicles() {
   Vehicle m350;
   m350.name = "m350_rtk";
   m350.dialect = Dialect::dji;
-  m350.wpml = {89, 0, 42, "1.0.6", true};
+  m350.wpml = {89, 0, 42, "1.0.6"};
   m350.mode = dji_mode();
   m350.radius = 0.72, m350.max_speed = 15.0, m350.max_wind = 12.0;
   m350.gimbal_rate = 90 * degree;
@@ -57,7 +57,7 @@ std::vector<Vehicle> test_vehicles() {
 
   Vehicle m30t = m350;
   m30t.name = "m30t";
-  m30t.wpml = {67, 1, 53, "1.0.6", true};
+  m30t.wpml = {67, 1, 53, "1.0.6"};
   m30t.radius = 0.54;
   m30t.mass = 3.77, m30t.rotor_diameter = 0.406, m30t.battery_wh = 263.2;
   m30t.endurance_min = 41.0, m30t.avionics_power = 30.0, m30t.drag_area = 0.06;

@@ -51,6 +51,9 @@ Rooms house() {
   add("flight/export",
       {"flight/space", "flight/motion", "flight/paths", "flight/way_home", "flight/route"});
   add("flight/interpreter", {"flight/space", "flight/autopilot", "flight/motion", "flight/export"});
+  add("flight/calibration", {"flight/space", "flight/autopilot", "flight/motion", "flight/export"});
+  add("flight/fly_test", {"flight/space", "flight/autopilot", "flight/motion", "flight/way_home",
+                          "flight/interpreter"});
 
   std::vector<std::string> below;  // what missions/ composes
   for (const auto& [room, others] : rooms) {

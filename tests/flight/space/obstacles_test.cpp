@@ -80,29 +80,5 @@ TEST(Prism, AFootprintWithCornersOnALineIsFilledCompletely) {
   EXPECT_NEAR(geometry::surface_area(surface(prism)), 2 * 100 + 40, 1e-9);
 }
 
-// A box with a face torn out and another turned inward becomes a closed solid that encloses it.
-TEST(Envelope, MakesADirtyMeshSolidAndEnclosesIt) {
-  geometry::Mesh dirty = scenes::box(Vector3d::Zero(), Vector3d::Constant(10), 5);
-  dirty.triangles.erase(dirty.triangles.begin(), dirty.triangles.begin() + 2);
-  for (std::size_t t = 60; t < 90; ++t) std::swap(dirty.triangles[t][0], dirty.triangles[t][1]);
-  Obstacles obstacles;
-  obstacles.mesh = envelope(dirty, 3.0, 0.2);
-  const KnownSpace space(obstacles);
-  obstacles.mesh_is_solid = false;
-  const KnownSpace shell(obstacles);
-  EXPECT_NEAR(space.winding_number({5, 5, 5}), 1.0, 0.05);
-  for (const Vector3d& v : dirty.vertices) {
-    EXPECT_GT(space.winding_number(v), 0.5);
-    EXPECT_GT(shell.distance(v, 9), 0.0) << "the envelope touches its content";
-  }
-  EXPECT_TRUE(space.is_free({{12, 5, 5}, {12, 6, 5}}, 1.0));  // and is no fatter than it must
-}
-
-TEST(Envelope, RefusesWhatCannotBeWrapped) {
-  EXPECT_THROW(envelope(std::vector<Eigen::Vector3f>{}, 1.0, 0.1), Error);
-  EXPECT_THROW(envelope(geometry::Mesh{}, 1.0, 0.1), Error);
-  EXPECT_THROW(envelope(scenes::box(Vector3d::Zero(), Vector3d::Ones()), 0.0, 0.1), Error);
-}
-
 }  // namespace
 }  // namespace skycap::flight

@@ -1,0 +1,109 @@
+#include <algorithm>
+#include <cstring>
+#include <istream>
+#include <limits>
+#include <ostream>
+#include <string>
+#include <vector>
+
+#include "flight/space/measured_voxels.h"
+#include "geometry/error.h"
+
+namespace skycap::flight {
+namespace {
+
+using Eigen::AlignedBox3d;
+using Eigen::Vector3d;
+
+constexpr char file_mark[16] = "skycap free v1\n";
+
+/// What a file begins with. Plain numbers: it is written as it is in memory.
+struct FileHead {
+  char mark[16];
+  double voxel, depth_margin, free_without_return, max_depth;
+  double floor;      ///< minus infinity if there is none
+  double region[6];  ///< its two corners; the first above the second if there is none
+  std::uint64_t blocks;
+};
+
+struct FileBlock {
+  std::uint64_t key;
+  VoxelBlock block;
+};
+
+template <typename Record>
+bool read_record(std::istream& stream, Record& record) {
+  return bool(stream.read(reinterpret_cast<char*>(&record), sizeof record));
+}
+
+Cell cell_of(std::uint64_t key) {
+  const auto part = [](std::uint64_t bits) {
+    return static_cast<int>(bits & 0x1fffff) - (1 << 20);
+  };
+  return {part(key), part(key >> 21), part(key >> 42)};
+}
+
+}  // namespace
+
+void MeasuredSpace::write(std::ostream& stream) const {
+  const MeasuredSpaceConfig& config = impl_->config;
+  FileHead head{};
+  std::memcpy(head.mark, file_mark, sizeof head.mark);
+  head.voxel = config.voxel, head.depth_margin = config.depth_margin;
+  head.free_without_return = config.free_without_return, head.max_depth = config.max_depth;
+  head.floor = config.floor.value_or(-std::numeric_limits<double>::infinity());
+  for (int axis = 0; axis < 3; ++axis) {
+    head.region[axis] = config.region.min()[axis];
+    head.region[axis + 3] = config.region.max()[axis];
+  }
+  head.blocks = impl_->blocks.size();
+  stream.write(reinterpret_cast<const char*>(&head), sizeof head);
+
+  // By place, so that equal spaces give equal files.
+  std::vector<FileBlock> blocks;
+  blocks.reserve(impl_->blocks.size());
+  for (const auto& [key, block] : impl_->blocks) blocks.push_back({key, block});
+  std::ranges::sort(blocks, {}, &FileBlock::key);
+  stream.write(reinterpret_cast<const char*>(blocks.data()),
+               static_cast<std::streamsize>(blocks.size() * sizeof(FileBlock)));
+}
+
+MeasuredSpace MeasuredSpace::read(std::istream& stream, const std::string& name) {
+  FileHead head{};
+  if (!read_record(stream, head) || std::memcmp(head.mark, file_mark, sizeof head.mark) != 0) {
+    throw Error(ErrorKind::bad_file,
+                name + ": is not a file of measured free space; give one that skycap plan wrote");
+  }
+  MeasuredSpaceConfig config{.voxel = head.voxel,
+                             .depth_margin = head.depth_margin,
+                             .free_without_return = head.free_without_return,
+                             .max_depth = head.max_depth,
+                             .region = {},
+                             .floor = {}};
+  if (std::isfinite(head.floor)) config.floor = head.floor;
+  const AlignedBox3d region(Eigen::Map<const Vector3d>(head.region),
+                            Eigen::Map<const Vector3d>(head.region + 3));
+  if (!region.isEmpty()) config.region = region;
+  try {
+    MeasuredSpace space(config);
+    FileBlock record{};
+    for (std::uint64_t i = 0; i < head.blocks; ++i) {
+      if (!read_record(stream, record)) {
+        throw Error(ErrorKind::bad_file, name + ": ends after " + std::to_string(i) + " of " +
+                                             std::to_string(head.blocks) +
+                                             " blocks; copy it again, or plan again");
+      }
+      space.impl_->blocks[record.key] = record.block;
+      space.impl_->extent.extend(space.impl_->block_box(cell_of(record.key)));
+    }
+    if (stream.peek() != std::istream::traits_type::eof()) {
+      throw Error(ErrorKind::bad_file, name + ": goes on after its last block; plan again");
+    }
+    return space;
+  } catch (const Error& error) {
+    if (error.kind() == ErrorKind::bad_file) throw;
+    throw Error(ErrorKind::bad_file, name + ": " + error.what());
+  }
+}
+
+}  // namespace skycap::flight

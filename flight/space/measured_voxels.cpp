@@ -1,0 +1,115 @@
+#include "flight/space/measured_voxels.h"
+
+#include <cmath>
+
+namespace skycap::flight {
+
+using Eigen::AlignedBox3d;
+using Eigen::Vector3d;
+
+void MeasuredSpace::Impl::occupy(const geometry::Scan& scan) {
+  // Neighbouring pixels mostly hit the same block.
+  Cell last_cell = Cell::Zero();
+  VoxelBlock* last = nullptr;
+  for (const Eigen::Vector3f& p : scan.points) {
+    const Vector3d point = p.cast<double>();
+    if (config.floor && point.z() < *config.floor) continue;
+    const Cell cell = block_of(point);
+    const Cell voxel = ((point / config.voxel).array().floor().matrix().cast<int>() - 8 * cell)
+                           .cwiseMax(0)
+                           .cwiseMin(7);
+    if (last == nullptr || cell != last_cell) {
+      const auto [block, is_new] = blocks.try_emplace(cell_key(cell));
+      if (is_new) extent.extend(block_box(cell));
+      last = &block->second;
+      last_cell = cell;
+    }
+    last->occupied[voxel.z()] |= std::uint64_t{1} << (8 * voxel.y() + voxel.x());
+  }
+}
+
+void MeasuredSpace::Impl::carve(const RangeImage& image) {
+  free_where(image.reach(), [&](const AlignedBox3d& box) {
+    return image.sight(box.center(), 0.5 * box.diagonal().norm(), config.depth_margin);
+  });
+}
+
+Slices MeasuredSpace::Impl::blocked(const Cell& cell, const VoxelBlock& block) const {
+  Slices blocked{};
+  const bool is_cut = !region.contains(block_box(cell));
+  const Cell low = (region_low - 8 * cell).cwiseMax(0), high = (region_high - 8 * cell).cwiseMin(8);
+  for (int z = 0; z < 8; ++z) {
+    blocked[z] = ~block.passable(z);
+    if (!is_cut) continue;
+    std::uint64_t inside = 0;
+    for (int y = low.y(); y < high.y() && z >= low.z() && z < high.z(); ++y) {
+      for (int x = low.x(); x < high.x(); ++x) inside |= std::uint64_t{1} << (8 * y + x);
+    }
+    blocked[z] &= inside | block.occupied[z];
+  }
+  return blocked;
+}
+
+void MeasuredSpace::Impl::closest_in_cube(const Segment& piece, const BoxTest& test,
+                                          const Cell& cell, const Cube& cube,
+                                          const VoxelBlock& block, const Slices& blocked,
+                                          Closest& best) const {
+  const std::uint64_t mask = cube.mask();
+  std::uint64_t any = 0, all = mask;
+  for (int z = cube.low.z(); z < cube.low.z() + cube.edge; ++z) {
+    any |= blocked[z] & mask;
+    all &= blocked[z];
+  }
+  if (any == 0) return;
+  const AlignedBox3d box = cube_box(cell, cube);
+  if (cube.edge < 8 && !test.is_near(box, best.distance)) return;
+  if (all == mask) {
+    const NearestPoints pair = nearest(piece, box);
+    if (!(pair.squared_distance < best.distance * best.distance)) return;
+    const Cell voxel =
+        (pair.on_other / config.voxel).array().floor().matrix().cast<int>() - 8 * cell;
+    const Cell last = cube.low + Cell::Constant(cube.edge - 1);
+    best = {std::sqrt(pair.squared_distance),
+            block.is_occupied(voxel.cwiseMax(cube.low).cwiseMin(last))
+                ? ObstacleKind::occupied_space
+                : ObstacleKind::unknown_space,
+            0, pair.on_segment, pair.on_other};
+    return;
+  }
+  const int half = cube.edge / 2;
+  for (int corner = 0; corner < 8 && best.distance > 0.0; ++corner) {
+    const Cell offset(corner & 1, corner >> 1 & 1, corner >> 2 & 1);
+    closest_in_cube(piece, test, cell, {cube.low + half * offset, half}, block, blocked, best);
+  }
+}
+
+/// Lowers `best` to what is nearer to a short piece than that.
+void MeasuredSpace::Impl::closest_in(const Segment& piece, Closest& best) const {
+  const Vector3d reach = Vector3d::Constant(best.distance);
+  const AlignedBox3d around(piece.from.cwiseMin(piece.to) - reach,
+                            piece.from.cwiseMax(piece.to) + reach);
+  const BoxTest test(piece);
+  for_each_block(around, [&](const Cell& cell) {
+    const AlignedBox3d box = block_box(cell);
+    if (!test.is_near(box, best.distance)) return true;
+    const auto found = blocks.find(cell_key(cell));
+    if (found != blocks.end()) {
+      const VoxelBlock& block = found->second;
+      if (!block.is_all_passable()) {
+        closest_in_cube(piece, test, cell, {Cell::Zero(), 8}, block, blocked(cell, block), best);
+      }
+      return best.distance > 0.0;
+    }
+    const bool is_inside = (8 * cell.array() < region_high.array()).all() &&
+                           (8 * cell.array() + 8 > region_low.array()).all();
+    if (!is_inside) return true;
+    const NearestPoints pair = nearest(piece, box.intersection(region));
+    if (pair.squared_distance < best.distance * best.distance) {
+      best = {std::sqrt(pair.squared_distance), ObstacleKind::unknown_space, 0, pair.on_segment,
+              pair.on_other};
+    }
+    return best.distance > 0.0;
+  });
+}
+
+}  // namespace skycap::flight

@@ -1,0 +1,106 @@
+/// The voxels of a MeasuredSpace. For the sources of measured_space.h.
+#pragma once
+
+#include <cstdint>
+#include <unordered_map>
+
+#include "flight/space/bounding_tree.h"
+#include "flight/space/cell_map.h"
+#include "flight/space/measured_space.h"
+#include "flight/space/range_image.h"
+#include "flight/space/segment_distance.h"
+#include "flight/space/voxel_block.h"
+
+namespace skycap::flight {
+
+struct MeasuredSpace::Impl {
+  struct HashKey {
+    std::size_t operator()(std::uint64_t key) const {
+      const std::uint64_t product = key * 0x9e3779b97f4a7c15ULL;
+      return product ^ product >> 32;
+    }
+  };
+
+  MeasuredSpaceConfig config;
+  std::unordered_map<std::uint64_t, VoxelBlock, HashKey> blocks;  ///< a block not listed is unknown
+  Eigen::AlignedBox3d region;    ///< the configuration's, of whole voxels; without one all of space
+  Cell region_low, region_high;  ///< its voxels, the end excluded
+  Eigen::AlignedBox3d extent;    ///< of all listed blocks
+
+  bool is_bounded() const { return !config.region.isEmpty(); }
+  double block_size() const { return 8.0 * config.voxel; }
+  Cell block_of(const Eigen::Vector3d& point) const {
+    return (point / block_size()).array().floor().matrix().cast<int>();
+  }
+  Eigen::AlignedBox3d block_box(const Cell& cell) const {
+    const Eigen::Vector3d low = cell.cast<double>() * block_size();
+    return {low, low + Eigen::Vector3d::Constant(block_size())};
+  }
+  Eigen::AlignedBox3d cube_box(const Cell& block, const Cube& cube) const {
+    const Eigen::Vector3d low = (8 * block + cube.low).cast<double>() * config.voxel;
+    return {low, low + Eigen::Vector3d::Constant(cube.edge * config.voxel)};
+  }
+
+  template <typename Visit>
+  void for_each_block(const Eigen::AlignedBox3d& box, Visit visit) const;
+  template <typename Decide>
+  void free_where(const Eigen::AlignedBox3d& box, Decide decide);
+  template <typename Decide>
+  void free_within(const Cell& cell, const Cube& cube, VoxelBlock& block, Decide decide) const;
+  void occupy(const geometry::Scan& scan);
+  void carve(const RangeImage& image);
+  void closest_in(const Segment& piece, Closest& best) const;
+  /// The voxels of a block that are not free, or outside of the region occupied.
+  Slices blocked(const Cell& cell, const VoxelBlock& block) const;
+  void closest_in_cube(const Segment& piece, const BoxTest& test, const Cell& cell,
+                       const Cube& cube, const VoxelBlock& block, const Slices& blocked,
+                       Closest& best) const;
+};
+
+/// Visits block cells that meet the box; `visit` returns false to stop.
+template <typename Visit>
+void MeasuredSpace::Impl::for_each_block(const Eigen::AlignedBox3d& box, Visit visit) const {
+  const Cell low = block_of(box.min()), high = block_of(box.max());
+  for (int z = low.z(); z <= high.z(); ++z) {
+    for (int y = low.y(); y <= high.y(); ++y) {
+      for (int x = low.x(); x <= high.x(); ++x) {
+        if (!visit(Cell(x, y, z))) return;
+      }
+    }
+  }
+}
+
+/// Frees, in blocks that meet the box, the cubes of which `decide(box)` says so.
+template <typename Decide>
+void MeasuredSpace::Impl::free_where(const Eigen::AlignedBox3d& box, Decide decide) {
+  const Cube whole{Cell::Zero(), 8};
+  for_each_block(box.intersection(region), [&](const Cell& cell) {
+    const auto known = blocks.find(cell_key(cell));
+    VoxelBlock block = known == blocks.end() ? VoxelBlock{} : known->second;
+    free_within(cell, whole, block, decide);
+    if (known != blocks.end()) {
+      known->second = block;
+    } else if (block.free != VoxelBlock{}.free) {
+      blocks.emplace(cell_key(cell), block);
+      extent.extend(cube_box(cell, whole));
+    }
+    return true;
+  });
+}
+
+/// A cube that is neither free nor hidden as a whole is cut into eight, down to voxels.
+template <typename Decide>
+void MeasuredSpace::Impl::free_within(const Cell& cell, const Cube& cube, VoxelBlock& block,
+                                      Decide decide) const {
+  if (block.is_all_free(cube)) return;
+  const BallSight sight = decide(cube_box(cell, cube));
+  if (sight == BallSight::free) block.set_free(cube);
+  if (sight != BallSight::partial || cube.edge == 1) return;
+  const int half = cube.edge / 2;
+  for (int corner = 0; corner < 8; ++corner) {
+    const Cell offset(corner & 1, corner >> 1 & 1, corner >> 2 & 1);
+    free_within(cell, {cube.low + half * offset, half}, block, decide);
+  }
+}
+
+}  // namespace skycap::flight
