@@ -69,11 +69,11 @@ inline void expect_same(const run::SurveyRecord& live, const run::SurveyRecord& 
   EXPECT_EQ(live.flown->min_clearance(), planned.flown->min_clearance());
 }
 
-/// Eight views at most, and by another planner if one is named.
+/// Five views at most, and by another planner if one is named.
 inline std::string short_mission(std::string mission, const std::string& planner = "") {
   const std::string limit = "max_views: ", section = "planner: {";
   const std::size_t at = mission.find(limit) + limit.size();
-  mission.replace(at, mission.find('}', at) - at, "8");
+  mission.replace(at, mission.find('}', at) - at, "5");
   if (planner.empty()) return mission;
   return mission.insert(mission.find(section) + section.size(), "name: " + planner + ", ");
 }
