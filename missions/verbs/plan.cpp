@@ -10,7 +10,9 @@
 #include "missions/derived/resolved_mission.h"
 #include "missions/judge/coverage.h"
 #include "missions/package/flight_report.h"
+#include "missions/package/holes.h"
 #include "missions/package/package.h"
+#include "missions/report/survey_report.h"
 #include "missions/run/survey_runner.h"
 #include "missions/scene/survey_scene.h"
 #include "missions/verbs/verbs.h"
@@ -86,15 +88,25 @@ int plan_once(const PlanOptions& options, const file::Mission& mission,
       run::run_survey(mission, scene, mission.seed, mission.threads, console.stop, report);
 
   package::CoverageFigures coverage{record.coverage(), {}, {}};
+  std::vector<std::uint8_t> is_visible;
   if (record.stop_reason != survey::StopReason::interrupted) {  // the user wants to leave
     progress.show(mission.name + ": measuring what could be covered at all");
-    const std::vector<std::uint8_t> is_visible = scene.visible(mission.threads);
+    is_visible = scene.visible(mission.threads);
     coverage.visible = judge::covered_share(record.is_covered, is_visible);
     coverage.ceiling = scene.ceiling(is_visible, mission.threads);
+  }
+  if (!record.belief) {
+    coverage.patches = package::true_patches(scene.samples(), geometry::surface_area(scene.model()),
+                                             record.is_covered, is_visible);
   }
   progress.show(mission.name + ": writing " + folder.path().string());
   const std::optional<package::SurveyMission> flight =
       package::stage_package(mission, record, coverage, mission.threads, folder, console.stop);
+  if (options.has_report) {
+    folder.write(report::report_name, report::survey_report([&](const std::string& name) {
+                   return folder.staged(name);
+                 }));
+  }
   const bool is_over = record.stop_reason != survey::StopReason::interrupted;
   if (!is_over && package::is_complete_result(folder.path() / "summary.json")) {
     folder.move_to("interrupted");  // a complete survey is not overwritten by a part of one

@@ -71,9 +71,10 @@ Rooms house() {
   add_mission_room("recording", "file", "derived", "plugins");
   add_mission_room("run", "file", "derived", "judge", "scene");
   add_mission_room("package", "file", "derived", "run");
+  add_mission_room("report", "file", "derived", "scene", "package");
   add_mission_room("benchmark", "file", "derived", "judge", "plugins", "scene", "run", "package");
   add_mission_room("verbs", "file", "derived", "judge", "plugins", "scene", "recording", "run",
-                   "package", "benchmark");
+                   "package", "report", "benchmark");
   return rooms;
 }
 
