@@ -3,6 +3,7 @@
 #include <chrono>
 #include <ctime>
 #include <optional>
+#include <utility>
 
 namespace skycap::survey {
 namespace {
@@ -36,52 +37,77 @@ std::optional<StopReason> broken_limit(const SurveyLimits& limits, std::size_t v
   return std::nullopt;
 }
 
+/// Has the planner do something, and adds the time that it took.
+template <typename Work>
+std::optional<View> planned(SurveyedView& taken, Work work) {
+  const double begun = processor_time();
+  std::optional<View> next = timed(taken.planning_time, work);
+  taken.planning_processor_time += processor_time() - begun;
+  return next;
+}
+
 }  // namespace
+
+SurveySteps::SurveySteps(Planner& planner, const SurveyLimits& limits, SurveyPorts ports)
+    : planner_(planner), limits_(limits), ports_(std::move(ports)) {}
+
+std::optional<View> SurveySteps::take_in(const geometry::Scan& scan, double sensing_time) {
+  if (ports_.sensed) ports_.sensed(scan);
+  SurveyedView taken;
+  taken.sensing_time = sensing_time;
+  taken.view = geometry::view_of(scan.world_from_sensor);
+  if (!views_.empty()) {
+    taken.distance =
+        views_.back().distance + (taken.view.position - views_.back().view.position).norm();
+  }
+  std::optional<View> next = planned(taken, [&] { return planner_.next_view(scan); });
+  next = reachable(std::move(next), taken, false);
+  taken.points = planner_.cloud().size();
+  taken.returns = scan.points.size();
+  taken.step = planner_.last_step();
+  views_.push_back(std::move(taken));
+  if (ports_.report) ports_.report(views_.back(), scan);
+  return within_limits(std::move(next));
+}
+
+std::optional<View> SurveySteps::refuse() {
+  SurveyedView& taken = views_.back();
+  std::optional<View> next = planned(taken, [&] { return planner_.next_view_instead(); });
+  return within_limits(reachable(std::move(next), taken, true));
+}
+
+std::optional<View> SurveySteps::reachable(std::optional<View> next, SurveyedView& taken,
+                                           bool is_refused) {
+  while (next && ports_.can_reach && !ports_.can_reach(taken.view.position, *next)) {
+    is_refused = true;
+    next = planned(taken, [&] { return planner_.next_view_instead(); });
+  }
+  if (!next) stop_reason_ = is_refused ? StopReason::nowhere_to_go : StopReason::complete;
+  return next;
+}
+
+std::optional<View> SurveySteps::within_limits(std::optional<View> next) {
+  if (!next) return std::nullopt;
+  const SurveyedView& last = views_.back();
+  const double way = (next->position - last.view.position).norm();
+  const auto reason = broken_limit(limits_, views_.size(), last.distance + way);
+  if (!reason) return next;
+  stop_reason_ = *reason;
+  return std::nullopt;
+}
 
 SurveyResult run_survey(Planner& planner, const View& first_view, const SurveyLimits& limits,
                         const SurveyPorts& ports, std::stop_token stop) {
-  SurveyResult result;
+  SurveySteps steps(planner, limits, ports);
   std::optional<View> next = first_view;
-  double distance = 0.0;
   geometry::Scan scan;
-  while (true) {
-    SurveyedView taken;
-    scan = timed(taken.sensing_time, [&] { return ports.sense(*next, std::move(scan)); });
-    if (ports.sensed) ports.sensed(scan);
-    taken.view = geometry::view_of(scan.world_from_sensor);
-    if (!result.views.empty()) {
-      distance += (taken.view.position - result.views.back().view.position).norm();
-    }
-    const auto plan = [&](auto work) {
-      const double begun = processor_time();
-      next = timed(taken.planning_time, work);
-      taken.planning_processor_time += processor_time() - begun;
-    };
-    plan([&] { return planner.next_view(scan); });
-    bool refused = false;
-    while (next && ports.can_reach && !ports.can_reach(taken.view.position, *next)) {
-      refused = true;
-      plan([&] { return planner.next_view_instead(); });
-    }
-
-    taken.distance = distance;
-    taken.points = planner.cloud().size();
-    taken.returns = scan.points.size();
-    taken.step = planner.last_step();
-    result.views.push_back(std::move(taken));
-    if (ports.report) ports.report(result.views.back(), scan);
-
-    if (!next) {
-      result.stop_reason = refused ? StopReason::nowhere_to_go : StopReason::complete;
-      return result;
-    }
-    const double way = (next->position - result.views.back().view.position).norm();
-    std::optional<StopReason> reason = broken_limit(limits, result.views.size(), distance + way);
-    if (!reason && stop.stop_requested()) reason = StopReason::interrupted;
-    if (!reason) continue;
-    result.stop_reason = *reason;
-    return result;
+  while (next) {
+    double sensing_time = 0.0;
+    scan = timed(sensing_time, [&] { return ports.sense(*next, std::move(scan)); });
+    next = steps.take_in(scan, sensing_time);
+    if (next && stop.stop_requested()) return {StopReason::interrupted, steps.views()};
   }
+  return {steps.stop_reason(), steps.views()};
 }
 
 }  // namespace skycap::survey

@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <functional>
+#include <optional>
 #include <stop_token>
 #include <vector>
 
@@ -47,10 +48,10 @@ struct SurveyResult {
   std::vector<SurveyedView> views;
 };
 
-/// What a survey needs from outside. The sensor may be a simulator or a drone.
+/// Who has a say while a survey goes on.
 struct SurveyPorts {
   /// Takes a scan from a view (or as near to it as it could). The memory of `recycled`, the scan
-  /// before it, may be used again.
+  /// before it, may be used again. For run_survey() alone.
   std::function<geometry::Scan(const geometry::View&, geometry::Scan recycled)> sense;
   /// Told of each scan before the next view is planned. May be empty.
   std::function<void(const geometry::Scan&)> sensed;
@@ -58,6 +59,36 @@ struct SurveyPorts {
   std::function<bool(const Eigen::Vector3d& from, const geometry::View& to)> can_reach;
   /// Told after each view. May be empty.
   std::function<void(const SurveyedView&, const geometry::Scan&)> report;
+};
+
+/// A survey scan by scan, for whoever moves the sensor.
+class SurveySteps {
+ public:
+  /// Keeps a reference to the planner.
+  SurveySteps(Planner& planner, const SurveyLimits& limits, SurveyPorts ports);
+
+  /// Takes in a scan, which took so long [s], and says where the next one is to be taken; nothing
+  /// when the survey is over. Throws what the planner throws.
+  std::optional<geometry::View> take_in(const geometry::Scan& scan, double sensing_time = 0.0);
+
+  /// Another view in place of the one that was proposed last; nothing when there is none left.
+  std::optional<geometry::View> refuse();
+
+  const std::vector<SurveyedView>& views() const { return views_; }
+
+  /// Why the survey is over, once no view is proposed.
+  StopReason stop_reason() const { return stop_reason_; }
+
+ private:
+  std::optional<geometry::View> reachable(std::optional<geometry::View> next, SurveyedView& taken,
+                                          bool is_refused);
+  std::optional<geometry::View> within_limits(std::optional<geometry::View> next);
+
+  Planner& planner_;
+  SurveyLimits limits_;
+  SurveyPorts ports_;
+  std::vector<SurveyedView> views_;
+  StopReason stop_reason_ = StopReason::complete;
 };
 
 /// Runs a survey from `first_view`. Throws what planner and sensor throw.

@@ -24,6 +24,8 @@ struct FlownPiece {
   Eigen::Vector3d to = Eigen::Vector3d::Zero();
   std::string from_item, to_item;  ///< such as "item 12"
   bool is_over_pad = false;        ///< of the climb or the landing, where the ground is no obstacle
+  double hold = 0.0;               ///< waits at its end, as far as the file says them [s]
+  double speed = not_given;        ///< over ground, where the file says [m/s]
 };
 
 /// A place where photographs are taken.

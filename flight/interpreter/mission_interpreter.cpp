@@ -171,10 +171,10 @@ class MissionFlight {
     check_default_speed(item);
     const Vector3d target = place_of(item);
     const bool is_early = departure_.length() > 0.0;
-    route_.pieces.push_back({departure_, target, name_of(*last_), name_of(item)});
+    fly_straight(target, item);
     const Vector3d from = position_;
     position_ = target;
-    hold_ = item.params[0];
+    hold_ = route_.pieces.back().hold = item.params[0];
     const bool stops = hold_ > 0.0 || stops_for_the_next();
     const double radius = radius_of(item);
     const double way = (target - from).norm();
@@ -188,6 +188,11 @@ class MissionFlight {
       complain(item, "is passed without a stop right after another; what is flown is not proven");
     }
     arrive(item, departure, stops && radius <= acceptance_radius);
+  }
+
+  void fly_straight(const Vector3d& to, const MissionItem& item) {
+    route_.pieces.push_back({departure_, to, name_of(*last_), name_of(item)});
+    route_.pieces.back().speed = speed_;
   }
 
   /// ArduCopter has one radius for all waypoints, which it comes within at stops; a larger one in
@@ -225,9 +230,9 @@ class MissionFlight {
     has_landed_ = true;
     const Vector3d place = place_of(item);
     const Vector3d above(place.x(), place.y(), position_.z());
-    route_.pieces.push_back({departure_, above, name_of(*last_), name_of(item)});
+    fly_straight(above, item);
     const Vector3d ground(place.x(), place.y(), pad_.z());
-    append_column(route_, {ground, above}, {name_of(item), "the ground"}, facts_.takeoff_climb);
+    append_column(route_, {above, ground}, {name_of(item), "the ground"}, facts_.takeoff_climb);
     if (const double away = (place - pad_).head<2>().norm(); away > pad_tolerance) {
       complain(item, "lands " + fixed(away, 1) +
                          " m from the pad, where nobody has looked at the " + "ground");
@@ -241,6 +246,7 @@ class MissionFlight {
                                 " s; it must be above 0 and at most 600: else it is a time of day");
     }
     if (departure_.length() == 0.0) hold_ += seconds;
+    route_.pieces.back().hold += seconds;
   }
 
   void turn(const MissionItem& item) {
@@ -261,6 +267,7 @@ class MissionFlight {
       whose = "the vehicle's limit";
     } else if (type == 0.0 || type == 1.0) {
       is_speed_set_ = true;
+      speed_ = speed;
     } else {
       return complain(item, "sets a speed of a type that is not known here; use 0, 1, 2 or 3");
     }
@@ -341,6 +348,7 @@ class MissionFlight {
   Vector3d position_ = Vector3d::Zero();
   Segment departure_{Vector3d::Zero(), Vector3d::Zero()};  ///< where the next leg may begin
   double hold_ = 0.0;
+  double speed_ = not_given;
   double yaw_deg_ = not_given, next_yaw_deg_ = not_given, pitch_deg_ = not_given;
 };
 

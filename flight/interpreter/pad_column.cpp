@@ -1,5 +1,8 @@
 #include "flight/interpreter/pad_column.h"
 
+#include <algorithm>
+#include <cmath>
+
 namespace skycap::flight {
 namespace {
 
@@ -10,12 +13,18 @@ constexpr double rounding = 0.02;
 
 void append_column(FlownRoute& route, const Segment& column,
                    const std::array<std::string, 2>& items, double vouched) {
-  const double height = column.to.z() - column.from.z();
-  Eigen::Vector3d seam = column.to;
-  if (height > vouched + rounding) seam.z() = column.from.z() + vouched;
-  route.pieces.push_back({{column.from, column.from}, seam, items[0], items[1], true});
-  if (seam == column.to) return;
-  route.pieces.push_back({{seam, seam}, column.to, items[0], items[1], false});
+  const bool is_climb = column.to.z() >= column.from.z();
+  const double foot = std::min(column.from.z(), column.to.z());
+  const auto append = [&](const Eigen::Vector3d& from, const Eigen::Vector3d& to,
+                          bool is_over_pad) {
+    route.pieces.push_back({{from, from}, to, items[0], items[1], is_over_pad});
+  };
+  if (std::abs(column.to.z() - column.from.z()) <= vouched + rounding) {
+    return append(column.from, column.to, true);
+  }
+  const Eigen::Vector3d seam(column.to.x(), column.to.y(), foot + vouched);
+  append(column.from, seam, is_climb);
+  append(seam, column.to, !is_climb);
 }
 
 }  // namespace skycap::flight

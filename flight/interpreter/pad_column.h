@@ -8,8 +8,9 @@
 
 namespace skycap::flight {
 
-/// Adds an upright stretch, from its foot to its top: up to `vouched` metres above the foot it is
-/// over the pad, the rest of it is a leg like any other. `items` are those it leads between.
+/// Adds an upright stretch in the direction that it is flown in: up to `vouched` metres above its
+/// foot it is over the pad, the rest of it is a leg like any other. `items` are those it leads
+/// between.
 void append_column(FlownRoute& route, const Segment& column,
                    const std::array<std::string, 2>& items, double vouched);
 

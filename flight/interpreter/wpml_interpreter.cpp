@@ -137,13 +137,16 @@ class WpmlFlight {
     check_mission(places, pad);
     climb(places.front(), pad);
     std::size_t index = 0;
+    double speed = not_given;
     for (const pugi::xml_node mark : folder_.children("Placemark")) {
       if (index > 0) {
         route_.pieces.push_back({{places[index - 1], places[index - 1]},
                                  places[index],
                                  waypoint(index - 1),
                                  waypoint(index)});
+        route_.pieces.back().speed = speed;
       }
+      speed = number_of(mark, "waypointSpeed");
       check_waypoint(mark, index);
       act(mark, places[index], index);
       ++index;
@@ -256,7 +259,7 @@ class WpmlFlight {
 
   // Within 5 m of home, going there is landing at once.
   void descend(const Vector3d& last, const Vector3d& pad, const std::string& who) {
-    append_column(route_, {{last.x(), last.y(), pad.z()}, last}, {who, "the ground"},
+    append_column(route_, {last, {last.x(), last.y(), pad.z()}}, {who, "the ground"},
                   facts_.takeoff_climb);
     const double away = (last - pad).head<2>().norm();
     if (away <= pad_tolerance) return;
@@ -290,7 +293,10 @@ class WpmlFlight {
       for (const pugi::xml_node action : group.children("wpml:action")) {
         const std::string function = text_of(action, "actionActuatorFunc");
         const pugi::xml_node param = action.child("wpml:actionActuatorFuncParam");
-        if (function == "hover") hold += number_of(param, "hoverTime");
+        if (function == "hover") {
+          hold += number_of(param, "hoverTime");
+          route_.pieces.back().hold += number_of(param, "hoverTime");
+        }
         if (function == "rotateYaw") yaw_deg = number_of(param, "aircraftHeading");
         if (function == "gimbalRotate") aim(param, who);
         if (function != "takePhoto") continue;

@@ -1,8 +1,7 @@
 /// What a vehicle can do: speeds, size, gimbal, battery, and what its ground station accepts.
-/// Profiles are data; a user's vehicle is one more.
+/// Profiles are data: flight/motion/presets/*.yaml, and what a user writes beside a mission.
 #pragma once
 
-#include <span>
 #include <string>
 
 #include "flight/autopilot/mission_mode.h"
@@ -49,12 +48,5 @@ struct Vehicle {
   /// Throws Error{bad_config} naming the first field that is out of its interval.
   void validate() const;
 };
-
-/// Matrice 350 RTK, Matrice 30T, Mavic 3 Enterprise, Matrice 4E, Skydio X10, and generic quadrotors
-/// with PX4 and ArduPilot. Masses, batteries and endurances from the data sheets.
-std::span<const Vehicle> vehicle_profiles();
-
-/// The profile of that name, such as "m350_rtk". Throws Error{bad_config} listing the names.
-const Vehicle& vehicle_profile(const std::string& name);
 
 }  // namespace skycap::flight

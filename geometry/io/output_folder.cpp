@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cerrno>
-#include <ranges>
 #include <utility>
 
 #include <fcntl.h>
@@ -77,7 +76,8 @@ std::vector<Change> changes_of(std::string_view text) {
 /// finds the file that was staged last finds the others of its run. Repeated after an interruption
 /// it goes on where it was.
 void carry_out(const fs::path& folder, const std::vector<Change>& changes) {
-  for (const auto& [part, name] : std::views::reverse(changes)) {
+  for (auto change = changes.rbegin(); change != changes.rend(); ++change) {
+    const auto& [part, name] = *change;
     const bool is_next = part.empty() || is_there(folder / part);
     if (is_next && is_there(folder / name)) require_renamed(folder / name, old_path(folder, name));
   }

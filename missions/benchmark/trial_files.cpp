@@ -11,8 +11,8 @@
 #include "geometry/io/file.h"
 #include "geometry/io/json.h"
 #include "geometry/parallel.h"
+#include "missions/derived/survey_settings.h"
 #include "missions/file/json_text.h"
-#include "missions/file/mission_keys.h"
 #include "missions/scene/sha256.h"
 #include "missions/version.h"
 
@@ -22,13 +22,8 @@ using Json = nlohmann::ordered_json;
 
 std::string trial_fingerprint(const file::Mission& mission, const std::string& contestant) {
   std::string inputs = std::string(version) + "\n" + contestant;
-  for (const file::Key& key : file::mission_keys()) {
-    if (key.path == "name" || key.path == "seed" || key.path == "threads" ||
-        key.path.starts_with("paper.")) {
-      continue;
-    }
-    const auto value = key.get(mission);
-    inputs += "\n" + key.path + " " + (value ? file::to_text(*value) : "-");
+  for (const auto& [key, value] : derived::survey_settings(mission)) {
+    inputs.append("\n").append(key).append(" ").append(value);
   }
   return scene::sha256(std::as_bytes(std::span(inputs)));
 }

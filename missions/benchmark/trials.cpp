@@ -78,15 +78,6 @@ std::vector<ObservedTarget> observed_targets(const std::vector<run::JudgedView>&
   return observed;
 }
 
-survey::StopReason stop_reason_of(const std::string& name) {
-  using enum survey::StopReason;
-  for (const auto reason :
-       {complete, view_limit, distance_limit, time_limit, nowhere_to_go, interrupted}) {
-    if (name == run::name_of(reason)) return reason;
-  }
-  throw Error(ErrorKind::bad_file, "'" + name + "' is no reason for a survey to stop");
-}
-
 std::optional<double> optional_number(const Json& json) {
   return json.is_null() ? std::nullopt : std::optional(json.get<double>());
 }
@@ -199,7 +190,7 @@ Trial parse_trial(const std::string& text) {
     const Json json = geometry::parse_json<Json>(text);
     Trial trial;
     trial.seed = json.at("seed").get<std::uint64_t>();
-    trial.stop_reason = stop_reason_of(json.at("stop_reason").get<std::string>());
+    trial.stop_reason = run::stop_reason_named(json.at("stop_reason").get<std::string>());
     trial.coverage = {json.at("coverage").get<double>(),
                       optional_number(json.at("coverage_visible")),
                       optional_number(json.at("coverage_ceiling"))};

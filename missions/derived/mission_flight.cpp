@@ -4,6 +4,8 @@
 #include <cmath>
 #include <utility>
 
+#include "missions/equipment/vehicle_reader.h"
+
 namespace skycap::missions::derived {
 namespace {
 
@@ -34,8 +36,21 @@ constexpr std::size_t most_expansions = 50'000;
 
 }  // namespace
 
-const flight::Vehicle& vehicle_of(const file::Mission& mission) {
-  return flight::vehicle_profile(mission.flight.vehicle);
+const flight::Vehicle& vehicle_of(const file::Mission& mission) { return mission.flight.described; }
+
+flight::Vehicle stand_in(flight::Dialect dialect) {
+  if (dialect == flight::Dialect::px4) return equipment::find_vehicle("generic");
+  return equipment::find_vehicle(dialect == flight::Dialect::dji ? "m350_rtk"
+                                                                 : "generic_ardupilot");
+}
+
+flight::Vehicle flown_by(flight::Vehicle vehicle, flight::Dialect dialect) {
+  if (vehicle.dialect == dialect) return vehicle;
+  const flight::Vehicle other = stand_in(dialect);
+  vehicle.dialect = dialect;
+  vehicle.mode = other.mode;
+  if (dialect == flight::Dialect::dji) vehicle.wpml = other.wpml;
+  return vehicle;
 }
 
 flight::ClearanceBudget clearance_of(const file::Mission& mission) {

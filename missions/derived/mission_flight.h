@@ -16,8 +16,16 @@
 
 namespace skycap::missions::derived {
 
-/// The mission's vehicle. Throws Error{bad_config} if it has none.
+/// What flies the mission, which must be one that is flown.
 const flight::Vehicle& vehicle_of(const file::Mission& mission);
+
+/// The preset whose autopilot stands in where a file is written for another one than the
+/// vehicle's own.
+flight::Vehicle stand_in(flight::Dialect dialect);
+
+/// The vehicle as that autopilot flies it: unchanged if it is its own, else with the stand-in's
+/// mission mode, and codes if they are DJI's. Size, energy and gimbal stay the vehicle's.
+flight::Vehicle flown_by(flight::Vehicle vehicle, flight::Dialect dialect);
 
 /// The clearance's terms: the margin is what errors and vehicle leave of it.
 flight::ClearanceBudget clearance_of(const file::Mission& mission);

@@ -76,6 +76,19 @@ void check_scene(const file::MissionFile& given) {
   }
 }
 
+void check_live(const file::MissionFile& given) {
+  if (!given.mission.planner.see.scene_box) {
+    given.refuse("planner.scene_box.min",
+                 "is missing; without scene.model the mission is live, and has to say with "
+                 "planner.scene_box where the scene is: give the box's min and max");
+  }
+  if (given.mission.flight.is_flown() && !given.mission.start.position) {
+    given.refuse("start.position",
+                 "is missing; a live mission with a vehicle has to say where its first view is, so "
+                 "that the way there can be proven");
+  }
+}
+
 void check_start(const file::MissionFile& given) {
   const file::StartConfig& start = given.mission.start;
   if (!start.position && (start.look_at || start.direction)) {

@@ -10,6 +10,9 @@ namespace skycap::missions::derived {
 /// The mission's name, its model and the box around it.
 void check_scene(const file::MissionFile& given);
 
+/// What a mission without a scene has to say of its own.
+void check_live(const file::MissionFile& given);
+
 /// The first view.
 void check_start(const file::MissionFile& given);
 

@@ -6,6 +6,7 @@
 #include "geometry/place/camera.h"
 #include "missions/derived/mission_rules.h"
 #include "missions/derived/survey_sensor.h"
+#include "missions/equipment/vehicle_reader.h"
 
 namespace skycap::missions::derived {
 namespace {
@@ -26,6 +27,21 @@ void read_lidar(file::MissionFile& given) {
     use_lidar(given.mission.sensor, std::filesystem::path(given.name).parent_path());
   } catch (const Error& error) {
     given.refuse("sensor.lidar", error.what());
+  }
+}
+
+/// Reads the description of what flies. A path counts from the mission's folder, and is kept whole:
+/// the package holds the mission elsewhere.
+void read_vehicle(file::MissionFile& given) {
+  std::string& vehicle = given.mission.flight.vehicle;
+  if (vehicle.ends_with(".yaml")) {
+    const std::filesystem::path folder = std::filesystem::path(given.name).parent_path();
+    vehicle = std::filesystem::absolute(folder / vehicle).string();
+  }
+  try {
+    given.mission.flight.described = equipment::find_vehicle(vehicle);
+  } catch (const Error& error) {
+    given.refuse("flight.vehicle", error.what());
   }
 }
 
@@ -61,6 +77,7 @@ file::Mission resolved(file::MissionFile given) {
   if (mission.flight.is_flown() && !given.gives("planner.name")) {
     mission.planner.name = file::PlannerName::skycap;
   }
+  if (mission.flight.is_flown()) read_vehicle(given);
   if (mission.sensor.lidar) read_lidar(given);
   check_scene(given);
   check_start(given);
@@ -75,7 +92,21 @@ file::Mission resolved(file::MissionFile given) {
 
 file::Mission read_mission(const std::filesystem::path& file,
                            const std::vector<file::KeyOverride>& overrides) {
-  return resolved(file::read_mission_file(file, overrides));
+  file::MissionFile given = file::read_mission_file(file, overrides);
+  if (given.mission.scene.model.empty()) {
+    given.refuse(
+        "scene.model",
+        "is missing; give a text, such as builtin:teapot. Without a scene a mission is for "
+        "live surveys: skycap next, serve and finish");
+  }
+  return resolved(std::move(given));
+}
+
+file::Mission read_live_mission(const std::filesystem::path& file,
+                                const std::vector<file::KeyOverride>& overrides) {
+  file::MissionFile given = file::read_mission_file(file, overrides);
+  if (given.mission.scene.model.empty()) check_live(given);
+  return resolved(std::move(given));
 }
 
 file::Mission parse_mission(const std::string& text, const std::string& name,

@@ -9,7 +9,7 @@
 
 #include "geometry/error.h"
 #include "geometry/parallel.h"
-#include "missions/file/sensor_reader.h"
+#include "missions/equipment/sensor_reader.h"
 #include "sim/sensors/trajectory.h"
 
 namespace skycap::missions::derived {
@@ -108,8 +108,8 @@ sim::DepthCameraConfig forward_camera(const sim::LidarConfig& lidar) {
 
 void use_lidar(file::SensorConfig& sensor, const std::filesystem::path& folder) {
   const std::string& name = sensor.lidar.value();
-  const file::SensorDescription description =
-      file::find_sensor(name.ends_with(".yaml") ? (folder / name).string() : name);
+  const equipment::SensorDescription description =
+      equipment::find_sensor(name.ends_with(".yaml") ? (folder / name).string() : name);
   const auto* lidar = std::get_if<sim::LidarConfig>(&description.sensor);
   if (lidar == nullptr) {
     throw Error(ErrorKind::bad_config,

@@ -1,5 +1,4 @@
 // The keys of `site` and `flight`: where the survey is, and how it is flown.
-#include "flight/motion/vehicle.h"
 #include "missions/file/key_builders.h"
 #include "missions/file/key_sections.h"
 
@@ -31,23 +30,14 @@ auto flight(auto member) {
   return [member](Mission & m) -> auto& { return m.flight.*member; };
 }
 
-/// The key `flight.vehicle`: a profile's name, or none.
-Key vehicle_key() {
-  Key key = key_for(
-      "flight.vehicle", KeyType::choice, [](Mission & m) -> auto& { return m.flight.vehicle; },
-      "What flies. With a vehicle the survey goes only where it can fly, and the package holds the "
-      "route; without one the sensor is taken to reach every view.");
-  key.choices = {"none"};
-  for (const flight::Vehicle& vehicle : flight::vehicle_profiles()) {
-    key.choices.push_back(vehicle.name);
-  }
-  return key;
-}
-
 /// What proves a leg.
 std::vector<Key> safety_keys() {
   return {
-      vehicle_key(),
+      text_key("flight.vehicle", flight(&FlightConfig::vehicle),
+               "What flies: a preset of flight/motion/presets, or the path of a description "
+               "(NAME.yaml), relative to the mission file. With a vehicle the survey goes only "
+               "where it can fly, and the package holds the route; with none the sensor is taken "
+               "to reach every view."),
       number_key("flight.clearance", "m", above(0, 1000), flight(&FlightConfig::clearance),
                  "Every leg is proven to keep this from everything that is not known to be free: "
                  "the vehicle's radius, the three errors below, and what is left as margin."),

@@ -13,6 +13,7 @@
 #include <Eigen/Geometry>
 
 #include "flight/motion/smoothing.h"
+#include "flight/motion/vehicle.h"
 #include "sim/models/models.h"
 #include "sim/sensors/depth_camera.h"
 #include "sim/sensors/sensor.h"
@@ -124,7 +125,8 @@ enum class VisitOrder { shortest, survey };
 /// How views become a flight. Without a vehicle nothing is flown: the sensor is taken to reach
 /// every view, and no route is written.
 struct FlightConfig {
-  std::string vehicle = "none";  ///< a profile's name
+  std::string vehicle = "none";  ///< a preset, or the path of a description
+  flight::Vehicle described;     ///< what that says, see derived::resolved()
   double clearance = 2.0;        ///< that every leg is proven at; the errors below are part of it
   double position_error = 0.1;
   double tracking_error = 0.3;

@@ -37,6 +37,19 @@ Key detail_key() {
   return otherwise("standard", key);
 }
 
+Key model_key() {
+  Key key = text_key(
+      "scene.model", [](Mission & m) -> auto& { return m.scene.model; },
+      "What is surveyed: builtin:NAME, model:NAME, or the path of a PLY, OBJ, STL or OFF file, "
+      "relative to the mission file. A mission without it is for live surveys (docs/live.md).");
+  key.fallback = "none";
+  key.get = [](const Mission& mission) -> std::optional<KeyValue> {
+    if (mission.scene.model.empty()) return std::nullopt;
+    return mission.scene.model;
+  };
+  return key;
+}
+
 }  // namespace
 
 std::vector<Key> general_keys() {
@@ -55,10 +68,7 @@ std::vector<Key> general_keys() {
 
 std::vector<Key> scene_keys() {
   return {
-      required(text_key(
-          "scene.model", [](Mission & m) -> auto& { return m.scene.model; },
-          "What is surveyed: builtin:NAME, model:NAME, or the path of a PLY, OBJ, STL or "
-          "OFF file, relative to the mission file.")),
+      model_key(),
       detail_key(),
       choice_key(
           "scene.up_axis", {"z", "y"}, [](Mission & m) -> auto& { return m.scene.up_axis; },

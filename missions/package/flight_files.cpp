@@ -22,9 +22,6 @@ using flight::Format;
 constexpr std::array formats_of_packages{Format::plan, Format::waypoints, Format::kmz,
                                          Format::kml,  Format::geojson,   Format::csv};
 
-/// Whose codes a KMZ carries when the vehicle is not DJI's.
-constexpr const char* dji_stand_in = "m350_rtk";
-
 /// A file that is in the local frame needs no place on the Earth.
 bool is_local(Format format) {
   return format == Format::csv || format == Format::ned_csv || format == Format::tum;
@@ -49,26 +46,18 @@ std::string what_is_missing_for(Format format, const file::Mission& mission) {
 /// vehicle's.
 flight::FlightPlan in_dialect(flight::FlightPlan plan, Format format,
                               std::vector<std::string>& notes) {
-  flight::Vehicle& vehicle = plan.vehicle;
-  const std::string name = vehicle.name;
-  const auto note = [&](const std::string& file, const std::string& written_for) {
-    notes.push_back(file + " is written for " + written_for + ": " + name +
+  const bool is_dji = plan.vehicle.dialect == Dialect::dji;
+  const auto write_for = [&](Dialect dialect, const std::string& file, const std::string& whom) {
+    notes.push_back(file + " is written for " + whom + ": " + plan.vehicle.name +
                     " does not read this format");
+    plan.vehicle = derived::flown_by(std::move(plan.vehicle), dialect);
   };
-  if (format == Format::plan && vehicle.dialect == Dialect::dji) {
-    vehicle.dialect = Dialect::px4;
-    vehicle.mode = flight::vehicle_profile("generic").mode;
-    note("the .plan file", "PX4");
-  } else if (format == Format::waypoints && vehicle.dialect == Dialect::dji) {
-    vehicle.dialect = Dialect::ardupilot;
-    vehicle.mode = flight::vehicle_profile("generic_ardupilot").mode;
-    note("the .waypoints file", "ArduPilot");
-  } else if (format == Format::kmz && vehicle.dialect != Dialect::dji) {
-    const flight::Vehicle& dji = flight::vehicle_profile(dji_stand_in);
-    vehicle.dialect = dji.dialect;
-    vehicle.wpml = dji.wpml;
-    vehicle.mode = dji.mode;
-    note("the .kmz file", dji.name);
+  if (format == Format::plan && is_dji) write_for(Dialect::px4, "the .plan file", "PX4");
+  if (format == Format::waypoints && is_dji) {
+    write_for(Dialect::ardupilot, "the .waypoints file", "ArduPilot");
+  }
+  if (format == Format::kmz && !is_dji) {
+    write_for(Dialect::dji, "the .kmz file", derived::stand_in(Dialect::dji).name);
   }
   return plan;
 }

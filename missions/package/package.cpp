@@ -122,7 +122,8 @@ std::optional<SurveyMission> stage_package(const file::Mission& mission,
                                            const CoverageFigures& coverage, unsigned threads,
                                            geometry::OutputFolder& folder, std::stop_token stop) {
   folder.replace([](std::string_view name) {
-    return name == free_space_name || name == coverage_name || is_flight_file(name);
+    return name == free_space_name || name == coverage_name || name == fly_test_name ||
+           is_flight_file(name);
   });
   const double radius = 2.0 * mission.planner.see.resolution_radius;
   const std::vector<Eigen::Vector3f> normals =

@@ -44,6 +44,9 @@ std::optional<SurveyMission> stage_package(const file::Mission& mission,
 /// The file of a package that says what the rest is.
 inline constexpr const char* summary_name = "summary.json";
 
+/// What `skycap fly-test` adds to it; void when the mission is planned again.
+inline constexpr const char* fly_test_name = "fly_test.json";
+
 /// What a package's summary says of its survey.
 struct PackageSummary {
   file::Mission mission;  ///< with all keys as they were in force

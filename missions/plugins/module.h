@@ -1,6 +1,6 @@
 /// Parts of the program that are loaded when they are needed, because the libraries behind them
-/// take longer to load than most verbs take to run. They are looked for beside the running program,
-/// or in $SKYCAP_PLUGINS.
+/// take longer to load than most verbs take to run. They are looked for beside the running program
+/// and in ../lib/skycap from there, where an installation has them, or in $SKYCAP_PLUGINS.
 #pragma once
 
 #include <string>

@@ -101,6 +101,15 @@ bool SurveyFlight::can_reach(const Vector3d& from, const geometry::View& to) {
   return false;
 }
 
+const FlownLeg& SurveyFlight::way() const { return impl_->leg; }
+
+std::size_t SurveyFlight::refused() const { return impl_->survey.refused; }
+
+void SurveyFlight::take_way(FlownLeg way, std::size_t refused) {
+  impl_->leg = std::move(way);
+  impl_->survey.refused = refused;
+}
+
 void SurveyFlight::fly() { impl_->survey.legs.push_back(std::move(impl_->leg)); }
 
 void SurveyFlight::take_in(const geometry::Scan& scan) {

@@ -42,7 +42,16 @@ class SurveyFlight {
   /// Whether the vehicle can look that way and get there along legs that are proven free.
   bool can_reach(const Eigen::Vector3d& from, const geometry::View& to);
 
-  /// Flies the way that the last can_reach() found.
+  /// The way that the last can_reach() found.
+  const FlownLeg& way() const;
+
+  /// Calls of can_reach() that said no.
+  std::size_t refused() const;
+
+  /// Takes over what an earlier run of the same survey found: the way, and how many calls said no.
+  void take_way(FlownLeg way, std::size_t refused);
+
+  /// Flies that way.
   void fly();
 
   /// Learns from a scan what is free.

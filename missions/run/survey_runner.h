@@ -3,62 +3,28 @@
 
 #include <cstdint>
 #include <functional>
-#include <memory>
-#include <optional>
 #include <stop_token>
-#include <vector>
 
-#include "geometry/points/point_cloud.h"
 #include "missions/file/mission.h"
-#include "missions/run/survey_flight.h"
+#include "missions/run/survey_journal.h"
+#include "missions/run/survey_record.h"
 #include "missions/scene/survey_scene.h"
-#include "survey/planner.h"
-#include "survey/skycap/skycap_planner.h"
-#include "survey/survey_loop.h"
 
 namespace skycap::missions::run {
 
-/// A view of the survey and the coverage after it.
-struct JudgedView {
-  survey::SurveyedView surveyed;
-  double coverage = 0.0;
-};
-
-/// What a survey left behind.
-struct SurveyRecord {
-  std::uint64_t seed = 1;
-  unsigned threads = 1;
-  survey::StopReason stop_reason = survey::StopReason::complete;
-  std::vector<JudgedView> views;
-  geometry::PointCloud cloud;
-  std::vector<std::uint8_t> is_covered;  ///< for each of the scene's samples
-  std::optional<FlownSurvey> flown;      ///< of a mission with a vehicle
-
-  /// What the planner skycap believed at the end, and why it stopped; nothing with the others.
-  std::optional<survey::skycap::SurveyBelief> belief;
-  survey::skycap::SkycapStop skycap_stop = survey::skycap::SkycapStop::running;
-
-  bool is_complete() const { return stop_reason == survey::StopReason::complete; }
-  double coverage() const { return views.empty() ? 0.0 : views.back().coverage; }
-  double distance() const { return views.empty() ? 0.0 : views.back().surveyed.distance; }
-  double planning_time() const;
-  double sensing_time() const;
-};
-
-/// The word for it in files: complete, view_limit, distance_limit, time_limit,
-/// nowhere_to_go, interrupted.
-const char* name_of(survey::StopReason reason);
-
-/// The word for it in files: wanted_coverage, little_gain, ...; running if a limit of the survey
-/// came first.
-const char* name_of(survey::skycap::SkycapStop stop);
+/// The mission of a survey with that seed: what volumetric planners take from the scene is filled
+/// in.
+file::Mission trial_mission(const file::Mission& mission, const scene::SurveyScene& scene,
+                            std::uint64_t seed);
 
 /// Surveys the mission's scene with that seed and so many threads (zero: all processors). The
 /// record does not depend on the threads but for its times. A mission with a vehicle goes only to
 /// views that it can safely reach. `report` is told of each view; it may be empty. Throws what
-/// planner, sensor and SurveyFlight throw.
+/// planner, sensor and SurveyFlight throw. With a journal the survey is written down, and goes on
+/// where the journal's ended: the record is the same but for its times.
 SurveyRecord run_survey(const file::Mission& mission, const scene::SurveyScene& scene,
                         std::uint64_t seed, unsigned threads, std::stop_token stop = {},
-                        const std::function<void(const JudgedView&)>& report = {});
+                        const std::function<void(const JudgedView&)>& report = {},
+                        SurveyJournal* journal = nullptr);
 
 }  // namespace skycap::missions::run

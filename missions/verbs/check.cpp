@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <filesystem>
+#include <vector>
 
 #include <fmt/format.h>
 
@@ -13,13 +14,11 @@
 #include "missions/package/package.h"
 #include "missions/scene/survey_scene.h"
 #include "missions/verbs/check_returns.h"
+#include "missions/verbs/true_space.h"
 #include "missions/verbs/verbs.h"
 
 namespace skycap::missions::verbs {
 namespace {
-
-/// A pad's own ground is no obstacle to it, nor is what stands no higher above it [m].
-constexpr double pad_roughness = 0.3;
 
 /// What the mission says of a file; the pad and the views are those of the package it lies in.
 flight::FlightFacts facts_of(const file::Mission& mission, const std::filesystem::path& route) {
@@ -33,15 +32,6 @@ flight::FlightFacts facts_of(const file::Mission& mission, const std::filesystem
     facts.is_pad_known = true;
   }
   return facts;
-}
-
-/// The triangles of which some part is above that height.
-geometry::Mesh above(geometry::Mesh mesh, double height) {
-  std::erase_if(mesh.triangles, [&](const auto& triangle) {
-    return std::ranges::all_of(triangle,
-                               [&](auto vertex) { return mesh.vertices[vertex].z() < height; });
-  });
-  return mesh;
 }
 
 /// The corners of all that is flown beside the pad.
@@ -61,16 +51,12 @@ int check_route_file(const CheckOptions& options, const file::Mission& mission,
   const std::string file = options.route->string();
   const flight::FlightFacts facts = facts_of(mission, *options.route);
   const flight::FlownRoute route = flight::interpret_file(*options.route, facts);
-  flight::Obstacles obstacles = derived::flight_rules(mission);
-  obstacles.mesh = model;
-  const flight::KnownSpace space(obstacles);
-  obstacles.mesh = above(model, facts.pad.z() + pad_roughness);
-  const flight::KnownSpace pad_space(without_ground(obstacles));
+  const TrueSpace space = true_space(mission, model, facts.pad.z());
 
   const double asked_for = mission.flight.clearance;
-  const flight::FlownProof proof =
-      prove(route, space, pad_space, std::max(0.0, asked_for - flight::rounding_bound),
-            asked_for + flight::reported_surplus);
+  const flight::FlownProof proof = prove(route, space.everywhere, space.over_pad,
+                                         std::max(0.0, asked_for - flight::rounding_bound),
+                                         asked_for + flight::reported_surplus);
   for (const flight::Problems& problems : {route.problems, proof.problems}) {
     for (const std::string& problem : problems) console.out << file << ": " << problem << "\n";
   }
@@ -85,8 +71,8 @@ int check_route_file(const CheckOptions& options, const file::Mission& mission,
     console.out << "; where its photographs look is not checked: it is not in its package";
   }
   console.out << "\n";
-  const ReturnCheck returns =
-      check_returns(*options.route, options.return_height, mission, space, places_of(route));
+  const ReturnCheck returns = check_returns(*options.route, options.return_height, mission,
+                                            space.everywhere, places_of(route));
   console.out << file << ": " << returns.text << "\n" << std::flush;
   return is_fine && returns.is_safe ? 0 : 1;
 }

@@ -1,64 +1,18 @@
 #include "missions/verbs/check_returns.h"
 
 #include <algorithm>
-#include <fstream>
-#include <iterator>
 
 #include "flight/export/export.h"
-#include "flight/export/parameters.h"
 #include "flight/way_home/least_return.h"
-#include "geometry/error.h"
 #include "missions/derived/mission_flight.h"
 #include "missions/file/number_text.h"
+#include "missions/verbs/stated_return.h"
 
 namespace skycap::missions::verbs {
 namespace {
 
 using Eigen::Vector3d;
 using flight::Dialect;
-
-/// Who flies such a file; nobody by itself if it is for maps or set-point followers.
-std::optional<Dialect> dialect_of(const std::filesystem::path& file,
-                                  const flight::Vehicle& vehicle) {
-  const std::string ending = file.extension().string();
-  if (ending == ".kmz" || file.string().ends_with(".litchi.csv")) return Dialect::dji;
-  if (ending != ".plan" && ending != ".waypoints" && ending != ".txt") return std::nullopt;
-  if (vehicle.dialect != Dialect::dji) return vehicle.dialect;
-  return ending == ".plan" ? Dialect::px4 : Dialect::ardupilot;
-}
-
-/// A height of return, and who says so.
-struct StatedHeight {
-  double height = 0.0;
-  std::string by;
-  flight::Problems problems;  ///< settings by which the vehicle would return in another way
-};
-
-std::optional<StatedHeight> stated_by_parameters(const std::filesystem::path& route,
-                                                 Dialect dialect) {
-  const std::string name = flight::parameters_name(dialect);
-  const std::filesystem::path file = route.parent_path() / name;
-  if (name.empty() || !std::filesystem::exists(file)) return std::nullopt;
-  std::ifstream stream(file, std::ios::binary);
-  const std::string text{std::istreambuf_iterator<char>(stream), {}};
-  try {
-    const std::vector<flight::Parameter> parameters = flight::read_parameters(text);
-    const std::optional<double> height = flight::return_height(parameters, dialect);
-    if (!height) return std::nullopt;
-    return StatedHeight{*height, name, flight::return_problems(parameters, dialect)};
-  } catch (const Error& error) {
-    throw Error(error.kind(), file.string() + ": " + error.what());
-  }
-}
-
-std::optional<StatedHeight> stated_height(const std::filesystem::path& route,
-                                          const std::optional<double>& given, Dialect dialect) {
-  if (given) return StatedHeight{*given, "--return-height", {}};
-  if (const auto height = flight::read_return_height(route)) {
-    return StatedHeight{*height, "globalRTHHeight", {}};
-  }
-  return stated_by_parameters(route, dialect);
-}
 
 std::string metres(double length) { return file::short_text(length) + " m"; }
 

@@ -85,6 +85,8 @@ void add_plan(CLI::App& app, const Console& console, Action& action) {
   verb->add_option("--trials", options->trials,
                    "Run this many seeds; write trials.csv and trials.json")
       ->check(CLI::Range(1, 100'000));
+  verb->add_flag("--resume", options->resumes,
+                 "Go on with the survey that was interrupted in that folder, if there is one");
   verb->add_flag("!--no-report", options->has_report, "Leave out report.html");
   verb->add_flag("--quiet", options->is_quiet, "Print nothing but errors");
   verb->add_flag("--verbose", options->is_verbose, "Print the planning time of each view by part");
@@ -92,6 +94,53 @@ void add_plan(CLI::App& app, const Console& console, Action& action) {
   verb->callback([=, &console, &action] {
     options->overrides = keys->overrides();
     action = [=, &console] { return plan(*options, console); };
+  });
+}
+
+void add_live_options(CLI::App& verb, LiveOptions& options, KeyOptions& keys) {
+  verb.add_option("mission", options.mission, "Mission file (docs/live.md)")->required();
+  verb.add_option("--survey", options.survey, "The survey's folder")->required();
+  verb.add_option("--seed", keys.seed, "Seed, in place of the mission's");
+  verb.add_option("--threads", keys.threads, "Threads, 0 for all processors");
+  add_set_option(verb, keys);
+}
+
+void add_next(CLI::App& app, const Console& console, Action& action) {
+  CLI::App* verb =
+      app.add_subcommand("next", "Take in a scan of a real sensor and say where to measure next");
+  const auto options = std::make_shared<NextOptions>();
+  const auto keys = std::make_shared<KeyOptions>();
+  add_live_options(*verb, options->live, *keys);
+  verb->add_option("--scan", options->scan,
+                   "Cloud (.ply, .pcd, .las, .xyz) or depth image (16-bit .png)");
+  verb->add_option("--pose", options->pose,
+                   "Of the sensor's optical frame: \"x y z qx qy qz qw\", or a matrix by rows");
+  verb->add_option("--pose-file", options->pose_file, "A file that holds the pose");
+  verb->add_option("--lens", options->lens,
+                   "Of a depth image: \"fx fy cx cy\" or \"fx fy cx cy k1 k2 p1 p2 k3\"; default: "
+                   "the mission's camera");
+  verb->add_option("--depth-unit", options->depth_unit,
+                   "What a step of a depth image stands for [m]; default 0.001")
+      ->check(number_between(1e-6, 1.0));
+  verb->add_flag("--world", options->is_in_world, "The cloud is in the mission's frame already");
+  verb->add_option("--id", options->id, "Of the scan; one that is known is not taken in again");
+  verb->add_option("--refuse", options->refusal, "Another view in place of the last, and why");
+  verb->add_flag("--json", options->is_json, "Print JSON");
+  verb->add_flag("--quiet", options->is_quiet, "Print nothing but the answer and errors");
+  verb->callback([=, &console, &action] {
+    options->live.overrides = keys->overrides();
+    action = [=, &console] { return next(*options, console); };
+  });
+}
+
+void add_finish(CLI::App& app, const Console& console, Action& action) {
+  CLI::App* verb = app.add_subcommand("finish", "Write the mission package of a live survey");
+  const auto options = std::make_shared<LiveOptions>();
+  const auto keys = std::make_shared<KeyOptions>();
+  add_live_options(*verb, *options, *keys);
+  verb->callback([=, &console, &action] {
+    options->overrides = keys->overrides();
+    action = [=, &console] { return finish(*options, console); };
   });
 }
 
@@ -195,6 +244,58 @@ void add_export(CLI::App& app, const Console& console, Action& action) {
     options->overrides = keys->overrides();
     action = [=, &console] { return export_package(*options, console); };
   });
+}
+
+void add_fly_test(CLI::App& app, const Console& console, Action& action) {
+  CLI::App* verb = app.add_subcommand(
+      "fly-test", "Fly a mission package's routes many times in wind, with failsafes");
+  const auto options = std::make_shared<FlyTestVerbOptions>();
+  const auto keys = std::make_shared<KeyOptions>();
+  verb->add_option("package", options->package, "Folder that plan wrote")->required();
+  verb->add_option("--flights", options->flights, "Of each route file; default 100")
+      ->check(CLI::Range(1, 1'000'000));
+  verb->add_option("--returns", options->returns,
+                   "Ways home from places at random; default 1000. 0: none")
+      ->check(CLI::Range(0, 100'000'000));
+  verb->add_option("--wind", options->wind_speed,
+                   "Strongest steady wind, which gusts come on top of [m/s]; default the "
+                   "mission's, at least 5")
+      ->check(number_between(0.0, 100.0));
+  verb->add_option("--position-error", options->position_error,
+                   "Greatest error of the receiver [m]; default the mission's")
+      ->check(number_between(0.0, 1000.0));
+  verb->add_option("--return-height", options->return_height,
+                   "The height of return that the vehicle is set to, above take-off [m]")
+      ->check(number_between(0.0, 10'000.0));
+  verb->add_option("--truth", options->truth,
+                   "Mission file: judge the flights against its scene as it truly is, too");
+  verb->add_option("--out", options->out, "Folder for fly_test.json; default the package");
+  verb->add_option("--seed", keys->seed, "Seed, in place of the mission's");
+  verb->add_option("--threads", keys->threads, "Threads, 0 for all processors");
+  verb->add_flag("--quiet", options->is_quiet, "Print nothing but errors");
+  add_set_option(*verb, *keys);
+  verb->callback([=, &console, &action] {
+    options->overrides = keys->overrides();
+    action = [=, &console] { return fly_test(*options, console); };
+  });
+}
+
+void add_calibrate(CLI::App& app, const Console& console, Action& action) {
+  CLI::App* verb =
+      app.add_subcommand("calibrate", "Make a vehicle file from a log of the vehicle's own flight");
+  const auto options = std::make_shared<CalibrateOptions>();
+  verb->add_option("log", options->log, "ArduPilot's dataflash log (.bin), or .csv")->required();
+  verb->add_option("--vehicle", options->vehicle, "Preset that it is like, such as m350_rtk")
+      ->required();
+  verb->add_option("--mass", options->mass, "Flown, with payload, in place of the preset's [kg]")
+      ->check(number_between(0.01, 1000.0));
+  verb->add_option("--battery", options->battery_wh, "In place of the preset's [Wh]")
+      ->check(number_between(0.1, 1e5));
+  verb->add_option("--air-density", options->air_density, "Of that day; default 1.225 kg/m^3")
+      ->check(number_between(0.4, 1.9));
+  verb->add_option("--out", options->out, "Vehicle file; default LOG.yaml");
+  verb->callback(
+      [=, &console, &action] { action = [=, &console] { return calibrate(*options, console); }; });
 }
 
 void add_evaluate(CLI::App& app, const Console& console, Action& action) {
@@ -314,10 +415,14 @@ int parse_and_run(const std::vector<std::string>& arguments, const Console& cons
   try {
     limit_instruction_set_as_asked();
     add_plan(app, console, action);
+    add_next(app, console, action);
+    add_finish(app, console, action);
     add_benchmark(app, console, action);
     add_scan(app, console, action);
     add_check(app, console, action);
     add_export(app, console, action);
+    add_fly_test(app, console, action);
+    add_calibrate(app, console, action);
     add_evaluate(app, console, action);
     add_reconstruct(app, console, action);
     add_model(app, console, action);

@@ -84,8 +84,12 @@ int plan_once(const PlanOptions& options, const file::Mission& mission,
     if (options.is_verbose) console.err << times_row(views, judged) << std::flush;
     progress.show(progress_text(mission.name, ++views, judged, planning_time));
   };
-  const run::SurveyRecord record =
-      run::run_survey(mission, scene, mission.seed, mission.threads, console.stop, report);
+  run::SurveyJournal journal(folder.path() / run::journal_name, mission, scene, options.resumes);
+  if (journal.views() > 0 && !options.is_quiet) {
+    console.err << "going on after " << journal.views() << " views of an interrupted survey\n";
+  }
+  const run::SurveyRecord record = run::run_survey(mission, scene, mission.seed, mission.threads,
+                                                   console.stop, report, &journal);
 
   package::CoverageFigures coverage{record.coverage(), {}, {}};
   std::vector<std::uint8_t> is_visible;
@@ -111,6 +115,7 @@ int plan_once(const PlanOptions& options, const file::Mission& mission,
   if (!is_over && package::is_complete_result(folder.path() / "summary.json")) {
     folder.move_to("interrupted");  // a complete survey is not overwritten by a part of one
   }
+  if (is_over) folder.replace([](std::string_view name) { return name == run::journal_name; });
   folder.commit();
   progress.clear();
   if (!options.is_quiet) {

@@ -14,9 +14,9 @@
 #include "geometry/io/output_folder.h"
 #include "missions/derived/mission_flight.h"
 #include "missions/derived/resolved_mission.h"
+#include "missions/equipment/sensor_reader.h"
 #include "missions/file/json_text.h"
 #include "missions/file/number_text.h"
-#include "missions/file/sensor_reader.h"
 #include "missions/package/package.h"
 #include "missions/recording/cloud_formats.h"
 #include "missions/recording/frame_recorder.h"
@@ -40,8 +40,9 @@ std::string beside(const std::filesystem::path& folder, const std::string& name)
   return name.ends_with(".yaml") ? (folder / name).string() : name;
 }
 
-file::SensorDescription sensor_of(const ScanVerbOptions& options, const file::Mission& mission) {
-  return file::find_sensor(
+equipment::SensorDescription sensor_of(const ScanVerbOptions& options,
+                                       const file::Mission& mission) {
+  return equipment::find_sensor(
       options.sensor.value_or(beside(options.mission.parent_path(), mission.scan.sensor)));
 }
 
@@ -342,7 +343,7 @@ int scan_with_camera(const ScanVerbOptions& options, const file::Mission& missio
 
 int scan(const ScanVerbOptions& options, const Console& console) {
   const file::Mission mission = derived::read_mission(options.mission, options.overrides);
-  file::SensorDescription sensor = sensor_of(options, mission);
+  equipment::SensorDescription sensor = sensor_of(options, mission);
   geometry::OutputFolder folder(
       options.out.value_or(std::filesystem::path("results") / mission.name / "scan"));
   if (auto* laser = std::get_if<sim::LidarConfig>(&sensor.sensor)) {

@@ -18,6 +18,7 @@ struct PlanOptions {
   std::optional<std::filesystem::path> out;  ///< default: results/NAME
   std::vector<file::KeyOverride> overrides;
   std::size_t trials = 0;  ///< zero: one survey, with a mission package
+  bool resumes = false;  ///< goes on with an interrupted survey, if there is one; trials always do
   bool has_report = true;  ///< report.html beside the other results
   bool is_quiet = false;
   bool is_verbose = false;
@@ -27,6 +28,35 @@ struct PlanOptions {
 /// Exit code 1 if the survey was interrupted, could not go anywhere from its first view, or leaves
 /// no route.
 int plan(const PlanOptions& options, const Console& console);
+
+/// Of which live survey.
+struct LiveOptions {
+  std::filesystem::path mission;
+  std::filesystem::path survey;  ///< its folder
+  std::vector<file::KeyOverride> overrides;
+};
+
+struct NextOptions {
+  LiveOptions live;
+  std::optional<std::filesystem::path> scan;       ///< to be taken in first
+  std::string pose;                                ///< of the scan's sensor; either this
+  std::optional<std::filesystem::path> pose_file;  ///< or this
+  std::string lens;                                ///< of a depth image
+  double depth_unit = 0.001;                       ///< of a depth image [m]
+  bool is_in_world = false;                        ///< the points of a cloud
+  std::string id;                                  ///< of the scan; default: its digest
+  std::optional<std::string> refusal;              ///< why the proposed view is not wanted
+  bool is_json = false;
+  bool is_quiet = false;
+};
+
+/// Says where a live survey is to measure next. Exit code 0: there; 10: nowhere, it is over; 11:
+/// every view that is wanted was refused.
+int next(const NextOptions& options, const Console& console);
+
+/// Writes the mission package of a live survey into its folder; exit code 1 if it has no route. The
+/// survey may go on afterwards.
+int finish(const LiveOptions& options, const Console& console);
 
 struct BenchmarkOptions {
   std::vector<std::filesystem::path> missions;
@@ -65,6 +95,36 @@ struct ExportOptions {
 /// Plans a flight through the views of a finished survey and writes it in other formats, or for
 /// another vehicle. Exit code 1 if no view can be visited.
 int export_package(const ExportOptions& options, const Console& console);
+
+struct FlyTestVerbOptions {
+  std::filesystem::path package;               ///< folder that plan() wrote
+  std::optional<std::filesystem::path> out;    ///< folder; default: the package
+  std::optional<std::filesystem::path> truth;  ///< mission file whose scene is judged against, too
+  std::size_t flights = 100;
+  std::size_t returns = 1000;            ///< from anywhere; one more from each second of the flight
+  std::optional<double> wind_speed;      ///< the strongest; default: the mission's, at least 5 m/s
+  std::optional<double> position_error;  ///< the greatest; default: the mission's
+  std::optional<double> return_height;   ///< that the vehicle is set to, above take-off
+  std::vector<file::KeyOverride> overrides;
+  bool is_quiet = false;
+};
+
+/// Flies every route file of a package many times in the simulator, in wind and with failsafes.
+/// Writes fly_test.json. Exit code 1 if a flight came nearer to anything than the clearance less
+/// the errors that it allows for, if its battery would not have lasted, or if it was interrupted.
+int fly_test(const FlyTestVerbOptions& options, const Console& console);
+
+struct CalibrateOptions {
+  std::filesystem::path log;                 ///< ArduPilot's .bin, or .csv
+  std::string vehicle;                       ///< preset that the one that flew is like
+  std::optional<std::filesystem::path> out;  ///< default: LOG.yaml, without the log's own ending
+  std::optional<double> mass;                ///< flown, in place of the preset's [kg]
+  std::optional<double> battery_wh;          ///< in place of the preset's
+  double air_density = 1.225;                ///< of that day [kg/m^3]
+};
+
+/// Fits a vehicle's power and minutes to a log of its flight and writes it as a vehicle file.
+int calibrate(const CalibrateOptions& options, const Console& console);
 
 struct ScanVerbOptions {
   std::filesystem::path mission;

@@ -3,10 +3,10 @@
 /// internal to them, and no inline function of a library may be called: the linker would keep any
 /// one copy of it. Contraction to fused multiply-adds is off (CMakeLists.txt).
 
-#include "sim/scene/lanes.h"
+#include "sim/scene/lanes_body.h"
 #include "sim/scene/ray_kernels.h"
-#include "sim/scene/tree_walk.h"
-#include "sim/scene/triangle_test.h"
+#include "sim/scene/tree_walk_body.h"
+#include "sim/scene/triangle_test_body.h"
 
 namespace skycap::sim {
 namespace {

@@ -1,5 +1,6 @@
 // Every step that a verb takes on the disk fails once, and the program dies at each once: whatever
-// happens, the folder then holds the whole old result or the whole new one, and nothing else.
+// happens, the folder then holds the whole old result or the whole new one, and nothing else but
+// what an unfinished survey can be resumed from. Run again, the verb gives the new result.
 #include <cstdio>
 #include <cstdlib>
 #include <filesystem>
@@ -42,10 +43,12 @@ std::string repeatable_part(const fs::path& file) {
   return kept;
 }
 
+constexpr const char* journal = "survey.journal";
+
 Content content_of(const fs::path& folder) {
   Content content;
   for (const auto& entry : fs::directory_iterator(folder)) {
-    if (entry.is_directory()) continue;
+    if (entry.is_directory() || entry.path().filename() == journal) continue;
     content[entry.path().filename()] = repeatable_part(entry.path());
   }
   return content;
@@ -102,6 +105,9 @@ void try_every_fault(const std::function<std::vector<std::string>(const std::str
       if (exit_code == 0) {
         EXPECT_TRUE(found == after) << kind << " at step " << at << ", exit 0";
       }
+      EXPECT_EQ(run(verb("2", out), {}), 0);
+      EXPECT_TRUE(content_of(out) == after) << "run again after " << kind << " at step " << at;
+      EXPECT_FALSE(fs::exists(out / journal));
     }
   }
   std::cout << 2 * steps << " faults tried\n";
@@ -120,7 +126,8 @@ TEST(FaultPoints, PlanLeavesAWholeResult) {
   const testing_support::TemporaryFolder folder;
   const std::string mission = folder.file("m.yaml", quick);
   try_every_fault([&](const std::string& seed, const fs::path& out) {
-    return std::vector<std::string>{"plan", mission, "--quiet", "--seed", seed, "--out", out};
+    return std::vector<std::string>{"plan",   mission, "--quiet", "--resume",
+                                    "--seed", seed,    "--out",   out};
   });
 }
 

@@ -51,6 +51,9 @@ Rooms house() {
   add("flight/export",
       {"flight/space", "flight/motion", "flight/paths", "flight/way_home", "flight/route"});
   add("flight/interpreter", {"flight/space", "flight/autopilot", "flight/motion", "flight/export"});
+  add("flight/calibration", {"flight/space", "flight/autopilot", "flight/motion", "flight/export"});
+  add("flight/fly_test", {"flight/space", "flight/autopilot", "flight/motion", "flight/way_home",
+                          "flight/interpreter"});
 
   std::vector<std::string> below;  // what missions/ composes
   for (const auto& [room, others] : rooms) {
@@ -66,15 +69,17 @@ Rooms house() {
   add_mission_room("file");
   add_mission_room("plugins");
   add_mission_room("judge");
-  add_mission_room("derived", "file");
+  add_mission_room("equipment", "file");
+  add_mission_room("derived", "file", "equipment");
   add_mission_room("scene", "file", "derived", "judge", "plugins");
   add_mission_room("recording", "file", "derived", "plugins");
   add_mission_room("run", "file", "derived", "judge", "scene");
-  add_mission_room("package", "file", "derived", "run");
+  add_mission_room("package", "file", "equipment", "derived", "run");
   add_mission_room("report", "file", "derived", "scene", "package");
+  add_mission_room("live", "file", "derived", "scene", "run");
   add_mission_room("benchmark", "file", "derived", "judge", "plugins", "scene", "run", "package");
-  add_mission_room("verbs", "file", "derived", "judge", "plugins", "scene", "recording", "run",
-                   "package", "report", "benchmark");
+  add_mission_room("verbs", "file", "equipment", "derived", "judge", "plugins", "scene",
+                   "recording", "run", "package", "report", "live", "benchmark");
   return rooms;
 }
 

@@ -11,6 +11,7 @@
 
 #include "flight/motion/motion.h"
 #include "geometry/error.h"
+#include "tests/flight/vehicles.h"
 
 namespace skycap::flight {
 namespace {

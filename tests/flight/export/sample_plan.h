@@ -4,6 +4,7 @@
 #include "flight/export/flight_plan.h"
 #include "flight/route/route.h"
 #include "flight/space/obstacles.h"
+#include "tests/flight/vehicles.h"
 
 namespace skycap::flight {
 

@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include "geometry/error.h"
+#include "tests/flight/vehicles.h"
 
 namespace skycap::flight {
 namespace {
@@ -195,20 +196,6 @@ TEST(Motion, AbsurdLimitsAreNamed) {
   Vehicle still = good;
   still.mode.acceleration = 0;
   EXPECT_THAT(complaint(still, {}), HasSubstr("acceleration is 0"));
-}
-
-TEST(Vehicle, EveryProfileIsValidAndAnUnknownNameListsThem) {
-  EXPECT_GE(vehicle_profiles().size(), 6U);
-  for (const Vehicle& vehicle : vehicle_profiles()) {
-    EXPECT_NO_THROW(vehicle.validate()) << vehicle.name;
-    EXPECT_EQ(vehicle_profile(vehicle.name).mass, vehicle.mass);
-  }
-  try {
-    vehicle_profile("m600");
-    FAIL();
-  } catch (const Error& error) {
-    EXPECT_THAT(error.what(), HasSubstr("m350_rtk"));
-  }
 }
 
 }  // namespace

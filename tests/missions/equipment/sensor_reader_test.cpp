@@ -1,4 +1,4 @@
-#include "missions/file/sensor_reader.h"
+#include "missions/equipment/sensor_reader.h"
 
 #include <cmath>
 #include <numbers>
@@ -18,20 +18,20 @@ using testing::HasSubstr;
 
 constexpr double degree = std::numbers::pi / 180.0;
 
-const LidarConfig& lidar(const file::SensorDescription& description) {
+const LidarConfig& lidar(const equipment::SensorDescription& description) {
   return std::get<LidarConfig>(description.sensor);
 }
 
 double shots_per_second(const char* preset) {
-  const file::SensorDescription description = file::find_sensor(preset);
+  const equipment::SensorDescription description = equipment::find_sensor(preset);
   const LidarConfig& config = lidar(description);
   return static_cast<double>(config.channels.size()) / config.firing_period;
 }
 
 TEST(SensorPresets, AllAreValid) {
-  EXPECT_EQ(file::sensor_presets().size(), 15U);
-  for (const std::string_view preset : file::sensor_presets()) {
-    EXPECT_FALSE(file::find_sensor(std::string(preset)).name.empty()) << preset;
+  EXPECT_EQ(equipment::sensor_presets().size(), 15U);
+  for (const std::string_view preset : equipment::sensor_presets()) {
+    EXPECT_FALSE(equipment::find_sensor(std::string(preset)).name.empty()) << preset;
   }
 }
 
@@ -52,7 +52,7 @@ TEST(SensorPresets, ShootAsOftenAsTheDataSheetsSay) {
 // The widest angle off the axis that a rosette reaches, against half its sold field of view.
 TEST(SensorPresets, RosettesReachTheirFieldsOfView) {
   const auto widest = [](const char* preset) {
-    const file::SensorDescription description = file::find_sensor(preset);
+    const equipment::SensorDescription description = equipment::find_sensor(preset);
     double angle = 0.0;
     for (int i = 0; i < 20'000; ++i) {
       const Eigen::Vector3d beam =
@@ -67,14 +67,14 @@ TEST(SensorPresets, RosettesReachTheirFieldsOfView) {
 }
 
 TEST(SensorPresets, WidthsAtHalfMaximumBecomeWidthsAtOneOverESquared) {
-  const file::SensorDescription description = file::find_sensor("dji_zenmuse_l2");
+  const equipment::SensorDescription description = equipment::find_sensor("dji_zenmuse_l2");
   EXPECT_NEAR(lidar(description).beam.divergence_horizontal, 1.02e-3, 1e-5);
   EXPECT_NEAR(lidar(description).beam.divergence_vertical, 0.34e-3, 1e-5);
 }
 
 TEST(SensorPresets, TheExperimentsCamerasAreThoseOfTheSimulator) {
   const auto camera = [](const char* preset) {
-    const file::SensorDescription description = file::find_sensor(preset);
+    const equipment::SensorDescription description = equipment::find_sensor(preset);
     return std::get<DepthCameraConfig>(description.sensor);
   };
   const DepthCameraConfig high = camera("see_high_resolution"), known = sim::high_resolution();
@@ -89,7 +89,7 @@ TEST(SensorPresets, TheExperimentsCamerasAreThoseOfTheSimulator) {
 
 void expect_message(const std::string& text, const char* message) {
   try {
-    file::read_sensor(text, "my.yaml");
+    equipment::read_sensor(text, "my.yaml");
     FAIL() << "accepted: " << message;
   } catch (const Error& error) {
     EXPECT_EQ(error.kind(), ErrorKind::bad_config);
@@ -119,12 +119,12 @@ TEST(ReadSensor, NamesFileLineAndKeyOfWhatIsWrong) {
 
 TEST(FindSensor, SaysWhichSensorsThereAre) {
   try {
-    file::find_sensor("ouster");
+    equipment::find_sensor("ouster");
     FAIL() << "found";
   } catch (const Error& error) {
     EXPECT_THAT(error.what(), HasSubstr("known are dji_zenmuse_l1"));
   }
-  EXPECT_THROW(file::find_sensor("no/such/file.yaml"), Error);
+  EXPECT_THROW(equipment::find_sensor("no/such/file.yaml"), Error);
 }
 
 }  // namespace

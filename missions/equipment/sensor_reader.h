@@ -10,7 +10,7 @@
 #include "sim/sensors/depth_camera.h"
 #include "sim/sensors/sensor.h"
 
-namespace skycap::missions::file {
+namespace skycap::missions::equipment {
 
 struct SensorDescription {
   std::string name;  ///< as the file calls it
@@ -28,4 +28,4 @@ std::vector<std::string_view> sensor_presets();
 /// Error{bad_config} with the known names, or Error{bad_file}.
 SensorDescription find_sensor(const std::string& name_or_file);
 
-}  // namespace skycap::missions::file
+}  // namespace skycap::missions::equipment

@@ -10,9 +10,9 @@
 
 #include <cstdint>
 
-#include "sim/scene/lanes.h"
+#include "sim/scene/lanes_body.h"
 #include "sim/scene/tree_layout.h"
-#include "sim/scene/triangle_test.h"
+#include "sim/scene/triangle_test_body.h"
 
 namespace skycap::sim {
 namespace {

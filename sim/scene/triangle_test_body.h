@@ -11,7 +11,7 @@
 
 #include <cstdint>
 
-#include "sim/scene/lanes.h"
+#include "sim/scene/lanes_body.h"
 #include "sim/scene/ray_kernels.h"
 #include "sim/scene/tree_layout.h"
 

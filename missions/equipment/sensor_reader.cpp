@@ -1,146 +1,23 @@
-#include "missions/file/sensor_reader.h"
+#include "missions/equipment/sensor_reader.h"
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
-#include <initializer_list>
 #include <optional>
-#include <set>
 #include <utility>
 
 #include "geometry/angle.h"
 #include "geometry/error.h"
-#include "geometry/io/file.h"
-#include "missions/file/sensor_presets.h"
-#include "missions/file/yaml_tree.h"
+#include "missions/equipment/preset_files.h"
+#include "missions/equipment/yaml_section.h"
 
-namespace skycap::missions::file {
+namespace skycap::missions::equipment {
 namespace {
 
 constexpr double degree = geometry::radians_per_degree;
 constexpr double fwhm_to_full_width = 1.69864;  // sqrt(2 / ln 2): half maximum to 1/e^2
 
-/// A map of a description. Every key that is asked for is known; finish() refuses the others.
-class Section {
- public:
-  Section(const YamlNode& node, std::string path, const std::string& file)
-      : node_(node), path_(std::move(path)), file_(file) {
-    if (node.kind != YamlNode::Kind::map) {
-      fail(node.line, path_.empty() ? "name" : path_.substr(0, path_.size() - 1),
-           "must be a map of keys");
-    }
-  }
-
-  std::optional<Section> section(const std::string& key) {
-    const YamlNode* value = find(key);
-    if (value == nullptr) return std::nullopt;
-    return Section(*value, path_ + key + ".", file_);
-  }
-
-  std::vector<Section> sections(const std::string& key) {
-    std::vector<Section> result;
-    const YamlNode* value = find(key);
-    if (value == nullptr) return result;
-    if (value->kind != YamlNode::Kind::list) fail(value->line, path_ + key, "must be a list");
-    for (std::size_t i = 0; i < value->items.size(); ++i) {
-      result.emplace_back(value->items[i], path_ + key + "[" + std::to_string(i) + "].", file_);
-    }
-    return result;
-  }
-
-  bool has(const std::string& key) { return find(key) != nullptr; }
-
-  double number(const std::string& key) {
-    const YamlNode* value = find(key);
-    if (value == nullptr) fail(node_.line, path_ + key, "is missing");
-    return to_number(*value, path_ + key);
-  }
-  double number(const std::string& key, double fallback) {
-    return has(key) ? number(key) : fallback;
-  }
-  int integer(const std::string& key, int fallback) {
-    if (!has(key)) return fallback;
-    const double value = number(key);
-    if (value != std::round(value) || std::abs(value) > 1e9) {
-      fail(find(key)->line, path_ + key, "must be a whole number");
-    }
-    return static_cast<int>(value);
-  }
-  std::vector<double> numbers(const std::string& key) {
-    const YamlNode* value = find(key);
-    std::vector<double> result;
-    if (value == nullptr) return result;
-    if (value->kind != YamlNode::Kind::list) fail(value->line, path_ + key, "must be a list");
-    for (const YamlNode& item : value->items) result.push_back(to_number(item, path_ + key));
-    return result;
-  }
-  std::string text(const std::string& key) {
-    const YamlNode* value = find(key);
-    if (value == nullptr) fail(node_.line, path_ + key, "is missing");
-    if (value->kind != YamlNode::Kind::scalar) fail(value->line, path_ + key, "must be a text");
-    return value->text;
-  }
-  bool boolean(const std::string& key, bool fallback) {
-    return has(key) ? choice<bool>(key, {{"true", true}, {"false", false}}) : fallback;
-  }
-  template <typename Value>
-  Value choice(const std::string& key,
-               std::initializer_list<std::pair<const char*, Value>> choices) {
-    const std::string given = text(key);
-    std::string known;
-    for (const auto& [name, value] : choices) {
-      if (given == name) return value;
-      known += (known.empty() ? "" : ", ") + std::string(name);
-    }
-    fail(find(key)->line, path_ + key, "is " + given + "; it must be one of " + known);
-  }
-
-  /// Refuses keys that nobody asked for.
-  void finish() const {
-    for (const YamlEntry& entry : node_.entries) {
-      if (asked_.contains(entry.key)) continue;
-      std::string known;
-      for (const std::string& key : asked_) known += (known.empty() ? "" : ", ") + key;
-      fail(entry.line, path_ + entry.key, "is unknown; known are " + known);
-    }
-  }
-
-  [[noreturn]] void fail_at(const std::string& key, const std::string& what) {
-    const YamlNode* value = find(key);
-    fail(value ? value->line : node_.line, path_ + key, what);
-  }
-
- private:
-  const YamlNode* find(const std::string& key) {
-    asked_.insert(key);
-    for (const YamlEntry& entry : node_.entries) {
-      if (entry.key == key) return &entry.value;
-    }
-    return nullptr;
-  }
-  double to_number(const YamlNode& value, const std::string& key) const {
-    double result = 0.0;
-    const char* const end = value.text.data() + value.text.size();
-    const auto [stop, error] = std::from_chars(value.text.data(), end, result);
-    if (value.kind != YamlNode::Kind::scalar || error != std::errc() || stop != end ||
-        !std::isfinite(result)) {
-      fail(value.line, key, "must be a number");
-    }
-    return result;
-  }
-  [[noreturn]] void fail(int line, const std::string& key, const std::string& what) const {
-    throw Error(ErrorKind::bad_config,
-                file_ + ":" + std::to_string(line) + ": key " + key + ": " + what);
-  }
-
-  const YamlNode& node_;
-  std::string path_;
-  const std::string& file_;
-  std::set<std::string> asked_;
-};
-
 /// The values of a list that is as long as the channels, or of none.
-void set_each(Section& section, const std::string& key, std::vector<sim::Channel>& channels,
+void set_each(YamlSection& section, const std::string& key, std::vector<sim::Channel>& channels,
               double sim::Channel::*field, double unit) {
   const std::vector<double> values = section.numbers(key);
   if (!section.has(key)) return;
@@ -151,7 +28,7 @@ void set_each(Section& section, const std::string& key, std::vector<sim::Channel
   for (std::size_t i = 0; i < values.size(); ++i) channels[i].*field = unit * values[i];
 }
 
-std::vector<sim::Channel> read_channels(Section section) {
+std::vector<sim::Channel> read_channels(YamlSection section) {
   std::vector<sim::Channel> channels;
   if (section.has("count")) {  // evenly spaced, from the top down as sensors number them
     const int count = section.integer("count", 1);
@@ -174,7 +51,7 @@ std::vector<sim::Channel> read_channels(Section section) {
   return channels;
 }
 
-sim::WedgePrism read_prism(Section section) {
+sim::WedgePrism read_prism(YamlSection section) {
   sim::WedgePrism prism;
   prism.wedge = degree * section.number("wedge_deg");
   prism.refractive_index = section.number("refractive_index", prism.refractive_index);
@@ -185,7 +62,7 @@ sim::WedgePrism read_prism(Section section) {
   return prism;
 }
 
-sim::RangeErrors read_errors(Section section) {
+sim::RangeErrors read_errors(YamlSection section) {
   sim::RangeErrors errors;
   errors.sigma = section.number("sigma", 0.0);
   errors.sigma_per_metre = section.number("sigma_per_metre", 0.0);
@@ -198,7 +75,7 @@ sim::RangeErrors read_errors(Section section) {
   return errors;
 }
 
-sim::Sensitivity read_sensitivity(Section section) {
+sim::Sensitivity read_sensitivity(YamlSection section) {
   sim::Sensitivity sensitivity;
   sensitivity.reference_range = section.number("range");
   sensitivity.reference_reflectance = section.number("reflectance");
@@ -207,7 +84,7 @@ sim::Sensitivity read_sensitivity(Section section) {
   return sensitivity;
 }
 
-void read_beam(Section section, sim::Beam& beam) {
+void read_beam(YamlSection section, sim::Beam& beam) {
   const double unit =
       section.choice<double>("width", {{"fwhm", fwhm_to_full_width}, {"1/e2", 1.0}});
   const auto angle = [&](const std::string& name) {
@@ -221,7 +98,7 @@ void read_beam(Section section, sim::Beam& beam) {
   section.finish();
 }
 
-void read_returns(Section section, sim::Beam& beam) {
+void read_returns(YamlSection section, sim::Beam& beam) {
   using sim::EchoChoice;
   beam.max_returns = section.integer("max", 1);
   beam.choice = section.choice<EchoChoice>(
@@ -232,11 +109,12 @@ void read_returns(Section section, sim::Beam& beam) {
   section.finish();
 }
 
-sim::LidarConfig read_lidar(Section& root, bool is_rosette) {
+sim::LidarConfig read_lidar(YamlSection& root, bool is_rosette) {
   sim::LidarConfig config;
   config.rotation_rate = 0.0;
   if (is_rosette) {
-    for (const Section& prism : root.sections("prisms")) config.prisms.push_back(read_prism(prism));
+    for (const YamlSection& prism : root.sections("prisms"))
+      config.prisms.push_back(read_prism(prism));
     if (config.prisms.empty()) root.fail_at("prisms", "must list the rosette's prisms");
   } else {
     config.rotation_rate = root.number("rotation_rate_hz");
@@ -262,7 +140,7 @@ sim::LidarConfig read_lidar(Section& root, bool is_rosette) {
   return config;
 }
 
-sim::DepthCameraConfig read_camera(Section& root) {
+sim::DepthCameraConfig read_camera(YamlSection& root) {
   sim::DepthCameraConfig config;
   config.camera.width = root.integer("width_px", config.camera.width);
   config.camera.height = root.integer("height_px", config.camera.height);
@@ -294,8 +172,8 @@ sim::DepthCameraConfig read_camera(Section& root) {
 }  // namespace
 
 SensorDescription read_sensor(const std::string& text, const std::string& file) {
-  const YamlNode tree = parse_yaml(text, file);
-  Section root(tree, "", file);
+  const file::YamlNode tree = file::parse_yaml(text, file);
+  YamlSection root(tree, "", file);
   SensorDescription description;
   description.name = root.text("name");
   enum class Kind { spinning, rosette, camera };
@@ -317,26 +195,13 @@ SensorDescription read_sensor(const std::string& text, const std::string& file) 
 
 std::vector<std::string_view> sensor_presets() {
   std::vector<std::string_view> names;
-  for (const PresetFile& preset : preset_files()) names.push_back(preset.name);
+  for (const PresetFile& preset : sensor_preset_files()) names.push_back(preset.name);
   return names;
 }
 
 SensorDescription find_sensor(const std::string& name_or_file) {
-  if (name_or_file.ends_with(".yaml")) {
-    constexpr std::size_t largest = 1 << 20;  // [byte]; a description has about a thousand
-    const std::string text = geometry::read_file(name_or_file, largest);
-    if (text.empty()) throw Error(ErrorKind::bad_file, name_or_file + ": is empty");
-    return read_sensor(text, name_or_file);
-  }
-  std::string known;
-  for (const PresetFile& preset : preset_files()) {
-    if (preset.name == name_or_file) {
-      return read_sensor(std::string(preset.text), name_or_file + ".yaml");
-    }
-    known += (known.empty() ? "" : ", ") + std::string(preset.name);
-  }
-  throw Error(ErrorKind::bad_config, "there is no sensor " + name_or_file + "; known are " + known +
-                                         ", or give a file NAME.yaml");
+  const PresetText found = preset_text("sensor", name_or_file, sensor_preset_files());
+  return read_sensor(found.text, found.file);
 }
 
-}  // namespace skycap::missions::file
+}  // namespace skycap::missions::equipment

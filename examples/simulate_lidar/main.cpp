@@ -1,0 +1,52 @@
+// Simulates a laser scanner into a buffer of one's own: 16 lasers that pass by a teapot.
+#include <algorithm>
+#include <cstdint>
+#include <cstdio>
+#include <numbers>
+#include <vector>
+
+#include <skycap/sim/lidar.h>
+#include <skycap/sim/models.h>
+
+using namespace skycap;
+
+struct MyPoint {
+  double x, y, z;
+  float intensity;
+};
+
+int main() {
+  const geometry::Mesh mesh = sim::builtin_model("teapot");
+  const sim::Scene scene(mesh);
+
+  sim::LidarConfig config;
+  config.firing_period = 1e-4;
+  config.rotation_rate = 10.0;
+  config.channels.clear();
+  for (int laser = 0; laser < 16; ++laser) {
+    config.channels.push_back({.elevation = (laser - 7.5) * 2.0 * std::numbers::pi / 180.0});
+  }
+  config.errors.sigma = 0.01;  // [m]
+  const sim::Lidar lidar(config);
+
+  // Half a second along x, eight metres before the scene.
+  const sim::Trajectory path(
+      {{.time = 0.0, .position = {-1.0, -8.0, 1.5}}, {.time = 0.5, .position = {1.0, -8.0, 1.5}}});
+  const sim::LidarFlight flight{.flown = path, .believed = path};
+
+  std::vector<MyPoint> buffer;
+  const std::uint64_t firings = lidar.firings(path);
+  constexpr std::uint64_t piece = 1024;  // of firings: memory stays small, however long the flight
+  sim::LidarReturns returns;
+  for (std::uint64_t first = 0; first < firings; first += piece) {
+    returns =
+        lidar.measure(scene, flight, {first, std::min(piece, firings - first)}, std::move(returns));
+    for (std::size_t i = 0; i < returns.size(); ++i) {
+      const Eigen::Vector3d point = returns.origin + returns.points[i].cast<double>();
+      buffer.push_back({point.x(), point.y(), point.z(), returns.intensities[i]});
+    }
+  }
+  std::printf("%zu returns of %zu shots\n", buffer.size(),
+              static_cast<std::size_t>(firings) * config.channels.size());
+  return buffer.empty() ? 1 : 0;
+}

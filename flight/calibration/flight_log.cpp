@@ -1,0 +1,81 @@
+#include "flight/calibration/flight_log.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <optional>
+
+#include "flight/export/text.h"
+#include "geometry/error.h"
+#include "geometry/io/file.h"
+
+namespace skycap::flight {
+namespace {
+
+[[noreturn]] void fail(std::size_t line, const std::string& what) {
+  throw Error(ErrorKind::bad_file, "line " + std::to_string(line) + " " + what);
+}
+
+constexpr std::array column_names{"time_s", "east_m_s", "north_m_s", "up_m_s", "power_w"};
+
+using Columns = std::array<std::size_t, column_names.size()>;
+
+Columns columns_of(const std::vector<std::string>& header) {
+  Columns columns{};
+  for (std::size_t i = 0; i < column_names.size(); ++i) {
+    const auto found = std::ranges::find(header, column_names[i]);
+    if (found == header.end()) fail(1, std::string("names no column ") + column_names[i]);
+    columns[i] = static_cast<std::size_t>(found - header.begin());
+  }
+  return columns;
+}
+
+LogSample sample_of(const std::vector<std::string>& fields, const Columns& columns,
+                    std::size_t line) {
+  std::array<double, column_names.size()> values{};
+  for (std::size_t i = 0; i < columns.size(); ++i) {
+    if (columns[i] >= fields.size()) fail(line, "has too few fields");
+    const std::optional<double> value = to_number(fields[columns[i]]);
+    if (!value || !std::isfinite(*value)) {
+      fail(line,
+           "has \"" + fields[columns[i]] + "\" for " + column_names[i] + "; it must be a number");
+    }
+    values[i] = *value;
+  }
+  return {values[0], {values[1], values[2], values[3]}, values[4]};
+}
+
+}  // namespace
+
+FlightLog read_csv_log(const std::string& text) {
+  FlightLog log;
+  Columns columns{};
+  std::size_t number = 0;
+  for (const std::string& line : lines_of(text)) {
+    ++number;
+    if (line.empty()) continue;
+    const std::vector<std::string> fields = split(line, ',');
+    if (number == 1) {
+      columns = columns_of(fields);
+      continue;
+    }
+    log.samples.push_back(sample_of(fields, columns, number));
+    const std::size_t count = log.samples.size();
+    if (count > 1 && log.samples[count - 1].time <= log.samples[count - 2].time) {
+      fail(number, "is not later than the line before it");
+    }
+  }
+  if (log.samples.empty()) fail(number, "is the last, and there is no sample");
+  return log;
+}
+
+FlightLog read_flight_log(const std::filesystem::path& file) {
+  const std::string content = geometry::read_file(file, largest_log);
+  try {
+    return file.extension() == ".csv" ? read_csv_log(content) : read_dataflash(content);
+  } catch (const Error& error) {
+    throw Error(error.kind(), file.string() + ": " + error.what());
+  }
+}
+
+}  // namespace skycap::flight

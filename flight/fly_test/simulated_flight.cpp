@@ -1,0 +1,121 @@
+#include "flight/fly_test/simulated_flight.h"
+
+#include <algorithm>
+#include <cmath>
+#include <deque>
+
+#include "flight/fly_test/return_flight.h"
+#include "flight/fly_test/weather.h"
+
+namespace skycap::flight {
+namespace {
+
+using Eigen::Vector3d;
+
+constexpr double step = 0.04;  ///< [s]
+
+/// One judge's two passes, over the pad and elsewhere.
+struct JudgedPass {
+  NearestPass elsewhere, over_pad;
+  NearestPlace nearest;
+};
+
+class Simulation {
+ public:
+  Simulation(const FlownMission& mission, const FlightDraw& draw, std::span<const Judge> judges,
+             double up_to)
+      : mission_(mission),
+        draw_(draw),
+        random_(draw.seed, draw.number),
+        weather_(draw.wind, random_),
+        receiver_(draw.position_error, random_),
+        vehicle_(mission.motion, mission.script.front().from),
+        ground_(mission.script.front().from.z()) {
+    for (const Judge& judge : judges) {
+      passes_.push_back({{judge.space, up_to}, {judge.pad_space, up_to}, {}});
+      passes_.back().nearest.closest.distance = up_to;
+    }
+  }
+
+  SimulatedFlight fly() {
+    for (const ScriptedLeg& leg : mission_.script) {
+      if (!fly_leg(leg)) continue;
+      fly_home();
+      break;
+    }
+    result_.time = time_;
+    result_.energy = vehicle_.energy();
+    for (const JudgedPass& pass : passes_) result_.nearest.push_back(pass.nearest);
+    return std::move(result_);
+  }
+
+ private:
+  double jerk() const { return mission_.motion.vehicle().mode.jerk; }
+
+  /// Whether it was called home on the way, and has come to rest.
+  bool fly_leg(const ScriptedLeg& leg) {
+    const double begin = time_, end = begin + leg.duration();
+    const double home = is_on_way_home_ ? end : std::min(end, draw_.called_home.value_or(end));
+    while (time_ < home) advance(leg, set_point(leg, jerk(), time_ - begin));
+    if (is_on_way_home_ || home >= end) return false;
+    const double called = time_, rest = called + braking_time(leg, jerk(), called - begin);
+    while (time_ < rest) {
+      advance(leg, braking_point(leg, jerk(), called - begin, time_ - called));
+    }
+    place_ = braking_point(leg, jerk(), called - begin, rest - called).position;
+    return true;
+  }
+
+  void fly_home() {
+    is_on_way_home_ = true;
+    for (const ScriptedLeg& leg : return_script(*mission_.law, mission_.motion, place_, random_)) {
+      fly_leg(leg);
+    }
+  }
+
+  void advance(const ScriptedLeg& leg, const SetPoint& wanted) {
+    const Vector3d before = vehicle_.position();
+    air_ = weather_.next(step, before.z() - ground_, (vehicle_.velocity() - air_).norm());
+    vehicle_.fly(wanted, receiver_.next(step), air_, step);
+    time_ += step;
+    const Segment line{leg.from, leg.to};
+    result_.off_line = std::max(result_.off_line, distance_between(line, vehicle_.position()));
+    for (JudgedPass& pass : passes_) {
+      NearestPass& part = leg.is_over_pad ? pass.over_pad : pass.elsewhere;
+      part.pass({before, vehicle_.position()});
+      if (part.nearest().distance >= pass.nearest.closest.distance) continue;
+      pass.nearest = {part.nearest(), time_, is_on_way_home_};
+    }
+  }
+
+  static double distance_between(const Segment& line, const Vector3d& place) {
+    const Vector3d way = line.to - line.from;
+    const double squared = way.squaredNorm();
+    const double share =
+        squared > 0.0 ? std::clamp((place - line.from).dot(way) / squared, 0.0, 1.0) : 0.0;
+    return (place - line.at(share)).norm();
+  }
+
+  const FlownMission& mission_;
+  const FlightDraw& draw_;
+  RandomNumbers random_;
+  Weather weather_;
+  ReceiverError receiver_;
+  VehicleModel vehicle_;
+  double ground_;
+  std::deque<JudgedPass> passes_;
+  SimulatedFlight result_;
+  double time_ = 0.0;
+  Vector3d air_ = Vector3d::Zero();
+  Vector3d place_ = Vector3d::Zero();  ///< where it has come to rest, called home
+  bool is_on_way_home_ = false;
+};
+
+}  // namespace
+
+SimulatedFlight fly(const FlownMission& mission, const FlightDraw& draw,
+                    std::span<const Judge> judges, double up_to) {
+  return Simulation(mission, draw, judges, up_to).fly();
+}
+
+}  // namespace skycap::flight

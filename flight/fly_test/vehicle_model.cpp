@@ -1,0 +1,59 @@
+#include "flight/fly_test/vehicle_model.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace skycap::flight {
+namespace {
+
+using Eigen::Vector3d;
+
+constexpr double position_gain = 1.0;    ///< [1/s]
+constexpr double velocity_gain = 2.0;    ///< [1/s]
+constexpr double sum_gain = 0.8;         ///< [1/s^2]
+constexpr double lag = 0.15;             ///< until thrust and tilt follow [s]
+constexpr double most_level = 6.9;       ///< at a tilt of 35 degrees [m/s^2]
+constexpr double most_upright = 5.0;     ///< [m/s^2]
+constexpr double most_correction = 2.0;  ///< of velocity for an error of position [m/s]
+
+Vector3d limited(const Vector3d& acceleration) {
+  Vector3d result = acceleration;
+  const double level = acceleration.head<2>().norm();
+  if (level > most_level) result.head<2>() *= most_level / level;
+  result.z() = std::clamp(result.z(), -most_upright, most_upright);
+  return result;
+}
+
+}  // namespace
+
+Vector3d VehicleModel::drag(const Vector3d& air) const {
+  const Vehicle& vehicle = motion_.vehicle();
+  const Vector3d through = velocity_ - air;
+  const double factor =
+      0.5 * motion_.conditions().air_density * vehicle.drag_area / vehicle.mass * through.norm();
+  return -factor * through;
+}
+
+void VehicleModel::fly(const SetPoint& wanted, const Vector3d& error, const Vector3d& air,
+                       double step) {
+  Vector3d correction = position_gain * (wanted.position - (position_ + error));
+  const double size = correction.norm();
+  if (size > most_correction) correction *= most_correction / size;
+  const Vector3d velocity_error = wanted.velocity + correction - velocity_;
+  const Vector3d asked = wanted.acceleration + velocity_gain * velocity_error + sum_;
+  const Vector3d allowed = limited(asked);
+  // What the limits cut off is not summed up: it would be flown later as an overshoot.
+  if (allowed == asked) sum_ += sum_gain * step * velocity_error;
+  thrust_ += (1.0 - std::exp(-step / lag)) * (allowed - thrust_);
+
+  const double speed_before = velocity_.norm();
+  velocity_ += step * (thrust_ + drag(air));
+  position_ += step * velocity_;
+  const Vector3d wind(motion_.conditions().wind.x(), motion_.conditions().wind.y(), 0.0);
+  energy_ += step * motion_.flight_power(velocity_ - air + wind);
+  const double gained =
+      motion_.stopping_energy(velocity_.norm()) - motion_.stopping_energy(speed_before);
+  energy_ += std::max(0.0, gained);
+}
+
+}  // namespace skycap::flight

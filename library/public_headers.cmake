@@ -1,0 +1,56 @@
+# The public face, documented in docs/library.md: what is here keeps its meaning within a minor
+# version.
+set(public_headers
+  geometry/error.h
+  geometry/io/cloud_io.h
+  geometry/io/mesh_io.h
+  geometry/place/camera.h
+  geometry/place/pose.h
+  geometry/place/prism.h
+  geometry/points/point_cloud.h
+  geometry/points/scan.h
+  geometry/surfaces/mesh.h
+  geometry/surfaces/mesh_distance.h
+  sim/models/models.h
+  sim/scene/scene.h
+  sim/sensors/depth_camera.h
+  sim/sensors/lidar.h
+  sim/sensors/sensor.h
+  sim/sensors/trajectory.h
+  survey/planner.h
+  survey/see/see.h
+  survey/skycap/skycap_planner.h
+  survey/survey_loop.h
+  survey/view_limits.h
+  flight/export/export.h
+  flight/export/flight_plan.h
+  flight/export/geodesy.h
+  flight/interpreter/certified_export.h
+  flight/motion/vehicle.h
+  flight/route/route.h
+  flight/space/clearance.h
+  flight/space/obstacles.h)
+
+# What those include: installed under skycap/LIBRARY/detail, not for others, may change any day.
+set(supporting_headers
+  flight/autopilot/mission_mode.h
+  flight/export/text.h
+  flight/motion/curve.h
+  flight/motion/motion.h
+  flight/motion/smoothing.h
+  flight/paths/path.h
+  flight/space/segment_distance.h
+  flight/way_home/least_return.h
+  flight/way_home/return_law.h
+  flight/way_home/return_proof.h
+  geometry/directions/spherical_cap.h
+  geometry/points/density.h
+  geometry/points/point_grid.h
+  geometry/points/spaced_points.h
+  geometry/points/spatial_index.h
+  geometry/points/surface_frame.h
+  sim/sensors/noise.h
+  survey/see/frontier.h
+  survey/see/nearest_views.h
+  survey/see/occlusion.h
+  survey/see/view_adjustment.h)

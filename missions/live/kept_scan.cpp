@@ -1,0 +1,50 @@
+#include "missions/live/kept_scan.h"
+
+#include <array>
+#include <bit>
+#include <cstring>
+
+#include "geometry/error.h"
+#include "geometry/io/ply.h"
+
+namespace skycap::missions::live {
+
+static_assert(std::endian::native == std::endian::little, "the file is written by copying bytes");
+
+std::string kept_scan(const geometry::Scan& scan) {
+  const bool is_organised = !scan.pixels.empty();
+  std::string bytes = "ply\nformat binary_little_endian 1.0\nelement vertex " +
+                      std::to_string(scan.points.size()) +
+                      "\nproperty float x\nproperty float y\nproperty float z\n" +
+                      (is_organised ? "property uint pixel\n" : "") + "end_header\n";
+  constexpr std::size_t point_size = 3 * sizeof(float), pixel_size = sizeof(std::uint32_t);
+  const std::size_t row = point_size + (is_organised ? pixel_size : 0);
+  std::size_t at = bytes.size();
+  bytes.resize(at + row * scan.points.size());
+  for (std::size_t i = 0; i < scan.points.size(); ++i, at += row) {
+    std::memcpy(&bytes[at], scan.points[i].data(), point_size);
+    if (is_organised) std::memcpy(&bytes[at + point_size], &scan.pixels[i], pixel_size);
+  }
+  return bytes;
+}
+
+geometry::Scan parse_kept_scan(std::string_view name, std::string_view bytes) {
+  geometry::PlyReader reader(name, bytes);
+  constexpr std::array<std::string_view, 4> wanted{"x", "y", "z", "pixel"};
+  if (reader.elements().size() != 1) {
+    throw Error(ErrorKind::bad_file, std::string(name) + ": is not a scan of a survey");
+  }
+  const geometry::PlyTable table = reader.read_element(wanted, {});
+  const std::vector<double>&x = table.columns[0], &y = table.columns[1], &z = table.columns[2];
+  geometry::Scan scan;
+  scan.points.reserve(x.size());
+  for (std::size_t i = 0; i < x.size(); ++i) {
+    scan.points.push_back(Eigen::Vector3d(x[i], y.at(i), z.at(i)).cast<float>());
+  }
+  for (const double pixel : table.columns[3]) {
+    scan.pixels.push_back(static_cast<std::uint32_t>(pixel));
+  }
+  return scan;
+}
+
+}  // namespace skycap::missions::live

@@ -1,0 +1,18 @@
+/// A scan on disk exactly as the planner took it in, so that the same is planned of it again: a
+/// binary PLY file of x y z (float, world frame) and, of an organised scan, pixel (uint), which any
+/// viewer of clouds opens. The pose, in full precision, stands in the survey's journal.
+#pragma once
+
+#include <string>
+#include <string_view>
+
+#include "geometry/points/scan.h"
+
+namespace skycap::missions::live {
+
+std::string kept_scan(const geometry::Scan& scan);
+
+/// The points and pixels of such a file; `name` opens every message. Throws Error{bad_file}.
+geometry::Scan parse_kept_scan(std::string_view name, std::string_view bytes);
+
+}  // namespace skycap::missions::live

@@ -1,0 +1,132 @@
+#include "missions/live/live_journal.h"
+
+#include <cmath>
+#include <filesystem>
+#include <utility>
+
+#include <nlohmann/json.hpp>
+
+#include "geometry/error.h"
+#include "geometry/io/json.h"
+#include "geometry/place/world.h"
+#include "missions/run/journal_text.h"
+#include "missions/run/survey_record.h"
+
+namespace skycap::missions::live {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json json_of(const std::optional<geometry::View>& view) {
+  if (!view) return {};
+  return {{"position", run::json_of(view->position)}, {"direction", run::json_of(view->direction)}};
+}
+
+ScanRecord parse_scan(const Json& json) {
+  ScanRecord scan{
+      .id = json.at("id").get<std::string>(),
+      .file = json.at("file").get<std::string>(),
+      .sha256 = json.at("sha256").get<std::string>(),
+      .world_from_sensor = parse_pose(json.at("pose").get<std::vector<double>>(), "its pose")};
+  const std::filesystem::path file = scan.file;
+  if (file.is_absolute() || file.lexically_normal().string().starts_with("..")) {
+    throw Error(ErrorKind::bad_file, "its scan is outside of the folder");
+  }
+  return scan;
+}
+
+ProposalRecord parse_proposal(const Json& json) {
+  ProposalRecord proposal;
+  if (const Json& view = json.at("view"); !view.is_null()) {
+    proposal.view = {run::vector_of(view.at("position")), run::vector_of(view.at("direction"))};
+  }
+  if (const Json& end = json.at("end"); !end.is_null()) {
+    proposal.end = run::stop_reason_named(end.get<std::string>());
+  }
+  proposal.reach = run::parse_reach(json.at("reach"));
+  return proposal;
+}
+
+void add_record(const Json& json, std::vector<LiveEvent>& events) {
+  const bool follows = !events.empty() && !events.back().proposal && !events.back().is_rejected;
+  if (json.contains("scan") && !follows) {
+    events.push_back({.scan = parse_scan(json["scan"])});
+  } else if (json.contains("refusal") && !follows) {
+    events.push_back({.refusal = json["refusal"].get<std::string>()});
+  } else if (json.contains("rejected") && follows) {
+    events.back().is_rejected = true;
+  } else if (json.contains("proposal") && follows) {
+    events.back().proposal = parse_proposal(json["proposal"]);
+  } else {
+    throw Error(ErrorKind::bad_file, "it is no scan, refusal, proposal or rejection in its place");
+  }
+}
+
+}  // namespace
+
+std::string text_of(const ScanRecord& scan) {
+  return run::journal_line({{"scan",
+                             {{"id", scan.id},
+                              {"file", scan.file},
+                              {"sha256", scan.sha256},
+                              {"pose", pose_json(scan.world_from_sensor)}}}});
+}
+
+std::string refusal_text(const std::string& reason) {
+  return run::journal_line({{"refusal", reason}});
+}
+
+std::string rejection_text(const std::string& reason) {
+  return run::journal_line({{"rejected", reason}});
+}
+
+std::string text_of(const ProposalRecord& proposal) {
+  return run::journal_line({{"proposal",
+                             {{"view", json_of(proposal.view)},
+                              {"end", proposal.end ? Json(run::name_of(*proposal.end)) : Json()},
+                              {"reach", run::reach_json(proposal.reach)}}}});
+}
+
+std::vector<LiveEvent> events_of(const std::vector<std::string>& records, const std::string& file) {
+  std::vector<LiveEvent> events;
+  for (std::size_t i = 1; i < records.size(); ++i) {
+    const auto fail = [&](const std::string& what) {
+      throw Error(ErrorKind::bad_file,
+                  file + ": line " + std::to_string(i + 1) + " cannot be used: " + what);
+    };
+    try {
+      add_record(geometry::parse_json<Json>(records[i]), events);
+    } catch (const Json::exception& failure) {
+      fail(failure.what());
+    } catch (const Error& failure) {
+      fail(failure.what());
+    }
+  }
+  return events;
+}
+
+Json pose_json(const Eigen::Isometry3d& pose) {
+  Json numbers = Json::array();
+  for (int row = 0; row < 3; ++row) {
+    for (int column = 0; column < 4; ++column) numbers.push_back(pose(row, column));
+  }
+  return numbers;
+}
+
+Eigen::Isometry3d parse_pose(const std::vector<double>& numbers, const std::string& what) {
+  const auto refuse = [&](const std::string& why) {
+    throw Error(ErrorKind::bad_file, what + " " + why);
+  };
+  if (numbers.size() != 12) refuse("must have twelve numbers, of [rotation | position] by rows");
+  Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
+  for (int i = 0; i < 12; ++i) pose(i / 4, i % 4) = numbers[static_cast<std::size_t>(i)];
+  const Eigen::Matrix3d turn = pose.linear();
+  constexpr double rounding = 1e-6;
+  const bool is_turn = (turn * turn.transpose() - Eigen::Matrix3d::Identity()).norm() < rounding &&
+                       turn.determinant() > 0.0;
+  if (!is_turn) refuse("must turn without stretching or mirroring");
+  geometry::require_place(pose.translation(), what);
+  return pose;
+}
+
+}  // namespace skycap::missions::live

@@ -1,0 +1,238 @@
+#include "missions/live/live_survey.h"
+
+#include <limits>
+#include <map>
+#include <span>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "geometry/error.h"
+#include "geometry/io/file.h"
+#include "geometry/io/record_log.h"
+#include "geometry/parallel.h"
+#include "missions/live/kept_scan.h"
+#include "missions/live/live_journal.h"
+#include "missions/run/journal_text.h"
+#include "missions/run/mission_planner.h"
+#include "missions/scene/sha256.h"
+
+namespace skycap::missions::live {
+namespace {
+
+namespace fs = std::filesystem;
+using Eigen::Vector3d;
+
+constexpr const char* journal_name = "live.journal";
+constexpr const char* scans_name = "scans";
+constexpr std::size_t largest_scan = std::size_t{1} << 30;  // [byte]
+
+std::string digest_of(std::string_view bytes) {
+  return scene::sha256(std::as_bytes(std::span(bytes)));
+}
+
+fs::path made_folder(const fs::path& folder) {
+  std::error_code failure;
+  fs::create_directories(folder / scans_name, failure);
+  if (!failure) return folder;
+  throw Error(ErrorKind::bad_file, folder.string() + ": cannot be made (" + failure.message() +
+                                       "); name a folder you may write to");
+}
+
+bool is_same(const ProposalRecord& a, const ProposalRecord& b) { return text_of(a) == text_of(b); }
+
+}  // namespace
+
+struct LiveSurvey::Impl {
+  Impl(const file::Mission& given, const fs::path& place,
+       const std::optional<geometry::View>& begin, unsigned thread_count)
+      : mission(given),
+        folder(made_folder(place)),
+        first_view(begin),
+        threads(thread_count),
+        log(folder / journal_name) {
+    const std::string identity = run::identity_text(mission, "live");
+    if (log.records().empty()) {
+      log.append(identity);
+    } else {
+      run::require_same_survey(log.file().string(), log.records().front(), identity,
+                               "name another folder");
+    }
+    events = events_of(log.records(), log.file().string());
+    replay();
+  }
+
+  void begin() {
+    guide = std::make_unique<run::MissionPlanner>(mission, first_view, threads);
+    survey::SurveyPorts ports = guide->ports();
+    if (ports.can_reach) {
+      ports.can_reach = [this, can_reach = std::move(ports.can_reach)](const Vector3d& from,
+                                                                       const geometry::View& to) {
+        return can_reach(departure(from), to);
+      };
+      ports.can_reach = reach.remembering(std::move(ports.can_reach), guide->flight());
+    }
+    steps = std::make_unique<survey::SurveySteps>(guide->planner(), guide->limits(), ports);
+    proposal = {.number = 0, .view = first_view, .way = {}, .end = {}};
+    if (guide->flight() != nullptr) proposal.way = guide->flight()->way();
+  }
+
+  /// Where the way to the next view begins: at the view that was proposed, if the vehicle is as
+  /// near to it as the errors that the clearance already holds let it be.
+  Vector3d departure(const Vector3d& from) const {
+    const double errors = mission.flight.position_error + mission.flight.tracking_error;
+    const bool is_there = proposal.view && (proposal.view->position - from).norm() <= errors;
+    return is_there ? proposal.view->position : from;
+  }
+
+  void replay() {
+    begin();
+    for (LiveEvent& event : events) {
+      if (event.is_rejected) continue;
+      const std::optional<ProposalRecord> known = event.proposal;
+      if (!happen(event, event.scan ? kept(*event.scan) : geometry::Scan{})) continue;
+      if (!known) {  // a kill came before it was written down
+        write_down(text_of(*event.proposal));
+      } else if (!is_same(*known, *event.proposal)) {
+        throw Error(ErrorKind::bad_file,
+                    log.file().string() + ": proposal " + std::to_string(proposal.number) +
+                        " comes out otherwise than it was written down; use the program that the "
+                        "survey was begun with");
+      }
+    }
+  }
+
+  geometry::Scan kept(const ScanRecord& record) const {
+    const fs::path file = folder / record.file;
+    const std::string bytes = geometry::read_file(file, largest_scan);
+    if (digest_of(bytes) != record.sha256) {
+      throw Error(ErrorKind::bad_file, file.string() +
+                                           ": is damaged (its digest is not the one that " +
+                                           journal_name + " has); restore it from a copy");
+    }
+    geometry::Scan scan = parse_kept_scan(file.string(), bytes);
+    scan.world_from_sensor = record.world_from_sensor;
+    return scan;
+  }
+
+  /// Takes in an event and fills in what is proposed after it. False if it was a scan that the
+  /// planner cannot work with; `why` says so.
+  bool happen(LiveEvent& event, const geometry::Scan& scan) {
+    reach.begin(event.proposal ? std::optional(event.proposal->reach) : std::nullopt);
+    std::optional<geometry::View> view;
+    try {
+      view = event.scan ? steps->take_in(scan) : steps->refuse();
+    } catch (const Error& failure) {
+      if (!event.scan || event.proposal) throw;
+      event.is_rejected = true;
+      why = failure.what();
+      write_down(rejection_text(why));
+      return false;
+    }
+    if (event.scan) numbers.emplace(event.scan->id, numbers.size());
+    proposal = {.number = proposal.number + 1, .view = view, .way = {}, .end = {}};
+    if (!view) proposal.end = steps->stop_reason();
+    if (view && guide->flight() != nullptr) proposal.way = reach.record().way;
+    event.proposal = ProposalRecord{proposal.view, proposal.end, reach.record()};
+    return true;
+  }
+
+  /// What cannot be written now is written before anything else is.
+  void write_down(const std::string& text) {
+    unwritten = text;
+    catch_up();
+  }
+
+  void catch_up() {
+    if (!unwritten) return;
+    log.append(*unwritten);
+    unwritten.reset();
+  }
+
+  void take_in(LiveEvent event, const geometry::Scan& scan) {
+    events.push_back(std::move(event));
+    if (happen(events.back(), scan)) {
+      write_down(text_of(*events.back().proposal));
+      return;
+    }
+    numbers.clear();
+    replay();  // the planner may have taken in a part of the scan
+    throw Error(ErrorKind::bad_geometry, why);
+  }
+
+  file::Mission mission;
+  fs::path folder;
+  std::optional<geometry::View> first_view;
+  unsigned threads;
+  geometry::RecordLog log;
+  std::vector<LiveEvent> events;
+  std::unique_ptr<run::MissionPlanner> guide;
+  std::unique_ptr<survey::SurveySteps> steps;
+  run::ReachMemory reach;
+  Proposal proposal;
+  std::map<std::string, std::size_t> numbers;  ///< of scans by their ids
+  std::string why;                             ///< the last scan was rejected
+  std::optional<std::string> unwritten;        ///< record that the disk did not take
+};
+
+LiveSurvey::LiveSurvey(const file::Mission& mission, const fs::path& folder,
+                       const std::optional<geometry::View>& first_view, unsigned threads)
+    : impl_(std::make_unique<Impl>(mission, folder, first_view, threads)) {}
+
+LiveSurvey::~LiveSurvey() = default;
+
+const Proposal& LiveSurvey::proposal() const { return impl_->proposal; }
+
+const survey::Planner& LiveSurvey::planner() const { return impl_->guide->planner(); }
+
+const std::vector<survey::SurveyedView>& LiveSurvey::views() const { return impl_->steps->views(); }
+
+std::optional<std::size_t> LiveSurvey::number_of(const std::string& id) const {
+  const auto found = impl_->numbers.find(id);
+  return found == impl_->numbers.end() ? std::nullopt : std::optional(found->second);
+}
+
+bool LiveSurvey::add(const geometry::Scan& scan, const std::string& id) {
+  if (number_of(id)) return false;
+  impl_->catch_up();
+  const std::string bytes = kept_scan(scan);
+  const ScanRecord record{.id = id,
+                          .file = fmt::format("{}/{:06}.ply", scans_name, impl_->events.size()),
+                          .sha256 = digest_of(bytes),
+                          .world_from_sensor = scan.world_from_sensor};
+  geometry::write_file(impl_->folder / record.file, bytes);
+  geometry::sync_to_disk(impl_->folder / scans_name);
+  impl_->log.append(text_of(record));
+  impl_->take_in({.scan = record, .refusal = {}, .proposal = {}}, scan);
+  return true;
+}
+
+void LiveSurvey::refuse(const std::string& reason) {
+  if (!impl_->proposal.view || views().empty()) {
+    throw Error(
+        ErrorKind::bad_usage,
+        "there is no view to refuse: " +
+            std::string(views().empty() ? "the first one is the mission's" : "the survey is over"));
+  }
+  impl_->catch_up();
+  impl_->log.append(refusal_text(reason));
+  impl_->take_in({.scan = {}, .refusal = reason, .proposal = {}}, {});
+}
+
+run::SurveyRecord LiveSurvey::finish() {
+  run::SurveyRecord record;
+  record.seed = impl_->mission.seed;
+  record.threads = geometry::thread_count(impl_->threads);
+  record.stop_reason = impl_->proposal.end.value_or(survey::StopReason::interrupted);
+  for (const survey::SurveyedView& view : views()) {
+    record.views.push_back({view, std::numeric_limits<double>::quiet_NaN()});
+  }
+  impl_->guide->finish(record);
+  return record;
+}
+
+std::string scan_id(const geometry::Scan& scan) {
+  return digest_of(kept_scan(scan) + pose_json(scan.world_from_sensor).dump());
+}
+
+}  // namespace skycap::missions::live

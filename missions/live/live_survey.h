@@ -1,0 +1,77 @@
+/// A survey whose scans come from outside, one at a time, and which lives in a folder: whatever
+/// happens to the program, the next one goes on where the last scan was acknowledged.
+///
+/// The folder holds `live.journal`, a log of records (geometry::RecordLog): first which survey it
+/// is, then each scan, each refusal, and what was proposed after each; and `scans/`, the scans as
+/// the planner took them in. Opening the folder plans all of them again; proposals must come out
+/// the same to the last bit. Ways are not looked for again.
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "geometry/place/pose.h"
+#include "geometry/points/scan.h"
+#include "missions/file/mission.h"
+#include "missions/run/survey_record.h"
+#include "survey/survey_loop.h"
+
+namespace skycap::missions::live {
+
+/// What to do next.
+struct Proposal {
+  std::size_t number = 0;  ///< what happened so far: scans and refusals
+  /// Where to take the next scan. Nothing: the survey is over, or the first scan may be from
+  /// anywhere.
+  std::optional<geometry::View> view;
+  /// With a vehicle: the way there, proven through measured free space, and its clearance [m].
+  run::FlownLeg way;
+  /// Why there is no view; nothing before the first scan.
+  std::optional<survey::StopReason> end;
+};
+
+class LiveSurvey {
+ public:
+  /// Opens the folder of a survey, or begins one in it, on so many threads (zero: all processors).
+  /// `first_view` is proposed for the first scan; a mission with a vehicle needs it. Throws
+  /// Error{bad_file} naming the file if the folder is of another survey, which says what differs,
+  /// is damaged, or in use by another program; and what MissionPlanner throws.
+  LiveSurvey(const file::Mission& mission, const std::filesystem::path& folder,
+             const std::optional<geometry::View>& first_view, unsigned threads);
+  ~LiveSurvey();
+
+  const Proposal& proposal() const;
+
+  /// What the planner holds at present.
+  const survey::Planner& planner() const;
+
+  const std::vector<survey::SurveyedView>& views() const;
+
+  /// The number that a scan was taken in under: of those with this id, if there is one.
+  std::optional<std::size_t> number_of(const std::string& id) const;
+
+  /// Brings a scan to the disk, and plans. One whose id is known is acknowledged and ignored:
+  /// false. Throws Error{bad_geometry} for a scan that the planner cannot work with, and
+  /// Error{bad_file} if the disk takes no more; then nothing has changed.
+  bool add(const geometry::Scan& scan, const std::string& id);
+
+  /// Asks for another view in place of the proposed one. Throws Error{bad_usage} if there is none.
+  void refuse(const std::string& reason);
+
+  /// The survey so far, for a package: interrupted, if a view is still proposed. The folder stays
+  /// as it is; this object may only be destroyed afterwards.
+  run::SurveyRecord finish();
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+/// The id of a scan that has none: a digest of pose, points and pixels.
+std::string scan_id(const geometry::Scan& scan);
+
+}  // namespace skycap::missions::live

@@ -1,0 +1,120 @@
+#include "missions/live/open_survey.h"
+
+#include <cmath>
+
+#include <Eigen/Geometry>
+#include <fmt/format.h>
+
+#include "flight/export/geodesy.h"
+#include "geometry/angle.h"
+#include "geometry/place/pose.h"
+#include "missions/derived/mission_flight.h"
+#include "missions/run/journal_text.h"
+#include "missions/run/survey_runner.h"
+#include "missions/scene/survey_scene.h"
+#include "survey/skycap/skycap_planner.h"
+
+namespace skycap::missions::live {
+namespace {
+
+using Eigen::Vector3d;
+using Json = nlohmann::ordered_json;
+using run::json_of;
+
+/// Where a mission without a scene lets a survey begin; nothing: anywhere.
+std::optional<geometry::View> given_start(const file::Mission& mission) {
+  const file::StartConfig& start = mission.start;
+  if (!start.position) return std::nullopt;
+  if (start.look_at) return geometry::look_at(*start.position, *start.look_at);
+  return geometry::View{*start.position, start.direction->normalized()};
+}
+
+/// Clockwise from north.
+double heading_deg(const Vector3d& direction) {
+  const double degrees = std::atan2(direction.x(), direction.y()) / geometry::radians_per_degree;
+  return degrees < 0.0 ? degrees + 360.0 : degrees;
+}
+
+double pitch_deg(const Vector3d& direction) {
+  return std::asin(std::clamp(direction.z(), -1.0, 1.0)) / geometry::radians_per_degree;
+}
+
+Json view_json(const geometry::View& view, const file::Mission& mission) {
+  const Eigen::Quaterniond turn(geometry::camera_pose(view).linear());
+  Json json{{"position", json_of(view.position)},
+            {"direction", json_of(view.direction)},
+            {"quaternion_xyzw", {turn.x(), turn.y(), turn.z(), turn.w()}},
+            {"heading_deg", heading_deg(view.direction)},
+            {"gimbal_pitch_deg", pitch_deg(view.direction)}};
+  if (!derived::has_place(mission)) return json;
+  const flight::Site site = derived::site_of(mission);
+  const flight::GeodeticPoint place = flight::LocalFrame(site.origin).to_geodetic(view.position);
+  json["latitude_deg"] = place.latitude_deg;
+  json["longitude_deg"] = place.longitude_deg;
+  json["height_ellipsoid_m"] = place.height;
+  if (site.geoid_undulation) json["height_geoid_m"] = place.height - *site.geoid_undulation;
+  return json;
+}
+
+Json way_json(const run::FlownLeg& way) {
+  Json points = Json::array();
+  for (const Vector3d& point : way.points) points.push_back(json_of(point));
+  return points;
+}
+
+const char* state_of(const Proposal& proposal) {
+  if (proposal.end) return run::name_of(*proposal.end);
+  return proposal.view ? "view" : "first_scan";
+}
+
+}  // namespace
+
+std::unique_ptr<LiveSurvey> open_survey(const file::Mission& mission,
+                                        const std::filesystem::path& mission_folder,
+                                        const std::filesystem::path& survey_folder) {
+  if (mission.scene.model.empty()) {
+    return std::make_unique<LiveSurvey>(mission, survey_folder, given_start(mission),
+                                        mission.threads);
+  }
+  const scene::SurveyScene scene(mission, mission_folder);
+  return std::make_unique<LiveSurvey>(run::trial_mission(mission, scene, mission.seed),
+                                      survey_folder, scene.first_view(mission.seed),
+                                      mission.threads);
+}
+
+std::string answer_json(const LiveSurvey& survey, const file::Mission& mission) {
+  const Proposal& proposal = survey.proposal();
+  Json json{{"id", proposal.number},
+            {"state", state_of(proposal)},
+            {"scans", survey.views().size()},
+            {"points", survey.planner().cloud().size()},
+            {"view", proposal.view ? view_json(*proposal.view, mission) : Json()}};
+  if (proposal.view && !proposal.way.points.empty()) {
+    json["path"] = way_json(proposal.way);
+    json["clearance_m"] = proposal.way.clearance;
+  }
+  if (const auto* planner = dynamic_cast<const survey::skycap::SkycapPlanner*>(&survey.planner());
+      planner != nullptr && !survey.views().empty()) {
+    json["believed_coverage"] = planner->predicted_coverage();
+  }
+  return run::journal_line(json);
+}
+
+std::string answer_text(const LiveSurvey& survey) {
+  const Proposal& proposal = survey.proposal();
+  const std::string scans =
+      fmt::format("{} scans, {} points", survey.views().size(), survey.planner().cloud().size());
+  if (proposal.end) return std::string(state_of(proposal)) + " after " + scans;
+  if (!proposal.view) return "take the first scan from any place that sees the scene";
+  const Vector3d &at = proposal.view->position, &direction = proposal.view->direction;
+  std::string text = fmt::format(
+      "view {}: {:.3f} {:.3f} {:.3f}, heading {:.1f} deg, pitch {:.1f} deg", proposal.number,
+      at.x(), at.y(), at.z(), heading_deg(direction), pitch_deg(direction));
+  if (!proposal.way.points.empty()) {
+    text += fmt::format("; {} legs, clearance {:.2f} m", proposal.way.points.size() - 1,
+                        proposal.way.clearance);
+  }
+  return text + "; " + scans;
+}
+
+}  // namespace skycap::missions::live

@@ -1,0 +1,218 @@
+#include "missions/live/scan_input.h"
+
+#include <algorithm>
+#include <cmath>
+#include <tuple>
+#include <utility>
+
+#include "geometry/error.h"
+#include "geometry/io/cloud_io.h"
+#include "geometry/io/text_scanner.h"
+#include "geometry/place/camera.h"
+#include "geometry/place/world.h"
+#include "missions/live/live_journal.h"
+
+namespace skycap::missions::live {
+namespace {
+
+using Eigen::Isometry3d;
+using Eigen::Vector2d;
+using Eigen::Vector3d;
+
+constexpr double farthest_point = 8192.0;  // [m]: beyond, single precision moves by half a mm
+
+std::vector<double> numbers_of(const std::string& text, const std::string& what) {
+  geometry::TextScanner scanner(what, text);
+  std::vector<double> numbers;
+  while (const auto word = scanner.word()) {
+    numbers.push_back(scanner.number<double>(word, "a number"));
+    if (!std::isfinite(numbers.back()) || numbers.size() > 16) {
+      throw Error(ErrorKind::bad_file, what + ": is not a short row of finite numbers");
+    }
+  }
+  return numbers;
+}
+
+/// From position and quaternion.
+Isometry3d pose_of(const std::vector<double>& n, const std::string& what) {
+  const Eigen::Quaterniond turn(n[6], n[3], n[4], n[5]);
+  if (!(std::abs(turn.norm() - 1.0) < 1e-2)) {
+    throw Error(ErrorKind::bad_file,
+                what + ": the quaternion's length is not one; give x y z qx qy qz qw");
+  }
+  Isometry3d pose = Isometry3d::Identity();
+  pose.translation() = Vector3d(n[0], n[1], n[2]);
+  pose.linear() = turn.normalized().toRotationMatrix();
+  geometry::require_place(pose.translation(), what);
+  return pose;
+}
+
+/// Brown and Conrady's distortion of the slopes x/z, y/z of a ray.
+Vector2d distorted(const Vector2d& slope, const std::array<double, 5>& coefficients) {
+  const auto& [k1, k2, p1, p2, k3] = coefficients;
+  const double x = slope.x(), y = slope.y(), r2 = slope.squaredNorm();
+  const double radial = 1.0 + r2 * (k1 + r2 * (k2 + r2 * k3));
+  return {x * radial + 2.0 * p1 * x * y + p2 * (r2 + 2.0 * x * x),
+          y * radial + p1 * (r2 + 2.0 * y * y) + 2.0 * p2 * x * y};
+}
+
+Lens lens_of(const geometry::Camera& camera) {
+  return {.focal_length_px = camera.focal_length_px(),
+          .principal_point_px = camera.principal_point_px(),
+          .distortion = {}};
+}
+
+struct Seen {
+  std::uint32_t pixel;
+  float depth;
+  std::uint32_t point;
+};
+
+/// Puts the points, in the optical frame, into the pixels that the camera sees them in: of those in
+/// one pixel the nearest.
+void organise(std::span<const Vector3d> points, const geometry::Camera& camera, ScanFound& found) {
+  std::vector<Seen> seen;
+  seen.reserve(points.size());
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const auto place = camera.project(points[i]);
+    if (!place) continue;
+    const long column = std::clamp(std::lround(place->x()), 0L, camera.width() - 1L);
+    const long row = std::clamp(std::lround(place->y()), 0L, camera.height() - 1L);
+    seen.push_back({static_cast<std::uint32_t>(row * camera.width() + column),
+                    static_cast<float>(points[i].z()), static_cast<std::uint32_t>(i)});
+  }
+  found.out_of_view = points.size() - seen.size();
+  std::ranges::sort(seen, [](const Seen& a, const Seen& b) {
+    return std::tie(a.pixel, a.depth, a.point) < std::tie(b.pixel, b.depth, b.point);
+  });
+  const auto last = std::ranges::unique(seen, {}, &Seen::pixel).begin();
+  found.hidden = static_cast<std::size_t>(seen.end() - last);
+  seen.erase(last, seen.end());
+  for (const Seen& s : seen) {
+    found.scan.points.push_back((found.scan.world_from_sensor * points[s.point]).cast<float>());
+    found.scan.pixels.push_back(s.pixel);
+  }
+}
+
+std::vector<Vector3d> points_in_sensor(const ScanInput& input, const geometry::Camera& camera,
+                                       ScanFound& found) {
+  if (input.file.extension() == ".png") {
+    return points_of(sim::read_depth_png(input.file), input.lens.value_or(lens_of(camera)),
+                     input.depth_unit, found.without_return);
+  }
+  const Isometry3d sensor_from_file =
+      input.is_in_world ? input.world_from_sensor.inverse() : Isometry3d::Identity();
+  std::vector<Vector3d> points;
+  for (const Eigen::Vector3f& point : geometry::read_cloud(input.file).positions) {
+    points.push_back(sensor_from_file * point.cast<double>());
+  }
+  return points;
+}
+
+}  // namespace
+
+std::optional<Vector3d> Lens::ray(const Vector2d& pixel) const {
+  const Vector2d wanted = (pixel - principal_point_px).cwiseQuotient(focal_length_px);
+  Vector2d slope = wanted;
+  if (distortion == std::array<double, 5>{}) return Vector3d(slope.x(), slope.y(), 1.0);
+  constexpr int most_rounds = 50;
+  for (int round = 0; round < most_rounds; ++round) {
+    const Vector2d error = wanted - distorted(slope, distortion);
+    // A thousandth of a pixel is far below what depth sensors tell apart.
+    if (error.cwiseProduct(focal_length_px).norm() < 1e-3) {
+      return Vector3d(slope.x(), slope.y(), 1.0);
+    }
+    slope += error;
+  }
+  return std::nullopt;
+}
+
+Lens parse_lens(const std::string& text) {
+  const std::vector<double> n = numbers_of(text, "--lens");
+  if ((n.size() != 4 && n.size() != 9) || !(n[0] > 0.0) || !(n[1] > 0.0)) {
+    throw Error(
+        ErrorKind::bad_usage,
+        "--lens: give \"fx fy cx cy\" or \"fx fy cx cy k1 k2 p1 p2 k3\", with focal lengths "
+        "above zero");
+  }
+  Lens lens{.focal_length_px = {n[0], n[1]}, .principal_point_px = {n[2], n[3]}, .distortion = {}};
+  if (n.size() == 9) std::copy(n.begin() + 4, n.end(), lens.distortion.begin());
+  return lens;
+}
+
+Isometry3d parse_pose_text(const std::string& text, const std::string& what) {
+  std::vector<double> numbers = numbers_of(text, what);
+  if (numbers.size() == 8) numbers.erase(numbers.begin());
+  if (numbers.size() == 7) return pose_of(numbers, what);
+  if (numbers.size() == 16) numbers.resize(12);
+  if (numbers.size() == 12) return parse_pose(numbers, what);
+  throw Error(ErrorKind::bad_file, what + ": has " + std::to_string(numbers.size()) +
+                                       " numbers; give x y z qx qy qz qw, or a matrix of three or "
+                                       "four rows of four");
+}
+
+std::vector<Vector3d> points_of(const sim::DepthImage& image, const Lens& lens, double unit,
+                                std::size_t& without_return) {
+  constexpr std::uint16_t too_near = 0, too_far = 65535;
+  std::vector<Vector3d> points;
+  points.reserve(image.values.size());
+  for (std::size_t i = 0; i < image.values.size(); ++i) {
+    const auto width = static_cast<std::size_t>(image.width);
+    const std::uint16_t value = image.values[i];
+    const bool is_return = value != too_near && value != too_far;
+    const auto ray =
+        is_return ? lens.ray({static_cast<double>(i % width), static_cast<double>(i / width)})
+                  : std::nullopt;
+    if (ray) {
+      points.emplace_back(*ray * (unit * value));
+    } else {
+      ++without_return;
+    }
+  }
+  return points;
+}
+
+ScanFound read_scan(const ScanInput& input, const file::Mission& mission) {
+  const geometry::Camera camera(mission.sensor.camera.camera);
+  ScanFound found;
+  found.scan.world_from_sensor = input.world_from_sensor;
+  const std::vector<Vector3d> points = points_in_sensor(input, camera, found);
+  if (mission.sensor.scanner) {
+    for (const Vector3d& point : points) {
+      found.scan.points.push_back((input.world_from_sensor * point).cast<float>());
+    }
+  } else {
+    organise(points, camera, found);
+  }
+  return found;
+}
+
+void require_usable(const geometry::Scan& scan, const file::Mission& mission) {
+  const auto refuse = [](const std::string& what) {
+    throw Error(ErrorKind::bad_geometry, "the scan " + what);
+  };
+  for (std::size_t i = 0; i < scan.points.size(); ++i) {
+    if (geometry::is_place(scan.points[i].cast<double>(), farthest_point)) continue;
+    refuse("has point " + std::to_string(i) +
+           " that is not finite or farther than 8192 m from the "
+           "origin; give points and pose in a local frame");
+  }
+  const bool is_organised = !scan.pixels.empty();
+  if (is_organised && scan.pixels.size() != scan.points.size()) {
+    refuse("has " + std::to_string(scan.pixels.size()) + " pixels for " +
+           std::to_string(scan.points.size()) + " points; give one for each");
+  }
+  const geometry::CameraConfig& camera = mission.sensor.camera.camera;
+  const auto all = static_cast<std::uint64_t>(camera.width) * static_cast<unsigned>(camera.height);
+  if (is_organised && (scan.pixels.back() >= all ||
+                       std::ranges::adjacent_find(scan.pixels, std::ranges::greater_equal{}) !=
+                           scan.pixels.end())) {
+    refuse("has pixels that do not ascend, or that the mission's camera of " +
+           std::to_string(camera.width) + " x " + std::to_string(camera.height) + " has not");
+  }
+  if (mission.flight.is_flown() && !is_organised && !scan.points.empty()) {
+    refuse("has no pixels; with flight.vehicle free space is proven by depth images");
+  }
+}
+
+}  // namespace skycap::missions::live

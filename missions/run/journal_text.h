@@ -1,0 +1,33 @@
+/// The records of surveys' journals as JSON texts of one line. For the journals' sources.
+#pragma once
+
+#include <string>
+
+#include <Eigen/Core>
+#include <nlohmann/json.hpp>
+
+#include "geometry/place/pose.h"
+#include "missions/file/mission.h"
+
+namespace skycap::missions::run {
+
+inline nlohmann::ordered_json json_of(const Eigen::Vector3d& vector) {
+  return {vector.x(), vector.y(), vector.z()};
+}
+
+inline Eigen::Vector3d vector_of(const nlohmann::ordered_json& json) {
+  return {json.at(0).get<double>(), json.at(1).get<double>(), json.at(2).get<double>()};
+}
+
+/// Names that are not UTF-8 are shown with a replacement character.
+std::string journal_line(const nlohmann::ordered_json& json);
+
+/// The first record: version, seed, all keys that decide the survey, and `scene`, which stands for
+/// what is surveyed.
+std::string identity_text(const file::Mission& mission, const std::string& scene);
+
+/// Throws Error{bad_file}, beginning with `file`, unless the two first records are of one survey.
+void require_same_survey(const std::string& file, const std::string& found,
+                         const std::string& wanted, const std::string& cure);
+
+}  // namespace skycap::missions::run

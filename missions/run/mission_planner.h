@@ -1,0 +1,44 @@
+/// A mission's planner with all that has a say in where it may look from: the mission's limits, and
+/// the ways that its vehicle can prove. The same for simulated and live surveys.
+#pragma once
+
+#include <memory>
+#include <optional>
+
+#include "geometry/place/pose.h"
+#include "missions/file/mission.h"
+#include "missions/run/survey_flight.h"
+#include "missions/run/survey_record.h"
+#include "survey/planner.h"
+#include "survey/survey_loop.h"
+
+namespace skycap::missions::run {
+
+class MissionPlanner {
+ public:
+  /// On so many threads (zero: all processors). Only a mission with a vehicle needs to know the
+  /// first view. Throws what derived::make_planner() and SurveyFlight throw.
+  MissionPlanner(const file::Mission& mission, const std::optional<geometry::View>& first_view,
+                 unsigned threads);
+  ~MissionPlanner();
+
+  survey::Planner& planner();
+
+  /// Null without a vehicle.
+  SurveyFlight* flight();
+
+  /// `sensed` and `can_reach`, which refer to this object.
+  survey::SurveyPorts ports();
+
+  survey::SurveyLimits limits() const;
+
+  /// Hands over the cloud, the flight, and what the planner believes at the end; it may turn out to
+  /// have stopped for another reason than the record's. Nothing else may be called afterwards.
+  void finish(SurveyRecord& record);
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace skycap::missions::run

@@ -1,0 +1,108 @@
+// The verbs next and finish: a live survey one call at a time.
+#include <string>
+
+#include <fmt/format.h>
+
+#include "geometry/error.h"
+#include "geometry/io/file.h"
+#include "geometry/io/output_folder.h"
+#include "missions/derived/resolved_mission.h"
+#include "missions/live/open_survey.h"
+#include "missions/live/scan_input.h"
+#include "missions/package/flight_report.h"
+#include "missions/package/package.h"
+#include "missions/verbs/verbs.h"
+
+namespace skycap::missions::verbs {
+namespace {
+
+constexpr int exit_complete = 10, exit_nowhere_to_go = 11;
+
+int exit_code_of(const live::Proposal& proposal) {
+  if (!proposal.end) return 0;
+  return *proposal.end == survey::StopReason::nowhere_to_go ? exit_nowhere_to_go : exit_complete;
+}
+
+Eigen::Isometry3d pose_of(const NextOptions& options) {
+  if (options.pose.empty() == !options.pose_file) {
+    throw Error(ErrorKind::bad_usage,
+                "--scan needs either --pose \"x y z qx qy qz qw\" or --pose-file FILE");
+  }
+  if (!options.pose_file) return live::parse_pose_text(options.pose, "--pose");
+  constexpr std::size_t largest = 1 << 16;
+  return live::parse_pose_text(geometry::read_file(*options.pose_file, largest),
+                               options.pose_file->string());
+}
+
+live::ScanInput input_of(const NextOptions& options) {
+  live::ScanInput input{.file = *options.scan,
+                        .world_from_sensor = pose_of(options),
+                        .is_in_world = options.is_in_world,
+                        .lens = {},
+                        .depth_unit = options.depth_unit};
+  if (!options.lens.empty()) input.lens = live::parse_lens(options.lens);
+  return input;
+}
+
+void add_scan(const NextOptions& options, const file::Mission& mission, live::LiveSurvey& survey,
+              const Console& console) {
+  const live::ScanFound found = live::read_scan(input_of(options), mission);
+  live::require_usable(found.scan, mission);
+  const std::string id = options.id.empty() ? live::scan_id(found.scan) : options.id;
+  const bool is_new = survey.add(found.scan, id);
+  if (options.is_quiet) return;
+  console.err << fmt::format("{}: {} points{}", options.scan->string(), found.scan.points.size(),
+                             is_new ? "" : "; known already, ignored");
+  if (found.without_return > 0) {
+    console.err << fmt::format(", {} pixels without a return", found.without_return);
+  }
+  if (found.out_of_view > 0) {
+    console.err << fmt::format(", {} out of the camera's view left out", found.out_of_view);
+  }
+  if (found.hidden > 0) {
+    console.err << fmt::format(", {} behind others in their pixels left out", found.hidden);
+  }
+  console.err << "\n" << std::flush;
+}
+
+}  // namespace
+
+int next(const NextOptions& options, const Console& console) {
+  if (options.scan && options.refusal) {
+    throw Error(ErrorKind::bad_usage, "--refuse does not go with --scan; give one of the two");
+  }
+  const file::Mission mission =
+      derived::read_live_mission(options.live.mission, options.live.overrides);
+  const auto survey =
+      live::open_survey(mission, options.live.mission.parent_path(), options.live.survey);
+  if (options.scan) add_scan(options, mission, *survey, console);
+  if (options.refusal) survey->refuse(*options.refusal);
+  console.out << (options.is_json ? live::answer_json(*survey, mission)
+                                  : live::answer_text(*survey))
+              << "\n"
+              << std::flush;
+  return exit_code_of(survey->proposal());
+}
+
+int finish(const LiveOptions& options, const Console& console) {
+  const file::Mission mission = derived::read_live_mission(options.mission, options.overrides);
+  const auto survey = live::open_survey(mission, options.mission.parent_path(), options.survey);
+  if (survey->views().empty()) {
+    throw Error(ErrorKind::bad_usage,
+                options.survey.string() + ": has no scan yet; add some with skycap next --scan");
+  }
+  geometry::OutputFolder folder(options.survey);
+  const run::SurveyRecord record = survey->finish();
+  const package::CoverageFigures unknown{record.coverage(), {}, {}};
+  const std::optional<package::SurveyMission> flight =
+      package::stage_package(mission, record, unknown, mission.threads, folder, console.stop);
+  folder.commit();
+  console.out << fmt::format("{}: {} after {} scans, {} points\n", mission.name,
+                             run::name_of(record.stop_reason), record.views.size(),
+                             record.cloud.size());
+  if (flight) console.out << package::flight_text(*flight);
+  console.out << "  results   " << options.survey.string() << "\n" << std::flush;
+  return flight && !flight->failure.empty() ? 1 : 0;
+}
+
+}  // namespace skycap::missions::verbs

@@ -1,0 +1,117 @@
+#include "flight/fly_test/flight_script.h"
+
+#include <cmath>
+
+#include <gtest/gtest.h>
+
+#include "flight/export/wpml_file.h"
+#include "flight/interpreter/flight_facts.h"
+#include "flight/interpreter/mission_interpreter.h"
+#include "flight/interpreter/wpml_interpreter.h"
+#include "tests/flight/export/sample_plan.h"
+#include "tests/flight/interpreter/spoiled.h"
+#include "tests/flight/vehicles.h"
+
+namespace skycap::flight {
+namespace {
+
+using Eigen::Vector3d;
+
+/// The sample flight, read from the file of that vehicle's autopilot.
+struct Sample {
+  explicit Sample(const std::string& vehicle) : plan(sample_plan(vehicle_profile(vehicle))) {
+    const FlightFacts facts = facts_of(plan);
+    const FlownRoute route = plan.vehicle.dialect == Dialect::dji
+                                 ? interpret(unpack_kmz(write_kmz(plan)), facts)
+                                 : interpret(sample_file(plan.vehicle.dialect), facts);
+    script = script_of(route, motion());
+  }
+  Motion motion() const { return {plan.vehicle, plan.conditions}; }
+  double jerk() const { return plan.vehicle.mode.jerk; }
+
+  FlightPlan plan;
+  FlightScript script;
+};
+
+class AScript : public testing::TestWithParam<const char*> {};
+
+INSTANTIATE_TEST_SUITE_P(FlightScript, AScript,
+                         testing::Values("generic", "generic_ardupilot", "m350_rtk"),
+                         [](const auto& parameter) { return std::string(parameter.param); });
+
+TEST_P(AScript, LeadsFromThePadThroughAllStationsAndBack) {
+  const Sample sample(GetParam());
+  EXPECT_LT((sample.script.front().from - sample.plan.pad).norm(), rounding_bound);
+  EXPECT_LT((sample.script.back().to - sample.plan.pad).norm(), 2.0 * rounding_bound);
+  for (std::size_t i = 1; i < sample.script.size(); ++i) {
+    EXPECT_EQ(sample.script[i].from, sample.script[i - 1].to) << i;
+  }
+  for (const Waypoint& waypoint : sample.plan.waypoints) {
+    double nearest = 1e9, wait = 0.0;
+    for (const ScriptedLeg& leg : sample.script) {
+      if ((leg.to - waypoint.position).norm() >= nearest) continue;
+      nearest = (leg.to - waypoint.position).norm();
+      wait = leg.wait;
+    }
+    EXPECT_LT(nearest, 2.0 * rounding_bound);
+    if (!waypoint.is_station) continue;
+    EXPECT_GE(wait, waypoint.hold + waypoint.hold_after - 0.01);
+  }
+}
+
+// The plan's time is computed from the route, the script's from the file.
+TEST_P(AScript, TakesThePlansTime) {
+  const Sample sample(GetParam());
+  EXPECT_NEAR(duration(sample.script) / flight_time(sample.plan), 1.0, 0.02);
+}
+
+TEST_P(AScript, MovesAlongItsLegsWithinTheirLimits) {
+  const Sample sample(GetParam());
+  for (const ScriptedLeg& leg : sample.script) {
+    EXPECT_LT((set_point(leg, sample.jerk(), 0.0).position - leg.from).norm(), 1e-9);
+    EXPECT_LT((set_point(leg, sample.jerk(), leg.duration()).position - leg.to).norm(), 1e-9);
+    for (double t = 0.0; t < leg.moving; t += 0.05) {
+      const SetPoint point = set_point(leg, sample.jerk(), t);
+      EXPECT_LT(point.velocity.norm(), leg.speed + 1e-9);
+      EXPECT_LT(point.acceleration.norm(), leg.acceleration + 1e-9);
+    }
+  }
+}
+
+// Property: wherever a leg is given up, the vehicle comes to rest on it.
+TEST_P(AScript, IsGivenUpWithoutLeavingItsLeg) {
+  const Sample sample(GetParam());
+  for (const ScriptedLeg& leg : sample.script) {
+    const Vector3d way = leg.to - leg.from;
+    for (double t = 0.0; t < leg.duration(); t += 0.21) {
+      const double braking = braking_time(leg, sample.jerk(), t);
+      const SetPoint rest = braking_point(leg, sample.jerk(), t, braking);
+      EXPECT_LT(rest.velocity.norm(), 1e-9);
+      const double along = (rest.position - leg.from).dot(way) / std::max(1e-9, way.norm());
+      EXPECT_LT(along, way.norm() + 1e-9);
+      EXPECT_GT(along, -1e-9);
+      const SetPoint begin = braking_point(leg, sample.jerk(), t, 0.0);
+      EXPECT_LT((begin.position - set_point(leg, sample.jerk(), t).position).norm(), 1e-9);
+    }
+  }
+}
+
+// A file that flies at half the speed takes longer, by what its legs' own law says.
+TEST(FlightScript, FliesAtTheSpeedOfTheFile) {
+  const FlightPlan plan = sample_plan(vehicle_profile("generic"));
+  MissionFile file = sample_file(Dialect::px4);
+  file.items[index_of(file, command::change_speed)].params[1] = 0.5 * plan.conditions.cruise_speed;
+  const Motion motion(plan.vehicle, plan.conditions);
+  Conditions slow = plan.conditions;
+  slow.cruise_speed *= 0.5;
+  for (const ScriptedLeg& leg : script_of(interpret(file, facts_of(plan)), motion)) {
+    if (leg.is_over_pad || leg.to.z() == plan.pad.z()) continue;
+    const Vector3d way = leg.to - leg.from;
+    if (way.norm() == 0.0 || way.head<2>().norm() < 0.1) continue;
+    EXPECT_NEAR(leg.moving + plan.vehicle.mode.settle_time,
+                Motion(plan.vehicle, slow).leg_time(way), 1e-9);
+  }
+}
+
+}  // namespace
+}  // namespace skycap::flight

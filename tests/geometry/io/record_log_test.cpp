@@ -1,0 +1,118 @@
+#include "geometry/io/record_log.h"
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "geometry/error.h"
+#include "geometry/io/file.h"
+#include "tests/support/temporary_folder.h"
+
+namespace skycap::geometry {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
+
+class RecordLogFile : public testing::Test {
+ protected:
+  /// A file of three records.
+  RecordLogFile() {
+    RecordLog log(file_);
+    for (const char* text : {"one", "", "three {\"3\": 0.1}"}) log.append(text);
+  }
+
+  std::string bytes() const { return read_file(file_); }
+  void put(const std::string& bytes) const { write_file(file_, bytes); }
+
+  testing_support::TemporaryFolder folder_;
+  fs::path file_ = folder_.path() / "log";
+};
+
+TEST_F(RecordLogFile, GivesBackWhatWasAppended) {
+  EXPECT_THAT(read_records(file_).records, ElementsAre("one", "", "three {\"3\": 0.1}"));
+  RecordLog log(file_);
+  log.append("four");
+  EXPECT_THAT(read_records(file_).records, ElementsAre("one", "", "three {\"3\": 0.1}", "four"));
+}
+
+/// The digits of the first record, by another implementation: Python's zlib.crc32(b"1 one").
+TEST_F(RecordLogFile, HasTheUsualChecksum) { EXPECT_THAT(bytes(), HasSubstr("7f7c96f6 1 one\n")); }
+
+TEST(RecordLog, OfNoFileIsEmpty) {
+  const testing_support::TemporaryFolder folder;
+  EXPECT_THAT(read_records(folder.path() / "log").records, IsEmpty());
+}
+
+/// A kill while the last record is written leaves any beginning of it.
+TEST_F(RecordLogFile, WhatIsTornOfTheLastRecordIsDropped) {
+  const std::string whole = bytes();
+  const std::size_t two_records = whole.find("three") - std::string("12345678 3 ").size();
+  for (std::size_t size = two_records; size < whole.size(); ++size) {
+    put(whole.substr(0, size));
+    EXPECT_EQ(read_records(file_).torn_bytes, size - two_records);
+    RecordLog log(file_);
+    EXPECT_THAT(log.records(), ElementsAre("one", "")) << size;
+    log.append("other");
+    EXPECT_THAT(read_records(file_).records, ElementsAre("one", "", "other")) << size;
+  }
+}
+
+/// A power cut may leave a block of zeros, or of what the disk held before.
+TEST_F(RecordLogFile, GarbageAtTheEndIsDropped) {
+  const std::string whole = bytes();
+  put(whole + std::string(5000, '\0'));
+  EXPECT_EQ(RecordLog(file_).records().size(), 3);
+  put(whole + "deadbeef 4 four\n\nx\n12345678 \n");
+  EXPECT_EQ(RecordLog(file_).records().size(), 3);
+  EXPECT_EQ(bytes(), whole);
+}
+
+TEST_F(RecordLogFile, EveryChangedByteBeforeTheLastRecordIsFound) {
+  const std::string whole = bytes();
+  const std::size_t two_records = whole.find("three") - std::string("12345678 3 ").size();
+  for (std::size_t at = 0; at + 1 < two_records; ++at) {
+    std::string changed = whole;
+    changed[at] ^= 1;
+    put(changed);
+    EXPECT_THROW(read_records(file_), Error) << at;
+  }
+}
+
+TEST_F(RecordLogFile, AMissingOrDoubledRecordIsFound) {
+  const std::string whole = bytes();
+  const std::string second =
+      whole.substr(whole.find('\n') + 1, std::string("12345678 2 \n").size());
+  for (const std::string& with : {std::string(), second + second}) {
+    std::string changed = whole;
+    put(changed.replace(changed.find(second), second.size(), with));
+    try {
+      read_records(file_);
+      FAIL();
+    } catch (const Error& error) {
+      EXPECT_THAT(error.what(), HasSubstr(with.empty() ? "log: line 2 is" : "log: line 3 is"));
+    }
+  }
+}
+
+TEST_F(RecordLogFile, HasOneWriter) {
+  const RecordLog log(file_);
+  try {
+    RecordLog second(file_);
+    FAIL();
+  } catch (const Error& error) {
+    EXPECT_THAT(error.what(), HasSubstr("another skycap"));
+  }
+}
+
+TEST(RecordLog, InAFolderThatIsNotThereIsRefused) {
+  EXPECT_THROW(RecordLog("/nowhere/to/be/found/log"), Error);
+}
+
+}  // namespace
+}  // namespace skycap::geometry

@@ -1,0 +1,77 @@
+# Fails if what `cmake --install` leaves cannot be moved, linked and run: installs BUILD into FOLDER,
+# moves it, builds every example against it with the named component alone, and runs them; compiles
+# each public header by itself. Run by ctest with BUILD, SOURCE, FOLDER, GENERATOR and COMPILER.
+function(run result)
+  execute_process(COMMAND ${ARGN} RESULT_VARIABLE code OUTPUT_VARIABLE output ERROR_VARIABLE errors)
+  if(NOT code EQUAL 0)
+    list(JOIN ARGN " " command)
+    message(FATAL_ERROR "${command}: ${code}\n${output}${errors}")
+  endif()
+  set(${result} "${output}" PARENT_SCOPE)
+endfunction()
+
+file(REMOVE_RECURSE ${FOLDER})
+run(log ${CMAKE_COMMAND} --install ${BUILD} --prefix ${FOLDER}/installed)
+file(RENAME ${FOLDER}/installed ${FOLDER}/moved)
+set(skycap ${FOLDER}/moved/bin/skycap)
+
+# Builds the project in a folder; what of `absent` it asks for makes that fail.
+function(build_against_installed name source)
+  set(absent "")
+  foreach(package IN LISTS ARGN)
+    list(APPEND absent -D CMAKE_DISABLE_FIND_PACKAGE_${package}=TRUE)
+  endforeach()
+  run(log ${CMAKE_COMMAND} -S ${source} -B ${FOLDER}/${name} -G ${GENERATOR}
+    -D CMAKE_CXX_COMPILER=${COMPILER} -D CMAKE_EXPORT_COMPILE_COMMANDS=ON
+    -D CMAKE_PREFIX_PATH=${FOLDER}/moved ${absent})
+  run(log ${CMAKE_COMMAND} --build ${FOLDER}/${name} --parallel 2)
+  file(READ ${FOLDER}/${name}/compile_commands.json commands)
+  if(commands MATCHES " (-W[a-z]|-DCGAL|-DSKYCAP|-fno-builtin|-include |-ffp-contract)[^ ]*")
+    message(SEND_ERROR "${name}: the libraries have their users compile with${CMAKE_MATCH_0}")
+  endif()
+endfunction()
+
+function(expect_output name pattern)
+  run(output ${FOLDER}/${name}/${name} ${ARGN})
+  if(NOT output MATCHES "${pattern}")
+    message(SEND_ERROR "${name} prints\n${output}in place of ${pattern}")
+  endif()
+endfunction()
+
+set(heavy PCL MRPT mrpt-maps ompl CGAL OpenSSL fmt yaml-cpp CLI11 nlohmann_json)
+build_against_installed(own_sensor ${SOURCE}/examples/own_sensor ${heavy} Ceres embree PNG)
+expect_output(own_sensor "views, [0-9]+ points, (9[0-9]|100)[.][0-9] % believed covered\n$")
+build_against_installed(certify_route ${SOURCE}/examples/certify_route ${heavy} embree PNG)
+# Only the third leg is too near: it crosses the roof, which is 30 m high, at 31 m.
+expect_output(certify_route "^leg 2: 1[.]000 m from [^\n]*\n3 of 4 legs keep 2 m\n$")
+build_against_installed(simulate_lidar ${SOURCE}/examples/simulate_lidar ${heavy} Ceres)
+expect_output(simulate_lidar "^[1-9][0-9]* returns of 80000 shots\n$")
+
+# Each public header by itself.
+file(GLOB headers RELATIVE ${FOLDER}/moved/include ${FOLDER}/moved/include/skycap/*/*.h)
+foreach(header IN LISTS headers)
+  string(MAKE_C_IDENTIFIER ${header} name)
+  file(WRITE ${FOLDER}/headers/${name}.cpp "#include <${header}>\n#include <${header}>\n")
+endforeach()
+file(WRITE ${FOLDER}/headers/CMakeLists.txt "
+  cmake_minimum_required(VERSION 3.25)
+  project(headers LANGUAGES CXX)
+  find_package(Skycap 0.1 REQUIRED COMPONENTS geometry sim survey flight missions)
+  file(GLOB sources *.cpp)
+  add_library(headers OBJECT \${sources})
+  target_link_libraries(headers PRIVATE Skycap::sim Skycap::survey Skycap::flight)
+")
+build_against_installed(headers_alone ${FOLDER}/headers)
+
+# Nothing says where it was built, and the program finds its plug-ins.
+file(GLOB_RECURSE files ${FOLDER}/moved/include/* ${FOLDER}/moved/*.cmake)
+foreach(file IN LISTS files)
+  file(READ ${file} text)
+  string(FIND "${text}" ${SOURCE} place)
+  if(NOT place EQUAL -1)
+    message(SEND_ERROR "${file} names ${SOURCE}")
+  endif()
+endforeach()
+run(log ${skycap} model teapot --out ${FOLDER}/teapot.ply)
+run(log ${CMAKE_COMMAND} -E env --unset=SKYCAP_PLUGINS ${skycap} reconstruct ${FOLDER}/teapot.ply)
+file(REMOVE_RECURSE ${FOLDER})
