@@ -1,4 +1,5 @@
 #include <string>
+#include <string_view>
 
 #include <fmt/format.h>
 
@@ -73,6 +74,24 @@ std::string summary_text(const file::Mission& mission, const run::SurveyRecord& 
   return text + "  results   " + folder.string() + "\n";
 }
 
+/// Stages report.html; one of an earlier survey goes in any case. What cannot be shown, such as a
+/// cloud too far from the origin for its file, shall not cost the survey.
+void write_report(const PlanOptions& options, geometry::OutputFolder& folder,
+                  const Console& console) {
+  folder.replace([](std::string_view name) { return name == report::report_name; });
+  if (!options.has_report) return;
+  std::string page;
+  try {
+    page = report::survey_report([&](const std::string& name) { return folder.staged(name); });
+  } catch (const Error& error) {
+    console.err << "skycap: warning: no report: " << printable_line(error.what())
+                << "
+                   ";
+        return;
+  }
+  folder.write(report::report_name, page);
+}
+
 int plan_once(const PlanOptions& options, const file::Mission& mission,
               const scene::SurveyScene& scene, geometry::OutputFolder& folder,
               const Console& console) {
@@ -106,11 +125,7 @@ int plan_once(const PlanOptions& options, const file::Mission& mission,
   progress.show(mission.name + ": writing " + folder.path().string());
   const std::optional<package::SurveyMission> flight =
       package::stage_package(mission, record, coverage, mission.threads, folder, console.stop);
-  if (options.has_report) {
-    folder.write(report::report_name, report::survey_report([&](const std::string& name) {
-                   return folder.staged(name);
-                 }));
-  }
+  write_report(options, folder, console);
   const bool is_over = record.stop_reason != survey::StopReason::interrupted;
   if (!is_over && package::is_complete_result(folder.path() / "summary.json")) {
     folder.move_to("interrupted");  // a complete survey is not overwritten by a part of one
