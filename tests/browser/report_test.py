@@ -31,9 +31,10 @@ MISSION = """
 name: "%s"
 scene: {model: 'builtin:teapot', longest_side: 10.0}
 sensor: {width: 160, height: 100, noise: {sigma: 0.03}}
-planner: {name: skycap, preset: building, density: 400, resolution_radius: 0.2}
-evaluation: {registration_distance: 0.15, samples: 3000, visible_directions: 30, ceiling_views: 0}
-flight: {vehicle: m350_rtk, clearance: 2.0, unknown_box: {min: [-12, -12, 0], max: [12, 12, 12]}}
+planner: {name: skycap, preset: building, density: 100, resolution_radius: 0.3,
+          view_distance: 12}
+evaluation: {registration_distance: 0.2, samples: 3000, visible_directions: 30, ceiling_views: 0}
+flight: {vehicle: m350_rtk, clearance: 2.0, unknown_box: {min: [-7, -7, 0], max: [7, 7, 7]}}
 site: {latitude_deg: 51.75, longitude_deg: -1.25, ellipsoid_height: 100, geoid_undulation: 47,
        no_fly: [{corners: [[20, 20], [24, 20], [24, 24]], bottom: 0, top: 30}]}
 limits: {max_views: 12}
@@ -289,7 +290,7 @@ class OtherPagesTest(unittest.TestCase):
 
     def test_a_survey_of_one_view_without_a_vehicle(self):
         mission = MISSION % "one"
-        mission = "\n".join(line for line in mission.split("\n") if not line.startswith("flight"))
+        mission = "\n".join(line for line in mission.split("\n") if not line.startswith("flight:"))
         results = plan(self.folder, mission, "--max-views", "1", "--planner", "see++")
         self.assertIn("one", self.shows(results / "report.html"))
 

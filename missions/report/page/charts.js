@@ -14,7 +14,7 @@ function chart(title, note, type, datasets, options) {
     options: {
       animation: false, responsive: true, maintainAspectRatio: false, normalized: true,
       interaction: { mode: "nearest", axis: "x", intersect: false },
-      plugins: { legend: { display: datasets.length > 1, labels: { boxWidth: 12, boxHeight: 12,
+      plugins: { legend: { display: datasets.length > 1, labels: { boxWidth: 20, boxHeight: 1,
         filter: (item) => !item.text.startsWith("_") } },
         tooltip: { filter: (item) => !item.dataset.label.startsWith("_") } },
       scales: {
