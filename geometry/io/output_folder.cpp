@@ -182,6 +182,11 @@ fs::path OutputFolder::stage(const std::string& name) {
   return temporary(name);
 }
 
+fs::path OutputFolder::staged(const std::string& name) const {
+  const bool is_staged = std::ranges::find(staged_, name) != staged_.end();
+  return is_staged ? temporary(name) : fs::path();
+}
+
 void OutputFolder::drop(const std::string& name) {
   remove_file(temporary(name));
   std::erase(staged_, name);

@@ -30,6 +30,8 @@ class OutputFolder {
 
   /// Where to write the file that is to become `name`. Keeps its extension.
   std::filesystem::path stage(const std::string& name);
+  /// Where stage(name) has put the file; an empty path if nothing is staged under that name.
+  std::filesystem::path staged(const std::string& name) const;
   /// Takes back stage(name).
   void drop(const std::string& name);
   /// Stages a file with that content. Throws Error{bad_file} if it cannot be written whole.

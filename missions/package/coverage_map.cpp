@@ -39,14 +39,26 @@ Colour colour_of(const survey::skycap::BelievedPatch& patch) {
 
 }  // namespace
 
-geometry::AttributedCloud coverage_map(const survey::skycap::SurveyBelief& belief) {
+geometry::AttributedCloud coverage_map(std::span<const survey::skycap::BelievedPatch> patches) {
   geometry::AttributedCloud map;
-  for (const survey::skycap::BelievedPatch& patch : belief.patches) {
+  for (const survey::skycap::BelievedPatch& patch : patches) {
     map.positions.push_back(patch.position);
     map.normals.push_back(patch.normal);
     map.colours.push_back(colour_of(patch));
   }
   return map;
+}
+
+std::optional<survey::skycap::MissingReason> reason_of(const Colour& colour) {
+  using enum survey::skycap::MissingReason;
+  if (colour == amber) return seen_too_thinly;
+  if (colour == red) return never_seen;
+  if (colour == violet) return unreachable;
+  for (std::size_t i = 0; i < colour.size(); ++i) {
+    const auto [least, most] = std::minmax(covered_hardly[i], covered_surely[i]);
+    if (colour[i] < least || colour[i] > most) return std::nullopt;
+  }
+  return none;
 }
 
 }  // namespace skycap::missions::package

@@ -3,6 +3,7 @@
 
 #include <filesystem>
 #include <optional>
+#include <span>
 #include <stop_token>
 #include <string>
 #include <vector>
@@ -14,6 +15,7 @@
 #include "missions/file/mission_reader.h"
 #include "missions/package/flight_files.h"
 #include "missions/run/survey_runner.h"
+#include "survey/skycap/skycap_planner.h"
 
 namespace skycap::missions::package {
 
@@ -22,6 +24,9 @@ struct CoverageFigures {
   double all = 0.0;               ///< of the whole surface
   std::optional<double> visible;  ///< of what admissible views can see
   std::optional<double> ceiling;  ///< of the whole surface, attainable
+  /// The surface as the simulator knows it, for the map and the holes of a survey whose planner
+  /// believes nothing; see true_patches().
+  std::vector<survey::skycap::BelievedPatch> patches = {};
 };
 
 /// Stages summary.json, cloud.ply, views.csv and trajectory.tum in `folder`; the caller commits. A
@@ -49,6 +54,10 @@ struct PackageSummary {
   std::optional<Eigen::Vector3d> pad;  ///< of a survey that was flown
 };
 
+/// The same of a summary's text; `name` stands for the file in messages.
+PackageSummary parse_package_summary(const std::string& text, const std::string& name,
+                                     const std::vector<file::KeyOverride>& overrides = {});
+
 /// Reads a package's summary; `overrides` take the place of the mission's keys. Throws
 /// Error{bad_file} naming the file if it is missing or not as stage_package() wrote it.
 PackageSummary read_package_summary(const std::filesystem::path& folder,
@@ -68,6 +77,13 @@ bool is_complete_result(const std::filesystem::path& json_file);
 /// Reads the package of a flown survey, as read_package_summary() does.
 PackagedSurvey read_package(const std::filesystem::path& folder,
                             const std::vector<file::KeyOverride>& overrides);
+
+/// The views of a survey, in their order.
+std::vector<geometry::View> views_of(const run::SurveyRecord& record);
+
+/// The pieces of surface that are known: as the planner believes, or else as the simulator knows.
+std::span<const survey::skycap::BelievedPatch> known_surface(const run::SurveyRecord& record,
+                                                             const CoverageFigures& coverage);
 
 /// views.csv: a line for each view.
 std::string views_csv(const run::SurveyRecord& record);

@@ -16,6 +16,15 @@ void check(int error, const char* what) {
   if (error != 0) throw std::system_error(error, std::generic_category(), what);
 }
 
+/// The words as posix_spawn wants them; they live as long as `command`.
+std::vector<char*> arguments_of(const std::vector<std::string>& command) {
+  std::vector<char*> arguments;
+  arguments.reserve(command.size() + 1);
+  for (const std::string& word : command) arguments.push_back(const_cast<char*>(word.c_str()));
+  arguments.push_back(nullptr);
+  return arguments;
+}
+
 }  // namespace
 
 ProgramResult run_external_program(const std::vector<std::string>& command,
@@ -23,11 +32,7 @@ ProgramResult run_external_program(const std::vector<std::string>& command,
   std::array<int, 2> ends{};  // of the pipe: to read, to write
   if (::pipe2(ends.data(), O_CLOEXEC) != 0) check(errno, "pipe");
 
-  std::vector<char*> arguments;
-  arguments.reserve(command.size() + 1);
-  for (const std::string& word : command) arguments.push_back(const_cast<char*>(word.c_str()));
-  arguments.push_back(nullptr);
-
+  std::vector<char*> arguments = arguments_of(command);
   posix_spawn_file_actions_t actions;
   check(::posix_spawn_file_actions_init(&actions), "posix_spawn_file_actions_init");
   ::posix_spawn_file_actions_addchdir_np(&actions, folder.c_str());
@@ -59,6 +64,27 @@ ProgramResult run_external_program(const std::vector<std::string>& command,
   }
   result.exit_code = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
   return result;
+}
+
+bool start_external_program(const std::vector<std::string>& command) {
+  std::vector<char*> arguments = arguments_of(command);
+  posix_spawn_file_actions_t actions;
+  check(::posix_spawn_file_actions_init(&actions), "posix_spawn_file_actions_init");
+  ::posix_spawn_file_actions_addopen(&actions, STDIN_FILENO, "/dev/null", O_RDONLY, 0);
+  for (const int stream : {STDOUT_FILENO, STDERR_FILENO}) {
+    ::posix_spawn_file_actions_addopen(&actions, stream, "/dev/null", O_WRONLY, 0);
+  }
+  posix_spawnattr_t attributes;
+  check(::posix_spawnattr_init(&attributes), "posix_spawnattr_init");
+  ::posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETSID);
+  pid_t process = 0;
+  const int error =
+      ::posix_spawnp(&process, arguments[0], &actions, &attributes, arguments.data(), environ);
+  ::posix_spawnattr_destroy(&attributes);
+  ::posix_spawn_file_actions_destroy(&actions);
+  if (error == ENOENT) return false;
+  check(error, command[0].c_str());
+  return true;
 }
 
 }  // namespace skycap::missions::plugins

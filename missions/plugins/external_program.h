@@ -17,4 +17,8 @@ struct ProgramResult {
 ProgramResult run_external_program(const std::vector<std::string>& command,
                                    const std::filesystem::path& folder);
 
+/// Starts a program in the same way and goes on without it, in a session of its own, so that it
+/// outlives the terminal; what it writes is dropped. False if there is no such program.
+bool start_external_program(const std::vector<std::string>& command);
+
 }  // namespace skycap::missions::plugins

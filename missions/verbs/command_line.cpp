@@ -39,6 +39,7 @@ void add_plan(CLI::App& app, const Console& console, Action& action) {
       ->check(CLI::Range(1, 100'000));
   verb->add_flag("--resume", options->resumes,
                  "Go on with the survey that was interrupted in that folder, if there is one");
+  verb->add_flag("!--no-report", options->has_report, "Leave out report.html");
   verb->add_flag("--quiet", options->is_quiet, "Print nothing but errors");
   verb->add_flag("--verbose", options->is_verbose, "Print the planning time of each view by part");
   add_set_option(*verb, *keys);
@@ -298,6 +299,34 @@ void add_model(CLI::App& app, const Console& console, Action& action) {
   run(*verb, options, model, console, action);
 }
 
+void add_report(CLI::App& app, const Console& console, Action& action) {
+  CLI::App* verb = app.add_subcommand("report", "Write the page that shows a folder of results");
+  const auto options = std::make_shared<ReportOptions>();
+  verb->add_option("folder", options->folder, "Folder that plan wrote")->required();
+  verb->add_option("--out", options->out, "The page; default report.html in the folder");
+  verb->add_option("--points", options->points, "Points of the cloud to show; default 1000000")
+      ->check(CLI::Range(1, 100'000'000));
+  verb->callback([=, &console, &action] {
+    action = [=, &console] { return report_results(*options, console); };
+  });
+}
+
+void add_view(CLI::App& app, const Console& console, Action& action) {
+  CLI::App* verb = app.add_subcommand(
+      "view", "Show results, a point cloud, or a mission's scene in the browser");
+  const auto options = std::make_shared<ViewOptions>();
+  const auto keys = std::make_shared<KeyOptions>();
+  verb->add_option("what", options->what,
+                   "Folder of results, cloud (.ply, .pcd, .las, .xyz), or mission file")
+      ->required();
+  verb->add_option("--out", options->out, "The page; default beside what is shown");
+  add_set_option(*verb, *keys);
+  verb->callback([=, &console, &action] {
+    options->overrides = keys->overrides();
+    action = [=, &console] { return view(*options, console); };
+  });
+}
+
 /// One line for the user, whatever the message holds.
 int report_failure(const Console& console, const std::string& message, int exit_code) {
   console.err << "skycap: error: " << printable_line(message) << "\n" << std::flush;
@@ -341,6 +370,8 @@ int parse_and_run(const std::vector<std::string>& arguments, const Console& cons
     add_evaluate(app, console, action);
     add_reconstruct(app, console, action);
     add_model(app, console, action);
+    add_report(app, console, action);
+    add_view(app, console, action);
     const auto known = app.get_subcommands({});
     std::string verbs;
     for (const CLI::App* verb : known) verbs += (verbs.empty() ? "" : ", ") + verb->get_name();

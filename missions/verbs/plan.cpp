@@ -1,4 +1,5 @@
 #include <string>
+#include <string_view>
 
 #include <fmt/format.h>
 
@@ -10,7 +11,9 @@
 #include "missions/derived/resolved_mission.h"
 #include "missions/judge/coverage.h"
 #include "missions/package/flight_report.h"
+#include "missions/package/holes.h"
 #include "missions/package/package.h"
+#include "missions/report/survey_report.h"
 #include "missions/run/survey_runner.h"
 #include "missions/scene/survey_scene.h"
 #include "missions/verbs/verbs.h"
@@ -71,6 +74,22 @@ std::string summary_text(const file::Mission& mission, const run::SurveyRecord& 
   return text + "  results   " + folder.string() + "\n";
 }
 
+/// Stages report.html; one of an earlier survey goes in any case. What cannot be shown, such as a
+/// cloud too far from the origin for its file, shall not cost the survey.
+void write_report(const PlanOptions& options, geometry::OutputFolder& folder,
+                  const Console& console) {
+  folder.replace([](std::string_view name) { return name == report::report_name; });
+  if (!options.has_report) return;
+  std::string page;
+  try {
+    page = report::survey_report([&](const std::string& name) { return folder.staged(name); });
+  } catch (const Error& error) {
+    console.err << "skycap: warning: no report: " << printable_line(error.what()) << "\n";
+    return;
+  }
+  folder.write(report::report_name, page);
+}
+
 int plan_once(const PlanOptions& options, const file::Mission& mission,
               const scene::SurveyScene& scene, geometry::OutputFolder& folder,
               const Console& console) {
@@ -91,17 +110,25 @@ int plan_once(const PlanOptions& options, const file::Mission& mission,
                                                    console.stop, report, &journal);
 
   package::CoverageFigures coverage{record.coverage(), {}, {}};
+  std::vector<std::uint8_t> is_visible;
   if (record.stop_reason != survey::StopReason::interrupted) {  // the user wants to leave
     progress.show(mission.name + ": measuring what could be covered at all");
-    const std::vector<std::uint8_t> is_visible = scene.visible(mission.threads, console.stop);
+    is_visible = scene.visible(mission.threads, console.stop);
     coverage.ceiling = scene.ceiling(is_visible, mission.threads, console.stop);
-    if (!console.stop.stop_requested()) {
+    if (console.stop.stop_requested()) {
+      is_visible.clear();
+    } else {
       coverage.visible = judge::covered_share(record.is_covered, is_visible);
     }
+  }
+  if (!record.belief) {
+    coverage.patches = package::true_patches(scene.samples(), geometry::surface_area(scene.model()),
+                                             record.is_covered, is_visible);
   }
   progress.show(mission.name + ": writing " + folder.path().string());
   const std::optional<package::SurveyMission> flight =
       package::stage_package(mission, record, coverage, mission.threads, folder, console.stop);
+  write_report(options, folder, console);
   const bool is_over = record.stop_reason != survey::StopReason::interrupted;
   if (!is_over && package::is_complete_result(folder.path() / "summary.json")) {
     folder.move_to("interrupted");  // a complete survey is not overwritten by a part of one

@@ -20,6 +20,7 @@ struct PlanOptions {
   std::vector<file::KeyOverride> overrides;
   std::size_t trials = 0;  ///< zero: one survey, with a mission package
   bool resumes = false;  ///< goes on with an interrupted survey, if there is one; trials always do
+  bool has_report = true;  ///< report.html beside the other results
   bool is_quiet = false;
   bool is_verbose = false;
 };
@@ -186,5 +187,24 @@ struct ModelOptions {
 
 /// Obtains a model if it is not on the machine, and writes or renders it.
 int model(const ModelOptions& options, const Console& console);
+
+struct ReportOptions {
+  std::filesystem::path folder;              ///< of results
+  std::optional<std::filesystem::path> out;  ///< default: report.html in the folder
+  std::size_t points = 0;                    ///< shown at most; zero: the report's default
+};
+
+/// Writes the page that shows a folder of results, as the verb that left them does.
+int report_results(const ReportOptions& options, const Console& console);
+
+struct ViewOptions {
+  std::filesystem::path what;                ///< folder of results, cloud, or mission file
+  std::optional<std::filesystem::path> out;  ///< the page; default: beside what is shown
+  std::vector<file::KeyOverride> overrides;  ///< of a mission
+};
+
+/// Writes a page of a folder, a cloud or a mission's scene and opens it in the browser; says where
+/// it is.
+int view(const ViewOptions& options, const Console& console);
 
 }  // namespace skycap::missions::verbs

@@ -75,10 +75,11 @@ Rooms house() {
   add_mission_room("recording", "file", "derived", "plugins");
   add_mission_room("run", "file", "derived", "judge", "scene");
   add_mission_room("package", "file", "equipment", "derived", "run");
+  add_mission_room("report", "file", "derived", "scene", "package");
   add_mission_room("live", "file", "derived", "scene", "run");
   add_mission_room("benchmark", "file", "derived", "judge", "plugins", "scene", "run", "package");
   add_mission_room("verbs", "file", "equipment", "derived", "judge", "plugins", "scene",
-                   "recording", "run", "package", "live", "benchmark");
+                   "recording", "run", "package", "report", "live", "benchmark");
   return rooms;
 }
 

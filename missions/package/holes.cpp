@@ -1,0 +1,175 @@
+#include "missions/package/holes.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <map>
+#include <numeric>
+#include <unordered_map>
+
+namespace skycap::missions::package {
+namespace {
+
+using Eigen::Vector3d;
+using survey::skycap::BelievedPatch;
+using survey::skycap::MissingReason;
+
+/// Neighbours on a surface are one to two of their own sizes apart, and guesses lie more loosely.
+constexpr double links_per_piece = 3.0;
+constexpr double pieces_of_a_hole = 4.0;
+
+double missing_area(const BelievedPatch& patch) { return patch.area * (1.0 - patch.covered_share); }
+
+/// The side of a square piece of the usual size.
+double usual_side(std::span<const BelievedPatch> patches) {
+  std::vector<float> areas;
+  for (const BelievedPatch& patch : patches) areas.push_back(patch.area);
+  if (areas.empty()) return 0.0;
+  const auto middle = areas.begin() + static_cast<std::ptrdiff_t>(areas.size() / 2);
+  std::ranges::nth_element(areas, middle);
+  return std::sqrt(static_cast<double>(*middle));
+}
+
+/// Sets that grow together; the smallest member stands for each.
+class Sets {
+ public:
+  explicit Sets(std::size_t size) : parents_(size) {
+    std::iota(parents_.begin(), parents_.end(), std::size_t{0});
+  }
+  std::size_t find(std::size_t member) {
+    while (parents_[member] != member) {
+      member = parents_[member] = parents_[parents_[member]];
+    }
+    return member;
+  }
+  void join(std::size_t a, std::size_t b) {
+    a = find(a);
+    b = find(b);
+    parents_[std::max(a, b)] = std::min(a, b);
+  }
+
+ private:
+  std::vector<std::size_t> parents_;
+};
+
+/// Joins pieces of one reason that are at most `link` apart.
+Sets connected(std::span<const BelievedPatch> pieces, double link) {
+  Sets sets(pieces.size());
+  using Cell = std::array<std::int64_t, 3>;
+  std::map<Cell, std::vector<std::size_t>> cells;
+  const auto cell_of = [&](const Eigen::Vector3f& point) {
+    const Vector3d cell = (point.cast<double>() / link).array().floor();
+    return Cell{static_cast<std::int64_t>(cell.x()), static_cast<std::int64_t>(cell.y()),
+                static_cast<std::int64_t>(cell.z())};
+  };
+  const auto join_with = [&](std::size_t i, const Cell& cell) {
+    const auto found = cells.find(cell);
+    if (found == cells.end()) return;
+    for (const std::size_t other : found->second) {
+      const bool is_near = (pieces[i].position - pieces[other].position).norm() <= link;
+      if (is_near && pieces[i].reason == pieces[other].reason) sets.join(i, other);
+    }
+  };
+  for (std::size_t i = 0; i < pieces.size(); ++i) {
+    const Cell own = cell_of(pieces[i].position);
+    for (int neighbour = 0; neighbour < 27; ++neighbour) {
+      join_with(i, {own[0] + neighbour % 3 - 1, own[1] + neighbour / 3 % 3 - 1,
+                    own[2] + neighbour / 9 - 1});
+    }
+    cells[own].push_back(i);
+  }
+  return sets;
+}
+
+Hole hole_of(std::span<const BelievedPatch> pieces, const std::vector<std::size_t>& members,
+             std::span<const geometry::View> views) {
+  Hole hole{.reason = pieces[members.front()].reason, .pieces = members.size()};
+  Vector3d normal = Vector3d::Zero();
+  for (const std::size_t i : members) {
+    const double area = missing_area(pieces[i]);
+    hole.area += area;
+    hole.centre += area * pieces[i].position.cast<double>();
+    normal += area * pieces[i].normal.cast<double>();
+  }
+  hole.centre = hole.area > 0.0 ? Vector3d(hole.centre / hole.area)
+                                : pieces[members.front()].position.cast<double>();
+  // Pieces that face all ways have none in common.
+  constexpr double least_agreement = 0.1;
+  if (normal.norm() > least_agreement * hole.area) hole.normal = normal.normalized();
+  for (const std::size_t i : members) {
+    hole.radius = std::max(hole.radius, (pieces[i].position.cast<double>() - hole.centre).norm());
+  }
+  for (std::size_t i = 0; i < views.size(); ++i) {
+    const double distance = (views[i].position - hole.centre).norm();
+    if (i > 0 && distance >= hole.view_distance) continue;
+    hole.nearest_view = i;
+    hole.view_distance = distance;
+  }
+  return hole;
+}
+
+}  // namespace
+
+MissingSurface missing_surface(std::span<const BelievedPatch> patches,
+                               std::span<const geometry::View> views) {
+  const double side = usual_side(patches);
+  MissingSurface missing{.link = links_per_piece * side,
+                         .least_hole = pieces_of_a_hole * side * side};
+  std::vector<BelievedPatch> pieces;
+  for (const BelievedPatch& patch : patches) {
+    missing.area += patch.area;
+    if (patch.reason == MissingReason::none) {
+      missing.rest += missing_area(patch);
+    } else {
+      pieces.push_back(patch);
+    }
+  }
+  if (pieces.empty() || side <= 0.0) return missing;
+  Sets sets = connected(pieces, missing.link);
+  std::map<std::size_t, std::vector<std::size_t>> groups;
+  for (std::size_t i = 0; i < pieces.size(); ++i) groups[sets.find(i)].push_back(i);
+  for (const auto& [first, members] : groups) {
+    const Hole hole = hole_of(pieces, members, views);
+    if (hole.area >= missing.least_hole) {
+      missing.holes.push_back(hole);
+    } else {
+      ++missing.smaller;
+      missing.smaller_area += hole.area;
+    }
+  }
+  std::ranges::stable_sort(missing.holes, std::greater(), &Hole::area);
+  return missing;
+}
+
+std::vector<BelievedPatch> true_patches(const geometry::SurfaceSamples& samples, double area,
+                                        std::span<const std::uint8_t> is_covered,
+                                        std::span<const std::uint8_t> is_visible) {
+  const auto share = static_cast<float>(area / static_cast<double>(samples.points.size()));
+  std::vector<BelievedPatch> patches;
+  for (std::size_t i = 0; i < is_covered.size(); ++i) {
+    const bool is_hidden = !is_visible.empty() && is_visible[i] == 0;
+    const MissingReason reason = is_covered[i] != 0 ? MissingReason::none
+                                 : is_hidden        ? MissingReason::unreachable
+                                                    : MissingReason::never_seen;
+    patches.push_back(
+        {samples.points[i], samples.normals[i], share, is_covered[i] != 0 ? 1.0F : 0.0F, reason});
+  }
+  return patches;
+}
+
+const char* name_of(MissingReason reason) {
+  switch (reason) {
+    case MissingReason::seen_too_thinly:
+      return "seen_too_thinly";
+    case MissingReason::never_seen:
+      return "never_seen";
+    case MissingReason::unreachable:
+      return "unreachable";
+    case MissingReason::none:
+      break;
+  }
+  return "covered";
+}
+
+}  // namespace skycap::missions::package

@@ -1,0 +1,282 @@
+/// summary.json: all that a survey says of itself.
+
+#include <type_traits>
+#include <utility>
+
+#include <nlohmann/json.hpp>
+
+#include "missions/file/json_text.h"
+#include "missions/file/mission_keys.h"
+#include "missions/package/holes.h"
+#include "missions/package/package.h"
+#include "missions/version.h"
+
+namespace skycap::missions::package {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json json_of(const Eigen::Vector3d& vector) { return {vector.x(), vector.y(), vector.z()}; }
+
+Json json_of(const std::optional<double>& number) { return number ? Json(*number) : Json(); }
+
+Json json_of(const std::vector<survey::PartTime>& times) {
+  Json parts = Json::object();
+  for (const auto& [part, seconds] : times) parts[part] = seconds;
+  return parts;
+}
+
+Json json_of(const std::vector<Eigen::Vector2d>& polygon) {
+  Json corners = Json::array();
+  for (const Eigen::Vector2d& corner : polygon) corners.push_back({corner.x(), corner.y()});
+  return corners;
+}
+
+Json json_of(const std::vector<geometry::Prism>& volumes) {
+  Json list = Json::array();
+  for (const geometry::Prism& volume : volumes) {
+    list.push_back({{"corners", json_of(volume.footprint)},
+                    {"bottom", volume.floor},
+                    {"top", volume.ceiling}});
+  }
+  return list;
+}
+
+Json json_of(const std::vector<Eigen::Vector3d>& vectors) {
+  Json list = Json::array();
+  for (const Eigen::Vector3d& vector : vectors) list.push_back(json_of(vector));
+  return list;
+}
+
+Json setting_json(const file::KeyValue& value) {
+  return std::visit(
+      [](const auto& plain) -> Json {
+        using Value = std::decay_t<decltype(plain)>;
+        if constexpr (std::is_arithmetic_v<Value> || std::is_same_v<Value, std::string>) {
+          return plain;
+        } else {
+          return json_of(plain);
+        }
+      },
+      value);
+}
+
+/// What the planner believes at the end: shares are of the surface, seen and guessed.
+Json belief_summary(const run::SurveyRecord& record) {
+  if (!record.belief) return {};
+  const survey::skycap::SurveyBelief& belief = *record.belief;
+  return {{"stop", run::name_of(record.skycap_stop)},
+          {"predicted_coverage", belief.coverage},
+          {"area_m2", belief.area},
+          {"missing",
+           {{"seen_too_thinly", belief.seen_too_thinly},
+            {"never_seen", belief.never_seen},
+            {"unreachable", belief.unreachable}}},
+          {"next_gain", belief.next_gain},
+          {"noise_m", belief.noise}};
+}
+
+/// What is missing, piece by piece: as the planner believes or else as the simulator knows.
+Json surface_summary(const run::SurveyRecord& record, const CoverageFigures& coverage) {
+  const auto patches = known_surface(record, coverage);
+  if (patches.empty()) return {};
+  const MissingSurface missing = missing_surface(patches, views_of(record));
+  Json holes = Json::array();
+  for (const Hole& hole : missing.holes) {
+    holes.push_back({{"reason", name_of(hole.reason)},
+                     {"area_m2", hole.area},
+                     {"centre", json_of(hole.centre)},
+                     {"normal", json_of(hole.normal)},
+                     {"radius_m", hole.radius},
+                     {"pieces", hole.pieces},
+                     {"nearest_view", hole.nearest_view},
+                     {"view_distance_m", hole.view_distance}});
+  }
+  return {{"known_by", record.belief ? "planner" : "simulator"},
+          {"area_m2", missing.area},
+          {"link_m", missing.link},
+          {"least_hole_m2", missing.least_hole},
+          {"holes", holes},
+          {"smaller", {{"holes", missing.smaller}, {"area_m2", missing.smaller_area}}},
+          {"rest_m2", missing.rest}};
+}
+
+std::string value_text(const file::Mission& mission, const char* key) {
+  return file::to_text(*file::find_key(key)->get(mission));
+}
+
+/// All keys as they were in force, so that the survey can be repeated from its package.
+Json settings(const file::Mission& mission) {
+  Json values = Json::object();
+  for (const file::Key& key : file::mission_keys()) {
+    if (const auto value = key.get(mission)) values[key.path] = setting_json(*value);
+  }
+  return values;
+}
+
+/// How the vehicle comes home when its link, its battery or its pilot asks for it.
+Json return_summary(const SurveyMission& flight) {
+  if (!flight.route.returns) return {};
+  const flight::Returns& returns = *flight.route.returns;
+  return {{"height_m", returns.height},
+          {"clearance_m", returns.clearance},
+          {"nearest",
+           {{"from", json_of(returns.nearest.from)},
+            {"part", name_of(returns.nearest.piece.part)},
+            {"obstacle", returns.obstacle}}},
+          {"landings", json_of(returns.law.landings)},
+          {"energy_wh", returns.energy / 3600.0},
+          {"parameters", flight.files.parameters}};
+}
+
+Json json_of(const flight::Leg& leg, const Json& from, const Json& to) {
+  return {{"from", from},
+          {"to", to},
+          {"clearance_m", leg.clearance},
+          {"duration_s", leg.duration},
+          {"energy_wh", leg.energy / 3600.0},
+          {"points", json_of(leg.points)}};
+}
+
+/// The sortie's legs from above the pad and back there; they lead from view to view, null stands
+/// for the pad.
+Json legs_of(const flight::Route& route, const flight::Sortie& sortie) {
+  const auto view = [&](std::uint32_t station) { return route.stations[station].view_index; };
+  Json legs = Json::array({json_of(sortie.out, {}, view(sortie.first))});
+  for (std::uint32_t i = sortie.first; i < sortie.last; ++i) {
+    legs.push_back(json_of(route.legs[i], view(i), view(i + 1)));
+  }
+  legs.push_back(json_of(sortie.back, view(sortie.last), {}));
+  return legs;
+}
+
+/// The flight of the survey and the route in the package, in metres, seconds and watt hours.
+Json flight_summary(const run::FlownSurvey& flown, const SurveyMission& flight) {
+  const flight::Route& route = flight.route;
+  const flight::ClearanceBudget& clearance = route.options.clearance;
+  Json sorties = Json::array(), unreached = Json::array(), files = Json::array();
+  for (const flight::Sortie& sortie : route.sorties) {
+    sorties.push_back({{"first_station", sortie.first},
+                       {"last_station", sortie.last},
+                       {"duration_s", sortie.duration},
+                       {"energy_wh", sortie.energy / 3600.0},
+                       {"energy_left_wh", sortie.energy_left / 3600.0},
+                       {"length_m", sortie.length},
+                       {"min_clearance_m", sortie.clearance},
+                       {"legs", legs_of(route, sortie)}});
+  }
+  for (const flight::Unreached& missed : route.unreached) {
+    unreached.push_back({{"view", missed.station.view_index}, {"reason", missed.reason}});
+  }
+  for (const FlightFile& file : flight.files.written) {
+    files.push_back({{"name", file.name},
+                     {"heights", file.heights},
+                     {"min_clearance_m", file.min_clearance},
+                     {"duration_s", file.duration}});
+  }
+  Json order = Json::array();
+  for (const flight::Station& station : route.stations) order.push_back(station.view_index);
+  return {{"vehicle", route.vehicle.name},
+          {"clearance_m",
+           {{"total", clearance.total()},
+            {"vehicle_radius", clearance.vehicle_radius},
+            {"position_error", clearance.position_error},
+            {"tracking_error", clearance.tracking_error},
+            {"map_error", clearance.map_error},
+            {"margin", clearance.margin}}},
+          {"pad", json_of(flown.pad)},
+          {"survey",
+           {{"length_m", flown.length()},
+            {"min_clearance_m", flown.min_clearance()},
+            {"views_refused", flown.refused},
+            {"free_volume_m3", flown.measured->free_volume()}}},
+          {"route",
+           {{"stations", route.stations.size()},
+            {"order", order},
+            {"length_m", route.length},
+            {"station_length_m", route.station_length},
+            {"straight_length_m", route.straight_length},
+            {"order_length_m", route.order_length},
+            {"order_bound_m", route.order_bound},
+            {"duration_s", route.duration},
+            {"duration_bound_s", route.duration_bound},
+            {"energy_wh", route.energy / 3600.0},
+            {"min_clearance_m", route.min_clearance},
+            {"sorties", sorties},
+            {"unreached", unreached}}},
+          {"return", return_summary(flight)},
+          {"files", files},
+          {"notes", flight.files.notes}};
+}
+
+Json view_summary(std::size_t number, const run::JudgedView& judged) {
+  const survey::SurveyedView& view = judged.surveyed;
+  return {{"view", number},
+          {"position", json_of(view.view.position)},
+          {"direction", json_of(view.view.direction)},
+          {"returns", view.returns},
+          {"points_new", view.step.points_new},
+          {"points", view.points},
+          {"frontiers", view.step.frontiers},
+          {"coverage", judged.coverage},
+          {"planning_time_s", view.planning_time},
+          {"planning_time_parts_s", json_of(view.step.times)},
+          {"sensing_time_s", view.sensing_time},
+          {"distance_m", view.distance}};
+}
+
+}  // namespace
+
+std::vector<survey::PartTime> planning_time_by_part(const run::SurveyRecord& record) {
+  std::vector<survey::PartTime> sums;
+  for (const run::JudgedView& judged : record.views) {
+    for (const auto& [part, seconds] : judged.surveyed.step.times) {
+      const auto sum = std::ranges::find(sums, part, &survey::PartTime::part);
+      if (sum == sums.end()) {
+        sums.push_back({part, seconds});
+      } else {
+        sum->seconds += seconds;
+      }
+    }
+  }
+  return sums;
+}
+
+std::string summary_json(const file::Mission& mission, const run::SurveyRecord& record,
+                         const CoverageFigures& coverage,
+                         const std::optional<SurveyMission>& flight) {
+  Json summary{{"mission", mission.name},
+               {"planner", value_text(mission, "planner.name")},
+               {"preset", value_text(mission, "planner.preset")},
+               {"seed", record.seed},
+               {"threads", record.threads},
+               {"version", version},
+               {"complete", record.is_complete()},
+               {"stop_reason", run::name_of(record.stop_reason)},
+               {"views", record.views.size()},
+               {"points", record.cloud.size()},
+               {"coverage", coverage.all},
+               {"coverage_visible", json_of(coverage.visible)},
+               {"coverage_ceiling", json_of(coverage.ceiling)},
+               {"planning_time_s", record.planning_time()},
+               {"planning_time_parts_s", json_of(planning_time_by_part(record))},
+               {"sensing_time_s", record.sensing_time()},
+               {"distance_m", record.distance()},
+               {"belief", belief_summary(record)},
+               {"surface", surface_summary(record, coverage)}};
+  if (flight && flight->failure.empty()) {
+    summary["route_length_m"] = flight->route.length;
+    summary["min_clearance_m"] = flight->route.min_clearance;
+    summary["flight"] = flight_summary(*record.flown, *flight);
+  } else if (flight) {
+    summary["flight"] = {{"pad", json_of(record.flown->pad)}, {"failure", flight->failure}};
+  }
+  summary["settings"] = settings(mission);
+  summary["per_view"] = Json::array();
+  for (std::size_t i = 0; i < record.views.size(); ++i) {
+    summary["per_view"].push_back(view_summary(i, record.views[i]));
+  }
+  return file::json_text(summary);
+}
+
+}  // namespace skycap::missions::package

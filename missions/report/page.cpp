@@ -1,0 +1,90 @@
+#include "missions/report/page.h"
+
+#include <string_view>
+#include <utility>
+
+#include "missions/report/page_parts.h"
+#include "missions/report/script_text.h"
+#include "missions/version.h"
+
+namespace skycap::missions::report {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json json_of(const CloudCode& code) {
+  Json attributes = Json::array();
+  for (const CloudCode::Plane& plane : code.attributes) {
+    attributes.push_back({{"name", plane.name}, {"bytes", plane.bytes}});
+  }
+  return {
+      {"points", code.points},   {"of", code.of},
+      {"bits", code.bits},       {"origin", {code.origin.x(), code.origin.y(), code.origin.z()}},
+      {"step", code.step},       {"spacing", code.spacing},
+      {"attributes", attributes}};
+}
+
+/// A script that is not run, but read.
+std::string data_block(std::string_view type, const std::string& id, std::string_view text) {
+  std::string block = "<script type=\"";
+  block.append(type).append("\" id=\"").append(id).append("\">").append(text);
+  return block + "</script>\n";
+}
+
+/// A library, deflated: it is a third of the page otherwise.
+std::string library_block(const PageLibrary& library) {
+  return data_block("application/octet-stream", "library-" + std::string(library.name),
+                    base85(deflated(library.text)));
+}
+
+std::string policy() {
+  std::string text =
+      "default-src 'none'; base-uri 'none'; form-action 'none'; img-src data:; script-src";
+  for (const PageLibrary& library : page_libraries()) text += " " + policy_hash(library.text);
+  text += " " + policy_hash(page_script());
+  return text + "; style-src " + policy_hash(page_style());
+}
+
+/// Libraries and policy are the same in all pages.
+struct ConstantParts {
+  std::string policy_text = policy();
+  std::string libraries;
+
+  ConstantParts() {
+    for (const PageLibrary& library : page_libraries()) libraries += library_block(library);
+  }
+};
+
+}  // namespace
+
+std::string page_text(const std::string& title, Json data, const std::vector<PageCloud>& clouds) {
+  static const ConstantParts constant;
+  data["version"] = version;
+  data["clouds"] = Json::object();
+  std::string blocks;
+  for (const PageCloud& cloud : clouds) {
+    data["clouds"][cloud.name] = json_of(cloud.code);
+    blocks +=
+        data_block("application/octet-stream", "cloud-" + cloud.name, base85(cloud.code.bytes));
+  }
+  std::string page;
+  const std::string_view frame = page_frame();
+  for (std::size_t at = 0; at < frame.size();) {
+    const std::size_t mark = frame.find("{{", at);
+    page += frame.substr(at, mark - at);
+    if (mark == std::string_view::npos) break;
+    const std::size_t end = frame.find("}}", mark);
+    const std::string_view name = frame.substr(mark + 2, end - mark - 2);
+    if (name == "title") page += html_text(title);
+    if (name == "policy") page += constant.policy_text;
+    if (name == "style") page.append("<style>").append(page_style()).append("</style>");
+    if (name == "data") page += data_block("application/json", "data", script_json(data));
+    if (name == "clouds") page += blocks;
+    if (name == "libraries") page += constant.libraries;
+    if (name == "script") page.append("<script>").append(page_script()).append("</script>");
+    at = end + 2;
+  }
+  return page;
+}
+
+}  // namespace skycap::missions::report

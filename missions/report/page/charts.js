@@ -1,0 +1,127 @@
+// Curves and histograms, by Chart.js.
+
+const chart_colours = ["#0b6e99", "#c77700", "#1f8a4c", "#8a4fbf", "#c8252c", "#5b6875", "#2aa198",
+  "#b5418b", "#6b7d1f", "#3d5a99"];
+
+function chart(title, note, type, datasets, options) {
+  const canvas = element("canvas", { role: "img", "aria-label": title });
+  const box = element("div", { class: "chart" }, element("h3", {}, title),
+    element("div", { class: "plot" }, canvas), note ? element("p", {}, note) : null);
+  const axis = (text, more) => ({ title: { display: !!text, text }, grid: { color: "#e9edf0" },
+    ticks: { maxTicksLimit: 8 }, ...more });
+  charts_to_draw.push(() => new Chart(canvas, {
+    type, data: { datasets, labels: options.labels },
+    options: {
+      animation: false, responsive: true, maintainAspectRatio: false, normalized: true,
+      interaction: { mode: "nearest", axis: "x", intersect: false },
+      plugins: { legend: { display: datasets.length > 1, labels: { boxWidth: 20, boxHeight: 1,
+        filter: (item) => !item.text.startsWith("_") } },
+        tooltip: { filter: (item) => !item.dataset.label.startsWith("_") } },
+      scales: {
+        x: axis(options.x, { type: options.labels ? "category" : "linear", ...(options.x_more || {}) }),
+        y: axis(options.y, { beginAtZero: !options.is_free, ...(options.y_more || {}) }),
+      },
+    },
+  }));
+  return box;
+}
+
+/// Chart.js measures its canvas: charts are drawn once they stand in the page.
+const charts_to_draw = [];
+
+function draw_charts() {
+  Chart.defaults.font.family = getComputedStyle(document.body).fontFamily;
+  Chart.defaults.color = "#5b6875";
+  return charts_to_draw.splice(0).map((draw) => draw());
+}
+
+function line(label, points, number = 0, more = {}) {
+  const colour = chart_colours[number % chart_colours.length];
+  return { label, data: points.map(([x, y]) => ({ x, y })), borderColor: colour, backgroundColor: colour,
+    borderWidth: 2, pointRadius: points.length > 60 ? 0 : 2, tension: 0, ...more };
+}
+
+/// A level that curves are held against.
+function level(label, from, to, y, number) {
+  return line(label, [[from, y], [to, y]], number, { borderDash: [6, 4], pointRadius: 0, borderWidth: 1.5 });
+}
+
+const percent = (share) => 100 * share;
+
+function coverage_chart(data, title, x_of, x_title) {
+  const { summary } = data, views = summary.per_view;
+  const points = views.map((view, i) => [x_of(view, i), percent(view.coverage)]);
+  const lines = [line("covered, true", points)];
+  if (typeof summary.coverage_ceiling === "number") {
+    lines.push(level("attainable", points[0][0], points[points.length - 1][0], percent(summary.coverage_ceiling), 5));
+  }
+  return chart(title, null, "line", lines, { x: x_title, y: "% of the surface", y_more: { min: 0 } });
+}
+
+/// Along the route the least proven clearance of each leg, as steps.
+function clearance_chart(data) {
+  const legs = legs_of(data).filter((leg) => leg.clearance !== null);
+  if (!legs.length) return null;
+  const asked = data.summary.flight.clearance_m.total;
+  let way = 0;
+  const points = [];
+  for (const leg of legs) {
+    points.push([way, leg.clearance]);
+    for (let i = 1; i < leg.points.length; ++i) {
+      way += vector(leg.points[i]).distanceTo(vector(leg.points[i - 1]));
+    }
+    points.push([way, leg.clearance]);
+  }
+  return chart("Proven clearance along the route", "Least distance of each leg from anything measured, " +
+    "forbidden or unknown. What is farther away than 10 m more than was asked for is not told apart.",
+    "line", [line("proven", points, 0, { pointRadius: 0 }), level("asked for", 0, way, asked, 4)],
+    { x: "metres flown", y: "m", y_more: { min: 0 } });
+}
+
+/// What is left of the battery after each leg; the bottom is the reserve.
+function energy_chart(data) {
+  const sorties = sorties_of(data);
+  if (!sorties.length || !sorties.every((sortie) => sortie.legs)) return null;
+  const lines = sorties.map((sortie, number) => {
+    let time = 0, left = sortie.energy_left_wh + sortie.energy_wh;
+    const points = [[0, left]];
+    const legs_energy = sortie.legs.reduce((sum, leg) => sum + leg.energy_wh, 0);
+    const legs_time = sortie.legs.reduce((sum, leg) => sum + leg.duration_s, 0);
+    // Climb, landing and the stops at the stations are the sortie's, not its legs'; in equal shares.
+    const more_energy = (sortie.energy_wh - legs_energy) / sortie.legs.length;
+    const more_time = (sortie.duration_s - legs_time) / sortie.legs.length;
+    for (const leg of sortie.legs) {
+      time += leg.duration_s + more_time;
+      left -= leg.energy_wh + more_energy;
+      points.push([time / 60, left]);
+    }
+    return line("sortie " + (number + 1), points, number, { pointRadius: 0 });
+  });
+  const longest = Math.max(...sorties.map((sortie) => sortie.duration_s / 60));
+  const home = value_at(data, "summary.flight.return.energy_wh");
+  if (home > 0) lines.push(level("the way home takes at most", 0, longest, home, 4));
+  return chart("Energy left above the reserve", null, "line", lines, { x: "minutes", y: "Wh", y_more: { min: 0 } });
+}
+
+function survey_charts(data) {
+  const { summary } = data, views = summary.per_view || [];
+  if (!views.length) return null;
+  const charts = [
+    coverage_chart(data, "Coverage over views", (view, i) => i + 1, "views"),
+    coverage_chart(data, "Coverage over the way", (view) => view.distance_m, "metres, straight from view to view"),
+    chart("Points", null, "line", [line("points kept", views.map((view, i) => [i + 1, view.points])),
+      line("new with the view", views.map((view, i) => [i + 1, view.points_new]), 1)], { x: "views", y: "points" }),
+    chart("Planning time", "Time that the planner took for each view, on this machine.", "line",
+      [line("planning", views.map((view, i) => [i + 1, view.planning_time_s]))], { x: "views", y: "s" }),
+    clearance_chart(data), energy_chart(data)];
+  return element("section", { id: "curves" }, element("h2", {}, "Curves"),
+    element("div", { class: "charts" }, charts));
+}
+
+function histogram_chart(title, note, counts, low, high, x, colour = 0) {
+  const width = (high - low) / counts.length, all = counts.reduce((sum, count) => sum + count, 0) || 1;
+  const digits = width >= 1 ? 0 : width >= 0.1 ? 1 : 2;
+  return chart(title, note, "bar", [{ label: "share of the points", categoryPercentage: 1, barPercentage: 0.94,
+    data: counts.map((count) => percent(count / all)), backgroundColor: chart_colours[colour] }],
+    { labels: counts.map((_, i) => (low + (i + 0.5) * width).toFixed(digits)), x, y: "% of the points" });
+}

@@ -1,0 +1,60 @@
+// Values as text, and elements: whatever a name holds, it becomes text and nothing else.
+
+const thin_space = "\u2009";
+
+function grouped(text) {
+  const [whole, fraction] = text.split(".");
+  const digits = whole.replace(/\B(?=(\d{3})+$)/g, thin_space);
+  return fraction === undefined ? digits : digits + "." + fraction;
+}
+
+/// How a figure is shown, by the name of its form.
+const forms = {
+  text: (value) => String(value),
+  count: (value) => grouped(Math.round(value).toString()),
+  share: (value) => (100 * value).toFixed(2) + " %",
+  metres: (value) => grouped(value.toFixed(2)) + " m",
+  square_metres: (value) => grouped(value.toFixed(value < 1 ? 4 : 2)) + " m²",
+  cubic_metres: (value) => grouped(value.toFixed(0)) + " m³",
+  millimetres: (value) => (1000 * value).toFixed(1) + " mm",
+  minutes: (value) => (value / 60).toFixed(1) + " min",
+  seconds: (value) => (value < 1 ? (1000 * value).toFixed(1) + " ms" : value.toFixed(2) + " s"),
+  watt_hours: (value) => value.toFixed(1) + " Wh",
+  degrees: (value) => value.toFixed(1) + "°",
+  place: (value) => value.toFixed(7) + "°",
+  bytes: (value) =>
+    value < 1e6 ? (value / 1e3).toFixed(1) + " kB" : grouped((value / 1e6).toFixed(1)) + " MB",
+};
+
+function shown(value, form) {
+  if (value === null || value === undefined) return "–";
+  if (typeof value === "number" && !Number.isFinite(value)) return "–";
+  return forms[form](value);
+}
+
+/// An element with attributes, and children that are elements or text.
+function element(tag, attributes, ...children) {
+  const made = document.createElement(tag);
+  for (const [name, value] of Object.entries(attributes || {})) {
+    if (name === "class") made.className = value;
+    else if (name.startsWith("on")) made.addEventListener(name.slice(2), value);
+    else made.setAttribute(name, value);
+  }
+  for (const child of children.flat()) {
+    if (child === null || child === undefined) continue;
+    made.append(child);
+  }
+  return made;
+}
+
+/// What stands at a path such as "flight.route.sorties.0.energy_wh" of some data.
+function value_at(data, path) {
+  return path.split(".").reduce(
+    (value, key) => (value === null || value === undefined ? undefined : value[key]), data);
+}
+
+/// A figure of the summary, with the path that it came by.
+function figure(data, path, form) {
+  return element("span", { "data-figure": path, "data-form": form },
+    shown(value_at(data.summary, path), form));
+}

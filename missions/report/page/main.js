@@ -1,0 +1,115 @@
+// Puts the page together.
+
+function read_data() {
+  return JSON.parse(document.getElementById("data").textContent);
+}
+
+/// Libraries come deflated; the policy knows their text by its hash.
+async function load_library(name) {
+  const text = new TextDecoder().decode(await inflated("library-" + name));
+  const script = document.createElement("script");
+  script.textContent = text;
+  document.head.append(script);
+}
+
+const kinds = { survey: "Survey report", cloud: "Point cloud", mission: "Mission, before the survey",
+  scan: "Scan report", comparison: "Comparison of planners" };
+
+function facts_of(data) {
+  const settings = value_at(data, "summary.settings") || {}, facts = [];
+  const add = (text) => { if (text) facts.push(element("span", {}, text)); };
+  add(settings["scene.model"]);
+  if (settings["site.latitude_deg"] !== undefined && settings["site.longitude_deg"] !== undefined) {
+    add(shown(settings["site.latitude_deg"], "place") + " N, " + shown(settings["site.longitude_deg"], "place") + " E");
+  }
+  add(settings["flight.vehicle"] && settings["flight.vehicle"] !== "none" ? "vehicle " + settings["flight.vehicle"] : "no vehicle");
+  add("sensor " + (settings["sensor.lidar"] || settings["sensor.preset"] || "of the mission"));
+  add("planner " + (settings["planner.name"] || "–"));
+  return data.facts ? data.facts.map((text) => element("span", {}, text)) : facts;
+}
+
+function head(data) {
+  const parts = [element("div", { class: "kind" }, kinds[data.kind] || ""), element("h1", {}, data.title),
+    element("div", { class: "facts" }, facts_of(data))];
+  const verdict = data.verdict;
+  if (verdict) {
+    parts.push(element("div", { class: "verdict " + verdict.light },
+      verdict.answer + ": " + verdict.because));
+    parts.push(element("div", { class: "lights" }, verdict.lights.map((light) => element("div", { class: "light " + light.light },
+      element("b", { "data-light": light.figure }, shown(light.value, light.form)),
+      element("span", { class: "name" }, light.name),
+      light.rule ? element("span", { class: "rule" }, light.rule) : null))));
+  }
+  document.getElementById("head").replaceChildren(...parts);
+}
+
+async function clouds_of(data) {
+  const clouds = {};
+  for (const [name, header] of Object.entries(data.clouds)) clouds[name] = await decode_cloud(name, header);
+  return clouds;
+}
+
+/// The view, or why there is none; the rest of the page does not need it.
+function view_section(data, clouds, skycap) {
+  if (!Object.keys(clouds).length) return null;
+  const stage = element("div", { class: "stage" });
+  const section = element("section", { class: "view", id: "view" }, stage);
+  document.getElementById("main").append(section);
+  try {
+    skycap.panel = new Panel(stage, data, clouds);
+    section.append(...skycap.panel.bars);
+    skycap.panel.viewer.resize();
+  } catch (failure) {
+    stage.append(element("p", { class: "notice" }, "There is no 3-D view: " + failure.message));
+  }
+  section.append(element("div", { class: "pictures" }));
+  return section;
+}
+
+/// Pictures for paper: the view as it stands, and from above.
+function take_pictures(skycap) {
+  const { viewer } = skycap.panel, box = document.querySelector(".pictures");
+  const before = [viewer.camera.position.clone(), viewer.controls.target.clone()];
+  const picture = () => {
+    viewer.draw();
+    return element("img", { src: viewer.canvas.toDataURL("image/png"), alt: "the survey" });
+  };
+  const now = picture();
+  viewer.look("top", false);
+  const top = picture();
+  viewer.move_to(...before, false);
+  box.replaceChildren(now, top);
+}
+
+async function show() {
+  const data = { summary: {}, hole_places: [], ...read_data() }, page = document.getElementById("main");
+  const skycap = { data, panel: null };
+  head(data);
+  await load_library("three");
+  await load_library("orbit");
+  const clouds = await clouds_of(data);
+  skycap.clouds = clouds;
+  view_section(data, clouds, skycap);
+  await load_library("chart");
+  const sections = [
+    holes_section(data, (number) => skycap.panel && skycap.panel.tell_hole(number)),
+    survey_charts(data), flight_section(data), accuracy_section(data), files_section(data),
+    settings_section(data), how_section()];
+  page.append(...sections.filter(Boolean));
+  draw_charts();
+  const foot = "Made by Skycap " + data.version + " from the results beside it. Nothing in this page is loaded from anywhere.";
+  document.getElementById("foot").append(element("p", {}, foot));
+  addEventListener("beforeprint", () => {
+    document.querySelectorAll("details").forEach((one) => { one.open = true; });
+    if (skycap.panel) take_pictures(skycap);
+  });
+  return skycap;
+}
+
+/// For whoever drives the page: a promise of all that it shows.
+function main() {
+  window.skycap = show().catch((failure) => {
+    document.getElementById("main").append(element("p", { class: "notice" }, "The page cannot be shown: " + failure.message));
+    throw failure;
+  });
+}

@@ -1,0 +1,168 @@
+// What is in the 3-D view, layer by layer.
+
+const layer_names = {
+  measured: "points", missing: "missing", route: "route", clearance: "clearance", views: "views",
+  volumes: "volumes", ground: "ground",
+};
+
+/// The box of all that belongs to the survey.
+function extent_of(data, clouds) {
+  const box = new THREE.Box3();
+  for (const cloud of Object.values(clouds)) {
+    if (cloud.count) box.union(new THREE.Box3().setFromArray(cloud.positions));
+  }
+  const core = box.clone();
+  for (const view of views_of(data)) box.expandByPoint(vector(view.position));
+  if (data.scene && data.scene.pad) box.expandByPoint(vector(data.scene.pad));
+  if (box.isEmpty()) {
+    for (const volume of (data.scene && data.scene.volumes) || []) {
+      volume.corners.forEach(([x, y]) => box.expandByPoint(new THREE.Vector3(x, y, volume.bottom || 0)));
+    }
+  }
+  if (box.isEmpty()) box.set(new THREE.Vector3(-1, -1, 0), new THREE.Vector3(1, 1, 1));
+  return { all: box, core: core.isEmpty() ? box.clone() : core };
+}
+
+const views_of = (data) => (data.summary && data.summary.per_view) || [];
+const sorties_of = (data) => value_at(data, "summary.flight.route.sorties") || [];
+
+/// [{points, clearance, sortie, from, to}]: as proven, or straight lines where a summary has none.
+function legs_of(data) {
+  const legs = [], views = views_of(data);
+  const order = value_at(data, "summary.flight.route.order") || [];
+  sorties_of(data).forEach((sortie, number) => {
+    if (sortie.legs) {
+      for (const leg of sortie.legs) {
+        legs.push({ points: leg.points, clearance: leg.clearance_m, sortie: number,
+          from: leg.from, to: leg.to });
+      }
+      return;
+    }
+    for (let i = sortie.first_station; i < sortie.last_station; ++i) {
+      legs.push({ points: [views[order[i]].position, views[order[i + 1]].position],
+        clearance: null, sortie: number, from: order[i], to: order[i + 1] });
+    }
+  });
+  return legs;
+}
+
+/// Clearances are told apart from what was asked for up to this much more [m].
+const told_apart = 3;
+
+function clearance_colour(clearance, asked) {
+  if (clearance === null || !(asked > 0)) return [120, 200, 230];
+  return along(nearness_stops, (clearance - asked) / told_apart);
+}
+
+function cloud_points(cloud, least) {
+  const geometry = new THREE.BufferGeometry();
+  geometry.setAttribute("position", new THREE.BufferAttribute(cloud.positions, 3));
+  const colours = new THREE.BufferAttribute(new Uint8Array(3 * cloud.count), 3, true);
+  geometry.setAttribute("colour", colours);
+  const shots = cloud.view || new Uint16Array(cloud.count);
+  geometry.setAttribute("shot", new THREE.BufferAttribute(new Uint16Array(shots), 1));
+  const points = new THREE.Points(geometry, point_material(cloud.spacing * 1.5, least));
+  points.frustumCulled = false;
+  return points;
+}
+
+function ground_grid(extent, height) {
+  const size = extent.all.getSize(new THREE.Vector3());
+  const reach = 1.3 * Math.max(size.x, size.y), cell = Math.pow(10, Math.round(Math.log10(reach / 12)));
+  const half = Math.ceil(reach / 2 / cell) * cell;
+  const middle = extent.all.getCenter(new THREE.Vector3());
+  const x0 = Math.round(middle.x / cell) * cell, y0 = Math.round(middle.y / cell) * cell;
+  const points = [];
+  for (let at = -half; at <= half + cell / 2; at += cell) {
+    points.push(new THREE.Vector3(x0 + at, y0 - half, height), new THREE.Vector3(x0 + at, y0 + half, height));
+    points.push(new THREE.Vector3(x0 - half, y0 + at, height), new THREE.Vector3(x0 + half, y0 + at, height));
+  }
+  const material = new THREE.LineBasicMaterial({ color: 0x6f8797, transparent: true, opacity: 0.22 });
+  const lines = new THREE.LineSegments(line_geometry(points), material);
+  lines.userData = { north: new THREE.Vector3(x0, y0 + half, height), cell };
+  return lines;
+}
+
+const volume_looks = {
+  no_fly: { colour: 0xe03c3c, opacity: 0.16, name: "no-fly volume" },
+  geofence: { colour: 0x3aa0e0, opacity: 0.04, name: "geofence" },
+  unknown: { colour: 0xd8b24a, opacity: 0, name: "unknown until measured" },
+  scene: { colour: 0xb0c4d0, opacity: 0, name: "to be surveyed" },
+};
+
+function volume_group(data, extent) {
+  const group = new THREE.Group(), ground = data.scene ? data.scene.ground : 0;
+  const highest = extent.all.max.z + 0.15 * extent.all.getSize(new THREE.Vector3()).length();
+  for (const volume of (data.scene && data.scene.volumes) || []) {
+    const look = volume_looks[volume.role], shape = prism(volume, ground, highest);
+    group.add(new THREE.LineSegments(shape.edges, new THREE.LineBasicMaterial({
+      color: look.colour, transparent: true, opacity: 0.8 })));
+    if (look.opacity > 0) {
+      group.add(new THREE.Mesh(shape.walls, new THREE.MeshBasicMaterial({
+        color: look.colour, transparent: true, opacity: look.opacity, side: THREE.DoubleSide,
+        depthWrite: false })));
+    }
+  }
+  return group;
+}
+
+function view_group(data, size) {
+  const group = new THREE.Group(), views = views_of(data);
+  if (!views.length || !data.scene) return group;
+  const depth = size / 26;
+  group.userData.depth = depth;
+  const points = views.flatMap((view) => frustum_lines(view, data.scene.sensor, depth));
+  const geometry = line_geometry(points), colours = new Float32Array(3 * points.length);
+  geometry.setAttribute("color", new THREE.BufferAttribute(colours, 3));
+  views.forEach((view, i) => {
+    const colour = along(ramp_stops.slice(1), views.length > 1 ? i / (views.length - 1) : 0);
+    for (let k = 16 * i; k < 16 * i + 16; ++k) colours.set(colour.map((c) => c / 255), 3 * k);
+  });
+  group.add(new THREE.LineSegments(geometry, new THREE.LineBasicMaterial({ vertexColors: THREE.VertexColors })));
+  return group;
+}
+
+function route_group(data, size) {
+  const group = new THREE.Group(), asked = value_at(data, "summary.flight.clearance_m.total");
+  const lines = legs_of(data).map((leg) => ({
+    points: leg.points, colour: clearance_colour(leg.clearance, asked) }));
+  if (!lines.length) return group;
+  group.add(new THREE.Mesh(tubes(lines, size / 900, 8),
+    new THREE.MeshLambertMaterial({ vertexColors: THREE.VertexColors })));
+  const pad = data.scene.pad;
+  if (pad) {
+    const ring = new THREE.Mesh(new THREE.RingBufferGeometry(size / 110, size / 75, 40),
+      new THREE.MeshBasicMaterial({ color: 0xffffff, side: THREE.DoubleSide }));
+    ring.position.set(pad[0], pad[1], pad[2] + size / 2000);
+    group.add(ring);
+  }
+  return group;
+}
+
+/// The room that the proof keeps free around the route.
+function clearance_group(data) {
+  const group = new THREE.Group(), asked = value_at(data, "summary.flight.clearance_m.total");
+  const lines = legs_of(data).map((leg) => ({ points: leg.points, colour: [120, 200, 240] }));
+  if (!lines.length || !(asked > 0)) return group;
+  group.add(new THREE.Mesh(tubes(lines, asked, 20), new THREE.MeshLambertMaterial({
+    vertexColors: THREE.VertexColors, transparent: true, opacity: 0.13, depthWrite: false,
+    side: THREE.DoubleSide })));
+  return group;
+}
+
+function build_layers(data, clouds) {
+  const extent = extent_of(data, clouds);
+  const size = extent.all.getSize(new THREE.Vector3()).length() || 1;
+  const layers = {};
+  const main = clouds.measured || clouds.model;
+  if (main && main.count) layers.measured = cloud_points(main, 1.6);
+  if (clouds.missing && clouds.missing.count) layers.missing = cloud_points(clouds.missing, 3);
+  const add = (name, group) => { if (group.children.length || group.isLine) layers[name] = group; };
+  add("route", route_group(data, size));
+  add("clearance", clearance_group(data));
+  add("views", view_group(data, size));
+  add("volumes", volume_group(data, extent));
+  layers.ground = ground_grid(extent, data.scene ? data.scene.ground : extent.all.min.z);
+  if (layers.clearance) layers.clearance.visible = false;
+  return { layers, extent, size };
+}

@@ -1,0 +1,153 @@
+// The page's tables.
+
+/// rows: lists of cells; a cell is text, an element, or {number: text}.
+function table(headings, rows, attributes_of = () => ({})) {
+  const cell = (tag, content) => (content && content.number !== undefined
+    ? element(tag, { class: "number" }, content.number)
+    : element(tag, {}, content));
+  return element("div", { class: "scroll" }, element("table", {},
+    element("thead", {}, element("tr", {}, headings.map((heading) => cell("th", heading)))),
+    element("tbody", {}, rows.map((row, i) => element("tr", attributes_of(i),
+      row.map((content) => cell("td", content)))))));
+}
+
+const reason_text = Object.fromEntries(states.map((state) => [state.key, state.name]));
+const reason_colour = Object.fromEntries(states.map((state) => [state.key, state.colour]));
+const most_holes = 40;
+
+/// What is missing, piece by piece; the column of areas sums to the missing share.
+function holes_section(data, on_pick) {
+  const surface = data.summary.surface;
+  if (!surface) return null;
+  const holes = surface.holes, path = (i, name) => "surface.holes." + i + "." + name;
+  const number = (content) => ({ number: content });
+  const share = (area) => number(shown(surface.area_m2 > 0 ? area / surface.area_m2 : 0, "share"));
+  const rows = holes.slice(0, most_holes).map((hole, i) => [
+    element("span", {}, swatch(reason_colour[hole.reason]), reason_text[hole.reason]),
+    number(figure(data, path(i, "area_m2"), "square_metres")), share(hole.area_m2),
+    places_text(hole.centre), data.hole_places[i]
+      ? data.hole_places[i].slice(0, 2).map((degrees) => shown(degrees, "place")).join(", ") +
+        ", " + shown(data.hole_places[i][2], "metres") : "–",
+    number(hole.nearest_view + ", " + shown(hole.view_distance_m, "metres")), seen_from(data, hole)]);
+  const rest = holes.slice(most_holes);
+  const rest_area = rest.reduce((sum, hole) => sum + hole.area_m2, 0) + surface.smaller.area_m2;
+  const total = holes.reduce((sum, hole) => sum + hole.area_m2, 0) + surface.smaller.area_m2 + surface.rest_m2;
+  const wide = (text, area, form_path) => [text, number(form_path ? figure(data, form_path, "square_metres")
+    : shown(area, "square_metres")), share(area), "", "", "", ""];
+  rows.push(wide((rest.length + surface.smaller.holes) + " smaller ones", rest_area));
+  rows.push(wide("spread over covered surface", surface.rest_m2, "surface.rest_m2"));
+  rows.push(wide("missing in all", total));
+  const headings = ["why", number("area"), number("of surface"), "centre x, y, z [m]", "latitude, longitude, height",
+    number("nearest view"), "would be seen from"];
+  const who = surface.known_by === "planner" ? "as the planner believes" : "as the simulator knows";
+  return element("section", { id: "holes" }, element("h2", {}, "What is missing"),
+    element("p", {}, "Of " , figure(data, "surface.area_m2", "square_metres"), " of surface, " + who +
+      ". Click a row to go there."),
+    table(headings, rows, (i) => {
+      if (i < Math.min(holes.length, most_holes)) return { class: "pick", "data-hole": String(i), onclick: () => on_pick(i) };
+      return i === rows.length - 1 ? { class: "sum", id: "missing-sum", "data-area": String(total) } : {};
+    }));
+}
+
+/// Where a sensor would have to be to look at a hole head-on, as far off as its nearest view.
+function seen_from(data, hole) {
+  if (!hole.normal.some((part) => part !== 0)) return "no one side";
+  const distance = Math.min(hole.view_distance_m || 10, 30);
+  const place = hole.centre.map((part, axis) => part + distance * hole.normal[axis]);
+  if (place[2] < (data.scene ? data.scene.ground : -Infinity)) return "below";
+  return places_text(place);
+}
+
+function flight_section(data) {
+  const { flight } = data.summary;
+  if (!flight) return null;
+  const section = element("section", { id: "flight" }, element("h2", {}, "Flight"));
+  if (flight.failure) {
+    section.append(element("p", { class: "notice" }, "There is no route: " + flight.failure));
+    return section;
+  }
+  const number = (content) => ({ number: content });
+  const f = (path, form) => figure(data, "flight." + path, form);
+  section.append(element("p", {}, "With ", f("vehicle", "text"), ": ", f("route.length_m", "metres"), " in ",
+    f("route.duration_s", "minutes"), ", ", f("route.energy_wh", "watt_hours"),
+    ". Every leg is proven free, with ", f("clearance_m.total", "metres"), " to spare; the least is ",
+    f("route.min_clearance_m", "metres"), "."));
+  section.append(table(["sortie", "stations", number("length"), number("time"), number("energy"),
+    number("left above reserve"), number("least clearance")], sorties_of(data).map((sortie, i) => {
+    const path = "route.sorties." + i + ".";
+    return [String(i + 1), sortie.first_station + " to " + sortie.last_station,
+      number(f(path + "length_m", "metres")), number(f(path + "duration_s", "minutes")),
+      number(f(path + "energy_wh", "watt_hours")), number(f(path + "energy_left_wh", "watt_hours")),
+      number(f(path + "min_clearance_m", "metres"))];
+  })));
+  const terms = [["vehicle's radius", "vehicle_radius"], ["position error", "position_error"],
+    ["tracking error", "tracking_error"], ["map error", "map_error"], ["margin", "margin"], ["together", "total"]];
+  section.append(element("h3", {}, "What the clearance is made of"),
+    table(terms.map(([name]) => number(name)), [terms.map(([, key]) => number(f("clearance_m." + key, "metres")))]));
+  if (flight.return) {
+    const home = flight.return;
+    section.append(element("h3", {}, "The way home"), element("p", {}, "From every point of the route the autopilot's own return is proven at ",
+      f("return.height_m", "metres"), " above the pad; the least clearance is ", f("return.clearance_m", "metres"),
+      ", from " + (home.nearest.obstacle || "nothing near") + ". It takes at most ", f("return.energy_wh", "watt_hours"), "."));
+  }
+  const missed = flight.route.unreached || [];
+  if (missed.length) {
+    section.append(element("h3", {}, "Views that are not flown to"),
+      table(["view", "why"], missed.map((one) => [String(one.view), one.reason])));
+  }
+  if ((flight.notes || []).length) {
+    section.append(element("h3", {}, "Notes"), element("ul", {}, flight.notes.map((note) => element("li", {}, note))));
+  }
+  section.append(element("h3", {}, "Route files"), table(["file", "heights count", number("time as flown by it"), number("least clearance")],
+    (flight.files || []).map((file, i) => [file.name, file.heights,
+      number(f("files." + i + ".duration_s", "minutes")), number(f("files." + i + ".min_clearance_m", "metres"))])));
+  return section;
+}
+
+function accuracy_section(data) {
+  const { accuracy, summary } = data;
+  if (!accuracy || !data.clouds.measured || !data.clouds.measured.of) return null;
+  const { incidence_deg, range_m } = accuracy;
+  const noise = value_at(summary, "belief.noise_m");
+  return element("section", { id: "accuracy" }, element("h2", {}, "Accuracy"),
+    noise > 0 ? element("p", {}, "The planner has learnt that a measurement head-on strays by ",
+      figure(data, "belief.noise_m", "millimetres"), " (standard deviation).") : null,
+    element("div", { class: "charts" },
+      histogram_chart("Angle of incidence", "Between the surface's normal and the way to the sensor: flat looks measure badly.",
+        incidence_deg.counts, incidence_deg.low, incidence_deg.high, "degrees", 0),
+      range_m.high > 0 ? histogram_chart("Range", "How far the sensor was from the points it took.",
+        range_m.counts, range_m.low, range_m.high, "m", 2) : null));
+}
+
+function files_section(data) {
+  if (!(data.files || []).length) return null;
+  return element("section", { id: "files" }, element("h2", {}, "Files"),
+    table(["file", { number: "size" }, "SHA-256"], data.files.map((file) => [file.name,
+      { number: shown(file.bytes, "bytes") }, element("span", { class: "code" }, file.sha256)])));
+}
+
+const setting_text = (value) => (typeof value === "string" ? value : JSON.stringify(value));
+
+function settings_section(data) {
+  const settings = data.summary.settings;
+  if (!settings) return null;
+  return element("section", { id: "settings" }, element("details", { class: "settings" },
+    element("summary", {}, "All settings in force"),
+    table(["key", "value"], Object.entries(settings).map(([key, value]) => [key, setting_text(value)]))));
+}
+
+/// How the figures are computed: in the page, for whoever has nothing else.
+const how = [
+  ["Coverage, as the planner believes", "Area of the surface that was measured or is guessed to be there, each piece times the probability that it has a measurement within the registration distance, over the whole area."],
+  ["Coverage, true", "Of points spread evenly over the simulated model's surface, the share with a measurement within evaluation.registration_distance. The planner never sees it. Of what is visible: of those points that a sensor could see from some admissible place."],
+  ["What is missing", "Pieces of surface that are more likely uncovered than covered hang together if they are near each other and missing for the same reason. Their area is the missing part of each piece. The rest is what even covered surface is expected to lack. All together is the surface's area times one less the coverage."],
+  ["Proven clearance", "For every leg a lower bound of the distance between the vehicle's centre and anything measured, forbidden, or not yet seen free, over the whole leg, not only at its ends."],
+  ["Times and energy", "Of the vehicle's profile, with stops, turns and hovering, in the wind and at the temperature that the mission gives."],
+  ["Incidence and range", "From each point's normal, the plane through its neighbours, and the place of the sensor that took it."],
+  ["Density", "Neighbours of a point within two and a half times the usual spacing, over that disc's area, scaled up if the page shows only some of the points."],
+];
+
+function how_section() {
+  return element("section", { id: "how" }, element("details", {}, element("summary", {}, "How each figure is computed"),
+    element("dl", { class: "how" }, how.flatMap(([term, text]) => [element("dt", {}, term), element("dd", {}, text)]))));
+}

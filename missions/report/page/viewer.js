@@ -1,0 +1,314 @@
+// The 3-D view: draws its layers when something has changed, and answers what is under a place.
+
+class Viewer {
+  constructor(canvas, data, clouds) {
+    this.canvas = canvas;
+    this.data = data;
+    this.clouds = clouds;
+    this.main = clouds.measured || clouds.model || null;
+    const context = canvas.getContext("webgl2", { antialias: true, preserveDrawingBuffer: true });
+    if (!context) throw new Error("this browser shows no 3-D graphics (WebGL 2)");
+    this.renderer = new THREE.WebGLRenderer({ canvas, context });
+    this.renderer.autoClear = false;
+    Object.assign(this, build_layers(data, clouds));
+    this.camera = new THREE.PerspectiveCamera(45, 1, this.size / 1000, this.size * 12);
+    this.camera.up.set(0, 0, 1);
+    this.controls = new THREE.OrbitControls(this.camera, canvas);
+    Object.assign(this.controls, { enableKeys: false, screenSpacePanning: true, zoomSpeed: 1.2,
+      minDistance: this.size / 400, maxDistance: this.size * 6 });
+    this.controls.addEventListener("change", () => this.draw_soon());
+    this.listeners = [];
+    this.mode = null;
+    this.last_view = Infinity;
+    this.marks = new THREE.Group();
+    this.make_scenes();
+    this.make_screen();
+    new ResizeObserver(() => this.resize()).observe(canvas.parentElement);
+    this.resize();
+    this.look("overview", false);
+  }
+
+  make_scenes() {
+    this.cloud_scene = new THREE.Scene();
+    this.shape_scene = new THREE.Scene();
+    for (const [name, layer] of Object.entries(this.layers)) {
+      const is_cloud = name === "measured" || name === "missing";
+      (is_cloud ? this.cloud_scene : this.shape_scene).add(layer);
+    }
+    this.shape_scene.add(this.marks, new THREE.HemisphereLight(0xffffff, 0x8090a0, 1));
+  }
+
+  make_screen() {
+    this.target = new THREE.WebGLRenderTarget(4, 4, {
+      minFilter: THREE.NearestFilter, magFilter: THREE.NearestFilter });
+    // Other types are of 16 bits here, and shading by depth would draw their steps.
+    this.target.depthTexture = new THREE.DepthTexture(4, 4, THREE.FloatType);
+    this.screen = new THREE.Mesh(new THREE.PlaneBufferGeometry(2, 2), screen_material());
+    this.screen.frustumCulled = false;
+    this.screen_scene = new THREE.Scene();
+    this.screen_scene.add(this.screen);
+  }
+
+  resize() {
+    const box = this.canvas.parentElement.getBoundingClientRect();
+    const width = Math.max(1, Math.round(box.width)), height = Math.max(1, Math.round(box.height));
+    this.ratio = Math.min(window.devicePixelRatio || 1, 2);
+    this.renderer.setPixelRatio(this.ratio);
+    this.renderer.setSize(width, height, false);
+    this.target.setSize(Math.round(width * this.ratio), Math.round(height * this.ratio));
+    this.camera.aspect = width / height;
+    this.camera.updateProjectionMatrix();
+    this.draw_soon();
+  }
+
+  draw_soon() {
+    if (this.is_waiting) return;
+    this.is_waiting = true;
+    requestAnimationFrame(() => {
+      this.is_waiting = false;
+      this.draw();
+    });
+  }
+
+  set_point_scale(camera, height) {
+    for (const name of ["measured", "missing"]) {
+      if (!this.layers[name]) continue;
+      const { uniforms } = this.layers[name].material;
+      uniforms.scale.value = height / (2 * Math.tan(camera.fov * Math.PI / 360));
+      uniforms.least.value = (name === "missing" ? 3 : 1.6) * this.ratio;
+    }
+  }
+
+  draw() {
+    const { renderer, target, camera } = this, { uniforms } = this.screen.material;
+    this.set_point_scale(camera, target.height);
+    renderer.setRenderTarget(target);
+    renderer.setClearColor(0, 0);
+    renderer.clear();
+    renderer.render(this.cloud_scene, camera);
+    renderer.setRenderTarget(null);
+    uniforms.picture.value = target.texture;
+    uniforms.depths.value = target.depthTexture;
+    uniforms.pixel.value.set(1.2 * this.ratio / target.width, 1.2 * this.ratio / target.height);
+    uniforms.near.value = camera.near;
+    uniforms.far.value = camera.far;
+    renderer.clear();
+    renderer.render(this.screen_scene, camera);
+    renderer.render(this.shape_scene, camera);
+    for (const listener of this.listeners) listener();
+  }
+
+  /// From a side of the world, or from where most is seen.
+  look(from, is_smooth = true) {
+    const directions = { N: [0, 1, 0.35], E: [1, 0, 0.35], S: [0, -1, 0.35], W: [-1, 0, 0.35],
+      top: [0, -0.0001, 1], overview: [-0.62, -0.85, 0.62] };
+    const whole = from === "top" ? this.extent.all : this.extent.core;
+    const centre = whole.getCenter(new THREE.Vector3());
+    const radius = 0.5 * whole.getSize(new THREE.Vector3()).length() || 1;
+    const distance = radius / Math.sin(Math.min(this.camera.fov * Math.PI / 360,
+      Math.atan(Math.tan(this.camera.fov * Math.PI / 360) * this.camera.aspect)));
+    const direction = vector(directions[from]).normalize();
+    const share = from === "overview" ? 0.92 : 0.98;
+    this.move_to(centre.clone().addScaledVector(direction, share * distance), centre, is_smooth);
+  }
+
+  /// Near to a place, from the side that it faces.
+  look_at_place(place, normal, radius) {
+    const centre = vector(place), out = vector(normal || [0, 0, 0]);
+    if (out.length() < 0.5) out.copy(this.camera.position).sub(centre);
+    out.normalize();
+    if (out.z < 0.1) out.setZ(0.25).normalize();
+    this.move_to(centre.clone().addScaledVector(out, Math.max(4 * radius, this.size / 9)), centre, true);
+  }
+
+  move_to(position, target, is_smooth) {
+    const start = performance.now(), from = this.camera.position.clone(), to_start = this.controls.target.clone();
+    const is_still = !is_smooth || matchMedia("(prefers-reduced-motion: reduce)").matches;
+    const ticket = this.movement = {};
+    const step = () => {
+      if (this.movement !== ticket) return;
+      const time = is_still ? 1 : Math.min(1, (performance.now() - start) / 450);
+      const share = time * time * (3 - 2 * time);
+      this.camera.position.copy(from).lerp(position, share);
+      this.controls.target.copy(to_start).lerp(target, share);
+      this.controls.update();
+      this.draw_soon();
+      if (time < 1) requestAnimationFrame(step);
+    };
+    step();
+  }
+
+  show_layer(name, is_shown) {
+    if (this.layers[name]) this.layers[name].visible = is_shown;
+    this.draw_soon();
+  }
+
+  /// Colours the points by state, view, height, incidence or density; says what the colours mean.
+  colour_by(mode) {
+    this.mode = mode;
+    const legend = { rows: [], ramp: null };
+    for (const name of ["measured", "missing"]) {
+      const layer = this.layers[name], cloud = name === "missing" ? this.clouds.missing : this.main;
+      if (!layer) continue;
+      const paint = name === "missing" ? painter_of("state", cloud, {}) : painter_of(mode, cloud, legend);
+      const colours = layer.geometry.getAttribute("colour");
+      for (let i = 0; i < cloud.count; ++i) colours.array.set(paint(i), 3 * i);
+      colours.needsUpdate = true;
+    }
+    this.draw_soon();
+    return legend;
+  }
+
+  /// Shows the survey as it was after that view.
+  replay(last_view) {
+    this.last_view = last_view;
+    const views = views_of(this.data).length, is_all = last_view >= views - 1;
+    if (this.layers.measured) this.layers.measured.material.uniforms.last_view.value = is_all ? 65535 : last_view;
+    if (this.layers.missing) this.layers.missing.material.uniforms.last_view.value = is_all ? 65535 : -1;
+    if (this.layers.views) this.layers.views.children[0].geometry.setDrawRange(0, is_all ? Infinity : 16 * (last_view + 1));
+    this.draw_soon();
+  }
+
+  /// What stands out: a view's pyramid, a ring around a place, a measured distance.
+  mark(objects) {
+    this.marks.remove(...this.marks.children);
+    if (objects.length) this.marks.add(...objects);
+    this.draw_soon();
+  }
+
+  on_screen(place) {
+    const seen = place.clone().project(this.camera);
+    return { x: (seen.x + 1) / 2 * this.canvas.clientWidth, y: (1 - seen.y) / 2 * this.canvas.clientHeight,
+      is_seen: seen.z < 1 && seen.z > -1 };
+  }
+
+  /// The view whose sensor is drawn within some pixels of a place on the screen; else -1.
+  view_at(x, y) {
+    if (!this.layers.views || !this.layers.views.visible) return -1;
+    let best = -1, least = 16;
+    views_of(this.data).forEach((view, i) => {
+      if (i > this.last_view) return;
+      const seen = this.on_screen(vector(view.position));
+      const distance = Math.hypot(seen.x - x, seen.y - y);
+      if (!seen.is_seen || distance >= least) return;
+      best = i;
+      least = distance;
+    });
+    return best;
+  }
+
+  /// The point of a cloud that is drawn nearest to a place on the screen, of those in front.
+  point_at(x, y) {
+    let best = null;
+    for (const name of ["measured", "missing"]) {
+      const layer = this.layers[name], cloud = name === "missing" ? this.clouds.missing : this.main;
+      if (!layer || !layer.visible) continue;
+      const found = nearest_on_screen(this, cloud, layer.material.uniforms, x, y);
+      if (found && (!best || found.score < best.score)) best = { ...found, cloud, name };
+    }
+    return best;
+  }
+
+  /// What a sensor measured from a view: its own points, drawn as it saw them, into a 2-D canvas.
+  picture_of(number, picture) {
+    const view = views_of(this.data)[number], { sensor } = this.data.scene;
+    const width = picture.width, height = picture.height;
+    const camera = new THREE.PerspectiveCamera(sensor.vertical_fov * 180 / Math.PI,
+      width / height, this.size / 2000, this.size * 12);
+    camera.up.set(0, 0, 1);
+    if (Math.abs(view.direction[2]) > 0.999999) camera.up.set(0, 1, 0);
+    camera.position.copy(vector(view.position));
+    camera.lookAt(vector(view.position).add(vector(view.direction)));
+    camera.updateMatrixWorld();
+    const { uniforms } = this.layers.measured.material, target = new THREE.WebGLRenderTarget(width, height);
+    const before = [uniforms.first_view.value, uniforms.last_view.value];
+    const hidden = this.layers.missing;
+    const was_shown = [this.layers.measured.visible, hidden && hidden.visible];
+    uniforms.first_view.value = uniforms.last_view.value = number;
+    this.layers.measured.visible = true;
+    if (hidden) hidden.visible = false;
+    this.set_point_scale(camera, height);
+    this.renderer.setRenderTarget(target);
+    this.renderer.setClearColor(0x06090c, 1);
+    this.renderer.clear();
+    this.renderer.render(this.cloud_scene, camera);
+    const pixels = new Uint8Array(4 * width * height);
+    this.renderer.readRenderTargetPixels(target, 0, 0, width, height, pixels);
+    this.renderer.setRenderTarget(null);
+    target.dispose();
+    [uniforms.first_view.value, uniforms.last_view.value] = before;
+    this.layers.measured.visible = was_shown[0];
+    if (hidden) hidden.visible = was_shown[1];
+    const image = new ImageData(width, height);
+    for (let row = 0; row < height; ++row) {
+      image.data.set(pixels.subarray(4 * width * (height - 1 - row), 4 * width * (height - row)), 4 * width * row);
+    }
+    picture.getContext("2d").putImageData(image, 0, 0);
+    this.draw_soon();
+  }
+}
+
+/// Of the points within 9 pixels, the one that is nearest to the eye, pixels weighed in.
+function nearest_on_screen(viewer, cloud, uniforms, x, y) {
+  const matrix = new THREE.Matrix4().multiplyMatrices(viewer.camera.projectionMatrix,
+    viewer.camera.matrixWorldInverse).elements;
+  const width = viewer.canvas.clientWidth, height = viewer.canvas.clientHeight, reach = 9;
+  const p = cloud.positions;
+  let best = null;
+  for (let i = 0; i < cloud.count; ++i) {
+    const shot = cloud.view ? cloud.view[i] : 0;
+    if (shot > uniforms.last_view.value) continue;
+    const a = p[3 * i], b = p[3 * i + 1], c = p[3 * i + 2];
+    const w = matrix[3] * a + matrix[7] * b + matrix[11] * c + matrix[15];
+    if (w <= 0) continue;
+    const px = ((matrix[0] * a + matrix[4] * b + matrix[8] * c + matrix[12]) / w + 1) / 2 * width - x;
+    if (px > reach || px < -reach) continue;
+    const py = (1 - (matrix[1] * a + matrix[5] * b + matrix[9] * c + matrix[13]) / w) / 2 * height - y;
+    const off = Math.hypot(px, py);
+    if (off > reach) continue;
+    const score = w * (1 + 0.02 * off);
+    if (!best || score < best.score) best = { index: i, score };
+  }
+  return best;
+}
+
+/// The middle of the step that a point's incidence is in [degrees]; nothing if it is not known.
+function incidence_of(cloud, index) {
+  const step = cloud.incidence ? cloud.incidence[index] : 255;
+  return step === 255 ? null : 10 * step + 5;
+}
+
+/// A function from a point's index to its colour.
+function painter_of(mode, cloud, legend) {
+  const p = cloud.positions;
+  const ramp = (title, values, low, high, form, stops = ramp_stops) => {
+    legend.ramp = { title, low: shown(low, form), high: shown(high, form), stops };
+    const table = Array.from({ length: 256 }, (_, i) => along(stops, i / 255));
+    return (i) => table[Math.max(0, Math.min(255, Math.round(255 * (values(i) - low) / (high - low || 1))))];
+  };
+  if (mode === "height") {
+    const heights = Float32Array.from({ length: cloud.count }, (_, i) => p[3 * i + 2]);
+    return ramp("height", (i) => heights[i], quantile(heights, 0.001), quantile(heights, 0.999), "metres");
+  }
+  if (mode === "view" && cloud.view) {
+    legend.note = "a colour for each view";
+    return (i) => view_colour(cloud.view[i]);
+  }
+  if (mode === "incidence" && cloud.incidence) {
+    const unknown = [110, 120, 128];
+    const paint = ramp("angle of incidence", (i) => incidence_of(cloud, i), 0, 90, "degrees",
+      [...ramp_stops].reverse());
+    return (i) => (cloud.incidence[i] === 255 ? unknown : paint(i));
+  }
+  if (mode === "density") {
+    if (!cloud.density) cloud.density = densities(cloud, 2.5 * cloud.spacing);
+    legend.unit = "points per m²";
+    return ramp("points per m²", (i) => cloud.density[i], 0, quantile(cloud.density, 0.99), "count");
+  }
+  if (cloud.state) {
+    legend.rows = states;
+    return (i) => states[cloud.state[i]].colour;
+  }
+  const plain = [190, 200, 208];
+  return () => plain;
+}

@@ -1,0 +1,103 @@
+#include "missions/report/point_figures.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include "geometry/points/spatial_index.h"
+#include "missions/package/coverage_map.h"
+
+namespace skycap::missions::report {
+namespace {
+
+using Eigen::Vector3f;
+
+bool has_view(const geometry::AttributedCloud& cloud, std::span<const geometry::View> views,
+              std::size_t point) {
+  return point < cloud.views.size() && cloud.views[point] < views.size();
+}
+
+Vector3f to_sensor(const geometry::AttributedCloud& cloud, std::span<const geometry::View> views,
+                   std::size_t point) {
+  return views[cloud.views[point]].position.cast<float>() - cloud.positions[point];
+}
+
+}  // namespace
+
+std::vector<std::uint16_t> incidence_steps(const geometry::AttributedCloud& cloud,
+                                           std::span<const geometry::View> views) {
+  // By the cosines of the steps' ends: a comparison costs less than an arc cosine.
+  std::vector<float> least_cosines;
+  for (double angle = incidence_step_deg; angle < 180.0; angle += incidence_step_deg) {
+    least_cosines.push_back(static_cast<float>(std::cos(angle * std::numbers::pi / 180.0)));
+  }
+  std::vector<std::uint16_t> steps(cloud.positions.size(), no_incidence);
+  if (cloud.normals.empty()) return steps;
+  for (std::size_t i = 0; i < steps.size(); ++i) {
+    if (!has_view(cloud, views, i)) continue;
+    const Vector3f way = to_sensor(cloud, views, i);
+    const float lengths = way.norm() * cloud.normals[i].norm();
+    if (!(lengths > 0.0F)) continue;
+    const float cosine = way.dot(cloud.normals[i]) / lengths;
+    const auto end =
+        std::ranges::find_if(least_cosines, [&](float least) { return cosine > least; });
+    steps[i] = static_cast<std::uint16_t>(end - least_cosines.begin());
+  }
+  return steps;
+}
+
+std::vector<float> ranges(const geometry::AttributedCloud& cloud,
+                          std::span<const geometry::View> views) {
+  std::vector<float> ranges(cloud.positions.size(), std::numeric_limits<float>::quiet_NaN());
+  for (std::size_t i = 0; i < ranges.size(); ++i) {
+    if (has_view(cloud, views, i)) ranges[i] = to_sensor(cloud, views, i).norm();
+  }
+  return ranges;
+}
+
+std::vector<std::uint16_t> map_states(const geometry::AttributedCloud& map) {
+  std::vector<std::uint16_t> states;
+  states.reserve(map.positions.size());
+  for (std::size_t i = 0; i < map.positions.size(); ++i) {
+    const auto reason = i < map.colours.size() ? package::reason_of(map.colours[i]) : std::nullopt;
+    states.push_back(
+        static_cast<std::uint16_t>(reason.value_or(survey::skycap::MissingReason::none)));
+  }
+  return states;
+}
+
+std::vector<std::uint16_t> point_states(const geometry::AttributedCloud& cloud,
+                                        const geometry::AttributedCloud& map, double reach) {
+  std::vector<std::uint16_t> states(cloud.positions.size(), 0);
+  if (!(reach > 0.0)) return states;
+  const std::vector<std::uint16_t> of_map = map_states(map);
+  geometry::SpatialIndex missing(reach);
+  std::vector<std::uint16_t> of_missing;
+  for (std::size_t i = 0; i < of_map.size(); ++i) {
+    constexpr std::uint16_t never_seen = 2;  // no measured point is that
+    if (of_map[i] == 0 || of_map[i] == never_seen) continue;
+    missing.insert(map.positions[i]);
+    of_missing.push_back(of_map[i]);
+  }
+  if (of_missing.empty()) return states;
+  for (std::size_t i = 0; i < states.size(); ++i) {
+    const std::uint32_t found = missing.grid().first_within(cloud.positions[i], reach);
+    if (found != geometry::PointGrid::none) states[i] = of_missing[found];
+  }
+  return states;
+}
+
+std::vector<std::size_t> histogram(std::span<const float> values, double low, double high,
+                                   std::size_t bins) {
+  std::vector<std::size_t> counts(bins, 0);
+  const double scale = high > low ? static_cast<double>(bins) / (high - low) : 0.0;
+  for (const float value : values) {
+    if (std::isnan(value)) continue;
+    const double bin = std::floor((static_cast<double>(value) - low) * scale);
+    ++counts[static_cast<std::size_t>(std::clamp(bin, 0.0, static_cast<double>(bins - 1)))];
+  }
+  return counts;
+}
+
+}  // namespace skycap::missions::report

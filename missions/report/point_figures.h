@@ -1,0 +1,41 @@
+/// Figures of single points of a survey's cloud, and how they are spread.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "geometry/io/cloud_io.h"
+#include "geometry/place/pose.h"
+
+namespace skycap::missions::report {
+
+/// Incidence is kept in whole steps of this many degrees.
+inline constexpr double incidence_step_deg = 10.0;
+/// Of a point whose normal or view is not known.
+inline constexpr std::uint16_t no_incidence = 255;
+
+/// For each point the angle between its normal and the way to the sensor that took it, in steps.
+std::vector<std::uint16_t> incidence_steps(const geometry::AttributedCloud& cloud,
+                                           std::span<const geometry::View> views);
+
+/// For each point how far the sensor was that took it [m]; NaN of an unknown view.
+std::vector<float> ranges(const geometry::AttributedCloud& cloud,
+                          std::span<const geometry::View> views);
+
+/// What a map of coverage says of each of its points: 0 covered, 1 seen too thinly, 2 never seen,
+/// 3 out of reach; of colours that no such map has, 0.
+std::vector<std::uint16_t> map_states(const geometry::AttributedCloud& map);
+
+/// The state of measured points: that of a missing piece of the map within `reach`, else covered.
+std::vector<std::uint16_t> point_states(const geometry::AttributedCloud& cloud,
+                                        const geometry::AttributedCloud& map, double reach);
+
+/// How many values fall into each of `bins` equal parts of [low, high); those outside count in the
+/// first and the last, NaN nowhere.
+std::vector<std::size_t> histogram(std::span<const float> values, double low, double high,
+                                   std::size_t bins);
+
+}  // namespace skycap::missions::report

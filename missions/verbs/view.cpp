@@ -1,0 +1,76 @@
+#include <cstdlib>
+
+#include "geometry/error.h"
+#include "geometry/io/file.h"
+#include "geometry/io/output_folder.h"
+#include "missions/derived/mission_flight.h"
+#include "missions/derived/resolved_mission.h"
+#include "missions/plugins/external_program.h"
+#include "missions/report/cloud_page.h"
+#include "missions/report/survey_report.h"
+#include "missions/scene/survey_scene.h"
+#include "missions/verbs/verbs.h"
+
+namespace skycap::missions::verbs {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// A page, and where it belongs.
+struct Page {
+  fs::path file;
+  std::string text;
+};
+
+Page page_of_mission(const ViewOptions& options) {
+  const file::Mission mission = derived::read_mission(options.what, options.overrides);
+  const scene::SurveyScene scene(mission, options.what.parent_path());
+  const geometry::View first = scene.first_view(mission.seed);
+  std::optional<Eigen::Vector3d> pad;
+  if (mission.flight.is_flown()) pad = derived::pad_of(mission, first.position);
+  return {fs::path("results") / mission.name / "mission.html",
+          report::mission_page(mission, scene.samples().points, pad)};
+}
+
+Page page_of(const ViewOptions& options) {
+  const fs::path& what = options.what;
+  std::error_code ignored;
+  if (fs::is_directory(what, ignored)) {
+    geometry::finish_commit(what);
+    return {what / report::report_name, report::survey_report(report::results_in(what))};
+  }
+  if (!options.out && !fs::exists(what, ignored)) {
+    throw Error(ErrorKind::bad_file, what.string() + ": is not there");
+  }
+  const std::string ending = what.extension().string();
+  if (ending == ".yaml" || ending == ".yml") return page_of_mission(options);
+  fs::path file = what;
+  file.replace_extension(".html");
+  return {file, report::cloud_page(what)};
+}
+
+/// Whether a browser was told to show the file. Programs without a screen start browsers of text,
+/// which wait for a terminal.
+bool is_opened(const fs::path& file) {
+  const bool has_screen =
+      std::getenv("DISPLAY") != nullptr || std::getenv("WAYLAND_DISPLAY") != nullptr;
+  if (!has_screen) return false;
+  return plugins::start_external_program({"xdg-open", fs::absolute(file).string()});
+}
+
+}  // namespace
+
+int view(const ViewOptions& options, const Console& console) {
+  ProgressLine progress(console, false);
+  progress.show("reading " + options.what.string());
+  Page page = page_of(options);
+  page.file = options.out.value_or(page.file);
+  geometry::write_file(page.file, page.text);
+  progress.clear();
+  const bool is_shown = is_opened(page.file);
+  console.out << (is_shown ? "opened in the browser: " : "open this in a browser: ")
+              << page.file.string() << "\n";
+  return 0;
+}
+
+}  // namespace skycap::missions::verbs

@@ -1,0 +1,151 @@
+#include "missions/report/cloud_code.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <random>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <zlib.h>
+
+namespace skycap::missions::report {
+namespace {
+
+using Eigen::Vector3d;
+using Eigen::Vector3f;
+
+/// The twin of page/cloud.js, written from the header's words: bit by bit.
+struct Decoded {
+  std::vector<Vector3d> positions;
+  std::vector<std::vector<std::uint16_t>> attributes;
+};
+
+Decoded decode(const CloudCode& code) {
+  const auto planes = static_cast<std::size_t>((3 * code.bits + 7) / 8);
+  std::size_t size = planes * code.points;
+  for (const auto& plane : code.attributes)
+    size += static_cast<std::size_t>(plane.bytes) * code.points;
+  std::vector<unsigned char> bytes(size + 1);
+  uLongf unpacked = bytes.size();
+  EXPECT_EQ(uncompress(bytes.data(), &unpacked, reinterpret_cast<const Bytef*>(code.bytes.data()),
+                       code.bytes.size()),
+            Z_OK);
+  EXPECT_EQ(unpacked, size);
+  Decoded decoded;
+  std::uint64_t key = 0;
+  for (std::size_t i = 0; i < code.points; ++i) {
+    for (std::size_t p = 0; p < planes; ++p)
+      key += std::uint64_t{bytes[p * code.points + i]} << 8 * p;
+    Vector3d cell = Vector3d::Zero();
+    for (int bit = 0; bit < 3 * code.bits; ++bit) {
+      if (key >> bit & 1) cell[bit % 3] += std::ldexp(1.0, bit / 3);
+    }
+    decoded.positions.emplace_back(code.origin + code.step * (cell + Vector3d::Constant(0.5)));
+  }
+  std::size_t at = planes * code.points;
+  for (const auto& plane : code.attributes) {
+    std::vector<std::uint16_t> values(code.points, 0);
+    for (int byte = 0; byte < plane.bytes; ++byte) {
+      for (auto& value : values)
+        value = static_cast<std::uint16_t>(value | bytes[at++] << 8 * byte);
+    }
+    decoded.attributes.push_back(std::move(values));
+  }
+  return decoded;
+}
+
+/// Points on a sphere with noise, as a survey leaves them.
+std::vector<Vector3f> sphere(std::size_t count, double radius, double noise) {
+  std::mt19937_64 random(3);
+  std::normal_distribution<double> normal;
+  std::vector<Vector3f> points;
+  for (std::size_t i = 0; i < count; ++i) {
+    const Vector3d direction =
+        Vector3d(normal(random), normal(random), normal(random)).normalized();
+    points.emplace_back(
+        ((radius + noise * normal(random)) * direction + Vector3d(100, -40, 7)).cast<float>());
+  }
+  return points;
+}
+
+std::vector<std::uint16_t> numbers(std::size_t count) {
+  std::vector<std::uint16_t> values;
+  for (std::size_t i = 0; i < count; ++i) values.push_back(static_cast<std::uint16_t>(i % 1000));
+  return values;
+}
+
+// Every point comes back within half a step in each axis, with its own attributes.
+TEST(CloudCode, ReadsBackToHalfAStep) {
+  const auto points = sphere(5000, 20.0, 0.01);
+  const auto ids = numbers(points.size());
+  std::vector<std::uint16_t> small;
+  for (const auto id : ids) small.push_back(id % 4);
+  const CloudAttribute attributes[] = {{"id", ids}, {"small", small}};
+  const CloudCode code = encode_cloud(points, attributes, 10'000);
+  ASSERT_EQ(code.points, points.size());
+  EXPECT_EQ(code.attributes[0].bytes, 2);
+  EXPECT_EQ(code.attributes[1].bytes, 1);
+  const Decoded decoded = decode(code);
+  std::vector<bool> is_found(points.size(), false);
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    EXPECT_EQ(decoded.attributes[1][i], decoded.attributes[0][i] % 4);
+    // Five points share an id: exactly one of them is here.
+    bool is_there = false;
+    for (std::size_t k = decoded.attributes[0][i]; k < points.size(); k += 1000) {
+      const double off = (decoded.positions[i] - points[k].cast<double>()).cwiseAbs().maxCoeff();
+      if (off > 0.5 * code.step * (1.0 + 1e-6) || is_found[k]) continue;
+      is_found[k] = is_there = true;
+      break;
+    }
+    EXPECT_TRUE(is_there) << i;
+  }
+}
+
+// Spacing of random points on a surface: two in a cube of sqrt(2) spacings.
+TEST(CloudCode, StepIsAnEighthOfTheSpacingAtMost) {
+  const CloudCode code = encode_cloud(sphere(20'000, 20.0, 0.0), {}, 100'000);
+  const double usual = std::sqrt(4.0 * std::numbers::pi * 400.0 / 20'000);  // of a square grid
+  EXPECT_GT(code.spacing, 0.4 * usual);
+  EXPECT_LT(code.spacing, 1.5 * usual);
+  EXPECT_LE(code.step, code.spacing / 8.0);
+  EXPECT_GT(code.step, code.spacing / 17.0);
+}
+
+// A thinned cloud is spread as the whole: each octant keeps its share.
+TEST(CloudCode, ThinsEvenly) {
+  const auto points = sphere(40'000, 20.0, 0.0);
+  const CloudCode code = encode_cloud(points, {}, 4000);
+  EXPECT_EQ(code.points, 4000U);
+  EXPECT_EQ(code.of, 40'000U);
+  std::size_t all = 0, kept = 0;
+  for (const Vector3f& point : points) all += point.x() > 100 && point.y() > -40 && point.z() > 7;
+  for (const Vector3d& point : decode(code).positions) {
+    kept += point.x() > 100 && point.y() > -40 && point.z() > 7;
+  }
+  EXPECT_NEAR(static_cast<double>(kept), static_cast<double>(all) / 10.0, 12.0);
+}
+
+// A million points of a building's kind of surface: the bound of the report's size.
+TEST(CloudCode, TakesLittleRoom) {
+  const auto points = sphere(200'000, 20.0, 0.01);
+  const CloudCode code = encode_cloud(points, {}, 1'000'000);
+  EXPECT_LT(1.25 * static_cast<double>(code.bytes.size()) / 200'000.0, 2.2);  // base 85
+}
+
+TEST(CloudCode, HoldsNothingOneAndTheSame) {
+  EXPECT_EQ(decode(encode_cloud({}, {}, 10)).positions.size(), 0U);
+  const std::vector<Vector3f> one = {{1, 2, 3}};
+  EXPECT_NEAR((decode(encode_cloud(one, {}, 10)).positions.at(0) - Vector3d(1, 2, 3)).norm(), 0.0,
+              1.0);
+  const std::vector<Vector3f> same(7, Vector3f(5, 5, 5));
+  EXPECT_EQ(decode(encode_cloud(same, {}, 10)).positions.size(), 7U);
+}
+
+TEST(CloudCode, IsTheSameEachTime) {
+  const auto points = sphere(3000, 2.0, 0.001);
+  EXPECT_EQ(encode_cloud(points, {}, 1000).bytes, encode_cloud(points, {}, 1000).bytes);
+}
+
+}  // namespace
+}  // namespace skycap::missions::report

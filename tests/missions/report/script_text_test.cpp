@@ -1,0 +1,51 @@
+#include "missions/report/script_text.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace skycap::missions::report {
+namespace {
+
+using testing::HasSubstr;
+using testing::Not;
+using Json = nlohmann::ordered_json;
+
+// HTML 13.2.5.4: within a script only "</script" and "<!--" mean anything, and both begin with '<'.
+TEST(ScriptJson, CanNeitherEndItsScriptNorOpenAComment) {
+  const Json json = {{"name", "</script><!-- \u2028 \u2029 <script>"}, {"</script>", 1}};
+  const std::string text = script_json(json);
+  EXPECT_THAT(text, Not(HasSubstr("<")));
+  EXPECT_THAT(text, Not(HasSubstr("\u2028")));
+  EXPECT_THAT(text, Not(HasSubstr("\u2029")));
+  EXPECT_EQ(Json::parse(text), json);  // and still says the same
+}
+
+TEST(HtmlText, HasNoCharacterThatMeansAnything) {
+  EXPECT_EQ(html_text("<a href=\"x\">'&'</a>"),
+            "&lt;a href=&quot;x&quot;&gt;&#39;&amp;&#39;&lt;/a&gt;");
+}
+
+// RFC 4648, section 10.
+TEST(Base64, IsTheStandards) {
+  EXPECT_EQ(base64(""), "");
+  EXPECT_EQ(base64("f"), "Zg==");
+  EXPECT_EQ(base64("fo"), "Zm8=");
+  EXPECT_EQ(base64("foo"), "Zm9v");
+  EXPECT_EQ(base64("foobar"), "Zm9vYmFy");
+}
+
+// ZeroMQ's RFC 32 has the same groups and, but for '&' and '<', the same digits.
+TEST(Base85, IsThatOfZeroMq) {
+  EXPECT_EQ(base85(std::string("\x86\x4F\xD2\x6F\xB5\x59\xF7\x5B")), "HelloWorld");
+  EXPECT_EQ(base85(""), "");
+  EXPECT_EQ(base85("a").size(), 2U);
+  EXPECT_EQ(base85("abc").size(), 4U);
+}
+
+// printf 'alert(1)' | openssl dgst -sha256 -binary | base64
+TEST(PolicyHash, IsTheShaOfTheText) {
+  EXPECT_EQ(policy_hash("alert(1)"), "'sha256-bhHHL3z2vDgxUt0W3dWQOrprscmda2Y5pLsLg4GF+pI='");
+}
+
+}  // namespace
+}  // namespace skycap::missions::report

@@ -1,0 +1,214 @@
+#include "missions/report/survey_report.h"
+
+#include <stop_token>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include "missions/report/page_parts.h"
+#include "missions/report/point_figures.h"
+#include "missions/report/verdict.h"
+#include "tests/missions/run_skycap.h"
+
+namespace skycap::missions::report {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::Not;
+using Json = nlohmann::ordered_json;
+
+std::size_t count(const std::string& text, const std::string& word) {
+  std::size_t found = 0;
+  for (std::size_t at = text.find(word); at != std::string::npos; at = text.find(word, at + 1)) {
+    ++found;
+  }
+  return found;
+}
+
+/// What the page says, as a browser's JSON.parse() would read it.
+Json data_of(const std::string& page) {
+  const std::string begin = "<script type=\"application/json\" id=\"data\">";
+  const std::size_t at = page.find(begin) + begin.size();
+  return Json::parse(page.substr(at, page.find("</script>", at) - at));
+}
+
+/// A survey and what it left.
+struct Planned {
+  explicit Planned(const std::string& mission, const std::vector<std::string>& more = {},
+                   std::stop_token stop = {}) {
+    std::vector<std::string> arguments = {"plan", folder.write("m.yaml", mission), "--quiet",
+                                          "--out", folder / "out"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    run = tests::run_skycap(arguments, false, std::move(stop));
+  }
+  std::string page() const { return tests::content_of(folder.path() / "out" / "report.html"); }
+
+  tests::TestFolder folder;
+  tests::ProgramRun run;
+};
+
+TEST(SurveyReport, IsWrittenByPlanAndAnewByReportWithTheSameBytes) {
+  const Planned survey(tests::quick_mission(), {"--planner", "skycap"});
+  const std::string page = survey.page();
+  ASSERT_FALSE(page.empty());
+  const auto run =
+      tests::run_skycap({"report", survey.folder / "out", "--out", survey.folder / "again.html"});
+  EXPECT_EQ(run.exit_code, 0) << run.err;
+  EXPECT_TRUE(tests::content_of(survey.folder / "again.html") == page);
+}
+
+TEST(SurveyReport, SaysWhatTheSummarySaysAndNothingElse) {
+  const Planned survey(tests::quick_mission(), {"--planner", "skycap"});
+  const Json data = data_of(survey.page());
+  EXPECT_EQ(data["summary"], Json::parse(tests::content_of(survey.folder / "out/summary.json")));
+  EXPECT_EQ(data["clouds"]["measured"]["of"], data["summary"]["points"]);
+  for (const Json& light : data["verdict"]["lights"]) {
+    std::string path = "/" + light["figure"].get<std::string>();
+    std::ranges::replace(path, '.', '/');
+    const Json::json_pointer pointer(path);
+    if (path.ends_with("/length")) continue;
+    EXPECT_EQ(light["value"], data["summary"][pointer]) << path;
+  }
+}
+
+// The table's sum is the missing share of the surface, for planners that believe and those that
+// do not.
+TEST(SurveyReport, HolesSumToTheMissingShare) {
+  for (const char* planner : {"skycap", "see++"}) {
+    const Planned survey(tests::quick_mission(), {"--planner", planner});
+    const Json summary = data_of(survey.page())["summary"];
+    const Json& surface = summary["surface"];
+    double missing = surface["smaller"]["area_m2"].get<double>() + surface["rest_m2"].get<double>();
+    for (const Json& hole : surface["holes"]) missing += hole["area_m2"].get<double>();
+    const bool believes = std::string(planner) == "skycap";
+    EXPECT_EQ(surface["known_by"], believes ? "planner" : "simulator");
+    const double coverage =
+        (believes ? summary["belief"]["predicted_coverage"] : summary["coverage"]).get<double>();
+    EXPECT_NEAR(missing / surface["area_m2"].get<double>(), 1.0 - coverage, 1e-5) << planner;
+  }
+}
+
+TEST(SurveyReport, IsLeftOutOnRequest) {
+  const Planned survey(tests::quick_mission(), {"--no-report"});
+  EXPECT_TRUE(std::filesystem::exists(survey.folder.path() / "out" / "summary.json"));
+  EXPECT_FALSE(std::filesystem::exists(survey.folder.path() / "out" / "report.html"));
+}
+
+TEST(SurveyReport, OfAnInterruptedSurveyIsWrittenToo) {
+  std::stop_source stop;
+  stop.request_stop();
+  const Planned survey(tests::quick_mission(), {}, stop.get_token());
+  EXPECT_EQ(survey.run.exit_code, 1);
+  const Json data = data_of(survey.page());
+  EXPECT_EQ(data["verdict"]["light"], "red");
+  EXPECT_EQ(data["summary"]["stop_reason"], "interrupted");
+}
+
+// A name ends no script and makes no element, in the title as in the data. A mission file's name
+// has no '/', but a summary may come from anywhere.
+TEST(SurveyReport, TakesNamesForText) {
+  const Planned survey(tests::quick_mission());
+  const std::string plain = survey.page(), file = survey.folder / "out/summary.json";
+  Json summary = Json::parse(tests::content_of(file));
+  summary["mission"] =
+      "</script><img src=x onerror=alert(1)><!--\n\"'\u2028" + std::string(10'000, 'x');
+  std::ofstream(file) << summary;
+  ASSERT_EQ(tests::run_skycap({"report", survey.folder / "out"}).exit_code, 0);
+  const std::string page = survey.page();
+  for (const char* mark : {"<script", "</script", "<img", "<!--"}) {
+    EXPECT_EQ(count(page, mark), count(plain, mark)) << mark;
+  }
+  EXPECT_EQ(data_of(page)["title"], summary["mission"]);
+}
+
+// Nothing but our own scripts may run, and nothing may be fetched.
+TEST(SurveyReport, HasAStrictPolicyAndNoAddresses) {
+  const std::string page = Planned(tests::quick_mission()).page();
+  EXPECT_THAT(page, HasSubstr("default-src 'none'"));
+  const std::string policy = page.substr(page.find("content=\"default"), 1000);
+  EXPECT_THAT(policy.substr(0, policy.find("\">")), Not(HasSubstr("unsafe")));
+  EXPECT_THAT(page, Not(HasSubstr("src=\"http")));
+  EXPECT_THAT(std::string(page_script()), Not(HasSubstr("fetch(")));
+  EXPECT_THAT(std::string(page_script()), Not(HasSubstr("innerHTML")));
+}
+
+TEST(SurveyReport, GoesWithoutACloud) {
+  const Planned survey(tests::quick_mission());
+  std::filesystem::remove(survey.folder.path() / "out" / "cloud.ply");
+  const auto run = tests::run_skycap({"report", survey.folder / "out"});
+  EXPECT_EQ(run.exit_code, 0) << run.err;
+  EXPECT_EQ(data_of(survey.page())["clouds"]["measured"]["points"], 0);
+}
+
+TEST(SurveyReport, RefusesWhatIsNoSummary) {
+  const tests::TestFolder folder;
+  EXPECT_EQ(tests::run_skycap({"report", folder.path().string()}).exit_code, 2);
+  for (const char* text : {"", "[]", "{}", "{\"settings\": {}, \"per_view\": 3}"}) {
+    folder.write("summary.json", text);
+    const auto run = tests::run_skycap({"report", folder.path().string()});
+    EXPECT_EQ(run.exit_code, 2) << text;
+    EXPECT_THAT(run.err, HasSubstr("summary.json")) << text;
+    EXPECT_FALSE(std::filesystem::exists(folder.path() / "report.html"));
+  }
+}
+
+TEST(View, WritesAPageOfACloudAndSaysWhere) {
+  const tests::TestFolder folder;
+  const auto run = tests::run_skycap(
+      {"view", folder.write("c.xyz", "0 0 0\n1 0 0\n0 1 0\n"), "--out", folder / "c.html"});
+  EXPECT_EQ(run.exit_code, 0) << run.err;
+  EXPECT_THAT(run.out, HasSubstr("c.html"));
+  EXPECT_EQ(data_of(tests::content_of(folder / "c.html"))["clouds"]["measured"]["points"], 3);
+}
+
+TEST(View, ShowsAMissionBeforeItsSurvey) {
+  const tests::TestFolder folder;
+  const std::string mission = tests::quick_mission(
+      "site: {no_fly: [{corners: [[5, 5], [9, 5], [9, 9]], bottom: 0, top: 30}]}\n");
+  const auto run =
+      tests::run_skycap({"view", folder.write("m.yaml", mission), "--out", folder / "m.html"});
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  const Json data = data_of(tests::content_of(folder / "m.html"));
+  EXPECT_EQ(data["kind"], "mission");
+  EXPECT_EQ(data["scene"]["volumes"][0]["role"], "no_fly");
+  EXPECT_EQ(data["scene"]["volumes"][0]["top"], 30.0);
+  EXPECT_EQ(data["clouds"]["model"]["of"], 3000);
+}
+
+// Seen head-on, at 45 degrees, from behind, and by nobody.
+TEST(PointFigures, IncidenceIsTheAngleToTheSensor) {
+  geometry::AttributedCloud cloud;
+  cloud.positions.assign(4, Eigen::Vector3f::Zero());
+  cloud.normals.assign(4, Eigen::Vector3f::UnitZ());
+  cloud.views = {0, 1, 2, 9};
+  const std::vector<geometry::View> views = {
+      {{0, 0, 3}, {0, 0, -1}}, {{3, 0, 3.1}, {-1, 0, -1}}, {{0, 0, -2}, {0, 0, 1}}};
+  EXPECT_THAT(incidence_steps(cloud, views), ElementsAre(0, 4, 17, no_incidence));
+  EXPECT_THAT(ranges(cloud, views)[0], 3.0F);
+  EXPECT_TRUE(std::isnan(ranges(cloud, views)[3]));
+}
+
+TEST(PointFigures, HistogramCountsEachOnce) {
+  const std::vector<float> values = {-1.0F, 0.0F, 0.9F, 1.0F, 3.0F, 4.0F, NAN};
+  EXPECT_THAT(histogram(values, 0.0, 4.0, 4), ElementsAre(3, 1, 0, 2));
+}
+
+TEST(Verdict, LightsFollowTheirRules) {
+  const auto light = [](double coverage) {
+    return verdict({{"complete", true}, {"coverage_visible", coverage}})["lights"][0]["light"];
+  };
+  EXPECT_EQ(light(0.95), "green");
+  EXPECT_EQ(light(0.9499), "amber");
+  EXPECT_EQ(light(0.8499), "red");
+  EXPECT_EQ(verdict({{"stop_reason", "view_limit"}})["light"], "amber");
+  const Json route = {{"min_clearance_m", 1.9}, {"sorties", Json::array()}, {"unreached", {1}}};
+  const Json lights =
+      verdict({{"flight", {{"clearance_m", {{"total", 2.0}}}, {"route", route}}}})["lights"];
+  EXPECT_EQ(lights[0]["light"], "red");    // less than was asked for
+  EXPECT_EQ(lights[1]["light"], "amber");  // a view that is left out
+}
+
+}  // namespace
+}  // namespace skycap::missions::report
