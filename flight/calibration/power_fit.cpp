@@ -25,6 +25,10 @@ using Unknowns = Eigen::Matrix<double, 5, 1>;
 
 constexpr double least_avionics = 0.1, least_drag = 1e-4;
 
+/// A step that would change one of them by more is shortened: far off, the model is so flat that
+/// the fit would stay there.
+const Unknowns longest_step = (Unknowns() << 0.5, 0.5, 0.5, 2.0, 2.0).finished();
+
 Unknowns unknowns_of(const Vehicle& vehicle) {
   Unknowns x = Unknowns::Zero();
   x[0] = std::log(vehicle.endurance_min);
@@ -126,7 +130,8 @@ PowerFit fit_power(std::span<const LogWindow> windows, const Vehicle& vehicle, d
     }
     Eigen::Matrix<double, 5, 5> normal = slope.transpose() * slope;
     normal.diagonal() += damping * (normal.diagonal().array() + 1e-6).matrix();
-    const Unknowns step = -normal.ldlt().solve(slope.transpose() * *errors);
+    Unknowns step = -normal.ldlt().solve(slope.transpose() * *errors);
+    step /= std::max(1.0, step.cwiseAbs().cwiseQuotient(longest_step).maxCoeff());
     const auto next = errors_at(x + step);
     if (!next || next->squaredNorm() >= errors->squaredNorm()) {
       damping *= 4.0;

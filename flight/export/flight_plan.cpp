@@ -67,6 +67,12 @@ const Returns& FlightPlan::certified_returns() const {
                                          "the vehicle returns");
 }
 
+std::vector<Eigen::Vector3d> rally_points(const FlightPlan& plan) {
+  if (!plan.returns) return {};
+  const std::vector<Eigen::Vector3d>& landings = plan.returns->law.landings;
+  return {landings.begin() + 1, landings.end()};  // the pad is the first
+}
+
 FlatNoFly flat_no_fly(const FlightPlan& plan) {
   FlatNoFly flat;
   std::vector<Vector3d> points;

@@ -44,6 +44,9 @@ struct FlightPlan {
   const Returns& certified_returns() const;
 };
 
+/// Where the plan's vehicle may land beside the pad when it is called home.
+std::vector<Eigen::Vector3d> rally_points(const FlightPlan& plan);
+
 /// Whether a plan's legs go round their corners where the route has a proven curve for that.
 enum class Corners { stopped_in, flown_round };
 

@@ -30,7 +30,7 @@ struct MissionFile {
   std::string home_name;              ///< its place in the file
   bool holds_fence = false;           ///< whether the format has a geofence
   std::vector<FenceArea> fence;
-  std::size_t rally_points = 0;
+  std::vector<GeodeticPoint> rally;  ///< heights above home
 };
 
 /// A .plan file. Needs the geoid undulation (home is stored above mean sea level). No-fly volumes

@@ -142,6 +142,7 @@ class ParameterWriter {
     set("BATT_FS_LOW_ACT", 2);
     set("BATT_FS_CRT_ACT", 1);
     set("RALLY_INCL_HOME", 1);
+    if (returns_.law.landings.size() > 1) set("RALLY_LIMIT_KM", 0);  // however far
     write_ardupilot_fence();
   }
 

@@ -225,11 +225,14 @@ class PlanChecker {
     if (!rally.contains("points") || !rally["points"].is_array()) {
       return complain("rallyPoints.points must be a list");
     }
-    file_.rally_points = rally["points"].size();
     for (std::size_t i = 0; i < rally["points"].size(); ++i) {
-      if (!are_numbers(rally["points"][i], 3)) {
+      const Json& point = rally["points"][i];
+      if (!are_numbers(point, 3)) {
         complain("rallyPoints.points[" + std::to_string(i) + "] must be three numbers");
+        continue;
       }
+      file_.rally.push_back(
+          {point[0].get<double>(), point[1].get<double>(), point[2].get<double>()});
     }
   }
 
@@ -253,6 +256,14 @@ std::string write_plan(const FlightPlan& plan) {
   for (const Prism& prism : flat_no_fly(plan).written) {
     polygons.push_back(polygon(prism, frame, false));
   }
+  // PX4 adds the height of return to the point's own, ArduPilot takes the greater of both: at zero
+  // above home both fly home at the height that is proven, and land where the ground is.
+  Json rally = Json::array();
+  for (const Eigen::Vector3d& point : rally_points(plan)) {
+    const GeodeticPoint place = frame.to_geodetic(point);
+    rally.push_back(
+        {rounded_degrees(place.latitude_deg), rounded_degrees(place.longitude_deg), 0.0});
+  }
   const Json file{
       {"fileType", "Plan"},
       {"groundStation", "QGroundControl"},
@@ -269,7 +280,7 @@ std::string write_plan(const FlightPlan& plan) {
           std::round((home.height - undulation) * 1e3) / 1e3}},
         {"vehicleType", quadrotor},
         {"version", 2}}},
-      {"rallyPoints", {{"points", Json::array()}, {"version", 2}}}};
+      {"rallyPoints", {{"points", rally}, {"version", 2}}}};
   return file.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 

@@ -79,7 +79,9 @@ class Simulation {
     vehicle_.fly(wanted, receiver_.next(step), air_, step);
     time_ += step;
     const Segment line{leg.from, leg.to};
-    result_.off_line = std::max(result_.off_line, distance_between(line, vehicle_.position()));
+    if (line.length() > 0.0) {  // it comes to rest on the line of the leg before
+      result_.off_line = std::max(result_.off_line, distance_between(line, vehicle_.position()));
+    }
     for (JudgedPass& pass : passes_) {
       NearestPass& part = leg.is_over_pad ? pass.over_pad : pass.elsewhere;
       part.pass({before, vehicle_.position()});

@@ -11,6 +11,7 @@ FlightFacts facts_of(const FlightPlan& plan) {
   facts.pad = plan.pad;
   facts.vehicle = plan.vehicle;
   facts.takeoff_climb = plan.waypoints.front().position.z() - plan.pad.z();
+  facts.rally = rally_points(plan);
   facts.cruise_speed = plan.conditions.cruise_speed;
   facts.no_fly = plan.no_fly;
   facts.fence = plan.fence;

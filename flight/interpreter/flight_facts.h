@@ -18,9 +18,10 @@ struct FlightFacts {
   Eigen::Vector3d pad = Eigen::Vector3d::Zero();
   bool is_pad_known = true;        ///< else only its height is, and it is where the file takes off
   std::optional<Vehicle> vehicle;  ///< without one its limits are not checked
-  double takeoff_climb = 5.0;      ///< vouched for above the pad [m]
-  double cruise_speed = 4.0;       ///< the fastest that the tracking error is meant for [m/s]
-  double hold = 0.0;               ///< at rest before a photograph [s]
+  double takeoff_climb = 5.0;      ///< vouched for above the pad, and above rally points [m]
+  std::vector<Eigen::Vector3d> rally;  ///< where it may land beside the pad when called home
+  double cruise_speed = 4.0;           ///< the fastest that the tracking error is meant for [m/s]
+  double hold = 0.0;                   ///< at rest before a photograph [s]
   std::vector<Prism> no_fly;
   std::optional<Prism> fence;
   std::vector<geometry::View> views;  ///< to be photographed; none: not known, and not checked

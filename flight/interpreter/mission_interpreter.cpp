@@ -50,9 +50,7 @@ class MissionFlight {
     }
     if (!has_landed_) add("the mission ends in the air, without a landing (21)");
     check_home();
-    if (file_.rally_points > 0) {
-      add("rallyPoints.points[0] would be returned to by a way that is not proven; leave it out");
-    }
+    check_rally();
     for (const std::string& problem : check_photographs(route_.stops, facts_)) add(problem);
     for (const std::string& problem : check_fence(file_, route_, facts_)) add(problem);
     return std::move(route_);
@@ -329,6 +327,30 @@ class MissionFlight {
       add(file_.home_name + " is " + fixed(std::abs(away.z()), 1) + " m " +
           (away.z() > 0.0 ? "above" : "below") + " the pad");
     }
+  }
+
+  /// Returns go to the nearest place to land: those of the file must be those that are proven, at
+  /// home's height, which the height of return counts from.
+  void check_rally() {
+    std::vector<Vector3d> missing = facts_.rally;
+    for (std::size_t i = 0; i < file_.rally.size(); ++i) {
+      const std::string name = "rallyPoints.points[" + std::to_string(i) + "]";
+      const Vector3d place = frame_.to_local(file_.rally[i]);
+      const auto known = std::ranges::find_if(missing, [&](const Vector3d& rally) {
+        return (rally - place).head<2>().norm() <= pad_tolerance;
+      });
+      if (known == missing.end()) {
+        add(name + " is none of the mission's flight.rally: returns to it are not proven");
+        continue;
+      }
+      missing.erase(known);
+      if (std::abs(file_.rally[i].height) <= pad_height_tolerance) continue;
+      add(name + " is " + fixed(file_.rally[i].height, 1) +
+          " m above home, and PX4 returns by as much higher; it must be 0");
+    }
+    if (missing.empty()) return;
+    add("the file lacks " + std::to_string(missing.size()) + " of the mission's " +
+        std::to_string(facts_.rally.size()) + " rally points, which returns are proven to");
   }
 
   const MissionFile& file_;

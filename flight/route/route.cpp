@@ -21,6 +21,9 @@ using Eigen::Vector3d;
 constexpr int items_per_station = 8;
 constexpr int items_per_sortie = 14;
 
+/// What stands no higher than this beside a pad is the ground that it is on [m].
+constexpr double pad_roughness = 0.3;
+
 /// Plans one route; the members are its stages' intermediate results.
 class RoutePlanner {
  public:
@@ -64,6 +67,7 @@ class RoutePlanner {
                                              length_text(clearance) +
                                              ": move the pad or climb higher");
     }
+    check_measured_climb();
     const Segment climb{home_, route_.options.takeoff};
     if (pad_space != nullptr && !pad_space->is_free(climb, clearance)) {
       const Closest closest = pad_space->closest(climb, clearance + 1.0);
@@ -71,6 +75,21 @@ class RoutePlanner {
                   "the climb from the pad comes within " + length_text(closest.distance) + " of " +
                       pad_space->name(closest) + "; the clearance is " + length_text(clearance));
     }
+  }
+
+  /// Higher than the clearance above the pad the ground is no obstacle to the climb: from there on
+  /// it must be as free as a leg.
+  void check_measured_climb() {
+    const double clearance = route_.clearance;
+    Vector3d low = route_.options.takeoff;
+    low.z() = std::min(home_.z(), low.z() + clearance + pad_roughness);
+    const Segment climb{home_, low};
+    if (space_.is_free(climb, clearance)) return;
+    const Closest closest = space_.closest(climb, clearance + 1.0);
+    throw Error(ErrorKind::bad_config,
+                "the climb from the pad comes within " + length_text(closest.distance) + " of " +
+                    space_.name(closest) + " at " + place_text(closest.on_leg) +
+                    "; the clearance is " + length_text(clearance) + ": move the pad");
   }
 
   void refuse(const Station& station, const std::string& reason) {
@@ -288,10 +307,11 @@ class RoutePlanner {
 
   void ask_for_returns(const ReturnOptions& asked) {
     const Vector3d& pad = route_.options.takeoff;
-    const ReturnLaw law{.dialects = asked.dialects,
-                        .level = pad.z() + std::floor(asked.highest - pad.z()),
-                        .landings = {pad},
-                        .landing_climb = route_.options.takeoff_climb};
+    ReturnLaw law{.dialects = asked.dialects,
+                  .level = pad.z() + std::floor(asked.highest - pad.z()),
+                  .landings = {pad},
+                  .landing_climb = route_.options.takeoff_climb};
+    law.landings.insert(law.landings.end(), asked.rally.begin(), asked.rally.end());
     ways_home_.emplace(space_, law, home_, route_.clearance);
   }
 
@@ -311,7 +331,8 @@ class RoutePlanner {
         least_return(space_, legs, law, law.level, return_clearance(route_.clearance));
     if (!search.found) {
       throw Error(ErrorKind::bad_config, "there is no certified way home: " + search.why +
-                                             "; move flight.takeoff or raise site.highest_height");
+                                             "; move flight.takeoff, add a place to land to "
+                                             "flight.rally or raise site.highest_height");
     }
     route_.returns = std::move(search.found);
     for (const Segment& leg : legs) {

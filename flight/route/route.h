@@ -55,6 +55,7 @@ struct ClearanceBudget {
 struct ReturnOptions {
   std::vector<Dialect> dialects;  ///< whose ways home are to be proven
   double highest = 0.0;           ///< z up to which a height of return is looked for
+  std::vector<Eigen::Vector3d> rally{};  ///< where they may land beside the pad, on the ground
 };
 
 struct RouteOptions {

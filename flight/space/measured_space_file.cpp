@@ -16,12 +16,13 @@ using Eigen::AlignedBox3d;
 using Eigen::Vector3d;
 
 constexpr char file_mark[16] = "skycap free v1\n";
+constexpr double no_floor = -std::numeric_limits<double>::infinity();
 
 /// What a file begins with. Plain numbers: it is written as it is in memory.
 struct FileHead {
   char mark[16];
   double voxel, depth_margin, free_without_return, max_depth;
-  double floor;      ///< minus infinity if there is none
+  double floor;      ///< or no_floor
   double region[6];  ///< its two corners; the first above the second if there is none
   std::uint64_t blocks;
 };
@@ -51,7 +52,7 @@ void MeasuredSpace::write(std::ostream& stream) const {
   std::memcpy(head.mark, file_mark, sizeof head.mark);
   head.voxel = config.voxel, head.depth_margin = config.depth_margin;
   head.free_without_return = config.free_without_return, head.max_depth = config.max_depth;
-  head.floor = config.floor.value_or(-std::numeric_limits<double>::infinity());
+  head.floor = config.floor.value_or(no_floor);
   for (int axis = 0; axis < 3; ++axis) {
     head.region[axis] = config.region.min()[axis];
     head.region[axis + 3] = config.region.max()[axis];
@@ -80,7 +81,7 @@ MeasuredSpace MeasuredSpace::read(std::istream& stream, const std::string& name)
                              .max_depth = head.max_depth,
                              .region = {},
                              .floor = {}};
-  if (std::isfinite(head.floor)) config.floor = head.floor;
+  if (head.floor != no_floor) config.floor = head.floor;
   const AlignedBox3d region(Eigen::Map<const Vector3d>(head.region),
                             Eigen::Map<const Vector3d>(head.region + 3));
   if (!region.isEmpty()) config.region = region;

@@ -1,6 +1,5 @@
 #include "geometry/io/mesh_formats.h"
 
-#include <algorithm>
 #include <array>
 #include <cstring>
 #include <limits>

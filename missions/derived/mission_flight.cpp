@@ -168,7 +168,7 @@ flight::RouteOptions route_options_of(const file::Mission& mission, const Vector
   options.conditions.cruise_speed = config.cruise_speed;
   options.conditions.reserve = config.reserve;
   options.returns = flight::ReturnOptions{dialects_of(vehicle_of(mission)),
-                                          highest_return(mission, pad.z(), pad.z())};
+                                          highest_return(mission, pad.z(), pad.z()), config.rally};
   return options;
 }
 
@@ -192,6 +192,7 @@ flight::FlightFacts flight_facts(const file::Mission& mission) {
   facts.is_pad_known = mission.flight.takeoff.has_value();
   if (mission.flight.is_flown()) facts.vehicle = vehicle_of(mission);
   facts.takeoff_climb = takeoff_climb_of(mission);
+  facts.rally = mission.flight.rally;
   facts.cruise_speed = mission.flight.cruise_speed;
   facts.hold = mission.flight.hold;
   flight::Obstacles rules = flight_rules(mission);

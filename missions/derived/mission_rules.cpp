@@ -163,6 +163,10 @@ void check_flight(const file::MissionFile& given) {
                      " m ends within the clearance of the ground; make it more than "
                      "flight.clearance");
   }
+  if (!flight.rally.empty() && vehicle_of(mission).dialect == flight::Dialect::dji) {
+    given.refuse("flight.rally", "is not for " + flight.vehicle +
+                                     ": DJI's vehicles return to their pad only; leave it out");
+  }
   if (const double sigma = mission.sensor.camera.noise.sigma; flight.map_error < 3.0 * sigma) {
     given.refuse("flight.map_error",
                  "is below three standard deviations of the sensor's noise; make it at least " +

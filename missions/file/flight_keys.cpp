@@ -30,6 +30,17 @@ auto flight(auto member) {
   return [member](Mission & m) -> auto& { return m.flight.*member; };
 }
 
+/// The key `flight.rally`: places on the ground.
+Key rally_key() {
+  Key key = list_key("flight.rally", KeyType::vectors, flight(&FlightConfig::rally),
+                     "Other places on the ground to land at, [x, y, z] each, which the pilot "
+                     "vouches for up to flight.takeoff_climb as for the pad: a vehicle that is "
+                     "called home goes to the nearest of these and the pad. Not for DJI's "
+                     "vehicles.");
+  key.range = between(-1e6, 1e6);
+  return key;
+}
+
 /// What proves a leg.
 std::vector<Key> safety_keys() {
   return {
@@ -75,6 +86,7 @@ std::vector<Key> conduct_keys() {
                 number_key("flight.takeoff_climb", "m", between(0, 1000),
                            flight(&FlightConfig::takeoff_climb),
                            "Straight up from the pad before the first leg.")),
+      rally_key(),
       number_key("flight.cruise_speed", "m/s", above(0, 100), flight(&FlightConfig::cruise_speed),
                  "Wanted speed on legs."),
       number_key("flight.hold", "s", between(0, 3600), flight(&FlightConfig::hold),

@@ -135,6 +135,7 @@ struct FlightConfig {
   double free_without_return = 0.0;
   std::optional<Eigen::Vector3d> takeoff;  ///< the pad
   std::optional<double> takeoff_climb;     ///< else 5 m, or a metre more than the clearance
+  std::vector<Eigen::Vector3d> rally;      ///< other places to land when called home, on the ground
   double cruise_speed = 4.0;
   double hold = 0.5;          ///< at a view, before the capture [s]
   double hold_after = 0.5;    ///< and after it [s]

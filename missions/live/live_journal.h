@@ -46,8 +46,9 @@ std::string text_of(const ProposalRecord& proposal);
 /// line if a record is none of the above.
 std::vector<LiveEvent> events_of(const std::vector<std::string>& records, const std::string& file);
 
-/// A pose as twelve numbers, row after row of [rotation | position], and back. A pose that is read
-/// is refused with Error{bad_file} unless it turns without stretching and is at a place.
+/// A pose as twelve numbers, row after row of [rotation | position], and back. Throws
+/// Error{bad_file} unless it is at a place and turns without stretching, within a hundredth: such a
+/// one is made a rotation.
 nlohmann::ordered_json pose_json(const Eigen::Isometry3d& pose);
 Eigen::Isometry3d parse_pose(const std::vector<double>& numbers, const std::string& what);
 

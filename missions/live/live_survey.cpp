@@ -66,9 +66,9 @@ struct LiveSurvey::Impl {
     guide = std::make_unique<run::MissionPlanner>(mission, first_view, threads);
     survey::SurveyPorts ports = guide->ports();
     if (ports.can_reach) {
-      ports.can_reach = [this, can_reach = std::move(ports.can_reach)](const Vector3d& from,
+      ports.can_reach = [this, can_reach = std::move(ports.can_reach)](const Vector3d&,
                                                                        const geometry::View& to) {
-        return can_reach(departure(from), to);
+        return can_reach(departure, to);
       };
       ports.can_reach = reach.remembering(std::move(ports.can_reach), guide->flight());
     }
@@ -77,12 +77,13 @@ struct LiveSurvey::Impl {
     if (guide->flight() != nullptr) proposal.way = guide->flight()->way();
   }
 
-  /// Where the way to the next view begins: at the view that was proposed, if the vehicle is as
-  /// near to it as the errors that the clearance already holds let it be.
-  Vector3d departure(const Vector3d& from) const {
+  /// Where the way from a scan begins: at the view that was proposed, if the vehicle is as near to
+  /// it as the errors that the clearance already holds let it be.
+  Vector3d departure_after(const geometry::Scan& scan) const {
+    const Vector3d place = scan.sensor_position();
     const double errors = mission.flight.position_error + mission.flight.tracking_error;
-    const bool is_there = proposal.view && (proposal.view->position - from).norm() <= errors;
-    return is_there ? proposal.view->position : from;
+    const bool is_there = proposal.view && (proposal.view->position - place).norm() <= errors;
+    return is_there ? proposal.view->position : place;
   }
 
   void replay() {
@@ -119,6 +120,7 @@ struct LiveSurvey::Impl {
   /// planner cannot work with; `why` says so.
   bool happen(LiveEvent& event, const geometry::Scan& scan) {
     reach.begin(event.proposal ? std::optional(event.proposal->reach) : std::nullopt);
+    if (event.scan) departure = departure_after(scan);
     std::optional<geometry::View> view;
     try {
       view = event.scan ? steps->take_in(scan) : steps->refuse();
@@ -170,6 +172,7 @@ struct LiveSurvey::Impl {
   std::unique_ptr<survey::SurveySteps> steps;
   run::ReachMemory reach;
   Proposal proposal;
+  Vector3d departure = Vector3d::Zero();
   std::map<std::string, std::size_t> numbers;  ///< of scans by their ids
   std::string why;                             ///< the last scan was rejected
   std::optional<std::string> unwritten;        ///< record that the disk did not take
@@ -194,6 +197,10 @@ std::optional<std::size_t> LiveSurvey::number_of(const std::string& id) const {
 
 bool LiveSurvey::add(const geometry::Scan& scan, const std::string& id) {
   if (number_of(id)) return false;
+  if (impl_->mission.flight.is_flown() && impl_->proposal.end) {
+    throw Error(ErrorKind::bad_usage,
+                "the survey is over, and no way was proven to where this scan is from; finish it");
+  }
   impl_->catch_up();
   const std::string bytes = kept_scan(scan);
   const ScanRecord record{.id = id,

@@ -19,7 +19,7 @@ using Eigen::Isometry3d;
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 
-constexpr double farthest_point = 8192.0;  // [m]: beyond, single precision moves by half a mm
+constexpr double farthest_point = 16384.0;  // [m]: beyond, single precision moves by a millimetre
 
 std::vector<double> numbers_of(const std::string& text, const std::string& what) {
   geometry::TextScanner scanner(what, text);
@@ -94,12 +94,8 @@ void organise(std::span<const Vector3d> points, const geometry::Camera& camera, 
   }
 }
 
-std::vector<Vector3d> points_in_sensor(const ScanInput& input, const geometry::Camera& camera,
-                                       ScanFound& found) {
-  if (input.file.extension() == ".png") {
-    return points_of(sim::read_depth_png(input.file), input.lens.value_or(lens_of(camera)),
-                     input.depth_unit, found.without_return);
-  }
+/// The points of a cloud's file in the optical frame.
+std::vector<Vector3d> points_in_sensor(const ScanInput& input) {
   const Isometry3d sensor_from_file =
       input.is_in_world ? input.world_from_sensor.inverse() : Isometry3d::Identity();
   std::vector<Vector3d> points;
@@ -173,17 +169,30 @@ std::vector<Vector3d> points_of(const sim::DepthImage& image, const Lens& lens, 
 }
 
 ScanFound read_scan(const ScanInput& input, const file::Mission& mission) {
-  const geometry::Camera camera(mission.sensor.camera.camera);
+  if (input.file.extension() == ".png") {
+    return scan_of(sim::read_depth_png(input.file), input.lens, input.depth_unit,
+                   input.world_from_sensor, mission);
+  }
   ScanFound found;
   found.scan.world_from_sensor = input.world_from_sensor;
-  const std::vector<Vector3d> points = points_in_sensor(input, camera, found);
+  const std::vector<Vector3d> points = points_in_sensor(input);
   if (mission.sensor.scanner) {
     for (const Vector3d& point : points) {
       found.scan.points.push_back((input.world_from_sensor * point).cast<float>());
     }
   } else {
-    organise(points, camera, found);
+    organise(points, geometry::Camera(mission.sensor.camera.camera), found);
   }
+  return found;
+}
+
+ScanFound scan_of(const sim::DepthImage& image, const std::optional<Lens>& lens, double unit,
+                  const Isometry3d& world_from_sensor, const file::Mission& mission) {
+  const geometry::Camera camera(mission.sensor.camera.camera);
+  ScanFound found;
+  found.scan.world_from_sensor = world_from_sensor;
+  organise(points_of(image, lens.value_or(lens_of(camera)), unit, found.without_return), camera,
+           found);
   return found;
 }
 
@@ -194,7 +203,7 @@ void require_usable(const geometry::Scan& scan, const file::Mission& mission) {
   for (std::size_t i = 0; i < scan.points.size(); ++i) {
     if (geometry::is_place(scan.points[i].cast<double>(), farthest_point)) continue;
     refuse("has point " + std::to_string(i) +
-           " that is not finite or farther than 8192 m from the "
+           " that is not finite or farther than 16384 m from the "
            "origin; give points and pose in a local frame");
   }
   const bool is_organised = !scan.pixels.empty();

@@ -62,6 +62,10 @@ ScanFound read_scan(const ScanInput& input, const file::Mission& mission);
 std::vector<Eigen::Vector3d> points_of(const sim::DepthImage& image, const Lens& lens, double unit,
                                        std::size_t& without_return);
 
+/// A depth image as a scan of a mission with a depth camera; without a lens, of the mission's.
+ScanFound scan_of(const sim::DepthImage& image, const std::optional<Lens>& lens, double unit,
+                  const Eigen::Isometry3d& world_from_sensor, const file::Mission& mission);
+
 /// Throws Error{bad_geometry} unless a scan is one that planner and vehicle can take in: points at
 /// places, pixels (which a vehicle needs) of the mission's camera and ascending.
 void require_usable(const geometry::Scan& scan, const file::Mission& mission);

@@ -69,6 +69,7 @@ void certify_dialect(flight::FlightPlan& plan, const flight::FreeSpace& space, d
   flight::ReturnLaw law = plan.returns->law;
   if (std::ranges::find(law.dialects, plan.vehicle.dialect) != law.dialects.end()) return;
   law.dialects = {plan.vehicle.dialect};
+  if (plan.vehicle.dialect == Dialect::dji) law.landings.resize(1);  // they know no rally points
   std::vector<flight::Segment> legs;
   for (std::size_t i = 1; i < plan.waypoints.size(); ++i) {
     legs.push_back({plan.waypoints[i - 1].position, plan.waypoints[i].position});

@@ -191,6 +191,18 @@ Json flight_summary(const run::FlownSurvey& flown, const SurveyMission& flight) 
           {"notes", flight.files.notes}};
 }
 
+/// The mission that the settings of a summary stand for. Errors name the file.
+file::Mission mission_of(const Json& settings, const std::filesystem::path& file,
+                         const std::vector<file::KeyOverride>& overrides) {
+  std::string text;
+  try {
+    text = mission_text(settings);
+  } catch (const Error& error) {
+    throw Error(error.kind(), file.string() + ": " + error.what());
+  }
+  return derived::parse_mission(text, file.string(), overrides);
+}
+
 Eigen::Vector3d vector_of(const Json& json) {
   return {json.at(0).get<double>(), json.at(1).get<double>(), json.at(2).get<double>()};
 }
@@ -381,8 +393,7 @@ PackageSummary read_package_summary(const std::filesystem::path& folder,
   try {
     const Json json = read_summary(file);
     PackageSummary summary;
-    summary.mission =
-        derived::parse_mission(mission_text(json.at("settings")), file.string(), overrides);
+    summary.mission = mission_of(json.at("settings"), file, overrides);
     if (json.contains("flight")) {
       summary.pad = summary.mission.flight.takeoff.value_or(vector_of(json["flight"].at("pad")));
       geometry::require_place(*summary.pad, file.string() + ": flight.pad");

@@ -66,16 +66,10 @@ int check_route_file(const CheckOptions& options, const file::Mission& mission,
   ProgressLine progress(console, false);
   progress.show(file + ": proving " + std::to_string(route.pieces.size()) + " legs");
   const double asked_for = mission.flight.clearance;
-<<<<<<< HEAD
-  const flight::FlownProof proof =
-      prove(route, space, pad_space, std::max(0.0, asked_for - flight::rounding_bound),
-            asked_for + flight::reported_surplus);
-  progress.clear();
-=======
   const flight::FlownProof proof = prove(route, space.everywhere, space.over_pad,
                                          std::max(0.0, asked_for - flight::rounding_bound),
                                          asked_for + flight::reported_surplus);
->>>>>>> union
+  progress.clear();
   for (const flight::Problems& problems : {route.problems, proof.problems}) {
     for (const std::string& problem : problems) console.out << file << ": " << problem << "\n";
   }

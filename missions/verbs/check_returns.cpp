@@ -32,6 +32,10 @@ ReturnCheck check_returns(const std::filesystem::path& file,
   flight::ReturnLaw law{.dialects = {*dialect},
                         .landings = {{points[0].x(), points[0].y(), ground}},
                         .landing_climb = derived::takeoff_climb_of(mission)};
+  if (*dialect != Dialect::dji) {
+    const std::vector<Vector3d>& rally = mission.flight.rally;
+    law.landings.insert(law.landings.end(), rally.begin(), rally.end());
+  }
   const double clearance =
       std::max(0.0, flight::return_clearance(mission.flight.clearance) - flight::rounding_bound);
 

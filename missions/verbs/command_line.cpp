@@ -81,6 +81,20 @@ void add_next(CLI::App& app, const Console& console, Action& action) {
   });
 }
 
+void add_serve(CLI::App& app, const Console& console, Action& action) {
+  CLI::App* verb = app.add_subcommand("serve", "Serve a live survey on a socket (docs/live.md)");
+  const auto options = std::make_shared<ServeOptions>();
+  const auto keys = std::make_shared<KeyOptions>();
+  add_live_options(*verb, options->live, *keys);
+  verb->add_option("--socket", options->socket, "A Unix socket, which only you may open");
+  verb->add_option("--port", options->port, "Of this machine alone; 0 for any that is free");
+  verb->add_flag("--quiet", options->is_quiet, "Print nothing but the address and errors");
+  verb->callback([=, &console, &action] {
+    options->live.overrides = keys->overrides();
+    action = [=, &console] { return serve(*options, console); };
+  });
+}
+
 void add_finish(CLI::App& app, const Console& console, Action& action) {
   CLI::App* verb = app.add_subcommand("finish", "Write the mission package of a live survey");
   const auto options = std::make_shared<LiveOptions>();
@@ -316,6 +330,7 @@ int parse_and_run(const std::vector<std::string>& arguments, const Console& cons
     limit_instruction_set_as_asked();
     add_plan(app, console, action);
     add_next(app, console, action);
+    add_serve(app, console, action);
     add_finish(app, console, action);
     add_benchmark(app, console, action);
     add_scan(app, console, action);

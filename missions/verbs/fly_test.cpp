@@ -108,10 +108,14 @@ class TestedPackage {
     if (!stated->problems.empty()) {
       throw Error(ErrorKind::bad_file, stated->by + ": " + stated->problems.front());
     }
-    return flight::ReturnLaw{.dialects = {dialect},
-                             .level = pad().z() + stated->height,
-                             .landings = {pad()},
-                             .landing_climb = derived::takeoff_climb_of(mission())};
+    flight::ReturnLaw law{.dialects = {dialect},
+                          .level = pad().z() + stated->height,
+                          .landings = {pad()},
+                          .landing_climb = derived::takeoff_climb_of(mission())};
+    const std::vector<Eigen::Vector3d>& rally = mission().flight.rally;
+    if (dialect != Dialect::dji)
+      law.landings.insert(law.landings.end(), rally.begin(), rally.end());
+    return law;
   }
 
   package::PackagedSurvey survey_;

@@ -1,4 +1,4 @@
-// The verbs next and finish: a live survey one call at a time.
+// The verbs of live surveys: next and finish, one call at a time, and serve.
 #include <string>
 
 #include <fmt/format.h>
@@ -9,6 +9,7 @@
 #include "missions/derived/resolved_mission.h"
 #include "missions/live/open_survey.h"
 #include "missions/live/scan_input.h"
+#include "missions/live/server.h"
 #include "missions/package/flight_report.h"
 #include "missions/package/package.h"
 #include "missions/verbs/verbs.h"
@@ -65,6 +66,26 @@ void add_scan(const NextOptions& options, const file::Mission& mission, live::Li
   console.err << "\n" << std::flush;
 }
 
+struct Finished {
+  std::string text;  ///< for the user
+  bool has_route = true;
+};
+
+Finished write_package(const file::Mission& mission, live::LiveSurvey& survey,
+                       const std::filesystem::path& place, const std::stop_token& stop) {
+  geometry::OutputFolder folder(place);
+  const run::SurveyRecord record = survey.finish();
+  const package::CoverageFigures unknown{record.coverage(), {}, {}};
+  const std::optional<package::SurveyMission> flight =
+      package::stage_package(mission, record, unknown, mission.threads, folder, stop);
+  folder.commit();
+  std::string text =
+      fmt::format("{}: {} after {} scans, {} points\n", mission.name,
+                  run::name_of(record.stop_reason), record.views.size(), record.cloud.size());
+  if (flight) text += package::flight_text(*flight);
+  return {text + "  results   " + place.string() + "\n", !flight || flight->failure.empty()};
+}
+
 }  // namespace
 
 int next(const NextOptions& options, const Console& console) {
@@ -91,18 +112,29 @@ int finish(const LiveOptions& options, const Console& console) {
     throw Error(ErrorKind::bad_usage,
                 options.survey.string() + ": has no scan yet; add some with skycap next --scan");
   }
-  geometry::OutputFolder folder(options.survey);
-  const run::SurveyRecord record = survey->finish();
-  const package::CoverageFigures unknown{record.coverage(), {}, {}};
-  const std::optional<package::SurveyMission> flight =
-      package::stage_package(mission, record, unknown, mission.threads, folder, console.stop);
-  folder.commit();
-  console.out << fmt::format("{}: {} after {} scans, {} points\n", mission.name,
-                             run::name_of(record.stop_reason), record.views.size(),
-                             record.cloud.size());
-  if (flight) console.out << package::flight_text(*flight);
-  console.out << "  results   " << options.survey.string() << "\n" << std::flush;
-  return flight && !flight->failure.empty() ? 1 : 0;
+  const Finished finished = write_package(mission, *survey, options.survey, console.stop);
+  console.out << finished.text << std::flush;
+  return finished.has_route ? 0 : 1;
+}
+
+int serve(const ServeOptions& options, const Console& console) {
+  if (options.socket.has_value() == options.port.has_value()) {
+    throw Error(ErrorKind::bad_usage, "serve needs either --socket PATH or --port NUMBER");
+  }
+  const file::Mission mission =
+      derived::read_live_mission(options.live.mission, options.live.overrides);
+  const auto survey =
+      live::open_survey(mission, options.live.mission.parent_path(), options.live.survey);
+  live::Session session(mission, *survey, [&] {
+    return write_package(mission, *survey, options.live.survey, console.stop).text;
+  });
+  live::Server server({.socket = options.socket.value_or(""), .port = options.port});
+  console.out << server.address() << "\n" << std::flush;
+  const auto note = [&](const std::string& text) {
+    if (!options.is_quiet) console.err << printable_line(text) << "\n" << std::flush;
+  };
+  server.run(session, note, console.stop);
+  return session.is_finished() ? 0 : 1;
 }
 
 }  // namespace skycap::missions::verbs

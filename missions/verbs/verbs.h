@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <filesystem>
 #include <optional>
 #include <string>
@@ -56,6 +57,17 @@ int next(const NextOptions& options, const Console& console);
 /// Writes the mission package of a live survey into its folder; exit code 1 if it has no route. The
 /// survey may go on afterwards.
 int finish(const LiveOptions& options, const Console& console);
+
+struct ServeOptions {
+  LiveOptions live;
+  std::optional<std::filesystem::path> socket;  ///< a Unix socket; either this
+  std::optional<std::uint16_t> port;            ///< or this, of 127.0.0.1
+  bool is_quiet = false;
+};
+
+/// Serves a live survey on a socket until a client finishes it; prints the address. Exit code 1 if
+/// it was interrupted before.
+int serve(const ServeOptions& options, const Console& console);
 
 struct BenchmarkOptions {
   std::vector<std::filesystem::path> missions;

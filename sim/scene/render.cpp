@@ -8,7 +8,6 @@
 #include <string>
 
 #include "geometry/angle.h"
-#include "geometry/error.h"
 #include "geometry/parallel.h"
 #include "geometry/requirement.h"
 #include "sim/scene/scene.h"

@@ -23,7 +23,7 @@ DepthImage depth_image(const geometry::Scan& scan, const geometry::Camera& camer
 /// Throws Error{bad_file} if the file cannot be written.
 void write_depth_png(const DepthImage& image, const std::filesystem::path& path);
 
-/// Throws Error{bad_file} if it is not a picture.
+/// Throws Error{bad_file} if it is not a PNG picture of 16 bits, or has more than 1e8 pixels.
 DepthImage read_depth_png(const std::filesystem::path& path);
 
 }  // namespace skycap::sim

@@ -61,11 +61,13 @@ std::string without_times(const std::string& name, const std::string& text) {
   return kept;
 }
 
+constexpr const char* journal = "survey.journal";
+
 Content content_of(const fs::path& folder) {
   Content content;
   for (const auto& entry : fs::directory_iterator(folder)) {
     const std::string name = entry.path().filename();
-    if (name == "interrupted" || name == "items" || name == "survey.journal") continue;
+    if (name == "interrupted" || name == "items" || name == journal) continue;
     content[name] = entry.is_directory() ? "" : without_times(name, repeatable_part(entry.path()));
   }
   return content;
@@ -130,6 +132,7 @@ void try_faults(const Verb& verb, const std::vector<std::string>& kinds, long sa
       if (kind != "kill") continue;
       EXPECT_EQ(run(verb("2", out), {}), 0);
       EXPECT_TRUE(content_of(out) == after) << "run again after it died at step " << at;
+      EXPECT_FALSE(fs::exists(out / journal));
     }
     std::cout << kind << ": " << tried << " of " << steps << " points tried\n";
   }
@@ -163,7 +166,8 @@ TEST(FaultPoints, PlanLeavesAWholeResult) {
   const testing_support::TemporaryFolder folder;
   const std::string mission = folder.file("m.yaml", quick);
   const Verb verb = [&](const std::string& seed, const fs::path& out) {
-    return std::vector<std::string>{"plan", mission, "--quiet", "--seed", seed, "--out", out};
+    return std::vector<std::string>{"plan",   mission, "--quiet", "--resume",
+                                    "--seed", seed,    "--out",   out};
   };
   try_faults(verb, {"full", "kill"}, all);
   try_faults(verb, {"memory"}, 60);
@@ -174,7 +178,8 @@ TEST(FaultPoints, PlanWithAFlightLeavesAWholeResult) {
   const std::string mission = folder.file("m.yaml", flown);
   try_faults(
       [&](const std::string& seed, const fs::path& out) {
-        return std::vector<std::string>{"plan", mission, "--quiet", "--seed", seed, "--out", out};
+        return std::vector<std::string>{"plan",   mission, "--quiet", "--resume",
+                                        "--seed", seed,    "--out",   out};
       },
       {"full", "kill"}, 12);
 }

@@ -32,6 +32,17 @@ Problems after(const std::function<void(json&)>& change) {
 
 json& item(json& plan, std::size_t i) { return plan["mission"]["items"][i]; }
 
+// At home's height whatever the ground's: PX4 adds the height of return to the point's own.
+TEST(PlanFile, HoldsTheRallyPointsOfTheProof) {
+  FlightPlan plan = sample_plan(vehicle_profile("generic"));
+  plan.returns->law.landings.emplace_back(35.0, 20.0, -1.0);
+  const MissionFile file = read_plan(write_plan(plan));
+  ASSERT_EQ(file.rally.size(), 1U);
+  const Eigen::Vector3d place = LocalFrame(plan.site.origin).to_local(file.rally.front());
+  EXPECT_LT((place.head<2>() - Eigen::Vector2d(35, 20)).norm(), 0.02);
+  EXPECT_EQ(file.rally.front().height, 0.0);
+}
+
 TEST(PlanFile, TopLevelRules) {
   EXPECT_THAT(validate_plan(good_plan()), IsEmpty());
   EXPECT_THAT(validate_plan("{"), Contains(HasSubstr("not a JSON object")));

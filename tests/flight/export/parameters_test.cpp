@@ -78,6 +78,15 @@ TEST(Parameters, ArduPilotReturnsAtTheCertifiedHeightByEitherName) {
   EXPECT_EQ(values.at("FENCE_ALT_MAX"), 60);
 }
 
+TEST(Parameters, ArduPilotGoesToRallyPointsHoweverFar) {
+  FlightPlan plan = plan_of("generic_ardupilot");
+  EXPECT_FALSE(read_as_mission_planner(write_parameters(plan)).contains("RALLY_LIMIT_KM"));
+  plan.returns->law.landings.emplace_back(35.0, 20.0, 0.0);
+  const auto values = read_as_mission_planner(write_parameters(plan));
+  EXPECT_EQ(values.at("RALLY_LIMIT_KM"), 0.0);
+  EXPECT_EQ(values.at("RALLY_INCL_HOME"), 1.0);
+}
+
 TEST(Parameters, Px4ReturnsAtTheCertifiedHeight) {
   const auto values = read_as_qgroundcontrol(write_parameters(plan_of("generic")));
   EXPECT_EQ(values.at("RTL_RETURN_ALT"), 47);

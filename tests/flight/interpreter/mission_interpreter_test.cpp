@@ -234,8 +234,26 @@ TEST_P(BothAutopilots, FenceAndRallyPointsAreTheMissions) {
       Contains(AllOf(HasSubstr("leg from item"), HasSubstr("enters geoFence.polygons[0]"))));
   EXPECT_THAT(after([](MissionFile& f) { f.fence[1].is_inclusion = true; }),
               Contains(HasSubstr("leaves geoFence.polygons[1]")));
-  EXPECT_THAT(after([](MissionFile& f) { f.rally_points = 1; }),
-              Contains(HasSubstr("rallyPoints.points[0]")));
+  EXPECT_THAT(after([](MissionFile& f) {
+                f.rally = {{51.75, -1.25, 0}};
+              }),
+              Contains(HasSubstr("rallyPoints.points[0] is none of the mission's")));
+}
+
+// Returns go to the nearest place to land, so the file must hold those that are proven.
+TEST_P(BothAutopilots, RallyPointsAreTheMissions) {
+  FlightFacts facts = sample_facts(GetParam());
+  facts.rally = {{35, 35, 0}};
+  const GeodeticPoint place = place_at({35, 35, 0});
+  const auto with = [&](std::vector<GeodeticPoint> rally) {
+    MissionFile file = good();
+    file.rally = std::move(rally);
+    return interpret(file, facts).problems;
+  };
+  EXPECT_THAT(with({{place.latitude_deg, place.longitude_deg, 0.0}}), IsEmpty());
+  EXPECT_THAT(with({{place.latitude_deg, place.longitude_deg, 15.0}}),
+              Contains(HasSubstr("points[0] is 15.0 m above home")));
+  EXPECT_THAT(with({}), Contains(HasSubstr("lacks 1 of the mission's 1 rally points")));
 }
 
 TEST_P(BothAutopilots, WhatFollowsMustBeFlown) {

@@ -241,6 +241,24 @@ TEST(Route, ABlockedPadIsRefusedWithAReason) {
   }
 }
 
+// Above the pad's own ground the climb is certified as legs are, in what is known of the air.
+TEST(Route, AClimbPastATreeThatWasMeasuredIsRefused) {
+  const auto plan_beside = [](double distance) {
+    Obstacles with_tree = site();
+    const double west = -30.0 - distance;
+    geometry::append(with_tree.mesh, scenes::box({west - 0.3, -30.2, 0}, {west, -29.8, 4}));
+    const KnownSpace space(with_tree);
+    return plan_route(ring(3, 18, 8), {}, space, nullptr, options());
+  };
+  EXPECT_NO_THROW(plan_beside(2.5));
+  try {
+    plan_beside(1.5);
+    FAIL();
+  } catch (const Error& error) {
+    EXPECT_THAT(error.what(), HasSubstr("the climb from the pad comes within 1.50 m of triangle"));
+  }
+}
+
 TEST(Route, AbsurdOptionsAreNamed) {
   RouteOptions negative = options();
   negative.clearance.margin = -1;

@@ -65,6 +65,23 @@ TEST(LeastReturn, IsTheFirstHeightThatIsProven) {
   }
 }
 
+// Airspace that is forbidden up to any height lies between the route and the pad: nobody returns
+// over it, but to a rally point on this side.
+TEST(LeastReturn, RallyPointsServeWhereThePadCannot) {
+  Obstacles obstacles;
+  obstacles.ground_height = 0.0;
+  obstacles.no_fly = {{"airport", {{-35, -90}, {-25, -90}, {-25, 90}, {-35, 90}}}};
+  const KnownSpace space(obstacles);
+  ReturnLaw law = law_of({Dialect::px4, Dialect::ardupilot});
+  EXPECT_FALSE(least_return(space, leg, law, 60.0, clearance).found);
+  law.landings.emplace_back(15, 0, 0);
+  const ReturnSearch search = least_return(space, leg, law, 60.0, clearance);
+  ASSERT_TRUE(search.found) << search.why;
+  EXPECT_GE(search.found->clearance, clearance);
+  law.landings.back() = {-20, 0, 0};  // too near to the airport
+  EXPECT_FALSE(least_return(space, leg, law, 60.0, clearance).found);
+}
+
 TEST(LeastReturn, SaysWhatIsInTheWayUnderACeilingThatIsTooLow) {
   Obstacles obstacles = tower(30.0);
   obstacles.fence = Prism{"site", {{-90, -90}, {90, -90}, {90, 90}, {-90, 90}}, -1.0, 33.0};

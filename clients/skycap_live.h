@@ -1,0 +1,158 @@
+/// A client of `skycap serve`, in one header for C++17 and POSIX: docs/live.md describes the
+/// messages. Link zlib.
+///
+///     skycap_live::Survey survey("unix:/tmp/survey.sock");
+///     std::string answer = survey.next();     // JSON, as `skycap next --json` prints it
+///     answer = survey.add_points(xyz, pose);  // and so on
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <cstdio>
+#include <cstring>
+#include <stdexcept>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include <arpa/inet.h>
+#include <netinet/in.h>
+#include <sys/socket.h>
+#include <sys/un.h>
+#include <unistd.h>
+#include <zlib.h>
+
+namespace skycap_live {
+
+/// Three rows of a matrix [rotation | position]: world from the sensor's optical frame.
+using Pose = std::array<double, 12>;
+
+/// The server's answer to a message that is wrong; the survey is as it was.
+struct Refused : std::runtime_error {
+  using std::runtime_error::runtime_error;
+};
+
+class Survey {
+ public:
+  /// `address` is what the server prints: unix:PATH or tcp:127.0.0.1:PORT. Throws
+  /// std::runtime_error, here and below, if the connection fails.
+  explicit Survey(const std::string& address) {
+    if (address.rfind("unix:", 0) == 0) {
+      sockaddr_un place{};
+      place.sun_family = AF_UNIX;
+      std::strncpy(place.sun_path, address.c_str() + 5, sizeof place.sun_path - 1);
+      open(AF_UNIX, place);
+    } else {
+      sockaddr_in place{};
+      place.sin_family = AF_INET;
+      place.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+      place.sin_port =
+          htons(static_cast<std::uint16_t>(std::stoi(address.substr(address.rfind(':') + 1))));
+      open(AF_INET, place);
+    }
+    scans_ = scans_of(ask("{\"type\":\"hello\"}"));
+  }
+  Survey(const Survey&) = delete;
+  Survey& operator=(const Survey&) = delete;
+  ~Survey() { ::close(socket_); }
+
+  std::string next() { return ask("{\"type\":\"next\"}"); }
+
+  /// Points in the mission's frame: x y z after x y z. `pixels`, if there are some, ascend: row *
+  /// width + column of the mission's camera, for each point.
+  std::string add_points(const std::vector<float>& xyz, const Pose& pose,
+                         const std::vector<std::uint32_t>& pixels = {}) {
+    std::string payload(reinterpret_cast<const char*>(xyz.data()), xyz.size() * sizeof(float));
+    payload.append(reinterpret_cast<const char*>(pixels.data()), pixels.size() * sizeof pixels[0]);
+    return add("\"format\":\"points\",\"points\":" + std::to_string(xyz.size() / 3) +
+                   ",\"has_pixels\":" + (pixels.empty() ? "false" : "true"),
+               pose, payload);
+  }
+
+  /// A depth image, row after row, in steps of `unit` metres; 0 and 65535 are no return.
+  std::string add_depth(const std::vector<std::uint16_t>& depth, int width, int height, double unit,
+                        const Pose& pose) {
+    return add("\"format\":\"depth\",\"width\":" + std::to_string(width) +
+                   ",\"height\":" + std::to_string(height) + ",\"unit\":" + number(unit),
+               pose, {reinterpret_cast<const char*>(depth.data()), depth.size() * sizeof depth[0]});
+  }
+
+  /// Another view in place of that of the answer with this id; `reason` is put into JSON as it is.
+  std::string refuse(std::size_t id, const std::string& reason) {
+    return ask("{\"type\":\"refuse\",\"id\":" + std::to_string(id) + ",\"reason\":\"" + reason +
+               "\"}");
+  }
+
+  std::string finish() { return ask("{\"type\":\"finish\"}"); }
+
+ private:
+  template <typename Address>
+  void open(int family, const Address& place) {
+    socket_ = ::socket(family, SOCK_STREAM, 0);
+    if (::connect(socket_, reinterpret_cast<const sockaddr*>(&place), sizeof place) == 0) return;
+    ::close(socket_);
+    throw std::runtime_error("nobody serves a survey there");
+  }
+
+  /// With as many digits as it takes to read the same number back.
+  static std::string number(double value) {
+    char text[32];
+    std::snprintf(text, sizeof text, "%.17g", value);
+    return text;
+  }
+
+  std::string add(const std::string& fields, const Pose& pose, const std::string& payload) {
+    std::string header = "{\"type\":\"scan\",\"number\":" + std::to_string(scans_) + ",\"pose\":[";
+    for (std::size_t i = 0; i < pose.size(); ++i) header += (i > 0 ? "," : "") + number(pose[i]);
+    std::string answer = ask(header + "]," + fields + "}", payload);
+    scans_ = scans_of(answer);
+    return answer;
+  }
+
+  static std::size_t scans_of(const std::string& answer) {
+    const std::string field = "\"scans\":";
+    const std::size_t at = answer.find(field);
+    if (at == std::string::npos) throw std::runtime_error("the answer has no number of scans");
+    return std::stoul(answer.substr(at + field.size()));
+  }
+
+  std::string ask(const std::string& header, const std::string& payload = {}) {
+    const std::string body = header + payload;
+    std::array<std::uint32_t, 3> lengths{static_cast<std::uint32_t>(header.size()),
+                                         static_cast<std::uint32_t>(payload.size()), crc(body)};
+    std::string frame(reinterpret_cast<const char*>(lengths.data()), sizeof lengths);
+    frame += body;
+    for (std::size_t sent = 0; sent < frame.size();) {
+      const ssize_t count = ::send(socket_, frame.data() + sent, frame.size() - sent, MSG_NOSIGNAL);
+      if (count <= 0) throw std::runtime_error("the server has closed the connection");
+      sent += static_cast<std::size_t>(count);
+    }
+    std::memcpy(lengths.data(), receive(sizeof lengths).data(), sizeof lengths);
+    std::string answer = receive(std::size_t{lengths[0]} + lengths[1]);
+    if (crc(answer) != lengths[2]) throw std::runtime_error("the answer was damaged on its way");
+    answer.resize(lengths[0]);
+    if (answer.find("\"type\":\"error\"") != std::string::npos) throw Refused(answer);
+    return answer;
+  }
+
+  std::string receive(std::size_t size) {
+    std::string data(size, '\0');
+    for (std::size_t got = 0; got < size;) {
+      const ssize_t count = ::recv(socket_, &data[got], size - got, 0);
+      if (count <= 0) throw std::runtime_error("the server has closed the connection");
+      got += static_cast<std::size_t>(count);
+    }
+    return data;
+  }
+
+  static std::uint32_t crc(const std::string& bytes) {
+    return static_cast<std::uint32_t>(
+        ::crc32_z(0, reinterpret_cast<const Bytef*>(bytes.data()), bytes.size()));
+  }
+
+  int socket_ = -1;
+  std::size_t scans_ = 0;
+};
+
+}  // namespace skycap_live

@@ -1,0 +1,95 @@
+"""A client of `skycap serve`: docs/live.md describes the messages. Needs Python 3.8 and nothing else.
+
+    with Survey("unix:/tmp/survey.sock") as survey:
+        answer = survey.next()
+        while answer["view"]:
+            depth, pose = my_drone.measure(answer["view"])
+            answer = survey.add_depth(depth, width, height, unit=0.001, pose=pose)
+        print(survey.finish())
+"""
+import json
+import socket
+import struct
+import zlib
+
+
+class Refused(Exception):
+    """The server's answer to a message that is wrong; the survey is as it was."""
+
+
+class Survey:
+    def __init__(self, address, timeout=600.0):
+        """`address` is what the server prints: unix:PATH or tcp:127.0.0.1:PORT."""
+        kind, place = address.split(":", 1)
+        if kind == "unix":
+            self._socket = socket.socket(socket.AF_UNIX)
+            where = place
+        else:
+            host, port = place.rsplit(":", 1)
+            self._socket = socket.socket(socket.AF_INET)
+            where = (host, int(port))
+        self._socket.settimeout(timeout)
+        self._socket.connect(where)
+        self.hello = self._ask({"type": "hello"})
+        self._scans = self.hello["scans"]
+
+    def __enter__(self):
+        return self
+
+    def __exit__(self, *_):
+        self._socket.close()
+
+    def next(self):
+        """What to do next, as `skycap next --json` prints it."""
+        return self._ask({"type": "next"})
+
+    def add_points(self, xyz, pose, pixels=None):
+        """Points in the mission's frame: bytes of float32 x y z, row after row; `pose` of the
+        sensor's optical frame: x y z qx qy qz qw, or 12 numbers of a matrix by rows. `pixels`:
+        bytes of ascending uint32, row * width + column of the mission's camera, for each point."""
+        header = {"format": "points", "points": len(xyz) // 12, "has_pixels": pixels is not None}
+        return self._add(header, pose, bytes(xyz) + bytes(pixels or b""))
+
+    def add_depth(self, depth, width, height, unit, pose, lens=None):
+        """A depth image: bytes of uint16, row after row, in steps of `unit` metres; 0 and 65535 are
+        no return. `lens`: fx fy cx cy, maybe followed by k1 k2 p1 p2 k3; else the mission's."""
+        header = {"format": "depth", "width": width, "height": height, "unit": unit}
+        if lens is not None:
+            header["lens"] = list(lens)
+        return self._add(header, pose, bytes(depth))
+
+    def refuse(self, answer, reason):
+        """Another view in place of the one in `answer`."""
+        return self._ask({"type": "refuse", "id": answer["id"], "reason": reason})
+
+    def finish(self):
+        """Has the server write the mission package, and end."""
+        return self._ask({"type": "finish"})["text"]
+
+    def _add(self, header, pose, payload):
+        header = {"type": "scan", "number": self._scans, "pose": list(pose), **header}
+        answer = self._ask(header, payload)
+        self._scans = answer["scans"]
+        return answer
+
+    def _ask(self, header, payload=b""):
+        text = json.dumps(header).encode()
+        lengths = struct.pack("<III", len(text), len(payload), zlib.crc32(text + payload))
+        self._socket.sendall(lengths + text + payload)
+        header_size, payload_size, checksum = struct.unpack("<III", self._receive(12))
+        body = self._receive(header_size + payload_size)
+        if zlib.crc32(body) != checksum:
+            raise ConnectionError("the answer was damaged on its way")
+        answer = json.loads(body[:header_size])
+        if answer["type"] == "error":
+            raise Refused(answer["what"])
+        return answer
+
+    def _receive(self, size):
+        data = bytearray()
+        while len(data) < size:
+            chunk = self._socket.recv(min(size - len(data), 1 << 20))
+            if not chunk:
+                raise ConnectionError("the server has closed the connection")
+            data += chunk
+        return bytes(data)

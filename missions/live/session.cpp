@@ -1,0 +1,163 @@
+#include "missions/live/session.h"
+
+#include <cstdint>
+#include <cstring>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "geometry/error.h"
+#include "missions/live/open_survey.h"
+#include "missions/live/scan_input.h"
+#include "missions/version.h"
+
+namespace skycap::missions::live {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+[[noreturn]] void refuse_message(const std::string& what) {
+  throw Error(ErrorKind::bad_file, what);
+}
+
+template <typename Value>
+std::vector<Value> values_at(const std::string& payload, std::size_t begin, std::size_t count) {
+  std::vector<Value> values(count);
+  std::memcpy(values.data(), payload.data() + begin, count * sizeof(Value));
+  return values;
+}
+
+Eigen::Isometry3d pose_of(const Json& header) {
+  std::string text;
+  for (const Json& number : header.at("pose")) text += number.dump() + " ";
+  return parse_pose_text(text, "pose");
+}
+
+/// Points in the world frame, as floats, and then the pixels if there are some.
+geometry::Scan cloud_scan(const Message& message) {
+  const auto count = message.header.at("points").get<std::uint32_t>();
+  const bool has_pixels = message.header.value("has_pixels", false);
+  constexpr std::size_t point = 3 * sizeof(float), pixel = sizeof(std::uint32_t);
+  const std::size_t size = count * (point + (has_pixels ? pixel : 0));
+  if (message.payload.size() != size) {
+    refuse_message("scan: the payload has " + std::to_string(message.payload.size()) + " bytes; " +
+                   std::to_string(count) + " points take " + std::to_string(size));
+  }
+  geometry::Scan scan;
+  scan.world_from_sensor = pose_of(message.header);
+  scan.points.resize(count);
+  if (count > 0) std::memcpy(scan.points.data()->data(), message.payload.data(), count * point);
+  if (has_pixels) {
+    scan.pixels = values_at<std::uint32_t>(message.payload, count * point, count);
+  }
+  return scan;
+}
+
+geometry::Scan depth_scan(const Message& message, const file::Mission& mission) {
+  const Json& header = message.header;
+  sim::DepthImage image{header.at("width").get<int>(), header.at("height").get<int>(), {}};
+  constexpr int largest_side = 1 << 15;
+  if (image.width < 1 || image.height < 1 || image.width > largest_side ||
+      image.height > largest_side) {
+    refuse_message("scan: width and height must be from 1 to 32768");
+  }
+  const std::size_t count = static_cast<std::size_t>(image.width) * image.height;
+  if (message.payload.size() != count * sizeof(std::uint16_t)) {
+    refuse_message("scan: the payload has " + std::to_string(message.payload.size()) +
+                   " bytes; the image takes " + std::to_string(2 * count));
+  }
+  image.values = values_at<std::uint16_t>(message.payload, 0, count);
+  std::optional<Lens> lens;
+  if (header.contains("lens")) {
+    std::string text;
+    for (const Json& number : header["lens"]) text += number.dump() + " ";
+    lens = parse_lens(text);
+  }
+  const double unit = header.at("unit").get<double>();
+  if (!(unit >= 1e-6 && unit <= 1.0)) refuse_message("scan: unit must be from 1e-6 to 1 m");
+  return scan_of(image, lens, unit, pose_of(header), mission).scan;
+}
+
+}  // namespace
+
+Session::Session(const file::Mission& mission, LiveSurvey& survey,
+                 std::function<std::string()> finish)
+    : mission_(mission), survey_(survey), finish_(std::move(finish)) {}
+
+Message Session::answer(const Message& message) {
+  const auto error = [](const std::string& what) {
+    return Message{{{"type", "error"}, {"what", what}}, {}};
+  };
+  try {
+    return answer_unguarded(message);
+  } catch (const Json::exception& failure) {
+    return error(std::string("the header is not as docs/live.md has it: ") + failure.what());
+  } catch (const Error& failure) {
+    return error(failure.what());
+  }
+}
+
+Message Session::answer_unguarded(const Message& message) {
+  const auto type = message.header.at("type").get<std::string>();
+  if (type == "hello") {
+    Message answer = present();
+    answer.header["version"] = version;
+    answer.header["mission"] = mission_.name;
+    return answer;
+  }
+  if (type == "next") return present();
+  if (type == "scan") return take_scan(message);
+  if (type == "refuse") return refuse(message);
+  if (type == "finish") {
+    if (survey_.views().empty()) refuse_message("finish: there is no scan yet");
+    is_finished_ = true;
+    return {{{"type", "finished"}, {"text", finish_()}}, {}};
+  }
+  refuse_message("the type '" + type +
+                 "' is unknown; it must be hello, scan, next, refuse or finish");
+}
+
+Message Session::take_scan(const Message& message) {
+  const auto number = message.header.at("number").get<std::size_t>();
+  const auto format = message.header.at("format").get<std::string>();
+  if (format != "points" && format != "depth") {
+    refuse_message("scan: the format '" + format + "' is unknown; it must be points or depth");
+  }
+  const std::size_t expected = survey_.views().size();
+  if (number > expected) {
+    refuse_message("scan " + std::to_string(number) + " is out of order: the next one is " +
+                   std::to_string(expected));
+  }
+  const geometry::Scan scan =
+      format == "points" ? cloud_scan(message) : depth_scan(message, mission_);
+  require_usable(scan, mission_);
+  const std::string id = scan_id(scan);
+  if (number < expected && survey_.number_of(id) != number) {
+    refuse_message("scan " + std::to_string(number) + " was another one; the next one is " +
+                   std::to_string(expected));
+  }
+  const bool is_new = survey_.add(scan, id);
+  Message answer = present();
+  answer.header["is_new"] = is_new;
+  return answer;
+}
+
+Message Session::refuse(const Message& message) {
+  const auto id = message.header.at("id").get<std::size_t>();
+  const std::size_t present_id = survey_.proposal().number;
+  if (id > present_id) {
+    refuse_message("refuse: there is no proposal " + std::to_string(id) + "; the present one is " +
+                   std::to_string(present_id));
+  }
+  // One that was refused already is acknowledged.
+  if (id == present_id) survey_.refuse(message.header.value("reason", std::string("none given")));
+  return present();
+}
+
+Message Session::present() const {
+  Message answer{Json::parse(answer_json(survey_, mission_)), {}};
+  answer.header["type"] = "answer";
+  return answer;
+}
+
+}  // namespace skycap::missions::live

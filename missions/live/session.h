@@ -1,0 +1,37 @@
+/// What a live survey answers to a client's messages: docs/live.md describes them.
+#pragma once
+
+#include <functional>
+#include <string>
+
+#include "missions/file/mission.h"
+#include "missions/live/live_survey.h"
+#include "missions/live/wire.h"
+
+namespace skycap::missions::live {
+
+class Session {
+ public:
+  /// Keeps references. `finish` writes the package and returns what is to be said of it; the survey
+  /// is over for this program then.
+  Session(const file::Mission& mission, LiveSurvey& survey, std::function<std::string()> finish);
+
+  /// One answer for each message. What is wrong with a message is answered as
+  /// {"type": "error", "what": ...} and changes nothing.
+  Message answer(const Message& message);
+
+  bool is_finished() const { return is_finished_; }
+
+ private:
+  Message answer_unguarded(const Message& message);
+  Message take_scan(const Message& message);
+  Message refuse(const Message& message);
+  Message present() const;
+
+  const file::Mission& mission_;
+  LiveSurvey& survey_;
+  std::function<std::string()> finish_;
+  bool is_finished_ = false;
+};
+
+}  // namespace skycap::missions::live

@@ -1,0 +1,190 @@
+#include <chrono>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <stop_token>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "clients/skycap_live.h"
+#include "missions/live/server.h"
+#include "missions/live/session.h"
+#include "tests/missions/flown_mission.h"
+#include "tests/missions/live/rehearsal.h"
+#include "tests/missions/run_skycap.h"
+
+namespace skycap::missions::live {
+namespace {
+
+using testing::HasSubstr;
+
+skycap_live::Pose pose_of(const geometry::Scan& scan) {
+  skycap_live::Pose pose{};
+  for (int i = 0; i < 12; ++i) {
+    pose[static_cast<std::size_t>(i)] = scan.world_from_sensor(i / 4, i % 4);
+  }
+  return pose;
+}
+
+std::vector<float> numbers_of(const geometry::Scan& scan) {
+  const float* begin = scan.points.data()->data();
+  return {begin, begin + 3 * scan.points.size()};
+}
+
+/// A survey that is served from a thread of its own.
+class Served {
+ public:
+  Served(const Rehearsal& rehearsal, ServerPlace place)
+      : survey_(rehearsal.open(folder_.path() / "survey")),
+        session_(rehearsal.mission(), survey_,
+                 [this] {
+                   record_ = survey_.finish();
+                   return std::string("done");
+                 }),
+        server_(std::move(place)),
+        thread_([this](const std::stop_token& stop) {
+          server_.run(
+              session_, [this](const std::string& note) { notes_ += note + "\n"; }, stop);
+        }) {}
+
+  const std::string& address() const { return server_.address(); }
+
+  /// Ends the server.
+  run::SurveyRecord record() {
+    thread_.join();
+    return std::move(record_).value();
+  }
+  std::string notes() {
+    thread_.request_stop();
+    thread_.join();
+    return notes_;
+  }
+
+  LiveSurvey& survey() { return survey_; }
+
+ private:
+  tests::TestFolder folder_;
+  LiveSurvey survey_;
+  Session session_;
+  Server server_;
+  std::optional<run::SurveyRecord> record_;
+  std::string notes_;
+  std::jthread thread_;
+};
+
+TEST(Serve, FedByTheSimulatorIsWhatPlanDoes) {
+  for (const std::string& mission :
+       {short_mission(tests::quick_mission(), "see++"), short_mission(tests::flown_mission())}) {
+    const tests::TestFolder folder;
+    const Rehearsal rehearsal(mission);
+    Served served(rehearsal, {.socket = folder / "socket", .port = {}});
+    skycap_live::Survey client(served.address());
+    while (client.next().find("\"state\":\"view\"") != std::string::npos) {
+      // Between two messages nobody else is at the survey.
+      const geometry::Scan scan = rehearsal.scan(served.survey());
+      client.add_points(numbers_of(scan), pose_of(scan), scan.pixels);
+    }
+    client.finish();
+    expect_same(served.record(), rehearsal.planned());
+  }
+}
+
+TEST(Serve, AnswersOneClientAtATime) {
+  const Rehearsal rehearsal(tests::quick_mission());
+  Served served(rehearsal, {.socket = {}, .port = 0});
+  {
+    skycap_live::Survey first(served.address());
+    EXPECT_THROW(skycap_live::Survey second(served.address()), std::runtime_error);
+    EXPECT_THAT(first.next(), HasSubstr("\"state\":\"view\""));
+  }
+  std::optional<std::string> answer;
+  for (int attempt = 0; attempt < 100 && !answer; ++attempt) {
+    try {  // until the server has noticed that the first one left
+      answer = skycap_live::Survey(served.address()).next();
+    } catch (const std::runtime_error&) {
+      std::this_thread::sleep_for(std::chrono::milliseconds(20));
+    }
+  }
+  EXPECT_TRUE(answer);
+  EXPECT_THAT(served.notes(), HasSubstr("a second client was sent away"));
+}
+
+class SessionAnswers : public testing::Test {
+ protected:
+  std::string ask(const nlohmann::ordered_json& header, const std::string& payload = {}) {
+    return session_.answer({header, payload}).header.dump();
+  }
+
+  nlohmann::ordered_json scan_header(int number, const geometry::Scan& scan) const {
+    return {{"type", "scan"},
+            {"number", number},
+            {"pose", pose_of(scan)},
+            {"format", "points"},
+            {"points", scan.points.size()}};
+  }
+
+  static std::string payload_of(const geometry::Scan& scan) {
+    const std::vector<float> numbers = numbers_of(scan);
+    return {reinterpret_cast<const char*>(numbers.data()), numbers.size() * sizeof(float)};
+  }
+
+  tests::TestFolder folder_;
+  Rehearsal rehearsal_{tests::quick_mission()};
+  LiveSurvey survey_ = rehearsal_.open(folder_.path());
+  Session session_{rehearsal_.mission(), survey_, [] { return std::string(); }};
+};
+
+TEST_F(SessionAnswers, ScansOutOfOrderAndTwice) {
+  const geometry::Scan scan = rehearsal_.scan(survey_);
+  const std::string payload = payload_of(scan);
+  EXPECT_THAT(ask(scan_header(1, scan), payload), HasSubstr("out of order: the next one is 0"));
+  const std::string first = ask(scan_header(0, scan), payload);
+  EXPECT_THAT(first, HasSubstr("\"is_new\":true"));
+  EXPECT_THAT(ask(scan_header(0, scan), payload), HasSubstr("\"is_new\":false"));
+  geometry::Scan other = scan;
+  other.points[0].x() += 1.0F;
+  EXPECT_THAT(ask(scan_header(0, other), payload_of(other)), HasSubstr("was another one"));
+  EXPECT_EQ(survey_.views().size(), 1U);
+}
+
+TEST_F(SessionAnswers, RefusalsTwiceAreOne) {
+  const geometry::Scan scan = rehearsal_.scan(survey_);
+  ask(scan_header(0, scan), payload_of(scan));
+  const std::string other = ask({{"type", "refuse"}, {"id", 1}});
+  EXPECT_EQ(ask({{"type", "refuse"}, {"id", 1}}), other);
+  EXPECT_THAT(ask({{"type", "refuse"}, {"id", 9}}), HasSubstr("there is no proposal 9"));
+}
+
+TEST_F(SessionAnswers, WhatIsWrongIsSaidAndChangesNothing) {
+  const geometry::Scan scan = rehearsal_.scan(survey_);
+  nlohmann::ordered_json header = scan_header(0, scan);
+  EXPECT_THAT(ask(header, "short"), HasSubstr("the payload has 5 bytes"));
+  header["points"] = -1;
+  EXPECT_THAT(ask(header, payload_of(scan)), HasSubstr("error"));
+  header["points"] = 4294967295U;
+  EXPECT_THAT(ask(header, payload_of(scan)), HasSubstr("the payload has"));
+  header = scan_header(0, scan);
+  header["pose"] = {1, 2, 3};
+  EXPECT_THAT(ask(header, payload_of(scan)), HasSubstr("pose"));
+  header["pose"] = "here";
+  EXPECT_THAT(ask(header, payload_of(scan)), HasSubstr("error"));
+  header["format"] = "mp3";
+  EXPECT_THAT(ask(header, payload_of(scan)), HasSubstr("must be points or depth"));
+  EXPECT_THAT(ask({{"type", "dance"}}), HasSubstr("the type 'dance' is unknown"));
+  EXPECT_THAT(ask({{"number", 1}}), HasSubstr("error"));
+  EXPECT_THAT(ask({{"type", "finish"}}), HasSubstr("there is no scan yet"));
+  nlohmann::ordered_json depth{{"type", "scan"},    {"number", 0}, {"pose", pose_of(scan)},
+                               {"format", "depth"}, {"width", 2},  {"height", 2},
+                               {"unit", 0.001}};
+  EXPECT_THAT(ask(depth, "12345"), HasSubstr("the image takes 8"));
+  depth["width"] = 1 << 20;
+  EXPECT_THAT(ask(depth, "12345678"), HasSubstr("from 1 to 32768"));
+  EXPECT_TRUE(survey_.views().empty());
+}
+
+}  // namespace
+}  // namespace skycap::missions::live
