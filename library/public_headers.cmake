@@ -29,7 +29,10 @@ set(public_headers
   flight/motion/vehicle.h
   flight/route/route.h
   flight/space/clearance.h
-  flight/space/obstacles.h)
+  flight/space/obstacles.h
+  missions/library/laser_scan.h
+  missions/library/mission.h
+  missions/library/survey.h)
 
 # What those include: installed under skycap/LIBRARY/detail, not for others, may change any day.
 set(supporting_headers

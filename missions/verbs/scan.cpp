@@ -20,7 +20,7 @@
 #include "missions/package/package.h"
 #include "missions/recording/cloud_formats.h"
 #include "missions/recording/frame_recorder.h"
-#include "missions/recording/scan_route.h"
+#include "missions/recording/scan_flight.h"
 #include "missions/recording/scan_runner.h"
 #include "missions/scene/scene_source.h"
 #include "missions/verbs/verbs.h"
@@ -28,9 +28,7 @@
 namespace skycap::missions::verbs {
 namespace {
 
-using Eigen::AngleAxisd;
 using Eigen::Isometry3d;
-using Eigen::Vector3d;
 using Clock = std::chrono::steady_clock;
 
 constexpr const char* scan_name = "scan.json";
@@ -46,42 +44,9 @@ equipment::SensorDescription sensor_of(const ScanVerbOptions& options,
       options.sensor.value_or(beside(options.mission.parent_path(), mission.scan.sensor)));
 }
 
-recording::ScanRoute route_of(const ScanVerbOptions& options, const file::Mission& mission,
-                              recording::Carrier carrier) {
-  if (options.route) return recording::read_scan_route(*options.route, mission, carrier);
-  if (mission.scan.route) {
-    return recording::read_scan_route(options.mission.parent_path() / *mission.scan.route, mission,
-                                      carrier);
-  }
-  return {recording::orbit_trajectory(mission.scan.orbit), {}};
-}
-
-Isometry3d turned(const Vector3d& position, const Vector3d& angles) {
-  Isometry3d pose = Isometry3d::Identity();
-  pose.translation() = position;
-  pose.linear() =
-      (AngleAxisd(angles.z(), Vector3d::UnitZ()) * AngleAxisd(angles.y(), Vector3d::UnitY()) *
-       AngleAxisd(angles.x(), Vector3d::UnitX()))
-          .toRotationMatrix();
-  return pose;
-}
-
-/// How the sensor sits on its carrier, and how the calibration says that it does.
-struct Mount {
-  Isometry3d real, believed;
-};
-
-Mount mount_of(const file::ScanConfig& scan) {
-  const Isometry3d real = turned(scan.mount_position, scan.mount_rotation);
-  Isometry3d believed = turned(Vector3d::Zero(), scan.boresight_error) * real;
-  believed.translation() = scan.mount_position + scan.lever_arm_error;
-  return {real, believed};
-}
-
-sim::Trajectory believed_by(const file::Mission& mission, const sim::Trajectory& flown) {
-  sim::NavigationErrors errors = mission.scan.navigation;
-  errors.seed = mission.seed;
-  return sim::believed_trajectory(flown, errors);
+recording::ScanFlight flown_by(const ScanVerbOptions& options, const file::Mission& mission,
+                               recording::Carrier carrier) {
+  return recording::scan_flight(mission, options.mission.parent_path(), options.route, carrier);
 }
 
 std::shared_ptr<const flight::UtmProjection> projection_of(const file::Mission& mission) {
@@ -101,19 +66,6 @@ std::string sensor_tum(const sim::Trajectory& carrier, const Isometry3d& body_fr
     poses.push_back({pose.time, carrier.pose(pose.time) * body_from_sensor});
   }
   return flight::write_tum(poses);
-}
-
-/// Refuses what no scan would ever finish, before it begins.
-void require_measurable(const sim::Lidar& lidar, const sim::Trajectory& flown) {
-  constexpr double most_firings = 1e11;
-  const double duration = flown.end() - flown.start();
-  const double firings = duration / lidar.config().firing_period;
-  if (firings <= most_firings) return;
-  throw Error(ErrorKind::bad_config,
-              "scan: the route takes " + file::short_text(duration) + " s, in which the sensor's " +
-                  "firing period of " + file::short_text(lidar.config().firing_period) +
-                  " s makes " + file::short_text(firings) + " firings; at most " +
-                  file::short_text(most_firings) + " are simulated");
 }
 
 /// Commits a scan; one that was interrupted goes beside a complete one instead of over it.
@@ -237,11 +189,9 @@ int scan_with_laser(const ScanVerbOptions& options, const file::Mission& mission
                     geometry::OutputFolder& folder, const Console& console) {
   config.seed = mission.seed;
   const sim::Lidar lidar(config);
-  const recording::ScanRoute route = route_of(options, mission, recording::Carrier::airframe);
-  require_measurable(lidar, route.carrier);
-  const sim::Trajectory believed = believed_by(mission, route.carrier);
-  const Mount mount = mount_of(mission.scan);
-  const sim::LidarFlight flight{route.carrier, believed, mount.real, mount.believed};
+  const recording::ScanFlight flown = flown_by(options, mission, recording::Carrier::airframe);
+  recording::require_measurable(lidar, flown.route.carrier);
+  const sim::LidarFlight flight = flown.of_scanner();
   const std::shared_ptr<const flight::UtmProjection> projection = projection_of(mission);
 
   ProgressLine progress(console, options.is_quiet);
@@ -267,8 +217,8 @@ int scan_with_laser(const ScanVerbOptions& options, const file::Mission& mission
   recorded.time = std::chrono::duration<double>(Clock::now() - start).count();
   const auto firings = static_cast<double>(recorded.result.progress.firings);
   recorded.shots = channels * firings, recorded.flown = firings * config.firing_period;
-  folder.write("trajectory.tum", sensor_tum(route.carrier, mount.real));
-  folder.write("trajectory_believed.tum", sensor_tum(believed, mount.believed));
+  folder.write("trajectory.tum", sensor_tum(flown.route.carrier, flown.mount.real));
+  folder.write("trajectory_believed.tum", sensor_tum(flown.believed, flown.mount.believed));
   folder.write(scan_name, file::json_text(scan_json(mission, recorded)));
   commit_scan(folder, recorded.result.is_complete);
   progress.clear();
@@ -299,9 +249,7 @@ int scan_with_camera(const ScanVerbOptions& options, const file::Mission& missio
                      const std::string& sensor_name, sim::DepthCameraConfig config,
                      geometry::OutputFolder& folder, const Console& console) {
   config.noise.seed = mission.seed;
-  const recording::ScanRoute route = route_of(options, mission, recording::Carrier::gimbal);
-  const sim::Trajectory believed = believed_by(mission, route.carrier);
-  const Mount mount = mount_of(mission.scan);
+  const auto [route, believed, mount] = flown_by(options, mission, recording::Carrier::gimbal);
   std::vector<recording::Frame> frames;
   for (const double time : image_times(route, mission.scan.frame_period)) {
     frames.push_back({time, route.carrier.pose(time) * mount.real * recording::body_from_camera(),

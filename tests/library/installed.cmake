@@ -59,7 +59,7 @@ file(WRITE ${FOLDER}/headers/CMakeLists.txt "
   find_package(Skycap 0.1 REQUIRED COMPONENTS geometry sim survey flight missions)
   file(GLOB sources *.cpp)
   add_library(headers OBJECT \${sources})
-  target_link_libraries(headers PRIVATE Skycap::sim Skycap::survey Skycap::flight)
+  target_link_libraries(headers PRIVATE Skycap::missions)
 ")
 build_against_installed(headers_alone ${FOLDER}/headers)
 

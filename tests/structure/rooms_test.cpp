@@ -78,6 +78,8 @@ Rooms house() {
   add_mission_room("report", "file", "derived", "scene", "package");
   add_mission_room("live", "file", "derived", "scene", "run");
   add_mission_room("benchmark", "file", "derived", "judge", "plugins", "scene", "run", "package");
+  add_mission_room("library", "file", "equipment", "derived", "judge", "scene", "recording", "run",
+                   "package");
   add_mission_room("verbs", "file", "equipment", "derived", "judge", "plugins", "scene",
                    "recording", "run", "package", "report", "live", "benchmark");
   return rooms;

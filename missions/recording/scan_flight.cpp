@@ -1,0 +1,67 @@
+#include "missions/recording/scan_flight.h"
+
+#include <string>
+#include <utility>
+
+#include "geometry/error.h"
+#include "missions/file/number_text.h"
+
+namespace skycap::missions::recording {
+namespace {
+
+using Eigen::AngleAxisd;
+using Eigen::Isometry3d;
+using Eigen::Vector3d;
+
+ScanRoute route_of(const file::Mission& mission, const std::filesystem::path& folder,
+                   const std::optional<std::filesystem::path>& route_file, Carrier carrier) {
+  if (route_file) return read_scan_route(*route_file, mission, carrier);
+  if (mission.scan.route) return read_scan_route(folder / *mission.scan.route, mission, carrier);
+  return {orbit_trajectory(mission.scan.orbit), {}};
+}
+
+Isometry3d turned(const Vector3d& position, const Vector3d& angles) {
+  Isometry3d pose = Isometry3d::Identity();
+  pose.translation() = position;
+  pose.linear() =
+      (AngleAxisd(angles.z(), Vector3d::UnitZ()) * AngleAxisd(angles.y(), Vector3d::UnitY()) *
+       AngleAxisd(angles.x(), Vector3d::UnitX()))
+          .toRotationMatrix();
+  return pose;
+}
+
+Mount mount_of(const file::ScanConfig& scan) {
+  const Isometry3d real = turned(scan.mount_position, scan.mount_rotation);
+  Isometry3d believed = turned(Vector3d::Zero(), scan.boresight_error) * real;
+  believed.translation() = scan.mount_position + scan.lever_arm_error;
+  return {real, believed};
+}
+
+sim::Trajectory believed_by(const file::Mission& mission, const sim::Trajectory& flown) {
+  sim::NavigationErrors errors = mission.scan.navigation;
+  errors.seed = mission.seed;
+  return sim::believed_trajectory(flown, errors);
+}
+
+}  // namespace
+
+ScanFlight scan_flight(const file::Mission& mission, const std::filesystem::path& folder,
+                       const std::optional<std::filesystem::path>& route_file, Carrier carrier) {
+  ScanRoute route = route_of(mission, folder, route_file, carrier);
+  sim::Trajectory believed = believed_by(mission, route.carrier);
+  return {std::move(route), std::move(believed), mount_of(mission.scan)};
+}
+
+void require_measurable(const sim::Lidar& lidar, const sim::Trajectory& flown) {
+  constexpr double most_firings = 1e11;
+  const double duration = flown.end() - flown.start();
+  const double firings = duration / lidar.config().firing_period;
+  if (firings <= most_firings) return;
+  throw Error(ErrorKind::bad_config,
+              "scan: the route takes " + file::short_text(duration) + " s, in which the sensor's " +
+                  "firing period of " + file::short_text(lidar.config().firing_period) +
+                  " s makes " + file::short_text(firings) + " firings; at most " +
+                  file::short_text(most_firings) + " are simulated");
+}
+
+}  // namespace skycap::missions::recording
