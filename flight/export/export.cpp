@@ -149,7 +149,10 @@ std::vector<Vector3d> places_of(const std::string& content, Format format, const
       points.emplace_back(pose.world_from_camera.translation());
     }
   } else {
-    return local_points(route_file(content, format), site, pad);
+    points = local_points(route_file(content, format), site, pad);
+  }
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    geometry::require_place(points[i], "place " + std::to_string(i + 1));
   }
   return points;
 }
@@ -173,11 +176,7 @@ std::vector<Vector3d> read_route(const std::filesystem::path& path, const Site& 
   const std::string content = geometry::read_file(path, largest_route_file);
   const Format format = format_of_file(path, content);
   try {
-    std::vector<Vector3d> points = places_of(content, format, site, pad);
-    for (std::size_t i = 0; i < points.size(); ++i) {
-      geometry::require_place(points[i], "place " + std::to_string(i + 1));
-    }
-    return points;
+    return places_of(content, format, site, pad);
   } catch (const Error& error) {
     throw Error(error.kind(), path.string() + ": " + error.what());
   }

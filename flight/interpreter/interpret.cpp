@@ -6,6 +6,7 @@
 #include "flight/interpreter/wpml_interpreter.h"
 #include "geometry/error.h"
 #include "geometry/io/file.h"
+#include "geometry/place/world.h"
 
 namespace skycap::flight {
 namespace {
@@ -25,9 +26,6 @@ struct Naming {
 FlownRoute in_a_row(const std::vector<Eigen::Vector3d>& places, const Naming& name) {
   FlownRoute route;
   for (std::size_t i = 0; i < places.size(); ++i) {
-    if (!places[i].allFinite()) {
-      throw Error(ErrorKind::bad_geometry, name(i) + " is not a finite position");
-    }
     if (i == 0) continue;
     route.pieces.push_back({{places[i - 1], places[i - 1]}, places[i], name(i - 1), name(i)});
   }
@@ -63,14 +61,24 @@ FlownRoute interpret_litchi(const RouteFile& file, const FlightFacts& facts) {
   return route;
 }
 
-}  // namespace
-
-FlownRoute interpret(const std::string& content, Format format, const FlightFacts& facts) {
+FlownRoute interpreted(const std::string& content, Format format, const FlightFacts& facts) {
   if (format == Format::plan) return interpret(read_plan(content), facts);
   if (format == Format::waypoints) return interpret(read_waypoints(content), facts);
   if (format == Format::kmz) return interpret(unpack_kmz(content), facts);
   if (format == Format::litchi) return interpret_litchi(read_litchi(content), facts);
   return in_a_row(places_of(content, format, facts.site, facts.pad), {"point "});
+}
+
+}  // namespace
+
+FlownRoute interpret(const std::string& content, Format format, const FlightFacts& facts) {
+  FlownRoute route = interpreted(content, format, facts);
+  for (const FlownPiece& piece : route.pieces) {
+    geometry::require_place(piece.start.from, piece.from_item);
+    geometry::require_place(piece.start.to, piece.from_item);
+    geometry::require_place(piece.to, piece.to_item);
+  }
+  return route;
 }
 
 FlownRoute interpret_file(const std::filesystem::path& path, const FlightFacts& facts) {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <cstdint>
 #include <fstream>
 #include <limits>
 #include <system_error>
@@ -130,7 +131,8 @@ std::string read_file(const fs::path& path, std::size_t most_bytes) {
   if (!error && size > most_bytes) refuse_size();
   std::string bytes;
   if (!error) bytes.reserve(size);
-  std::string chunk(1 << 20, '\0');
+  constexpr std::uintmax_t largest_chunk = 1 << 20;
+  std::string chunk(error ? largest_chunk : std::min(largest_chunk, size + 1), '\0');
   while (stream.read(chunk.data(), static_cast<std::streamsize>(chunk.size())),
          stream.gcount() > 0) {
     bytes.append(chunk, 0, static_cast<std::size_t>(stream.gcount()));

@@ -7,6 +7,7 @@
 #include <optional>
 #include <string>
 #include <tuple>
+#include <unordered_map>
 
 #include "geometry/error.h"
 #include "geometry/io/ply.h"
@@ -105,9 +106,10 @@ class ObjReader {
   }
 
   void use_material(const std::string& wanted) {
-    const auto known = std::ranges::find(soup_.materials, wanted);
-    material_ = static_cast<std::uint32_t>(known - soup_.materials.begin());
-    if (known == soup_.materials.end()) soup_.materials.push_back(wanted);
+    const auto number = static_cast<std::uint32_t>(soup_.materials.size());
+    const auto [known, is_new] = materials_.emplace(wanted, number);
+    material_ = known->second;
+    if (is_new) soup_.materials.push_back(wanted);
   }
 
   void read_face() {
@@ -155,6 +157,7 @@ class ObjReader {
   PolygonSoup soup_;
   std::vector<std::uint32_t> lines_;  // of each polygon, for the check of its corners
   std::uint32_t material_ = 0;
+  std::unordered_map<std::string, std::uint32_t> materials_;  // numbers by names
 };
 
 }  // namespace

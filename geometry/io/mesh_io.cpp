@@ -6,6 +6,7 @@
 #include <cctype>
 #include <charconv>
 #include <cstring>
+#include <limits>
 #include <string>
 
 #include <Eigen/Geometry>
@@ -59,19 +60,35 @@ PolygonSoup parse(const fs::path& path) {
   return parser(path.string(), bytes);
 }
 
-/// The polygons of one material; those of all if there are none.
-PolygonSoup polygons_of(const PolygonSoup& soup, std::size_t material) {
-  if (soup.materials.empty()) return soup;
-  PolygonSoup part{soup.vertices, {}};
-  for (std::size_t i = 0; i + 1 < soup.polygon_begin.size(); ++i) {
-    if (soup.polygon_materials[i] != material) continue;
-    const auto corners = soup.corners.begin();
-    part.corners.insert(part.corners.end(),
-                        corners + static_cast<std::ptrdiff_t>(soup.polygon_begin[i]),
-                        corners + static_cast<std::ptrdiff_t>(soup.polygon_begin[i + 1]));
-    part.polygon_begin.push_back(part.corners.size());
+/// The polygons of each material, each with the vertices that they use; one part if there are no
+/// materials. Takes time in proportion to the file, however many materials it has.
+std::vector<PolygonSoup> parts_by_material(const PolygonSoup& soup) {
+  if (soup.materials.empty()) return {soup};
+  const std::size_t count = soup.polygon_begin.size() - 1;
+  std::vector<std::vector<std::size_t>> polygons(soup.materials.size());
+  for (std::size_t i = 0; i < count; ++i) polygons[soup.polygon_materials[i]].push_back(i);
+
+  constexpr std::uint32_t none = std::numeric_limits<std::uint32_t>::max();
+  std::vector<std::uint32_t> index_in_part(soup.vertices.size(), none);
+  std::vector<PolygonSoup> parts(soup.materials.size());
+  for (std::size_t material = 0; material < parts.size(); ++material) {
+    PolygonSoup& part = parts[material];
+    std::vector<std::uint32_t> used;
+    for (const std::size_t i : polygons[material]) {
+      for (std::size_t c = soup.polygon_begin[i]; c < soup.polygon_begin[i + 1]; ++c) {
+        const std::uint32_t vertex = soup.corners[c];
+        if (index_in_part[vertex] == none) {
+          index_in_part[vertex] = static_cast<std::uint32_t>(part.vertices.size());
+          part.vertices.push_back(soup.vertices[vertex]);
+          used.push_back(vertex);
+        }
+        part.corners.push_back(index_in_part[vertex]);
+      }
+      part.polygon_begin.push_back(part.corners.size());
+    }
+    for (const std::uint32_t vertex : used) index_in_part[vertex] = none;
   }
-  return part;
+  return parts;
 }
 
 Mesh clean_mesh(const fs::path& path, const PolygonSoup& soup) {
@@ -197,8 +214,9 @@ std::vector<MaterialMesh> read_mesh_by_material(const fs::path& path) {
   const PolygonSoup soup = parse(path);
   require_faces(path, soup);
   std::vector<MaterialMesh> parts;
-  for (std::size_t i = 0; i < std::max<std::size_t>(1, soup.materials.size()); ++i) {
-    Mesh mesh = clean_mesh(path, polygons_of(soup, i));
+  const std::vector<PolygonSoup> polygons = parts_by_material(soup);
+  for (std::size_t i = 0; i < polygons.size(); ++i) {
+    Mesh mesh = clean_mesh(path, polygons[i]);
     if (mesh.triangles.empty()) continue;
     parts.push_back({soup.materials.empty() ? "" : soup.materials[i], std::move(mesh)});
   }

@@ -149,8 +149,9 @@ void OutputFolder::lock_and_clean() {
     std::error_code ignored;
     for (const fs::directory_entry& entry : fs::directory_iterator(folder_, ignored)) {
       const std::string name = entry.path().filename().string();
-      const bool is_leftover = name.starts_with(part_prefix) || name.starts_with(old_prefix);
-      if (is_leftover && !entry.is_directory(ignored)) remove_file(entry.path());
+      const bool is_part = name.starts_with(part_prefix), is_old = name.starts_with(old_prefix);
+      if (is_part) fs::remove_all(entry.path(), ignored);  // may be a folder for scratch files
+      if (is_old && !entry.is_directory(ignored)) remove_file(entry.path());
     }
     // Better to find out now than after the survey.
     const fs::path probe = temporary("probe");

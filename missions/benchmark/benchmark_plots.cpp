@@ -207,19 +207,21 @@ PlotScript plot_script(const std::vector<BenchmarkCell>& cells) {
   return script;
 }
 
-std::string draw_plots(const PlotScript& script, geometry::OutputFolder& folder) {
-  if (script.plots.empty()) return "";
-  const ScratchFolder scratch(folder.path() / ".plots");
+DrawnPlots draw_plots(const PlotScript& script, geometry::OutputFolder& folder) {
+  if (script.plots.empty()) return {};
+  const ScratchFolder scratch(folder.path() / ".part-plots");
   geometry::write_file(scratch.path() / "plots.gp", script.text);
   // -d: not what the user's own settings say.
   const plugins::ProgramResult result =
       plugins::run_external_program({"gnuplot", "-d", "plots.gp"}, scratch.path());
-  if (result.exit_code == 127) return "gnuplot is not installed; install it (gnuplot-nox)";
-  if (result.exit_code != 0) return "gnuplot failed: " + result.output;
+  if (result.exit_code == 127) {
+    return {false, "gnuplot is not installed; install it (gnuplot-nox)"};
+  }
+  if (result.exit_code != 0) return {true, "gnuplot failed: " + result.output};
   for (const char* ending : {".svg", ".png"}) {
     for (std::size_t i = 1; i <= script.plots.size(); ++i) {
       if (!is_whole(scratch.path() / (plot_name(i) + ending))) {
-        return "gnuplot left a plot unfinished; is the disk full? " + result.output;
+        return {true, "gnuplot left a plot unfinished; is the disk full? " + result.output};
       }
     }
   }
@@ -229,7 +231,7 @@ std::string draw_plots(const PlotScript& script, geometry::OutputFolder& folder)
                    geometry::read_file(scratch.path() / (plot_name(i) + ending)));
     }
   }
-  return "";
+  return {};
 }
 
 }  // namespace skycap::missions::benchmark

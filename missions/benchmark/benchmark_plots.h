@@ -21,9 +21,13 @@ struct PlotScript {
 /// standard deviation; for SEE and SEE++ the statistics of their targets.
 PlotScript plot_script(const std::vector<BenchmarkCell>& cells);
 
-/// Draws the plots and stages them in `folder`, an SVG and a PNG file each. What gnuplot complained
-/// of, or empty; then all are there. That it is not installed is a complaint, too. Throws
+struct DrawnPlots {
+  bool has_gnuplot = true;
+  std::string complaint;  ///< why there are no plots; empty: all are there
+};
+
+/// Draws the plots and stages them in `folder`, an SVG and a PNG file each, or none. Throws
 /// Error{bad_file} if a file cannot be written.
-std::string draw_plots(const PlotScript& script, geometry::OutputFolder& folder);
+DrawnPlots draw_plots(const PlotScript& script, geometry::OutputFolder& folder);
 
 }  // namespace skycap::missions::benchmark

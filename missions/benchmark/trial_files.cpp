@@ -60,7 +60,7 @@ std::vector<Trial> run_trials(const file::Mission& mission, const scene::SurveyS
   for (std::size_t i = 0; i < count; ++i) slots[i] = finished_trial(file_of(i), fingerprint);
   const bool is_over =
       std::ranges::all_of(slots, [](const auto& slot) { return slot.has_value(); });
-  const SceneTruth truth = is_over ? SceneTruth{} : scene_truth(scene, threads);
+  const SceneTruth truth = is_over ? SceneTruth{} : scene_truth(scene, threads, stop);
   std::mutex reporting;
   geometry::parallel_for(count, threads, [&](std::size_t i) {
     if (slots[i] || stop.stop_requested()) return;

@@ -131,9 +131,9 @@ Statistic statistic(const std::vector<double>& numbers) {
   return {mean, deviation, t * deviation / std::sqrt(count)};
 }
 
-SceneTruth scene_truth(const scene::SurveyScene& scene, unsigned threads) {
-  SceneTruth truth{scene.visible(threads), {}};
-  truth.ceiling = scene.ceiling(truth.is_visible, threads);
+SceneTruth scene_truth(const scene::SurveyScene& scene, unsigned threads, std::stop_token stop) {
+  SceneTruth truth{scene.visible(threads, stop), {}};
+  truth.ceiling = scene.ceiling(truth.is_visible, threads, stop);
   return truth;
 }
 

@@ -11,6 +11,7 @@
 #include "missions/derived/site.h"
 #include "missions/file/mission_keys.h"
 #include "missions/file/number_text.h"
+#include "sim/models/models.h"
 
 namespace skycap::missions::derived {
 namespace {
@@ -48,6 +49,16 @@ std::string key_of(std::string_view setting) {
                                      : std::string(known->key);
 }
 
+void check_builtin(const file::MissionFile& given, std::string_view name) {
+  const auto models = sim::builtin_models();
+  if (std::ranges::find(models, name) != models.end()) return;
+  std::string known;
+  for (const std::string_view model : models) {
+    known += (known.empty() ? "builtin:" : ", builtin:") + std::string(model);
+  }
+  given.refuse("scene.model", "is " + given.mission.scene.model + "; there are " + known);
+}
+
 }  // namespace
 
 void check_scene(const file::MissionFile& given) {
@@ -57,6 +68,8 @@ void check_scene(const file::MissionFile& given) {
     given.refuse("name",
                  "is " + mission.name + "; it names a folder, give it without '/' and leading '.'");
   }
+  constexpr std::string_view builtin = "builtin:";
+  if (scene.model.starts_with(builtin)) check_builtin(given, scene.model.substr(builtin.size()));
   if (given.gives("scene.detail") && !scene.model.starts_with("builtin:")) {
     given.refuse("scene.detail",
                  "needs a builtin model; " + scene.model + " is as detailed as its file");

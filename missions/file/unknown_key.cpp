@@ -34,14 +34,16 @@ std::string_view last_part(std::string_view path) { return path.substr(path.rfin
 std::string unknown_key_message(const std::string& path) {
   const Key* nearest = nullptr;
   std::size_t nearest_distance = 0;
+  constexpr std::size_t longest = 100;  // what is longer is no slip, and would take long
   for (const Key& key : mission_keys()) {
+    if (path.size() > longest) break;
     // A key may be misspelt, or right (but for a slip) in the wrong section.
     const std::size_t slip = edit_distance(last_part(path), last_part(key.path));
     std::size_t distance = edit_distance(path, key.path);
     if (4 * slip <= last_part(path).size()) distance = std::min(distance, slip + 1);
     if (!nearest || distance < nearest_distance) nearest = &key, nearest_distance = distance;
   }
-  if (nearest_distance <= std::max<std::size_t>(2, path.size() / 4)) {
+  if (nearest && nearest_distance <= std::max<std::size_t>(2, path.size() / 4)) {
     return "is unknown; did you mean " + nearest->path + "?";
   }
   const std::string section = path.substr(0, path.rfind('.') + 1);

@@ -1,7 +1,7 @@
 #include "missions/file/yaml_tree.h"
 
-#include <algorithm>
 #include <cstddef>
+#include <map>
 #include <sstream>
 
 #include <yaml-cpp/eventhandler.h>
@@ -63,7 +63,8 @@ class TreeBuilder final : public YAML::EventHandler {
   /// A list or map that is being read.
   struct Open {
     YamlNode node;
-    bool awaits_value = false;  // of the map's last entry
+    bool awaits_value = false;         // of the map's last entry
+    std::map<std::string, int> lines;  // of the map's keys: a search for each takes too long
   };
 
   [[noreturn]] void fail(int line, const std::string& what) const {
@@ -96,7 +97,7 @@ class TreeBuilder final : public YAML::EventHandler {
     if (open_.size() == deepest_nesting) {
       fail(line_of(mark), "lists and maps are nested deeper than 16; a mission file needs 3");
     }
-    open_.push_back({node_at(mark, kind), false});
+    open_.push_back({node_at(mark, kind), false, {}});
   }
 
   void close() {
@@ -122,14 +123,14 @@ class TreeBuilder final : public YAML::EventHandler {
 
   void add_key(const YamlNode& key) {
     if (key.kind != YamlNode::Kind::scalar) fail(key.line, "a key must be a plain word");
-    std::vector<YamlEntry>& entries = open_.back().node.entries;
-    const auto same = std::ranges::find_if(
-        entries, [&](const YamlEntry& entry) { return entry.key == key.text; });
-    if (same != entries.end()) {
+    constexpr std::size_t longest = 1000;
+    if (key.text.size() > longest) fail(key.line, "a key has more than 1000 characters");
+    const auto [same, is_new] = open_.back().lines.emplace(key.text, key.line);
+    if (!is_new) {
       fail(key.line, "key " + key.text + ": is given twice, first in line " +
-                         std::to_string(same->line) + "; keep one");
+                         std::to_string(same->second) + "; keep one");
     }
-    entries.push_back({key.text, key.line, {}});
+    open_.back().node.entries.push_back({key.text, key.line, {}});
   }
 
   const std::string& name_;

@@ -35,11 +35,12 @@ std::optional<Vector3d> free_position(const Vector3d& target, std::span<const Ve
 
 std::vector<std::uint8_t> visible_samples(std::span<const Vector3f> samples,
                                           const sim::Scene& scene, const Admissible& admissible,
-                                          unsigned threads) {
+                                          unsigned threads, std::stop_token stop) {
   const std::vector<Vector3d> directions = fibonacci_directions(admissible.directions);
   std::vector<std::uint8_t> is_visible(samples.size(), 0);
   const std::size_t tasks = (samples.size() + samples_in_a_task - 1) / samples_in_a_task;
   geometry::parallel_for(tasks, threads, [&](std::size_t task) {
+    if (stop.stop_requested()) return;
     const std::size_t end = std::min(samples.size(), (task + 1) * samples_in_a_task);
     for (std::size_t i = task * samples_in_a_task; i < end; ++i) {
       // Starting at another direction each time tells nothing about where "up" is, and finds a
@@ -54,7 +55,8 @@ std::vector<std::uint8_t> visible_samples(std::span<const Vector3f> samples,
 
 double coverage_ceiling(std::span<const Vector3f> samples, std::span<const std::uint8_t> is_visible,
                         const sim::Scene& scene, const TakeScan& take_scan,
-                        const Admissible& admissible, const CeilingConfig& config) {
+                        const Admissible& admissible, const CeilingConfig& config,
+                        std::stop_token stop) {
   const std::vector<Vector3d> directions = fibonacci_directions(admissible.directions);
   std::mt19937_64 random(config.seed);
   std::vector<std::uint32_t> targets;  // visible samples in random order
@@ -67,7 +69,7 @@ double coverage_ceiling(std::span<const Vector3f> samples, std::span<const std::
   ThinnedCloud cloud(config.spacing);
   geometry::Scan scan;
   std::size_t next = 0;
-  for (std::size_t view = 0; view < config.views; ++view) {
+  for (std::size_t view = 0; view < config.views && !stop.stop_requested(); ++view) {
     while (next < targets.size() && meter.is_covered()[targets[next]]) ++next;
     if (next == targets.size()) break;
     const Vector3d target = samples[targets[next++]].cast<double>();

@@ -7,6 +7,7 @@
 #include <functional>
 #include <optional>
 #include <span>
+#include <stop_token>
 #include <vector>
 
 #include <Eigen/Core>
@@ -37,9 +38,10 @@ std::optional<Eigen::Vector3d> free_position(const Eigen::Vector3d& target,
                                              const Admissible& admissible);
 
 /// For each sample, 1 if some admissible sensor position has a free line of sight to it, else 0.
+/// Ends early, of no use, when `stop` is requested.
 std::vector<std::uint8_t> visible_samples(std::span<const Eigen::Vector3f> samples,
                                           const sim::Scene& scene, const Admissible& admissible,
-                                          unsigned threads = 0);
+                                          unsigned threads = 0, std::stop_token stop = {});
 
 /// How the attainable coverage is measured.
 struct CeilingConfig {
@@ -57,11 +59,12 @@ using TakeScan = std::function<geometry::Scan(const geometry::View& view, std::u
 
 /// The share of `samples` that a survey could cover at all, given sensor noise and the spacing of
 /// stored points: what up to `views` admissible views cover together, each aimed at a visible
-/// sample that the views before have left uncovered. Ends early when there is none left.
+/// sample that the views before have left uncovered. Ends early when there is none left, or, of no
+/// use, when `stop` is requested.
 double coverage_ceiling(std::span<const Eigen::Vector3f> samples,
                         std::span<const std::uint8_t> is_visible, const sim::Scene& scene,
                         const TakeScan& take_scan, const Admissible& admissible,
-                        const CeilingConfig& config);
+                        const CeilingConfig& config, std::stop_token stop = {});
 
 /// Distances of measured points from the true surface.
 struct CloudAccuracy {

@@ -42,7 +42,7 @@ ProgramResult run_external_program(const std::vector<std::string>& command,
   if (error != 0) {
     ::close(ends[0]);
     if (error == ENOENT) return {127, ""};
-    check(error, command[0].c_str());
+    return {126, command[0] + " cannot be started: " + std::generic_category().message(error)};
   }
 
   ProgramResult result;

@@ -6,6 +6,7 @@
 #include <string>
 #include <utility>
 
+#include <Eigen/Eigenvalues>
 #include <pcl/features/normal_3d_omp.h>
 #include <pcl/filters/voxel_grid.h>
 #include <pcl/kdtree/kdtree_flann.h>
@@ -32,6 +33,26 @@ Cloud::Ptr pcl_cloud(std::span<const Eigen::Vector3f> points,
                         normal.z());
   }
   return cloud;
+}
+
+/// Refuses points that all lie on a line, or at one place, up to the precision of their
+/// coordinates: they have no normals, and PCL would go on with noise.
+void require_spread(const Cloud& cloud) {
+  Eigen::Vector3d mean = Eigen::Vector3d::Zero();
+  for (const pcl::PointNormal& point : cloud) mean += point.getVector3fMap().cast<double>();
+  mean /= static_cast<double>(cloud.size());
+  Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
+  for (const pcl::PointNormal& point : cloud) {
+    const Eigen::Vector3d offset = point.getVector3fMap().cast<double>() - mean;
+    covariance += offset * offset.transpose();
+  }
+  constexpr double rounding = 1e-6;  // of a length in single precision
+  const Eigen::Vector3d spread = Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(covariance)
+                                     .eigenvalues()
+                                     .cwiseMax(0.0)
+                                     .cwiseSqrt();
+  if (spread[1] > rounding * std::max(spread[2], mean.norm())) return;
+  throw Error(ErrorKind::bad_geometry, "all points lie on one line; they are no surface");
 }
 
 Cloud::Ptr thinned(const Cloud::Ptr& cloud, double spacing) {
@@ -171,6 +192,7 @@ Reconstruction reconstructed(std::span<const Eigen::Vector3f> points,
     throw Error(ErrorKind::bad_geometry, "there are " + std::to_string(cloud->size()) +
                                              " points; a surface needs at least 100");
   }
+  require_spread(*cloud);
   KdTree tree;
   tree.setInputCloud(cloud);
   if (normals.empty()) {

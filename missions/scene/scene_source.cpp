@@ -10,6 +10,7 @@
 #include "geometry/io/file.h"
 #include "geometry/io/mesh_io.h"
 #include "geometry/place/world.h"
+#include "missions/file/number_text.h"
 #include "missions/file/yaml_tree.h"
 #include "missions/scene/model_store.h"
 #include "sim/models/models.h"
@@ -140,8 +141,18 @@ std::vector<Eigen::Isometry3d> copies_of(const file::SceneConfig& scene) {
 }
 
 geometry::Mesh with_copies(const file::SceneConfig& scene, const geometry::Mesh& placed_model) {
+  constexpr double most_triangles = 1e7;  // about 2 GiB with the tree that rays search
+  const std::vector<Eigen::Isometry3d> places = copies_of(scene);
+  const double triangles =
+      static_cast<double>(places.size()) * static_cast<double>(placed_model.triangles.size());
+  if (triangles > most_triangles) {
+    throw Error(ErrorKind::bad_config,
+                "scene.copies: " + std::to_string(places.size()) + " times " +
+                    std::to_string(placed_model.triangles.size()) + " triangles are more than " +
+                    file::short_text(most_triangles) + "; give fewer copies or a coarser model");
+  }
   geometry::Mesh all;
-  for (const Eigen::Isometry3d& place : copies_of(scene)) {
+  for (const Eigen::Isometry3d& place : places) {
     geometry::Mesh copy = placed_model;
     geometry::transform(copy, Eigen::Affine3d(place));
     geometry::append(all, copy);

@@ -5,6 +5,7 @@
 #include <span>
 #include <sstream>
 #include <string>
+#include <utility>
 
 #include "geometry/error.h"
 #include "geometry/io/file.h"
@@ -120,12 +121,12 @@ judge::Admissible SurveyScene::admissible() const {
           .clearance = 0.01 * mission_.evaluation.registration_distance};
 }
 
-std::vector<std::uint8_t> SurveyScene::visible(unsigned threads) const {
-  return judge::visible_samples(samples_.points, scene_, admissible(), threads);
+std::vector<std::uint8_t> SurveyScene::visible(unsigned threads, std::stop_token stop) const {
+  return judge::visible_samples(samples_.points, scene_, admissible(), threads, std::move(stop));
 }
 
 std::optional<double> SurveyScene::ceiling(const std::vector<std::uint8_t>& is_visible,
-                                           unsigned threads) const {
+                                           unsigned threads, std::stop_token stop) const {
   if (mission_.evaluation.ceiling_views == 0) return std::nullopt;
   const std::filesystem::path cached = user_cache() / "ceilings" / ceiling_key();
   if (const auto known = number_in_file(cached); known && *known >= 0.0 && *known <= 1.0) {
@@ -143,8 +144,9 @@ std::optional<double> SurveyScene::ceiling(const std::vector<std::uint8_t>& is_v
                              geometry::Scan recycled) {
     return sensor.scan(scene_, view, frame, threads, std::move(recycled));
   };
-  const double ceiling =
-      judge::coverage_ceiling(samples_.points, is_visible, scene_, take_scan, admissible(), config);
+  const double ceiling = judge::coverage_ceiling(samples_.points, is_visible, scene_, take_scan,
+                                                 admissible(), config, stop);
+  if (stop.stop_requested()) return std::nullopt;
   try {
     std::ostringstream text;
     text.precision(17);

@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <memory>
 #include <optional>
+#include <stop_token>
 #include <vector>
 
 #include <Eigen/Core>
@@ -45,14 +46,15 @@ class SurveyScene {
   /// view sphere, within the mission's limits, looking at the sphere's centre.
   geometry::View first_view(std::uint64_t seed) const;
 
-  /// For each sample, 1 if an admissible sensor position sees it. Takes seconds.
-  std::vector<std::uint8_t> visible(unsigned threads) const;
+  /// For each sample, 1 if an admissible sensor position sees it. Takes seconds; of no use once
+  /// `stop` is requested.
+  std::vector<std::uint8_t> visible(unsigned threads, std::stop_token stop = {}) const;
 
   /// The coverage that is attainable with the mission's sensor and spacing, see
   /// missions::coverage_ceiling(). Takes seconds to minutes; kept in the user's cache under a
-  /// checksum of everything it depends on. Nothing if the mission leaves it out.
-  std::optional<double> ceiling(const std::vector<std::uint8_t>& is_visible,
-                                unsigned threads) const;
+  /// checksum of everything it depends on. Nothing if the mission leaves it out, or if stopped.
+  std::optional<double> ceiling(const std::vector<std::uint8_t>& is_visible, unsigned threads,
+                                std::stop_token stop = {}) const;
 
   /// Where the mission lets the sensor look at the scene from.
   judge::Admissible admissible() const;

@@ -188,8 +188,8 @@ class Benchmark {
     run_entries([](const Entry& entry) { return !entry.contestant->is_volumetric; });
     take_view_limits_from_see();
     run_entries([](const Entry& entry) { return entry.contestant->is_volumetric; });
-    report();
-    return is_whole() ? 0 : 1;
+    const bool is_reported = report();
+    return is_whole() && is_reported ? 0 : 1;
   }
 
  private:
@@ -218,7 +218,7 @@ class Benchmark {
       if (prepared) continue;
       progress_.say(item.entry->mission.name + ": measuring what could be covered at all");
       scene::SurveyScene scene(item.entry->mission, item.entry->file.parent_path());
-      benchmark::SceneTruth truth = benchmark::scene_truth(scene, options_.threads);
+      benchmark::SceneTruth truth = benchmark::scene_truth(scene, options_.threads, console_.stop);
       prepared.reset(new PreparedScene{std::move(scene), std::move(truth)});
     }
   }
@@ -261,7 +261,8 @@ class Benchmark {
     });
   }
 
-  void report() {
+  /// False if there should be plots, and are none.
+  bool report() {
     std::vector<benchmark::BenchmarkCell> cells;
     for (const Entry& entry : entries_) {
       benchmark::BenchmarkCell cell{entry.mission.name, entry.contestant->name, {}};
@@ -278,13 +279,16 @@ class Benchmark {
     folder_.write("results.json", benchmark::results_json(cells));
     const std::string markdown = benchmark::report_markdown(cells, plots.plots);
     folder_.write("report.md", markdown);
-    const std::string complaint = benchmark::draw_plots(plots, folder_);
+    const benchmark::DrawnPlots drawn = benchmark::draw_plots(plots, folder_);
     folder_.commit();
     progress_.say("");
-    if (!complaint.empty())
-      console_.err << "skycap: warning: no plots: " << printable_line(complaint) << "\n";
-    if (options_.is_quiet) return;
+    if (!drawn.complaint.empty()) {
+      console_.err << "skycap: warning: no plots: " << printable_line(drawn.complaint) << "\n";
+    }
+    const bool is_whole = drawn.complaint.empty() || !drawn.has_gnuplot;
+    if (options_.is_quiet) return is_whole;
     console_.out << markdown << "\nresults: " << folder_.path().string() << "\n" << std::flush;
+    return is_whole;
   }
 
   const BenchmarkOptions& options_;
@@ -298,6 +302,7 @@ class Benchmark {
 }  // namespace
 
 int benchmark(const BenchmarkOptions& options, const Console& console) {
+  const HoldsResults results(console);
   return Benchmark(options, console).run();
 }
 

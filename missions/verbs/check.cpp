@@ -6,6 +6,7 @@
 
 #include "flight/export/export.h"
 #include "flight/interpreter/interpret.h"
+#include "geometry/error.h"
 #include "geometry/surfaces/mesh.h"
 #include "missions/derived/mission_flight.h"
 #include "missions/derived/resolved_mission.h"
@@ -45,6 +46,15 @@ std::vector<Eigen::Vector3d> places_of(const flight::FlownRoute& route) {
   return places;
 }
 
+/// Errors of the mission's model name the mission, too.
+geometry::Mesh model_of(const file::Mission& mission, const std::filesystem::path& file) {
+  try {
+    return scene::placed_model(mission.scene, file.parent_path());
+  } catch (const Error& error) {
+    throw Error(error.kind(), file.string() + ": " + error.what());
+  }
+}
+
 /// Proves what a route file's vehicle flies against the mission's scene as it truly is.
 int check_route_file(const CheckOptions& options, const file::Mission& mission,
                      const geometry::Mesh& model, const Console& console) {
@@ -53,10 +63,19 @@ int check_route_file(const CheckOptions& options, const file::Mission& mission,
   const flight::FlownRoute route = flight::interpret_file(*options.route, facts);
   const TrueSpace space = true_space(mission, model, facts.pad.z());
 
+  ProgressLine progress(console, false);
+  progress.show(file + ": proving " + std::to_string(route.pieces.size()) + " legs");
   const double asked_for = mission.flight.clearance;
+<<<<<<< HEAD
+  const flight::FlownProof proof =
+      prove(route, space, pad_space, std::max(0.0, asked_for - flight::rounding_bound),
+            asked_for + flight::reported_surplus);
+  progress.clear();
+=======
   const flight::FlownProof proof = prove(route, space.everywhere, space.over_pad,
                                          std::max(0.0, asked_for - flight::rounding_bound),
                                          asked_for + flight::reported_surplus);
+>>>>>>> union
   for (const flight::Problems& problems : {route.problems, proof.problems}) {
     for (const std::string& problem : problems) console.out << file << ": " << problem << "\n";
   }
@@ -81,7 +100,10 @@ int check_route_file(const CheckOptions& options, const file::Mission& mission,
 
 int check(const CheckOptions& options, const Console& console) {
   const file::Mission mission = derived::read_mission(options.mission, options.overrides);
-  const geometry::Mesh model = scene::placed_model(mission.scene, options.mission.parent_path());
+  ProgressLine progress(console, false);
+  progress.show(mission.name + ": making the scene ready");
+  const geometry::Mesh model = model_of(mission, options.mission);
+  progress.clear();
   if (options.route) return check_route_file(options, mission, model, console);
   const survey::see::SeeConfig& see = mission.planner.see;
   const Eigen::Vector3d size = geometry::bounding_box(model).sizes();

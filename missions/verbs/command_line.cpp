@@ -374,8 +374,8 @@ int parse_and_run(const std::vector<std::string>& arguments, const Console& cons
 int run_command_line(const std::vector<std::string>& arguments, const Console& console) {
   PrintableBuffer buffer(*console.out.rdbuf());
   std::ostream out(&buffer);
-  const int exit_code =
-      parse_and_run(arguments, {out, console.err, console.err_is_terminal, console.stop});
+  const int exit_code = parse_and_run(
+      arguments, {out, console.err, console.err_is_terminal, console.stop, console.results_held});
   if (out.flush()) return exit_code;
   return report_failure(console, "the results cannot be written to the standard output", 3);
 }

@@ -1,6 +1,7 @@
 /// Where a verb writes to, and how it is asked to stop.
 #pragma once
 
+#include <atomic>
 #include <ostream>
 #include <stop_token>
 #include <string>
@@ -15,6 +16,25 @@ struct Console {
   std::ostream& err;             ///< progress, warnings and errors
   bool err_is_terminal = false;  ///< whether progress is shown, in one line that is rewritten
   std::stop_token stop = {};     ///< requested by Ctrl-C
+  /// How many HoldsResults there are. While there is none, Ctrl-C ends the program at once.
+  std::atomic<int>* results_held = nullptr;
+};
+
+/// While it lives, the verb has results that Ctrl-C must not lose: it watches Console::stop and
+/// brings them to the disk within two seconds.
+class HoldsResults {
+ public:
+  explicit HoldsResults(const Console& console) : count_(console.results_held) {
+    if (count_ != nullptr) ++*count_;
+  }
+  HoldsResults(const HoldsResults&) = delete;
+  HoldsResults& operator=(const HoldsResults&) = delete;
+  ~HoldsResults() {
+    if (count_ != nullptr) --*count_;
+  }
+
+ private:
+  std::atomic<int>* count_;
 };
 
 /// One line on a terminal that each call overwrites; nothing where there is no terminal. Cleared

@@ -49,7 +49,11 @@ Truth truth_of(const EvaluateOptions& options) {
   }
   file::SceneConfig scene;
   scene.model = options.model;
-  return {scene::load_model(scene, ""), *options.distance, options.samples};
+  try {
+    return {scene::load_model(scene, ""), *options.distance, options.samples};
+  } catch (const Error& error) {
+    throw Error(error.kind(), std::string("--model: ") + error.what());
+  }
 }
 
 /// What is compared with the truth.
@@ -92,13 +96,18 @@ Judged judged_mesh(const std::filesystem::path& file, const Truth& truth,
 }  // namespace
 
 int evaluate(const EvaluateOptions& options, const Console& console) {
+  ProgressLine progress(console, false);
+  progress.show("making " + options.model + " ready");
   const Truth truth = truth_of(options);
   const geometry::SurfaceSamples samples = geometry::sample_surface(truth.model, truth.samples, 1);
   const bool is_mesh = !options.mesh.empty();
+  progress.show("reading " + (is_mesh ? options.mesh : options.cloud).string());
   const Judged judged = is_mesh ? judged_mesh(options.mesh, truth, samples)
                                 : judged_cloud(options.cloud, truth, samples);
   const std::vector<Eigen::Vector3f>& points = judged.points;
+  progress.show("measuring the distances of " + std::to_string(points.size()) + " points");
   const judge::CloudAccuracy accuracy = judge::cloud_accuracy(points, truth.model);
+  progress.clear();
   const double area = geometry::surface_area(truth.model);
   const double density = static_cast<double>(points.size()) / area;
 

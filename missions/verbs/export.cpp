@@ -11,8 +11,11 @@ int export_package(const ExportOptions& options, const Console& console) {
   std::vector<flight::Format> formats;
   for (const std::string& name : options.formats) formats.push_back(flight::format_named(name));
 
+  ProgressLine progress(console, false);
+  progress.show("reading " + options.package.string());
   const package::PackagedSurvey survey = package::read_package(options.package, options.overrides);
   geometry::OutputFolder folder(options.out.value_or(options.package));
+  progress.show(survey.mission.name + ": planning the flight");
   package::SurveyMission flight;
   flight.route =
       package::plan_flight(survey.mission, survey.measured, survey.pad, survey.views, console.stop);
@@ -22,6 +25,7 @@ int export_package(const ExportOptions& options, const Console& console) {
     folder.replace([&](std::string_view name) { return package::is_flight_file(name, format); });
   }
   folder.commit();
+  progress.clear();
   console.out << package::flight_text(flight) << "  results   " << folder.path().string() << "\n"
               << std::flush;
   return flight.route.sorties.empty() ? 1 : 0;

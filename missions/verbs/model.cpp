@@ -62,7 +62,10 @@ geometry::Mesh model_called(const ModelOptions& options, const Console& console)
 }  // namespace
 
 int model(const ModelOptions& options, const Console& console) {
+  ProgressLine progress(console, false);
+  progress.show(options.name + ": making the model ready");
   const geometry::Mesh mesh = model_called(options, console);
+  progress.clear();
   if (options.out) geometry::write_mesh(*options.out, mesh);
   if (options.render) sim::write_png(sim::render(mesh), *options.render);
   const Eigen::Vector3d size = geometry::bounding_box(mesh).sizes();

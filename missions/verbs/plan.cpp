@@ -82,6 +82,7 @@ int plan_once(const PlanOptions& options, const file::Mission& mission,
     if (options.is_verbose) console.err << times_row(views, judged) << std::flush;
     progress.show(progress_text(mission.name, ++views, judged, planning_time));
   };
+  const HoldsResults results(console);
   run::SurveyJournal journal(folder.path() / run::journal_name, mission, scene, options.resumes);
   if (journal.views() > 0 && !options.is_quiet) {
     console.err << "going on after " << journal.views() << " views of an interrupted survey\n";
@@ -92,9 +93,11 @@ int plan_once(const PlanOptions& options, const file::Mission& mission,
   package::CoverageFigures coverage{record.coverage(), {}, {}};
   if (record.stop_reason != survey::StopReason::interrupted) {  // the user wants to leave
     progress.show(mission.name + ": measuring what could be covered at all");
-    const std::vector<std::uint8_t> is_visible = scene.visible(mission.threads);
-    coverage.visible = judge::covered_share(record.is_covered, is_visible);
-    coverage.ceiling = scene.ceiling(is_visible, mission.threads);
+    const std::vector<std::uint8_t> is_visible = scene.visible(mission.threads, console.stop);
+    coverage.ceiling = scene.ceiling(is_visible, mission.threads, console.stop);
+    if (!console.stop.stop_requested()) {
+      coverage.visible = judge::covered_share(record.is_covered, is_visible);
+    }
   }
   progress.show(mission.name + ": writing " + folder.path().string());
   const std::optional<package::SurveyMission> flight =
@@ -121,6 +124,7 @@ int plan_trials(const PlanOptions& options, const file::Mission& mission,
                 const scene::SurveyScene& scene, geometry::OutputFolder& folder,
                 const Console& console) {
   ProgressLine progress(console, options.is_quiet);
+  const HoldsResults results(console);
   std::size_t ended = 0;
   progress.show(mission.name + ": measuring what could be covered at all");
   const auto report = [&](const benchmark::Trial& trial) {
@@ -154,6 +158,8 @@ int plan(const PlanOptions& options, const Console& console) {
   const file::Mission mission = derived::read_mission(options.mission, options.overrides);
   geometry::OutputFolder folder(
       options.out.value_or(std::filesystem::path("results") / mission.name));
+  ProgressLine progress(console, options.is_quiet);
+  progress.show(mission.name + ": making the scene ready");
   try {
     const scene::SurveyScene scene(mission, options.mission.parent_path());
     return options.trials > 0 ? plan_trials(options, mission, scene, folder, console)

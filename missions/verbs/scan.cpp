@@ -255,6 +255,7 @@ int scan_with_laser(const ScanVerbOptions& options, const file::Mission& mission
 
   const auto channels = static_cast<double>(config.channels.size());
   const Clock::time_point start = Clock::now();
+  const HoldsResults results(console);
   recorded.result = recording::run_scan(scene, lidar, flight, files,
                                         {.threads = mission.threads,
                                          .report = ScanReport(progress, mission.name, channels),
@@ -316,6 +317,7 @@ int scan_with_camera(const ScanVerbOptions& options, const file::Mission& missio
   };
   const bool has_rawlog = std::ranges::find(options.formats, "rawlog") != options.formats.end();
   const Clock::time_point start = Clock::now();
+  const HoldsResults results(console);
   const recording::FrameResult result =
       recording::record_frames(scene, sim::DepthCamera(config), frames, folder,
                                {.depth_unit = mission.scan.depth_unit,

@@ -1,6 +1,11 @@
-// Every step that a verb takes on the disk fails once, and the program dies at each once: whatever
-// happens, the folder then holds the whole old result or the whole new one, and nothing else but
-// what an unfinished survey can be resumed from. Run again, the verb gives the new result.
+// Every step that a verb takes on the disk fails once, and the program dies at each once; every
+// start of a program fails, and allocations do: whatever happens, the folder then holds the whole
+// old result or the whole new one, and nothing else but what an unfinished survey can go on from.
+// Run again after it died, the verb gives the new result.
+//
+// With FAULT_POINTS=all in the environment all points of the slow verbs and of memory are tried,
+// not a sample: tests/faults/run does so.
+#include <algorithm>
 #include <cstdio>
 #include <cstdlib>
 #include <filesystem>
@@ -26,11 +31,15 @@ namespace fs = std::filesystem;
 
 /// Names, and contents without what differs from run to run, which is durations: of JSON files the
 /// lines that tell the seed and whether the run was complete, of CSV files all columns but the
-/// last.
+/// last, of reports the first line. Of folders, such as those of finished trials, the name.
 using Content = std::map<std::string, std::string>;
 
 std::string repeatable_part(const fs::path& file) {
   const std::string bytes = geometry::read_file(file), ending = file.extension();
+  if (ending == ".md" || ending == ".gp" || ending == ".svg") {
+    return bytes.substr(0, bytes.find('\n'));
+  }
+  if (ending == ".png") return bytes.substr(bytes.size() - 12);  // whole: it has its end
   if (ending != ".json" && ending != ".csv") return bytes;
   std::istringstream lines(bytes);
   std::string kept;
@@ -43,13 +52,21 @@ std::string repeatable_part(const fs::path& file) {
   return kept;
 }
 
-constexpr const char* journal = "survey.journal";
+/// Of trials whose times differ: seeds, views, coverage.
+std::string without_times(const std::string& name, const std::string& text) {
+  if (name != "trials.csv" && name != "table1.csv") return text;
+  std::istringstream lines(text);
+  std::string kept;
+  for (std::string line; std::getline(lines, line);) kept += line.substr(0, 12) + "\n";
+  return kept;
+}
 
 Content content_of(const fs::path& folder) {
   Content content;
   for (const auto& entry : fs::directory_iterator(folder)) {
-    if (entry.is_directory() || entry.path().filename() == journal) continue;
-    content[entry.path().filename()] = repeatable_part(entry.path());
+    const std::string name = entry.path().filename();
+    if (name == "interrupted" || name == "items" || name == "survey.journal") continue;
+    content[name] = entry.is_directory() ? "" : without_times(name, repeatable_part(entry.path()));
   }
   return content;
 }
@@ -70,9 +87,9 @@ int run(const std::vector<std::string>& arguments, const Fault& fault) {
     std::vector<char*> words{const_cast<char*>(SKYCAP_PROGRAM)};
     for (const std::string& word : arguments) words.push_back(const_cast<char*>(word.c_str()));
     words.push_back(nullptr);
-    std::freopen("/dev/null", "w", stdout);
-    std::freopen("/dev/null", "w", stderr);
-    ::execv(words[0], words.data());
+    if (std::freopen("/dev/null", "w", stdout) && std::freopen("/dev/null", "w", stderr)) {
+      ::execv(words[0], words.data());
+    }
     ::_exit(127);
   }
   int status = 0;
@@ -81,36 +98,41 @@ int run(const std::vector<std::string>& arguments, const Fault& fault) {
 }
 
 /// A verb whose result depends on the seed: 1 gives the old one, 2 the new one.
-void try_every_fault(const std::function<std::vector<std::string>(const std::string& seed,
-                                                                  const fs::path& out)>& verb) {
+using Verb = std::function<std::vector<std::string>(const std::string& seed, const fs::path& out)>;
+
+/// Tries about `sample` faults of each kind, evenly spread, or all with FAULT_POINTS=all.
+void try_faults(const Verb& verb, const std::vector<std::string>& kinds, long sample) {
   const testing_support::TemporaryFolder scratch;
   const fs::path old_folder = scratch.path() / "old", new_folder = scratch.path() / "new";
-  const fs::path count = scratch.path() / "count";
+  const fs::path count = scratch.path() / "count", out = scratch.path() / "out";
   ASSERT_EQ(run(verb("1", old_folder), {}), 0);
   fs::copy(old_folder, new_folder, fs::copy_options::recursive);
-  ASSERT_EQ(run(verb("2", new_folder), {"none", 0, count}), 0);
+  ASSERT_EQ(run(verb("2", new_folder), {}), 0);
   const Content before = content_of(old_folder), after = content_of(new_folder);
   ASSERT_NE(before, after);
-  const long steps = std::stol(geometry::read_file(count));
-  ASSERT_GT(steps, 10);
-  for (const char* kind : {"full", "kill"}) {
-    for (long at = 1; at <= steps; ++at) {
-      const fs::path out = scratch.path() / "out";
+  const bool tries_all = std::getenv("FAULT_POINTS") != nullptr;
+  for (const std::string& kind : kinds) {
+    fs::remove_all(out);
+    fs::copy(old_folder, out, fs::copy_options::recursive);
+    ASSERT_EQ(run(verb("2", out), {kind, 0, count}), 0);
+    const long steps = std::stol(geometry::read_file(count));
+    ASSERT_GT(steps, 0) << kind;
+    const long stride = tries_all && kind != "memory" ? 1 : std::max(1L, steps / sample);
+    long tried = 0;
+    for (long at = 1; at <= steps; at += stride, ++tried) {
       fs::remove_all(out);
       fs::copy(old_folder, out, fs::copy_options::recursive);
       const int exit_code = run(verb("2", out), {kind, at, {}});
       { const geometry::OutputFolder next(out); }  // whoever comes next
       const Content found = content_of(out);
       EXPECT_TRUE(found == before || found == after) << kind << " at step " << at;
-      if (exit_code == 0) {
-        EXPECT_TRUE(found == after) << kind << " at step " << at << ", exit 0";
-      }
+      EXPECT_TRUE(exit_code != 0 || found == after) << kind << " at step " << at << ", exit 0";
+      if (kind != "kill") continue;
       EXPECT_EQ(run(verb("2", out), {}), 0);
-      EXPECT_TRUE(content_of(out) == after) << "run again after " << kind << " at step " << at;
-      EXPECT_FALSE(fs::exists(out / journal));
+      EXPECT_TRUE(content_of(out) == after) << "run again after it died at step " << at;
     }
+    std::cout << kind << ": " << tried << " of " << steps << " points tried\n";
   }
-  std::cout << 2 * steps << " faults tried\n";
 }
 
 constexpr const char* quick =
@@ -122,31 +144,112 @@ constexpr const char* quick =
     "limits: {max_views: 3}\n"
     "scan: {orbit: {radius: 2, circles: 1, speed: 100}}\n";
 
+/// A house of 20 m that is flown round, with a route in every format.
+constexpr const char* flown =
+    "scene: {model: 'builtin:teapot', longest_side: 20.0, ground: true}\n"
+    "sensor: {width: 80, height: 60, max_range: 60, horizontal_fov_deg: 70, vertical_fov_deg: 55}\n"
+    "planner: {name: skycap, density: 20, resolution_radius: 1.0, occluder_spacing: 0.6,\n"
+    "          scene_box: {min: [-15, -15, -1], max: [15, 15, 15]}}\n"
+    "evaluation: {registration_distance: 0.6, samples: 3000, visible_directions: 30,\n"
+    "             ceiling_views: 0}\n"
+    "site: {latitude_deg: 51.7, longitude_deg: -1.25, geoid_undulation: 46}\n"
+    "limits: {max_views: 3, ground_clearance: 3}\n"
+    "flight: {vehicle: generic, unknown_box: {min: [-12, -12, 0], max: [12, 12, 12]},\n"
+    "         takeoff: [25, 25, 0]}\n";
+
+constexpr long all = 1'000'000;
+
 TEST(FaultPoints, PlanLeavesAWholeResult) {
   const testing_support::TemporaryFolder folder;
   const std::string mission = folder.file("m.yaml", quick);
-  try_every_fault([&](const std::string& seed, const fs::path& out) {
-    return std::vector<std::string>{"plan",   mission, "--quiet", "--resume",
-                                    "--seed", seed,    "--out",   out};
-  });
+  const Verb verb = [&](const std::string& seed, const fs::path& out) {
+    return std::vector<std::string>{"plan", mission, "--quiet", "--seed", seed, "--out", out};
+  };
+  try_faults(verb, {"full", "kill"}, all);
+  try_faults(verb, {"memory"}, 60);
+}
+
+TEST(FaultPoints, PlanWithAFlightLeavesAWholeResult) {
+  const testing_support::TemporaryFolder folder;
+  const std::string mission = folder.file("m.yaml", flown);
+  try_faults(
+      [&](const std::string& seed, const fs::path& out) {
+        return std::vector<std::string>{"plan", mission, "--quiet", "--seed", seed, "--out", out};
+      },
+      {"full", "kill"}, 12);
+}
+
+TEST(FaultPoints, ExportLeavesAWholeResult) {
+  const testing_support::TemporaryFolder folder;
+  const std::string mission = folder.file("m.yaml", flown), package = folder.path() / "package";
+  ASSERT_EQ(run({"plan", mission, "--quiet", "--out", package}, {}), 0);
+  const Verb verb = [&](const std::string& seed, const fs::path& out) {
+    return std::vector<std::string>{"export",   package, "--format",
+                                    "plan,csv", "--set", "flight.cruise_speed=" + seed,
+                                    "--out",    out};
+  };
+  try_faults(verb, {"full", "kill", "memory"}, 25);
 }
 
 TEST(FaultPoints, ScanLeavesAWholeResult) {
   const testing_support::TemporaryFolder folder;
   const std::string mission = folder.file("m.yaml", quick);
-  try_every_fault([&](const std::string& seed, const fs::path& out) {
+  const Verb verb = [&](const std::string& seed, const fs::path& out) {
     return std::vector<std::string>{"scan", mission,    "--quiet", "--threads", "1", "--seed",
                                     seed,   "--format", "ply",     "--out",     out};
-  });
+  };
+  try_faults(verb, {"full", "kill"}, all);
+  try_faults(verb, {"memory"}, 40);
 }
 
 TEST(FaultPoints, TrialsLeaveAWholeResult) {
   const testing_support::TemporaryFolder folder;
   const std::string mission = folder.file("m.yaml", quick);
-  try_every_fault([&](const std::string& seed, const fs::path& out) {
-    return std::vector<std::string>{"plan",   mission, "--quiet", "--trials", "1",
-                                    "--seed", seed,    "--out",   out};
-  });
+  try_faults(
+      [&](const std::string& seed, const fs::path& out) {
+        return std::vector<std::string>{"plan",   mission, "--quiet", "--trials", "1",
+                                        "--seed", seed,    "--out",   out};
+      },
+      {"full", "kill"}, 40);
+}
+
+TEST(FaultPoints, BenchmarkLeavesAWholeResult) {
+  const testing_support::TemporaryFolder folder;
+  const std::string mission = folder.file("m.yaml", quick);
+  const Verb verb = [&](const std::string& seed, const fs::path& out) {
+    return std::vector<std::string>{"benchmark", mission,   "--planners", "see++", "--trials",
+                                    seed,        "--quiet", "--out",      out};
+  };
+  try_faults(verb, {"full", "kill"}, 15);
+}
+
+/// The tables are there, the plots are not, and the exit code says so.
+TEST(FaultPoints, BenchmarkSaysThatItsPlotsAreMissing) {
+  const testing_support::TemporaryFolder folder;
+  const std::string mission = folder.file("m.yaml", quick), out = folder.path() / "out";
+  const std::vector<std::string> benchmark{
+      "benchmark", mission, "--planners", "see++", "--trials", "1", "--quiet", "--out", out};
+  if (std::system("gnuplot --version > /dev/null 2>&1") != 0) GTEST_SKIP() << "no gnuplot";
+  EXPECT_EQ(run(benchmark, {"start", 1, {}}), 1);
+  EXPECT_TRUE(fs::exists(fs::path(out) / "trials.csv"));
+  EXPECT_FALSE(fs::exists(fs::path(out) / "coverage_m.png"));
+  EXPECT_EQ(run(benchmark, {}), 0);
+  EXPECT_TRUE(fs::exists(fs::path(out) / "coverage_m.png"));
+}
+
+TEST(FaultPoints, ModelsAndPicturesAreWhole) {
+  for (const std::string& name : {std::string("m.ply"), std::string("m.png")}) {
+    try_faults(
+        [&](const std::string& seed, const fs::path& out) {
+          return std::vector<std::string>{"model",
+                                          "teapot",
+                                          "--detail",
+                                          seed == "1" ? "coarse" : "standard",
+                                          name == "m.ply" ? "--out" : "--render",
+                                          out / name};
+        },
+        {"full", "kill", "memory"}, 20);
+  }
 }
 
 }  // namespace

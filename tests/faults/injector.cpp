@@ -1,8 +1,12 @@
-// A library to be preloaded into a program: it counts what the program does to the disk, and has
-// one of these steps fail, or the program die there.
+// A library to be preloaded into a program: it counts steps of the program, and has one of them
+// fail, or the program die there.
 //
+//   FAULT_KIND   what is counted, and what happens:
+//                "full"    steps on the disk; ENOSPC, but for removals, which a full disk allows
+//                "kill"    steps on the disk; the process dies, as by kill -9
+//                "memory"  allocations; there is no memory
+//                "start"   starts of other programs; EAGAIN
 //   FAULT_AT     number of the step, counted from one; 0: none
-//   FAULT_KIND   "full": ENOSPC; "kill": the process dies, as by kill -9
 //   FAULT_COUNT  a file that the number of steps is written to when the program ends
 #include <atomic>
 #include <cerrno>
@@ -14,25 +18,40 @@
 
 #include <dlfcn.h>
 #include <fcntl.h>
+#include <spawn.h>
 #include <sys/uio.h>
 #include <unistd.h>
 
+extern "C" void* __libc_malloc(size_t size) noexcept;  // dlsym() itself allocates
+
 namespace {
 
-std::atomic<long> steps{0};
+enum class Kind { none, full, kill, memory, start };
 
-long wanted() {
-  static const long at = std::getenv("FAULT_AT") ? std::atol(std::getenv("FAULT_AT")) : 0;
-  return at;
+Kind kind_of(const char* name) {
+  if (name == nullptr) return Kind::none;
+  if (std::strcmp(name, "full") == 0) return Kind::full;
+  if (std::strcmp(name, "kill") == 0) return Kind::kill;
+  if (std::strcmp(name, "memory") == 0) return Kind::memory;
+  if (std::strcmp(name, "start") == 0) return Kind::start;
+  return Kind::none;
 }
 
-/// Counts a step; true if it is to fail.
-bool fails() {
-  if (++steps != wanted()) return false;
-  const char* kind = std::getenv("FAULT_KIND");
-  if (kind != nullptr && std::strcmp(kind, "kill") == 0) ::raise(SIGKILL);
+/// Set once this library is loaded; what happens before is not counted.
+Kind kind = Kind::none;
+long wanted = 0;
+std::atomic<long> steps{0};
+
+/// Counts a step; true if it is the one.
+bool is_hit() { return ++steps == wanted; }
+
+/// A step on the disk: true if it is to fail.
+bool fails(bool needs_space = true) {
+  if (kind != Kind::full && kind != Kind::kill) return false;
+  if (!is_hit()) return false;
+  if (kind == Kind::kill) ::raise(SIGKILL);
   errno = ENOSPC;
-  return true;
+  return needs_space;
 }
 
 template <typename Function>
@@ -43,15 +62,27 @@ Function* real(const char* name) {
 /// Files alone: not the streams to the terminal.
 bool is_file(int handle) { return handle > STDERR_FILENO; }
 
-struct Reporter {
-  ~Reporter() {
-    const char* name = std::getenv("FAULT_COUNT");
-    if (name == nullptr) return;
-    const int handle = real<int(const char*, int, ...)>("open")(name, O_WRONLY | O_CREAT, 0600);
+class Switch {
+ public:
+  Switch() {
+    const char* at = std::getenv("FAULT_AT");
+    const char* count = std::getenv("FAULT_COUNT");
+    if (count != nullptr) std::snprintf(count_, sizeof(count_), "%s", count);
+    ::unsetenv("FAULT_COUNT");  // the program's children have other numbers
+    wanted = at == nullptr ? 0 : std::atol(at);
+    kind = kind_of(std::getenv("FAULT_KIND"));
+  }
+  ~Switch() {
+    kind = Kind::none;
+    if (count_[0] == '\0') return;
+    const int handle = ::open(count_, O_WRONLY | O_CREAT | O_TRUNC, 0600);
     ::dprintf(handle, "%ld\n", steps.load());
     ::close(handle);
   }
-} reporter;
+
+ private:
+  char count_[4096] = "";
+} on_while_loaded;
 
 }  // namespace
 
@@ -65,6 +96,11 @@ ssize_t write(int handle, const void* bytes, size_t count) {
 ssize_t writev(int handle, const iovec* parts, int count) {
   if (is_file(handle) && fails()) return -1;
   return real<ssize_t(int, const iovec*, int)>("writev")(handle, parts, count);
+}
+
+ssize_t pwrite(int handle, const void* bytes, size_t count, off_t at) {
+  if (is_file(handle) && fails()) return -1;
+  return real<ssize_t(int, const void*, size_t, off_t)>("pwrite")(handle, bytes, count, at);
 }
 
 size_t fwrite(const void* bytes, size_t size, size_t count, FILE* file) {
@@ -86,6 +122,16 @@ int mkdir(const char* path, mode_t mode) noexcept {
   return fails() ? -1 : real<int(const char*, mode_t)>("mkdir")(path, mode);
 }
 
+int unlink(const char* path) noexcept {
+  fails(false);
+  return real<int(const char*)>("unlink")(path);
+}
+
+int remove(const char* path) noexcept {
+  fails(false);
+  return real<int(const char*)>("remove")(path);
+}
+
 int open(const char* path, int flags, ...) {
   va_list list;
   va_start(list, flags);
@@ -98,5 +144,27 @@ int open(const char* path, int flags, ...) {
 FILE* fopen(const char* path, const char* mode) {
   if (*mode == 'w' && fails()) return nullptr;
   return real<FILE*(const char*, const char*)>("fopen")(path, mode);
+}
+
+FILE* fopen64(const char* path, const char* mode) {
+  if (*mode == 'w' && fails()) return nullptr;
+  return real<FILE*(const char*, const char*)>("fopen64")(path, mode);
+}
+
+void* malloc(size_t size) noexcept {
+  if (kind == Kind::memory && is_hit()) {
+    errno = ENOMEM;
+    return nullptr;
+  }
+  return __libc_malloc(size);
+}
+
+int posix_spawnp(pid_t* process, const char* file, const posix_spawn_file_actions_t* actions,
+                 const posix_spawnattr_t* attributes, char* const* arguments,
+                 char* const* environment) {
+  if (kind == Kind::start && is_hit()) return EAGAIN;
+  using Spawn = int(pid_t*, const char*, const posix_spawn_file_actions_t*,
+                    const posix_spawnattr_t*, char* const*, char* const*);
+  return real<Spawn>("posix_spawnp")(process, file, actions, attributes, arguments, environment);
 }
 }

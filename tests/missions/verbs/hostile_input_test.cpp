@@ -1,15 +1,25 @@
 // What has once crashed the program, made it hang, or lost results: one test for each class.
 #include <algorithm>
+#include <chrono>
+#include <csignal>
 #include <filesystem>
 #include <sstream>
 #include <stop_token>
 #include <string>
+#include <thread>
 #include <vector>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <spawn.h>
+#include <sys/stat.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
+#include "geometry/io/mesh_io.h"
 #include "missions/benchmark/benchmark_plots.h"
+#include "missions/derived/resolved_mission.h"
+#include "missions/scene/survey_scene.h"
 #include "missions/verbs/printable.h"
 #include "tests/missions/run_skycap.h"
 
@@ -151,6 +161,102 @@ TEST(HostileInput, ControlCharactersNeverReachTheTerminal) {
   verbs::PrintableBuffer buffer(*text.rdbuf());
   std::ostream(&buffer) << "h\xC3\xA9\x1b\n";
   EXPECT_EQ(text.str(), "h\xC3\xA9 \n");
+}
+
+TEST(HostileInput, PlacesOfEveryRouteAreWithinTheWorld) {
+  const TestFolder folder;
+  const std::string mission = folder.write("m.yaml", quick_mission());
+  const auto message = [&](const std::string& name, const std::string& content) {
+    return refusal({"check", mission, "--route", folder.write(name, content)});
+  };
+  EXPECT_THAT(message("far.tum", "0 0 0 1e308 0 0 0 1\n1 0 0 -1e308 0 0 0 1\n"),
+              HasSubstr("far.tum: place 1 is (0, 0, 1e+308)"));
+  const std::string items = "QGC WPL 110\n0\t1\t0\t16\t0\t0\t0\t0\t51.75\t-1.25\t100\t1\n";
+  EXPECT_THAT(message("far.waypoints", items + "1\t0\t3\t16\t0\t0\t0\t0\t51.75\t-1.25\t1e300\t1\n"),
+              HasSubstr("far.waypoints"));
+}
+
+TEST(HostileInput, WhatNamesNoModelIsNamedItself) {
+  const TestFolder folder;
+  const std::string mission = folder.write(
+      "m.yaml", "scene: {model: 'builtin:nope'}\nevaluation: {registration_distance: 1}\n");
+  EXPECT_THAT(
+      refusal({"check", mission}),
+      HasSubstr("m.yaml:1: key scene.model: is builtin:nope; there are builtin:city-block"));
+  const std::string cloud = folder.write("c.xyz", "0 0 0\n");
+  EXPECT_THAT(refusal({"evaluate", "--cloud", cloud, "--model", "builtin:nope", "--distance", "1"}),
+              HasSubstr("--model: there is no built-in model named 'nope'"));
+}
+
+TEST(HostileInput, CopiesThatNoMemoryHoldsAreRefused) {
+  const TestFolder folder;
+  std::string copies;
+  for (int i = 0; i < 1000; ++i) copies += "[0, 0, 0], ";
+  const std::string mission =
+      folder.write("m.yaml", "scene: {model: 'builtin:teapot', copies: [" + copies +
+                                 "[1, 1, 1]]}\nevaluation: {registration_distance: 1}\n");
+  EXPECT_THAT(refusal({"check", mission}),
+              HasSubstr("m.yaml: scene.copies: 1002 times 16256 triangles are more than 1e+07"));
+}
+
+TEST(HostileInput, AHundredThousandMaterialsAreReadInTheirTime) {
+  const TestFolder folder;
+  std::string mesh = "v 0 0 0\nv 1 0 0\nv 0 1 0\n";
+  for (int i = 0; i < 100'000; ++i) mesh += "usemtl m" + std::to_string(i) + "\nf 1 2 3\n";
+  const std::string path = folder.write("m.obj", mesh);
+  EXPECT_EQ(geometry::read_mesh_by_material(path).size(), 100'000U);
+}
+
+TEST(HostileInput, PointsOnALineAreNoSurface) {
+  const TestFolder folder;
+  for (const double step : {0.0, 0.001}) {
+    std::string line;
+    for (int i = 0; i < 500; ++i) line += std::to_string(step * i) + " 1 2\n";
+    EXPECT_THAT(refusal({"reconstruct", folder.write("line.xyz", line), "--out", folder / "m.ply"}),
+                HasSubstr("line.xyz: all points lie on one line"));
+  }
+}
+
+/// The exit code of the program, told to end soon after it began; -1 if it does not.
+int exit_code_after_interruption(const std::vector<std::string>& arguments) {
+  std::vector<char*> words{const_cast<char*>(SKYCAP_PROGRAM)};
+  for (const std::string& word : arguments) words.push_back(const_cast<char*>(word.c_str()));
+  words.push_back(nullptr);
+  pid_t process = 0;
+  if (::posix_spawn(&process, words[0], nullptr, nullptr, words.data(), environ) != 0) return -1;
+  std::this_thread::sleep_for(std::chrono::milliseconds(500));
+  ::kill(process, SIGINT);
+  for (int tenths = 0; tenths < 50; ++tenths) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(100));
+    int status = 0;
+    if (::waitpid(process, &status, WNOHANG) != process) continue;
+    return WIFEXITED(status) ? WEXITSTATUS(status) : 1;
+  }
+  ::kill(process, SIGKILL);
+  ::waitpid(process, nullptr, 0);
+  return -1;
+}
+
+TEST(HostileInput, CtrlCEndsWhatWaitsForever) {
+  const TestFolder folder;
+  const std::string pipe = folder / "m.yaml";
+  ASSERT_EQ(::mkfifo(pipe.c_str(), 0600), 0);
+  EXPECT_EQ(exit_code_after_interruption({"check", pipe}), 1);
+  EXPECT_EQ(exit_code_after_interruption({"plan", pipe, "--out", folder / "out"}), 1);
+}
+
+TEST(HostileInput, CtrlCEndsTheMeasureOfWhatIsAttainable) {
+  const TestFolder folder;
+  const std::string file = folder.write("m.yaml", quick_mission());
+  const file::Mission mission = derived::read_mission(
+      file, {{"--set", "evaluation.ceiling_views", "7"}});  // whose ceiling no cache holds
+  const scene::SurveyScene scene(mission, folder.path());
+  std::stop_source stopped;
+  stopped.request_stop();
+  EXPECT_THAT(scene.visible(1, stopped.get_token()), testing::Each(0));
+  EXPECT_EQ(scene.ceiling(std::vector<std::uint8_t>(scene.samples().points.size(), 1), 1,
+                          stopped.get_token()),
+            std::nullopt);
 }
 
 /// A disk that is full.

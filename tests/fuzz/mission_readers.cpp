@@ -1,0 +1,104 @@
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <string>
+
+#include "geometry/io/file.h"
+#include "geometry/io/output_folder.h"
+#include "geometry/place/world.h"
+#include "missions/benchmark/trial_files.h"
+#include "missions/derived/resolved_mission.h"
+#include "missions/equipment/sensor_reader.h"
+#include "missions/equipment/vehicle_reader.h"
+#include "missions/file/mission_keys.h"
+#include "missions/package/package.h"
+#include "tests/fuzz/readers.h"
+#include "tests/fuzz/trial_run.h"
+
+namespace skycap::fuzz {
+namespace {
+
+namespace file = missions::file;
+
+/// Numbers that got through are in their keys' ranges, up to the rounding of degrees.
+void require_in_range(const file::Key& key, double value) {
+  const double slack = 1e-12 * std::abs(value);
+  require(value >= key.range.least - slack && value <= key.range.most + slack,
+          key.path + " is " + std::to_string(value));
+}
+
+void require_sane(const file::Mission& mission) {
+  for (const file::Key& key : file::mission_keys()) {
+    const auto value = key.get(mission);
+    if (!value) continue;
+    if (const auto* number = std::get_if<double>(&*value)) require_in_range(key, *number);
+    if (const auto* vector = std::get_if<Eigen::Vector3d>(&*value)) {
+      for (const double coordinate : *vector) require_in_range(key, coordinate);
+    }
+  }
+}
+
+int run_mission(const std::uint8_t* bytes, std::size_t size) {
+  return run_reader("m.yaml", [&] {
+    require_sane(missions::derived::parse_mission(text_of(bytes, size), "m.yaml"));
+  });
+}
+
+int run_sensor(const std::uint8_t* bytes, std::size_t size) {
+  return run_reader("s.yaml", [&] {
+    const auto sensor = missions::equipment::read_sensor(text_of(bytes, size), "s.yaml");
+    std::visit([](const auto& config) { config.validate(); }, sensor.sensor);
+  });
+}
+
+int run_vehicle(const std::uint8_t* bytes, std::size_t size) {
+  return run_reader("v.yaml", [&] {
+    missions::equipment::read_vehicle(text_of(bytes, size), "v.yaml").validate();
+  });
+}
+
+int run_summary(const std::uint8_t* bytes, std::size_t size) {
+  return run_reader("summary.json", [&] {
+    const auto path = file_with("summary.json", text_of(bytes, size));
+    const auto summary = missions::package::read_package_summary(path.parent_path(), {});
+    require_sane(summary.mission);
+    require(!summary.pad || geometry::is_place(*summary.pad), "a pad out of the world");
+    for (const geometry::View& view : summary.views) {
+      require(geometry::is_place(view.position), "a view out of the world");
+      require(view.direction.allFinite() && view.direction.norm() > 0.0, "a view of nothing");
+    }
+  });
+}
+
+/// A trial that is damaged counts as not run: there is nothing to refuse.
+int run_trial(const std::uint8_t* bytes, std::size_t size) {
+  const auto path = file_with("trial.json", text_of(bytes, size));
+  missions::benchmark::finished_trial(path, "");
+  return 0;
+}
+
+/// Whatever a journal says, only names within its folder change.
+int run_journal(const std::uint8_t* bytes, std::size_t size) {
+  const auto outside = fresh_folder(), folder = outside / "folder";
+  std::filesystem::create_directory(folder);
+  for (const auto& path : {outside / "kept", folder / ".part-1-a", folder / "a"}) {
+    std::ofstream(path) << "kept";
+  }
+  std::ofstream(folder / ".commit", std::ios::binary) << text_of(bytes, size);
+  run_reader(folder.string(), [&] { geometry::finish_commit(folder); });
+  require(geometry::read_file(outside / "kept") == "kept", "a journal changes other folders");
+  std::size_t count = 0;
+  for (const auto& entry : std::filesystem::directory_iterator(outside)) count += entry.exists();
+  require(count == 2, "a journal makes files in other folders");
+  return 0;
+}
+
+constexpr Reader readers[] = {{"mission", run_mission}, {"sensor", run_sensor},
+                              {"vehicle", run_vehicle}, {"summary", run_summary},
+                              {"trial", run_trial},     {"journal", run_journal}};
+
+}  // namespace
+
+std::span<const Reader> mission_readers() { return readers; }
+
+}  // namespace skycap::fuzz

@@ -1,0 +1,104 @@
+#include <cmath>
+#include <limits>
+
+#include "flight/calibration/flight_log.h"
+#include "flight/export/export.h"
+#include "flight/export/parameters.h"
+#include "flight/interpreter/interpret.h"
+#include "geometry/place/world.h"
+#include "missions/equipment/vehicle_reader.h"
+#include "missions/recording/scan_route.h"
+#include "tests/fuzz/readers.h"
+#include "tests/fuzz/trial_run.h"
+
+namespace skycap::fuzz {
+namespace {
+
+const flight::Site site{{51.753458, -1.254022, 111.5}, 46.7};
+
+/// The places of a route, what a vehicle does with it, and how high it returns.
+int run_route(const char* name, const std::uint8_t* bytes, std::size_t size) {
+  return run_reader(name, [&] {
+    const auto path = file_with(name, text_of(bytes, size));
+    for (const Eigen::Vector3d& place : flight::read_route(path, site, {0, 0, 0})) {
+      require(geometry::is_place(place), "a place out of the world");
+    }
+    const auto height = flight::read_return_height(path);
+    require(!height || std::isfinite(*height), "a height of return that is no number");
+    flight::FlightFacts facts{.site = site};
+    facts.vehicle = missions::equipment::find_vehicle("generic");
+    for (const flight::FlownPiece& piece : flight::interpret_file(path, facts).pieces) {
+      require(piece.to.allFinite(), "a stretch to nowhere");
+    }
+  });
+}
+
+/// Also what a simulated scan makes of it.
+int run_scan_route(const char* name, const std::uint8_t* bytes, std::size_t size) {
+  return run_reader(name, [&] {
+    const auto path = file_with(name, text_of(bytes, size));
+    const auto route =
+        missions::recording::read_scan_route(path, {}, missions::recording::Carrier::gimbal);
+    for (const sim::StampedPose& pose : route.carrier.poses()) {
+      require(geometry::is_place(pose.position), "a pose out of the world");
+      require(std::isfinite(pose.time), "a pose at no time");
+      require(std::abs(pose.attitude.norm() - 1.0) < 1e-6, "an attitude that is no rotation");
+    }
+    for (const double time : route.image_times) require(std::isfinite(time), "an image at no time");
+  });
+}
+
+int run_trajectory(const char* name, const std::uint8_t* bytes, std::size_t size) {
+  run_scan_route(name, bytes, size);
+  return run_route(name, bytes, size);
+}
+
+int run_parameters(const std::uint8_t* bytes, std::size_t size) {
+  return run_reader("", [&] {
+    const auto parameters = flight::read_parameters(text_of(bytes, size));
+    for (const flight::Parameter& parameter : parameters) {
+      require(std::isfinite(parameter.value), "a parameter that is no number");
+    }
+    for (const auto dialect : {flight::Dialect::ardupilot, flight::Dialect::px4}) {
+      const auto height = flight::return_height(parameters, dialect);
+      require(!height || std::isfinite(*height), "a height of return that is no number");
+      flight::return_problems(parameters, dialect);
+    }
+  });
+}
+
+int run_log(const char* name, const std::uint8_t* bytes, std::size_t size) {
+  return run_reader(name, [&] {
+    double last = -std::numeric_limits<double>::infinity();
+    const auto log = flight::read_flight_log(file_with(name, text_of(bytes, size)));
+    for (const flight::LogSample& sample : log.samples) {
+      require(sample.time >= last, "a log that goes back in time");
+      require(sample.velocity.allFinite() && std::isfinite(sample.power), "a sample of no number");
+      last = sample.time;
+    }
+  });
+}
+
+constexpr Reader readers[] = {
+    {"plan", [](const std::uint8_t* b, std::size_t n) { return run_route("m.plan", b, n); }},
+    {"waypoints",
+     [](const std::uint8_t* b, std::size_t n) { return run_route("m.waypoints", b, n); }},
+    {"kmz", [](const std::uint8_t* b, std::size_t n) { return run_route("m.kmz", b, n); }},
+    {"kml", [](const std::uint8_t* b, std::size_t n) { return run_route("m.kml", b, n); }},
+    {"geojson", [](const std::uint8_t* b, std::size_t n) { return run_route("m.geojson", b, n); }},
+    {"litchi",
+     [](const std::uint8_t* b, std::size_t n) { return run_route("m.litchi.csv", b, n); }},
+    {"csv", [](const std::uint8_t* b, std::size_t n) { return run_trajectory("m.csv", b, n); }},
+    {"tum", [](const std::uint8_t* b, std::size_t n) { return run_trajectory("m.tum", b, n); }},
+    {"views",
+     [](const std::uint8_t* b, std::size_t n) { return run_scan_route("views.csv", b, n); }},
+    {"dataflash", [](const std::uint8_t* b, std::size_t n) { return run_log("log.bin", b, n); }},
+    {"log", [](const std::uint8_t* b, std::size_t n) { return run_log("log.csv", b, n); }},
+    {"parameters", run_parameters},
+};
+
+}  // namespace
+
+std::span<const Reader> route_readers() { return readers; }
+
+}  // namespace skycap::fuzz

@@ -1,0 +1,85 @@
+#include <sstream>
+
+#include "flight/space/measured_space.h"
+#include "geometry/io/cloud_io.h"
+#include "geometry/io/mesh_io.h"
+#include "geometry/place/world.h"
+#include "tests/fuzz/readers.h"
+#include "tests/fuzz/trial_run.h"
+
+namespace skycap::fuzz {
+namespace {
+
+void require_sane(const geometry::Mesh& mesh) {
+  require(!mesh.triangles.empty(), "a mesh without triangles");
+  for (const auto& triangle : mesh.triangles) {
+    for (const std::uint32_t v : triangle) {
+      require(v < mesh.vertices.size(), "a triangle of vertices that do not exist");
+      require(geometry::is_place(mesh.vertices[v], geometry::farthest_vertex),
+              "a corner out of the world");
+    }
+  }
+}
+
+int run_mesh(const char* name, const std::uint8_t* bytes, std::size_t size) {
+  return run_reader(name, [&] {
+    const auto path = file_with(name, text_of(bytes, size));
+    require_sane(geometry::read_mesh(path));
+    for (const auto& part : geometry::read_mesh_by_material(path)) require_sane(part.mesh);
+  });
+}
+
+int run_cloud(const char* name, const std::uint8_t* bytes, std::size_t size) {
+  return run_reader(name, [&] {
+    const auto cloud = geometry::read_cloud(file_with(name, text_of(bytes, size)));
+    const std::size_t count = cloud.positions.size();
+    require(count > 0, "a cloud without points");
+    require(cloud.normals.empty() || cloud.normals.size() == count, "points without normals");
+    require(cloud.views.empty() || cloud.views.size() == count, "points without views");
+    require(cloud.colours.empty() || cloud.colours.size() == count, "points without colours");
+    for (const Eigen::Vector3f& position : cloud.positions) {
+      require(geometry::is_place(position.cast<double>(), 16384.0), "a point out of the world");
+    }
+  });
+}
+
+/// What is read and written again is read as the same.
+int run_free_space(const std::uint8_t* bytes, std::size_t size) {
+  return run_reader("free_space.bin", [&] {
+    std::istringstream stream(text_of(bytes, size));
+    const auto space = flight::MeasuredSpace::read(stream, "free_space.bin");
+    std::stringstream first, second;
+    space.write(first);
+    flight::MeasuredSpace::read(first, "written").write(second);
+    require(first.str() == second.str(), "free space changes when it is written and read");
+    const Eigen::AlignedBox3d extent = space.extent();
+    require(
+        extent.isEmpty() || (geometry::is_place(extent.min()) && geometry::is_place(extent.max())),
+        "free space out of the world");
+    space.closest({{0, 0, 0}, {1, 1, 1}}, 2.0);
+  });
+}
+
+constexpr Reader readers[] = {
+    {"mesh_ply", [](const std::uint8_t* b, std::size_t n) { return run_mesh("mesh.ply", b, n); }},
+    {"mesh_obj", [](const std::uint8_t* b, std::size_t n) { return run_mesh("mesh.obj", b, n); }},
+    {"mesh_off", [](const std::uint8_t* b, std::size_t n) { return run_mesh("mesh.off", b, n); }},
+    {"mesh_stl", [](const std::uint8_t* b, std::size_t n) { return run_mesh("mesh.stl", b, n); }},
+    {"mesh_drc", [](const std::uint8_t* b, std::size_t n) { return run_mesh("mesh.drc", b, n); }},
+    {"cloud_ply",
+     [](const std::uint8_t* b, std::size_t n) { return run_cloud("cloud.ply", b, n); }},
+    {"cloud_pcd",
+     [](const std::uint8_t* b, std::size_t n) { return run_cloud("cloud.pcd", b, n); }},
+    {"cloud_las",
+     [](const std::uint8_t* b, std::size_t n) { return run_cloud("cloud.las", b, n); }},
+    {"cloud_xyz",
+     [](const std::uint8_t* b, std::size_t n) { return run_cloud("cloud.xyz", b, n); }},
+    {"gzip", [](const std::uint8_t* b, std::size_t n) { return run_cloud("cloud.xyz.gz", b, n); }},
+    {"free_space", run_free_space},
+};
+
+}  // namespace
+
+std::span<const Reader> surface_readers() { return readers; }
+
+}  // namespace skycap::fuzz
