@@ -1,5 +1,6 @@
 #include "missions/live/open_survey.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include <Eigen/Geometry>

@@ -85,7 +85,8 @@ void organise(std::span<const Vector3d> points, const geometry::Camera& camera, 
   std::ranges::sort(seen, [](const Seen& a, const Seen& b) {
     return std::tie(a.pixel, a.depth, a.point) < std::tie(b.pixel, b.depth, b.point);
   });
-  const auto last = std::ranges::unique(seen, {}, &Seen::pixel).begin();
+  const auto last = std::unique(seen.begin(), seen.end(),
+                                [](const Seen& a, const Seen& b) { return a.pixel == b.pixel; });
   found.hidden = static_cast<std::size_t>(seen.end() - last);
   seen.erase(last, seen.end());
   for (const Seen& s : seen) {

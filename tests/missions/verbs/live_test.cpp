@@ -86,8 +86,10 @@ TEST_F(LiveVerbs, SurveyAPlaceThatNobodyHasModelled) {
     EXPECT_EQ(next["id"], i + 1);
     const json& at = next["view"]["position"];
     const json& to = next["view"]["direction"];
-    view.position = {at[0], at[1], at[2]};
-    view.direction = {to[0], to[1], to[2]};
+    for (int axis = 0; axis < 3; ++axis) {
+      view.position[axis] = at[axis].get<double>();
+      view.direction[axis] = to[axis].get<double>();
+    }
     EXPECT_NEAR(view.direction.norm(), 1.0, 1e-9);
   }
   const ProgramRun finished = run_skycap(verb("finish"));
