@@ -84,10 +84,8 @@ void write_report(const PlanOptions& options, geometry::OutputFolder& folder,
   try {
     page = report::survey_report([&](const std::string& name) { return folder.staged(name); });
   } catch (const Error& error) {
-    console.err << "skycap: warning: no report: " << printable_line(error.what())
-                << "
-                   ";
-        return;
+    console.err << "skycap: warning: no report: " << printable_line(error.what()) << "\n";
+    return;
   }
   folder.write(report::report_name, page);
 }
