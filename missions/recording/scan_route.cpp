@@ -75,17 +75,15 @@ std::vector<View> views_of(const std::string& text) {
       throw Error(ErrorKind::bad_file, place + " has " + std::to_string(fields.size()) +
                                            " fields; a view has at least 7");
     }
-    std::array<double, 6> numbers{};
-    for (std::size_t i = 0; i < numbers.size(); ++i) {
-      const auto number = flight::to_number(fields[i + 1]);
-      if (!number) throw Error(ErrorKind::bad_file, flight::not_a_number(place, fields[i + 1]));
-      numbers[i] = *number;
-    }
-    const Vector3d direction(numbers[3], numbers[4], numbers[5]);
+    flight::Problems problems;
+    const auto numbers =
+        flight::to_numbers({fields.begin() + 1, fields.begin() + 7}, place + " ", problems);
+    if (!numbers) throw Error(ErrorKind::bad_file, problems.front());
+    const Vector3d direction((*numbers)[3], (*numbers)[4], (*numbers)[5]);
     if (direction.norm() < 1e-6) {
       throw Error(ErrorKind::bad_file, place + " has a direction without length");
     }
-    views.push_back({Vector3d(numbers[0], numbers[1], numbers[2]), direction.normalized()});
+    views.push_back({Vector3d((*numbers)[0], (*numbers)[1], (*numbers)[2]), direction.normalized()});
   }
   return views;
 }

@@ -53,7 +53,7 @@ class Names:
     def verbs(self):
         text = subprocess.run([self.program / "skycap", "--help"], capture_output=True, text=True,
                               check=True).stdout
-        return re.findall(r"^  (\w+) ", text[text.index("Subcommands"):], re.MULTILINE)
+        return re.findall(r"^  ([\w-]+) ", text[text.index("Subcommands"):], re.MULTILINE)
 
     def has_path(self, path):
         path = path.rstrip("/")
@@ -143,7 +143,7 @@ def command_complaints(command, names):
         preset = words[words.index("--preset") + 1]
         if preset not in names.presets:
             yield f"there is no preset {preset}"
-    elif words[0].startswith("build/"):
+    elif words[0].count("/") > 1 and words[0].startswith("build/"):
         if not names.has_path(source_of(words[0].split("/", 2)[2])):
             yield f"nothing builds {words[0]}"
     elif words[0].startswith("tests/") and not names.has_path(words[0]):
