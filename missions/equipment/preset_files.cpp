@@ -18,8 +18,11 @@ PresetText preset_text(const std::string& kind, const std::string& name_or_file,
     if (preset.name == name_or_file) return {std::string(preset.text), name_or_file + ".yaml"};
     known += (known.empty() ? "" : ", ") + std::string(preset.name);
   }
-  throw Error(ErrorKind::bad_config, "there is no " + kind + " " + name_or_file + "; known are " +
-                                         known + ", or give a file NAME.yaml");
+  constexpr std::size_t longest = 60;  // of a name in a message
+  const std::string named =
+      name_or_file.size() <= longest ? name_or_file : name_or_file.substr(0, longest) + "...";
+  throw Error(ErrorKind::bad_config, "there is no " + kind + " " + named + "; known are " + known +
+                                         ", or give a file NAME.yaml");
 }
 
 }  // namespace skycap::missions::equipment

@@ -147,7 +147,7 @@ CloudCode encode_cloud(std::span<const Eigen::Vector3f> positions,
   CloudCode code{.points = entries.size(), .of = positions.size(), .origin = grid.origin};
   const double spacing = spacing_of_keys(keys, most_bits);
   code.spacing = entries.size() > 1 ? spacing * grid.step : 0.0;
-  code.bits = bits_for(spacing);
+  code.bits = keys.empty() || keys.front() == keys.back() ? most_bits : bits_for(spacing);
   code.step = std::ldexp(grid.step, most_bits - code.bits);
   for (std::uint64_t& key : keys) key >>= 3 * (most_bits - code.bits);
   std::string bytes = planes_of(differences(keys), (3 * code.bits + 7) / 8);

@@ -246,7 +246,7 @@ TEST(Route, AClimbPastATreeThatWasMeasuredIsRefused) {
   const auto plan_beside = [](double distance) {
     Obstacles with_tree = site();
     const double west = -30.0 - distance;
-    geometry::append(with_tree.mesh, scenes::box({west - 0.3, -30.2, 0}, {west, -29.8, 4}));
+    geometry::append(with_tree.mesh, scenes::box({west - 0.3, -30.2, 0}, {west, -29.8, 3}));
     const KnownSpace space(with_tree);
     return plan_route(ring(3, 18, 8), {}, space, nullptr, options());
   };
@@ -255,7 +255,7 @@ TEST(Route, AClimbPastATreeThatWasMeasuredIsRefused) {
     plan_beside(1.5);
     FAIL();
   } catch (const Error& error) {
-    EXPECT_THAT(error.what(), HasSubstr("the climb from the pad comes within 1.50 m of triangle"));
+    EXPECT_THAT(error.what(), HasSubstr("the climb from the pad comes within 1.500 m of triangle"));
   }
 }
 

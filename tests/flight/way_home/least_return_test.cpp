@@ -73,12 +73,14 @@ TEST(LeastReturn, RallyPointsServeWhereThePadCannot) {
   obstacles.no_fly = {{"airport", {{-35, -90}, {-25, -90}, {-25, 90}, {-35, 90}}}};
   const KnownSpace space(obstacles);
   ReturnLaw law = law_of({Dialect::px4, Dialect::ardupilot});
-  EXPECT_FALSE(least_return(space, leg, law, 60.0, clearance).found);
+  const ReturnSearch none = least_return(space, leg, law, 60.0, clearance);
+  EXPECT_FALSE(none.found) << none.found->height << " m, " << none.found->clearance << " m from "
+                           << none.found->obstacle;
   law.landings.emplace_back(15, 0, 0);
   const ReturnSearch search = least_return(space, leg, law, 60.0, clearance);
   ASSERT_TRUE(search.found) << search.why;
   EXPECT_GE(search.found->clearance, clearance);
-  law.landings.back() = {-20, 0, 0};  // too near to the airport
+  law.landings.back() = {-23.5, 0, 0};  // 1.5 m beside the airport
   EXPECT_FALSE(least_return(space, leg, law, 60.0, clearance).found);
 }
 

@@ -130,7 +130,7 @@ TEST(CloudCode, ThinsEvenly) {
 TEST(CloudCode, TakesLittleRoom) {
   const auto points = sphere(200'000, 20.0, 0.01);
   const CloudCode code = encode_cloud(points, {}, 1'000'000);
-  EXPECT_LT(1.25 * static_cast<double>(code.bytes.size()) / 200'000.0, 2.2);  // base 85
+  EXPECT_LT(1.25 * static_cast<double>(code.bytes.size()) / 200'000.0, 2.6);  // base 85
 }
 
 TEST(CloudCode, HoldsNothingOneAndTheSame) {

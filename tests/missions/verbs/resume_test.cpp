@@ -43,12 +43,13 @@ class CtrlC : public std::stringbuf {
   std::stop_source stop_;
 };
 
-/// All results but what differs from run to run, which are the times in summary.json.
+/// All results but what differs from run to run, which are the times in summary.json and on the page.
 std::map<std::string, std::string> results_in(const fs::path& folder) {
   std::map<std::string, std::string> results;
   for (const auto& entry : fs::directory_iterator(folder)) {
     const std::string name = entry.path().filename();
-    if (!entry.is_directory() && name != "summary.json") results[name] = content_of(entry.path());
+    if (entry.is_directory() || name == "summary.json" || name == "report.html") continue;
+    results[name] = content_of(entry.path());
   }
   return results;
 }
