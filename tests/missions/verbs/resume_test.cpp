@@ -43,7 +43,8 @@ class CtrlC : public std::stringbuf {
   std::stop_source stop_;
 };
 
-/// All results but what differs from run to run, which are the times in summary.json and on the page.
+/// All results but what differs from run to run, which are the times in summary.json and on the
+/// page.
 std::map<std::string, std::string> results_in(const fs::path& folder) {
   std::map<std::string, std::string> results;
   for (const auto& entry : fs::directory_iterator(folder)) {
