@@ -53,8 +53,8 @@ struct ClearanceBudget {
 
 /// What is asked of the ways home that an autopilot flies by itself.
 struct ReturnOptions {
-  std::vector<Dialect> dialects;  ///< whose ways home are to be proven
-  double highest = 0.0;           ///< z up to which a height of return is looked for
+  std::vector<Dialect> dialects;         ///< whose ways home are to be proven
+  double highest = 0.0;                  ///< z up to which a height of return is looked for
   std::vector<Eigen::Vector3d> rally{};  ///< where they may land beside the pad, on the ground
 };
 

@@ -83,7 +83,8 @@ std::vector<View> views_of(const std::string& text) {
     if (direction.norm() < 1e-6) {
       throw Error(ErrorKind::bad_file, place + " has a direction without length");
     }
-    views.push_back({Vector3d((*numbers)[0], (*numbers)[1], (*numbers)[2]), direction.normalized()});
+    views.push_back(
+        {Vector3d((*numbers)[0], (*numbers)[1], (*numbers)[2]), direction.normalized()});
   }
   return views;
 }
