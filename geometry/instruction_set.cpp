@@ -2,6 +2,10 @@
 
 #include <algorithm>
 #include <atomic>
+#include <string>
+#include <utility>
+
+#include "geometry/error.h"
 
 namespace skycap::geometry {
 namespace {
@@ -31,5 +35,15 @@ InstructionSet instruction_set() {
 }
 
 void limit_instruction_set(InstructionSet widest) { limit = widest; }
+
+void limit_instruction_set(std::string_view widest) {
+  using enum InstructionSet;
+  for (const auto& [name, set] :
+       {std::pair("baseline", baseline), {"avx2", avx2}, {"avx512", avx512}}) {
+    if (widest == name) return limit_instruction_set(set);
+  }
+  throw Error(ErrorKind::bad_usage, "SKYCAP_INSTRUCTION_SET is '" + std::string(widest) +
+                                        "'; it must be baseline, avx2 or avx512");
+}
 
 }  // namespace skycap::geometry

@@ -5,8 +5,8 @@
 /// one such bit can become another survey. These functions use nothing but IEEE 754 additions,
 /// multiplications, divisions and square roots in double precision, in one order, and so give the
 /// same on every processor and with every compiler that keeps to the standard. Results are within
-/// 0.6 ulp of the true value, those of sin, cos and tan within 0.8, of expm1 and the hyperbolic
-/// functions within 2.
+/// 0.6 ulp of the true value, those of sin, cos and tan within 0.8, of expm1, erf and the
+/// hyperbolic functions within 2.
 ///
 /// A program that links skycap::mathematics gets them under their names in C, for itself and for
 /// all libraries it uses: elementary_c.cpp. Special values are those of the C standard, annex F.
@@ -38,5 +38,7 @@ double tanh(double x);
 double asinh(double x);
 double acosh(double x);
 double atanh(double x);
+
+double erf(double x);
 
 }  // namespace skycap::mathematics

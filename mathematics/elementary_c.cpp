@@ -38,6 +38,8 @@ double asinh(double x) noexcept { return math::asinh(x); }
 double acosh(double x) noexcept { return math::acosh(x); }
 double atanh(double x) noexcept { return math::atanh(x); }
 
+double erf(double x) noexcept { return math::erf(x); }
+
 // Rounded twice, which is seen in one of some 2^28 results.
 float expf(float x) noexcept { return static_cast<float>(math::exp(x)); }
 float exp2f(float x) noexcept { return static_cast<float>(math::exp2(x)); }

@@ -5,7 +5,10 @@
 namespace skycap::mathematics {
 namespace {
 
-bool is_whole(double y) { return magnitude(y) >= 0x1p52 || rounded(magnitude(y)) == magnitude(y); }
+bool is_whole(double y) {
+  const double a = magnitude(y);
+  return a >= 0x1p52 || static_cast<double>(static_cast<std::uint64_t>(a)) == a;
+}
 bool is_odd(double y) {
   const double a = magnitude(y);
   return a < 0x1p53 && is_whole(y) && static_cast<std::uint64_t>(a) % 2 == 1;

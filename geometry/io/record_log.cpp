@@ -23,11 +23,6 @@ namespace {
 constexpr std::size_t digits = 8;
 constexpr std::size_t largest_log = std::size_t{1} << 30;
 
-std::uint32_t checksum_of(std::string_view text) {
-  return static_cast<std::uint32_t>(
-      ::crc32_z(0, reinterpret_cast<const Bytef*>(text.data()), text.size()));
-}
-
 template <typename Number>
 std::optional<Number> number_in(std::string_view text, int base) {
   Number number{};
@@ -47,7 +42,7 @@ std::optional<Record> record_of(std::string_view line) {
   if (!stated || line.size() < digits + 1 || line[digits] != ' ') return std::nullopt;
   line.remove_prefix(digits + 1);
   const std::size_t blank = line.find(' ');
-  if (blank == std::string_view::npos || checksum_of(line) != *stated) return std::nullopt;
+  if (blank == std::string_view::npos || crc32_of(line) != *stated) return std::nullopt;
   const auto number = number_in<std::size_t>(line.substr(0, blank), 10);
   if (!number) return std::nullopt;
   return Record{*number, line.substr(blank + 1)};
@@ -56,7 +51,7 @@ std::optional<Record> record_of(std::string_view line) {
 std::string line_of(const Record& record) {
   const std::string text = std::to_string(record.number).append(" ").append(record.text);
   std::array<char, digits + 1> head{};
-  std::snprintf(head.data(), head.size(), "%08x", static_cast<unsigned>(checksum_of(text)));
+  std::snprintf(head.data(), head.size(), "%08x", static_cast<unsigned>(crc32_of(text)));
   return std::string(head.data()).append(" ").append(text).append("\n");
 }
 
@@ -98,6 +93,11 @@ std::string bytes_of(const std::filesystem::path& file) {
 }
 
 }  // namespace
+
+std::uint32_t crc32_of(std::string_view bytes) {
+  return static_cast<std::uint32_t>(
+      ::crc32_z(0, reinterpret_cast<const Bytef*>(bytes.data()), bytes.size()));
+}
 
 RecordedLines read_records(const std::filesystem::path& file) {
   return records_in(bytes_of(file), file);

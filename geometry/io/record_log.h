@@ -7,6 +7,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <filesystem>
 #include <string>
 #include <string_view>
@@ -20,6 +21,9 @@ struct RecordedLines {
   std::size_t whole_bytes = 0;  ///< of the file, that the records take
   std::size_t torn_bytes = 0;   ///< behind them: what a kill has left of a record
 };
+
+/// CRC-32 as in zlib and PNG.
+std::uint32_t crc32_of(std::string_view bytes);
 
 /// Reads the records of a file; none if there is no such file. Throws Error{bad_file} naming the
 /// line if a record is damaged and sound ones follow: that is no interrupted writing.

@@ -8,6 +8,7 @@
 #include <limits>
 #include <random>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <dlfcn.h>
@@ -110,7 +111,8 @@ INSTANTIATE_TEST_SUITE_P(All, Elementary,
                                          Function{"log1p", log1p, mpfr_log1p, 1e-300, 1e308, 2.0},
                                          Function{"asinh", asinh, mpfr_asinh, 1e-300, 1e308, 2.0},
                                          Function{"acosh", acosh, mpfr_acosh, 1e-300, 1e308, 2.0},
-                                         Function{"atanh", atanh, mpfr_atanh, 1e-300, 1.0, 2.0}),
+                                         Function{"atanh", atanh, mpfr_atanh, 1e-300, 1.0, 2.0},
+                                         Function{"erf", erf, mpfr_erf, 1e-300, 1e308, 2.0}),
                          [](const auto& instance) { return std::string(instance.param.name); });
 
 // Of two arguments, of all magnitudes against one another.
@@ -273,12 +275,15 @@ TEST(Elementary, SpecialValuesAreThoseOfTheStandard) {
                          {"atanh(-1)", atanh(-1.0), -infinity},
                          {"atanh(2)", atanh(2.0), nan},
                          {"asinh(-0)", asinh(-0.0), -0.0},
-                         {"asinh(-inf)", asinh(-infinity), -infinity}}) {
+                         {"asinh(-inf)", asinh(-infinity), -infinity},
+                         {"pow(-1, 2^51 + 1)", pow(-1.0, 0x1p51 + 1.0), -1.0},
+                         {"erf(-0)", erf(-0.0), -0.0},
+                         {"erf(-inf)", erf(-infinity), -1.0}}) {
     EXPECT_TRUE(is_same(each.computed, each.expected))
         << each.what << " is " << each.computed << ", not " << each.expected;
   }
-  for (const OfOne function : {exp, exp2, expm1, log, log2, log10, sin, cos, tan, asin, acos, atan,
-                               sinh, cosh, tanh, asinh, acosh, atanh, log1p}) {
+  for (const OfOne function : {exp,  exp2, expm1, log,  log2, log10, sin,   cos,   tan,   asin,
+                               acos, atan, sinh,  cosh, tanh, asinh, acosh, atanh, log1p, erf}) {
     EXPECT_TRUE(std::isnan(function(nan)));
   }
   EXPECT_TRUE(std::isnan(pow(nan, 2.0)) && std::isnan(pow(2.0, nan)));
@@ -298,6 +303,29 @@ TEST(Elementary, AreWhatEveryNameInCMeans) {
       ASSERT_TRUE(is_same(loaded(x), ours(x))) << name << " of " << x;
     }
   };
+  const auto expect_same_in_single = [&](const char* name, OfOne ours) {
+    const auto loaded = reinterpret_cast<float (*)(float)>(::dlsym(RTLD_DEFAULT, name));
+    ASSERT_NE(loaded, nullptr) << name;
+    for (int i = 0; i < 1000; ++i) {
+      const auto x = static_cast<float>(argument(random));
+      ASSERT_EQ(loaded(x), static_cast<float>(ours(x))) << name << " of " << x;
+    }
+  };
+  for (const auto& [name, ours] : std::vector<std::pair<const char*, OfOne>>{{"expf", exp},
+                                                                             {"exp2f", exp2},
+                                                                             {"expm1f", expm1},
+                                                                             {"logf", log},
+                                                                             {"log2f", log2},
+                                                                             {"log10f", log10},
+                                                                             {"log1pf", log1p},
+                                                                             {"sinf", sin},
+                                                                             {"cosf", cos},
+                                                                             {"tanf", tan},
+                                                                             {"asinf", asin},
+                                                                             {"acosf", acos},
+                                                                             {"atanf", atan}}) {
+    expect_same_in_single(name, ours);
+  }
   expect_same("exp", exp);
   expect_same("exp2", exp2);
   expect_same("expm1", expm1);
@@ -316,13 +344,22 @@ TEST(Elementary, AreWhatEveryNameInCMeans) {
   expect_same("tanh", tanh);
   expect_same("asinh", asinh);
   expect_same("atanh", atanh);
+  expect_same("erf", erf);
   for (int i = 0; i < 1000; ++i) {
     const double x = argument(random), y = 8.0 * argument(random) - 4.0;
     ASSERT_TRUE(is_same(std::pow(x, y), pow(x, y)));
     ASSERT_TRUE(is_same(std::atan2(y, x), atan2(y, x)));
-    const auto single = static_cast<float>(x);
-    ASSERT_EQ(std::sin(single), static_cast<float>(sin(single)));
-    ASSERT_EQ(std::exp(single), static_cast<float>(exp(single)));
+    ASSERT_TRUE(is_same(std::acosh(1.0 + x), acosh(1.0 + x)));
+    double sine = x, cosine = 0.0;  // the argument may lie where the results go
+    ::sincos(sine, &sine, &cosine);
+    ASSERT_TRUE(is_same(sine, sin(x)) && is_same(cosine, cos(x)));
+    const auto single = static_cast<float>(x), other = static_cast<float>(y);
+    ASSERT_EQ(std::pow(single, other), static_cast<float>(pow(single, other)));
+    ASSERT_EQ(std::atan2(other, single), static_cast<float>(atan2(other, single)));
+    float single_sine = single, single_cosine = 0.0F;
+    ::sincosf(single_sine, &single_sine, &single_cosine);
+    ASSERT_EQ(single_sine, static_cast<float>(sin(single)));
+    ASSERT_EQ(single_cosine, static_cast<float>(cos(single)));
   }
 }
 

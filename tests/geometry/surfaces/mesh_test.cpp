@@ -8,6 +8,7 @@
 #include <gtest/gtest.h>
 
 #include "geometry/error.h"
+#include "tests/support/complaint.h"
 
 namespace skycap::geometry {
 namespace {
@@ -22,12 +23,7 @@ Mesh two_triangles() {
 }
 
 std::string complaint(const Mesh& mesh) {
-  try {
-    validate(mesh);
-  } catch (const Error& error) {
-    return error.what();
-  }
-  return "";
+  return testing_support::complaint_of([&] { validate(mesh); });
 }
 
 TEST(Mesh, MeasuresAreaAndBoxOfWhatTrianglesUse) {
