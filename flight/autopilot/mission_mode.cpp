@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "geometry/error.h"
+#include "geometry/requirement.h"
 
 namespace skycap::flight {
 namespace {
@@ -94,9 +95,8 @@ double braking_distance_time(double distance, const LegLimits& limits, double je
 void MissionMode::validate(const std::string& owner) const {
   const auto require = [&](bool holds, const std::string& field, double value,
                            const std::string& right) {
-    if (holds && std::isfinite(value)) return;
-    throw Error(ErrorKind::bad_config, "vehicle \"" + owner + "\": " + field + " is " +
-                                           std::to_string(value) + "; it must be " + right);
+    skycap::require(holds && std::isfinite(value), "vehicle \"" + owner + "\": " + field, value,
+                    right);
   };
   const auto positive = [&](double value, const std::string& field) {
     require(value > 0.0, field, value, "positive");

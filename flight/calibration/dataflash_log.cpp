@@ -184,10 +184,14 @@ class LogBuilder {
     power_[battery] = *volts * *amperes;
     double power = 0.0;
     for (const auto& [number, one] : power_) power += one;
-    const bool is_later = log_.samples.empty() || message.time() > log_.samples.back().time;
-    if (std::isfinite(power) && is_later) {
-      log_.samples.push_back({message.time(), velocity_, power});
-    }
+    if (!std::isfinite(power)) return;
+    // A time that was damaged is later than the one before and than the one after it.
+    std::vector<LogSample>& samples = log_.samples;
+    const auto is_after = [&](std::size_t from_end) {
+      return samples.size() < from_end || message.time() > samples[samples.size() - from_end].time;
+    };
+    if (!is_after(1) && is_after(2)) samples.pop_back();
+    if (is_after(1)) samples.push_back({message.time(), velocity_, power});
   }
 
   void add_command(const Message& message) {

@@ -28,6 +28,7 @@ constexpr std::array ardupilot_requirements{
     Requirement{"RTL_ALT_TYPE", 0.0, 0.0, 0.0},
     Requirement{"RTL_ALT_FINAL", 0.0, 0.0, 0.0},
     Requirement{"RTL_ALT_FINAL_M", 0.0, 0.0, 0.0},
+    Requirement{"RALLY_INCL_HOME", 1.0, 1.0, 1.0},
     Requirement{"WPNAV_RADIUS", 5.0, 100.0 * ardupilot_waypoint_radius, 200.0},
     Requirement{"WP_RADIUS_M", 0.05, ardupilot_waypoint_radius, 2.0},
 };

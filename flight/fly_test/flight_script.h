@@ -5,7 +5,7 @@
 #pragma once
 
 #include <array>
-#include <span>
+#include <string>
 #include <vector>
 
 #include <Eigen/Core>

@@ -1,8 +1,6 @@
 /// How near a long path of short steps comes to anything.
 #pragma once
 
-#include <optional>
-
 #include <Eigen/Core>
 
 #include "flight/space/clearance.h"

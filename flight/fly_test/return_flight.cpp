@@ -8,9 +8,8 @@ namespace {
 
 using Eigen::Vector3d;
 
-/// ArduCopter cuts the corner at the top within WP_RADIUS; PX4 ends its climb within
-/// NAV_MC_ALT_RAD and begins its descent within NAV_ACC_RAD [m].
-constexpr double ardupilot_cut = 2.0, px4_climb = 0.8, px4_landing = 1.0;
+// ArduCopter cuts the corner at the top within WP_RADIUS; PX4 ends its climb within NAV_MC_ALT_RAD
+// and begins its descent within NAV_ACC_RAD.
 
 /// DJI's vehicles fly home as high as they are within 20 or 50 m, by model, and land at once within
 /// 5 m, by their own reckoning [m].
@@ -58,10 +57,10 @@ std::vector<Vector3d> return_way(const ReturnLaw& law, const Vector3d& place,
   std::vector<Vector3d> way{place};
   const Dialect dialect = law.dialects.front();
   if (dialect == Dialect::ardupilot) {
-    climb_and_fly(at_height(landing, top), random.between(0.0, ardupilot_cut), way);
+    climb_and_fly(at_height(landing, top), random.between(0.0, ardupilot_waypoint_radius), way);
   } else if (dialect == Dialect::px4) {
-    const double end = std::max(place.z(), top - random.between(0.0, px4_climb));
-    const double beside = random.between(0.0, std::min(px4_landing, away));
+    const double end = std::max(place.z(), top - random.between(0.0, px4_altitude_radius));
+    const double beside = random.between(0.0, std::min(px4_landing_radius, away));
     const Vector3d over = at_height(landing, top), start = at_height(place, top);
     way.push_back(at_height(place, end));
     way.push_back(away > 0.0 ? Vector3d(over + (start - over) * (beside / away)) : over);

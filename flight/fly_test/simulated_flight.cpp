@@ -6,6 +6,7 @@
 
 #include "flight/fly_test/return_flight.h"
 #include "flight/fly_test/weather.h"
+#include "flight/space/segment_distance.h"
 
 namespace skycap::flight {
 namespace {
@@ -80,7 +81,8 @@ class Simulation {
     time_ += step;
     const Segment line{leg.from, leg.to};
     if (line.length() > 0.0) {  // it comes to rest on the line of the leg before
-      result_.off_line = std::max(result_.off_line, distance_between(line, vehicle_.position()));
+      const double off_line = std::sqrt(nearest(line, vehicle_.position()).squared_distance);
+      result_.off_line = std::max(result_.off_line, off_line);
     }
     for (JudgedPass& pass : passes_) {
       NearestPass& part = leg.is_over_pad ? pass.over_pad : pass.elsewhere;
@@ -88,14 +90,6 @@ class Simulation {
       if (part.nearest().distance >= pass.nearest.closest.distance) continue;
       pass.nearest = {part.nearest(), time_, is_on_way_home_};
     }
-  }
-
-  static double distance_between(const Segment& line, const Vector3d& place) {
-    const Vector3d way = line.to - line.from;
-    const double squared = way.squaredNorm();
-    const double share =
-        squared > 0.0 ? std::clamp((place - line.from).dot(way) / squared, 0.0, 1.0) : 0.0;
-    return (place - line.at(share)).norm();
   }
 
   const FlownMission& mission_;

@@ -3,15 +3,15 @@
 #include <cmath>
 
 #include "geometry/error.h"
+#include "geometry/requirement.h"
 
 namespace skycap::flight {
 
 void Vehicle::validate() const {
   const auto require = [&](bool holds, const std::string& field, double value,
                            const std::string& right) {
-    if (holds && std::isfinite(value)) return;
-    throw Error(ErrorKind::bad_config, "vehicle \"" + name + "\": " + field + " is " +
-                                           std::to_string(value) + "; it must be " + right);
+    skycap::require(holds && std::isfinite(value), "vehicle \"" + name + "\": " + field, value,
+                    right);
   };
   const auto positive = [&](double value, const std::string& field) {
     require(value > 0.0, field, value, "positive");

@@ -4,9 +4,10 @@
 #include <cmath>
 #include <optional>
 
-#include "flight/paths/sampling_path.h"
 #include "flight/route/leg_certifier.h"
+#include "flight/route/pad_check.h"
 #include "flight/route/sortie_split.h"
+#include "flight/route/station_ways.h"
 #include "flight/route/tour.h"
 #include "flight/space/place_text.h"
 #include "flight/way_home/ways_home.h"
@@ -21,17 +22,14 @@ using Eigen::Vector3d;
 constexpr int items_per_station = 8;
 constexpr int items_per_sortie = 14;
 
-/// What stands no higher than this beside a pad is the ground that it is on [m].
-constexpr double pad_roughness = 0.3;
-
 /// Plans one route; the members are its stages' intermediate results.
 class RoutePlanner {
  public:
   RoutePlanner(const Vehicle& vehicle, const FreeSpace& space, const RouteOptions& options)
       : motion_(vehicle, options.conditions),
         space_(space),
-        finder_(space, options.clearance.total(), options.path),
         home_(options.takeoff + Vector3d(0.0, 0.0, options.takeoff_climb)),
+        paths_(space, home_, options),
         legs_(space, motion_, options.clearance.total(), ways_home_),
         takeoff_cost_(legs_.takeoff_cost(options.takeoff_climb)),
         landing_cost_(legs_.landing_cost(options.takeoff_climb)) {
@@ -43,7 +41,8 @@ class RoutePlanner {
   }
 
   Route plan(std::vector<Station> stations, const FreeSpace* pad_space) {
-    check_pad(pad_space);
+    check_pad(space_, pad_space, route_.options);
+    paths_.take_flown(stations);
     keep_allowed(stations);
     if (route_.options.order_is_free) choose_order(stations);
     keep_reachable(stations);
@@ -57,41 +56,6 @@ class RoutePlanner {
   }
 
  private:
-  void check_pad(const FreeSpace* pad_space) {
-    const double clearance = route_.clearance;
-    if (!space_.is_free({home_, home_}, clearance)) {
-      const Closest closest = space_.closest({home_, home_}, clearance + 1.0);
-      throw Error(ErrorKind::bad_config, "the place above the take-off pad, " + place_text(home_) +
-                                             ", is " + length_text(closest.distance) + " from " +
-                                             space_.name(closest) + "; the clearance is " +
-                                             length_text(clearance) +
-                                             ": move the pad or climb higher");
-    }
-    check_measured_climb();
-    const Segment climb{home_, route_.options.takeoff};
-    if (pad_space != nullptr && !pad_space->is_free(climb, clearance)) {
-      const Closest closest = pad_space->closest(climb, clearance + 1.0);
-      throw Error(ErrorKind::bad_config,
-                  "the climb from the pad comes within " + length_text(closest.distance) + " of " +
-                      pad_space->name(closest) + "; the clearance is " + length_text(clearance));
-    }
-  }
-
-  /// Higher than the clearance above the pad the ground is no obstacle to the climb: from there on
-  /// it must be as free as a leg.
-  void check_measured_climb() {
-    const double clearance = route_.clearance;
-    Vector3d low = route_.options.takeoff;
-    low.z() = std::min(home_.z(), low.z() + clearance + pad_roughness);
-    const Segment climb{home_, low};
-    if (space_.is_free(climb, clearance)) return;
-    const Closest closest = space_.closest(climb, clearance + 1.0);
-    throw Error(ErrorKind::bad_config,
-                "the climb from the pad comes within " + length_text(closest.distance) + " of " +
-                    space_.name(closest) + " at " + place_text(closest.on_leg) +
-                    "; the clearance is " + length_text(clearance) + ": move the pad");
-  }
-
   void refuse(const Station& station, const std::string& reason) {
     route_.unreached.push_back({station, reason});
   }
@@ -139,17 +103,13 @@ class RoutePlanner {
   /// same reversed.
   void keep_reachable(const std::vector<Station>& stations) {
     for (const Station& station : stations) {
-      Path path = finder_.find(home_, station.view.position);
-      if (path.status == PathStatus::unreachable) {
-        // Perhaps by a passage too narrow for the grid.
-        path = find_path_by_sampling(space_, home_, station.view.position, route_.clearance);
-      }
-      if (path.status != PathStatus::found) {
+      const std::vector<Vector3d> way = paths_.from_home(station);
+      if (way.empty()) {
         refuse(station, "there is no way to it at a clearance of " + length_text(route_.clearance));
         continue;
       }
       route_.stations.push_back(station);
-      ways_.push_back(path.points);
+      ways_.push_back(way);
     }
   }
 
@@ -193,20 +153,19 @@ class RoutePlanner {
   /// The leg from station i - 1 to station i.
   Leg connection(std::size_t i) {
     const Station &from = route_.stations[i - 1], &to = route_.stations[i];
-    const Path path = finder_.find(from.view.position, to.view.position);
-    if (path.status == PathStatus::found) {
-      if (std::optional<Leg> leg = legs_.leg(with_returns(path.points), &from, &to)) {
-        return *std::move(leg);
-      }
+    const auto leg_along = [&](std::vector<Vector3d> way) {
+      return way.empty() ? std::nullopt : legs_.leg(with_returns(std::move(way)), &from, &to);
+    };
+    if (auto leg = leg_along(paths_.flown(from.view.position, to))) return *std::move(leg);
+    if (auto leg = leg_along(paths_.found(from.view.position, to.view.position))) {
+      return *std::move(leg);
     }
     // Both are connected to the pad, so there is a way, though a long one.
     std::vector<Vector3d> points = way_home(i - 1);
     points.insert(points.end(), ways_[i].begin() + 1, ways_[i].end());
     const std::vector<Vector3d> tight =
         pull_tight(space_, route_.clearance, points, route_.options.path.worthwhile_saving);
-    if (std::optional<Leg> leg = legs_.leg(with_returns(tight), &from, &to)) {
-      return *std::move(leg);
-    }
+    if (auto leg = leg_along(tight)) return *std::move(leg);
     return legs_.leg(points, &from, &to).value();  // its two parts were proven
   }
 
@@ -372,8 +331,8 @@ class RoutePlanner {
 
   Motion motion_;
   const FreeSpace& space_;
-  PathFinder finder_;
   Vector3d home_;
+  StationWays paths_;
   std::optional<WaysHome> ways_home_;  ///< if returns are asked for
   LegCertifier legs_;
   LegCost takeoff_cost_, landing_cost_;

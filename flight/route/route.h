@@ -26,6 +26,9 @@ struct Station {
   int shots = 1;                 ///< images or scans to take; none at a mere waypoint
   std::uint32_t view_index = 0;  ///< which of the survey's views it is
   double hold_after = 0.5;       ///< at rest after the capture, for shutter and readout [s]
+  /// How the survey came here from the station given before, or from above the pad; empty if
+  /// nobody flew it.
+  std::vector<Eigen::Vector3d> way{};
 };
 
 /// Heading of a view, clockwise from true north, in [0, 2 pi). Straight up or down: north.
@@ -130,8 +133,10 @@ struct Route {
 /// Clearances are reported up to this much above what was asked for: proving more costs time.
 inline constexpr double reported_surplus = 10.0;
 
-/// Plans the flight. A station that cannot be reached safely, neither by PathFinder nor by
-/// find_path_by_sampling(), is listed, not flown to; the route goes on from the one before it.
+/// Plans the flight. Stations that keep the order given keep the ways that the survey flew between
+/// them; others get the shortest found. A station that cannot be reached safely, neither by
+/// PathFinder nor by find_path_by_sampling() nor along the ways of the survey, is listed, not flown
+/// to; the route goes on from the one before it. Every leg is proven anew in `space`.
 /// `space` decides what is free; the climb from the pad is proven against `pad_space`, which should
 /// be the same without the ground (nullptr: the pilot answers for it). With `options.returns`, legs
 /// lead where every point has a proven way home, and stations that have none are listed too. Throws

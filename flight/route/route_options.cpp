@@ -1,9 +1,12 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <string>
+#include <utility>
 
 #include "flight/route/route.h"
 #include "geometry/error.h"
+#include "geometry/requirement.h"
 
 namespace skycap::flight {
 
@@ -24,15 +27,14 @@ bool can_look(const Vehicle& vehicle, const geometry::View& view) {
 }
 
 void ClearanceBudget::validate() const {
-  const auto require = [](double value, const char* field) {
-    if (value >= 0.0 && std::isfinite(value)) return;
-    throw Error(ErrorKind::bad_config, "clearance." + std::string(field) + " is " +
-                                           std::to_string(value) +
-                                           " m; it must be a finite number, zero or more");
-  };
-  require(vehicle_radius, "vehicle_radius"), require(position_error, "position_error");
-  require(tracking_error, "tracking_error"), require(map_error, "map_error");
-  require(margin, "margin");
+  for (const auto& [value, field] : {std::pair(vehicle_radius, "vehicle_radius"),
+                                     {position_error, "position_error"},
+                                     {tracking_error, "tracking_error"},
+                                     {map_error, "map_error"},
+                                     {margin, "margin"}}) {
+    require(value >= 0.0 && std::isfinite(value), std::string("clearance.") + field, value,
+            "a finite number of metres, zero or more");
+  }
 }
 
 void RouteOptions::validate() const {

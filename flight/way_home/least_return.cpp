@@ -18,6 +18,17 @@ double least_height(const ReturnLaw& law) {
   return std::ceil(std::max(law.landing_climb, has_dji ? least_of_dji : 0.0));
 }
 
+/// Heights to be tried, from the lowest on. None is lower than the route: a vehicle above the
+/// height of return would go home at its own. In whole metres up to `highest`; a route that is as
+/// high as that has the next metre, or its own height where a fence is lower.
+std::vector<double> heights_to_try(double least, double route, double highest) {
+  const double lowest = std::max(least, std::ceil(route));
+  if (lowest > highest) return {lowest, std::max(least, std::ceil(100.0 * route) / 100.0)};
+  std::vector<double> heights;
+  for (double height = lowest; height <= highest; height += 1.0) heights.push_back(height);
+  return heights;
+}
+
 double top_of(const std::vector<Segment>& legs, const ReturnLaw& law) {
   double top = law.level;
   for (const Segment& leg : legs) top = std::max({top, leg.from.z(), leg.to.z()});
@@ -81,16 +92,13 @@ ReturnSearch least_return(const FreeSpace& space, const std::vector<Segment>& le
   char text[96];
   std::snprintf(text, sizeof text, "no height of return fits below %.1f m", highest);
   ReturnSearch result{std::nullopt, text};
-  // No lower than the route: a vehicle above the height of return would go home at its own.
   double top = ground;
   for (const Segment& leg : legs) top = std::max({top, leg.from.z(), leg.to.z()});
-  const double least = std::max(least_height(law), std::ceil(top - ground));
-  highest = std::max(highest, ground + std::ceil(top - ground));
-  for (double height = least; ground + height <= highest; height += 1.0) {
+  for (const double height : heights_to_try(least_height(law), top - ground, highest - ground)) {
     law.level = ground + height;
     result = search.prove(law);
     if (result.found) return result;
-    std::snprintf(text, sizeof text, "at a height of return of %.0f m ", height);
+    std::snprintf(text, sizeof text, "at a height of return of %g m ", height);
     result.why = text + result.why;
   }
   return result;

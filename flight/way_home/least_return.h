@@ -33,8 +33,8 @@ inline constexpr double least_of_dji = 20.0;
 
 /// Looks for the least whole metre above the pad, no lower than the legs themselves, at which the
 /// returns from every point of all legs are proven at the clearance, up to the height `highest`
-/// (z). Heights are tried one by one, for a greater one need not be safer where the airspace has a
-/// ceiling. `law.level` is not used.
+/// (z) or, if the legs are that high, a metre above them. Heights are tried one by one, for a
+/// greater one need not be safer where the airspace has a ceiling. `law.level` is not used.
 ReturnSearch least_return(const FreeSpace& space, const std::vector<Segment>& legs, ReturnLaw law,
                           double highest, double clearance);
 

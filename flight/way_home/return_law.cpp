@@ -29,7 +29,7 @@ constexpr Habits habits_of(Dialect dialect) {
     case Dialect::dji:
       break;
   }
-  return {.level_as_it_is = 50.0 + dji_tolerance, .lands_at_once = 5.0 + dji_tolerance};
+  return {.level_as_it_is = 50.0 + dji_tolerance, .lands_at_once = dji_lands_at_once};
 }
 
 /// The widest of what the law's autopilots do.

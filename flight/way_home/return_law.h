@@ -31,6 +31,9 @@ inline constexpr double ardupilot_waypoint_radius = 2.0;  ///< WP_RADIUS_M
 inline constexpr double px4_altitude_radius = 0.8;        ///< NAV_MC_ALT_RAD
 inline constexpr double px4_landing_radius = 1.0;         ///< NAV_ACC_RAD
 
+/// How far from home DJI's vehicles may land at once: 5 m, by their own measure [m].
+inline constexpr double dji_lands_at_once = 8.0;
+
 /// Where and how high vehicles return. Heights are z in the local frame.
 struct ReturnLaw {
   std::vector<Dialect> dialects;          ///< the autopilots whose ways home are all meant

@@ -2,7 +2,6 @@
 #include "flight/calibration/calibration.h"
 
 #include <cmath>
-#include <cstring>
 #include <random>
 
 #include <gmock/gmock.h>

@@ -6,6 +6,7 @@
 
 #include <gtest/gtest.h>
 
+#include "flight/space/segment_distance.h"
 #include "tests/flight/scenes.h"
 #include "tests/flight/vehicles.h"
 
@@ -16,19 +17,11 @@ using Eigen::Vector3d;
 
 constexpr double level = 40.0;
 
-double distance_between(const Segment& line, const Vector3d& place) {
-  const Vector3d way = line.to - line.from;
-  const double squared = way.squaredNorm();
-  const double share =
-      squared > 0.0 ? std::clamp((place - line.from).dot(way) / squared, 0.0, 1.0) : 0.0;
-  return (place - line.at(share)).norm();
-}
-
 /// How far a place is from all that the law proves.
 double outside(const std::vector<ReturnPiece>& pieces, const Vector3d& place) {
   double least = 1e9;
   for (const ReturnPiece& piece : pieces) {
-    least = std::min(least, distance_between(piece.line, place) - piece.spread);
+    least = std::min(least, std::sqrt(nearest(piece.line, place).squared_distance) - piece.spread);
   }
   return least;
 }

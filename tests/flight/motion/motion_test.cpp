@@ -7,6 +7,7 @@
 
 #include "geometry/error.h"
 #include "tests/flight/vehicles.h"
+#include "tests/support/complaint.h"
 
 namespace skycap::flight {
 namespace {
@@ -175,12 +176,7 @@ TEST(Motion, ColdAndReserveLeaveLess) {
 }
 
 std::string complaint(const Vehicle& vehicle, const Conditions& conditions) {
-  try {
-    const Motion motion(vehicle, conditions);
-  } catch (const Error& error) {
-    return error.what();
-  }
-  return "";
+  return testing_support::complaint_of([&] { const Motion motion(vehicle, conditions); });
 }
 
 TEST(Motion, AbsurdLimitsAreNamed) {

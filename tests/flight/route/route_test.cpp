@@ -7,6 +7,7 @@
 #include <gtest/gtest.h>
 
 #include "flight/export/flight_plan.h"
+#include "flight/paths/sampling_path.h"
 #include "geometry/error.h"
 #include "tests/flight/scenes.h"
 
@@ -136,6 +137,74 @@ TEST(Route, PassagesTooNarrowForTheGridAreFoundBySampling) {
   ASSERT_EQ(route.stations.size(), 1U);
   EXPECT_THAT(check_route(sortie_points(route, route.sorties[0]), space, clearance),
               testing::IsEmpty());
+}
+
+/// Before the wall and behind it, and how a survey came there through the window.
+std::vector<Station> flown_through_window() {
+  const Vector3d home(-8, -6, 20), before(-8, -7, 22), in_window(0, 0, 20), behind(-8, 7, 20);
+  std::vector<Station> stations{{look_at(before, {-8, -20, 22})}, {look_at(behind, {-8, 20, 20})}};
+  stations[0].way = {home, before};
+  stations[1].way = {before, in_window + Vector3d(0, -6, 0), in_window + Vector3d(0, 6, 0), behind};
+  stations[1].view_index = 1;
+  return stations;
+}
+
+// In the survey's order legs are those of the survey; in another one they are the shortest found.
+TEST(Route, KeepsTheWaysOfTheSurveyInItsOrder) {
+  const KnownSpace space(scenes::wall_with_window());
+  RouteOptions how = options();
+  how.takeoff = {-8, -6, 15};
+  const std::vector<Station> stations = flown_through_window();
+  const Route route = plan_route(stations, {}, space, nullptr, how);
+  ASSERT_EQ(route.stations.size(), 2U);
+  EXPECT_EQ(route.sorties[0].out.points, stations[0].way);
+  EXPECT_EQ(route.legs[0].points, stations[1].way);
+  how.order_is_free = true;
+  const Route shortest = plan_route(stations, {}, space, nullptr, how);
+  ASSERT_EQ(shortest.legs.size(), 1U);
+  EXPECT_LT(shortest.legs[0].length, route.legs[0].length);
+}
+
+// A window that leaves 5 mm beside the clearance: neither engine finds through, the survey did.
+TEST(Route, ReachesWhatOnlyTheSurveyFoundAWayTo) {
+  Obstacles obstacles = scenes::wall_with_window();
+  for (const double side : {-1.0, 1.0}) {
+    const double edge = 2.005 * side, far = 4.0 * side;
+    geometry::append(obstacles.mesh,
+                     scenes::box({std::min(edge, far), 0, 16}, {std::max(edge, far), 1, 24}));
+  }
+  const KnownSpace space(obstacles);
+  RouteOptions how = options();
+  how.takeoff = {-8, -6, 15};
+  how.path.finest_cell = 9.0;
+  how.order_is_free = true;
+  const std::vector<Station> stations = flown_through_window();
+  const Vector3d home(-8, -6, 20), behind = stations[1].view.position;
+  const double clearance = how.clearance.total();
+  ASSERT_EQ(PathFinder(space, clearance, how.path).find(home, behind).status,
+            PathStatus::unreachable);
+  ASSERT_EQ(find_path_by_sampling(space, home, behind, clearance).status, PathStatus::unreachable);
+
+  const Route route = plan_route(stations, {}, space, nullptr, how);
+  EXPECT_EQ(route.stations.size(), 2U);
+  EXPECT_THAT(check_route(sortie_points(route, route.sorties.at(0)), space, clearance),
+              testing::IsEmpty());
+}
+
+// What the survey's way came through is not proven by that: it is proven anew.
+TEST(Route, DoesNotTrustTheWaysOfTheSurvey) {
+  const KnownSpace space(scenes::wall_with_window());
+  RouteOptions how = options();
+  how.takeoff = {-8, -6, 15};
+  std::vector<Station> stations = flown_through_window();
+  stations[1].way = {stations[1].way.front(), stations[1].way.back()};  // through the wall
+  const Route route = plan_route(stations, {}, space, nullptr, how);
+  for (const Sortie& sortie : route.sorties) {
+    EXPECT_THAT(check_route(sortie_points(route, sortie), space, route.clearance),
+                testing::IsEmpty());
+  }
+  ASSERT_EQ(route.legs.size(), 1U);
+  EXPECT_GT(route.legs[0].points.size(), 2U);
 }
 
 // Sorties are split for stops; a curve must fit into what they have set aside for its leg.

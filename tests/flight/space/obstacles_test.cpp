@@ -8,6 +8,7 @@
 #include "flight/space/clearance.h"
 #include "geometry/error.h"
 #include "tests/flight/scenes.h"
+#include "tests/support/complaint.h"
 
 namespace skycap::flight {
 namespace {
@@ -17,12 +18,7 @@ using Eigen::Vector3d;
 using testing::HasSubstr;
 
 std::string complaint(const Obstacles& obstacles) {
-  try {
-    validate(obstacles);
-  } catch (const Error& error) {
-    return error.what();
-  }
-  return "";
+  return testing_support::complaint_of([&] { validate(obstacles); });
 }
 
 const std::vector<Vector2d> square{{0, 0}, {10, 0}, {10, 10}, {0, 10}};

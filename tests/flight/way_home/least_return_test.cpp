@@ -49,6 +49,27 @@ TEST(LeastReturn, PassesOverATowerAtTheLeastWholeMetre) {
   }
 }
 
+// A route at 11.3 m where nothing above 5 m is looked for: the metre above it, or, under a fence's
+// ceiling that leaves 11.5 m, its own height.
+TEST(LeastReturn, IsNoLowerThanTheRouteItself) {
+  const std::vector<Segment> high{{{0, 0, 11.3}, {0, 3, 11.3}}};
+  Obstacles obstacles = tower(3.0);
+  const ReturnSearch open =
+      least_return(KnownSpace(obstacles), high, law_of({Dialect::px4}), 5.0, clearance);
+  ASSERT_TRUE(open.found) << open.why;
+  EXPECT_DOUBLE_EQ(open.found->height, 12.0);
+  obstacles.fence = Prism{"site",
+                          {{-90, -90}, {90, -90}, {90, 90}, {-90, 90}},
+                          -5.0,
+                          11.5 + clearance + px4_landing_radius};
+  const ReturnSearch closed =
+      least_return(KnownSpace(obstacles), high, law_of({Dialect::px4}), 5.0, clearance);
+  ASSERT_TRUE(closed.found) << closed.why;
+  EXPECT_DOUBLE_EQ(closed.found->height, 11.3);
+  EXPECT_FALSE(
+      least_return(KnownSpace(obstacles), high, law_of({Dialect::dji}), 5.0, clearance).found);
+}
+
 // All whole metres above the route tried one after the other give the same answer as the search.
 TEST(LeastReturn, IsTheFirstHeightThatIsProven) {
   for (const double top : {8.0, 17.3, 24.0, 41.9}) {

@@ -126,12 +126,12 @@ TEST_P(RandomScenes, ProofAgreesWithReturnsFromRandomPoints) {
   for (const Segment& leg :
        scenes::legs(random, 60, {Vector3d(-35, -35, -30), Vector3d(35, 35, 35)})) {
     const ReturnLaw law = law_of({Dialect::ardupilot, Dialect::px4, Dialect::dji},
-                                 20.0 + 25.0 * share(random), {-55, -45, -40});
+                                 5.0 + 35.0 * share(random), {-55, -45, -40});
     const ReturnProof proof = prove_returns(space, leg, law, clearance);
     if (!proof.is_proven) {
       ++refused;
-      const double near = sampled_distance(space, return_pieces(law, proof.from, 3.0));
-      EXPECT_LE(near, clearance + return_slack + 3.0 + 0.01);
+      const double near = sampled_distance(space, return_pieces(law, proof.from, return_slack));
+      EXPECT_LE(near, clearance + return_slack + 0.11);  // samples are 20 cm apart
       continue;
     }
     ++proven;
@@ -143,7 +143,7 @@ TEST_P(RandomScenes, ProofAgreesWithReturnsFromRandomPoints) {
     }
   }
   EXPECT_GT(proven, 5);
-  EXPECT_GT(refused, 0);
+  EXPECT_GT(refused, 2);
 }
 
 INSTANTIATE_TEST_SUITE_P(ReturnProof, RandomScenes, testing::Range(1, 6));

@@ -1,0 +1,49 @@
+#include "flight/route/pad_check.h"
+
+#include <algorithm>
+#include <string>
+
+#include "flight/space/place_text.h"
+#include "geometry/error.h"
+
+namespace skycap::flight {
+namespace {
+
+using Eigen::Vector3d;
+
+void check_climb(const FreeSpace& space, const std::string& place, const Segment& climb,
+                 double clearance) {
+  if (space.is_free(climb, clearance)) return;
+  const Closest closest = space.closest(climb, clearance + 1.0);
+  throw Error(ErrorKind::bad_config,
+              "the climb from " + place + " comes within " + length_text(closest.distance) +
+                  " of " + space.name(closest) + " at " + place_text(closest.on_leg) +
+                  "; the clearance is " + length_text(clearance) + ": move it");
+}
+
+}  // namespace
+
+void check_pad(const FreeSpace& space, const FreeSpace* pad_space, const RouteOptions& options) {
+  const double clearance = options.clearance.total();
+  const Vector3d& pad = options.takeoff;
+  const Vector3d home = pad + Vector3d(0.0, 0.0, options.takeoff_climb);
+  if (!space.is_free({home, home}, clearance)) {
+    const Closest closest = space.closest({home, home}, clearance + 1.0);
+    throw Error(ErrorKind::bad_config, "the place above the take-off pad, " + place_text(home) +
+                                           ", is " + length_text(closest.distance) + " from " +
+                                           space.name(closest) + "; the clearance is " +
+                                           length_text(clearance) +
+                                           ": move the pad or climb higher");
+  }
+  const Vector3d low(pad.x(), pad.y(), std::min(home.z(), pad.z() + clearance + pad_roughness));
+  check_climb(space, "the pad", {home, low}, clearance);
+  if (pad_space == nullptr) return;
+  check_climb(*pad_space, "the pad", {home, pad}, clearance);
+  if (!options.returns) return;
+  for (const Vector3d& rally : options.returns->rally) {
+    const Vector3d top = rally + Vector3d(0.0, 0.0, options.takeoff_climb);
+    check_climb(*pad_space, "the rally point " + place_text(rally), {top, rally}, clearance);
+  }
+}
+
+}  // namespace skycap::flight
