@@ -105,9 +105,12 @@ SurveyResult run_survey(Planner& planner, const View& first_view, const SurveyLi
     double sensing_time = 0.0;
     scan = timed(sensing_time, [&] { return ports.sense(*next, std::move(scan)); });
     next = steps.take_in(scan, sensing_time);
-    if (next && stop.stop_requested()) return {StopReason::interrupted, steps.views()};
+    if (next && stop.stop_requested()) {
+      return {StopReason::interrupted, std::move(steps).views()};
+    }
   }
-  return {steps.stop_reason(), steps.views()};
+  const StopReason reason = steps.stop_reason();
+  return {reason, std::move(steps).views()};
 }
 
 }  // namespace skycap::survey

@@ -5,6 +5,7 @@
 #include <functional>
 #include <optional>
 #include <stop_token>
+#include <utility>
 #include <vector>
 
 #include "geometry/place/pose.h"
@@ -74,7 +75,8 @@ class SurveySteps {
   /// Another view in place of the one that was proposed last; nothing when there is none left.
   std::optional<geometry::View> refuse();
 
-  const std::vector<SurveyedView>& views() const { return views_; }
+  const std::vector<SurveyedView>& views() const& { return views_; }
+  std::vector<SurveyedView> views() && { return std::move(views_); }
 
   /// Why the survey is over, once no view is proposed.
   StopReason stop_reason() const { return stop_reason_; }

@@ -11,7 +11,7 @@ namespace skycap::sim {
 using FourFloats [[gnu::vector_size(16), gnu::may_alias]] = float;
 using FourInts [[gnu::vector_size(16), gnu::may_alias]] = int;
 
-/// Of lanes that are aligned to 16 bytes, as Embree aligns its packets.
+/// Of lanes that are aligned to 16 bytes.
 template <typename Four, typename Lane>
 Four four(const Lane* lanes) {
   return *reinterpret_cast<const Four*>(lanes);

@@ -17,7 +17,7 @@ void SkycapConfig::validate() const {
   require(is_positive(coverage_radius), "planner.coverage_radius", coverage_radius,
           "a positive number of metres");
   const auto require_optional = [](const std::optional<double>& value, const char* field) {
-    require(!value || is_positive(*value), field, value.value_or(0.0),
+    require(!value || is_positive(*value), std::string("planner.") + field, value.value_or(0.0),
             "a positive number of metres");
   };
   require_optional(spacing, "spacing");

@@ -242,7 +242,7 @@ DepthCamera exact_camera() {
 }
 
 // n . p = c for every return, turned and tilted as the sensor is. What is left is the rounding of
-// a coordinate of 100 m, of the direction, and of Embree's distance; and that of the plane's own
+// a coordinate of 100 m, of the direction, and of the distance; and that of the plane's own
 // corners, 350 m from its middle.
 TEST(ClosedForm, PointsOfATiltedPlaneAreOnItToAFewRoundings) {
   const Vector3d normal = Vector3d(-1.0, 0.3, 0.2).normalized(), middle(100, 5, -3);
