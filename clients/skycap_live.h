@@ -1,14 +1,15 @@
 /// A client of `skycap serve`, in one header for C++17 and POSIX: docs/live.md describes the
 /// messages. Link zlib.
 ///
-///     skycap_live::Survey survey("unix:/tmp/survey.sock");
+///     skycap_live::Survey survey("unix:survey.sock");
 ///     std::string answer = survey.next();     // JSON, as `skycap next --json` prints it
 ///     answer = survey.add_points(xyz, pose);  // and so on
 #pragma once
 
 #include <array>
+#include <cerrno>
+#include <charconv>
 #include <cstdint>
-#include <cstdio>
 #include <cstring>
 #include <stdexcept>
 #include <string>
@@ -41,6 +42,9 @@ class Survey {
     if (address.rfind("unix:", 0) == 0) {
       sockaddr_un place{};
       place.sun_family = AF_UNIX;
+      if (address.size() - 5 >= sizeof place.sun_path) {
+        throw std::runtime_error("the socket's name is too long");
+      }
       std::strncpy(place.sun_path, address.c_str() + 5, sizeof place.sun_path - 1);
       open(AF_UNIX, place);
     } else {
@@ -51,7 +55,12 @@ class Survey {
           htons(static_cast<std::uint16_t>(std::stoi(address.substr(address.rfind(':') + 1))));
       open(AF_INET, place);
     }
-    scans_ = scans_of(ask("{\"type\":\"hello\"}"));
+    try {
+      scans_ = scans_of(ask("{\"type\":\"hello\"}"));
+    } catch (...) {
+      ::close(socket_);
+      throw;
+    }
   }
   Survey(const Survey&) = delete;
   Survey& operator=(const Survey&) = delete;
@@ -98,8 +107,7 @@ class Survey {
   /// With as many digits as it takes to read the same number back.
   static std::string number(double value) {
     char text[32];
-    std::snprintf(text, sizeof text, "%.17g", value);
-    return text;
+    return {text, std::to_chars(text, text + sizeof text, value).ptr};
   }
 
   std::string add(const std::string& fields, const Pose& pose, const std::string& payload) {
@@ -125,6 +133,7 @@ class Survey {
     frame += body;
     for (std::size_t sent = 0; sent < frame.size();) {
       const ssize_t count = ::send(socket_, frame.data() + sent, frame.size() - sent, MSG_NOSIGNAL);
+      if (count < 0 && errno == EINTR) continue;
       if (count <= 0) throw std::runtime_error("the server has closed the connection");
       sent += static_cast<std::size_t>(count);
     }

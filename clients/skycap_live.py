@@ -1,6 +1,6 @@
 """A client of `skycap serve`: docs/live.md describes the messages. Needs Python 3.8 and nothing else.
 
-    with Survey("unix:/tmp/survey.sock") as survey:
+    with Survey("unix:survey.sock") as survey:
         answer = survey.next()
         while answer["view"]:
             depth, pose = my_drone.measure(answer["view"])

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <utility>
 
+#include "flight/way_home/return_law.h"
 #include "missions/equipment/vehicle_reader.h"
 
 namespace skycap::missions::derived {
@@ -18,13 +19,13 @@ constexpr double voxels_per_clearance = 4.0;
 /// How far beside the unknown box places are proposed: more than the clearance and a voxel.
 double spare_of(const file::Mission& mission) { return 2.0 * mission.flight.clearance; }
 
-/// The same for pads. Within 8 m DJI's vehicles may land where they are instead of on the pad
+/// The same for pads. Near home DJI's vehicles may land where they are instead of on the pad
 /// (ReturnLaw): those columns must not lead into the box, which grows to whole voxels.
 double pad_spare_of(const file::Mission& mission) {
-  constexpr double landing_at_once = 8.0, voxel_spare = 1.0;
+  constexpr double voxel_spare = 1.0;
   const bool is_dji =
       mission.flight.is_flown() && vehicle_of(mission).dialect == flight::Dialect::dji;
-  const double needed = mission.flight.clearance + landing_at_once + voxel_spare;
+  const double needed = mission.flight.clearance + flight::dji_lands_at_once + voxel_spare;
   return is_dji ? std::max(spare_of(mission), needed) : spare_of(mission);
 }
 

@@ -6,6 +6,7 @@
 #include "geometry/place/camera.h"
 #include "missions/derived/mission_rules.h"
 #include "missions/derived/survey_sensor.h"
+#include "missions/equipment/preset_files.h"
 #include "missions/equipment/vehicle_reader.h"
 
 namespace skycap::missions::derived {
@@ -36,7 +37,7 @@ void read_vehicle(file::MissionFile& given) {
   std::string& vehicle = given.mission.flight.vehicle;
   if (vehicle.ends_with(".yaml")) {
     const std::filesystem::path folder = std::filesystem::path(given.name).parent_path();
-    vehicle = std::filesystem::absolute(folder / vehicle).string();
+    vehicle = std::filesystem::absolute(equipment::named_from(folder, vehicle)).string();
   }
   try {
     given.mission.flight.described = equipment::find_vehicle(vehicle);

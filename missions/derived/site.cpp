@@ -32,4 +32,11 @@ survey::ViewLimits view_limits(const file::Mission& mission) {
   return result;
 }
 
+std::optional<geometry::View> given_start(const file::Mission& mission) {
+  const file::StartConfig& start = mission.start;
+  if (!start.position) return std::nullopt;
+  if (start.look_at) return geometry::look_at(*start.position, *start.look_at);
+  return geometry::View{*start.position, start.direction->normalized()};
+}
+
 }  // namespace skycap::missions::derived

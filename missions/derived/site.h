@@ -4,6 +4,7 @@
 
 #include <optional>
 
+#include "geometry/place/pose.h"
 #include "missions/file/mission.h"
 #include "survey/view_limits.h"
 
@@ -15,5 +16,8 @@ std::optional<double> least_height_above_ground(const file::Mission& mission);
 /// The limits of mission.site, mission.limits and the vehicle together, heights as z in the
 /// mission's frame.
 survey::ViewLimits view_limits(const file::Mission& mission);
+
+/// The view that the mission has a survey begin with; nothing if it leaves that open.
+std::optional<geometry::View> given_start(const file::Mission& mission);
 
 }  // namespace skycap::missions::derived

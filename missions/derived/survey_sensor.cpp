@@ -9,6 +9,7 @@
 
 #include "geometry/error.h"
 #include "geometry/parallel.h"
+#include "missions/equipment/preset_files.h"
 #include "missions/equipment/sensor_reader.h"
 #include "sim/sensors/trajectory.h"
 
@@ -109,7 +110,7 @@ sim::DepthCameraConfig forward_camera(const sim::LidarConfig& lidar) {
 void use_lidar(file::SensorConfig& sensor, const std::filesystem::path& folder) {
   const std::string& name = sensor.lidar.value();
   const equipment::SensorDescription description =
-      equipment::find_sensor(name.ends_with(".yaml") ? (folder / name).string() : name);
+      equipment::find_sensor(equipment::named_from(folder, name));
   const auto* lidar = std::get_if<sim::LidarConfig>(&description.sensor);
   if (lidar == nullptr) {
     throw Error(ErrorKind::bad_config,

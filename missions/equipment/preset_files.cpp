@@ -5,6 +5,10 @@
 
 namespace skycap::missions::equipment {
 
+std::string named_from(const std::filesystem::path& folder, const std::string& name) {
+  return name.ends_with(".yaml") ? (folder / name).string() : name;
+}
+
 PresetText preset_text(const std::string& kind, const std::string& name_or_file,
                        std::span<const PresetFile> presets) {
   if (name_or_file.ends_with(".yaml")) {

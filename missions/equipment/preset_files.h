@@ -2,6 +2,7 @@
 /// flight/motion/presets/*.yaml.
 #pragma once
 
+#include <filesystem>
 #include <span>
 #include <string>
 #include <string_view>
@@ -21,6 +22,9 @@ struct PresetText {
   std::string text;
   std::string file;  ///< what messages call it
 };
+
+/// A name that a mission gives: that of a preset, or a path that counts from the mission's folder.
+std::string named_from(const std::filesystem::path& folder, const std::string& name);
 
 /// The preset of that name, or what the file of that path holds if it ends in .yaml. Throws
 /// Error{bad_config} with the known names, saying what `kind` of thing they are, or

@@ -133,13 +133,17 @@ class VehicleReader {
 
   void read_codes() {
     std::optional<YamlSection> section = part("wpml");
-    if (!section) return;
+    if (!section) {
+      if (vehicle_.wpml.drone <= 0) root_.fail_at("wpml", "is missing; DJI's vehicles have codes");
+      return;
+    }
     flight::WpmlCodes& codes = vehicle_.wpml;
     if (wants(*section, "version")) codes.version = section->text("version");
     codes.drone = section->integer("drone", codes.drone);
     codes.drone_variant = section->integer("drone_variant", codes.drone_variant);
     codes.payload = section->integer("payload", codes.payload);
     section->finish();
+    if (codes.drone <= 0) root_.fail_at("wpml", "must give DJI's number of the drone");
   }
 
   YamlSection& root_;

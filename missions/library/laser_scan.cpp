@@ -7,6 +7,7 @@
 
 #include "geometry/error.h"
 #include "geometry/parallel.h"
+#include "missions/equipment/preset_files.h"
 #include "missions/equipment/sensor_reader.h"
 #include "missions/library/mission_contents.h"
 #include "missions/recording/scan_flight.h"
@@ -26,8 +27,8 @@ constexpr std::size_t parts_in_piece = 64;
 
 sim::LidarConfig scanner_of(const Mission::Contents& contents, const ScanRequest& request) {
   const std::string& own = contents.mission.scan.sensor;
-  equipment::SensorDescription sensor = equipment::find_sensor(
-      request.sensor.value_or(own.ends_with(".yaml") ? (contents.folder / own).string() : own));
+  equipment::SensorDescription sensor =
+      equipment::find_sensor(request.sensor.value_or(equipment::named_from(contents.folder, own)));
   auto* scanner = std::get_if<sim::LidarConfig>(&sensor.sensor);
   if (scanner == nullptr) {
     throw Error(ErrorKind::bad_config,

@@ -9,6 +9,7 @@
 #include "geometry/error.h"
 #include "geometry/io/json.h"
 #include "geometry/place/world.h"
+#include "missions/file/json_text.h"
 #include "missions/run/journal_text.h"
 #include "missions/run/survey_record.h"
 
@@ -19,7 +20,8 @@ using Json = nlohmann::ordered_json;
 
 Json json_of(const std::optional<geometry::View>& view) {
   if (!view) return {};
-  return {{"position", run::json_of(view->position)}, {"direction", run::json_of(view->direction)}};
+  return {{"position", file::json_of(view->position)},
+          {"direction", file::json_of(view->direction)}};
 }
 
 ScanRecord parse_scan(const Json& json) {
@@ -38,7 +40,7 @@ ScanRecord parse_scan(const Json& json) {
 ProposalRecord parse_proposal(const Json& json) {
   ProposalRecord proposal;
   if (const Json& view = json.at("view"); !view.is_null()) {
-    proposal.view = {run::vector_of(view.at("position")), run::vector_of(view.at("direction"))};
+    proposal.view = {file::vector_of(view.at("position")), file::vector_of(view.at("direction"))};
   }
   if (const Json& end = json.at("end"); !end.is_null()) {
     proposal.end = run::stop_reason_named(end.get<std::string>());

@@ -91,7 +91,10 @@ struct LiveSurvey::Impl {
     for (LiveEvent& event : events) {
       if (event.is_rejected) continue;
       const std::optional<ProposalRecord> known = event.proposal;
-      if (!happen(event, event.scan ? kept(*event.scan) : geometry::Scan{})) continue;
+      if (!happen(event, event.scan ? kept(*event.scan) : geometry::Scan{})) {
+        catch_up();
+        continue;
+      }
       if (!known) {  // a kill came before it was written down
         write_down(text_of(*event.proposal));
       } else if (!is_same(*known, *event.proposal)) {
@@ -117,7 +120,8 @@ struct LiveSurvey::Impl {
   }
 
   /// Takes in an event and fills in what is proposed after it. False if it was a scan that the
-  /// planner cannot work with; `why` says so.
+  /// planner cannot work with: `why` says so, what is to be written down is `unwritten`, and the
+  /// planner has to begin anew.
   bool happen(LiveEvent& event, const geometry::Scan& scan) {
     reach.begin(event.proposal ? std::optional(event.proposal->reach) : std::nullopt);
     if (event.scan) departure = departure_after(scan);
@@ -128,7 +132,7 @@ struct LiveSurvey::Impl {
       if (!event.scan || event.proposal) throw;
       event.is_rejected = true;
       why = failure.what();
-      write_down(rejection_text(why));
+      unwritten = rejection_text(why);
       return false;
     }
     if (event.scan) numbers.emplace(event.scan->id, numbers.size());
@@ -159,6 +163,7 @@ struct LiveSurvey::Impl {
     }
     numbers.clear();
     replay();  // the planner may have taken in a part of the scan
+    catch_up();
     throw Error(ErrorKind::bad_geometry, why);
   }
 

@@ -7,9 +7,12 @@
 #include <fmt/format.h>
 
 #include "flight/export/geodesy.h"
+#include "flight/route/route.h"
 #include "geometry/angle.h"
 #include "geometry/place/pose.h"
 #include "missions/derived/mission_flight.h"
+#include "missions/derived/site.h"
+#include "missions/file/json_text.h"
 #include "missions/run/journal_text.h"
 #include "missions/run/survey_runner.h"
 #include "missions/scene/survey_scene.h"
@@ -20,33 +23,15 @@ namespace {
 
 using Eigen::Vector3d;
 using Json = nlohmann::ordered_json;
-using run::json_of;
-
-/// Where a mission without a scene lets a survey begin; nothing: anywhere.
-std::optional<geometry::View> given_start(const file::Mission& mission) {
-  const file::StartConfig& start = mission.start;
-  if (!start.position) return std::nullopt;
-  if (start.look_at) return geometry::look_at(*start.position, *start.look_at);
-  return geometry::View{*start.position, start.direction->normalized()};
-}
-
-/// Clockwise from north.
-double heading_deg(const Vector3d& direction) {
-  const double degrees = std::atan2(direction.x(), direction.y()) / geometry::radians_per_degree;
-  return degrees < 0.0 ? degrees + 360.0 : degrees;
-}
-
-double pitch_deg(const Vector3d& direction) {
-  return std::asin(std::clamp(direction.z(), -1.0, 1.0)) / geometry::radians_per_degree;
-}
+using file::json_of;
 
 Json view_json(const geometry::View& view, const file::Mission& mission) {
   const Eigen::Quaterniond turn(geometry::camera_pose(view).linear());
   Json json{{"position", json_of(view.position)},
             {"direction", json_of(view.direction)},
             {"quaternion_xyzw", {turn.x(), turn.y(), turn.z(), turn.w()}},
-            {"heading_deg", heading_deg(view.direction)},
-            {"gimbal_pitch_deg", pitch_deg(view.direction)}};
+            {"heading_deg", flight::yaw_of(view) / geometry::radians_per_degree},
+            {"gimbal_pitch_deg", flight::pitch_of(view) / geometry::radians_per_degree}};
   if (!derived::has_place(mission)) return json;
   const flight::Site site = derived::site_of(mission);
   const flight::GeodeticPoint place = flight::LocalFrame(site.origin).to_geodetic(view.position);
@@ -74,7 +59,7 @@ std::unique_ptr<LiveSurvey> open_survey(const file::Mission& mission,
                                         const std::filesystem::path& mission_folder,
                                         const std::filesystem::path& survey_folder) {
   if (mission.scene.model.empty()) {
-    return std::make_unique<LiveSurvey>(mission, survey_folder, given_start(mission),
+    return std::make_unique<LiveSurvey>(mission, survey_folder, derived::given_start(mission),
                                         mission.threads);
   }
   const scene::SurveyScene scene(mission, mission_folder);
@@ -107,10 +92,11 @@ std::string answer_text(const LiveSurvey& survey) {
       fmt::format("{} scans, {} points", survey.views().size(), survey.planner().cloud().size());
   if (proposal.end) return std::string(state_of(proposal)) + " after " + scans;
   if (!proposal.view) return "take the first scan from any place that sees the scene";
-  const Vector3d &at = proposal.view->position, &direction = proposal.view->direction;
+  const Vector3d& at = proposal.view->position;
   std::string text = fmt::format(
       "view {}: {:.3f} {:.3f} {:.3f}, heading {:.1f} deg, pitch {:.1f} deg", proposal.number,
-      at.x(), at.y(), at.z(), heading_deg(direction), pitch_deg(direction));
+      at.x(), at.y(), at.z(), flight::yaw_of(*proposal.view) / geometry::radians_per_degree,
+      flight::pitch_of(*proposal.view) / geometry::radians_per_degree);
   if (!proposal.way.points.empty()) {
     text += fmt::format("; {} legs, clearance {:.2f} m", proposal.way.points.size() - 1,
                         proposal.way.clearance);

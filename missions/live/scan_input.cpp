@@ -124,13 +124,13 @@ std::optional<Vector3d> Lens::ray(const Vector2d& pixel) const {
   return std::nullopt;
 }
 
-Lens parse_lens(const std::string& text) {
-  const std::vector<double> n = numbers_of(text, "--lens");
+Lens parse_lens(const std::string& text, const std::string& what) {
+  const std::vector<double> n = numbers_of(text, what);
   if ((n.size() != 4 && n.size() != 9) || !(n[0] > 0.0) || !(n[1] > 0.0)) {
-    throw Error(
-        ErrorKind::bad_usage,
-        "--lens: give \"fx fy cx cy\" or \"fx fy cx cy k1 k2 p1 p2 k3\", with focal lengths "
-        "above zero");
+    throw Error(ErrorKind::bad_usage,
+                what +
+                    ": give \"fx fy cx cy\" or \"fx fy cx cy k1 k2 p1 p2 k3\", with focal lengths "
+                    "above zero");
   }
   Lens lens{.focal_length_px = {n[0], n[1]}, .principal_point_px = {n[2], n[3]}, .distortion = {}};
   if (n.size() == 9) std::copy(n.begin() + 4, n.end(), lens.distortion.begin());
@@ -141,7 +141,13 @@ Isometry3d parse_pose_text(const std::string& text, const std::string& what) {
   std::vector<double> numbers = numbers_of(text, what);
   if (numbers.size() == 8) numbers.erase(numbers.begin());
   if (numbers.size() == 7) return pose_of(numbers, what);
-  if (numbers.size() == 16) numbers.resize(12);
+  if (numbers.size() == 16) {
+    if (!std::equal(numbers.begin() + 12, numbers.end(), std::begin({0.0, 0.0, 0.0, 1.0}))) {
+      throw Error(ErrorKind::bad_file,
+                  what + ": the fourth row is not 0 0 0 1; give the matrix by rows");
+    }
+    numbers.resize(12);
+  }
   if (numbers.size() == 12) return parse_pose(numbers, what);
   throw Error(ErrorKind::bad_file, what + ": has " + std::to_string(numbers.size()) +
                                        " numbers; give x y z qx qy qz qw, or a matrix of three or "

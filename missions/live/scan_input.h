@@ -30,7 +30,7 @@ struct Lens {
 };
 
 /// Reads "fx fy cx cy" and, if they are given, "k1 k2 p1 p2 k3". Throws Error{bad_usage}.
-Lens parse_lens(const std::string& text);
+Lens parse_lens(const std::string& text, const std::string& what = "--lens");
 
 /// A pose from 7 numbers "x y z qx qy qz qw", 12 or 16 (a matrix by rows), or 8 (a line of a TUM
 /// trajectory, whose time is passed over); `what` opens messages. Throws Error{bad_file}.
@@ -48,7 +48,7 @@ struct ScanInput {
 /// A scan, and what of the file did not go into it.
 struct ScanFound {
   geometry::Scan scan;
-  std::size_t without_return = 0;  ///< pixels of 0 or 65535
+  std::size_t without_return = 0;  ///< pixels of 0 or 65535, or without a ray of the lens
   std::size_t out_of_view = 0;     ///< points that the mission's camera cannot see from that pose
   std::size_t hidden = 0;          ///< farther away than another point in the same pixel
 };

@@ -73,8 +73,6 @@ bool send_all(int handle, const Message& message) {
   return rest.empty();
 }
 
-Message error_message(const std::string& what) { return {{{"type", "error"}, {"what", what}}, {}}; }
-
 /// Says something to a client that is let go, and waits a moment for it to listen: what it has sent
 /// and nobody reads would otherwise have the connection torn down before.
 void dismiss(int handle, const Message& message) {
@@ -158,9 +156,10 @@ Handle unix_listener(const std::filesystem::path& path) {
   }
   std::memcpy(address.sun_path, name.data(), name.size());
   Handle probe(::socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0));
-  const bool is_served =
-      ::connect(probe.get(), reinterpret_cast<const sockaddr*>(&address), sizeof address) == 0;
-  if (is_served) fail(name, "is served by another program; name another socket");
+  if (::connect(probe.get(), reinterpret_cast<const sockaddr*>(&address), sizeof address) == 0) {
+    fail(name, "is served by another program; name another socket");
+  }
+  if (errno != ECONNREFUSED && errno != ENOENT) fail(name, "cannot be looked at: " + last_error());
   struct stat status {};
   if (::lstat(name.c_str(), &status) == 0) {
     if (!S_ISSOCK(status.st_mode)) fail(name, "is there and no socket; name another");

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <cstring>
+#include <limits>
 #include <span>
 #include <utility>
 #include <vector>
@@ -27,6 +28,18 @@ std::vector<Value> values_at(const std::string& payload, std::size_t begin, std:
   return values;
 }
 
+/// A whole number, zero or more; up to 2^32 - 1.
+std::uint32_t count_at(const Json& header, const char* key) {
+  const Json& number = header.at(key);
+  constexpr auto most = std::numeric_limits<std::uint32_t>::max();
+  const bool is_whole = number.is_number_unsigned() ||
+                        (number.is_number_integer() && number.get<std::int64_t>() >= 0);
+  if (!is_whole || number.get<std::uint64_t>() > most) {
+    refuse_message(std::string(key) + " must be a whole number from 0 to " + std::to_string(most));
+  }
+  return number.get<std::uint32_t>();
+}
+
 Eigen::Isometry3d pose_of(const Json& header) {
   std::string text;
   for (const Json& number : header.at("pose")) text += number.dump() + " ";
@@ -35,10 +48,10 @@ Eigen::Isometry3d pose_of(const Json& header) {
 
 /// Points in the world frame, as floats, and then the pixels if there are some.
 geometry::Scan cloud_scan(const Message& message) {
-  const auto count = message.header.at("points").get<std::uint32_t>();
+  const auto count = count_at(message.header, "points");
   const bool has_pixels = message.header.value("has_pixels", false);
   constexpr std::size_t point = 3 * sizeof(float), pixel = sizeof(std::uint32_t);
-  const std::size_t size = count * (point + (has_pixels ? pixel : 0));
+  const std::size_t size = std::size_t{count} * (point + (has_pixels ? pixel : 0));
   if (message.payload.size() != size) {
     refuse_message("scan: the payload has " + std::to_string(message.payload.size()) + " bytes; " +
                    std::to_string(count) + " points take " + std::to_string(size));
@@ -55,13 +68,13 @@ geometry::Scan cloud_scan(const Message& message) {
 
 geometry::Scan depth_scan(const Message& message, const file::Mission& mission) {
   const Json& header = message.header;
-  sim::DepthImage image{header.at("width").get<int>(), header.at("height").get<int>(), {}};
-  constexpr int largest_side = 1 << 15;
-  if (image.width < 1 || image.height < 1 || image.width > largest_side ||
-      image.height > largest_side) {
+  const std::uint32_t width = count_at(header, "width"), height = count_at(header, "height");
+  constexpr std::uint32_t largest_side = 1 << 15;
+  if (width < 1 || height < 1 || width > largest_side || height > largest_side) {
     refuse_message("scan: width and height must be from 1 to 32768");
   }
-  const std::size_t count = static_cast<std::size_t>(image.width) * image.height;
+  sim::DepthImage image{static_cast<int>(width), static_cast<int>(height), {}};
+  const std::size_t count = std::size_t{width} * height;
   if (message.payload.size() != count * sizeof(std::uint16_t)) {
     refuse_message("scan: the payload has " + std::to_string(message.payload.size()) +
                    " bytes; the image takes " + std::to_string(2 * count));
@@ -71,7 +84,7 @@ geometry::Scan depth_scan(const Message& message, const file::Mission& mission) 
   if (header.contains("lens")) {
     std::string text;
     for (const Json& number : header["lens"]) text += number.dump() + " ";
-    lens = parse_lens(text);
+    lens = parse_lens(text, "lens");
   }
   const double unit = header.at("unit").get<double>();
   if (!(unit >= 1e-6 && unit <= 1.0)) refuse_message("scan: unit must be from 1e-6 to 1 m");
@@ -85,15 +98,13 @@ Session::Session(const file::Mission& mission, LiveSurvey& survey,
     : mission_(mission), survey_(survey), finish_(std::move(finish)) {}
 
 Message Session::answer(const Message& message) {
-  const auto error = [](const std::string& what) {
-    return Message{{{"type", "error"}, {"what", what}}, {}};
-  };
   try {
     return answer_unguarded(message);
   } catch (const Json::exception& failure) {
-    return error(std::string("the header is not as docs/live.md has it: ") + failure.what());
+    return error_message(std::string("the header is not as docs/live.md has it: ") +
+                         failure.what());
   } catch (const Error& failure) {
-    return error(failure.what());
+    return error_message(failure.what());
   }
 }
 
@@ -110,15 +121,16 @@ Message Session::answer_unguarded(const Message& message) {
   if (type == "refuse") return refuse(message);
   if (type == "finish") {
     if (survey_.views().empty()) refuse_message("finish: there is no scan yet");
+    Message answer{{{"type", "finished"}, {"text", finish_()}}, {}};
     is_finished_ = true;
-    return {{{"type", "finished"}, {"text", finish_()}}, {}};
+    return answer;
   }
   refuse_message("the type '" + type +
                  "' is unknown; it must be hello, scan, next, refuse or finish");
 }
 
 Message Session::take_scan(const Message& message) {
-  const auto number = message.header.at("number").get<std::size_t>();
+  const auto number = std::size_t{count_at(message.header, "number")};
   const auto format = message.header.at("format").get<std::string>();
   if (format != "points" && format != "depth") {
     refuse_message("scan: the format '" + format + "' is unknown; it must be points or depth");
@@ -143,7 +155,7 @@ Message Session::take_scan(const Message& message) {
 }
 
 Message Session::refuse(const Message& message) {
-  const auto id = message.header.at("id").get<std::size_t>();
+  const auto id = std::size_t{count_at(message.header, "id")};
   const std::size_t present_id = survey_.proposal().number;
   if (id > present_id) {
     refuse_message("refuse: there is no proposal " + std::to_string(id) + "; the present one is " +

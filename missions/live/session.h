@@ -13,7 +13,7 @@ namespace skycap::missions::live {
 class Session {
  public:
   /// Keeps references. `finish` writes the package and returns what is to be said of it; the survey
-  /// is over for this program then.
+  /// is over for this program then, unless it throws.
   Session(const file::Mission& mission, LiveSurvey& survey, std::function<std::string()> finish);
 
   /// One answer for each message. What is wrong with a message is answered as

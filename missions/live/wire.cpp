@@ -5,10 +5,9 @@
 #include <cstdint>
 #include <cstring>
 
-#include <zlib.h>
-
 #include "geometry/error.h"
 #include "geometry/io/json.h"
+#include "geometry/io/record_log.h"
 #include "missions/run/journal_text.h"
 
 namespace skycap::missions::live {
@@ -18,21 +17,19 @@ static_assert(std::endian::native == std::endian::little, "frames are made by co
 
 using Lengths = std::array<std::uint32_t, 3>;  // header, payload, checksum
 
-std::uint32_t checksum_of(std::string_view bytes) {
-  return static_cast<std::uint32_t>(
-      ::crc32_z(0, reinterpret_cast<const Bytef*>(bytes.data()), bytes.size()));
-}
-
 void require(bool is_right, const std::string& what) {
   if (!is_right) throw Error(ErrorKind::bad_file, "the message " + what);
 }
 
 }  // namespace
 
+Message error_message(const std::string& what) { return {{{"type", "error"}, {"what", what}}, {}}; }
+
 std::string frame_of(const Message& message) {
   const std::string body = run::journal_line(message.header) + message.payload;
   const Lengths lengths{static_cast<std::uint32_t>(body.size() - message.payload.size()),
-                        static_cast<std::uint32_t>(message.payload.size()), checksum_of(body)};
+                        static_cast<std::uint32_t>(message.payload.size()),
+                        geometry::crc32_of(body)};
   std::string frame(sizeof lengths, '\0');
   std::memcpy(frame.data(), lengths.data(), sizeof lengths);
   return frame + body;
@@ -48,7 +45,7 @@ std::optional<Message> FrameReader::next() {
   const std::size_t size = std::size_t{header_size} + payload_size;
   if (buffer_.size() - sizeof lengths < size) return std::nullopt;
   const std::string_view body = std::string_view(buffer_).substr(sizeof lengths, size);
-  require(checksum_of(body) == checksum, "was damaged on its way: its checksum is wrong");
+  require(geometry::crc32_of(body) == checksum, "was damaged on its way: its checksum is wrong");
   Message message{geometry::parse_json<nlohmann::ordered_json>(body.substr(0, header_size)),
                   std::string(body.substr(header_size))};
   require(message.header.is_object(), "has no JSON object for a header");

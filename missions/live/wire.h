@@ -25,6 +25,9 @@ struct Message {
 
 std::string frame_of(const Message& message);
 
+/// {"type": "error", "what": what}
+Message error_message(const std::string& what);
+
 /// Puts frames together from the pieces that a socket gives.
 class FrameReader {
  public:

@@ -194,11 +194,11 @@ std::span<const Format> package_formats() { return formats_of_packages; }
 
 flight::Route plan_flight(const file::Mission& mission, const flight::MeasuredSpace& measured,
                           const Eigen::Vector3d& pad, const std::vector<geometry::View>& views,
-                          std::stop_token stop) {
+                          const std::vector<Way>& ways, std::stop_token stop) {
   std::vector<flight::Station> stations;
-  for (const geometry::View& view : views) {
-    const auto index = static_cast<std::uint32_t>(stations.size());
-    stations.push_back({view, mission.flight.hold, 1, index, mission.flight.hold_after});
+  for (std::uint32_t i = 0; i < views.size(); ++i) {
+    stations.push_back(
+        {views[i], mission.flight.hold, 1, i, mission.flight.hold_after, ways.at(i)});
   }
   flight::Obstacles rules = derived::flight_rules(mission);
   const flight::KnownSpace known(rules);

@@ -14,15 +14,21 @@
 #include "geometry/io/json.h"
 #include "geometry/place/pose.h"
 #include "geometry/place/world.h"
+#include "geometry/surfaces/mesh.h"
 #include "missions/derived/resolved_mission.h"
+#include "missions/file/json_text.h"
 #include "missions/file/mission_keys.h"
 #include "missions/file/number_text.h"
+#include "missions/judge/coverage.h"
 #include "missions/package/cloud_normals.h"
 #include "missions/package/coverage_map.h"
+#include "missions/package/holes.h"
+#include "missions/run/survey_journal.h"
 
 namespace skycap::missions::package {
 namespace {
 
+using file::vector_of;
 using Json = nlohmann::ordered_json;
 
 constexpr const char* free_space_name = "free_space.bin";
@@ -57,10 +63,6 @@ file::Mission mission_of(const Json& settings, const std::string& name,
   return derived::parse_mission(text, name, overrides);
 }
 
-Eigen::Vector3d vector_of(const Json& json) {
-  return {json.at(0).get<double>(), json.at(1).get<double>(), json.at(2).get<double>()};
-}
-
 /// Throws Error{bad_file}.
 Json json_of_summary(const std::string& text, const std::string& name) {
   Json summary = geometry::parse_json<Json>(text);
@@ -68,6 +70,23 @@ Json json_of_summary(const std::string& text, const std::string& name) {
   fail(name,
        "is not a package's summary, but no JSON or nested too deep; name the folder of a mission "
        "package");
+}
+
+/// How a flown survey came to a view, of the summary's entry for it.
+Way way_of(const Json& view, const std::string& what) {
+  Way way;
+  if (!view.contains("way")) return way;
+  for (const Json& point : view["way"]) {
+    way.push_back(vector_of(point));
+    geometry::require_place(way.back(), what);
+  }
+  return way;
+}
+
+std::vector<Way> ways_of(const run::FlownSurvey& flown) {
+  std::vector<Way> ways;
+  for (const run::FlownLeg& leg : flown.legs) ways.push_back(leg.points);
+  return ways;
 }
 
 std::vector<Eigen::Vector3d> sensor_positions(const run::SurveyRecord& record) {
@@ -129,13 +148,43 @@ std::string trajectory_tum(const run::SurveyRecord& record) {
   return tum;
 }
 
+CoverageFigures coverage_figures(const run::SurveyRecord& record, const scene::SurveyScene& scene,
+                                 unsigned threads, const std::stop_token& stop) {
+  CoverageFigures figures{record.coverage(), {}, {}};
+  std::vector<std::uint8_t> is_visible;
+  if (record.stop_reason != survey::StopReason::interrupted) {  // the user wants to leave
+    is_visible = scene.visible(threads, stop);
+    const std::optional<double> ceiling = scene.ceiling(is_visible, threads, stop);
+    if (stop.stop_requested()) {
+      is_visible.clear();
+    } else {
+      figures.visible = judge::covered_share(record.is_covered, is_visible);
+      figures.ceiling = ceiling;
+    }
+  }
+  if (!record.belief) {
+    figures.patches = true_patches(scene.samples(), geometry::surface_area(scene.model()),
+                                   record.is_covered, is_visible);
+  }
+  return figures;
+}
+
+void commit_package(const run::SurveyRecord& record, geometry::OutputFolder& folder) {
+  if (record.stop_reason != survey::StopReason::interrupted) {
+    folder.replace([](std::string_view name) { return name == run::journal_name; });
+  } else if (is_complete_result(folder.path() / summary_name)) {
+    folder.move_to("interrupted");
+  }
+  folder.commit();
+}
+
 std::optional<SurveyMission> stage_package(const file::Mission& mission,
                                            const run::SurveyRecord& record,
                                            const CoverageFigures& coverage, unsigned threads,
                                            geometry::OutputFolder& folder, std::stop_token stop) {
   folder.replace([](std::string_view name) {
     return name == free_space_name || name == coverage_name || name == fly_test_name ||
-           is_flight_file(name);
+           name == report_name || is_flight_file(name);
   });
   const double radius = 2.0 * mission.planner.see.resolution_radius;
   const std::vector<Eigen::Vector3f> normals =
@@ -156,8 +205,8 @@ std::optional<SurveyMission> stage_package(const file::Mission& mission,
     folder.write(free_space_name, free_space.str());
     flight = SurveyMission{};
     try {
-      flight->route =
-          plan_flight(mission, *record.flown->measured, record.flown->pad, views_of(record));
+      flight->route = plan_flight(mission, *record.flown->measured, record.flown->pad,
+                                  views_of(record), ways_of(*record.flown), stop);
       if (flight->route.sorties.empty() && !flight->route.unreached.empty()) {
         const flight::Unreached& first = flight->route.unreached.front();
         throw Error(ErrorKind::bad_config, "no view can be flown to; view " +
@@ -201,6 +250,7 @@ PackageSummary parse_package_summary(const std::string& text, const std::string&
           name + ": per_view[" + std::to_string(summary.views.size() - 1) + "].";
       geometry::require_place(summary.views.back().position, place + "position");
       geometry::require_direction(summary.views.back().direction, place + "direction");
+      summary.ways.push_back(way_of(view, place + "way"));
     }
     return summary;
   } catch (const Json::exception& error) {
@@ -226,8 +276,8 @@ PackagedSurvey read_package(const std::filesystem::path& folder,
   const std::filesystem::path space_file = folder / free_space_name;
   std::ifstream space(space_file, std::ios::binary);
   if (!space) fail(space_file, "cannot be read; plan the mission again");
-  return {std::move(summary.mission), std::move(summary.views), *summary.pad,
-          flight::MeasuredSpace::read(space, space_file.string())};
+  return {std::move(summary.mission), std::move(summary.views), std::move(summary.ways),
+          *summary.pad, flight::MeasuredSpace::read(space, space_file.string())};
 }
 
 }  // namespace skycap::missions::package

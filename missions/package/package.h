@@ -15,6 +15,7 @@
 #include "missions/file/mission_reader.h"
 #include "missions/package/flight_files.h"
 #include "missions/run/survey_runner.h"
+#include "missions/scene/survey_scene.h"
 #include "survey/skycap/skycap_planner.h"
 
 namespace skycap::missions::package {
@@ -28,6 +29,15 @@ struct CoverageFigures {
   /// believes nothing; see true_patches().
   std::vector<survey::skycap::BelievedPatch> patches = {};
 };
+
+/// What a simulated survey covered of the true surface; what could be covered at all only of one
+/// that has ended, unless a stop is requested.
+CoverageFigures coverage_figures(const run::SurveyRecord& record, const scene::SurveyScene& scene,
+                                 unsigned threads, const std::stop_token& stop);
+
+/// Commits what stage_package() and others have staged. A survey that was interrupted goes beside a
+/// complete one instead of over it, into the folder "interrupted", and keeps its journal.
+void commit_package(const run::SurveyRecord& record, geometry::OutputFolder& folder);
 
 /// Stages summary.json, cloud.ply, views.csv and trajectory.tum in `folder`; the caller commits. A
 /// flown survey's package also holds its route files and free_space.bin, which they were proven in
@@ -44,6 +54,9 @@ std::optional<SurveyMission> stage_package(const file::Mission& mission,
 /// The file of a package that says what the rest is.
 inline constexpr const char* summary_name = "summary.json";
 
+/// The page that shows it; void when the mission is planned again.
+inline constexpr const char* report_name = "report.html";
+
 /// What `skycap fly-test` adds to it; void when the mission is planned again.
 inline constexpr const char* fly_test_name = "fly_test.json";
 
@@ -51,6 +64,7 @@ inline constexpr const char* fly_test_name = "fly_test.json";
 struct PackageSummary {
   file::Mission mission;  ///< with all keys as they were in force
   std::vector<geometry::View> views;
+  std::vector<Way> ways;               ///< ways[i] was flown to view i; empty if it is not said
   std::optional<Eigen::Vector3d> pad;  ///< of a survey that was flown
 };
 
@@ -67,6 +81,7 @@ PackageSummary read_package_summary(const std::filesystem::path& folder,
 struct PackagedSurvey {
   file::Mission mission;  ///< with all keys as they were in force
   std::vector<geometry::View> views;
+  std::vector<Way> ways;  ///< see PackageSummary
   Eigen::Vector3d pad = Eigen::Vector3d::Zero();
   flight::MeasuredSpace measured;
 };

@@ -14,9 +14,8 @@
 namespace skycap::missions::package {
 namespace {
 
+using file::json_of;
 using Json = nlohmann::ordered_json;
-
-Json json_of(const Eigen::Vector3d& vector) { return {vector.x(), vector.y(), vector.z()}; }
 
 Json json_of(const std::optional<double>& number) { return number ? Json(*number) : Json(); }
 
@@ -275,6 +274,7 @@ std::string summary_json(const file::Mission& mission, const run::SurveyRecord& 
   summary["per_view"] = Json::array();
   for (std::size_t i = 0; i < record.views.size(); ++i) {
     summary["per_view"].push_back(view_summary(i, record.views[i]));
+    if (record.flown) summary["per_view"].back()["way"] = json_of(record.flown->legs[i].points);
   }
   return file::json_text(summary);
 }

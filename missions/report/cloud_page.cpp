@@ -7,6 +7,7 @@
 
 #include "geometry/io/cloud_io.h"
 #include "missions/report/page.h"
+#include "missions/report/point_figures.h"
 #include "missions/report/scene_outline.h"
 #include "missions/report/survey_report.h"
 
@@ -21,10 +22,7 @@ std::string count_text(std::size_t count) { return std::to_string(count) + " poi
 
 std::string cloud_page(const std::filesystem::path& file) {
   const geometry::AttributedCloud cloud = geometry::read_cloud(file);
-  std::vector<std::uint16_t> views;
-  for (const std::uint32_t view : cloud.views) {
-    views.push_back(static_cast<std::uint16_t>(std::min<std::uint32_t>(view, 0xffff)));
-  }
+  const std::vector<std::uint16_t> views = view_numbers(cloud);
   std::vector<CloudAttribute> attributes;
   if (!views.empty()) attributes.push_back({"view", views});
   const std::string name = file.filename().string();

@@ -25,6 +25,15 @@ Vector3f to_sensor(const geometry::AttributedCloud& cloud, std::span<const geome
 
 }  // namespace
 
+std::vector<std::uint16_t> view_numbers(const geometry::AttributedCloud& cloud) {
+  std::vector<std::uint16_t> views;
+  views.reserve(cloud.views.size());
+  for (const std::uint32_t view : cloud.views) {
+    views.push_back(static_cast<std::uint16_t>(std::min<std::uint32_t>(view, 0xffff)));
+  }
+  return views;
+}
+
 std::vector<std::uint16_t> incidence_steps(const geometry::AttributedCloud& cloud,
                                            std::span<const geometry::View> views) {
   // By the cosines of the steps' ends: a comparison costs less than an arc cosine.
@@ -71,19 +80,16 @@ std::vector<std::uint16_t> point_states(const geometry::AttributedCloud& cloud,
                                         const geometry::AttributedCloud& map, double reach) {
   std::vector<std::uint16_t> states(cloud.positions.size(), 0);
   if (!(reach > 0.0)) return states;
+  constexpr auto thin = static_cast<std::uint16_t>(survey::skycap::MissingReason::seen_too_thinly);
   const std::vector<std::uint16_t> of_map = map_states(map);
-  geometry::SpatialIndex missing(reach);
-  std::vector<std::uint16_t> of_missing;
+  geometry::SpatialIndex thin_pieces(reach);
   for (std::size_t i = 0; i < of_map.size(); ++i) {
-    constexpr std::uint16_t never_seen = 2;  // no measured point is that
-    if (of_map[i] == 0 || of_map[i] == never_seen) continue;
-    missing.insert(map.positions[i]);
-    of_missing.push_back(of_map[i]);
+    if (of_map[i] == thin) thin_pieces.insert(map.positions[i]);
   }
-  if (of_missing.empty()) return states;
+  if (thin_pieces.size() == 0) return states;
   for (std::size_t i = 0; i < states.size(); ++i) {
-    const std::uint32_t found = missing.grid().first_within(cloud.positions[i], reach);
-    if (found != geometry::PointGrid::none) states[i] = of_missing[found];
+    const std::uint32_t found = thin_pieces.grid().first_within(cloud.positions[i], reach);
+    if (found != geometry::PointGrid::none) states[i] = thin;
   }
   return states;
 }

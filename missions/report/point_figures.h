@@ -17,6 +17,9 @@ inline constexpr double incidence_step_deg = 10.0;
 /// Of a point whose normal or view is not known.
 inline constexpr std::uint16_t no_incidence = 255;
 
+/// The views of the points, those beyond 16 bits as the last.
+std::vector<std::uint16_t> view_numbers(const geometry::AttributedCloud& cloud);
+
 /// For each point the angle between its normal and the way to the sensor that took it, in steps.
 std::vector<std::uint16_t> incidence_steps(const geometry::AttributedCloud& cloud,
                                            std::span<const geometry::View> views);
@@ -29,7 +32,8 @@ std::vector<float> ranges(const geometry::AttributedCloud& cloud,
 /// 3 out of reach; of colours that no such map has, 0.
 std::vector<std::uint16_t> map_states(const geometry::AttributedCloud& map);
 
-/// The state of measured points: that of a missing piece of the map within `reach`, else covered.
+/// The state of measured points: thin within `reach` of a piece of the map that is seen too thinly,
+/// else covered. Surface that is out of reach or was never seen may lie behind what was measured.
 std::vector<std::uint16_t> point_states(const geometry::AttributedCloud& cloud,
                                         const geometry::AttributedCloud& map, double reach);
 

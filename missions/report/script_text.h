@@ -18,6 +18,7 @@ std::string script_json(const nlohmann::ordered_json& json);
 /// zlib's format (RFC 1950), the same bytes for the same bytes.
 std::string deflated(std::string_view bytes);
 
+/// Of at most a gigabyte.
 std::string base64(std::string_view bytes);
 
 /// Four bytes in five characters, where base64 takes five and a third: numbers to the base 85,

@@ -98,10 +98,7 @@ Json accuracy(std::span<const std::uint16_t> incidence, std::span<const float> r
 PageCloud measured_cloud(const geometry::AttributedCloud& cloud,
                          std::span<const std::uint16_t> states,
                          std::span<const std::uint16_t> incidence, std::size_t most_points) {
-  std::vector<std::uint16_t> views;
-  for (const std::uint32_t view : cloud.views) {
-    views.push_back(static_cast<std::uint16_t>(std::min<std::uint32_t>(view, 0xffff)));
-  }
+  const std::vector<std::uint16_t> views = view_numbers(cloud);
   std::vector<CloudAttribute> attributes = {{"state", states}, {"incidence", incidence}};
   if (!views.empty()) attributes.push_back({"view", views});
   return {"measured", encode_cloud(cloud.positions, attributes, most_points)};

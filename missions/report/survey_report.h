@@ -15,7 +15,6 @@ using ResultFinder = std::function<std::filesystem::path(const std::string& name
 /// The finder of a folder as it is on disk.
 ResultFinder results_in(const std::filesystem::path& folder);
 
-inline constexpr const char* report_name = "report.html";
 inline constexpr std::size_t default_report_points = 1'000'000;
 
 /// The page of the survey that summary.json tells of, with at most so many points of cloud.ply.

@@ -3,21 +3,11 @@
 
 #include <string>
 
-#include <Eigen/Core>
 #include <nlohmann/json.hpp>
 
-#include "geometry/place/pose.h"
 #include "missions/file/mission.h"
 
 namespace skycap::missions::run {
-
-inline nlohmann::ordered_json json_of(const Eigen::Vector3d& vector) {
-  return {vector.x(), vector.y(), vector.z()};
-}
-
-inline Eigen::Vector3d vector_of(const nlohmann::ordered_json& json) {
-  return {json.at(0).get<double>(), json.at(1).get<double>(), json.at(2).get<double>()};
-}
 
 /// Names that are not UTF-8 are shown with a replacement character.
 std::string journal_line(const nlohmann::ordered_json& json);

@@ -4,10 +4,13 @@
 
 #include <nlohmann/json.hpp>
 
+#include "missions/file/json_text.h"
 #include "missions/run/journal_text.h"
 
 namespace skycap::missions::run {
 
+using file::json_of;
+using file::vector_of;
 using Json = nlohmann::ordered_json;
 
 Json reach_json(const ReachRecord& record) {

@@ -7,6 +7,7 @@
 
 #include "geometry/error.h"
 #include "geometry/io/json.h"
+#include "missions/file/json_text.h"
 #include "missions/run/journal_text.h"
 #include "missions/scene/sha256.h"
 
@@ -14,6 +15,8 @@ namespace skycap::missions::run {
 namespace {
 
 using Eigen::Vector3d;
+using file::json_of;
+using file::vector_of;
 using Json = nlohmann::ordered_json;
 
 /// The surface's samples stand for the mesh that was found under the model's name.

@@ -86,9 +86,7 @@ SurveyScene::SurveyScene(const file::Mission& mission, const std::filesystem::pa
 }
 
 geometry::View SurveyScene::first_view(std::uint64_t seed) const {
-  const file::StartConfig& start = mission_.start;
-  if (start.position && start.look_at) return geometry::look_at(*start.position, *start.look_at);
-  if (start.position) return {*start.position, start.direction->normalized()};
+  if (const auto start = derived::given_start(mission_)) return *start;
 
   const survey::ViewLimits limits = derived::view_limits(mission_);
   std::mt19937_64 random(seed);
@@ -161,7 +159,7 @@ std::optional<double> SurveyScene::ceiling(const std::vector<std::uint8_t>& is_v
 std::string SurveyScene::ceiling_key() const {
   std::ostringstream inputs;
   inputs.precision(17);
-  inputs << "ceiling 1\n" << view_distance_ << " " << mission_.planner.see.effective_spacing();
+  inputs << "ceiling 2\n" << view_distance_ << " " << mission_.planner.see.effective_spacing();
   for (const file::Key& key : file::mission_keys()) {
     if (!key.path.starts_with("scene.") && !key.path.starts_with("sensor.") &&
         !key.path.starts_with("evaluation.") && !key.path.starts_with("planner.scene_box") &&

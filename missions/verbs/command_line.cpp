@@ -59,7 +59,7 @@ void add_next(CLI::App& app, const Console& console, Action& action) {
       app.add_subcommand("next", "Take in a scan of a real sensor and say where to measure next");
   const auto options = std::make_shared<NextOptions>();
   const auto keys = std::make_shared<KeyOptions>();
-  add_live_options(*verb, options->live, *keys);
+  add_live_options(*verb, *options, *keys);
   verb->add_option("--scan", options->scan,
                    "Cloud (.ply, .pcd, .las, .xyz) or depth image (16-bit .png)");
   verb->add_option("--pose", options->pose,
@@ -76,24 +76,18 @@ void add_next(CLI::App& app, const Console& console, Action& action) {
   verb->add_option("--refuse", options->refusal, "Another view in place of the last, and why");
   verb->add_flag("--json", options->is_json, "Print JSON");
   verb->add_flag("--quiet", options->is_quiet, "Print nothing but the answer and errors");
-  verb->callback([=, &console, &action] {
-    options->live.overrides = keys->overrides();
-    action = [=, &console] { return next(*options, console); };
-  });
+  run_with_keys(*verb, options, keys, next, console, action);
 }
 
 void add_serve(CLI::App& app, const Console& console, Action& action) {
   CLI::App* verb = app.add_subcommand("serve", "Serve a live survey on a socket (docs/live.md)");
   const auto options = std::make_shared<ServeOptions>();
   const auto keys = std::make_shared<KeyOptions>();
-  add_live_options(*verb, options->live, *keys);
+  add_live_options(*verb, *options, *keys);
   verb->add_option("--socket", options->socket, "A Unix socket, which only you may open");
   verb->add_option("--port", options->port, "Of this machine alone; 0 for any that is free");
   verb->add_flag("--quiet", options->is_quiet, "Print nothing but the address and errors");
-  verb->callback([=, &console, &action] {
-    options->live.overrides = keys->overrides();
-    action = [=, &console] { return serve(*options, console); };
-  });
+  run_with_keys(*verb, options, keys, serve, console, action);
 }
 
 void add_finish(CLI::App& app, const Console& console, Action& action) {
@@ -306,9 +300,7 @@ void add_report(CLI::App& app, const Console& console, Action& action) {
   verb->add_option("--out", options->out, "The page; default report.html in the folder");
   verb->add_option("--points", options->points, "Points of the cloud to show; default 1000000")
       ->check(CLI::Range(1, 100'000'000));
-  verb->callback([=, &console, &action] {
-    action = [=, &console] { return report_results(*options, console); };
-  });
+  run(*verb, options, report_results, console, action);
 }
 
 void add_view(CLI::App& app, const Console& console, Action& action) {
@@ -321,32 +313,13 @@ void add_view(CLI::App& app, const Console& console, Action& action) {
       ->required();
   verb->add_option("--out", options->out, "The page; default beside what is shown");
   add_set_option(*verb, *keys);
-  verb->callback([=, &console, &action] {
-    options->overrides = keys->overrides();
-    action = [=, &console] { return view(*options, console); };
-  });
+  run_with_keys(*verb, options, keys, view, console, action);
 }
 
 /// One line for the user, whatever the message holds.
 int report_failure(const Console& console, const std::string& message, int exit_code) {
   console.err << "skycap: error: " << printable_line(message) << "\n" << std::flush;
   return exit_code;
-}
-
-/// So that tests and comparisons can do on this processor what another one would: the results are
-/// the same, which they are there to show.
-void limit_instruction_set_as_asked() {
-  const char* const asked = std::getenv("SKYCAP_INSTRUCTION_SET");
-  if (asked == nullptr) return;
-  using enum geometry::InstructionSet;
-  for (const auto& [name, set] :
-       {std::pair("baseline", baseline), {"avx2", avx2}, {"avx512", avx512}}) {
-    if (std::string_view(asked) != name) continue;
-    geometry::limit_instruction_set(set);
-    return;
-  }
-  throw Error(ErrorKind::bad_usage, std::string("SKYCAP_INSTRUCTION_SET is '") + asked +
-                                        "'; it must be baseline, avx2 or avx512");
 }
 
 int parse_and_run(const std::vector<std::string>& arguments, const Console& console) {
@@ -356,7 +329,10 @@ int parse_and_run(const std::vector<std::string>& arguments, const Console& cons
   app.get_formatter()->column_width(28);
   Action action;
   try {
-    limit_instruction_set_as_asked();
+    // So that tests and comparisons can do on this processor what another one would.
+    if (const char* const widest = std::getenv("SKYCAP_INSTRUCTION_SET")) {
+      geometry::limit_instruction_set(widest);
+    }
     add_plan(app, console, action);
     add_next(app, console, action);
     add_serve(app, console, action);

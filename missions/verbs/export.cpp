@@ -17,8 +17,8 @@ int export_package(const ExportOptions& options, const Console& console) {
   geometry::OutputFolder folder(options.out.value_or(options.package));
   progress.show(survey.mission.name + ": planning the flight");
   package::SurveyMission flight;
-  flight.route =
-      package::plan_flight(survey.mission, survey.measured, survey.pad, survey.views, console.stop);
+  flight.route = package::plan_flight(survey.mission, survey.measured, survey.pad, survey.views,
+                                      survey.ways, console.stop);
   flight.files =
       package::stage_flight(survey.mission, flight.route, survey.measured, formats, folder);
   for (const flight::Format format : formats) {

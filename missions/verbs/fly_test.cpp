@@ -186,6 +186,7 @@ int fly_test(const FlyTestVerbOptions& options, const Console& console) {
   const TestedPackage package(options, package::read_package(options.package, options.overrides));
   const std::vector<std::filesystem::path> files = flown_files(options.package);
   geometry::OutputFolder folder(options.out.value_or(options.package));
+  const HoldsResults results(console);
   nlohmann::ordered_json json{{"mission", package.mission().name},
                               {"seed", package.mission().seed},
                               {"complete", true},

@@ -7,9 +7,12 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "missions/file/json_text.h"
+
 namespace skycap::missions::verbs {
 namespace {
 
+using file::json_of;
 using flight::TestFlight;
 using Json = nlohmann::ordered_json;
 
@@ -71,8 +74,6 @@ std::size_t empty_batteries(const TestedFile& file) {
 double time_of(const TestFlight& flight) { return flight.flown.time; }
 double energy_wh_of(const TestFlight& flight) { return flight.flown.energy / joules_per_wh; }
 double off_line_of(const TestFlight& flight) { return flight.flown.off_line; }
-
-Json json_of(const Eigen::Vector3d& place) { return {place.x(), place.y(), place.z()}; }
 
 Json json_of(const TestFlight& flight) {
   Json json{{"flight", flight.draw.number},

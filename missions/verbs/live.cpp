@@ -1,5 +1,6 @@
 // The verbs of live surveys: next and finish, one call at a time, and serve.
 #include <string>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -92,10 +93,8 @@ int next(const NextOptions& options, const Console& console) {
   if (options.scan && options.refusal) {
     throw Error(ErrorKind::bad_usage, "--refuse does not go with --scan; give one of the two");
   }
-  const file::Mission mission =
-      derived::read_live_mission(options.live.mission, options.live.overrides);
-  const auto survey =
-      live::open_survey(mission, options.live.mission.parent_path(), options.live.survey);
+  const file::Mission mission = derived::read_live_mission(options.mission, options.overrides);
+  const auto survey = live::open_survey(mission, options.mission.parent_path(), options.survey);
   if (options.scan) add_scan(options, mission, *survey, console);
   if (options.refusal) survey->refuse(*options.refusal);
   console.out << (options.is_json ? live::answer_json(*survey, mission)
@@ -121,20 +120,22 @@ int serve(const ServeOptions& options, const Console& console) {
   if (options.socket.has_value() == options.port.has_value()) {
     throw Error(ErrorKind::bad_usage, "serve needs either --socket PATH or --port NUMBER");
   }
-  const file::Mission mission =
-      derived::read_live_mission(options.live.mission, options.live.overrides);
-  const auto survey =
-      live::open_survey(mission, options.live.mission.parent_path(), options.live.survey);
+  const file::Mission mission = derived::read_live_mission(options.mission, options.overrides);
+  const auto survey = live::open_survey(mission, options.mission.parent_path(), options.survey);
+  int exit_code = 1;
   live::Session session(mission, *survey, [&] {
-    return write_package(mission, *survey, options.live.survey, console.stop).text;
+    Finished finished = write_package(mission, *survey, options.survey, console.stop);
+    exit_code = finished.has_route ? 0 : 1;
+    return std::move(finished.text);
   });
+  const HoldsResults results(console);
   live::Server server({.socket = options.socket.value_or(""), .port = options.port});
   console.out << server.address() << "\n" << std::flush;
   const auto note = [&](const std::string& text) {
     if (!options.is_quiet) console.err << printable_line(text) << "\n" << std::flush;
   };
   server.run(session, note, console.stop);
-  return session.is_finished() ? 0 : 1;
+  return exit_code;
 }
 
 }  // namespace skycap::missions::verbs

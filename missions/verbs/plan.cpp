@@ -9,9 +9,7 @@
 #include "missions/benchmark/trial_files.h"
 #include "missions/benchmark/trials.h"
 #include "missions/derived/resolved_mission.h"
-#include "missions/judge/coverage.h"
 #include "missions/package/flight_report.h"
-#include "missions/package/holes.h"
 #include "missions/package/package.h"
 #include "missions/report/survey_report.h"
 #include "missions/run/survey_runner.h"
@@ -74,11 +72,10 @@ std::string summary_text(const file::Mission& mission, const run::SurveyRecord& 
   return text + "  results   " + folder.string() + "\n";
 }
 
-/// Stages report.html; one of an earlier survey goes in any case. What cannot be shown, such as a
+/// Stages report.html. What cannot be shown, such as a
 /// cloud too far from the origin for its file, shall not cost the survey.
 void write_report(const PlanOptions& options, geometry::OutputFolder& folder,
                   const Console& console) {
-  folder.replace([](std::string_view name) { return name == report::report_name; });
   if (!options.has_report) return;
   std::string page;
   try {
@@ -87,7 +84,7 @@ void write_report(const PlanOptions& options, geometry::OutputFolder& folder,
     console.err << "skycap: warning: no report: " << printable_line(error.what()) << "\n";
     return;
   }
-  folder.write(report::report_name, page);
+  folder.write(package::report_name, page);
 }
 
 int plan_once(const PlanOptions& options, const file::Mission& mission,
@@ -109,32 +106,15 @@ int plan_once(const PlanOptions& options, const file::Mission& mission,
   const run::SurveyRecord record = run::run_survey(mission, scene, mission.seed, mission.threads,
                                                    console.stop, report, &journal);
 
-  package::CoverageFigures coverage{record.coverage(), {}, {}};
-  std::vector<std::uint8_t> is_visible;
-  if (record.stop_reason != survey::StopReason::interrupted) {  // the user wants to leave
-    progress.show(mission.name + ": measuring what could be covered at all");
-    is_visible = scene.visible(mission.threads, console.stop);
-    coverage.ceiling = scene.ceiling(is_visible, mission.threads, console.stop);
-    if (console.stop.stop_requested()) {
-      is_visible.clear();
-    } else {
-      coverage.visible = judge::covered_share(record.is_covered, is_visible);
-    }
-  }
-  if (!record.belief) {
-    coverage.patches = package::true_patches(scene.samples(), geometry::surface_area(scene.model()),
-                                             record.is_covered, is_visible);
-  }
+  const bool is_over = record.stop_reason != survey::StopReason::interrupted;
+  if (is_over) progress.show(mission.name + ": measuring what could be covered at all");
+  const package::CoverageFigures coverage =
+      package::coverage_figures(record, scene, mission.threads, console.stop);
   progress.show(mission.name + ": writing " + folder.path().string());
   const std::optional<package::SurveyMission> flight =
       package::stage_package(mission, record, coverage, mission.threads, folder, console.stop);
   write_report(options, folder, console);
-  const bool is_over = record.stop_reason != survey::StopReason::interrupted;
-  if (!is_over && package::is_complete_result(folder.path() / "summary.json")) {
-    folder.move_to("interrupted");  // a complete survey is not overwritten by a part of one
-  }
-  if (is_over) folder.replace([](std::string_view name) { return name == run::journal_name; });
-  folder.commit();
+  package::commit_package(record, folder);
   progress.clear();
   if (!options.is_quiet) {
     console.out << summary_text(mission, record, coverage, flight, folder.path()) << std::flush;

@@ -14,6 +14,7 @@
 #include "geometry/io/output_folder.h"
 #include "missions/derived/mission_flight.h"
 #include "missions/derived/resolved_mission.h"
+#include "missions/equipment/preset_files.h"
 #include "missions/equipment/sensor_reader.h"
 #include "missions/file/json_text.h"
 #include "missions/file/number_text.h"
@@ -33,15 +34,10 @@ using Clock = std::chrono::steady_clock;
 
 constexpr const char* scan_name = "scan.json";
 
-/// A path that a mission gives is relative to the mission's folder.
-std::string beside(const std::filesystem::path& folder, const std::string& name) {
-  return name.ends_with(".yaml") ? (folder / name).string() : name;
-}
-
 equipment::SensorDescription sensor_of(const ScanVerbOptions& options,
                                        const file::Mission& mission) {
-  return equipment::find_sensor(
-      options.sensor.value_or(beside(options.mission.parent_path(), mission.scan.sensor)));
+  return equipment::find_sensor(options.sensor.value_or(
+      equipment::named_from(options.mission.parent_path(), mission.scan.sensor)));
 }
 
 recording::ScanFlight flown_by(const ScanVerbOptions& options, const file::Mission& mission,

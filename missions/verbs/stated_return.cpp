@@ -1,12 +1,11 @@
 #include "missions/verbs/stated_return.h"
 
-#include <fstream>
-#include <iterator>
 #include <vector>
 
 #include "flight/export/export.h"
 #include "flight/export/parameters.h"
 #include "geometry/error.h"
+#include "geometry/io/file.h"
 
 namespace skycap::missions::verbs {
 
@@ -19,8 +18,8 @@ std::optional<StatedHeight> stated_by_parameters(const std::filesystem::path& ro
   const std::string name = flight::parameters_name(dialect);
   const std::filesystem::path file = route.parent_path() / name;
   if (name.empty() || !std::filesystem::exists(file)) return std::nullopt;
-  std::ifstream stream(file, std::ios::binary);
-  const std::string text{std::istreambuf_iterator<char>(stream), {}};
+  constexpr std::size_t largest = 1 << 20;  // [byte]; a vehicle has some thousand parameters
+  const std::string text = geometry::read_file(file, largest);
   try {
     const std::vector<flight::Parameter> parameters = flight::read_parameters(text);
     const std::optional<double> height = flight::return_height(parameters, dialect);

@@ -4,13 +4,11 @@
 #include <utility>
 #include <vector>
 
+#include "flight/route/pad_check.h"
 #include "missions/derived/mission_flight.h"
 
 namespace skycap::missions::verbs {
 namespace {
-
-/// A pad's own ground is no obstacle to it, nor is what stands no higher above it [m].
-constexpr double pad_roughness = 0.3;
 
 /// The triangles of which some part is above that height.
 geometry::Mesh above(geometry::Mesh mesh, double height) {
@@ -27,7 +25,7 @@ TrueSpace true_space(const file::Mission& mission, const geometry::Mesh& model, 
   flight::Obstacles obstacles = derived::flight_rules(mission);
   obstacles.mesh = model;
   flight::KnownSpace everywhere(obstacles);
-  obstacles.mesh = above(model, pad_height + pad_roughness);
+  obstacles.mesh = above(model, pad_height + flight::pad_roughness);
   return {std::move(everywhere), flight::KnownSpace(without_ground(std::move(obstacles)))};
 }
 

@@ -37,8 +37,7 @@ struct LiveOptions {
   std::vector<file::KeyOverride> overrides;
 };
 
-struct NextOptions {
-  LiveOptions live;
+struct NextOptions : LiveOptions {
   std::optional<std::filesystem::path> scan;       ///< to be taken in first
   std::string pose;                                ///< of the scan's sensor; either this
   std::optional<std::filesystem::path> pose_file;  ///< or this
@@ -59,15 +58,14 @@ int next(const NextOptions& options, const Console& console);
 /// survey may go on afterwards.
 int finish(const LiveOptions& options, const Console& console);
 
-struct ServeOptions {
-  LiveOptions live;
+struct ServeOptions : LiveOptions {
   std::optional<std::filesystem::path> socket;  ///< a Unix socket; either this
   std::optional<std::uint16_t> port;            ///< or this, of 127.0.0.1
   bool is_quiet = false;
 };
 
 /// Serves a live survey on a socket until a client finishes it; prints the address. Exit code 1 if
-/// it was interrupted before.
+/// it was interrupted before, or has no route.
 int serve(const ServeOptions& options, const Console& console);
 
 struct BenchmarkOptions {

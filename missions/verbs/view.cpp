@@ -5,6 +5,7 @@
 #include "geometry/io/output_folder.h"
 #include "missions/derived/mission_flight.h"
 #include "missions/derived/resolved_mission.h"
+#include "missions/package/package.h"
 #include "missions/plugins/external_program.h"
 #include "missions/report/cloud_page.h"
 #include "missions/report/survey_report.h"
@@ -37,7 +38,7 @@ Page page_of(const ViewOptions& options) {
   std::error_code ignored;
   if (fs::is_directory(what, ignored)) {
     geometry::finish_commit(what);
-    return {what / report::report_name, report::survey_report(report::results_in(what))};
+    return {what / package::report_name, report::survey_report(report::results_in(what))};
   }
   if (!options.out && !fs::exists(what, ignored)) {
     throw Error(ErrorKind::bad_file, what.string() + ": is not there");

@@ -20,12 +20,16 @@ inline std::vector<geometry::InstructionSet> instruction_sets() {
 /// Limits the process to one, for as long as it lives.
 class InstructionSetLimit {
  public:
-  explicit InstructionSetLimit(geometry::InstructionSet widest) {
+  explicit InstructionSetLimit(geometry::InstructionSet widest)
+      : before_(geometry::instruction_set()) {
     geometry::limit_instruction_set(widest);
   }
   InstructionSetLimit(const InstructionSetLimit&) = delete;
   InstructionSetLimit& operator=(const InstructionSetLimit&) = delete;
-  ~InstructionSetLimit() { geometry::limit_instruction_set(geometry::InstructionSet::avx512); }
+  ~InstructionSetLimit() { geometry::limit_instruction_set(before_); }
+
+ private:
+  geometry::InstructionSet before_;
 };
 
 }  // namespace skycap

@@ -7,6 +7,7 @@
 #include "missions/derived/mission_flight.h"
 #include "missions/derived/site.h"
 #include "missions/file/number_text.h"
+#include "tests/support/complaint.h"
 
 namespace skycap::missions {
 namespace {
@@ -21,12 +22,7 @@ file::Mission parsed(const std::string& more) {
 }
 
 std::string complaint(const std::string& text) {
-  try {
-    derived::parse_mission(text, "m.yaml");
-  } catch (const Error& error) {
-    return error.what();
-  }
-  return "";
+  return testing_support::complaint_of([&] { derived::parse_mission(text, "m.yaml"); });
 }
 
 // spec: psi = d, one frontier a twentieth of d, occluders 2 r apart, tau above the number of

@@ -8,6 +8,7 @@
 
 #include "flight/motion/motion.h"
 #include "geometry/error.h"
+#include "tests/support/complaint.h"
 #include "tests/support/temporary_folder.h"
 
 namespace skycap::missions {
@@ -20,12 +21,7 @@ using testing::HasSubstr;
 constexpr double degree = std::numbers::pi / 180.0;
 
 std::string complaint(const std::string& text) {
-  try {
-    equipment::read_vehicle(text, "kite.yaml");
-  } catch (const Error& error) {
-    return error.what();
-  }
-  return "";
+  return testing_support::complaint_of([&] { equipment::read_vehicle(text, "kite.yaml"); });
 }
 
 TEST(VehiclePresets, AllAreValidAndNamedAsTheirFiles) {

@@ -7,6 +7,7 @@
 
 #include "geometry/error.h"
 #include "missions/file/mission_keys.h"
+#include "tests/support/complaint.h"
 
 namespace skycap::missions {
 namespace {
@@ -23,12 +24,8 @@ file::Mission parsed(const std::string& more,
 
 std::string complaint(const std::string& text,
                       const std::vector<file::KeyOverride>& overrides = {}) {
-  try {
-    file::parse_mission_file(text, "m.yaml", overrides);
-  } catch (const Error& error) {
-    return error.what();
-  }
-  return "";
+  return testing_support::complaint_of(
+      [&] { file::parse_mission_file(text, "m.yaml", overrides); });
 }
 
 TEST(MissionReader, NeedsOnlyAModelAndARegistrationDistance) {

@@ -42,18 +42,25 @@ class Library : public testing::Test {
 };
 
 TEST_F(Library, SurveysAsTheProgramDoesByteForByte) {
-  ASSERT_EQ(tests::run_skycap({"plan", file, "--quiet", "--out", folder / "program"}).err, "");
-  std::size_t told = 0;
-  const Survey survey = plan(Mission::load(file), {.folder = folder / "library",
-                                                   .report = [&](const auto&, double) { ++told; }});
-  for (const char* name : {"cloud.ply", "views.csv", "trajectory.tum"}) {
-    EXPECT_EQ(tests::content_of(folder / (std::string("library/") + name)),
-              tests::content_of(folder / (std::string("program/") + name)))
-        << name;
+  for (const std::string planner : {"skycap", "see++"}) {
+    const std::string by_program = folder / ("program-" + planner),
+                      by_library = folder / ("library-" + planner);
+    ASSERT_EQ(
+        tests::run_skycap({"plan", file, "--planner", planner, "--quiet", "--out", by_program}).err,
+        "");
+    std::size_t told = 0;
+    const Survey survey =
+        plan(Mission::load(file, {{"planner.name", planner}}),
+             {.folder = by_library, .report = [&](const auto&, double) { ++told; }});
+    for (const char* name : {"cloud.ply", "coverage.ply", "views.csv", "trajectory.tum"}) {
+      EXPECT_EQ(tests::content_of(by_library + "/" + name),
+                tests::content_of(by_program + "/" + name))
+          << planner << ": " << name;
+    }
+    EXPECT_EQ(survey.summary, tests::content_of(by_library + "/summary.json"));
+    EXPECT_EQ(told, survey.views.size());
+    EXPECT_GT(survey.coverage(), 0.0);
   }
-  EXPECT_EQ(survey.summary, tests::content_of(folder / "library/summary.json"));
-  EXPECT_EQ(told, survey.views.size());
-  EXPECT_GT(survey.coverage(), 0.0);
 }
 
 /// The planner alone, with a simulator of the test's own, goes the same way as the whole survey.

