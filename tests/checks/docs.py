@@ -22,7 +22,8 @@ def scratch_folder(folder, program):
     (folder / "build").mkdir()
     (folder / "build" / "release").symlink_to(program)
     (folder / "skycap").symlink_to(program / "skycap")
-    return dict(os.environ, PATH=f"{program}:{os.environ['PATH']}")
+    return dict(os.environ, PATH=f"{program}:{os.environ['PATH']}",
+                XDG_CACHE_HOME=str(folder / "cache"))
 
 
 def run_block(block, folder, environment):

@@ -3,8 +3,8 @@
 // old result or the whole new one, and nothing else but what an unfinished survey can go on from.
 // Run again after it died, the verb gives the new result.
 //
-// With FAULT_POINTS=all in the environment all points of the slow verbs and of memory are tried,
-// not a sample: tests/faults/run does so.
+// With FAULT_POINTS=all in the environment all points on the disk are tried, not a sample (of
+// memory it is always one): tests/faults/run does so.
 #include <algorithm>
 #include <cstdio>
 #include <cstdlib>

@@ -74,7 +74,7 @@ Rooms house() {
   add_mission_room("scene", "file", "derived", "judge", "plugins");
   add_mission_room("recording", "file", "derived", "plugins");
   add_mission_room("run", "file", "derived", "judge", "scene");
-  add_mission_room("package", "file", "equipment", "derived", "run");
+  add_mission_room("package", "file", "equipment", "derived", "judge", "scene", "run");
   add_mission_room("report", "file", "derived", "scene", "package");
   add_mission_room("live", "file", "derived", "scene", "run");
   add_mission_room("benchmark", "file", "derived", "judge", "plugins", "scene", "run", "package");
