@@ -4,6 +4,7 @@
 
 #include "geometry/error.h"
 #include "geometry/place/camera.h"
+#include "missions/derived/mission_priors.h"
 #include "missions/derived/mission_rules.h"
 #include "missions/derived/survey_sensor.h"
 #include "missions/equipment/preset_files.h"
@@ -83,6 +84,8 @@ file::Mission resolved(file::MissionFile given) {
   check_scene(given);
   check_start(given);
   check_sensor(given);
+  read_priors(given);
+  derive_scene_box(mission);
   check_flight(given);
   if (mission.planner.preset == file::PlannerPreset::building) derive_building_preset(given);
   derive_ground_clearance(mission);

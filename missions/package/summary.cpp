@@ -1,12 +1,12 @@
 /// summary.json: all that a survey says of itself.
 
-#include <type_traits>
 #include <utility>
 
 #include <nlohmann/json.hpp>
 
 #include "missions/file/json_text.h"
 #include "missions/file/mission_keys.h"
+#include "missions/file/setting_json.h"
 #include "missions/package/holes.h"
 #include "missions/package/package.h"
 #include "missions/version.h"
@@ -23,41 +23,6 @@ Json json_of(const std::vector<survey::PartTime>& times) {
   Json parts = Json::object();
   for (const auto& [part, seconds] : times) parts[part] = seconds;
   return parts;
-}
-
-Json json_of(const std::vector<Eigen::Vector2d>& polygon) {
-  Json corners = Json::array();
-  for (const Eigen::Vector2d& corner : polygon) corners.push_back({corner.x(), corner.y()});
-  return corners;
-}
-
-Json json_of(const std::vector<geometry::Prism>& volumes) {
-  Json list = Json::array();
-  for (const geometry::Prism& volume : volumes) {
-    list.push_back({{"corners", json_of(volume.footprint)},
-                    {"bottom", volume.floor},
-                    {"top", volume.ceiling}});
-  }
-  return list;
-}
-
-Json json_of(const std::vector<Eigen::Vector3d>& vectors) {
-  Json list = Json::array();
-  for (const Eigen::Vector3d& vector : vectors) list.push_back(json_of(vector));
-  return list;
-}
-
-Json setting_json(const file::KeyValue& value) {
-  return std::visit(
-      [](const auto& plain) -> Json {
-        using Value = std::decay_t<decltype(plain)>;
-        if constexpr (std::is_arithmetic_v<Value> || std::is_same_v<Value, std::string>) {
-          return plain;
-        } else {
-          return json_of(plain);
-        }
-      },
-      value);
 }
 
 /// What the planner believes at the end: shares are of the surface, seen and guessed.
@@ -108,7 +73,7 @@ std::string value_text(const file::Mission& mission, const char* key) {
 Json settings(const file::Mission& mission) {
   Json values = Json::object();
   for (const file::Key& key : file::mission_keys()) {
-    if (const auto value = key.get(mission)) values[key.path] = setting_json(*value);
+    if (const auto value = key.get(mission)) values[key.path] = file::setting_json(*value);
   }
   return values;
 }

@@ -1,0 +1,102 @@
+#include "missions/derived/mission_priors.h"
+
+#include <memory>
+#include <string>
+#include <utility>
+
+#include "geometry/place/camera.h"
+#include "missions/derived/mission_flight.h"
+#include "missions/equipment/preset_files.h"
+
+namespace skycap::missions::derived {
+namespace {
+
+using prior::Role;
+using prior::Source;
+
+std::string key_of(std::size_t source, const std::string& key) {
+  return "prior[" + std::to_string(source) + "]." + key;
+}
+
+/// Points are kept so far apart where the mission does not say it: a quarter of the clearance that
+/// vehicles keep at least, as voxels are.
+constexpr double usual_spacing = 0.25;
+
+/// A path counts from the mission's folder.
+void make_absolute(std::filesystem::path& path, const std::filesystem::path& folder) {
+  if (path.empty()) return;
+  path = std::filesystem::absolute(equipment::named_from(folder, path.string()));
+}
+
+void check_source(const file::MissionFile& given, std::size_t i) {
+  const file::Mission& mission = given.mission;
+  const Source& source = mission.prior[i];
+  if (source.place && !source.crs.empty()) {
+    given.refuse(key_of(i, "crs"), "excludes place; a file is put by one of the two");
+  }
+  if (!source.crs.empty() && !has_place(mission)) {
+    given.refuse(key_of(i, "crs"),
+                 "needs the place of the mission's frame; give site.latitude_deg and "
+                 "site.longitude_deg");
+  }
+  if (source.base_on_terrain && source.role == Role::terrain) {
+    given.refuse(key_of(i, "base"), "of the terrain cannot be the terrain; give a number");
+  }
+  if (source.role == Role::truth && !mission.scene.model.empty()) {
+    given.refuse(key_of(i, "role"),
+                 "of truth takes the place of scene.model; leave one of the two out");
+  }
+}
+
+prior::SiteFrame frame_of(const file::Mission& mission) {
+  prior::SiteFrame frame{.takeoff_z = mission.flight.takeoff ? mission.flight.takeoff->z()
+                                                             : mission.scene.position.z()};
+  if (has_place(mission)) frame.origin = site_of(mission).origin;
+  return frame;
+}
+
+}  // namespace
+
+void read_priors(file::MissionFile& given) {
+  file::Mission& mission = given.mission;
+  if (mission.prior.empty()) return;
+  const std::filesystem::path folder = std::filesystem::path(given.name).parent_path();
+  for (std::size_t i = 0; i < mission.prior.size(); ++i) {
+    Source& source = mission.prior[i];
+    make_absolute(source.file, folder);
+    make_absolute(source.select.within, folder);
+    if (!given.gives(key_of(i, "spacing"))) source.spacing = usual_spacing;
+    check_source(given, i);
+  }
+  const auto failed = [&](std::size_t i, const std::string& what) {
+    given.refuse(key_of(i, "file"), what);
+  };
+  mission.priors = std::make_shared<const prior::SitePriors>(
+      prior::read_site_priors(mission.prior, frame_of(mission), failed));
+}
+
+void derive_scene_box(file::Mission& mission) {
+  survey::see::SeeConfig& see = mission.planner.see;
+  if (see.scene_box) return;
+  const geometry::Mesh targets = surfaces_of(priors_of(mission), Role::target);
+  if (targets.triangles.empty()) return;
+  const double distance = see.view_distance.value_or(
+      geometry::view_distance(geometry::Camera(mission.sensor.camera.camera), see.density));
+  Eigen::AlignedBox3d box = geometry::bounding_box(targets);
+  box.min().array() -= distance;
+  box.max().array() += distance;
+  if (mission.scene.ground || mission.flight.is_flown()) {
+    // The ground is no target: what is so near to it counts as the ground.
+    const double ground =
+        mission.scene.position.z() + 2.0 * mission.evaluation.registration_distance;
+    if (ground < box.max().z()) box.min().z() = std::max(box.min().z(), ground);
+  }
+  see.scene_box = box;
+}
+
+const prior::SitePriors& priors_of(const file::Mission& mission) {
+  static const prior::SitePriors none;
+  return mission.priors ? *mission.priors : none;
+}
+
+}  // namespace skycap::missions::derived
