@@ -1,8 +1,11 @@
 /// What follows from a mission's prior data: maps, models, terrain and earlier scans of its site.
 #pragma once
 
+#include <memory>
+
 #include "missions/file/mission_reader.h"
 #include "missions/prior/site_priors.h"
+#include "survey/skycap/prior_surface.h"
 
 namespace skycap::missions::derived {
 
@@ -14,6 +17,19 @@ void read_priors(file::MissionFile& given);
 /// planner.scene_box where the mission has none but targets: around them, with the view distance
 /// on every side.
 void derive_scene_box(file::Mission& mission);
+
+/// Whether what the mission's sensor measures in simulation is prior data: of the role truth, or,
+/// if scene.model is "prior", the targets.
+bool is_truth_prior(const file::Mission& mission);
+
+/// That, as one mesh. Empty if the mission's truth is none of its prior data.
+geometry::Mesh prior_truth(const file::Mission& mission);
+
+/// Whether the mission has a target among its prior data.
+bool has_target(const file::Mission& mission);
+
+/// The surfaces of the mission's targets for its planner to guess by; null without any.
+std::shared_ptr<const survey::skycap::PriorSurface> prior_surface(const file::Mission& mission);
 
 /// The mission's prior data; none of it if it has none.
 const prior::SitePriors& priors_of(const file::Mission& mission);

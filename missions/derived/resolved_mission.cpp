@@ -97,11 +97,14 @@ file::Mission resolved(file::MissionFile given) {
 file::Mission read_mission(const std::filesystem::path& file,
                            const std::vector<file::KeyOverride>& overrides) {
   file::MissionFile given = file::read_mission_file(file, overrides);
-  if (given.mission.scene.model.empty()) {
+  const bool has_target = derived::has_target(given.mission);
+  if (given.mission.scene.model.empty() && !is_truth_prior(given.mission)) {
     given.refuse(
         "scene.model",
-        "is missing; give a text, such as builtin:teapot. Without a scene a mission is for "
-        "live surveys: skycap next, serve and finish");
+        std::string("is missing; give a text, such as builtin:teapot") +
+            (has_target ? ", or plan with --dry-run prior, where the targets stand in for it"
+                        : "") +
+            ". Without a scene a mission is for live surveys: skycap next, serve and finish");
   }
   return resolved(std::move(given));
 }

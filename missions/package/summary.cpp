@@ -4,11 +4,13 @@
 
 #include <nlohmann/json.hpp>
 
+#include "missions/derived/mission_priors.h"
 #include "missions/file/json_text.h"
 #include "missions/file/mission_keys.h"
 #include "missions/file/setting_json.h"
 #include "missions/package/holes.h"
 #include "missions/package/package.h"
+#include "missions/package/target_coverage.h"
 #include "missions/version.h"
 
 namespace skycap::missions::package {
@@ -63,6 +65,22 @@ Json surface_summary(const run::SurveyRecord& record, const CoverageFigures& cov
           {"holes", holes},
           {"smaller", {{"holes", missing.smaller}, {"area_m2", missing.smaller_area}}},
           {"rest_m2", missing.rest}};
+}
+
+Json json_of(const CoveredPart& part) {
+  return {{"name", part.name}, {"area_m2", part.area}, {"coverage", part.covered}};
+}
+
+Json targets_summary(const std::vector<TargetCoverage>& targets) {
+  Json list = Json::array();
+  for (const TargetCoverage& target : targets) {
+    Json json = json_of(target.object);
+    json["within_m"] = target.radius;
+    json["kinds"] = Json::array();
+    for (const CoveredPart& kind : target.kinds) json["kinds"].push_back(json_of(kind));
+    list.push_back(std::move(json));
+  }
+  return list;
 }
 
 std::string value_text(const file::Mission& mission, const char* key) {
@@ -228,6 +246,9 @@ std::string summary_json(const file::Mission& mission, const run::SurveyRecord& 
                {"distance_m", record.distance()},
                {"belief", belief_summary(record)},
                {"surface", surface_summary(record, coverage)}};
+  if (derived::has_target(mission)) {
+    summary["targets"] = targets_summary(target_coverage(mission, record.cloud.positions));
+  }
   if (flight && flight->failure.empty()) {
     summary["route_length_m"] = flight->route.length;
     summary["min_clearance_m"] = flight->route.min_clearance;

@@ -85,7 +85,9 @@ std::string digest_of(const Prior& prior) {
 flight::PriorObstacleConfig ground_beyond(const AlignedBox3d& known, double height) {
   constexpr double far = 5e4;
   const Vector3d low(-far, -far, height - 1.0), high(far, far, height);
-  flight::PriorObstacleConfig beyond{.name = "the ground beyond the terrain", .is_ground = true};
+  flight::PriorObstacleConfig beyond;
+  beyond.name = "the ground beyond the terrain";
+  beyond.is_ground = true;
   const auto add = [&](double west, double south, double east, double north) {
     beyond.columns.emplace_back(Vector3d(west, south, low.z()), Vector3d(east, north, high.z()));
   };

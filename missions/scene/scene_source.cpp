@@ -10,6 +10,7 @@
 #include "geometry/io/file.h"
 #include "geometry/io/mesh_io.h"
 #include "geometry/place/world.h"
+#include "missions/derived/mission_priors.h"
 #include "missions/file/number_text.h"
 #include "missions/file/yaml_tree.h"
 #include "missions/scene/model_store.h"
@@ -160,15 +161,18 @@ geometry::Mesh with_copies(const file::SceneConfig& scene, const geometry::Mesh&
   return all;
 }
 
-ReflectingScene reflecting_scene(const file::SceneConfig& scene,
+ReflectingScene reflecting_scene(const file::Mission& mission,
                                  const std::filesystem::path& folder) {
+  const file::SceneConfig& scene = mission.scene;
   ReflectingScene result;
-  if (scene.materials) {
+  if (derived::is_truth_prior(mission)) {
+    result.model = derived::prior_truth(mission);
+  } else if (scene.materials) {
     result = model_of_materials(scene, folder);
   } else {
     result.model = load_model(scene, folder);
   }
-  place_model(scene, result.model);
+  if (!derived::is_truth_prior(mission)) place_model(scene, result.model);
   const auto reflectance = static_cast<float>(scene.reflectance);
   result.reflectances.resize(result.model.triangles.size(), reflectance);
   result.places = copies_of(scene);

@@ -44,8 +44,7 @@ struct ReflectingScene {
 /// The model as placed, its copies, and the ground if there is one, with the reflectances of
 /// `scene`. Throws what load_model() and place_model() throw, and Error{bad_config} if the file of
 /// materials is wrong.
-ReflectingScene reflecting_scene(const file::SceneConfig& scene,
-                                 const std::filesystem::path& folder);
+ReflectingScene reflecting_scene(const file::Mission& mission, const std::filesystem::path& folder);
 
 /// A square in the plane of the scene's base, ten times as wide as the model.
 geometry::Mesh ground_under(const geometry::Mesh& placed_model);

@@ -51,7 +51,7 @@ std::vector<Eigen::Vector3d> places_of(const flight::FlownRoute& route) {
 /// Errors of the mission's model name the mission, too.
 geometry::Mesh model_of(const file::Mission& mission, const std::filesystem::path& file) {
   try {
-    return scene::placed_model(mission.scene, file.parent_path());
+    return scene::placed_model(mission, file.parent_path());
   } catch (const Error& error) {
     throw Error(error.kind(), file.string() + ": " + error.what());
   }

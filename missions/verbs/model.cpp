@@ -48,7 +48,7 @@ geometry::Mesh model_called(const ModelOptions& options, const Console& console)
   if (name.ends_with(".yaml") || name.ends_with(".yml")) {
     std::vector<file::KeyOverride> overrides;
     if (options.detail) overrides.push_back({"--detail", "scene.detail", *options.detail});
-    return scene::placed_model(derived::read_mission(name, overrides).scene,
+    return scene::placed_model(derived::read_mission(name, overrides),
                                fs::path(name).parent_path());
   }
   if (name.find(':') != std::string::npos || fs::path(name).has_extension()) {
