@@ -31,18 +31,6 @@ double pad_spare_of(const file::Mission& mission) {
   return is_dji ? std::max(spare_of(mission), needed) : spare_of(mission);
 }
 
-/// z below which everything is solid: of terrain that is known better, its lowest place.
-double ground_height_of(const file::Mission& mission) {
-  const prior::SitePriors& site = priors_of(mission);
-  double height = mission.scene.position.z();
-  for (std::size_t i = 0; i < site.priors.size(); ++i) {
-    const prior::Prior& known = site.priors[i];
-    if (site.sources[i].role != prior::Role::terrain) continue;
-    height = std::min(height, known.box.min().z() - known.uncertainty);
-  }
-  return height;
-}
-
 /// How far above the ground that a pad stands on priors may have it.
 double ground_error_of(const file::Mission& mission) {
   double error = 0.0;
@@ -138,7 +126,8 @@ Vector3d pad_of(const file::Mission& mission, const Vector3d& first_view) {
   const AlignedBox3d box = unknown_box_of(mission);
   const Vector3d spare = Vector3d::Constant(pad_spare_of(mission));
   const Vector3d low = box.min() - spare, high = box.max() + spare;
-  Vector3d pad(first_view.x(), first_view.y(), mission.scene.position.z());
+  Vector3d pad(first_view.x(), first_view.y(), 0.0);
+  pad.z() = ground_at(mission, pad.head<2>());
   if (pad.x() <= low.x() || pad.x() >= high.x() || pad.y() <= low.y() || pad.y() >= high.y()) {
     return pad;
   }
@@ -152,6 +141,7 @@ Vector3d pad_of(const file::Mission& mission, const Vector3d& first_view) {
   } else {
     pad.y() = least == south ? low.y() : high.y();
   }
+  pad.z() = ground_at(mission, pad.head<2>());
   return pad;
 }
 

@@ -128,6 +128,23 @@ void derive_scene_box(file::Mission& mission) {
   see.scene_box = box;
 }
 
+double ground_height_of(const file::Mission& mission) {
+  const prior::SitePriors& site = priors_of(mission);
+  double height = mission.scene.position.z();
+  for (std::size_t i = 0; i < site.priors.size(); ++i) {
+    const prior::Prior& known = site.priors[i];
+    if (site.sources[i].role != Role::terrain) continue;
+    height = std::min(height, known.box.min().z() - known.uncertainty);
+  }
+  return height;
+}
+
+double ground_at(const file::Mission& mission, const Eigen::Vector2d& place) {
+  const auto& terrain = priors_of(mission).terrain;
+  const std::optional<double> known = terrain ? terrain->height(place) : std::nullopt;
+  return known.value_or(mission.scene.position.z());
+}
+
 bool is_truth_prior(const file::Mission& mission) {
   return mission.scene.model == targets_as_truth ||
          (mission.scene.model.empty() && has_role(mission, Role::truth));

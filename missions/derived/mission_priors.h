@@ -18,6 +18,13 @@ void read_priors(file::MissionFile& given);
 /// on every side.
 void derive_scene_box(file::Mission& mission);
 
+/// z below which everything is solid: the scene's, or of a terrain its lowest place less what that
+/// may be off, if it is lower.
+double ground_height_of(const file::Mission& mission);
+
+/// z of the ground at a place: the terrain's where it is known, else the scene's.
+double ground_at(const file::Mission& mission, const Eigen::Vector2d& place);
+
 /// Whether what the mission's sensor measures in simulation is prior data: of the role truth, or,
 /// if scene.model is "prior", the targets.
 bool is_truth_prior(const file::Mission& mission);

@@ -163,6 +163,7 @@ geometry::Mesh surfaces_of(const SitePriors& site, Role role) {
     for (const Object& object : site.priors[i].objects) {
       if (has_area(object.mesh)) geometry::append(mesh, object.mesh);
     }
+    geometry::append(mesh, mesh_of(triangles_of(site.priors[i].grid, 1)));
   }
   return mesh;
 }

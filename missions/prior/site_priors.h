@@ -31,7 +31,7 @@ SitePriors read_site_priors(std::vector<Source> sources, const SiteFrame& site,
 /// Everything within the prior's uncertainty of its surfaces, points and columns of heights.
 flight::PriorObstacleConfig obstacle_of(const Source& source, const Prior& prior);
 
-/// The surfaces of all objects of a role, one behind the other; empty: there are none.
+/// The surfaces of all objects and grids of a role, one behind the other; empty: there are none.
 geometry::Mesh surfaces_of(const SitePriors& site, Role role);
 
 }  // namespace skycap::missions::prior

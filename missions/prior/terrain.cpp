@@ -42,6 +42,17 @@ std::vector<flight::Triangle> triangles_of(const HeightGrid& grid, std::size_t s
   return triangles;
 }
 
+geometry::Mesh mesh_of(const std::vector<flight::Triangle>& triangles) {
+  geometry::Mesh mesh;
+  mesh.vertices.reserve(3 * triangles.size());
+  for (const flight::Triangle& triangle : triangles) {
+    const auto first = static_cast<std::uint32_t>(mesh.vertices.size());
+    mesh.vertices.insert(mesh.vertices.end(), triangle.begin(), triangle.end());
+    mesh.triangles.push_back({first, first + 1, first + 2});
+  }
+  return mesh;
+}
+
 struct Terrain::Impl {
   flight::TriangleTree surface;
 };
@@ -62,6 +73,8 @@ Terrain::Terrain(const std::vector<const Prior*>& priors) {
 }
 
 Terrain::~Terrain() = default;
+
+geometry::Mesh Terrain::surface() const { return mesh_of(impl_->surface.triangles); }
 
 std::optional<double> Terrain::height(const Eigen::Vector2d& place) const {
   const Segment plumb{{place.x(), place.y(), -far}, {place.x(), place.y(), far}};

@@ -21,6 +21,9 @@ class Terrain {
   /// z of the highest ground there; nothing where no file has any.
   std::optional<double> height(const Eigen::Vector2d& place) const;
 
+  /// All of it.
+  geometry::Mesh surface() const;
+
  private:
   struct Impl;
   std::unique_ptr<const Impl> impl_;
@@ -29,5 +32,8 @@ class Terrain {
 /// The triangles between a grid's nodes, two in each cell whose nodes all have heights; every
 /// `step`-th node is used.
 std::vector<flight::Triangle> triangles_of(const HeightGrid& grid, std::size_t step);
+
+/// The triangles, each with vertices of its own.
+geometry::Mesh mesh_of(const std::vector<flight::Triangle>& triangles);
 
 }  // namespace skycap::missions::prior

@@ -177,7 +177,7 @@ ReflectingScene reflecting_scene(const file::Mission& mission,
   result.reflectances.resize(result.model.triangles.size(), reflectance);
   result.places = copies_of(scene);
   if (scene.ground) {
-    result.ground = ground_under(with_copies(scene, result.model));
+    result.ground = ground_of(mission, with_copies(scene, result.model));
     result.ground_reflectances.resize(result.ground.triangles.size(), reflectance);
   }
   return result;
@@ -202,6 +202,11 @@ Vector3d ReflectingScene::centre() const {
     box.extend(geometry::bounding_box(model).transformed(place));
   }
   return box.center();
+}
+
+geometry::Mesh ground_of(const file::Mission& mission, const geometry::Mesh& placed_model) {
+  const auto& terrain = derived::priors_of(mission).terrain;
+  return terrain ? terrain->surface() : ground_under(placed_model);
 }
 
 geometry::Mesh ground_under(const geometry::Mesh& placed_model) {

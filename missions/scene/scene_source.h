@@ -46,6 +46,9 @@ struct ReflectingScene {
 /// materials is wrong.
 ReflectingScene reflecting_scene(const file::Mission& mission, const std::filesystem::path& folder);
 
+/// The ground that the sensor sees: the terrain of the mission's prior data, else ground_under().
+geometry::Mesh ground_of(const file::Mission& mission, const geometry::Mesh& placed_model);
+
 /// A square in the plane of the scene's base, ten times as wide as the model.
 geometry::Mesh ground_under(const geometry::Mesh& placed_model);
 

@@ -34,7 +34,7 @@ sim::Scene scene_of(const geometry::Mesh& model, const file::Mission& mission,
   }
   if (!mission.scene.ground) return sim::Scene(model, mission.threads);
   geometry::Mesh mesh = model;
-  geometry::append(mesh, ground_under(model));
+  geometry::append(mesh, ground_of(mission, model));
   return sim::Scene(mesh, mission.threads);
 }
 
