@@ -17,6 +17,9 @@ using Eigen::Vector3d;
 /// Stands for the end of a column that has none.
 constexpr double bottomless = -1e5;
 
+/// Stands for the far side of a column that has none.
+constexpr double without_end = 2e4;
+
 struct Part {
   std::string name;
   TriangleTree mesh;
@@ -112,7 +115,9 @@ PriorObstacle::Impl::Impl(const PriorObstacleConfig& config)
   points_tree = BoundingTree(boxes);
   columns.reserve(config.columns.size());
   for (const AlignedBox3d& column : config.columns) {
-    extent.extend(column);
+    // What goes on without end cannot be gone round: its far ends are no place to plan a path.
+    const double farthest = column.min().cwiseAbs().cwiseMax(column.max().cwiseAbs()).maxCoeff();
+    if (farthest < without_end) extent.extend(column);
     columns.push_back(endless(column));
   }
   columns_tree = BoundingTree(columns);

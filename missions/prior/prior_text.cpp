@@ -8,8 +8,6 @@
 namespace skycap::missions::prior {
 namespace {
 
-constexpr std::array role_names{"target", "obstacle", "terrain", "truth"};
-
 /// What it is made of: "3 objects of 154 triangles, 20 points".
 std::string contents_of(const Prior& prior) {
   std::string text;
@@ -33,8 +31,7 @@ std::string heights_text(const char* above, const std::optional<HeightRange>& he
 
 std::string text_of(const Source& source, const Prior& prior) {
   std::string text = fmt::format("  prior     {}: {}, {}, {}\n", source.file.filename().string(),
-                                 role_names[static_cast<std::size_t>(source.role)], prior.format,
-                                 contents_of(prior));
+                                 name_of(source.role), prior.format, contents_of(prior));
   constexpr const char* indent = "            ";
   if (!prior.box.isEmpty()) {
     const Eigen::Vector3d size = prior.box.sizes();
@@ -54,6 +51,11 @@ std::string text_of(const Source& source, const Prior& prior) {
 }
 
 }  // namespace
+
+const char* name_of(Role role) {
+  constexpr std::array names{"target", "obstacle", "terrain", "truth"};
+  return names[static_cast<std::size_t>(role)];
+}
 
 std::string text_of(const SitePriors& site) {
   std::string text;

@@ -7,6 +7,9 @@
 
 namespace skycap::missions::prior {
 
+/// As mission files say it.
+const char* name_of(Role role);
+
 /// Some lines for each source: what it holds, where that is, what its reader noted. Empty without
 /// any.
 std::string text_of(const SitePriors& site);

@@ -70,7 +70,7 @@ TEST(PriorKeys, SayAllThatASourceHas) {
 // What a package keeps of a mission is read back as the same sources.
 TEST(PriorKeys, AreReadBackFromSettings) {
   const file::MissionFile given = parsed(
-      "prior: [{file: tile.gml, role: target, base: terrain, place: {heading_deg: 30}},\n"
+      "prior: [{file: tile.gml, role: target, base: terrain, place: {heading_deg: 90}},\n"
       "        {file: x.las, role: obstacle, select: {classes: [6], attribute: {a: b}}}]\n");
   const file::Key& key = *file::find_key("prior");
   const std::string text = file::to_text(*key.get(given.mission));

@@ -1,4 +1,5 @@
 // Surveys with prior data: what is in the way, what is guessed, and what a package says of it.
+#include <cmath>
 #include <fstream>
 #include <iterator>
 #include <sstream>
@@ -12,6 +13,7 @@
 #include "missions/derived/mission_flight.h"
 #include "missions/derived/mission_priors.h"
 #include "missions/derived/resolved_mission.h"
+#include "missions/derived/site.h"
 #include "missions/package/package.h"
 #include "missions/package/target_coverage.h"
 #include "missions/run/survey_runner.h"
@@ -37,8 +39,8 @@ tests::ProgramRun run_skycap(const std::string& line) {
   return tests::run_skycap(std::vector<std::string>(std::istream_iterator<std::string>(words), {}));
 }
 
-/// A mast beside the unknown box of flown_mission(), where views and legs are else.
-const AlignedBox3d mast{Vector3d(-19, -3, 0), Vector3d(-16, 3, 25)};
+/// A mast between flown_mission()'s pad and its scene: where the first leg is else.
+const AlignedBox3d mast{Vector3d(-66, -3, 0), Vector3d(-64, 3, 25)};
 constexpr double uncertainty = 0.7;
 
 std::string with_obstacle(const std::filesystem::path& folder) {
@@ -118,6 +120,57 @@ TEST(PriorSurvey, SaysAtWhichKeyASourceIsWrong) {
               HasSubstr("key prior[0].base: of the terrain"));
   EXPECT_THAT(complaint("{file: a.obj, role: truth}"),
               HasSubstr("key prior[0].role: of truth takes the place of scene.model"));
+}
+
+/// A plane that rises eastward by a metre in 20, 100 m each way.
+double slope(double x) { return 0.05 * x; }
+geometry::Mesh hillside() {
+  return {{{-100, -100, slope(-100)},
+           {100, -100, slope(100)},
+           {100, 100, slope(100)},
+           {-100, 100, slope(-100)}},
+          {{0, 1, 2}, {0, 2, 3}}};
+}
+
+TEST(PriorSurvey, ATerrainIsTheGroundOfViewsPadsAndLegs) {
+  const TestFolder folder;
+  const std::filesystem::path file = folder.path() / "hill.obj";
+  geometry::write_mesh(file, hillside());
+  const file::Mission mission = derived::parse_mission(
+      flown_mission("prior: [{file: '" + file.string() + "', role: terrain, uncertainty: 0.2}]\n"),
+      "m.yaml", {{"--set", "flight.takeoff", "[-75, 0, -3.75]"}});
+  EXPECT_NEAR(derived::ground_at(mission, {40, 10}), slope(40), 1e-9);
+  EXPECT_EQ(derived::ground_at(mission, {400, 10}), 0.0) << "beyond it, the scene's";
+
+  const survey::ViewLimits limits = derived::view_limits(mission);
+  const auto allows = [&](double x, double z) {
+    return limits.allow(geometry::look_at({x, 0, z}, {0, 0, 5}));
+  };
+  const double clearance = mission.limits.ground_clearance.value();
+  EXPECT_TRUE(allows(40, slope(40) + clearance + 0.01));
+  EXPECT_FALSE(allows(40, slope(40) + clearance - 0.01));
+  EXPECT_TRUE(allows(-40, slope(-40) + clearance + 0.01)) << "lower than the scene's base";
+  // Wherever it is turned to, the view of a target stands high enough over its own place.
+  for (double azimuth = 0.0; azimuth < 6.28; azimuth += 0.1) {
+    const auto view = limits.view_of_target(
+        {0, 0, 3}, Vector3d(std::cos(azimuth), std::sin(azimuth), -0.2).normalized(), 30);
+    ASSERT_TRUE(view);
+    EXPECT_GE(view->position.z(), slope(view->position.x()) + clearance);
+  }
+
+  const flight::KnownSpace space(derived::flight_rules(mission));
+  const Vector3d place(50, 20, slope(50) + 6.0);
+  const double true_distance = 6.0 * std::cos(std::atan(0.05));
+  EXPECT_NEAR(space.distance(place, 100), true_distance - 0.2, 1e-6);
+  EXPECT_EQ(space.distance({300, 0, -5}, 100), 0.0) << "beyond it, solid up to the pad's height";
+
+  const run::SurveyRecord record = run::run_survey(mission, scene::SurveyScene(mission, ""), 1, 1);
+  ASSERT_GT(record.views.size(), 3U);
+  for (const run::FlownLeg& leg : record.flown->legs) {
+    for (const Vector3d& point : leg.points) {
+      EXPECT_GE((point.z() - slope(point.x())) * std::cos(std::atan(0.05)), 2.0 + 0.2);
+    }
+  }
 }
 
 /// The mission without its scene and scene box.
