@@ -18,12 +18,10 @@
 
 #include "flight/export/geodesy.h"
 #include "geometry/surfaces/mesh.h"
+#include "missions/prior/formats/meanings.h"
 #include "missions/prior/source.h"
 
 namespace skycap::missions::prior {
-
-/// What a file says that a surface is.
-enum class SurfaceKind : std::uint8_t { unknown, wall, roof, ground, opening, other };
 
 /// A thing with a name in its file: a building, an extruded polygon, a node of a scene.
 struct Object {
@@ -76,6 +74,11 @@ struct Prior {
 /// height), or puts anything farther than 50 km from the site. `terrain` is asked where
 /// `base_on_terrain` is set.
 Prior read_prior(const Source& source, const SiteFrame& site, const TerrainHeight& terrain = {});
+
+/// Where on the Earth the middle of what is selected of a file is, without its height: for those
+/// who do not know their site yet. Throws what read_prior() throws, and Error{bad_config} if the
+/// file has no reference system.
+flight::GeodeticPoint middle_of(const Source& source);
 
 /// Height of the geoid EGM96 above WGS84's ellipsoid, from PROJ's grid. Throws Error{bad_file} if
 /// PROJ or the grid is not installed.

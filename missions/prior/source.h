@@ -10,6 +10,8 @@
 
 #include <Eigen/Core>
 
+#include "missions/prior/formats/meanings.h"
+
 namespace skycap::missions::prior {
 
 /// What a file is to a survey. None of them ever proves that space is free.
@@ -18,13 +20,6 @@ enum class Role {
   obstacle,  ///< is in the way of every leg
   terrain,   ///< the ground: clearance over it, take-off, the base of extruded polygons
   truth,     ///< stands in for `scene.model`
-};
-
-/// What heights of a file count from.
-enum class HeightDatum {
-  ellipsoid,  ///< WGS84's
-  geoid,      ///< the file's own if PROJ has its grid, else EGM96, with a note
-  takeoff,    ///< the pad
 };
 
 /// What of a file is meant; what is empty selects everything.

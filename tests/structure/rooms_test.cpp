@@ -67,7 +67,8 @@ Rooms house() {
     add(m + room, std::move(all));
   };
   add_mission_room("plugins");
-  add_mission_room("prior", "plugins");
+  add_mission_room("prior/formats", "plugins");
+  add_mission_room("prior", "plugins", "prior/formats");
   add_mission_room("file", "prior");
   add_mission_room("judge");
   add_mission_room("equipment", "file");
