@@ -174,6 +174,11 @@ Prior read_prior(const Source& source, const SiteFrame& site, const TerrainHeigh
 
 flight::GeodeticPoint middle_of(const Source& source) {
   const FileContents contents = read_contents(source, {});
+  if (contents.crs.empty() && source.crs.empty()) {
+    throw Error(ErrorKind::bad_config, source.file.string() +
+                                           ": does not say which coordinates it is in; give crs, "
+                                           "such as \"EPSG:25832+7837\"");
+  }
   const SiteTransform transform(source, contents, {}, false);
   std::vector<Vector3d> places = contents.points;
   places.insert(places.end(), contents.nodes.begin(), contents.nodes.end());
@@ -200,6 +205,25 @@ flight::GeodeticPoint middle_of(const Source& source) {
   }
   if (box.isEmpty()) fail_file(source.file, "holds nothing that is somewhere on the Earth");
   return {box.center().y(), std::remainder(box.center().x(), 360.0), 0.0};
+}
+
+geometry::Mesh read_surfaces(const std::filesystem::path& file) {
+  Source source;
+  source.file = file;
+  source.vertical = HeightDatum::geoid;  // stand-ins will do: heights among each other count
+  source.base = 0.0;
+  SiteFrame site;
+  if (!read_contents(source, site).crs.empty()) {
+    site.origin = middle_of(source);
+  } else {
+    source.place = Place{};
+  }
+  geometry::Mesh mesh;
+  for (const Object& object : read_prior(source, site).objects) {
+    geometry::append(mesh, object.mesh);
+  }
+  if (mesh.triangles.empty()) fail_file(file, "holds no surfaces; a mesh is wanted");
+  return mesh;
 }
 
 }  // namespace skycap::missions::prior

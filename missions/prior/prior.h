@@ -7,6 +7,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <filesystem>
 #include <functional>
 #include <map>
 #include <optional>
@@ -79,6 +80,10 @@ Prior read_prior(const Source& source, const SiteFrame& site, const TerrainHeigh
 /// who do not know their site yet. Throws what read_prior() throws, and Error{bad_config} if the
 /// file has no reference system.
 flight::GeodeticPoint middle_of(const Source& source);
+
+/// All surfaces of a file as one mesh in metres with z up, about the middle of what they are in:
+/// what simulated sensors see of a site. Throws what read_prior() throws.
+geometry::Mesh read_surfaces(const std::filesystem::path& file);
 
 /// Height of the geoid EGM96 above WGS84's ellipsoid, from PROJ's grid. Throws Error{bad_file} if
 /// PROJ or the grid is not installed.

@@ -39,8 +39,11 @@ flight::GeodeticPoint geodetic_point(const Vector3d& place) {
 SiteTransform::SiteTransform(const Source& source, const FileContents& contents,
                              const SiteFrame& site, bool needs_heights)
     : file_(source.file), needs_heights_(needs_heights), origin_(site.origin) {
-  if (source.place || (contents.is_local_frame && source.crs.empty())) {
+  if (source.place || (contents.crs.empty() && source.crs.empty())) {
     prepare_place(source, contents);
+    if (!source.place && !contents.is_local_frame) {
+      notes_.push_back("it names no reference system: taken to be in the mission's frame");
+    }
   } else {
     prepare_crs(source, contents, site);
   }
@@ -57,20 +60,13 @@ void SiteTransform::prepare_place(const Source& source, const FileContents& cont
   prepared_ = Eigen::Translation3d(place.position) * heading * Eigen::Translation3d(source.offset) *
               upright(contents.is_y_up.value_or(source.is_y_up)) * Eigen::Scaling(unit);
   metres_per_unit_ = Vector3d::Constant(unit);
-  name_ = "the site's frame";
+  name_ = "the mission's frame";
 }
 
 void SiteTransform::prepare_crs(const Source& source, const FileContents& contents,
                                 const SiteFrame& site) {
-  const std::string& crs = source.crs.empty() ? contents.crs : source.crs;
-  if (crs.empty()) {
-    throw Error(ErrorKind::bad_config,
-                file_.string() +
-                    ": does not say which coordinates it is in; give crs, such as "
-                    "\"EPSG:25832+7837\", or its place in the site's frame");
-  }
   ReferenceRequest request;
-  request.crs = crs;
+  request.crs = source.crs.empty() ? contents.crs : source.crs;
   request.is_latitude_first = source.crs.empty() && contents.is_latitude_first;
   request.vertical = source.vertical;
   request.vertical_if_silent = contents.vertical;

@@ -21,8 +21,8 @@ inline constexpr double farthest_from_site = 50'000.0;
 class SiteTransform {
  public:
   /// Without `needs_heights` z is not looked at, and places come out at the height of the site's
-  /// origin. Throws Error{bad_config} if source, file and site together do not say where things
-  /// are; what geodetic_transform() throws.
+  /// origin. What names no reference system is in the mission's frame. Throws Error{bad_config} if
+  /// source, file and site together do not say where things are; what geodetic_transform() throws.
   SiteTransform(const Source& source, const FileContents& contents, const SiteFrame& site,
                 bool needs_heights = true);
 

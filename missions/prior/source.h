@@ -39,7 +39,8 @@ struct Place {
 };
 
 /// In this order a coordinate of the file is multiplied by `unit`, turned upright by `up_axis`,
-/// moved by `offset`, and brought into the site's frame by `place` or by the reference system.
+/// moved by `offset`, and brought into the site's frame by `place` or by the reference system;
+/// without either it is in that frame. On maps `unit` is of heights alone.
 struct Source {
   std::filesystem::path file;  ///< absolute, or as from the running program
   Role role = Role::obstacle;

@@ -13,6 +13,7 @@
 #include "missions/derived/mission_priors.h"
 #include "missions/file/number_text.h"
 #include "missions/file/yaml_tree.h"
+#include "missions/prior/prior.h"
 #include "missions/scene/model_store.h"
 #include "sim/models/models.h"
 
@@ -34,7 +35,8 @@ geometry::Mesh named_model(const file::SceneConfig& scene, const std::filesystem
   if (model.starts_with(stored)) {
     return geometry::read_mesh(find_model(model.substr(stored.size())));
   }
-  return geometry::read_mesh(folder / model);
+  const std::filesystem::path file = folder / model;
+  return geometry::is_mesh_file(file) ? geometry::read_mesh(file) : prior::read_surfaces(file);
 }
 
 Vector3d middle_of_base(const geometry::Mesh& mesh) {

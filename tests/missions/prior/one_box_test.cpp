@@ -221,9 +221,9 @@ TEST_F(OneBox, WithoutADatumOfHeightsIsRefused) {
               ThrowsMessage<Error>(HasSubstr("give vertical: ellipsoid, geoid or takeoff")));
 }
 
-TEST_F(OneBox, WithoutACrsIsRefused) {
+TEST_F(OneBox, OfAMapWithoutACrsIsNotTakenForTheSitesFrame) {
   EXPECT_THAT([&] { read("cube.obj", obj_of(cube_), [](Source& s) { s.crs.clear(); }); },
-              ThrowsMessage<Error>(HasSubstr("give crs, such as")));
+              ThrowsMessage<Error>(HasSubstr("give its crs, such as")));
 }
 
 TEST_F(OneBox, IsWhatSelectLetsThrough) {
