@@ -91,8 +91,8 @@ void ObjectBuilder::add_solids(const FileObject& object, Object& result) {
   const double least =
       source_.min_height > 0.0 ? source_.min_height : object.min_height.value_or(0.0);
   if (!(*height > least)) {
-    throw Error(ErrorKind::bad_config, source_.file.string() + ": the height of " + object.id +
-                                           ", " + std::to_string(*height) +
+    throw Error(ErrorKind::bad_config, source_.file.string() + ": the height of " +
+                                           one_line(object.id) + ", " + std::to_string(*height) +
                                            " m, is not above where it begins, " +
                                            std::to_string(least) + " m");
   }

@@ -40,7 +40,7 @@ bool matches(const Selection& select, const FileObject& object) {
                          const FileContents& contents) {
   std::string some;
   for (std::size_t i = 0; i < std::min<std::size_t>(5, contents.objects.size()); ++i) {
-    some += (some.empty() ? "" : ", ") + contents.objects[i].id.substr(0, 100);
+    some += (some.empty() ? "" : ", ") + one_line(contents.objects[i].id.substr(0, 100));
   }
   throw Error(ErrorKind::bad_config, source.file.string() + ": holds no object " + what +
                                          (some.empty() ? "" : "; it holds " + some) +

@@ -79,7 +79,7 @@ void SiteTransform::prepare_crs(const Source& source, const FileContents& conten
   try {
     geodetic_ = geodetic_transform(request);
   } catch (const Error& error) {
-    throw Error(error.kind(), file_.string() + ": " + error.what());
+    throw Error(error.kind(), file_.string() + ": " + one_line(error.what()));
   }
   name_ = geodetic_->name;
   notes_ = geodetic_->notes;

@@ -75,7 +75,10 @@ struct FileContents {
 inline constexpr std::size_t most_polygons = 50'000'000, most_cells = 100'000'000,
                              most_corners = 1'000'000'000, most_bytes = std::size_t{2} << 30;
 
-/// Throws Error{bad_file}: "FILE: WHAT".
+/// What a file says, for a message: line ends and other control characters become blanks.
+std::string one_line(std::string text);
+
+/// Throws Error{bad_file}: "FILE: WHAT", in one line.
 [[noreturn]] void fail_file(const std::filesystem::path& file, const std::string& what);
 
 /// CityGML 1 to 3, by local names (OGC 08-007r1, 12-019, 20-010). A polygon belongs to the nearest

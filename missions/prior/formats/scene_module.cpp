@@ -3,6 +3,7 @@
 #include <cmath>
 #include <string>
 
+#include <assimp/DefaultIOSystem.h>
 #include <assimp/Importer.hpp>
 #include <assimp/postprocess.h>
 #include <assimp/scene.h>
@@ -13,6 +14,27 @@ namespace skycap::missions::prior {
 namespace {
 
 constexpr int deepest = 60;  ///< of nodes, as of objects in selection.cpp
+
+/// Opens files of one folder alone: buffers and materials beside a scene, and nothing that a scene
+/// names elsewhere.
+class OneFolder final : public Assimp::DefaultIOSystem {
+ public:
+  explicit OneFolder(const std::filesystem::path& file) : folder_(folder_of(file)) {}
+
+  Assimp::IOStream* Open(const char* file, const char* mode) override {
+    const bool is_for_reading = mode != nullptr && mode[0] == 'r';
+    if (!is_for_reading || folder_of(file) != folder_) return nullptr;
+    return Assimp::DefaultIOSystem::Open(file, mode);
+  }
+
+ private:
+  /// Links are followed, so that none leads out.
+  static std::filesystem::path folder_of(const std::filesystem::path& file) {
+    std::error_code failure;
+    return std::filesystem::weakly_canonical(file, failure).parent_path();
+  }
+  std::filesystem::path folder_;
+};
 
 Eigen::Affine3d affine_of(const aiMatrix4x4& m) {
   Eigen::Affine3d result;
@@ -83,6 +105,7 @@ void SceneReader::add_mesh(const aiMesh& mesh, const Eigen::Affine3d& world_from
 
 extern "C" void skycap_read_scene(const std::filesystem::path& file, FileContents& contents) {
   Assimp::Importer importer;
+  importer.SetIOHandler(new OneFolder(file));  // the importer owns it
   const aiScene* const scene =
       importer.ReadFile(file.string(), aiProcess_Triangulate | aiProcess_GlobalScale |
                                            aiProcess_ValidateDataStructure);
