@@ -85,7 +85,7 @@ void ObjectBuilder::add_solids(const FileObject& object, Object& result) {
   const std::optional<double> height = source_.height ? source_.height : object.height;
   if (!height) {
     throw Error(ErrorKind::bad_config, source_.file.string() + ": does not say how high " +
-                                           object.id +
+                                           one_line(object.id) +
                                            " is; give height, in metres above its base");
   }
   const double least =
