@@ -1,5 +1,6 @@
 #include "geometry/io/cloud_io.h"
 
+#include <algorithm>
 #include <bit>
 #include <cassert>
 #include <cmath>
@@ -134,6 +135,16 @@ AttributedCloud read_cloud(const fs::path& path) {
   AttributedCloud cloud = format->second(path, read_file(path));
   if (cloud.positions.empty()) fail_cloud(path, "holds no points");
   return cloud;
+}
+
+void read_positions(const fs::path& path, const TakePositions& take) {
+  constexpr std::size_t most = 1'000'000;
+  const std::vector<Eigen::Vector3f> positions = read_cloud(path).positions;
+  for (std::size_t begin = 0; begin < positions.size(); begin += most) {
+    const std::size_t count = std::min(most, positions.size() - begin);
+    take(std::span(positions).subspan(begin, count),
+         static_cast<double>(begin + count) / static_cast<double>(positions.size()));
+  }
 }
 
 void write_cloud(const fs::path& path, const CloudColumns& cloud) {

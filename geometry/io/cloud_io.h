@@ -5,6 +5,7 @@
 #include <array>
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <span>
 #include <vector>
 
@@ -40,6 +41,12 @@ inline CloudColumns columns_of(const AttributedCloud& cloud) {
 /// Error{bad_file} in one line, also for coordinates that are not finite, and for such so far from
 /// the origin that single precision would move them by a millimetre.
 AttributedCloud read_cloud(const std::filesystem::path& path);
+
+/// Takes a piece of a file's points, and the share of the file that is read with it.
+using TakePositions = std::function<void(std::span<const Eigen::Vector3f> piece, double share)>;
+
+/// The positions of what read_cloud() reads, in pieces of up to a million and in their order.
+void read_positions(const std::filesystem::path& path, const TakePositions& take);
 
 /// Writes binary little-endian PLY: x y z as float and then, of what is there, nx ny nz as float,
 /// view as uint, red green blue as uchar. Complete or not at all. Throws Error{bad_file}.
