@@ -59,6 +59,14 @@ class Module(unittest.TestCase):
             ran = subprocess.run([interpreter, *command], capture_output=True, text=True,
                                  cwd=STUBS.parent, check=False)
             self.assertEqual(ran.returncode, 0, ran.stdout + ran.stderr)
+        for use, is_right in (("x: float = skycap.model('teapot').area", True),
+                              ("for piece in skycap.scan(skycap.Mission.load('m')): len(piece)", True),
+                              ("x: str = skycap.model('teapot').area", False),
+                              ("skycap.Planner(skycap.Mission.load('m')).next_view()", False)):
+            ran = subprocess.run([interpreter, "-m", "mypy", "--strict", "-c",
+                                  "import skycap\n" + use], capture_output=True, text=True,
+                                 cwd=STUBS.parent, check=False)
+            self.assertEqual(ran.returncode == 0, is_right, use + "\n" + ran.stdout)
 
 
 class Errors(SmallMission):
