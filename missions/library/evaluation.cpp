@@ -4,8 +4,8 @@
 #include <string>
 
 #include "geometry/error.h"
+#include "missions/judge/accuracy.h"
 #include "missions/judge/coverage.h"
-#include "missions/judge/evaluation.h"
 
 namespace skycap::missions::library {
 namespace {
@@ -38,7 +38,9 @@ Evaluation evaluate(std::span<const Eigen::Vector3f> points, const geometry::Mes
   const geometry::SurfaceSamples samples = geometry::sample_surface(model, request.samples, 1);
   judge::CoverageMeter meter(samples.points, request.distance);
   meter.add(points);
-  const judge::CloudAccuracy accuracy = judge::cloud_accuracy(points, model, request.threads);
+  judge::AccuracyMeter distances(model, request.threads);
+  distances.add(points);
+  const judge::CloudAccuracy accuracy = distances.accuracy();
   const double area = geometry::surface_area(model);
   return {.coverage = meter.share(),
           .mean = accuracy.mean,
