@@ -123,16 +123,19 @@ AttributedCloud read_cloud(const fs::path& path) {
   if (inner.extension() == ".gz") inner = inner.stem();
   const std::string ending = inner.extension().string();
   using Parse = AttributedCloud (*)(const fs::path&, std::string_view);
-  const std::map<std::string, Parse> formats = {
-      {".ply", parse_ply_cloud}, {".pcd", parse_pcd_cloud}, {".las", parse_las_cloud},
-      {".xyz", parse_xyz_cloud}, {".txt", parse_xyz_cloud}, {".asc", parse_xyz_cloud}};
+  const std::map<std::string, Parse> formats = {{".ply", parse_ply_cloud},
+                                                {".pcd", parse_pcd_cloud},
+                                                {".xyz", parse_xyz_cloud},
+                                                {".txt", parse_xyz_cloud},
+                                                {".asc", parse_xyz_cloud}};
   const auto format = formats.find(ending);
-  if (format == formats.end()) {
+  if (format == formats.end() && ending != ".las") {
     fail_cloud(path,
                "a cloud file must end in .ply, .pcd, .las, .xyz, .txt or .asc (or with .gz after "
                "it)");
   }
-  AttributedCloud cloud = format->second(path, read_file(path));
+  AttributedCloud cloud =
+      ending == ".las" ? read_las_cloud(path) : format->second(path, read_file(path));
   if (cloud.positions.empty()) fail_cloud(path, "holds no points");
   return cloud;
 }
