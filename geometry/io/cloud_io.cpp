@@ -96,6 +96,11 @@ void append_bytes(std::string& bytes, const Value& value) {
   bytes.append(reinterpret_cast<const char*>(&value), sizeof(value));
 }
 
+/// Of the file that gzip may have compressed.
+std::string ending_of(const fs::path& path) {
+  return (path.extension() == ".gz" ? path.stem() : path).extension().string();
+}
+
 }  // namespace
 
 void fail_cloud(const fs::path& path, const std::string& what) {
@@ -119,9 +124,7 @@ Eigen::Vector3f cloud_position(const fs::path& path, std::size_t point, double x
 }
 
 AttributedCloud read_cloud(const fs::path& path) {
-  fs::path inner = path;
-  if (inner.extension() == ".gz") inner = inner.stem();
-  const std::string ending = inner.extension().string();
+  const std::string ending = ending_of(path);
   using Parse = AttributedCloud (*)(const fs::path&, std::string_view);
   const std::map<std::string, Parse> formats = {{".ply", parse_ply_cloud},
                                                 {".pcd", parse_pcd_cloud},
@@ -141,10 +144,10 @@ AttributedCloud read_cloud(const fs::path& path) {
 }
 
 void read_positions(const fs::path& path, const TakePositions& take) {
-  constexpr std::size_t most = 1'000'000;
+  if (ending_of(path) == ".las") return read_las_positions(path, take);
   const std::vector<Eigen::Vector3f> positions = read_cloud(path).positions;
-  for (std::size_t begin = 0; begin < positions.size(); begin += most) {
-    const std::size_t count = std::min(most, positions.size() - begin);
+  for (std::size_t begin = 0; begin < positions.size(); begin += piece_size) {
+    const std::size_t count = std::min(piece_size, positions.size() - begin);
     take(std::span(positions).subspan(begin, count),
          static_cast<double>(begin + count) / static_cast<double>(positions.size()));
   }
