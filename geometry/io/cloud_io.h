@@ -1,5 +1,5 @@
 /// Point clouds from and to files: PLY (any properties in any order, ascii and binary), PCD,
-/// LAS 1.4 and XYZ text.
+/// LAS 1.0 to 1.4 and XYZ text.
 #pragma once
 
 #include <array>
@@ -34,8 +34,8 @@ inline CloudColumns columns_of(const AttributedCloud& cloud) {
   return {cloud.positions, cloud.normals, cloud.views, cloud.colours};
 }
 
-/// Reads .ply; .pcd (text, binary or compressed; points of NaN are passed over); .las (version 1.4,
-/// points of format 6 or 7, not compressed); or .xyz, .txt, .asc: lines of x y z (further columns
+/// Reads .ply; .pcd (text, binary or compressed; points of NaN are passed over); .las (versions 1.0
+/// to 1.4, points of format 0 to 10, not compressed); or .xyz, .txt, .asc: lines of x y z (further columns
 /// are passed over, '#' begins a comment); also gzip-compressed. Other properties and elements are
 /// passed over. Throws
 /// Error{bad_file} in one line, also for coordinates that are not finite, and for such so far from
