@@ -13,6 +13,7 @@
 #include <Eigen/Geometry>
 
 #include "flight/motion/flight_style.h"
+#include "flight/motion/picture_bounds.h"
 #include "flight/motion/vehicle.h"
 #include "geometry/place/prism.h"
 #include "sim/models/models.h"
@@ -58,6 +59,8 @@ struct SensorConfig {
   /// What `lidar` names; `camera` is then forward_camera() of it (survey_sensor.h), by which
   /// planners choose views. Its seed is the mission's.
   std::optional<sim::LidarConfig> scanner;
+  flight::Shutter shutter{.exposure = 0.01, .readout = 0.0};
+  double settle = 0.0;  ///< at rest before a picture, for the sensor's own sake [s]
 };
 
 enum class PlannerName { see_plus_plus, see, skycap, rsv, rse, oa, uv, pc, af, ae };

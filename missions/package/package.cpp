@@ -15,6 +15,7 @@
 #include "geometry/place/pose.h"
 #include "geometry/place/world.h"
 #include "geometry/surfaces/mesh.h"
+#include "missions/derived/mission_flight.h"
 #include "missions/derived/resolved_mission.h"
 #include "missions/file/json_text.h"
 #include "missions/file/mission_keys.h"
@@ -205,6 +206,7 @@ std::optional<SurveyMission> stage_package(const file::Mission& mission,
     folder.write(free_space_name, free_space.str());
     flight = SurveyMission{};
     try {
+      flight->pictures = derived::picture_bounds_of(mission);
       flight->route = plan_flight(mission, *record.flown->measured, record.flown->pad,
                                   views_of(record), ways_of(*record.flown), stop);
       if (flight->route.sorties.empty() && !flight->route.unreached.empty()) {

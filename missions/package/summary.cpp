@@ -137,6 +137,13 @@ Json json_of(const flight::Leg& leg, const Json& from, const Json& to) {
           {"points", json_of(leg.points)}};
 }
 
+Json pictures_summary(const SurveyMission& flight) {
+  if (!flight.pictures) return {};
+  return {{"blur_px", flight.pictures->blur_px},
+          {"shear_px", flight.pictures->shear_px},
+          {"distance_m", flight.pictures->distance}};
+}
+
 /// The sortie's legs from above the pad and back there; they lead from view to view, null stands
 /// for the pad.
 Json legs_of(const flight::Route& route, const flight::Sortie& sortie) {
@@ -204,6 +211,7 @@ Json flight_summary(const run::FlownSurvey& flown, const SurveyMission& flight) 
             {"sorties", sorties},
             {"unreached", unreached}}},
           {"return", return_summary(flight)},
+          {"pictures", pictures_summary(flight)},
           {"files", files},
           {"notes", flight.files.notes}};
 }
