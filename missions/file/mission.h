@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <numbers>
 #include <optional>
 #include <string>
@@ -16,6 +17,7 @@
 #include "flight/motion/picture_bounds.h"
 #include "flight/motion/vehicle.h"
 #include "geometry/place/prism.h"
+#include "missions/prior/source.h"
 #include "sim/models/models.h"
 #include "sim/sensors/depth_camera_config.h"
 #include "sim/sensors/navigation_errors.h"
@@ -23,6 +25,10 @@
 #include "survey/see/see_config.h"
 #include "survey/skycap/skycap_config.h"
 #include "survey/volumetric/volumetric_config.h"
+
+namespace skycap::missions::prior {
+struct SitePriors;
+}
 
 namespace skycap::missions::file {
 
@@ -205,6 +211,8 @@ struct Mission {
   SiteConfig site;
   Georeference georeference;
   FlightConfig flight;
+  std::vector<prior::Source> prior;
+  std::shared_ptr<const prior::SitePriors> priors;  ///< what those say, see derived::resolved()
   EvaluationConfig evaluation;
   ScanConfig scan;
   ReferenceConfig paper;

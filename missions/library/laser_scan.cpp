@@ -39,7 +39,7 @@ struct LaserScan::Impl {
         lidar(scanner_of(contents, request)),
         flown(recording::scan_flight(contents.mission, contents.folder, request.route,
                                      recording::Carrier::airframe)),
-        scene(scene::reflecting_scene(contents.mission.scene, contents.folder).scene(threads)),
+        scene(scene::reflecting_scene(contents.mission, contents.folder).scene(threads)),
         firings(lidar.firings(flown.route.carrier)),
         parts(parts_in_piece) {
     recording::require_measurable(lidar, flown.route.carrier);

@@ -1,14 +1,16 @@
 /// summary.json: all that a survey says of itself.
 
-#include <type_traits>
 #include <utility>
 
 #include <nlohmann/json.hpp>
 
+#include "missions/derived/mission_priors.h"
 #include "missions/file/json_text.h"
 #include "missions/file/mission_keys.h"
+#include "missions/file/setting_json.h"
 #include "missions/package/holes.h"
 #include "missions/package/package.h"
+#include "missions/package/target_coverage.h"
 #include "missions/version.h"
 
 namespace skycap::missions::package {
@@ -23,41 +25,6 @@ Json json_of(const std::vector<survey::PartTime>& times) {
   Json parts = Json::object();
   for (const auto& [part, seconds] : times) parts[part] = seconds;
   return parts;
-}
-
-Json json_of(const std::vector<Eigen::Vector2d>& polygon) {
-  Json corners = Json::array();
-  for (const Eigen::Vector2d& corner : polygon) corners.push_back({corner.x(), corner.y()});
-  return corners;
-}
-
-Json json_of(const std::vector<geometry::Prism>& volumes) {
-  Json list = Json::array();
-  for (const geometry::Prism& volume : volumes) {
-    list.push_back({{"corners", json_of(volume.footprint)},
-                    {"bottom", volume.floor},
-                    {"top", volume.ceiling}});
-  }
-  return list;
-}
-
-Json json_of(const std::vector<Eigen::Vector3d>& vectors) {
-  Json list = Json::array();
-  for (const Eigen::Vector3d& vector : vectors) list.push_back(json_of(vector));
-  return list;
-}
-
-Json setting_json(const file::KeyValue& value) {
-  return std::visit(
-      [](const auto& plain) -> Json {
-        using Value = std::decay_t<decltype(plain)>;
-        if constexpr (std::is_arithmetic_v<Value> || std::is_same_v<Value, std::string>) {
-          return plain;
-        } else {
-          return json_of(plain);
-        }
-      },
-      value);
 }
 
 /// What the planner believes at the end: shares are of the surface, seen and guessed.
@@ -100,6 +67,22 @@ Json surface_summary(const run::SurveyRecord& record, const CoverageFigures& cov
           {"rest_m2", missing.rest}};
 }
 
+Json json_of(const CoveredPart& part) {
+  return {{"name", part.name}, {"area_m2", part.area}, {"coverage", part.covered}};
+}
+
+Json targets_summary(const std::vector<TargetCoverage>& targets) {
+  Json list = Json::array();
+  for (const TargetCoverage& target : targets) {
+    Json json = json_of(target.object);
+    json["within_m"] = target.radius;
+    json["kinds"] = Json::array();
+    for (const CoveredPart& kind : target.kinds) json["kinds"].push_back(json_of(kind));
+    list.push_back(std::move(json));
+  }
+  return list;
+}
+
 std::string value_text(const file::Mission& mission, const char* key) {
   return file::to_text(*file::find_key(key)->get(mission));
 }
@@ -108,7 +91,7 @@ std::string value_text(const file::Mission& mission, const char* key) {
 Json settings(const file::Mission& mission) {
   Json values = Json::object();
   for (const file::Key& key : file::mission_keys()) {
-    if (const auto value = key.get(mission)) values[key.path] = setting_json(*value);
+    if (const auto value = key.get(mission)) values[key.path] = file::setting_json(*value);
   }
   return values;
 }
@@ -271,6 +254,9 @@ std::string summary_json(const file::Mission& mission, const run::SurveyRecord& 
                {"distance_m", record.distance()},
                {"belief", belief_summary(record)},
                {"surface", surface_summary(record, coverage)}};
+  if (derived::has_target(mission)) {
+    summary["targets"] = targets_summary(target_coverage(mission, record.cloud.positions));
+  }
   if (flight && flight->failure.empty()) {
     summary["route_length_m"] = flight->route.length;
     summary["min_clearance_m"] = flight->route.min_clearance;

@@ -71,7 +71,7 @@ class SurveyScene {
   std::shared_ptr<const geometry::MeshDistance> truth_;  ///< if a stand-off needs it
 };
 
-/// The mission's mesh as surveyed: loaded and placed, without ground.
-geometry::Mesh placed_model(const file::SceneConfig& scene, const std::filesystem::path& folder);
+/// The mission's mesh as surveyed: loaded and placed, or as its prior data has it; without ground.
+geometry::Mesh placed_model(const file::Mission& mission, const std::filesystem::path& folder);
 
 }  // namespace skycap::missions::scene

@@ -9,10 +9,12 @@
 #include "geometry/error.h"
 #include "geometry/surfaces/mesh.h"
 #include "missions/derived/mission_flight.h"
+#include "missions/derived/mission_priors.h"
 #include "missions/derived/resolved_mission.h"
 #include "missions/file/number_text.h"
 #include "missions/file/planner_titles.h"
 #include "missions/package/package.h"
+#include "missions/prior/prior_text.h"
 #include "missions/scene/survey_scene.h"
 #include "missions/verbs/check_returns.h"
 #include "missions/verbs/true_space.h"
@@ -49,7 +51,7 @@ std::vector<Eigen::Vector3d> places_of(const flight::FlownRoute& route) {
 /// Errors of the mission's model name the mission, too.
 geometry::Mesh model_of(const file::Mission& mission, const std::filesystem::path& file) {
   try {
-    return scene::placed_model(mission.scene, file.parent_path());
+    return scene::placed_model(mission, file.parent_path());
   } catch (const Error& error) {
     throw Error(error.kind(), file.string() + ": " + error.what());
   }
@@ -112,7 +114,7 @@ int check(const CheckOptions& options, const Console& console) {
                      options.mission.string(), model.triangles.size(), size.x(), size.y(), size.z(),
                      geometry::surface_area(model), file::title_of(mission.planner.name).word,
                      view_distance, see.effective_spacing(), see.effective_core_threshold())
-              << std::flush;
+              << prior::text_of(derived::priors_of(mission)) << std::flush;
   return 0;
 }
 

@@ -41,6 +41,9 @@ void add_plan(CLI::App& app, const Console& console, Action& action) {
                  "Go on with the survey that was interrupted in that folder, if there is one");
   verb->add_flag("!--no-report", options->has_report, "Leave out report.html");
   verb->add_flag("--quiet", options->is_quiet, "Print nothing but errors");
+  verb->add_option("--dry-run", keys->dry_run,
+                   "prior: the targets among the mission's prior data stand in for the truth")
+      ->check(CLI::IsMember({"prior"}));
   verb->add_flag("--verbose", options->is_verbose, "Print the planning time of each view by part");
   add_set_option(*verb, *keys);
   run_with_keys(*verb, options, keys, plan, console, action);

@@ -36,7 +36,7 @@ Truth truth_of(const EvaluateOptions& options) {
   if (is_mission_file(options.model)) {
     const std::filesystem::path file = options.model;
     const file::Mission mission = derived::read_mission(file);
-    return {scene::placed_model(mission.scene, file.parent_path()),
+    return {scene::placed_model(mission, file.parent_path()),
             options.distance.value_or(mission.evaluation.registration_distance),
             mission.evaluation.samples};
   }

@@ -11,6 +11,7 @@
 #include "missions/derived/resolved_mission.h"
 #include "missions/package/flight_report.h"
 #include "missions/package/package.h"
+#include "missions/package/target_coverage.h"
 #include "missions/report/survey_report.h"
 #include "missions/run/survey_runner.h"
 #include "missions/scene/survey_scene.h"
@@ -61,7 +62,10 @@ std::string summary_text(const file::Mission& mission, const run::SurveyRecord& 
   text += "  coverage  " + percent(coverage.all) + " of the surface";
   if (coverage.visible) text += ", " + percent(*coverage.visible) + " of what is visible";
   if (coverage.ceiling) text += "; attainable " + percent(*coverage.ceiling);
-  text += "\n  planning  " + seconds(record.planning_time()) + " (";
+  text += "\n" + package::target_text(package::target_coverage(mission, record.cloud.positions));
+  if (mission.scene.model == "prior")
+    text += "  truth     the targets' prior data stand in for it\n";
+  text += "  planning  " + seconds(record.planning_time()) + " (";
   bool is_first = true;
   for (const auto& [part, time] : package::planning_time_by_part(record)) {
     text += (is_first ? "" : ", ") + part + " " + seconds(time);

@@ -193,7 +193,7 @@ int scan_with_laser(const ScanVerbOptions& options, const file::Mission& mission
   ProgressLine progress(console, options.is_quiet);
   progress.show(mission.name + ": making the scene ready");
   const scene::ReflectingScene truth =
-      scene::reflecting_scene(mission.scene, options.mission.parent_path());
+      scene::reflecting_scene(mission, options.mission.parent_path());
   const sim::Scene scene = truth.scene(mission.threads);
   LaserRecording recorded{.sensor = sensor_name};
   std::vector<recording::CloudFile> files = open_files(
@@ -254,7 +254,7 @@ int scan_with_camera(const ScanVerbOptions& options, const file::Mission& missio
   ProgressLine progress(console, options.is_quiet);
   progress.show(mission.name + ": making the scene ready");
   const sim::Scene scene =
-      scene::reflecting_scene(mission.scene, options.mission.parent_path()).scene(mission.threads);
+      scene::reflecting_scene(mission, options.mission.parent_path()).scene(mission.threads);
   const auto report = [&](std::size_t taken, std::size_t points) {
     progress.show(fmt::format("{}: image {} of {}, {:.1f} M points", mission.name, taken,
                               frames.size(), 1e-6 * static_cast<double>(points)));

@@ -93,6 +93,7 @@ struct SkycapPlanner::Impl {
     unseen.emplace(
         UnseenSurfaceSettings{.steps = config.ideas.unseen_surface ? config.continuation_steps : 0,
                               .learns_rates = config.ideas.learned_rates});
+    if (config.prior) unseen->expect({*config.prior, static_cast<float>(h)});
   }
 
   std::vector<BlockImage> reduce(const ScanSpan& scan) const {

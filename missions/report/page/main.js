@@ -92,6 +92,7 @@ async function show() {
   view_section(data, clouds, skycap);
   await load_library("chart");
   const sections = [
+    targets_section(data),
     holes_section(data, (number) => skycap.panel && skycap.panel.tell_hole(number)),
     survey_charts(data), flight_section(data), accuracy_section(data), files_section(data),
     settings_section(data), how_section()];

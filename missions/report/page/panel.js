@@ -112,7 +112,8 @@ class Panel {
       rows.push(...ramp_legend("route: proven clearance", { stops: nearness_stops,
         low: shown(asked, "metres"), high: "from " + shown(asked + told_apart, "metres") }));
     }
-    const roles = new Set(((this.data.scene && this.data.scene.volumes) || []).map((volume) => volume.role));
+    const scene = this.data.scene || {};
+    const roles = new Set([...(scene.volumes || []), ...(scene.priors || [])].map((one) => one.role));
     for (const role of roles) {
       const look = volume_looks[role], colour = new THREE.Color(look.colour);
       rows.push(element("div", { class: "row" },

@@ -88,7 +88,27 @@ const volume_looks = {
   geofence: { colour: 0x3aa0e0, opacity: 0.04, name: "geofence" },
   unknown: { colour: 0xd8b24a, opacity: 0, name: "unknown until measured" },
   scene: { colour: 0xb0c4d0, opacity: 0, name: "to be surveyed" },
+  target: { colour: 0x58b07a, opacity: 0.3, name: "prior: target" },
+  obstacle: { colour: 0xe0703c, opacity: 0.5, name: "prior: obstacle" },
+  terrain: { colour: 0x9a8f6a, opacity: 0.5, name: "prior: terrain" },
+  truth: { colour: 0xb8c8d8, opacity: 0.3, name: "prior: truth" },
 };
+
+/// Surfaces of prior data.
+function prior_group(data) {
+  const group = new THREE.Group();
+  for (const prior of (data.scene && data.scene.priors) || []) {
+    const look = volume_looks[prior.role], geometry = new THREE.BufferGeometry();
+    geometry.setAttribute("position", new THREE.BufferAttribute(new Float32Array(prior.corners), 3));
+    geometry.computeVertexNormals();
+    group.add(new THREE.Mesh(geometry, new THREE.MeshLambertMaterial({
+      color: look.colour, transparent: true, opacity: look.opacity, side: THREE.DoubleSide,
+      depthWrite: false })));
+    group.add(new THREE.LineSegments(new THREE.EdgesGeometry(geometry, 20),
+      new THREE.LineBasicMaterial({ color: look.colour })));
+  }
+  return group;
+}
 
 function volume_group(data, extent) {
   const group = new THREE.Group(), ground = data.scene ? data.scene.ground : 0;
@@ -162,6 +182,7 @@ function build_layers(data, clouds) {
   add("clearance", clearance_group(data));
   add("views", view_group(data, size));
   add("volumes", volume_group(data, extent));
+  add("priors", prior_group(data));
   layers.ground = ground_grid(extent, data.scene ? data.scene.ground : extent.all.min.z);
   if (layers.clearance) layers.clearance.visible = false;
   return { layers, extent, size };

@@ -49,6 +49,25 @@ function holes_section(data, on_pick) {
     }));
 }
 
+/// What was to be surveyed, by the mission's prior data.
+function targets_section(data) {
+  const { targets } = data.summary;
+  if (!targets || !targets.length) return null;
+  const number = (content) => ({ number: content });
+  const rows = targets.flatMap((target, i) => {
+    const path = "targets." + i + ".";
+    const cells = (part, at, name) => [name, number(figure(data, at + "area_m2", "square_metres")),
+      number(figure(data, at + "coverage", "share")), number(shown(target.within_m, "metres"))];
+    return [cells(target, path, target.name),
+      ...target.kinds.map((kind, k) => cells(kind, path + "kinds." + k + ".", target.name + ", " + kind.name))];
+  });
+  const dry = data.summary.settings["scene.model"] === "prior"
+    ? " They also stood in for the truth: this was a dry run." : "";
+  return element("section", { id: "targets" }, element("h2", {}, "Targets"),
+    element("p", {}, "The surface that prior data has, and its share with a measurement near it." + dry),
+    table(["object", number("area"), number("covered"), number("within")], rows));
+}
+
 /// Where a sensor would have to be to look at a hole head-on, as far off as its nearest view.
 function seen_from(data, hole) {
   if (!hole.normal.some((part) => part !== 0)) return "no one side";
