@@ -143,11 +143,10 @@ geometry::View SurveyScene::first_view(std::uint64_t seed) const {
       return view;
     }
   }
-  throw Error(
-      ErrorKind::bad_config,
-      "limits.ground_clearance, the gimbal's pitch, the site and flight.unknown_box leave no place "
-      "for a random start at the view distance of " +
-          file::to_text(view_distance_) + " m; loosen them or give start.position");
+  throw Error(ErrorKind::bad_config,
+              "limits.ground_clearance, the gimbal's pitch, evaluation.radius, the site and "
+              "flight.unknown_box leave no place for a random start at the view distance of " +
+                  file::to_text(view_distance_) + " m; loosen them or give start.position");
 }
 
 judge::Admissible SurveyScene::admissible() const {
