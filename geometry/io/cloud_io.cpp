@@ -166,14 +166,21 @@ void write_cloud(const fs::path& path, const CloudColumns& cloud) {
   if (!cloud.colours.empty()) {
     bytes += "property uchar red\nproperty uchar green\nproperty uchar blue\n";
   }
+  for (const NamedMarks& marks : cloud.marks) {
+    assert(marks.values.empty() || marks.values.size() == count);
+    if (!marks.values.empty()) bytes.append("property uchar ").append(marks.name).append("\n");
+  }
   bytes += "end_header\n";
   constexpr std::size_t largest_point = 31;  // [bytes]
-  bytes.reserve(bytes.size() + count * largest_point);
+  bytes.reserve(bytes.size() + count * (largest_point + cloud.marks.size()));
   for (std::size_t i = 0; i < count; ++i) {
     append_bytes(bytes, cloud.positions[i]);
     if (!cloud.normals.empty()) append_bytes(bytes, cloud.normals[i]);
     if (!cloud.views.empty()) append_bytes(bytes, cloud.views[i]);
     if (!cloud.colours.empty()) append_bytes(bytes, cloud.colours[i]);
+    for (const NamedMarks& marks : cloud.marks) {
+      if (!marks.values.empty()) append_bytes(bytes, marks.values[i]);
+    }
   }
   write_file(path, bytes);
 }

@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <functional>
 #include <span>
+#include <string_view>
 #include <vector>
 
 #include <Eigen/Core>
@@ -22,16 +23,23 @@ struct AttributedCloud {
   std::vector<std::array<std::uint8_t, 3>> colours;  ///< red green blue
 };
 
+/// A number for each point under a name of its own.
+struct NamedMarks {
+  std::string_view name;
+  std::span<const std::uint8_t> values;
+};
+
 /// The same where it stands elsewhere. What is absent is empty.
 struct CloudColumns {
   std::span<const Eigen::Vector3f> positions;
   std::span<const Eigen::Vector3f> normals;
   std::span<const std::uint32_t> views;
   std::span<const std::array<std::uint8_t, 3>> colours;
+  std::vector<NamedMarks> marks = {};
 };
 
 inline CloudColumns columns_of(const AttributedCloud& cloud) {
-  return {cloud.positions, cloud.normals, cloud.views, cloud.colours};
+  return {cloud.positions, cloud.normals, cloud.views, cloud.colours, {}};
 }
 
 /// Reads .ply; .pcd (text, binary or compressed; points of NaN are passed over); .las (versions 1.0
@@ -49,7 +57,8 @@ using TakePositions = std::function<void(std::span<const Eigen::Vector3f> piece,
 void read_positions(const std::filesystem::path& path, const TakePositions& take);
 
 /// Writes binary little-endian PLY: x y z as float and then, of what is there, nx ny nz as float,
-/// view as uint, red green blue as uchar. Complete or not at all. Throws Error{bad_file}.
+/// view as uint, red green blue as uchar, marks as uchar. Complete or not at all. Throws
+/// Error{bad_file}.
 void write_cloud(const std::filesystem::path& path, const CloudColumns& cloud);
 
 }  // namespace skycap::geometry

@@ -117,6 +117,8 @@ struct EvaluationConfig {
   std::size_t samples = 100'000;         ///< points spread over the scene's surface
   std::size_t visible_directions = 200;  ///< from which a sample may be seen; for visible coverage
   std::size_t ceiling_views = 100;       ///< views of the attainable coverage; zero leaves it out
+  /// That fits through the ways to places that count; else what the limits keep from surfaces.
+  std::optional<double> radius;
 };
 
 /// Where the local frame (x east, y north, z up) is on the Earth. Missing: files that need it are

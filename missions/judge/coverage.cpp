@@ -99,6 +99,12 @@ std::optional<double> covered_share(std::span<const std::uint8_t> is_covered,
   return static_cast<double>(covered) / static_cast<double>(marked);
 }
 
+double marked_share(std::span<const std::uint8_t> marks) {
+  if (marks.empty()) return 0.0;
+  const auto marked = marks.size() - static_cast<std::size_t>(std::ranges::count(marks, 0));
+  return static_cast<double>(marked) / static_cast<double>(marks.size());
+}
+
 std::vector<Eigen::Vector3d> fibonacci_directions(std::size_t count) {
   const double golden_angle = std::numbers::pi * (3.0 - std::sqrt(5.0));
   std::vector<Eigen::Vector3d> directions;

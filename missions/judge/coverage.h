@@ -58,6 +58,9 @@ class CoverageMeter {
 std::optional<double> covered_share(std::span<const std::uint8_t> is_covered,
                                     std::span<const std::uint8_t> counts);
 
+/// The share of samples that are marked; zero of none.
+double marked_share(std::span<const std::uint8_t> marks);
+
 /// `count` unit vectors, spread evenly over the sphere: the points of a Fibonacci lattice.
 std::vector<Eigen::Vector3d> fibonacci_directions(std::size_t count);
 

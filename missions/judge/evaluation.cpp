@@ -52,10 +52,11 @@ std::vector<std::uint8_t> visible_samples(std::span<const Vector3f> samples,
   return is_visible;
 }
 
-double coverage_ceiling(std::span<const Vector3f> samples, std::span<const std::uint8_t> is_visible,
-                        const sim::Scene& scene, const TakeScan& take_scan,
-                        const Admissible& admissible, const CeilingConfig& config,
-                        std::stop_token stop) {
+std::vector<std::uint8_t> attainable_samples(std::span<const Vector3f> samples,
+                                             std::span<const std::uint8_t> is_visible,
+                                             const sim::Scene& scene, const TakeScan& take_scan,
+                                             const Admissible& admissible,
+                                             const CeilingConfig& config, std::stop_token stop) {
   const std::vector<Vector3d> directions = fibonacci_directions(admissible.directions);
   std::mt19937_64 random(config.seed);
   std::vector<std::uint32_t> targets;  // visible samples in random order
@@ -78,7 +79,7 @@ double coverage_ceiling(std::span<const Vector3f> samples, std::span<const std::
     scan = take_scan(geometry::look_at(*position, target), view, std::move(scan));
     meter.add(cloud.store(scan.points, config.box));
   }
-  return meter.share();
+  return meter.is_covered();
 }
 
 }  // namespace skycap::missions::judge

@@ -55,13 +55,15 @@ struct CeilingConfig {
 using TakeScan = std::function<geometry::Scan(const geometry::View& view, std::uint64_t frame,
                                               geometry::Scan recycled)>;
 
-/// The share of `samples` that a survey could cover at all, given sensor noise and the spacing of
-/// stored points: what up to `views` admissible views cover together, each aimed at a visible
-/// sample that the views before have left uncovered. Ends early when there is none left, or, of no
-/// use, when `stop` is requested.
-double coverage_ceiling(std::span<const Eigen::Vector3f> samples,
-                        std::span<const std::uint8_t> is_visible, const sim::Scene& scene,
-                        const TakeScan& take_scan, const Admissible& admissible,
-                        const CeilingConfig& config, std::stop_token stop = {});
+/// For each sample, 1 if a survey could cover it at all, given sensor noise and the spacing of
+/// stored points, else 0: what up to `views` admissible views cover together, each aimed at a
+/// visible sample that the views before have left uncovered. Ends early when there is none left,
+/// or, of no use, when `stop` is requested.
+std::vector<std::uint8_t> attainable_samples(std::span<const Eigen::Vector3f> samples,
+                                             std::span<const std::uint8_t> is_visible,
+                                             const sim::Scene& scene, const TakeScan& take_scan,
+                                             const Admissible& admissible,
+                                             const CeilingConfig& config,
+                                             std::stop_token stop = {});
 
 }  // namespace skycap::missions::judge
