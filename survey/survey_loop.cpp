@@ -1,5 +1,6 @@
 #include "survey/survey_loop.h"
 
+#include <algorithm>
 #include <chrono>
 #include <ctime>
 #include <optional>
@@ -46,6 +47,18 @@ std::optional<View> planned(SurveyedView& taken, Work work) {
   return next;
 }
 
+/// Adds what the planning time has and its parts have not to one of them.
+void book_rest(SurveyedView& taken, const char* part) {
+  double rest = taken.planning_time;
+  for (const PartTime& time : taken.step.times) rest -= time.seconds;
+  const auto known = std::ranges::find(taken.step.times, part, &PartTime::part);
+  if (known == taken.step.times.end()) {
+    taken.step.times.push_back({part, rest});
+  } else {
+    known->seconds += rest;
+  }
+}
+
 }  // namespace
 
 SurveySteps::SurveySteps(Planner& planner, const SurveyLimits& limits, SurveyPorts ports)
@@ -61,10 +74,11 @@ std::optional<View> SurveySteps::take_in(const geometry::Scan& scan, double sens
         views_.back().distance + (taken.view.position - views_.back().view.position).norm();
   }
   std::optional<View> next = planned(taken, [&] { return planner_.next_view(scan); });
+  taken.step = planner_.last_step();
+  book_rest(taken, "rest");
   next = reachable(std::move(next), taken, false);
   taken.points = planner_.cloud().size();
   taken.returns = scan.points.size();
-  taken.step = planner_.last_step();
   views_.push_back(std::move(taken));
   if (ports_.report) ports_.report(views_.back(), scan);
   return within_limits(std::move(next));
@@ -82,6 +96,7 @@ std::optional<View> SurveySteps::reachable(std::optional<View> next, SurveyedVie
     is_refused = true;
     next = planned(taken, [&] { return planner_.next_view_instead(); });
   }
+  book_rest(taken, "instead");
   if (!next) stop_reason_ = is_refused ? StopReason::nowhere_to_go : StopReason::complete;
   return next;
 }

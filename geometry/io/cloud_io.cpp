@@ -1,5 +1,6 @@
 #include "geometry/io/cloud_io.h"
 
+#include <algorithm>
 #include <bit>
 #include <cassert>
 #include <cmath>
@@ -95,6 +96,11 @@ void append_bytes(std::string& bytes, const Value& value) {
   bytes.append(reinterpret_cast<const char*>(&value), sizeof(value));
 }
 
+/// Of the file that gzip may have compressed.
+std::string ending_of(const fs::path& path) {
+  return (path.extension() == ".gz" ? path.stem() : path).extension().string();
+}
+
 }  // namespace
 
 void fail_cloud(const fs::path& path, const std::string& what) {
@@ -118,9 +124,7 @@ Eigen::Vector3f cloud_position(const fs::path& path, std::size_t point, double x
 }
 
 AttributedCloud read_cloud(const fs::path& path) {
-  fs::path inner = path;
-  if (inner.extension() == ".gz") inner = inner.stem();
-  const std::string ending = inner.extension().string();
+  const std::string ending = ending_of(path);
   using Parse = AttributedCloud (*)(const fs::path&, std::string_view);
   const std::map<std::string, Parse> formats = {{".ply", parse_ply_cloud},
                                                 {".pcd", parse_pcd_cloud},
@@ -139,6 +143,16 @@ AttributedCloud read_cloud(const fs::path& path) {
   return cloud;
 }
 
+void read_positions(const fs::path& path, const TakePositions& take) {
+  if (ending_of(path) == ".las") return read_las_positions(path, take);
+  const std::vector<Eigen::Vector3f> positions = read_cloud(path).positions;
+  for (std::size_t begin = 0; begin < positions.size(); begin += piece_size) {
+    const std::size_t count = std::min(piece_size, positions.size() - begin);
+    take(std::span(positions).subspan(begin, count),
+         static_cast<double>(begin + count) / static_cast<double>(positions.size()));
+  }
+}
+
 void write_cloud(const fs::path& path, const CloudColumns& cloud) {
   const std::size_t count = cloud.positions.size();
   assert(cloud.normals.empty() || cloud.normals.size() == count);
@@ -152,14 +166,21 @@ void write_cloud(const fs::path& path, const CloudColumns& cloud) {
   if (!cloud.colours.empty()) {
     bytes += "property uchar red\nproperty uchar green\nproperty uchar blue\n";
   }
+  for (const NamedMarks& marks : cloud.marks) {
+    assert(marks.values.empty() || marks.values.size() == count);
+    if (!marks.values.empty()) bytes.append("property uchar ").append(marks.name).append("\n");
+  }
   bytes += "end_header\n";
   constexpr std::size_t largest_point = 31;  // [bytes]
-  bytes.reserve(bytes.size() + count * largest_point);
+  bytes.reserve(bytes.size() + count * (largest_point + cloud.marks.size()));
   for (std::size_t i = 0; i < count; ++i) {
     append_bytes(bytes, cloud.positions[i]);
     if (!cloud.normals.empty()) append_bytes(bytes, cloud.normals[i]);
     if (!cloud.views.empty()) append_bytes(bytes, cloud.views[i]);
     if (!cloud.colours.empty()) append_bytes(bytes, cloud.colours[i]);
+    for (const NamedMarks& marks : cloud.marks) {
+      if (!marks.values.empty()) append_bytes(bytes, marks.values[i]);
+    }
   }
   write_file(path, bytes);
 }

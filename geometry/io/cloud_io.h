@@ -5,7 +5,9 @@
 #include <array>
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <span>
+#include <string_view>
 #include <vector>
 
 #include <Eigen/Core>
@@ -21,16 +23,23 @@ struct AttributedCloud {
   std::vector<std::array<std::uint8_t, 3>> colours;  ///< red green blue
 };
 
+/// A number for each point under a name of its own.
+struct NamedMarks {
+  std::string_view name;
+  std::span<const std::uint8_t> values;
+};
+
 /// The same where it stands elsewhere. What is absent is empty.
 struct CloudColumns {
   std::span<const Eigen::Vector3f> positions;
   std::span<const Eigen::Vector3f> normals;
   std::span<const std::uint32_t> views;
   std::span<const std::array<std::uint8_t, 3>> colours;
+  std::vector<NamedMarks> marks = {};
 };
 
 inline CloudColumns columns_of(const AttributedCloud& cloud) {
-  return {cloud.positions, cloud.normals, cloud.views, cloud.colours};
+  return {cloud.positions, cloud.normals, cloud.views, cloud.colours, {}};
 }
 
 /// Reads .ply; .pcd (text, binary or compressed; points of NaN are passed over); .las (versions 1.0
@@ -41,8 +50,15 @@ inline CloudColumns columns_of(const AttributedCloud& cloud) {
 /// the origin that single precision would move them by a millimetre.
 AttributedCloud read_cloud(const std::filesystem::path& path);
 
+/// Takes a piece of a file's points, and the share of the file that is read with it.
+using TakePositions = std::function<void(std::span<const Eigen::Vector3f> piece, double share)>;
+
+/// The positions of what read_cloud() reads, in pieces of up to a million and in their order.
+void read_positions(const std::filesystem::path& path, const TakePositions& take);
+
 /// Writes binary little-endian PLY: x y z as float and then, of what is there, nx ny nz as float,
-/// view as uint, red green blue as uchar. Complete or not at all. Throws Error{bad_file}.
+/// view as uint, red green blue as uchar, marks as uchar. Complete or not at all. Throws
+/// Error{bad_file}.
 void write_cloud(const std::filesystem::path& path, const CloudColumns& cloud);
 
 }  // namespace skycap::geometry

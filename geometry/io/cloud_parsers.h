@@ -23,4 +23,10 @@ AttributedCloud parse_pcd_cloud(const std::filesystem::path& path, std::string_v
 /// LAS 1.0 to 1.4 (las_reader.h). Withheld points are passed over.
 AttributedCloud read_las_cloud(const std::filesystem::path& path);
 
+/// Points of a piece.
+inline constexpr std::size_t piece_size = 1'000'000;
+
+/// The positions alone, as read_positions() hands them out.
+void read_las_positions(const std::filesystem::path& path, const TakePositions& take);
+
 }  // namespace skycap::geometry

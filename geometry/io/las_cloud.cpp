@@ -1,3 +1,5 @@
+#include <algorithm>
+
 #include "geometry/io/cloud_parsers.h"
 #include "geometry/io/las_reader.h"
 
@@ -15,6 +17,22 @@ AttributedCloud read_las_cloud(const std::filesystem::path& path) {
     cloud.colours.insert(cloud.colours.end(), points.colours.begin(), points.colours.end());
   }
   return cloud;
+}
+
+void read_las_positions(const std::filesystem::path& path, const TakePositions& take) {
+  LasReader reader(path);
+  LasPoints points;
+  std::vector<Eigen::Vector3f> piece;
+  std::size_t count = 0;
+  const auto all = static_cast<double>(reader.header().points);
+  for (double read = 1.0; reader.next(points, piece_size); ++read) {
+    piece.clear();
+    for (const Eigen::Vector3d& position : points.positions) {
+      piece.push_back(cloud_position(path, count++, position.x(), position.y(), position.z()));
+    }
+    if (!piece.empty()) take(piece, std::min(1.0, read * piece_size / all));
+  }
+  if (count == 0) fail_cloud(path, "holds no points");
 }
 
 }  // namespace skycap::geometry

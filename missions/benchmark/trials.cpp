@@ -133,7 +133,9 @@ Statistic statistic(const std::vector<double>& numbers) {
 
 SceneTruth scene_truth(const scene::SurveyScene& scene, unsigned threads, std::stop_token stop) {
   SceneTruth truth{scene.visible(threads, stop), {}};
-  truth.ceiling = scene.ceiling(truth.is_visible, threads, stop);
+  if (const auto marks = scene.attainable(truth.is_visible, threads, stop)) {
+    truth.ceiling = judge::marked_share(*marks);
+  }
   return truth;
 }
 

@@ -193,6 +193,21 @@ flight::RouteOptions route_options_of(const file::Mission& mission, const Vector
   return options;
 }
 
+double hold_of(const file::Mission& mission) {
+  return std::max(mission.flight.hold, mission.sensor.settle);
+}
+
+double hold_after_of(const file::Mission& mission) {
+  const flight::Shutter& shutter = mission.sensor.shutter;
+  return std::max(mission.flight.hold_after, shutter.exposure + shutter.readout);
+}
+
+std::optional<flight::PictureBounds> picture_bounds_of(const file::Mission& mission) {
+  if (mission.sensor.lidar) return std::nullopt;
+  return picture_bounds(vehicle_of(mission), geometry::Camera(mission.sensor.camera.camera),
+                        mission.sensor.shutter, mission.planner.see.view_distance.value());
+}
+
 bool has_place(const file::Mission& mission) {
   return mission.georeference.latitude_deg && mission.georeference.longitude_deg;
 }

@@ -14,6 +14,7 @@
 #include <Eigen/Geometry>
 
 #include "flight/motion/flight_style.h"
+#include "flight/motion/picture_bounds.h"
 #include "flight/motion/vehicle.h"
 #include "geometry/place/prism.h"
 #include "missions/prior/source.h"
@@ -64,6 +65,8 @@ struct SensorConfig {
   /// What `lidar` names; `camera` is then forward_camera() of it (survey_sensor.h), by which
   /// planners choose views. Its seed is the mission's.
   std::optional<sim::LidarConfig> scanner;
+  flight::Shutter shutter{.exposure = 0.01, .readout = 0.0};
+  double settle = 0.0;  ///< at rest before a picture, for the sensor's own sake [s]
 };
 
 enum class PlannerName { see_plus_plus, see, skycap, rsv, rse, oa, uv, pc, af, ae };
@@ -114,6 +117,8 @@ struct EvaluationConfig {
   std::size_t samples = 100'000;         ///< points spread over the scene's surface
   std::size_t visible_directions = 200;  ///< from which a sample may be seen; for visible coverage
   std::size_t ceiling_views = 100;       ///< views of the attainable coverage; zero leaves it out
+  /// That fits through the ways to places that count; else what the limits keep from surfaces.
+  std::optional<double> radius;
 };
 
 /// Where the local frame (x east, y north, z up) is on the Earth. Missing: files that need it are

@@ -92,6 +92,12 @@ std::vector<Key> evaluation_keys() {
           "evaluation.ceiling_views", "", between(0, 1e4),
           [](Mission & m) -> auto& { return m.evaluation.ceiling_views; },
           "Views that the attainable coverage is measured with; 0 leaves it out."),
+      otherwise("with a vehicle flight.clearance, else limits.stand_off",
+                number_key(
+                    "evaluation.radius", "m", between(0, 1e3),
+                    [](Mission & m) -> auto& { return m.evaluation.radius; },
+                    "Of the ball that has to fit through all ways from the start to a place, or "
+                    "the sensor cannot be there; 0: through any gap.")),
   };
 }
 

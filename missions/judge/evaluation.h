@@ -1,5 +1,4 @@
-/// What could have been covered at all, and how accurate a cloud is: the figures that a survey's
-/// coverage is read against.
+/// What could have been covered at all: what a survey's coverage is read against.
 #pragma once
 
 #include <cstddef>
@@ -15,7 +14,6 @@
 
 #include "geometry/place/pose.h"
 #include "geometry/points/scan.h"
-#include "geometry/surfaces/mesh.h"
 #include "sim/scene/scene.h"
 
 namespace skycap::missions::judge {
@@ -57,25 +55,15 @@ struct CeilingConfig {
 using TakeScan = std::function<geometry::Scan(const geometry::View& view, std::uint64_t frame,
                                               geometry::Scan recycled)>;
 
-/// The share of `samples` that a survey could cover at all, given sensor noise and the spacing of
-/// stored points: what up to `views` admissible views cover together, each aimed at a visible
-/// sample that the views before have left uncovered. Ends early when there is none left, or, of no
-/// use, when `stop` is requested.
-double coverage_ceiling(std::span<const Eigen::Vector3f> samples,
-                        std::span<const std::uint8_t> is_visible, const sim::Scene& scene,
-                        const TakeScan& take_scan, const Admissible& admissible,
-                        const CeilingConfig& config, std::stop_token stop = {});
-
-/// Distances of measured points from the true surface.
-struct CloudAccuracy {
-  double mean = 0.0;
-  double root_mean_square = 0.0;
-  double median = 0.0;
-  double percentile_95 = 0.0;
-  double largest = 0.0;
-};
-
-CloudAccuracy cloud_accuracy(std::span<const Eigen::Vector3f> points, const geometry::Mesh& truth,
-                             unsigned threads = 0);
+/// For each sample, 1 if a survey could cover it at all, given sensor noise and the spacing of
+/// stored points, else 0: what up to `views` admissible views cover together, each aimed at a
+/// visible sample that the views before have left uncovered. Ends early when there is none left,
+/// or, of no use, when `stop` is requested.
+std::vector<std::uint8_t> attainable_samples(std::span<const Eigen::Vector3f> samples,
+                                             std::span<const std::uint8_t> is_visible,
+                                             const sim::Scene& scene, const TakeScan& take_scan,
+                                             const Admissible& admissible,
+                                             const CeilingConfig& config,
+                                             std::stop_token stop = {});
 
 }  // namespace skycap::missions::judge

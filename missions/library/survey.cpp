@@ -6,6 +6,7 @@
 #include "geometry/io/output_folder.h"
 #include "missions/library/mission_contents.h"
 #include "missions/package/package.h"
+#include "missions/run/feasibility.h"
 #include "missions/run/survey_runner.h"
 #include "missions/scene/survey_scene.h"
 
@@ -17,6 +18,7 @@ Survey survey_of(const Mission::Contents& contents, const SurveyRequest& request
   std::optional<geometry::OutputFolder> folder;
   if (request.folder) folder.emplace(*request.folder);
   const scene::SurveyScene scene(mission, contents.folder);
+  run::require_feasible(mission, scene, mission.threads);
   Survey survey;
   run::SurveyRecord record = run::run_survey(mission, scene, mission.seed, mission.threads,
                                              request.stop, [&](const run::JudgedView& view) {

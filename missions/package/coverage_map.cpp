@@ -49,6 +49,26 @@ geometry::AttributedCloud coverage_map(std::span<const survey::skycap::BelievedP
   return map;
 }
 
+void write_true_coverage(const std::filesystem::path& path, const TrueCoverage& truth) {
+  const auto is_marked = [](const std::vector<std::uint8_t>& marks, std::size_t i) {
+    return marks.empty() || marks[i] != 0;
+  };
+  std::vector<Colour> colours;
+  for (std::size_t i = 0; i < truth.is_covered.size(); ++i) {
+    colours.push_back(truth.is_covered[i] != 0             ? covered_surely
+                      : !is_marked(truth.is_visible, i)    ? violet
+                      : !is_marked(truth.is_attainable, i) ? amber
+                                                           : red);
+  }
+  geometry::write_cloud(path, {.positions = truth.samples.points,
+                               .normals = truth.samples.normals,
+                               .views = {},
+                               .colours = colours,
+                               .marks = {{"covered", truth.is_covered},
+                                         {"visible", truth.is_visible},
+                                         {"attainable", truth.is_attainable}}});
+}
+
 std::optional<survey::skycap::MissingReason> reason_of(const Colour& colour) {
   using enum survey::skycap::MissingReason;
   if (colour == amber) return seen_too_thinly;

@@ -15,6 +15,7 @@
 #include "geometry/place/pose.h"
 #include "geometry/place/world.h"
 #include "geometry/surfaces/mesh.h"
+#include "missions/derived/mission_flight.h"
 #include "missions/derived/resolved_mission.h"
 #include "missions/file/json_text.h"
 #include "missions/file/mission_keys.h"
@@ -33,6 +34,7 @@ using Json = nlohmann::ordered_json;
 
 constexpr const char* free_space_name = "free_space.bin";
 constexpr const char* coverage_name = "coverage.ply";
+constexpr const char* true_coverage_name = "true_coverage.ply";
 
 [[noreturn]] void fail(const std::filesystem::path& file, const std::string& what) {
   throw Error(ErrorKind::bad_file, file.string() + ": " + what);
@@ -151,21 +153,24 @@ std::string trajectory_tum(const run::SurveyRecord& record) {
 CoverageFigures coverage_figures(const run::SurveyRecord& record, const scene::SurveyScene& scene,
                                  unsigned threads, const std::stop_token& stop) {
   CoverageFigures figures{record.coverage(), {}, {}};
-  std::vector<std::uint8_t> is_visible;
+  std::vector<std::uint8_t> is_visible, is_attainable;
   if (record.stop_reason != survey::StopReason::interrupted) {  // the user wants to leave
     is_visible = scene.visible(threads, stop);
-    const std::optional<double> ceiling = scene.ceiling(is_visible, threads, stop);
+    const auto marks = scene.attainable(is_visible, threads, stop);
     if (stop.stop_requested()) {
       is_visible.clear();
     } else {
       figures.visible = judge::covered_share(record.is_covered, is_visible);
-      figures.ceiling = ceiling;
+      if (marks) figures.ceiling = judge::marked_share(*marks);
+      is_attainable = marks.value_or(is_attainable);
     }
   }
   if (!record.belief) {
     figures.patches = true_patches(scene.samples(), geometry::surface_area(scene.model()),
                                    record.is_covered, is_visible);
   }
+  figures.truth = {scene.samples(), record.is_covered, std::move(is_visible),
+                   std::move(is_attainable)};
   return figures;
 }
 
@@ -183,8 +188,8 @@ std::optional<SurveyMission> stage_package(const file::Mission& mission,
                                            const CoverageFigures& coverage, unsigned threads,
                                            geometry::OutputFolder& folder, std::stop_token stop) {
   folder.replace([](std::string_view name) {
-    return name == free_space_name || name == coverage_name || name == fly_test_name ||
-           name == report_name || is_flight_file(name);
+    return name == free_space_name || name == coverage_name || name == true_coverage_name ||
+           name == fly_test_name || name == report_name || is_flight_file(name);
   });
   const double radius = 2.0 * mission.planner.see.resolution_radius;
   const std::vector<Eigen::Vector3f> normals =
@@ -196,6 +201,7 @@ std::optional<SurveyMission> stage_package(const file::Mission& mission,
   if (const auto patches = known_surface(record, coverage); !patches.empty()) {
     geometry::write_cloud(folder.stage(coverage_name), columns_of(coverage_map(patches)));
   }
+  if (coverage.truth) write_true_coverage(folder.stage(true_coverage_name), *coverage.truth);
   folder.write("views.csv", views_csv(record));
   folder.write("trajectory.tum", trajectory_tum(record));
   std::optional<SurveyMission> flight;
@@ -205,6 +211,7 @@ std::optional<SurveyMission> stage_package(const file::Mission& mission,
     folder.write(free_space_name, free_space.str());
     flight = SurveyMission{};
     try {
+      flight->pictures = derived::picture_bounds_of(mission);
       flight->route = plan_flight(mission, *record.flown->measured, record.flown->pad,
                                   views_of(record), ways_of(*record.flown), stop);
       if (flight->route.sorties.empty() && !flight->route.unreached.empty()) {

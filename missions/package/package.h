@@ -13,6 +13,7 @@
 #include "geometry/place/pose.h"
 #include "missions/file/mission.h"
 #include "missions/file/mission_reader.h"
+#include "missions/package/coverage_map.h"
 #include "missions/package/flight_files.h"
 #include "missions/run/survey_runner.h"
 #include "missions/scene/survey_scene.h"
@@ -28,6 +29,7 @@ struct CoverageFigures {
   /// The surface as the simulator knows it, for the map and the holes of a survey whose planner
   /// believes nothing; see true_patches().
   std::vector<survey::skycap::BelievedPatch> patches = {};
+  std::optional<TrueCoverage> truth = {};  ///< of a simulated survey
 };
 
 /// What a simulated survey covered of the true surface; what could be covered at all only of one

@@ -31,7 +31,10 @@ Json json_of(const std::vector<survey::PartTime>& times) {
 Json belief_summary(const run::SurveyRecord& record) {
   if (!record.belief) return {};
   const survey::skycap::SurveyBelief& belief = *record.belief;
-  return {{"stop", run::name_of(record.skycap_stop)},
+  // In which way it is complete, or what ended it before that: no two reasons.
+  const char* stop = record.is_complete() ? run::name_of(record.skycap_stop)
+                                          : run::name_of(record.stop_reason);
+  return {{"stop", stop},
           {"predicted_coverage", belief.coverage},
           {"area_m2", belief.area},
           {"missing",
@@ -120,6 +123,13 @@ Json json_of(const flight::Leg& leg, const Json& from, const Json& to) {
           {"points", json_of(leg.points)}};
 }
 
+Json pictures_summary(const SurveyMission& flight) {
+  if (!flight.pictures) return {};
+  return {{"blur_px", flight.pictures->blur_px},
+          {"shear_px", flight.pictures->shear_px},
+          {"distance_m", flight.pictures->distance}};
+}
+
 /// The sortie's legs from above the pad and back there; they lead from view to view, null stands
 /// for the pad.
 Json legs_of(const flight::Route& route, const flight::Sortie& sortie) {
@@ -187,6 +197,7 @@ Json flight_summary(const run::FlownSurvey& flown, const SurveyMission& flight) 
             {"sorties", sorties},
             {"unreached", unreached}}},
           {"return", return_summary(flight)},
+          {"pictures", pictures_summary(flight)},
           {"files", files},
           {"notes", flight.files.notes}};
 }

@@ -193,15 +193,16 @@ std::vector<View> greedy_cover(const file::Mission& mission, const scene::Survey
   const double least_gain =
       mission.planner.skycap_stop.least_gain * static_cast<double>(truth.size());
   std::vector<float> uncovered(truth.size(), 1.0F);
-  Measurement measured(mission, scene, seed, threads);
+  std::optional<Measurement> measured;
+  if (config.wanted_coverage) measured.emplace(mission, scene, seed, threads);
   std::vector<View> views;
   std::size_t next = candidates.size() - 1;
   reason = survey::StopReason::complete;
   while (true) {
-    measured.take(candidates[next], views.size());
+    if (measured) measured->take(candidates[next], views.size());
     views.push_back(candidates[next]);
     cover(looks[next], uncovered);
-    if (config.wanted_coverage && measured.meter().share() >= *config.wanted_coverage) break;
+    if (measured && measured->meter().share() >= *config.wanted_coverage) break;
     if (views.size() >= mission.limits.max_views) reason = survey::StopReason::view_limit;
     if (stop.stop_requested()) reason = survey::StopReason::interrupted;
     if (reason != survey::StopReason::complete) break;
@@ -217,6 +218,16 @@ std::vector<View> greedy_cover(const file::Mission& mission, const scene::Survey
 }
 
 }  // namespace
+
+std::vector<View> known_cover(const file::Mission& mission, const scene::SurveyScene& scene,
+                              std::uint64_t seed, unsigned threads,
+                              const OmniscientConfig& config) {
+  survey::StopReason reason{};
+  const std::vector<View> views = greedy_cover(mission, scene, seed, threads, config, {}, reason);
+  std::vector<View> tour;
+  for (const std::size_t i : short_tour(views)) tour.push_back(views[i]);
+  return tour;
+}
 
 SurveyRecord survey_omnisciently(const file::Mission& mission, const scene::SurveyScene& scene,
                                  std::uint64_t seed, unsigned threads,

@@ -6,7 +6,9 @@
 #include <cstdint>
 #include <optional>
 #include <stop_token>
+#include <vector>
 
+#include "geometry/place/pose.h"
 #include "missions/file/mission.h"
 #include "missions/run/survey_runner.h"
 #include "missions/scene/survey_scene.h"
@@ -20,6 +22,12 @@ struct OmniscientConfig {
   /// `planner.least_gain` of the visible surface any more, as the planner skycap.
   std::optional<double> wanted_coverage;
 };
+
+/// Views that cover the scene for one who knows it, in the order of the tour; see
+/// survey_omnisciently(), which takes them. Nothing is measured unless a coverage is wanted.
+std::vector<geometry::View> known_cover(const file::Mission& mission,
+                                        const scene::SurveyScene& scene, std::uint64_t seed,
+                                        unsigned threads, const OmniscientConfig& config = {});
 
 /// Surveys the mission's scene knowing all of it: from the mission's first view with that seed, a
 /// greedy cover of the surface by the candidates, flown along a short open tour. How much of a

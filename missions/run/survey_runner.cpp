@@ -38,6 +38,12 @@ SurveyRecord run_survey(const file::Mission& mission, const scene::SurveyScene& 
   ports.sense = [&](const geometry::View& view, geometry::Scan recycled) {
     return sensor.scan(scene.scene(), view, frame++, threads, std::move(recycled));
   };
+  if (!mission.flight.is_flown()) {  // else ways there are proven as measured
+    ports.can_reach = [&scene, allows = std::move(ports.can_reach)](const Eigen::Vector3d& from,
+                                                                    const geometry::View& view) {
+      return (!allows || allows(from, view)) && scene.is_reachable(view.position);
+    };
+  }
   ports.report = [&](const survey::SurveyedView& view, const geometry::Scan&) {
     const std::span stored(guided.planner().cloud().positions);
     meter.add(stored.subspan(points_judged));

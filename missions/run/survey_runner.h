@@ -19,7 +19,8 @@ file::Mission trial_mission(const file::Mission& mission, const scene::SurveySce
 
 /// Surveys the mission's scene with that seed and so many threads (zero: all processors). The
 /// record does not depend on the threads but for its times. A mission with a vehicle goes only to
-/// views that it can safely reach. `report` is told of each view; it may be empty. Throws what
+/// views that it can safely reach; without one, whatever the planner, only to places that
+/// scene.is_reachable() knows a way to. `report` is told of each view; it may be empty. Throws what
 /// planner, sensor and SurveyFlight throw. With a journal the survey is written down, and goes on
 /// where the journal's ended: the record is the same but for its times.
 SurveyRecord run_survey(const file::Mission& mission, const scene::SurveyScene& scene,

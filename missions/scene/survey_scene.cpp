@@ -1,6 +1,6 @@
 #include "missions/scene/survey_scene.h"
 
-#include <fstream>
+#include <algorithm>
 #include <random>
 #include <span>
 #include <sstream>
@@ -59,10 +59,23 @@ ViewSphere sphere_around(std::span<const Eigen::Vector3f> surface, double view_d
   return {centroid, view_distance + mean_distance};
 }
 
-std::optional<double> number_in_file(const std::filesystem::path& file) {
-  std::ifstream stream(file);
-  double number = 0.0;
-  return stream >> number ? std::optional(number) : std::nullopt;
+/// Marks of samples in a file: a digit for each. Nothing if it does not hold so many.
+std::optional<std::vector<std::uint8_t>> marks_in_file(const std::filesystem::path& file,
+                                                       std::size_t count) {
+  std::error_code ignored;
+  if (!std::filesystem::is_regular_file(file, ignored)) return std::nullopt;
+  const std::string digits = geometry::read_file(file);
+  const auto is_mark = [](char digit) { return digit == '0' || digit == '1'; };
+  if (digits.size() != count || !std::ranges::all_of(digits, is_mark)) return std::nullopt;
+  std::vector<std::uint8_t> marks;
+  for (const char digit : digits) marks.push_back(digit == '1' ? 1 : 0);
+  return marks;
+}
+
+std::string digits_of(const std::vector<std::uint8_t>& marks) {
+  std::string digits;
+  for (const std::uint8_t mark : marks) digits += mark != 0 ? '1' : '0';
+  return digits;
 }
 
 }  // namespace
@@ -82,14 +95,45 @@ SurveyScene::SurveyScene(const file::Mission& mission, const std::filesystem::pa
       samples_(geometry::sample_surface(model_, mission.evaluation.samples, sample_seed)),
       view_distance_(mission.planner.see.view_distance.value_or(geometry::view_distance(
           geometry::Camera(mission.sensor.camera.camera), mission.planner.see.density))),
-      view_sphere_(sphere_around(samples_.points, view_distance_)) {
-  if (derived::view_limits(mission).stand_off > 0.0) {
+      view_sphere_(sphere_around(samples_.points, view_distance_)),
+      radius_(mission.evaluation.radius.value_or(derived::view_limits(mission).stand_off)),
+      reachable_(reachable_space()) {
+  if (std::max(radius_, derived::view_limits(mission).stand_off) > 0.0) {
     truth_ = std::make_shared<geometry::MeshDistance>(model_);
   }
 }
 
+judge::ReachableSpace SurveyScene::reachable_space() const {
+  const survey::ViewLimits limits = derived::view_limits(mission_);
+  return {model_,
+          {.radius = radius_,
+           .least_height = limits.least_height,
+           .most_height = limits.most_height,
+           .start = mission_.start.position,
+           .threads = mission_.threads},
+          [this](const Vector3d& place, const Vector3d& reached) {
+            return is_in_sight(place, reached);
+          }};
+}
+
+bool SurveyScene::is_in_sight(const Vector3d& a, const Vector3d& b) const {
+  return !scene_.is_blocked(a, b);
+}
+
+bool SurveyScene::is_reachable(const Vector3d& place) const {
+  return reachable_.leads_to(place, [this](const Vector3d& from, const Vector3d& reached) {
+    return is_in_sight(from, reached);
+  });
+}
+
 geometry::View SurveyScene::first_view(std::uint64_t seed) const {
-  if (const auto start = derived::given_start(mission_)) return *start;
+  if (const auto start = derived::given_start(mission_)) {
+    if (!reachable_.is_empty()) return *start;
+    throw Error(ErrorKind::bad_config,
+                "start.position is inside the model, or so enclosed by it that a ball of " +
+                    file::to_text(radius_ + reachable_.cell()) +
+                    " m does not fit; move it, or make evaluation.radius less");
+  }
 
   const survey::ViewLimits limits = derived::view_limits(mission_);
   std::mt19937_64 random(seed);
@@ -97,13 +141,15 @@ geometry::View SurveyScene::first_view(std::uint64_t seed) const {
   for (int attempt = 0; attempt < most_attempts; ++attempt) {
     const Vector3d position = view_sphere_.centre + view_sphere_.radius * uniform_direction(random);
     const geometry::View view = geometry::look_at(position, view_sphere_.centre);
-    if (limits.allow(view) && derived::is_in_known_airspace(mission_, position)) return view;
+    if (limits.allow(view) && derived::is_in_known_airspace(mission_, position) &&
+        is_reachable(position)) {
+      return view;
+    }
   }
-  throw Error(
-      ErrorKind::bad_config,
-      "limits.ground_clearance, the gimbal's pitch, the site and flight.unknown_box leave no place "
-      "for a random start at the view distance of " +
-          file::to_text(view_distance_) + " m; loosen them or give start.position");
+  throw Error(ErrorKind::bad_config,
+              "limits.ground_clearance, the gimbal's pitch, evaluation.radius, the site and "
+              "flight.unknown_box leave no place for a random start at the view distance of " +
+                  file::to_text(view_distance_) + " m; loosen them or give start.position");
 }
 
 judge::Admissible SurveyScene::admissible() const {
@@ -112,9 +158,15 @@ judge::Admissible SurveyScene::admissible() const {
   const double half_fov = 0.5 * mission_.sensor.camera.camera.vertical_fov;
   limits.least_pitch -= half_fov;
   limits.most_pitch += half_fov;
-  const auto allows = [limits, truth = truth_](const geometry::View& view) {
-    return limits.allow(view) &&
-           (limits.stand_off == 0.0 || truth->distance(view.position) >= limits.stand_off);
+  const auto joins = [this](const Vector3d& place, const Vector3d& reached) {
+    return radius_ > 0.0 ? truth_->distance(place, reached) >= radius_
+                         : is_in_sight(place, reached);
+  };
+  // Whatever leads there keeps the radius already.
+  const bool asks_distance = limits.stand_off > radius_;
+  const auto allows = [this, limits, joins, asks_distance](const geometry::View& view) {
+    return limits.allow(view) && reachable_.leads_to(view.position, joins) &&
+           (!asks_distance || truth_->distance(view.position) >= limits.stand_off);
   };
   return {.view_distance = view_distance_,
           .allows = allows,
@@ -126,13 +178,11 @@ std::vector<std::uint8_t> SurveyScene::visible(unsigned threads, std::stop_token
   return judge::visible_samples(samples_.points, scene_, admissible(), threads, std::move(stop));
 }
 
-std::optional<double> SurveyScene::ceiling(const std::vector<std::uint8_t>& is_visible,
-                                           unsigned threads, std::stop_token stop) const {
+std::optional<std::vector<std::uint8_t>> SurveyScene::attainable(
+    const std::vector<std::uint8_t>& is_visible, unsigned threads, std::stop_token stop) const {
   if (mission_.evaluation.ceiling_views == 0) return std::nullopt;
   const std::filesystem::path cached = user_cache() / "ceilings" / ceiling_key();
-  if (const auto known = number_in_file(cached); known && *known >= 0.0 && *known <= 1.0) {
-    return known;
-  }
+  if (auto known = marks_in_file(cached, samples_.points.size())) return known;
 
   judge::CeilingConfig config;
   config.views = mission_.evaluation.ceiling_views;
@@ -145,30 +195,28 @@ std::optional<double> SurveyScene::ceiling(const std::vector<std::uint8_t>& is_v
                              geometry::Scan recycled) {
     return sensor.scan(scene_, view, frame, threads, std::move(recycled));
   };
-  const double ceiling = judge::coverage_ceiling(samples_.points, is_visible, scene_, take_scan,
-                                                 admissible(), config, stop);
+  std::vector<std::uint8_t> marks = judge::attainable_samples(
+      samples_.points, is_visible, scene_, take_scan, admissible(), config, stop);
   if (stop.stop_requested()) return std::nullopt;
   try {
-    std::ostringstream text;
-    text.precision(17);
-    text << ceiling << "\n";
-    geometry::write_file(cached, text.str());
+    geometry::write_file(cached, digits_of(marks));
   } catch (const Error&) {
     // Without a cache it is computed again next time.
   }
-  return ceiling;
+  return marks;
 }
 
 std::string SurveyScene::ceiling_key() const {
   std::ostringstream inputs;
   inputs.precision(17);
-  inputs << "ceiling 2\n" << view_distance_ << " " << mission_.planner.see.effective_spacing();
+  inputs << "ceiling 3\n" << view_distance_ << " " << mission_.planner.see.effective_spacing();
   for (const file::Key& key : file::mission_keys()) {
     if (!key.path.starts_with("scene.") && !key.path.starts_with("sensor.") &&
         !key.path.starts_with("evaluation.") && !key.path.starts_with("planner.scene_box") &&
-        !key.path.starts_with("site.") && key.path != "limits.ground_clearance" &&
-        key.path != "limits.stand_off" && !key.path.ends_with("_pitch_deg") &&
-        key.path != "flight.vehicle" && key.path != "flight.clearance") {
+        !key.path.starts_with("site.") && key.path != "start.position" &&
+        key.path != "limits.ground_clearance" && key.path != "limits.stand_off" &&
+        !key.path.ends_with("_pitch_deg") && key.path != "flight.vehicle" &&
+        key.path != "flight.clearance") {
       continue;
     }
     const auto value = key.get(mission_);

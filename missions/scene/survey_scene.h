@@ -16,6 +16,7 @@
 #include "geometry/surfaces/mesh_distance.h"
 #include "missions/file/mission.h"
 #include "missions/judge/evaluation.h"
+#include "missions/judge/reachable_space.h"
 #include "sim/scene/scene.h"
 
 namespace skycap::missions::scene {
@@ -43,24 +44,32 @@ class SurveyScene {
   const ViewSphere& view_sphere() const { return view_sphere_; }
 
   /// The first view of the survey with that seed: as the mission gives it, or at random on the
-  /// view sphere, within the mission's limits, looking at the sphere's centre.
+  /// view sphere, within the mission's limits and reachable, looking at the sphere's centre. Throws
+  /// Error{bad_config} if there is no such view.
   geometry::View first_view(std::uint64_t seed) const;
 
   /// For each sample, 1 if an admissible sensor position sees it. Takes seconds; of no use once
   /// `stop` is requested.
   std::vector<std::uint8_t> visible(unsigned threads, std::stop_token stop = {}) const;
 
-  /// The coverage that is attainable with the mission's sensor and spacing, see
-  /// missions::coverage_ceiling(). Takes seconds to minutes; kept in the user's cache under a
+  /// For each sample, 1 if it is attainable with the mission's sensor and spacing, see
+  /// judge::attainable_samples(). Takes seconds to minutes; kept in the user's cache under a
   /// checksum of everything it depends on. Nothing if the mission leaves it out, or if stopped.
-  std::optional<double> ceiling(const std::vector<std::uint8_t>& is_visible, unsigned threads,
-                                std::stop_token stop = {}) const;
+  std::optional<std::vector<std::uint8_t>> attainable(const std::vector<std::uint8_t>& is_visible,
+                                                      unsigned threads,
+                                                      std::stop_token stop = {}) const;
 
-  /// Where the mission lets the sensor look at the scene from.
+  /// Where the mission lets the sensor look at the scene from; refers to this scene.
   judge::Admissible admissible() const;
+
+  /// Whether the sensor can get to a place at all, whoever wants it there: not into sealed rooms.
+  /// How near it may be to surfaces is not asked.
+  bool is_reachable(const Eigen::Vector3d& place) const;
 
  private:
   std::string ceiling_key() const;
+  judge::ReachableSpace reachable_space() const;
+  bool is_in_sight(const Eigen::Vector3d& a, const Eigen::Vector3d& b) const;
 
   file::Mission mission_;
   geometry::Mesh model_;
@@ -68,7 +77,9 @@ class SurveyScene {
   geometry::SurfaceSamples samples_;
   double view_distance_;
   ViewSphere view_sphere_;
-  std::shared_ptr<const geometry::MeshDistance> truth_;  ///< if a stand-off needs it
+  std::shared_ptr<const geometry::MeshDistance> truth_;  ///< if a distance is asked for
+  double radius_;                                        ///< that has to fit through ways
+  judge::ReachableSpace reachable_;
 };
 
 /// The mission's mesh as surveyed: loaded and placed, or as its prior data has it; without ground.

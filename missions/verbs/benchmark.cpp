@@ -21,6 +21,7 @@
 #include "missions/derived/resolved_mission.h"
 #include "missions/file/json_text.h"
 #include "missions/file/mission_keys.h"
+#include "missions/run/feasibility.h"
 #include "missions/scene/survey_scene.h"
 #include "missions/verbs/verbs.h"
 #include "missions/version.h"
@@ -218,6 +219,7 @@ class Benchmark {
       if (prepared) continue;
       progress_.say(item.entry->mission.name + ": measuring what could be covered at all");
       scene::SurveyScene scene(item.entry->mission, item.entry->file.parent_path());
+      run::require_feasible(item.entry->mission, scene, options_.threads);
       benchmark::SceneTruth truth = benchmark::scene_truth(scene, options_.threads, console_.stop);
       prepared.reset(new PreparedScene{std::move(scene), std::move(truth)});
     }

@@ -1,5 +1,7 @@
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
+#include <string>
 #include <vector>
 
 #include <fmt/format.h>
@@ -15,6 +17,8 @@
 #include "missions/file/planner_titles.h"
 #include "missions/package/package.h"
 #include "missions/prior/prior_text.h"
+#include "missions/run/expectation.h"
+#include "missions/run/feasibility.h"
 #include "missions/scene/survey_scene.h"
 #include "missions/verbs/check_returns.h"
 #include "missions/verbs/true_space.h"
@@ -92,30 +96,76 @@ int check_route_file(const CheckOptions& options, const file::Mission& mission,
   return is_fine && returns.is_safe ? 0 : 1;
 }
 
+std::string scene_text(const file::Mission& mission, const scene::SurveyScene& scene) {
+  const survey::see::SeeConfig& see = mission.planner.see;
+  const Eigen::Vector3d size = geometry::bounding_box(scene.model()).sizes();
+  return fmt::format(
+      "  scene     {} triangles, {:.4g} x {:.4g} x {:.4g} m, {:.4g} m^2\n"
+      "  planner   {}, view distance d {:.4g} m, spacing epsilon {:.4g} m, core threshold k {}\n",
+      scene.model().triangles.size(), size.x(), size.y(), size.z(),
+      geometry::surface_area(scene.model()), file::title_of(mission.planner.name).word,
+      scene.view_distance(), see.effective_spacing(), see.effective_core_threshold());
+}
+
+/// An estimate: two digits, and zeros after them.
+std::string rough_text(double number) {
+  if (!(number > 0.0)) return "0";
+  const double unit = std::pow(10.0, std::floor(std::log10(number)) - 1.0);
+  return file::short_text(unit * std::round(number / unit));
+}
+
+/// "12 to 20", or one number where they are the same.
+std::string range_text(double least, double most) {
+  const std::string low = rough_text(least), high = rough_text(most);
+  return low == high ? low : low + " to " + high;
+}
+
+std::string expectation_text(const run::Expectation& expected) {
+  const std::string views =
+      expected.least_views == expected.most_views
+          ? std::to_string(expected.most_views)
+          : fmt::format("{} to {}", expected.least_views, expected.most_views);
+  return fmt::format(
+      "  expected  {} views ({} for one who knows the scene), {} minutes of flight, {} MB\n"
+      "  time      {} s on this machine, as the first view took\n",
+      views, expected.known_views, range_text(expected.least_minutes, expected.most_minutes),
+      rough_text(1e-6 * expected.memory), range_text(expected.least_time, expected.most_time));
+}
+
+/// Says whether a survey of the mission can work, and what it will take.
+int check_survey(const CheckOptions& options, const file::Mission& mission, ProgressLine& progress,
+                 const Console& console) {
+  const std::string file = options.mission.string();
+  try {
+    const scene::SurveyScene scene(mission, options.mission.parent_path());
+    const run::Feasibility found = run::feasibility(mission, scene, mission.threads);
+    std::string text = file + (found.problems.empty() ? ": fine\n" : ": cannot work\n") +
+                       scene_text(mission, scene) + prior::text_of(derived::priors_of(mission));
+    for (const std::string& problem : found.problems) text += "  problem   " + problem + "\n";
+    for (const std::string& warning : found.warnings) text += "  warning   " + warning + "\n";
+    if (found.problems.empty()) {
+      progress.show(mission.name + ": looking for views");
+      text += expectation_text(run::expectation(mission, scene, mission.threads));
+    }
+    progress.clear();
+    console.out << text << std::flush;
+    return found.problems.empty() ? 0 : 1;
+  } catch (const Error& error) {
+    // What goes wrong with the model follows from the mission; say which.
+    throw Error(error.kind(), file + ": " + error.what());
+  }
+}
+
 }  // namespace
 
 int check(const CheckOptions& options, const Console& console) {
   const file::Mission mission = derived::read_mission(options.mission, options.overrides);
   ProgressLine progress(console, false);
   progress.show(mission.name + ": making the scene ready");
+  if (!options.route) return check_survey(options, mission, progress, console);
   const geometry::Mesh model = model_of(mission, options.mission);
   progress.clear();
-  if (options.route) return check_route_file(options, mission, model, console);
-  const survey::see::SeeConfig& see = mission.planner.see;
-  const Eigen::Vector3d size = geometry::bounding_box(model).sizes();
-  const double view_distance = see.view_distance.value_or(
-      geometry::view_distance(geometry::Camera(mission.sensor.camera.camera), see.density));
-
-  console.out << fmt::format(
-                     "{}: fine\n"
-                     "  scene     {} triangles, {:.4g} x {:.4g} x {:.4g} m, {:.4g} m^2\n"
-                     "  planner   {}, view distance d {:.4g} m, spacing epsilon {:.4g} m, core "
-                     "threshold k {}\n",
-                     options.mission.string(), model.triangles.size(), size.x(), size.y(), size.z(),
-                     geometry::surface_area(model), file::title_of(mission.planner.name).word,
-                     view_distance, see.effective_spacing(), see.effective_core_threshold())
-              << prior::text_of(derived::priors_of(mission)) << std::flush;
-  return 0;
+  return check_route_file(options, mission, model, console);
 }
 
 }  // namespace skycap::missions::verbs

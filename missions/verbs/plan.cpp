@@ -13,6 +13,7 @@
 #include "missions/package/package.h"
 #include "missions/package/target_coverage.h"
 #include "missions/report/survey_report.h"
+#include "missions/run/feasibility.h"
 #include "missions/run/survey_runner.h"
 #include "missions/scene/survey_scene.h"
 #include "missions/verbs/verbs.h"
@@ -173,6 +174,7 @@ int plan(const PlanOptions& options, const Console& console) {
   progress.show(mission.name + ": making the scene ready");
   try {
     const scene::SurveyScene scene(mission, options.mission.parent_path());
+    run::require_feasible(mission, scene, mission.threads);
     return options.trials > 0 ? plan_trials(options, mission, scene, folder, console)
                               : plan_once(options, mission, scene, folder, console);
   } catch (const Error& error) {

@@ -84,11 +84,15 @@ Rooms house() {
                    "package");
   add_mission_room("verbs", "prior", "file", "equipment", "derived", "judge", "plugins", "scene",
                    "recording", "run", "package", "report", "live", "benchmark");
+  // As a user of the library: public headers.
+  add("python",
+      {"sim/models", "sim/sensors", "survey", "flight/space", "flight/route", "missions/library"});
   return rooms;
 }
 
 std::vector<SourceFile> product() {
-  return read_sources(SKYCAP_SOURCE_DIR, {"geometry", "sim", "survey", "flight", "missions"});
+  return read_sources(SKYCAP_SOURCE_DIR,
+                      {"geometry", "sim", "survey", "flight", "missions", "python"});
 }
 
 TEST(Rooms, AreEnteredInOneDirectionOnly) {

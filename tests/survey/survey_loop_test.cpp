@@ -1,6 +1,9 @@
 #include "survey/survey_loop.h"
 
+#include <chrono>
 #include <optional>
+#include <string>
+#include <thread>
 #include <vector>
 
 #include <gmock/gmock.h>
@@ -18,7 +21,7 @@ using testing::ElementsAre;
 class WalkingPlanner final : public Planner {
  public:
   explicit WalkingPlanner(int last) : last_(last) {}
-  std::optional<View> next_view(const Scan& scan) override {
+  std::optional<View> next_view(const geometry::ScanSpan& scan) override {
     cloud_.positions.insert(cloud_.positions.end(), scan.points.begin(), scan.points.end());
     return walk_on();
   }
@@ -87,6 +90,51 @@ TEST(SurveyLoop, AsksForAnotherViewWhenOneCannotBeReached) {
       run_survey(planner, start, {}, {.sense = sense, .can_reach = odd_places_only});
   EXPECT_THAT(places(result), ElementsAre(0, 1, 3));
   EXPECT_EQ(result.stop_reason, StopReason::nowhere_to_go);  // 4 was wanted, and refused
+}
+
+/// Takes two milliseconds for a view and five for one in place of it, and books half of the former.
+class SlowPlanner final : public Planner {
+ public:
+  std::optional<View> next_view(const Scan&) override {
+    std::this_thread::sleep_for(std::chrono::milliseconds(2));
+    step_.times = {{"think", 0.001}};
+    return walk_on();
+  }
+  std::optional<View> next_view_instead() override {
+    std::this_thread::sleep_for(std::chrono::milliseconds(5));
+    return walk_on();
+  }
+  const geometry::PointCloud& cloud() const override { return cloud_; }
+  geometry::PointCloud release_cloud() override { return std::move(cloud_); }
+  const PlanningStep& last_step() const override { return step_; }
+
+ private:
+  std::optional<View> walk_on() {
+    return at_ == 6 ? std::nullopt : std::optional(View{{double(++at_), 0, 0}, {1, 0, 0}});
+  }
+  int at_ = 0;
+  geometry::PointCloud cloud_;
+  PlanningStep step_;
+};
+
+// Also where views were refused: by the loop itself, or by whoever moves the sensor.
+TEST(SurveyLoop, SplitsThePlanningTimeWithoutRemainder) {
+  const auto far_only = [](const Vector3d&, const View& to) { return to.position.x() >= 3; };
+  SlowPlanner planner;
+  SurveySteps steps(planner, {}, {.can_reach = far_only});
+  ASSERT_TRUE(steps.take_in(sense(start)));
+  ASSERT_TRUE(steps.refuse());
+  const SurveyedView& taken = steps.views().back();
+  double sum = 0.0;
+  std::vector<std::string> parts;
+  for (const PartTime& time : taken.step.times) {
+    sum += time.seconds;
+    parts.push_back(time.part);
+  }
+  EXPECT_THAT(parts, ElementsAre("think", "rest", "instead"));
+  EXPECT_NEAR(sum, taken.planning_time, 1e-12);
+  EXPECT_GE(taken.step.times[1].seconds, 0.001);
+  EXPECT_GE(taken.step.times[2].seconds, 0.015);  // 1 and 2 by the loop, 3 by the caller
 }
 
 TEST(SurveyLoop, StopsBetweenViewsWhenAsked) {

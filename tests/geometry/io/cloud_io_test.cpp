@@ -267,5 +267,39 @@ TEST(CloudIo, SaysWhatIsWrongWithAFile) {
   }
 }
 
+// Withheld points take part in neither.
+TEST(ReadPositions, OfLasFilesAreThoseOfTheCloud) {
+  const TemporaryFolder folder;
+  std::string bytes = las_bytes(6, 5, 5);
+  bytes[375 + 2 * 30 + 15] = 4;
+  const auto path = folder.file("a.las", bytes);
+  std::vector<Eigen::Vector3f> positions;
+  read_positions(path, [&](std::span<const Eigen::Vector3f> piece, double share) {
+    positions.insert(positions.end(), piece.begin(), piece.end());
+    EXPECT_EQ(share, 1.0);
+  });
+  EXPECT_EQ(positions.size(), 4U);
+  EXPECT_EQ(positions, read_cloud(path).positions);
+}
+
+// In two pieces and their order; what is read of the file grows to all of it.
+TEST(ReadPositions, HandsOutTheCloudInPieces) {
+  const TemporaryFolder folder;
+  AttributedCloud cloud;
+  for (int i = 0; i < 1'200'000; ++i) cloud.positions.emplace_back(0.001F * float(i), 0.0F, 1.0F);
+  write_cloud(folder.path() / "long.ply", columns_of(cloud));
+  std::vector<Eigen::Vector3f> positions;
+  std::vector<double> shares;
+  read_positions(folder.path() / "long.ply",
+                 [&](std::span<const Eigen::Vector3f> piece, double share) {
+                   positions.insert(positions.end(), piece.begin(), piece.end());
+                   shares.push_back(share);
+                 });
+  EXPECT_EQ(positions, cloud.positions);
+  ASSERT_EQ(shares.size(), 2U);
+  EXPECT_NEAR(shares[0], 1.0 / 1.2, 1e-12);
+  EXPECT_EQ(shares[1], 1.0);
+}
+
 }  // namespace
 }  // namespace skycap::geometry

@@ -91,8 +91,8 @@ TEST(CoverageCeiling, IsTheVisibleShareWhenNothingElseLimits) {
   const auto is_visible = judge::visible_samples(samples.points, scene, from_anywhere);
   const judge::CeilingConfig config{
       .views = 60, .spacing = 0.02, .registration_distance = 0.1, .box = {}};
-  const double ceiling = judge::coverage_ceiling(samples.points, is_visible, scene,
-                                                 quick_scans(scene), from_anywhere, config);
+  const double ceiling = judge::marked_share(judge::attainable_samples(
+      samples.points, is_visible, scene, quick_scans(scene), from_anywhere, config));
   EXPECT_NEAR(ceiling, 1.0 / 1.09, 1e-3);  // one sample is 3e-4
 }
 
@@ -105,8 +105,8 @@ TEST(CoverageCeiling, IsLimitedByTheSpacingOfStoredPoints) {
   const auto is_visible = judge::visible_samples(samples.points, scene, from_anywhere);
   const judge::CeilingConfig config{
       .views = 40, .spacing = 0.2, .registration_distance = 0.1, .box = {}};
-  const double ceiling = judge::coverage_ceiling(samples.points, is_visible, scene,
-                                                 quick_scans(scene), from_anywhere, config);
+  const double ceiling = judge::marked_share(judge::attainable_samples(
+      samples.points, is_visible, scene, quick_scans(scene), from_anywhere, config));
   EXPECT_LT(ceiling, std::numbers::pi * 0.01 / (0.04 * std::sqrt(3.0) / 2.0));
   EXPECT_GT(ceiling, 0.5);  // random packings reach 0.55 of the plane
 }
@@ -119,33 +119,10 @@ TEST(CoverageCeiling, LeavesOutWhatLiesOutsideTheBox) {
   judge::CeilingConfig config{
       .views = 60, .spacing = 0.02, .registration_distance = 0.05, .box = {}};
   config.box = Eigen::AlignedBox3d(Vector3d(-2, -2, 0), Vector3d(2, 2, 2));
-  const double ceiling = judge::coverage_ceiling(samples.points, is_visible, scene,
-                                                 quick_scans(scene), from_anywhere, config);
+  const double ceiling = judge::marked_share(judge::attainable_samples(
+      samples.points, is_visible, scene, quick_scans(scene), from_anywhere, config));
   // The upper half, and a rim of r_d below z = 0 on four sides of width 2: 0.4 / 24 of the area.
   EXPECT_NEAR(ceiling, 0.5 + 0.4 / 24.0, 4e-3);
-}
-
-// Points of a half-normal distribution of distances from a face, from either side.
-TEST(CloudAccuracy, RecoversTheNoiseOfMeasurements) {
-  constexpr double sigma = 0.01;
-  std::mt19937_64 random(1);
-  std::uniform_real_distribution<float> uniform(-0.9F, 0.9F);
-  std::normal_distribution<float> noise(1.0F, static_cast<float>(sigma));
-  std::vector<Vector3f> points;
-  for (int i = 0; i < 20'000; ++i) {
-    points.push_back(Vector3f{uniform(random), uniform(random), noise(random)});
-  }
-  const judge::CloudAccuracy accuracy = judge::cloud_accuracy(points, cube(1.0));
-  // Standard errors of 20,000 values are below 1 % of sigma; 3 % leaves room.
-  EXPECT_NEAR(accuracy.root_mean_square, sigma, 0.03 * sigma);
-  EXPECT_NEAR(accuracy.mean, sigma * std::sqrt(2.0 / std::numbers::pi), 0.03 * sigma);
-  EXPECT_NEAR(accuracy.median, 0.6745 * sigma, 0.03 * sigma);
-  EXPECT_NEAR(accuracy.percentile_95, 1.96 * sigma, 0.05 * sigma);
-  EXPECT_GE(accuracy.largest, accuracy.percentile_95);
-}
-
-TEST(CloudAccuracy, OfNoPointsIsZero) {
-  EXPECT_EQ(judge::cloud_accuracy({}, cube(1.0)).largest, 0.0);
 }
 
 }  // namespace

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <random>
+#include <set>
 #include <sstream>
 
 #include <gmock/gmock.h>
@@ -11,6 +12,7 @@
 
 #include "geometry/error.h"
 #include "geometry/io/cloud_io.h"
+#include "geometry/io/ply.h"
 #include "geometry/place/pose.h"
 #include "missions/derived/resolved_mission.h"
 #include "missions/judge/coverage.h"
@@ -171,7 +173,7 @@ TEST(Package, ShowsWhatThePlannerBelieves) {
     missing += share.get<double>();
   }
   EXPECT_NEAR(missing + belief["predicted_coverage"].get<double>(), 1.0, 1e-5);  // float areas
-  EXPECT_EQ(belief["stop"], "running");  // the limit of views came first
+  EXPECT_EQ(belief["stop"], "view_limit");
   EXPECT_GT(belief["next_gain"], 0.0);
   EXPECT_EQ(belief["noise_m"], record.belief->noise);
 
@@ -184,6 +186,33 @@ TEST(Package, ShowsWhatThePlannerBelieves) {
   }
   EXPECT_GT(guessed, 0U);
   EXPECT_EQ(std::ranges::count_if(map.colours, is_red), guessed);
+}
+
+// One sample of each kind, read back by the reader of any properties.
+TEST(Package, HasTheTruthBesideTheBelief) {
+  const package::TrueCoverage truth{
+      .samples = {.points = {{1, 0, 0}, {2, 0, 0}, {3, 0, 0}, {4, 0, 0}},
+                  .normals = std::vector<Eigen::Vector3f>(4, Eigen::Vector3f::UnitZ()),
+                  .triangles = {0, 0, 0, 0}},
+      .is_covered = {1, 0, 0, 0},
+      .is_visible = {1, 1, 1, 0},
+      .is_attainable = {1, 1, 0, 0}};
+  const tests::TestFolder folder;
+  geometry::OutputFolder out(folder.path());
+  package::stage_package(file::Mission{}, two_views(), {.truth = truth}, 1, out);
+  out.commit();
+
+  const std::string bytes = tests::content_of(folder / "true_coverage.ply");
+  geometry::PlyReader reader("true_coverage.ply", bytes);
+  const std::vector<std::string_view> names{"x", "nz", "covered", "visible", "attainable"};
+  const geometry::PlyTable table = reader.read_element(names, {});
+  EXPECT_THAT(table.columns[0], testing::ElementsAre(1, 2, 3, 4));
+  EXPECT_THAT(table.columns[1], testing::Each(1));
+  EXPECT_THAT(table.columns[2], testing::ElementsAre(1, 0, 0, 0));
+  EXPECT_THAT(table.columns[3], testing::ElementsAre(1, 1, 1, 0));
+  EXPECT_THAT(table.columns[4], testing::ElementsAre(1, 1, 0, 0));
+  const auto colours = geometry::read_cloud(folder / "true_coverage.ply").colours;
+  EXPECT_EQ(std::set(colours.begin(), colours.end()).size(), 4U);  // one for each kind
 }
 
 TEST(Package, OfAPlannerWithoutBeliefsHasNoMapOfThem) {

@@ -254,8 +254,8 @@ TEST(HostileInput, CtrlCEndsTheMeasureOfWhatIsAttainable) {
   std::stop_source stopped;
   stopped.request_stop();
   EXPECT_THAT(scene.visible(1, stopped.get_token()), testing::Each(0));
-  EXPECT_EQ(scene.ceiling(std::vector<std::uint8_t>(scene.samples().points.size(), 1), 1,
-                          stopped.get_token()),
+  EXPECT_EQ(scene.attainable(std::vector<std::uint8_t>(scene.samples().points.size(), 1), 1,
+                             stopped.get_token()),
             std::nullopt);
 }
 

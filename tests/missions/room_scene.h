@@ -1,0 +1,40 @@
+/// A room with a door for tests of where a sensor can get to.
+#pragma once
+
+#include "geometry/surfaces/mesh.h"
+#include "sim/models/masonry/solids.h"
+
+namespace skycap::tests {
+
+struct Room {
+  double width = 20.0;  ///< of the square floor, inside [m]
+  double height = 10.0;
+  double wall = 0.5;
+  double door_width = 0.0;  ///< in the middle of the wall towards -y, from the floor up
+  double door_height = 0.0;
+};
+
+/// Closed solids: base, roof and walls round the origin; the floor inside is z = 0.
+inline geometry::Mesh room_mesh(const Room& room) {
+  const double in = 0.5 * room.width, out = in + room.wall, top = room.height;
+  const double door = 0.5 * room.door_width;
+  geometry::Mesh mesh;
+  const auto add = [&](const Eigen::Vector3d& low, const Eigen::Vector3d& high) {
+    geometry::append(mesh, sim::models::box(low, high));
+  };
+  add({-out, -out, -room.wall}, {out, out, 0.0});
+  add({-out, -out, top}, {out, out, top + room.wall});
+  add({-out, -out, 0.0}, {-in, out, top});
+  add({in, -out, 0.0}, {out, out, top});
+  add({-in, in, 0.0}, {in, out, top});
+  if (door == 0.0) {
+    add({-in, -out, 0.0}, {in, -in, top});
+    return mesh;
+  }
+  add({-in, -out, 0.0}, {-door, -in, top});
+  add({door, -out, 0.0}, {in, -in, top});
+  if (room.door_height < top) add({-door, -out, room.door_height}, {door, -in, top});
+  return mesh;
+}
+
+}  // namespace skycap::tests

@@ -1,0 +1,144 @@
+#include "missions/scene/survey_scene.h"
+
+#include <algorithm>
+#include <string_view>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "geometry/io/mesh_io.h"
+#include "missions/derived/resolved_mission.h"
+#include "missions/run/survey_runner.h"
+#include "tests/missions/room_scene.h"
+#include "tests/missions/run_skycap.h"
+#include "tests/support/complaint.h"
+
+namespace skycap::missions {
+namespace {
+
+using testing::HasSubstr;
+using testing_support::complaint_of;
+using tests::TestFolder;
+
+/// A room of 20 m with a window into it; its planners look from 6 m.
+class WindowedRoom {
+ public:
+  explicit WindowedRoom(double width, double height = 5.0) {
+    geometry::write_mesh(folder_ / "room.ply",
+                         tests::room_mesh({.door_width = width, .door_height = height}));
+  }
+
+  file::Mission mission(const std::vector<file::KeyOverride>& more) const {
+    file::Mission mission = derived::parse_mission(
+        "scene: {model: room.ply, position: [0, 0, -0.5]}\n"  // the floor inside at z = 0
+        "sensor: {width: 160, height: 100, noise: {sigma: 0.05}}\n"
+        "planner: {density: 25, resolution_radius: 0.7, view_distance: 6, occluder_spacing: 0.4,\n"
+        "          max_attempts: 2, occlusion_search_distance: 6}\n"
+        "evaluation: {registration_distance: 0.4, samples: 4000, visible_directions: 60,\n"
+        "             ceiling_views: 60}\n"
+        "limits: {max_views: 40}\n",
+        "m.yaml", more);
+    return mission;
+  }
+
+  scene::SurveyScene scene(const std::vector<file::KeyOverride>& more) const {
+    return {mission(more), folder_.path()};
+  }
+
+ private:
+  TestFolder folder_;
+};
+
+bool is_in_room(const Eigen::Vector3d& place) {
+  return Eigen::AlignedBox3d(Eigen::Vector3d(-10, -10, 0), Eigen::Vector3d(10, 10, 10))
+      .contains(place);
+}
+
+bool is_on_inside(const Eigen::Vector3f& point) {
+  return Eigen::AlignedBox3f(Eigen::Vector3f(-10.01F, -10.01F, -0.01F),
+                             Eigen::Vector3f(10.01F, 10.01F, 10.01F))
+      .contains(point);
+}
+
+// What is in a sealed room counts neither as visible nor as attainable, whatever fits; all of the
+// outside does. Walls of closed solids have nothing else.
+TEST(SurveyScene, CountsNothingInSealedRooms) {
+  const WindowedRoom sealed(0.0);
+  const scene::SurveyScene scene = sealed.scene({});
+  const std::vector<std::uint8_t> visible = scene.visible(2);
+  const auto attainable = scene.attainable(visible, 2);
+  ASSERT_TRUE(attainable);
+  EXPECT_FALSE(scene.is_reachable({0, 0, 5}));
+  EXPECT_TRUE(scene.is_reachable({0, 0, 20}));
+  std::size_t missed = 0, outside = 0;
+  for (std::size_t i = 0; i < visible.size(); ++i) {
+    const Eigen::Vector3f& point = scene.samples().points[i];
+    if (is_on_inside(point)) {
+      ASSERT_EQ(visible[i], 0) << point.transpose();
+      ASSERT_EQ((*attainable)[i], 0) << point.transpose();
+    } else if (point.cwiseAbs().head<2>().maxCoeff() > 10.49F || point.z() > 10.49F) {
+      ++outside;
+      missed += visible[i] == 0;
+    }
+  }
+  EXPECT_GT(outside, 1000U);
+  EXPECT_EQ(missed, 0U);
+}
+
+// A way in that is 3 m wide is one for a ball of 1 m, and none for a ball of 2 m, for the
+// evaluation and for planners alike.
+TEST(SurveyScene, CountsRoomsThatTheRadiusFitsInto) {
+  const WindowedRoom room(3.0);
+  const auto seen_inside = [&](const char* radius) {
+    const scene::SurveyScene scene = room.scene({{"--set", "evaluation.radius", radius}});
+    const std::vector<std::uint8_t> visible = scene.visible(2);
+    std::size_t seen = 0, inside = 0;
+    for (std::size_t i = 0; i < visible.size(); ++i) {
+      const Eigen::Vector3f& point = scene.samples().points[i];
+      if (point.y() < 5.0F || !is_on_inside(point)) continue;  // hardly seen through the window
+      ++inside;
+      seen += visible[i];
+    }
+    EXPECT_EQ(scene.is_reachable({0, 0, 5}), std::string_view(radius) != "2") << radius;
+    return static_cast<double>(seen) / static_cast<double>(inside);
+  };
+  EXPECT_GT(seen_inside("0"), 0.95);
+  EXPECT_GT(seen_inside("1"), 0.85);  // places keep a metre from the walls
+  EXPECT_LT(seen_inside("2"), 0.2);
+}
+
+// Some planner goes in through the window where it may, and none where it may not.
+TEST(RunSurvey, NoPlannerAppearsWhereNoWayLeads) {
+  const WindowedRoom room(8.0, 8.0);
+  std::size_t entered = 0;
+  for (const char* name : {"see++", "skycap"}) {
+    for (const char* radius : {"0", "4.2"}) {
+      const std::vector<file::KeyOverride> keys{{"--planner", "planner.name", name},
+                                                {"--set", "evaluation.radius", radius},
+                                                {"--set", "limits.max_views", "20"},
+                                                {"--set", "evaluation.ceiling_views", "0"}};
+      const run::SurveyRecord record = run::run_survey(room.mission(keys), room.scene(keys), 1, 2);
+      EXPECT_GE(record.views.size(), 3U) << name;
+      const auto inside = std::ranges::count_if(record.views, [](const run::JudgedView& judged) {
+        return is_in_room(judged.surveyed.view.position);
+      });
+      if (std::string_view(radius) == "4.2") {
+        EXPECT_EQ(inside, 0) << name;
+      }
+      entered += static_cast<std::size_t>(inside);
+    }
+  }
+  EXPECT_GT(entered, 0U) << "a room that tempts nobody";
+}
+
+TEST(SurveyScene, RefusesAStartInsideOfAWall) {
+  const WindowedRoom room(3.0);
+  const scene::SurveyScene scene = room.scene({{"--set", "start.position", "[10.25, 0, 5]"},
+                                               {"--set", "start.look_at", "[0, 0, 5]"},
+                                               {"--set", "evaluation.radius", "1"}});
+  EXPECT_THAT(complaint_of([&] { scene.first_view(1); }),
+              HasSubstr("start.position is inside the model"));
+}
+
+}  // namespace
+}  // namespace skycap::missions
