@@ -7,9 +7,9 @@
 #include "missions/derived/mission_priors.h"
 #include "missions/file/json_text.h"
 #include "missions/file/mission_keys.h"
-#include "missions/file/setting_json.h"
 #include "missions/package/holes.h"
 #include "missions/package/package.h"
+#include "missions/package/settings.h"
 #include "missions/package/target_coverage.h"
 #include "missions/version.h"
 
@@ -88,15 +88,6 @@ Json targets_summary(const std::vector<TargetCoverage>& targets) {
 
 std::string value_text(const file::Mission& mission, const char* key) {
   return file::to_text(*file::find_key(key)->get(mission));
-}
-
-/// All keys as they were in force, so that the survey can be repeated from its package.
-Json settings(const file::Mission& mission) {
-  Json values = Json::object();
-  for (const file::Key& key : file::mission_keys()) {
-    if (const auto value = key.get(mission)) values[key.path] = file::setting_json(*value);
-  }
-  return values;
 }
 
 /// How the vehicle comes home when its link, its battery or its pilot asks for it.
@@ -267,7 +258,7 @@ std::string summary_json(const file::Mission& mission, const run::SurveyRecord& 
   } else if (flight) {
     summary["flight"] = {{"pad", json_of(record.flown->pad)}, {"failure", flight->failure}};
   }
-  summary["settings"] = settings(mission);
+  summary["settings"] = settings_json(mission);
   summary["per_view"] = Json::array();
   for (std::size_t i = 0; i < record.views.size(); ++i) {
     summary["per_view"].push_back(view_summary(i, record.views[i]));

@@ -77,7 +77,7 @@ Rooms house() {
   add_mission_room("recording", "file", "derived", "plugins");
   add_mission_room("run", "prior", "file", "derived", "judge", "scene");
   add_mission_room("package", "prior", "file", "equipment", "derived", "judge", "scene", "run");
-  add_mission_room("report", "prior", "file", "derived", "scene", "package");
+  add_mission_room("report", "prior", "file", "derived", "scene", "run", "package");
   add_mission_room("live", "file", "derived", "scene", "run");
   add_mission_room("benchmark", "file", "derived", "judge", "plugins", "scene", "run", "package");
   add_mission_room("library", "file", "equipment", "derived", "judge", "scene", "recording", "run",
