@@ -43,11 +43,11 @@ inline CloudColumns columns_of(const AttributedCloud& cloud) {
 }
 
 /// Reads .ply; .pcd (text, binary or compressed; points of NaN are passed over); .las (versions 1.0
-/// to 1.4, points of format 0 to 10, not compressed); or .xyz, .txt, .asc: lines of x y z (further columns
-/// are passed over, '#' begins a comment); also gzip-compressed. Other properties and elements are
-/// passed over. Throws
-/// Error{bad_file} in one line, also for coordinates that are not finite, and for such so far from
-/// the origin that single precision would move them by a millimetre.
+/// to 1.4, points of format 0 to 10, not compressed); or .xyz, .txt, .asc: lines of x y z (further
+/// columns are passed over, '#' begins a comment); also gzip-compressed. Other properties and
+/// elements are passed over. Throws Error{bad_file} in one line, also for coordinates that are not
+/// finite, and for such so far from the origin that single precision would move them by a
+/// millimetre.
 AttributedCloud read_cloud(const std::filesystem::path& path);
 
 /// Takes a piece of a file's points, and the share of the file that is read with it.

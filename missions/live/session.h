@@ -15,8 +15,9 @@ class Session {
   /// Keeps references. `finish` writes the package and returns what is to be said of it; the survey
   /// is over for this program then, unless it throws.
   /// `show` is called by settle().
-  Session(const file::Mission& mission, LiveSurvey& survey, std::function<std::string()> finish,
-          std::function<void()> show = [] {});
+  Session(
+      const file::Mission& mission, LiveSurvey& survey, std::function<std::string()> finish,
+      std::function<void()> show = [] {});
 
   /// One answer for each message. What is wrong with a message is answered as
   /// {"type": "error", "what": ...} and changes nothing.

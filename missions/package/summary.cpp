@@ -32,8 +32,8 @@ Json belief_summary(const run::SurveyRecord& record) {
   if (!record.belief) return {};
   const survey::skycap::SurveyBelief& belief = *record.belief;
   // In which way it is complete, or what ended it before that: no two reasons.
-  const char* stop = record.is_complete() ? run::name_of(record.skycap_stop)
-                                          : run::name_of(record.stop_reason);
+  const char* stop =
+      record.is_complete() ? run::name_of(record.skycap_stop) : run::name_of(record.stop_reason);
   return {{"stop", stop},
           {"predicted_coverage", belief.coverage},
           {"area_m2", belief.area},

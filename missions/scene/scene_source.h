@@ -12,8 +12,9 @@
 namespace skycap::missions::scene {
 
 /// The mesh that `scene` names, in its own frame: builtin:NAME, model:NAME, or the path of a mesh
-/// or of any file of prior data that holds surfaces, relative to `folder`. Throws Error{bad_file}, {bad_config} or {bad_geometry}, naming the model,
-/// if it is not there, cannot be read, or is not a mesh with a surface.
+/// or of any file of prior data that holds surfaces, relative to `folder`. Throws Error{bad_file},
+/// {bad_config} or {bad_geometry}, naming the model, if it is not there, cannot be read, or is not
+/// a mesh with a surface.
 geometry::Mesh load_model(const file::SceneConfig& scene, const std::filesystem::path& folder);
 
 /// Turns, scales and places a model as `scene` says. Throws Error{bad_geometry} if the model has
