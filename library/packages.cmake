@@ -1,5 +1,6 @@
-# The Debian packages that `cpack` makes, one of each component that is installed: the program, and
-# the libraries for development. tests/checks/packages tries them in a bare root.
+# The Debian packages that `cpack` makes, one of each component that is installed: the program, the
+# libraries for development, and the module of Python if it is built. tests/checks/packages tries
+# them in a bare root.
 set(CPACK_GENERATOR DEB)
 set(CPACK_PACKAGE_CONTACT "Skycap maintainers <maintainers@skycap.invalid>")
 set(CPACK_PACKAGE_VERSION ${PROJECT_VERSION})
@@ -9,6 +10,11 @@ set(CPACK_THREADS 0)
 set(CPACK_DEB_COMPONENT_INSTALL ON)
 set(CPACK_COMPONENTS_GROUPING IGNORE)
 set(CPACK_COMPONENTS_ALL program development)
+set(packages program:skycap development:libskycap-dev)
+if(TARGET skycap_python)
+  list(APPEND CPACK_COMPONENTS_ALL python)
+  list(APPEND packages python:python3-skycap)
+endif()
 set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
 set(CPACK_DEBIAN_PACKAGE_VERSION ${PROJECT_VERSION})
 set(CPACK_DEBIAN_PACKAGE_CONTROL_STRICT_PERMISSION ON)
@@ -16,7 +22,7 @@ set(CPACK_DEBIAN_PACKAGE_CONTROL_STRICT_PERMISSION ON)
 set(CPACK_DEBIAN_PROGRAM_PACKAGE_NAME skycap)
 set(CPACK_DEBIAN_PROGRAM_PACKAGE_SECTION science)
 set(CPACK_DEBIAN_PROGRAM_PACKAGE_SHLIBDEPS ON)
-set(CPACK_DEBIAN_PROGRAM_PACKAGE_SUGGESTS "gnuplot-nox, npm")
+set(CPACK_DEBIAN_PROGRAM_PACKAGE_SUGGESTS "npm")
 set(CPACK_COMPONENT_PROGRAM_DESCRIPTION "plans and simulates aerial surveys of buildings
  Decides where to look from next by the points measured so far, proves that
  every leg keeps its distance, and writes the flight for autopilots.")
@@ -32,11 +38,29 @@ set(CPACK_COMPONENT_DEVELOPMENT_DESCRIPTION "libraries of Skycap, for aerial sur
  Planners, proofs of clearance, simulated sensors, and files that CMake finds
  them by. What the components beyond survey are linked with is recommended.")
 
+# A module is for one minor version of Python's interpreter.
+if(TARGET skycap_python)
+  set(CPACK_DEBIAN_PYTHON_PACKAGE_NAME python3-skycap)
+  set(CPACK_DEBIAN_PYTHON_PACKAGE_SECTION python)
+  set(CPACK_DEBIAN_PYTHON_PACKAGE_SHLIBDEPS ON)
+  string(JOIN ", " CPACK_DEBIAN_PYTHON_PACKAGE_DEPENDS python3-numpy
+    "python3 (>= ${python_version})" "python3 (<< ${next_python_version})")
+  set(CPACK_DEBIAN_PYTHON_PACKAGE_CONTROL_EXTRA
+    ${CMAKE_CURRENT_SOURCE_DIR}/python3-skycap/postinst
+    ${CMAKE_CURRENT_SOURCE_DIR}/python3-skycap/prerm)
+  set(CPACK_COMPONENT_PYTHON_DESCRIPTION "aerial surveys of buildings, from Python
+ Planners on arrays of numpy, whole surveys in simulation, laser scans piece
+ by piece, proofs of clearance, and the evaluation of clouds.")
+endif()
+
 include(CPack)
 
 # What every package of Debian's has beside its files.
-foreach(pair IN ITEMS program:skycap development:libskycap-dev)
+configure_file(changelog.in changelog @ONLY)
+execute_process(COMMAND gzip -9nkf changelog WORKING_DIRECTORY ${CMAKE_CURRENT_BINARY_DIR}
+                COMMAND_ERROR_IS_FATAL ANY)
+foreach(pair IN LISTS packages)
   string(REGEX MATCH "(.*):(.*)" pair ${pair})
-  install(FILES ${PROJECT_SOURCE_DIR}/LICENSE DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/${CMAKE_MATCH_2}
-    RENAME copyright COMPONENT ${CMAKE_MATCH_1})
+  install(FILES copyright ${CMAKE_CURRENT_BINARY_DIR}/changelog.gz
+    DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/${CMAKE_MATCH_2} COMPONENT ${CMAKE_MATCH_1})
 endforeach()

@@ -9,6 +9,7 @@ set(public_headers
   geometry/place/prism.h
   geometry/points/point_cloud.h
   geometry/points/scan.h
+  geometry/points/usable_scan.h
   geometry/surfaces/mesh.h
   geometry/surfaces/mesh_distance.h
   sim/models/models.h
@@ -30,8 +31,11 @@ set(public_headers
   flight/route/route.h
   flight/space/clearance.h
   flight/space/obstacles.h
+  missions/library/evaluation.h
   missions/library/laser_scan.h
   missions/library/mission.h
+  missions/library/sensors.h
+  missions/library/simulation.h
   missions/library/survey.h)
 
 # What those include: installed under skycap/LIBRARY/detail, not for others, may change any day.

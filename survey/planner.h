@@ -35,7 +35,7 @@ class Planner {
   /// Takes in a scan and proposes the next view; nothing when the survey is complete. The scan may
   /// be from another pose than was proposed. Throws Error{bad_geometry} if the first scan holds no
   /// point of the scene: then there is nothing to plan from.
-  virtual std::optional<geometry::View> next_view(const geometry::Scan& scan) = 0;
+  virtual std::optional<geometry::View> next_view(const geometry::ScanSpan& scan) = 0;
 
   /// Proposes another view in place of the last one, which cannot be reached; nothing when there
   /// is none left. May be called repeatedly.

@@ -47,21 +47,22 @@ bool ViewLimits::allow(const geometry::View& view) const {
   if ((least_height && height < *least_height) || (most_height && height > *most_height)) {
     return false;
   }
+  if (least_height_over && height < least_height_over(view.position.head<2>())) return false;
   if (!geofence.empty() && !geometry::contains(geofence, view.position.head<2>())) return false;
   return std::ranges::none_of(no_fly, [&](const geometry::Prism& prism) {
     return geometry::contains(prism, view.position);
   });
 }
 
-std::optional<geometry::View> ViewLimits::view_of_target(const Vector3d& target,
-                                                         const Vector3d& towards_view,
-                                                         double distance) const {
+std::optional<geometry::View> ViewLimits::turned_view(const Vector3d& target,
+                                                      const Vector3d& towards_view, double distance,
+                                                      const std::optional<double>& least) const {
   // Elevation of the view as seen from the target: the view looks down by as much.
   double lowest = -most_pitch, highest = -least_pitch;
   // A hair inside the limits, so that rounding does not carry the view across them.
   const double margin = 1e-6 * distance;
-  if (least_height) {
-    const double sine = (*least_height + margin - target.z()) / distance;
+  if (least) {
+    const double sine = (*least + margin - target.z()) / distance;
     if (sine > 1.0) return std::nullopt;
     lowest = std::max(lowest, std::asin(std::max(sine, -1.0)));
   }
@@ -81,8 +82,21 @@ std::optional<geometry::View> ViewLimits::view_of_target(const Vector3d& target,
         level.norm() > 1e-9 ? Vector2d(level.normalized()) : Vector2d(1.0, 0.0);
     towards << std::cos(elevation) * azimuth, std::sin(elevation);
   }
-  const geometry::View view{target + distance * towards, -towards};
-  return allow(view) ? std::optional(view) : std::nullopt;
+  return geometry::View{target + distance * towards, -towards};
+}
+
+std::optional<geometry::View> ViewLimits::view_of_target(const Vector3d& target,
+                                                         const Vector3d& towards_view,
+                                                         double distance) const {
+  std::optional<geometry::View> view = turned_view(target, towards_view, distance, least_height);
+  // A view that is raised over a slope stands over other ground: a few times are near enough.
+  constexpr int most_raises = 4;
+  for (int i = 0; least_height_over && view && i < most_raises; ++i) {
+    const double least = least_height_over(view->position.head<2>());
+    if (view->position.z() >= least) break;
+    view = turned_view(target, towards_view, distance, least);
+  }
+  return view && allow(*view) ? view : std::nullopt;
 }
 
 }  // namespace skycap::survey

@@ -1,6 +1,7 @@
 /// Where the pilot allows the sensor to be and which way it can look. World frame, z up.
 #pragma once
 
+#include <functional>
 #include <optional>
 #include <vector>
 
@@ -21,6 +22,9 @@ struct ViewLimits {
   double stand_off = 0.0;  ///< least distance from everything measured and from unknown space
   double least_pitch = -1.5707963267948966;  ///< of the viewing direction, down is negative [rad]
   double most_pitch = 1.5707963267948966;    ///< [rad]
+  /// Least height over a place, where the ground is not level; must be safe to call from several
+  /// threads. Null: least_height alone.
+  std::function<double(const Eigen::Vector2d&)> least_height_over{};
 
   /// Throws Error{bad_config} naming the first field that is not usable.
   void validate() const;
@@ -34,6 +38,11 @@ struct ViewLimits {
   std::optional<geometry::View> view_of_target(const Eigen::Vector3d& target,
                                                const Eigen::Vector3d& towards_view,
                                                double distance) const;
+
+ private:
+  std::optional<geometry::View> turned_view(const Eigen::Vector3d& target,
+                                            const Eigen::Vector3d& towards_view, double distance,
+                                            const std::optional<double>& least) const;
 };
 
 }  // namespace skycap::survey

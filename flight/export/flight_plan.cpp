@@ -39,6 +39,7 @@ FlightPlan flight_plan(const Route& route, std::size_t index, const std::string&
   FlightPlan plan{
       name, site,         route.vehicle, route.options.conditions, route.options.takeoff,
       {},   rules.no_fly, rules.fence,   route.clearance,          route.returns};
+  plan.priors = rules.priors;
   plan.waypoints.push_back(corner(sortie.out.points.front(), sortie.out.clearance));
   const auto add = [&](const Leg& leg, Waypoint end) {
     if (corners == Corners::flown_round && leg.smooth) {

@@ -39,6 +39,7 @@ struct FlightPlan {
   std::optional<Prism> fence;
   double clearance = 0.0;          ///< that the legs are certified at [m]
   std::optional<Returns> returns;  ///< of the whole mission that the sortie is a part of
+  std::vector<std::shared_ptr<const PriorObstacle>> priors{};  ///< in the way of the climb, too
 
   /// Throws Error{bad_config} if there are none.
   const Returns& certified_returns() const;

@@ -18,6 +18,7 @@ KnownSpace space_over_pad(const FlightPlan& plan) {
   Obstacles rules;
   rules.no_fly = plan.no_fly;
   rules.fence = plan.fence;
+  rules.priors = plan.priors;
   return KnownSpace(without_ground(std::move(rules)));
 }
 

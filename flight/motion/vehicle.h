@@ -32,6 +32,8 @@ struct Vehicle {
   double gimbal_min = -1.5707963267948966;  ///< lowest pitch [rad], 0 is the horizon
   double gimbal_max = 0.5;                  ///< highest pitch [rad]
   double max_wind = 10.0;                   ///< [m/s]
+  double sway_speed = 0.1;                  ///< at which it still moves when it stands [m/s]
+  double sway_rate = 0.0087;                ///< at which its camera still turns then [rad/s]
 
   double mass = 2.0;  ///< flown, with payload [kg]
   int rotors = 4;

@@ -67,6 +67,7 @@ struct RouteOptions {
   PathOptions path;
   Eigen::Vector3d takeoff = Eigen::Vector3d::Zero();  ///< the pad
   double takeoff_climb = 5.0;             ///< straight up from the pad before the first leg [m]
+  double ground_error = 0.0;              ///< how far above the pad priors may have the ground [m]
   bool order_is_free = false;             ///< stations may be visited in a better order than given
   FlightStyle style = FlightStyle::stop;  ///< of files that can hold curves
   /// From every point of the route there is a proven way home; without: the pilot answers for that.

@@ -3,7 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "flight/space/bounding_tree.h"
+#include "flight/space/prior_obstacle.h"
+#include "flight/space/triangle_tree.h"
 #include "flight/space/winding.h"
 
 namespace skycap::flight {
@@ -11,29 +12,6 @@ namespace {
 
 using Eigen::AlignedBox3d;
 using Eigen::Vector3d;
-
-/// Triangles with a tree over them.
-struct TriangleTree {
-  std::vector<Triangle> triangles;
-  BoundingTree tree;
-
-  void index() {
-    std::vector<AlignedBox3d> boxes(triangles.size());
-    for (std::size_t t = 0; t < triangles.size(); ++t) {
-      for (const Vector3d& corner : triangles[t]) boxes[t].extend(corner);
-    }
-    tree = BoundingTree(boxes);
-  }
-};
-
-std::vector<Triangle> triangles_of(const geometry::Mesh& mesh) {
-  std::vector<Triangle> triangles;
-  triangles.reserve(mesh.triangles.size());
-  for (const auto& [a, b, c] : mesh.triangles) {
-    triangles.push_back({mesh.vertices[a], mesh.vertices[b], mesh.vertices[c]});
-  }
-  return triangles;
-}
 
 }  // namespace
 
@@ -64,6 +42,7 @@ struct KnownSpace::Impl {
   std::vector<Prism> no_fly;
   std::optional<Prism> fence;
   std::optional<double> ground_height;
+  std::vector<std::shared_ptr<const PriorObstacle>> priors;
   AlignedBox3d extent;
 
   explicit Impl(const Obstacles& obstacles);
@@ -72,6 +51,7 @@ struct KnownSpace::Impl {
   void find_points(const Segment& leg, Closest& best) const;
   void find_ground(const Segment& leg, Closest& best) const;
   Closest surface_closest(const Segment& leg, double up_to) const;
+  void find_priors(const Segment& leg, Closest& best) const;
   std::optional<Closest> container(const Vector3d& point) const;
 };
 
@@ -80,7 +60,8 @@ KnownSpace::Impl::Impl(const Obstacles& obstacles)
       mesh_is_solid(obstacles.mesh_is_solid),
       no_fly(obstacles.no_fly),
       fence(obstacles.fence),
-      ground_height(obstacles.ground_height) {
+      ground_height(obstacles.ground_height),
+      priors(obstacles.priors) {
   mesh.triangles = triangles_of(obstacles.mesh);
   mesh.index();
   if (mesh_is_solid) winding = WindingNumber(mesh.tree, mesh.triangles);
@@ -98,6 +79,9 @@ KnownSpace::Impl::Impl(const Obstacles& obstacles)
   }
   points_tree = BoundingTree(boxes);
   if (!mesh.tree.empty()) extent.extend(mesh.tree.nodes()[0].box);
+  for (const auto& prior : priors) {
+    if (!prior->extent().isEmpty()) extent.extend(prior->extent());
+  }
 }
 
 void KnownSpace::Impl::add_rule(const Prism& prism, std::uint32_t owner) {
@@ -119,13 +103,8 @@ void KnownSpace::Impl::add_rule(const Prism& prism, std::uint32_t owner) {
 void KnownSpace::Impl::find_triangles(const TriangleTree& set, const Segment& leg,
                                       Closest& best) const {
   double reach = best.distance;
-  set.tree.visit_near(leg, reach, [&](std::uint32_t t) {
-    if (!may_be_nearer(leg, set.triangles[t], reach)) return;
-    const NearestPoints pair = nearest(leg, set.triangles[t]);
-    if (!(pair.squared_distance < reach * reach)) return;
-    reach = std::sqrt(pair.squared_distance);
+  set.visit_nearer(leg, reach, [&](std::uint32_t t, const NearestPoints& pair) {
     best = {reach, ObstacleKind::mesh, t, pair.on_segment, pair.on_other};
-    if (reach == 0.0) reach = -1.0;
   });
 }
 
@@ -173,6 +152,15 @@ Closest KnownSpace::Impl::surface_closest(const Segment& leg, double up_to) cons
   return best;
 }
 
+void KnownSpace::Impl::find_priors(const Segment& leg, Closest& best) const {
+  for (std::uint32_t i = 0; i < priors.size(); ++i) {
+    const Closest found = priors[i]->closest(leg, best.distance);
+    if (!(found.distance < best.distance)) continue;
+    best = found;
+    best.owner = i;
+  }
+}
+
 std::optional<Closest> KnownSpace::Impl::container(const Vector3d& point) const {
   for (std::uint32_t i = 0; i < no_fly.size(); ++i) {
     if (contains(no_fly[i], point)) return Closest{0.0, ObstacleKind::no_fly, i, point, point};
@@ -199,6 +187,7 @@ KnownSpace& KnownSpace::operator=(KnownSpace&&) noexcept = default;
 
 Closest KnownSpace::closest(const Segment& leg, double up_to) const {
   Closest found = impl_->surface_closest(leg, up_to);
+  if (found.distance > 0.0) impl_->find_priors(leg, found);
   if (found.distance == 0.0) return found;
   // The leg crosses no surface, so all of it is inside what its start is inside of.
   return impl_->container(leg.from).value_or(found);
@@ -228,11 +217,15 @@ bool KnownSpace::continues_free(const Segment& leg, double clearance) const {
     const Vector3d point = impl_->cloud.points[i].cast<double>();
     meet(nearest(leg, point).squared_distance, needed + impl_->cloud.radius);
   });
-  return is_free;
+  return is_free && std::ranges::all_of(impl_->priors, [&](const auto& prior) {
+           return prior->continues_free(leg, clearance);
+         });
 }
 
 double KnownSpace::surface_distance(const Vector3d& point, double up_to) const {
-  return impl_->surface_closest({point, point}, up_to).distance;
+  double distance = impl_->surface_closest({point, point}, up_to).distance;
+  for (const auto& prior : impl_->priors) distance = prior->surface_distance(point, distance);
+  return distance;
 }
 
 AlignedBox3d KnownSpace::extent() const { return impl_->extent; }
@@ -249,6 +242,8 @@ std::string KnownSpace::name(const Closest& closest) const {
       return "fence \"" + impl_->fence->name + "\"";
     case ObstacleKind::ground:
       return "the ground";
+    case ObstacleKind::prior:
+      return impl_->priors.at(closest.owner)->name(closest);
     default:
       return "";
   }

@@ -20,15 +20,26 @@
 
 namespace skycap::flight {
 
-enum class ObstacleKind { none, mesh, point, no_fly, fence, ground, unknown_space, occupied_space };
+enum class ObstacleKind {
+  none,
+  mesh,
+  point,
+  no_fly,
+  fence,
+  ground,
+  prior,
+  unknown_space,
+  occupied_space
+};
 
 /// The place where a leg comes nearest to something that is not free.
 struct Closest {
   double distance;                         ///< zero when touching or inside
   ObstacleKind kind = ObstacleKind::none;  ///< `none`: nothing nearer than was asked for
-  std::uint32_t index = 0;                 ///< triangle, point or no-fly volume
+  std::uint32_t index = 0;                 ///< triangle, point or no-fly volume; part of a prior
   Eigen::Vector3d on_leg = Eigen::Vector3d::Zero();
   Eigen::Vector3d on_obstacle = Eigen::Vector3d::Zero();
+  std::uint32_t owner = 0;  ///< the prior that it is a part of
 };
 
 /// What is known to be free. Implementations are safe to query from several threads.

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "flight/space/prior_obstacle.h"
 #include "geometry/error.h"
 
 namespace skycap::flight {
@@ -119,6 +120,7 @@ void validate(const Obstacles& obstacles) {
 
 Obstacles without_ground(Obstacles obstacles) {
   obstacles.ground_height.reset();
+  std::erase_if(obstacles.priors, [](const auto& prior) { return prior->is_ground(); });
   if (obstacles.fence) obstacles.fence->floor = -std::numeric_limits<double>::infinity();
   return obstacles;
 }

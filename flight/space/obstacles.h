@@ -3,6 +3,7 @@
 #pragma once
 
 #include <limits>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -14,6 +15,7 @@
 
 namespace skycap::flight {
 
+class PriorObstacle;
 using geometry::Prism;
 
 /// Points that stand for the surface around them: each is a ball.
@@ -30,6 +32,7 @@ struct Obstacles {
   std::vector<Prism> no_fly;
   std::optional<Prism> fence;           ///< the vehicle must stay inside
   std::optional<double> ground_height;  ///< everything below is solid
+  std::vector<std::shared_ptr<const PriorObstacle>> priors;
 };
 
 /// Throws Error{bad_geometry} or Error{bad_config} on the first part that cannot be worked with: a
@@ -38,7 +41,8 @@ struct Obstacles {
 /// that lies wholly below the ground.
 void validate(const Obstacles& obstacles);
 
-/// What a climb from a pad has to keep clear of: everything but the ground and the fence's floor.
+/// What a climb from a pad has to keep clear of: everything but the ground, which priors may be
+/// (PriorObstacle::is_ground()), and the fence's floor.
 Obstacles without_ground(Obstacles obstacles);
 
 /// The prism's closed surface, facing outward. An infinite floor or ceiling becomes -/+ 100 km.

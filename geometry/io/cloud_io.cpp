@@ -1,5 +1,6 @@
 #include "geometry/io/cloud_io.h"
 
+#include <algorithm>
 #include <bit>
 #include <cassert>
 #include <cmath>
@@ -95,6 +96,11 @@ void append_bytes(std::string& bytes, const Value& value) {
   bytes.append(reinterpret_cast<const char*>(&value), sizeof(value));
 }
 
+/// Of the file that gzip may have compressed.
+std::string ending_of(const fs::path& path) {
+  return (path.extension() == ".gz" ? path.stem() : path).extension().string();
+}
+
 }  // namespace
 
 void fail_cloud(const fs::path& path, const std::string& what) {
@@ -118,22 +124,33 @@ Eigen::Vector3f cloud_position(const fs::path& path, std::size_t point, double x
 }
 
 AttributedCloud read_cloud(const fs::path& path) {
-  fs::path inner = path;
-  if (inner.extension() == ".gz") inner = inner.stem();
-  const std::string ending = inner.extension().string();
+  const std::string ending = ending_of(path);
   using Parse = AttributedCloud (*)(const fs::path&, std::string_view);
-  const std::map<std::string, Parse> formats = {
-      {".ply", parse_ply_cloud}, {".pcd", parse_pcd_cloud}, {".las", parse_las_cloud},
-      {".xyz", parse_xyz_cloud}, {".txt", parse_xyz_cloud}, {".asc", parse_xyz_cloud}};
+  const std::map<std::string, Parse> formats = {{".ply", parse_ply_cloud},
+                                                {".pcd", parse_pcd_cloud},
+                                                {".xyz", parse_xyz_cloud},
+                                                {".txt", parse_xyz_cloud},
+                                                {".asc", parse_xyz_cloud}};
   const auto format = formats.find(ending);
-  if (format == formats.end()) {
+  if (format == formats.end() && ending != ".las") {
     fail_cloud(path,
                "a cloud file must end in .ply, .pcd, .las, .xyz, .txt or .asc (or with .gz after "
                "it)");
   }
-  AttributedCloud cloud = format->second(path, read_file(path));
+  AttributedCloud cloud =
+      ending == ".las" ? read_las_cloud(path) : format->second(path, read_file(path));
   if (cloud.positions.empty()) fail_cloud(path, "holds no points");
   return cloud;
+}
+
+void read_positions(const fs::path& path, const TakePositions& take) {
+  if (ending_of(path) == ".las") return read_las_positions(path, take);
+  const std::vector<Eigen::Vector3f> positions = read_cloud(path).positions;
+  for (std::size_t begin = 0; begin < positions.size(); begin += piece_size) {
+    const std::size_t count = std::min(piece_size, positions.size() - begin);
+    take(std::span(positions).subspan(begin, count),
+         static_cast<double>(begin + count) / static_cast<double>(positions.size()));
+  }
 }
 
 void write_cloud(const fs::path& path, const CloudColumns& cloud) {

@@ -1,10 +1,11 @@
 /// Point clouds from and to files: PLY (any properties in any order, ascii and binary), PCD,
-/// LAS 1.4 and XYZ text.
+/// LAS 1.0 to 1.4 and XYZ text.
 #pragma once
 
 #include <array>
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <span>
 #include <string_view>
 #include <vector>
@@ -41,13 +42,19 @@ inline CloudColumns columns_of(const AttributedCloud& cloud) {
   return {cloud.positions, cloud.normals, cloud.views, cloud.colours, {}};
 }
 
-/// Reads .ply; .pcd (text, binary or compressed; points of NaN are passed over); .las (version 1.4,
-/// points of format 6 or 7, not compressed); or .xyz, .txt, .asc: lines of x y z (further columns
-/// are passed over, '#' begins a comment); also gzip-compressed. Other properties and elements are
-/// passed over. Throws
-/// Error{bad_file} in one line, also for coordinates that are not finite, and for such so far from
-/// the origin that single precision would move them by a millimetre.
+/// Reads .ply; .pcd (text, binary or compressed; points of NaN are passed over); .las (versions 1.0
+/// to 1.4, points of format 0 to 10, not compressed); or .xyz, .txt, .asc: lines of x y z (further
+/// columns are passed over, '#' begins a comment); also gzip-compressed. Other properties and
+/// elements are passed over. Throws Error{bad_file} in one line, also for coordinates that are not
+/// finite, and for such so far from the origin that single precision would move them by a
+/// millimetre.
 AttributedCloud read_cloud(const std::filesystem::path& path);
+
+/// Takes a piece of a file's points, and the share of the file that is read with it.
+using TakePositions = std::function<void(std::span<const Eigen::Vector3f> piece, double share)>;
+
+/// The positions of what read_cloud() reads, in pieces of up to a million and in their order.
+void read_positions(const std::filesystem::path& path, const TakePositions& take);
 
 /// Writes binary little-endian PLY: x y z as float and then, of what is there, nx ny nz as float,
 /// view as uint, red green blue as uchar, marks as uchar. Complete or not at all. Throws

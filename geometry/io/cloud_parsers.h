@@ -20,7 +20,13 @@ Eigen::Vector3f cloud_position(const std::filesystem::path& path, std::size_t po
 /// normal_z. Points of NaN, by which PCL marks pixels without a measurement, are passed over.
 AttributedCloud parse_pcd_cloud(const std::filesystem::path& path, std::string_view bytes);
 
-/// LAS 1.4 (ASPRS specification R15) with points of format 6 or 7. Withheld points are passed over.
-AttributedCloud parse_las_cloud(const std::filesystem::path& path, std::string_view bytes);
+/// LAS 1.0 to 1.4 (las_reader.h). Withheld points are passed over.
+AttributedCloud read_las_cloud(const std::filesystem::path& path);
+
+/// Points of a piece.
+inline constexpr std::size_t piece_size = 1'000'000;
+
+/// The positions alone, as read_positions() hands them out.
+void read_las_positions(const std::filesystem::path& path, const TakePositions& take);
 
 }  // namespace skycap::geometry

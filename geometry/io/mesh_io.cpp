@@ -201,6 +201,11 @@ std::string stl_of(const Mesh& mesh) {
 
 }  // namespace
 
+bool is_mesh_file(const fs::path& path) {
+  constexpr std::array<std::string_view, 5> formats = {".ply", ".obj", ".stl", ".off", ".drc"};
+  return std::ranges::find(formats, format_of(path)) != formats.end();
+}
+
 Mesh read_mesh(const fs::path& path, const MeshOptions& options) {
   const PolygonSoup soup = parse(path);
   require_faces(path, soup);

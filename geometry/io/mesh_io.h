@@ -27,6 +27,9 @@ struct MeshOptions {
 /// right, also if the mesh holds no triangle with an area.
 Mesh read_mesh(const std::filesystem::path& path, const MeshOptions& options = {});
 
+/// Whether a name ends as those of files that read_mesh() reads.
+bool is_mesh_file(const std::filesystem::path& path);
+
 /// The part of a mesh that is made of one material.
 struct MaterialMesh {
   std::string material;  ///< the name behind usemtl; empty: none

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include <Eigen/Core>
@@ -19,6 +20,21 @@ struct Scan {
   /// For an organised scan: the pixel `row * width + column` of each point, strictly ascending;
   /// every pixel that is not listed gave no return. Empty when the sensor has no image.
   std::vector<std::uint32_t> pixels;
+
+  Eigen::Vector3d sensor_position() const { return world_from_sensor.translation(); }
+};
+
+/// A scan whose points and pixels are someone else's: a Scan, a driver's buffer, an array of numpy.
+/// They must stay as they are for as long as they are looked at.
+struct ScanSpan {
+  Eigen::Isometry3d world_from_sensor = Eigen::Isometry3d::Identity();
+  std::span<const Eigen::Vector3f> points;
+  std::span<const std::uint32_t> pixels;
+
+  ScanSpan() = default;
+  // Not explicit: what takes a ScanSpan takes a Scan.
+  ScanSpan(const Scan& scan)  // NOLINT(google-explicit-constructor)
+      : world_from_sensor(scan.world_from_sensor), points(scan.points), pixels(scan.pixels) {}
 
   Eigen::Vector3d sensor_position() const { return world_from_sensor.translation(); }
 };

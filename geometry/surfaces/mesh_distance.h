@@ -1,9 +1,9 @@
-/// How far points and segments are from a surface: of a cloud from the truth, of a route from
-/// walls.
+/// How far points are from a surface: of a cloud from the truth, of a sensor from walls.
 #pragma once
 
 #include <cstdint>
 #include <memory>
+#include <span>
 
 #include <Eigen/Core>
 
@@ -24,7 +24,7 @@ class MeshDistance {
 
   struct Closest {
     Eigen::Vector3d point;   ///< on the surface
-    std::uint32_t triangle;  ///< that it lies on; one of them, if it is on an edge
+    std::uint32_t triangle;  ///< that it lies on; the first of them, if it is on an edge
     double distance;
   };
   /// The surface point nearest to `point`.
@@ -33,8 +33,9 @@ class MeshDistance {
   /// Distance of `point` from the surface, never negative.
   double distance(const Eigen::Vector3d& point) const { return closest(point).distance; }
 
-  /// Smallest distance between the segment's points and the surface; zero if it cuts the surface.
-  double distance(const Eigen::Vector3d& from, const Eigen::Vector3d& to) const;
+  /// The distance of each point, to a place of `distances`. Quick where points that follow each
+  /// other are near each other, as in scans; the distances are the same in any order.
+  void distances(std::span<const Eigen::Vector3f> points, std::span<double> distances) const;
 
  private:
   struct Impl;

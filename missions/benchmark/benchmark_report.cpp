@@ -9,6 +9,7 @@
 
 #include "missions/benchmark/contestants.h"
 #include "missions/benchmark/paper_results.h"
+#include "missions/benchmark/trial_json.h"
 #include "missions/file/json_text.h"
 #include "missions/file/number_text.h"
 #include "missions/version.h"
@@ -17,8 +18,6 @@ namespace skycap::missions::benchmark {
 namespace {
 
 using Json = nlohmann::ordered_json;
-
-constexpr std::size_t curve_points = 100;
 
 /// The four figures of Table 1.
 struct Column {
@@ -67,24 +66,6 @@ const BenchmarkCell* cell_of(const std::vector<BenchmarkCell>& cells, const std:
   return found == cells.end() ? nullptr : &*found;
 }
 
-Json json_of(const Statistic& statistic) {
-  // JSON has no infinity: one trial says nothing about the mean's certainty.
-  return {{"mean", statistic.mean},
-          {"standard_deviation", statistic.deviation},
-          {"half_width_95",
-           std::isfinite(statistic.half_width_95) ? Json(statistic.half_width_95) : Json()}};
-}
-
-Json json_of(const std::vector<CurvePoint>& curve) {
-  Json x = Json::array(), mean = Json::array(), deviation = Json::array();
-  for (const CurvePoint& point : curve) {
-    x.push_back(point.x);
-    mean.push_back(point.mean);
-    deviation.push_back(point.deviation);
-  }
-  return {{"x", x}, {"coverage", mean}, {"standard_deviation", deviation}};
-}
-
 /// A coverage that planners are timed to.
 struct Mark {
   std::string key;    ///< in results.json
@@ -109,7 +90,10 @@ std::vector<Mark> marks_of(const std::vector<BenchmarkCell>& cells, const std::s
 }
 
 Json json_of(const BenchmarkCell& cell, const std::vector<BenchmarkCell>& cells) {
-  Json json{{"mission", cell.mission}, {"planner", cell.planner}, {"trials", cell.trials.size()}};
+  Json json{{"mission", cell.mission},
+            {"planner", cell.planner},
+            {"title", title_of(cell.planner)},
+            {"trials", cell.trials.size()}};
   if (cell.trials.empty()) return json;
   json["trials_complete"] =
       std::ranges::count(cell.trials, survey::StopReason::complete, &Trial::stop_reason);
@@ -117,16 +101,17 @@ Json json_of(const BenchmarkCell& cell, const std::vector<BenchmarkCell>& cells)
   const auto paper = paper_result(cell.mission, cell.planner);
   for (const Column& column : columns()) {
     const Statistic& ours = figures.*column.ours;
-    json[column.key] = json_of(ours);
+    json[column.key] = statistic_json(ours);
     if (!paper) continue;
     json[column.key]["paper"] = (*paper).*column.papers;
     json[column.key]["ratio_to_paper"] = ours.mean / (*paper).*column.papers;
   }
-  if (figures.coverage_visible) json["coverage_visible"] = json_of(*figures.coverage_visible);
+  if (figures.coverage_visible)
+    json["coverage_visible"] = statistic_json(*figures.coverage_visible);
   json["coverage_ceiling"] = figures.ceiling ? Json(*figures.ceiling) : Json();
   const ViewFigures per_view = view_figures(cell.trials);
-  json["frontiers_per_view"] = json_of(per_view.frontiers);
-  json["coverage_per_view"] = json_of(per_view.coverage);
+  json["frontiers_per_view"] = statistic_json(per_view.frontiers);
+  json["coverage_per_view"] = statistic_json(per_view.coverage);
   const TargetFigures targets = target_figures(cell.trials);
   json["targets"] = {{"observed", targets.targets},
                      {"share_by_views", targets.share_by_views},
@@ -138,15 +123,12 @@ Json json_of(const BenchmarkCell& cell, const std::vector<BenchmarkCell>& cells)
     to["coverage"] = mark.coverage;
     to["trials"] = reach ? reach->reached : 0;
     if (!reach) continue;
-    to["views"] = json_of(reach->views);
-    to["distance_m"] = json_of(reach->distance);
-    to["planning_time_s"] = json_of(reach->planning_time);
+    to["views"] = statistic_json(reach->views);
+    to["distance_m"] = statistic_json(reach->distance);
+    to["planning_time_s"] = statistic_json(reach->planning_time);
   }
-  json["curves"] = {
-      {"views", json_of(coverage_curve(cell.trials, CurveAxis::views, curve_points))},
-      {"planning_time_s",
-       json_of(coverage_curve(cell.trials, CurveAxis::planning_time, curve_points))},
-      {"distance_m", json_of(coverage_curve(cell.trials, CurveAxis::distance, curve_points))}};
+  json["curves"] = curves_json(cell.trials);
+  json["each_trial"] = each_trial_json(cell.trials);
   return json;
 }
 
@@ -354,8 +336,7 @@ std::string all_trials_csv(const std::vector<BenchmarkCell>& cells) {
   return csv;
 }
 
-std::string report_markdown(const std::vector<BenchmarkCell>& cells,
-                            const std::vector<std::string>& plots) {
+std::string report_markdown(const std::vector<BenchmarkCell>& cells) {
   std::string text =
       "# Benchmark\n\n"
       "Means over the trials; in brackets the SEE++ paper's (100 trials). ± is the half width of "
@@ -378,8 +359,6 @@ std::string report_markdown(const std::vector<BenchmarkCell>& cells,
             "\n## Figure 6\n\nFrontiers that views were aimed at, until one was observed.\n\n" +
             figure_6(cells);
   }
-  if (!plots.empty()) text += "\n## Plots\n";
-  for (const std::string& plot : plots) text.append("\n![" + plot + "](" + plot + ".svg)\n");
   return text;
 }
 

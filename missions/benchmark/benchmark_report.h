@@ -9,7 +9,7 @@
 namespace skycap::missions::benchmark {
 
 /// results.json: for each mission and planner all figures with deviations and 95 % intervals, the
-/// paper's values and our ratio to them, curves, and frontier statistics.
+/// paper's values and our ratio to them, curves, each trial, and frontier statistics.
 std::string results_json(const std::vector<BenchmarkCell>& cells);
 
 /// table1.csv: a line for each mission and planner.
@@ -19,9 +19,7 @@ std::string table_1_csv(const std::vector<BenchmarkCell>& cells);
 std::string all_trials_csv(const std::vector<BenchmarkCell>& cells);
 
 /// report.md: Tables 1 and 2 in the paper's form with its values beside ours, each figure with its
-/// certainty and its ratio to the paper's, Figure 6, and the plots, whose files are named without
-/// extension.
-std::string report_markdown(const std::vector<BenchmarkCell>& cells,
-                            const std::vector<std::string>& plots);
+/// certainty and its ratio to the paper's, and Figure 6.
+std::string report_markdown(const std::vector<BenchmarkCell>& cells);
 
 }  // namespace skycap::missions::benchmark

@@ -13,6 +13,7 @@
 #include "geometry/io/json.h"
 #include "geometry/parallel.h"
 #include "missions/benchmark/paper_results.h"
+#include "missions/benchmark/trial_json.h"
 #include "missions/file/json_text.h"
 #include "missions/file/mission_keys.h"
 #include "missions/file/number_text.h"
@@ -96,14 +97,6 @@ std::vector<double> mean_curve(const std::vector<Trial>& trials,
     means[view] /= static_cast<double>(trials.size());
   }
   return means;
-}
-
-Json json_of(const Statistic& statistic) {
-  Json json{{"mean", statistic.mean}, {"standard_deviation", statistic.deviation}};
-  // JSON has no infinity: one trial says nothing about the mean's certainty.
-  json["half_width_95"] =
-      std::isfinite(statistic.half_width_95) ? Json(statistic.half_width_95) : Json();
-  return json;
 }
 
 Json json_of(const std::optional<double>& number) { return number ? Json(*number) : Json(); }
@@ -231,6 +224,7 @@ std::string trials_json(const file::Mission& mission, const std::vector<Trial>& 
                         std::size_t requested, unsigned threads) {
   Json json{{"mission", mission.name},
             {"planner", file::title_of(mission.planner.name).word},
+            {"title", file::title_of(mission.planner.name).title},
             {"preset", file::to_text(*file::find_key("planner.preset")->get(mission))},
             {"first_seed", mission.seed},
             {"threads", geometry::thread_count(threads)},
@@ -242,13 +236,15 @@ std::string trials_json(const file::Mission& mission, const std::vector<Trial>& 
             {"coverage_ceiling", trials.empty() ? Json() : json_of(trials[0].coverage.ceiling)}};
   if (trials.empty()) return file::json_text(json);
   for (const Figure& figure : figures) {
-    json[figure.name] = json_of(statistic_of(trials, figure));
+    json[figure.name] = statistic_json(statistic_of(trials, figure));
     if (const auto reference = reference_of(mission, figure)) {
       json[figure.name]["paper"] = *reference;
     }
   }
   json["mean_after_view"] = {{"coverage", mean_curve(trials, &Trial::coverage_after)},
                              {"distance_m", mean_curve(trials, &Trial::distance_after)}};
+  json["curves"] = curves_json(trials);
+  json["each_trial"] = each_trial_json(trials);
   return file::json_text(json);
 }
 

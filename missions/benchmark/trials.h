@@ -71,7 +71,7 @@ Statistic statistic(const std::vector<double>& numbers);
 /// trials.csv: a line for each trial.
 std::string trials_csv(const std::vector<Trial>& trials);
 
-/// trials.json: statistics, mean curves over the views (a finished trial keeps its last coverage),
+/// trials.json: statistics, mean curves (a finished trial keeps its last coverage), each trial,
 /// and the mission's reference figures beside them.
 std::string trials_json(const file::Mission& mission, const std::vector<Trial>& trials,
                         std::size_t requested, unsigned threads);

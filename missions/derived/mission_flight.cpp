@@ -4,7 +4,9 @@
 #include <cmath>
 #include <utility>
 
+#include "flight/space/prior_obstacle.h"
 #include "flight/way_home/return_law.h"
+#include "missions/derived/mission_priors.h"
 #include "missions/equipment/vehicle_reader.h"
 
 namespace skycap::missions::derived {
@@ -27,6 +29,15 @@ double pad_spare_of(const file::Mission& mission) {
       mission.flight.is_flown() && vehicle_of(mission).dialect == flight::Dialect::dji;
   const double needed = mission.flight.clearance + flight::dji_lands_at_once + voxel_spare;
   return is_dji ? std::max(spare_of(mission), needed) : spare_of(mission);
+}
+
+/// How far above the ground that a pad stands on priors may have it.
+double ground_error_of(const file::Mission& mission) {
+  double error = 0.0;
+  for (const auto& obstacle : priors_of(mission).obstacles) {
+    if (obstacle->is_ground()) error = std::max(error, obstacle->uncertainty());
+  }
+  return error;
 }
 
 /// No-fly volumes with their top above this are not flown over [m].
@@ -82,12 +93,15 @@ flight::MeasuredSpaceConfig measured_space_of(const file::Mission& mission) {
           .free_without_return = mission.flight.free_without_return,
           .max_depth = std::min(mission.sensor.camera.camera.max_range, 1e4 * voxel),
           .region = unknown_box_of(mission),
-          .floor = mission.scene.position.z() + mission.flight.map_error};
+          .floor = priors_of(mission).terrain
+                       ? std::nullopt
+                       : std::optional(mission.scene.position.z() + mission.flight.map_error)};
 }
 
 flight::Obstacles flight_rules(const file::Mission& mission) {
   flight::Obstacles rules;
-  rules.ground_height = mission.scene.position.z();
+  rules.ground_height = ground_height_of(mission);
+  rules.priors = priors_of(mission).obstacles;
   const file::SiteConfig& site = mission.site;
   for (const geometry::Prism& volume : site.no_fly) {
     rules.no_fly.push_back(volume);
@@ -112,7 +126,8 @@ Vector3d pad_of(const file::Mission& mission, const Vector3d& first_view) {
   const AlignedBox3d box = unknown_box_of(mission);
   const Vector3d spare = Vector3d::Constant(pad_spare_of(mission));
   const Vector3d low = box.min() - spare, high = box.max() + spare;
-  Vector3d pad(first_view.x(), first_view.y(), mission.scene.position.z());
+  Vector3d pad(first_view.x(), first_view.y(), 0.0);
+  pad.z() = ground_at(mission, pad.head<2>());
   if (pad.x() <= low.x() || pad.x() >= high.x() || pad.y() <= low.y() || pad.y() >= high.y()) {
     return pad;
   }
@@ -126,6 +141,7 @@ Vector3d pad_of(const file::Mission& mission, const Vector3d& first_view) {
   } else {
     pad.y() = least == south ? low.y() : high.y();
   }
+  pad.z() = ground_at(mission, pad.head<2>());
   return pad;
 }
 
@@ -139,6 +155,9 @@ double highest_return(const file::Mission& mission, double pad_z, double obstacl
   const AlignedBox3d box = unknown_box_of(mission);
   double top = std::max(obstacles_top, mission.scene.position.z());
   if (!box.isEmpty()) top = std::max(top, box.max().z());
+  for (const auto& obstacle : priors_of(mission).obstacles) {
+    if (!obstacle->extent().isEmpty()) top = std::max(top, obstacle->extent().max().z());
+  }
   for (const geometry::Prism& volume : mission.site.no_fly) {
     if (volume.ceiling < no_flight_is_higher) top = std::max(top, volume.ceiling);
   }
@@ -160,6 +179,7 @@ flight::RouteOptions route_options_of(const file::Mission& mission, const Vector
   options.path.max_expansions = most_expansions;
   options.takeoff = pad;
   options.takeoff_climb = takeoff_climb_of(mission);
+  options.ground_error = ground_error_of(mission);
   options.order_is_free = config.order == file::VisitOrder::shortest;
   options.style = config.style;
   // The air moves away from where the wind comes from.
@@ -171,6 +191,21 @@ flight::RouteOptions route_options_of(const file::Mission& mission, const Vector
   options.returns = flight::ReturnOptions{dialects_of(vehicle_of(mission)),
                                           highest_return(mission, pad.z(), pad.z()), config.rally};
   return options;
+}
+
+double hold_of(const file::Mission& mission) {
+  return std::max(mission.flight.hold, mission.sensor.settle);
+}
+
+double hold_after_of(const file::Mission& mission) {
+  const flight::Shutter& shutter = mission.sensor.shutter;
+  return std::max(mission.flight.hold_after, shutter.exposure + shutter.readout);
+}
+
+std::optional<flight::PictureBounds> picture_bounds_of(const file::Mission& mission) {
+  if (mission.sensor.lidar) return std::nullopt;
+  return picture_bounds(vehicle_of(mission), geometry::Camera(mission.sensor.camera.camera),
+                        mission.sensor.shutter, mission.planner.see.view_distance.value());
 }
 
 bool has_place(const file::Mission& mission) {

@@ -1,6 +1,7 @@
 /// What the flight layer needs to know of a mission, in its own terms.
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include <Eigen/Core>
@@ -8,6 +9,7 @@
 
 #include "flight/export/geodesy.h"
 #include "flight/interpreter/flight_facts.h"
+#include "flight/motion/picture_bounds.h"
 #include "flight/motion/vehicle.h"
 #include "flight/route/route.h"
 #include "flight/space/measured_space.h"
@@ -58,6 +60,14 @@ double highest_return(const file::Mission& mission, double pad_z, double obstacl
 std::vector<flight::Dialect> dialects_of(const flight::Vehicle& vehicle);
 
 flight::RouteOptions route_options_of(const file::Mission& mission, const Eigen::Vector3d& pad);
+
+/// Rest at a view, before the capture and after it [s]: what the flight asks for, and no less than
+/// the sensor needs.
+double hold_of(const file::Mission& mission);
+double hold_after_of(const file::Mission& mission);
+
+/// How sharp its pictures are at the view distance; nothing for a laser scanner.
+std::optional<flight::PictureBounds> picture_bounds_of(const file::Mission& mission);
 
 /// Whether the mission says where on the Earth it is.
 bool has_place(const file::Mission& mission);

@@ -7,6 +7,7 @@
 
 #include "geometry/error.h"
 #include "missions/derived/mission_flight.h"
+#include "missions/derived/mission_priors.h"
 #include "missions/derived/planner_factory.h"
 #include "missions/derived/site.h"
 #include "missions/file/mission_keys.h"
@@ -78,7 +79,7 @@ void check_scene(const file::MissionFile& given) {
     given.refuse("scene.scale", "excludes scene.longest_side; keep one of the two");
   }
   const auto& box = mission.planner.see.scene_box;
-  if (scene.ground && !box) {
+  if (scene.ground && !box && !has_target(mission)) {
     given.refuse("scene.ground",
                  "needs planner.scene_box, or the plan would cover the ground too; give the box's "
                  "min and max");
@@ -90,7 +91,7 @@ void check_scene(const file::MissionFile& given) {
 }
 
 void check_live(const file::MissionFile& given) {
-  if (!given.mission.planner.see.scene_box) {
+  if (!given.mission.planner.see.scene_box && !has_target(given.mission)) {
     given.refuse("planner.scene_box.min",
                  "is missing; without scene.model the mission is live, and has to say with "
                  "planner.scene_box where the scene is: give the box's min and max");

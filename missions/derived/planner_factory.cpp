@@ -5,6 +5,7 @@
 
 #include "geometry/error.h"
 #include "geometry/place/camera.h"
+#include "missions/derived/mission_priors.h"
 #include "missions/derived/site.h"
 #include "missions/file/number_text.h"
 #include "missions/file/planner_titles.h"
@@ -118,7 +119,9 @@ std::unique_ptr<survey::Planner> make_planner(const file::Mission& mission, unsi
         volumetric_config(mission, *metric, threads), camera);
   }
   if (mission.planner.name == file::PlannerName::skycap) {
-    return std::make_unique<survey::skycap::SkycapPlanner>(skycap_config(mission, threads), camera);
+    survey::skycap::SkycapConfig config = skycap_config(mission, threads);
+    config.prior = prior_surface(mission);
+    return std::make_unique<survey::skycap::SkycapPlanner>(config, camera);
   }
   return std::make_unique<survey::see::SeePlanner>(see_config(mission, threads), camera);
 }

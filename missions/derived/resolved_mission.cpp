@@ -4,6 +4,7 @@
 
 #include "geometry/error.h"
 #include "geometry/place/camera.h"
+#include "missions/derived/mission_priors.h"
 #include "missions/derived/mission_rules.h"
 #include "missions/derived/survey_sensor.h"
 #include "missions/equipment/preset_files.h"
@@ -83,6 +84,8 @@ file::Mission resolved(file::MissionFile given) {
   check_scene(given);
   check_start(given);
   check_sensor(given);
+  read_priors(given);
+  derive_scene_box(mission);
   check_flight(given);
   if (mission.planner.preset == file::PlannerPreset::building) derive_building_preset(given);
   derive_ground_clearance(mission);
@@ -94,11 +97,14 @@ file::Mission resolved(file::MissionFile given) {
 file::Mission read_mission(const std::filesystem::path& file,
                            const std::vector<file::KeyOverride>& overrides) {
   file::MissionFile given = file::read_mission_file(file, overrides);
-  if (given.mission.scene.model.empty()) {
+  const bool has_target = derived::has_target(given.mission);
+  if (given.mission.scene.model.empty() && !is_truth_prior(given.mission)) {
     given.refuse(
         "scene.model",
-        "is missing; give a text, such as builtin:teapot. Without a scene a mission is for "
-        "live surveys: skycap next, serve and finish");
+        std::string("is missing; give a text, such as builtin:teapot") +
+            (has_target ? ", or plan with --dry-run prior, where the targets stand in for it"
+                        : "") +
+            ". Without a scene a mission is for live surveys: skycap next, serve and finish");
   }
   return resolved(std::move(given));
 }

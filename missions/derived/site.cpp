@@ -3,12 +3,13 @@
 #include <algorithm>
 
 #include "missions/derived/mission_flight.h"
+#include "missions/derived/mission_priors.h"
 
 namespace skycap::missions::derived {
 
 std::optional<double> least_height_above_ground(const file::Mission& mission) {
   const std::optional<double>& clearance = mission.limits.ground_clearance;
-  return clearance ? std::optional(mission.scene.position.z() + *clearance) : std::nullopt;
+  return clearance ? std::optional(ground_height_of(mission) + *clearance) : std::nullopt;
 }
 
 survey::ViewLimits view_limits(const file::Mission& mission) {
@@ -22,6 +23,12 @@ survey::ViewLimits view_limits(const file::Mission& mission) {
                             .most_pitch = limits.highest_pitch};
   if (const std::optional<double> least = least_height_above_ground(mission)) {
     result.least_height = std::max(*least, result.least_height.value_or(*least));
+  }
+  if (const auto terrain = priors_of(mission).terrain; terrain && limits.ground_clearance) {
+    result.least_height_over = [terrain, plane = mission.scene.position.z(),
+                                clearance = *limits.ground_clearance](const Eigen::Vector2d& at) {
+      return terrain->height(at).value_or(plane) + clearance;
+    };
   }
   if (mission.flight.is_flown()) {
     const flight::Vehicle& vehicle = vehicle_of(mission);

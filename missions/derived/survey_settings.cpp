@@ -6,9 +6,23 @@
 
 #include "geometry/io/file.h"
 #include "geometry/io/record_log.h"
+#include "missions/derived/mission_priors.h"
 #include "missions/file/mission_keys.h"
 
 namespace skycap::missions::derived {
+
+namespace {
+
+/// The sources without the folders of their files.
+std::vector<prior::Source> wherever_they_lie(std::vector<prior::Source> sources) {
+  for (prior::Source& source : sources) {
+    source.file = source.file.filename();
+    source.select.within = source.select.within.filename();
+  }
+  return sources;
+}
+
+}  // namespace
 
 std::vector<Setting> survey_settings(const file::Mission& mission) {
   constexpr std::size_t largest = 1 << 20;  // of a description, which was read before [byte]
@@ -25,7 +39,13 @@ std::vector<Setting> survey_settings(const file::Mission& mission) {
       text = fmt::format("description {:08x}",
                          geometry::crc32_of(geometry::read_file(mission.flight.vehicle, largest)));
     }
+    if (key.path == "prior") text = file::to_text(wherever_they_lie(mission.prior));
     settings.push_back({key.path, std::move(text)});
+  }
+  // Of prior data what it holds, too.
+  std::size_t number = 0;
+  for (const std::string& digest : priors_of(mission).digests) {
+    settings.push_back({"prior[" + std::to_string(number++) + "]", digest});
   }
   return settings;
 }

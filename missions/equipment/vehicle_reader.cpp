@@ -35,6 +35,8 @@ constexpr std::array vehicle_numbers{
     NumberKey<Vehicle>{"gimbal_rate_deg", &Vehicle::gimbal_rate, 1, 1000, degree},
     NumberKey<Vehicle>{"gimbal_min_deg", &Vehicle::gimbal_min, -180, 90, degree},
     NumberKey<Vehicle>{"gimbal_max_deg", &Vehicle::gimbal_max, -90, 180, degree},
+    NumberKey<Vehicle>{"sway_speed", &Vehicle::sway_speed, 0, 10},
+    NumberKey<Vehicle>{"sway_rate_deg", &Vehicle::sway_rate, 0, 100, degree},
     NumberKey<Vehicle>{"mass", &Vehicle::mass, 0.01, 1000},
     NumberKey<Vehicle>{"rotor_diameter", &Vehicle::rotor_diameter, 0.01, 10},
     NumberKey<Vehicle>{"battery_wh", &Vehicle::battery_wh, 0.1, 1e5},

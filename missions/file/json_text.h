@@ -2,6 +2,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include <Eigen/Core>
 #include <nlohmann/json.hpp>
@@ -15,6 +16,12 @@ inline std::string json_text(const nlohmann::ordered_json& json) {
 
 inline nlohmann::ordered_json json_of(const Eigen::Vector3d& vector) {
   return {vector.x(), vector.y(), vector.z()};
+}
+
+inline nlohmann::ordered_json json_of(const std::vector<Eigen::Vector3d>& vectors) {
+  nlohmann::ordered_json list = nlohmann::ordered_json::array();
+  for (const Eigen::Vector3d& vector : vectors) list.push_back(json_of(vector));
+  return list;
 }
 
 /// Throws what nlohmann::json throws for anything but three numbers or more.

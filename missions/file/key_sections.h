@@ -21,13 +21,14 @@ std::vector<Key> paper_keys();
 std::vector<Key> site_keys();
 std::vector<Key> flight_keys();
 std::vector<Key> scan_keys();
+std::vector<Key> prior_keys();
 
 struct KeySection {
   std::string_view name;  ///< which its keys begin with; empty for those of no section
   std::vector<Key> (*keys)();
 };
 
-inline constexpr std::array<KeySection, 12> key_sections{{{"", general_keys},
+inline constexpr std::array<KeySection, 13> key_sections{{{"", general_keys},
                                                           {"scene", scene_keys},
                                                           {"sensor", sensor_keys},
                                                           {"planner", planner_keys},
@@ -38,6 +39,7 @@ inline constexpr std::array<KeySection, 12> key_sections{{{"", general_keys},
                                                           {"paper", paper_keys},
                                                           {"site", site_keys},
                                                           {"flight", flight_keys},
-                                                          {"scan", scan_keys}}};
+                                                          {"scan", scan_keys},
+                                                          {"prior", prior_keys}}};
 
 }  // namespace skycap::missions::file

@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <numbers>
 #include <optional>
 #include <string>
@@ -13,8 +14,10 @@
 #include <Eigen/Geometry>
 
 #include "flight/motion/flight_style.h"
+#include "flight/motion/picture_bounds.h"
 #include "flight/motion/vehicle.h"
 #include "geometry/place/prism.h"
+#include "missions/prior/source.h"
 #include "sim/models/models.h"
 #include "sim/sensors/depth_camera_config.h"
 #include "sim/sensors/navigation_errors.h"
@@ -22,6 +25,10 @@
 #include "survey/see/see_config.h"
 #include "survey/skycap/skycap_config.h"
 #include "survey/volumetric/volumetric_config.h"
+
+namespace skycap::missions::prior {
+struct SitePriors;
+}
 
 namespace skycap::missions::file {
 
@@ -58,6 +65,8 @@ struct SensorConfig {
   /// What `lidar` names; `camera` is then forward_camera() of it (survey_sensor.h), by which
   /// planners choose views. Its seed is the mission's.
   std::optional<sim::LidarConfig> scanner;
+  flight::Shutter shutter{.exposure = 0.01, .readout = 0.0};
+  double settle = 0.0;  ///< at rest before a picture, for the sensor's own sake [s]
 };
 
 enum class PlannerName { see_plus_plus, see, skycap, rsv, rse, oa, uv, pc, af, ae };
@@ -204,6 +213,8 @@ struct Mission {
   SiteConfig site;
   Georeference georeference;
   FlightConfig flight;
+  std::vector<prior::Source> prior;
+  std::shared_ptr<const prior::SitePriors> priors;  ///< what those say, see derived::resolved()
   EvaluationConfig evaluation;
   ScanConfig scan;
   ReferenceConfig paper;

@@ -8,6 +8,7 @@
 #include <fstream>
 #include <iterator>
 #include <optional>
+#include <span>
 #include <string_view>
 #include <system_error>
 
@@ -23,6 +24,7 @@ constexpr std::size_t largest_file = 1 << 20;  // [byte]; a mission has a few th
 
 /// A value and where it stands.
 struct Given {
+  std::string file;   ///< or an option's name
   std::string place;  ///< "FILE:LINE" or an option's name
   YamlNode node;
 };
@@ -30,29 +32,40 @@ struct Given {
 /// The values of a mission by key, checked to be known but not yet read.
 using GivenValues = std::map<std::string, Given, std::less<>>;
 
+/// The keys that a map may have, and what messages call it.
+struct KnownKeys {
+  std::span<const Key> keys;
+  std::string of;  ///< comes before the key, such as "prior[0]."
+  std::string file;
+
+  const Key* find(std::string_view path) const {
+    const auto key = std::ranges::find(keys, path, &Key::path);
+    return key == keys.end() ? nullptr : &*key;
+  }
+  bool has_section(const std::string& path) const {
+    return std::ranges::any_of(keys,
+                               [&](const Key& key) { return key.path.starts_with(path + "."); });
+  }
+};
+
 [[noreturn]] void fail(const std::string& place, std::string_view key, const std::string& what) {
   throw Error(ErrorKind::bad_config, place + ": key " + std::string(key) + ": " + what);
 }
 
-bool is_section(const std::string& path) {
-  return std::ranges::any_of(mission_keys(),
-                             [&](const Key& key) { return key.path.starts_with(path + "."); });
-}
-
 /// Files the values of a map, and of the maps in it, under their keys.
-void collect(const YamlNode& map, const std::string& prefix, const std::string& name,
+void collect(const YamlNode& map, const std::string& prefix, const KnownKeys& known,
              GivenValues& values) {
   for (const YamlEntry& entry : map.entries) {
     const std::string path = prefix + entry.key;
-    const std::string place = name + ":" + std::to_string(entry.line);
-    if (find_key(path)) {
-      values[path] = {place, entry.value};
-    } else if (!is_section(path)) {
-      fail(place, path, unknown_key_message(path));
+    const std::string place = known.file + ":" + std::to_string(entry.line);
+    if (known.find(path)) {
+      values[path] = {known.file, place, entry.value};
+    } else if (!known.has_section(path)) {
+      fail(place, known.of + path, unknown_key_message(path, known.keys));
     } else if (entry.value.kind == YamlNode::Kind::map) {
-      collect(entry.value, path + ".", name, values);
+      collect(entry.value, path + ".", known, values);
     } else {
-      fail(place, path, "is a section; put its keys below it, indented");
+      fail(place, known.of + path, "is a section; put its keys below it, indented");
     }
   }
 }
@@ -142,6 +155,37 @@ std::optional<KeyValue> list_in(const YamlNode& node, const ReadItem& read_item)
 
 bool is_control_character(unsigned char c) { return c < 0x20 || c == 0x7f; }
 
+std::optional<std::string> text_in(const YamlNode& node) {
+  if (node.kind != YamlNode::Kind::scalar || node.text.empty()) return std::nullopt;
+  if (std::ranges::any_of(node.text, is_control_character)) return std::nullopt;
+  return node.text;
+}
+
+std::optional<int> integer_in(const YamlNode& node, const KeyRange& range) {
+  const auto number = number_in(node, range);
+  if (!number || std::abs(*number) > 1e9 || *number != std::round(*number)) return std::nullopt;
+  return static_cast<int>(*number);
+}
+
+std::optional<KeyValue> pairs_in(const YamlNode& node) {
+  if (node.kind != YamlNode::Kind::map) return std::nullopt;
+  std::map<std::string, std::string> pairs;
+  for (const YamlEntry& entry : node.entries) {
+    const auto text = text_in(entry.value);
+    if (!text) return std::nullopt;
+    pairs[entry.key] = *text;
+  }
+  return pairs;
+}
+
+/// A number, or one of the words that the key takes as well.
+std::optional<KeyValue> number_or_word(const Key& key, const YamlNode& node) {
+  const bool is_word = node.kind == YamlNode::Kind::scalar &&
+                       std::ranges::find(key.choices, node.text) != key.choices.end();
+  if (is_word) return node.text;
+  return number_in(node, key.range);
+}
+
 /// The node's value as `key` takes it; nothing if it does not.
 std::optional<KeyValue> value_for(const Key& key, const YamlNode& node) {
   if (key.type == KeyType::vector) return vector_in(node, key.range);
@@ -149,7 +193,11 @@ std::optional<KeyValue> value_for(const Key& key, const YamlNode& node) {
   if (key.type == KeyType::volumes) return list_in<geometry::Prism>(node, volume_in);
   const auto vector = [&](const YamlNode& item) { return vector_in(item, key.range); };
   if (key.type == KeyType::vectors) return list_in<Eigen::Vector3d>(node, vector);
-  if (key.type == KeyType::number) return number_in(node, key.range);
+  if (key.type == KeyType::number) return number_or_word(key, node);
+  if (key.type == KeyType::texts) return list_in<std::string>(node, text_in);
+  const auto integer = [&](const YamlNode& item) { return integer_in(item, key.range); };
+  if (key.type == KeyType::integers) return list_in<int>(node, integer);
+  if (key.type == KeyType::pairs) return pairs_in(node);
   if (node.kind != YamlNode::Kind::scalar) return std::nullopt;
   switch (key.type) {
     case KeyType::integer: {
@@ -164,16 +212,50 @@ std::optional<KeyValue> value_for(const Key& key, const YamlNode& node) {
       if (std::ranges::find(key.choices, node.text) == key.choices.end()) break;
       return node.text;
     default:
-      if (node.text.empty() || std::ranges::any_of(node.text, is_control_character)) break;
-      return node.text;
+      if (const auto text = text_in(node)) return *text;
   }
   return std::nullopt;
 }
 
-void apply(const Given& given, const Key& key, Mission& mission) {
+[[noreturn]] void refuse_value(const Given& given, const Key& key, const std::string& of) {
+  fail(given.place, of + key.path, described(given.node) + "; give " + expected_value(key));
+}
+
+void apply(const Given& given, const Key& key, Mission& mission, const std::string& of = "") {
   const auto value = value_for(key, given.node);
-  if (!value) fail(given.place, key.path, described(given.node) + "; give " + expected_value(key));
+  if (!value) refuse_value(given, key, of);
   key.set(mission, *value);
+}
+
+/// One map of a list of them; `places` learns where its keys stand.
+prior::Source source_in(const YamlNode& node, const KnownKeys& known, MissionFile& result) {
+  const std::string place = known.file + ":" + std::to_string(node.line);
+  const std::string name = known.of.substr(0, known.of.size() - 1);
+  if (node.kind != YamlNode::Kind::map) fail(place, name, described(node) + "; give a map");
+  GivenValues values;
+  collect(node, "", known, values);
+  Mission mission;
+  mission.prior.emplace_back();
+  result.places[name] = place;
+  for (const auto& [path, given] : values) {
+    apply(given, *known.find(path), mission, known.of);
+    result.places[known.of + path] = given.place;
+  }
+  for (const Key& key : known.keys) {
+    if (!key.is_required || values.contains(key.path)) continue;
+    fail(place, known.of + key.path, "is missing; give " + expected_value(key));
+  }
+  return mission.prior.back();
+}
+
+void apply_sources(const Given& given, const Key& key, MissionFile& result) {
+  if (given.node.kind != YamlNode::Kind::list) refuse_value(given, key, "");
+  std::vector<prior::Source> sources;
+  for (const YamlNode& item : given.node.items) {
+    const std::string of = key.path + "[" + std::to_string(sources.size()) + "].";
+    sources.push_back(source_in(item, {key.items, of, given.file}, result));
+  }
+  key.set(result.mission, sources);
 }
 
 /// Sets up what the named presets stand for, before the other keys override it.
@@ -205,14 +287,14 @@ GivenValues collected(const std::string& text, const std::string& name,
                                            ": is not a map; a mission is a list of 'key: value'");
   }
   GivenValues values;
-  collect(root, "", name, values);
+  collect(root, "", {mission_keys(), "", name}, values);
   for (const auto& [origin, path, value] : overrides) {
-    if (!find_key(path)) fail(origin, path, unknown_key_message(path));
+    if (!find_key(path)) fail(origin, path, unknown_key_message(path, mission_keys()));
     // What a publication reports is for the planner that the file names.
     if (path == "planner.name") {
       std::erase_if(values, [](const auto& entry) { return entry.first.starts_with("paper."); });
     }
-    values[path] = {origin, parse_yaml(value, origin)};
+    values[path] = {origin, origin, parse_yaml(value, origin)};
   }
   return values;
 }
@@ -230,7 +312,10 @@ MissionFile mission_from(const std::string& text, const std::string& name,
     if (preset != given.end()) apply(preset->second, *find_key(path), mission);
   }
   apply_presets(mission);
-  for (const auto& [path, value] : given) apply(value, *find_key(path), mission);
+  for (const auto& [path, value] : given) {
+    const Key& key = *find_key(path);
+    key.type == KeyType::sources ? apply_sources(value, key, result) : apply(value, key, mission);
+  }
   for (const Key& key : mission_keys()) {
     if (!key.is_required || given.contains(key.path)) continue;
     result.refuse(key.path, "is missing; give " + expected_value(key));

@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "missions/file/mission_keys.h"
+#include "missions/file/setting_json.h"
 
 namespace skycap::missions::file {
 namespace {
@@ -42,7 +43,9 @@ std::string listed(const std::vector<std::string>& choices) {
 std::string default_text(const Key& key) {
   if (key.is_required) return "required";
   if (!key.fallback.empty()) return key.fallback;
-  return to_text(*key.get(Mission{}));
+  Mission blank;
+  blank.prior.emplace_back();  // for the keys of a list's maps
+  return to_text(*key.get(blank));
 }
 
 Json number_schema(const Key& key, const char* type) {
@@ -100,12 +103,15 @@ std::string volumes_text(const std::vector<geometry::Prism>& volumes) {
   return "[" + text + "]";
 }
 
+Json sources_schema(const Key& key);
+
 Json value_schema(const Key& key) {
   switch (key.type) {
     case KeyType::text:
       return {{"type", "string"}, {"minLength", 1}};
     case KeyType::number:
-      return number_schema(key, "number");
+      if (key.choices.empty()) return number_schema(key, "number");
+      return {{"anyOf", {number_schema(key, "number"), {{"enum", key.choices}}}}};
     case KeyType::integer:
       return number_schema(key, "integer");
     case KeyType::boolean:
@@ -118,6 +124,14 @@ Json value_schema(const Key& key) {
       return volumes_schema();
     case KeyType::vectors:
       return {{"type", "array"}, {"items", vector_schema(key)}};
+    case KeyType::texts:
+      return {{"type", "array"}, {"items", {{"type", "string"}, {"minLength", 1}}}};
+    case KeyType::integers:
+      return {{"type", "array"}, {"items", number_schema(key, "integer")}};
+    case KeyType::pairs:
+      return {{"type", "object"}, {"additionalProperties", {{"type", "string"}}}};
+    case KeyType::sources:
+      return sources_schema(key);
     case KeyType::vector:
       break;
   }
@@ -152,6 +166,19 @@ void add_to_schema(const Key& key, Json& root) {
   }
 }
 
+Json sources_schema(const Key& key) {
+  Json map = section_schema();
+  for (const Key& item : key.items) add_to_schema(item, map);
+  return {{"type", "array"}, {"items", map}};
+}
+
+void add_to_table(const Key& key, const std::string& prefix, std::ostream& table) {
+  const std::string path = prefix + key.path;
+  table << "| `" << path << "` | " << expected_value(key) << " | " << default_text(key) << " | "
+        << key.meaning << " |\n";
+  for (const Key& item : key.items) add_to_table(item, path + "[].", table);
+}
+
 }  // namespace
 
 std::string expected_value(const Key& key) {
@@ -160,7 +187,8 @@ std::string expected_value(const Key& key) {
     case KeyType::text:
       return "a text";
     case KeyType::number:
-      return "a number" + range_text(key.range) + unit;
+      return (key.choices.empty() ? "" : listed(key.choices) + " or ") + "a number" +
+             range_text(key.range) + unit;
     case KeyType::integer:
       return "a whole number" + range_text(key.range) + unit;
     case KeyType::boolean:
@@ -173,6 +201,14 @@ std::string expected_value(const Key& key) {
       return "a list of {corners, bottom, top}" + unit;
     case KeyType::vectors:
       return "a list of lists of three numbers" + range_text(key.range) + unit;
+    case KeyType::texts:
+      return "a list of texts";
+    case KeyType::integers:
+      return "a list of whole numbers" + range_text(key.range);
+    case KeyType::pairs:
+      return "a map of texts";
+    case KeyType::sources:
+      return "a list of maps, each with file, role and what else is needed";
     case KeyType::vector:
       break;
   }
@@ -197,7 +233,8 @@ std::string to_text(const KeyValue& value) {
     }
     return "[" + text + "]";
   }
-  return vector_text(std::get<Eigen::Vector3d>(value));
+  if (const auto* vector = std::get_if<Eigen::Vector3d>(&value)) return vector_text(*vector);
+  return setting_json(value).dump(-1, ' ', false, Json::error_handler_t::replace);
 }
 
 std::string mission_json_schema() {
@@ -219,8 +256,7 @@ std::string mission_key_table() {
   std::ostringstream table;
   table << "| key | takes | default | meaning |\n| --- | --- | --- | --- |\n";
   for (const Key& key : mission_keys()) {
-    table << "| `" << key.path << "` | " << expected_value(key) << " | " << default_text(key)
-          << " | " << key.meaning << " |\n";
+    add_to_table(key, "", table);
   }
   return table.str();
 }

@@ -46,6 +46,20 @@ std::vector<Key> sensor_keys() {
           [](Mission & m) -> auto& { return m.sensor.camera.max_incidence; },
           "Surfaces whose normal makes a larger angle than this with the ray give no return; 90 "
           "switches the limit off."),
+      number_key(
+          "sensor.exposure", "s", between(0, 10),
+          [](Mission & m) -> auto& { return m.sensor.shutter.exposure; },
+          "How long a picture is exposed. A flown view lasts at least as long as exposure "
+          "and readout, and the summary bounds the blur."),
+      number_key(
+          "sensor.readout", "s", between(0, 10),
+          [](Mission & m) -> auto& { return m.sensor.shutter.readout; },
+          "Of a rolling shutter, the time between the exposures of the first row and of the "
+          "last; 0 is a global one."),
+      number_key(
+          "sensor.settle", "s", between(0, 3600),
+          [](Mission & m) -> auto& { return m.sensor.settle; },
+          "Least time at rest before the capture; flight.hold may ask for more."),
       number_key("sensor.noise.sigma", "m", between(0, 1e3), noise(&sim::NoiseConfig::sigma),
                  "Standard deviation of the Gaussian noise of the measured points."),
       choice_key("sensor.noise.direction", {"isotropic", "along_ray"},

@@ -6,8 +6,6 @@
 #include <utility>
 #include <vector>
 
-#include "missions/file/mission_keys.h"
-
 namespace skycap::missions::file {
 namespace {
 
@@ -31,11 +29,11 @@ std::string_view last_part(std::string_view path) { return path.substr(path.rfin
 
 }  // namespace
 
-std::string unknown_key_message(const std::string& path) {
+std::string unknown_key_message(const std::string& path, std::span<const Key> keys) {
   const Key* nearest = nullptr;
   std::size_t nearest_distance = 0;
   constexpr std::size_t longest = 100;  // what is longer is no slip, and would take long
-  for (const Key& key : mission_keys()) {
+  for (const Key& key : keys) {
     if (path.size() > longest) break;
     // A key may be misspelt, or right (but for a slip) in the wrong section.
     const std::size_t slip = edit_distance(last_part(path), last_part(key.path));
@@ -48,7 +46,7 @@ std::string unknown_key_message(const std::string& path) {
   }
   const std::string section = path.substr(0, path.rfind('.') + 1);
   std::vector<std::string> children;
-  for (const Key& key : mission_keys()) {
+  for (const Key& key : keys) {
     if (!key.path.starts_with(section)) continue;
     std::string child = key.path.substr(0, key.path.find('.', section.size()));
     if (std::ranges::find(children, child) == children.end()) children.push_back(std::move(child));

@@ -1,8 +1,10 @@
 #include "missions/judge/coverage.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <numbers>
+#include <numeric>
 
 #include "geometry/points/point_grid.h"
 
@@ -13,19 +15,43 @@ CoverageMeter::CoverageMeter(std::span<const Eigen::Vector3f> samples, double re
     // rounding of coordinates to cells.
     : cell_size_(2.0 * registration_distance * (1.0 + 1e-6)),
       squared_distance_(static_cast<float>(registration_distance * registration_distance)),
-      is_covered_(samples.size(), 0) {
-  for (std::uint32_t i = 0; i < samples.size(); ++i) {
-    const auto cell = [&](int axis) {
-      return static_cast<std::int64_t>(std::floor(double{samples[i][axis]} / cell_size_));
-    };
-    uncovered_[cell_at(cell(0), cell(1), cell(2))].push_back({samples[i], i});
+      is_covered_(samples.size(), 0),
+      slots_(std::bit_ceil(2 * samples.size() + 1)) {
+  std::vector<Cell> cells;
+  cells.reserve(samples.size());
+  for (const Eigen::Vector3f& sample : samples) cells.push_back(cell_of(sample));
+  std::vector<std::uint32_t> order(samples.size());
+  std::iota(order.begin(), order.end(), 0U);
+  std::ranges::stable_sort(order, {}, [&](std::uint32_t i) { return cells[i]; });
+  samples_.reserve(samples.size());
+  for (const std::uint32_t i : order) {
+    Slot& slot = slot_of(cells[i]);
+    const auto place = static_cast<std::uint32_t>(samples_.size());
+    if (slot.cell == no_cell) slot = {cells[i], place, place};
+    samples_.push_back({samples[i], i});
+    ++slot.end;
   }
 }
 
-CoverageMeter::Cell CoverageMeter::cell_at(std::int64_t x, std::int64_t y, std::int64_t z) const {
+CoverageMeter::Cell CoverageMeter::cell_at(std::int64_t x, std::int64_t y, std::int64_t z) {
   // 21 bits an axis. Cells that share a number are merely searched together.
   constexpr std::int64_t mask = (1 << 21) - 1;
   return static_cast<Cell>((x & mask) << 42 | (y & mask) << 21 | (z & mask));
+}
+
+CoverageMeter::Cell CoverageMeter::cell_of(const Eigen::Vector3f& sample) const {
+  const auto cell = [&](int axis) {
+    return static_cast<std::int64_t>(std::floor(double{sample[axis]} / cell_size_));
+  };
+  return cell_at(cell(0), cell(1), cell(2));
+}
+
+CoverageMeter::Slot& CoverageMeter::slot_of(Cell cell) {
+  const std::size_t mask = slots_.size() - 1;
+  constexpr std::uint64_t golden = 0x9E3779B97F4A7C15;  // 2^64 over the golden ratio
+  std::size_t place = (cell * golden >> 32) & mask;
+  while (slots_[place].cell != cell && slots_[place].cell != no_cell) place = (place + 1) & mask;
+  return slots_[place];
 }
 
 void CoverageMeter::add(std::span<const Eigen::Vector3f> points) {
@@ -44,20 +70,16 @@ void CoverageMeter::add(std::span<const Eigen::Vector3f> points) {
 }
 
 void CoverageMeter::cover_cell(Cell cell, const Eigen::Vector3f& point) {
-  const auto found = uncovered_.find(cell);
-  if (found == uncovered_.end()) return;
-  std::vector<Sample>& samples = found->second;
-  for (std::size_t i = 0; i < samples.size();) {
-    if (geometry::squared_distance(samples[i].position, point) > squared_distance_) {
+  Slot& slot = slot_of(cell);
+  for (std::uint32_t i = slot.begin; i < slot.end;) {
+    if (geometry::squared_distance(samples_[i].position, point) > squared_distance_) {
       ++i;
       continue;
     }
-    is_covered_[samples[i].index] = 1;
+    is_covered_[samples_[i].index] = 1;
     ++covered_;
-    samples[i] = samples.back();
-    samples.pop_back();
+    samples_[i] = samples_[--slot.end];
   }
-  if (samples.empty()) uncovered_.erase(found);
 }
 
 double CoverageMeter::share() const {

@@ -6,7 +6,6 @@
 #include <cstdint>
 #include <optional>
 #include <span>
-#include <unordered_map>
 #include <vector>
 
 #include <Eigen/Core>
@@ -30,19 +29,29 @@ class CoverageMeter {
 
  private:
   using Cell = std::uint64_t;
+  /// A place of the table of cells: what is left of the cell's samples.
+  struct Slot {
+    Cell cell = no_cell;
+    std::uint32_t begin = 0, end = 0;  ///< of samples_
+  };
   struct Sample {
     Eigen::Vector3f position;
     std::uint32_t index;
   };
 
-  Cell cell_at(std::int64_t x, std::int64_t y, std::int64_t z) const;
+  static constexpr Cell no_cell = ~Cell{0};
+
+  static Cell cell_at(std::int64_t x, std::int64_t y, std::int64_t z);
+  Cell cell_of(const Eigen::Vector3f& sample) const;
+  Slot& slot_of(Cell cell);
   void cover_cell(Cell cell, const Eigen::Vector3f& point);
 
   double cell_size_;
   float squared_distance_;
   std::size_t covered_ = 0;
   std::vector<std::uint8_t> is_covered_;
-  std::unordered_map<Cell, std::vector<Sample>> uncovered_;
+  std::vector<Slot> slots_;      ///< hashed by cell, the next one taken where one is taken
+  std::vector<Sample> samples_;  ///< cell by cell
 };
 
 /// The covered share of those samples that `counts` marks; nothing if it marks none.

@@ -7,7 +7,6 @@
 #include <random>
 
 #include "geometry/parallel.h"
-#include "geometry/surfaces/mesh_distance.h"
 #include "missions/judge/coverage.h"
 #include "missions/judge/thinned_cloud.h"
 
@@ -81,29 +80,6 @@ std::vector<std::uint8_t> attainable_samples(std::span<const Vector3f> samples,
     meter.add(cloud.store(scan.points, config.box));
   }
   return meter.is_covered();
-}
-
-CloudAccuracy cloud_accuracy(std::span<const Vector3f> points, const geometry::Mesh& truth,
-                             unsigned threads) {
-  if (points.empty()) return {};
-  const geometry::MeshDistance distance_to(truth);
-  std::vector<double> distances(points.size());
-  const std::size_t tasks = (points.size() + samples_in_a_task - 1) / samples_in_a_task;
-  geometry::parallel_for(tasks, threads, [&](std::size_t task) {
-    const std::size_t end = std::min(points.size(), (task + 1) * samples_in_a_task);
-    for (std::size_t i = task * samples_in_a_task; i < end; ++i) {
-      distances[i] = distance_to.distance(points[i].cast<double>());
-    }
-  });
-  std::ranges::sort(distances);
-  const auto count = static_cast<double>(distances.size());
-  const auto quantile = [&](double share) {
-    return distances[static_cast<std::size_t>(share * (count - 1.0))];
-  };
-  const double sum = std::accumulate(distances.begin(), distances.end(), 0.0);
-  const double squares =
-      std::inner_product(distances.begin(), distances.end(), distances.begin(), 0.0);
-  return {sum / count, std::sqrt(squares / count), quantile(0.5), quantile(0.95), distances.back()};
 }
 
 }  // namespace skycap::missions::judge

@@ -1,5 +1,4 @@
-/// What could have been covered at all, and how accurate a cloud is: the figures that a survey's
-/// coverage is read against.
+/// What could have been covered at all: what a survey's coverage is read against.
 #pragma once
 
 #include <cstddef>
@@ -15,7 +14,6 @@
 
 #include "geometry/place/pose.h"
 #include "geometry/points/scan.h"
-#include "geometry/surfaces/mesh.h"
 #include "sim/scene/scene.h"
 
 namespace skycap::missions::judge {
@@ -67,17 +65,5 @@ std::vector<std::uint8_t> attainable_samples(std::span<const Eigen::Vector3f> sa
                                              const Admissible& admissible,
                                              const CeilingConfig& config,
                                              std::stop_token stop = {});
-
-/// Distances of measured points from the true surface.
-struct CloudAccuracy {
-  double mean = 0.0;
-  double root_mean_square = 0.0;
-  double median = 0.0;
-  double percentile_95 = 0.0;
-  double largest = 0.0;
-};
-
-CloudAccuracy cloud_accuracy(std::span<const Eigen::Vector3f> points, const geometry::Mesh& truth,
-                             unsigned threads = 0);
 
 }  // namespace skycap::missions::judge

@@ -2,14 +2,12 @@
 
 #include <algorithm>
 #include <utility>
-#include <variant>
 #include <vector>
 
-#include "geometry/error.h"
 #include "geometry/parallel.h"
 #include "missions/equipment/preset_files.h"
-#include "missions/equipment/sensor_reader.h"
 #include "missions/library/mission_contents.h"
+#include "missions/library/sensors.h"
 #include "missions/recording/scan_flight.h"
 #include "missions/scene/scene_source.h"
 
@@ -27,15 +25,10 @@ constexpr std::size_t parts_in_piece = 64;
 
 sim::LidarConfig scanner_of(const Mission::Contents& contents, const ScanRequest& request) {
   const std::string& own = contents.mission.scan.sensor;
-  equipment::SensorDescription sensor =
-      equipment::find_sensor(request.sensor.value_or(equipment::named_from(contents.folder, own)));
-  auto* scanner = std::get_if<sim::LidarConfig>(&sensor.sensor);
-  if (scanner == nullptr) {
-    throw Error(ErrorKind::bad_config,
-                sensor.name + " is a camera; a scan in pieces needs a laser scanner");
-  }
-  scanner->seed = contents.mission.seed;
-  return std::move(*scanner);
+  sim::LidarConfig scanner =
+      laser_scanner(request.sensor.value_or(equipment::named_from(contents.folder, own)));
+  scanner.seed = contents.mission.seed;
+  return scanner;
 }
 
 }  // namespace
@@ -46,7 +39,7 @@ struct LaserScan::Impl {
         lidar(scanner_of(contents, request)),
         flown(recording::scan_flight(contents.mission, contents.folder, request.route,
                                      recording::Carrier::airframe)),
-        scene(scene::reflecting_scene(contents.mission.scene, contents.folder).scene(threads)),
+        scene(scene::reflecting_scene(contents.mission, contents.folder).scene(threads)),
         firings(lidar.firings(flown.route.carrier)),
         parts(parts_in_piece) {
     recording::require_measurable(lidar, flown.route.carrier);

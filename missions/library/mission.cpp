@@ -45,7 +45,7 @@ double Mission::coverage_distance() const {
 }
 
 geometry::Mesh Mission::model() const {
-  return scene::placed_model(contents_->mission.scene, contents_->folder);
+  return scene::placed_model(contents_->mission, contents_->folder);
 }
 
 std::unique_ptr<survey::Planner> Mission::planner() const {

@@ -155,6 +155,17 @@ struct LiveSurvey::Impl {
     unwritten.reset();
   }
 
+  run::SurveyRecord views_record() const {
+    run::SurveyRecord record;
+    record.seed = mission.seed;
+    record.threads = geometry::thread_count(threads);
+    record.stop_reason = proposal.end.value_or(survey::StopReason::interrupted);
+    for (const survey::SurveyedView& view : steps->views()) {
+      record.views.push_back({view, std::numeric_limits<double>::quiet_NaN()});
+    }
+    return record;
+  }
+
   void take_in(LiveEvent event, const geometry::Scan& scan) {
     events.push_back(std::move(event));
     if (happen(events.back(), scan)) {
@@ -231,14 +242,14 @@ void LiveSurvey::refuse(const std::string& reason) {
   impl_->take_in({.scan = {}, .refusal = reason, .proposal = {}}, {});
 }
 
+run::SurveyRecord LiveSurvey::so_far() const {
+  run::SurveyRecord record = impl_->views_record();
+  impl_->guide->tell(record);
+  return record;
+}
+
 run::SurveyRecord LiveSurvey::finish() {
-  run::SurveyRecord record;
-  record.seed = impl_->mission.seed;
-  record.threads = geometry::thread_count(impl_->threads);
-  record.stop_reason = impl_->proposal.end.value_or(survey::StopReason::interrupted);
-  for (const survey::SurveyedView& view : views()) {
-    record.views.push_back({view, std::numeric_limits<double>::quiet_NaN()});
-  }
+  run::SurveyRecord record = impl_->views_record();
   impl_->guide->finish(record);
   return record;
 }

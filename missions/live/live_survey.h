@@ -62,6 +62,10 @@ class LiveSurvey {
   /// Asks for another view in place of the proposed one. Throws Error{bad_usage} if there is none.
   void refuse(const std::string& reason);
 
+  /// The survey so far, to be looked at: interrupted, if a view is still proposed; without its
+  /// flight.
+  run::SurveyRecord so_far() const;
+
   /// The survey so far, for a package: interrupted, if a view is still proposed. The folder stays
   /// as it is; this object may only be destroyed afterwards.
   run::SurveyRecord finish();

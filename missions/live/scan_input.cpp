@@ -10,6 +10,7 @@
 #include "geometry/io/text_scanner.h"
 #include "geometry/place/camera.h"
 #include "geometry/place/world.h"
+#include "geometry/points/usable_scan.h"
 #include "missions/live/live_journal.h"
 
 namespace skycap::missions::live {
@@ -18,8 +19,6 @@ namespace {
 using Eigen::Isometry3d;
 using Eigen::Vector2d;
 using Eigen::Vector3d;
-
-constexpr double farthest_point = 16384.0;  // [m]: beyond, single precision moves by a millimetre
 
 std::vector<double> numbers_of(const std::string& text, const std::string& what) {
   geometry::TextScanner scanner(what, text);
@@ -204,30 +203,10 @@ ScanFound scan_of(const sim::DepthImage& image, const std::optional<Lens>& lens,
 }
 
 void require_usable(const geometry::Scan& scan, const file::Mission& mission) {
-  const auto refuse = [](const std::string& what) {
-    throw Error(ErrorKind::bad_geometry, "the scan " + what);
-  };
-  for (std::size_t i = 0; i < scan.points.size(); ++i) {
-    if (geometry::is_place(scan.points[i].cast<double>(), farthest_point)) continue;
-    refuse("has point " + std::to_string(i) +
-           " that is not finite or farther than 16384 m from the "
-           "origin; give points and pose in a local frame");
-  }
-  const bool is_organised = !scan.pixels.empty();
-  if (is_organised && scan.pixels.size() != scan.points.size()) {
-    refuse("has " + std::to_string(scan.pixels.size()) + " pixels for " +
-           std::to_string(scan.points.size()) + " points; give one for each");
-  }
-  const geometry::CameraConfig& camera = mission.sensor.camera.camera;
-  const auto all = static_cast<std::uint64_t>(camera.width) * static_cast<unsigned>(camera.height);
-  if (is_organised && (scan.pixels.back() >= all ||
-                       std::ranges::adjacent_find(scan.pixels, std::ranges::greater_equal{}) !=
-                           scan.pixels.end())) {
-    refuse("has pixels that do not ascend, or that the mission's camera of " +
-           std::to_string(camera.width) + " x " + std::to_string(camera.height) + " has not");
-  }
-  if (mission.flight.is_flown() && !is_organised && !scan.points.empty()) {
-    refuse("has no pixels; with flight.vehicle free space is proven by depth images");
+  geometry::require_usable(scan, mission.sensor.camera.camera);
+  if (mission.flight.is_flown() && scan.pixels.empty() && !scan.points.empty()) {
+    throw Error(ErrorKind::bad_geometry,
+                "the scan has no pixels; with flight.vehicle free space is proven by depth images");
   }
 }
 

@@ -127,6 +127,7 @@ class Client {
         reason = "does not take its answer";
         return false;
       }
+      session.settle();
       if (session.is_finished()) {
         reason = "finished the survey";
         return false;

@@ -94,8 +94,12 @@ geometry::Scan depth_scan(const Message& message, const file::Mission& mission) 
 }  // namespace
 
 Session::Session(const file::Mission& mission, LiveSurvey& survey,
-                 std::function<std::string()> finish)
-    : mission_(mission), survey_(survey), finish_(std::move(finish)) {}
+                 std::function<std::string()> finish, std::function<void()> show)
+    : mission_(mission), survey_(survey), finish_(std::move(finish)), show_(std::move(show)) {}
+
+void Session::settle() {
+  if (std::exchange(has_changed_, false)) show_();
+}
 
 Message Session::answer(const Message& message) {
   try {
@@ -149,6 +153,7 @@ Message Session::take_scan(const Message& message) {
                    std::to_string(expected));
   }
   const bool is_new = survey_.add(scan, id);
+  has_changed_ = is_new;
   Message answer = present();
   answer.header["is_new"] = is_new;
   return answer;
@@ -162,7 +167,10 @@ Message Session::refuse(const Message& message) {
                    std::to_string(present_id));
   }
   // One that was refused already is acknowledged.
-  if (id == present_id) survey_.refuse(message.header.value("reason", std::string("none given")));
+  if (id == present_id) {
+    survey_.refuse(message.header.value("reason", std::string("none given")));
+    has_changed_ = true;
+  }
   return present();
 }
 

@@ -14,11 +14,17 @@ class Session {
  public:
   /// Keeps references. `finish` writes the package and returns what is to be said of it; the survey
   /// is over for this program then, unless it throws.
-  Session(const file::Mission& mission, LiveSurvey& survey, std::function<std::string()> finish);
+  /// `show` is called by settle().
+  Session(
+      const file::Mission& mission, LiveSurvey& survey, std::function<std::string()> finish,
+      std::function<void()> show = [] {});
 
   /// One answer for each message. What is wrong with a message is answered as
   /// {"type": "error", "what": ...} and changes nothing.
   Message answer(const Message& message);
+
+  /// To be called when an answer is sent: shows what has changed with it, if something has.
+  void settle();
 
   bool is_finished() const { return is_finished_; }
 
@@ -31,6 +37,8 @@ class Session {
   const file::Mission& mission_;
   LiveSurvey& survey_;
   std::function<std::string()> finish_;
+  std::function<void()> show_;
+  bool has_changed_ = false;
   bool is_finished_ = false;
 };
 

@@ -198,7 +198,7 @@ flight::Route plan_flight(const file::Mission& mission, const flight::MeasuredSp
   std::vector<flight::Station> stations;
   for (std::uint32_t i = 0; i < views.size(); ++i) {
     stations.push_back(
-        {views[i], mission.flight.hold, 1, i, mission.flight.hold_after, ways.at(i)});
+        {views[i], derived::hold_of(mission), 1, i, derived::hold_after_of(mission), ways.at(i)});
   }
   flight::Obstacles rules = derived::flight_rules(mission);
   const flight::KnownSpace known(rules);

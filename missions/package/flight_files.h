@@ -62,6 +62,7 @@ FlightFiles stage_flight(const file::Mission& mission, const flight::Route& rout
 struct SurveyMission {
   flight::Route route;  ///< without stations if there is none
   FlightFiles files;
+  std::optional<flight::PictureBounds> pictures{};  ///< how sharp they are
   std::string failure;  ///< why there is no route; empty if there is one
 };
 

@@ -20,6 +20,18 @@ std::string return_text(const SurveyMission& flight) {
   return text + "\n";
 }
 
+std::string pictures_text(const SurveyMission& flight) {
+  if (!flight.pictures) return "";
+  const auto& [blur, shear, distance] = *flight.pictures;
+  std::string text = fmt::format("  pictures  blurred by at most {:.2f} px", blur);
+  if (shear > 0.0) text += fmt::format(", sheared by {:.2f} px", shear);
+  text += fmt::format(", at {:.1f} m", distance);
+  if (!flight.pictures->is_sharp()) {
+    text += ": more than a pixel; shorten sensor.exposure or sensor.readout, or look from farther";
+  }
+  return text + "\n";
+}
+
 }  // namespace
 
 std::string flight_text(const SurveyMission& flight) {
@@ -41,6 +53,7 @@ std::string flight_text(const SurveyMission& flight) {
       clearance.total(), route.min_clearance, clearance.vehicle_radius, clearance.position_error,
       clearance.tracking_error, clearance.map_error, clearance.margin);
   text += return_text(flight);
+  text += pictures_text(flight);
   for (const flight::Unreached& missed : route.unreached) {
     text += fmt::format("  left out  view {}: {}\n", missed.station.view_index, missed.reason);
   }

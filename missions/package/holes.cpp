@@ -53,13 +53,24 @@ class Sets {
   std::vector<std::size_t> parents_;
 };
 
-/// Joins pieces of one reason that are at most `link` apart.
-Sets connected(std::span<const BelievedPatch> pieces, double link) {
+/// How far a piece reaches for others of its hole: by its own size, since guessed pieces may be
+/// much larger than measured ones. The area of a guessed one is less than its size, and a few that
+/// are huge shall not join all.
+double link_of(const BelievedPatch& piece, double usual) {
+  const double side = std::sqrt(static_cast<double>(piece.area));
+  return links_per_piece * std::clamp(side, 0.5 * usual, 4.0 * usual);
+}
+
+/// Joins pieces of one reason of which one reaches the other; `usual` is the side of most.
+Sets connected(std::span<const BelievedPatch> pieces, double usual) {
   Sets sets(pieces.size());
+  std::vector<double> links;
+  for (const BelievedPatch& piece : pieces) links.push_back(link_of(piece, usual));
+  const double longest = *std::ranges::max_element(links);
   using Cell = std::array<std::int64_t, 3>;
   std::map<Cell, std::vector<std::size_t>> cells;
   const auto cell_of = [&](const Eigen::Vector3f& point) {
-    const Vector3d cell = (point.cast<double>() / link).array().floor();
+    const Vector3d cell = (point.cast<double>() / longest).array().floor();
     return Cell{static_cast<std::int64_t>(cell.x()), static_cast<std::int64_t>(cell.y()),
                 static_cast<std::int64_t>(cell.z())};
   };
@@ -67,7 +78,8 @@ Sets connected(std::span<const BelievedPatch> pieces, double link) {
     const auto found = cells.find(cell);
     if (found == cells.end()) return;
     for (const std::size_t other : found->second) {
-      const bool is_near = (pieces[i].position - pieces[other].position).norm() <= link;
+      const auto apart = static_cast<double>((pieces[i].position - pieces[other].position).norm());
+      const bool is_near = apart <= std::max(links[i], links[other]);
       if (is_near && pieces[i].reason == pieces[other].reason) sets.join(i, other);
     }
   };
@@ -126,7 +138,7 @@ MissingSurface missing_surface(std::span<const BelievedPatch> patches,
     }
   }
   if (pieces.empty() || side <= 0.0) return missing;
-  Sets sets = connected(pieces, missing.link);
+  Sets sets = connected(pieces, side);
   std::map<std::size_t, std::vector<std::size_t>> groups;
   for (std::size_t i = 0; i < pieces.size(); ++i) groups[sets.find(i)].push_back(i);
   for (const auto& [first, members] : groups) {

@@ -30,7 +30,7 @@ struct Hole {
 /// surface: its area times one less its coverage.
 struct MissingSurface {
   double area = 0.0;          ///< of the whole surface [m^2]
-  double link = 0.0;          ///< pieces this near together belong to the same hole [m]
+  double link = 0.0;          ///< pieces of usual size this near together are of one hole [m]
   std::vector<Hole> holes;    ///< of at least `least_hole`, largest first
   double least_hole = 0.0;    ///< four pieces of usual size [m^2]
   std::size_t smaller = 0;    ///< how many there are besides

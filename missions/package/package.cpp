@@ -15,14 +15,14 @@
 #include "geometry/place/pose.h"
 #include "geometry/place/world.h"
 #include "geometry/surfaces/mesh.h"
-#include "missions/derived/resolved_mission.h"
+#include "missions/derived/mission_flight.h"
 #include "missions/file/json_text.h"
-#include "missions/file/mission_keys.h"
 #include "missions/file/number_text.h"
 #include "missions/judge/coverage.h"
 #include "missions/package/cloud_normals.h"
 #include "missions/package/coverage_map.h"
 #include "missions/package/holes.h"
+#include "missions/package/settings.h"
 #include "missions/run/survey_journal.h"
 
 namespace skycap::missions::package {
@@ -37,31 +37,6 @@ constexpr const char* true_coverage_name = "true_coverage.ply";
 
 [[noreturn]] void fail(const std::filesystem::path& file, const std::string& what) {
   throw Error(ErrorKind::bad_file, file.string() + ": " + what);
-}
-
-/// Settings as a mission file has them. JSON is YAML, but keys are nested there.
-std::string mission_text(const Json& settings) {
-  Json nested = Json::object();
-  for (const auto& [path, value] : settings.items()) {
-    // A pointer with a number in it would grow a list; no key of ours has one.
-    if (!file::find_key(path)) throw Error(ErrorKind::bad_file, "settings." + path + " is unknown");
-    std::string pointer = "/" + path;
-    std::ranges::replace(pointer, '.', '/');
-    nested[Json::json_pointer(pointer)] = value;
-  }
-  return nested.dump(1, ' ', false, Json::error_handler_t::replace);
-}
-
-/// The mission that the settings of a summary stand for. Errors name the file.
-file::Mission mission_of(const Json& settings, const std::string& name,
-                         const std::vector<file::KeyOverride>& overrides) {
-  std::string text;
-  try {
-    text = mission_text(settings);
-  } catch (const Error& error) {
-    throw Error(error.kind(), name + ": " + error.what());
-  }
-  return derived::parse_mission(text, name, overrides);
 }
 
 /// Throws Error{bad_file}.
@@ -210,6 +185,7 @@ std::optional<SurveyMission> stage_package(const file::Mission& mission,
     folder.write(free_space_name, free_space.str());
     flight = SurveyMission{};
     try {
+      flight->pictures = derived::picture_bounds_of(mission);
       flight->route = plan_flight(mission, *record.flown->measured, record.flown->pad,
                                   views_of(record), ways_of(*record.flown), stop);
       if (flight->route.sorties.empty() && !flight->route.unreached.empty()) {
@@ -244,7 +220,7 @@ PackageSummary parse_package_summary(const std::string& text, const std::string&
   try {
     const Json json = json_of_summary(text, name);
     PackageSummary summary;
-    summary.mission = mission_of(json.at("settings"), name, overrides);
+    summary.mission = mission_of_settings(json.at("settings"), name, overrides);
     if (json.contains("flight")) {
       summary.pad = summary.mission.flight.takeoff.value_or(vector_of(json["flight"].at("pad")));
       geometry::require_place(*summary.pad, name + ": flight.pad");

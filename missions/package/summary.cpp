@@ -1,14 +1,16 @@
 /// summary.json: all that a survey says of itself.
 
-#include <type_traits>
 #include <utility>
 
 #include <nlohmann/json.hpp>
 
+#include "missions/derived/mission_priors.h"
 #include "missions/file/json_text.h"
 #include "missions/file/mission_keys.h"
 #include "missions/package/holes.h"
 #include "missions/package/package.h"
+#include "missions/package/settings.h"
+#include "missions/package/target_coverage.h"
 #include "missions/version.h"
 
 namespace skycap::missions::package {
@@ -25,48 +27,13 @@ Json json_of(const std::vector<survey::PartTime>& times) {
   return parts;
 }
 
-Json json_of(const std::vector<Eigen::Vector2d>& polygon) {
-  Json corners = Json::array();
-  for (const Eigen::Vector2d& corner : polygon) corners.push_back({corner.x(), corner.y()});
-  return corners;
-}
-
-Json json_of(const std::vector<geometry::Prism>& volumes) {
-  Json list = Json::array();
-  for (const geometry::Prism& volume : volumes) {
-    list.push_back({{"corners", json_of(volume.footprint)},
-                    {"bottom", volume.floor},
-                    {"top", volume.ceiling}});
-  }
-  return list;
-}
-
-Json json_of(const std::vector<Eigen::Vector3d>& vectors) {
-  Json list = Json::array();
-  for (const Eigen::Vector3d& vector : vectors) list.push_back(json_of(vector));
-  return list;
-}
-
-Json setting_json(const file::KeyValue& value) {
-  return std::visit(
-      [](const auto& plain) -> Json {
-        using Value = std::decay_t<decltype(plain)>;
-        if constexpr (std::is_arithmetic_v<Value> || std::is_same_v<Value, std::string>) {
-          return plain;
-        } else {
-          return json_of(plain);
-        }
-      },
-      value);
-}
-
 /// What the planner believes at the end: shares are of the surface, seen and guessed.
 Json belief_summary(const run::SurveyRecord& record) {
   if (!record.belief) return {};
   const survey::skycap::SurveyBelief& belief = *record.belief;
   // In which way it is complete, or what ended it before that: no two reasons.
-  const char* stop = record.is_complete() ? run::name_of(record.skycap_stop)
-                                          : run::name_of(record.stop_reason);
+  const char* stop =
+      record.is_complete() ? run::name_of(record.skycap_stop) : run::name_of(record.stop_reason);
   return {{"stop", stop},
           {"predicted_coverage", belief.coverage},
           {"area_m2", belief.area},
@@ -103,17 +70,24 @@ Json surface_summary(const run::SurveyRecord& record, const CoverageFigures& cov
           {"rest_m2", missing.rest}};
 }
 
-std::string value_text(const file::Mission& mission, const char* key) {
-  return file::to_text(*file::find_key(key)->get(mission));
+Json json_of(const CoveredPart& part) {
+  return {{"name", part.name}, {"area_m2", part.area}, {"coverage", part.covered}};
 }
 
-/// All keys as they were in force, so that the survey can be repeated from its package.
-Json settings(const file::Mission& mission) {
-  Json values = Json::object();
-  for (const file::Key& key : file::mission_keys()) {
-    if (const auto value = key.get(mission)) values[key.path] = setting_json(*value);
+Json targets_summary(const std::vector<TargetCoverage>& targets) {
+  Json list = Json::array();
+  for (const TargetCoverage& target : targets) {
+    Json json = json_of(target.object);
+    json["within_m"] = target.radius;
+    json["kinds"] = Json::array();
+    for (const CoveredPart& kind : target.kinds) json["kinds"].push_back(json_of(kind));
+    list.push_back(std::move(json));
   }
-  return values;
+  return list;
+}
+
+std::string value_text(const file::Mission& mission, const char* key) {
+  return file::to_text(*file::find_key(key)->get(mission));
 }
 
 /// How the vehicle comes home when its link, its battery or its pilot asks for it.
@@ -138,6 +112,13 @@ Json json_of(const flight::Leg& leg, const Json& from, const Json& to) {
           {"duration_s", leg.duration},
           {"energy_wh", leg.energy / 3600.0},
           {"points", json_of(leg.points)}};
+}
+
+Json pictures_summary(const SurveyMission& flight) {
+  if (!flight.pictures) return {};
+  return {{"blur_px", flight.pictures->blur_px},
+          {"shear_px", flight.pictures->shear_px},
+          {"distance_m", flight.pictures->distance}};
 }
 
 /// The sortie's legs from above the pad and back there; they lead from view to view, null stands
@@ -207,6 +188,7 @@ Json flight_summary(const run::FlownSurvey& flown, const SurveyMission& flight) 
             {"sorties", sorties},
             {"unreached", unreached}}},
           {"return", return_summary(flight)},
+          {"pictures", pictures_summary(flight)},
           {"files", files},
           {"notes", flight.files.notes}};
 }
@@ -266,6 +248,9 @@ std::string summary_json(const file::Mission& mission, const run::SurveyRecord& 
                {"distance_m", record.distance()},
                {"belief", belief_summary(record)},
                {"surface", surface_summary(record, coverage)}};
+  if (derived::has_target(mission)) {
+    summary["targets"] = targets_summary(target_coverage(mission, record.cloud.positions));
+  }
   if (flight && flight->failure.empty()) {
     summary["route_length_m"] = flight->route.length;
     summary["min_clearance_m"] = flight->route.min_clearance;
@@ -273,7 +258,7 @@ std::string summary_json(const file::Mission& mission, const run::SurveyRecord& 
   } else if (flight) {
     summary["flight"] = {{"pad", json_of(record.flown->pad)}, {"failure", flight->failure}};
   }
-  summary["settings"] = settings(mission);
+  summary["settings"] = settings_json(mission);
   summary["per_view"] = Json::array();
   for (std::size_t i = 0; i < record.views.size(); ++i) {
     summary["per_view"].push_back(view_summary(i, record.views[i]));

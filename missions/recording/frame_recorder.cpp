@@ -12,8 +12,11 @@
 #include "flight/export/text.h"
 #include "flight/export/trajectory_file.h"
 #include "geometry/error.h"
+#include "geometry/io/cloud_io.h"
+#include "geometry/points/point_cloud.h"
 #include "missions/file/json_text.h"
 #include "missions/plugins/module.h"
+#include "missions/recording/preview.h"
 #include "missions/recording/rawlog_module.h"
 #include "missions/recording/scan_route.h"
 #include "sim/sensors/depth_image.h"
@@ -74,6 +77,19 @@ class FrameRawlog {
   std::vector<std::uint8_t> bytes_;
 };
 
+/// Adds the chosen points of an image, where its camera believes that they are.
+void add_preview(const geometry::Scan& scan, const Frame& frame, std::uint32_t number, double share,
+                 geometry::PointCloud& preview) {
+  const Eigen::Isometry3d believed_from_real =
+      frame.believed_from_camera * frame.world_from_camera.inverse();
+  for (std::size_t i = 0; i < scan.points.size(); ++i) {
+    if (!is_previewed(number, i, share)) continue;
+    const Eigen::Vector3d point = believed_from_real * scan.points[i].cast<double>();
+    preview.positions.emplace_back(point.cast<float>());
+    preview.views.push_back(number);
+  }
+}
+
 }  // namespace
 
 FrameResult record_frames(const sim::Scene& scene, const sim::DepthCamera& camera,
@@ -87,6 +103,9 @@ FrameResult record_frames(const sim::Scene& scene, const sim::DepthCamera& camer
   if (options.has_rawlog) {
     rawlog.emplace(folder.stage("frames.rawlog"), camera.camera(), options.depth_unit);
   }
+  const double pixels = static_cast<double>(frames.size()) * camera.camera().width() *
+                        static_cast<double>(camera.camera().height());
+  geometry::PointCloud preview;
   for (const Frame& frame : frames) {
     if (options.stop.stop_requested()) break;
     scan = camera.scan(scene, frame.world_from_camera, result.frames, options.threads,
@@ -98,11 +117,16 @@ FrameResult record_frames(const sim::Scene& scene, const sim::DepthCamera& camer
     list += flight::fixed(frame.time, 6) + " " + name + "\n";
     truth.push_back({frame.time, frame.world_from_camera});
     believed.push_back({frame.time, frame.believed_from_camera});
+    add_preview(scan, frame, static_cast<std::uint32_t>(result.frames), preview_share(pixels),
+                preview);
     ++result.frames;
     result.points += scan.points.size();
     if (options.report) options.report(result.frames, result.points);
   }
   if (rawlog) rawlog->finish();
+  geometry::write_cloud(
+      folder.stage(preview_name),
+      {.positions = preview.positions, .normals = {}, .views = preview.views, .colours = {}});
   folder.write("depth.txt", list);
   folder.write("groundtruth.txt", flight::write_tum(truth));
   folder.write("believed.txt", flight::write_tum(believed));

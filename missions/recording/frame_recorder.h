@@ -36,10 +36,10 @@ struct FrameResult {
 };
 
 /// Stages in `folder`, whose caller commits: the images, depth.txt (`time file` of each),
-/// groundtruth.txt and believed.txt (TUM poses of the camera), camera.json (intrinsics, unit), and
-/// on demand frames.rawlog: for each image a CObservationRobotPose "CARRIER", where the camera is
-/// believed to be, with x forward, and a CObservation3DRangeScan "DEPTH". Throws Error{bad_file} if
-/// a file cannot be written or MRPT is not there.
+/// groundtruth.txt and believed.txt (TUM poses of the camera), camera.json (intrinsics, unit),
+/// preview.ply (preview.h), and on demand frames.rawlog: for each image a CObservationRobotPose
+/// "CARRIER", where the camera is believed to be, with x forward, and a CObservation3DRangeScan
+/// "DEPTH". Throws Error{bad_file} if a file cannot be written or MRPT is not there.
 FrameResult record_frames(const sim::Scene& scene, const sim::DepthCamera& camera,
                           std::span<const Frame> frames, geometry::OutputFolder& folder,
                           const FrameOptions& options);

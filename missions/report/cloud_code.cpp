@@ -5,6 +5,7 @@
 #include <bit>
 #include <cmath>
 #include <numbers>
+#include <numeric>
 #include <utility>
 
 #include "missions/report/script_text.h"
@@ -45,7 +46,8 @@ struct Grid {
   }
 };
 
-Grid grid_over(std::span<const Eigen::Vector3f> positions) {
+/// Of 2^16 cells along the longest side.
+Grid finest_grid(std::span<const Eigen::Vector3f> positions) {
   if (positions.empty()) return {};
   Eigen::Vector3f low = positions[0], high = low;
   for (const Eigen::Vector3f& point : positions) {
@@ -57,11 +59,10 @@ Grid grid_over(std::span<const Eigen::Vector3f> positions) {
   return {low.cast<double>(), side > 0.0 ? side * room / (1 << most_bits) : 1.0};
 }
 
-std::vector<Entry> sorted_entries(std::span<const Eigen::Vector3f> positions, const Grid& grid) {
-  std::vector<Entry> entries(positions.size());
-  for (std::size_t i = 0; i < positions.size(); ++i) {
-    entries[i] = {grid.key(positions[i]), static_cast<std::uint32_t>(i)};
-  }
+/// Gives the entries their keys in a grid and sorts them, those of a cell as they were.
+void sort_by_key(std::vector<Entry>& entries, std::span<const Eigen::Vector3f> positions,
+                 const Grid& grid) {
+  for (Entry& entry : entries) entry.key = grid.key(positions[entry.index]);
   // By the bits of the keys, twelve at a time, stable.
   constexpr int digit_bits = 12;
   constexpr std::size_t digits = std::size_t{1} << digit_bits;
@@ -74,7 +75,6 @@ std::vector<Entry> sorted_entries(std::span<const Eigen::Vector3f> positions, co
     for (const Entry& entry : entries) other[begin[entry.key >> shift & (digits - 1)]++] = entry;
     entries.swap(other);
   }
-  return entries;
 }
 
 /// Evenly along the list.
@@ -103,11 +103,52 @@ std::vector<std::uint64_t> differences(std::span<const std::uint64_t> keys) {
   return steps;
 }
 
-/// How many bits it takes that a cell is at most an eighth as wide as the points are apart.
-int bits_for(double spacing_in_cells) {
-  int bits = most_bits;
-  for (double cell = 2.0; bits > 1 && cell <= spacing_in_cells / 8.0; cell *= 2.0) --bits;
-  return bits;
+std::vector<std::uint64_t> keys_of(std::span<const Entry> entries) {
+  std::vector<std::uint64_t> keys;
+  keys.reserve(entries.size());
+  for (const Entry& entry : entries) keys.push_back(entry.key);
+  return keys;
+}
+
+/// What the places of a cell take: of all cells that have points.
+int bits_of(std::span<const std::uint64_t> keys) {
+  const int width = keys.empty() ? 0 : static_cast<int>(std::bit_width(keys.back()));
+  return std::max(1, (width + 2) / 3);
+}
+
+/// The places that the values stand at, each moved to the front of the list when it is met.
+std::vector<std::uint64_t> places_in_list(std::span<const std::uint16_t> values,
+                                          std::size_t different) {
+  std::vector<std::uint16_t> list(different);
+  std::iota(list.begin(), list.end(), std::uint16_t{0});
+  std::vector<std::uint64_t> places;
+  places.reserve(values.size());
+  for (const std::uint16_t value : values) {
+    const auto found = std::ranges::find(list, value);
+    places.push_back(static_cast<std::uint64_t>(found - list.begin()));
+    std::rotate(list.begin(), found, found + 1);
+  }
+  return places;
+}
+
+/// The values in the order of `first`, points that are alike there in the order that they have.
+std::vector<std::uint16_t> ordered_by(std::span<const std::uint16_t> first,
+                                      std::span<const std::uint16_t> values) {
+  std::vector<std::size_t> begin(std::size_t{1} << 16, 0);
+  for (const std::uint16_t value : first) ++begin[value];
+  std::size_t sum = 0;
+  for (std::size_t& count : begin) sum += std::exchange(count, sum);
+  std::vector<std::uint16_t> ordered(values.size());
+  for (std::size_t i = 0; i < values.size(); ++i) ordered[begin[first[i]]++] = values[i];
+  return ordered;
+}
+
+std::vector<std::uint16_t> values_of(const CloudAttribute& attribute,
+                                     std::span<const Entry> entries) {
+  std::vector<std::uint16_t> values;
+  values.reserve(entries.size());
+  for (const Entry& entry : entries) values.push_back(attribute.values[entry.index]);
+  return values;
 }
 
 }  // namespace
@@ -137,30 +178,32 @@ double spacing_of_keys(std::span<const std::uint64_t> keys, int bits) {
 
 CloudCode encode_cloud(std::span<const Eigen::Vector3f> positions,
                        std::span<const CloudAttribute> attributes, std::size_t most_points) {
-  const Grid grid = grid_over(positions);
-  std::vector<Entry> entries = sorted_entries(positions, grid);
+  Grid grid = finest_grid(positions);
+  std::vector<Entry> entries(positions.size());
+  for (std::size_t i = 0; i < entries.size(); ++i) entries[i].index = static_cast<std::uint32_t>(i);
+  sort_by_key(entries, positions, grid);
   thin(entries, most_points);
-  std::vector<std::uint64_t> keys;
-  keys.reserve(entries.size());
-  for (const Entry& entry : entries) keys.push_back(entry.key);
-
   CloudCode code{.points = entries.size(), .of = positions.size(), .origin = grid.origin};
-  const double spacing = spacing_of_keys(keys, most_bits);
-  code.spacing = entries.size() > 1 ? spacing * grid.step : 0.0;
-  code.bits = keys.empty() || keys.front() == keys.back() ? most_bits : bits_for(spacing);
-  code.step = std::ldexp(grid.step, most_bits - code.bits);
-  for (std::uint64_t& key : keys) key >>= 3 * (most_bits - code.bits);
-  std::string bytes = planes_of(differences(keys), (3 * code.bits + 7) / 8);
-  for (const CloudAttribute& attribute : attributes) {
-    std::vector<std::uint64_t> values;
-    values.reserve(entries.size());
-    for (const Entry& entry : entries) values.push_back(attribute.values[entry.index]);
-    const bool is_small =
-        std::ranges::all_of(values, [](std::uint64_t value) { return value < 256; });
-    code.attributes.push_back({attribute.name, is_small ? 1 : 2});
-    bytes += planes_of(values, code.attributes.back().bytes);
+  if (entries.size() > 1) code.spacing = spacing_of_keys(keys_of(entries), most_bits) * grid.step;
+  if (const double step = code.spacing / 8.0; step > grid.step) {
+    grid.step = step;
+    sort_by_key(entries, positions, grid);
   }
-  code.bytes = deflated(bytes);
+  code.step = grid.step;
+  const std::vector<std::uint64_t> keys = keys_of(entries);
+  code.bits = bits_of(keys);
+  std::string bytes = planes_of(differences(keys), (3 * code.bits + 7) / 8);
+  std::vector<std::uint16_t> first;
+  for (const CloudAttribute& attribute : attributes) {
+    std::vector<std::uint16_t> values = values_of(attribute, entries);
+    if (first.empty()) first = values;
+    if (attribute.follows_first) values = ordered_by(first, values);
+    const std::size_t different =
+        values.empty() ? 1 : std::size_t{*std::ranges::max_element(values)} + 1;
+    code.attributes.push_back({attribute.name, different, attribute.follows_first});
+    bytes += planes_of(places_in_list(values, different), different > 256 ? 2 : 1);
+  }
+  code.bytes = deflated(bytes, Repetition::runs);
   return code;
 }
 

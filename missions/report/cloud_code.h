@@ -3,7 +3,10 @@
 /// Positions fall into the cells of a cubic grid; a cell's three indices, bit by bit in turn, are
 /// its key (Morton, "A computer oriented geodetic data base", 1966). Sorted by key, neighbours in
 /// space are neighbours in the list and keys grow by little: the differences are written byte plane
-/// by byte plane, lowest first, the attributes behind them, and all of it is deflated (zlib).
+/// by byte plane, lowest first, the attributes behind them, and all of it is deflated (zlib), by
+/// runs and frequencies alone: longer repetitions are chance here. An attribute's values are
+/// written as places in a list of them in which the one written last moves to the front (Bentley,
+/// Sleator, Tarjan and Wei, "A locally adaptive data compression scheme", 1986).
 /// missions/report/page/cloud.js reads it back.
 #pragma once
 
@@ -21,6 +24,9 @@ namespace skycap::missions::report {
 struct CloudAttribute {
   std::string name;
   std::span<const std::uint16_t> values;
+  /// Written point by point of the first attribute's smallest value, then of the next one's: for
+  /// what neighbours have in common only if they have that.
+  bool follows_first = false;
 };
 
 /// A coded cloud and what it takes to read it.
@@ -31,16 +37,18 @@ struct CloudCode {
   Eigen::Vector3d origin = Eigen::Vector3d::Zero();  ///< the grid's lowest corner [m]
   double step = 1.0;     ///< a cell's side: a point reads back as its cell's middle [m]
   double spacing = 0.0;  ///< how far apart the points are, see spacing_of_keys() [m]
-  struct Plane {
+  struct Attribute {
     std::string name;
-    int bytes = 1;
+    std::size_t values = 1;  ///< they are 0, 1, ...; more than 256 take two byte planes
+    bool follows_first = false;
   };
-  std::vector<Plane> attributes;
+  std::vector<Attribute> attributes;
   std::string bytes;  ///< deflated
 };
 
 /// Of more than `most_points` an evenly spread choice: along the curve of the keys, each n-th. The
-/// step is at most an eighth of the spacing. Positions must be finite.
+/// step is an eighth of the spacing, but at least 2^-16 of the cloud's longest side. Positions must
+/// be finite.
 CloudCode encode_cloud(std::span<const Eigen::Vector3f> positions,
                        std::span<const CloudAttribute> attributes, std::size_t most_points);
 

@@ -8,8 +8,8 @@
 #include "geometry/io/cloud_io.h"
 #include "missions/report/page.h"
 #include "missions/report/point_figures.h"
+#include "missions/report/results.h"
 #include "missions/report/scene_outline.h"
-#include "missions/report/survey_report.h"
 
 namespace skycap::missions::report {
 namespace {

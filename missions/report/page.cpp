@@ -14,8 +14,10 @@ using Json = nlohmann::ordered_json;
 
 Json json_of(const CloudCode& code) {
   Json attributes = Json::array();
-  for (const CloudCode::Plane& plane : code.attributes) {
-    attributes.push_back({{"name", plane.name}, {"bytes", plane.bytes}});
+  for (const CloudCode::Attribute& attribute : code.attributes) {
+    attributes.push_back({{"name", attribute.name},
+                          {"values", attribute.values},
+                          {"follows_first", attribute.follows_first}});
   }
   return {
       {"points", code.points},   {"of", code.of},
@@ -34,7 +36,7 @@ std::string data_block(std::string_view type, const std::string& id, std::string
 /// A library, deflated: it is a third of the page otherwise.
 std::string library_block(const PageLibrary& library) {
   return data_block("application/octet-stream", "library-" + std::string(library.name),
-                    base85(deflated(library.text)));
+                    base93(deflated(library.text, Repetition::any)));
 }
 
 std::string policy() {
@@ -45,13 +47,17 @@ std::string policy() {
   return text + "; style-src " + policy_hash(page_style());
 }
 
-/// Libraries and policy are the same in all pages.
+/// Libraries and policy are the same in all pages, but one without a cloud has no 3-D view.
 struct ConstantParts {
   std::string policy_text = policy();
-  std::string libraries;
+  std::string libraries, chart_library;
 
   ConstantParts() {
-    for (const PageLibrary& library : page_libraries()) libraries += library_block(library);
+    for (const PageLibrary& library : page_libraries()) {
+      const std::string block = library_block(library);
+      libraries += block;
+      if (library.name == "chart") chart_library = block;
+    }
   }
 };
 
@@ -65,7 +71,7 @@ std::string page_text(const std::string& title, Json data, const std::vector<Pag
   for (const PageCloud& cloud : clouds) {
     data["clouds"][cloud.name] = json_of(cloud.code);
     blocks +=
-        data_block("application/octet-stream", "cloud-" + cloud.name, base85(cloud.code.bytes));
+        data_block("application/octet-stream", "cloud-" + cloud.name, base93(cloud.code.bytes));
   }
   std::string page;
   const std::string_view frame = page_frame();
@@ -80,7 +86,9 @@ std::string page_text(const std::string& title, Json data, const std::vector<Pag
     if (name == "style") page.append("<style>").append(page_style()).append("</style>");
     if (name == "data") page += data_block("application/json", "data", script_json(data));
     if (name == "clouds") page += blocks;
-    if (name == "libraries") page += constant.libraries;
+    if (name == "libraries") {
+      page += clouds.empty() ? constant.chart_library : constant.libraries;
+    }
     if (name == "script") page.append("<script>").append(page_script()).append("</script>");
     at = end + 2;
   }

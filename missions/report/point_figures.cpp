@@ -5,6 +5,8 @@
 #include <limits>
 #include <numbers>
 
+#include <nlohmann/json.hpp>
+
 #include "geometry/points/spatial_index.h"
 #include "missions/package/coverage_map.h"
 
@@ -94,6 +96,37 @@ std::vector<std::uint16_t> point_states(const geometry::AttributedCloud& cloud,
   return states;
 }
 
+std::vector<float> surface_errors(const geometry::AttributedCloud& cloud,
+                                  std::span<const std::uint16_t> incidence, const PointNoise& noise,
+                                  double reach) {
+  if (!(noise.head_on > 0.0) || !(reach > 0.0) || cloud.positions.empty()) return {};
+  constexpr std::size_t most_samples = 10'000;
+  const std::size_t stride = (cloud.positions.size() + most_samples - 1) / most_samples;
+  geometry::PointGrid samples(reach);
+  for (std::size_t i = 0; i < cloud.positions.size(); i += stride) {
+    samples.insert(cloud.positions[i]);
+  }
+  std::vector<double> squares(samples.size(), 0.0), counts(samples.size(), 0.0);
+  std::vector<geometry::Neighbour> near;
+  for (std::size_t i = 0; i < cloud.positions.size(); ++i) {
+    if (incidence[i] == no_incidence) continue;
+    const double angle = (incidence[i] + 0.5) * incidence_step_deg * std::numbers::pi / 180.0;
+    const double across = noise.is_along_ray ? std::abs(std::cos(angle)) : 1.0;
+    near.clear();
+    samples.find_within(cloud.positions[i], reach, near);
+    for (const geometry::Neighbour& sample : near) {
+      squares[sample.index] += across * across;
+      counts[sample.index] += 1.0;
+    }
+  }
+  std::vector<float> errors;
+  for (std::size_t i = 0; i < counts.size(); ++i) {
+    if (counts[i] == 0.0) continue;
+    errors.push_back(static_cast<float>(noise.head_on * std::sqrt(squares[i]) / counts[i]));
+  }
+  return errors;
+}
+
 std::vector<std::size_t> histogram(std::span<const float> values, double low, double high,
                                    std::size_t bins) {
   std::vector<std::size_t> counts(bins, 0);
@@ -104,6 +137,29 @@ std::vector<std::size_t> histogram(std::span<const float> values, double low, do
     ++counts[static_cast<std::size_t>(std::clamp(bin, 0.0, static_cast<double>(bins - 1)))];
   }
   return counts;
+}
+
+nlohmann::ordered_json accuracy_json(std::span<const std::uint16_t> incidence,
+                                     std::span<const float> ranges, std::span<const float> errors) {
+  nlohmann::ordered_json json = nlohmann::ordered_json::object();
+  const auto add = [&](const char* name, std::span<const float> values, double high,
+                       std::size_t bins) {
+    json[name] = {{"low", 0.0}, {"high", high}, {"counts", histogram(values, 0.0, high, bins)}};
+  };
+  const auto largest = [](std::span<const float> values) {
+    float most = 0.0F;  // not of std::max_element, since some may be NaN
+    for (const float value : values) most = value > most ? value : most;
+    return static_cast<double>(most);
+  };
+  std::vector<float> degrees;
+  for (const std::uint16_t step : incidence) {
+    if (step == no_incidence) continue;
+    degrees.push_back(static_cast<float>((step + 0.5) * incidence_step_deg));
+  }
+  if (!degrees.empty()) add("incidence_deg", degrees, 90.0, 9);
+  if (largest(ranges) > 0.0) add("range_m", ranges, largest(ranges), 20);
+  if (largest(errors) > 0.0) add("error_m", errors, largest(errors), 20);
+  return json;
 }
 
 }  // namespace skycap::missions::report

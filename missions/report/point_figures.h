@@ -6,6 +6,7 @@
 #include <vector>
 
 #include <Eigen/Core>
+#include <nlohmann/json_fwd.hpp>
 
 #include "geometry/io/cloud_io.h"
 #include "geometry/place/pose.h"
@@ -37,9 +38,29 @@ std::vector<std::uint16_t> map_states(const geometry::AttributedCloud& map);
 std::vector<std::uint16_t> point_states(const geometry::AttributedCloud& cloud,
                                         const geometry::AttributedCloud& map, double reach);
 
+/// How far a measurement strays from its place.
+struct PointNoise {
+  double head_on = 0.0;       ///< standard deviation along the ray [m]
+  bool is_along_ray = false;  ///< nowhere else; or the same in all directions
+};
+
+/// For a sample of at most 10,000 points the predicted standard error of the surface there, if the
+/// points within `reach` are averaged, [m]: sqrt(sum of s_i^2) / n of those n whose incidence is
+/// known, s_i being the noise across the surface: `head_on`, times the cosine of the incidence if
+/// the noise is along the ray. Errors that neighbours share, such as of the sensor's place, are not
+/// in it. Empty without noise or reach.
+std::vector<float> surface_errors(const geometry::AttributedCloud& cloud,
+                                  std::span<const std::uint16_t> incidence, const PointNoise& noise,
+                                  double reach);
+
 /// How many values fall into each of `bins` equal parts of [low, high); those outside count in the
 /// first and the last, NaN nowhere.
 std::vector<std::size_t> histogram(std::span<const float> values, double low, double high,
                                    std::size_t bins);
+
+/// {"incidence_deg", "range_m", "error_m"}: {"low", "high", "counts"} each, without those that
+/// nothing is known of; of all points, not only those that a page shows.
+nlohmann::ordered_json accuracy_json(std::span<const std::uint16_t> incidence,
+                                     std::span<const float> ranges, std::span<const float> errors);
 
 }  // namespace skycap::missions::report

@@ -1,10 +1,15 @@
 #include "missions/report/scene_outline.h"
 
+#include <algorithm>
 #include <cmath>
 #include <string>
+#include <utility>
 
 #include "flight/space/obstacles.h"
 #include "missions/derived/mission_flight.h"
+#include "missions/derived/mission_priors.h"
+#include "missions/prior/prior_text.h"
+#include "missions/prior/terrain.h"
 
 namespace skycap::missions::report {
 namespace {
@@ -36,6 +41,32 @@ Json box(const char* role, const char* name, const Eigen::AlignedBox3d& box) {
   return volume(role, prism);
 }
 
+/// The corners of a prior's triangles, to a centimetre; none of too many to be shown.
+Json surface(const prior::Source& source, const prior::Prior& prior) {
+  constexpr std::size_t most_triangles = 20'000;
+  geometry::Mesh mesh;
+  for (const prior::Object& object : prior.objects) geometry::append(mesh, object.mesh);
+  if (prior.grid.rows > 0) {
+    const std::size_t cells = prior.grid.rows * prior.grid.columns;
+    const auto step = static_cast<std::size_t>(
+        std::max(1.0, std::ceil(std::sqrt(2.0 * static_cast<double>(cells) / most_triangles))));
+    geometry::append(mesh, prior::mesh_of(triangles_of(prior.grid, step)));
+  }
+  Json corners = Json::array();
+  if (mesh.triangles.size() <= most_triangles) {
+    for (const auto& triangle : mesh.triangles) {
+      for (const std::uint32_t vertex : triangle) {
+        for (const double coordinate : mesh.vertices[vertex]) {
+          corners.push_back(std::round(100.0 * coordinate) / 100.0);
+        }
+      }
+    }
+  }
+  return {{"role", prior::name_of(source.role)},
+          {"name", source.file.filename().string()},
+          {"corners", corners}};
+}
+
 }  // namespace
 
 Json scene_outline(const file::Mission& mission, const std::optional<Eigen::Vector3d>& pad) {
@@ -52,15 +83,22 @@ Json scene_outline(const file::Mission& mission, const std::optional<Eigen::Vect
   if (mission.planner.see.scene_box) {
     volumes.push_back(box("scene", "planner.scene_box", *mission.planner.see.scene_box));
   }
+  Json priors = Json::array();
+  const prior::SitePriors& site = derived::priors_of(mission);
+  for (std::size_t i = 0; i < site.priors.size(); ++i) {
+    priors.push_back(surface(site.sources[i], site.priors[i]));
+  }
   const geometry::CameraConfig& camera = mission.sensor.camera.camera;
-  return {{"ground", mission.scene.position.z()},
-          {"flown", mission.flight.is_flown()},
-          {"pad", pad ? Json{pad->x(), pad->y(), pad->z()} : Json()},
-          {"volumes", volumes},
-          {"sensor",
-           {{"horizontal_fov", camera.horizontal_fov},
-            {"vertical_fov", camera.vertical_fov},
-            {"lidar", mission.sensor.lidar.has_value()}}}};
+  Json outline{{"ground", mission.scene.position.z()},
+               {"flown", mission.flight.is_flown()},
+               {"pad", pad ? Json{pad->x(), pad->y(), pad->z()} : Json()},
+               {"volumes", volumes},
+               {"sensor",
+                {{"horizontal_fov", camera.horizontal_fov},
+                 {"vertical_fov", camera.vertical_fov},
+                 {"lidar", mission.sensor.lidar.has_value()}}}};
+  if (!priors.empty()) outline["priors"] = std::move(priors);
+  return outline;
 }
 
 }  // namespace skycap::missions::report

@@ -4,6 +4,7 @@
 #include <array>
 #include <charconv>
 #include <cstdint>
+#include <new>
 #include <span>
 #include <stdexcept>
 
@@ -58,14 +59,23 @@ std::string script_json(const nlohmann::ordered_json& json) {
   return text;
 }
 
-std::string deflated(std::string_view bytes) {
-  uLongf size = compressBound(bytes.size());
-  std::string packed(size, '\0');
+std::string deflated(std::string_view bytes, Repetition repetition) {
   // Level 9 takes thrice the time of 6 for a hundredth of the size.
-  const int error = compress2(reinterpret_cast<Bytef*>(packed.data()), &size,
-                              reinterpret_cast<const Bytef*>(bytes.data()), bytes.size(), 6);
-  if (error != Z_OK) throw std::runtime_error("zlib cannot deflate");
-  packed.resize(size);
+  constexpr int level = 6, most_memory = 9;
+  z_stream stream{};
+  if (deflateInit2(&stream, level, Z_DEFLATED, MAX_WBITS, most_memory,
+                   repetition == Repetition::runs ? Z_RLE : Z_DEFAULT_STRATEGY) != Z_OK) {
+    throw std::bad_alloc();
+  }
+  std::string packed(deflateBound(&stream, bytes.size()), '\0');
+  stream.next_in = reinterpret_cast<Bytef*>(const_cast<char*>(bytes.data()));
+  stream.next_out = reinterpret_cast<Bytef*>(packed.data());
+  stream.avail_in = static_cast<uInt>(bytes.size());
+  stream.avail_out = static_cast<uInt>(packed.size());
+  const int error = deflate(&stream, Z_FINISH);
+  packed.resize(stream.total_out);
+  deflateEnd(&stream);
+  if (error != Z_STREAM_END) throw std::runtime_error("zlib cannot deflate");
   return packed;
 }
 
@@ -78,21 +88,28 @@ std::string base64(std::string_view bytes) {
   return text;
 }
 
-std::string base85(std::string_view bytes) {
-  constexpr std::string_view digits =
-      "0123456789abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ.-:+=^!/*?_~>()[]{}@%$#";
+std::string base93(std::string_view bytes) {
+  constexpr std::uint32_t base = 93, spare = base * base - (1U << 13);
+  const auto character = [](std::uint32_t digit) {
+    const auto c = static_cast<char>('!' + digit);
+    return c < '<' ? c : static_cast<char>(c + 1);
+  };
   std::string text;
-  text.reserve((bytes.size() + 3) / 4 * 5);
-  for (std::size_t i = 0; i < bytes.size(); i += 4) {
-    const std::size_t count = std::min<std::size_t>(4, bytes.size() - i);
-    std::uint32_t group = 0;
-    for (std::size_t k = 0; k < 4; ++k) {
-      group = group << 8 | (k < count ? static_cast<unsigned char>(bytes[i + k]) : 0U);
-    }
-    std::array<char, 5> characters{};
-    for (std::size_t k = 5; k-- > 0; group /= 85) characters[k] = digits[group % 85];
-    text.append(characters.data(), count + 1);
+  text.reserve(bytes.size() * 5 / 4 + 2);
+  std::uint32_t bits = 0;
+  int count = 0;  // of bits that are not written yet
+  for (const char byte : bytes) {
+    bits |= std::uint32_t{static_cast<unsigned char>(byte)} << count;
+    count += 8;
+    if (count <= 13) continue;
+    const int taken = (bits & 0x1fff) < spare ? 14 : 13;
+    const std::uint32_t number = bits & ((1U << taken) - 1);
+    text += {character(number % base), character(number / base)};
+    bits >>= taken;
+    count -= taken;
   }
+  if (count > 0) text += character(bits % base);
+  if (count > 6) text += character(bits / base);
   return text;
 }
 

@@ -14,12 +14,13 @@
 #include "geometry/io/file.h"
 #include "geometry/io/json.h"
 #include "missions/derived/mission_flight.h"
+#include "missions/file/json_text.h"
+#include "missions/package/coverage_map.h"
 #include "missions/package/package.h"
 #include "missions/report/page.h"
 #include "missions/report/point_figures.h"
 #include "missions/report/scene_outline.h"
 #include "missions/report/verdict.h"
-#include "missions/scene/sha256.h"
 
 namespace skycap::missions::report {
 namespace {
@@ -27,17 +28,11 @@ namespace {
 using Json = nlohmann::ordered_json;
 namespace fs = std::filesystem;
 
-bool is_there(const fs::path& file) {
-  std::error_code ignored;
-  return fs::is_regular_file(file, ignored);
-}
-
 geometry::AttributedCloud cloud_if_there(const fs::path& file) {
   return is_there(file) ? geometry::read_cloud(file) : geometry::AttributedCloud{};
 }
 
-/// What the folder holds besides the summary, so that whoever has a file can see that it is the
-/// one of the report.
+/// What the folder holds besides the summary.
 Json files_of(const Json& summary, const ResultFinder& results) {
   std::vector<std::string> names = {"cloud.ply", "coverage.ply", "views.csv", "trajectory.tum",
                                     "free_space.bin"};
@@ -51,15 +46,7 @@ Json files_of(const Json& summary, const ResultFinder& results) {
   };
   add_all("/flight/files", "name");
   add_all("/flight/return/parameters", "");
-  Json files = Json::array();
-  for (const std::string& name : names) {
-    // A summary may come from anywhere: no other folder's files.
-    if (fs::path(name).filename() != name || !is_there(results(name))) continue;
-    files.push_back({{"name", name},
-                     {"bytes", fs::file_size(results(name))},
-                     {"sha256", scene::sha256_of_file(results(name))}});
-  }
-  return files;
+  return files_json(names, results);
 }
 
 /// Latitude, longitude and ellipsoid height of the holes' centres.
@@ -77,30 +64,25 @@ Json hole_places(const Json& summary, const file::Mission& mission) {
   return places;
 }
 
-/// How the cloud's points were seen, all of them, not only those that the page shows.
-Json accuracy(std::span<const std::uint16_t> incidence, std::span<const float> range) {
-  std::vector<float> degrees;
-  for (const std::uint16_t step : incidence) {
-    if (step == no_incidence) continue;
-    degrees.push_back(static_cast<float>((step + 0.5) * incidence_step_deg));
-  }
-  constexpr std::size_t bins = 9;
-  float farthest = 0.0F;
-  for (const float one : range) farthest = std::max(farthest, one);
-  return {{"incidence_deg",
-           {{"low", 0.0}, {"high", 90.0}, {"counts", histogram(degrees, 0.0, 90.0, bins)}}},
-          {"range_m",
-           {{"low", 0.0},
-            {"high", static_cast<double>(farthest)},
-            {"counts", histogram(range, 0.0, static_cast<double>(farthest), 20)}}}};
+/// As the planner has learnt it, else as the mission says.
+PointNoise noise_of(const Json& summary, const file::Mission& mission) {
+  const sim::NoiseConfig& stated = mission.sensor.camera.noise;
+  const Json::json_pointer learnt("/belief/noise_m");
+  const bool is_learnt = summary.contains(learnt) && summary[learnt].is_number() &&
+                         summary[learnt].get<double>() > 0.0;
+  return {is_learnt ? summary[learnt].get<double>() : stated.sigma,
+          stated.direction == sim::NoiseDirection::along_ray};
 }
 
 PageCloud measured_cloud(const geometry::AttributedCloud& cloud,
                          std::span<const std::uint16_t> states,
                          std::span<const std::uint16_t> incidence, std::size_t most_points) {
   const std::vector<std::uint16_t> views = view_numbers(cloud);
-  std::vector<CloudAttribute> attributes = {{"state", states}, {"incidence", incidence}};
+  std::vector<CloudAttribute> attributes;
   if (!views.empty()) attributes.push_back({"view", views});
+  attributes.push_back({"state", states});
+  // A view looks at a surface from one side.
+  if (!incidence.empty()) attributes.push_back({"incidence", incidence, !views.empty()});
   return {"measured", encode_cloud(cloud.positions, attributes, most_points)};
 }
 
@@ -127,8 +109,37 @@ double reach_of(const Json& summary) {
 
 }  // namespace
 
-ResultFinder results_in(const fs::path& folder) {
-  return [folder](const std::string& name) { return folder / name; };
+std::string live_page(const file::Mission& mission, const run::SurveyRecord& so_far,
+                      const NextView& next) {
+  constexpr std::size_t most_points = 250'000;
+  const package::CoverageFigures unknown{so_far.coverage(), {}, {}};
+  const Json summary = Json::parse(package::summary_json(mission, so_far, unknown));
+  const auto patches = package::known_surface(so_far, unknown);
+  const geometry::AttributedCloud map = package::coverage_map(patches);
+  geometry::AttributedCloud cloud;
+  cloud.positions = so_far.cloud.positions;
+  cloud.views = so_far.cloud.views;
+  Json shown = verdict(summary);
+  const bool goes_on = next.view.has_value();
+  shown["answer"] = goes_on ? "running" : "over";
+  const std::size_t scans = so_far.views.size();
+  shown["because"] = std::to_string(scans) + (scans == 1 ? " scan" : " scans") + " so far" +
+                     (goes_on ? "" : "; skycap finish makes the package");
+  shown["light"] = "none";
+  const Json data = {{"kind", "survey"},
+                     {"title", mission.name},
+                     {"verdict", shown},
+                     {"summary", summary},
+                     {"scene", scene_outline(mission, mission.flight.takeoff)},
+                     {"hole_places", hole_places(summary, mission)},
+                     {"live",
+                      {{"position", goes_on ? file::json_of(next.view->position) : Json()},
+                       {"direction", goes_on ? file::json_of(next.view->direction) : Json()},
+                       {"way", file::json_of(next.way)}}}};
+  return page_text(
+      mission.name, data,
+      {measured_cloud(cloud, point_states(cloud, map, reach_of(summary)), {}, most_points),
+       missing_cloud(map, most_points)});
 }
 
 std::string survey_report(const ResultFinder& results, std::size_t most_points) {
@@ -143,13 +154,16 @@ std::string survey_report(const ResultFinder& results, std::size_t most_points) 
     const geometry::AttributedCloud map = cloud_if_there(results("coverage.ply"));
     const std::vector<std::uint16_t> states = point_states(cloud, map, reach_of(summary));
     const std::vector<std::uint16_t> incidence = incidence_steps(cloud, survey.views);
+    const PointNoise noise = noise_of(summary, survey.mission);
+    const std::vector<float> errors =
+        surface_errors(cloud, incidence, noise, survey.mission.evaluation.registration_distance);
     const Json data = {{"kind", "survey"},
                        {"title", summary.value("mission", std::string())},
                        {"verdict", verdict(summary)},
                        {"summary", summary},
                        {"scene", scene_outline(survey.mission, survey.pad)},
                        {"hole_places", hole_places(summary, survey.mission)},
-                       {"accuracy", accuracy(incidence, ranges(cloud, survey.views))},
+                       {"accuracy", accuracy_json(incidence, ranges(cloud, survey.views), errors)},
                        {"files", files_of(summary, results)}};
     return page_text(
         data.at("title"), data,

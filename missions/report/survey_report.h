@@ -1,26 +1,34 @@
-/// report.html of a survey, made of what its folder holds and of nothing else.
+/// report.html of a survey: of what its folder holds and of nothing else, or of one that goes on.
 #pragma once
 
 #include <cstddef>
-#include <filesystem>
-#include <functional>
+#include <optional>
 #include <string>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "geometry/place/pose.h"
+#include "missions/file/mission.h"
+#include "missions/report/results.h"
+#include "missions/run/survey_record.h"
 
 namespace skycap::missions::report {
-
-/// Where the results of a folder are: under their own names, or still staged. A path that does not
-/// exist stands for a file that is not there.
-using ResultFinder = std::function<std::filesystem::path(const std::string& name)>;
-
-/// The finder of a folder as it is on disk.
-ResultFinder results_in(const std::filesystem::path& folder);
-
-inline constexpr std::size_t default_report_points = 1'000'000;
 
 /// The page of the survey that summary.json tells of, with at most so many points of cloud.ply.
 /// Without cloud.ply or coverage.ply it goes without them. Throws Error{bad_file} naming the file
 /// if one is not as `skycap plan` writes it.
-std::string survey_report(const ResultFinder& results,
-                          std::size_t most_points = default_report_points);
+std::string survey_report(const ResultFinder& results, std::size_t most_points);
+
+/// Where a survey that goes on wants to look next, if it wants to, and the way there.
+struct NextView {
+  std::optional<geometry::View> view;
+  std::vector<Eigen::Vector3d> way;
+};
+
+/// The page of a survey that goes on: a browser that shows it reads it again now and then. Shows
+/// fewer points than the page of a finished one, and no incidence, so that it costs little.
+std::string live_page(const file::Mission& mission, const run::SurveyRecord& so_far,
+                      const NextView& next);
 
 }  // namespace skycap::missions::report

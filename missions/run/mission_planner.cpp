@@ -113,6 +113,11 @@ survey::SurveyLimits MissionPlanner::limits() const {
   return limits;
 }
 
+void MissionPlanner::tell(SurveyRecord& record) const {
+  record_belief(*impl_->planner, record);
+  record.cloud = impl_->planner->cloud();
+}
+
 void MissionPlanner::finish(SurveyRecord& record) {
   record_belief(*impl_->planner, record);
   record.cloud = impl_->planner->release_cloud();

@@ -32,6 +32,9 @@ class MissionPlanner {
 
   survey::SurveyLimits limits() const;
 
+  /// What the planner holds and believes at present; the flight is not in it.
+  void tell(SurveyRecord& record) const;
+
   /// Hands over the cloud, the flight, and what the planner believes at the end; it may turn out to
   /// have stopped for another reason than the record's. Nothing else may be called afterwards.
   void finish(SurveyRecord& record);

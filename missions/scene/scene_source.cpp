@@ -10,8 +10,10 @@
 #include "geometry/io/file.h"
 #include "geometry/io/mesh_io.h"
 #include "geometry/place/world.h"
+#include "missions/derived/mission_priors.h"
 #include "missions/file/number_text.h"
 #include "missions/file/yaml_tree.h"
+#include "missions/prior/prior.h"
 #include "missions/scene/model_store.h"
 #include "sim/models/models.h"
 
@@ -33,7 +35,8 @@ geometry::Mesh named_model(const file::SceneConfig& scene, const std::filesystem
   if (model.starts_with(stored)) {
     return geometry::read_mesh(find_model(model.substr(stored.size())));
   }
-  return geometry::read_mesh(folder / model);
+  const std::filesystem::path file = folder / model;
+  return geometry::is_mesh_file(file) ? geometry::read_mesh(file) : prior::read_surfaces(file);
 }
 
 Vector3d middle_of_base(const geometry::Mesh& mesh) {
@@ -160,20 +163,23 @@ geometry::Mesh with_copies(const file::SceneConfig& scene, const geometry::Mesh&
   return all;
 }
 
-ReflectingScene reflecting_scene(const file::SceneConfig& scene,
+ReflectingScene reflecting_scene(const file::Mission& mission,
                                  const std::filesystem::path& folder) {
+  const file::SceneConfig& scene = mission.scene;
   ReflectingScene result;
-  if (scene.materials) {
+  if (derived::is_truth_prior(mission)) {
+    result.model = derived::prior_truth(mission);
+  } else if (scene.materials) {
     result = model_of_materials(scene, folder);
   } else {
     result.model = load_model(scene, folder);
   }
-  place_model(scene, result.model);
+  if (!derived::is_truth_prior(mission)) place_model(scene, result.model);
   const auto reflectance = static_cast<float>(scene.reflectance);
   result.reflectances.resize(result.model.triangles.size(), reflectance);
   result.places = copies_of(scene);
   if (scene.ground) {
-    result.ground = ground_under(with_copies(scene, result.model));
+    result.ground = ground_of(mission, with_copies(scene, result.model));
     result.ground_reflectances.resize(result.ground.triangles.size(), reflectance);
   }
   return result;
@@ -198,6 +204,11 @@ Vector3d ReflectingScene::centre() const {
     box.extend(geometry::bounding_box(model).transformed(place));
   }
   return box.center();
+}
+
+geometry::Mesh ground_of(const file::Mission& mission, const geometry::Mesh& placed_model) {
+  const auto& terrain = derived::priors_of(mission).terrain;
+  return terrain ? terrain->surface() : ground_under(placed_model);
 }
 
 geometry::Mesh ground_under(const geometry::Mesh& placed_model) {

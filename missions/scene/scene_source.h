@@ -11,9 +11,10 @@
 
 namespace skycap::missions::scene {
 
-/// The mesh that `scene` names, in its own frame: builtin:NAME, model:NAME, or the path of a mesh,
-/// relative to `folder`. Throws Error{bad_file}, {bad_config} or {bad_geometry}, naming the model,
-/// if it is not there, cannot be read, or is not a mesh with a surface.
+/// The mesh that `scene` names, in its own frame: builtin:NAME, model:NAME, or the path of a mesh
+/// or of any file of prior data that holds surfaces, relative to `folder`. Throws Error{bad_file},
+/// {bad_config} or {bad_geometry}, naming the model, if it is not there, cannot be read, or is not
+/// a mesh with a surface.
 geometry::Mesh load_model(const file::SceneConfig& scene, const std::filesystem::path& folder);
 
 /// Turns, scales and places a model as `scene` says. Throws Error{bad_geometry} if the model has
@@ -44,8 +45,10 @@ struct ReflectingScene {
 /// The model as placed, its copies, and the ground if there is one, with the reflectances of
 /// `scene`. Throws what load_model() and place_model() throw, and Error{bad_config} if the file of
 /// materials is wrong.
-ReflectingScene reflecting_scene(const file::SceneConfig& scene,
-                                 const std::filesystem::path& folder);
+ReflectingScene reflecting_scene(const file::Mission& mission, const std::filesystem::path& folder);
+
+/// The ground that the sensor sees: the terrain of the mission's prior data, else ground_under().
+geometry::Mesh ground_of(const file::Mission& mission, const geometry::Mesh& placed_model);
 
 /// A square in the plane of the scene's base, ten times as wide as the model.
 geometry::Mesh ground_under(const geometry::Mesh& placed_model);

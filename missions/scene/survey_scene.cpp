@@ -11,6 +11,7 @@
 #include "geometry/io/file.h"
 #include "geometry/place/camera.h"
 #include "missions/derived/mission_flight.h"
+#include "missions/derived/mission_priors.h"
 #include "missions/derived/site.h"
 #include "missions/derived/survey_sensor.h"
 #include "missions/file/mission_keys.h"
@@ -29,11 +30,11 @@ constexpr std::uint64_t ceiling_seed = 1;
 sim::Scene scene_of(const geometry::Mesh& model, const file::Mission& mission,
                     const std::filesystem::path& folder) {
   if (mission.sensor.scanner) {  // what a laser measures depends on the surfaces' reflectances
-    return reflecting_scene(mission.scene, folder).scene(mission.threads);
+    return reflecting_scene(mission, folder).scene(mission.threads);
   }
   if (!mission.scene.ground) return sim::Scene(model, mission.threads);
   geometry::Mesh mesh = model;
-  geometry::append(mesh, ground_under(model));
+  geometry::append(mesh, ground_of(mission, model));
   return sim::Scene(mesh, mission.threads);
 }
 
@@ -79,7 +80,9 @@ std::string digits_of(const std::vector<std::uint8_t>& marks) {
 
 }  // namespace
 
-geometry::Mesh placed_model(const file::SceneConfig& scene, const std::filesystem::path& folder) {
+geometry::Mesh placed_model(const file::Mission& mission, const std::filesystem::path& folder) {
+  if (derived::is_truth_prior(mission)) return derived::prior_truth(mission);
+  const file::SceneConfig& scene = mission.scene;
   geometry::Mesh model = load_model(scene, folder);
   place_model(scene, model);
   return scene.copies.empty() ? model : with_copies(scene, model);
@@ -87,7 +90,7 @@ geometry::Mesh placed_model(const file::SceneConfig& scene, const std::filesyste
 
 SurveyScene::SurveyScene(const file::Mission& mission, const std::filesystem::path& folder)
     : mission_(mission),
-      model_(placed_model(mission.scene, folder)),
+      model_(placed_model(mission, folder)),
       scene_(scene_of(model_, mission, folder)),
       samples_(geometry::sample_surface(model_, mission.evaluation.samples, sample_seed)),
       view_distance_(mission.planner.see.view_distance.value_or(geometry::view_distance(

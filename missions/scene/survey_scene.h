@@ -82,7 +82,7 @@ class SurveyScene {
   judge::ReachableSpace reachable_;
 };
 
-/// The mission's mesh as surveyed: loaded and placed, without ground.
-geometry::Mesh placed_model(const file::SceneConfig& scene, const std::filesystem::path& folder);
+/// The mission's mesh as surveyed: loaded and placed, or as its prior data has it; without ground.
+geometry::Mesh placed_model(const file::Mission& mission, const std::filesystem::path& folder);
 
 }  // namespace skycap::missions::scene

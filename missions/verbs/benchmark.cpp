@@ -13,7 +13,6 @@
 #include "geometry/error.h"
 #include "geometry/io/output_folder.h"
 #include "geometry/parallel.h"
-#include "missions/benchmark/benchmark_plots.h"
 #include "missions/benchmark/benchmark_report.h"
 #include "missions/benchmark/benchmark_results.h"
 #include "missions/benchmark/contestants.h"
@@ -21,6 +20,7 @@
 #include "missions/derived/resolved_mission.h"
 #include "missions/file/json_text.h"
 #include "missions/file/mission_keys.h"
+#include "missions/report/result_pages.h"
 #include "missions/run/feasibility.h"
 #include "missions/scene/survey_scene.h"
 #include "missions/verbs/verbs.h"
@@ -189,8 +189,8 @@ class Benchmark {
     run_entries([](const Entry& entry) { return !entry.contestant->is_volumetric; });
     take_view_limits_from_see();
     run_entries([](const Entry& entry) { return entry.contestant->is_volumetric; });
-    const bool is_reported = report();
-    return is_whole() && is_reported ? 0 : 1;
+    report();
+    return is_whole() ? 0 : 1;
   }
 
  private:
@@ -263,8 +263,7 @@ class Benchmark {
     });
   }
 
-  /// False if there should be plots, and are none.
-  bool report() {
+  void report() {
     std::vector<benchmark::BenchmarkCell> cells;
     for (const Entry& entry : entries_) {
       benchmark::BenchmarkCell cell{entry.mission.name, entry.contestant->name, {}};
@@ -273,24 +272,18 @@ class Benchmark {
       }
       cells.push_back(std::move(cell));
     }
-    const benchmark::PlotScript plots = benchmark::plot_script(cells);
     folder_.write("manifest.json", manifest(options_, entries_, is_whole()));
     folder_.write("trials.csv", benchmark::all_trials_csv(cells));
     folder_.write("table1.csv", benchmark::table_1_csv(cells));
-    folder_.write("plots.gp", plots.text);
     folder_.write("results.json", benchmark::results_json(cells));
-    const std::string markdown = benchmark::report_markdown(cells, plots.plots);
+    const std::string markdown = benchmark::report_markdown(cells);
     folder_.write("report.md", markdown);
-    const benchmark::DrawnPlots drawn = benchmark::draw_plots(plots, folder_);
+    const auto complaint = report::stage_page("results.json", options_.has_report, folder_);
     folder_.commit();
     progress_.say("");
-    if (!drawn.complaint.empty()) {
-      console_.err << "skycap: warning: no plots: " << printable_line(drawn.complaint) << "\n";
-    }
-    const bool is_whole = drawn.complaint.empty() || !drawn.has_gnuplot;
-    if (options_.is_quiet) return is_whole;
+    if (complaint) warn(console_, "no report: " + *complaint);
+    if (options_.is_quiet) return;
     console_.out << markdown << "\nresults: " << folder_.path().string() << "\n" << std::flush;
-    return is_whole;
   }
 
   const BenchmarkOptions& options_;

@@ -11,10 +11,12 @@
 #include "geometry/error.h"
 #include "geometry/surfaces/mesh.h"
 #include "missions/derived/mission_flight.h"
+#include "missions/derived/mission_priors.h"
 #include "missions/derived/resolved_mission.h"
 #include "missions/file/number_text.h"
 #include "missions/file/planner_titles.h"
 #include "missions/package/package.h"
+#include "missions/prior/prior_text.h"
 #include "missions/run/expectation.h"
 #include "missions/run/feasibility.h"
 #include "missions/scene/survey_scene.h"
@@ -53,7 +55,7 @@ std::vector<Eigen::Vector3d> places_of(const flight::FlownRoute& route) {
 /// Errors of the mission's model name the mission, too.
 geometry::Mesh model_of(const file::Mission& mission, const std::filesystem::path& file) {
   try {
-    return scene::placed_model(mission.scene, file.parent_path());
+    return scene::placed_model(mission, file.parent_path());
   } catch (const Error& error) {
     throw Error(error.kind(), file.string() + ": " + error.what());
   }
@@ -138,7 +140,7 @@ int check_survey(const CheckOptions& options, const file::Mission& mission, Prog
     const scene::SurveyScene scene(mission, options.mission.parent_path());
     const run::Feasibility found = run::feasibility(mission, scene, mission.threads);
     std::string text = file + (found.problems.empty() ? ": fine\n" : ": cannot work\n") +
-                       scene_text(mission, scene);
+                       scene_text(mission, scene) + prior::text_of(derived::priors_of(mission));
     for (const std::string& problem : found.problems) text += "  problem   " + problem + "\n";
     for (const std::string& warning : found.warnings) text += "  warning   " + warning + "\n";
     if (found.problems.empty()) {

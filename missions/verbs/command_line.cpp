@@ -39,8 +39,11 @@ void add_plan(CLI::App& app, const Console& console, Action& action) {
       ->check(CLI::Range(1, 100'000));
   verb->add_flag("--resume", options->resumes,
                  "Go on with the survey that was interrupted in that folder, if there is one");
-  verb->add_flag("!--no-report", options->has_report, "Leave out report.html");
+  verb->add_flag("!--no-report", options->has_report, "Leave out the page");
   verb->add_flag("--quiet", options->is_quiet, "Print nothing but errors");
+  verb->add_option("--dry-run", keys->dry_run,
+                   "prior: the targets among the mission's prior data stand in for the truth")
+      ->check(CLI::IsMember({"prior"}));
   verb->add_flag("--verbose", options->is_verbose, "Print the planning time of each view by part");
   add_set_option(*verb, *keys);
   run_with_keys(*verb, options, keys, plan, console, action);
@@ -49,6 +52,7 @@ void add_plan(CLI::App& app, const Console& console, Action& action) {
 void add_live_options(CLI::App& verb, LiveOptions& options, KeyOptions& keys) {
   verb.add_option("mission", options.mission, "Mission file (docs/live.md)")->required();
   verb.add_option("--survey", options.survey, "The survey's folder")->required();
+  verb.add_flag("!--no-report", options.has_report, "Leave out the page");
   verb.add_option("--seed", keys.seed, "Seed, in place of the mission's");
   verb.add_option("--threads", keys.threads, "Threads, 0 for all processors");
   add_set_option(verb, keys);
@@ -100,7 +104,7 @@ void add_finish(CLI::App& app, const Console& console, Action& action) {
 
 void add_benchmark(CLI::App& app, const Console& console, Action& action) {
   CLI::App* verb = app.add_subcommand(
-      "benchmark", "Compare planners on missions over many seeds: the paper's tables and plots");
+      "benchmark", "Compare planners on missions over many seeds: the paper's tables, and curves");
   const auto options = std::make_shared<BenchmarkOptions>();
   const auto keys = std::make_shared<KeyOptions>();
   verb->add_option("missions", options->missions, "Mission files")->required();
@@ -116,6 +120,7 @@ void add_benchmark(CLI::App& app, const Console& console, Action& action) {
       ->check(CLI::Range(0, 1024));
   verb->add_option("--seed", keys->seed, "First seed, in place of the missions'");
   verb->add_option("--max-views", keys->max_views, "End every survey after this many views");
+  verb->add_flag("!--no-report", options->has_report, "Leave out the page");
   verb->add_flag("--quiet", options->is_quiet, "Print nothing but errors");
   add_set_option(*verb, *keys);
   run_with_keys(*verb, options, keys, benchmark, console, action);
@@ -138,6 +143,7 @@ void add_scan(CLI::App& app, const Console& console, Action& action) {
       ->delimiter(',');
   verb->add_flag("--with-truth", options->with_truth,
                  "Write a second file with the points as they really were");
+  verb->add_flag("!--no-report", options->has_report, "Leave out the page");
   verb->add_option("--seed", keys->seed, "Seed, in place of the mission's");
   verb->add_option("--threads", keys->threads, "Threads, 0 for all processors");
   verb->add_flag("--quiet", options->is_quiet, "Print nothing but errors");
@@ -294,10 +300,11 @@ void add_model(CLI::App& app, const Console& console, Action& action) {
 }
 
 void add_report(CLI::App& app, const Console& console, Action& action) {
-  CLI::App* verb = app.add_subcommand("report", "Write the page that shows a folder of results");
+  CLI::App* verb = app.add_subcommand("report", "Write the pages that show a folder of results");
   const auto options = std::make_shared<ReportOptions>();
-  verb->add_option("folder", options->folder, "Folder that plan wrote")->required();
-  verb->add_option("--out", options->out, "The page; default report.html in the folder");
+  verb->add_option("folder", options->folder, "Folder that plan, scan or benchmark wrote")
+      ->required();
+  verb->add_option("--out", options->out, "The page; default in the folder");
   verb->add_option("--points", options->points, "Points of the cloud to show; default 1000000")
       ->check(CLI::Range(1, 100'000'000));
   run(*verb, options, report_results, console, action);

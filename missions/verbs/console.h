@@ -20,6 +20,11 @@ struct Console {
   std::atomic<int>* results_held = nullptr;
 };
 
+/// Says what is amiss, in one line, where the verb goes on all the same.
+inline void warn(const Console& console, const std::string& what) {
+  console.err << "skycap: warning: " << printable_line(what) << "\n" << std::flush;
+}
+
 /// While it lives, the verb has results that Ctrl-C must not lose: it watches Console::stop and
 /// brings them to the disk within two seconds.
 class HoldsResults {

@@ -1,6 +1,6 @@
-#include <algorithm>
-#include <cmath>
 #include <filesystem>
+#include <span>
+#include <stop_token>
 #include <vector>
 
 #include <fmt/format.h>
@@ -9,13 +9,11 @@
 #include "geometry/error.h"
 #include "geometry/io/cloud_io.h"
 #include "geometry/io/mesh_io.h"
-#include "geometry/parallel.h"
 #include "geometry/surfaces/mesh.h"
-#include "geometry/surfaces/mesh_distance.h"
 #include "missions/derived/resolved_mission.h"
 #include "missions/file/json_text.h"
+#include "missions/judge/accuracy.h"
 #include "missions/judge/coverage.h"
-#include "missions/judge/evaluation.h"
 #include "missions/scene/scene_source.h"
 #include "missions/scene/survey_scene.h"
 #include "missions/verbs/verbs.h"
@@ -38,7 +36,7 @@ Truth truth_of(const EvaluateOptions& options) {
   if (is_mission_file(options.model)) {
     const std::filesystem::path file = options.model;
     const file::Mission mission = derived::read_mission(file);
-    return {scene::placed_model(mission.scene, file.parent_path()),
+    return {scene::placed_model(mission, file.parent_path()),
             options.distance.value_or(mission.evaluation.registration_distance),
             mission.evaluation.samples};
   }
@@ -56,41 +54,40 @@ Truth truth_of(const EvaluateOptions& options) {
   }
 }
 
-/// What is compared with the truth.
+/// What is told of the cloud or mesh that is compared.
 struct Judged {
   std::filesystem::path file;
-  std::vector<Eigen::Vector3f> points;  ///< measured, or spread over the mesh
+  std::size_t points = 0;  ///< measured, or spread over the mesh
   double coverage = 0.0;
+  judge::CloudAccuracy accuracy;
 };
 
+/// Piece by piece: laser scans are longer than memory.
 Judged judged_cloud(const std::filesystem::path& file, const Truth& truth,
-                    const geometry::SurfaceSamples& samples) {
-  Judged judged{file, geometry::read_cloud(file).positions};
-  judge::CoverageMeter meter(samples.points, truth.registration_distance);
-  meter.add(judged.points);
-  judged.coverage = meter.share();
-  return judged;
+                    const geometry::SurfaceSamples& samples, ProgressLine& progress,
+                    const std::stop_token& stop) {
+  judge::CoverageMeter coverage(samples.points, truth.registration_distance);
+  judge::AccuracyMeter accuracy(truth.model);
+  geometry::read_positions(file, [&](std::span<const Eigen::Vector3f> piece, double share) {
+    if (stop.stop_requested()) throw Error(ErrorKind::bad_usage, "interrupted");
+    progress.show(fmt::format("{}: {:.0f} %", file.string(), 100.0 * share));
+    coverage.add(piece);
+    accuracy.add(piece);
+  });
+  return {file, accuracy.points(), coverage.share(), accuracy.accuracy()};
 }
 
 /// Of a mesh the whole surface counts, not its vertices.
 Judged judged_mesh(const std::filesystem::path& file, const Truth& truth,
                    const geometry::SurfaceSamples& samples) {
   const geometry::Mesh mesh = geometry::read_mesh(file);
-  Judged judged{file, geometry::sample_surface(mesh, truth.samples, 2).points};
-  const geometry::MeshDistance distance(mesh);
-  std::vector<std::uint8_t> is_covered(samples.points.size());
-  constexpr std::size_t batch = 256;
-  const std::size_t batches = (is_covered.size() + batch - 1) / batch;
-  geometry::parallel_for(batches, 0, [&](std::size_t part) {
-    const std::size_t end = std::min(is_covered.size(), (part + 1) * batch);
-    for (std::size_t i = part * batch; i < end; ++i) {
-      is_covered[i] =
-          distance.distance(samples.points[i].cast<double>()) <= truth.registration_distance;
-    }
-  });
-  judged.coverage = static_cast<double>(std::ranges::count(is_covered, 1)) /
-                    static_cast<double>(is_covered.size());
-  return judged;
+  const std::vector<Eigen::Vector3f> points =
+      geometry::sample_surface(mesh, truth.samples, 2).points;
+  judge::AccuracyMeter accuracy(truth.model), completeness(mesh);
+  accuracy.add(points);
+  completeness.add(samples.points);
+  return {file, points.size(), completeness.share_within(truth.registration_distance),
+          accuracy.accuracy()};
 }
 
 }  // namespace
@@ -102,19 +99,18 @@ int evaluate(const EvaluateOptions& options, const Console& console) {
   const geometry::SurfaceSamples samples = geometry::sample_surface(truth.model, truth.samples, 1);
   const bool is_mesh = !options.mesh.empty();
   progress.show("reading " + (is_mesh ? options.mesh : options.cloud).string());
-  const Judged judged = is_mesh ? judged_mesh(options.mesh, truth, samples)
-                                : judged_cloud(options.cloud, truth, samples);
-  const std::vector<Eigen::Vector3f>& points = judged.points;
-  progress.show("measuring the distances of " + std::to_string(points.size()) + " points");
-  const judge::CloudAccuracy accuracy = judge::cloud_accuracy(points, truth.model);
+  const Judged judged = is_mesh
+                            ? judged_mesh(options.mesh, truth, samples)
+                            : judged_cloud(options.cloud, truth, samples, progress, console.stop);
+  const judge::CloudAccuracy& accuracy = judged.accuracy;
   progress.clear();
   const double area = geometry::surface_area(truth.model);
-  const double density = static_cast<double>(points.size()) / area;
+  const double density = static_cast<double>(judged.points) / area;
 
   if (options.is_json) {
     const nlohmann::ordered_json json{{is_mesh ? "mesh" : "cloud", judged.file.string()},
                                       {"model", options.model},
-                                      {"points", points.size()},
+                                      {"points", judged.points},
                                       {"registration_distance_m", truth.registration_distance},
                                       {"samples", truth.samples},
                                       {"coverage", judged.coverage},
@@ -135,7 +131,7 @@ int evaluate(const EvaluateOptions& options, const Console& console) {
       "  accuracy  mean {:.4g} m, rms {:.4g} m, median {:.4g} m, 95 % below {:.4g} m, largest "
       "{:.4g} m\n"
       "  density   {:.4g} points per m^2 of the surface's {:.4g} m^2\n",
-      judged.file.filename().string(), points.size(), options.model, 100.0 * judged.coverage,
+      judged.file.filename().string(), judged.points, options.model, 100.0 * judged.coverage,
       truth.registration_distance, accuracy.mean, accuracy.root_mean_square, accuracy.median,
       accuracy.percentile_95, accuracy.largest, density, area);
   return 0;

@@ -1,6 +1,7 @@
 #include "flight/export/export.h"
 
 #include "geometry/io/output_folder.h"
+#include "missions/derived/mission_flight.h"
 #include "missions/package/flight_report.h"
 #include "missions/package/package.h"
 #include "missions/verbs/verbs.h"
@@ -17,6 +18,7 @@ int export_package(const ExportOptions& options, const Console& console) {
   geometry::OutputFolder folder(options.out.value_or(options.package));
   progress.show(survey.mission.name + ": planning the flight");
   package::SurveyMission flight;
+  flight.pictures = derived::picture_bounds_of(survey.mission);
   flight.route = package::plan_flight(survey.mission, survey.measured, survey.pad, survey.views,
                                       survey.ways, console.stop);
   flight.files =

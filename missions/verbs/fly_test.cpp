@@ -62,8 +62,7 @@ class TestedPackage {
         pad_space_(without_ground(derived::flight_rules(survey_.mission))) {
     if (!options.truth) return;
     const file::Mission mission = derived::read_mission(*options.truth);
-    truth_ = true_space(survey_.mission,
-                        scene::placed_model(mission.scene, options.truth->parent_path()),
+    truth_ = true_space(survey_.mission, scene::placed_model(mission, options.truth->parent_path()),
                         survey_.pad.z());
   }
 

@@ -13,6 +13,8 @@
 #include "missions/live/server.h"
 #include "missions/package/flight_report.h"
 #include "missions/package/package.h"
+#include "missions/report/result_pages.h"
+#include "missions/report/survey_report.h"
 #include "missions/verbs/verbs.h"
 
 namespace skycap::missions::verbs {
@@ -67,24 +69,41 @@ void add_scan(const NextOptions& options, const file::Mission& mission, live::Li
   console.err << "\n" << std::flush;
 }
 
+/// Shows the survey so far in the folder's page, which a browser reads again.
+void show_survey(const LiveOptions& options, const file::Mission& mission,
+                 const live::LiveSurvey& survey, const Console& console) {
+  if (!options.has_report || survey.views().empty()) return;
+  const live::Proposal& proposal = survey.proposal();
+  try {
+    geometry::write_file(
+        options.survey / package::report_name,
+        report::live_page(mission, survey.so_far(), {proposal.view, proposal.way.points}));
+  } catch (const Error& error) {  // a page shall not cost a survey
+    warn(console, "no report: " + std::string(error.what()));
+  }
+}
+
 struct Finished {
   std::string text;  ///< for the user
   bool has_route = true;
 };
 
-Finished write_package(const file::Mission& mission, live::LiveSurvey& survey,
-                       const std::filesystem::path& place, const std::stop_token& stop) {
-  geometry::OutputFolder folder(place);
+Finished write_package(const LiveOptions& options, const file::Mission& mission,
+                       live::LiveSurvey& survey, const Console& console) {
+  geometry::OutputFolder folder(options.survey);
   const run::SurveyRecord record = survey.finish();
   const package::CoverageFigures unknown{record.coverage(), {}, {}};
   const std::optional<package::SurveyMission> flight =
-      package::stage_package(mission, record, unknown, mission.threads, folder, stop);
+      package::stage_package(mission, record, unknown, mission.threads, folder, console.stop);
+  const auto complaint = report::stage_page(package::summary_name, options.has_report, folder);
   folder.commit();
+  if (complaint) warn(console, "no report: " + *complaint);
   std::string text =
       fmt::format("{}: {} after {} scans, {} points\n", mission.name,
                   run::name_of(record.stop_reason), record.views.size(), record.cloud.size());
   if (flight) text += package::flight_text(*flight);
-  return {text + "  results   " + place.string() + "\n", !flight || flight->failure.empty()};
+  return {text + "  results   " + options.survey.string() + "\n",
+          !flight || flight->failure.empty()};
 }
 
 }  // namespace
@@ -97,6 +116,7 @@ int next(const NextOptions& options, const Console& console) {
   const auto survey = live::open_survey(mission, options.mission.parent_path(), options.survey);
   if (options.scan) add_scan(options, mission, *survey, console);
   if (options.refusal) survey->refuse(*options.refusal);
+  if (options.scan || options.refusal) show_survey(options, mission, *survey, console);
   console.out << (options.is_json ? live::answer_json(*survey, mission)
                                   : live::answer_text(*survey))
               << "\n"
@@ -111,7 +131,7 @@ int finish(const LiveOptions& options, const Console& console) {
     throw Error(ErrorKind::bad_usage,
                 options.survey.string() + ": has no scan yet; add some with skycap next --scan");
   }
-  const Finished finished = write_package(mission, *survey, options.survey, console.stop);
+  const Finished finished = write_package(options, mission, *survey, console);
   console.out << finished.text << std::flush;
   return finished.has_route ? 0 : 1;
 }
@@ -123,11 +143,13 @@ int serve(const ServeOptions& options, const Console& console) {
   const file::Mission mission = derived::read_live_mission(options.mission, options.overrides);
   const auto survey = live::open_survey(mission, options.mission.parent_path(), options.survey);
   int exit_code = 1;
-  live::Session session(mission, *survey, [&] {
-    Finished finished = write_package(mission, *survey, options.survey, console.stop);
+  const auto finish_survey = [&] {
+    Finished finished = write_package(options, mission, *survey, console);
     exit_code = finished.has_route ? 0 : 1;
     return std::move(finished.text);
-  });
+  };
+  live::Session session(mission, *survey, finish_survey,
+                        [&] { show_survey(options, mission, *survey, console); });
   const HoldsResults results(console);
   live::Server server({.socket = options.socket.value_or(""), .port = options.port});
   console.out << server.address() << "\n" << std::flush;

@@ -5,6 +5,7 @@
 #include "geometry/error.h"
 #include "geometry/io/mesh_io.h"
 #include "geometry/surfaces/mesh.h"
+#include "missions/derived/mission_priors.h"
 #include "missions/derived/resolved_mission.h"
 #include "missions/file/mission_keys.h"
 #include "missions/scene/model_store.h"
@@ -43,14 +44,47 @@ void obtain_if_missing(const std::string& name, const Console& console) {
   }
 }
 
+/// A scene in sandstone, and what is known of its site in the colours of its roles.
+struct ColouredMesh {
+  geometry::Mesh mesh;
+  std::vector<Eigen::Vector3f> colours;  ///< of the triangles; empty: all are of sandstone
+
+  void add(const geometry::Mesh& more, const Eigen::Vector3f& colour) {
+    geometry::append(mesh, more);
+    colours.resize(mesh.triangles.size(), colour);
+  }
+};
+
+ColouredMesh site_of(const file::Mission& mission, const geometry::Mesh& model) {
+  const prior::SitePriors& site = derived::priors_of(mission);
+  if (site.priors.empty()) return {model, {}};
+  ColouredMesh coloured;
+  if (!derived::is_truth_prior(mission)) coloured.add(model, {0.80F, 0.71F, 0.55F});
+  coloured.add(surfaces_of(site, prior::Role::truth), {0.62F, 0.68F, 0.75F});
+  coloured.add(surfaces_of(site, prior::Role::target), {0.20F, 0.55F, 0.30F});
+  coloured.add(surfaces_of(site, prior::Role::obstacle), {0.75F, 0.28F, 0.12F});
+  coloured.add(surfaces_of(site, prior::Role::terrain), {0.42F, 0.38F, 0.26F});
+  return coloured;
+}
+
+bool is_mission(const std::string& name) {
+  return name.ends_with(".yaml") || name.ends_with(".yml");
+}
+
+ColouredMesh mission_called(const ModelOptions& options) {
+  std::vector<file::KeyOverride> overrides;
+  if (options.detail) overrides.push_back({"--detail", "scene.detail", *options.detail});
+  file::Mission mission = derived::read_live_mission(options.name, overrides);
+  if (mission.prior.empty()) mission = derived::read_mission(options.name, overrides);
+  const geometry::Mesh model =
+      mission.scene.model.empty() && !derived::is_truth_prior(mission)
+          ? geometry::Mesh{}
+          : scene::placed_model(mission, fs::path(options.name).parent_path());
+  return site_of(mission, model);
+}
+
 geometry::Mesh model_called(const ModelOptions& options, const Console& console) {
   const std::string& name = options.name;
-  if (name.ends_with(".yaml") || name.ends_with(".yml")) {
-    std::vector<file::KeyOverride> overrides;
-    if (options.detail) overrides.push_back({"--detail", "scene.detail", *options.detail});
-    return scene::placed_model(derived::read_mission(name, overrides).scene,
-                               fs::path(name).parent_path());
-  }
   if (name.find(':') != std::string::npos || fs::path(name).has_extension()) {
     return mesh_of(name, options.detail);
   }
@@ -64,10 +98,18 @@ geometry::Mesh model_called(const ModelOptions& options, const Console& console)
 int model(const ModelOptions& options, const Console& console) {
   ProgressLine progress(console, false);
   progress.show(options.name + ": making the model ready");
-  const geometry::Mesh mesh = model_called(options, console);
+  const ColouredMesh coloured = is_mission(options.name)
+                                    ? mission_called(options)
+                                    : ColouredMesh{model_called(options, console), {}};
+  const geometry::Mesh& mesh = coloured.mesh;
+  geometry::validate(mesh);
   progress.clear();
   if (options.out) geometry::write_mesh(*options.out, mesh);
-  if (options.render) sim::write_png(sim::render(mesh), *options.render);
+  if (options.render) {
+    sim::RenderOptions render;
+    render.colours = coloured.colours;
+    sim::write_png(sim::render(mesh, render), *options.render);
+  }
   const Eigen::Vector3d size = geometry::bounding_box(mesh).sizes();
   console.out << fmt::format("{}: {} triangles, {:.4g} x {:.4g} x {:.4g}, area {:.4g}\n",
                              options.name, mesh.triangles.size(), size.x(), size.y(), size.z(),

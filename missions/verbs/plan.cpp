@@ -11,7 +11,8 @@
 #include "missions/derived/resolved_mission.h"
 #include "missions/package/flight_report.h"
 #include "missions/package/package.h"
-#include "missions/report/survey_report.h"
+#include "missions/package/target_coverage.h"
+#include "missions/report/result_pages.h"
 #include "missions/run/feasibility.h"
 #include "missions/run/survey_runner.h"
 #include "missions/scene/survey_scene.h"
@@ -62,7 +63,10 @@ std::string summary_text(const file::Mission& mission, const run::SurveyRecord& 
   text += "  coverage  " + percent(coverage.all) + " of the surface";
   if (coverage.visible) text += ", " + percent(*coverage.visible) + " of what is visible";
   if (coverage.ceiling) text += "; attainable " + percent(*coverage.ceiling);
-  text += "\n  planning  " + seconds(record.planning_time()) + " (";
+  text += "\n" + package::target_text(package::target_coverage(mission, record.cloud.positions));
+  if (mission.scene.model == "prior")
+    text += "  truth     the targets' prior data stand in for it\n";
+  text += "  planning  " + seconds(record.planning_time()) + " (";
   bool is_first = true;
   for (const auto& [part, time] : package::planning_time_by_part(record)) {
     text += (is_first ? "" : ", ") + part + " " + seconds(time);
@@ -73,19 +77,10 @@ std::string summary_text(const file::Mission& mission, const run::SurveyRecord& 
   return text + "  results   " + folder.string() + "\n";
 }
 
-/// Stages report.html. What cannot be shown, such as a
-/// cloud too far from the origin for its file, shall not cost the survey.
-void write_report(const PlanOptions& options, geometry::OutputFolder& folder,
-                  const Console& console) {
-  if (!options.has_report) return;
-  std::string page;
-  try {
-    page = report::survey_report([&](const std::string& name) { return folder.staged(name); });
-  } catch (const Error& error) {
-    console.err << "skycap: warning: no report: " << printable_line(error.what()) << "\n";
-    return;
-  }
-  folder.write(package::report_name, page);
+void write_page(const PlanOptions& options, const char* results, geometry::OutputFolder& folder,
+                const Console& console) {
+  const auto complaint = report::stage_page(results, options.has_report, folder);
+  if (complaint) warn(console, "no report: " + *complaint);
 }
 
 int plan_once(const PlanOptions& options, const file::Mission& mission,
@@ -114,7 +109,7 @@ int plan_once(const PlanOptions& options, const file::Mission& mission,
   progress.show(mission.name + ": writing " + folder.path().string());
   const std::optional<package::SurveyMission> flight =
       package::stage_package(mission, record, coverage, mission.threads, folder, console.stop);
-  write_report(options, folder, console);
+  write_page(options, package::summary_name, folder, console);
   package::commit_package(record, folder);
   progress.clear();
   if (!options.is_quiet) {
@@ -147,6 +142,7 @@ int plan_trials(const PlanOptions& options, const file::Mission& mission,
   folder.write("trials.csv", benchmark::trials_csv(trials));
   folder.write("trials.json",
                benchmark::trials_json(mission, trials, options.trials, mission.threads));
+  write_page(options, "trials.json", folder, console);
   if (trials.size() < options.trials &&
       package::is_complete_result(folder.path() / "trials.json")) {
     folder.move_to("interrupted");  // the trials themselves are kept, and not run again

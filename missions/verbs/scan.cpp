@@ -19,10 +19,13 @@
 #include "missions/file/json_text.h"
 #include "missions/file/number_text.h"
 #include "missions/package/package.h"
+#include "missions/package/settings.h"
 #include "missions/recording/cloud_formats.h"
 #include "missions/recording/frame_recorder.h"
+#include "missions/recording/preview.h"
 #include "missions/recording/scan_flight.h"
 #include "missions/recording/scan_runner.h"
+#include "missions/report/result_pages.h"
 #include "missions/scene/scene_source.h"
 #include "missions/verbs/verbs.h"
 
@@ -70,6 +73,12 @@ void commit_scan(geometry::OutputFolder& folder, bool is_complete) {
     folder.move_to("interrupted");
   }
   folder.commit();
+}
+
+void write_page(const ScanVerbOptions& options, geometry::OutputFolder& folder,
+                const Console& console) {
+  const auto complaint = report::stage_page(scan_name, options.has_report, folder);
+  if (complaint) warn(console, "no report: " + *complaint);
 }
 
 /// Shows how far a scan is, ten times a second at most.
@@ -140,7 +149,8 @@ struct LaserRecording {
   std::vector<OutputFile> outputs;
 };
 
-nlohmann::ordered_json scan_json(const file::Mission& mission, const LaserRecording& recorded) {
+nlohmann::ordered_json scan_json(const file::Mission& mission, const LaserRecording& recorded,
+                                 const recording::PreviewPieces& pieces) {
   nlohmann::ordered_json files = nlohmann::ordered_json::array();
   for (const OutputFile& file : recorded.outputs) {
     files.push_back({{"name", file.name}, {"bytes", file.bytes}});
@@ -161,7 +171,9 @@ nlohmann::ordered_json scan_json(const file::Mission& mission, const LaserRecord
             {"tilt_sigma_rad", navigation.tilt_sigma},
             {"heading_sigma_rad", navigation.heading_sigma},
             {"correlation_time_s", navigation.correlation_time}}},
-          {"files", files}};
+          {"files", files},
+          {"preview", {{"start_s", pieces.start}, {"piece_s", pieces.length}}},
+          {"settings", package::settings_json(mission)}};
 }
 
 void print(const LaserRecording& recorded, const file::Mission& mission,
@@ -193,13 +205,19 @@ int scan_with_laser(const ScanVerbOptions& options, const file::Mission& mission
   ProgressLine progress(console, options.is_quiet);
   progress.show(mission.name + ": making the scene ready");
   const scene::ReflectingScene truth =
-      scene::reflecting_scene(mission.scene, options.mission.parent_path());
+      scene::reflecting_scene(mission, options.mission.parent_path());
   const sim::Scene scene = truth.scene(mission.threads);
   LaserRecording recorded{.sensor = sensor_name};
   std::vector<recording::CloudFile> files = open_files(
       options, {sensor_name, config, flight, truth.centre(), projection}, folder, recorded.outputs);
 
   const auto channels = static_cast<double>(config.channels.size());
+  const recording::PreviewPieces pieces = recording::preview_pieces(config, flown.route.carrier);
+  const auto all_firings = static_cast<double>(lidar.firings(flown.route.carrier));
+  files.emplace_back(
+      folder.stage(recording::preview_name),
+      recording::preview_format(pieces, recording::preview_share(channels * all_firings)));
+  recorded.outputs.push_back({recording::preview_name});
   const Clock::time_point start = Clock::now();
   const HoldsResults results(console);
   recorded.result = recording::run_scan(scene, lidar, flight, files,
@@ -215,7 +233,8 @@ int scan_with_laser(const ScanVerbOptions& options, const file::Mission& mission
   recorded.shots = channels * firings, recorded.flown = firings * config.firing_period;
   folder.write("trajectory.tum", sensor_tum(flown.route.carrier, flown.mount.real));
   folder.write("trajectory_believed.tum", sensor_tum(flown.believed, flown.mount.believed));
-  folder.write(scan_name, file::json_text(scan_json(mission, recorded)));
+  folder.write(scan_name, file::json_text(scan_json(mission, recorded, pieces)));
+  write_page(options, folder, console);
   commit_scan(folder, recorded.result.is_complete);
   progress.clear();
   if (!options.is_quiet) print(recorded, mission, folder.path(), console.out);
@@ -254,7 +273,7 @@ int scan_with_camera(const ScanVerbOptions& options, const file::Mission& missio
   ProgressLine progress(console, options.is_quiet);
   progress.show(mission.name + ": making the scene ready");
   const sim::Scene scene =
-      scene::reflecting_scene(mission.scene, options.mission.parent_path()).scene(mission.threads);
+      scene::reflecting_scene(mission, options.mission.parent_path()).scene(mission.threads);
   const auto report = [&](std::size_t taken, std::size_t points) {
     progress.show(fmt::format("{}: image {} of {}, {:.1f} M points", mission.name, taken,
                               frames.size(), 1e-6 * static_cast<double>(points)));
@@ -278,7 +297,9 @@ int scan_with_camera(const ScanVerbOptions& options, const file::Mission& missio
                                            {"images", result.frames},
                                            {"images_planned", frames.size()},
                                            {"points", result.points},
-                                           {"simulation_s", time}}));
+                                           {"simulation_s", time},
+                                           {"settings", package::settings_json(mission)}}));
+  write_page(options, folder, console);
   commit_scan(folder, is_complete);
   progress.clear();
   if (!options.is_quiet) {

@@ -18,7 +18,7 @@ using Action = std::function<int()>;
 
 /// Values for keys of the mission file, as given by options.
 struct KeyOptions {
-  std::string planner, seed, threads, max_views;
+  std::string planner, seed, threads, max_views, dry_run;
   std::vector<std::string> set;  ///< KEY=VALUE
 
   /// Throws Error{bad_usage} if one of `set` has no equals sign.

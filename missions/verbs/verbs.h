@@ -20,7 +20,7 @@ struct PlanOptions {
   std::vector<file::KeyOverride> overrides;
   std::size_t trials = 0;  ///< zero: one survey, with a mission package
   bool resumes = false;  ///< goes on with an interrupted survey, if there is one; trials always do
-  bool has_report = true;  ///< report.html beside the other results
+  bool has_report = true;  ///< the page beside the other results, too
   bool is_quiet = false;
   bool is_verbose = false;
 };
@@ -34,6 +34,7 @@ int plan(const PlanOptions& options, const Console& console);
 struct LiveOptions {
   std::filesystem::path mission;
   std::filesystem::path survey;  ///< its folder
+  bool has_report = true;        ///< the page, too
   std::vector<file::KeyOverride> overrides;
 };
 
@@ -74,12 +75,13 @@ struct BenchmarkOptions {
   std::size_t trials = 10;                      ///< of each planner on each mission
   std::optional<std::filesystem::path> out;     ///< default: results/benchmark
   std::vector<file::KeyOverride> overrides;
-  unsigned threads = 0;  ///< zero: all processors; a survey has one
+  unsigned threads = 0;    ///< zero: all processors; a survey has one
+  bool has_report = true;  ///< the page beside the other results, too
   bool is_quiet = false;
 };
 
 /// Compares planners on missions, as the paper does: surveys from the same starts, Tables 1 and 2,
-/// curves, plots. What an earlier run in the same folder has finished is not run again. Exit code 1
+/// curves. What an earlier run in the same folder has finished is not run again. Exit code 1
 /// if it was interrupted.
 int benchmark(const BenchmarkOptions& options, const Console& console);
 
@@ -144,6 +146,7 @@ struct ScanVerbOptions {
   /// Of a laser scanner's points; of a camera's images only "rawlog" counts, beside the PNG files.
   std::vector<std::string> formats = {"las"};
   bool with_truth = false;  ///< also where the surfaces really were
+  bool has_report = true;   ///< the page beside the other results, too
   std::vector<file::KeyOverride> overrides;
   bool is_quiet = false;
 };
@@ -188,11 +191,11 @@ int model(const ModelOptions& options, const Console& console);
 
 struct ReportOptions {
   std::filesystem::path folder;              ///< of results
-  std::optional<std::filesystem::path> out;  ///< default: report.html in the folder
+  std::optional<std::filesystem::path> out;  ///< of a folder with one page; default: in the folder
   std::size_t points = 0;                    ///< shown at most; zero: the report's default
 };
 
-/// Writes the page that shows a folder of results, as the verb that left them does.
+/// Writes the pages that show a folder of results, as the verbs that left them do.
 int report_results(const ReportOptions& options, const Console& console);
 
 struct ViewOptions {
@@ -201,8 +204,8 @@ struct ViewOptions {
   std::vector<file::KeyOverride> overrides;  ///< of a mission
 };
 
-/// Writes a page of a folder, a cloud or a mission's scene and opens it in the browser; says where
-/// it is.
+/// Writes the pages of a folder, a cloud or a mission's scene and opens them in the browser; says
+/// where they are.
 int view(const ViewOptions& options, const Console& console);
 
 }  // namespace skycap::missions::verbs

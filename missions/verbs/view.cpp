@@ -5,10 +5,9 @@
 #include "geometry/io/output_folder.h"
 #include "missions/derived/mission_flight.h"
 #include "missions/derived/resolved_mission.h"
-#include "missions/package/package.h"
 #include "missions/plugins/external_program.h"
 #include "missions/report/cloud_page.h"
-#include "missions/report/survey_report.h"
+#include "missions/report/result_pages.h"
 #include "missions/scene/survey_scene.h"
 #include "missions/verbs/verbs.h"
 
@@ -33,21 +32,26 @@ Page page_of_mission(const ViewOptions& options) {
           report::mission_page(mission, scene.samples().points, pad)};
 }
 
-Page page_of(const ViewOptions& options) {
+std::vector<Page> pages_of(const ViewOptions& options) {
   const fs::path& what = options.what;
   std::error_code ignored;
   if (fs::is_directory(what, ignored)) {
     geometry::finish_commit(what);
-    return {what / package::report_name, report::survey_report(report::results_in(what))};
+    std::vector<Page> pages;
+    for (const report::ResultPage& page : report::pages_of(what)) {
+      pages.push_back(
+          {what / page.name, page.make(report::results_in(what), report::default_report_points)});
+    }
+    return pages;
   }
   if (!options.out && !fs::exists(what, ignored)) {
     throw Error(ErrorKind::bad_file, what.string() + ": is not there");
   }
   const std::string ending = what.extension().string();
-  if (ending == ".yaml" || ending == ".yml") return page_of_mission(options);
+  if (ending == ".yaml" || ending == ".yml") return {page_of_mission(options)};
   fs::path file = what;
   file.replace_extension(".html");
-  return {file, report::cloud_page(what)};
+  return {{file, report::cloud_page(what)}};
 }
 
 /// Whether a browser was told to show the file. Programs without a screen start browsers of text,
@@ -64,13 +68,19 @@ bool is_opened(const fs::path& file) {
 int view(const ViewOptions& options, const Console& console) {
   ProgressLine progress(console, false);
   progress.show("reading " + options.what.string());
-  Page page = page_of(options);
-  page.file = options.out.value_or(page.file);
-  geometry::write_file(page.file, page.text);
-  progress.clear();
-  const bool is_shown = is_opened(page.file);
-  console.out << (is_shown ? "opened in the browser: " : "open this in a browser: ")
-              << page.file.string() << "\n";
+  std::vector<Page> pages = pages_of(options);
+  if (options.out && pages.size() > 1) {
+    throw Error(ErrorKind::bad_usage,
+                options.what.string() + ": has several pages; leave out --out");
+  }
+  for (Page& page : pages) {
+    page.file = options.out.value_or(page.file);
+    geometry::write_file(page.file, page.text);
+    progress.clear();
+    const bool is_shown = is_opened(page.file);
+    console.out << (is_shown ? "opened in the browser: " : "open this in a browser: ")
+                << page.file.string() << "\n";
+  }
   return 0;
 }
 

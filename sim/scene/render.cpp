@@ -173,7 +173,9 @@ class Renderer {
     if (normal.dot(direction) > 0.0) normal = -normal;  // the inner side of an open mesh
     Vector3d smooth = smooth_normal(hit->triangle, point);
     if (smooth.dot(normal) < 0.0) smooth = -smooth;
-    return stone.cwiseProduct(incoming(point, normal, smooth, dice));
+    const Vector3d colour =
+        options_.colours.empty() ? stone : options_.colours[hit->triangle].cast<double>();
+    return colour.cwiseProduct(incoming(point, normal, smooth, dice));
   }
 
   Vector3d floor_light(const Vector3d& origin, const Vector3d& direction, double distance,
@@ -286,6 +288,8 @@ std::vector<RenderView> standard_views(const Mesh& mesh, double aspect) {
 
 Image render(const Mesh& mesh, std::span<const RenderView> views, const RenderOptions& options) {
   options.validate();
+  require(options.colours.empty() || options.colours.size() == mesh.triangles.size(), "colours",
+          static_cast<double>(options.colours.size()), "none, or one for each triangle");
   Renderer renderer(mesh, options);
   const int count = static_cast<int>(views.size());
   const int columns = std::min(options.columns, count);

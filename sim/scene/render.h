@@ -47,6 +47,8 @@ struct RenderOptions {
   bool has_floor = true;  ///< adds a level floor under the lowest vertex that takes the shadow
   /// Corners between triangles flatter than this are shaded as if they were round [rad].
   double smoothing_angle = 0.5;
+  /// Diffuse colours of the triangles, linear, in [0, 1]; empty: all are of sandstone.
+  std::vector<Eigen::Vector3f> colours{};
   unsigned threads = 0;  ///< zero: all processors. The picture does not depend on it.
 
   /// Throws Error{bad_config} naming the first field that is out of its interval.

@@ -22,7 +22,7 @@ namespace {
 
 using Eigen::Vector3d;
 using Eigen::Vector3f;
-using geometry::Scan;
+using geometry::ScanSpan;
 using geometry::View;
 
 Vector3d centroid(std::span<const Vector3f> points) {
@@ -31,7 +31,7 @@ Vector3d centroid(std::span<const Vector3f> points) {
   return sum / static_cast<double>(points.size());
 }
 
-std::vector<Vector3f> points_inside(const Scan& scan, const Eigen::AlignedBox3d& box) {
+std::vector<Vector3f> points_inside(const ScanSpan& scan, const Eigen::AlignedBox3d& box) {
   std::vector<Vector3f> inside;
   for (const Vector3f& point : scan.points) {
     if (box.contains(point.cast<double>())) inside.push_back(point);
@@ -57,7 +57,7 @@ struct SeePlanner::Impl {
                    .search_distance = config.occlusion_search_distance,
                    .end = config.march_end}) {}
 
-  std::optional<View> update(const Scan& scan);
+  std::optional<View> update(const ScanSpan& scan);
   void insert(std::span<const Vector3f> points);
   void classify();
   void propose_for_new_frontiers();
@@ -99,7 +99,7 @@ struct SeePlanner::Impl {
 };
 
 /// One update, in the order of the released code.
-std::optional<View> SeePlanner::Impl::update(const Scan& scan) {
+std::optional<View> SeePlanner::Impl::update(const ScanSpan& scan) {
   Stopwatch stopwatch(step.times);
   std::vector<Vector3f> cropped;
   std::span<const Vector3f> points = scan.points;
@@ -371,7 +371,7 @@ SeePlanner::SeePlanner(const SeeConfig& config, const geometry::Camera& camera) 
 }
 SeePlanner::~SeePlanner() = default;
 
-std::optional<View> SeePlanner::next_view(const Scan& scan) { return impl_->update(scan); }
+std::optional<View> SeePlanner::next_view(const ScanSpan& scan) { return impl_->update(scan); }
 
 std::optional<View> SeePlanner::next_view_instead() {
   if (impl_->target && impl_->frontiers.contains(*impl_->target)) {

@@ -24,7 +24,7 @@ class SeePlanner final : public Planner {
   SeePlanner(const SeeConfig& config, const geometry::Camera& camera);
   ~SeePlanner() override;
 
-  std::optional<geometry::View> next_view(const geometry::Scan& scan) override;
+  std::optional<geometry::View> next_view(const geometry::ScanSpan& scan) override;
   std::optional<geometry::View> next_view_instead() override;
   const geometry::PointCloud& cloud() const override;
   geometry::PointCloud release_cloud() override;

@@ -199,7 +199,7 @@ float BlockImage::ray_density(const Block& block, const Eigen::Vector3f& point,
          (depth * depth * cos_off_axis);
 }
 
-BlockImage make_block_image(const geometry::Scan& scan, const geometry::Camera& camera,
+BlockImage make_block_image(const geometry::ScanSpan& scan, const geometry::Camera& camera,
                             const BlockSettings& settings) {
   assert(scan.pixels.size() == scan.points.size());
   const int block_px = settings.block_px;
@@ -242,8 +242,9 @@ BlockImage make_block_image(const geometry::Scan& scan, const geometry::Camera& 
   return image;
 }
 
-std::vector<BlockImage> make_cube_images(const geometry::Scan& scan, const geometry::Camera& camera,
-                                         int face_blocks, const BlockSettings& settings) {
+std::vector<BlockImage> make_cube_images(const geometry::ScanSpan& scan,
+                                         const geometry::Camera& camera, int face_blocks,
+                                         const BlockSettings& settings) {
   const Matrix3f sensor_from_world = scan.world_from_sensor.linear().transpose().cast<float>();
   const Vector3f sensor_position = scan.sensor_position().cast<float>();
   const std::size_t face_size = static_cast<std::size_t>(face_blocks) * face_blocks;

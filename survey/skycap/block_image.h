@@ -90,14 +90,15 @@ struct BlockSettings {
 };
 
 /// The block image of an organised scan.
-BlockImage make_block_image(const geometry::Scan& scan, const geometry::Camera& camera,
+BlockImage make_block_image(const geometry::ScanSpan& scan, const geometry::Camera& camera,
                             const BlockSettings& settings);
 
 /// The face in front, and those others that hold a return, of a scan without an image;
 /// `face_blocks` x `face_blocks` blocks each. The sensor is known to shoot everywhere into the view
 /// of `camera`, whose axis is that of the face in front, and that no less densely than once a
 /// block; of what is beside, nothing is known but the returns.
-std::vector<BlockImage> make_cube_images(const geometry::Scan& scan, const geometry::Camera& camera,
-                                         int face_blocks, const BlockSettings& settings);
+std::vector<BlockImage> make_cube_images(const geometry::ScanSpan& scan,
+                                         const geometry::Camera& camera, int face_blocks,
+                                         const BlockSettings& settings);
 
 }  // namespace skycap::survey::skycap

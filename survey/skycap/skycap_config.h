@@ -1,10 +1,12 @@
 /// What a mission may set about Skycap's own planner (skycap_planner.h).
 #pragma once
 
+#include <memory>
 #include <optional>
 
 #include <Eigen/Geometry>
 
+#include "survey/skycap/prior_surface.h"
 #include "survey/view_limits.h"
 
 namespace skycap::survey::skycap {
@@ -47,6 +49,8 @@ struct SkycapConfig {
   /// Where the scene is. What lies outside is no surface of interest, and its space is free.
   /// Not given: all that was measured so far.
   std::optional<Eigen::AlignedBox3d> scene_box;
+  /// What is thought to be there; null: nothing.
+  std::shared_ptr<const PriorSurface> prior{};
   ViewLimits limits;
   StopRule stop;
   SkycapIdeas ideas;

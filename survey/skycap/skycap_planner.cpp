@@ -21,7 +21,7 @@ namespace {
 
 using Eigen::Vector3d;
 using Eigen::Vector3f;
-using geometry::Scan;
+using geometry::ScanSpan;
 using geometry::View;
 
 // A look that yields less than a quarter of what was promised, if that was worth mentioning, halves
@@ -93,9 +93,10 @@ struct SkycapPlanner::Impl {
     unseen.emplace(
         UnseenSurfaceSettings{.steps = config.ideas.unseen_surface ? config.continuation_steps : 0,
                               .learns_rates = config.ideas.learned_rates});
+    if (config.prior) unseen->expect({*config.prior, static_cast<float>(h)});
   }
 
-  std::vector<BlockImage> reduce(const Scan& scan) const {
+  std::vector<BlockImage> reduce(const ScanSpan& scan) const {
     if (!scan.pixels.empty()) return {make_block_image(scan, camera, blocks)};
     // Blocks as wide as those of the camera's image. A face's focal length is half its width.
     const double focal_length = 1.0 / (ray_spacing(camera) * blocks.block_px);
@@ -116,7 +117,7 @@ struct SkycapPlanner::Impl {
     blocks.jump = static_cast<float>(std::max(least_jump, noise_jump * dose->noise().across(1.0)));
   }
 
-  void take_in(const Scan& scan) {
+  void take_in(const ScanSpan& scan) {
     const std::vector<BlockImage> images = reduce(scan);
     learn_noise(images);
     const View view = geometry::view_of(scan.world_from_sensor);
@@ -266,7 +267,7 @@ struct SkycapPlanner::Impl {
     return map->covered_area() / (map->area() + guessed_area());
   }
 
-  std::optional<View> next_view(const Scan& scan) {
+  std::optional<View> next_view(const ScanSpan& scan) {
     step = {};
     Stopwatch stopwatch(step.times);
     step.points_new =
@@ -379,7 +380,9 @@ SkycapPlanner::SkycapPlanner(const SkycapConfig& config, const geometry::Camera&
 
 SkycapPlanner::~SkycapPlanner() = default;
 
-std::optional<View> SkycapPlanner::next_view(const Scan& scan) { return impl_->next_view(scan); }
+std::optional<View> SkycapPlanner::next_view(const ScanSpan& scan) {
+  return impl_->next_view(scan);
+}
 
 std::optional<View> SkycapPlanner::next_view_instead() {
   if (impl_->proposed) impl_->refused.push_back(*impl_->proposed);

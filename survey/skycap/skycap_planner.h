@@ -63,7 +63,7 @@ class SkycapPlanner final : public Planner {
   /// `scan` may be organised (of the camera) or not: a sweep that shoots everywhere into the view
   /// of the camera, about as densely as its pixels lie, and maybe elsewhere too. Views are chosen
   /// by what the camera would see.
-  std::optional<geometry::View> next_view(const geometry::Scan& scan) override;
+  std::optional<geometry::View> next_view(const geometry::ScanSpan& scan) override;
   std::optional<geometry::View> next_view_instead() override;
   const geometry::PointCloud& cloud() const override;
   geometry::PointCloud release_cloud() override;

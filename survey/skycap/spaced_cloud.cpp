@@ -11,7 +11,7 @@ namespace skycap::survey::skycap {
 namespace {
 
 using Eigen::Vector3f;
-using geometry::Scan;
+using geometry::ScanSpan;
 
 constexpr std::uint32_t tile_px = 32;
 constexpr std::size_t sweep_chunk = 4096;  // returns without an image that a thread takes at a time
@@ -56,7 +56,7 @@ class TileNeighbours {
 /// by tile, so that consecutive returns are neighbours in space. Returns without an image go by
 /// their order.
 template <typename Visit>
-void visit_tiles(const Scan& scan, const geometry::Camera& camera, std::size_t tile_row,
+void visit_tiles(const ScanSpan& scan, const geometry::Camera& camera, std::size_t tile_row,
                  Visit visit) {
   if (scan.pixels.empty()) {
     const std::size_t end = std::min(scan.points.size(), (tile_row + 1) * sweep_chunk);
@@ -90,7 +90,7 @@ SpacedCloud::SpacedCloud(double spacing, double pixel)
     : spacing_(spacing), grid_(2.0 * std::max(spacing, pixel)) {}
 
 // The cloud so far turns most returns away, on all threads; the rest are tried one after the other.
-std::size_t SpacedCloud::insert(const Scan& scan, const geometry::Camera& camera,
+std::size_t SpacedCloud::insert(const ScanSpan& scan, const geometry::Camera& camera,
                                 const std::optional<Eigen::AlignedBox3f>& region,
                                 std::uint32_t view, unsigned threads) {
   struct Candidate {

@@ -24,7 +24,7 @@ class SpacedCloud {
 
   /// Keeps the returns within `region` that have room, said to come from scan number `view`;
   /// returns how many. An organised scan is of `camera`. What is kept does not depend on `threads`.
-  std::size_t insert(const geometry::Scan& scan, const geometry::Camera& camera,
+  std::size_t insert(const geometry::ScanSpan& scan, const geometry::Camera& camera,
                      const std::optional<Eigen::AlignedBox3f>& region, std::uint32_t view,
                      unsigned threads);
 

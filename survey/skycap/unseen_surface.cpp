@@ -18,6 +18,15 @@ constexpr float disappointment = 0.35F;  // factor on the trust in a place that 
 constexpr std::array<std::array<double, most_steps>, 3> first_rates = {
     {{0.8, 0.7, 0.6, 0.5, 0.4}, {0.5, 0.4, 0.3, 0.2, 0.15}, {0.4, 0.3, 0.2, 0.15, 0.1}}};
 
+/// The same of what is thought to be there beforehand: a few scans without it make it unlikely.
+constexpr double first_prior_rate = 0.9;
+
+/// From this rate on it is not guessed a second time what is thought to be there.
+constexpr double trusted_prior_rate = 0.5;
+
+/// Names of hypotheses that continue the measured surface have 63 bits; the others are numbered.
+constexpr std::uint64_t prior_place = std::uint64_t{1} << 63;
+
 std::uint8_t kind_of(Continuation continuation, int step) {
   return static_cast<std::uint8_t>(3 * step + static_cast<int>(continuation));
 }
@@ -47,6 +56,7 @@ UnseenSurface::UnseenSurface(const UnseenSurfaceSettings& settings) : settings_(
       rates_[3 * step + continuation] = {rate * prior_strength, prior_strength};
     }
   }
+  rates_[prior_kind] = {first_prior_rate * prior_strength, prior_strength};
 }
 
 double UnseenSurface::hit_rate(Continuation continuation, int step) const {
@@ -58,6 +68,10 @@ void UnseenSurface::predict(const DoseMap& map, const SpaceMemory& space,
                             const std::optional<Eigen::AlignedBox3f>& region) {
   patches_.clear();
   seen_places_.clear();
+  if (prior_) {
+    prior_->update(map, space);
+    emit_prior(region);
+  }
   const Surfels& surfels = map.surfels();
   asked_.resize(surfels.size());
   for (std::size_t i = 0; i < surfels.size(); ++i) {
@@ -115,7 +129,7 @@ void UnseenSurface::emit_chain(const DoseMap& map, const SpaceMemory& space, std
     patch.edge = std::max(h, 0.8F * h * scale);
     patch.kind = kind_of(continuation, step);
     patch.place = place_of(patch.position, patch.normal, patch.edge, step);
-    if (!seen_places_.insert(patch.place).second) continue;
+    if (!seen_places_.insert(patch.place).second || is_told_by_prior(patch)) continue;
     const auto trust = trusts_.find(patch.place);
     patch.weight = patch.edge * patch.edge * static_cast<float>(hit_rate(continuation, step)) *
                    (trust == trusts_.end() ? 1.0F : trust->second);
@@ -123,13 +137,41 @@ void UnseenSurface::emit_chain(const DoseMap& map, const SpaceMemory& space, std
   }
 }
 
+void UnseenSurface::emit_prior(const std::optional<Eigen::AlignedBox3f>& region) {
+  for (std::size_t i = 0; i < prior_->patches().size(); ++i) {
+    const PriorPatch& guess = prior_->patches()[i];
+    if (prior_->state(i) != PriorGuesses::State::open) continue;
+    if (region && !region->contains(guess.position)) continue;
+    const std::uint64_t place = prior_place | i;
+    const auto trust = trusts_.find(place);
+    const float weight = guess.area * static_cast<float>(prior_hit_rate()) *
+                         (trust == trusts_.end() ? 1.0F : trust->second);
+    patches_.push_back(
+        {guess.position, guess.normal, std::sqrt(guess.area), weight, prior_kind, place});
+  }
+}
+
+bool UnseenSurface::is_told_by_prior(const UnseenPatch& patch) const {
+  return prior_ && prior_hit_rate() >= trusted_prior_rate &&
+         prior_->is_open_near(patch.position, patch.edge);
+}
+
+bool UnseenSurface::is_found(const UnseenPatch& patch, const DoseMap& map,
+                             std::size_t first_new) const {
+  if (patch.kind == prior_kind) {
+    return prior_->state(patch.place & ~prior_place) == PriorGuesses::State::found;
+  }
+  const float reach = 0.5F * map.spacing() + 0.75F * patch.edge;
+  return map.has_surfel_near(patch.position, reach, first_new);
+}
+
 void UnseenSurface::grade(std::span<const std::uint32_t> expected, const DoseMap& map,
                           const SpaceMemory& space, std::size_t first_new) {
-  std::array<Rate, std::size_t{3}* most_steps> found = {};
+  if (prior_) prior_->update(map, space);
+  std::array<Rate, std::tuple_size_v<decltype(rates_)>> found = {};
   for (const std::uint32_t i : expected) {
     const UnseenPatch& patch = patches_[i];
-    const float reach = 0.5F * map.spacing() + 0.75F * patch.edge;
-    const bool is_hit = map.has_surfel_near(patch.position, reach, first_new);
+    const bool is_hit = is_found(patch, map, first_new);
     found[patch.kind].tries += 1.0;
     found[patch.kind].hits += is_hit ? 1.0 : 0.0;
     if (!is_hit && space.query(patch.position) == SpaceState::unknown) {

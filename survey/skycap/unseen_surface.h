@@ -6,6 +6,9 @@
 /// sensor saw through cannot be surface. How much a hypothesis is worth is learnt: each kind of
 /// patch has a hit rate, updated after each scan with what appeared where it was expected, and a
 /// place that disappointed counts less each time. Nothing is forbidden for good.
+///
+/// What is thought to be there beforehand (prior_guesses.h) is one more kind, graded as the others:
+/// where it is wrong, its rate falls with each scan that should have shown it.
 #pragma once
 
 #include <array>
@@ -15,23 +18,28 @@
 #include <span>
 #include <unordered_map>
 #include <unordered_set>
+#include <utility>
 #include <vector>
 
 #include <Eigen/Core>
 
 #include "survey/skycap/dose_map.h"
+#include "survey/skycap/prior_guesses.h"
 #include "survey/skycap/space_memory.h"
 
 namespace skycap::survey::skycap {
 
 enum class Continuation : std::uint8_t { straight, convex, concave };
 
+/// UnseenPatch::kind of what is thought to be there beforehand.
+inline constexpr std::uint8_t prior_kind = 15;
+
 struct UnseenPatch {
   Eigen::Vector3f position;
   Eigen::Vector3f normal;  ///< unit
   float edge;              ///< of the square that it stands for
   float weight;            ///< area times the probability that there is surface
-  std::uint8_t kind;       ///< 3 * step + continuation
+  std::uint8_t kind;       ///< 3 * step + continuation, or prior_kind
   std::uint64_t place;     ///< names the hypothesis: same place, facing and step, same number
 };
 
@@ -44,6 +52,9 @@ struct UnseenSurfaceSettings {
 class UnseenSurface {
  public:
   explicit UnseenSurface(const UnseenSurfaceSettings& settings);
+
+  /// What is thought to be there, guessed from the next prediction on.
+  void expect(PriorGuesses prior) { prior_.emplace(std::move(prior)); }
 
   /// Derives the patches anew from the surfels and from what is known of space.
   void predict(const DoseMap& map, const SpaceMemory& space,
@@ -59,6 +70,9 @@ class UnseenSurface {
 
   /// Probability that a patch of that kind and step is there.
   double hit_rate(Continuation continuation, int step) const;
+
+  /// Probability that what is thought to be there beforehand is there.
+  double prior_hit_rate() const { return rates_[prior_kind].hits / rates_[prior_kind].tries; }
 
  private:
   struct Rate {
@@ -77,9 +91,15 @@ class UnseenSurface {
   };
   void emit_chain(const DoseMap& map, const SpaceMemory& space, std::size_t surfel, int direction,
                   Continuation continuation, const std::optional<Eigen::AlignedBox3f>& region);
+  void emit_prior(const std::optional<Eigen::AlignedBox3f>& region);
+  /// Whether the prior, while it is to be trusted, has a patch there that is still open.
+  bool is_told_by_prior(const UnseenPatch& patch) const;
+  /// Whether a scan whose surfels begin at `first_new` has shown what was guessed.
+  bool is_found(const UnseenPatch& patch, const DoseMap& map, std::size_t first_new) const;
 
   UnseenSurfaceSettings settings_;
-  std::array<Rate, 15> rates_;  ///< by UnseenPatch::kind
+  std::array<Rate, 16> rates_;  ///< by UnseenPatch::kind
+  std::optional<PriorGuesses> prior_;
   std::vector<UnseenPatch> patches_;
   std::vector<AskedChains> asked_;                   ///< by surfel
   std::unordered_set<std::uint64_t> seen_places_;    ///< of the prediction under way

@@ -20,13 +20,33 @@ constexpr std::size_t chunk = 2048;  // points projected at a time: their arrays
 /// Depths of the nearest surfels, and what the kernels say of a chunk of points; reused between
 /// calls on one thread.
 struct Workspace {
-  std::vector<float> raster;
+  std::vector<float> raster, prior_raster;
   std::array<std::uint32_t, chunk> in_view, pixels, candidates;
   std::array<float, chunk> depths, distances, cosines;
 };
 
 PointArrays arrays_of(const std::array<std::vector<float>, 3>& points, std::size_t first) {
   return {points[0].data() + first, points[1].data() + first, points[2].data() + first};
+}
+
+/// A depth image of points, splatted over four pixels each.
+void splat(const RasterView& view, const std::array<std::vector<float>, 3>& points,
+           std::uint32_t* pixels, float* depths, std::vector<float>& raster) {
+  const auto stride = static_cast<std::size_t>(view.stride);
+  // Behind the raster there is room for what falls outside, splats included.
+  raster.assign(view.outside + stride + 2, std::numeric_limits<float>::infinity());
+  for (std::size_t first = 0; first < points[0].size(); first += chunk) {
+    const std::size_t count = std::min(chunk, points[0].size() - first);
+    project_points(view, count, arrays_of(points, first), pixels, depths);
+    for (std::size_t i = 0; i < count; ++i) {
+      float* pixel = &raster[pixels[i]];
+      const float depth = depths[i];
+      pixel[0] = std::min(pixel[0], depth);
+      pixel[1] = std::min(pixel[1], depth);
+      pixel[stride] = std::min(pixel[stride], depth);
+      pixel[stride + 1] = std::min(pixel[stride + 1], depth);
+    }
+  }
 }
 
 void append(std::array<std::vector<float>, 3>& points, const Vector3f& point) {
@@ -62,6 +82,15 @@ GainField::GainField(const DoseMap& map, std::span<const UnseenPatch> patches,
     sources_.push_back(static_cast<std::uint32_t>(i));
   }
   surfel_targets_ = targets_.size();
+  // Patches of one kind follow each other.
+  const auto is_prior_patch = [](const UnseenPatch& patch) { return patch.kind == prior_kind; };
+  const auto priors = std::ranges::find_if(patches, is_prior_patch);
+  first_prior_ = surfel_targets_ + static_cast<std::size_t>(priors - patches.begin());
+  end_prior_ =
+      first_prior_ + static_cast<std::size_t>(std::ranges::count_if(patches, is_prior_patch));
+  for (std::size_t i = first_prior_; i < end_prior_; ++i) {
+    append(prior_occluders_, patches[i - surfel_targets_].position);
+  }
   for (std::size_t i = 0; i < patches.size(); ++i) {
     targets_.push_back({patches[i].position, patches[i].normal, patches[i].weight});
     sources_.push_back(static_cast<std::uint32_t>(i));
@@ -99,22 +128,9 @@ template <typename Visit>
 void GainField::for_each_sight(const geometry::View& view, Visit visit) const {
   static thread_local Workspace work;
   const RasterView raster = raster_view(view);
-  const auto stride = static_cast<std::size_t>(raster.stride);
-
-  // Behind the raster there is room for what falls outside, splats included.
-  work.raster.assign(raster.outside + stride + 2, std::numeric_limits<float>::infinity());
-  for (std::size_t first = 0; first < occluders_[0].size(); first += chunk) {
-    const std::size_t count = std::min(chunk, occluders_[0].size() - first);
-    project_points(raster, count, arrays_of(occluders_, first), work.pixels.data(),
-                   work.depths.data());
-    for (std::size_t i = 0; i < count; ++i) {
-      float* pixel = &work.raster[work.pixels[i]];
-      const float depth = work.depths[i];
-      pixel[0] = std::min(pixel[0], depth);
-      pixel[1] = std::min(pixel[1], depth);
-      pixel[stride] = std::min(pixel[stride], depth);
-      pixel[stride + 1] = std::min(pixel[stride + 1], depth);
-    }
+  splat(raster, occluders_, work.pixels.data(), work.depths.data(), work.raster);
+  if (first_prior_ < end_prior_) {
+    splat(raster, prior_occluders_, work.pixels.data(), work.depths.data(), work.prior_raster);
   }
 
   const TargetArrays projected{work.in_view.data(), work.pixels.data(), work.depths.data(),
@@ -133,9 +149,12 @@ void GainField::for_each_sight(const geometry::View& view, Visit visit) const {
       const float cosine = work.cosines[i], depth = work.depths[i];
       // A slanted surface hides itself by as much as it falls off over a splat.
       const float slope = std::sqrt(std::max(0.0F, 1.0F - cosine * cosine)) / cosine;
-      const float tolerance =
-          first + i < surfel_targets_ ? spacing_ * (1.5F + 2.0F * std::min(slope, 4.0F)) : spacing_;
+      const float own_tolerance = spacing_ * (1.5F + 2.0F * std::min(slope, 4.0F));
+      const float tolerance = first + i < surfel_targets_ ? own_tolerance : spacing_;
       if (depth > work.raster[work.pixels[i]] + tolerance) continue;
+      if (is_prior(first + i) && depth > work.prior_raster[work.pixels[i]] + own_tolerance) {
+        continue;
+      }
       const float density =
           focal_length_px_.prod() * cosine * work.distances[i] / (depth * depth * depth);
       visit(first + i, 1.0F - std::exp(-dose_.hazard(density, cosine)));

@@ -39,8 +39,8 @@ struct GainSettings {
 /// from any number of threads.
 ///
 /// Targets are the surfels with a deficit worth a look and the unseen patches. Occlusion is decided
-/// in a depth image of all surfels, splatted as points of 2 h at the view distance; unseen patches
-/// hide nothing.
+/// in a depth image of all surfels, splatted as points of 2 h at the view distance. Unseen patches
+/// hide nothing, but those that are thought to be there beforehand hide each other.
 class GainField {
  public:
   GainField(const DoseMap& map, std::span<const UnseenPatch> patches,
@@ -64,6 +64,7 @@ class GainField {
   RasterView raster_view(const geometry::View& view) const;
   template <typename Visit>
   void for_each_sight(const geometry::View& view, Visit visit) const;
+  bool is_prior(std::size_t target) const { return target >= first_prior_ && target < end_prior_; }
 
   DoseModel dose_;
   float spacing_;
@@ -73,8 +74,10 @@ class GainField {
   Eigen::Vector2f half_slope_;  ///< tangents of half the angles of view
   float raster_focal_length_px_;
   int raster_width_, raster_height_;
-  std::array<std::vector<float>, 3> occluders_;  ///< all surfels: their x, y and z
+  std::array<std::vector<float>, 3> occluders_;        ///< all surfels: their x, y and z
+  std::array<std::vector<float>, 3> prior_occluders_;  ///< the patches of prior_kind
   std::size_t surfel_targets_ = 0;
+  std::size_t first_prior_ = 0, end_prior_ = 0;  ///< the targets that those are
   std::vector<Target> targets_;
   std::array<std::vector<float>, 3> positions_, normals_;  ///< of the targets
   std::vector<std::uint32_t> sources_;

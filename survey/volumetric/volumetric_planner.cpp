@@ -19,11 +19,11 @@ namespace {
 
 using Eigen::Vector3d;
 using Eigen::Vector3f;
-using geometry::Scan;
+using geometry::ScanSpan;
 using geometry::View;
 
 /// Where the rays of pixels without a return end, `depth` from the sensor.
-std::vector<Vector3f> ends_of_no_returns(const Scan& scan, const geometry::Camera& camera,
+std::vector<Vector3f> ends_of_no_returns(const ScanSpan& scan, const geometry::Camera& camera,
                                          double depth) {
   std::vector<Vector3f> ends;
   const auto width = static_cast<std::uint32_t>(camera.width());
@@ -101,7 +101,7 @@ struct VolumetricPlanner::Impl {
     }
   }
 
-  void insert(const Scan& scan);
+  void insert(const ScanSpan& scan);
   void score();
   std::optional<View> take_best();
 
@@ -127,7 +127,7 @@ geometry::PointCloud VolumetricPlanner::release_cloud() { return std::move(impl_
 const PlanningStep& VolumetricPlanner::last_step() const { return impl_->step; }
 const VolumetricMap& VolumetricPlanner::map() const { return impl_->map; }
 
-std::optional<View> VolumetricPlanner::next_view(const Scan& scan) {
+std::optional<View> VolumetricPlanner::next_view(const ScanSpan& scan) {
   impl_->step = {};
   Stopwatch stopwatch(impl_->step.times);
   impl_->insert(scan);
@@ -144,7 +144,7 @@ std::optional<View> VolumetricPlanner::next_view(const Scan& scan) {
 
 std::optional<View> VolumetricPlanner::next_view_instead() { return impl_->take_best(); }
 
-void VolumetricPlanner::Impl::insert(const Scan& scan) {
+void VolumetricPlanner::Impl::insert(const ScanSpan& scan) {
   position = scan.sensor_position();
   std::vector<Vector3f> measured;
   for (const Vector3f& point : scan.points) {

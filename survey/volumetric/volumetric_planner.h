@@ -42,7 +42,7 @@ class VolumetricPlanner final : public Planner {
   VolumetricPlanner(const VolumetricConfig& config, const geometry::Camera& camera);
   ~VolumetricPlanner() override;
 
-  std::optional<geometry::View> next_view(const geometry::Scan& scan) override;
+  std::optional<geometry::View> next_view(const geometry::ScanSpan& scan) override;
   std::optional<geometry::View> next_view_instead() override;
   const geometry::PointCloud& cloud() const override;
   geometry::PointCloud release_cloud() override;

@@ -23,10 +23,10 @@ def scratch_folder(folder, program):
     (folder / "build" / "release").symlink_to(program)
     (folder / "skycap").symlink_to(program / "skycap")
     return dict(os.environ, PATH=f"{program}:{os.environ['PATH']}",
-                XDG_CACHE_HOME=str(folder / "cache"))
+                XDG_CACHE_HOME=str(folder / "cache"), PYTHONPATH=str(program / "python"))
 
 
-def run_block(block, folder, environment):
+def run_block(block, folder, environment, session):
     """The block's lines as they should be."""
     if block.kind == "as":
         (folder / block.argument).write_text("\n".join(block.lines) + "\n", encoding="utf-8")
@@ -34,7 +34,8 @@ def run_block(block, folder, environment):
     words_of_times = block.argument.split(", ") if block.argument else []
     lines = []
     for step in docs_blocks.steps(block):
-        printed = docs_blocks.run(step, folder, environment)
+        printed = (session.run(step) if step.is_python()
+                   else docs_blocks.run(step, folder, environment))
         lines += step.command + docs_blocks.renewed(step, printed, words_of_times)
     return lines
 
@@ -44,8 +45,10 @@ def run_page(text, program):
     lines = text.split("\n")
     blocks = docs_blocks.blocks(lines)
     with tempfile.TemporaryDirectory() as name:
-        environment = scratch_folder(pathlib.Path(name), program)
-        renewed = [run_block(block, pathlib.Path(name), environment) for block in blocks]
+        folder = pathlib.Path(name)
+        environment = scratch_folder(folder, program)
+        with docs_blocks.Session(folder, environment) as session:
+            renewed = [run_block(block, folder, environment, session) for block in blocks]
     for block, new in reversed(list(zip(blocks, renewed))):
         indented = [(block.indent + line).rstrip() for line in new]
         lines[block.first:block.first + len(block.lines)] = indented

@@ -11,15 +11,22 @@ It is indented by four spaces or fenced. A command follows "$ " and goes on afte
 end of a line; the lines up to the next one are what it prints, errors included. "..." stands for
 anything within a line. A command that does not exit with 0 has a last line "(exit code 1)". All
 commands of a page run in one scratch folder with the program, the missions and the docs in it.
+
+What follows ">>> ", and goes on after "... " on the next lines, are statements of Python: all of a
+page run in one interpreter, for which `import skycap` is the module that was built.
 """
 
 import dataclasses
+import json
+import pathlib
 import re
 import subprocess
 
 MARK = re.compile(r"^<!-- checked(?:(, times of| as): (.+?))? -->$")
 NUMBER = re.compile(r"\d+(?:\.\d+)?")
 MOST_SECONDS = 300  # of a command: it hangs
+PYTHON = "/usr/bin/python3"  # for which the module is built
+PROMPT, CONTINUED = ">>> ", "..."
 
 
 @dataclasses.dataclass
@@ -37,11 +44,24 @@ class Block:
 class Step:
     """A command and what the page says that it prints."""
 
-    command: list  # lines as written, from "$ " on
+    command: list  # lines as written, from "$ " or ">>> " on
     output: list
+
+    def is_python(self):
+        return self.command[0].startswith(PROMPT)
 
     def shell(self):
         return "\n".join(self.command)[2:]
+
+    def statement(self):
+        return "\n".join(line[len(PROMPT):] for line in self.command)
+
+    def goes_on_with(self, line):
+        if self.output:
+            return False
+        if self.is_python():
+            return line.split(" ")[0] == CONTINUED
+        return self.command[-1].endswith("\\")
 
     def expected(self):
         """The output without the blank lines that part it from the next command."""
@@ -86,15 +106,40 @@ def is_indented(lines, number):
 def steps(block):
     found = []
     for line in block.lines:
-        if line.startswith("$ "):
+        if line.startswith(("$ ", PROMPT)):
             found.append(Step([line], []))
         elif not found:
             raise SystemExit(f"line {block.first + 1}: a checked block starts with '$ COMMAND'")
-        elif not found[-1].output and found[-1].command[-1].endswith("\\"):
+        elif found[-1].goes_on_with(line):
             found[-1].command.append(line)
         else:
             found[-1].output.append(line)
     return found
+
+
+class Session:
+    """The interpreter of a page, which runs from its first statement on."""
+
+    def __init__(self, folder, environment):
+        self._folder, self._environment, self._process = folder, environment, None
+
+    def __enter__(self):
+        return self
+
+    def __exit__(self, *_):
+        if self._process:
+            self._process.communicate()
+
+    def run(self, step):
+        """What the statement prints."""
+        if not self._process:
+            self._process = subprocess.Popen(
+                [PYTHON, pathlib.Path(__file__).with_name("docs_session.py")], cwd=self._folder,
+                env=self._environment, stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True)
+        self._process.stdin.write(json.dumps(step.statement()) + "\n")
+        self._process.stdin.flush()
+        printed = json.loads(self._process.stdout.readline()).rstrip("\n")
+        return printed.split("\n") if printed else []
 
 
 def run(step, folder, environment):

@@ -36,11 +36,8 @@ using Content = std::map<std::string, std::string>;
 
 std::string repeatable_part(const fs::path& file) {
   const std::string bytes = geometry::read_file(file), ending = file.extension();
-  if (ending == ".md" || ending == ".gp" || ending == ".svg") {
-    return bytes.substr(0, bytes.find('\n'));
-  }
-  if (ending == ".png" || ending == ".html")
-    return bytes.substr(bytes.size() - 12);  // whole: it has its end
+  if (ending == ".md") return bytes.substr(0, bytes.find('\n'));
+  if (ending == ".html") return bytes.substr(bytes.size() - 12);  // whole: it has its end
   if (ending != ".json" && ending != ".csv") return bytes;
   std::istringstream lines(bytes);
   std::string kept;
@@ -228,20 +225,6 @@ TEST(FaultPoints, BenchmarkLeavesAWholeResult) {
                                     seed,        "--quiet", "--out",      out};
   };
   try_faults(verb, {"full", "kill"}, 15);
-}
-
-/// The tables are there, the plots are not, and the exit code says so.
-TEST(FaultPoints, BenchmarkSaysThatItsPlotsAreMissing) {
-  const testing_support::TemporaryFolder folder;
-  const std::string mission = folder.file("m.yaml", quick), out = folder.path() / "out";
-  const std::vector<std::string> benchmark{
-      "benchmark", mission, "--planners", "see++", "--trials", "1", "--quiet", "--out", out};
-  if (std::system("gnuplot --version > /dev/null 2>&1") != 0) GTEST_SKIP() << "no gnuplot";
-  EXPECT_EQ(run(benchmark, {"start", 1, {}}), 1);
-  EXPECT_TRUE(fs::exists(fs::path(out) / "trials.csv"));
-  EXPECT_FALSE(fs::exists(fs::path(out) / "coverage_m.png"));
-  EXPECT_EQ(run(benchmark, {}), 0);
-  EXPECT_TRUE(fs::exists(fs::path(out) / "coverage_m.png"));
 }
 
 TEST(FaultPoints, ModelsAreWhole) {

@@ -19,7 +19,8 @@ namespace fs = std::filesystem;
 
 std::vector<Reader> all_readers() {
   std::vector<Reader> all;
-  for (const auto readers : {surface_readers(), route_readers(), mission_readers()}) {
+  for (const auto readers :
+       {surface_readers(), route_readers(), prior_readers(), mission_readers()}) {
     all.insert(all.end(), readers.begin(), readers.end());
   }
   return all;

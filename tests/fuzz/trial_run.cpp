@@ -32,7 +32,8 @@ fs::path file_with(std::string_view name, std::string_view bytes) {
 }
 
 const Reader* find_reader(std::string_view name) {
-  for (const auto readers : {surface_readers(), route_readers(), mission_readers()}) {
+  for (const auto readers :
+       {surface_readers(), route_readers(), prior_readers(), mission_readers()}) {
     const auto found = std::ranges::find(readers, name, &Reader::name);
     if (found != readers.end()) return &*found;
   }

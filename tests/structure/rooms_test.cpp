@@ -66,27 +66,33 @@ Rooms house() {
     (all.push_back(m + others), ...);
     add(m + room, std::move(all));
   };
-  add_mission_room("file");
   add_mission_room("plugins");
+  add_mission_room("prior/formats", "plugins");
+  add_mission_room("prior", "plugins", "prior/formats");
+  add_mission_room("file", "prior");
   add_mission_room("judge");
   add_mission_room("equipment", "file");
-  add_mission_room("derived", "file", "equipment");
-  add_mission_room("scene", "file", "derived", "judge", "plugins");
+  add_mission_room("derived", "file", "equipment", "prior");
+  add_mission_room("scene", "file", "derived", "judge", "plugins", "prior");
   add_mission_room("recording", "file", "derived", "plugins");
-  add_mission_room("run", "file", "derived", "judge", "scene");
-  add_mission_room("package", "file", "equipment", "derived", "judge", "scene", "run");
-  add_mission_room("report", "file", "derived", "scene", "package");
+  add_mission_room("run", "prior", "file", "derived", "judge", "scene");
+  add_mission_room("package", "prior", "file", "equipment", "derived", "judge", "scene", "run");
+  add_mission_room("report", "prior", "file", "derived", "scene", "run", "package");
   add_mission_room("live", "file", "derived", "scene", "run");
   add_mission_room("benchmark", "file", "derived", "judge", "plugins", "scene", "run", "package");
   add_mission_room("library", "file", "equipment", "derived", "judge", "scene", "recording", "run",
                    "package");
-  add_mission_room("verbs", "file", "equipment", "derived", "judge", "plugins", "scene",
+  add_mission_room("verbs", "prior", "file", "equipment", "derived", "judge", "plugins", "scene",
                    "recording", "run", "package", "report", "live", "benchmark");
+  // As a user of the library: public headers.
+  add("python",
+      {"sim/models", "sim/sensors", "survey", "flight/space", "flight/route", "missions/library"});
   return rooms;
 }
 
 std::vector<SourceFile> product() {
-  return read_sources(SKYCAP_SOURCE_DIR, {"geometry", "sim", "survey", "flight", "missions"});
+  return read_sources(SKYCAP_SOURCE_DIR,
+                      {"geometry", "sim", "survey", "flight", "missions", "python"});
 }
 
 TEST(Rooms, AreEnteredInOneDirectionOnly) {

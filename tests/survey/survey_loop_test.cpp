@@ -21,7 +21,7 @@ using testing::ElementsAre;
 class WalkingPlanner final : public Planner {
  public:
   explicit WalkingPlanner(int last) : last_(last) {}
-  std::optional<View> next_view(const Scan& scan) override {
+  std::optional<View> next_view(const geometry::ScanSpan& scan) override {
     cloud_.positions.insert(cloud_.positions.end(), scan.points.begin(), scan.points.end());
     return walk_on();
   }

@@ -14,7 +14,7 @@ function chart(title, note, type, datasets, options) {
     options: {
       animation: false, responsive: true, maintainAspectRatio: false, normalized: true,
       interaction: { mode: "nearest", axis: "x", intersect: false },
-      plugins: { legend: { display: datasets.length > 1, labels: { boxWidth: 20, boxHeight: 1,
+      plugins: { legend: { display: datasets.length > 1, labels: { boxWidth: 20, boxHeight: type === "line" ? 1 : 8, usePointStyle: !!options.labels && datasets.some((set) => set.pointStyle),
         filter: (item) => !item.text.startsWith("_") } },
         tooltip: { filter: (item) => !item.dataset.label.startsWith("_") } },
       scales: {
@@ -106,9 +106,10 @@ function energy_chart(data) {
 function survey_charts(data) {
   const { summary } = data, views = summary.per_view || [];
   if (!views.length) return null;
+  const is_known = typeof views[0].coverage === "number";  // not of a real place
   const charts = [
-    coverage_chart(data, "Coverage over views", (view, i) => i + 1, "views"),
-    coverage_chart(data, "Coverage over the way", (view) => view.distance_m, "metres, straight from view to view"),
+    is_known ? coverage_chart(data, "Coverage over views", (view, i) => i + 1, "views") : null,
+    is_known ? coverage_chart(data, "Coverage over the way", (view) => view.distance_m, "metres, straight from view to view") : null,
     chart("Points", null, "line", [line("points kept", views.map((view, i) => [i + 1, view.points])),
       line("new with the view", views.map((view, i) => [i + 1, view.points_new]), 1)], { x: "views", y: "points" }),
     chart("Planning time", "Time that the planner took for each view, on this machine.", "line",
@@ -118,7 +119,7 @@ function survey_charts(data) {
     element("div", { class: "charts" }, charts));
 }
 
-function histogram_chart(title, note, counts, low, high, x, colour = 0) {
+function histogram_chart(title, note, { counts, low, high }, x, colour = 0) {
   const width = (high - low) / counts.length, all = counts.reduce((sum, count) => sum + count, 0) || 1;
   const digits = width >= 1 ? 0 : width >= 0.1 ? 1 : 2;
   return chart(title, note, "bar", [{ label: "share of the points", categoryPercentage: 1, barPercentage: 0.94,

@@ -1,26 +1,28 @@
 // Clouds as missions/report/cloud_code.h writes them.
 
-const digits_of_85 =
-  "0123456789abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ.-:+=^!/*?_~>()[]{}@%$#";
-
-/// Five characters are four bytes; the last one to three bytes are one character more.
-function bytes_of_base85(text) {
-  const value = new Uint8Array(128);
-  for (let i = 0; i < 85; ++i) value[digits_of_85.charCodeAt(i)] = i;
-  const size = Math.floor(text.length / 5) * 4 + Math.max(0, text.length % 5 - 1);
-  const bytes = new Uint8Array(size);
-  for (let i = 0, at = 0; at < size; i += 5) {
-    let group = 0;
-    // Digits that are left out count as the highest: the bytes before them come out right.
-    for (let k = 0; k < 5; ++k) group = 85 * group + (i + k < text.length ? value[text.charCodeAt(i + k)] : 84);
-    for (let shift = 24; shift >= 0 && at < size; shift -= 8) bytes[at++] = Math.floor(group / 2 ** shift) % 256;
+/// Bytes of the text that base93() in missions/report/script_text.h writes.
+function bytes_of_base93(text) {
+  const base = 93, spare = base * base - (1 << 13), less = "<".charCodeAt(0);
+  const digit = (i) => {
+    const code = text.charCodeAt(i);
+    return code - 33 - (code > less ? 1 : 0);
+  };
+  const bytes = new Uint8Array(Math.ceil(text.length * 7 / 8));
+  let size = 0, bits = 0, count = 0;
+  for (let i = 0; i < text.length; i += 2) {
+    const is_pair = i + 1 < text.length;
+    const number = digit(i) + (is_pair ? base * digit(i + 1) : 0);
+    bits |= number << count;
+    // A single digit at the end completes the byte that is begun.
+    count += !is_pair ? 8 - count : (number & 0x1fff) < spare ? 14 : 13;
+    for (; count >= 8; count -= 8, bits >>>= 8) bytes[size++] = bits & 255;
   }
-  return bytes;
+  return bytes.subarray(0, size);
 }
 
 async function inflated(id) {
   const block = document.getElementById(id);
-  const packed = bytes_of_base85(block.textContent);
+  const packed = bytes_of_base93(block.textContent);
   block.remove();  // its text is no longer needed
   const stream = new Blob([packed]).stream().pipeThrough(new DecompressionStream("deflate"));
   return new Uint8Array(await new Response(stream).arrayBuffer());
@@ -63,21 +65,52 @@ function decode_positions(header, bytes) {
   return { positions, end: planes * count };
 }
 
-function decode_attribute(bytes, begin, count, size) {
-  if (size === 1) return bytes.slice(begin, begin + count);
-  const values = new Uint16Array(count);
-  for (let i = 0; i < count; ++i) values[i] = bytes[begin + i] | bytes[begin + count + i] << 8;
+/// The values at places of a list in which what is met moves to the front.
+function values_at_places(place, count, different) {
+  const list = Uint16Array.from({ length: different }, (_, i) => i);
+  const values = different > 256 ? new Uint16Array(count) : new Uint8Array(count);
+  for (let i = 0; i < count; ++i) {
+    const at = place(i), value = list[at];
+    for (let k = at; k > 0; --k) list[k] = list[k - 1];
+    list[0] = value;
+    values[i] = value;
+  }
   return values;
+}
+
+/// Of values in the order of `first` those of the points.
+function in_order_of_points(first, ordered) {
+  const begin = new Uint32Array(1 << 16), values = new ordered.constructor(ordered.length);
+  for (const value of first) ++begin[value];
+  let sum = 0;
+  for (let value = 0; value < begin.length; ++value) {
+    const count = begin[value];
+    begin[value] = sum;
+    sum += count;
+  }
+  for (let i = 0; i < first.length; ++i) values[i] = ordered[begin[first[i]]++];
+  return values;
+}
+
+/// Adds the attributes whose planes begin there.
+function decode_attributes(cloud, attributes, bytes, begin) {
+  const count = cloud.count;
+  let first = null;
+  for (const { name, values: different, follows_first } of attributes) {
+    const low = begin, high = begin + count, is_wide = different > 256;
+    const values = values_at_places(
+      (i) => bytes[low + i] | (is_wide ? bytes[high + i] << 8 : 0), count, different);
+    begin += (is_wide ? 2 : 1) * count;
+    cloud[name] = follows_first ? in_order_of_points(first, values) : values;
+    first = first || cloud[name];
+  }
 }
 
 /// {count, positions, spacing, state, view, incidence}: attributes that the page has.
 async function decode_cloud(name, header) {
   const bytes = await inflated("cloud-" + name);
-  let { positions, end } = decode_positions(header, bytes);
+  const { positions, end } = decode_positions(header, bytes);
   const cloud = { count: header.points, of: header.of, spacing: header.spacing, positions };
-  for (const attribute of header.attributes) {
-    cloud[attribute.name] = decode_attribute(bytes, end, header.points, attribute.bytes);
-    end += attribute.bytes * header.points;
-  }
+  decode_attributes(cloud, header.attributes, bytes, end);
   return cloud;
 }

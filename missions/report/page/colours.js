@@ -32,36 +32,75 @@ function view_colour(view) {
 const css_colour = (rgb) => "rgb(" + rgb.map((channel) => Math.round(channel)).join(",") + ")";
 const css_ramp = (stops) => "linear-gradient(90deg," + stops.map(css_colour).join(",") + ")";
 
+/// Points by the cubic cells that they lie in: those of cell c are points[begin[c]] up to, without
+/// it, points[begin[c + 1]]; at(x, y, z) is the cell of three indices, or -1.
+function cells_of_points(positions, count, side) {
+  const size = 2 ** Math.ceil(Math.log2(2 * count + 2)), table = new Int32Array(size).fill(-1);
+  const places = new Int32Array(3 * count), cell_of = new Int32Array(count);
+  let cells = 0;
+  const slot = (x, y, z) => {
+    let at = (Math.imul(x, 73856093) ^ Math.imul(y, 19349663) ^ Math.imul(z, 83492791)) & (size - 1);
+    for (let cell = table[at]; cell >= 0; cell = table[at = (at + 1) & (size - 1)]) {
+      if (places[3 * cell] === x && places[3 * cell + 1] === y && places[3 * cell + 2] === z) break;
+    }
+    return at;
+  };
+  for (let i = 0; i < count; ++i) {
+    const x = Math.floor(positions[3 * i] / side), y = Math.floor(positions[3 * i + 1] / side);
+    const z = Math.floor(positions[3 * i + 2] / side), at = slot(x, y, z);
+    if (table[at] < 0) {
+      places[3 * cells] = x;
+      places[3 * cells + 1] = y;
+      places[3 * cells + 2] = z;
+      table[at] = cells++;
+    }
+    cell_of[i] = table[at];
+  }
+  const begin = new Int32Array(cells + 1), points = new Int32Array(count);
+  for (let i = 0; i < count; ++i) ++begin[cell_of[i] + 1];
+  for (let cell = 0; cell < cells; ++cell) begin[cell + 1] += begin[cell];
+  const next = begin.slice();
+  for (let i = 0; i < count; ++i) points[next[cell_of[i]]++] = i;
+  return { count: cells, places, begin, points, at: (x, y, z) => table[slot(x, y, z)] };
+}
+
+/// Puts the coordinates of the points in and around a cell into a list; gives their number.
+function gather_around(cells, cell, positions, list) {
+  const x = cells.places[3 * cell], y = cells.places[3 * cell + 1], z = cells.places[3 * cell + 2];
+  let size = 0;
+  for (let n = 0; n < 27; ++n) {
+    const other = cells.at(x + n % 3 - 1, y + Math.floor(n / 3) % 3 - 1, z + Math.floor(n / 9) - 1);
+    if (other < 0) continue;
+    for (let k = cells.begin[other]; k < cells.begin[other + 1]; ++k) {
+      const at = 3 * cells.points[k];
+      list[size] = positions[at];
+      list[size + 1] = positions[at + 1];
+      list[size + 2] = positions[at + 2];
+      size += 3;
+    }
+  }
+  return size / 3;
+}
+
 /// Neighbours of each point within `radius`, itself included, over the disc's area and the share of
 /// the cloud's points that the page has: points per square metre of surface.
 function densities(cloud, radius) {
-  const { count, positions } = cloud;
-  const cells = new Map();
-  const key = (x, y, z) => ((x & 0xffff) * 65536 + (y & 0xffff)) * 65536 + (z & 0xffff);
-  const cell = new Int32Array(3 * count);
-  for (let i = 0; i < 3 * count; ++i) cell[i] = Math.floor(positions[i] / radius);
-  const next = new Int32Array(count).fill(-1);
-  for (let i = 0; i < count; ++i) {
-    const own = key(cell[3 * i], cell[3 * i + 1], cell[3 * i + 2]);
-    next[i] = cells.has(own) ? cells.get(own) : -1;
-    cells.set(own, i);
-  }
-  const result = new Float32Array(count);
+  const { count, positions } = cloud, cells = cells_of_points(positions, count, radius);
+  const result = new Float32Array(count), reach = radius * radius;
   const scale = cloud.of / count / (Math.PI * radius * radius);
-  for (let i = 0; i < count; ++i) {
-    const x = positions[3 * i], y = positions[3 * i + 1], z = positions[3 * i + 2];
-    let near = 0;
-    for (let n = 0; n < 27; ++n) {
-      const other_cell = key(cell[3 * i] + n % 3 - 1, cell[3 * i + 1] + Math.floor(n / 3) % 3 - 1,
-        cell[3 * i + 2] + Math.floor(n / 9) - 1);
-      let other = cells.has(other_cell) ? cells.get(other_cell) : -1;
-      for (; other >= 0; other = next[other]) {
-        const dx = positions[3 * other] - x, dy = positions[3 * other + 1] - y;
-        const dz = positions[3 * other + 2] - z;
-        if (dx * dx + dy * dy + dz * dz <= radius * radius) ++near;
+  const list = new Float32Array(3 * count);
+  for (let cell = 0; cell < cells.count; ++cell) {
+    const end = 3 * gather_around(cells, cell, positions, list);
+    for (let i = cells.begin[cell]; i < cells.begin[cell + 1]; ++i) {
+      const own = 3 * cells.points[i];
+      const x = positions[own], y = positions[own + 1], z = positions[own + 2];
+      let near = 0;
+      for (let at = 0; at < end; at += 3) {
+        const dx = list[at] - x, dy = list[at + 1] - y, dz = list[at + 2] - z;
+        if (dx * dx + dy * dy + dz * dz <= reach) ++near;
       }
+      result[cells.points[i]] = near * scale;
     }
-    result[i] = near * scale;
   }
   return result;
 }

@@ -12,6 +12,7 @@ function grouped(text) {
 const forms = {
   text: (value) => String(value),
   count: (value) => grouped(Math.round(value).toString()),
+  mean: (value) => grouped(value.toFixed(1)),
   share: (value) => (100 * value).toFixed(2) + " %",
   metres: (value) => grouped(value.toFixed(2)) + " m",
   square_metres: (value) => grouped(value.toFixed(value < 1 ? 4 : 2)) + " m²",
@@ -19,6 +20,7 @@ const forms = {
   millimetres: (value) => (1000 * value).toFixed(1) + " mm",
   minutes: (value) => (value / 60).toFixed(1) + " min",
   seconds: (value) => (value < 1 ? (1000 * value).toFixed(1) + " ms" : value.toFixed(2) + " s"),
+  clock: (value) => value.toFixed(1) + " s",
   watt_hours: (value) => value.toFixed(1) + " Wh",
   degrees: (value) => value.toFixed(1) + "°",
   place: (value) => value.toFixed(7) + "°",
@@ -46,6 +48,10 @@ function element(tag, attributes, ...children) {
   }
   return made;
 }
+
+/// Why a survey ended.
+const stop_text = { complete: "complete", view_limit: "limit of views", distance_limit: "limit of distance",
+  time_limit: "limit of time", nowhere_to_go: "nowhere to go", interrupted: "interrupted" };
 
 /// What stands at a path such as "flight.route.sorties.0.energy_wh" of some data.
 function value_at(data, path) {

@@ -13,7 +13,7 @@ async function load_library(name) {
 }
 
 const kinds = { survey: "Survey report", cloud: "Point cloud", mission: "Mission, before the survey",
-  scan: "Scan report", comparison: "Comparison of planners" };
+  scan: "Scan report", comparison: "Benchmark", trials: "Trials of a mission" };
 
 function facts_of(data) {
   const settings = value_at(data, "summary.settings") || {}, facts = [];
@@ -51,7 +51,6 @@ async function clouds_of(data) {
 
 /// The view, or why there is none; the rest of the page does not need it.
 function view_section(data, clouds, skycap) {
-  if (!Object.keys(clouds).length) return null;
   const stage = element("div", { class: "stage" });
   const section = element("section", { class: "view", id: "view" }, stage);
   document.getElementById("main").append(section);
@@ -63,7 +62,6 @@ function view_section(data, clouds, skycap) {
     stage.append(element("p", { class: "notice" }, "There is no 3-D view: " + failure.message));
   }
   section.append(element("div", { class: "pictures" }));
-  return section;
 }
 
 /// Pictures for paper: the view as it stands, and from above.
@@ -81,24 +79,37 @@ function take_pictures(skycap) {
   box.replaceChildren(now, top);
 }
 
-async function show() {
-  const data = { summary: {}, hole_places: [], ...read_data() }, page = document.getElementById("main");
-  const skycap = { data, panel: null };
-  head(data);
-  await load_library("three");
-  await load_library("orbit");
-  const clouds = await clouds_of(data);
-  skycap.clouds = clouds;
-  view_section(data, clouds, skycap);
-  await load_library("chart");
-  const sections = [
-    holes_section(data, (number) => skycap.panel && skycap.panel.tell_hole(number)),
+/// What stands below the view.
+function sections_of(data, skycap) {
+  if (data.kind === "comparison" || data.kind === "trials") {
+    return [...comparison_sections(data), files_section(data), how_section(how_compared)];
+  }
+  if (data.kind === "scan") {
+    return [scan_section(data), scan_charts(data), accuracy_section(data), files_section(data),
+      settings_section(data), how_section(how_scanned)];
+  }
+  return [targets_section(data), holes_section(data, (number) => skycap.panel && skycap.panel.tell_hole(number)),
     survey_charts(data), flight_section(data), accuracy_section(data), files_section(data),
-    settings_section(data), how_section()];
-  page.append(...sections.filter(Boolean));
+    settings_section(data), data.kind === "survey" ? how_section(how_surveyed) : null];
+}
+
+async function show() {
+  const started = performance.now();
+  const data = { summary: {}, hole_places: [], ...read_data() };
+  const skycap = { data, panel: null, clouds: {} };
+  head(data);
+  if (Object.keys(data.clouds).length) {
+    await load_library("three");
+    await load_library("orbit");
+    skycap.clouds = await clouds_of(data);
+    view_section(data, skycap.clouds, skycap);
+  }
+  await load_library("chart");
+  document.getElementById("main").append(...sections_of(data, skycap).filter(Boolean));
   draw_charts();
   const foot = "Made by Skycap " + data.version + " from the results beside it. Nothing in this page is loaded from anywhere.";
   document.getElementById("foot").append(element("p", {}, foot));
+  follow(skycap, started);
   addEventListener("beforeprint", () => {
     document.querySelectorAll("details").forEach((one) => { one.open = true; });
     if (skycap.panel) take_pictures(skycap);

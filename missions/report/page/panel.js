@@ -1,7 +1,7 @@
 // The controls around the 3-D view, and what it says of a view, a point or a distance.
 
 const colour_modes = [["state", "what is covered"], ["view", "view"], ["height", "height"],
-  ["incidence", "incidence"], ["density", "density"]];
+  ["time", "time"], ["incidence", "incidence"], ["density", "density"]];
 
 class Panel {
   constructor(stage, data, clouds) {
@@ -23,10 +23,10 @@ class Panel {
   }
 
   modes() {
-    const cloud = this.viewer.main || {};
-    const has = { state: true, view: cloud.view, height: true, incidence: cloud.incidence, density: true };
-    const known = cloud.state ? colour_modes : colour_modes.slice(2);
-    return known.filter(([name]) => has[name]);
+    const cloud = this.viewer.main || {}, is_scan = this.data.kind === "scan";
+    const has = { state: cloud.state, view: cloud.view && !is_scan, height: true,
+      time: cloud.view && is_scan, incidence: cloud.incidence, density: true };
+    return colour_modes.filter(([name]) => has[name]);
   }
 
   view_bar() {
@@ -60,11 +60,32 @@ class Panel {
     return element("div", { class: "bar" }, this.play_button, this.slider, this.now);
   }
 
+  set_colour(mode) {
+    const select = this.bars[0].querySelector("#colour");
+    if (!this.modes().some(([name]) => name === mode)) return;
+    select.value = mode;
+    this.colour(mode);
+  }
+
+  set_layers(names) {
+    for (const box of this.bars[0].querySelectorAll("[data-layer]")) {
+      box.checked = names.includes(box.dataset.layer);
+      this.viewer.show_layer(box.dataset.layer, box.checked);
+    }
+  }
+
   say_view(number) {
-    const views = views_of(this.data), ceiling = this.data.summary.coverage_ceiling;
+    const views = views_of(this.data);
+    if (this.data.pieces) {
+      this.now.textContent = this.data.piece + " " + number + " of " + (views.length - 1) + " · " +
+        shown(views[number].time_s - views[0].time_s, "clock");
+      return;
+    }
+    const ceiling = this.data.summary.coverage_ceiling;
     const attainable = typeof ceiling === "number" ? " of " + shown(ceiling, "share") + " attainable" : "";
-    this.now.textContent = "view " + number + " of " + (views.length - 1) + " · covered " +
-      shown(views[number].coverage, "share") + attainable;
+    const covered = typeof views[number].coverage === "number" ? " · covered " +
+      shown(views[number].coverage, "share") + attainable : "";  // of a real place nobody knows
+    this.now.textContent = "view " + number + " of " + (views.length - 1) + covered;
   }
 
   show_view(number) {
@@ -73,7 +94,7 @@ class Panel {
     this.say_view(number);
     const path = views.slice(0, number + 1).map((view) => vector(view.position));
     const is_end = number === views.length - 1;
-    const marks = is_end ? [] : [this.pyramid(number)];
+    const marks = is_end ? [] : [this.data.piece === "piece" ? this.ball(views[number].position) : this.pyramid(number)];
     if (!is_end && path.length > 1) {
       marks.push(new THREE.Line(line_geometry(path), new THREE.LineBasicMaterial({
         color: 0xffffff, transparent: true, opacity: 0.55 })));
@@ -112,7 +133,8 @@ class Panel {
       rows.push(...ramp_legend("route: proven clearance", { stops: nearness_stops,
         low: shown(asked, "metres"), high: "from " + shown(asked + told_apart, "metres") }));
     }
-    const roles = new Set(((this.data.scene && this.data.scene.volumes) || []).map((volume) => volume.role));
+    const scene = this.data.scene || {};
+    const roles = new Set([...(scene.volumes || []), ...(scene.priors || [])].map((one) => one.role));
     for (const role of roles) {
       const look = volume_looks[role], colour = new THREE.Color(look.colour);
       rows.push(element("div", { class: "row" },
@@ -154,22 +176,30 @@ class Panel {
       new THREE.LineBasicMaterial({ color: 0xffffff }));
   }
 
-  tell_view(number) {
+  /// What a view was, and what became of it.
+  view_rows(number) {
     const view = views_of(this.data)[number], path = "per_view." + number + ".";
     const [x, y, z] = view.direction;
     const heading = (Math.atan2(x, y) * 180 / Math.PI + 360) % 360;
-    this.viewer.mark([this.pyramid(number)]);
     const rows = [
       ["position", places_text(view.position)], ["heading", shown(heading, "degrees")],
-      ["pitch", shown(Math.asin(Math.max(-1, Math.min(1, z))) * 180 / Math.PI, "degrees")],
-      ["returns", figure(this.data, path + "returns", "count")],
+      ["pitch", shown(Math.asin(Math.max(-1, Math.min(1, z))) * 180 / Math.PI, "degrees")]];
+    if (this.data.pieces) {
+      return [...rows, ["time", shown(view.time_s, "clock")], ["points shown", shown(view.points, "count")]];
+    }
+    rows.push(      ["returns", figure(this.data, path + "returns", "count")],
       ["new points", figure(this.data, path + "points_new", "count")],
-      ["covered after it", figure(this.data, path + "coverage", "share")],
       ["planned in", figure(this.data, path + "planning_time_s", "seconds")],
-      ["way so far", figure(this.data, path + "distance_m", "metres")]];
+      ["way so far", figure(this.data, path + "distance_m", "metres")]);
+    if (typeof view.coverage === "number") rows.push(["covered after it", figure(this.data, path + "coverage", "share")]);
     const leg = legs_of(this.data).find((one) => one.to === number);
     if (leg && leg.clearance !== null) rows.push(["clearance on the way", shown(leg.clearance, "metres")]);
-    const parts = [list_of(rows)];
+    return rows;
+  }
+
+  tell_view(number) {
+    this.viewer.mark([this.pyramid(number)]);
+    const parts = [list_of(this.view_rows(number))];
     if (this.viewer.layers.measured && this.viewer.main.view) {
       const { sensor } = this.data.scene, width = 480;
       const aspect = Math.tan(Math.min(sensor.horizontal_fov, 2.6) / 2) / Math.tan(Math.min(sensor.vertical_fov, 2.6) / 2);
@@ -177,13 +207,13 @@ class Panel {
       this.viewer.picture_of(number, picture);
       parts.push(picture, element("p", { class: "caption" }, "the points that this view added, as the sensor saw them"));
     }
-    this.open_card("View " + number, parts);
+    this.open_card((this.data.pieces ? "Image " : "View ") + number, parts);
   }
 
   tell_point(point) {
     const { cloud, index } = point, rows = [["position", places_text(place_of(point))]];
     if (cloud.state) rows.push(["state", states[cloud.state[index]].name]);
-    if (cloud.view) rows.push(["measured from view", String(cloud.view[index])]);
+    if (cloud.view) rows.push([this.data.piece || "measured from view", String(cloud.view[index])]);
     const incidence = incidence_of(cloud, index);
     if (incidence !== null) rows.push(["incidence", incidence - 5 + "° to " + (incidence + 5) + "°"]);
     if (cloud.view && views_of(this.data)[cloud.view[index]]) {
@@ -191,7 +221,7 @@ class Panel {
       rows.push(["range", shown(eye.distanceTo(vector(place_of(point))), "metres")]);
     }
     this.viewer.mark([this.ball(place_of(point))]);
-    this.open_card(point.name === "missing" ? "Missing surface" : "Point", [list_of(rows)]);
+    this.open_card(point.name === "measured" ? "Point" : "Missing surface", [list_of(rows)]);
   }
 
   tell_hole(number) {
@@ -200,6 +230,8 @@ class Panel {
       new THREE.MeshBasicMaterial({ color: 0xffffff, wireframe: true, transparent: true, opacity: 0.18 }));
     ring.position.copy(vector(hole.centre));
     this.viewer.mark([ring]);
+    const shown = Object.keys(this.viewer.layers).filter((name) => this.viewer.layers[name].visible);
+    this.set_layers([...shown, hole.reason === "unreachable" ? "unreachable" : "missing"]);
     this.viewer.look_at_place(hole.centre, hole.normal, Math.max(hole.radius_m, this.viewer.size / 60));
     this.stage.scrollIntoView({ block: "nearest" });
   }

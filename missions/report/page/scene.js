@@ -1,7 +1,7 @@
 // What is in the 3-D view, layer by layer.
 
 const layer_names = {
-  measured: "points", missing: "missing", route: "route", clearance: "clearance", views: "views",
+  measured: "points", missing: "missing", unreachable: "out of reach", route: "route", clearance: "clearance", views: "views", next: "next view",
   volumes: "volumes", ground: "ground",
 };
 
@@ -23,7 +23,8 @@ function extent_of(data, clouds) {
   return { all: box, core: core.isEmpty() ? box.clone() : core };
 }
 
-const views_of = (data) => (data.summary && data.summary.per_view) || [];
+/// The views of a survey; of a scan its pieces or images.
+const views_of = (data) => data.pieces || data.summary.per_view || [];
 const sorties_of = (data) => value_at(data, "summary.flight.route.sorties") || [];
 
 /// [{points, clearance, sortie, from, to}]: as proven, or straight lines where a summary has none.
@@ -54,16 +55,41 @@ function clearance_colour(clearance, asked) {
   return along(nearness_stops, (clearance - asked) / told_apart);
 }
 
-function cloud_points(cloud, least) {
+function cloud_points(cloud, least, spacing = cloud.spacing) {
   const geometry = new THREE.BufferGeometry();
   geometry.setAttribute("position", new THREE.BufferAttribute(cloud.positions, 3));
   const colours = new THREE.BufferAttribute(new Uint8Array(3 * cloud.count), 3, true);
   geometry.setAttribute("colour", colours);
   const shots = cloud.view || new Uint16Array(cloud.count);
   geometry.setAttribute("shot", new THREE.BufferAttribute(new Uint16Array(shots), 1));
-  const points = new THREE.Points(geometry, point_material(cloud.spacing * 1.5, least));
+  const points = new THREE.Points(geometry, point_material(spacing * 1.5, least));
   points.frustumCulled = false;
+  points.userData.cloud = cloud;
   return points;
+}
+
+/// The points of a cloud that are in some states.
+function part_of_cloud(cloud, is_in) {
+  const indices = Array.from(cloud.state.keys()).filter((i) => is_in(cloud.state[i]));
+  const positions = new Float32Array(3 * indices.length);
+  indices.forEach((from, to) => positions.set(cloud.positions.subarray(3 * from, 3 * from + 3), 3 * to));
+  return { ...cloud, count: indices.length, positions, state: Uint8Array.from(indices, (i) => cloud.state[i]) };
+}
+
+/// Surface that is missing, and what is out of reach for itself. A simulator knows that of the inside
+/// of walls, too, which would cover what was measured of the outside.
+function missing_layers(data, missing, main) {
+  const layers = {}, unreachable = states.findIndex((state) => state.key === "unreachable");
+  // Few and far between, points would look larger than what they stand for.
+  const widest = main && main.count > 1 ? 3 * main.spacing : Infinity;
+  const add = (name, is_in) => {
+    const part = part_of_cloud(missing, is_in);
+    if (part.count) layers[name] = cloud_points(part, 3, Math.min(missing.spacing, widest));
+  };
+  add("missing", (state) => state !== unreachable);
+  add("unreachable", (state) => state === unreachable);
+  if (layers.unreachable) layers.unreachable.visible = value_at(data, "summary.surface.known_by") === "planner";
+  return layers;
 }
 
 function ground_grid(extent, height) {
@@ -88,7 +114,27 @@ const volume_looks = {
   geofence: { colour: 0x3aa0e0, opacity: 0.04, name: "geofence" },
   unknown: { colour: 0xd8b24a, opacity: 0, name: "unknown until measured" },
   scene: { colour: 0xb0c4d0, opacity: 0, name: "to be surveyed" },
+  target: { colour: 0x58b07a, opacity: 0.3, name: "prior: target" },
+  obstacle: { colour: 0xe0703c, opacity: 0.5, name: "prior: obstacle" },
+  terrain: { colour: 0x9a8f6a, opacity: 0.5, name: "prior: terrain" },
+  truth: { colour: 0xb8c8d8, opacity: 0.3, name: "prior: truth" },
 };
+
+/// Surfaces of prior data.
+function prior_group(data) {
+  const group = new THREE.Group();
+  for (const prior of (data.scene && data.scene.priors) || []) {
+    const look = volume_looks[prior.role], geometry = new THREE.BufferGeometry();
+    geometry.setAttribute("position", new THREE.BufferAttribute(new Float32Array(prior.corners), 3));
+    geometry.computeVertexNormals();
+    group.add(new THREE.Mesh(geometry, new THREE.MeshLambertMaterial({
+      color: look.colour, transparent: true, opacity: look.opacity, side: THREE.DoubleSide,
+      depthWrite: false })));
+    group.add(new THREE.LineSegments(new THREE.EdgesGeometry(geometry, 20),
+      new THREE.LineBasicMaterial({ color: look.colour })));
+  }
+  return group;
+}
 
 function volume_group(data, extent) {
   const group = new THREE.Group(), ground = data.scene ? data.scene.ground : 0;
@@ -108,7 +154,7 @@ function volume_group(data, extent) {
 
 function view_group(data, size) {
   const group = new THREE.Group(), views = views_of(data);
-  if (!views.length || !data.scene) return group;
+  if (!views.length || !data.scene || data.piece === "piece") return group;  // a scanner looks around
   const depth = size / 26;
   group.userData.depth = depth;
   const points = views.flatMap((view) => frustum_lines(view, data.scene.sensor, depth));
@@ -126,15 +172,29 @@ function route_group(data, size) {
   const group = new THREE.Group(), asked = value_at(data, "summary.flight.clearance_m.total");
   const lines = legs_of(data).map((leg) => ({
     points: leg.points, colour: clearance_colour(leg.clearance, asked) }));
+  lines.push(...trajectory_lines(data));
   if (!lines.length) return group;
   group.add(new THREE.Mesh(tubes(lines, size / 900, 8),
     new THREE.MeshLambertMaterial({ vertexColors: THREE.VertexColors })));
-  const pad = data.scene.pad;
+  const pad = data.scene && data.scene.pad;
   if (pad) {
     const ring = new THREE.Mesh(new THREE.RingBufferGeometry(size / 110, size / 75, 40),
       new THREE.MeshBasicMaterial({ color: 0xffffff, side: THREE.DoubleSide }));
     ring.position.set(pad[0], pad[1], pad[2] + size / 2000);
     group.add(ring);
+  }
+  return group;
+}
+
+/// Where a survey that goes on looks next, and the way there.
+function next_group(data, size) {
+  const group = new THREE.Group(), next = data.live;
+  if (!next || !next.position || !data.scene) return group;
+  const points = frustum_lines(next, data.scene.sensor, size / 16);
+  group.add(new THREE.LineSegments(line_geometry(points), new THREE.LineBasicMaterial({ color: 0xffd24a })));
+  if (next.way.length > 1) {
+    group.add(new THREE.Mesh(tubes([{ points: next.way, colour: [255, 210, 74] }], size / 900, 8),
+      new THREE.MeshLambertMaterial({ vertexColors: THREE.VertexColors })));
   }
   return group;
 }
@@ -156,12 +216,14 @@ function build_layers(data, clouds) {
   const layers = {};
   const main = clouds.measured || clouds.model;
   if (main && main.count) layers.measured = cloud_points(main, 1.6);
-  if (clouds.missing && clouds.missing.count) layers.missing = cloud_points(clouds.missing, 3);
+  if (clouds.missing && clouds.missing.count) Object.assign(layers, missing_layers(data, clouds.missing, main));
   const add = (name, group) => { if (group.children.length || group.isLine) layers[name] = group; };
   add("route", route_group(data, size));
   add("clearance", clearance_group(data));
   add("views", view_group(data, size));
+  add("next", next_group(data, size));
   add("volumes", volume_group(data, extent));
+  add("priors", prior_group(data));
   layers.ground = ground_grid(extent, data.scene ? data.scene.ground : extent.all.min.z);
   if (layers.clearance) layers.clearance.visible = false;
   return { layers, extent, size };

@@ -49,6 +49,25 @@ function holes_section(data, on_pick) {
     }));
 }
 
+/// What was to be surveyed, by the mission's prior data.
+function targets_section(data) {
+  const { targets } = data.summary;
+  if (!targets || !targets.length) return null;
+  const number = (content) => ({ number: content });
+  const rows = targets.flatMap((target, i) => {
+    const path = "targets." + i + ".";
+    const cells = (part, at, name) => [name, number(figure(data, at + "area_m2", "square_metres")),
+      number(figure(data, at + "coverage", "share")), number(shown(target.within_m, "metres"))];
+    return [cells(target, path, target.name),
+      ...target.kinds.map((kind, k) => cells(kind, path + "kinds." + k + ".", target.name + ", " + kind.name))];
+  });
+  const dry = data.summary.settings["scene.model"] === "prior"
+    ? " They also stood in for the truth: this was a dry run." : "";
+  return element("section", { id: "targets" }, element("h2", {}, "Targets"),
+    element("p", {}, "The surface that prior data has, and its share with a measurement near it." + dry),
+    table(["object", number("area"), number("covered"), number("within")], rows));
+}
+
 /// Where a sensor would have to be to look at a hole head-on, as far off as its nearest view.
 function seen_from(data, hole) {
   if (!hole.normal.some((part) => part !== 0)) return "no one side";
@@ -105,18 +124,19 @@ function flight_section(data) {
 }
 
 function accuracy_section(data) {
-  const { accuracy, summary } = data;
-  if (!accuracy || !data.clouds.measured || !data.clouds.measured.of) return null;
-  const { incidence_deg, range_m } = accuracy;
-  const noise = value_at(summary, "belief.noise_m");
+  const { accuracy } = data;
+  if (!accuracy || !Object.keys(accuracy).length) return null;
+  const { incidence_deg, range_m, error_m } = accuracy;
+  const is_learnt = value_at(data, "summary.belief.noise_m") > 0;
+  const millimetres = error_m && { counts: error_m.counts, low: 0, high: 1000 * error_m.high };
   return element("section", { id: "accuracy" }, element("h2", {}, "Accuracy"),
-    noise > 0 ? element("p", {}, "The planner has learnt that a measurement head-on strays by ",
+    is_learnt ? element("p", {}, "The planner has learnt that a measurement head-on strays by ",
       figure(data, "belief.noise_m", "millimetres"), " (standard deviation).") : null,
     element("div", { class: "charts" },
-      histogram_chart("Angle of incidence", "Between the surface's normal and the way to the sensor: flat looks measure badly.",
-        incidence_deg.counts, incidence_deg.low, incidence_deg.high, "degrees", 0),
-      range_m.high > 0 ? histogram_chart("Range", "How far the sensor was from the points it took.",
-        range_m.counts, range_m.low, range_m.high, "m", 2) : null));
+      error_m ? histogram_chart("Predicted error of the surface", "Standard error where the points within the registration distance are averaged; " +
+        (is_learnt ? "of the noise that the planner has learnt." : "of the noise that the mission states."), millimetres, "mm", 3) : null,
+      incidence_deg ? histogram_chart("Angle of incidence", "Between the surface's normal and the way to the sensor: flat looks measure badly.", incidence_deg, "degrees", 0) : null,
+      range_m ? histogram_chart("Range", "How far the sensor was from the points it took.", range_m, "m", 2) : null));
 }
 
 function files_section(data) {
@@ -137,17 +157,26 @@ function settings_section(data) {
 }
 
 /// How the figures are computed: in the page, for whoever has nothing else.
-const how = [
+const how_surveyed = [
   ["Coverage, as the planner believes", "Area of the surface that was measured or is guessed to be there, each piece times the probability that it has a measurement within the registration distance, over the whole area."],
   ["Coverage, true", "Of points spread evenly over the simulated model's surface, the share with a measurement within evaluation.registration_distance. The planner never sees it. Of what is visible: of those points that a sensor could see from some admissible place."],
   ["What is missing", "Pieces of surface that are more likely uncovered than covered hang together if they are near each other and missing for the same reason. Their area is the missing part of each piece. The rest is what even covered surface is expected to lack. All together is the surface's area times one less the coverage."],
   ["Proven clearance", "For every leg a lower bound of the distance between the vehicle's centre and anything measured, forbidden, or not yet seen free, over the whole leg, not only at its ends."],
   ["Times and energy", "Of the vehicle's profile, with stops, turns and hovering, in the wind and at the temperature that the mission gives."],
+  ["Predicted error", "At a sample of at most 10 000 points: the root of the summed squares of the noise across the surface of all points within the registration distance, over their number. The noise is what the planner has learnt head-on, else what the mission states (sensor.noise); along a ray it counts by the cosine of the incidence. What neighbours have in common, such as an error of the sensor's place, is not in it."],
   ["Incidence and range", "From each point's normal, the plane through its neighbours, and the place of the sensor that took it."],
   ["Density", "Neighbours of a point within two and a half times the usual spacing, over that disc's area, scaled up if the page shows only some of the points."],
 ];
 
-function how_section() {
+const how_compared = [
+  ["Mean, ± and sd", "Over the trials: the mean, half the width of its 95 % interval by Student's t, and the standard deviation. Bands around curves are one standard deviation."],
+  ["Coverage", "Of points spread evenly over the simulated model's surface, the share with a measurement within evaluation.registration_distance; of the visible: of those that a sensor could see from some admissible place; of the attainable: over what all admissible views together would cover. Along a curve a survey that is over keeps its coverage."],
+  ["Distance", "Straight from view to view, from the first on."],
+  ["Planning", "The planner's own work for all views of a survey, in seconds of a processor; sensing and files are not in it."],
+  ["Paper", "Means of 100 surveys each in Border and Gammell, SEE++ (2020), where the mission is one of its models, or as the mission file says."],
+];
+
+function how_section(how) {
   return element("section", { id: "how" }, element("details", {}, element("summary", {}, "How each figure is computed"),
     element("dl", { class: "how" }, how.flatMap(([term, text]) => [element("dt", {}, term), element("dd", {}, text)]))));
 }

@@ -11,6 +11,7 @@ class Viewer {
     this.renderer = new THREE.WebGLRenderer({ canvas, context });
     this.renderer.autoClear = false;
     Object.assign(this, build_layers(data, clouds));
+    this.cloud_layers = Object.entries(this.layers).filter(([, layer]) => layer.userData.cloud);
     this.camera = new THREE.PerspectiveCamera(45, 1, this.size / 1000, this.size * 12);
     this.camera.up.set(0, 0, 1);
     this.controls = new THREE.OrbitControls(this.camera, canvas);
@@ -32,8 +33,7 @@ class Viewer {
     this.cloud_scene = new THREE.Scene();
     this.shape_scene = new THREE.Scene();
     for (const [name, layer] of Object.entries(this.layers)) {
-      const is_cloud = name === "measured" || name === "missing";
-      (is_cloud ? this.cloud_scene : this.shape_scene).add(layer);
+      (layer.userData.cloud ? this.cloud_scene : this.shape_scene).add(layer);
     }
     this.shape_scene.add(this.marks, new THREE.HemisphereLight(0xffffff, 0x8090a0, 1));
   }
@@ -71,11 +71,10 @@ class Viewer {
   }
 
   set_point_scale(camera, height) {
-    for (const name of ["measured", "missing"]) {
-      if (!this.layers[name]) continue;
-      const { uniforms } = this.layers[name].material;
+    for (const [name, layer] of this.cloud_layers) {
+      const { uniforms } = layer.material;
       uniforms.scale.value = height / (2 * Math.tan(camera.fov * Math.PI / 360));
-      uniforms.least.value = (name === "missing" ? 3 : 1.6) * this.ratio;
+      uniforms.least.value = (name === "measured" ? 1.6 : 3) * this.ratio;
     }
   }
 
@@ -117,7 +116,7 @@ class Viewer {
     const centre = vector(place), out = vector(normal || [0, 0, 0]);
     if (out.length() < 0.5) out.copy(this.camera.position).sub(centre);
     out.normalize();
-    if (out.z < 0.1) out.setZ(0.25).normalize();
+    if (Math.abs(out.z) > 0.99) out.set(0.1, 0.1, out.z).normalize();  // up is up on the screen
     this.move_to(centre.clone().addScaledVector(out, Math.max(4 * radius, this.size / 9)), centre, true);
   }
 
@@ -147,10 +146,9 @@ class Viewer {
   colour_by(mode) {
     this.mode = mode;
     const legend = { rows: [], ramp: null };
-    for (const name of ["measured", "missing"]) {
-      const layer = this.layers[name], cloud = name === "missing" ? this.clouds.missing : this.main;
-      if (!layer) continue;
-      const paint = name === "missing" ? painter_of("state", cloud, {}) : painter_of(mode, cloud, legend);
+    for (const [name, layer] of this.cloud_layers) {
+      const { cloud } = layer.userData;
+      const paint = name === "measured" ? painter_of(mode, cloud, legend, this.data) : painter_of("state", cloud, {}, this.data);
       const colours = layer.geometry.getAttribute("colour");
       for (let i = 0; i < cloud.count; ++i) colours.array.set(paint(i), 3 * i);
       colours.needsUpdate = true;
@@ -164,7 +162,9 @@ class Viewer {
     this.last_view = last_view;
     const views = views_of(this.data).length, is_all = last_view >= views - 1;
     if (this.layers.measured) this.layers.measured.material.uniforms.last_view.value = is_all ? 65535 : last_view;
-    if (this.layers.missing) this.layers.missing.material.uniforms.last_view.value = is_all ? 65535 : -1;
+    for (const [name, layer] of this.cloud_layers) {
+      if (name !== "measured") layer.material.uniforms.last_view.value = is_all ? 65535 : -1;
+    }
     if (this.layers.views) this.layers.views.children[0].geometry.setDrawRange(0, is_all ? Infinity : 16 * (last_view + 1));
     this.draw_soon();
   }
@@ -200,9 +200,9 @@ class Viewer {
   /// The point of a cloud that is drawn nearest to a place on the screen, of those in front.
   point_at(x, y) {
     let best = null;
-    for (const name of ["measured", "missing"]) {
-      const layer = this.layers[name], cloud = name === "missing" ? this.clouds.missing : this.main;
-      if (!layer || !layer.visible) continue;
+    for (const [name, layer] of this.cloud_layers) {
+      const { cloud } = layer.userData;
+      if (!layer.visible) continue;
       const found = nearest_on_screen(this, cloud, layer.material.uniforms, x, y);
       if (found && (!best || found.score < best.score)) best = { ...found, cloud, name };
     }
@@ -222,11 +222,9 @@ class Viewer {
     camera.updateMatrixWorld();
     const { uniforms } = this.layers.measured.material, target = new THREE.WebGLRenderTarget(width, height);
     const before = [uniforms.first_view.value, uniforms.last_view.value];
-    const hidden = this.layers.missing;
-    const was_shown = [this.layers.measured.visible, hidden && hidden.visible];
+    const were_shown = this.cloud_layers.map(([, layer]) => layer.visible);
+    for (const [name, layer] of this.cloud_layers) layer.visible = name === "measured";
     uniforms.first_view.value = uniforms.last_view.value = number;
-    this.layers.measured.visible = true;
-    if (hidden) hidden.visible = false;
     this.set_point_scale(camera, height);
     this.renderer.setRenderTarget(target);
     this.renderer.setClearColor(0x06090c, 1);
@@ -237,8 +235,7 @@ class Viewer {
     this.renderer.setRenderTarget(null);
     target.dispose();
     [uniforms.first_view.value, uniforms.last_view.value] = before;
-    this.layers.measured.visible = was_shown[0];
-    if (hidden) hidden.visible = was_shown[1];
+    this.cloud_layers.forEach(([, layer], i) => { layer.visible = were_shown[i]; });
     const image = new ImageData(width, height);
     for (let row = 0; row < height; ++row) {
       image.data.set(pixels.subarray(4 * width * (height - 1 - row), 4 * width * (height - row)), 4 * width * row);
@@ -279,7 +276,7 @@ function incidence_of(cloud, index) {
 }
 
 /// A function from a point's index to its colour.
-function painter_of(mode, cloud, legend) {
+function painter_of(mode, cloud, legend, data) {
   const p = cloud.positions;
   const ramp = (title, values, low, high, form, stops = ramp_stops) => {
     legend.ramp = { title, low: shown(low, form), high: shown(high, form), stops };
@@ -289,6 +286,10 @@ function painter_of(mode, cloud, legend) {
   if (mode === "height") {
     const heights = Float32Array.from({ length: cloud.count }, (_, i) => p[3 * i + 2]);
     return ramp("height", (i) => heights[i], quantile(heights, 0.001), quantile(heights, 0.999), "metres");
+  }
+  if (mode === "time" && data.pieces.length) {
+    const times = data.pieces.map((piece) => piece.time_s), last = times.length - 1;
+    return ramp("time of the flight", (i) => times[Math.min(cloud.view[i], last)] - times[0], 0, times[last] - times[0], "clock");
   }
   if (mode === "view" && cloud.view) {
     legend.note = "a colour for each view";

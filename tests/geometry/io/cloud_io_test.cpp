@@ -142,6 +142,38 @@ TEST(CloudIo, ReadsLasPointsByScaleAndOffset) {
   EXPECT_TRUE(read_cloud(folder.file("b.las", las_bytes(6, 1, 1))).colours.empty());
 }
 
+TEST(CloudIo, ReadsLasOfOldVersionsAndFormats) {
+  const TemporaryFolder folder;
+  const struct {
+    int minor, format;
+    std::size_t point_size, colours;
+  } cases[] = {{0, 0, 20, 0},  {1, 1, 28, 0},  {2, 2, 26, 20}, {2, 3, 34, 28}, {3, 4, 57, 0},
+               {3, 5, 63, 28}, {4, 8, 38, 30}, {4, 9, 59, 0},  {4, 10, 67, 30}};
+  for (const auto& old : cases) {
+    SCOPED_TRACE(old.format);
+    const std::size_t header = old.minor == 4 ? 375 : 227;
+    std::string bytes = las_bytes(6, 0, 0).substr(0, header) + std::string(old.point_size, '\0');
+    const auto put = [&](std::size_t place, auto value) {
+      std::memcpy(bytes.data() + place, &value, sizeof value);
+    };
+    put(25, static_cast<std::uint8_t>(old.minor));
+    put(96, static_cast<std::uint32_t>(header));
+    put(104, static_cast<std::uint8_t>(old.format));
+    put(105, static_cast<std::uint16_t>(old.point_size));
+    put(107, std::uint32_t{1});
+    if (old.minor == 4) put(247, std::uint64_t{1});
+    put(header, std::int32_t{1});
+    put(header + 4, std::int32_t{-4});
+    put(header + 8, std::int32_t{6});
+    if (old.colours != 0) put(header + old.colours + 2, std::uint16_t{0xAB12});
+    const AttributedCloud cloud = read_cloud(folder.file("a.las", bytes));
+    EXPECT_THAT(cloud.positions, testing::ElementsAre(Vector3f(1.5F, -2, 3)));
+    ASSERT_EQ(cloud.colours.size(), old.colours == 0 ? 0U : 1U);
+    if (old.colours == 0) continue;
+    EXPECT_THAT(cloud.colours[0], testing::ElementsAre(0, 0xAB, 0));
+  }
+}
+
 TEST(CloudIo, SaysWhatIsWrongWithALasFile) {
   const TemporaryFolder folder;
   const auto with = [](std::size_t place, int value) {
@@ -154,9 +186,9 @@ TEST(CloudIo, SaysWhatIsWrongWithALasFile) {
   } cases[] = {
       {"LASF", "is not a LAS file"},
       {std::string(500, 'x'), "is not a LAS file"},
-      {with(25, 2), "is LAS 1.2 with points of format 6; only LAS 1.4"},
-      {with(104, 1), "is LAS 1.4 with points of format 1; only LAS 1.4"},
-      {with(104, 0x86), "points of format 6, compressed (LAZ); only LAS 1.4"},
+      {with(25, 5), "is LAS 1.5 with points of format 6; only LAS 1.0 to 1.4"},
+      {with(104, 11), "is LAS 1.4 with points of format 11; only LAS 1.0 to 1.4"},
+      {with(104, 0x86), "points of format 6, compressed (LAZ); only LAS 1.0 to 1.4"},
       {with(105, 20), "has points of 20 bytes; those of format 6 have 30"},
       {with(96, 0), "its points begin within its header"},
       {with(138, -1), "a scale or an offset"},  // the sign and exponent of the scale of x
@@ -233,6 +265,40 @@ TEST(CloudIo, SaysWhatIsWrongWithAFile) {
                 testing::ThrowsMessage<Error>(HasSubstr(broken.message)))
         << broken.name;
   }
+}
+
+// Withheld points take part in neither.
+TEST(ReadPositions, OfLasFilesAreThoseOfTheCloud) {
+  const TemporaryFolder folder;
+  std::string bytes = las_bytes(6, 5, 5);
+  bytes[375 + 2 * 30 + 15] = 4;
+  const auto path = folder.file("a.las", bytes);
+  std::vector<Eigen::Vector3f> positions;
+  read_positions(path, [&](std::span<const Eigen::Vector3f> piece, double share) {
+    positions.insert(positions.end(), piece.begin(), piece.end());
+    EXPECT_EQ(share, 1.0);
+  });
+  EXPECT_EQ(positions.size(), 4U);
+  EXPECT_EQ(positions, read_cloud(path).positions);
+}
+
+// In two pieces and their order; what is read of the file grows to all of it.
+TEST(ReadPositions, HandsOutTheCloudInPieces) {
+  const TemporaryFolder folder;
+  AttributedCloud cloud;
+  for (int i = 0; i < 1'200'000; ++i) cloud.positions.emplace_back(0.001F * float(i), 0.0F, 1.0F);
+  write_cloud(folder.path() / "long.ply", columns_of(cloud));
+  std::vector<Eigen::Vector3f> positions;
+  std::vector<double> shares;
+  read_positions(folder.path() / "long.ply",
+                 [&](std::span<const Eigen::Vector3f> piece, double share) {
+                   positions.insert(positions.end(), piece.begin(), piece.end());
+                   shares.push_back(share);
+                 });
+  EXPECT_EQ(positions, cloud.positions);
+  ASSERT_EQ(shares.size(), 2U);
+  EXPECT_NEAR(shares[0], 1.0 / 1.2, 1e-12);
+  EXPECT_EQ(shares[1], 1.0);
 }
 
 }  // namespace

@@ -7,7 +7,6 @@
 #include <nlohmann/json.hpp>
 
 #include "geometry/error.h"
-#include "missions/benchmark/benchmark_plots.h"
 #include "missions/benchmark/benchmark_report.h"
 #include "missions/benchmark/paper_results.h"
 
@@ -145,18 +144,17 @@ TEST(BenchmarkReport, PutsRatiosToThePaperBesideOurFigures) {
 }
 
 TEST(BenchmarkReport, MarkdownHasBothTables) {
-  const std::string text = benchmark::report_markdown(two_cells(), {"coverage_teapot"});
+  const std::string text = benchmark::report_markdown(two_cells());
   EXPECT_THAT(text, HasSubstr("| SEE | 3.0 (60.0) | 70.0 (98.1) | 4 (4.13) | 3.0 (42.8) |"));
   EXPECT_THAT(text, HasSubstr("| OA | 3.0 (105.0) |"));
   EXPECT_THAT(text, HasSubstr("| SEE | 2.00 | 4.49 | 23.33 | 1.39 |"));
   EXPECT_THAT(text, HasSubstr("| SEE | 1 | 100.0 | 100.0 |"));
-  EXPECT_THAT(text, HasSubstr("![coverage_teapot](coverage_teapot.svg)"));
 }
 
 TEST(BenchmarkReport, SaysWhatItTakesToReachTheCoverageOfSee) {
   std::vector<benchmark::BenchmarkCell> cells = two_cells();
   cells[1].trials = {trial(0.1, 0.75, 0.9), trial(0.1, 0.2, 0.3)};
-  const std::string text = benchmark::report_markdown(cells, {});
+  const std::string text = benchmark::report_markdown(cells);
   // SEE ends at 70 % after 3 views and 3 m; one of two surveys with OA is there at view 2, 1 m.
   EXPECT_THAT(text,
               HasSubstr("| SEE here, 70.0 | OA | 1 of 2 | 2.0, 0.67× | 2, 0.50× | 1.0, 0.33× |"));
@@ -174,11 +172,6 @@ TEST(BenchmarkReport, CsvHasALineForEachCellAndTrial) {
   EXPECT_EQ(std::ranges::count(trials, '\n'), 4);
   EXPECT_THAT(trials, HasSubstr("mission,planner,seed,"));
   EXPECT_THAT(trials, HasSubstr("\nteapot,oa,0,complete,3,"));
-}
-
-TEST(BenchmarkPlots, AreOneAMissionAndOneForTargets) {
-  EXPECT_THAT(benchmark::plot_script(two_cells()).plots, ElementsAre("coverage_teapot", "targets"));
-  EXPECT_TRUE(benchmark::plot_script({{"teapot", "see", {}}}).plots.empty());
 }
 
 TEST(TrialText, GivesTheSameTrialBack) {

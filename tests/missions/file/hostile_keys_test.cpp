@@ -150,7 +150,7 @@ bool is_refusal_of_a_key(const std::string& message) {
   if (is_of_yaml) return true;
   if (!what.starts_with("key ")) return false;
   const std::string named = what.substr(4, what.find(": ") - 4);
-  return file::find_key(named) != nullptr || named.find('.') != std::string::npos;
+  return file::find_key(named) != nullptr || named.find_first_of(".[") != std::string::npos;
 }
 
 /// Numbers as taken: finite, and in the key's range up to the rounding of degrees.

@@ -74,6 +74,13 @@ TEST(MissionReader, SetsEachKeyToWhatItGivesBack) {
       case file::KeyType::vectors:
         value = std::vector<Eigen::Vector3d>{{10, -20, 90}, {0.5, 0, -45}};
         break;
+      case file::KeyType::sources:
+        value = std::vector<prior::Source>{{.file = "/tile.gml", .role = prior::Role::terrain}};
+        break;
+      case file::KeyType::texts:
+      case file::KeyType::integers:
+      case file::KeyType::pairs:
+        FAIL() << key.path << " is of a list's maps";
     }
     key.set(mission, value);
     const auto back = key.get(mission);

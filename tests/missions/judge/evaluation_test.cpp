@@ -125,28 +125,5 @@ TEST(CoverageCeiling, LeavesOutWhatLiesOutsideTheBox) {
   EXPECT_NEAR(ceiling, 0.5 + 0.4 / 24.0, 4e-3);
 }
 
-// Points of a half-normal distribution of distances from a face, from either side.
-TEST(CloudAccuracy, RecoversTheNoiseOfMeasurements) {
-  constexpr double sigma = 0.01;
-  std::mt19937_64 random(1);
-  std::uniform_real_distribution<float> uniform(-0.9F, 0.9F);
-  std::normal_distribution<float> noise(1.0F, static_cast<float>(sigma));
-  std::vector<Vector3f> points;
-  for (int i = 0; i < 20'000; ++i) {
-    points.push_back(Vector3f{uniform(random), uniform(random), noise(random)});
-  }
-  const judge::CloudAccuracy accuracy = judge::cloud_accuracy(points, cube(1.0));
-  // Standard errors of 20,000 values are below 1 % of sigma; 3 % leaves room.
-  EXPECT_NEAR(accuracy.root_mean_square, sigma, 0.03 * sigma);
-  EXPECT_NEAR(accuracy.mean, sigma * std::sqrt(2.0 / std::numbers::pi), 0.03 * sigma);
-  EXPECT_NEAR(accuracy.median, 0.6745 * sigma, 0.03 * sigma);
-  EXPECT_NEAR(accuracy.percentile_95, 1.96 * sigma, 0.05 * sigma);
-  EXPECT_GE(accuracy.largest, accuracy.percentile_95);
-}
-
-TEST(CloudAccuracy, OfNoPointsIsZero) {
-  EXPECT_EQ(judge::cloud_accuracy({}, cube(1.0)).largest, 0.0);
-}
-
 }  // namespace
 }  // namespace skycap::missions

@@ -4,8 +4,11 @@
 
 #include "geometry/error.h"
 #include "geometry/io/cloud_io.h"
+#include "missions/library/evaluation.h"
 #include "missions/library/laser_scan.h"
 #include "missions/library/mission.h"
+#include "missions/library/sensors.h"
+#include "missions/library/simulation.h"
 #include "missions/library/survey.h"
 #include "sim/scene/scene.h"
 #include "sim/sensors/depth_camera.h"
@@ -83,6 +86,55 @@ TEST_F(Library, PlansFromScansOfOthersAsItsOwnSurveyDoes) {
   for (std::size_t i = 0; i < own.views.size(); ++i) {
     EXPECT_EQ(own.views[i].view.position, survey.views[i].view.position) << "view " << i;
     EXPECT_EQ(own.views[i].points, survey.views[i].points) << "view " << i;
+  }
+}
+
+TEST_F(Library, SimulatesWhatItsOwnSurveyMeasures) {
+  const Mission mission = Mission::load(file);
+  const Survey survey = plan(mission);
+  const Simulation simulation(mission);
+  const std::unique_ptr<survey::Planner> planner = mission.planner();
+  std::optional<geometry::View> view = simulation.first_view();
+  for (std::size_t i = 0; i < survey.views.size(); ++i) {
+    ASSERT_TRUE(view) << "view " << i;
+    EXPECT_EQ(view->position, survey.views[i].view.position) << "view " << i;
+    const geometry::Scan scan = simulation.scan(*view, i);
+    EXPECT_EQ(scan.points.size(), survey.views[i].returns) << "view " << i;
+    view = planner->next_view(scan);
+  }
+  EXPECT_TRUE(planner->cloud().positions == survey.cloud.positions);
+}
+
+/// Half of a sheet, from a height that is known.
+TEST_F(Library, EvaluatesACloudByDistanceAndShare) {
+  const geometry::Mesh sheet{{{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}}, {{0, 1, 2}, {0, 2, 3}}};
+  std::vector<Eigen::Vector3f> points;
+  for (int i = 0; i <= 50; ++i) {
+    for (int j = 0; j <= 100; ++j) {
+      points.push_back({0.01F * static_cast<float>(i), 0.01F * static_cast<float>(j), 0.003F});
+    }
+  }
+  const Evaluation evaluation = evaluate(points, sheet, {.distance = 0.01});
+  EXPECT_NEAR(evaluation.mean, 0.003, 1e-8);
+  EXPECT_NEAR(evaluation.largest, 0.003, 1e-8);
+  // The distance reaches sqrt(0.01^2 - 0.003^2) beyond the half.
+  EXPECT_NEAR(evaluation.coverage, 0.5 + 0.0095, 0.002);
+  EXPECT_NEAR(evaluation.density, static_cast<double>(points.size()), 1e-6);
+  EXPECT_THROW(evaluate({}, sheet), Error);
+  EXPECT_THROW(evaluate(points, sheet, {.distance = 0.0}), Error);
+}
+
+TEST_F(Library, FindsSensorsByName) {
+  for (const std::string& name : sensor_names()) {
+    const bool is_camera =
+        name.starts_with("intel_") || name.starts_with("see_") || name == "dji_zenmuse_p1";
+    if (is_camera) {
+      EXPECT_NO_THROW(depth_camera(name)) << name;
+      EXPECT_THROW(laser_scanner(name), Error) << name;
+    } else {
+      EXPECT_NO_THROW(laser_scanner(name)) << name;
+      EXPECT_THROW(depth_camera(name), Error) << name;
+    }
   }
 }
 

@@ -65,6 +65,30 @@ TEST(Holes, HaveOneReasonEach) {
   EXPECT_NE(missing.holes[0].reason, missing.holes[1].reason);
 }
 
+// Guessed pieces of 4 m lie 5 m apart and make one hole; of pieces of half a metre, 2 m apart, each
+// is for itself. Most pieces have a side of one metre.
+TEST(Holes, LinkPiecesByTheirOwnSize) {
+  std::vector<BelievedPatch> patches = floor_of(20, [](int, int) { return MissingReason::none; });
+  for (int i = 0; i < 4; ++i) {
+    const auto step = static_cast<float>(i);
+    patches.push_back({{5.0F * step, 0.0F, 50.0F},
+                       Eigen::Vector3f::UnitZ(),
+                       16.0F,
+                       0.0F,
+                       MissingReason::never_seen});
+    patches.push_back({{2.0F * step, 0.0F, 90.0F},
+                       Eigen::Vector3f::UnitZ(),
+                       0.25F,
+                       0.0F,
+                       MissingReason::never_seen});
+  }
+  const MissingSurface missing = missing_surface(patches, {});
+  ASSERT_EQ(missing.holes.size(), 1U);
+  EXPECT_DOUBLE_EQ(missing.holes[0].area, 64.0);
+  EXPECT_EQ(missing.smaller, 4U);
+  EXPECT_DOUBLE_EQ(missing.smaller_area, 1.0);
+}
+
 // Whatever the pieces are: nothing that is missing is lost or counted twice.
 TEST(Holes, SumToWhatIsMissing) {
   std::mt19937_64 random(7);

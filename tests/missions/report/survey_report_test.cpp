@@ -1,5 +1,6 @@
 #include "missions/report/survey_report.h"
 
+#include <numbers>
 #include <stop_token>
 
 #include <gmock/gmock.h>
@@ -142,6 +143,44 @@ TEST(SurveyReport, GoesWithoutACloud) {
   EXPECT_EQ(data_of(survey.page())["clouds"]["measured"]["points"], 0);
 }
 
+// Trials and a survey in the same folder have a page each.
+TEST(TrialsPage, StandsBesideTheSurveys) {
+  const Planned survey(tests::quick_mission(), {"--max-views", "3"});
+  const auto trials =
+      tests::run_skycap({"plan", survey.folder / "m.yaml", "--trials", "2", "--max-views", "3",
+                         "--quiet", "--out", survey.folder / "out"});
+  ASSERT_EQ(trials.exit_code, 0) << trials.err;
+  const auto file = survey.folder.path() / "out" / "trials.html";
+  const std::string page = tests::content_of(file);
+  const Json data = data_of(page);
+  EXPECT_EQ(data["kind"], "trials");
+  EXPECT_EQ(data["summary"], Json::parse(tests::content_of(survey.folder / "out/trials.json")));
+  EXPECT_EQ(data["summary"]["each_trial"].size(), 2U);
+  std::filesystem::remove(file);
+  std::filesystem::remove(survey.folder.path() / "out" / "report.html");
+  const auto run = tests::run_skycap({"report", survey.folder / "out"});
+  EXPECT_EQ(run.exit_code, 0) << run.err;
+  EXPECT_TRUE(tests::content_of(file) == page);
+  EXPECT_EQ(data_of(survey.page())["kind"], "survey");
+  // Which of the two should the page be?
+  const auto one = tests::run_skycap({"report", survey.folder / "out", "--out", "x.html"});
+  EXPECT_EQ(one.exit_code, 2);
+  EXPECT_THAT(one.err, HasSubstr("has several pages"));
+}
+
+TEST(ResultPages, RefuseWhatIsNoResult) {
+  const tests::TestFolder folder;
+  for (const char* name : {"trials.json", "results.json"}) {
+    for (const char* text : {"", "[]", "{}", "{\"results\": 3, \"trials\": []}"}) {
+      folder.write(name, text);
+      const auto run = tests::run_skycap({"report", folder.path().string()});
+      EXPECT_EQ(run.exit_code, 2) << text;
+      EXPECT_THAT(run.err, HasSubstr(name)) << text;
+    }
+    std::filesystem::remove(folder.path() / name);
+  }
+}
+
 TEST(SurveyReport, RefusesWhatIsNoSummary) {
   const tests::TestFolder folder;
   EXPECT_EQ(tests::run_skycap({"report", folder.path().string()}).exit_code, 2);
@@ -188,6 +227,22 @@ TEST(PointFigures, IncidenceIsTheAngleToTheSensor) {
   EXPECT_THAT(incidence_steps(cloud, views), ElementsAre(0, 4, 17, no_incidence));
   EXPECT_THAT(ranges(cloud, views)[0], 3.0F);
   EXPECT_TRUE(std::isnan(ranges(cloud, views)[3]));
+}
+
+// The mean of four is twice as sure as one; along rays at 45 degrees (the middle of that step) the
+// noise across the surface is cos(45) of what it is head-on. A point that nobody saw counts
+// nowhere.
+TEST(PointFigures, NeighboursMakeASurfaceSurer) {
+  geometry::AttributedCloud cloud;
+  cloud.positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {1, 1, 0}, {0.5F, 0.5F, 0}, {9, 9, 9}};
+  const std::vector<std::uint16_t> steps = {4, 4, 4, 4, no_incidence, 4};
+  const auto errors = surface_errors(cloud, steps, {.head_on = 0.02, .is_along_ray = false}, 1.5);
+  ASSERT_EQ(errors.size(), 6U);
+  for (std::size_t i = 0; i < 5; ++i) EXPECT_FLOAT_EQ(errors[i], 0.01F);
+  EXPECT_FLOAT_EQ(errors[5], 0.02F);
+  const auto along = surface_errors(cloud, steps, {.head_on = 0.02, .is_along_ray = true}, 1.5);
+  EXPECT_FLOAT_EQ(along[0], static_cast<float>(0.01 / std::numbers::sqrt2));
+  EXPECT_TRUE(surface_errors(cloud, steps, {}, 1.5).empty());
 }
 
 TEST(PointFigures, HistogramCountsEachOnce) {

@@ -10,7 +10,6 @@
 #include <nlohmann/json.hpp>
 
 #include "missions/benchmark/contestants.h"
-#include "missions/plugins/external_program.h"
 #include "tests/missions/run_skycap.h"
 
 namespace skycap::missions {
@@ -129,14 +128,17 @@ TEST_F(BenchmarkVerb, ReportsWhatThereIsWhenItIsInterrupted) {
   EXPECT_FALSE(std::filesystem::exists(item("pc", 1)));
 }
 
-TEST_F(BenchmarkVerb, DrawsPlotsIfItCan) {
+TEST_F(BenchmarkVerb, LeavesAPageThatReportWritesAnew) {
   const ProgramRun result = run("see,see++", {"--max-views", "4"});
-  const bool has_gnuplot =
-      plugins::run_external_program({"gnuplot", "--version"}, folder_.path()).exit_code == 0;
-  for (const char* file : {"coverage_quick.svg", "coverage_quick.png"}) {
-    EXPECT_EQ(std::filesystem::exists(folder_.path() / "out" / file), has_gnuplot) << file;
-  }
-  EXPECT_EQ(result.err.empty(), has_gnuplot) << result.err;
+  EXPECT_EQ(result.err, "");
+  const std::string page = content_of(folder_.path() / "out" / "benchmark.html");
+  EXPECT_THAT(page, HasSubstr("\"kind\":\"comparison\""));
+  std::filesystem::remove(folder_.path() / "out" / "benchmark.html");
+  const ProgramRun again = run_skycap({"report", folder_ / "out"});
+  EXPECT_EQ(again.exit_code, 0) << again.err;
+  EXPECT_TRUE(content_of(folder_.path() / "out" / "benchmark.html") == page);
+  ASSERT_EQ(run("see,see++", {"--max-views", "4", "--no-report"}).exit_code, 0);
+  EXPECT_FALSE(std::filesystem::exists(folder_.path() / "out" / "benchmark.html"));
 }
 
 TEST_F(BenchmarkVerb, RefusesPlannersThatItDoesNotKnow) {

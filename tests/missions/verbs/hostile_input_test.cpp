@@ -17,7 +17,6 @@
 #include <unistd.h>
 
 #include "geometry/io/mesh_io.h"
-#include "missions/benchmark/benchmark_plots.h"
 #include "missions/derived/resolved_mission.h"
 #include "missions/scene/survey_scene.h"
 #include "missions/verbs/printable.h"
@@ -46,17 +45,6 @@ std::string summary_with(const std::string& settings, const std::string& rest) {
   return "{\"settings\": {\"scene.model\": \"builtin:teapot\", "
          "\"evaluation.registration_distance\": 0.03" +
          settings + "}, " + rest + "}";
-}
-
-TEST(HostileInput, NoNameOfAUserReachesGnuplot) {
-  const auto script_of = [](const std::string& mission) {
-    benchmark::Trial trial;
-    trial.coverage_after = {0.5, 0.8}, trial.distance_after = {0, 3};
-    trial.planning_time_after = {1, 2};
-    return benchmark::plot_script({{mission, "oa", {trial}}});
-  };
-  EXPECT_EQ(script_of("`touch pwned`$(x)\n'\"").text, script_of("teapot").text);
-  EXPECT_EQ(script_of("a b").plots, std::vector<std::string>{"coverage_a b"});
 }
 
 TEST(HostileInput, DeeplyNestedJsonIsRefused) {

@@ -39,6 +39,13 @@ geometry::Mesh small_teapot() {
   return mesh;
 }
 
+/// What a page shows.
+json page_data(const fs::path& page) {
+  const std::string text = tests::content_of(page), begin = "id=\"data\">";
+  const std::size_t at = text.find(begin) + begin.size();
+  return json::parse(text.substr(at, text.find("</script>", at) - at));
+}
+
 class LiveVerbs : public testing::Test {
  protected:
   std::vector<std::string> verb(const std::string& name,
@@ -79,6 +86,8 @@ class LiveVerbs : public testing::Test {
 
 TEST_F(LiveVerbs, SurveyAPlaceThatNobodyHasModelled) {
   EXPECT_EQ(answer({})["state"], "first_scan");
+  const fs::path page = folder_.path() / "survey" / "report.html";
+  EXPECT_FALSE(fs::exists(page));  // there is nothing to show
   geometry::View view = geometry::look_at({2.5, 1.0, 1.2}, {0.0, 0.0, 0.3});
   for (int i = 0; i < 4; ++i) {
     const json next = answer(measured(view, i));
@@ -91,6 +100,10 @@ TEST_F(LiveVerbs, SurveyAPlaceThatNobodyHasModelled) {
       view.direction[axis] = to[axis].get<double>();
     }
     EXPECT_NEAR(view.direction.norm(), 1.0, 1e-9);
+    const json data = page_data(page);
+    EXPECT_EQ(data["summary"]["views"], i + 1);
+    EXPECT_EQ(data["live"]["position"], at);
+    EXPECT_EQ(data["clouds"]["measured"]["of"], next["points"]);
   }
   const ProgramRun finished = run_skycap(verb("finish"));
   EXPECT_EQ(finished.exit_code, 0) << finished.err;
@@ -99,6 +112,9 @@ TEST_F(LiveVerbs, SurveyAPlaceThatNobodyHasModelled) {
   EXPECT_TRUE(summary["coverage"].is_null());
   EXPECT_EQ(summary["stop_reason"], "interrupted");
   EXPECT_TRUE(fs::exists(folder_.path() / "survey" / "cloud.ply"));
+  const json data = page_data(page);  // the final one, which no browser reads again
+  EXPECT_FALSE(data.contains("live"));
+  EXPECT_EQ(data["summary"], summary);
 }
 
 TEST_F(LiveVerbs, TakeTheSameCallTwice) {

@@ -11,6 +11,7 @@
 #include "flight/export/utm.h"
 #include "geometry/io/cloud_io.h"
 #include "geometry/io/mesh_io.h"
+#include "missions/recording/preview.h"
 #include "sim/sensors/depth_image.h"
 #include "tests/missions/recording/las_file.h"
 #include "tests/missions/run_skycap.h"
@@ -87,8 +88,8 @@ TEST_F(ScanVerb, LeavesTheCloudBothTrajectoriesAndASummary) {
   EXPECT_EQ(run.exit_code, 0) << run.err;
   EXPECT_EQ(run.err, "");
   EXPECT_THAT(run.out, HasSubstr("cube: Test laser, 0.3 s of flight"));
-  EXPECT_THAT(files(), testing::ElementsAre("scan.json", "scan.las", "trajectory.tum",
-                                            "trajectory_believed.tum"));
+  EXPECT_THAT(files(), testing::ElementsAre("preview.ply", "scan.html", "scan.json", "scan.las",
+                                            "trajectory.tum", "trajectory_believed.tum"));
   const nlohmann::json json = summary();
   // 2 pi 5 m at 100 m/s, 16 shots each 100 microseconds.
   EXPECT_EQ(json["shots"], 16 * 3141);
@@ -119,6 +120,49 @@ TEST_F(ScanVerb, AFaultlessCarrierLeavesTheSensorsNoiseOnly) {
   EXPECT_GT(largest_error(measured), 0.02F);
   EXPECT_EQ(tests::content_of(folder / "out/trajectory.tum"),
             tests::content_of(folder / "out/trajectory_believed.tum"));
+}
+
+// So few shots are all in the preview; the flight of 0.314 s has six turns of 50 ms and a part.
+TEST_F(ScanVerb, ThePreviewHasThePointsAndTheirPieces) {
+  ASSERT_EQ(scan({"--format", "ply"}).exit_code, 0);
+  const auto preview = geometry::read_cloud(folder / "out/preview.ply");
+  EXPECT_EQ(preview.positions, geometry::read_cloud(folder / "out/scan.ply").positions);
+  EXPECT_TRUE(std::ranges::is_sorted(preview.views));
+  EXPECT_EQ(preview.views.front(), 0U);
+  EXPECT_EQ(preview.views.back(), 6U);
+  EXPECT_EQ(summary()["preview"]["piece_s"], 0.05);
+}
+
+TEST_F(ScanVerb, LeavesAPageThatReportWritesAnew) {
+  ASSERT_EQ(scan().exit_code, 0);
+  const std::string page = tests::content_of(folder / "out/scan.html");
+  EXPECT_THAT(page, HasSubstr("\"kind\":\"scan\""));
+  std::filesystem::remove(folder / "out/scan.html");
+  const ProgramRun again = run_skycap({"report", folder / "out"});
+  EXPECT_EQ(again.exit_code, 0) << again.err;
+  EXPECT_TRUE(tests::content_of(folder / "out/scan.html") == page);
+  ASSERT_EQ(scan({"--no-report"}).exit_code, 0);
+  EXPECT_FALSE(std::filesystem::exists(folder / "out/scan.html"));
+  for (const char* text : {"", "[]", "{}", "{\"mission\": 3}"}) {
+    folder.write("out/scan.json", text);
+    const ProgramRun bad = run_skycap({"report", folder / "out"});
+    EXPECT_EQ(bad.exit_code, 2) << text;
+    EXPECT_THAT(bad.err, HasSubstr("scan.json")) << text;
+  }
+}
+
+// Of shots in a row, whatever the channel, a tenth: 1000 of 10,000, six deviations of 30 around.
+TEST(Preview, ChoosesAShareOfEachChannel) {
+  for (std::uint64_t channel = 0; channel < 16; ++channel) {
+    int chosen = 0;
+    for (std::uint64_t time = 0; time < 10'000; ++time) {
+      chosen += recording::is_previewed(time, channel, 0.1) ? 1 : 0;
+    }
+    EXPECT_NEAR(chosen, 1000, 180) << channel;
+  }
+  EXPECT_TRUE(recording::is_previewed(5, 7, 1.0));
+  EXPECT_EQ(recording::preview_share(100.0), 1.0);
+  EXPECT_DOUBLE_EQ(recording::preview_share(15e6), 0.1);
 }
 
 TEST_F(ScanVerb, FliesAGivenRouteWithAGivenSensor) {
@@ -185,7 +229,8 @@ TEST_F(ScanVerb, ACameraLeavesADatasetOfDepthImages) {
   EXPECT_THAT(run.out, HasSubstr("2 depth images"));
   EXPECT_THAT(files(),
               testing::ElementsAre("believed.txt", "camera.json", "depth.txt", "depth_000000.png",
-                                   "depth_000001.png", "groundtruth.txt", "scan.json"));
+                                   "depth_000001.png", "groundtruth.txt", "preview.ply",
+                                   "scan.html", "scan.json"));
   EXPECT_THAT(tests::content_of(folder / "out/depth.txt"),
               HasSubstr("0.000000 depth_000000.png\n0.500000 depth_000001.png\n"));
   EXPECT_THAT(sim::read_depth_png(folder / "out/depth_000000.png").values, testing::Each(2000));

@@ -1,0 +1,168 @@
+#include "geometry/io/las_reader.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <cstring>
+#include <utility>
+
+#include "geometry/io/cloud_parsers.h"
+#include "geometry/io/file.h"
+#include "geometry/io/las_layout.h"
+
+namespace skycap::geometry {
+namespace {
+
+/// A value of a binary file at a place that is known to be inside.
+template <typename Value>
+Value at(const char* bytes, std::size_t place) {
+  static_assert(std::endian::native == std::endian::little, "LAS files are little-endian");
+  Value value;
+  std::memcpy(&value, bytes + place, sizeof value);
+  return value;
+}
+
+/// Throws unless it is LAS of a kind that can be read; the header's size is that of its version.
+void require_readable(const std::filesystem::path& path, std::string_view beginning) {
+  if (beginning.size() <= las::header::point_format || !beginning.starts_with("LASF")) {
+    fail_cloud(path, "is not a LAS file: it does not begin with a LAS header");
+  }
+  const int major = at<std::uint8_t>(beginning.data(), las::header::major),
+            minor = at<std::uint8_t>(beginning.data(), las::header::minor);
+  const int format = at<std::uint8_t>(beginning.data(), las::header::point_format);
+  const bool is_compressed = (format & 0xC0) != 0;
+  if (major != 1 || minor > 4 || is_compressed || format > 10) {
+    fail_cloud(path, "is LAS " + std::to_string(major) + "." + std::to_string(minor) +
+                         " with points of format " + std::to_string(format & 0x3F) +
+                         (is_compressed ? ", compressed (LAZ)" : "") +
+                         "; only LAS 1.0 to 1.4 with points of format 0 to 10, not compressed, can "
+                         "be read: convert it, as with `pdal translate` or laszip");
+  }
+  const std::size_t size = minor == 4 ? las::header::end : las::header::old_end;
+  if (beginning.size() < size) fail_cloud(path, "ends within the header");
+}
+
+LasHeader fields_of(std::string_view beginning) {
+  const char* const bytes = beginning.data();
+  LasHeader header;
+  header.minor = at<std::uint8_t>(bytes, las::header::minor);
+  header.format = at<std::uint8_t>(bytes, las::header::point_format);
+  header.header_size = at<std::uint16_t>(bytes, las::header::size);
+  header.first_point = at<std::uint32_t>(bytes, las::header::first_point);
+  header.records = at<std::uint32_t>(bytes, las::header::records);
+  header.point_size = at<std::uint16_t>(bytes, las::header::point_size);
+  header.points = at<std::uint32_t>(bytes, las::header::old_points);
+  if (header.minor == 4) {
+    header.points = at<std::uint64_t>(bytes, las::header::points);
+    header.first_extended_record = at<std::uint64_t>(bytes, las::header::first_extended_record);
+    header.extended_records = at<std::uint32_t>(bytes, las::header::extended_records);
+  }
+  for (int axis = 0; axis < 3; ++axis) {
+    header.scale[axis] = at<double>(bytes, las::header::scale + 8UL * axis);
+    header.offset[axis] = at<double>(bytes, las::header::offset + 8UL * axis);
+  }
+  return header;
+}
+
+/// `beginning` is the file's first 375 bytes, or all of a shorter file.
+LasHeader parse_header(const std::filesystem::path& path, std::string_view beginning,
+                       std::uint64_t file_size) {
+  require_readable(path, beginning);
+  const LasHeader header = fields_of(beginning);
+  const std::uint16_t least_size = las::point_size(header.format);
+  if (header.point_size < least_size) {
+    fail_cloud(path, "has points of " + std::to_string(header.point_size) +
+                         " bytes; those of format " + std::to_string(header.format) + " have " +
+                         std::to_string(least_size) + " or more");
+  }
+  if (!header.scale.allFinite() || !(header.scale.array() > 0.0).all() ||
+      !header.offset.allFinite()) {
+    fail_cloud(path, "has a scale or an offset of coordinates that is not a usable number");
+  }
+  const std::size_t header_end = header.minor == 4 ? las::header::end : las::header::old_end;
+  if (header.first_point < header_end) {
+    fail_cloud(path, "says that its points begin within its header");
+  }
+  const std::uint64_t room = file_size < header.first_point ? 0 : file_size - header.first_point;
+  if (room / header.point_size < header.points) {
+    fail_cloud(path, "ends after " + std::to_string(room / header.point_size) + " of its " +
+                         std::to_string(header.points) + " points");
+  }
+  return header;
+}
+
+int class_of(const LasHeader& header, const char* point) {
+  if (header.format >= 6) return at<std::uint8_t>(point, las::point::classification);
+  return at<std::uint8_t>(point, las::old_point::classification) & las::old_point::classes;
+}
+
+bool is_withheld(const LasHeader& header, const char* point) {
+  const int flags = at<std::uint8_t>(
+      point, header.format >= 6 ? las::point::flags : las::old_point::classification);
+  return (flags & (header.format >= 6 ? las::point::withheld : las::old_point::withheld)) != 0;
+}
+
+std::size_t colour_place(const LasHeader& header) {
+  return las::colour_places[static_cast<std::size_t>(header.format)];
+}
+
+void add_point(const LasHeader& header, const char* point, LasPoints& points) {
+  Eigen::Vector3d& position = points.positions.emplace_back();
+  for (int axis = 0; axis < 3; ++axis) {
+    position[axis] =
+        at<std::int32_t>(point, las::point::position + 4UL * axis) * header.scale[axis] +
+        header.offset[axis];
+  }
+  points.classes.push_back(static_cast<std::uint8_t>(class_of(header, point)));
+  if (!header.has_colours()) return;
+  auto& colour = points.colours.emplace_back();
+  for (std::size_t channel = 0; channel < 3; ++channel) {
+    colour[channel] = static_cast<std::uint8_t>(
+        at<std::uint16_t>(point, colour_place(header) + 2 * channel) >> 8);
+  }
+}
+
+}  // namespace
+
+bool LasHeader::has_colours() const { return colour_place(*this) != 0; }
+
+LasReader::LasReader(std::filesystem::path path) : path_(std::move(path)) {
+  std::error_code failure;
+  size_ = std::filesystem::file_size(path_, failure);
+  const bool is_file = std::filesystem::is_regular_file(path_, failure);
+  if (is_file) stream_.open(path_, std::ios::binary);
+  if (!is_file || !stream_ || bytes(0, 2) == "\x1F\x8B") {
+    decompressed_ = read_file(path_);  // says what is wrong with what is no file
+    size_ = decompressed_.size();
+  }
+  header_ = parse_header(path_, bytes(0, las::header::end), size_);
+}
+
+std::string LasReader::bytes(std::uint64_t place, std::uint64_t count) {
+  if (place >= size_) return {};
+  count = std::min(count, size_ - place);
+  if (!decompressed_.empty()) return decompressed_.substr(place, count);
+  std::string result(count, '\0');
+  stream_.clear();
+  stream_.seekg(static_cast<std::streamoff>(place));
+  stream_.read(result.data(), std::ssize(result));
+  if (!stream_) fail_cloud(path_, "cannot be read at byte " + std::to_string(place));
+  return result;
+}
+
+bool LasReader::next(LasPoints& points, std::size_t most) {
+  points.positions.clear();
+  points.classes.clear();
+  points.colours.clear();
+  const std::uint64_t count = std::min<std::uint64_t>(most, header_.points - points_read_);
+  const std::string some =
+      bytes(header_.first_point + points_read_ * header_.point_size, count * header_.point_size);
+  for (std::uint64_t i = 0; i < count; ++i) {
+    const char* const point = some.data() + i * header_.point_size;
+    if (!is_withheld(header_, point)) add_point(header_, point, points);
+  }
+  points_read_ += count;
+  return count > 0;
+}
+
+}  // namespace skycap::geometry

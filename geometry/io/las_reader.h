@@ -1,0 +1,64 @@
+/// LAS files of any size, piece by piece: versions 1.0 to 1.4 (ASPRS specification R15), points of
+/// format 0 to 10, not compressed (but gzip may have compressed the whole file).
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <fstream>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include <Eigen/Core>
+
+namespace skycap::geometry {
+
+/// What the beginning of a LAS file says of its points.
+struct LasHeader {
+  int minor = 0;   ///< of the version 1.minor
+  int format = 0;  ///< of points
+  std::uint64_t points = 0;
+  std::uint64_t header_size = 0, first_point = 0, point_size = 0;  ///< [bytes]
+  std::uint32_t records = 0;  ///< of variable length, behind the header
+  std::uint64_t first_extended_record = 0;
+  std::uint32_t extended_records = 0;  ///< behind the points
+  Eigen::Vector3d scale, offset;
+
+  bool has_colours() const;
+};
+
+/// Some points of a file. Coordinates are as they are, whatever their unit.
+struct LasPoints {
+  std::vector<Eigen::Vector3d> positions;
+  std::vector<std::uint8_t> classes;                 ///< ASPRS's, of each
+  std::vector<std::array<std::uint8_t, 3>> colours;  ///< of each, if the format has them
+};
+
+class LasReader {
+ public:
+  /// Throws Error{bad_file} if the file cannot be read, has no such header, is compressed (LAZ), or
+  /// tells of more points than it has room for.
+  explicit LasReader(std::filesystem::path path);
+
+  const LasHeader& header() const { return header_; }
+
+  /// Replaces `points` by the next of the file, from at most `most` of its records: withheld points
+  /// are passed over, so that there may be none of them left. False at the end. Throws
+  /// Error{bad_file} if the file cannot be read.
+  bool next(LasPoints& points, std::size_t most = 1 << 16);
+
+  /// Bytes from a place of the file, fewer if it ends: for records beside the points.
+  std::string bytes(std::uint64_t place, std::uint64_t count);
+
+ private:
+  std::filesystem::path path_;
+  std::ifstream stream_;
+  std::string decompressed_;  ///< all bytes, if gzip had compressed them
+  std::uint64_t size_ = 0;
+  LasHeader header_;
+  std::uint64_t points_read_ = 0;
+};
+
+}  // namespace skycap::geometry

@@ -1,0 +1,54 @@
+#include "geometry/points/usable_scan.h"
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <string>
+
+#include <Eigen/Core>
+
+#include "geometry/error.h"
+
+namespace skycap::geometry {
+namespace {
+
+constexpr float farthest_point = 16384.0F;  // [m]: beyond, single precision moves by a millimetre
+
+bool is_usable(const Eigen::Vector3f& point) {
+  return (point.array().abs() <= farthest_point).all();  // false for NaN
+}
+
+[[noreturn]] void refuse(const std::string& what) {
+  throw Error(ErrorKind::bad_geometry, "the scan " + what);
+}
+
+void require_points(std::span<const Eigen::Vector3f> points) {
+  if (points.empty()) return;
+  const Eigen::Map<const Eigen::ArrayXf> numbers(points.front().data(),
+                                                 static_cast<Eigen::Index>(3 * points.size()));
+  if (numbers.abs().maxCoeff<Eigen::PropagateNaN>() <= farthest_point) return;
+  const auto bad = std::ranges::find_if_not(points, is_usable) - points.begin();
+  refuse("has point " + std::to_string(bad) +
+         " that is not finite or farther than 16384 m from the "
+         "origin; give points and pose in a local frame");
+}
+
+}  // namespace
+
+void require_usable(const ScanSpan& scan, const CameraConfig& camera) {
+  require_points(scan.points);
+  if (scan.pixels.empty()) return;
+  if (scan.pixels.size() != scan.points.size()) {
+    refuse("has " + std::to_string(scan.pixels.size()) + " pixels for " +
+           std::to_string(scan.points.size()) + " points; give one for each");
+  }
+  const auto all = static_cast<std::uint64_t>(camera.width) * static_cast<unsigned>(camera.height);
+  const bool ascends =
+      std::ranges::adjacent_find(scan.pixels, std::ranges::greater_equal{}) == scan.pixels.end();
+  if (!ascends || scan.pixels.back() >= all) {
+    refuse("has pixels that do not ascend, or that the mission's camera of " +
+           std::to_string(camera.width) + " x " + std::to_string(camera.height) + " has not");
+  }
+}
+
+}  // namespace skycap::geometry

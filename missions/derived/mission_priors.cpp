@@ -1,0 +1,188 @@
+#include "missions/derived/mission_priors.h"
+
+#include <algorithm>
+#include <memory>
+#include <string>
+#include <utility>
+
+#include "geometry/place/camera.h"
+#include "missions/derived/mission_flight.h"
+#include "missions/equipment/preset_files.h"
+#include "missions/prior/surface_points.h"
+
+namespace skycap::missions::derived {
+namespace {
+
+using prior::Role;
+using prior::Source;
+
+std::string key_of(std::size_t source, const std::string& key) {
+  return "prior[" + std::to_string(source) + "]." + key;
+}
+
+/// Points are kept so far apart where the mission does not say it: a quarter of the clearance that
+/// vehicles keep at least, as voxels are.
+constexpr double usual_spacing = 0.25;
+
+/// scene.model of a mission whose targets stand in as truth.
+constexpr const char* targets_as_truth = "prior";
+
+/// Of one object, for the planner to guess by.
+constexpr std::size_t most_target_points = 300'000;
+
+/// A path counts from the mission's folder.
+void make_absolute(std::filesystem::path& path, const std::filesystem::path& folder) {
+  if (path.empty()) return;
+  path = std::filesystem::absolute(equipment::named_from(folder, path.string()));
+}
+
+void check_source(const file::MissionFile& given, std::size_t i) {
+  const file::Mission& mission = given.mission;
+  const Source& source = mission.prior[i];
+  if (source.place && !source.crs.empty()) {
+    given.refuse(key_of(i, "crs"), "excludes place; a file is put by one of the two");
+  }
+  if (!source.crs.empty() && !has_place(mission)) {
+    given.refuse(key_of(i, "crs"),
+                 "needs the place of the mission's frame; give site.latitude_deg and "
+                 "site.longitude_deg");
+  }
+  if (source.base_on_terrain && source.role == Role::terrain) {
+    given.refuse(key_of(i, "base"), "of the terrain cannot be the terrain; give a number");
+  }
+  if (source.role == Role::truth && !mission.scene.model.empty()) {
+    given.refuse(key_of(i, "role"),
+                 "of truth takes the place of scene.model; leave one of the two out");
+  }
+}
+
+bool has_role(const file::Mission& mission, Role role) {
+  return std::ranges::find(mission.prior, role, &Source::role) != mission.prior.end();
+}
+
+/// What is truth has to have surfaces, and is where its file says.
+void check_truth(const file::MissionFile& given) {
+  const file::Mission& mission = given.mission;
+  if (!is_truth_prior(mission)) return;
+  if (prior_truth(mission).triangles.empty()) {
+    given.refuse("scene.model", "is prior data, but no target or truth among it has a surface");
+  }
+  for (const char* key : {"scene.up_axis", "scene.rotation_deg", "scene.longest_side",
+                          "scene.scale", "scene.copies", "scene.materials"}) {
+    if (given.gives(key))
+      given.refuse(key,
+                   "does not go with a truth from prior data, which is "
+                   "placed by its own keys; leave it out");
+  }
+}
+
+double view_distance_of(const file::Mission& mission) {
+  const survey::see::SeeConfig& see = mission.planner.see;
+  return see.view_distance.value_or(
+      geometry::view_distance(geometry::Camera(mission.sensor.camera.camera), see.density));
+}
+
+prior::SiteFrame frame_of(const file::Mission& mission) {
+  prior::SiteFrame frame{.takeoff_z = mission.flight.takeoff ? mission.flight.takeoff->z()
+                                                             : mission.scene.position.z()};
+  if (has_place(mission)) frame.origin = site_of(mission).origin;
+  return frame;
+}
+
+}  // namespace
+
+void read_priors(file::MissionFile& given) {
+  file::Mission& mission = given.mission;
+  if (mission.prior.empty()) return;
+  const std::filesystem::path folder = std::filesystem::path(given.name).parent_path();
+  for (std::size_t i = 0; i < mission.prior.size(); ++i) {
+    Source& source = mission.prior[i];
+    make_absolute(source.file, folder);
+    make_absolute(source.select.within, folder);
+    if (!given.gives(key_of(i, "spacing"))) source.spacing = usual_spacing;
+    check_source(given, i);
+  }
+  const auto failed = [&](std::size_t i, const std::string& what) {
+    given.refuse(key_of(i, "file"), what);
+  };
+  mission.priors = std::make_shared<const prior::SitePriors>(
+      prior::read_site_priors(mission.prior, frame_of(mission), failed));
+  check_truth(given);
+}
+
+void derive_scene_box(file::Mission& mission) {
+  survey::see::SeeConfig& see = mission.planner.see;
+  if (see.scene_box) return;
+  const geometry::Mesh targets = surfaces_of(priors_of(mission), Role::target);
+  if (targets.triangles.empty()) return;
+  const double distance = view_distance_of(mission);
+  Eigen::AlignedBox3d box = geometry::bounding_box(targets);
+  box.min().array() -= distance;
+  box.max().array() += distance;
+  if (mission.scene.ground || mission.flight.is_flown()) {
+    // The ground is no target: what is so near to it counts as the ground.
+    const double ground =
+        mission.scene.position.z() + 2.0 * mission.evaluation.registration_distance;
+    if (ground < box.max().z()) box.min().z() = std::max(box.min().z(), ground);
+  }
+  see.scene_box = box;
+}
+
+double ground_height_of(const file::Mission& mission) {
+  const prior::SitePriors& site = priors_of(mission);
+  double height = mission.scene.position.z();
+  for (std::size_t i = 0; i < site.priors.size(); ++i) {
+    const prior::Prior& known = site.priors[i];
+    if (site.sources[i].role != Role::terrain) continue;
+    height = std::min(height, known.box.min().z() - known.uncertainty);
+  }
+  return height;
+}
+
+double ground_at(const file::Mission& mission, const Eigen::Vector2d& place) {
+  const auto& terrain = priors_of(mission).terrain;
+  const std::optional<double> known = terrain ? terrain->height(place) : std::nullopt;
+  return known.value_or(mission.scene.position.z());
+}
+
+bool is_truth_prior(const file::Mission& mission) {
+  return mission.scene.model == targets_as_truth ||
+         (mission.scene.model.empty() && has_role(mission, Role::truth));
+}
+
+geometry::Mesh prior_truth(const file::Mission& mission) {
+  if (!is_truth_prior(mission)) return {};
+  const bool is_target = mission.scene.model == targets_as_truth;
+  return surfaces_of(priors_of(mission), is_target ? Role::target : Role::truth);
+}
+
+bool has_target(const file::Mission& mission) { return has_role(mission, Role::target); }
+
+std::shared_ptr<const survey::skycap::PriorSurface> prior_surface(const file::Mission& mission) {
+  const prior::SitePriors& site = priors_of(mission);
+  auto surface = std::make_shared<survey::skycap::PriorSurface>();
+  // Four pixels are the finest resolution of the planner: a point each is enough.
+  const geometry::Camera camera(mission.sensor.camera.camera);
+  const double pixel = view_distance_of(mission) / camera.focal_length_px().minCoeff();
+  for (std::size_t i = 0; i < site.priors.size(); ++i) {
+    if (site.sources[i].role != Role::target) continue;
+    for (const prior::Object& object : site.priors[i].objects) {
+      const prior::SurfacePoints points =
+          prior::spread_over(object, most_target_points, 2.0 * pixel);
+      surface->positions.insert(surface->positions.end(), points.positions.begin(),
+                                points.positions.end());
+      surface->normals.insert(surface->normals.end(), points.normals.begin(), points.normals.end());
+      surface->areas.resize(surface->positions.size(), static_cast<float>(points.area_of_each));
+      surface->uncertainties.resize(surface->positions.size(),
+                                    static_cast<float>(site.priors[i].uncertainty));
+    }
+  }
+  return surface->size() > 0 ? surface : nullptr;
+}
+
+const prior::SitePriors& priors_of(const file::Mission& mission) {
+  static const prior::SitePriors none;
+  return mission.priors ? *mission.priors : none;
+}
+
+}  // namespace skycap::missions::derived

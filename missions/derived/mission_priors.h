@@ -1,0 +1,44 @@
+/// What follows from a mission's prior data: maps, models, terrain and earlier scans of its site.
+#pragma once
+
+#include <memory>
+
+#include "missions/file/mission_reader.h"
+#include "missions/prior/site_priors.h"
+#include "survey/skycap/prior_surface.h"
+
+namespace skycap::missions::derived {
+
+/// Checks the keys of `prior`, makes its paths absolute, for the package holds the mission
+/// elsewhere, and reads its files into mission.priors. Throws Error{bad_config} as
+/// MissionFile::refuse(), naming the key of the source.
+void read_priors(file::MissionFile& given);
+
+/// planner.scene_box where the mission has none but targets: around them, with the view distance
+/// on every side.
+void derive_scene_box(file::Mission& mission);
+
+/// z below which everything is solid: the scene's, or of a terrain its lowest place less what that
+/// may be off, if it is lower.
+double ground_height_of(const file::Mission& mission);
+
+/// z of the ground at a place: the terrain's where it is known, else the scene's.
+double ground_at(const file::Mission& mission, const Eigen::Vector2d& place);
+
+/// Whether what the mission's sensor measures in simulation is prior data: of the role truth, or,
+/// if scene.model is "prior", the targets.
+bool is_truth_prior(const file::Mission& mission);
+
+/// That, as one mesh. Empty if the mission's truth is none of its prior data.
+geometry::Mesh prior_truth(const file::Mission& mission);
+
+/// Whether the mission has a target among its prior data.
+bool has_target(const file::Mission& mission);
+
+/// The surfaces of the mission's targets for its planner to guess by; null without any.
+std::shared_ptr<const survey::skycap::PriorSurface> prior_surface(const file::Mission& mission);
+
+/// The mission's prior data; none of it if it has none.
+const prior::SitePriors& priors_of(const file::Mission& mission);
+
+}  // namespace skycap::missions::derived

@@ -1,0 +1,51 @@
+#include "missions/package/settings.h"
+
+#include <algorithm>
+
+#include <nlohmann/json.hpp>
+
+#include "geometry/error.h"
+#include "missions/derived/resolved_mission.h"
+#include "missions/file/mission_keys.h"
+#include "missions/file/setting_json.h"
+
+namespace skycap::missions::package {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+/// Settings as a mission file has them. JSON is YAML, but keys are nested there.
+std::string mission_text(const Json& settings) {
+  Json nested = Json::object();
+  for (const auto& [path, value] : settings.items()) {
+    // A pointer with a number in it would grow a list; no key of ours has one.
+    if (!file::find_key(path)) throw Error(ErrorKind::bad_file, "settings." + path + " is unknown");
+    std::string pointer = "/" + path;
+    std::ranges::replace(pointer, '.', '/');
+    nested[Json::json_pointer(pointer)] = value;
+  }
+  return nested.dump(1, ' ', false, Json::error_handler_t::replace);
+}
+
+}  // namespace
+
+Json settings_json(const file::Mission& mission) {
+  Json values = Json::object();
+  for (const file::Key& key : file::mission_keys()) {
+    if (const auto value = key.get(mission)) values[key.path] = file::setting_json(*value);
+  }
+  return values;
+}
+
+file::Mission mission_of_settings(const Json& settings, const std::string& name,
+                                  const std::vector<file::KeyOverride>& overrides) {
+  std::string text;
+  try {
+    text = mission_text(settings);
+  } catch (const Error& error) {
+    throw Error(error.kind(), name + ": " + error.what());
+  }
+  return derived::parse_mission(text, name, overrides);
+}
+
+}  // namespace skycap::missions::package

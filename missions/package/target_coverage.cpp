@@ -1,0 +1,93 @@
+#include "missions/package/target_coverage.h"
+
+#include <array>
+#include <cstdint>
+
+#include <fmt/format.h>
+
+#include "missions/derived/mission_priors.h"
+#include "missions/judge/coverage.h"
+#include "missions/prior/surface_points.h"
+
+namespace skycap::missions::package {
+namespace {
+
+using prior::SurfaceKind;
+
+/// Points on an object: enough to tell shares to a tenth of a percent.
+constexpr std::size_t most_points = 100'000;
+
+/// Points on it are this share of the radius apart, where that makes fewer.
+constexpr double points_per_radius = 2.0;
+
+struct NamedKind {
+  SurfaceKind kind;
+  const char* name;
+};
+constexpr std::array<NamedKind, 4> told_kinds{{{SurfaceKind::wall, "wall"},
+                                               {SurfaceKind::roof, "roof"},
+                                               {SurfaceKind::opening, "opening"},
+                                               {SurfaceKind::other, "other"}}};
+
+template <typename IsMeant>
+CoveredPart part_of(const std::string& name, const prior::SurfacePoints& points,
+                    std::span<const std::uint8_t> is_covered, IsMeant is_meant) {
+  std::size_t all = 0, covered = 0;
+  for (std::size_t i = 0; i < points.kinds.size(); ++i) {
+    if (!is_meant(points.kinds[i])) continue;
+    ++all;
+    covered += is_covered[i];
+  }
+  return {name, points.area_of_each * static_cast<double>(all),
+          all > 0 ? static_cast<double>(covered) / static_cast<double>(all) : 0.0};
+}
+
+TargetCoverage coverage_of(const prior::Object& object, const prior::SurfacePoints& points,
+                           std::span<const Eigen::Vector3f> measured, double radius) {
+  judge::CoverageMeter meter(points.positions, radius);
+  meter.add(measured);
+  const auto& is_covered = meter.is_covered();
+  TargetCoverage coverage{.radius = radius};
+  coverage.object = part_of(object.id, points, is_covered, [](SurfaceKind) { return true; });
+  for (const auto& [kind, name] : told_kinds) {
+    const auto is_meant = [kind = kind](SurfaceKind other) { return other == kind; };
+    CoveredPart part = part_of(name, points, is_covered, is_meant);
+    if (part.area > 0.0) coverage.kinds.push_back(std::move(part));
+  }
+  return coverage;
+}
+
+std::string text_of(const CoveredPart& part) {
+  return fmt::format("{:.2f} % of {:.4g} m^2", 100.0 * part.covered, part.area);
+}
+
+}  // namespace
+
+std::vector<TargetCoverage> target_coverage(const file::Mission& mission,
+                                            std::span<const Eigen::Vector3f> measured) {
+  std::vector<TargetCoverage> targets;
+  const prior::SitePriors& site = derived::priors_of(mission);
+  for (std::size_t i = 0; i < site.priors.size(); ++i) {
+    if (site.sources[i].role != prior::Role::target) continue;
+    const double radius = mission.evaluation.registration_distance + site.priors[i].uncertainty;
+    for (const prior::Object& object : site.priors[i].objects) {
+      const prior::SurfacePoints points =
+          prior::spread_over(object, most_points, radius / points_per_radius);
+      if (points.positions.empty()) continue;
+      targets.push_back(coverage_of(object, points, measured, radius));
+    }
+  }
+  return targets;
+}
+
+std::string target_text(const std::vector<TargetCoverage>& targets) {
+  std::string text;
+  for (const TargetCoverage& target : targets) {
+    text += fmt::format("  target    {}: {}", target.object.name, text_of(target.object));
+    for (const CoveredPart& kind : target.kinds) text += ", " + kind.name + " " + text_of(kind);
+    text += fmt::format("; as mapped, within {:.2f} m\n", target.radius);
+  }
+  return text;
+}
+
+}  // namespace skycap::missions::package

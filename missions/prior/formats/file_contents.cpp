@@ -1,0 +1,18 @@
+#include "missions/prior/formats/file_contents.h"
+
+#include "geometry/error.h"
+
+namespace skycap::missions::prior {
+
+std::string one_line(std::string text) {
+  for (char& c : text) {
+    if (static_cast<unsigned char>(c) < ' ') c = ' ';
+  }
+  return text;
+}
+
+void fail_file(const std::filesystem::path& file, const std::string& what) {
+  throw Error(ErrorKind::bad_file, file.string() + ": " + one_line(what));
+}
+
+}  // namespace skycap::missions::prior

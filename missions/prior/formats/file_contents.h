@@ -1,0 +1,93 @@
+/// What the readers of prior data hand on: a file in its own coordinates, nothing selected, moved
+/// or triangulated yet. prior.cpp makes a Prior of it.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <map>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "geometry/surfaces/mesh.h"
+#include "missions/prior/formats/meanings.h"
+
+namespace skycap::missions::prior {
+
+/// Rings that follow each other: the outline, then holes.
+struct FilePolygon {
+  std::uint32_t first_ring = 0, rings = 0;
+  SurfaceKind kind = SurfaceKind::unknown;
+  std::optional<double> lod;  ///< level of detail; none: drawn at all levels
+};
+
+struct FileObject {
+  std::string id;
+  std::optional<std::size_t> parent;  ///< that it is part of; an object before it
+  std::string kind;
+  std::map<std::string, std::string> attributes;
+  std::vector<FilePolygon> polygons;
+  geometry::Mesh mesh;  ///< of formats that hold triangles
+  /// Of flat outlines that stand for solids [m]; none: the polygons are surfaces, or the source
+  /// has to say it.
+  std::optional<double> height, min_height;
+};
+
+struct FileContents {
+  std::string format;  ///< such as "CityGML 2.0"
+  std::string crs;     ///< as the file has it; empty: it says nothing
+  /// Its coordinates are latitude, longitude, as GML has them by the letter of its authority.
+  bool is_latitude_first = false;
+  bool is_local_frame = false;  ///< the file says that it is in a mission's frame
+  /// Its coordinates are a modeller's: `unit` is of all three, not of heights alone.
+  bool is_scene = false;
+  std::optional<double> unit;           ///< metres, if the file says it and has no reference system
+  std::optional<double> height_unit;    ///< metres, if the file says it of heights alone
+  std::optional<bool> is_y_up;          ///< if the file says it
+  std::optional<HeightDatum> vertical;  ///< that the format prescribes where the CRS is silent
+  bool is_outlines = false;             ///< flat polygons: they are extruded
+  bool has_heights = true;              ///< else z means nothing
+  std::vector<Eigen::Vector3d> corners;      ///< of all rings
+  std::vector<std::uint32_t> ring_begin{0};  ///< ring i is corners [begin[i], begin[i + 1])
+  std::vector<FileObject> objects;
+  std::vector<Eigen::Vector3d> points;  ///< of a cloud
+  std::size_t columns = 0, rows = 0;    ///< of a raster
+  std::vector<Eigen::Vector3d> nodes;   ///< of a raster, row by row; z NaN: none
+  std::vector<std::string> notes;       ///< sentences for the user
+
+  /// Begins a polygon of an object.
+  FilePolygon& add_polygon(FileObject& object) {
+    FilePolygon& polygon = object.polygons.emplace_back();
+    polygon.first_ring = static_cast<std::uint32_t>(ring_begin.size() - 1);
+    return polygon;
+  }
+  /// The corners since the last ring are a ring of a polygon, the one that was begun last.
+  void close_ring(FilePolygon& polygon) {
+    ring_begin.push_back(static_cast<std::uint32_t>(corners.size()));
+    ++polygon.rings;
+  }
+};
+
+/// Most corners, points and nodes that a file may have: 32 bits count them.
+inline constexpr std::size_t most_polygons = 50'000'000, most_cells = 100'000'000,
+                             most_corners = 1'000'000'000, most_bytes = std::size_t{2} << 30;
+
+/// What a file says, for a message: line ends and other control characters become blanks.
+std::string one_line(std::string text);
+
+/// Throws Error{bad_file}: "FILE: WHAT", in one line.
+[[noreturn]] void fail_file(const std::filesystem::path& file, const std::string& what);
+
+/// CityGML 1 to 3, by local names (OGC 08-007r1, 12-019, 20-010). A polygon belongs to the nearest
+/// level of detail around it, and to the nearest feature with a gml:id. References (xlink) are
+/// passed over, since what they point at is met where it stands. Rooms, furniture and closure
+/// surfaces are left out, with a note.
+FileContents parse_citygml(const std::filesystem::path& file, std::string bytes);
+
+/// CityJSON 1.0 to 2.0 (OGC 20-072r5), and CityJSONSeq: one feature a line.
+FileContents parse_cityjson(const std::filesystem::path& file, std::string_view bytes);
+
+}  // namespace skycap::missions::prior

@@ -1,0 +1,92 @@
+/// Prior data in the site's frame: x east, y north, z up about the site's origin, in metres, which
+/// is the frame that missions are planned in and exported from (flight/export/geodesy.h).
+///
+/// What a file says is material to doubt: a prior never proves that space is free, and what is
+/// measured overrules it.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <Eigen/Core>
+#include <Eigen/Geometry>
+
+#include "flight/export/geodesy.h"
+#include "geometry/surfaces/mesh.h"
+#include "missions/prior/formats/meanings.h"
+#include "missions/prior/source.h"
+
+namespace skycap::missions::prior {
+
+/// A thing with a name in its file: a building, an extruded polygon, a node of a scene.
+struct Object {
+  std::string id;    ///< as in the file, or "1", "2", ... in its order
+  std::string kind;  ///< the file's word, such as "Building"; empty: it has none
+  std::map<std::string, std::string> attributes;
+  geometry::Mesh mesh;                ///< as it is: maybe open, orientation not trusted
+  std::vector<SurfaceKind> surfaces;  ///< of each triangle
+};
+
+/// Heights on a grid, which in the site's frame is a little curved and turned: hence all nodes.
+struct HeightGrid {
+  std::size_t columns = 0, rows = 0;
+  std::vector<Eigen::Vector3f> nodes;  ///< centres of cells, row by row; NaN: the file has none
+};
+
+/// Where the site is, as far as it is known.
+struct SiteFrame {
+  std::optional<flight::GeodeticPoint> origin;  ///< of the frame
+  double takeoff_z = 0.0;                       ///< of the pad, in the frame
+};
+
+/// z of the ground at a place of the site; nothing where it is not known.
+using TerrainHeight = std::function<std::optional<double>(const Eigen::Vector2d&)>;
+
+/// Least and greatest, in metres.
+struct HeightRange {
+  double least = 0.0, most = 0.0;
+};
+
+/// What a file holds, less what `select` leaves out.
+struct Prior {
+  Role role = Role::obstacle;
+  double uncertainty = 0.0;  ///< the source's; else 0.3 of meshes, points, grids; 1.0 extruded
+  std::vector<Object> objects;
+  std::vector<Eigen::Vector3f> points;  ///< of a cloud, thinned
+  HeightGrid grid;                      ///< of a raster; empty: it is none
+  std::string format;                   ///< such as "CityGML 2.0"
+  std::string crs;                      ///< that its coordinates were in, by name
+  std::size_t dropped_polygons = 0;     ///< without area
+  Eigen::AlignedBox3d box;              ///< of all of it, in the site's frame
+  std::optional<HeightRange> ellipsoid_heights, sea_level_heights;  ///< if the site is known
+  std::vector<std::string>
+      notes;  ///< sentences for the user: stand-ins, guesses, what was left out
+};
+
+/// Reads a file by its content, then by its ending. Throws Error in one line that opens with the
+/// file: {bad_file} if it is broken, too large (2 GB; 100 million cells; 50 million polygons), or
+/// of no known format; {bad_config} if the source does not say what is needed (crs, vertical, base,
+/// height), or puts anything farther than 50 km from the site. `terrain` is asked where
+/// `base_on_terrain` is set.
+Prior read_prior(const Source& source, const SiteFrame& site, const TerrainHeight& terrain = {});
+
+/// Where on the Earth the middle of what is selected of a file is, without its height: for those
+/// who do not know their site yet. Throws what read_prior() throws, and Error{bad_config} if the
+/// file has no reference system.
+flight::GeodeticPoint middle_of(const Source& source);
+
+/// All surfaces of a file as one mesh in metres with z up, about the middle of what they are in:
+/// what simulated sensors see of a site. Throws what read_prior() throws.
+geometry::Mesh read_surfaces(const std::filesystem::path& file);
+
+/// Height of the geoid EGM96 above WGS84's ellipsoid, from PROJ's grid. Throws Error{bad_file} if
+/// PROJ or the grid is not installed.
+double egm96_undulation(double latitude_deg, double longitude_deg);
+
+}  // namespace skycap::missions::prior

@@ -1,0 +1,17 @@
+/// Prior data in words.
+#pragma once
+
+#include <string>
+
+#include "missions/prior/site_priors.h"
+
+namespace skycap::missions::prior {
+
+/// As mission files say it.
+const char* name_of(Role role);
+
+/// Some lines for each source: what it holds, where that is, what its reader noted. Empty without
+/// any.
+std::string text_of(const SitePriors& site);
+
+}  // namespace skycap::missions::prior

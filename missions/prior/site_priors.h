@@ -1,0 +1,37 @@
+/// All prior data of a mission, read and made ready for those who ask: what is in the way of a
+/// flight, the ground, what is surveyed.
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "flight/space/prior_obstacle.h"
+#include "missions/prior/prior.h"
+#include "missions/prior/terrain.h"
+
+namespace skycap::missions::prior {
+
+struct SitePriors {
+  std::vector<Source> sources;
+  std::vector<Prior> priors;  ///< of the sources, in their order
+  /// Of the roles obstacle and terrain.
+  std::vector<std::shared_ptr<const flight::PriorObstacle>> obstacles;
+  std::shared_ptr<const Terrain> terrain;  ///< null: there is none
+  std::vector<std::string> digests;        ///< of what the sources hold, in their order
+};
+
+/// Reads them, terrain first. Whatever is thrown for a source passes through `failed`, which has to
+/// throw, too: it knows where the mission file names that source.
+SitePriors read_site_priors(std::vector<Source> sources, const SiteFrame& site,
+                            const std::function<void(std::size_t, const std::string&)>& failed);
+
+/// Everything within the prior's uncertainty of its surfaces, points and columns of heights.
+flight::PriorObstacleConfig obstacle_of(const Source& source, const Prior& prior);
+
+/// The surfaces of all objects and grids of a role, one behind the other; empty: there are none.
+geometry::Mesh surfaces_of(const SitePriors& site, Role role);
+
+}  // namespace skycap::missions::prior

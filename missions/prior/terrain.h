@@ -1,0 +1,39 @@
+/// The ground as files say it is: heights on a grid, or a surface of triangles.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "flight/space/segment_distance.h"
+#include "missions/prior/prior.h"
+
+namespace skycap::missions::prior {
+
+class Terrain {
+ public:
+  /// Of the grids and surfaces of these; their points are not looked at.
+  explicit Terrain(const std::vector<const Prior*>& priors);
+  ~Terrain();
+
+  /// z of the highest ground there; nothing where no file has any.
+  std::optional<double> height(const Eigen::Vector2d& place) const;
+
+  /// All of it.
+  geometry::Mesh surface() const;
+
+ private:
+  struct Impl;
+  std::unique_ptr<const Impl> impl_;
+};
+
+/// The triangles between a grid's nodes, two in each cell whose nodes all have heights; every
+/// `step`-th node is used.
+std::vector<flight::Triangle> triangles_of(const HeightGrid& grid, std::size_t step);
+
+/// The triangles, each with vertices of its own.
+geometry::Mesh mesh_of(const std::vector<flight::Triangle>& triangles);
+
+}  // namespace skycap::missions::prior

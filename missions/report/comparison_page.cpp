@@ -1,0 +1,77 @@
+#include "missions/report/comparison_page.h"
+
+#include <set>
+#include <vector>
+
+#include <nlohmann/json.hpp>
+
+#include "geometry/error.h"
+#include "missions/report/page.h"
+
+namespace skycap::missions::report {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+[[noreturn]] void refuse(const std::filesystem::path& file, const std::string& why) {
+  throw Error(ErrorKind::bad_file, file.string() + ": is not as skycap wrote it (" + why + ")");
+}
+
+std::string counted(std::size_t count, const std::string& word) {
+  return std::to_string(count) + " " + word + (count == 1 ? "" : "s");
+}
+
+}  // namespace
+
+std::string benchmark_page(const ResultFinder& results) {
+  const std::filesystem::path file = results("results.json");
+  const Json summary = read_results(file);
+  try {
+    std::set<std::string> missions, planners;
+    std::size_t trials = 0;
+    for (const Json& cell : summary.at("results")) {
+      missions.insert(cell.at("mission").get<std::string>());
+      planners.insert(cell.at("planner").get<std::string>());
+      trials += cell.at("trials").get<std::size_t>();
+    }
+    const Json data = {
+        {"kind", "comparison"},
+        {"title", "Comparison of planners"},
+        {"facts",
+         {counted(missions.size(), "mission"), counted(planners.size(), "planner"),
+          counted(trials, "survey")}},
+        {"summary", summary},
+        {"files", files_json({"results.json", "table1.csv", "trials.csv", "report.md"}, results)}};
+    return page_text(data.at("title"), data, {});
+  } catch (const Json::exception& error) {
+    refuse(file, error.what());
+  }
+}
+
+std::string trials_page(const ResultFinder& results) {
+  const std::filesystem::path file = results("trials.json");
+  const Json summary = read_results(file);
+  try {
+    const auto done = summary.at("trials").get<std::size_t>();
+    const auto asked = summary.at("trials_requested").get<std::size_t>();
+    const bool is_whole = summary.at("complete").get<bool>();
+    const Json data = {
+        {"kind", "trials"},
+        {"title", summary.at("mission")},
+        {"facts",
+         {"planner " + summary.at("planner").get<std::string>(),
+          "first seed " + std::to_string(summary.at("first_seed").get<std::uint64_t>())}},
+        {"verdict",
+         {{"answer", is_whole ? "complete" : "incomplete"},
+          {"because", std::to_string(done) + " of " + counted(asked, "trial")},
+          {"light", is_whole ? "green" : "red"},
+          {"lights", Json::array()}}},
+        {"summary", summary},
+        {"files", files_json({"trials.json", "trials.csv"}, results)}};
+    return page_text(summary.at("mission").get<std::string>(), data, {});
+  } catch (const Json::exception& error) {
+    refuse(file, error.what());
+  }
+}
+
+}  // namespace skycap::missions::report

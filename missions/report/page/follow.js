@@ -1,0 +1,70 @@
+// The page of a survey that goes on: it is read again now and then, and stays as it was looked at.
+
+const reading_period = 5;  // [s]
+const memory_name = "skycap-page";
+
+/// The state that the page had before it was read again; nothing if it was not.
+function remembered() {
+  try {
+    const text = sessionStorage.getItem(memory_name);
+    sessionStorage.removeItem(memory_name);
+    return text ? JSON.parse(text) : null;
+  } catch (failure) {
+    return null;  // some browsers keep nothing for files
+  }
+}
+
+function remember(skycap) {
+  const { panel } = skycap, state = { top: scrollY };
+  if (panel) {
+    const { camera, controls, layers } = panel.viewer;
+    Object.assign(state, { position: camera.position.toArray(), target: controls.target.toArray(),
+      colour: panel.viewer.mode,
+      layers: Object.entries(layers).filter(([, layer]) => layer.visible).map(([name]) => name) });
+  }
+  try {
+    sessionStorage.setItem(memory_name, JSON.stringify(state));
+  } catch (failure) {
+    // Then the page begins anew each time.
+  }
+}
+
+function restore(skycap, state) {
+  if (!state) return;
+  const { panel } = skycap;
+  if (panel && state.position) {
+    panel.viewer.move_to(vector(state.position), vector(state.target), false);
+    panel.set_colour(state.colour);
+    panel.set_layers(state.layers);
+  }
+  scrollTo(0, state.top);
+}
+
+/// Reads the page again and again, but not while somebody is at it.
+function follow(skycap, started) {
+  const { data } = skycap;
+  if (!data.live || !data.live.position) return;
+  restore(skycap, remembered());
+  const period = Math.max(1000 * reading_period, 4 * (performance.now() - started));
+  let touched = -Infinity, is_followed = true;
+  for (const event of ["pointerdown", "wheel", "keydown", "touchmove"]) {
+    addEventListener(event, () => { touched = performance.now(); }, { capture: true, passive: true });
+  }
+  const is_at_rest = () => !document.hidden && performance.now() - touched > period &&
+    !(skycap.panel && (skycap.panel.card || skycap.panel.timer || skycap.panel.measured));
+  const button = element("button", { type: "button", id: "follow", class: "follow", onclick: () => {
+    is_followed = !is_followed;
+    say();
+  } });
+  const say = () => {
+    button.textContent = is_followed ? "follows the survey: read again every " +
+      Math.round(period / 1000) + " s – pause" : "paused – follow the survey";
+  };
+  say();
+  document.getElementById("head").append(button);
+  setInterval(() => {
+    if (!is_followed || !is_at_rest()) return;
+    remember(skycap);
+    location.reload();
+  }, period);
+}

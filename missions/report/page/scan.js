@@ -1,0 +1,60 @@
+// A scan in flight: what its page has that others have not.
+
+const flown_colour = [236, 240, 243], believed_colour = [88, 183, 224];
+
+/// The sensor's way as it was and as its carrier believes, where they differ to be seen.
+function trajectory_lines(data) {
+  if (!data.trajectory) return [];
+  const { flown, believed } = data.trajectory, lines = [];
+  const apart = Math.max(0, ...flown.points.map((point, i) =>
+    (believed.points[i] ? vector(point).distanceTo(vector(believed.points[i])) : 0)));
+  if (apart > 0.01) lines.push({ points: believed.points, colour: believed_colour });
+  lines.push({ points: flown.points, colour: flown_colour });
+  return lines;
+}
+
+function scan_section(data) {
+  const { summary } = data, f = (path, form) => ({ number: figure(data, path, form) });
+  const number = (content) => ({ number: content }), rows = [];
+  const add = (name, path, form) => {
+    if (typeof value_at(summary, path) === "number") rows.push([name, f(path, form)]);
+  };
+  add("flight", "flight_s", "minutes");
+  add("images taken", "images", "count");
+  add("images planned", "images_planned", "count");
+  add("shots", "shots", "count");
+  add("points", "points", "count");
+  if (summary.shots > 0) rows.push(["points of a shot", number((summary.points / summary.shots).toFixed(3))]);
+  add("error of the navigation, level", "navigation.horizontal_sigma_m", "millimetres");
+  add("error of the navigation, height", "navigation.vertical_sigma_m", "millimetres");
+  const shown_points = value_at(data, "clouds.measured.of");
+  if (shown_points) rows.push(["points of the preview", number(shown(shown_points, "count"))]);
+  return element("section", { id: "scan" }, element("h2", {}, "The scan"),
+    element("div", { class: "few" }, table(["", number("")], rows)));
+}
+
+function scan_charts(data) {
+  const { times, points } = data.trajectory.flown;
+  if (times.length < 2) return null;
+  const start = times[0], places = points.map(vector);
+  const speeds = places.slice(1).map((place, i) => [(times[i] + times[i + 1]) / 2 - start,
+    place.distanceTo(places[i]) / (times[i + 1] - times[i])]);
+  const apart = data.trajectory.believed.points.map((point, i) => [times[i] - start,
+    1000 * vector(point).distanceTo(places[Math.min(i, places.length - 1)])]);
+  const x = "seconds", plain = { pointRadius: 0 };
+  const pieces = data.pieces.map((piece) => [piece.time_s - start, piece.points]);
+  return element("section", { id: "curves" }, element("h2", {}, "Curves"), element("div", { class: "charts" },
+    chart("Height of the sensor", null, "line", [line("height", places.map((place, i) => [times[i] - start, place.z]), 0, plain)], { x, y: "m", is_free: true }),
+    chart("Speed", null, "line", [line("speed", speeds, 0, plain)], { x, y: "m/s" }),
+    pieces.length > 1 ? chart("Points over time", "Of the preview, for each " + data.piece + ".", "line", [line("points", pieces, 0, plain)], { x, y: "points" }) : null,
+    apart.some(([, off]) => off > 1) ? chart("Error of the believed place", "Between where the sensor was and where its carrier believes that it was.",
+      "line", [line("error", apart, 0, plain)], { x, y: "mm" }) : null));
+}
+
+const how_scanned = [
+  ["Points", "Of all shots or pixels with a return. The page shows the preview: an even choice of them, where the carrier believes that they are."],
+  ["Incidence", "Between the plane through a point's neighbours and the way to the sensor in the middle of the piece of the flight."],
+  ["Range", "From a point to the sensor in the middle of its piece of the flight."],
+  ["Speed", "Between neighbouring poses of the trajectory, of which the page has at most 3000."],
+  ["Density", "Neighbours of a point of the preview within two and a half times the usual spacing, over that disc's area, scaled up if the page shows only some of the preview's points."],
+];

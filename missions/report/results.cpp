@@ -1,0 +1,46 @@
+#include "missions/report/results.h"
+
+#include <system_error>
+
+#include <nlohmann/json.hpp>
+
+#include "geometry/error.h"
+#include "geometry/io/file.h"
+#include "geometry/io/json.h"
+#include "missions/scene/sha256.h"
+
+namespace skycap::missions::report {
+
+namespace fs = std::filesystem;
+using Json = nlohmann::ordered_json;
+
+ResultFinder results_in(const fs::path& folder) {
+  return [folder](const std::string& name) { return folder / name; };
+}
+
+bool is_there(const fs::path& file) {
+  std::error_code ignored;
+  return fs::is_regular_file(file, ignored);
+}
+
+Json read_results(const fs::path& file) {
+  constexpr std::size_t largest = std::size_t{256} << 20;  // a summary of a million views
+  Json json = geometry::parse_json<Json>(geometry::read_file(file, largest));
+  if (json.is_object()) return json;
+  throw Error(ErrorKind::bad_file, file.string() +
+                                       ": is no JSON object, or nested too deep; name a folder of "
+                                       "results as skycap wrote it");
+}
+
+Json files_json(const std::vector<std::string>& names, const ResultFinder& results) {
+  Json files = Json::array();
+  for (const std::string& name : names) {
+    if (fs::path(name).filename() != name || !is_there(results(name))) continue;
+    files.push_back({{"name", name},
+                     {"bytes", fs::file_size(results(name))},
+                     {"sha256", scene::sha256_of_file(results(name))}});
+  }
+  return files;
+}
+
+}  // namespace skycap::missions::report

@@ -1,0 +1,221 @@
+#include "missions/report/scan_page.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <vector>
+
+#include <nlohmann/json.hpp>
+
+#include "flight/export/trajectory_file.h"
+#include "geometry/error.h"
+#include "geometry/io/cloud_io.h"
+#include "geometry/io/file.h"
+#include "missions/file/json_text.h"
+#include "missions/package/cloud_normals.h"
+#include "missions/package/settings.h"
+#include "missions/report/cloud_code.h"
+#include "missions/report/page.h"
+#include "missions/report/point_figures.h"
+#include "missions/report/scene_outline.h"
+
+namespace skycap::missions::report {
+namespace {
+
+using Json = nlohmann::ordered_json;
+namespace fs = std::filesystem;
+
+/// Where the sensor was over time, as the carrier believed or as it was.
+std::vector<flight::TimedPose> poses_in(const fs::path& file) {
+  if (!is_there(file)) return {};
+  const std::string text = geometry::read_file(file);
+  if (const auto problems = flight::validate_tum(text); !problems.empty()) {
+    throw Error(ErrorKind::bad_file, file.string() + ": " + problems.front());
+  }
+  return flight::read_tum(text);
+}
+
+/// The trajectory with at most so many poses, the last one among them.
+std::vector<flight::TimedPose> thinned(const std::vector<flight::TimedPose>& poses) {
+  constexpr std::size_t most = 3000;
+  if (poses.size() <= most) return poses;
+  std::vector<flight::TimedPose> kept;
+  for (std::size_t i = 0; i < most; ++i) kept.push_back(poses[i * (poses.size() - 1) / (most - 1)]);
+  return kept;
+}
+
+Json trajectory_json(const std::vector<flight::TimedPose>& poses) {
+  Json times = Json::array(), points = Json::array();
+  for (const flight::TimedPose& pose : thinned(poses)) {
+    times.push_back(pose.time);
+    points.push_back(file::json_of(Eigen::Vector3d(pose.world_from_camera.translation())));
+  }
+  return {{"times", times}, {"points", points}};
+}
+
+/// The pose that was current at a time: the last one before it.
+const flight::TimedPose& pose_at(const std::vector<flight::TimedPose>& poses, double time) {
+  const auto after = std::ranges::upper_bound(poses, time, {}, &flight::TimedPose::time);
+  return after == poses.begin() ? *after : *(after - 1);
+}
+
+/// Where the sensor was for each piece of the flight: in its middle, or where the image was taken.
+std::vector<flight::TimedPose> piece_poses(const Json& preview,
+                                           const std::vector<flight::TimedPose>& believed,
+                                           std::size_t pieces) {
+  if (!preview.contains("piece_s") || believed.empty()) return believed;
+  const auto start = preview.at("start_s").get<double>();
+  const auto length = preview.at("piece_s").get<double>();
+  std::vector<flight::TimedPose> poses;
+  for (std::size_t i = 0; i < pieces; ++i) {
+    const double time = start + (static_cast<double>(i) + 0.5) * length;
+    poses.push_back({time, pose_at(believed, time).world_from_camera});
+  }
+  return poses;
+}
+
+Json pieces_json(const std::vector<flight::TimedPose>& poses,
+                 const std::vector<std::size_t>& points) {
+  Json list = Json::array();
+  for (std::size_t i = 0; i < poses.size(); ++i) {
+    const Eigen::Isometry3d& pose = poses[i].world_from_camera;
+    list.push_back({{"time_s", poses[i].time},
+                    {"position", file::json_of(Eigen::Vector3d(pose.translation()))},
+                    {"direction", file::json_of(Eigen::Vector3d(pose.linear().col(2)))},
+                    {"points", i < points.size() ? points[i] : 0}});
+  }
+  return list;
+}
+
+std::vector<std::size_t> counts_of(const std::vector<std::uint32_t>& views) {
+  std::vector<std::size_t> counts;
+  for (const std::uint32_t view : views) {
+    if (view >= counts.size()) counts.resize(std::min<std::size_t>(view + 1UL, 0x10000), 0);
+    if (view < counts.size()) ++counts[view];
+  }
+  return counts;
+}
+
+/// The points that the page shows of the preview, and how they were seen.
+struct Shown {
+  std::vector<std::uint16_t> views, incidence;
+  std::vector<float> ranges;
+};
+
+Shown shown_of(geometry::AttributedCloud& cloud, const std::vector<flight::TimedPose>& poses) {
+  std::vector<geometry::View> views;
+  std::vector<Eigen::Vector3d> sensors;
+  for (const flight::TimedPose& pose : poses) {
+    sensors.emplace_back(pose.world_from_camera.translation());
+    views.push_back({sensors.back(), pose.world_from_camera.linear().col(2)});
+  }
+  const bool is_known =
+      std::ranges::all_of(cloud.views, [&](std::uint32_t view) { return view < sensors.size(); });
+  if (is_known && cloud.views.size() == cloud.positions.size()) {
+    // A plane through noise needs a few neighbours all around.
+    constexpr double spacings = 5.0;
+    const double radius =
+        spacings * encode_cloud(cloud.positions, {}, cloud.positions.size()).spacing;
+    if (radius > 0.0) {
+      cloud.normals = package::cloud_normals({cloud.positions, cloud.views}, sensors, radius, 0);
+    }
+  }
+  return {view_numbers(cloud), incidence_steps(cloud, views), ranges(cloud, views)};
+}
+
+std::vector<std::string> file_names(const Json& summary) {
+  std::vector<std::string> names;
+  const Json files = summary.value("files", Json::array());
+  for (const Json& file : files) names.push_back(file.at("name").get<std::string>());
+  for (const char* name : {"trajectory.tum", "trajectory_believed.tum", "depth.txt",
+                           "groundtruth.txt", "believed.txt", "camera.json", "frames.rawlog"}) {
+    names.emplace_back(name);
+  }
+  return names;
+}
+
+Json verdict_of(const Json& summary) {
+  const bool is_complete = summary.value("complete", false);
+  Json lights = Json::array();
+  const auto add = [&](const char* name, const char* figure, const char* form) {
+    if (!summary.contains(figure)) return;
+    lights.push_back({{"name", name},
+                      {"figure", figure},
+                      {"value", summary[figure]},
+                      {"form", form},
+                      {"light", "none"},
+                      {"rule", ""}});
+  };
+  add("Flight", "flight_s", "minutes");
+  add("Images", "images", "count");
+  add("Shots", "shots", "count");
+  add("Points", "points", "count");
+  return {{"answer", is_complete ? "complete" : "incomplete"},
+          {"because", is_complete ? "the whole route was flown" : "it was interrupted"},
+          {"light", is_complete ? "green" : "red"},
+          {"lights", lights}};
+}
+
+/// The viewing angles of a depth camera that camera.json describes.
+Json camera_outline(const Json& camera) {
+  const auto angle = [&](const char* size, std::size_t axis) {
+    return 2.0 * std::atan(camera.at(size).get<double>() /
+                           (2.0 * camera.at("focal_length_px").at(axis).get<double>()));
+  };
+  return {{"horizontal_fov", angle("width_px", 0)},
+          {"vertical_fov", angle("height_px", 1)},
+          {"lidar", false}};
+}
+
+Json page_data(const Json& summary, const fs::path& file) {
+  Json data = {{"kind", "scan"},
+               {"title", summary.at("mission")},
+               {"facts", {"sensor " + summary.at("sensor").get<std::string>()}},
+               {"verdict", verdict_of(summary)},
+               {"summary", summary}};
+  if (summary.contains("settings")) {
+    const file::Mission mission = package::mission_of_settings(summary["settings"], file.string());
+    data["facts"].push_back(mission.scene.model);
+    data["scene"] = scene_outline(mission, std::nullopt);
+  }
+  return data;
+}
+
+}  // namespace
+
+std::string scan_page(const ResultFinder& results, std::size_t most_points) {
+  const fs::path file = results("scan.json");
+  const Json summary = read_results(file);
+  try {
+    const Json preview = summary.value("preview", Json::object());
+    geometry::AttributedCloud cloud;
+    if (is_there(results("preview.ply"))) cloud = geometry::read_cloud(results("preview.ply"));
+    const bool is_laser = summary.contains("shots");
+    const auto believed = poses_in(results(is_laser ? "trajectory_believed.tum" : "believed.txt"));
+    const auto flown = poses_in(results(is_laser ? "trajectory.tum" : "groundtruth.txt"));
+    const std::vector<std::size_t> counts = counts_of(cloud.views);
+    const auto poses = piece_poses(preview, believed, counts.size());
+    const Shown shown = shown_of(cloud, poses);
+    Json data = page_data(summary, file);
+    if (data.contains("scene") && is_there(results("camera.json"))) {
+      data["scene"]["sensor"] = camera_outline(read_results(results("camera.json")));
+    }
+    data["piece"] = is_laser ? "piece" : "image";
+    data["pieces"] = pieces_json(poses, counts);
+    data["trajectory"] = {{"flown", trajectory_json(flown)},
+                          {"believed", trajectory_json(believed)}};
+    data["accuracy"] = accuracy_json(shown.incidence, shown.ranges, {});
+    data["files"] = files_json(file_names(summary), results);
+    std::vector<CloudAttribute> attributes;
+    if (!shown.views.empty()) {
+      attributes = {{"view", shown.views}, {"incidence", shown.incidence, true}};
+    }
+    return page_text(summary.at("mission").get<std::string>(), data,
+                     {{"measured", encode_cloud(cloud.positions, attributes, most_points)}});
+  } catch (const Json::exception& error) {
+    throw Error(ErrorKind::bad_file,
+                file.string() + ": is not as skycap scan wrote it (" + error.what() + ")");
+  }
+}
+
+}  // namespace skycap::missions::report

@@ -1,0 +1,144 @@
+// Proofs that straight legs keep their distance.
+#include <limits>
+#include <optional>
+#include <string>
+
+#include <pybind11/stl.h>
+
+#include "flight/route/route.h"
+#include "flight/space/clearance.h"
+#include "flight/space/obstacles.h"
+#include "geometry/error.h"
+#include "geometry/place/prism.h"
+#include "python/arrays.h"
+#include "python/bindings.h"
+#include "python/interruptible.h"
+
+namespace skycap::python {
+namespace {
+
+using flight::LegProof;
+using geometry::Prism;
+
+/// A leg with the name of what it comes nearest to.
+struct Certificate {
+  LegProof proof;
+  std::string obstacle;
+};
+
+Prism prism_from(const std::string& name, const Array<double>& footprint, double floor,
+                 double ceiling) {
+  if (footprint.ndim() != 2 || footprint.shape(1) != 2) {
+    throw py::value_error("footprint has not the shape (N, 2)");
+  }
+  Prism prism{.name = name, .footprint = {}, .floor = floor, .ceiling = ceiling};
+  for (py::ssize_t i = 0; i < footprint.shape(0); ++i) {
+    prism.footprint.emplace_back(footprint.at(i, 0), footprint.at(i, 1));
+  }
+  return prism;
+}
+
+flight::Obstacles obstacles_from(const geometry::Mesh* mesh,
+                                 const std::optional<Array<float>>& cloud, double cloud_radius,
+                                 std::vector<Prism> no_fly, std::optional<Prism> fence,
+                                 std::optional<double> ground_height) {
+  flight::Obstacles obstacles;
+  if (mesh != nullptr) obstacles.mesh = *mesh;
+  if (cloud) {
+    const auto points = points_in(*cloud, "cloud");
+    obstacles.cloud = {.points = {points.begin(), points.end()}, .radius = cloud_radius};
+  }
+  obstacles.no_fly = std::move(no_fly);
+  obstacles.fence = std::move(fence);
+  obstacles.ground_height = ground_height;
+  return obstacles;
+}
+
+/// Of a route of one point, that point.
+std::vector<flight::Segment> legs_of(const std::vector<Eigen::Vector3d>& route) {
+  for (std::size_t i = 0; i < route.size(); ++i) {
+    if (route[i].allFinite()) continue;
+    throw Error(ErrorKind::bad_geometry,
+                "point " + std::to_string(i) + " of the route is not finite");
+  }
+  if (route.size() == 1) return {{route[0], route[0]}};
+  std::vector<flight::Segment> legs;
+  for (std::size_t i = 1; i < route.size(); ++i) legs.push_back({route[i - 1], route[i]});
+  return legs;
+}
+
+std::vector<Certificate> certify(const Array<double>& route, double clearance,
+                                 const geometry::Mesh* mesh,
+                                 const std::optional<Array<float>>& cloud, double cloud_radius,
+                                 std::vector<Prism> no_fly, std::optional<Prism> fence,
+                                 std::optional<double> ground_height) {
+  if (!(clearance >= 0.0)) throw py::value_error("clearance must be zero or more, in metres");
+  const std::vector<flight::Segment> legs = legs_of(places_in(route, "route"));
+  const flight::Obstacles obstacles =
+      obstacles_from(mesh, cloud, cloud_radius, std::move(no_fly), std::move(fence), ground_height);
+  std::vector<Certificate> certificates;
+  run_interruptibly([&](const std::stop_token& stop) {
+    const flight::KnownSpace space(obstacles);
+    for (const flight::Segment& leg : legs) {
+      if (stop.stop_requested()) return;
+      const LegProof proof =
+          flight::prove(space, leg, clearance, clearance + flight::reported_surplus);
+      certificates.push_back({proof, space.name(proof.closest)});
+    }
+  });
+  return certificates;
+}
+
+void bind_certificate(py::module_& module) {
+  const auto place = [](const Certificate& certificate, const Eigen::Vector3d& at) -> py::object {
+    if (certificate.proof.closest.kind == flight::ObstacleKind::none) return py::none();
+    return array_of(at);
+  };
+  py::class_<Certificate>(module, "LegProof", "What is proven of a straight leg.")
+      .def_property_readonly(
+          "is_proven", [](const Certificate& c) { return c.proof.is_proven; },
+          "No point of the leg is nearer than the clearance to anything that is not free.")
+      .def_property_readonly(
+          "clearance", [](const Certificate& c) { return c.proof.clearance; },
+          "Proven lower bound of the leg's distance, in metres; at most 10 m above the clearance\n"
+          "that was asked for.")
+      .def_readonly("obstacle", &Certificate::obstacle,
+                    "The name of what is nearest; '' if nothing is that near.")
+      .def_property_readonly(
+          "on_leg", [place](const Certificate& c) { return place(c, c.proof.closest.on_leg); },
+          "Where the leg is nearest to it: float64, shape (3,); None if nothing is that near.")
+      .def_property_readonly(
+          "on_obstacle",
+          [place](const Certificate& c) { return place(c, c.proof.closest.on_obstacle); },
+          "The nearest point of it: float64, shape (3,); None if nothing is that near.");
+}
+
+}  // namespace
+
+void bind_certificates(py::module_& module) {
+  constexpr double infinity = std::numeric_limits<double>::infinity();
+  py::class_<Prism>(module, "Prism",
+                    "An upright volume over a simple polygon: Prism(name, footprint, floor=-inf,\n"
+                    "ceiling=inf), the footprint (N, 2) and heights in metres, world frame.")
+      .def(py::init(&prism_from), py::arg("name"), py::arg("footprint"),
+           py::arg("floor") = -infinity, py::arg("ceiling") = infinity)
+      .def_readonly("name", &Prism::name, "For messages.")
+      .def_readonly("floor", &Prism::floor, "In metres.")
+      .def_readonly("ceiling", &Prism::ceiling, "In metres.");
+  bind_certificate(module);
+  module.def(
+      "certify", &certify, py::arg("route"), py::arg("clearance"),
+      py::arg("mesh") = static_cast<const geometry::Mesh*>(nullptr), py::arg("cloud") = py::none(),
+      py::arg("cloud_radius") = 0.0, py::arg("no_fly") = std::vector<Prism>{},
+      py::arg("fence") = py::none(), py::arg("ground_height") = py::none(),
+      "certify(route, clearance, mesh=None, cloud=None, cloud_radius=0.0, no_fly=(), "
+      "fence=None, ground_height=None)\n--\n\n"
+      "Proves for each straight leg of a route, (N, 3) float64 in metres, that it keeps\n"
+      "`clearance` metres from everything: a list of N - 1 LegProof. Distances are exact\n"
+      "minima over all points of a leg, not samples.\n\n"
+      "mesh: a Mesh; being inside a closed one is as bad as touching it. cloud: (N, 3)\n"
+      "float32, each point a ball of `cloud_radius`. no_fly: Prisms to stay out of; fence: a\n"
+      "Prism to stay in. ground_height: z below which all is solid.");
+}
+
+}  // namespace skycap::python

@@ -1,0 +1,50 @@
+// skycap.Error, with the messages of the program.
+#include "geometry/error.h"
+#include "python/bindings.h"
+
+namespace skycap::python {
+namespace {
+
+namespace py = pybind11;
+
+const char* name_of(ErrorKind kind) {
+  switch (kind) {
+    case ErrorKind::bad_usage:
+      return "bad_usage";
+    case ErrorKind::bad_config:
+      return "bad_config";
+    case ErrorKind::bad_file:
+      return "bad_file";
+    case ErrorKind::bad_geometry:
+      return "bad_geometry";
+  }
+  return "";
+}
+
+PyObject* error_type = nullptr;  // lives as long as the module, which is never unloaded
+
+void raise(const Error& error) {
+  const py::object raised = py::reinterpret_borrow<py::object>(error_type)(error.what());
+  raised.attr("kind") = name_of(error.kind());
+  PyErr_SetObject(error_type, raised.ptr());
+}
+
+}  // namespace
+
+void bind_errors(py::module_& module) {
+  static py::exception<Error> type(module, "Error");
+  type.doc() =
+      "What cannot be done, and why, in a sentence for the user.\n\n"
+      "`kind` is 'bad_config' (a key or a setting), 'bad_file' (it cannot be read or written),\n"
+      "'bad_geometry' (a mesh, cloud or scan that cannot be worked with) or 'bad_usage'.";
+  error_type = type.ptr();
+  py::register_exception_translator([](std::exception_ptr thrown) {
+    try {
+      if (thrown) std::rethrow_exception(thrown);
+    } catch (const Error& error) {
+      raise(error);
+    }
+  });
+}
+
+}  // namespace skycap::python

@@ -1,0 +1,91 @@
+// Views and cameras.
+#include <string>
+
+#include "geometry/place/camera.h"
+#include "geometry/place/pose.h"
+#include "python/arrays.h"
+#include "python/bindings.h"
+
+namespace skycap::python {
+namespace {
+
+using geometry::CameraConfig;
+using geometry::View;
+
+View view_from(const Array<double>& position, const Array<double>& direction) {
+  const Eigen::Vector3d towards = vector_in(direction, "direction");
+  if (!(towards.norm() > 0.0) || !towards.allFinite()) {
+    throw py::value_error("direction has no length to be divided by");
+  }
+  return {vector_in(position, "position"), towards.normalized()};
+}
+
+View look_at(const Array<double>& position, const Array<double>& target) {
+  const Eigen::Vector3d from = vector_in(position, "position"), to = vector_in(target, "target");
+  if (from == to) throw py::value_error("position and target are the same; nothing is looked at");
+  return geometry::look_at(from, to);
+}
+
+std::string text_of(const View& view) {
+  const auto list = [](const Eigen::Vector3d& vector) {
+    return py::str(array_of(vector).attr("tolist")()).cast<std::string>();
+  };
+  return "View(position=" + list(view.position) + ", direction=" + list(view.direction) + ")";
+}
+
+py::array_t<double> rays_of(const CameraConfig& config) {
+  const geometry::Camera camera(config);
+  py::array_t<double> rays({camera.height(), camera.width(), 3});
+  auto* next = rays.mutable_data();
+  for (int row = 0; row < camera.height(); ++row) {
+    for (int column = 0; column < camera.width(); ++column, next += 3) {
+      Eigen::Map<Eigen::Vector3d>{next} = camera.ray({column, row});
+    }
+  }
+  return rays;
+}
+
+void bind_camera(py::module_& module) {
+  py::class_<CameraConfig>(
+      module, "Camera",
+      "A pinhole depth camera. Optical frame: x right, y down, z forward, in metres; pixel (0, 0)\n"
+      "is the centre of the top-left one.")
+      .def_readonly("width", &CameraConfig::width, "Pixels in a row.")
+      .def_readonly("height", &CameraConfig::height, "Rows of pixels.")
+      .def_readonly("horizontal_fov", &CameraConfig::horizontal_fov, "Full angle, in radians.")
+      .def_readonly("vertical_fov", &CameraConfig::vertical_fov, "Full angle, in radians.")
+      .def_readonly("min_range", &CameraConfig::min_range, "Nearest depth along z, in metres.")
+      .def_readonly("max_range", &CameraConfig::max_range, "Farthest depth along z, in metres.")
+      .def("rays", &rays_of,
+           "rays($self)\n--\n\n"
+           "Directions of all pixels in the optical frame, with z = 1: float64, shape\n"
+           "(height, width, 3). A point at depth t is t * ray.");
+}
+
+}  // namespace
+
+void bind_places(py::module_& module) {
+  py::class_<View>(module, "View",
+                   "A place to measure from, and where to look: View(position, direction), arrays\n"
+                   "of shape (3,) in the world frame (x east, y north, z up), in metres. The\n"
+                   "direction is made a unit vector.")
+      .def(py::init(&view_from), py::arg("position"), py::arg("direction"))
+      .def_property_readonly(
+          "position", [](const View& view) { return array_of(view.position); },
+          "World frame, in metres: float64, shape (3,).")
+      .def_property_readonly(
+          "direction", [](const View& view) { return array_of(view.direction); },
+          "Unit vector from the sensor to the scene, world frame: float64, shape (3,).")
+      .def(
+          "pose", [](const View& view) { return array_of(geometry::camera_pose(view)); },
+          "pose($self)\n--\n\n"
+          "world_from_sensor of a camera that takes this view upright: float64, shape (4, 4),\n"
+          "from its optical frame (x right, y down, z forward).")
+      .def("__repr__", &text_of);
+  module.def("look_at", &look_at, py::arg("position"), py::arg("target"),
+             "look_at(position, target)\n--\n\n"
+             "The view from `position` to `target`, arrays of shape (3,) in the world frame.");
+  bind_camera(module);
+}
+
+}  // namespace skycap::python

@@ -1,0 +1,115 @@
+// Whole surveys, as `skycap plan` makes them.
+#include <filesystem>
+#include <functional>
+#include <optional>
+#include <string>
+
+#include <pybind11/functional.h>
+#include <pybind11/stl.h>
+#include <pybind11/stl/filesystem.h>
+
+#include "missions/library/mission.h"
+#include "missions/library/survey.h"
+#include "python/arrays.h"
+#include "python/bindings.h"
+#include "python/interruptible.h"
+
+namespace skycap::python {
+namespace {
+
+using missions::library::Mission;
+using missions::library::Survey;
+using survey::StopReason;
+using survey::SurveyedView;
+
+const char* name_of(StopReason reason) {
+  switch (reason) {
+    case StopReason::complete:
+      return "complete";
+    case StopReason::view_limit:
+      return "view_limit";
+    case StopReason::distance_limit:
+      return "distance_limit";
+    case StopReason::time_limit:
+      return "time_limit";
+    case StopReason::nowhere_to_go:
+      return "nowhere_to_go";
+    case StopReason::interrupted:
+      return "interrupted";
+  }
+  return "";
+}
+
+Survey plan(const Mission& mission, const std::optional<std::filesystem::path>& out,
+            const py::object& progress) {
+  Survey survey;
+  run_interruptibly([&](const std::stop_token& stop) {
+    missions::library::SurveyRequest request{.folder = out, .report = {}, .stop = stop};
+    if (!progress.is_none()) {
+      request.report = [&](const SurveyedView& view, double coverage) {
+        py::gil_scoped_acquire lock;
+        progress(py::cast(view), coverage);
+      };
+    }
+    survey = missions::library::plan(mission, request);
+  });
+  return survey;
+}
+
+void bind_surveyed_view(py::module_& module) {
+  py::class_<SurveyedView>(module, "SurveyedView",
+                           "One view of a survey, and what the planner made of its scan.")
+      .def_readonly("view", &SurveyedView::view, "Where the sensor was, and which way it looked.")
+      .def_readonly("distance", &SurveyedView::distance,
+                    "Travelled up to and including this view, in metres.")
+      .def_readonly("points", &SurveyedView::points, "Kept so far.")
+      .def_readonly("returns", &SurveyedView::returns, "Points of the scan.")
+      .def_readonly("planning_time", &SurveyedView::planning_time,
+                    "Of the planner's update, in seconds.")
+      .def_readonly("step", &SurveyedView::step, "What the planner did with the scan.");
+}
+
+}  // namespace
+
+void bind_surveys(py::module_& module) {
+  bind_surveyed_view(module);
+  py::class_<Survey>(module, "Survey", "A survey from its first view to its last.")
+      .def_property_readonly(
+          "end", [](const Survey& survey) { return name_of(survey.end); },
+          "Why it ended: 'complete', 'view_limit', 'distance_limit', 'time_limit' or\n"
+          "'nowhere_to_go'.")
+      .def_readonly("views", &Survey::views, "The views in the order taken.")
+      .def_property_readonly("coverage", &Survey::coverage,
+                             "Covered share of the surface at the end, in [0, 1].")
+      .def_property_readonly(
+          "coverages",
+          [](const py::object& self) {
+            const auto& coverages = self.cast<const Survey&>().coverages;
+            return view_of(coverages.data(), static_cast<py::ssize_t>(coverages.size()), 0, self);
+          },
+          "The same after each view: float64, shape (number of views,); read-only.")
+      .def_readonly("cloud", &Survey::cloud, "The measured points.")
+      .def_readonly("visible_coverage", &Survey::visible_coverage,
+                    "Share of what admissible views can see; None if there is nothing to see.")
+      .def_readonly("attainable_coverage", &Survey::attainable_coverage,
+                    "Share of the surface that could be covered at all; None if not asked for.")
+      .def_property_readonly(
+          "summary",
+          [](const Survey& survey) {
+            return py::module_::import("json").attr("loads")(survey.summary);
+          },
+          "What summary.json says: every figure and the complete settings, a dict.")
+      .def_readonly("failure", &Survey::failure, "Why there is no route; '' if none is missing.");
+  module.def("plan", &plan, py::arg("mission"), py::arg("out") = py::none(),
+             py::arg("progress") = py::none(),
+             "plan(mission, out=None, progress=None)\n--\n\n"
+             "Surveys the mission's scene in simulation, as `skycap plan` does.\n\n"
+             "out: a folder for the mission package, the same bytes as the program's but for\n"
+             "times and without its report. None: nothing is written, and no route is planned.\n"
+             "progress: called with each SurveyedView and the covered share after it; what it\n"
+             "raises ends the survey.\n\n"
+             "Ctrl-C ends the survey after the view that is being planned; what was surveyed so\n"
+             "far is written, then KeyboardInterrupt is raised.");
+}
+
+}  // namespace skycap::python

@@ -1,0 +1,69 @@
+"""What Python costs: importing the module, and two million points on their way into a planner and
+out again. Medians; PYTHONPATH=build/release/python python3 tests/benchmarks/python_benchmark.py"""
+
+import statistics
+import subprocess
+import sys
+import time
+
+import numpy as np
+
+import skycap
+
+WIDTH, HEIGHT = 1600, 1250  # two million pixels, each with a return
+
+MISSION = f"""
+sensor: {{width: {WIDTH}, height: {HEIGHT}, horizontal_fov_deg: 60, vertical_fov_deg: 48}}
+planner:
+  name: skycap
+  scene_box: {{min: [-9, -9, 1], max: [9, 9, 9]}}
+  density: 4000
+  resolution_radius: 0.1
+evaluation: {{registration_distance: 0.05}}
+"""
+
+
+def seconds_of(action):
+    start = time.perf_counter()
+    action()
+    return time.perf_counter() - start
+
+
+def import_time():
+    """Of a process that imports the module, less one that does not."""
+    def run(script):
+        return statistics.median(
+            seconds_of(lambda: subprocess.run([sys.executable, "-c", script], check=True))
+            for _ in range(9))
+    return run("import skycap") - run("pass")
+
+
+def points_in(mission):
+    """Of a call that takes a scan in, what is not the planner's own work."""
+    camera = mission.camera
+    rays = camera.rays().reshape(-1, 3)
+    points = (5 * rays).astype(np.float32)  # a wall, 5 m away
+    pixels = np.arange(len(points), dtype=np.uint32)
+    overheads = []
+    for _ in range(5):
+        planner = skycap.Planner(mission)
+        took = seconds_of(lambda: planner.next_view(points, np.eye(4), pixels))
+        overheads.append(took - sum(planner.last_step.times.values()))
+    return statistics.median(overheads)
+
+
+def points_out():
+    """From a survey's cloud, or what holds as many points, to an array."""
+    mesh = skycap.Mesh(np.random.default_rng(1).random((2_000_000, 3)), [(0, 1, 2)])
+    return statistics.median(seconds_of(lambda: mesh.vertices) for _ in range(9))
+
+
+def main():
+    mission = skycap.Mission.parse(MISSION, "wall.yaml")
+    print(f"import skycap          {1e3 * import_time():8.2f} ms")
+    print(f"2 million points in    {1e3 * points_in(mission):8.2f} ms")
+    print(f"2 million points out   {1e3 * points_out():8.2f} ms")
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,68 @@
+#include "geometry/place/world.h"
+#include "missions/prior/formats/file_contents.h"
+#include "missions/prior/prior.h"
+#include "tests/fuzz/readers.h"
+#include "tests/fuzz/trial_run.h"
+
+namespace skycap::fuzz {
+namespace {
+
+namespace prior = missions::prior;
+
+void require_sane(const prior::FileContents& contents) {
+  const std::size_t rings = contents.ring_begin.size() - 1;
+  for (std::size_t i = 0; i < rings; ++i) {
+    require(contents.ring_begin[i] <= contents.ring_begin[i + 1], "a ring that ends before itself");
+  }
+  require(contents.ring_begin.back() <= contents.corners.size(), "a ring of corners not there");
+  for (const prior::FileObject& object : contents.objects) {
+    require(!object.parent || *object.parent < contents.objects.size(),
+            "part of what is not there");
+    for (const prior::FilePolygon& polygon : object.polygons) {
+      require(polygon.first_ring + polygon.rings <= rings, "a polygon of rings that are not there");
+    }
+  }
+}
+
+void require_sane(const prior::Prior& known) {
+  require(!known.box.isEmpty(), "a prior of nothing");
+  for (const prior::Object& object : known.objects) {
+    require(object.surfaces.size() == object.mesh.triangles.size(), "triangles without a kind");
+    for (const auto& triangle : object.mesh.triangles) {
+      for (const std::uint32_t v : triangle) {
+        require(v < object.mesh.vertices.size(), "a triangle of vertices that do not exist");
+        require(geometry::is_place(object.mesh.vertices[v]), "a corner out of the world");
+      }
+    }
+  }
+}
+
+/// As parsed, and as a prior at a place of its own.
+template <typename Parse>
+int run(const char* name, const std::uint8_t* bytes, std::size_t size, Parse parse) {
+  run_reader(name, [&] { require_sane(parse(text_of(bytes, size))); });
+  return run_reader(name, [&] {
+    prior::Source source;
+    source.file = file_with(name, text_of(bytes, size));
+    source.place = prior::Place{};
+    require_sane(prior::read_prior(source, {}));
+  });
+}
+
+int run_citygml(const std::uint8_t* bytes, std::size_t size) {
+  return run("city.gml", bytes, size,
+             [](std::string text) { return prior::parse_citygml("city.gml", std::move(text)); });
+}
+
+int run_cityjson(const std::uint8_t* bytes, std::size_t size) {
+  return run("city.json", bytes, size,
+             [](const std::string& text) { return prior::parse_cityjson("city.json", text); });
+}
+
+constexpr Reader readers[] = {{"citygml", run_citygml}, {"cityjson", run_cityjson}};
+
+}  // namespace
+
+std::span<const Reader> prior_readers() { return readers; }
+
+}  // namespace skycap::fuzz

@@ -1,0 +1,77 @@
+#include "missions/judge/accuracy.h"
+
+#include <cmath>
+#include <numbers>
+#include <random>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+namespace skycap::missions {
+namespace {
+
+using Eigen::Vector3f;
+
+/// The square from (-2, -2) to (2, 2) at z = 0.
+const geometry::Mesh square{{{-2, -2, 0}, {2, -2, 0}, {2, 2, 0}, {-2, 2, 0}},
+                            {{0, 1, 2}, {0, 2, 3}}};
+
+std::vector<Vector3f> noisy_points(int count, float sigma) {
+  std::mt19937_64 random(1);
+  std::uniform_real_distribution<float> uniform(-1.9F, 1.9F);
+  std::normal_distribution<float> noise(0.0F, sigma);
+  std::vector<Vector3f> points;
+  for (int i = 0; i < count; ++i) {
+    points.push_back(Vector3f{uniform(random), uniform(random), noise(random)});
+  }
+  return points;
+}
+
+// Points of a half-normal distribution of distances from the surface, from either side.
+TEST(AccuracyMeter, RecoversTheNoiseOfMeasurements) {
+  constexpr float sigma = 0.01F;
+  judge::AccuracyMeter meter(square);
+  meter.add(noisy_points(20'000, sigma));
+  const judge::CloudAccuracy accuracy = meter.accuracy();
+  // Standard errors of 20,000 values are below 1 % of sigma; 3 % leaves room.
+  EXPECT_NEAR(accuracy.root_mean_square, sigma, 0.03 * sigma);
+  EXPECT_NEAR(accuracy.mean, sigma * std::sqrt(2.0 / std::numbers::pi), 0.03 * sigma);
+  EXPECT_NEAR(accuracy.median, 0.6745 * sigma, 0.03 * sigma);
+  EXPECT_NEAR(accuracy.percentile_95, 1.96 * sigma, 0.05 * sigma);
+  EXPECT_GE(accuracy.largest, accuracy.percentile_95);
+}
+
+// Five points whose distances are known: 1, 2, 3, 4 above the square and 3-4-5 beside its corner.
+TEST(AccuracyMeter, HasTheAnswersOfFivePoints) {
+  judge::AccuracyMeter meter(square);
+  meter.add(std::vector<Vector3f>{{0, 0, 3}, {1, 1, -1}, {5, 6, 0}, {0, 1, 4}, {-1, 0, 2}});
+  EXPECT_EQ(meter.points(), 5U);
+  EXPECT_DOUBLE_EQ(meter.share_within(3.0), 0.6);
+  const judge::CloudAccuracy accuracy = meter.accuracy();
+  EXPECT_DOUBLE_EQ(accuracy.mean, 3.0);
+  EXPECT_DOUBLE_EQ(accuracy.root_mean_square, std::sqrt(11.0));
+  EXPECT_DOUBLE_EQ(accuracy.median, 3.0);
+  EXPECT_DOUBLE_EQ(accuracy.largest, 5.0);
+}
+
+TEST(AccuracyMeter, DependsNeitherOnPiecesNorOnThreads) {
+  const std::vector<Vector3f> points = noisy_points(10'000, 0.1F);
+  judge::AccuracyMeter whole(square, 1), pieces(square, 3);
+  whole.add(points);
+  for (std::size_t begin = 0; begin < points.size(); begin += 2500) {
+    pieces.add(std::span(points).subspan(begin, 2500));
+  }
+  const judge::CloudAccuracy one = whole.accuracy(), other = pieces.accuracy();
+  EXPECT_EQ(one.mean, other.mean);
+  EXPECT_EQ(one.root_mean_square, other.root_mean_square);
+  EXPECT_EQ(one.percentile_95, other.percentile_95);
+}
+
+TEST(AccuracyMeter, OfNoPointsIsZero) {
+  judge::AccuracyMeter meter(square);
+  EXPECT_EQ(meter.accuracy().largest, 0.0);
+  EXPECT_EQ(meter.share_within(1.0), 0.0);
+}
+
+}  // namespace
+}  // namespace skycap::missions

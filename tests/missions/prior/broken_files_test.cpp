@@ -1,0 +1,93 @@
+// Files that are cut short or have bytes changed are read or refused in one line, whatever they
+// hold: every format that is read by code of ours or of others.
+
+#include <random>
+
+#include "geometry/error.h"
+#include "tests/missions/prior/cube_files.h"
+#include "tests/support/temporary_folder.h"
+
+namespace skycap::missions::prior {
+namespace {
+
+using namespace testing_support;
+
+struct Whole {
+  const char* name;
+  std::string bytes;
+};
+
+std::vector<Whole> whole_files() {
+  const Cube cube;
+  return {{"cube.gml", citygml_of(cube)},     {"cube.json", cityjson_of(cube)},
+          {"cube.geojson", geojson_of(cube)}, {"cube.obj", obj_of(cube)},
+          {"cube.glb", glb_of(cube)},         {"cube.asc", ascii_grid_of(cube)},
+          {"cube.las", las_of(cube, 4, 6)},   {"old.las", las_of(cube, 2, 3)}};
+}
+
+class BrokenFiles : public testing::Test {
+ protected:
+  /// Whether it was refused; a finding if the message is not one line that names the file.
+  bool is_refused(const std::string& name, const std::string& bytes, const std::string& what) {
+    Source source = source_of(folder_.file(name, bytes));
+    source.base = 380.0;
+    source.height = 10.0;
+    if (name == "cube.glb") source.offset = Cube().low;
+    try {
+      read_prior(source, site_at_cube());
+      return false;
+    } catch (const Error& error) {
+      const std::string message = error.what();
+      EXPECT_NE(message.find(name), std::string::npos) << what << ": " << message;
+      EXPECT_EQ(message.find('\n'), std::string::npos) << what << ": " << message;
+      return true;
+    } catch (const std::exception& error) {
+      ADD_FAILURE() << what << ": " << error.what();
+      return true;
+    }
+  }
+  TemporaryFolder folder_;
+};
+
+TEST_F(BrokenFiles, AreReadWhole) {
+  for (const Whole& whole : whole_files()) {
+    EXPECT_FALSE(is_refused(whole.name, whole.bytes, "whole")) << whole.name;
+  }
+}
+
+TEST_F(BrokenFiles, ThatAreCutShortAreRefusedInOneLine) {
+  std::size_t refused = 0;
+  for (const Whole& whole : whole_files()) {
+    for (std::size_t i = 0; i < 20; ++i) {
+      const std::size_t size = whole.bytes.size() * i / 20;
+      const std::string what = std::string(whole.name) + " of " + std::to_string(size) + " bytes";
+      refused += is_refused(whole.name, whole.bytes.substr(0, size), what) ? 1 : 0;
+    }
+  }
+  EXPECT_GE(refused, 100U);  // text of whole lines, such as an OBJ, may still be a mesh
+}
+
+TEST_F(BrokenFiles, WithChangedBytesAreReadOrRefusedInOneLine) {
+  std::mt19937_64 random(1);
+  for (const Whole& whole : whole_files()) {
+    for (int i = 0; i < 40; ++i) {
+      std::string bytes = whole.bytes;
+      for (int j = 0; j < 4; ++j) bytes[random() % bytes.size()] = static_cast<char>(random());
+      is_refused(whole.name, bytes, std::string(whole.name) + ", change " + std::to_string(i));
+    }
+  }
+}
+
+TEST_F(BrokenFiles, OfNoFormatAreToldWhichThereAre) {
+  Source source = source_of(folder_.file("notes.doc", "dear surveyor"));
+  EXPECT_THAT([&] { read_prior(source, site_at_cube()); },
+              testing::ThrowsMessage<Error>(testing::AllOf(testing::HasSubstr("notes.doc: "),
+                                                           testing::HasSubstr("CityGML"))));
+  source.file = folder_.path() / "none.gml";
+  EXPECT_THROW(read_prior(source, site_at_cube()), Error);
+  source.file = folder_.path();
+  EXPECT_THROW(read_prior(source, site_at_cube()), Error);
+}
+
+}  // namespace
+}  // namespace skycap::missions::prior

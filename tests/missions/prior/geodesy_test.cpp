@@ -1,0 +1,151 @@
+// From reference systems to the site's frame, against cs2cs (PROJ's own program) and formulas.
+
+#include "geometry/error.h"
+#include "missions/prior/prior.h"
+#include "missions/prior/reference_system.h"
+#include "missions/prior/site_transform.h"
+
+namespace skycap::missions::prior {
+namespace {
+
+using Eigen::Vector3d;
+using testing::AllOf;
+using testing::HasSubstr;
+using testing::ThrowsMessage;
+
+/// Longitude, latitude, height.
+Vector3d geodetic(const ReferenceRequest& request, Vector3d place) {
+  geodetic_transform(request).apply({&place, 1});
+  return place;
+}
+
+Vector3d in_site(const std::string& crs, const flight::GeodeticPoint& origin, Vector3d place) {
+  Source source;
+  source.crs = crs;
+  source.vertical = HeightDatum::ellipsoid;
+  SiteTransform(source, {}, {.origin = origin}).to_site({&place, 1});
+  return place;
+}
+
+// echo LAT LON 0 | cs2cs EPSG:4326+5773 EPSG:4979 -f %.6f
+TEST(Geodesy, KnowsTheGeoid) {
+  EXPECT_NEAR(egm96_undulation(51.7534, -1.254), 47.760744, 1e-6);
+  EXPECT_NEAR(egm96_undulation(48.75, 11.42), 46.466337, 1e-6);
+  EXPECT_NEAR(egm96_undulation(0.0, 0.0), 17.161579, 1e-6);
+  EXPECT_NEAR(egm96_undulation(13.08, 80.27), -92.245137, 1e-6);
+}
+
+// echo 676300 5403900 | cs2cs EPSG:25832 EPSG:4326 -f %.12f
+TEST(Geodesy, FollowsTheMapsProjection) {
+  const ReferenceRequest request{.crs = "EPSG:25832", .vertical = HeightDatum::ellipsoid};
+  const Vector3d place = geodetic(request, {676300.0, 5403900.0, 380.0});
+  EXPECT_NEAR(place.y(), 48.763121063013, 1e-11);
+  EXPECT_NEAR(place.x(), 11.399097711873, 1e-11);
+  EXPECT_EQ(place.z(), 380.0);
+}
+
+TEST(Geodesy, CountsHeightsFromGeoidOrPad) {
+  ReferenceRequest request{.crs = "EPSG:25832", .takeoff_height = 400.0};
+  request.vertical = HeightDatum::geoid;
+  const Vector3d place(677863.1, 5402477.3, 100.0);
+  const Vector3d above_geoid = geodetic(request, place);
+  EXPECT_NEAR(above_geoid.z(), 100.0 + egm96_undulation(above_geoid.y(), above_geoid.x()), 1e-6);
+  EXPECT_THAT(geodetic_transform(request).notes,
+              testing::ElementsAre(AllOf(HasSubstr("EGM96"), HasSubstr("1 m"))));
+  request.vertical = HeightDatum::takeoff;
+  EXPECT_NEAR(geodetic(request, place).z(), 500.0, 1e-9);
+}
+
+TEST(Geodesy, RefusesAGeoidWhoseGridIsMissingUnlessToldOtherwise) {
+  ReferenceRequest request{.crs = "urn:adv:crs:ETRS89_UTM32*DE_DHHN2016_NH"};
+  EXPECT_THAT(
+      [&] { geodetic_transform(request); },
+      ThrowsMessage<Error>(AllOf(HasSubstr("DHHN2016"), testing::ContainsRegex("[Gg][Cc][Gg]2016"),
+                                 HasSubstr("vertical: geoid"))));
+  request.vertical = HeightDatum::geoid;
+  const Vector3d place = geodetic(request, {677863.1, 5402477.3, 100.0});
+  EXPECT_NEAR(place.z(), 100.0 + egm96_undulation(place.y(), place.x()), 1e-6);
+}
+
+TEST(Geodesy, RefusesWhatIsNoReferenceSystem) {
+  for (const char* crs : {"EPSG:1", "nonsense", "EPSG:4978", "EPSG:5773", "+proj=pipeline"}) {
+    EXPECT_THROW(geodetic_transform({.crs = crs, .vertical = HeightDatum::ellipsoid}), Error)
+        << crs;
+  }
+}
+
+TEST(Geodesy, TakesEastFirstWhateverTheAuthoritySays) {
+  // EPSG:4326 has latitude first, EPSG:31467 north first; files have not.
+  const ReferenceRequest plain{.crs = "EPSG:4326", .vertical = HeightDatum::ellipsoid};
+  EXPECT_TRUE(geodetic(plain, {11.4, 48.7, 5.0}).isApprox(Vector3d(11.4, 48.7, 5.0), 1e-12));
+  ReferenceRequest by_letter = plain;
+  by_letter.is_latitude_first = true;
+  EXPECT_TRUE(geodetic(by_letter, {48.7, 11.4, 5.0}).isApprox(Vector3d(11.4, 48.7, 5.0), 1e-12));
+  const ReferenceRequest map{.crs = "EPSG:31467", .vertical = HeightDatum::ellipsoid};
+  EXPECT_NEAR(geodetic(map, {3451262.0, 5429191.0, 0.0}).y(), 49.0, 0.1);
+}
+
+/// A metre of the map is 0.9996 m on the ground at the central meridian, and 1.0004 at its zone's
+/// border, where the map's north is turned to the east: tan = sin(latitude) tan(longitude from 9).
+TEST(Geodesy, UndoesScaleAndConvergenceOfTheGrid) {
+  const flight::GeodeticPoint centre{48.0, 9.0, 0.0};
+  const Vector3d a = in_site("EPSG:25832", centre, {500000.0, 5316300.0, 0.0});
+  const Vector3d b = in_site("EPSG:25832", centre, {500100.0, 5316300.0, 0.0});
+  EXPECT_NEAR((b - a).norm(), 100.0 / 0.9996, 1e-4);
+  const flight::GeodeticPoint border{48.0, 12.0, 0.0};
+  const Vector3d c = in_site("EPSG:25832", border, {723700.0, 5320800.0, 0.0});
+  const Vector3d d = in_site("EPSG:25832", border, {723700.0, 5320900.0, 0.0});
+  const double convergence =
+      std::atan(std::sin(48.0 * M_PI / 180.0) * std::tan(3.0 * M_PI / 180.0));
+  EXPECT_NEAR(std::atan2(d.x() - c.x(), d.y() - c.y()), convergence, 2e-4);
+}
+
+/// On a sphere's curve alone: a place 10 km away on the ellipsoid is d^2 / 2 R below the plane.
+TEST(Geodesy, CurvesWithTheEarth) {
+  const Vector3d place = in_site("EPSG:4326", {0.0, 0.0, 0.0}, {0.0, 0.09, 0.0});
+  const double radius = 6378137.0 * (1.0 - 0.00669437999014);  // of the meridian at the equator
+  const double angle = 0.09 * M_PI / 180.0;
+  EXPECT_NEAR(place.y(), radius * std::sin(angle), 1e-3);
+  EXPECT_NEAR(place.z(), -radius * (1.0 - std::cos(angle)), 1e-3);
+}
+
+TEST(Geodesy, CrossesTheAntimeridian) {
+  const double metres = 6378137.0 * M_PI / 180.0;  // of a degree at the equator
+  const Vector3d place = in_site("EPSG:4326", {0.0, 179.9999, 0.0}, {-179.9999, 0.0, 0.0});
+  EXPECT_NEAR(place.x(), 0.0002 * metres, 1e-3);
+  const Vector3d back = in_site("EPSG:4326", {0.0, -179.9999, 0.0}, {179.9999, 0.0, 0.0});
+  EXPECT_NEAR(back.x(), -0.0002 * metres, 1e-3);
+  // UTM zone 60 ends there; what lies beyond has eastings that go on.
+  const Vector3d fiji = in_site("EPSG:32760", {-17.0, 180.0, 0.0}, {819800.0, 8117500.0, 0.0});
+  EXPECT_LT(fiji.norm(), 5000.0);
+}
+
+TEST(Geodesy, HoldsAtThePoles) {
+  const flight::GeodeticPoint pole{90.0, 0.0, 0.0};
+  const double metres =
+      6399593.6258 * M_PI / 180.0;  // of a degree there: polar radius of curvature
+  const Vector3d east = in_site("EPSG:4326", pole, {90.0, 89.999, 0.0});
+  EXPECT_NEAR(east.x(), 0.001 * metres, 1e-3);
+  EXPECT_NEAR(east.y(), 0.0, 1e-6);
+  const Vector3d beyond = in_site("EPSG:4326", pole, {180.0, 89.999, 0.0});
+  EXPECT_NEAR(beyond.y(), 0.001 * metres, 1e-3);
+  // Polar stereographic: its grid north is along the meridian of 180 degrees.
+  EXPECT_LT(in_site("EPSG:32661", pole, {2000000.0, 2000000.0, 0.0}).norm(), 1e-3);
+}
+
+TEST(Geodesy, CountsInFeet) {
+  // Oregon Lambert (ft): EPSG:2994; heights in feet, too, as nothing else is said.
+  Source source;
+  source.crs = "EPSG:2994";
+  source.vertical = HeightDatum::ellipsoid;
+  const flight::GeodeticPoint origin{44.05, -123.07, 0.0};
+  const SiteTransform transform(source, {}, {.origin = origin});
+  std::array<Vector3d, 2> places = {Vector3d(636500, 849000, 0), Vector3d(636500, 849000, 1000)};
+  transform.to_site(places);
+  EXPECT_NEAR((places[1] - places[0]).norm(), 304.8, 1e-6);
+  EXPECT_NEAR(transform.metres_per_unit().x(), 0.3048, 1e-12);
+  EXPECT_THAT(transform.notes(), testing::Contains(HasSubstr("units of 0.304800 m")));
+}
+
+}  // namespace
+}  // namespace skycap::missions::prior
