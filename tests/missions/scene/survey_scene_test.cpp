@@ -8,7 +8,6 @@
 
 #include "geometry/io/mesh_io.h"
 #include "missions/derived/resolved_mission.h"
-#include "missions/run/survey_runner.h"
 #include "tests/missions/room_scene.h"
 #include "tests/missions/run_skycap.h"
 #include "tests/support/complaint.h"
@@ -48,11 +47,6 @@ class WindowedRoom {
  private:
   TestFolder folder_;
 };
-
-bool is_in_room(const Eigen::Vector3d& place) {
-  return Eigen::AlignedBox3d(Eigen::Vector3d(-10, -10, 0), Eigen::Vector3d(10, 10, 10))
-      .contains(place);
-}
 
 bool is_on_inside(const Eigen::Vector3f& point) {
   return Eigen::AlignedBox3f(Eigen::Vector3f(-10.01F, -10.01F, -0.01F),
@@ -105,30 +99,6 @@ TEST(SurveyScene, CountsRoomsThatTheRadiusFitsInto) {
   EXPECT_GT(seen_inside("0"), 0.95);
   EXPECT_GT(seen_inside("1"), 0.85);  // places keep a metre from the walls
   EXPECT_LT(seen_inside("2"), 0.2);
-}
-
-// Some planner goes in through the window where it may, and none where it may not.
-TEST(RunSurvey, NoPlannerAppearsWhereNoWayLeads) {
-  const WindowedRoom room(8.0, 8.0);
-  std::size_t entered = 0;
-  for (const char* name : {"see++", "skycap"}) {
-    for (const char* radius : {"0", "4.2"}) {
-      const std::vector<file::KeyOverride> keys{{"--planner", "planner.name", name},
-                                                {"--set", "evaluation.radius", radius},
-                                                {"--set", "limits.max_views", "20"},
-                                                {"--set", "evaluation.ceiling_views", "0"}};
-      const run::SurveyRecord record = run::run_survey(room.mission(keys), room.scene(keys), 1, 2);
-      EXPECT_GE(record.views.size(), 3U) << name;
-      const auto inside = std::ranges::count_if(record.views, [](const run::JudgedView& judged) {
-        return is_in_room(judged.surveyed.view.position);
-      });
-      if (std::string_view(radius) == "4.2") {
-        EXPECT_EQ(inside, 0) << name;
-      }
-      entered += static_cast<std::size_t>(inside);
-    }
-  }
-  EXPECT_GT(entered, 0U) << "a room that tempts nobody";
 }
 
 TEST(SurveyScene, RefusesAStartInsideOfAWall) {
