@@ -1,5 +1,7 @@
 """What the module says of itself, and the parts that are no survey."""
 
+import ast
+import ctypes
 import inspect
 import pathlib
 import shutil
@@ -11,6 +13,7 @@ import unittest
 import numpy as np
 
 import skycap
+from skycap import _skycap
 from small_mission import SmallMission, box
 
 STUBS = pathlib.Path(skycap.__file__).parent
@@ -22,19 +25,12 @@ class Module(unittest.TestCase):
         self.assertEqual(subprocess.run([sys.executable, "-c", script], check=False).returncode, 0)
 
     def test_leaves_the_elementary_functions_of_others_alone(self):
-        script = ("import ctypes, numpy as np\n"
-                  "libm = ctypes.CDLL('libm.so.6')\n"
-                  "libm.sin.restype, libm.sin.argtypes = ctypes.c_double, [ctypes.c_double]\n"
-                  "before = [libm.sin(x) for x in range(1000)]\n"
-                  "import skycap; skycap.look_at([0, 0, 0], [1, 1, 1]).pose()\n"
-                  "everyone = ctypes.CDLL(None)\n"
-                  "everyone.sin.restype, everyone.sin.argtypes = ctypes.c_double, "
-                  "[ctypes.c_double]\n"
-                  "assert [everyone.sin(x) for x in range(1000)] == before\n"
-                  "def address(f): return ctypes.cast(f, ctypes.c_void_p).value\n"
-                  "assert address(everyone.sin) == address(libm.sin)\n")
-        ran = subprocess.run([sys.executable, "-c", script], check=False)
-        self.assertEqual(ran.returncode, 0)
+        def address(library, function):
+            return ctypes.cast(library[function], ctypes.c_void_p).value
+
+        module, libm = ctypes.CDLL(_skycap.__file__), ctypes.CDLL("libm.so.6")
+        for function in ("sin", "exp", "powf"):  # what it showed would be found before libm's
+            self.assertEqual(address(module, function), address(libm, function), function)
 
     def test_documents_everything(self):
         for name in skycap.__all__:
@@ -49,16 +45,28 @@ class Module(unittest.TestCase):
                 if not member.startswith("_"):
                     self.assertTrue(inspect.getdoc(value), f"{name}.{member}")
 
+    def test_has_stubs_that_tell_the_truth(self):
+        stub = ast.parse((STUBS / "__init__.pyi").read_text(encoding="utf-8"))
+        told = {node.name: node for node in stub.body
+                if isinstance(node, (ast.ClassDef, ast.FunctionDef))}
+        self.assertEqual({*told, "__version__"}, set(skycap.__all__))
+        for name, node in told.items():
+            thing = getattr(skycap, name)
+            if isinstance(node, ast.FunctionDef):
+                self.assertEqual([argument.arg for argument in node.args.args],
+                                 list(inspect.signature(thing).parameters), name)
+            elif name != "Error":
+                members = {member.name for member in node.body}
+                self.assertEqual({m for m in members if not m.startswith("_")},
+                                 {m for m in vars(thing) if not m.startswith("_")}, name)
+
     @unittest.skipUnless(shutil.which("mypy"), "mypy is not installed")
-    def test_has_stubs_that_mypy_accepts_and_that_tell_the_truth(self):
+    def test_has_stubs_that_mypy_accepts_and_uses(self):
         mypy = shutil.which("mypy")
         interpreter = pathlib.Path(mypy).read_text(encoding="utf-8").splitlines()[0][2:].split()[0]
-        for command in (["-m", "mypy", "--strict", "-p", "skycap"],
-                        ["-m", "mypy.stubtest", "skycap", "--ignore-missing-stub",
-                         "--allowlist", pathlib.Path(__file__).with_name("stubtest.allowed")]):
-            ran = subprocess.run([interpreter, *command], capture_output=True, text=True,
-                                 cwd=STUBS.parent, check=False)
-            self.assertEqual(ran.returncode, 0, ran.stdout + ran.stderr)
+        ran = subprocess.run([interpreter, "-m", "mypy", "--strict", "-p", "skycap"],
+                             capture_output=True, text=True, cwd=STUBS.parent, check=False)
+        self.assertEqual(ran.returncode, 0, ran.stdout + ran.stderr)
         for use, is_right in (("x: float = skycap.model('teapot').area", True),
                               ("for piece in skycap.scan(skycap.Mission.load('m')): len(piece)", True),
                               ("x: str = skycap.model('teapot').area", False),
