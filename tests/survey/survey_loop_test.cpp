@@ -95,7 +95,7 @@ TEST(SurveyLoop, AsksForAnotherViewWhenOneCannotBeReached) {
 /// Takes two milliseconds for a view and five for one in place of it, and books half of the former.
 class SlowPlanner final : public Planner {
  public:
-  std::optional<View> next_view(const Scan&) override {
+  std::optional<View> next_view(const geometry::ScanSpan&) override {
     std::this_thread::sleep_for(std::chrono::milliseconds(2));
     step_.times = {{"think", 0.001}};
     return walk_on();
