@@ -322,6 +322,17 @@ MeshDistance::Closest MeshDistance::closest(const Vector3d& point) const {
   return {nearest.point, impl_->facets[nearest.facet].index, std::sqrt(nearest.squared_distance)};
 }
 
+// Distances change no faster than places do: both ends tell of all between, or else both halves.
+bool MeshDistance::keeps(const Vector3d& from, const Vector3d& to, double distance) const {
+  const double at_from = this->distance(from), at_to = this->distance(to);
+  if (at_from < distance || at_to < distance) return false;
+  const double length = (to - from).norm();
+  if (at_from + at_to - length >= 2.0 * distance) return true;
+  if (length < 1e-3 * distance) return false;
+  const Vector3d middle = 0.5 * (from + to);
+  return keeps(from, middle, distance) && keeps(middle, to, distance);
+}
+
 void MeshDistance::distances(std::span<const Eigen::Vector3f> points,
                              std::span<double> distances) const {
   assert(points.size() == distances.size());

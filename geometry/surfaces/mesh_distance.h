@@ -33,6 +33,10 @@ class MeshDistance {
   /// Distance of `point` from the surface, never negative.
   double distance(const Eigen::Vector3d& point) const { return closest(point).distance; }
 
+  /// Whether every place between two is at least that far from the surface. A way that grazes the
+  /// distance, to a thousandth of it, is not said to keep it.
+  bool keeps(const Eigen::Vector3d& from, const Eigen::Vector3d& to, double distance) const;
+
   /// The distance of each point, to a place of `distances`. Quick where points that follow each
   /// other are near each other, as in scans; the distances are the same in any order.
   void distances(std::span<const Eigen::Vector3f> points, std::span<double> distances) const;

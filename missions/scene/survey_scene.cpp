@@ -78,21 +78,6 @@ std::string digits_of(const std::vector<std::uint8_t>& marks) {
   return digits;
 }
 
-/// Whether all places between two are that far from the surface, by the distances of both ends,
-/// which change no faster than the place does: where they do not tell, of both halves. A way that
-/// grazes the distance, to a thousandth of it, does not keep it.
-bool keeps_distance(const geometry::MeshDistance& surface, const Vector3d& from, const Vector3d& to,
-                    double distance) {
-  const double at_from = surface.distance(from), at_to = surface.distance(to);
-  if (at_from < distance || at_to < distance) return false;
-  const double length = (to - from).norm();
-  if (at_from + at_to - length >= 2.0 * distance) return true;
-  if (length < 1e-3 * distance) return false;
-  const Vector3d middle = 0.5 * (from + to);
-  return keeps_distance(surface, from, middle, distance) &&
-         keeps_distance(surface, middle, to, distance);
-}
-
 }  // namespace
 
 geometry::Mesh placed_model(const file::Mission& mission, const std::filesystem::path& folder) {
@@ -174,8 +159,7 @@ judge::Admissible SurveyScene::admissible() const {
   limits.least_pitch -= half_fov;
   limits.most_pitch += half_fov;
   const auto joins = [this](const Vector3d& place, const Vector3d& reached) {
-    return radius_ > 0.0 ? keeps_distance(*truth_, place, reached, radius_)
-                         : is_in_sight(place, reached);
+    return radius_ > 0.0 ? truth_->keeps(place, reached, radius_) : is_in_sight(place, reached);
   };
   // Whatever leads there keeps the radius already.
   const bool asks_distance = limits.stand_off > radius_;

@@ -135,6 +135,33 @@ TEST(MeshDistance, NamesTheFirstOfEquallyNearTriangles) {
   EXPECT_EQ(MeshDistance(fan).closest({-0.25, 0, 1}).triangle, 1U);
 }
 
+// Against dense samples: between them the distance changes by half their spacing at most.
+TEST(MeshDistance, TellsWhichWaysKeepADistance) {
+  std::mt19937_64 random(5);
+  const Mesh mesh = random_soup(random, 60);
+  const MeshDistance surface(mesh);
+  int kept = 0, refused = 0;
+  for (int i = 0; i < 300; ++i) {
+    const Vector3d from = random_point(random, 3.0), to = random_point(random, 3.0);
+    double nearest = std::numeric_limits<double>::infinity();
+    constexpr int samples = 200;
+    for (int s = 0; s <= samples; ++s) {
+      nearest = std::min(nearest, surface.distance(from + (to - from) * (double(s) / samples)));
+    }
+    const double between = 0.5 * (to - from).norm() / samples;
+    constexpr double distance = 0.2;
+    if (surface.keeps(from, to, distance)) {
+      ++kept;
+      EXPECT_GE(nearest, distance);
+    } else {
+      ++refused;
+      EXPECT_LE(nearest - between, distance * 1.002);
+    }
+  }
+  EXPECT_GT(kept, 20);
+  EXPECT_GT(refused, 20);
+}
+
 TEST(MeshDistance, HasTheAnswersOfASquare) {
   const Mesh square{{{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}},
                     {{0, 1, 2}, {0, 2, 3}, {0, 1, 1}}};

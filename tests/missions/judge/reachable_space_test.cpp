@@ -20,7 +20,7 @@ using tests::room_mesh;
 /// Straight ways that keep the radius.
 ReachableSpace::Joins keeping(double radius, const geometry::MeshDistance& distance) {
   return [&distance, radius](const Vector3d& a, const Vector3d& b) {
-    return distance.distance(a, b) >= radius;
+    return distance.keeps(a, b, radius);
   };
 }
 
