@@ -16,6 +16,9 @@ using Eigen::Vector3f;
 constexpr double foot_height = 0.5;
 constexpr double level = 0.9;  // z of such a normal, up or down
 
+/// How far beside a surface it is asked whether that is inside of the object [m].
+constexpr float beside = 0.05F;
+
 Vector3d area_vector(const geometry::Mesh& mesh, std::size_t triangle) {
   const auto& [a, b, c] = mesh.triangles[triangle];
   const Vector3d &p = mesh.vertices[a], &q = mesh.vertices[b], &r = mesh.vertices[c];
@@ -60,23 +63,22 @@ SurfacePoints spread_over(const Object& object, std::size_t most, double spacing
   const double wanted = std::ceil(area / (spacing * spacing));
   const auto count = static_cast<std::size_t>(std::clamp(wanted, 1.0, static_cast<double>(most)));
   constexpr std::uint64_t seed = 1;
-  geometry::SurfaceSamples samples = geometry::sample_surface(part.mesh, count, seed);
+  const geometry::SurfaceSamples samples = geometry::sample_surface(part.mesh, count, seed);
   points.area_of_each = area / static_cast<double>(count);
-  points.positions = std::move(samples.points);
-  points.normals = std::move(samples.normals);
-  for (const std::uint32_t triangle : samples.triangles) {
-    points.kinds.push_back(kind_of(object, part.triangles[triangle]));
-  }
   flight::TriangleTree solid;
   solid.triangles = flight::triangles_of(object.mesh);
   solid.index();
   const flight::WindingNumber winding(solid.tree, solid.triangles);
-  constexpr float outward = 0.05F;  // [m]
-  for (std::size_t i = 0; i < points.positions.size(); ++i) {
-    const Vector3f before = points.positions[i] + outward * points.normals[i];
-    if (winding.at(solid.tree, solid.triangles, before.cast<double>()) > 0.5) {
-      points.normals[i] = -points.normals[i];
-    }
+  const auto is_inside = [&](const Vector3f& point) {
+    return winding.at(solid.tree, solid.triangles, point.cast<double>()) > 0.5;
+  };
+  for (std::size_t i = 0; i < samples.points.size(); ++i) {
+    const Vector3f &position = samples.points[i], &normal = samples.normals[i];
+    const bool is_turned = is_inside(position + beside * normal);
+    if (is_turned && is_inside(position - beside * normal)) continue;  // solid on both sides
+    points.positions.push_back(position);
+    points.normals.push_back(is_turned ? Vector3f(-normal) : normal);
+    points.kinds.push_back(kind_of(object, part.triangles[samples.triangles[i]]));
   }
   return points;
 }

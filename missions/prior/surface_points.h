@@ -20,7 +20,7 @@ struct SurfacePoints {
 
 /// At random with equal density, about one in a square of `spacing`, but no more than `most`; the
 /// same object gives the same points. What is said to be ground, and what lies level at the foot
-/// of the object, is left out: no sensor sees it.
+/// of the object, is left out, and so is what has solid on both sides: no sensor sees it.
 SurfacePoints spread_over(const Object& object, std::size_t most, double spacing);
 
 }  // namespace skycap::missions::prior

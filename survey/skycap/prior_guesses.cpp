@@ -92,6 +92,14 @@ void PriorGuesses::update(const DoseMap& map, const SpaceMemory& space) {
   images_asked_ = space.image_count();
 }
 
+std::vector<Vector3f> PriorGuesses::standing() const {
+  std::vector<Vector3f> positions;
+  for (std::size_t i = 0; i < patches_.size(); ++i) {
+    if (states_[i] != State::refuted) positions.push_back(patches_[i].position);
+  }
+  return positions;
+}
+
 bool PriorGuesses::is_open_near(const Vector3f& point, float radius) const {
   std::vector<geometry::Neighbour> found;
   grid_.find_within(point, radius, found);

@@ -36,6 +36,8 @@ class PriorGuesses {
   void update(const DoseMap& map, const SpaceMemory& space);
 
   const std::vector<PriorPatch>& patches() const { return patches_; }
+  /// Where the patches are that no scan has seen through: they hide what is behind them.
+  std::vector<Eigen::Vector3f> standing() const;
   /// Whether an open patch is within `radius`.
   bool is_open_near(const Eigen::Vector3f& point, float radius) const;
   State state(std::size_t patch) const { return states_[patch]; }

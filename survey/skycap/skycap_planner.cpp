@@ -286,7 +286,7 @@ struct SkycapPlanner::Impl {
     proposed.reset();
     stopwatch.lap("update");
     unseen->predict(*map, *space, region);
-    field.emplace(*map, unseen->patches(), camera, *dose, gain);
+    field.emplace(*map, unseen->patches(), camera, *dose, gain, unseen->prior_occluders());
     step.frontiers = unseen->patches().size();
     stopwatch.lap("predict");
     auto view = choose();

@@ -68,6 +68,11 @@ class UnseenSurface {
 
   const std::vector<UnseenPatch>& patches() const { return patches_; }
 
+  /// What hides patches of the prior kind from each other.
+  std::vector<Eigen::Vector3f> prior_occluders() const {
+    return prior_ ? prior_->standing() : std::vector<Eigen::Vector3f>{};
+  }
+
   /// Probability that a patch of that kind and step is there.
   double hit_rate(Continuation continuation, int step) const;
 

@@ -57,7 +57,7 @@ void append(std::array<std::vector<float>, 3>& points, const Vector3f& point) {
 
 GainField::GainField(const DoseMap& map, std::span<const UnseenPatch> patches,
                      const geometry::Camera& camera, const DoseModel& dose,
-                     const GainSettings& settings)
+                     const GainSettings& settings, std::span<const Vector3f> prior_occluders)
     : dose_(dose),
       spacing_(map.spacing()),
       least_cosine_(std::cos(settings.max_incidence)),
@@ -88,9 +88,7 @@ GainField::GainField(const DoseMap& map, std::span<const UnseenPatch> patches,
   first_prior_ = surfel_targets_ + static_cast<std::size_t>(priors - patches.begin());
   end_prior_ =
       first_prior_ + static_cast<std::size_t>(std::ranges::count_if(patches, is_prior_patch));
-  for (std::size_t i = first_prior_; i < end_prior_; ++i) {
-    append(prior_occluders_, patches[i - surfel_targets_].position);
-  }
+  for (const Vector3f& position : prior_occluders) append(prior_occluders_, position);
   for (std::size_t i = 0; i < patches.size(); ++i) {
     targets_.push_back({patches[i].position, patches[i].normal, patches[i].weight});
     sources_.push_back(static_cast<std::uint32_t>(i));

@@ -40,11 +40,12 @@ struct GainSettings {
 ///
 /// Targets are the surfels with a deficit worth a look and the unseen patches. Occlusion is decided
 /// in a depth image of all surfels, splatted as points of 2 h at the view distance. Unseen patches
-/// hide nothing, but those that are thought to be there beforehand hide each other.
+/// hide nothing; but those of prior_kind are hidden by `prior_occluders`, too.
 class GainField {
  public:
   GainField(const DoseMap& map, std::span<const UnseenPatch> patches,
-            const geometry::Camera& camera, const DoseModel& dose, const GainSettings& settings);
+            const geometry::Camera& camera, const DoseModel& dose, const GainSettings& settings,
+            std::span<const Eigen::Vector3f> prior_occluders = {});
 
   struct Target {
     Eigen::Vector3f position;
@@ -74,8 +75,8 @@ class GainField {
   Eigen::Vector2f half_slope_;  ///< tangents of half the angles of view
   float raster_focal_length_px_;
   int raster_width_, raster_height_;
-  std::array<std::vector<float>, 3> occluders_;        ///< all surfels: their x, y and z
-  std::array<std::vector<float>, 3> prior_occluders_;  ///< the patches of prior_kind
+  std::array<std::vector<float>, 3> occluders_;  ///< all surfels: their x, y and z
+  std::array<std::vector<float>, 3> prior_occluders_;
   std::size_t surfel_targets_ = 0;
   std::size_t first_prior_ = 0, end_prior_ = 0;  ///< the targets that those are
   std::vector<Target> targets_;
