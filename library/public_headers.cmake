@@ -58,4 +58,5 @@ set(supporting_headers
   sim/sensors/noise.h
   survey/see/readings.h
   survey/see/see_config.h
+  survey/skycap/prior_surface.h
   survey/skycap/skycap_config.h)

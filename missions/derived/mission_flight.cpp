@@ -204,8 +204,11 @@ double hold_after_of(const file::Mission& mission) {
 
 std::optional<flight::PictureBounds> picture_bounds_of(const file::Mission& mission) {
   if (mission.sensor.lidar) return std::nullopt;
-  return picture_bounds(vehicle_of(mission), geometry::Camera(mission.sensor.camera.camera),
-                        mission.sensor.shutter, mission.planner.see.view_distance.value());
+  const geometry::Camera camera(mission.sensor.camera.camera);
+  const survey::see::SeeConfig& see = mission.planner.see;
+  return picture_bounds(
+      vehicle_of(mission), camera, mission.sensor.shutter,
+      see.view_distance.value_or(geometry::view_distance(camera, see.density)));
 }
 
 bool has_place(const file::Mission& mission) {

@@ -7,7 +7,6 @@
 
 #include "geometry/place/camera.h"
 #include "missions/derived/mission_flight.h"
-#include "missions/equipment/preset_files.h"
 #include "missions/prior/surface_points.h"
 
 namespace skycap::missions::derived {
@@ -33,7 +32,7 @@ constexpr std::size_t most_target_points = 300'000;
 /// A path counts from the mission's folder.
 void make_absolute(std::filesystem::path& path, const std::filesystem::path& folder) {
   if (path.empty()) return;
-  path = std::filesystem::absolute(equipment::named_from(folder, path.string()));
+  path = std::filesystem::absolute(folder / path);
 }
 
 void check_source(const file::MissionFile& given, std::size_t i) {

@@ -57,8 +57,11 @@ void SiteTransform::prepare_place(const Source& source, const FileContents& cont
   const Place place = source.place.value_or(Place{});
   const double unit = source.unit.value_or(contents.unit.value_or(1.0));
   const Eigen::AngleAxisd heading(-place.heading, Vector3d::UnitZ());
+  // A transform times a mere matrix would take its columns for points.
+  const Eigen::Affine3d upright_metres(
+      Eigen::Matrix3d(unit * upright(contents.is_y_up.value_or(source.is_y_up))));
   prepared_ = Eigen::Translation3d(place.position) * heading * Eigen::Translation3d(source.offset) *
-              upright(contents.is_y_up.value_or(source.is_y_up)) * Eigen::Scaling(unit);
+              upright_metres;
   metres_per_unit_ = Vector3d::Constant(unit);
   name_ = "the mission's frame";
 }

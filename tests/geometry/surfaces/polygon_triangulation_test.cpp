@@ -21,7 +21,8 @@ struct Polygon {
   }
   Mesh mesh() const {
     Mesh result;
-    EXPECT_EQ(add_polygon(result, corners, begin), result.triangles.size());
+    const std::size_t added = add_polygon(result, corners, begin);
+    EXPECT_EQ(added, result.triangles.size());
     return result;
   }
 };

@@ -31,9 +31,11 @@ std::vector<benchmark::Trial> two_trials() {
   benchmark::Trial a, b;
   a.seed = 1, a.views = 2, a.distance = 3, a.coverage = {0.8, 0.9, 0.99};
   a.coverage_after = {0.5, 0.8}, a.distance_after = {0, 3};
+  a.planning_time_after = {0.1, 0.2};
   b.seed = 2, b.views = 4, b.distance = 5, b.coverage = {1.0, {}, {}};
   b.stop_reason = survey::StopReason::view_limit;
   b.coverage_after = {0.3, 0.6, 0.9, 1.0}, b.distance_after = {0, 1, 2, 5};
+  b.planning_time_after = {0.1, 0.2, 0.3, 0.4};
   return {a, b};
 }
 

@@ -90,9 +90,11 @@ TEST(Feasibility, IsAskedBeforeASurveyBegins) {
   EXPECT_EQ(checked.exit_code, 1);
   EXPECT_THAT(checked.out, HasSubstr("m.yaml: cannot work"));
   EXPECT_THAT(checked.out, HasSubstr(sentence));
-  for (const char* trials : {"0", "2"}) {
-    const auto planned = run_skycap({"plan", mission, "--set", "limits.stand_off=100", "--trials",
-                                     trials, "--out", folder / "out"});
+  for (const char* trials : {"", "2"}) {
+    std::vector<std::string> arguments{"plan",  mission,       "--set", "limits.stand_off=100",
+                                       "--out", folder / "out"};
+    if (*trials != '\0') arguments.insert(arguments.end(), {"--trials", trials});
+    const auto planned = run_skycap(arguments);
     EXPECT_EQ(planned.exit_code, 2);
     EXPECT_THAT(planned.err, HasSubstr(sentence));
     EXPECT_FALSE(std::filesystem::exists(folder / "out"));

@@ -51,7 +51,7 @@ class Shipped {
  public:
   explicit Shipped(const std::filesystem::path& folder)
       : summary_(package::read_package_summary(folder, {})),
-        model_(scene::placed_model(summary_.mission.scene, "")),
+        model_(scene::placed_model(summary_.mission, "")),
         space_(true_space(summary_.mission, model_, summary_.pad->z())),
         oracle_(model_) {}
 
