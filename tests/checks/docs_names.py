@@ -15,7 +15,7 @@ PATH = re.compile(r"[\w./-]+/[\w.-]+\.\w+")
 TEST_NAME = re.compile(r"[A-Z]\w+\.[A-Z]\w+\*?")
 KEY = re.compile(r"[a-z_]+(?:\.[a-z_]+)+")
 IDENTIFIER = re.compile(r"(?:\w+::)*([a-z]+(?:_[a-z0-9]+)+)(?:\(\))?|(?:\w+::)+(\w+)")
-FILE_TYPES = ("bin", "csv", "json", "las", "pcd", "plan", "ply", "rawlog", "tum", "xyz")
+FILE_TYPES = ("bin", "csv", "html", "json", "las", "pcd", "plan", "ply", "rawlog", "tum", "xyz")
 PLACEHOLDER = re.compile(r"[A-Z]{2,}|\.\.\.|\bN\b")
 
 
