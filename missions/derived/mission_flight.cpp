@@ -206,9 +206,8 @@ std::optional<flight::PictureBounds> picture_bounds_of(const file::Mission& miss
   if (mission.sensor.lidar) return std::nullopt;
   const geometry::Camera camera(mission.sensor.camera.camera);
   const survey::see::SeeConfig& see = mission.planner.see;
-  return picture_bounds(
-      vehicle_of(mission), camera, mission.sensor.shutter,
-      see.view_distance.value_or(geometry::view_distance(camera, see.density)));
+  return picture_bounds(vehicle_of(mission), camera, mission.sensor.shutter,
+                        see.view_distance.value_or(geometry::view_distance(camera, see.density)));
 }
 
 bool has_place(const file::Mission& mission) {

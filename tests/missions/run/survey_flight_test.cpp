@@ -318,8 +318,8 @@ TEST(FlownPackage, KeepsTheSurveyWhenThereIsNoRoute) {
   const auto run =
       run_skycap({"plan", mission, "--out", folder / "out", "--max-views", "4", "--set",
                   "flight.unknown_box.max=[9.3, 11, 13]", "--set", "flight.takeoff=[11.6, 0, 0]",
-                  "--set", "flight.takeoff_climb=7.4", "--set", "start.position=[32, 0, 8]", "--set",
-                  "start.look_at=[0, 0, 5]"});
+                  "--set", "flight.takeoff_climb=7.4", "--set", "start.position=[32, 0, 8]",
+                  "--set", "start.look_at=[0, 0, 5]"});
   EXPECT_EQ(run.exit_code, 1) << run.err;
   EXPECT_THAT(run.out, HasSubstr("flight    no route: the place above the take-off pad"));
   EXPECT_TRUE(std::filesystem::exists(folder / "out/cloud.ply"));
