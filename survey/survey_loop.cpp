@@ -96,7 +96,7 @@ std::optional<View> SurveySteps::reachable(std::optional<View> next, SurveyedVie
     is_refused = true;
     next = planned(taken, [&] { return planner_.next_view_instead(); });
   }
-  book_rest(taken, "instead");
+  if (is_refused) book_rest(taken, "instead");
   if (!next) stop_reason_ = is_refused ? StopReason::nowhere_to_go : StopReason::complete;
   return next;
 }

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "geometry/surfaces/mesh.h"
+#include "missions/derived/mission_flight.h"
 #include "missions/derived/planner_factory.h"
 #include "missions/derived/survey_sensor.h"
 #include "missions/file/planner_titles.h"
@@ -57,7 +58,8 @@ double minutes_of(const file::Mission& mission, const std::vector<View>& known, 
   const bool is_flown = mission.flight.is_flown();
   const double speed = is_flown ? mission.flight.cruise_speed : mission.limits.speed;
   const double stop =
-      is_flown ? mission.flight.hold + mission.flight.hold_after : mission.limits.time_per_view;
+      is_flown ? derived::hold_of(mission) + derived::hold_after_of(mission)
+               : mission.limits.time_per_view;
   const double more = std::sqrt(views / static_cast<double>(known.size()));
   constexpr double seconds_per_minute = 60.0;
   return (way_of(known) * more / speed + views * stop) / seconds_per_minute;

@@ -221,6 +221,8 @@ std::string SurveyScene::ceiling_key() const {
     const auto value = key.get(mission_);
     inputs << "\n" << key.path << " " << (value ? file::to_text(*value) : "-");
   }
+  // Terrain is the ground that hides things, and bounds the heights of views.
+  for (const std::string& digest : derived::priors_of(mission_).digests) inputs << "\n" << digest;
   // The surface's samples stand for the mesh that was found under the model's name.
   inputs << "\n" << sha256(std::as_bytes(std::span(samples_.points)));
   const std::string text = inputs.str();
