@@ -57,9 +57,8 @@ double way_of(const std::vector<View>& views) {
 double minutes_of(const file::Mission& mission, const std::vector<View>& known, double views) {
   const bool is_flown = mission.flight.is_flown();
   const double speed = is_flown ? mission.flight.cruise_speed : mission.limits.speed;
-  const double stop =
-      is_flown ? derived::hold_of(mission) + derived::hold_after_of(mission)
-               : mission.limits.time_per_view;
+  const double stop = is_flown ? derived::hold_of(mission) + derived::hold_after_of(mission)
+                               : mission.limits.time_per_view;
   const double more = std::sqrt(views / static_cast<double>(known.size()));
   constexpr double seconds_per_minute = 60.0;
   return (way_of(known) * more / speed + views * stop) / seconds_per_minute;
