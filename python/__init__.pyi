@@ -1,4 +1,4 @@
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from os import PathLike
 from typing import Any, Literal, final
 
@@ -67,9 +67,9 @@ class Evaluation:
 @final
 class Mission:
     @staticmethod
-    def load(file: str | PathLike[str], set: Mapping[str, Any] | None = ...) -> Mission: ...
+    def load(file: str | PathLike[str], set: dict[str, Any] | None = ...) -> Mission: ...
     @staticmethod
-    def parse(text: str, name: str = ..., set: Mapping[str, Any] | None = ...) -> Mission: ...
+    def parse(text: str, name: str = ..., set: dict[str, Any] | None = ...) -> Mission: ...
     @property
     def name(self) -> str: ...
     @property
@@ -150,7 +150,7 @@ class Survey:
     def end(
         self,
     ) -> Literal[
-        "complete", "view_limit", "distance_limit", "time_limit", "nowhere_to_go", "interrupted"
+        "complete", "view_limit", "distance_limit", "time_limit", "nowhere_to_go"
     ]: ...
     @property
     def views(self) -> list[SurveyedView]: ...

@@ -41,7 +41,25 @@ Eigen::Vector3d vector_in(const Array<double>& array, const std::string& name) {
   if (array.ndim() != 1 || array.shape(0) != 3) {
     throw py::value_error(name + " has shape " + shape_text(array) + "; give x y z, shape (3,)");
   }
-  return Eigen::Vector3d(array.data());
+  const Eigen::Vector3d vector(array.data());
+  if (!vector.allFinite()) throw py::value_error(name + " is not finite");
+  return vector;
+}
+
+Array<std::uint32_t> indices_in(const py::object& numbers, const std::string& name) {
+  const py::array array = py::array::ensure(numbers);
+  if (!array) throw py::type_error(name + " are not an array");
+  const char kind = array.dtype().kind();
+  const bool is_whole = kind == 'u' || kind == 'i';
+  const auto fits = [&] {
+    if (array.size() == 0 || (kind == 'u' && array.itemsize() <= 4)) return true;
+    return array.attr("min")().cast<py::int_>() >= py::int_(0) &&
+           array.attr("max")().cast<py::int_>() <= py::int_(0xFFFFFFFFU);
+  };
+  if (array.size() > 0 && (!is_whole || !fits())) {
+    throw py::value_error(name + " are not whole numbers that fit 32 bits");
+  }
+  return Array<std::uint32_t>(array);
 }
 
 Eigen::Isometry3d pose_in(const Array<double>& matrix, const std::string& name) {

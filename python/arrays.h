@@ -18,14 +18,21 @@ namespace skycap::python {
 
 namespace py = pybind11;
 
-/// Arrays of this type are taken as they lie in memory; others are converted, which copies.
+/// Arrays of this type are taken as they lie in memory if they are aligned; others are converted,
+/// which copies.
 template <typename Number>
-using Array = py::array_t<Number, py::array::c_style | py::array::forcecast>;
+using Array = py::array_t<Number, py::array::c_style | py::array::forcecast |
+                                      py::detail::npy_api::NPY_ARRAY_ALIGNED_>;
 
 /// Rows of three as points; `name` opens messages. Throws py::value_error for any other shape.
 std::span<const Eigen::Vector3f> points_in(const Array<float>& array, const std::string& name);
 std::vector<Eigen::Vector3d> places_in(const Array<double>& array, const std::string& name);
+/// Throws py::value_error also for numbers that are not finite.
 Eigen::Vector3d vector_in(const Array<double>& array, const std::string& name);
+
+/// From an array or what numpy makes one of. Throws py::value_error unless the numbers are whole
+/// and fit 32 bits.
+Array<std::uint32_t> indices_in(const py::object& numbers, const std::string& name);
 
 /// From a 4 x 4 matrix. Throws py::value_error unless it turns and shifts and does nothing else, to
 /// 1e-6.

@@ -6,9 +6,7 @@
 #include <pybind11/stl.h>
 
 #include "flight/route/route.h"
-#include "flight/space/clearance.h"
 #include "flight/space/obstacles.h"
-#include "geometry/error.h"
 #include "geometry/place/prism.h"
 #include "python/arrays.h"
 #include "python/bindings.h"
@@ -17,14 +15,8 @@
 namespace skycap::python {
 namespace {
 
-using flight::LegProof;
+using Certificate = flight::LegCertificate;
 using geometry::Prism;
-
-/// A leg with the name of what it comes nearest to.
-struct Certificate {
-  LegProof proof;
-  std::string obstacle;
-};
 
 Prism prism_from(const std::string& name, const Array<double>& footprint, double floor,
                  double ceiling) {
@@ -54,37 +46,19 @@ flight::Obstacles obstacles_from(const geometry::Mesh* mesh,
   return obstacles;
 }
 
-/// Of a route of one point, that point.
-std::vector<flight::Segment> legs_of(const std::vector<Eigen::Vector3d>& route) {
-  for (std::size_t i = 0; i < route.size(); ++i) {
-    if (route[i].allFinite()) continue;
-    throw Error(ErrorKind::bad_geometry,
-                "point " + std::to_string(i) + " of the route is not finite");
-  }
-  if (route.size() == 1) return {{route[0], route[0]}};
-  std::vector<flight::Segment> legs;
-  for (std::size_t i = 1; i < route.size(); ++i) legs.push_back({route[i - 1], route[i]});
-  return legs;
-}
-
 std::vector<Certificate> certify(const Array<double>& route, double clearance,
                                  const geometry::Mesh* mesh,
                                  const std::optional<Array<float>>& cloud, double cloud_radius,
                                  std::vector<Prism> no_fly, std::optional<Prism> fence,
                                  std::optional<double> ground_height) {
   if (!(clearance >= 0.0)) throw py::value_error("clearance must be zero or more, in metres");
-  const std::vector<flight::Segment> legs = legs_of(places_in(route, "route"));
+  const std::vector<Eigen::Vector3d> points = places_in(route, "route");
   const flight::Obstacles obstacles =
       obstacles_from(mesh, cloud, cloud_radius, std::move(no_fly), std::move(fence), ground_height);
   std::vector<Certificate> certificates;
   run_interruptibly([&](const std::stop_token& stop) {
-    const flight::KnownSpace space(obstacles);
-    for (const flight::Segment& leg : legs) {
-      if (stop.stop_requested()) return;
-      const LegProof proof =
-          flight::prove(space, leg, clearance, clearance + flight::reported_surplus);
-      certificates.push_back({proof, space.name(proof.closest)});
-    }
+    certificates = flight::certify_route(points, flight::KnownSpace(obstacles), clearance,
+                                         clearance + flight::reported_surplus, stop);
   });
   return certificates;
 }
@@ -134,8 +108,8 @@ void bind_certificates(py::module_& module) {
       "certify(route, clearance, mesh=None, cloud=None, cloud_radius=0.0, no_fly=(), "
       "fence=None, ground_height=None)\n--\n\n"
       "Proves for each straight leg of a route, (N, 3) float64 in metres, that it keeps\n"
-      "`clearance` metres from everything: a list of N - 1 LegProof. Distances are exact\n"
-      "minima over all points of a leg, not samples.\n\n"
+      "`clearance` metres from everything: a list of N - 1 LegProof, of one for a\n"
+      "single point. Distances are exact minima over all points of a leg, not samples.\n\n"
       "mesh: a Mesh; being inside a closed one is as bad as touching it. cloud: (N, 3)\n"
       "float32, each point a ball of `cloud_radius`. no_fly: Prisms to stay out of; fence: a\n"
       "Prism to stay in. ground_height: z below which all is solid.");

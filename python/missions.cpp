@@ -19,22 +19,34 @@ using missions::library::Mission;
 using missions::library::Setting;
 using missions::library::Simulation;
 
+std::string yaml_of(const py::handle& value);
+
+/// Inside of a list or table a text stands in quotes: it may hold what parts entries.
+std::string entry_of(const py::handle& value) {
+  if (!py::isinstance<py::str>(value)) return yaml_of(value);
+  std::string text = "'";
+  for (const char c : value.cast<std::string>())
+    text += c == '\'' ? std::string("''") : std::string(1, c);
+  return text + "'";
+}
+
 /// As a mission file says it: numbers, truth, lists and tables of Python are those of YAML's flow
-/// style but for a few words.
+/// style but for a few words. A text is what would stand behind `--set KEY=`.
 std::string yaml_of(const py::handle& value) {
   if (py::isinstance<py::str>(value)) return value.cast<std::string>();
+  if (value.is_none()) return "null";
   if (value.ptr() == Py_True) return "true";
   if (value.ptr() == Py_False) return "false";
   std::string text;
   if (py::isinstance<py::dict>(value)) {
     for (const auto& [key, entry] : py::reinterpret_borrow<py::dict>(value)) {
-      text += (text.empty() ? "" : ", ") + yaml_of(key) + ": " + yaml_of(entry);
+      text += (text.empty() ? "" : ", ") + entry_of(key) + ": " + entry_of(entry);
     }
     return "{" + text + "}";
   }
   if (py::hasattr(value, "tolist")) return yaml_of(value.attr("tolist")());  // numpy's
   if (py::isinstance<py::sequence>(value)) {
-    for (const py::handle entry : value) text += (text.empty() ? "" : ", ") + yaml_of(entry);
+    for (const py::handle entry : value) text += (text.empty() ? "" : ", ") + entry_of(entry);
     return "[" + text + "]";
   }
   return py::str(value).cast<std::string>();

@@ -14,7 +14,7 @@ using geometry::View;
 
 View view_from(const Array<double>& position, const Array<double>& direction) {
   const Eigen::Vector3d towards = vector_in(direction, "direction");
-  if (!(towards.norm() > 0.0) || !towards.allFinite()) {
+  if (!(towards.norm() > 0.0)) {
     throw py::value_error("direction has no length to be divided by");
   }
   return {vector_in(position, "position"), towards.normalized()};

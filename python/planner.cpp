@@ -53,13 +53,15 @@ class Planner {
   explicit Planner(const Mission& mission) : guarded_(std::make_shared<GuardedPlanner>(mission)) {}
 
   std::optional<View> next_view(const Array<float>& points, const Array<double>& world_from_sensor,
-                                const std::optional<Array<std::uint32_t>>& pixels) {
+                                const std::optional<py::object>& pixels) {
     geometry::ScanSpan scan;
     scan.points = points_in(points, "points");
     scan.world_from_sensor = pose_in(world_from_sensor, "world_from_sensor");
+    Array<std::uint32_t> indices;
     if (pixels) {
-      if (pixels->ndim() != 1) throw py::value_error("pixels has not one axis; give shape (N,)");
-      scan.pixels = {pixels->data(), static_cast<std::size_t>(pixels->size())};
+      indices = indices_in(*pixels, "pixels");
+      if (indices.ndim() != 1) throw py::value_error("pixels has not one axis; give shape (N,)");
+      scan.pixels = {indices.data(), static_cast<std::size_t>(indices.size())};
     }
     py::gil_scoped_release others_go_on;
     const Lock lock(guarded_->in_use);

@@ -20,14 +20,16 @@ namespace {
 using geometry::Mesh;
 using missions::library::Evaluation;
 
-Mesh mesh_from(const Array<double>& vertices, const Array<std::uint32_t>& triangles) {
+Mesh mesh_from(const Array<double>& vertices, const py::object& corners) {
+  const Array<std::uint32_t> triangles = indices_in(corners, "triangles");
   if (triangles.ndim() != 2 || triangles.shape(1) != 3) {
     throw py::value_error("triangles has not the shape (M, 3)");
   }
   Mesh mesh;
   mesh.vertices = places_in(vertices, "vertices");
-  mesh.triangles.resize(static_cast<std::size_t>(triangles.shape(0)));
-  std::copy_n(triangles.data(), triangles.size(), mesh.triangles.data()->data());
+  for (py::ssize_t i = 0; i < triangles.shape(0); ++i) {
+    mesh.triangles.push_back({triangles.at(i, 0), triangles.at(i, 1), triangles.at(i, 2)});
+  }
   geometry::validate(mesh);
   return mesh;
 }

@@ -19,26 +19,7 @@ namespace {
 
 using missions::library::Mission;
 using missions::library::Survey;
-using survey::StopReason;
 using survey::SurveyedView;
-
-const char* name_of(StopReason reason) {
-  switch (reason) {
-    case StopReason::complete:
-      return "complete";
-    case StopReason::view_limit:
-      return "view_limit";
-    case StopReason::distance_limit:
-      return "distance_limit";
-    case StopReason::time_limit:
-      return "time_limit";
-    case StopReason::nowhere_to_go:
-      return "nowhere_to_go";
-    case StopReason::interrupted:
-      return "interrupted";
-  }
-  return "";
-}
 
 Survey plan(const Mission& mission, const std::optional<std::filesystem::path>& out,
             const py::object& progress) {
@@ -75,7 +56,7 @@ void bind_surveys(py::module_& module) {
   bind_surveyed_view(module);
   py::class_<Survey>(module, "Survey", "A survey from its first view to its last.")
       .def_property_readonly(
-          "end", [](const Survey& survey) { return name_of(survey.end); },
+          "end", [](const Survey& whole) { return survey::name_of(whole.end); },
           "Why it ended: 'complete', 'view_limit', 'distance_limit', 'time_limit' or\n"
           "'nowhere_to_go'.")
       .def_readonly("views", &Survey::views, "The views in the order taken.")

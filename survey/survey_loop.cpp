@@ -61,6 +61,24 @@ void book_rest(SurveyedView& taken, const char* part) {
 
 }  // namespace
 
+const char* name_of(StopReason reason) {
+  switch (reason) {
+    case StopReason::complete:
+      return "complete";
+    case StopReason::view_limit:
+      return "view_limit";
+    case StopReason::distance_limit:
+      return "distance_limit";
+    case StopReason::time_limit:
+      return "time_limit";
+    case StopReason::nowhere_to_go:
+      return "nowhere_to_go";
+    case StopReason::interrupted:
+      break;
+  }
+  return "interrupted";
+}
+
 SurveySteps::SurveySteps(Planner& planner, const SurveyLimits& limits, SurveyPorts ports)
     : planner_(planner), limits_(limits), ports_(std::move(ports)) {}
 

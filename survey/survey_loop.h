@@ -24,6 +24,9 @@ enum class StopReason {
   interrupted,    ///< the user asked to stop
 };
 
+/// "complete", "view_limit" and so on, as the enumerators are called.
+const char* name_of(StopReason reason);
+
 struct SurveyLimits {
   std::size_t max_views = 1000;
   std::optional<double> max_distance;  ///< straight lines between views

@@ -43,7 +43,10 @@ void check_pad(const FreeSpace& space, const FreeSpace* pad_space, const RouteOp
   if (!options.returns) return;
   for (const Vector3d& rally : options.returns->rally) {
     const Vector3d top = rally + Vector3d(0.0, 0.0, options.takeoff_climb);
-    check_climb(*pad_space, "the rally point " + place_text(rally), {top, rally}, clearance);
+    const Vector3d above(rally.x(), rally.y(), std::min(top.z(), rally.z() + least));
+    const std::string name = "the rally point " + place_text(rally);
+    check_climb(space, name, {top, above}, clearance);
+    check_climb(*pad_space, name, {top, rally}, clearance);
   }
 }
 

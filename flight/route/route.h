@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <optional>
+#include <stop_token>
 #include <string>
 #include <vector>
 
@@ -153,9 +154,21 @@ struct Violation {
   std::string obstacle;  ///< its name
 };
 
-/// All legs of a polyline that cannot be proven free at `clearance`; empty when it is safe. A
-/// single point is checked as a leg of no length. Throws Error{bad_geometry} if a point is not
-/// finite.
+/// What is proven of a leg, and the name of what it comes nearest to.
+struct LegCertificate {
+  LegProof proof;
+  std::string obstacle;
+};
+
+/// The proof of each leg of a polyline at `clearance`, whose bound is looked for up to `cap` (see
+/// prove()); fewer if a stop is requested. A single point is a leg of no length. Throws
+/// Error{bad_geometry} if a point is not finite.
+std::vector<LegCertificate> certify_route(const std::vector<Eigen::Vector3d>& points,
+                                          const FreeSpace& space, double clearance, double cap,
+                                          const std::stop_token& stop = {});
+
+/// All legs of a polyline that cannot be proven free at `clearance`; empty when it is safe.
+/// Otherwise as certify_route().
 std::vector<Violation> check_route(const std::vector<Eigen::Vector3d>& points,
                                    const FreeSpace& space, double clearance);
 

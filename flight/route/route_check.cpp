@@ -8,20 +8,32 @@ namespace skycap::flight {
 
 using Eigen::Vector3d;
 
-std::vector<Violation> check_route(const std::vector<Vector3d>& points, const FreeSpace& space,
-                                   double clearance) {
+std::vector<LegCertificate> certify_route(const std::vector<Vector3d>& points,
+                                          const FreeSpace& space, double clearance, double cap,
+                                          const std::stop_token& stop) {
   for (std::size_t i = 0; i < points.size(); ++i) {
     if (points[i].allFinite()) continue;
     throw Error(ErrorKind::bad_geometry,
                 "point " + std::to_string(i) + " of the route is not a finite position");
   }
-  std::vector<Violation> violations;
+  std::vector<LegCertificate> certificates;
   const std::size_t legs =
       points.size() == 1 ? 1 : points.size() - std::min<std::size_t>(points.size(), 1);
-  for (std::size_t i = 0; i < legs; ++i) {
+  for (std::size_t i = 0; i < legs && !stop.stop_requested(); ++i) {
     const Segment leg{points[i], points[std::min(i + 1, points.size() - 1)]};
-    const LegProof proof = prove(space, leg, clearance, clearance);
-    if (!proof.is_proven) violations.push_back({i, proof.closest, space.name(proof.closest)});
+    const LegProof proof = prove(space, leg, clearance, cap);
+    certificates.push_back({proof, space.name(proof.closest)});
+  }
+  return certificates;
+}
+
+std::vector<Violation> check_route(const std::vector<Vector3d>& points, const FreeSpace& space,
+                                   double clearance) {
+  std::vector<Violation> violations;
+  const auto certificates = certify_route(points, space, clearance, clearance);
+  for (std::size_t i = 0; i < certificates.size(); ++i) {
+    const auto& [proof, obstacle] = certificates[i];
+    if (!proof.is_proven) violations.push_back({i, proof.closest, obstacle});
   }
   return violations;
 }

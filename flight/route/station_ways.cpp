@@ -24,12 +24,19 @@ StationWays::StationWays(const FreeSpace& space, const Vector3d& home, const Rou
       finder_(space, clearance_, options.path) {}
 
 std::vector<Vector3d> StationWays::from_home(const Station& to) {
-  if (std::vector<Vector3d> way = flown(home_, to); !way.empty()) return way;
+  if (std::vector<Vector3d> way = flown(home_, to); !way.empty() && is_free(way)) return way;
   Path path = finder_.find(home_, to.view.position);
   if (path.status == PathStatus::unreachable) {
     path = find_path_by_sampling(space_, home_, to.view.position, clearance_);
   }
   return path.status == PathStatus::found ? path.points : all_flown(to);
+}
+
+bool StationWays::is_free(const std::vector<Vector3d>& way) const {
+  for (std::size_t i = 1; i < way.size(); ++i) {
+    if (!space_.is_free({way[i - 1], way[i]}, clearance_)) return false;
+  }
+  return true;
 }
 
 std::vector<Vector3d> StationWays::flown(const Vector3d& from, const Station& to) const {

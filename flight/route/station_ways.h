@@ -19,9 +19,9 @@ class StationWays {
   /// What the survey flew: its stations, in its order.
   void take_flown(std::vector<Station> stations) { flown_ = std::move(stations); }
 
-  /// From above the pad to a station: as flown where the order is the survey's, or else the
-  /// shortest found, or else by a passage too narrow for that search's grid, or else along all that
-  /// the survey flew before it came there. Empty if there is none.
+  /// From above the pad to a station: as flown where the order is the survey's and that is still
+  /// free, or else the shortest found, or else by a passage too narrow for that search's grid, or
+  /// else along all that the survey flew before it came there. Empty if there is none.
   std::vector<Eigen::Vector3d> from_home(const Station& to);
 
   /// As the survey flew from one place to a station; empty if it did not, or if the order is not
@@ -32,6 +32,7 @@ class StationWays {
   std::vector<Eigen::Vector3d> found(const Eigen::Vector3d& from, const Eigen::Vector3d& to);
 
  private:
+  bool is_free(const std::vector<Eigen::Vector3d>& way) const;
   std::vector<Eigen::Vector3d> all_flown(const Station& to) const;
 
   const FreeSpace& space_;

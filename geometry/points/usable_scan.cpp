@@ -12,7 +12,8 @@
 namespace skycap::geometry {
 namespace {
 
-constexpr float farthest_point = 16384.0F;  // [m]: beyond, single precision moves by a millimetre
+constexpr int farthest = 16384;  // [m]: beyond, single precision moves by a millimetre
+constexpr float farthest_point = farthest;
 
 bool is_usable(const Eigen::Vector3f& point) {
   return (point.array().abs() <= farthest_point).all();  // false for NaN
@@ -28,14 +29,17 @@ void require_points(std::span<const Eigen::Vector3f> points) {
                                                  static_cast<Eigen::Index>(3 * points.size()));
   if (numbers.abs().maxCoeff<Eigen::PropagateNaN>() <= farthest_point) return;
   const auto bad = std::ranges::find_if_not(points, is_usable) - points.begin();
-  refuse("has point " + std::to_string(bad) +
-         " that is not finite or farther than 16384 m from the "
-         "origin; give points and pose in a local frame");
+  refuse("has point " + std::to_string(bad) + " that is not finite or farther than " +
+         std::to_string(farthest) + " m from the origin; give points and pose in a local frame");
 }
 
 }  // namespace
 
 void require_usable(const ScanSpan& scan, const CameraConfig& camera) {
+  if (!(scan.sensor_position().array().abs() <= farthest).all()) {
+    refuse("was taken from a place that is not finite or farther than " + std::to_string(farthest) +
+           " m from the origin; give points and pose in a local frame");
+  }
   require_points(scan.points);
   if (scan.pixels.empty()) return;
   if (scan.pixels.size() != scan.points.size()) {

@@ -7,7 +7,8 @@
 namespace skycap::geometry {
 
 /// Throws Error{bad_geometry}, saying what would be right, unless a planner can take in the scan:
-/// points that are finite and so near the origin that single precision keeps half a millimetre;
+/// points and a sensor that are finite and so near the origin that single precision keeps half a
+/// millimetre;
 /// pixels, if there are any, one for each point, ascending, of that camera. One pass over memory.
 void require_usable(const ScanSpan& scan, const CameraConfig& camera);
 

@@ -324,6 +324,7 @@ MeshDistance::Closest MeshDistance::closest(const Vector3d& point) const {
 
 // Distances change no faster than places do: both ends tell of all between, or else both halves.
 bool MeshDistance::keeps(const Vector3d& from, const Vector3d& to, double distance) const {
+  assert(distance > 0.0);
   const double at_from = this->distance(from), at_to = this->distance(to);
   if (at_from < distance || at_to < distance) return false;
   const double length = (to - from).norm();

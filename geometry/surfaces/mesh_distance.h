@@ -33,8 +33,8 @@ class MeshDistance {
   /// Distance of `point` from the surface, never negative.
   double distance(const Eigen::Vector3d& point) const { return closest(point).distance; }
 
-  /// Whether every place between two is at least that far from the surface. A way that grazes the
-  /// distance, to a thousandth of it, is not said to keep it.
+  /// Whether every place between two is at least that far, more than nothing, from the surface. A
+  /// way that grazes the distance, to a thousandth of it, is not said to keep it.
   bool keeps(const Eigen::Vector3d& from, const Eigen::Vector3d& to, double distance) const;
 
   /// The distance of each point, to a place of `distances`. Quick where points that follow each

@@ -4,8 +4,7 @@
 #include <string>
 
 #include "geometry/error.h"
-#include "missions/judge/accuracy.h"
-#include "missions/judge/coverage.h"
+#include "missions/judge/cloud_judge.h"
 
 namespace skycap::missions::library {
 namespace {
@@ -35,21 +34,17 @@ Evaluation evaluate(std::span<const Eigen::Vector3f> points, const geometry::Mes
                     const EvaluationRequest& request) {
   validate(points, request);
   geometry::validate(model);
-  const geometry::SurfaceSamples samples = geometry::sample_surface(model, request.samples, 1);
-  judge::CoverageMeter meter(samples.points, request.distance);
-  meter.add(points);
-  judge::AccuracyMeter distances(model, request.threads);
-  distances.add(points);
-  const judge::CloudAccuracy accuracy = distances.accuracy();
-  const double area = geometry::surface_area(model);
-  return {.coverage = meter.share(),
-          .mean = accuracy.mean,
-          .root_mean_square = accuracy.root_mean_square,
-          .median = accuracy.median,
-          .percentile_95 = accuracy.percentile_95,
-          .largest = accuracy.largest,
-          .area = area,
-          .density = static_cast<double>(points.size()) / area};
+  judge::CloudJudge judge(model, request.samples, request.distance, request.threads);
+  judge.add(points);
+  const judge::CloudJudgement found = judge.judgement();
+  return {.coverage = found.coverage,
+          .mean = found.accuracy.mean,
+          .root_mean_square = found.accuracy.root_mean_square,
+          .median = found.accuracy.median,
+          .percentile_95 = found.accuracy.percentile_95,
+          .largest = found.accuracy.largest,
+          .area = found.area,
+          .density = found.density()};
 }
 
 }  // namespace skycap::missions::library

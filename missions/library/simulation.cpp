@@ -1,7 +1,5 @@
 #include "missions/library/simulation.h"
 
-#include <utility>
-
 #include "missions/derived/survey_sensor.h"
 #include "missions/library/mission_contents.h"
 #include "missions/scene/survey_scene.h"
@@ -28,9 +26,8 @@ Simulation::~Simulation() = default;
 
 geometry::View Simulation::first_view() const { return impl_->scene.first_view(impl_->seed); }
 
-geometry::Scan Simulation::scan(const geometry::View& view, std::uint64_t frame,
-                                geometry::Scan recycled) const {
-  return impl_->sensor.scan(impl_->scene.scene(), view, frame, impl_->threads, std::move(recycled));
+geometry::Scan Simulation::scan(const geometry::View& view, std::uint64_t frame) const {
+  return impl_->sensor.scan(impl_->scene.scene(), view, frame, impl_->threads);
 }
 
 }  // namespace skycap::missions::library

@@ -23,10 +23,8 @@ class Simulation {
   geometry::View first_view() const;
 
   /// What the mission's sensor measures from `view`, with its noise; with the mission's seed,
-  /// `frame` alone decides the noise. A survey counts its frames from 0. The memory of `recycled`
-  /// is used again.
-  geometry::Scan scan(const geometry::View& view, std::uint64_t frame,
-                      geometry::Scan recycled = {}) const;
+  /// `frame` alone decides the noise. A survey counts its frames from 0.
+  geometry::Scan scan(const geometry::View& view, std::uint64_t frame) const;
 
  private:
   struct Impl;

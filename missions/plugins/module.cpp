@@ -1,7 +1,10 @@
 #include "missions/plugins/module.h"
 
+#include <algorithm>
+#include <array>
 #include <cstdlib>
 #include <filesystem>
+#include <string>
 #include <system_error>
 
 #include <dlfcn.h>
@@ -13,19 +16,32 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Where the modules are: with the program, wherever that was put, or where its installation puts
-/// them; SKYCAP_PLUGINS_OF_PROGRAM is the way there from the program's folder.
+/// The program, or the library or module of Python that this code is in.
+fs::path file_of_this_code() {
+  Dl_info info;
+  const bool is_known = ::dladdr(reinterpret_cast<void*>(&module_symbol), &info) != 0;
+  const fs::path file = is_known && info.dli_fname != nullptr ? info.dli_fname : "";
+  if (file.filename().string().find(".so") != std::string::npos) return fs::canonical(file);
+  std::error_code failure;  // programs are known by how they were called
+  const fs::path program = fs::read_symlink("/proc/self/exe", failure);
+  if (!failure) return program;
+  throw Error(ErrorKind::bad_file, "/proc/self/exe cannot be read (" + failure.message() +
+                                       "); name the folder of libskycap_*.so in $SKYCAP_PLUGINS");
+}
+
+/// Where the modules are, from there, wherever that was put: beside the program or where its
+/// installation puts them; beside shared libraries; from the module of Python, in its build folder
+/// and from lib/python3/dist-packages/skycap.
+constexpr std::array folders{SKYCAP_PLUGINS_OF_PROGRAM, ".", "skycap", "../..", "../../../skycap"};
+
 fs::path module_folder(const std::string& module) {
   const char* folder = std::getenv("SKYCAP_PLUGINS");  // NOLINT(concurrency-mt-unsafe): never set
   if (folder != nullptr && *folder != '\0') return folder;
-  std::error_code failure;
-  const fs::path program = fs::read_symlink("/proc/self/exe", failure);
-  if (failure) {
-    throw Error(ErrorKind::bad_file, "/proc/self/exe cannot be read (" + failure.message() +
-                                         "); name the folder of libskycap_*.so in $SKYCAP_PLUGINS");
-  }
-  const fs::path installed = program.parent_path() / SKYCAP_PLUGINS_OF_PROGRAM;
-  return fs::exists(installed / module, failure) ? installed : program.parent_path();
+  const fs::path here = file_of_this_code().parent_path();
+  std::error_code ignored;
+  const auto found = std::ranges::find_if(
+      folders, [&](const char* way) { return fs::exists(here / way / module, ignored); });
+  return found == folders.end() ? here : here / *found;
 }
 
 }  // namespace

@@ -22,24 +22,6 @@ double SurveyRecord::sensing_time() const {
   return sum_over(views, &survey::SurveyedView::sensing_time);
 }
 
-const char* name_of(survey::StopReason reason) {
-  switch (reason) {
-    case survey::StopReason::complete:
-      return "complete";
-    case survey::StopReason::view_limit:
-      return "view_limit";
-    case survey::StopReason::distance_limit:
-      return "distance_limit";
-    case survey::StopReason::time_limit:
-      return "time_limit";
-    case survey::StopReason::nowhere_to_go:
-      return "nowhere_to_go";
-    case survey::StopReason::interrupted:
-      break;
-  }
-  return "interrupted";
-}
-
 survey::StopReason stop_reason_named(const std::string& name) {
   using enum survey::StopReason;
   for (const auto reason :

@@ -40,9 +40,8 @@ struct SurveyRecord {
   double sensing_time() const;
 };
 
-/// The word for it in files: complete, view_limit, distance_limit, time_limit,
-/// nowhere_to_go, interrupted.
-const char* name_of(survey::StopReason reason);
+/// The word for it in files.
+using survey::name_of;
 
 /// The reason of that name. Throws Error{bad_file}.
 survey::StopReason stop_reason_named(const std::string& name);

@@ -13,7 +13,7 @@
 #include "missions/derived/resolved_mission.h"
 #include "missions/file/json_text.h"
 #include "missions/judge/accuracy.h"
-#include "missions/judge/coverage.h"
+#include "missions/judge/cloud_judge.h"
 #include "missions/scene/scene_source.h"
 #include "missions/scene/survey_scene.h"
 #include "missions/verbs/verbs.h"
@@ -54,40 +54,27 @@ Truth truth_of(const EvaluateOptions& options) {
   }
 }
 
-/// What is told of the cloud or mesh that is compared.
-struct Judged {
-  std::filesystem::path file;
-  std::size_t points = 0;  ///< measured, or spread over the mesh
-  double coverage = 0.0;
-  judge::CloudAccuracy accuracy;
-};
-
 /// Piece by piece: laser scans are longer than memory.
-Judged judged_cloud(const std::filesystem::path& file, const Truth& truth,
-                    const geometry::SurfaceSamples& samples, ProgressLine& progress,
-                    const std::stop_token& stop) {
-  judge::CoverageMeter coverage(samples.points, truth.registration_distance);
-  judge::AccuracyMeter accuracy(truth.model);
+judge::CloudJudgement judged_cloud(const std::filesystem::path& file, const Truth& truth,
+                                   ProgressLine& progress, const std::stop_token& stop) {
+  judge::CloudJudge judge(truth.model, truth.samples, truth.registration_distance);
   geometry::read_positions(file, [&](std::span<const Eigen::Vector3f> piece, double share) {
     if (stop.stop_requested()) throw Error(ErrorKind::bad_usage, "interrupted");
     progress.show(fmt::format("{}: {:.0f} %", file.string(), 100.0 * share));
-    coverage.add(piece);
-    accuracy.add(piece);
+    judge.add(piece);
   });
-  return {file, accuracy.points(), coverage.share(), accuracy.accuracy()};
+  return judge.judgement();
 }
 
 /// Of a mesh the whole surface counts, not its vertices.
-Judged judged_mesh(const std::filesystem::path& file, const Truth& truth,
-                   const geometry::SurfaceSamples& samples) {
+judge::CloudJudgement judged_mesh(const std::filesystem::path& file, const Truth& truth) {
   const geometry::Mesh mesh = geometry::read_mesh(file);
-  const std::vector<Eigen::Vector3f> points =
-      geometry::sample_surface(mesh, truth.samples, 2).points;
   judge::AccuracyMeter accuracy(truth.model), completeness(mesh);
-  accuracy.add(points);
-  completeness.add(samples.points);
-  return {file, points.size(), completeness.share_within(truth.registration_distance),
-          accuracy.accuracy()};
+  constexpr std::uint64_t seed = 2;  // not the places that are asked about
+  accuracy.add(geometry::sample_surface(mesh, truth.samples, seed).points);
+  completeness.add(judge::places_asked(truth.model, truth.samples));
+  return {accuracy.points(), completeness.share_within(truth.registration_distance),
+          accuracy.accuracy(), geometry::surface_area(truth.model)};
 }
 
 }  // namespace
@@ -96,19 +83,16 @@ int evaluate(const EvaluateOptions& options, const Console& console) {
   ProgressLine progress(console, false);
   progress.show("making " + options.model + " ready");
   const Truth truth = truth_of(options);
-  const geometry::SurfaceSamples samples = geometry::sample_surface(truth.model, truth.samples, 1);
   const bool is_mesh = !options.mesh.empty();
-  progress.show("reading " + (is_mesh ? options.mesh : options.cloud).string());
-  const Judged judged = is_mesh
-                            ? judged_mesh(options.mesh, truth, samples)
-                            : judged_cloud(options.cloud, truth, samples, progress, console.stop);
+  const std::filesystem::path& file = is_mesh ? options.mesh : options.cloud;
+  progress.show("reading " + file.string());
+  const judge::CloudJudgement judged =
+      is_mesh ? judged_mesh(file, truth) : judged_cloud(file, truth, progress, console.stop);
   const judge::CloudAccuracy& accuracy = judged.accuracy;
   progress.clear();
-  const double area = geometry::surface_area(truth.model);
-  const double density = static_cast<double>(judged.points) / area;
 
   if (options.is_json) {
-    const nlohmann::ordered_json json{{is_mesh ? "mesh" : "cloud", judged.file.string()},
+    const nlohmann::ordered_json json{{is_mesh ? "mesh" : "cloud", file.string()},
                                       {"model", options.model},
                                       {"points", judged.points},
                                       {"registration_distance_m", truth.registration_distance},
@@ -120,8 +104,8 @@ int evaluate(const EvaluateOptions& options, const Console& console) {
                                         {"median", accuracy.median},
                                         {"percentile_95", accuracy.percentile_95},
                                         {"largest", accuracy.largest}}},
-                                      {"area_m2", area},
-                                      {"points_per_m2", density}};
+                                      {"area_m2", judged.area},
+                                      {"points_per_m2", judged.density()}};
     console.out << file::json_text(json);
     return 0;
   }
@@ -131,9 +115,9 @@ int evaluate(const EvaluateOptions& options, const Console& console) {
       "  accuracy  mean {:.4g} m, rms {:.4g} m, median {:.4g} m, 95 % below {:.4g} m, largest "
       "{:.4g} m\n"
       "  density   {:.4g} points per m^2 of the surface's {:.4g} m^2\n",
-      judged.file.filename().string(), judged.points, options.model, 100.0 * judged.coverage,
+      file.filename().string(), judged.points, options.model, 100.0 * judged.coverage,
       truth.registration_distance, accuracy.mean, accuracy.root_mean_square, accuracy.median,
-      accuracy.percentile_95, accuracy.largest, density, area);
+      accuracy.percentile_95, accuracy.largest, judged.density(), judged.area);
   return 0;
 }
 

@@ -3,6 +3,7 @@
 import ast
 import ctypes
 import inspect
+import json
 import pathlib
 import shutil
 import struct
@@ -57,6 +58,12 @@ class Module(unittest.TestCase):
                                  list(inspect.signature(thing).parameters), name)
             elif name != "Error":
                 members = {member.name for member in node.body}
+                for member in node.body:
+                    told_args = [argument.arg for argument in member.args.args]
+                    is_method = told_args[:1] == ["self"] and not member.decorator_list
+                    if is_method and not member.name.startswith("_"):
+                        signature = inspect.signature(getattr(thing, member.name))
+                        self.assertEqual(told_args[1:], list(signature.parameters), member.name)
                 self.assertEqual({m for m in members if not m.startswith("_")},
                                  {m for m in vars(thing) if not m.startswith("_")}, name)
 
@@ -86,6 +93,17 @@ class Errors(SmallMission):
         self.assertIn("cube.yaml:9: ", str(raised.exception))
         ran = self.run_program("plan", self.file)
         self.assertIn(str(raised.exception), ran.stderr)
+
+    def test_are_none_for_prior_data_which_takes_a_plug_in(self):
+        (self.folder / "old, town.geojson").write_text(json.dumps({
+            "type": "Feature", "properties": {"height": 5}, "geometry": {
+                "type": "Polygon",
+                "coordinates": [[[8.0, 47.0], [8.0001, 47.0], [8.0001, 47.0001], [8.0, 47.0]]]}}))
+        mission = self.load(site__latitude_deg=47.0, site__longitude_deg=8.0,
+                            site__ellipsoid_height=400,
+                            prior=[{"file": "old, town.geojson", "role": "obstacle", "base": 400,
+                                    "vertical": "ellipsoid"}])
+        self.assertEqual(mission.name, self.load().name)
 
     def test_name_the_setting(self):
         with self.assertRaisesRegex(skycap.Error, "limits.max_views"):
@@ -154,7 +172,7 @@ class Certificates(unittest.TestCase):
         self.assertEqual((proof.is_proven, proof.obstacle, proof.on_leg), (True, "", None))
 
     def test_refuse_places_that_are_none(self):
-        with self.assertRaisesRegex(skycap.Error, "point 1 of the route is not finite"):
+        with self.assertRaisesRegex(skycap.Error, "point 1 of the route is not a finite position"):
             skycap.certify([(0, 0, 0), (np.inf, 0, 0)], 1.0)
 
 

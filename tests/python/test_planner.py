@@ -1,6 +1,7 @@
 """What the planner takes from arrays of others, and how it shows its own."""
 
 import gc
+import tracemalloc
 import unittest
 
 import numpy as np
@@ -98,6 +99,28 @@ class Arrays(SmallMission):
         self.assertEqual(view.position.tolist(), same.position.tolist())
         self.assertEqual(self.planner.cloud().xyz.tobytes(), other.cloud().xyz.tobytes())
 
+    def test_that_are_right_are_not_copied(self):
+        points, pose, pixels = self.scan
+        def peak(*scan):
+            planner = skycap.Planner(self.mission)
+            tracemalloc.start()  # numpy tells it what its arrays take
+            try:
+                planner.next_view(*scan)
+                return tracemalloc.get_traced_memory()[1]
+            finally:
+                tracemalloc.stop()
+        self.assertLess(peak(points, pose, pixels), points.nbytes // 2)
+        self.assertGreater(peak(points.astype(np.float64), pose, pixels), points.nbytes)
+
+    def test_that_are_not_aligned_mean_the_same(self):
+        points, pose, pixels = self.scan
+        packet = b"!" + points.tobytes()
+        shifted = np.frombuffer(packet, np.float32, offset=1).reshape(points.shape)
+        self.assertFalse(shifted.flags.aligned)
+        view = self.planner.next_view(points, pose, pixels)
+        same = skycap.Planner(self.mission).next_view(shifted, pose, pixels)
+        self.assertEqual(view.position.tolist(), same.position.tolist())
+
     def test_of_the_cloud_keep_the_planner_from_moving_it(self):
         self.planner.next_view(*self.scan)
         points = self.planner.cloud().xyz
@@ -112,6 +135,8 @@ class Arrays(SmallMission):
         points, pose, pixels = self.scan
         skewed = pose.copy()
         skewed[0, 0] += 0.1
+        far = pose.copy()
+        far[0, 3] += 1e9
         broken = points.copy()
         broken[1, 2] = np.nan
         for arguments, kind, message in (
@@ -122,6 +147,10 @@ class Arrays(SmallMission):
                 ((points, pose, pixels[:-1]), skycap.Error, "one for each"),
                 ((points, pose, pixels[::-1]), skycap.Error, "do not ascend"),
                 ((np.zeros((0, 3)), pose), skycap.Error, "no point of the scene"),
+                ((points, pose, pixels.astype(np.int64) + 2**32), ValueError, "fit 32 bits"),
+                ((points, pose, pixels.astype(np.int64) - 2**31), ValueError, "fit 32 bits"),
+                ((points, pose, pixels + 0.5), ValueError, "whole numbers"),
+                ((points, far, pixels), skycap.Error, "taken from a place"),
                 (("points", pose), TypeError, "")):
             with self.subTest(message), self.assertRaisesRegex(kind, message):
                 self.planner.next_view(*arguments)

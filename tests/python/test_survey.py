@@ -1,11 +1,11 @@
 """Surveys from Python are those of the program, to the last bit."""
 
+import concurrent.futures
 import subprocess
 import sys
 import threading
 import time
 import unittest
-
 
 import skycap
 from small_mission import SmallMission
@@ -55,9 +55,9 @@ class WholeSurvey(SmallMission):
     def test_hears_an_interrupt_and_leaves_what_there_is(self):
         out = self.folder / "interrupted"
         script = (
-            "import os, signal, sys, skycap\n"
+            "import os, signal, sys, time, skycap\n"
             "def interrupt(view, coverage):\n"
-            "    if view.distance == 0.0: os.kill(os.getpid(), signal.SIGINT)\n"
+            "    if view.distance == 0.0: os.kill(os.getpid(), signal.SIGINT); time.sleep(0.5)\n"
             "mission = skycap.Mission.load(sys.argv[1], {'limits.max_views': 200})\n"
             "try:\n"
             "    skycap.plan(mission, out=sys.argv[2], progress=interrupt)\n"
@@ -66,7 +66,8 @@ class WholeSurvey(SmallMission):
         ran = subprocess.run([sys.executable, "-c", script, self.file, out], check=False)
         self.assertEqual(ran.returncode, 7)
         self.assertIn('"interrupted"', (out / "summary.json").read_text())
-        self.assertLess(len((out / "views.csv").read_text().splitlines()), 200)
+        # Columns' names and the first view; the one that was being planned may be there, too.
+        self.assertLessEqual(len((out / "views.csv").read_text().splitlines()), 3)
 
 
 class OwnLoop(SmallMission):
@@ -105,11 +106,9 @@ class OwnLoop(SmallMission):
         simulation = skycap.Simulation(mission)
         planner = skycap.Planner(mission)
         scan = simulation.scan(simulation.first_view, 0)
-        workers = [threading.Thread(target=planner.next_view, args=scan) for _ in range(4)]
-        for worker in workers:
-            worker.start()
-        for worker in workers:
-            worker.join()
+        with concurrent.futures.ThreadPoolExecutor(4) as pool:
+            calls = [pool.submit(planner.next_view, *scan) for _ in range(4)]
+        self.assertEqual([call.exception() for call in calls], 4 * [None])
         self.assertEqual(set(planner.cloud().views.tolist()), {0})  # the others brought nothing new
 
 

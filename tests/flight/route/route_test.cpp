@@ -8,6 +8,7 @@
 
 #include "flight/export/flight_plan.h"
 #include "flight/paths/sampling_path.h"
+#include "flight/space/prior_obstacle.h"
 #include "geometry/error.h"
 #include "tests/flight/scenes.h"
 
@@ -163,6 +164,33 @@ TEST(Route, KeepsTheWaysOfTheSurveyInItsOrder) {
   const Route shortest = plan_route(stations, {}, space, nullptr, how);
   ASSERT_EQ(shortest.legs.size(), 1U);
   EXPECT_LT(shortest.legs[0].length, route.legs[0].length);
+}
+
+TEST(Route, FindsAnotherWayToAStationWhoseOwnIsNotFree) {
+  const KnownSpace space(scenes::wall_with_window());
+  RouteOptions how = options();
+  how.takeoff = {-8, -6, 15};
+  std::vector<Station> stations = flown_through_window();
+  stations.erase(stations.begin());
+  stations[0].way = {{-8, -6, 20}, stations[0].view.position};  // through the wall
+  const Route route = plan_route(stations, {}, space, nullptr, how);
+  ASSERT_EQ(route.stations.size(), 1U);
+  EXPECT_GT(route.sorties[0].out.points.size(), 2U);
+}
+
+// A tree over a rally point, too low for the returns that come from above and too high to land in.
+TEST(Route, RallyPointsLieUnderNothingThatTheClimbWouldMeet) {
+  Obstacles obstacles = site();
+  RouteOptions how = options();
+  how.returns = ReturnOptions{{Dialect::px4}, 60.0, {Vector3d(30, 30, 0)}};
+  EXPECT_NO_THROW(plan(ring(3, 16, 8), obstacles, how));
+  PriorObstacleConfig tree;
+  tree.name = "the tree";
+  tree.points = {{30.0F, 30.0F, 3.0F}};
+  tree.point_radius = 0.5;
+  obstacles.priors.push_back(std::make_shared<const PriorObstacle>(tree));
+  EXPECT_THAT([&] { plan(ring(3, 16, 8), obstacles, how); },
+              testing::ThrowsMessage<Error>(HasSubstr("the climb from the rally point")));
 }
 
 // A window that leaves 5 mm beside the clearance: neither engine finds through, the survey did.

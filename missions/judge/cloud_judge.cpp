@@ -1,0 +1,25 @@
+#include "missions/judge/cloud_judge.h"
+
+namespace skycap::missions::judge {
+
+std::vector<Eigen::Vector3f> places_asked(const geometry::Mesh& truth, std::size_t count) {
+  constexpr std::uint64_t seed = 1;
+  return geometry::sample_surface(truth, count, seed).points;
+}
+
+CloudJudge::CloudJudge(const geometry::Mesh& truth, std::size_t places,
+                       double registration_distance, unsigned threads)
+    : area_(geometry::surface_area(truth)),
+      coverage_(places_asked(truth, places), registration_distance),
+      accuracy_(truth, threads) {}
+
+void CloudJudge::add(std::span<const Eigen::Vector3f> points) {
+  coverage_.add(points);
+  accuracy_.add(points);
+}
+
+CloudJudgement CloudJudge::judgement() {
+  return {accuracy_.points(), coverage_.share(), accuracy_.accuracy(), area_};
+}
+
+}  // namespace skycap::missions::judge

@@ -1,0 +1,46 @@
+/// A cloud against the true surface: how much of it is covered, and how far off the points are.
+#pragma once
+
+#include <cstddef>
+#include <span>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "geometry/surfaces/mesh.h"
+#include "missions/judge/accuracy.h"
+#include "missions/judge/coverage.h"
+
+namespace skycap::missions::judge {
+
+struct CloudJudgement {
+  std::size_t points = 0;
+  double coverage = 0.0;  ///< share of the surface, in [0, 1]
+  CloudAccuracy accuracy;
+  double area = 0.0;  ///< of the surface [m^2]
+
+  /// Points for each square metre of the surface.
+  double density() const { return static_cast<double>(points) / area; }
+};
+
+/// `count` places of a surface that stand for it, the same ones each time.
+std::vector<Eigen::Vector3f> places_asked(const geometry::Mesh& truth, std::size_t count);
+
+/// Takes in a cloud of any length, in any pieces.
+class CloudJudge {
+ public:
+  /// `places` of the surface are covered by points within `registration_distance` of them.
+  CloudJudge(const geometry::Mesh& truth, std::size_t places, double registration_distance,
+             unsigned threads = 0);
+
+  void add(std::span<const Eigen::Vector3f> points);
+
+  CloudJudgement judgement();
+
+ private:
+  double area_;
+  CoverageMeter coverage_;
+  AccuracyMeter accuracy_;
+};
+
+}  // namespace skycap::missions::judge
