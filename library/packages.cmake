@@ -24,8 +24,8 @@ set(CPACK_DEBIAN_PROGRAM_PACKAGE_SECTION science)
 set(CPACK_DEBIAN_PROGRAM_PACKAGE_SHLIBDEPS ON)
 set(CPACK_DEBIAN_PROGRAM_PACKAGE_SUGGESTS "npm")
 set(CPACK_COMPONENT_PROGRAM_DESCRIPTION "plans and simulates aerial surveys of buildings
- Decides where to look from next by the points measured so far, proves that
- every leg keeps its distance, and writes the flight for autopilots.")
+Decides where to look from next by the points measured so far, proves that
+every leg keeps its distance, and writes the flight for autopilots.")
 
 # Static libraries: who links one needs what it was made with. Planners need the first list alone.
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_NAME libskycap-dev)
@@ -35,13 +35,14 @@ string(JOIN ", " CPACK_DEBIAN_DEVELOPMENT_PACKAGE_DEPENDS libdraco-dev libeigen3
 string(JOIN ", " CPACK_DEBIAN_DEVELOPMENT_PACKAGE_RECOMMENDS libceres-dev libembree-dev libfmt-dev
   libgeographiclib-dev libompl-dev libpng-dev libpugixml-dev libssl-dev libyaml-cpp-dev libzip-dev)
 set(CPACK_COMPONENT_DEVELOPMENT_DESCRIPTION "libraries of Skycap, for aerial surveys of buildings
- Planners, proofs of clearance, simulated sensors, and files that CMake finds
- them by. What the components beyond survey are linked with is recommended.")
+Planners, proofs of clearance, simulated sensors, and files that CMake finds
+them by. What the components beyond survey are linked with is recommended.")
 
 # A module is for one minor version of Python's interpreter.
 if(TARGET skycap_python)
   set(CPACK_DEBIAN_PYTHON_PACKAGE_NAME python3-skycap)
   set(CPACK_DEBIAN_PYTHON_PACKAGE_SECTION python)
+  set(CPACK_DEBIAN_PYTHON_PACKAGE_RECOMMENDS skycap)  # whose plug-ins read maps and city models
   set(CPACK_DEBIAN_PYTHON_PACKAGE_SHLIBDEPS ON)
   string(JOIN ", " CPACK_DEBIAN_PYTHON_PACKAGE_DEPENDS python3-numpy
     "python3 (>= ${python_version})" "python3 (<< ${next_python_version})")
@@ -49,8 +50,8 @@ if(TARGET skycap_python)
     ${CMAKE_CURRENT_SOURCE_DIR}/python3-skycap/postinst
     ${CMAKE_CURRENT_SOURCE_DIR}/python3-skycap/prerm)
   set(CPACK_COMPONENT_PYTHON_DESCRIPTION "aerial surveys of buildings, from Python
- Planners on arrays of numpy, whole surveys in simulation, laser scans piece
- by piece, proofs of clearance, and the evaluation of clouds.")
+Planners on arrays of numpy, whole surveys in simulation, laser scans piece
+by piece, proofs of clearance, and the evaluation of clouds.")
 endif()
 
 include(CPack)
