@@ -84,8 +84,7 @@ TEST_F(SightKernels, PointsFallIntoThePixelsThatAPinholeCameraSays) {
     }
     const bool is_inside =
         p.z() > 0.0 && column >= 0.0 && row >= 0.0 && column < 60.0 && row < 50.0;
-    const auto pixel =
-        static_cast<std::uint32_t>(std::floor(row + 0.5) * 62.0 + std::floor(column + 0.5));
+    const double pixel = std::floor(row + 0.5) * 62.0 + std::floor(column + 0.5);
     EXPECT_EQ(pixels[i], is_inside ? pixel : raster.outside) << "point " << i;
     inside += is_inside ? 1 : 0;
   }
