@@ -1,8 +1,10 @@
 # Fails if what `cmake --install` leaves cannot be moved, linked and run: installs BUILD into FOLDER,
 # moves it, builds every example against it with the named component alone, and runs them; compiles
-# each public header by itself. Run by ctest with BUILD, SOURCE, FOLDER, GENERATOR and COMPILER.
+# each public header by itself, and runs the example of each. Run by ctest with BUILD, SOURCE, FOLDER,
+# GENERATOR and COMPILER.
 function(run result)
-  execute_process(COMMAND ${ARGN} RESULT_VARIABLE code OUTPUT_VARIABLE output ERROR_VARIABLE errors)
+  execute_process(COMMAND ${ARGN} WORKING_DIRECTORY ${FOLDER}
+    RESULT_VARIABLE code OUTPUT_VARIABLE output ERROR_VARIABLE errors)
   if(NOT code EQUAL 0)
     list(JOIN ARGN " " command)
     message(FATAL_ERROR "${command}: ${code}\n${output}${errors}")
@@ -11,6 +13,7 @@ function(run result)
 endfunction()
 
 file(REMOVE_RECURSE ${FOLDER})
+file(MAKE_DIRECTORY ${FOLDER})
 run(log ${CMAKE_COMMAND} --install ${BUILD} --prefix ${FOLDER}/installed)
 file(RENAME ${FOLDER}/installed ${FOLDER}/moved)
 set(skycap ${FOLDER}/moved/bin/skycap)
@@ -51,9 +54,9 @@ expect_output(simulate_lidar "^[1-9][0-9]* returns of 80000 shots\n$")
 file(GLOB headers RELATIVE ${FOLDER}/moved/include ${FOLDER}/moved/include/skycap/*/*.h)
 foreach(header IN LISTS headers)
   string(MAKE_C_IDENTIFIER ${header} name)
-  file(WRITE ${FOLDER}/headers/${name}.cpp "#include <${header}>\n#include <${header}>\n")
+  file(WRITE ${FOLDER}/alone/${name}.cpp "#include <${header}>\n#include <${header}>\n")
 endforeach()
-file(WRITE ${FOLDER}/headers/CMakeLists.txt "
+file(WRITE ${FOLDER}/alone/CMakeLists.txt "
   cmake_minimum_required(VERSION 3.25)
   project(headers LANGUAGES CXX)
   find_package(Skycap 0.1 REQUIRED COMPONENTS geometry sim survey flight missions)
@@ -61,7 +64,18 @@ file(WRITE ${FOLDER}/headers/CMakeLists.txt "
   add_library(headers OBJECT \${sources})
   target_link_libraries(headers PRIVATE Skycap::missions)
 ")
-build_against_installed(headers_alone ${FOLDER}/headers)
+build_against_installed(headers_alone ${FOLDER}/alone)
+
+# Each has an example, and what it gives is what it says.
+foreach(header IN LISTS headers)
+  string(REGEX REPLACE "^skycap/(.+)[.]h$" "${SOURCE}/examples/headers/\\1.cpp" example ${header})
+  if(NOT EXISTS ${example})
+    message(SEND_ERROR "there is no example of <${header}>: ${example}")
+  endif()
+endforeach()
+build_against_installed(headers ${SOURCE}/examples/headers)
+list(LENGTH headers count)
+expect_output(headers "^${count} of ${count} examples hold\n$")
 
 # Nothing says where it was built, and the program finds its plug-ins.
 file(GLOB_RECURSE files ${FOLDER}/moved/include/* ${FOLDER}/moved/*.cmake)

@@ -1,0 +1,14 @@
+#include <cmath>
+
+#include <skycap/flight/geodesy.h>
+
+#include "example.h"
+
+// A place in the local frame, on the Earth, and back.
+const Example geodesy_example("flight/geodesy", [] {
+  const skycap::flight::LocalFrame frame(
+      {.latitude_deg = 51.7534, .longitude_deg = -1.2540, .height = 110.0});
+  const auto place = frame.to_geodetic({100.0, 0.0, 20.0});  // 100 m east, 20 m up
+  return place.longitude_deg > -1.2540 && std::abs(place.height - 130.0) < 0.01 &&
+         frame.to_local(place).isApprox(Eigen::Vector3d(100.0, 0.0, 20.0), 1e-8);
+});

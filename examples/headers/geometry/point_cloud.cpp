@@ -1,0 +1,13 @@
+#include <algorithm>
+
+#include <skycap/geometry/point_cloud.h>
+
+#include "example.h"
+
+// How many points the second scan brought.
+const Example point_cloud_example("geometry/point_cloud", [] {
+  skycap::geometry::PointCloud cloud;
+  cloud.positions = {{0, 0, 0}, {1, 0, 0}, {2, 0, 0}};
+  cloud.views = {0, 1, 1};
+  return std::ranges::count(cloud.views, 1U) == 2 && cloud.size() == 3;
+});

@@ -1,0 +1,20 @@
+#include <limits>
+
+#include <skycap/geometry/error.h>
+#include <skycap/geometry/usable_scan.h>
+
+#include "example.h"
+
+// Points that are none are refused; without them the scan is taken.
+const Example usable_scan_example("geometry/usable_scan", [] {
+  const float none = std::numeric_limits<float>::quiet_NaN();
+  skycap::geometry::Scan scan;
+  scan.points = {{4, 0, 0}, {none, none, none}};  // a driver that says so of rays without a return
+  try {
+    skycap::geometry::require_usable(scan, {.width = 640, .height = 480});
+  } catch (const skycap::Error&) {
+    scan.points.pop_back();
+  }
+  skycap::geometry::require_usable(scan, {.width = 640, .height = 480});
+  return scan.points.size() == 1;
+});

@@ -1,0 +1,18 @@
+#include <skycap/missions/laser_scan.h>
+
+#include "example.h"
+
+// A laser scanner flown around a scene, measured piece by piece.
+const Example laser_scan_example("missions/laser_scan", [] {
+  const auto mission = skycap::missions::library::Mission::parse(
+      "scene: {model: builtin:teapot, longest_side: 20}\n"
+      "evaluation: {registration_distance: 0.1}\n"
+      "scan: {orbit: {radius: 25, speed: 40}}\n",
+      "orbit.yaml");
+  skycap::missions::library::LaserScan scan(mission, {.sensor = "velodyne_vlp16"});
+  std::size_t returns = 0;
+  for (auto piece = scan.next(); !piece.empty(); piece = scan.next()) {
+    for (const auto& part : piece) returns += part.size();
+  }
+  return returns > 1000;
+});

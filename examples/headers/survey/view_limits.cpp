@@ -1,0 +1,14 @@
+#include <skycap/survey/view_limits.h>
+
+#include "example.h"
+
+// Inside of a fence and high enough; too low; outside.
+const Example view_limits_example("survey/view_limits", [] {
+  skycap::survey::ViewLimits limits;
+  limits.least_height = 2.0;
+  limits.geofence = {{-30, -30}, {30, -30}, {30, 30}, {-30, 30}};
+  limits.validate();
+  return limits.allow(skycap::geometry::look_at({20, 0, 5}, {0, 0, 5})) &&
+         !limits.allow(skycap::geometry::look_at({20, 0, 1}, {0, 0, 5})) &&
+         !limits.allow(skycap::geometry::look_at({40, 0, 5}, {0, 0, 5}));
+});
