@@ -63,10 +63,10 @@ ObjectBuilder::Rings ObjectBuilder::rings_of(const FileObject& object) const {
   return rings;
 }
 
-/// Polygons with heights of their own are surfaces, unless a height is given on top.
+/// Polygons with heights of their own are surfaces, unless they are put on a base.
 bool ObjectBuilder::is_extruded(const FileObject& object) const {
   return contents_.is_outlines && !object.polygons.empty() &&
-         (!contents_.has_heights || source_.height || object.height);
+         (!object.has_heights || source_.base_on_terrain || source_.height || object.height);
 }
 
 void ObjectBuilder::add_surfaces(const FileObject& object, Object& result) {
@@ -101,7 +101,7 @@ void ObjectBuilder::add_solids(const FileObject& object, Object& result) {
   if (source_.base_on_terrain) {
     place_on_terrain(bottom, top, least, *height);
   } else {
-    place_on_base(bottom, top, least, *height);
+    place_on_base(object.has_heights, bottom, top, least, *height);
   }
   for (std::size_t i = 0; i < bottom.kinds.size(); ++i) {
     const std::size_t first = bottom.first_ring[i], end = bottom.first_ring[i + 1];
@@ -116,12 +116,13 @@ void ObjectBuilder::add_solids(const FileObject& object, Object& result) {
   }
 }
 
-void ObjectBuilder::place_on_base(Rings& bottom, Rings& top, double least, double most) const {
+void ObjectBuilder::place_on_base(bool has_heights, Rings& bottom, Rings& top, double least,
+                                  double most) const {
   const double unit = transform_.metres_per_unit().z();
   double base = std::numeric_limits<double>::infinity();  // in the file's units
   if (source_.base) {
     base = *source_.base / unit;
-  } else if (contents_.has_heights) {
+  } else if (has_heights) {
     for (const Vector3d& corner : bottom.corners) base = std::min(base, corner.z());
   } else {
     throw Error(ErrorKind::bad_config,

@@ -34,7 +34,7 @@ class ObjectBuilder {
   bool is_extruded(const FileObject& object) const;
   void add_surfaces(const FileObject& object, Object& result);
   void add_solids(const FileObject& object, Object& result);
-  void place_on_base(Rings& bottom, Rings& top, double least, double most) const;
+  void place_on_base(bool has_heights, Rings& bottom, Rings& top, double least, double most) const;
   void place_on_terrain(Rings& bottom, Rings& top, double least, double most) const;
 
   const Source& source_;

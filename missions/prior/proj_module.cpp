@@ -133,7 +133,8 @@ struct Chain {
   bool has_heights = true;  ///< else z means nothing
   ObjectPtr position;       ///< to longitude and latitude, and to the height if `moves_height`
   bool moves_height = false;
-  ObjectPtr height;  ///< then from the geoid's heights to the ellipsoid's, if it is there
+  double height_unit = 1.0;  ///< metres, of heights that `position` does not move
+  ObjectPtr height;          ///< then from the geoid's heights to the ellipsoid's, if it is there
   double added_height = 0.0;
 
   void apply(std::span<Vector3d> points) const;
@@ -153,6 +154,7 @@ void Chain::apply(std::span<Vector3d> points) const {
   for (Vector3d& point : points) {
     if (is_latitude_first) std::swap(point.x(), point.y());
     if (!has_heights) point.z() = 0.0;
+    if (!moves_height) point.z() *= height_unit;
   }
   transform_all(position.get(), points, moves_height);
   if (height) transform_all(height.get(), points, true);
@@ -162,9 +164,24 @@ void Chain::apply(std::span<Vector3d> points) const {
 /// A reference system and its part on the map.
 struct System {
   ObjectPtr whole, horizontal;
-  bool has_own_heights = false, is_geographic = false;
-  double unit = 1.0;
+  bool has_own_heights = false, is_compound = false, is_geographic = false;
+  double unit = 1.0, height_unit = 1.0;  ///< metres; 1 of degrees, and without own heights
 };
+
+/// Metres; 1 if the system has no such axis.
+double unit_of_axis(PJ_CONTEXT* context, const PJ* system, int axis) {
+  const ObjectPtr axes(proj_crs_get_coordinate_system(context, system));
+  double unit = 1.0;
+  proj_cs_get_axis_info(context, axes.get(), axis, nullptr, nullptr, nullptr, &unit, nullptr,
+                        nullptr, nullptr);
+  return unit;
+}
+
+/// A system that is not bound to a transformation.
+ObjectPtr unbound(PJ_CONTEXT* context, ObjectPtr system) {
+  if (proj_get_type(system.get()) != PJ_TYPE_BOUND_CRS) return system;
+  return ObjectPtr(proj_get_source_crs(context, system.get()));
+}
 
 System system_of(PJ_CONTEXT* context, const std::string& crs) {
   const std::string quoted = "the reference system '" + crs.substr(0, 200) + "'";
@@ -173,17 +190,14 @@ System system_of(PJ_CONTEXT* context, const std::string& crs) {
   if (!system.whole || proj_is_crs(system.whole.get()) == 0) {
     fail("PROJ does not know " + quoted + "; give crs, such as \"EPSG:25832+7837\"");
   }
-  ObjectPtr plain(proj_clone(context, system.whole.get()));
-  if (proj_get_type(plain.get()) == PJ_TYPE_BOUND_CRS) {
-    plain.reset(proj_get_source_crs(context, plain.get()));
-  }
+  ObjectPtr plain = unbound(context, ObjectPtr(proj_clone(context, system.whole.get())));
   if (proj_get_type(plain.get()) == PJ_TYPE_COMPOUND_CRS) {
+    const ObjectPtr vertical =
+        unbound(context, ObjectPtr(proj_crs_get_sub_crs(context, plain.get(), 1)));
     system.horizontal.reset(proj_crs_get_sub_crs(context, plain.get(), 0));
-    system.has_own_heights = true;
-    plain.reset(proj_clone(context, system.horizontal.get()));
-    if (proj_get_type(plain.get()) == PJ_TYPE_BOUND_CRS) {
-      plain.reset(proj_get_source_crs(context, plain.get()));
-    }
+    system.has_own_heights = system.is_compound = true;
+    system.height_unit = unit_of_axis(context, vertical.get(), 0);
+    plain = unbound(context, ObjectPtr(proj_clone(context, system.horizontal.get())));
   }
   const ObjectPtr axes(proj_crs_get_coordinate_system(context, plain.get()));
   const PJ_TYPE type = proj_get_type(plain.get());
@@ -193,12 +207,10 @@ System system_of(PJ_CONTEXT* context, const std::string& crs) {
   }
   if (!system.horizontal) {
     system.has_own_heights = proj_cs_get_axis_count(context, axes.get()) == 3;
+    if (system.has_own_heights) system.height_unit = unit_of_axis(context, plain.get(), 2);
     system.horizontal.reset(proj_crs_demote_to_2D(context, nullptr, system.whole.get()));
   }
-  if (!system.is_geographic) {
-    proj_cs_get_axis_info(context, axes.get(), 0, nullptr, nullptr, nullptr, &system.unit, nullptr,
-                          nullptr, nullptr);
-  }
+  if (!system.is_geographic) system.unit = unit_of_axis(context, plain.get(), 0);
   return system;
 }
 
@@ -267,10 +279,13 @@ extern "C" void skycap_geodetic_transform(const ReferenceRequest& given,
   result.horizontal_unit = system.unit;
   result.is_geographic = system.is_geographic;
   result.has_own_heights = system.has_own_heights;
+  result.height_unit = system.height_unit;
+  chain->height_unit = system.height_unit;
   chain->is_latitude_first = request.is_latitude_first && system.is_geographic;
   chain->has_heights = request.needs_heights;
-  const bool wants_own = request.needs_heights && system.has_own_heights &&
-                         (!request.vertical || request.vertical == HeightDatum::geoid);
+  const bool wants_own =
+      request.needs_heights && system.has_own_heights &&
+      (!request.vertical || (request.vertical == HeightDatum::geoid && system.is_compound));
   if (request.needs_heights && !system.has_own_heights && !request.vertical) {
     fail(result.name +
          " does not say what heights count from; give vertical: ellipsoid, geoid or takeoff");

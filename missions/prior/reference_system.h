@@ -32,6 +32,7 @@ struct GeodeticTransform {
   double horizontal_unit = 1.0;    ///< metres; 1 for degrees
   bool is_geographic = false;      ///< x and y are degrees
   bool has_own_heights = false;    ///< it is compound or three-dimensional
+  double height_unit = 1.0;        ///< metres; 1 without heights of its own
   std::vector<std::string> notes;  ///< what stands in for what, with the accuracy PROJ states
   /// Replaces (x, y, z) by (longitude, latitude, ellipsoid height), in degrees and metres. What has
   /// no image becomes infinite. One thread at a time.

@@ -90,6 +90,10 @@ void SiteTransform::prepare_crs(const Source& source, const FileContents& conten
 }
 
 void SiteTransform::prepare_units(const Source& source, const FileContents& contents) {
+  if (source.unit && geodetic_->has_own_heights && !contents.is_scene) {
+    throw Error(ErrorKind::bad_config, file_.string() + ": unit does not go with " + name_ +
+                                           ", which says itself what its heights are in");
+  }
   const double across = geodetic_->horizontal_unit;
   const std::optional<double> scene_unit = source.unit ? source.unit : contents.unit;
   const double all = contents.is_scene ? scene_unit.value_or(1.0) : 1.0;
@@ -106,7 +110,7 @@ void SiteTransform::prepare_units(const Source& source, const FileContents& cont
   prepared_ = Eigen::Translation3d(source.offset) *
               Eigen::Matrix3d(Vector3d(1.0, 1.0, up).asDiagonal() *
                               upright(contents.is_y_up.value_or(source.is_y_up)) * all);
-  metres_per_unit_ = Vector3d(across, across, up) * all;
+  metres_per_unit_ = Vector3d(across, across, up * geodetic_->height_unit) * all;
   if (geodetic_->is_geographic) {
     constexpr double metres_per_degree = 111'320.0;
     const double latitude = origin_ ? origin_->latitude_deg * geometry::radians_per_degree : 0.0;

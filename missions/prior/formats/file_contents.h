@@ -30,7 +30,8 @@ struct FileObject {
   std::string kind;
   std::map<std::string, std::string> attributes;
   std::vector<FilePolygon> polygons;
-  geometry::Mesh mesh;  ///< of formats that hold triangles
+  bool has_heights = true;  ///< else z of its polygons means nothing
+  geometry::Mesh mesh;      ///< of formats that hold triangles
   /// Of flat outlines that stand for solids [m]; none: the polygons are surfaces, or the source
   /// has to say it.
   std::optional<double> height, min_height;
@@ -49,7 +50,6 @@ struct FileContents {
   std::optional<bool> is_y_up;          ///< if the file says it
   std::optional<HeightDatum> vertical;  ///< that the format prescribes where the CRS is silent
   bool is_outlines = false;             ///< flat polygons: they are extruded
-  bool has_heights = true;              ///< else z means nothing
   std::vector<Eigen::Vector3d> corners;      ///< of all rings
   std::vector<std::uint32_t> ring_begin{0};  ///< ring i is corners [begin[i], begin[i + 1])
   std::vector<FileObject> objects;

@@ -53,6 +53,7 @@ class MapReader {
   void read(const std::string& layer);
 
  private:
+  bool is_kml() const { return driver_ == "LIBKML" || driver_ == "KML"; }
   void require_layer(const std::string& layer);
   void take_system(OGRLayer& layer);
   void read_feature(OGRLayer& layer, OGRFeature& feature);
@@ -85,9 +86,8 @@ void MapReader::require_layer(const std::string& layer) {
 void MapReader::read(const std::string& layer) {
   driver_ = dataset_.GetDriverName();
   contents_.format = driver_;
-  contents_.has_heights = false;
   contents_.is_outlines = true;
-  if (driver_ == "LIBKML" || driver_ == "KML") contents_.vertical = HeightDatum::geoid;
+  if (is_kml()) contents_.vertical = HeightDatum::geoid;
   if (driver_ == "GeoJSON") contents_.vertical = HeightDatum::ellipsoid;  // RFC 7946
   if (!layer.empty()) require_layer(layer);
   while (true) {
@@ -119,6 +119,7 @@ void MapReader::read_feature(OGRLayer& layer, OGRFeature& feature) {
   const OGRGeometry* const given = feature.GetGeometryRef();
   if (given == nullptr || given->IsEmpty()) return;
   FileObject object;
+  object.has_heights = false;
   read_attributes(feature, object);
   object.kind = layer.GetName();
   if (given->hasCurveGeometry() != 0) {
@@ -128,6 +129,8 @@ void MapReader::read_feature(OGRLayer& layer, OGRFeature& feature) {
     read_geometry(*given, object);
   }
   if (object.polygons.empty()) return;
+  // Elsewhere a third coordinate is a height; here it counts for nothing without the mode.
+  if (is_kml() && object.attributes["altitudeMode"] != "absolute") object.has_heights = false;
   take_system(layer);
   read_heights(object);
   contents_.objects.push_back(std::move(object));
@@ -190,7 +193,7 @@ void MapReader::read_geometry(const OGRGeometry& geometry, FileObject& object) {
       return;
     case wkbLineString:
       if (driver_ == "DXF" && geometry.toLineString()->get_IsClosed() != 0) {
-        contents_.has_heights |= geometry.Is3D() != 0;
+        object.has_heights |= geometry.Is3D() != 0;
         read_ring(*geometry.toLineString(), contents_.add_polygon(object));
         return;
       }
@@ -202,7 +205,7 @@ void MapReader::read_geometry(const OGRGeometry& geometry, FileObject& object) {
 
 void MapReader::read_polygon(const OGRPolygon& polygon, FileObject& object) {
   if (++polygons_ > most_polygons) fail_file(file_, "has more than 50 million polygons");
-  contents_.has_heights |= polygon.Is3D() != 0;
+  object.has_heights |= polygon.Is3D() != 0;
   FilePolygon& result = contents_.add_polygon(object);
   for (const OGRLinearRing* ring : polygon) read_ring(*ring, result);
 }

@@ -56,6 +56,14 @@ TEST(Geodesy, CountsHeightsFromGeoidOrPad) {
   EXPECT_NEAR(geodetic(request, place).z(), 500.0, 1e-9);
 }
 
+// echo 48.763 11.3985 330 | cs2cs EPSG:4326+5773 EPSG:4979 -f %.6f
+TEST(Geodesy, HeightsOfASystemOfThreeAxesCountFromTheGeoidIfThatIsSaid) {
+  ReferenceRequest request{.crs = "EPSG:4979"};
+  EXPECT_EQ(geodetic(request, {11.3985, 48.763, 330.0}).z(), 330.0);
+  request.vertical = HeightDatum::geoid;
+  EXPECT_NEAR(geodetic(request, {11.3985, 48.763, 330.0}).z(), 376.490242, 1e-6);
+}
+
 TEST(Geodesy, RefusesAGeoidWhoseGridIsMissingUnlessToldOtherwise) {
   ReferenceRequest request{.crs = "urn:adv:crs:ETRS89_UTM32*DE_DHHN2016_NH"};
   EXPECT_THAT(
@@ -145,6 +153,27 @@ TEST(Geodesy, CountsInFeet) {
   EXPECT_NEAR((places[1] - places[0]).norm(), 304.8, 1e-6);
   EXPECT_NEAR(transform.metres_per_unit().x(), 0.3048, 1e-12);
   EXPECT_THAT(transform.notes(), testing::Contains(HasSubstr("units of 0.304800 m")));
+}
+
+// A wall of 100 ft whose foot is 1000 ft high. The foot above the ellipsoid:
+// echo 44.050126698 -123.071508372 304.8 | cs2cs EPSG:4326+5773 EPSG:4979 -f %.6f
+TEST(Geodesy, CountsHeightsInFeetWhereTheSystemHasThem) {
+  Source source;
+  source.file = "wall.gml";
+  source.crs = "EPSG:2994+8228";  // heights in feet, NAVD88's
+  const SiteFrame site{.origin = flight::GeodeticPoint{44.05, -123.07, 0.0}};
+  for (const HeightDatum datum : {HeightDatum::geoid, HeightDatum::ellipsoid}) {
+    source.vertical = datum;
+    const SiteTransform transform(source, {}, site);
+    std::array<Vector3d, 2> wall = {Vector3d(636500, 849000, 1000), Vector3d(636500, 849000, 1100)};
+    transform.to_geodetic(wall);
+    EXPECT_NEAR(wall[0].z(), datum == HeightDatum::geoid ? 282.406812 : 304.8, 1e-6);
+    EXPECT_NEAR(wall[1].z() - wall[0].z(), 30.48, 1e-6);
+    EXPECT_NEAR(transform.metres_per_unit().z(), 0.3048, 1e-12);
+  }
+  source.unit = 1.0;
+  EXPECT_THAT([&] { SiteTransform(source, {}, site); },
+              ThrowsMessage<Error>(HasSubstr("wall.gml: unit does not go with")));
 }
 
 }  // namespace

@@ -46,17 +46,62 @@ std::string feature(const std::string& properties, const std::string& rings) {
          R"(,"geometry":{"type":"Polygon","coordinates":[)" + rings + "]}}";
 }
 
+/// A polygon as Google Earth writes it.
+std::string kml_of(const std::string& mode, const std::string& coordinates) {
+  return "<?xml version=\"1.0\"?><kml xmlns=\"http://www.opengis.net/kml/2.2\"><Document>"
+         "<Placemark><name>court</name><Polygon>" +
+         mode + "<outerBoundaryIs><LinearRing><coordinates>" + coordinates +
+         "</coordinates></LinearRing></outerBoundaryIs></Polygon></Placemark></Document></kml>";
+}
+
+/// The ring with a height at each corner.
+std::string ring_at(const std::string& height) {
+  std::string text;
+  for (const char c : ring) text += c == ' ' ? "," + height + " " : std::string(1, c);
+  return text + "," + height;
+}
+
 TEST_F(Map, ExtrudesAPolygonDrawnInGoogleEarth) {
-  const std::string kml =
-      "<?xml version=\"1.0\"?><kml xmlns=\"http://www.opengis.net/kml/2.2\"><Document><Placemark>"
-      "<name>court</name><Polygon><outerBoundaryIs><LinearRing><coordinates>" +
-      ring + "</coordinates></LinearRing></outerBoundaryIs></Polygon></Placemark></Document></kml>";
-  const Prior prior = read("court.kml", kml, [](Source& s) { s.height = 18.0; });
+  const Prior prior =
+      read("court.kml", kml_of("", ring_at("0")), [](Source& s) { s.height = 18.0; });
   ASSERT_EQ(prior.objects.size(), 1U);
   EXPECT_EQ(prior.objects[0].id, "court");
   EXPECT_NEAR(volume(prior.objects[0].mesh), ring_area * 18.0, 1.0);
   EXPECT_NEAR(prior.box.min().z(), 0.0, 1e-3);
   EXPECT_NEAR(prior.box.max().z(), 18.0, 1e-3);
+}
+
+TEST_F(Map, HeightsOfAPolygonInGoogleEarthCountOnlyIfTheyAreAbsolute) {
+  const auto unplaced = [](Source& s) {
+    s.base.reset();
+    s.height = 18.0;
+  };
+  for (const char* mode : {"", "<altitudeMode>clampToGround</altitudeMode>",
+                           "<extrude>1</extrude><altitudeMode>relativeToGround</altitudeMode>"}) {
+    EXPECT_THAT([&] { read("court.kml", kml_of(mode, ring_at("30")), unplaced); },
+                ThrowsMessage<Error>(HasSubstr("give base")))
+        << mode;
+  }
+  const Prior prior =
+      read("court.kml", kml_of("<altitudeMode>absolute</altitudeMode>", ring_at("520")), unplaced);
+  EXPECT_NEAR(prior.box.min().z(), 20.0, 1e-3);
+  EXPECT_NEAR(prior.box.max().z(), 38.0, 1e-3);
+}
+
+TEST_F(Map, APolygonWithHeightsMakesNoSurfacesOfThoseWithout) {
+  const std::string roof = "[[9,48,510],[9.0002,48,510],[9.0002,48.0002,512],[9,48,510]]";
+  const std::string text = R"({"type":"FeatureCollection","features":[)" +
+                           feature(R"({"id":"roof"})", roof) + "," +
+                           feature(R"({"id":"flat","height":7})", json_ring()) + "]}";
+  const Prior prior = read("mixed.geojson", text);
+  ASSERT_EQ(prior.objects.size(), 2U);
+  EXPECT_NEAR(geometry::bounding_box(prior.objects[0].mesh).min().z(), 10.0, 1e-3);
+  EXPECT_NEAR(geometry::bounding_box(prior.objects[1].mesh).max().z(), 7.0, 1e-3);
+  const std::string unsaid = R"({"type":"FeatureCollection","features":[)" +
+                             feature(R"({"id":"roof"})", roof) + "," +
+                             feature(R"({"id":"flat"})", json_ring()) + "]}";
+  EXPECT_THAT([&] { read("mixed.geojson", unsaid); },
+              ThrowsMessage<Error>(HasSubstr("how high flat is; give height")));
 }
 
 TEST_F(Map, TakesHeightsAndLevelsFromAttributes) {
