@@ -1,9 +1,7 @@
 #include "flight/export/geodesy.h"
 
 #include <cmath>
-#include <filesystem>
 
-#include <GeographicLib/Geoid.hpp>
 #include <GeographicLib/LocalCartesian.hpp>
 
 #include "geometry/error.h"
@@ -29,7 +27,7 @@ double Site::undulation_for(const std::string& who) const {
   throw Error(ErrorKind::bad_config,
               who +
                   " needs heights above mean sea level, but the geoid undulation of the site is "
-                  "not known; state it, or name a geoid grid file");
+                  "not known; state it");
 }
 
 struct LocalFrame::Impl {
@@ -54,16 +52,6 @@ Eigen::Vector3d LocalFrame::to_local(const GeodeticPoint& point) const {
   impl_->frame.Forward(point.latitude_deg, point.longitude_deg, point.height, local.x(), local.y(),
                        local.z());
   return local;
-}
-
-double geoid_undulation(const std::string& grid_file, const GeodeticPoint& place) {
-  const std::filesystem::path path(grid_file);
-  try {
-    const GeographicLib::Geoid geoid(path.stem().string(), path.parent_path().string());
-    return geoid(place.latitude_deg, place.longitude_deg);
-  } catch (const GeographicLib::GeographicErr& error) {
-    throw Error(ErrorKind::bad_file, grid_file + " is not a geoid grid: " + error.what());
-  }
 }
 
 }  // namespace skycap::flight

@@ -49,8 +49,4 @@ class LocalFrame {
   std::unique_ptr<Impl> impl_;
 };
 
-/// The geoid undulation at a place by a grid file in GeographicLib's format, such as
-/// "/usr/share/GeographicLib/geoids/egm96-5.pgm". Throws Error{bad_file} if it cannot be read.
-double geoid_undulation(const std::string& grid_file, const GeodeticPoint& place);
-
 }  // namespace skycap::flight

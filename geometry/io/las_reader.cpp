@@ -1,9 +1,7 @@
 #include "geometry/io/las_reader.h"
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
-#include <cstring>
 #include <utility>
 
 #include "geometry/io/cloud_parsers.h"
@@ -13,23 +11,14 @@
 namespace skycap::geometry {
 namespace {
 
-/// A value of a binary file at a place that is known to be inside.
-template <typename Value>
-Value at(const char* bytes, std::size_t place) {
-  static_assert(std::endian::native == std::endian::little, "LAS files are little-endian");
-  Value value;
-  std::memcpy(&value, bytes + place, sizeof value);
-  return value;
-}
-
 /// Throws unless it is LAS of a kind that can be read; the header's size is that of its version.
 void require_readable(const std::filesystem::path& path, std::string_view beginning) {
   if (beginning.size() <= las::header::point_format || !beginning.starts_with("LASF")) {
     fail_cloud(path, "is not a LAS file: it does not begin with a LAS header");
   }
-  const int major = at<std::uint8_t>(beginning.data(), las::header::major),
-            minor = at<std::uint8_t>(beginning.data(), las::header::minor);
-  const int format = at<std::uint8_t>(beginning.data(), las::header::point_format);
+  const int major = las::value_at<std::uint8_t>(beginning.data(), las::header::major),
+            minor = las::value_at<std::uint8_t>(beginning.data(), las::header::minor);
+  const int format = las::value_at<std::uint8_t>(beginning.data(), las::header::point_format);
   const bool is_compressed = (format & 0xC0) != 0;
   if (major != 1 || minor > 4 || is_compressed || format > 10) {
     fail_cloud(path, "is LAS " + std::to_string(major) + "." + std::to_string(minor) +
@@ -45,21 +34,22 @@ void require_readable(const std::filesystem::path& path, std::string_view beginn
 LasHeader fields_of(std::string_view beginning) {
   const char* const bytes = beginning.data();
   LasHeader header;
-  header.minor = at<std::uint8_t>(bytes, las::header::minor);
-  header.format = at<std::uint8_t>(bytes, las::header::point_format);
-  header.header_size = at<std::uint16_t>(bytes, las::header::size);
-  header.first_point = at<std::uint32_t>(bytes, las::header::first_point);
-  header.records = at<std::uint32_t>(bytes, las::header::records);
-  header.point_size = at<std::uint16_t>(bytes, las::header::point_size);
-  header.points = at<std::uint32_t>(bytes, las::header::old_points);
+  header.minor = las::value_at<std::uint8_t>(bytes, las::header::minor);
+  header.format = las::value_at<std::uint8_t>(bytes, las::header::point_format);
+  header.header_size = las::value_at<std::uint16_t>(bytes, las::header::size);
+  header.first_point = las::value_at<std::uint32_t>(bytes, las::header::first_point);
+  header.records = las::value_at<std::uint32_t>(bytes, las::header::records);
+  header.point_size = las::value_at<std::uint16_t>(bytes, las::header::point_size);
+  header.points = las::value_at<std::uint32_t>(bytes, las::header::old_points);
   if (header.minor == 4) {
-    header.points = at<std::uint64_t>(bytes, las::header::points);
-    header.first_extended_record = at<std::uint64_t>(bytes, las::header::first_extended_record);
-    header.extended_records = at<std::uint32_t>(bytes, las::header::extended_records);
+    header.points = las::value_at<std::uint64_t>(bytes, las::header::points);
+    header.first_extended_record =
+        las::value_at<std::uint64_t>(bytes, las::header::first_extended_record);
+    header.extended_records = las::value_at<std::uint32_t>(bytes, las::header::extended_records);
   }
   for (int axis = 0; axis < 3; ++axis) {
-    header.scale[axis] = at<double>(bytes, las::header::scale + 8UL * axis);
-    header.offset[axis] = at<double>(bytes, las::header::offset + 8UL * axis);
+    header.scale[axis] = las::value_at<double>(bytes, las::header::scale + 8UL * axis);
+    header.offset[axis] = las::value_at<double>(bytes, las::header::offset + 8UL * axis);
   }
   return header;
 }
@@ -92,12 +82,13 @@ LasHeader parse_header(const std::filesystem::path& path, std::string_view begin
 }
 
 int class_of(const LasHeader& header, const char* point) {
-  if (header.format >= 6) return at<std::uint8_t>(point, las::point::classification);
-  return at<std::uint8_t>(point, las::old_point::classification) & las::old_point::classes;
+  if (header.format >= 6) return las::value_at<std::uint8_t>(point, las::point::classification);
+  return las::value_at<std::uint8_t>(point, las::old_point::classification) &
+         las::old_point::classes;
 }
 
 bool is_withheld(const LasHeader& header, const char* point) {
-  const int flags = at<std::uint8_t>(
+  const int flags = las::value_at<std::uint8_t>(
       point, header.format >= 6 ? las::point::flags : las::old_point::classification);
   return (flags & (header.format >= 6 ? las::point::withheld : las::old_point::withheld)) != 0;
 }
@@ -110,7 +101,7 @@ void add_point(const LasHeader& header, const char* point, LasPoints& points) {
   Eigen::Vector3d& position = points.positions.emplace_back();
   for (int axis = 0; axis < 3; ++axis) {
     position[axis] =
-        at<std::int32_t>(point, las::point::position + 4UL * axis) * header.scale[axis] +
+        las::value_at<std::int32_t>(point, las::point::position + 4UL * axis) * header.scale[axis] +
         header.offset[axis];
   }
   points.classes.push_back(static_cast<std::uint8_t>(class_of(header, point)));
@@ -118,7 +109,7 @@ void add_point(const LasHeader& header, const char* point, LasPoints& points) {
   auto& colour = points.colours.emplace_back();
   for (std::size_t channel = 0; channel < 3; ++channel) {
     colour[channel] = static_cast<std::uint8_t>(
-        at<std::uint16_t>(point, colour_place(header) + 2 * channel) >> 8);
+        las::value_at<std::uint16_t>(point, colour_place(header) + 2 * channel) >> 8);
   }
 }
 

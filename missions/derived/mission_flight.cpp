@@ -7,6 +7,7 @@
 #include "flight/space/prior_obstacle.h"
 #include "flight/way_home/return_law.h"
 #include "missions/derived/mission_priors.h"
+#include "missions/derived/site.h"
 #include "missions/equipment/vehicle_reader.h"
 
 namespace skycap::missions::derived {
@@ -205,9 +206,8 @@ double hold_after_of(const file::Mission& mission) {
 std::optional<flight::PictureBounds> picture_bounds_of(const file::Mission& mission) {
   if (mission.sensor.lidar) return std::nullopt;
   const geometry::Camera camera(mission.sensor.camera.camera);
-  const survey::see::SeeConfig& see = mission.planner.see;
   return picture_bounds(vehicle_of(mission), camera, mission.sensor.shutter,
-                        see.view_distance.value_or(geometry::view_distance(camera, see.density)));
+                        view_distance_of(mission));
 }
 
 bool has_place(const file::Mission& mission) {

@@ -7,6 +7,7 @@
 
 #include "geometry/place/camera.h"
 #include "missions/derived/mission_flight.h"
+#include "missions/derived/site.h"
 #include "missions/prior/surface_points.h"
 
 namespace skycap::missions::derived {
@@ -18,10 +19,6 @@ using prior::Source;
 std::string key_of(std::size_t source, const std::string& key) {
   return "prior[" + std::to_string(source) + "]." + key;
 }
-
-/// Points are kept so far apart where the mission does not say it: a quarter of the clearance that
-/// vehicles keep at least, as voxels are.
-constexpr double usual_spacing = 0.25;
 
 /// scene.model of a mission whose targets stand in as truth.
 constexpr const char* targets_as_truth = "prior";
@@ -75,15 +72,13 @@ void check_truth(const file::MissionFile& given) {
   }
 }
 
-double view_distance_of(const file::Mission& mission) {
-  const survey::see::SeeConfig& see = mission.planner.see;
-  return see.view_distance.value_or(
-      geometry::view_distance(geometry::Camera(mission.sensor.camera.camera), see.density));
-}
-
 prior::SiteFrame frame_of(const file::Mission& mission) {
-  prior::SiteFrame frame{.takeoff_z = mission.flight.takeoff ? mission.flight.takeoff->z()
-                                                             : mission.scene.position.z()};
+  prior::SiteFrame frame{.ground_z = mission.scene.position.z(),
+                         .undulation = mission.georeference.geoid_undulation};
+  if (mission.flight.takeoff) {
+    frame.takeoff_z = mission.flight.takeoff->z();
+    frame.ground_z = *frame.takeoff_z;
+  }
   if (has_place(mission)) frame.origin = site_of(mission).origin;
   return frame;
 }
@@ -98,7 +93,6 @@ void read_priors(file::MissionFile& given) {
     Source& source = mission.prior[i];
     make_absolute(source.file, folder);
     make_absolute(source.select.within, folder);
-    if (!given.gives(key_of(i, "spacing"))) source.spacing = usual_spacing;
     check_source(given, i);
   }
   const auto failed = [&](std::size_t i, const std::string& what) {

@@ -52,18 +52,16 @@ survey::see::SeeConfig see_config(const file::Mission& mission, unsigned threads
 }
 
 survey::skycap::SkycapConfig skycap_config(const file::Mission& mission, unsigned threads) {
-  const geometry::Camera camera(mission.sensor.camera.camera);
   const survey::see::SeeConfig& see = mission.planner.see;
-  survey::skycap::SkycapConfig config{
-      .coverage_radius = mission.evaluation.registration_distance,
-      .spacing = see.effective_spacing(),
-      .view_distance = see.view_distance.value_or(view_distance(camera, see.density)),
-      .max_incidence = mission.sensor.camera.max_incidence,
-      .scene_box = see.scene_box,
-      .limits = view_limits(mission),
-      .stop = mission.planner.skycap_stop,
-      .ideas = mission.planner.skycap_ideas,
-      .threads = threads};
+  survey::skycap::SkycapConfig config{.coverage_radius = mission.evaluation.registration_distance,
+                                      .spacing = see.effective_spacing(),
+                                      .view_distance = view_distance_of(mission),
+                                      .max_incidence = mission.sensor.camera.max_incidence,
+                                      .scene_box = see.scene_box,
+                                      .limits = view_limits(mission),
+                                      .stop = mission.planner.skycap_stop,
+                                      .ideas = mission.planner.skycap_ideas,
+                                      .threads = threads};
   // Told of the budgets, it looks for the best view that is still in reach.
   const file::LimitsConfig& limits = mission.limits;
   config.stop.most_length = limits.max_distance;

@@ -3,9 +3,10 @@
 #include <utility>
 
 #include "geometry/error.h"
-#include "geometry/place/camera.h"
+#include "missions/derived/mission_flight.h"
 #include "missions/derived/mission_priors.h"
 #include "missions/derived/mission_rules.h"
+#include "missions/derived/site.h"
 #include "missions/derived/survey_sensor.h"
 #include "missions/equipment/preset_files.h"
 #include "missions/equipment/vehicle_reader.h"
@@ -54,13 +55,24 @@ void read_vehicle(file::MissionFile& given) {
 /// proposal within a twentieth of d keeps the number of proposals below tau.
 void derive_building_preset(file::MissionFile& given) {
   survey::see::SeeConfig& see = given.mission.planner.see;
-  const double distance =
-      see.view_distance ? *see.view_distance
-                        : geometry::view_distance(
-                              geometry::Camera(given.mission.sensor.camera.camera), see.density);
+  const double distance = view_distance_of(given.mission);
   if (!given.gives("planner.occlusion_search_distance")) see.occlusion_search_distance = distance;
   if (!given.gives("planner.frontier_spacing")) see.frontier_spacing = 0.05 * distance;
   if (!given.gives("planner.occluder_spacing")) see.occluder_spacing = 2.0 * see.resolution_radius;
+}
+
+/// EGM96's undulation where a geoid is asked for and no key says it; nothing where PROJ does not
+/// have it, which those who need it complain of.
+void derive_undulation(file::Mission& mission) {
+  file::Georeference& place = mission.georeference;
+  const bool is_asked_for =
+      mission.flight.is_flown() || !mission.prior.empty() || mission.scan.crs == file::ScanCrs::utm;
+  if (place.geoid_undulation || !has_place(mission) || !is_asked_for) return;
+  try {
+    place.geoid_undulation = prior::egm96_undulation(*place.latitude_deg, *place.longitude_deg);
+  } catch (const Error&) {
+    place.geoid_undulation.reset();
+  }
 }
 
 /// The least height of views where no key says it.
@@ -84,6 +96,7 @@ file::Mission resolved(file::MissionFile given) {
   check_scene(given);
   check_start(given);
   check_sensor(given);
+  derive_undulation(mission);
   read_priors(given);
   derive_scene_box(mission);
   check_flight(given);

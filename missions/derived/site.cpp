@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "geometry/place/camera.h"
 #include "missions/derived/mission_flight.h"
 #include "missions/derived/mission_priors.h"
 
@@ -37,6 +38,12 @@ survey::ViewLimits view_limits(const file::Mission& mission) {
     result.stand_off = std::max(result.stand_off, mission.flight.clearance);
   }
   return result;
+}
+
+double view_distance_of(const file::Mission& mission) {
+  const survey::see::SeeConfig& see = mission.planner.see;
+  return see.view_distance.value_or(
+      geometry::view_distance(geometry::Camera(mission.sensor.camera.camera), see.density));
 }
 
 std::optional<geometry::View> given_start(const file::Mission& mission) {

@@ -17,6 +17,10 @@ std::optional<double> least_height_above_ground(const file::Mission& mission);
 /// mission's frame.
 survey::ViewLimits view_limits(const file::Mission& mission);
 
+/// From how far planners look at a surface: planner.view_distance, else where the sensor's pixels
+/// are as dense as planner.density wants points.
+double view_distance_of(const file::Mission& mission);
+
 /// The view that the mission has a survey begin with; nothing if it leaves that open.
 std::optional<geometry::View> given_start(const file::Mission& mission);
 

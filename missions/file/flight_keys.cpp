@@ -145,12 +145,13 @@ std::vector<Key> site_keys() {
           "site.ellipsoid_height", "m", between(-1000, 10000),
           [](Mission & m) -> auto& { return m.georeference.ellipsoid_height; },
           "Height of the origin above the WGS84 ellipsoid."),
-      otherwise("not known",
+      otherwise("EGM96's",
                 number_key(
                     "site.geoid_undulation", "m", between(-120, 120),
                     [](Mission & m) -> auto& { return m.georeference.geoid_undulation; },
-                    "Height of the geoid (EGM96) above the ellipsoid at the site. Formats with "
-                    "heights above sea level are not written without it.")),
+                    "Height of the geoid (EGM96) above the ellipsoid at the site. Where PROJ's "
+                    "grid of EGM96 is not installed, formats with heights above sea level are not "
+                    "written without it.")),
   };
 }
 

@@ -75,6 +75,22 @@ Key vertical_key() {
   return otherwise("the coordinate system's; without one the mission's frame", key);
 }
 
+Key up_axis_key() {
+  Key key;
+  key.path = "up_axis";
+  key.type = KeyType::choice;
+  key.choices = {"z", "y"};
+  key.meaning = "Of models of scenes: which axis points up, whatever the file says.";
+  key.set = [](Mission& mission, const KeyValue& value) {
+    mission.prior.back().is_y_up = std::get<std::string>(value) == "y";
+  };
+  key.get = [](const Mission& mission) -> std::optional<KeyValue> {
+    const std::optional<bool>& stored = mission.prior.back().is_y_up;
+    return stored ? std::optional<KeyValue>(*stored ? "y" : "z") : std::nullopt;
+  };
+  return otherwise("the file's, else z", key);
+}
+
 Key base_key() {
   Key key;
   key.path = "base";
@@ -147,8 +163,7 @@ std::vector<Key> place_keys() {
       otherwise("the file's, else 1",
                 number_key("unit", "m", above(0, 1e6), source(&Source::unit),
                            "How long one unit of the file's coordinates is.")),
-      choice_key("up_axis", {"z", "y"}, source(&Source::is_y_up),
-                 "Which axis points up where the file does not say it."),
+      up_axis_key(),
   };
 }
 
@@ -186,10 +201,11 @@ std::vector<Key> meaning_keys() {
       otherwise("0.3; 1 for extruded polygons",
                 number_key("uncertainty", "m", between(0, 1000), source(&Source::uncertainty),
                            "How far off its surfaces may be: obstacles are in the way that much "
-                           "farther out, on top of flight.map_error.")),
-      otherwise("0.25", number_key("spacing", "m", between(0, 100), source(&Source::spacing),
-                                   "Clouds are thinned to one point in a cube of this side; 0: "
-                                   "they are not.")),
+                           "farther out, on top of flight.map_error. What stand-ins for a geoid "
+                           "or a datum may be off is added to it.")),
+      otherwise("0.25", number_key("spacing", "m", above(0, 100), source(&Source::spacing),
+                                   "Clouds are thinned to one point in a cube of this side, which "
+                                   "should be no less than the points are apart.")),
   };
 }
 

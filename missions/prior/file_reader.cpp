@@ -98,12 +98,47 @@ std::optional<Format> format_by_ending(const std::string& ending, Role role) {
   return std::nullopt;
 }
 
-/// JSON names its kind anywhere.
-Format format_of_json(const std::string& ending, string_view text) {
-  for (const char* mark : {"\"CityJSON\"", "\"CityJSONFeature\""}) {
-    if (text.find(mark) != string_view::npos) return Format::cityjson;
+/// Where a JSON text's string that begins at `quote` ends: behind its closing quote.
+std::size_t end_of_string(string_view text, std::size_t quote) {
+  std::size_t place = quote + 1;
+  while (place < text.size() && text[place] != '"') place += text[place] == '\\' ? 2 : 1;
+  return std::min(place + 1, text.size());
+}
+
+/// What the outermost object of a JSON text says that it is.
+struct JsonKind {
+  string_view type;        ///< the value of its key "type"
+  bool has_asset = false;  ///< as glTF has to
+};
+
+JsonKind kind_of_json(string_view text) {
+  JsonKind kind;
+  int depth = 0;
+  string_view key;  // whose value comes next
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    const char c = text[i];
+    depth += c == '{' || c == '[' ? 1 : c == '}' || c == ']' ? -1 : 0;
+    if (depth == 0 && c == '}') break;
+    if (c == ',' && depth == 1) key = {};
+    if (c != '"') continue;
+    const std::size_t end = end_of_string(text, i);
+    const string_view quoted = text.substr(i + 1, end - i - 2);
+    i = end - 1;
+    if (depth != 1) continue;
+    if (!key.empty()) {
+      if (key == "type") kind.type = quoted;
+      continue;
+    }
+    key = quoted;
+    kind.has_asset |= key == "asset";
   }
-  const bool is_gltf = ending == ".gltf" || text.find("\"asset\"") != string_view::npos;
+  return kind;
+}
+
+Format format_of_json(const std::string& ending, string_view text) {
+  const JsonKind kind = kind_of_json(text);
+  if (is_one_of(kind.type, {"CityJSON", "CityJSONFeature"})) return Format::cityjson;
+  const bool is_gltf = ending == ".gltf" || (kind.has_asset && kind.type.empty());
   return is_gltf ? Format::scene : Format::map;
 }
 
@@ -124,8 +159,11 @@ struct Opened {
 Opened open_file(const fs::path& file, Role role) {
   std::error_code failure;
   if (!fs::is_regular_file(file, failure)) fail_file(file, "is not there, or is no regular file");
-  if (fs::file_size(file, failure) > most_bytes) fail_file(file, "is larger than 2 GB");
   const std::string beginning = beginning_of(file);
+  const bool is_read_piece_by_piece = beginning.starts_with("LASF");
+  if (!is_read_piece_by_piece && fs::file_size(file, failure) > most_bytes) {
+    fail_file(file, "is larger than 2 GB");
+  }
   if (beginning.empty()) fail_file(file, "is empty");
   if (beginning.starts_with("ASTM-E57")) {
     fail_file(file, "is E57, which is not read; convert it to LAS, as with CloudCompare or PDAL");
@@ -175,7 +213,7 @@ FileContents cloud_contents(const Source& source) {
   const double unit = source.unit.value_or(1.0);
   for (const Eigen::Vector3f& point : geometry::read_cloud(source.file).positions) {
     const Eigen::Vector3d place = point.cast<double>();
-    if (source.spacing > 0.0 && !cells.add(place * (unit / source.spacing))) continue;
+    if (!cells.add(place * (unit / source.spacing.value_or(usual_spacing)))) continue;
     contents.points.push_back(place);
   }
   return contents;
@@ -196,10 +234,10 @@ FileContents read_contents(const Source& source, const SiteFrame& site) {
     case Format::raster:
       return read_raster(file);
     case Format::las:
-      return read_las(file,
-                      {source.select.classes, source.spacing, [&](const FileContents& header) {
-                         return SiteTransform(source, header, site).metres_per_unit();
-                       }});
+      return read_las(file, {source.select.classes, source.spacing.value_or(usual_spacing),
+                             [&](const FileContents& header) {
+                               return SiteTransform(source, header, site).metres_per_unit();
+                             }});
     case Format::scene:
       return read_scene(file);
     case Format::mesh:

@@ -63,10 +63,11 @@ ObjectBuilder::Rings ObjectBuilder::rings_of(const FileObject& object) const {
   return rings;
 }
 
-/// Polygons with heights of their own are surfaces, unless they are put on a base.
+/// Polygons with heights of their own are surfaces, unless they are put on the terrain or given
+/// a height.
 bool ObjectBuilder::is_extruded(const FileObject& object) const {
-  return contents_.is_outlines && !object.polygons.empty() &&
-         (!object.has_heights || source_.base_on_terrain || source_.height || object.height);
+  const bool is_put = source_.base_on_terrain || source_.height || object.height;
+  return contents_.is_outlines && !object.polygons.empty() && (!object.has_heights || is_put);
 }
 
 void ObjectBuilder::add_surfaces(const FileObject& object, Object& result) {

@@ -1,10 +1,12 @@
 #include "missions/prior/prior.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 
 #include "geometry/error.h"
+#include "geometry/place/prism.h"
 #include "missions/prior/file_reader.h"
 #include "missions/prior/object_builder.h"
 
@@ -37,16 +39,11 @@ class Region {
     if (rings_.empty()) fail_file(polygons.file, "holds no polygons; those of select.within do");
   }
 
-  /// Without a file everything is inside.
+  /// Without a file everything is inside. A ring within a ring is a hole.
   bool contains(const Vector2d& place) const {
     bool is_inside = rings_.empty();
     for (const std::vector<Vector2d>& ring : rings_) {
-      for (std::size_t i = 0; i < ring.size(); ++i) {
-        const Vector2d &a = ring[i], &b = ring[(i + 1) % ring.size()];
-        if ((a.y() > place.y()) == (b.y() > place.y())) continue;
-        const double x = a.x() + (place.y() - a.y()) / (b.y() - a.y()) * (b.x() - a.x());
-        if (place.x() < x) is_inside = !is_inside;
-      }
+      if (geometry::contains(ring, place)) is_inside = !is_inside;
     }
     return is_inside;
   }
@@ -55,8 +52,9 @@ class Region {
   std::vector<std::vector<Vector2d>> rings_;
 };
 
-void add_objects(const Source& source, const SiteFrame& site, const FileContents& contents,
-                 const Region& region, const TerrainHeight& terrain, Prior& prior) {
+/// Returns what stand-ins for the way to WGS84 may be off [m].
+double add_objects(const Source& source, const SiteFrame& site, const FileContents& contents,
+                   const Region& region, const TerrainHeight& terrain, Prior& prior) {
   ObjectBuilder builder(source, contents, site, terrain);
   std::size_t outside = 0, without_level = 0;
   for (const SelectedObject& selected : select_objects(source, contents)) {
@@ -77,7 +75,8 @@ void add_objects(const Source& source, const SiteFrame& site, const FileContents
   if (without_level > 0) {
     prior.notes.push_back(std::to_string(without_level) + " objects without surfaces of that lod");
   }
-  prior.uncertainty = builder.has_extruded() ? 1.0 : 0.3;
+  if (builder.has_extruded()) prior.uncertainty = 1.0;
+  return builder.transform().stand_in_error();
 }
 
 void add_points(FileContents& contents, const SiteTransform& transform, const Region& region,
@@ -89,10 +88,25 @@ void add_points(FileContents& contents, const SiteTransform& transform, const Re
   }
 }
 
+/// From node to node about the middle of the raster.
+void add_steps(const FileContents& contents, const SiteTransform& transform, HeightGrid& grid) {
+  const std::size_t middle = contents.rows / 2 * contents.columns + contents.columns / 2;
+  const Vector2d here = contents.nodes[middle].head<2>();
+  std::array<Vector3d, 3> places;
+  places.fill(Vector3d::Zero());
+  places[0].head<2>() = here;
+  places[1].head<2>() = here + contents.right;
+  places[2].head<2>() = here + contents.down;
+  transform.to_site(places);
+  grid.right = (places[1] - places[0]).head<2>().cast<float>();
+  grid.down = (places[2] - places[0]).head<2>().cast<float>();
+}
+
 void add_grid(FileContents& contents, const SiteTransform& transform, const Region& region,
               Prior& prior) {
   prior.grid.columns = contents.columns;
   prior.grid.rows = contents.rows;
+  add_steps(contents, transform, prior.grid);
   const auto none = Eigen::Vector3f::Constant(std::numeric_limits<float>::quiet_NaN());
   prior.grid.nodes.reserve(contents.nodes.size());
   std::vector<Vector3d> row;
@@ -141,45 +155,57 @@ void measure(const SiteFrame& site, Prior& prior) {
   const flight::LocalFrame frame(*site.origin);
   const flight::GeodeticPoint low = frame.to_geodetic(lowest), high = frame.to_geodetic(highest);
   prior.ellipsoid_heights = {low.height, high.height};
-  const double undulation = egm96_undulation(site.origin->latitude_deg, site.origin->longitude_deg);
-  prior.sea_level_heights = {low.height - undulation, high.height - undulation};
+  if (!site.undulation) return;
+  prior.sea_level_heights = {low.height - *site.undulation, high.height - *site.undulation};
 }
 
-}  // namespace
+/// Throws unless the file has what the role needs.
+void require_use(const Source& source, const Prior& prior) {
+  const auto refuse = [&](const std::string& what) {
+    throw Error(ErrorKind::bad_config, source.file.string() + ": " + what);
+  };
+  if (source.role == Role::target && prior.objects.empty()) {
+    refuse("holds no surfaces of objects, which a target has to; give role: obstacle");
+  }
+  if (source.role == Role::terrain && !prior.points.empty()) {
+    refuse("holds points, which are no ground; make a raster of them, or give role: obstacle");
+  }
+  if (source.role == Role::truth && !prior.points.empty()) {
+    refuse("holds points, which no sensor can be simulated on; give surfaces or a raster");
+  }
+}
 
-Prior read_prior(const Source& source, const SiteFrame& site, const TerrainHeight& terrain) {
-  FileContents contents = read_contents(source, site);
+Prior prior_of(FileContents contents, const Source& source, const SiteFrame& site,
+               const TerrainHeight& terrain) {
+  refuse_unused(source, contents);
   Prior prior;
   prior.role = source.role;
   prior.uncertainty = 0.3;
   prior.format = contents.format;
   prior.notes = contents.notes;
   const Region region(source, site);
+  double stand_in_error = 0.0;
   if (contents.points.empty() && contents.nodes.empty()) {
-    add_objects(source, site, contents, region, terrain, prior);
+    stand_in_error = add_objects(source, site, contents, region, terrain, prior);
   } else {
     const SiteTransform transform(source, contents, site);
     add_points(contents, transform, region, prior);
-    add_grid(contents, transform, region, prior);
+    if (!contents.nodes.empty()) add_grid(contents, transform, region, prior);
+    stand_in_error = transform.stand_in_error();
     prior.crs = transform.crs();
     prior.notes.insert(prior.notes.end(), transform.notes().begin(), transform.notes().end());
   }
-  if (source.uncertainty) prior.uncertainty = *source.uncertainty;
+  prior.uncertainty = source.uncertainty.value_or(prior.uncertainty) + stand_in_error;
   measure(site, prior);
   if (prior.box.isEmpty()) {
     fail_file(source.file, "holds neither surfaces nor points that select lets through");
   }
+  require_use(source, prior);
   return prior;
 }
 
-flight::GeodeticPoint middle_of(const Source& source) {
-  const FileContents contents = read_contents(source, {});
-  if (contents.crs.empty() && source.crs.empty()) {
-    throw Error(ErrorKind::bad_config, source.file.string() +
-                                           ": does not say which coordinates it is in; give crs, "
-                                           "such as \"EPSG:25832+7837\"");
-  }
-  const SiteTransform transform(source, contents, {}, false);
+/// All coordinates of what is selected of a file.
+std::vector<Vector3d> places_of(const Source& source, const FileContents& contents) {
   std::vector<Vector3d> places = contents.points;
   places.insert(places.end(), contents.nodes.begin(), contents.nodes.end());
   for (const SelectedObject& selected : select_objects(source, contents)) {
@@ -194,6 +220,17 @@ flight::GeodeticPoint middle_of(const Source& source) {
       }
     }
   }
+  return places;
+}
+
+flight::GeodeticPoint middle_of(const Source& source, const FileContents& contents) {
+  if (contents.crs.empty() && source.crs.empty()) {
+    throw Error(ErrorKind::bad_config, source.file.string() +
+                                           ": does not say which coordinates it is in; give crs, "
+                                           "such as \"EPSG:25832+7837\"");
+  }
+  const SiteTransform transform(source, contents, {}, false);
+  std::vector<Vector3d> places = places_of(source, contents);
   for (Vector3d& place : places) place.z() = 0.0;
   transform.to_geodetic(places);
   Eigen::AlignedBox2d box;  // longitudes within half a turn of the first
@@ -207,21 +244,33 @@ flight::GeodeticPoint middle_of(const Source& source) {
   return {box.center().y(), std::remainder(box.center().x(), 360.0), 0.0};
 }
 
+}  // namespace
+
+Prior read_prior(const Source& source, const SiteFrame& site, const TerrainHeight& terrain) {
+  return prior_of(read_contents(source, site), source, site, terrain);
+}
+
+flight::GeodeticPoint middle_of(const Source& source) {
+  return middle_of(source, read_contents(source, {}));
+}
+
 geometry::Mesh read_surfaces(const std::filesystem::path& file) {
   Source source;
   source.file = file;
-  source.vertical = HeightDatum::geoid;  // stand-ins will do: heights among each other count
-  source.base = 0.0;
+  source.role = Role::truth;
   SiteFrame site;
-  if (!read_contents(source, site).crs.empty()) {
-    site.origin = middle_of(source);
-  } else {
+  FileContents contents = read_contents(source, site);
+  if (contents.crs.empty()) {
     source.place = Place{};
+  } else {
+    source.vertical = HeightDatum::geoid;  // stand-ins will do: heights among each other count
+    site.origin = middle_of(source, contents);
   }
+  const bool is_flat = std::ranges::none_of(contents.objects, &FileObject::has_heights);
+  if (contents.is_outlines && is_flat) source.base = 0.0;
+  const Prior prior = prior_of(std::move(contents), source, site, {});
   geometry::Mesh mesh;
-  for (const Object& object : read_prior(source, site).objects) {
-    geometry::append(mesh, object.mesh);
-  }
+  for (const Object& object : prior.objects) geometry::append(mesh, object.mesh);
   if (mesh.triangles.empty()) fail_file(file, "holds no surfaces; a mesh is wanted");
   return mesh;
 }

@@ -20,6 +20,7 @@
 #include "flight/export/geodesy.h"
 #include "geometry/surfaces/mesh.h"
 #include "missions/prior/formats/meanings.h"
+#include "missions/prior/height_grid.h"
 #include "missions/prior/source.h"
 
 namespace skycap::missions::prior {
@@ -33,16 +34,12 @@ struct Object {
   std::vector<SurfaceKind> surfaces;  ///< of each triangle
 };
 
-/// Heights on a grid, which in the site's frame is a little curved and turned: hence all nodes.
-struct HeightGrid {
-  std::size_t columns = 0, rows = 0;
-  std::vector<Eigen::Vector3f> nodes;  ///< centres of cells, row by row; NaN: the file has none
-};
-
 /// Where the site is, as far as it is known.
 struct SiteFrame {
   std::optional<flight::GeodeticPoint> origin;  ///< of the frame
-  double takeoff_z = 0.0;                       ///< of the pad, in the frame
+  std::optional<double> takeoff_z;              ///< of the pad, in the frame
+  double ground_z = 0.0;             ///< of the plane that is the ground where no terrain is known
+  std::optional<double> undulation;  ///< of the geoid above the ellipsoid there
 };
 
 /// z of the ground at a place of the site; nothing where it is not known.
@@ -56,15 +53,18 @@ struct HeightRange {
 /// What a file holds, less what `select` leaves out.
 struct Prior {
   Role role = Role::obstacle;
-  double uncertainty = 0.0;  ///< the source's; else 0.3 of meshes, points, grids; 1.0 extruded
+  /// The source's; else 0.3 of meshes, points and grids, 1.0 of extruded outlines; and on top of
+  /// either what EGM96 or another stand-in in the way to WGS84 may be off, as PROJ states it.
+  double uncertainty = 0.0;
   std::vector<Object> objects;
-  std::vector<Eigen::Vector3f> points;  ///< of a cloud, thinned
-  HeightGrid grid;                      ///< of a raster; empty: it is none
-  std::string format;                   ///< such as "CityGML 2.0"
-  std::string crs;                      ///< that its coordinates were in, by name
-  std::size_t dropped_polygons = 0;     ///< without area
-  Eigen::AlignedBox3d box;              ///< of all of it, in the site's frame
-  std::optional<HeightRange> ellipsoid_heights, sea_level_heights;  ///< if the site is known
+  std::vector<Eigen::Vector3f> points;           ///< of a cloud, thinned
+  HeightGrid grid;                               ///< of a raster; empty: it is none
+  std::string format;                            ///< such as "CityGML 2.0"
+  std::string crs;                               ///< that its coordinates were in, by name
+  std::size_t dropped_polygons = 0;              ///< without area
+  Eigen::AlignedBox3d box;                       ///< of all of it, in the site's frame
+  std::optional<HeightRange> ellipsoid_heights;  ///< if the site is known
+  std::optional<HeightRange> sea_level_heights;  ///< if the geoid there is, too
   std::vector<std::string>
       notes;  ///< sentences for the user: stand-ins, guesses, what was left out
 };
@@ -72,8 +72,9 @@ struct Prior {
 /// Reads a file by its content, then by its ending. Throws Error in one line that opens with the
 /// file: {bad_file} if it is broken, too large (2 GB; 100 million cells; 50 million polygons), or
 /// of no known format; {bad_config} if the source does not say what is needed (crs, vertical, base,
-/// height), or puts anything farther than 50 km from the site. `terrain` is asked where
-/// `base_on_terrain` is set.
+/// height, takeoff), says what the file has no use for, gives it a role that it cannot play
+/// (targets are objects; the ground is no points), or puts anything farther than 50 km from the
+/// site. `terrain` is asked where `base_on_terrain` is set.
 Prior read_prior(const Source& source, const SiteFrame& site, const TerrainHeight& terrain = {});
 
 /// Where on the Earth the middle of what is selected of a file is, without its height: for those

@@ -62,6 +62,7 @@ std::string text_of(const SitePriors& site) {
   for (std::size_t i = 0; i < site.priors.size(); ++i) {
     text += text_of(site.sources[i], site.priors[i]);
   }
+  if (!site.ground_note.empty()) text += "  ground    " + site.ground_note + "\n";
   return text;
 }
 

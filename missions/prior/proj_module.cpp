@@ -32,6 +32,9 @@ constexpr const char* ellipsoidal = "EPSG:4979";  // WGS84 with heights
 constexpr const char* surface = "EPSG:4326";      // WGS84 without
 constexpr const char* egm96 = "EPSG:4326+5773";
 
+/// What an operation may be off to stand in for the best one [m].
+constexpr double farthest_stand_in = 5.0;
+
 [[noreturn]] void fail(const std::string& what) { throw Error(ErrorKind::bad_config, what); }
 
 ContextPtr offline_context() {
@@ -222,7 +225,10 @@ std::string stand_in(const char* standing, const std::string& what, const Operat
 /// Heights count from `vertical`, not from what the system says.
 void add_stated_heights(Chain& chain, const OperationFinder& finder,
                         const ReferenceRequest& request, GeodeticTransform& result) {
-  if (*request.vertical == HeightDatum::takeoff) chain.added_height = request.takeoff_height;
+  if (*request.vertical == HeightDatum::takeoff) {
+    if (!request.takeoff_height) fail("vertical is takeoff, but flight.takeoff is not given");
+    chain.added_height = *request.takeoff_height;
+  }
   if (*request.vertical != HeightDatum::geoid) return;
   const ObjectPtr geoid(proj_create(chain.context.get(), egm96));
   Operation operation = finder.find(geoid.get(), ellipsoidal);
@@ -231,6 +237,7 @@ void add_stated_heights(Chain& chain, const OperationFinder& finder,
   }
   result.notes.push_back("heights above the geoid are taken as EGM96's; PROJ states " +
                          stated(operation.accuracy));
+  result.stand_in_error += std::max(0.0, operation.accuracy);
   chain.height = std::move(operation.object);
 }
 
@@ -253,14 +260,16 @@ bool takes_own_heights(Chain& chain, const OperationFinder& finder, const System
 void add_position(Chain& chain, const OperationFinder& finder, const System& system,
                   const ReferenceRequest& request, GeodeticTransform& result) {
   Operation operation = finder.find(system.horizontal.get(), surface);
-  const bool may_stand_in = request.vertical == HeightDatum::geoid || !request.near;
-  if (!operation.object || (!operation.is_best && !may_stand_in)) {
+  const bool is_close = operation.accuracy >= 0.0 && operation.accuracy <= farthest_stand_in;
+  if (!operation.object || !(operation.is_best || is_close || !request.near)) {
     fail("PROJ cannot bring " + result.name + " to WGS84 as well as it should" +
          (operation.missing.empty() ? "" : ": it lacks " + operation.missing) +
-         "; install that, or say vertical: geoid to let its next best way stand in");
+         (operation.object ? "; for the next best way it states " + stated(operation.accuracy)
+                           : ""));
   }
   if (!operation.is_best) {
     result.notes.push_back(stand_in("the next best operation", operation.missing, operation));
+    result.stand_in_error += std::max(0.0, operation.accuracy);
   }
   chain.position = std::move(operation.object);
 }

@@ -23,7 +23,7 @@ struct ReferenceRequest {
   std::optional<HeightDatum> vertical_if_silent;  ///< where the system has no heights
   bool needs_heights = true;                      ///< else z means nothing
   std::optional<flight::GeodeticPoint> near;      ///< the site: operations are chosen for it
-  double takeoff_height = 0.0;                    ///< of the pad above the ellipsoid
+  std::optional<double> takeoff_height;           ///< of the pad above the ellipsoid
 };
 
 /// A way from a file's coordinates to latitude, longitude and height.
@@ -34,14 +34,17 @@ struct GeodeticTransform {
   bool has_own_heights = false;    ///< it is compound or three-dimensional
   double height_unit = 1.0;        ///< metres; 1 without heights of its own
   std::vector<std::string> notes;  ///< what stands in for what, with the accuracy PROJ states
+  double stand_in_error = 0.0;     ///< what all of those together may be off [m]
   /// Replaces (x, y, z) by (longitude, latitude, ellipsoid height), in degrees and metres. What has
   /// no image becomes infinite. One thread at a time.
   std::function<void(std::span<Eigen::Vector3d>)> apply;
 };
 
-/// Throws Error{bad_config} if PROJ does not know the system, if heights are needed and neither the
-/// system nor `vertical` says what they count from, or if the best operation is not to be had and
-/// `vertical` is not geoid; Error{bad_file} if PROJ is not installed.
+/// On the map the next best operation that PROJ has grids for stands in for the best one if it is
+/// within 5 m; for heights EGM96 does where `vertical` is geoid. Throws Error{bad_config} if PROJ
+/// does not know the system, if heights are needed and neither the system nor `vertical` says what
+/// they count from, if they count from a pad that is not known, or if nothing may stand in for the
+/// best operation; Error{bad_file} if PROJ is not installed.
 GeodeticTransform geodetic_transform(const ReferenceRequest& request);
 
 /// A name that authorities' files use in place of one that PROJ knows, translated; others as they

@@ -1,6 +1,7 @@
 #include "missions/prior/selection.h"
 
 #include <algorithm>
+#include <array>
 #include <map>
 #include <set>
 #include <string>
@@ -60,6 +61,28 @@ void require_all_met(const Source& source, const FileContents& contents,
   }
 }
 
+bool has_levels(const FileContents& contents) {
+  return std::ranges::any_of(contents.objects, [](const FileObject& object) {
+    return std::ranges::any_of(object.polygons,
+                               [](const FilePolygon& polygon) { return polygon.lod.has_value(); });
+  });
+}
+
+/// Whether anything of it is extruded; ObjectBuilder::is_extruded() decides it for each object.
+bool has_solids(const Source& source, const FileContents& contents) {
+  if (!contents.is_outlines) return false;
+  return source.base_on_terrain || source.height ||
+         std::ranges::any_of(contents.objects, [](const FileObject& object) {
+           return !object.has_heights || object.height;
+         });
+}
+
+struct KeyUse {
+  const char* key;
+  bool is_given, is_used;
+  const char* purpose;
+};
+
 }  // namespace
 
 std::vector<SelectedObject> select_objects(const Source& source, const FileContents& contents) {
@@ -94,6 +117,38 @@ std::vector<FilePolygon> select_polygons(const FileObject& object, std::optional
     if (!polygon.lod || polygon.lod == lod) result.push_back(polygon);
   }
   return result;
+}
+
+void refuse_unused(const Source& source, const FileContents& contents) {
+  const Selection& select = source.select;
+  const bool is_outlines = contents.is_outlines, has_objects = !contents.objects.empty();
+  const bool is_based = source.base_on_terrain || source.base;
+  const bool has_extruded = has_solids(source, contents);
+  const bool has_uncertainty_in_use = source.role != Role::truth;
+  const bool stands_on_terrain = is_outlines && source.base_on_terrain;
+  const std::array<KeyUse, 12> uses{{
+      {"base", is_based, has_extruded, "outlines that are extruded"},
+      {"height", source.height.has_value(), is_outlines, "polygons of maps"},
+      {"min_height", source.min_height > 0.0, has_extruded, "outlines that are extruded"},
+      {"spacing", source.spacing.has_value(), !contents.points.empty(), "points"},
+      {"select.classes", !select.classes.empty(), contents.has_classes, "LAS files"},
+      {"select.layer", !select.layer.empty(), is_outlines, "maps"},
+      {"select.lod", select.lod.has_value(), !select.lod || has_levels(contents),
+       "city models with levels of detail"},
+      {"select.id", !select.ids.empty(), has_objects, "files of objects"},
+      {"select.attribute", !select.attributes.empty(), has_objects, "files of objects"},
+      {"up_axis", source.is_y_up.has_value(), contents.is_scene, "models of scenes"},
+      {"uncertainty", source.uncertainty.has_value(), has_uncertainty_in_use,
+       "what is not the truth"},
+      {"vertical", source.vertical.has_value(), !stands_on_terrain,
+       "heights, and these outlines stand on the terrain"},
+  }};
+  for (const KeyUse& use : uses) {
+    if (!use.is_given || use.is_used) continue;
+    throw Error(ErrorKind::bad_config, source.file.string() + ": " + use.key +
+                                           " has no use here, it is for " + use.purpose +
+                                           "; leave it out");
+  }
 }
 
 }  // namespace skycap::missions::prior

@@ -20,7 +20,8 @@ struct SitePriors {
   /// Of the roles obstacle and terrain.
   std::vector<std::shared_ptr<const flight::PriorObstacle>> obstacles;
   std::shared_ptr<const Terrain> terrain;  ///< null: there is none
-  std::vector<std::string> digests;        ///< of what the sources hold, in their order
+  std::string ground_note;           ///< what is taken for the ground where no terrain has any
+  std::vector<std::string> digests;  ///< of what the sources hold, in their order
 };
 
 /// Reads them, terrain first. Whatever is thrown for a source passes through `failed`, which has to

@@ -24,9 +24,9 @@ std::string place_text(double latitude_deg, double longitude_deg) {
 }
 
 /// y up, as modellers have it, to z up: what faced the viewer faces south.
-Eigen::Matrix3d upright(bool is_y_up) {
+Eigen::Matrix3d upright(const Source& source, const FileContents& contents) {
   Eigen::Matrix3d turn = Eigen::Matrix3d::Identity();
-  if (is_y_up) turn << 1, 0, 0, 0, 0, -1, 0, 1, 0;
+  if (source.is_y_up.value_or(contents.is_y_up.value_or(false))) turn << 1, 0, 0, 0, 0, -1, 0, 1, 0;
   return turn;
 }
 
@@ -54,12 +54,17 @@ void SiteTransform::prepare_place(const Source& source, const FileContents& cont
     throw Error(ErrorKind::bad_config,
                 file_.string() + ": has both a place and a crs; one of them puts it on the site");
   }
+  if (source.vertical) {
+    throw Error(ErrorKind::bad_config,
+                file_.string() +
+                    ": vertical has no use here, as no reference system puts it on the site; its "
+                    "heights are z in the mission's frame");
+  }
   const Place place = source.place.value_or(Place{});
   const double unit = source.unit.value_or(contents.unit.value_or(1.0));
   const Eigen::AngleAxisd heading(-place.heading, Vector3d::UnitZ());
   // A transform times a mere matrix would take its columns for points.
-  const Eigen::Affine3d upright_metres(
-      Eigen::Matrix3d(unit * upright(contents.is_y_up.value_or(source.is_y_up))));
+  const Eigen::Affine3d upright_metres(Eigen::Matrix3d(unit * upright(source, contents)));
   prepared_ = Eigen::Translation3d(place.position) * heading * Eigen::Translation3d(source.offset) *
               upright_metres;
   metres_per_unit_ = Vector3d::Constant(unit);
@@ -68,6 +73,12 @@ void SiteTransform::prepare_place(const Source& source, const FileContents& cont
 
 void SiteTransform::prepare_crs(const Source& source, const FileContents& contents,
                                 const SiteFrame& site) {
+  if (source.crs.empty() && !contents.other_crs.empty()) {
+    throw Error(ErrorKind::bad_config, file_.string() + ": names two reference systems, " +
+                                           one_line(contents.crs) + " and " +
+                                           one_line(contents.other_crs) +
+                                           "; give the one that all of it is in as crs");
+  }
   ReferenceRequest request;
   request.crs = source.crs.empty() ? contents.crs : source.crs;
   request.is_latitude_first = source.crs.empty() && contents.is_latitude_first;
@@ -75,9 +86,9 @@ void SiteTransform::prepare_crs(const Source& source, const FileContents& conten
   request.vertical_if_silent = contents.vertical;
   request.needs_heights = needs_heights_;
   request.near = site.origin;
-  if (site.origin) {
+  if (site.origin && site.takeoff_z) {
     const flight::LocalFrame frame(*site.origin);
-    request.takeoff_height = frame.to_geodetic({0.0, 0.0, site.takeoff_z}).height;
+    request.takeoff_height = frame.to_geodetic({0.0, 0.0, *site.takeoff_z}).height;
   }
   try {
     geodetic_ = geodetic_transform(request);
@@ -107,9 +118,9 @@ void SiteTransform::prepare_units(const Source& source, const FileContents& cont
     notes_.push_back("heights are taken in units of " + decimal(across, 6) +
                      " m, as the map is; unit says otherwise");
   }
-  prepared_ = Eigen::Translation3d(source.offset) *
-              Eigen::Matrix3d(Vector3d(1.0, 1.0, up).asDiagonal() *
-                              upright(contents.is_y_up.value_or(source.is_y_up)) * all);
+  prepared_ =
+      Eigen::Translation3d(source.offset) *
+      Eigen::Matrix3d(Vector3d(1.0, 1.0, up).asDiagonal() * upright(source, contents) * all);
   metres_per_unit_ = Vector3d(across, across, up * geodetic_->height_unit) * all;
   if (geodetic_->is_geographic) {
     constexpr double metres_per_degree = 111'320.0;

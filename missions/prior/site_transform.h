@@ -38,6 +38,8 @@ class SiteTransform {
   Eigen::Vector3d metres_per_unit() const { return metres_per_unit_; }
   const std::string& crs() const { return name_; }
   const std::vector<std::string>& notes() const { return notes_; }
+  /// What stand-ins on the way to WGS84 may be off [m].
+  double stand_in_error() const { return geodetic_ ? geodetic_->stand_in_error : 0.0; }
 
  private:
   void prepare_place(const Source& source, const FileContents& contents);

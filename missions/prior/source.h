@@ -32,6 +32,10 @@ struct Selection {
   std::optional<double> lod;                      ///< level of detail; else each object's highest
 };
 
+/// Clouds are thinned to it where nothing is said: a quarter of the clearance that vehicles keep at
+/// least, as voxels are [m].
+inline constexpr double usual_spacing = 0.25;
+
 /// Where a file without a coordinate reference system is in the site's frame.
 struct Place {
   Eigen::Vector3d position = Eigen::Vector3d::Zero();  ///< of the file's origin
@@ -50,13 +54,13 @@ struct Source {
   std::optional<Place> place;           ///< excludes crs
   Eigen::Vector3d offset = Eigen::Vector3d::Zero();
   std::optional<double> unit;         ///< metres; else the file's, else 1
-  bool is_y_up = false;               ///< else z is, where the file does not say it
+  std::optional<bool> is_y_up;        ///< else as the file says, else z is
   bool base_on_terrain = false;       ///< of extruded polygons: where the lowest corner stands
   std::optional<double> base;         ///< or this height, in the file's vertical datum
   std::optional<double> height;       ///< of extruded polygons above their base
   double min_height = 0.0;            ///< they begin so far above their base
-  std::optional<double> uncertainty;  ///< bound of what a surface may be off; see prior.h
-  double spacing = 0.0;               ///< clouds keep one point a cube of this side; 0: all
+  std::optional<double> uncertainty;  ///< bound of what the file's surfaces may be off; see prior.h
+  std::optional<double> spacing;      ///< else usual_spacing: clouds keep one point a cube of it
 };
 
 }  // namespace skycap::missions::prior

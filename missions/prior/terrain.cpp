@@ -1,7 +1,6 @@
 #include "missions/prior/terrain.h"
 
 #include <algorithm>
-#include <cmath>
 
 #include "flight/space/triangle_tree.h"
 
@@ -15,32 +14,7 @@ using flight::Segment;
 /// Beyond every height on the Earth [m].
 constexpr double far = 2e4;
 
-/// Cells of one grid that are kept in memory as they are; larger grids are thinned.
-constexpr double most_cells = 2e6;
-
-std::size_t step_of(const HeightGrid& grid) {
-  const double cells = static_cast<double>(grid.columns) * static_cast<double>(grid.rows);
-  return static_cast<std::size_t>(std::max(1.0, std::ceil(std::sqrt(cells / most_cells))));
-}
-
 }  // namespace
-
-std::vector<flight::Triangle> triangles_of(const HeightGrid& grid, std::size_t step) {
-  std::vector<flight::Triangle> triangles;
-  const auto add = [&](const Vector3d& a, const Vector3d& b, const Vector3d& c) {
-    if (a.allFinite() && b.allFinite() && c.allFinite()) triangles.push_back({a, b, c});
-  };
-  for (std::size_t row = 0; row + step < grid.rows; row += step) {
-    for (std::size_t column = 0; column + step < grid.columns; column += step) {
-      const auto node = [&](std::size_t down, std::size_t right) -> Vector3d {
-        return grid.nodes[(row + down) * grid.columns + column + right].cast<double>();
-      };
-      add(node(0, 0), node(0, step), node(step, step));
-      add(node(0, 0), node(step, step), node(step, 0));
-    }
-  }
-  return triangles;
-}
 
 geometry::Mesh mesh_of(const std::vector<flight::Triangle>& triangles) {
   geometry::Mesh mesh;
@@ -65,8 +39,12 @@ Terrain::Terrain(const std::vector<const Prior*>& priors) {
       const auto more = flight::triangles_of(object.mesh);
       triangles.insert(triangles.end(), more.begin(), more.end());
     }
-    const auto more = triangles_of(prior->grid, step_of(prior->grid));
-    triangles.insert(triangles.end(), more.begin(), more.end());
+    const std::size_t step = step_of(prior->grid);
+    const HeightGrid coarse = step > 1 ? thinned(prior->grid, step) : HeightGrid{};
+    const HeightGrid& grid = step > 1 ? coarse : prior->grid;
+    for (const auto& more : {triangles_of(grid, 1), rim_of(grid)}) {
+      triangles.insert(triangles.end(), more.begin(), more.end());
+    }
   }
   impl->surface.index();
   impl_ = std::move(impl);

@@ -14,11 +14,12 @@ namespace skycap::missions::prior {
 
 class Terrain {
  public:
-  /// Of the grids and surfaces of these; their points are not looked at.
+  /// Of the grids and surfaces of these; a terrain has no points.
   explicit Terrain(const std::vector<const Prior*>& priors);
   ~Terrain();
 
-  /// z of the highest ground there; nothing where no file has any.
+  /// z of the highest ground there, or of a large grid up to a few cells away; nothing where no
+  /// file has any.
   std::optional<double> height(const Eigen::Vector2d& place) const;
 
   /// All of it.
@@ -28,10 +29,6 @@ class Terrain {
   struct Impl;
   std::unique_ptr<const Impl> impl_;
 };
-
-/// The triangles between a grid's nodes, two in each cell whose nodes all have heights; every
-/// `step`-th node is used.
-std::vector<flight::Triangle> triangles_of(const HeightGrid& grid, std::size_t step);
 
 /// The triangles, each with vertices of its own.
 geometry::Mesh mesh_of(const std::vector<flight::Triangle>& triangles);

@@ -9,7 +9,6 @@
 
 #include "geometry/error.h"
 #include "geometry/io/file.h"
-#include "geometry/place/camera.h"
 #include "missions/derived/mission_flight.h"
 #include "missions/derived/mission_priors.h"
 #include "missions/derived/site.h"
@@ -93,8 +92,7 @@ SurveyScene::SurveyScene(const file::Mission& mission, const std::filesystem::pa
       model_(placed_model(mission, folder)),
       scene_(scene_of(model_, mission, folder)),
       samples_(geometry::sample_surface(model_, mission.evaluation.samples, sample_seed)),
-      view_distance_(mission.planner.see.view_distance.value_or(geometry::view_distance(
-          geometry::Camera(mission.sensor.camera.camera), mission.planner.see.density))),
+      view_distance_(derived::view_distance_of(mission)),
       view_sphere_(sphere_around(samples_.points, view_distance_)),
       radius_(mission.evaluation.radius.value_or(derived::view_limits(mission).stand_off)),
       reachable_(reachable_space()) {

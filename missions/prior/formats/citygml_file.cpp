@@ -119,6 +119,7 @@ class Walker final : public pugi::xml_tree_walker {
 
  private:
   void enter(pugi::xml_node node, Surroundings& here);
+  void take_system(pugi::xml_node node);
   void enter_object(pugi::xml_node node, Name name, Surroundings& here);
   void read_attribute(pugi::xml_node node, Name name, const Surroundings& here);
   void read_polygon(pugi::xml_node node, Surroundings& here);
@@ -135,15 +136,13 @@ class Walker final : public pugi::xml_tree_walker {
   std::map<std::string, std::size_t> left_out_;
   std::unordered_map<std::string, SurfaceKind> kind_of_;  ///< by identifiers that were referred to
   std::unordered_map<std::string, Place> unknown_;        ///< polygons without a kind
-  std::size_t polygons_ = 0, rings_without_place_ = 0;
+  std::size_t polygons_ = 0, rings_without_place_ = 0, rings_without_heights_ = 0;
   std::vector<double> numbers_;  // kept for its memory
 };
 
 void Walker::enter(pugi::xml_node node, Surroundings& here) {
   const Name name = local_name(node.name());
-  if (contents_.crs.empty()) {
-    contents_.crs = attribute(node, "srsName").as_string();
-  }
+  take_system(node);
   if (const pugi::xml_attribute dimension = attribute(node, "srsDimension")) {
     here.dimension = dimension.as_int();
   }
@@ -172,6 +171,13 @@ void Walker::enter(pugi::xml_node node, Surroundings& here) {
   if (name == "Address") here.is_address = true;
   read_attribute(node, name, here);
   enter_object(node, name, here);
+}
+
+/// The reference system that an element names for what is in it.
+void Walker::take_system(pugi::xml_node node) {
+  const std::string crs = attribute(node, "srsName").as_string();
+  if (crs.empty() || crs == contents_.crs) return;
+  (contents_.crs.empty() ? contents_.crs : contents_.other_crs) = crs;
 }
 
 void Walker::enter_object(pugi::xml_node node, Name name, Surroundings& here) {
@@ -236,14 +242,16 @@ void Walker::read_polygon(pugi::xml_node node, Surroundings& here) {
   }
 }
 
-/// A ring's corners, empty if it is not of straight lines: those have no area.
+/// A ring's corners, empty if it is not of straight lines or has no heights: those have no area.
 void Walker::read_ring(pugi::xml_node boundary, int dimension) {
   const pugi::xml_node ring = child(boundary, "LinearRing");
+  take_system(ring);
   if (const pugi::xml_attribute own = attribute(ring, "srsDimension")) dimension = own.as_int();
   numbers_.clear();
   for (const pugi::xml_node part : ring.children()) {
     const Name name = local_name(part.name());
     if (name != "posList" && name != "pos" && name != "coordinates") continue;
+    take_system(part);
     if (const pugi::xml_attribute own = attribute(part, "srsDimension")) dimension = own.as_int();
     for (const pugi::xml_node text : part.children()) read_numbers(text.value(), numbers_);
   }
@@ -252,6 +260,10 @@ void Walker::read_ring(pugi::xml_node boundary, int dimension) {
                          " dimensions (srsDimension); 2 or 3 are wanted");
   }
   const auto width = static_cast<std::size_t>(dimension);
+  if (dimension == 2 && !numbers_.empty()) {
+    ++rings_without_heights_;
+    return;
+  }
   if (numbers_.size() % width != 0) {
     fail_file(file_, "has a ring of " + std::to_string(numbers_.size()) +
                          " numbers, which is no multiple of " + std::to_string(dimension));
@@ -261,8 +273,7 @@ void Walker::read_ring(pugi::xml_node boundary, int dimension) {
     fail_file(file_, "has more than a thousand million corners");
   }
   for (std::size_t i = 0; i < numbers_.size(); i += width) {
-    contents_.corners.emplace_back(numbers_[i], numbers_[i + 1],
-                                   width == 3 ? numbers_[i + 2] : 0.0);
+    contents_.corners.emplace_back(numbers_[i], numbers_[i + 1], numbers_[i + 2]);
   }
 }
 
@@ -304,6 +315,12 @@ void Walker::finish() {
     contents_.notes.push_back(std::to_string(rings_without_place_) +
                               " rings without straight lines left out");
   }
+  if (rings_without_heights_ == 0) return;
+  if (contents_.corners.empty()) {
+    fail_file(file_, "has coordinates without heights alone (srsDimension 2)");
+  }
+  contents_.notes.push_back(std::to_string(rings_without_heights_) +
+                            " rings without heights left out (srsDimension 2)");
 }
 
 /// By the namespaces of its root.

@@ -38,8 +38,9 @@ struct FileObject {
 };
 
 struct FileContents {
-  std::string format;  ///< such as "CityGML 2.0"
-  std::string crs;     ///< as the file has it; empty: it says nothing
+  std::string format;     ///< such as "CityGML 2.0"
+  std::string crs;        ///< as the file has it; empty: it says nothing
+  std::string other_crs;  ///< a second one that it names for some of it; empty: it does not
   /// Its coordinates are latitude, longitude, as GML has them by the letter of its authority.
   bool is_latitude_first = false;
   bool is_local_frame = false;  ///< the file says that it is in a mission's frame
@@ -54,9 +55,12 @@ struct FileContents {
   std::vector<std::uint32_t> ring_begin{0};  ///< ring i is corners [begin[i], begin[i + 1])
   std::vector<FileObject> objects;
   std::vector<Eigen::Vector3d> points;  ///< of a cloud
+  bool has_classes = false;             ///< of its points
   std::size_t columns = 0, rows = 0;    ///< of a raster
   std::vector<Eigen::Vector3d> nodes;   ///< of a raster, row by row; z NaN: none
-  std::vector<std::string> notes;       ///< sentences for the user
+  /// Of a raster: from a node to the next of its row, and to that below it.
+  Eigen::Vector2d right = Eigen::Vector2d::Zero(), down = Eigen::Vector2d::Zero();
+  std::vector<std::string> notes;  ///< sentences for the user
 
   /// Begins a polygon of an object.
   FilePolygon& add_polygon(FileObject& object) {

@@ -130,7 +130,10 @@ void MapReader::read_feature(OGRLayer& layer, OGRFeature& feature) {
   }
   if (object.polygons.empty()) return;
   // Elsewhere a third coordinate is a height; here it counts for nothing without the mode.
-  if (is_kml() && object.attributes["altitudeMode"] != "absolute") object.has_heights = false;
+  if (is_kml()) {
+    const auto mode = object.attributes.find("altitudeMode");
+    object.has_heights &= mode != object.attributes.end() && mode->second == "absolute";
+  }
   take_system(layer);
   read_heights(object);
   contents_.objects.push_back(std::move(object));

@@ -68,6 +68,8 @@ extern "C" void skycap_read_raster(const std::filesystem::path& file, FileConten
   }
   contents.columns = static_cast<std::size_t>(band->GetXSize());
   contents.rows = static_cast<std::size_t>(band->GetYSize());
+  contents.right = {affine[1], affine[4]};
+  contents.down = {affine[2], affine[5]};
   contents.crs = wkt_of(dataset->GetSpatialRef());
   contents.height_unit = metres_of_unit(band->GetUnitType());
   read_rows(file, *band, affine, contents);

@@ -1,8 +1,6 @@
 #include "missions/prior/formats/las_file.h"
 
 #include <algorithm>
-#include <bit>
-#include <cstring>
 
 #include "geometry/io/las_layout.h"
 #include "geometry/io/las_reader.h"
@@ -12,14 +10,6 @@ namespace skycap::missions::prior {
 namespace {
 
 namespace las = geometry::las;
-
-template <typename Value>
-Value at(std::string_view bytes, std::size_t place) {
-  static_assert(std::endian::native == std::endian::little, "LAS files are little-endian");
-  Value value;
-  std::memcpy(&value, bytes.data() + place, sizeof value);
-  return value;
-}
 
 std::string text_of(std::string_view bytes) {
   return std::string(bytes.substr(0, bytes.find('\0')));
@@ -36,8 +26,9 @@ struct GeoRecords {
 /// The directory of GeoKeys (GeoTIFF 1.1, OGC 19-008r4): key, where the value is, count, value.
 void read_geo_keys(std::string_view directory, GeoRecords& records) {
   for (std::size_t i = 8; i + 8 <= directory.size(); i += 8) {
-    const int key = at<std::uint16_t>(directory, i), place = at<std::uint16_t>(directory, i + 2),
-              value = at<std::uint16_t>(directory, i + 6);
+    const int key = las::value_at<std::uint16_t>(directory.data(), i),
+              place = las::value_at<std::uint16_t>(directory.data(), i + 2),
+              value = las::value_at<std::uint16_t>(directory.data(), i + 6);
     if (place != 0) continue;
     constexpr int user_defined = 32767;
     if ((key == 3072 || key == 2048) && value == user_defined) records.is_user_defined = true;
@@ -62,9 +53,9 @@ GeoRecords geo_records(geometry::LasReader& input) {
   for (std::uint32_t i = 0; i < header.records && place < header.first_point; ++i) {
     const std::string head = input.bytes(place, las::record::end);
     if (head.size() < las::record::end) break;
-    const auto length = at<std::uint16_t>(head, las::record::length);
+    const auto length = las::value_at<std::uint16_t>(head.data(), las::record::length);
     read_record(text_of(std::string_view(head).substr(las::record::user, 16)),
-                at<std::uint16_t>(head, las::record::id),
+                las::value_at<std::uint16_t>(head.data(), las::record::id),
                 input.bytes(place + las::record::end, length), records);
     place += las::record::end + length;
   }
@@ -73,9 +64,9 @@ GeoRecords geo_records(geometry::LasReader& input) {
   for (std::uint32_t i = 0; i < header.extended_records && i < 1000; ++i) {
     const std::string head = input.bytes(place, las::record::extended_end);
     if (head.size() < las::record::extended_end) break;
-    const auto length = at<std::uint64_t>(head, las::record::length);
+    const auto length = las::value_at<std::uint64_t>(head.data(), las::record::length);
     read_record(text_of(std::string_view(head).substr(las::record::user, 16)),
-                at<std::uint16_t>(head, las::record::id),
+                las::value_at<std::uint16_t>(head.data(), las::record::id),
                 input.bytes(place + las::record::extended_end, std::min(length, longest)), records);
     if (length > most_bytes) break;
     place += las::record::extended_end + length;
@@ -116,16 +107,13 @@ void read_points(geometry::LasReader& input, const LasThinning& thinning, FileCo
     return std::ranges::find(thinning.classes, point_class) != thinning.classes.end();
   };
   CellSet cells;
-  const bool is_thinned = thinning.spacing > 0.0;
-  const Eigen::Vector3d cells_per_unit =
-      is_thinned ? Eigen::Vector3d(thinning.metres_per_unit(contents) / thinning.spacing)
-                 : Eigen::Vector3d::Zero();
+  const Eigen::Vector3d cells_per_unit = thinning.metres_per_unit(contents) / thinning.spacing;
   geometry::LasPoints points;
   while (input.next(points)) {
     for (std::size_t i = 0; i < points.positions.size(); ++i) {
       const Eigen::Vector3d& place = points.positions[i];
       if (!is_wanted(points.classes[i])) continue;
-      if (is_thinned && !cells.add(place.cwiseProduct(cells_per_unit))) continue;
+      if (!cells.add(place.cwiseProduct(cells_per_unit))) continue;
       contents.points.push_back(place);
     }
   }
@@ -136,6 +124,7 @@ void read_points(geometry::LasReader& input, const LasThinning& thinning, FileCo
 FileContents read_las(const std::filesystem::path& file, const LasThinning& thinning) {
   geometry::LasReader input(file);
   FileContents contents;
+  contents.has_classes = true;
   contents.format = "LAS 1." + std::to_string(input.header().minor) + ", points of format " +
                     std::to_string(input.header().format);
   name_reference_system(geo_records(input), contents);

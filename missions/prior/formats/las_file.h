@@ -10,7 +10,7 @@ namespace skycap::missions::prior {
 
 struct LasThinning {
   std::vector<int> classes;  ///< that are read; empty: all but noise (7, 18)
-  double spacing = 0.0;      ///< one point a cube of this side [m]; 0: all
+  double spacing = 1.0;      ///< one point a cube of this side is kept [m]
   /// How long the file's units are [m], once its reference system is known.
   std::function<Eigen::Vector3d(const FileContents&)> metres_per_unit;
 };

@@ -25,6 +25,18 @@ std::string complaint(const std::string& text) {
   return testing_support::complaint_of([&] { derived::parse_mission(text, "m.yaml"); });
 }
 
+// echo 51.7534 -1.254 0 | cs2cs EPSG:4326+5773 EPSG:4979 -f %.6f
+TEST(ResolvedMission, TakesEgm96WhereAGeoidIsAskedForAndNoneIsGiven) {
+  const std::string place = "site: {latitude_deg: 51.7534, longitude_deg: -1.254";
+  const auto undulation = [&](const std::string& text) {
+    return parsed(text).georeference.geoid_undulation;
+  };
+  EXPECT_NEAR(undulation(place + "}\nscan: {crs: utm}\n").value(), 47.760744, 1e-6);
+  EXPECT_EQ(undulation(place + ", geoid_undulation: 40}\nscan: {crs: utm}\n"), 40.0);
+  EXPECT_FALSE(undulation(place + "}\n")) << "nobody asks";
+  EXPECT_FALSE(undulation("flight: {vehicle: none}\n"));
+}
+
 // spec: psi = d, one frontier a twentieth of d, occluders 2 r apart, tau above the number of
 // clusters.
 TEST(ResolvedMission, DerivesTheBuildingPresetFromTheSensorAndTheDensity) {

@@ -60,7 +60,7 @@ TEST(PriorKeys, SayAllThatASourceHas) {
   EXPECT_EQ(sources[2].offset, Eigen::Vector3d(1, 2, 3));
   EXPECT_EQ(sources[3].place.value().position, Eigen::Vector3d(4, 5, 6));
   EXPECT_NEAR(sources[3].place.value().heading, 90 * geometry::radians_per_degree, 1e-12);
-  EXPECT_TRUE(sources[3].is_y_up);
+  EXPECT_EQ(sources[3].is_y_up, true);
   EXPECT_EQ(sources[3].unit, 0.3048);
   EXPECT_EQ(sources[3].base, 2.5);
   EXPECT_EQ(sources[3].min_height, 1.0);

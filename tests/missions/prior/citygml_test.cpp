@@ -64,6 +64,32 @@ TEST_F(CityGml, TakesTheHighestLevelOfEachObjectUnlessToldOtherwise) {
   EXPECT_DOUBLE_EQ(geometry::surface_area(first.objects[0].mesh), 100.0 + 900.0);
 }
 
+TEST_F(CityGml, OfTwoReferenceSystemsIsRefusedUnlessOneIsNamed) {
+  const std::string text = model(building(
+      "<gml:boundedBy><gml:Envelope srsName=\"EPSG:25832\"/></gml:boundedBy><bldg:lod2Solid>" +
+      square(10, 1, "srsName=\"EPSG:31468\"") + "</bldg:lod2Solid>"));
+  const auto without_place = [](Source& s) {
+    s.place.reset();
+    s.vertical = HeightDatum::ellipsoid;
+  };
+  EXPECT_THAT([&] { read(text, without_place); },
+              ThrowsMessage<Error>(HasSubstr("two reference systems, EPSG:25832 and EPSG:31468")));
+  EXPECT_EQ(read(text).objects.size(), 1U) << "a place puts all of it";
+}
+
+TEST_F(CityGml, LeavesOutWhatHasNoHeights) {
+  const std::string flat =
+      "<gml:Polygon><gml:exterior><gml:LinearRing><gml:posList srsDimension=\"2\">0 0 9 0 9 9 0 0"
+      "</gml:posList></gml:LinearRing></gml:exterior></gml:Polygon>";
+  const Prior prior = read(model(
+      building("<bldg:lod2MultiSurface>" + flat + square(10, 30) + "</bldg:lod2MultiSurface>")));
+  EXPECT_EQ(prior.box.min().z(), 30.0);
+  EXPECT_THAT(prior.notes, Contains(HasSubstr("1 rings without heights left out")));
+  EXPECT_THAT(
+      [&] { read(model(building("<bldg:lod2MultiSurface>" + flat + "</bldg:lod2MultiSurface>"))); },
+      ThrowsMessage<Error>(HasSubstr("without heights alone")));
+}
+
 TEST_F(CityGml, GivesAPartWhereAPartIsAskedFor) {
   const std::string text = model(building(
       "<bldg:lod2Solid>" + square(10, 1) +
@@ -116,17 +142,14 @@ TEST_F(CityGml, LeavesRoomsAndClosuresOutAndSaysSo) {
   EXPECT_THAT(prior.notes, Contains(HasSubstr("1 Room left out")));
 }
 
-TEST_F(CityGml, ReadsPositionsOneByOneAndTwoDimensions) {
+TEST_F(CityGml, ReadsPositionsOneByOne) {
   const std::string ring =
       "<gml:Polygon><gml:exterior><gml:LinearRing><gml:pos>0 0 1</gml:pos><gml:pos>4 0 1</gml:pos>"
       "<gml:pos>4 4 1</gml:pos><gml:pos>0 4 1</gml:pos></gml:LinearRing></gml:exterior>"
       "</gml:Polygon>";
-  const std::string flat =
-      "<gml:Polygon srsDimension=\"2\"><gml:exterior><gml:LinearRing><gml:posList>0 0 9 0 9 9 0 9"
-      "</gml:posList></gml:LinearRing></gml:exterior></gml:Polygon>";
   const Prior prior =
-      read(model(building("<bldg:lod0FootPrint>" + ring + flat + "</bldg:lod0FootPrint>")));
-  EXPECT_DOUBLE_EQ(geometry::surface_area(prior.objects[0].mesh), 16.0 + 81.0);
+      read(model(building("<bldg:lod0FootPrint>" + ring + "</bldg:lod0FootPrint>")));
+  EXPECT_DOUBLE_EQ(geometry::surface_area(prior.objects[0].mesh), 16.0);
 }
 
 TEST_F(CityGml, KnowsItsVersionsAndAttributes) {

@@ -207,7 +207,10 @@ missions::prior::Source source_of(const std::filesystem::path& file) {
 }
 
 missions::prior::SiteFrame site_at_cube() {
-  return {.origin = flight::GeodeticPoint{48.763, 11.3985, 385.0}, .takeoff_z = 2.0};
+  return {.origin = flight::GeodeticPoint{48.763, 11.3985, 385.0},
+          .takeoff_z = 2.0,
+          .ground_z = 2.0,
+          .undulation = 46.490242};
 }
 
 }  // namespace skycap::testing_support

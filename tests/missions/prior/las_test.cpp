@@ -3,6 +3,7 @@
 #include <fstream>
 
 #include "geometry/error.h"
+#include "missions/prior/formats/file_contents.h"
 #include "tests/missions/prior/cube_files.h"
 #include "tests/support/temporary_folder.h"
 
@@ -37,6 +38,13 @@ TEST_F(Las, KeepsTheClassesThatAreAskedFor) {
   }
 }
 
+TEST_F(Las, IsNoGroundNoTargetAndNoTruth) {
+  for (const Role role : {Role::terrain, Role::target, Role::truth}) {
+    EXPECT_THAT([&] { read(las_of(cube_, 4, 6), [&](Source& s) { s.role = role; }); },
+                ThrowsMessage<Error>(HasSubstr("scan.las: holds ")));
+  }
+}
+
 TEST_F(Las, KeepsOnePointACube) {
   EXPECT_EQ(read(las_of(cube_, 4, 6), [](Source& s) { s.spacing = 1e4; }).points.size(), 1U);
   EXPECT_EQ(read(las_of(cube_, 4, 6), [](Source& s) { s.spacing = 0.1; }).points.size(), 8U);
@@ -61,8 +69,18 @@ TEST_F(Las, StaysWhereOurOwnScansSayTheyAre) {
   near.low = {1.0, 2.0, 3.0};
   const Prior prior = read(
       las_of(near, 4, 6, "LOCAL_CS[\"local east-north-up\",LOCAL_DATUM[\"mission origin\",0]]"),
-      [](Source& s) { s.crs.clear(); });
+      [](Source& s) {
+        s.crs.clear();
+        s.vertical.reset();
+      });
   EXPECT_TRUE(prior.points[0].isApprox(Eigen::Vector3f(1, 2, 3)));
+}
+
+// It is read piece by piece, whatever its size; the file here is mostly a hole on disk.
+TEST_F(Las, MayBeLargerThanTwoGigabytes) {
+  const std::filesystem::path file = folder_.file("large.las", las_of(cube_, 2, 3));
+  std::filesystem::resize_file(file, most_bytes + (std::size_t{1} << 20));
+  EXPECT_EQ(read_prior(source_of(file), site_at_cube()).points.size(), 8U);
 }
 
 TEST_F(Las, RefusesWhatIsCompressed) {
@@ -80,6 +98,7 @@ TEST_F(Las, ReadsAnAirborneScanInFeet) {
   Source source;
   source.file = file;
   source.vertical = HeightDatum::ellipsoid;
+  source.spacing = 1e-3;
   const flight::GeodeticPoint stadium{44.0583, -123.0684, 120.0};
   const Prior prior = read_prior(source, {.origin = stadium});
   EXPECT_EQ(prior.points.size(), 110'000U);

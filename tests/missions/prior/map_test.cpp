@@ -154,6 +154,7 @@ TEST_F(Map, AsksForWhatItCannotKnow) {
       [&] {
         read("a.geojson", text, [](Source& s) {
           s.height = 5.0;
+          s.vertical.reset();
           s.base_on_terrain = true;
         });
       },

@@ -2,6 +2,7 @@
 
 #include "geometry/error.h"
 #include "tests/missions/prior/cube_files.h"
+#include "tests/support/complaint.h"
 #include "tests/support/temporary_folder.h"
 
 namespace skycap::missions::prior {
@@ -114,6 +115,7 @@ TEST_F(OneBox, OfAnOutlineWithAHeight) {
 
 TEST_F(OneBox, OfAnOutlineOnTerrain) {
   Source source = source_of(folder_.file("cube.geojson", geojson_of(cube_)));
+  source.vertical.reset();
   source.base_on_terrain = true;
   source.height = 10.0;
   const Prior prior =
@@ -172,8 +174,84 @@ TEST_F(OneBox, HasItsHeightsInAllDatums) {
   const Prior prior = read("cube.gml", citygml_of(cube_));
   EXPECT_NEAR(prior.ellipsoid_heights->least, 380.0, millimetre);
   EXPECT_NEAR(prior.ellipsoid_heights->most, 390.0, millimetre);
-  // cs2cs EPSG:4326+5773 EPSG:4979 of (48.763, 11.3985, 0).
-  EXPECT_NEAR(prior.sea_level_heights->least, 380.0 - 46.47, 0.05);
+  // echo 48.763 11.3985 0 | cs2cs EPSG:4326+5773 EPSG:4979
+  EXPECT_NEAR(prior.sea_level_heights->least, 380.0 - 46.490242, millimetre);
+}
+
+// EGM96 is off by up to a metre, as PROJ states it: that comes on top of what the file is off.
+TEST_F(OneBox, IsTheLessCertainTheMoreStandsIn) {
+  const auto geoid = [](Source& s) { s.vertical = HeightDatum::geoid; };
+  EXPECT_EQ(read("cube.gml", citygml_of(cube_)).uncertainty, 0.3);
+  EXPECT_EQ(read("cube.gml", citygml_of(cube_), geoid).uncertainty, 1.3);
+  EXPECT_EQ(read("cube.gml", citygml_of(cube_),
+                 [&](Source& s) {
+                   geoid(s);
+                   s.uncertainty = 0.5;
+                 })
+                .uncertainty,
+            1.5);
+}
+
+TEST_F(OneBox, TurnsAsItIsToldWhateverTheFormatSays) {
+  const Prior prior = read("cube.glb", glb_of(cube_), [](Source& s) {
+    s.crs.clear();
+    s.vertical.reset();
+    s.place = Place{};
+    s.is_y_up = false;
+  });
+  // In the file east is x, up is y and south is z.
+  EXPECT_TRUE(
+      prior.box.isApprox(AlignedBox3d(Vector3d(0, 0, -10), Vector3d(10, 10, 0)), millimetre));
+}
+
+// A property's name is no mark of a format.
+TEST_F(OneBox, OfAnOutlineWithPropertiesOfOtherFormats) {
+  std::string text = geojson_of(cube_);
+  text.insert(text.find("\"function\""), R"("asset":"CityJSON","glTF":{"asset":1},)");
+  const Prior prior = read("cube.geojson", text, [](Source& s) {
+    s.base = 380.0;
+    s.height = 10.0;
+  });
+  expect_cube(prior, millimetre);
+  EXPECT_EQ(prior.objects[0].attributes.at("asset"), "CityJSON");
+}
+
+TEST_F(OneBox, RefusesKeysThatItsFileHasNoUseFor) {
+  const auto complaint = [&](const std::string& name, const std::string& bytes,
+                             const std::function<void(Source&)>& change) {
+    return testing_support::complaint_of([&] { read(name, bytes, change); });
+  };
+  const std::string gml = citygml_of(cube_), las = las_of(cube_, 4, 6);
+  using Change = std::function<void(Source&)>;
+  for (const auto& [key, change] : std::initializer_list<std::pair<const char*, Change>>{
+           {"base", [](Source& s) { s.base = 1.0; }},
+           {"base", [](Source& s) { s.base_on_terrain = true; }},
+           {"height", [](Source& s) { s.height = 1.0; }},
+           {"min_height", [](Source& s) { s.min_height = 1.0; }},
+           {"spacing", [](Source& s) { s.spacing = 1.0; }},
+           {"select.classes", [](Source& s) { s.select.classes = {6}; }},
+           {"select.layer", [](Source& s) { s.select.layer = "a"; }},
+           {"up_axis", [](Source& s) { s.is_y_up = true; }}}) {
+    EXPECT_THAT(complaint("cube.gml", gml, change), HasSubstr(key + std::string(" has no use")));
+  }
+  for (const auto& [key, change] : std::initializer_list<std::pair<const char*, Change>>{
+           {"select.id", [](Source& s) { s.select.ids = {"cube"}; }},
+           {"select.attribute", [](Source& s) { s.select.attributes["a"] = "b"; }},
+           {"select.lod", [](Source& s) { s.select.lod = 2.0; }}}) {
+    EXPECT_THAT(complaint("cube.las", las, change), HasSubstr(key + std::string(" has no use")));
+  }
+  EXPECT_THAT(complaint("cube.obj", obj_of(cube_),
+                        [](Source& s) {
+                          s.crs.clear();
+                          s.place = Place{};
+                        }),
+              HasSubstr("vertical has no use here"));
+  EXPECT_THAT(complaint("cube.geojson", geojson_of(cube_),
+                        [](Source& s) {
+                          s.base_on_terrain = true;
+                          s.height = 1.0;
+                        }),
+              HasSubstr("vertical has no use here"));
 }
 
 TEST_F(OneBox, OfPlacesInTheSitesFrame) {
@@ -181,6 +259,7 @@ TEST_F(OneBox, OfPlacesInTheSitesFrame) {
   near.low = {0.0, 0.0, 0.0};
   const Prior prior = read("cube.obj", obj_of(near), [](Source& s) {
     s.crs.clear();
+    s.vertical.reset();
     s.place = Place{{12.0, -3.0, 1.0}, M_PI / 2.0};  // its y axis points east
   });
   EXPECT_LT((prior.box.min() - Vector3d(12, -13, 1)).norm(), 1e-9) << prior.box.min();
@@ -193,6 +272,7 @@ TEST_F(OneBox, InCentimetresWithYUp) {
   near.size = {1000.0, 500.0, 200.0};
   const Prior prior = read("cube.obj", obj_of(near), [](Source& s) {
     s.crs.clear();
+    s.vertical.reset();
     s.place = Place{};
     s.unit = 0.01;
     s.is_y_up = true;
@@ -223,7 +303,11 @@ TEST_F(OneBox, WithoutADatumOfHeightsIsRefused) {
 }
 
 TEST_F(OneBox, OfAMapWithoutACrsIsNotTakenForTheSitesFrame) {
-  EXPECT_THAT([&] { read("cube.obj", obj_of(cube_), [](Source& s) { s.crs.clear(); }); },
+  const auto nowhere = [](Source& s) {
+    s.crs.clear();
+    s.vertical.reset();
+  };
+  EXPECT_THAT([&] { read("cube.obj", obj_of(cube_), nowhere); },
               ThrowsMessage<Error>(HasSubstr("more than 50 km from the site")));
 }
 

@@ -118,6 +118,11 @@ TEST(PriorSurvey, SaysAtWhichKeyASourceIsWrong) {
               HasSubstr("key prior[0].crs: excludes place"));
   EXPECT_THAT(complaint("{file: a.obj, role: terrain, base: terrain}"),
               HasSubstr("key prior[0].base: of the terrain"));
+  const TestFolder folder;
+  geometry::write_mesh(folder.path() / "a.obj", flight::scenes::box({0, 0, 0}, {1, 1, 1}));
+  const std::string file = "{file: '" + (folder.path() / "a.obj").string() + "', role: obstacle, ";
+  EXPECT_THAT(complaint(file + "height: 3}"), HasSubstr("a.obj: height has no use here"));
+  EXPECT_THAT(complaint(file + "spacing: 0}"), HasSubstr("key prior[0].spacing: is 0"));
   EXPECT_THAT(complaint("{file: a.obj, role: truth}"),
               HasSubstr("key prior[0].role: of truth takes the place of scene.model"));
 }
@@ -197,6 +202,29 @@ TEST(PriorSurvey, ATargetSaysWhereTheSceneIs) {
   for (std::size_t i = 0; i < surface->size(); ++i) {
     EXPECT_GT(surface->positions[i].z(), 0.0F) << "nobody sees a house from below";
   }
+}
+
+// Where the pad is not given, nobody knows what counts from it.
+TEST(PriorSurvey, HeightsCountFromAPadThatIsGiven) {
+  const TestFolder folder;
+  const std::filesystem::path file = folder.path() / "house.geojson";
+  std::ofstream(file)
+      << R"({"type":"Polygon","coordinates":[[[7,47],[7.0001,47],[7.0001,47.0001],[7,47]]]})";
+  const std::string text =
+      flown_mission("prior: [{file: '" + file.string() +
+                    "', role: obstacle, vertical: takeoff, base: 0, height: 9}]\n");
+  const auto read = [&](const std::vector<file::KeyOverride>& overrides) {
+    return derived::parse_mission(text, "m.yaml", overrides);
+  };
+  const file::KeyOverride latitude{"--set", "site.latitude_deg", "47"},
+      longitude{"--set", "site.longitude_deg", "7"},
+      pad{"--set", "flight.takeoff", "[-75, 0, -3.75]"};
+  EXPECT_THAT(testing_support::complaint_of([&] {
+                read({latitude, longitude});
+              }),
+              HasSubstr("flight.takeoff is not given"));
+  const file::Mission mission = read({latitude, longitude, pad});
+  EXPECT_NEAR(derived::priors_of(mission).priors[0].box.min().z(), -3.75, 1e-3);
 }
 
 // With nothing but a map of the house: a dry run in which the map is the truth, and says so.
