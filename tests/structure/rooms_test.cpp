@@ -74,6 +74,7 @@ Rooms house() {
   add_mission_room("equipment", "file");
   add_mission_room("derived", "file", "equipment", "prior");
   add_mission_room("scene", "file", "derived", "judge", "plugins", "prior");
+  add_mission_room("site", "file", "derived", "prior");
   add_mission_room("recording", "file", "derived", "plugins");
   add_mission_room("run", "prior", "file", "derived", "judge", "scene");
   add_mission_room("package", "prior", "file", "equipment", "derived", "judge", "scene", "run");
@@ -83,7 +84,7 @@ Rooms house() {
   add_mission_room("library", "file", "equipment", "derived", "judge", "scene", "recording", "run",
                    "package");
   add_mission_room("verbs", "prior", "file", "equipment", "derived", "judge", "plugins", "scene",
-                   "recording", "run", "package", "report", "live", "benchmark");
+                   "recording", "run", "package", "report", "live", "benchmark", "site");
   // As a user of the library: public headers.
   add("python",
       {"sim/models", "sim/sensors", "survey", "flight/space", "flight/route", "missions/library"});

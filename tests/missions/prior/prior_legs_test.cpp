@@ -9,6 +9,7 @@
 #include <random>
 
 #include "flight/space/clearance.h"
+#include "geometry/error.h"
 #include "missions/prior/site_priors.h"
 #include "tests/flight/scenes.h"
 #include "tests/missions/prior/cube_files.h"

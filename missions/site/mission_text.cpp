@@ -1,0 +1,151 @@
+#include "missions/site/mission_text.h"
+
+#include <array>
+
+#include <fmt/format.h>
+
+#include "missions/prior/prior_text.h"
+
+namespace skycap::missions::site {
+namespace {
+
+using Eigen::Vector2d;
+using Eigen::Vector3d;
+using prior::Source;
+
+/// In quotes, so that nothing in it means anything to YAML.
+std::string quoted(const std::string& text) {
+  std::string result = "'";
+  for (const char c : text) result += c == '\'' ? std::string("''") : std::string(1, c);
+  return result + "'";
+}
+
+std::string vector_text(const Vector3d& place) {
+  return fmt::format("[{:g}, {:g}, {:g}]", place.x(), place.y(), place.z());
+}
+
+/// As from the mission file's folder.
+std::string path_text(const std::filesystem::path& file, const std::filesystem::path& mission) {
+  const auto absolute = std::filesystem::absolute(file).lexically_normal();
+  const auto folder = std::filesystem::absolute(mission).lexically_normal().parent_path();
+  return quoted(absolute.lexically_proximate(folder).string());
+}
+
+std::string source_text(const Source& source, const std::filesystem::path& mission) {
+  constexpr std::array datums{"ellipsoid", "geoid", "takeoff"};
+  std::string text = fmt::format("{{file: {}, role: {}", path_text(source.file, mission),
+                                 prior::name_of(source.role));
+  if (!source.crs.empty()) text += ", crs: " + quoted(source.crs);
+  if (source.vertical) {
+    text += std::string(", vertical: ") + datums[static_cast<std::size_t>(*source.vertical)];
+  }
+  if (source.base_on_terrain) text += ", base: terrain";
+  if (source.base) text += fmt::format(", base: {:g}", *source.base);
+  if (source.height) text += fmt::format(", height: {:g}", *source.height);
+  std::string ids;
+  for (const std::string& id : source.select.ids) ids += (ids.empty() ? "" : ", ") + quoted(id);
+  if (!ids.empty()) text += ", select: {id: [" + ids + "]}";
+  return text + "}";
+}
+
+const char* purpose_of(prior::Role role) {
+  switch (role) {
+    case prior::Role::target:
+      return "what is surveyed; coverage is told of it";
+    case prior::Role::obstacle:
+      return "in the way of every leg, widened by its uncertainty; it frees nothing";
+    case prior::Role::terrain:
+      return "the ground: legs keep off it, the pad stands on it";
+    case prior::Role::truth:
+      break;
+  }
+  return "what the simulated sensor measures";
+}
+
+std::string prior_section(const MissionValues& values) {
+  std::string text =
+      "# What is known before anything is measured; uncertainty: METRES says how far "
+      "off it may be.\nprior:\n";
+  for (const Source& source : values.sources) {
+    text +=
+        fmt::format("  # {}\n  - {}\n", purpose_of(source.role), source_text(source, values.file));
+  }
+  return text;
+}
+
+std::string site_section(const MissionValues& values) {
+  const Vector3d low = values.fence.min(), high = values.fence.max();
+  return fmt::format(
+      "site:\n"
+      "  # The origin of the mission's frame (x east, y north, z up): the middle of the target, at "
+      "its lowest place.\n"
+      "  latitude_deg: {:.7f}\n"
+      "  longitude_deg: {:.7f}\n"
+      "  ellipsoid_height: {:.2f}\n"
+      "  # Views and legs stay inside of this; make it what you are allowed to fly in.\n"
+      "  geofence: [[{:g}, {:g}], [{:g}, {:g}], [{:g}, {:g}], [{:g}, {:g}]]\n"
+      "  highest_height: {:g}  # z; over the ground here\n",
+      values.origin.latitude_deg, values.origin.longitude_deg, values.origin.height, low.x(),
+      low.y(), high.x(), low.y(), high.x(), high.y(), low.x(), high.y(), high.z());
+}
+
+std::string flight_section(const MissionValues& values) {
+  std::string text = fmt::format(
+      "flight:\n"
+      "  vehicle: {}\n"
+      "  clearance: {:g}  # least distance of the vehicle's centre from anything\n",
+      quoted(values.vehicle), values.clearance);
+  if (values.pad) {
+    text += fmt::format(
+        "  # Where it takes off and lands; go and see that it is free, and the air over it.\n"
+        "  takeoff: {}\n",
+        vector_text(*values.pad));
+  }
+  return text +
+         fmt::format(
+             "  # In this box nothing is free before it is measured. Outside of it you vouch "
+             "for the air, but\n"
+             "  # for what prior files have there: widen it over trees, wires and cranes.\n"
+             "  unknown_box: {{min: {}, max: {}}}\n",
+             vector_text(values.unknown.min()), vector_text(values.unknown.max()));
+}
+
+std::string planner_section(const MissionValues& values) {
+  const double distance = values.registration_distance;
+  return fmt::format(
+      "sensor:  # a depth camera; `skycap check` says what it resolves\n"
+      "  width: 320\n"
+      "  height: 240\n"
+      "  max_range: {:g}  # metres\n"
+      "  noise: {{sigma: 0.02}}  # metres, one standard deviation\n"
+      "planner:\n"
+      "  view_distance: {:g}  # from which surfaces are looked at\n"
+      "  density: {:.3g}  # points a square metre, wanted everywhere\n"
+      "  resolution_radius: {:g}  # in which they are counted\n"
+      "  spacing: {:g}  # points nearer to each other than this are not kept\n"
+      "evaluation:\n"
+      "  registration_distance: {:g}  # a surface is covered with a point so near to it\n"
+      "limits:\n"
+      "  max_views: 150  # the survey ends before, when nothing is left to see\n",
+      4.0 * values.view_distance, values.view_distance, 0.36 / (distance * distance),
+      2.0 * distance, 0.5 * distance, distance);
+}
+
+}  // namespace
+
+std::string mission_text(const MissionValues& values) {
+  const std::string name = values.file.stem().string();
+  return fmt::format(
+             "# A first mission, proposed by `skycap site`. It runs as it is; what the files do "
+             "not say is a guess,\n"
+             "# so read every line of it before you fly. `skycap check` says what the files hold.\n"
+             "name: {}\n"
+             "# A dry run: the target stands in for what there is. Leave `scene` out for a live "
+             "survey.\n"
+             "scene: {{model: prior, ground: true}}\n",
+             quoted(name)) +
+         prior_section(values) + site_section(values) + flight_section(values) +
+         planner_section(values);
+}
+
+}  // namespace skycap::missions::site

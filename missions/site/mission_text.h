@@ -1,0 +1,30 @@
+/// Mission files with a word on each value.
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <Eigen/Core>
+#include <Eigen/Geometry>
+
+#include "flight/export/geodesy.h"
+#include "missions/prior/source.h"
+
+namespace skycap::missions::site {
+
+/// What a first mission says; places in its frame, in metres.
+struct MissionValues {
+  std::filesystem::path file;  ///< that the text is for: it names others as from its folder
+  std::string vehicle;
+  std::vector<prior::Source> sources;
+  flight::GeodeticPoint origin;
+  Eigen::AlignedBox3d unknown, fence{};
+  std::optional<Eigen::Vector3d> pad{};
+  double clearance = 0.0, registration_distance = 0.0, view_distance = 0.0;
+};
+
+std::string mission_text(const MissionValues& values);
+
+}  // namespace skycap::missions::site
