@@ -1,8 +1,12 @@
 """Pages with little, much or foreign things in them, and those of other verbs."""
 
+import array
 import json
 import math
+import os
 import pathlib
+import signal
+import subprocess
 import tempfile
 import time
 import unittest
@@ -52,6 +56,77 @@ class OtherPagesTest(unittest.TestCase):
         run("view", str(self.folder / "mission.yaml"), "--out", str(self.folder / "m.html"))
         self.assertIn("before", self.shows(self.folder / "m.html"))
 
+    def test_a_file_with_a_hostile_name(self):
+        cloud = self.folder / "<img src=x>'\".xyz"
+        cloud.write_text("0 0 0\n1 0 0\n0 1 0\n")
+        run("view", str(cloud))
+        page = Page(cloud.with_suffix(".html"))
+        try:
+            self.assertIsNone(page.failure)
+            self.assertEqual(page.get("document.querySelector('h1').textContent"), cloud.name)
+            self.assertEqual(page.all("img"), [])
+            self.assertEqual(page.complaints(), [])
+        finally:
+            page.close()
+
+    def test_a_cloud_of_one_point(self):
+        """Which has no spacing, and so no density."""
+        cloud = self.folder / "one.xyz"
+        cloud.write_text("1 2 3\n")
+        run("view", str(cloud))
+        page = Page(self.folder / "one.html")
+        try:
+            self.assertIsNone(page.failure)
+            self.assertIn("1 point", page.get("document.querySelector('.facts').textContent"))
+            page.browser.execute_script("window.shown.panel.set_colour('density')")
+            self.assertEqual(page.get("window.shown.clouds.measured.density[0]"), 0)
+            self.assertEqual(page.pixels()["error"], 0)
+            self.assertEqual(page.complaints(), [])
+        finally:
+            page.close()
+
+    def test_ten_million_points(self):
+        count, layers = 100_000, 100
+        one = array.array("f", [0.0]) * (3 * count)
+        one[0::3] = array.array("f", (10 * math.cos(i / 1000 * math.tau) for i in range(count)))
+        one[1::3] = array.array("f", (10 * math.sin(i / 1000 * math.tau) for i in range(count)))
+        with open(self.folder / "many.ply", "wb") as file:
+            file.write(f"ply\nformat binary_little_endian 1.0\nelement vertex {count * layers}\n"
+                       "property float x\nproperty float y\nproperty float z\nend_header\n".encode())
+            for layer in range(layers):
+                one[2::3] = array.array("f", (0.0005 * (layer + layers * (i // 1000)) for i in range(count)))
+                one.tofile(file)
+        started = time.monotonic()
+        run("view", str(self.folder / "many.ply"))
+        print(f"10 million points: written in {time.monotonic() - started:.1f} s")
+        page = Page(self.folder / "many.html")
+        try:
+            self.assertIsNone(page.failure)
+            page.tell_first_frame("10 million points")
+            self.assertEqual(page.get("window.shown.data.clouds.measured.of"), 10_000_000)
+            self.assertEqual(page.get("window.shown.clouds.measured.count"), 1_000_000)
+            self.assertGreater(page.pixels()["colours"], 100)
+            self.assertEqual(page.complaints(), [])
+        finally:
+            page.close()
+
+    def test_an_interrupted_survey(self):
+        mission = self.folder / "mission.yaml"
+        mission.write_text(MISSION.replace("max_views: 12", "max_views: 400")
+                                  .replace("density: 100", "density: 1000") % "stopped")
+        survey = subprocess.Popen(
+            [os.environ["PROGRAM"], "plan", str(mission), "--out", str(self.folder / "out"), "--verbose"],
+            stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True)
+        for line in survey.stderr:
+            if line.split()[:1] == ["2"]:  # the row of the third view
+                survey.send_signal(signal.SIGINT)
+                break
+        survey.stderr.read()
+        self.assertEqual(survey.wait(), 1)
+        survey.stderr.close()
+        page = self.shows(self.folder / "out" / "report.html")
+        self.assertIn("it was interrupted", page)
+
     def test_an_empty_survey(self):
         results = plan(self.folder, MISSION % "nothing", "--max-views", "2")
         summary = json.loads((results / "summary.json").read_text())
@@ -72,6 +147,7 @@ class OtherPagesTest(unittest.TestCase):
         page = Page(results / "report.html")
         try:
             self.assertIsNone(page.failure)
+            page.tell_first_frame("1 million points of 2 million")
             self.assertEqual(page.get("window.shown.clouds.measured.count"), 1_000_000)
             self.assertEqual(page.get("window.shown.data.clouds.measured.of"), 2_000_000)
             self.assertGreater(page.pixels()["colours"], 500)
@@ -146,16 +222,26 @@ scan: {sensor: %s, frame_period: 1.0, navigation: {horizontal_sigma: 0.2},
                 page.close()
 
     def test_a_survey_that_goes_on(self):
-        """Its page is read again when the next scan is in, and stays as it was turned."""
+        """Its page is read again when the next scan is in, and stays as it was looked at, until the
+        survey has ended by itself and is finished."""
         mission = self.folder / "mission.yaml"
         mission.write_text("".join(line for line in (MISSION % "live").splitlines(True)
-                                   if not line.startswith("flight:")))
+                                   if not line.startswith("flight:"))
+                           .replace("max_views: 12", "max_views: 4"))
         survey = self.folder / "survey"
         call = ["next", str(mission), "--survey", str(survey), "--quiet", "--json"]
         answer = json.loads(run(*call).stdout)
         page = None
+        # What keeps the page from being read again, and what ends that.
+        follow = "document.getElementById('follow')"
+        replay = "document.getElementById('replay')"
+        slide = "(%s.value = '%d', %s.dispatchEvent(new Event('input')))"
+        at_rest = {2: (slide % (replay, 0, replay), slide % (replay, 1, replay)),
+                   3: (f"({follow}.click(), {follow}.textContent.startsWith('paused'))", f"{follow}.click()")}
         try:
-            for number in range(3):
+            for number in range(4):
+                if number in at_rest:
+                    self.wait_for(page, at_rest[number][0])
                 self.measure(call, answer["view"], number)
                 if page is None:
                     page = Page(survey / "report.html")
@@ -163,11 +249,20 @@ scan: {sensor: %s, frame_period: 1.0, navigation: {horizontal_sigma: 0.2},
                     page.browser.execute_script("""
                         const { panel } = window.shown;
                         panel.viewer.look("N", false);
-                        panel.set_colour("height");""")
+                        panel.set_colour("height");
+                        panel.set_layers(["measured", "views", "missing"]);
+                        delete panel.viewer.layers.views;  // as if it came later""")
                     turned = page.get("window.shown.panel.viewer.camera.position.toArray()")
+                if number in at_rest:
+                    time.sleep(2 * 5)  # twice the page's reading_period
+                    self.assertIn(f"{number} scans so far", page.get("document.body.innerText"))
+                    page.browser.execute_script(at_rest[number][1])
                 self.wait_for(page, f"document.body.innerText.includes('{number + 1} scan')")
                 answer = json.loads(run(*call).stdout)
-            self.wait_for(page, "window.shown")
+            self.assertEqual(answer["state"], "view_limit")
+            self.wait_for(page, "document.body.innerText.includes('skycap finish makes the package')")
+            self.assertEqual(page.get("""["ground", "views"].map((name) =>
+                window.shown.panel.viewer.layers[name].visible)"""), [False, True])
             self.assertEqual(page.get("document.getElementById('colour').value"), "height")
             for now, before in zip(page.get("window.shown.panel.viewer.camera.position.toArray()"), turned):
                 self.assertAlmostEqual(now, before, 3)

@@ -23,6 +23,7 @@ class ReportTest(unittest.TestCase):
         (cls.results / "summary.json").write_text(json.dumps(cls.summary))
         run("report", str(cls.results))
         cls.page = Page(cls.results / "report.html")
+        cls.page.tell_first_frame(f"{cls.summary['points']} points")
 
     @classmethod
     def tearDownClass(cls):
@@ -101,61 +102,131 @@ class ReportTest(unittest.TestCase):
                 select.value = arguments[0];
                 select.dispatchEvent(new Event("change"));""", option)
             self.assertGreater(page.pixels()["colours"], 100, option)
-        for button in page.all("[data-look]"):
-            button.click()
-            self.assertLess(page.pixels()["most"], 0.999)
+        self.look_around()
         for box in page.all("[data-layer]"):
+            layer = f"window.shown.panel.viewer.layers['{box.get_attribute('data-layer')}'].visible"
             before = box.is_selected()
+            self.assertEqual(page.get(layer), before)
             box.click()
             self.assertNotEqual(box.is_selected(), before)
+            self.assertNotEqual(page.get(layer), before)
             box.click()
-        page.browser.execute_script("""
-            const slider = document.getElementById("replay");
-            slider.value = 0;
-            slider.dispatchEvent(new Event("input"));""")
-        self.assertIn("view 0 of", page.all(".now")[0].text)
-        page.all("#play")[0].click()
-        page.all("#play")[0].click()
-        page.browser.execute_script("""
-            const slider = document.getElementById("replay");
-            slider.value = slider.max;
-            slider.dispatchEvent(new Event("input"));""")
+            self.assertEqual(page.get(layer), before)
+        self.replay()
         for row in page.all("tr.pick")[:2]:
             page.browser.execute_script("arguments[0].click()", row)
         page.browser.execute_script("window.shown.panel.tell_view(1)")
         self.assertIn("View 1", page.all(".card h3")[0].text)
         page.all(".card .close")[0].click()
         self.assertEqual(page.all(".card"), [])
+        self.click_a_view_and_a_point()
         for summary in page.all("details summary"):
             page.browser.execute_script("arguments[0].click()", summary)
         page.browser.execute_script("dispatchEvent(new Event('beforeprint'))")
         self.assertEqual(len(page.all(".pictures img")), 2)
         self.assertEqual(page.complaints(), [])
 
+    def look_around(self):
+        """Each button leads to where it says that it looks from."""
+        page = self.page
+        page.browser.execute_cdp_cmd("Emulation.setEmulatedMedia", {"features": [
+            {"name": "prefers-reduced-motion", "value": "reduce"}]})  # at once
+        seen_from = {"N": (1, 1), "E": (0, 1), "S": (1, -1), "W": (0, -1), "top": (2, 1)}
+        for button in page.all("[data-look]"):
+            button.click()
+            self.assertLess(page.pixels()["most"], 0.999)
+            away = page.get("""(({ camera, controls }) => camera.position.clone().sub(controls.target)
+                .normalize().toArray())(window.shown.panel.viewer)""")
+            side = button.get_attribute("data-look")
+            if side in seen_from:
+                axis, sign = seen_from[side]
+                self.assertGreater(sign * away[axis], 0.9, side)
+            else:
+                self.assertTrue(away[0] < 0 and away[1] < 0 < away[2], side)
+        page.browser.execute_cdp_cmd("Emulation.setEmulatedMedia", {"features": []})
+
+    def replay(self):
+        page = self.page
+        slide = """
+            const slider = document.getElementById("replay");
+            slider.value = %s;
+            slider.dispatchEvent(new Event("input"));"""
+        page.browser.execute_script(slide % "0")
+        self.assertIn("view 0 of", page.all(".now")[0].text)
+        button = page.all("#play")[0]
+        self.assertEqual(button.text, "replay")
+        button.click()
+        self.assertEqual(button.text, "pause")
+        page.wait("new Promise((done) => setTimeout(done, 2000))")
+        button.click()
+        self.assertEqual(button.text, "replay")
+        now = int(page.get("document.getElementById('replay').value"))
+        self.assertGreater(now, 0)
+        self.assertIn(f"view {now} of", page.all(".now")[0].text)
+        page.browser.execute_script(slide % "slider.max")
+
+    def click_a_view_and_a_point(self):
+        """With the mouse, where they are drawn."""
+        page = self.page
+        page.browser.execute_script("window.shown.panel.viewer.look('overview', false)")
+        view, *place = page.get("""(() => {
+            const { viewer, canvas } = window.shown.panel;
+            viewer.draw();
+            const views = window.shown.data.summary.per_view;
+            for (let i = 0; i < views.length; ++i) {
+              const { x, y } = viewer.on_screen(new THREE.Vector3(...views[i].position));
+              if (x > 0 && y > 0 && x < canvas.clientWidth && y < canvas.clientHeight &&
+                  viewer.view_at(x, y) === i) return [i, x, y];
+            } })()""")
+        page.click_canvas(*place)
+        self.assertEqual(page.all(".card h3")[0].text, f"View {view}")
+        page.all(".card .close")[0].click()
+        page.click("[data-layer='views']")
+        x, y = page.get("[0, 1].map((i) => window.shown.panel.canvas[i ? 'clientHeight' : 'clientWidth'] / 2)")
+        page.click_canvas(x, y)
+        self.assertEqual(page.all(".card h3")[0].text, "Point")
+        told = [float(part) for part in page.all(".card dd")[0].text.split(",")]
+        off = page.browser.execute_script("""
+            const { viewer } = window.shown.panel, [told, x, y] = arguments;
+            const seen = viewer.on_screen(new THREE.Vector3(...told));
+            return Math.hypot(seen.x - x, seen.y - y);""", told, x, y)
+        self.assertLess(off, 10)  # within reach of the mouse, told to a centimetre
+        page.all(".card .close")[0].click()
+        page.click("[data-layer='views']")
+
     def test_8_measures_a_distance(self):
         page = self.page
         page.browser.execute_script("window.shown.panel.viewer.look('S', false)")
         page.all("#measure")[0].click()
+        # Two points with nothing in front of them.
         places = page.get("""(() => {
-            const { viewer } = window.shown.panel, { positions, count } = viewer.main, out = [];
+            const { viewer } = window.shown.panel, { positions, count } = viewer.main, found = [];
             viewer.camera.updateMatrixWorld();
-            for (const i of [0, count - 1]) {
-              const seen = viewer.on_screen(new THREE.Vector3(...positions.subarray(3 * i, 3 * i + 3)));
-              out.push([seen.x, seen.y]);
+            for (let i = 0; i < count && found.length < 2; i += 7) {
+              const place = Array.from(positions.subarray(3 * i, 3 * i + 3));
+              const { x, y } = viewer.on_screen(new THREE.Vector3(...place)), hit = viewer.point_at(x, y);
+              const is_far = !found.length || Math.hypot(...place.map((v, k) => v - found[0].place[k])) > 3;
+              if (hit && hit.name === "measured" && hit.index === i && is_far) found.push({ x, y, place });
             }
-            return out; })()""")
-        for x, y in places:
-            page.browser.execute_script("window.shown.panel.click(arguments[0], arguments[1])", x, y)
+            return found; })()""")
+        for place in places:
+            page.click_canvas(place["x"], place["y"])
         self.assertIn("Distance", page.all(".card h3")[0].text)
+        told = [float(value.text.replace("\u2009", "").split()[0]) for value in page.all(".card dd")]
+        one, other = (place["place"] for place in places)
+        self.assertAlmostEqual(told[0], math.dist(one, other), delta=0.006)  # of two decimals
+        self.assertAlmostEqual(told[1], math.dist(one[:2], other[:2]), delta=0.006)
+        self.assertAlmostEqual(told[2], other[2] - one[2], delta=0.006)
         page.all("#measure")[0].click()
+        self.assertEqual(page.all(".card"), [])
 
     def test_9_works_in_the_hand(self):
         page = Page(self.results / "report.html", 390, 844)
         try:
             self.assertIsNone(page.failure)
             self.assertGreater(page.pixels()["colours"], 100)
-            self.assertLessEqual(page.get("document.documentElement.scrollWidth"),
-                                 page.get("innerWidth"))
+            self.assertEqual(page.get("document.documentElement.clientWidth"), 390)
+            self.assertEqual(page.get("document.documentElement.scrollWidth"), 390)
             self.assertEqual(page.complaints(), [])
         finally:
             page.close()

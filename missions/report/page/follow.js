@@ -20,7 +20,7 @@ function remember(skycap) {
     const { camera, controls, layers } = panel.viewer;
     Object.assign(state, { position: camera.position.toArray(), target: controls.target.toArray(),
       colour: panel.viewer.mode,
-      layers: Object.entries(layers).filter(([, layer]) => layer.visible).map(([name]) => name) });
+      layers: Object.fromEntries(Object.entries(layers).map(([name, layer]) => [name, layer.visible])) });
   }
   try {
     sessionStorage.setItem(memory_name, JSON.stringify(state));
@@ -35,7 +35,10 @@ function restore(skycap, state) {
   if (panel && state.position) {
     panel.viewer.move_to(vector(state.position), vector(state.target), false);
     panel.set_colour(state.colour);
-    panel.set_layers(state.layers);
+    // Layers that were not there before are shown as a page that is new shows them.
+    const is_shown = { ...state.layers };
+    for (const [name, layer] of Object.entries(panel.viewer.layers)) is_shown[name] = is_shown[name] ?? layer.visible;
+    panel.set_layers(Object.keys(is_shown).filter((name) => is_shown[name]));
   }
   scrollTo(0, state.top);
 }
@@ -43,7 +46,7 @@ function restore(skycap, state) {
 /// Reads the page again and again, but not while somebody is at it.
 function follow(skycap, started) {
   const { data } = skycap;
-  if (!data.live || !data.live.position) return;
+  if (!data.live) return;
   restore(skycap, remembered());
   const period = Math.max(1000 * reading_period, 4 * (performance.now() - started));
   let touched = -Infinity, is_followed = true;
@@ -51,7 +54,7 @@ function follow(skycap, started) {
     addEventListener(event, () => { touched = performance.now(); }, { capture: true, passive: true });
   }
   const is_at_rest = () => !document.hidden && performance.now() - touched > period &&
-    !(skycap.panel && (skycap.panel.card || skycap.panel.timer || skycap.panel.measured));
+    !(skycap.panel && skycap.panel.is_in_use());
   const button = element("button", { type: "button", id: "follow", class: "follow", onclick: () => {
     is_followed = !is_followed;
     say();

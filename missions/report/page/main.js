@@ -36,7 +36,7 @@ function head(data) {
     parts.push(element("div", { class: "verdict " + verdict.light },
       verdict.answer + ": " + verdict.because));
     parts.push(element("div", { class: "lights" }, verdict.lights.map((light) => element("div", { class: "light " + light.light },
-      element("b", { "data-light": light.figure }, shown(light.value, light.form)),
+      element("b", { "data-figure": light.figure, "data-form": light.form }, shown(light.value, light.form)),
       element("span", { class: "name" }, light.name),
       light.rule ? element("span", { class: "rule" }, light.rule) : null))));
   }

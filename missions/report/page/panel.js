@@ -134,11 +134,15 @@ class Panel {
         low: shown(asked, "metres"), high: "from " + shown(asked + told_apart, "metres") }));
     }
     const scene = this.data.scene || {};
-    const roles = new Set([...(scene.volumes || []), ...(scene.priors || [])].map((one) => one.role));
+    const is_drawn = (prior) => prior.corners.length > 0, priors = scene.priors || [];
+    const roles = new Set([...(scene.volumes || []), ...priors.filter(is_drawn)].map((one) => one.role));
     for (const role of roles) {
       const look = volume_looks[role], colour = new THREE.Color(look.colour);
       rows.push(element("div", { class: "row" },
         swatch([255 * colour.r, 255 * colour.g, 255 * colour.b], "dot"), look.name));
+    }
+    for (const prior of priors.filter((one) => !is_drawn(one))) {
+      rows.push(element("div", { class: "row" }, prior.name + " has too many triangles to be drawn"));
     }
     rows.push(element("div", { class: "row hint" }, this.viewer.layers.views
       ? "click a view or a point for its figures" : "click a point for its place"));
@@ -241,6 +245,11 @@ class Panel {
       new THREE.MeshBasicMaterial({ color: 0xffffff }));
     ball.position.copy(vector(place));
     return ball;
+  }
+
+  /// Whether there is something that another look at the survey would throw away.
+  is_in_use() {
+    return this.card || this.timer || this.measured || (this.slider && this.slider.value !== this.slider.max);
   }
 
   measure(is_on) {

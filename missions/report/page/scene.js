@@ -2,7 +2,7 @@
 
 const layer_names = {
   measured: "points", missing: "missing", unreachable: "out of reach", route: "route", clearance: "clearance", views: "views", next: "next view",
-  volumes: "volumes", ground: "ground",
+  volumes: "volumes", priors: "prior data", ground: "ground",
 };
 
 /// The box of all that belongs to the survey.
