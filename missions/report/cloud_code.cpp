@@ -77,6 +77,13 @@ void sort_by_key(std::vector<Entry>& entries, std::span<const Eigen::Vector3f> p
   }
 }
 
+std::vector<Entry> sorted_entries(std::span<const Eigen::Vector3f> positions, const Grid& grid) {
+  std::vector<Entry> entries(positions.size());
+  for (std::size_t i = 0; i < entries.size(); ++i) entries[i].index = static_cast<std::uint32_t>(i);
+  sort_by_key(entries, positions, grid);
+  return entries;
+}
+
 /// Evenly along the list.
 void thin(std::vector<Entry>& entries, std::size_t most) {
   if (entries.size() <= most) return;
@@ -108,6 +115,10 @@ std::vector<std::uint64_t> keys_of(std::span<const Entry> entries) {
   keys.reserve(entries.size());
   for (const Entry& entry : entries) keys.push_back(entry.key);
   return keys;
+}
+
+double spacing_in(const Grid& grid, std::span<const Entry> entries) {
+  return entries.size() > 1 ? spacing_of_keys(keys_of(entries), most_bits) * grid.step : 0.0;
 }
 
 /// What the places of a cell take: of all cells that have points.
@@ -176,15 +187,18 @@ double spacing_of_keys(std::span<const std::uint64_t> keys, int bits) {
   return std::exp2(bits);
 }
 
+double spacing_of(std::span<const Eigen::Vector3f> positions) {
+  const Grid grid = finest_grid(positions);
+  return spacing_in(grid, sorted_entries(positions, grid));
+}
+
 CloudCode encode_cloud(std::span<const Eigen::Vector3f> positions,
                        std::span<const CloudAttribute> attributes, std::size_t most_points) {
   Grid grid = finest_grid(positions);
-  std::vector<Entry> entries(positions.size());
-  for (std::size_t i = 0; i < entries.size(); ++i) entries[i].index = static_cast<std::uint32_t>(i);
-  sort_by_key(entries, positions, grid);
+  std::vector<Entry> entries = sorted_entries(positions, grid);
   thin(entries, most_points);
   CloudCode code{.points = entries.size(), .of = positions.size(), .origin = grid.origin};
-  if (entries.size() > 1) code.spacing = spacing_of_keys(keys_of(entries), most_bits) * grid.step;
+  code.spacing = spacing_in(grid, entries);
   if (const double step = code.spacing / 8.0; step > grid.step) {
     grid.step = step;
     sort_by_key(entries, positions, grid);

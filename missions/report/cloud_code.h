@@ -36,7 +36,7 @@ struct CloudCode {
   int bits = 1;                                      ///< of each of a cell's three indices
   Eigen::Vector3d origin = Eigen::Vector3d::Zero();  ///< the grid's lowest corner [m]
   double step = 1.0;     ///< a cell's side: a point reads back as its cell's middle [m]
-  double spacing = 0.0;  ///< how far apart the points are, see spacing_of_keys() [m]
+  double spacing = 0.0;  ///< how far apart the points are, see spacing_of() [m]
   struct Attribute {
     std::string name;
     std::size_t values = 1;  ///< they are 0, 1, ...; more than 256 take two byte planes
@@ -51,6 +51,9 @@ struct CloudCode {
 /// be finite.
 CloudCode encode_cloud(std::span<const Eigen::Vector3f> positions,
                        std::span<const CloudAttribute> attributes, std::size_t most_points);
+
+/// About how far apart the points of a surface are [m]; 0 of fewer than two.
+double spacing_of(std::span<const Eigen::Vector3f> positions);
 
 /// The side of the cubes that hold two points each on average, over the square root of two: about
 /// the distance of neighbours on a surface. `keys` ascending, of `bits` bits a coordinate; in

@@ -5,23 +5,12 @@
 
 #include <nlohmann/json.hpp>
 
-#include "geometry/error.h"
 #include "missions/report/page.h"
+#include "missions/report/verdict.h"
 
 namespace skycap::missions::report {
-namespace {
 
 using Json = nlohmann::ordered_json;
-
-[[noreturn]] void refuse(const std::filesystem::path& file, const std::string& why) {
-  throw Error(ErrorKind::bad_file, file.string() + ": is not as skycap wrote it (" + why + ")");
-}
-
-std::string counted(std::size_t count, const std::string& word) {
-  return std::to_string(count) + " " + word + (count == 1 ? "" : "s");
-}
-
-}  // namespace
 
 std::string benchmark_page(const ResultFinder& results) {
   const std::filesystem::path file = results("results.json");
@@ -44,7 +33,7 @@ std::string benchmark_page(const ResultFinder& results) {
         {"files", files_json({"results.json", "table1.csv", "trials.csv", "report.md"}, results)}};
     return page_text(data.at("title"), data, {});
   } catch (const Json::exception& error) {
-    refuse(file, error.what());
+    refuse_results(file, error.what());
   }
 }
 
@@ -62,15 +51,14 @@ std::string trials_page(const ResultFinder& results) {
          {"planner " + summary.at("planner").get<std::string>(),
           "first seed " + std::to_string(summary.at("first_seed").get<std::uint64_t>())}},
         {"verdict",
-         {{"answer", is_whole ? "complete" : "incomplete"},
-          {"because", std::to_string(done) + " of " + counted(asked, "trial")},
-          {"light", is_whole ? "green" : "red"},
-          {"lights", Json::array()}}},
+         json_of(Verdict{.is_complete = is_whole,
+                         .because = std::to_string(done) + " of " + counted(asked, "trial"),
+                         .lights = {}})},
         {"summary", summary},
         {"files", files_json({"trials.json", "trials.csv"}, results)}};
     return page_text(summary.at("mission").get<std::string>(), data, {});
   } catch (const Json::exception& error) {
-    refuse(file, error.what());
+    refuse_results(file, error.what());
   }
 }
 

@@ -3,12 +3,39 @@
 #include <algorithm>
 
 #include "geometry/error.h"
+#include "geometry/io/file.h"
 #include "missions/package/package.h"
 #include "missions/report/comparison_page.h"
 #include "missions/report/scan_page.h"
 #include "missions/report/survey_report.h"
 
 namespace skycap::missions::report {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Those whose results are there.
+std::vector<ResultPage> pages_in(const fs::path& folder) {
+  std::vector<ResultPage> found;
+  for (const ResultPage& page : result_pages()) {
+    if (is_there(folder / page.results)) found.push_back(page);
+  }
+  return found;
+}
+
+[[noreturn]] void refuse_folder(const fs::path& folder) {
+  std::string names;
+  for (const ResultPage& page : result_pages()) {
+    names += (names.empty() ? "" : ", ") + page.results;
+  }
+  throw Error(ErrorKind::bad_file, folder.string() +
+                                       ": has no results to show; name a folder that plan, scan, "
+                                       "benchmark or finish wrote, with one of " +
+                                       names);
+}
+
+}  // namespace
 
 const std::vector<ResultPage>& result_pages() {
   static const std::vector<ResultPage> pages = {
@@ -21,18 +48,27 @@ const std::vector<ResultPage>& result_pages() {
   return pages;
 }
 
-std::vector<ResultPage> pages_of(const std::filesystem::path& folder) {
-  std::vector<ResultPage> found;
-  std::string names;
-  for (const ResultPage& page : result_pages()) {
-    if (is_there(folder / page.results)) found.push_back(page);
-    names += (names.empty() ? "" : ", ") + page.results;
+std::vector<MadePage> made_pages(const fs::path& folder, std::size_t most_points,
+                                 const std::optional<fs::path>& out) {
+  geometry::finish_commit(folder);
+  const std::vector<ResultPage> found = pages_in(folder);
+  const fs::path kept = folder / package::report_name;
+  if (found.empty() && is_there(kept)) {
+    if (!out) return {{kept, std::nullopt}};
+    return {{*out, geometry::read_file(kept)}};
   }
-  if (!found.empty()) return found;
-  throw Error(ErrorKind::bad_file, folder.string() +
-                                       ": has no results to show; name a folder that plan, scan, "
-                                       "benchmark or finish wrote, with one of " +
-                                       names);
+  if (found.empty()) refuse_folder(folder);
+  if (out && found.size() > 1) {
+    throw Error(ErrorKind::bad_usage,
+                folder.string() +
+                    ": has several pages; leave out --out, or move the results of one of them to a "
+                    "folder of their own");
+  }
+  std::vector<MadePage> pages;
+  for (const ResultPage& page : found) {
+    pages.push_back({out.value_or(folder / page.name), page.make(results_in(folder), most_points)});
+  }
+  return pages;
 }
 
 std::optional<std::string> stage_page(const std::string& results, bool is_wanted,

@@ -1,6 +1,7 @@
 /// Which pages a folder of results has, by what lies in it.
 #pragma once
 
+#include <filesystem>
 #include <optional>
 #include <string>
 #include <vector>
@@ -20,8 +21,17 @@ struct ResultPage {
 /// A survey, its trials, a comparison, a scan.
 const std::vector<ResultPage>& result_pages();
 
-/// Those whose results are there. Throws Error{bad_file} if there are none.
-std::vector<ResultPage> pages_of(const std::filesystem::path& folder);
+/// A page and where it belongs.
+struct MadePage {
+  std::filesystem::path file;
+  std::optional<std::string> text;  ///< nothing: it is there as it should be
+};
+
+/// The pages of what a folder holds, of at most so many points, in the folder or at `out`. A live
+/// survey that goes on has the page that its verbs keep. Throws Error{bad_file} if there is nothing
+/// to show, Error{bad_usage} if several pages should be at `out`.
+std::vector<MadePage> made_pages(const std::filesystem::path& folder, std::size_t most_points,
+                                 const std::optional<std::filesystem::path>& out);
 
 /// Stages the page of staged results beside them, if it is wanted; an older one is void in any
 /// case. What cannot be shown, such as a cloud too far from the origin for its file, shall not cost

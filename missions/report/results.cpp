@@ -23,13 +23,26 @@ bool is_there(const fs::path& file) {
   return fs::is_regular_file(file, ignored);
 }
 
+std::string results_text(const fs::path& file) {
+  constexpr std::size_t largest = std::size_t{256} << 20;
+  return geometry::read_file(file, largest);
+}
+
 Json read_results(const fs::path& file) {
-  constexpr std::size_t largest = std::size_t{256} << 20;  // a summary of a million views
-  Json json = geometry::parse_json<Json>(geometry::read_file(file, largest));
+  Json json = geometry::parse_json<Json>(results_text(file));
   if (json.is_object()) return json;
   throw Error(ErrorKind::bad_file, file.string() +
                                        ": is no JSON object, or nested too deep; name a folder of "
                                        "results as skycap wrote it");
+}
+
+void refuse_results(const fs::path& file, std::string_view why) {
+  throw Error(ErrorKind::bad_file,
+              file.string() + ": is not as skycap wrote it (" + std::string(why) + ")");
+}
+
+std::string counted(std::size_t count, std::string_view word) {
+  return std::to_string(count) + " " + std::string(word) + (count == 1 ? "" : "s");
 }
 
 Json files_json(const std::vector<std::string>& names, const ResultFinder& results) {

@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <functional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include <nlohmann/json_fwd.hpp>
@@ -22,8 +23,17 @@ inline constexpr std::size_t default_report_points = 1'000'000;
 
 bool is_there(const std::filesystem::path& file);
 
+/// The text of a JSON file of results, of at most 256 MB: a summary of a million views.
+std::string results_text(const std::filesystem::path& file);
+
 /// The object in a JSON file of results. Throws Error{bad_file} naming the file if it holds none.
 nlohmann::ordered_json read_results(const std::filesystem::path& file);
+
+/// Throws Error{bad_file}: values of the file are missing or of another kind.
+[[noreturn]] void refuse_results(const std::filesystem::path& file, std::string_view why);
+
+/// "1 point", "2 points".
+std::string counted(std::size_t count, std::string_view word);
 
 /// {"name", "bytes", "sha256"} of those that are there, so that whoever has a file can see that it
 /// is the one of the page. Names that lead to other folders are passed over.

@@ -18,6 +18,7 @@
 #include "missions/report/page.h"
 #include "missions/report/point_figures.h"
 #include "missions/report/scene_outline.h"
+#include "missions/report/verdict.h"
 
 namespace skycap::missions::report {
 namespace {
@@ -114,8 +115,7 @@ Shown shown_of(geometry::AttributedCloud& cloud, const std::vector<flight::Timed
   if (is_known && cloud.views.size() == cloud.positions.size()) {
     // A plane through noise needs a few neighbours all around.
     constexpr double spacings = 5.0;
-    const double radius =
-        spacings * encode_cloud(cloud.positions, {}, cloud.positions.size()).spacing;
+    const double radius = spacings * spacing_of(cloud.positions);
     if (radius > 0.0) {
       cloud.normals = package::cloud_normals({cloud.positions, cloud.views}, sensors, radius, 0);
     }
@@ -127,7 +127,7 @@ std::vector<std::string> file_names(const Json& summary) {
   std::vector<std::string> names;
   const Json files = summary.value("files", Json::array());
   for (const Json& file : files) names.push_back(file.at("name").get<std::string>());
-  for (const char* name : {"trajectory.tum", "trajectory_believed.tum", "depth.txt",
+  for (const char* name : {"preview.ply", "trajectory.tum", "trajectory_believed.tum", "depth.txt",
                            "groundtruth.txt", "believed.txt", "camera.json", "frames.rawlog"}) {
     names.emplace_back(name);
   }
@@ -136,24 +136,17 @@ std::vector<std::string> file_names(const Json& summary) {
 
 Json verdict_of(const Json& summary) {
   const bool is_complete = summary.value("complete", false);
-  Json lights = Json::array();
+  Verdict verdict{.is_complete = is_complete,
+                  .because = is_complete ? "the whole route was flown" : "it was interrupted",
+                  .lights = {}};
   const auto add = [&](const char* name, const char* figure, const char* form) {
-    if (!summary.contains(figure)) return;
-    lights.push_back({{"name", name},
-                      {"figure", figure},
-                      {"value", summary[figure]},
-                      {"form", form},
-                      {"light", "none"},
-                      {"rule", ""}});
+    if (summary.contains(figure)) verdict.lights.push_back({name, figure, form, summary[figure]});
   };
   add("Flight", "flight_s", "minutes");
   add("Images", "images", "count");
   add("Shots", "shots", "count");
   add("Points", "points", "count");
-  return {{"answer", is_complete ? "complete" : "incomplete"},
-          {"because", is_complete ? "the whole route was flown" : "it was interrupted"},
-          {"light", is_complete ? "green" : "red"},
-          {"lights", lights}};
+  return json_of(verdict);
 }
 
 /// The viewing angles of a depth camera that camera.json describes.
@@ -213,8 +206,7 @@ std::string scan_page(const ResultFinder& results, std::size_t most_points) {
     return page_text(summary.at("mission").get<std::string>(), data,
                      {{"measured", encode_cloud(cloud.positions, attributes, most_points)}});
   } catch (const Json::exception& error) {
-    throw Error(ErrorKind::bad_file,
-                file.string() + ": is not as skycap scan wrote it (" + error.what() + ")");
+    refuse_results(file, error.what());
   }
 }
 

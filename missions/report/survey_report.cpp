@@ -9,9 +9,7 @@
 #include <nlohmann/json.hpp>
 
 #include "flight/export/geodesy.h"
-#include "geometry/error.h"
 #include "geometry/io/cloud_io.h"
-#include "geometry/io/file.h"
 #include "geometry/io/json.h"
 #include "missions/derived/mission_flight.h"
 #include "missions/file/json_text.h"
@@ -34,8 +32,8 @@ geometry::AttributedCloud cloud_if_there(const fs::path& file) {
 
 /// What the folder holds besides the summary.
 Json files_of(const Json& summary, const ResultFinder& results) {
-  std::vector<std::string> names = {"cloud.ply", "coverage.ply", "views.csv", "trajectory.tum",
-                                    "free_space.bin"};
+  std::vector<std::string> names = {"cloud.ply", "coverage.ply",   "true_coverage.ply",
+                                    "views.csv", "trajectory.tum", "free_space.bin"};
   const auto add_all = [&](const char* path, const char* field) {
     const Json::json_pointer pointer(path);
     if (!summary.contains(pointer) || !summary[pointer].is_array()) return;
@@ -122,8 +120,7 @@ std::string live_page(const file::Mission& mission, const run::SurveyRecord& so_
   Json shown = verdict(summary);
   const bool goes_on = next.view.has_value();
   shown["answer"] = goes_on ? "running" : "over";
-  const std::size_t scans = so_far.views.size();
-  shown["because"] = std::to_string(scans) + (scans == 1 ? " scan" : " scans") + " so far" +
+  shown["because"] = counted(so_far.views.size(), "scan") + " so far" +
                      (goes_on ? "" : "; skycap finish makes the package");
   shown["light"] = "none";
   const Json data = {{"kind", "survey"},
@@ -143,9 +140,8 @@ std::string live_page(const file::Mission& mission, const run::SurveyRecord& so_
 }
 
 std::string survey_report(const ResultFinder& results, std::size_t most_points) {
-  constexpr std::size_t largest = std::size_t{256} << 20;  // a summary of a million views
   const fs::path summary_file = results(package::summary_name);
-  const std::string text = geometry::read_file(summary_file, largest);
+  const std::string text = results_text(summary_file);
   try {
     const package::PackageSummary survey =
         package::parse_package_summary(text, summary_file.string());
@@ -169,8 +165,7 @@ std::string survey_report(const ResultFinder& results, std::size_t most_points) 
         data.at("title"), data,
         {measured_cloud(cloud, states, incidence, most_points), missing_cloud(map, most_points)});
   } catch (const Json::exception& error) {
-    throw Error(ErrorKind::bad_file,
-                summary_file.string() + ": is not a package's summary (" + error.what() + ")");
+    refuse_results(summary_file, error.what());
   }
 }
 

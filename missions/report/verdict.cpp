@@ -12,12 +12,6 @@ using Json = nlohmann::ordered_json;
 /// Coverage from which on a survey counts as done, and from which on as usable.
 constexpr double good_coverage = 0.95, fair_coverage = 0.85;
 
-struct Light {
-  std::string name, figure, form;
-  Json value;
-  std::string light = "none", rule;
-};
-
 Json json_of(const Light& light) {
   return {{"name", light.name}, {"figure", light.figure}, {"value", light.value},
           {"form", light.form}, {"light", light.light},   {"rule", light.rule}};
@@ -34,25 +28,24 @@ Light coverage(const std::string& name, const std::string& figure, const Json& v
   return {name, figure, "share", value, light, "green from 95 %, amber from 85 %"};
 }
 
-void add_coverage(const Json& summary, Json& lights) {
+void add_coverage(const Json& summary, std::vector<Light>& lights) {
   if (const Json believed = at(summary, "/belief/predicted_coverage"); believed.is_number()) {
-    lights.push_back(json_of(
-        coverage("Coverage, as the planner believes", "belief.predicted_coverage", believed)));
+    lights.push_back(
+        coverage("Coverage, as the planner believes", "belief.predicted_coverage", believed));
   }
   if (const Json visible = at(summary, "/coverage_visible"); visible.is_number()) {
-    lights.push_back(
-        json_of(coverage("Coverage of what is visible, true", "coverage_visible", visible)));
+    lights.push_back(coverage("Coverage of what is visible, true", "coverage_visible", visible));
   } else if (const Json all = at(summary, "/coverage"); all.is_number()) {
-    lights.push_back(json_of({"Coverage of the whole surface, true", "coverage", "share", all}));
+    lights.push_back({"Coverage of the whole surface, true", "coverage", "share", all});
   }
 }
 
-void add_flight(const Json& summary, Json& lights) {
+void add_flight(const Json& summary, std::vector<Light>& lights) {
   const Json flight = at(summary, "/flight");
   if (!flight.is_object()) return;
   if (flight.contains("failure")) {
-    lights.push_back(json_of(
-        {"Flight", "flight.failure", "text", "no route", "red", "red: no route could be proven"}));
+    lights.push_back(
+        {"Flight", "flight.failure", "text", "no route", "red", "red: no route could be proven"});
     return;
   }
   const Json clearance = at(summary, "/flight/route/min_clearance_m");
@@ -60,25 +53,23 @@ void add_flight(const Json& summary, Json& lights) {
   if (clearance.is_number() && asked.is_number()) {
     // Floating-point sums of the terms may differ from the bound in the last bits.
     const bool is_kept = clearance.get<double>() >= asked.get<double>() * (1.0 - 1e-9);
-    lights.push_back(
-        json_of({"Least proven clearance", "flight.route.min_clearance_m", "metres", clearance,
-                 is_kept ? "green" : "red", "green from the clearance that was asked for"}));
+    lights.push_back({"Least proven clearance", "flight.route.min_clearance_m", "metres", clearance,
+                      is_kept ? "green" : "red", "green from the clearance that was asked for"});
   }
   if (const Json minutes = at(summary, "/flight/route/duration_s"); minutes.is_number()) {
-    lights.push_back(json_of({"Flight", "flight.route.duration_s", "minutes", minutes}));
+    lights.push_back({"Flight", "flight.route.duration_s", "minutes", minutes});
   }
   double left = std::numeric_limits<double>::infinity();
   const Json sorties = at(summary, "/flight/route/sorties");
   for (const Json& sortie : sorties) left = std::min(left, sortie.value("energy_left_wh", 0.0));
   if (!sorties.empty()) {
-    lights.push_back(json_of({"Sorties, one battery each", "flight.route.sorties.length", "count",
-                              sorties.size(), left >= 0.0 ? "green" : "red",
-                              "green if each lands with its reserve"}));
+    lights.push_back({"Sorties, one battery each", "flight.route.sorties.length", "count",
+                      sorties.size(), left >= 0.0 ? "green" : "red",
+                      "green if each lands with its reserve"});
   }
   const std::size_t missed = at(summary, "/flight/route/unreached").size();
-  lights.push_back(
-      json_of({"Views left out of the flight", "flight.route.unreached.length", "count", missed,
-               missed == 0 ? "green" : "amber", "green if none, else amber"}));
+  lights.push_back({"Views left out of the flight", "flight.route.unreached.length", "count",
+                    missed, missed == 0 ? "green" : "amber", "green if none, else amber"});
 }
 
 /// Why the survey ended, in words.
@@ -95,20 +86,27 @@ std::string reason(const Json& summary) {
 
 }  // namespace
 
-Json verdict(const Json& summary) {
+Json json_of(const Verdict& verdict) {
   Json lights = Json::array();
-  add_coverage(summary, lights);
-  if (const Json views = at(summary, "/views"); views.is_number()) {
-    lights.push_back(json_of({"Views", "views", "count", views}));
-  }
-  add_flight(summary, lights);
-  const bool is_complete = at(summary, "/complete") == Json(true);
-  return {{"answer", is_complete ? "complete" : "incomplete"},
-          {"because", reason(summary)},
-          {"light", is_complete                                                    ? "green"
-                    : summary.value("stop_reason", std::string()) == "interrupted" ? "red"
-                                                                                   : "amber"},
+  for (const Light& light : verdict.lights) lights.push_back(json_of(light));
+  return {{"answer", verdict.is_complete ? "complete" : "incomplete"},
+          {"because", verdict.because},
+          {"light", verdict.is_complete ? "green" : verdict.else_light},
           {"lights", lights}};
+}
+
+Json verdict(const Json& summary) {
+  const bool is_interrupted = summary.value("stop_reason", std::string()) == "interrupted";
+  Verdict verdict{.is_complete = at(summary, "/complete") == Json(true),
+                  .because = reason(summary),
+                  .lights = {},
+                  .else_light = is_interrupted ? "red" : "amber"};
+  add_coverage(summary, verdict.lights);
+  if (const Json views = at(summary, "/views"); views.is_number()) {
+    verdict.lights.push_back({"Views", "views", "count", views});
+  }
+  add_flight(summary, verdict.lights);
+  return json_of(verdict);
 }
 
 }  // namespace skycap::missions::report

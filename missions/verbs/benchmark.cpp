@@ -20,10 +20,10 @@
 #include "missions/derived/resolved_mission.h"
 #include "missions/file/json_text.h"
 #include "missions/file/mission_keys.h"
-#include "missions/report/result_pages.h"
 #include "missions/run/feasibility.h"
 #include "missions/scene/survey_scene.h"
 #include "missions/verbs/verbs.h"
+#include "missions/verbs/write_page.h"
 #include "missions/version.h"
 
 namespace skycap::missions::verbs {
@@ -278,10 +278,9 @@ class Benchmark {
     folder_.write("results.json", benchmark::results_json(cells));
     const std::string markdown = benchmark::report_markdown(cells);
     folder_.write("report.md", markdown);
-    const auto complaint = report::stage_page("results.json", options_.has_report, folder_);
-    folder_.commit();
     progress_.say("");
-    if (complaint) warn(console_, "no report: " + *complaint);
+    write_page("results.json", options_.has_report, folder_, console_);
+    folder_.commit();
     if (options_.is_quiet) return;
     console_.out << markdown << "\nresults: " << folder_.path().string() << "\n" << std::flush;
   }

@@ -13,9 +13,9 @@
 #include "missions/live/server.h"
 #include "missions/package/flight_report.h"
 #include "missions/package/package.h"
-#include "missions/report/result_pages.h"
 #include "missions/report/survey_report.h"
 #include "missions/verbs/verbs.h"
+#include "missions/verbs/write_page.h"
 
 namespace skycap::missions::verbs {
 namespace {
@@ -95,9 +95,8 @@ Finished write_package(const LiveOptions& options, const file::Mission& mission,
   const package::CoverageFigures unknown{record.coverage(), {}, {}};
   const std::optional<package::SurveyMission> flight =
       package::stage_package(mission, record, unknown, mission.threads, folder, console.stop);
-  const auto complaint = report::stage_page(package::summary_name, options.has_report, folder);
+  write_page(package::summary_name, options.has_report, folder, console);
   folder.commit();
-  if (complaint) warn(console, "no report: " + *complaint);
   std::string text =
       fmt::format("{}: {} after {} scans, {} points\n", mission.name,
                   run::name_of(record.stop_reason), record.views.size(), record.cloud.size());

@@ -12,11 +12,11 @@
 #include "missions/package/flight_report.h"
 #include "missions/package/package.h"
 #include "missions/package/target_coverage.h"
-#include "missions/report/result_pages.h"
 #include "missions/run/feasibility.h"
 #include "missions/run/survey_runner.h"
 #include "missions/scene/survey_scene.h"
 #include "missions/verbs/verbs.h"
+#include "missions/verbs/write_page.h"
 
 namespace skycap::missions::verbs {
 namespace {
@@ -77,12 +77,6 @@ std::string summary_text(const file::Mission& mission, const run::SurveyRecord& 
   return text + "  results   " + folder.string() + "\n";
 }
 
-void write_page(const PlanOptions& options, const char* results, geometry::OutputFolder& folder,
-                const Console& console) {
-  const auto complaint = report::stage_page(results, options.has_report, folder);
-  if (complaint) warn(console, "no report: " + *complaint);
-}
-
 int plan_once(const PlanOptions& options, const file::Mission& mission,
               const scene::SurveyScene& scene, geometry::OutputFolder& folder,
               const Console& console) {
@@ -109,7 +103,7 @@ int plan_once(const PlanOptions& options, const file::Mission& mission,
   progress.show(mission.name + ": writing " + folder.path().string());
   const std::optional<package::SurveyMission> flight =
       package::stage_package(mission, record, coverage, mission.threads, folder, console.stop);
-  write_page(options, package::summary_name, folder, console);
+  write_page(package::summary_name, options.has_report, folder, console);
   package::commit_package(record, folder);
   progress.clear();
   if (!options.is_quiet) {
@@ -142,7 +136,7 @@ int plan_trials(const PlanOptions& options, const file::Mission& mission,
   folder.write("trials.csv", benchmark::trials_csv(trials));
   folder.write("trials.json",
                benchmark::trials_json(mission, trials, options.trials, mission.threads));
-  write_page(options, "trials.json", folder, console);
+  write_page("trials.json", options.has_report, folder, console);
   if (trials.size() < options.trials &&
       package::is_complete_result(folder.path() / "trials.json")) {
     folder.move_to("interrupted");  // the trials themselves are kept, and not run again

@@ -25,9 +25,9 @@
 #include "missions/recording/preview.h"
 #include "missions/recording/scan_flight.h"
 #include "missions/recording/scan_runner.h"
-#include "missions/report/result_pages.h"
 #include "missions/scene/scene_source.h"
 #include "missions/verbs/verbs.h"
+#include "missions/verbs/write_page.h"
 
 namespace skycap::missions::verbs {
 namespace {
@@ -73,12 +73,6 @@ void commit_scan(geometry::OutputFolder& folder, bool is_complete) {
     folder.move_to("interrupted");
   }
   folder.commit();
-}
-
-void write_page(const ScanVerbOptions& options, geometry::OutputFolder& folder,
-                const Console& console) {
-  const auto complaint = report::stage_page(scan_name, options.has_report, folder);
-  if (complaint) warn(console, "no report: " + *complaint);
 }
 
 /// Shows how far a scan is, ten times a second at most.
@@ -234,7 +228,7 @@ int scan_with_laser(const ScanVerbOptions& options, const file::Mission& mission
   folder.write("trajectory.tum", sensor_tum(flown.route.carrier, flown.mount.real));
   folder.write("trajectory_believed.tum", sensor_tum(flown.believed, flown.mount.believed));
   folder.write(scan_name, file::json_text(scan_json(mission, recorded, pieces)));
-  write_page(options, folder, console);
+  write_page(scan_name, options.has_report, folder, console);
   commit_scan(folder, recorded.result.is_complete);
   progress.clear();
   if (!options.is_quiet) print(recorded, mission, folder.path(), console.out);
@@ -299,7 +293,7 @@ int scan_with_camera(const ScanVerbOptions& options, const file::Mission& missio
                                            {"points", result.points},
                                            {"simulation_s", time},
                                            {"settings", package::settings_json(mission)}}));
-  write_page(options, folder, console);
+  write_page(scan_name, options.has_report, folder, console);
   commit_scan(folder, is_complete);
   progress.clear();
   if (!options.is_quiet) {

@@ -2,7 +2,6 @@
 
 #include "geometry/error.h"
 #include "geometry/io/file.h"
-#include "geometry/io/output_folder.h"
 #include "missions/derived/mission_flight.h"
 #include "missions/derived/resolved_mission.h"
 #include "missions/plugins/external_program.h"
@@ -16,33 +15,21 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// A page, and where it belongs.
-struct Page {
-  fs::path file;
-  std::string text;
-};
-
-Page page_of_mission(const ViewOptions& options) {
+report::MadePage page_of_mission(const ViewOptions& options) {
   const file::Mission mission = derived::read_mission(options.what, options.overrides);
   const scene::SurveyScene scene(mission, options.what.parent_path());
   const geometry::View first = scene.first_view(mission.seed);
   std::optional<Eigen::Vector3d> pad;
   if (mission.flight.is_flown()) pad = derived::pad_of(mission, first.position);
-  return {fs::path("results") / mission.name / "mission.html",
+  return {options.out.value_or(fs::path("results") / mission.name / "mission.html"),
           report::mission_page(mission, scene.samples().points, pad)};
 }
 
-std::vector<Page> pages_of(const ViewOptions& options) {
+std::vector<report::MadePage> pages_of(const ViewOptions& options) {
   const fs::path& what = options.what;
   std::error_code ignored;
   if (fs::is_directory(what, ignored)) {
-    geometry::finish_commit(what);
-    std::vector<Page> pages;
-    for (const report::ResultPage& page : report::pages_of(what)) {
-      pages.push_back(
-          {what / page.name, page.make(report::results_in(what), report::default_report_points)});
-    }
-    return pages;
+    return report::made_pages(what, report::default_report_points, options.out);
   }
   if (!options.out && !fs::exists(what, ignored)) {
     throw Error(ErrorKind::bad_file, what.string() + ": is not there");
@@ -51,7 +38,7 @@ std::vector<Page> pages_of(const ViewOptions& options) {
   if (ending == ".yaml" || ending == ".yml") return {page_of_mission(options)};
   fs::path file = what;
   file.replace_extension(".html");
-  return {{file, report::cloud_page(what)}};
+  return {{options.out.value_or(file), report::cloud_page(what)}};
 }
 
 /// Whether a browser was told to show the file. Programs without a screen start browsers of text,
@@ -68,14 +55,8 @@ bool is_opened(const fs::path& file) {
 int view(const ViewOptions& options, const Console& console) {
   ProgressLine progress(console, false);
   progress.show("reading " + options.what.string());
-  std::vector<Page> pages = pages_of(options);
-  if (options.out && pages.size() > 1) {
-    throw Error(ErrorKind::bad_usage,
-                options.what.string() + ": has several pages; leave out --out");
-  }
-  for (Page& page : pages) {
-    page.file = options.out.value_or(page.file);
-    geometry::write_file(page.file, page.text);
+  for (const report::MadePage& page : pages_of(options)) {
+    if (page.text) geometry::write_file(page.file, *page.text);
     progress.clear();
     const bool is_shown = is_opened(page.file);
     console.out << (is_shown ? "opened in the browser: " : "open this in a browser: ")

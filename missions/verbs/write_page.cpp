@@ -1,0 +1,13 @@
+#include "missions/verbs/write_page.h"
+
+#include "missions/report/result_pages.h"
+
+namespace skycap::missions::verbs {
+
+void write_page(const std::string& results, bool is_wanted, geometry::OutputFolder& folder,
+                const Console& console) {
+  const auto complaint = report::stage_page(results, is_wanted, folder);
+  if (complaint) warn(console, "no report: " + *complaint);
+}
+
+}  // namespace skycap::missions::verbs

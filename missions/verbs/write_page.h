@@ -1,0 +1,15 @@
+/// The page that a verb leaves beside its other results.
+#pragma once
+
+#include <string>
+
+#include "geometry/io/output_folder.h"
+#include "missions/verbs/console.h"
+
+namespace skycap::missions::verbs {
+
+/// Stages the page of staged results, if it is wanted; warns if it cannot be made.
+void write_page(const std::string& results, bool is_wanted, geometry::OutputFolder& folder,
+                const Console& console);
+
+}  // namespace skycap::missions::verbs
