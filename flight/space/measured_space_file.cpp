@@ -37,13 +37,6 @@ bool read_record(std::istream& stream, Record& record) {
   return bool(stream.read(reinterpret_cast<char*>(&record), sizeof record));
 }
 
-Cell cell_of(std::uint64_t key) {
-  const auto part = [](std::uint64_t bits) {
-    return static_cast<int>(bits & 0x1fffff) - (1 << 20);
-  };
-  return {part(key), part(key >> 21), part(key >> 42)};
-}
-
 }  // namespace
 
 void MeasuredSpace::write(std::ostream& stream) const {

@@ -52,6 +52,7 @@ struct MeasuredSpace::Impl {
   void closest_in(const Segment& piece, Closest& best) const;
   /// The voxels of a block that are not free, or outside of the region occupied.
   Slices blocked(const Cell& cell, const VoxelBlock& block) const;
+  Slices blocked(const Cell& cell) const;  ///< whether it is listed or not
   void closest_in_cube(const Segment& piece, const BoxTest& test, const Cell& cell,
                        const Cube& cube, const VoxelBlock& block, const Slices& blocked,
                        Closest& best) const;

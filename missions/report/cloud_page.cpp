@@ -1,7 +1,8 @@
 #include "missions/report/cloud_page.h"
 
-#include <algorithm>
+#include <array>
 #include <cstdint>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -16,7 +17,42 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-std::string count_text(std::size_t count) { return std::to_string(count) + " points"; }
+using Colour = std::array<std::uint8_t, 3>;
+
+/// Few colours, and which of them each point has.
+struct Palette {
+  std::vector<Colour> colours;
+  std::vector<std::uint16_t> of_points;
+};
+
+/// With the lowest bits of each channel alike.
+Colour rounded(Colour colour, int bits) {
+  for (std::uint8_t& channel : colour) {
+    channel = static_cast<std::uint8_t>(channel >> bits << bits | ((1 << bits) >> 1));
+  }
+  return colour;
+}
+
+/// At most 256, rounded no more than that takes: the page has a byte for each point.
+Palette palette_of(const std::vector<Colour>& colours) {
+  constexpr std::size_t most = 256;
+  for (int bits = 0;; ++bits) {
+    std::map<Colour, std::uint16_t> places;
+    for (std::size_t i = 0; i < colours.size() && places.size() <= most; ++i) {
+      places.emplace(rounded(colours[i], bits), 0);
+    }
+    if (places.size() > most) continue;
+    Palette palette;
+    for (auto& [colour, place] : places) {
+      place = static_cast<std::uint16_t>(palette.colours.size());
+      palette.colours.push_back(colour);
+    }
+    for (const Colour& colour : colours) {
+      palette.of_points.push_back(places.at(rounded(colour, bits)));
+    }
+    return palette;
+  }
+}
 
 }  // namespace
 
@@ -25,9 +61,13 @@ std::string cloud_page(const std::filesystem::path& file) {
   const std::vector<std::uint16_t> views = view_numbers(cloud);
   std::vector<CloudAttribute> attributes;
   if (!views.empty()) attributes.push_back({"view", views});
+  const Palette palette = palette_of(cloud.colours);
+  if (!palette.of_points.empty()) attributes.push_back({"colour", palette.of_points});
   const std::string name = file.filename().string();
-  const Json data = {
-      {"kind", "cloud"}, {"title", name}, {"facts", {count_text(cloud.positions.size())}}};
+  const Json data = {{"kind", "cloud"},
+                     {"title", name},
+                     {"facts", {counted(cloud.positions.size(), "point")}},
+                     {"palette", palette.colours}};
   return page_text(
       name, data, {{"measured", encode_cloud(cloud.positions, attributes, default_report_points)}});
 }

@@ -55,6 +55,7 @@ std::string trials_page(const ResultFinder& results) {
                          .because = std::to_string(done) + " of " + counted(asked, "trial"),
                          .lights = {}})},
         {"summary", summary},
+        {"stop_words", stop_words()},
         {"files", files_json({"trials.json", "trials.csv"}, results)}};
     return page_text(summary.at("mission").get<std::string>(), data, {});
   } catch (const Json::exception& error) {

@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "missions/report/page_parts.h"
+#include "missions/report/point_figures.h"
 #include "missions/report/script_text.h"
 #include "missions/version.h"
 
@@ -66,6 +67,7 @@ struct ConstantParts {
 std::string page_text(const std::string& title, Json data, const std::vector<PageCloud>& clouds) {
   static const ConstantParts constant;
   data["version"] = version;
+  data["scales"] = point_scales();
   data["clouds"] = Json::object();
   std::string blocks;
   for (const PageCloud& cloud : clouds) {

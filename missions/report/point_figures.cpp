@@ -9,6 +9,7 @@
 
 #include "geometry/points/spatial_index.h"
 #include "missions/package/coverage_map.h"
+#include "missions/package/holes.h"
 
 namespace skycap::missions::report {
 namespace {
@@ -137,6 +138,17 @@ std::vector<std::size_t> histogram(std::span<const float> values, double low, do
     ++counts[static_cast<std::size_t>(std::clamp(bin, 0.0, static_cast<double>(bins - 1)))];
   }
   return counts;
+}
+
+nlohmann::ordered_json point_scales() {
+  using enum survey::skycap::MissingReason;
+  nlohmann::ordered_json states = nlohmann::ordered_json::array();
+  for (const auto state : {none, seen_too_thinly, never_seen, unreachable}) {
+    states[static_cast<std::size_t>(state)] = package::name_of(state);
+  }
+  return {{"states", states},
+          {"incidence_step_deg", incidence_step_deg},
+          {"no_incidence", no_incidence}};
 }
 
 nlohmann::ordered_json accuracy_json(std::span<const std::uint16_t> incidence,

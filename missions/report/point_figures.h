@@ -58,6 +58,10 @@ std::vector<float> surface_errors(const geometry::AttributedCloud& cloud,
 std::vector<std::size_t> histogram(std::span<const float> values, double low, double high,
                                    std::size_t bins);
 
+/// What the numbers of points stand for: {"states", "incidence_step_deg", "no_incidence"}, the
+/// states by the words that files have for them.
+nlohmann::ordered_json point_scales();
+
 /// {"incidence_deg", "range_m", "error_m"}: {"low", "high", "counts"} each, without those that
 /// nothing is known of; of all points, not only those that a page shows.
 nlohmann::ordered_json accuracy_json(std::span<const std::uint16_t> incidence,

@@ -1,6 +1,7 @@
 #include "missions/report/survey_report.h"
 
 #include <algorithm>
+#include <fstream>
 #include <optional>
 #include <string_view>
 #include <utility>
@@ -9,6 +10,7 @@
 #include <nlohmann/json.hpp>
 
 #include "flight/export/geodesy.h"
+#include "flight/space/measured_space.h"
 #include "geometry/io/cloud_io.h"
 #include "geometry/io/json.h"
 #include "missions/derived/mission_flight.h"
@@ -98,6 +100,18 @@ PageCloud missing_cloud(const geometry::AttributedCloud& map, std::size_t most_p
   return {"missing", encode_cloud(positions, {&attribute, 1}, most_points)};
 }
 
+/// Where the space ends that was measured to be free: so many faces at most, evenly along a curve
+/// through space.
+PageCloud free_cloud(const fs::path& file) {
+  constexpr std::size_t most_faces = 50'000;
+  std::vector<Eigen::Vector3f> faces;
+  if (is_there(file)) {
+    std::ifstream stream(file, std::ios::binary);
+    faces = flight::MeasuredSpace::read(stream, file.string()).free_boundary();
+  }
+  return {"free", encode_cloud(faces, {}, most_faces)};
+}
+
 /// Half the distance at which pieces of surface hang together reaches from each to the next.
 double reach_of(const Json& summary) {
   const Json::json_pointer link("/surface/link_m");
@@ -107,7 +121,7 @@ double reach_of(const Json& summary) {
 
 }  // namespace
 
-std::string live_page(const file::Mission& mission, const run::SurveyRecord& so_far,
+std::string live_page(const file::Mission& mission, run::SurveyRecord so_far,
                       const NextView& next) {
   constexpr std::size_t most_points = 250'000;
   const package::CoverageFigures unknown{so_far.coverage(), {}, {}};
@@ -115,8 +129,8 @@ std::string live_page(const file::Mission& mission, const run::SurveyRecord& so_
   const auto patches = package::known_surface(so_far, unknown);
   const geometry::AttributedCloud map = package::coverage_map(patches);
   geometry::AttributedCloud cloud;
-  cloud.positions = so_far.cloud.positions;
-  cloud.views = so_far.cloud.views;
+  cloud.positions = std::move(so_far.cloud.positions);
+  cloud.views = std::move(so_far.cloud.views);
   Json shown = verdict(summary);
   const bool goes_on = next.view.has_value();
   shown["answer"] = goes_on ? "running" : "over";
@@ -161,9 +175,9 @@ std::string survey_report(const ResultFinder& results, std::size_t most_points) 
                        {"hole_places", hole_places(summary, survey.mission)},
                        {"accuracy", accuracy_json(incidence, ranges(cloud, survey.views), errors)},
                        {"files", files_of(summary, results)}};
-    return page_text(
-        data.at("title"), data,
-        {measured_cloud(cloud, states, incidence, most_points), missing_cloud(map, most_points)});
+    return page_text(data.at("title"), data,
+                     {measured_cloud(cloud, states, incidence, most_points),
+                      missing_cloud(map, most_points), free_cloud(results("free_space.bin"))});
   } catch (const Json::exception& error) {
     refuse_results(summary_file, error.what());
   }

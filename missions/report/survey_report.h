@@ -28,7 +28,6 @@ struct NextView {
 
 /// The page of a survey that goes on: a browser that shows it reads it again now and then. Shows
 /// fewer points than the page of a finished one, and no incidence, so that it costs little.
-std::string live_page(const file::Mission& mission, const run::SurveyRecord& so_far,
-                      const NextView& next);
+std::string live_page(const file::Mission& mission, run::SurveyRecord so_far, const NextView& next);
 
 }  // namespace skycap::missions::report

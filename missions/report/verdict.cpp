@@ -4,6 +4,10 @@
 #include <limits>
 #include <string>
 
+#include <fmt/format.h>
+
+#include "missions/run/survey_record.h"
+
 namespace skycap::missions::report {
 namespace {
 
@@ -25,7 +29,13 @@ Json at(const Json& summary, const char* path) {
 Light coverage(const std::string& name, const std::string& figure, const Json& value) {
   const double share = value.get<double>();
   const char* light = share >= good_coverage ? "green" : share >= fair_coverage ? "amber" : "red";
-  return {name, figure, "share", value, light, "green from 95 %, amber from 85 %"};
+  return {name,
+          figure,
+          "share",
+          value,
+          light,
+          fmt::format("green from {:.0f} %, amber from {:.0f} %", 100.0 * good_coverage,
+                      100.0 * fair_coverage)};
 }
 
 void add_coverage(const Json& summary, std::vector<Light>& lights) {
@@ -72,18 +82,6 @@ void add_flight(const Json& summary, std::vector<Light>& lights) {
                     missed, missed == 0 ? "green" : "amber", "green if none, else amber"});
 }
 
-/// Why the survey ended, in words.
-std::string reason(const Json& summary) {
-  const std::string stop = summary.value("stop_reason", std::string());
-  if (stop == "complete") return "nothing more is worth a view";
-  if (stop == "view_limit") return "the limit of views came first";
-  if (stop == "distance_limit") return "the limit of distance came first";
-  if (stop == "time_limit") return "the limit of time came first";
-  if (stop == "nowhere_to_go") return "no view that is left can be reached safely";
-  if (stop == "interrupted") return "it was interrupted";
-  return stop;
-}
-
 }  // namespace
 
 Json json_of(const Verdict& verdict) {
@@ -95,10 +93,21 @@ Json json_of(const Verdict& verdict) {
           {"lights", lights}};
 }
 
+Json stop_words() {
+  using enum survey::StopReason;
+  return {{run::name_of(complete), "nothing more is worth a view"},
+          {run::name_of(view_limit), "the limit of views came first"},
+          {run::name_of(distance_limit), "the limit of distance came first"},
+          {run::name_of(time_limit), "the limit of time came first"},
+          {run::name_of(nowhere_to_go), "no view that is left can be reached safely"},
+          {run::name_of(interrupted), "it was interrupted"}};
+}
+
 Json verdict(const Json& summary) {
-  const bool is_interrupted = summary.value("stop_reason", std::string()) == "interrupted";
+  const std::string stop = summary.value("stop_reason", std::string());
+  const bool is_interrupted = stop == run::name_of(survey::StopReason::interrupted);
   Verdict verdict{.is_complete = at(summary, "/complete") == Json(true),
-                  .because = reason(summary),
+                  .because = stop_words().value(stop, stop),
                   .lights = {},
                   .else_light = is_interrupted ? "red" : "amber"};
   add_coverage(summary, verdict.lights);

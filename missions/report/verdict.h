@@ -28,7 +28,11 @@ struct Verdict {
 ///  "lights": [{"name", "figure", "value", "form", "light", "rule"}]}
 nlohmann::ordered_json json_of(const Verdict& verdict);
 
-/// The same from a package's summary.
+/// {"complete": "nothing more is worth a view", ...}: why surveys end, in words, by the words that
+/// files have for it.
+nlohmann::ordered_json stop_words();
+
+/// The verdict from a package's summary.
 nlohmann::ordered_json verdict(const nlohmann::ordered_json& summary);
 
 }  // namespace skycap::missions::report

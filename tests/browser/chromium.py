@@ -80,19 +80,29 @@ def write_scaled(results, views, points):
     (results / "cloud.ply").write_bytes(header + b"end_header\n" + body)
 
 
-def points_of_ply(path):
-    """x, y, z of a binary PLY of ours."""
+def column_of_ply(path, first, form):
+    """Of a binary PLY of ours the values of each vertex from the property `first` on."""
     content = path.read_bytes()
     header, body = content.split(b"end_header\n", 1)
     sizes = {b"float": 4, b"uint": 4, b"uchar": 1}
-    count, stride = 0, 0
+    count, stride, offset = 0, 0, 0
     for line in header.split(b"\n"):
         words = line.split()
         if words[:2] == [b"element", b"vertex"]:
             count = int(words[2])
         elif words[:1] == [b"property"]:
+            if words[2] == first:
+                offset = stride
             stride += sizes[words[1]]
-    return [struct.unpack_from("<3f", body, i * stride) for i in range(count)]
+    return [struct.unpack_from(form, body, i * stride + offset) for i in range(count)]
+
+
+def points_of_ply(path):
+    return column_of_ply(path, b"x", "<3f")
+
+
+def colours_of_ply(path):
+    return column_of_ply(path, b"red", "<3B")
 
 
 class Page:

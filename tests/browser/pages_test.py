@@ -1,6 +1,7 @@
 """Pages with little, much or foreign things in them, and those of other verbs."""
 
 import array
+import collections
 import json
 import math
 import os
@@ -11,8 +12,8 @@ import tempfile
 import time
 import unittest
 
-from chromium import (HOSTILE, MISSION, JavascriptException, Page, check_figures, main, plan, run,
-                      write_scaled)
+from chromium import (HOSTILE, MISSION, JavascriptException, Page, check_figures, colours_of_ply,
+                      main, plan, run, write_scaled)
 
 
 class OtherPagesTest(unittest.TestCase):
@@ -56,6 +57,31 @@ class OtherPagesTest(unittest.TestCase):
         run("view", str(self.folder / "mission.yaml"), "--out", str(self.folder / "m.html"))
         self.assertIn("before", self.shows(self.folder / "m.html"))
 
+    def test_prior_data(self):
+        """Can be hidden; what is too large is not drawn, and the page says so."""
+        (self.folder / "few.obj").write_text("v 20 0 0\nv 21 0 0\nv 20 1 0\nv 20 0 9\n"
+                                             "f 1 3 2\nf 1 2 4\nf 2 3 4\nf 3 1 4\n")
+        side = 101  # 20,000 triangles are drawn
+        corners = "".join(f"v {i % side} {i // side} 0\n" for i in range(side * side))
+        faces = "".join(f"f {i} {i + 1} {i + side + 1}\nf {i} {i + side + 1} {i + side}\n"
+                        for row in range(side - 1) for i in range(row * side + 1, row * side + side))
+        (self.folder / "many.obj").write_text(corners + faces + "f 1 2 103\n")
+        (self.folder / "mission.yaml").write_text(MISSION % "priors" +
+            "prior: [{file: few.obj, role: obstacle}, {file: many.obj, role: terrain}]\n")
+        run("view", str(self.folder / "mission.yaml"), "--out", str(self.folder / "m.html"))
+        page = Page(self.folder / "m.html")
+        try:
+            self.assertIsNone(page.failure)
+            legend = page.all(".legend")[0].text
+            self.assertIn("prior: obstacle", legend)
+            self.assertNotIn("prior: terrain", legend)
+            self.assertIn("many.obj has too many triangles to be drawn", legend)
+            page.click("[data-layer='priors']")
+            self.assertEqual(page.get("window.shown.panel.viewer.layers.priors.visible"), False)
+            self.assertEqual(page.complaints(), [])
+        finally:
+            page.close()
+
     def test_a_file_with_a_hostile_name(self):
         cloud = self.folder / "<img src=x>'\".xyz"
         cloud.write_text("0 0 0\n1 0 0\n0 1 0\n")
@@ -85,8 +111,27 @@ class OtherPagesTest(unittest.TestCase):
         finally:
             page.close()
 
-    def test_ten_million_points(self):
-        count, layers = 100_000, 100
+    def test_maps_of_coverage_have_their_colours(self):
+        results = plan(self.folder, MISSION % "maps")
+        for name in ("coverage.ply", "true_coverage.ply"):
+            run("view", str(results / name))
+            page = Page((results / name).with_suffix(".html"))
+            try:
+                self.assertIsNone(page.failure)
+                self.assertEqual(page.get("document.getElementById('colour').value"), "file")
+                written = colours_of_ply(results / name)
+                drawn = page.get("""Array.from(window.shown.panel.viewer.layers.measured.geometry
+                    .getAttribute("colour").array)""")
+                self.assertEqual(collections.Counter(zip(drawn[::3], drawn[1::3], drawn[2::3])),
+                                 collections.Counter(written))
+                self.assertEqual(page.complaints(), [])
+            finally:
+                page.close()
+
+    def test_more_points_than_a_page_shows(self):
+        """Three million; POINTS=10000000 in the environment for more."""
+        count = 100_000
+        layers = int(os.environ.get("POINTS", 3_000_000)) // count
         one = array.array("f", [0.0]) * (3 * count)
         one[0::3] = array.array("f", (10 * math.cos(i / 1000 * math.tau) for i in range(count)))
         one[1::3] = array.array("f", (10 * math.sin(i / 1000 * math.tau) for i in range(count)))
@@ -98,12 +143,12 @@ class OtherPagesTest(unittest.TestCase):
                 one.tofile(file)
         started = time.monotonic()
         run("view", str(self.folder / "many.ply"))
-        print(f"10 million points: written in {time.monotonic() - started:.1f} s")
+        print(f"{count * layers} points: written in {time.monotonic() - started:.1f} s")
         page = Page(self.folder / "many.html")
         try:
             self.assertIsNone(page.failure)
-            page.tell_first_frame("10 million points")
-            self.assertEqual(page.get("window.shown.data.clouds.measured.of"), 10_000_000)
+            page.tell_first_frame(f"1 million points of {count * layers}")
+            self.assertEqual(page.get("window.shown.data.clouds.measured.of"), count * layers)
             self.assertEqual(page.get("window.shown.clouds.measured.count"), 1_000_000)
             self.assertGreater(page.pixels()["colours"], 100)
             self.assertEqual(page.complaints(), [])
@@ -244,6 +289,8 @@ scan: {sensor: %s, frame_period: 1.0, navigation: {horizontal_sigma: 0.2},
                     self.wait_for(page, at_rest[number][0])
                 self.measure(call, answer["view"], number)
                 if page is None:
+                    for verb in ("report", "view"):  # which lead to it
+                        self.assertIn(str(survey / "report.html"), run(verb, str(survey)).stdout)
                     page = Page(survey / "report.html")
                     self.assertIsNone(page.failure)
                     page.browser.execute_script("""

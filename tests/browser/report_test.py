@@ -71,7 +71,7 @@ class ReportTest(unittest.TestCase):
         self.assertGreater(len(self.summary["surface"]["holes"]), 0)
         page.browser.execute_script("window.shown.panel.viewer.look('top', false)")
         page.browser.execute_script("window.shown.panel.set_layers(['measured', 'ground'])")
-        for i, hole in enumerate(self.summary["surface"]["holes"]):
+        for i, hole in enumerate(self.summary["surface"]["holes"][:len(page.all("tr.pick"))]):
             layer = "unreachable" if hole["reason"] == "unreachable" else "missing"
             page.click(f"[data-hole='{i}']")
             page.wait("new Promise((done) => setTimeout(done, 900))")  # it flies there
@@ -180,6 +180,11 @@ class ReportTest(unittest.TestCase):
             } })()""")
         page.click_canvas(*place)
         self.assertEqual(page.all(".card h3")[0].text, f"View {view}")
+        drawn = page.get("""(() => {
+            const canvas = document.querySelector(".card canvas");
+            const { data } = canvas.getContext("2d").getImageData(0, 0, canvas.width, canvas.height);
+            return data.filter((value, i) => i % 4 === 1 && value > 60).length / (data.length / 4); })()""")
+        self.assertGreater(drawn, 0.01)  # what its sensor saw
         page.all(".card .close")[0].click()
         page.click("[data-layer='views']")
         x, y = page.get("[0, 1].map((i) => window.shown.panel.canvas[i ? 'clientHeight' : 'clientWidth'] / 2)")
@@ -193,6 +198,27 @@ class ReportTest(unittest.TestCase):
         self.assertLess(off, 10)  # within reach of the mouse, told to a centimetre
         page.all(".card .close")[0].click()
         page.click("[data-layer='views']")
+
+    def test_7b_the_route_keeps_off_the_end_of_free_space(self):
+        page = self.page
+        nearest = page.get("""(() => {
+            const { count, positions } = window.shown.clouds.free, { data } = window.shown;
+            let least = Infinity;
+            for (const sortie of data.summary.flight.route.sorties) {
+              for (const [x, y, z] of sortie.legs.flatMap((leg) => leg.points)) {
+                for (let i = 0; i < 3 * count; i += 3) {
+                  least = Math.min(least, Math.hypot(positions[i] - x, positions[i + 1] - y, positions[i + 2] - z));
+                }
+              }
+            }
+            return [count, least, data.clouds.free.step, data.summary.flight.clearance_m.total]; })()""")
+        count, least, step, asked = nearest
+        self.assertGreater(count, 1000)
+        self.assertGreaterEqual(least, asked - step)  # of a grid
+        before = page.pixels()
+        page.click("[data-layer='free']")
+        self.assertNotEqual(page.pixels(), before)
+        page.click("[data-layer='free']")
 
     def test_8_measures_a_distance(self):
         page = self.page

@@ -7,6 +7,17 @@ const states = [
   { name: "out of reach", key: "unreachable", colour: [158, 96, 232] },
 ];
 
+/// In the order of the numbers that points have for them.
+function order_states(scales) {
+  states.sort((one, other) => scales.states.indexOf(one.key) - scales.states.indexOf(other.key));
+}
+
+/// The middle of the step that a point's incidence is in [degrees]; nothing if it is not known.
+function incidence_of(cloud, index, scales) {
+  const step = cloud.incidence ? cloud.incidence[index] : scales.no_incidence;
+  return step === scales.no_incidence ? null : (step + 0.5) * scales.incidence_step_deg;
+}
+
 /// Points of a dark and a light end, as equal steps look equal (after matplotlib's viridis).
 const ramp_stops = [[68, 1, 84], [59, 82, 139], [33, 145, 140], [94, 201, 98], [253, 231, 37]];
 
@@ -81,6 +92,9 @@ function gather_around(cells, cell, positions, list) {
   }
   return size / 3;
 }
+
+/// Densities are of the neighbours within so many spacings.
+const density_reach = 2.5;
 
 /// Neighbours of each point within `radius`, itself included, over the disc's area and the share of
 /// the cloud's points that the page has: points per square metre of surface.

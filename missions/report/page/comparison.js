@@ -151,7 +151,7 @@ function trial_table(data, { cell, path }) {
     table([number("seed"), "ended", number("views"), number("coverage"), number("distance"), number("planning")],
       cell.each_trial.map((trial, i) => {
         const f = (key, form) => number(figure(data, path + "each_trial." + i + "." + key, form));
-        return [number(String(trial.seed)), stop_text[trial.stop_reason] || trial.stop_reason, f("views", "count"), f("coverage", "share"),
+        return [number(String(trial.seed)), data.stop_words[trial.stop_reason] || trial.stop_reason, f("views", "count"), f("coverage", "share"),
           f("distance_m", "metres"), f("planning_time_s", "seconds")];
       }))));
 }

@@ -49,10 +49,6 @@ function element(tag, attributes, ...children) {
   return made;
 }
 
-/// Why a survey ended.
-const stop_text = { complete: "complete", view_limit: "limit of views", distance_limit: "limit of distance",
-  time_limit: "limit of time", nowhere_to_go: "nowhere to go", interrupted: "interrupted" };
-
 /// What stands at a path such as "flight.route.sorties.0.energy_wh" of some data.
 function value_at(data, path) {
   return path.split(".").reduce(

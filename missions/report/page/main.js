@@ -97,6 +97,7 @@ async function show() {
   const started = performance.now();
   const data = { summary: {}, hole_places: [], ...read_data() };
   const skycap = { data, panel: null, clouds: {} };
+  order_states(data.scales);
   head(data);
   if (Object.keys(data.clouds).length) {
     await load_library("three");

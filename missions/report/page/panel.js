@@ -1,6 +1,6 @@
 // The controls around the 3-D view, and what it says of a view, a point or a distance.
 
-const colour_modes = [["state", "what is covered"], ["view", "view"], ["height", "height"],
+const colour_modes = [["state", "what is covered"], ["file", "colours of the file"], ["view", "view"], ["height", "height"],
   ["time", "time"], ["incidence", "incidence"], ["density", "density"]];
 
 class Panel {
@@ -24,7 +24,7 @@ class Panel {
 
   modes() {
     const cloud = this.viewer.main || {}, is_scan = this.data.kind === "scan";
-    const has = { state: cloud.state, view: cloud.view && !is_scan, height: true,
+    const has = { state: cloud.state, file: cloud.colour, view: cloud.view && !is_scan, height: true,
       time: cloud.view && is_scan, incidence: cloud.incidence, density: true };
     return colour_modes.filter(([name]) => has[name]);
   }
@@ -191,7 +191,7 @@ class Panel {
     if (this.data.pieces) {
       return [...rows, ["time", shown(view.time_s, "clock")], ["points shown", shown(view.points, "count")]];
     }
-    rows.push(      ["returns", figure(this.data, path + "returns", "count")],
+    rows.push(["returns", figure(this.data, path + "returns", "count")],
       ["new points", figure(this.data, path + "points_new", "count")],
       ["planned in", figure(this.data, path + "planning_time_s", "seconds")],
       ["way so far", figure(this.data, path + "distance_m", "metres")]);
@@ -218,8 +218,8 @@ class Panel {
     const { cloud, index } = point, rows = [["position", places_text(place_of(point))]];
     if (cloud.state) rows.push(["state", states[cloud.state[index]].name]);
     if (cloud.view) rows.push([this.data.piece || "measured from view", String(cloud.view[index])]);
-    const incidence = incidence_of(cloud, index);
-    if (incidence !== null) rows.push(["incidence", incidence - 5 + "° to " + (incidence + 5) + "°"]);
+    const { scales } = this.data, incidence = incidence_of(cloud, index, scales), half = scales.incidence_step_deg / 2;
+    if (incidence !== null) rows.push(["incidence", incidence - half + "° to " + (incidence + half) + "°"]);
     if (cloud.view && views_of(this.data)[cloud.view[index]]) {
       const eye = vector(views_of(this.data)[cloud.view[index]].position);
       rows.push(["range", shown(eye.distanceTo(vector(place_of(point))), "metres")]);

@@ -55,6 +55,6 @@ const how_scanned = [
   ["Points", "Of all shots or pixels with a return. The page shows the preview: an even choice of them, where the carrier believes that they are."],
   ["Incidence", "Between the plane through a point's neighbours and the way to the sensor in the middle of the piece of the flight."],
   ["Range", "From a point to the sensor in the middle of its piece of the flight."],
-  ["Speed", "Between neighbouring poses of the trajectory, of which the page has at most 3000."],
-  ["Density", "Neighbours of a point of the preview within two and a half times the usual spacing, over that disc's area, scaled up if the page shows only some of the preview's points."],
+  ["Speed", "Between neighbouring poses of the trajectory, of which the page has an even choice."],
+  ["Density", "Neighbours of a point of the preview within " + density_reach + " times the usual spacing, over that disc's area, scaled up if the page shows only some of the preview's points."],
 ];

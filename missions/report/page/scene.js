@@ -2,14 +2,14 @@
 
 const layer_names = {
   measured: "points", missing: "missing", unreachable: "out of reach", route: "route", clearance: "clearance", views: "views", next: "next view",
-  volumes: "volumes", priors: "prior data", ground: "ground",
+  free: "end of free space", volumes: "volumes", priors: "prior data", ground: "ground",
 };
 
 /// The box of all that belongs to the survey.
 function extent_of(data, clouds) {
   const box = new THREE.Box3();
-  for (const cloud of Object.values(clouds)) {
-    if (cloud.count) box.union(new THREE.Box3().setFromArray(cloud.positions));
+  for (const [name, cloud] of Object.entries(clouds)) {
+    if (cloud.count && name !== "free") box.union(new THREE.Box3().setFromArray(cloud.positions));
   }
   const core = box.clone();
   for (const view of views_of(data)) box.expandByPoint(vector(view.position));
@@ -210,6 +210,17 @@ function clearance_group(data) {
   return group;
 }
 
+/// Where the space ends that was measured to be free, which the route is proven in.
+function free_group(cloud) {
+  const group = new THREE.Group();
+  if (!cloud || !cloud.count) return group;
+  const geometry = new THREE.BufferGeometry();
+  geometry.setAttribute("position", new THREE.BufferAttribute(cloud.positions, 3));
+  group.add(new THREE.Points(geometry, new THREE.PointsMaterial({ color: 0x6fc4e8, size: cloud.spacing / 3,
+    transparent: true, opacity: 0.6, depthWrite: false })));
+  return group;
+}
+
 function build_layers(data, clouds) {
   const extent = extent_of(data, clouds);
   const size = extent.all.getSize(new THREE.Vector3()).length() || 1;
@@ -222,9 +233,12 @@ function build_layers(data, clouds) {
   add("clearance", clearance_group(data));
   add("views", view_group(data, size));
   add("next", next_group(data, size));
+  add("free", free_group(clouds.free));
   add("volumes", volume_group(data, extent));
   add("priors", prior_group(data));
   layers.ground = ground_grid(extent, data.scene ? data.scene.ground : extent.all.min.z);
-  if (layers.clearance) layers.clearance.visible = false;
+  for (const name of ["clearance", "free"]) {
+    if (layers[name]) layers[name].visible = false;
+  }
   return { layers, extent, size };
 }

@@ -13,7 +13,8 @@ function table(headings, rows, attributes_of = () => ({})) {
 
 const reason_text = Object.fromEntries(states.map((state) => [state.key, state.name]));
 const reason_colour = Object.fromEntries(states.map((state) => [state.key, state.colour]));
-const most_holes = 40;
+/// Holes of less than this share of all that is missing are summed, and those after so many.
+const least_hole = 0.01, most_holes = 40;
 
 /// What is missing, piece by piece; the column of areas sums to the missing share.
 function holes_section(data, on_pick) {
@@ -22,29 +23,31 @@ function holes_section(data, on_pick) {
   const holes = surface.holes, path = (i, name) => "surface.holes." + i + "." + name;
   const number = (content) => ({ number: content });
   const share = (area) => number(shown(surface.area_m2 > 0 ? area / surface.area_m2 : 0, "share"));
-  const rows = holes.slice(0, most_holes).map((hole, i) => [
+  const total = holes.reduce((sum, hole) => sum + hole.area_m2, 0) + surface.smaller.area_m2 + surface.rest_m2;
+  const shown_holes = holes.slice(0, most_holes).filter((hole) => hole.area_m2 >= least_hole * total);
+  const has_places = data.hole_places.length > 0;
+  const place = (i) => data.hole_places[i].slice(0, 2).map((degrees) => shown(degrees, "place")).join(", ") +
+    ", " + shown(data.hole_places[i][2], "metres");
+  const rows = shown_holes.map((hole, i) => [
     element("span", {}, swatch(reason_colour[hole.reason]), reason_text[hole.reason]),
     number(figure(data, path(i, "area_m2"), "square_metres")), share(hole.area_m2),
-    places_text(hole.centre), data.hole_places[i]
-      ? data.hole_places[i].slice(0, 2).map((degrees) => shown(degrees, "place")).join(", ") +
-        ", " + shown(data.hole_places[i][2], "metres") : "–",
+    places_text(hole.centre), ...(has_places ? [place(i)] : []),
     number(hole.nearest_view + ", " + shown(hole.view_distance_m, "metres")), seen_from(data, hole)]);
-  const rest = holes.slice(most_holes);
+  const rest = holes.slice(shown_holes.length);
   const rest_area = rest.reduce((sum, hole) => sum + hole.area_m2, 0) + surface.smaller.area_m2;
-  const total = holes.reduce((sum, hole) => sum + hole.area_m2, 0) + surface.smaller.area_m2 + surface.rest_m2;
   const wide = (text, area, form_path) => [text, number(form_path ? figure(data, form_path, "square_metres")
-    : shown(area, "square_metres")), share(area), "", "", "", ""];
+    : shown(area, "square_metres")), share(area), "", ...(has_places ? [""] : []), "", ""];
   rows.push(wide((rest.length + surface.smaller.holes) + " smaller ones", rest_area));
   rows.push(wide("spread over covered surface", surface.rest_m2, "surface.rest_m2"));
   rows.push(wide("missing in all", total));
-  const headings = ["why", number("area"), number("of surface"), "centre x, y, z [m]", "latitude, longitude, height",
+  const headings = ["why", number("area"), number("of surface"), "centre x, y, z [m]", ...(has_places ? ["latitude, longitude, height"] : []),
     number("nearest view"), "would be seen from"];
   const who = surface.known_by === "planner" ? "as the planner believes" : "as the simulator knows";
   return element("section", { id: "holes" }, element("h2", {}, "What is missing"),
     element("p", {}, "Of " , figure(data, "surface.area_m2", "square_metres"), " of surface, " + who +
       ". Click a row to go there."),
     table(headings, rows, (i) => {
-      if (i < Math.min(holes.length, most_holes)) return { class: "pick", "data-hole": String(i), onclick: () => on_pick(i) };
+      if (i < shown_holes.length) return { class: "pick", "data-hole": String(i), onclick: () => on_pick(i) };
       return i === rows.length - 1 ? { class: "sum", id: "missing-sum", "data-area": String(total) } : {};
     }));
 }
@@ -73,7 +76,8 @@ function seen_from(data, hole) {
   if (!hole.normal.some((part) => part !== 0)) return "no one side";
   const distance = Math.min(hole.view_distance_m || 10, 30);
   const place = hole.centre.map((part, axis) => part + distance * hole.normal[axis]);
-  if (place[2] < (data.scene ? data.scene.ground : -Infinity)) return "below";
+  const has_ground = data.scene && (data.scene.flown || data.summary.settings["scene.ground"]);
+  if (has_ground && place[2] < data.scene.ground) return "below";
   return places_text(place);
 }
 
@@ -163,9 +167,10 @@ const how_surveyed = [
   ["What is missing", "Pieces of surface that are more likely uncovered than covered hang together if they are near each other and missing for the same reason. Their area is the missing part of each piece. The rest is what even covered surface is expected to lack. All together is the surface's area times one less the coverage."],
   ["Proven clearance", "For every leg a lower bound of the distance between the vehicle's centre and anything measured, forbidden, or not yet seen free, over the whole leg, not only at its ends."],
   ["Times and energy", "Of the vehicle's profile, with stops, turns and hovering, in the wind and at the temperature that the mission gives."],
-  ["Predicted error", "At a sample of at most 10 000 points: the root of the summed squares of the noise across the surface of all points within the registration distance, over their number. The noise is what the planner has learnt head-on, else what the mission states (sensor.noise); along a ray it counts by the cosine of the incidence. What neighbours have in common, such as an error of the sensor's place, is not in it."],
+  ["Predicted error", "At a sample of the points: the root of the summed squares of the noise across the surface of all points within the registration distance, over their number. The noise is what the planner has learnt head-on, else what the mission states (sensor.noise); along a ray it counts by the cosine of the incidence. What neighbours have in common, such as an error of the sensor's place, is not in it."],
   ["Incidence and range", "From each point's normal, the plane through its neighbours, and the place of the sensor that took it."],
-  ["Density", "Neighbours of a point within two and a half times the usual spacing, over that disc's area, scaled up if the page shows only some of the points."],
+  ["End of free space", "The faces of the voxels that were measured to be free, beyond which nothing was seen or something is; of many an even choice. The route is proven to keep its clearance from all of them."],
+  ["Density", "Neighbours of a point within " + density_reach + " times the usual spacing, over that disc's area, scaled up if the page shows only some of the points."],
 ];
 
 const how_compared = [

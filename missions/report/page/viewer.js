@@ -142,7 +142,7 @@ class Viewer {
     this.draw_soon();
   }
 
-  /// Colours the points by state, view, height, incidence or density; says what the colours mean.
+  /// Colours the points by one of colour_modes; says what the colours mean.
   colour_by(mode) {
     this.mode = mode;
     const legend = { rows: [], ramp: null };
@@ -269,12 +269,6 @@ function nearest_on_screen(viewer, cloud, uniforms, x, y) {
   return best;
 }
 
-/// The middle of the step that a point's incidence is in [degrees]; nothing if it is not known.
-function incidence_of(cloud, index) {
-  const step = cloud.incidence ? cloud.incidence[index] : 255;
-  return step === 255 ? null : 10 * step + 5;
-}
-
 /// A function from a point's index to its colour.
 function painter_of(mode, cloud, legend, data) {
   const p = cloud.positions;
@@ -297,14 +291,17 @@ function painter_of(mode, cloud, legend, data) {
   }
   if (mode === "incidence" && cloud.incidence) {
     const unknown = [110, 120, 128];
-    const paint = ramp("angle of incidence", (i) => incidence_of(cloud, i), 0, 90, "degrees",
+    const paint = ramp("angle of incidence", (i) => incidence_of(cloud, i, data.scales), 0, 90, "degrees",
       [...ramp_stops].reverse());
-    return (i) => (cloud.incidence[i] === 255 ? unknown : paint(i));
+    return (i) => (cloud.incidence[i] === data.scales.no_incidence ? unknown : paint(i));
   }
   if (mode === "density") {
-    if (!cloud.density) cloud.density = densities(cloud, 2.5 * cloud.spacing);
-    legend.unit = "points per m²";
+    if (!cloud.density) cloud.density = densities(cloud, density_reach * cloud.spacing);
     return ramp("points per m²", (i) => cloud.density[i], 0, quantile(cloud.density, 0.99), "count");
+  }
+  if (mode === "file") {
+    legend.note = "as the file has them";
+    return (i) => data.palette[cloud.colour[i]];
   }
   if (cloud.state) {
     legend.rows = states;

@@ -101,7 +101,8 @@ TEST(Feasibility, IsAskedBeforeASurveyBegins) {
   }
 }
 
-// What comes of it lies between what was expected, and a limit is not expected to be broken.
+// The survey takes at least half the fewest views that were expected and at most twice the most; a
+// limit is not expected to be broken.
 TEST(Expectation, HoldsTheSurvey) {
   const file::Mission mission =
       derived::parse_mission(quick_mission(), "m.yaml", {{"--planner", "planner.name", "skycap"}});
