@@ -16,14 +16,6 @@ inline std::uint64_t cell_key(const Cell& cell) {
   return part(cell.x()) | part(cell.y()) << 21 | part(cell.z()) << 42;
 }
 
-/// The cell of a key.
-inline Cell cell_of(std::uint64_t key) {
-  const auto part = [](std::uint64_t bits) {
-    return static_cast<int>(bits & 0x1fffff) - (1 << 20);
-  };
-  return {part(key), part(key >> 21), part(key >> 42)};
-}
-
 template <typename Value>
 class CellMap {
  public:

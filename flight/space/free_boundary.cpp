@@ -1,7 +1,9 @@
-#include <algorithm>
-#include <bit>
-#include <vector>
+#include "flight/space/free_boundary.h"
 
+#include <bit>
+#include <unordered_map>
+
+#include "flight/space/measured_space_file.h"
 #include "flight/space/measured_voxels.h"
 
 namespace skycap::flight {
@@ -37,36 +39,40 @@ Slices of_neighbours(const Slices& own, const Slices& next, const Side& side) {
   return moved;
 }
 
-}  // namespace
+using Blocks = std::unordered_map<std::uint64_t, const VoxelBlock*>;
 
-Slices MeasuredSpace::Impl::blocked(const Cell& cell) const {
-  const auto found = blocks.find(cell_key(cell));
-  return blocked(cell, found == blocks.end() ? VoxelBlock{} : found->second);
-}
-
-std::vector<Eigen::Vector3f> MeasuredSpace::free_boundary() const {
-  std::vector<std::uint64_t> keys;
-  keys.reserve(impl_->blocks.size());
-  for (const auto& [key, block] : impl_->blocks) keys.push_back(key);
-  std::ranges::sort(keys);
-  std::vector<Eigen::Vector3f> faces;
-  for (const std::uint64_t key : keys) {
-    const Cell cell = cell_of(key);
-    const VoxelBlock& block = impl_->blocks.at(key);
-    const Slices blocked = impl_->blocked(cell, block);
-    for (const Side& side : sides) {
-      const Slices beyond = of_neighbours(blocked, impl_->blocked(cell + step(side)), side);
-      const Eigen::Vector3d to_face =
-          0.5 * step(side).cast<double>() + Eigen::Vector3d::Constant(0.5);
-      for (int z = 0; z < 8; ++z) {
-        for (std::uint64_t bits = block.passable(z) & beyond[z]; bits != 0; bits &= bits - 1) {
-          const int bit = std::countr_zero(bits);
-          const Eigen::Vector3d voxel = (8 * cell + Cell(bit % 8, bit / 8, z)).cast<double>();
-          faces.emplace_back((impl_->config.voxel * (voxel + to_face)).cast<float>());
-        }
+/// Adds the faces of a block's free voxels.
+void add_faces(const FileBlock& record, const Blocks& blocks, const MeasuredSpaceConfig& config,
+               std::vector<Eigen::Vector3f>& faces) {
+  const VoxelRegion region = voxel_region(config);
+  const Cell cell = cell_of(record.key);
+  const auto blocked = [&](const Cell& place) {
+    const auto found = blocks.find(cell_key(place));
+    return blocked_voxels(region, place, found == blocks.end() ? VoxelBlock{} : *found->second);
+  };
+  const Slices own = blocked(cell);
+  for (const Side& side : sides) {
+    const Slices beyond = of_neighbours(own, blocked(cell + step(side)), side);
+    const Eigen::Vector3d to_face = 0.5 * (Eigen::Vector3d::Ones() + step(side).cast<double>());
+    for (int z = 0; z < 8; ++z) {
+      for (std::uint64_t bits = record.block.passable(z) & beyond[z]; bits != 0; bits &= bits - 1) {
+        const int bit = std::countr_zero(bits);
+        const Eigen::Vector3d voxel = (8 * cell + Cell(bit % 8, bit / 8, z)).cast<double>();
+        faces.emplace_back((config.voxel * (voxel + to_face)).cast<float>());
       }
     }
   }
+}
+
+}  // namespace
+
+std::vector<Eigen::Vector3f> free_boundary(std::istream& stream, const std::string& name) {
+  const MeasuredSpaceFile file = read_measured_space(stream, name);
+  Blocks blocks;
+  blocks.reserve(file.blocks.size());
+  for (const FileBlock& record : file.blocks) blocks[record.key] = &record.block;
+  std::vector<Eigen::Vector3f> faces;
+  for (const FileBlock& record : file.blocks) add_faces(record, blocks, file.config, faces);
   return faces;
 }
 

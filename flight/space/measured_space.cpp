@@ -33,17 +33,12 @@ MeasuredSpace::MeasuredSpace(const MeasuredSpaceConfig& config) {
   config.validate();
   impl_ = std::make_unique<Impl>();
   impl_->config = config;
+  impl_->region_voxels = voxel_region(config);
+  constexpr double infinity = std::numeric_limits<double>::infinity();
+  impl_->region = {Vector3d::Constant(-infinity), Vector3d::Constant(infinity)};
   if (impl_->is_bounded()) {
-    impl_->region_low = (config.region.min() / config.voxel).array().floor().matrix().cast<int>();
-    impl_->region_high = (config.region.max() / config.voxel).array().ceil().matrix().cast<int>();
-    impl_->region = {impl_->region_low.cast<double>() * config.voxel,
-                     impl_->region_high.cast<double>() * config.voxel};
-  } else {
-    constexpr double infinity = std::numeric_limits<double>::infinity();
-    impl_->region = {Vector3d::Constant(-infinity), Vector3d::Constant(infinity)};
-    // Far beyond all voxels, yet so that sums and differences of them are whole numbers still.
-    impl_->region_low = Cell::Constant(-(1 << 28));
-    impl_->region_high = Cell::Constant(1 << 28);
+    impl_->region = {impl_->region_voxels.low.cast<double>() * config.voxel,
+                     impl_->region_voxels.high.cast<double>() * config.voxel};
   }
 }
 

@@ -13,7 +13,6 @@
 #include <memory>
 #include <optional>
 #include <string>
-#include <vector>
 
 #include <Eigen/Core>
 #include <Eigen/Geometry>
@@ -74,10 +73,6 @@ class MeasuredSpace : public FreeSpace {
 
   /// Volume known to be free [m^3], of the region if there is one.
   double free_volume() const;
-
-  /// Where space that was measured to be free ends: the middle of each face that a free voxel
-  /// shares with one that is not. The same order for the same space.
-  std::vector<Eigen::Vector3f> free_boundary() const;
 
   /// Writes all that is known, for read() on a machine of the same byte order. A name and version
   /// come first, then the configuration, then each block of 8 x 8 x 8 voxels by its place.

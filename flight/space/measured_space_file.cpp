@@ -1,3 +1,5 @@
+#include "flight/space/measured_space_file.h"
+
 #include <algorithm>
 #include <cstring>
 #include <istream>
@@ -25,11 +27,6 @@ struct FileHead {
   double floor;      ///< or no_floor
   double region[6];  ///< its two corners; the first above the second if there is none
   std::uint64_t blocks;
-};
-
-struct FileBlock {
-  std::uint64_t key;
-  VoxelBlock block;
 };
 
 template <typename Record>
@@ -62,42 +59,51 @@ void MeasuredSpace::write(std::ostream& stream) const {
                static_cast<std::streamsize>(blocks.size() * sizeof(FileBlock)));
 }
 
-MeasuredSpace MeasuredSpace::read(std::istream& stream, const std::string& name) {
+MeasuredSpaceFile read_measured_space(std::istream& stream, const std::string& name) {
   FileHead head{};
   if (!read_record(stream, head) || std::memcmp(head.mark, file_mark, sizeof head.mark) != 0) {
     throw Error(ErrorKind::bad_file,
                 name + ": is not a file of measured free space; give one that skycap plan wrote");
   }
-  MeasuredSpaceConfig config{.voxel = head.voxel,
-                             .depth_margin = head.depth_margin,
-                             .free_without_return = head.free_without_return,
-                             .max_depth = head.max_depth,
-                             .region = {},
-                             .floor = {}};
-  if (head.floor != no_floor) config.floor = head.floor;
+  MeasuredSpaceFile file{.config = {.voxel = head.voxel,
+                                    .depth_margin = head.depth_margin,
+                                    .free_without_return = head.free_without_return,
+                                    .max_depth = head.max_depth,
+                                    .region = {},
+                                    .floor = {}},
+                         .blocks = {}};
+  if (head.floor != no_floor) file.config.floor = head.floor;
   const AlignedBox3d region(Eigen::Map<const Vector3d>(head.region),
                             Eigen::Map<const Vector3d>(head.region + 3));
-  if (!region.isEmpty()) config.region = region;
+  if (!region.isEmpty()) file.config.region = region;
   try {
-    MeasuredSpace space(config);
-    FileBlock record{};
-    for (std::uint64_t i = 0; i < head.blocks; ++i) {
-      if (!read_record(stream, record)) {
-        throw Error(ErrorKind::bad_file, name + ": ends after " + std::to_string(i) + " of " +
-                                             std::to_string(head.blocks) +
-                                             " blocks; copy it again, or plan again");
-      }
-      space.impl_->blocks[record.key] = record.block;
-      space.impl_->extent.extend(space.impl_->block_box(cell_of(record.key)));
-    }
-    if (stream.peek() != std::istream::traits_type::eof()) {
-      throw Error(ErrorKind::bad_file, name + ": goes on after its last block; plan again");
-    }
-    return space;
+    file.config.validate();
   } catch (const Error& error) {
-    if (error.kind() == ErrorKind::bad_file) throw;
     throw Error(ErrorKind::bad_file, name + ": " + error.what());
   }
+  FileBlock block{};
+  for (std::uint64_t i = 0; i < head.blocks; ++i) {
+    if (!read_record(stream, block)) {
+      throw Error(ErrorKind::bad_file, name + ": ends after " + std::to_string(i) + " of " +
+                                           std::to_string(head.blocks) +
+                                           " blocks; copy it again, or plan again");
+    }
+    file.blocks.push_back(block);
+  }
+  if (stream.peek() != std::istream::traits_type::eof()) {
+    throw Error(ErrorKind::bad_file, name + ": goes on after its last block; plan again");
+  }
+  return file;
+}
+
+MeasuredSpace MeasuredSpace::read(std::istream& stream, const std::string& name) {
+  const MeasuredSpaceFile file = read_measured_space(stream, name);
+  MeasuredSpace space(file.config);
+  for (const FileBlock& record : file.blocks) {
+    space.impl_->blocks[record.key] = record.block;
+    space.impl_->extent.extend(space.impl_->block_box(cell_of(record.key)));
+  }
+  return space;
 }
 
 }  // namespace skycap::flight

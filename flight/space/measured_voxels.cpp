@@ -7,6 +7,30 @@ namespace skycap::flight {
 using Eigen::AlignedBox3d;
 using Eigen::Vector3d;
 
+VoxelRegion voxel_region(const MeasuredSpaceConfig& config) {
+  // Far beyond all voxels, yet so that sums and differences of them are whole numbers still.
+  constexpr int far = 1 << 28;
+  if (config.region.isEmpty()) return {Cell::Constant(-far), Cell::Constant(far)};
+  return {(config.region.min() / config.voxel).array().floor().matrix().cast<int>(),
+          (config.region.max() / config.voxel).array().ceil().matrix().cast<int>()};
+}
+
+Slices blocked_voxels(const VoxelRegion& region, const Cell& cell, const VoxelBlock& block) {
+  Slices blocked{};
+  const Cell low = (region.low - 8 * cell).cwiseMax(0), high = (region.high - 8 * cell).cwiseMin(8);
+  const bool is_cut = low.maxCoeff() > 0 || high.minCoeff() < 8;
+  for (int z = 0; z < 8; ++z) {
+    blocked[z] = ~block.passable(z);
+    if (!is_cut) continue;
+    std::uint64_t inside = 0;
+    for (int y = low.y(); y < high.y() && z >= low.z() && z < high.z(); ++y) {
+      for (int x = low.x(); x < high.x(); ++x) inside |= std::uint64_t{1} << (8 * y + x);
+    }
+    blocked[z] &= inside | block.occupied[z];
+  }
+  return blocked;
+}
+
 void MeasuredSpace::Impl::occupy(const geometry::Scan& scan) {
   // Neighbouring pixels mostly hit the same block.
   Cell last_cell = Cell::Zero();
@@ -32,22 +56,6 @@ void MeasuredSpace::Impl::carve(const RangeImage& image) {
   free_where(image.reach(), [&](const AlignedBox3d& box) {
     return image.sight(box.center(), 0.5 * box.diagonal().norm(), config.depth_margin);
   });
-}
-
-Slices MeasuredSpace::Impl::blocked(const Cell& cell, const VoxelBlock& block) const {
-  Slices blocked{};
-  const bool is_cut = !region.contains(block_box(cell));
-  const Cell low = (region_low - 8 * cell).cwiseMax(0), high = (region_high - 8 * cell).cwiseMin(8);
-  for (int z = 0; z < 8; ++z) {
-    blocked[z] = ~block.passable(z);
-    if (!is_cut) continue;
-    std::uint64_t inside = 0;
-    for (int y = low.y(); y < high.y() && z >= low.z() && z < high.z(); ++y) {
-      for (int x = low.x(); x < high.x(); ++x) inside |= std::uint64_t{1} << (8 * y + x);
-    }
-    blocked[z] &= inside | block.occupied[z];
-  }
-  return blocked;
 }
 
 void MeasuredSpace::Impl::closest_in_cube(const Segment& piece, const BoxTest& test,
@@ -96,12 +104,13 @@ void MeasuredSpace::Impl::closest_in(const Segment& piece, Closest& best) const 
     if (found != blocks.end()) {
       const VoxelBlock& block = found->second;
       if (!block.is_all_passable()) {
-        closest_in_cube(piece, test, cell, {Cell::Zero(), 8}, block, blocked(cell, block), best);
+        closest_in_cube(piece, test, cell, {Cell::Zero(), 8}, block,
+                        blocked_voxels(region_voxels, cell, block), best);
       }
       return best.distance > 0.0;
     }
-    const bool is_inside = (8 * cell.array() < region_high.array()).all() &&
-                           (8 * cell.array() + 8 > region_low.array()).all();
+    const bool is_inside = (8 * cell.array() < region_voxels.high.array()).all() &&
+                           (8 * cell.array() + 8 > region_voxels.low.array()).all();
     if (!is_inside) return true;
     const NearestPoints pair = nearest(piece, box.intersection(region));
     if (pair.squared_distance < best.distance * best.distance) {

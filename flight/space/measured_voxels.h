@@ -13,6 +13,17 @@
 
 namespace skycap::flight {
 
+/// Voxels of a region, the end excluded.
+struct VoxelRegion {
+  Cell low, high;
+};
+
+/// Those where space has to be measured to be free: the configuration's, else all of space.
+VoxelRegion voxel_region(const MeasuredSpaceConfig& config);
+
+/// The voxels of a block that are not free, or outside of the region occupied.
+Slices blocked_voxels(const VoxelRegion& region, const Cell& cell, const VoxelBlock& block);
+
 struct MeasuredSpace::Impl {
   struct HashKey {
     std::size_t operator()(std::uint64_t key) const {
@@ -23,9 +34,9 @@ struct MeasuredSpace::Impl {
 
   MeasuredSpaceConfig config;
   std::unordered_map<std::uint64_t, VoxelBlock, HashKey> blocks;  ///< a block not listed is unknown
-  Eigen::AlignedBox3d region;    ///< the configuration's, of whole voxels; without one all of space
-  Cell region_low, region_high;  ///< its voxels, the end excluded
-  Eigen::AlignedBox3d extent;    ///< of all listed blocks
+  Eigen::AlignedBox3d region;  ///< the configuration's, of whole voxels; without one all of space
+  VoxelRegion region_voxels;
+  Eigen::AlignedBox3d extent;  ///< of all listed blocks
 
   bool is_bounded() const { return !config.region.isEmpty(); }
   double block_size() const { return 8.0 * config.voxel; }
@@ -50,9 +61,6 @@ struct MeasuredSpace::Impl {
   void occupy(const geometry::Scan& scan);
   void carve(const RangeImage& image);
   void closest_in(const Segment& piece, Closest& best) const;
-  /// The voxels of a block that are not free, or outside of the region occupied.
-  Slices blocked(const Cell& cell, const VoxelBlock& block) const;
-  Slices blocked(const Cell& cell) const;  ///< whether it is listed or not
   void closest_in_cube(const Segment& piece, const BoxTest& test, const Cell& cell,
                        const Cube& cube, const VoxelBlock& block, const Slices& blocked,
                        Closest& best) const;

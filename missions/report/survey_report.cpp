@@ -10,7 +10,7 @@
 #include <nlohmann/json.hpp>
 
 #include "flight/export/geodesy.h"
-#include "flight/space/measured_space.h"
+#include "flight/space/free_boundary.h"
 #include "geometry/io/cloud_io.h"
 #include "geometry/io/json.h"
 #include "missions/derived/mission_flight.h"
@@ -107,7 +107,7 @@ PageCloud free_cloud(const fs::path& file) {
   std::vector<Eigen::Vector3f> faces;
   if (is_there(file)) {
     std::ifstream stream(file, std::ios::binary);
-    faces = flight::MeasuredSpace::read(stream, file.string()).free_boundary();
+    faces = flight::free_boundary(stream, file.string());
   }
   return {"free", encode_cloud(faces, {}, most_faces)};
 }

@@ -133,6 +133,9 @@ class Panel {
       rows.push(...ramp_legend("route: proven clearance", { stops: nearness_stops,
         low: shown(asked, "metres"), high: "from " + shown(asked + told_apart, "metres") }));
     }
+    for (const way of trajectory_lines(this.data)) {
+      rows.push(element("div", { class: "row" }, swatch(way.colour, "dot"), way.name));
+    }
     const scene = this.data.scene || {};
     const is_drawn = (prior) => prior.corners.length > 0, priors = scene.priors || [];
     const roles = new Set([...(scene.volumes || []), ...priors.filter(is_drawn)].map((one) => one.role));

@@ -8,8 +8,8 @@ function trajectory_lines(data) {
   const { flown, believed } = data.trajectory, lines = [];
   const apart = Math.max(0, ...flown.points.map((point, i) =>
     (believed.points[i] ? vector(point).distanceTo(vector(believed.points[i])) : 0)));
-  if (apart > 0.01) lines.push({ points: believed.points, colour: believed_colour });
-  lines.push({ points: flown.points, colour: flown_colour });
+  if (apart > 0.01) lines.push({ points: believed.points, colour: believed_colour, name: "the way, as believed" });
+  lines.push({ points: flown.points, colour: flown_colour, name: "the way, as flown" });
   return lines;
 }
 

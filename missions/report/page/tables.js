@@ -113,10 +113,11 @@ function flight_section(data) {
       f("return.height_m", "metres"), " above the pad; the least clearance is ", f("return.clearance_m", "metres"),
       ", from " + (home.nearest.obstacle || "nothing near") + ". It takes at most ", f("return.energy_wh", "watt_hours"), "."));
   }
-  const missed = flight.route.unreached || [];
+  const missed = flight.route.unreached || [], listed = 8;
   if (missed.length) {
-    section.append(element("h3", {}, "Views that are not flown to"),
-      table(["view", "why"], missed.map((one) => [String(one.view), one.reason])));
+    const why = table(["view", "why"], missed.map((one) => [String(one.view), one.reason]));
+    section.append(element("h3", {}, "Views that are not flown to"), missed.length <= listed ? why
+      : element("details", {}, element("summary", {}, "All " + missed.length), why));
   }
   if ((flight.notes || []).length) {
     section.append(element("h3", {}, "Notes"), element("ul", {}, flight.notes.map((note) => element("li", {}, note))));

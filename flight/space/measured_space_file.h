@@ -1,0 +1,35 @@
+/// What a file of measured space holds. For the sources of measured_space.h and free_boundary.h.
+#pragma once
+
+#include <cstdint>
+#include <iosfwd>
+#include <string>
+#include <vector>
+
+#include "flight/space/measured_space.h"
+#include "flight/space/voxel_block.h"
+
+namespace skycap::flight {
+
+struct FileBlock {
+  std::uint64_t key;  ///< of its cell
+  VoxelBlock block;
+};
+
+struct MeasuredSpaceFile {
+  MeasuredSpaceConfig config;
+  std::vector<FileBlock> blocks;
+};
+
+/// Throws what MeasuredSpace::read() throws.
+MeasuredSpaceFile read_measured_space(std::istream& stream, const std::string& name);
+
+/// The cell of a key, see cell_key().
+inline Cell cell_of(std::uint64_t key) {
+  const auto part = [](std::uint64_t bits) {
+    return static_cast<int>(bits & 0x1fffff) - (1 << 20);
+  };
+  return {part(key), part(key >> 21), part(key >> 42)};
+}
+
+}  // namespace skycap::flight
