@@ -38,7 +38,7 @@ function head(data) {
     parts.push(element("div", { class: "lights" }, verdict.lights.map((light) => element("div", { class: "light " + light.light },
       element("b", { "data-figure": light.figure, "data-form": light.form }, shown(light.value, light.form)),
       element("span", { class: "name" }, light.name),
-      light.rule ? element("span", { class: "rule" }, light.rule) : null))));
+      light.rule ? element("span", { class: "rule" }, light.rule.replaceAll(" %", "\u00a0%")) : null))));
   }
   document.getElementById("head").replaceChildren(...parts);
 }

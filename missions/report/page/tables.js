@@ -13,8 +13,9 @@ function table(headings, rows, attributes_of = () => ({})) {
 
 const reason_text = Object.fromEntries(states.map((state) => [state.key, state.name]));
 const reason_colour = Object.fromEntries(states.map((state) => [state.key, state.colour]));
-/// Holes of less than this share of all that is missing are summed, and those after so many.
-const least_hole = 0.01, most_holes = 40;
+/// Of holes after the first few those of less than a share of all that is missing are summed, and
+/// all after so many.
+const fewest_holes = 12, least_hole = 0.01, most_holes = 40;
 
 /// What is missing, piece by piece; the column of areas sums to the missing share.
 function holes_section(data, on_pick) {
@@ -24,7 +25,8 @@ function holes_section(data, on_pick) {
   const number = (content) => ({ number: content });
   const share = (area) => number(shown(surface.area_m2 > 0 ? area / surface.area_m2 : 0, "share"));
   const total = holes.reduce((sum, hole) => sum + hole.area_m2, 0) + surface.smaller.area_m2 + surface.rest_m2;
-  const shown_holes = holes.slice(0, most_holes).filter((hole) => hole.area_m2 >= least_hole * total);
+  const shown_holes = holes.slice(0, most_holes)
+    .filter((hole, i) => i < fewest_holes || hole.area_m2 >= least_hole * total);
   const has_places = data.hole_places.length > 0;
   const place = (i) => data.hole_places[i].slice(0, 2).map((degrees) => shown(degrees, "place")).join(", ") +
     ", " + shown(data.hole_places[i][2], "metres");
