@@ -246,12 +246,16 @@ evaluation: {registration_distance: 0.2}
 scan: {sensor: %s, frame_period: 1.0, navigation: {horizontal_sigma: 0.2},
        mount: {rotation_deg: [0, 0, %d]},
        orbit: {radius: 12, lowest: 3, circles: 1, speed: 20}}
-""" % (json.dumps(HOSTILE.replace("/", "")), sensor, turned))
+""" % (sensor, sensor, turned))
             run("scan", str(mission), "--out", str(out), "--quiet")
+            summary = {**json.loads((out / "scan.json").read_text()), "mission": HOSTILE}
+            (out / "scan.json").write_text(json.dumps(summary))
+            run("report", str(out))
             page = Page(out / "scan.html")
             try:
                 self.assertIsNone(page.failure)
-                check_figures(self, page, json.loads((out / "scan.json").read_text()), 2)
+                self.assertEqual(page.get("document.querySelector('h1').textContent"), HOSTILE)
+                check_figures(self, page, summary, 2)
                 self.assertGreater(page.pixels()["colours"], 500)
                 for mode in ("time", "height", "incidence", "density"):
                     page.browser.execute_script("window.shown.panel.set_colour(arguments[0])", mode)
