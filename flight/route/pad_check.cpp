@@ -35,7 +35,8 @@ void check_pad(const FreeSpace& space, const FreeSpace* pad_space, const RouteOp
                                            length_text(clearance) +
                                            ": move the pad or climb higher");
   }
-  const double least = clearance + pad_roughness + options.ground_error;
+  check_grounds(options.grounds, options.ground_limits);
+  const double least = clearance + pad_roughness + options.ground_limits.height_error;
   const Vector3d low(pad.x(), pad.y(), std::min(home.z(), pad.z() + least));
   check_climb(space, "the pad", {home, low}, clearance);
   if (pad_space == nullptr) return;

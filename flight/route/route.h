@@ -14,6 +14,7 @@
 #include "flight/motion/smoothing.h"
 #include "flight/motion/vehicle.h"
 #include "flight/paths/path.h"
+#include "flight/route/pad_ground.h"
 #include "flight/space/clearance.h"
 #include "flight/way_home/least_return.h"
 #include "geometry/place/pose.h"
@@ -68,7 +69,8 @@ struct RouteOptions {
   PathOptions path;
   Eigen::Vector3d takeoff = Eigen::Vector3d::Zero();  ///< the pad
   double takeoff_climb = 5.0;             ///< straight up from the pad before the first leg [m]
-  double ground_error = 0.0;              ///< how far above the pad priors may have the ground [m]
+  std::vector<PadGround> grounds;         ///< of pad and rally points, where they are known
+  PadLimits ground_limits;                ///< what they may be
   bool order_is_free = false;             ///< stations may be visited in a better order than given
   FlightStyle style = FlightStyle::stop;  ///< of files that can hold curves
   /// From every point of the route there is a proven way home; without: the pilot answers for that.

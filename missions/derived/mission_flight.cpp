@@ -7,6 +7,7 @@
 #include "flight/space/prior_obstacle.h"
 #include "flight/way_home/return_law.h"
 #include "missions/derived/mission_priors.h"
+#include "missions/derived/pad_grounds.h"
 #include "missions/derived/site.h"
 #include "missions/equipment/vehicle_reader.h"
 
@@ -30,15 +31,6 @@ double pad_spare_of(const file::Mission& mission) {
       mission.flight.is_flown() && vehicle_of(mission).dialect == flight::Dialect::dji;
   const double needed = mission.flight.clearance + flight::dji_lands_at_once + voxel_spare;
   return is_dji ? std::max(spare_of(mission), needed) : spare_of(mission);
-}
-
-/// How far above the ground that a pad stands on priors may have it.
-double ground_error_of(const file::Mission& mission) {
-  double error = 0.0;
-  for (const auto& obstacle : priors_of(mission).obstacles) {
-    if (obstacle->is_ground()) error = std::max(error, obstacle->uncertainty());
-  }
-  return error;
 }
 
 /// No-fly volumes with their top above this are not flown over [m].
@@ -180,7 +172,7 @@ flight::RouteOptions route_options_of(const file::Mission& mission, const Vector
   options.path.max_expansions = most_expansions;
   options.takeoff = pad;
   options.takeoff_climb = takeoff_climb_of(mission);
-  options.ground_error = ground_error_of(mission);
+  options.ground_limits = ground_limits_of(mission);
   options.order_is_free = config.order == file::VisitOrder::shortest;
   options.style = config.style;
   // The air moves away from where the wind comes from.

@@ -87,6 +87,12 @@ std::vector<Key> conduct_keys() {
                            flight(&FlightConfig::takeoff_climb),
                            "Straight up from the pad before the first leg.")),
       rally_key(),
+      otherwise("by the prior terrain, where it is not measured",
+                angle_key("flight.pad_slope_deg", between(0, 60), flight(&FlightConfig::pad_slope),
+                          "How steep the pad and the rally points are, as the pilot found it. What "
+                          "the survey measures there counts before it.")),
+      angle_key("flight.steepest_pad_deg", between(0, 60), flight(&FlightConfig::steepest_pad),
+                "The steepest ground that the vehicle may take off from and land on."),
       number_key("flight.cruise_speed", "m/s", above(0, 100), flight(&FlightConfig::cruise_speed),
                  "Wanted speed on legs."),
       number_key("flight.hold", "s", between(0, 3600), flight(&FlightConfig::hold),

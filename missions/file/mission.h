@@ -147,6 +147,8 @@ struct FlightConfig {
   std::optional<Eigen::Vector3d> takeoff;  ///< the pad
   std::optional<double> takeoff_climb;     ///< else 5 m, or a metre more than the clearance
   std::vector<Eigen::Vector3d> rally;      ///< other places to land when called home, on the ground
+  std::optional<double> pad_slope;         ///< of pad and rally points, as the pilot found it [rad]
+  double steepest_pad = 0.17453292519943295;  ///< 10 degrees, at which it may stand [rad]
   double cruise_speed = 4.0;
   double hold = 0.5;          ///< at a view, before the capture [s]
   double hold_after = 0.5;    ///< and after it [s]

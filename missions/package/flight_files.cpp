@@ -12,6 +12,7 @@
 #include "flight/space/interruptible_space.h"
 #include "geometry/error.h"
 #include "missions/derived/mission_flight.h"
+#include "missions/derived/pad_grounds.h"
 
 namespace skycap::missions::package {
 namespace {
@@ -194,7 +195,8 @@ std::span<const Format> package_formats() { return formats_of_packages; }
 
 flight::Route plan_flight(const file::Mission& mission, const flight::MeasuredSpace& measured,
                           const Eigen::Vector3d& pad, const std::vector<geometry::View>& views,
-                          const std::vector<Way>& ways, std::stop_token stop) {
+                          const std::vector<Way>& ways, std::span<const flight::PadGround> grounds,
+                          std::stop_token stop) {
   std::vector<flight::Station> stations;
   for (std::uint32_t i = 0; i < views.size(); ++i) {
     stations.push_back(
@@ -206,8 +208,9 @@ flight::Route plan_flight(const file::Mission& mission, const flight::MeasuredSp
   const flight::KnownSpace pad_space(without_ground(std::move(rules)));
   const flight::JointSpace joint({&measured, &known});
   const flight::InterruptibleSpace space(joint, std::move(stop));
-  return plan_route(std::move(stations), derived::vehicle_of(mission), space, &pad_space,
-                    derived::route_options_of(mission, pad));
+  flight::RouteOptions options = derived::route_options_of(mission, pad);
+  options.grounds = derived::grounds_of(mission, pad, grounds);
+  return plan_route(std::move(stations), derived::vehicle_of(mission), space, &pad_space, options);
 }
 
 FlightFiles stage_flight(const file::Mission& mission, const flight::Route& route,

@@ -24,11 +24,14 @@ using Way = std::vector<Eigen::Vector3d>;
 
 /// The flight of a mission's vehicle through views of its survey, proven in what the survey has
 /// measured; ways[i] is how it came to view i from the view before or from above the pad (empty if
-/// that is not known). Views that this flight cannot visit are listed in it. Throws what
-/// plan_route() throws, and Error{bad_usage} soon after a stop is requested.
+/// that is not known); `grounds` are those of pad and rally points that were measured. Views that
+/// this flight cannot visit are listed in it. Throws what plan_route() throws, and
+/// Error{bad_usage} soon after a stop is requested.
 flight::Route plan_flight(const file::Mission& mission, const flight::MeasuredSpace& measured,
                           const Eigen::Vector3d& pad, const std::vector<geometry::View>& views,
-                          const std::vector<Way>& ways, std::stop_token stop = {});
+                          const std::vector<Way>& ways,
+                          std::span<const flight::PadGround> grounds = {},
+                          std::stop_token stop = {});
 
 /// A route file, and how near its flight as read back comes to anything.
 struct FlightFile {

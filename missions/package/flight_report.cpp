@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include "flight/route/route.h"
+#include "missions/package/ground_json.h"
 
 namespace skycap::missions::package {
 namespace {
@@ -52,6 +53,8 @@ std::string flight_text(const SurveyMission& flight) {
       "+ tracking {:.2f} + map {:.2f} + margin {:.2f})\n",
       clearance.total(), route.min_clearance, clearance.vehicle_radius, clearance.position_error,
       clearance.tracking_error, clearance.map_error, clearance.margin);
+  const std::size_t rally_points = route.options.returns ? route.options.returns->rally.size() : 0;
+  text += grounds_text(route.options.grounds, 1 + rally_points);
   text += return_text(flight);
   text += pictures_text(flight);
   for (const flight::Unreached& missed : route.unreached) {

@@ -21,6 +21,7 @@
 #include "missions/judge/coverage.h"
 #include "missions/package/cloud_normals.h"
 #include "missions/package/coverage_map.h"
+#include "missions/package/ground_json.h"
 #include "missions/package/holes.h"
 #include "missions/package/settings.h"
 #include "missions/run/survey_journal.h"
@@ -186,8 +187,9 @@ std::optional<SurveyMission> stage_package(const file::Mission& mission,
     flight = SurveyMission{};
     try {
       flight->pictures = derived::picture_bounds_of(mission);
-      flight->route = plan_flight(mission, *record.flown->measured, record.flown->pad,
-                                  views_of(record), ways_of(*record.flown), stop);
+      flight->route =
+          plan_flight(mission, *record.flown->measured, record.flown->pad, views_of(record),
+                      ways_of(*record.flown), record.flown->grounds, stop);
       if (flight->route.sorties.empty() && !flight->route.unreached.empty()) {
         const flight::Unreached& first = flight->route.unreached.front();
         throw Error(ErrorKind::bad_config, "no view can be flown to; view " +
@@ -224,6 +226,9 @@ PackageSummary parse_package_summary(const std::string& text, const std::string&
     if (json.contains("flight")) {
       summary.pad = summary.mission.flight.takeoff.value_or(vector_of(json["flight"].at("pad")));
       geometry::require_place(*summary.pad, name + ": flight.pad");
+      if (json["flight"].contains("grounds")) {
+        summary.grounds = measured_grounds(json["flight"]["grounds"], name);
+      }
     }
     for (const Json& view : json.at("per_view")) {
       summary.views.push_back({vector_of(view.at("position")), vector_of(view.at("direction"))});
@@ -257,8 +262,9 @@ PackagedSurvey read_package(const std::filesystem::path& folder,
   const std::filesystem::path space_file = folder / free_space_name;
   std::ifstream space(space_file, std::ios::binary);
   if (!space) fail(space_file, "cannot be read; plan the mission again");
-  return {std::move(summary.mission), std::move(summary.views), std::move(summary.ways),
-          *summary.pad, flight::MeasuredSpace::read(space, space_file.string())};
+  return {std::move(summary.mission), std::move(summary.views),
+          std::move(summary.ways),    *summary.pad,
+          std::move(summary.grounds), flight::MeasuredSpace::read(space, space_file.string())};
 }
 
 }  // namespace skycap::missions::package

@@ -66,8 +66,9 @@ inline constexpr const char* fly_test_name = "fly_test.json";
 struct PackageSummary {
   file::Mission mission;  ///< with all keys as they were in force
   std::vector<geometry::View> views;
-  std::vector<Way> ways;               ///< ways[i] was flown to view i; empty if it is not said
-  std::optional<Eigen::Vector3d> pad;  ///< of a survey that was flown
+  std::vector<Way> ways;                   ///< ways[i] was flown to view i; empty if it is not said
+  std::optional<Eigen::Vector3d> pad;      ///< of a survey that was flown
+  std::vector<flight::PadGround> grounds;  ///< of pad and rally points, where it was measured
 };
 
 /// The same of a summary's text; `name` stands for the file in messages.
@@ -85,6 +86,7 @@ struct PackagedSurvey {
   std::vector<geometry::View> views;
   std::vector<Way> ways;  ///< see PackageSummary
   Eigen::Vector3d pad = Eigen::Vector3d::Zero();
+  std::vector<flight::PadGround> grounds;  ///< see PackageSummary
   flight::MeasuredSpace measured;
 };
 

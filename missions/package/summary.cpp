@@ -5,8 +5,10 @@
 #include <nlohmann/json.hpp>
 
 #include "missions/derived/mission_priors.h"
+#include "missions/derived/pad_grounds.h"
 #include "missions/file/json_text.h"
 #include "missions/file/mission_keys.h"
+#include "missions/package/ground_json.h"
 #include "missions/package/holes.h"
 #include "missions/package/package.h"
 #include "missions/package/settings.h"
@@ -257,6 +259,11 @@ std::string summary_json(const file::Mission& mission, const run::SurveyRecord& 
     summary["flight"] = flight_summary(*record.flown, *flight);
   } else if (flight) {
     summary["flight"] = {{"pad", json_of(record.flown->pad)}, {"failure", flight->failure}};
+  }
+  if (flight) {
+    const run::FlownSurvey& flown = *record.flown;
+    summary["flight"]["grounds"] =
+        grounds_json(derived::grounds_of(mission, flown.pad, flown.grounds));
   }
   summary["settings"] = settings_json(mission);
   summary["per_view"] = Json::array();

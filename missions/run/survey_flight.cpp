@@ -10,6 +10,7 @@
 #include "geometry/error.h"
 #include "geometry/place/camera.h"
 #include "missions/derived/mission_flight.h"
+#include "missions/derived/pad_grounds.h"
 #include "missions/file/number_text.h"
 
 namespace skycap::missions::run {
@@ -56,6 +57,7 @@ struct SurveyFlight::Impl {
   flight::JointSpace space;
   flight::PathFinder finder;
   FlownLeg leg;  ///< that the next fly() takes
+  std::vector<flight::PadScan> pads;
   FlownSurvey survey;
 };
 
@@ -78,6 +80,11 @@ SurveyFlight::SurveyFlight(const file::Mission& mission, const geometry::View& f
   if (!impl_->space.is_free({home, home}, impl_->finder.clearance())) {
     refuse("the place above the take-off pad", home,
            "move flight.takeoff, raise flight.takeoff_climb, or shrink flight.unknown_box");
+  }
+  flight::check_grounds(derived::grounds_of(mission, impl_->survey.pad, {}),
+                        derived::ground_limits_of(mission));
+  for (const Vector3d& place : derived::landings_of(mission, impl_->survey.pad)) {
+    impl_->pads.emplace_back(place, derived::pad_radius_of(mission));
   }
   if (!can_reach(home, first_view)) {
     refuse("the first view", first_view.position,
@@ -110,11 +117,15 @@ void SurveyFlight::fly() { impl_->survey.legs.push_back(std::move(impl_->leg)); 
 
 void SurveyFlight::take_in(const geometry::Scan& scan) {
   impl_->measured->insert(scan, impl_->camera);
+  for (flight::PadScan& pad : impl_->pads) pad.take_in(scan.points);
   impl_->finder.forget();
 }
 
 FlownSurvey SurveyFlight::finish() {
   impl_->survey.measured = std::move(impl_->measured);
+  for (const flight::PadScan& pad : impl_->pads) {
+    if (const auto ground = pad.ground()) impl_->survey.grounds.push_back(*ground);
+  }
   return std::move(impl_->survey);
 }
 

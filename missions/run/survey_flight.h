@@ -8,6 +8,7 @@
 
 #include <Eigen/Core>
 
+#include "flight/route/pad_ground.h"
 #include "flight/space/measured_space.h"
 #include "geometry/place/pose.h"
 #include "geometry/points/scan.h"
@@ -27,6 +28,7 @@ struct FlownSurvey {
   Eigen::Vector3d pad = Eigen::Vector3d::Zero();
   std::vector<FlownLeg> legs;  ///< legs[i] leads to view i, the first one from above the pad
   std::size_t refused = 0;     ///< proposed views that could not be reached
+  std::vector<flight::PadGround> grounds{};  ///< of pad and rally points, where it was measured
 
   double length() const;
   double min_clearance() const;  ///< of all legs
@@ -35,7 +37,7 @@ struct FlownSurvey {
 class SurveyFlight {
  public:
   /// Throws Error{bad_config} if the first view cannot be reached from the pad through space that
-  /// the pilot vouches for.
+  /// the pilot vouches for, or the ground of pad or rally points is known to be unfit.
   SurveyFlight(const file::Mission& mission, const geometry::View& first_view);
   ~SurveyFlight();
 

@@ -8,10 +8,12 @@
 
 #include "flight/export/export.h"
 #include "flight/interpreter/interpret.h"
+#include "flight/space/place_text.h"
 #include "geometry/error.h"
 #include "geometry/surfaces/mesh.h"
 #include "missions/derived/mission_flight.h"
 #include "missions/derived/mission_priors.h"
+#include "missions/derived/pad_grounds.h"
 #include "missions/derived/resolved_mission.h"
 #include "missions/file/number_text.h"
 #include "missions/file/planner_titles.h"
@@ -61,6 +63,21 @@ geometry::Mesh model_of(const file::Mission& mission, const std::filesystem::pat
   }
 }
 
+/// Says what of the ground that the file takes off from and lands on is unfit; whether none is.
+bool check_pads(const std::string& file, const file::Mission& mission, const geometry::Mesh& model,
+                const Eigen::Vector3d& pad, const Console& console) {
+  if (!mission.flight.is_flown()) return true;
+  bool are_fit = true;
+  for (const flight::PadGround& ground : true_grounds(mission, model, pad)) {
+    const std::string why = why_unfit(ground, derived::ground_limits_of(mission));
+    if (why.empty()) continue;
+    are_fit = false;
+    console.out << file << ": not safe, the place to land at " << flight::place_text(ground.place)
+                << " " << why << "\n";
+  }
+  return are_fit;
+}
+
 /// Proves what a route file's vehicle flies against the mission's scene as it truly is.
 int check_route_file(const CheckOptions& options, const file::Mission& mission,
                      const geometry::Mesh& model, const Console& console) {
@@ -92,8 +109,14 @@ int check_route_file(const CheckOptions& options, const file::Mission& mission,
   console.out << "\n";
   const ReturnCheck returns = check_returns(*options.route, options.return_height, mission,
                                             space.everywhere, places_of(route));
-  console.out << file << ": " << returns.text << "\n" << std::flush;
-  return is_fine && returns.is_safe ? 0 : 1;
+  console.out << file << ": " << returns.text << "\n";
+  Eigen::Vector3d pad = facts.pad;
+  if (!facts.is_pad_known && !route.pieces.empty()) {
+    pad.head<2>() = route.pieces.front().start.to.head<2>();
+  }
+  const bool are_pads_fit = check_pads(file, mission, model, pad, console);
+  console.out << std::flush;
+  return is_fine && returns.is_safe && are_pads_fit ? 0 : 1;
 }
 
 std::string scene_text(const file::Mission& mission, const scene::SurveyScene& scene) {

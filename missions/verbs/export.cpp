@@ -20,7 +20,7 @@ int export_package(const ExportOptions& options, const Console& console) {
   package::SurveyMission flight;
   flight.pictures = derived::picture_bounds_of(survey.mission);
   flight.route = package::plan_flight(survey.mission, survey.measured, survey.pad, survey.views,
-                                      survey.ways, console.stop);
+                                      survey.ways, survey.grounds, console.stop);
   flight.files =
       package::stage_flight(survey.mission, flight.route, survey.measured, formats, folder);
   for (const flight::Format format : formats) {

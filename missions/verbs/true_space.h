@@ -1,6 +1,11 @@
 /// A mission's site as it truly is: the scene's mesh and the rules.
 #pragma once
 
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "flight/route/pad_ground.h"
 #include "flight/space/clearance.h"
 #include "geometry/surfaces/mesh.h"
 #include "missions/file/mission.h"
@@ -13,5 +18,10 @@ struct TrueSpace {
 };
 
 TrueSpace true_space(const file::Mission& mission, const geometry::Mesh& model, double pad_height);
+
+/// The ground of pad and rally points as the mesh has it; where it has none, what else is known.
+std::vector<flight::PadGround> true_grounds(const file::Mission& mission,
+                                            const geometry::Mesh& model,
+                                            const Eigen::Vector3d& pad);
 
 }  // namespace skycap::missions::verbs
