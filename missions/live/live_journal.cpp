@@ -10,7 +10,7 @@
 #include "geometry/io/json.h"
 #include "geometry/place/world.h"
 #include "missions/file/json_text.h"
-#include "missions/run/journal_text.h"
+#include "missions/derived/journal_text.h"
 #include "missions/run/survey_record.h"
 
 namespace skycap::missions::live {
@@ -67,7 +67,7 @@ void add_record(const Json& json, std::vector<LiveEvent>& events) {
 }  // namespace
 
 std::string text_of(const ScanRecord& scan) {
-  return run::journal_line({{"scan",
+  return derived::journal_line({{"scan",
                              {{"id", scan.id},
                               {"file", scan.file},
                               {"sha256", scan.sha256},
@@ -75,15 +75,15 @@ std::string text_of(const ScanRecord& scan) {
 }
 
 std::string refusal_text(const std::string& reason) {
-  return run::journal_line({{"refusal", reason}});
+  return derived::journal_line({{"refusal", reason}});
 }
 
 std::string rejection_text(const std::string& reason) {
-  return run::journal_line({{"rejected", reason}});
+  return derived::journal_line({{"rejected", reason}});
 }
 
 std::string text_of(const ProposalRecord& proposal) {
-  return run::journal_line({{"proposal",
+  return derived::journal_line({{"proposal",
                              {{"view", json_of(proposal.view)},
                               {"end", proposal.end ? Json(run::name_of(*proposal.end)) : Json()},
                               {"reach", run::reach_json(proposal.reach)}}}});

@@ -11,9 +11,9 @@
 #include "geometry/io/file.h"
 #include "geometry/io/record_log.h"
 #include "geometry/parallel.h"
+#include "missions/derived/journal_text.h"
 #include "missions/live/kept_scan.h"
 #include "missions/live/live_journal.h"
-#include "missions/run/journal_text.h"
 #include "missions/run/mission_planner.h"
 #include "missions/scene/sha256.h"
 
@@ -51,12 +51,12 @@ struct LiveSurvey::Impl {
         first_view(begin),
         threads(thread_count),
         log(folder / journal_name) {
-    const std::string identity = run::identity_text(mission, "live");
+    const std::string identity = derived::identity_text(mission, {{"surface", "live"}});
     if (log.records().empty()) {
       log.append(identity);
     } else {
-      run::require_same_survey(log.file().string(), log.records().front(), identity,
-                               "name another folder");
+      derived::require_same_survey(log.file().string(), log.records().front(), identity,
+                                   "name another folder");
     }
     events = events_of(log.records(), log.file().string());
     replay();

@@ -13,7 +13,7 @@
 #include "missions/derived/mission_flight.h"
 #include "missions/derived/site.h"
 #include "missions/file/json_text.h"
-#include "missions/run/journal_text.h"
+#include "missions/derived/journal_text.h"
 #include "missions/run/survey_runner.h"
 #include "missions/scene/survey_scene.h"
 #include "survey/skycap/skycap_planner.h"
@@ -83,7 +83,7 @@ std::string answer_json(const LiveSurvey& survey, const file::Mission& mission) 
       planner != nullptr && !survey.views().empty()) {
     json["believed_coverage"] = planner->predicted_coverage();
   }
-  return run::journal_line(json);
+  return derived::journal_line(json);
 }
 
 std::string answer_text(const LiveSurvey& survey) {

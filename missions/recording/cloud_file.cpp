@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "geometry/error.h"
+#include "geometry/io/file.h"
 
 namespace skycap::missions::recording {
 
@@ -17,25 +18,44 @@ void CloudTotals::add(const CloudTotals& more) {
 }
 
 CloudFile::CloudFile(std::filesystem::path path, std::shared_ptr<const CloudFormat> format,
-                     ReturnPosition position)
+                     ReturnPosition position, const std::optional<CloudState>& grown)
     : path_(std::move(path)), format_(std::move(format)), position_(position) {
+  if (grown) {
+    go_on(*grown);
+    return;
+  }
   file_.reset(std::fopen(path_.c_str(), "wb"));
   if (!file_) fail();
   std::setvbuf(file_.get(), nullptr, _IONBF, 0);  // chunks are large: no second copy
-  put(format_->header(totals_));
+  put(format_->header(state_.totals));
+}
+
+void CloudFile::go_on(const CloudState& grown) {
+  std::error_code failure;
+  const std::uintmax_t size = std::filesystem::file_size(path_, failure);
+  if (failure || size < grown.bytes) {
+    throw Error(ErrorKind::bad_file, path_.string() + ": holds less than its journal says");
+  }
+  std::filesystem::resize_file(path_, grown.bytes, failure);
+  file_.reset(std::fopen(path_.c_str(), "r+b"));
+  if (failure || !file_ || std::fseek(file_.get(), 0, SEEK_END) != 0) fail();
+  std::setvbuf(file_.get(), nullptr, _IONBF, 0);
+  state_ = grown;
 }
 
 void CloudFile::append(const CloudChunk& chunk) {
   put(chunk.bytes);
-  totals_.add(chunk.totals);
+  state_.totals.add(chunk.totals);
 }
 
+void CloudFile::sync() const { geometry::sync_to_disk(path_); }
+
 void CloudFile::finish() {
-  const std::vector<std::uint8_t> header = format_->header(totals_);
+  const std::vector<std::uint8_t> header = format_->header(state_.totals);
   if (!header.empty()) {
     if (std::fseek(file_.get(), 0, SEEK_SET) != 0) fail();
     put(header);
-    bytes_ -= header.size();  // in place of the first one
+    state_.bytes -= header.size();  // in place of the first one
   }
   if (std::fclose(file_.release()) != 0) fail();
 }
@@ -43,7 +63,7 @@ void CloudFile::finish() {
 void CloudFile::put(const std::vector<std::uint8_t>& bytes) {
   if (bytes.empty()) return;
   if (std::fwrite(bytes.data(), 1, bytes.size(), file_.get()) != bytes.size()) fail();
-  bytes_ += bytes.size();
+  state_.bytes += bytes.size();
 }
 
 void CloudFile::fail() const {

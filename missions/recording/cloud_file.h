@@ -6,6 +6,7 @@
 #include <cstdio>
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -55,12 +56,20 @@ class CloudFormat {
   CloudFormat& operator=(const CloudFormat&) = default;
 };
 
+/// How far a file has grown.
+struct CloudState {
+  CloudTotals totals;
+  std::uint64_t bytes = 0;
+};
+
 /// A file that grows chunk by chunk, and is valid once it is finished.
 class CloudFile {
  public:
-  /// Throws Error{bad_file} if the file cannot be written.
+  /// Begins the file, or goes on with one that had once `grown` so far: what it holds beyond that
+  /// is cut off. Throws Error{bad_file} if the file cannot be written, or is shorter.
   CloudFile(std::filesystem::path path, std::shared_ptr<const CloudFormat> format,
-            ReturnPosition position = ReturnPosition::reported);
+            ReturnPosition position = ReturnPosition::reported,
+            const std::optional<CloudState>& grown = {});
 
   void encode(const sim::LidarReturns& returns, CloudChunk& chunk) const {
     format_->encode(returns, position_, chunk);
@@ -73,14 +82,19 @@ class CloudFile {
   /// then a valid file. Throws Error{bad_file} if the disk does not take it.
   void finish();
 
-  std::uint64_t points() const { return totals_.points; }
-  std::uint64_t bytes() const { return bytes_; }
+  /// Brings what was appended to the disk. Throws Error{bad_file}.
+  void sync() const;
+
+  std::uint64_t points() const { return state_.totals.points; }
+  std::uint64_t bytes() const { return state_.bytes; }
+  const CloudState& state() const { return state_; }
 
  private:
   struct Close {
     void operator()(std::FILE* file) const { std::fclose(file); }
   };
 
+  void go_on(const CloudState& grown);
   void put(const std::vector<std::uint8_t>& bytes);
   [[noreturn]] void fail() const;
 
@@ -88,8 +102,7 @@ class CloudFile {
   std::shared_ptr<const CloudFormat> format_;
   ReturnPosition position_;
   std::unique_ptr<std::FILE, Close> file_;
-  CloudTotals totals_;
-  std::uint64_t bytes_ = 0;
+  CloudState state_;
 };
 
 }  // namespace skycap::missions::recording

@@ -1,5 +1,8 @@
 #include "missions/recording/frame_recorder.h"
 
+#include <algorithm>
+#include <array>
+#include <chrono>
 #include <filesystem>
 #include <fstream>
 #include <optional>
@@ -13,6 +16,8 @@
 #include "flight/export/trajectory_file.h"
 #include "geometry/error.h"
 #include "geometry/io/cloud_io.h"
+#include "geometry/io/file.h"
+#include "geometry/io/record_log.h"
 #include "geometry/points/point_cloud.h"
 #include "missions/file/json_text.h"
 #include "missions/plugins/module.h"
@@ -38,13 +43,20 @@ std::string file_name(std::size_t frame) { return fmt::format("depth_{:06}.png",
 /// Images appended to a file as they are taken.
 class FrameRawlog {
  public:
-  FrameRawlog(const std::filesystem::path& path, const geometry::Camera& camera, double unit)
+  /// Goes on with a file that had once grown to so many bytes.
+  FrameRawlog(const std::filesystem::path& path, std::uint64_t grown,
+              const geometry::Camera& camera, double unit)
       : path_(path),
         camera_(camera),
         unit_(unit),
         encode_(plugins::module_function<EncodeDepthFrame>("libskycap_rawlog.so",
                                                            encode_depth_frame_name)),
-        file_(path, std::ios::binary) {
+        bytes_written_(grown) {
+    std::error_code failure;
+    if (grown > 0) std::filesystem::resize_file(path, grown, failure);
+    if (!failure)
+      file_.open(path, grown > 0 ? std::ios::binary | std::ios::in | std::ios::out | std::ios::ate
+                                 : std::ios::binary | std::ios::out);
     require_written();
   }
 
@@ -57,23 +69,30 @@ class FrameRawlog {
     file_.write(reinterpret_cast<const char*>(bytes_.data()),
                 static_cast<std::streamsize>(bytes_.size()));
     require_written();
+    bytes_written_ += bytes_.size();
   }
 
-  void finish() {
-    file_.close();
+  /// Brings it to the disk. How large it is.
+  std::uint64_t sync() {
+    file_.flush();
     require_written();
+    geometry::sync_to_disk(path_);
+    return bytes_written_;
   }
 
  private:
   void require_written() const {
-    if (!file_) throw Error(ErrorKind::bad_file, path_.string() + ": cannot be written");
+    if (!file_.is_open() || !file_) {
+      throw Error(ErrorKind::bad_file, path_.string() + ": cannot be written");
+    }
   }
 
   std::filesystem::path path_;
   const geometry::Camera& camera_;
   double unit_;
   EncodeDepthFrame* encode_;
-  std::ofstream file_;
+  std::fstream file_;
+  std::uint64_t bytes_written_;
   std::vector<std::uint8_t> bytes_;
 };
 
@@ -90,48 +109,152 @@ void add_preview(const geometry::Scan& scan, const Frame& frame, std::uint32_t n
   }
 }
 
+/// Takes image after image.
+class FrameRecording {
+ public:
+  FrameRecording(const sim::Scene& scene, const sim::DepthCamera& camera,
+                 std::span<const Frame> frames, ScanJournal& journal, const FrameOptions& options)
+      : scene_(scene), camera_(camera), frames_(frames), journal_(journal), options_(options) {
+    const double pixels = static_cast<double>(frames.size()) * camera.camera().width() *
+                          static_cast<double>(camera.camera().height());
+    preview_share_ = preview_share(pixels);
+    std::uint64_t rawlog_bytes = 0;
+    if (options.begun.is_object()) rawlog_bytes = go_on();
+    if (options.has_rawlog) {
+      rawlog_.emplace(journal.path_to_change(rawlog_name), rawlog_bytes, camera.camera(),
+                      options.depth_unit);
+    }
+  }
+
+  FrameResult run() {
+    auto written_down = std::chrono::steady_clock::now();
+    while (result_.frames < frames_.size() && !options_.stop.stop_requested()) {
+      take(frames_[result_.frames]);
+      if (options_.report) options_.report(result_.frames, result_.points);
+      const auto now = std::chrono::steady_clock::now();
+      if (std::chrono::duration<double>(now - written_down).count() < options_.checkpoint_period) {
+        continue;
+      }
+      write_down();
+      written_down = std::chrono::steady_clock::now();
+    }
+    write_down();
+    return result_;
+  }
+
+  void stage(geometry::OutputFolder& folder) const {
+    std::vector<flight::TimedPose> truth, believed;
+    std::string list = "# timestamp filename\n";
+    for (std::size_t i = 0; i < result_.frames; ++i) {
+      const Frame& frame = frames_[i];
+      journal_.stage(file_name(i), folder);
+      list += flight::fixed(frame.time, 6) + " " + file_name(i) + "\n";
+      truth.push_back({frame.time, frame.world_from_camera});
+      believed.push_back({frame.time, frame.believed_from_camera});
+    }
+    if (rawlog_) journal_.stage(rawlog_name, folder);
+    journal_.stage(preview_name, folder);
+    folder.write("depth.txt", list);
+    folder.write("groundtruth.txt", flight::write_tum(truth));
+    folder.write("believed.txt", flight::write_tum(believed));
+    folder.write("camera.json",
+                 file::json_text(camera_json(camera_.camera(), options_.depth_unit)));
+  }
+
+ private:
+  static constexpr const char* rawlog_name = "frames.rawlog";
+
+  /// Takes over what a checkpoint says. How large the rawlog was.
+  std::uint64_t go_on() {
+    try {
+      result_ = {options_.begun.at("images").get<std::size_t>(),
+                 options_.begun.at("points").get<std::size_t>()};
+      const auto previewed = options_.begun.at("preview_points").get<std::size_t>();
+      if (previewed > 0) read_preview(previewed);
+      if (result_.frames > frames_.size() || preview_.size() != previewed) {
+        throw Error(ErrorKind::bad_file, journal_.file().string() +
+                                             ": says more than there is; begin anew without "
+                                             "--resume");
+      }
+      return options_.begun.at("rawlog_bytes").get<std::uint64_t>();
+    } catch (const nlohmann::json::exception& failure) {
+      throw Error(ErrorKind::bad_file, journal_.file().string() + ": " + failure.what());
+    }
+  }
+
+  /// There may be more points, written before a checkpoint that a kill has prevented.
+  void read_preview(std::size_t count) {
+    geometry::AttributedCloud read = geometry::read_cloud(journal_.path(preview_name));
+    count = std::min({count, read.positions.size(), read.views.size()});
+    read.positions.resize(count);
+    read.views.resize(count);
+    preview_ = {std::move(read.positions), std::move(read.views)};
+  }
+
+  void take(const Frame& frame) {
+    scan_ = camera_.scan(scene_, frame.world_from_camera, result_.frames, options_.threads,
+                         std::move(scan_));
+    const sim::DepthImage image = sim::depth_image(scan_, camera_.camera(), options_.depth_unit);
+    sim::write_depth_png(image, journal_.path(file_name(result_.frames)));
+    if (rawlog_) rawlog_->append(frame, image);
+    add_preview(scan_, frame, static_cast<std::uint32_t>(result_.frames), preview_share_, preview_);
+    ++result_.frames;
+    result_.points += scan_.points.size();
+  }
+
+  void write_down() {
+    for (; synced_ < result_.frames; ++synced_) {
+      geometry::sync_to_disk(journal_.path(file_name(synced_)));
+    }
+    geometry::write_cloud(
+        journal_.path(preview_name),
+        {.positions = preview_.positions, .normals = {}, .views = preview_.views, .colours = {}});
+    journal_.checkpoint({{"images", result_.frames},
+                         {"points", result_.points},
+                         {"preview_points", preview_.size()},
+                         {"rawlog_bytes", rawlog_ ? rawlog_->sync() : 0}});
+  }
+
+  const sim::Scene& scene_;
+  const sim::DepthCamera& camera_;
+  std::span<const Frame> frames_;
+  ScanJournal& journal_;
+  const FrameOptions& options_;
+  double preview_share_ = 1.0;
+  FrameResult result_;
+  std::size_t synced_ = 0;  ///< images that are on the disk
+  geometry::Scan scan_;
+  geometry::PointCloud preview_;
+  std::optional<FrameRawlog> rawlog_;
+};
+
 }  // namespace
 
 FrameResult record_frames(const sim::Scene& scene, const sim::DepthCamera& camera,
-                          std::span<const Frame> frames, geometry::OutputFolder& folder,
-                          const FrameOptions& options) {
-  FrameResult result;
-  geometry::Scan scan;
-  std::vector<flight::TimedPose> truth, believed;
-  std::string list = "# timestamp filename\n";
-  std::optional<FrameRawlog> rawlog;
-  if (options.has_rawlog) {
-    rawlog.emplace(folder.stage("frames.rawlog"), camera.camera(), options.depth_unit);
-  }
-  const double pixels = static_cast<double>(frames.size()) * camera.camera().width() *
-                        static_cast<double>(camera.camera().height());
-  geometry::PointCloud preview;
-  for (const Frame& frame : frames) {
-    if (options.stop.stop_requested()) break;
-    scan = camera.scan(scene, frame.world_from_camera, result.frames, options.threads,
-                       std::move(scan));
-    const std::string name = file_name(result.frames);
-    const sim::DepthImage image = sim::depth_image(scan, camera.camera(), options.depth_unit);
-    sim::write_depth_png(image, folder.stage(name));
-    if (rawlog) rawlog->append(frame, image);
-    list += flight::fixed(frame.time, 6) + " " + name + "\n";
-    truth.push_back({frame.time, frame.world_from_camera});
-    believed.push_back({frame.time, frame.believed_from_camera});
-    add_preview(scan, frame, static_cast<std::uint32_t>(result.frames), preview_share(pixels),
-                preview);
-    ++result.frames;
-    result.points += scan.points.size();
-    if (options.report) options.report(result.frames, result.points);
-  }
-  if (rawlog) rawlog->finish();
-  geometry::write_cloud(
-      folder.stage(preview_name),
-      {.positions = preview.positions, .normals = {}, .views = preview.views, .colours = {}});
-  folder.write("depth.txt", list);
-  folder.write("groundtruth.txt", flight::write_tum(truth));
-  folder.write("believed.txt", flight::write_tum(believed));
-  folder.write("camera.json", file::json_text(camera_json(camera.camera(), options.depth_unit)));
+                          std::span<const Frame> frames, ScanJournal& journal,
+                          geometry::OutputFolder& folder, const FrameOptions& options) {
+  FrameRecording recording(scene, camera, frames, journal, options);
+  const FrameResult result = recording.run();
+  recording.stage(folder);
   return result;
+}
+
+std::uint32_t sample_checksum(const sim::Scene& scene, const sim::DepthCamera& camera,
+                              std::span<const Frame> frames) {
+  std::string bytes;
+  const auto add = [&](const auto& values) {
+    bytes.append(reinterpret_cast<const char*>(values.data()), values.size() * sizeof(values[0]));
+  };
+  for (const Frame& frame : frames) {
+    add(std::array{frame.time});
+    add(frame.world_from_camera.matrix().reshaped().eval());
+    add(frame.believed_from_camera.matrix().reshaped().eval());
+  }
+  for (const std::size_t number : {std::size_t{0}, frames.size() - 1}) {
+    if (number >= frames.size()) continue;
+    add(camera.scan(scene, frames[number].world_from_camera, number, 0).points);
+  }
+  return geometry::crc32_of(bytes);
 }
 
 }  // namespace skycap::missions::recording

@@ -10,6 +10,7 @@
 #include <Eigen/Geometry>
 
 #include "geometry/io/output_folder.h"
+#include "missions/recording/scan_journal.h"
 #include "sim/scene/scene.h"
 #include "sim/sensors/depth_camera.h"
 
@@ -26,6 +27,8 @@ struct FrameOptions {
   double depth_unit = 0.001;  ///< what one step of the images stands for [m]
   bool has_rawlog = false;    ///< whether frames.rawlog is written too
   unsigned threads = 0;
+  nlohmann::ordered_json begun;    ///< a checkpoint of the journal to go on from, or null
+  double checkpoint_period = 5.0;  ///< between two of them, at least [s]
   std::function<void(std::size_t frames, std::size_t points)> report;  ///< after each; may be empty
   std::stop_token stop;
 };
@@ -35,13 +38,19 @@ struct FrameResult {
   std::size_t points = 0;
 };
 
-/// Stages in `folder`, whose caller commits: the images, depth.txt (`time file` of each),
+/// Takes the images into `journal`, in which the recording can be gone on with, and stages in
+/// `folder`, whose caller commits: the images, depth.txt (`time file` of each),
 /// groundtruth.txt and believed.txt (TUM poses of the camera), camera.json (intrinsics, unit),
 /// preview.ply (preview.h), and on demand frames.rawlog: for each image a CObservationRobotPose
 /// "CARRIER", where the camera is believed to be, with x forward, and a CObservation3DRangeScan
 /// "DEPTH". Throws Error{bad_file} if a file cannot be written or MRPT is not there.
 FrameResult record_frames(const sim::Scene& scene, const sim::DepthCamera& camera,
-                          std::span<const Frame> frames, geometry::OutputFolder& folder,
-                          const FrameOptions& options);
+                          std::span<const Frame> frames, ScanJournal& journal,
+                          geometry::OutputFolder& folder, const FrameOptions& options);
+
+/// Stands for what the camera measures on that flight: a checksum of its first and last image and
+/// the poses of all.
+std::uint32_t sample_checksum(const sim::Scene& scene, const sim::DepthCamera& camera,
+                              std::span<const Frame> frames);
 
 }  // namespace skycap::missions::recording

@@ -1,11 +1,15 @@
 #include "missions/recording/scan_runner.h"
 
 #include <algorithm>
+#include <chrono>
 #include <condition_variable>
 #include <mutex>
+#include <string>
 #include <utility>
 #include <vector>
 
+#include "geometry/error.h"
+#include "geometry/io/record_log.h"
 #include "geometry/parallel.h"
 
 namespace skycap::missions::recording {
@@ -35,6 +39,7 @@ class ScanRun {
     pieces_ = (progress_.all_firings + firings_in_piece_ - 1) / firings_in_piece_;
     ring_.resize(8UL * geometry::thread_count(options.threads));
     for (Piece& piece : ring_) piece.chunks.resize(files.size());
+    go_on_from(options.begun);
   }
 
   ScanResult run() {
@@ -51,6 +56,18 @@ class ScanRun {
   }
 
  private:
+  void go_on_from(const ScanProgress& begun) {
+    const bool is_whole = begun.firings % firings_in_piece_ == 0;
+    if (begun.firings > progress_.all_firings ||
+        (!is_whole && begun.firings != progress_.all_firings)) {
+      throw Error(ErrorKind::bad_file, "no scan of this flight was interrupted after " +
+                                           std::to_string(begun.firings) + " firings");
+    }
+    progress_.firings = begun.firings;
+    progress_.points = begun.points;
+    measured_ = appended_ = (begun.firings + firings_in_piece_ - 1) / firings_in_piece_;
+  }
+
   void work() {
     sim::LidarReturns returns;
     for (auto number = next_number(); number < pieces_; number = next_number()) {
@@ -86,12 +103,22 @@ class ScanRun {
       progress_.firings = piece.end_firing;
       progress_.points += piece.points;
       if (options_.report) options_.report(progress_);
+      write_down();
       lock.lock();
       piece.is_ready = false;
       ++appended_;
       has_room_.notify_all();
     }
     is_appending_ = false;
+  }
+
+  // Only the thread that appends comes here.
+  void write_down() {
+    const auto now = std::chrono::steady_clock::now();
+    const std::chrono::duration<double> since = now - written_down_;
+    if (!options_.checkpoint || since.count() < options_.checkpoint_period) return;
+    options_.checkpoint(progress_);
+    written_down_ = std::chrono::steady_clock::now();
   }
 
   void abandon() {
@@ -113,6 +140,7 @@ class ScanRun {
   std::uint64_t measured_ = 0, appended_ = 0;
   bool is_appending_ = false, is_over_ = false;
   ScanProgress progress_;  // of the thread that appends
+  std::chrono::steady_clock::time_point written_down_ = std::chrono::steady_clock::now();
 };
 
 }  // namespace
@@ -121,6 +149,24 @@ ScanResult run_scan(const sim::Scene& scene, const sim::Lidar& lidar,
                     const sim::LidarFlight& flight, std::span<CloudFile> files,
                     const ScanOptions& options) {
   return ScanRun(scene, lidar, flight, files, options).run();
+}
+
+std::uint32_t sample_checksum(const sim::Scene& scene, const sim::Lidar& lidar,
+                              const sim::LidarFlight& flight) {
+  constexpr std::uint64_t samples = 64, firings = 32;
+  const std::uint64_t all = lidar.firings(flight.flown);
+  std::string bytes = std::to_string(all);
+  sim::LidarReturns returns;
+  for (std::uint64_t i = 0; i < samples; ++i) {
+    const std::uint64_t first = all / samples * i;
+    returns =
+        lidar.measure(scene, flight, {first, std::min(firings, all - first)}, std::move(returns));
+    for (const Eigen::Vector3f& point : returns.points) {
+      const Eigen::Vector3d place = returns.origin + point.cast<double>();
+      bytes.append(reinterpret_cast<const char*>(place.data()), sizeof(double) * 3);
+    }
+  }
+  return geometry::crc32_of(bytes);
 }
 
 }  // namespace skycap::missions::recording

@@ -25,16 +25,27 @@ struct ScanResult {
 
 struct ScanOptions {
   unsigned threads = 0;  ///< zero: all processors
+  ScanProgress begun;    ///< what the files hold already, of a checkpoint
+  /// Called from one thread at a time, `checkpoint_period` after the last time or later, when the
+  /// files hold all of the progress and no more; may be empty.
+  std::function<void(const ScanProgress&)> checkpoint;
+  double checkpoint_period = 5.0;  ///< [s]
   /// Called now and then, from one thread at a time; may be empty.
   std::function<void(const ScanProgress&)> report;
   std::stop_token stop;
 };
 
-/// Measures the whole of `flight` and appends the returns to each of `files`, which the caller
-/// finishes, in the order of the shots. The bytes do not depend on the number of threads, and the
+/// Measures the whole of `flight`, or what is left of it, and appends the returns to each of
+/// `files`, which the caller finishes, in the order of the shots. Throws Error{bad_file} if no
+/// checkpoint was where options.begun is. The bytes do not depend on the number of threads, and the
 /// memory that is needed does not on the length of the flight.
 ScanResult run_scan(const sim::Scene& scene, const sim::Lidar& lidar,
                     const sim::LidarFlight& flight, std::span<CloudFile> files,
                     const ScanOptions& options);
+
+/// Stands for what the scanner measures on that flight: a checksum of some firings of it, evenly
+/// spread.
+std::uint32_t sample_checksum(const sim::Scene& scene, const sim::Lidar& lidar,
+                              const sim::LidarFlight& flight);
 
 }  // namespace skycap::missions::recording

@@ -5,7 +5,6 @@
 #include <nlohmann/json.hpp>
 
 #include "missions/file/json_text.h"
-#include "missions/run/journal_text.h"
 
 namespace skycap::missions::run {
 

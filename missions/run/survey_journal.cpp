@@ -7,8 +7,8 @@
 
 #include "geometry/error.h"
 #include "geometry/io/json.h"
+#include "missions/derived/journal_text.h"
 #include "missions/file/json_text.h"
-#include "missions/run/journal_text.h"
 #include "missions/scene/sha256.h"
 
 namespace skycap::missions::run {
@@ -28,14 +28,16 @@ std::string digest_of(const scene::SurveyScene& scene) {
 
 SurveyJournal::SurveyJournal(std::filesystem::path file, const file::Mission& mission,
                              const scene::SurveyScene& scene, bool resumes)
-    : file_(std::move(file)), identity_(identity_text(mission, digest_of(scene))) {
+    : file_(std::move(file)),
+      identity_(derived::identity_text(mission, {{"surface", digest_of(scene)}})) {
   if (!resumes || !std::filesystem::exists(file_)) return;
   log_.emplace(file_);
   if (!log_->records().empty()) read_known(log_->records());
 }
 
 void SurveyJournal::read_known(const std::vector<std::string>& records) {
-  require_same_survey(file_.string(), records.front(), identity_, "begin anew without --resume");
+  derived::require_same_survey(file_.string(), records.front(), identity_,
+                               "begin anew without --resume");
   try {
     for (const std::string& record : std::span(records).subspan(1)) {
       known_.push_back(parse(record));
@@ -47,11 +49,11 @@ void SurveyJournal::read_known(const std::vector<std::string>& records) {
 }
 
 std::string SurveyJournal::text_of(const ViewRecord& record) {
-  return journal_line({{"position", json_of(record.view.position)},
-                       {"direction", json_of(record.view.direction)},
-                       {"returns", record.returns},
-                       {"points", record.points},
-                       {"next", reach_json(record.reach)}});
+  return derived::journal_line({{"position", json_of(record.view.position)},
+                                {"direction", json_of(record.view.direction)},
+                                {"returns", record.returns},
+                                {"points", record.points},
+                                {"next", reach_json(record.reach)}});
 }
 
 SurveyJournal::ViewRecord SurveyJournal::parse(const std::string& text) {

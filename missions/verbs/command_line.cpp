@@ -143,6 +143,8 @@ void add_scan(CLI::App& app, const Console& console, Action& action) {
       ->delimiter(',');
   verb->add_flag("--with-truth", options->with_truth,
                  "Write a second file with the points as they really were");
+  verb->add_flag("--resume", options->resumes,
+                 "Go on with the scan that was interrupted in that folder, if there is one");
   verb->add_flag("!--no-report", options->has_report, "Leave out the page");
   verb->add_option("--seed", keys->seed, "Seed, in place of the mission's");
   verb->add_option("--threads", keys->threads, "Threads, 0 for all processors");

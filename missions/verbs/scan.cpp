@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <chrono>
 #include <memory>
+#include <optional>
 #include <string>
 #include <utility>
 #include <variant>
@@ -22,8 +23,10 @@
 #include "missions/package/settings.h"
 #include "missions/recording/cloud_formats.h"
 #include "missions/recording/frame_recorder.h"
+#include "missions/recording/laser_recorder.h"
 #include "missions/recording/preview.h"
 #include "missions/recording/scan_flight.h"
+#include "missions/recording/scan_journal.h"
 #include "missions/recording/scan_runner.h"
 #include "missions/scene/scene_source.h"
 #include "missions/verbs/verbs.h"
@@ -67,12 +70,19 @@ std::string sensor_tum(const sim::Trajectory& carrier, const Isometry3d& body_fr
   return flight::write_tum(poses);
 }
 
-/// Commits a scan; one that was interrupted goes beside a complete one instead of over it.
-void commit_scan(geometry::OutputFolder& folder, bool is_complete) {
+/// Commits a scan; one that was interrupted goes beside a complete one instead of over it, and
+/// keeps its journal.
+void commit_scan(geometry::OutputFolder& folder, recording::ScanJournal& journal,
+                 bool is_complete) {
   if (!is_complete && package::is_complete_result(folder.path() / scan_name)) {
     folder.move_to("interrupted");
   }
   folder.commit();
+  if (is_complete) journal.close();
+}
+
+double seconds_since(Clock::time_point start) {
+  return std::chrono::duration<double>(Clock::now() - start).count();
 }
 
 /// Shows how far a scan is, ten times a second at most.
@@ -85,52 +95,45 @@ class ScanReport {
     const Clock::time_point now = Clock::now();
     if (now - shown_ < std::chrono::milliseconds(100)) return;
     shown_ = now;
-    const double elapsed = std::chrono::duration<double>(now - start_).count();
-    const double share =
-        static_cast<double>(progress.firings) / static_cast<double>(progress.all_firings);
-    line_.show(
-        fmt::format("{}: {:.1f} % flown, {:.1f} M points, {:.1f} M shots/s, {:.0f} s left", name_,
-                    100.0 * share, 1e-6 * static_cast<double>(progress.points),
-                    1e-6 * shots_in_firing_ * static_cast<double>(progress.firings) / elapsed,
-                    elapsed * (1.0 - share) / share));
+    const double elapsed = seconds_since(start_);
+    if (!begun_) begun_ = progress.firings;
+    const auto flown = static_cast<double>(progress.firings);
+    const auto all = static_cast<double>(progress.all_firings);
+    const double rate = (flown - static_cast<double>(*begun_)) / elapsed;
+    line_.show(fmt::format("{}: {:.1f} % flown, {:.1f} M points, {:.1f} M shots/s, {:.0f} s left",
+                           name_, 100.0 * flown / all, 1e-6 * static_cast<double>(progress.points),
+                           1e-6 * shots_in_firing_ * rate, (all - flown) / rate));
   }
 
  private:
   ProgressLine& line_;
   std::string name_;
   double shots_in_firing_;
+  std::optional<std::uint64_t> begun_;  ///< firings when the first report came
   Clock::time_point start_ = Clock::now(), shown_;
 };
 
-struct OutputFile {
-  std::string name;
-  std::uint64_t bytes = 0;
-};
-
-std::vector<recording::CloudFile> open_files(const ScanVerbOptions& options,
-                                             const recording::CloudFormatContext& context,
-                                             geometry::OutputFolder& folder,
-                                             std::vector<OutputFile>& outputs) {
-  std::vector<recording::CloudFile> files;
-  const auto open = [&](const std::string& name, const auto& format,
-                        recording::ReturnPosition position) {
-    for (const OutputFile& output : outputs) {
+std::vector<recording::LaserOutput> output_files(const ScanVerbOptions& options,
+                                                 const recording::CloudFormatContext& context) {
+  std::vector<recording::LaserOutput> outputs;
+  const auto add = [&](const std::string& name, const auto& format,
+                       recording::ReturnPosition position) {
+    for (const recording::LaserOutput& output : outputs) {
       if (output.name == name) {
         throw Error(ErrorKind::bad_usage,
                     "--format asks for two files " + name + "; leave one of the formats out");
       }
     }
-    outputs.push_back({name});
-    files.emplace_back(folder.stage(name), format, position);
+    outputs.push_back({name, format, position});
   };
   for (const std::string& name : options.formats) {
     const recording::CloudFormatInfo& info = recording::cloud_format_named(name);
     const std::shared_ptr<const recording::CloudFormat> format = info.make(context);
-    open("scan" + info.ending, format, recording::ReturnPosition::reported);
+    add("scan" + info.ending, format, recording::ReturnPosition::reported);
     if (options.with_truth)
-      open("scan_true" + info.ending, format, recording::ReturnPosition::actual);
+      add("scan_true" + info.ending, format, recording::ReturnPosition::actual);
   }
-  return files;
+  return outputs;
 }
 
 /// What a laser scanner has recorded.
@@ -140,13 +143,13 @@ struct LaserRecording {
   double shots = 0.0;
   double flown = 0.0;  ///< [s]
   double time = 0.0;   ///< that the simulation took [s]
-  std::vector<OutputFile> outputs;
+  std::vector<recording::LaserOutput> outputs;
 };
 
 nlohmann::ordered_json scan_json(const file::Mission& mission, const LaserRecording& recorded,
                                  const recording::PreviewPieces& pieces) {
   nlohmann::ordered_json files = nlohmann::ordered_json::array();
-  for (const OutputFile& file : recorded.outputs) {
+  for (const recording::LaserOutput& file : recorded.outputs) {
     files.push_back({{"name", file.name}, {"bytes", file.bytes}});
   }
   const sim::NavigationErrors& navigation = mission.scan.navigation;
@@ -180,10 +183,22 @@ void print(const LaserRecording& recorded, const file::Mission& mission,
              1e-6 * static_cast<double>(recorded.result.progress.points), recorded.time,
              1e-6 * recorded.shots / recorded.time)
       << "  results   " << folder.string();
-  for (const OutputFile& file : recorded.outputs) {
+  for (const recording::LaserOutput& file : recorded.outputs) {
     out << fmt::format(", {} {:.1f} MB", file.name, 1e-6 * static_cast<double>(file.bytes));
   }
   out << "\n" << std::flush;
+}
+
+/// Begins a scan, or goes on with an interrupted one from what is returned.
+nlohmann::ordered_json open_journal(recording::ScanJournal& journal, const ScanVerbOptions& options,
+                                    const file::Mission& mission,
+                                    const nlohmann::ordered_json& identity,
+                                    const Console& console) {
+  nlohmann::ordered_json begun = journal.open(mission, identity, options.resumes);
+  if (begun.is_object() && !options.is_quiet) {
+    console.err << "going on with an interrupted scan\n" << std::flush;
+  }
+  return begun;
 }
 
 int scan_with_laser(const ScanVerbOptions& options, const file::Mission& mission,
@@ -195,6 +210,7 @@ int scan_with_laser(const ScanVerbOptions& options, const file::Mission& mission
   recording::require_measurable(lidar, flown.route.carrier);
   const sim::LidarFlight flight = flown.of_scanner();
   const std::shared_ptr<const flight::UtmProjection> projection = projection_of(mission);
+  recording::ScanJournal journal(folder.path());
 
   ProgressLine progress(console, options.is_quiet);
   progress.show(mission.name + ": making the scene ready");
@@ -202,34 +218,37 @@ int scan_with_laser(const ScanVerbOptions& options, const file::Mission& mission
       scene::reflecting_scene(mission, options.mission.parent_path());
   const sim::Scene scene = truth.scene(mission.threads);
   LaserRecording recorded{.sensor = sensor_name};
-  std::vector<recording::CloudFile> files = open_files(
-      options, {sensor_name, config, flight, truth.centre(), projection}, folder, recorded.outputs);
+  recorded.outputs =
+      output_files(options, {sensor_name, config, flight, truth.centre(), projection});
 
   const auto channels = static_cast<double>(config.channels.size());
   const recording::PreviewPieces pieces = recording::preview_pieces(config, flown.route.carrier);
   const auto all_firings = static_cast<double>(lidar.firings(flown.route.carrier));
-  files.emplace_back(
-      folder.stage(recording::preview_name),
-      recording::preview_format(pieces, recording::preview_share(channels * all_firings)));
-  recorded.outputs.push_back({recording::preview_name});
-  const Clock::time_point start = Clock::now();
+  recorded.outputs.push_back(
+      {recording::preview_name,
+       recording::preview_format(pieces, recording::preview_share(channels * all_firings))});
   const HoldsResults results(console);
-  recorded.result = recording::run_scan(scene, lidar, flight, files,
-                                        {.threads = mission.threads,
-                                         .report = ScanReport(progress, mission.name, channels),
-                                         .stop = console.stop});
-  for (std::size_t i = 0; i < files.size(); ++i) {
-    files[i].finish();
-    recorded.outputs[i].bytes = files[i].bytes();
-  }
-  recorded.time = std::chrono::duration<double>(Clock::now() - start).count();
+  const nlohmann::ordered_json begun =
+      open_journal(journal, options, mission,
+                   {{"sensor", sensor_name},
+                    {"formats", options.formats},
+                    {"truth", options.with_truth},
+                    {"measured", recording::sample_checksum(scene, lidar, flight)}},
+                   console);
+  const auto [result, time] =
+      record_laser(scene, lidar, flight, recorded.outputs, journal, begun, folder,
+                   {.threads = mission.threads,
+                    .report = ScanReport(progress, mission.name, channels),
+                    .stop = console.stop});
+  recorded.result = result;
+  recorded.time = time;
   const auto firings = static_cast<double>(recorded.result.progress.firings);
   recorded.shots = channels * firings, recorded.flown = firings * config.firing_period;
   folder.write("trajectory.tum", sensor_tum(flown.route.carrier, flown.mount.real));
   folder.write("trajectory_believed.tum", sensor_tum(flown.believed, flown.mount.believed));
   folder.write(scan_name, file::json_text(scan_json(mission, recorded, pieces)));
   write_page(scan_name, options.has_report, folder, console);
-  commit_scan(folder, recorded.result.is_complete);
+  commit_scan(folder, journal, recorded.result.is_complete);
   progress.clear();
   if (!options.is_quiet) print(recorded, mission, folder.path(), console.out);
   return recorded.result.is_complete ? 0 : 1;
@@ -275,14 +294,23 @@ int scan_with_camera(const ScanVerbOptions& options, const file::Mission& missio
   const bool has_rawlog = std::ranges::find(options.formats, "rawlog") != options.formats.end();
   const Clock::time_point start = Clock::now();
   const HoldsResults results(console);
+  const sim::DepthCamera camera(config);
+  recording::ScanJournal journal(folder.path());
+  const nlohmann::ordered_json begun =
+      open_journal(journal, options, mission,
+                   {{"sensor", sensor_name},
+                    {"rawlog", has_rawlog},
+                    {"measured", recording::sample_checksum(scene, camera, frames)}},
+                   console);
   const recording::FrameResult result =
-      recording::record_frames(scene, sim::DepthCamera(config), frames, folder,
+      recording::record_frames(scene, camera, frames, journal, folder,
                                {.depth_unit = mission.scan.depth_unit,
                                 .has_rawlog = has_rawlog,
                                 .threads = mission.threads,
+                                .begun = begun,
                                 .report = report,
                                 .stop = console.stop});
-  const double time = std::chrono::duration<double>(Clock::now() - start).count();
+  const double time = seconds_since(start);
   const bool is_complete = result.frames == frames.size();
   folder.write(scan_name, file::json_text({{"mission", mission.name},
                                            {"sensor", sensor_name},
@@ -294,7 +322,7 @@ int scan_with_camera(const ScanVerbOptions& options, const file::Mission& missio
                                            {"simulation_s", time},
                                            {"settings", package::settings_json(mission)}}));
   write_page(scan_name, options.has_report, folder, console);
-  commit_scan(folder, is_complete);
+  commit_scan(folder, journal, is_complete);
   progress.clear();
   if (!options.is_quiet) {
     console.out << fmt::format(

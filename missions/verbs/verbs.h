@@ -146,6 +146,7 @@ struct ScanVerbOptions {
   /// Of a laser scanner's points; of a camera's images only "rawlog" counts, beside the PNG files.
   std::vector<std::string> formats = {"las"};
   bool with_truth = false;  ///< also where the surfaces really were
+  bool resumes = false;     ///< goes on with an interrupted scan, if there is one
   bool has_report = true;   ///< the page beside the other results, too
   std::vector<file::KeyOverride> overrides;
   bool is_quiet = false;

@@ -113,6 +113,48 @@ TEST_F(ScanRunner, AStoppedScanLeavesAValidFileOfItsBeginning) {
   EXPECT_GT(result.progress.points, 0U);
 }
 
+// From each checkpoint that a kill may leave behind, whatever was appended after it.
+TEST_F(ScanRunner, GoesOnFromAnyCheckpointToTheSameBytes) {
+  run(folder / "whole.las", 1);
+  struct Checkpoint {
+    recording::ScanProgress progress;
+    recording::CloudState state;
+  };
+  std::vector<Checkpoint> checkpoints;
+  std::vector<recording::CloudFile> files = las_files(folder / "killed.las");
+  recording::run_scan(scene, sim::Lidar(config), {trajectory, trajectory}, files,
+                      {.threads = 2,
+                       .checkpoint =
+                           [&](const recording::ScanProgress& progress) {
+                             checkpoints.push_back({progress, files[0].state()});
+                           },
+                       .checkpoint_period = 0.0});
+  files.clear();
+  ASSERT_GT(checkpoints.size(), 10U);
+  for (std::size_t i = 0; i < checkpoints.size(); i += 9) {
+    const auto& [progress, state] = checkpoints[i];
+    const std::filesystem::path file = folder / ("from" + std::to_string(i) + ".las");
+    std::filesystem::copy_file(folder / "killed.las", file);
+    std::vector<recording::CloudFile> grown;
+    grown.emplace_back(file, recording::las_format({.point_format = 6, .offset = far}),
+                       recording::ReturnPosition::reported, state);
+    const recording::ScanResult result =
+        recording::run_scan(scene, sim::Lidar(config), {trajectory, trajectory}, grown,
+                            {.threads = 2, .begun = progress});
+    grown[0].finish();
+    EXPECT_TRUE(result.is_complete);
+    EXPECT_EQ(bytes_of(file), bytes_of(folder / "whole.las")) << i;
+  }
+  std::vector<recording::CloudFile> none;
+  EXPECT_THROW(recording::run_scan(scene, sim::Lidar(config), {trajectory, trajectory}, none,
+                                   {.begun = {.firings = 1}}),
+               Error);
+  EXPECT_THROW(recording::CloudFile(folder / "whole.las", recording::las_format({}),
+                                    recording::ReturnPosition::reported,
+                                    recording::CloudState{{}, 1'000'000'000}),
+               Error);
+}
+
 TEST_F(ScanRunner, SaysWhatCannotBeWritten) {
   try {
     const recording::CloudFile file(folder / "missing" / "scan.las", recording::las_format({}));

@@ -11,6 +11,7 @@
 
 #include "geometry/io/record_log.h"
 #include "missions/verbs/command_line.h"
+#include "tests/missions/ctrl_c.h"
 #include "tests/missions/flown_mission.h"
 #include "tests/missions/run_skycap.h"
 
@@ -21,27 +22,11 @@ namespace fs = std::filesystem;
 using testing::HasSubstr;
 using testing::IsEmpty;
 using tests::content_of;
+using tests::CtrlC;
 using tests::flown_mission;
 using tests::quick_mission;
 using tests::run_skycap;
 using tests::TestFolder;
-
-/// A terminal at which somebody types Ctrl-C when the progress line shows a text.
-class CtrlC : public std::stringbuf {
- public:
-  explicit CtrlC(std::string at) : at_(std::move(at)) {}
-  std::stop_token token() const { return stop_.get_token(); }
-
- protected:
-  int sync() override {
-    if (str().find(at_) != std::string::npos) stop_.request_stop();
-    return 0;
-  }
-
- private:
-  std::string at_;
-  std::stop_source stop_;
-};
 
 /// All results but what differs from run to run, which are the times in summary.json and on the
 /// page.

@@ -1,0 +1,85 @@
+#include "missions/recording/scan_journal.h"
+
+#include <system_error>
+#include <vector>
+
+#include "geometry/error.h"
+#include "geometry/io/file.h"
+#include "geometry/io/json.h"
+#include "missions/derived/journal_text.h"
+
+namespace skycap::missions::recording {
+namespace {
+
+namespace fs = std::filesystem;
+using Json = nlohmann::ordered_json;
+
+void require(const std::error_code& failure, const fs::path& path, const char* what) {
+  if (!failure) return;
+  throw Error(ErrorKind::bad_file, path.string() + ": " + what + " (" + failure.message() + ")");
+}
+
+/// Another file with the same bytes.
+void copy_bytes(const fs::path& from, const fs::path& to) {
+  std::error_code failure;
+  fs::copy_file(from, to, fs::copy_options::overwrite_existing, failure);
+  require(failure, to, "cannot be written");
+}
+
+}  // namespace
+
+ScanJournal::ScanJournal(const fs::path& results)
+    : folder_(results / "unfinished"), file_(folder_ / "scan.journal") {}
+
+Json ScanJournal::open(const file::Mission& mission, const Json& more, bool resumes) {
+  const std::string identity = derived::identity_text(mission, more);
+  if (resumes && fs::exists(file_)) log_.emplace(file_);
+  if (!log_ || log_->records().empty()) {
+    begin(identity);
+    return nullptr;
+  }
+  const std::vector<std::string>& records = log_->records();
+  derived::require_same_survey(file_.string(), records.front(), identity,
+                               "begin anew without --resume");
+  return records.size() > 1 ? geometry::parse_json<Json>(records.back()) : Json();
+}
+
+void ScanJournal::begin(const std::string& identity) {
+  close();
+  std::error_code failure;
+  fs::create_directories(folder_, failure);
+  require(failure, folder_, "cannot be made");
+  log_.emplace(file_);
+  log_->append(identity);
+}
+
+fs::path ScanJournal::path_to_change(const std::string& name) const {
+  const fs::path path = folder_ / name;
+  std::error_code missing;
+  if (fs::hard_link_count(path, missing) > 1 && !missing) {
+    const fs::path own = folder_ / ("own-" + name);
+    copy_bytes(path, own);
+    std::error_code failure;
+    fs::rename(own, path, failure);
+    require(failure, path, "cannot be replaced");
+  }
+  return path;
+}
+
+void ScanJournal::checkpoint(const Json& state) { log_->append(derived::journal_line(state)); }
+
+void ScanJournal::stage(const std::string& name, geometry::OutputFolder& results) const {
+  const fs::path staged = results.stage(name);
+  std::error_code no_links;  // as on memory cards
+  fs::create_hard_link(folder_ / name, staged, no_links);
+  if (no_links) copy_bytes(folder_ / name, staged);
+}
+
+void ScanJournal::close() {
+  log_.reset();
+  std::error_code failure;
+  fs::remove_all(folder_, failure);
+  require(failure, folder_, "cannot be removed");
+}
+
+}  // namespace skycap::missions::recording

@@ -1,0 +1,191 @@
+// An interrupted scan that goes on ends as if nothing had happened.
+#include <filesystem>
+#include <fstream>
+#include <map>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "missions/verbs/command_line.h"
+#include "tests/missions/ctrl_c.h"
+#include "tests/missions/run_skycap.h"
+
+namespace skycap::missions {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::HasSubstr;
+using tests::content_of;
+using tests::run_skycap;
+using tests::TestFolder;
+
+/// All results but what differs from run to run, which are the times in scan.json and on the page.
+std::map<std::string, std::string> results_in(const fs::path& folder) {
+  std::map<std::string, std::string> results;
+  for (const auto& entry : fs::directory_iterator(folder)) {
+    const std::string name = entry.path().filename();
+    if (name == "scan.json" || name == "scan.html") continue;
+    results[name] = entry.is_directory() ? "folder" : content_of(entry.path());
+  }
+  return results;
+}
+
+/// A second and a half of flight round a cube of 2 m.
+class ResumedScan : public testing::Test {
+ protected:
+  ResumedScan() {
+    folder_.write("cube.obj",
+                  "v -1 -1 0\nv 1 -1 0\nv 1 1 0\nv -1 1 0\nv -1 -1 2\nv 1 -1 2\nv 1 1 2\n"
+                  "v -1 1 2\nf 4 3 2 1\nf 5 6 7 8\nf 1 2 6 5\nf 2 3 7 6\nf 3 4 8 7\nf 4 1 5 8\n");
+    folder_.write("laser.yaml",
+                  "name: Test laser\nkind: spinning\ncolumns_per_turn: 500\nrotation_rate_hz: 20\n"
+                  "channels: {count: 16, lowest_deg: -20, highest_deg: 10}\n"
+                  "range: {min: 0.1, max: 50}\nerrors: {sigma: 0.01}\n");
+    folder_.write("camera.yaml",
+                  "name: Test camera\nkind: camera\nwidth_px: 20\nheight_px: 10\n"
+                  "horizontal_fov_deg: 10\nvertical_fov_deg: 5\n");
+    folder_.write("views.csv",
+                  "view,x,y,z,direction_x,direction_y,direction_z\n"
+                  "0,5,0,1,-1,0,0\n1,4,0,1,-1,0,0\n2,3,0,1,-1,0,0\n3,3,.5,1,-1,0,0\n");
+    folder_.write("m.yaml",
+                  "scene: {model: cube.obj}\n"
+                  "scan:\n"
+                  "  sensor: laser.yaml\n"
+                  "  orbit: {radius: 5, lowest: 1, circles: 1, speed: 20}\n"
+                  "evaluation: {registration_distance: 0.1}\n");
+  }
+
+  std::vector<std::string> scan(const std::string& out,
+                                const std::vector<std::string>& more) const {
+    std::vector<std::string> arguments{"scan",        folder_ / "m.yaml", "--out",
+                                       folder_ / out, "--threads",        "1"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return arguments;
+  }
+
+  /// Scans into "part" until the progress line shows a text.
+  void interrupt_at(const std::string& text, const std::vector<std::string>& more) const {
+    tests::CtrlC keys(text);
+    std::ostringstream out;
+    std::ostream err(&keys);
+    ASSERT_EQ(verbs::run_command_line(scan("part", more), {out, err, true, keys.token()}), 1);
+    ASSERT_TRUE(fs::exists(journal_));
+    ASSERT_THAT(content_of(folder_ / "part/scan.json"), HasSubstr("\"complete\": false"));
+  }
+
+  void expect_same_results() const {
+    const auto part = results_in(folder_ / "part"), whole = results_in(folder_ / "whole");
+    for (const auto& [name, content] : whole) {
+      EXPECT_TRUE(part.contains(name) && part.at(name) == content) << name;
+    }
+    EXPECT_EQ(part.size(), whole.size());
+  }
+
+  static std::vector<std::string> with(std::vector<std::string> options,
+                                       const std::vector<std::string>& more) {
+    options.insert(options.end(), more.begin(), more.end());
+    return options;
+  }
+
+  TestFolder folder_;
+  fs::path journal_ = folder_.path() / "part" / "unfinished" / "scan.journal";
+  const std::vector<std::string> clouds_{"--format", "las,ply,pcd,xyz,rawlog", "--with-truth"};
+};
+
+TEST_F(ResumedScan, OfALaserEndsAsIfNothingHadHappened) {
+  ASSERT_EQ(run_skycap(scan("whole", clouds_)).exit_code, 0);
+  interrupt_at("% flown", clouds_);
+  EXPECT_LT(fs::file_size(folder_ / "part/scan.las"), fs::file_size(folder_ / "whole/scan.las"));
+  const auto run = run_skycap(scan("part", with(clouds_, {"--resume", "--threads", "2"})));
+  EXPECT_EQ(run.exit_code, 0) << run.err;
+  EXPECT_THAT(run.err, HasSubstr("going on with an interrupted scan"));
+  expect_same_results();
+}
+
+// What a kill leaves: more in the files than the journal knows, and a part of a record.
+TEST_F(ResumedScan, CutsOffWhatItsJournalDoesNotKnow) {
+  ASSERT_EQ(run_skycap(scan("whole", clouds_)).exit_code, 0);
+  interrupt_at("% flown", clouds_);
+  const std::string partial = content_of(folder_ / "part/scan.las");
+  for (const char* name : {"scan.las", "scan.ply", "scan.rawlog", "preview.ply"}) {
+    // As a kill would: not through the name that shares its bytes with the results.
+    const fs::path file = journal_.parent_path() / name;
+    const std::string content = content_of(file);
+    fs::remove(file);
+    std::ofstream(file, std::ios::binary) << content << std::string(1000, 'x');
+  }
+  std::ofstream(journal_, std::ios::binary | std::ios::app) << "0123abcd 3 {\"fir";
+  EXPECT_EQ(run_skycap(scan("part", with(clouds_, {"--resume"}))).exit_code, 0);
+  expect_same_results();
+  EXPECT_NE(partial, content_of(folder_ / "part/scan.las"));
+}
+
+TEST_F(ResumedScan, OfACameraEndsAsIfNothingHadHappened) {
+  const std::vector<std::string> images{"--route",  folder_.path().string(),
+                                        "--sensor", folder_ / "camera.yaml",
+                                        "--format", "rawlog"};
+  ASSERT_EQ(run_skycap(scan("whole", images)).exit_code, 0);
+  interrupt_at("image 2 of 4", images);
+  EXPECT_FALSE(fs::exists(folder_ / "part/depth_000002.png"));
+  const auto run = run_skycap(scan("part", with(images, {"--resume"})));
+  EXPECT_EQ(run.exit_code, 0) << run.err;
+  expect_same_results();
+}
+
+// The results of the interrupted run share bytes with the files that grow on.
+TEST_F(ResumedScan, ThatIsInterruptedAgainKeepsWhatWasThere) {
+  ASSERT_EQ(run_skycap(scan("whole", clouds_)).exit_code, 0);
+  interrupt_at("% flown", clouds_);
+  const fs::path kept = folder_ / "kept.las";
+  fs::create_hard_link(folder_ / "part/scan.las", kept);
+  const std::string partial = content_of(kept);
+  interrupt_at("% flown", with(clouds_, {"--resume"}));
+  EXPECT_EQ(content_of(kept), partial);
+  EXPECT_GT(fs::file_size(folder_ / "part/scan.las"), partial.size());
+  ASSERT_EQ(run_skycap(scan("part", with(clouds_, {"--resume"}))).exit_code, 0);
+  expect_same_results();
+}
+
+TEST_F(ResumedScan, OfAnotherScanIsRefusedAndNothingIsLost) {
+  interrupt_at("% flown", clouds_);
+  const auto before = results_in(folder_ / "part");
+  const auto refusal = [&](const std::vector<std::string>& more) {
+    const auto run = run_skycap(scan("part", with(more, {"--resume"})));
+    EXPECT_EQ(run.exit_code, 2);
+    EXPECT_TRUE(results_in(folder_ / "part") == before);
+    return run.err;
+  };
+  EXPECT_THAT(refusal(with(clouds_, {"--seed", "2"})), HasSubstr("seed was 1 and is 2"));
+  EXPECT_THAT(refusal({"--format", "las"}), HasSubstr("formats was "));
+  EXPECT_THAT(refusal(with(clouds_, {"--set", "scan.orbit.speed=21"})),
+              HasSubstr("was begun otherwise: "));
+  folder_.write("cube.obj",
+                content_of(folder_ / "cube.obj") + "v 2 2 0\nv 2 3 0\nv 2 3 3\n" + "f 9 10 11\n");
+  EXPECT_THAT(refusal(clouds_), HasSubstr("measured was "));
+}
+
+TEST_F(ResumedScan, FromADamagedJournalIsRefusedAndABeginningIsNot) {
+  interrupt_at("% flown", clouds_);
+  std::string journal = content_of(journal_);
+  journal[journal.find("\"seed\"") + 1] ^= 1;
+  std::ofstream(journal_, std::ios::binary) << journal;
+  const auto run = run_skycap(scan("part", with(clouds_, {"--resume"})));
+  EXPECT_EQ(run.exit_code, 2);
+  EXPECT_THAT(run.err, HasSubstr("scan.journal: line 1 is damaged"));
+  EXPECT_EQ(run_skycap(scan("part", clouds_)).exit_code, 0);
+  EXPECT_FALSE(fs::exists(journal_.parent_path()));
+}
+
+TEST_F(ResumedScan, WithoutAJournalBegins) {
+  ASSERT_EQ(run_skycap(scan("whole", clouds_)).exit_code, 0);
+  const auto run = run_skycap(scan("part", with(clouds_, {"--resume"})));
+  EXPECT_EQ(run.exit_code, 0) << run.err;
+  EXPECT_EQ(run.err, "");
+  expect_same_results();
+}
+
+}  // namespace
+}  // namespace skycap::missions
