@@ -47,6 +47,7 @@ set(supporting_headers
   flight/motion/motion.h
   flight/motion/smoothing.h
   flight/paths/path.h
+  flight/route/pad_ground.h
   flight/space/segment_distance.h
   flight/way_home/least_return.h
   flight/way_home/return_law.h
