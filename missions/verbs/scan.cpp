@@ -95,8 +95,12 @@ class ScanReport {
     const Clock::time_point now = Clock::now();
     if (now - shown_ < std::chrono::milliseconds(100)) return;
     shown_ = now;
+    if (!begun_) {
+      begun_ = progress.firings;
+      start_ = now;
+      return;
+    }
     const double elapsed = seconds_since(start_);
-    if (!begun_) begun_ = progress.firings;
     const auto flown = static_cast<double>(progress.firings);
     const auto all = static_cast<double>(progress.all_firings);
     const double rate = (flown - static_cast<double>(*begun_)) / elapsed;
@@ -110,7 +114,7 @@ class ScanReport {
   std::string name_;
   double shots_in_firing_;
   std::optional<std::uint64_t> begun_;  ///< firings when the first report came
-  Clock::time_point start_ = Clock::now(), shown_;
+  Clock::time_point start_, shown_;
 };
 
 std::vector<recording::LaserOutput> output_files(const ScanVerbOptions& options,
