@@ -21,8 +21,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::size_t largest_inflated = std::size_t{1} << 30;
-
 [[noreturn]] void fail(const fs::path& path, const std::string& what) {
   throw Error(ErrorKind::bad_file, path.string() + ": " + what);
 }
@@ -115,7 +113,7 @@ class TemporaryFile {
 
 }  // namespace
 
-std::string read_file(const fs::path& path, std::size_t most_bytes) {
+void require_regular_file(const fs::path& path) {
   std::error_code error;
   const fs::file_status status = fs::status(path, error);
   if (error && status.type() == fs::file_type::none) {
@@ -124,9 +122,14 @@ std::string read_file(const fs::path& path, std::size_t most_bytes) {
   if (!fs::exists(status)) fail(path, "there is no such file");
   if (fs::is_directory(status)) fail(path, "is a directory; a file is wanted");
   if (!fs::is_regular_file(status)) fail(path, "is a device or a pipe; a regular file is wanted");
+}
+
+std::string read_file(const fs::path& path, std::size_t most_bytes) {
+  require_regular_file(path);
   std::ifstream stream(path, std::ios::binary);
   if (!stream) fail(path, "cannot be opened: " + last_error());
   const auto refuse_size = [&] { fail(path, "is larger than " + size_text(most_bytes)); };
+  std::error_code error;
   const auto size = fs::file_size(path, error);
   if (!error && size > most_bytes) refuse_size();
   std::string bytes;
@@ -140,7 +143,7 @@ std::string read_file(const fs::path& path, std::size_t most_bytes) {
   }
   if (stream.bad()) fail(path, "cannot be read: " + last_error());
   if (!is_gzip(bytes)) return bytes;
-  return inflate_gzip(path, bytes, std::min(most_bytes, largest_inflated));
+  return inflate_gzip(path, bytes, most_bytes);
 }
 
 void write_file(const fs::path& path, std::string_view bytes) {

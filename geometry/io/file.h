@@ -8,11 +8,14 @@
 
 namespace skycap::geometry {
 
+/// Throws Error{bad_file} unless it is a regular file: devices and pipes may never end.
+void require_regular_file(const std::filesystem::path& path);
+
 /// The bytes of a file; one that gzip has compressed comes back decompressed, whatever its name.
-/// Throws Error{bad_file} if it is missing, not a regular file (devices and pipes may never end),
-/// unreadable, damaged, or larger than `most_bytes`; decompressed also if larger than 1 GiB.
+/// Throws Error{bad_file} if it is no regular file, unreadable, damaged, or larger than
+/// `most_bytes`, decompressed or not. What is larger has to be read piece by piece.
 std::string read_file(const std::filesystem::path& path,
-                      std::size_t most_bytes = std::size_t{4} << 30);
+                      std::size_t most_bytes = std::size_t{1} << 30);
 
 /// Replaces the file by one with these bytes: they are written under a temporary name beside it,
 /// brought to the disk, and renamed when complete, so that no reader ever finds half a file, not

@@ -260,8 +260,12 @@ PackagedSurvey read_package(const std::filesystem::path& folder,
     fail(folder / summary_name, "is of a survey without a vehicle; plan it with flight.vehicle");
   }
   const std::filesystem::path space_file = folder / free_space_name;
-  std::ifstream space(space_file, std::ios::binary);
-  if (!space) fail(space_file, "cannot be read; plan the mission again");
+  std::ifstream space;
+  if (std::filesystem::exists(space_file)) {
+    geometry::require_regular_file(space_file);
+    space.open(space_file, std::ios::binary);
+  }
+  if (!space.is_open()) fail(space_file, "cannot be read; plan the mission again");
   return {std::move(summary.mission), std::move(summary.views),
           std::move(summary.ways),    *summary.pad,
           std::move(summary.grounds), flight::MeasuredSpace::read(space, space_file.string())};

@@ -152,7 +152,7 @@ class FrameRecording {
       truth.push_back({frame.time, frame.world_from_camera});
       believed.push_back({frame.time, frame.believed_from_camera});
     }
-    if (rawlog_) journal_.stage(rawlog_name, folder);
+    if (rawlog_ && result_.frames > 0) journal_.stage(rawlog_name, folder);
     journal_.stage(preview_name, folder);
     folder.write("depth.txt", list);
     folder.write("groundtruth.txt", flight::write_tum(truth));

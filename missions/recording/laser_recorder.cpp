@@ -52,7 +52,8 @@ LaserResult record_laser(const sim::Scene& scene, const sim::Lidar& lidar,
   for (std::size_t i = 0; i < files.size(); ++i) {
     files[i].finish();
     outputs[i].bytes = files[i].bytes();
-    journal.stage(outputs[i].name, folder);
+    // A rawlog without an observation is none.
+    if (outputs[i].bytes > 0) journal.stage(outputs[i].name, folder);
   }
   return {result, reached.time};
 }

@@ -12,7 +12,7 @@
 
 namespace skycap::missions::recording {
 
-/// A file to be written, and how large it became.
+/// A file to be written, and how large it became: with nothing in it it is left out.
 struct LaserOutput {
   std::string name;
   std::shared_ptr<const CloudFormat> format;

@@ -246,6 +246,7 @@ int scan_with_laser(const ScanVerbOptions& options, const file::Mission& mission
                     .stop = console.stop});
   recorded.result = result;
   recorded.time = time;
+  std::erase_if(recorded.outputs, [](const auto& output) { return output.bytes == 0; });
   const auto firings = static_cast<double>(recorded.result.progress.firings);
   recorded.shots = channels * firings, recorded.flown = firings * config.firing_period;
   folder.write("trajectory.tum", sensor_tum(flown.route.carrier, flown.mount.real));

@@ -1,0 +1,99 @@
+// What proven ways home cost: the route of a mission package planned with and without them, in the
+// same measured space and order of views; how much longer the mission is, and how long planning
+// takes.
+//
+//   way_home_benchmark [PACKAGE... ] [--rounds 3]
+//
+// Without a package it surveys a teapot of 20 m first.
+#include <cstdio>
+#include <cstdlib>
+#include <filesystem>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include "missions/derived/mission_flight.h"
+#include "missions/package/package.h"
+#include "missions/verbs/command_line.h"
+#include "tests/benchmarks/interleaved.h"
+#include "tests/missions/flown_mission.h"
+#include "tests/support/temporary_folder.h"
+
+namespace {
+
+using namespace skycap;
+using namespace skycap::missions;
+
+flight::Route plan(const package::PackagedSurvey& survey, bool has_returns) {
+  const file::Mission& mission = survey.mission;
+  std::vector<flight::Station> stations;
+  for (std::uint32_t i = 0; i < survey.views.size(); ++i) {
+    stations.push_back({survey.views[i], derived::hold_of(mission), 1, i,
+                        derived::hold_after_of(mission), survey.ways[i]});
+  }
+  flight::Obstacles rules = derived::flight_rules(mission);
+  const flight::KnownSpace known(rules);
+  const flight::KnownSpace pad_space(without_ground(std::move(rules)));
+  const flight::JointSpace space({&survey.measured, &known});
+  flight::RouteOptions options = derived::route_options_of(mission, survey.pad);
+  if (!has_returns) options.returns.reset();
+  return plan_route(std::move(stations), derived::vehicle_of(mission), space, &pad_space, options);
+}
+
+/// Only what both visit can be compared: views without a way home are left out by the one alone.
+void keep_views_of(const flight::Route& route, package::PackagedSurvey& survey) {
+  std::vector<bool> is_kept(survey.views.size(), false);
+  for (const flight::Station& station : route.stations) is_kept[station.view_index] = true;
+  std::size_t kept = 0;
+  for (std::size_t i = 0; i < survey.views.size(); ++i) {
+    if (!is_kept[i]) continue;
+    survey.views[kept] = survey.views[i];
+    survey.ways[kept++].clear();  // it led from a view that may be left out
+  }
+  survey.views.resize(kept);
+  survey.ways.resize(kept);
+}
+
+void measure(const std::filesystem::path& folder, int rounds) {
+  package::PackagedSurvey survey = package::read_package(folder, {});
+  const std::size_t all = survey.views.size();
+  keep_views_of(plan(survey, true), survey);
+  const flight::Route with = plan(survey, true), without = plan(survey, false);
+  const auto [time, bare_time] = benchmarks::interleaved_medians(
+      rounds, [&] { plan(survey, true); }, [&] { plan(survey, false); });
+  std::printf(
+      "%s: %zu of %zu views, %zu and %zu flown to; length %.1f m, %+.2f %%; time %.1f s, "
+      "%+.2f %%; planned in %.2f s, %.2f times %.2f s\n",
+      folder.string().c_str(), survey.views.size(), all, with.stations.size(),
+      without.stations.size(), with.length, 100.0 * (with.length / without.length - 1.0),
+      with.duration, 100.0 * (with.duration / without.duration - 1.0), time, time / bare_time,
+      bare_time);
+}
+
+/// The package of a small survey.
+void survey_teapot(const std::filesystem::path& mission, const std::filesystem::path& package) {
+  std::ostringstream out, err;
+  verbs::run_command_line(
+      {"plan", mission.string(), "--quiet", "--no-report", "--out", package.string()}, {out, err});
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  int rounds = 3;
+  std::vector<std::filesystem::path> packages;
+  for (int i = 1; i < argc; ++i) {
+    if (std::string(argv[i]) == "--rounds" && i + 1 < argc) {
+      rounds = std::atoi(argv[++i]);
+    } else {
+      packages.emplace_back(argv[i]);
+    }
+  }
+  const testing_support::TemporaryFolder folder;
+  if (packages.empty()) {
+    packages.push_back(folder.path() / "teapot");
+    survey_teapot(folder.file("teapot.yaml", tests::flown_mission()), packages.front());
+  }
+  for (const std::filesystem::path& package : packages) measure(package, rounds);
+  return 0;
+}
