@@ -169,8 +169,7 @@ geometry::Scan scan_of_ramp(const geometry::Camera& camera, const geometry::View
   const Vector3d normal = Vector3d(-slope, 0.0, 1.0).normalized(), pad(-75, 0, 0);
   for (int row = 0; row < camera.height(); ++row) {
     for (int column = 0; column < camera.width(); ++column) {
-      const Vector3d ray =
-          scan.world_from_sensor.linear() * camera.ray_direction({column, row}).normalized();
+      const Vector3d ray = scan.world_from_sensor.linear() * camera.ray({column, row}).normalized();
       const double range = normal.dot(pad - view.position) / normal.dot(ray);
       if (!(range > 0.0 && range < 50.0)) continue;
       scan.points.push_back((view.position + (range + noise(random)) * ray).cast<float>());
