@@ -336,6 +336,14 @@ TEST_F(ScanVerb, CtrlCLeavesWholeFilesOfTheBeginning) {
   EXPECT_THAT(tests::content_of(folder / "out/scan.ply"), HasSubstr("element vertex 0\n"));
 }
 
+TEST_F(ScanVerb, ARawlogOfNothingIsNotWritten) {
+  std::stop_source stop;
+  stop.request_stop();
+  EXPECT_EQ(scan({"--format", "rawlog,ply"}, stop.get_token()).exit_code, 1);
+  EXPECT_THAT(files(), testing::Not(testing::Contains("scan.rawlog")));
+  for (const auto& file : summary()["files"]) EXPECT_NE(file["name"], "scan.rawlog");
+}
+
 TEST_F(ScanVerb, RefusesInOneLineAndLeavesNothing) {
   const auto refused = [&](const std::vector<std::string>& options) {
     const ProgramRun run = scan(options);

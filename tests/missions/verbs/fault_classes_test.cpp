@@ -1,0 +1,147 @@
+// Faults that once lost results or said nothing; docs/security.md lists which test stands for
+// which.
+#include <atomic>
+#include <chrono>
+#include <cstdlib>
+#include <filesystem>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+#include <sys/stat.h>
+
+#include "geometry/io/file.h"
+#include "tests/missions/flown_mission.h"
+#include "tests/missions/run_skycap.h"
+
+namespace skycap::missions {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::HasSubstr;
+using tests::content_of;
+using tests::run_skycap;
+using tests::TestFolder;
+
+std::string refusal(const std::vector<std::string>& arguments) {
+  const tests::ProgramRun run = run_skycap(arguments);
+  EXPECT_EQ(run.exit_code, 2) << run.err << run.out;
+  return run.err;
+}
+
+// Class 13: a name that is no UTF-8 reaches summary.json, the route files and the page.
+TEST(FaultClasses, NamesThatAreNoTextLoseNoSurvey) {
+  const TestFolder folder;
+  const std::string mission = folder.write("\xff\xfe.yaml", tests::flown_mission());
+  const auto run = run_skycap({"plan", mission, "--max-views", "2", "--out", folder / "out"});
+  EXPECT_EQ(run.exit_code, 0) << run.err;
+  const auto summary = nlohmann::json::parse(content_of(folder / "out/summary.json"));
+  EXPECT_EQ(summary.at("views"), 2);
+  EXPECT_TRUE(fs::exists(folder / "out/mission.plan"));
+}
+
+// Class 14: folders and links that lead nowhere, in place of files.
+TEST(FaultClasses, FoldersAndLoopsInPlaceOfFilesAreNamed) {
+  const TestFolder folder;
+  const std::string mission = folder.write("m.yaml", tests::quick_mission());
+  for (const char* name : {"a.plan", "s.yaml", "package/summary.json"}) {
+    fs::create_directories(folder / name);
+  }
+  fs::create_symlink(folder / "loop.plan", folder / "loop.plan");
+  EXPECT_THAT(refusal({"check", mission, "--route", folder / "a.plan"}),
+              HasSubstr("a.plan: is a directory"));
+  EXPECT_THAT(refusal({"check", mission, "--route", folder / "loop.plan"}),
+              HasSubstr("loop.plan: cannot be opened"));
+  EXPECT_THAT(refusal({"scan", mission, "--sensor", folder / "s.yaml", "--out", folder / "out"}),
+              HasSubstr("s.yaml: is a directory"));
+  EXPECT_THAT(refusal({"export", folder / "package", "--format", "csv"}),
+              HasSubstr("summary.json: is a directory"));
+}
+
+// Of the same kind: who opens a pipe waits for ever.
+TEST(FaultClasses, APipeInPlaceOfMeasuredSpaceIsRefused) {
+  const TestFolder folder;
+  const std::string mission = folder.write("m.yaml", tests::flown_mission());
+  ASSERT_EQ(run_skycap({"plan", mission, "--max-views", "2", "--out", folder / "out"}).exit_code,
+            0);
+  fs::remove(folder / "out/free_space.bin");
+  ASSERT_EQ(::mkfifo((folder / "out/free_space.bin").c_str(), 0600), 0);
+  EXPECT_THAT(refusal({"export", folder / "out", "--format", "csv"}),
+              HasSubstr("free_space.bin: is a device or a pipe"));
+}
+
+/// The user's cache is elsewhere for as long as this lives.
+class OtherCache {
+ public:
+  explicit OtherCache(const fs::path& folder) {
+    if (const char* before = std::getenv("XDG_CACHE_HOME")) before_ = before;
+    ::setenv("XDG_CACHE_HOME", folder.c_str(), 1);
+  }
+  OtherCache(const OtherCache&) = delete;
+  OtherCache& operator=(const OtherCache&) = delete;
+  ~OtherCache() {
+    if (before_.empty()) {
+      ::unsetenv("XDG_CACHE_HOME");
+    } else {
+      ::setenv("XDG_CACHE_HOME", before_.c_str(), 1);
+    }
+  }
+
+ private:
+  std::string before_;
+};
+
+// Class 17: what lies in the cache is not believed as it is.
+TEST(FaultClasses, ACacheThatSaysNonsenseIsNotBelieved) {
+  const TestFolder folder;
+  const OtherCache cache(folder.path() / "cache");
+  const std::string mission = folder.write("m.yaml", tests::quick_mission());
+  const auto ceiling = [&] {
+    const auto run = run_skycap({"plan", mission, "--max-views", "2", "--set",
+                                 "evaluation.ceiling_views=5", "--out", folder / "out"});
+    EXPECT_EQ(run.exit_code, 0) << run.err;
+    return nlohmann::json::parse(content_of(folder / "out/summary.json"))
+        .at("coverage_ceiling")
+        .get<double>();
+  };
+  const double first = ceiling();
+  EXPECT_GT(first, 0.0);
+  EXPECT_LE(first, 1.0);
+  std::size_t spoiled = 0;
+  for (const auto& entry : fs::recursive_directory_iterator(folder.path() / "cache")) {
+    if (!entry.is_regular_file()) continue;
+    geometry::write_file(entry.path(), std::string(content_of(entry.path()).size(), '5'));
+    ++spoiled;
+  }
+  ASSERT_EQ(spoiled, 1U);
+  EXPECT_EQ(ceiling(), first);
+}
+
+// Class 20: two programs that write one file, each of them whole.
+TEST(FaultClasses, TwoWritersOfOneFileBothSucceed) {
+  const TestFolder folder;
+  const fs::path file = folder.path() / "a.png";
+  const std::string one(200'000, '1'), two(300'000, '2');
+  std::atomic<int> failures = 0;
+  const auto write = [&](const std::string& bytes) {
+    for (int i = 0; i < 50; ++i) {
+      try {
+        geometry::write_file(file, bytes);
+      } catch (const std::exception&) {
+        ++failures;
+      }
+    }
+  };
+  std::thread other([&] { write(one); });
+  write(two);
+  other.join();
+  EXPECT_EQ(failures, 0);
+  const std::string content = content_of(file);
+  EXPECT_TRUE(content == one || content == two);
+}
+
+}  // namespace
+}  // namespace skycap::missions
