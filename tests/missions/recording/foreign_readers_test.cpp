@@ -282,8 +282,10 @@ TEST_F(ForeignReader, MrptProjectsTheDepthImagesOfARawlogOntoTheSurface) {
   }
   const std::string out = folder.path() / "frames";
   geometry::OutputFolder output(out);
+  recording::ScanJournal journal(out);
+  journal.open({}, {}, false);
   const recording::FrameResult result =
-      recording::record_frames(scene, sim::DepthCamera(camera), frames, output,
+      recording::record_frames(scene, sim::DepthCamera(camera), frames, journal, output,
                                {.has_rawlog = true, .report = {}, .stop = {}});
   output.commit();
   ASSERT_EQ(result.points, 3U * 64 * 48);
