@@ -47,15 +47,13 @@ std::uint32_t view_near(const Eigen::Vector3f& place, const std::vector<geometry
   return order[random() % near];
 }
 
-/// So many points of the mission's surface in place of the package's cloud; none for zero.
+/// So many points of the mission's surface in place of the package's cloud.
 void replace_cloud(const std::filesystem::path& folder, std::size_t points) {
   const missions::package::PackageSummary survey =
       missions::package::read_package_summary(folder, {});
   missions::file::Mission dense = survey.mission;
-  dense.evaluation.samples = std::max<std::size_t>(points, 1);
+  dense.evaluation.samples = points;
   geometry::SurfaceSamples surface = missions::scene::SurveyScene(dense, "").samples();
-  surface.points.resize(points);
-  surface.normals.resize(points);
   std::mt19937_64 random(5);
   std::normal_distribution<float> noise(0.0F, 0.01F);
   std::vector<std::uint32_t> views;
@@ -84,7 +82,7 @@ int main(int argc, char** argv) {
   const auto page = [&] {
     return missions::report::survey_report(missions::report::results_in(results), points);
   };
-  replace_cloud(results, 0);
+  std::filesystem::remove(results / "cloud.ply");
   const std::size_t besides = page().size();
   replace_cloud(results, points);
   std::size_t bytes = 0;
