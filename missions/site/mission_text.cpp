@@ -119,6 +119,8 @@ std::string planner_section(const MissionValues& values) {
       "  max_range: {:g}  # metres\n"
       "  noise: {{sigma: 0.02}}  # metres, one standard deviation\n"
       "planner:\n"
+      "  # Surface in this box is wanted; what is lower counts as the ground.\n"
+      "  scene_box: {{min: {}, max: {}}}\n"
       "  view_distance: {:g}  # from which surfaces are looked at\n"
       "  density: {:.3g}  # points a square metre, wanted everywhere\n"
       "  resolution_radius: {:g}  # in which they are counted\n"
@@ -127,8 +129,8 @@ std::string planner_section(const MissionValues& values) {
       "  registration_distance: {:g}  # a surface is covered with a point so near to it\n"
       "limits:\n"
       "  max_views: 150  # the survey ends before, when nothing is left to see\n",
-      4.0 * values.view_distance, values.view_distance, 0.36 / (distance * distance),
-      2.0 * distance, 0.5 * distance, distance);
+      4.0 * values.view_distance, vector_text(values.scene.min()), vector_text(values.scene.max()),
+      values.view_distance, 0.36 / (distance * distance), 3.0 * distance, 0.5 * distance, distance);
 }
 
 }  // namespace

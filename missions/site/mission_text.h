@@ -20,7 +20,9 @@ struct MissionValues {
   std::string vehicle;
   std::vector<prior::Source> sources;
   flight::GeodeticPoint origin;
-  Eigen::AlignedBox3d unknown, fence{};
+  Eigen::AlignedBox3d scene;    ///< whose surface is wanted
+  Eigen::AlignedBox3d unknown;  ///< where nothing is free before it is measured
+  Eigen::AlignedBox3d fence{};
   std::optional<Eigen::Vector3d> pad{};
   double clearance = 0.0, registration_distance = 0.0, view_distance = 0.0;
 };

@@ -50,6 +50,20 @@ AlignedBox3d unknown_box(const AlignedBox3d& target, bool has_terrain) {
   return box;
 }
 
+/// The target and what it may be off, but not the ground.
+AlignedBox3d scene_box(const AlignedBox3d& target, double registration_distance) {
+  constexpr double beside = 3.0;
+  AlignedBox3d box = target;
+  box.min().array() -= beside;
+  box.max().array() += beside;
+  box.min().z() = target.min().z() + 2.0 * registration_distance;
+  for (int axis = 0; axis < 3; ++axis) {
+    box.min()[axis] = std::round(10.0 * box.min()[axis]) / 10.0;
+    box.max()[axis] = std::round(10.0 * box.max()[axis]) / 10.0;
+  }
+  return box;
+}
+
 /// A fence around a box and a pad.
 AlignedBox3d fence_around(const AlignedBox3d& unknown, const std::optional<Vector3d>& pad,
                           double view_distance) {
@@ -107,10 +121,11 @@ std::string propose_mission(const Wishes& wishes, const std::filesystem::path& f
                        .vehicle = wishes.vehicle,
                        .sources = sources_of(wishes, target.ids),
                        .origin = target.origin,
+                       .scene = scene_box(target.box, registration_distance_of(target.box)),
                        .unknown = unknown_box(target.box, wishes.terrain.has_value()),
                        .clearance = clearance,
                        .registration_distance = registration_distance_of(target.box)};
-  values.view_distance = std::clamp(target.box.sizes().maxCoeff(), 10.0, 25.0);
+  values.view_distance = std::round(std::clamp(target.box.sizes().maxCoeff(), 10.0, 25.0));
   values.fence = fence_around(values.unknown, std::nullopt, values.view_distance);
   const file::Mission mission = derived::parse_mission(mission_text(values), file.string());
   values.pad = find_pad(mission, values.unknown, values.fence.max().z() - clearance);
