@@ -8,6 +8,7 @@
 #include "geometry/place/camera.h"
 #include "missions/derived/mission_flight.h"
 #include "missions/derived/site.h"
+#include "missions/file/mission_keys.h"
 #include "missions/prior/surface_points.h"
 
 namespace skycap::missions::derived {
@@ -56,6 +57,16 @@ bool has_role(const file::Mission& mission, Role role) {
   return std::ranges::find(mission.prior, role, &Source::role) != mission.prior.end();
 }
 
+/// What a package kept of a mission gives every key, most of them as they are by default.
+bool differs_from_default(const file::Mission& mission, const char* path) {
+  const file::Key& key = *file::find_key(path);
+  const auto text = [&](const file::Mission& given) {
+    const auto value = key.get(given);
+    return value ? file::to_text(*value) : std::string();
+  };
+  return text(mission) != text(file::Mission());
+}
+
 /// What is truth has to have surfaces, and is where its file says.
 void check_truth(const file::MissionFile& given) {
   const file::Mission& mission = given.mission;
@@ -65,10 +76,11 @@ void check_truth(const file::MissionFile& given) {
   }
   for (const char* key : {"scene.up_axis", "scene.rotation_deg", "scene.longest_side",
                           "scene.scale", "scene.copies", "scene.materials"}) {
-    if (given.gives(key))
+    if (differs_from_default(mission, key)) {
       given.refuse(key,
                    "does not go with a truth from prior data, which is "
                    "placed by its own keys; leave it out");
+    }
   }
 }
 
