@@ -92,7 +92,7 @@ std::string site_section(const MissionValues& values) {
 std::string flight_section(const MissionValues& values) {
   std::string text = fmt::format(
       "flight:\n"
-      "  vehicle: {}\n"
+      "  vehicle: {}  # a preset, or the path of a description\n"
       "  clearance: {:g}  # least distance of the vehicle's centre from anything\n",
       quoted(values.vehicle), values.clearance);
   if (values.pad) {

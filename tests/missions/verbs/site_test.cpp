@@ -75,7 +75,7 @@ TEST_F(Site, IsACertifiedMissionInTwoCommands) {
   ASSERT_EQ(plan.exit_code, 0) << plan.err << plan.out;
   const json summary = json::parse(content_of(folder_.path() / "out" / "summary.json"));
   ASSERT_EQ(summary.at("targets").size(), 1U);
-  EXPECT_EQ(summary.at("targets")[0].at("id"), "DEBY_1");
+  EXPECT_EQ(summary.at("targets")[0].at("name"), "DEBY_1");
   EXPECT_GT(summary.at("targets")[0].at("coverage").get<double>(), 0.9);
   EXPECT_GE(summary.at("min_clearance_m").get<double>(), 2.0);
   // Of the file as autopilots read it, neighbours and all.
@@ -98,7 +98,7 @@ TEST_F(Site, IsProposedAboutItsTarget) {
     for (const prior::Object& object : prior.objects) {
       const AlignedBox3d box = geometry::bounding_box(object.mesh);
       EXPECT_GT(box.exteriorDistance(pad), 3.0 * mission.flight.clearance);
-      EXPECT_EQ(unknown.contains(box), object.id == "DEBY_1");
+      EXPECT_EQ(unknown.contains(box.center().eval()), object.id == "DEBY_1");
     }
   }
   EXPECT_GT(unknown.exteriorDistance(pad), 2.0 * mission.flight.clearance);
