@@ -95,18 +95,20 @@ class ScanReport {
     const Clock::time_point now = Clock::now();
     if (now - shown_ < std::chrono::milliseconds(100)) return;
     shown_ = now;
-    if (!begun_) {
-      begun_ = progress.firings;
-      start_ = now;
-      return;
-    }
-    const double elapsed = seconds_since(start_);
     const auto flown = static_cast<double>(progress.firings);
     const auto all = static_cast<double>(progress.all_firings);
-    const double rate = (flown - static_cast<double>(*begun_)) / elapsed;
-    line_.show(fmt::format("{}: {:.1f} % flown, {:.1f} M points, {:.1f} M shots/s, {:.0f} s left",
-                           name_, 100.0 * flown / all, 1e-6 * static_cast<double>(progress.points),
-                           1e-6 * shots_in_firing_ * rate, (all - flown) / rate));
+    std::string text =
+        fmt::format("{}: {:.1f} % flown, {:.1f} M points", name_, 100.0 * flown / all,
+                    1e-6 * static_cast<double>(progress.points));
+    if (begun_) {
+      const double rate = (flown - static_cast<double>(*begun_)) / seconds_since(start_);
+      text += fmt::format(", {:.1f} M shots/s, {:.0f} s left", 1e-6 * shots_in_firing_ * rate,
+                          (all - flown) / rate);
+    } else {  // the pace is not known yet
+      begun_ = progress.firings;
+      start_ = now;
+    }
+    line_.show(text);
   }
 
  private:
