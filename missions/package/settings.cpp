@@ -32,6 +32,9 @@ std::string mission_text(const Json& settings) {
 Json settings_json(const file::Mission& mission) {
   Json values = Json::object();
   for (const file::Key& key : file::mission_keys()) {
+    // A lidar takes the camera's place, whose keys are refused beside it.
+    const bool is_of_camera = key.path.starts_with("sensor.") && key.path != "sensor.lidar";
+    if (is_of_camera && mission.sensor.lidar) continue;
     if (const auto value = key.get(mission)) values[key.path] = file::setting_json(*value);
   }
   return values;

@@ -107,6 +107,22 @@ TEST(SurveyReport, OfAnInterruptedSurveyIsWrittenToo) {
   EXPECT_EQ(data["summary"]["stop_reason"], "interrupted");
 }
 
+// The camera's keys are no settings of such a survey, and would be refused beside the lidar.
+TEST(SurveyReport, OfALidarIsWrittenToo) {
+  const Planned survey(
+      "scene: {model: 'builtin:teapot', longest_side: 10.0}\n"
+      "sensor: {lidar: velodyne_vlp16}\n"
+      "planner: {name: skycap, density: 20, resolution_radius: 0.5, view_distance: 12}\n"
+      "evaluation: {registration_distance: 0.3, samples: 1000, visible_directions: 30,\n"
+      "             ceiling_views: 0}\n",
+      {"--max-views", "1"});
+  const std::string page = survey.page();
+  ASSERT_FALSE(page.empty()) << survey.run.err;
+  const Json settings = data_of(page)["summary"]["settings"];
+  EXPECT_EQ(settings["sensor.lidar"], "velodyne_vlp16");
+  EXPECT_FALSE(settings.contains("sensor.width"));
+}
+
 // A name ends no script and makes no element, in the title as in the data. A mission file's name
 // has no '/', but a summary may come from anywhere.
 TEST(SurveyReport, TakesNamesForText) {
