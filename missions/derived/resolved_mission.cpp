@@ -65,8 +65,7 @@ void derive_building_preset(file::MissionFile& given) {
 /// have it, which those who need it complain of.
 void derive_undulation(file::Mission& mission) {
   file::Georeference& place = mission.georeference;
-  const bool is_asked_for =
-      mission.flight.is_flown() || !mission.prior.empty() || mission.scan.crs == file::ScanCrs::utm;
+  const bool is_asked_for = mission.flight.is_flown() || !mission.prior.empty();
   if (place.geoid_undulation || !has_place(mission) || !is_asked_for) return;
   try {
     place.geoid_undulation = prior::egm96_undulation(*place.latitude_deg, *place.longitude_deg);

@@ -9,8 +9,8 @@
 #include "geometry/error.h"
 #include "geometry/io/json.h"
 #include "geometry/place/world.h"
-#include "missions/file/json_text.h"
 #include "missions/derived/journal_text.h"
+#include "missions/file/json_text.h"
 #include "missions/run/survey_record.h"
 
 namespace skycap::missions::live {
@@ -68,10 +68,10 @@ void add_record(const Json& json, std::vector<LiveEvent>& events) {
 
 std::string text_of(const ScanRecord& scan) {
   return derived::journal_line({{"scan",
-                             {{"id", scan.id},
-                              {"file", scan.file},
-                              {"sha256", scan.sha256},
-                              {"pose", pose_json(scan.world_from_sensor)}}}});
+                                 {{"id", scan.id},
+                                  {"file", scan.file},
+                                  {"sha256", scan.sha256},
+                                  {"pose", pose_json(scan.world_from_sensor)}}}});
 }
 
 std::string refusal_text(const std::string& reason) {
@@ -83,10 +83,11 @@ std::string rejection_text(const std::string& reason) {
 }
 
 std::string text_of(const ProposalRecord& proposal) {
-  return derived::journal_line({{"proposal",
-                             {{"view", json_of(proposal.view)},
-                              {"end", proposal.end ? Json(run::name_of(*proposal.end)) : Json()},
-                              {"reach", run::reach_json(proposal.reach)}}}});
+  return derived::journal_line(
+      {{"proposal",
+        {{"view", json_of(proposal.view)},
+         {"end", proposal.end ? Json(run::name_of(*proposal.end)) : Json()},
+         {"reach", run::reach_json(proposal.reach)}}}});
 }
 
 std::vector<LiveEvent> events_of(const std::vector<std::string>& records, const std::string& file) {

@@ -24,8 +24,8 @@ std::vector<SelectedObject> select_objects(const Source& source, const FileConte
 /// are always among them.
 std::vector<FilePolygon> select_polygons(const FileObject& object, std::optional<double> lod);
 
-/// Throws Error{bad_config} naming the first key of the source that the file has no use for, and what
-/// it is for: whoever gave it meant something by it.
+/// Throws Error{bad_config} naming the first key of the source that the file has no use for, and
+/// what it is for: whoever gave it meant something by it.
 void refuse_unused(const Source& source, const FileContents& contents);
 
 }  // namespace skycap::missions::prior

@@ -19,11 +19,11 @@
 #include "missions/file/planner_titles.h"
 #include "missions/package/package.h"
 #include "missions/prior/prior_text.h"
+#include "missions/proof/check_returns.h"
+#include "missions/proof/true_space.h"
 #include "missions/run/expectation.h"
 #include "missions/run/feasibility.h"
 #include "missions/scene/survey_scene.h"
-#include "missions/verbs/check_returns.h"
-#include "missions/verbs/true_space.h"
 #include "missions/verbs/verbs.h"
 
 namespace skycap::missions::verbs {
@@ -68,7 +68,7 @@ bool check_pads(const std::string& file, const file::Mission& mission, const geo
                 const Eigen::Vector3d& pad, const Console& console) {
   if (!mission.flight.is_flown()) return true;
   bool are_fit = true;
-  for (const flight::PadGround& ground : true_grounds(mission, model, pad)) {
+  for (const flight::PadGround& ground : proof::true_grounds(mission, model, pad)) {
     const std::string why = why_unfit(ground, derived::ground_limits_of(mission));
     if (why.empty()) continue;
     are_fit = false;
@@ -84,7 +84,7 @@ int check_route_file(const CheckOptions& options, const file::Mission& mission,
   const std::string file = options.route->string();
   const flight::FlightFacts facts = facts_of(mission, *options.route);
   const flight::FlownRoute route = flight::interpret_file(*options.route, facts);
-  const TrueSpace space = true_space(mission, model, facts.pad.z());
+  const proof::TrueSpace space = proof::true_space(mission, model, facts.pad.z());
 
   ProgressLine progress(console, false);
   progress.show(file + ": proving " + std::to_string(route.pieces.size()) + " legs");
@@ -107,8 +107,8 @@ int check_route_file(const CheckOptions& options, const file::Mission& mission,
     console.out << "; where its photographs look is not checked: it is not in its package";
   }
   console.out << "\n";
-  const ReturnCheck returns = check_returns(*options.route, options.return_height, mission,
-                                            space.everywhere, places_of(route));
+  const proof::ReturnCheck returns = proof::check_returns(
+      *options.route, options.return_height, mission, space.everywhere, places_of(route));
   console.out << file << ": " << returns.text << "\n";
   Eigen::Vector3d pad = facts.pad;
   if (!facts.is_pad_known && !route.pieces.empty()) {

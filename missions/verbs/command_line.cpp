@@ -342,8 +342,8 @@ int parse_and_run(const std::vector<std::string>& arguments, const Console& cons
     if (const char* const widest = std::getenv("SKYCAP_INSTRUCTION_SET")) {
       geometry::limit_instruction_set(widest);
     }
-    add_site(app, console, action);
     add_plan(app, console, action);
+    add_site(app, console, action);
     add_next(app, console, action);
     add_serve(app, console, action);
     add_finish(app, console, action);

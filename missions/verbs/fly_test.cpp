@@ -16,10 +16,10 @@
 #include "missions/derived/resolved_mission.h"
 #include "missions/file/json_text.h"
 #include "missions/package/package.h"
+#include "missions/proof/stated_return.h"
+#include "missions/proof/true_space.h"
 #include "missions/scene/survey_scene.h"
 #include "missions/verbs/fly_test_report.h"
-#include "missions/verbs/stated_return.h"
-#include "missions/verbs/true_space.h"
 #include "missions/verbs/verbs.h"
 
 namespace skycap::missions::verbs {
@@ -62,8 +62,9 @@ class TestedPackage {
         pad_space_(without_ground(derived::flight_rules(survey_.mission))) {
     if (!options.truth) return;
     const file::Mission mission = derived::read_mission(*options.truth);
-    truth_ = true_space(survey_.mission, scene::placed_model(mission, options.truth->parent_path()),
-                        survey_.pad.z());
+    truth_ = proof::true_space(survey_.mission,
+                               scene::placed_model(mission, options.truth->parent_path()),
+                               survey_.pad.z());
   }
 
   const file::Mission& mission() const { return survey_.mission; }
@@ -102,7 +103,7 @@ class TestedPackage {
  private:
   std::optional<flight::ReturnLaw> law_of(const std::filesystem::path& file, Dialect dialect,
                                           const std::optional<double>& return_height) const {
-    const auto stated = stated_height(file, return_height, dialect);
+    const auto stated = proof::stated_height(file, return_height, dialect);
     if (!stated) return std::nullopt;
     if (!stated->problems.empty()) {
       throw Error(ErrorKind::bad_file, stated->by + ": " + stated->problems.front());
@@ -121,7 +122,7 @@ class TestedPackage {
   flight::KnownSpace rules_;
   flight::JointSpace space_;
   flight::KnownSpace pad_space_;
-  std::optional<TrueSpace> truth_;
+  std::optional<proof::TrueSpace> truth_;
 };
 
 /// What each judge's nearest flight came nearest to.
@@ -147,7 +148,7 @@ double battery_of(const flight::Motion& motion) {
 TestedFile test_file(const FlyTestVerbOptions& options, const TestedPackage& package,
                      const std::filesystem::path& file, const Console& console) {
   const std::string name = file.filename().string();
-  const Dialect dialect = *dialect_of(file, derived::vehicle_of(package.mission()));
+  const Dialect dialect = *proof::dialect_of(file, derived::vehicle_of(package.mission()));
   const flight::FlownMission mission = package.read(file, dialect, options.return_height);
   const file::FlightConfig& config = package.mission().flight;
   flight::FlyTestOptions test;

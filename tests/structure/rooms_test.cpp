@@ -75,6 +75,7 @@ Rooms house() {
   add_mission_room("derived", "file", "equipment", "prior");
   add_mission_room("scene", "file", "derived", "judge", "plugins", "prior");
   add_mission_room("site", "file", "derived", "prior");
+  add_mission_room("proof", "file", "derived");
   add_mission_room("recording", "file", "derived", "plugins");
   add_mission_room("run", "prior", "file", "derived", "judge", "scene");
   add_mission_room("package", "prior", "file", "equipment", "derived", "judge", "scene", "run");
@@ -84,7 +85,7 @@ Rooms house() {
   add_mission_room("library", "file", "equipment", "derived", "judge", "scene", "recording", "run",
                    "package");
   add_mission_room("verbs", "prior", "file", "equipment", "derived", "judge", "plugins", "scene",
-                   "recording", "run", "package", "report", "live", "benchmark", "site");
+                   "recording", "run", "package", "report", "live", "benchmark", "site", "proof");
   // As a user of the library: public headers.
   add("python",
       {"sim/models", "sim/sensors", "survey", "flight/space", "flight/route", "missions/library"});

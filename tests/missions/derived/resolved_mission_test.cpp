@@ -31,9 +31,12 @@ TEST(ResolvedMission, TakesEgm96WhereAGeoidIsAskedForAndNoneIsGiven) {
   const auto undulation = [&](const std::string& text) {
     return parsed(text).georeference.geoid_undulation;
   };
-  EXPECT_NEAR(undulation(place + "}\nscan: {crs: utm}\n").value(), 47.760744, 1e-6);
-  EXPECT_EQ(undulation(place + ", geoid_undulation: 40}\nscan: {crs: utm}\n"), 40.0);
+  const std::string flight =
+      "}\nflight: {vehicle: generic, unknown_box: {min: [0, 0, 0], max: [1, 1, 1]}}\n";
+  EXPECT_NEAR(undulation(place + flight).value(), 47.760744, 1e-6);
+  EXPECT_EQ(undulation(place + ", geoid_undulation: 40" + flight), 40.0);
   EXPECT_FALSE(undulation(place + "}\n")) << "nobody asks";
+  EXPECT_FALSE(undulation(place + "}\nscan: {crs: utm}\n")) << "maps have ellipsoid heights, too";
   EXPECT_FALSE(undulation("flight: {vehicle: none}\n"));
 }
 

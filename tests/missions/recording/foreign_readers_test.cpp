@@ -283,7 +283,7 @@ TEST_F(ForeignReader, MrptProjectsTheDepthImagesOfARawlogOntoTheSurface) {
   const std::string out = folder.path() / "frames";
   geometry::OutputFolder output(out);
   recording::ScanJournal journal(out);
-  journal.open({}, {}, false);
+  journal.open({}, nlohmann::ordered_json::object(), false);
   const recording::FrameResult result =
       recording::record_frames(scene, sim::DepthCamera(camera), frames, journal, output,
                                {.has_rawlog = true, .report = {}, .stop = {}});

@@ -17,9 +17,9 @@
 #include "geometry/io/file.h"
 #include "missions/derived/mission_flight.h"
 #include "missions/package/package.h"
+#include "missions/proof/stated_return.h"
+#include "missions/proof/true_space.h"
 #include "missions/scene/survey_scene.h"
-#include "missions/verbs/stated_return.h"
-#include "missions/verbs/true_space.h"
 #include "tests/flight/interpreter/random_spoiling.h"
 
 namespace skycap::missions::verbs {
@@ -52,7 +52,7 @@ class Shipped {
   explicit Shipped(const std::filesystem::path& folder)
       : summary_(package::read_package_summary(folder, {})),
         model_(scene::placed_model(summary_.mission, "")),
-        space_(true_space(summary_.mission, model_, summary_.pad->z())),
+        space_(proof::true_space(summary_.mission, model_, summary_.pad->z())),
         oracle_(model_) {}
 
   flight::Ground ground() const {
@@ -71,7 +71,7 @@ class Shipped {
   }
 
   flight::Dialect dialect_of(const std::filesystem::path& file) const {
-    return *verbs::dialect_of(file, derived::vehicle_of(summary_.mission));
+    return *proof::dialect_of(file, derived::vehicle_of(summary_.mission));
   }
 
   /// All that `check --route` would say, but returns.
@@ -92,7 +92,7 @@ class Shipped {
  private:
   package::PackageSummary summary_;
   geometry::Mesh model_;
-  TrueSpace space_;
+  proof::TrueSpace space_;
   flight::CgalOracle oracle_;
 };
 

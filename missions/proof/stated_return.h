@@ -8,7 +8,7 @@
 #include "flight/export/text.h"
 #include "flight/motion/vehicle.h"
 
-namespace skycap::missions::verbs {
+namespace skycap::missions::proof {
 
 /// The autopilot that flies such a file, by its name; nobody by itself if it is for maps or
 /// set-point followers.
@@ -28,4 +28,4 @@ std::optional<StatedHeight> stated_height(const std::filesystem::path& route,
                                           const std::optional<double>& given,
                                           flight::Dialect dialect);
 
-}  // namespace skycap::missions::verbs
+}  // namespace skycap::missions::proof

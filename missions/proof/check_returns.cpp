@@ -1,4 +1,4 @@
-#include "missions/verbs/check_returns.h"
+#include "missions/proof/check_returns.h"
 
 #include <algorithm>
 
@@ -6,9 +6,9 @@
 #include "flight/way_home/least_return.h"
 #include "missions/derived/mission_flight.h"
 #include "missions/file/number_text.h"
-#include "missions/verbs/stated_return.h"
+#include "missions/proof/stated_return.h"
 
-namespace skycap::missions::verbs {
+namespace skycap::missions::proof {
 namespace {
 
 using Eigen::Vector3d;
@@ -66,4 +66,4 @@ ReturnCheck check_returns(const std::filesystem::path& file,
                     " above take-off, the least that is safe"};
 }
 
-}  // namespace skycap::missions::verbs
+}  // namespace skycap::missions::proof

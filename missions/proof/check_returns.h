@@ -11,7 +11,7 @@
 #include "flight/space/clearance.h"
 #include "missions/file/mission.h"
 
-namespace skycap::missions::verbs {
+namespace skycap::missions::proof {
 
 struct ReturnCheck {
   bool is_safe = false;
@@ -27,4 +27,4 @@ ReturnCheck check_returns(const std::filesystem::path& file,
                           const flight::FreeSpace& space,
                           const std::vector<Eigen::Vector3d>& points);
 
-}  // namespace skycap::missions::verbs
+}  // namespace skycap::missions::proof

@@ -1,4 +1,4 @@
-#include "missions/verbs/true_space.h"
+#include "missions/proof/true_space.h"
 
 #include <algorithm>
 #include <cmath>
@@ -9,7 +9,7 @@
 #include "missions/derived/mission_flight.h"
 #include "missions/derived/pad_grounds.h"
 
-namespace skycap::missions::verbs {
+namespace skycap::missions::proof {
 namespace {
 
 using Eigen::Vector3d;
@@ -81,4 +81,4 @@ std::vector<flight::PadGround> true_grounds(const file::Mission& mission,
   return derived::grounds_of(mission, pad, found);
 }
 
-}  // namespace skycap::missions::verbs
+}  // namespace skycap::missions::proof

@@ -10,7 +10,7 @@
 #include "geometry/surfaces/mesh.h"
 #include "missions/file/mission.h"
 
-namespace skycap::missions::verbs {
+namespace skycap::missions::proof {
 
 struct TrueSpace {
   flight::KnownSpace everywhere;
@@ -24,4 +24,4 @@ std::vector<flight::PadGround> true_grounds(const file::Mission& mission,
                                             const geometry::Mesh& model,
                                             const Eigen::Vector3d& pad);
 
-}  // namespace skycap::missions::verbs
+}  // namespace skycap::missions::proof

@@ -1,4 +1,4 @@
-#include "missions/verbs/stated_return.h"
+#include "missions/proof/stated_return.h"
 
 #include <vector>
 
@@ -7,7 +7,7 @@
 #include "geometry/error.h"
 #include "geometry/io/file.h"
 
-namespace skycap::missions::verbs {
+namespace skycap::missions::proof {
 
 using flight::Dialect;
 
@@ -50,4 +50,4 @@ std::optional<StatedHeight> stated_height(const std::filesystem::path& route,
   return stated_by_parameters(route, dialect);
 }
 
-}  // namespace skycap::missions::verbs
+}  // namespace skycap::missions::proof
