@@ -120,10 +120,14 @@ void derive_scene_box(file::Mission& mission) {
   if (see.scene_box) return;
   const geometry::Mesh targets = surfaces_of(priors_of(mission), Role::target);
   if (targets.triangles.empty()) return;
-  const double distance = view_distance_of(mission);
+  double beside = beside_targets;
+  for (std::size_t i = 0; i < priors_of(mission).priors.size(); ++i) {
+    if (priors_of(mission).sources[i].role != Role::target) continue;
+    beside = std::max(beside, priors_of(mission).priors[i].uncertainty);
+  }
   Eigen::AlignedBox3d box = geometry::bounding_box(targets);
-  box.min().array() -= distance;
-  box.max().array() += distance;
+  box.min().array() -= beside;
+  box.max().array() += beside;
   if (mission.scene.ground || mission.flight.is_flown()) {
     // The ground is no target: what is so near to it counts as the ground.
     const double ground =

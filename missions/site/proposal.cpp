@@ -52,10 +52,9 @@ AlignedBox3d unknown_box(const AlignedBox3d& target, bool has_terrain) {
 
 /// The target and what it may be off, but not the ground.
 AlignedBox3d scene_box(const AlignedBox3d& target, double registration_distance) {
-  constexpr double beside = 3.0;
   AlignedBox3d box = target;
-  box.min().array() -= beside;
-  box.max().array() += beside;
+  box.min().array() -= derived::beside_targets;
+  box.max().array() += derived::beside_targets;
   box.min().z() = target.min().z() + 2.0 * registration_distance;
   for (int axis = 0; axis < 3; ++axis) {
     box.min()[axis] = std::round(10.0 * box.min()[axis]) / 10.0;

@@ -195,8 +195,8 @@ TEST(PriorSurvey, ATargetSaysWhereTheSceneIs) {
   const std::string prior = "prior: [{file: '" + file.string() + "', role: target}]\n";
   const file::Mission mission = derived::parse_mission(live_mission(prior), "m.yaml");
   const AlignedBox3d box = mission.planner.see.scene_box.value();
-  EXPECT_TRUE(box.min().isApprox(Vector3d(-5 - 16, -4 - 16, 1.2)));
-  EXPECT_TRUE(box.max().isApprox(Vector3d(5 + 16, 4 + 16, 6 + 16)));
+  EXPECT_TRUE(box.min().isApprox(Vector3d(-5 - 3, -4 - 3, 1.2)));
+  EXPECT_TRUE(box.max().isApprox(Vector3d(5 + 3, 4 + 3, 6 + 3)));
   const auto surface = derived::prior_surface(mission);
   ASSERT_TRUE(surface);
   for (std::size_t i = 0; i < surface->size(); ++i) {
