@@ -5,11 +5,13 @@
 
 namespace skycap::tests {
 
-/// A teapot of 20 m, which takes a second to survey. Its spout and handle are what nobody sees from
-/// the first view. The pad is so far away that DJI's vehicles, too, climb before they return from
+/// A mission round a scene, whose surface and unknown space are in a box from `south_west` to
+/// `north_east_top`. The pad is so far away that DJI's vehicles, too, climb before they return from
 /// behind it.
-inline std::string flown_mission(const std::string& more = "") {
-  return "scene: {model: 'builtin:teapot', longest_side: 20.0, ground: true}\n"
+inline std::string flown_mission_round(const std::string& scene, const std::string& south_west,
+                                       const std::string& north_east_top) {
+  return "scene: " + scene +
+         "\n"
          "sensor: {width: 160, height: 120, max_range: 100, noise: {sigma: 0.02}}\n"
          "planner:\n"
          "  name: skycap\n"
@@ -17,15 +19,26 @@ inline std::string flown_mission(const std::string& more = "") {
          "  resolution_radius: 1.2\n"
          "  spacing: 0.3\n"
          "  view_distance: 16\n"
-         "  scene_box: {min: [-14, -11, 0.3], max: [14, 11, 13]}\n"
+         "  scene_box: {min: [" +
+         south_west + ", 0.3], max: [" + north_east_top +
+         "]}\n"
          "  least_gain: 0.02\n"
          "flight: {vehicle: generic, takeoff: [-75, 0, 0],\n"
-         "         unknown_box: {min: [-14, -11, 0], max: [14, 11, 13]}}\n"
+         "         unknown_box: {min: [" +
+         south_west + ", 0], max: [" + north_east_top +
+         "]}}\n"
          "site: {latitude_deg: 47.1, longitude_deg: 8.2, ellipsoid_height: 480,\n"
          "       geoid_undulation: 48}\n"
          "evaluation: {registration_distance: 0.6, samples: 3000, visible_directions: 30,\n"
          "             ceiling_views: 0}\n"
-         "limits: {max_views: 14}\n" +
+         "limits: {max_views: 14}\n";
+}
+
+/// A teapot of 20 m, which takes a second to survey. Its spout and handle are what nobody sees from
+/// the first view.
+inline std::string flown_mission(const std::string& more = "") {
+  return flown_mission_round("{model: 'builtin:teapot', longest_side: 20.0, ground: true}",
+                             "-14, -11", "14, 11, 13") +
          more;
 }
 

@@ -10,6 +10,7 @@
 #include "missions/derived/resolved_mission.h"
 #include "missions/package/package.h"
 #include "missions/run/survey_flight.h"
+#include "tests/missions/flown_mission.h"
 #include "tests/missions/run_skycap.h"
 #include "tests/support/complaint.h"
 
@@ -55,24 +56,8 @@ std::string building_with_slab(double slope_deg) {
 }
 
 std::string mission_round(const std::string& model) {
-  return "scene: {model: '" + model +
-         "', ground: true}\n"
-         "sensor: {width: 160, height: 120, max_range: 100, noise: {sigma: 0.02}}\n"
-         "planner:\n"
-         "  name: skycap\n"
-         "  density: 1\n"
-         "  resolution_radius: 1.2\n"
-         "  spacing: 0.3\n"
-         "  view_distance: 16\n"
-         "  scene_box: {min: [-14, -14, 0.3], max: [14, 14, 18]}\n"
-         "  least_gain: 0.02\n"
-         "flight: {vehicle: generic, takeoff: [-75, 0, 0],\n"
-         "         unknown_box: {min: [-14, -14, 0], max: [14, 14, 18]}}\n"
-         "site: {latitude_deg: 47.1, longitude_deg: 8.2, ellipsoid_height: 480,\n"
-         "       geoid_undulation: 48}\n"
-         "evaluation: {registration_distance: 0.6, samples: 3000, visible_directions: 30,\n"
-         "             ceiling_views: 0}\n"
-         "limits: {max_views: 14}\n";
+  return tests::flown_mission_round("{model: '" + model + "', ground: true}", "-14, -14",
+                                    "14, 14, 18");
 }
 
 /// The package of one survey, which the tests only read.

@@ -13,6 +13,7 @@
 #include "missions/verbs/command_line.h"
 #include "tests/missions/ctrl_c.h"
 #include "tests/missions/flown_mission.h"
+#include "tests/missions/results_in.h"
 #include "tests/missions/run_skycap.h"
 
 namespace skycap::missions {
@@ -28,16 +29,9 @@ using tests::quick_mission;
 using tests::run_skycap;
 using tests::TestFolder;
 
-/// All results but what differs from run to run, which are the times in summary.json and on the
-/// page.
+/// All results but those that say how long the run took.
 std::map<std::string, std::string> results_in(const fs::path& folder) {
-  std::map<std::string, std::string> results;
-  for (const auto& entry : fs::directory_iterator(folder)) {
-    const std::string name = entry.path().filename();
-    if (entry.is_directory() || name == "summary.json" || name == "report.html") continue;
-    results[name] = content_of(entry.path());
-  }
-  return results;
+  return tests::results_in(folder, {"summary.json", "report.html"});
 }
 
 class ResumedPlan : public testing::Test {

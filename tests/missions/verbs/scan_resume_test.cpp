@@ -12,6 +12,7 @@
 
 #include "missions/verbs/command_line.h"
 #include "tests/missions/ctrl_c.h"
+#include "tests/missions/results_in.h"
 #include "tests/missions/run_skycap.h"
 
 namespace skycap::missions {
@@ -23,15 +24,9 @@ using tests::content_of;
 using tests::run_skycap;
 using tests::TestFolder;
 
-/// All results but what differs from run to run, which are the times in scan.json and on the page.
+/// All results but those that say how long the run took.
 std::map<std::string, std::string> results_in(const fs::path& folder) {
-  std::map<std::string, std::string> results;
-  for (const auto& entry : fs::directory_iterator(folder)) {
-    const std::string name = entry.path().filename();
-    if (name == "scan.json" || name == "scan.html") continue;
-    results[name] = entry.is_directory() ? "folder" : content_of(entry.path());
-  }
-  return results;
+  return tests::results_in(folder, {"scan.json", "scan.html"});
 }
 
 /// A second and a half of flight round a cube of 2 m.

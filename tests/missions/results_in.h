@@ -1,0 +1,26 @@
+/// What a run leaves, to be compared with what another one left.
+#pragma once
+
+#include <algorithm>
+#include <filesystem>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "tests/missions/run_skycap.h"
+
+namespace skycap::tests {
+
+/// Contents by name, but for files that differ from run to run; folders are there or not.
+inline std::map<std::string, std::string> results_in(const std::filesystem::path& folder,
+                                                     const std::vector<std::string>& varying) {
+  std::map<std::string, std::string> results;
+  for (const auto& entry : std::filesystem::directory_iterator(folder)) {
+    const std::string name = entry.path().filename();
+    if (std::ranges::find(varying, name) != varying.end()) continue;
+    results[name] = entry.is_directory() ? "folder" : content_of(entry.path());
+  }
+  return results;
+}
+
+}  // namespace skycap::tests
