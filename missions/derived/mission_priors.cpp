@@ -149,9 +149,8 @@ double ground_height_of(const file::Mission& mission) {
 }
 
 double ground_at(const file::Mission& mission, const Eigen::Vector2d& place) {
-  const auto& terrain = priors_of(mission).terrain;
-  const std::optional<double> known = terrain ? terrain->height(place) : std::nullopt;
-  return known.value_or(mission.scene.position.z());
+  const prior::TerrainHeight& ground = priors_of(mission).ground;
+  return ground ? ground(place).value() : mission.scene.position.z();
 }
 
 bool is_truth_prior(const file::Mission& mission) {

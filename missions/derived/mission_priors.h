@@ -26,7 +26,8 @@ void derive_scene_box(file::Mission& mission);
 /// may be off, if it is lower.
 double ground_height_of(const file::Mission& mission);
 
-/// z of the ground at a place: the terrain's where it is known, else the scene's.
+/// z of the ground at a place: with terrain as legs keep off it, known or taken to be there; else
+/// the scene's.
 double ground_at(const file::Mission& mission, const Eigen::Vector2d& place);
 
 /// Whether what the mission's sensor measures in simulation is prior data: of the role truth, or,

@@ -69,8 +69,7 @@ void derive_undulation(file::Mission& mission) {
   if (place.geoid_undulation || !has_place(mission) || !is_asked_for) return;
   try {
     place.geoid_undulation = prior::egm96_undulation(*place.latitude_deg, *place.longitude_deg);
-  } catch (const Error&) {
-    place.geoid_undulation.reset();
+  } catch (const Error&) {  // PROJ or its grid is not installed
   }
 }
 

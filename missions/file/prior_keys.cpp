@@ -1,11 +1,21 @@
 // The key `prior`, and those of each map in its list.
 #include "missions/file/key_builders.h"
 #include "missions/file/key_sections.h"
+#include "missions/prior/prior_text.h"
 
 namespace skycap::missions::file {
 namespace {
 
+using prior::HeightDatum;
+using prior::Role;
 using prior::Source;
+
+/// The words for these, which have to be all of their kind, in order.
+std::vector<std::string> names_of(std::initializer_list<auto> all) {
+  std::vector<std::string> names;
+  for (const auto each : all) names.emplace_back(name_of(each));
+  return names;
+}
 
 /// The field of the list's last source that `member` points to.
 auto source(auto member) {
@@ -59,13 +69,13 @@ Key vertical_key() {
   Key key;
   key.path = "vertical";
   key.type = KeyType::choice;
-  key.choices = {"ellipsoid", "geoid", "takeoff"};
+  key.choices = names_of({HeightDatum::ellipsoid, HeightDatum::geoid, HeightDatum::takeoff});
   key.meaning =
       "What the file's heights count from: WGS84's ellipsoid, the geoid (the file's own, else "
       "EGM96), or the pad.";
   key.set = [names = key.choices](Mission& mission, const KeyValue& value) {
     const auto name = std::ranges::find(names, std::get<std::string>(value));
-    mission.prior.back().vertical = static_cast<prior::HeightDatum>(name - names.begin());
+    mission.prior.back().vertical = static_cast<HeightDatum>(name - names.begin());
   };
   key.get = [names = key.choices](const Mission& mission) -> std::optional<KeyValue> {
     const auto& stored = mission.prior.back().vertical;
@@ -143,7 +153,8 @@ std::vector<Key> place_keys() {
           "A map, model, terrain or scan, relative to the mission file; its format is told by its "
           "content (docs/sites.md).")),
       required(choice_key(
-          "role", {"target", "obstacle", "terrain", "truth"}, source(&Source::role),
+          "role", names_of({Role::target, Role::obstacle, Role::terrain, Role::truth}),
+          source(&Source::role),
           "What it is to the survey. target: what is surveyed, guessed where not measured yet. "
           "obstacle: in the way of every leg. terrain: the ground. truth: what the simulated "
           "sensor measures, in place of scene.model. None proves that space is free.")),

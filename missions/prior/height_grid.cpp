@@ -147,8 +147,7 @@ std::vector<AlignedBox3d> columns_of(const HeightGrid& grid) {
   return columns;
 }
 
-std::vector<flight::Triangle> triangles_of(const HeightGrid& grid, std::size_t step) {
-  if (step > 1) return triangles_of(thinned(grid, step), 1);
+std::vector<flight::Triangle> triangles_of(const HeightGrid& grid) {
   std::vector<flight::Triangle> triangles;
   for (std::size_t row = 1; row < grid.rows; ++row) {
     for (std::size_t line = 1; line < grid.columns; ++line) {

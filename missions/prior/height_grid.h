@@ -34,11 +34,10 @@ HeightGrid thinned(const HeightGrid& grid, std::size_t step);
 /// mean nothing. Of large grids one box is over step_of() cells each way.
 std::vector<Eigen::AlignedBox3d> columns_of(const HeightGrid& grid);
 
-/// The triangles between nodes, two in each square of four that all have heights, of the grid
-/// thinned by `step`.
-std::vector<flight::Triangle> triangles_of(const HeightGrid& grid, std::size_t step);
+/// The triangles between nodes, two in each square of four that all have heights.
+std::vector<flight::Triangle> triangles_of(const HeightGrid& grid);
 
-/// The level rest of the cells that triangles_of(grid, 1) leaves out: at the border of the grid,
+/// The level rest of the cells that triangles_of() leaves out: at the border of the grid,
 /// and beside nodes without heights.
 std::vector<flight::Triangle> rim_of(const HeightGrid& grid);
 

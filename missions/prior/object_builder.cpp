@@ -83,7 +83,11 @@ void ObjectBuilder::add_surfaces(const FileObject& object, Object& result) {
 }
 
 void ObjectBuilder::add_solids(const FileObject& object, Object& result) {
-  const std::optional<double> height = source_.height ? source_.height : object.height;
+  std::optional<double> height = source_.height ? source_.height : object.height;
+  // What is in the way is as high as anybody says.
+  if (source_.role == Role::obstacle && object.height) {
+    height = std::max(*height, *object.height);
+  }
   if (!height) {
     throw Error(ErrorKind::bad_config, source_.file.string() + ": does not say how high " +
                                            one_line(object.id) +

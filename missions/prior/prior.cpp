@@ -167,6 +167,11 @@ void require_use(const Source& source, const Prior& prior) {
   if (source.role == Role::target && prior.objects.empty()) {
     refuse("holds no surfaces of objects, which a target has to; give role: obstacle");
   }
+  const auto is_surface = [](const Object& object) { return has_area(object.mesh); };
+  if (source.role == Role::terrain && prior.points.empty() && prior.grid.nodes.empty() &&
+      std::ranges::none_of(prior.objects, is_surface)) {
+    refuse("holds no surface, which the ground has to be; give role: obstacle");
+  }
   if (source.role == Role::terrain && !prior.points.empty()) {
     refuse("holds points, which are no ground; make a raster of them, or give role: obstacle");
   }
@@ -246,12 +251,30 @@ flight::GeodeticPoint middle_of(const Source& source, const FileContents& conten
 
 }  // namespace
 
+bool has_area(const geometry::Mesh& mesh) {
+  return !mesh.triangles.empty() && geometry::surface_area(mesh) > 0.0;
+}
+
 Prior read_prior(const Source& source, const SiteFrame& site, const TerrainHeight& terrain) {
   return prior_of(read_contents(source, site), source, site, terrain);
 }
 
 flight::GeodeticPoint middle_of(const Source& source) {
   return middle_of(source, read_contents(source, {}));
+}
+
+Source completed(Source source, const Assumptions& assumed) {
+  const FileContents contents = read_contents(source, {});
+  if (contents.crs.empty()) source.crs = assumed.crs;
+  if (contents.crs.empty() && source.crs.empty()) return source;  // in the mission's frame
+  const bool is_flat = std::ranges::none_of(contents.objects, &FileObject::has_heights);
+  if (contents.is_outlines && is_flat && assumed.has_terrain && !source.base) {
+    source.base_on_terrain = true;
+    return source;
+  }
+  const bool is_silent = !SiteTransform(source, contents, {}, false).has_own_heights();
+  if (is_silent && !contents.vertical) source.vertical = assumed.vertical;
+  return source;
 }
 
 geometry::Mesh read_surfaces(const std::filesystem::path& file) {

@@ -69,18 +69,32 @@ struct Prior {
       notes;  ///< sentences for the user: stand-ins, guesses, what was left out
 };
 
+/// Whether it is a surface at all.
+bool has_area(const geometry::Mesh& mesh);
+
 /// Reads a file by its content, then by its ending. Throws Error in one line that opens with the
 /// file: {bad_file} if it is broken, too large (2 GB; 100 million cells; 50 million polygons), or
 /// of no known format; {bad_config} if the source does not say what is needed (crs, vertical, base,
 /// height, takeoff), says what the file has no use for, gives it a role that it cannot play
-/// (targets are objects; the ground is no points), or puts anything farther than 50 km from the
-/// site. `terrain` is asked where `base_on_terrain` is set.
+/// (targets are objects; the ground has an area and is no points), or puts anything farther than 50
+/// km from the site. `terrain` is asked where `base_on_terrain` is set.
 Prior read_prior(const Source& source, const SiteFrame& site, const TerrainHeight& terrain = {});
 
 /// Where on the Earth the middle of what is selected of a file is, without its height: for those
 /// who do not know their site yet. Throws what read_prior() throws, and Error{bad_config} if the
 /// file has no reference system.
 flight::GeodeticPoint middle_of(const Source& source);
+
+/// What a file is taken to mean where it does not say it.
+struct Assumptions {
+  std::string crs;
+  std::optional<HeightDatum> vertical;
+  bool has_terrain = false;  ///< outlines that have neither heights nor a base stand on it
+};
+
+/// The source with those of the assumptions that its file needs; what the file says itself stays.
+/// Throws what read_prior() throws.
+Source completed(Source source, const Assumptions& assumed);
 
 /// All surfaces of a file as one mesh in metres with z up, about the middle of what they are in:
 /// what simulated sensors see of a site. Throws what read_prior() throws.

@@ -57,6 +57,11 @@ const char* name_of(Role role) {
   return names[static_cast<std::size_t>(role)];
 }
 
+const char* name_of(HeightDatum datum) {
+  constexpr std::array names{"ellipsoid", "geoid", "takeoff"};
+  return names[static_cast<std::size_t>(datum)];
+}
+
 std::string text_of(const SitePriors& site) {
   std::string text;
   for (std::size_t i = 0; i < site.priors.size(); ++i) {

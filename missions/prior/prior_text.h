@@ -9,6 +9,7 @@ namespace skycap::missions::prior {
 
 /// As mission files say it.
 const char* name_of(Role role);
+const char* name_of(HeightDatum datum);
 
 /// Some lines for each source: what it holds, where that is, what its reader noted. Empty without
 /// any.

@@ -133,7 +133,7 @@ void refuse_unused(const Source& source, const FileContents& contents) {
       {"spacing", source.spacing.has_value(), !contents.points.empty(), "points"},
       {"select.classes", !select.classes.empty(), contents.has_classes, "LAS files"},
       {"select.layer", !select.layer.empty(), is_outlines, "maps"},
-      {"select.lod", select.lod.has_value(), !select.lod || has_levels(contents),
+      {"select.lod", select.lod.has_value(), has_levels(contents),
        "city models with levels of detail"},
       {"select.id", !select.ids.empty(), has_objects, "files of objects"},
       {"select.attribute", !select.attributes.empty(), has_objects, "files of objects"},

@@ -12,10 +12,6 @@
 namespace skycap::missions::prior {
 namespace {
 
-bool has_area(const geometry::Mesh& mesh) {
-  return !mesh.triangles.empty() && geometry::surface_area(mesh) > 0.0;
-}
-
 template <typename Item>
 std::uint32_t crc_of(const std::vector<Item>& items) {
   return geometry::crc32_of(
@@ -77,10 +73,14 @@ SitePriors read_site_priors(std::vector<Source> sources, const SiteFrame& site,
     grounds.push_back(&result.priors[i]);
   }
   if (!grounds.empty()) {
-    const UnknownGround unknown(ground_obstacles, site.ground_z);
-    result.ground_note = unknown.note();
-    result.obstacles.push_back(std::make_shared<const flight::PriorObstacle>(unknown.obstacle()));
+    const auto unknown = std::make_shared<UnknownGround>(ground_obstacles, site.ground_z);
+    result.ground_note = unknown->note();
+    result.obstacles.push_back(std::make_shared<const flight::PriorObstacle>(unknown->obstacle()));
     result.terrain = std::make_shared<const Terrain>(grounds);
+    result.ground = [unknown, terrain = result.terrain](const Eigen::Vector2d& place) {
+      const std::optional<double> known = terrain->height(place);
+      return known ? known : unknown->height(place);
+    };
     terrain_height = [terrain = result.terrain](const Eigen::Vector2d& place) {
       return terrain->height(place);
     };
@@ -100,7 +100,7 @@ geometry::Mesh surfaces_of(const SitePriors& site, Role role) {
       if (has_area(object.mesh)) geometry::append(mesh, object.mesh);
     }
     const HeightGrid& grid = site.priors[i].grid;
-    geometry::append(mesh, mesh_of(triangles_of(grid, 1)));
+    geometry::append(mesh, mesh_of(triangles_of(grid)));
     geometry::append(mesh, mesh_of(rim_of(grid)));
   }
   return mesh;

@@ -20,6 +20,8 @@ struct SitePriors {
   /// Of the roles obstacle and terrain.
   std::vector<std::shared_ptr<const flight::PriorObstacle>> obstacles;
   std::shared_ptr<const Terrain> terrain;  ///< null: there is none
+  TerrainHeight
+      ground;  ///< z of the ground everywhere, where unknown as it is taken to be; or null
   std::string ground_note;           ///< what is taken for the ground where no terrain has any
   std::vector<std::string> digests;  ///< of what the sources hold, in their order
 };

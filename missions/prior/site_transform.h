@@ -37,6 +37,8 @@ class SiteTransform {
   /// How long units of the file are, east, north and up, near a coordinate.
   Eigen::Vector3d metres_per_unit() const { return metres_per_unit_; }
   const std::string& crs() const { return name_; }
+  /// Whether the reference system says what heights count from.
+  bool has_own_heights() const { return geodetic_ && geodetic_->has_own_heights; }
   const std::vector<std::string>& notes() const { return notes_; }
   /// What stand-ins on the way to WGS84 may be off [m].
   double stand_in_error() const { return geodetic_ ? geodetic_->stand_in_error : 0.0; }

@@ -42,7 +42,7 @@ Terrain::Terrain(const std::vector<const Prior*>& priors) {
     const std::size_t step = step_of(prior->grid);
     const HeightGrid coarse = step > 1 ? thinned(prior->grid, step) : HeightGrid{};
     const HeightGrid& grid = step > 1 ? coarse : prior->grid;
-    for (const auto& more : {triangles_of(grid, 1), rim_of(grid)}) {
+    for (const auto& more : {triangles_of(grid), rim_of(grid)}) {
       triangles.insert(triangles.end(), more.begin(), more.end());
     }
   }

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstdint>
 #include <limits>
+#include <optional>
 
 #include <fmt/format.h>
 
@@ -255,7 +256,8 @@ std::string note_of(const Lattice& lattice, const Gaps& gaps, double plane_z) {
 }  // namespace
 
 UnknownGround::UnknownGround(const std::vector<flight::PriorObstacleConfig>& terrain,
-                             double plane_z) {
+                             double plane_z)
+    : plane_z_(plane_z) {
   const Lattice lattice(terrain);
   const Gaps gaps(lattice);
   obstacle_.name = "the ground where no terrain is known";
@@ -266,6 +268,15 @@ UnknownGround::UnknownGround(const std::vector<flight::PriorObstacleConfig>& ter
   add_gaps(lattice, gaps, plane_z, obstacle_.columns);
   add_beyond(lattice.box(), plane_z, obstacle_.columns);
   note_ = note_of(lattice, gaps, plane_z);
+}
+
+double UnknownGround::height(const Vector2d& place) const {
+  std::optional<double> highest;
+  for (const AlignedBox3d& column : obstacle_.columns) {
+    if (!AlignedBox2d(column.min().head<2>(), column.max().head<2>()).contains(place)) continue;
+    highest = std::max(highest.value_or(column.max().z()), column.max().z());
+  }
+  return highest.value_or(plane_z_);
 }
 
 }  // namespace skycap::missions::prior

@@ -15,8 +15,11 @@ namespace skycap::missions::prior {
 /// two-thousandth of the terrain's longer side if that is more: narrower ones count for nothing.
 class UnknownGround {
  public:
-  /// `terrain` is what is known, its surfaces and columns; at least one of them has some.
+  /// `terrain` is what is known, its surfaces and columns; at least one of them has some area.
   UnknownGround(const std::vector<flight::PriorObstacleConfig>& terrain, double plane_z);
+
+  /// z of it at a place; where the ground is known, of the plane.
+  double height(const Eigen::Vector2d& place) const;
 
   /// As uncertain as the most uncertain terrain.
   const flight::PriorObstacleConfig& obstacle() const { return obstacle_; }
@@ -25,6 +28,7 @@ class UnknownGround {
   const std::string& note() const { return note_; }
 
  private:
+  double plane_z_;
   flight::PriorObstacleConfig obstacle_;
   std::string note_;
 };

@@ -1,7 +1,5 @@
 #include "missions/site/mission_text.h"
 
-#include <array>
-
 #include <fmt/format.h>
 
 #include "missions/prior/prior_text.h"
@@ -24,7 +22,7 @@ std::string vector_text(const Vector3d& place) {
   return fmt::format("[{:g}, {:g}, {:g}]", place.x(), place.y(), place.z());
 }
 
-/// As from the mission file's folder.
+/// In quotes, and as from the mission file's folder.
 std::string path_text(const std::filesystem::path& file, const std::filesystem::path& mission) {
   const auto absolute = std::filesystem::absolute(file).lexically_normal();
   const auto folder = std::filesystem::absolute(mission).lexically_normal().parent_path();
@@ -32,13 +30,10 @@ std::string path_text(const std::filesystem::path& file, const std::filesystem::
 }
 
 std::string source_text(const Source& source, const std::filesystem::path& mission) {
-  constexpr std::array datums{"ellipsoid", "geoid", "takeoff"};
   std::string text = fmt::format("{{file: {}, role: {}", path_text(source.file, mission),
                                  prior::name_of(source.role));
   if (!source.crs.empty()) text += ", crs: " + quoted(source.crs);
-  if (source.vertical) {
-    text += std::string(", vertical: ") + datums[static_cast<std::size_t>(*source.vertical)];
-  }
+  if (source.vertical) text += std::string(", vertical: ") + prior::name_of(*source.vertical);
   if (source.base_on_terrain) text += ", base: terrain";
   if (source.base) text += fmt::format(", base: {:g}", *source.base);
   if (source.height) text += fmt::format(", height: {:g}", *source.height);
@@ -79,9 +74,9 @@ std::string site_section(const MissionValues& values) {
       "site:\n"
       "  # The origin of the mission's frame (x east, y north, z up): the middle of the target, at "
       "its lowest place.\n"
-      "  latitude_deg: {:.7f}\n"
-      "  longitude_deg: {:.7f}\n"
-      "  ellipsoid_height: {:.2f}\n"
+      "  latitude_deg: {:.7f}  # WGS84, north\n"
+      "  longitude_deg: {:.7f}  # east\n"
+      "  ellipsoid_height: {:.2f}  # metres above WGS84's ellipsoid, not above the sea\n"
       "  # Views and legs stay inside of this; make it what you are allowed to fly in.\n"
       "  geofence: [[{:g}, {:g}], [{:g}, {:g}], [{:g}, {:g}], [{:g}, {:g}]]\n"
       "  highest_height: {:g}  # z; over the ground here\n",
@@ -90,11 +85,13 @@ std::string site_section(const MissionValues& values) {
 }
 
 std::string flight_section(const MissionValues& values) {
+  // A preset has a name, a description has a path.
+  const bool is_file = std::filesystem::path(values.vehicle).extension() == ".yaml";
   std::string text = fmt::format(
       "flight:\n"
       "  vehicle: {}  # a preset, or the path of a description\n"
       "  clearance: {:g}  # least distance of the vehicle's centre from anything\n",
-      quoted(values.vehicle), values.clearance);
+      is_file ? path_text(values.vehicle, values.file) : quoted(values.vehicle), values.clearance);
   if (values.pad) {
     text += fmt::format(
         "  # Where it takes off and lands; go and see that it is free, and the air over it.\n"
@@ -112,25 +109,32 @@ std::string flight_section(const MissionValues& values) {
 
 std::string planner_section(const MissionValues& values) {
   const double distance = values.registration_distance;
-  return fmt::format(
+  std::string text = fmt::format(
       "sensor:  # a depth camera; `skycap check` says what it resolves\n"
-      "  width: 320\n"
-      "  height: 240\n"
+      "  width: 320  # pixels\n"
+      "  height: 240  # pixels\n"
       "  max_range: {:g}  # metres\n"
       "  noise: {{sigma: 0.02}}  # metres, one standard deviation\n"
-      "planner:\n"
-      "  # Surface in this box is wanted; what is lower counts as the ground.\n"
-      "  scene_box: {{min: {}, max: {}}}\n"
-      "  view_distance: {:g}  # from which surfaces are looked at\n"
-      "  density: {:.3g}  # points a square metre, wanted everywhere\n"
-      "  resolution_radius: {:g}  # in which they are counted\n"
-      "  spacing: {:g}  # points nearer to each other than this are not kept\n"
-      "evaluation:\n"
-      "  registration_distance: {:g}  # a surface is covered with a point so near to it\n"
-      "limits:\n"
-      "  max_views: 150  # the survey ends before, when nothing is left to see\n",
-      4.0 * values.view_distance, vector_text(values.scene.min()), vector_text(values.scene.max()),
-      values.view_distance, 0.36 / (distance * distance), 3.0 * distance, 0.5 * distance, distance);
+      "planner:\n",
+      4.0 * values.view_distance);
+  if (values.scene) {
+    text += fmt::format(
+        "  # Surface in this box is wanted; what is lower counts as the ground.\n"
+        "  scene_box: {{min: {}, max: {}}}\n",
+        vector_text(values.scene->min()), vector_text(values.scene->max()));
+  }
+  return text +
+         fmt::format(
+             "  view_distance: {:g}  # metres, from which surfaces are looked at\n"
+             "  density: {:.3g}  # points a square metre, wanted everywhere\n"
+             "  resolution_radius: {:g}  # metres, in which they are counted\n"
+             "  spacing: {:g}  # metres; points nearer to each other than this are not kept\n"
+             "evaluation:\n"
+             "  registration_distance: {:g}  # a surface is covered with a point so near to it\n"
+             "limits:\n"
+             "  max_views: 150  # the survey ends before, when nothing is left to see\n",
+             values.view_distance, 0.36 / (distance * distance), 3.0 * distance, 0.5 * distance,
+             distance);
 }
 
 }  // namespace
@@ -141,7 +145,7 @@ std::string mission_text(const MissionValues& values) {
              "# A first mission, proposed by `skycap site`. It runs as it is; what the files do "
              "not say is a guess,\n"
              "# so read every line of it before you fly. `skycap check` says what the files hold.\n"
-             "name: {}\n"
+             "name: {}  # of the results\n"
              "# A dry run: the target stands in for what there is. Leave `scene` out for a live "
              "survey.\n"
              "scene: {{model: prior, ground: true}}\n",

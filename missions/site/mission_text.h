@@ -20,10 +20,10 @@ struct MissionValues {
   std::string vehicle;
   std::vector<prior::Source> sources;
   flight::GeodeticPoint origin;
-  Eigen::AlignedBox3d scene;    ///< whose surface is wanted
   Eigen::AlignedBox3d unknown;  ///< where nothing is free before it is measured
   Eigen::AlignedBox3d fence{};
-  std::optional<Eigen::Vector3d> pad{};
+  std::optional<Eigen::AlignedBox3d> scene{};  ///< whose surface is wanted; none in a draft
+  std::optional<Eigen::Vector3d> pad{};        ///< likewise
   double clearance = 0.0, registration_distance = 0.0, view_distance = 0.0;
 };
 

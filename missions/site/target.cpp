@@ -22,27 +22,6 @@ using prior::Source;
 /// What is clicked on is no farther from the click than this [m].
 constexpr double near_click = 10.0;
 
-Source source_of(const std::filesystem::path& file, Role role, const Reading& reading) {
-  Source source;
-  source.file = file;
-  source.role = role;
-  source.crs = reading.crs;
-  source.vertical = reading.vertical;
-  return source;
-}
-
-/// Of the file that the target is in: its outlines stand on the terrain if there is one.
-Source map_source(const Wishes& wishes, Role role) {
-  Source source = source_of(wishes.map, role, wishes.reading);
-  source.base = wishes.reading.base;
-  source.height = wishes.reading.height;
-  if (wishes.terrain && source.height && !source.base) {
-    source.base_on_terrain = true;
-    source.vertical.reset();
-  }
-  return source;
-}
-
 bool is_over(const geometry::Mesh& mesh, const Vector2d& place) {
   return std::ranges::any_of(mesh.triangles, [&](const auto& triangle) {
     std::array<Vector2d, 3> corners;
@@ -60,23 +39,22 @@ double distance(const Object& object, const Vector2d& place) {
   return std::max(0.01, base.exteriorDistance(place));
 }
 
-std::vector<Object> objects_of(const Wishes& wishes, const flight::GeodeticPoint& origin,
-                               const std::vector<std::string>& ids) {
-  std::vector<Source> sources = sources_of(wishes, ids);
+prior::Prior read_target(const std::vector<Source>& files, const flight::GeodeticPoint& origin,
+                         const std::vector<std::string>& ids) {
+  std::vector<Source> sources = sources_of(files, ids);
   std::erase_if(sources, [](const Source& source) {
     return source.role != Role::target && source.role != Role::terrain;
   });
   const auto failed = [](std::size_t, const std::string& what) {
     throw Error(ErrorKind::bad_config, what);
   };
-  const prior::SitePriors site = prior::read_site_priors(sources, {.origin = origin}, failed);
-  return site.priors[0].objects;
+  return prior::read_site_priors(sources, {.origin = origin}, failed).priors[0];
 }
 
-std::string clicked(const Wishes& wishes) {
-  const Click& click = *wishes.target.click;
+std::string clicked(const std::vector<Source>& files, const Click& click) {
+  const std::string file = files[0].file.string();
   const std::vector<Object> objects =
-      objects_of(wishes, {click.latitude_deg, click.longitude_deg, 0.0}, {});
+      read_target(files, {click.latitude_deg, click.longitude_deg, 0.0}, {}).objects;
   const Object* nearest = nullptr;
   double least = std::numeric_limits<double>::infinity();
   for (const Object& object : objects) {
@@ -87,21 +65,28 @@ std::string clicked(const Wishes& wishes) {
   if (nearest == nullptr || least > near_click) {
     throw Error(
         ErrorKind::bad_config,
-        fmt::format("{}: has nothing within {:.0f} m of latitude {:.7f}, longitude {:.7f}{}",
-                    wishes.map.string(), near_click, click.latitude_deg, click.longitude_deg,
+        fmt::format("{}: has nothing within {:.0f} m of latitude {:.7f}, longitude {:.7f}{}", file,
+                    near_click, click.latitude_deg, click.longitude_deg,
                     nearest == nullptr
                         ? ""
                         : fmt::format("; the nearest, {}, is {:.0f} m away", nearest->id, least)));
+  }
+  if (std::ranges::count(objects, nearest->id, &Object::id) > 1) {
+    throw Error(ErrorKind::bad_config,
+                fmt::format("{}: holds several things that are called {}; give them names of "
+                            "their own",
+                            file, nearest->id));
   }
   return nearest->id;
 }
 
 /// The ids of what the pick means.
-std::vector<std::string> picked(const Wishes& wishes) {
-  if (wishes.target.click) return {clicked(wishes)};
-  Source source = map_source(wishes, Role::target);
-  source.select.ids = wishes.target.ids;
-  source.select.attributes = wishes.target.attributes;
+std::vector<std::string> picked(const std::vector<Source>& files, const Pick& pick) {
+  if (pick.click) return {clicked(files, *pick.click)};
+  Source source = files[0];
+  source.role = Role::target;
+  source.select.ids = pick.ids;
+  source.select.attributes = pick.attributes;
   std::vector<std::string> ids;
   for (const Object& object :
        prior::read_prior(source, {.origin = prior::middle_of(source)}, [](const Vector2d&) {
@@ -109,42 +94,62 @@ std::vector<std::string> picked(const Wishes& wishes) {
        }).objects) {
     ids.push_back(object.id);
   }
-  if (ids.size() == 1 || !wishes.target.ids.empty()) return ids;
+  if (ids.size() == 1 || !pick.ids.empty()) return ids;
   std::string some;
   for (std::size_t i = 0; i < std::min<std::size_t>(5, ids.size()); ++i) {
     some += (i == 0 ? "" : ", ") + ids[i];
   }
   throw Error(ErrorKind::bad_config,
               fmt::format("{}: holds {} things, {}{}; say which by --id, --at or --attribute",
-                          wishes.map.string(), ids.size(), some, ids.size() > 5 ? ", ..." : ""));
+                          source.file.string(), ids.size(), some, ids.size() > 5 ? ", ..." : ""));
 }
 
 double rounded(double value, double unit) { return std::round(value / unit) * unit; }
 
 }  // namespace
 
-std::vector<Source> sources_of(const Wishes& wishes, const std::vector<std::string>& target) {
-  std::vector<Source> sources = {map_source(wishes, Role::target),
-                                 map_source(wishes, Role::obstacle)};
-  sources[0].select.ids = target;
-  for (const std::filesystem::path& file : wishes.obstacles) {
-    sources.push_back(source_of(file, Role::obstacle, wishes.reading));
+std::vector<Source> files_of(const Wishes& wishes) {
+  const auto file = [&](const std::filesystem::path& path, Role role) {
+    Source source;
+    source.file = path;
+    source.role = role;
+    return source;
+  };
+  const prior::Assumptions assumed{wishes.reading.crs, wishes.reading.vertical,
+                                   wishes.terrain.has_value()};
+  Source map = file(wishes.map, Role::obstacle);
+  map.base = wishes.reading.base;
+  map.height = wishes.reading.height;
+  std::vector<Source> files{prior::completed(map, assumed)};
+  for (const std::filesystem::path& path : wishes.obstacles) {
+    files.push_back(prior::completed(file(path, Role::obstacle), assumed));
   }
-  if (wishes.terrain) sources.push_back(source_of(*wishes.terrain, Role::terrain, wishes.reading));
+  if (wishes.terrain) {
+    files.push_back(prior::completed(file(*wishes.terrain, Role::terrain), assumed));
+  }
+  return files;
+}
+
+std::vector<Source> sources_of(const std::vector<Source>& files,
+                               const std::vector<std::string>& target) {
+  std::vector<Source> sources = files;
+  sources.insert(sources.begin(), files[0]);
+  sources[0].role = Role::target;
+  sources[0].select.ids = target;
   return sources;
 }
 
-Target find_target(const Wishes& wishes) {
-  Target target{.ids = picked(wishes), .origin = {}, .box = {}};
-  Source source = map_source(wishes, Role::target);
-  source.select.ids = target.ids;
-  target.origin = prior::middle_of(source);
+Target find_target(const std::vector<Source>& files, const Pick& pick) {
+  Target target{.ids = picked(files, pick), .origin = {}, .box = {}};
+  target.origin = prior::middle_of(sources_of(files, target.ids)[0]);
   constexpr double centimetre = 1e-7;  // of latitude [degrees]
   target.origin.latitude_deg = rounded(target.origin.latitude_deg, centimetre);
   target.origin.longitude_deg = rounded(target.origin.longitude_deg, centimetre);
-  for (const Object& object : objects_of(wishes, target.origin, target.ids)) {
+  const prior::Prior found = read_target(files, target.origin, target.ids);
+  for (const Object& object : found.objects) {
     target.box.extend(geometry::bounding_box(object.mesh));
   }
+  target.uncertainty = found.uncertainty;
   // Along the same plumb line the frame's other origin moves heights alone.
   target.origin.height = rounded(target.box.min().z(), 0.01);
   target.box.translate(Eigen::Vector3d(0.0, 0.0, -target.origin.height));

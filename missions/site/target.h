@@ -16,14 +16,20 @@ struct Target {
   std::vector<std::string> ids;  ///< in the file; empty: all of it
   flight::GeodeticPoint origin;  ///< of a frame about its middle, at its lowest place
   Eigen::AlignedBox3d box;       ///< in that frame
+  double uncertainty = 0.0;      ///< how far off it may be [m]
 };
 
-/// The prior data that the wishes name: the target, everything of its file and what else there is
-/// as obstacles, the terrain. Files are as the wishes have them.
-std::vector<prior::Source> sources_of(const Wishes& wishes, const std::vector<std::string>& target);
+/// The files that the wishes name, each with what it does not say itself: the map, as an obstacle,
+/// then the other obstacles and the terrain. Files are as the wishes have them. Throws what
+/// prior::completed() throws.
+std::vector<prior::Source> files_of(const Wishes& wishes);
 
-/// Throws Error{bad_config} if the pick is none or several of the file's things, in words that say
-/// which there are; what prior::read_prior() throws.
-Target find_target(const Wishes& wishes);
+/// The prior data of a mission: the target, of the first of the files, and all of them.
+std::vector<prior::Source> sources_of(const std::vector<prior::Source>& files,
+                                      const std::vector<std::string>& target);
+
+/// Throws Error{bad_config} if the pick is none of the file's things, or several that are not named
+/// one by one, in words that say which there are; what prior::read_prior() throws.
+Target find_target(const std::vector<prior::Source>& files, const Pick& pick);
 
 }  // namespace skycap::missions::site

@@ -19,6 +19,9 @@ namespace {
 
 namespace fs = std::filesystem;
 
+/// What heights may count from where there is no pad yet.
+constexpr std::array datums{prior::HeightDatum::ellipsoid, prior::HeightDatum::geoid};
+
 struct SiteOptions {
   fs::path map;                         ///< file that holds the target and its neighbours
   std::vector<std::string> ids;         ///< of the target; either this
@@ -81,8 +84,9 @@ site::Wishes wishes_of(const SiteOptions& options) {
                       .terrain = options.terrain,
                       .obstacles = options.obstacles,
                       .vehicle = options.vehicle};
-  if (options.vertical == "ellipsoid") wishes.reading.vertical = prior::HeightDatum::ellipsoid;
-  if (options.vertical == "geoid") wishes.reading.vertical = prior::HeightDatum::geoid;
+  for (const prior::HeightDatum datum : datums) {
+    if (options.vertical == name_of(datum)) wishes.reading.vertical = datum;
+  }
   return wishes;
 }
 
@@ -97,9 +101,11 @@ int propose_site(const SiteOptions& options, const Console& console) {
   if (file.extension() != ".yaml" && file.extension() != ".yml") {
     refuse("--out", file.string(), "a name that ends in .yaml");
   }
-  if (fs::exists(file)) {
+  const fs::path picture = fs::path(file).replace_extension(".html");
+  for (const fs::path& result : {file, picture}) {
+    if (!fs::exists(result)) continue;
     throw Error(ErrorKind::bad_usage,
-                file.string() + " is there already; give another --out, or move it away");
+                result.string() + " is there already; give another --out, or move it away");
   }
   ProgressLine progress(console, false);
   progress.show("reading " + options.map.filename().string());
@@ -108,7 +114,6 @@ int propose_site(const SiteOptions& options, const Console& console) {
   const file::Mission mission = derived::parse_mission(text, file.string());
   const std::string page = page_of(mission, file);
   progress.clear();
-  const fs::path picture = fs::path(file).replace_extension(".html");
   geometry::OutputFolder folder(file.has_parent_path() ? file.parent_path() : ".");
   folder.write(file.filename().string(), text);
   folder.write(picture.filename().string(), page);
@@ -142,11 +147,13 @@ void add_site(CLI::App& app, const Console& console, Action& action) {
       ->allow_extra_args(false);
   verb->add_option("--crs", options->crs, "Reference system of the files, if they do not say it");
   verb->add_option("--vertical", options->vertical,
-                   "What their heights count from: ellipsoid, geoid")
-      ->check(CLI::IsMember({"ellipsoid", "geoid"}));
-  verb->add_option("--base", options->base, "Of outlines: the height that they stand at [m]")
+                   "What their heights count from, if they do not say it: ellipsoid, geoid")
+      ->check(CLI::IsMember({name_of(datums[0]), name_of(datums[1])}));
+  verb->add_option("--base", options->base,
+                   "Of outlines: the height that they stand at, in --vertical [m]")
       ->check(number_between(-1e4, 1e4));
-  verb->add_option("--height", options->height, "Of outlines: how high they are [m]")
+  verb->add_option("--height", options->height,
+                   "Of outlines without a height of their own: how high they are [m]")
       ->check(number_between(0.01, 1e4));
   verb->add_option("--terrain", options->terrain, "File of the ground; outlines stand on it");
   verb->add_option("--obstacle", options->obstacles, "Further file of what is in the way")

@@ -26,7 +26,7 @@ using testing_support::Cube;
 /// Convex things: blocks, points (blocks without sides), and the ground under a height model.
 using Truth = std::vector<AlignedBox3d>;
 
-/// Lower bound of a leg's distance from a block: the distance is convex along the leg, so a
+/// A leg's distance from a block, too large by rounding at most: it is convex along the leg, so a
 /// golden-section search finds its least, here with a plain point-to-box distance.
 double distance(const Segment& leg, const AlignedBox3d& box) {
   const auto at = [&](double t) {

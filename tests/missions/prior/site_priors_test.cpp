@@ -187,6 +187,9 @@ TEST(UnknownGround, IsAsHighAsTheGroundThatSurroundsIt) {
   const flight::PriorObstacle obstacle(unknown.obstacle());
   EXPECT_NEAR(top_at(obstacle, 6.5, 0.0), 2.0 + 0.4, 1e-5);
   EXPECT_NEAR(top_at(obstacle, -9.0, 0.0), -1.0 + 0.4, 1e-5);
+  EXPECT_EQ(unknown.height({6.5, 0.0}), 2.0);
+  EXPECT_EQ(unknown.height({-9.0, 0.0}), -1.0);
+  EXPECT_EQ(unknown.height({0.0, 300.0}), -1.0);
   EXPECT_THAT(unknown.note(), testing::HasSubstr("1 holes"));
 }
 

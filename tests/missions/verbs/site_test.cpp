@@ -1,7 +1,9 @@
 // From one tile of a city model to a certified mission in two commands.
+#include <algorithm>
 #include <fstream>
 #include <iterator>
 #include <sstream>
+#include <string>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -11,6 +13,7 @@
 #include "missions/derived/mission_flight.h"
 #include "missions/derived/mission_priors.h"
 #include "missions/derived/resolved_mission.h"
+#include "missions/prior/prior.h"
 #include "tests/missions/prior/cube_files.h"
 #include "tests/missions/run_skycap.h"
 
@@ -55,11 +58,18 @@ std::string tile() {
 
 class Site : public testing::Test {
  protected:
-  Site() { std::ofstream(folder_.path() / "tile.gml") << tile(); }
+  Site() { write("tile.gml", tile()); }
 
   tests::ProgramRun propose(const std::string& options) {
     return run_skycap("site " + path_ + "/tile.gml --vertical ellipsoid --out " + path_ +
                       "/house.yaml " + options);
+  }
+  void remove_proposal() const {
+    for (const char* name : {"house.yaml", "house.html"})
+      std::filesystem::remove(folder_.path() / name);
+  }
+  void write(const std::string& name, const std::string& content) const {
+    std::ofstream(folder_.path() / name, std::ios::binary) << content;
   }
   file::Mission mission() const { return derived::read_mission(folder_.path() / "house.yaml"); }
 
@@ -107,18 +117,20 @@ TEST_F(Site, IsProposedAboutItsTarget) {
   EXPECT_EQ(derived::priors_of(mission).priors[1].objects.size(), 3U);
 }
 
-// Each value has a word on it, beside it or over it and others of its kind.
+// Each value has a word on it, beside it or over it.
 TEST_F(Site, IsCommentedValueByValue) {
   ASSERT_EQ(propose("--id DEBY_1").exit_code, 0);
   std::istringstream text(content_of(folder_.path() / "house.yaml"));
   std::size_t values = 0;
-  bool has_comment = false;
+  bool is_under_comment = false;
   for (std::string line; std::getline(text, line);) {
-    const bool is_section = line[0] != ' ' && line[0] != '#' && line.ends_with(':');
-    has_comment = (has_comment && !is_section) || line.find('#') != std::string::npos;
-    if (is_section || line.find('#') < 4) continue;
-    ++values;
-    EXPECT_TRUE(has_comment) << line;
+    const bool is_comment = line.find_first_not_of(' ') == line.find('#');
+    const bool is_section = line[0] != ' ' && line.ends_with(':');
+    if (!is_comment && !is_section) {
+      ++values;
+      EXPECT_TRUE(is_under_comment || line.find('#') != std::string::npos) << line;
+    }
+    is_under_comment = is_comment;
   }
   EXPECT_GT(values, 20U);
 }
@@ -127,12 +139,12 @@ TEST_F(Site, IsPickedByNameAddressOrClick) {
   ASSERT_EQ(propose("--id DEBY_1").exit_code, 0);
   const std::string by_name = content_of(folder_.path() / "house.yaml");
   for (const char* pick : {"--at 48.76318391,11.39953620", "--at 48.76304965,11.39950258"}) {
-    std::filesystem::remove(folder_.path() / "house.yaml");
+    remove_proposal();
     const auto run = propose(pick);
     ASSERT_EQ(run.exit_code, 0) << run.err;
     EXPECT_EQ(content_of(folder_.path() / "house.yaml"), by_name);
   }
-  std::filesystem::remove(folder_.path() / "house.yaml");
+  remove_proposal();
   const auto run =
       tests::run_skycap({"site", path_ + "/tile.gml", "--vertical", "ellipsoid", "--out",
                          path_ + "/house.yaml", "--attribute", "ThoroughfareName=Am Ring"});
@@ -149,8 +161,86 @@ TEST_F(Site, SaysWhatIsMissing) {
   EXPECT_THAT(propose("--id DEBY_1 --at 48,11").err, HasSubstr("give one of them"));
   EXPECT_FALSE(std::filesystem::exists(folder_.path() / "house.yaml"));
   std::ofstream(folder_.path() / "house.yaml") << "mine";
-  EXPECT_THAT(propose("--id DEBY_1").err, HasSubstr("is there already"));
+  EXPECT_THAT(propose("--id DEBY_1").err, HasSubstr("house.yaml is there already"));
   EXPECT_EQ(content_of(folder_.path() / "house.yaml"), "mine");
+  std::filesystem::rename(folder_.path() / "house.yaml", folder_.path() / "house.html");
+  EXPECT_THAT(propose("--id DEBY_1").err, HasSubstr("house.html is there already"));
+  EXPECT_EQ(content_of(folder_.path() / "house.html"), "mine");
+  EXPECT_FALSE(std::filesystem::exists(folder_.path() / "house.yaml"));
+}
+
+// What a file says of itself holds, whatever is said of those that do not.
+TEST_F(Site, TakesWordsForFilesThatDoNotSayIt) {
+  // Ground above EGM96's geoid; the top of a slab is where the buildings' feet are.
+  const double undulation = prior::egm96_undulation(48.7632, 11.3995);
+  Cube ground;
+  ground.size = {400.0, 400.0, 1.0};
+  ground.low = {676130.0, 5403705.0, 379.0 - undulation};
+  write("ground.gml", citygml_of(ground, "EPSG:25832+5773"));
+  const auto run = propose("--id DEBY_1 --terrain " + path_ + "/ground.gml");
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  EXPECT_NEAR(mission().flight.takeoff.value().z(), 0.0, 0.05);
+  EXPECT_FALSE(mission().prior.back().vertical.has_value());
+  EXPECT_TRUE(mission().prior.front().vertical.has_value());
+}
+
+TEST_F(Site, IsAsHighAsAnybodySays) {
+  Cube low, high;
+  high.low.x() += 30.0;
+  std::string map = geojson_of(low);
+  std::string other = geojson_of(high);
+  other.replace(other.find("\"cube\""), 6, "\"tower\",\"height\":20");
+  const auto feature_of = [](const std::string& text) {
+    const auto begin = text.find("{\"type\":\"Feature\",");
+    return text.substr(begin, text.rfind("]}") - begin);
+  };
+  map.insert(map.rfind("]}"), "," + feature_of(other));
+  write("map.geojson", map);
+  const auto run = run_skycap("site " + path_ + "/map.geojson --id cube --height 12 --base 380 " +
+                              "--out " + path_ + "/house.yaml");
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  const auto& priors = derived::priors_of(mission()).priors;
+  ASSERT_EQ(priors.size(), 2U);
+  EXPECT_NEAR(priors[0].box.sizes().z(), 12.0, 0.01);
+  EXPECT_NEAR(priors[1].box.max().z(), 20.0, 0.01);
+  ASSERT_EQ(priors[1].objects.size(), 2U);
+}
+
+/// A crown of 3 m that begins 5 m over the pad, as a laser scanner sees it: eight points.
+TEST_F(Site, HasNoPadUnderACrown) {
+  ASSERT_EQ(propose("--id DEBY_1").exit_code, 0);
+  const Vector3d free_pad = mission().flight.takeoff.value();
+  remove_proposal();
+  Cube crown;
+  crown.size.setConstant(3.0);
+  crown.low = Vector3d(676330.0, 5403905.0, 385.0) + free_pad - Vector3d(1.5, 1.5, 0.0);
+  write("tree.las", las_of(crown, 4, 6));
+  const auto run = propose("--id DEBY_1 --crs EPSG:25832 --obstacle " + path_ + "/tree.las");
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  const Vector3d pad = mission().flight.takeoff.value();
+  const AlignedBox3d tree = derived::priors_of(mission()).priors.back().box;
+  const AlignedBox3d climb(pad, pad + Vector3d(0.0, 0.0, 20.0));
+  EXPECT_GE(climb.exteriorDistance(tree), mission().flight.clearance);
+  EXPECT_LT(AlignedBox3d(free_pad, free_pad + Vector3d(0.0, 0.0, 20.0)).exteriorDistance(tree),
+            mission().flight.clearance);
+}
+
+// South of the houses, where pads are looked for first, the ground falls by one in two.
+TEST_F(Site, HasItsPadWhereTheGroundIsLevel) {
+  std::string grid =
+      "ncols 80\nnrows 80\nxllcorner 676130\nyllcorner 5403705\ncellsize 5\n"
+      "NODATA_value -9999\n";
+  for (int row = 0; row < 80; ++row) {
+    const double fall = std::max(0.0, 5403900.0 - (5403705.0 + 5.0 * (79.5 - row)));
+    for (int column = 0; column < 80; ++column) grid += std::to_string(380.0 - 0.5 * fall) + " ";
+    grid += "\n";
+  }
+  write("ground.asc", grid);
+  const auto run = propose("--id DEBY_1 --crs EPSG:25832 --terrain " + path_ + "/ground.asc");
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  const Vector3d pad = mission().flight.takeoff.value();
+  EXPECT_NEAR(pad.z(), 0.0, 0.05);
+  EXPECT_GT(pad.y(), 0.0);
 }
 
 }  // namespace
