@@ -18,6 +18,7 @@ using Eigen::AlignedBox3d;
 using Eigen::Vector3d;
 
 constexpr char file_mark[16] = "skycap free v1\n";
+constexpr std::uint64_t most_blocks = 8'000'000;  ///< a gigabyte: of a survey of 10^10 voxels or so
 constexpr double no_floor = -std::numeric_limits<double>::infinity();
 
 /// What a file begins with. Plain numbers: it is written as it is in memory.
@@ -80,6 +81,11 @@ MeasuredSpaceFile read_measured_space(std::istream& stream, const std::string& n
     file.config.validate();
   } catch (const Error& error) {
     throw Error(ErrorKind::bad_file, name + ": " + error.what());
+  }
+  if (head.blocks > most_blocks) {
+    throw Error(ErrorKind::bad_file, name + ": says that it holds " + std::to_string(head.blocks) +
+                                         " blocks; at most " + std::to_string(most_blocks) +
+                                         " are read");
   }
   FileBlock block{};
   for (std::uint64_t i = 0; i < head.blocks; ++i) {

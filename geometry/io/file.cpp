@@ -152,6 +152,17 @@ void write_file(const fs::path& path, std::string_view bytes) {
   if (!TemporaryFile(path).put(bytes, path)) fail(path, "cannot be written: " + last_error());
 }
 
+void cut_file(const fs::path& path, std::uintmax_t bytes) {
+  std::error_code failure;
+  const std::uintmax_t size = fs::file_size(path, failure);
+  if (!failure && size < bytes) {
+    fail(path, "holds " + std::to_string(size) + " bytes, less than the " + std::to_string(bytes) +
+                   " that were written");
+  }
+  if (!failure) fs::resize_file(path, bytes, failure);
+  if (failure) fail(path, "cannot be cut: " + failure.message());
+}
+
 void sync_to_disk(const fs::path& path) {
   const int handle = ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
   // Some file systems cannot synchronise folders; they need not, either.

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <filesystem>
 #include <string>
 #include <string_view>
@@ -22,6 +23,10 @@ std::string read_file(const std::filesystem::path& path,
 /// even after a power cut. Makes the folder if need be. What a killed program left under the
 /// temporary name is used up. Throws Error{bad_file}.
 void write_file(const std::filesystem::path& path, std::string_view bytes);
+
+/// Cuts a file to the length that it once had. Throws Error{bad_file} if that fails, or if the file
+/// is shorter.
+void cut_file(const std::filesystem::path& path, std::uintmax_t bytes);
 
 /// Brings a file's content, or a folder's names, to the disk. Throws Error{bad_file}.
 void sync_to_disk(const std::filesystem::path& path);

@@ -176,6 +176,7 @@ SensorDescription read_sensor(const std::string& text, const std::string& file) 
   YamlSection root(tree, "", file);
   SensorDescription description;
   description.name = root.text("name");
+  description.text = text;
   enum class Kind { spinning, rosette, camera };
   const Kind kind = root.choice<Kind>(
       "kind", {{"spinning", Kind::spinning}, {"rosette", Kind::rosette}, {"camera", Kind::camera}});

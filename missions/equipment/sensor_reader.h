@@ -15,6 +15,7 @@ namespace skycap::missions::equipment {
 struct SensorDescription {
   std::string name;  ///< as the file calls it
   std::variant<sim::LidarConfig, sim::DepthCameraConfig> sensor;
+  std::string text;  ///< of the file
 };
 
 /// Reads the text of a description; `file` is what messages call it. Throws Error{bad_config} in

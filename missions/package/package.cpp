@@ -32,7 +32,6 @@ namespace {
 using file::vector_of;
 using Json = nlohmann::ordered_json;
 
-constexpr const char* free_space_name = "free_space.bin";
 constexpr const char* coverage_name = "coverage.ply";
 constexpr const char* true_coverage_name = "true_coverage.ply";
 

@@ -56,6 +56,9 @@ std::optional<SurveyMission> stage_package(const file::Mission& mission,
 /// The file of a package that says what the rest is.
 inline constexpr const char* summary_name = "summary.json";
 
+/// Where a flown survey's routes were proven.
+inline constexpr const char* free_space_name = "free_space.bin";
+
 /// The page that shows it; void when the mission is planned again.
 inline constexpr const char* report_name = "report.html";
 

@@ -31,14 +31,9 @@ CloudFile::CloudFile(std::filesystem::path path, std::shared_ptr<const CloudForm
 }
 
 void CloudFile::go_on(const CloudState& grown) {
-  std::error_code failure;
-  const std::uintmax_t size = std::filesystem::file_size(path_, failure);
-  if (failure || size < grown.bytes) {
-    throw Error(ErrorKind::bad_file, path_.string() + ": holds less than its journal says");
-  }
-  std::filesystem::resize_file(path_, grown.bytes, failure);
+  geometry::cut_file(path_, grown.bytes);
   file_.reset(std::fopen(path_.c_str(), "r+b"));
-  if (failure || !file_ || std::fseek(file_.get(), 0, SEEK_END) != 0) fail();
+  if (!file_ || std::fseek(file_.get(), 0, SEEK_END) != 0) fail();
   std::setvbuf(file_.get(), nullptr, _IONBF, 0);
   state_ = grown;
 }

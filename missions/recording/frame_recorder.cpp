@@ -29,6 +29,8 @@
 namespace skycap::missions::recording {
 namespace {
 
+using Clock = std::chrono::steady_clock;
+
 nlohmann::ordered_json camera_json(const geometry::Camera& camera, double unit) {
   return {
       {"width_px", camera.width()},
@@ -52,11 +54,9 @@ class FrameRawlog {
         encode_(plugins::module_function<EncodeDepthFrame>("libskycap_rawlog.so",
                                                            encode_depth_frame_name)),
         bytes_written_(grown) {
-    std::error_code failure;
-    if (grown > 0) std::filesystem::resize_file(path, grown, failure);
-    if (!failure)
-      file_.open(path, grown > 0 ? std::ios::binary | std::ios::in | std::ios::out | std::ios::ate
-                                 : std::ios::binary | std::ios::out);
+    if (grown > 0) geometry::cut_file(path, grown);
+    file_.open(path, grown > 0 ? std::ios::binary | std::ios::in | std::ios::out | std::ios::ate
+                               : std::ios::binary | std::ios::out);
     require_written();
   }
 
@@ -127,16 +127,16 @@ class FrameRecording {
   }
 
   FrameResult run() {
-    auto written_down = std::chrono::steady_clock::now();
+    auto written_down = Clock::now();
     while (result_.frames < frames_.size() && !options_.stop.stop_requested()) {
       take(frames_[result_.frames]);
       if (options_.report) options_.report(result_.frames, result_.points);
-      const auto now = std::chrono::steady_clock::now();
+      const auto now = Clock::now();
       if (std::chrono::duration<double>(now - written_down).count() < options_.checkpoint_period) {
         continue;
       }
       write_down();
-      written_down = std::chrono::steady_clock::now();
+      written_down = Clock::now();
     }
     write_down();
     return result_;
@@ -168,7 +168,10 @@ class FrameRecording {
   std::uint64_t go_on() {
     try {
       result_ = {options_.begun.at("images").get<std::size_t>(),
-                 options_.begun.at("points").get<std::size_t>()};
+                 options_.begun.at("points").get<std::size_t>(),
+                 options_.begun.at("simulation_s").get<double>()};
+      earlier_ = result_.time;
+      synced_ = result_.frames;
       const auto previewed = options_.begun.at("preview_points").get<std::size_t>();
       if (previewed > 0) read_preview(previewed);
       if (result_.frames > frames_.size() || preview_.size() != previewed) {
@@ -209,8 +212,10 @@ class FrameRecording {
     geometry::write_cloud(
         journal_.path(preview_name),
         {.positions = preview_.positions, .normals = {}, .views = preview_.views, .colours = {}});
+    result_.time = earlier_ + std::chrono::duration<double>(Clock::now() - start_).count();
     journal_.checkpoint({{"images", result_.frames},
                          {"points", result_.points},
+                         {"simulation_s", result_.time},
                          {"preview_points", preview_.size()},
                          {"rawlog_bytes", rawlog_ ? rawlog_->sync() : 0}});
   }
@@ -223,6 +228,8 @@ class FrameRecording {
   double preview_share_ = 1.0;
   FrameResult result_;
   std::size_t synced_ = 0;  ///< images that are on the disk
+  Clock::time_point start_ = Clock::now();
+  double earlier_ = 0.0;  ///< what runs before this one took [s]
   geometry::Scan scan_;
   geometry::PointCloud preview_;
   std::optional<FrameRawlog> rawlog_;
@@ -237,24 +244,6 @@ FrameResult record_frames(const sim::Scene& scene, const sim::DepthCamera& camer
   const FrameResult result = recording.run();
   recording.stage(folder);
   return result;
-}
-
-std::uint32_t sample_checksum(const sim::Scene& scene, const sim::DepthCamera& camera,
-                              std::span<const Frame> frames) {
-  std::string bytes;
-  const auto add = [&](const auto& values) {
-    bytes.append(reinterpret_cast<const char*>(values.data()), values.size() * sizeof(values[0]));
-  };
-  for (const Frame& frame : frames) {
-    add(std::array{frame.time});
-    add(frame.world_from_camera.matrix().reshaped().eval());
-    add(frame.believed_from_camera.matrix().reshaped().eval());
-  }
-  for (const std::size_t number : {std::size_t{0}, frames.size() - 1}) {
-    if (number >= frames.size()) continue;
-    add(camera.scan(scene, frames[number].world_from_camera, number, 0).points);
-  }
-  return geometry::crc32_of(bytes);
 }
 
 }  // namespace skycap::missions::recording

@@ -36,6 +36,7 @@ struct FrameOptions {
 struct FrameResult {
   std::size_t frames = 0;  ///< fewer than asked for if it was stopped
   std::size_t points = 0;
+  double time = 0.0;  ///< that the simulation took, with that of interrupted runs [s]
 };
 
 /// Takes the images into `journal`, in which the recording can be gone on with, and stages in
@@ -47,10 +48,5 @@ struct FrameResult {
 FrameResult record_frames(const sim::Scene& scene, const sim::DepthCamera& camera,
                           std::span<const Frame> frames, ScanJournal& journal,
                           geometry::OutputFolder& folder, const FrameOptions& options);
-
-/// Stands for what the camera measures on that flight: a checksum of its first and last image and
-/// the poses of all.
-std::uint32_t sample_checksum(const sim::Scene& scene, const sim::DepthCamera& camera,
-                              std::span<const Frame> frames);
 
 }  // namespace skycap::missions::recording

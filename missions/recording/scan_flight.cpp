@@ -2,8 +2,12 @@
 
 #include <string>
 #include <utility>
+#include <vector>
+
+#include <fmt/format.h>
 
 #include "geometry/error.h"
+#include "geometry/io/record_log.h"
 #include "missions/file/number_text.h"
 
 namespace skycap::missions::recording {
@@ -50,6 +54,25 @@ ScanFlight scan_flight(const file::Mission& mission, const std::filesystem::path
   ScanRoute route = route_of(mission, folder, route_file, carrier);
   sim::Trajectory believed = believed_by(mission, route.carrier);
   return {std::move(route), std::move(believed), mount_of(mission.scan)};
+}
+
+std::string digest_of(const ScanFlight& flight) {
+  std::vector<double> numbers = flight.route.image_times;
+  const auto add = [&](const auto& values) {
+    numbers.insert(numbers.end(), values.data(), values.data() + values.size());
+  };
+  for (const sim::Trajectory* trajectory : {&flight.route.carrier, &flight.believed}) {
+    for (const sim::StampedPose& pose : trajectory->poses()) {
+      numbers.push_back(pose.time);
+      add(pose.position);
+      add(pose.attitude.coeffs());
+    }
+  }
+  for (const Isometry3d* mount : {&flight.mount.real, &flight.mount.believed}) {
+    add(mount->matrix());
+  }
+  return fmt::format("{:08x}", geometry::crc32_of({reinterpret_cast<const char*>(numbers.data()),
+                                                   numbers.size() * sizeof(double)}));
 }
 
 void require_measurable(const sim::Lidar& lidar, const sim::Trajectory& flown) {

@@ -3,6 +3,7 @@
 
 #include <filesystem>
 #include <optional>
+#include <string>
 
 #include <Eigen/Geometry>
 
@@ -33,6 +34,10 @@ struct ScanFlight {
 /// its orbit. Throws what read_scan_route() throws.
 ScanFlight scan_flight(const file::Mission& mission, const std::filesystem::path& folder,
                        const std::optional<std::filesystem::path>& route_file, Carrier carrier);
+
+/// Tells it from other flights: a checksum of its poses, as they are and as they are believed to
+/// be, of both mounts and of the times of images.
+std::string digest_of(const ScanFlight& flight);
 
 /// Throws Error{bad_config} for what no scan would ever finish.
 void require_measurable(const sim::Lidar& lidar, const sim::Trajectory& flown);

@@ -49,6 +49,7 @@ void ScanJournal::begin(const std::string& identity) {
   std::error_code failure;
   fs::create_directories(folder_, failure);
   require(failure, folder_, "cannot be made");
+  geometry::sync_to_disk(folder_.parent_path());
   log_.emplace(file_);
   log_->append(identity);
 }
@@ -66,7 +67,10 @@ fs::path ScanJournal::path_to_change(const std::string& name) const {
   return path;
 }
 
-void ScanJournal::checkpoint(const Json& state) { log_->append(derived::journal_line(state)); }
+void ScanJournal::checkpoint(const Json& state) {
+  geometry::sync_to_disk(folder_);  // the names of new files
+  log_->append(derived::journal_line(state));
+}
 
 void ScanJournal::stage(const std::string& name, geometry::OutputFolder& results) const {
   const fs::path staged = results.stage(name);

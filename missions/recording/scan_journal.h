@@ -38,7 +38,8 @@ class ScanJournal {
   /// The same of a file that is about to change: results that share its bytes keep theirs.
   std::filesystem::path path_to_change(const std::string& name) const;
 
-  /// Writes down how far the scan has come. What the state speaks of must be on the disk.
+  /// Writes down how far the scan has come. The files that the state speaks of must be on the disk;
+  /// their names are brought there.
   void checkpoint(const nlohmann::ordered_json& state);
 
   /// Stages a file of the scan for the results. It stays here, too: both share its bytes.

@@ -151,22 +151,4 @@ ScanResult run_scan(const sim::Scene& scene, const sim::Lidar& lidar,
   return ScanRun(scene, lidar, flight, files, options).run();
 }
 
-std::uint32_t sample_checksum(const sim::Scene& scene, const sim::Lidar& lidar,
-                              const sim::LidarFlight& flight) {
-  constexpr std::uint64_t samples = 64, firings = 32;
-  const std::uint64_t all = lidar.firings(flight.flown);
-  std::string bytes = std::to_string(all);
-  sim::LidarReturns returns;
-  for (std::uint64_t i = 0; i < samples; ++i) {
-    const std::uint64_t first = all / samples * i;
-    returns =
-        lidar.measure(scene, flight, {first, std::min(firings, all - first)}, std::move(returns));
-    for (const Eigen::Vector3f& point : returns.points) {
-      const Eigen::Vector3d place = returns.origin + point.cast<double>();
-      bytes.append(reinterpret_cast<const char*>(place.data()), sizeof(double) * 3);
-    }
-  }
-  return geometry::crc32_of(bytes);
-}
-
 }  // namespace skycap::missions::recording

@@ -43,9 +43,4 @@ ScanResult run_scan(const sim::Scene& scene, const sim::Lidar& lidar,
                     const sim::LidarFlight& flight, std::span<CloudFile> files,
                     const ScanOptions& options);
 
-/// Stands for what the scanner measures on that flight: a checksum of some firings of it, evenly
-/// spread.
-std::uint32_t sample_checksum(const sim::Scene& scene, const sim::Lidar& lidar,
-                              const sim::LidarFlight& flight);
-
 }  // namespace skycap::missions::recording

@@ -1,6 +1,7 @@
 #include "missions/report/result_pages.h"
 
 #include <algorithm>
+#include <new>
 
 #include "geometry/error.h"
 #include "geometry/io/file.h"
@@ -82,6 +83,8 @@ std::optional<std::string> stage_page(const std::string& results, bool is_wanted
                       default_report_points);
   } catch (const Error& error) {
     return error.what();
+  } catch (const std::bad_alloc&) {
+    return "there is not enough memory for it";
   }
   folder.write(page->name, text);
   return std::nullopt;

@@ -50,7 +50,8 @@ Json surface(const prior::Source& source, const prior::Prior& prior) {
     const std::size_t cells = prior.grid.rows * prior.grid.columns;
     const auto step = static_cast<std::size_t>(
         std::max(1.0, std::ceil(std::sqrt(2.0 * static_cast<double>(cells) / most_triangles))));
-    geometry::append(mesh, prior::mesh_of(triangles_of(step > 1 ? thinned(prior.grid, step) : prior.grid)));
+    geometry::append(
+        mesh, prior::mesh_of(triangles_of(step > 1 ? thinned(prior.grid, step) : prior.grid)));
   }
   Json corners = Json::array();
   if (mesh.triangles.size() <= most_triangles) {

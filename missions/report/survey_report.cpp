@@ -35,7 +35,7 @@ geometry::AttributedCloud cloud_if_there(const fs::path& file) {
 /// What the folder holds besides the summary.
 Json files_of(const Json& summary, const ResultFinder& results) {
   std::vector<std::string> names = {"cloud.ply", "coverage.ply",   "true_coverage.ply",
-                                    "views.csv", "trajectory.tum", "free_space.bin"};
+                                    "views.csv", "trajectory.tum", package::free_space_name};
   const auto add_all = [&](const char* path, const char* field) {
     const Json::json_pointer pointer(path);
     if (!summary.contains(pointer) || !summary[pointer].is_array()) return;
@@ -175,9 +175,10 @@ std::string survey_report(const ResultFinder& results, std::size_t most_points) 
                        {"hole_places", hole_places(summary, survey.mission)},
                        {"accuracy", accuracy_json(incidence, ranges(cloud, survey.views), errors)},
                        {"files", files_of(summary, results)}};
-    return page_text(data.at("title"), data,
-                     {measured_cloud(cloud, states, incidence, most_points),
-                      missing_cloud(map, most_points), free_cloud(results("free_space.bin"))});
+    return page_text(
+        data.at("title"), data,
+        {measured_cloud(cloud, states, incidence, most_points), missing_cloud(map, most_points),
+         free_cloud(results(package::free_space_name))});
   } catch (const Json::exception& error) {
     refuse_results(summary_file, error.what());
   }

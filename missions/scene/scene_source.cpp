@@ -6,9 +6,12 @@
 #include <numbers>
 #include <set>
 
+#include <fmt/format.h>
+
 #include "geometry/error.h"
 #include "geometry/io/file.h"
 #include "geometry/io/mesh_io.h"
+#include "geometry/io/record_log.h"
 #include "geometry/place/world.h"
 #include "missions/derived/mission_priors.h"
 #include "missions/file/number_text.h"
@@ -204,6 +207,23 @@ Vector3d ReflectingScene::centre() const {
     box.extend(geometry::bounding_box(model).transformed(place));
   }
   return box.center();
+}
+
+std::string ReflectingScene::digest() const {
+  std::string digest;
+  const auto add = [&](const auto& items) {
+    const auto* const bytes = reinterpret_cast<const char*>(items.data());
+    const auto sum = geometry::crc32_of({bytes, items.size() * sizeof(items[0])});
+    digest += fmt::format("{}{:08x}", digest.empty() ? "" : " ", sum);
+  };
+  for (const geometry::Mesh* mesh : {&model, &ground}) {
+    add(mesh->vertices);
+    add(mesh->triangles);
+  }
+  add(reflectances);
+  add(ground_reflectances);
+  add(places);
+  return digest;
 }
 
 geometry::Mesh ground_of(const file::Mission& mission, const geometry::Mesh& placed_model) {

@@ -40,6 +40,8 @@ struct ReflectingScene {
   sim::Scene scene(unsigned threads) const;
   /// Of the models' bounding box.
   Eigen::Vector3d centre() const;
+  /// Tells it from other scenes: checksums of all of its parts.
+  std::string digest() const;
 };
 
 /// The model as placed, its copies, and the ground if there is one, with the reflectances of

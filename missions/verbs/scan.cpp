@@ -13,6 +13,7 @@
 #include "flight/export/trajectory_file.h"
 #include "geometry/error.h"
 #include "geometry/io/output_folder.h"
+#include "geometry/io/record_log.h"
 #include "missions/derived/mission_flight.h"
 #include "missions/derived/resolved_mission.h"
 #include "missions/equipment/preset_files.h"
@@ -195,6 +196,16 @@ void print(const LaserRecording& recorded, const file::Mission& mission,
   out << "\n" << std::flush;
 }
 
+/// What a scan is made of: the sensor's description, the scene, the flight.
+nlohmann::ordered_json identity_of(const equipment::SensorDescription& sensor,
+                                   const scene::ReflectingScene& scene,
+                                   const recording::ScanFlight& flight) {
+  return {{"sensor", sensor.name},
+          {"sensor_digest", fmt::format("{:08x}", geometry::crc32_of(sensor.text))},
+          {"scene_digest", scene.digest()},
+          {"route_digest", digest_of(flight)}};
+}
+
 /// Begins a scan, or goes on with an interrupted one from what is returned.
 nlohmann::ordered_json open_journal(recording::ScanJournal& journal, const ScanVerbOptions& options,
                                     const file::Mission& mission,
@@ -208,8 +219,9 @@ nlohmann::ordered_json open_journal(recording::ScanJournal& journal, const ScanV
 }
 
 int scan_with_laser(const ScanVerbOptions& options, const file::Mission& mission,
-                    const std::string& sensor_name, sim::LidarConfig config,
-                    geometry::OutputFolder& folder, const Console& console) {
+                    const equipment::SensorDescription& sensor, geometry::OutputFolder& folder,
+                    const Console& console) {
+  auto config = std::get<sim::LidarConfig>(sensor.sensor);
   config.seed = mission.seed;
   const sim::Lidar lidar(config);
   const recording::ScanFlight flown = flown_by(options, mission, recording::Carrier::airframe);
@@ -223,9 +235,9 @@ int scan_with_laser(const ScanVerbOptions& options, const file::Mission& mission
   const scene::ReflectingScene truth =
       scene::reflecting_scene(mission, options.mission.parent_path());
   const sim::Scene scene = truth.scene(mission.threads);
-  LaserRecording recorded{.sensor = sensor_name};
+  LaserRecording recorded{.sensor = sensor.name};
   recorded.outputs =
-      output_files(options, {sensor_name, config, flight, truth.centre(), projection});
+      output_files(options, {sensor.name, config, flight, truth.centre(), projection});
 
   const auto channels = static_cast<double>(config.channels.size());
   const recording::PreviewPieces pieces = recording::preview_pieces(config, flown.route.carrier);
@@ -234,13 +246,9 @@ int scan_with_laser(const ScanVerbOptions& options, const file::Mission& mission
       {recording::preview_name,
        recording::preview_format(pieces, recording::preview_share(channels * all_firings))});
   const HoldsResults results(console);
-  const nlohmann::ordered_json begun =
-      open_journal(journal, options, mission,
-                   {{"sensor", sensor_name},
-                    {"formats", options.formats},
-                    {"truth", options.with_truth},
-                    {"measured", recording::sample_checksum(scene, lidar, flight)}},
-                   console);
+  nlohmann::ordered_json identity = identity_of(sensor, truth, flown);
+  identity.update({{"formats", options.formats}, {"truth", options.with_truth}});
+  const nlohmann::ordered_json begun = open_journal(journal, options, mission, identity, console);
   const auto [result, time] =
       record_laser(scene, lidar, flight, recorded.outputs, journal, begun, folder,
                    {.threads = mission.threads,
@@ -281,10 +289,12 @@ std::vector<double> image_times(const recording::ScanRoute& route, double period
 }
 
 int scan_with_camera(const ScanVerbOptions& options, const file::Mission& mission,
-                     const std::string& sensor_name, sim::DepthCameraConfig config,
-                     geometry::OutputFolder& folder, const Console& console) {
+                     const equipment::SensorDescription& sensor, geometry::OutputFolder& folder,
+                     const Console& console) {
+  auto config = std::get<sim::DepthCameraConfig>(sensor.sensor);
   config.noise.seed = mission.seed;
-  const auto [route, believed, mount] = flown_by(options, mission, recording::Carrier::gimbal);
+  const recording::ScanFlight flown = flown_by(options, mission, recording::Carrier::gimbal);
+  const auto& [route, believed, mount] = flown;
   std::vector<recording::Frame> frames;
   for (const double time : image_times(route, mission.scan.frame_period)) {
     frames.push_back({time, route.carrier.pose(time) * mount.real * recording::body_from_camera(),
@@ -292,23 +302,20 @@ int scan_with_camera(const ScanVerbOptions& options, const file::Mission& missio
   }
   ProgressLine progress(console, options.is_quiet);
   progress.show(mission.name + ": making the scene ready");
-  const sim::Scene scene =
-      scene::reflecting_scene(mission, options.mission.parent_path()).scene(mission.threads);
+  const scene::ReflectingScene truth =
+      scene::reflecting_scene(mission, options.mission.parent_path());
+  const sim::Scene scene = truth.scene(mission.threads);
   const auto report = [&](std::size_t taken, std::size_t points) {
     progress.show(fmt::format("{}: image {} of {}, {:.1f} M points", mission.name, taken,
                               frames.size(), 1e-6 * static_cast<double>(points)));
   };
   const bool has_rawlog = std::ranges::find(options.formats, "rawlog") != options.formats.end();
-  const Clock::time_point start = Clock::now();
   const HoldsResults results(console);
   const sim::DepthCamera camera(config);
   recording::ScanJournal journal(folder.path());
-  const nlohmann::ordered_json begun =
-      open_journal(journal, options, mission,
-                   {{"sensor", sensor_name},
-                    {"rawlog", has_rawlog},
-                    {"measured", recording::sample_checksum(scene, camera, frames)}},
-                   console);
+  nlohmann::ordered_json identity = identity_of(sensor, truth, flown);
+  identity["rawlog"] = has_rawlog;
+  const nlohmann::ordered_json begun = open_journal(journal, options, mission, identity, console);
   const recording::FrameResult result =
       recording::record_frames(scene, camera, frames, journal, folder,
                                {.depth_unit = mission.scan.depth_unit,
@@ -317,16 +324,15 @@ int scan_with_camera(const ScanVerbOptions& options, const file::Mission& missio
                                 .begun = begun,
                                 .report = report,
                                 .stop = console.stop});
-  const double time = seconds_since(start);
   const bool is_complete = result.frames == frames.size();
   folder.write(scan_name, file::json_text({{"mission", mission.name},
-                                           {"sensor", sensor_name},
+                                           {"sensor", sensor.name},
                                            {"seed", mission.seed},
                                            {"complete", is_complete},
                                            {"images", result.frames},
                                            {"images_planned", frames.size()},
                                            {"points", result.points},
-                                           {"simulation_s", time},
+                                           {"simulation_s", result.time},
                                            {"settings", package::settings_json(mission)}}));
   write_page(scan_name, options.has_report, folder, console);
   commit_scan(folder, journal, is_complete);
@@ -334,8 +340,8 @@ int scan_with_camera(const ScanVerbOptions& options, const file::Mission& missio
   if (!options.is_quiet) {
     console.out << fmt::format(
                        "{}: {}{}\n  scan      {} depth images, {:.2f} M points in {:.1f} s\n",
-                       mission.name, sensor_name, is_complete ? "" : ", interrupted", result.frames,
-                       1e-6 * static_cast<double>(result.points), time)
+                       mission.name, sensor.name, is_complete ? "" : ", interrupted", result.frames,
+                       1e-6 * static_cast<double>(result.points), result.time)
                 << "  results   " << folder.path().string() << "\n"
                 << std::flush;
   }
@@ -346,14 +352,12 @@ int scan_with_camera(const ScanVerbOptions& options, const file::Mission& missio
 
 int scan(const ScanVerbOptions& options, const Console& console) {
   const file::Mission mission = derived::read_mission(options.mission, options.overrides);
-  equipment::SensorDescription sensor = sensor_of(options, mission);
+  const equipment::SensorDescription sensor = sensor_of(options, mission);
   geometry::OutputFolder folder(
       options.out.value_or(std::filesystem::path("results") / mission.name / "scan"));
-  if (auto* laser = std::get_if<sim::LidarConfig>(&sensor.sensor)) {
-    return scan_with_laser(options, mission, sensor.name, std::move(*laser), folder, console);
-  }
-  return scan_with_camera(options, mission, sensor.name,
-                          std::get<sim::DepthCameraConfig>(sensor.sensor), folder, console);
+  const bool is_laser = std::holds_alternative<sim::LidarConfig>(sensor.sensor);
+  const auto scan_it = is_laser ? scan_with_laser : scan_with_camera;
+  return scan_it(options, mission, sensor, folder, console);
 }
 
 }  // namespace skycap::missions::verbs

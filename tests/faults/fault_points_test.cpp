@@ -202,8 +202,8 @@ TEST(FaultPoints, ScanLeavesAWholeResult) {
   const testing_support::TemporaryFolder folder;
   const std::string mission = folder.file("m.yaml", quick);
   const Verb verb = [&](const std::string& seed, const fs::path& out) {
-    return std::vector<std::string>{"scan", mission,    "--quiet", "--threads", "1", "--seed",
-                                    seed,   "--format", "ply",     "--out",     out};
+    return std::vector<std::string>{"scan",   mission, "--quiet",  "--resume", "--threads", "1",
+                                    "--seed", seed,    "--format", "ply",      "--out",     out};
   };
   try_faults(verb, {"full", "kill"}, all);
   try_faults(verb, {"memory"}, 40);

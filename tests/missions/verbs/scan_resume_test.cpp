@@ -4,6 +4,7 @@
 #include <map>
 #include <sstream>
 #include <string>
+#include <tuple>
 #include <vector>
 
 #include <gmock/gmock.h>
@@ -24,9 +25,14 @@ using tests::content_of;
 using tests::run_skycap;
 using tests::TestFolder;
 
-/// All results but those that say how long the run took.
+/// All results, but of scan.json without the time that the run took, and without the page of it.
 std::map<std::string, std::string> results_in(const fs::path& folder) {
-  return tests::results_in(folder, {"scan.json", "scan.html"});
+  std::map<std::string, std::string> results = tests::results_in(folder, {"scan.html"});
+  auto summary = nlohmann::ordered_json::parse(results.at("scan.json"));
+  EXPECT_GT(summary.at("simulation_s").get<double>(), 0.0);
+  summary.erase("simulation_s");
+  results["scan.json"] = summary.dump();
+  return results;
 }
 
 /// A second and a half of flight round a cube of 2 m.
@@ -90,10 +96,13 @@ class ResumedScan : public testing::Test {
   TestFolder folder_;
   fs::path journal_ = folder_.path() / "part" / "unfinished" / "scan.journal";
   const std::vector<std::string> clouds_{"--format", "las,ply,pcd,xyz,rawlog", "--with-truth"};
+  const std::vector<std::string> images_{"--route",  folder_.path().string(),
+                                         "--sensor", folder_ / "camera.yaml",
+                                         "--format", "rawlog"};
 };
 
 TEST_F(ResumedScan, OfALaserEndsAsIfNothingHadHappened) {
-  ASSERT_EQ(run_skycap(scan("whole", clouds_)).exit_code, 0);
+  ASSERT_EQ(run_skycap(scan("whole", with(clouds_, {"--threads", "2"}))).exit_code, 0);
   interrupt_at("% flown", clouds_);
   EXPECT_LT(fs::file_size(folder_ / "part/scan.las"), fs::file_size(folder_ / "whole/scan.las"));
   const auto run = run_skycap(scan("part", with(clouds_, {"--resume", "--threads", "2"})));
@@ -121,15 +130,42 @@ TEST_F(ResumedScan, CutsOffWhatItsJournalDoesNotKnow) {
 }
 
 TEST_F(ResumedScan, OfACameraEndsAsIfNothingHadHappened) {
-  const std::vector<std::string> images{"--route",  folder_.path().string(),
-                                        "--sensor", folder_ / "camera.yaml",
-                                        "--format", "rawlog"};
-  ASSERT_EQ(run_skycap(scan("whole", images)).exit_code, 0);
-  interrupt_at("image 2 of 4", images);
+  ASSERT_EQ(run_skycap(scan("whole", images_)).exit_code, 0);
+  interrupt_at("image 2 of 4", images_);
   EXPECT_FALSE(fs::exists(folder_ / "part/depth_000002.png"));
-  const auto run = run_skycap(scan("part", with(images, {"--resume"})));
+  const auto run = run_skycap(scan("part", with(images_, {"--resume"})));
   EXPECT_EQ(run.exit_code, 0) << run.err;
   expect_same_results();
+}
+
+// What a kill leaves of a camera's: half an image that the journal does not know, a longer log.
+TEST_F(ResumedScan, OfACameraCutsOffWhatItsJournalDoesNotKnow) {
+  ASSERT_EQ(run_skycap(scan("whole", images_)).exit_code, 0);
+  interrupt_at("image 2 of 4", images_);
+  const fs::path log = journal_.parent_path() / "frames.rawlog";
+  const std::string content = content_of(log);
+  fs::remove(log);
+  std::ofstream(log, std::ios::binary) << content << std::string(1000, 'x');
+  std::ofstream(journal_.parent_path() / "depth_000002.png", std::ios::binary) << "\x89PNG";
+  EXPECT_EQ(run_skycap(scan("part", with(images_, {"--resume"}))).exit_code, 0);
+  expect_same_results();
+}
+
+// Bytes that were on the disk and are not there any more cannot be made up.
+TEST_F(ResumedScan, WhoseFilesHaveShrunkIsRefused) {
+  for (const auto& [options, until, name] :
+       {std::tuple{clouds_, "% flown", "scan.las"},
+        std::tuple{images_, "image 2 of 4", "frames.rawlog"}}) {
+    interrupt_at(until, options);
+    const fs::path file = journal_.parent_path() / name;
+    const std::string content = content_of(file);
+    fs::remove(file);
+    std::ofstream(file, std::ios::binary) << content.substr(0, content.size() - 1);
+    const auto run = run_skycap(scan("part", with(options, {"--resume"})));
+    EXPECT_EQ(run.exit_code, 2);
+    EXPECT_THAT(run.err, HasSubstr(std::string(name) + ": holds "));
+    fs::remove_all(folder_ / "part");
+  }
 }
 
 // The results of the interrupted run share bytes with the files that grow on.
@@ -165,7 +201,26 @@ TEST_F(ResumedScan, OfAnotherScanIsRefusedAndNothingIsLost) {
               HasSubstr("was begun otherwise: "));
   folder_.write("cube.obj",
                 content_of(folder_ / "cube.obj") + "v 2 2 0\nv 2 3 0\nv 2 3 3\n" + "f 9 10 11\n");
-  EXPECT_THAT(refusal(clouds_), HasSubstr("measured was "));
+  EXPECT_THAT(refusal(clouds_), HasSubstr("scene_digest was "));
+}
+
+// Of files that a key names, what they hold counts.
+TEST_F(ResumedScan, OfAnotherSensorOrRouteIsRefused) {
+  interrupt_at("image 2 of 4", images_);
+  const auto refusal_with = [&](const std::string& file, const std::string& from,
+                                const std::string& to) {
+    const std::string kept = content_of(folder_ / file);
+    std::string changed = kept;
+    changed.replace(changed.find(from), from.size(), to);
+    folder_.write(file, changed);
+    const auto run = run_skycap(scan("part", with(images_, {"--resume"})));
+    EXPECT_EQ(run.exit_code, 2);
+    folder_.write(file, kept);
+    return run.err;
+  };
+  EXPECT_THAT(refusal_with("camera.yaml", "_deg: 5", "_deg: 5.1"), HasSubstr("sensor_digest was "));
+  EXPECT_THAT(refusal_with("views.csv", "2,3,0,1", "2,3,0,1.001"), HasSubstr("route_digest was "));
+  EXPECT_EQ(run_skycap(scan("part", with(images_, {"--resume"}))).exit_code, 0);
 }
 
 TEST_F(ResumedScan, FromADamagedJournalIsRefusedAndABeginningIsNot) {
