@@ -51,6 +51,10 @@ AttributedCloud parse_ply_cloud(const fs::path& path, std::string_view bytes) {
       return value;
     };
     AttributedCloud cloud;
+    cloud.positions.reserve(element.count);
+    cloud.normals.reserve(has_normals ? element.count : 0);
+    cloud.views.reserve(has_views ? element.count : 0);
+    cloud.colours.reserve(has_colours ? element.count : 0);
     for (std::size_t i = 0; i < element.count; ++i) {
       cloud.positions.push_back(
           cloud_position(path, i, columns[0][i], columns[1][i], columns[2][i]));

@@ -5,6 +5,7 @@
 #include <bit>
 #include <cmath>
 #include <cstring>
+#include <type_traits>
 #include <utility>
 
 #include "geometry/error.h"
@@ -71,26 +72,33 @@ double load(const char* bytes, bool swap) {
   return static_cast<double>(std::bit_cast<Value>(raw));
 }
 
-double load(PlyType type, const char* bytes, bool swap) {
+/// Calls `visit` with a std::type_identity of the type's values.
+template <typename Visit>
+auto with_type(PlyType type, const Visit& visit) {
   switch (type) {
     case PlyType::int8:
-      return load<std::int8_t>(bytes, swap);
+      return visit(std::type_identity<std::int8_t>());
     case PlyType::uint8:
-      return load<std::uint8_t>(bytes, swap);
+      return visit(std::type_identity<std::uint8_t>());
     case PlyType::int16:
-      return load<std::int16_t>(bytes, swap);
+      return visit(std::type_identity<std::int16_t>());
     case PlyType::uint16:
-      return load<std::uint16_t>(bytes, swap);
+      return visit(std::type_identity<std::uint16_t>());
     case PlyType::int32:
-      return load<std::int32_t>(bytes, swap);
+      return visit(std::type_identity<std::int32_t>());
     case PlyType::uint32:
-      return load<std::uint32_t>(bytes, swap);
+      return visit(std::type_identity<std::uint32_t>());
     case PlyType::float32:
-      return load<float>(bytes, swap);
+      return visit(std::type_identity<float>());
     case PlyType::float64:
-      return load<double>(bytes, swap);
+      break;
   }
-  return 0.0;
+  return visit(std::type_identity<double>());
+}
+
+double load(PlyType type, const char* bytes, bool swap) {
+  return with_type(
+      type, [&]<typename Value>(std::type_identity<Value>) { return load<Value>(bytes, swap); });
 }
 
 PlyProperty parse_property(TextScanner& scanner) {
@@ -210,13 +218,43 @@ PlyTable PlyReader::read_element(std::span<const std::string_view> scalars,
   return table;
 }
 
+void PlyReader::fail_within(const PlyElement& element, std::uint64_t row) const {
+  fail("ends within " + element.name + " " + std::to_string(row) + " of " +
+       std::to_string(element.count) + "; it may have been cut off");
+}
+
+void PlyReader::read_scalars(const PlyElement& element, const Wanted& wanted, PlyTable& table) {
+  std::size_t row_size = 0;
+  for (const PlyProperty& property : element.properties) row_size += size_of(property.type);
+  const std::size_t whole_rows = (bytes_.size() - at_) / row_size;
+  if (whole_rows < element.count) fail_within(element, whole_rows);
+  const bool swap = format_ == Format::big_endian;
+  const char* first = bytes_.data() + at_;
+  for (std::size_t p = 0; p < element.properties.size(); ++p) {
+    const PlyType type = element.properties[p].type;
+    if (wanted.column[p] >= 0) {
+      auto& column = table.columns[static_cast<std::size_t>(wanted.column[p])];
+      with_type(type, [&]<typename Value>(std::type_identity<Value>) {
+        for (std::size_t row = 0; row < element.count; ++row) {
+          column.push_back(load<Value>(first + row * row_size, swap));
+        }
+      });
+    }
+    first += size_of(type);
+  }
+  at_ += element.count * row_size;
+}
+
 void PlyReader::read_binary(const PlyElement& element, const Wanted& wanted, PlyTable& table) {
+  const bool has_lists = std::ranges::any_of(element.properties, [](const PlyProperty& property) {
+    return property.count_type.has_value();
+  });
+  if (!has_lists) return read_scalars(element, wanted, table);
   const bool swap = format_ == Format::big_endian;
   for (std::uint64_t row = 0; row < element.count; ++row) {
     const auto take = [&](std::size_t size) {
       if (size > bytes_.size() - at_) {
-        fail("ends within " + element.name + " " + std::to_string(row) + " of " +
-             std::to_string(element.count) + "; it may have been cut off");
+        fail_within(element, row);
       }
       const char* start = bytes_.data() + at_;
       at_ += size;

@@ -50,8 +50,10 @@ class PlyReader {
  private:
   struct Wanted;
   void read_header();
+  void read_scalars(const PlyElement& element, const Wanted& wanted, PlyTable& table);
   void read_binary(const PlyElement& element, const Wanted& wanted, PlyTable& table);
   void read_ascii(const PlyElement& element, const Wanted& wanted, PlyTable& table);
+  [[noreturn]] void fail_within(const PlyElement& element, std::uint64_t row) const;
   [[noreturn]] void fail(const std::string& what) const;
 
   std::string_view name_;

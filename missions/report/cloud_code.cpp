@@ -39,8 +39,8 @@ struct Grid {
     constexpr double last = (1 << most_bits) - 1;
     std::uint64_t key = 0;
     for (int axis = 0; axis < 3; ++axis) {
-      const double cell = std::floor((static_cast<double>(point[axis]) - origin[axis]) / step);
-      key |= spread(static_cast<std::uint64_t>(std::clamp(cell, 0.0, last))) << axis;
+      const double cell = (static_cast<double>(point[axis]) - origin[axis]) / step;
+      key |= spread(static_cast<std::uint32_t>(std::clamp(cell, 0.0, last))) << axis;
     }
     return key;
   }
@@ -62,16 +62,24 @@ Grid finest_grid(std::span<const Eigen::Vector3f> positions) {
 /// Gives the entries their keys in a grid and sorts them, those of a cell as they were.
 void sort_by_key(std::vector<Entry>& entries, std::span<const Eigen::Vector3f> positions,
                  const Grid& grid) {
-  for (Entry& entry : entries) entry.key = grid.key(positions[entry.index]);
   // By the bits of the keys, twelve at a time, stable.
-  constexpr int digit_bits = 12;
+  constexpr int digit_bits = 12, most_passes = 3 * most_bits / digit_bits;
   constexpr std::size_t digits = std::size_t{1} << digit_bits;
+  std::array<std::array<std::uint32_t, digits>, most_passes> begins{};
+  std::uint64_t all = 0;
+  for (Entry& entry : entries) {
+    entry.key = grid.key(positions[entry.index]);
+    all |= entry.key;
+    for (int pass = 0; pass < most_passes; ++pass) {
+      ++begins[static_cast<std::size_t>(pass)][entry.key >> (pass * digit_bits) & (digits - 1)];
+    }
+  }
   std::vector<Entry> other(entries.size());
-  for (int shift = 0; shift < 3 * most_bits; shift += digit_bits) {
-    std::array<std::size_t, digits> begin{};
-    for (const Entry& entry : entries) ++begin[entry.key >> shift & (digits - 1)];
-    std::size_t sum = 0;
-    for (std::size_t& count : begin) sum += std::exchange(count, sum);
+  for (int pass = 0; pass < most_passes && all >> (pass * digit_bits) != 0; ++pass) {
+    auto& begin = begins[static_cast<std::size_t>(pass)];
+    std::uint32_t sum = 0;
+    for (std::uint32_t& count : begin) sum += std::exchange(count, sum);
+    const int shift = pass * digit_bits;
     for (const Entry& entry : entries) other[begin[entry.key >> shift & (digits - 1)]++] = entry;
     entries.swap(other);
   }
@@ -93,12 +101,10 @@ void thin(std::vector<Entry>& entries, std::size_t most) {
 }
 
 std::string planes_of(std::span<const std::uint64_t> values, int planes) {
-  std::string bytes;
-  bytes.reserve(values.size() * static_cast<std::size_t>(planes));
+  std::string bytes(values.size() * static_cast<std::size_t>(planes), '\0');
+  auto next = bytes.begin();
   for (int plane = 0; plane < planes; ++plane) {
-    for (const std::uint64_t value : values) {
-      bytes += static_cast<char>(value >> (8 * plane) & 0xff);
-    }
+    for (const std::uint64_t value : values) *next++ = static_cast<char>(value >> (8 * plane));
   }
   return bytes;
 }

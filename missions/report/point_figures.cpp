@@ -101,7 +101,7 @@ std::vector<float> surface_errors(const geometry::AttributedCloud& cloud,
                                   std::span<const std::uint16_t> incidence, const PointNoise& noise,
                                   double reach) {
   if (!(noise.head_on > 0.0) || !(reach > 0.0) || cloud.positions.empty()) return {};
-  constexpr std::size_t most_samples = 10'000;
+  constexpr std::size_t most_samples = 2'500;
   const std::size_t stride = (cloud.positions.size() + most_samples - 1) / most_samples;
   geometry::PointGrid samples(reach);
   for (std::size_t i = 0; i < cloud.positions.size(); i += stride) {

@@ -44,7 +44,7 @@ struct PointNoise {
   bool is_along_ray = false;  ///< nowhere else; or the same in all directions
 };
 
-/// For a sample of at most 10,000 points the predicted standard error of the surface there, if the
+/// For a sample of at most 2,500 points the predicted standard error of the surface there, if the
 /// points within `reach` are averaged, [m]: sqrt(sum of s_i^2) / n of those n whose incidence is
 /// known, s_i being the noise across the surface: `head_on`, times the cosine of the incidence if
 /// the noise is along the ray. Errors that neighbours share, such as of the sensor's place, are not

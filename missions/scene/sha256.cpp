@@ -3,6 +3,8 @@
 #include <array>
 #include <cstddef>
 #include <fstream>
+#include <memory>
+#include <stdexcept>
 #include <vector>
 
 #include <openssl/evp.h>
@@ -11,25 +13,57 @@
 
 namespace skycap::missions::scene {
 
+namespace {
+
+void require(int result) {
+  if (result != 1) throw std::runtime_error("the cryptography library cannot compute SHA-256");
+}
+
+/// The digest of what it is given piece by piece.
+class Sha256 {
+ public:
+  Sha256() : context_(EVP_MD_CTX_new(), EVP_MD_CTX_free) {
+    require(EVP_DigestInit_ex(context_.get(), EVP_sha256(), nullptr));
+  }
+
+  void add(std::span<const std::byte> bytes) {
+    require(EVP_DigestUpdate(context_.get(), bytes.data(), bytes.size()));
+  }
+
+  std::string finish() {
+    std::array<unsigned char, 32> digest{};
+    require(EVP_DigestFinal_ex(context_.get(), digest.data(), nullptr));
+    std::string text;
+    constexpr char digits[] = "0123456789abcdef";
+    for (const unsigned char byte : digest) {
+      text += digits[byte >> 4];
+      text += digits[byte & 15];
+    }
+    return text;
+  }
+
+ private:
+  std::unique_ptr<EVP_MD_CTX, decltype(&EVP_MD_CTX_free)> context_;
+};
+
+}  // namespace
+
 std::string sha256(std::span<const std::byte> bytes) {
-  std::array<unsigned char, 32> digest{};
-  if (EVP_Digest(bytes.data(), bytes.size(), digest.data(), nullptr, EVP_sha256(), nullptr) != 1) {
-    throw std::runtime_error("the cryptography library cannot compute SHA-256");
-  }
-  std::string text;
-  constexpr char digits[] = "0123456789abcdef";
-  for (const unsigned char byte : digest) {
-    text += digits[byte >> 4];
-    text += digits[byte & 15];
-  }
-  return text;
+  Sha256 sum;
+  sum.add(bytes);
+  return sum.finish();
 }
 
 std::string sha256_of_file(const std::filesystem::path& file) {
   std::ifstream stream(file, std::ios::binary);
-  if (!stream) throw Error(ErrorKind::bad_file, file.string() + ": cannot be read");
-  const std::vector<char> content{std::istreambuf_iterator<char>(stream), {}};
-  return sha256(std::as_bytes(std::span(content)));
+  Sha256 sum;
+  std::vector<char> piece(std::size_t{1} << 18);
+  while (stream.read(piece.data(), static_cast<std::streamsize>(piece.size())),
+         stream.gcount() > 0) {
+    sum.add(std::as_bytes(std::span(piece).first(static_cast<std::size_t>(stream.gcount()))));
+  }
+  if (!stream.eof()) throw Error(ErrorKind::bad_file, file.string() + ": cannot be read");
+  return sum.finish();
 }
 
 }  // namespace skycap::missions::scene
