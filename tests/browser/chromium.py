@@ -120,13 +120,17 @@ class Page:
             self.browser.execute_cdp_cmd("Emulation.setDeviceMetricsOverride", {
                 "width": width, "height": height, "deviceScaleFactor": 2, "mobile": True})
         self.browser.get(pathlib.Path(file).as_uri())
-        self.failure = self.wait("""window.skycap.then((s) => {
+        self.failure = self.wait("""window.skycap.then(async (s) => {
             window.shown = s;
             if (!s.panel) return null;
-            const { renderer } = s.panel.viewer, gl = renderer.getContext();
-            s.panel.viewer.draw();
-            gl.readPixels(0, 0, 1, 1, gl.RGBA, gl.UNSIGNED_BYTE, new Uint8Array(4));
+            const { viewer } = s.panel, gl = viewer.renderer.getContext();
+            const finish = () => gl.readPixels(0, 0, 1, 1, gl.RGBA, gl.UNSIGNED_BYTE, new Uint8Array(4));
+            while (viewer.is_waiting) await new Promise(requestAnimationFrame);
+            finish();
             window.first_frame = performance.now();
+            viewer.draw();
+            finish();
+            window.all_points = performance.now();
             return null; })""")
 
     def wait(self, promise):
@@ -181,7 +185,8 @@ class Page:
                 "type": kind, "x": left + x, "y": top + y, "button": "left", "clickCount": 1})
 
     def tell_first_frame(self, what):
-        print(f"{what}: first frame {self.get('window.first_frame') / 1000:.2f} s after the page was opened")
+        first, whole = (self.get(f"window.{name}") / 1000 for name in ("first_frame", "all_points"))
+        print(f"{what}: first frame {first:.2f} s after the page was opened, with all points {whole:.2f} s")
 
     def close(self):
         self.browser.quit()

@@ -55,8 +55,21 @@ function clearance_colour(clearance, asked) {
   return along(nearness_stops, (clearance - asked) / told_apart);
 }
 
+/// Indices in such an order that each beginning of it is an even choice: every 64th, then those that
+/// every 32nd adds, and so on.
+function sparse_first(count) {
+  const order = new Uint32Array(count), widest = 64;
+  let next = 0;
+  for (let i = 0; i < count; i += widest) order[next++] = i;
+  for (let step = widest / 2; step >= 1; step /= 2) {
+    for (let i = step; i < count; i += 2 * step) order[next++] = i;
+  }
+  return order;
+}
+
 function cloud_points(cloud, least, spacing = cloud.spacing) {
   const geometry = new THREE.BufferGeometry();
+  geometry.setIndex(new THREE.BufferAttribute(sparse_first(cloud.count), 1));
   geometry.setAttribute("position", new THREE.BufferAttribute(cloud.positions, 3));
   const colours = new THREE.BufferAttribute(new Uint8Array(3 * cloud.count), 3, true);
   geometry.setAttribute("colour", colours);
@@ -64,7 +77,7 @@ function cloud_points(cloud, least, spacing = cloud.spacing) {
   geometry.setAttribute("shot", new THREE.BufferAttribute(new Uint16Array(shots), 1));
   const points = new THREE.Points(geometry, point_material(spacing * 1.5, least));
   points.frustumCulled = false;
-  points.userData.cloud = cloud;
+  Object.assign(points.userData, { cloud, spacing: spacing * 1.5 });
   return points;
 }
 

@@ -1,5 +1,8 @@
 // The 3-D view: draws its layers when something has changed, and answers what is under a place.
 
+/// A frame of a movement may take so long, and rest begins so long after the last one [ms].
+const fluent_frame = 40, rest = 250;
+
 class Viewer {
   constructor(canvas, data, clouds) {
     this.canvas = canvas;
@@ -19,6 +22,7 @@ class Viewer {
       minDistance: this.size / 400, maxDistance: this.size * 6 });
     this.controls.addEventListener("change", () => this.draw_soon());
     this.listeners = [];
+    this.points_per_millisecond = 2000;  // until it is measured
     this.mode = null;
     this.last_view = Infinity;
     this.marks = new THREE.Group();
@@ -61,13 +65,53 @@ class Viewer {
     this.draw_soon();
   }
 
+  /// With as many points as can be drawn fluently; with all of them once nothing has changed for a
+  /// while.
   draw_soon() {
+    clearTimeout(this.completion);
     if (this.is_waiting) return;
     this.is_waiting = true;
     requestAnimationFrame(() => {
       this.is_waiting = false;
-      this.draw();
+      const share = this.fluent_share();
+      this.draw(share);
+      this.measure_pace();
+      if (share < 1) this.completion = setTimeout(() => requestAnimationFrame(() => this.draw()), rest);
     });
+  }
+
+  points_on() {
+    return this.cloud_layers.reduce((sum, [, layer]) => sum + (layer.visible ? layer.userData.cloud.count : 0), 0);
+  }
+
+  fluent_share() {
+    return Math.min(1, this.points_per_millisecond * fluent_frame / Math.max(1, this.points_on()));
+  }
+
+  /// How many points the frame that was begun last takes a millisecond; the machine draws beside us.
+  measure_pace() {
+    const gl = this.renderer.getContext(), start = performance.now(), points = this.shown_share * this.points_on();
+    const fence = gl.fenceSync(gl.SYNC_GPU_COMMANDS_COMPLETE, 0);
+    gl.flush();
+    const look = () => {
+      if (gl.getSyncParameter(fence, gl.SYNC_STATUS) !== gl.SIGNALED && !gl.isContextLost()) {
+        setTimeout(look, 4);
+        return;
+      }
+      gl.deleteSync(fence);
+      this.points_per_millisecond = Math.max(100, points / Math.max(4, performance.now() - start));
+    };
+    setTimeout(look, 4);
+  }
+
+  /// An even choice of the points, as much larger as they are fewer.
+  show_share(share) {
+    this.shown_share = share;
+    for (const [, layer] of this.cloud_layers) {
+      const { cloud, spacing } = layer.userData;
+      layer.geometry.setDrawRange(0, Math.ceil(share * cloud.count));
+      layer.material.uniforms.spacing.value = spacing / Math.sqrt(share);
+    }
   }
 
   set_point_scale(camera, height) {
@@ -78,8 +122,9 @@ class Viewer {
     }
   }
 
-  draw() {
+  draw(share = 1) {
     const { renderer, target, camera } = this, { uniforms } = this.screen.material;
+    this.show_share(share);
     this.set_point_scale(camera, target.height);
     renderer.setRenderTarget(target);
     renderer.setClearColor(0, 0);
@@ -225,6 +270,7 @@ class Viewer {
     const were_shown = this.cloud_layers.map(([, layer]) => layer.visible);
     for (const [name, layer] of this.cloud_layers) layer.visible = name === "measured";
     uniforms.first_view.value = uniforms.last_view.value = number;
+    this.show_share(1);
     this.set_point_scale(camera, height);
     this.renderer.setRenderTarget(target);
     this.renderer.setClearColor(0x06090c, 1);
