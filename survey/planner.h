@@ -3,7 +3,9 @@
 #pragma once
 
 #include <cstddef>
+#include <exception>
 #include <optional>
+#include <stop_token>
 #include <string>
 #include <vector>
 
@@ -28,6 +30,12 @@ struct PlanningStep {
   std::vector<PartTime> times;          ///< in the order of execution; their sum is the planning
 };
 
+/// Thrown by a planner that was told to stop while it looked for a view.
+class Interrupted : public std::exception {
+ public:
+  const char* what() const noexcept override { return "interrupted"; }
+};
+
 class Planner {
  public:
   virtual ~Planner() = default;
@@ -40,6 +48,10 @@ class Planner {
   /// Proposes another view in place of the last one, which cannot be reached; nothing when there
   /// is none left. May be called repeatedly.
   virtual std::optional<geometry::View> next_view_instead() = 0;
+
+  /// Lets a stop end next_view() wherever it is: it then throws Interrupted, and may not be called
+  /// again. Planners whose views take no time to speak of need not listen.
+  virtual void stop_on(std::stop_token /*stop*/) {}
 
   /// The measurements kept so far.
   virtual const geometry::PointCloud& cloud() const = 0;

@@ -137,10 +137,15 @@ SurveyResult run_survey(Planner& planner, const View& first_view, const SurveyLi
   while (next) {
     double sensing_time = 0.0;
     scan = timed(sensing_time, [&] { return ports.sense(*next, std::move(scan)); });
-    next = steps.take_in(scan, sensing_time);
+    try {
+      next = steps.take_in(scan, sensing_time);
+    } catch (const Interrupted&) {  // as if the last scan had not been taken
+      return {StopReason::interrupted, std::move(steps).views()};
+    }
     if (next && stop.stop_requested()) {
       return {StopReason::interrupted, std::move(steps).views()};
     }
+    planner.stop_on(stop);  // from now on there is something to come back with
   }
   const StopReason reason = steps.stop_reason();
   return {reason, std::move(steps).views()};

@@ -45,13 +45,13 @@ std::string counted(std::size_t count, std::string_view word) {
   return std::to_string(count) + " " + std::string(word) + (count == 1 ? "" : "s");
 }
 
-Json files_json(const std::vector<std::string>& names, const ResultFinder& results) {
+Json files_json(const std::vector<std::string>& names, const ResultFinder& results,
+                bool has_digests) {
   Json files = Json::array();
   for (const std::string& name : names) {
     if (fs::path(name).filename() != name || !is_there(results(name))) continue;
-    files.push_back({{"name", name},
-                     {"bytes", fs::file_size(results(name))},
-                     {"sha256", scene::sha256_of_file(results(name))}});
+    files.push_back({{"name", name}, {"bytes", fs::file_size(results(name))}});
+    if (has_digests) files.back()["sha256"] = scene::sha256_of_file(results(name));
   }
   return files;
 }

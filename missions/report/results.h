@@ -36,8 +36,9 @@ nlohmann::ordered_json read_results(const std::filesystem::path& file);
 std::string counted(std::size_t count, std::string_view word);
 
 /// {"name", "bytes", "sha256"} of those that are there, so that whoever has a file can see that it
-/// is the one of the page. Names that lead to other folders are passed over.
+/// is the one of the page; digests of large files take seconds, which who has pressed Ctrl-C does
+/// not wait for. Names that lead to other folders are passed over.
 nlohmann::ordered_json files_json(const std::vector<std::string>& names,
-                                  const ResultFinder& results);
+                                  const ResultFinder& results, bool has_digests = true);
 
 }  // namespace skycap::missions::report

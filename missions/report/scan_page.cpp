@@ -198,7 +198,7 @@ std::string scan_page(const ResultFinder& results, std::size_t most_points) {
     data["trajectory"] = {{"flown", trajectory_json(flown)},
                           {"believed", trajectory_json(believed)}};
     data["accuracy"] = accuracy_json(shown.incidence, shown.ranges, {});
-    data["files"] = files_json(file_names(summary), results);
+    data["files"] = files_json(file_names(summary), results, summary.value("complete", false));
     std::vector<CloudAttribute> attributes;
     if (!shown.views.empty()) {
       attributes = {{"view", shown.views}, {"incidence", shown.incidence, true}};

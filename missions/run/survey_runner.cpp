@@ -56,6 +56,9 @@ SurveyRecord run_survey(const file::Mission& mission, const scene::SurveyScene& 
       survey::run_survey(guided.planner(), first_view, guided.limits(), ports, std::move(stop))
           .stop_reason;
   guided.finish(record);
+  // Less what came after the last view, if planning was interrupted.
+  record.cloud.positions.resize(points_judged);
+  record.cloud.views.resize(points_judged);
   record.is_covered = meter.is_covered();
   return record;
 }

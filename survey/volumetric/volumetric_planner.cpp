@@ -115,6 +115,7 @@ struct VolumetricPlanner::Impl {
   Vector3d position = Vector3d::Zero();
   std::uint32_t scans = 0;
   PlanningStep step;
+  std::stop_token stop;
 };
 
 VolumetricPlanner::VolumetricPlanner(const VolumetricConfig& config, const geometry::Camera& camera)
@@ -122,6 +123,7 @@ VolumetricPlanner::VolumetricPlanner(const VolumetricConfig& config, const geome
 
 VolumetricPlanner::~VolumetricPlanner() = default;
 
+void VolumetricPlanner::stop_on(std::stop_token stop) { impl_->stop = std::move(stop); }
 const geometry::PointCloud& VolumetricPlanner::cloud() const { return impl_->cloud; }
 geometry::PointCloud VolumetricPlanner::release_cloud() { return std::move(impl_->cloud); }
 const PlanningStep& VolumetricPlanner::last_step() const { return impl_->step; }
@@ -168,6 +170,7 @@ void VolumetricPlanner::Impl::insert(const ScanSpan& scan) {
 
 void VolumetricPlanner::Impl::score() {
   geometry::parallel_for(candidates.size(), config.threads, [&](std::size_t i) {
+    if (stop.stop_requested()) throw Interrupted();
     candidates[i].gain = information_gain(config.metric, map, candidates[i].view, directions,
                                           config.ray_depth(), config.settings.gain);
   });

@@ -2,6 +2,7 @@
 
 #include <chrono>
 #include <optional>
+#include <stop_token>
 #include <string>
 #include <thread>
 #include <vector>
@@ -150,6 +151,37 @@ TEST(SurveyLoop, StopsBetweenViewsWhenAsked) {
                                          stop.get_token());
   EXPECT_EQ(result.stop_reason, StopReason::interrupted);
   EXPECT_THAT(places(result), ElementsAre(0, 1, 2));
+}
+
+/// Is told to stop while it plans from its third scan.
+class StoppedPlanner final : public Planner {
+ public:
+  std::optional<View> next_view(const geometry::ScanSpan& scan) override {
+    const std::optional<View> next = walking_.next_view(scan);
+    if (++scans_ == 3) source.request_stop();
+    if (stop_.stop_requested()) throw Interrupted();
+    return next;
+  }
+  std::optional<View> next_view_instead() override { return walking_.next_view_instead(); }
+  void stop_on(std::stop_token stop) override { stop_ = std::move(stop); }
+  const geometry::PointCloud& cloud() const override { return walking_.cloud(); }
+  geometry::PointCloud release_cloud() override { return walking_.release_cloud(); }
+  const PlanningStep& last_step() const override { return walking_.last_step(); }
+
+  std::stop_source source;
+
+ private:
+  WalkingPlanner walking_{100};
+  std::stop_token stop_;
+  int scans_ = 0;
+};
+
+TEST(SurveyLoop, StopsWhileThePlannerLooksForAView) {
+  StoppedPlanner planner;
+  const SurveyResult result =
+      run_survey(planner, start, {}, {.sense = sense}, planner.source.get_token());
+  EXPECT_EQ(result.stop_reason, StopReason::interrupted);
+  EXPECT_THAT(places(result), ElementsAre(0, 1));
 }
 
 TEST(SurveyLoop, StopsWhenTheTimeIsUp) {

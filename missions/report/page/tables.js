@@ -150,7 +150,7 @@ function files_section(data) {
   if (!(data.files || []).length) return null;
   return element("section", { id: "files" }, element("h2", {}, "Files"),
     table(["file", { number: "size" }, "SHA-256"], data.files.map((file) => [file.name,
-      { number: shown(file.bytes, "bytes") }, element("span", { class: "code" }, file.sha256)])));
+      { number: shown(file.bytes, "bytes") }, element("span", { class: "code" }, file.sha256 || "not taken of an interrupted scan")])));
 }
 
 const setting_text = (value) => (typeof value === "string" ? value : JSON.stringify(value));

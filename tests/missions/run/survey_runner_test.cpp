@@ -1,8 +1,10 @@
 #include "missions/run/survey_runner.h"
 
 #include <algorithm>
+#include <chrono>
 #include <random>
 #include <stop_token>
+#include <thread>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -197,6 +199,30 @@ TEST(RunSurvey, JudgesEveryView) {
   meter.add(record.cloud.positions);
   EXPECT_EQ(record.coverage(), meter.share());
   EXPECT_GT(record.coverage(), 0.5);  // it is a survey, not one look
+}
+
+// Wherever a stop meets it: the cloud is that of the views that are reported.
+TEST(RunSurvey, HoldsWhatItsViewsMeasuredWhenItIsStopped) {
+  const file::Mission mission = derived::parse_mission(
+      quick_mission(), "m.yaml",
+      {{"--planner", "planner.name", "rsv"}, {"--set", "volumetric.view_limit", "100"}});
+  const scene::SurveyScene scene(mission, "");
+  for (const int delay : {5, 20, 60, 120}) {
+    std::stop_source stop;
+    std::jthread finger;
+    const run::SurveyRecord record =
+        run::run_survey(mission, scene, 1, 1, stop.get_token(), [&](const run::JudgedView&) {
+          if (finger.joinable()) return;
+          finger = std::jthread([&] {
+            std::this_thread::sleep_for(std::chrono::milliseconds(delay));
+            stop.request_stop();
+          });
+        });
+    ASSERT_EQ(record.stop_reason, survey::StopReason::interrupted);
+    ASSERT_FALSE(record.views.empty());
+    EXPECT_EQ(record.cloud.size(), record.views.back().surveyed.points);
+    EXPECT_LT(record.cloud.views.back(), record.views.size());
+  }
 }
 
 TEST(Plan, RepeatsItselfByteByByteWithAnyNumberOfThreads) {

@@ -144,6 +144,18 @@ TEST(VolumetricPlanner, ProposesTheSameViewsForAnyNumberOfThreads) {
   }
 }
 
+TEST(VolumetricPlanner, StopsInTheMiddleOfAView) {
+  volumetric::VolumetricPlanner planner(config_for(occlusion_aware), camera);
+  const View view = look_at({2.0, 0.0, 0.0}, Vector3d::Zero());
+  const auto scan = tests::scan_spheres({{}}, camera, view, 0.01);
+  std::stop_source stop;
+  planner.stop_on(stop.get_token());
+  ASSERT_TRUE(planner.next_view(scan));
+  stop.request_stop();
+  EXPECT_THROW(planner.next_view(scan), Interrupted);
+  EXPECT_GT(planner.release_cloud().size(), 0U);
+}
+
 TEST(VolumetricPlanner, TravelsFartherWithoutACostOfTheWay) {
   volumetric::VolumetricConfig config = config_for(occlusion_aware);
   const double with_cost = length_of(surveyed(config));
