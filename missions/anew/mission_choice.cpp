@@ -2,11 +2,13 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <optional>
 #include <utility>
 
 #include "flight/motion/motion.h"
 #include "flight/route/leg_certifier.h"
+#include "flight/way_home/returnable_space.h"
 #include "geometry/error.h"
 #include "missions/derived/mission_flight.h"
 #include "missions/derived/site.h"
@@ -25,17 +27,29 @@ constexpr double spare_clearance = 0.05;
 /// again differs by several times as much.
 constexpr double equal_coverage = 5e-4;
 
+/// How the vehicle comes home from all of the route, at the height that routes are planned for.
+flight::ReturnLaw law_of(const flight::RouteOptions& options) {
+  const flight::ReturnOptions& asked = options.returns.value();
+  const double pad_height = options.takeoff.z();
+  flight::ReturnLaw law{.dialects = asked.dialects,
+                        .level = pad_height + std::floor(asked.highest - pad_height),
+                        .landings = {options.takeoff},
+                        .landing_climb = options.takeoff_climb};
+  law.landings.insert(law.landings.end(), asked.rally.begin(), asked.rally.end());
+  return law;
+}
+
 /// The problem of a mission, and what it asks.
 class MissionProblem {
  public:
   MissionProblem(const file::Mission& mission, const GainField& surface,
                  const flight::FreeSpace& space, const flight::Route& present)
       : surface_(surface),
-        space_(space),
         vehicle_(present.vehicle),
         limits_(derived::view_limits(mission)),
         motion_(present.vehicle, present.options.conditions),
         clearance_(present.clearance),
+        returnable_(space, law_of(present.options)),
         legs_(space, motion_, clearance_, no_ways_home_),
         home_(present.options.takeoff + Vector3d(0.0, 0.0, present.options.takeoff_climb)) {
     problem_.targets = surface.targets();
@@ -55,13 +69,13 @@ class MissionProblem {
     };
     problem_.is_in_free_space = [this](const View& view) {
       const double kept = std::max(clearance_, limits_.stand_off) + spare_clearance;
-      return space_.is_free({view.position, view.position}, kept);
+      return returnable_.is_free({view.position, view.position}, kept);
     };
     problem_.straight_time = [this](const View* from, const View* to) {
       return straight_time(from, to);
     };
     problem_.is_free = [this](const View* from, const View* to) {
-      return space_.is_free({place(from), place(to)}, clearance_);
+      return returnable_.is_free({place(from), place(to)}, clearance_);
     };
   }
 
@@ -81,11 +95,11 @@ class MissionProblem {
   }
 
   const GainField& surface_;
-  const flight::FreeSpace& space_;
   flight::Vehicle vehicle_;
   survey::ViewLimits limits_;
   flight::Motion motion_;
   double clearance_;
+  flight::ReturnableSpace returnable_;
   std::optional<flight::WaysHome> no_ways_home_;
   flight::LegCertifier legs_;
   Vector3d home_;

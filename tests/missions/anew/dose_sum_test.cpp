@@ -61,7 +61,11 @@ TEST(DoseSum, KeepsNoTraceOfViewsThatWent) {
   std::vector<bool> is_in(views.size(), false);
   for (int i = 0; i < 5000; ++i) {
     const std::size_t v = random() % views.size();
-    is_in[v] ? sum.remove(views[v]) : sum.add(views[v]);
+    if (is_in[v]) {
+      sum.remove(views[v]);
+    } else {
+      sum.add(views[v]);
+    }
     is_in[v] = !is_in[v];
   }
   DoseSum fresh(targets);
