@@ -162,7 +162,7 @@ TEST(AnewMission, NeedsAPlannerThatKnowsTheSurface) {
     });
   };
   EXPECT_THAT(complaint("planner.name", "see++"),
-              HasSubstr("flight.views is anew, and the planner see++ keeps no surface"));
+              HasSubstr("flight.views: is anew, and the planner see++ keeps no surface"));
   EXPECT_THAT(complaint("flight.order", "survey"), HasSubstr("leave out flight.order or"));
   EXPECT_EQ(complaint("flight.vehicle", "none"), "") << "nothing is flown, and nothing chosen";
 }
