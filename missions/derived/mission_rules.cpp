@@ -12,6 +12,7 @@
 #include "missions/derived/site.h"
 #include "missions/file/mission_keys.h"
 #include "missions/file/number_text.h"
+#include "missions/file/planner_titles.h"
 #include "sim/models/models.h"
 
 namespace skycap::missions::derived {
@@ -58,6 +59,23 @@ void check_builtin(const file::MissionFile& given, std::string_view name) {
     known += (known.empty() ? "builtin:" : ", builtin:") + std::string(model);
   }
   given.refuse("scene.model", "is " + given.mission.scene.model + "; there are " + known);
+}
+
+void check_views(const file::MissionFile& given) {
+  const file::Mission& mission = given.mission;
+  if (mission.flight.views != file::MissionViews::anew) return;
+  if (mission.planner.name != file::PlannerName::skycap) {
+    given.refuse("flight.views",
+                 "is anew, and the planner " +
+                     std::string(file::title_of(mission.planner.name).word) +
+                     " keeps no surface that views could be chosen by; plan with planner.name "
+                     "skycap or leave it out");
+  }
+  if (mission.flight.order == file::VisitOrder::survey) {
+    given.refuse("flight.views",
+                 "is anew, and such views have no order of the survey; leave out flight.order or "
+                 "flight.views");
+  }
 }
 
 }  // namespace
@@ -158,6 +176,7 @@ void check_flight(const file::MissionFile& given) {
                      short_text(budget.total() - budget.margin) +
                      " m; make it larger or the errors smaller");
   }
+  check_views(given);
   if (const double climb = takeoff_climb_of(mission); climb <= flight.clearance) {
     given.refuse("flight.takeoff_climb",
                  "of " + short_text(climb) +

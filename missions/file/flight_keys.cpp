@@ -108,6 +108,11 @@ std::vector<Key> conduct_keys() {
                  flight(&FlightConfig::temperature), "Of the battery; cold ones hold less."),
       number_key("flight.reserve", "share", between(0, 0.9), flight(&FlightConfig::reserve),
                  "Of the battery, left at landing of every sortie."),
+      choice_key(
+          "flight.views", {"survey", "anew"}, flight(&FlightConfig::views),
+          "Which views the exported mission takes: those of the survey, or chosen anew, views "
+          "and tour together, to cover what the survey measured in fewer seconds. For the "
+          "planner skycap."),
       choice_key("flight.order", {"shortest", "survey"}, flight(&FlightConfig::order),
                  "Order of the views in the exported mission: the shortest tour found, or as "
                  "surveyed."),

@@ -133,6 +133,12 @@ struct Georeference {
 /// In which order the exported mission visits the survey's views.
 enum class VisitOrder { shortest, survey };
 
+/// Which views the exported mission takes.
+enum class MissionViews {
+  survey,  ///< the survey's
+  anew,    ///< chosen by the surface that the survey measured
+};
+
 /// How views become a flight. Without a vehicle nothing is flown: the sensor is taken to reach
 /// every view, and no route is written.
 struct FlightConfig {
@@ -156,6 +162,7 @@ struct FlightConfig {
   double wind_from = 0.0;     ///< where it blows from, clockwise from north [rad]
   double temperature = 15.0;  ///< of the battery [degrees Celsius]
   double reserve = 0.25;      ///< share of the battery left at landing
+  MissionViews views = MissionViews::survey;
   VisitOrder order = VisitOrder::shortest;
   flight::FlightStyle style = flight::FlightStyle::stop;  ///< of files that can hold curves
 

@@ -28,7 +28,7 @@ Survey survey_of(const Mission::Contents& contents, const SurveyRequest& request
                                                  request.report(view.surveyed, view.coverage);
                                              });
   const package::CoverageFigures figures =
-      package::coverage_figures(record, scene, mission.threads, request.stop);
+      package::coverage_figures(mission, record, scene, mission.threads, request.stop);
   std::optional<package::SurveyMission> flight;
   if (folder) {
     flight =

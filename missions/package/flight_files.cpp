@@ -193,6 +193,11 @@ class RouteFiles {
 
 std::span<const Format> package_formats() { return formats_of_packages; }
 
+file::Mission in_given_order(file::Mission mission) {
+  mission.flight.order = file::VisitOrder::survey;
+  return mission;
+}
+
 flight::Route plan_flight(const file::Mission& mission, const flight::MeasuredSpace& measured,
                           const Eigen::Vector3d& pad, const std::vector<geometry::View>& views,
                           const std::vector<Way>& ways, std::span<const flight::PadGround> grounds,

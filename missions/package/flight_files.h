@@ -15,12 +15,17 @@
 #include "flight/space/measured_space.h"
 #include "geometry/io/output_folder.h"
 #include "geometry/place/pose.h"
+#include "missions/anew/mission_choice.h"
 #include "missions/file/mission.h"
 
 namespace skycap::missions::package {
 
 /// A way through space, point by point.
 using Way = std::vector<Eigen::Vector3d>;
+
+/// The mission with its views in the order given, and with the ways to them: as views chosen anew
+/// are flown, or those of the survey in its own order.
+file::Mission in_given_order(file::Mission mission);
 
 /// The flight of a mission's vehicle through views of its survey, proven in what the survey has
 /// measured; ways[i] is how it came to view i from the view before or from above the pad (empty if
@@ -61,12 +66,26 @@ FlightFiles stage_flight(const file::Mission& mission, const flight::Route& rout
                          const flight::MeasuredSpace& measured,
                          std::span<const flight::Format> formats, geometry::OutputFolder& folder);
 
+/// What a mission covers when it is flown again in the simulator, from an empty cloud and with
+/// other noise: shares of samples.
+struct FlownAgain {
+  double all = 0.0;               ///< of the whole surface
+  std::optional<double> visible;  ///< of what admissible views can see
+};
+
+/// A mission whose views were to be chosen anew.
+struct AnewMission {
+  anew::MissionChoice choice;
+  std::optional<FlownAgain> again;  ///< in simulation
+};
+
 /// The flight of a finished survey and where it was written to.
 struct SurveyMission {
   flight::Route route;  ///< without stations if there is none
   FlightFiles files;
   std::optional<flight::PictureBounds> pictures{};  ///< how sharp they are
-  std::string failure;  ///< why there is no route; empty if there is one
+  std::string failure;                ///< why there is no route; empty if there is one
+  std::optional<AnewMission> anew{};  ///< if views were to be chosen anew
 };
 
 /// Whether stage_flight() may have given a file this name: in any format, or in that one.

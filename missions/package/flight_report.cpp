@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include "flight/route/route.h"
+#include "missions/package/anew_mission.h"
 #include "missions/package/ground_json.h"
 
 namespace skycap::missions::package {
@@ -53,6 +54,7 @@ std::string flight_text(const SurveyMission& flight) {
       "+ tracking {:.2f} + map {:.2f} + margin {:.2f})\n",
       clearance.total(), route.min_clearance, clearance.vehicle_radius, clearance.position_error,
       clearance.tracking_error, clearance.map_error, clearance.margin);
+  if (flight.anew) text += anew_text(*flight.anew);
   const std::size_t rally_points = route.options.returns ? route.options.returns->rally.size() : 0;
   text += grounds_text(route.options.grounds, 1 + rally_points);
   text += return_text(flight);

@@ -19,11 +19,13 @@
 #include "missions/file/json_text.h"
 #include "missions/file/number_text.h"
 #include "missions/judge/coverage.h"
+#include "missions/package/anew_mission.h"
 #include "missions/package/cloud_normals.h"
 #include "missions/package/coverage_map.h"
 #include "missions/package/ground_json.h"
 #include "missions/package/holes.h"
 #include "missions/package/settings.h"
+#include "missions/run/measurement.h"
 #include "missions/run/survey_journal.h"
 
 namespace skycap::missions::package {
@@ -71,6 +73,25 @@ std::vector<Eigen::Vector3d> sensor_positions(const run::SurveyRecord& record) {
     positions.push_back(judged.surveyed.view.position);
   }
   return positions;
+}
+
+/// The route of a flown survey, and how its views were chosen.
+void plan_mission(const file::Mission& mission, const run::SurveyRecord& record,
+                  const CoverageFigures& coverage, const std::stop_token& stop,
+                  SurveyMission& flight) {
+  const run::FlownSurvey& flown = *record.flown;
+  flight.pictures = derived::picture_bounds_of(mission);
+  flight.route = plan_flight(mission, *flown.measured, flown.pad, views_of(record), ways_of(flown),
+                             flown.grounds, stop);
+  if (flight.route.sorties.empty() && !flight.route.unreached.empty()) {
+    const flight::Unreached& first = flight.route.unreached.front();
+    throw Error(ErrorKind::bad_config, "no view can be flown to; view " +
+                                           std::to_string(first.station.view_index) + ": " +
+                                           first.reason);
+  }
+  if (!record.surface || flight.route.stations.empty()) return;
+  flight.anew = anew_mission(mission, record, coverage, std::move(flight.route), stop);
+  flight.route = std::move(flight.anew->choice.route);
 }
 
 }  // namespace
@@ -124,8 +145,9 @@ std::string trajectory_tum(const run::SurveyRecord& record) {
   return tum;
 }
 
-CoverageFigures coverage_figures(const run::SurveyRecord& record, const scene::SurveyScene& scene,
-                                 unsigned threads, const std::stop_token& stop) {
+CoverageFigures coverage_figures(const file::Mission& mission, const run::SurveyRecord& record,
+                                 const scene::SurveyScene& scene, unsigned threads,
+                                 const std::stop_token& stop) {
   CoverageFigures figures{record.coverage(), {}, {}};
   std::vector<std::uint8_t> is_visible, is_attainable;
   if (record.stop_reason != survey::StopReason::interrupted) {  // the user wants to leave
@@ -138,6 +160,10 @@ CoverageFigures coverage_figures(const run::SurveyRecord& record, const scene::S
       if (marks) figures.ceiling = judge::marked_share(*marks);
       is_attainable = marks.value_or(is_attainable);
     }
+    figures.fly_again = [&mission, &scene, seed = record.seed,
+                         threads](const std::vector<geometry::View>& views) {
+      return run::covered_when_flown_again(mission, scene, views, seed, threads);
+    };
   }
   if (!record.belief) {
     figures.patches = true_patches(scene.samples(), geometry::surface_area(scene.model()),
@@ -185,16 +211,7 @@ std::optional<SurveyMission> stage_package(const file::Mission& mission,
     folder.write(free_space_name, free_space.str());
     flight = SurveyMission{};
     try {
-      flight->pictures = derived::picture_bounds_of(mission);
-      flight->route =
-          plan_flight(mission, *record.flown->measured, record.flown->pad, views_of(record),
-                      ways_of(*record.flown), record.flown->grounds, stop);
-      if (flight->route.sorties.empty() && !flight->route.unreached.empty()) {
-        const flight::Unreached& first = flight->route.unreached.front();
-        throw Error(ErrorKind::bad_config, "no view can be flown to; view " +
-                                               std::to_string(first.station.view_index) + ": " +
-                                               first.reason);
-      }
+      plan_mission(mission, record, coverage, stop, *flight);
       flight->files =
           stage_flight(mission, flight->route, *record.flown->measured, package_formats(), folder);
     } catch (const Error& error) {
@@ -228,6 +245,10 @@ PackageSummary parse_package_summary(const std::string& text, const std::string&
       if (json["flight"].contains("grounds")) {
         summary.grounds = measured_grounds(json["flight"]["grounds"], name);
       }
+      summary.has_choice = json["flight"].contains("anew");
+      if (summary.has_choice && summary.mission.flight.views == file::MissionViews::anew) {
+        summary.anew = anew_stations(json["flight"]["anew"], name);
+      }
     }
     for (const Json& view : json.at("per_view")) {
       summary.views.push_back({vector_of(view.at("position")), vector_of(view.at("direction"))});
@@ -258,6 +279,10 @@ PackagedSurvey read_package(const std::filesystem::path& folder,
   if (!summary.pad) {
     fail(folder / summary_name, "is of a survey without a vehicle; plan it with flight.vehicle");
   }
+  if (summary.mission.flight.views == file::MissionViews::anew && !summary.has_choice) {
+    fail(folder / summary_name,
+         "has no views chosen anew; plan the mission again, or say flight.views=survey");
+  }
   const std::filesystem::path space_file = folder / free_space_name;
   std::ifstream space;
   if (std::filesystem::exists(space_file)) {
@@ -265,6 +290,11 @@ PackagedSurvey read_package(const std::filesystem::path& folder,
     space.open(space_file, std::ios::binary);
   }
   if (!space.is_open()) fail(space_file, "cannot be read; plan the mission again");
+  if (summary.anew) {
+    summary.mission = in_given_order(std::move(summary.mission));
+    summary.views = std::move(summary.anew->views);
+    summary.ways = std::move(summary.anew->ways);
+  }
   return {std::move(summary.mission), std::move(summary.views),
           std::move(summary.ways),    *summary.pad,
           std::move(summary.grounds), flight::MeasuredSpace::read(space, space_file.string())};

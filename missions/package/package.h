@@ -1,7 +1,9 @@
 /// The mission package: the files that a survey leaves behind. docs/mission_file.md is the manual.
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <optional>
 #include <span>
 #include <stop_token>
@@ -30,12 +32,16 @@ struct CoverageFigures {
   /// believes nothing; see true_patches().
   std::vector<survey::skycap::BelievedPatch> patches = {};
   std::optional<TrueCoverage> truth = {};  ///< of a simulated survey
+  /// For each of the scene's samples, 1 if views cover it when they are flown again; null where
+  /// that cannot be simulated, or the survey was interrupted.
+  std::function<std::vector<std::uint8_t>(const std::vector<geometry::View>&)> fly_again = {};
 };
 
 /// What a simulated survey covered of the true surface; what could be covered at all only of one
-/// that has ended, unless a stop is requested.
-CoverageFigures coverage_figures(const run::SurveyRecord& record, const scene::SurveyScene& scene,
-                                 unsigned threads, const std::stop_token& stop);
+/// that has ended, unless a stop is requested. Keeps references to mission and scene.
+CoverageFigures coverage_figures(const file::Mission& mission, const run::SurveyRecord& record,
+                                 const scene::SurveyScene& scene, unsigned threads,
+                                 const std::stop_token& stop);
 
 /// Commits what stage_package() and others have staged. A survey that was interrupted goes beside a
 /// complete one instead of over it, into the folder "interrupted", and keeps its journal.
@@ -72,6 +78,11 @@ struct PackageSummary {
   std::vector<Way> ways;                   ///< ways[i] was flown to view i; empty if it is not said
   std::optional<Eigen::Vector3d> pad;      ///< of a survey that was flown
   std::vector<flight::PadGround> grounds;  ///< of pad and rally points, where it was measured
+  bool has_choice = false;  ///< whether views were to be chosen anew when it was planned
+  std::optional<anew::StationPlan> anew{};  ///< the mission's stations, if they were chosen so
+
+  /// What is flown: those stations, or the survey's views.
+  const std::vector<geometry::View>& stations() const { return anew ? anew->views : views; }
 };
 
 /// The same of a summary's text; `name` stands for the file in messages.
@@ -85,9 +96,9 @@ PackageSummary read_package_summary(const std::filesystem::path& folder,
 
 /// What a package holds of a flown survey.
 struct PackagedSurvey {
-  file::Mission mission;  ///< with all keys as they were in force
-  std::vector<geometry::View> views;
-  std::vector<Way> ways;  ///< see PackageSummary
+  file::Mission mission;  ///< with all keys as they were in force; in_given_order() of stations
+  std::vector<geometry::View> views;  ///< that are flown: PackageSummary::stations()
+  std::vector<Way> ways;              ///< to them
   Eigen::Vector3d pad = Eigen::Vector3d::Zero();
   std::vector<flight::PadGround> grounds;  ///< see PackageSummary
   flight::MeasuredSpace measured;

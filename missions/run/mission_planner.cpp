@@ -12,6 +12,9 @@ namespace {
 
 constexpr double seconds_per_minute = 60.0;
 
+/// That views chosen anew are weighed by: more of them change the choice no more than its seed.
+constexpr std::size_t surface_targets = 6000;
+
 /// Takes over what only the planner skycap can say, such as which budget made it stop.
 void record_belief(const survey::Planner& planner, SurveyRecord& record) {
   const auto* skycap = dynamic_cast<const survey::skycap::SkycapPlanner*>(&planner);
@@ -120,6 +123,11 @@ void MissionPlanner::tell(SurveyRecord& record) const {
 
 void MissionPlanner::finish(SurveyRecord& record) {
   record_belief(*impl_->planner, record);
+  const auto* skycap = dynamic_cast<const survey::skycap::SkycapPlanner*>(impl_->planner.get());
+  if (skycap != nullptr && impl_->flight &&
+      impl_->mission.flight.views == file::MissionViews::anew) {
+    record.surface = skycap->known_surface(surface_targets);
+  }
   record.cloud = impl_->planner->release_cloud();
   if (impl_->flight) record.flown = impl_->flight->finish();
 }

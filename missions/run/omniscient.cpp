@@ -10,10 +10,9 @@
 #include "geometry/parallel.h"
 #include "geometry/place/camera.h"
 #include "geometry/place/pose.h"
-#include "missions/derived/survey_sensor.h"
 #include "missions/judge/coverage.h"
 #include "missions/judge/evaluation.h"
-#include "missions/judge/thinned_cloud.h"
+#include "missions/run/measurement.h"
 #include "sim/sensors/depth_camera.h"
 #include "survey/skycap/dose_model.h"
 
@@ -147,37 +146,6 @@ std::vector<std::size_t> short_tour(const std::vector<View>& views) {
   }
   return order;
 }
-
-/// The simulated sensor, and what it has covered so far.
-class Measurement {
- public:
-  Measurement(const file::Mission& mission, const scene::SurveyScene& scene, std::uint64_t seed,
-              unsigned threads)
-      : scene_(scene),
-        threads_(threads),
-        sensor_(mission.sensor, seed),
-        box_(mission.planner.see.scene_box.value_or(Eigen::AlignedBox3d())),
-        cloud_(mission.planner.see.effective_spacing()),
-        meter_(scene.samples().points, mission.evaluation.registration_distance) {}
-
-  /// Frame `number` of the survey; the same view has the same noise whenever it is taken.
-  std::vector<Vector3f> take(const View& view, std::size_t number) {
-    const geometry::Scan scan = sensor_.scan(scene_.scene(), view, number, threads_);
-    std::vector<Vector3f> stored = cloud_.store(scan.points, box_);
-    meter_.add(stored);
-    return stored;
-  }
-
-  const judge::CoverageMeter& meter() const { return meter_; }
-
- private:
-  const scene::SurveyScene& scene_;
-  unsigned threads_;
-  derived::SurveySensor sensor_;
-  Eigen::AlignedBox3d box_;
-  judge::ThinnedCloud cloud_;
-  judge::CoverageMeter meter_;
-};
 
 /// The views of the greedy cover, the first view first.
 std::vector<View> greedy_cover(const file::Mission& mission, const scene::SurveyScene& scene,

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -31,6 +32,8 @@ struct SurveyRecord {
 
   /// What the planner skycap believed at the end, and why it stopped; nothing with the others.
   std::optional<survey::skycap::SurveyBelief> belief;
+  /// The surface that it measured, of a mission whose views are to be chosen anew; else null.
+  std::shared_ptr<const survey::skycap::GainField> surface;
   survey::skycap::SkycapStop skycap_stop = survey::skycap::SkycapStop::running;
 
   bool is_complete() const { return stop_reason == survey::StopReason::complete; }

@@ -35,7 +35,7 @@ flight::FlightFacts facts_of(const file::Mission& mission, const std::filesystem
   const std::filesystem::path folder = route.parent_path();
   if (!std::filesystem::exists(folder / package::summary_name)) return facts;
   package::PackageSummary summary = package::read_package_summary(folder, {});
-  facts.views = std::move(summary.views);
+  facts.views = summary.stations();
   if (!facts.is_pad_known && summary.pad) {
     facts.pad = *summary.pad;
     facts.is_pad_known = true;

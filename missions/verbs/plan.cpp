@@ -99,7 +99,7 @@ int plan_once(const PlanOptions& options, const file::Mission& mission,
   const bool is_over = record.stop_reason != survey::StopReason::interrupted;
   if (is_over) progress.show(mission.name + ": measuring what could be covered at all");
   const package::CoverageFigures coverage =
-      package::coverage_figures(record, scene, mission.threads, console.stop);
+      package::coverage_figures(mission, record, scene, mission.threads, console.stop);
   progress.show(mission.name + ": writing " + folder.path().string());
   const std::optional<package::SurveyMission> flight =
       package::stage_package(mission, record, coverage, mission.threads, folder, console.stop);

@@ -351,22 +351,7 @@ SurveyBelief SkycapPlanner::Impl::belief() const {
           {patch.position, patch.normal, patch.weight, 0.0F, MissingReason::never_seen});
     }
   }
-  for (const BelievedPatch& patch : belief.patches) belief.area += patch.area;
-  for (const BelievedPatch& patch : belief.patches) {
-    const double missing = patch.area * (1.0 - patch.covered_share) / belief.area;
-    switch (patch.reason) {
-      case MissingReason::none:  // the rest that even well covered surface lacks
-      case MissingReason::seen_too_thinly:
-        belief.seen_too_thinly += missing;
-        break;
-      case MissingReason::never_seen:
-        belief.never_seen += missing;
-        break;
-      case MissingReason::unreachable:
-        belief.unreachable += missing;
-        break;
-    }
-  }
+  add_up(belief);
   belief.coverage = predicted_coverage();
   belief.next_gain = next_gain;
   belief.noise = dose->noise().across(1.0);
@@ -396,5 +381,11 @@ const PlanningStep& SkycapPlanner::last_step() const { return impl_->step; }
 SkycapStop SkycapPlanner::stop() const { return impl_->stop; }
 double SkycapPlanner::predicted_coverage() const { return impl_->predicted_coverage(); }
 SurveyBelief SkycapPlanner::belief() const { return impl_->belief(); }
+
+std::shared_ptr<const GainField> SkycapPlanner::known_surface(std::size_t most_targets) const {
+  if (!impl_->map) return nullptr;
+  return std::make_shared<const GainField>(GainField::of_known_surface(
+      *impl_->map, impl_->camera, *impl_->dose, impl_->gain, most_targets));
+}
 
 }  // namespace skycap::survey::skycap

@@ -17,8 +17,11 @@
 #include "geometry/place/camera.h"
 #include "survey/planner.h"
 #include "survey/skycap/skycap_config.h"
+#include "survey/skycap/survey_belief.h"
 
 namespace skycap::survey::skycap {
+
+class GainField;
 
 enum class SkycapStop {
   running,
@@ -27,31 +30,6 @@ enum class SkycapStop {
   most_length,
   most_time,
   nothing_in_reach,  ///< no admissible view sees anything that is missing
-};
-
-enum class MissingReason {
-  none,             ///< covered, as far as the planner can tell
-  seen_too_thinly,  ///< too few measurements for the noise
-  never_seen,       ///< only guessed to be there
-  unreachable,      ///< no view that the limits allow sees it
-};
-
-/// A piece of surface as the planner believes it to be.
-struct BelievedPatch {
-  Eigen::Vector3f position;
-  Eigen::Vector3f normal;
-  float area;           ///< of a guessed patch: times the probability that it is there
-  float covered_share;  ///< expected
-  MissingReason reason;
-};
-
-struct SurveyBelief {
-  double area = 0.0;      ///< seen and guessed [m^2]
-  double coverage = 0.0;  ///< expected covered share of it
-  double seen_too_thinly = 0.0, never_seen = 0.0, unreachable = 0.0;  ///< missing shares of it
-  double next_gain = 0.0;  ///< share of the known area that the best next view would newly cover
-  double noise = 0.0;      ///< standard deviation of a measurement head-on, as learnt
-  std::vector<BelievedPatch> patches;
 };
 
 class SkycapPlanner final : public Planner {
@@ -75,6 +53,9 @@ class SkycapPlanner final : public Planner {
   double predicted_coverage() const;
   /// All that the planner believes of the surface. O(surfels).
   SurveyBelief belief() const;
+  /// What views would cover of all that was measured, from an empty cloud, by so many targets at
+  /// most (GainField::of_known_surface()); null before the first scan.
+  std::shared_ptr<const GainField> known_surface(std::size_t most_targets) const;
 
  private:
   struct Impl;

@@ -55,9 +55,8 @@ void append(std::array<std::vector<float>, 3>& points, const Vector3f& point) {
 
 }  // namespace
 
-GainField::GainField(const DoseMap& map, std::span<const UnseenPatch> patches,
-                     const geometry::Camera& camera, const DoseModel& dose,
-                     const GainSettings& settings, std::span<const Vector3f> prior_occluders)
+GainField::GainField(const DoseMap& map, const geometry::Camera& camera, const DoseModel& dose,
+                     const GainSettings& settings)
     : dose_(dose),
       spacing_(map.spacing()),
       least_cosine_(std::cos(settings.max_incidence)),
@@ -72,8 +71,14 @@ GainField::GainField(const DoseMap& map, std::span<const UnseenPatch> patches,
   raster_height_ =
       static_cast<int>(std::ceil(2.0F * half_slope_.y() * raster_focal_length_px_)) + 1;
 
+  for (const Vector3f& position : map.surfels().positions) append(occluders_, position);
+}
+
+GainField::GainField(const DoseMap& map, std::span<const UnseenPatch> patches,
+                     const geometry::Camera& camera, const DoseModel& dose,
+                     const GainSettings& settings, std::span<const Vector3f> prior_occluders)
+    : GainField(map, camera, dose, settings) {
   const Surfels& surfels = map.surfels();
-  for (const Vector3f& position : surfels.positions) append(occluders_, position);
   const float least_weight = least_weight_share * spacing_ * spacing_;
   for (std::size_t i = 0; i < surfels.size(); ++i) {
     const float weight = surfels.deficit(i) * surfels.trusts[i];
@@ -93,6 +98,28 @@ GainField::GainField(const DoseMap& map, std::span<const UnseenPatch> patches,
     targets_.push_back({patches[i].position, patches[i].normal, patches[i].weight});
     sources_.push_back(static_cast<std::uint32_t>(i));
   }
+  index_targets();
+}
+
+GainField GainField::of_known_surface(const DoseMap& map, const geometry::Camera& camera,
+                                      const DoseModel& dose, const GainSettings& settings,
+                                      std::size_t most_targets) {
+  GainField field(map, camera, dose, settings);
+  const Surfels& surfels = map.surfels();
+  const std::size_t stride = (surfels.size() + most_targets - 1) / most_targets;
+  for (std::size_t first = 0; first < surfels.size(); first += stride) {
+    const std::size_t end = std::min(first + stride, surfels.size()), middle = (first + end) / 2;
+    float weight = 0.0F;
+    for (std::size_t i = first; i < end; ++i) weight += surfels.areas[i] * surfels.trusts[i];
+    field.targets_.push_back({surfels.positions[middle], surfels.normals[middle], weight});
+    field.sources_.push_back(static_cast<std::uint32_t>(middle));
+  }
+  field.surfel_targets_ = field.first_prior_ = field.end_prior_ = field.targets_.size();
+  field.index_targets();
+  return field;
+}
+
+void GainField::index_targets() {
   for (const Target& target : targets_) {
     append(positions_, target.position);
     append(normals_, target.normal);
@@ -155,7 +182,7 @@ void GainField::for_each_sight(const geometry::View& view, Visit visit) const {
       }
       const float density =
           focal_length_px_.prod() * cosine * work.distances[i] / (depth * depth * depth);
-      visit(first + i, 1.0F - std::exp(-dose_.hazard(density, cosine)));
+      visit(first + i, dose_.hazard(density, cosine));
     }
   }
 }
@@ -163,8 +190,8 @@ void GainField::for_each_sight(const geometry::View& view, Visit visit) const {
 Gain GainField::gain(const geometry::View& view) const {
   Gain gain;
   Eigen::Vector3d moment = Eigen::Vector3d::Zero();
-  for_each_sight(view, [&](std::size_t t, float share) {
-    const double area = targets_[t].weight * share;
+  for_each_sight(view, [&](std::size_t t, float hazard) {
+    const double area = targets_[t].weight * (1.0F - std::exp(-hazard));
     gain.area += area;
     if (is_patch(t)) gain.unseen += area;
     moment += area * targets_[t].position.cast<double>();
@@ -175,10 +202,18 @@ Gain GainField::gain(const geometry::View& view) const {
 
 std::vector<Sight> GainField::sights(const geometry::View& view) const {
   std::vector<Sight> sights;
-  for_each_sight(view, [&](std::size_t t, float share) {
-    sights.push_back({static_cast<std::uint32_t>(t), share});
+  for_each_sight(view, [&](std::size_t t, float hazard) {
+    sights.push_back({static_cast<std::uint32_t>(t), 1.0F - std::exp(-hazard)});
   });
   return sights;
+}
+
+std::vector<Look> GainField::looks(const geometry::View& view) const {
+  std::vector<Look> looks;
+  for_each_sight(view, [&](std::size_t t, float hazard) {
+    looks.push_back({static_cast<std::uint32_t>(t), hazard});
+  });
+  return looks;
 }
 
 }  // namespace skycap::survey::skycap

@@ -23,6 +23,12 @@ struct Sight {
   float covered_share;  ///< of what is still uncovered of it
 };
 
+/// A target in sight of a view, and the hazard of the look (dose_model.h).
+struct Look {
+  std::uint32_t target;
+  float hazard;
+};
+
 struct Gain {
   double area = 0.0;    ///< expected newly covered area [m^2]
   double unseen = 0.0;  ///< the part of it that is only guessed to be there
@@ -47,6 +53,13 @@ class GainField {
             const geometry::Camera& camera, const DoseModel& dose, const GainSettings& settings,
             std::span<const Eigen::Vector3f> prior_occluders = {});
 
+  /// The known surface as if nothing had been measured of it yet: for views that are to cover it
+  /// from an empty cloud. One target stands for each so many surfels in turn that there are
+  /// `most_targets` at most, and weighs their area times the trust in them.
+  static GainField of_known_surface(const DoseMap& map, const geometry::Camera& camera,
+                                    const DoseModel& dose, const GainSettings& settings,
+                                    std::size_t most_targets);
+
   struct Target {
     Eigen::Vector3f position;
     Eigen::Vector3f normal;
@@ -60,8 +73,14 @@ class GainField {
   Gain gain(const geometry::View& view) const;
   /// The targets in sight of the view, ascending.
   std::vector<Sight> sights(const geometry::View& view) const;
+  /// The same, with what the looks add to the dose.
+  std::vector<Look> looks(const geometry::View& view) const;
 
  private:
+  /// Without targets.
+  GainField(const DoseMap& map, const geometry::Camera& camera, const DoseModel& dose,
+            const GainSettings& settings);
+  void index_targets();
   RasterView raster_view(const geometry::View& view) const;
   template <typename Visit>
   void for_each_sight(const geometry::View& view, Visit visit) const;

@@ -78,7 +78,9 @@ Rooms house() {
   add_mission_room("proof", "file", "derived");
   add_mission_room("recording", "file", "derived", "plugins");
   add_mission_room("run", "prior", "file", "derived", "judge", "scene");
-  add_mission_room("package", "prior", "file", "equipment", "derived", "judge", "scene", "run");
+  add_mission_room("anew", "file", "derived");
+  add_mission_room("package", "prior", "file", "equipment", "derived", "judge", "scene", "run",
+                   "anew");
   add_mission_room("report", "prior", "file", "derived", "scene", "run", "package");
   add_mission_room("live", "file", "derived", "scene", "run");
   add_mission_room("benchmark", "file", "derived", "judge", "plugins", "scene", "run", "package");

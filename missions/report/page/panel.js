@@ -199,7 +199,8 @@ class Panel {
       ["planned in", figure(this.data, path + "planning_time_s", "seconds")],
       ["way so far", figure(this.data, path + "distance_m", "metres")]);
     if (typeof view.coverage === "number") rows.push(["covered after it", figure(this.data, path + "coverage", "share")]);
-    const leg = legs_of(this.data).find((one) => one.to === number);
+    const leg = value_at(this.data, "summary.flight.anew.is_flown") ? null // then legs lead to other views
+      : legs_of(this.data).find((one) => one.to === number);
     if (leg && leg.clearance !== null) rows.push(["clearance on the way", shown(leg.clearance, "metres")]);
     return rows;
   }

@@ -83,6 +83,22 @@ function seen_from(data, hole) {
   return places_text(place);
 }
 
+/// The mission whose views were chosen anew beside that through the survey's views.
+function anew_parts(data) {
+  const { anew } = data.summary.flight;
+  if (!anew) return [];
+  const number = (content) => ({ number: content });
+  const f = (path, form) => number(figure(data, "flight.anew." + path, form));
+  const row = (name, key) => [name, f(key + ".views", "count"), f(key + ".pieces", "count"), f(key + ".length_m", "metres"),
+    f(key + ".duration_s", "minutes"), f(key + ".promised_coverage", "share")];
+  const again = value_at(anew, "flown_again.coverage_visible");
+  return [element("h3", {}, "Views chosen anew"),
+    table(["", "views", "straight pieces", "length", "time", "expected of what was measured"].map((name, i) => (i ? number(name) : name)),
+      [row("the survey's views", "survey"), row(anew.is_flown ? "chosen anew, flown" : "nothing faster was found", "anew")]),
+    typeof again === "number" ? element("p", {}, "Flown again in the simulator, the mission covers ",
+      figure(data, "flight.anew.flown_again.coverage_visible", "share"), " of what is visible.") : null].filter(Boolean);
+}
+
 function flight_section(data) {
   const { flight } = data.summary;
   if (!flight) return null;
@@ -105,6 +121,7 @@ function flight_section(data) {
       number(f(path + "energy_wh", "watt_hours")), number(f(path + "energy_left_wh", "watt_hours")),
       number(f(path + "min_clearance_m", "metres"))];
   })));
+  section.append(...anew_parts(data));
   const terms = [["vehicle's radius", "vehicle_radius"], ["position error", "position_error"],
     ["tracking error", "tracking_error"], ["map error", "map_error"], ["margin", "margin"], ["together", "total"]];
   section.append(element("h3", {}, "What the clearance is made of"),

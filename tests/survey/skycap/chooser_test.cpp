@@ -83,6 +83,35 @@ TEST(GainField, TheGainIsTheSumOfItsSights) {
   EXPECT_NEAR(field.gain(view).area, sum, 1e-5 * sum);  // summed in single and double precision
 }
 
+// Seen from an empty cloud, what was measured already counts in full; the guesses do not count.
+TEST(GainField, OfTheKnownSurfaceWeighsAllOfIt) {
+  const Known known({2, 0, 0});
+  const skycap::GainSettings settings{.view_distance = 2.0};
+  const double area = known.map.area();
+  for (const std::size_t most : {std::size_t{100}, std::size_t{1000000}}) {
+    const auto field =
+        skycap::GainField::of_known_surface(known.map, camera, known.dose, settings, most);
+    EXPECT_LE(field.targets().size(), most);
+    EXPECT_GT(field.targets().size(), most == 100 ? 50U : known.map.surfels().size() - 1);
+    double weight = 0.0;
+    for (const auto& target : field.targets()) weight += double{target.weight};
+    EXPECT_NEAR(weight, area, 1e-4 * area);  // nothing has lost trust
+  }
+}
+
+TEST(GainField, LooksCarryTheHazardsOfTheirShares) {
+  const Known known({2, 0, 0});
+  const skycap::GainField field = known.field();
+  const geometry::View view = geometry::look_at({1, 1.6, 0.4}, {0, 0, 0});
+  const auto sights = field.sights(view);
+  const auto looks = field.looks(view);
+  ASSERT_EQ(looks.size(), sights.size());
+  for (std::size_t i = 0; i < looks.size(); ++i) {
+    EXPECT_EQ(looks[i].target, sights[i].target);
+    EXPECT_NEAR(1.0 - std::exp(-double{looks[i].hazard}), double{sights[i].covered_share}, 1e-6);
+  }
+}
+
 // A small ball in front hides a part of a large one, whose surfels it must not see.
 TEST(GainField, NearSurfacesHideFarOnes) {
   const std::vector<tests::Sphere> two = {{{0, 0, 0}, 0.5}, {{1.2, 0, 0}, 0.2}};

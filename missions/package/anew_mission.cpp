@@ -1,0 +1,123 @@
+#include "missions/package/anew_mission.h"
+
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "flight/space/clearance.h"
+#include "geometry/place/world.h"
+#include "missions/derived/mission_flight.h"
+#include "missions/file/json_text.h"
+#include "missions/judge/coverage.h"
+
+namespace skycap::missions::package {
+namespace {
+
+using anew::MissionFigures;
+using anew::StationPlan;
+using Json = nlohmann::ordered_json;
+
+Json json_of(const MissionFigures& figures) {
+  return {{"duration_s", figures.duration},
+          {"length_m", figures.length},
+          {"views", figures.views},
+          {"pieces", figures.pieces},
+          {"promised_coverage", figures.promised}};
+}
+
+Json stations_json(const StationPlan& stations) {
+  Json list = Json::array();
+  for (std::size_t i = 0; i < stations.views.size(); ++i) {
+    list.push_back({{"position", file::json_of(stations.views[i].position)},
+                    {"direction", file::json_of(stations.views[i].direction)},
+                    {"way", file::json_of(stations.ways[i])}});
+  }
+  return list;
+}
+
+std::string figures_text(const MissionFigures& figures) {
+  return fmt::format("{} views, {} pieces, {:.0f} m, {:.0f} s", figures.views, figures.pieces,
+                     figures.length, figures.duration);
+}
+
+std::string percent(double share) { return fmt::format("{:.2f} %", 100.0 * share); }
+
+FlownAgain flown_again(const CoverageFigures& coverage, const std::vector<geometry::View>& views) {
+  const std::vector<std::uint8_t> is_covered = coverage.fly_again(views);
+  FlownAgain again{judge::marked_share(is_covered), {}};
+  if (coverage.truth && !coverage.truth->is_visible.empty()) {
+    again.visible = judge::covered_share(is_covered, coverage.truth->is_visible);
+  }
+  return again;
+}
+
+}  // namespace
+
+AnewMission anew_mission(const file::Mission& mission, const run::SurveyRecord& record,
+                         const CoverageFigures& coverage, flight::Route present,
+                         const std::stop_token& stop) {
+  const run::FlownSurvey& flown = *record.flown;
+  const flight::KnownSpace rules(derived::flight_rules(mission));
+  const flight::JointSpace space({flown.measured.get(), &rules});
+  const auto plan = [&](const StationPlan& stations) {
+    return plan_flight(in_given_order(mission), *flown.measured, flown.pad, stations.views,
+                       stations.ways, flown.grounds, stop);
+  };
+  AnewMission result{
+      anew::choose_mission(mission, *record.surface, space, std::move(present), plan, {}, stop),
+      {}};
+  if (coverage.fly_again) result.again = flown_again(coverage, result.choice.stations.views);
+  return result;
+}
+
+Json anew_json(const AnewMission& mission) {
+  Json json{{"is_flown", mission.choice.is_anew},
+            {"survey", json_of(mission.choice.survey)},
+            {"anew", json_of(mission.choice.anew)},
+            {"computing_time_s", mission.choice.computing}};
+  if (mission.again) {
+    json["flown_again"] = {
+        {"coverage", mission.again->all},
+        {"coverage_visible", mission.again->visible ? Json(*mission.again->visible) : Json()}};
+  }
+  if (mission.choice.is_anew) json["stations"] = stations_json(mission.choice.stations);
+  return json;
+}
+
+std::optional<StationPlan> anew_stations(const Json& json, const std::string& name) {
+  if (!json.contains("stations")) return std::nullopt;
+  StationPlan plan;
+  for (const Json& station : json["stations"]) {
+    const std::string place =
+        name + ": flight.anew.stations[" + std::to_string(plan.views.size()) + "].";
+    plan.views.push_back(
+        {file::vector_of(station.at("position")), file::vector_of(station.at("direction"))});
+    geometry::require_place(plan.views.back().position, place + "position");
+    geometry::require_direction(plan.views.back().direction, place + "direction");
+    plan.ways.emplace_back();
+    for (const Json& point : station.at("way")) {
+      plan.ways.back().push_back(file::vector_of(point));
+      geometry::require_place(plan.ways.back().back(), place + "way");
+    }
+  }
+  return plan;
+}
+
+std::string anew_text(const AnewMission& mission) {
+  const anew::MissionChoice& choice = mission.choice;
+  std::string text = choice.is_anew ? "  anew      " + figures_text(choice.anew) +
+                                          "; the survey's " + figures_text(choice.survey)
+                                    : "  anew      nothing faster was found than the survey's " +
+                                          figures_text(choice.survey);
+  text += "\n  promise   " + percent(choice.anew.promised) +
+          " of what was measured, the survey's views " + percent(choice.survey.promised);
+  if (mission.again) {
+    text += "; flown again " + percent(mission.again->all) + " of the surface";
+    if (mission.again->visible) {
+      text += ", " + percent(*mission.again->visible) + " of what is visible";
+    }
+  }
+  return text + "\n";
+}
+
+}  // namespace skycap::missions::package

@@ -1,0 +1,39 @@
+/// The mission that was chosen anew (missions/anew), beside the survey's: in summary.json, and as
+/// the program prints it.
+#pragma once
+
+#include <optional>
+#include <stop_token>
+#include <string>
+#include <vector>
+
+#include <nlohmann/json.hpp>
+
+#include "flight/route/route.h"
+#include "missions/anew/mission_choice.h"
+#include "missions/file/mission.h"
+#include "missions/package/package.h"
+#include "missions/run/survey_record.h"
+
+namespace skycap::missions::package {
+
+/// The choice between `present`, the route through the survey's views, and views chosen anew. The
+/// record is of a flown survey that knows its surface. Coverage when it is flown again is measured
+/// where `coverage` says how.
+AnewMission anew_mission(const file::Mission& mission, const run::SurveyRecord& record,
+                         const CoverageFigures& coverage, flight::Route present,
+                         const std::stop_token& stop);
+
+/// `flight.anew` of the summary.
+nlohmann::ordered_json anew_json(const AnewMission& mission);
+
+/// The stations that it has; nothing if the mission takes the survey's views. Throws what
+/// nlohmann::json throws, and Error{bad_file} on values that no station has; `name` stands for the
+/// file.
+std::optional<anew::StationPlan> anew_stations(const nlohmann::ordered_json& json,
+                                               const std::string& name);
+
+/// What the program prints.
+std::string anew_text(const AnewMission& mission);
+
+}  // namespace skycap::missions::package

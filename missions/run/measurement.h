@@ -1,0 +1,48 @@
+/// Views taken by the simulated sensor from an empty cloud, and what they cover of the truth.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include <Eigen/Core>
+#include <Eigen/Geometry>
+
+#include "geometry/place/pose.h"
+#include "missions/derived/survey_sensor.h"
+#include "missions/file/mission.h"
+#include "missions/judge/coverage.h"
+#include "missions/judge/thinned_cloud.h"
+#include "missions/scene/survey_scene.h"
+
+namespace skycap::missions::run {
+
+class Measurement {
+ public:
+  /// Throws what the sensor throws. Keeps a reference to the scene.
+  Measurement(const file::Mission& mission, const scene::SurveyScene& scene, std::uint64_t seed,
+              unsigned threads);
+
+  /// Frame `number`; the same view has the same noise whenever it is taken. Stores what is at the
+  /// mission's spacing from all that is stored, and gives it back.
+  std::vector<Eigen::Vector3f> take(const geometry::View& view, std::size_t number);
+
+  const judge::CoverageMeter& meter() const { return meter_; }
+
+ private:
+  const scene::SurveyScene& scene_;
+  unsigned threads_;
+  derived::SurveySensor sensor_;
+  Eigen::AlignedBox3d box_;
+  judge::ThinnedCloud cloud_;
+  judge::CoverageMeter meter_;
+};
+
+/// For each of the scene's samples, 1 if the views cover it when they are flown again: from an
+/// empty cloud, and with other noise than the survey of that seed had.
+std::vector<std::uint8_t> covered_when_flown_again(const file::Mission& mission,
+                                                   const scene::SurveyScene& scene,
+                                                   const std::vector<geometry::View>& views,
+                                                   std::uint64_t seed, unsigned threads);
+
+}  // namespace skycap::missions::run

@@ -1,0 +1,39 @@
+/// What Skycap's own planner believes of the surface: where it is, how well it is covered, and why
+/// the rest of it is missing.
+#pragma once
+
+#include <vector>
+
+#include <Eigen/Core>
+
+namespace skycap::survey::skycap {
+
+enum class MissingReason {
+  none,             ///< covered, as far as the planner can tell
+  seen_too_thinly,  ///< too few measurements for the noise
+  never_seen,       ///< only guessed to be there
+  unreachable,      ///< no view that the limits allow sees it
+};
+
+/// A piece of surface as the planner believes it to be.
+struct BelievedPatch {
+  Eigen::Vector3f position;
+  Eigen::Vector3f normal;
+  float area;           ///< of a guessed patch: times the probability that it is there
+  float covered_share;  ///< expected
+  MissingReason reason;
+};
+
+struct SurveyBelief {
+  double area = 0.0;      ///< seen and guessed [m^2]
+  double coverage = 0.0;  ///< expected covered share of it
+  double seen_too_thinly = 0.0, never_seen = 0.0, unreachable = 0.0;  ///< missing shares of it
+  double next_gain = 0.0;  ///< share of the known area that the best next view would newly cover
+  double noise = 0.0;      ///< standard deviation of a measurement head-on, as learnt
+  std::vector<BelievedPatch> patches;
+};
+
+/// Fills in the area and the missing shares, by the patches.
+void add_up(SurveyBelief& belief);
+
+}  // namespace skycap::survey::skycap

@@ -1,0 +1,232 @@
+// The search in small worlds whose answers are known: targets on a plane, views that see all within
+// a radius of the place below them, a vehicle that flies a metre in a second.
+
+#include "missions/anew/tour_search.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <random>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace skycap::missions::anew {
+namespace {
+
+using Eigen::Vector3d;
+using geometry::View;
+using survey::skycap::GainField;
+using survey::skycap::Look;
+using testing::SizeIs;
+
+constexpr double rest = 2.0;  ///< at each view [s]
+constexpr float certain = 7.0F;
+
+View down_at(double x, double y, double z = 1.0) { return {{x, y, z}, -Vector3d::UnitZ()}; }
+
+/// Views see what is within `radius` of the place below them.
+struct PlaneWorld {
+  explicit PlaneWorld(double radius) {
+    problem.looks = [this, radius](const View& view) {
+      ++asked;
+      std::vector<Look> looks;
+      for (std::uint32_t t = 0; t < targets.size(); ++t) {
+        const Vector3d offset = targets[t].position.cast<double>() - view.position;
+        if (offset.head<2>().norm() <= radius) looks.push_back({t, certain});
+      }
+      return looks;
+    };
+    problem.view_of = [](const Vector3d& target, const Vector3d& towards, double distance) {
+      return View{target + distance * towards, -towards};
+    };
+    problem.is_allowed = [](const View&) { return true; };
+    problem.is_in_free_space = [](const View&) { return true; };
+    problem.straight_time = [](const View* from, const View* to) {
+      return (place(to) - place(from)).norm();
+    };
+    problem.is_free = [](const View*, const View*) { return true; };
+    problem.time_per_view = rest;
+    problem.view_distance = 3.0;
+  }
+  PlaneWorld(const PlaneWorld&) = delete;
+  PlaneWorld& operator=(const PlaneWorld&) = delete;
+
+  /// Eight targets round a place, and one there.
+  void add_cluster(double x, double y, double radius) {
+    add_target(x, y);
+    for (int i = 0; i < 8; ++i) {
+      const double angle = i * std::numbers::pi / 4.0;
+      add_target(x + radius * std::cos(angle), y + radius * std::sin(angle));
+    }
+  }
+
+  void add_target(double x, double y) {
+    targets.push_back({Vector3d(x, y, 0.0).cast<float>(), Eigen::Vector3f::UnitZ(), 1.0F});
+    problem.targets = targets;
+  }
+
+  static Vector3d place(const View* view) {
+    return view == nullptr ? Vector3d::Zero() : view->position;
+  }
+
+  /// Of a tour whose ways are all free.
+  static double time(const std::vector<View>& tour) {
+    double sum = rest * static_cast<double>(tour.size());
+    Vector3d at = Vector3d::Zero();
+    for (const View& view : tour) {
+      sum += (view.position - at).norm();
+      at = view.position;
+    }
+    return sum + at.norm();
+  }
+
+  std::vector<GainField::Target> targets;
+  TourProblem problem;
+  int asked = 0;
+};
+
+TEST(SpareViews, DropsDuplicates) {
+  PlaneWorld world(1.0);
+  world.add_cluster(10, 0, 0.5);
+  world.add_cluster(20, 0, 0.5);
+  const View a = down_at(10, 0), b = down_at(20, 0);
+  const FoundTour found = spare_views(world.problem, {a, a, b, a, b}, 0.999);
+  ASSERT_THAT(found.views, SizeIs(2));
+  EXPECT_EQ(found.views[0].position, a.position);
+  EXPECT_EQ(found.views[1].position, b.position);
+  EXPECT_DOUBLE_EQ(found.time, PlaneWorld::time({a, b}));
+}
+
+TEST(SpareViews, KeepsWhatIsNeeded) {
+  PlaneWorld world(1.0);
+  world.add_cluster(10, 0, 0.5);
+  world.add_cluster(20, 0, 0.5);
+  const std::vector<View> tour = {down_at(20, 0), down_at(10, 0)};
+  const FoundTour found = spare_views(world.problem, tour, covered_by(world.problem, tour));
+  EXPECT_THAT(found.views, SizeIs(2));
+  EXPECT_EQ(found.covered, covered_by(world.problem, tour));
+}
+
+// Clusters of radius 0.5 on a line from home, seen whole from within 0.5 of their middles: the
+// least is three views, and to the nearest place that sees the last one and back, on the ground.
+TEST(Anneal, FindsTheLeastToursOfAKnownWorld) {
+  PlaneWorld world(1.0);
+  for (const double x : {10.0, 20.0, 30.0}) world.add_cluster(x, 0, 0.5);
+  std::vector<View> start;
+  for (const double x : {10.0, 20.0, 30.0}) {
+    start.push_back(down_at(x - 0.3, 0.9));
+    start.push_back(down_at(x + 0.6, -0.3));
+    start.push_back(down_at(x - 0.4, -0.5));
+  }
+  const double wanted = 0.999;
+  ASSERT_GE(covered_by(world.problem, start), wanted);
+  constexpr double least = 2.0 * 29.5 + 3.0 * rest;
+  for (const std::uint64_t seed : {1, 2, 3}) {
+    const FoundTour found = anneal(world.problem, start, wanted, {.seed = seed});
+    EXPECT_THAT(found.views, SizeIs(3)) << seed;
+    EXPECT_GE(found.covered, wanted);
+    EXPECT_NEAR(found.time, PlaneWorld::time(found.views), 1e-9);
+    EXPECT_GE(found.time, least - 1e-9);
+    EXPECT_LE(found.time, least + 1.5) << seed;
+  }
+}
+
+// Two views that each see half of it, where one between them sees all.
+TEST(Anneal, TakesOneViewForTwo) {
+  PlaneWorld world(2.0);
+  world.add_cluster(15, 0, 1.5);
+  const std::vector<View> start = {down_at(14, 0.3), down_at(16, -0.3)};
+  ASSERT_LT(covered_by(world.problem, {start[0]}), 0.95);
+  const double wanted = covered_by(world.problem, start) - 1e-3;
+  EXPECT_THAT(anneal(world.problem, start, wanted, {}).views, SizeIs(1));
+}
+
+// Property: whatever it begins from, what it gives covers as much and takes no longer.
+TEST(Anneal, IsNeverSlowerAndNeverCoversLess) {
+  std::mt19937_64 random(7);
+  const auto place = [&] { return static_cast<double>(random() % 4000) / 100.0 - 20.0; };
+  for (int world_number = 0; world_number < 8; ++world_number) {
+    PlaneWorld world(4.0);
+    for (int i = 0; i < 40; ++i) world.add_target(place(), place());
+    std::vector<View> start;
+    for (int i = 0; i < 12; ++i) start.push_back(down_at(place(), place()));
+    const double wanted = covered_by(world.problem, start);
+    const FoundTour found =
+        anneal(world.problem, start, wanted, {.moves_per_view = 200, .seed = 3});
+    EXPECT_GE(found.covered, wanted);
+    EXPECT_EQ(found.covered, covered_by(world.problem, found.views));
+    EXPECT_LE(found.time, PlaneWorld::time(start) + 1e-9);
+  }
+}
+
+TEST(Anneal, GivesTheSameTourAgain) {
+  PlaneWorld world(3.0);
+  for (const double x : {8.0, 16.0, 24.0}) world.add_cluster(x, x / 2.0, 1.0);
+  const std::vector<View> start = {down_at(8, 4), down_at(16, 8), down_at(24, 12), down_at(9, 5)};
+  const double wanted = covered_by(world.problem, start);
+  const SearchSettings settings{.moves_per_view = 300, .seed = 11};
+  const FoundTour one = anneal(world.problem, start, wanted, settings);
+  const FoundTour two = anneal(world.problem, start, wanted, settings);
+  ASSERT_EQ(one.views.size(), two.views.size());
+  for (std::size_t i = 0; i < one.views.size(); ++i) {
+    EXPECT_EQ(one.views[i].position, two.views[i].position);
+    EXPECT_EQ(one.views[i].direction, two.views[i].direction);
+  }
+  EXPECT_EQ(one.time, two.time);
+}
+
+// Nothing below 5 m is allowed, nothing east of 12 m is free.
+TEST(Anneal, KeepsLimitsAndFreeSpace) {
+  PlaneWorld world(4.0);
+  for (const double x : {4.0, 9.0, 14.0}) world.add_cluster(x, 0, 1.0);
+  world.problem.is_allowed = [](const View& view) { return view.position.z() >= 5.0; };
+  world.problem.is_in_free_space = [](const View& view) { return view.position.x() <= 12.0; };
+  const std::vector<View> start = {down_at(4, 0, 6), down_at(9, 0, 6), down_at(11.5, 0, 6),
+                                   down_at(11, 1, 7)};
+  const FoundTour found = anneal(world.problem, start, covered_by(world.problem, start) - 1e-3, {});
+  EXPECT_LT(found.views.size(), start.size());
+  for (const View& view : found.views) {
+    EXPECT_GE(view.position.z(), 5.0);
+    EXPECT_LE(view.position.x(), 12.0);
+  }
+}
+
+// North and south of a wall that is dear to get round, from the gap at its western end: each side
+// is to be visited once, so that the wall is passed twice at most.
+TEST(Anneal, DoesNotGoBackAndForthThroughAWall) {
+  PlaneWorld world(1.0);
+  std::vector<View> start;
+  for (const double x : {6.0, 12.0, 18.0}) {
+    for (const double y : {1.5, -1.5}) {
+      world.add_cluster(x, y, 0.3);
+      start.push_back(down_at(x, y));
+    }
+  }
+  const auto passes = [](const View* from, const View* to) {
+    const double a = PlaneWorld::place(from).y(), b = PlaneWorld::place(to).y();
+    return a * b < 0.0;
+  };
+  world.problem.is_free = [&](const View* from, const View* to) { return !passes(from, to); };
+  const FoundTour found = anneal(world.problem, start, 0.999, {});
+  int passed = 0;
+  for (std::size_t i = 1; i < found.views.size(); ++i) {
+    passed += passes(&found.views[i - 1], &found.views[i]) ? 1 : 0;
+  }
+  EXPECT_EQ(passed, 1);
+  EXPECT_GT(found.time, PlaneWorld::time(found.views)) << "a blocked way is not free of charge";
+}
+
+TEST(Anneal, EndsWhenAStopIsRequested) {
+  PlaneWorld world(1.0);
+  world.add_cluster(10, 0, 0.5);
+  const std::vector<View> start = {down_at(10, 0)};
+  std::stop_source source;
+  source.request_stop();
+  const FoundTour found = anneal(world.problem, start, 0.9, {}, source.get_token());
+  EXPECT_EQ(found.views[0].position, start[0].position);
+  EXPECT_EQ(world.asked, 1);
+}
+
+}  // namespace
+}  // namespace skycap::missions::anew
