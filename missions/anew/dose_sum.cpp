@@ -13,7 +13,7 @@ constexpr std::size_t most_hazard = 16;  ///< from there on nothing is missing
 constexpr double one_share = 0x1p24, one_weight = 0x1p20;
 
 /// exp(-hazard) by hazard.
-std::uint64_t missing_share(std::uint32_t hazard) {
+std::span<const std::uint64_t> missing_shares() {
   static const auto table = [] {
     std::array<std::uint64_t, most_hazard* static_cast<std::size_t>(steps)> shares{};
     for (std::size_t i = 0; i < shares.size(); ++i) {
@@ -22,7 +22,7 @@ std::uint64_t missing_share(std::uint32_t hazard) {
     }
     return shares;
   }();
-  return hazard < table.size() ? table[hazard] : 0;
+  return table;
 }
 
 }  // namespace
@@ -37,13 +37,13 @@ std::vector<Dose> doses_of(std::span<const survey::skycap::Look> looks) {
 }
 
 DoseSum::DoseSum(std::span<const survey::skycap::GainField::Target> targets)
-    : hazards_(targets.size(), 0) {
+    : shares_(missing_shares()), hazards_(targets.size(), 0) {
   float heaviest = 0.0F;
   for (const auto& target : targets) heaviest = std::max(heaviest, target.weight);
   for (const auto& target : targets) {
     weights_.push_back(
         static_cast<std::uint64_t>(std::llround(one_weight * target.weight / heaviest)));
-    all_ += weights_.back() * missing_share(0);
+    all_ += weights_.back() * shares_.front();
   }
   missing_ = all_;
 }
@@ -69,7 +69,8 @@ double DoseSum::covered() const {
 }
 
 std::uint64_t DoseSum::missing(std::uint32_t target) const {
-  return weights_[target] * missing_share(hazards_[target]);
+  const std::uint32_t hazard = hazards_[target];
+  return hazard < shares_.size() ? weights_[target] * shares_[hazard] : 0;
 }
 
 }  // namespace skycap::missions::anew

@@ -35,6 +35,7 @@ class DoseSum {
   std::uint32_t size() const { return static_cast<std::uint32_t>(weights_.size()); }
 
  private:
+  std::span<const std::uint64_t> shares_;  ///< missing by hazard
   std::vector<std::uint64_t> weights_;
   std::vector<std::uint32_t> hazards_;
   std::uint64_t all_ = 0;      ///< sum of the weights, with nothing covered

@@ -49,4 +49,15 @@ bool LegTimes::ask_next(const Stops& stops) {
   return has_asked;
 }
 
+double LegTimes::proven(const Stops& stops) {
+  while (ask_next(stops)) {
+  }
+  for_each_leg(stops, [&](Leg& leg, const auto* from, const auto* to) {
+    if (!leg.is_proven && !leg.is_blocked) leg.is_blocked = !problem_.has_returns(from, to);
+    leg.is_proven = true;
+    return true;
+  });
+  return least(stops);
+}
+
 }  // namespace skycap::missions::anew

@@ -29,13 +29,16 @@ class LegTimes {
   /// Of a tour [s], rests included; legs that nobody has asked about yet count as free.
   double least(const Stops& stops);
 
-  /// Asks about one more leg of the tour, if there is one.
+  /// Asks whether one more leg of the tour is free, if there is one.
   bool ask_next(const Stops& stops);
+
+  /// Of a tour whose every leg has been asked about, and for its ways home too.
+  double proven(const Stops& stops);
 
  private:
   struct Leg {
     double straight = -1.0;  ///< negative: not known yet
-    bool is_asked = false, is_blocked = false;
+    bool is_asked = false, is_proven = false, is_blocked = false;
   };
 
   template <typename Visit>

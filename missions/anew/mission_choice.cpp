@@ -45,6 +45,7 @@ class MissionProblem {
   MissionProblem(const file::Mission& mission, const GainField& surface,
                  const flight::FreeSpace& space, const flight::Route& present)
       : surface_(surface),
+        space_(space),
         vehicle_(present.vehicle),
         limits_(derived::view_limits(mission)),
         motion_(present.vehicle, present.options.conditions),
@@ -69,13 +70,16 @@ class MissionProblem {
     };
     problem_.is_in_free_space = [this](const View& view) {
       const double kept = std::max(clearance_, limits_.stand_off) + spare_clearance;
-      return returnable_.is_free({view.position, view.position}, kept);
+      return space_.is_free({view.position, view.position}, kept);
     };
     problem_.straight_time = [this](const View* from, const View* to) {
       return straight_time(from, to);
     };
     problem_.is_free = [this](const View* from, const View* to) {
-      return returnable_.is_free({place(from), place(to)}, clearance_);
+      return space_.is_free({place(from), place(to)}, clearance_);
+    };
+    problem_.has_returns = [this](const View* from, const View* to) {
+      return returnable_.has_returns({place(from), place(to)}, clearance_);
     };
   }
 
@@ -95,6 +99,7 @@ class MissionProblem {
   }
 
   const GainField& surface_;
+  const flight::FreeSpace& space_;
   flight::Vehicle vehicle_;
   survey::ViewLimits limits_;
   flight::Motion motion_;

@@ -33,8 +33,9 @@ struct TourProblem {
   /// The straight way from view to view, until the camera looks right [s]; null stands for
   /// home, where the flight begins and ends.
   std::function<double(const View* from, const View* to)> straight_time;
-  /// Whether that way is proven free.
-  std::function<bool(const View* from, const View* to)> is_free;
+  /// Whether that way is proven free; then, whether there is a proven way home from all of it,
+  /// which takes far longer to find out and is asked of tours alone that may be the best.
+  std::function<bool(const View*from, const View*to)> is_free, has_returns;
 
   double time_per_view = 0.0;  ///< at rest [s]
   double view_distance = 0.0;  ///< d: from where views are taken as a rule

@@ -41,14 +41,14 @@ class Search {
       covered_.add(stop->doses);
       stops_.push_back(stop);
     }
-    time_ = proven_time(stops_);
+    time_ = legs_.proven(stops_);
     keep_best();
   }
 
   void spare() {
     while (const auto without = least_without_one()) {
       stops_ = *without;
-      time_ = proven_time(stops_);
+      time_ = legs_.proven(stops_);
       covered_ = DoseSum(problem_.targets);
       for (const auto& stop : stops_) covered_.add(stop->doses);
     }
@@ -73,12 +73,6 @@ class Search {
   }
 
  private:
-  double proven_time(const Stops& stops) {
-    while (legs_.ask_next(stops)) {
-    }
-    return legs_.least(stops);
-  }
-
   double cost(double time) const {
     return time + price_ * std::max(0.0, wanted_ - covered_.covered());
   }
@@ -116,8 +110,10 @@ class Search {
 
   void keep_best() {
     const double covered = covered_.covered();
-    if (covered < wanted_ || (best_ && time_ >= best_->time)) return;
-    best_ = FoundTour{views_of(stops_), time_, covered};
+    const auto is_best = [&] { return covered >= wanted_ && (!best_ || time_ < best_->time); };
+    if (!is_best()) return;
+    time_ = legs_.proven(stops_);
+    if (is_best()) best_ = FoundTour{views_of(stops_), time_, covered};
   }
 
   /// The fastest tour with a stop less that covers enough.
@@ -131,7 +127,7 @@ class Search {
       if (!is_enough) continue;
       Stops without = stops_;
       without.erase(without.begin() + static_cast<std::ptrdiff_t>(i));
-      const double time = proven_time(without);
+      const double time = legs_.proven(without);
       if (time < least) best = std::move(without), least = time;
     }
     return best;

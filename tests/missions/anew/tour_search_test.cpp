@@ -45,7 +45,7 @@ struct PlaneWorld {
     problem.straight_time = [](const View* from, const View* to) {
       return (place(to) - place(from)).norm();
     };
-    problem.is_free = [](const View*, const View*) { return true; };
+    problem.is_free = problem.has_returns = [](const View*, const View*) { return true; };
     problem.time_per_view = rest;
     problem.view_distance = 3.0;
   }
@@ -215,6 +215,21 @@ TEST(Anneal, DoesNotGoBackAndForthThroughAWall) {
   }
   EXPECT_EQ(passed, 1);
   EXPECT_GT(found.time, PlaneWorld::time(found.views)) << "a blocked way is not free of charge";
+}
+
+// East of 20 m nothing has a way home: what is there can be seen from before it, too.
+TEST(Anneal, LeavesPlacesWithoutAWayHome) {
+  PlaneWorld world(3.0);
+  world.add_cluster(10, 0, 0.5);
+  world.add_cluster(20, 0, 0.5);
+  world.problem.has_returns = [](const View* from, const View* to) {
+    return PlaneWorld::place(from).x() <= 20.0 && PlaneWorld::place(to).x() <= 20.0;
+  };
+  const std::vector<View> start = {down_at(10, 0), down_at(20.5, 0)};
+  const FoundTour found = anneal(world.problem, start, 0.999, {});
+  EXPECT_THAT(found.views, SizeIs(2));
+  for (const View& view : found.views) EXPECT_LE(view.position.x(), 20.0);
+  EXPECT_NEAR(found.time, PlaneWorld::time(found.views), 1e-9) << "nothing is charged";
 }
 
 TEST(Anneal, EndsWhenAStopIsRequested) {
