@@ -5,6 +5,7 @@
 #include <tuple>
 #include <utility>
 
+#include "geometry/angle.h"
 #include "geometry/error.h"
 #include "geometry/io/cloud_io.h"
 #include "geometry/io/text_scanner.h"
@@ -151,6 +152,16 @@ Isometry3d parse_pose_text(const std::string& text, const std::string& what) {
   throw Error(ErrorKind::bad_file, what + ": has " + std::to_string(numbers.size()) +
                                        " numbers; give x y z qx qy qz qw, or a matrix of three or "
                                        "four rows of four");
+}
+
+PoseSigma parse_pose_sigma(const std::string& text, const std::string& what) {
+  const std::vector<double> n = numbers_of(text, what);
+  constexpr double farthest = 100.0, widest = 90.0;
+  const bool is_good =
+      n.size() == 2 && n[0] >= 0.0 && n[0] <= farthest && n[1] >= 0.0 && n[1] <= widest;
+  if (is_good) return {.position = n[0], .angle = n[1] * geometry::radians_per_degree};
+  throw Error(ErrorKind::bad_usage,
+              what + ": give \"metres degrees\", from 0 to 100 and from 0 to 90");
 }
 
 std::vector<Vector3d> points_of(const sim::DepthImage& image, const Lens& lens, double unit,

@@ -14,6 +14,7 @@
 
 #include "geometry/points/scan.h"
 #include "missions/file/mission.h"
+#include "missions/live/pose_check.h"
 #include "sim/sensors/depth_image.h"
 
 namespace skycap::missions::live {
@@ -35,6 +36,9 @@ Lens parse_lens(const std::string& text, const std::string& what = "--lens");
 /// A pose from 7 numbers "x y z qx qy qz qw", 12 or 16 (a matrix by rows), or 8 (a line of a TUM
 /// trajectory, whose time is passed over); `what` opens messages. Throws Error{bad_file}.
 Eigen::Isometry3d parse_pose_text(const std::string& text, const std::string& what);
+
+/// Reads "metres degrees". Throws Error{bad_usage}.
+PoseSigma parse_pose_sigma(const std::string& text, const std::string& what);
 
 struct ScanInput {
   std::filesystem::path

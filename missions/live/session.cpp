@@ -46,6 +46,14 @@ Eigen::Isometry3d pose_of(const Json& header) {
   return parse_pose_text(text, "pose");
 }
 
+/// A scan's own: [metres, degrees].
+std::optional<PoseSigma> sigma_of(const Json& header) {
+  if (!header.contains("pose_sigma")) return std::nullopt;
+  std::string text;
+  for (const Json& number : header["pose_sigma"]) text += number.dump() + " ";
+  return parse_pose_sigma(text, "pose_sigma");
+}
+
 /// Points in the world frame, as floats, and then the pixels if there are some.
 geometry::Scan cloud_scan(const Message& message) {
   const auto count = count_at(message.header, "points");
@@ -147,12 +155,13 @@ Message Session::take_scan(const Message& message) {
   const geometry::Scan scan =
       format == "points" ? cloud_scan(message) : depth_scan(message, mission_);
   require_usable(scan, mission_);
-  const std::string id = scan_id(scan);
+  const std::optional<PoseSigma> sigma = sigma_of(message.header);
+  const std::string id = scan_id(scan, sigma);
   if (number < expected && survey_.number_of(id) != number) {
     refuse_message("scan " + std::to_string(number) + " was another one; the next one is " +
                    std::to_string(expected));
   }
-  const bool is_new = survey_.add(scan, id);
+  const bool is_new = survey_.add(scan, id, sigma);
   has_changed_ = is_new;
   Message answer = present();
   answer.header["is_new"] = is_new;

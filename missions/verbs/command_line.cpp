@@ -69,6 +69,9 @@ void add_next(CLI::App& app, const Console& console, Action& action) {
   verb->add_option("--pose", options->pose,
                    "Of the sensor's optical frame: \"x y z qx qy qz qw\", or a matrix by rows");
   verb->add_option("--pose-file", options->pose_file, "A file that holds the pose");
+  verb->add_option("--pose-sigma", options->pose_sigma,
+                   "How far off the pose may be, one standard deviation: \"metres degrees\"; "
+                   "default: live.pose_sigma and live.pose_sigma_deg");
   verb->add_option("--lens", options->lens,
                    "Of a depth image: \"fx fy cx cy\" or \"fx fy cx cy k1 k2 p1 p2 k3\"; default: "
                    "the mission's camera");

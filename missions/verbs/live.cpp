@@ -20,9 +20,10 @@
 namespace skycap::missions::verbs {
 namespace {
 
-constexpr int exit_complete = 10, exit_nowhere_to_go = 11;
+constexpr int exit_complete = 10, exit_nowhere_to_go = 11, exit_wrong_pose = 12;
 
 int exit_code_of(const live::Proposal& proposal) {
+  if (proposal.warns_of_pose()) return exit_wrong_pose;
   if (!proposal.end) return 0;
   return *proposal.end == survey::StopReason::nowhere_to_go ? exit_nowhere_to_go : exit_complete;
 }
@@ -52,8 +53,12 @@ void add_scan(const NextOptions& options, const file::Mission& mission, live::Li
               const Console& console) {
   const live::ScanFound found = live::read_scan(input_of(options), mission);
   live::require_usable(found.scan, mission);
-  const std::string id = options.id.empty() ? live::scan_id(found.scan) : options.id;
-  const bool is_new = survey.add(found.scan, id);
+  std::optional<live::PoseSigma> sigma;
+  if (!options.pose_sigma.empty()) {
+    sigma = live::parse_pose_sigma(options.pose_sigma, "--pose-sigma");
+  }
+  const std::string id = options.id.empty() ? live::scan_id(found.scan, sigma) : options.id;
+  const bool is_new = survey.add(found.scan, id, sigma);
   if (options.is_quiet) return;
   console.err << fmt::format("{}: {} points{}", options.scan->string(), found.scan.points.size(),
                              is_new ? "" : "; known already, ignored");
