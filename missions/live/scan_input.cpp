@@ -200,6 +200,7 @@ ScanFound read_scan(const ScanInput& input, const file::Mission& mission) {
   } else {
     organise(points, geometry::Camera(mission.sensor.camera.camera), found);
   }
+  found.left_out = filter(found.scan, mission);
   return found;
 }
 
@@ -210,7 +211,13 @@ ScanFound scan_of(const sim::DepthImage& image, const std::optional<Lens>& lens,
   found.scan.world_from_sensor = world_from_sensor;
   organise(points_of(image, lens.value_or(lens_of(camera)), unit, found.without_return), camera,
            found);
+  found.left_out = filter(found.scan, mission);
   return found;
+}
+
+LeftOut filter(geometry::Scan& scan, const file::Mission& mission) {
+  if (!mission.live.removes_flying_pixels) return {};
+  return remove_flying_pixels(scan, geometry::Camera(mission.sensor.camera.camera));
 }
 
 void require_usable(const geometry::Scan& scan, const file::Mission& mission) {

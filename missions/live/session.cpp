@@ -74,7 +74,7 @@ geometry::Scan cloud_scan(const Message& message) {
   return scan;
 }
 
-geometry::Scan depth_scan(const Message& message, const file::Mission& mission) {
+ScanFound depth_scan(const Message& message, const file::Mission& mission) {
   const Json& header = message.header;
   const std::uint32_t width = count_at(header, "width"), height = count_at(header, "height");
   constexpr std::uint32_t largest_side = 1 << 15;
@@ -96,7 +96,7 @@ geometry::Scan depth_scan(const Message& message, const file::Mission& mission) 
   }
   const double unit = header.at("unit").get<double>();
   if (!(unit >= 1e-6 && unit <= 1.0)) refuse_message("scan: unit must be from 1e-6 to 1 m");
-  return scan_of(image, lens, unit, pose_of(header), mission).scan;
+  return scan_of(image, lens, unit, pose_of(header), mission);
 }
 
 }  // namespace
@@ -152,9 +152,16 @@ Message Session::take_scan(const Message& message) {
     refuse_message("scan " + std::to_string(number) + " is out of order: the next one is " +
                    std::to_string(expected));
   }
-  const geometry::Scan scan =
-      format == "points" ? cloud_scan(message) : depth_scan(message, mission_);
-  require_usable(scan, mission_);
+  ScanFound found;
+  if (format == "points") {
+    found.scan = cloud_scan(message);
+    require_usable(found.scan, mission_);
+    found.left_out = filter(found.scan, mission_);
+  } else {
+    found = depth_scan(message, mission_);
+    require_usable(found.scan, mission_);
+  }
+  const geometry::Scan& scan = found.scan;
   const std::optional<PoseSigma> sigma = sigma_of(message.header);
   const std::string id = scan_id(scan, sigma);
   if (number < expected && survey_.number_of(id) != number) {
@@ -165,6 +172,10 @@ Message Session::take_scan(const Message& message) {
   has_changed_ = is_new;
   Message answer = present();
   answer.header["is_new"] = is_new;
+  if (mission_.live.removes_flying_pixels) {
+    answer.header["flying_pixels"] = found.left_out.flying;
+    answer.header["isolated_returns"] = found.left_out.isolated;
+  }
   return answer;
 }
 

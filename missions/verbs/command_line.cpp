@@ -80,6 +80,11 @@ void add_next(CLI::App& app, const Console& console, Action& action) {
       ->check(number_between(1e-6, 1.0));
   verb->add_flag("--world", options->is_in_world, "The cloud is in the mission's frame already");
   verb->add_option("--id", options->id, "Of the scan; one that is known is not taken in again");
+  verb->add_option("--dataset", options->dataset,
+                   "Folder of a recording, whose frames are taken in one by one: TUM RGB-D "
+                   "(depth.txt, groundtruth.txt) or 7-Scenes (frame-NNNNNN.depth.png, .pose.txt)");
+  verb->add_option("--until", options->until, "Only so many frames of the recording")
+      ->check(CLI::Range(1, 1'000'000));
   verb->add_option("--refuse", options->refusal, "Another view in place of the last, and why");
   verb->add_flag("--json", options->is_json, "Print JSON");
   verb->add_flag("--quiet", options->is_quiet, "Print nothing but the answer and errors");

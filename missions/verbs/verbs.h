@@ -47,6 +47,8 @@ struct NextOptions : LiveOptions {
   double depth_unit = 0.001;                       ///< of a depth image [m]
   bool is_in_world = false;                        ///< the points of a cloud
   std::string id;                                  ///< of the scan; default: its digest
+  std::optional<std::filesystem::path> dataset;    ///< a recording to be taken in, in its place
+  std::size_t until = 1'000'000;                   ///< so many of its frames
   std::optional<std::string> refusal;              ///< why the proposed view is not wanted
   bool is_json = false;
   bool is_quiet = false;
