@@ -3,37 +3,15 @@
 #include <cassert>
 #include <cmath>
 
-#include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
 
 #include "geometry/place/pose.h"
+#include "geometry/points/principal_axes.h"
 
 namespace skycap::geometry {
 namespace {
 
-using Eigen::Matrix3d;
 using Eigen::Vector3d;
-
-/// Mean and principal axes of a few points; spreads ascend.
-struct PrincipalAxes {
-  Vector3d mean;
-  Vector3d spreads;  // variances along the axes
-  Matrix3d axes;     // columns
-};
-
-PrincipalAxes principal_axes(std::span<const Eigen::Vector3f> points) {
-  Vector3d mean = Vector3d::Zero();
-  for (const Eigen::Vector3f& p : points) mean += p.cast<double>();
-  mean /= static_cast<double>(points.size());
-  Matrix3d covariance = Matrix3d::Zero();
-  for (const Eigen::Vector3f& p : points) {
-    const Vector3d offset = p.cast<double>() - mean;
-    covariance += offset * offset.transpose();
-  }
-  covariance /= static_cast<double>(points.size());
-  const Eigen::SelfAdjointEigenSolver<Matrix3d> solver(covariance);
-  return {mean, solver.eigenvalues(), solver.eigenvectors()};
-}
 
 /// The unit vector across `axis` nearest to `wanted`, or any across it if `wanted` is along it.
 Vector3d across(const Vector3d& axis, const Vector3d& wanted) {

@@ -21,6 +21,7 @@ std::vector<Key> paper_keys();
 std::vector<Key> site_keys();
 std::vector<Key> flight_keys();
 std::vector<Key> scan_keys();
+std::vector<Key> live_keys();
 std::vector<Key> prior_keys();
 
 struct KeySection {
@@ -28,7 +29,7 @@ struct KeySection {
   std::vector<Key> (*keys)();
 };
 
-inline constexpr std::array<KeySection, 13> key_sections{{{"", general_keys},
+inline constexpr std::array<KeySection, 14> key_sections{{{"", general_keys},
                                                           {"scene", scene_keys},
                                                           {"sensor", sensor_keys},
                                                           {"planner", planner_keys},
@@ -40,6 +41,7 @@ inline constexpr std::array<KeySection, 13> key_sections{{{"", general_keys},
                                                           {"site", site_keys},
                                                           {"flight", flight_keys},
                                                           {"scan", scan_keys},
+                                                          {"live", live_keys},
                                                           {"prior", prior_keys}}};
 
 }  // namespace skycap::missions::file

@@ -203,6 +203,15 @@ struct ScanConfig {
   double depth_unit = 0.001;  ///< of a depth image [m]
 };
 
+/// What is made of scans that come from outside, in live surveys.
+struct LiveConfig {
+  bool checks_poses = true;            ///< scans that contradict what is known are set aside
+  bool registers = false;              ///< their poses are corrected by what is known
+  double pose_sigma = 0.0;             ///< of a scan that says none: standard deviation, each axis
+  double pose_sigma_angle = 0.0;       ///< and about each axis [rad]
+  bool removes_flying_pixels = false;  ///< and isolated returns
+};
+
 /// What a publication reports for this scene, printed beside the results of trials.
 struct ReferenceConfig {
   std::optional<double> views;
@@ -226,6 +235,7 @@ struct Mission {
   std::shared_ptr<const prior::SitePriors> priors;  ///< what those say, see derived::resolved()
   EvaluationConfig evaluation;
   ScanConfig scan;
+  LiveConfig live;
   ReferenceConfig paper;
   std::uint64_t seed = 1;
   unsigned threads = 0;  ///< zero: all processors

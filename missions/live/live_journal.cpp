@@ -6,6 +6,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "geometry/angle.h"
 #include "geometry/error.h"
 #include "geometry/io/json.h"
 #include "geometry/place/world.h"
@@ -24,12 +25,39 @@ Json json_of(const std::optional<geometry::View>& view) {
           {"direction", file::json_of(view->direction)}};
 }
 
+PoseFinding parse_finding(const Json& json) {
+  PoseFinding finding{.matches = json.at("matches").get<std::size_t>(),
+                      .error = json.at("error_m").get<double>(),
+                      .shift = json.at("shift_m").get<double>(),
+                      .turn = json.at("turn").get<double>(),
+                      .seen_through = json.at("seen_through").get<double>(),
+                      .unobservable = json.at("unobservable").get<int>(),
+                      .is_checked = json.at("checked").get<bool>(),
+                      .is_wrong = json.at("set_aside").get<bool>(),
+                      .correction = {}};
+  if (json.contains("correction")) {
+    finding.correction =
+        parse_pose(json["correction"].get<std::vector<double>>(), "its correction");
+  }
+  return finding;
+}
+
+/// Whole, with the turn as it is.
+Json journal_json(const PoseFinding& finding) {
+  Json json = finding_json(finding);
+  json["turn"] = finding.turn;
+  if (finding.correction) json["correction"] = pose_json(*finding.correction);
+  return json;
+}
+
 ScanRecord parse_scan(const Json& json) {
   ScanRecord scan{
       .id = json.at("id").get<std::string>(),
       .file = json.at("file").get<std::string>(),
       .sha256 = json.at("sha256").get<std::string>(),
-      .world_from_sensor = parse_pose(json.at("pose").get<std::vector<double>>(), "its pose")};
+      .world_from_sensor = parse_pose(json.at("pose").get<std::vector<double>>(), "its pose"),
+      .pose = {}};
+  if (json.contains("found")) scan.pose = parse_finding(json["found"]);
   const std::filesystem::path file = scan.file;
   if (file.is_absolute() || file.lexically_normal().string().starts_with("..")) {
     throw Error(ErrorKind::bad_file, "its scan is outside of the folder");
@@ -67,11 +95,12 @@ void add_record(const Json& json, std::vector<LiveEvent>& events) {
 }  // namespace
 
 std::string text_of(const ScanRecord& scan) {
-  return derived::journal_line({{"scan",
-                                 {{"id", scan.id},
-                                  {"file", scan.file},
-                                  {"sha256", scan.sha256},
-                                  {"pose", pose_json(scan.world_from_sensor)}}}});
+  Json json{{"id", scan.id},
+            {"file", scan.file},
+            {"sha256", scan.sha256},
+            {"pose", pose_json(scan.world_from_sensor)}};
+  if (scan.pose) json["found"] = journal_json(*scan.pose);
+  return derived::journal_line({{"scan", std::move(json)}});
 }
 
 std::string refusal_text(const std::string& reason) {
@@ -106,6 +135,18 @@ std::vector<LiveEvent> events_of(const std::vector<std::string>& records, const 
     }
   }
   return events;
+}
+
+Json finding_json(const PoseFinding& finding) {
+  return {{"set_aside", finding.is_wrong},
+          {"corrected", finding.correction.has_value()},
+          {"checked", finding.is_checked},
+          {"matches", finding.matches},
+          {"error_m", finding.error},
+          {"shift_m", finding.shift},
+          {"turn_deg", finding.turn / geometry::radians_per_degree},
+          {"unobservable", finding.unobservable},
+          {"seen_through", finding.seen_through}};
 }
 
 Json pose_json(const Eigen::Isometry3d& pose) {

@@ -9,6 +9,7 @@
 #include <nlohmann/json_fwd.hpp>
 
 #include "geometry/place/pose.h"
+#include "missions/live/pose_check.h"
 #include "missions/run/reach_record.h"
 #include "survey/survey_loop.h"
 
@@ -17,9 +18,10 @@ namespace skycap::missions::live {
 /// A scan that was acknowledged.
 struct ScanRecord {
   std::string id;
-  std::string file;    ///< in the survey's folder
-  std::string sha256;  ///< of the file
-  Eigen::Isometry3d world_from_sensor = Eigen::Isometry3d::Identity();
+  std::string file;                                                     ///< in the survey's folder
+  std::string sha256;                                                   ///< of the file
+  Eigen::Isometry3d world_from_sensor = Eigen::Isometry3d::Identity();  ///< as given
+  std::optional<PoseFinding> pose;  ///< what was found of it, if poses are checked
 };
 
 /// What was proposed after a scan or a refusal.
@@ -45,6 +47,9 @@ std::string text_of(const ProposalRecord& proposal);
 /// The events of a journal without its first record. Throws Error{bad_file} naming `file` and the
 /// line if a record is none of the above.
 std::vector<LiveEvent> events_of(const std::vector<std::string>& records, const std::string& file);
+
+/// What was found of a pose, as answers and journals have it. In the journal `correction` is whole.
+nlohmann::ordered_json finding_json(const PoseFinding& finding);
 
 /// A pose as twelve numbers, row after row of [rotation | position], and back. Throws
 /// Error{bad_file} unless it is at a place and turns without stretching, within a hundredth: such a

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include <fmt/format.h>
+#include <nlohmann/json.hpp>
 
 #include "geometry/error.h"
 #include "geometry/io/file.h"
@@ -63,6 +64,12 @@ struct LiveSurvey::Impl {
   }
 
   void begin() {
+    if (mission.live.checks_poses || mission.live.registers) {
+      poses.emplace(mission.planner.see.resolution_radius, mission.live.registers);
+    }
+    remembered = 0;
+    numbers.clear();
+    set_aside = 0;
     guide = std::make_unique<run::MissionPlanner>(mission, first_view, threads);
     survey::SurveyPorts ports = guide->ports();
     if (ports.can_reach) {
@@ -73,7 +80,7 @@ struct LiveSurvey::Impl {
       ports.can_reach = reach.remembering(std::move(ports.can_reach), guide->flight());
     }
     steps = std::make_unique<survey::SurveySteps>(guide->planner(), guide->limits(), ports);
-    proposal = {.number = 0, .view = first_view, .way = {}, .end = {}};
+    proposal = {.number = 0, .view = first_view, .way = {}, .end = {}, .pose = {}};
     if (guide->flight() != nullptr) proposal.way = guide->flight()->way();
   }
 
@@ -116,13 +123,49 @@ struct LiveSurvey::Impl {
     }
     geometry::Scan scan = parse_kept_scan(file.string(), bytes);
     scan.world_from_sensor = record.world_from_sensor;
-    return scan;
+    return as_used(std::move(scan), record);
+  }
+
+  static geometry::Scan as_used(geometry::Scan scan, const ScanRecord& record) {
+    if (!record.pose || !record.pose->correction) return scan;
+    return corrected(std::move(scan), *record.pose->correction);
+  }
+
+  std::optional<PoseFinding> look_at_pose(const geometry::Scan& scan,
+                                          const std::optional<PoseSigma>& sigma) {
+    if (!poses) return std::nullopt;
+    const file::LiveConfig& config = mission.live;
+    PoseFinding finding =
+        poses->find(scan, sigma.value_or(PoseSigma{config.pose_sigma, config.pose_sigma_angle}));
+    if (!config.checks_poses) finding.is_wrong = false;
+    return finding;
+  }
+
+  /// A scan that is not used: what was proposed stands, but nobody knows where the sensor is.
+  void leave_aside(LiveEvent& event) {
+    numbers.emplace(event.scan->id, steps->views().size());
+    ++set_aside;
+    ++proposal.number;
+    proposal.way = {};
+    proposal.pose = event.scan->pose;
+    event.proposal = ProposalRecord{proposal.view, proposal.end, {}};
+  }
+
+  void remember(const geometry::Scan& scan) {
+    if (!poses) return;
+    const std::span kept(guide->planner().cloud().positions);
+    poses->remember(scan, kept.subspan(remembered));
+    remembered = kept.size();
   }
 
   /// Takes in an event and fills in what is proposed after it. False if it was a scan that the
   /// planner cannot work with: `why` says so, what is to be written down is `unwritten`, and the
   /// planner has to begin anew.
   bool happen(LiveEvent& event, const geometry::Scan& scan) {
+    if (event.scan && event.scan->pose && event.scan->pose->is_wrong) {
+      leave_aside(event);
+      return true;
+    }
     reach.begin(event.proposal ? std::optional(event.proposal->reach) : std::nullopt);
     if (event.scan) departure = departure_after(scan);
     std::optional<geometry::View> view;
@@ -135,12 +178,22 @@ struct LiveSurvey::Impl {
       unwritten = rejection_text(why);
       return false;
     }
-    if (event.scan) numbers.emplace(event.scan->id, numbers.size());
-    proposal = {.number = proposal.number + 1, .view = view, .way = {}, .end = {}};
-    if (!view) proposal.end = steps->stop_reason();
-    if (view && guide->flight() != nullptr) proposal.way = reach.record().way;
+    if (event.scan) {
+      numbers.emplace(event.scan->id, steps->views().size() - 1);
+      remember(scan);
+    }
+    propose(event, view);
     event.proposal = ProposalRecord{proposal.view, proposal.end, reach.record()};
     return true;
+  }
+
+  void propose(const LiveEvent& event, const std::optional<geometry::View>& view) {
+    const bool is_lost = !event.scan && proposal.warns_of_pose();
+    std::optional<PoseFinding> pose = is_lost ? proposal.pose : std::nullopt;
+    if (event.scan) pose = event.scan->pose;
+    proposal = {.number = proposal.number + 1, .view = view, .way = {}, .end = {}, .pose = pose};
+    if (!view) proposal.end = steps->stop_reason();
+    if (view && guide->flight() != nullptr && !is_lost) proposal.way = reach.record().way;
   }
 
   /// What cannot be written now is written before anything else is.
@@ -172,7 +225,6 @@ struct LiveSurvey::Impl {
       write_down(text_of(*events.back().proposal));
       return;
     }
-    numbers.clear();
     replay();  // the planner may have taken in a part of the scan
     catch_up();
     throw Error(ErrorKind::bad_geometry, why);
@@ -190,8 +242,11 @@ struct LiveSurvey::Impl {
   Proposal proposal;
   Vector3d departure = Vector3d::Zero();
   std::map<std::string, std::size_t> numbers;  ///< of scans by their ids
-  std::string why;                             ///< the last scan was rejected
-  std::optional<std::string> unwritten;        ///< record that the disk did not take
+  std::size_t set_aside = 0;
+  std::optional<PoseCheck> poses;
+  std::size_t remembered = 0;            ///< points of the planner's cloud that `poses` has
+  std::string why;                       ///< the last scan was rejected
+  std::optional<std::string> unwritten;  ///< record that the disk did not take
 };
 
 LiveSurvey::LiveSurvey(const file::Mission& mission, const fs::path& folder,
@@ -206,12 +261,15 @@ const survey::Planner& LiveSurvey::planner() const { return impl_->guide->planne
 
 const std::vector<survey::SurveyedView>& LiveSurvey::views() const { return impl_->steps->views(); }
 
+std::size_t LiveSurvey::set_aside() const { return impl_->set_aside; }
+
 std::optional<std::size_t> LiveSurvey::number_of(const std::string& id) const {
   const auto found = impl_->numbers.find(id);
   return found == impl_->numbers.end() ? std::nullopt : std::optional(found->second);
 }
 
-bool LiveSurvey::add(const geometry::Scan& scan, const std::string& id) {
+bool LiveSurvey::add(const geometry::Scan& scan, const std::string& id,
+                     const std::optional<PoseSigma>& sigma) {
   if (number_of(id)) return false;
   if (impl_->mission.flight.is_flown() && impl_->proposal.end) {
     throw Error(ErrorKind::bad_usage,
@@ -222,11 +280,12 @@ bool LiveSurvey::add(const geometry::Scan& scan, const std::string& id) {
   const ScanRecord record{.id = id,
                           .file = fmt::format("{}/{:06}.ply", scans_name, impl_->events.size()),
                           .sha256 = digest_of(bytes),
-                          .world_from_sensor = scan.world_from_sensor};
+                          .world_from_sensor = scan.world_from_sensor,
+                          .pose = impl_->look_at_pose(scan, sigma)};
   geometry::write_file(impl_->folder / record.file, bytes);
   geometry::sync_to_disk(impl_->folder / scans_name);
   impl_->log.append(text_of(record));
-  impl_->take_in({.scan = record, .refusal = {}, .proposal = {}}, scan);
+  impl_->take_in({.scan = record, .refusal = {}, .proposal = {}}, Impl::as_used(scan, record));
   return true;
 }
 
@@ -254,8 +313,10 @@ run::SurveyRecord LiveSurvey::finish() {
   return record;
 }
 
-std::string scan_id(const geometry::Scan& scan) {
-  return digest_of(kept_scan(scan) + pose_json(scan.world_from_sensor).dump());
+std::string scan_id(const geometry::Scan& scan, const std::optional<PoseSigma>& sigma) {
+  std::string text = kept_scan(scan) + pose_json(scan.world_from_sensor).dump();
+  if (sigma) text += nlohmann::ordered_json{sigma->position, sigma->angle}.dump();
+  return digest_of(text);
 }
 
 }  // namespace skycap::missions::live

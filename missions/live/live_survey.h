@@ -17,6 +17,7 @@
 #include "geometry/place/pose.h"
 #include "geometry/points/scan.h"
 #include "missions/file/mission.h"
+#include "missions/live/pose_check.h"
 #include "missions/run/survey_record.h"
 #include "survey/survey_loop.h"
 
@@ -32,6 +33,11 @@ struct Proposal {
   run::FlownLeg way;
   /// Why there is no view; nothing before the first scan.
   std::optional<survey::StopReason> end;
+  /// What was found of the pose of the scan before, if it was looked at. One that was set aside
+  /// stays here until a scan is used: nobody knows where the sensor is, and no way is given.
+  std::optional<PoseFinding> pose;
+
+  bool warns_of_pose() const { return pose && pose->is_wrong; }
 };
 
 class LiveSurvey {
@@ -51,13 +57,18 @@ class LiveSurvey {
 
   const std::vector<survey::SurveyedView>& views() const;
 
-  /// The number that a scan was taken in under: of those with this id, if there is one.
+  std::size_t set_aside() const;  ///< scans whose poses were wrong
+
+  /// The number that a scan was taken in under: the scans used before the one with this id, if
+  /// there is one.
   std::optional<std::size_t> number_of(const std::string& id) const;
 
-  /// Brings a scan to the disk, and plans. One whose id is known is acknowledged and ignored:
-  /// false. Throws Error{bad_geometry} for a scan that the planner cannot work with, and
+  /// Brings a scan to the disk, looks at its pose (file::LiveConfig), and plans, or sets it aside.
+  /// One whose id is known is acknowledged and ignored: false. Without a sigma it is the mission's.
+  /// Throws Error{bad_geometry} for a scan that the planner cannot work with, and
   /// Error{bad_file} if the disk takes no more; then nothing has changed.
-  bool add(const geometry::Scan& scan, const std::string& id);
+  bool add(const geometry::Scan& scan, const std::string& id,
+           const std::optional<PoseSigma>& sigma = {});
 
   /// Asks for another view in place of the proposed one. Throws Error{bad_usage} if there is none.
   void refuse(const std::string& reason);
@@ -75,7 +86,8 @@ class LiveSurvey {
   std::unique_ptr<Impl> impl_;
 };
 
-/// The id of a scan that has none: a digest of pose, points and pixels.
-std::string scan_id(const geometry::Scan& scan);
+/// The id of a scan that has none: a digest of pose, points and pixels, and of the pose's sigma:
+/// one that was set aside may come again with a larger one.
+std::string scan_id(const geometry::Scan& scan, const std::optional<PoseSigma>& sigma = {});
 
 }  // namespace skycap::missions::live

@@ -14,6 +14,7 @@
 #include "missions/derived/mission_flight.h"
 #include "missions/derived/site.h"
 #include "missions/file/json_text.h"
+#include "missions/live/live_journal.h"
 #include "missions/run/survey_runner.h"
 #include "missions/scene/survey_scene.h"
 #include "survey/skycap/skycap_planner.h"
@@ -48,6 +49,28 @@ Json way_json(const run::FlownLeg& way) {
   return points;
 }
 
+/// What a motion is like that brings a scan onto what is known.
+std::string motion_text(const PoseFinding& pose) {
+  std::string text = fmt::format("moved by {:.3f} m and turned by {:.2f} deg", pose.shift,
+                                 pose.turn / geometry::radians_per_degree);
+  if (pose.unobservable > 0) {
+    text += fmt::format(" ({} of 6 ways to move do not show in what both have)", pose.unobservable);
+  }
+  return text;
+}
+
+std::string pose_text(const PoseFinding& pose) {
+  if (pose.is_wrong) {
+    const std::string seen =
+        fmt::format("it saw through {:.0f} % of what was known", 100.0 * pose.seen_through);
+    return "; warning: pose: the scan is set aside, its pose is wrong: " +
+           (pose.is_checked ? "it would fit " + motion_text(pose) + ", " + seen : seen) +
+           "; hold position, mend the pose and scan again";
+  }
+  if (pose.correction) return "; pose " + motion_text(pose);
+  return "";
+}
+
 const char* state_of(const Proposal& proposal) {
   if (proposal.end) return run::name_of(*proposal.end);
   return proposal.view ? "view" : "first_scan";
@@ -74,11 +97,14 @@ std::string answer_json(const LiveSurvey& survey, const file::Mission& mission) 
             {"state", state_of(proposal)},
             {"scans", survey.views().size()},
             {"points", survey.planner().cloud().size()},
+            {"set_aside", survey.set_aside()},
             {"view", proposal.view ? view_json(*proposal.view, mission) : Json()}};
   if (proposal.view && !proposal.way.points.empty()) {
     json["path"] = way_json(proposal.way);
     json["clearance_m"] = proposal.way.clearance;
   }
+  if (proposal.warns_of_pose()) json["warning"] = "pose";
+  if (proposal.pose) json["pose"] = finding_json(*proposal.pose);
   if (const auto* planner = dynamic_cast<const survey::skycap::SkycapPlanner*>(&survey.planner());
       planner != nullptr && !survey.views().empty()) {
     json["believed_coverage"] = planner->predicted_coverage();
@@ -88,8 +114,10 @@ std::string answer_json(const LiveSurvey& survey, const file::Mission& mission) 
 
 std::string answer_text(const LiveSurvey& survey) {
   const Proposal& proposal = survey.proposal();
-  const std::string scans =
+  std::string scans =
       fmt::format("{} scans, {} points", survey.views().size(), survey.planner().cloud().size());
+  if (survey.set_aside() > 0) scans += fmt::format(", {} scans set aside", survey.set_aside());
+  if (proposal.pose) scans += pose_text(*proposal.pose);
   if (proposal.end) return std::string(state_of(proposal)) + " after " + scans;
   if (!proposal.view) return "take the first scan from any place that sees the scene";
   const Vector3d& at = proposal.view->position;

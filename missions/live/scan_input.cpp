@@ -5,6 +5,7 @@
 #include <tuple>
 #include <utility>
 
+#include "geometry/angle.h"
 #include "geometry/error.h"
 #include "geometry/io/cloud_io.h"
 #include "geometry/io/text_scanner.h"
@@ -153,6 +154,16 @@ Isometry3d parse_pose_text(const std::string& text, const std::string& what) {
                                        "four rows of four");
 }
 
+PoseSigma parse_pose_sigma(const std::string& text, const std::string& what) {
+  const std::vector<double> n = numbers_of(text, what);
+  constexpr double farthest = 100.0, widest = 90.0;
+  const bool is_good =
+      n.size() == 2 && n[0] >= 0.0 && n[0] <= farthest && n[1] >= 0.0 && n[1] <= widest;
+  if (is_good) return {.position = n[0], .angle = n[1] * geometry::radians_per_degree};
+  throw Error(ErrorKind::bad_usage,
+              what + ": give \"metres degrees\", from 0 to 100 and from 0 to 90");
+}
+
 std::vector<Vector3d> points_of(const sim::DepthImage& image, const Lens& lens, double unit,
                                 std::size_t& without_return) {
   constexpr std::uint16_t too_near = 0, too_far = 65535;
@@ -189,6 +200,7 @@ ScanFound read_scan(const ScanInput& input, const file::Mission& mission) {
   } else {
     organise(points, geometry::Camera(mission.sensor.camera.camera), found);
   }
+  found.left_out = filter(found.scan, mission);
   return found;
 }
 
@@ -199,7 +211,13 @@ ScanFound scan_of(const sim::DepthImage& image, const std::optional<Lens>& lens,
   found.scan.world_from_sensor = world_from_sensor;
   organise(points_of(image, lens.value_or(lens_of(camera)), unit, found.without_return), camera,
            found);
+  found.left_out = filter(found.scan, mission);
   return found;
+}
+
+LeftOut filter(geometry::Scan& scan, const file::Mission& mission) {
+  if (!mission.live.removes_flying_pixels) return {};
+  return remove_flying_pixels(scan, geometry::Camera(mission.sensor.camera.camera));
 }
 
 void require_usable(const geometry::Scan& scan, const file::Mission& mission) {

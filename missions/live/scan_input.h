@@ -14,6 +14,8 @@
 
 #include "geometry/points/scan.h"
 #include "missions/file/mission.h"
+#include "missions/live/pose_check.h"
+#include "missions/live/scan_filter.h"
 #include "sim/sensors/depth_image.h"
 
 namespace skycap::missions::live {
@@ -36,6 +38,9 @@ Lens parse_lens(const std::string& text, const std::string& what = "--lens");
 /// trajectory, whose time is passed over); `what` opens messages. Throws Error{bad_file}.
 Eigen::Isometry3d parse_pose_text(const std::string& text, const std::string& what);
 
+/// Reads "metres degrees". Throws Error{bad_usage}.
+PoseSigma parse_pose_sigma(const std::string& text, const std::string& what);
+
 struct ScanInput {
   std::filesystem::path
       file;  ///< .png: a depth image; else a cloud that geometry::read_cloud reads
@@ -51,6 +56,7 @@ struct ScanFound {
   std::size_t without_return = 0;  ///< pixels of 0 or 65535, or without a ray of the lens
   std::size_t out_of_view = 0;     ///< points that the mission's camera cannot see from that pose
   std::size_t hidden = 0;          ///< farther away than another point in the same pixel
+  LeftOut left_out;                ///< if the mission wants it (file::LiveConfig)
 };
 
 /// Reads a scan for a mission. With a depth camera each point gets the pixel of the mission's
@@ -65,6 +71,9 @@ std::vector<Eigen::Vector3d> points_of(const sim::DepthImage& image, const Lens&
 /// A depth image as a scan of a mission with a depth camera; without a lens, of the mission's.
 ScanFound scan_of(const sim::DepthImage& image, const std::optional<Lens>& lens, double unit,
                   const Eigen::Isometry3d& world_from_sensor, const file::Mission& mission);
+
+/// Leaves out flying pixels and isolated returns, if the mission wants it.
+LeftOut filter(geometry::Scan& scan, const file::Mission& mission);
 
 /// Throws Error{bad_geometry} unless a scan is one that planner and vehicle can take in: points at
 /// places, pixels (which a vehicle needs) of the mission's camera and ascending.

@@ -46,6 +46,14 @@ Eigen::Isometry3d pose_of(const Json& header) {
   return parse_pose_text(text, "pose");
 }
 
+/// A scan's own: [metres, degrees].
+std::optional<PoseSigma> sigma_of(const Json& header) {
+  if (!header.contains("pose_sigma")) return std::nullopt;
+  std::string text;
+  for (const Json& number : header["pose_sigma"]) text += number.dump() + " ";
+  return parse_pose_sigma(text, "pose_sigma");
+}
+
 /// Points in the world frame, as floats, and then the pixels if there are some.
 geometry::Scan cloud_scan(const Message& message) {
   const auto count = count_at(message.header, "points");
@@ -66,7 +74,7 @@ geometry::Scan cloud_scan(const Message& message) {
   return scan;
 }
 
-geometry::Scan depth_scan(const Message& message, const file::Mission& mission) {
+ScanFound depth_scan(const Message& message, const file::Mission& mission) {
   const Json& header = message.header;
   const std::uint32_t width = count_at(header, "width"), height = count_at(header, "height");
   constexpr std::uint32_t largest_side = 1 << 15;
@@ -88,7 +96,7 @@ geometry::Scan depth_scan(const Message& message, const file::Mission& mission) 
   }
   const double unit = header.at("unit").get<double>();
   if (!(unit >= 1e-6 && unit <= 1.0)) refuse_message("scan: unit must be from 1e-6 to 1 m");
-  return scan_of(image, lens, unit, pose_of(header), mission).scan;
+  return scan_of(image, lens, unit, pose_of(header), mission);
 }
 
 }  // namespace
@@ -144,18 +152,30 @@ Message Session::take_scan(const Message& message) {
     refuse_message("scan " + std::to_string(number) + " is out of order: the next one is " +
                    std::to_string(expected));
   }
-  const geometry::Scan scan =
-      format == "points" ? cloud_scan(message) : depth_scan(message, mission_);
-  require_usable(scan, mission_);
-  const std::string id = scan_id(scan);
+  ScanFound found;
+  if (format == "points") {
+    found.scan = cloud_scan(message);
+    require_usable(found.scan, mission_);
+    found.left_out = filter(found.scan, mission_);
+  } else {
+    found = depth_scan(message, mission_);
+    require_usable(found.scan, mission_);
+  }
+  const geometry::Scan& scan = found.scan;
+  const std::optional<PoseSigma> sigma = sigma_of(message.header);
+  const std::string id = scan_id(scan, sigma);
   if (number < expected && survey_.number_of(id) != number) {
     refuse_message("scan " + std::to_string(number) + " was another one; the next one is " +
                    std::to_string(expected));
   }
-  const bool is_new = survey_.add(scan, id);
+  const bool is_new = survey_.add(scan, id, sigma);
   has_changed_ = is_new;
   Message answer = present();
   answer.header["is_new"] = is_new;
+  if (mission_.live.removes_flying_pixels) {
+    answer.header["flying_pixels"] = found.left_out.flying;
+    answer.header["isolated_returns"] = found.left_out.isolated;
+  }
   return answer;
 }
 

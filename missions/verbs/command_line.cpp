@@ -69,6 +69,9 @@ void add_next(CLI::App& app, const Console& console, Action& action) {
   verb->add_option("--pose", options->pose,
                    "Of the sensor's optical frame: \"x y z qx qy qz qw\", or a matrix by rows");
   verb->add_option("--pose-file", options->pose_file, "A file that holds the pose");
+  verb->add_option("--pose-sigma", options->pose_sigma,
+                   "How far off the pose may be, one standard deviation: \"metres degrees\"; "
+                   "default: live.pose_sigma and live.pose_sigma_deg");
   verb->add_option("--lens", options->lens,
                    "Of a depth image: \"fx fy cx cy\" or \"fx fy cx cy k1 k2 p1 p2 k3\"; default: "
                    "the mission's camera");
@@ -77,6 +80,11 @@ void add_next(CLI::App& app, const Console& console, Action& action) {
       ->check(number_between(1e-6, 1.0));
   verb->add_flag("--world", options->is_in_world, "The cloud is in the mission's frame already");
   verb->add_option("--id", options->id, "Of the scan; one that is known is not taken in again");
+  verb->add_option("--dataset", options->dataset,
+                   "Folder of a recording, whose frames are taken in one by one: TUM RGB-D "
+                   "(depth.txt, groundtruth.txt) or 7-Scenes (frame-NNNNNN.depth.png, .pose.txt)");
+  verb->add_option("--until", options->until, "Only so many frames of the recording")
+      ->check(CLI::Range(1, 1'000'000));
   verb->add_option("--refuse", options->refusal, "Another view in place of the last, and why");
   verb->add_flag("--json", options->is_json, "Print JSON");
   verb->add_flag("--quiet", options->is_quiet, "Print nothing but the answer and errors");

@@ -9,6 +9,7 @@
 #include "geometry/io/output_folder.h"
 #include "missions/derived/resolved_mission.h"
 #include "missions/live/open_survey.h"
+#include "missions/live/recorded_sequence.h"
 #include "missions/live/scan_input.h"
 #include "missions/live/server.h"
 #include "missions/package/flight_report.h"
@@ -20,9 +21,10 @@
 namespace skycap::missions::verbs {
 namespace {
 
-constexpr int exit_complete = 10, exit_nowhere_to_go = 11;
+constexpr int exit_complete = 10, exit_nowhere_to_go = 11, exit_wrong_pose = 12;
 
 int exit_code_of(const live::Proposal& proposal) {
+  if (proposal.warns_of_pose()) return exit_wrong_pose;
   if (!proposal.end) return 0;
   return *proposal.end == survey::StopReason::nowhere_to_go ? exit_nowhere_to_go : exit_complete;
 }
@@ -38,9 +40,10 @@ Eigen::Isometry3d pose_of(const NextOptions& options) {
                                options.pose_file->string());
 }
 
-live::ScanInput input_of(const NextOptions& options) {
-  live::ScanInput input{.file = *options.scan,
-                        .world_from_sensor = pose_of(options),
+live::ScanInput input_of(const NextOptions& options, const std::filesystem::path& file,
+                         const Eigen::Isometry3d& world_from_sensor) {
+  live::ScanInput input{.file = file,
+                        .world_from_sensor = world_from_sensor,
                         .is_in_world = options.is_in_world,
                         .lens = {},
                         .depth_unit = options.depth_unit};
@@ -48,25 +51,49 @@ live::ScanInput input_of(const NextOptions& options) {
   return input;
 }
 
-void add_scan(const NextOptions& options, const file::Mission& mission, live::LiveSurvey& survey,
-              const Console& console) {
-  const live::ScanFound found = live::read_scan(input_of(options), mission);
+/// What of a scan was not taken in.
+std::string left_out_text(const live::ScanFound& found) {
+  std::string text;
+  const auto add = [&](std::size_t count, const char* what) {
+    if (count > 0) text += fmt::format(", {} {}", count, what);
+  };
+  add(found.without_return, "pixels without a return");
+  add(found.out_of_view, "out of the camera's view left out");
+  add(found.hidden, "behind others in their pixels left out");
+  add(found.left_out.flying, "flying pixels left out");
+  add(found.left_out.isolated, "isolated returns left out");
+  return text;
+}
+
+void add_scan(const NextOptions& options, const live::ScanInput& input, std::string id,
+              const file::Mission& mission, live::LiveSurvey& survey, const Console& console) {
+  const live::ScanFound found = live::read_scan(input, mission);
   live::require_usable(found.scan, mission);
-  const std::string id = options.id.empty() ? live::scan_id(found.scan) : options.id;
-  const bool is_new = survey.add(found.scan, id);
+  std::optional<live::PoseSigma> sigma;
+  if (!options.pose_sigma.empty()) {
+    sigma = live::parse_pose_sigma(options.pose_sigma, "--pose-sigma");
+  }
+  if (id.empty()) id = live::scan_id(found.scan, sigma);
+  const bool is_new = survey.add(found.scan, id, sigma);
   if (options.is_quiet) return;
-  console.err << fmt::format("{}: {} points{}", options.scan->string(), found.scan.points.size(),
-                             is_new ? "" : "; known already, ignored");
-  if (found.without_return > 0) {
-    console.err << fmt::format(", {} pixels without a return", found.without_return);
+  const bool is_aside = is_new && survey.proposal().warns_of_pose();
+  console.err << fmt::format("{}: {} points{}{}{}\n", input.file.string(), found.scan.points.size(),
+                             is_new ? "" : "; known already, ignored",
+                             is_aside ? "; set aside, its pose is wrong" : "", left_out_text(found))
+              << std::flush;
+}
+
+/// The frames of a recording that the survey does not have yet, one after another.
+void add_recording(const NextOptions& options, const file::Mission& mission,
+                   live::LiveSurvey& survey, const Console& console) {
+  const live::RecordedSequence sequence = live::read_sequence(*options.dataset, options.until);
+  for (const std::string& note : sequence.notes) warn(console, note);
+  for (const live::RecordedFrame& frame : sequence.frames) {
+    if (console.stop.stop_requested()) return;
+    if (survey.number_of(frame.id)) continue;
+    add_scan(options, input_of(options, frame.file, frame.world_from_sensor), frame.id, mission,
+             survey, console);
   }
-  if (found.out_of_view > 0) {
-    console.err << fmt::format(", {} out of the camera's view left out", found.out_of_view);
-  }
-  if (found.hidden > 0) {
-    console.err << fmt::format(", {} behind others in their pixels left out", found.hidden);
-  }
-  console.err << "\n" << std::flush;
 }
 
 /// Shows the survey so far in the folder's page, which a browser reads again.
@@ -108,14 +135,20 @@ Finished write_package(const LiveOptions& options, const file::Mission& mission,
 }  // namespace
 
 int next(const NextOptions& options, const Console& console) {
-  if (options.scan && options.refusal) {
-    throw Error(ErrorKind::bad_usage, "--refuse does not go with --scan; give one of the two");
+  if (options.scan.has_value() + options.dataset.has_value() + options.refusal.has_value() > 1) {
+    throw Error(ErrorKind::bad_usage,
+                "--scan, --dataset and --refuse do not go together; give one");
   }
   const file::Mission mission = derived::read_live_mission(options.mission, options.overrides);
   const auto survey = live::open_survey(mission, options.mission.parent_path(), options.survey);
-  if (options.scan) add_scan(options, mission, *survey, console);
+  if (options.scan) {
+    add_scan(options, input_of(options, *options.scan, pose_of(options)), options.id, mission,
+             *survey, console);
+  }
+  if (options.dataset) add_recording(options, mission, *survey, console);
   if (options.refusal) survey->refuse(*options.refusal);
-  if (options.scan || options.refusal) show_survey(options, mission, *survey, console);
+  if (options.scan || options.dataset || options.refusal)
+    show_survey(options, mission, *survey, console);
   console.out << (options.is_json ? live::answer_json(*survey, mission)
                                   : live::answer_text(*survey))
               << "\n"

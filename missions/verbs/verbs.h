@@ -42,17 +42,20 @@ struct NextOptions : LiveOptions {
   std::optional<std::filesystem::path> scan;       ///< to be taken in first
   std::string pose;                                ///< of the scan's sensor; either this
   std::optional<std::filesystem::path> pose_file;  ///< or this
+  std::string pose_sigma;                          ///< of the pose; default: the mission's
   std::string lens;                                ///< of a depth image
   double depth_unit = 0.001;                       ///< of a depth image [m]
   bool is_in_world = false;                        ///< the points of a cloud
   std::string id;                                  ///< of the scan; default: its digest
+  std::optional<std::filesystem::path> dataset;    ///< a recording to be taken in, in its place
+  std::size_t until = 1'000'000;                   ///< so many of its frames
   std::optional<std::string> refusal;              ///< why the proposed view is not wanted
   bool is_json = false;
   bool is_quiet = false;
 };
 
 /// Says where a live survey is to measure next. Exit code 0: there; 10: nowhere, it is over; 11:
-/// every view that is wanted was refused.
+/// every view that is wanted was refused; 12: the last scan was set aside, its pose is wrong.
 int next(const NextOptions& options, const Console& console);
 
 /// Writes the mission package of a live survey into its folder; exit code 1 if it has no route. The

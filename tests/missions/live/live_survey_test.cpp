@@ -7,8 +7,10 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "geometry/angle.h"
 #include "geometry/error.h"
 #include "geometry/io/record_log.h"
+#include "missions/live/open_survey.h"
 #include "tests/missions/flown_mission.h"
 #include "tests/missions/live/rehearsal.h"
 #include "tests/missions/run_skycap.h"
@@ -19,6 +21,7 @@ namespace {
 
 namespace fs = std::filesystem;
 using testing::HasSubstr;
+using testing::Not;
 using testing_support::complaint_of;
 using tests::content_of;
 
@@ -110,6 +113,112 @@ TEST(LiveSurvey, DoesNotCountAScanThatCannotBePlannedWith) {
     rehearsal.add_one(survey);
   }
   EXPECT_EQ(rehearsal.open(folder.path()).views().size(), 1U);
+}
+
+/// Wrong by so many metres along x, and so many degrees about the sensor's own x.
+Eigen::Isometry3d error_of(const geometry::Scan& scan, double shift, double turn_deg) {
+  Eigen::Isometry3d error = Eigen::Isometry3d::Identity();
+  const Eigen::Vector3d sensor = scan.sensor_position();
+  error.linear() = Eigen::AngleAxisd(turn_deg * geometry::radians_per_degree,
+                                     scan.world_from_sensor.linear().col(0))
+                       .toRotationMatrix();
+  error.translation() = sensor + Eigen::Vector3d(shift, 0.0, 0.0) - error.linear() * sensor;
+  return error;
+}
+
+geometry::Scan displaced(const geometry::Scan& scan, double shift, double turn_deg) {
+  return corrected(scan, error_of(scan, shift, turn_deg));
+}
+
+TEST(LiveSurvey, IsTheSameAsIfScansThatItSetsAsideHadNeverBeen) {
+  const tests::TestFolder folder;
+  const Rehearsal rehearsal(fine_mission());
+  std::size_t wrong = 0;
+  while (true) {
+    LiveSurvey survey = rehearsal.open(folder.path());
+    EXPECT_EQ(survey.set_aside(), wrong);
+    EXPECT_EQ(survey.proposal().warns_of_pose(), false);
+    if (!survey.proposal().view) break;
+    if (survey.views().size() > 0) {
+      const Proposal before = survey.proposal();
+      EXPECT_TRUE(survey.add(displaced(rehearsal.scan(survey), 0.1, 1.0), std::to_string(wrong)));
+      ++wrong;
+      EXPECT_FALSE(
+          survey.add(displaced(rehearsal.scan(survey), 0.1, 1.0), std::to_string(wrong - 1)));
+      ASSERT_TRUE(survey.proposal().warns_of_pose()) << survey.views().size();
+      EXPECT_EQ(survey.proposal().number, before.number + 1);
+      EXPECT_EQ(survey.proposal().view->position, before.view->position);
+    }
+    rehearsal.add_one(survey);
+  }
+  EXPECT_EQ(wrong, 4U);
+  expect_same(rehearsal.open(folder.path()).finish(), rehearsal.planned());
+}
+
+TEST(LiveSurvey, KeepsItsWarningUntilAScanIsUsed) {
+  const tests::TestFolder folder;
+  const Rehearsal rehearsal(fine_mission());
+  std::string answer;
+  {
+    LiveSurvey survey = rehearsal.open(folder.path());
+    rehearsal.add_one(survey);
+    survey.add(displaced(rehearsal.scan(survey), 0.1, 1.0), "wrong");
+    survey.refuse("elsewhere");
+    answer = answer_json(survey, rehearsal.mission());
+    EXPECT_THAT(answer, HasSubstr("\"warning\":\"pose\""));
+    EXPECT_THAT(answer, HasSubstr("\"set_aside\":1"));
+  }
+  LiveSurvey survey = rehearsal.open(folder.path());
+  EXPECT_EQ(answer_json(survey, rehearsal.mission()), answer);
+  rehearsal.add_one(survey);
+  EXPECT_THAT(answer_json(survey, rehearsal.mission()), Not(HasSubstr("warning")));
+}
+
+TEST(LiveSurvey, GivesNoWayFromWhereNobodyKnows) {
+  const tests::TestFolder folder;
+  const Rehearsal rehearsal(short_mission(tests::flown_mission()));
+  LiveSurvey survey = rehearsal.open(folder.path());
+  rehearsal.add_one(survey);
+  EXPECT_FALSE(survey.proposal().way.points.empty());
+  survey.add(displaced(rehearsal.scan(survey), 2.0, 5.0), "wrong");
+  ASSERT_TRUE(survey.proposal().warns_of_pose());
+  EXPECT_TRUE(survey.proposal().way.points.empty());
+  survey.refuse("elsewhere");
+  EXPECT_TRUE(survey.proposal().way.points.empty());
+  rehearsal.add_one(survey);
+  EXPECT_FALSE(survey.proposal().way.points.empty());
+}
+
+TEST(LiveSurvey, CorrectsPosesTheSameWayAgain) {
+  const tests::TestFolder folder;
+  const Rehearsal rehearsal(
+      fine_mission("live: {registration: true, pose_sigma: 0.02, pose_sigma_deg: 0.5}\n"));
+  std::string answer;
+  {
+    LiveSurvey survey = rehearsal.open(folder.path());
+    rehearsal.add_one(survey);
+    const geometry::Scan scan = rehearsal.scan(survey);
+    const Eigen::Isometry3d error = error_of(scan, 0.03, 0.5);
+    survey.add(corrected(scan, error), "a");
+    answer = answer_json(survey, rehearsal.mission());
+    ASSERT_TRUE(survey.proposal().pose->correction);
+    const Eigen::Vector3d middle(0.0, 0.0, 0.25);  // of the teapot
+    EXPECT_GT((error * middle - middle).norm(), 0.02);
+    EXPECT_LT((*survey.proposal().pose->correction * error * middle - middle).norm(), 0.01);
+  }
+  const LiveSurvey survey = rehearsal.open(folder.path());
+  EXPECT_EQ(answer_json(survey, rehearsal.mission()), answer);
+  EXPECT_THAT(answer, HasSubstr("\"corrected\":true"));
+}
+
+TEST(LiveSurvey, TakesPosesAsTheyAreIfAsked) {
+  const tests::TestFolder folder;
+  const Rehearsal rehearsal(fine_mission("live: {pose_check: false}\n"));
+  LiveSurvey survey = rehearsal.open(folder.path());
+  rehearsal.add_one(survey);
+  survey.add(displaced(rehearsal.scan(survey), 0.1, 1.0), "wrong");
+  EXPECT_EQ(survey.views().size(), 2U);
+  EXPECT_FALSE(survey.proposal().pose);
 }
 
 TEST(LiveSurvey, RefusesWhatItCannotTrust) {

@@ -12,6 +12,7 @@
 #include "missions/live/live_survey.h"
 #include "missions/run/survey_runner.h"
 #include "missions/scene/survey_scene.h"
+#include "tests/missions/run_skycap.h"
 
 namespace skycap::missions::live {
 
@@ -76,6 +77,13 @@ inline std::string short_mission(std::string mission, const std::string& planner
   mission.replace(at, mission.find('}', at) - at, "5");
   if (planner.empty()) return mission;
   return mission.insert(mission.find(section) + section.size(), "name: " + planner + ", ");
+}
+
+/// The teapot, measured well enough for poses to be looked at, and what `live` says.
+inline std::string fine_mission(const std::string& live = "") {
+  std::string mission = short_mission(tests::quick_mission(live), "see++");
+  const std::string noise = "sigma: 0.03";
+  return mission.replace(mission.find(noise), noise.size(), "sigma: 0.001");
 }
 
 }  // namespace skycap::missions::live

@@ -21,6 +21,7 @@ namespace skycap::missions::live {
 namespace {
 
 using testing::HasSubstr;
+using testing::Not;
 
 skycap_live::Pose pose_of(const geometry::Scan& scan) {
   skycap_live::Pose pose{};
@@ -133,7 +134,7 @@ class SessionAnswers : public testing::Test {
   }
 
   tests::TestFolder folder_;
-  Rehearsal rehearsal_{tests::quick_mission()};
+  Rehearsal rehearsal_{fine_mission()};
   LiveSurvey survey_ = rehearsal_.open(folder_.path());
   Session session_{rehearsal_.mission(), survey_, [] { return std::string(); }};
 };
@@ -149,6 +150,26 @@ TEST_F(SessionAnswers, ScansOutOfOrderAndTwice) {
   other.points[0].x() += 1.0F;
   EXPECT_THAT(ask(scan_header(0, other), payload_of(other)), HasSubstr("was another one"));
   EXPECT_EQ(survey_.views().size(), 1U);
+}
+
+TEST_F(SessionAnswers, WarnOfPosesThatAreWrong) {
+  const geometry::Scan first = rehearsal_.scan(survey_);
+  ask(scan_header(0, first), payload_of(first));
+  geometry::Scan scan = rehearsal_.scan(survey_);
+  Eigen::Isometry3d jump = Eigen::Isometry3d::Identity();
+  jump.translation() = 0.1 * scan.world_from_sensor.linear().col(0);
+  const geometry::Scan wrong = corrected(scan, jump);
+  const std::string answer = ask(scan_header(1, wrong), payload_of(wrong));
+  EXPECT_THAT(answer, HasSubstr("\"warning\":\"pose\""));
+  EXPECT_THAT(answer, HasSubstr("\"scans\":1"));
+  EXPECT_THAT(ask(scan_header(1, wrong), payload_of(wrong)), HasSubstr("\"is_new\":false"));
+  nlohmann::ordered_json header = scan_header(1, scan);
+  header["pose_sigma"] = {0.01, "x"};
+  EXPECT_THAT(ask(header, payload_of(scan)), HasSubstr("pose_sigma"));
+  header["pose_sigma"] = {0.01, 0.1};
+  EXPECT_THAT(ask(header, payload_of(scan)), Not(HasSubstr("warning")));
+  EXPECT_THAT(ask(scan_header(1, wrong), payload_of(wrong)), HasSubstr("\"is_new\":false"));
+  EXPECT_EQ(survey_.views().size(), 2U);
 }
 
 TEST_F(SessionAnswers, RefusalsTwiceAreOne) {

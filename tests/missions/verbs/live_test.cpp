@@ -124,6 +124,24 @@ TEST_F(LiveVerbs, TakeTheSameCallTwice) {
   EXPECT_THAT(run_skycap(verb("next", call)).err, HasSubstr("known already"));
 }
 
+TEST_F(LiveVerbs, WarnOfAWrongPose) {
+  const geometry::View view = geometry::look_at({1.6, 0.7, 0.8}, {0.0, 0.0, 0.3});
+  answer(measured(view, 0));
+  std::vector<std::string> call = measured(view, 1);
+  call.back() = measured(geometry::look_at({1.6, 0.8, 0.8}, {0.0, 0.1, 0.3}), 2).back();
+  const json wrong = answer(call, 12);
+  EXPECT_EQ(wrong["warning"], "pose");
+  EXPECT_EQ(wrong["scans"], 1);
+  EXPECT_GT(wrong["pose"]["shift_m"].get<double>(), 0.03);
+  const ProgramRun run = run_skycap(verb("next"));
+  EXPECT_EQ(run.exit_code, 12);
+  EXPECT_THAT(run.out, HasSubstr("warning: pose: the scan is set aside"));
+  call.insert(call.end(), {"--pose-sigma", "0.1 1"});
+  EXPECT_FALSE(answer(call).contains("warning"));
+  call.back() = "0.1";
+  EXPECT_THAT(run_skycap(verb("next", call)).err, HasSubstr("metres degrees"));
+}
+
 TEST_F(LiveVerbs, SayWhatIsMissing) {
   const auto refusal = [&](const std::vector<std::string>& arguments) {
     const ProgramRun run = run_skycap(arguments);

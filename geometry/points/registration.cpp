@@ -1,0 +1,191 @@
+#include "geometry/points/registration.h"
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include <Eigen/Eigenvalues>
+
+namespace skycap::geometry {
+namespace {
+
+using Eigen::Isometry3d;
+using Eigen::Vector3d;
+using Vector6d = Eigen::Matrix<double, 6, 1>;
+using Matrix6d = Eigen::Matrix<double, 6, 6>;
+
+/// A patch where it is now, and its partner.
+struct Match {
+  Vector3d point, normal;
+  double error;      // n . (p - q)
+  double deviation;  // the partner's
+  double variance;   // of both
+};
+
+std::vector<Match> matches_of(std::span<const SurfacePatch> patches, const Isometry3d& correction,
+                              SurfaceMap& map, double reach) {
+  std::vector<Match> matches;
+  matches.reserve(patches.size());
+  for (const SurfacePatch& patch : patches) {
+    const SurfacePatch moved{correction * patch.mean, correction.linear() * patch.normal,
+                             patch.deviation};
+    const SurfacePatch* there = map.nearest(moved, reach);
+    if (there == nullptr) continue;
+    const Vector3d way = moved.mean - there->mean;
+    const double error = there->normal.dot(way);
+    // Beside what is known its planes go on as far as they were seen, and not farther.
+    if ((way - error * there->normal).norm() > map.radius()) continue;
+    matches.push_back({moved.mean, there->normal, error, there->deviation,
+                       patch.deviation * patch.deviation + there->deviation * there->deviation});
+  }
+  return matches;
+}
+
+template <typename Value>
+double median(const std::vector<Match>& matches, Value value) {
+  std::vector<double> values;
+  values.reserve(matches.size());
+  for (const Match& match : matches) values.push_back(value(match));
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::ranges::nth_element(values, middle);
+  return *middle;
+}
+
+double median_error(const std::vector<Match>& matches) {
+  return median(matches, [](const Match& match) { return std::abs(match.error); });
+}
+
+/// Middle and size of what is matched: the units of a step.
+struct Frame {
+  Vector3d middle = Vector3d::Zero();
+  double size = 0.0;
+};
+
+Frame frame_of(const std::vector<Match>& matches) {
+  Frame frame;
+  for (const Match& match : matches) frame.middle += match.point;
+  const auto count = static_cast<double>(matches.size());
+  frame.middle /= count;
+  double squares = 0.0;
+  for (const Match& match : matches) squares += (match.point - frame.middle).squaredNorm();
+  frame.size = std::sqrt(squares / count);
+  return frame;
+}
+
+/// The normal equations, divided by the sum of the weights.
+struct Equations {
+  Matrix6d information = Matrix6d::Zero();
+  Vector6d pull = Vector6d::Zero();
+};
+
+/// What makes a match an outlier, and what flat is [m].
+struct Scales {
+  double error;     // standard deviation that errors have at least
+  double flatness;  // and patches
+};
+
+Equations equations_of(const std::vector<Match>& matches, const Frame& frame,
+                       const Scales& scales) {
+  constexpr double normal_deviation = 1.4826, tukey = 4.685;
+  const double scale = tukey * std::max(normal_deviation * median_error(matches), scales.error);
+  Equations equations;
+  double sum = 0.0;
+  for (const Match& match : matches) {
+    const double share = match.error / scale;
+    if (std::abs(share) >= 1.0) continue;
+    // A patch round an edge is no plane, though it may be flat enough for one.
+    const double flatness = 1.0 / (match.variance + scales.flatness * scales.flatness);
+    const double weight = flatness * (1.0 - share * share) * (1.0 - share * share);
+    Vector6d row;
+    row << match.normal, (match.point - frame.middle).cross(match.normal) / frame.size;
+    equations.information += weight * row * row.transpose();
+    equations.pull -= weight * match.error * row;
+    sum += weight;
+  }
+  equations.information /= sum;
+  equations.pull /= sum;
+  return equations;
+}
+
+using Eigenvectors = Eigen::SelfAdjointEigenSolver<Matrix6d>;
+
+RigidDirection direction_of(const Eigenvectors& axes, int k, const Frame& frame) {
+  const Vector6d axis = axes.eigenvectors().col(k);
+  return {.displacement = axis.head<3>(),
+          .turn = axis.tail<3>() / frame.size,
+          .information = axes.eigenvalues()[k]};
+}
+
+/// A displacement of `frame.middle` and a turn about it.
+Isometry3d motion(const Vector6d& step, const Frame& frame) {
+  const Vector3d turn = step.tail<3>() / frame.size;
+  const double angle = turn.norm();
+  Isometry3d motion = Isometry3d::Identity();
+  if (angle > 0.0) motion.linear() = Eigen::AngleAxisd(angle, turn / angle).toRotationMatrix();
+  motion.translation() = frame.middle + step.head<3>() - motion.linear() * frame.middle;
+  return motion;
+}
+
+/// The Gauss-Newton step along what the surface shows.
+Vector6d step_of(const Equations& equations) {
+  const Eigenvectors axes(equations.information);
+  Vector6d step = Vector6d::Zero();
+  for (int k = 0; k < 6; ++k) {
+    if (!RigidDirection{.information = axes.eigenvalues()[k]}.is_observable()) continue;
+    const Vector6d axis = axes.eigenvectors().col(k);
+    step += axis * (axis.dot(equations.pull) / axes.eigenvalues()[k]);
+  }
+  return step;
+}
+
+/// How far the correction goes along each direction.
+void measure(Registration& found, const Equations& equations, const Frame& frame) {
+  const Eigenvectors axes(equations.information);
+  const Eigen::AngleAxisd turn(found.correction.linear());
+  Vector6d moved;
+  moved << found.correction * found.middle - found.middle, frame.size * turn.angle() * turn.axis();
+  for (int k = 0; k < 6; ++k) {
+    RigidDirection& direction = found.directions[static_cast<std::size_t>(k)];
+    direction = direction_of(axes, k, frame);
+    direction.amount = axes.eigenvectors().col(k).dot(moved);
+  }
+}
+
+}  // namespace
+
+Registration register_scan(std::span<const SurfacePatch> patches, SurfaceMap& map, double reach,
+                           std::size_t least_matches) {
+  constexpr int most_rounds = 12;  // of each stage
+  const double radius = map.radius(), last = std::min(reach, 2.0 * radius);
+  // While the scan is far from its place, what one plane says must not make outliers of the others.
+  const auto coarse = [&](double near) { return Scales{near / 16.0, 0.03 * radius}; };
+  const Scales fine{0.01 * radius, 0.03 * radius};
+  Registration found;
+  std::vector<Match> matches = matches_of(patches, found.correction, map, reach);
+  const auto is_too_few = [&] { return matches.size() < std::max<std::size_t>(least_matches, 1); };
+  if (is_too_few()) return {.matches = matches.size()};
+  found.first_error = median_error(matches);
+  const auto settle = [&](const Scales& scales) {
+    for (int round = 0; round < most_rounds && !is_too_few(); ++round) {
+      const Frame frame = frame_of(matches);
+      const Vector6d step = step_of(equations_of(matches, frame, scales));
+      found.correction = motion(step, frame) * found.correction;
+      matches = matches_of(patches, found.correction, map, reach);
+      if (step.norm() < 1e-4 * radius) break;
+    }
+  };
+  for (; reach > last; reach = std::max(last, 0.5 * reach)) settle(coarse(reach));
+  settle(coarse(reach));
+  settle(fine);
+  if (is_too_few()) return {.matches = matches.size(), .first_error = found.first_error};
+  const Frame frame = frame_of(matches);
+  found.matches = matches.size();
+  found.size = frame.size;
+  found.middle = found.correction.inverse() * frame.middle;
+  found.error = median_error(matches);
+  found.deviation = median(matches, [](const Match& match) { return match.deviation; });
+  measure(found, equations_of(matches, frame, fine), frame);
+  return found;
+}
+
+}  // namespace skycap::geometry
