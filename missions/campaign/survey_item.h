@@ -19,6 +19,8 @@ struct Setup {
   const benchmark::Contestant* contestant = nullptr;
   file::Mission mission;
   std::string fingerprint;  ///< fingerprint_of() all this
+  /// Keeps the scene's truth for other tasks; empty: nothing does.
+  std::filesystem::path truth_file = {};
 
   /// Where the mission's relative paths start.
   std::filesystem::path folder() const { return file.parent_path(); }
