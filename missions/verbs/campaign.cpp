@@ -1,8 +1,14 @@
 #include <algorithm>
+#include <chrono>
+#include <condition_variable>
 #include <csignal>
+#include <cstdlib>
 #include <memory>
+#include <mutex>
 #include <optional>
+#include <stop_token>
 #include <string>
+#include <thread>
 #include <utility>
 #include <vector>
 
@@ -234,8 +240,33 @@ class CampaignVerb {
   std::vector<std::size_t> missing_;
 };
 
+/// Ends the program when it does not end by itself soon after a signal: a large scene that is being
+/// made ready cannot be stopped. Nothing is lost by it, since results appear whole by one renaming.
+class LastResort {
+ public:
+  explicit LastResort(const Console& console) {
+    if (console.ending_signal == nullptr) return;
+    watcher_ = std::jthread([this, &console](const std::stop_token& over) {
+      const std::stop_callback told(console.stop, [this] {
+        const std::lock_guard guard(mutex_);
+        changed_.notify_all();
+      });
+      std::unique_lock lock(mutex_);
+      if (!changed_.wait(lock, over, [&] { return console.stop.stop_requested(); })) return;
+      changed_.wait_for(lock, over, std::chrono::milliseconds(1500), [] { return false; });
+      if (!over.stop_requested()) std::_Exit(interrupted_exit_code(console));
+    });
+  }
+
+ private:
+  std::mutex mutex_;
+  std::condition_variable_any changed_;
+  std::jthread watcher_;
+};
+
 int campaign_verb(const CampaignOptions& options, const Console& console) {
   const HoldsResults results(console);
+  const LastResort last_resort(console);
   return CampaignVerb(options, console).run();
 }
 
