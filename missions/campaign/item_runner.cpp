@@ -5,6 +5,7 @@
 #include <memory>
 #include <mutex>
 #include <string>
+#include <string_view>
 #include <utility>
 
 #include "geometry/io/file.h"
@@ -103,6 +104,8 @@ class Runner {
                              benchmark::run_here(seconds_since(start))};
     const std::string text = benchmark::trial_record_json(item.setup->fingerprint, record);
     if (folder) {
+      // Whatever else is there was made of an earlier record.
+      folder->replace([](std::string_view name) { return !name.starts_with("."); });
       folder->write(item.record.filename().string(), text);
       folder->commit();
     } else {

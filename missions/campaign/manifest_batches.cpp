@@ -21,6 +21,7 @@ std::shared_ptr<const Setup> setup_of(const Manifest& manifest, const ManifestEn
   Setup setup = read_setup(file, contestant, "planners", entry.variant->changes);
   setup.title = entry.title;
   setup.truth_file = out / "scenes" / setup.fingerprint;
+  if (manifest.file().results == ItemResults::package) setup.fingerprint += " package";
   return std::make_shared<const Setup>(std::move(setup));
 }
 

@@ -73,7 +73,9 @@ std::shared_ptr<const PreparedScene> PreparedScenes::take(const Setup& setup,
   if (!slot.scene) {
     preparing();
     try {
-      scene::SurveyScene scene(setup.mission, setup.folder());
+      file::Mission mission = setup.mission;
+      mission.threads = threads_;
+      scene::SurveyScene scene(mission, setup.folder());
       benchmark::SceneTruth truth = truth_of(setup, scene, threads_, stop);
       if (stop.stop_requested()) return nullptr;  // the truth is of no use
       slot.scene.reset(new PreparedScene{std::move(scene), std::move(truth)});

@@ -50,10 +50,6 @@ int interrupted_exit_code(const Console& console) {
   return is_ended ? 128 + SIGTERM : 1;
 }
 
-std::string kind_of(const std::string& title, const std::string& planner) {
-  return planner.empty() ? title : title + " " + planner;
-}
-
 class CampaignVerb {
  public:
   CampaignVerb(const CampaignOptions& options, const Console& console)
@@ -101,22 +97,23 @@ class CampaignVerb {
                                 : fmt::format("{} items: {}", items, error.what()));
     };
     const campaign::RunEvents events{
-        .unfinished =
-            [&](const campaign::Item& item) {
-              progress_.expect(kind_of(item.setup->title, item.setup->contestant->title), 1);
-            },
+        .unfinished = [&](const campaign::Item& item) { progress_.expect(kind_of(item), 1); },
         .preparing =
             [&](const campaign::Setup& setup) {
               progress_.say(setup.title + ": measuring what could be covered at all");
             },
         .done =
             [&](const campaign::Item& item, const benchmark::TrialRecord& record) {
-              progress_.survey_done(kind_of(item.setup->title, item.setup->contestant->title),
-                                    record.run.wall_time);
+              progress_.survey_done(kind_of(item), record.run.wall_time);
             },
         .failed = [&](const campaign::Item&, const Error& error) { tell(error, 1); }};
     std::size_t done = 0;
+    if (runs) expect(range);
     const auto work = [&](const campaign::Batch& batch) {
+      // The runner says of how many this is not true.
+      for (const campaign::Item& item : batch.items) {
+        if (runs) progress_.expect_no_more(kind_of(item));
+      }
       const auto records = runs ? campaign::run_items(batch.items, threads_, console_.stop, events)
                                 : campaign::finished_items(batch.items);
       for (std::size_t i = 0; i < records.size(); ++i) done += records[i] ? 1 : 0;
@@ -125,6 +122,21 @@ class CampaignVerb {
     campaign::for_each_batch(manifest_, out_, range, {work, tell});
     progress_.clear();
     return done;
+  }
+
+  /// All of the range, before it is known which are finished.
+  void expect(const campaign::ItemRange& range) {
+    for (std::size_t i = 0; i < manifest_.entries(); ++i) {
+      const campaign::ManifestEntry entry = manifest_.entry(i);
+      progress_.expect(entry.title + " " + entry.planner,
+                       campaign::numbers_of_entry(manifest_, i, range).size());
+    }
+  }
+
+  /// What the progress line tells apart.
+  std::string kind_of(const campaign::Item& item) const {
+    const bool is_own = manifest_.file().planners.empty();
+    return item.setup->title + " " + (is_own ? "" : item.setup->contestant->name);
   }
 
   /// Takes the records of a batch in for the tables.

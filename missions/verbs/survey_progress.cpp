@@ -22,6 +22,12 @@ void SurveyProgress::expect(const std::string& kind, std::size_t surveys) {
   kinds_[kind].left += surveys;
 }
 
+void SurveyProgress::expect_no_more(const std::string& kind) {
+  const std::lock_guard lock(mutex_);
+  --total_;
+  --kinds_[kind].left;
+}
+
 void SurveyProgress::survey_done(const std::string& kind, double seconds) {
   const std::lock_guard lock(mutex_);
   Kind& own = kinds_[kind];

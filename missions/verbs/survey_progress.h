@@ -20,6 +20,7 @@ class SurveyProgress {
 
   void say(const std::string& text);
   void expect(const std::string& kind, std::size_t surveys);
+  void expect_no_more(const std::string& kind);  ///< one of them was done before
   void survey_done(const std::string& kind, double seconds);
   void clear();
 

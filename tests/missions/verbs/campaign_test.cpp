@@ -269,6 +269,13 @@ TEST_F(CampaignVerb, LeavesPackagesWhereTheyAreWanted) {
     EXPECT_TRUE(content_of(item / name) == content_of(folder_.path() / "plan" / name)) << name;
   }
   EXPECT_EQ(Json::parse(content_of(item / "summary.json"))["seed"], 3);
+  // Without packages the item is another one, and none is left that it has not made.
+  std::string figures = content_of(campaign_);
+  figures = figures.substr(0, figures.find("results:"));
+  std::ofstream(campaign_) << figures;
+  ASSERT_EQ(run("out").exit_code, 0);
+  EXPECT_TRUE(fs::exists(item / "item.json"));
+  EXPECT_FALSE(fs::exists(item / "summary.json"));
 }
 
 TEST_F(CampaignVerb, PrintsItsManifestAndRunsNothing) {
