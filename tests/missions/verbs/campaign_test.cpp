@@ -158,7 +158,7 @@ TEST_F(CampaignVerb, RunsNothingTwiceAndEverythingThatIsStale) {
     EXPECT_EQ(text != before.at(path), path == "quick/plain/oa/seed_1/item.json") << path;
   }
   const auto whole = records("out");
-  folder_.write("quick.yaml", tests::quick_mission("site: {origin: [51.7, -1.2, 60]}\n"));
+  folder_.write("quick.yaml", tests::quick_mission("site: {latitude_deg: 51.7, longitude_deg: -1.25, geoid_undulation: 46}\n"));
   ASSERT_EQ(run("out").exit_code, 0);
   for (const auto& [path, text] : records("out")) EXPECT_NE(text, whole.at(path)) << path;
 }
