@@ -34,6 +34,12 @@ using tests::run_skycap;
 using Json = nlohmann::json;
 using Clock = std::chrono::steady_clock;
 
+/// A survey of few views in a scene that is made ready soon.
+std::string small_mission(const std::string& more = "") {
+  std::string mission = tests::quick_mission(more);
+  return mission.replace(mission.find("longest_side"), 0, "detail: coarse, ");
+}
+
 class CampaignVerb : public testing::Test {
  protected:
   ProgramRun run(const std::string& out, const std::vector<std::string>& more = {}) const {
@@ -85,7 +91,7 @@ class CampaignVerb : public testing::Test {
 
   static constexpr int item_count = 8;  // 1 mission, 2 variants, 2 planners, 2 seeds
   tests::TestFolder folder_;
-  std::string mission_ = folder_.write("quick.yaml", tests::quick_mission());
+  std::string mission_ = folder_.write("quick.yaml", small_mission());
   std::string campaign_ = folder_.write("small.yaml",
                                         "missions: [quick.yaml]\n"
                                         "planners: [see++, oa]\n"
@@ -158,7 +164,9 @@ TEST_F(CampaignVerb, RunsNothingTwiceAndEverythingThatIsStale) {
     EXPECT_EQ(text != before.at(path), path == "quick/plain/oa/seed_1/item.json") << path;
   }
   const auto whole = records("out");
-  folder_.write("quick.yaml", tests::quick_mission("site: {latitude_deg: 51.7, longitude_deg: -1.25, geoid_undulation: 46}\n"));
+  folder_.write(
+      "quick.yaml",
+      small_mission("site: {latitude_deg: 51.7, longitude_deg: -1.25, geoid_undulation: 46}\n"));
   ASSERT_EQ(run("out").exit_code, 0);
   for (const auto& [path, text] : records("out")) EXPECT_NE(text, whole.at(path)) << path;
 }
@@ -181,7 +189,7 @@ TEST_F(CampaignVerb, MeasuresAgainWhatIsDamaged) {
 // The model's content counts, not its name.
 TEST_F(CampaignVerb, RunsAgainWhatAnotherModelMade) {
   ASSERT_EQ(run_skycap({"model", "teapot", "--out", folder_ / "m.ply"}).exit_code, 0);
-  const std::string mission = tests::quick_mission();
+  const std::string mission = small_mission();
   folder_.write("quick.yaml",
                 std::string(mission).replace(mission.find("builtin:teapot"), 14, "m.ply"));
   ASSERT_EQ(run("out", {"--index", "0"}).exit_code, 0);
@@ -240,9 +248,9 @@ TEST_F(CampaignVerb, EndsSoonAndWholeWhenItIsToldTo) {
 
 TEST_F(CampaignVerb, GoesOnWithoutWhatCannotBeRun) {
   folder_.write("broken.yaml", "scene: {model: nothing.ply}\n");
-  folder_.write("lost.yaml",
-                std::string(tests::quick_mission())
-                    .replace(tests::quick_mission().find("builtin:teapot"), 14, "lost.ply"));
+  folder_.write(
+      "lost.yaml",
+      std::string(small_mission()).replace(small_mission().find("builtin:teapot"), 14, "lost.ply"));
   std::ofstream(campaign_) << "missions: [broken.yaml, lost.yaml, quick.yaml]\nplanners: [oa]\n"
                               "seeds: 1\nset: {limits.max_views: 3}\n";
   const ProgramRun result = run("out");
