@@ -29,14 +29,18 @@ struct Column {
   double PaperResult::*papers;
 };
 
-const std::vector<Column>& columns() {
-  static const std::vector<Column> all{
+std::vector<Column> columns(Times times) {
+  std::vector<Column> all{
       {"views", "Views", 1.0, "{:.1f}", &CellFigures::views, &PaperResult::views},
       {"coverage", "Coverage [%]", 0.01, "{:.1f}", &CellFigures::coverage, &PaperResult::coverage},
       {"planning_time_s", "Time [s]", 1.0, "{:.3g}", &CellFigures::planning_time,
        &PaperResult::planning_time},
       {"distance_m", "Distance [m]", 1.0, "{:.1f}", &CellFigures::distance,
        &PaperResult::distance}};
+  if (times == Times::left_out) {
+    std::erase_if(all,
+                  [](const Column& column) { return column.ours == &CellFigures::planning_time; });
+  }
   return all;
 }
 
@@ -99,7 +103,7 @@ Json json_of(const BenchmarkCell& cell, const std::vector<BenchmarkCell>& cells)
       std::ranges::count(cell.trials, survey::StopReason::complete, &Trial::stop_reason);
   const CellFigures figures = figures_of(cell);
   const auto paper = paper_result(cell.mission, cell.planner);
-  for (const Column& column : columns()) {
+  for (const Column& column : columns(Times::shown)) {
     const Statistic& ours = figures.*column.ours;
     json[column.key] = statistic_json(ours);
     if (!paper) continue;
@@ -146,11 +150,11 @@ std::string rule(std::size_t columns) {
 }
 
 /// Table 1 as printed: a row for each planner, four columns for each model.
-std::string table_1(const std::vector<BenchmarkCell>& cells) {
+std::string table_1(const std::vector<BenchmarkCell>& cells, Times times) {
   const auto missions = distinct(cells, &BenchmarkCell::mission);
   std::vector<std::string> head{"planner"};
   for (const std::string& mission : missions) {
-    for (const Column& column : columns()) head.push_back(mission + ": " + column.title);
+    for (const Column& column : columns(times)) head.push_back(mission + ": " + column.title);
   }
   std::string text = row(head) + rule(head.size());
   for (const std::string& planner : distinct(cells, &BenchmarkCell::planner)) {
@@ -158,7 +162,7 @@ std::string table_1(const std::vector<BenchmarkCell>& cells) {
     for (const std::string& mission : missions) {
       const BenchmarkCell* cell = cell_of(cells, mission, planner);
       const auto paper = paper_result(mission, planner);
-      for (const Column& column : columns()) {
+      for (const Column& column : columns(times)) {
         std::string entry = "-";
         if (cell && !cell->trials.empty()) {
           entry = formatted(column.format, (figures_of(*cell).*column.ours).mean / column.unit);
@@ -185,9 +189,10 @@ std::string with_certainty(const Column& column, const Statistic& ours,
   return entry;
 }
 
-std::string details(const std::vector<BenchmarkCell>& cells, const std::string& mission) {
+std::string details(const std::vector<BenchmarkCell>& cells, const std::string& mission,
+                    Times times) {
   std::vector<std::string> head{"planner", "trials"};
-  for (const Column& column : columns()) head.emplace_back(column.title);
+  for (const Column& column : columns(times)) head.emplace_back(column.title);
   head.insert(head.end(), {"of the visible surface [%]", "of the attainable [%]"});
   std::string text = row(head) + rule(head.size());
   for (const BenchmarkCell& cell : cells) {
@@ -195,7 +200,7 @@ std::string details(const std::vector<BenchmarkCell>& cells, const std::string& 
     const CellFigures figures = figures_of(cell);
     const auto paper = paper_result(mission, cell.planner);
     std::vector<std::string> line{title_of(cell.planner), std::to_string(cell.trials.size())};
-    for (const Column& column : columns()) {
+    for (const Column& column : columns(times)) {
       line.push_back(with_certainty(column, figures.*column.ours, paper));
     }
     line.push_back(figures.coverage_visible
@@ -211,7 +216,8 @@ std::string details(const std::vector<BenchmarkCell>& cells, const std::string& 
 
 /// What it takes each planner to come to the coverage of others, and the ratio to what it took
 /// them.
-std::string reach_table(const std::vector<BenchmarkCell>& cells, const std::string& mission) {
+std::string reach_table(const std::vector<BenchmarkCell>& cells, const std::string& mission,
+                        Times times) {
   std::string text;
   for (const Mark& mark : marks_of(cells, mission)) {
     const auto entry = [&](const Column& column, const Statistic& ours) {
@@ -226,7 +232,7 @@ std::string reach_table(const std::vector<BenchmarkCell>& cells, const std::stri
       std::vector<std::string> line{
           mark.title + ", " + formatted("{:.1f}", 100.0 * mark.coverage), title_of(cell.planner),
           std::to_string(reach ? reach->reached : 0) + " of " + std::to_string(cell.trials.size())};
-      for (const Column& column : columns()) {
+      for (const Column& column : columns(times)) {
         if (column.ours == &CellFigures::coverage) continue;
         line.push_back(!reach                               ? "-"
                        : column.ours == &CellFigures::views ? entry(column, reach->views)
@@ -238,9 +244,11 @@ std::string reach_table(const std::vector<BenchmarkCell>& cells, const std::stri
     }
   }
   if (text.empty()) return text;
-  return row({"coverage of [%]", "planner", "trials that reach it", "Views", "Time [s]",
-              "Distance [m]"}) +
-         rule(6) + text;
+  std::vector<std::string> head{"coverage of [%]", "planner", "trials that reach it"};
+  for (const Column& column : columns(times)) {
+    if (column.ours != &CellFigures::coverage) head.emplace_back(column.title);
+  }
+  return row(head) + rule(head.size()) + text;
 }
 
 /// All trials of a planner on the standard models.
@@ -294,9 +302,9 @@ std::string results_json(const std::vector<BenchmarkCell>& cells) {
   return file::json_text(json);
 }
 
-std::string table_1_csv(const std::vector<BenchmarkCell>& cells) {
+std::string table_1_csv(const std::vector<BenchmarkCell>& cells, Times times) {
   std::string csv = "mission,planner,trials";
-  for (const Column& column : columns()) {
+  for (const Column& column : columns(times)) {
     for (const char* part : {"", "_sd", "_half_width_95", "_paper", "_ratio"}) {
       csv += std::string(",") + column.key + part;
     }
@@ -307,7 +315,7 @@ std::string table_1_csv(const std::vector<BenchmarkCell>& cells) {
     const CellFigures figures = figures_of(cell);
     const auto paper = paper_result(cell.mission, cell.planner);
     csv += cell.mission + "," + cell.planner + "," + std::to_string(cell.trials.size());
-    for (const Column& column : columns()) {
+    for (const Column& column : columns(times)) {
       const Statistic& ours = figures.*column.ours;
       csv += "," + file::exact_text(ours.mean) + "," + file::exact_text(ours.deviation) + ",";
       if (std::isfinite(ours.half_width_95)) csv += file::exact_text(ours.half_width_95);
@@ -321,10 +329,10 @@ std::string table_1_csv(const std::vector<BenchmarkCell>& cells) {
   return csv;
 }
 
-std::string all_trials_csv(const std::vector<BenchmarkCell>& cells) {
+std::string all_trials_csv(const std::vector<BenchmarkCell>& cells, Times times) {
   std::string csv;
   for (const BenchmarkCell& cell : cells) {
-    const std::string lines = trials_csv(cell.trials);
+    const std::string lines = trials_csv(cell.trials, times);
     const std::size_t end_of_head = lines.find('\n') + 1;
     if (csv.empty()) csv = "mission,planner," + lines.substr(0, end_of_head);
     for (std::size_t begin = end_of_head; begin < lines.size();) {
@@ -336,17 +344,19 @@ std::string all_trials_csv(const std::vector<BenchmarkCell>& cells) {
   return csv;
 }
 
-std::string report_markdown(const std::vector<BenchmarkCell>& cells) {
+std::string report_markdown(const std::vector<BenchmarkCell>& cells, const std::string& title,
+                            Times times) {
   std::string text =
-      "# Benchmark\n\n"
+      "# " + title +
+      "\n\n"
       "Means over the trials; in brackets the SEE++ paper's (100 trials). ± is the half width of "
       "the mean's 95 % interval, sd the standard deviation over the trials, and × the ratio to the "
       "paper. docs/benchmark.md explains the figures.\n\n"
       "## Table 1\n\n" +
-      table_1(cells);
+      table_1(cells, times);
   for (const std::string& mission : distinct(cells, &BenchmarkCell::mission)) {
-    text += "\n### " + mission + "\n\n" + details(cells, mission);
-    const std::string reach = reach_table(cells, mission);
+    text += "\n### " + mission + "\n\n" + details(cells, mission, times);
+    const std::string reach = reach_table(cells, mission, times);
     if (!reach.empty())
       text += "\nUntil a coverage is reached; × is the ratio to all of its survey:\n\n" + reach;
   }

@@ -3,8 +3,10 @@
 #include <algorithm>
 #include <utility>
 
+#include "geometry/error.h"
 #include "missions/file/planner_titles.h"
 #include "missions/run/omniscient.h"
+#include "missions/run/survey_runner.h"
 
 namespace skycap::missions::benchmark {
 namespace {
@@ -15,20 +17,19 @@ Contestant contestant_of(const file::PlannerTitle& planner) {
           .title = std::string(planner.title),
           .is_in_all = planner.name != file::PlannerName::skycap,  // not of the paper
           .is_volumetric = planner.metric.has_value(),
-          .run = run_trial};
+          .survey = [](const file::Mission& mission, const scene::SurveyScene& scene,
+                       std::uint64_t seed, std::stop_token stop) {
+            return run::run_survey(mission, scene, seed, 1, std::move(stop));
+          }};
 }
 
 /// The reference that knows the scene.
 Contestant omniscient() {
-  const auto run = [](const file::Mission& mission, const scene::SurveyScene& scene,
-                      const SceneTruth& truth, std::uint64_t seed,
-                      std::stop_token stop) -> std::optional<Trial> {
-    const run::SurveyRecord record =
-        run::survey_omnisciently(mission, scene, seed, 1, {}, std::move(stop));
-    if (record.stop_reason == survey::StopReason::interrupted) return std::nullopt;
-    return trial_of(record, truth);
+  const auto survey = [](const file::Mission& mission, const scene::SurveyScene& scene,
+                         std::uint64_t seed, std::stop_token stop) {
+    return run::survey_omnisciently(mission, scene, seed, 1, {}, std::move(stop));
   };
-  return {.name = "omniscient", .title = "Omniscient", .is_in_all = false, .run = run};
+  return {.name = "omniscient", .title = "Omniscient", .is_in_all = false, .survey = survey};
 }
 
 }  // namespace
@@ -44,6 +45,23 @@ const std::vector<Contestant>& contestants() {
     return list;
   }();
   return all;
+}
+
+std::vector<const Contestant*> contestants_named(const std::vector<std::string>& names) {
+  std::vector<const Contestant*> chosen;
+  std::string known;
+  const bool has_all = std::ranges::find(names, "all") != names.end();
+  for (const Contestant& contestant : contestants()) {
+    known += (known.empty() ? "" : ", ") + contestant.name;
+    const bool is_named = std::ranges::find(names, contestant.name) != names.end();
+    if (is_named || (has_all && contestant.is_in_all)) chosen.push_back(&contestant);
+  }
+  for (const std::string& name : names) {
+    if (name == "all" || find_contestant(name)) continue;
+    throw Error(ErrorKind::bad_usage,
+                "there is no planner '" + name + "'; give all or some of " + known);
+  }
+  return chosen;
 }
 
 const Contestant* find_contestant(std::string_view name) {

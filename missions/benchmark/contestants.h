@@ -3,14 +3,13 @@
 
 #include <cstdint>
 #include <functional>
-#include <optional>
 #include <stop_token>
 #include <string>
 #include <string_view>
 #include <vector>
 
-#include "missions/benchmark/trials.h"
 #include "missions/file/mission.h"
+#include "missions/run/survey_record.h"
 #include "missions/scene/survey_scene.h"
 
 namespace skycap::missions::benchmark {
@@ -21,15 +20,19 @@ struct Contestant {
   bool is_in_all = true;       ///< whether `--planners all` names it
   bool is_volumetric = false;  ///< whether its view limit is the most views that SEE needed
 
-  /// Surveys a mission in one thread; nothing if it was interrupted. The start and the sensor's
-  /// noise must follow from the seed alone. Called from several threads.
-  std::function<std::optional<Trial>(const file::Mission&, const scene::SurveyScene&,
-                                     const SceneTruth&, std::uint64_t seed, std::stop_token)>
-      run;
+  /// Surveys a mission in one thread. The start and the sensor's noise must follow from the seed
+  /// alone. Called from several threads.
+  std::function<run::SurveyRecord(const file::Mission&, const scene::SurveyScene&,
+                                  std::uint64_t seed, std::stop_token)>
+      survey;
 };
 
 /// In the order of the paper's tables, then our own.
 const std::vector<Contestant>& contestants();
+
+/// Those of some names, in the same order; "all" stands for those that are in all. Throws
+/// Error{bad_usage} with the known ones if there is none of a name.
+std::vector<const Contestant*> contestants_named(const std::vector<std::string>& names);
 
 /// The contestant of that name, or null.
 const Contestant* find_contestant(std::string_view name);

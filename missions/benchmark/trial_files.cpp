@@ -1,40 +1,58 @@
 #include "missions/benchmark/trial_files.h"
 
-#include <algorithm>
-#include <mutex>
+#include <array>
 #include <span>
-#include <utility>
 
 #include <nlohmann/json.hpp>
+#include <sys/resource.h>
+#include <unistd.h>
 
 #include "geometry/error.h"
 #include "geometry/io/file.h"
 #include "geometry/io/json.h"
-#include "geometry/parallel.h"
 #include "missions/derived/survey_settings.h"
 #include "missions/file/json_text.h"
+#include "missions/scene/scene_source.h"
 #include "missions/scene/sha256.h"
 #include "missions/version.h"
 
 namespace skycap::missions::benchmark {
 
+namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 
-std::string trial_fingerprint(const file::Mission& mission, const std::string& contestant) {
+std::string trial_fingerprint(const file::Mission& mission, const std::string& contestant,
+                              const fs::path& folder) {
   std::string inputs = std::string(version) + "\n" + contestant;
   for (const auto& [key, value] : derived::survey_settings(mission)) {
     inputs.append("\n").append(key).append(" ").append(value);
   }
+  for (const fs::path& file : scene::files_of(mission, folder)) {
+    std::error_code ignored;  // what is missing is refused when the scene is made ready
+    const bool is_there = fs::is_regular_file(file, ignored);
+    inputs.append("\n").append(is_there ? scene::sha256_of_file(file) : "-");
+  }
   return scene::sha256(std::as_bytes(std::span(inputs)));
 }
 
-std::optional<Trial> finished_trial(const std::filesystem::path& file,
-                                    const std::string& fingerprint) {
-  if (!std::filesystem::exists(file)) return std::nullopt;
+TrialRun run_here(double wall_time) {
+  std::array<char, 256> host{};
+  ::gethostname(host.data(), host.size() - 1);
+  rusage usage{};
+  ::getrusage(RUSAGE_SELF, &usage);
+  constexpr std::size_t unit = 1024;  // of ru_maxrss on Linux [byte]
+  return {host.data(), wall_time, unit * static_cast<std::size_t>(usage.ru_maxrss)};
+}
+
+std::optional<TrialRecord> finished_trial(const fs::path& file, const std::string& fingerprint) {
+  if (!fs::exists(file)) return std::nullopt;
   try {
     const Json json = geometry::parse_json<Json>(geometry::read_file(file));
     if (json.at("fingerprint") != fingerprint) return std::nullopt;
-    return parse_trial(json.at("trial").dump());
+    const Json& run = json.at("run");
+    return TrialRecord{parse_trial(json.at("trial").dump()),
+                       {run.at("host").get<std::string>(), run.at("wall_time_s").get<double>(),
+                        run.at("peak_memory_bytes").get<std::size_t>()}};
   } catch (const nlohmann::json::exception&) {
     return std::nullopt;  // not ours: it is overwritten
   } catch (const Error&) {
@@ -42,40 +60,13 @@ std::optional<Trial> finished_trial(const std::filesystem::path& file,
   }
 }
 
-void write_trial(const std::filesystem::path& file, const std::string& fingerprint,
-                 const Trial& trial) {
-  geometry::write_file(file, file::json_text({{"fingerprint", fingerprint},
-                                              {"trial", Json::parse(trial_json(trial))}}));
-}
-
-std::vector<Trial> run_trials(const file::Mission& mission, const scene::SurveyScene& scene,
-                              std::size_t count, unsigned threads,
-                              const std::filesystem::path& folder, std::stop_token stop,
-                              const std::function<void(const Trial&)>& report) {
-  const std::string fingerprint = trial_fingerprint(mission, "plan");
-  const auto file_of = [&](std::size_t i) {
-    return folder / ("seed_" + std::to_string(mission.seed + i) + ".json");
-  };
-  std::vector<std::optional<Trial>> slots(count);
-  for (std::size_t i = 0; i < count; ++i) slots[i] = finished_trial(file_of(i), fingerprint);
-  const bool is_over =
-      std::ranges::all_of(slots, [](const auto& slot) { return slot.has_value(); });
-  const SceneTruth truth = is_over ? SceneTruth{} : scene_truth(scene, threads, stop);
-  std::mutex reporting;
-  geometry::parallel_for(count, threads, [&](std::size_t i) {
-    if (slots[i] || stop.stop_requested()) return;
-    slots[i] = run_trial(mission, scene, truth, mission.seed + i, stop);
-    if (!slots[i]) return;
-    write_trial(file_of(i), fingerprint, *slots[i]);
-    if (!report) return;
-    const std::lock_guard lock(reporting);
-    report(*slots[i]);
-  });
-  std::vector<Trial> trials;
-  for (std::optional<Trial>& trial : slots) {
-    if (trial) trials.push_back(std::move(*trial));
-  }
-  return trials;
+std::string trial_record_json(const std::string& fingerprint, const TrialRecord& record) {
+  return file::json_text({{"fingerprint", fingerprint},
+                          {"run",
+                           {{"host", record.run.host},
+                            {"wall_time_s", record.run.wall_time},
+                            {"peak_memory_bytes", record.run.peak_memory}}},
+                          {"trial", Json::parse(trial_json(record.trial))}});
 }
 
 }  // namespace skycap::missions::benchmark

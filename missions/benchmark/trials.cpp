@@ -152,13 +152,6 @@ Trial trial_of(const run::SurveyRecord& record, const SceneTruth& truth) {
   return trial;
 }
 
-std::optional<Trial> run_trial(const file::Mission& mission, const scene::SurveyScene& scene,
-                               const SceneTruth& truth, std::uint64_t seed, std::stop_token stop) {
-  const run::SurveyRecord record = run::run_survey(mission, scene, seed, 1, std::move(stop));
-  if (record.stop_reason == survey::StopReason::interrupted) return std::nullopt;
-  return trial_of(record, truth);
-}
-
 std::string trial_json(const Trial& trial) {
   Json json{{"seed", trial.seed},
             {"stop_reason", run::name_of(trial.stop_reason)},
@@ -206,16 +199,17 @@ Trial parse_trial(const std::string& text) {
   }
 }
 
-std::string trials_csv(const std::vector<Trial>& trials) {
+std::string trials_csv(const std::vector<Trial>& trials, Times times) {
+  const bool has_times = times == Times::shown;
   std::string csv =
-      "seed,stop_reason,views,coverage,coverage_visible,coverage_ceiling,distance_m,points,"
-      "planning_time_s\n";
+      "seed,stop_reason,views,coverage,coverage_visible,coverage_ceiling,distance_m,points";
+  csv += has_times ? ",planning_time_s\n" : "\n";
   for (const Trial& trial : trials) {
     csv += std::to_string(trial.seed) + "," + run::name_of(trial.stop_reason) + "," +
            std::to_string(trial.views) + "," + file::exact_text(trial.coverage.all) + "," +
            csv_of(trial.coverage.visible) + "," + csv_of(trial.coverage.ceiling) + "," +
-           file::exact_text(trial.distance) + "," + std::to_string(trial.points) + "," +
-           file::exact_text(trial.planning_time) + "\n";
+           file::exact_text(trial.distance) + "," + std::to_string(trial.points);
+    csv += has_times ? "," + file::exact_text(trial.planning_time) + "\n" : "\n";
   }
   return csv;
 }

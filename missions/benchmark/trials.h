@@ -47,10 +47,6 @@ struct Trial {
   std::vector<ObservedTarget> targets;  ///< that were observed, in this order
 };
 
-/// One survey in one thread; nothing if `stop` interrupted it.
-std::optional<Trial> run_trial(const file::Mission& mission, const scene::SurveyScene& scene,
-                               const SceneTruth& truth, std::uint64_t seed, std::stop_token stop);
-
 /// The figures of a survey that is over.
 Trial trial_of(const run::SurveyRecord& record, const SceneTruth& truth);
 
@@ -68,8 +64,12 @@ struct Statistic {
 /// Zero deviation and an infinite half width for one number; `numbers` must not be empty.
 Statistic statistic(const std::vector<double>& numbers);
 
+/// Whether a table holds planning times. They are of the machine and of what else it did; all else
+/// is the same wherever a trial ran.
+enum class Times { shown, left_out };
+
 /// trials.csv: a line for each trial.
-std::string trials_csv(const std::vector<Trial>& trials);
+std::string trials_csv(const std::vector<Trial>& trials, Times times = Times::shown);
 
 /// trials.json: statistics, mean curves (a finished trial keeps its last coverage), each trial,
 /// and the mission's reference figures beside them.

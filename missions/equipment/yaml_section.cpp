@@ -67,6 +67,31 @@ std::string YamlSection::text(const std::string& key) {
   return value->text;
 }
 
+std::string YamlSection::text(const std::string& key, const std::string& fallback) {
+  return has(key) ? text(key) : fallback;
+}
+
+std::vector<std::string> YamlSection::texts(const std::string& key) {
+  const file::YamlNode* value = find(key);
+  std::vector<std::string> result;
+  if (value == nullptr) return result;
+  if (value->kind != file::YamlNode::Kind::list) fail(value->line, path_ + key, "must be a list");
+  for (const file::YamlNode& item : value->items) {
+    if (item.kind != file::YamlNode::Kind::scalar) {
+      fail(item.line, path_ + key, "must be a list of texts");
+    }
+    result.push_back(item.text);
+  }
+  return result;
+}
+
+std::vector<file::YamlEntry> YamlSection::entries(const std::string& key) {
+  const file::YamlNode* value = find(key);
+  if (value == nullptr) return {};
+  if (value->kind != file::YamlNode::Kind::map) fail(value->line, path_ + key, "must be a map");
+  return value->entries;
+}
+
 bool YamlSection::boolean(const std::string& key, bool fallback) {
   return has(key) ? choice<bool>(key, {{"true", true}, {"false", false}}) : fallback;
 }

@@ -29,6 +29,10 @@ class YamlSection {
   int integer(const std::string& key, int fallback);
   std::vector<double> numbers(const std::string& key);  ///< empty without the key
   std::string text(const std::string& key);
+  std::string text(const std::string& key, const std::string& fallback);
+  std::vector<std::string> texts(const std::string& key);  ///< of a list; empty without the key
+  /// Of a map whose keys are not known beforehand; empty without the key.
+  std::vector<file::YamlEntry> entries(const std::string& key);
   bool boolean(const std::string& key, bool fallback);
 
   template <typename Value>

@@ -2,9 +2,12 @@
 
 #include <array>
 #include <cerrno>
+#include <chrono>
+#include <csignal>
 #include <system_error>
 
 #include <fcntl.h>
+#include <poll.h>
 #include <spawn.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -25,10 +28,32 @@ std::vector<char*> arguments_of(const std::vector<std::string>& command) {
   return arguments;
 }
 
+/// What a program writes to a pipe until its end, or until nobody holds the pipe any more.
+std::string output_of(pid_t process, int pipe, const std::stop_token& stop) {
+  // The second signal is for those that take the first as a wish, as GNU parallel does.
+  constexpr std::chrono::milliseconds interval(300);
+  auto next_signal = std::chrono::steady_clock::now();
+  std::string output;
+  std::array<char, 4096> buffer{};
+  for (;;) {
+    if (stop.stop_requested() && std::chrono::steady_clock::now() >= next_signal) {
+      ::kill(process, SIGTERM);
+      next_signal = std::chrono::steady_clock::now() + interval;
+    }
+    pollfd wait{pipe, POLLIN, 0};
+    if (stop.stop_possible() && ::poll(&wait, 1, 100) <= 0) continue;
+    const ssize_t count = ::read(pipe, buffer.data(), buffer.size());
+    if (count < 0 && errno == EINTR) continue;
+    if (count <= 0) return output;
+    output.append(buffer.data(), static_cast<std::size_t>(count));
+  }
+}
+
 }  // namespace
 
 ProgramResult run_external_program(const std::vector<std::string>& command,
-                                   const std::filesystem::path& folder) {
+                                   const std::filesystem::path& folder,
+                                   const std::stop_token& stop) {
   std::array<int, 2> ends{};  // of the pipe: to read, to write
   if (::pipe2(ends.data(), O_CLOEXEC) != 0) check(errno, "pipe");
 
@@ -51,13 +76,7 @@ ProgramResult run_external_program(const std::vector<std::string>& command,
   }
 
   ProgramResult result;
-  std::array<char, 4096> buffer{};
-  for (;;) {
-    const ssize_t count = ::read(ends[0], buffer.data(), buffer.size());
-    if (count < 0 && errno == EINTR) continue;
-    if (count <= 0) break;
-    result.output.append(buffer.data(), static_cast<std::size_t>(count));
-  }
+  result.output = output_of(process, ends[0], stop);
   ::close(ends[0]);
   int status = 0;
   while (::waitpid(process, &status, 0) < 0 && errno == EINTR) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <stop_token>
 #include <string>
 #include <vector>
 
@@ -13,9 +14,11 @@ struct ProgramResult {
 };
 
 /// Runs a program, found by $PATH, in a folder, with nothing on its input, and waits for its end.
-/// No shell is involved. Throws std::system_error if the machine has no pipes left.
+/// No shell is involved. Once `stop` is requested it is sent SIGTERM, again and again until it
+/// ends. Throws std::system_error if the machine has no pipes left.
 ProgramResult run_external_program(const std::vector<std::string>& command,
-                                   const std::filesystem::path& folder);
+                                   const std::filesystem::path& folder,
+                                   const std::stop_token& stop = {});
 
 /// Starts a program in the same way and goes on without it, in a session of its own, so that it
 /// outlives the terminal; what it writes is dropped. False if there is no such program.

@@ -26,8 +26,16 @@ namespace {
 using Eigen::AngleAxisd;
 using Eigen::Vector3d;
 
+constexpr std::string_view builtin = "builtin:", stored = "model:";
+
+/// Of a model that is not built in.
+std::filesystem::path model_file(const file::SceneConfig& scene,
+                                 const std::filesystem::path& folder) {
+  return scene.model.starts_with(stored) ? find_model(scene.model.substr(stored.size()))
+                                         : folder / scene.model;
+}
+
 geometry::Mesh named_model(const file::SceneConfig& scene, const std::filesystem::path& folder) {
-  constexpr std::string_view builtin = "builtin:", stored = "model:";
   const std::string& model = scene.model;
   if (model.starts_with(builtin)) {
     sim::ModelOptions options;
@@ -35,11 +43,9 @@ geometry::Mesh named_model(const file::SceneConfig& scene, const std::filesystem
     if (scene.ground) options.has_ground = false;  // the one that is not judged takes its place
     return sim::builtin_model(model.substr(builtin.size()), options);
   }
-  if (model.starts_with(stored)) {
-    return geometry::read_mesh(find_model(model.substr(stored.size())));
-  }
-  const std::filesystem::path file = folder / model;
-  return geometry::is_mesh_file(file) ? geometry::read_mesh(file) : prior::read_surfaces(file);
+  const std::filesystem::path file = model_file(scene, folder);
+  return model.starts_with(stored) || geometry::is_mesh_file(file) ? geometry::read_mesh(file)
+                                                                   : prior::read_surfaces(file);
 }
 
 Vector3d middle_of_base(const geometry::Mesh& mesh) {
@@ -71,14 +77,11 @@ std::map<std::string, double> reflectances_of(const std::filesystem::path& file)
 /// The model in its own frame, with reflectances by the names of its materials.
 ReflectingScene model_of_materials(const file::SceneConfig& scene,
                                    const std::filesystem::path& folder) {
-  if (scene.model.starts_with("builtin:")) {
+  if (scene.model.starts_with(builtin)) {
     throw Error(ErrorKind::bad_config,
                 "scene.materials needs a model from a file; " + scene.model + " has no materials");
   }
-  constexpr std::string_view stored = "model:";
-  const std::filesystem::path file = scene.model.starts_with(stored)
-                                         ? find_model(scene.model.substr(stored.size()))
-                                         : folder / scene.model;
+  const std::filesystem::path file = model_file(scene, folder);
   const std::filesystem::path list = folder / *scene.materials;
   std::map<std::string, double> reflectances = reflectances_of(list);
   ReflectingScene result;
@@ -110,6 +113,19 @@ geometry::Mesh load_model(const file::SceneConfig& scene, const std::filesystem:
     throw Error(error.kind(), scene.model + ": " + error.what());
   }
   return mesh;
+}
+
+std::vector<std::filesystem::path> files_of(const file::Mission& mission,
+                                            const std::filesystem::path& folder) {
+  std::vector<std::filesystem::path> files;
+  if (mission.sensor.lidar && mission.sensor.lidar->ends_with(".yaml")) {
+    files.push_back(folder / *mission.sensor.lidar);
+  }
+  if (mission.scene.materials) files.push_back(folder / *mission.scene.materials);
+  if (!derived::is_truth_prior(mission) && !mission.scene.model.starts_with(builtin)) {
+    files.push_back(model_file(mission.scene, folder));
+  }
+  return files;
 }
 
 void place_model(const file::SceneConfig& scene, geometry::Mesh& model) {

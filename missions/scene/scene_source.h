@@ -17,6 +17,11 @@ namespace skycap::missions::scene {
 /// a mesh with a surface.
 geometry::Mesh load_model(const file::SceneConfig& scene, const std::filesystem::path& folder);
 
+/// The files that the mission's scanner and scene are read from, prior data aside. Throws
+/// Error{bad_file} for a model:NAME that is nowhere.
+std::vector<std::filesystem::path> files_of(const file::Mission& mission,
+                                            const std::filesystem::path& folder);
+
 /// Turns, scales and places a model as `scene` says. Throws Error{bad_geometry} if the model has
 /// no extent to be scaled by.
 void place_model(const file::SceneConfig& scene, geometry::Mesh& model);

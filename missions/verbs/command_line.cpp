@@ -356,6 +356,7 @@ int parse_and_run(const std::vector<std::string>& arguments, const Console& cons
     add_serve(app, console, action);
     add_finish(app, console, action);
     add_benchmark(app, console, action);
+    add_campaign(app, console, action);
     add_scan(app, console, action);
     add_check(app, console, action);
     add_export(app, console, action);
@@ -399,8 +400,9 @@ int parse_and_run(const std::vector<std::string>& arguments, const Console& cons
 int run_command_line(const std::vector<std::string>& arguments, const Console& console) {
   PrintableBuffer buffer(*console.out.rdbuf());
   std::ostream out(&buffer);
-  const int exit_code = parse_and_run(
-      arguments, {out, console.err, console.err_is_terminal, console.stop, console.results_held});
+  const int exit_code =
+      parse_and_run(arguments, {out, console.err, console.err_is_terminal, console.stop,
+                                console.results_held, console.ending_signal});
   if (out.flush()) return exit_code;
   return report_failure(console, "the results cannot be written to the standard output", 3);
 }

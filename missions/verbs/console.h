@@ -18,6 +18,7 @@ struct Console {
   std::stop_token stop = {};     ///< requested by Ctrl-C
   /// How many HoldsResults there are. While there is none, Ctrl-C ends the program at once.
   std::atomic<int>* results_held = nullptr;
+  const std::atomic<int>* ending_signal = nullptr;  ///< that requested the stop; zero before
 };
 
 /// Says what is amiss, in one line, where the verb goes on all the same.

@@ -18,10 +18,13 @@ namespace {
 /// Ctrl-C, what ends services and batch jobs, and a terminal that is closed.
 constexpr int ending_signals[] = {SIGINT, SIGTERM, SIGHUP};
 
-/// A signal handler may do next to nothing, but it may post a semaphore.
+/// A signal handler may do next to nothing, but it may post a semaphore and set a number.
 sem_t interrupted;
+std::atomic<int> ending_signal = 0;
+static_assert(std::atomic<int>::is_always_lock_free);
 
-extern "C" void on_interrupt(int) {
+extern "C" void on_interrupt(int signal_number) {
+  ending_signal = signal_number;
   ::sem_post(&interrupted);
   for (const int signal : ending_signals) std::signal(signal, SIG_DFL);  // the second one ends it
 }
@@ -56,7 +59,8 @@ int main(int argc, char** argv) {
 
   const std::vector<std::string> arguments(argv + 1, argv + argc);
   const int exit_code = skycap::missions::verbs::run_command_line(
-      arguments, {std::cout, std::cerr, is_terminal, stop.get_token(), &results_held});
+      arguments,
+      {std::cout, std::cerr, is_terminal, stop.get_token(), &results_held, &ending_signal});
   watcher.request_stop();
   ::sem_post(&interrupted);  // wakes the watcher, to end it
   return exit_code;

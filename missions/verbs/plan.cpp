@@ -1,13 +1,16 @@
+#include <memory>
 #include <string>
 #include <string_view>
+#include <utility>
+#include <vector>
 
 #include <fmt/format.h>
 
 #include "geometry/error.h"
 #include "geometry/io/output_folder.h"
-#include "geometry/parallel.h"
 #include "missions/benchmark/trial_files.h"
 #include "missions/benchmark/trials.h"
+#include "missions/campaign/item_runner.h"
 #include "missions/derived/resolved_mission.h"
 #include "missions/package/flight_report.h"
 #include "missions/package/package.h"
@@ -117,21 +120,44 @@ int plan_once(const PlanOptions& options, const file::Mission& mission,
   return went_through ? 0 : 1;
 }
 
+/// The surveys of all seeds; those that were finished before are not run again.
+std::vector<benchmark::Trial> run_trials(const PlanOptions& options, const file::Mission& mission,
+                                         const std::filesystem::path& folder,
+                                         const Console& console, ProgressLine& progress) {
+  const auto setup =
+      std::make_shared<const campaign::Setup>(campaign::own_setup(options.mission, mission));
+  std::vector<campaign::Item> items;
+  for (std::size_t i = 0; i < options.trials; ++i) {
+    const std::uint64_t seed = mission.seed + i;
+    items.push_back({setup, seed, folder / "items" / ("seed_" + std::to_string(seed) + ".json")});
+  }
+  std::size_t ended = 0;
+  const campaign::RunEvents events{
+      .unfinished = {},
+      .preparing =
+          [&](const campaign::Setup&) {
+            progress.show(mission.name + ": measuring what could be covered at all");
+          },
+      .done =
+          [&](const campaign::Item& item, const benchmark::TrialRecord& done) {
+            progress.show(fmt::format("{}: trial {} of {}, seed {}: {} views, {}", mission.name,
+                                      ++ended, options.trials, item.seed, done.trial.views,
+                                      percent(done.trial.coverage.all)));
+          },
+      .failed = {}};
+  std::vector<benchmark::Trial> trials;
+  for (auto& done : campaign::run_items(items, mission.threads, console.stop, events)) {
+    if (done) trials.push_back(std::move(done->trial));
+  }
+  return trials;
+}
+
 int plan_trials(const PlanOptions& options, const file::Mission& mission,
-                const scene::SurveyScene& scene, geometry::OutputFolder& folder,
-                const Console& console) {
+                geometry::OutputFolder& folder, const Console& console) {
   ProgressLine progress(console, options.is_quiet);
   const HoldsResults results(console);
-  std::size_t ended = 0;
-  progress.show(mission.name + ": measuring what could be covered at all");
-  const auto report = [&](const benchmark::Trial& trial) {
-    progress.show(mission.name + ": trial " + std::to_string(++ended) + " of " +
-                  std::to_string(options.trials) + ", seed " + std::to_string(trial.seed) + ": " +
-                  std::to_string(trial.views) + " views, " + percent(trial.coverage.all));
-  };
   const std::vector<benchmark::Trial> trials =
-      benchmark::run_trials(mission, scene, options.trials, mission.threads,
-                            folder.path() / "items", console.stop, report);
+      run_trials(options, mission, folder.path(), console, progress);
   progress.clear();
   folder.write("trials.csv", benchmark::trials_csv(trials));
   folder.write("trials.json",
@@ -156,13 +182,13 @@ int plan(const PlanOptions& options, const Console& console) {
   const file::Mission mission = derived::read_mission(options.mission, options.overrides);
   geometry::OutputFolder folder(
       options.out.value_or(std::filesystem::path("results") / mission.name));
+  if (options.trials > 0) return plan_trials(options, mission, folder, console);
   ProgressLine progress(console, options.is_quiet);
   progress.show(mission.name + ": making the scene ready");
   try {
     const scene::SurveyScene scene(mission, options.mission.parent_path());
     run::require_feasible(mission, scene, mission.threads);
-    return options.trials > 0 ? plan_trials(options, mission, scene, folder, console)
-                              : plan_once(options, mission, scene, folder, console);
+    return plan_once(options, mission, scene, folder, console);
   } catch (const Error& error) {
     // What goes wrong during the survey follows from the mission; say which.
     throw Error(error.kind(), options.mission.string() + ": " + error.what());

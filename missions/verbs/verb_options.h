@@ -33,6 +33,9 @@ CLI::Validator number_between(double least, double most);
 /// The verb that proposes a first mission for a site; its options stand in its source.
 void add_site(CLI::App& app, const Console& console, Action& action);
 
+/// The verb that runs campaigns; its options stand in its source.
+void add_campaign(CLI::App& app, const Console& console, Action& action);
+
 /// Makes the verb an action that runs it with the options that are given.
 template <class Options>
 void run(CLI::App& verb, std::shared_ptr<Options> options,

@@ -7,6 +7,8 @@
 #include "geometry/io/output_folder.h"
 #include "geometry/place/world.h"
 #include "missions/benchmark/trial_files.h"
+#include "missions/campaign/campaign_file.h"
+#include "missions/campaign/manifest.h"
 #include "missions/derived/resolved_mission.h"
 #include "missions/equipment/sensor_reader.h"
 #include "missions/equipment/vehicle_reader.h"
@@ -70,6 +72,23 @@ int run_summary(const std::uint8_t* bytes, std::size_t size) {
   });
 }
 
+/// Names of items lead nowhere but into the campaign's folder.
+int run_campaign(const std::uint8_t* bytes, std::size_t size) {
+  namespace campaign = missions::campaign;
+  return run_reader("c.yaml", [&] {
+    const campaign::Manifest manifest(campaign::parse_campaign(text_of(bytes, size), "c.yaml"));
+    require(manifest.size() > 0 && manifest.size() <= campaign::most_items, "items without bound");
+    for (const std::size_t number : {std::size_t{0}, manifest.size() - 1}) {
+      const campaign::ManifestLine line = manifest.line(number);
+      for (const auto& part : line.folder()) {
+        require(!part.empty() && part != "/" && !part.string().starts_with("."),
+                "an item out of its campaign: " + line.folder().string());
+      }
+      require(line.json().find('\n') == std::string::npos, "an item of two lines");
+    }
+  });
+}
+
 /// A trial that is damaged counts as not run: there is nothing to refuse.
 int run_trial(const std::uint8_t* bytes, std::size_t size) {
   const auto path = file_with("trial.json", text_of(bytes, size));
@@ -93,9 +112,10 @@ int run_journal(const std::uint8_t* bytes, std::size_t size) {
   return 0;
 }
 
-constexpr Reader readers[] = {{"mission", run_mission}, {"sensor", run_sensor},
-                              {"vehicle", run_vehicle}, {"summary", run_summary},
-                              {"trial", run_trial},     {"journal", run_journal}};
+constexpr Reader readers[] = {{"mission", run_mission},  {"sensor", run_sensor},
+                              {"vehicle", run_vehicle},  {"summary", run_summary},
+                              {"trial", run_trial},      {"journal", run_journal},
+                              {"campaign", run_campaign}};
 
 }  // namespace
 
