@@ -3,9 +3,10 @@
 /// At the edge of a near surface a pixel sees this one and the one behind, and many a camera
 /// returns a depth between the two: a flying pixel. It is told by its neighbours on opposite sides
 /// (along rows, columns and diagonals, one or two pixels away): one is much nearer, the other much
-/// farther, as on a surface that the line of sight meets at less than ten degrees, and by 3 % of the
-/// depth; but unlike on such a surface, beyond them depth goes on evenly. An isolated return has fewer than three others
-/// among the 24 pixels around it that a surface at more than ten degrees would put there.
+/// farther, as on a surface that the line of sight meets at less than ten degrees, and by 3 % of
+/// the depth; but unlike on such a surface, beyond them depth goes on evenly. An isolated return
+/// has fewer than three others among the 24 pixels around it that a surface at more than ten
+/// degrees would put there.
 #pragma once
 
 #include <cstddef>

@@ -296,19 +296,6 @@ void add_reconstruct(CLI::App& app, const Console& console, Action& action) {
   run(*verb, options, reconstruct_cloud, console, action);
 }
 
-void add_model(CLI::App& app, const Console& console, Action& action) {
-  CLI::App* verb = app.add_subcommand("model", "Obtain, write or render a scene model");
-  const auto options = std::make_shared<ModelOptions>();
-  verb->add_option("name", options->name,
-                   "teapot, bunny, dragon, radcliffe-camera, ..., a mesh, or a mission file")
-      ->required();
-  verb->add_option("--out", options->out, "Write the mesh to this PLY file");
-  verb->add_option("--detail", options->detail, "Of a builtin model: coarse, standard or fine")
-      ->check(CLI::IsMember({"coarse", "standard", "fine"}));
-  verb->add_option("--render", options->render, "Draw the model into this PNG file");
-  run(*verb, options, model, console, action);
-}
-
 void add_report(CLI::App& app, const Console& console, Action& action) {
   CLI::App* verb = app.add_subcommand("report", "Write the pages that show a folder of results");
   const auto options = std::make_shared<ReportOptions>();

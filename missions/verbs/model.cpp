@@ -11,6 +11,7 @@
 #include "missions/scene/model_store.h"
 #include "missions/scene/scene_source.h"
 #include "missions/scene/survey_scene.h"
+#include "missions/verbs/verb_options.h"
 #include "missions/verbs/verbs.h"
 #include "sim/models/models.h"
 #include "sim/scene/render.h"
@@ -115,6 +116,19 @@ int model(const ModelOptions& options, const Console& console) {
                              options.name, mesh.triangles.size(), size.x(), size.y(), size.z(),
                              geometry::surface_area(mesh));
   return 0;
+}
+
+void add_model(CLI::App& app, const Console& console, Action& action) {
+  CLI::App* verb = app.add_subcommand("model", "Obtain, write or render a scene model");
+  const auto options = std::make_shared<ModelOptions>();
+  verb->add_option("name", options->name,
+                   "teapot, bunny, dragon, radcliffe-camera, ..., a mesh, or a mission file")
+      ->required();
+  verb->add_option("--out", options->out, "Write the mesh to this PLY file");
+  verb->add_option("--detail", options->detail, "Of a builtin model: coarse, standard or fine")
+      ->check(CLI::IsMember({"coarse", "standard", "fine"}));
+  verb->add_option("--render", options->render, "Draw the model into this PNG file");
+  run(*verb, options, model, console, action);
 }
 
 }  // namespace skycap::missions::verbs

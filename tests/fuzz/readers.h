@@ -22,7 +22,8 @@ struct Reader {
 std::span<const Reader> surface_readers();  ///< meshes, clouds, measured free space
 std::span<const Reader> route_readers();    ///< autopilots' files, trajectories, parameters
 std::span<const Reader> prior_readers();    ///< city models
-std::span<const Reader> mission_readers();  ///< missions, campaigns, sensors, packages, trials, journals
+std::span<const Reader>
+mission_readers();  ///< missions, campaigns, sensors, packages, trials, journals
 
 /// The reader of that name, or null.
 const Reader* find_reader(std::string_view name);
