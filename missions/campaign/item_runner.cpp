@@ -119,7 +119,7 @@ class Runner {
     file::Mission mission = item.setup->mission;
     mission.seed = item.seed;
     const package::CoverageFigures coverage =
-        package::coverage_figures(survey, prepared.scene, 1, stop_);
+        package::coverage_figures(mission, survey, prepared.scene, 1, stop_);
     package::stage_package(mission, survey, coverage, 1, folder, stop_);
   }
 
