@@ -21,6 +21,7 @@ set(public_headers
   survey/planner.h
   survey/see/see.h
   survey/skycap/skycap_planner.h
+  survey/skycap/survey_belief.h
   survey/survey_loop.h
   survey/view_limits.h
   flight/export/export.h

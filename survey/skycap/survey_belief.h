@@ -34,6 +34,23 @@ struct SurveyBelief {
 };
 
 /// Fills in the area and the missing shares, by the patches.
-void add_up(SurveyBelief& belief);
+inline void add_up(SurveyBelief& belief) {
+  for (const BelievedPatch& patch : belief.patches) belief.area += patch.area;
+  for (const BelievedPatch& patch : belief.patches) {
+    const double missing = patch.area * (1.0 - patch.covered_share) / belief.area;
+    switch (patch.reason) {
+      case MissingReason::none:  // the rest that even well covered surface lacks
+      case MissingReason::seen_too_thinly:
+        belief.seen_too_thinly += missing;
+        break;
+      case MissingReason::never_seen:
+        belief.never_seen += missing;
+        break;
+      case MissingReason::unreachable:
+        belief.unreachable += missing;
+        break;
+    }
+  }
+}
 
 }  // namespace skycap::survey::skycap
