@@ -145,7 +145,7 @@ TEST(PriorSurvey, ATerrainIsTheGroundOfViewsPadsAndLegs) {
       flown_mission("prior: [{file: '" + file.string() + "', role: terrain, uncertainty: 0.2}]\n"),
       "m.yaml", {{"--set", "flight.takeoff", "[-75, 0, -3.75]"}});
   EXPECT_NEAR(derived::ground_at(mission, {40, 10}), slope(40), 1e-9);
-  EXPECT_EQ(derived::ground_at(mission, {400, 10}), 0.0) << "beyond it, the scene's";
+  EXPECT_EQ(derived::ground_at(mission, {400, 10}), -3.75) << "beyond it, at the pad's height";
 
   const survey::ViewLimits limits = derived::view_limits(mission);
   const auto allows = [&](double x, double z) {

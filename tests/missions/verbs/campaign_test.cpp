@@ -189,7 +189,7 @@ TEST_F(CampaignVerb, MeasuresAgainWhatIsDamaged) {
 // The model's content counts, not its name.
 TEST_F(CampaignVerb, RunsAgainWhatAnotherModelMade) {
   ASSERT_EQ(run_skycap({"model", "teapot", "--out", folder_ / "m.ply"}).exit_code, 0);
-  const std::string mission = small_mission();
+  const std::string mission = tests::quick_mission();
   folder_.write("quick.yaml",
                 std::string(mission).replace(mission.find("builtin:teapot"), 14, "m.ply"));
   ASSERT_EQ(run("out", {"--index", "0"}).exit_code, 0);
