@@ -1,7 +1,6 @@
 #include "missions/report/result_pages.h"
 
 #include <algorithm>
-#include <new>
 
 #include "geometry/error.h"
 #include "geometry/io/file.h"
@@ -83,8 +82,6 @@ std::optional<std::string> stage_page(const std::string& results, bool is_wanted
                       default_report_points);
   } catch (const Error& error) {
     return error.what();
-  } catch (const std::bad_alloc&) {
-    return "there is not enough memory for it";
   }
   folder.write(page->name, text);
   return std::nullopt;
