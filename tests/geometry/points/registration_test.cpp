@@ -19,15 +19,21 @@ using Eigen::Vector3f;
 constexpr double radius = 0.1;
 const Vector3d sensor(2.0, 2.5, 2.2);
 
+/// Three numbers, z first: their order is part of a seed's meaning.
+template <typename Distribution>
+Vector3d drawn(Distribution& distribution, std::mt19937_64& random) {
+  const double z = distribution(random), y = distribution(random), x = distribution(random);
+  return {x, y, z};
+}
+
 /// A square of two metres in a corner of space, across an axis.
 void add_square(int across, std::mt19937_64& random, double noise, std::vector<Vector3f>& points) {
   std::uniform_real_distribution<double> place(0.0, 2.0);
   std::normal_distribution<double> error(0.0, 1.0);
   for (int i = 0; i < 12'000; ++i) {
-    Vector3d point(place(random), place(random), place(random));
+    Vector3d point = drawn(place, random);
     point[across] = 0.0;
-    points.emplace_back(
-        (point + noise * Vector3d(error(random), error(random), error(random))).cast<float>());
+    points.emplace_back((point + noise * drawn(error, random)).cast<float>());
   }
 }
 
@@ -43,10 +49,11 @@ std::vector<Vector3f> squares(const std::vector<int>& across, std::uint64_t seed
 Isometry3d error_of(std::uint64_t seed) {
   std::mt19937_64 random(seed);
   std::normal_distribution<double> number;
-  const auto any = [&] { return Vector3d(number(random), number(random), number(random)); };
+  const Vector3d axis = drawn(number, random).normalized(),
+                 way = drawn(number, random).normalized();
   Isometry3d error = Isometry3d::Identity();
-  error.linear() = Eigen::AngleAxisd(radians_per_degree, any().normalized()).toRotationMatrix();
-  error.translation() = sensor + 0.1 * any().normalized() - error.linear() * sensor;
+  error.linear() = Eigen::AngleAxisd(radians_per_degree, axis).toRotationMatrix();
+  error.translation() = sensor + 0.1 * way - error.linear() * sensor;
   return error;
 }
 
