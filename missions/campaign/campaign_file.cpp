@@ -8,8 +8,8 @@
 #include "geometry/error.h"
 #include "geometry/io/file.h"
 #include "missions/benchmark/contestants.h"
-#include "missions/campaign/flow_text.h"
 #include "missions/equipment/yaml_section.h"
+#include "missions/file/flow_text.h"
 #include "missions/file/mission_keys.h"
 #include "missions/file/unknown_key.h"
 
@@ -142,7 +142,7 @@ class CampaignReader {
              "seeds or first_seed");
       }
       if (file::find_key(key) != nullptr) {
-        changes.push_back({place(entry.line), key, flow_text(entry.value)});
+        changes.push_back({place(entry.line), key, file::flow_text(entry.value)});
       } else if (entry.value.kind == file::YamlNode::Kind::map) {
         for (auto& change : changes_in(entry.value.entries, path, key + ".")) {
           changes.push_back(std::move(change));

@@ -24,6 +24,9 @@ std::string key_of(std::size_t source, const std::string& key) {
 /// scene.model of a mission whose targets stand in as truth.
 constexpr const char* targets_as_truth = "prior";
 
+/// How far beside its place on a map a target is looked for at least [m].
+constexpr double beside_targets = 3.0;
+
 /// Of one object, for the planner to guess by.
 constexpr std::size_t most_target_points = 300'000;
 

@@ -14,12 +14,9 @@ namespace skycap::missions::derived {
 /// MissionFile::refuse(), naming the key of the source.
 void read_priors(file::MissionFile& given);
 
-/// How far beside its place on a map a target is looked for at least [m].
-inline constexpr double beside_targets = 3.0;
-
-/// planner.scene_box where the mission has none but targets: around them, with beside_targets or
-/// what they may be off on every side. Where views are taken from must not be in it: there nothing
-/// is free before it is measured.
+/// planner.scene_box where the mission has none but targets: around them, with 3 m or what they may
+/// be off on every side, if that is more. Where views are taken from must not be in it: there
+/// nothing is free before it is measured.
 void derive_scene_box(file::Mission& mission);
 
 /// z below which everything is solid: the scene's, or of a terrain its lowest place less what that

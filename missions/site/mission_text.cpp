@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "missions/file/flow_text.h"
 #include "missions/prior/prior_text.h"
 
 namespace skycap::missions::site {
@@ -9,14 +10,8 @@ namespace {
 
 using Eigen::Vector2d;
 using Eigen::Vector3d;
+using file::yaml_quoted;
 using prior::Source;
-
-/// In quotes, so that nothing in it means anything to YAML.
-std::string quoted(const std::string& text) {
-  std::string result = "'";
-  for (const char c : text) result += c == '\'' ? std::string("''") : std::string(1, c);
-  return result + "'";
-}
 
 std::string vector_text(const Vector3d& place) {
   return fmt::format("[{:g}, {:g}, {:g}]", place.x(), place.y(), place.z());
@@ -26,19 +21,20 @@ std::string vector_text(const Vector3d& place) {
 std::string path_text(const std::filesystem::path& file, const std::filesystem::path& mission) {
   const auto absolute = std::filesystem::absolute(file).lexically_normal();
   const auto folder = std::filesystem::absolute(mission).lexically_normal().parent_path();
-  return quoted(absolute.lexically_proximate(folder).string());
+  return yaml_quoted(absolute.lexically_proximate(folder).string());
 }
 
 std::string source_text(const Source& source, const std::filesystem::path& mission) {
   std::string text = fmt::format("{{file: {}, role: {}", path_text(source.file, mission),
                                  prior::name_of(source.role));
-  if (!source.crs.empty()) text += ", crs: " + quoted(source.crs);
+  if (!source.crs.empty()) text += ", crs: " + yaml_quoted(source.crs);
   if (source.vertical) text += std::string(", vertical: ") + prior::name_of(*source.vertical);
   if (source.base_on_terrain) text += ", base: terrain";
   if (source.base) text += fmt::format(", base: {:g}", *source.base);
   if (source.height) text += fmt::format(", height: {:g}", *source.height);
   std::string ids;
-  for (const std::string& id : source.select.ids) ids += (ids.empty() ? "" : ", ") + quoted(id);
+  for (const std::string& id : source.select.ids)
+    ids += (ids.empty() ? "" : ", ") + yaml_quoted(id);
   if (!ids.empty()) text += ", select: {id: [" + ids + "]}";
   return text + "}";
 }
@@ -91,7 +87,8 @@ std::string flight_section(const MissionValues& values) {
       "flight:\n"
       "  vehicle: {}  # a preset, or the path of a description\n"
       "  clearance: {:g}  # least distance of the vehicle's centre from anything\n",
-      is_file ? path_text(values.vehicle, values.file) : quoted(values.vehicle), values.clearance);
+      is_file ? path_text(values.vehicle, values.file) : yaml_quoted(values.vehicle),
+      values.clearance);
   if (values.pad) {
     text += fmt::format(
         "  # Where it takes off and lands; go and see that it is free, and the air over it.\n"
@@ -149,7 +146,7 @@ std::string mission_text(const MissionValues& values) {
              "# A dry run: the target stands in for what there is. Leave `scene` out for a live "
              "survey.\n"
              "scene: {{model: prior, ground: true}}\n",
-             quoted(name)) +
+             yaml_quoted(name)) +
          prior_section(values) + site_section(values) + flight_section(values) +
          planner_section(values);
 }

@@ -9,9 +9,9 @@
 #include <nlohmann/json.hpp>
 
 #include "geometry/error.h"
-#include "missions/campaign/flow_text.h"
 #include "missions/campaign/manifest.h"
 #include "missions/campaign/manifest_batches.h"
+#include "missions/file/flow_text.h"
 #include "missions/file/mission_reader.h"
 
 namespace skycap::missions::campaign {
@@ -106,9 +106,9 @@ TEST(Campaign, HandsValuesOnAsTheyAre) {
        {"1", "-2.5e-3", "'7'", "true", "see++", "'a, b]: \"c\" # d'", "builtin:teapot",
         "[1, [2, '3'], {a: b, 'c d': ~}]", "{x: [], y: {}}", "''", "\"tab\\tand\\x7f\""}) {
     const file::YamlNode node = file::parse_yaml(value, "v");
-    const std::string text = flow_text(node);
+    const std::string text = file::flow_text(node);
     const file::YamlNode again = file::parse_yaml(text, "v");
-    EXPECT_EQ(flow_text(again), text) << value;
+    EXPECT_EQ(file::flow_text(again), text) << value;
     EXPECT_EQ(again.kind, node.kind) << value;
     EXPECT_EQ(again.text, node.text) << value;
     EXPECT_EQ(again.items.size(), node.items.size()) << value;

@@ -206,6 +206,16 @@ TEST_F(Site, IsAsHighAsAnybodySays) {
   ASSERT_EQ(priors[1].objects.size(), 2U);
 }
 
+// A name is a name, whatever YAML would make of it.
+TEST_F(Site, TakesFilesOfAnyName) {
+  const std::string name = "a 'tile': #1 \\n \"{x}\".gml";
+  std::filesystem::rename(folder_.path() / "tile.gml", folder_.path() / name);
+  const auto run = tests::run_skycap({"site", path_ + "/" + name, "--vertical", "ellipsoid", "--id",
+                                      "DEBY_1", "--out", path_ + "/house.yaml"});
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  EXPECT_EQ(mission().prior.front().file.filename(), name);
+}
+
 /// A crown of 3 m that begins 5 m over the pad, as a laser scanner sees it: eight points.
 TEST_F(Site, HasNoPadUnderACrown) {
   ASSERT_EQ(propose("--id DEBY_1").exit_code, 0);
