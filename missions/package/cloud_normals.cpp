@@ -39,15 +39,17 @@ Vector3f plane_normal(const geometry::PointGrid& surface,
 
 std::vector<Vector3f> cloud_normals(const geometry::PointCloud& cloud,
                                     std::span<const Eigen::Vector3d> sensors, double radius,
-                                    unsigned threads) {
+                                    unsigned threads, const std::stop_token& stop) {
   geometry::SpacedPoints surface(0.25 * radius);
   geometry::PointGrid grid(radius);
-  for (const Vector3f& point : cloud.positions) {
-    if (surface.keep(point)) grid.insert(point);
+  for (std::size_t i = 0; i < cloud.size(); ++i) {
+    if (i % points_in_a_task == 0 && stop.stop_requested()) return {};
+    if (surface.keep(cloud.positions[i])) grid.insert(cloud.positions[i]);
   }
   std::vector<Vector3f> normals(cloud.size());
   const std::size_t tasks = (cloud.size() + points_in_a_task - 1) / points_in_a_task;
   geometry::parallel_for(tasks, threads, [&](std::size_t task) {
+    if (stop.stop_requested()) return;
     std::vector<geometry::Neighbour> neighbours;
     const std::size_t end = std::min(cloud.size(), (task + 1) * points_in_a_task);
     for (std::size_t i = task * points_in_a_task; i < end; ++i) {
@@ -59,6 +61,7 @@ std::vector<Vector3f> cloud_normals(const geometry::PointCloud& cloud,
       normals[i] = plane_normal(grid, neighbours, point, to_sensor);
     }
   });
+  if (stop.stop_requested()) normals.clear();
   return normals;
 }
 

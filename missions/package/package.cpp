@@ -193,7 +193,7 @@ std::optional<SurveyMission> stage_package(const file::Mission& mission,
   });
   const double radius = 2.0 * mission.planner.see.resolution_radius;
   const std::vector<Eigen::Vector3f> normals =
-      cloud_normals(record.cloud, sensor_positions(record), radius, threads);
+      cloud_normals(record.cloud, sensor_positions(record), radius, threads, stop);
   geometry::write_cloud(folder.stage("cloud.ply"), {.positions = record.cloud.positions,
                                                     .normals = normals,
                                                     .views = record.cloud.views,

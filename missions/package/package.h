@@ -51,8 +51,9 @@ void commit_package(const run::SurveyRecord& record, geometry::OutputFolder& fol
 /// flown survey's package also holds its route files and free_space.bin, which they were proven in
 /// (flight::MeasuredSpace::write()); what they say is returned. Every number is written with as
 /// many digits as it takes to read the same number back, so equal surveys give equal files; only
-/// summary.json holds times. A stop that is requested while the route is made leaves the survey
-/// without one, and its failure says so: `skycap export` makes it later.
+/// summary.json holds times. A stop that is requested leaves the cloud without normals and, while
+/// the route is made, the survey without one, and its failure says so: `skycap export` makes it
+/// later.
 std::optional<SurveyMission> stage_package(const file::Mission& mission,
                                            const run::SurveyRecord& record,
                                            const CoverageFigures& coverage, unsigned threads,

@@ -252,6 +252,17 @@ TEST(CloudNormals, OfLonelyPointsPointToTheSensor) {
   EXPECT_EQ(normals[0], Vector3f(0, 1, 0));
 }
 
+TEST(CloudNormals, AreAllThereOrNone) {
+  geometry::PointCloud cloud;
+  cloud.positions = {{0, 0, 0}, {5, 0, 0}};
+  cloud.views = {0, 0};
+  const std::vector<Vector3d> sensors{{0, 3, 0}};
+  std::stop_source stop;
+  EXPECT_EQ(package::cloud_normals(cloud, sensors, 0.2, 1, stop.get_token()).size(), 2U);
+  stop.request_stop();
+  EXPECT_TRUE(package::cloud_normals(cloud, sensors, 0.2, 1, stop.get_token()).empty());
+}
+
 TEST(OutputFolder, LeavesNothingBehindUnlessCommitted) {
   const tests::TestFolder folder;
   const std::filesystem::path results = folder.path() / "results";

@@ -25,6 +25,7 @@ namespace {
 
 using nlohmann::json;
 using testing::HasSubstr;
+using testing::Not;
 using tests::content_of;
 using tests::quick_mission;
 using tests::run_skycap;
@@ -265,6 +266,8 @@ TEST(Plan, LeavesAWholeIncompletePackageWhenInterrupted) {
   for (const char* file : {"views.csv", "cloud.ply", "trajectory.tum"}) {
     EXPECT_TRUE(std::filesystem::exists(folder.path() / "out" / file)) << file;
   }
+  // Somebody waits: normals take as long as views.
+  EXPECT_THAT(content_of(folder.path() / "out" / "cloud.ply"), Not(HasSubstr("property float nx")));
 }
 
 TEST(Plan, ShowsProgressOnATerminalOnlyAndNothingWhenQuiet) {
