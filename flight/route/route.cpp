@@ -37,13 +37,13 @@ class RoutePlanner {
     route_.options = options;
     route_.clearance = options.clearance.total();
     route_.min_clearance = route_.clearance + reported_surplus;
-    if (options.returns) ask_for_returns(*options.returns);
   }
 
   Route plan(std::vector<Station> stations, const FreeSpace* pad_space) {
     check_pad(space_, pad_space, route_.options);
     paths_.take_flown(stations);
     keep_allowed(stations);
+    if (route_.options.returns) keep_with_return(stations);
     if (route_.options.order_is_free) choose_order(stations);
     keep_reachable(stations);
     keep_in_range();
@@ -75,14 +75,21 @@ class RoutePlanner {
         refuse(station, "it is " + length_text(closest.distance) + " from " + space_.name(closest));
         continue;
       }
-      const std::string why = ways_home_ ? ways_home_->why_none(station.view.position) : "";
-      if (!why.empty()) {
-        refuse(station, "there is no certified way home: " + why);
-        continue;
-      }
       allowed.push_back(station);
     }
     stations = std::move(allowed);
+  }
+
+  /// Drops stations that no vehicle can be called home from.
+  void keep_with_return(std::vector<Station>& stations) {
+    double top = home_.z();
+    for (const Station& station : stations) top = std::max(top, station.view.position.z());
+    ways_home_.emplace(space_, planning_law(route_.options, top), home_, route_.clearance);
+    std::erase_if(stations, [&](const Station& station) {
+      const std::string why = ways_home_->why_none(station.view.position);
+      if (!why.empty()) refuse(station, "there is no certified way home: " + why);
+      return !why.empty();
+    });
   }
 
   void choose_order(std::vector<Station>& stations) {
@@ -264,16 +271,6 @@ class RoutePlanner {
 
   // ---- ways home -----------------------------------------------------------------------------
 
-  void ask_for_returns(const ReturnOptions& asked) {
-    const Vector3d& pad = route_.options.takeoff;
-    ReturnLaw law{.dialects = asked.dialects,
-                  .level = pad.z() + std::floor(asked.highest - pad.z()),
-                  .landings = {pad},
-                  .landing_climb = route_.options.takeoff_climb};
-    law.landings.insert(law.landings.end(), asked.rally.begin(), asked.rally.end());
-    ways_home_.emplace(space_, law, home_, route_.clearance);
-  }
-
   std::vector<Vector3d> with_returns(std::vector<Vector3d> way) const {
     if (!ways_home_) return way;
     return ways_home_->with_returns(std::move(way), route_.options.path.worthwhile_saving);
@@ -285,7 +282,8 @@ class RoutePlanner {
       const std::vector<Vector3d> points = sortie_points(route_, sortie);
       for (std::size_t i = 1; i < points.size(); ++i) legs.push_back({points[i - 1], points[i]});
     }
-    const ReturnLaw& law = ways_home_->law();
+    ReturnLaw law = ways_home_->law();
+    law.reserve = 0.0;
     ReturnSearch search =
         least_return(space_, legs, law, law.level, return_clearance(route_.clearance));
     if (!search.found) {

@@ -79,6 +79,12 @@ struct RouteOptions {
   void validate() const;  ///< throws Error{bad_config} naming the first value that is out of place
 };
 
+/// How vehicles come home from a route that is being planned, whose stations are up to `top` high
+/// (z): at the greatest height that may be chosen, above most of what is in the way, so that what
+/// is left in the way is so at other heights too, but for overhangs; and at the stations' own,
+/// which no height of return is below. `options.returns` is asked for.
+ReturnLaw planning_law(const RouteOptions& options, double top);
+
 /// The shortest stop at a corner [s]: without a stop autopilots cut corners, and the certificate is
 /// about straight legs.
 inline constexpr double corner_hold = 0.1;

@@ -37,6 +37,20 @@ void ClearanceBudget::validate() const {
   }
 }
 
+ReturnLaw planning_law(const RouteOptions& options, double top) {
+  /// More than proofs divide legs by, and than files round places by.
+  constexpr double reserve = 0.25;
+  const ReturnOptions& asked = options.returns.value();
+  const double ground = options.takeoff.z();
+  ReturnLaw law{.dialects = asked.dialects,
+                .level = std::max(ground + std::floor(asked.highest - ground), top),
+                .landings = {options.takeoff},
+                .landing_climb = options.takeoff_climb,
+                .reserve = reserve};
+  law.landings.insert(law.landings.end(), asked.rally.begin(), asked.rally.end());
+  return law;
+}
+
 void RouteOptions::validate() const {
   clearance.validate();
   path.validate();

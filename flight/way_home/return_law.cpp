@@ -93,15 +93,16 @@ std::vector<ReturnPiece> return_pieces(const ReturnLaw& law, const Vector3d& pla
   std::vector<ReturnPiece> pieces{{{place, at_height(place, top)}, 0.0, ReturnPart::climb}};
   // A band of heights is the line through its middle, half of it spread to either side.
   const double spread = 0.5 * habits.level_below, level = top - spread;
-  for (const Vector3d& landing : landings_near(law, place, reach)) {
+  const double around = reach + law.reserve;
+  for (const Vector3d& landing : landings_near(law, place, around)) {
     pieces.push_back(
         {{at_height(place, level), at_height(landing, level)}, spread, ReturnPart::level});
-    const double nearest = distance_over_ground(place, landing) - reach;
+    const double nearest = distance_over_ground(place, landing) - around;
     if (nearest < habits.level_as_it_is) {
       pieces.push_back({{place, at_height(landing, place.z())}, 0.0, ReturnPart::level_as_it_is});
     }
     const double low = landing.z() + law.landing_climb;
-    if (nearest < habits.lands_at_once && place.z() + reach > low) {
+    if (nearest < habits.lands_at_once && place.z() + around > low) {
       pieces.push_back(
           {{place, at_height(place, std::min(low, place.z()))}, 0.0, ReturnPart::landing});
     }

@@ -41,6 +41,9 @@ struct ReturnLaw {
   std::vector<Eigen::Vector3d> landings;  ///< the pad first, then rally points; on the ground
   /// Above each landing: from there down the pilot vouches for the column.
   double landing_climb = 5.0;
+  /// Distances and heights at which vehicles fly otherwise are taken this much wider: for planning,
+  /// so that no leg ends where a proof hangs on how it divides that leg [m].
+  double reserve = 0.0;
 };
 
 enum class ReturnPart { climb, level, level_as_it_is, descent, landing };

@@ -16,9 +16,7 @@ namespace skycap::flight {
 /// Keeps a reference to `space`.
 class WaysHome {
  public:
-  /// `home` is the place above the pad where routes begin and end; routes are planned for the
-  /// height of return that `law` has, the greatest that may be chosen, above most of what is in the
-  /// way: what is left in the way then is so at other heights too, but for overhangs.
+  /// `home` is the place above the pad where routes begin and end; `law` is one to plan by.
   WaysHome(const FreeSpace& space, const ReturnLaw& law, const Eigen::Vector3d& home,
            double clearance)
       : space_(space), returnable_(space, law), home_(home), clearance_(clearance) {}

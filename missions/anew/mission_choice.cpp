@@ -27,16 +27,13 @@ constexpr double spare_clearance = 0.05;
 /// again differs by several times as much.
 constexpr double equal_coverage = 5e-4;
 
-/// How the vehicle comes home from all of the route, at the height that routes are planned for.
-flight::ReturnLaw law_of(const flight::RouteOptions& options) {
-  const flight::ReturnOptions& asked = options.returns.value();
-  const double pad_height = options.takeoff.z();
-  flight::ReturnLaw law{.dialects = asked.dialects,
-                        .level = pad_height + std::floor(asked.highest - pad_height),
-                        .landings = {options.takeoff},
-                        .landing_climb = options.takeoff_climb};
-  law.landings.insert(law.landings.end(), asked.rally.begin(), asked.rally.end());
-  return law;
+/// The highest place of a route.
+double top_of(const flight::Route& route) {
+  double top = route.options.takeoff.z() + route.options.takeoff_climb;
+  for (const flight::Station& station : route.stations) {
+    top = std::max(top, station.view.position.z());
+  }
+  return top;
 }
 
 /// The problem of a mission, and what it asks.
@@ -50,7 +47,7 @@ class MissionProblem {
         limits_(derived::view_limits(mission)),
         motion_(present.vehicle, present.options.conditions),
         clearance_(present.clearance),
-        returnable_(space, law_of(present.options)),
+        returnable_(space, planning_law(present.options, top_of(present))),
         legs_(space, motion_, clearance_, no_ways_home_),
         home_(present.options.takeoff + Vector3d(0.0, 0.0, present.options.takeoff_climb)) {
     problem_.targets = surface.targets();
@@ -71,6 +68,9 @@ class MissionProblem {
     problem_.is_in_free_space = [this](const View& view) {
       const double kept = std::max(clearance_, limits_.stand_off) + spare_clearance;
       return space_.is_free({view.position, view.position}, kept);
+    };
+    problem_.has_way_home = [this](const View& view) {
+      return returnable_.has_returns({view.position, view.position}, clearance_);
     };
     problem_.straight_time = [this](const View* from, const View* to) {
       return straight_time(from, to);
@@ -149,9 +149,9 @@ MissionFigures figures_of(const flight::Route& route, double promised) {
 }
 
 MissionChoice choose_mission(const file::Mission& mission, const GainField& surface,
-                             const flight::FreeSpace& space, flight::Route present,
-                             const PlanRoute& plan, const SearchSettings& settings,
-                             const std::stop_token& stop) {
+                             const flight::FreeSpace& space, const std::vector<View>& surveyed,
+                             flight::Route present, const PlanRoute& plan,
+                             const SearchSettings& settings, const std::stop_token& stop) {
   const auto begin = std::chrono::steady_clock::now();
   const MissionProblem asked(mission, surface, space, present);
   const TourProblem& problem = asked.problem();
@@ -160,19 +160,23 @@ MissionChoice choose_mission(const file::Mission& mission, const GainField& surf
   choice.survey = figures_of(present, covered_by(problem, views));
   choice.anew = choice.survey;
   choice.route = std::move(present);
-  const double wanted = choice.survey.promised - equal_coverage;
+  const double least = choice.survey.promised - equal_coverage;
+  const double wanted = covered_by(problem, surveyed) - equal_coverage;
+  const auto cost = [&](const MissionFigures& figures) {
+    return figures.duration + 100.0 * settings.price * std::max(0.0, wanted - figures.promised);
+  };
 
   const auto try_tour = [&](const FoundTour& tour) {
     if (stop.stop_requested()) return;
     std::optional<flight::Route> route = certified(plan, tour.views);
     if (!route) return;
     const MissionFigures figures = figures_of(*route, covered_by(problem, views_of(*route)));
-    if (figures.promised < wanted || figures.duration >= choice.anew.duration) return;
+    if (figures.promised < least || cost(figures) >= cost(choice.anew)) return;
     choice.anew = figures;
     choice.route = *std::move(route);
     choice.is_anew = true;
   };
-  const FoundTour spared = spare_views(problem, views, wanted);
+  const FoundTour spared = spare_views(problem, views, least);
   if (spared.views.size() < views.size()) try_tour(spared);
   SearchSettings seeded = settings;
   seeded.seed = mission.seed;

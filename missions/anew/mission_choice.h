@@ -42,10 +42,10 @@ struct StationPlan {
 };
 
 struct MissionChoice {
-  flight::Route route;     ///< the faster one of the two
+  flight::Route route;     ///< the better one of the two
   bool is_anew = false;    ///< whether that is the one chosen anew
   StationPlan stations;    ///< of the route
-  MissionFigures survey;   ///< of the survey's views
+  MissionFigures survey;   ///< of the survey's views that have a way home
   MissionFigures anew;     ///< of the best found; as `survey` if nothing better was
   double computing = 0.0;  ///< that it took, certified routes included [s]
 };
@@ -53,11 +53,14 @@ struct MissionChoice {
 /// The certified route through views in the order given.
 using PlanRoute = std::function<flight::Route(const StationPlan&)>;
 
-/// Begins from `present`, the route through the survey's views, and falls back on it: the choice is
-/// never slower and never promises less. `space` is what the route is proven in. Tours that `plan`
-/// throws an Error at are not flown. If a stop is requested, the choice is what was found by then.
+/// Begins from `present`, the route through those of `surveyed`, the survey's views, that have a
+/// proven way home, and falls back on it: the choice never promises less, and is slower only where
+/// it covers what the views that had to be left out covered, at the price in `settings`. `space` is
+/// what the route is proven in. Tours that `plan` throws an Error at are not flown. If a stop is
+/// requested, the choice is what was found by then.
 MissionChoice choose_mission(const file::Mission& mission, const survey::skycap::GainField& surface,
-                             const flight::FreeSpace& space, flight::Route present,
+                             const flight::FreeSpace& space,
+                             const std::vector<geometry::View>& surveyed, flight::Route present,
                              const PlanRoute& plan, const SearchSettings& settings = {},
                              const std::stop_token& stop = {});
 

@@ -28,6 +28,8 @@ struct TourProblem {
       view_of;
   /// Whether the camera can be there and look that way. Of cheap limits, then of proven space.
   std::function<bool(const View&)> is_allowed, is_in_free_space;
+  /// Whether there is a proven way home from there: asked last, of views that would be taken.
+  std::function<bool(const View&)> has_way_home;
 
   Eigen::Vector3d home = Eigen::Vector3d::Zero();  ///< the place above the pad
   /// The straight way from view to view, until the camera looks right [s]; null stands for

@@ -89,7 +89,7 @@ class Search {
     change(move.removed, move.added.get());
     double time = legs_.least(move.stops);
     while (cost(time) <= worst && legs_.ask_next(move.stops)) time = legs_.least(move.stops);
-    if (cost(time) > worst) {
+    if (cost(time) > worst || (move.added && !problem_.has_way_home(move.added->view))) {
       change_back(move.removed, move.added.get());
       return false;
     }

@@ -9,6 +9,7 @@
 #include "missions/derived/mission_flight.h"
 #include "missions/file/json_text.h"
 #include "missions/judge/coverage.h"
+#include "missions/package/package.h"
 
 namespace skycap::missions::package {
 namespace {
@@ -63,9 +64,9 @@ AnewMission anew_mission(const file::Mission& mission, const run::SurveyRecord& 
     return plan_flight(in_given_order(mission), *flown.measured, flown.pad, stations.views,
                        stations.ways, flown.grounds, stop);
   };
-  AnewMission result{
-      anew::choose_mission(mission, *record.surface, space, std::move(present), plan, {}, stop),
-      {}};
+  AnewMission result{anew::choose_mission(mission, *record.surface, space, views_of(record),
+                                          std::move(present), plan, {}, stop),
+                     {}};
   if (coverage.fly_again) result.again = flown_again(coverage, result.choice.stations.views);
   return result;
 }
@@ -107,7 +108,7 @@ std::string anew_text(const AnewMission& mission) {
   const anew::MissionChoice& choice = mission.choice;
   std::string text = choice.is_anew ? "  anew      " + figures_text(choice.anew) +
                                           "; the survey's " + figures_text(choice.survey)
-                                    : "  anew      nothing faster was found than the survey's " +
+                                    : "  anew      nothing better was found than the survey's " +
                                           figures_text(choice.survey);
   text += "\n  promise   " + percent(choice.anew.promised) +
           " of what was measured, the survey's views " + percent(choice.survey.promised);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <random>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -202,6 +203,34 @@ TEST(WaysHome, RefusesARouteWithoutASafeHeightOfReturn) {
   ASSERT_EQ(route.unreached.size(), 1U);
   EXPECT_THAT(route.unreached[0].reason,
               AllOf(HasSubstr("no certified way home"), HasSubstr("the level flight")));
+}
+
+// A way that is pulled tight ends where a rule begins: at the 50 m within which DJI's vehicles fly
+// home level. The route's own proof divides its legs otherwise, and must not fail there.
+TEST(WaysHome, LegsThatPassWhereARuleBeginsAreProvenInTheEndToo) {
+  RouteOptions options;
+  options.takeoff = {-60, 0, 0};
+  options.returns = ReturnOptions{{Dialect::dji}, 36.0};
+  options.order_is_free = true;
+  const KnownSpace space(tower(30.0));
+  std::mt19937 random(1);
+  const auto within = [&](double low, double high) {
+    return low + (high - low) * 0x1p-32 * static_cast<double>(random());
+  };
+  std::size_t reached = 0;
+  for (int trial = 0; trial < 40; ++trial) {
+    std::vector<Station> stations;
+    for (std::uint32_t i = 0; i < 4; ++i) {
+      const double bearing = within(-0.5, 0.5), distance = within(50.0, 70.0);
+      const Vector3d place(-60.0 + distance * std::cos(bearing), distance * std::sin(bearing),
+                           within(5.0, i == 0 ? 45.0 : 30.0));
+      stations.push_back({geometry::look_at(place, {-30, 0, place.z()}), 1.0, 1, i});
+    }
+    const Route route = plan_route(stations, {}, space, nullptr, options);
+    ASSERT_TRUE(route.returns || route.stations.empty());
+    reached += route.stations.size();
+  }
+  EXPECT_GT(reached, 80U);
 }
 
 // Climb and level flight by hand, in still air; hover for the waits and the descent.
