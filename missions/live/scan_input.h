@@ -14,7 +14,6 @@
 
 #include "geometry/points/scan.h"
 #include "missions/file/mission.h"
-#include "missions/live/pose_check.h"
 #include "missions/live/scan_filter.h"
 #include "sim/sensors/depth_image.h"
 
@@ -38,8 +37,8 @@ Lens parse_lens(const std::string& text, const std::string& what = "--lens");
 /// trajectory, whose time is passed over); `what` opens messages. Throws Error{bad_file}.
 Eigen::Isometry3d parse_pose_text(const std::string& text, const std::string& what);
 
-/// Reads "metres degrees". Throws Error{bad_usage}.
-PoseSigma parse_pose_sigma(const std::string& text, const std::string& what);
+/// Reads some finite numbers, up to 36. Throws Error{bad_file}; `what` opens messages.
+std::vector<double> parse_numbers(const std::string& text, const std::string& what);
 
 struct ScanInput {
   std::filesystem::path

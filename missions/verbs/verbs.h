@@ -42,7 +42,8 @@ struct NextOptions : LiveOptions {
   std::optional<std::filesystem::path> scan;       ///< to be taken in first
   std::string pose;                                ///< of the scan's sensor; either this
   std::optional<std::filesystem::path> pose_file;  ///< or this
-  std::string pose_sigma;                          ///< of the pose; default: the mission's
+  std::string pose_sigma;                          ///< of the pose; either this
+  std::string pose_covariance;                     ///< or this; default: the mission's
   std::string lens;                                ///< of a depth image
   double depth_unit = 0.001;                       ///< of a depth image [m]
   bool is_in_world = false;                        ///< the points of a cloud
