@@ -8,6 +8,19 @@ namespace skycap::flight {
 
 using Eigen::Vector3d;
 
+namespace {
+
+/// Autopilots need up to this many mission items for a station, and some around a sortie.
+constexpr int items_per_station = 8;
+constexpr int items_per_sortie = 14;
+
+}  // namespace
+
+std::size_t most_stations(const Vehicle& vehicle) {
+  return static_cast<std::size_t>(
+      std::max(1, (vehicle.max_waypoints - items_per_sortie) / items_per_station));
+}
+
 LegCost cost_of(const Leg& leg) { return {leg.duration, leg.energy, leg.emergency}; }
 
 LegCost in_turn(const LegCost& first, const LegCost& second) {

@@ -20,6 +20,9 @@ LegCost cost_of(const Leg& leg);
 /// Of two parts, one after the other.
 LegCost in_turn(const LegCost& first, const LegCost& second);
 
+/// How many stations a sortie may have, by the mission items that its vehicle takes.
+std::size_t most_stations(const Vehicle& vehicle);
+
 /// Keeps references to all that it is constructed from.
 class LegCertifier {
  public:

@@ -18,10 +18,6 @@ namespace {
 
 using Eigen::Vector3d;
 
-/// Autopilots need up to this many mission items for a station, and some around a sortie.
-constexpr int items_per_station = 8;
-constexpr int items_per_sortie = 14;
-
 /// Plans one route; the members are its stages' intermediate results.
 class RoutePlanner {
  public:
@@ -202,8 +198,7 @@ class RoutePlanner {
       if (i > 0) problem.leg.push_back(cost_of(route_.legs[i - 1]));
     }
     problem.energy_per_sortie = motion_.usable_energy();
-    problem.stations_per_sortie = static_cast<std::size_t>(
-        std::max(1, (motion_.vehicle().max_waypoints - items_per_sortie) / items_per_station));
+    problem.stations_per_sortie = most_stations(motion_.vehicle());
 
     const SortieSplit split = split_into_sorties(problem);
     route_.duration = split.time;

@@ -1,0 +1,176 @@
+#include <algorithm>
+#include <limits>
+#include <utility>
+
+#include "flight/fleet/fleet_split.h"
+
+namespace skycap::flight {
+namespace {
+
+using Order = std::vector<std::uint32_t>;
+
+constexpr double never = std::numeric_limits<double>::infinity();
+/// An improvement must exceed rounding, or moves could go in circles.
+constexpr double least_gain = 1e-9;
+constexpr std::size_t longest_chain = 3;  ///< of stations that are moved together
+
+std::ptrdiff_t offset(std::size_t index) { return static_cast<std::ptrdiff_t>(index); }
+
+/// Changes orders as long as that helps; first improvement, always in the same sequence.
+class Exchange {
+ public:
+  Exchange(const FleetProblem& problem, FleetSplit split, FleetGoal goal)
+      : problem_(problem), goal_(goal), scale_(std::max(split.makespan, 1e-9)) {
+    for (FleetPart& part : split.parts) parts_.push_back(std::move(part));
+  }
+
+  FleetSplit run() {
+    while (change_within() || change_between()) {
+    }
+    FleetSplit split{.parts = std::move(parts_)};
+    for (const FleetPart& part : split.parts) {
+      split.makespan = std::max(split.makespan, part.time);
+      split.flown += part.time;
+    }
+    return split;
+  }
+
+ private:
+  /// What a vehicle's time counts. The eighth power is nearly the greatest of all times, but
+  /// rewards shortening the others, too, which makes room.
+  double weight(double time) const {
+    if (goal_ == FleetGoal::flown) return time / scale_;
+    const double share = time / scale_, square = share * share, fourth = square * square;
+    return fourth * fourth;
+  }
+
+  double makespan_with(std::size_t v, double time, std::size_t w, double other) const {
+    double most = std::max(time, other);
+    for (std::size_t u = 0; u < parts_.size(); ++u) {
+      if (u != v && u != w) most = std::max(most, parts_[u].time);
+    }
+    return most;
+  }
+
+  double makespan() const { return makespan_with(0, parts_[0].time, 0, parts_[0].time); }
+
+  /// Takes the new orders of two vehicles (or of one, twice) if they are better, and never for a
+  /// greater makespan where that is the goal.
+  bool take(std::size_t v, Order order, std::size_t w, Order other) {
+    const double time = part_time(problem_.vehicles[v], order);
+    if (time == never) return false;
+    const double other_time = v == w ? time : part_time(problem_.vehicles[w], other);
+    if (other_time == never) return false;
+    double gain = weight(parts_[v].time) - weight(time);
+    if (v != w) gain += weight(parts_[w].time) - weight(other_time);
+    if (gain <= least_gain) return false;
+    if (goal_ == FleetGoal::makespan && makespan_with(v, time, w, other_time) > makespan()) {
+      return false;
+    }
+    parts_[v] = {std::move(order), time};
+    if (v != w) parts_[w] = {std::move(other), other_time};
+    return true;
+  }
+
+  bool change_within() {
+    bool has_improved = false;
+    for (std::size_t v = 0; v < parts_.size(); ++v) {
+      while (reverse_in(v) || move_chain(v, v)) has_improved = true;
+    }
+    return has_improved;
+  }
+
+  bool change_between() {
+    for (std::size_t v = 0; v < parts_.size(); ++v) {
+      for (std::size_t w = 0; w < parts_.size(); ++w) {
+        if (v == w) continue;
+        if (move_chain(v, w)) return true;
+        if (v < w && (swap_stations(v, w) || swap_tails(v, w))) return true;
+      }
+    }
+    return false;
+  }
+
+  bool reverse_in(std::size_t v) {
+    const Order order = parts_[v].stations;
+    for (std::size_t i = 0; i + 1 < order.size(); ++i) {
+      for (std::size_t j = i + 2; j <= order.size(); ++j) {
+        Order turned = order;
+        std::reverse(turned.begin() + offset(i), turned.begin() + offset(j));
+        if (take(v, std::move(turned), v, {})) return true;
+      }
+    }
+    return false;
+  }
+
+  /// A chain of one vehicle goes to a place in another's order, or in its own, either way round.
+  bool move_chain(std::size_t v, std::size_t w) {
+    const Order from = parts_[v].stations;
+    for (std::size_t size = 1; size <= std::min(longest_chain, from.size()); ++size) {
+      for (std::size_t i = 0; i + size <= from.size(); ++i) {
+        Order chain(from.begin() + offset(i), from.begin() + offset(i + size));
+        Order rest = from;
+        rest.erase(rest.begin() + offset(i), rest.begin() + offset(i + size));
+        if (put_chain(v, rest, w, chain)) return true;
+        std::ranges::reverse(chain);
+        if (size > 1 && put_chain(v, rest, w, chain)) return true;
+      }
+    }
+    return false;
+  }
+
+  bool put_chain(std::size_t v, const Order& rest, std::size_t w, const Order& chain) {
+    const Order& target = v == w ? rest : parts_[w].stations;
+    for (std::size_t j = 0; j <= target.size(); ++j) {
+      Order longer = target;
+      longer.insert(longer.begin() + offset(j), chain.begin(), chain.end());
+      const bool is_taken =
+          v == w ? take(v, std::move(longer), v, {}) : take(v, rest, w, std::move(longer));
+      if (is_taken) return true;
+    }
+    return false;
+  }
+
+  bool swap_stations(std::size_t v, std::size_t w) {
+    for (std::size_t i = 0; i < parts_[v].stations.size(); ++i) {
+      for (std::size_t j = 0; j < parts_[w].stations.size(); ++j) {
+        Order one = parts_[v].stations, other = parts_[w].stations;
+        std::swap(one[i], other[j]);
+        if (take(v, std::move(one), w, std::move(other))) return true;
+      }
+    }
+    return false;
+  }
+
+  /// Each flies on as the other would have: tail for tail, or the heads joined and the tails.
+  bool swap_tails(std::size_t v, std::size_t w) {
+    const Order first = parts_[v].stations, second = parts_[w].stations;
+    for (std::size_t i = 0; i <= first.size(); ++i) {
+      for (std::size_t j = 0; j <= second.size(); ++j) {
+        Order one(first.begin(), first.begin() + offset(i));
+        Order other(second.begin(), second.begin() + offset(j));
+        Order heads = one, tails(first.rbegin(), first.rend() - offset(i));
+        heads.insert(heads.end(), other.rbegin(), other.rend());
+        tails.insert(tails.end(), second.begin() + offset(j), second.end());
+        one.insert(one.end(), second.begin() + offset(j), second.end());
+        other.insert(other.end(), first.begin() + offset(i), first.end());
+        if (take(v, std::move(one), w, std::move(other))) return true;
+        if (take(v, std::move(heads), w, std::move(tails))) return true;
+      }
+    }
+    return false;
+  }
+
+  const FleetProblem& problem_;
+  FleetGoal goal_;
+  double scale_;
+  std::vector<FleetPart> parts_;
+};
+
+}  // namespace
+
+FleetSplit exchanged(const FleetProblem& problem, FleetSplit split, FleetGoal goal) {
+  return Exchange(problem, std::move(split), goal).run();
+}
+
+}  // namespace skycap::flight

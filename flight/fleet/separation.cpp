@@ -1,0 +1,162 @@
+#include "flight/fleet/separation.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <vector>
+
+#include "flight/space/segment_distance.h"
+
+namespace skycap::flight {
+namespace {
+
+using Eigen::Vector3d;
+
+/// Places follow from times by a handful of multiplications; for coordinates below 10 km they and
+/// their distances are right to this [m].
+constexpr double rounding = 1e-6;
+/// Shorter spans are not halved: a vehicle at 20 m/s moves 0.2 mm in one [s].
+constexpr double shortest_span = 1e-5;
+constexpr double precision = 1e-3;  ///< of proven_distance() [m]
+
+struct Span {
+  double begin = 0.0, end = 0.0;
+
+  double length() const { return end - begin; }
+  double middle() const { return 0.5 * (begin + end); }
+};
+
+/// A leg's motion, or the wait at its end.
+struct Piece {
+  const ScriptedLeg* leg;
+  Span span;         ///< by the timetable
+  double leg_begin;  ///< [s]
+  double jerk;
+
+  Vector3d at(double time) const {
+    return set_point(*leg, jerk, std::clamp(time, span.begin, span.end) - leg_begin).position;
+  }
+  Segment between(const Span& part) const { return {at(part.begin), at(part.end)}; }
+};
+
+std::vector<Piece> pieces_of(const TimedFlight& flight) {
+  std::vector<Piece> pieces;
+  double now = flight.start;
+  for (const ScriptedLeg& leg : flight.script) {
+    const double rest = now + leg.moving, end = now + leg.duration();
+    if (leg.moving > 0.0) pieces.push_back({&leg, {now, rest}, now, flight.jerk});
+    pieces.push_back({&leg, {rest, end}, now, flight.jerk});
+    now = end;
+  }
+  return pieces;
+}
+
+/// Looks for the nearest encounter of two flights.
+class Search {
+ public:
+  /// Each at its own time, which differ by at most `lag`. Encounters of `up_to` or more are of no
+  /// interest, and with `takes_any` the first that is nearer will do.
+  Search(double lag, double up_to, bool takes_any) : lag_(lag), takes_any_(takes_any) {
+    nearest_.distance = up_to;
+    bound_ = up_to;
+  }
+
+  void run(const TimedFlight& first, const TimedFlight& second) {
+    const std::vector<Piece> others = pieces_of(second);
+    for (const Piece& piece : pieces_of(first)) {
+      for (const Piece& other : others) {
+        look(piece, piece.span, other, other.span);
+        if (is_done()) return;
+      }
+    }
+  }
+
+  const Encounter& nearest() const { return nearest_; }
+  bool has_found() const { return has_found_; }
+  double bound() const { return bound_; }
+
+ private:
+  bool is_done() const { return takes_any_ && has_found_; }
+
+  void look(const Piece& one, Span span, const Piece& other, Span window) {
+    if (is_done()) return;
+    // Only the times at which both may be there.
+    window = {std::max(window.begin, span.begin - lag_), std::min(window.end, span.end + lag_)};
+    if (window.end < window.begin) return;
+    span = {std::max(span.begin, window.begin - lag_), std::min(span.end, window.end + lag_)};
+    const double bound =
+        std::sqrt(flight::nearest(one.between(span), other.between(window)).squared_distance);
+    const double wanted = takes_any_ ? nearest_.distance : nearest_.distance - precision;
+    if (bound - rounding >= wanted) {
+      bound_ = std::min(bound_, bound - rounding);
+      return;
+    }
+    meet(one, span.middle(), other, window);
+    if (is_done()) return;
+    if (std::max(span.length(), window.length()) <= shortest_span) {
+      settle(one, span, other, window, bound);
+    } else if (span.length() >= window.length()) {
+      look(one, {span.begin, span.middle()}, other, window);
+      look(one, {span.middle(), span.end}, other, window);
+    } else {
+      look(one, span, other, {window.begin, window.middle()});
+      look(one, span, other, {window.middle(), window.end});
+    }
+  }
+
+  /// An encounter that is possible: one vehicle at a time, the other within the lag of it.
+  void meet(const Piece& one, double time, const Piece& other, const Span& window) {
+    const Span together{std::max(window.begin, time - lag_), std::min(window.end, time + lag_)};
+    if (together.end < together.begin) return;
+    const Vector3d place = one.at(time);
+    take(time, flight::nearest(other.between(together), place));
+  }
+
+  /// Spans too short to tell whether it is near enough count as an encounter.
+  void settle(const Piece& one, const Span& span, const Piece& other, const Span& window,
+              double bound) {
+    bound_ = std::min(bound_, bound - rounding);
+    if (!takes_any_) return;
+    const NearestPoints points = flight::nearest(other.between(window), one.between(span));
+    nearest_ = {bound, span.middle(), points.on_other, points.on_segment};
+    has_found_ = true;
+  }
+
+  void take(double time, const NearestPoints& points) {
+    const double distance = std::sqrt(points.squared_distance);
+    if (distance >= nearest_.distance) return;
+    nearest_ = {distance, time, points.on_other, points.on_segment};
+    has_found_ = true;
+  }
+
+  double lag_;
+  bool takes_any_, has_found_ = false;
+  Encounter nearest_;
+  double bound_ = 0.0;
+};
+
+}  // namespace
+
+std::optional<Encounter> too_near(const TimedFlight& first, const TimedFlight& second,
+                                  const SeparationRule& rule) {
+  Search search(2.0 * rule.tolerance, rule.distance, true);
+  search.run(first, second);
+  return search.has_found() ? std::optional(search.nearest()) : std::nullopt;
+}
+
+double proven_distance(const TimedFlight& first, const TimedFlight& second, double tolerance,
+                       double up_to) {
+  Search search(2.0 * tolerance, up_to, false);
+  search.run(first, second);
+  return std::max(0.0, search.bound());
+}
+
+double distance_from(const FlightScript& script, const Vector3d& place) {
+  double least = std::numeric_limits<double>::infinity();
+  for (const ScriptedLeg& leg : script) {
+    least = std::min(least, nearest({leg.from, leg.to}, place).squared_distance);
+  }
+  return std::sqrt(least);
+}
+
+}  // namespace skycap::flight

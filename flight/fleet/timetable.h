@@ -1,0 +1,45 @@
+/// When each sortie of a fleet takes off, so that no two vehicles come too near to each other.
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <vector>
+
+#include "flight/fleet/separation.h"
+
+namespace skycap::flight {
+
+/// A sortie that is to be given a start.
+struct FleetSortie {
+  std::size_t vehicle = 0;
+  std::size_t number = 0;  ///< of its vehicle's sorties, which are flown in that order
+  FlightScript script;
+  double jerk = 0.0;  ///< see TimedFlight
+};
+
+/// Two sorties, by their places in the list, and how near they come.
+struct SortiePair {
+  std::size_t first = 0, second = 0;
+  Encounter encounter;
+};
+
+struct Timetable {
+  std::vector<double> starts;  ///< by sortie [s]
+  double makespan = 0.0;       ///< until the last landing [s]
+  double delay = 0.0;          ///< of the last landing, beside no separation at all [s]
+};
+
+/// Starts of all sorties: none too near to another, a vehicle's next sortie begun when the one
+/// before has landed (batteries are changed in no time). Vehicles take turns in every sequence, or
+/// those with the longest work first if there are more than five; each sortie starts at the first
+/// whole second after its vehicle is ready at which it is proven against all before it, at the
+/// latest when all those have landed. The sequence with the least makespan wins.
+Timetable timetable(const std::vector<FleetSortie>& sorties, std::size_t vehicles,
+                    const SeparationRule& rule);
+
+/// The first pair of different vehicles' flights that come too near; nothing: all are proven.
+std::optional<SortiePair> first_conflict(const std::vector<TimedFlight>& flights,
+                                         const std::vector<std::size_t>& vehicle_of,
+                                         const SeparationRule& rule);
+
+}  // namespace skycap::flight

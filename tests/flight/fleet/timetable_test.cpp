@@ -1,0 +1,91 @@
+#include "flight/fleet/timetable.h"
+
+#include <algorithm>
+
+#include <gtest/gtest.h>
+
+namespace skycap::flight {
+namespace {
+
+using Eigen::Vector3d;
+
+constexpr double jerk = 5.0;
+
+ScriptedLeg leg_between(const Vector3d& from, const Vector3d& to) {
+  return {.from = from,
+          .to = to,
+          .moving = rest_to_rest_time((to - from).norm(), 4.0, 2.0, jerk),
+          .speed = 4.0,
+          .acceleration = 2.0};
+}
+
+/// Up, to a place and back, down.
+FlightScript there_and_back(const Vector3d& pad, const Vector3d& place) {
+  const Vector3d above = pad + Vector3d(0, 0, 6);
+  return {leg_between(pad, above), leg_between(above, place), leg_between(place, above),
+          leg_between(above, pad)};
+}
+
+std::vector<TimedFlight> flights_of(const std::vector<FleetSortie>& sorties,
+                                    const Timetable& table) {
+  std::vector<TimedFlight> flights;
+  for (std::size_t i = 0; i < sorties.size(); ++i) {
+    flights.push_back({sorties[i].script, jerk, table.starts[i]});
+  }
+  return flights;
+}
+
+TEST(Timetable, StartsAllAtOnceWhoNeverMeet) {
+  const std::vector<FleetSortie> sorties{{0, 0, there_and_back({0, 0, 0}, {0, 50, 10}), jerk},
+                                         {1, 0, there_and_back({30, 0, 0}, {30, 40, 10}), jerk}};
+  const Timetable table = timetable(sorties, 2, {.distance = 20.0, .tolerance = 10.0});
+  EXPECT_EQ(table.starts, (std::vector<double>{0.0, 0.0}));
+  EXPECT_DOUBLE_EQ(table.delay, 0.0);
+  EXPECT_NEAR(table.makespan, duration(sorties[0].script), 1e-9);
+}
+
+// They cross. No other pair of starts, one of them at once, has the last landing sooner.
+TEST(Timetable, DelaysAsLittleAsCanBeWhereTwoCross) {
+  const std::vector<FleetSortie> sorties{{0, 0, there_and_back({0, 0, 0}, {40, 60, 10}), jerk},
+                                         {1, 0, there_and_back({40, 0, 0}, {0, 40, 10}), jerk}};
+  const SeparationRule rule{.distance = 10.0, .tolerance = 1.0};
+  const std::vector<std::size_t> vehicles{0, 1};
+  EXPECT_TRUE(first_conflict(flights_of(sorties, {.starts = {0.0, 0.0}}), vehicles, rule));
+  const Timetable table = timetable(sorties, 2, rule);
+  EXPECT_FALSE(first_conflict(flights_of(sorties, table), vehicles, rule));
+  for (double later = 0.0; later < 60.0; later += 1.0) {
+    for (const auto& starts : {std::vector<double>{0.0, later}, std::vector<double>{later, 0.0}}) {
+      const std::vector<TimedFlight> flights = flights_of(sorties, {.starts = starts});
+      if (first_conflict(flights, vehicles, rule)) continue;
+      EXPECT_LE(table.makespan, std::max(flights[0].landing(), flights[1].landing()) + 1e-9);
+    }
+  }
+}
+
+// The same way for all: nothing helps but one after the other.
+TEST(Timetable, FliesOneAfterTheOtherWhereNothingElseHelps) {
+  std::vector<FleetSortie> sorties;
+  for (std::size_t v = 0; v < 3; ++v) {
+    sorties.push_back({v, 0, there_and_back({0, 0, 0}, {0, 5, 8}), jerk});
+  }
+  const SeparationRule rule{.distance = 60.0, .tolerance = 4.0};
+  const Timetable table = timetable(sorties, 3, rule);
+  EXPECT_FALSE(first_conflict(flights_of(sorties, table), {0, 1, 2}, rule));
+  const double one = duration(sorties[0].script);
+  EXPECT_GE(table.makespan, 3.0 * one + 4.0 * rule.tolerance);
+  EXPECT_LE(table.makespan, 3.0 * one + 4.0 * rule.tolerance + 6.0);  // whole seconds
+  EXPECT_NEAR(table.delay, table.makespan - one, 1e-9);
+}
+
+TEST(Timetable, LetsAVehicleLandBeforeItsNextSortie) {
+  const std::vector<FleetSortie> sorties{{0, 1, there_and_back({0, 0, 0}, {0, 50, 10}), jerk},
+                                         {0, 0, there_and_back({0, 0, 0}, {20, 50, 10}), jerk},
+                                         {1, 0, there_and_back({60, 0, 0}, {60, 50, 10}), jerk}};
+  const Timetable table = timetable(sorties, 2, {.distance = 10.0, .tolerance = 5.0});
+  EXPECT_EQ(table.starts[1], 0.0);
+  EXPECT_GE(table.starts[0], duration(sorties[1].script));
+  EXPECT_LE(table.starts[0], duration(sorties[1].script) + 1.0);
+}
+
+}  // namespace
+}  // namespace skycap::flight
