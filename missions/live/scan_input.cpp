@@ -179,12 +179,16 @@ ScanFound read_scan(const ScanInput& input, const file::Mission& mission) {
     return scan_of(sim::read_depth_png(input.file), input.lens, input.depth_unit,
                    input.world_from_sensor, mission);
   }
+  return scan_of(points_in_sensor(input), input.world_from_sensor, mission);
+}
+
+ScanFound scan_of(std::span<const Vector3d> points, const Isometry3d& world_from_sensor,
+                  const file::Mission& mission) {
   ScanFound found;
-  found.scan.world_from_sensor = input.world_from_sensor;
-  const std::vector<Vector3d> points = points_in_sensor(input);
+  found.scan.world_from_sensor = world_from_sensor;
   if (mission.sensor.scanner) {
     for (const Vector3d& point : points) {
-      found.scan.points.push_back((input.world_from_sensor * point).cast<float>());
+      found.scan.points.push_back((world_from_sensor * point).cast<float>());
     }
   } else {
     organise(points, geometry::Camera(mission.sensor.camera.camera), found);

@@ -67,6 +67,10 @@ ScanFound read_scan(const ScanInput& input, const file::Mission& mission);
 std::vector<Eigen::Vector3d> points_of(const sim::DepthImage& image, const Lens& lens, double unit,
                                        std::size_t& without_return);
 
+/// Points of the sensor's optical frame as a scan of a mission, as read_scan has it.
+ScanFound scan_of(std::span<const Eigen::Vector3d> points,
+                  const Eigen::Isometry3d& world_from_sensor, const file::Mission& mission);
+
 /// A depth image as a scan of a mission with a depth camera; without a lens, of the mission's.
 ScanFound scan_of(const sim::DepthImage& image, const std::optional<Lens>& lens, double unit,
                   const Eigen::Isometry3d& world_from_sensor, const file::Mission& mission);

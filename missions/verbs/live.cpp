@@ -9,9 +9,10 @@
 #include "geometry/error.h"
 #include "geometry/io/file.h"
 #include "geometry/io/output_folder.h"
+#include "missions/dataset/rawlog_sequence.h"
+#include "missions/dataset/recorded_sequence.h"
 #include "missions/derived/resolved_mission.h"
 #include "missions/live/open_survey.h"
-#include "missions/live/recorded_sequence.h"
 #include "missions/live/scan_input.h"
 #include "missions/live/server.h"
 #include "missions/package/flight_report.h"
@@ -80,31 +81,64 @@ std::string left_out_text(const live::ScanFound& found) {
   return text;
 }
 
-void add_scan(const NextOptions& options, const live::ScanInput& input, std::string id,
-              const file::Mission& mission, live::LiveSurvey& survey, const Console& console) {
-  const live::ScanFound found = live::read_scan(input, mission);
+void add_scan(const NextOptions& options, const std::string& name, const live::ScanFound& found,
+              std::string id, const file::Mission& mission, live::LiveSurvey& survey,
+              const Console& console) {
   live::require_usable(found.scan, mission);
   const std::optional<live::PoseCovariance> covariance = covariance_of(options);
   if (id.empty()) id = live::scan_id(found.scan, covariance);
   const bool is_new = survey.add(found.scan, id, covariance);
   if (options.is_quiet) return;
   const bool is_aside = is_new && survey.proposal().warns_of_pose();
-  console.err << fmt::format("{}: {} points{}{}{}\n", input.file.string(), found.scan.points.size(),
+  console.err << fmt::format("{}: {} points{}{}{}\n", name, found.scan.points.size(),
                              is_new ? "" : "; known already, ignored",
                              is_aside ? "; set aside, its pose is wrong" : "", left_out_text(found))
               << std::flush;
 }
 
-/// The frames of a recording that the survey does not have yet, one after another.
-void add_recording(const NextOptions& options, const file::Mission& mission,
-                   live::LiveSurvey& survey, const Console& console) {
-  const live::RecordedSequence sequence = live::read_sequence(*options.dataset, options.until);
+/// The frames of a folder that the survey does not have yet, one after another.
+void add_frames(const NextOptions& options, const file::Mission& mission, live::LiveSurvey& survey,
+                const Console& console) {
+  if (options.poses || !options.sensor.empty()) {
+    throw Error(ErrorKind::bad_usage, "--poses and --sensor are for rawlogs");
+  }
+  const dataset::RecordedSequence sequence =
+      dataset::read_sequence(*options.dataset, options.until);
   for (const std::string& note : sequence.notes) warn(console, note);
-  for (const live::RecordedFrame& frame : sequence.frames) {
+  for (const dataset::RecordedFrame& frame : sequence.frames) {
     if (console.stop.stop_requested()) return;
     if (survey.number_of(frame.id)) continue;
-    add_scan(options, input_of(options, frame.file, frame.world_from_sensor), frame.id, mission,
+    const live::ScanInput input = input_of(options, frame.file, frame.world_from_sensor);
+    add_scan(options, frame.file.string(), live::read_scan(input, mission), frame.id, mission,
              survey, console);
+  }
+}
+
+/// The same of a rawlog.
+void add_rawlog(const NextOptions& options, const file::Mission& mission, live::LiveSurvey& survey,
+                const Console& console) {
+  dataset::RawlogSequence sequence(*options.dataset,
+                                   {.sensor = options.sensor, .poses = options.poses},
+                                   [&](const std::string& note) { warn(console, note); });
+  if (!options.is_quiet) {
+    console.err << options.dataset->string() << ": poses are from " << sequence.pose_source()
+                << "\n";
+  }
+  for (std::size_t count = 0; count < options.until && !console.stop.stop_requested(); ++count) {
+    const std::optional<dataset::RawlogFrame> frame = sequence.next();
+    if (!frame) return;
+    if (survey.number_of(frame->id)) continue;
+    add_scan(options, frame->id, dataset::scan_of(*frame, mission), frame->id, mission, survey,
+             console);
+  }
+}
+
+void add_recording(const NextOptions& options, const file::Mission& mission,
+                   live::LiveSurvey& survey, const Console& console) {
+  if (std::filesystem::is_regular_file(*options.dataset)) {
+    add_rawlog(options, mission, survey, console);
+  } else {
+    add_frames(options, mission, survey, console);
   }
 }
 
@@ -179,8 +213,13 @@ void add_next(CLI::App& app, const Console& console, Action& action) {
   verb->add_flag("--world", options->is_in_world, "The cloud is in the mission's frame already");
   verb->add_option("--id", options->id, "Of the scan; one that is known is not taken in again");
   verb->add_option("--dataset", options->dataset,
-                   "Folder of a recording, whose frames are taken in one by one: TUM RGB-D "
-                   "(depth.txt, groundtruth.txt) or 7-Scenes (frame-NNNNNN.depth.png, .pose.txt)");
+                   "A recording, whose frames are taken in one by one: a folder of TUM RGB-D "
+                   "(depth.txt, groundtruth.txt) or 7-Scenes (frame-NNNNNN.depth.png, .pose.txt), "
+                   "or a rawlog of MRPT");
+  verb->add_option("--sensor", options->sensor, "Of a rawlog with several: the one's label");
+  verb->add_option("--poses", options->poses,
+                   "Of a rawlog's sensor, in place of its own: a TUM trajectory of the optical "
+                   "frame");
   verb->add_option("--until", options->until, "Only so many frames of the recording")
       ->check(CLI::Range(1, 1'000'000));
   verb->add_option("--refuse", options->refusal, "Another view in place of the last, and why");
@@ -218,7 +257,8 @@ int next(const NextOptions& options, const Console& console) {
   const file::Mission mission = derived::read_live_mission(options.mission, options.overrides);
   const auto survey = live::open_survey(mission, options.mission.parent_path(), options.survey);
   if (options.scan) {
-    add_scan(options, input_of(options, *options.scan, pose_of(options)), options.id, mission,
+    const live::ScanInput input = input_of(options, *options.scan, pose_of(options));
+    add_scan(options, options.scan->string(), live::read_scan(input, mission), options.id, mission,
              *survey, console);
   }
   if (options.dataset) add_recording(options, mission, *survey, console);

@@ -49,6 +49,8 @@ struct NextOptions : LiveOptions {
   bool is_in_world = false;                        ///< the points of a cloud
   std::string id;                                  ///< of the scan; default: its digest
   std::optional<std::filesystem::path> dataset;    ///< a recording to be taken in, in its place
+  std::string sensor;                              ///< label in a rawlog
+  std::optional<std::filesystem::path> poses;      ///< of a rawlog's sensor; default: its own
   std::size_t until = 1'000'000;                   ///< so many of its frames
   std::optional<std::string> refusal;              ///< why the proposed view is not wanted
   bool is_json = false;
