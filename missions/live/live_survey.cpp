@@ -301,6 +301,8 @@ void LiveSurvey::refuse(const std::string& reason) {
   impl_->take_in({.scan = {}, .refusal = reason, .proposal = {}}, {});
 }
 
+run::SurveyFlight* LiveSurvey::flight() { return impl_->guide->flight(); }
+
 run::SurveyRecord LiveSurvey::so_far() const {
   run::SurveyRecord record = impl_->views_record();
   impl_->guide->tell(record);

@@ -74,6 +74,9 @@ class LiveSurvey {
   /// Asks for another view in place of the proposed one. Throws Error{bad_usage} if there is none.
   void refuse(const std::string& reason);
 
+  /// What knows the ways of the mission's vehicle; null without one.
+  run::SurveyFlight* flight();
+
   /// The survey so far, to be looked at: interrupted, if a view is still proposed; without its
   /// flight.
   run::SurveyRecord so_far() const;

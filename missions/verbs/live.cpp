@@ -1,4 +1,4 @@
-// The verbs of live surveys: next and finish, one call at a time, and serve.
+// The verbs of live surveys: next and finish, one call at a time, serve, and fly.
 #include <memory>
 #include <string>
 #include <utility>
@@ -12,6 +12,9 @@
 #include "missions/dataset/rawlog_sequence.h"
 #include "missions/dataset/recorded_sequence.h"
 #include "missions/derived/resolved_mission.h"
+#include "missions/fly/fly_survey.h"
+#include "missions/fly/network_port.h"
+#include "missions/fly/sensors.h"
 #include "missions/live/open_survey.h"
 #include "missions/live/scan_input.h"
 #include "missions/live/server.h"
@@ -308,10 +311,94 @@ int serve(const ServeOptions& options, const Console& console) {
   return exit_code;
 }
 
+namespace {
+
+/// A survey that is flown on an autopilot.
+struct FlyOptions : LiveOptions {
+  std::string connect;               ///< fly::parse_address()
+  std::string sensor = "simulated";  ///< or a folder that scans come to
+  std::string on_failure = "hold";   ///< or return
+  std::string lens;                  ///< of depth images
+  double depth_unit = 0.001;         ///< of depth images [m]
+  bool is_quiet = false;
+};
+
+fly::Sensor sensor_of(const FlyOptions& options, const file::Mission& mission,
+                      const Console& console) {
+  if (options.sensor == "simulated") {
+    return fly::simulated_sensor(mission, options.mission.parent_path());
+  }
+  live::ScanInput input;
+  input.depth_unit = options.depth_unit;
+  if (!options.lens.empty()) input.lens = live::parse_lens(options.lens);
+  return fly::folder_sensor(mission, options.sensor, std::move(input),
+                            fly::FlightOptions{}.sensing_limit, console.stop);
+}
+
+/// Exit code 0: the survey is over, the vehicle has landed, and the package has a route.
+int fly_live(const FlyOptions& options, const Console& console) {
+  const fly::NetworkAddress address = fly::parse_address(options.connect);
+  const file::Mission mission = derived::read_live_mission(options.mission, options.overrides);
+  fly::require_flyable(mission);
+  fly::Sensor sensor = sensor_of(options, mission, console);
+  const auto survey = live::open_survey(mission, options.mission.parent_path(), options.survey);
+  fly::NetworkPort port(address);
+  if (!address.is_of_this_machine()) {
+    warn(console,
+         "MAVLink has no lock: who can reach " + options.connect + " can take part in this flight");
+  }
+  const HoldsResults results(console);
+  fly::FlightOptions flight;
+  flight.returns_on_failure = options.on_failure == "return";
+  flight.show = [&] { show_survey(options, mission, *survey, console); };
+  flight.note = [&](const std::string& text) {
+    if (!options.is_quiet) console.err << printable_line(text) << "\n" << std::flush;
+  };
+  const fly::FlightEnd end =
+      fly::fly_survey(mission, *survey, port, std::move(sensor), std::move(flight), console.stop);
+  if (end.trouble) {
+    console.err << "skycap: the flight ended: " << printable_line(end.trouble->what)
+                << (end.has_landed ? "; landed on the pad" : "") << "; the survey in "
+                << printable_line(options.survey.string()) << " goes on when it is flown again\n"
+                << std::flush;
+    return 1;
+  }
+  const Finished finished = write_package(options, mission, *survey, console);
+  console.out << finished.text << std::flush;
+  return finished.has_route ? 0 : 1;
+}
+
+void add_fly(CLI::App& app, const Console& console, Action& action) {
+  CLI::App* verb = app.add_subcommand(
+      "fly", "Fly a live survey on an autopilot, one proven leg after another (docs/live.md)");
+  const auto options = std::make_shared<FlyOptions>();
+  const auto keys = std::make_shared<KeyOptions>();
+  add_live_options(*verb, *options, *keys);
+  verb->add_option("--connect", options->connect,
+                   "Where the autopilot's MAVLink comes to, udp:127.0.0.1:14550, or where it waits "
+                   "for us, udpout:HOST:PORT or tcp:HOST:PORT")
+      ->required();
+  verb->add_option("--sensor", options->sensor,
+                   "simulated (default; the mission has a scene then), or a folder that another "
+                   "program writes the scans to");
+  verb->add_option("--on-failure", options->on_failure,
+                   "hold (default) until a pilot takes control, or return by the proven way where "
+                   "that can be flown")
+      ->check(CLI::IsMember({"hold", "return"}));
+  verb->add_option("--lens", options->lens, "Of depth images, as for next");
+  verb->add_option("--depth-unit", options->depth_unit, "Of depth images [m]; default 0.001")
+      ->check(number_between(1e-6, 1.0));
+  verb->add_flag("--quiet", options->is_quiet, "Print nothing but results and errors");
+  run_with_keys(*verb, options, keys, fly_live, console, action);
+}
+
+}  // namespace
+
 void add_live(CLI::App& app, const Console& console, Action& action) {
   add_next(app, console, action);
   add_serve(app, console, action);
   add_finish(app, console, action);
+  add_fly(app, console, action);
 }
 
 }  // namespace skycap::missions::verbs

@@ -31,7 +31,7 @@ void add_set_option(CLI::App& verb, KeyOptions& keys);
 CLI::Validator number_between(double least, double most);
 
 /// Verbs whose options stand in their own sources: a first mission for a site, live surveys (next,
-/// serve, finish), campaigns, models.
+/// serve, finish, fly), campaigns, models.
 void add_site(CLI::App& app, const Console& console, Action& action);
 void add_live(CLI::App& app, const Console& console, Action& action);
 void add_campaign(CLI::App& app, const Console& console, Action& action);
