@@ -27,7 +27,12 @@ int main(int argc, char** argv) {
     fly::TestAutopilot autopilot(
         mission, derived::pad_of(mission, scene.first_view(mission.seed).position), {});
     fly::NetworkPort port(fly::parse_address(std::string("udpout:127.0.0.1:") + argv[2]));
-    fly::fly_in_real_time(autopilot, port, [&] { return autopilot.has_landed(); });
+    double flown = 0.0;
+    fly::fly_in_real_time(autopilot, port, [&] {
+      constexpr double farewell = 5.0;  // to say that it has landed [s]
+      if (!autopilot.has_landed()) flown = autopilot.time();
+      return autopilot.time() > flown + farewell;
+    });
   } catch (const skycap::Error& error) {
     std::cerr << error.what() << "\n";
     return 2;
