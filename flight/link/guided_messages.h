@@ -46,10 +46,8 @@ struct SystemStatus {
     visit("current_battery", self.current_battery);
     visit("drop_rate_comm", self.drop_rate);
     visit("errors_comm", self.errors);
-    visit("errors_count1", self.counts[0]);
-    visit("errors_count2", self.counts[1]);
-    visit("errors_count3", self.counts[2]);
-    visit("errors_count4", self.counts[3]);
+    visit_each(visit, {"errors_count1", "errors_count2", "errors_count3", "errors_count4"},
+               self.counts);
     visit("battery_remaining", self.battery_remaining);
   }
 };
@@ -106,16 +104,10 @@ struct CommandLong {
 
   template <class Self, class Visit>
   static void fields(Self& self, Visit&& visit) {
-    visit("param1", self.params[0]);
-    visit("param2", self.params[1]);
-    visit("param3", self.params[2]);
-    visit("param4", self.params[3]);
-    visit("param5", self.params[4]);
-    visit("param6", self.params[5]);
-    visit("param7", self.params[6]);
+    visit_each(visit, {"param1", "param2", "param3", "param4", "param5", "param6", "param7"},
+               self.params);
     visit("command", self.command);
-    visit("target_system", self.target.system);
-    visit("target_component", self.target.component);
+    visit_target(visit, self.target);
     visit("confirmation", self.confirmation);
   }
 };
@@ -152,17 +144,12 @@ struct PositionTarget {
     visit("lat_int", self.latitude);
     visit("lon_int", self.longitude);
     visit("alt", self.height);
-    visit("vx", self.velocity[0]);
-    visit("vy", self.velocity[1]);
-    visit("vz", self.velocity[2]);
-    visit("afx", self.acceleration[0]);
-    visit("afy", self.acceleration[1]);
-    visit("afz", self.acceleration[2]);
+    visit_each(visit, {"vx", "vy", "vz"}, self.velocity);
+    visit_each(visit, {"afx", "afy", "afz"}, self.acceleration);
     visit("yaw", self.yaw);
     visit("yaw_rate", self.yaw_rate);
     visit("type_mask", self.ignored);
-    visit("target_system", self.target.system);
-    visit("target_component", self.target.component);
+    visit_target(visit, self.target);
     visit("coordinate_frame", self.frame);
   }
 };
@@ -175,11 +162,10 @@ struct EstimatorStatus {
 
   template <class Self, class Visit>
   static void fields(Self& self, Visit&& visit) {
-    visit("velocity_variance", self.variances[0]);
-    visit("pos_horiz_variance", self.variances[1]);
-    visit("pos_vert_variance", self.variances[2]);
-    visit("compass_variance", self.variances[3]);
-    visit("terrain_alt_variance", self.variances[4]);
+    visit_each(visit,
+               {"velocity_variance", "pos_horiz_variance", "pos_vert_variance", "compass_variance",
+                "terrain_alt_variance"},
+               self.variances);
     visit("flags", self.flags);
   }
 };
@@ -211,13 +197,11 @@ struct GimbalAttitude {
   static void fields(Self& self, Visit&& visit) {
     visit("time_boot_ms", self.time_boot_ms);
     visit("q", self.turn);
-    visit("angular_velocity_x", self.rates[0]);
-    visit("angular_velocity_y", self.rates[1]);
-    visit("angular_velocity_z", self.rates[2]);
+    visit_each(visit, {"angular_velocity_x", "angular_velocity_y", "angular_velocity_z"},
+               self.rates);
     visit("failure_flags", self.failures);
     visit("flags", self.flags);
-    visit("target_system", self.target.system);
-    visit("target_component", self.target.component);
+    visit_target(visit, self.target);
   }
 };
 

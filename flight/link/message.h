@@ -17,6 +17,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <tuple>
 #include <type_traits>
 #include <utility>
 
@@ -37,6 +38,20 @@ constexpr const char* type_name() {
   if constexpr (std::is_same_v<T, std::int16_t>) return "int16_t";
   if constexpr (std::is_same_v<T, std::uint32_t>) return "uint32_t";
   if constexpr (std::is_same_v<T, std::int32_t>) return "int32_t";
+}
+
+/// Visits the numbers of an array as fields of their own.
+template <class Visit, std::size_t N, class Array>
+void visit_each(Visit& visit, const char* const (&names)[N], Array& values) {
+  static_assert(N == std::tuple_size_v<std::remove_const_t<Array>>);
+  for (std::size_t i = 0; i < N; ++i) visit(names[i], values[i]);
+}
+
+/// Visits the two fields that say whom a message is for.
+template <class Visit, class Target>
+void visit_target(Visit& visit, Target& target) {
+  visit("target_system", target.system);
+  visit("target_component", target.component);
 }
 
 /// The definition's text, from which the extra byte is computed.

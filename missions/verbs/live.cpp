@@ -9,8 +9,7 @@
 #include "geometry/error.h"
 #include "geometry/io/file.h"
 #include "geometry/io/output_folder.h"
-#include "missions/dataset/rawlog_sequence.h"
-#include "missions/dataset/recorded_sequence.h"
+#include "missions/dataset/recording.h"
 #include "missions/derived/resolved_mission.h"
 #include "missions/fly/fly_survey.h"
 #include "missions/fly/network_port.h"
@@ -99,49 +98,23 @@ void add_scan(const NextOptions& options, const std::string& name, const live::S
               << std::flush;
 }
 
-/// The frames of a folder that the survey does not have yet, one after another.
-void add_frames(const NextOptions& options, const file::Mission& mission, live::LiveSurvey& survey,
-                const Console& console) {
-  if (options.poses || !options.sensor.empty()) {
-    throw Error(ErrorKind::bad_usage, "--poses and --sensor are for rawlogs");
-  }
-  const dataset::RecordedSequence sequence =
-      dataset::read_sequence(*options.dataset, options.until);
-  for (const std::string& note : sequence.notes) warn(console, note);
-  for (const dataset::RecordedFrame& frame : sequence.frames) {
-    if (console.stop.stop_requested()) return;
-    if (survey.number_of(frame.id)) continue;
-    const live::ScanInput input = input_of(options, frame.file, frame.world_from_sensor);
-    add_scan(options, frame.file.string(), live::read_scan(input, mission), frame.id, mission,
-             survey, console);
-  }
-}
-
-/// The same of a rawlog.
-void add_rawlog(const NextOptions& options, const file::Mission& mission, live::LiveSurvey& survey,
-                const Console& console) {
-  dataset::RawlogSequence sequence(*options.dataset,
-                                   {.sensor = options.sensor, .poses = options.poses},
-                                   [&](const std::string& note) { warn(console, note); });
-  if (!options.is_quiet) {
-    console.err << options.dataset->string() << ": poses are from " << sequence.pose_source()
-                << "\n";
-  }
-  for (std::size_t count = 0; count < options.until && !console.stop.stop_requested(); ++count) {
-    const std::optional<dataset::RawlogFrame> frame = sequence.next();
-    if (!frame) return;
-    if (survey.number_of(frame->id)) continue;
-    add_scan(options, frame->id, dataset::scan_of(*frame, mission), frame->id, mission, survey,
-             console);
-  }
-}
-
+/// The frames of a recording that the survey does not have yet, one after another.
 void add_recording(const NextOptions& options, const file::Mission& mission,
                    live::LiveSurvey& survey, const Console& console) {
-  if (std::filesystem::is_regular_file(*options.dataset)) {
-    add_rawlog(options, mission, survey, console);
-  } else {
-    add_frames(options, mission, survey, console);
+  const dataset::RecordingChoice choice{
+      .rawlog = {.sensor = options.sensor, .poses = options.poses},
+      .count = options.until,
+      .image = input_of(options, {}, Eigen::Isometry3d::Identity())};
+  const auto recording = dataset::open_recording(
+      *options.dataset, choice, mission, [&](const std::string& note) { warn(console, note); });
+  if (const std::string source = recording->pose_source(); !source.empty() && !options.is_quiet) {
+    console.err << options.dataset->string() << ": poses are from " << source << "\n";
+  }
+  while (!console.stop.stop_requested()) {
+    const std::optional<dataset::Frame> frame = recording->next();
+    if (!frame) return;
+    if (survey.number_of(frame->id)) continue;
+    add_scan(options, frame->name, frame->scan(), frame->id, mission, survey, console);
   }
 }
 

@@ -20,8 +20,7 @@ struct MissionRequestList {
 
   template <class Self, class Visit>
   static void fields(Self& self, Visit&& visit) {
-    visit("target_system", self.target.system);
-    visit("target_component", self.target.component);
+    visit_target(visit, self.target);
   }
 };
 
@@ -34,8 +33,7 @@ struct MissionCount {
   template <class Self, class Visit>
   static void fields(Self& self, Visit&& visit) {
     visit("count", self.count);
-    visit("target_system", self.target.system);
-    visit("target_component", self.target.component);
+    visit_target(visit, self.target);
   }
 };
 
@@ -47,8 +45,7 @@ struct MissionAnswer {
 
   template <class Self, class Visit>
   static void fields(Self& self, Visit&& visit) {
-    visit("target_system", self.target.system);
-    visit("target_component", self.target.component);
+    visit_target(visit, self.target);
     visit("type", self.result);
   }
 };
@@ -62,8 +59,7 @@ struct MissionRequest {
   template <class Self, class Visit>
   static void fields(Self& self, Visit&& visit) {
     visit("seq", self.sequence);
-    visit("target_system", self.target.system);
-    visit("target_component", self.target.component);
+    visit_target(visit, self.target);
   }
 };
 
@@ -80,17 +76,13 @@ struct WireItem {
 
   template <class Self, class Visit>
   static void fields(Self& self, Visit&& visit) {
-    visit("param1", self.params[0]);
-    visit("param2", self.params[1]);
-    visit("param3", self.params[2]);
-    visit("param4", self.params[3]);
+    visit_each(visit, {"param1", "param2", "param3", "param4"}, self.params);
     visit("x", self.x);
     visit("y", self.y);
     visit("z", self.z);
     visit("seq", self.sequence);
     visit("command", self.command);
-    visit("target_system", self.target.system);
-    visit("target_component", self.target.component);
+    visit_target(visit, self.target);
     visit("frame", self.frame);
     visit("current", self.current);
     visit("autocontinue", self.autocontinue);

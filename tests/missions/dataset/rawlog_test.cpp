@@ -2,92 +2,32 @@
 #include <array>
 #include <cmath>
 #include <cstring>
-#include <fstream>
-#include <functional>
-#include <memory>
-#include <random>
-#include <string>
-#include <vector>
+#include <numbers>
+#include <sstream>
 
 #include <gmock/gmock.h>
-#include <gtest/gtest.h>
-#include <mrpt/io/CFileGZOutputStream.h>
-#include <mrpt/io/CFileOutputStream.h>
 #include <mrpt/io/lazy_load_path.h>
 #include <mrpt/maps/CSimplePointsMap.h>
 #include <mrpt/obs/CActionCollection.h>
 #include <mrpt/obs/CActionRobotMovement2D.h>
 #include <mrpt/obs/CActionRobotMovement3D.h>
-#include <mrpt/obs/CObservation3DRangeScan.h>
-#include <mrpt/obs/CObservationGPS.h>
-#include <mrpt/obs/CObservationOdometry.h>
 #include <mrpt/obs/CObservationPointCloud.h>
-#include <mrpt/obs/CObservationRobotPose.h>
 #include <mrpt/obs/CObservationVelodyneScan.h>
 #include <mrpt/obs/CSensoryFrame.h>
-#include <mrpt/serialization/CArchive.h>
 
-#include "geometry/error.h"
-#include "missions/dataset/rawlog_sequence.h"
 #include "missions/derived/resolved_mission.h"
-#include "tests/missions/run_skycap.h"
-#include "tests/support/complaint.h"
+#include "tests/missions/dataset/written_rawlog.h"
 
 namespace skycap::missions::dataset {
 namespace {
 
 using Eigen::Isometry3d;
 using Eigen::Vector3d;
-using mrpt::obs::CObservation3DRangeScan;
-using mrpt::poses::CPose3D;
 using testing::AllOf;
 using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
 using testing::StartsWith;
-using testing_support::complaint_of;
-using Objects = std::vector<mrpt::serialization::CSerializable::Ptr>;
-
-const CPose3D mount(0.3, -0.2, 0.1, 0.4, -0.3, 0.2);
-
-/// An image of 32 x 24 pixels, a fifth of them without a return.
-std::shared_ptr<CObservation3DRangeScan> range_scan(double time,
-                                                    const std::string& label = "DEPTH") {
-  auto scan = std::make_shared<CObservation3DRangeScan>();
-  scan->timestamp = mrpt::Clock::fromDouble(time);
-  scan->sensorLabel = label;
-  scan->sensorPose = mount;
-  scan->hasRangeImage = true;
-  scan->rangeUnits = 0.0005F;
-  scan->rangeImage_setSize(24, 32);
-  scan->cameraParams.ncols = 32;
-  scan->cameraParams.nrows = 24;
-  scan->cameraParams.setIntrinsicParamsFromValues(30.0, 31.0, 15.2, 12.1);
-  std::mt19937_64 random(static_cast<std::uint64_t>(1000 * time));
-  for (int row = 0; row < 24; ++row) {
-    for (int column = 0; column < 32; ++column) {
-      const std::uint64_t number = random();
-      scan->rangeImage(row, column) =
-          number % 5 == 0 ? 0 : static_cast<std::uint16_t>(2000 + number % 9000);
-    }
-  }
-  return scan;
-}
-
-auto robot_pose(double time, const CPose3D& pose) {
-  auto observation = std::make_shared<mrpt::obs::CObservationRobotPose>();
-  observation->timestamp = mrpt::Clock::fromDouble(time);
-  observation->sensorLabel = "POSE";
-  observation->pose.mean = pose;
-  return observation;
-}
-
-auto wheels(double time, double x, double heading) {
-  auto observation = std::make_shared<mrpt::obs::CObservationOdometry>();
-  observation->timestamp = mrpt::Clock::fromDouble(time);
-  observation->odometry = mrpt::poses::CPose2D(x, 0.0, heading);
-  return observation;
-}
 
 /// With the axes of the optical frame, by MRPT's own composition.
 CPose3D optical(const CPose3D& sensor) {
@@ -100,49 +40,6 @@ bool is_near(const Isometry3d& pose, const CPose3D& expected) {
       expected.getHomogeneousMatrixVal<mrpt::math::CMatrixDouble44>().asEigen();
   return (pose.matrix() - matrix).norm() < 1e-9;
 }
-
-class Rawlog : public testing::Test {
- protected:
-  std::string write(const Objects& objects, const std::string& name = "x.rawlog") const {
-    const std::string file = folder_ / name;
-    const auto write_to = [&](auto stream) {
-      auto archive = mrpt::serialization::archiveFrom(stream);
-      for (const auto& object : objects) archive << *object;
-    };
-    if (name.ends_with(".gz")) {
-      write_to(mrpt::io::CFileGZOutputStream(file));
-    } else {
-      write_to(mrpt::io::CFileOutputStream(file));
-    }
-    return file;
-  }
-
-  std::vector<RawlogFrame> frames(const std::string& file, const RawlogChoice& choice = {}) {
-    notes_.clear();
-    RawlogSequence sequence(file, choice, [&](const std::string& note) { notes_.push_back(note); });
-    source_ = sequence.pose_source();
-    std::vector<RawlogFrame> all;
-    while (auto frame = sequence.next()) all.push_back(std::move(*frame));
-    return all;
-  }
-
-  std::string complaint(const std::string& file, const RawlogChoice& choice = {}) {
-    const std::string what = complaint_of([&] { frames(file, choice); });
-    EXPECT_EQ(what.find('\n'), std::string::npos) << what;
-    return what;
-  }
-
-  /// The scan as of a mission that takes all points in.
-  static std::vector<Eigen::Vector3f> points(const RawlogFrame& frame) {
-    file::Mission mission;
-    mission.sensor.scanner = sim::LidarConfig{};
-    return scan_of(frame, mission).scan.points;
-  }
-
-  tests::TestFolder folder_;
-  std::vector<std::string> notes_;
-  std::string source_;
-};
 
 TEST_F(Rawlog, RangeImagesAreWhereMrptPutsThem) {
   const CPose3D robot(1.0, 2.0, 3.0, -0.5, 0.1, 0.3);
@@ -231,16 +128,6 @@ TEST_F(Rawlog, PosesOfATrajectoryAreTheOpticalFrames) {
               HasSubstr("none"));
 }
 
-TEST_F(Rawlog, WithoutPosesScansOrAChoiceIsRefused) {
-  EXPECT_THAT(complaint(write({range_scan(1.0), std::make_shared<mrpt::obs::CObservationGPS>()})),
-              AllOf(HasSubstr("x.rawlog: does not say where"), HasSubstr("--poses")));
-  EXPECT_THAT(complaint(write({robot_pose(1.0, {})})), HasSubstr("has no scan that can be used"));
-  const std::string two = write({robot_pose(1.0, {}), range_scan(1.0, "L"), range_scan(1.0, "R")});
-  EXPECT_THAT(complaint(two), AllOf(HasSubstr("'L', 'R'"), HasSubstr("--sensor")));
-  EXPECT_THAT(complaint(two, {.sensor = "M", .poses = {}}), HasSubstr("'M'; it has 'L', 'R'"));
-  EXPECT_EQ(frames(two, {.sensor = "R", .poses = {}}).at(0).id, "R 2");
-}
-
 TEST_F(Rawlog, ImagesMayBeInFilesBesideIt) {
   const std::string images = folder_ / "x_Images";
   std::filesystem::create_directories(images);
@@ -260,29 +147,6 @@ TEST_F(Rawlog, ImagesMayBeInFilesBesideIt) {
   EXPECT_THAT(notes_, ElementsAre(HasSubstr("'image.bin', which is not there")));
   EXPECT_THAT(frames(outside("../image.bin")), IsEmpty());
   EXPECT_THAT(notes_, ElementsAre(HasSubstr("outside of the rawlog's folder")));
-}
-
-TEST_F(Rawlog, LensesAndStepsThatAreNoneAreNamed) {
-  const auto note = [&](const std::function<void(CObservation3DRangeScan&)>& spoil) {
-    const auto scan = range_scan(1.0);
-    spoil(*scan);
-    EXPECT_THAT(frames(write({robot_pose(1.0, {}), scan})), IsEmpty());
-    return notes_.at(0);
-  };
-  EXPECT_THAT(note([](auto& scan) { scan.cameraParams.fx(0.0); }), HasSubstr("no focal length"));
-  EXPECT_THAT(note([](auto& scan) { scan.cameraParams.cx(NAN); }), HasSubstr("image centre"));
-  EXPECT_THAT(note([](auto& scan) { scan.rangeUnits = 0.0F; }), HasSubstr("a step of its image"));
-  EXPECT_THAT(note([](auto& scan) { scan.hasRangeImage = false; }), HasSubstr("neither"));
-  EXPECT_THAT(note([](auto& scan) {
-                scan.cameraParams.distortion = mrpt::img::DistortionModel::kannala_brandt;
-              }),
-              HasSubstr("fisheye"));
-  EXPECT_THAT(note([](auto& scan) {
-                scan.cameraParams.distortion = mrpt::img::DistortionModel::plumb_bob;
-                scan.cameraParams.dist[6] = 0.1;
-              }),
-              HasSubstr("beyond k1 k2"));
-  EXPECT_THAT(note([](auto& scan) { scan.sensorPose.x(1e30); }), HasSubstr("its pose"));
 }
 
 TEST_F(Rawlog, CloudsAreTakenAsTheyAre) {
@@ -323,64 +187,6 @@ TEST_F(Rawlog, PacketsOfAVelodyneBecomePoints) {
   ASSERT_EQ(found.size(), 1U);
   EXPECT_NEAR(found[0].norm(), 10.0, 0.01);
   EXPECT_NEAR(found[0].y(), 10.0 * std::sin(15.0 * std::numbers::pi / 180.0), 0.02);  // downwards
-}
-
-TEST_F(Rawlog, ThatEndsTooSoonIsRefused) {
-  for (const std::string name : {"x.rawlog", "x.rawlog.gz"}) {
-    const std::string whole =
-        tests::content_of(write({robot_pose(1.0, {}), range_scan(1.0)}, name));
-    for (std::size_t size = 0; size < whole.size(); size += 1 + whole.size() / 50) {
-      const std::string what = complaint(folder_.write("cut_" + name, whole.substr(0, size)));
-      EXPECT_THAT(what, HasSubstr("cut_" + name)) << size;
-    }
-  }
-  EXPECT_THAT(complaint(folder_.write("text.rawlog", "this is a text and no rawlog at all")),
-              HasSubstr("text.rawlog: entry 0 cannot be read"));
-  EXPECT_THAT(complaint(folder_ / "nowhere.rawlog"), HasSubstr("is no file"));
-}
-
-/// MRPT allocates what a file says it needs: a count of points, and the sides of an image.
-TEST_F(Rawlog, WithCountsThatAreNoneIsRefused) {
-  const std::string whole = tests::content_of(write({robot_pose(1.0, {}), range_scan(1.0)}));
-  const std::string sides{"\x18\0\0\0\x20\0\0\0", 8};
-  const std::size_t at = whole.find(sides);
-  ASSERT_NE(at, std::string::npos);
-  for (const auto& [rows, columns] : {std::pair(0xffffffffU, 0xffffffffU),
-                                      {0x80000000U, 2U},
-                                      {0x10000U, 0x10000U},
-                                      {0x7fffffffU, 0x7fffffffU},
-                                      {24U, 0xffffffffU},
-                                      {0x7fffffffU, 1U},
-                                      {25U, 32U}}) {
-    std::string hostile = whole;
-    std::memcpy(&hostile[at], &rows, 4);
-    std::memcpy(&hostile[at + 4], &columns, 4);
-    EXPECT_THAT(complaint(folder_.write("hostile.rawlog", hostile)), HasSubstr("hostile.rawlog"))
-        << rows << " x " << columns;
-  }
-}
-
-TEST_F(Rawlog, ThatIsDamagedIsReadOrRefused) {
-  auto frame = std::make_shared<mrpt::obs::CSensoryFrame>();
-  frame->insert(range_scan(1.0));
-  const std::string whole = tests::content_of(
-      write({robot_pose(1.0, {}), wheels(1.0, 0, 0), range_scan(1.0, "DEPTH"), frame}));
-  std::mt19937_64 random(1);
-  // The bytes of the images' pixels are of no interest.
-  std::vector<std::size_t> places;
-  for (std::size_t i = 0; i < whole.size(); ++i) {
-    const bool is_pixel = std::string_view(whole).substr(i, 3).find('\0') == std::string::npos;
-    if (!is_pixel || i < 1000) places.push_back(i);
-  }
-  std::size_t refused = 0;
-  for (int trial = 0; trial < 400; ++trial) {
-    std::string damaged = whole;
-    for (std::uint64_t count = 1 + random() % 3; count > 0; --count) {
-      damaged[places[random() % places.size()]] = static_cast<char>(random());
-    }
-    refused += complaint(folder_.write("damaged.rawlog", damaged)).empty() ? 0 : 1;
-  }
-  EXPECT_GT(refused, 20U);
 }
 
 /// The same images by this door and as PNG files.
