@@ -38,7 +38,8 @@ FleetVehicle costs_of(std::span<const Station> stations, const FleetMember& memb
     vehicle.station.push_back(legs.station_cost(stations[i]));
     for (std::uint32_t j = 0; j < stations.size(); ++j) {
       if (i == j) continue;
-      vehicle.leg(i, j) = leg(stations[j].view.position - place, &stations[i], &stations[j]);
+      vehicle.legs[i * stations.size() + j] =
+          leg(stations[j].view.position - place, &stations[i], &stations[j]);
     }
   }
   return vehicle;

@@ -126,6 +126,19 @@ FlownFile flown_file(const std::filesystem::path& path, const TimetableRow& row,
   }
 }
 
+std::vector<flight::FleetFlight> fleet_flights(const std::filesystem::path& path,
+                                               const file::Mission& mission) {
+  std::vector<flight::FleetFlight> flights;
+  for (const TimetableRow& row : read_timetable(path, mission)) {
+    const file::Mission own = derived::as_flown_by(mission, row.vehicle, row.pad);
+    const flight::Motion motion(derived::vehicle_of(own),
+                                derived::route_options_of(own, row.pad).conditions);
+    flights.push_back(
+        {{flown_file(path, row, mission).script, motion, std::nullopt}, row.vehicle, row.start});
+  }
+  return flights;
+}
+
 std::vector<Vector3d> left_by(const std::filesystem::path& path, const file::Mission& mission,
                               std::size_t vehicle, double after) {
   const double tolerance = derived::separation_of(mission).tolerance;

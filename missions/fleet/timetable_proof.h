@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <string>
 
+#include "flight/fleet/fleet_flights.h"
 #include "flight/fly_test/flight_script.h"
 #include "flight/interpreter/flown_route.h"
 #include "missions/file/mission.h"
@@ -38,6 +39,10 @@ struct TimetableProof {
 /// of each vehicle. Throws Error{bad_file} if the timetable or a file cannot be read.
 TimetableProof prove_timetable(const std::filesystem::path& path, const file::Mission& mission,
                                double up_to);
+
+/// All sorties of a timetable, ready for the simulator. Throws as prove_timetable().
+std::vector<flight::FleetFlight> fleet_flights(const std::filesystem::path& path,
+                                               const file::Mission& mission);
 
 /// The views that a vehicle has not certainly photographed by the time `after` its timetable began,
 /// being late by as much as flight.timing_tolerance allows: places that its files photograph from.

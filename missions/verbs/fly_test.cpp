@@ -16,7 +16,8 @@
 #include "missions/derived/mission_flight.h"
 #include "missions/derived/resolved_mission.h"
 #include "missions/file/json_text.h"
-#include "missions/fleet/timetable_file.h"
+#include "missions/fleet/timetable_proof.h"
+#include "missions/package/fleet_mission.h"
 #include "missions/package/package.h"
 #include "missions/proof/stated_return.h"
 #include "missions/proof/true_space.h"
@@ -183,6 +184,26 @@ TestedFile test_file(const FlyTestVerbOptions& options, const TestedPackage& pac
   return tested;
 }
 
+/// All vehicles of a fleet at once; nothing if the package holds none.
+std::optional<flight::FleetFlightTest> test_fleet(const FlyTestVerbOptions& options,
+                                                  const file::Mission& mission,
+                                                  const Console& console) {
+  const std::filesystem::path table = options.package / fleet::timetable_name;
+  if (!derived::is_fleet(mission) || !std::filesystem::exists(table)) return std::nullopt;
+  const file::FlightConfig& config = mission.flight;
+  flight::FlyTestOptions test;
+  test.flights = options.flights;
+  test.wind_speed = options.wind_speed.value_or(std::max(config.wind_speed, test.wind_speed));
+  test.position_error = options.position_error.value_or(config.position_error);
+  test.up_to = package::reported_distance;
+  test.seed = mission.seed;
+  test.threads = mission.threads;
+  test.stop = console.stop;
+  const double strays = 2.0 * (config.position_error + config.tracking_error);
+  return fly_fleet(fleet::fleet_flights(table, mission), derived::separation_of(mission), strays,
+                   test);
+}
+
 /// Results that are not whole go beside whole ones instead of over them.
 void commit(geometry::OutputFolder& folder, bool is_complete) {
   if (!is_complete && package::is_complete_result(folder.path() / package::fly_test_name)) {
@@ -209,6 +230,11 @@ int fly_test(const FlyTestVerbOptions& options, const Console& console) {
     json["files"].push_back(json_of(tested));
     if (!options.is_quiet) console.out << text_of(tested) << std::flush;
     if (console.stop.stop_requested()) break;
+  }
+  if (const auto test = test_fleet(options, package.mission(), console)) {
+    failed += test->nearer;
+    json["fleet"] = json_of(*test);
+    if (!options.is_quiet) console.out << text_of(*test) << std::flush;
   }
   const bool is_complete = !console.stop.stop_requested();
   json["complete"] = is_complete;

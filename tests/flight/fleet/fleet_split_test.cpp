@@ -169,6 +169,30 @@ TEST(FleetSplit, GivesMoreToTheFaster) {
   EXPECT_FALSE(split.parts[0].stations.empty());
 }
 
+// Where the camera always looks north a leg takes what the motion says, whichever stations it
+// joins.
+TEST(FleetCosts, OfStraightLegsAreThoseOfTheMotion) {
+  std::mt19937_64 random(5);
+  std::vector<Station> stations(6);
+  for (Station& station : stations) {
+    station.view = {scenes::point_in(random, {Vector3d(0, 0, 10), Vector3d(60, 60, 40)}),
+                    Vector3d(0, 1, 0)};
+  }
+  const FleetMember member{Motion(vehicle_profiles()[0], {}), Vector3d(-5, -5, 0), 5.0};
+  const FleetVehicle costs = straight_costs(stations, member);
+  const FleetVehicle least = least_costs(stations, member);
+  for (std::uint32_t i = 0; i < 6; ++i) {
+    for (std::uint32_t j = 0; j < 6; ++j) {
+      if (i == j) continue;
+      const Vector3d way = stations[j].view.position - stations[i].view.position;
+      EXPECT_NEAR(costs.leg(i, j).time, member.motion.leg_time(way), 1e-12);
+      EXPECT_NEAR(costs.leg(i, j).energy, member.motion.leg_energy(way, costs.leg(i, j).time),
+                  1e-9);
+      EXPECT_GT(least.leg(i, j).time, 0.7 * costs.leg(i, j).time);
+    }
+  }
+}
+
 // The least cost is one whatever way is flown: with stops in corners, too.
 TEST(FleetCosts, NoWayRoundACornerIsFasterThanTheLeast) {
   std::mt19937_64 random(4);
