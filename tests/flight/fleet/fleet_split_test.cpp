@@ -188,7 +188,8 @@ TEST(FleetCosts, OfStraightLegsAreThoseOfTheMotion) {
       EXPECT_NEAR(costs.leg(i, j).time, member.motion.leg_time(way), 1e-12);
       EXPECT_NEAR(costs.leg(i, j).energy, member.motion.leg_energy(way, costs.leg(i, j).time),
                   1e-9);
-      EXPECT_GT(least.leg(i, j).time, 0.7 * costs.leg(i, j).time);
+      // From rest to rest is faster than the autopilot's braking, but not twice as fast.
+      EXPECT_GT(least.leg(i, j).time, 0.5 * costs.leg(i, j).time);
     }
   }
 }
