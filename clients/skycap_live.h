@@ -15,6 +15,7 @@
 #include <string>
 #include <string_view>
 #include <utility>
+#include <variant>
 #include <vector>
 
 #include <arpa/inet.h>
@@ -28,6 +29,13 @@ namespace skycap_live {
 
 /// Three rows of a matrix [rotation | position]: world from the sensor's optical frame.
 using Pose = std::array<double, 12>;
+
+/// How far off a pose may be: one standard deviation along and about each axis, [metres, degrees];
+/// or a covariance of x y z rx ry rz along and about the axes of the mission's frame [m, rad], by
+/// rows, as ROS's PoseWithCovariance has it; or as the mission says.
+using PoseSigma = std::array<double, 2>;
+using PoseCovariance = std::array<double, 36>;
+using PoseError = std::variant<std::monostate, PoseSigma, PoseCovariance>;
 
 /// The server's answer to a message that is wrong; the survey is as it was.
 struct Refused : std::runtime_error {
@@ -71,20 +79,22 @@ class Survey {
   /// Points in the mission's frame: x y z after x y z. `pixels`, if there are some, ascend: row *
   /// width + column of the mission's camera, for each point.
   std::string add_points(const std::vector<float>& xyz, const Pose& pose,
-                         const std::vector<std::uint32_t>& pixels = {}) {
+                         const std::vector<std::uint32_t>& pixels = {},
+                         const PoseError& error = {}) {
     std::string payload(reinterpret_cast<const char*>(xyz.data()), xyz.size() * sizeof(float));
     payload.append(reinterpret_cast<const char*>(pixels.data()), pixels.size() * sizeof pixels[0]);
     return add("\"format\":\"points\",\"points\":" + std::to_string(xyz.size() / 3) +
                    ",\"has_pixels\":" + (pixels.empty() ? "false" : "true"),
-               pose, payload);
+               pose, error, payload);
   }
 
   /// A depth image, row after row, in steps of `unit` metres; 0 and 65535 are no return.
   std::string add_depth(const std::vector<std::uint16_t>& depth, int width, int height, double unit,
-                        const Pose& pose) {
+                        const Pose& pose, const PoseError& error = {}) {
     return add("\"format\":\"depth\",\"width\":" + std::to_string(width) +
                    ",\"height\":" + std::to_string(height) + ",\"unit\":" + number(unit),
-               pose, {reinterpret_cast<const char*>(depth.data()), depth.size() * sizeof depth[0]});
+               pose, error,
+               {reinterpret_cast<const char*>(depth.data()), depth.size() * sizeof depth[0]});
   }
 
   /// Another view in place of that of the answer with this id; `reason` is put into JSON as it is.
@@ -110,10 +120,23 @@ class Survey {
     return {text, std::to_chars(text, text + sizeof text, value).ptr};
   }
 
-  std::string add(const std::string& fields, const Pose& pose, const std::string& payload) {
-    std::string header = "{\"type\":\"scan\",\"number\":" + std::to_string(scans_) + ",\"pose\":[";
-    for (std::size_t i = 0; i < pose.size(); ++i) header += (i > 0 ? "," : "") + number(pose[i]);
-    std::string answer = ask(header + "]," + fields + "}", payload);
+  /// A field of a header: a row of numbers.
+  template <std::size_t size>
+  static std::string row(const char* key, const std::array<double, size>& values) {
+    std::string text;
+    for (const double value : values) text += (text.empty() ? "" : ",") + number(value);
+    return std::string(",\"") + key + "\":[" + text + "]";
+  }
+
+  std::string add(const std::string& fields, const Pose& pose, const PoseError& error,
+                  const std::string& payload) {
+    std::string header = "{\"type\":\"scan\",\"number\":" + std::to_string(scans_) + "," + fields;
+    header += row("pose", pose);
+    if (const auto* sigma = std::get_if<PoseSigma>(&error)) header += row("pose_sigma", *sigma);
+    if (const auto* covariance = std::get_if<PoseCovariance>(&error)) {
+      header += row("pose_covariance", *covariance);
+    }
+    std::string answer = ask(header + "}", payload);
     scans_ = scans_of(answer);
     return answer;
   }

@@ -45,21 +45,25 @@ class Survey:
         """What to do next, as `skycap next --json` prints it."""
         return self._ask({"type": "next"})
 
-    def add_points(self, xyz, pose, pixels=None, pose_sigma=None):
+    def add_points(self, xyz, pose, pixels=None, pose_sigma=None, pose_covariance=None):
         """Points in the mission's frame: bytes of float32 x y z, row after row; `pose` of the
         sensor's optical frame: x y z qx qy qz qw, or 12 numbers of a matrix by rows. `pixels`:
-        bytes of ascending uint32, row * width + column of the mission's camera, for each point. `pose_sigma`: (metres, degrees), how far off the pose
-        may be."""
+        bytes of ascending uint32, row * width + column of the mission's camera, for each point.
+        How far off the pose may be: `pose_sigma`, (metres, degrees) along and about each axis, or
+        `pose_covariance`, 36 numbers by rows, or the 21 of the upper triangle, of x y z rx ry rz
+        along and about the axes of the mission's frame [m, rad], as ROS has them."""
         header = {"format": "points", "points": len(xyz) // 12, "has_pixels": pixels is not None}
-        return self._add(header, pose, bytes(xyz) + bytes(pixels or b""), pose_sigma)
+        return self._add(header, pose, bytes(xyz) + bytes(pixels or b""), pose_sigma,
+                         pose_covariance)
 
-    def add_depth(self, depth, width, height, unit, pose, lens=None, pose_sigma=None):
+    def add_depth(self, depth, width, height, unit, pose, lens=None, pose_sigma=None,
+                  pose_covariance=None):
         """A depth image: bytes of uint16, row after row, in steps of `unit` metres; 0 and 65535 are
         no return. `lens`: fx fy cx cy, maybe followed by k1 k2 p1 p2 k3; else the mission's."""
         header = {"format": "depth", "width": width, "height": height, "unit": unit}
         if lens is not None:
             header["lens"] = list(lens)
-        return self._add(header, pose, bytes(depth), pose_sigma)
+        return self._add(header, pose, bytes(depth), pose_sigma, pose_covariance)
 
     def refuse(self, answer, reason):
         """Another view in place of the one in `answer`."""
@@ -69,10 +73,12 @@ class Survey:
         """Has the server write the mission package, and end."""
         return self._ask({"type": "finish"})["text"]
 
-    def _add(self, header, pose, payload, pose_sigma):
+    def _add(self, header, pose, payload, pose_sigma, pose_covariance):
         header = {"type": "scan", "number": self._scans, "pose": list(pose), **header}
         if pose_sigma is not None:
             header["pose_sigma"] = list(pose_sigma)
+        if pose_covariance is not None:
+            header["pose_covariance"] = list(pose_covariance)
         answer = self._ask(header, payload)
         self._scans = answer["scans"]
         return answer

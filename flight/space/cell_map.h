@@ -16,6 +16,12 @@ inline std::uint64_t cell_key(const Cell& cell) {
   return part(cell.x()) | part(cell.y()) << 21 | part(cell.z()) << 42;
 }
 
+/// Fibonacci hashing; the upper half of the product, which depends on all of the key, comes down.
+inline std::size_t hash_of(std::uint64_t cell_key) {
+  const std::uint64_t product = cell_key * 0x9e3779b97f4a7c15ULL;
+  return product ^ product >> 32;
+}
+
 template <typename Value>
 class CellMap {
  public:
@@ -46,10 +52,7 @@ class CellMap {
 
   static Slot& find(std::vector<Slot>& slots, std::uint64_t key) {
     const std::size_t mask = slots.size() - 1;
-    // Fibonacci hashing; the upper half of the product, which depends on all of the key, comes
-    // down.
-    const std::uint64_t product = key * 0x9e3779b97f4a7c15ULL;
-    std::size_t i = (product ^ product >> 32) & mask;
+    std::size_t i = hash_of(key) & mask;
     while (slots[i].key != no_key && slots[i].key != key) i = (i + 1) & mask;
     return slots[i];
   }

@@ -108,7 +108,7 @@ std::string MeasuredSpace::name(const Closest& closest) const {
 
 double MeasuredSpace::free_volume() const {
   std::size_t voxels = 0;
-  for (const auto& [key, block] : impl_->blocks) {
+  for (const VoxelBlock& block : impl_->blocks.blocks()) {
     for (int z = 0; z < 8; ++z)
       voxels += static_cast<std::size_t>(std::popcount(block.passable(z)));
   }

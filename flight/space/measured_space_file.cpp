@@ -54,7 +54,9 @@ void MeasuredSpace::write(std::ostream& stream) const {
   // By place, so that equal spaces give equal files.
   std::vector<FileBlock> blocks;
   blocks.reserve(impl_->blocks.size());
-  for (const auto& [key, block] : impl_->blocks) blocks.push_back({key, block});
+  for (std::size_t i = 0; i < impl_->blocks.size(); ++i) {
+    blocks.push_back({impl_->blocks.keys()[i], impl_->blocks.blocks()[i]});
+  }
   std::ranges::sort(blocks, {}, &FileBlock::key);
   stream.write(reinterpret_cast<const char*>(blocks.data()),
                static_cast<std::streamsize>(blocks.size() * sizeof(FileBlock)));
@@ -106,8 +108,9 @@ MeasuredSpace MeasuredSpace::read(std::istream& stream, const std::string& name)
   const MeasuredSpaceFile file = read_measured_space(stream, name);
   MeasuredSpace space(file.config);
   for (const FileBlock& record : file.blocks) {
-    space.impl_->blocks[record.key] = record.block;
-    space.impl_->extent.extend(space.impl_->block_box(cell_of(record.key)));
+    const Cell cell = cell_of(record.key);  // whatever bits a file has beside it
+    space.impl_->blocks.set(cell_key(cell), record.block);
+    space.impl_->extent.extend(space.impl_->block_box(cell));
   }
   return space;
 }

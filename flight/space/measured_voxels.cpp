@@ -1,6 +1,7 @@
 #include "flight/space/measured_voxels.h"
 
 #include <cmath>
+#include <optional>
 
 namespace skycap::flight {
 
@@ -33,8 +34,11 @@ Slices blocked_voxels(const VoxelRegion& region, const Cell& cell, const VoxelBl
 
 void MeasuredSpace::Impl::occupy(const geometry::Scan& scan) {
   // Neighbouring pixels mostly hit the same block.
-  Cell last_cell = Cell::Zero();
-  VoxelBlock* last = nullptr;
+  std::optional<Cell> last;
+  VoxelBlock block;
+  const auto keep = [&] {
+    if (last && blocks.set(cell_key(*last), block)) extent.extend(block_box(*last));
+  };
   for (const Eigen::Vector3f& p : scan.points) {
     const Vector3d point = p.cast<double>();
     if (config.floor && point.z() < *config.floor) continue;
@@ -42,14 +46,15 @@ void MeasuredSpace::Impl::occupy(const geometry::Scan& scan) {
     const Cell voxel = ((point / config.voxel).array().floor().matrix().cast<int>() - 8 * cell)
                            .cwiseMax(0)
                            .cwiseMin(7);
-    if (last == nullptr || cell != last_cell) {
-      const auto [block, is_new] = blocks.try_emplace(cell_key(cell));
-      if (is_new) extent.extend(block_box(cell));
-      last = &block->second;
-      last_cell = cell;
+    if (last != cell) {
+      keep();
+      const VoxelBlock* known = blocks.find(cell_key(cell)).block;
+      block = known == nullptr ? VoxelBlock{} : *known;
+      last = cell;
     }
-    last->occupied[voxel.z()] |= std::uint64_t{1} << (8 * voxel.y() + voxel.x());
+    block.occupied[voxel.z()] |= std::uint64_t{1} << (8 * voxel.y() + voxel.x());
   }
+  keep();
 }
 
 void MeasuredSpace::Impl::carve(const RangeImage& image) {
@@ -98,15 +103,13 @@ void MeasuredSpace::Impl::closest_in(const Segment& piece, Closest& best) const 
                             piece.from.cwiseMax(piece.to) + reach);
   const BoxTest test(piece);
   for_each_block(around, [&](const Cell& cell) {
+    const VoxelBlocks::Found found = blocks.find(cell_key(cell));
+    if (found.is_all_passable) return true;  // most are, and to ask where they are takes longer
     const AlignedBox3d box = block_box(cell);
     if (!test.is_near(box, best.distance)) return true;
-    const auto found = blocks.find(cell_key(cell));
-    if (found != blocks.end()) {
-      const VoxelBlock& block = found->second;
-      if (!block.is_all_passable()) {
-        closest_in_cube(piece, test, cell, {Cell::Zero(), 8}, block,
-                        blocked_voxels(region_voxels, cell, block), best);
-      }
+    if (found.block != nullptr) {
+      closest_in_cube(piece, test, cell, {Cell::Zero(), 8}, *found.block,
+                      blocked_voxels(region_voxels, cell, *found.block), best);
       return best.distance > 0.0;
     }
     const bool is_inside = (8 * cell.array() < region_voxels.high.array()).all() &&

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <cstdint>
-#include <unordered_map>
 
 #include "flight/space/bounding_tree.h"
 #include "flight/space/cell_map.h"
@@ -10,6 +9,7 @@
 #include "flight/space/range_image.h"
 #include "flight/space/segment_distance.h"
 #include "flight/space/voxel_block.h"
+#include "flight/space/voxel_blocks.h"
 
 namespace skycap::flight {
 
@@ -25,15 +25,8 @@ VoxelRegion voxel_region(const MeasuredSpaceConfig& config);
 Slices blocked_voxels(const VoxelRegion& region, const Cell& cell, const VoxelBlock& block);
 
 struct MeasuredSpace::Impl {
-  struct HashKey {
-    std::size_t operator()(std::uint64_t key) const {
-      const std::uint64_t product = key * 0x9e3779b97f4a7c15ULL;
-      return product ^ product >> 32;
-    }
-  };
-
   MeasuredSpaceConfig config;
-  std::unordered_map<std::uint64_t, VoxelBlock, HashKey> blocks;  ///< a block not listed is unknown
+  VoxelBlocks blocks;          ///< a block not listed is unknown
   Eigen::AlignedBox3d region;  ///< the configuration's, of whole voxels; without one all of space
   VoxelRegion region_voxels;
   Eigen::AlignedBox3d extent;  ///< of all listed blocks
@@ -84,15 +77,12 @@ template <typename Decide>
 void MeasuredSpace::Impl::free_where(const Eigen::AlignedBox3d& box, Decide decide) {
   const Cube whole{Cell::Zero(), 8};
   for_each_block(box.intersection(region), [&](const Cell& cell) {
-    const auto known = blocks.find(cell_key(cell));
-    VoxelBlock block = known == blocks.end() ? VoxelBlock{} : known->second;
+    const VoxelBlock* known = blocks.find(cell_key(cell)).block;
+    VoxelBlock block = known == nullptr ? VoxelBlock{} : *known;
+    const Slices before = block.free;
     free_within(cell, whole, block, decide);
-    if (known != blocks.end()) {
-      known->second = block;
-    } else if (block.free != VoxelBlock{}.free) {
-      blocks.emplace(cell_key(cell), block);
-      extent.extend(cube_box(cell, whole));
-    }
+    if (block.free == before) return true;
+    if (blocks.set(cell_key(cell), block)) extent.extend(cube_box(cell, whole));
     return true;
   });
 }

@@ -132,11 +132,11 @@ struct LiveSurvey::Impl {
   }
 
   std::optional<PoseFinding> look_at_pose(const geometry::Scan& scan,
-                                          const std::optional<PoseSigma>& sigma) {
+                                          const std::optional<PoseCovariance>& covariance) {
     if (!poses) return std::nullopt;
     const file::LiveConfig& config = mission.live;
-    PoseFinding finding =
-        poses->find(scan, sigma.value_or(PoseSigma{config.pose_sigma, config.pose_sigma_angle}));
+    PoseFinding finding = poses->find(
+        scan, covariance.value_or(PoseCovariance::of(config.pose_sigma, config.pose_sigma_angle)));
     if (!config.checks_poses) finding.is_wrong = false;
     return finding;
   }
@@ -269,7 +269,7 @@ std::optional<std::size_t> LiveSurvey::number_of(const std::string& id) const {
 }
 
 bool LiveSurvey::add(const geometry::Scan& scan, const std::string& id,
-                     const std::optional<PoseSigma>& sigma) {
+                     const std::optional<PoseCovariance>& covariance) {
   if (number_of(id)) return false;
   if (impl_->mission.flight.is_flown() && impl_->proposal.end) {
     throw Error(ErrorKind::bad_usage,
@@ -281,7 +281,7 @@ bool LiveSurvey::add(const geometry::Scan& scan, const std::string& id,
                           .file = fmt::format("{}/{:06}.ply", scans_name, impl_->events.size()),
                           .sha256 = digest_of(bytes),
                           .world_from_sensor = scan.world_from_sensor,
-                          .pose = impl_->look_at_pose(scan, sigma)};
+                          .pose = impl_->look_at_pose(scan, covariance)};
   geometry::write_file(impl_->folder / record.file, bytes);
   geometry::sync_to_disk(impl_->folder / scans_name);
   impl_->log.append(text_of(record));
@@ -301,6 +301,8 @@ void LiveSurvey::refuse(const std::string& reason) {
   impl_->take_in({.scan = {}, .refusal = reason, .proposal = {}}, {});
 }
 
+run::SurveyFlight* LiveSurvey::flight() { return impl_->guide->flight(); }
+
 run::SurveyRecord LiveSurvey::so_far() const {
   run::SurveyRecord record = impl_->views_record();
   impl_->guide->tell(record);
@@ -313,9 +315,9 @@ run::SurveyRecord LiveSurvey::finish() {
   return record;
 }
 
-std::string scan_id(const geometry::Scan& scan, const std::optional<PoseSigma>& sigma) {
+std::string scan_id(const geometry::Scan& scan, const std::optional<PoseCovariance>& covariance) {
   std::string text = kept_scan(scan) + pose_json(scan.world_from_sensor).dump();
-  if (sigma) text += nlohmann::ordered_json{sigma->position, sigma->angle}.dump();
+  if (covariance) text += nlohmann::ordered_json(covariance->triangle()).dump();
   return digest_of(text);
 }
 

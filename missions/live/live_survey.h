@@ -64,14 +64,18 @@ class LiveSurvey {
   std::optional<std::size_t> number_of(const std::string& id) const;
 
   /// Brings a scan to the disk, looks at its pose (file::LiveConfig), and plans, or sets it aside.
-  /// One whose id is known is acknowledged and ignored: false. Without a sigma it is the mission's.
+  /// One whose id is known is acknowledged and ignored: false. Without a covariance it is the
+  /// mission's.
   /// Throws Error{bad_geometry} for a scan that the planner cannot work with, and
   /// Error{bad_file} if the disk takes no more; then nothing has changed.
   bool add(const geometry::Scan& scan, const std::string& id,
-           const std::optional<PoseSigma>& sigma = {});
+           const std::optional<PoseCovariance>& covariance = {});
 
   /// Asks for another view in place of the proposed one. Throws Error{bad_usage} if there is none.
   void refuse(const std::string& reason);
+
+  /// What knows the ways of the mission's vehicle; null without one.
+  run::SurveyFlight* flight();
 
   /// The survey so far, to be looked at: interrupted, if a view is still proposed; without its
   /// flight.
@@ -86,8 +90,9 @@ class LiveSurvey {
   std::unique_ptr<Impl> impl_;
 };
 
-/// The id of a scan that has none: a digest of pose, points and pixels, and of the pose's sigma:
-/// one that was set aside may come again with a larger one.
-std::string scan_id(const geometry::Scan& scan, const std::optional<PoseSigma>& sigma = {});
+/// The id of a scan that has none: a digest of pose, points and pixels, and of the pose's
+/// covariance: one that was set aside may come again with a larger one.
+std::string scan_id(const geometry::Scan& scan,
+                    const std::optional<PoseCovariance>& covariance = {});
 
 }  // namespace skycap::missions::live

@@ -44,18 +44,19 @@ Patches patches_of(const geometry::ScanSpan& scan, std::span<const geometry::Sur
   return {};
 }
 
-/// What a pose's sigma lets its scan be moved along a direction: one standard deviation.
+/// What a pose's covariance lets its scan be moved along a direction: one standard deviation.
 double deviation_along(const RigidDirection& direction, const Registration& found,
-                       const Vector3d& sensor, const PoseSigma& sigma) {
+                       const Vector3d& sensor, const PoseCovariance& covariance) {
   // Of a pose's error t, w about the sensor s: d . (t + w x (m - s)) + (L w) . (L turn).
-  const Vector3d by_angle = (found.middle - sensor).cross(direction.displacement) +
-                            found.size * found.size * direction.turn;
-  return std::hypot(sigma.position * direction.displacement.norm(), sigma.angle * by_angle.norm());
+  PoseCovariance::Vector along;
+  along << direction.displacement, (found.middle - sensor).cross(direction.displacement) +
+                                       found.size * found.size * direction.turn;
+  return covariance.deviation(along);
 }
 
-/// Whether the surfaces' own errors and the pose's sigma explain the motion.
-bool is_explained(const Registration& found, const Vector3d& sensor, const PoseSigma& sigma,
-                  double radius) {
+/// Whether the surfaces' own errors and the pose's explain the motion.
+bool is_explained(const Registration& found, const Vector3d& sensor,
+                  const PoseCovariance& covariance, double radius) {
   // What patches have in common by curvature, edges and uneven noise does not average out; what it
   // moves along a direction is the more, the less the surface shows of that.
   const double common = std::hypot(0.02 * radius, 0.2 * found.deviation);
@@ -63,15 +64,18 @@ bool is_explained(const Registration& found, const Vector3d& sensor, const PoseS
   return std::ranges::all_of(found.directions, [&](const RigidDirection& direction) {
     if (!direction.is_observable()) return true;
     const double surfaces = std::hypot(common, own) / std::sqrt(direction.information);
-    const double pose = deviation_along(direction, found, sensor, sigma);
+    const double pose = deviation_along(direction, found, sensor, covariance);
     return std::abs(direction.amount) <= sigmas * std::hypot(surfaces, pose);
   });
 }
 
-/// Whether a correction is one that the pose's sigma allows, as a whole.
-bool is_allowed(const PoseFinding& finding, const PoseSigma& sigma, double radius) {
-  return finding.shift <= sigmas * (sigma.position + 0.1 * radius) &&
-         finding.turn <= sigmas * (sigma.angle + 0.1 * geometry::radians_per_degree);
+/// Whether a correction is one that the pose's covariance allows, as a whole.
+bool is_allowed(const Isometry3d& correction, const Vector3d& sensor,
+                const PoseCovariance& covariance, double radius) {
+  const Eigen::AngleAxisd turn(correction.linear());
+  PoseCovariance::Vector error;
+  error << correction * sensor - sensor, turn.angle() * turn.axis();
+  return covariance.distance(error, 0.1 * radius, 0.1 * geometry::radians_per_degree) <= sigmas;
 }
 
 }  // namespace
@@ -96,19 +100,20 @@ void PoseCheck::remember(const geometry::ScanSpan& scan, std::span<const Eigen::
   if (last_.size() > most_images) last_.pop_front();
 }
 
-PoseFinding PoseCheck::find(const geometry::ScanSpan& scan, const PoseSigma& sigma) {
+PoseFinding PoseCheck::find(const geometry::ScanSpan& scan, const PoseCovariance& covariance) {
   PoseFinding finding;
   if (last_.empty()) return finding;
   const Patches patches = patches_of(scan, maps_);
   geometry::SurfaceMap& map = maps_[patches.level];
-  const double reach = std::min(4.0 * map.radius() + sigmas * sigma.position, 8.0 * map.radius());
+  const double reach =
+      std::min(4.0 * map.radius() + sigmas * covariance.position(), 8.0 * map.radius());
   const Registration found = geometry::register_scan(patches.patches, map, reach, least_matches);
   const Vector3d sensor = scan.sensor_position();
   finding.matches = found.matches;
   finding.error = found.first_error;
   finding.is_checked = found.matches >= least_matches;
   constexpr double much = 0.1;
-  finding.seen_through = seen_through(scan, patches.patches, sigma, map);
+  finding.seen_through = seen_through(scan, patches.patches, covariance, map);
   finding.is_wrong = finding.seen_through > much;
   if (!finding.is_checked) return finding;
   finding.shift = (found.correction * sensor - sensor).norm();
@@ -117,23 +122,25 @@ PoseFinding PoseCheck::find(const geometry::ScanSpan& scan, const PoseSigma& sig
       static_cast<int>(std::ranges::count_if(found.directions, [](const RigidDirection& direction) {
         return !direction.is_observable();
       }));
-  finding.is_wrong = finding.is_wrong || !is_explained(found, sensor, sigma, map.radius());
-  if (registers_ && !finding.is_wrong && is_allowed(finding, sigma, map.radius())) {
+  finding.is_wrong = finding.is_wrong || !is_explained(found, sensor, covariance, map.radius());
+  if (registers_ && !finding.is_wrong &&
+      is_allowed(found.correction, sensor, covariance, map.radius())) {
     finding.correction = found.correction;
   }
   return finding;
 }
 
 double PoseCheck::seen_through(const geometry::ScanSpan& scan,
-                               const std::vector<SurfacePatch>& patches, const PoseSigma& sigma,
+                               const std::vector<SurfacePatch>& patches,
+                               const PoseCovariance& covariance,
                                const geometry::SurfaceMap& map) const {
   constexpr std::size_t most_tests = 20'000, least_tests = 50;
   std::size_t there = 0, through = 0;
   const Vector3d sensor = scan.sensor_position();
+  const double along = covariance.position(), about = covariance.angle();
   const auto look = [&](const RangeImage& image, const Vector3d& point) {
     const double range = (point - sensor).norm();
-    const double tolerance =
-        2.0 * map.radius() + 0.02 * range + sigmas * (sigma.position + sigma.angle * range);
+    const double tolerance = 2.0 * map.radius() + 0.02 * range + sigmas * (along + about * range);
     const Sight sight = image.sight(point, tolerance);
     there += sight == Sight::there ? 1 : 0;
     through += sight == Sight::through ? 1 : 0;

@@ -19,15 +19,10 @@
 
 #include "geometry/points/scan.h"
 #include "geometry/points/surface_map.h"
+#include "missions/live/pose_covariance.h"
 #include "missions/live/range_image.h"
 
 namespace skycap::missions::live {
-
-/// How well a pose is known: one standard deviation along and about each axis.
-struct PoseSigma {
-  double position = 0.0;  ///< [m]
-  double angle = 0.0;     ///< [rad]
-};
 
 /// What was found of a scan's pose.
 struct PoseFinding {
@@ -49,18 +44,18 @@ class PoseCheck {
  public:
   /// Surfaces are compared in pieces of `radius`, or of two, four or eight times that where noise
   /// leaves no surface in smaller ones. With `registers` poses are corrected, if the correction is
-  /// what their sigma explains.
+  /// what their covariance explains.
   PoseCheck(double radius, bool registers);
 
-  PoseFinding find(const geometry::ScanSpan& scan, const PoseSigma& sigma);
+  PoseFinding find(const geometry::ScanSpan& scan, const PoseCovariance& covariance);
 
   /// Remembers a scan that is used, and the points that were kept of it.
   void remember(const geometry::ScanSpan& scan, std::span<const Eigen::Vector3f> kept);
 
  private:
   double seen_through(const geometry::ScanSpan& scan,
-                      const std::vector<geometry::SurfacePatch>& patches, const PoseSigma& sigma,
-                      const geometry::SurfaceMap& map) const;
+                      const std::vector<geometry::SurfacePatch>& patches,
+                      const PoseCovariance& covariance, const geometry::SurfaceMap& map) const;
 
   bool registers_;
   std::array<geometry::SurfaceMap, 4> maps_;  ///< from fine to coarse

@@ -5,7 +5,6 @@
 #include <tuple>
 #include <utility>
 
-#include "geometry/angle.h"
 #include "geometry/error.h"
 #include "geometry/io/cloud_io.h"
 #include "geometry/io/text_scanner.h"
@@ -20,18 +19,6 @@ namespace {
 using Eigen::Isometry3d;
 using Eigen::Vector2d;
 using Eigen::Vector3d;
-
-std::vector<double> numbers_of(const std::string& text, const std::string& what) {
-  geometry::TextScanner scanner(what, text);
-  std::vector<double> numbers;
-  while (const auto word = scanner.word()) {
-    numbers.push_back(scanner.number<double>(word, "a number"));
-    if (!std::isfinite(numbers.back()) || numbers.size() > 16) {
-      throw Error(ErrorKind::bad_file, what + ": is not a short row of finite numbers");
-    }
-  }
-  return numbers;
-}
 
 /// From position and quaternion.
 Isometry3d pose_of(const std::vector<double>& n, const std::string& what) {
@@ -124,8 +111,20 @@ std::optional<Vector3d> Lens::ray(const Vector2d& pixel) const {
   return std::nullopt;
 }
 
+std::vector<double> parse_numbers(const std::string& text, const std::string& what) {
+  geometry::TextScanner scanner(what, text);
+  std::vector<double> numbers;
+  while (const auto word = scanner.word()) {
+    numbers.push_back(scanner.number<double>(word, "a number"));
+    if (!std::isfinite(numbers.back()) || numbers.size() > 36) {
+      throw Error(ErrorKind::bad_file, what + ": is not a short row of finite numbers");
+    }
+  }
+  return numbers;
+}
+
 Lens parse_lens(const std::string& text, const std::string& what) {
-  const std::vector<double> n = numbers_of(text, what);
+  const std::vector<double> n = parse_numbers(text, what);
   if ((n.size() != 4 && n.size() != 9) || !(n[0] > 0.0) || !(n[1] > 0.0)) {
     throw Error(ErrorKind::bad_usage,
                 what +
@@ -138,7 +137,7 @@ Lens parse_lens(const std::string& text, const std::string& what) {
 }
 
 Isometry3d parse_pose_text(const std::string& text, const std::string& what) {
-  std::vector<double> numbers = numbers_of(text, what);
+  std::vector<double> numbers = parse_numbers(text, what);
   if (numbers.size() == 8) numbers.erase(numbers.begin());
   if (numbers.size() == 7) return pose_of(numbers, what);
   if (numbers.size() == 16) {
@@ -152,16 +151,6 @@ Isometry3d parse_pose_text(const std::string& text, const std::string& what) {
   throw Error(ErrorKind::bad_file, what + ": has " + std::to_string(numbers.size()) +
                                        " numbers; give x y z qx qy qz qw, or a matrix of three or "
                                        "four rows of four");
-}
-
-PoseSigma parse_pose_sigma(const std::string& text, const std::string& what) {
-  const std::vector<double> n = numbers_of(text, what);
-  constexpr double farthest = 100.0, widest = 90.0;
-  const bool is_good =
-      n.size() == 2 && n[0] >= 0.0 && n[0] <= farthest && n[1] >= 0.0 && n[1] <= widest;
-  if (is_good) return {.position = n[0], .angle = n[1] * geometry::radians_per_degree};
-  throw Error(ErrorKind::bad_usage,
-              what + ": give \"metres degrees\", from 0 to 100 and from 0 to 90");
 }
 
 std::vector<Vector3d> points_of(const sim::DepthImage& image, const Lens& lens, double unit,
@@ -190,12 +179,16 @@ ScanFound read_scan(const ScanInput& input, const file::Mission& mission) {
     return scan_of(sim::read_depth_png(input.file), input.lens, input.depth_unit,
                    input.world_from_sensor, mission);
   }
+  return scan_of(points_in_sensor(input), input.world_from_sensor, mission);
+}
+
+ScanFound scan_of(std::span<const Vector3d> points, const Isometry3d& world_from_sensor,
+                  const file::Mission& mission) {
   ScanFound found;
-  found.scan.world_from_sensor = input.world_from_sensor;
-  const std::vector<Vector3d> points = points_in_sensor(input);
+  found.scan.world_from_sensor = world_from_sensor;
   if (mission.sensor.scanner) {
     for (const Vector3d& point : points) {
-      found.scan.points.push_back((input.world_from_sensor * point).cast<float>());
+      found.scan.points.push_back((world_from_sensor * point).cast<float>());
     }
   } else {
     organise(points, geometry::Camera(mission.sensor.camera.camera), found);

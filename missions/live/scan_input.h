@@ -14,7 +14,6 @@
 
 #include "geometry/points/scan.h"
 #include "missions/file/mission.h"
-#include "missions/live/pose_check.h"
 #include "missions/live/scan_filter.h"
 #include "sim/sensors/depth_image.h"
 
@@ -38,8 +37,8 @@ Lens parse_lens(const std::string& text, const std::string& what = "--lens");
 /// trajectory, whose time is passed over); `what` opens messages. Throws Error{bad_file}.
 Eigen::Isometry3d parse_pose_text(const std::string& text, const std::string& what);
 
-/// Reads "metres degrees". Throws Error{bad_usage}.
-PoseSigma parse_pose_sigma(const std::string& text, const std::string& what);
+/// Reads some finite numbers, up to 36. Throws Error{bad_file}; `what` opens messages.
+std::vector<double> parse_numbers(const std::string& text, const std::string& what);
 
 struct ScanInput {
   std::filesystem::path
@@ -67,6 +66,10 @@ ScanFound read_scan(const ScanInput& input, const file::Mission& mission);
 /// The points of a depth image in its optical frame; `without_return` counts the others.
 std::vector<Eigen::Vector3d> points_of(const sim::DepthImage& image, const Lens& lens, double unit,
                                        std::size_t& without_return);
+
+/// Points of the sensor's optical frame as a scan of a mission, as read_scan has it.
+ScanFound scan_of(std::span<const Eigen::Vector3d> points,
+                  const Eigen::Isometry3d& world_from_sensor, const file::Mission& mission);
 
 /// A depth image as a scan of a mission with a depth camera; without a lens, of the mission's.
 ScanFound scan_of(const sim::DepthImage& image, const std::optional<Lens>& lens, double unit,

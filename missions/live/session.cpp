@@ -40,18 +40,26 @@ std::uint32_t count_at(const Json& header, const char* key) {
   return number.get<std::uint32_t>();
 }
 
-Eigen::Isometry3d pose_of(const Json& header) {
+/// A row of numbers as text, for the parsers of text.
+std::string row_at(const Json& header, const char* key) {
   std::string text;
-  for (const Json& number : header.at("pose")) text += number.dump() + " ";
-  return parse_pose_text(text, "pose");
+  for (const Json& number : header.at(key)) text += number.dump() + " ";
+  return text;
 }
 
-/// A scan's own: [metres, degrees].
-std::optional<PoseSigma> sigma_of(const Json& header) {
-  if (!header.contains("pose_sigma")) return std::nullopt;
-  std::string text;
-  for (const Json& number : header["pose_sigma"]) text += number.dump() + " ";
-  return parse_pose_sigma(text, "pose_sigma");
+Eigen::Isometry3d pose_of(const Json& header) {
+  return parse_pose_text(row_at(header, "pose"), "pose");
+}
+
+/// A scan's own.
+std::optional<PoseCovariance> covariance_of(const Json& header) {
+  constexpr const char *sigma = "pose_sigma", *covariance = "pose_covariance";
+  if (header.contains(sigma) && header.contains(covariance)) {
+    refuse_message("pose_sigma and pose_covariance do not go together; give one");
+  }
+  if (header.contains(sigma)) return parse_pose_sigma(row_at(header, sigma), sigma);
+  if (!header.contains(covariance)) return std::nullopt;
+  return parse_pose_covariance(row_at(header, covariance), covariance);
 }
 
 /// Points in the world frame, as floats, and then the pixels if there are some.
@@ -89,11 +97,7 @@ ScanFound depth_scan(const Message& message, const file::Mission& mission) {
   }
   image.values = values_at<std::uint16_t>(message.payload, 0, count);
   std::optional<Lens> lens;
-  if (header.contains("lens")) {
-    std::string text;
-    for (const Json& number : header["lens"]) text += number.dump() + " ";
-    lens = parse_lens(text, "lens");
-  }
+  if (header.contains("lens")) lens = parse_lens(row_at(header, "lens"), "lens");
   const double unit = header.at("unit").get<double>();
   if (!(unit >= 1e-6 && unit <= 1.0)) refuse_message("scan: unit must be from 1e-6 to 1 m");
   return scan_of(image, lens, unit, pose_of(header), mission);
@@ -162,13 +166,13 @@ Message Session::take_scan(const Message& message) {
     require_usable(found.scan, mission_);
   }
   const geometry::Scan& scan = found.scan;
-  const std::optional<PoseSigma> sigma = sigma_of(message.header);
-  const std::string id = scan_id(scan, sigma);
+  const std::optional<PoseCovariance> covariance = covariance_of(message.header);
+  const std::string id = scan_id(scan, covariance);
   if (number < expected && survey_.number_of(id) != number) {
     refuse_message("scan " + std::to_string(number) + " was another one; the next one is " +
                    std::to_string(expected));
   }
-  const bool is_new = survey_.add(scan, id, sigma);
+  const bool is_new = survey_.add(scan, id, covariance);
   has_changed_ = is_new;
   Message answer = present();
   answer.header["is_new"] = is_new;

@@ -1,6 +1,7 @@
 #include "missions/run/survey_flight.h"
 
 #include <algorithm>
+#include <optional>
 #include <string>
 #include <utility>
 
@@ -37,17 +38,22 @@ struct SurveyFlight::Impl {
         finder(space, derived::clearance_of(mission).total(),
                derived::route_options_of(mission, {}).path) {}
 
-  bool is_proven(const std::vector<Vector3d>& points) {
-    leg.points = points;
-    leg.clearance = finder.clearance() + flight::reported_surplus;
-    for (std::size_t i = 1; i < points.size(); ++i) {
+  std::optional<FlownLeg> proven(std::vector<Vector3d> points) const {
+    FlownLeg way{std::move(points), finder.clearance() + flight::reported_surplus};
+    for (std::size_t i = 1; i < way.points.size(); ++i) {
       const flight::LegProof proof =
-          flight::prove(space, {points[i - 1], points[i]}, finder.clearance(),
+          flight::prove(space, {way.points[i - 1], way.points[i]}, finder.clearance(),
                         finder.clearance() + flight::reported_surplus);
-      if (!proof.is_proven) return false;
-      leg.clearance = std::min(leg.clearance, proof.clearance);
+      if (!proof.is_proven) return std::nullopt;
+      way.clearance = std::min(way.clearance, proof.clearance);
     }
-    return true;
+    return way;
+  }
+
+  std::optional<FlownLeg> find_way(const Vector3d& from, const Vector3d& to) {
+    flight::Path path = finder.find(from, to);
+    if (path.status != flight::PathStatus::found) return std::nullopt;
+    return proven(std::move(path.points));
   }
 
   flight::Vehicle vehicle;
@@ -57,6 +63,7 @@ struct SurveyFlight::Impl {
   flight::JointSpace space;
   flight::PathFinder finder;
   FlownLeg leg;  ///< that the next fly() takes
+  Vector3d above_pad = Vector3d::Zero();
   std::vector<flight::PadScan> pads;
   FlownSurvey survey;
 };
@@ -65,6 +72,7 @@ SurveyFlight::SurveyFlight(const file::Mission& mission, const geometry::View& f
     : impl_(std::make_unique<Impl>(mission)) {
   impl_->survey.pad = derived::pad_of(mission, first_view.position);
   const Vector3d home = impl_->survey.pad + Vector3d(0.0, 0.0, derived::takeoff_climb_of(mission));
+  impl_->above_pad = home;
   const auto refuse = [&](const std::string& place, const Vector3d& at, const std::string& cure) {
     const double clearance = impl_->finder.clearance();
     const flight::Closest closest = impl_->space.closest({at, at}, clearance + 1e-3);
@@ -97,14 +105,24 @@ SurveyFlight::~SurveyFlight() = default;
 
 bool SurveyFlight::can_reach(const Vector3d& from, const geometry::View& to) {
   if (flight::can_look(impl_->vehicle, to)) {
-    const flight::Path path = impl_->finder.find(from, to.position);
-    if (path.status == flight::PathStatus::found && impl_->is_proven(path.points)) return true;
+    if (auto way = impl_->find_way(from, to.position)) {
+      impl_->leg = std::move(*way);
+      return true;
+    }
   }
   ++impl_->survey.refused;
   return false;
 }
 
 const FlownLeg& SurveyFlight::way() const { return impl_->leg; }
+
+std::optional<FlownLeg> SurveyFlight::find_way(const Vector3d& from, const Vector3d& to) {
+  return impl_->find_way(from, to);
+}
+
+const Vector3d& SurveyFlight::pad() const { return impl_->survey.pad; }
+
+const Vector3d& SurveyFlight::above_pad() const { return impl_->above_pad; }
 
 std::size_t SurveyFlight::refused() const { return impl_->survey.refused; }
 

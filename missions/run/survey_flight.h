@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include <Eigen/Core>
@@ -46,6 +47,13 @@ class SurveyFlight {
 
   /// The way that the last can_reach() found.
   const FlownLeg& way() const;
+
+  /// A way from one place to another that is proven free with what is known at present; nothing if
+  /// none is found. What can_reach() found stands.
+  std::optional<FlownLeg> find_way(const Eigen::Vector3d& from, const Eigen::Vector3d& to);
+
+  const Eigen::Vector3d& pad() const;
+  const Eigen::Vector3d& above_pad() const;  ///< where the take-off's climb ends
 
   /// Calls of can_reach() that said no.
   std::size_t refused() const;

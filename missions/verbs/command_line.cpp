@@ -49,67 +49,6 @@ void add_plan(CLI::App& app, const Console& console, Action& action) {
   run_with_keys(*verb, options, keys, plan, console, action);
 }
 
-void add_live_options(CLI::App& verb, LiveOptions& options, KeyOptions& keys) {
-  verb.add_option("mission", options.mission, "Mission file (docs/live.md)")->required();
-  verb.add_option("--survey", options.survey, "The survey's folder")->required();
-  verb.add_flag("!--no-report", options.has_report, "Leave out the page");
-  verb.add_option("--seed", keys.seed, "Seed, in place of the mission's");
-  verb.add_option("--threads", keys.threads, "Threads, 0 for all processors");
-  add_set_option(verb, keys);
-}
-
-void add_next(CLI::App& app, const Console& console, Action& action) {
-  CLI::App* verb =
-      app.add_subcommand("next", "Take in a scan of a real sensor and say where to measure next");
-  const auto options = std::make_shared<NextOptions>();
-  const auto keys = std::make_shared<KeyOptions>();
-  add_live_options(*verb, *options, *keys);
-  verb->add_option("--scan", options->scan,
-                   "Cloud (.ply, .pcd, .las, .xyz) or depth image (16-bit .png)");
-  verb->add_option("--pose", options->pose,
-                   "Of the sensor's optical frame: \"x y z qx qy qz qw\", or a matrix by rows");
-  verb->add_option("--pose-file", options->pose_file, "A file that holds the pose");
-  verb->add_option("--pose-sigma", options->pose_sigma,
-                   "How far off the pose may be, one standard deviation: \"metres degrees\"; "
-                   "default: live.pose_sigma and live.pose_sigma_deg");
-  verb->add_option("--lens", options->lens,
-                   "Of a depth image: \"fx fy cx cy\" or \"fx fy cx cy k1 k2 p1 p2 k3\"; default: "
-                   "the mission's camera");
-  verb->add_option("--depth-unit", options->depth_unit,
-                   "What a step of a depth image stands for [m]; default 0.001")
-      ->check(number_between(1e-6, 1.0));
-  verb->add_flag("--world", options->is_in_world, "The cloud is in the mission's frame already");
-  verb->add_option("--id", options->id, "Of the scan; one that is known is not taken in again");
-  verb->add_option("--dataset", options->dataset,
-                   "Folder of a recording, whose frames are taken in one by one: TUM RGB-D "
-                   "(depth.txt, groundtruth.txt) or 7-Scenes (frame-NNNNNN.depth.png, .pose.txt)");
-  verb->add_option("--until", options->until, "Only so many frames of the recording")
-      ->check(CLI::Range(1, 1'000'000));
-  verb->add_option("--refuse", options->refusal, "Another view in place of the last, and why");
-  verb->add_flag("--json", options->is_json, "Print JSON");
-  verb->add_flag("--quiet", options->is_quiet, "Print nothing but the answer and errors");
-  run_with_keys(*verb, options, keys, next, console, action);
-}
-
-void add_serve(CLI::App& app, const Console& console, Action& action) {
-  CLI::App* verb = app.add_subcommand("serve", "Serve a live survey on a socket (docs/live.md)");
-  const auto options = std::make_shared<ServeOptions>();
-  const auto keys = std::make_shared<KeyOptions>();
-  add_live_options(*verb, *options, *keys);
-  verb->add_option("--socket", options->socket, "A Unix socket, which only you may open");
-  verb->add_option("--port", options->port, "Of this machine alone; 0 for any that is free");
-  verb->add_flag("--quiet", options->is_quiet, "Print nothing but the address and errors");
-  run_with_keys(*verb, options, keys, serve, console, action);
-}
-
-void add_finish(CLI::App& app, const Console& console, Action& action) {
-  CLI::App* verb = app.add_subcommand("finish", "Write the mission package of a live survey");
-  const auto options = std::make_shared<LiveOptions>();
-  const auto keys = std::make_shared<KeyOptions>();
-  add_live_options(*verb, *options, *keys);
-  run_with_keys(*verb, options, keys, finish, console, action);
-}
-
 void add_benchmark(CLI::App& app, const Console& console, Action& action) {
   CLI::App* verb = app.add_subcommand(
       "benchmark", "Compare planners on missions over many seeds: the paper's tables, and curves");
@@ -322,9 +261,7 @@ int parse_and_run(const std::vector<std::string>& arguments, const Console& cons
     }
     add_plan(app, console, action);
     add_site(app, console, action);
-    add_next(app, console, action);
-    add_serve(app, console, action);
-    add_finish(app, console, action);
+    add_live(app, console, action);
     add_benchmark(app, console, action);
     add_campaign(app, console, action);
     add_scan(app, console, action);

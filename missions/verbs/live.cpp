@@ -1,20 +1,27 @@
-// The verbs of live surveys: next and finish, one call at a time, and serve.
+// The verbs of live surveys: next and finish, one call at a time, serve, and fly.
+#include <memory>
 #include <string>
 #include <utility>
 
+#include <CLI/App.hpp>
 #include <fmt/format.h>
 
 #include "geometry/error.h"
 #include "geometry/io/file.h"
 #include "geometry/io/output_folder.h"
+#include "missions/dataset/rawlog_sequence.h"
+#include "missions/dataset/recorded_sequence.h"
 #include "missions/derived/resolved_mission.h"
+#include "missions/fly/fly_survey.h"
+#include "missions/fly/network_port.h"
+#include "missions/fly/sensors.h"
 #include "missions/live/open_survey.h"
-#include "missions/live/recorded_sequence.h"
 #include "missions/live/scan_input.h"
 #include "missions/live/server.h"
 #include "missions/package/flight_report.h"
 #include "missions/package/package.h"
 #include "missions/report/survey_report.h"
+#include "missions/verbs/verb_options.h"
 #include "missions/verbs/verbs.h"
 #include "missions/verbs/write_page.h"
 
@@ -38,6 +45,18 @@ Eigen::Isometry3d pose_of(const NextOptions& options) {
   constexpr std::size_t largest = 1 << 16;
   return live::parse_pose_text(geometry::read_file(*options.pose_file, largest),
                                options.pose_file->string());
+}
+
+std::optional<live::PoseCovariance> covariance_of(const NextOptions& options) {
+  if (!options.pose_sigma.empty() && !options.pose_covariance.empty()) {
+    throw Error(ErrorKind::bad_usage,
+                "--pose-sigma and --pose-covariance do not go together; give one");
+  }
+  if (!options.pose_sigma.empty()) {
+    return live::parse_pose_sigma(options.pose_sigma, "--pose-sigma");
+  }
+  if (options.pose_covariance.empty()) return std::nullopt;
+  return live::parse_pose_covariance(options.pose_covariance, "--pose-covariance");
 }
 
 live::ScanInput input_of(const NextOptions& options, const std::filesystem::path& file,
@@ -65,34 +84,64 @@ std::string left_out_text(const live::ScanFound& found) {
   return text;
 }
 
-void add_scan(const NextOptions& options, const live::ScanInput& input, std::string id,
-              const file::Mission& mission, live::LiveSurvey& survey, const Console& console) {
-  const live::ScanFound found = live::read_scan(input, mission);
+void add_scan(const NextOptions& options, const std::string& name, const live::ScanFound& found,
+              std::string id, const file::Mission& mission, live::LiveSurvey& survey,
+              const Console& console) {
   live::require_usable(found.scan, mission);
-  std::optional<live::PoseSigma> sigma;
-  if (!options.pose_sigma.empty()) {
-    sigma = live::parse_pose_sigma(options.pose_sigma, "--pose-sigma");
-  }
-  if (id.empty()) id = live::scan_id(found.scan, sigma);
-  const bool is_new = survey.add(found.scan, id, sigma);
+  const std::optional<live::PoseCovariance> covariance = covariance_of(options);
+  if (id.empty()) id = live::scan_id(found.scan, covariance);
+  const bool is_new = survey.add(found.scan, id, covariance);
   if (options.is_quiet) return;
   const bool is_aside = is_new && survey.proposal().warns_of_pose();
-  console.err << fmt::format("{}: {} points{}{}{}\n", input.file.string(), found.scan.points.size(),
+  console.err << fmt::format("{}: {} points{}{}{}\n", name, found.scan.points.size(),
                              is_new ? "" : "; known already, ignored",
                              is_aside ? "; set aside, its pose is wrong" : "", left_out_text(found))
               << std::flush;
 }
 
-/// The frames of a recording that the survey does not have yet, one after another.
-void add_recording(const NextOptions& options, const file::Mission& mission,
-                   live::LiveSurvey& survey, const Console& console) {
-  const live::RecordedSequence sequence = live::read_sequence(*options.dataset, options.until);
+/// The frames of a folder that the survey does not have yet, one after another.
+void add_frames(const NextOptions& options, const file::Mission& mission, live::LiveSurvey& survey,
+                const Console& console) {
+  if (options.poses || !options.sensor.empty()) {
+    throw Error(ErrorKind::bad_usage, "--poses and --sensor are for rawlogs");
+  }
+  const dataset::RecordedSequence sequence =
+      dataset::read_sequence(*options.dataset, options.until);
   for (const std::string& note : sequence.notes) warn(console, note);
-  for (const live::RecordedFrame& frame : sequence.frames) {
+  for (const dataset::RecordedFrame& frame : sequence.frames) {
     if (console.stop.stop_requested()) return;
     if (survey.number_of(frame.id)) continue;
-    add_scan(options, input_of(options, frame.file, frame.world_from_sensor), frame.id, mission,
+    const live::ScanInput input = input_of(options, frame.file, frame.world_from_sensor);
+    add_scan(options, frame.file.string(), live::read_scan(input, mission), frame.id, mission,
              survey, console);
+  }
+}
+
+/// The same of a rawlog.
+void add_rawlog(const NextOptions& options, const file::Mission& mission, live::LiveSurvey& survey,
+                const Console& console) {
+  dataset::RawlogSequence sequence(*options.dataset,
+                                   {.sensor = options.sensor, .poses = options.poses},
+                                   [&](const std::string& note) { warn(console, note); });
+  if (!options.is_quiet) {
+    console.err << options.dataset->string() << ": poses are from " << sequence.pose_source()
+                << "\n";
+  }
+  for (std::size_t count = 0; count < options.until && !console.stop.stop_requested(); ++count) {
+    const std::optional<dataset::RawlogFrame> frame = sequence.next();
+    if (!frame) return;
+    if (survey.number_of(frame->id)) continue;
+    add_scan(options, frame->id, dataset::scan_of(*frame, mission), frame->id, mission, survey,
+             console);
+  }
+}
+
+void add_recording(const NextOptions& options, const file::Mission& mission,
+                   live::LiveSurvey& survey, const Console& console) {
+  if (std::filesystem::is_regular_file(*options.dataset)) {
+    add_rawlog(options, mission, survey, console);
+  } else {
+    add_frames(options, mission, survey, console);
   }
 }
 
@@ -132,6 +181,75 @@ Finished write_package(const LiveOptions& options, const file::Mission& mission,
           !flight || flight->failure.empty()};
 }
 
+void add_live_options(CLI::App& verb, LiveOptions& options, KeyOptions& keys) {
+  verb.add_option("mission", options.mission, "Mission file (docs/live.md)")->required();
+  verb.add_option("--survey", options.survey, "The survey's folder")->required();
+  verb.add_flag("!--no-report", options.has_report, "Leave out the page");
+  verb.add_option("--seed", keys.seed, "Seed, in place of the mission's");
+  verb.add_option("--threads", keys.threads, "Threads, 0 for all processors");
+  add_set_option(verb, keys);
+}
+
+void add_next(CLI::App& app, const Console& console, Action& action) {
+  CLI::App* verb =
+      app.add_subcommand("next", "Take in a scan of a real sensor and say where to measure next");
+  const auto options = std::make_shared<NextOptions>();
+  const auto keys = std::make_shared<KeyOptions>();
+  add_live_options(*verb, *options, *keys);
+  verb->add_option("--scan", options->scan,
+                   "Cloud (.ply, .pcd, .las, .xyz) or depth image (16-bit .png)");
+  verb->add_option("--pose", options->pose,
+                   "Of the sensor's optical frame: \"x y z qx qy qz qw\", or a matrix by rows");
+  verb->add_option("--pose-file", options->pose_file, "A file that holds the pose");
+  verb->add_option("--pose-sigma", options->pose_sigma,
+                   "How far off the pose may be, one standard deviation: \"metres degrees\"; "
+                   "default: live.pose_sigma and live.pose_sigma_deg");
+  verb->add_option("--pose-covariance", options->pose_covariance,
+                   "Of the pose, in its place: the 36 numbers of a covariance of x y z rx ry rz in "
+                   "the mission's frame [m, rad] by rows, or the 21 of its upper triangle");
+  verb->add_option("--lens", options->lens,
+                   "Of a depth image: \"fx fy cx cy\" or \"fx fy cx cy k1 k2 p1 p2 k3\"; default: "
+                   "the mission's camera");
+  verb->add_option("--depth-unit", options->depth_unit,
+                   "What a step of a depth image stands for [m]; default 0.001")
+      ->check(number_between(1e-6, 1.0));
+  verb->add_flag("--world", options->is_in_world, "The cloud is in the mission's frame already");
+  verb->add_option("--id", options->id, "Of the scan; one that is known is not taken in again");
+  verb->add_option("--dataset", options->dataset,
+                   "A recording, whose frames are taken in one by one: a folder of TUM RGB-D "
+                   "(depth.txt, groundtruth.txt) or 7-Scenes (frame-NNNNNN.depth.png, .pose.txt), "
+                   "or a rawlog of MRPT");
+  verb->add_option("--sensor", options->sensor, "Of a rawlog with several: the one's label");
+  verb->add_option("--poses", options->poses,
+                   "Of a rawlog's sensor, in place of its own: a TUM trajectory of the optical "
+                   "frame");
+  verb->add_option("--until", options->until, "Only so many frames of the recording")
+      ->check(CLI::Range(1, 1'000'000));
+  verb->add_option("--refuse", options->refusal, "Another view in place of the last, and why");
+  verb->add_flag("--json", options->is_json, "Print JSON");
+  verb->add_flag("--quiet", options->is_quiet, "Print nothing but the answer and errors");
+  run_with_keys(*verb, options, keys, next, console, action);
+}
+
+void add_serve(CLI::App& app, const Console& console, Action& action) {
+  CLI::App* verb = app.add_subcommand("serve", "Serve a live survey on a socket (docs/live.md)");
+  const auto options = std::make_shared<ServeOptions>();
+  const auto keys = std::make_shared<KeyOptions>();
+  add_live_options(*verb, *options, *keys);
+  verb->add_option("--socket", options->socket, "A Unix socket, which only you may open");
+  verb->add_option("--port", options->port, "Of this machine alone; 0 for any that is free");
+  verb->add_flag("--quiet", options->is_quiet, "Print nothing but the address and errors");
+  run_with_keys(*verb, options, keys, serve, console, action);
+}
+
+void add_finish(CLI::App& app, const Console& console, Action& action) {
+  CLI::App* verb = app.add_subcommand("finish", "Write the mission package of a live survey");
+  const auto options = std::make_shared<LiveOptions>();
+  const auto keys = std::make_shared<KeyOptions>();
+  add_live_options(*verb, *options, *keys);
+  run_with_keys(*verb, options, keys, finish, console, action);
+}
+
 }  // namespace
 
 int next(const NextOptions& options, const Console& console) {
@@ -142,7 +260,8 @@ int next(const NextOptions& options, const Console& console) {
   const file::Mission mission = derived::read_live_mission(options.mission, options.overrides);
   const auto survey = live::open_survey(mission, options.mission.parent_path(), options.survey);
   if (options.scan) {
-    add_scan(options, input_of(options, *options.scan, pose_of(options)), options.id, mission,
+    const live::ScanInput input = input_of(options, *options.scan, pose_of(options));
+    add_scan(options, options.scan->string(), live::read_scan(input, mission), options.id, mission,
              *survey, console);
   }
   if (options.dataset) add_recording(options, mission, *survey, console);
@@ -190,6 +309,96 @@ int serve(const ServeOptions& options, const Console& console) {
   };
   server.run(session, note, console.stop);
   return exit_code;
+}
+
+namespace {
+
+/// A survey that is flown on an autopilot.
+struct FlyOptions : LiveOptions {
+  std::string connect;               ///< fly::parse_address()
+  std::string sensor = "simulated";  ///< or a folder that scans come to
+  std::string on_failure = "hold";   ///< or return
+  std::string lens;                  ///< of depth images
+  double depth_unit = 0.001;         ///< of depth images [m]
+  bool is_quiet = false;
+};
+
+fly::Sensor sensor_of(const FlyOptions& options, const file::Mission& mission,
+                      const Console& console) {
+  if (options.sensor == "simulated") {
+    return fly::simulated_sensor(mission, options.mission.parent_path());
+  }
+  live::ScanInput input;
+  input.depth_unit = options.depth_unit;
+  if (!options.lens.empty()) input.lens = live::parse_lens(options.lens);
+  return fly::folder_sensor(mission, options.sensor, std::move(input),
+                            fly::FlightOptions{}.sensing_limit, console.stop);
+}
+
+/// Exit code 0: the survey is over, the vehicle has landed, and the package has a route.
+int fly_live(const FlyOptions& options, const Console& console) {
+  const fly::NetworkAddress address = fly::parse_address(options.connect);
+  const file::Mission mission = derived::read_live_mission(options.mission, options.overrides);
+  fly::require_flyable(mission);
+  fly::Sensor sensor = sensor_of(options, mission, console);
+  const auto survey = live::open_survey(mission, options.mission.parent_path(), options.survey);
+  fly::NetworkPort port(address);
+  if (!address.is_of_this_machine()) {
+    warn(console,
+         "MAVLink has no lock: who can reach " + options.connect + " can take part in this flight");
+  }
+  const HoldsResults results(console);
+  fly::FlightOptions flight;
+  flight.returns_on_failure = options.on_failure == "return";
+  flight.show = [&] { show_survey(options, mission, *survey, console); };
+  flight.note = [&](const std::string& text) {
+    if (!options.is_quiet) console.err << printable_line(text) << "\n" << std::flush;
+  };
+  const fly::FlightEnd end =
+      fly::fly_survey(mission, *survey, port, std::move(sensor), std::move(flight), console.stop);
+  if (end.trouble) {
+    console.err << "skycap: the flight ended: " << printable_line(end.trouble->what)
+                << (end.has_landed ? "; landed on the pad" : "") << "; the survey in "
+                << printable_line(options.survey.string()) << " goes on when it is flown again\n"
+                << std::flush;
+    return 1;
+  }
+  const Finished finished = write_package(options, mission, *survey, console);
+  console.out << finished.text << std::flush;
+  return finished.has_route ? 0 : 1;
+}
+
+void add_fly(CLI::App& app, const Console& console, Action& action) {
+  CLI::App* verb = app.add_subcommand(
+      "fly", "Fly a live survey on an autopilot, one proven leg after another (docs/live.md)");
+  const auto options = std::make_shared<FlyOptions>();
+  const auto keys = std::make_shared<KeyOptions>();
+  add_live_options(*verb, *options, *keys);
+  verb->add_option("--connect", options->connect,
+                   "Where the autopilot's MAVLink comes to, udp:127.0.0.1:14550, or where it waits "
+                   "for us, udpout:HOST:PORT or tcp:HOST:PORT")
+      ->required();
+  verb->add_option("--sensor", options->sensor,
+                   "simulated (default; the mission has a scene then), or a folder that another "
+                   "program writes the scans to");
+  verb->add_option("--on-failure", options->on_failure,
+                   "hold (default) until a pilot takes control, or return by the proven way where "
+                   "that can be flown")
+      ->check(CLI::IsMember({"hold", "return"}));
+  verb->add_option("--lens", options->lens, "Of depth images, as for next");
+  verb->add_option("--depth-unit", options->depth_unit, "Of depth images [m]; default 0.001")
+      ->check(number_between(1e-6, 1.0));
+  verb->add_flag("--quiet", options->is_quiet, "Print nothing but results and errors");
+  run_with_keys(*verb, options, keys, fly_live, console, action);
+}
+
+}  // namespace
+
+void add_live(CLI::App& app, const Console& console, Action& action) {
+  add_next(app, console, action);
+  add_serve(app, console, action);
+  add_finish(app, console, action);
+  add_fly(app, console, action);
 }
 
 }  // namespace skycap::missions::verbs

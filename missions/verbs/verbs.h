@@ -42,12 +42,15 @@ struct NextOptions : LiveOptions {
   std::optional<std::filesystem::path> scan;       ///< to be taken in first
   std::string pose;                                ///< of the scan's sensor; either this
   std::optional<std::filesystem::path> pose_file;  ///< or this
-  std::string pose_sigma;                          ///< of the pose; default: the mission's
+  std::string pose_sigma;                          ///< of the pose; either this
+  std::string pose_covariance;                     ///< or this; default: the mission's
   std::string lens;                                ///< of a depth image
   double depth_unit = 0.001;                       ///< of a depth image [m]
   bool is_in_world = false;                        ///< the points of a cloud
   std::string id;                                  ///< of the scan; default: its digest
   std::optional<std::filesystem::path> dataset;    ///< a recording to be taken in, in its place
+  std::string sensor;                              ///< label in a rawlog
+  std::optional<std::filesystem::path> poses;      ///< of a rawlog's sensor; default: its own
   std::size_t until = 1'000'000;                   ///< so many of its frames
   std::optional<std::string> refusal;              ///< why the proposed view is not wanted
   bool is_json = false;

@@ -51,6 +51,7 @@ Rooms house() {
   add("flight/export",
       {"flight/space", "flight/motion", "flight/paths", "flight/way_home", "flight/route"});
   add("flight/interpreter", {"flight/space", "flight/autopilot", "flight/motion", "flight/export"});
+  add("flight/link", {});
   add("flight/calibration", {"flight/space", "flight/autopilot", "flight/motion", "flight/export"});
   add("flight/fly_test", {"flight/space", "flight/autopilot", "flight/motion", "flight/way_home",
                           "flight/interpreter"});
@@ -86,14 +87,16 @@ Rooms house() {
                    "anew", "fleet");
   add_mission_room("report", "prior", "file", "derived", "scene", "run", "package");
   add_mission_room("live", "file", "derived", "scene", "run");
+  add_mission_room("dataset", "file", "plugins", "live");
+  add_mission_room("fly", "file", "derived", "scene", "run", "live");
   add_mission_room("benchmark", "file", "derived", "judge", "plugins", "scene", "run", "package");
   add_mission_room("campaign", "file", "equipment", "derived", "judge", "plugins", "scene", "run",
                    "package", "benchmark");
   add_mission_room("library", "file", "equipment", "derived", "judge", "scene", "recording", "run",
                    "package");
   add_mission_room("verbs", "prior", "file", "equipment", "derived", "judge", "plugins", "scene",
-                   "recording", "run", "package", "report", "live", "benchmark", "campaign", "site",
-                   "proof", "fleet");
+                   "recording", "run", "package", "report", "live", "dataset", "fly", "benchmark",
+                   "campaign", "site", "proof", "fleet");
   // As a user of the library: public headers.
   add("python",
       {"sim/models", "sim/sensors", "survey", "flight/space", "flight/route", "missions/library"});

@@ -1,63 +1,116 @@
-/// The mission protocol of MAVLink 2, as far as it takes to upload a mission and fetch it back: a
-/// codec of its five messages, an autopilot's side and a ground station's side.
+/// The mission protocol of MAVLink 2, as far as it takes to upload a mission and fetch it back: its
+/// five messages, an autopilot's side and a ground station's side.
 ///
-/// Sources: MAVLink's serialization guide (frame, checksum, order of fields, truncation) and its
-/// common message set (numbers and fields of the messages).
+/// Source: MAVLink's common message set (numbers and fields of the messages).
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <optional>
-#include <string>
 #include <vector>
+
+#include "flight/link/message.h"
 
 namespace skycap::flight::mavlink {
 
-using Bytes = std::vector<std::uint8_t>;
+struct MissionRequestList {
+  static constexpr std::uint32_t id = 43;
+  static constexpr const char* name = "MISSION_REQUEST_LIST";
+  Address target{1, 1};
+
+  template <class Self, class Visit>
+  static void fields(Self& self, Visit&& visit) {
+    visit("target_system", self.target.system);
+    visit("target_component", self.target.component);
+  }
+};
+
+struct MissionCount {
+  static constexpr std::uint32_t id = 44;
+  static constexpr const char* name = "MISSION_COUNT";
+  std::uint16_t count = 0;
+  Address target{1, 1};
+
+  template <class Self, class Visit>
+  static void fields(Self& self, Visit&& visit) {
+    visit("count", self.count);
+    visit("target_system", self.target.system);
+    visit("target_component", self.target.component);
+  }
+};
+
+struct MissionAnswer {
+  static constexpr std::uint32_t id = 47;
+  static constexpr const char* name = "MISSION_ACK";
+  Address target{1, 1};
+  std::uint8_t result = 0;  ///< MAV_MISSION_RESULT, 0 is accepted
+
+  template <class Self, class Visit>
+  static void fields(Self& self, Visit&& visit) {
+    visit("target_system", self.target.system);
+    visit("target_component", self.target.component);
+    visit("type", self.result);
+  }
+};
+
+struct MissionRequest {
+  static constexpr std::uint32_t id = 51;
+  static constexpr const char* name = "MISSION_REQUEST_INT";
+  std::uint16_t sequence = 0;
+  Address target{1, 1};
+
+  template <class Self, class Visit>
+  static void fields(Self& self, Visit&& visit) {
+    visit("seq", self.sequence);
+    visit("target_system", self.target.system);
+    visit("target_component", self.target.component);
+  }
+};
 
 /// A mission item as the wire carries it.
 struct WireItem {
-  float params[4] = {};
+  static constexpr std::uint32_t id = 73;
+  static constexpr const char* name = "MISSION_ITEM_INT";
+  std::array<float, 4> params{};
   std::int32_t x = 0, y = 0;  ///< 1e-7 degrees in frames with places, else parameters 5 and 6
   float z = 0.0F;
   std::uint16_t sequence = 0, command = 0;
+  Address target{1, 1};
   std::uint8_t frame = 0, current = 0, autocontinue = 0;
+
+  template <class Self, class Visit>
+  static void fields(Self& self, Visit&& visit) {
+    visit("param1", self.params[0]);
+    visit("param2", self.params[1]);
+    visit("param3", self.params[2]);
+    visit("param4", self.params[3]);
+    visit("x", self.x);
+    visit("y", self.y);
+    visit("z", self.z);
+    visit("seq", self.sequence);
+    visit("command", self.command);
+    visit("target_system", self.target.system);
+    visit("target_component", self.target.component);
+    visit("frame", self.frame);
+    visit("current", self.current);
+    visit("autocontinue", self.autocontinue);
+  }
 };
-
-enum class Kind : std::uint32_t {
-  request_list = 43,
-  count = 44,
-  ack = 47,
-  request_int = 51,
-  item_int = 73,
-};
-
-struct Message {
-  Kind kind = Kind::ack;
-  std::uint16_t number = 0;  ///< count of items, or index of the one requested
-  std::uint8_t result = 0;   ///< of an ack: MAV_MISSION_RESULT, 0 is accepted
-  WireItem item;
-};
-
-/// The checksum of MAVLink: CRC-16/MCRF4XX, continued from `crc`.
-std::uint16_t checksum(const std::uint8_t* data, std::size_t size, std::uint16_t crc = 0xFFFF);
-
-/// The byte that goes into the checksum of a message besides its bytes, computed from the names and
-/// types of its fields, so that ends with different definitions do not understand each other.
-std::uint8_t extra_byte(Kind kind);
-
-Bytes encode(const Message& message, std::uint8_t sequence);
-/// Nothing if the frame is broken, of another version or of a message not known here.
-std::optional<Message> decode(const Bytes& frame);
 
 /// An autopilot's mission store.
 class Autopilot {
  public:
   /// Its answer to a frame; nothing if it does not understand it.
-  std::optional<Bytes> receive(const Bytes& frame);
+  std::optional<Bytes> receive(const Bytes& bytes);
   const std::vector<WireItem>& mission() const { return mission_; }
 
  private:
+  template <class M>
+  Bytes say(const M& message) {
+    return encode(message, {1, 1}, sequence_++);
+  }
   Bytes ask_or_accept();
+  Bytes take(const WireItem& item);
 
   std::vector<WireItem> mission_, incoming_;
   std::size_t expected_ = 0;

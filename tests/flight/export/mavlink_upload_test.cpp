@@ -10,7 +10,6 @@
 namespace skycap::flight {
 namespace {
 
-using mavlink::Kind;
 using mavlink::WireItem;
 
 bool has_place(const MissionItem& item) { return item.frame != frame::mission; }
@@ -52,35 +51,6 @@ void expect_same(const std::vector<MissionItem>& sent, const std::vector<WireIte
     // 1e-7 degrees is the wire's unit: 11 mm.
     EXPECT_NEAR(1e-7 * back[i].x, sent[i].params[4], 1e-7);
     EXPECT_NEAR(1e-7 * back[i].y, sent[i].params[5], 1e-7);
-  }
-}
-
-// Published constants of the message set: our definitions of the messages are the right ones.
-TEST(Mavlink, TheExtraBytesAreThoseOfTheCommonMessageSet) {
-  EXPECT_EQ(mavlink::extra_byte(Kind::request_list), 132);
-  EXPECT_EQ(mavlink::extra_byte(Kind::count), 221);
-  EXPECT_EQ(mavlink::extra_byte(Kind::ack), 153);
-  EXPECT_EQ(mavlink::extra_byte(Kind::request_int), 196);
-  EXPECT_EQ(mavlink::extra_byte(Kind::item_int), 38);
-}
-
-// The check value of CRC-16/MCRF4XX in the catalogue of checksums.
-TEST(Mavlink, TheChecksumHasItsCheckValue) {
-  const std::uint8_t digits[] = {'1', '2', '3', '4', '5', '6', '7', '8', '9'};
-  EXPECT_EQ(mavlink::checksum(digits, sizeof digits), 0x6F91);
-}
-
-TEST(Mavlink, FramesAreTruncatedAndDamageIsNoticed) {
-  mavlink::Message message;
-  message.kind = Kind::ack;  // accepted: result and mission type are zeros at the end
-  mavlink::Bytes frame = mavlink::encode(message, 7);
-  EXPECT_EQ(frame.size(), 10U + 2U + 2U);
-  ASSERT_TRUE(mavlink::decode(frame));
-  EXPECT_EQ(mavlink::decode(frame)->result, 0);
-  for (std::size_t i = 0; i < frame.size(); ++i) {
-    mavlink::Bytes damaged = frame;
-    damaged[i] ^= 1;
-    EXPECT_FALSE(mavlink::decode(damaged)) << "byte " << i;
   }
 }
 

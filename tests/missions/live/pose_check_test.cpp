@@ -69,8 +69,8 @@ class Survey {
     }
     check_.remember(scan, room);
   }
-  PoseFinding find(const geometry::Scan& scan, const PoseSigma& sigma = {}) {
-    return check_.find(scan, sigma);
+  PoseFinding find(const geometry::Scan& scan, const PoseCovariance& covariance = {}) {
+    return check_.find(scan, covariance);
   }
 
  private:
@@ -131,7 +131,7 @@ TEST_F(PoseChecks, CorrectWhatTheSigmaAllows) {
     const Vector3d& stop = stops[1 + seed % 5];
     const geometry::Scan given = moved(survey.scan(stop, cupboard), error_at(stop, seed));
     EXPECT_TRUE(survey.find(given).is_wrong) << seed;
-    const PoseFinding finding = survey.find(given, {0.05, 0.01});
+    const PoseFinding finding = survey.find(given, PoseCovariance::of(0.05, 0.01));
     EXPECT_FALSE(finding.is_wrong);
     ASSERT_TRUE(finding.correction);
     if (finding.unobservable > 0) continue;
@@ -175,11 +175,51 @@ TEST_F(PoseChecks, SayNothingOfWhatNobodyHasSeen) {
   EXPECT_FALSE(finding.is_wrong);
 }
 
+/// Whichever way the sensor looks, its errors are along the mission's axes.
+TEST_F(PoseChecks, TakeErrorsAlongTheAxesThatTheCovarianceNames) {
+  for (int axis = 0; axis < 3; ++axis) {
+    Survey survey(scene_, 0.005, 1, true);
+    survey.remember(survey.scan(stops[0], cupboard));
+    Isometry3d jump = Isometry3d::Identity();
+    jump.translation() = 0.1 * Vector3d::Unit(axis);
+    const geometry::Scan given = moved(survey.scan(stops[1], cupboard), jump);
+    for (int known = 0; known < 3; ++known) {
+      PoseCovariance covariance;
+      covariance.matrix(known, known) = 0.05 * 0.05;
+      const PoseFinding finding = survey.find(given, covariance);
+      EXPECT_EQ(finding.is_wrong, known != axis) << axis << ", " << known;
+      ASSERT_EQ(finding.correction.has_value(), known == axis) << axis << ", " << known;
+      if (!finding.correction) continue;
+      EXPECT_LT((*finding.correction * jump * stops[1] - stops[1]).norm(), 0.01);
+    }
+  }
+}
+
+/// A mast that turns at its foot: position and direction go astray together, and only so.
+TEST_F(PoseChecks, TakeErrorsThatGoTogetherForWhatTheyAre) {
+  Survey survey(scene_, 0.005, 1);
+  survey.remember(survey.scan(stops[0], cupboard));
+  const Vector3d sensor = stops[1], foot = sensor - Vector3d(2.0, 1.0, 0.0);
+  const double turn = 2.0 * geometry::radians_per_degree;
+  const Eigen::AngleAxisd about_z(turn, Vector3d::UnitZ());
+  Isometry3d error = Isometry3d::Identity();
+  error.linear() = about_z.toRotationMatrix();
+  error.translation() = foot - about_z * foot;
+  const geometry::Scan given = moved(survey.scan(sensor, cupboard), error);
+  for (const double sign : {1.0, -1.0}) {
+    PoseCovariance::Vector together;
+    together << sign * Vector3d::UnitZ().cross(sensor - foot), Vector3d::UnitZ();
+    together *= turn;
+    const PoseFinding finding = survey.find(given, {together * together.transpose()});
+    EXPECT_EQ(finding.is_wrong, sign < 0.0) << finding.shift << " " << finding.turn;
+  }
+}
+
 TEST_F(PoseChecks, ComeOutTheSame) {
   const auto find = [&] {
     Survey survey(scene_, 0.01, 1, true);
     for (const Vector3d& stop : stops) survey.remember(survey.scan(stop, cupboard));
-    return survey.find(survey.scan(stops[2], cupboard), {0.05, 0.01});
+    return survey.find(survey.scan(stops[2], cupboard), PoseCovariance::of(0.05, 0.01));
   };
   EXPECT_TRUE(find().correction->matrix() == find().correction->matrix());
 }

@@ -167,9 +167,39 @@ TEST_F(SessionAnswers, WarnOfPosesThatAreWrong) {
   header["pose_sigma"] = {0.01, "x"};
   EXPECT_THAT(ask(header, payload_of(scan)), HasSubstr("pose_sigma"));
   header["pose_sigma"] = {0.01, 0.1};
+  header["pose_covariance"] = {1, 2, 3};
+  EXPECT_THAT(ask(header, payload_of(scan)), HasSubstr("do not go together"));
+  header.erase("pose_sigma");
+  EXPECT_THAT(ask(header, payload_of(scan)), HasSubstr("pose_covariance: has 3 numbers"));
+  header["pose_covariance"] = PoseCovariance::of(0.01, 0.002).triangle();
   EXPECT_THAT(ask(header, payload_of(scan)), Not(HasSubstr("warning")));
   EXPECT_THAT(ask(scan_header(1, wrong), payload_of(wrong)), HasSubstr("\"is_new\":false"));
   EXPECT_EQ(survey_.views().size(), 2U);
+}
+
+/// A jump is one that the covariance explains, or one that sets the scan aside.
+TEST(Serve, TakesWhatIsKnownOfPosesFromItsClient) {
+  const tests::TestFolder folder;
+  const Rehearsal rehearsal(fine_mission());
+  Served served(rehearsal, {.socket = folder / "socket", .port = {}});
+  skycap_live::Survey client(served.address());
+  const geometry::Scan first = rehearsal.scan(served.survey());
+  client.add_points(numbers_of(first), pose_of(first));
+  const geometry::Scan scan = rehearsal.scan(served.survey());
+  Eigen::Isometry3d jump = Eigen::Isometry3d::Identity();
+  jump.translation() = 0.1 * scan.world_from_sensor.linear().col(0);
+  const geometry::Scan moved = corrected(scan, jump);
+  const auto answer = [&](const skycap_live::PoseError& error) {
+    return client.add_points(numbers_of(moved), pose_of(moved), {}, error);
+  };
+  skycap_live::PoseCovariance covariance{};
+  EXPECT_THAT(answer(covariance), HasSubstr("\"warning\":\"pose\""));
+  covariance[1] = 0.01;
+  EXPECT_THROW(answer(covariance), skycap_live::Refused);
+  EXPECT_THAT(answer(skycap_live::PoseSigma{0.001, 0.01}), HasSubstr("\"warning\":\"pose\""));
+  covariance[1] = 0.0;
+  for (const std::size_t i : {0U, 7U, 14U}) covariance[i] = 0.01;
+  EXPECT_THAT(answer(covariance), Not(HasSubstr("warning")));
 }
 
 TEST_F(SessionAnswers, RefusalsTwiceAreOne) {

@@ -136,10 +136,15 @@ TEST_F(LiveVerbs, WarnOfAWrongPose) {
   const ProgramRun run = run_skycap(verb("next"));
   EXPECT_EQ(run.exit_code, 12);
   EXPECT_THAT(run.out, HasSubstr("warning: pose: the scan is set aside"));
-  call.insert(call.end(), {"--pose-sigma", "0.1 1"});
-  EXPECT_FALSE(answer(call).contains("warning"));
-  call.back() = "0.1";
+  call.insert(call.end(), {"--pose-sigma", "0.1"});
   EXPECT_THAT(run_skycap(verb("next", call)).err, HasSubstr("metres degrees"));
+  call.back() = "0.1 1";
+  call.insert(call.end(), {"--pose-covariance", "0.01"});
+  EXPECT_THAT(run_skycap(verb("next", call)).err, HasSubstr("do not go together"));
+  call.erase(call.end() - 4, call.end() - 2);
+  EXPECT_THAT(run_skycap(verb("next", call)).err, HasSubstr("--pose-covariance: has 1 numbers"));
+  call.back() = "0.01 0 0 0 0 0  0.01 0 0 0 0  0.01 0 0 0  1e-4 0 0  1e-4 0  1e-4";
+  EXPECT_FALSE(answer(call).contains("warning"));
 }
 
 TEST_F(LiveVerbs, SayWhatIsMissing) {

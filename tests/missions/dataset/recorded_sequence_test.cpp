@@ -1,4 +1,4 @@
-#include "missions/live/recorded_sequence.h"
+#include "missions/dataset/recorded_sequence.h"
 
 #include <string>
 #include <vector>
@@ -10,7 +10,7 @@
 #include "tests/missions/run_skycap.h"
 #include "tests/support/complaint.h"
 
-namespace skycap::missions::live {
+namespace skycap::missions::dataset {
 namespace {
 
 using testing::AllOf;
@@ -103,4 +103,4 @@ TEST_F(Recording, ThatIsNoneIsRefused) {
 }
 
 }  // namespace
-}  // namespace skycap::missions::live
+}  // namespace skycap::missions::dataset

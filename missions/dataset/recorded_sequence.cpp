@@ -1,57 +1,20 @@
-#include "missions/live/recorded_sequence.h"
+#include "missions/dataset/recorded_sequence.h"
 
 #include <algorithm>
-#include <cmath>
 #include <string_view>
 #include <utility>
 
-#include <fmt/format.h>
-
 #include "geometry/error.h"
 #include "geometry/io/file.h"
-#include "geometry/io/text_scanner.h"
+#include "missions/dataset/stamped_list.h"
 #include "missions/live/scan_input.h"
 
-namespace skycap::missions::live {
+namespace skycap::missions::dataset {
 namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::size_t largest_list = std::size_t{1} << 28, largest_pose = 1 << 16;  // [byte]
-
-/// A line of a list of the TUM layout.
-struct Stamped {
-  double time;
-  std::string time_text, rest;
-};
-
-/// The lines of a list that are not comments, times ascending.
-std::vector<Stamped> read_list(const fs::path& file) {
-  const std::string name = file.string(), text = geometry::read_file(file, largest_list);
-  std::vector<Stamped> lines;
-  geometry::TextScanner scanner(name, text);
-  do {
-    const auto word = scanner.word_in_line();
-    if (!word || word->starts_with('#')) continue;
-    const auto time = scanner.number<double>(word, "a time");
-    if (!std::isfinite(time) || (!lines.empty() && !(time > lines.back().time))) {
-      scanner.fail("time " + std::string(*word) + " is not after the one before; sort the list");
-    }
-    std::string rest;
-    while (const auto more = scanner.word_in_line()) {
-      rest += (rest.empty() ? "" : " ") + std::string(*more);
-    }
-    lines.push_back({time, std::string(*word), std::move(rest)});
-  } while (scanner.next_line());
-  return lines;
-}
-
-const Stamped* nearest(const std::vector<Stamped>& lines, double time) {
-  const auto after = std::ranges::lower_bound(lines, time, {}, &Stamped::time);
-  if (after == lines.begin()) return lines.empty() ? nullptr : &lines.front();
-  const auto before = std::prev(after);
-  return after == lines.end() || time - before->time <= after->time - time ? &*before : &*after;
-}
+constexpr std::size_t largest_pose = 1 << 16;  // [byte]
 
 /// Adds the frame with the pose that `pose` reads, or a note that says why not.
 template <typename Pose>
@@ -65,24 +28,14 @@ void add_frame(RecordedSequence& sequence, const std::string& id, const fs::path
 }
 
 RecordedSequence read_tum(const fs::path& folder, std::size_t count) {
-  constexpr double most_apart = 0.02;  // [s]
   const fs::path poses_file = folder / "groundtruth.txt";
   const std::vector<Stamped> images = read_list(folder / "depth.txt");
   const std::vector<Stamped> poses = read_list(poses_file);
   RecordedSequence sequence;
   for (std::size_t i = 0; i < std::min(count, images.size()); ++i) {
     const Stamped& image = images[i];
-    add_frame(sequence, image.time_text, folder / image.rest, [&] {
-      const Stamped* pose = nearest(poses, image.time);
-      const double apart = pose == nullptr ? most_apart : std::abs(pose->time - image.time);
-      if (pose == nullptr || apart > most_apart) {
-        throw Error(
-            ErrorKind::bad_file,
-            poses_file.string() + ": has no pose within 20 ms of its time" +
-                (pose == nullptr ? "" : fmt::format(" (the nearest is {:.3f} s off)", apart)));
-      }
-      return parse_pose_text(pose->rest, poses_file.string() + ": time " + pose->time_text);
-    });
+    add_frame(sequence, image.time_text, folder / image.rest,
+              [&] { return pose_at(poses, image.time, poses_file.string()); });
   }
   return sequence;
 }
@@ -107,7 +60,7 @@ RecordedSequence read_numbered(const std::vector<fs::path>& images, std::size_t 
     const std::string id = name.substr(0, name.size() - image_ending.size());
     add_frame(sequence, id, images[i], [&] {
       const fs::path pose = images[i].parent_path() / (id + ".pose.txt");
-      return parse_pose_text(geometry::read_file(pose, largest_pose), pose.string());
+      return live::parse_pose_text(geometry::read_file(pose, largest_pose), pose.string());
     });
   }
   return sequence;
@@ -134,4 +87,4 @@ RecordedSequence read_sequence(const fs::path& folder, std::size_t count) {
   return sequence;
 }
 
-}  // namespace skycap::missions::live
+}  // namespace skycap::missions::dataset

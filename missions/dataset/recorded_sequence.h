@@ -8,7 +8,7 @@
 
 #include <Eigen/Geometry>
 
-namespace skycap::missions::live {
+namespace skycap::missions::dataset {
 
 struct RecordedFrame {
   std::string id;              ///< what the recording calls it
@@ -33,4 +33,4 @@ struct RecordedSequence {
 /// frame is left.
 RecordedSequence read_sequence(const std::filesystem::path& folder, std::size_t count);
 
-}  // namespace skycap::missions::live
+}  // namespace skycap::missions::dataset

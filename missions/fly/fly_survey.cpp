@@ -1,0 +1,61 @@
+#include "missions/fly/fly_survey.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "flight/interpreter/flight_facts.h"
+#include "geometry/error.h"
+#include "missions/derived/mission_flight.h"
+#include "missions/fly/preflight.h"
+
+namespace skycap::missions::fly {
+namespace {
+
+/// The climb is proven from so much above the clearance on, where the ground is no matter [m].
+constexpr double ground_spare = 0.5;
+
+GuidedLimits limits_of(const file::Mission& mission) {
+  const flight::ClearanceBudget clearance = derived::clearance_of(mission);
+  return {.corridor = clearance.tracking_error + std::max(clearance.margin, 0.0),
+          .arrival = clearance.tracking_error,
+          .hold = derived::hold_of(mission),
+          .pad_radius = flight::pad_tolerance,
+          .pad_height = flight::pad_height_tolerance};
+}
+
+}  // namespace
+
+void require_flyable(const file::Mission& mission) {
+  const auto refuse = [](const std::string& what) { throw Error(ErrorKind::bad_config, what); };
+  if (!mission.flight.is_flown()) {
+    refuse("flight.vehicle is missing; what flies must be named, such as generic_ardupilot");
+  }
+  if (derived::vehicle_of(mission).dialect != flight::Dialect::ardupilot) {
+    refuse("flight.vehicle " + mission.flight.vehicle +
+           " is no ArduPilot's; only ArduCopter is flown live, such as generic_ardupilot");
+  }
+  if (!derived::has_place(mission)) {
+    refuse(
+        "site.latitude_deg and site.longitude_deg are missing; the autopilot must be told places "
+        "on the Earth");
+  }
+}
+
+FlightEnd fly_survey(const file::Mission& mission, live::LiveSurvey& survey,
+                     flight::mavlink::Port& port, Sensor sensor, FlightOptions options,
+                     const std::stop_token& stop) {
+  const Eigen::Vector3d pad = survey.flight()->pad();
+  const flight::Motion motion(derived::vehicle_of(mission),
+                              derived::route_options_of(mission, pad).conditions);
+  const GuidedLimits limits = limits_of(mission);
+  options.vouched = mission.flight.clearance + ground_spare;
+  flight::mavlink::AutopilotLink link(port);
+  const flight::GeodeticPoint origin = derived::site_of(mission).origin;
+  if (MaybeTrouble trouble = prepare(link, FlightFrame(origin, pad), pad, limits, stop)) {
+    return {trouble, false};
+  }
+  GuidedFlight vehicle(link, FlightFrame(origin, pad), motion, limits, stop);
+  return LiveFlight(survey, vehicle, motion, std::move(sensor), std::move(options)).run();
+}
+
+}  // namespace skycap::missions::fly
