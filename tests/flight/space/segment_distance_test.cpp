@@ -30,7 +30,7 @@ double valley(const Segment& segment, const std::function<double(const Vector3d&
 /// Distance from a point to a triangle, again by thirds: over the rows that are parallel to one
 /// side.
 double to_triangle(const Vector3d& point, const Triangle& triangle) {
-  const auto& [a, b, c] = triangle;
+  const Vector3d &a = triangle[0], &b = triangle[1], &c = triangle[2];
   const auto row = [&](const Vector3d& on_ab) {
     const double share = (on_ab - a).norm() / (b - a).norm();
     return std::sqrt(nearest(Segment{on_ab, c + share * (b - c)}, point).squared_distance);

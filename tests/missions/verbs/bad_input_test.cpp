@@ -223,9 +223,9 @@ INSTANTIATE_TEST_SUITE_P(BadInput, Program, testing::ValuesIn(bad_inputs()),
                          [](const auto& instance) { return std::string(instance.param.name); });
 
 TEST(ProgramUsage, RefusesUnknownVerbs) {
-  const auto run = tests::run_skycap({"fly"});
+  const auto run = tests::run_skycap({"soar"});
   EXPECT_EQ(run.exit_code, 2);
-  EXPECT_THAT(run.err, StartsWith("skycap: error: there is no verb 'fly'; the verbs are plan, "));
+  EXPECT_THAT(run.err, StartsWith("skycap: error: there is no verb 'soar'; the verbs are plan, "));
 }
 
 TEST(ProgramUsage, RefusesToDoNothing) {
