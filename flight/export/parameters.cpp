@@ -221,9 +221,9 @@ const Parameter* find(const std::vector<Parameter>& parameters, const std::strin
 
 }  // namespace
 
-std::string parameters_name(Dialect dialect) {
+std::string parameters_name(Dialect dialect, const std::string& stem) {
   if (dialect == Dialect::dji) return "";
-  return dialect == Dialect::px4 ? "mission.params" : "mission.param";
+  return stem + (dialect == Dialect::px4 ? ".params" : ".param");
 }
 
 std::string write_parameters(const FlightPlan& plan) {

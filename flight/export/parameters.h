@@ -24,9 +24,9 @@ struct Parameter {
   double value = 0.0;
 };
 
-/// "mission.param" for ArduPilot, "mission.params" for PX4, as their ground stations look for them;
-/// empty for DJI's, whose missions carry their settings.
-std::string parameters_name(Dialect dialect);
+/// "mission.param" for ArduPilot, "mission.params" for PX4, as their ground stations look for them,
+/// or with another stem; empty for DJI's, whose missions carry their settings.
+std::string parameters_name(Dialect dialect, const std::string& stem = "mission");
 
 /// The settings for the plan's vehicle: return, speeds, fence, failsafes, and in comments what to
 /// upload in which order. Throws Error{bad_config} for DJI's vehicles, and if the plan has no

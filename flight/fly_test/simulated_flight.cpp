@@ -13,7 +13,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr double step = 0.04;  ///< [s]
+constexpr double step = simulation_step;
 
 /// One judge's two passes, over the pad and elsewhere.
 struct JudgedPass {
@@ -36,6 +36,12 @@ class Simulation {
       passes_.push_back({{judge.space, up_to}, {judge.pad_space, up_to}, {}});
       passes_.back().nearest.closest.distance = up_to;
     }
+  }
+
+  std::vector<Vector3d> track() {
+    track_ = {vehicle_.position()};
+    fly();
+    return std::move(*track_);
   }
 
   SimulatedFlight fly() {
@@ -79,6 +85,7 @@ class Simulation {
     air_ = weather_.next(step, before.z() - ground_, (vehicle_.velocity() - air_).norm());
     vehicle_.fly(wanted, receiver_.next(step), air_, step);
     time_ += step;
+    if (track_) track_->push_back(vehicle_.position());
     const Segment line{leg.from, leg.to};
     if (line.length() > 0.0) {  // it comes to rest on the line of the leg before
       const double off_line = std::sqrt(nearest(line, vehicle_.position()).squared_distance);
@@ -101,6 +108,7 @@ class Simulation {
   double ground_;
   std::deque<JudgedPass> passes_;
   SimulatedFlight result_;
+  std::optional<std::vector<Vector3d>> track_;  ///< if it is asked for
   double time_ = 0.0;
   Vector3d air_ = Vector3d::Zero();
   Vector3d place_ = Vector3d::Zero();  ///< where it has come to rest, called home
@@ -108,6 +116,10 @@ class Simulation {
 };
 
 }  // namespace
+
+std::vector<Vector3d> track_of(const FlownMission& mission, const FlightDraw& draw) {
+  return Simulation(mission, draw, {}, 0.0).track();
+}
 
 SimulatedFlight fly(const FlownMission& mission, const FlightDraw& draw,
                     std::span<const Judge> judges, double up_to) {

@@ -53,6 +53,12 @@ struct SimulatedFlight {
   std::vector<NearestPlace> nearest;  ///< by judge
 };
 
+/// Time between two places of a simulated flight [s].
+inline constexpr double simulation_step = 0.04;
+
+/// Where the vehicle is on a flight, step by step, from the pad until its motors stop.
+std::vector<Eigen::Vector3d> track_of(const FlownMission& mission, const FlightDraw& draw);
+
 /// Distances are looked for up to `up_to`.
 SimulatedFlight fly(const FlownMission& mission, const FlightDraw& draw,
                     std::span<const Judge> judges, double up_to);

@@ -3,6 +3,7 @@
 #include <utility>
 
 #include "geometry/error.h"
+#include "missions/derived/fleet.h"
 #include "missions/derived/mission_flight.h"
 #include "missions/derived/mission_priors.h"
 #include "missions/derived/mission_rules.h"
@@ -35,17 +36,29 @@ void read_lidar(file::MissionFile& given) {
 
 /// Reads the description of what flies. A path counts from the mission's folder, and is kept whole:
 /// the package holds the mission elsewhere.
-void read_vehicle(file::MissionFile& given) {
-  std::string& vehicle = given.mission.flight.vehicle;
+flight::Vehicle read_vehicle(const file::MissionFile& given, std::string& vehicle,
+                             const char* key) {
   if (vehicle.ends_with(".yaml")) {
     const std::filesystem::path folder = std::filesystem::path(given.name).parent_path();
     vehicle = std::filesystem::absolute(equipment::named_from(folder, vehicle)).string();
   }
   try {
-    given.mission.flight.described = equipment::find_vehicle(vehicle);
+    return equipment::find_vehicle(vehicle);
   } catch (const Error& error) {
-    given.refuse("flight.vehicle", error.what());
+    given.refuse(key, error.what());
   }
+}
+
+/// Of a fleet, too.
+void read_vehicles(file::MissionFile& given) {
+  file::FlightConfig& flight = given.mission.flight;
+  if (flight.is_flown()) {
+    flight.described = read_vehicle(given, flight.vehicle, "flight.vehicle");
+  }
+  for (std::string& vehicle : flight.fleet.vehicles) {
+    flight.fleet.described.push_back(read_vehicle(given, vehicle, "flight.vehicles"));
+  }
+  lead_fleet(given);
 }
 
 /// The building preset's lengths, which follow from other values, where no key says otherwise.
@@ -85,11 +98,11 @@ void derive_ground_clearance(file::Mission& mission) {
 
 file::Mission resolved(file::MissionFile given) {
   file::Mission& mission = given.mission;
+  read_vehicles(given);
   // What flies is there to be done soon: the paper's planners are for comparison.
   if (mission.flight.is_flown() && !given.gives("planner.name")) {
     mission.planner.name = file::PlannerName::skycap;
   }
-  if (mission.flight.is_flown()) read_vehicle(given);
   if (mission.sensor.lidar) read_lidar(given);
   check_scene(given);
   check_start(given);
@@ -98,6 +111,7 @@ file::Mission resolved(file::MissionFile given) {
   read_priors(given);
   derive_scene_box(mission);
   check_flight(given);
+  check_fleet(given);
   if (mission.planner.preset == file::PlannerPreset::building) derive_building_preset(given);
   derive_ground_clearance(mission);
   check_view_limits(given);

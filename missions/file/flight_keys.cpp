@@ -41,6 +41,60 @@ Key rally_key() {
   return key;
 }
 
+/// The field of the fleet's settings that `member` points to.
+auto fleet(auto member) {
+  return [member](Mission & m) -> auto& { return m.flight.fleet.*member; };
+}
+
+/// A key that a mission without a fleet has no value of; `fallback` says what a fleet has.
+Key of_fleet(std::string fallback, Key key) {
+  key.fallback = std::move(fallback);
+  key.get = [get = key.get](const Mission& mission) -> std::optional<KeyValue> {
+    return mission.flight.fleet.vehicles.empty() ? std::nullopt : get(mission);
+  };
+  return key;
+}
+
+/// The key `flight.vehicles`: a list of texts without a unit.
+Key vehicles_key() {
+  Key key = list_key("flight.vehicles", KeyType::texts, fleet(&FleetConfig::vehicles),
+                     "Several vehicles, each as for flight.vehicle, that share the mission's "
+                     "stations; the same name may stand there twice. The first of them flies the "
+                     "survey. One in the list is the same as flight.vehicle.");
+  key.unit.clear();
+  return key;
+}
+
+/// The key `flight.pads`: a place on the ground for each vehicle.
+Key pads_key() {
+  Key key = list_key("flight.pads", KeyType::vectors, fleet(&FleetConfig::pads),
+                     "Where each of flight.vehicles takes off and lands, in the same order.");
+  key.range = between(-1e6, 1e6);
+  key.fallback = "in a row, from flight.takeoff along the side of unknown_box";
+  return key;
+}
+
+/// Several vehicles at once.
+std::vector<Key> fleet_keys() {
+  return {
+      vehicles_key(),
+      pads_key(),
+      of_fleet("makespan",
+               choice_key("flight.fleet_goal", {"makespan", "flown"}, fleet(&FleetConfig::goal),
+                          "What the stations are shared out for: that the last of flight.vehicles "
+                          "lands soonest, or that all together fly least.")),
+      of_fleet(
+          "10 m",
+          number_key("flight.separation", "m", above(0, 10'000), fleet(&FleetConfig::separation),
+                     "Between any two of flight.vehicles in the air, by plan, at all times: "
+                     "their radii and errors are a part of it.")),
+      of_fleet("10 s", number_key("flight.timing_tolerance", "s", between(0, 3600),
+                                  fleet(&FleetConfig::timing_tolerance),
+                                  "By which each of flight.vehicles may be early or late, anywhere "
+                                  "in its flight, and still keep flight.separation.")),
+  };
+}
+
 /// What proves a leg.
 std::vector<Key> safety_keys() {
   return {
@@ -166,6 +220,6 @@ std::vector<Key> site_keys() {
   };
 }
 
-std::vector<Key> flight_keys() { return joined({safety_keys(), conduct_keys()}); }
+std::vector<Key> flight_keys() { return joined({safety_keys(), conduct_keys(), fleet_keys()}); }
 
 }  // namespace skycap::missions::file

@@ -13,6 +13,7 @@
 #include <Eigen/Core>
 #include <Eigen/Geometry>
 
+#include "flight/fleet/fleet_goal.h"
 #include "flight/motion/flight_style.h"
 #include "flight/motion/picture_bounds.h"
 #include "flight/motion/vehicle.h"
@@ -139,6 +140,16 @@ enum class MissionViews {
   anew,    ///< chosen by the surface that the survey measured
 };
 
+/// Several vehicles that share the mission; the first of them flies the survey.
+struct FleetConfig {
+  std::vector<std::string> vehicles;       ///< as FlightConfig::vehicle; none, or several
+  std::vector<flight::Vehicle> described;  ///< what they say, see derived::resolved()
+  std::vector<Eigen::Vector3d> pads;       ///< one for each, or none given
+  flight::FleetGoal goal = flight::FleetGoal::makespan;
+  double separation = 10.0;        ///< kept between vehicles, by plan
+  double timing_tolerance = 10.0;  ///< by which each may be early or late [s]
+};
+
 /// How views become a flight. Without a vehicle nothing is flown: the sensor is taken to reach
 /// every view, and no route is written.
 struct FlightConfig {
@@ -165,6 +176,7 @@ struct FlightConfig {
   MissionViews views = MissionViews::survey;
   VisitOrder order = VisitOrder::shortest;
   flight::FlightStyle style = flight::FlightStyle::stop;  ///< of files that can hold curves
+  FleetConfig fleet;
 
   bool is_flown() const { return vehicle != "none"; }
 };

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <map>
+#include <optional>
 #include <string_view>
 #include <utility>
 
@@ -13,6 +14,7 @@
 #include "geometry/error.h"
 #include "missions/derived/mission_flight.h"
 #include "missions/derived/pad_grounds.h"
+#include "missions/fleet/timetable_file.h"
 
 namespace skycap::missions::package {
 namespace {
@@ -98,14 +100,22 @@ std::string checked_parameters(const flight::FlightPlan& plan) {
   return text;
 }
 
+/// What the file's name begins with if it is a flight's.
+std::string stem_in(std::string_view name) {
+  const std::optional<std::size_t> vehicle = fleet::vehicle_of_file(name);
+  return vehicle ? fleet::stem_of(*vehicle) : "mission";
+}
+
 /// Stages a route format by format, sortie by sortie.
 class RouteFiles {
  public:
   RouteFiles(const file::Mission& mission, const flight::Route& route,
-             const flight::MeasuredSpace& measured, geometry::OutputFolder& folder)
+             const flight::MeasuredSpace& measured, geometry::OutputFolder& folder,
+             std::string stem)
       : mission_(mission),
         route_(route),
         folder_(folder),
+        stem_(std::move(stem)),
         rules_(derived::flight_rules(mission)),
         known_(rules_),
         space_({&measured, &known_}) {}
@@ -132,15 +142,14 @@ class RouteFiles {
   }
 
   void leave_out(Format format, const std::string& why, ErrorKind kind) {
-    const std::string note =
-        std::string("no mission") + flight::format_info(format).ending + ": " + why;
+    const std::string note = "no " + stem_ + flight::format_info(format).ending + ": " + why;
     if (has_one_format_) throw Error(kind, note);
     add_note(note);
   }
 
   void stage_sortie(Format format, std::size_t sortie) {
     const std::string number = route_.sorties.size() > 1 ? "-" + std::to_string(sortie + 1) : "";
-    const std::string name = "mission" + number + flight::format_info(format).ending;
+    const std::string name = stem_ + number + flight::format_info(format).ending;
     const std::filesystem::path file = folder_.stage(name);
     try {
       write_sortie(format, sortie, number, name, file);
@@ -161,7 +170,7 @@ class RouteFiles {
     std::vector<std::string> notes;
     const bool holds_curves = flight::holds_curves(format);
     if (!holds_curves && mission_.flight.style != flight::FlightStyle::stop) {
-      notes.push_back(std::string("mission") + info.ending +
+      notes.push_back(stem_ + info.ending +
                       " stops in every corner: the format cannot say which curve is flown");
     }
     const auto corners = holds_curves ? flight::Corners::flown_round : flight::Corners::stopped_in;
@@ -170,7 +179,7 @@ class RouteFiles {
                                          format, notes);
     certify_dialect(plan, space_, derived::highest_return(mission_, plan.pad.z(), plan.pad.z()));
     if (has_parameters(format) && plan.returns) {
-      parameters_[flight::parameters_name(plan.vehicle.dialect)] = checked_parameters(plan);
+      parameters_[flight::parameters_name(plan.vehicle.dialect, stem_)] = checked_parameters(plan);
     }
     const flight::ExportResult result = export_flight(plan, format, space_, file);
     files_.written.push_back({name, info.heights, result.min_clearance, sortie, flight_time(plan)});
@@ -181,6 +190,7 @@ class RouteFiles {
   const file::Mission& mission_;
   const flight::Route& route_;
   geometry::OutputFolder& folder_;
+  std::string stem_;  ///< of the names of all files
   flight::Obstacles rules_;
   flight::KnownSpace known_;
   flight::JointSpace space_;
@@ -198,15 +208,28 @@ file::Mission in_given_order(file::Mission mission) {
   return mission;
 }
 
-flight::Route plan_flight(const file::Mission& mission, const flight::MeasuredSpace& measured,
-                          const Eigen::Vector3d& pad, const std::vector<geometry::View>& views,
-                          const std::vector<Way>& ways, std::span<const flight::PadGround> grounds,
-                          std::stop_token stop) {
+std::vector<flight::Station> stations_of(const file::Mission& mission,
+                                         const std::vector<geometry::View>& views,
+                                         const std::vector<Way>& ways) {
   std::vector<flight::Station> stations;
   for (std::uint32_t i = 0; i < views.size(); ++i) {
     stations.push_back(
         {views[i], derived::hold_of(mission), 1, i, derived::hold_after_of(mission), ways.at(i)});
   }
+  return stations;
+}
+
+flight::Route plan_flight(const file::Mission& mission, const flight::MeasuredSpace& measured,
+                          const Eigen::Vector3d& pad, const std::vector<geometry::View>& views,
+                          const std::vector<Way>& ways, std::span<const flight::PadGround> grounds,
+                          std::stop_token stop) {
+  return plan_flight(mission, measured, pad, stations_of(mission, views, ways), grounds,
+                     std::move(stop));
+}
+
+flight::Route plan_flight(const file::Mission& mission, const flight::MeasuredSpace& measured,
+                          const Eigen::Vector3d& pad, std::vector<flight::Station> stations,
+                          std::span<const flight::PadGround> grounds, std::stop_token stop) {
   flight::Obstacles rules = derived::flight_rules(mission);
   const flight::KnownSpace known(rules);
   // The climb starts on the measured ground: what was measured there is for the pilot to judge.
@@ -220,20 +243,23 @@ flight::Route plan_flight(const file::Mission& mission, const flight::MeasuredSp
 
 FlightFiles stage_flight(const file::Mission& mission, const flight::Route& route,
                          const flight::MeasuredSpace& measured, std::span<const Format> formats,
-                         geometry::OutputFolder& folder) {
-  return RouteFiles(mission, route, measured, folder).stage(formats);
+                         geometry::OutputFolder& folder, const std::string& stem) {
+  return RouteFiles(mission, route, measured, folder, stem).stage(formats);
 }
 
 bool is_flight_file(std::string_view name) {
-  return name == flight::parameters_name(Dialect::ardupilot) ||
-         name == flight::parameters_name(Dialect::px4) ||
+  const auto is_parameters = [&](Dialect dialect) {
+    return name == flight::parameters_name(dialect, stem_in(name));
+  };
+  return name == fleet::timetable_name || is_parameters(Dialect::ardupilot) ||
+         is_parameters(Dialect::px4) ||
          std::ranges::any_of(flight::formats(), [&](const flight::FormatInfo& info) {
            return is_flight_file(name, info.format);
          });
 }
 
 bool is_flight_file(std::string_view name, Format format) {
-  constexpr std::string_view stem = "mission";
+  const std::string stem = stem_in(name);
   if (!name.starts_with(stem)) return false;
   name.remove_prefix(stem.size());
   if (name.starts_with('-')) {

@@ -2,6 +2,7 @@
 /// stations and maps.
 #pragma once
 
+#include <memory>
 #include <span>
 #include <stop_token>
 #include <string>
@@ -38,6 +39,17 @@ flight::Route plan_flight(const file::Mission& mission, const flight::MeasuredSp
                           std::span<const flight::PadGround> grounds = {},
                           std::stop_token stop = {});
 
+/// The stations of these views, with the rests that the mission asks for.
+std::vector<flight::Station> stations_of(const file::Mission& mission,
+                                         const std::vector<geometry::View>& views,
+                                         const std::vector<Way>& ways);
+
+/// The same through stations that are given with all that is done there.
+flight::Route plan_flight(const file::Mission& mission, const flight::MeasuredSpace& measured,
+                          const Eigen::Vector3d& pad, std::vector<flight::Station> stations,
+                          std::span<const flight::PadGround> grounds = {},
+                          std::stop_token stop = {});
+
 /// A route file, and how near its flight as read back comes to anything.
 struct FlightFile {
   std::string name;
@@ -57,14 +69,15 @@ struct FlightFiles {
 std::span<const flight::Format> package_formats();
 
 /// Stages the route in each of the formats; with several sorties a file for each, "mission-1.plan"
-/// and so on. Every file is read back and proved. A format that needs what the mission does not
-/// say, such as the geoid's height, or whose file fails its proof, is left out with a note, unless
-/// it is the only one: then that is thrown, as Error{bad_config} or what export_flight() throws. A
-/// file that cannot be written is thrown as Error{bad_file}. Beside files for MAVLink vehicles
-/// their parameters are staged, which say how high to return.
+/// and so on, or with another `stem`. Every file is read back and proved. A format that needs what
+/// the mission does not say, such as the geoid's height, or whose file fails its proof, is left out
+/// with a note, unless it is the only one: then that is thrown, as Error{bad_config} or what
+/// export_flight() throws. A file that cannot be written is thrown as Error{bad_file}. Beside files
+/// for MAVLink vehicles their parameters are staged, which say how high to return.
 FlightFiles stage_flight(const file::Mission& mission, const flight::Route& route,
                          const flight::MeasuredSpace& measured,
-                         std::span<const flight::Format> formats, geometry::OutputFolder& folder);
+                         std::span<const flight::Format> formats, geometry::OutputFolder& folder,
+                         const std::string& stem = "mission");
 
 /// What a mission covers when it is flown again in the simulator, from an empty cloud and with
 /// other noise: shares of samples.
@@ -79,16 +92,20 @@ struct AnewMission {
   std::optional<FlownAgain> again;  ///< in simulation
 };
 
+struct FleetMission;
+
 /// The flight of a finished survey and where it was written to.
 struct SurveyMission {
   flight::Route route;  ///< without stations if there is none
   FlightFiles files;
   std::optional<flight::PictureBounds> pictures{};  ///< how sharp they are
-  std::string failure;                ///< why there is no route; empty if there is one
-  std::optional<AnewMission> anew{};  ///< if views were to be chosen anew
+  std::string failure;                          ///< why there is no route; empty if there is one
+  std::optional<AnewMission> anew{};            ///< if views were to be chosen anew
+  std::shared_ptr<const FleetMission> fleet{};  ///< the same by several vehicles, if there are any
 };
 
-/// Whether stage_flight() may have given a file this name: in any format, or in that one.
+/// Whether a file of this name is a flight's: in any format, a parameter file or timetable, or in
+/// that format.
 bool is_flight_file(std::string_view name);
 bool is_flight_file(std::string_view name, flight::Format format);
 

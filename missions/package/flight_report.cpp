@@ -6,6 +6,7 @@
 
 #include "flight/route/route.h"
 #include "missions/package/anew_mission.h"
+#include "missions/package/fleet_report.h"
 #include "missions/package/ground_json.h"
 
 namespace skycap::missions::package {
@@ -71,6 +72,7 @@ std::string flight_text(const SurveyMission& flight) {
     files += fmt::format(" ({:.1f} min)", file.duration / 60.0);
   }
   if (!files.empty()) text += "  files    " + files + "\n";
+  if (flight.fleet) text += fleet_text(*flight.fleet);
   for (const std::string& note : flight.files.notes) text += "  note      " + note + "\n";
   return text;
 }

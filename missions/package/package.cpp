@@ -15,6 +15,7 @@
 #include "geometry/place/pose.h"
 #include "geometry/place/world.h"
 #include "geometry/surfaces/mesh.h"
+#include "missions/derived/fleet.h"
 #include "missions/derived/mission_flight.h"
 #include "missions/file/json_text.h"
 #include "missions/file/number_text.h"
@@ -22,6 +23,7 @@
 #include "missions/package/anew_mission.h"
 #include "missions/package/cloud_normals.h"
 #include "missions/package/coverage_map.h"
+#include "missions/package/fleet_mission.h"
 #include "missions/package/ground_json.h"
 #include "missions/package/holes.h"
 #include "missions/package/settings.h"
@@ -214,6 +216,10 @@ std::optional<SurveyMission> stage_package(const file::Mission& mission,
       plan_mission(mission, record, coverage, stop, *flight);
       flight->files =
           stage_flight(mission, flight->route, *record.flown->measured, package_formats(), folder);
+      if (derived::is_fleet(mission)) {
+        flight->fleet = staged_fleet(mission, *record.flown->measured, flight->route,
+                                     record.flown->grounds, package_formats(), folder, stop);
+      }
     } catch (const Error& error) {
       // The survey itself shall not be lost.
       flight->failure =

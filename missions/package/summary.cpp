@@ -9,6 +9,7 @@
 #include "missions/file/json_text.h"
 #include "missions/file/mission_keys.h"
 #include "missions/package/anew_mission.h"
+#include "missions/package/fleet_report.h"
 #include "missions/package/ground_json.h"
 #include "missions/package/holes.h"
 #include "missions/package/package.h"
@@ -259,6 +260,7 @@ std::string summary_json(const file::Mission& mission, const run::SurveyRecord& 
     summary["min_clearance_m"] = flight->route.min_clearance;
     summary["flight"] = flight_summary(*record.flown, *flight);
     if (flight->anew) summary["flight"]["anew"] = anew_json(*flight->anew);
+    if (flight->fleet) summary["flight"]["fleet"] = fleet_json(mission, *flight->fleet);
   } else if (flight) {
     summary["flight"] = {{"pad", json_of(record.flown->pad)}, {"failure", flight->failure}};
   }

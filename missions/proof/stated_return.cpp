@@ -6,6 +6,7 @@
 #include "flight/export/parameters.h"
 #include "geometry/error.h"
 #include "geometry/io/file.h"
+#include "missions/fleet/timetable_file.h"
 
 namespace skycap::missions::proof {
 
@@ -15,7 +16,9 @@ namespace {
 
 std::optional<StatedHeight> stated_by_parameters(const std::filesystem::path& route,
                                                  Dialect dialect) {
-  const std::string name = flight::parameters_name(dialect);
+  const std::optional<std::size_t> vehicle = fleet::vehicle_of_file(route.filename().string());
+  const std::string name =
+      flight::parameters_name(dialect, vehicle ? fleet::stem_of(*vehicle) : "mission");
   const std::filesystem::path file = route.parent_path() / name;
   if (name.empty() || !std::filesystem::exists(file)) return std::nullopt;
   constexpr std::size_t largest = 1 << 20;  // [byte]; a vehicle has some thousand parameters

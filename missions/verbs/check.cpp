@@ -11,12 +11,15 @@
 #include "flight/space/place_text.h"
 #include "geometry/error.h"
 #include "geometry/surfaces/mesh.h"
+#include "missions/derived/fleet.h"
 #include "missions/derived/mission_flight.h"
 #include "missions/derived/mission_priors.h"
 #include "missions/derived/pad_grounds.h"
 #include "missions/derived/resolved_mission.h"
 #include "missions/file/number_text.h"
 #include "missions/file/planner_titles.h"
+#include "missions/fleet/timetable_proof.h"
+#include "missions/package/fleet_mission.h"
 #include "missions/package/package.h"
 #include "missions/prior/prior_text.h"
 #include "missions/proof/check_returns.h"
@@ -78,10 +81,33 @@ bool check_pads(const std::string& file, const file::Mission& mission, const geo
   return are_fit;
 }
 
+/// Proves from a fleet's timetable and the files that it names that its vehicles keep apart.
+int check_timetable(const CheckOptions& options, const file::Mission& mission,
+                    const Console& console) {
+  if (!derived::is_fleet(mission)) {
+    throw Error(ErrorKind::bad_usage, "a timetable is for several vehicles; give flight.vehicles");
+  }
+  const std::string file = options.route->string();
+  const flight::SeparationRule rule = derived::separation_of(mission);
+  const fleet::TimetableProof proof =
+      fleet::prove_timetable(*options.route, mission, package::reported_distance);
+  for (const std::string& problem : proof.problems) console.out << file << ": " << problem << "\n";
+  console.out << file << ": "
+              << fmt::format(
+                     "{}, {} sorties of {} vehicles in {:.0f} s, apart by {:.2f} m at all times, "
+                     "each up to {} s early or late; {} m is asked for\n",
+                     proof.problems.empty() ? "fine" : "not safe", proof.sorties,
+                     mission.flight.fleet.vehicles.size(), proof.makespan, proof.distance,
+                     file::short_text(rule.tolerance), file::short_text(rule.distance))
+              << std::flush;
+  return proof.problems.empty() ? 0 : 1;
+}
+
 /// Proves what a route file's vehicle flies against the mission's scene as it truly is.
-int check_route_file(const CheckOptions& options, const file::Mission& mission,
+int check_route_file(const CheckOptions& options, const file::Mission& given,
                      const geometry::Mesh& model, const Console& console) {
   const std::string file = options.route->string();
+  const file::Mission mission = fleet::mission_of_file(*options.route, given);
   const flight::FlightFacts facts = facts_of(mission, *options.route);
   const flight::FlownRoute route = flight::interpret_file(*options.route, facts);
   const proof::TrueSpace space = proof::true_space(mission, model, facts.pad.z());
@@ -183,6 +209,9 @@ int check_survey(const CheckOptions& options, const file::Mission& mission, Prog
 
 int check(const CheckOptions& options, const Console& console) {
   const file::Mission mission = derived::read_mission(options.mission, options.overrides);
+  if (options.route && options.route->filename() == fleet::timetable_name) {
+    return check_timetable(options, mission, console);
+  }
   ProgressLine progress(console, false);
   progress.show(mission.name + ": making the scene ready");
   if (!options.route) return check_survey(options, mission, progress, console);

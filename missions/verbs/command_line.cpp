@@ -129,23 +129,6 @@ void add_check(CLI::App& app, const Console& console, Action& action) {
   });
 }
 
-void add_export(CLI::App& app, const Console& console, Action& action) {
-  CLI::App* verb =
-      app.add_subcommand("export", "Write the flight of a mission package in another format");
-  const auto options = std::make_shared<ExportOptions>();
-  const auto keys = std::make_shared<KeyOptions>();
-  verb->add_option("package", options->package, "Folder that plan wrote")->required();
-  verb->add_option("--format", options->formats,
-                   "plan, waypoints, kmz, kml, geojson, litchi, csv, ned-csv or tum; may be given "
-                   "again")
-      ->required()
-      ->type_size(1)
-      ->allow_extra_args(false);
-  verb->add_option("--out", options->out, "Folder for the files; default the package");
-  add_set_option(*verb, *keys);
-  run_with_keys(*verb, options, keys, export_package, console, action);
-}
-
 void add_fly_test(CLI::App& app, const Console& console, Action& action) {
   CLI::App* verb = app.add_subcommand(
       "fly-test", "Fly a mission package's routes many times in wind, with failsafes");

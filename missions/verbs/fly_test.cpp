@@ -12,9 +12,12 @@
 #include "flight/interpreter/interpret.h"
 #include "geometry/error.h"
 #include "geometry/io/output_folder.h"
+#include "missions/derived/fleet.h"
 #include "missions/derived/mission_flight.h"
 #include "missions/derived/resolved_mission.h"
 #include "missions/file/json_text.h"
+#include "missions/fleet/timetable_proof.h"
+#include "missions/package/fleet_mission.h"
 #include "missions/package/package.h"
 #include "missions/proof/stated_return.h"
 #include "missions/proof/true_space.h"
@@ -72,9 +75,11 @@ class TestedPackage {
 
   flight::FlownMission read(const std::filesystem::path& file, Dialect dialect,
                             const std::optional<double>& return_height) const {
-    const flight::Vehicle vehicle = derived::flown_by(derived::vehicle_of(mission()), dialect);
-    flight::FlightFacts facts = derived::flight_facts(mission());
-    facts.pad = pad();
+    const file::Mission own = fleet::mission_of_file(file, mission());
+    const Eigen::Vector3d pad = pad_of(own);
+    const flight::Vehicle vehicle = derived::flown_by(derived::vehicle_of(own), dialect);
+    flight::FlightFacts facts = derived::flight_facts(own);
+    facts.pad = pad;
     facts.is_pad_known = true;
     facts.views = survey_.views;
     facts.vehicle = vehicle;
@@ -82,8 +87,8 @@ class TestedPackage {
     if (!route.problems.empty()) {
       throw Error(ErrorKind::bad_file, file.string() + " is not flown: " + route.problems.front());
     }
-    const flight::Motion motion(vehicle, derived::route_options_of(mission(), pad()).conditions);
-    return {script_of(route, motion), motion, law_of(file, dialect, return_height)};
+    const flight::Motion motion(vehicle, derived::route_options_of(own, pad).conditions);
+    return {script_of(route, motion), motion, law_of(file, dialect, pad, return_height)};
   }
 
   /// Legs are certified at the clearance; vehicles may stray by the errors that are a part of it.
@@ -101,7 +106,13 @@ class TestedPackage {
   }
 
  private:
+  /// The pad of a fleet's vehicle, or the package's.
+  Eigen::Vector3d pad_of(const file::Mission& own) const {
+    return derived::is_fleet(mission()) ? own.flight.takeoff.value_or(pad()) : pad();
+  }
+
   std::optional<flight::ReturnLaw> law_of(const std::filesystem::path& file, Dialect dialect,
+                                          const Eigen::Vector3d& pad,
                                           const std::optional<double>& return_height) const {
     const auto stated = proof::stated_height(file, return_height, dialect);
     if (!stated) return std::nullopt;
@@ -109,8 +120,8 @@ class TestedPackage {
       throw Error(ErrorKind::bad_file, stated->by + ": " + stated->problems.front());
     }
     flight::ReturnLaw law{.dialects = {dialect},
-                          .level = pad().z() + stated->height,
-                          .landings = {pad()},
+                          .level = pad.z() + stated->height,
+                          .landings = {pad},
                           .landing_climb = derived::takeoff_climb_of(mission())};
     const std::vector<Eigen::Vector3d>& rally = mission().flight.rally;
     if (dialect != Dialect::dji)
@@ -148,7 +159,8 @@ double battery_of(const flight::Motion& motion) {
 TestedFile test_file(const FlyTestVerbOptions& options, const TestedPackage& package,
                      const std::filesystem::path& file, const Console& console) {
   const std::string name = file.filename().string();
-  const Dialect dialect = *proof::dialect_of(file, derived::vehicle_of(package.mission()));
+  const file::Mission own = fleet::mission_of_file(file, package.mission());
+  const Dialect dialect = *proof::dialect_of(file, derived::vehicle_of(own));
   const flight::FlownMission mission = package.read(file, dialect, options.return_height);
   const file::FlightConfig& config = package.mission().flight;
   flight::FlyTestOptions test;
@@ -170,6 +182,26 @@ TestedFile test_file(const FlyTestVerbOptions& options, const TestedPackage& pac
       {}};
   tested.obstacles = nearest_obstacles(tested);
   return tested;
+}
+
+/// All vehicles of a fleet at once; nothing if the package holds none.
+std::optional<flight::FleetFlightTest> test_fleet(const FlyTestVerbOptions& options,
+                                                  const file::Mission& mission,
+                                                  const Console& console) {
+  const std::filesystem::path table = options.package / fleet::timetable_name;
+  if (!derived::is_fleet(mission) || !std::filesystem::exists(table)) return std::nullopt;
+  const file::FlightConfig& config = mission.flight;
+  flight::FlyTestOptions test;
+  test.flights = options.flights;
+  test.wind_speed = options.wind_speed.value_or(std::max(config.wind_speed, test.wind_speed));
+  test.position_error = options.position_error.value_or(config.position_error);
+  test.up_to = package::reported_distance;
+  test.seed = mission.seed;
+  test.threads = mission.threads;
+  test.stop = console.stop;
+  const double strays = 2.0 * (config.position_error + config.tracking_error);
+  return fly_fleet(fleet::fleet_flights(table, mission), derived::separation_of(mission), strays,
+                   test);
 }
 
 /// Results that are not whole go beside whole ones instead of over them.
@@ -198,6 +230,11 @@ int fly_test(const FlyTestVerbOptions& options, const Console& console) {
     json["files"].push_back(json_of(tested));
     if (!options.is_quiet) console.out << text_of(tested) << std::flush;
     if (console.stop.stop_requested()) break;
+  }
+  if (const auto test = test_fleet(options, package.mission(), console)) {
+    failed += test->nearer;
+    json["fleet"] = json_of(*test);
+    if (!options.is_quiet) console.out << text_of(*test) << std::flush;
   }
   const bool is_complete = !console.stop.stop_requested();
   json["complete"] = is_complete;

@@ -189,4 +189,19 @@ Json json_of(const TestedFile& file) {
   return json;
 }
 
+std::string text_of(const flight::FleetFlightTest& test) {
+  return fmt::format(
+      "the fleet: {} flights of all vehicles, any two of them at least {:.2f} m apart (median of "
+      "flights {:.2f} m), {} nearer than {:.2f} m\n",
+      test.flown, test.least, test.least_median, test.nearer, test.limit);
+}
+
+Json json_of(const flight::FleetFlightTest& test) {
+  return {{"flights", test.flown},
+          {"nearer", test.nearer},
+          {"limit_m", test.limit},
+          {"least_m", test.least},
+          {"least_median_m", test.least_median}};
+}
+
 }  // namespace skycap::missions::verbs

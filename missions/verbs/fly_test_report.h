@@ -7,6 +7,7 @@
 
 #include <nlohmann/json_fwd.hpp>
 
+#include "flight/fleet/fleet_flights.h"
 #include "flight/fly_test/fly_test.h"
 
 namespace skycap::missions::verbs {
@@ -29,5 +30,9 @@ std::size_t failures(const TestedFile& file);
 std::string text_of(const TestedFile& file);
 
 nlohmann::ordered_json json_of(const TestedFile& file);
+
+/// The same of a fleet that flew together.
+std::string text_of(const flight::FleetFlightTest& test);
+nlohmann::ordered_json json_of(const flight::FleetFlightTest& test);
 
 }  // namespace skycap::missions::verbs

@@ -31,11 +31,12 @@ void add_set_option(CLI::App& verb, KeyOptions& keys);
 CLI::Validator number_between(double least, double most);
 
 /// Verbs whose options stand in their own sources: a first mission for a site, live surveys (next,
-/// serve, finish, fly), campaigns, models.
+/// serve, finish, fly), campaigns, models, exports.
 void add_site(CLI::App& app, const Console& console, Action& action);
 void add_live(CLI::App& app, const Console& console, Action& action);
 void add_campaign(CLI::App& app, const Console& console, Action& action);
 void add_model(CLI::App& app, const Console& console, Action& action);
+void add_export(CLI::App& app, const Console& console, Action& action);
 
 /// Makes the verb an action that runs it with the options that are given.
 template <class Options>

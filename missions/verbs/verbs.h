@@ -107,6 +107,8 @@ struct ExportOptions {
   std::filesystem::path package;             ///< folder that plan() wrote
   std::vector<std::string> formats;          ///< flight::formats() by name
   std::optional<std::filesystem::path> out;  ///< folder; default: the package
+  std::optional<std::size_t> lost;  ///< vehicle of the fleet whose stations the rest share, from 1
+  std::optional<double> after;      ///< when it was lost, by the timetable [s]
   std::vector<file::KeyOverride> overrides;
 };
 

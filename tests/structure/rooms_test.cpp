@@ -78,12 +78,13 @@ Rooms house() {
   add_mission_room("derived", "file", "equipment", "prior");
   add_mission_room("scene", "file", "derived", "judge", "plugins", "prior");
   add_mission_room("site", "file", "derived", "prior");
-  add_mission_room("proof", "file", "derived");
+  add_mission_room("fleet", "file", "derived");
+  add_mission_room("proof", "file", "derived", "fleet");
   add_mission_room("recording", "file", "derived", "plugins");
   add_mission_room("run", "prior", "file", "derived", "judge", "scene");
   add_mission_room("anew", "file", "derived");
   add_mission_room("package", "prior", "file", "equipment", "derived", "judge", "scene", "run",
-                   "anew");
+                   "anew", "fleet");
   add_mission_room("report", "prior", "file", "derived", "scene", "run", "package");
   add_mission_room("live", "file", "derived", "scene", "run");
   add_mission_room("dataset", "file", "plugins", "live");
@@ -95,7 +96,7 @@ Rooms house() {
                    "package");
   add_mission_room("verbs", "prior", "file", "equipment", "derived", "judge", "plugins", "scene",
                    "recording", "run", "package", "report", "live", "dataset", "fly", "benchmark",
-                   "campaign", "site", "proof");
+                   "campaign", "site", "proof", "fleet");
   // As a user of the library: public headers.
   add("python",
       {"sim/models", "sim/sensors", "survey", "flight/space", "flight/route", "missions/library"});

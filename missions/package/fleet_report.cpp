@@ -1,0 +1,94 @@
+#include "missions/package/fleet_report.h"
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "missions/derived/fleet.h"
+#include "missions/file/json_text.h"
+#include "missions/file/mission_keys.h"
+
+namespace skycap::missions::package {
+namespace {
+
+using file::json_of;
+using Json = nlohmann::ordered_json;
+
+/// How far a figure is above what no fleet undercuts [%].
+double gap(double figure, double bound) {
+  return bound > 0.0 ? 100.0 * (figure / bound - 1.0) : 0.0;
+}
+
+Json json_of(const fleet::TimetableRow& row) {
+  return {{"vehicle", row.vehicle + 1},
+          {"sortie", row.sortie + 1},
+          {"file", row.file},
+          {"start_s", row.start},
+          {"landing_s", row.landing}};
+}
+
+Json member_json(const FleetMember& member) {
+  Json order = Json::array(), files = Json::array();
+  for (const flight::Station& station : member.route.stations) order.push_back(station.view_index);
+  for (const FlightFile& file : member.files.written) files.push_back(file.name);
+  for (const std::string& name : member.files.parameters) files.push_back(name);
+  const std::optional<flight::Returns>& returns = member.route.returns;
+  return {{"vehicle", member.mission.flight.vehicle},
+          {"pad", json_of(member.pad)},
+          {"order", order},
+          {"sorties", member.route.sorties.size()},
+          {"duration_s", member.route.duration},
+          {"length_m", member.route.length},
+          {"energy_wh", member.route.energy / 3600.0},
+          {"min_clearance_m", member.route.min_clearance},
+          {"return_height_m", returns ? Json(returns->height) : Json()},
+          {"files", files}};
+}
+
+}  // namespace
+
+std::string fleet_text(const FleetMission& fleet) {
+  std::string text = fmt::format(
+      "  fleet     {} vehicles, {:.1f} min until the last has landed, {:.1f} min in the air; "
+      "within "
+      "{:.1f} % and {:.1f} % of what no fleet undercuts\n",
+      fleet.members.size(), fleet.makespan / 60.0, fleet.flown / 60.0,
+      gap(fleet.makespan, fleet.bound.makespan), gap(fleet.flown, fleet.bound.flown));
+  text += fmt::format(
+      "  apart     proven at {:.2f} m at all times; the last landing {:.0f} s later "
+      "for it\n",
+      fleet.distance, fleet.delay);
+  for (const fleet::TimetableRow& row : fleet.timetable) {
+    text +=
+        fmt::format("  {:9} starts at {:.0f} s, lands at {:.0f} s: {}\n",
+                    fmt::format("vehicle {}", row.vehicle + 1), row.start, row.landing, row.file);
+  }
+  for (const flight::Unreached& missed : fleet.unreached) {
+    text += fmt::format("  left out  view {}, by the fleet: {}\n", missed.station.view_index,
+                        missed.reason);
+  }
+  return text;
+}
+
+Json fleet_json(const file::Mission& mission, const FleetMission& fleet) {
+  Json vehicles = Json::array(), timetable = Json::array(), unreached = Json::array();
+  for (const FleetMember& member : fleet.members) vehicles.push_back(member_json(member));
+  for (const fleet::TimetableRow& row : fleet.timetable) timetable.push_back(json_of(row));
+  for (const flight::Unreached& missed : fleet.unreached) {
+    unreached.push_back({{"view", missed.station.view_index}, {"reason", missed.reason}});
+  }
+  const flight::SeparationRule rule = derived::separation_of(mission);
+  return {
+      {"goal", file::to_text(*file::find_key("flight.fleet_goal")->get(mission))},
+      {"makespan_s", fleet.makespan},
+      {"makespan_bound_s", fleet.bound.makespan},
+      {"flown_s", fleet.flown},
+      {"flown_bound_s", fleet.bound.flown},
+      {"delay_s", fleet.delay},
+      {"separation",
+       {{"asked_m", rule.distance}, {"tolerance_s", rule.tolerance}, {"proven_m", fleet.distance}}},
+      {"vehicles", vehicles},
+      {"timetable", timetable},
+      {"unreached", unreached}};
+}
+
+}  // namespace skycap::missions::package
