@@ -178,6 +178,7 @@ class Viewer {
       this.controls.update();
       this.draw_soon();
       if (time < 1) requestAnimationFrame(step);
+      else this.movement = null;
     };
     step();
   }

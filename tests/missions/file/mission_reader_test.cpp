@@ -78,6 +78,8 @@ TEST(MissionReader, SetsEachKeyToWhatItGivesBack) {
         value = std::vector<prior::Source>{{.file = "/tile.gml", .role = prior::Role::terrain}};
         break;
       case file::KeyType::texts:
+        value = std::vector<std::string>{"m350_rtk", "mavic_3e"};
+        break;
       case file::KeyType::integers:
       case file::KeyType::pairs:
         FAIL() << key.path << " is of a list's maps";
