@@ -88,11 +88,22 @@ class Survey {
                pose, error, payload);
   }
 
-  /// A depth image, row after row, in steps of `unit` metres; 0 and 65535 are no return.
+  /// Points in the sensor's optical frame: x y z after x y z, in any order. The server gives each
+  /// the pixel of the mission's camera that it is seen in.
+  std::string add_cloud(const std::vector<float>& xyz, const Pose& pose,
+                        const PoseError& error = {}) {
+    return add("\"format\":\"cloud\",\"points\":" + std::to_string(xyz.size() / 3), pose, error,
+               {reinterpret_cast<const char*>(xyz.data()), xyz.size() * sizeof(float)});
+  }
+
+  /// A depth image, row after row, in steps of `unit` metres; 0 and 65535 are no return. `lens`:
+  /// fx fy cx cy, maybe followed by k1 k2 p1 p2 k3; else the mission's.
   std::string add_depth(const std::vector<std::uint16_t>& depth, int width, int height, double unit,
-                        const Pose& pose, const PoseError& error = {}) {
+                        const Pose& pose, const PoseError& error = {},
+                        const std::vector<double>& lens = {}) {
     return add("\"format\":\"depth\",\"width\":" + std::to_string(width) +
-                   ",\"height\":" + std::to_string(height) + ",\"unit\":" + number(unit),
+                   ",\"height\":" + std::to_string(height) + ",\"unit\":" + number(unit) +
+                   (lens.empty() ? "" : row("lens", lens)),
                pose, error,
                {reinterpret_cast<const char*>(depth.data()), depth.size() * sizeof depth[0]});
   }
@@ -121,8 +132,8 @@ class Survey {
   }
 
   /// A field of a header: a row of numbers.
-  template <std::size_t size>
-  static std::string row(const char* key, const std::array<double, size>& values) {
+  template <typename Numbers>
+  static std::string row(const char* key, const Numbers& values) {
     std::string text;
     for (const double value : values) text += (text.empty() ? "" : ",") + number(value);
     return std::string(",\"") + key + "\":[" + text + "]";

@@ -56,6 +56,12 @@ class Survey:
         return self._add(header, pose, bytes(xyz) + bytes(pixels or b""), pose_sigma,
                          pose_covariance)
 
+    def add_cloud(self, xyz, pose, pose_sigma=None, pose_covariance=None):
+        """Points in the sensor's optical frame: bytes of float32 x y z, in any order. The server
+        gives each the pixel of the mission's camera that it is seen in."""
+        header = {"format": "cloud", "points": len(xyz) // 12}
+        return self._add(header, pose, bytes(xyz), pose_sigma, pose_covariance)
+
     def add_depth(self, depth, width, height, unit, pose, lens=None, pose_sigma=None,
                   pose_covariance=None):
         """A depth image: bytes of uint16, row after row, in steps of `unit` metres; 0 and 65535 are

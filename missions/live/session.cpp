@@ -1,5 +1,6 @@
 #include "missions/live/session.h"
 
+#include <array>
 #include <cstdint>
 #include <cstring>
 #include <limits>
@@ -62,16 +63,19 @@ std::optional<PoseCovariance> covariance_of(const Json& header) {
   return parse_pose_covariance(row_at(header, covariance), covariance);
 }
 
+void require_payload(const Message& message, std::size_t size, const std::string& what_takes) {
+  if (message.payload.size() == size) return;
+  refuse_message("scan: the payload has " + std::to_string(message.payload.size()) + " bytes; " +
+                 what_takes + std::to_string(size));
+}
+
 /// Points in the world frame, as floats, and then the pixels if there are some.
 geometry::Scan cloud_scan(const Message& message) {
   const auto count = count_at(message.header, "points");
   const bool has_pixels = message.header.value("has_pixels", false);
   constexpr std::size_t point = 3 * sizeof(float), pixel = sizeof(std::uint32_t);
   const std::size_t size = std::size_t{count} * (point + (has_pixels ? pixel : 0));
-  if (message.payload.size() != size) {
-    refuse_message("scan: the payload has " + std::to_string(message.payload.size()) + " bytes; " +
-                   std::to_string(count) + " points take " + std::to_string(size));
-  }
+  require_payload(message, size, std::to_string(count) + " points take ");
   geometry::Scan scan;
   scan.world_from_sensor = pose_of(message.header);
   scan.points.resize(count);
@@ -80,6 +84,19 @@ geometry::Scan cloud_scan(const Message& message) {
     scan.pixels = values_at<std::uint32_t>(message.payload, count * point, count);
   }
   return scan;
+}
+
+/// Points in the sensor's optical frame, as floats; as a file of them.
+ScanFound sensor_cloud_scan(const Message& message, const file::Mission& mission) {
+  const auto count = count_at(message.header, "points");
+  constexpr std::size_t point = 3 * sizeof(float);
+  require_payload(message, std::size_t{count} * point, std::to_string(count) + " points take ");
+  std::vector<Eigen::Vector3d> points;
+  points.reserve(count);
+  for (const auto& place : values_at<std::array<float, 3>>(message.payload, 0, count)) {
+    points.emplace_back(place[0], place[1], place[2]);
+  }
+  return scan_of(points, pose_of(message.header), mission);
 }
 
 ScanFound depth_scan(const Message& message, const file::Mission& mission) {
@@ -91,10 +108,7 @@ ScanFound depth_scan(const Message& message, const file::Mission& mission) {
   }
   sim::DepthImage image{static_cast<int>(width), static_cast<int>(height), {}};
   const std::size_t count = std::size_t{width} * height;
-  if (message.payload.size() != count * sizeof(std::uint16_t)) {
-    refuse_message("scan: the payload has " + std::to_string(message.payload.size()) +
-                   " bytes; the image takes " + std::to_string(2 * count));
-  }
+  require_payload(message, count * sizeof(std::uint16_t), "the image takes ");
   image.values = values_at<std::uint16_t>(message.payload, 0, count);
   std::optional<Lens> lens;
   if (header.contains("lens")) lens = parse_lens(row_at(header, "lens"), "lens");
@@ -148,8 +162,9 @@ Message Session::answer_unguarded(const Message& message) {
 Message Session::take_scan(const Message& message) {
   const auto number = std::size_t{count_at(message.header, "number")};
   const auto format = message.header.at("format").get<std::string>();
-  if (format != "points" && format != "depth") {
-    refuse_message("scan: the format '" + format + "' is unknown; it must be points or depth");
+  if (format != "points" && format != "cloud" && format != "depth") {
+    refuse_message("scan: the format '" + format +
+                   "' is unknown; it must be points, cloud or depth");
   }
   const std::size_t expected = survey_.views().size();
   if (number > expected) {
@@ -162,7 +177,8 @@ Message Session::take_scan(const Message& message) {
     require_usable(found.scan, mission_);
     found.left_out = filter(found.scan, mission_);
   } else {
-    found = depth_scan(message, mission_);
+    found =
+        format == "cloud" ? sensor_cloud_scan(message, mission_) : depth_scan(message, mission_);
     require_usable(found.scan, mission_);
   }
   const geometry::Scan& scan = found.scan;

@@ -224,7 +224,7 @@ TEST_F(SessionAnswers, WhatIsWrongIsSaidAndChangesNothing) {
   header["pose"] = "here";
   EXPECT_THAT(ask(header, payload_of(scan)), HasSubstr("error"));
   header["format"] = "mp3";
-  EXPECT_THAT(ask(header, payload_of(scan)), HasSubstr("must be points or depth"));
+  EXPECT_THAT(ask(header, payload_of(scan)), HasSubstr("must be points, cloud or depth"));
   EXPECT_THAT(ask({{"type", "dance"}}), HasSubstr("the type 'dance' is unknown"));
   EXPECT_THAT(ask({{"number", 1}}), HasSubstr("error"));
   EXPECT_THAT(ask({{"type", "finish"}}), HasSubstr("there is no scan yet"));

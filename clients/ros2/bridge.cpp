@@ -1,0 +1,254 @@
+#include "clients/ros2/bridge.h"
+
+#include <cmath>
+#include <utility>
+
+#include "geometry/error.h"
+
+namespace skycap::ros2 {
+namespace {
+
+using Eigen::Isometry3d;
+using Eigen::Vector3d;
+using Json = nlohmann::json;
+
+Vector3d vector_of(const Json& json) {
+  return {json.at(0).get<double>(), json.at(1).get<double>(), json.at(2).get<double>()};
+}
+
+Isometry3d view_of(const Json& view) {
+  const auto q = view.at("quaternion_xyzw").get<std::vector<double>>();
+  Isometry3d pose = Isometry3d::Identity();
+  pose.linear() = Eigen::Quaterniond(q.at(3), q.at(0), q.at(1), q.at(2)).toRotationMatrix();
+  pose.translation() = vector_of(view.at("position"));
+  return pose;
+}
+
+skycap_live::Pose rows_of(const Isometry3d& pose) {
+  skycap_live::Pose rows{};
+  for (int i = 0; i < 12; ++i) rows[static_cast<std::size_t>(i)] = pose(i / 4, i % 4);
+  return rows;
+}
+
+skycap_live::PoseError error_of(const std::optional<Covariance>& covariance) {
+  if (!covariance) return {};
+  skycap_live::PoseCovariance rows{};
+  for (int i = 0; i < 36; ++i) rows[static_cast<std::size_t>(i)] = (*covariance)(i / 6, i % 6);
+  return rows;
+}
+
+/// As it stands between the quotes of a JSON string.
+std::string escaped(const std::string& text) {
+  const std::string quoted = Json(text).dump();
+  return quoted.substr(1, quoted.size() - 2);
+}
+
+/// The first name that is heard is kept.
+void require_same(std::string& kept, const std::string& name, const std::string& what) {
+  if (kept.empty()) kept = name;
+  if (kept == name) return;
+  throw Error(ErrorKind::bad_geometry,
+              what + " is '" + name + "'; it was '" + kept + "' until now, and must stay");
+}
+
+}  // namespace
+
+Bridge::Bridge(BridgeConfig config, SurveyPort survey, Outlets outlets)
+    : config_(std::move(config)),
+      survey_(std::move(survey)),
+      outlets_(std::move(outlets)),
+      complaints_(outlets_.warning),
+      history_(config_.history) {}
+
+void Bridge::begin() { learn(survey_.next()); }
+
+void Bridge::guarded(const std::string& kind, double now, const std::function<void()>& receive) {
+  try {
+    receive();
+  } catch (const Error& failure) {
+    complain(kind, kind + ": " + failure.what(), now);
+  } catch (const skycap_live::Refused& refusal) {
+    constexpr double pause = 1.0;
+    complain(kind, kind + " refused by the survey: " + text_of(refusal.what()), now);
+    not_before_ = now + pause;
+  }
+}
+
+void Bridge::complain(const std::string& kind, const std::string& line, double now) {
+  if (complaints_.add(kind, line, now)) publish_status();
+}
+
+void Bridge::receive(const Odometry& odometry, double now) {
+  guarded("odometry", now, [&] { add_odometry(odometry); });
+}
+
+void Bridge::add_odometry(const Odometry& odometry) {
+  const Stamp stamp = stamp_of(odometry.header);
+  const BodyPose pose = body_pose(odometry);
+  require_same(world_frame_, text_of(odometry.header.frame_id), "its frame");
+  require_same(body_frame_, text_of(odometry.child_frame_id), "its child frame");
+  const bool is_first = history_.is_empty();
+  if (history_.add(stamp, pose) == OdometryHistory::Added::contradicts) {
+    throw Error(ErrorKind::bad_geometry, "there was another pose with the same stamp");
+  }
+  newest_odometry_ = stamp;
+  if (!is_first) return;
+  publish_goal();  // now in a frame
+  say("waiting for a scan");
+}
+
+void Bridge::receive(const PointCloud2& cloud, double now) {
+  guarded("cloud", now, [&] {
+    add_scan(cloud.header, now, [&] { return scan_of(cloud, config_.mount.axes()); });
+  });
+}
+
+void Bridge::receive(const CameraInfo& info, double now) {
+  guarded("CameraInfo", now, [&] {
+    lens_.reset();
+    lens_ = lens_of(info, config_.is_rectified);
+  });
+}
+
+void Bridge::receive(const Image& image, double now) {
+  guarded("image", now, [&] {
+    add_scan(image.header, now, [&] {
+      if (!lens_) throw Error(ErrorKind::bad_geometry, "there is no CameraInfo to it yet");
+      return scan_of(image, *lens_);
+    });
+  });
+}
+
+bool Bridge::wants_scan(double now) const {
+  if (waiting_ || is_finished_ || now < not_before_) return false;
+  if (is_told_to_take_) return true;
+  const auto state = answer_.at("state").get<std::string>();
+  return config_.taking != Taking::command && !holds_ && (state == "view" || state == "first_scan");
+}
+
+void Bridge::add_scan(const Header& header, double now, const std::function<SensorScan()>& scan) {
+  const Stamp stamp = stamp_of(header);
+  require_same(sensor_frame_, text_of(header.frame_id), "its frame");
+  if (!wants_scan(now)) return;
+  if (stamp <= last_taken_) {
+    throw Error(ErrorKind::bad_geometry,
+                "its stamp is not after that of the last scan that was taken in: it came twice or "
+                "late, or the robot's clock was set back");
+  }
+  waiting_ = Waiting{stamp, now, scan()};
+}
+
+bool Bridge::has_arrived(const BodyPose& pose) const {
+  const Isometry3d optical = config_.mount.world_from_optical(pose);
+  const Vector3d axis = optical.linear().col(2), wanted = view_->linear().col(2);
+  return (optical.translation() - view_->translation()).norm() <= config_.position_tolerance &&
+         std::atan2(axis.cross(wanted).norm(), axis.dot(wanted)) <= config_.direction_tolerance;
+}
+
+void Bridge::proceed(double now) {
+  if (waiting_) {
+    guarded("scan", now, [&] {
+      const PoseMatch match = history_.at(waiting_->stamp);
+      const bool waits_more = now - waiting_->since <= config_.patience;
+      if (match.state == PoseMatch::State::open && waits_more) return;
+      const Waiting waiting = *std::exchange(waiting_, std::nullopt);
+      if (match.state != PoseMatch::State::known) {
+        throw Error(ErrorKind::bad_geometry, "its pose is not known: " + match.why);
+      }
+      take(waiting, match.pose, now);
+    });
+  }
+  constexpr double longest_silence = 2.0;
+  if (is_finished_ || now - asked_at_ < longest_silence) return;
+  asked_at_ = now;
+  survey_.next();
+}
+
+void Bridge::take(const Waiting& waiting, const BodyPose& pose, double now) {
+  const auto settling = static_cast<Stamp>(config_.settling * 1e9);
+  const bool must_arrive = config_.taking == Taking::arrived && !is_told_to_take_ && view_;
+  if (must_arrive &&
+      !(has_arrived(pose) &&
+        history_.all_between(waiting.stamp - settling, waiting.stamp,
+                             [this](const BodyPose& p) { return has_arrived(p); }))) {
+    return;
+  }
+  say("planning");
+  doing_ = "waiting for a scan";
+  is_told_to_take_ = false;
+  const auto covariance = config_.uses_covariance ? config_.mount.covariance_at_sensor(pose)
+                                                  : std::optional<Covariance>();
+  const std::string answer = survey_.add(
+      waiting.scan, rows_of(config_.mount.world_from_optical(pose)), error_of(covariance));
+  last_taken_ = waiting.stamp;
+  ++taken_;
+  asked_at_ = now;
+  learn(answer);
+  if (!holds_) return;
+  complain("pose",
+           "scan: set aside, its pose does not fit what is known; hold position, and send the "
+           "command take when the pose is right",
+           now);
+}
+
+void Bridge::receive(const String& command, double now) {
+  guarded("command", now, [&] { obey(text_of(command.data)); });
+}
+
+void Bridge::obey(const std::string& command) {
+  const std::string refuse = "refuse ";
+  if (command == "take") {
+    is_told_to_take_ = true;
+  } else if (command == "finish") {
+    survey_.finish();
+    is_finished_ = true;
+    say("finished");
+  } else if (command.starts_with(refuse)) {
+    learn(survey_.refuse(answer_.at("id").get<std::size_t>(),
+                         escaped(command.substr(refuse.size()))));
+  } else {
+    throw Error(ErrorKind::bad_usage,
+                "'" + command + "' is none; there are take, refuse REASON and finish");
+  }
+}
+
+void Bridge::learn(const std::string& answer) {
+  answer_ = Json::parse(answer);
+  view_.reset();
+  if (const Json& view = answer_.at("view"); !view.is_null()) view_ = view_of(view);
+  holds_ = answer_.contains("warning");
+  if (!history_.is_empty()) publish_goal();
+  publish_status();
+}
+
+void Bridge::publish_goal() {
+  Goal goal{.frame = world_frame_, .stamp = newest_odometry_, .view = {}, .path = {}};
+  if (!holds_) {
+    goal.view = view_;
+    for (const Json& place : answer_.value("path", Json::array())) {
+      goal.path.push_back(vector_of(place));
+    }
+  }
+  outlets_.goal(goal);
+}
+
+void Bridge::say(const std::string& doing) {
+  doing_ = doing;
+  publish_status();
+}
+
+void Bridge::publish_status() {
+  Json status{{"doing", holds_ ? "holding: the pose is wrong" : doing_},
+              {"hold", holds_},
+              {"taken", taken_},
+              {"warnings", complaints_.count()},
+              {"last_warning", complaints_.last()}};
+  for (const char* key : {"id", "state", "scans", "points", "set_aside", "view", "clearance_m",
+                          "believed_coverage", "pose"}) {
+    if (answer_.contains(key)) status[key] = answer_[key];
+  }
+  const std::string text = status.dump(-1, ' ', true, Json::error_handler_t::replace);
+  if (std::exchange(status_, text) != text) outlets_.status(text);
+}
+
+}  // namespace skycap::ros2

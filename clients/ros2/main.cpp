@@ -1,0 +1,112 @@
+// skycap_ros2: a live survey for robots of ROS 2, over DDS and without ROS. docs/live.md.
+
+#include <atomic>
+#include <csignal>
+#include <cstdlib>
+#include <iostream>
+#include <map>
+#include <string>
+
+#include <CLI/CLI.hpp>
+
+#include "clients/ros2/node.h"
+#include "geometry/angle.h"
+#include "geometry/error.h"
+
+namespace {
+
+using skycap::ros2::Axes;
+using skycap::ros2::NodeConfig;
+using skycap::ros2::Taking;
+
+std::atomic<bool> is_stopped = false;
+
+/// Ends after the message at hand; a second signal ends at once.
+void end_on_signals() {
+  struct sigaction action {};
+  action.sa_handler = [](int) { is_stopped = true; };
+  action.sa_flags = static_cast<int>(SA_RESTART | SA_RESETHAND);
+  sigaction(SIGINT, &action, nullptr);
+  sigaction(SIGTERM, &action, nullptr);
+}
+
+struct Options {
+  NodeConfig node;
+  std::string sensor = "0 0 0 0 0 0 1";
+  Axes axes = Axes::optical;
+  double direction_tolerance_deg = 5.0;
+  bool ignores_covariance = false;
+};
+
+void add_topics(CLI::App& app, Options& options) {
+  NodeConfig& node = options.node;
+  app.add_option("ADDRESS", node.address, "What skycap serve prints: unix:PATH or tcp:...")
+      ->required();
+  app.add_option("--domain", node.domain, "Of DDS")
+      ->envname("ROS_DOMAIN_ID")
+      ->check(CLI::Range(0, 232));
+  app.add_option("--odometry", node.odometry, "nav_msgs/Odometry")->capture_default_str();
+  app.add_option("--cloud", node.cloud, "sensor_msgs/PointCloud2")->capture_default_str();
+  app.add_option("--image", node.image, "sensor_msgs/Image of depths, in place of clouds");
+  app.add_option("--camera-info", node.camera_info,
+                 "Of the image; without it camera_info beside the image");
+  app.add_option("--prefix", node.prefix, "Of the topics that are published")
+      ->capture_default_str();
+}
+
+void add_rules(CLI::App& app, Options& options) {
+  auto& bridge = options.node.bridge;
+  app.add_option("--sensor", options.sensor, "The sensor's frame on the body's: x y z qx qy qz qw")
+      ->capture_default_str();
+  app.add_option("--axes", options.axes, "Of the sensor's frame: optical or flu")
+      ->transform(CLI::CheckedTransformer(
+          std::map<std::string, Axes>{{"optical", Axes::optical}, {"flu", Axes::flu}}));
+  app.add_flag("--rectified", bridge.is_rectified, "The image is: P of its CameraInfo, no D");
+  app.add_option("--take", bridge.taking, "Scans: arrived (default), every or command")
+      ->transform(CLI::CheckedTransformer(std::map<std::string, Taking>{
+          {"arrived", Taking::arrived}, {"every", Taking::every}, {"command", Taking::command}}));
+  app.add_option("--position-tolerance", bridge.position_tolerance, "Of having arrived [m]")
+      ->check(CLI::Range(0.001, 100.0));
+  app.add_option("--direction-tolerance-deg", options.direction_tolerance_deg, "The same")
+      ->check(CLI::Range(0.1, 180.0));
+  app.add_option("--settling", bridge.settling, "Time within both before a scan is taken in [s]")
+      ->check(CLI::Range(0.0, 60.0));
+  app.add_option("--pose-gap", bridge.history.longest_gap,
+                 "From a scan to the odometry before and after it, at most [s]")
+      ->check(CLI::Range(0.001, 10.0));
+  app.add_option("--patience", bridge.patience, "A scan waits for its odometry so long [s]")
+      ->check(CLI::Range(0.0, 60.0));
+  app.add_flag("--ignore-covariance", options.ignores_covariance, "Of the odometry");
+}
+
+/// What options say in words or degrees.
+NodeConfig node_of(const Options& options) {
+  NodeConfig node = options.node;
+  node.bridge.mount = {skycap::ros2::parse_extrinsic(options.sensor, "--sensor"), options.axes};
+  node.bridge.direction_tolerance =
+      options.direction_tolerance_deg * skycap::geometry::radians_per_degree;
+  node.bridge.uses_covariance = !options.ignores_covariance;
+  return node;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  CLI::App app("A live survey for robots of ROS 2 (docs/live.md)", "skycap_ros2");
+  Options options;
+  add_topics(app, options);
+  add_rules(app, options);
+  CLI11_PARSE(app, argc, argv);
+  try {
+    end_on_signals();
+    run_node(node_of(options), is_stopped);
+    return 0;
+  } catch (const skycap::Error& failure) {
+    std::cerr << "skycap_ros2: error: " << failure.what() << "\n";
+    return failure.kind() == skycap::ErrorKind::bad_usage ? 2 : 1;
+  } catch (const std::exception& failure) {
+    std::cerr << "skycap_ros2: error: the survey at " << options.node.address << ": "
+              << failure.what() << "; what was taken in is in its folder\n";
+    return 1;
+  }
+}

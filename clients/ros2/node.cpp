@@ -1,0 +1,172 @@
+#include "clients/ros2/node.h"
+
+#include <chrono>
+#include <iostream>
+#include <memory>
+#include <stdexcept>
+#include <utility>
+
+#include "clients/ros2/dds_ports.h"
+#include "clients/skycap_live.h"
+
+namespace skycap::ros2 {
+namespace {
+
+using Eigen::Isometry3d;
+
+/// A clock that only goes forward [s].
+double now() {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
+
+SurveyPort port_of(skycap_live::Survey& survey) {
+  return {.next = [&] { return survey.next(); },
+          .finish = [&] { return survey.finish(); },
+          .add =
+              [&](const SensorScan& scan, const skycap_live::Pose& pose,
+                  const skycap_live::PoseError& error) {
+                if (const auto* cloud = std::get_if<CloudScan>(&scan)) {
+                  return survey.add_cloud(cloud->xyz, pose, error);
+                }
+                const auto& image = std::get<DepthScan>(scan);
+                return survey.add_depth(image.depth, image.width, image.height, image.unit, pose,
+                                        error, image.lens);
+              },
+          .refuse = [&](std::size_t id, const std::string& why) { return survey.refuse(id, why); }};
+}
+
+/// Keeps the name that it points to.
+struct Heading {
+  explicit Heading(const Goal& goal) : frame(goal.frame) {
+    header.stamp.sec = static_cast<std::int32_t>(goal.stamp / 1'000'000'000);
+    header.stamp.nanosec = static_cast<std::uint32_t>(goal.stamp % 1'000'000'000);
+    header.frame_id = frame.data();
+  }
+  Heading(const Heading&) = delete;
+  Heading& operator=(const Heading&) = delete;
+
+  std::string frame;
+  Header header{};
+};
+
+PoseMessage message_of(const Isometry3d& pose) {
+  const Eigen::Quaterniond turn(pose.linear());
+  return {.position = {pose.translation().x(), pose.translation().y(), pose.translation().z()},
+          .orientation = {turn.x(), turn.y(), turn.z(), turn.w()}};
+}
+
+/// What is published.
+class Outputs {
+ public:
+  Outputs(const Participant& participant, const std::string& prefix, Mount mount)
+      : mount_(std::move(mount)),
+        next_view_(participant, prefix + "/next_view", Writing::latched),
+        next_sensor_pose_(participant, prefix + "/next_sensor_pose", Writing::latched),
+        path_(participant, prefix + "/path", Writing::latched),
+        status_(participant, prefix + "/status", Writing::latched) {}
+
+  ~Outputs() { status_.flush(); }
+
+  /// The way before the view: who hears of the view can go at once.
+  void goal(const Goal& goal) const {
+    const Heading heading(goal);
+    std::vector<PoseStamped> places;
+    for (const Eigen::Vector3d& place : goal.path) {
+      Isometry3d pose = goal.view.value_or(Isometry3d::Identity());
+      pose.translation() = place;
+      places.push_back({heading.header, message_of(mount_.world_from_body(pose))});
+    }
+    const auto count = static_cast<std::uint32_t>(places.size());
+    path_.write({heading.header, {count, count, places.data(), false}});
+    if (!goal.view) return;
+    next_sensor_pose_.write({heading.header, message_of(*goal.view)});
+    next_view_.write({heading.header, message_of(mount_.world_from_body(*goal.view))});
+  }
+
+  void status(std::string text) const { status_.write({text.data()}); }
+
+ private:
+  Mount mount_;
+  Writer<PoseStamped> next_view_, next_sensor_pose_;
+  Writer<Path> path_;
+  Writer<String> status_;
+};
+
+/// What is subscribed to.
+class Inputs {
+ public:
+  Inputs(const Participant& participant, const NodeConfig& config)
+      : waits_(participant),
+        odometry_(participant, config.odometry, Reading::sensor, 2000),
+        commands_(participant, config.prefix + "/command", Reading::command, 10) {
+    constexpr int few = 2;  // while the survey plans, old scans are of no use
+    if (config.image.empty()) {
+      clouds_ =
+          std::make_unique<Reader<PointCloud2>>(participant, config.cloud, Reading::sensor, few);
+      waits_.add(*clouds_);
+    } else {
+      images_ = std::make_unique<Reader<Image>>(participant, config.image, Reading::sensor, few);
+      infos_ = std::make_unique<Reader<CameraInfo>>(
+          participant,
+          config.camera_info.empty() ? camera_info_topic(config.image) : config.camera_info,
+          Reading::sensor, few);
+      waits_.add(*images_);
+      waits_.add(*infos_);
+    }
+    waits_.add(odometry_);
+    waits_.add(commands_);
+  }
+
+  /// Waits a moment for messages and hands them over: what scans need before the scans.
+  void forward_to(Bridge& bridge) const {
+    constexpr double moment = 0.05;
+    waits_.wait(moment);
+    const auto forward = [&](const auto& message) { bridge.receive(message, now()); };
+    odometry_.take(forward);
+    commands_.take(forward);
+    if (infos_) infos_->take(forward);
+    if (clouds_) clouds_->take(forward);
+    if (images_) images_->take(forward);
+  }
+
+ private:
+  WaitSet waits_;
+  Reader<Odometry> odometry_;
+  Reader<String> commands_;
+  std::unique_ptr<Reader<PointCloud2>> clouds_;
+  std::unique_ptr<Reader<Image>> images_;
+  std::unique_ptr<Reader<CameraInfo>> infos_;
+};
+
+}  // namespace
+
+std::string camera_info_topic(const std::string& image) {
+  return image.substr(0, image.rfind('/')) + "/camera_info";
+}
+
+void run_node(const NodeConfig& config, const std::atomic<bool>& stop) {
+  const Participant participant(config.domain);
+  const Outputs outputs(participant, config.prefix, config.bridge.mount);
+  const Inputs inputs(participant, config);
+  skycap_live::Survey survey(config.address);
+  Bridge bridge(config.bridge, port_of(survey),
+                {.goal = [&](const Goal& goal) { outputs.goal(goal); },
+                 .status = [&](const std::string& text) { outputs.status(text); },
+                 .warning =
+                     [](const std::string& line) {
+                       std::cerr << "skycap_ros2: warning: " + line + "\n" << std::flush;
+                     }});
+  try {
+    bridge.begin();
+    while (!stop && !bridge.is_finished()) {
+      inputs.forward_to(bridge);
+      bridge.proceed(now());
+    }
+    if (stop) bridge.say("stopped");
+  } catch (const std::exception&) {
+    bridge.say("the survey's server is lost");
+    throw;
+  }
+}
+
+}  // namespace skycap::ros2

@@ -1,0 +1,223 @@
+#include "clients/ros2/sensor_scan.h"
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cmath>
+#include <cstring>
+#include <optional>
+#include <string>
+
+#include "clients/ros2/complaints.h"
+#include "geometry/error.h"
+
+namespace skycap::ros2 {
+namespace {
+
+using Eigen::Matrix3f;
+using Eigen::Vector3f;
+
+[[noreturn]] void refuse(const std::string& what) { throw Error(ErrorKind::bad_geometry, what); }
+
+/// A number of this type in any byte order, at any address.
+template <typename Number>
+Number number_at(const std::uint8_t* bytes, bool is_big_endian) {
+  std::array<std::uint8_t, sizeof(Number)> own;
+  std::memcpy(own.data(), bytes, own.size());
+  if (is_big_endian != (std::endian::native == std::endian::big)) std::ranges::reverse(own);
+  return std::bit_cast<Number>(own);
+}
+
+/// The data types of PointField that places come in.
+constexpr std::uint8_t float32 = 7, float64 = 8;
+
+struct Coordinate {
+  std::uint32_t offset;
+  bool is_double;
+
+  float at(const std::uint8_t* point, bool is_big_endian) const {
+    return is_double ? static_cast<float>(number_at<double>(point + offset, is_big_endian))
+                     : number_at<float>(point + offset, is_big_endian);
+  }
+};
+
+Coordinate coordinate(const PointCloud2& cloud, const std::string& name) {
+  std::optional<Coordinate> found;
+  for (std::uint32_t i = 0; i < cloud.fields._length; ++i) {
+    const PointField& field = cloud.fields._buffer[i];
+    if (text_of(field.name) != name) continue;
+    if (found) refuse("its field " + name + " comes twice");
+    if (field.datatype != float32 && field.datatype != float64) {
+      refuse("its field " + name + " has the type " + std::to_string(field.datatype) +
+             "; it must be FLOAT32 (7) or FLOAT64 (8)");
+    }
+    if (field.count > 1) refuse("its field " + name + " has more than one number a point");
+    found = {field.offset, field.datatype == float64};
+    const std::uint64_t end = std::uint64_t{field.offset} + (found->is_double ? 8 : 4);
+    if (end > cloud.point_step) {
+      refuse("its field " + name + " ends at byte " + std::to_string(end) + " of points of " +
+             std::to_string(cloud.point_step));
+    }
+  }
+  if (!found) refuse("it has no field " + name);
+  return *found;
+}
+
+/// Rows of `width` things of `size` bytes, of which `data` bytes are there.
+struct Rows {
+  std::uint32_t height, width, size, step;
+  std::uint64_t data;
+};
+
+void require_whole(const Rows& rows) {
+  const auto text = [](auto number) { return std::to_string(number); };
+  if (std::uint64_t{rows.width} * rows.size > rows.step) {
+    refuse("its rows have " + text(rows.step) + " bytes; " + text(rows.width) + " times " +
+           text(rows.size) + " take more");
+  }
+  if (std::uint64_t{rows.step} * rows.height != rows.data) {
+    refuse("it has " + text(rows.data) + " bytes; " + text(rows.height) + " rows of " +
+           text(rows.step) + " are others");
+  }
+}
+
+void require_points(std::uint64_t points) {
+  // `serve` takes 256 MiB in a message.
+  constexpr std::uint64_t most = (std::uint64_t{256} << 20) / (3 * sizeof(float));
+  if (points > most) {
+    refuse("it has " + std::to_string(points) + " points; at most " + std::to_string(most) +
+           " go into a scan");
+  }
+}
+
+/// Row after row, of any number type.
+template <typename Number>
+std::vector<Number> pixels_of(const Image& image) {
+  std::vector<Number> pixels;
+  pixels.reserve(std::size_t{image.width} * image.height);
+  for (std::uint32_t row = 0; row < image.height; ++row) {
+    const std::uint8_t* line = image.data._buffer + std::size_t{row} * image.step;
+    for (std::uint32_t column = 0; column < image.width; ++column) {
+      pixels.push_back(
+          number_at<Number>(line + std::size_t{column} * sizeof(Number), image.is_bigendian != 0));
+    }
+  }
+  return pixels;
+}
+
+void require_image(const Image& image, std::uint32_t pixel, const CameraLens& lens) {
+  constexpr std::uint32_t largest_side = 1 << 15;
+  if (image.width < 1 || image.height < 1 || image.width > largest_side ||
+      image.height > largest_side) {
+    refuse("its sides are " + std::to_string(image.width) + " x " + std::to_string(image.height) +
+           "; they must be from 1 to 32768");
+  }
+  if (image.width != lens.width || image.height != lens.height) {
+    refuse("its sides are " + std::to_string(image.width) + " x " + std::to_string(image.height) +
+           "; its CameraInfo says " + std::to_string(lens.width) + " x " +
+           std::to_string(lens.height));
+  }
+  require_points(std::uint64_t{image.width} * image.height);
+  require_whole({image.height, image.width, pixel, image.step, image.data._length});
+}
+
+/// Metres along the optical axis as points.
+CloudScan cloud_of(const Image& image, const CameraLens& lens) {
+  const std::vector<float> depths = pixels_of<float>(image);
+  CloudScan scan;
+  for (std::size_t i = 0; i < depths.size(); ++i) {
+    const double depth = depths[i];
+    if (!std::isfinite(depth) || depth <= 0.0) continue;
+    const auto u = static_cast<double>(i % image.width), v = static_cast<double>(i / image.width);
+    for (const double value : {(u - lens.lens[2]) / lens.lens[0] * depth,
+                               (v - lens.lens[3]) / lens.lens[1] * depth, depth}) {
+      scan.xyz.push_back(static_cast<float>(value));
+    }
+  }
+  return scan;
+}
+
+/// k1 k2 p1 p2 k3; nothing if there is no distortion.
+std::vector<double> distortion_of(const CameraInfo& info) {
+  std::vector<double> d(info.d._buffer, info.d._buffer + info.d._length);
+  if (std::ranges::any_of(d, [](double value) { return !std::isfinite(value); })) {
+    refuse("its D has numbers that are none");
+  }
+  while (!d.empty() && d.back() == 0.0) d.pop_back();
+  if (d.empty()) return d;
+  const std::string model = text_of(info.distortion_model);
+  // The first five of rational_polynomial are those of plumb_bob.
+  if ((model != "plumb_bob" && model != "rational_polynomial" && !model.empty()) || d.size() > 5) {
+    refuse("its distortion is '" + model + "' with " + std::to_string(d.size()) +
+           " numbers; it must be plumb_bob with k1 k2 p1 p2 k3, or the image rectified");
+  }
+  d.resize(5, 0.0);
+  return d;
+}
+
+}  // namespace
+
+CloudScan scan_of(const PointCloud2& cloud, Axes axes) {
+  require_points(std::uint64_t{cloud.width} * cloud.height);
+  require_whole({cloud.height, cloud.width, cloud.point_step, cloud.row_step, cloud.data._length});
+  const std::array<Coordinate, 3> places{coordinate(cloud, "x"), coordinate(cloud, "y"),
+                                         coordinate(cloud, "z")};
+  const Matrix3f turn = optical_from(axes).cast<float>();
+  CloudScan scan;
+  scan.xyz.reserve(std::size_t{3} * cloud.width * cloud.height);
+  for (std::uint32_t row = 0; row < cloud.height; ++row) {
+    const std::uint8_t* point = cloud.data._buffer + std::size_t{row} * cloud.row_step;
+    for (std::uint32_t i = 0; i < cloud.width; ++i, point += cloud.point_step) {
+      Vector3f place;
+      for (int k = 0; k < 3; ++k) {
+        place[k] = places[static_cast<std::size_t>(k)].at(point, cloud.is_bigendian);
+      }
+      if (!place.allFinite() || (place.array() == 0.0F).all()) continue;
+      if (axes != Axes::optical) place = turn * place;
+      scan.xyz.insert(scan.xyz.end(), place.begin(), place.end());
+    }
+  }
+  return scan;
+}
+
+CameraLens lens_of(const CameraInfo& info, bool is_rectified) {
+  if (info.binning_x > 1 || info.binning_y > 1) refuse("it has binning; send whole images");
+  const auto& roi = info.roi;
+  const bool is_whole = roi.x_offset == 0 && roi.y_offset == 0 &&
+                        (roi.width == 0 || roi.width == info.width) &&
+                        (roi.height == 0 || roi.height == info.height);
+  if (!is_whole) refuse("it has a region of interest; send whole images");
+  CameraLens lens{.width = info.width, .height = info.height, .lens = {}};
+  if (is_rectified) {
+    lens.lens = {info.p[0], info.p[5], info.p[2], info.p[6]};
+  } else {
+    lens.lens = {info.k[0], info.k[4], info.k[2], info.k[5]};
+    std::ranges::copy(distortion_of(info), std::back_inserter(lens.lens));
+  }
+  const bool is_lens =
+      std::ranges::all_of(lens.lens, [](double value) { return std::isfinite(value); }) &&
+      lens.lens[0] > 0.0 && lens.lens[1] > 0.0;
+  if (!is_lens) refuse("its focal lengths and principal point are no lens");
+  return lens;
+}
+
+SensorScan scan_of(const Image& image, const CameraLens& lens) {
+  const std::string encoding = text_of(image.encoding);
+  if (encoding == "16UC1" || encoding == "mono16") {
+    require_image(image, sizeof(std::uint16_t), lens);
+    return DepthScan{.depth = pixels_of<std::uint16_t>(image),
+                     .width = static_cast<int>(image.width),
+                     .height = static_cast<int>(image.height),
+                     .lens = lens.lens};
+  }
+  if (encoding != "32FC1") {
+    refuse("its encoding is '" + encoding + "'; depth must be 16UC1 or 32FC1");
+  }
+  if (lens.is_distorted()) {
+    refuse("its lens has distortion; rectify the image, or send 16UC1");
+  }
+  require_image(image, sizeof(float), lens);
+  return cloud_of(image, lens);
+}
+
+}  // namespace skycap::ros2
