@@ -58,13 +58,15 @@ void add_rules(CLI::App& app, Options& options) {
   auto& bridge = options.node.bridge;
   app.add_option("--sensor", options.sensor, "The sensor's frame on the body's: x y z qx qy qz qw")
       ->capture_default_str();
-  app.add_option("--axes", options.axes, "Of the sensor's frame: optical or flu")
+  app.add_option("--axes", options.axes, "Of the sensor's frame (optical)")
       ->transform(CLI::CheckedTransformer(
-          std::map<std::string, Axes>{{"optical", Axes::optical}, {"flu", Axes::flu}}));
+          std::map<std::string, Axes>{{"optical", Axes::optical}, {"flu", Axes::flu}}))
+      ->option_text("optical|flu");
   app.add_flag("--rectified", bridge.is_rectified, "The image is: P of its CameraInfo, no D");
-  app.add_option("--take", bridge.taking, "Scans: arrived (default), every or command")
+  app.add_option("--take", bridge.taking, "Which scans (arrived)")
       ->transform(CLI::CheckedTransformer(std::map<std::string, Taking>{
-          {"arrived", Taking::arrived}, {"every", Taking::every}, {"command", Taking::command}}));
+          {"arrived", Taking::arrived}, {"every", Taking::every}, {"command", Taking::command}}))
+      ->option_text("arrived|every|command");
   app.add_option("--position-tolerance", bridge.position_tolerance, "Of having arrived [m]")
       ->check(CLI::Range(0.001, 100.0));
   app.add_option("--direction-tolerance-deg", options.direction_tolerance_deg, "The same")

@@ -1,0 +1,310 @@
+// Which scans go to the survey, and from where, whatever a robot sends.
+#include "clients/ros2/bridge.h"
+
+#include <limits>
+#include <memory>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "tests/clients/ros2/sample_messages.h"
+
+namespace skycap::ros2 {
+namespace {
+
+using Eigen::Quaterniond;
+using Eigen::Vector3d;
+using testing::AllOf;
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
+using testing::SizeIs;
+
+/// A survey that wants a view at (5, 0, 0), along z of the world: the robot does not have to turn.
+constexpr const char* wanted =
+    R"({"id": 3, "state": "view", "scans": 2, "points": 9, "set_aside": 0,
+        "view": {"position": [5, 0, 0], "direction": [0, 0, 1], "quaternion_xyzw": [0, 0, 0, 1]},
+        "path": [[0, 0, 0], [5, 0, 0]], "clearance_m": 2})";
+
+class Robot : public testing::Test {
+ protected:
+  void begin(BridgeConfig config = {}) {
+    bridge_ = std::make_unique<Bridge>(
+        std::move(config),
+        SurveyPort{.next = [this] { return answer_; },
+                   .finish = [this] { return ++finished_, std::string(); },
+                   .add =
+                       [this](const SensorScan& scan, const skycap_live::Pose& pose,
+                              const skycap_live::PoseError& error) {
+                         if (!refusal_.empty()) throw skycap_live::Refused(refusal_);
+                         scans_.push_back(scan);
+                         poses_.push_back(pose);
+                         errors_.push_back(error);
+                         return answer_;
+                       },
+                   .refuse =
+                       [this](std::size_t id, const std::string& reason) {
+                         refused_.push_back(std::to_string(id) + " " + reason);
+                         return answer_;
+                       }},
+        Outlets{.goal = [this](const Goal& goal) { goals_.push_back(goal); },
+                .status = [this](const std::string& text) { status_ = text; },
+                .warning = [this](const std::string& line) { warnings_.push_back(line); }});
+    bridge_->begin();
+  }
+
+  void odometry(double time, const Vector3d& position) {
+    const SampleOdometry sample(seconds(time), position);
+    bridge_->receive(sample.message, now_);
+  }
+  void cloud(double time) {
+    const SampleCloud sample(seconds(time), {{1, 2, 3}});
+    bridge_->receive(sample.message, now_);
+  }
+  void command(std::string text) { bridge_->receive(String{text.data()}, now_); }
+  void proceed(double later = 0.0) {
+    now_ += later;
+    bridge_->proceed(now_);
+  }
+  /// At the view from 9 s on, in steps of 0.05 s.
+  void arrive() {
+    for (int step = 0; step <= 40; ++step) odometry(9.0 + 0.05 * step, {5, 0, 0});
+  }
+
+  double now_ = 100.0;
+  std::string answer_ = wanted, refusal_, status_;
+  int finished_ = 0;
+  std::vector<SensorScan> scans_;
+  std::vector<skycap_live::Pose> poses_;
+  std::vector<skycap_live::PoseError> errors_;
+  std::vector<std::string> warnings_, refused_;
+  std::vector<Goal> goals_;
+  std::unique_ptr<Bridge> bridge_;
+};
+
+TEST_F(Robot, IsToldTheViewAndTheWayInTheFrameOfItsOdometry) {
+  begin();
+  EXPECT_THAT(goals_, IsEmpty());
+  odometry(9.0, {0, 0, 0});
+  ASSERT_THAT(goals_, SizeIs(1));
+  EXPECT_EQ(goals_[0].frame, "odom");
+  EXPECT_EQ(goals_[0].stamp, seconds(9.0));
+  EXPECT_EQ(goals_[0].view.value().translation(), Vector3d(5, 0, 0));
+  EXPECT_THAT(goals_[0].path, ElementsAre(Vector3d(0, 0, 0), Vector3d(5, 0, 0)));
+  EXPECT_THAT(status_, AllOf(HasSubstr(R"("id":3)"), HasSubstr(R"("state":"view")"),
+                             HasSubstr(R"("hold":false)")));
+}
+
+TEST_F(Robot, GivesAScanOnceItIsAtTheView) {
+  begin();
+  odometry(8.0, {0, 0, 0});
+  odometry(8.05, {0, 0, 0});
+  cloud(8.02);  // far from the view
+  proceed();
+  arrive();
+  cloud(9.2);  // there, but since 0.2 s only
+  odometry(9.0 - 0.04, {3, 0, 0});
+  proceed();
+  EXPECT_THAT(scans_, IsEmpty());
+  cloud(10.02);
+  proceed();
+  ASSERT_THAT(scans_, SizeIs(1));
+  EXPECT_THAT(std::get<CloudScan>(scans_[0]).xyz, ElementsAre(1, 2, 3));
+  EXPECT_THAT(poses_[0], ElementsAre(1, 0, 0, 5, 0, 1, 0, 0, 0, 0, 1, 0));
+  EXPECT_THAT(warnings_, IsEmpty());
+}
+
+TEST_F(Robot, LooksTheWrongWay) {
+  begin();
+  for (int step = 0; step <= 40; ++step) {
+    const SampleOdometry sample(
+        seconds(9.0 + 0.05 * step), {5, 0, 0},
+        Quaterniond(Eigen::AngleAxisd(0.12, Vector3d::UnitX())));  // 0.1 are allowed
+    bridge_->receive(sample.message, now_);
+  }
+  cloud(10.0);
+  proceed();
+  EXPECT_THAT(scans_, IsEmpty());
+}
+
+TEST_F(Robot, ScansWaitForOdometryButNotForever) {
+  begin({.taking = Taking::every});
+  cloud(10.0);
+  proceed(0.4);
+  EXPECT_THAT(warnings_, IsEmpty());
+  odometry(9.98, {1, 0, 0});
+  odometry(10.02, {2, 0, 0});
+  bridge_->receive(SampleOdometry(seconds(10.01), {1.75, 0, 0}).message, now_);
+  proceed();
+  ASSERT_THAT(poses_, SizeIs(1));
+  EXPECT_NEAR(poses_[0][3], 1.0 + 0.75 * 2 / 3, 1e-9);
+  cloud(11.0);
+  proceed(0.6);
+  EXPECT_THAT(warnings_, ElementsAre(HasSubstr("its pose is not known: no odometry within 0.1 s")));
+  EXPECT_THAT(poses_, SizeIs(1));
+}
+
+/// Lost, late, twice, from the future, or nonsense: no scan with a wrong pose, no crash, a line
+/// each.
+TEST_F(Robot, NothingThatIsWrongGetsIntoTheSurvey) {
+  begin({.taking = Taking::every});
+  const double none = std::numeric_limits<double>::quiet_NaN();
+  odometry(9.95, {none, 0, 0});
+  EXPECT_THAT(warnings_.back(), HasSubstr("odometry: its position"));
+  now_ += 10.0;
+  arrive();
+  odometry(2e9, {700, 0, 0});  // from the future
+  odometry(10.0, {9, 9, 9});   // another one at 10.0
+  EXPECT_THAT(warnings_.back(), HasSubstr("another pose with the same stamp"));
+  now_ += 10.0;
+  {
+    SampleOdometry other(seconds(10.01), {8, 8, 8});
+    other.frame = "map";
+    other.message.header.frame_id = other.frame.data();
+    bridge_->receive(other.message, now_);
+    EXPECT_THAT(warnings_.back(), HasSubstr("its frame is 'map'; it was 'odom'"));
+  }
+  cloud(10.0);
+  proceed();
+  ASSERT_THAT(poses_, SizeIs(1));
+  EXPECT_EQ(poses_[0][3], 5.0);
+  for (const double time : {10.0, 9.0}) {  // twice, and late
+    now_ += 10.0;
+    cloud(time);
+    proceed();
+    EXPECT_THAT(warnings_.back(), HasSubstr("is not after that of the last scan"));
+  }
+  now_ += 10.0;
+  cloud(1.5e9);  // from the future
+  proceed(1.0);
+  EXPECT_THAT(warnings_.back(), HasSubstr("its pose is not known"));
+  now_ += 10.0;
+  SampleCloud spoiled(seconds(10.5), {{1, 2, 3}});
+  spoiled.message.row_step = 1;
+  bridge_->receive(spoiled.message, now_);
+  EXPECT_THAT(warnings_.back(), HasSubstr("cloud: its rows have 1 bytes"));
+  SampleCloud stampless(0, {{1, 2, 3}});
+  now_ += 10.0;
+  bridge_->receive(stampless.message, now_);
+  EXPECT_THAT(warnings_.back(), HasSubstr("its stamp is not set"));
+  EXPECT_THAT(poses_, SizeIs(1));
+  cloud(10.5);  // and all is well
+  proceed();
+  EXPECT_THAT(poses_, SizeIs(2));
+}
+
+TEST_F(Robot, ComplainsOfAKindOnceInFiveSeconds) {
+  begin();
+  for (int i = 0; i < 100; ++i) {
+    odometry(-1.0, {0, 0, 0});
+    now_ += 0.06;
+  }
+  ASSERT_THAT(warnings_, SizeIs(2));
+  EXPECT_THAT(warnings_[1], HasSubstr("more)"));
+}
+
+TEST_F(Robot, HoldsAfterAPoseThatWasWrongUntilToldToScanAgain) {
+  begin();
+  arrive();
+  answer_ = std::string(wanted);
+  answer_.insert(1, R"("warning": "pose", )");
+  cloud(10.0);
+  proceed();
+  EXPECT_THAT(scans_, SizeIs(1));
+  EXPECT_THAT(status_, HasSubstr(R"("hold":true)"));
+  EXPECT_FALSE(goals_.back().view);
+  EXPECT_THAT(goals_.back().path, IsEmpty());
+  cloud(10.1);
+  proceed();
+  EXPECT_THAT(scans_, SizeIs(1));
+  answer_ = wanted;
+  command("take");
+  cloud(10.2);
+  proceed();
+  EXPECT_THAT(scans_, SizeIs(2));
+  EXPECT_THAT(status_, HasSubstr(R"("hold":false)"));
+  EXPECT_TRUE(goals_.back().view);
+}
+
+TEST_F(Robot, TriesAScanThatTheSurveyRefusedAgainLater) {
+  begin({.taking = Taking::every});
+  arrive();
+  refusal_ = R"({"type":"error","what":"the scan has no pixels"})";
+  cloud(10.0);
+  proceed();
+  EXPECT_THAT(warnings_, ElementsAre(HasSubstr("the scan has no pixels")));
+  refusal_.clear();
+  cloud(10.1);
+  proceed(1.1);
+  EXPECT_THAT(scans_, IsEmpty());
+  cloud(10.2);
+  proceed();
+  EXPECT_THAT(scans_, SizeIs(1));
+}
+
+TEST_F(Robot, SendsWhatItsOdometryKnowsOfItsErrors) {
+  for (const bool is_used : {true, false}) {
+    begin({.taking = Taking::every, .uses_covariance = is_used});
+    SampleOdometry sample(seconds(10.0), {0, 0, 0});
+    for (const int i : {0, 7, 14}) sample.message.pose.covariance[i] = 0.25;
+    bridge_->receive(sample.message, now_);
+    cloud(10.0);
+    proceed();
+    const auto* covariance = std::get_if<skycap_live::PoseCovariance>(&errors_.back());
+    ASSERT_EQ(covariance != nullptr, is_used);
+    if (is_used) {
+      EXPECT_EQ((*covariance)[7], 0.25);
+    }
+  }
+}
+
+TEST_F(Robot, TakesDepthImagesWithTheirCamera) {
+  begin({.taking = Taking::every});
+  odometry(10.0, {0, 0, 0});
+  const SampleImage image(seconds(10.0), 4, std::vector<std::uint16_t>(8, 2000), "16UC1");
+  bridge_->receive(image.message, now_);
+  EXPECT_THAT(warnings_, ElementsAre(HasSubstr("no CameraInfo")));
+  bridge_->receive(SampleInfo().message, now_);
+  bridge_->receive(image.message, now_);
+  proceed();
+  ASSERT_THAT(scans_, SizeIs(1));
+  EXPECT_THAT(std::get<DepthScan>(scans_[0]).lens, ElementsAre(2, 4, 1.5, 0.5));
+}
+
+TEST_F(Robot, IsToldByCommands) {
+  begin({.taking = Taking::command});
+  arrive();
+  cloud(10.0);
+  proceed();
+  EXPECT_THAT(scans_, IsEmpty());
+  command("refuse behind the \"fence\"\n");
+  EXPECT_THAT(refused_, ElementsAre(R"(3 behind the \"fence\"?)"));
+  command("dance");
+  EXPECT_THAT(warnings_, ElementsAre(HasSubstr("'dance' is none")));
+  command("finish");
+  EXPECT_EQ(finished_, 1);
+  EXPECT_TRUE(bridge_->is_finished());
+}
+
+TEST_F(Robot, AsksForTheSurveyNowAndThen) {
+  int asked = 0;
+  Bridge lost({},
+              {.next = [&]() -> std::string {
+                 if (++asked > 1) throw std::runtime_error("the server has closed");
+                 return wanted;
+               },
+               .finish = {},
+               .add = {},
+               .refuse = {}},
+              {.goal = [](const Goal&) {},
+               .status = [](const std::string&) {},
+               .warning = [](const std::string&) {}});
+  lost.begin();
+  EXPECT_THROW(lost.proceed(now_ + 3.0), std::runtime_error);
+}
+
+}  // namespace
+}  // namespace skycap::ros2

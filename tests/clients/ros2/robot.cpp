@@ -1,0 +1,152 @@
+#include "tests/clients/ros2/robot.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cstdio>
+#include <limits>
+#include <thread>
+
+#include "geometry/place/pose.h"
+#include "missions/derived/resolved_mission.h"
+#include "tests/clients/ros2/sample_messages.h"
+
+namespace skycap::ros2 {
+namespace {
+
+using Eigen::Isometry3d;
+using Eigen::Quaterniond;
+using Eigen::Vector3d;
+using namespace std::chrono_literals;
+
+Isometry3d isometry(const PoseMessage& pose) {
+  const auto& [position, turn] = pose;
+  Isometry3d world_from_sensor = Isometry3d::Identity();
+  world_from_sensor.translation() = Vector3d(position.x, position.y, position.z);
+  world_from_sensor.linear() =
+      Quaterniond(turn.w, turn.x, turn.y, turn.z).normalized().toRotationMatrix();
+  return world_from_sensor;
+}
+
+std::string text_of(const PoseMessage& pose) {
+  const auto& [p, q] = pose;
+  char text[256];
+  std::snprintf(text, sizeof text, "%.17g %.17g %.17g %.17g %.17g %.17g %.17g", p.x, p.y, p.z, q.x,
+                q.y, q.z, q.w);
+  return text;
+}
+
+}  // namespace
+
+Robot::Robot(const std::string& mission, std::uint32_t domain, const std::string& topics)
+    : mission_(missions::derived::parse_mission(mission, "m.yaml")),
+      scene_(mission_, ""),
+      sensor_(mission_.sensor, mission_.seed),
+      participant_(domain),
+      odometry_(participant_, topics + "/odom", Writing::sensor),
+      clouds_(participant_, topics + "/points", Writing::sensor),
+      commands_(participant_, topics + "/skycap/command", Writing::command),
+      views_(participant_, topics + "/skycap/next_sensor_pose", Reading::latched, 1),
+      paths_(participant_, topics + "/skycap/path", Reading::latched, 10),
+      statuses_(participant_, topics + "/skycap/status", Reading::latched, 1) {}
+
+void Robot::listen() {
+  views_.take([this](const PoseStamped& message) { wanted_ = message.pose; });
+  paths_.take([this](const Path& message) {
+    longest_path_ = std::max<std::size_t>(longest_path_, message.poses._length);
+  });
+  statuses_.take([this](const String& message) { status_ = nlohmann::json::parse(message.data); });
+}
+
+Robot::Measured Robot::measure(const PoseMessage& sensor, std::size_t number) const {
+  const Isometry3d world_from_sensor = isometry(sensor);
+  const geometry::Scan scan =
+      sensor_.scan(scene_.scene(), geometry::view_of(world_from_sensor), number, 1);
+  Measured measured{sensor, {text_of(sensor), {}}};
+  for (const Eigen::Vector3f& point : scan.points) {
+    measured.scan.points.push_back(
+        (world_from_sensor.inverse() * point.cast<double>()).cast<float>());
+  }
+  return measured;
+}
+
+void Robot::send_odometry(Stamp stamp, const PoseMessage& pose) const {
+  SampleOdometry sample(stamp, Vector3d::Zero());
+  sample.message.pose.pose = pose;
+  odometry_.write(sample.message);
+}
+
+void Robot::send_cloud(Stamp stamp, const std::vector<Eigen::Vector3f>& points) const {
+  const SampleCloud sample(stamp, points);
+  clouds_.write(sample.message);
+}
+
+void Robot::stand_at(const PoseMessage& pose, int steps) {
+  constexpr Stamp step = 20'000'000;
+  here_ = pose;
+  for (int i = 0; i < steps; ++i) {
+    send_odometry(clock_ += step, pose);
+    std::this_thread::sleep_for(2ms);
+  }
+}
+
+/// The scan as if from elsewhere, twice, in halves; odometry that is none.
+void Robot::send_nonsense(const Measured& measured) {
+  const auto& points = measured.scan.points;
+  PoseMessage wrong = measured.pose;
+  wrong.position.x += 3.0;
+  send_odometry(clock_, wrong);                      // another pose with the same stamp
+  send_odometry(clock_ + 3'600'000'000'000, wrong);  // from the future
+  wrong.orientation = {0, 0, 0, 0};
+  send_odometry(clock_ - 10'000'000, wrong);
+  wrong.position.y = std::numeric_limits<double>::quiet_NaN();
+  send_odometry(clock_ + 10'000'000, wrong);
+  send_cloud(0, points);
+  SampleCloud half(clock_, points);
+  half.message.data._length /= 2;
+  clouds_.write(half.message);
+  half.message.data._length *= 2;
+  half.message.fields._length = 2;
+  clouds_.write(half.message);
+  std::this_thread::sleep_for(50ms);
+}
+
+bool Robot::wait_for_status(const std::string& text) {
+  for (int i = 0; i < 300; ++i) {
+    stand_at(here_, 5);
+    listen();
+    if (!status_.is_null() && status_.dump().find(text) != std::string::npos) return true;
+    std::this_thread::sleep_for(90ms);
+  }
+  return false;
+}
+
+bool Robot::survey() {
+  const auto end = std::chrono::steady_clock::now() + 120s;
+  if (!wait_for_status("\"state\":\"view\"")) return false;
+  while (std::chrono::steady_clock::now() < end) {
+    stand_at(here_, 1);
+    std::this_thread::sleep_for(50ms);
+    listen();
+    if (status_.at("taken") != scans_.size()) continue;
+    if (status_.at("state") != "view") return true;
+    const auto place = status_.at("view").at("position").get<std::vector<double>>();
+    if (std::abs(place[0] - wanted_.position.x) > 1e-9) continue;  // its message is on the way
+    const Measured measured = measure(wanted_, scans_.size());
+    stand_at(wanted_, 20);
+    send_nonsense(measured);
+    const std::size_t taken = scans_.size();
+    for (int attempt = 0; attempt < 20 && status_.at("taken") == taken; ++attempt) {
+      send_cloud(clock_, measured.scan.points);
+      send_cloud(clock_, measured.scan.points);  // twice
+      for (int i = 0; i < 20 && status_.at("taken") == taken; ++i) {
+        std::this_thread::sleep_for(100ms);
+        listen();
+      }
+      stand_at(wanted_, 1);
+    }
+    scans_.push_back(measured.scan);
+  }
+  return false;
+}
+
+}  // namespace skycap::ros2
