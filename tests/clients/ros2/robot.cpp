@@ -137,6 +137,7 @@ bool Robot::survey() {
     const std::size_t taken = scans_.size();
     for (int attempt = 0; attempt < 20 && status_.at("taken") == taken; ++attempt) {
       send_cloud(clock_, measured.scan.points);
+      std::this_thread::sleep_for(20ms);
       send_cloud(clock_, measured.scan.points);  // twice
       for (int i = 0; i < 20 && status_.at("taken") == taken; ++i) {
         std::this_thread::sleep_for(100ms);

@@ -144,15 +144,15 @@ TEST_F(LiveRobot, IsSurveyedAsByHandWithTheSameScans) {
 
 TEST_F(LiveRobot, IsToldWhenItsBridgeIsStopped) {
   const std::string mission = short_mission(tests::quick_mission());
+  serve(mission);
   for (const int signal : {SIGINT, SIGTERM}) {
-    serve(mission);
     start_bridge();
     Robot robot(mission, domain_, topics_);
     ASSERT_TRUE(robot.wait_for_status("\"doing\":\"waiting for a scan\"")) << bridge_->said();
     bridge_->signal(signal);
     EXPECT_TRUE(robot.wait_for_status("stopped"));
     EXPECT_EQ(bridge_->exit_code(), 0) << bridge_->said();
-    server_.reset();
+    std::this_thread::sleep_for(1s);  // until the server has noticed
   }
 }
 
