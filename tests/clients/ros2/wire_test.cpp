@@ -102,7 +102,7 @@ TEST(Wire, OfImage) {
   Cdr expected;
   expected.header(7, 500'000'000, "camera_optical").number(1U).number(3U).string("16UC1");
   expected.number(std::uint8_t{0}).number(6U).number(6U);
-  for (const std::uint16_t pixel : {1, 2, 3}) expected.number(pixel);
+  for (const int pixel : {1, 2, 3}) expected.number(static_cast<std::uint16_t>(pixel));
   EXPECT_EQ(sent(image.message), expected.whole());
 }
 
