@@ -87,7 +87,7 @@ class LiveRobot : public testing::Test {
         std::vector<std::string>{SKYCAP_PROGRAM, "serve", folder_ / "m.yaml", "--survey",
                                  folder_ / "served", "--socket", folder_ / "s"},
         folder_ / "server.log");
-    for (int i = 0; i < 300 && !std::filesystem::exists(folder_ / "s"); ++i) {
+    for (int i = 0; i < 300 && server_->said().find("unix:") == std::string::npos; ++i) {
       std::this_thread::sleep_for(100ms);
     }
   }
