@@ -105,6 +105,9 @@ std::string ending_of(const fs::path& path) {
   return (path.extension() == ".gz" ? path.stem() : path).extension().string();
 }
 
+/// Compressed (LAZ, COPC) or not.
+bool is_las(std::string_view ending) { return ending == ".las" || ending == ".laz"; }
+
 }  // namespace
 
 void fail_cloud(const fs::path& path, const std::string& what) {
@@ -136,19 +139,19 @@ AttributedCloud read_cloud(const fs::path& path) {
                                                 {".txt", parse_xyz_cloud},
                                                 {".asc", parse_xyz_cloud}};
   const auto format = formats.find(ending);
-  if (format == formats.end() && ending != ".las") {
+  if (format == formats.end() && !is_las(ending)) {
     fail_cloud(path,
-               "a cloud file must end in .ply, .pcd, .las, .xyz, .txt or .asc (or with .gz after "
-               "it)");
+               "a cloud file must end in .ply, .pcd, .las, .laz, .xyz, .txt or .asc (or with .gz "
+               "after it)");
   }
   AttributedCloud cloud =
-      ending == ".las" ? read_las_cloud(path) : format->second(path, read_file(path));
+      is_las(ending) ? read_las_cloud(path) : format->second(path, read_file(path));
   if (cloud.positions.empty()) fail_cloud(path, "holds no points");
   return cloud;
 }
 
 void read_positions(const fs::path& path, const TakePositions& take) {
-  if (ending_of(path) == ".las") return read_las_positions(path, take);
+  if (is_las(ending_of(path))) return read_las_positions(path, take);
   const std::vector<Eigen::Vector3f> positions = read_cloud(path).positions;
   for (std::size_t begin = 0; begin < positions.size(); begin += piece_size) {
     const std::size_t count = std::min(piece_size, positions.size() - begin);

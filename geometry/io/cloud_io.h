@@ -43,8 +43,9 @@ inline CloudColumns columns_of(const AttributedCloud& cloud) {
 }
 
 /// Reads .ply; .pcd (text, binary or compressed; points of NaN are passed over); .las (versions 1.0
-/// to 1.4, points of format 0 to 10, not compressed); or .xyz, .txt, .asc: lines of x y z (further
-/// columns are passed over, '#' begins a comment); also gzip-compressed. Other properties and
+/// to 1.4, points of format 0 to 10) and .laz (also COPC; points of format 0 to 3 and 6 to 8); or
+/// .xyz, .txt, .asc: lines of x y z (further columns are passed over, '#' begins a comment); also
+/// gzip-compressed. Other properties and
 /// elements are passed over. Throws Error{bad_file} in one line, also for coordinates that are not
 /// finite, and for such so far from the origin that single precision would move them by a
 /// millimetre.

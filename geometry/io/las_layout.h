@@ -3,21 +3,12 @@
 #pragma once
 
 #include <array>
-#include <bit>
 #include <cstddef>
 #include <cstdint>
-#include <cstring>
+
+#include "geometry/io/laz/byte_values.h"
 
 namespace skycap::geometry::las {
-
-/// The value at a place of a file's bytes, all of which are known to be there.
-template <typename Value>
-Value value_at(const char* bytes, std::size_t place) {
-  static_assert(std::endian::native == std::endian::little, "LAS files are little-endian");
-  Value value;
-  std::memcpy(&value, bytes + place, sizeof value);
-  return value;
-}
 
 /// Of the public header block. Boxes are x, then y, then z.
 namespace header {

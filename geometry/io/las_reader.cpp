@@ -4,12 +4,15 @@
 #include <cmath>
 #include <utility>
 
+#include "geometry/error.h"
 #include "geometry/io/cloud_parsers.h"
 #include "geometry/io/file.h"
 #include "geometry/io/las_layout.h"
 
 namespace skycap::geometry {
 namespace {
+
+constexpr int compressed_bit = 0x80;  // of the format of points
 
 /// Throws unless it is LAS of a kind that can be read; the header's size is that of its version.
 void require_readable(const std::filesystem::path& path, std::string_view beginning) {
@@ -18,14 +21,17 @@ void require_readable(const std::filesystem::path& path, std::string_view beginn
   }
   const int major = las::value_at<std::uint8_t>(beginning.data(), las::header::major),
             minor = las::value_at<std::uint8_t>(beginning.data(), las::header::minor);
-  const int format = las::value_at<std::uint8_t>(beginning.data(), las::header::point_format);
-  const bool is_compressed = (format & 0xC0) != 0;
-  if (major != 1 || minor > 4 || is_compressed || format > 10) {
+  const int kind = las::value_at<std::uint8_t>(beginning.data(), las::header::point_format);
+  const bool is_compressed = (kind & compressed_bit) != 0;
+  const int format = is_compressed ? kind - compressed_bit : kind;
+  const bool has_waveforms = format == 4 || format == 5 || format == 9 || format == 10;
+  if (major != 1 || minor > 4 || format > 10 || (is_compressed && has_waveforms)) {
     fail_cloud(path, "is LAS " + std::to_string(major) + "." + std::to_string(minor) +
-                         " with points of format " + std::to_string(format & 0x3F) +
+                         " with points of format " + std::to_string(format) +
                          (is_compressed ? ", compressed (LAZ)" : "") +
-                         "; only LAS 1.0 to 1.4 with points of format 0 to 10, not compressed, can "
-                         "be read: convert it, as with `pdal translate` or laszip");
+                         "; only LAS 1.0 to 1.4 with points of format 0 to 10 can be read, and "
+                         "compressed ones of format 0 to 3 and 6 to 8: convert it, as with "
+                         "`pdal translate` or laszip");
   }
   const std::size_t size = minor == 4 ? las::header::end : las::header::old_end;
   if (beginning.size() < size) fail_cloud(path, "ends within the header");
@@ -35,7 +41,9 @@ LasHeader fields_of(std::string_view beginning) {
   const char* const bytes = beginning.data();
   LasHeader header;
   header.minor = las::value_at<std::uint8_t>(bytes, las::header::minor);
-  header.format = las::value_at<std::uint8_t>(bytes, las::header::point_format);
+  const int kind = las::value_at<std::uint8_t>(bytes, las::header::point_format);
+  header.is_compressed = (kind & compressed_bit) != 0;
+  header.format = header.is_compressed ? kind - compressed_bit : kind;
   header.header_size = las::value_at<std::uint16_t>(bytes, las::header::size);
   header.first_point = las::value_at<std::uint32_t>(bytes, las::header::first_point);
   header.records = las::value_at<std::uint32_t>(bytes, las::header::records);
@@ -74,7 +82,7 @@ LasHeader parse_header(const std::filesystem::path& path, std::string_view begin
     fail_cloud(path, "says that its points begin within its header");
   }
   const std::uint64_t room = file_size < header.first_point ? 0 : file_size - header.first_point;
-  if (room / header.point_size < header.points) {
+  if (!header.is_compressed && room / header.point_size < header.points) {
     fail_cloud(path, "ends after " + std::to_string(room / header.point_size) + " of its " +
                          std::to_string(header.points) + " points");
   }
@@ -113,32 +121,81 @@ void add_point(const LasHeader& header, const char* point, LasPoints& points) {
   }
 }
 
+/// What `read` gives; errors of its that lack the file's name get it.
+template <typename Read>
+auto with_name(const std::filesystem::path& path, const Read& read) {
+  try {
+    return read();
+  } catch (const Error& error) {
+    fail_cloud(path, error.what());
+  }
+}
+
 }  // namespace
 
 bool LasHeader::has_colours() const { return colour_place(*this) != 0; }
 
-LasReader::LasReader(std::filesystem::path path) : path_(std::move(path)) {
+LasReader::File::File(std::filesystem::path name) : path(std::move(name)) {
   std::error_code failure;
-  size_ = std::filesystem::file_size(path_, failure);
-  const bool is_file = std::filesystem::is_regular_file(path_, failure);
-  if (is_file) stream_.open(path_, std::ios::binary);
-  if (!is_file || !stream_ || bytes(0, 2) == "\x1F\x8B") {
-    decompressed_ = read_file(path_);  // says what is wrong with what is no file
-    size_ = decompressed_.size();
+  size = std::filesystem::file_size(path, failure);
+  const bool is_file = std::filesystem::is_regular_file(path, failure);
+  if (is_file) stream.open(path, std::ios::binary);
+  const auto beginning = [&] { return bytes(0, 2); };
+  if (!is_file || !stream || with_name(path, beginning) == "\x1F\x8B") {
+    decompressed = read_file(path);  // says what is wrong with what is no file
+    size = decompressed.size();
   }
-  header_ = parse_header(path_, bytes(0, las::header::end), size_);
+}
+
+std::string LasReader::File::bytes(std::uint64_t place, std::uint64_t count) {
+  if (place >= size) return {};
+  count = std::min(count, size - place);
+  if (!decompressed.empty()) return decompressed.substr(place, count);
+  std::string result(count, '\0');
+  stream.clear();
+  stream.seekg(static_cast<std::streamoff>(place));
+  stream.read(result.data(), std::ssize(result));
+  if (!stream) las::refuse("cannot be read at byte " + std::to_string(place));
+  return result;
+}
+
+LasReader::LasReader(std::filesystem::path path)
+    : file_(std::make_unique<File>(std::move(path))),
+      header_(parse_header(file_->path, bytes(0, las::header::end), file_->size)) {
+  if (header_.is_compressed) open_compressed();
 }
 
 std::string LasReader::bytes(std::uint64_t place, std::uint64_t count) {
-  if (place >= size_) return {};
-  count = std::min(count, size_ - place);
-  if (!decompressed_.empty()) return decompressed_.substr(place, count);
-  std::string result(count, '\0');
-  stream_.clear();
-  stream_.seekg(static_cast<std::streamoff>(place));
-  stream_.read(result.data(), std::ssize(result));
-  if (!stream_) fail_cloud(path_, "cannot be read at byte " + std::to_string(place));
-  return result;
+  return with_name(file_->path, [&] { return file_->bytes(place, count); });
+}
+
+std::string LasReader::compression_record() {
+  std::uint64_t place = header_.header_size;
+  for (std::uint32_t i = 0; i < header_.records && place < header_.first_point; ++i) {
+    const std::string head = bytes(place, las::record::end);
+    if (head.size() < las::record::end) break;
+    const auto id = las::value_at<std::uint16_t>(head.data(), las::record::id);
+    const auto length = las::value_at<std::uint16_t>(head.data(), las::record::length);
+    const std::string_view user = std::string_view(head).substr(las::record::user, 16);
+    place += las::record::end;
+    if (id == las::compression_id && user.starts_with(las::compression_user)) {
+      return bytes(place, length);
+    }
+    place += length;
+  }
+  fail_cloud(file_->path, "is compressed (LAZ), but has no record that says how");
+}
+
+void LasReader::open_compressed() {
+  const std::string record = compression_record();
+  const las::StoredPoints points{header_.format, header_.point_size, header_.first_point};
+  const auto read = [file = file_.get()](std::uint64_t place, std::uint64_t count) {
+    return file->bytes(place, count);
+  };
+  compressed_ = with_name(file_->path, [&] {
+    return std::make_unique<las::PointStream>(read, file_->size, points, record);
+  });
+  record_.resize(header_.point_size);
 }
 
 bool LasReader::next(LasPoints& points, std::size_t most) {
@@ -146,14 +203,27 @@ bool LasReader::next(LasPoints& points, std::size_t most) {
   points.classes.clear();
   points.colours.clear();
   const std::uint64_t count = std::min<std::uint64_t>(most, header_.points - points_read_);
-  const std::string some =
-      bytes(header_.first_point + points_read_ * header_.point_size, count * header_.point_size);
-  for (std::uint64_t i = 0; i < count; ++i) {
-    const char* const point = some.data() + i * header_.point_size;
-    if (!is_withheld(header_, point)) add_point(header_, point, points);
+  if (compressed_ != nullptr) {
+    decompress(points, count);
+  } else {
+    const std::string some =
+        bytes(header_.first_point + points_read_ * header_.point_size, count * header_.point_size);
+    for (std::uint64_t i = 0; i < count; ++i) {
+      const char* const point = some.data() + i * header_.point_size;
+      if (!is_withheld(header_, point)) add_point(header_, point, points);
+    }
   }
   points_read_ += count;
   return count > 0;
+}
+
+void LasReader::decompress(LasPoints& points, std::uint64_t count) {
+  with_name(file_->path, [&] {
+    for (std::uint64_t i = 0; i < count; ++i) {
+      compressed_->next(record_.data());
+      if (!is_withheld(header_, record_.data())) add_point(header_, record_.data(), points);
+    }
+  });
 }
 
 }  // namespace skycap::geometry

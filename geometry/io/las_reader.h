@@ -1,5 +1,6 @@
 /// LAS files of any size, piece by piece: versions 1.0 to 1.4 (ASPRS specification R15), points of
-/// format 0 to 10, not compressed (but gzip may have compressed the whole file).
+/// format 0 to 10, and those of format 0 to 3 and 6 to 8 also compressed (LAZ, COPC:
+/// laz/point_stream.h). gzip may have compressed the whole file.
 #pragma once
 
 #include <array>
@@ -7,18 +8,22 @@
 #include <cstdint>
 #include <filesystem>
 #include <fstream>
+#include <memory>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include <Eigen/Core>
 
+#include "geometry/io/laz/point_stream.h"
+
 namespace skycap::geometry {
 
 /// What the beginning of a LAS file says of its points.
 struct LasHeader {
-  int minor = 0;   ///< of the version 1.minor
-  int format = 0;  ///< of points
+  int minor = 0;               ///< of the version 1.minor
+  int format = 0;              ///< of points
+  bool is_compressed = false;  ///< LAZ, COPC
   std::uint64_t points = 0;
   std::uint64_t header_size = 0, first_point = 0, point_size = 0;  ///< [bytes]
   std::uint32_t records = 0;  ///< of variable length, behind the header
@@ -38,26 +43,40 @@ struct LasPoints {
 
 class LasReader {
  public:
-  /// Throws Error{bad_file} if the file cannot be read, has no such header, is compressed (LAZ), or
-  /// tells of more points than it has room for.
+  /// Throws Error{bad_file} if the file cannot be read, has no such header, is compressed in
+  /// another way, or tells of more points than it has room for.
   explicit LasReader(std::filesystem::path path);
 
   const LasHeader& header() const { return header_; }
 
   /// Replaces `points` by the next of the file, from at most `most` of its records: withheld points
   /// are passed over, so that there may be none of them left. False at the end. Throws
-  /// Error{bad_file} if the file cannot be read.
+  /// Error{bad_file} if the file cannot be read, or what is compressed is damaged.
   bool next(LasPoints& points, std::size_t most = 1 << 16);
 
   /// Bytes from a place of the file, fewer if it ends: for records beside the points.
   std::string bytes(std::uint64_t place, std::uint64_t count);
 
  private:
-  std::filesystem::path path_;
-  std::ifstream stream_;
-  std::string decompressed_;  ///< all bytes, if gzip had compressed them
-  std::uint64_t size_ = 0;
+  /// The file, which stays where it is when its reader is moved.
+  struct File {
+    explicit File(std::filesystem::path path);
+    /// Errors lack the file's name.
+    std::string bytes(std::uint64_t place, std::uint64_t count);
+
+    std::filesystem::path path;
+    std::ifstream stream;
+    std::string decompressed;  ///< all bytes, if gzip had compressed them
+    std::uint64_t size = 0;
+  };
+  std::string compression_record();
+  void open_compressed();
+  void decompress(LasPoints& points, std::uint64_t count);
+
+  std::unique_ptr<File> file_;
   LasHeader header_;
+  std::unique_ptr<las::PointStream> compressed_;
+  std::vector<char> record_;  ///< of the point that was decompressed last
   std::uint64_t points_read_ = 0;
 };
 
