@@ -20,7 +20,7 @@ Eigen::Vector3f cloud_position(const std::filesystem::path& path, std::size_t po
 /// normal_z. Points of NaN, by which PCL marks pixels without a measurement, are passed over.
 AttributedCloud parse_pcd_cloud(const std::filesystem::path& path, std::string_view bytes);
 
-/// LAS 1.0 to 1.4 (las_reader.h). Withheld points are passed over.
+/// LAS 1.0 to 1.4 and LAZ (las_reader.h). Withheld points are passed over.
 AttributedCloud read_las_cloud(const std::filesystem::path& path);
 
 /// Points of a piece.

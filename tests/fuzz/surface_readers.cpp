@@ -72,6 +72,8 @@ constexpr Reader readers[] = {
      [](const std::uint8_t* b, std::size_t n) { return run_cloud("cloud.pcd", b, n); }},
     {"cloud_las",
      [](const std::uint8_t* b, std::size_t n) { return run_cloud("cloud.las", b, n); }},
+    {"cloud_laz",
+     [](const std::uint8_t* b, std::size_t n) { return run_cloud("cloud.laz", b, n); }},
     {"cloud_xyz",
      [](const std::uint8_t* b, std::size_t n) { return run_cloud("cloud.xyz", b, n); }},
     {"gzip", [](const std::uint8_t* b, std::size_t n) { return run_cloud("cloud.xyz.gz", b, n); }},

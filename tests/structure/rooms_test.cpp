@@ -17,16 +17,18 @@ using testing::IsEmpty;
 
 /// The rows, each with all that it may use; "geometry" and its rooms are open to every room.
 Rooms house() {
-  const std::vector<std::string> geometry = {"geometry",          "geometry/place",
-                                             "geometry/points",   "geometry/directions",
-                                             "geometry/surfaces", "geometry/io"};
+  const std::vector<std::string> geometry = {
+      "geometry",          "geometry/place", "geometry/points", "geometry/directions",
+      "geometry/surfaces", "geometry/io",    "geometry/io/laz"};
   Rooms rooms = {
       {"geometry", {}},
       {"geometry/place", {"geometry"}},
       {"geometry/points", {"geometry", "geometry/place"}},
       {"geometry/directions", {"geometry", "geometry/place"}},
       {"geometry/surfaces", {"geometry", "geometry/place"}},
-      {"geometry/io", {"geometry", "geometry/place", "geometry/points", "geometry/surfaces"}},
+      {"geometry/io/laz", {"geometry"}},
+      {"geometry/io",
+       {"geometry", "geometry/place", "geometry/points", "geometry/surfaces", "geometry/io/laz"}},
   };
   const auto add = [&](const std::string& room, std::vector<std::string> others) {
     others.insert(others.end(), geometry.begin(), geometry.end());

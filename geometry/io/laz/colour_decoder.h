@@ -13,7 +13,10 @@ using Colour = std::array<std::uint16_t, 3>;  ///< red, green, blue
 
 class ColourDecoder {
  public:
-  void reset() { *this = {}; }
+  void reset() {
+    changed_.reset();
+    for (SymbolModel& model : changes_) model.reset();
+  }
 
   Colour read(ArithmeticDecoder& decoder, const Colour& last);
 

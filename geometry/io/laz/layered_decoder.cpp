@@ -36,15 +36,18 @@ struct Point14 {
   bool is_last() const { return return_number >= number_of_returns; }
 };
 
+using Models = std::vector<SymbolModel>;
+
 /// Models and memory of one channel of the scanner.
 struct Channel {
   bool is_used = false;
   Point14 last;
-  std::array<SymbolModel, 8> changed;  // by which return the last one was, and its time
-  SymbolModel channel_step{3};
-  std::vector<SymbolModel> numbers_of_returns, return_numbers;  // by the last one's
-  SymbolModel return_step{13};
-  std::vector<SymbolModel> classes, flags;  // by the last one's
+  Models changed = Models(8, SymbolModel(128));  // by which return the last one was, and its time
+  SymbolModel channel_step{3}, return_step{13};
+  Models numbers_of_returns = Models(16, SymbolModel(16));  // by the last one's
+  Models return_numbers = numbers_of_returns;               // so
+  Models classes = Models(64, SymbolModel(256));            // so
+  Models flags = Models(64, SymbolModel(64));               // so
   PositionDecoder position;
   std::array<RunningMedian, 12> x_steps, y_steps;
   std::array<std::int32_t, 8> heights{};  // last of each level of returns
@@ -53,15 +56,16 @@ struct Channel {
 };
 
 void Channel::begin(const Point14& first) {
-  *this = Channel();
   is_used = true;
   last = first;
   last.has_new_time = false;
-  changed.fill(SymbolModel(128));
-  numbers_of_returns.assign(16, SymbolModel(16));
-  return_numbers.assign(16, SymbolModel(16));
-  classes.assign(64, SymbolModel(256));
-  flags.assign(64, SymbolModel(64));
+  for (Models* models : {&changed, &numbers_of_returns, &return_numbers, &classes, &flags}) {
+    for (SymbolModel& model : *models) model.reset();
+  }
+  channel_step.reset();
+  return_step.reset();
+  position.reset();
+  x_steps = y_steps = {};
   heights.fill(first.z);
 }
 
@@ -174,7 +178,7 @@ class Colour14Decoder {
   void begin(const Colour& first, std::size_t channel) {
     for (ChannelColour& other : channels_) other.is_used = false;
     channel_ = channel;
-    channels_[channel_] = {.is_used = true, .last = first, .decoder = {}};
+    channels_[channel_].begin(first);
   }
 
   /// `channel` as the version has it; no decoder: nothing changes.
@@ -182,9 +186,7 @@ class Colour14Decoder {
     std::size_t remembered = channel_;
     if (channel != channel_) {
       const bool is_new = !channels_[channel].is_used;
-      if (is_new) {
-        channels_[channel] = {.is_used = true, .last = channels_[channel_].last, .decoder = {}};
-      }
+      if (is_new) channels_[channel].begin(channels_[channel_].last);
       channel_ = channel;
       if (is_new || version > 3) remembered = channel;
     }
@@ -198,6 +200,12 @@ class Colour14Decoder {
     bool is_used = false;
     Colour last{};
     ColourDecoder decoder;
+
+    void begin(const Colour& first) {
+      is_used = true;
+      last = first;
+      decoder.reset();
+    }
   };
   std::array<ChannelColour, channels> channels_;
   std::size_t channel_ = 0;

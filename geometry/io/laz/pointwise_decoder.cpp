@@ -41,8 +41,9 @@ class Point10Decoder {
 
   Point10 last_;
   SymbolModel changed_{64};
-  std::vector<SymbolModel> returns_, classes_, user_data_;  // by the last one's
-  std::array<SymbolModel, 2> scan_angles_;                  // by the direction of the scan
+  std::vector<SymbolModel> returns_ = std::vector<SymbolModel>(256);    // by the last one's
+  std::vector<SymbolModel> classes_ = returns_, user_data_ = returns_;  // so
+  std::array<SymbolModel, 2> scan_angles_;  // by the direction of the scan
   IntegerDecoder intensity_{16, 4}, source_{16, 1};
   PositionDecoder position_;
   std::array<std::uint16_t, 16> intensities_{};  // last of each kind of return
@@ -51,10 +52,19 @@ class Point10Decoder {
 };
 
 void Point10Decoder::begin(const Point10& first) {
-  *this = {};
   last_ = first;
   last_.intensity = 0;  // as encoders have it
-  for (auto* models : {&returns_, &classes_, &user_data_}) models->resize(256);
+  changed_.reset();
+  for (auto* models : {&returns_, &classes_, &user_data_}) {
+    for (SymbolModel& model : *models) model.reset();
+  }
+  for (SymbolModel& model : scan_angles_) model.reset();
+  intensity_.reset();
+  source_.reset();
+  position_.reset();
+  intensities_ = {};
+  x_steps_ = y_steps_ = {};
+  heights_ = {};
 }
 
 const Point10& Point10Decoder::read(ArithmeticDecoder& decoder) {
@@ -103,7 +113,8 @@ class PointwiseDecoder : public ChunkDecoder {
   PointwiseDecoder(int format, std::size_t point_size)
       : has_time_(format == 1 || format == 3),
         has_colour_(format == 2 || format == 3),
-        last_(point_size) {}
+        last_(point_size),
+        extra_(point_size - extra_place()) {}
 
   void begin(ByteWindow chunk, char* point) override;
   void next(char* point) override;
@@ -130,7 +141,7 @@ void PointwiseDecoder::begin(ByteWindow chunk, char* point) {
   points_.begin(value_at<Point10>(last_.data(), 0));
   if (has_time_) times_.begin(value_at<std::uint64_t>(last_.data(), sizeof(Point10)));
   colours_.reset();
-  extra_.assign(last_.size() - extra_place(), SymbolModel(256));
+  for (SymbolModel& model : extra_) model.reset();
 }
 
 void PointwiseDecoder::next(char* point) {

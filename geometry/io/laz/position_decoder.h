@@ -13,7 +13,9 @@ namespace skycap::geometry::las {
 
 class PositionDecoder {
  public:
-  void reset() { *this = {}; }
+  void reset() {
+    for (IntegerDecoder* numbers : {&x_, &y_, &z_}) numbers->reset();
+  }
 
   struct Step {
     std::int32_t x = 0, y = 0;

@@ -126,7 +126,8 @@ FileContents read_las(const std::filesystem::path& file, const LasThinning& thin
   FileContents contents;
   contents.has_classes = true;
   contents.format = "LAS 1." + std::to_string(input.header().minor) + ", points of format " +
-                    std::to_string(input.header().format);
+                    std::to_string(input.header().format) +
+                    (input.header().is_compressed ? ", compressed (LAZ)" : "");
   name_reference_system(geo_records(input), contents);
   read_points(input, thinning, contents);
   return contents;

@@ -188,7 +188,7 @@ TEST(CloudIo, SaysWhatIsWrongWithALasFile) {
       {std::string(500, 'x'), "is not a LAS file"},
       {with(25, 5), "is LAS 1.5 with points of format 6; only LAS 1.0 to 1.4"},
       {with(104, 11), "is LAS 1.4 with points of format 11; only LAS 1.0 to 1.4"},
-      {with(104, 0x86), "points of format 6, compressed (LAZ); only LAS 1.0 to 1.4"},
+      {with(104, 0x86), "is compressed (LAZ), but has no record that says how"},
       {with(105, 20), "has points of 20 bytes; those of format 6 have 30"},
       {with(96, 0), "its points begin within its header"},
       {with(138, -1), "a scale or an offset"},  // the sign and exponent of the scale of x
@@ -258,7 +258,7 @@ TEST(CloudIo, SaysWhatIsWrongWithAFile) {
        "point 0 has the view 1.5"},
       {"faces.ply", "ply\nformat ascii 1.0\nelement face 0\nproperty int a\nend_header\n",
        "there is no element 'vertex'"},
-      {"cloud.laz", "LASF", "a cloud file must end in .ply, .pcd, .las, .xyz, .txt or .asc"},
+      {"cloud.e57", "ASTM", "a cloud file must end in .ply, .pcd, .las, .laz, .xyz, .txt or .asc"},
   };
   for (const auto& broken : cases) {
     EXPECT_THAT([&] { read_cloud(folder.file(broken.name, broken.bytes)); },

@@ -1,0 +1,192 @@
+// Compressed LAS. The files were made by LASzip 3.5, the reference compressor, of points that a
+// formula gives, which stands here once more; various_chunks.laz has chunks of 70, 13, 1 and 216.
+
+#include <cstring>
+#include <fstream>
+#include <random>
+#include <string>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "geometry/error.h"
+#include "geometry/io/cloud_io.h"
+#include "geometry/io/las_reader.h"
+#include "tests/support/temporary_folder.h"
+
+namespace skycap::geometry {
+namespace {
+
+using testing::HasSubstr;
+using testing_support::TemporaryFolder;
+
+constexpr int point_count = 300;
+
+std::string file_of(const std::string& name) {
+  return std::string(LAZ_FILES) + "/" + name + ".laz";
+}
+
+std::string bytes_of(const std::string& name) {
+  std::ifstream stream(file_of(name), std::ios::binary);
+  return {std::istreambuf_iterator<char>(stream), {}};
+}
+
+Eigen::Vector3d position_of(int i) {
+  const int jump = i % 97 == 96 ? 1'500'000 : 0;
+  return {(40 * i + i * i % 23 + jump) * 0.01, (i * 37 % 1001 - 500) * 0.01,
+          (i / 10 * 3 + i % 4 * 150) * 0.001};
+}
+
+std::array<std::uint8_t, 3> colour_of(int i) {
+  const int red = 256 * (i % 200) + i % 7;
+  const int green = i % 3 == 0 ? red : 65535 - red;
+  const int blue = i % 3 == 0 ? red : (green + i) % 65536;
+  const auto high = [](int channel) { return static_cast<std::uint8_t>(channel >> 8); };
+  return {high(red), high(green), high(blue)};
+}
+
+/// Reads in pieces of so many points, and compares with the formula; every 60th is withheld.
+void expect_formula(LasReader& reader, std::size_t piece) {
+  LasPoints points;
+  int i = 0;
+  while (reader.next(points, piece)) {
+    ASSERT_EQ(points.classes.size(), points.positions.size());
+    for (std::size_t k = 0; k < points.positions.size(); ++k, ++i) {
+      if (i % 60 == 59) ++i;
+      ASSERT_EQ(points.positions[k], position_of(i)) << i;
+      ASSERT_EQ(points.classes[k], 2 + i / 50 % 4) << i;
+      if (!reader.header().has_colours()) continue;
+      ASSERT_EQ(points.colours[k], colour_of(i)) << i;
+    }
+  }
+  EXPECT_EQ(i, point_count - 1);  // the last one is withheld
+}
+
+class Laz : public testing::TestWithParam<const char*> {};
+
+TEST_P(Laz, IsReadAsTheReferenceCompressorWroteIt) {
+  for (const std::size_t piece : {1, 7, 1000}) {
+    SCOPED_TRACE(piece);
+    LasReader reader(file_of(GetParam()));
+    EXPECT_TRUE(reader.header().is_compressed);
+    ASSERT_EQ(reader.header().points, point_count);
+    expect_formula(reader, piece);
+  }
+}
+
+TEST_P(Laz, IsReadAsACloud) {
+  const AttributedCloud cloud = read_cloud(file_of(GetParam()));
+  ASSERT_EQ(cloud.positions.size(), point_count - 5U);
+  EXPECT_TRUE(cloud.positions[7].isApprox(position_of(7).cast<float>()));
+  std::vector<Eigen::Vector3f> positions;
+  read_positions(file_of(GetParam()), [&](std::span<const Eigen::Vector3f> piece, double) {
+    positions.insert(positions.end(), piece.begin(), piece.end());
+  });
+  EXPECT_EQ(positions, cloud.positions);
+}
+
+/// Points, or one line that names the file.
+bool is_refused(const TemporaryFolder& folder, const std::string& bytes) {
+  try {
+    LasReader reader(folder.file("spoiled.laz", bytes));
+    LasPoints points;
+    std::uint64_t read = 0;
+    while (reader.next(points)) read += points.positions.size();
+    EXPECT_LE(read, reader.header().points);
+    return false;
+  } catch (const Error& error) {
+    EXPECT_THAT(error.what(), HasSubstr("spoiled.laz: "));
+    EXPECT_EQ(error.kind(), ErrorKind::bad_file);
+    EXPECT_EQ(std::string(error.what()).find('\n'), std::string::npos) << error.what();
+    return true;
+  }
+}
+
+TEST_P(Laz, ThatIsCutShortIsRefused) {
+  const TemporaryFolder folder;
+  const std::string whole = bytes_of(GetParam());
+  // Of the table of chunks, which is last, the end may be missing: it is padded.
+  for (std::size_t size = 0; size + 12 < whole.size(); size += 61) {
+    EXPECT_TRUE(is_refused(folder, whole.substr(0, size))) << size;
+  }
+}
+
+TEST_P(Laz, WithChangedBytesIsReadOrRefused) {
+  const TemporaryFolder folder;
+  const std::string whole = bytes_of(GetParam());
+  std::mt19937_64 random(1);
+  int refused = 0, read = 0;
+  for (int change = 0; change < 250; ++change) {
+    std::string bytes = whole;
+    for (int i = 0; i < 1 + change % 3; ++i) {
+      bytes[random() % bytes.size()] = static_cast<char>(random());
+    }
+    ++(is_refused(folder, bytes) ? refused : read);
+  }
+  EXPECT_GT(refused, 10);
+  EXPECT_GT(read, 10) << "else no change got past the first check";
+}
+
+INSTANTIATE_TEST_SUITE_P(Formats, Laz,
+                         testing::Values("format0", "format1", "format2", "format3", "format6",
+                                         "format7", "format8", "various_chunks"),
+                         [](const auto& file) { return std::string(file.param); });
+
+class SpoiledLaz : public testing::Test {
+ protected:
+  /// What is said of the file with another value at a place.
+  template <typename Value>
+  void expect_refusal(std::size_t place, Value value, const std::string& message) const {
+    std::string bytes = whole_;
+    std::memcpy(bytes.data() + place, &value, sizeof value);
+    EXPECT_THAT(
+        [&] {
+          LasReader reader(folder_.file("a.laz", bytes));
+          LasPoints points;
+          while (reader.next(points)) {
+          }
+        },
+        testing::ThrowsMessage<Error>(testing::AllOf(HasSubstr("a.laz: "), HasSubstr(message))));
+  }
+
+  const TemporaryFolder folder_;
+  const std::string whole_ = bytes_of("format7");
+  // Where LASzip puts the content of its record, the points, and the table of chunks.
+  const std::size_t record_ = whole_.find("laszip encoded") + 52;
+  const std::size_t points_ = record_ + 34 + 2 * 6;
+  const std::size_t table_ = [this] {
+    std::uint64_t place = 0;
+    std::memcpy(&place, whole_.data() + points_, sizeof place);
+    return place;
+  }();
+};
+
+TEST_F(SpoiledLaz, SaysWhatCannotBeRead) {
+  for (const int format : {4, 5, 9, 10}) {
+    expect_refusal(104, static_cast<std::uint8_t>(0x80 | format),
+                   "points of format " + std::to_string(format) + ", compressed (LAZ); only");
+  }
+  expect_refusal(104, std::uint8_t{0xC7}, "points of format 71, compressed (LAZ); only");
+  expect_refusal(record_ - 54 + 18, std::uint16_t{1}, "has no record that says how");
+  expect_refusal(record_ - 54 + 20, std::uint16_t{40}, "it ends too early");
+  expect_refusal(record_, std::uint16_t{1}, "is compressed by method 1 of LAZ");
+  expect_refusal(record_ + 2, std::uint16_t{1}, "is compressed by method 3 of LAZ");
+  expect_refusal(record_ + 12, std::uint32_t{0}, "its chunks have no points");
+  expect_refusal(record_ + 32, std::uint16_t{1}, "its items are not those of points of format 7");
+  expect_refusal(record_ + 34, std::uint16_t{11}, "its items are not those of points of format 7");
+  expect_refusal(record_ + 38, std::uint16_t{2}, "by version 2 of LAZ's items");
+  expect_refusal(105, std::uint16_t{37}, "its items are not those of points of format 7 and 37");
+}
+
+TEST_F(SpoiledLaz, SaysWhereItsChunksAreNot) {
+  expect_refusal(points_, std::uint64_t{7}, "has no table of its compressed chunks: byte 7");
+  expect_refusal(points_, std::uint64_t{1} << 60, "has no table of its compressed chunks");
+  expect_refusal(table_, std::uint32_t{1}, "its version is not 0");
+  expect_refusal(table_ + 4, std::uint32_t{2}, "has fewer chunks of compressed points");
+  expect_refusal(table_ + 4, std::uint32_t{0}, "has fewer chunks of compressed points");
+  expect_refusal(247, std::uint64_t{1} << 62, "has fewer chunks of compressed points");
+  expect_refusal(points_ + 8 + 36 + 4, std::uint32_t{1} << 31, "does not end within its chunk");
+}
+
+}  // namespace
+}  // namespace skycap::geometry
