@@ -103,6 +103,10 @@ file::Mission resolved(file::MissionFile given) {
   if (mission.flight.is_flown() && !given.gives("planner.name")) {
     mission.planner.name = file::PlannerName::skycap;
   }
+  if (mission.sensor.is_moving() && !given.gives("planner.least_gain")) {
+    // A stop costs a fifth of what a view costs that is taken for itself, and is worth as little.
+    mission.planner.skycap_stop.least_gain = 0.001;
+  }
   if (mission.sensor.lidar) read_lidar(given);
   check_scene(given);
   check_start(given);

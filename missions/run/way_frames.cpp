@@ -24,7 +24,7 @@ Vector3d direction_between(const View& from, const View& to, double share) {
   const double yaw = flight::yaw_of(from) + share * turn_between(from, to);
   const double pitch =
       flight::pitch_of(from) + share * (flight::pitch_of(to) - flight::pitch_of(from));
-  return {std::cos(pitch) * std::cos(yaw), std::cos(pitch) * std::sin(yaw), std::sin(pitch)};
+  return {std::cos(pitch) * std::sin(yaw), std::cos(pitch) * std::cos(yaw), std::sin(pitch)};
 }
 
 /// Where the vehicle is on a straight piece, `share` of its time after it began it: the profile of

@@ -81,8 +81,21 @@ TEST(WayFrames, TurnEvenlyTheShorterWayWithinTheGimbalsLimits) {
   for (std::size_t i = 0; i < frames.size(); ++i) {
     const double share = 0.5 * static_cast<double>(i + 1) / time;
     EXPECT_NEAR(frames[i].direction.norm(), 1.0, 1e-12);
-    EXPECT_NEAR(flight::yaw_of(frames[i]), (share - 0.5) * std::numbers::pi / 2.0, 1e-9);
-    EXPECT_NEAR(flight::pitch_of(frames[i]), -share * std::numbers::pi / 4.0, 1e-9);
+    const Vector3d& direction = frames[i].direction;
+    EXPECT_NEAR(std::atan2(direction.y(), direction.x()), (share - 0.5) * std::numbers::pi / 2.0,
+                1e-9);
+    EXPECT_NEAR(std::asin(direction.z()), -share * std::numbers::pi / 4.0, 1e-9);
+  }
+}
+
+TEST(WayFrames, LookAtTheSceneWhereBothViewsDo) {
+  const run::WayMotion motion(mission_with());
+  const Vector3d scene(50, 60, 5);
+  const View from = geometry::look_at({0, 0, 20}, scene),
+             to = geometry::look_at({0, 30, 20}, scene);
+  for (const View& frame : motion.frames({{from.position, to.position}, 2.0}, from, to, 1.0)) {
+    const Vector3d wanted = (scene - frame.position).normalized();
+    EXPECT_LT(std::acos(wanted.dot(frame.direction)), 0.1);
   }
 }
 
