@@ -45,6 +45,10 @@ class Planner {
   /// point of the scene: then there is nothing to plan from.
   virtual std::optional<geometry::View> next_view(const geometry::ScanSpan& scan) = 0;
 
+  /// Takes in a scan that was made on the way to the view that was proposed last, after the first
+  /// next_view(). Planners that learn only from the views that they asked for leave it out.
+  virtual void pass(const geometry::ScanSpan& /*scan*/) {}
+
   /// Proposes another view in place of the last one, which cannot be reached; nothing when there
   /// is none left. May be called repeatedly.
   virtual std::optional<geometry::View> next_view_instead() = 0;

@@ -40,11 +40,11 @@ std::optional<StopReason> broken_limit(const SurveyLimits& limits, std::size_t v
 
 /// Has the planner do something, and adds the time that it took.
 template <typename Work>
-std::optional<View> planned(SurveyedView& taken, Work work) {
+auto planned(SurveyedView& taken, Work work) {
   const double begun = processor_time();
-  std::optional<View> next = timed(taken.planning_time, work);
+  auto result = timed(taken.planning_time, work);
   taken.planning_processor_time += processor_time() - begun;
-  return next;
+  return result;
 }
 
 /// Adds what the planning time has and its parts have not to one of them.
@@ -82,10 +82,21 @@ const char* name_of(StopReason reason) {
 SurveySteps::SurveySteps(Planner& planner, const SurveyLimits& limits, SurveyPorts ports)
     : planner_(planner), limits_(limits), ports_(std::move(ports)) {}
 
+void SurveySteps::pass(const geometry::Scan& scan, double sensing_time) {
+  if (ports_.sensed_on_way) ports_.sensed_on_way(scan);
+  coming_.sensing_time += sensing_time;
+  coming_.on_way.views.push_back(geometry::view_of(scan.world_from_sensor));
+  coming_.on_way.returns += scan.points.size();
+  planned(coming_, [&] {
+    planner_.pass(scan);
+    return true;
+  });
+}
+
 std::optional<View> SurveySteps::take_in(const geometry::Scan& scan, double sensing_time) {
   if (ports_.sensed) ports_.sensed(scan);
-  SurveyedView taken;
-  taken.sensing_time = sensing_time;
+  SurveyedView taken = std::exchange(coming_, {});
+  taken.sensing_time += sensing_time;
   taken.view = geometry::view_of(scan.world_from_sensor);
   if (!views_.empty()) {
     taken.distance =
@@ -129,12 +140,33 @@ std::optional<View> SurveySteps::within_limits(std::optional<View> next) {
   return std::nullopt;
 }
 
+namespace {
+
+/// Flies from the last view to `next` and takes the scans on the way; the memory of `recycled` is
+/// used again. False if a stop came first.
+bool scanned_on_way(SurveySteps& steps, const View& next, const SurveyPorts& ports,
+                    geometry::Scan& recycled, const std::stop_token& stop) {
+  if (!ports.views_on_way || steps.views().empty()) return true;
+  for (const View& view : ports.views_on_way(steps.views().back().view, next)) {
+    if (stop.stop_requested()) return false;
+    double sensing_time = 0.0;
+    recycled = timed(sensing_time, [&] { return ports.sense_on_way(view, std::move(recycled)); });
+    steps.pass(recycled, sensing_time);
+  }
+  return true;
+}
+
+}  // namespace
+
 SurveyResult run_survey(Planner& planner, const View& first_view, const SurveyLimits& limits,
                         const SurveyPorts& ports, std::stop_token stop) {
   SurveySteps steps(planner, limits, ports);
   std::optional<View> next = first_view;
   geometry::Scan scan;
   while (next) {
+    if (!scanned_on_way(steps, *next, ports, scan, stop)) {
+      return {StopReason::interrupted, std::move(steps).views()};
+    }
     double sensing_time = 0.0;
     scan = timed(sensing_time, [&] { return ports.sense(*next, std::move(scan)); });
     try {

@@ -35,14 +35,21 @@ struct SurveyLimits {
   double time_per_view = 5.0;          ///< to stop, turn and measure [s]
 };
 
+/// Scans that were taken on the way to a view.
+struct ScansOnWay {
+  std::vector<geometry::View> views;  ///< where they were taken, in order
+  std::size_t returns = 0;            ///< points of all of them
+};
+
 /// One view of a survey: where the sensor was, and what the planner made of the scan.
 struct SurveyedView {
   geometry::View view;
+  ScansOnWay on_way{};                   ///< to it
   double distance = 0.0;                 ///< travelled up to and including this view
   std::size_t points = 0;                ///< kept so far
   std::size_t returns = 0;               ///< points of the scan
-  double sensing_time = 0.0;             ///< [s], of the sensor function
-  double planning_time = 0.0;            ///< [s], of the planner's update
+  double sensing_time = 0.0;             ///< [s], of the sensor function, on the way too
+  double planning_time = 0.0;            ///< [s], of the planner's update, on the way too
   double planning_processor_time = 0.0;  ///< [s], of this thread alone
   PlanningStep step;
 };
@@ -57,6 +64,13 @@ struct SurveyPorts {
   /// Takes a scan from a view (or as near to it as it could). The memory of `recycled`, the scan
   /// before it, may be used again. For run_survey() alone.
   std::function<geometry::Scan(const geometry::View&, geometry::Scan recycled)> sense;
+  /// Views of the scans that are taken on the way from one view to the next, in order; they are
+  /// sensed by `sense_on_way`, and `sensed_on_way` is told of each before the planner. For
+  /// run_survey() alone. Empty: none.
+  std::function<std::vector<geometry::View>(const geometry::View& from, const geometry::View& to)>
+      views_on_way;
+  std::function<geometry::Scan(const geometry::View&, geometry::Scan recycled)> sense_on_way;
+  std::function<void(const geometry::Scan&)> sensed_on_way;
   /// Told of each scan before the next view is planned. May be empty.
   std::function<void(const geometry::Scan&)> sensed;
   /// Whether the sensor can get from one place to a view. Empty: it always can.
@@ -70,6 +84,9 @@ class SurveySteps {
  public:
   /// Keeps a reference to the planner.
   SurveySteps(Planner& planner, const SurveyLimits& limits, SurveyPorts ports);
+
+  /// Takes in a scan from the way to the view that was proposed last, which took so long [s].
+  void pass(const geometry::Scan& scan, double sensing_time = 0.0);
 
   /// Takes in a scan, which took so long [s], and says where the next one is to be taken; nothing
   /// when the survey is over. Throws what the planner throws.
@@ -93,6 +110,7 @@ class SurveySteps {
   SurveyLimits limits_;
   SurveyPorts ports_;
   std::vector<SurveyedView> views_;
+  SurveyedView coming_;  ///< what is known of the next view: the scans on the way to it
   StopReason stop_reason_ = StopReason::complete;
 };
 

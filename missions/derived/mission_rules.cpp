@@ -78,6 +78,24 @@ void check_views(const file::MissionFile& given) {
   }
 }
 
+void check_capture(const file::MissionFile& given) {
+  const file::Mission& mission = given.mission;
+  if (!mission.sensor.is_moving()) {
+    if (!given.gives("sensor.frame_period")) return;
+    given.refuse("sensor.frame_period",
+                 "is for frames on the way, which sensor.capture moving takes; leave it out");
+  }
+  const char* const wants = "is moving; it needs ";
+  if (!mission.flight.is_flown()) {
+    given.refuse("sensor.capture", std::string(wants) + "a vehicle, give flight.vehicle");
+  }
+  if (mission.planner.name != file::PlannerName::skycap) {
+    given.refuse("sensor.capture",
+                 std::string(wants) +
+                     "a planner that learns from more than its own views, planner.name skycap");
+  }
+}
+
 }  // namespace
 
 void check_scene(const file::MissionFile& given) {
@@ -147,6 +165,7 @@ void check_sensor(const file::MissionFile& given) {
     given.refuse("sensor.width",
                  "times sensor.height is more than 1e8 pixels; make the image smaller");
   }
+  check_capture(given);
 }
 
 void check_flight(const file::MissionFile& given) {

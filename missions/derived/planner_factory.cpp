@@ -3,8 +3,11 @@
 #include <algorithm>
 #include <cmath>
 
+#include "flight/motion/motion.h"
+#include "flight/route/route.h"
 #include "geometry/error.h"
 #include "geometry/place/camera.h"
+#include "missions/derived/mission_flight.h"
 #include "missions/derived/mission_priors.h"
 #include "missions/derived/site.h"
 #include "missions/file/number_text.h"
@@ -51,6 +54,19 @@ survey::see::SeeConfig see_config(const file::Mission& mission, unsigned threads
   return config;
 }
 
+/// What a stop costs where the ways between stops measure too, as metres of way at the cruise
+/// speed: the rest, and the ramps of the straight pieces that lead there, two and a half in surveys
+/// of buildings.
+double price_of_stop(const file::Mission& mission) {
+  constexpr double pieces = 2.5, long_way = 100.0;
+  const flight::Motion motion(vehicle_of(mission),
+                              route_options_of(mission, Eigen::Vector3d::Zero()).conditions);
+  const double speed = motion.leg_speed(Eigen::Vector3d::UnitX());
+  const double ramps = motion.leg_time({long_way, 0.0, 0.0}) - long_way / speed;
+  return speed *
+         (hold_of(mission) + hold_after_of(mission) + pieces * (ramps + flight::corner_hold));
+}
+
 survey::skycap::SkycapConfig skycap_config(const file::Mission& mission, unsigned threads) {
   const survey::see::SeeConfig& see = mission.planner.see;
   survey::skycap::SkycapConfig config{.coverage_radius = mission.evaluation.registration_distance,
@@ -68,6 +84,7 @@ survey::skycap::SkycapConfig skycap_config(const file::Mission& mission, unsigne
   if (limits.max_minutes) config.stop.most_time = 60.0 * *limits.max_minutes;
   config.stop.speed = limits.speed;
   config.stop.time_per_view = limits.time_per_view;
+  if (mission.sensor.is_moving()) config.view_price = price_of_stop(mission);
   return config;
 }
 

@@ -103,6 +103,10 @@ file::Mission resolved(file::MissionFile given) {
   if (mission.flight.is_flown() && !given.gives("planner.name")) {
     mission.planner.name = file::PlannerName::skycap;
   }
+  if (mission.sensor.is_moving() && !given.gives("planner.least_gain")) {
+    // A stop costs a fifth of what a view costs that is taken for itself, and is worth as little.
+    mission.planner.skycap_stop.least_gain = 0.001;
+  }
   if (mission.sensor.lidar) read_lidar(given);
   check_scene(given);
   check_start(given);
@@ -137,6 +141,11 @@ file::Mission read_mission(const std::filesystem::path& file,
 file::Mission read_live_mission(const std::filesystem::path& file,
                                 const std::vector<file::KeyOverride>& overrides) {
   file::MissionFile given = file::read_mission_file(file, overrides);
+  if (given.mission.sensor.is_moving()) {
+    given.refuse("sensor.capture",
+                 "is moving, which a live survey is not: it takes in one scan for each view; leave "
+                 "it out");
+  }
   if (given.mission.scene.model.empty()) check_live(given);
   return resolved(std::move(given));
 }

@@ -58,6 +58,12 @@ enum class SensorPreset {
   high_resolution,  ///< 2400 x 1750 pixels, 60 x 40 degrees (paper §IV-A, Radcliffe Camera)
 };
 
+/// Where a sensor takes its scans while a survey is flown.
+enum class Capture {
+  stops,   ///< at the views, at rest
+  moving,  ///< and on the ways between them
+};
+
 struct SensorConfig {
   SensorPreset preset = SensorPreset::d435;
   sim::DepthCameraConfig camera = sim::d435();  ///< its noise's seed is the mission's
@@ -68,6 +74,10 @@ struct SensorConfig {
   std::optional<sim::LidarConfig> scanner;
   flight::Shutter shutter{.exposure = 0.01, .readout = 0.0};
   double settle = 0.0;  ///< at rest before a picture, for the sensor's own sake [s]
+  Capture capture = Capture::stops;
+  double frame_period = 1.0;  ///< between the scans that are taken on the way [s]
+
+  bool is_moving() const { return capture == Capture::moving; }
 };
 
 enum class PlannerName { see_plus_plus, see, skycap, rsv, rse, oa, uv, pc, af, ae };

@@ -12,6 +12,20 @@ auto noise(auto member) {
   return [member](Mission & m) -> auto& { return m.sensor.camera.noise.*member; };
 }
 
+/// The key `sensor.frame_period`, which means nothing without frames on the way.
+Key frame_period_key() {
+  Key key = number_key(
+      "sensor.frame_period", "s", between(0.05, 3600),
+      [](Mission & m) -> auto& { return m.sensor.frame_period; },
+      "Time between the frames that are taken on the way, with sensor.capture moving. The camera "
+      "turns from each to the next, and stands while it is exposed.");
+  key.fallback = "1 s";
+  key.get = [get = key.get](const Mission& mission) -> std::optional<KeyValue> {
+    return mission.sensor.is_moving() ? get(mission) : std::nullopt;
+  };
+  return key;
+}
+
 }  // namespace
 
 std::vector<Key> sensor_keys() {
@@ -60,6 +74,12 @@ std::vector<Key> sensor_keys() {
           "sensor.settle", "s", between(0, 3600),
           [](Mission & m) -> auto& { return m.sensor.settle; },
           "Least time at rest before the capture; flight.hold may ask for more."),
+      choice_key(
+          "sensor.capture", {"stops", "moving"},
+          [](Mission & m) -> auto& { return m.sensor.capture; },
+          "Whether a flown survey measures at its views only, or on the ways between them too; "
+          "moving needs a vehicle and the planner skycap."),
+      frame_period_key(),
       number_key("sensor.noise.sigma", "m", between(0, 1e3), noise(&sim::NoiseConfig::sigma),
                  "Standard deviation of the Gaussian noise of the measured points."),
       choice_key("sensor.noise.direction", {"isotropic", "along_ray"},

@@ -8,6 +8,7 @@
 #include "missions/package/anew_mission.h"
 #include "missions/package/fleet_report.h"
 #include "missions/package/ground_json.h"
+#include "missions/run/way_frames.h"
 
 namespace skycap::missions::package {
 namespace {
@@ -36,6 +37,21 @@ std::string pictures_text(const SurveyMission& flight) {
 }
 
 }  // namespace
+
+std::string flown_text(const file::Mission& mission, const run::SurveyRecord& record) {
+  const run::FlownSurvey& flown = record.flown.value();
+  std::string text =
+      fmt::format("  survey    {:.1f} m in {:.1f} min, from the pad to the last view",
+                  flown.length(), flown.time / 60.0);
+  if (mission.sensor.is_moving()) {
+    const flight::PictureBounds bounds = run::moving_bounds_of(mission);
+    text += fmt::format("; {} frames on the way, blurred by at most {:.2f} px",
+                        record.frames_on_way(), bounds.blur_px);
+    if (bounds.shear_px > 0.0) text += fmt::format(" and sheared by {:.2f} px", bounds.shear_px);
+    text += fmt::format(" at {:.1f} m", bounds.distance);
+  }
+  return text + "\n";
+}
 
 std::string flight_text(const SurveyMission& flight) {
   if (!flight.failure.empty()) return "  flight    no route: " + flight.failure + "\n";

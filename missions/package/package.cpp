@@ -69,12 +69,23 @@ std::vector<Way> ways_of(const run::FlownSurvey& flown) {
   return ways;
 }
 
+/// By number of the scan.
 std::vector<Eigen::Vector3d> sensor_positions(const run::SurveyRecord& record) {
   std::vector<Eigen::Vector3d> positions;
+  for (const run::TakenScan& scan : record.scans) positions.push_back(scan.position);
+  if (!positions.empty()) return positions;
   for (const run::JudgedView& judged : record.views) {
     positions.push_back(judged.surveyed.view.position);
   }
   return positions;
+}
+
+/// For each point of the cloud, the view that it was measured at, or on the way to.
+std::vector<std::uint32_t> views_of_points(const run::SurveyRecord& record) {
+  std::vector<std::uint32_t> views = record.cloud.views;
+  if (record.scans.empty()) return views;
+  for (std::uint32_t& view : views) view = record.scans[view].view;
+  return views;
 }
 
 /// The route of a flown survey, and how its views were chosen.
@@ -196,10 +207,10 @@ std::optional<SurveyMission> stage_package(const file::Mission& mission,
   const double radius = 2.0 * mission.planner.see.resolution_radius;
   const std::vector<Eigen::Vector3f> normals =
       cloud_normals(record.cloud, sensor_positions(record), radius, threads, stop);
-  geometry::write_cloud(folder.stage("cloud.ply"), {.positions = record.cloud.positions,
-                                                    .normals = normals,
-                                                    .views = record.cloud.views,
-                                                    .colours = {}});
+  const std::vector<std::uint32_t> views = views_of_points(record);
+  geometry::write_cloud(
+      folder.stage("cloud.ply"),
+      {.positions = record.cloud.positions, .normals = normals, .views = views, .colours = {}});
   if (const auto patches = known_surface(record, coverage); !patches.empty()) {
     geometry::write_cloud(folder.stage(coverage_name), columns_of(coverage_map(patches)));
   }

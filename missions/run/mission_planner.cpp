@@ -96,6 +96,12 @@ survey::SurveyPorts MissionPlanner::ports() {
       impl.flight->fly();
       impl.flight->take_in(scan);
     };
+    ports.sensed_on_way = [&impl](const geometry::Scan& scan) { impl.flight->take_in(scan); };
+  }
+  if (impl.mission.sensor.is_moving()) {
+    ports.views_on_way = [&impl](const geometry::View& from, const geometry::View& to) {
+      return impl.flight->frames(from, to);
+    };
   }
   if (impl.flight || impl.is_gated) {
     ports.can_reach = [&impl](const Eigen::Vector3d& from, const geometry::View& view) {
@@ -129,7 +135,10 @@ void MissionPlanner::finish(SurveyRecord& record) {
     record.surface = skycap->known_surface(surface_targets);
   }
   record.cloud = impl_->planner->release_cloud();
-  if (impl_->flight) record.flown = impl_->flight->finish();
+  if (!impl_->flight) return;
+  std::vector<geometry::View> views;
+  for (const JudgedView& judged : record.views) views.push_back(judged.surveyed.view);
+  record.flown = impl_->flight->finish(views);
 }
 
 }  // namespace skycap::missions::run

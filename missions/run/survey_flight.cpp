@@ -13,6 +13,7 @@
 #include "missions/derived/mission_flight.h"
 #include "missions/derived/pad_grounds.h"
 #include "missions/file/number_text.h"
+#include "missions/run/way_frames.h"
 
 namespace skycap::missions::run {
 
@@ -36,7 +37,9 @@ struct SurveyFlight::Impl {
         rules(derived::flight_rules(mission)),
         space({measured.get(), &rules}),
         finder(space, derived::clearance_of(mission).total(),
-               derived::route_options_of(mission, {}).path) {}
+               derived::route_options_of(mission, {}).path),
+        motion(mission),
+        frame_period(mission.sensor.frame_period) {}
 
   std::optional<FlownLeg> proven(std::vector<Vector3d> points) const {
     FlownLeg way{std::move(points), finder.clearance() + flight::reported_surplus};
@@ -62,6 +65,8 @@ struct SurveyFlight::Impl {
   flight::KnownSpace rules;
   flight::JointSpace space;
   flight::PathFinder finder;
+  WayMotion motion;
+  double frame_period;
   FlownLeg leg;  ///< that the next fly() takes
   Vector3d above_pad = Vector3d::Zero();
   std::vector<flight::PadScan> pads;
@@ -116,6 +121,11 @@ bool SurveyFlight::can_reach(const Vector3d& from, const geometry::View& to) {
 
 const FlownLeg& SurveyFlight::way() const { return impl_->leg; }
 
+std::vector<geometry::View> SurveyFlight::frames(const geometry::View& from,
+                                                 const geometry::View& to) const {
+  return impl_->motion.frames(impl_->leg, from, to, impl_->frame_period);
+}
+
 std::optional<FlownLeg> SurveyFlight::find_way(const Vector3d& from, const Vector3d& to) {
   return impl_->find_way(from, to);
 }
@@ -139,7 +149,8 @@ void SurveyFlight::take_in(const geometry::Scan& scan) {
   impl_->finder.forget();
 }
 
-FlownSurvey SurveyFlight::finish() {
+FlownSurvey SurveyFlight::finish(const std::vector<geometry::View>& views) {
+  impl_->survey.time = impl_->motion.survey_time(impl_->survey.legs, views);
   impl_->survey.measured = std::move(impl_->measured);
   for (const flight::PadScan& pad : impl_->pads) {
     if (const auto ground = pad.ground()) impl_->survey.grounds.push_back(*ground);

@@ -31,6 +31,8 @@ struct FlownSurvey {
   std::size_t refused = 0;     ///< proposed views that could not be reached
   std::vector<flight::PadGround> grounds{};  ///< of pad and rally points, where it was measured
 
+  double time = 0.0;  ///< from the pad to the last view [s], see WayMotion::survey_time()
+
   double length() const;
   double min_clearance() const;  ///< of all legs
 };
@@ -47,6 +49,9 @@ class SurveyFlight {
 
   /// The way that the last can_reach() found.
   const FlownLeg& way() const;
+
+  /// Views of the frames that a camera which measures on the way takes there.
+  std::vector<geometry::View> frames(const geometry::View& from, const geometry::View& to) const;
 
   /// A way from one place to another that is proven free with what is known at present; nothing if
   /// none is found. What can_reach() found stands.
@@ -67,8 +72,8 @@ class SurveyFlight {
   /// Learns from a scan what is free.
   void take_in(const geometry::Scan& scan);
 
-  /// The survey so far; further calls on this object are not allowed.
-  FlownSurvey finish();
+  /// The survey with these views; further calls on this object are not allowed.
+  FlownSurvey finish(const std::vector<geometry::View>& views);
 
  private:
   struct Impl;

@@ -14,6 +14,12 @@ double sum_over(const std::vector<JudgedView>& views, Field field) {
 
 }  // namespace
 
+std::size_t SurveyRecord::frames_on_way() const {
+  std::size_t count = 0;
+  for (const JudgedView& judged : views) count += judged.surveyed.on_way.views.size();
+  return count;
+}
+
 double SurveyRecord::planning_time() const {
   return sum_over(views, &survey::SurveyedView::planning_time);
 }

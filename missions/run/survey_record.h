@@ -7,6 +7,8 @@
 #include <string>
 #include <vector>
 
+#include <Eigen/Core>
+
 #include "geometry/points/point_cloud.h"
 #include "missions/run/survey_flight.h"
 #include "survey/skycap/skycap_planner.h"
@@ -20,6 +22,12 @@ struct JudgedView {
   double coverage = 0.0;  ///< NaN where nobody knows the truth: of a live survey
 };
 
+/// A scan of a survey.
+struct TakenScan {
+  std::uint32_t view = 0;  ///< number of the view that it was taken at, or on the way to
+  Eigen::Vector3d position = Eigen::Vector3d::Zero();
+};
+
 /// What a survey left behind.
 struct SurveyRecord {
   std::uint64_t seed = 1;
@@ -27,6 +35,8 @@ struct SurveyRecord {
   survey::StopReason stop_reason = survey::StopReason::complete;
   std::vector<JudgedView> views;
   geometry::PointCloud cloud;
+  /// The scans that the cloud's points are from; without any, each is a view's.
+  std::vector<TakenScan> scans{};
   std::vector<std::uint8_t> is_covered;  ///< for each of the scene's samples
   std::optional<FlownSurvey> flown;      ///< of a mission with a vehicle
 
@@ -39,6 +49,7 @@ struct SurveyRecord {
   bool is_complete() const { return stop_reason == survey::StopReason::complete; }
   double coverage() const { return views.empty() ? 0.0 : views.back().coverage; }
   double distance() const { return views.empty() ? 0.0 : views.back().surveyed.distance; }
+  std::size_t frames_on_way() const;
   double planning_time() const;
   double sensing_time() const;
 };

@@ -36,8 +36,10 @@ SurveyRecord run_survey(const file::Mission& mission, const scene::SurveyScene& 
   std::size_t points_judged = 0;
   survey::SurveyPorts ports = guided.ports();
   ports.sense = [&](const geometry::View& view, geometry::Scan recycled) {
+    record.scans.push_back({static_cast<std::uint32_t>(record.views.size()), view.position});
     return sensor.scan(scene.scene(), view, frame++, threads, std::move(recycled));
   };
+  ports.sense_on_way = ports.sense;
   if (!mission.flight.is_flown()) {  // else ways there are proven as measured
     ports.can_reach = [&scene, allows = std::move(ports.can_reach)](const Eigen::Vector3d& from,
                                                                     const geometry::View& view) {

@@ -76,6 +76,7 @@ std::string summary_text(const file::Mission& mission, const run::SurveyRecord& 
     is_first = false;
   }
   text += ")\n";
+  if (record.flown) text += package::flown_text(mission, record);
   if (flight) text += package::flight_text(*flight);
   return text + "  results   " + folder.string() + "\n";
 }

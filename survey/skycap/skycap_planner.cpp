@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "geometry/error.h"
 #include "survey/skycap/block_image.h"
@@ -118,6 +119,7 @@ struct SkycapPlanner::Impl {
   }
 
   void take_in(const ScanSpan& scan) {
+    if (passed > 0) predict();  // what the view promised has been seen in part on the way there
     const std::vector<BlockImage> images = reduce(scan);
     learn_noise(images);
     const View view = geometry::view_of(scan.world_from_sensor);
@@ -128,20 +130,33 @@ struct SkycapPlanner::Impl {
       const double area = field->targets()[sight.target].weight * sight.covered_share;
       (field->is_patch(sight.target) ? promise.unseen : promise.seen) += area;
     }
-    const double covered_before = map->covered_area();
     const std::vector<float> hazards = map->surfels().hazards;
     const std::size_t first_new = map->surfels().size();
+    const double newly_covered = add(images);
+    grade(expected, hazards, first_new);
+    learn_yield(promise, newly_covered);
+    const double with_way = newly_covered + std::exchange(covered_on_way, 0.0);
+    idle_scans = with_way < idle_gain * reference_area() ? idle_scans + 1 : 0;
+  }
 
+  /// Adds a scan to what is known; returns the area that it covers newly.
+  double add(const std::vector<BlockImage>& images) {
+    const double covered_before = map->covered_area();
     const auto noise_along = static_cast<float>(dose->noise().across(1.0));
     for (const BlockImage& image : images) {
       if (config.ideas.free_space) space->add(image, noise_along);
       map->add(image, *dose, blocks.jump, region);
     }
-    grade(expected, hazards, first_new);
     const double newly_covered = map->covered_area() - covered_before;
-    learn_yield(promise, newly_covered);
     most_covered_at_once = std::max(most_covered_at_once, newly_covered);
-    idle_scans = newly_covered < idle_gain * reference_area() ? idle_scans + 1 : 0;
+    return newly_covered;
+  }
+
+  /// Guesses where the surface goes on, and lists all that a view could cover.
+  void predict() {
+    passed = 0;
+    unseen->predict(*map, *space, region);
+    field.emplace(*map, unseen->patches(), camera, *dose, gain, unseen->prior_occluders());
   }
 
   /// Area that a view was expected to cover newly.
@@ -267,11 +282,27 @@ struct SkycapPlanner::Impl {
     return map->covered_area() / (map->area() + guessed_area());
   }
 
+  std::size_t insert(const ScanSpan& scan) {
+    return kept.insert(scan, camera, region, static_cast<std::uint32_t>(taken++), config.threads);
+  }
+
+  void pass(const ScanSpan& scan) {
+    std::vector<PartTime> times;
+    Stopwatch stopwatch(times);
+    on_way.points_new += insert(scan);
+    stopwatch.lap("insert");
+    const std::vector<BlockImage> images = reduce(scan);
+    learn_noise(images);
+    covered_on_way += add(images);
+    ++passed;
+    stopwatch.lap("update");
+    on_way.times.insert(on_way.times.end(), times.begin(), times.end());
+  }
+
   std::optional<View> next_view(const ScanSpan& scan) {
     step = {};
     Stopwatch stopwatch(step.times);
-    step.points_new =
-        kept.insert(scan, camera, region, static_cast<std::uint32_t>(scans), config.threads);
+    step.points_new = insert(scan);
     if (kept.cloud().size() == 0) {
       throw Error(ErrorKind::bad_geometry,
                   "the first scan holds no point of the scene; start from a view that sees it");
@@ -285,13 +316,24 @@ struct SkycapPlanner::Impl {
     refused.clear();
     proposed.reset();
     stopwatch.lap("update");
-    unseen->predict(*map, *space, region);
-    field.emplace(*map, unseen->patches(), camera, *dose, gain, unseen->prior_occluders());
+    predict();
     step.frontiers = unseen->patches().size();
     stopwatch.lap("predict");
     auto view = choose();
     stopwatch.lap("choose");
+    book_way();
     return view;
+  }
+
+  /// Counts what was done with the scans on the way as done with the view's.
+  void book_way() {
+    step.points_new += on_way.points_new;
+    for (PartTime& time : step.times) {
+      for (const PartTime& earlier : on_way.times) {
+        if (earlier.part == time.part) time.seconds += earlier.seconds;
+      }
+    }
+    on_way = {};
   }
 
   SurveyBelief belief() const;
@@ -305,6 +347,10 @@ struct SkycapPlanner::Impl {
 
   SpacedCloud kept;
   PlanningStep step;
+  PlanningStep on_way;          ///< of the scans since the last view
+  std::size_t taken = 0;        ///< scans, on ways too
+  std::size_t passed = 0;       ///< scans that the field does not know yet
+  double covered_on_way = 0.0;  ///< newly, since the last view [m^2]
 
   BlockSettings blocks;
   double least_jump = 0.0;
@@ -368,6 +414,8 @@ SkycapPlanner::~SkycapPlanner() = default;
 std::optional<View> SkycapPlanner::next_view(const ScanSpan& scan) {
   return impl_->next_view(scan);
 }
+
+void SkycapPlanner::pass(const ScanSpan& scan) { impl_->pass(scan); }
 
 std::optional<View> SkycapPlanner::next_view_instead() {
   if (impl_->proposed) impl_->refused.push_back(*impl_->proposed);

@@ -42,6 +42,9 @@ class SkycapPlanner final : public Planner {
   /// of the camera, about as densely as its pixels lie, and maybe elsewhere too. Views are chosen
   /// by what the camera would see.
   std::optional<geometry::View> next_view(const geometry::ScanSpan& scan) override;
+  /// As next_view(), but proposes nothing, and what the scan shows is not held against what views
+  /// promised.
+  void pass(const geometry::ScanSpan& scan) override;
   std::optional<geometry::View> next_view_instead() override;
   const geometry::PointCloud& cloud() const override;
   geometry::PointCloud release_cloud() override;

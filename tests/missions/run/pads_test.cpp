@@ -176,7 +176,7 @@ TEST(Pads, AreMeasuredByTheSurveyAndRefusedInItsRoute) {
   run::SurveyFlight flight(mission, geometry::look_at({-30, 0, 8}, {0, 0, 5}));
   flight.take_in(scan_of_ramp(geometry::Camera(mission.sensor.camera.camera),
                               geometry::look_at({-75, -8, 8}, {-75, 0, 0}), slope));
-  const run::FlownSurvey flown = flight.finish();
+  const run::FlownSurvey flown = flight.finish({});
   ASSERT_EQ(flown.grounds.size(), 1U);
   EXPECT_NEAR(flown.grounds[0].slope, 13.0 * radians_per_degree, 0.5 * radians_per_degree);
 

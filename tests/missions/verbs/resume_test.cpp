@@ -56,6 +56,13 @@ class ResumedPlan : public testing::Test {
   fs::path journal_ = folder_.path() / "part" / "survey.journal";
 };
 
+/// One that measures between its views, too.
+std::string moving_mission() {
+  std::string text = flown_mission();
+  const std::string sensor = "sensor: {";
+  return text.insert(text.find(sensor) + sensor.size(), "capture: moving, ");
+}
+
 TEST_F(ResumedPlan, EndsAsIfNothingHadHappened) {
   struct Case {
     std::string mission, planner;
@@ -63,7 +70,8 @@ TEST_F(ResumedPlan, EndsAsIfNothingHadHappened) {
   };
   for (const auto& [mission, planner, views] : {Case{quick_mission(), "see++", 3},
                                                 {quick_mission(), "oa", 4},
-                                                {flown_mission(), "skycap", 2}}) {
+                                                {flown_mission(), "skycap", 2},
+                                                {moving_mission(), "skycap", 2}}) {
     folder_.write("m.yaml", mission);
     const std::vector<std::string> more{"--planner", planner, "--max-views",
                                         std::to_string(2 * views)};

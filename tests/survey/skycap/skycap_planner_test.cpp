@@ -91,6 +91,29 @@ TEST_P(SkycapPlannerWithNoise, CoversTheSceneAndStopsByItself) {
 
 INSTANTIATE_TEST_SUITE_P(Sigmas, SkycapPlannerWithNoise, testing::Values(0.0, 0.01, 0.03));
 
+// What was seen on the way need not be looked at again.
+TEST(SkycapPlanner, LearnsFromScansOnTheWay) {
+  skycap::SkycapPlanner standing(small_config(), camera), moving(small_config(), camera);
+  const Flight stops = fly(standing, two_balls, 0.01);
+  std::size_t views = 0;
+  View last = start;
+  for (std::optional<View> next = start; next && views < 40; ++views) {
+    for (double share = 0.25; views > 0 && share < 1.0; share += 0.25) {
+      Vector3d place = (1.0 - share) * last.position + share * next->position;
+      if (place.norm() < 1.5) place *= 1.5 / place.norm();  // round the balls
+      moving.pass(tests::scan_spheres(two_balls, camera, geometry::look_at(place, {0.3, 0, 0}),
+                                      0.01, 1000 * views + static_cast<unsigned>(4 * share)));
+    }
+    last = *next;
+    next = moving.next_view(tests::scan_spheres(two_balls, camera, *next, 0.01, 100 + views));
+    for (const PartTime& time : moving.last_step().times) EXPECT_GE(time.seconds, 0.0);
+  }
+  EXPECT_LT(views, stops.views.size());
+  const double coverage = true_coverage(moving, two_balls, 0.02);
+  EXPECT_GT(coverage, 0.97);
+  EXPECT_NEAR(moving.predicted_coverage(), coverage, 0.05);
+}
+
 TEST(SkycapPlanner, RepeatsItselfBitForBitOnAnyNumberOfThreads) {
   skycap::SkycapConfig config = small_config();
   skycap::SkycapPlanner one(config, camera);

@@ -1,0 +1,103 @@
+#include "missions/run/way_frames.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "flight/route/route.h"
+#include "geometry/place/camera.h"
+#include "missions/derived/mission_flight.h"
+#include "missions/derived/site.h"
+
+namespace skycap::missions::run {
+namespace {
+
+using Eigen::Vector3d;
+using geometry::View;
+
+double turn_between(const View& from, const View& to) {
+  return std::remainder(flight::yaw_of(to) - flight::yaw_of(from), 2.0 * std::numbers::pi);
+}
+
+/// What share of the turn from one view to the other leads to.
+Vector3d direction_between(const View& from, const View& to, double share) {
+  const double yaw = flight::yaw_of(from) + share * turn_between(from, to);
+  const double pitch =
+      flight::pitch_of(from) + share * (flight::pitch_of(to) - flight::pitch_of(from));
+  return {std::cos(pitch) * std::sin(yaw), std::cos(pitch) * std::cos(yaw), std::sin(pitch)};
+}
+
+/// Where the vehicle is on a straight piece, `share` of its time after it began it: the profile of
+/// no autopilot differs much from that of seven phases.
+Vector3d place_on(const Vector3d& begin, const Vector3d& end, const flight::Motion& motion,
+                  double share) {
+  const double distance = (end - begin).norm();
+  const Vector3d direction = (end - begin) / distance;
+  const double speed = motion.leg_speed(direction),
+               acceleration = motion.leg_acceleration(direction);
+  const double jerk = motion.vehicle().mode.jerk;
+  const double all = flight::rest_to_rest_time(distance, speed, acceleration, jerk);
+  const auto state = flight::rest_to_rest_state(distance, speed, acceleration, jerk, share * all);
+  return begin + std::min(state.distance, distance) * direction;
+}
+
+}  // namespace
+
+WayMotion::WayMotion(const file::Mission& mission)
+    : motion_(derived::vehicle_of(mission),
+              derived::route_options_of(mission, Vector3d::Zero()).conditions),
+      climb_(derived::takeoff_climb_of(mission)),
+      rest_(std::max(flight::corner_hold, derived::hold_of(mission)) +
+            derived::hold_after_of(mission)) {}
+
+double WayMotion::time(const FlownLeg& way, const View& from, const View& to) const {
+  double time = 0.0;
+  for (std::size_t i = 1; i < way.points.size(); ++i) {
+    const double piece = motion_.leg_time(way.points[i] - way.points[i - 1]);
+    const bool is_last = i + 1 == way.points.size();
+    time += is_last ? motion_.aimed_time(piece, turn_between(from, to),
+                                         flight::pitch_of(to) - flight::pitch_of(from))
+                    : piece + flight::corner_hold;
+  }
+  return time;
+}
+
+std::vector<View> WayMotion::frames(const FlownLeg& way, const View& from, const View& to,
+                                    double period) const {
+  const double all = time(way, from, to);
+  std::vector<View> frames;
+  std::size_t number = 1;
+  double begun = 0.0;
+  for (std::size_t i = 1; i < way.points.size(); ++i) {
+    const Vector3d &begin = way.points[i - 1], &end = way.points[i];
+    const double piece = motion_.leg_time(end - begin);
+    while (piece > 0.0) {
+      const double at = static_cast<double>(number) * period;
+      if (at > begun + piece || at > all - 0.5 * period) break;
+      frames.push_back({place_on(begin, end, motion_, (at - begun) / piece),
+                        direction_between(from, to, at / all)});
+      ++number;
+    }
+    begun += piece + flight::corner_hold;
+    // A frame that falls into the stop at a corner is taken when the stop is over.
+  }
+  return frames;
+}
+
+double WayMotion::survey_time(const std::vector<FlownLeg>& legs,
+                              const std::vector<View>& views) const {
+  double time = motion_.takeoff_time(climb_) + flight::corner_hold;
+  for (std::size_t i = 0; i < views.size(); ++i) {
+    time += this->time(legs[i], i > 0 ? views[i - 1] : views[i], views[i]) + rest_;
+  }
+  return time;
+}
+
+flight::PictureBounds moving_bounds_of(const file::Mission& mission) {
+  flight::Vehicle vehicle = derived::vehicle_of(mission);
+  vehicle.sway_speed += mission.flight.cruise_speed;
+  return picture_bounds(vehicle, geometry::Camera(mission.sensor.camera.camera),
+                        mission.sensor.shutter, derived::view_distance_of(mission));
+}
+
+}  // namespace skycap::missions::run

@@ -1,0 +1,45 @@
+/// A survey's ways in time, and the frames of a camera that also measures on them.
+///
+/// The camera turns evenly from one view to the next, in yaw and in pitch, so that it never leaves
+/// the gimbal's limits; it turns between frames and stands while it is exposed.
+#pragma once
+
+#include <vector>
+
+#include "flight/motion/motion.h"
+#include "flight/motion/picture_bounds.h"
+#include "geometry/place/pose.h"
+#include "missions/file/mission.h"
+#include "missions/run/survey_flight.h"
+
+namespace skycap::missions::run {
+
+class WayMotion {
+ public:
+  /// Of the mission's vehicle, in its weather.
+  explicit WayMotion(const file::Mission& mission);
+
+  /// From leaving a view until the camera looks along `to` at the way's end, with a stop in each
+  /// corner [s].
+  double time(const FlownLeg& way, const geometry::View& from, const geometry::View& to) const;
+
+  /// Views of the frames on the way, one every `period` [s] from the start, none within half of one
+  /// of the end. Empty for a way of no length.
+  std::vector<geometry::View> frames(const FlownLeg& way, const geometry::View& from,
+                                     const geometry::View& to, double period) const;
+
+  /// How long a survey takes from the pad to its last view [s]: take-off, ways, and rests at views.
+  /// The way home is not part of it. `legs` as in FlownSurvey.
+  double survey_time(const std::vector<FlownLeg>& legs,
+                     const std::vector<geometry::View>& views) const;
+
+ private:
+  flight::Motion motion_;
+  double climb_;  ///< from the pad to where the first way begins [m]
+  double rest_;   ///< at a view [s]
+};
+
+/// How sharp frames are that a camera takes at the cruise speed.
+flight::PictureBounds moving_bounds_of(const file::Mission& mission);
+
+}  // namespace skycap::missions::run
