@@ -49,6 +49,8 @@ std::string flown_text(const file::Mission& mission, const run::SurveyRecord& re
                         record.frames_on_way(), bounds.blur_px);
     if (bounds.shear_px > 0.0) text += fmt::format(" and sheared by {:.2f} px", bounds.shear_px);
     text += fmt::format(" at {:.1f} m", bounds.distance);
+    if (!bounds.is_sharp()) text += ": more than a pixel; shorten sensor.exposure";
+    text += "\n            the mission below takes pictures at its views only, and covers less";
   }
   return text + "\n";
 }

@@ -166,7 +166,8 @@ Opened open_file(const fs::path& file, Role role) {
   }
   if (beginning.empty()) fail_file(file, "is empty");
   if (beginning.starts_with("ASTM-E57")) {
-    fail_file(file, "is E57, which is not read; convert it to LAS or LAZ, as with CloudCompare or PDAL");
+    fail_file(file,
+              "is E57, which is not read; convert it to LAS or LAZ, as with CloudCompare or PDAL");
   }
   const std::string ending = ending_of(file);
   Opened opened{Format::mesh, {}};

