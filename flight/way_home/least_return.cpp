@@ -1,6 +1,7 @@
 #include "flight/way_home/least_return.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdio>
 
@@ -35,11 +36,16 @@ double top_of(const std::vector<Segment>& legs, const ReturnLaw& law) {
   return top;
 }
 
+/// The least radii of the proof's balls, one after the other: small ones take long where it is
+/// tight, and the last misses clearances of 2 mm [m].
+constexpr std::array<double, 3> slacks{return_slack, 0.01, 0.002};
+
 /// Proves height after height, and first the leg that has failed last.
 class LeastReturn {
  public:
-  LeastReturn(const FreeSpace& space, const std::vector<Segment>& legs, double clearance)
-      : space_(space), legs_(legs), clearance_(clearance), order_(legs.size()) {
+  LeastReturn(const FreeSpace& space, const std::vector<Segment>& legs, double clearance,
+              double slack)
+      : space_(space), legs_(legs), clearance_(clearance), slack_(slack), order_(legs.size()) {
     for (std::size_t i = 0; i < order_.size(); ++i) order_[i] = i;
   }
 
@@ -47,14 +53,15 @@ class LeastReturn {
     Returns returns{.law = law, .height = law.level - law.landings.front().z()};
     returns.nearest = prove_landings(space_, law, top_of(legs_, law), clearance_);
     queries_ += returns.nearest.queries;
-    if (!returns.nearest.is_proven) return failure(returns.nearest);
+    if (!returns.nearest.is_proven) return failure(returns.nearest, false);
     for (std::size_t i = 0; i < order_.size(); ++i) {
-      const ReturnProof proof = prove_returns(space_, legs_[order_[i]], law, clearance_);
+      const ReturnProof proof = prove_returns(space_, legs_[order_[i]], law, clearance_, slack_);
       queries_ += proof.queries;
       if (!proof.is_proven) {
         std::rotate(order_.begin(), order_.begin() + static_cast<std::ptrdiff_t>(i),
                     order_.begin() + static_cast<std::ptrdiff_t>(i) + 1);
-        return failure(proof);
+        const Segment place{proof.from, proof.from};
+        return failure(proof, prove_returns(space_, place, law, clearance_).is_proven);
       }
       if (proof.clearance < returns.nearest.clearance) returns.nearest = proof;
     }
@@ -63,43 +70,60 @@ class LeastReturn {
     if (returns.nearest.closest.kind != ObstacleKind::none) {
       returns.obstacle = space_.name(returns.nearest.closest);
     }
-    return {returns, ""};
+    return {returns, "", false};
   }
 
  private:
-  ReturnSearch failure(const ReturnProof& proof) const {
-    return {std::nullopt, describe(proof, space_)};
+  ReturnSearch failure(const ReturnProof& proof, bool is_by_slack) const {
+    return {std::nullopt, describe(proof, space_), is_by_slack};
   }
 
   const FreeSpace& space_;
   const std::vector<Segment>& legs_;
-  double clearance_;
+  double clearance_, slack_;
   std::vector<std::size_t> order_;  ///< of the legs
   std::size_t queries_ = 0;
 };
+
+/// The first of the heights that is proven.
+ReturnSearch least_proven(LeastReturn search, const std::vector<Segment>& legs, ReturnLaw law,
+                          double highest) {
+  const double ground = law.landings.front().z();
+  char text[96];
+  std::snprintf(text, sizeof text, "no height of return fits below %.1f m", highest);
+  ReturnSearch result{.found = std::nullopt, .why = text};
+  double top = ground;
+  for (const Segment& leg : legs) top = std::max({top, leg.from.z(), leg.to.z()});
+  for (const double height : heights_to_try(least_height(law), top - ground, highest - ground)) {
+    law.level = ground + height;
+    const bool failed_by_slack = result.fails_by_slack;
+    result = search.prove(law);
+    if (result.found) return result;
+    result.fails_by_slack = result.fails_by_slack || failed_by_slack;
+    std::snprintf(text, sizeof text, "at a height of return of %g m ", height);
+    result.why = text + result.why;
+  }
+  return result;
+}
 
 }  // namespace
 
 ReturnSearch prove_returns(const FreeSpace& space, const std::vector<Segment>& legs,
                            const ReturnLaw& law, double clearance) {
-  return LeastReturn(space, legs, clearance).prove(law);
+  ReturnSearch result;
+  for (const double slack : slacks) {
+    result = LeastReturn(space, legs, clearance, slack).prove(law);
+    if (!result.fails_by_slack) break;
+  }
+  return result;
 }
 
-ReturnSearch least_return(const FreeSpace& space, const std::vector<Segment>& legs, ReturnLaw law,
-                          double highest, double clearance) {
-  const double ground = law.landings.front().z();
-  LeastReturn search(space, legs, clearance);
-  char text[96];
-  std::snprintf(text, sizeof text, "no height of return fits below %.1f m", highest);
-  ReturnSearch result{std::nullopt, text};
-  double top = ground;
-  for (const Segment& leg : legs) top = std::max({top, leg.from.z(), leg.to.z()});
-  for (const double height : heights_to_try(least_height(law), top - ground, highest - ground)) {
-    law.level = ground + height;
-    result = search.prove(law);
-    if (result.found) return result;
-    std::snprintf(text, sizeof text, "at a height of return of %g m ", height);
-    result.why = text + result.why;
+ReturnSearch least_return(const FreeSpace& space, const std::vector<Segment>& legs,
+                          const ReturnLaw& law, double highest, double clearance) {
+  ReturnSearch result;
+  for (const double slack : slacks) {
+    result = least_proven({space, legs, clearance, slack}, legs, law, highest);
+    if (!result.fails_by_slack) break;
   }
   return result;
 }

@@ -26,6 +26,8 @@ struct Returns {
 struct ReturnSearch {
   std::optional<Returns> found;
   std::string why;  ///< what is in the way of the last height tried, if none is found
+  /// Whether the clearance is kept where the proof failed, at some height: by less than its balls.
+  bool fails_by_slack = false;
 };
 
 /// DJI's applications take no lower height of return [m above the pad].
@@ -35,10 +37,13 @@ inline constexpr double least_of_dji = 20.0;
 /// returns from every point of all legs are proven at the clearance, up to the height `highest`
 /// (z) or, if the legs are that high, a metre above them. Heights are tried one by one, for a
 /// greater one need not be safer where the airspace has a ceiling. `law.level` is not used.
-ReturnSearch least_return(const FreeSpace& space, const std::vector<Segment>& legs, ReturnLaw law,
-                          double highest, double clearance);
+///
+/// Routes are planned close to what is proven, by balls that lie elsewhere than those of this
+/// proof: where it fails by no more than their size it is tried again with smaller ones.
+ReturnSearch least_return(const FreeSpace& space, const std::vector<Segment>& legs,
+                          const ReturnLaw& law, double highest, double clearance);
 
-/// The proof at the height that the law has.
+/// The proof at the height that the law has; with smaller balls, too, if need be.
 ReturnSearch prove_returns(const FreeSpace& space, const std::vector<Segment>& legs,
                            const ReturnLaw& law, double clearance);
 

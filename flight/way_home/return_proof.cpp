@@ -37,7 +37,7 @@ struct Interval {
 }  // namespace
 
 ReturnProof prove_returns(const FreeSpace& space, const Segment& leg, const ReturnLaw& law,
-                          double clearance) {
+                          double clearance, double slack) {
   const double length = leg.length();
   ReturnProof all;
   all.clearance = clearance + return_surplus;
@@ -53,13 +53,13 @@ ReturnProof prove_returns(const FreeSpace& space, const Segment& leg, const Retu
     found.queries += all.queries;
     const double covered = found.clearance - clearance;  // so far around it the returns are free
     all.queries = found.queries;
-    const double needed = std::min(reach, return_slack);
+    const double needed = std::min(reach, slack);
     if (covered < needed) {
       // Pieces that are flown from other places than this one decide nothing about it.
       const ReturnProof here =
           nearest_of(space, return_pieces(law, place, 0.0), place, clearance, reach);
       all.queries += here.queries;
-      if (reach > return_slack && here.clearance - clearance >= needed) {
+      if (reach > slack && here.clearance - clearance >= needed) {
         open.push_back({begin, middle});
         open.push_back({middle, end});
         continue;
@@ -69,7 +69,7 @@ ReturnProof prove_returns(const FreeSpace& space, const Segment& leg, const Retu
       return found;
     }
     // Half of what could be: then the rest is known to be freer than was asked for.
-    const double radius = std::max(0.5 * covered, std::min(covered, return_slack));
+    const double radius = std::max(0.5 * covered, std::min(covered, slack));
     found.clearance = std::min(found.clearance - std::min(reach, radius), all.clearance);
     if (found.clearance < all.clearance) all = found;
     if (reach <= radius) continue;

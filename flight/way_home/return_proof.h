@@ -39,8 +39,9 @@ inline double return_clearance(double clearance) {
 inline constexpr double return_surplus = 1.0;
 
 /// Proves the returns from every point of the leg, the columns over the landing places excepted.
+/// The balls have a radius of `slack` at least.
 ReturnProof prove_returns(const FreeSpace& space, const Segment& leg, const ReturnLaw& law,
-                          double clearance);
+                          double clearance, double slack = return_slack);
 
 /// Proves the columns over the landing places, from `top` down to where they are vouched for.
 ReturnProof prove_landings(const FreeSpace& space, const ReturnLaw& law, double top,

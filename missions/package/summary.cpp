@@ -138,6 +138,14 @@ Json legs_of(const flight::Route& route, const flight::Sortie& sortie) {
 }
 
 /// The flight of the survey and the route in the package, in metres, seconds and watt hours.
+Json survey_flight_summary(const run::FlownSurvey& flown) {
+  return {{"length_m", flown.length()},
+          {"duration_s", flown.time},
+          {"min_clearance_m", flown.min_clearance()},
+          {"views_refused", flown.refused},
+          {"free_volume_m3", flown.measured->free_volume()}};
+}
+
 Json flight_summary(const run::FlownSurvey& flown, const SurveyMission& flight) {
   const flight::Route& route = flight.route;
   const flight::ClearanceBudget& clearance = route.options.clearance;
@@ -172,12 +180,7 @@ Json flight_summary(const run::FlownSurvey& flown, const SurveyMission& flight) 
             {"map_error", clearance.map_error},
             {"margin", clearance.margin}}},
           {"pad", json_of(flown.pad)},
-          {"survey",
-           {{"length_m", flown.length()},
-            {"duration_s", flown.time},
-            {"min_clearance_m", flown.min_clearance()},
-            {"views_refused", flown.refused},
-            {"free_volume_m3", flown.measured->free_volume()}}},
+          {"survey", survey_flight_summary(flown)},
           {"route",
            {{"stations", route.stations.size()},
             {"order", order},
@@ -264,7 +267,9 @@ std::string summary_json(const file::Mission& mission, const run::SurveyRecord& 
     if (flight->anew) summary["flight"]["anew"] = anew_json(*flight->anew);
     if (flight->fleet) summary["flight"]["fleet"] = fleet_json(mission, *flight->fleet);
   } else if (flight) {
-    summary["flight"] = {{"pad", json_of(record.flown->pad)}, {"failure", flight->failure}};
+    summary["flight"] = {{"pad", json_of(record.flown->pad)},
+                         {"survey", survey_flight_summary(*record.flown)},
+                         {"failure", flight->failure}};
   }
   if (flight) {
     const run::FlownSurvey& flown = *record.flown;

@@ -87,6 +87,28 @@ TEST(LeastReturn, IsTheFirstHeightThatIsProven) {
   }
 }
 
+// A wall beside the whole way keeps 1 cm more than is asked for: too little for balls of 5 cm,
+// which planned legs may meet, and enough for smaller ones. At less than is asked for nothing
+// helps.
+TEST(LeastReturn, IsProvenWhereTheRoomIsLessThanTheSlackOfPlanning) {
+  const auto beside = [](double distance) {
+    Obstacles obstacles;
+    obstacles.ground_height = 0.0;
+    obstacles.no_fly = {{"wall", {{-90, distance}, {90, distance}, {90, 90}, {-90, 90}}}};
+    return KnownSpace(obstacles);
+  };
+  const std::vector<Segment> along{{{0, 0, 10}, {30, 0, 12}}};
+  const ReturnLaw law = law_of({Dialect::dji});
+  ASSERT_EQ(law.landings.front().y(), 0.0);
+  const ReturnSearch near = least_return(beside(clearance + 0.01), along, law, 60.0, clearance);
+  ASSERT_TRUE(near.found) << near.why;
+  EXPECT_GE(near.found->clearance, clearance);
+  EXPECT_LE(near.found->clearance, clearance + 0.01);
+  EXPECT_FALSE(
+      prove_returns(beside(clearance + 0.01), along.front(), near.found->law, clearance).is_proven);
+  EXPECT_FALSE(least_return(beside(clearance - 0.01), along, law, 60.0, clearance).found);
+}
+
 // Airspace that is forbidden up to any height lies between the route and the pad: nobody returns
 // over it, but to a rally point on this side.
 TEST(LeastReturn, RallyPointsServeWhereThePadCannot) {
