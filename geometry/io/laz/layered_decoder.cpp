@@ -17,9 +17,8 @@ namespace {
 
 constexpr std::size_t channels = 4;
 
-// Where a point of format 6 and more keeps what (las_layout.h), and the size of format 6.
-constexpr std::size_t returns_place = 14, flags_place = 15, class_place = 16, colour_place = 30,
-                      plain_size = 30;
+// Where a point of format 6 and more keeps what (las_layout.h).
+constexpr std::size_t returns_place = 14, flags_place = 15, class_place = 16, colour_place = 30;
 
 /// The layers that are decoded, by their place among a chunk's.
 enum Layer : std::size_t { steps = 0, heights = 1, classes = 2, flags = 3, colours = 9 };
