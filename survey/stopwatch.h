@@ -1,6 +1,7 @@
 /// Splits the time of a planner's update into its parts.
 #pragma once
 
+#include <algorithm>
 #include <chrono>
 #include <vector>
 
@@ -8,15 +9,25 @@
 
 namespace skycap::survey {
 
+/// Adds to what a part took, which comes last if it is new.
+inline void add_time(std::vector<PartTime>& times, const char* part, double seconds) {
+  const auto known = std::ranges::find(times, part, &PartTime::part);
+  if (known == times.end()) {
+    times.push_back({part, seconds});
+  } else {
+    known->seconds += seconds;
+  }
+}
+
 class Stopwatch {
  public:
-  /// Fills `times` from its beginning.
-  explicit Stopwatch(std::vector<PartTime>& times) : times_(times) { times_.clear(); }
+  explicit Stopwatch(std::vector<PartTime>& times) : times_(times) {}
 
-  /// Books the time since the last call, or since construction, under `part`.
+  /// Books the time since the last call, or since construction, under `part`, in addition to what
+  /// stands there.
   void lap(const char* part) {
     const auto now = std::chrono::steady_clock::now();
-    times_.push_back({part, std::chrono::duration<double>(now - last_).count()});
+    add_time(times_, part, std::chrono::duration<double>(now - last_).count());
     last_ = now;
   }
 

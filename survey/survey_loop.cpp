@@ -1,10 +1,11 @@
 #include "survey/survey_loop.h"
 
-#include <algorithm>
 #include <chrono>
 #include <ctime>
 #include <optional>
 #include <utility>
+
+#include "survey/stopwatch.h"
 
 namespace skycap::survey {
 namespace {
@@ -51,12 +52,7 @@ auto planned(SurveyedView& taken, Work work) {
 void book_rest(SurveyedView& taken, const char* part) {
   double rest = taken.planning_time;
   for (const PartTime& time : taken.step.times) rest -= time.seconds;
-  const auto known = std::ranges::find(taken.step.times, part, &PartTime::part);
-  if (known == taken.step.times.end()) {
-    taken.step.times.push_back({part, rest});
-  } else {
-    known->seconds += rest;
-  }
+  add_time(taken.step.times, part, rest);
 }
 
 }  // namespace

@@ -104,7 +104,7 @@ file::Mission resolved(file::MissionFile given) {
     mission.planner.name = file::PlannerName::skycap;
   }
   if (mission.sensor.is_moving() && !given.gives("planner.least_gain")) {
-    // A stop costs a fifth of what a view costs that is taken for itself, and is worth as little.
+    // A stop costs about a quarter of what a view costs that is taken for itself.
     mission.planner.skycap_stop.least_gain = 0.001;
   }
   if (mission.sensor.lidar) read_lidar(given);

@@ -100,6 +100,7 @@ struct SeePlanner::Impl {
 
 /// One update, in the order of the released code.
 std::optional<View> SeePlanner::Impl::update(const ScanSpan& scan) {
+  step.times.clear();
   Stopwatch stopwatch(step.times);
   std::vector<Vector3f> cropped;
   std::span<const Vector3f> points = scan.points;

@@ -295,4 +295,15 @@ std::vector<BlockImage> make_cube_images(const geometry::ScanSpan& scan,
   return faces;
 }
 
+std::vector<BlockImage> make_block_images(const geometry::ScanSpan& scan,
+                                          const geometry::Camera& camera,
+                                          const BlockSettings& settings) {
+  if (!scan.pixels.empty()) return {make_block_image(scan, camera, settings)};
+  // A face's focal length is half its width.
+  const double spacing = 1.0 / camera.focal_length_px().minCoeff();
+  const double focal_length = 1.0 / (spacing * settings.block_px);
+  const int face = std::clamp(static_cast<int>(2.0 * focal_length), 16, 512);
+  return make_cube_images(scan, camera, face, settings);
+}
+
 }  // namespace skycap::survey::skycap

@@ -101,4 +101,10 @@ std::vector<BlockImage> make_cube_images(const geometry::ScanSpan& scan,
                                          const geometry::Camera& camera, int face_blocks,
                                          const BlockSettings& settings);
 
+/// Of any scan: its image, or without one the faces of a cube, whose blocks are as wide as those of
+/// the camera's image.
+std::vector<BlockImage> make_block_images(const geometry::ScanSpan& scan,
+                                          const geometry::Camera& camera,
+                                          const BlockSettings& settings);
+
 }  // namespace skycap::survey::skycap

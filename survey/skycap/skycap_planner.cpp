@@ -97,14 +97,6 @@ struct SkycapPlanner::Impl {
     if (config.prior) unseen->expect({*config.prior, static_cast<float>(h)});
   }
 
-  std::vector<BlockImage> reduce(const ScanSpan& scan) const {
-    if (!scan.pixels.empty()) return {make_block_image(scan, camera, blocks)};
-    // Blocks as wide as those of the camera's image. A face's focal length is half its width.
-    const double focal_length = 1.0 / (ray_spacing(camera) * blocks.block_px);
-    const int face = std::clamp(static_cast<int>(2.0 * focal_length), 16, 512);
-    return make_cube_images(scan, camera, face, blocks);
-  }
-
   void learn_noise(const std::vector<BlockImage>& images) {
     for (const BlockImage& image : images) noise.add(image);
     if (!config.ideas.dose) return;
@@ -119,8 +111,8 @@ struct SkycapPlanner::Impl {
   }
 
   void take_in(const ScanSpan& scan) {
-    if (passed > 0) predict();  // what the view promised has been seen in part on the way there
-    const std::vector<BlockImage> images = reduce(scan);
+    if (is_field_old) predict();  // what the view promised has been seen in part on the way there
+    const std::vector<BlockImage> images = make_block_images(scan, camera, blocks);
     learn_noise(images);
     const View view = geometry::view_of(scan.world_from_sensor);
     std::vector<Sight> expected;
@@ -154,7 +146,7 @@ struct SkycapPlanner::Impl {
 
   /// Guesses where the surface goes on, and lists all that a view could cover.
   void predict() {
-    passed = 0;
+    is_field_old = false;
     unseen->predict(*map, *space, region);
     field.emplace(*map, unseen->patches(), camera, *dose, gain, unseen->prior_occluders());
   }
@@ -287,22 +279,20 @@ struct SkycapPlanner::Impl {
   }
 
   void pass(const ScanSpan& scan) {
-    std::vector<PartTime> times;
-    Stopwatch stopwatch(times);
+    Stopwatch stopwatch(on_way.times);
     on_way.points_new += insert(scan);
     stopwatch.lap("insert");
-    const std::vector<BlockImage> images = reduce(scan);
+    const std::vector<BlockImage> images = make_block_images(scan, camera, blocks);
     learn_noise(images);
     covered_on_way += add(images);
-    ++passed;
+    is_field_old = true;
     stopwatch.lap("update");
-    on_way.times.insert(on_way.times.end(), times.begin(), times.end());
   }
 
   std::optional<View> next_view(const ScanSpan& scan) {
-    step = {};
+    step = std::exchange(on_way, {});
     Stopwatch stopwatch(step.times);
-    step.points_new = insert(scan);
+    step.points_new += insert(scan);
     if (kept.cloud().size() == 0) {
       throw Error(ErrorKind::bad_geometry,
                   "the first scan holds no point of the scene; start from a view that sees it");
@@ -321,19 +311,7 @@ struct SkycapPlanner::Impl {
     stopwatch.lap("predict");
     auto view = choose();
     stopwatch.lap("choose");
-    book_way();
     return view;
-  }
-
-  /// Counts what was done with the scans on the way as done with the view's.
-  void book_way() {
-    step.points_new += on_way.points_new;
-    for (PartTime& time : step.times) {
-      for (const PartTime& earlier : on_way.times) {
-        if (earlier.part == time.part) time.seconds += earlier.seconds;
-      }
-    }
-    on_way = {};
   }
 
   SurveyBelief belief() const;
@@ -347,9 +325,9 @@ struct SkycapPlanner::Impl {
 
   SpacedCloud kept;
   PlanningStep step;
-  PlanningStep on_way;          ///< of the scans since the last view
+  PlanningStep on_way;          ///< what the scans since the last view add to the next step
   std::size_t taken = 0;        ///< scans, on ways too
-  std::size_t passed = 0;       ///< scans that the field does not know yet
+  bool is_field_old = false;    ///< there are scans since that it does not know
   double covered_on_way = 0.0;  ///< newly, since the last view [m^2]
 
   BlockSettings blocks;
@@ -379,24 +357,7 @@ struct SkycapPlanner::Impl {
 SurveyBelief SkycapPlanner::Impl::belief() const {
   SurveyBelief belief;
   if (!map) return belief;
-  constexpr float well_covered = 0.5F;  // more likely covered than not: not missing
-  const Surfels& surfels = map->surfels();
-  for (std::size_t i = 0; i < surfels.size(); ++i) {
-    belief.patches.push_back({surfels.positions[i], surfels.normals[i], surfels.areas[i],
-                              surfels.covered_share(i), MissingReason::none});
-  }
-  for (std::size_t t = 0; t < field->targets().size(); ++t) {
-    const std::uint32_t source = field->source(t);
-    if (!field->is_patch(t)) {
-      BelievedPatch& patch = belief.patches[source];
-      if (patch.covered_share >= well_covered) continue;
-      patch.reason = in_sight[t] ? MissingReason::seen_too_thinly : MissingReason::unreachable;
-    } else if (in_sight[t]) {
-      const UnseenPatch& patch = unseen->patches()[source];
-      belief.patches.push_back(
-          {patch.position, patch.normal, patch.weight, 0.0F, MissingReason::never_seen});
-    }
-  }
+  belief.patches = believed_patches(*map, *field, unseen->patches(), in_sight);
   add_up(belief);
   belief.coverage = predicted_coverage();
   belief.next_gain = next_gain;

@@ -216,4 +216,29 @@ std::vector<Look> GainField::looks(const geometry::View& view) const {
   return looks;
 }
 
+std::vector<BelievedPatch> believed_patches(const DoseMap& map, const GainField& field,
+                                            std::span<const UnseenPatch> patches,
+                                            const std::vector<bool>& in_sight) {
+  constexpr float well_covered = 0.5F;  // more likely covered than not: not missing
+  const Surfels& surfels = map.surfels();
+  std::vector<BelievedPatch> believed;
+  for (std::size_t i = 0; i < surfels.size(); ++i) {
+    believed.push_back({surfels.positions[i], surfels.normals[i], surfels.areas[i],
+                        surfels.covered_share(i), MissingReason::none});
+  }
+  for (std::size_t t = 0; t < field.targets().size(); ++t) {
+    const std::uint32_t source = field.source(t);
+    if (!field.is_patch(t)) {
+      BelievedPatch& patch = believed[source];
+      if (patch.covered_share >= well_covered) continue;
+      patch.reason = in_sight[t] ? MissingReason::seen_too_thinly : MissingReason::unreachable;
+    } else if (in_sight[t]) {
+      const UnseenPatch& patch = patches[source];
+      believed.push_back(
+          {patch.position, patch.normal, patch.weight, 0.0F, MissingReason::never_seen});
+    }
+  }
+  return believed;
+}
+
 }  // namespace skycap::survey::skycap

@@ -13,6 +13,7 @@
 #include "survey/skycap/dose_map.h"
 #include "survey/skycap/dose_model.h"
 #include "survey/skycap/sight_kernels.h"
+#include "survey/skycap/survey_belief.h"
 #include "survey/skycap/unseen_surface.h"
 
 namespace skycap::survey::skycap {
@@ -102,5 +103,11 @@ class GainField {
   std::array<std::vector<float>, 3> positions_, normals_;  ///< of the targets
   std::vector<std::uint32_t> sources_;
 };
+
+/// All surface, seen and guessed, as far as it can be covered: the surfels of `map`, and of the
+/// unseen `patches` those in sight. `in_sight` says of each target whether some good view sees it.
+std::vector<BelievedPatch> believed_patches(const DoseMap& map, const GainField& field,
+                                            std::span<const UnseenPatch> patches,
+                                            const std::vector<bool>& in_sight);
 
 }  // namespace skycap::survey::skycap
