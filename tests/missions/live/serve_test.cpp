@@ -11,6 +11,7 @@
 #include <gtest/gtest.h>
 
 #include "clients/skycap_live.h"
+#include "missions/live/scan_input.h"
 #include "missions/live/server.h"
 #include "missions/live/session.h"
 #include "tests/missions/flown_mission.h"
@@ -150,6 +151,27 @@ TEST_F(SessionAnswers, ScansOutOfOrderAndTwice) {
   other.points[0].x() += 1.0F;
   EXPECT_THAT(ask(scan_header(0, other), payload_of(other)), HasSubstr("was another one"));
   EXPECT_EQ(survey_.views().size(), 1U);
+}
+
+/// As those of files: each point in the pixel that it is seen in, the nearest of several.
+TEST_F(SessionAnswers, GiveCloudsOfTheSensorsFrameTheirPixels) {
+  const geometry::Scan scan = rehearsal_.scan(survey_);
+  const Eigen::Isometry3d sensor_from_world = scan.world_from_sensor.inverse();
+  std::vector<Eigen::Vector3f> places;
+  for (const Eigen::Vector3f& point : scan.points) {
+    places.push_back((sensor_from_world * point.cast<double>()).cast<float>());
+  }
+  const std::string payload(reinterpret_cast<const char*>(places.data()),
+                            places.size() * sizeof places[0]);
+  std::vector<Eigen::Vector3d> points;
+  for (const Eigen::Vector3f& place : places) points.push_back(place.cast<double>());
+  nlohmann::ordered_json header = scan_header(0, scan);
+  header["format"] = "cloud";
+  EXPECT_THAT(ask(header, payload.substr(1)), HasSubstr("points take"));
+  EXPECT_THAT(ask(header, payload), HasSubstr("\"is_new\":true"));
+  const ScanFound same = scan_of(points, scan.world_from_sensor, rehearsal_.mission());
+  EXPECT_FALSE(same.scan.pixels.empty());
+  EXPECT_EQ(survey_.number_of(scan_id(same.scan)), 0U);
 }
 
 TEST_F(SessionAnswers, WarnOfPosesThatAreWrong) {
