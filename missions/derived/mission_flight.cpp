@@ -75,8 +75,12 @@ AlignedBox3d unknown_box_of(const file::Mission& mission) {
 }
 
 bool is_in_known_airspace(const file::Mission& mission, const Vector3d& place) {
-  return !mission.flight.is_flown() ||
-         unknown_box_of(mission).exteriorDistance(place) >= spare_of(mission);
+  if (!mission.flight.is_flown()) return true;
+  const double spare = spare_of(mission);
+  return unknown_box_of(mission).exteriorDistance(place) >= spare &&
+         std::ranges::all_of(priors_of(mission).obstacles, [&](const auto& obstacle) {
+           return obstacle->closest({place, place}, spare).distance >= spare;
+         });
 }
 
 flight::MeasuredSpaceConfig measured_space_of(const file::Mission& mission) {
@@ -157,7 +161,9 @@ double highest_return(const file::Mission& mission, double pad_z, double obstacl
   const double highest =
       std::max(top + mission.flight.clearance + spare, pad_z + flight::least_of_dji);
   if (!mission.site.highest_height) return highest;
-  return std::min(highest, *mission.site.highest_height - mission.flight.clearance);
+  /// A proof right at the fence's clearance fails by rounding.
+  constexpr double rounding = 0.01;
+  return std::min(highest, *mission.site.highest_height - mission.flight.clearance - rounding);
 }
 
 std::vector<flight::Dialect> dialects_of(const flight::Vehicle& vehicle) {

@@ -272,8 +272,13 @@ Source completed(Source source, const Assumptions& assumed) {
     source.base_on_terrain = true;
     return source;
   }
-  const bool is_silent = !SiteTransform(source, contents, {}, false).has_own_heights();
-  if (is_silent && !contents.vertical) source.vertical = assumed.vertical;
+  const SiteTransform transform(source, contents, {}, false);
+  // EGM96 may stand in for a geoid whose grid is not installed.
+  const bool may_stand_in =
+      transform.has_vertical_datum() && assumed.vertical == HeightDatum::geoid;
+  if ((!transform.has_own_heights() || may_stand_in) && !contents.vertical) {
+    source.vertical = assumed.vertical;
+  }
   return source;
 }
 

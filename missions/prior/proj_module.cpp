@@ -288,6 +288,7 @@ extern "C" void skycap_geodetic_transform(const ReferenceRequest& given,
   result.horizontal_unit = system.unit;
   result.is_geographic = system.is_geographic;
   result.has_own_heights = system.has_own_heights;
+  result.is_compound = system.is_compound;
   result.height_unit = system.height_unit;
   chain->height_unit = system.height_unit;
   chain->is_latitude_first = request.is_latitude_first && system.is_geographic;

@@ -32,6 +32,7 @@ struct GeodeticTransform {
   double horizontal_unit = 1.0;    ///< metres; 1 for degrees
   bool is_geographic = false;      ///< x and y are degrees
   bool has_own_heights = false;    ///< it is compound or three-dimensional
+  bool is_compound = false;        ///< of a map and a datum of heights
   double height_unit = 1.0;        ///< metres; 1 without heights of its own
   std::vector<std::string> notes;  ///< what stands in for what, with the accuracy PROJ states
   double stand_in_error = 0.0;     ///< what all of those together may be off [m]

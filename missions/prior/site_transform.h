@@ -39,6 +39,8 @@ class SiteTransform {
   const std::string& crs() const { return name_; }
   /// Whether the reference system says what heights count from.
   bool has_own_heights() const { return geodetic_ && geodetic_->has_own_heights; }
+  /// Whether that is a datum beside the map's, as a geoid is.
+  bool has_vertical_datum() const { return geodetic_ && geodetic_->is_compound; }
   const std::vector<std::string>& notes() const { return notes_; }
   /// What stand-ins on the way to WGS84 may be off [m].
   double stand_in_error() const { return geodetic_ ? geodetic_->stand_in_error : 0.0; }

@@ -2,8 +2,10 @@
 #include <algorithm>
 #include <fstream>
 #include <iterator>
+#include <set>
 #include <sstream>
 #include <string>
+#include <vector>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -14,6 +16,7 @@
 #include "missions/derived/mission_priors.h"
 #include "missions/derived/resolved_mission.h"
 #include "missions/prior/prior.h"
+#include "missions/scene/survey_scene.h"
 #include "tests/missions/prior/cube_files.h"
 #include "tests/missions/run_skycap.h"
 
@@ -34,14 +37,18 @@ tests::ProgramRun run_skycap(const std::string& line) {
   return tests::run_skycap(std::vector<std::string>(std::istream_iterator<std::string>(words), {}));
 }
 
-/// Three buildings of 10 m with 15 m between them in a row eastward, in UTM 32, feet at 380 m; the
-/// one in the middle has an address. One file, as an authority gives it.
-std::string tile() {
+/// With 15 m between them in a row eastward.
+const std::vector<Vector3d> in_a_row{{0, 0, 0}, {25, 0, 0}, {50, 0, 0}};
+
+/// Buildings of 10 m in UTM 32, feet at 380 m and so much elsewhere; the second one has an address.
+/// One file, as an authority gives it.
+std::string tile(const std::vector<Vector3d>& places = in_a_row,
+                 const std::string& crs = "EPSG:25832") {
   std::string text;
-  for (int i = 0; i < 3; ++i) {
+  for (std::size_t i = 0; i < places.size(); ++i) {
     Cube cube;
-    cube.low.x() += 25.0 * i;
-    std::string one = citygml_of(cube);
+    cube.low += places[i];
+    std::string one = citygml_of(cube, crs);
     const std::string name = "DEBY_" + std::to_string(i);
     one.replace(one.find("\"cube\""), 6, "\"" + name + "\"");
     if (i == 1) {
@@ -92,6 +99,39 @@ TEST_F(Site, IsACertifiedMissionInTwoCommands) {
   const auto check =
       run_skycap("check " + path_ + "/house.yaml --route " + path_ + "/out/mission.plan");
   EXPECT_EQ(check.exit_code, 0) << check.out;
+}
+
+// A hill that is in the same file is higher than anything that may be flown at the target.
+TEST_F(Site, IsFlownBelowTheHillsOfItsTile) {
+  write("tile.gml", tile({{0, 0, 0}, {25, 0, 0}, {50, 0, 0}, {900, 0, 150}}));
+  ASSERT_EQ(propose("--id DEBY_1").exit_code, 0);
+  ASSERT_LT(mission().site.highest_height.value(), 150.0);
+  const auto plan = run_skycap("plan " + path_ + "/house.yaml --out " + path_ + "/out");
+  EXPECT_EQ(plan.exit_code, 0) << plan.err << plan.out;
+  EXPECT_TRUE(std::filesystem::exists(folder_.path() / "out" / "mission.plan"));
+}
+
+// Wherever the first view is drawn, it is not in the house next door.
+TEST_F(Site, BeginsOutsideOfTheNeighbours) {
+  std::vector<Vector3d> crowd;
+  for (int x = -2; x <= 2; ++x) {
+    for (int y = -2; y <= 2; ++y) crowd.emplace_back(16.0 * x, 16.0 * y, 0.0);
+  }
+  write("tile.gml", tile(crowd));
+  ASSERT_EQ(propose("--id DEBY_12").exit_code, 0);
+  const file::Mission mission = this->mission();
+  const scene::SurveyScene scene(mission, folder_.path());
+  std::set<double> heights;
+  for (std::uint64_t seed = 1; seed <= 40; ++seed) {
+    const Vector3d place = scene.first_view(seed).position;
+    heights.insert(place.z());
+    for (const prior::Object& object : derived::priors_of(mission).priors[1].objects) {
+      EXPECT_GE(geometry::bounding_box(object.mesh).exteriorDistance(place),
+                mission.flight.clearance)
+          << seed << " in " << object.id;
+    }
+  }
+  EXPECT_GT(heights.size(), 30U);
 }
 
 // Known places: the building's middle, its foot, and what must lie outside of everything.
@@ -182,6 +222,20 @@ TEST_F(Site, TakesWordsForFilesThatDoNotSayIt) {
   EXPECT_NEAR(mission().flight.takeoff.value().z(), 0.0, 0.05);
   EXPECT_FALSE(mission().prior.back().vertical.has_value());
   EXPECT_TRUE(mission().prior.front().vertical.has_value());
+}
+
+// Heights above DHHN2016's geoid, whose grid Debian does not have, and EGM96 is within metres of
+// it.
+TEST_F(Site, LetsEgm96StandInWhereThatIsAskedFor) {
+  write("tile.gml", tile(in_a_row, "EPSG:25832+7837"));
+  EXPECT_THAT(
+      run_skycap("site " + path_ + "/tile.gml --id DEBY_1 --out " + path_ + "/house.yaml").err,
+      HasSubstr("say vertical: geoid to let EGM96 stand in"));
+  const auto run = run_skycap("site " + path_ + "/tile.gml --id DEBY_1 --vertical geoid --out " +
+                              path_ + "/house.yaml");
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  EXPECT_NEAR(mission().georeference.ellipsoid_height,
+              380.0 + prior::egm96_undulation(48.7632, 11.3995), 0.02);
 }
 
 TEST_F(Site, IsAsHighAsAnybodySays) {
