@@ -6,6 +6,7 @@
 #include "missions/derived/fleet.h"
 #include "missions/file/json_text.h"
 #include "missions/file/mission_keys.h"
+#include "missions/package/route_json.h"
 
 namespace skycap::missions::package {
 namespace {
@@ -27,15 +28,14 @@ Json json_of(const fleet::TimetableRow& row) {
 }
 
 Json member_json(const FleetMember& member) {
-  Json order = Json::array(), files = Json::array();
-  for (const flight::Station& station : member.route.stations) order.push_back(station.view_index);
+  Json files = Json::array();
   for (const FlightFile& file : member.files.written) files.push_back(file.name);
   for (const std::string& name : member.files.parameters) files.push_back(name);
   const std::optional<flight::Returns>& returns = member.route.returns;
   return {{"vehicle", member.mission.flight.vehicle},
           {"pad", json_of(member.pad)},
-          {"order", order},
-          {"sorties", member.route.sorties.size()},
+          {"order", order_json(member.route)},
+          {"sorties", sorties_json(member.route)},
           {"duration_s", member.route.duration},
           {"length_m", member.route.length},
           {"energy_wh", member.route.energy / 3600.0},
@@ -49,13 +49,11 @@ Json member_json(const FleetMember& member) {
 std::string fleet_text(const FleetMission& fleet) {
   std::string text = fmt::format(
       "  fleet     {} vehicles, {:.1f} min until the last has landed, {:.1f} min in the air; "
-      "within "
-      "{:.1f} % and {:.1f} % of what no fleet undercuts\n",
+      "within {:.1f} % and {:.1f} % of what no fleet undercuts\n",
       fleet.members.size(), fleet.makespan / 60.0, fleet.flown / 60.0,
       gap(fleet.makespan, fleet.bound.makespan), gap(fleet.flown, fleet.bound.flown));
   text += fmt::format(
-      "  apart     proven at {:.2f} m at all times; the last landing {:.0f} s later "
-      "for it\n",
+      "  apart     proven at {:.2f} m at all times; the last landing {:.0f} s later for it\n",
       fleet.distance, fleet.delay);
   for (const fleet::TimetableRow& row : fleet.timetable) {
     text +=
@@ -70,12 +68,9 @@ std::string fleet_text(const FleetMission& fleet) {
 }
 
 Json fleet_json(const file::Mission& mission, const FleetMission& fleet) {
-  Json vehicles = Json::array(), timetable = Json::array(), unreached = Json::array();
+  Json vehicles = Json::array(), timetable = Json::array();
   for (const FleetMember& member : fleet.members) vehicles.push_back(member_json(member));
   for (const fleet::TimetableRow& row : fleet.timetable) timetable.push_back(json_of(row));
-  for (const flight::Unreached& missed : fleet.unreached) {
-    unreached.push_back({{"view", missed.station.view_index}, {"reason", missed.reason}});
-  }
   const flight::SeparationRule rule = derived::separation_of(mission);
   return {
       {"goal", file::to_text(*file::find_key("flight.fleet_goal")->get(mission))},
@@ -88,7 +83,7 @@ Json fleet_json(const file::Mission& mission, const FleetMission& fleet) {
        {{"asked_m", rule.distance}, {"tolerance_s", rule.tolerance}, {"proven_m", fleet.distance}}},
       {"vehicles", vehicles},
       {"timetable", timetable},
-      {"unreached", unreached}};
+      {"unreached", unreached_json(fleet.unreached)}};
 }
 
 }  // namespace skycap::missions::package

@@ -13,6 +13,7 @@
 #include "missions/package/ground_json.h"
 #include "missions/package/holes.h"
 #include "missions/package/package.h"
+#include "missions/package/route_json.h"
 #include "missions/package/settings.h"
 #include "missions/package/target_coverage.h"
 #include "missions/version.h"
@@ -109,32 +110,11 @@ Json return_summary(const SurveyMission& flight) {
           {"parameters", flight.files.parameters}};
 }
 
-Json json_of(const flight::Leg& leg, const Json& from, const Json& to) {
-  return {{"from", from},
-          {"to", to},
-          {"clearance_m", leg.clearance},
-          {"duration_s", leg.duration},
-          {"energy_wh", leg.energy / 3600.0},
-          {"points", json_of(leg.points)}};
-}
-
 Json pictures_summary(const SurveyMission& flight) {
   if (!flight.pictures) return {};
   return {{"blur_px", flight.pictures->blur_px},
           {"shear_px", flight.pictures->shear_px},
           {"distance_m", flight.pictures->distance}};
-}
-
-/// The sortie's legs from above the pad and back there; they lead from view to view, null stands
-/// for the pad.
-Json legs_of(const flight::Route& route, const flight::Sortie& sortie) {
-  const auto view = [&](std::uint32_t station) { return route.stations[station].view_index; };
-  Json legs = Json::array({json_of(sortie.out, {}, view(sortie.first))});
-  for (std::uint32_t i = sortie.first; i < sortie.last; ++i) {
-    legs.push_back(json_of(route.legs[i], view(i), view(i + 1)));
-  }
-  legs.push_back(json_of(sortie.back, view(sortie.last), {}));
-  return legs;
 }
 
 /// The flight of the survey and the route in the package, in metres, seconds and watt hours.
@@ -149,28 +129,13 @@ Json survey_flight_summary(const run::FlownSurvey& flown) {
 Json flight_summary(const run::FlownSurvey& flown, const SurveyMission& flight) {
   const flight::Route& route = flight.route;
   const flight::ClearanceBudget& clearance = route.options.clearance;
-  Json sorties = Json::array(), unreached = Json::array(), files = Json::array();
-  for (const flight::Sortie& sortie : route.sorties) {
-    sorties.push_back({{"first_station", sortie.first},
-                       {"last_station", sortie.last},
-                       {"duration_s", sortie.duration},
-                       {"energy_wh", sortie.energy / 3600.0},
-                       {"energy_left_wh", sortie.energy_left / 3600.0},
-                       {"length_m", sortie.length},
-                       {"min_clearance_m", sortie.clearance},
-                       {"legs", legs_of(route, sortie)}});
-  }
-  for (const flight::Unreached& missed : route.unreached) {
-    unreached.push_back({{"view", missed.station.view_index}, {"reason", missed.reason}});
-  }
+  Json files = Json::array();
   for (const FlightFile& file : flight.files.written) {
     files.push_back({{"name", file.name},
                      {"heights", file.heights},
                      {"min_clearance_m", file.min_clearance},
                      {"duration_s", file.duration}});
   }
-  Json order = Json::array();
-  for (const flight::Station& station : route.stations) order.push_back(station.view_index);
   return {{"vehicle", route.vehicle.name},
           {"clearance_m",
            {{"total", clearance.total()},
@@ -183,7 +148,7 @@ Json flight_summary(const run::FlownSurvey& flown, const SurveyMission& flight) 
           {"survey", survey_flight_summary(flown)},
           {"route",
            {{"stations", route.stations.size()},
-            {"order", order},
+            {"order", order_json(route)},
             {"length_m", route.length},
             {"station_length_m", route.station_length},
             {"straight_length_m", route.straight_length},
@@ -193,8 +158,8 @@ Json flight_summary(const run::FlownSurvey& flown, const SurveyMission& flight) 
             {"duration_bound_s", route.duration_bound},
             {"energy_wh", route.energy / 3600.0},
             {"min_clearance_m", route.min_clearance},
-            {"sorties", sorties},
-            {"unreached", unreached}}},
+            {"sorties", sorties_json(route)},
+            {"unreached", unreached_json(route.unreached)}}},
           {"return", return_summary(flight)},
           {"pictures", pictures_summary(flight)},
           {"files", files},

@@ -15,6 +15,7 @@
 #include "geometry/io/json.h"
 #include "missions/derived/mission_flight.h"
 #include "missions/file/json_text.h"
+#include "missions/fleet/timetable_file.h"
 #include "missions/package/coverage_map.h"
 #include "missions/package/package.h"
 #include "missions/report/page.h"
@@ -36,16 +37,20 @@ geometry::AttributedCloud cloud_if_there(const fs::path& file) {
 Json files_of(const Json& summary, const ResultFinder& results) {
   std::vector<std::string> names = {"cloud.ply", "coverage.ply",   "true_coverage.ply",
                                     "views.csv", "trajectory.tum", package::free_space_name};
-  const auto add_all = [&](const char* path, const char* field) {
-    const Json::json_pointer pointer(path);
+  const auto add_all = [&](const Json::json_pointer& pointer, const char* field) {
     if (!summary.contains(pointer) || !summary[pointer].is_array()) return;
     for (const Json& entry : summary[pointer]) {
       const Json& name = *field == '\0' ? entry : entry.at(field);
       if (name.is_string()) names.push_back(name.get<std::string>());
     }
   };
-  add_all("/flight/files", "name");
-  add_all("/flight/return/parameters", "");
+  add_all(Json::json_pointer("/flight/files"), "name");
+  add_all(Json::json_pointer("/flight/return/parameters"), "");
+  const Json::json_pointer vehicles("/flight/fleet/vehicles");
+  if (summary.contains(vehicles)) {
+    names.emplace_back(fleet::timetable_name);
+    for (std::size_t i = 0; i < summary[vehicles].size(); ++i) add_all(vehicles / i / "files", "");
+  }
   return files_json(names, results);
 }
 

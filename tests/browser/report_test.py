@@ -265,5 +265,37 @@ class ReportTest(unittest.TestCase):
             page.close()
 
 
+class FleetReportTest(unittest.TestCase):
+    """What several vehicles fly together is on the page as it is in the summary."""
+
+    def test_each_vehicle_has_its_way_its_row_and_its_times(self):
+        with tempfile.TemporaryDirectory() as temporary:
+            results = plan(pathlib.Path(temporary), (MISSION % "teapot").replace("vehicle: m350_rtk, ", ""),
+                           "--set", "flight.vehicles=[generic, generic]",
+                           "--set", "flight.pads=[[-12, -12, 0], [12, 12, 0]]")
+            summary = json.loads((results / "summary.json").read_text())
+            fleet = summary["flight"]["fleet"]
+            page = Page(results / "report.html")
+            try:
+                self.assertIsNone(page.failure)
+                check_figures(self, page, summary, 30)
+                page.browser.execute_script("document.getElementById('view').scrollIntoView()")
+                shown = "window.shown.panel.viewer.layers['%s'].visible"
+                self.assertEqual([page.get(shown % "fleet"), page.get(shown % "route")], [True, False])
+                together = page.pixels()
+                page.click("[data-layer='fleet']")
+                self.assertNotEqual(page.pixels(), together)
+                files = {file.text for file in page.all("#files td:first-child")}
+                self.assertLessEqual({"timetable.csv"} | {row["file"] for row in fleet["timetable"]}, files)
+                text = page.get("document.getElementById('flight').textContent")
+                for row in fleet["timetable"]:
+                    self.assertIn(f"{row['landing_s']:.1f} s", text)
+                flown = sorted(view for vehicle in fleet["vehicles"] for view in vehicle["order"])
+                self.assertEqual(flown, sorted(summary["flight"]["route"]["order"]))
+                self.assertEqual(page.complaints(), [])
+            finally:
+                page.close()
+
+
 if __name__ == "__main__":
     main()

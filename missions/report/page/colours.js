@@ -40,6 +40,10 @@ function view_colour(view) {
   return [channel(0), channel(8), channel(4)];
 }
 
+/// Far from each other, and from the green of covered points.
+const vehicle_colours = [[255, 150, 50], [70, 165, 255], [235, 95, 205], [250, 225, 90], [160, 110, 255], [240, 240, 240]];
+const vehicle_colour = (vehicle) => vehicle_colours[vehicle] || view_colour(vehicle);
+
 const css_colour = (rgb) => "rgb(" + rgb.map((channel) => Math.round(channel)).join(",") + ")";
 const css_ramp = (stops) => "linear-gradient(90deg," + stops.map(css_colour).join(",") + ")";
 

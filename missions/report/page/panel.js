@@ -133,6 +133,9 @@ class Panel {
       rows.push(...ramp_legend("route: proven clearance", { stops: nearness_stops,
         low: shown(asked, "metres"), high: "from " + shown(asked + told_apart, "metres") }));
     }
+    vehicles_of(this.data).forEach((vehicle, i) => {
+      rows.push(element("div", { class: "row" }, swatch(vehicle_colour(i), "dot"), "fleet: vehicle " + (i + 1)));
+    });
     for (const way of trajectory_lines(this.data)) {
       rows.push(element("div", { class: "row" }, swatch(way.colour, "dot"), way.name));
     }

@@ -1,7 +1,7 @@
 // What is in the 3-D view, layer by layer.
 
 const layer_names = {
-  measured: "points", missing: "missing", unreachable: "out of reach", route: "route", clearance: "clearance", views: "views", next: "next view",
+  measured: "points", missing: "missing", unreachable: "out of reach", route: "route", fleet: "fleet", clearance: "clearance", views: "views", next: "next view",
   free: "end of free space", volumes: "volumes", priors: "prior data", ground: "ground",
 };
 
@@ -26,6 +26,8 @@ function extent_of(data, clouds) {
 /// The views of a survey; of a scan its pieces or images.
 const views_of = (data) => data.pieces || data.summary.per_view || [];
 const sorties_of = (data) => value_at(data, "summary.flight.route.sorties") || [];
+
+const vehicles_of = (data) => value_at(data, "summary.flight.fleet.vehicles") || [];
 
 /// [{points, clearance, sortie, from, to}]: as proven, or straight lines where a summary has none.
 function legs_of(data) {
@@ -189,13 +191,26 @@ function route_group(data, size) {
   if (!lines.length) return group;
   group.add(new THREE.Mesh(tubes(lines, size / 900, 8),
     new THREE.MeshLambertMaterial({ vertexColors: THREE.VertexColors })));
-  const pad = data.scene && data.scene.pad;
-  if (pad) {
-    const ring = new THREE.Mesh(new THREE.RingBufferGeometry(size / 110, size / 75, 40),
-      new THREE.MeshBasicMaterial({ color: 0xffffff, side: THREE.DoubleSide }));
-    ring.position.set(pad[0], pad[1], pad[2] + size / 2000);
-    group.add(ring);
-  }
+  if (data.scene && data.scene.pad) group.add(pad_ring(data.scene.pad, size, 0xffffff));
+  return group;
+}
+
+function pad_ring(pad, size, color) {
+  const ring = new THREE.Mesh(new THREE.RingBufferGeometry(size / 110, size / 75, 40),
+    new THREE.MeshBasicMaterial({ color, side: THREE.DoubleSide }));
+  ring.position.set(pad[0], pad[1], pad[2] + size / 2000);
+  return ring;
+}
+
+/// The ways of several vehicles, each in its colour, and their pads.
+function fleet_group(data, size) {
+  const group = new THREE.Group();
+  const lines = vehicles_of(data).flatMap((vehicle, i) => vehicle.sorties.flatMap((sortie) =>
+    sortie.legs.map((leg) => ({ points: leg.points, colour: vehicle_colour(i) }))));
+  if (!lines.length) return group;
+  group.add(new THREE.Mesh(tubes(lines, size / 900, 8),
+    new THREE.MeshLambertMaterial({ vertexColors: THREE.VertexColors })));
+  vehicles_of(data).forEach((vehicle, i) => group.add(pad_ring(vehicle.pad, size, css_colour(vehicle_colour(i)))));
   return group;
 }
 
@@ -243,6 +258,7 @@ function build_layers(data, clouds) {
   if (clouds.missing && clouds.missing.count) Object.assign(layers, missing_layers(data, clouds.missing, main));
   const add = (name, group) => { if (group.children.length || group.isLine) layers[name] = group; };
   add("route", route_group(data, size));
+  add("fleet", fleet_group(data, size));
   add("clearance", clearance_group(data));
   add("views", view_group(data, size));
   add("next", next_group(data, size));
@@ -250,7 +266,8 @@ function build_layers(data, clouds) {
   add("volumes", volume_group(data, extent));
   add("priors", prior_group(data));
   layers.ground = ground_grid(extent, data.scene ? data.scene.ground : extent.all.min.z);
-  for (const name of ["clearance", "free"]) {
+  // What a fleet flies together is shown in place of the same flown by one vehicle.
+  for (const name of layers.fleet ? ["route", "clearance", "free"] : ["clearance", "free"]) {
     if (layers[name]) layers[name].visible = false;
   }
   return { layers, extent, size };

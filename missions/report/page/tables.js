@@ -99,6 +99,43 @@ function anew_parts(data) {
       figure(data, "flight.anew.flown_again.coverage_visible", "share"), " of what is visible.") : null].filter(Boolean);
 }
 
+/// Several vehicles that fly the mission together.
+function fleet_parts(data) {
+  const { fleet } = data.summary.flight;
+  if (!fleet) return [];
+  const number = (content) => ({ number: content });
+  const f = (path, form) => figure(data, "flight.fleet." + path, form);
+  const sums = (vehicle, key) => number(shown(vehicle.sorties.reduce((sum, sortie) => sum + sortie[key], 0),
+    key === "duration_s" ? "minutes" : "metres"));
+  const vehicles = table(["vehicle", number("views"), number("sorties"), number("length"), number("time"), number("energy"),
+    number("least clearance"), number("comes home at"), "files"], fleet.vehicles.map((vehicle, i) => {
+    const name = element("span", {}, swatch(vehicle_colour(i)), (i + 1) + ", " + vehicle.vehicle);
+    if (!vehicle.order.length) return [name, number("0"), ...Array(6).fill(number("–")), "stays on the ground"];
+    return [name, number(String(vehicle.order.length)), number(String(vehicle.sorties.length)),
+      sums(vehicle, "length_m"), sums(vehicle, "duration_s"), number(f("vehicles." + i + ".energy_wh", "watt_hours")),
+      number(f("vehicles." + i + ".min_clearance_m", "metres")), number(f("vehicles." + i + ".return_height_m", "metres")),
+      vehicle.files.join(", ")];
+  }));
+  const times = table(["vehicle", "sortie", number("takes off"), number("lands"), "file"], fleet.timetable.map((row, i) => [
+    String(row.vehicle), String(row.sortie), number(f("timetable." + i + ".start_s", "clock")),
+    number(f("timetable." + i + ".landing_s", "clock")), row.file]));
+  const missed = fleet.unreached.map((one) => element("li", {}, "view " + one.view + ": " + one.reason));
+  return [element("h3", {}, "Several vehicles"),
+    element("p", {}, "The last one lands ", f("makespan_s", "minutes"), " after the first take-off; together they are ",
+      f("flown_s", "minutes"), " in the air. They are proven ", f("separation.proven_m", "metres"), " apart at all times (asked: ",
+      f("separation.asked_m", "metres"), ") as long as each is within ", f("separation.tolerance_s", "clock"),
+      " of its times; the last lands ", f("delay_s", "clock"), " later for it."),
+    vehicles, element("p", {}, "By the clock of the first take-off:"), times, missed.length ? element("ul", {}, missed) : null].filter(Boolean);
+}
+
+/// The flight that measured, before the mission that is written.
+function surveyed_part(data) {
+  const frames = (data.summary.per_view || []).reduce((sum, view) => sum + (view.frames_on_way || 0), 0);
+  return element("p", {}, "The survey itself flew ", figure(data, "flight.survey.length_m", "metres"), " in ",
+    figure(data, "flight.survey.duration_s", "minutes"), ", from the pad to the last view" +
+    (frames ? ", and took " + frames + " frames on the way. The mission takes pictures at its views only, and covers less." : "."));
+}
+
 function flight_section(data) {
   const { flight } = data.summary;
   if (!flight) return null;
@@ -112,7 +149,7 @@ function flight_section(data) {
   section.append(element("p", {}, "With ", f("vehicle", "text"), ": ", f("route.length_m", "metres"), " in ",
     f("route.duration_s", "minutes"), ", ", f("route.energy_wh", "watt_hours"),
     ". Every leg is proven free, with ", f("clearance_m.total", "metres"), " to spare; the least is ",
-    f("route.min_clearance_m", "metres"), "."));
+    f("route.min_clearance_m", "metres"), "."), surveyed_part(data));
   section.append(table(["sortie", "stations", number("length"), number("time"), number("energy"),
     number("left above reserve"), number("least clearance")], sorties_of(data).map((sortie, i) => {
     const path = "route.sorties." + i + ".";
@@ -121,7 +158,7 @@ function flight_section(data) {
       number(f(path + "energy_wh", "watt_hours")), number(f(path + "energy_left_wh", "watt_hours")),
       number(f(path + "min_clearance_m", "metres"))];
   })));
-  section.append(...anew_parts(data));
+  section.append(...anew_parts(data), ...fleet_parts(data));
   const terms = [["vehicle's radius", "vehicle_radius"], ["position error", "position_error"],
     ["tracking error", "tracking_error"], ["map error", "map_error"], ["margin", "margin"], ["together", "total"]];
   section.append(element("h3", {}, "What the clearance is made of"),
