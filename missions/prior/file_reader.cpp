@@ -239,8 +239,11 @@ FileContents read_contents(const Source& source, const SiteFrame& site) {
                              [&](const FileContents& header) {
                                return SiteTransform(source, header, site).metres_per_unit();
                              }});
-    case Format::scene:
-      return read_scene(file);
+    case Format::scene: {
+      FileContents contents = read_scene(file);
+      contents.format = "scene" + ending_of(file);
+      return contents;
+    }
     case Format::mesh:
       return mesh_contents(file);
     case Format::cloud:

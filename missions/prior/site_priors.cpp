@@ -92,16 +92,28 @@ SitePriors read_site_priors(std::vector<Source> sources, const SiteFrame& site,
   return result;
 }
 
-geometry::Mesh surfaces_of(const SitePriors& site, Role role) {
+geometry::Mesh surfaces_of(const SitePriors& site, Role role,
+                           const std::optional<Eigen::AlignedBox3d>& near) {
   geometry::Mesh mesh;
+  const auto add_faces = [&](std::vector<flight::Triangle> faces) {
+    if (near) {
+      std::erase_if(faces, [&](const auto& face) {
+        Eigen::AlignedBox3d box;
+        for (const Eigen::Vector3d& corner : face) box.extend(corner);
+        return !near->intersects(box);
+      });
+    }
+    geometry::append(mesh, mesh_of(faces));
+  };
   for (std::size_t i = 0; i < site.priors.size(); ++i) {
     if (site.sources[i].role != role) continue;
     for (const Object& object : site.priors[i].objects) {
-      if (has_area(object.mesh)) geometry::append(mesh, object.mesh);
+      if (!has_area(object.mesh)) continue;
+      if (near && !near->intersects(geometry::bounding_box(object.mesh))) continue;
+      geometry::append(mesh, object.mesh);
     }
-    const HeightGrid& grid = site.priors[i].grid;
-    geometry::append(mesh, mesh_of(triangles_of(grid)));
-    geometry::append(mesh, mesh_of(rim_of(grid)));
+    add_faces(triangles_of(site.priors[i].grid));
+    add_faces(rim_of(site.priors[i].grid));
   }
   return mesh;
 }

@@ -1,4 +1,6 @@
 #include <algorithm>
+#include <optional>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -56,15 +58,32 @@ struct ColouredMesh {
   }
 };
 
-ColouredMesh site_of(const file::Mission& mission, const geometry::Mesh& model) {
+/// A mission and the scene that it simulates; no scene if it is flown live.
+struct Site {
+  file::Mission mission;
+  geometry::Mesh model;
+};
+
+/// The targets and as much around them as they are large: a tile may hold a whole town.
+std::optional<Eigen::AlignedBox3d> around_targets(const prior::SitePriors& site) {
+  const geometry::Mesh targets = surfaces_of(site, prior::Role::target);
+  if (targets.triangles.empty()) return std::nullopt;
+  const Eigen::AlignedBox3d box = geometry::bounding_box(targets);
+  const Eigen::Vector3d reach = Eigen::Vector3d::Constant(box.sizes().maxCoeff());
+  return Eigen::AlignedBox3d(box.min() - reach, box.max() + reach);
+}
+
+/// All of it, or what is near.
+ColouredMesh coloured_site(const Site& given, const std::optional<Eigen::AlignedBox3d>& near) {
+  const auto& [mission, model] = given;
   const prior::SitePriors& site = derived::priors_of(mission);
   if (site.priors.empty()) return {model, {}};
   ColouredMesh coloured;
   if (!derived::is_truth_prior(mission)) coloured.add(model, {0.80F, 0.71F, 0.55F});
-  coloured.add(surfaces_of(site, prior::Role::truth), {0.62F, 0.68F, 0.75F});
-  coloured.add(surfaces_of(site, prior::Role::target), {0.20F, 0.55F, 0.30F});
-  coloured.add(surfaces_of(site, prior::Role::obstacle), {0.75F, 0.28F, 0.12F});
-  coloured.add(surfaces_of(site, prior::Role::terrain), {0.42F, 0.38F, 0.26F});
+  coloured.add(surfaces_of(site, prior::Role::truth, near), {0.62F, 0.68F, 0.75F});
+  coloured.add(surfaces_of(site, prior::Role::target, near), {0.20F, 0.55F, 0.30F});
+  coloured.add(surfaces_of(site, prior::Role::obstacle, near), {0.75F, 0.28F, 0.12F});
+  coloured.add(surfaces_of(site, prior::Role::terrain, near), {0.42F, 0.38F, 0.26F});
   return coloured;
 }
 
@@ -72,16 +91,14 @@ bool is_mission(const std::string& name) {
   return name.ends_with(".yaml") || name.ends_with(".yml");
 }
 
-ColouredMesh mission_called(const ModelOptions& options) {
+Site site_called(const ModelOptions& options) {
   std::vector<file::KeyOverride> overrides;
   if (options.detail) overrides.push_back({"--detail", "scene.detail", *options.detail});
   file::Mission mission = derived::read_live_mission(options.name, overrides);
   if (mission.prior.empty()) mission = derived::read_mission(options.name, overrides);
-  const geometry::Mesh model =
-      mission.scene.model.empty() && !derived::is_truth_prior(mission)
-          ? geometry::Mesh{}
-          : scene::placed_model(mission, fs::path(options.name).parent_path());
-  return site_of(mission, model);
+  if (mission.scene.model.empty() && !derived::is_truth_prior(mission)) return {mission, {}};
+  geometry::Mesh model = scene::placed_model(mission, fs::path(options.name).parent_path());
+  return {std::move(mission), std::move(model)};
 }
 
 geometry::Mesh model_called(const ModelOptions& options, const Console& console) {
@@ -99,17 +116,21 @@ geometry::Mesh model_called(const ModelOptions& options, const Console& console)
 int model(const ModelOptions& options, const Console& console) {
   ProgressLine progress(console, false);
   progress.show(options.name + ": making the model ready");
-  const ColouredMesh coloured = is_mission(options.name)
-                                    ? mission_called(options)
-                                    : ColouredMesh{model_called(options, console), {}};
-  const geometry::Mesh& mesh = coloured.mesh;
+  std::optional<Site> site;
+  if (is_mission(options.name)) site = site_called(options);
+  const geometry::Mesh mesh = site ? coloured_site(*site, {}).mesh : model_called(options, console);
   geometry::validate(mesh);
   progress.clear();
   if (options.out) geometry::write_mesh(*options.out, mesh);
   if (options.render) {
     sim::RenderOptions render;
-    render.colours = coloured.colours;
-    sim::write_png(sim::render(mesh, render), *options.render);
+    geometry::Mesh shown = mesh;
+    if (site) {
+      ColouredMesh near = coloured_site(*site, around_targets(derived::priors_of(site->mission)));
+      shown = std::move(near.mesh);
+      render.colours = std::move(near.colours);
+    }
+    sim::write_png(sim::render(shown, render), *options.render);
   }
   const Eigen::Vector3d size = geometry::bounding_box(mesh).sizes();
   console.out << fmt::format("{}: {} triangles, {:.4g} x {:.4g} x {:.4g}, area {:.4g}\n",
