@@ -10,6 +10,8 @@ set(quick
   "plan teapot.yaml --planner see --max-views 4 @options@ @folder@/see"
   "plan teapot.yaml --planner skycap --max-views 4 @options@ @folder@/skycap"
   "plan teapot.yaml --planner rsv --max-views 2 @options@ @folder@/rsv"
+  "model city-block --out @folder@/models/city_block.ply"
+  "model radcliffe-camera --out @folder@/models/radcliffe_camera.ply"
   "scan radcliffe_camera_lidar.yaml --set scan.orbit.circles=1 --set scan.orbit.speed=100 @options@ @folder@/scan")
 set(slow "plan radcliffe_camera.yaml --max-views 3 @options@ @folder@/building")
 
@@ -18,6 +20,7 @@ function(survey folder)
   set(run ${CMAKE_COMMAND} -E env ${under_ENVIRONMENT} ${PROGRAM})
   set(options --threads ${under_THREADS} --quiet --out)
   file(REMOVE_RECURSE ${folder})
+  file(MAKE_DIRECTORY ${folder}/models)
   foreach(command IN LISTS under_MISSIONS)
     string(CONFIGURE "${command}" command @ONLY)
     separate_arguments(command)
@@ -40,7 +43,7 @@ list(SORT results)
 # Of surveys, what was decided and measured; routes have tests of their own.
 set(sums "")
 foreach(file IN LISTS results)
-  if(file MATCHES "/(views\\.csv|cloud\\.ply|.*\\.las)$")
+  if(file MATCHES "/(views\\.csv|cloud\\.ply|.*\\.las)$|^models/")
     file(SHA256 ${reference}/${file} sum)
     string(APPEND sums "${sum}  ${file}\n")
   endif()

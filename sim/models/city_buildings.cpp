@@ -205,8 +205,8 @@ Parts office(const Lot& lot, Draw& draw, const Fineness& fineness) {
                                 fineness.circle(r));
       parts.push_back({"tank", moved(tank, {x, y, 0.0})});
     } else {
-      parts.push_back({"plant", box_at(x, y, draw.between(2.0, 4.0), draw.between(2.0, 4.0),
-                                       foot - 0.1, foot + height)});
+      const double along_y = draw.between(2.0, 4.0), along_x = draw.between(2.0, 4.0);
+      parts.push_back({"plant", box_at(x, y, along_x, along_y, foot - 0.1, foot + height)});
     }
   }
   return parts;

@@ -140,8 +140,8 @@ class Renderer {
         Vector3d sum = Vector3d::Zero();
         for (int i = 0; i < side * side; ++i) {
           const int row_in_pixel = i / side;
-          const Vector3d direction =
-              pixel((i % side + dice()) / side, (row_in_pixel + dice()) / side);
+          const double down = (row_in_pixel + dice()) / side, across = (i % side + dice()) / side;
+          const Vector3d direction = pixel(across, down);
           // Clipped before the mean: one glaring sample shall not outshine an edge.
           sum += light_along(view.view.position, direction, dice).cwiseMin(2.5);
         }
@@ -212,7 +212,7 @@ class Renderer {
     Vector3d light = Vector3d::Zero();
     if (sine > 0.0 && normal.dot(to_sun_) > 0.0) {
       // The sun as a disc of a degree or so, for soft edges of shadows.
-      const Vector3d wobble(dice() - 0.5, dice() - 0.5, dice() - 0.5);
+      const Vector3d wobble{dice() - 0.5, dice() - 0.5, dice() - 0.5};
       const Vector3d to_sun = to_sun_ + 0.015 * wobble;
       if (!scene_.is_blocked(start, start + 2.0 * size_ * to_sun)) light += sine * sunlight;
     }

@@ -1,10 +1,12 @@
-// The house: which room may know which. docs/architecture.md draws the same table.
+// The house: which room may know which, and how large its things may be. docs/architecture.md draws
+// the same table.
 
 #include <fstream>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "tests/structure/source_text.h"
 #include "tests/structure/source_tree.h"
 #include "tests/support/temporary_folder.h"
 
@@ -87,7 +89,7 @@ Rooms house() {
   add_mission_room("anew", "file", "derived");
   add_mission_room("package", "prior", "file", "equipment", "derived", "judge", "scene", "run",
                    "anew", "fleet");
-  add_mission_room("report", "prior", "file", "derived", "scene", "run", "package");
+  add_mission_room("report", "prior", "file", "derived", "scene", "run", "fleet", "package");
   add_mission_room("live", "file", "derived", "scene", "run");
   add_mission_room("dataset", "file", "plugins", "live");
   add_mission_room("fly", "file", "derived", "scene", "run", "live");
@@ -110,6 +112,12 @@ std::vector<SourceFile> product() {
                       {"geometry", "sim", "survey", "flight", "missions", "python"});
 }
 
+/// With what stands beside the house.
+std::vector<SourceFile> all_sources() {
+  return read_sources(SKYCAP_SOURCE_DIR, {"mathematics", "geometry", "sim", "survey", "flight",
+                                          "missions", "python", "library", "clients", "tests"});
+}
+
 TEST(Rooms, AreEnteredInOneDirectionOnly) {
   EXPECT_THAT(forbidden_includes(product(), house()), IsEmpty());
   EXPECT_THAT(circular_rooms(house()), IsEmpty());
@@ -123,6 +131,18 @@ TEST(Rooms, KeepHeavyHeadersInSources) {
 }
 
 TEST(Rooms, AreNotCrowded) { EXPECT_THAT(crowded_rooms(product(), 30), IsEmpty()); }
+
+TEST(Sources, AreNotLong) {
+  EXPECT_THAT(long_files(SKYCAP_SOURCE_DIR, all_sources(), 400), IsEmpty());
+}
+
+TEST(Sources, HaveNoLongFunctions) {
+  EXPECT_THAT(long_functions(SKYCAP_SOURCE_DIR, product(), 60), IsEmpty());
+}
+
+TEST(Sources, DrawInAStatedOrder) {
+  EXPECT_THAT(unordered_draws(SKYCAP_SOURCE_DIR, all_sources()), IsEmpty());
+}
 
 /// A mesh is the truth; points measured of it are not.
 TEST(Rooms, HideTheTruthFromPlanners) {
@@ -142,6 +162,7 @@ class PlantedFault : public testing::Test {
     std::ofstream(file) << text;
   }
   std::vector<SourceFile> sources() const { return read_sources(folder_.path(), {"house"}); }
+  std::filesystem::path root() const { return folder_.path(); }
 
   const Rooms rooms_ = {{"house/lower", {}}, {"house/upper", {"house/lower"}}};
 
@@ -176,6 +197,34 @@ TEST_F(PlantedFault, AHeavyHeaderIsFoundInHeadersOnly) {
   EXPECT_THAT(heavy_headers(sources(), {"CGAL/"}), IsEmpty());
   write("house/lower/tree.h", "#include <CGAL/Kd_tree.h>\n");
   EXPECT_THAT(heavy_headers(sources(), {"CGAL/"}), ElementsAre(HasSubstr("house/lower/tree.h")));
+}
+
+TEST_F(PlantedFault, ALongFileIsFound) {
+  write("house/lower/a.h", "//\n//\n//\n");
+  EXPECT_THAT(long_files(root(), sources(), 3), IsEmpty());
+  EXPECT_THAT(long_files(root(), sources(), 2), ElementsAre("house/lower/a.h has 3 lines"));
+}
+
+TEST_F(PlantedFault, ALongFunctionIsFoundWhereverItStands) {
+  write("house/lower/a.cpp",
+        "namespace a {\nstruct B : C<D> {\n  int e = 1'000;\n  void f() const {\n\n\n  }\n};\n"
+        "/* { */ const char* g = \"{\\\"{\"; char h = '{';\n"
+        "template <typename T>\nstd::vector<T> i(T) {\n  if (true) {\n  }\n}\n}\n");
+  EXPECT_THAT(long_functions(root(), sources(), 4), IsEmpty());
+  EXPECT_THAT(long_functions(root(), sources(), 3),
+              ElementsAre("house/lower/a.cpp:4 has 4 lines", "house/lower/a.cpp:11 has 4 lines"));
+}
+
+TEST_F(PlantedFault, DrawsInOneCallAreFound) {
+  write("house/lower/a.cpp",
+        "Vector3d a(normal(random), 1, normal(random));\n"
+        "f(i + dice(),\n  row + dice());\n"
+        "f(box(draw.between(1, 2), 3), draw.between(2, 3));\n"
+        "Vector3d b{normal(random), normal(random)};  // f(dice(), dice())\n"
+        "f(Vector3d{dice(), dice()}, 1); double c = dice(), d = dice();\n"
+        "for (int i = 0; i < n; ++i) f(draw, draws.between(1, 2));\n");
+  EXPECT_THAT(unordered_draws(root(), sources()),
+              ElementsAre("house/lower/a.cpp:1", "house/lower/a.cpp:2", "house/lower/a.cpp:4"));
 }
 
 TEST_F(PlantedFault, ACrowdIsFound) {

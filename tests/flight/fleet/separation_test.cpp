@@ -102,10 +102,9 @@ TEST(Separation, OfRandomTimedLegsIsNeverMoreThanSamplesSay) {
   std::uniform_real_distribution<double> uniform(0.0, 1.0);
   const Eigen::AlignedBox3d box(Vector3d(0, 0, 0), Vector3d(40, 40, 20));
   const auto random_flight = [&] {
-    return TimedFlight{{leg_between(scenes::point_in(random, box), scenes::point_in(random, box),
-                                    1.0 + 9.0 * uniform(random), 2.0 * uniform(random))},
-                       jerk,
-                       5.0 * uniform(random)};
+    const Vector3d from = scenes::point_in(random, box), to = scenes::point_in(random, box);
+    const double speed = 1.0 + 9.0 * uniform(random), wait = 2.0 * uniform(random);
+    return TimedFlight{{leg_between(from, to, speed, wait)}, jerk, 5.0 * uniform(random)};
   };
   int certified = 0;
   for (int i = 0; i < 100'000; ++i) {

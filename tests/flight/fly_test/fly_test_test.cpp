@@ -27,10 +27,10 @@ TEST(NearestPass, FindsTheNearestOfAllSteps) {
   for (int path = 0; path < 50; ++path) {
     NearestPass pass(space, 8.0);
     double least = 8.0;
-    Vector3d place(draws.between(-30, 30), draws.between(-30, 30), draws.between(0, 30));
+    Vector3d place{draws.between(-30, 30), draws.between(-30, 30), draws.between(0, 30)};
     Vector3d velocity = Vector3d::Zero();
     for (int i = 0; i < 500; ++i) {
-      velocity += 0.02 * Vector3d(draws.normal(), draws.normal(), draws.normal());
+      velocity += 0.02 * Vector3d{draws.normal(), draws.normal(), draws.normal()};
       const Segment step{place, place + velocity};
       pass.pass(step);
       least = std::min(least, space.closest(step, 8.0).distance);

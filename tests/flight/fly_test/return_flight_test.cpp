@@ -37,7 +37,7 @@ INSTANTIATE_TEST_SUITE_P(ReturnFlight, AReturn,
 TEST_P(AReturn, StaysWithinWhatIsProven) {
   RandomNumbers draws(7, 1);
   for (int i = 0; i < 2000; ++i) {
-    const Vector3d place(draws.between(-70, 90), draws.between(-70, 70), draws.between(6, 50));
+    const Vector3d place{draws.between(-70, 90), draws.between(-70, 70), draws.between(6, 50)};
     std::vector<ReturnPiece> proven = return_pieces(law(), place);
     for (const ReturnPiece& column : landing_columns(law(), std::max(level, place.z()))) {
       proven.push_back(column);
@@ -59,7 +59,7 @@ TEST_P(AReturn, StaysWithinWhatIsProven) {
 TEST_P(AReturn, ComesDownAtTheNearestLandingPlace) {
   RandomNumbers draws(8, 1);
   for (int i = 0; i < 200; ++i) {
-    const Vector3d place(draws.between(70, 90), draws.between(-20, 20), draws.between(6, 30));
+    const Vector3d place{draws.between(70, 90), draws.between(-20, 20), draws.between(6, 30)};
     const Vector3d end = return_way(law(), place, draws).back();
     EXPECT_LT((end - Vector3d(60, 10, 1)).norm(), 8.0 + 1e-9);  // DJI's may land where they are
   }

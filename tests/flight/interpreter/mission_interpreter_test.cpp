@@ -338,7 +338,7 @@ TEST(FlownRoute, AProvenFanIsFreeEverywhere) {
   int proven = 0, refused = 0;
   for (int i = 0; i < 300; ++i) {
     const auto place = [&] {
-      return Eigen::Vector3d(level(random), level(random), height(random));
+      return Eigen::Vector3d{level(random), level(random), height(random)};
     };
     FlownRoute route;
     route.pieces.push_back({{place(), place()}, place(), "item 1", "item 2"});

@@ -46,7 +46,7 @@ TEST(PictureBounds, HoldForAnyMotionAndPixel) {
   std::mt19937_64 random(1);
   std::normal_distribution<double> normal;
   const auto direction = [&] {
-    return Vector3d(normal(random), normal(random), normal(random)).normalized();
+    return Vector3d{normal(random), normal(random), normal(random)}.normalized();
   };
   double largest = 0.0;
   for (int i = 0; i < 20000; ++i) {

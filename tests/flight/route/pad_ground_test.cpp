@@ -109,7 +109,7 @@ TEST(PadScan, MeasuresTheSlopeUnderNoiseAndLeavesTheRestOut) {
   for (int part = 0; part < 2; ++part) {
     std::vector<Eigen::Vector3f> points;
     for (int i = 0; i < 10'000; ++i) {
-      const Vector2d at = pad.head<2>() + Vector2d(spread(random), spread(random));
+      const Vector2d at = pad.head<2>() + Vector2d{spread(random), spread(random)};
       const bool is_far = (at - pad.head<2>()).norm() > 0.7;
       const double height = is_far ? 20.0 : plane.height(at) + noise(random);
       points.push_back(Vector3d(at.x(), at.y(), height).cast<float>());

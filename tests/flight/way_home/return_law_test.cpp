@@ -113,8 +113,8 @@ TEST(ReturnLaw, IsOneLipschitz) {
   ReturnLaw law = law_of({Dialect::ardupilot, Dialect::px4, Dialect::dji});
   law.landings.emplace_back(60, -20, 4);
   for (int i = 0; i < 20000; ++i) {
-    const Vector3d a(coordinate(random), coordinate(random), height(random));
-    const Vector3d b = a + 15.0 * Vector3d(unit(random), unit(random), unit(random));
+    const Vector3d a{coordinate(random), coordinate(random), height(random)};
+    const Vector3d b = a + 15.0 * Vector3d{unit(random), unit(random), unit(random)};
     const double apart = (b - a).norm();
     const auto around = return_pieces(law, a, apart + 1e-12);
     for (const ReturnPiece& piece : return_pieces(law, b)) {

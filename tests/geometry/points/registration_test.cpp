@@ -163,7 +163,7 @@ TEST(FitPatch, TakesPlanesAlone) {
   std::normal_distribution<float> number(0.0F, 0.1F);
   for (int i = 0; i < 50; ++i) {
     line.emplace_back(0.01F * static_cast<float>(i), 0.0F, 0.0F);
-    blob.emplace_back(number(random), number(random), number(random));
+    blob.push_back({number(random), number(random), number(random)});
   }
   EXPECT_FALSE(fit_patch(line, sensor));
   EXPECT_FALSE(fit_patch(blob, sensor));

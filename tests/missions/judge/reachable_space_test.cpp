@@ -101,7 +101,7 @@ geometry::Mesh cluttered_room(std::uint64_t seed) {
   geometry::Mesh mesh = room_mesh({.door_width = 6.0, .door_height = 6.0});
   for (int i = 0; i < 14; ++i) {
     const double z = draw(0, 7), y = draw(-14, 8), x = draw(-10, 6);
-    const Vector3d low(x, y, z), size(draw(1, 8), draw(1, 8), draw(1, 8));
+    const Vector3d low(x, y, z), size{draw(1, 8), draw(1, 8), draw(1, 8)};
     geometry::append(mesh, sim::models::box(low, low + size));
   }
   return mesh;
@@ -180,7 +180,7 @@ TEST(ReachableSpace, IsTheSameForAnyNumberOfThreads) {
   std::mt19937_64 random(1);
   std::uniform_real_distribution<double> uniform(-15.0, 15.0);
   for (int i = 0; i < 2000; ++i) {
-    const Vector3d place(uniform(random), uniform(random), uniform(random));
+    const Vector3d place{uniform(random), uniform(random), uniform(random)};
     EXPECT_EQ(one.leads_to(place, joins), three.leads_to(place, joins));
   }
 }

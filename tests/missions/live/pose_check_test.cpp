@@ -45,7 +45,7 @@ geometry::Scan moved(const geometry::Scan& scan, const Isometry3d& error) {
 Isometry3d error_at(const Vector3d& sensor, std::uint64_t seed, double shift = 0.1) {
   std::mt19937_64 random(seed);
   std::normal_distribution<double> number;
-  const auto any = [&] { return Vector3d(number(random), number(random), number(random)); };
+  const auto any = [&] { return Vector3d{number(random), number(random), number(random)}; };
   Isometry3d error = Isometry3d::Identity();
   error.linear() =
       Eigen::AngleAxisd(geometry::radians_per_degree, any().normalized()).toRotationMatrix();

@@ -83,7 +83,7 @@ std::vector<Vector3f> sphere(std::size_t count, double radius, double noise) {
   std::vector<Vector3f> points;
   for (std::size_t i = 0; i < count; ++i) {
     const Vector3d direction =
-        Vector3d(normal(random), normal(random), normal(random)).normalized();
+        Vector3d{normal(random), normal(random), normal(random)}.normalized();
     points.emplace_back(
         ((radius + noise * normal(random)) * direction + Vector3d(100, -40, 7)).cast<float>());
   }
