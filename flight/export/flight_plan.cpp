@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "geometry/error.h"
 
@@ -110,7 +111,7 @@ std::vector<StopTime> stop_times(const FlightPlan& plan) {
                            : duration(waypoint.curve) + plan.vehicle.mode.settle_time;
     double aimed = now + leg;
     if (waypoint.is_station && last_station != nullptr) {
-      const double turn = std::remainder(waypoint.yaw - last_station->yaw, 2.0 * M_PI);
+      const double turn = std::remainder(waypoint.yaw - last_station->yaw, 2.0 * std::numbers::pi);
       aimed = now + motion.aimed_time(leg, turn, waypoint.pitch - last_station->pitch);
     }
     if (waypoint.is_station) last_station = &waypoint;

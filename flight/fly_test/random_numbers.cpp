@@ -3,21 +3,11 @@
 #include <cmath>
 #include <numbers>
 
+#include "geometry/split_mix.h"
+
 namespace skycap::flight {
-namespace {
-
-/// Steele, Lea & Flood, Fast Splittable Pseudorandom Number Generators, 2014.
-std::uint64_t split_mix(std::uint64_t x) {
-  x += 0x9e3779b97f4a7c15U;
-  x = (x ^ (x >> 30)) * 0xbf58476d1ce4e5b9U;
-  x = (x ^ (x >> 27)) * 0x94d049bb133111ebU;
-  return x ^ (x >> 31);
-}
-
-}  // namespace
-
 RandomNumbers::RandomNumbers(std::uint64_t seed, std::uint64_t stream)
-    : engine_(split_mix(split_mix(seed) ^ stream)) {}
+    : engine_(geometry::split_mix(geometry::split_mix(seed) ^ stream)) {}
 
 double RandomNumbers::uniform() { return static_cast<double>(engine_() >> 11) * 0x1p-53; }
 

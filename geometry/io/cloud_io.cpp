@@ -100,11 +100,6 @@ void append_bytes(std::string& bytes, const Value& value) {
   bytes.append(reinterpret_cast<const char*>(&value), sizeof(value));
 }
 
-/// Of the file that gzip may have compressed.
-std::string ending_of(const fs::path& path) {
-  return (path.extension() == ".gz" ? path.stem() : path).extension().string();
-}
-
 /// Compressed (LAZ, COPC) or not.
 bool is_las(std::string_view ending) { return ending == ".las" || ending == ".laz"; }
 

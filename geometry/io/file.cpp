@@ -1,6 +1,7 @@
 #include "geometry/io/file.h"
 
 #include <algorithm>
+#include <cctype>
 #include <cerrno>
 #include <cstdint>
 #include <fstream>
@@ -112,6 +113,15 @@ class TemporaryFile {
 };
 
 }  // namespace
+
+std::string ending_of(fs::path path) {
+  const auto lower = [](std::string text) {
+    for (char& c : text) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+    return text;
+  };
+  if (lower(path.extension().string()) == ".gz") path = path.stem();
+  return lower(path.extension().string());
+}
 
 void require_regular_file(const fs::path& path) {
   std::error_code error;

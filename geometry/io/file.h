@@ -12,6 +12,9 @@ namespace skycap::geometry {
 /// Throws Error{bad_file} unless it is a regular file: devices and pipes may never end.
 void require_regular_file(const std::filesystem::path& path);
 
+/// The name's ending in lower case with its dot, not counting ".gz"; empty if it has none.
+std::string ending_of(std::filesystem::path path);
+
 /// The bytes of a file; one that gzip has compressed comes back decompressed, whatever its name.
 /// Throws Error{bad_file} if it is no regular file, unreadable, damaged, or larger than
 /// `most_bytes`, decompressed or not. What is larger has to be read piece by piece.

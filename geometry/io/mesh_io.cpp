@@ -26,18 +26,8 @@ using Eigen::Vector3d;
   throw Error(ErrorKind::bad_file, path.string() + ": " + what);
 }
 
-/// The name's ending in lower case, not counting ".gz".
-std::string format_of(fs::path path) {
-  const auto lower = [](std::string text) {
-    for (char& c : text) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-    return text;
-  };
-  if (lower(path.extension().string()) == ".gz") path = path.stem();
-  return lower(path.extension().string());
-}
-
 PolygonSoup parse(const fs::path& path) {
-  const std::string format = format_of(path);
+  const std::string format = ending_of(path);
   if (format == ".drc") {
     const Mesh mesh = decode_draco(path.string(), read_file(path));
     PolygonSoup soup{mesh.vertices, {}};  // goes the way of the others, which checks it
@@ -203,7 +193,7 @@ std::string stl_of(const Mesh& mesh) {
 
 bool is_mesh_file(const fs::path& path) {
   constexpr std::array<std::string_view, 5> formats = {".ply", ".obj", ".stl", ".off", ".drc"};
-  return std::ranges::find(formats, format_of(path)) != formats.end();
+  return std::ranges::find(formats, ending_of(path)) != formats.end();
 }
 
 Mesh read_mesh(const fs::path& path, const MeshOptions& options) {

@@ -38,7 +38,7 @@ survey::volumetric::VolumetricConfig volumetric_config(const file::Mission& miss
       .spacing = see.effective_spacing(),
       .scene_box = see.scene_box,
       .candidates = static_cast<std::size_t>(std::lround(views)),
-      .least_height = least_height_above_ground(mission),
+      .least_height = least_view_height(mission),
       .seed = mission.seed ^ candidates_stream,
       .settings = settings,
       .threads = threads};
@@ -50,7 +50,7 @@ survey::volumetric::VolumetricConfig volumetric_config(const file::Mission& miss
 survey::see::SeeConfig see_config(const file::Mission& mission, unsigned threads) {
   survey::see::SeeConfig config = mission.planner.see;
   config.threads = threads;
-  config.least_height = least_height_above_ground(mission);
+  config.least_height = least_view_height(mission);
   return config;
 }
 

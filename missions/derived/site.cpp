@@ -8,7 +8,7 @@
 
 namespace skycap::missions::derived {
 
-std::optional<double> least_height_above_ground(const file::Mission& mission) {
+std::optional<double> least_view_height(const file::Mission& mission) {
   const std::optional<double>& clearance = mission.limits.ground_clearance;
   return clearance ? std::optional(ground_height_of(mission) + *clearance) : std::nullopt;
 }
@@ -22,7 +22,7 @@ survey::ViewLimits view_limits(const file::Mission& mission) {
                             .stand_off = limits.stand_off,
                             .least_pitch = limits.lowest_pitch,
                             .most_pitch = limits.highest_pitch};
-  if (const std::optional<double> least = least_height_above_ground(mission)) {
+  if (const std::optional<double> least = least_view_height(mission)) {
     result.least_height = std::max(*least, result.least_height.value_or(*least));
   }
   if (const auto terrain = priors_of(mission).terrain; terrain && limits.ground_clearance) {

@@ -11,7 +11,7 @@
 namespace skycap::missions::derived {
 
 /// The least z of a view that limits.ground_clearance allows; nothing without it.
-std::optional<double> least_height_above_ground(const file::Mission& mission);
+std::optional<double> least_view_height(const file::Mission& mission);
 
 /// The limits of mission.site, mission.limits and the vehicle together, heights as z in the
 /// mission's frame.

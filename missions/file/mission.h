@@ -17,6 +17,7 @@
 #include "flight/motion/flight_style.h"
 #include "flight/motion/picture_bounds.h"
 #include "flight/motion/vehicle.h"
+#include "geometry/angle.h"
 #include "geometry/place/prism.h"
 #include "missions/prior/source.h"
 #include "sim/models/models.h"
@@ -175,7 +176,7 @@ struct FlightConfig {
   std::optional<double> takeoff_climb;     ///< else 5 m, or a metre more than the clearance
   std::vector<Eigen::Vector3d> rally;      ///< other places to land when called home, on the ground
   std::optional<double> pad_slope;         ///< of pad and rally points, as the pilot found it [rad]
-  double steepest_pad = 0.17453292519943295;  ///< 10 degrees, at which it may stand [rad]
+  double steepest_pad = 10.0 * geometry::radians_per_degree;  ///< at which it may stand [rad]
   double cruise_speed = 4.0;
   double hold = 0.5;          ///< at a view, before the capture [s]
   double hold_after = 0.5;    ///< and after it [s]

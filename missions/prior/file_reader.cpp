@@ -21,16 +21,6 @@ namespace fs = std::filesystem;
 
 enum class Format { citygml, cityjson, map, raster, las, scene, mesh, cloud };
 
-/// The name's ending in lower case, not counting ".gz".
-std::string ending_of(fs::path file) {
-  const auto lower = [](std::string text) {
-    for (char& c : text) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-    return text;
-  };
-  if (lower(file.extension().string()) == ".gz") file = file.stem();
-  return lower(file.extension().string());
-}
-
 bool is_one_of(string_view text, std::initializer_list<string_view> wanted) {
   return std::ranges::find(wanted, text) != wanted.end();
 }
@@ -169,7 +159,7 @@ Opened open_file(const fs::path& file, Role role) {
     fail_file(file,
               "is E57, which is not read; convert it to LAS or LAZ, as with CloudCompare or PDAL");
   }
-  const std::string ending = ending_of(file);
+  const std::string ending = geometry::ending_of(file);
   Opened opened{Format::mesh, {}};
   const bool is_compressed = beginning.starts_with("\x1F\x8B");
   if (is_compressed) opened.bytes = geometry::read_file(file, most_bytes);
@@ -198,7 +188,7 @@ Opened open_file(const fs::path& file, Role role) {
 
 FileContents mesh_contents(const fs::path& file) {
   FileContents contents;
-  contents.format = "mesh" + ending_of(file);
+  contents.format = "mesh" + geometry::ending_of(file);
   contents.is_scene = true;
   FileObject& object = contents.objects.emplace_back();
   object.id = file.stem().string();
@@ -208,7 +198,7 @@ FileContents mesh_contents(const fs::path& file) {
 
 FileContents cloud_contents(const Source& source) {
   FileContents contents;
-  contents.format = "cloud" + ending_of(source.file);
+  contents.format = "cloud" + geometry::ending_of(source.file);
   contents.is_scene = true;
   CellSet cells;
   const double unit = source.unit.value_or(1.0);
@@ -241,7 +231,7 @@ FileContents read_contents(const Source& source, const SiteFrame& site) {
                              }});
     case Format::scene: {
       FileContents contents = read_scene(file);
-      contents.format = "scene" + ending_of(file);
+      contents.format = "scene" + geometry::ending_of(file);
       return contents;
     }
     case Format::mesh:

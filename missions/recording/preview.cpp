@@ -5,6 +5,7 @@
 #include <cmath>
 #include <string>
 
+#include "geometry/split_mix.h"
 #include "missions/recording/little_endian.h"
 
 namespace skycap::missions::recording {
@@ -14,15 +15,6 @@ constexpr double wanted_shots = 1.5e6;
 
 /// Beyond this, neighbouring single-precision numbers are 2 mm apart.
 constexpr double farthest_coordinate = 16384.0;
-
-/// Numbers that follow each other become numbers all over the range: the finaliser of SplitMix64
-/// (G. Steele, D. Lea and C. Flood, "Fast splittable pseudorandom number generators", 2014).
-std::uint64_t scattered(std::uint64_t number) {
-  number += 0x9e3779b97f4a7c15U;
-  number = (number ^ number >> 30) * 0xbf58476d1ce4e5b9U;
-  number = (number ^ number >> 27) * 0x94d049bb133111ebU;
-  return number ^ number >> 31;
-}
 
 class PreviewFormat final : public CloudFormat {
  public:
@@ -69,7 +61,7 @@ class PreviewFormat final : public CloudFormat {
 double preview_share(double shots) { return shots > wanted_shots ? wanted_shots / shots : 1.0; }
 
 bool is_previewed(std::uint64_t time, std::uint64_t number, double share) {
-  const std::uint64_t random = scattered(scattered(time) + number);
+  const std::uint64_t random = geometry::split_mix(geometry::split_mix(time) + number);
   return std::ldexp(static_cast<double>(random), -64) < share;
 }
 

@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numbers>
 
 #include <nlohmann/json.hpp>
 
+#include "geometry/angle.h"
 #include "geometry/points/spatial_index.h"
 #include "missions/package/coverage_map.h"
 #include "missions/package/holes.h"
@@ -42,7 +42,7 @@ std::vector<std::uint16_t> incidence_steps(const geometry::AttributedCloud& clou
   // By the cosines of the steps' ends: a comparison costs less than an arc cosine.
   std::vector<float> least_cosines;
   for (double angle = incidence_step_deg; angle < 180.0; angle += incidence_step_deg) {
-    least_cosines.push_back(static_cast<float>(std::cos(angle * std::numbers::pi / 180.0)));
+    least_cosines.push_back(static_cast<float>(std::cos(angle * geometry::radians_per_degree)));
   }
   std::vector<std::uint16_t> steps(cloud.positions.size(), no_incidence);
   if (cloud.normals.empty()) return steps;
@@ -111,7 +111,7 @@ std::vector<float> surface_errors(const geometry::AttributedCloud& cloud,
   std::vector<geometry::Neighbour> near;
   for (std::size_t i = 0; i < cloud.positions.size(); ++i) {
     if (incidence[i] == no_incidence) continue;
-    const double angle = (incidence[i] + 0.5) * incidence_step_deg * std::numbers::pi / 180.0;
+    const double angle = (incidence[i] + 0.5) * incidence_step_deg * geometry::radians_per_degree;
     const double across = noise.is_along_ray ? std::abs(std::cos(angle)) : 1.0;
     near.clear();
     samples.find_within(cloud.positions[i], reach, near);

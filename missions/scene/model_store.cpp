@@ -157,10 +157,8 @@ fs::path obtain_model(const std::string& name,
   }
 
   report("converting " + model.filename().string() + " to PLY");
-  const fs::path converted = folder.path() / (name + ".ply");
-  geometry::write_mesh(converted, geometry::read_mesh(model));
   const fs::path target = user_cache() / (name + ".ply");
-  fs::rename(converted, target);
+  geometry::write_mesh(target, geometry::read_mesh(model));
   report("stored " + target.string());
   return target;
 }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstdlib>
 #include <memory>
+#include <string>
 #include <string_view>
 #include <utility>
 
@@ -13,6 +14,7 @@
 #include "geometry/error.h"
 #include "geometry/instruction_set.h"
 #include "missions/file/mission_keys.h"
+#include "missions/file/planner_titles.h"
 #include "missions/recording/cloud_formats.h"
 #include "missions/verbs/printable.h"
 #include "missions/verbs/verb_options.h"
@@ -22,6 +24,15 @@
 namespace skycap::missions::verbs {
 namespace {
 
+/// What planner.name may be.
+std::string planner_list() {
+  std::string list;
+  for (const file::PlannerTitle& title : file::planner_titles) {
+    list.append(list.empty() ? "" : ", ").append(title.word);
+  }
+  return list;
+}
+
 void add_plan(CLI::App& app, const Console& console, Action& action) {
   CLI::App* verb = app.add_subcommand(
       "plan", "Survey a mission's scene in simulation and write the mission package");
@@ -29,8 +40,7 @@ void add_plan(CLI::App& app, const Console& console, Action& action) {
   const auto keys = std::make_shared<KeyOptions>();
   verb->add_option("mission", options->mission, "Mission file (docs/mission_file.md)")->required();
   verb->add_option("--out", options->out, "Folder for the results; default results/NAME");
-  verb->add_option("--planner", keys->planner,
-                   "see++, see, skycap, rsv, rse, oa, uv, pc, af or ae, in place of the mission's");
+  verb->add_option("--planner", keys->planner, planner_list() + ", in place of the mission's");
   verb->add_option("--seed", keys->seed, "Seed, in place of the mission's");
   verb->add_option("--threads", keys->threads, "Threads, 0 for all processors");
   verb->add_option("--max-views", keys->max_views, "End after this many views");

@@ -10,6 +10,7 @@
 #include "geometry/angle.h"
 #include "geometry/parallel.h"
 #include "geometry/requirement.h"
+#include "geometry/split_mix.h"
 #include "sim/scene/scene.h"
 
 namespace skycap::sim {
@@ -32,20 +33,14 @@ const Vector3d horizon(0.66, 0.76, 0.88);
 class Dice {
  public:
   // The place is mixed too: neighbours must not draw the same sequence, shifted.
-  explicit Dice(std::uint64_t place) : state_(mixed(place + step)) {}
+  explicit Dice(std::uint64_t place) : state_(geometry::split_mix(place)) {}
   double operator()() {
-    state_ += step;
-    return static_cast<double>(mixed(state_) >> 11) * 0x1.0p-53;
+    const std::uint64_t number = geometry::split_mix(state_);
+    state_ += geometry::split_mix_step;
+    return static_cast<double>(number >> 11) * 0x1.0p-53;
   }
 
  private:
-  static constexpr std::uint64_t step = 0x9E3779B97F4A7C15ULL;
-  static std::uint64_t mixed(std::uint64_t z) {
-    z = (z ^ (z >> 30)) * 0xBF58476D1CE4E5B9ULL;
-    z = (z ^ (z >> 27)) * 0x94D049BB133111EBULL;
-    return z ^ (z >> 31);
-  }
-
   std::uint64_t state_;
 };
 

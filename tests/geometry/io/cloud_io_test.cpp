@@ -9,6 +9,7 @@
 #include <gtest/gtest.h>
 
 #include "geometry/error.h"
+#include "geometry/io/file.h"
 #include "tests/support/temporary_folder.h"
 
 namespace skycap::geometry {
@@ -35,6 +36,17 @@ TEST(CloudIo, RoundTripKeepsEveryAttribute) {
   EXPECT_EQ(again.normals, cloud.normals);
   EXPECT_EQ(again.views, cloud.views);
   EXPECT_EQ(again.colours, cloud.colours);
+}
+
+TEST(CloudIo, TellsFormatsByEndingsInAnyCase) {
+  const TemporaryFolder folder;
+  const AttributedCloud cloud = three_points();
+  write_cloud(folder.path() / "cloud.ply", columns_of(cloud));
+  std::filesystem::rename(folder.path() / "cloud.ply", folder.path() / "CLOUD.PLY");
+  EXPECT_EQ(read_cloud(folder.path() / "CLOUD.PLY").positions, cloud.positions);
+  EXPECT_EQ(ending_of("A.B.Las"), ".las");
+  EXPECT_EQ(ending_of("a.LAZ.GZ"), ".laz");
+  EXPECT_EQ(ending_of("folder.d/a"), "");
 }
 
 TEST(CloudIo, AbsentAttributesStayAbsent) {

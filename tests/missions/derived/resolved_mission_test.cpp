@@ -104,7 +104,7 @@ TEST(ResolvedMission, MeasuresTheGroundClearanceFromTheScenesBase) {
       "scene: {model: 'builtin:teapot', position: [0, 0, 60]}\n"
       "evaluation: {registration_distance: 0.005}\nlimits: {ground_clearance: 2}\n",
       "m.yaml");
-  EXPECT_EQ(derived::least_height_above_ground(mission), 62.0);
+  EXPECT_EQ(derived::least_view_height(mission), 62.0);
   EXPECT_EQ(derived::view_limits(mission).least_height, 62.0);
 }
 
