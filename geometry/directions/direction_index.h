@@ -28,6 +28,9 @@ class DirectionIndex {
   /// array of the index: one index serves one thread.
   Nearest nearest(const Eigen::Vector3d& s);
 
+  /// All of the set, near ones near each other.
+  std::span<const Eigen::Vector3d> members() const { return members_; }
+
  private:
   void look_into_cell(std::size_t cell, const Eigen::Vector3d& s, double& best,
                       std::size_t& best_member) const;

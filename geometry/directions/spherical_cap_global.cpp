@@ -11,6 +11,7 @@
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
 #include <Eigen/Geometry>
 
+#include "geometry/directions/clearings.h"
 #include "geometry/directions/spherical_cap_methods.h"
 
 // The largest empty cap by an expanding polytope. The convex hull of a small part W of Q has, in
@@ -18,6 +19,10 @@
 // member of Q deepest inside that cap joins W, and the hull grows there; when there is none, the
 // cap is empty of Q. What is outside of which facet is decided by CGAL's exact predicates, so that
 // the hull stays one whatever the directions are.
+//
+// Where there are holes in Q, W stays small. Where there are none, it would become most of Q before
+// no facet of the hull promises more than the best cap. So from some size on, the hull grows only
+// where a grid cannot rule out (clearings.h) that a cap as large is centred.
 namespace skycap::geometry {
 namespace {
 
@@ -25,6 +30,7 @@ using Eigen::Vector3d;
 using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
 
 constexpr double proof_tolerance = 1e-9;  // a cap is empty if no direction is deeper inside
+constexpr std::size_t members_without_clearings = 100;  // holes are found with about 60
 
 Kernel::Point_3 to_cgal(const Vector3d& p) { return {p.x(), p.y(), p.z()}; }
 
@@ -43,6 +49,7 @@ class Polytope {
 
   const Facet& facet(std::uint32_t f) const { return facets_[f]; }
   std::size_t size() const { return facets_.size(); }  ///< dead facets included; these only grow
+  std::size_t members() const { return points_.size(); }
 
   bool is_outside(const Vector3d& point, std::uint32_t f) const {
     const auto& [a, b, c] = facets_[f].corners;
@@ -193,6 +200,7 @@ std::optional<SphericalCap> largest_empty_cap(DirectionIndex& occluded,
   std::uint32_t queued = 0;
   std::vector<SphericalCap> caps;  // empty ones, the largest first
   double bound = largest_cosine;   // or h at the best direction so far
+  std::optional<Clearings> clearings;
   while (true) {
     for (; queued < polytope.size(); ++queued) {
       if (!polytope.facet(queued).is_alive) continue;
@@ -203,6 +211,11 @@ std::optional<SphericalCap> largest_empty_cap(DirectionIndex& occluded,
     nearest_facets.pop();
     if (!polytope.facet(facet).is_alive) continue;
     if (distance > bound + cap_tolerance) break;
+    if (!clearings && polytope.members() > members_without_clearings) {
+      clearings = find_clearings(occluded, bound);
+      bound = std::min(bound, clearings->cosine);
+    }
+    if (clearings && !clearings->meet(polytope.facet(facet).normal, distance)) continue;
     const auto deepest = occluded.nearest(polytope.facet(facet).normal);
     bound = std::min(bound, deepest.cosine);
     if (deepest.cosine > distance + proof_tolerance &&

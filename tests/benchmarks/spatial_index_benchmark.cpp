@@ -11,6 +11,7 @@
 #include <iterator>
 #include <memory>
 #include <random>
+#include <utility>
 #include <vector>
 
 #include <CGAL/Fuzzy_sphere.h>
@@ -44,6 +45,15 @@ std::vector<Vector3f> shell(std::size_t count) {
     const float azimuth = 6.2831853F * uniform(random), across = 15.0F + noise(random);
     p = {across * std::cos(azimuth), across * std::sin(azimuth), 40.0F * uniform(random)};
   }
+  return points;
+}
+
+/// The same points row by row of 3 cm, each row from its one end to the other.
+std::vector<Vector3f> in_rows(std::vector<Vector3f> points) {
+  const auto place = [](const Vector3f& p) {
+    return std::pair(std::floor(p.z() / 0.03F), std::atan2(p.y(), p.x()));
+  };
+  std::ranges::sort(points, {}, place);
   return points;
 }
 
@@ -170,19 +180,24 @@ int main(int argc, char** argv) {
                             }),
         few.size());
 
-  // Growing the cloud by one scan: our insertion at the spacing beside the rebuilding of a tree.
-  const auto grow = [&] {
-    skycap::geometry::DensityMap growing(
-        {.radius = radius, .core_threshold = 4, .spacing = spacing});
-    growing.insert(scan, 0);
+  // Growing the cloud by one scan: our insertion at the spacing beside a copy of its points, as
+  // they came above, at random, and in rows, as scanners measure them.
+  const auto compare_insertion = [](const char* what, const std::vector<Vector3f>& returns) {
+    const auto grow = [&] {
+      skycap::geometry::DensityMap growing(
+          {.radius = radius, .core_threshold = 4, .spacing = spacing});
+      growing.insert(returns, 0);
+    };
+    print(what, "raw copy",
+          interleaved_medians(rounds, grow,
+                              [&] {
+                                std::vector<Vector3f> copy;
+                                for (const Vector3f& p : returns) copy.push_back(p);
+                              }),
+          returns.size());
   };
-  print("insert a return at the spacing", "raw copy",
-        interleaved_medians(rounds, grow,
-                            [&] {
-                              std::vector<Vector3f> copy;
-                              for (const Vector3f& p : scan) copy.push_back(p);
-                            }),
-        scan.size());
+  compare_insertion("insert a return at the spacing", scan);
+  compare_insertion("insert a return of a row", in_rows(scan));
   const auto build_grid = [&] {
     PointGrid fresh(radius);
     for (const Vector3f& p : points) fresh.insert(p);

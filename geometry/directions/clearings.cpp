@@ -1,0 +1,295 @@
+#include "geometry/directions/clearings.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <numbers>
+#include <span>
+
+#include "geometry/directions/spherical_cap_methods.h"
+
+namespace skycap::geometry {
+namespace {
+
+using Eigen::Vector3d;
+
+constexpr int margin_cells = 2;            // of a face of the grid beyond its edges
+constexpr double members_per_cell = 1.35;  // in the middle of a face, if all are spread evenly
+constexpr int probe_stride = 3;            // in squares
+constexpr int most_cells = 4096;           // along an edge of the cube
+constexpr std::size_t few_parts = 16;      // not worth cutting further
+constexpr std::size_t many_parts = 300;    // no longer worth a look at each for every facet
+constexpr double least_progress = 0.7;     // of the parts of one round, left of them by the next
+constexpr int most_rounds = 10;            // each halves the parts
+constexpr std::size_t squares_per_member = 12;  // looked at, at most
+constexpr double rounding_of_parts = 1e-7;      // of sums of square roots of differences of cosines
+
+// Of directions, which are of unit length to this.
+constexpr double length_tolerance = 1e-6;
+constexpr double largest_length = 1.0 + 1.1 * length_tolerance;
+constexpr double smallest_length = 1.0 - 1.1 * length_tolerance;
+
+/// A place on one of the six faces of the cube [-1, 1]^3. A face has coordinates of its own, in
+/// which it lies at z = 1.
+struct Place {
+  int face;
+  double x, y;
+
+  Vector3d on_cube() const { return {x, y, 1.0}; }  // in the coordinates of the face
+};
+
+Vector3d world_from_face(int face, const Vector3d& on_face) {
+  const int axis = face / 2;
+  Vector3d in_world;
+  in_world[axis] = face % 2 == 0 ? -on_face.z() : on_face.z();
+  in_world[(axis + 1) % 3] = on_face.x();
+  in_world[(axis + 2) % 3] = on_face.y();
+  return in_world;
+}
+
+Vector3d face_from_world(int face, const Vector3d& in_world) {
+  const int axis = face / 2;
+  const double height = face % 2 == 0 ? -in_world[axis] : in_world[axis];
+  return {in_world[(axis + 1) % 3], in_world[(axis + 2) % 3], height};
+}
+
+/// The members in square cells on the faces of the cube, and once more for each face beyond whose
+/// edges they are by at most the margin.
+class CubeGrid {
+ public:
+  CubeGrid(std::span<const Vector3d> members, int cells_per_edge);
+
+  /// Whether a member is in a cell that lies on the face itself.
+  bool holds_any(int face, int column, int row) const {
+    const std::size_t cell = cell_at(face, column + margin_cells, row + margin_cells);
+    return cell_begin_[cell + 1] > cell_begin_[cell];
+  }
+
+  /// Whether `look` says so of a member near the place; all within `radius` are asked, but for some
+  /// beyond the margin, near ones early. Members are in the coordinates of the face.
+  template <typename Look>
+  bool any_around(const Place& place, double radius, Look look) const;
+
+ private:
+  int slot(double coordinate) const {
+    return std::clamp(static_cast<int>((coordinate + reach_) * scale_), 0, slots_ - 1);
+  }
+  std::size_t cell_at(int face, int column, int row) const {
+    return static_cast<std::size_t>((face * slots_ + row) * slots_ + column);
+  }
+
+  int slots_;     // along the edge of a face with its margins
+  double reach_;  // largest coordinate on a face
+  double scale_;  // slots a unit of it
+  std::vector<Vector3d> members_;
+  std::vector<std::uint32_t> cell_begin_;
+};
+
+CubeGrid::CubeGrid(std::span<const Vector3d> members, int cells_per_edge)
+    : slots_(cells_per_edge + 2 * margin_cells),
+      reach_(1.0 + 2.0 * margin_cells / cells_per_edge),
+      scale_(0.5 * cells_per_edge) {
+  struct Entry {
+    std::uint32_t member, cell;
+    int face;
+  };
+  std::vector<Entry> entries;
+  entries.reserve(members.size() + members.size() / 4);
+  cell_begin_.assign(cell_at(6, 0, 0) + 1, 0);
+  for (std::size_t i = 0; i < members.size(); ++i) {
+    const Vector3d& q = members[i];
+    const std::array<double, 5> coordinates{q.x(), q.y(), q.z(), q.x(), q.y()};
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      const double x = coordinates[axis + 1], y = coordinates[axis + 2];
+      const double height = std::abs(coordinates[axis]), limit = reach_ * height;
+      if (std::abs(x) > limit || std::abs(y) > limit) continue;
+      const int face = static_cast<int>(2 * axis) + (coordinates[axis] > 0.0 ? 1 : 0);
+      const double scale = 1.0 / height;
+      const std::size_t cell = cell_at(face, slot(x * scale), slot(y * scale));
+      entries.push_back({static_cast<std::uint32_t>(i), static_cast<std::uint32_t>(cell), face});
+      ++cell_begin_[cell];
+    }
+  }
+  std::uint32_t end = 0;
+  for (std::uint32_t& begin : cell_begin_) begin = end += begin;
+  members_.resize(entries.size());
+  for (auto entry = entries.rbegin(); entry != entries.rend(); ++entry) {
+    members_[--cell_begin_[entry->cell]] = face_from_world(entry->face, members[entry->member]);
+  }
+}
+
+template <typename Look>
+bool CubeGrid::any_around(const Place& place, double radius, Look look) const {
+  // A small circle is at most so much larger on the face than on the sphere.
+  const double half = radius * (1.0 + place.x * place.x + place.y * place.y);
+  const int left = slot(place.x - half), right = slot(place.x + half);
+  const auto any_in_row = [&](int row) {
+    const std::uint32_t end = cell_begin_[cell_at(place.face, right + 1, row)];
+    for (std::uint32_t i = cell_begin_[cell_at(place.face, left, row)]; i < end; ++i) {
+      if (look(members_[i])) return true;
+    }
+    return false;
+  };
+  const int bottom = slot(place.y - half), top = slot(place.y + half), middle = slot(place.y);
+  if (any_in_row(middle)) return true;
+  for (int away = 1; away <= std::max(middle - bottom, top - middle); ++away) {
+    if (middle - away >= bottom && any_in_row(middle - away)) return true;
+    if (middle + away <= top && any_in_row(middle + away)) return true;
+  }
+  return false;
+}
+
+class Search {
+ public:
+  Search(DirectionIndex& occluded, double cosine, int cells_per_edge)
+      : occluded_(occluded),
+        grid_(occluded.members(), cells_per_edge),
+        edge_(2.0 / cells_per_edge),
+        cell_diagonal_(edge_ * std::numbers::sqrt2) {
+    set_cosine(cosine);
+  }
+
+  double cosine() const { return cosine_; }
+
+  /// Looks for a clear direction at some places all over the sphere: the clearer the best one is,
+  /// the sooner squares are given up.
+  void probe() {
+    visit_squares(probe_stride, [this](const Place& middle) { try_direction(middle); });
+  }
+
+  void cover_the_cube() {
+    visit_squares(1, [this](const Place& middle) { keep_if_clear(middle); });
+  }
+
+  void cut_in_four() {
+    edge_ *= 0.5;
+    std::vector<Place> before;
+    before.swap(clear_);
+    for (const auto& [face, x, y] : before) {
+      for (const double up : {-0.5, 0.5}) {
+        for (const double right : {-0.5, 0.5}) {
+          keep_if_clear({face, x + right * edge_, y + up * edge_});
+        }
+      }
+    }
+  }
+
+  std::size_t size() const { return clear_.size(); }  ///< of the squares that are left
+  std::size_t squares() const { return squares_; }    ///< that were looked at
+
+  std::vector<SpherePart> parts() const {
+    std::vector<SpherePart> parts;
+    for (const Place& place : clear_) {
+      const Vector3d middle = place.on_cube();
+      parts.push_back(
+          {world_from_face(place.face, middle.normalized()), radius_of_square(middle.norm())});
+    }
+    return parts;
+  }
+
+ private:
+  void set_cosine(double cosine) {
+    cosine_ = cosine;
+    clear_radius_ = std::sqrt(std::max(0.0, 2.0 - 2.0 * cosine));
+    limit_ = cosine + cap_tolerance;
+    limit_sine_ = std::sqrt(std::max(0.0, largest_length * largest_length - limit_ * limit_));
+    // |s - q|^2 = 1 + |q|^2 - 2 s.q
+    const double too_near2 = 1.0 + smallest_length * smallest_length - 2.0 * limit_;
+    is_cell_too_near_ = too_near2 > 0.0 && cell_diagonal_ + length_tolerance < std::sqrt(too_near2);
+  }
+
+  // How far parts of a square are from its middle at most, once both are on the sphere: half its
+  // diagonal over their distance from the origin. `norm` is that of the middle.
+  double radius_of_square(double norm) const {
+    const double half_diagonal = edge_ / std::numbers::sqrt2;
+    return half_diagonal / (norm - half_diagonal);
+  }
+
+  template <typename Visit>
+  void visit_squares(int stride, Visit visit) const {
+    const int squares = static_cast<int>(std::lround(2.0 / edge_));
+    for (int face = 0; face < 6; ++face) {
+      for (int row = 0; row < squares; row += stride) {
+        for (int column = 0; column < squares; column += stride) {
+          if (is_cell_too_near_ && grid_.holds_any(face, column, row)) continue;
+          visit({face, (column + 0.5) * edge_ - 1.0, (row + 0.5) * edge_ - 1.0});
+        }
+      }
+    }
+  }
+
+  // Whether a member q near the place, all within the radius among them, has place.q above this.
+  bool is_any_above(double product, const Place& place, double radius) const {
+    const Vector3d on_cube = place.on_cube();
+    return grid_.any_around(place, radius,
+                            [&](const Vector3d& q) { return on_cube.dot(q) > product; });
+  }
+
+  void try_direction(const Place& place) {
+    const Vector3d on_cube = place.on_cube();
+    if (is_any_above(cosine_ * on_cube.norm(), place, clear_radius_)) return;
+    const Vector3d direction = world_from_face(place.face, on_cube.normalized());
+    const double cosine = occluded_.nearest(direction).cosine;
+    if (cosine < cosine_) set_cosine(cosine);
+  }
+
+  void keep_if_clear(const Place& middle) {
+    ++squares_;
+    const double norm = middle.on_cube().norm(), radius = radius_of_square(norm);
+    // The s of the square are within the angle b of its middle, so a member q at the angle c from
+    // that has s.q >= |q| cos(c + b). This is above the limit if the middle's product with q is
+    // above the next one. The radius is more than sin b, and next to it.
+    const double cos_b = 1.0 - 0.5 * radius * radius;
+    const double enough = limit_ * cos_b + limit_sine_ * radius;
+    if (is_any_above(enough * norm, middle, std::max(0.0, clear_radius_ - radius))) return;
+    clear_.push_back(middle);
+    try_direction(middle);
+  }
+
+  DirectionIndex& occluded_;
+  CubeGrid grid_;
+  double edge_;                    // of the squares
+  double cell_diagonal_;           // of the grid
+  double cosine_;                  // h of the clearest direction so far
+  double clear_radius_ = 0.0;      // of the cap of that angle
+  double limit_ = 0.0;             // where h is above it, squares are given up
+  double limit_sine_ = 0.0;        // of a member as long as any: its part across, at that cosine
+  bool is_cell_too_near_ = false;  // each member is, for every s in its cell of the grid
+  std::size_t squares_ = 0;
+  std::vector<Place> clear_;  // middles of the squares that were kept
+};
+
+}  // namespace
+
+bool Clearings::meet(const Vector3d& normal, double cap_cosine) const {
+  const double cap_radius = std::sqrt(std::max(0.0, 2.0 - 2.0 * cap_cosine));
+  return std::any_of(parts.begin(), parts.end(), [&](const SpherePart& part) {
+    const double reach = cap_radius + part.radius + rounding_of_parts;
+    return 2.0 - 2.0 * part.centre.dot(normal) <= reach * reach;
+  });
+}
+
+Clearings find_clearings(DirectionIndex& occluded, double cosine) {
+  // A cell as wide as the cap that is known, or with a member or two if these are spread evenly.
+  const auto count = static_cast<double>(occluded.members().size());
+  const double radius = std::sqrt(std::max(0.0, 2.0 - 2.0 * cosine));
+  const double edge =
+      std::max(radius, std::sqrt(members_per_cell * 4.0 * std::numbers::pi / count));
+  Search search(occluded, cosine, std::clamp(static_cast<int>(2.0 / edge), 4, most_cells));
+  search.probe();
+  search.cover_the_cube();
+  const auto most_squares = squares_per_member * occluded.members().size();
+  for (int round = 0; round < most_rounds && search.size() > few_parts; ++round) {
+    if (search.squares() + 4 * search.size() > most_squares) break;
+    const std::size_t before = search.size();
+    search.cut_in_four();
+    const bool is_stuck =
+        static_cast<double>(search.size()) > least_progress * static_cast<double>(before);
+    if (is_stuck && search.size() <= many_parts) break;
+  }
+  if (search.size() > many_parts) return {{{Vector3d::UnitZ(), 2.0}}, search.cosine()};
+  return {search.parts(), search.cosine()};
+}
+
+}  // namespace skycap::geometry
