@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "geometry/byte_values.h"
 #include "geometry/io/las_layout.h"
 #include "geometry/io/las_reader.h"
 #include "missions/prior/formats/cell_set.h"
@@ -26,9 +27,9 @@ struct GeoRecords {
 /// The directory of GeoKeys (GeoTIFF 1.1, OGC 19-008r4): key, where the value is, count, value.
 void read_geo_keys(std::string_view directory, GeoRecords& records) {
   for (std::size_t i = 8; i + 8 <= directory.size(); i += 8) {
-    const int key = las::value_at<std::uint16_t>(directory.data(), i),
-              place = las::value_at<std::uint16_t>(directory.data(), i + 2),
-              value = las::value_at<std::uint16_t>(directory.data(), i + 6);
+    const int key = geometry::value_at<std::uint16_t>(directory.data(), i),
+              place = geometry::value_at<std::uint16_t>(directory.data(), i + 2),
+              value = geometry::value_at<std::uint16_t>(directory.data(), i + 6);
     if (place != 0) continue;
     constexpr int user_defined = 32767;
     if ((key == 3072 || key == 2048) && value == user_defined) records.is_user_defined = true;
@@ -53,9 +54,9 @@ GeoRecords geo_records(geometry::LasReader& input) {
   for (std::uint32_t i = 0; i < header.records && place < header.first_point; ++i) {
     const std::string head = input.bytes(place, las::record::end);
     if (head.size() < las::record::end) break;
-    const auto length = las::value_at<std::uint16_t>(head.data(), las::record::length);
+    const auto length = geometry::value_at<std::uint16_t>(head.data(), las::record::length);
     read_record(text_of(std::string_view(head).substr(las::record::user, 16)),
-                las::value_at<std::uint16_t>(head.data(), las::record::id),
+                geometry::value_at<std::uint16_t>(head.data(), las::record::id),
                 input.bytes(place + las::record::end, length), records);
     place += las::record::end + length;
   }
@@ -64,9 +65,9 @@ GeoRecords geo_records(geometry::LasReader& input) {
   for (std::uint32_t i = 0; i < header.extended_records && i < 1000; ++i) {
     const std::string head = input.bytes(place, las::record::extended_end);
     if (head.size() < las::record::extended_end) break;
-    const auto length = las::value_at<std::uint64_t>(head.data(), las::record::length);
+    const auto length = geometry::value_at<std::uint64_t>(head.data(), las::record::length);
     read_record(text_of(std::string_view(head).substr(las::record::user, 16)),
-                las::value_at<std::uint16_t>(head.data(), las::record::id),
+                geometry::value_at<std::uint16_t>(head.data(), las::record::id),
                 input.bytes(place + las::record::extended_end, std::min(length, longest)), records);
     if (length > most_bytes) break;
     place += las::record::extended_end + length;
