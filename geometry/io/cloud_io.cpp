@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 #include <map>
+#include <optional>
 #include <string>
 #include <string_view>
 
@@ -100,8 +101,17 @@ void append_bytes(std::string& bytes, const Value& value) {
   bytes.append(reinterpret_cast<const char*>(&value), sizeof(value));
 }
 
-/// Compressed (LAZ, COPC) or not.
-bool is_las(std::string_view ending) { return ending == ".las" || ending == ".laz"; }
+/// Readers of formats that are not read whole before they are parsed.
+struct PiecewiseReader {
+  AttributedCloud (*cloud)(const fs::path& path);
+  void (*positions)(const fs::path& path, const TakePositions& take);
+};
+
+std::optional<PiecewiseReader> piecewise_reader(std::string_view ending) {
+  if (ending == ".las" || ending == ".laz") return {{read_las_cloud, read_las_positions}};
+  if (ending == ".e57") return {{read_e57_cloud, read_e57_positions}};
+  return std::nullopt;
+}
 
 }  // namespace
 
@@ -134,19 +144,22 @@ AttributedCloud read_cloud(const fs::path& path) {
                                                 {".txt", parse_xyz_cloud},
                                                 {".asc", parse_xyz_cloud}};
   const auto format = formats.find(ending);
-  if (format == formats.end() && !is_las(ending)) {
+  const auto piecewise = piecewise_reader(ending);
+  if (format == formats.end() && !piecewise) {
     fail_cloud(path,
-               "a cloud file must end in .ply, .pcd, .las, .laz, .xyz, .txt or .asc (or with .gz "
-               "after it)");
+               "a cloud file must end in .ply, .pcd, .las, .laz, .e57, .xyz, .txt or .asc (or with "
+               ".gz after it)");
   }
   AttributedCloud cloud =
-      is_las(ending) ? read_las_cloud(path) : format->second(path, read_file(path));
+      piecewise ? piecewise->cloud(path) : format->second(path, read_file(path));
   if (cloud.positions.empty()) fail_cloud(path, "holds no points");
   return cloud;
 }
 
 void read_positions(const fs::path& path, const TakePositions& take) {
-  if (is_las(ending_of(path))) return read_las_positions(path, take);
+  if (const auto piecewise = piecewise_reader(ending_of(path))) {
+    return piecewise->positions(path, take);
+  }
   const std::vector<Eigen::Vector3f> positions = read_cloud(path).positions;
   for (std::size_t begin = 0; begin < positions.size(); begin += piece_size) {
     const std::size_t count = std::min(piece_size, positions.size() - begin);
@@ -160,6 +173,7 @@ void write_cloud(const fs::path& path, const CloudColumns& cloud) {
   assert(cloud.normals.empty() || cloud.normals.size() == count);
   assert(cloud.views.empty() || cloud.views.size() == count);
   assert(cloud.colours.empty() || cloud.colours.size() == count);
+  if (path.extension() == ".e57") return write_file(path, e57_bytes(cloud));
   std::string bytes = "ply\nformat binary_little_endian 1.0\ncomment written by Skycap\n";
   bytes += "element vertex " + std::to_string(count) + "\n";
   bytes += "property float x\nproperty float y\nproperty float z\n";

@@ -1,5 +1,5 @@
-/// Point clouds from and to files: PLY (any properties in any order, ascii and binary), PCD,
-/// LAS 1.0 to 1.4 and XYZ text.
+/// Point clouds from and to files: PLY (any properties in any order, ascii and binary) and E57;
+/// from PCD, LAS 1.0 to 1.4 and XYZ text.
 #pragma once
 
 #include <array>
@@ -43,12 +43,12 @@ inline CloudColumns columns_of(const AttributedCloud& cloud) {
 }
 
 /// Reads .ply; .pcd (text, binary or compressed; points of NaN are passed over); .las (versions 1.0
-/// to 1.4, points of format 0 to 10) and .laz (also COPC; points of format 0 to 3 and 6 to 8); or
-/// .xyz, .txt, .asc: lines of x y z (further columns are passed over, '#' begins a comment); also
-/// gzip-compressed. Other properties and
-/// elements are passed over. Throws Error{bad_file} in one line, also for coordinates that are not
-/// finite, and for such so far from the origin that single precision would move them by a
-/// millimetre.
+/// to 1.4, points of format 0 to 10) and .laz (also COPC; points of format 0 to 3 and 6 to 8);
+/// .e57 (all scans where their poses put them, each a view if there are several); or .xyz, .txt,
+/// .asc: lines of x y z (further columns are passed over, '#' begins a comment); also
+/// gzip-compressed. Other properties and elements are passed over. Throws Error{bad_file} in one
+/// line, also for coordinates that are not finite, and for such so far from the origin that single
+/// precision would move them by a millimetre.
 AttributedCloud read_cloud(const std::filesystem::path& path);
 
 /// Takes a piece of a file's points, and the share of the file that is read with it.
@@ -58,8 +58,8 @@ using TakePositions = std::function<void(std::span<const Eigen::Vector3f> piece,
 void read_positions(const std::filesystem::path& path, const TakePositions& take);
 
 /// Writes binary little-endian PLY: x y z as float and then, of what is there, nx ny nz as float,
-/// view as uint, red green blue as uchar, marks as uchar. Complete or not at all. Throws
-/// Error{bad_file}.
+/// view as uint, red green blue as uchar, marks as uchar. To a path that ends in .e57 it writes
+/// E57, one scan without views and marks. Complete or not at all. Throws Error{bad_file}.
 void write_cloud(const std::filesystem::path& path, const CloudColumns& cloud);
 
 }  // namespace skycap::geometry

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <string>
 #include <string_view>
 
 #include "geometry/io/cloud_io.h"
@@ -23,10 +24,17 @@ AttributedCloud parse_pcd_cloud(const std::filesystem::path& path, std::string_v
 /// LAS 1.0 to 1.4 and LAZ (las_reader.h). Withheld points are passed over.
 AttributedCloud read_las_cloud(const std::filesystem::path& path);
 
+/// E57 (e57_reader.h), all scans of it; with several `views` is the scan.
+AttributedCloud read_e57_cloud(const std::filesystem::path& path);
+
+/// An E57 file of one scan, as write_cloud() writes it.
+std::string e57_bytes(const CloudColumns& cloud);
+
 /// Points of a piece.
 inline constexpr std::size_t piece_size = 1'000'000;
 
 /// The positions alone, as read_positions() hands them out.
 void read_las_positions(const std::filesystem::path& path, const TakePositions& take);
+void read_e57_positions(const std::filesystem::path& path, const TakePositions& take);
 
 }  // namespace skycap::geometry

@@ -6,8 +6,6 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "geometry/io/laz/byte_values.h"
-
 namespace skycap::geometry::las {
 
 /// Of the public header block. Boxes are x, then y, then z.

@@ -4,9 +4,8 @@
 #include <cmath>
 #include <utility>
 
-#include "geometry/error.h"
+#include "geometry/byte_values.h"
 #include "geometry/io/cloud_parsers.h"
-#include "geometry/io/file.h"
 #include "geometry/io/las_layout.h"
 
 namespace skycap::geometry {
@@ -19,9 +18,9 @@ void require_readable(const std::filesystem::path& path, std::string_view beginn
   if (beginning.size() <= las::header::point_format || !beginning.starts_with("LASF")) {
     fail_cloud(path, "is not a LAS file: it does not begin with a LAS header");
   }
-  const int major = las::value_at<std::uint8_t>(beginning.data(), las::header::major),
-            minor = las::value_at<std::uint8_t>(beginning.data(), las::header::minor);
-  const int kind = las::value_at<std::uint8_t>(beginning.data(), las::header::point_format);
+  const int major = value_at<std::uint8_t>(beginning.data(), las::header::major),
+            minor = value_at<std::uint8_t>(beginning.data(), las::header::minor);
+  const int kind = value_at<std::uint8_t>(beginning.data(), las::header::point_format);
   const bool is_compressed = (kind & compressed_bit) != 0;
   const int format = is_compressed ? kind - compressed_bit : kind;
   const bool has_waveforms = format == 4 || format == 5 || format == 9 || format == 10;
@@ -40,24 +39,24 @@ void require_readable(const std::filesystem::path& path, std::string_view beginn
 LasHeader fields_of(std::string_view beginning) {
   const char* const bytes = beginning.data();
   LasHeader header;
-  header.minor = las::value_at<std::uint8_t>(bytes, las::header::minor);
-  const int kind = las::value_at<std::uint8_t>(bytes, las::header::point_format);
+  header.minor = value_at<std::uint8_t>(bytes, las::header::minor);
+  const int kind = value_at<std::uint8_t>(bytes, las::header::point_format);
   header.is_compressed = (kind & compressed_bit) != 0;
   header.format = header.is_compressed ? kind - compressed_bit : kind;
-  header.header_size = las::value_at<std::uint16_t>(bytes, las::header::size);
-  header.first_point = las::value_at<std::uint32_t>(bytes, las::header::first_point);
-  header.records = las::value_at<std::uint32_t>(bytes, las::header::records);
-  header.point_size = las::value_at<std::uint16_t>(bytes, las::header::point_size);
-  header.points = las::value_at<std::uint32_t>(bytes, las::header::old_points);
+  header.header_size = value_at<std::uint16_t>(bytes, las::header::size);
+  header.first_point = value_at<std::uint32_t>(bytes, las::header::first_point);
+  header.records = value_at<std::uint32_t>(bytes, las::header::records);
+  header.point_size = value_at<std::uint16_t>(bytes, las::header::point_size);
+  header.points = value_at<std::uint32_t>(bytes, las::header::old_points);
   if (header.minor == 4) {
-    header.points = las::value_at<std::uint64_t>(bytes, las::header::points);
+    header.points = value_at<std::uint64_t>(bytes, las::header::points);
     header.first_extended_record =
-        las::value_at<std::uint64_t>(bytes, las::header::first_extended_record);
-    header.extended_records = las::value_at<std::uint32_t>(bytes, las::header::extended_records);
+        value_at<std::uint64_t>(bytes, las::header::first_extended_record);
+    header.extended_records = value_at<std::uint32_t>(bytes, las::header::extended_records);
   }
   for (int axis = 0; axis < 3; ++axis) {
-    header.scale[axis] = las::value_at<double>(bytes, las::header::scale + 8UL * axis);
-    header.offset[axis] = las::value_at<double>(bytes, las::header::offset + 8UL * axis);
+    header.scale[axis] = value_at<double>(bytes, las::header::scale + 8UL * axis);
+    header.offset[axis] = value_at<double>(bytes, las::header::offset + 8UL * axis);
   }
   return header;
 }
@@ -90,13 +89,12 @@ LasHeader parse_header(const std::filesystem::path& path, std::string_view begin
 }
 
 int class_of(const LasHeader& header, const char* point) {
-  if (header.format >= 6) return las::value_at<std::uint8_t>(point, las::point::classification);
-  return las::value_at<std::uint8_t>(point, las::old_point::classification) &
-         las::old_point::classes;
+  if (header.format >= 6) return value_at<std::uint8_t>(point, las::point::classification);
+  return value_at<std::uint8_t>(point, las::old_point::classification) & las::old_point::classes;
 }
 
 bool is_withheld(const LasHeader& header, const char* point) {
-  const int flags = las::value_at<std::uint8_t>(
+  const int flags = value_at<std::uint8_t>(
       point, header.format >= 6 ? las::point::flags : las::old_point::classification);
   return (flags & (header.format >= 6 ? las::point::withheld : las::old_point::withheld)) != 0;
 }
@@ -109,7 +107,7 @@ void add_point(const LasHeader& header, const char* point, LasPoints& points) {
   Eigen::Vector3d& position = points.positions.emplace_back();
   for (int axis = 0; axis < 3; ++axis) {
     position[axis] =
-        las::value_at<std::int32_t>(point, las::point::position + 4UL * axis) * header.scale[axis] +
+        value_at<std::int32_t>(point, las::point::position + 4UL * axis) * header.scale[axis] +
         header.offset[axis];
   }
   points.classes.push_back(static_cast<std::uint8_t>(class_of(header, point)));
@@ -117,17 +115,7 @@ void add_point(const LasHeader& header, const char* point, LasPoints& points) {
   auto& colour = points.colours.emplace_back();
   for (std::size_t channel = 0; channel < 3; ++channel) {
     colour[channel] = static_cast<std::uint8_t>(
-        las::value_at<std::uint16_t>(point, colour_place(header) + 2 * channel) >> 8);
-  }
-}
-
-/// What `read` gives; errors of its that lack the file's name get it.
-template <typename Read>
-auto with_name(const std::filesystem::path& path, const Read& read) {
-  try {
-    return read();
-  } catch (const Error& error) {
-    fail_cloud(path, error.what());
+        value_at<std::uint16_t>(point, colour_place(header) + 2 * channel) >> 8);
   }
 }
 
@@ -135,38 +123,14 @@ auto with_name(const std::filesystem::path& path, const Read& read) {
 
 bool LasHeader::has_colours() const { return colour_place(*this) != 0; }
 
-LasReader::File::File(std::filesystem::path name) : path(std::move(name)) {
-  std::error_code failure;
-  size = std::filesystem::file_size(path, failure);
-  const bool is_file = std::filesystem::is_regular_file(path, failure);
-  if (is_file) stream.open(path, std::ios::binary);
-  const auto beginning = [&] { return bytes(0, 2); };
-  if (!is_file || !stream || with_name(path, beginning) == "\x1F\x8B") {
-    decompressed = read_file(path);  // says what is wrong with what is no file
-    size = decompressed.size();
-  }
-}
-
-std::string LasReader::File::bytes(std::uint64_t place, std::uint64_t count) {
-  if (place >= size) return {};
-  count = std::min(count, size - place);
-  if (!decompressed.empty()) return decompressed.substr(place, count);
-  std::string result(count, '\0');
-  stream.clear();
-  stream.seekg(static_cast<std::streamoff>(place));
-  stream.read(result.data(), std::ssize(result));
-  if (!stream) las::refuse("cannot be read at byte " + std::to_string(place));
-  return result;
-}
-
 LasReader::LasReader(std::filesystem::path path)
-    : file_(std::make_unique<File>(std::move(path))),
-      header_(parse_header(file_->path, bytes(0, las::header::end), file_->size)) {
+    : file_(std::make_unique<SeekableFile>(std::move(path))),
+      header_(parse_header(file_->path(), bytes(0, las::header::end), file_->size())) {
   if (header_.is_compressed) open_compressed();
 }
 
 std::string LasReader::bytes(std::uint64_t place, std::uint64_t count) {
-  return with_name(file_->path, [&] { return file_->bytes(place, count); });
+  return file_->with_name([&] { return file_->bytes(place, count); });
 }
 
 std::string LasReader::compression_record() {
@@ -174,8 +138,8 @@ std::string LasReader::compression_record() {
   for (std::uint32_t i = 0; i < header_.records && place < header_.first_point; ++i) {
     const std::string head = bytes(place, las::record::end);
     if (head.size() < las::record::end) break;
-    const auto id = las::value_at<std::uint16_t>(head.data(), las::record::id);
-    const auto length = las::value_at<std::uint16_t>(head.data(), las::record::length);
+    const auto id = value_at<std::uint16_t>(head.data(), las::record::id);
+    const auto length = value_at<std::uint16_t>(head.data(), las::record::length);
     const std::string_view user = std::string_view(head).substr(las::record::user, 16);
     place += las::record::end;
     if (id == las::compression_id && user.starts_with(las::compression_user)) {
@@ -183,7 +147,7 @@ std::string LasReader::compression_record() {
     }
     place += length;
   }
-  fail_cloud(file_->path, "is compressed (LAZ), but has no record that says how");
+  fail_cloud(file_->path(), "is compressed (LAZ), but has no record that says how");
 }
 
 void LasReader::open_compressed() {
@@ -192,9 +156,8 @@ void LasReader::open_compressed() {
   const auto read = [file = file_.get()](std::uint64_t place, std::uint64_t count) {
     return file->bytes(place, count);
   };
-  compressed_ = with_name(file_->path, [&] {
-    return std::make_unique<las::PointStream>(read, file_->size, points, record);
-  });
+  compressed_ = file_->with_name(
+      [&] { return std::make_unique<las::PointStream>(read, file_->size(), points, record); });
   record_.resize(header_.point_size);
 }
 
@@ -218,7 +181,7 @@ bool LasReader::next(LasPoints& points, std::size_t most) {
 }
 
 void LasReader::decompress(LasPoints& points, std::uint64_t count) {
-  with_name(file_->path, [&] {
+  file_->with_name([&] {
     for (std::uint64_t i = 0; i < count; ++i) {
       compressed_->next(record_.data());
       if (!is_withheld(header_, record_.data())) add_point(header_, record_.data(), points);

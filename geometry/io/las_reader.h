@@ -7,7 +7,6 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
-#include <fstream>
 #include <memory>
 #include <string>
 #include <string_view>
@@ -16,6 +15,7 @@
 #include <Eigen/Core>
 
 #include "geometry/io/laz/point_stream.h"
+#include "geometry/io/seekable_file.h"
 
 namespace skycap::geometry {
 
@@ -58,22 +58,11 @@ class LasReader {
   std::string bytes(std::uint64_t place, std::uint64_t count);
 
  private:
-  /// The file, which stays where it is when its reader is moved.
-  struct File {
-    explicit File(std::filesystem::path path);
-    /// Errors lack the file's name.
-    std::string bytes(std::uint64_t place, std::uint64_t count);
-
-    std::filesystem::path path;
-    std::ifstream stream;
-    std::string decompressed;  ///< all bytes, if gzip had compressed them
-    std::uint64_t size = 0;
-  };
   std::string compression_record();
   void open_compressed();
   void decompress(LasPoints& points, std::uint64_t count);
 
-  std::unique_ptr<File> file_;
+  std::unique_ptr<SeekableFile> file_;  ///< which stays where it is when its reader is moved
   LasHeader header_;
   std::unique_ptr<las::PointStream> compressed_;
   std::vector<char> record_;  ///< of the point that was decompressed last

@@ -72,8 +72,8 @@ std::vector<Key> carrier_keys() {
   return {
       choice_key(
           "scan.crs", {"local", "utm"}, scan(&ScanConfig::crs),
-          "Coordinates of LAS files: the mission's frame, or UTM on WGS84, in the zone of the "
-          "site, which utm needs; heights are then above the EGM96 geoid if "
+          "Coordinates of LAS and E57 files: the mission's frame, or UTM on WGS84, in the zone of "
+          "the site, which utm needs; heights are then above the EGM96 geoid if "
           "site.geoid_undulation is known, else above the ellipsoid."),
       number_key("scan.speed", "m/s", above(0, 100), scan(&ScanConfig::speed),
                  "Speed along a route whose file has no times."),

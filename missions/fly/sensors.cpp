@@ -23,7 +23,7 @@ namespace {
 namespace fs = std::filesystem;
 using Clock = std::chrono::steady_clock;
 
-constexpr std::array endings{".ply", ".pcd", ".las", ".laz", ".xyz", ".png"};
+constexpr std::array endings{".ply", ".pcd", ".las", ".laz", ".e57", ".xyz", ".png"};
 
 std::optional<fs::path> scan_in(const fs::path& folder, const std::string& name) {
   for (const char* ending : endings) {

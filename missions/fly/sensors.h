@@ -17,7 +17,7 @@ Sensor simulated_sensor(const file::Mission& mission, const std::filesystem::pat
 
 /// Scans that another program leaves in a folder. For scan 7 the file scan-0007.pose is written, in
 /// one line as live::parse_pose_text() reads it, when the vehicle is at rest at the view; the scan
-/// is the file scan-0007.EXT that then appears (.ply, .pcd, .las, .laz, .xyz or .png), in the
+/// is the file scan-0007.EXT that then appears (.ply, .pcd, .las, .laz, .e57, .xyz or .png), in the
 /// sensor's optical frame, which gets that name when it is whole. `input` says how depth images are
 /// read. The sensor gives up when the stop is requested or after `patience` [s] by the clock on the
 /// wall, with Error{bad_file}. Throws that, too, if the folder is none.

@@ -9,8 +9,8 @@
 #include "geometry/io/file.h"
 #include "geometry/io/mesh_io.h"
 #include "missions/prior/formats/cell_set.h"
+#include "missions/prior/formats/cloud_files.h"
 #include "missions/prior/formats/geodata_file.h"
-#include "missions/prior/formats/las_file.h"
 #include "missions/prior/site_transform.h"
 
 namespace skycap::missions::prior {
@@ -19,7 +19,7 @@ namespace {
 using std::string_view;
 namespace fs = std::filesystem;
 
-enum class Format { citygml, cityjson, map, raster, las, scene, mesh, cloud };
+enum class Format { citygml, cityjson, map, raster, las, e57, scene, mesh, cloud };
 
 bool is_one_of(string_view text, std::initializer_list<string_view> wanted) {
   return std::ranges::find(wanted, text) != wanted.end();
@@ -59,6 +59,7 @@ std::optional<Format> format_of_xml(string_view root, string_view text) {
 std::optional<Format> format_by_content(string_view beginning) {
   using namespace std::string_view_literals;
   if (beginning.starts_with("LASF")) return Format::las;
+  if (beginning.starts_with("ASTM-E57")) return Format::e57;
   if (begins_with_one_of(beginning, {"glTF", "Kaydara FBX", "; FBX", "ISO-10303-21"})) {
     return Format::scene;
   }
@@ -150,15 +151,11 @@ Opened open_file(const fs::path& file, Role role) {
   std::error_code failure;
   if (!fs::is_regular_file(file, failure)) fail_file(file, "is not there, or is no regular file");
   const std::string beginning = beginning_of(file);
-  const bool is_read_piece_by_piece = beginning.starts_with("LASF");
+  const bool is_read_piece_by_piece = begins_with_one_of(beginning, {"LASF", "ASTM-E57"});
   if (!is_read_piece_by_piece && fs::file_size(file, failure) > most_bytes) {
     fail_file(file, "is larger than 2 GB");
   }
   if (beginning.empty()) fail_file(file, "is empty");
-  if (beginning.starts_with("ASTM-E57")) {
-    fail_file(file,
-              "is E57, which is not read; convert it to LAS or LAZ, as with CloudCompare or PDAL");
-  }
   const std::string ending = geometry::ending_of(file);
   Opened opened{Format::mesh, {}};
   const bool is_compressed = beginning.starts_with("\x1F\x8B");
@@ -172,10 +169,11 @@ Opened open_file(const fs::path& file, Role role) {
   }
   if (!format) format = format_by_ending(ending, role);
   if (!format) {
-    fail_file(file,
-              "is of no format that is known here: CityGML, CityJSON, GeoJSON, GPKG, Shapefile, "
-              "KML, OSM, DXF, GeoTIFF, ASCII grid, XYZ, LAS, glTF, Collada, FBX, IFC, PLY, OBJ, "
-              "STL, OFF, PCD");
+    fail_file(
+        file,
+        "is of no format that is known here: CityGML, CityJSON, GeoJSON, GPKG, Shapefile, "
+        "KML, OSM, DXF, GeoTIFF, ASCII grid, XYZ, LAS, E57, glTF, Collada, FBX, IFC, PLY, OBJ, "
+        "STL, OFF, PCD");
   }
   opened.format = *format;
   const bool is_parsed_here = *format == Format::citygml || *format == Format::cityjson;
@@ -215,6 +213,10 @@ FileContents cloud_contents(const Source& source) {
 FileContents read_contents(const Source& source, const SiteFrame& site) {
   const fs::path& file = source.file;
   Opened opened = open_file(file, source.role);
+  const CloudThinning thinning{source.spacing.value_or(usual_spacing),
+                               [&](const FileContents& header) {
+                                 return SiteTransform(source, header, site).metres_per_unit();
+                               }};
   switch (opened.format) {
     case Format::citygml:
       return parse_citygml(file, std::move(opened.bytes));
@@ -225,10 +227,9 @@ FileContents read_contents(const Source& source, const SiteFrame& site) {
     case Format::raster:
       return read_raster(file);
     case Format::las:
-      return read_las(file, {source.select.classes, source.spacing.value_or(usual_spacing),
-                             [&](const FileContents& header) {
-                               return SiteTransform(source, header, site).metres_per_unit();
-                             }});
+      return read_las(file, source.select.classes, thinning);
+    case Format::e57:
+      return read_e57(file, thinning);
     case Format::scene: {
       FileContents contents = read_scene(file);
       contents.format = "scene" + geometry::ending_of(file);

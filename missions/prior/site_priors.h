@@ -34,8 +34,8 @@ SitePriors read_site_priors(std::vector<Source> sources, const SiteFrame& site,
 /// Everything within the prior's uncertainty of its surfaces, points and columns of heights.
 flight::PriorObstacleConfig obstacle_of(const Source& source, const Prior& prior);
 
-/// The surfaces of all objects and grids of a role, one behind the other; empty: there are none. With
-/// `near` of those objects, and of those faces of grids, that meet it.
+/// The surfaces of all objects and grids of a role, one behind the other; empty: there are none.
+/// With `near` of those objects, and of those faces of grids, that meet it.
 geometry::Mesh surfaces_of(const SitePriors& site, Role role,
                            const std::optional<Eigen::AlignedBox3d>& near = {});
 

@@ -11,6 +11,7 @@ namespace skycap::missions::recording {
 
 void CloudTotals::add(const CloudTotals& more) {
   points += more.points;
+  checksum += more.checksum;
   for (std::size_t i = 0; i < points_by_return.size(); ++i) {
     points_by_return[i] += more.points_by_return[i];
   }
@@ -27,7 +28,7 @@ CloudFile::CloudFile(std::filesystem::path path, std::shared_ptr<const CloudForm
   file_.reset(std::fopen(path_.c_str(), "wb"));
   if (!file_) fail();
   std::setvbuf(file_.get(), nullptr, _IONBF, 0);  // chunks are large: no second copy
-  put(format_->header(state_.totals));
+  put(format_->header(state_));
 }
 
 void CloudFile::go_on(const CloudState& grown) {
@@ -36,17 +37,32 @@ void CloudFile::go_on(const CloudState& grown) {
   if (!file_ || std::fseek(file_.get(), 0, SEEK_END) != 0) fail();
   std::setvbuf(file_.get(), nullptr, _IONBF, 0);
   state_ = grown;
+  if (!format_->is_paged()) return;
+  std::string open_page(grown.bytes % geometry::e57::page_size, '\0');
+  const auto size = static_cast<long>(open_page.size());
+  if (std::fseek(file_.get(), -size, SEEK_END) != 0 ||
+      std::fread(open_page.data(), 1, open_page.size(), file_.get()) != open_page.size() ||
+      std::fseek(file_.get(), 0, SEEK_END) != 0) {
+    fail();
+  }
+  pages_ = geometry::e57::PageWriter(std::move(open_page));
 }
 
 void CloudFile::append(const CloudChunk& chunk) {
-  put(chunk.bytes);
+  if (format_->is_paged()) {
+    const auto* const bytes = reinterpret_cast<const char*>(chunk.bytes.data());
+    put(pages_.continued({bytes, chunk.bytes.size()}));
+  } else {
+    put(chunk.bytes);
+  }
   state_.totals.add(chunk.totals);
 }
 
 void CloudFile::sync() const { geometry::sync_to_disk(path_); }
 
 void CloudFile::finish() {
-  const std::vector<std::uint8_t> header = format_->header(state_.totals);
+  const std::vector<std::uint8_t> header = format_->header(state_);
+  put(pages_.closed());
   if (!header.empty()) {
     if (std::fseek(file_.get(), 0, SEEK_SET) != 0) fail();
     put(header);
@@ -55,7 +71,11 @@ void CloudFile::finish() {
   if (std::fclose(file_.release()) != 0) fail();
 }
 
-void CloudFile::put(const std::vector<std::uint8_t>& bytes) {
+void CloudFile::put(const std::string& bytes) {
+  put(std::span(reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size()));
+}
+
+void CloudFile::put(std::span<const std::uint8_t> bytes) {
   if (bytes.empty()) return;
   if (std::fwrite(bytes.data(), 1, bytes.size(), file_.get()) != bytes.size()) fail();
   state_.bytes += bytes.size();

@@ -7,11 +7,13 @@
 #include <filesystem>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
 #include <Eigen/Geometry>
 
+#include "geometry/io/e57/pages.h"
 #include "sim/sensors/lidar.h"
 
 namespace skycap::missions::recording {
@@ -20,6 +22,7 @@ namespace skycap::missions::recording {
 struct CloudTotals {
   std::uint64_t points = 0;
   std::array<std::uint64_t, 15> points_by_return = {};
+  std::uint64_t checksum = 0;  ///< the sum of the chunks', of formats that have one
   Eigen::AlignedBox3d bounds;  ///< of the coordinates as written
 
   void add(const CloudTotals& more);
@@ -37,13 +40,23 @@ enum class ReturnPosition {
   actual,    ///< of the surface that was met
 };
 
+/// How far a file has grown.
+struct CloudState {
+  CloudTotals totals;
+  std::uint64_t bytes = 0;  ///< with its beginning; none: it is about to be begun
+};
+
 /// How points become bytes. Immutable; encode() is safe on any number of threads.
 class CloudFormat {
  public:
   virtual ~CloudFormat() = default;
 
-  /// The beginning of a file with these points; its length does not depend on them.
-  virtual std::vector<std::uint8_t> header(const CloudTotals& totals) const = 0;
+  /// The beginning of a file that has grown so far; its length does not depend on that.
+  virtual std::vector<std::uint8_t> header(const CloudState& grown) const = 0;
+
+  /// Whether what follows the header is put into pages with checksums (geometry/io/e57/pages.h);
+  /// the header is whole pages then.
+  virtual bool is_paged() const { return false; }
 
   /// Replaces what is in `chunk`, whose memory is used again. Throws Error{bad_geometry} if the
   /// format cannot hold a point.
@@ -54,12 +67,6 @@ class CloudFormat {
   CloudFormat() = default;
   CloudFormat(const CloudFormat&) = default;
   CloudFormat& operator=(const CloudFormat&) = default;
-};
-
-/// How far a file has grown.
-struct CloudState {
-  CloudTotals totals;
-  std::uint64_t bytes = 0;
 };
 
 /// A file that grows chunk by chunk, and is valid once it is finished.
@@ -95,13 +102,15 @@ class CloudFile {
   };
 
   void go_on(const CloudState& grown);
-  void put(const std::vector<std::uint8_t>& bytes);
+  void put(std::span<const std::uint8_t> bytes);
+  void put(const std::string& bytes);
   [[noreturn]] void fail() const;
 
   std::filesystem::path path_;
   std::shared_ptr<const CloudFormat> format_;
   ReturnPosition position_;
   std::unique_ptr<std::FILE, Close> file_;
+  geometry::e57::PageWriter pages_;  ///< of a format that is paged
   CloudState state_;
 };
 

@@ -59,8 +59,8 @@ class RecordFormat : public CloudFormat {
 
 class PlyFormat final : public RecordFormat {
  public:
-  std::vector<std::uint8_t> header(const CloudTotals& totals) const override {
-    const std::string count = std::to_string(totals.points);
+  std::vector<std::uint8_t> header(const CloudState& grown) const override {
+    const std::string count = std::to_string(grown.totals.points);
     // The comment takes up what the number of points leaves.
     return bytes_of(
         "ply\nformat binary_little_endian 1.0\ncomment written by Skycap" +
@@ -73,8 +73,8 @@ class PlyFormat final : public RecordFormat {
 
 class PcdFormat final : public RecordFormat {
  public:
-  std::vector<std::uint8_t> header(const CloudTotals& totals) const override {
-    const std::string count = std::to_string(totals.points);
+  std::vector<std::uint8_t> header(const CloudState& grown) const override {
+    const std::string count = std::to_string(grown.totals.points);
     return bytes_of("# .PCD v0.7 - Point Cloud Data file format, written by Skycap" +
                     std::string(2 * (20 - count.size()), ' ') +
                     "\nVERSION 0.7\nFIELDS x y z intensity time channel return_number returns\n"
@@ -87,7 +87,7 @@ class PcdFormat final : public RecordFormat {
 
 class XyzFormat final : public CloudFormat {
  public:
-  std::vector<std::uint8_t> header(const CloudTotals&) const override {
+  std::vector<std::uint8_t> header(const CloudState&) const override {
     return bytes_of("# x y z intensity time channel return_number returns\n");
   }
 
@@ -120,24 +120,32 @@ class XyzFormat final : public CloudFormat {
   }
 };
 
-std::shared_ptr<const CloudFormat> las_of(const CloudFormatContext& context, int point_format) {
-  LasConfig config = {.point_format = point_format};
+CoordinateGrid grid_of(const CloudFormatContext& context) {
+  CoordinateGrid grid;
   Eigen::Vector3d centre = context.scene_centre;
   if (context.projection != nullptr) {
-    config.projection = context.projection;
-    config.crs_wkt = context.projection->wkt();
+    grid.projection = context.projection;
+    grid.crs_wkt = context.projection->wkt();
     centre = context.projection->to_map(centre);
   }
   // Whole kilometres: a local scene keeps the offset zero.
-  config.offset = 1000.0 * (centre / 1000.0).array().round().matrix();
-  return las_format(config);
+  grid.offset = 1000.0 * (centre / 1000.0).array().round().matrix();
+  return grid;
 }
 
-const std::array<CloudFormatInfo, 6>& formats() {
+const std::array<CloudFormatInfo, 7>& formats() {
   using Context = CloudFormatContext;
-  static const std::array<CloudFormatInfo, 6> all = {{
-      {"las", ".las", [](const Context& context) { return las_of(context, 6); }},
-      {"las7", ".las", [](const Context& context) { return las_of(context, 7); }},
+  static const std::array<CloudFormatInfo, 7> all = {{
+      {"las", ".las",
+       [](const Context& context) {
+         return las_format({6, grid_of(context)});
+       }},
+      {"las7", ".las",
+       [](const Context& context) {
+         return las_format({7, grid_of(context)});
+       }},
+      {"e57", ".e57",
+       [](const Context& context) { return e57_format(grid_of(context), context.sensor_name); }},
       {"ply", ".ply", [](const Context&) { return ply_format(); }},
       {"pcd", ".pcd", [](const Context&) { return pcd_format(); }},
       {"xyz", ".xyz", [](const Context&) { return xyz_format(); }},

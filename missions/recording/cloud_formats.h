@@ -8,6 +8,7 @@
 
 #include "flight/export/utm.h"
 #include "missions/recording/cloud_file.h"
+#include "missions/recording/coordinate_grid.h"
 #include "sim/sensors/lidar.h"
 
 namespace skycap::missions::recording {
@@ -23,13 +24,19 @@ std::shared_ptr<const CloudFormat> pcd_format();
 /// millimetre and of a microsecond.
 std::shared_ptr<const CloudFormat> xyz_format();
 
+/// E57 (ASTM E2807-11), all points of a flight as one scan: cartesianX, Y and Z as scaled integers,
+/// intensity, timeStamp (the shot's), returnIndex and returnCount; coordinateMetadata is the grid's
+/// reference system. Throws what CoordinateGrid::validate() throws.
+std::shared_ptr<const CloudFormat> e57_format(const CoordinateGrid& grid,
+                                              const std::string& sensor_name);
+
 /// What a format may need to know of the scan; the trajectories must outlive the format.
 struct CloudFormatContext {
   std::string sensor_name;
   const sim::LidarConfig& sensor;
   const sim::LidarFlight& flight;
   Eigen::Vector3d scene_centre;
-  /// Where LAS files have their points; none: in the mission's frame, as all others do.
+  /// Where LAS and E57 files have their points; none: in the mission's frame, as all others do.
   std::shared_ptr<const flight::UtmProjection> projection;
 };
 

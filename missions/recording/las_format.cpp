@@ -18,18 +18,12 @@ namespace las = geometry::las;
 
 constexpr double scan_angle_unit = 0.006 * geometry::radians_per_degree;
 
-/// The nearest whole number of one that fits into 32 bits. Adding 1.5 * 2^52 leaves no place for
-/// fractions in a double, and the whole number in its lowest bits: no call, no branch.
-std::int32_t nearest(double number) {
-  return static_cast<std::int32_t>(std::bit_cast<std::uint64_t>(number + 6755399441055744.0));
-}
-
 class LasFormat final : public CloudFormat {
  public:
   explicit LasFormat(const LasConfig& config)
       : config_(config), point_size_(las::point_size(config.point_format)) {}
 
-  std::vector<std::uint8_t> header(const CloudTotals& totals) const override;
+  std::vector<std::uint8_t> header(const CloudState& grown) const override;
   void encode(const sim::LidarReturns& returns, ReturnPosition position,
               CloudChunk& chunk) const override;
 
@@ -43,24 +37,6 @@ class LasFormat final : public CloudFormat {
   std::uint16_t point_size_;
 };
 
-/// Smallest and largest coordinates of some points, of which there is at least one.
-Eigen::AlignedBox3f box_of(const std::vector<Eigen::Vector3f>& points) {
-  using FourPoints = Eigen::Array<float, 12, 1>;  // whole registers
-  FourPoints lowest = points[0].replicate<4, 1>(), highest = lowest;
-  const std::size_t whole = points.size() / 4 * 4;
-  for (std::size_t i = 0; i < whole; i += 4) {
-    const FourPoints some = Eigen::Map<const FourPoints>(points[i].data());
-    lowest = lowest.min(some);
-    highest = highest.max(some);
-  }
-  Eigen::AlignedBox3f box;
-  for (int i = 0; i < 4; ++i) {
-    box.extend(lowest.segment<3>(3 * i).matrix()).extend(highest.segment<3>(3 * i).matrix());
-  }
-  for (std::size_t i = whole; i < points.size(); ++i) box.extend(points[i]);
-  return box;
-}
-
 void LasFormat::encode(const sim::LidarReturns& returns, ReturnPosition position,
                        CloudChunk& chunk) const {
   chunk.totals = {};
@@ -68,35 +44,9 @@ void LasFormat::encode(const sim::LidarReturns& returns, ReturnPosition position
   chunk.bytes.resize(returns.size() * point_size_);
   if (returns.size() == 0) return;
   const auto& points = position == ReturnPosition::reported ? returns.points : returns.true_points;
-  const Eigen::Vector3d shift = returns.origin - config_.offset;
-  const double per_unit = 1.0 / config_.scale;
-  Eigen::AlignedBox3d box;  // in units
-  if (config_.projection == nullptr) {
-    const auto units = [&](const Eigen::Vector3f& point) -> Eigen::Vector3d {
-      return (point.cast<double>() + shift) * per_unit;
-    };
+  chunk.totals.bounds = encode_on_grid(config_.grid, returns, points, [&](const auto& units) {
     encode_points(returns, points, units, chunk);
-    const Eigen::AlignedBox3f relative = box_of(points);
-    box = {units(relative.min()), units(relative.max())};
-  } else {
-    const auto units = [&](const Eigen::Vector3f& point) -> Eigen::Vector3d {
-      const Eigen::Vector3d local = returns.origin + point.cast<double>();
-      const Eigen::Vector3d place = (config_.projection->to_map(local) - config_.offset) * per_unit;
-      box.extend(place);
-      return place;
-    };
-    encode_points(returns, points, units, chunk);
-  }
-  constexpr double most = std::numeric_limits<std::int32_t>::max();
-  if (!(box.min().array() >= -most).all() || !(box.max().array() <= most).all()) {
-    throw Error(ErrorKind::bad_geometry,
-                "a point is farther than " + std::to_string(most * config_.scale) +
-                    " m from the LAS file's offset; choose an offset near the scene");
-  }
-  for (const Eigen::Vector3d& corner : {box.min(), box.max()}) {
-    const Eigen::Vector3d whole(nearest(corner.x()), nearest(corner.y()), nearest(corner.z()));
-    chunk.totals.bounds.extend(whole * config_.scale + config_.offset);
-  }
+  });
 }
 
 template <typename Units>
@@ -134,8 +84,10 @@ void LasFormat::encode_points(const sim::LidarReturns& returns,
 /// not put is zero: the creation date, so that the same input gives the same bytes; the counts of
 /// older versions, as from point format 6 on; waveforms and extended records, of which there are
 /// none.
-std::vector<std::uint8_t> LasFormat::header(const CloudTotals& totals) const {
-  const std::size_t wkt_size = config_.crs_wkt.size() + 1;  // ends with zero
+std::vector<std::uint8_t> LasFormat::header(const CloudState& grown) const {
+  const CloudTotals& totals = grown.totals;
+  const std::string& crs_wkt = config_.grid.crs_wkt;
+  const std::size_t wkt_size = crs_wkt.size() + 1;  // ends with zero
   constexpr std::size_t record = las::header::end, wkt = record + las::record::end;
   constexpr std::uint16_t adjusted_time = 1, is_wkt = 1 << 4, wkt_record = 2112;
   std::vector<std::uint8_t> bytes(wkt + wkt_size);
@@ -155,8 +107,8 @@ std::vector<std::uint8_t> LasFormat::header(const CloudTotals& totals) const {
   put(las::header::point_format, static_cast<std::uint8_t>(config_.point_format));
   put(las::header::point_size, point_size_);
   for (int axis = 0; axis < 3; ++axis) {
-    put(las::header::scale + 8UL * axis, config_.scale);
-    put(las::header::offset + 8UL * axis, config_.offset[axis]);
+    put(las::header::scale + 8UL * axis, config_.grid.scale);
+    put(las::header::offset + 8UL * axis, config_.grid.offset[axis]);
     if (totals.points == 0) continue;
     put(las::header::bounds + 16UL * axis, totals.bounds.max()[axis]);
     put(las::header::bounds + 16UL * axis + 8, totals.bounds.min()[axis]);
@@ -169,7 +121,7 @@ std::vector<std::uint8_t> LasFormat::header(const CloudTotals& totals) const {
   put(record + las::record::id, wkt_record);
   put(record + las::record::length, static_cast<std::uint16_t>(wkt_size));
   put_text(record + las::record::description, "OGC coordinate system WKT");
-  put_text(wkt, config_.crs_wkt);
+  put_text(wkt, crs_wkt);
   return bytes;
 }
 
@@ -181,11 +133,9 @@ void LasConfig::validate() const {
   };
   require(point_format == 6 || point_format == 7,
           "las.point_format is " + std::to_string(point_format) + "; it must be 6 or 7");
-  require(scale > 0.0 && std::isfinite(scale),
-          "las.scale is " + std::to_string(scale) + "; it must be above zero");
-  require(offset.allFinite(), "las.offset is not finite");
-  require(crs_wkt.size() < 65535,
-          "las.crs_wkt is " + std::to_string(crs_wkt.size()) + " bytes long; a record holds 65534");
+  grid.validate();
+  require(grid.crs_wkt.size() < 65535, "las.crs_wkt is " + std::to_string(grid.crs_wkt.size()) +
+                                           " bytes long; a record holds 65534");
 }
 
 std::shared_ptr<const CloudFormat> las_format(const LasConfig& config) {

@@ -2,25 +2,15 @@
 #pragma once
 
 #include <memory>
-#include <string>
 
-#include <Eigen/Core>
-
-#include "flight/export/utm.h"
 #include "missions/recording/cloud_file.h"
+#include "missions/recording/coordinate_grid.h"
 
 namespace skycap::missions::recording {
 
 struct LasConfig {
-  int point_format = 6;                              ///< 7 has a colour too: the intensity as grey
-  double scale = 1e-4;                               ///< coordinates are multiples of it [m]
-  Eigen::Vector3d offset = Eigen::Vector3d::Zero();  ///< near the points as written: 32 bits each
-  /// Puts points of the mission's frame on the map; without it they stay local.
-  std::shared_ptr<const flight::UtmProjection> projection;
-  /// The coordinate reference system as OGC WKT; local east-north-up by default.
-  std::string crs_wkt =
-      "LOCAL_CS[\"local east-north-up\",LOCAL_DATUM[\"mission origin\",0],UNIT[\"metre\",1],"
-      "AXIS[\"east\",EAST],AXIS[\"north\",NORTH],AXIS[\"up\",UP]]";
+  int point_format = 6;  ///< 7 has a colour too: the intensity as grey
+  CoordinateGrid grid = {};
 
   /// Throws Error{bad_config} naming the first field that is out of its interval.
   void validate() const;

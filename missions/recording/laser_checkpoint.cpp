@@ -11,7 +11,8 @@ using Json = nlohmann::ordered_json;
 Json json_of(const CloudState& state) {
   Json json{{"bytes", state.bytes},
             {"points", state.totals.points},
-            {"points_by_return", state.totals.points_by_return}};
+            {"points_by_return", state.totals.points_by_return},
+            {"checksum", state.totals.checksum}};
   if (!state.totals.bounds.isEmpty()) {
     json["low"] = file::json_of(state.totals.bounds.min());
     json["high"] = file::json_of(state.totals.bounds.max());
@@ -24,6 +25,7 @@ CloudState parse_state(const Json& json) {
   state.bytes = json.at("bytes").get<std::uint64_t>();
   state.totals.points = json.at("points").get<std::uint64_t>();
   json.at("points_by_return").get_to(state.totals.points_by_return);
+  state.totals.checksum = json.at("checksum").get<std::uint64_t>();
   if (json.contains("low")) {
     state.totals.bounds = {file::vector_of(json["low"]), file::vector_of(json.at("high"))};
   }

@@ -20,8 +20,8 @@ class PreviewFormat final : public CloudFormat {
  public:
   PreviewFormat(const PreviewPieces& pieces, double share) : pieces_(pieces), share_(share) {}
 
-  std::vector<std::uint8_t> header(const CloudTotals& totals) const override {
-    const std::string count = std::to_string(totals.points);
+  std::vector<std::uint8_t> header(const CloudState& grown) const override {
+    const std::string count = std::to_string(grown.totals.points);
     // The comment takes up what the number of points leaves.
     const std::string text =
         "ply\nformat binary_little_endian 1.0\ncomment written by Skycap" +

@@ -33,7 +33,7 @@ class RawlogFormat final : public CloudFormat {
     range_step_ = 1e-3 * std::max(1.0, std::ceil(1e3 * finest));
   }
 
-  std::vector<std::uint8_t> header(const CloudTotals&) const override { return {}; }
+  std::vector<std::uint8_t> header(const CloudState&) const override { return {}; }
 
   void encode(const sim::LidarReturns& returns, ReturnPosition position,
               CloudChunk& chunk) const override {

@@ -192,7 +192,7 @@ void add_evaluate(CLI::App& app, const Console& console, Action& action) {
       "evaluate", "Coverage, accuracy and density of a cloud or mesh against a model");
   const auto options = std::make_shared<EvaluateOptions>();
   CLI::App* what = verb->add_option_group("what is judged");
-  what->add_option("--cloud", options->cloud, "Point cloud: .ply, .pcd, .las, .laz or .xyz");
+  what->add_option("--cloud", options->cloud, "Point cloud: .ply, .pcd, .las, .laz, .e57 or .xyz");
   what->add_option("--mesh", options->mesh,
                    "Mesh, in place of a cloud: of skycap reconstruct, say");
   what->require_option(1);
@@ -212,7 +212,7 @@ void add_reconstruct(CLI::App& app, const Console& console, Action& action) {
   CLI::App* verb = app.add_subcommand("reconstruct", "Make a surface mesh of a point cloud");
   const auto options = std::make_shared<ReconstructOptions>();
   verb->add_option("cloud", options->cloud,
-                   "Point cloud (.ply, .pcd, .las, .laz, .xyz), with normals or without")
+                   "Point cloud (.ply, .pcd, .las, .laz, .e57, .xyz), with normals or without")
       ->required();
   verb->add_option("--out", options->out, "PLY, OBJ, STL or OFF; default CLOUD_mesh.ply");
   verb->add_option("--spacing", options->spacing, "Thin the cloud to one point a cube [m]")
@@ -245,7 +245,7 @@ void add_view(CLI::App& app, const Console& console, Action& action) {
   const auto options = std::make_shared<ViewOptions>();
   const auto keys = std::make_shared<KeyOptions>();
   verb->add_option("what", options->what,
-                   "Folder of results, cloud (.ply, .pcd, .las, .laz, .xyz), or mission file")
+                   "Folder of results, cloud (.ply, .pcd, .las, .laz, .e57, .xyz), or mission file")
       ->required();
   verb->add_option("--out", options->out, "The page; default beside what is shown");
   add_set_option(*verb, *keys);

@@ -170,7 +170,7 @@ void add_next(CLI::App& app, const Console& console, Action& action) {
   const auto keys = std::make_shared<KeyOptions>();
   add_live_options(*verb, *options, *keys);
   verb->add_option("--scan", options->scan,
-                   "Cloud (.ply, .pcd, .las, .laz, .xyz) or depth image (16-bit .png)");
+                   "Cloud (.ply, .pcd, .las, .laz, .e57, .xyz) or depth image (16-bit .png)");
   verb->add_option("--pose", options->pose,
                    "Of the sensor's optical frame: \"x y z qx qy qz qw\", or a matrix by rows");
   verb->add_option("--pose-file", options->pose_file, "A file that holds the pose");

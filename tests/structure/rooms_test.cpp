@@ -21,7 +21,7 @@ using testing::IsEmpty;
 Rooms house() {
   const std::vector<std::string> geometry = {
       "geometry",          "geometry/place", "geometry/points", "geometry/directions",
-      "geometry/surfaces", "geometry/io",    "geometry/io/laz"};
+      "geometry/surfaces", "geometry/io",    "geometry/io/laz", "geometry/io/e57"};
   Rooms rooms = {
       {"geometry", {}},
       {"geometry/place", {"geometry"}},
@@ -29,8 +29,10 @@ Rooms house() {
       {"geometry/directions", {"geometry", "geometry/place"}},
       {"geometry/surfaces", {"geometry", "geometry/place"}},
       {"geometry/io/laz", {"geometry"}},
+      {"geometry/io/e57", {"geometry"}},
       {"geometry/io",
-       {"geometry", "geometry/place", "geometry/points", "geometry/surfaces", "geometry/io/laz"}},
+       {"geometry", "geometry/place", "geometry/points", "geometry/surfaces", "geometry/io/laz",
+        "geometry/io/e57"}},
   };
   const auto add = [&](const std::string& room, std::vector<std::string> others) {
     others.insert(others.end(), geometry.begin(), geometry.end());

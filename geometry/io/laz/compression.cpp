@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "geometry/io/laz/byte_values.h"
+#include "geometry/byte_values.h"
 
 namespace skycap::geometry::las {
 namespace {

@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-#include "geometry/io/laz/byte_values.h"
+#include "geometry/byte_values.h"
 #include "geometry/io/laz/chunk_decoder.h"
 #include "geometry/io/laz/colour_decoder.h"
 #include "geometry/io/laz/position_decoder.h"

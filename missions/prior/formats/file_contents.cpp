@@ -15,4 +15,9 @@ void fail_file(const std::filesystem::path& file, const std::string& what) {
   throw Error(ErrorKind::bad_file, file.string() + ": " + one_line(what));
 }
 
+void set_wkt(FileContents& contents, const std::string& wkt) {
+  contents.is_local_frame = wkt.starts_with("LOCAL_CS[\"local east-north-up\"");
+  if (!contents.is_local_frame) contents.crs = wkt;
+}
+
 }  // namespace skycap::missions::prior

@@ -85,6 +85,9 @@ std::string one_line(std::string text);
 /// Throws Error{bad_file}: "FILE: WHAT", in one line.
 [[noreturn]] void fail_file(const std::filesystem::path& file, const std::string& what);
 
+/// The reference system of a cloud, or the mission's frame, as our own scans name it.
+void set_wkt(FileContents& contents, const std::string& wkt);
+
 /// CityGML 1 to 3, by local names (OGC 08-007r1, 12-019, 20-010). A polygon belongs to the nearest
 /// level of detail around it, and to the nearest feature with a gml:id. References (xlink) are
 /// passed over, since what they point at is met where it stands. Rooms, furniture and closure

@@ -1,10 +1,10 @@
-#include "missions/prior/formats/las_file.h"
-
 #include <algorithm>
 
+#include "geometry/byte_values.h"
 #include "geometry/io/las_layout.h"
 #include "geometry/io/las_reader.h"
 #include "missions/prior/formats/cell_set.h"
+#include "missions/prior/formats/cloud_files.h"
 
 namespace skycap::missions::prior {
 namespace {
@@ -26,9 +26,9 @@ struct GeoRecords {
 /// The directory of GeoKeys (GeoTIFF 1.1, OGC 19-008r4): key, where the value is, count, value.
 void read_geo_keys(std::string_view directory, GeoRecords& records) {
   for (std::size_t i = 8; i + 8 <= directory.size(); i += 8) {
-    const int key = las::value_at<std::uint16_t>(directory.data(), i),
-              place = las::value_at<std::uint16_t>(directory.data(), i + 2),
-              value = las::value_at<std::uint16_t>(directory.data(), i + 6);
+    const int key = geometry::value_at<std::uint16_t>(directory.data(), i),
+              place = geometry::value_at<std::uint16_t>(directory.data(), i + 2),
+              value = geometry::value_at<std::uint16_t>(directory.data(), i + 6);
     if (place != 0) continue;
     constexpr int user_defined = 32767;
     if ((key == 3072 || key == 2048) && value == user_defined) records.is_user_defined = true;
@@ -53,9 +53,9 @@ GeoRecords geo_records(geometry::LasReader& input) {
   for (std::uint32_t i = 0; i < header.records && place < header.first_point; ++i) {
     const std::string head = input.bytes(place, las::record::end);
     if (head.size() < las::record::end) break;
-    const auto length = las::value_at<std::uint16_t>(head.data(), las::record::length);
+    const auto length = geometry::value_at<std::uint16_t>(head.data(), las::record::length);
     read_record(text_of(std::string_view(head).substr(las::record::user, 16)),
-                las::value_at<std::uint16_t>(head.data(), las::record::id),
+                geometry::value_at<std::uint16_t>(head.data(), las::record::id),
                 input.bytes(place + las::record::end, length), records);
     place += las::record::end + length;
   }
@@ -64,9 +64,9 @@ GeoRecords geo_records(geometry::LasReader& input) {
   for (std::uint32_t i = 0; i < header.extended_records && i < 1000; ++i) {
     const std::string head = input.bytes(place, las::record::extended_end);
     if (head.size() < las::record::extended_end) break;
-    const auto length = las::value_at<std::uint64_t>(head.data(), las::record::length);
+    const auto length = geometry::value_at<std::uint64_t>(head.data(), las::record::length);
     read_record(text_of(std::string_view(head).substr(las::record::user, 16)),
-                las::value_at<std::uint16_t>(head.data(), las::record::id),
+                geometry::value_at<std::uint16_t>(head.data(), las::record::id),
                 input.bytes(place + las::record::extended_end, std::min(length, longest)), records);
     if (length > most_bytes) break;
     place += las::record::extended_end + length;
@@ -82,29 +82,25 @@ std::optional<double> metres_of_unit(int epsg) {
 }
 
 void name_reference_system(const GeoRecords& records, FileContents& contents) {
-  contents.crs = records.wkt;
+  set_wkt(contents, records.wkt);
   const int horizontal = records.projected != 0 ? records.projected : records.geographic;
-  const bool is_whole = contents.crs.empty() && horizontal != 0;
-  if (is_whole) {
+  if (records.wkt.empty() && horizontal != 0) {
     contents.crs = "EPSG:" + std::to_string(horizontal);
     // 5001 to 5199 are no reference systems, and out of use (GeoTIFF 1.0, 6.3.4.1).
     const bool is_system = records.vertical != 0 && records.vertical / 200 != 25;
     if (is_system) contents.crs += "+" + std::to_string(records.vertical);
   }
-  if (contents.crs.empty() && records.is_user_defined) {
+  if (records.wkt.empty() && horizontal == 0 && records.is_user_defined) {
     contents.notes.push_back("its reference system is given by parameters, which are not read");
   }
   contents.height_unit = metres_of_unit(records.vertical_unit);
-  if (contents.crs.starts_with("LOCAL_CS[\"local east-north-up\"")) {
-    contents.is_local_frame = true;
-    contents.crs.clear();
-  }
 }
 
-void read_points(geometry::LasReader& input, const LasThinning& thinning, FileContents& contents) {
+void read_points(geometry::LasReader& input, const std::vector<int>& classes,
+                 const CloudThinning& thinning, FileContents& contents) {
   const auto is_wanted = [&](int point_class) {
-    if (thinning.classes.empty()) return point_class != 7 && point_class != 18;
-    return std::ranges::find(thinning.classes, point_class) != thinning.classes.end();
+    if (classes.empty()) return point_class != 7 && point_class != 18;
+    return std::ranges::find(classes, point_class) != classes.end();
   };
   CellSet cells;
   const Eigen::Vector3d cells_per_unit = thinning.metres_per_unit(contents) / thinning.spacing;
@@ -121,7 +117,8 @@ void read_points(geometry::LasReader& input, const LasThinning& thinning, FileCo
 
 }  // namespace
 
-FileContents read_las(const std::filesystem::path& file, const LasThinning& thinning) {
+FileContents read_las(const std::filesystem::path& file, const std::vector<int>& classes,
+                      const CloudThinning& thinning) {
   geometry::LasReader input(file);
   FileContents contents;
   contents.has_classes = true;
@@ -129,7 +126,7 @@ FileContents read_las(const std::filesystem::path& file, const LasThinning& thin
                     std::to_string(input.header().format) +
                     (input.header().is_compressed ? ", compressed (LAZ)" : "");
   name_reference_system(geo_records(input), contents);
-  read_points(input, thinning, contents);
+  read_points(input, classes, thinning, contents);
   return contents;
 }
 

@@ -270,7 +270,8 @@ TEST(CloudIo, SaysWhatIsWrongWithAFile) {
        "point 0 has the view 1.5"},
       {"faces.ply", "ply\nformat ascii 1.0\nelement face 0\nproperty int a\nend_header\n",
        "there is no element 'vertex'"},
-      {"cloud.e57", "ASTM", "a cloud file must end in .ply, .pcd, .las, .laz, .xyz, .txt or .asc"},
+      {"cloud.doc", "ASTM",
+       "a cloud file must end in .ply, .pcd, .las, .laz, .e57, .xyz, .txt or .asc"},
   };
   for (const auto& broken : cases) {
     EXPECT_THAT([&] { read_cloud(folder.file(broken.name, broken.bytes)); },

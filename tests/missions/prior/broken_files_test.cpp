@@ -22,7 +22,8 @@ std::vector<Whole> whole_files() {
   return {{"cube.gml", citygml_of(cube)},     {"cube.json", cityjson_of(cube)},
           {"cube.geojson", geojson_of(cube)}, {"cube.obj", obj_of(cube)},
           {"cube.glb", glb_of(cube)},         {"cube.asc", ascii_grid_of(cube)},
-          {"cube.las", las_of(cube, 4, 6)},   {"old.las", las_of(cube, 2, 3)}};
+          {"cube.las", las_of(cube, 4, 6)},   {"old.las", las_of(cube, 2, 3)},
+          {"cube.e57", e57_of(cube)}};
 }
 
 class BrokenFiles : public testing::Test {

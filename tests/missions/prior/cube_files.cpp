@@ -5,6 +5,7 @@
 #include <cstring>
 
 #include "geometry/io/las_layout.h"
+#include "tests/support/e57_bytes.h"
 
 namespace skycap::testing_support {
 namespace {
@@ -196,6 +197,32 @@ std::string las_of(const Cube& cube, int minor, int format, const std::string& w
     bytes[place + (format < 6 ? 15 : 16)] = static_cast<char>(i < 4 ? 2 : 6);  // ground, building
   }
   return bytes;
+}
+
+std::string e57_of(const Cube& cube, const std::string& reference_system) {
+  std::vector<E57Scan> scans;
+  for (int first = 0; first < 8; first += 4) {  // bottom and top, each turned a quarter
+    E57Scan& scan = scans.emplace_back();
+    std::array<std::vector<std::int64_t>, 3> units;
+    for (int i = first; i < first + 4; ++i) {
+      const Vector3d corner = (cube.corner(i) - cube.low) * 1000.0;
+      const std::array turned{corner.y(), -corner.x(), corner.z()};
+      for (std::size_t axis = 0; axis < 3; ++axis) units[axis].push_back(std::lround(turned[axis]));
+    }
+    const std::array names{"cartesianX", "cartesianY", "cartesianZ"};
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      scan.streams.push_back(e57_integers(names[axis], -20'000, 20'000, units[axis],
+                                          "ScaledInteger", "scale=\"0.001\""));
+    }
+    scan.records = 4;
+    scan.more =
+        "<pose><rotation><w>0.70710678118654752</w><z>0.70710678118654752</z></rotation>"
+        "<translation><x>" +
+        std::to_string(cube.low.x()) + "</x><y>" + std::to_string(cube.low.y()) + "</y><z>" +
+        std::to_string(cube.low.z()) + "</z></translation></pose>";
+  }
+  return testing_support::e57_of(scans, "<coordinateMetadata type=\"String\"><![CDATA[" +
+                                            reference_system + "]]></coordinateMetadata>");
 }
 
 missions::prior::Source source_of(const std::filesystem::path& file) {

@@ -41,6 +41,9 @@ std::string ascii_grid_of(const Cube& cube);
 /// Its corners as a LAS file; the scale is 1 mm. Versions before 1.4 have formats below 6.
 std::string las_of(const Cube& cube, int minor, int format, const std::string& wkt = "");
 
+/// Its corners as an E57 file: two scans of scaled integers whose poses put them on the map.
+std::string e57_of(const Cube& cube, const std::string& reference_system = "");
+
 /// A source of a file whose heights are ellipsoid heights in EPSG:25832.
 missions::prior::Source source_of(const std::filesystem::path& file);
 

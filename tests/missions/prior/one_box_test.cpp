@@ -170,6 +170,13 @@ TEST_F(OneBox, OfAScan) {
   }
 }
 
+TEST_F(OneBox, OfAnE57FileIsThatOfItsScans) {
+  const Prior prior = read("cube.e57", e57_of(cube_));
+  ASSERT_EQ(prior.points.size(), 8U);
+  EXPECT_LT((prior.points[0].cast<double>() - low_corner).norm(), millimetre);
+  EXPECT_LT((prior.points[7].cast<double>() - high_corner).norm(), millimetre);
+}
+
 TEST_F(OneBox, HasItsHeightsInAllDatums) {
   const Prior prior = read("cube.gml", citygml_of(cube_));
   EXPECT_NEAR(prior.ellipsoid_heights->least, 380.0, millimetre);

@@ -142,7 +142,7 @@ TEST_F(ForeignReader, EveryFormatHasTheNoiseOnce) {
     return path;
   };
   std::map<std::string, std::vector<Vector3d>> clouds;
-  for (const std::string format : {"ply", "xyz"}) {
+  for (const std::string format : {"e57", "ply", "xyz"}) {
     for (const auto& point : geometry::read_cloud(path_of(format)).positions) {
       clouds[format].push_back(point.cast<double>());
     }
@@ -155,7 +155,7 @@ TEST_F(ForeignReader, EveryFormatHasTheNoiseOnce) {
       clouds[format].push_back(point.position);
     }
   }
-  EXPECT_EQ(clouds.size(), 5U);
+  EXPECT_EQ(clouds.size(), 6U);
   for (const auto& [format, points] : clouds) {
     ASSERT_EQ(points.size(), returns.size()) << format;
     EXPECT_NEAR(scatter(points), 0.0099, 4e-4) << format;
@@ -257,7 +257,7 @@ TEST_F(ForeignReader, PclsOwnFilesAreRead) {
 }
 
 TEST_F(ForeignReader, OurOwnFilesAreReadBack) {
-  for (const std::string format : {"las", "las7", "pcd", "ply", "xyz"}) {
+  for (const std::string format : {"e57", "las", "las7", "pcd", "ply", "xyz"}) {
     const geometry::AttributedCloud read = geometry::read_cloud(written(format));
     ASSERT_EQ(read.positions.size(), returns.size()) << format;
     for (std::size_t i = 0; i < returns.size(); ++i) {

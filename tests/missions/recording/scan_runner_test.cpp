@@ -9,6 +9,7 @@
 #include <unistd.h>
 
 #include "geometry/error.h"
+#include "geometry/io/e57_reader.h"
 #include "missions/recording/cloud_formats.h"
 #include "missions/recording/las_format.h"
 #include "tests/missions/recording/las_file.h"
@@ -31,20 +32,27 @@ class ScanRunner : public testing::Test {
   }
   ~ScanRunner() override { std::filesystem::remove_all(folder); }
 
-  recording::ScanResult run(const std::filesystem::path& file, unsigned threads,
-                            std::stop_token stop = {}) {
-    std::vector<recording::CloudFile> files = las_files(file);
-    const recording::ScanResult result =
-        recording::run_scan(scene, sim::Lidar(config), {trajectory, trajectory}, files,
-                            {.threads = threads, .report = {}, .stop = std::move(stop)});
+  recording::ScanResult run(const std::filesystem::path& file, unsigned threads) {
+    std::vector<recording::CloudFile> files;
+    files.emplace_back(file, format_for(file));
+    const recording::ScanResult result = recording::run_scan(
+        scene, sim::Lidar(config), {trajectory, trajectory}, files, {.threads = threads});
     files[0].finish();
     return result;
+  }
+
+  /// By its ending.
+  std::shared_ptr<const recording::CloudFormat> format_for(
+      const std::filesystem::path& file) const {
+    if (file.extension() == ".e57") return recording::e57_format({.offset = far}, "test");
+    return recording::las_format({.point_format = 6, .grid = {.offset = far}});
   }
 
   std::vector<recording::CloudFile> las_files(const std::filesystem::path& file,
                                               int point_format = 6) const {
     std::vector<recording::CloudFile> files;
-    files.emplace_back(file, recording::las_format({.point_format = point_format, .offset = far}));
+    files.emplace_back(
+        file, recording::las_format({.point_format = point_format, .grid = {.offset = far}}));
     return files;
   }
 
@@ -86,13 +94,35 @@ TEST_F(ScanRunner, TheFileHoldsEveryReturnFieldByField) {
   }
 }
 
+TEST_F(ScanRunner, AnE57FileHoldsEveryReturn) {
+  const recording::ScanResult result = run(folder / "scan.e57", 2);
+  geometry::E57Reader reader(folder / "scan.e57");
+  EXPECT_THAT(reader.reference_system(), testing::StartsWith("LOCAL_CS["));
+  EXPECT_EQ(reader.scans(), 1U);
+  const sim::LidarReturns returns =
+      sim::Lidar(config).measure(scene, {trajectory, trajectory}, {0, 10'000});
+  ASSERT_EQ(result.progress.points, returns.size());
+  ASSERT_EQ(reader.points(), returns.size());
+  std::size_t next = 0;
+  geometry::E57Points points;
+  while (reader.next(points)) {
+    for (const Vector3d& position : points.positions) {
+      const Vector3d expected = returns.origin + returns.points[next++].cast<double>();
+      ASSERT_LT((position - expected).lpNorm<Eigen::Infinity>(), 0.51e-4);  // half a unit
+    }
+  }
+  EXPECT_EQ(next, returns.size());
+}
+
 TEST_F(ScanRunner, GivesTheSameBytesForAnyNumberOfThreads) {
-  run(folder / "one.las", 1);
-  const std::vector<char> expected = bytes_of(folder / "one.las");
-  ASSERT_GT(expected.size(), 1'000'000U);
-  for (const unsigned threads : {2U, 4U}) {
-    run(folder / "more.las", threads);
-    EXPECT_EQ(bytes_of(folder / "more.las"), expected) << threads;
+  for (const std::string ending : {".las", ".e57"}) {
+    run(folder / ("one" + ending), 1);
+    const std::vector<char> expected = bytes_of(folder / ("one" + ending));
+    ASSERT_GT(expected.size(), 1'000'000U);
+    for (const unsigned threads : {2U, 4U}) {
+      run(folder / ("more" + ending), threads);
+      EXPECT_EQ(bytes_of(folder / ("more" + ending)), expected) << ending << ", " << threads;
+    }
   }
 }
 
@@ -115,35 +145,39 @@ TEST_F(ScanRunner, AStoppedScanLeavesAValidFileOfItsBeginning) {
 
 // From each checkpoint that a kill may leave behind, whatever was appended after it.
 TEST_F(ScanRunner, GoesOnFromAnyCheckpointToTheSameBytes) {
-  run(folder / "whole.las", 1);
   struct Checkpoint {
     recording::ScanProgress progress;
     recording::CloudState state;
   };
-  std::vector<Checkpoint> checkpoints;
-  std::vector<recording::CloudFile> files = las_files(folder / "killed.las");
-  recording::run_scan(scene, sim::Lidar(config), {trajectory, trajectory}, files,
-                      {.threads = 2,
-                       .checkpoint =
-                           [&](const recording::ScanProgress& progress) {
-                             checkpoints.push_back({progress, files[0].state()});
-                           },
-                       .checkpoint_period = 0.0});
-  files.clear();
-  ASSERT_GT(checkpoints.size(), 10U);
-  for (std::size_t i = 0; i < checkpoints.size(); i += 9) {
-    const auto& [progress, state] = checkpoints[i];
-    const std::filesystem::path file = folder / ("from" + std::to_string(i) + ".las");
-    std::filesystem::copy_file(folder / "killed.las", file);
-    std::vector<recording::CloudFile> grown;
-    grown.emplace_back(file, recording::las_format({.point_format = 6, .offset = far}),
-                       recording::ReturnPosition::reported, state);
-    const recording::ScanResult result =
-        recording::run_scan(scene, sim::Lidar(config), {trajectory, trajectory}, grown,
-                            {.threads = 2, .begun = progress});
-    grown[0].finish();
-    EXPECT_TRUE(result.is_complete);
-    EXPECT_EQ(bytes_of(file), bytes_of(folder / "whole.las")) << i;
+  for (const std::string ending : {".las", ".e57"}) {
+    const std::filesystem::path whole = folder / ("whole" + ending),
+                                killed = folder / ("killed" + ending);
+    run(whole, 1);
+    std::vector<Checkpoint> checkpoints;
+    std::vector<recording::CloudFile> files;
+    files.emplace_back(killed, format_for(killed));
+    recording::run_scan(scene, sim::Lidar(config), {trajectory, trajectory}, files,
+                        {.threads = 2,
+                         .checkpoint =
+                             [&](const recording::ScanProgress& progress) {
+                               checkpoints.push_back({progress, files[0].state()});
+                             },
+                         .checkpoint_period = 0.0});
+    files.clear();
+    ASSERT_GT(checkpoints.size(), 10U);
+    for (std::size_t i = 0; i < checkpoints.size(); i += 9) {
+      const auto& [progress, state] = checkpoints[i];
+      const std::filesystem::path file = folder / ("from" + std::to_string(i) + ending);
+      std::filesystem::copy_file(killed, file);
+      std::vector<recording::CloudFile> grown;
+      grown.emplace_back(file, format_for(file), recording::ReturnPosition::reported, state);
+      const recording::ScanResult result =
+          recording::run_scan(scene, sim::Lidar(config), {trajectory, trajectory}, grown,
+                              {.threads = 2, .begun = progress});
+      grown[0].finish();
+      EXPECT_TRUE(result.is_complete);
+      EXPECT_EQ(bytes_of(file), bytes_of(whole)) << file;
+    }
   }
   std::vector<recording::CloudFile> none;
   EXPECT_THROW(recording::run_scan(scene, sim::Lidar(config), {trajectory, trajectory}, none,
@@ -163,8 +197,8 @@ TEST_F(ScanRunner, SaysWhatCannotBeWritten) {
     EXPECT_EQ(error.kind(), ErrorKind::bad_file);
     EXPECT_THAT(error.what(), testing::HasSubstr("scan.las: cannot be written"));
   }
-  for (const auto& format :
-       {recording::las_format({}), recording::ply_format(), recording::pcd_format()}) {
+  for (const auto& format : {recording::las_format({}), recording::e57_format({}, ""),
+                             recording::ply_format(), recording::pcd_format()}) {
     std::vector<recording::CloudFile> near_zero;
     near_zero.emplace_back(folder / "scan", format);
     EXPECT_THROW(

@@ -5,12 +5,12 @@
 #include <cstddef>
 #include <cstring>
 
-namespace skycap::geometry::las {
+namespace skycap::geometry {
 
 /// The value at a place of a file's bytes, all of which are known to be there.
 template <typename Value>
 Value value_at(const char* bytes, std::size_t place) {
-  static_assert(std::endian::native == std::endian::little, "LAS files are little-endian");
+  static_assert(std::endian::native == std::endian::little, "values in files are little-endian");
   Value value;
   std::memcpy(&value, bytes + place, sizeof value);
   return value;
@@ -19,8 +19,8 @@ Value value_at(const char* bytes, std::size_t place) {
 /// Puts the value at a place of bytes, all of which are there.
 template <typename Value>
 void put_value(char* bytes, std::size_t place, Value value) {
-  static_assert(std::endian::native == std::endian::little, "LAS files are little-endian");
+  static_assert(std::endian::native == std::endian::little, "values in files are little-endian");
   std::memcpy(bytes + place, &value, sizeof value);
 }
 
-}  // namespace skycap::geometry::las
+}  // namespace skycap::geometry

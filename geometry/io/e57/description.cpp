@@ -1,0 +1,201 @@
+#include "geometry/io/e57/description.h"
+
+#include <algorithm>
+#include <bit>
+#include <charconv>
+#include <cmath>
+#include <string_view>
+
+#include <pugixml.hpp>
+
+#include "geometry/io/e57/pages.h"
+
+namespace skycap::geometry::e57 {
+namespace {
+
+using std::string_view;
+
+constexpr std::size_t most_fields = 1000;  // of a record; real ones have about 20
+
+/// For a message: a piece of a file's text in one line.
+std::string quoted(string_view text) {
+  std::string result(text.substr(0, 60));
+  for (char& c : result) {
+    if (static_cast<unsigned char>(c) < ' ' || c == '\x7F') c = ' ';
+  }
+  return '\'' + result + '\'';
+}
+
+string_view trimmed(string_view text) {
+  constexpr string_view blanks = " \t\r\n";
+  const std::size_t first = text.find_first_not_of(blanks);
+  if (first == string_view::npos) return {};
+  return text.substr(first, text.find_last_not_of(blanks) - first + 1);
+}
+
+/// A number in text; what is empty is zero, as the standard has it.
+template <typename Number>
+Number number_of(string_view text, const std::string& what) {
+  text = trimmed(text);
+  if (text.empty()) return Number{};
+  if (text.starts_with('+')) text.remove_prefix(1);
+  Number number{};
+  const char* const end = text.data() + text.size();
+  const auto [stop, failure] = std::from_chars(text.data(), end, number);
+  if (failure != std::errc() || stop != end) {
+    refuse("has the " + what + " " + quoted(text) + ", which is no usable number");
+  }
+  return number;
+}
+
+double finite_number(string_view text, const std::string& what) {
+  const auto number = number_of<double>(text, what);
+  if (!std::isfinite(number)) refuse("has a " + what + " that is not finite");
+  return number;
+}
+
+template <typename Number>
+Number attribute_or(const pugi::xml_node& node, const char* name, Number otherwise) {
+  const pugi::xml_attribute attribute = node.attribute(name);
+  if (!attribute) return otherwise;
+  return number_of<Number>(attribute.value(), std::string(name) + " of " + quoted(node.name()));
+}
+
+/// The number in an element's child, if it has it.
+double child_number(const pugi::xml_node& node, const char* name) {
+  const pugi::xml_node child = node.child(name);
+  return finite_number(child.text().get(), std::string(name) + " of a " + node.name());
+}
+
+Coding coding_of(const pugi::xml_node& node) {
+  const string_view type = node.attribute("type").value();
+  if (type == "Integer") return Coding::integer;
+  if (type == "ScaledInteger") return Coding::scaled_integer;
+  if (type == "String") return Coding::text;
+  const string_view precision = node.attribute("precision").value();
+  if (type == "Float" && precision == "single") return Coding::single_precision;
+  if (type == "Float" && (precision.empty() || precision == "double")) {
+    return Coding::double_precision;
+  }
+  refuse("has records with a field " + quoted(node.name()) + " of type " + quoted(type) +
+         "; it must be Integer, ScaledInteger, Float (single or double) or String");
+}
+
+Field parse_field(const pugi::xml_node& node) {
+  Field field{node.name(), coding_of(node)};
+  if (field.coding != Coding::integer && field.coding != Coding::scaled_integer) return field;
+  field.minimum = attribute_or(node, "minimum", field.minimum);
+  field.maximum = attribute_or(node, "maximum", field.maximum);
+  if (field.minimum > field.maximum) {
+    refuse("has a field " + quoted(field.name) + " whose minimum is above its maximum");
+  }
+  if (field.coding == Coding::integer) return field;
+  field.scale = attribute_or(node, "scale", field.scale);
+  field.offset = attribute_or(node, "offset", field.offset);
+  if (!std::isfinite(field.scale) || !std::isfinite(field.offset)) {
+    refuse("has a field " + quoted(field.name) + " whose scale or offset is not finite");
+  }
+  return field;
+}
+
+Eigen::Isometry3d parse_pose(const pugi::xml_node& pose) {
+  Eigen::Isometry3d file_from_scan = Eigen::Isometry3d::Identity();
+  if (const pugi::xml_node rotation = pose.child("rotation")) {
+    const Eigen::Quaterniond turn(child_number(rotation, "w"), child_number(rotation, "x"),
+                                  child_number(rotation, "y"), child_number(rotation, "z"));
+    constexpr double tolerance = 0.01;  // of what was rounded
+    if (std::abs(turn.norm() - 1.0) > tolerance) {
+      refuse("has a scan whose rotation is a quaternion of length " + std::to_string(turn.norm()) +
+             "; it must be 1");
+    }
+    file_from_scan.linear() = turn.normalized().toRotationMatrix();
+  }
+  if (const pugi::xml_node translation = pose.child("translation")) {
+    file_from_scan.translation() =
+        Eigen::Vector3d(child_number(translation, "x"), child_number(translation, "y"),
+                        child_number(translation, "z"));
+  }
+  return file_from_scan;
+}
+
+std::optional<Interval> parse_limits(const pugi::xml_node& limits, const std::string& colour) {
+  const pugi::xml_node low = limits.child(("color" + colour + "Minimum").c_str()),
+                       high = limits.child(("color" + colour + "Maximum").c_str());
+  if (!low || !high) return std::nullopt;
+  return Interval{finite_number(low.text().get(), low.name()),
+                  finite_number(high.text().get(), high.name())};
+}
+
+ScanDescription parse_scan(const pugi::xml_node& node, const pugi::xml_node& points) {
+  ScanDescription scan;
+  scan.file_from_scan = parse_pose(node.child("pose"));
+  scan.section = attribute_or(points, "fileOffset", std::uint64_t{0});
+  scan.records = attribute_or(points, "recordCount", std::uint64_t{0});
+  for (const pugi::xml_node field : points.child("prototype").children()) {
+    if (field.type() != pugi::node_element) continue;
+    scan.fields.push_back(parse_field(field));
+    if (scan.fields.size() > most_fields) {
+      refuse("has records of more than " + std::to_string(most_fields) + " fields");
+    }
+  }
+  const pugi::xml_node limits = node.child("colorLimits");
+  scan.colour_limits = {parse_limits(limits, "Red"), parse_limits(limits, "Green"),
+                        parse_limits(limits, "Blue")};
+  return scan;
+}
+
+}  // namespace
+
+unsigned Field::bits() const {
+  switch (coding) {
+    case Coding::integer:
+    case Coding::scaled_integer:
+      return static_cast<unsigned>(std::bit_width(static_cast<std::uint64_t>(maximum) -
+                                                  static_cast<std::uint64_t>(minimum)));
+    case Coding::single_precision:
+      return 32;
+    case Coding::double_precision:
+      return 64;
+    case Coding::text:
+      break;
+  }
+  return 0;
+}
+
+double Field::value(std::uint64_t stored) const {
+  if (coding == Coding::double_precision) return std::bit_cast<double>(stored);
+  if (coding == Coding::single_precision) {
+    return static_cast<double>(std::bit_cast<float>(static_cast<std::uint32_t>(stored)));
+  }
+  const auto whole = static_cast<std::int64_t>(static_cast<std::uint64_t>(minimum) + stored);
+  return static_cast<double>(whole) * scale + offset;
+}
+
+std::optional<std::size_t> ScanDescription::field(const std::string& name) const {
+  const auto found = std::ranges::find(fields, name, &Field::name);
+  if (found == fields.end()) return std::nullopt;
+  return static_cast<std::size_t>(found - fields.begin());
+}
+
+Description parse_description(std::string xml) {
+  pugi::xml_document document;
+  const pugi::xml_parse_result result = document.load_buffer_inplace(
+      xml.data(), xml.size(), pugi::parse_default, pugi::encoding_utf8);
+  if (!result) {
+    refuse("has XML that is damaged at its byte " + std::to_string(result.offset) + ": " +
+           result.description());
+  }
+  const pugi::xml_node root = document.child("e57Root");
+  if (!root) refuse("has XML without the element e57Root");
+  Description description;
+  description.reference_system = trimmed(root.child("coordinateMetadata").text().get());
+  for (const pugi::xml_node node : root.child("data3D").children()) {
+    const pugi::xml_node points = node.child("points");
+    if (!points) continue;
+    ScanDescription scan = parse_scan(node, points);
+    if (scan.records > 0) description.scans.push_back(std::move(scan));
+  }
+  return description;
+}
+
+}  // namespace skycap::geometry::e57

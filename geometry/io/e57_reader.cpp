@@ -1,0 +1,164 @@
+#include "geometry/io/e57_reader.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "geometry/io/e57/layout.h"
+
+namespace skycap::geometry {
+namespace {
+
+using Names = std::array<const char*, 3>;
+
+constexpr Names cartesian{"cartesianX", "cartesianY", "cartesianZ"};
+constexpr Names spherical{"sphericalRange", "sphericalAzimuth", "sphericalElevation"};
+constexpr Names colours{"colorRed", "colorGreen", "colorBlue"};
+constexpr Names normals{"nor:normalX", "nor:normalY", "nor:normalZ"};  // E57_NOR, an extension
+
+bool has(const e57::ScanDescription& scan, const Names& names) {
+  return std::ranges::all_of(names, [&](const char* name) {
+    const auto field = scan.field(name);
+    return field && scan.fields[*field].coding != e57::Coding::text;
+  });
+}
+
+bool all_have(const std::vector<e57::ScanDescription>& scans, const Names& names) {
+  return std::ranges::all_of(scans, [&](const auto& scan) { return has(scan, names); });
+}
+
+Eigen::Vector3d cartesian_of(const Eigen::Vector3d& range_azimuth_elevation) {
+  const double range = range_azimuth_elevation[0], azimuth = range_azimuth_elevation[1],
+               elevation = range_azimuth_elevation[2];
+  const double level = range * std::cos(elevation);
+  return {level * std::cos(azimuth), level * std::sin(azimuth), range * std::sin(elevation)};
+}
+
+/// From black to white of its channel.
+e57::Interval limits_of(const e57::ScanDescription& scan, std::size_t channel,
+                        const e57::Field& field) {
+  if (scan.colour_limits[channel]) return *scan.colour_limits[channel];
+  const bool is_whole = field.coding == e57::Coding::integer;
+  if (!is_whole) return {0.0, 1.0};
+  return {static_cast<double>(field.minimum), static_cast<double>(field.maximum)};
+}
+
+std::uint8_t byte_of(double value, const e57::Interval& limits) {
+  const double share = (value - limits.low) / (limits.high - limits.low);
+  if (!(share > 0.0)) return 0;
+  return static_cast<std::uint8_t>(std::lround(255.0 * std::min(share, 1.0)));
+}
+
+e57::Description read_description(e57::Pages& pages, const e57::FileHeader& header) {
+  pages.bytes(0, e57::header::size);  // what was read of it agrees with its checksum
+  const std::uint64_t place = pages.logical(header.description, "its XML");
+  if (header.description_size > e57::longest_description ||
+      header.description_size > pages.size() - place) {
+    e57::refuse("has XML of " + std::to_string(header.description_size) +
+                " bytes; it must end within the file and have at most " +
+                std::to_string(e57::longest_description));
+  }
+  return e57::parse_description(pages.bytes(place, header.description_size));
+}
+
+}  // namespace
+
+E57Reader::E57Reader(std::filesystem::path path)
+    : file_(std::make_unique<SeekableFile>(std::move(path))) {
+  file_->with_name([&] {
+    const auto read = [file = file_.get()](std::uint64_t place, std::uint64_t count) {
+      return file->bytes(place, count);
+    };
+    const e57::FileHeader header =
+        e57::parse_file_header(read(0, e57::header::size), file_->size());
+    pages_ = std::make_unique<e57::Pages>(read, header);
+    description_ = read_description(*pages_, header);
+    has_colours_ = all_have(description_.scans, colours);
+    has_normals_ = all_have(description_.scans, normals);
+    for (const e57::ScanDescription& scan : description_.scans) places_of(scan);
+  });
+}
+
+std::uint64_t E57Reader::points() const {
+  std::uint64_t sum = 0;
+  for (const e57::ScanDescription& scan : description_.scans) sum += scan.records;
+  return sum;
+}
+
+E57Reader::Places E57Reader::places_of(const e57::ScanDescription& scan) const {
+  Places places;
+  places.is_spherical = !has(scan, cartesian);
+  if (places.is_spherical && !has(scan, spherical)) {
+    e57::refuse(
+        "has a scan whose points have neither cartesianX, Y and Z nor sphericalRange, Azimuth and "
+        "Elevation");
+  }
+  const auto add = [&](const Names& names) {
+    for (const char* name : names) places.fields.push_back(*scan.field(name));
+    return places.fields.size() - names.size();
+  };
+  add(places.is_spherical ? spherical : cartesian);
+  if (has_colours_) places.colours = add(colours);
+  if (has_normals_) places.normals = add(normals);
+  const auto state =
+      scan.field(places.is_spherical ? "sphericalInvalidState" : "cartesianInvalidState");
+  if (state) {
+    places.state = places.fields.size();
+    places.fields.push_back(*state);
+  }
+  return places;
+}
+
+bool E57Reader::next(E57Points& points, std::size_t most) {
+  points.positions.clear();
+  points.normals.clear();
+  points.colours.clear();
+  return file_->with_name([&] {
+    while (true) {
+      const std::size_t count = records_ ? records_->next(most) : 0;
+      if (count > 0) {
+        points.records = count;
+        points.scan = static_cast<std::uint32_t>(next_scan_ - 1);
+        add_points(count, points);
+        return true;
+      }
+      if (next_scan_ == description_.scans.size()) return false;
+      const e57::ScanDescription& scan = description_.scans[next_scan_++];
+      places_ = places_of(scan);
+      records_.emplace(*pages_, scan, places_.fields);
+    }
+  });
+}
+
+void E57Reader::add_points(std::size_t count, E57Points& points) const {
+  const e57::ScanDescription& scan = description_.scans[points.scan];
+  const auto values = records_->values();
+  const auto three = [&](std::size_t first, std::size_t i) {
+    return Eigen::Vector3d(values[first][i], values[first + 1][i], values[first + 2][i]);
+  };
+  std::array<e57::Interval, 3> limits;
+  for (std::size_t channel = 0; has_colours_ && channel < 3; ++channel) {
+    limits[channel] =
+        limits_of(scan, channel, scan.fields[places_.fields[places_.colours + channel]]);
+  }
+  for (std::size_t i = 0; i < count; ++i) {
+    if (places_.state != 0 && values[places_.state][i] != 0.0) continue;
+    const Eigen::Vector3d stored = three(0, i);
+    if (stored.hasNaN()) continue;
+    const Eigen::Vector3d position =
+        scan.file_from_scan * (places_.is_spherical ? cartesian_of(stored) : stored);
+    if (!position.allFinite()) e57::refuse("has a point whose coordinates are not finite numbers");
+    points.positions.push_back(position);
+    if (has_normals_) {
+      points.normals.push_back(
+          (scan.file_from_scan.linear() * three(places_.normals, i)).cast<float>());
+    }
+    if (!has_colours_) continue;
+    auto& colour = points.colours.emplace_back();
+    for (std::size_t channel = 0; channel < 3; ++channel) {
+      colour[channel] = byte_of(values[places_.colours + channel][i], limits[channel]);
+    }
+  }
+}
+
+}  // namespace skycap::geometry

@@ -1,0 +1,36 @@
+#include "geometry/io/seekable_file.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "geometry/io/file.h"
+
+namespace skycap::geometry {
+
+SeekableFile::SeekableFile(std::filesystem::path path) : path_(std::move(path)) {
+  std::error_code failure;
+  size_ = std::filesystem::file_size(path_, failure);
+  const bool is_file = std::filesystem::is_regular_file(path_, failure);
+  if (is_file) stream_.open(path_, std::ios::binary);
+  const auto beginning = [&] { return bytes(0, 2); };
+  if (!is_file || !stream_ || with_name(beginning) == "\x1F\x8B") {
+    decompressed_ = read_file(path_);  // says what is wrong with what is no file
+    size_ = decompressed_.size();
+  }
+}
+
+std::string SeekableFile::bytes(std::uint64_t place, std::uint64_t count) {
+  if (place >= size_) return {};
+  count = std::min(count, size_ - place);
+  if (!decompressed_.empty()) return decompressed_.substr(place, count);
+  std::string result(count, '\0');
+  stream_.clear();
+  stream_.seekg(static_cast<std::streamoff>(place));
+  stream_.read(result.data(), std::ssize(result));
+  if (!stream_) {
+    throw Error(ErrorKind::bad_file, "cannot be read at byte " + std::to_string(place));
+  }
+  return result;
+}
+
+}  // namespace skycap::geometry

@@ -1,0 +1,274 @@
+// E57 files, made by tests/support/e57_bytes.h of values that stand here.
+
+#include <cmath>
+#include <limits>
+#include <random>
+#include <string>
+
+#include <zlib.h>
+
+#include "geometry/io/cloud_io.h"
+#include "tests/geometry/io/e57_reading.h"
+
+namespace skycap::geometry {
+namespace {
+
+using Eigen::Vector3d;
+using Eigen::Vector3f;
+using testing::ElementsAre;
+using testing::HasSubstr;
+using namespace testing_support;
+
+TEST_F(E57, HasItsPointsAsTheyAre) {
+  EXPECT_THAT(read(e57_of_points(three_points)).positions,
+              ElementsAre(Vector3d(1, 2, 3), Vector3d(-4.5, 1e-3, 6), Vector3d(0.1, 0.2, 1e4)));
+}
+
+// Of each width from none to 64 bits, in packets whose streams are cut within values; x, y and z
+// are read with y of that width between two of others.
+TEST_F(E57, IntegersMayHaveAnyNumberOfBits) {
+  std::mt19937_64 random(1);
+  for (unsigned bits = 0; bits <= 64; ++bits) {
+    const std::uint64_t span = bits == 0 ? 0 : ~std::uint64_t{0} >> (64 - bits);
+    const std::int64_t least = bits == 64 ? std::numeric_limits<std::int64_t>::min()
+                                          : -static_cast<std::int64_t>(span / 3);
+    std::vector<std::int64_t> y;
+    for (int i = 0; i < 201; ++i) {
+      const std::uint64_t above = i == 0 ? 0 : i == 1 ? span : random() & span;
+      y.push_back(static_cast<std::int64_t>(static_cast<std::uint64_t>(least) + above));
+    }
+    const auto most = static_cast<std::int64_t>(static_cast<std::uint64_t>(least) + span);
+    E57Scan scan;
+    scan.streams = {e57_integers("cartesianX", 0, 4, std::vector<std::int64_t>(201, 3)),
+                    e57_integers("cartesianY", least, most, y),
+                    e57_singles("cartesianZ", std::vector<float>(201, 0.5F))};
+    scan.records = 201;
+    for (scan.packets = 1; scan.packets < 12; scan.packets += 5) {
+      const std::vector<Vector3d> positions = read(e57_of({scan})).positions;
+      ASSERT_EQ(positions.size(), 201U) << bits;
+      for (std::size_t i = 0; i < 201; ++i) {
+        ASSERT_EQ(positions[i], Vector3d(3, static_cast<double>(y[i]), 0.5)) << bits << ", " << i;
+      }
+    }
+  }
+}
+
+// Without a minimum or a maximum an integer has 64 bits.
+TEST_F(E57, IntegersWithoutAnIntervalHaveAllBits) {
+  E57Stream x{"<cartesianX type=\"Integer\"/>", {}};
+  x.add(static_cast<std::uint64_t>(-7) + (std::uint64_t{1} << 63), 64);
+  const E57Scan scan{{x, e57_doubles("cartesianY", {8.0}), e57_doubles("cartesianZ", {9.0})}, 1};
+  EXPECT_THAT(read(e57_of({scan})).positions, ElementsAre(Vector3d(-7, 8, 9)));
+}
+
+TEST_F(E57, ScaledIntegersAreMultiplesFromAnOffset) {
+  const auto axis = [](const std::string& name, const std::string& more) {
+    return e57_integers(name, -500, 500, {-500, 7, 500}, "ScaledInteger", more);
+  };
+  const E57Scan scan{{axis("cartesianX", "scale=\"0.25\""),
+                      axis("cartesianY", "scale=\"5.0000000000000000e-001\" offset=\"1000\""),
+                      axis("cartesianZ", "")},
+                     3};
+  EXPECT_THAT(
+      read(e57_of({scan})).positions,
+      ElementsAre(Vector3d(-125, 750, -500), Vector3d(1.75, 1003.5, 7), Vector3d(125, 1250, 500)));
+}
+
+// r, azimuth from x to y, elevation from that plane to z.
+TEST_F(E57, SphericalPointsAreTurnedIntoCartesianOnes) {
+  const double quarter = std::acos(0.0);
+  const E57Scan scan{{e57_doubles("sphericalAzimuth", {0, quarter, 0.3, -2 * quarter}),
+                      e57_doubles("sphericalElevation", {0, 0, quarter, -quarter / 2}),
+                      e57_doubles("sphericalRange", {2, 3, 4, std::sqrt(2.0)})},
+                     4};
+  const std::vector<Vector3d> expected{{2, 0, 0}, {0, 3, 0}, {0, 0, 4}, {-1, 0, -1}};
+  const std::vector<Vector3d> positions = read(e57_of({scan})).positions;
+  ASSERT_EQ(positions.size(), 4U);
+  for (std::size_t i = 0; i < 4; ++i) {
+    EXPECT_LT((positions[i] - expected[i]).norm(), 1e-15 * 4) << i;
+  }
+}
+
+TEST_F(E57, CartesianCoordinatesComeBeforeSphericalOnes) {
+  E57Scan scan{{e57_doubles("sphericalRange", {9}), e57_doubles("sphericalAzimuth", {9}),
+                e57_doubles("sphericalElevation", {9}), e57_doubles("cartesianZ", {3}),
+                e57_doubles("cartesianY", {2}), e57_doubles("cartesianX", {1}),
+                e57_integers("sphericalInvalidState", 0, 2, {2})},
+               1};
+  EXPECT_THAT(read(e57_of({scan})).positions, ElementsAre(Vector3d(1, 2, 3)));
+}
+
+// 1 is a direction without a range, 2 is nothing at all; scanners write NaN, too.
+TEST_F(E57, InvalidPointsArePassedOver) {
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  for (const bool is_spherical : {false, true}) {
+    const std::string kind = is_spherical ? "spherical" : "cartesian";
+    E57Scan scan{{e57_doubles(kind + (is_spherical ? "Azimuth" : "Y"), {0, 0, 0, 0, 0}),
+                  e57_doubles(kind + (is_spherical ? "Range" : "X"), {1, 2, 3, nan, 5}),
+                  e57_doubles(kind + (is_spherical ? "Elevation" : "Z"), {0, 0, 0, 0, 0}),
+                  e57_integers(kind + "InvalidState", 0, 2, {0, 1, 2, 0, 0})},
+                 5};
+    EXPECT_THAT(read(e57_of({scan})).positions, ElementsAre(Vector3d(1, 0, 0), Vector3d(5, 0, 0)))
+        << kind;
+  }
+}
+
+E57Scan scan_of_one(double x, double y, double z, const std::string& more) {
+  return {{e57_doubles("cartesianX", {x}), e57_doubles("cartesianY", {y}),
+           e57_doubles("cartesianZ", {z})},
+          1,
+          more};
+}
+
+// A quarter about z, a half about x, nothing but a way, nothing at all.
+TEST_F(E57, ScansStandWhereTheirPosesSay) {
+  const std::string half_root = "0.70710678118654752";
+  const Read all =
+      read(e57_of({scan_of_one(1, 0, 0, pose_of(half_root + " 0 0 " + half_root, "10 20 30")),
+                   scan_of_one(0, 1, 2, pose_of("0 1 0 0", "")),
+                   scan_of_one(1, 1, 1, pose_of("", "4 0 -6e1")), scan_of_one(5, 5, 5, "")}));
+  const std::vector<Vector3d> expected{{10, 21, 30}, {0, -1, -2}, {5, 1, -59}, {5, 5, 5}};
+  ASSERT_EQ(all.positions.size(), 4U);
+  for (std::size_t i = 0; i < 4; ++i) {
+    EXPECT_LT((all.positions[i] - expected[i]).norm(), 1e-14) << i;
+  }
+  EXPECT_THAT(all.scans, ElementsAre(0, 1, 2, 3));
+}
+
+TEST_F(E57, ScansWithoutPointsAreLeftOut) {
+  E57Scan empty = scan_of_one(0, 0, 0, "");
+  empty.records = 0;
+  const Read all = read(e57_of({empty, scan_of_one(1, 2, 3, ""), empty}));
+  EXPECT_THAT(all.positions, ElementsAre(Vector3d(1, 2, 3)));
+  EXPECT_THAT(all.scans, ElementsAre(0));
+  EXPECT_TRUE(read(e57_of({empty})).positions.empty());
+  EXPECT_TRUE(read(e57_of({})).positions.empty());
+}
+
+// Packets begin and end anywhere in pages, and indices and unused room stand between them.
+TEST_F(E57, PacketsMayBeCutByPagesAnywhere) {
+  constexpr int count = 5000;
+  std::vector<double> x;
+  std::vector<std::int64_t> y;
+  std::vector<float> z;
+  for (int i = 0; i < count; ++i) {
+    x.push_back(0.1 * i);
+    y.push_back(i * 7919 % 5000);
+    z.push_back(static_cast<float>(i));
+  }
+  E57Scan scan{{e57_doubles("cartesianX", x), e57_integers("cartesianY", 0, 4999, y),
+                e57_singles("cartesianZ", z)},
+               count};
+  for (const std::size_t packets : {2U, 13U, 97U, 4999U}) {
+    for (const bool has_others : {false, true}) {
+      scan.packets = packets;
+      scan.has_others = has_others;
+      const std::string bytes = e57_of({scan});
+      for (const std::size_t most : {333UL, 1UL << 16}) {
+        const std::vector<Vector3d> positions = read(bytes, most).positions;
+        ASSERT_EQ(positions.size(), count);
+        for (std::size_t i = 0; i < count; ++i) {
+          ASSERT_EQ(positions[i],
+                    Vector3d(x[i], static_cast<double>(y[i]), static_cast<double>(z[i])));
+        }
+      }
+    }
+  }
+}
+
+// Text has no fixed length; a coordinate of an extension is none of the point.
+TEST_F(E57, OtherFieldsArePassedOver) {
+  E57Scan scan = scan_of_one(1, 2, 3, "");
+  E57Stream text{"<name type=\"String\"/>", {}};
+  for (const char c : std::string("\x0A"
+                                  "house"))
+    text.add(static_cast<std::uint8_t>(c), 8);
+  scan.streams.insert(scan.streams.begin(), text);
+  scan.streams.insert(scan.streams.begin() + 2, e57_doubles("ext:cartesianY", {7}));
+  scan.streams.push_back(e57_integers("intensity", 0, 4095, {77}));
+  EXPECT_THAT(read(e57_of({scan})).positions, ElementsAre(Vector3d(1, 2, 3)));
+}
+
+std::vector<E57Stream> colours_of(std::int64_t most, std::int64_t red, std::int64_t green,
+                                  std::int64_t blue) {
+  return {e57_integers("colorRed", 0, most, {red}), e57_integers("colorGreen", 0, most, {green}),
+          e57_integers("colorBlue", 0, most, {blue})};
+}
+
+TEST_F(E57, ColoursGoFromTheirLeastToTheirMost) {
+  const auto colour = [&](const std::vector<E57Stream>& streams, const std::string& more) {
+    E57Scan scan = scan_of_one(1, 2, 3, more);
+    scan.streams.insert(scan.streams.end(), streams.begin(), streams.end());
+    return read(e57_of({scan})).colours;
+  };
+  using Colour = std::array<std::uint8_t, 3>;
+  EXPECT_THAT(colour(colours_of(255, 0, 77, 255), ""), ElementsAre(Colour{0, 77, 255}));
+  EXPECT_THAT(colour(colours_of(65535, 0, 257, 65535), ""), ElementsAre(Colour{0, 1, 255}));
+  std::string limits = "<colorLimits type=\"Structure\">";
+  for (const std::string name : {"Red", "Green", "Blue"}) {
+    limits += "<color" + name + "Minimum type=\"Integer\"/><color" + name +
+              "Maximum type=\"Integer\">255</color" + name + "Maximum>";
+  }
+  EXPECT_THAT(colour(colours_of(65535, 0, 77, 300), limits + "</colorLimits>"),
+              ElementsAre(Colour{0, 77, 255}));
+  EXPECT_THAT(colour({e57_singles("colorRed", {0.5F}), e57_singles("colorGreen", {NAN}),
+                      e57_singles("colorBlue", {1.0F})},
+                     ""),
+              ElementsAre(Colour{128, 0, 255}));
+}
+
+// Those that one scan lacks nobody has.
+TEST_F(E57, AttributesAreThoseThatAllScansHave) {
+  E57Scan coloured = scan_of_one(1, 2, 3, ""),
+          turned = scan_of_one(1, 2, 3, pose_of("0 0 0 1", ""));
+  for (E57Scan* scan : {&coloured, &turned}) {
+    for (const auto& [name, value] : {std::pair("X", 0.6F), {"Y", 0.0F}, {"Z", 0.8F}}) {
+      scan->streams.push_back(e57_singles(std::string("nor:normal") + name, {value}));
+    }
+  }
+  for (const E57Stream& stream : colours_of(255, 1, 2, 3)) coloured.streams.push_back(stream);
+  const Read all = read(e57_of({coloured, turned}));
+  EXPECT_TRUE(all.colours.empty());
+  EXPECT_THAT(all.normals, ElementsAre(Vector3f(0.6F, 0, 0.8F), Vector3f(-0.6F, 0, 0.8F)));
+}
+
+TEST_F(E57, IsReadAsACloudWithAViewForEachScan) {
+  const auto path =
+      folder_.file("two.e57", e57_of({scan_of_one(1, 2, 3, ""), scan_of_one(4, 5, 6, "")}));
+  const AttributedCloud cloud = read_cloud(path);
+  EXPECT_THAT(cloud.positions, ElementsAre(Vector3f(1, 2, 3), Vector3f(4, 5, 6)));
+  EXPECT_THAT(cloud.views, ElementsAre(0, 1));
+  EXPECT_TRUE(read_cloud(folder_.file("a.e57", e57_of_points(three_points))).views.empty());
+  std::vector<Vector3f> positions;
+  double last = 0.0;
+  read_positions(path, [&](std::span<const Vector3f> piece, double share) {
+    positions.insert(positions.end(), piece.begin(), piece.end());
+    last = share;
+  });
+  EXPECT_EQ(positions, cloud.positions);
+  EXPECT_EQ(last, 1.0);
+  const auto none = folder_.file("none.e57", e57_of({}));
+  EXPECT_THAT([&] { read_cloud(none); }, testing::ThrowsMessage<Error>(HasSubstr("no points")));
+  EXPECT_THAT([&] { read_positions(none, [](auto, double) {}); },
+              testing::ThrowsMessage<Error>(HasSubstr("no points")));
+}
+
+TEST_F(E57, MayBeCompressedByGzip) {
+  const std::string path = folder_.path() / "a.e57.gz", bytes = e57_of_points(three_points);
+  const gzFile file = gzopen(path.c_str(), "wb");
+  gzwrite(file, bytes.data(), static_cast<unsigned>(bytes.size()));
+  gzclose(file);
+  EXPECT_EQ(read_cloud(path).positions.size(), 3U);
+}
+
+TEST_F(E57, TellsItsReferenceSystem) {
+  const auto path = folder_.file(
+      "a.e57", e57_of_points(three_points,
+                             "<coordinateMetadata type=\"String\"><![CDATA[ PROJCS[\"a < b\"] "
+                             "]]></coordinateMetadata>"));
+  EXPECT_EQ(E57Reader(path).reference_system(), "PROJCS[\"a < b\"]");
+  EXPECT_EQ(E57Reader(path).points(), 3U);
+}
+
+}  // namespace
+}  // namespace skycap::geometry
