@@ -42,7 +42,7 @@ std::vector<Eigen::Vector2d> places_on(const Eigen::Vector3d& pad, double radius
 
 /// What a pad's ground may be.
 struct PadLimits {
-  double steepest = std::numbers::pi / 18.0;   ///< slope at which the vehicle may stand [rad]
+  double steepest = std::numbers::pi / 18.0;  ///< slope at which the vehicle may stand [rad]
   double height_error = 0.0;  ///< how far off priors may have the ground, beside pad_roughness [m]
 };
 
