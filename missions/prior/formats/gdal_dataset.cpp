@@ -22,6 +22,7 @@ void prepare_gdal() {
     CPLSetConfigOption("GDAL_PAM_ENABLED", "NO");  // neither reads nor writes .aux.xml
     CPLSetConfigOption("GDAL_HTTP_MAX_RETRY", "0");
     CPLSetConfigOption("OGR_SQLITE_LOAD_EXTENSIONS", nullptr);
+    CPLSetConfigOption("OSM_USE_CUSTOM_INDEXING", "NO");  // wants nodes in the order of their ids
     OSRSetPROJEnableNetwork(0);
     GDALAllRegister();
   });

@@ -120,9 +120,10 @@ TEST_F(Map, TakesHeightsAndLevelsFromAttributes) {
 }
 
 TEST_F(Map, ReadsBuildingsOfOpenStreetMap) {
+  // Editors write nodes in any order.
   const std::string osm = R"(<?xml version="1.0"?><osm version="0.6">
+<node id="4" lat="48.0002" lon="9.0"/><node id="3" lat="48.0002" lon="9.0002"/>
 <node id="1" lat="48.0" lon="9.0"/><node id="2" lat="48.0" lon="9.0002"/>
-<node id="3" lat="48.0002" lon="9.0002"/><node id="4" lat="48.0002" lon="9.0"/>
 <way id="77"><nd ref="1"/><nd ref="2"/><nd ref="3"/><nd ref="4"/><nd ref="1"/>
 <tag k="building" v="yes"/><tag k="height" v="9"/></way></osm>)";
   const Prior prior = read("town.osm", osm);
