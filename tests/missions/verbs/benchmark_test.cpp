@@ -69,7 +69,7 @@ TEST_F(BenchmarkVerb, StartsAllPlannersFromTheSameView) {
   for (const int seed : {1, 2}) {
     // The same pose and noise, and so the same first points and coverage.
     const Json first = trial("see", seed)["coverage_after"][0];
-    for (const char* planner : {"see++", "oa"}) {
+    for (const char* planner : {"see++", "oa", "skycap"}) {
       EXPECT_EQ(trial(planner, seed)["coverage_after"][0], first) << planner;
     }
   }
