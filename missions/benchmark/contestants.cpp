@@ -40,7 +40,8 @@ const std::vector<Contestant>& contestants() {
     for (const file::PlannerTitle& planner : file::planner_titles) {
       list.push_back(contestant_of(planner));
     }
-    std::ranges::stable_partition(list, &Contestant::is_in_all);
+    // clang 14 does not compile the ranges' own.
+    std::stable_partition(list.begin(), list.end(), std::mem_fn(&Contestant::is_in_all));
     list.push_back(omniscient());
     return list;
   }();
