@@ -69,6 +69,7 @@ Vector3d UtmProjection::to_map(const Vector3d& local) const {
   return at_origin_ + slopes_ * local + curvature_ * squares;
 }
 
+// Typed, so that whoever exports needs no PROJ; tests hold it against what PROJ says of the code.
 std::string UtmProjection::wkt() const {
   const std::string metre = "UNIT[\"metre\",1," + authority(9001) + "]";
   const std::string name = "WGS 84 / UTM zone " + std::to_string(zone_) + (is_north_ ? "N" : "S");

@@ -1,5 +1,6 @@
 /// A binary tree of boxes around items, searched along a segment: it finds, without looking at the
-/// rest, the items whose boxes come within a distance of the segment.
+/// rest, the items whose boxes come within a distance of the segment. MeshDistance
+/// (geometry/surfaces) answers for points and triangles alone, four boxes of floats at a time.
 #pragma once
 
 #include <array>

@@ -1,3 +1,5 @@
+// PCD, read here and not by PCL: its io library loads 67 others, VTK among them, at every start of
+// a program.
 #include <algorithm>
 #include <array>
 #include <bit>

@@ -12,7 +12,8 @@
 namespace skycap::geometry {
 
 /// A scan in the world frame. Points are single precision (a world frame is local: at 100 m the
-/// rounding is 4 micrometres) and finite.
+/// rounding is 4 micrometres) and finite. Depths are not kept beside them: what needs them takes
+/// them from the points, which is one product each, and all formats of clouds do without.
 struct Scan {
   Eigen::Isometry3d world_from_sensor = Eigen::Isometry3d::Identity();  ///< optical frame
   std::vector<Eigen::Vector3f> points;  ///< the returns, in the order the sensor measured them
