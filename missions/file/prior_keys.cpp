@@ -11,9 +11,10 @@ using prior::Role;
 using prior::Source;
 
 /// The words for these, which have to be all of their kind, in order.
-std::vector<std::string> names_of(std::initializer_list<auto> all) {
+template <typename Word>
+std::vector<std::string> names_of(std::initializer_list<Word> all) {
   std::vector<std::string> names;
-  for (const auto each : all) names.emplace_back(name_of(each));
+  for (const Word each : all) names.emplace_back(name_of(each));
   return names;
 }
 
