@@ -115,7 +115,7 @@ class Reader final : public RawlogReader {
     } else if (const auto* one = dynamic_cast<const mrpt::obs::CObservation*>(&object)) {
       take_observation(*one);
     } else if (const auto* all = dynamic_cast<const mrpt::obs::CRawlog*>(&object)) {
-      for (const auto& part : *all) take_in(*part);
+      for (std::size_t i = 0; i < all->size(); ++i) take_in(*all->getAsGeneric(i));
     }
   }
 
