@@ -22,7 +22,7 @@ class E57File : public testing::Test {
     if (change) change(source);
     return read_prior(source, site_at_cube());
   }
-  const Cube cube_;
+  const Cube cube_{};
   testing_support::TemporaryFolder folder_;
 };
 

@@ -24,7 +24,7 @@ class Las : public testing::Test {
     if (change) change(source);
     return read_prior(source, site_at_cube());
   }
-  const Cube cube_;
+  const Cube cube_{};
   testing_support::TemporaryFolder folder_;
 };
 

@@ -77,7 +77,7 @@ class OneBox : public testing::Test {
   }
 
   static constexpr double millimetre = 1e-3;
-  const Cube cube_;
+  const Cube cube_{};
   testing_support::TemporaryFolder folder_;
 };
 
