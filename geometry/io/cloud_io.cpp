@@ -135,6 +135,13 @@ Eigen::Vector3f cloud_position(const fs::path& path, std::size_t point, double x
   return position.cast<float>();
 }
 
+void add_positions(const fs::path& path, std::size_t first,
+                   std::span<const Eigen::Vector3d> positions, std::vector<Eigen::Vector3f>& to) {
+  for (const Eigen::Vector3d& position : positions) {
+    to.push_back(cloud_position(path, first++, position.x(), position.y(), position.z()));
+  }
+}
+
 AttributedCloud read_cloud(const fs::path& path) {
   const std::string ending = ending_of(path);
   using Parse = AttributedCloud (*)(const fs::path&, std::string_view);

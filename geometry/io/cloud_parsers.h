@@ -2,8 +2,10 @@
 #pragma once
 
 #include <filesystem>
+#include <span>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "geometry/io/cloud_io.h"
 
@@ -16,6 +18,10 @@ namespace skycap::geometry {
 /// large that single precision would move the point by a millimetre.
 Eigen::Vector3f cloud_position(const std::filesystem::path& path, std::size_t point, double x,
                                double y, double z);
+
+/// Appends the next points of a file, whose first one is number `first`, as cloud_position() does.
+void add_positions(const std::filesystem::path& path, std::size_t first,
+                   std::span<const Eigen::Vector3d> positions, std::vector<Eigen::Vector3f>& to);
 
 /// The Point Cloud Library's PCD 0.7, text, binary or compressed: x y z and normal_x normal_y
 /// normal_z. Points of NaN, by which PCL marks pixels without a measurement, are passed over.

@@ -34,10 +34,7 @@ AttributedCloud read_e57_cloud(const std::filesystem::path& path) {
   AttributedCloud cloud;
   E57Points points;
   while (reader.next(points)) {
-    for (const Eigen::Vector3d& position : points.positions) {
-      cloud.positions.push_back(
-          cloud_position(path, cloud.positions.size(), position.x(), position.y(), position.z()));
-    }
+    add_positions(path, cloud.positions.size(), points.positions, cloud.positions);
     cloud.normals.insert(cloud.normals.end(), points.normals.begin(), points.normals.end());
     cloud.colours.insert(cloud.colours.end(), points.colours.begin(), points.colours.end());
     if (reader.scans() > 1) cloud.views.resize(cloud.positions.size(), points.scan);
@@ -79,9 +76,8 @@ void read_e57_positions(const std::filesystem::path& path, const TakePositions& 
   };
   while (reader.next(points, piece_size - piece.size())) {
     records_read += points.records;
-    for (const Eigen::Vector3d& position : points.positions) {
-      piece.push_back(cloud_position(path, count++, position.x(), position.y(), position.z()));
-    }
+    add_positions(path, count, points.positions, piece);
+    count += points.positions.size();
     if (piece.size() == piece_size) hand_out();
   }
   hand_out();

@@ -10,10 +10,7 @@ AttributedCloud read_las_cloud(const std::filesystem::path& path) {
   AttributedCloud cloud;
   LasPoints points;
   while (reader.next(points)) {
-    for (const Eigen::Vector3d& position : points.positions) {
-      cloud.positions.push_back(
-          cloud_position(path, cloud.positions.size(), position.x(), position.y(), position.z()));
-    }
+    add_positions(path, cloud.positions.size(), points.positions, cloud.positions);
     cloud.colours.insert(cloud.colours.end(), points.colours.begin(), points.colours.end());
   }
   return cloud;
@@ -27,9 +24,8 @@ void read_las_positions(const std::filesystem::path& path, const TakePositions& 
   const auto all = static_cast<double>(reader.header().points);
   for (double read = 1.0; reader.next(points, piece_size); ++read) {
     piece.clear();
-    for (const Eigen::Vector3d& position : points.positions) {
-      piece.push_back(cloud_position(path, count++, position.x(), position.y(), position.z()));
-    }
+    add_positions(path, count, points.positions, piece);
+    count += points.positions.size();
     if (!piece.empty()) take(piece, std::min(1.0, read * piece_size / all));
   }
   if (count == 0) fail_cloud(path, "holds no points");

@@ -118,19 +118,18 @@ int model(const ModelOptions& options, const Console& console) {
   progress.show(options.name + ": making the model ready");
   std::optional<Site> site;
   if (is_mission(options.name)) site = site_called(options);
-  const geometry::Mesh mesh = site ? coloured_site(*site, {}).mesh : model_called(options, console);
+  const ColouredMesh whole =
+      site ? coloured_site(*site, {}) : ColouredMesh{model_called(options, console), {}};
+  const geometry::Mesh& mesh = whole.mesh;
   geometry::validate(mesh);
   progress.clear();
   if (options.out) geometry::write_mesh(*options.out, mesh);
   if (options.render) {
+    const auto near = site ? around_targets(derived::priors_of(site->mission)) : std::nullopt;
+    const ColouredMesh shown = near ? coloured_site(*site, near) : whole;
     sim::RenderOptions render;
-    geometry::Mesh shown = mesh;
-    if (site) {
-      ColouredMesh near = coloured_site(*site, around_targets(derived::priors_of(site->mission)));
-      shown = std::move(near.mesh);
-      render.colours = std::move(near.colours);
-    }
-    sim::write_png(sim::render(shown, render), *options.render);
+    render.colours = shown.colours;
+    sim::write_png(sim::render(shown.mesh, render), *options.render);
   }
   const Eigen::Vector3d size = geometry::bounding_box(mesh).sizes();
   console.out << fmt::format("{}: {} triangles, {:.4g} x {:.4g} x {:.4g}, area {:.4g}\n",

@@ -14,7 +14,6 @@
 #include <cstddef>
 #include <cstdio>
 #include <cstdlib>
-#include <ctime>
 #include <numbers>
 #include <optional>
 #include <random>
@@ -31,6 +30,7 @@
 #include "sim/sensors/depth_camera.h"
 #include "survey/see/see.h"
 #include "tests/benchmarks/planet.h"
+#include "tests/benchmarks/processor_time.h"
 #include "tests/support/sphere_sensor.h"
 
 namespace {
@@ -40,11 +40,7 @@ using Eigen::Vector3f;
 
 constexpr int rounds = 3;
 
-double processor_seconds() {
-  timespec time{};
-  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &time);
-  return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
-}
+double processor_seconds() { return seconds_on(CLOCK_PROCESS_CPUTIME_ID); }
 
 template <typename Work>
 double seconds_of(Work work) {

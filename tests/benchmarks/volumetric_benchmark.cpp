@@ -7,7 +7,6 @@
 #include <chrono>
 #include <cstdio>
 #include <cstdlib>
-#include <ctime>
 #include <filesystem>
 #include <string>
 
@@ -16,6 +15,7 @@
 #include "missions/scene/survey_scene.h"
 #include "sim/sensors/depth_camera.h"
 #include "survey/volumetric/volumetric_planner.h"
+#include "tests/benchmarks/processor_time.h"
 #include "tests/survey/volumetric/octomap_planning.h"
 
 namespace {
@@ -25,12 +25,7 @@ using survey::volumetric::VolumetricMetric;
 
 constexpr std::size_t candidates = 130;
 
-/// Processor time of this thread: the machine may be busy with other things.
-double cpu_seconds() {
-  timespec time{};
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &time);
-  return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
-}
+double cpu_seconds() { return seconds_on(CLOCK_THREAD_CPUTIME_ID); }
 
 template <typename Work>
 double timed(Work work) {

@@ -105,16 +105,14 @@ function fleet_parts(data) {
   if (!fleet) return [];
   const number = (content) => ({ number: content });
   const f = (path, form) => figure(data, "flight.fleet." + path, form);
-  const sums = (vehicle, key) => number(shown(vehicle.sorties.reduce((sum, sortie) => sum + sortie[key], 0),
-    key === "duration_s" ? "minutes" : "metres"));
   const vehicles = table(["vehicle", number("views"), number("sorties"), number("length"), number("time"), number("energy"),
     number("least clearance"), number("comes home at"), "files"], fleet.vehicles.map((vehicle, i) => {
     const name = element("span", {}, swatch(vehicle_colour(i)), (i + 1) + ", " + vehicle.vehicle);
     if (!vehicle.order.length) return [name, number("0"), ...Array(6).fill(number("–")), "stays on the ground"];
+    const flown = (key, form) => number(f("vehicles." + i + "." + key, form));
     return [name, number(String(vehicle.order.length)), number(String(vehicle.sorties.length)),
-      sums(vehicle, "length_m"), sums(vehicle, "duration_s"), number(f("vehicles." + i + ".energy_wh", "watt_hours")),
-      number(f("vehicles." + i + ".min_clearance_m", "metres")), number(f("vehicles." + i + ".return_height_m", "metres")),
-      vehicle.files.join(", ")];
+      flown("length_m", "metres"), flown("duration_s", "minutes"), flown("energy_wh", "watt_hours"),
+      flown("min_clearance_m", "metres"), flown("return_height_m", "metres"), vehicle.files.join(", ")];
   }));
   const times = table(["vehicle", "sortie", number("takes off"), number("lands"), "file"], fleet.timetable.map((row, i) => [
     String(row.vehicle), String(row.sortie), number(f("timetable." + i + ".start_s", "clock")),

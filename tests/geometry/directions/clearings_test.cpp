@@ -15,23 +15,12 @@
 #include <gtest/gtest.h>
 
 #include "geometry/directions/spherical_cap_methods.h"
+#include "tests/geometry/directions/directions.h"
 
 namespace skycap::geometry {
 namespace {
 
 using Eigen::Vector3d;
-using Directions = std::vector<Vector3d>;
-
-Vector3d random_direction(std::mt19937_64& random) {
-  std::normal_distribution<double> coordinate;
-  return Vector3d{coordinate(random), coordinate(random), coordinate(random)}.normalized();
-}
-
-double h(const Directions& occluded, const Vector3d& s) {
-  double largest = -1.0;
-  for (const Vector3d& q : occluded) largest = std::max(largest, q.dot(s));
-  return largest;
-}
 
 /// Directions all over the sphere, so that the largest empty cap is small; more than the few with
 /// which global caps are found before anything is given up.

@@ -14,27 +14,16 @@
 #include <gtest/gtest.h>
 
 #include "geometry/error.h"
+#include "tests/geometry/directions/directions.h"
 
 namespace skycap::geometry {
 namespace {
 
 using Eigen::Vector3d;
-using Directions = std::vector<Vector3d>;
 
 // The exact methods compute with unit vectors in double precision; facets of well-spread points
 // lose at most a few digits of 1e-16.
 constexpr double rounding = 1e-12;
-
-Vector3d random_direction(std::mt19937_64& random) {
-  std::normal_distribution<double> coordinate;
-  return Vector3d{coordinate(random), coordinate(random), coordinate(random)}.normalized();
-}
-
-double h(const Directions& occluded, const Vector3d& s) {
-  double largest = -1.0;
-  for (const Vector3d& q : occluded) largest = std::max(largest, q.dot(s));
-  return largest;
-}
 
 /// h(s), or something above `enough` if h(s) is; sooner.
 double h_up_to(const Directions& occluded, const Vector3d& s, double enough) {
