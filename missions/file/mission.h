@@ -42,6 +42,7 @@ enum class UpAxis { z, y };
 struct SceneConfig {
   std::string model;  ///< builtin:NAME, model:NAME, or the path of a mesh
   sim::LevelOfDetail detail = sim::LevelOfDetail::standard;  ///< of a builtin model
+  std::uint64_t seed = 1;                                    ///< of a builtin model that is drawn
   UpAxis up_axis = UpAxis::z;
   Eigen::Vector3d rotation = Eigen::Vector3d::Zero();  ///< [rad], about x, then y, then z
   std::optional<double> longest_side;                  ///< of the bounding box, after rotation
@@ -51,7 +52,7 @@ struct SceneConfig {
   std::vector<Eigen::Vector3d> copies;
   bool ground = false;       ///< whether the sensor also sees a plane under the model
   double reflectance = 0.4;  ///< diffuse, at the laser's wavelength, where no other is given
-  std::optional<std::string> materials;  ///< a file of reflectances, by the names of the model's
+  std::optional<std::string> materials;  ///< a file of reflectances, glass and mirrors, by name
 };
 
 enum class SensorPreset {

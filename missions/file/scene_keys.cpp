@@ -1,6 +1,7 @@
 // The keys that belong to no section, and those of `scene`.
 #include "missions/file/key_builders.h"
 #include "missions/file/key_sections.h"
+#include "sim/models/models.h"
 
 namespace skycap::missions::file {
 namespace {
@@ -37,6 +38,21 @@ Key detail_key() {
   return otherwise("standard", key);
 }
 
+Key drawn_key() {
+  Key key = integer_key(
+      "scene.seed", "", between(0, 1e15), [](Mission & m) -> auto& { return m.scene.seed; },
+      "Of a builtin model that is drawn, such as the city block: which of them.");
+  key.get = [get = key.get](const Mission& mission) -> std::optional<KeyValue> {
+    constexpr std::string_view builtin = "builtin:";
+    const std::string_view model = mission.scene.model;
+    if (!model.starts_with(builtin) || !sim::is_drawn(model.substr(builtin.size()))) {
+      return std::nullopt;
+    }
+    return get(mission);
+  };
+  return otherwise("1", key);
+}
+
 Key model_key() {
   Key key = text_key(
       "scene.model", [](Mission & m) -> auto& { return m.scene.model; },
@@ -71,6 +87,7 @@ std::vector<Key> scene_keys() {
   return {
       model_key(),
       detail_key(),
+      drawn_key(),
       choice_key(
           "scene.up_axis", {"z", "y"}, [](Mission & m) -> auto& { return m.scene.up_axis; },
           "Which axis of the model's own frame points up."),
@@ -103,8 +120,9 @@ std::vector<Key> scene_keys() {
           "Diffuse reflectance of surfaces at the laser's wavelength, for skycap scan."),
       otherwise("-", text_key(
                          "scene.materials", [](Mission & m) -> auto& { return m.scene.materials; },
-                         "YAML file of reflectances, a line NAME: VALUE for each material of the "
-                         "model (usemtl of an OBJ), relative to the mission file.")),
+                         "YAML file of a line NAME: VALUE for each material of the model (usemtl "
+                         "of an OBJ), relative to the mission file. VALUE is a reflectance, or "
+                         "glass, which returns nothing, or mirror.")),
   };
 }
 

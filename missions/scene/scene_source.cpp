@@ -1,5 +1,6 @@
 #include "missions/scene/scene_source.h"
 
+#include <array>
 #include <charconv>
 #include <cmath>
 #include <map>
@@ -35,13 +36,18 @@ std::filesystem::path model_file(const file::SceneConfig& scene,
                                          : folder / scene.model;
 }
 
+sim::ModelOptions options_of(const file::SceneConfig& scene) {
+  sim::ModelOptions options;
+  options.detail = scene.detail;
+  options.seed = scene.seed;
+  if (scene.ground) options.has_ground = false;  // the one that is not judged takes its place
+  return options;
+}
+
 geometry::Mesh named_model(const file::SceneConfig& scene, const std::filesystem::path& folder) {
   const std::string& model = scene.model;
   if (model.starts_with(builtin)) {
-    sim::ModelOptions options;
-    options.detail = scene.detail;
-    if (scene.ground) options.has_ground = false;  // the one that is not judged takes its place
-    return sim::builtin_model(model.substr(builtin.size()), options);
+    return sim::builtin_model(model.substr(builtin.size()), options_of(scene));
   }
   const std::filesystem::path file = model_file(scene, folder);
   return model.starts_with(stored) || geometry::is_mesh_file(file) ? geometry::read_mesh(file)
@@ -53,25 +59,37 @@ Vector3d middle_of_base(const geometry::Mesh& mesh) {
   return {box.center().x(), box.center().y(), box.min().z()};
 }
 
-std::map<std::string, double> reflectances_of(const std::filesystem::path& file) {
+/// What a material does to light.
+struct Material {
+  double reflectance;
+  sim::Surface surface = sim::Surface::matt;
+};
+
+std::map<std::string, Material> materials_of(const std::filesystem::path& file,
+                                             double reflectance) {
   const file::YamlNode root = file::parse_yaml(geometry::read_file(file), file.string());
   const auto fail = [&](int line, const std::string& what) {
     throw Error(ErrorKind::bad_config, file.string() + ":" + std::to_string(line) + ": " + what);
   };
-  if (root.kind != file::YamlNode::Kind::map) fail(root.line, "is not a list of NAME: REFLECTANCE");
-  std::map<std::string, double> reflectances;
+  if (root.kind != file::YamlNode::Kind::map) fail(root.line, "is not a list of NAME: VALUE");
+  std::map<std::string, Material> materials;
   for (const file::YamlEntry& entry : root.entries) {
     double value = -1.0;
     const std::string& text = entry.value.text;
+    if (text == "glass" || text == "mirror") {
+      materials[entry.key] = {reflectance,
+                              text == "glass" ? sim::Surface::glass : sim::Surface::mirror};
+      continue;
+    }
     const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
     if (error != std::errc() || end != text.data() + text.size() ||
         !(value >= 0.0 && value <= 1.0)) {
-      fail(entry.line, "material " + entry.key + " has the reflectance '" + text +
-                           "'; it must be a number from 0 to 1");
+      fail(entry.line, "material " + entry.key + " is '" + text +
+                           "'; it must be a number from 0 to 1, glass or mirror");
     }
-    reflectances[entry.key] = value;
+    materials[entry.key] = {value};
   }
-  return reflectances;
+  return materials;
 }
 
 /// The model in its own frame, with reflectances by the names of its materials.
@@ -83,18 +101,21 @@ ReflectingScene model_of_materials(const file::SceneConfig& scene,
   }
   const std::filesystem::path file = model_file(scene, folder);
   const std::filesystem::path list = folder / *scene.materials;
-  std::map<std::string, double> reflectances = reflectances_of(list);
+  const std::map<std::string, Material> materials = materials_of(list, scene.reflectance);
   ReflectingScene result;
   std::string known;
   std::set<std::string> unused;
-  for (const auto& [name, reflectance] : reflectances) unused.insert(name);
+  for (const auto& [name, material] : materials) unused.insert(name);
   for (const geometry::MaterialMesh& part : geometry::read_mesh_by_material(file)) {
     known += (known.empty() ? "" : ", ") + (part.material.empty() ? "(none)" : part.material);
     unused.erase(part.material);
-    const auto given = reflectances.find(part.material);
-    const double reflectance = given == reflectances.end() ? scene.reflectance : given->second;
+    const auto given = materials.find(part.material);
+    const Material material =
+        given == materials.end() ? Material{scene.reflectance} : given->second;
     geometry::append(result.model, part.mesh);
-    result.reflectances.resize(result.model.triangles.size(), static_cast<float>(reflectance));
+    const std::size_t triangles = result.model.triangles.size();
+    result.reflectances.resize(triangles, static_cast<float>(material.reflectance));
+    result.surfaces.resize(triangles, material.surface);
   }
   if (!unused.empty()) {
     throw Error(ErrorKind::bad_config, list.string() + ": the model has no material " +
@@ -106,13 +127,21 @@ ReflectingScene model_of_materials(const file::SceneConfig& scene,
 }  // namespace
 
 geometry::Mesh load_model(const file::SceneConfig& scene, const std::filesystem::path& folder) {
-  geometry::Mesh mesh = named_model(scene, folder);
+  geometry::Mesh mesh =
+      scene.materials ? model_of_materials(scene, folder).model : named_model(scene, folder);
   try {
     geometry::validate(mesh);
   } catch (const Error& error) {
     throw Error(error.kind(), scene.model + ": " + error.what());
   }
   return mesh;
+}
+
+std::vector<sim::Surface> load_surfaces(const file::SceneConfig& scene,
+                                        const std::filesystem::path& folder) {
+  if (scene.materials) return model_of_materials(scene, folder).surfaces;
+  if (!scene.model.starts_with(builtin)) return {};
+  return sim::builtin_surfaces(scene.model.substr(builtin.size()), options_of(scene));
 }
 
 std::vector<std::filesystem::path> files_of(const file::Mission& mission,
@@ -192,6 +221,7 @@ ReflectingScene reflecting_scene(const file::Mission& mission,
     result = model_of_materials(scene, folder);
   } else {
     result.model = load_model(scene, folder);
+    result.surfaces = load_surfaces(scene, folder);
   }
   if (!derived::is_truth_prior(mission)) place_model(scene, result.model);
   const auto reflectance = static_cast<float>(scene.reflectance);
@@ -208,11 +238,13 @@ sim::Scene ReflectingScene::scene(unsigned threads) const {
   if (places.size() == 1) {  // a single mesh is met faster than a mesh at a place
     geometry::Mesh mesh = model;
     std::vector<float> all = reflectances;
+    std::vector<sim::Surface> lit = surfaces;
     geometry::append(mesh, ground);
     all.insert(all.end(), ground_reflectances.begin(), ground_reflectances.end());
-    return sim::Scene(mesh, all, threads);
+    if (!lit.empty()) lit.resize(mesh.triangles.size(), sim::Surface::matt);
+    return sim::Scene(std::array{sim::ScenePart{mesh, all, {}, lit}}, threads);
   }
-  std::vector<sim::ScenePart> parts = {{model, reflectances, places}};
+  std::vector<sim::ScenePart> parts = {{model, reflectances, places, surfaces}};
   if (!ground.triangles.empty()) parts.push_back({ground, ground_reflectances, {}});
   return sim::Scene(parts, threads);
 }
@@ -239,6 +271,7 @@ std::string ReflectingScene::digest() const {
   add(reflectances);
   add(ground_reflectances);
   add(places);
+  if (!surfaces.empty()) add(surfaces);
   return digest;
 }
 

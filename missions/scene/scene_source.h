@@ -17,6 +17,10 @@ namespace skycap::missions::scene {
 /// a mesh with a surface.
 geometry::Mesh load_model(const file::SceneConfig& scene, const std::filesystem::path& folder);
 
+/// What the triangles of load_model() do to light; empty if all are matt. Throws the same.
+std::vector<sim::Surface> load_surfaces(const file::SceneConfig& scene,
+                                        const std::filesystem::path& folder);
+
 /// The files that the mission's scanner and scene are read from, prior data aside. Throws
 /// Error{bad_file} for a model:NAME that is nowhere.
 std::vector<std::filesystem::path> files_of(const file::Mission& mission,
@@ -37,6 +41,7 @@ geometry::Mesh with_copies(const file::SceneConfig& scene, const geometry::Mesh&
 struct ReflectingScene {
   geometry::Mesh model;             ///< the first
   std::vector<float> reflectances;  ///< diffuse, of each of its triangles
+  std::vector<sim::Surface> surfaces;  ///< of each of its triangles; empty: all matt
   std::vector<Eigen::Isometry3d> places;
   geometry::Mesh ground;  ///< without triangles if there is none
   std::vector<float> ground_reflectances;

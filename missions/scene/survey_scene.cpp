@@ -1,6 +1,7 @@
 #include "missions/scene/survey_scene.h"
 
 #include <algorithm>
+#include <array>
 #include <random>
 #include <span>
 #include <sstream>
@@ -26,15 +27,28 @@ using Eigen::Vector3d;
 constexpr std::uint64_t sample_seed = 1;  // coverage is measured by the same samples in all runs
 constexpr std::uint64_t ceiling_seed = 1;
 
+/// Of the triangles of placed_model(); empty if all are matt.
+std::vector<sim::Surface> surfaces_of(const file::Mission& mission,
+                                      const std::filesystem::path& folder) {
+  if (derived::is_truth_prior(mission)) return {};
+  const std::vector<sim::Surface> one = load_surfaces(mission.scene, folder);
+  std::vector<sim::Surface> all;
+  for (std::size_t i = 0; i <= mission.scene.copies.size(); ++i) {
+    all.insert(all.end(), one.begin(), one.end());
+  }
+  return all;
+}
+
 sim::Scene scene_of(const geometry::Mesh& model, const file::Mission& mission,
                     const std::filesystem::path& folder) {
   if (mission.sensor.scanner) {  // what a laser measures depends on the surfaces' reflectances
     return reflecting_scene(mission, folder).scene(mission.threads);
   }
-  if (!mission.scene.ground) return sim::Scene(model, mission.threads);
   geometry::Mesh mesh = model;
-  geometry::append(mesh, ground_of(mission, model));
-  return sim::Scene(mesh, mission.threads);
+  if (mission.scene.ground) geometry::append(mesh, ground_of(mission, model));
+  std::vector<sim::Surface> surfaces = surfaces_of(mission, folder);
+  if (!surfaces.empty()) surfaces.resize(mesh.triangles.size(), sim::Surface::matt);
+  return sim::Scene(std::array{sim::ScenePart{mesh, {}, {}, surfaces}}, mission.threads);
 }
 
 Vector3d uniform_direction(std::mt19937_64& random) {
@@ -172,7 +186,13 @@ judge::Admissible SurveyScene::admissible() const {
 }
 
 std::vector<std::uint8_t> SurveyScene::visible(unsigned threads, std::stop_token stop) const {
-  return judge::visible_samples(samples_.points, scene_, admissible(), threads, std::move(stop));
+  std::vector<std::uint8_t> marks =
+      judge::visible_samples(samples_.points, scene_, admissible(), threads, std::move(stop));
+  // Nothing comes back from glass and mirrors.
+  for (std::size_t i = 0; i < marks.size(); ++i) {
+    if (scene_.surface(samples_.triangles[i]) != sim::Surface::matt) marks[i] = 0;
+  }
+  return marks;
 }
 
 std::optional<std::vector<std::uint8_t>> SurveyScene::attainable(

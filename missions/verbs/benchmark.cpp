@@ -5,6 +5,8 @@
 #include <string>
 #include <vector>
 
+#include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <nlohmann/json.hpp>
 
 #include "geometry/error.h"
@@ -19,6 +21,7 @@
 #include "missions/verbs/verbs.h"
 #include "missions/verbs/write_page.h"
 #include "missions/version.h"
+#include "sim/models/models.h"
 
 namespace skycap::missions::verbs {
 namespace {
@@ -28,10 +31,12 @@ using Json = nlohmann::ordered_json;
 
 /// A mission as one of the contestants surveys it, and its trials so far, by seed.
 struct Entry {
-  std::shared_ptr<campaign::Setup> setup;
+  std::string title;
+  const benchmark::Contestant* contestant;
+  std::vector<std::shared_ptr<campaign::Setup>> setups;  ///< of each trial; one, or one a scene
   std::vector<std::optional<benchmark::Trial>> trials;
 
-  bool is_volumetric() const { return setup->contestant->is_volumetric; }
+  std::uint64_t seed(std::size_t trial) const { return setups[trial]->mission.seed + trial; }
 };
 
 std::vector<const benchmark::Contestant*> chosen_contestants(
@@ -43,31 +48,69 @@ std::vector<const benchmark::Contestant*> chosen_contestants(
   }
 }
 
-/// Nothing is flown unless `given` says so: as in the paper, the sensor moves freely.
-std::vector<Entry> entries_of(const BenchmarkOptions& options) {
+/// The scenes that stand in for the missions' own; one without a name: none does.
+std::vector<std::string> chosen_scenes(const std::vector<std::string>& names) {
+  if (names.empty()) return {""};
+  const auto families = sim::model_families();
+  if (names == std::vector<std::string>{"all"}) return {families.begin(), families.end()};
+  for (const std::string& name : names) {
+    if (std::ranges::find(families, name) != families.end()) continue;
+    throw Error(ErrorKind::bad_usage,
+                fmt::format("--scenes: there is no family '{}'; there are all, {}", name,
+                            fmt::join(families, ", ")));
+  }
+  return names;
+}
+
+/// One planner on one mission, or on as many scenes of a family in its place as there are trials.
+Entry entry_of(const fs::path& file, const benchmark::Contestant* contestant,
+               const std::string& scene, const BenchmarkOptions& options) {
+  // Nothing is flown unless the user says so: as in the paper, the sensor moves freely.
   std::vector<file::KeyOverride> overrides{{"benchmark", "flight.vehicle", "none"}};
   overrides.insert(overrides.end(), options.overrides.begin(), options.overrides.end());
+  Entry entry{"", contestant, {}, {}};
+  entry.trials.resize(options.trials);
+  if (scene.empty()) {
+    const auto setup = std::make_shared<campaign::Setup>(
+        campaign::read_setup(file, contestant, "--planners", overrides));
+    entry.title = setup->title;
+    entry.setups.assign(options.trials, setup);
+    return entry;
+  }
+  overrides.push_back({"--scenes", "scene.model", "builtin:" + scene});
+  for (std::size_t trial = 0; trial < options.trials; ++trial) {
+    campaign::Setup setup = campaign::read_setup(file, contestant, "--planners", overrides);
+    setup.mission.scene.seed = setup.mission.seed + trial;
+    entry.title = options.missions.size() == 1 ? scene : setup.title + " " + scene;
+    setup.title = fmt::format("{} {}", entry.title, setup.mission.scene.seed);
+    setup.fingerprint = campaign::fingerprint_of(setup);
+    entry.setups.push_back(std::make_shared<campaign::Setup>(std::move(setup)));
+  }
+  return entry;
+}
+
+std::vector<Entry> entries_of(const BenchmarkOptions& options) {
   std::vector<Entry> entries;
   std::map<std::string, fs::path> file_of_title;
+  const std::vector<std::string> scenes = chosen_scenes(options.scenes);
   for (const fs::path& file : options.missions) {
-    for (const benchmark::Contestant* contestant : chosen_contestants(options.planners)) {
-      Entry entry{std::make_shared<campaign::Setup>(
-                      campaign::read_setup(file, contestant, "--planners", overrides)),
-                  {}};
-      entry.trials.resize(options.trials);
-      const auto [known, is_new] = file_of_title.emplace(entry.setup->title, file);
-      if (!is_new && known->second != file) {
-        throw Error(ErrorKind::bad_usage, file.string() + " and " + known->second.string() +
-                                              " have the same name; give one of them a name key");
+    for (const std::string& scene : scenes) {
+      for (const benchmark::Contestant* contestant : chosen_contestants(options.planners)) {
+        Entry entry = entry_of(file, contestant, scene, options);
+        const auto [known, is_new] = file_of_title.emplace(entry.title, file);
+        if (!is_new && known->second != file) {
+          throw Error(ErrorKind::bad_usage, file.string() + " and " + known->second.string() +
+                                                " have the same name; give one of them a name key");
+        }
+        entries.push_back(std::move(entry));
       }
-      entries.push_back(std::move(entry));
     }
   }
   return entries;
 }
 
-fs::path item_file(const fs::path& folder, const campaign::Setup& setup, std::uint64_t seed) {
-  return folder / "items" / setup.mission.name / setup.contestant->name /
+fs::path item_file(const fs::path& folder, const Entry& entry, std::uint64_t seed) {
+  return folder / "items" / entry.title / entry.contestant->name /
          ("seed_" + std::to_string(seed) + ".json");
 }
 
@@ -79,11 +122,12 @@ std::string manifest(const BenchmarkOptions& options, const std::vector<Entry>& 
             {"complete", is_whole},
             {"entries", Json::array()}};
   for (const Entry& entry : entries) {
-    json["entries"].push_back({{"mission", entry.setup->mission.name},
-                               {"file", entry.setup->file.string()},
-                               {"planner", entry.setup->contestant->name},
-                               {"first_seed", entry.setup->mission.seed},
-                               {"fingerprint", entry.setup->fingerprint}});
+    const campaign::Setup& first = *entry.setups.front();
+    json["entries"].push_back({{"mission", entry.title},
+                               {"file", first.file.string()},
+                               {"planner", entry.contestant->name},
+                               {"first_seed", first.mission.seed},
+                               {"fingerprint", first.fingerprint}});
   }
   return file::json_text(json);
 }
@@ -99,9 +143,9 @@ class Benchmark {
   }
 
   int run() {
-    run_entries([](const Entry& entry) { return !entry.is_volumetric(); });
+    run_entries([](const Entry& entry) { return !entry.contestant->is_volumetric; });
     take_view_limits_from_see();
-    run_entries([](const Entry& entry) { return entry.is_volumetric(); });
+    run_entries([](const Entry& entry) { return entry.contestant->is_volumetric; });
     report();
     return is_whole() ? 0 : 1;
   }
@@ -115,8 +159,8 @@ class Benchmark {
     for (std::size_t trial = 0; trial < options_.trials; ++trial) {
       for (Entry& entry : entries_) {
         if (!is_chosen(entry)) continue;
-        const std::uint64_t seed = entry.setup->mission.seed + trial;
-        items.push_back({entry.setup, seed, item_file(folder_.path(), *entry.setup, seed)});
+        const std::uint64_t seed = entry.seed(trial);
+        items.push_back({entry.setups[trial], seed, item_file(folder_.path(), entry, seed)});
         trials.push_back(&entry.trials[trial]);
       }
     }
@@ -143,18 +187,19 @@ class Benchmark {
   /// Paper §IV-B: a volumetric survey has as many views as SEE needed at most.
   void take_view_limits_from_see() {
     for (Entry& entry : entries_) {
-      file::Mission& mission = entry.setup->mission;
-      if (!entry.is_volumetric() || mission.volumetric.view_limit) continue;
+      if (!entry.contestant->is_volumetric || entry.setups.front()->mission.volumetric.view_limit) {
+        continue;
+      }
       std::size_t most = 0;
       for (const Entry& other : entries_) {
-        if (other.setup->title != entry.setup->title || other.setup->contestant->name != "see") {
-          continue;
-        }
+        if (other.title != entry.title || other.contestant->name != "see") continue;
         for (const auto& trial : other.trials) most = std::max(most, trial ? trial->views : 0);
       }
       if (most == 0) continue;
-      mission.volumetric.view_limit = most;
-      entry.setup->fingerprint = campaign::fingerprint_of(*entry.setup);
+      for (const auto& setup : entry.setups) {
+        setup->mission.volumetric.view_limit = most;
+        setup->fingerprint = campaign::fingerprint_of(*setup);
+      }
     }
   }
 
@@ -167,7 +212,7 @@ class Benchmark {
   void report() {
     std::vector<benchmark::BenchmarkCell> cells;
     for (const Entry& entry : entries_) {
-      benchmark::BenchmarkCell cell{entry.setup->title, entry.setup->contestant->name, {}};
+      benchmark::BenchmarkCell cell{entry.title, entry.contestant->name, {}};
       for (const auto& trial : entry.trials) {
         if (trial) cell.trials.push_back(*trial);
       }

@@ -68,6 +68,10 @@ void add_benchmark(CLI::App& app, const Console& console, Action& action) {
   verb->add_option("--planners", options->planners,
                    "all (those of the paper), or names such as see++,oa,skycap")
       ->delimiter(',');
+  verb->add_option("--scenes", options->scenes,
+                   "all families of scenes, or names such as garage,church: each in the place of "
+                   "the missions' own, and drawn anew for each seed")
+      ->delimiter(',');
   verb->add_option("--trials", options->trials, "Seeds for each planner and mission; default 10")
       ->check(CLI::Range(1, 100'000));
   verb->add_option("--out", options->out,

@@ -78,6 +78,9 @@ int serve(const ServeOptions& options, const Console& console);
 struct BenchmarkOptions {
   std::vector<std::filesystem::path> missions;
   std::vector<std::string> planners = {"all"};  ///< of contestants(), or "all"
+  /// Of sim::model_families(), or "all": each in the missions' scenes' place, a new one drawn with
+  /// each trial's seed. None: the missions' own.
+  std::vector<std::string> scenes;
   std::size_t trials = 10;                      ///< of each planner on each mission
   std::optional<std::filesystem::path> out;     ///< default: results/benchmark
   std::vector<file::KeyOverride> overrides;

@@ -20,7 +20,7 @@ constexpr double front_depth = 40.0;  // of the lots on the street
 constexpr double lane = 9.0;          // between the rows of lots
 constexpr double gap = 5.0;           // between neighbours
 
-using Kind = Parts (*)(const city::Lot&, city::Draw&, const Fineness&);
+using Kind = Parts (*)(const city::Lot&, Draw&, const Fineness&);
 
 /// A block under construction.
 class Block {
@@ -94,7 +94,7 @@ class Block {
   }
 
   Fineness fineness_;
-  city::Draw draw_;
+  Draw draw_;
   int buildings_ = 0;
   Parts parts_;
 };

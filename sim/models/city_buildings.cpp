@@ -5,6 +5,7 @@
 #include <numbers>
 #include <utility>
 
+#include "sim/models/masonry/elements.h"
 #include "sim/models/masonry/tower.h"
 #include "sim/models/masonry/wall.h"
 
@@ -61,40 +62,20 @@ Mesh storeys(double width, double depth, double foot, int count, const Facade& f
   return Tower(wall.bottom).add(build(wall)).close(wall.top);
 }
 
-Polyline3 rectangle(double width, double depth, double z) {
-  const double x = 0.5 * width, y = 0.5 * depth;
-  return {{-x, -y, z}, {x, -y, z}, {x, y, z}, {-x, y, z}};
-}
-
 /// A roof with eaves, hipped on all sides, on walls of that size that end at z = `foot`.
 Mesh hipped_roof(double width, double depth, double foot, double slope) {
   const double eaves = 0.5, run = 0.5 * std::min(width, depth) + eaves - 0.15;
   const double w = width + 2.0 * eaves, d = depth + 2.0 * eaves;
-  return loft({rectangle(w, d, foot - 0.25), rectangle(w, d, foot),
-               rectangle(w - 2.0 * run, d - 2.0 * run, foot + slope * run)});
-}
-
-/// A roof with gables to +x and -x.
-Mesh gabled_roof(double width, double depth, double foot, double slope) {
-  const double half = 0.5 * depth + 0.5;
-  return extrude({{-half, foot - 0.25},
-                  {half, foot - 0.25},
-                  {half, foot},
-                  {0.0, foot + slope * half},
-                  {-half, foot}},
-                 -0.5 * width - 0.3, 0.5 * width + 0.3);
+  return loft({level_rectangle(w, d, foot - 0.25), level_rectangle(w, d, foot),
+               level_rectangle(w - 2.0 * run, d - 2.0 * run, foot + slope * run)});
 }
 
 /// A wall round the edge of a flat roof at z = `foot`, also a string course or a cornice.
 Mesh rim(double width, double depth, double foot, double height, double reach) {
   const Polyline2 section{{-0.35, -0.2}, {reach, -0.2}, {reach, height}, {-0.35, height}};
-  Polyline3 path = rectangle(width, depth, foot);
+  Polyline3 path = level_rectangle(width, depth, foot);
   std::reverse(path.begin(), path.end());  // outwards is left of the way
   return sweep(section, path, Vector3d::UnitZ(), true);
-}
-
-Mesh box_at(double x, double y, double width, double depth, double low, double high) {
-  return box({x - 0.5 * width, y - 0.5 * depth, low}, {x + 0.5 * width, y + 0.5 * depth, high});
 }
 
 /// Chimneys along the ridge above the line y = `axis`.
@@ -103,8 +84,8 @@ void add_chimneys(double width, double axis, double foot, double ridge, Draw& dr
   for (int i = 0; i < count; ++i) {
     const double x = width * ((i + 0.5) / count - 0.5) + draw.between(-0.8, 0.8);
     const double y = axis + draw.between(-1.2, 1.2), top = ridge + draw.between(0.8, 1.6);
-    parts.push_back({"chimney", box_at(x, y, 1.3, 0.7, foot, top)});
-    parts.push_back({"chimney", box_at(x, y, 1.5, 0.9, top - 0.35, top - 0.12)});
+    parts.push_back({"chimney", block(x, y, 1.3, 0.7, foot, top)});
+    parts.push_back({"chimney", block(x, y, 1.5, 0.9, top - 0.35, top - 0.12)});
     for (const double side : {-0.33, 0.33}) {
       const Mesh pot =
           revolve({{0.0, top - 0.1}, {0.17, top - 0.1}, {0.13, top + 0.5}, {0.0, top + 0.5}}, 8);
@@ -206,7 +187,7 @@ Parts office(const Lot& lot, Draw& draw, const Fineness& fineness) {
       parts.push_back({"tank", moved(tank, {x, y, 0.0})});
     } else {
       const double along_y = draw.between(2.0, 4.0), along_x = draw.between(2.0, 4.0);
-      parts.push_back({"plant", box_at(x, y, along_x, along_y, foot - 0.1, foot + height)});
+      parts.push_back({"plant", block(x, y, along_x, along_y, foot - 0.1, foot + height)});
     }
   }
   return parts;
@@ -309,8 +290,8 @@ Parts tower_hall(const Lot& lot, Draw& draw, const Fineness&) {
   for (const double x : {-1.0, 1.0}) {
     for (const double y : {-1.0, 1.0}) {
       const double corner = 0.5 * side - 0.3;
-      add("tower pinnacle", loft({rectangle(1.0, 1.0, top + 0.5), rectangle(1.0, 1.0, top + 1.8),
-                                  rectangle(0.06, 0.06, top + 3.6)}));
+      add("tower pinnacle", loft({level_rectangle(1.0, 1.0, top + 0.5), level_rectangle(1.0, 1.0, top + 1.8),
+                                  level_rectangle(0.06, 0.06, top + 3.6)}));
       parts.back().mesh = moved(std::move(parts.back().mesh), {x * corner, y * corner, 0.0});
     }
   }

@@ -1,11 +1,14 @@
 #include "sim/models/models.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <string>
+#include <vector>
 
 #include "geometry/error.h"
 #include "sim/models/city_block.h"
+#include "sim/models/families/families.h"
 #include "sim/models/radcliffe_camera.h"
 #include "sim/models/teapot.h"
 
@@ -14,7 +17,24 @@ namespace {
 
 using geometry::Mesh;
 
-constexpr std::array<std::string_view, 3> names{"city-block", "radcliffe-camera", "teapot"};
+std::vector<std::string_view> names_of_families() {
+  std::vector<std::string_view> names;
+  for (const models::Family& family : models::families()) names.push_back(family.name);
+  return names;
+}
+
+std::vector<std::string_view> names_of_all() {
+  std::vector<std::string_view> names = names_of_families();
+  names.insert(names.end(), {"city-block", "radcliffe-camera", "teapot"});
+  std::ranges::sort(names);
+  return names;
+}
+
+const models::Family* family_called(std::string_view name) {
+  const auto families = models::families();
+  const auto found = std::ranges::find(families, name, &models::Family::name);
+  return found == families.end() ? nullptr : &*found;
+}
 
 /// A level square sheet at z = 0, facing up.
 Mesh ground(double side) {
@@ -59,16 +79,53 @@ Mesh teapot(const ModelOptions& options) {
   return mesh;
 }
 
+models::FamilyScene family_scene(const models::Family& family, const ModelOptions& options) {
+  models::Draw draw(options.seed);
+  return family.make(draw, fineness(options.detail));
+}
+
+Mesh family_model(const models::Family& family, const ModelOptions& options) {
+  Mesh mesh = join(family_scene(family, options).parts);
+  if (options.has_ground.value_or(false)) append(mesh, ground(120.0));
+  return mesh;
+}
+
 }  // namespace
 
-std::span<const std::string_view> builtin_models() { return names; }
+std::span<const std::string_view> builtin_models() {
+  static const std::vector<std::string_view> names = names_of_all();
+  return names;
+}
+
+std::span<const std::string_view> model_families() {
+  static const std::vector<std::string_view> names = names_of_families();
+  return names;
+}
+
+bool is_drawn(std::string_view name) {
+  return name == "city-block" || family_called(name) != nullptr;
+}
+
+std::vector<Surface> builtin_surfaces(std::string_view name, const ModelOptions& options) {
+  const models::Family* const family = family_called(name);
+  if (family == nullptr) return {};
+  std::vector<Surface> surfaces;
+  for (const models::Part& part : family_scene(*family, options).parts) {
+    surfaces.insert(surfaces.end(), part.mesh.triangles.size(), part.surface);
+  }
+  const auto is_matt = [](Surface surface) { return surface == Surface::matt; };
+  if (std::ranges::all_of(surfaces, is_matt)) return {};
+  if (options.has_ground.value_or(false)) surfaces.insert(surfaces.end(), 2, Surface::matt);
+  return surfaces;
+}
 
 Mesh builtin_model(std::string_view name, const ModelOptions& options) {
   if (name == "city-block") return city_block(options);
   if (name == "radcliffe-camera") return radcliffe_camera(options);
   if (name == "teapot") return teapot(options);
+  if (const models::Family* family = family_called(name)) return family_model(*family, options);
   std::string known;
-  for (const std::string_view each : names) {
+  for (const std::string_view each : builtin_models()) {
     known += (known.empty() ? "" : ", ") + std::string(each);
   }
   throw Error(ErrorKind::bad_config, "there is no built-in model named '" + std::string(name) +

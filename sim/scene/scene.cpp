@@ -24,11 +24,24 @@ SingleRay make_ray(const Vector3d& origin, const Vector3d& direction) {
   return ray;
 }
 
-void require_one_each(std::span<const float> reflectances, const geometry::Mesh& mesh) {
-  if (reflectances.size() == mesh.triangles.size()) return;
-  throw Error(ErrorKind::bad_geometry, "there are " + std::to_string(reflectances.size()) +
-                                           " reflectances for " +
+void require_one_each(std::size_t count, const char* what, const geometry::Mesh& mesh) {
+  if (count == mesh.triangles.size()) return;
+  throw Error(ErrorKind::bad_geometry, "there are " + std::to_string(count) + " " + what + " for " +
                                            std::to_string(mesh.triangles.size()) + " triangles");
+}
+
+// The properties of all parts' triangles, in their order; none if all are the default.
+template <typename Property>
+std::vector<Property> joined(std::span<const ScenePart> parts,
+                             std::span<const Property> ScenePart::* own, Property usual) {
+  const auto has_none = [&](const ScenePart& part) { return (part.*own).empty(); };
+  if (std::ranges::all_of(parts, has_none)) return {};
+  std::vector<Property> all;
+  for (const ScenePart& part : parts) {
+    all.insert(all.end(), (part.*own).begin(), (part.*own).end());
+    all.insert(all.end(), part.mesh.triangles.size() - (part.*own).size(), usual);
+  }
+  return all;
 }
 
 }  // namespace
@@ -38,37 +51,39 @@ Scene::Scene(const geometry::Mesh& mesh, unsigned threads)
 
 Scene::Scene(const geometry::Mesh& mesh, std::span<const float> reflectances, unsigned threads)
     : Scene(std::array{ScenePart{mesh, reflectances, {}}}, threads) {
-  require_one_each(reflectances, mesh);
+  require_one_each(reflectances.size(), "reflectances", mesh);
 }
 
 Scene::Scene(std::span<const ScenePart> parts, unsigned threads) {
   if (parts.empty()) throw Error(ErrorKind::bad_geometry, "the scene has no meshes");
   for (const ScenePart& part : parts) {
     geometry::validate(part.mesh);
-    if (!part.reflectances.empty()) require_one_each(part.reflectances, part.mesh);
+    if (!part.reflectances.empty()) {
+      require_one_each(part.reflectances.size(), "reflectances", part.mesh);
+    }
+    if (!part.surfaces.empty()) require_one_each(part.surfaces.size(), "surfaces", part.mesh);
   }
   trees_ = grow_trees(parts, threads);
-  if (std::ranges::all_of(parts, [](const auto& part) { return part.reflectances.empty(); })) {
-    return;
-  }
-  for (const ScenePart& part : parts) {
-    reflectances_.insert(reflectances_.end(), part.reflectances.begin(), part.reflectances.end());
-    const std::size_t defaults = part.mesh.triangles.size() - part.reflectances.size();
-    reflectances_.insert(reflectances_.end(), defaults, default_reflectance);
-  }
+  reflectances_ = joined(parts, &ScenePart::reflectances, default_reflectance);
+  trees_->surfaces = joined(parts, &ScenePart::surfaces, Surface::matt);
 }
 
 Scene::Scene(Scene&&) noexcept = default;
 Scene& Scene::operator=(Scene&&) noexcept = default;
 Scene::~Scene() = default;
 
-std::size_t Scene::own_triangle(std::uint32_t triangle) const {
-  const std::vector<SceneCopy>& copies = trees_->copies;
+float Scene::own_reflectance(std::uint32_t triangle) const {
+  return reflectances_[trees_->own_triangle(triangle)];
+}
+
+Surface Scene::surface(std::uint32_t triangle) const { return trees_->surface(triangle); }
+
+std::size_t Scene::Trees::own_triangle(std::uint32_t triangle) const {
   if (copies.empty()) return triangle;
   const auto next =
       std::ranges::upper_bound(copies, triangle, std::less<>(), &SceneCopy::first_triangle);
   const std::ptrdiff_t copy = std::distance(copies.begin(), next) - 1;
-  return trees_->own_triangles[copy] + (triangle - copies[copy].first_triangle);
+  return own_triangles[copy] + (triangle - copies[copy].first_triangle);
 }
 
 std::optional<Hit> Scene::first_hit(const Vector3d& origin, const Vector3d& direction,

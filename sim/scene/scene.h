@@ -16,6 +16,7 @@
 #include <Eigen/Geometry>
 
 #include "geometry/surfaces/mesh.h"
+#include "sim/scene/surface.h"
 
 namespace skycap::sim {
 
@@ -33,6 +34,8 @@ struct ScenePart {
   std::span<const float> reflectances;
   /// world_from_mesh of each copy, turned and shifted but not scaled; none: once, as it is.
   std::span<const Eigen::Isometry3d> places;
+  /// Of each triangle; none: all matt.
+  std::span<const Surface> surfaces = {};
 };
 
 /// Immutable; safe to query from any number of threads.
@@ -56,7 +59,7 @@ class Scene {
   Scene& operator=(Scene&&) noexcept;
   ~Scene();
 
-  /// The first surface that the ray from `origin` along `direction` (of any length) meets at a
+  /// The first surface, of whatever kind, that the ray from `origin` along `direction` (of any length) meets at a
   /// distance in [0, max_distance]. Exact to single precision of the scene's extent.
   std::optional<Hit> first_hit(const Eigen::Vector3d& origin, const Eigen::Vector3d& direction,
                                double max_distance = std::numeric_limits<double>::infinity()) const;
@@ -67,8 +70,11 @@ class Scene {
 
   /// Diffuse reflectance of a triangle, in [0, 1].
   float reflectance(std::uint32_t triangle) const {
-    return reflectances_.empty() ? default_reflectance : reflectances_[own_triangle(triangle)];
+    return reflectances_.empty() ? default_reflectance : own_reflectance(triangle);
   }
+
+  /// What a triangle does to light.
+  Surface surface(std::uint32_t triangle) const;
 
   /// Whether triangles have reflectances of their own.
   bool has_reflectances() const { return !reflectances_.empty(); }
@@ -79,8 +85,7 @@ class Scene {
   const Trees& trees() const { return *trees_; }
 
  private:
-  // The triangle, among those of all parts without their copies, that a hit is on.
-  std::size_t own_triangle(std::uint32_t triangle) const;
+  float own_reflectance(std::uint32_t triangle) const;
 
   std::unique_ptr<Trees> trees_;
   std::vector<float> reflectances_;  // of each part's triangles; empty: all the default

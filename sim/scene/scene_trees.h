@@ -22,6 +22,14 @@ struct Scene::Trees {
   std::vector<RayTree> over_copies;  ///< one tree, or none: the scene is a single mesh
   std::vector<SceneCopy> copies;
   std::vector<std::uint32_t> own_triangles;  ///< of each copy, the first among those of all parts
+  std::vector<Surface> surfaces;             ///< of each part's triangles; empty: all matt
+
+  /// The triangle, among those of all parts without their copies, that a hit is on.
+  std::size_t own_triangle(std::uint32_t triangle) const;
+  /// Of the triangle that a hit is on.
+  Surface surface(std::uint32_t triangle) const {
+    return surfaces.empty() ? Surface::matt : surfaces[own_triangle(triangle)];
+  }
 };
 
 /// Of parts whose meshes are valid.

@@ -14,6 +14,7 @@
 #include "geometry/parallel.h"
 #include "sim/scene/four_lanes.h"
 #include "sim/scene/scene_trees.h"
+#include "sim/scene/surface_effects.h"
 #include "sim/sensors/vector_kernels.h"
 
 namespace skycap::sim {
@@ -110,7 +111,7 @@ void store_depths(const RayPacket& packet, const Limits& limits, std::ptrdiff_t 
 
 // Casts the rays of one band, whose depths go to `depths`, row by row with the table's stride. Rays
 // of the padding are cast like the others, being copies, and their depths are never read.
-void cast_band(const RayTarget& target, const RayTable& table, const Limits& limits, int first_row,
+void cast_band(const Scene::Trees& trees, const RayTable& table, const Limits& limits, int first_row,
                float* depths) {
   RayPacket packet;
   for (int axis = 0; axis < 3; ++axis) {
@@ -125,7 +126,11 @@ void cast_band(const RayTarget& target, const RayTable& table, const Limits& lim
     for (int row = 0; row < rows; row += packet_rows) {
       for (int column = tile; column < tile_end; column += packet_columns) {
         aim(table, column, first_row + row, packet);
-        cast(target, packet, RayPacket::all_lanes, limits.max_depth);
+        if (trees.surfaces.empty()) {
+          cast(trees.target, packet, RayPacket::all_lanes, limits.max_depth);
+        } else {
+          cast_at_surfaces(trees, packet, RayPacket::all_lanes, limits.max_depth);
+        }
         store_depths(packet, limits, stride, depths + row * stride + column);
       }
     }
@@ -260,7 +265,7 @@ Scan DepthCamera::scan(const Scene& scene, const Eigen::Isometry3d& world_from_c
   geometry::parallel_for(bands, threads, [&](std::size_t band) {
     const int first_row = static_cast<int>(band) * band_rows;
     float* const band_depths = depths.get() + band * band_size;
-    cast_band(trees.target, table, limits, first_row, band_depths);
+    cast_band(trees, table, limits, first_row, band_depths);
     if (config_.stereo.is_on()) {
       const NoiseKey key = noise_key(config_.noise.seed, stereo_stream, frame);
       add_stereo_errors(table, config_.stereo, key, first_row, band_depths);

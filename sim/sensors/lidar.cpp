@@ -167,7 +167,7 @@ class BlockMeasurement {
         }
       }
     }
-    cast_rays(scene_.trees().target, static_cast<float>(config_.max_range),
+    cast_rays(scene_.trees(), static_cast<float>(config_.max_range),
               samples > 1 ? beam_rays_ : shots_rays_, hits_);
   }
 

@@ -12,6 +12,7 @@
 
 #include "sim/scene/four_lanes.h"
 #include "sim/scene/scene_trees.h"
+#include "sim/scene/surface_effects.h"
 #include "sim/sensors/scan_pattern.h"
 #include "sim/sensors/trajectory.h"
 
@@ -137,7 +138,7 @@ struct Hits {
 
 /// Casts the active rays; the ranges of the others become negative too. Their number is a multiple
 /// of the packets' width.
-inline void cast_rays(const RayTarget& target, float reach, const Rays& rays, Hits& hits) {
+inline void cast_rays(const Scene::Trees& trees, float reach, const Rays& rays, Hits& hits) {
   constexpr int width = RayPacket::width;
   const RayKernels& kernels = ray_kernels();
   RayPacket packet;
@@ -154,7 +155,11 @@ inline void cast_rays(const RayTarget& target, float reach, const Rays& rays, Hi
       std::copy_n(rays.origin[axis].data() + first, width, packet.origin[axis]);
       std::copy_n(rays.direction[axis].data() + first, width, packet.direction[axis]);
     }
-    kernels.cast(target, packet, lanes, reach);
+    if (trees.surfaces.empty()) {
+      kernels.cast(trees.target, packet, lanes, reach);
+    } else {
+      cast_at_surfaces(trees, packet, lanes, reach);
+    }
     std::copy_n(packet.triangle, width, hits.triangle.data() + first);
     std::copy_n(packet.distance, width, hits.range.data() + first);
     for (int lane = 0; lane < width; lane += 4) {

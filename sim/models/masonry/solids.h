@@ -15,6 +15,7 @@
 #include <Eigen/Geometry>
 
 #include "geometry/surfaces/mesh.h"
+#include "sim/scene/surface.h"
 
 namespace skycap::sim::models {
 
@@ -97,6 +98,7 @@ double signed_volume(const geometry::Mesh& mesh);
 struct Part {
   std::string name;
   geometry::Mesh mesh;
+  Surface surface = Surface::matt;
 };
 using Parts = std::vector<Part>;
 

@@ -87,7 +87,7 @@ TEST(CityBlock, OneCanLookThroughTheArcadeAndIntoACourt) {
   const models::Parts parts = models::city_block({1, {0.02}});
   const Scene scene(join(parts));
   // Level rays through the walk behind the piers, along x.
-  for (const auto& [name, mesh] : parts) {
+  for (const auto& [name, mesh, surface] : parts) {
     if (name.find("arcade wall") == std::string::npos) continue;
     const Eigen::AlignedBox3d box = bounding_box(mesh);
     const Vector3d from(box.min().x() - 1.0, box.max().y() + 1.5, 1.6);

@@ -1,0 +1,62 @@
+/// Families of scenes that find the weaknesses of planners: hollow, thin, tall, narrow, glassy. Each
+/// is drawn from a seed, with sizes within stated ranges, stands on z = 0 around the origin, and is
+/// at most 65 m long and 55 m high. What is true of them by construction is told with them.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <string_view>
+#include <vector>
+
+#include <Eigen/Geometry>
+
+#include "sim/models/draw.h"
+#include "sim/models/masonry/solids.h"
+
+namespace skycap::sim::models {
+
+/// A scene of a family: closed solids, and what is known about them.
+struct FamilyScene {
+  Parts parts;
+  /// Rooms that nothing gets into and nothing sees into: their walls, floors and ceilings are on
+  /// these boxes.
+  std::vector<Eigen::AlignedBox3d> sealed_rooms = {};
+  /// Rooms, decks and passages that a ball of 0.8 m gets into from outside.
+  std::vector<Eigen::AlignedBox3d> open_rooms = {};
+};
+
+struct Family {
+  std::string_view name;
+  FamilyScene (*make)(Draw& draw, const Fineness& fineness);
+};
+
+/// In alphabetical order:
+///   bridge         three to five arches on piers, with parapets
+///   church         nave, aisles between buttresses, apse, a tower under a spire
+///   factory        a saw-tooth hall, slender chimneys up to 48 m, a pipe rack, tanks
+///   fences         thin walls, railings, poles with wires
+///   garage         four or five open parking decks, a stair tower
+///   glass-house    an office block behind panes that return nothing, and mirrors
+///   grove          a house among trees near its walls
+///   hillside       houses on a slope that is part of the surface
+///   hollow-house   a house with an open hall and sealed rooms
+///   lattice-tower  a braced steel tower of 36 to 48 m
+///   old-town       houses on lanes of 2.6 to 4 m, one lane under a house
+///   statue         a figure with raised arm and staff on a plinth
+std::span<const Family> families();
+
+FamilyScene bridge(Draw& draw, const Fineness& fineness);
+FamilyScene church(Draw& draw, const Fineness& fineness);
+FamilyScene factory(Draw& draw, const Fineness& fineness);
+FamilyScene fences(Draw& draw, const Fineness& fineness);
+FamilyScene garage(Draw& draw, const Fineness& fineness);
+FamilyScene glass_house(Draw& draw, const Fineness& fineness);
+FamilyScene grove(Draw& draw, const Fineness& fineness);
+FamilyScene hillside(Draw& draw, const Fineness& fineness);
+FamilyScene hollow_house(Draw& draw, const Fineness& fineness);
+FamilyScene lattice_tower(Draw& draw, const Fineness& fineness);
+FamilyScene old_town(Draw& draw, const Fineness& fineness);
+FamilyScene statue(Draw& draw, const Fineness& fineness);
+
+}  // namespace skycap::sim::models
