@@ -55,6 +55,7 @@ set(supporting_headers
   flight/way_home/return_proof.h
   geometry/directions/spherical_cap.h
   geometry/points/outlier_rule.h
+  sim/scene/surface.h
   sim/sensors/depth_camera_config.h
   sim/sensors/navigation_errors.h
   sim/sensors/noise.h

@@ -46,7 +46,7 @@ FlightLog read_dataflash(std::string_view bytes);
 /// in any order, beside others. Throws Error{bad_file} naming the line.
 FlightLog read_csv_log(const std::string& text);
 
-inline constexpr std::size_t largest_log = std::size_t{2} << 30;
+inline constexpr std::size_t largest_log = std::size_t{512} << 20;
 
 /// Either, by the name's ending: .csv or any other. Errors name the file.
 FlightLog read_flight_log(const std::filesystem::path& file);

@@ -43,7 +43,7 @@ Problems validate(const std::string& content, Format format);
 std::vector<Eigen::Vector3d> places_of(const std::string& content, Format format, const Site& site,
                                        const Eigen::Vector3d& pad);
 
-inline constexpr std::size_t largest_route_file = std::size_t{256} << 20;
+inline constexpr std::size_t largest_route_file = std::size_t{64} << 20;
 
 /// The format of a route file by its name's ending; .csv by its first line. Throws Error{bad_file}.
 Format format_of_file(const std::filesystem::path& path, const std::string& content);

@@ -142,6 +142,13 @@ void add_positions(const fs::path& path, std::size_t first,
   }
 }
 
+void require_few_points(const fs::path& path, std::size_t points) {
+  if (points <= most_whole_points) return;
+  fail_cloud(path, "holds more than " + std::to_string(most_whole_points) +
+                       " points; thin it, or evaluate it as LAS or E57, which is read piece by "
+                       "piece");
+}
+
 AttributedCloud read_cloud(const fs::path& path) {
   const std::string ending = ending_of(path);
   using Parse = AttributedCloud (*)(const fs::path&, std::string_view);
@@ -157,8 +164,8 @@ AttributedCloud read_cloud(const fs::path& path) {
                "a cloud file must end in .ply, .pcd, .las, .laz, .e57, .xyz, .txt or .asc (or with "
                ".gz after it)");
   }
-  AttributedCloud cloud =
-      piecewise ? piecewise->cloud(path) : format->second(path, read_file(path));
+  AttributedCloud cloud = piecewise ? piecewise->cloud(path)
+                                    : format->second(path, read_file(path, largest_whole_cloud));
   if (cloud.positions.empty()) fail_cloud(path, "holds no points");
   return cloud;
 }

@@ -1,6 +1,7 @@
 /// Readers of single cloud formats, for the source of cloud_io.h. `path` opens every message.
 #pragma once
 
+#include <cstddef>
 #include <filesystem>
 #include <span>
 #include <string>
@@ -22,6 +23,14 @@ Eigen::Vector3f cloud_position(const std::filesystem::path& path, std::size_t po
 /// Appends the next points of a file, whose first one is number `first`, as cloud_position() does.
 void add_positions(const std::filesystem::path& path, std::size_t first,
                    std::span<const Eigen::Vector3d> positions, std::vector<Eigen::Vector3f>& to);
+
+/// What a cloud that is read whole may be, so that it and what is made of it on the way take less
+/// than 2 GiB.
+inline constexpr std::size_t largest_whole_cloud = std::size_t{384} << 20,  // [bytes]
+    most_whole_points = std::size_t{1} << 26;
+
+/// Throws Error{bad_file} if so many points are too many.
+void require_few_points(const std::filesystem::path& path, std::size_t points);
 
 /// The Point Cloud Library's PCD 0.7, text, binary or compressed: x y z and normal_x normal_y
 /// normal_z. Points of NaN, by which PCL marks pixels without a measurement, are passed over.

@@ -30,6 +30,8 @@ Mesh decode_draco(std::string_view name, std::string_view bytes) {
   if (positions == nullptr || positions->num_components() != 3) {
     fail("has no positions of three coordinates");
   }
+  // Draco reads any byte of a file as such a one.
+  if (positions->data_type() == draco::DT_BOOL) fail("has positions of an unknown type");
 
   Mesh mesh;
   mesh.vertices.resize(positions->size());

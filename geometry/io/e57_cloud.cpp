@@ -34,6 +34,7 @@ AttributedCloud read_e57_cloud(const std::filesystem::path& path) {
   AttributedCloud cloud;
   E57Points points;
   while (reader.next(points)) {
+    require_few_points(path, cloud.positions.size() + points.positions.size());
     add_positions(path, cloud.positions.size(), points.positions, cloud.positions);
     cloud.normals.insert(cloud.normals.end(), points.normals.begin(), points.normals.end());
     cloud.colours.insert(cloud.colours.end(), points.colours.begin(), points.colours.end());

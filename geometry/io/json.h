@@ -6,6 +6,9 @@
 
 namespace skycap::geometry {
 
+/// Of JSON that is read whole [byte]: its tree takes up to twenty times as much.
+inline constexpr std::size_t largest_json = std::size_t{64} << 20;
+
 /// Whether lists and objects in a JSON text are nested deeper than anything we read needs. Parsers
 /// and destructors of JSON call themselves for each level: a long row of brackets is a crash.
 inline bool is_nested_too_deep(std::string_view json) {

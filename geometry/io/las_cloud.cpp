@@ -10,6 +10,7 @@ AttributedCloud read_las_cloud(const std::filesystem::path& path) {
   AttributedCloud cloud;
   LasPoints points;
   while (reader.next(points)) {
+    require_few_points(path, cloud.positions.size() + points.positions.size());
     add_positions(path, cloud.positions.size(), points.positions, cloud.positions);
     cloud.colours.insert(cloud.colours.end(), points.colours.begin(), points.colours.end());
   }

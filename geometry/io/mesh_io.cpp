@@ -22,6 +22,9 @@ namespace {
 namespace fs = std::filesystem;
 using Eigen::Vector3d;
 
+// With what is made of it on the way, the tree that rays search included, less than 2 GiB.
+constexpr std::size_t largest_mesh_file = std::size_t{256} << 20, most_corners = 30'000'000;
+
 [[noreturn]] void fail(const fs::path& path, const std::string& what) {
   throw Error(ErrorKind::bad_file, path.string() + ": " + what);
 }
@@ -29,7 +32,7 @@ using Eigen::Vector3d;
 PolygonSoup parse(const fs::path& path) {
   const std::string format = ending_of(path);
   if (format == ".drc") {
-    const Mesh mesh = decode_draco(path.string(), read_file(path));
+    const Mesh mesh = decode_draco(path.string(), read_file(path, largest_mesh_file));
     PolygonSoup soup{mesh.vertices, {}};  // goes the way of the others, which checks it
     for (const auto& triangle : mesh.triangles) {
       soup.corners.insert(soup.corners.end(), triangle.begin(), triangle.end());
@@ -45,7 +48,7 @@ PolygonSoup parse(const fs::path& path) {
   if (parser == nullptr) {
     fail(path, "a mesh file must end in .ply, .obj, .stl, .off or .drc (or with .gz after it)");
   }
-  const std::string bytes = read_file(path);
+  const std::string bytes = read_file(path, largest_mesh_file);
   if (bytes.empty()) fail(path, "is empty");
   return parser(path.string(), bytes);
 }
@@ -89,6 +92,9 @@ Mesh clean_mesh(const fs::path& path, const PolygonSoup& soup) {
 }
 
 void require_faces(const fs::path& path, const PolygonSoup& soup) {
+  if (soup.corners.size() > most_corners) {
+    fail(path, "holds more than 1e7 triangles, or polygons of more than 3e7 corners");
+  }
   const auto is_polygon = [&](std::size_t i) {
     return soup.polygon_begin[i + 1] - soup.polygon_begin[i] >= 3;
   };

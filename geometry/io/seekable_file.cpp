@@ -14,7 +14,8 @@ SeekableFile::SeekableFile(std::filesystem::path path) : path_(std::move(path)) 
   if (is_file) stream_.open(path_, std::ios::binary);
   const auto beginning = [&] { return bytes(0, 2); };
   if (!is_file || !stream_ || with_name(beginning) == "\x1F\x8B") {
-    decompressed_ = read_file(path_);  // says what is wrong with what is no file
+    decompressed_ =
+        read_file(path_, std::size_t{512} << 20);  // says what is wrong with what is no file
     size_ = decompressed_.size();
   }
 }

@@ -37,9 +37,12 @@ class MeshDistance {
   /// way that grazes the distance, to a thousandth of it, is not said to keep it.
   bool keeps(const Eigen::Vector3d& from, const Eigen::Vector3d& to, double distance) const;
 
-  /// The distance of each point, to a place of `distances`. Quick where points that follow each
-  /// other are near each other, as in scans; the distances are the same in any order.
-  void distances(std::span<const Eigen::Vector3f> points, std::span<double> distances) const;
+  /// The distance of each point, to a place of `distances`. Quick where there are many points near
+  /// each other, in any order: up to a million at once are worth while.
+  void distances(std::span<const Eigen::Vector3f> points, std::span<double> distances,
+                 unsigned threads = 1) const;
+  void distances(std::span<const Eigen::Vector3d> points, std::span<double> distances,
+                 unsigned threads = 1) const;
 
  private:
   struct Impl;

@@ -47,7 +47,7 @@ TrialRun run_here(double wall_time) {
 std::optional<TrialRecord> finished_trial(const fs::path& file, const std::string& fingerprint) {
   if (!fs::exists(file)) return std::nullopt;
   try {
-    const Json json = geometry::parse_json<Json>(geometry::read_file(file));
+    const Json json = geometry::parse_json<Json>(geometry::read_file(file, geometry::largest_json));
     if (json.at("fingerprint") != fingerprint) return std::nullopt;
     const Json& run = json.at("run");
     return TrialRecord{parse_trial(json.at("trial").dump()),

@@ -38,7 +38,8 @@ class RowReader {
     check_vehicle(row);
     row.sortie = index(fields[2], "sortie");
     row.file = fields[3];
-    if (vehicle_of_file(row.file) != row.vehicle) {
+    const bool is_beside = row.file.find('/') == std::string::npos;
+    if (!is_beside || vehicle_of_file(row.file) != row.vehicle) {
       fail("the file \"" + row.file + "\" is not one of " + stem_of(row.vehicle) + ".*");
     }
     row.start = number(fields[4], "start_s");

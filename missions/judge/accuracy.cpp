@@ -3,17 +3,11 @@
 #include <algorithm>
 #include <cmath>
 
-#include "geometry/parallel.h"
-
 namespace skycap::missions::judge {
 
 void AccuracyMeter::add(std::span<const Eigen::Vector3f> points) {
-  constexpr std::size_t batch = 4096;
   piece_.resize(points.size());
-  geometry::parallel_for((points.size() + batch - 1) / batch, threads_, [&](std::size_t part) {
-    const std::size_t begin = part * batch, count = std::min(batch, points.size() - begin);
-    distance_.distances(points.subspan(begin, count), std::span(piece_).subspan(begin, count));
-  });
+  distance_.distances(points, piece_, threads_);
   // In the order of the points, so that the sums depend neither on pieces nor on threads.
   for (const double distance : piece_) {
     sum_ += distance;

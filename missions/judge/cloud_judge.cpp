@@ -1,5 +1,7 @@
 #include "missions/judge/cloud_judge.h"
 
+#include "geometry/parallel.h"
+
 namespace skycap::missions::judge {
 
 std::vector<Eigen::Vector3f> places_asked(const geometry::Mesh& truth, std::size_t count) {
@@ -10,12 +12,18 @@ std::vector<Eigen::Vector3f> places_asked(const geometry::Mesh& truth, std::size
 CloudJudge::CloudJudge(const geometry::Mesh& truth, std::size_t places,
                        double registration_distance, unsigned threads)
     : area_(geometry::surface_area(truth)),
+      threads_(threads),
       coverage_(places_asked(truth, places), registration_distance),
       accuracy_(truth, threads) {}
 
 void CloudJudge::add(std::span<const Eigen::Vector3f> points) {
-  coverage_.add(points);
-  accuracy_.add(points);
+  geometry::parallel_for(2, threads_, [&](std::size_t part) {
+    if (part == 0) {
+      coverage_.add(points);
+    } else {
+      accuracy_.add(points);
+    }
+  });
 }
 
 CloudJudgement CloudJudge::judgement() {

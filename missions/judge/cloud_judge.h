@@ -39,6 +39,7 @@ class CloudJudge {
 
  private:
   double area_;
+  unsigned threads_;
   CoverageMeter coverage_;
   AccuracyMeter accuracy_;
 };

@@ -1,12 +1,14 @@
 #include "missions/judge/evaluation.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numeric>
 #include <optional>
 #include <random>
 
 #include "geometry/parallel.h"
+#include "geometry/place/space_curve.h"
 #include "missions/judge/coverage.h"
 #include "missions/judge/thinned_cloud.h"
 
@@ -16,7 +18,38 @@ namespace {
 using Eigen::Vector3d;
 using Eigen::Vector3f;
 
-constexpr std::size_t samples_in_a_task = 1024;
+/// Samples beside each other that are not known to be visible: their sight lines in one direction
+/// are looked along together.
+struct Neighbours {
+  struct Sample {
+    std::uint32_t index;
+    Vector3d position;
+  };
+  std::vector<Sample> samples;
+  const sim::Scene* scene;
+  const Admissible* admissible;
+
+  /// Takes out those that are visible from a direction.
+  void look(const Vector3d& direction, std::vector<std::uint8_t>& is_visible) {
+    std::array<sim::Scene::Sight, sim::Scene::most_sights> sights;
+    for (std::size_t i = 0; i < samples.size(); ++i) {
+      const Vector3d& target = samples[i].position;
+      sights[i] = {target + admissible->view_distance * direction,
+                   target + admissible->clearance * direction};
+    }
+    const std::uint32_t blocked = scene->blocked(std::span(sights).first(samples.size()));
+    std::size_t left = 0;
+    for (std::size_t i = 0; i < samples.size(); ++i) {
+      const bool is_free = (blocked >> i & 1U) == 0;
+      if (is_free && (!admissible->allows || admissible->allows({sights[i].from, -direction}))) {
+        is_visible[samples[i].index] = 1;
+      } else {
+        samples[left++] = samples[i];
+      }
+    }
+    samples.resize(left);
+  }
+};
 
 }  // namespace
 
@@ -37,16 +70,21 @@ std::vector<std::uint8_t> visible_samples(std::span<const Vector3f> samples,
                                           unsigned threads, std::stop_token stop) {
   const std::vector<Vector3d> directions = fibonacci_directions(admissible.directions);
   std::vector<std::uint8_t> is_visible(samples.size(), 0);
-  const std::size_t tasks = (samples.size() + samples_in_a_task - 1) / samples_in_a_task;
-  geometry::parallel_for(tasks, threads, [&](std::size_t task) {
+  const std::vector<geometry::CurveEntry> order =
+      geometry::along_curve(samples, geometry::finest_grid(samples));
+  constexpr std::size_t group = sim::Scene::most_sights;
+  geometry::parallel_for((samples.size() + group - 1) / group, threads, [&](std::size_t i) {
     if (stop.stop_requested()) return;
-    const std::size_t end = std::min(samples.size(), (task + 1) * samples_in_a_task);
-    for (std::size_t i = task * samples_in_a_task; i < end; ++i) {
-      // Starting at another direction each time tells nothing about where "up" is, and finds a
-      // free one as soon as any fixed order would.
-      const bool found =
-          free_position(samples[i].cast<double>(), directions, i, scene, admissible).has_value();
-      is_visible[i] = found ? 1 : 0;
+    const std::size_t begin = i * group;
+    Neighbours hidden{{}, &scene, &admissible};
+    for (const auto& entry :
+         std::span(order).subspan(begin, std::min(group, order.size() - begin))) {
+      hidden.samples.push_back({entry.index, samples[entry.index].cast<double>()});
+    }
+    // Starting at another direction each time tells nothing about where "up" is, and finds a free
+    // one as soon as any fixed order would.
+    for (std::size_t k = 0; k < directions.size() && !hidden.samples.empty(); ++k) {
+      hidden.look(directions[(i + k) % directions.size()], is_visible);
     }
   });
   return is_visible;

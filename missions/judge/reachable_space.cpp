@@ -6,9 +6,6 @@
 #include <numeric>
 #include <utility>
 
-#include "flight/space/segment_distance.h"
-#include "geometry/parallel.h"
-
 namespace skycap::missions::judge {
 namespace {
 
@@ -16,8 +13,7 @@ using Eigen::Vector3d;
 
 constexpr double cells_a_radius = 8.0;
 constexpr double cells_a_side = 300.0;
-constexpr std::int32_t tasks_a_side = 8;  // at most; subtrees that are grown each by one thread
-constexpr int nearby = 2;                 // leads_to() looks so many finest cells around
+constexpr int nearby = 2;  // leads_to() looks so many finest cells around
 
 // States of leaves; smaller numbers are the first of eight children.
 constexpr std::uint32_t closed = std::numeric_limits<std::uint32_t>::max();
@@ -26,8 +22,11 @@ constexpr std::uint32_t reached = closed - 2;
 
 bool is_leaf(std::uint32_t node) { return node >= reached; }
 
-// Of a node whose children are grown later; the root is nobody's child.
-constexpr std::uint32_t unfinished = 0;
+// Of a cell whose children are looked at next; the root is nobody's child.
+constexpr std::uint32_t divided = 0;
+
+/// Where a cell is between the heights that ways may have.
+enum class Heights { outside, partly, inside };
 
 using Place = std::array<std::int32_t, 3>;
 
@@ -57,111 +56,13 @@ const std::vector<Place>& steps_around() {
   return steps;
 }
 
-/// A triangle with what rules it out quickly.
-struct Facet {
-  flight::Triangle corners;
-  Vector3d centre, normal;
-  double radius;  // of the ball around the centre that holds it
-};
-
-std::vector<Facet> facets_of(const geometry::Mesh& mesh) {
-  std::vector<Facet> facets;
-  for (const auto& [a, b, c] : mesh.triangles) {
-    const flight::Triangle corners{mesh.vertices[a], mesh.vertices[b], mesh.vertices[c]};
-    const Vector3d normal = (corners[1] - corners[0]).cross(corners[2] - corners[0]);
-    if (!(normal.norm() > 0.0)) continue;
-    const Vector3d centre = (corners[0] + corners[1] + corners[2]) / 3.0;
-    double radius = 0.0;
-    for (const Vector3d& corner : corners) radius = std::max(radius, (corner - centre).norm());
-    facets.push_back({corners, centre, normal.normalized(), radius});
-  }
-  return facets;
-}
-
 }  // namespace
 
-/// Grows the octree below one cell, into nodes of its own.
-struct ReachableSpace::Grower {
-  /// A cell that is left to be divided by another grower.
-  struct Task {
-    std::uint32_t node;
-    Place corner;
-    std::vector<std::uint32_t> near;
-  };
-
-  const std::vector<Facet>& facets;
-  const Config& config;
-  double side;  // of the finest cells
-  Vector3d origin;
-  std::int32_t task_size = 0;  // of cells that are left to others
-  std::vector<std::uint32_t> nodes;
-  std::vector<Task> tasks;
-
-  enum class Distance { far, near, within };
-
-  /// Where a ball around `centre` is: every place of it far from the facet, perhaps not, or every
-  /// place of it within the radius of the facet.
-  Distance distance(const Facet& facet, const Vector3d& centre, double ball, bool is_finest) const {
-    const double reach = config.radius + ball, to_centre = (centre - facet.centre).norm();
-    if (to_centre >= reach + facet.radius) return Distance::far;
-    if (to_centre + ball < config.radius) return Distance::within;
-    // The facet's centre is a place of it: of finest cells no more is asked.
-    if (is_finest ? to_centre < reach : facet.radius < 0.5 * ball) return Distance::near;
-    if (std::abs(facet.normal.dot(centre - facet.centre)) >= reach) return Distance::far;
-    const double exact =
-        std::sqrt(flight::nearest(flight::Segment{centre, centre}, facet.corners).squared_distance);
-    if (exact >= reach) return Distance::far;
-    return exact + ball < config.radius ? Distance::within : Distance::near;
-  }
-
-  /// The state of a cell, or the first of the children that it was divided into.
-  std::uint32_t grow(const Place& corner, std::int32_t size,
-                     const std::vector<std::uint32_t>& around) {
-    const double low = origin.z() + side * corner[2], high = low + side * size;
-    const double least = config.least_height.value_or(low);
-    const double most = config.most_height.value_or(high);
-    if (high <= least || low >= most) return closed;
-    const double half = 0.5 * size;
-    const Vector3d centre =
-        origin + side * Vector3d(corner[0] + half, corner[1] + half, corner[2] + half);
-    std::vector<std::uint32_t> near;
-    for (const std::uint32_t i : around) {
-      const Distance found = distance(facets[i], centre, std::sqrt(3.0) * half * side, size == 1);
-      if (found == Distance::within || (size == 1 && found == Distance::near)) return closed;
-      if (found == Distance::near) near.push_back(i);
-    }
-    if (near.empty() && low >= least && high <= most) return open;
-    if (size == 1) return closed;
-    if (size != task_size) return divide(corner, size, near);
-    tasks.push_back({0, corner, std::move(near)});
-    return unfinished;
-  }
-
-  std::uint32_t divide(const Place& corner, std::int32_t size,
-                       const std::vector<std::uint32_t>& near) {
-    const auto first = static_cast<std::uint32_t>(nodes.size());
-    nodes.resize(first + 8, closed);
-    const std::int32_t half = size / 2;
-    for (std::uint32_t i = 0; i < 8; ++i) {
-      const std::uint32_t state = grow(child_of(corner, half, i), half, near);
-      nodes[first + i] = state;
-      if (state == unfinished) tasks.back().node = first + i;
-    }
-    const auto children = nodes.begin() + first;
-    if (!is_leaf(*children) ||
-        std::any_of(children, nodes.end(), [&](std::uint32_t node) { return node != *children; })) {
-      return first;
-    }
-    const std::uint32_t state = *children;
-    nodes.resize(first);
-    return state;
-  }
-};
-
-ReachableSpace::ReachableSpace(const geometry::Mesh& mesh, const Config& config,
+ReachableSpace::ReachableSpace(const geometry::MeshDistance& surface,
+                               const Eigen::AlignedBox3d& box, const Config& config,
                                const Joins& joins) {
-  lay_out(geometry::bounding_box(mesh), config);
-  grow(mesh, config);
+  lay_out(box, config);
+  grow(surface, config);
   std::vector<Cell> pending;
   if (!config.start || !is_inside(place_of(*config.start))) {
     reach_outside(pending);
@@ -194,25 +95,85 @@ void ReachableSpace::lay_out(Eigen::AlignedBox3d box, const Config& config) {
   origin_.head<2>() -= 0.5 * spare;
 }
 
-void ReachableSpace::grow(const geometry::Mesh& mesh, const Config& config) {
-  const std::vector<Facet> facets = facets_of(mesh);
-  std::vector<std::uint32_t> all(facets.size());
-  std::iota(all.begin(), all.end(), 0U);
-  Grower top{facets, config, cell_, origin_, std::max(width_ / tasks_a_side, 2), {closed}, {}};
-  top.nodes[0] = top.grow({0, 0, 0}, width_, all);
-
-  std::vector<Grower> growers(top.tasks.size(), Grower{facets, config, cell_, origin_, 0, {}, {}});
-  std::vector<std::uint32_t> states(top.tasks.size());
-  geometry::parallel_for(top.tasks.size(), config.threads, [&](std::size_t i) {
-    states[i] = growers[i].divide(top.tasks[i].corner, top.task_size, top.tasks[i].near);
-  });
-  nodes_ = std::move(top.nodes);
-  for (std::size_t i = 0; i < states.size(); ++i) {
-    const auto first = static_cast<std::uint32_t>(nodes_.size());
-    const auto moved = [&](std::uint32_t node) { return is_leaf(node) ? node : first + node; };
-    nodes_[top.tasks[i].node] = moved(states[i]);
-    for (const std::uint32_t node : growers[i].nodes) nodes_.push_back(moved(node));
+/// Level by level, so that distances are asked of many cells at once.
+void ReachableSpace::grow(const geometry::MeshDistance& surface, const Config& config) {
+  nodes_ = {closed};
+  std::vector<Cell> level{{0, {}, width_}};
+  while (!level.empty()) {
+    const std::vector<std::uint32_t> states = states_of(level, surface, config);
+    std::vector<Cell> next;
+    for (std::size_t i = 0; i < level.size(); ++i) {
+      const Cell& cell = level[i];
+      nodes_[cell.node] = states[i];
+      if (is_leaf(states[i])) continue;
+      const auto first = static_cast<std::uint32_t>(nodes_.size());
+      nodes_[cell.node] = first;
+      nodes_.resize(first + 8, closed);
+      const std::int32_t half = cell.size / 2;
+      for (std::uint32_t child = 0; child < 8; ++child) {
+        next.push_back({first + child, child_of(cell.corner, half, child), half});
+      }
+    }
+    level = std::move(next);
   }
+  std::vector<std::uint32_t> nodes(1);
+  nodes[0] = merged(0, nodes);
+  nodes_ = std::move(nodes);
+}
+
+/// Whether cells of one size are closed, open, or to be divided.
+std::vector<std::uint32_t> ReachableSpace::states_of(std::span<const Cell> cells,
+                                                     const geometry::MeshDistance& surface,
+                                                     const Config& config) const {
+  std::vector<std::uint32_t> states(cells.size(), closed);
+  std::vector<std::size_t> asked;
+  std::vector<Vector3d> centres;
+  const auto heights = [&](const Cell& cell) {
+    const double low = origin_.z() + cell_ * cell.corner[2], high = low + cell_ * cell.size;
+    const double least = config.least_height.value_or(low);
+    const double most = config.most_height.value_or(high);
+    return high <= least || low >= most   ? Heights::outside
+           : low >= least && high <= most ? Heights::inside
+                                          : Heights::partly;
+  };
+  for (std::size_t i = 0; i < cells.size(); ++i) {
+    if (heights(cells[i]) == Heights::outside) continue;
+    const double half = 0.5 * cells[i].size;
+    const auto& [x, y, z] = cells[i].corner;
+    asked.push_back(i);
+    centres.emplace_back(origin_ + cell_ * Vector3d(x + half, y + half, z + half));
+  }
+  std::vector<double> distances(centres.size());
+  surface.distances(centres, distances, config.threads);
+  for (std::size_t k = 0; k < asked.size(); ++k) {
+    const Cell& cell = cells[asked[k]];
+    const double ball = std::sqrt(3.0) * 0.5 * cell.size * cell_;
+    if (distances[k] + ball < config.radius) continue;
+    const bool is_far = distances[k] >= config.radius + ball;
+    if (is_far && heights(cell) == Heights::inside) {
+      states[asked[k]] = open;
+    } else if (cell.size > 1) {
+      states[asked[k]] = divided;
+    }
+  }
+  return states;
+}
+
+/// Copies what is below a node; eight leaves of the same state are one.
+std::uint32_t ReachableSpace::merged(std::uint32_t node, std::vector<std::uint32_t>& nodes) const {
+  const std::uint32_t from = nodes_[node];
+  if (is_leaf(from)) return from;
+  const auto first = static_cast<std::uint32_t>(nodes.size());
+  nodes.resize(first + 8);
+  for (std::uint32_t i = 0; i < 8; ++i) {
+    const std::uint32_t state = merged(from + i, nodes);
+    nodes[first + i] = state;
+  }
+  const std::uint32_t state = nodes[first];
+  const auto is_other = [&](std::uint32_t child) { return child != state; };
+  if (!is_leaf(state) || std::any_of(nodes.begin() + first, nodes.end(), is_other)) return first;
+  nodes.resize(first);
+  return state;
 }
 
 ReachableSpace::Place ReachableSpace::place_of(const Vector3d& point) const {

@@ -21,7 +21,7 @@
 #include <Eigen/Core>
 #include <Eigen/Geometry>
 
-#include "geometry/surfaces/mesh.h"
+#include "geometry/surfaces/mesh_distance.h"
 
 namespace skycap::missions::judge {
 
@@ -40,9 +40,9 @@ class ReachableSpace {
   /// safe to call from several threads.
   using Joins = std::function<bool(const Eigen::Vector3d& place, const Eigen::Vector3d& reached)>;
 
-  /// Keeps no reference to `mesh`, whose triangles without area are passed over. `joins` is asked
-  /// about the start only.
-  ReachableSpace(const geometry::Mesh& mesh, const Config& config, const Joins& joins);
+  /// Of a surface within a box; keeps no reference to it. `joins` is asked about the start only.
+  ReachableSpace(const geometry::MeshDistance& surface, const Eigen::AlignedBox3d& box,
+                 const Config& config, const Joins& joins);
 
   /// Whether a way leads to `place`: it is in a cell that is reached, or in one that is neither
   /// open nor closed as a whole and `joins` the nearest place of a reached cell, two cells away at
@@ -66,10 +66,13 @@ class ReachableSpace {
     Place corner{};
     std::int32_t size = 0;  // [finest cells]
   };
-  struct Grower;
 
   void lay_out(Eigen::AlignedBox3d box, const Config& config);
-  void grow(const geometry::Mesh& mesh, const Config& config);
+  void grow(const geometry::MeshDistance& surface, const Config& config);
+  std::vector<std::uint32_t> states_of(std::span<const Cell> cells,
+                                       const geometry::MeshDistance& surface,
+                                       const Config& config) const;
+  std::uint32_t merged(std::uint32_t node, std::vector<std::uint32_t>& nodes) const;
   void reach(const Cell& cell, std::vector<Cell>& pending);
   void reach_outside(std::vector<Cell>& pending);
   void flood(std::vector<Cell> pending);

@@ -3,6 +3,8 @@
 #include <array>
 #include <bit>
 #include <cstring>
+#include <limits>
+#include <vector>
 
 #include "geometry/error.h"
 #include "geometry/io/ply.h"
@@ -31,17 +33,26 @@ std::string kept_scan(const geometry::Scan& scan) {
 geometry::Scan parse_kept_scan(std::string_view name, std::string_view bytes) {
   geometry::PlyReader reader(name, bytes);
   constexpr std::array<std::string_view, 4> wanted{"x", "y", "z", "pixel"};
-  if (reader.elements().size() != 1) {
-    throw Error(ErrorKind::bad_file, std::string(name) + ": is not a scan of a survey");
-  }
+  const auto fail = [&](const std::string& what) {
+    throw Error(ErrorKind::bad_file, std::string(name) + ": " + what);
+  };
+  if (reader.elements().size() != 1) fail("is not a scan of a survey");
   const geometry::PlyTable table = reader.read_element(wanted, {});
-  const std::vector<double>&x = table.columns[0], &y = table.columns[1], &z = table.columns[2];
+  const std::vector<double>&x = table.columns[0], &y = table.columns[1], &z = table.columns[2],
+        &pixels = table.columns[3];
+  if (y.size() != x.size() || z.size() != x.size() ||
+      (!pixels.empty() && pixels.size() != x.size())) {
+    fail("is not a scan of a survey");
+  }
   geometry::Scan scan;
   scan.points.reserve(x.size());
   for (std::size_t i = 0; i < x.size(); ++i) {
-    scan.points.push_back(Eigen::Vector3d(x[i], y.at(i), z.at(i)).cast<float>());
+    scan.points.push_back(Eigen::Vector3d(x[i], y[i], z[i]).cast<float>());
   }
-  for (const double pixel : table.columns[3]) {
+  for (const double pixel : pixels) {
+    if (!(pixel >= 0.0 && pixel <= std::numeric_limits<std::uint32_t>::max())) {
+      fail("has a pixel that is no number of one");
+    }
     scan.pixels.push_back(static_cast<std::uint32_t>(pixel));
   }
   return scan;

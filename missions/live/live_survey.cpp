@@ -12,6 +12,7 @@
 #include "geometry/io/file.h"
 #include "geometry/io/record_log.h"
 #include "geometry/parallel.h"
+#include "geometry/points/usable_scan.h"
 #include "missions/derived/journal_text.h"
 #include "missions/live/kept_scan.h"
 #include "missions/live/live_journal.h"
@@ -26,7 +27,7 @@ using Eigen::Vector3d;
 
 constexpr const char* journal_name = "live.journal";
 constexpr const char* scans_name = "scans";
-constexpr std::size_t largest_scan = std::size_t{1} << 30;  // [byte]
+constexpr std::size_t largest_scan = std::size_t{384} << 20;  // [byte]
 
 std::string digest_of(std::string_view bytes) {
   return scene::sha256(std::as_bytes(std::span(bytes)));
@@ -123,6 +124,11 @@ struct LiveSurvey::Impl {
     }
     geometry::Scan scan = parse_kept_scan(file.string(), bytes);
     scan.world_from_sensor = record.world_from_sensor;
+    try {
+      geometry::require_usable(scan, mission.sensor.camera.camera);
+    } catch (const Error& failure) {
+      throw Error(ErrorKind::bad_file, file.string() + ": cannot be used: " + failure.what());
+    }
     return as_used(std::move(scan), record);
   }
 

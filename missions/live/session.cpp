@@ -106,6 +106,9 @@ ScanFound depth_scan(const Message& message, const file::Mission& mission) {
   if (width < 1 || height < 1 || width > largest_side || height > largest_side) {
     refuse_message("scan: width and height must be from 1 to 32768");
   }
+  if (std::uint64_t{width} * height > sim::most_depth_pixels) {
+    refuse_message("scan: the image has more than 2.5e7 pixels");
+  }
   sim::DepthImage image{static_cast<int>(width), static_cast<int>(height), {}};
   const std::size_t count = std::size_t{width} * height;
   require_payload(message, count * sizeof(std::uint16_t), "the image takes ");

@@ -244,10 +244,10 @@ std::optional<SurveyMission> stage_package(const file::Mission& mission,
 
 PackageSummary read_package_summary(const std::filesystem::path& folder,
                                     const std::vector<file::KeyOverride>& overrides) {
-  constexpr std::size_t largest = std::size_t{256} << 20;  // of a million views
   const std::filesystem::path file = folder / summary_name;
   geometry::finish_commit(folder);
-  return parse_package_summary(geometry::read_file(file, largest), file.string(), overrides);
+  return parse_package_summary(geometry::read_file(file, geometry::largest_json), file.string(),
+                               overrides);
 }
 
 PackageSummary parse_package_summary(const std::string& text, const std::string& name,
@@ -283,7 +283,8 @@ PackageSummary parse_package_summary(const std::string& text, const std::string&
 
 bool is_complete_result(const std::filesystem::path& json_file) {
   try {
-    const Json json = geometry::parse_json<Json>(geometry::read_file(json_file));
+    const Json json =
+        geometry::parse_json<Json>(geometry::read_file(json_file, geometry::largest_json));
     return json.is_object() && json.value("complete", Json()) == Json(true);
   } catch (const Error&) {
     return false;  // there is none

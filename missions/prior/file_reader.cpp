@@ -142,6 +142,10 @@ std::string beginning_of(const fs::path& file) {
   return bytes;
 }
 
+// What is made of them takes three times as much, and up to twenty times.
+constexpr std::size_t largest_citygml = std::size_t{512} << 20,
+                      largest_cityjson = std::size_t{128} << 20;
+
 struct Opened {
   Format format;
   std::string bytes;  ///< all of them, of formats that are parsed whole
@@ -177,7 +181,13 @@ Opened open_file(const fs::path& file, Role role) {
   }
   opened.format = *format;
   const bool is_parsed_here = *format == Format::citygml || *format == Format::cityjson;
-  if (is_parsed_here && opened.bytes.empty()) opened.bytes = geometry::read_file(file, most_bytes);
+  if (is_parsed_here) {
+    const std::size_t most = *format == Format::citygml ? largest_citygml : largest_cityjson;
+    if (opened.bytes.empty()) opened.bytes = geometry::read_file(file, most);
+    if (opened.bytes.size() > most) {
+      fail_file(file, "is larger than " + std::to_string(most >> 20) + " MiB");
+    }
+  }
   if (is_compressed && !is_parsed_here && *format != Format::mesh && *format != Format::cloud) {
     fail_file(file, "is compressed by gzip; decompress it first");
   }

@@ -73,7 +73,7 @@ struct Prior {
 bool has_area(const geometry::Mesh& mesh);
 
 /// Reads a file by its content, then by its ending. Throws Error in one line that opens with the
-/// file: {bad_file} if it is broken, too large (2 GB; 100 million cells; 50 million polygons), or
+/// file: {bad_file} if it is broken, too large (2 GB; 40 million cells; 50 million polygons), or
 /// of no known format; {bad_config} if the source does not say what is needed (crs, vertical, base,
 /// height, takeoff), says what the file has no use for, gives it a role that it cannot play
 /// (targets are objects; the ground has an area and is no points), or puts anything farther than 50

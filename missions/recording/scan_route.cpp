@@ -148,7 +148,7 @@ ScanRoute read_scan_route(const std::filesystem::path& path, const file::Mission
     return from_points(flight::read_route(file, derived::site_of(mission), pad),
                        mission.scan.speed);
   }
-  constexpr std::size_t largest = std::size_t{1} << 30;
+  constexpr std::size_t largest = std::size_t{256} << 20;
   const std::string text = geometry::read_file(file, largest);
   try {
     if (ending != ".csv") return from_tum(text);

@@ -8,92 +8,14 @@
 #include <numeric>
 #include <utility>
 
+#include "geometry/place/space_curve.h"
 #include "missions/report/script_text.h"
 
 namespace skycap::missions::report {
 namespace {
 
-constexpr int most_bits = 16;
-
-/// A point by its key.
-struct Entry {
-  std::uint64_t key = 0;
-  std::uint32_t index = 0;
-};
-
-/// The bits of a 16-bit number, each third one: abc becomes a00b00c.
-std::uint64_t spread(std::uint64_t bits) {
-  bits = (bits | bits << 32) & 0x1f00000000ffffU;
-  bits = (bits | bits << 16) & 0x1f0000ff0000ffU;
-  bits = (bits | bits << 8) & 0x100f00f00f00f00fU;
-  bits = (bits | bits << 4) & 0x10c30c30c30c30c3U;
-  return (bits | bits << 2) & 0x1249249249249249U;
-}
-
-/// Cubic cells over all points.
-struct Grid {
-  Eigen::Vector3d origin = Eigen::Vector3d::Zero();
-  double step = 1.0;
-
-  std::uint64_t key(const Eigen::Vector3f& point) const {
-    constexpr double last = (1 << most_bits) - 1;
-    std::uint64_t key = 0;
-    for (int axis = 0; axis < 3; ++axis) {
-      const double cell = (static_cast<double>(point[axis]) - origin[axis]) / step;
-      key |= spread(static_cast<std::uint32_t>(std::clamp(cell, 0.0, last))) << axis;
-    }
-    return key;
-  }
-};
-
-/// Of 2^16 cells along the longest side.
-Grid finest_grid(std::span<const Eigen::Vector3f> positions) {
-  if (positions.empty()) return {};
-  Eigen::Vector3f low = positions[0], high = low;
-  for (const Eigen::Vector3f& point : positions) {
-    low = low.cwiseMin(point);
-    high = high.cwiseMax(point);
-  }
-  const double side = (high - low).cast<double>().maxCoeff();
-  constexpr double room = 1.0 + 1e-9;  // the farthest point belongs to the last cell
-  return {low.cast<double>(), side > 0.0 ? side * room / (1 << most_bits) : 1.0};
-}
-
-/// Gives the entries their keys in a grid and sorts them, those of a cell as they were.
-void sort_by_key(std::vector<Entry>& entries, std::span<const Eigen::Vector3f> positions,
-                 const Grid& grid) {
-  // By the bits of the keys, twelve at a time, stable.
-  constexpr int digit_bits = 12, most_passes = 3 * most_bits / digit_bits;
-  constexpr std::size_t digits = std::size_t{1} << digit_bits;
-  std::array<std::array<std::uint32_t, digits>, most_passes> begins{};
-  std::uint64_t all = 0;
-  for (Entry& entry : entries) {
-    entry.key = grid.key(positions[entry.index]);
-    all |= entry.key;
-    for (int pass = 0; pass < most_passes; ++pass) {
-      ++begins[static_cast<std::size_t>(pass)][entry.key >> (pass * digit_bits) & (digits - 1)];
-    }
-  }
-  std::vector<Entry> other(entries.size());
-  for (int pass = 0; pass < most_passes && all >> (pass * digit_bits) != 0; ++pass) {
-    auto& begin = begins[static_cast<std::size_t>(pass)];
-    std::uint32_t sum = 0;
-    for (std::uint32_t& count : begin) sum += std::exchange(count, sum);
-    const int shift = pass * digit_bits;
-    for (const Entry& entry : entries) other[begin[entry.key >> shift & (digits - 1)]++] = entry;
-    entries.swap(other);
-  }
-}
-
-std::vector<Entry> sorted_entries(std::span<const Eigen::Vector3f> positions, const Grid& grid) {
-  std::vector<Entry> entries(positions.size());
-  for (std::size_t i = 0; i < entries.size(); ++i) entries[i].index = static_cast<std::uint32_t>(i);
-  sort_by_key(entries, positions, grid);
-  return entries;
-}
-
 /// Evenly along the list.
-void thin(std::vector<Entry>& entries, std::size_t most) {
+void thin(std::vector<geometry::CurveEntry>& entries, std::size_t most) {
   if (entries.size() <= most) return;
   for (std::size_t i = 0; i < most; ++i)
     entries[i] = entries[(2 * i + 1) * entries.size() / (2 * most)];
@@ -116,15 +38,17 @@ std::vector<std::uint64_t> differences(std::span<const std::uint64_t> keys) {
   return steps;
 }
 
-std::vector<std::uint64_t> keys_of(std::span<const Entry> entries) {
+std::vector<std::uint64_t> keys_of(std::span<const geometry::CurveEntry> entries) {
   std::vector<std::uint64_t> keys;
   keys.reserve(entries.size());
-  for (const Entry& entry : entries) keys.push_back(entry.key);
+  for (const geometry::CurveEntry& entry : entries) keys.push_back(entry.key);
   return keys;
 }
 
-double spacing_in(const Grid& grid, std::span<const Entry> entries) {
-  return entries.size() > 1 ? spacing_of_keys(keys_of(entries), most_bits) * grid.step : 0.0;
+double spacing_in(const geometry::CurveGrid& grid, std::span<const geometry::CurveEntry> entries) {
+  return entries.size() > 1
+             ? spacing_of_keys(keys_of(entries), geometry::CurveGrid::most_bits) * grid.step
+             : 0.0;
 }
 
 /// What the places of a cell take: of all cells that have points.
@@ -161,10 +85,10 @@ std::vector<std::uint16_t> ordered_by(std::span<const std::uint16_t> first,
 }
 
 std::vector<std::uint16_t> values_of(const CloudAttribute& attribute,
-                                     std::span<const Entry> entries) {
+                                     std::span<const geometry::CurveEntry> entries) {
   std::vector<std::uint16_t> values;
   values.reserve(entries.size());
-  for (const Entry& entry : entries) values.push_back(attribute.values[entry.index]);
+  for (const geometry::CurveEntry& entry : entries) values.push_back(attribute.values[entry.index]);
   return values;
 }
 
@@ -194,20 +118,20 @@ double spacing_of_keys(std::span<const std::uint64_t> keys, int bits) {
 }
 
 double spacing_of(std::span<const Eigen::Vector3f> positions) {
-  const Grid grid = finest_grid(positions);
-  return spacing_in(grid, sorted_entries(positions, grid));
+  const geometry::CurveGrid grid = geometry::finest_grid(positions);
+  return spacing_in(grid, geometry::along_curve(positions, grid));
 }
 
 CloudCode encode_cloud(std::span<const Eigen::Vector3f> positions,
                        std::span<const CloudAttribute> attributes, std::size_t most_points) {
-  Grid grid = finest_grid(positions);
-  std::vector<Entry> entries = sorted_entries(positions, grid);
+  geometry::CurveGrid grid = geometry::finest_grid(positions);
+  std::vector<geometry::CurveEntry> entries = geometry::along_curve(positions, grid);
   thin(entries, most_points);
   CloudCode code{.points = entries.size(), .of = positions.size(), .origin = grid.origin};
   code.spacing = spacing_in(grid, entries);
   if (const double step = code.spacing / 8.0; step > grid.step) {
     grid.step = step;
-    sort_by_key(entries, positions, grid);
+    geometry::sort_along_curve(entries, positions, grid);
   }
   code.step = grid.step;
   const std::vector<std::uint64_t> keys = keys_of(entries);

@@ -24,8 +24,7 @@ bool is_there(const fs::path& file) {
 }
 
 std::string results_text(const fs::path& file) {
-  constexpr std::size_t largest = std::size_t{256} << 20;
-  return geometry::read_file(file, largest);
+  return geometry::read_file(file, geometry::largest_json);
 }
 
 Json read_results(const fs::path& file) {

@@ -23,7 +23,7 @@ inline constexpr std::size_t default_report_points = 1'000'000;
 
 bool is_there(const std::filesystem::path& file);
 
-/// The text of a JSON file of results, of at most 256 MB: a summary of a million views.
+/// The text of a JSON file of results, of at most geometry::largest_json.
 std::string results_text(const std::filesystem::path& file);
 
 /// The object in a JSON file of results. Throws Error{bad_file} naming the file if it holds none.

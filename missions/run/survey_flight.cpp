@@ -9,6 +9,7 @@
 #include "flight/route/route.h"
 #include "flight/space/clearance.h"
 #include "geometry/error.h"
+#include "geometry/parallel.h"
 #include "geometry/place/camera.h"
 #include "missions/derived/mission_flight.h"
 #include "missions/derived/pad_grounds.h"
@@ -39,7 +40,8 @@ struct SurveyFlight::Impl {
         finder(space, derived::clearance_of(mission).total(),
                derived::route_options_of(mission, {}).path),
         motion(mission),
-        frame_period(mission.sensor.frame_period) {}
+        frame_period(mission.sensor.frame_period),
+        threads(mission.threads) {}
 
   std::optional<FlownLeg> proven(std::vector<Vector3d> points) const {
     FlownLeg way{std::move(points), finder.clearance() + flight::reported_surplus};
@@ -67,6 +69,7 @@ struct SurveyFlight::Impl {
   flight::PathFinder finder;
   WayMotion motion;
   double frame_period;
+  unsigned threads;
   FlownLeg leg;  ///< that the next fly() takes
   Vector3d above_pad = Vector3d::Zero();
   std::vector<flight::PadScan> pads;
@@ -144,8 +147,13 @@ void SurveyFlight::take_way(FlownLeg way, std::size_t refused) {
 void SurveyFlight::fly() { impl_->survey.legs.push_back(std::move(impl_->leg)); }
 
 void SurveyFlight::take_in(const geometry::Scan& scan) {
-  impl_->measured->insert(scan, impl_->camera);
-  for (flight::PadScan& pad : impl_->pads) pad.take_in(scan.points);
+  geometry::parallel_for(2, impl_->threads, [&](std::size_t part) {
+    if (part == 0) {
+      impl_->measured->insert(scan, impl_->camera);
+    } else {
+      for (flight::PadScan& pad : impl_->pads) pad.take_in(scan.points);
+    }
+  });
   impl_->finder.forget();
 }
 

@@ -39,8 +39,8 @@ geometry::Mesh with_copies(const file::SceneConfig& scene, const geometry::Mesh&
 
 /// What the sensors of a `scene` measure, with what lasers see of its surfaces.
 struct ReflectingScene {
-  geometry::Mesh model;             ///< the first
-  std::vector<float> reflectances;  ///< diffuse, of each of its triangles
+  geometry::Mesh model;                ///< the first
+  std::vector<float> reflectances;     ///< diffuse, of each of its triangles
   std::vector<sim::Surface> surfaces;  ///< of each of its triangles; empty: all matt
   std::vector<Eigen::Isometry3d> places;
   geometry::Mesh ground;  ///< without triangles if there is none

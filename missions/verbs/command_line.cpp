@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstdlib>
+#include <filesystem>
 #include <memory>
 #include <string>
 #include <string_view>
@@ -309,6 +310,10 @@ int parse_and_run(const std::vector<std::string>& arguments, const Console& cons
     return report_failure(console, std::string(failure.what()) + "; see --help", 2);
   } catch (const Error& failure) {
     return report_failure(console, failure.what(), 2);
+  } catch (const std::filesystem::filesystem_error& failure) {
+    // A loop of links, a folder that may not be entered: the system's word on a path of the user's.
+    const std::string text = failure.path1().string() + ": " + failure.code().message();
+    return report_failure(console, text, 2);
   } catch (const std::bad_alloc&) {
     return report_failure(console, "there is not enough memory for this", 3);
   } catch (const std::exception& failure) {

@@ -107,6 +107,8 @@ int propose_site(const SiteOptions& options, const Console& console) {
     throw Error(ErrorKind::bad_usage,
                 result.string() + " is there already; give another --out, or move it away");
   }
+  // First, since the mission names its files as seen from there.
+  geometry::OutputFolder folder(file.has_parent_path() ? file.parent_path() : ".");
   ProgressLine progress(console, false);
   progress.show("reading " + options.map.filename().string());
   const std::string text = site::propose_mission(wishes_of(options), file);
@@ -114,7 +116,6 @@ int propose_site(const SiteOptions& options, const Console& console) {
   const file::Mission mission = derived::parse_mission(text, file.string());
   const std::string page = page_of(mission, file);
   progress.clear();
-  geometry::OutputFolder folder(file.has_parent_path() ? file.parent_path() : ".");
   folder.write(file.filename().string(), text);
   folder.write(picture.filename().string(), page);
   folder.commit();

@@ -81,8 +81,8 @@ struct BenchmarkOptions {
   /// Of sim::model_families(), or "all": each in the missions' scenes' place, a new one drawn with
   /// each trial's seed. None: the missions' own.
   std::vector<std::string> scenes;
-  std::size_t trials = 10;                      ///< of each planner on each mission
-  std::optional<std::filesystem::path> out;     ///< default: results/benchmark
+  std::size_t trials = 10;                   ///< of each planner on each mission
+  std::optional<std::filesystem::path> out;  ///< default: results/benchmark
   std::vector<file::KeyOverride> overrides;
   unsigned threads = 0;    ///< zero: all processors; a survey has one
   bool has_report = true;  ///< the page beside the other results, too

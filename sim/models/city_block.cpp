@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "sim/models/city_buildings.h"
+#include "sim/models/masonry/tree.h"
 
 namespace skycap::sim::models {
 namespace {
@@ -88,7 +89,7 @@ class Block {
   }
 
   void plant(double height, const Vector3d& at) {
-    for (Part& part : city::tree(height, draw_, fineness_)) {
+    for (Part& part : tree(height, draw_, fineness_)) {
       parts_.push_back({part.name, moved(std::move(part.mesh), at)});
     }
   }

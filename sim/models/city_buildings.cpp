@@ -290,37 +290,12 @@ Parts tower_hall(const Lot& lot, Draw& draw, const Fineness&) {
   for (const double x : {-1.0, 1.0}) {
     for (const double y : {-1.0, 1.0}) {
       const double corner = 0.5 * side - 0.3;
-      add("tower pinnacle", loft({level_rectangle(1.0, 1.0, top + 0.5), level_rectangle(1.0, 1.0, top + 1.8),
-                                  level_rectangle(0.06, 0.06, top + 3.6)}));
+      add("tower pinnacle",
+          loft({level_rectangle(1.0, 1.0, top + 0.5), level_rectangle(1.0, 1.0, top + 1.8),
+                level_rectangle(0.06, 0.06, top + 3.6)}));
       parts.back().mesh = moved(std::move(parts.back().mesh), {x * corner, y * corner, 0.0});
     }
   }
-  return parts;
-}
-
-Parts tree(double height, Draw& draw, const Fineness& fineness) {
-  const double trunk = 0.022 * height, crown_foot = 0.28 * height;
-  Parts parts;
-  parts.push_back({"tree trunk", revolve({{0.0, 0.0},
-                                          {1.5 * trunk, 0.0},
-                                          {trunk, 0.06 * height},
-                                          {0.7 * trunk, 0.6 * height},
-                                          {0.0, 0.6 * height}},
-                                         std::max(6, fineness.circle(trunk)))});
-  // The crown: an egg whose rings are pushed in and out and aside.
-  constexpr int rings = 7, sides = 10;
-  std::vector<Polyline3> sections;
-  for (int i = 0; i <= rings; ++i) {
-    const double share = 0.04 + 0.92 * i / rings, z = crown_foot + share * (height - crown_foot);
-    const double wide = 0.30 * height * std::sqrt(std::sin(pi * std::pow(share, 0.8)));
-    const double dx = draw.between(-0.02, 0.02) * height, dy = draw.between(-0.02, 0.02) * height;
-    Polyline3& ring = sections.emplace_back();
-    for (int j = 0; j < sides; ++j) {
-      const double angle = 2.0 * pi * j / sides, r = wide * draw.between(0.82, 1.12);
-      ring.emplace_back(dx + r * std::cos(angle), dy + r * std::sin(angle), z);
-    }
-  }
-  parts.push_back({"tree crown", loft(sections)});
   return parts;
 }
 

@@ -2,7 +2,7 @@
 /// the origin, its front to -y.
 #pragma once
 
-#include "sim/models/draw.h"
+#include "sim/models/masonry/draw.h"
 #include "sim/models/masonry/solids.h"
 
 namespace skycap::sim::models::city {
@@ -21,8 +21,5 @@ Parts courtyard_house(const Lot& lot, Draw& draw, const Fineness& fineness);
 Parts arcade_house(const Lot& lot, Draw& draw, const Fineness& fineness);
 /// A hall with a tall tower under a spire.
 Parts tower_hall(const Lot& lot, Draw& draw, const Fineness& fineness);
-
-/// A tree of that height: a trunk and a lumpy crown.
-Parts tree(double height, Draw& draw, const Fineness& fineness);
 
 }  // namespace skycap::sim::models::city

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 #include <memory>
+#include <mutex>
 #include <string>
 #include <vector>
 
@@ -125,6 +126,9 @@ TreeRef build(RTCDevice device, RTCBVH tree, std::span<RTCBuildPrimitive> primit
   arguments.setNodeBounds = set_bounds;
   arguments.createLeaf = create_leaf;
   arguments.userPtr = user;
+  // One at a time: Embree 3.13 crashed now and then where two threads built trees side by side.
+  static std::mutex mutex;
+  const std::scoped_lock lock(mutex);
   const auto root = reinterpret_cast<TreeRef>(rtcBuildBVH(&arguments));
   throw_on_device_error(device);
   return root;

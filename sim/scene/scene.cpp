@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <functional>
 #include <iterator>
 #include <string>
@@ -33,7 +34,7 @@ void require_one_each(std::size_t count, const char* what, const geometry::Mesh&
 // The properties of all parts' triangles, in their order; none if all are the default.
 template <typename Property>
 std::vector<Property> joined(std::span<const ScenePart> parts,
-                             std::span<const Property> ScenePart::* own, Property usual) {
+                             std::span<const Property> ScenePart::*own, Property usual) {
   const auto has_none = [&](const ScenePart& part) { return (part.*own).empty(); };
   if (std::ranges::all_of(parts, has_none)) return {};
   std::vector<Property> all;
@@ -101,6 +102,38 @@ bool Scene::is_blocked(const Vector3d& from, const Vector3d& to) const {
   if (length == 0.0) return false;
   const SingleRay ray = make_ray(from - trees_->centre, (to - from) / length);
   return ray_kernels().is_blocked(trees_->target, ray, static_cast<float>(length));
+}
+
+std::uint32_t Scene::blocked(std::span<const Sight> sights) const {
+  static_assert(most_sights == RayPacket::width);
+  RayPacket packet = {};
+  std::array<float, most_sights> reach{};
+  std::uint32_t left = 0, blocked = 0;
+  for (std::size_t i = 0; i < sights.size(); ++i) {
+    const auto& [from, to] = sights[i];
+    const double length = (to - from).norm();
+    if (length == 0.0) continue;
+    const SingleRay ray = make_ray(from - trees_->centre, (to - from) / length);
+    for (int axis = 0; axis < 3; ++axis) {
+      packet.origin[axis][i] = ray.origin[axis];
+      packet.direction[axis][i] = ray.direction[axis];
+    }
+    reach[i] = static_cast<float>(length);
+    left |= 1U << i;
+  }
+  while (left != 0) {  // a packet has one reach
+    const float its_reach = reach[static_cast<std::size_t>(std::countr_zero(left))];
+    std::uint32_t lanes = 0;
+    for (std::size_t i = 0; i < sights.size(); ++i) {
+      if (reach[i] == its_reach) lanes |= left & 1U << i;
+    }
+    ray_kernels().cast_distances(trees_->target, packet, lanes, its_reach);
+    for (std::size_t i = 0; i < sights.size(); ++i) {
+      if (packet.distance[i] != -1.0F) blocked |= lanes & 1U << i;
+    }
+    left &= ~lanes;
+  }
+  return blocked;
 }
 
 }  // namespace skycap::sim

@@ -59,14 +59,25 @@ class Scene {
   Scene& operator=(Scene&&) noexcept;
   ~Scene();
 
-  /// The first surface, of whatever kind, that the ray from `origin` along `direction` (of any length) meets at a
-  /// distance in [0, max_distance]. Exact to single precision of the scene's extent.
+  /// The first surface, of whatever kind, that the ray from `origin` along `direction` (of any
+  /// length) meets at a distance in [0, max_distance]. Exact to single precision of the scene's
+  /// extent.
   std::optional<Hit> first_hit(const Eigen::Vector3d& origin, const Eigen::Vector3d& direction,
                                double max_distance = std::numeric_limits<double>::infinity()) const;
 
   /// Whether a surface cuts the segment between two points, its ends included. To ask whether a
   /// point of the surface is visible, end the segment a little before it.
   bool is_blocked(const Eigen::Vector3d& from, const Eigen::Vector3d& to) const;
+
+  /// A straight line from one place to another.
+  struct Sight {
+    Eigen::Vector3d from, to;
+  };
+  /// The most that blocked() takes.
+  static constexpr std::size_t most_sights = 16;
+  /// A bit for each of the sights, the lowest for the first: what is_blocked() says of it. Quick
+  /// where they are about as long and run side by side.
+  std::uint32_t blocked(std::span<const Sight> sights) const;
 
   /// Diffuse reflectance of a triangle, in [0, 1].
   float reflectance(std::uint32_t triangle) const {

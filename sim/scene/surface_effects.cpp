@@ -59,7 +59,7 @@ class Ray {
     if (normal.dot(direction) > 0.0F) normal = -normal;
     const Vector3f place = origin + ray_.distance * direction;
     // Off the mirror by what rounding may have put the place behind it.
-    origin = place + 2e-6F * (1.0F + place.cwiseAbs().maxCoeff()) * normal;
+    origin = place + 1e-5F * (1.0F + place.cwiseAbs().maxCoeff()) * normal;
     direction = mirrored(direction, normal);
     normals_[mirrors_++] = normal;
   }

@@ -111,8 +111,8 @@ void store_depths(const RayPacket& packet, const Limits& limits, std::ptrdiff_t 
 
 // Casts the rays of one band, whose depths go to `depths`, row by row with the table's stride. Rays
 // of the padding are cast like the others, being copies, and their depths are never read.
-void cast_band(const Scene::Trees& trees, const RayTable& table, const Limits& limits, int first_row,
-               float* depths) {
+void cast_band(const Scene::Trees& trees, const RayTable& table, const Limits& limits,
+               int first_row, float* depths) {
   RayPacket packet;
   for (int axis = 0; axis < 3; ++axis) {
     std::fill_n(packet.origin[axis], RayPacket::width, table.origin[axis]);

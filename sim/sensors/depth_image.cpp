@@ -51,12 +51,12 @@ DepthImage read_depth_png(const std::filesystem::path& path) {
   if (png_image_begin_read_from_file(&png, path.c_str()) == 0) {
     fail(path, "is not a PNG picture", png.message);
   }
-  constexpr double most_pixels = 1e8;
+  constexpr double most_pixels = most_depth_pixels;
   const bool is_deep = (png.format & PNG_FORMAT_FLAG_LINEAR) != 0;
   if (!is_deep || static_cast<double>(png.width) * png.height > most_pixels) {
     png_image_free(&png);
     fail(path, "is not a depth image",
-         is_deep ? "it has more than 1e8 pixels" : "it must have 16 bits a pixel");
+         is_deep ? "it has more than 2.5e7 pixels" : "it must have 16 bits a pixel");
   }
   png.format = PNG_FORMAT_LINEAR_Y;
   DepthImage image{static_cast<int>(png.width), static_cast<int>(png.height), {}};

@@ -17,13 +17,17 @@ struct DepthImage {
   std::vector<std::uint16_t> values;  ///< row by row
 };
 
+/// Of an image that is read.
+inline constexpr int most_depth_pixels = 25'000'000;
+
 /// The image of an organised scan. `unit` is what one step stands for [m].
 DepthImage depth_image(const geometry::Scan& scan, const geometry::Camera& camera, double unit);
 
 /// Throws Error{bad_file} if the file cannot be written.
 void write_depth_png(const DepthImage& image, const std::filesystem::path& path);
 
-/// Throws Error{bad_file} if it is not a PNG picture of 16 bits, or has more than 1e8 pixels.
+/// Throws Error{bad_file} if it is not a PNG picture of 16 bits, or has more than
+/// most_depth_pixels.
 DepthImage read_depth_png(const std::filesystem::path& path);
 
 }  // namespace skycap::sim

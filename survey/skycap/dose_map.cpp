@@ -24,9 +24,35 @@ constexpr float enlarged_reach = 1.6F;  // newcomers within it take area from en
 constexpr int most_merges = 8;
 constexpr float opposite_sides = -0.3F;  // below this cosine: two sides of something thin
 
-std::array<float, 2> direction_cosine_sine(int k) {
-  const float angle = static_cast<float>(k) * std::numbers::pi_v<float> / 3.0F;
-  return {std::cos(angle), std::sin(angle)};
+constexpr int direction_count = 6;
+
+/// Of sixths of a turn.
+struct DirectionAngles {
+  std::array<float, direction_count> cosines, sines;
+};
+
+const DirectionAngles& direction_angles() {
+  static const DirectionAngles angles = [] {
+    DirectionAngles all{};
+    for (std::size_t k = 0; k < direction_count; ++k) {
+      const float angle = static_cast<float>(k) * std::numbers::pi_v<float> / 3.0F;
+      all.cosines[k] = std::cos(angle);
+      all.sines[k] = std::sin(angle);
+    }
+    return all;
+  }();
+  return angles;
+}
+
+std::array<Vector3f, direction_count> open_directions(const Surfels& surfels, std::size_t i) {
+  const Vector3f& normal = surfels.normals[i];
+  const Vector3f& first = surfels.first_tangents[i];
+  // The normal may have moved since the tangent was chosen.
+  const Vector3f u = (first - normal * normal.dot(first)).normalized(), v = normal.cross(u);
+  const auto& [cosines, sines] = direction_angles();
+  std::array<Vector3f, direction_count> directions;
+  for (std::size_t k = 0; k < direction_count; ++k) directions[k] = cosines[k] * u + sines[k] * v;
+  return directions;
 }
 
 }  // namespace
@@ -36,12 +62,7 @@ float Surfels::covered_share(std::size_t i) const { return 1.0F - std::exp(-blur
 float Surfels::deficit(std::size_t i) const { return areas[i] * std::exp(-blurred_hazards[i]); }
 
 Vector3f open_direction(const Surfels& surfels, std::size_t i, int k) {
-  const auto [cosine, sine] = direction_cosine_sine(k);
-  const Vector3f& normal = surfels.normals[i];
-  const Vector3f& first = surfels.first_tangents[i];
-  // The normal may have moved since the tangent was chosen.
-  const Vector3f u = (first - normal * normal.dot(first)).normalized();
-  return cosine * u + sine * normal.cross(u);
+  return open_directions(surfels, i)[static_cast<std::size_t>(k)];
 }
 
 DoseMap::DoseMap(float spacing) : spacing_(spacing), grid_(neighbour_reach * spacing) {}
@@ -146,8 +167,9 @@ bool DoseMap::is_taken(const Block& block) {
 void DoseMap::close_directions(std::size_t added) {
   const Vector3f position = surfels_.positions[added];
   const auto close = [&](std::size_t i, const Vector3f& towards) {
-    for (int k = 0; k < 6; ++k) {
-      if (open_direction(surfels_, i, k).dot(towards) > neighbour_cosine) {
+    const std::array<Vector3f, direction_count> directions = open_directions(surfels_, i);
+    for (std::size_t k = 0; k < direction_count; ++k) {
+      if (directions[k].dot(towards) > neighbour_cosine) {
         surfels_.open_directions[i] &= static_cast<std::uint8_t>(~(1U << k));
       }
     }

@@ -17,15 +17,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-std::vector<Reader> all_readers() {
-  std::vector<Reader> all;
-  for (const auto readers :
-       {surface_readers(), route_readers(), prior_readers(), mission_readers()}) {
-    all.insert(all.end(), readers.begin(), readers.end());
-  }
-  return all;
-}
-
 std::vector<fs::path> corpus_of(const Reader& reader) {
   std::vector<fs::path> files;
   for (const auto& entry : fs::directory_iterator(fs::path(FUZZ_CORPUS) / reader.name)) {

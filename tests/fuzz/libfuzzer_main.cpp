@@ -8,18 +8,18 @@
 
 namespace {
 
-const skycap::fuzz::Reader* reader = nullptr;
+skycap::fuzz::Reader reader;
 
 }  // namespace
 
 extern "C" int LLVMFuzzerInitialize(int*, char***) {
   const char* name = std::getenv("FUZZ_READER");
-  reader = name == nullptr ? nullptr : skycap::fuzz::find_reader(name);
-  if (reader != nullptr) return 0;
+  if (name != nullptr) reader = skycap::fuzz::find_reader(name);
+  if (reader.run != nullptr) return 0;
   std::fputs("FUZZ_READER must name a folder of tests/fuzz/corpus\n", stderr);
   std::exit(2);
 }
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* bytes, std::size_t size) {
-  return reader->run(bytes, size);
+  return reader.run(bytes, size);
 }

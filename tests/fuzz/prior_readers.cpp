@@ -59,7 +59,31 @@ int run_cityjson(const std::uint8_t* bytes, std::size_t size) {
              [](const std::string& text) { return prior::parse_cityjson("city.json", text); });
 }
 
-constexpr Reader readers[] = {{"citygml", run_citygml}, {"cityjson", run_cityjson}};
+/// An earlier scan, thinned while it is read.
+int run_scan(const char* name, const std::uint8_t* bytes, std::size_t size) {
+  return run_reader(name, [&] {
+    prior::Source source;
+    source.file = file_with(name, text_of(bytes, size));
+    source.place = prior::Place{};
+    const prior::Prior known = prior::read_prior(source, {});
+    require(!known.box.isEmpty(), "a prior of nothing");
+    for (const Eigen::Vector3f& point : known.points) {
+      require(geometry::is_place(point.cast<double>()), "a point out of the world");
+    }
+  });
+}
+
+constexpr Reader readers[] = {
+    {"citygml", run_citygml},
+    {"cityjson", run_cityjson},
+    {"prior_las", [](const std::uint8_t* b, std::size_t n) { return run_scan("site.las", b, n); }},
+    {"prior_e57",
+     [](const std::uint8_t* b, std::size_t n) {
+       const std::string sealed = sealed_e57(text_of(b, n));
+       return run_scan("site.e57", reinterpret_cast<const std::uint8_t*>(sealed.data()),
+                       sealed.size());
+     }},
+};
 
 }  // namespace
 

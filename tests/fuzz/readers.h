@@ -10,22 +10,28 @@
 #include <cstdint>
 #include <span>
 #include <string_view>
+#include <vector>
 
 namespace skycap::fuzz {
 
 struct Reader {
   std::string_view name;  ///< of its corpus, too
   /// Always 0, as libFuzzer wants it. Throws std::logic_error for a finding.
-  int (*run)(const std::uint8_t* bytes, std::size_t size);
+  int (*run)(const std::uint8_t* bytes, std::size_t size) = nullptr;
 };
 
 std::span<const Reader> surface_readers();  ///< meshes, clouds, measured free space
 std::span<const Reader> route_readers();    ///< autopilots' files, trajectories, parameters
-std::span<const Reader> prior_readers();    ///< city models
+std::span<const Reader> prior_readers();    ///< city models, earlier scans
+std::span<const Reader> link_readers();     ///< MAVLink, messages of live surveys
+std::span<const Reader> record_readers();   ///< recordings, journals, results
 std::span<const Reader>
 mission_readers();  ///< missions, campaigns, sensors, packages, trials, journals
 
-/// The reader of that name, or null.
-const Reader* find_reader(std::string_view name);
+/// All of them.
+std::vector<Reader> all_readers();
+
+/// The reader of that name; its `run` is null if there is none.
+Reader find_reader(std::string_view name);
 
 }  // namespace skycap::fuzz

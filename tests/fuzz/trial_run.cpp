@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <fstream>
 
+#include "geometry/io/e57/pages.h"
 #include "tests/fuzz/readers.h"
 #include "tests/support/temporary_folder.h"
 
@@ -31,13 +32,27 @@ fs::path file_with(std::string_view name, std::string_view bytes) {
   return path;
 }
 
-const Reader* find_reader(std::string_view name) {
-  for (const auto readers :
-       {surface_readers(), route_readers(), prior_readers(), mission_readers()}) {
-    const auto found = std::ranges::find(readers, name, &Reader::name);
-    if (found != readers.end()) return &*found;
+std::string sealed_e57(const std::string& pages) {
+  std::string content;
+  for (std::size_t begin = 0; begin < pages.size(); begin += geometry::e57::page_size) {
+    content += pages.substr(begin, geometry::e57::page_content);
   }
-  return nullptr;
+  return geometry::e57::sealed(content);
+}
+
+std::vector<Reader> all_readers() {
+  std::vector<Reader> all;
+  for (const auto readers : {surface_readers(), route_readers(), prior_readers(), link_readers(),
+                             record_readers(), mission_readers()}) {
+    all.insert(all.end(), readers.begin(), readers.end());
+  }
+  return all;
+}
+
+Reader find_reader(std::string_view name) {
+  const std::vector<Reader> all = all_readers();
+  const auto found = std::ranges::find(all, name, &Reader::name);
+  return found == all.end() ? Reader{} : *found;
 }
 
 }  // namespace skycap::fuzz

@@ -39,4 +39,8 @@ std::filesystem::path fresh_folder();
 /// The path of a file of that name with these bytes, in a folder of this process.
 std::filesystem::path file_with(std::string_view name, std::string_view bytes);
 
+/// An E57 file with checksums that agree, whatever was changed: else nothing behind them would be
+/// read.
+std::string sealed_e57(const std::string& pages);
+
 }  // namespace skycap::fuzz

@@ -39,8 +39,9 @@ Rooms house() {
     rooms[room] = std::move(others);
   };
   add("sim/scene", {});
-  add("sim/models/masonry", {});
-  add("sim/models", {"sim/models/masonry"});
+  add("sim/models/masonry", {"sim/scene"});
+  add("sim/models/families", {"sim/models/masonry", "sim/scene"});
+  add("sim/models", {"sim/models/masonry", "sim/models/families", "sim/scene"});
   add("sim/sensors", {"sim/scene"});
 
   add("survey", {});

@@ -76,7 +76,7 @@ struct FileContents {
 };
 
 /// Most corners, points and nodes that a file may have: 32 bits count them.
-inline constexpr std::size_t most_polygons = 50'000'000, most_cells = 100'000'000,
+inline constexpr std::size_t most_polygons = 50'000'000, most_cells = 40'000'000,
                              most_corners = 1'000'000'000, most_bytes = std::size_t{2} << 30;
 
 /// What a file says, for a message: line ends and other control characters become blanks.

@@ -64,7 +64,7 @@ extern "C" void skycap_read_raster(const std::filesystem::path& file, FileConten
   const std::size_t cells =
       static_cast<std::size_t>(band->GetXSize()) * static_cast<std::size_t>(band->GetYSize());
   if (cells > most_cells) {
-    fail_file(file, "has " + std::to_string(cells) + " cells; at most 100 million are read");
+    fail_file(file, "has " + std::to_string(cells) + " cells; at most 40 million are read");
   }
   contents.columns = static_cast<std::size_t>(band->GetXSize());
   contents.rows = static_cast<std::size_t>(band->GetYSize());

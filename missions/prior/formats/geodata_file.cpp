@@ -18,11 +18,4 @@ FileContents read_raster(const std::filesystem::path& file) {
   return contents;
 }
 
-FileContents read_scene(const std::filesystem::path& file) {
-  using Read = void(const std::filesystem::path&, FileContents&);
-  FileContents contents;
-  plugins::module_function<Read>("libskycap_assimp.so", "skycap_read_scene")(file, contents);
-  return contents;
-}
-
 }  // namespace skycap::missions::prior

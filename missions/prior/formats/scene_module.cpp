@@ -1,14 +1,16 @@
-// Scenes by assimp; geodata_file.cpp loads the module.
+// Scenes by assimp; scene_file.cpp loads the module, in a process of its own.
 #include <algorithm>
 #include <cmath>
 #include <string>
+#include <vector>
 
 #include <assimp/DefaultIOSystem.h>
 #include <assimp/Importer.hpp>
 #include <assimp/postprocess.h>
 #include <assimp/scene.h>
 
-#include "missions/prior/formats/geodata_file.h"
+#include "missions/prior/formats/file_contents.h"
+#include "missions/prior/formats/scene_nodes.h"
 
 namespace skycap::missions::prior {
 namespace {
@@ -45,18 +47,19 @@ Eigen::Affine3d affine_of(const aiMatrix4x4& m) {
 
 class SceneReader {
  public:
-  SceneReader(const std::filesystem::path& file, const aiScene& scene, FileContents& contents)
-      : file_(file), scene_(scene), contents_(contents) {}
+  SceneReader(const std::filesystem::path& file, const aiScene& scene,
+              std::vector<SceneNode>& nodes)
+      : file_(file), scene_(scene), nodes_(nodes) {}
 
   void read(const aiNode& node, const Eigen::Affine3d& world_from_parent,
             std::optional<std::size_t> parent, int depth);
 
  private:
-  void add_mesh(const aiMesh& mesh, const Eigen::Affine3d& world_from_node, FileObject& object);
+  void add_mesh(const aiMesh& mesh, const Eigen::Affine3d& world_from_node, SceneNode& object);
 
   const std::filesystem::path& file_;
   const aiScene& scene_;
-  FileContents& contents_;
+  std::vector<SceneNode>& nodes_;
   std::size_t triangles_ = 0;
 };
 
@@ -64,8 +67,8 @@ void SceneReader::read(const aiNode& node, const Eigen::Affine3d& world_from_par
                        std::optional<std::size_t> parent, int depth) {
   if (depth > deepest) fail_file(file_, "has nodes nested deeper than 60");
   const Eigen::Affine3d world_from_node = world_from_parent * affine_of(node.mTransformation);
-  const std::size_t index = contents_.objects.size();
-  FileObject& object = contents_.objects.emplace_back();
+  const std::size_t index = nodes_.size();
+  SceneNode& object = nodes_.emplace_back();
   object.id = node.mName.length > 0 ? node.mName.C_Str() : std::to_string(index + 1);
   object.parent = parent;
   for (unsigned i = 0; i < node.mNumMeshes; ++i) {
@@ -77,7 +80,7 @@ void SceneReader::read(const aiNode& node, const Eigen::Affine3d& world_from_par
 }
 
 void SceneReader::add_mesh(const aiMesh& mesh, const Eigen::Affine3d& world_from_node,
-                           FileObject& object) {
+                           SceneNode& object) {
   triangles_ += mesh.mNumFaces;
   if (triangles_ > most_polygons) fail_file(file_, "has more than 50 million polygons");
   const auto first = static_cast<std::uint32_t>(object.mesh.vertices.size());
@@ -103,7 +106,8 @@ void SceneReader::add_mesh(const aiMesh& mesh, const Eigen::Affine3d& world_from
 
 }  // namespace
 
-extern "C" void skycap_read_scene(const std::filesystem::path& file, FileContents& contents) {
+extern "C" void skycap_read_scene(const std::filesystem::path& file,
+                                  std::vector<SceneNode>& nodes) {
   Assimp::Importer importer;
   importer.SetIOHandler(new OneFolder(file));  // the importer owns it
   const aiScene* const scene =
@@ -114,10 +118,7 @@ extern "C" void skycap_read_scene(const std::filesystem::path& file, FileContent
     std::ranges::replace(complaint, '\n', ' ');
     fail_file(file, "cannot be read (assimp: " + complaint.substr(0, 300) + ")");
   }
-  contents.is_scene = true;
-  contents.is_y_up = true;
-  contents.unit = 1.0;
-  SceneReader(file, *scene, contents).read(*scene->mRootNode, Eigen::Affine3d::Identity(), {}, 0);
+  SceneReader(file, *scene, nodes).read(*scene->mRootNode, Eigen::Affine3d::Identity(), {}, 0);
 }
 
 }  // namespace skycap::missions::prior

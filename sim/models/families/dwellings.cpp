@@ -5,9 +5,9 @@
 #include <numbers>
 #include <utility>
 
-#include "sim/models/city_buildings.h"
 #include "sim/models/families/families.h"
 #include "sim/models/masonry/elements.h"
+#include "sim/models/masonry/tree.h"
 
 namespace skycap::sim::models {
 namespace {
@@ -129,8 +129,8 @@ FamilyScene hollow_house(Draw& draw, const Fineness&) {
   for (int i = 0; i < upper; ++i) {
     const AlignedBox3d room(Vector3d(x0, y0, level + wall),
                             Vector3d(0.5 * width, y1, level + wall + 2.8));
-    parts.push_back({"ceiling", block(0.0, 0.0, width + 2.0 * wall, depth + 2.0 * wall, level,
-                                      level + wall)});
+    parts.push_back(
+        {"ceiling", block(0.0, 0.0, width + 2.0 * wall, depth + 2.0 * wall, level, level + wall)});
     add_walls(room, wall, 0.0, 0.0, parts);
     scene.sealed_rooms.push_back(room);
     level += wall + 2.8;
@@ -153,7 +153,7 @@ FamilyScene grove(Draw& draw, const Fineness& fineness) {
     const double x = std::cos(angle), y = std::sin(angle);
     const double reach = std::min(0.5 * width / std::max(1e-9, std::abs(x)),
                                   0.5 * depth / std::max(1e-9, std::abs(y)));
-    Parts tree = city::tree(height, draw, fineness);
+    Parts tree = models::tree(height, draw, fineness);
     add_at(std::move(tree), 0.0, {(reach + gap) * x, (reach + gap) * y, 0.0}, scene.parts);
   }
   return scene;

@@ -1,6 +1,6 @@
-/// Families of scenes that find the weaknesses of planners: hollow, thin, tall, narrow, glassy. Each
-/// is drawn from a seed, with sizes within stated ranges, stands on z = 0 around the origin, and is
-/// at most 65 m long and 55 m high. What is true of them by construction is told with them.
+/// Families of scenes that find the weaknesses of planners: hollow, thin, tall, narrow, glassy.
+/// Each is drawn from a seed, with sizes within stated ranges, stands on z = 0 around the origin,
+/// and is at most 65 m long and 55 m high. What is true of them by construction is told with them.
 #pragma once
 
 #include <array>
@@ -11,7 +11,7 @@
 
 #include <Eigen/Geometry>
 
-#include "sim/models/draw.h"
+#include "sim/models/masonry/draw.h"
 #include "sim/models/masonry/solids.h"
 
 namespace skycap::sim::models {

@@ -47,8 +47,9 @@ void add_nave(double length, double nave, double aisle, double eaves, int bays, 
   parts.push_back({"nave roof", gabled_roof(length, nave, eaves, 1.2)});
   for (const double side : {1.0, -1.0}) {
     const double inner = 0.5 * nave - 0.1, outer = 0.5 * nave + aisle;
-    const Mesh body = extrude({{inner, 0.0}, {outer, 0.0}, {outer, low}, {inner, low + 0.5 * aisle}},
-                              -0.5 * length + 0.2, 0.5 * length - 0.2);
+    const Mesh body =
+        extrude({{inner, 0.0}, {outer, 0.0}, {outer, low}, {inner, low + 0.5 * aisle}},
+                -0.5 * length + 0.2, 0.5 * length - 0.2);
     // A half turn brings it to the other side; the buttresses are made for the wall to -y.
     parts.push_back({"aisle", side > 0.0 ? body : turned(body, pi)});
     for (int i = 0; i <= bays; ++i) {
@@ -85,19 +86,19 @@ FamilyScene church(Draw& draw, const Fineness& fineness) {
   const double spire = draw.between(12.0, 18.0), x = -0.5 * length - 0.5 * side + 0.3;
   parts.push_back({"tower", block(x, 0.0, side, side, 0.0, top)});
   parts.push_back({"belfry cornice", block(x, 0.0, side + 0.7, side + 0.7, top - 0.6, top)});
-  const Mesh pyramid = loft({level_rectangle(0.9 * side, 0.9 * side, top),
-                             level_rectangle(0.06, 0.06, top + spire)});
+  const Mesh pyramid = loft(
+      {level_rectangle(0.9 * side, 0.9 * side, top), level_rectangle(0.06, 0.06, top + spire)});
   parts.push_back({"spire", moved(pyramid, {x, 0.0, 0.0})});
   for (int i = 0; i < 4; ++i) {
     const double dx = i % 2 == 0 ? -1.0 : 1.0, dy = i / 2 == 0 ? -1.0 : 1.0;
     const double at = 0.5 * side - 0.2;
-    const Mesh corner = loft({level_rectangle(0.8, 0.8, top - 0.2),
-                              level_rectangle(0.8, 0.8, top + 1.6),
-                              level_rectangle(0.05, 0.05, top + 3.6)});
+    const Mesh corner =
+        loft({level_rectangle(0.8, 0.8, top - 0.2), level_rectangle(0.8, 0.8, top + 1.6),
+              level_rectangle(0.05, 0.05, top + 3.6)});
     parts.push_back({"pinnacle", moved(corner, {x + dx * at, dy * at, 0.0})});
     // Openings of the belfry: blind, sunk behind a frame of two jambs and a head.
-    parts.push_back({"jamb", block(x + dx * 1.2, dy * (0.5 * side + 0.1), 0.3, 0.3, top - 6.0,
-                                   top - 1.0)});
+    parts.push_back(
+        {"jamb", block(x + dx * 1.2, dy * (0.5 * side + 0.1), 0.3, 0.3, top - 6.0, top - 1.0)});
   }
   return scene;
 }
@@ -117,31 +118,29 @@ FamilyScene statue(Draw& draw, const Fineness& fineness) {
   const double s = draw.between(3.6, 5.0), turn = draw.between(0.0, 2.0 * pi);
   const int chords = std::max(16, fineness.circle(0.3 * s));
   Parts figure;
-  figure.push_back({"robe", revolve({{0.0, 0.0},
-                                     {0.34 * s, 0.0},
-                                     {0.27 * s, 0.45 * s},
-                                     {0.17 * s, 1.0 * s},
-                                     {0.0, 1.0 * s}},
-                                    chords)});
+  figure.push_back(
+      {"robe",
+       revolve(
+           {{0.0, 0.0}, {0.34 * s, 0.0}, {0.27 * s, 0.45 * s}, {0.17 * s, 1.0 * s}, {0.0, 1.0 * s}},
+           chords)});
   figure.push_back({"torso", loft({level_rectangle(0.32 * s, 0.2 * s, 0.95 * s),
                                    level_rectangle(0.5 * s, 0.26 * s, 1.4 * s),
                                    level_rectangle(0.2 * s, 0.16 * s, 1.5 * s)})});
-  figure.push_back({"head", moved(revolve(Profile(fineness, 0.0, 0.0)
-                                              .arc_to(0.0, 0.28 * s, pi)
-                                              .points(),
-                                          chords),
-                                  {0.0, 0.0, 1.47 * s})});
+  figure.push_back(
+      {"head",
+       moved(revolve(Profile(fineness, 0.0, 0.0).arc_to(0.0, 0.28 * s, pi).points(), chords),
+             {0.0, 0.0, 1.47 * s})});
   const Vector3d left(-0.24 * s, 0.0, 1.38 * s), right(0.24 * s, 0.0, 1.38 * s);
   const Vector3d elbow(-0.42 * s, -0.12 * s, 1.5 * s), hand(-0.4 * s, -0.2 * s, 1.85 * s);
   figure.push_back({"arm", bar(left, elbow, 0.06 * s, fineness)});
   figure.push_back({"arm", bar(elbow, hand, 0.05 * s, fineness)});
   const Vector3d grip(0.5 * s, -0.25 * s, 1.15 * s);
   figure.push_back({"arm", bar(right, grip, 0.06 * s, fineness)});
-  figure.push_back({"staff", bar({grip.x(), grip.y(), 0.0}, {grip.x(), grip.y(), 2.1 * s},
-                                 0.02 * s, fineness)});
+  figure.push_back(
+      {"staff", bar({grip.x(), grip.y(), 0.0}, {grip.x(), grip.y(), 2.1 * s}, 0.02 * s, fineness)});
   for (Part& part : figure) {
-    parts.push_back({std::move(part.name), moved(turned(std::move(part.mesh), turn),
-                                                 {0.0, 0.0, plinth - 0.05})});
+    parts.push_back({std::move(part.name),
+                     moved(turned(std::move(part.mesh), turn), {0.0, 0.0, plinth - 0.05})});
   }
   return scene;
 }

@@ -57,9 +57,9 @@ void add_pipe_rack(double length, double y, Draw& draw, const Fineness& fineness
     double at = -1.4;
     while (at < 1.1) {
       const double radius = draw.between(0.12, 0.32);
-      parts.push_back({"pipe", bar({-half - 0.8, y + at + radius, level + radius},
-                                   {half + 0.8, y + at + radius, level + radius}, radius,
-                                   fineness)});
+      parts.push_back(
+          {"pipe", bar({-half - 0.8, y + at + radius, level + radius},
+                       {half + 0.8, y + at + radius, level + radius}, radius, fineness)});
       at += 2.0 * radius + draw.between(0.15, 0.35);
     }
   }
@@ -93,8 +93,8 @@ std::vector<Span> draw_spans(int count, double widest, double pier, Draw& draw) 
 }
 
 /// The outline in (y, z) of what stands on a bridge's piers: a deck on arches.
-Polyline2 arched_outline(const std::vector<Span>& spans, double springing, double deck,
-                         double end, const Fineness& fineness) {
+Polyline2 arched_outline(const std::vector<Span>& spans, double springing, double deck, double end,
+                         const Fineness& fineness) {
   Profile outline(fineness, -end, deck);
   outline.to(-end, springing);
   for (const Span& span : spans) {
@@ -156,10 +156,8 @@ FamilyScene lattice_tower(Draw& draw, const Fineness& fineness) {
     for (int side = 0; side < 4; ++side) {
       const int next = (side + 1) % 4;
       parts.push_back({"leg", bar(corner(level, side), corner(level + 1, side), 0.17, fineness)});
-      parts.push_back(
-          {"brace", bar(corner(level, side), corner(level + 1, next), 0.08, fineness)});
-      parts.push_back(
-          {"brace", bar(corner(level, next), corner(level + 1, side), 0.08, fineness)});
+      parts.push_back({"brace", bar(corner(level, side), corner(level + 1, next), 0.08, fineness)});
+      parts.push_back({"brace", bar(corner(level, next), corner(level + 1, side), 0.08, fineness)});
       parts.push_back(
           {"strut", bar(corner(level + 1, side), corner(level + 1, next), 0.1, fineness)});
     }
@@ -186,8 +184,8 @@ FamilyScene garage(Draw& draw, const Fineness&) {
   const int columns = static_cast<int>(width / 7.0);
   for (int i = 0; i < decks; ++i) {
     const double z = i * storey;  // of the deck's upper side
-    parts.push_back({"deck", block(0.0, 0.0, width, depth, z == 0.0 ? 0.0 : z - slab,
-                                   z == 0.0 ? 0.1 : z)});
+    parts.push_back(
+        {"deck", block(0.0, 0.0, width, depth, z == 0.0 ? 0.0 : z - slab, z == 0.0 ? 0.1 : z)});
     for (const double side : {-1.0, 1.0}) {
       const double x = side * (0.5 * width - 0.1), y = side * (0.5 * depth - 0.1);
       parts.push_back({"parapet", block(0.0, y, width, 0.2, std::max(z, 0.1), z + parapet)});
@@ -197,13 +195,11 @@ FamilyScene garage(Draw& draw, const Fineness&) {
     for (int j = 0; j <= columns; ++j) {
       const double x = (width - 1.0) * (static_cast<double>(j) / columns - 0.5);
       for (const double y : {-0.5 * depth + 0.5, 0.0, 0.5 * depth - 0.5}) {
-        parts.push_back(
-            {"column", block(x, y, 0.45, 0.45, std::max(z, 0.1), z + storey - slab)});
+        parts.push_back({"column", block(x, y, 0.45, 0.45, std::max(z, 0.1), z + storey - slab)});
       }
     }
-    scene.open_rooms.emplace_back(
-        Vector3d(-0.5 * width, -0.5 * depth, std::max(z, 0.1)),
-        Vector3d(0.5 * width, 0.5 * depth, z + storey - slab));
+    scene.open_rooms.emplace_back(Vector3d(-0.5 * width, -0.5 * depth, std::max(z, 0.1)),
+                                  Vector3d(0.5 * width, 0.5 * depth, z + storey - slab));
   }
   parts.push_back({"stair tower", block(0.5 * width + 2.2, draw.between(-4.0, 4.0), 4.4, 5.0, 0.0,
                                         decks * storey + 1.5)});

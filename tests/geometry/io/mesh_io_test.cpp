@@ -257,6 +257,20 @@ TEST_F(MeshIo, DracoIsDecoded) {
   EXPECT_NEAR(volume(mesh), pyramid_volume, 1e-4);
 }
 
+// Draco would read any byte as true or false, which none but 0 and 1 are.
+TEST_F(MeshIo, DracoOfTruthsInPlaceOfPlacesIsRefused) {
+  constexpr std::string_view digits =
+      "445241434f02020100000004040100010200020302012a0100030101000b03000000000000000000"
+      "000000001f8b000000000000803f000000000000803f000000000000000000000800000000000000"
+      "803f";
+  std::string bytes;
+  for (std::size_t i = 0; i < digits.size(); i += 2) {
+    bytes.push_back(static_cast<char>(std::stoi(std::string(digits.substr(i, 2)), nullptr, 16)));
+  }
+  EXPECT_THAT([&] { read("bools.drc", bytes); },
+              testing::ThrowsMessage<Error>(HasSubstr("has positions of an unknown type")));
+}
+
 TEST_F(MeshIo, ReaderSaysWhatIsWrongWithAFile) {
   const auto ply = [](std::string_view rest) {
     return "ply\nformat ascii 1.0\n" + std::string(rest);

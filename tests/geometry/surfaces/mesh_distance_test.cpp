@@ -9,6 +9,7 @@
 #include <gtest/gtest.h>
 
 #include "geometry/error.h"
+#include "tests/support/instruction_sets.h"
 
 namespace skycap::geometry {
 namespace {
@@ -75,18 +76,38 @@ TEST(MeshDistance, OfPointsEqualsBruteForce) {
   }
 }
 
-// Whatever was looked for before: in the order of a scan, and jumping about.
+/// Holds distances of many at once against those of each, with every instruction set.
+void expect_those_of_each(const Mesh& mesh, const std::vector<Eigen::Vector3f>& points) {
+  const MeshDistance surface(mesh);
+  for (const InstructionSet widest : instruction_sets()) {
+    const InstructionSetLimit limit(widest);
+    std::vector<double> distances(points.size());
+    surface.distances(points, distances, 2);
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      ASSERT_EQ(distances[i], surface.distance(points[i].cast<double>())) << i;
+    }
+  }
+}
+
+// However they lie: in the order of a scan, jumping about, far away, on corners and edges.
 TEST(MeshDistance, OfManyPointsEqualsThatOfEach) {
   std::mt19937_64 random(2);
   const Mesh mesh = random_soup(random, 200);
-  const MeshDistance surface(mesh);
   std::vector<Eigen::Vector3f> points;
   for (int i = 0; i < 500; ++i) points.push_back(random_point(random, 3.0).cast<float>());
   for (int i = 0; i < 500; ++i) points.emplace_back(0.01F * float(i) - 2.5F, 0.3F, 0.1F);
-  std::vector<double> distances(points.size());
-  surface.distances(points, distances);
-  for (std::size_t i = 0; i < points.size(); ++i) {
-    EXPECT_EQ(distances[i], surface.distance(points[i].cast<double>())) << i;
+  for (int i = 0; i < 500; ++i) points.push_back(random_point(random, 200.0).cast<float>());
+  for (const Vector3d& vertex : mesh.vertices) points.push_back(vertex.cast<float>());
+  expect_those_of_each(mesh, points);
+}
+
+TEST(MeshDistance, OfFewPointsEqualsThatOfEach) {
+  std::mt19937_64 random(6);
+  const Mesh mesh = random_soup(random, 3);
+  for (const int count : {0, 1, 15, 17}) {
+    std::vector<Eigen::Vector3f> points;
+    for (int i = 0; i < count; ++i) points.push_back(random_point(random, 3.0).cast<float>());
+    expect_those_of_each(mesh, points);
   }
 }
 
@@ -115,6 +136,7 @@ TEST(MeshDistance, HasTheAnswersOfNeedles) {
     needles.triangles.push_back({first, first + 1, first + 2});
   }
   const MeshDistance surface(needles);
+  std::vector<Eigen::Vector3f> points;
   for (int i = 0; i < 200; ++i) {
     const Vector3d p = random_point(random, 3.0);
     double nearest = std::numeric_limits<double>::infinity();
@@ -125,7 +147,9 @@ TEST(MeshDistance, HasTheAnswersOfNeedles) {
       nearest = std::min(nearest, (from_a - t * edge).norm());
     }
     EXPECT_NEAR(surface.distance(p), nearest, 1e-8);
+    points.push_back(p.cast<float>());
   }
+  expect_those_of_each(needles, points);
 }
 
 TEST(MeshDistance, NamesTheFirstOfEquallyNearTriangles) {

@@ -48,7 +48,7 @@ TEST(MissionReader, SetsEachKeyToWhatItGivesBack) {
     file::KeyValue value;
     switch (key.type) {
       case file::KeyType::text:
-        value = std::string("builtin:teapot");
+        value = std::string("builtin:city-block");
         break;
       case file::KeyType::boolean:
         value = true;

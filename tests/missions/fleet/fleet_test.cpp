@@ -166,6 +166,7 @@ TEST(Fleet, SpoiledRowsAreRefusedWithTheirLine) {
   EXPECT_THAT(complaint(3, 3, "0"), HasSubstr("timetable.csv:3: sortie is \"0\""));
   EXPECT_THAT(complaint(3, 4, "fleet-1.plan"), HasSubstr("is not one of fleet-2.*"));
   EXPECT_THAT(complaint(3, 4, "fleet-2.plan"), HasSubstr("fleet-2.plan"));
+  EXPECT_THAT(complaint(3, 4, "fleet-2.plan/../../x.plan"), HasSubstr("is not one of fleet-2.*"));
   EXPECT_THAT(complaint(2, 5, "soon"), HasSubstr("timetable.csv:2: start_s is \"soon\""));
   EXPECT_THAT(complaint(2, 6, "-1"), HasSubstr("timetable.csv:2: it does not land after"));
   EXPECT_THAT(complaint(2, 9, "1e300"), HasSubstr("timetable.csv:2: pad"));

@@ -28,7 +28,8 @@ bool leads_inside(const geometry::Mesh& mesh, const ReachableSpace::Config& conf
                   const Vector3d& place = {0, 0, 5}) {
   const geometry::MeshDistance distance(mesh);
   const auto joins = keeping(std::max(config.radius, 1e-9), distance);
-  return ReachableSpace(mesh, config, joins).leads_to(place, joins);
+  return ReachableSpace(distance, geometry::bounding_box(mesh), config, joins)
+      .leads_to(place, joins);
 }
 
 TEST(ReachableSpace, HasNoSealedRooms) {
@@ -72,9 +73,12 @@ TEST(ReachableSpace, BeginsAtTheStart) {
 TEST(ReachableSpace, IsEmptyWhereTheStartIsEnclosed) {
   const geometry::Mesh mesh = room_mesh({});
   const auto nowhere = [](const Vector3d&, const Vector3d&) { return false; };
-  EXPECT_TRUE(
-      ReachableSpace(mesh, {.radius = 1.0, .start = Vector3d(10.25, 0, 5)}, nowhere).is_empty());
-  EXPECT_FALSE(ReachableSpace(mesh, {.radius = 1.0}, nowhere).is_empty());
+  const geometry::MeshDistance surface(mesh);
+  const auto is_empty = [&](const ReachableSpace::Config& config) {
+    return ReachableSpace(surface, geometry::bounding_box(mesh), config, nowhere).is_empty();
+  };
+  EXPECT_TRUE(is_empty({.radius = 1.0, .start = Vector3d(10.25, 0, 5)}));
+  EXPECT_FALSE(is_empty({.radius = 1.0}));
 }
 
 // A bell that is open below: a way leads in under its rim, unless that is too low.
@@ -153,7 +157,7 @@ TEST(ReachableSpace, LiesBetweenAStricterAndALooserGrid) {
       distances.push_back(distance.distance(GridFlood::place(i)));
     }
     const auto joins = keeping(radius, distance);
-    const ReachableSpace space(mesh, {.radius = radius}, joins);
+    const ReachableSpace space(distance, geometry::bounding_box(mesh), {.radius = radius}, joins);
     const GridFlood stricter(distances, radius + 1.74 * space.cell() + 0.5 * GridFlood::step);
     const GridFlood looser(distances, radius - 0.87 * GridFlood::step);
     std::size_t inside = 0, kept_out = 0;
@@ -174,8 +178,10 @@ TEST(ReachableSpace, IsTheSameForAnyNumberOfThreads) {
   const geometry::Mesh mesh = cluttered_room(5);
   const geometry::MeshDistance distance(mesh);
   const auto joins = keeping(0.8, distance);
-  const ReachableSpace one(mesh, {.radius = 0.8, .threads = 1}, joins);
-  const ReachableSpace three(mesh, {.radius = 0.8, .threads = 3}, joins);
+  const ReachableSpace one(distance, geometry::bounding_box(mesh), {.radius = 0.8, .threads = 1},
+                           joins);
+  const ReachableSpace three(distance, geometry::bounding_box(mesh), {.radius = 0.8, .threads = 3},
+                             joins);
   EXPECT_EQ(one.size(), three.size());
   std::mt19937_64 random(1);
   std::uniform_real_distribution<double> uniform(-15.0, 15.0);

@@ -1,6 +1,7 @@
 #include "missions/live/live_survey.h"
 
 #include <filesystem>
+#include <fstream>
 #include <string>
 #include <vector>
 
@@ -11,6 +12,7 @@
 #include "geometry/error.h"
 #include "geometry/io/record_log.h"
 #include "missions/live/open_survey.h"
+#include "missions/scene/sha256.h"
 #include "tests/missions/flown_mission.h"
 #include "tests/missions/live/rehearsal.h"
 #include "tests/missions/run_skycap.h"
@@ -243,6 +245,42 @@ TEST(LiveSurvey, RefusesWhatItCannotTrust) {
   bytes.back() ^= 1;
   std::ofstream(scan, std::ios::binary) << bytes;
   EXPECT_THAT(complaint_of([&] { rehearsal.open(folder.path()); }), HasSubstr("is damaged"));
+}
+
+/// Writes the one scan of a survey's folder anew, and its digest in the journal.
+void replace_scan(const fs::path& folder, const std::string& bytes) {
+  const fs::path scan = fs::directory_iterator(folder / "scans")->path(),
+                 journal = folder / "live.journal";
+  const std::string digest = scene::sha256_of_file(scan);
+  std::ofstream(scan, std::ios::binary) << bytes;
+  const std::vector<std::string> records = geometry::read_records(journal).records;
+  fs::remove(journal);
+  geometry::RecordLog log(journal);
+  for (std::string record : records) {
+    const std::size_t at = record.find(digest);
+    if (at != std::string::npos) record.replace(at, digest.size(), scene::sha256_of_file(scan));
+    log.append(record);
+  }
+}
+
+/// As somebody else's folder may be, whose digests are right.
+TEST(LiveSurvey, RefusesKeptScansThatItWouldNeverHaveKept) {
+  const Rehearsal rehearsal(tests::quick_mission());
+  const auto complaint = [&](const std::string& part, const std::string& to) {
+    const tests::TestFolder folder;
+    {
+      LiveSurvey survey = rehearsal.open(folder.path());
+      rehearsal.add_one(survey);
+    }
+    std::string bytes = content_of(fs::directory_iterator(folder.path() / "scans")->path());
+    // The last four bytes are the last pixel.
+    const std::size_t at = part.empty() ? bytes.size() - to.size() : bytes.find(part);
+    bytes.replace(at, to.size(), to);
+    replace_scan(folder.path(), bytes);
+    return complaint_of([&] { rehearsal.open(folder.path()); });
+  };
+  EXPECT_THAT(complaint("float y", "float w"), HasSubstr(".ply: is not a scan of a survey"));
+  EXPECT_THAT(complaint("", "\xff\xff\xff\x7f"), HasSubstr(".ply: cannot be used: "));
 }
 
 /// As from a program that plans otherwise.

@@ -5,6 +5,7 @@
 
 #include "geometry/error.h"
 #include "tests/missions/prior/cube_files.h"
+#include "tests/support/complaint.h"
 #include "tests/support/temporary_folder.h"
 
 namespace skycap::missions::prior {
@@ -94,6 +95,26 @@ TEST_F(BrokenFiles, OfNoFormatAreToldWhichThereAre) {
   EXPECT_THROW(read_prior(source, site_at_cube()), Error);
   source.file = folder_.path();
   EXPECT_THROW(read_prior(source, site_at_cube()), Error);
+}
+
+// The first crashes assimp 5.2 itself, the second has it take memory without end; it
+// therefore runs in a process of its own.
+TEST_F(BrokenFiles, ThatMakeTheirLibraryCrashOrLoopAreRefused) {
+  const auto complaint = [&](const std::string& name, const std::string& bytes) {
+    return complaint_of([&] { read_prior(source_of(folder_.file(name, bytes)), site_at_cube()); });
+  };
+  EXPECT_EQ(complaint("cut.ifc",
+                      "ISO-10303-21;\nFILE_SCHEMA(('IFC2X3'));\nDATA;\n"
+                      "#6=IFCPROJECT('0YvctVUKr0kugbFTf53O9L',#11,'p',$,$,$,$,(#5),#2);\n"
+                      "#8=IFCSITE"),
+            (folder_.path() / "cut.ifc").string() + ": is damaged: assimp ends within it");
+  EXPECT_THAT(
+      complaint("loop.dae",
+                R"(<COLLADA version="1.4.1"><asset></asset><library_geometries><geometry id="g">)"
+                R"(<mesh><source id="p"><float_array count="3">0 0 0</float_array></source>)"
+                R"(<vertices id="v"></vertices><triangles count="12"><p>0 1e999 3</p></triangles>)"
+                R"(</mesh></geometry></library_geometries></COLLADA>)"),
+      testing::StartsWith((folder_.path() / "loop.dae").string() + ": "));
 }
 
 }  // namespace

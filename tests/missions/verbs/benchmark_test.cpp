@@ -147,6 +147,31 @@ TEST_F(BenchmarkVerb, RefusesPlannersThatItDoesNotKnow) {
   EXPECT_THAT(result.err, HasSubstr("there is no planner 'frontier'; give all or some of see++"));
 }
 
+TEST_F(BenchmarkVerb, DrawsASceneOfAFamilyForEachSeed) {
+  const ProgramRun result =
+      run("see", {"--scenes", "fences,statue", "--max-views", "1", "--set",
+                  "evaluation.samples=1000", "--set", "scene.longest_side=1", "--no-report"});
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  const Json manifest = Json::parse(content_of(folder_.path() / "out" / "manifest.json"));
+  ASSERT_EQ(manifest["entries"].size(), 2U);
+  EXPECT_EQ(manifest["entries"][0]["mission"], "fences");
+  EXPECT_EQ(manifest["entries"][1]["mission"], "statue");
+  // What can be seen of two scenes of a family differs, whatever the start.
+  for (const char* family : {"fences", "statue"}) {
+    const auto items = folder_.path() / "out" / "items" / family / "see";
+    const Json one = Json::parse(content_of(items / "seed_1.json"));
+    const Json two = Json::parse(content_of(items / "seed_2.json"));
+    EXPECT_NE(one["fingerprint"], two["fingerprint"]) << family;
+  }
+}
+
+TEST_F(BenchmarkVerb, RefusesFamiliesThatItDoesNotKnow) {
+  const ProgramRun result = run("see", {"--scenes", "garage,castle"});
+  EXPECT_EQ(result.exit_code, 2);
+  EXPECT_THAT(result.err,
+              HasSubstr("--scenes: there is no family 'castle'; there are all, bridge"));
+}
+
 TEST_F(BenchmarkVerb, RefusesMissionsOfTheSameName) {
   std::filesystem::create_directory(folder_.path() / "other");
   const std::string other = folder_.write("other/quick.yaml", quick_mission());

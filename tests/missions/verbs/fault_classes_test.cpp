@@ -2,6 +2,7 @@
 // which.
 #include <atomic>
 #include <chrono>
+#include <cstdint>
 #include <cstdlib>
 #include <filesystem>
 #include <string>
@@ -12,8 +13,10 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 #include <sys/stat.h>
+#include <zlib.h>
 
 #include "geometry/io/file.h"
+#include "sim/sensors/depth_image.h"
 #include "tests/missions/flown_mission.h"
 #include "tests/missions/run_skycap.h"
 
@@ -59,6 +62,12 @@ TEST(FaultClasses, FoldersAndLoopsInPlaceOfFilesAreNamed) {
               HasSubstr("s.yaml: is a directory"));
   EXPECT_THAT(refusal({"export", folder / "package", "--format", "csv"}),
               HasSubstr("summary.json: is a directory"));
+  const std::string loops = "loop.plan: Too many levels";
+  EXPECT_THAT(refusal({"scan", mission, "--route", folder / "loop.plan", "--out", folder / "out"}),
+              HasSubstr(loops));
+  EXPECT_THAT(
+      refusal({"next", mission, "--survey", folder / "live", "--dataset", folder / "loop.plan"}),
+      HasSubstr(loops));
 }
 
 // Of the same kind: who opens a pipe waits for ever.
@@ -141,6 +150,35 @@ TEST(FaultClasses, TwoWritersOfOneFileBothSucceed) {
   EXPECT_EQ(failures, 0);
   const std::string content = content_of(file);
   EXPECT_TRUE(content == one || content == two);
+}
+
+/// A file of so many blanks, compressed.
+std::string blanks(const TestFolder& folder, const std::string& name, std::size_t mebibytes) {
+  const gzFile file = gzopen((folder / name).c_str(), "wb1");
+  const std::string piece(std::size_t{1} << 20, ' ');
+  for (std::size_t i = 0; i < mebibytes; ++i) {
+    EXPECT_EQ(gzwrite(file, piece.data(), static_cast<unsigned>(piece.size())),
+              static_cast<int>(piece.size()));
+  }
+  EXPECT_EQ(gzclose(file), Z_OK);
+  return folder / name;
+}
+
+// What is made of a file takes a multiple of its bytes: 4 GB of a cloud of 1 GiB, once.
+TEST(FaultClasses, WhatWouldTakeMoreMemoryThanAProgramMayIsRefused) {
+  const TestFolder folder;
+  EXPECT_THAT(refusal({"model", blanks(folder, "m.obj.gz", 257)}),
+              HasSubstr("larger than 256 MiB"));
+  EXPECT_THAT(refusal({"evaluate", "--cloud", blanks(folder, "c.xyz.gz", 385), "--model",
+                       "builtin:teapot", "--distance", "0.1"}),
+              HasSubstr("larger than 384 MiB"));
+  EXPECT_THAT(refusal({"report", fs::path(blanks(folder, "summary.json", 65)).parent_path()}),
+              HasSubstr("larger than 64 MiB"));
+  const sim::DepthImage image{5001, 5000, std::vector<std::uint16_t>(std::size_t{5001} * 5000)};
+  sim::write_depth_png(image, folder / "d.png");
+  EXPECT_THAT(refusal({"next", folder.write("m.yaml", tests::quick_mission()), "--survey",
+                       folder / "live", "--scan", folder / "d.png", "--pose", "0 0 2 1 0 0 0"}),
+              HasSubstr("more than 2.5e7 pixels"));
 }
 
 }  // namespace

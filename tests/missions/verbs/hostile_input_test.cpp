@@ -168,9 +168,8 @@ TEST(HostileInput, WhatNamesNoModelIsNamedItself) {
   const TestFolder folder;
   const std::string mission = folder.write(
       "m.yaml", "scene: {model: 'builtin:nope'}\nevaluation: {registration_distance: 1}\n");
-  EXPECT_THAT(
-      refusal({"check", mission}),
-      HasSubstr("m.yaml:1: key scene.model: is builtin:nope; there are builtin:city-block"));
+  EXPECT_THAT(refusal({"check", mission}),
+              HasSubstr("m.yaml:1: key scene.model: is builtin:nope; there are builtin:bridge, "));
   const std::string cloud = folder.write("c.xyz", "0 0 0\n");
   EXPECT_THAT(refusal({"evaluate", "--cloud", cloud, "--model", "builtin:nope", "--distance", "1"}),
               HasSubstr("--model: there is no built-in model named 'nope'"));

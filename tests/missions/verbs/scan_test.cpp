@@ -213,7 +213,8 @@ TEST_F(ScanVerb, IntensitiesAreThoseOfTheMaterials) {
   folder.write("materials.yaml", "lead: 0.1\nglass: 0.9\n");
   EXPECT_THAT(scan(options).err, HasSubstr("no material glass; it has (none), lead, chalk"));
   folder.write("materials.yaml", "lead: 1.1\n");
-  EXPECT_THAT(scan(options).err, HasSubstr("materials.yaml:1: material lead has the reflectance"));
+  EXPECT_THAT(scan(options).err,
+              HasSubstr("materials.yaml:1: material lead is '1.1'; it must be a "));
 }
 
 // Facing the cube's side at x = 1 from x = 5 and then x = 3: all depths there are 4 and 2 m.

@@ -229,6 +229,32 @@ TEST(Scene, OfCopiesIsMetWhereTheirOneMeshWouldBe) {
   EXPECT_LT(other_triangles, 10);
 }
 
+TEST(Scene, TellsOfManySightsWhatItTellsOfEach) {
+  std::mt19937_64 random(9);
+  std::uniform_real_distribution<double> uniform(-1.0, 1.0);
+  const Scene scene(sphere({0, 0, 0}, 1.0, 3));
+  std::size_t blocked = 0;
+  for (int round = 0; round < 500; ++round) {
+    const std::size_t count = round % (Scene::most_sights + 1);
+    std::vector<Scene::Sight> sights;
+    const Vector3d far = 20.0 * random_direction(random);
+    for (std::size_t i = 0; i < count; ++i) {
+      const Vector3d near = 1.2 * Vector3d{uniform(random), uniform(random), uniform(random)};
+      // Side by side and as long, converging, and of no length.
+      sights.push_back({i % 5 == 4 ? near : i % 2 == 0 ? near + far : far, near});
+    }
+    const std::uint32_t answer = scene.blocked(sights);
+    EXPECT_EQ(answer >> count, 0U);
+    for (std::size_t i = 0; i < count; ++i) {
+      const bool expected = scene.is_blocked(sights[i].from, sights[i].to);
+      EXPECT_EQ((answer >> i & 1U) != 0, expected) << round << ", " << i;
+      blocked += expected;
+    }
+  }
+  EXPECT_GT(blocked, 500U);
+  EXPECT_LT(blocked, 3500U);
+}
+
 TEST(Scene, NoRayLeaksThroughVerticesAndEdgesOfACopy) {
   const Copies copies;
   const Scene scene = copies.scene();

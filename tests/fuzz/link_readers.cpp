@@ -1,0 +1,198 @@
+// What comes over links: MAVLink of an autopilot, messages of a live survey's client.
+#include <algorithm>
+#include <cctype>
+#include <cmath>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "flight/link/frame.h"
+#include "flight/link/guided_messages.h"
+#include "flight/link/vehicle_state.h"
+#include "geometry/place/world.h"
+#include "missions/derived/resolved_mission.h"
+#include "missions/live/kept_scan.h"
+#include "missions/live/live_journal.h"
+#include "missions/live/live_survey.h"
+#include "missions/live/pose_covariance.h"
+#include "missions/live/scan_input.h"
+#include "missions/live/session.h"
+#include "missions/live/wire.h"
+#include "tests/fuzz/readers.h"
+#include "tests/fuzz/trial_run.h"
+
+namespace skycap::fuzz {
+namespace {
+
+namespace live = missions::live;
+namespace mavlink = flight::mavlink;
+
+void require_sane(const mavlink::VehicleState& state) {
+  if (const auto& position = state.position()) {
+    require(std::abs(position->latitude_deg) <= 90.0 && std::abs(position->longitude_deg) <= 180.0,
+            "a vehicle off the Earth");
+    require(std::isfinite(position->height_above_home) && position->velocity.allFinite(),
+            "a vehicle at no height");
+  }
+  for (const auto& number : {state.yaw(), state.gimbal_pitch(), state.battery()}) {
+    require(!number || std::isfinite(*number), "a vehicle of no number");
+  }
+  for (const char c : state.warning()) {
+    require(std::isprint(static_cast<unsigned char>(c)) != 0, "a warning that is not printable");
+  }
+}
+
+void hear_all(mavlink::FrameReader& reader, mavlink::VehicleState& state, double& now) {
+  while (const auto frame = reader.next()) {
+    require(frame->payload.size() <= 255, "a payload longer than a frame");
+    state.hear(*frame, now += 0.1);
+    require_sane(state);
+  }
+}
+
+/// As bytes on a link, in pieces; and as frames whose checksums are right: six bytes of a head, the
+/// length of a payload, the payload. Else little would be read behind the checksums.
+int run_mavlink(const std::uint8_t* bytes, std::size_t size) {
+  double now = 0.0;
+  mavlink::VehicleState state, sealed_state;
+  mavlink::FrameReader reader(mavlink::guided_extra_byte), sealed(mavlink::guided_extra_byte);
+  for (std::size_t at = 0; at < size; at += 97) {
+    reader.feed({bytes + at, std::min<std::size_t>(97, size - at)});
+    hear_all(reader, state, now);
+  }
+  constexpr std::size_t head = 7;
+  for (std::size_t at = 0; at + head <= size;) {
+    const std::size_t length = std::min<std::size_t>(bytes[at + 6], size - at - head);
+    mavlink::Frame frame;
+    frame.id =
+        bytes[at] | (std::uint32_t{bytes[at + 1]} << 8) | (std::uint32_t{bytes[at + 2]} << 16);
+    frame.sender = {bytes[at + 3], bytes[at + 4]};
+    frame.sequence = bytes[at + 5];
+    frame.payload.assign(bytes + at + head, bytes + at + head + length);
+    at += head + length;
+    sealed.feed(mavlink::wire_form(frame, mavlink::guided_extra_byte(frame.id).value_or(0)));
+    hear_all(sealed, sealed_state, now);
+  }
+  return 0;
+}
+
+/// As they come on the socket.
+int run_wire(const std::uint8_t* bytes, std::size_t size) {
+  return run_reader("", [&] {
+    live::FrameReader reader;
+    const std::string text = text_of(bytes, size);
+    for (std::size_t at = 0; at < size; at += 61) {
+      reader.feed(std::string_view(text).substr(at, 61));
+      while (const auto message = reader.next()) {
+        require(message->header.is_object(), "a header that is no object");
+        live::FrameReader again;
+        again.feed(live::frame_of(*message));
+        require(again.next()->payload == message->payload, "a message changes on its way");
+      }
+    }
+  });
+}
+
+/// A survey that takes what it is given: of a depth camera, or of a scanner.
+const missions::file::Mission& live_mission(bool has_scanner) {
+  constexpr const char* rest =
+      "planner: {name: see++, density: 5200, resolution_radius: 0.0525, occluder_spacing: 0.03,\n"
+      "          view_distance: 1, scene_box: {min: [-1, -1, -1], max: [1, 1, 1]}}\n"
+      "evaluation: {registration_distance: 0.03}\n"
+      "live: {remove_flying_pixels: true, registration: true, pose_sigma: 0.01}\n"
+      "limits: {max_views: 4}\n";
+  static const missions::file::Mission camera = missions::derived::parse_mission(
+      std::string("sensor: {width: 16, height: 12}\n") + rest, "m.yaml");
+  static const missions::file::Mission scanner = missions::derived::parse_mission(
+      std::string("sensor: {lidar: velodyne_vlp16}\n") + rest, "m.yaml");
+  return has_scanner ? scanner : camera;
+}
+
+/// Messages behind each other, without checksums: a line of JSON, two bytes for the length of the
+/// payload, the payload. The first byte chooses the sensor.
+int run_session(const std::uint8_t* bytes, std::size_t size) {
+  if (size == 0) return 0;
+  const missions::file::Mission& mission = live_mission(bytes[0] == 's');
+  live::LiveSurvey survey(mission, fresh_folder(), {}, 1);
+  live::Session session(mission, survey, [] { return std::string("done"); });
+  const std::string text = text_of(bytes + 1, size - 1);
+  for (std::size_t at = 0, messages = 0; at < text.size() && messages < 6; ++messages) {
+    const std::size_t end = std::min(text.find('\n', at), text.size());
+    const std::string header = text.substr(at, end - at);
+    at = std::min(end + 3, text.size());
+    live::Message message{live::Message().header.parse(header, nullptr, false), {}};
+    if (!message.header.is_object()) return 0;
+    if (end + 2 < text.size()) {
+      const auto low = static_cast<std::uint8_t>(text[end + 1]);
+      const auto high = static_cast<std::uint8_t>(text[end + 2]);
+      message.payload = text.substr(at, low + (std::size_t{high} << 8));
+      at += message.payload.size();
+    }
+    const live::Message answer = session.answer(message);
+    require(answer.header.contains("type"), "an answer of no type");
+    live::frame_of(answer);
+    session.settle();
+  }
+  return 0;
+}
+
+/// Poses, lenses and how well poses are known, as people and messages write them.
+int run_pose(const std::uint8_t* bytes, std::size_t size) {
+  const std::string text = text_of(bytes, size);
+  run_reader("pose.txt", [&] {
+    const Eigen::Isometry3d pose = live::parse_pose_text(text, "pose.txt");
+    require(geometry::is_place(pose.translation()), "a pose out of the world");
+    const Eigen::Matrix3d turn = pose.linear();
+    require((turn * turn.transpose()).isIdentity(1e-6), "a pose that stretches");
+  });
+  run_reader("lens", [&] {
+    const live::Lens lens = live::parse_lens(text, "lens");
+    const auto ray = lens.ray({3.0, 5.0});
+    require(!ray || ray->allFinite(), "a ray of no number");
+  });
+  run_reader("sigma", [&] { live::parse_pose_sigma(text, "sigma"); });
+  return run_reader("covariance", [&] {
+    const auto covariance = live::parse_pose_covariance(text, "covariance");
+    require(covariance.position() >= 0.0 && covariance.position() <= 101.0, "an error of no size");
+    require(covariance.angle() >= 0.0 && covariance.angle() <= 2.0, "an error of no angle");
+  });
+}
+
+/// Records, one a line.
+int run_live_journal(const std::uint8_t* bytes, std::size_t size) {
+  return run_reader("live.journal", [&] {
+    std::vector<std::string> records(1);
+    for (const char c : text_of(bytes, size)) {
+      if (c == '\n') {
+        records.emplace_back();
+      } else {
+        records.back() += c;
+      }
+    }
+    for (const live::LiveEvent& event : live::events_of(records, "live.journal")) {
+      if (!event.scan) continue;
+      require(geometry::is_place(event.scan->world_from_sensor.translation()),
+              "a scan out of the world");
+      const auto file = std::filesystem::path(event.scan->file).lexically_normal();
+      require(file.is_relative() && *file.begin() != "..", "a scan out of the folder");
+    }
+  });
+}
+
+/// A scan as a live survey keeps it.
+int run_kept_scan(const std::uint8_t* bytes, std::size_t size) {
+  return run_reader("scan.ply", [&] {
+    const geometry::Scan scan = live::parse_kept_scan("scan.ply", text_of(bytes, size));
+    require(scan.pixels.empty() || scan.pixels.size() == scan.points.size(), "pixels of no point");
+  });
+}
+
+constexpr Reader readers[] = {{"mavlink", run_mavlink},           {"wire", run_wire},
+                              {"session", run_session},           {"pose", run_pose},
+                              {"live_journal", run_live_journal}, {"kept_scan", run_kept_scan}};
+
+}  // namespace
+
+std::span<const Reader> link_readers() { return readers; }
+
+}  // namespace skycap::fuzz

@@ -1,0 +1,150 @@
+// What a program finds in folders that it is pointed at: recordings, journals, results.
+#include <algorithm>
+#include <fstream>
+#include <string>
+#include <vector>
+
+#include <nlohmann/json.hpp>
+
+#include "geometry/io/file.h"
+#include "geometry/io/json.h"
+#include "geometry/io/record_log.h"
+#include "geometry/place/world.h"
+#include "missions/dataset/recorded_sequence.h"
+#include "missions/derived/resolved_mission.h"
+#include "missions/fleet/timetable_file.h"
+#include "missions/package/package.h"
+#include "missions/recording/laser_checkpoint.h"
+#include "missions/report/result_pages.h"
+#include "sim/sensors/depth_image.h"
+#include "tests/fuzz/readers.h"
+#include "tests/fuzz/trial_run.h"
+#include "tests/missions/flown_mission.h"
+
+namespace skycap::fuzz {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// A journal: what is read of it, and what a writer makes of it.
+int run_records(const std::uint8_t* bytes, std::size_t size) {
+  return run_reader("x.journal", [&] {
+    const fs::path file = file_with("x.journal", text_of(bytes, size));
+    const geometry::RecordedLines lines = geometry::read_records(file);
+    require(lines.whole_bytes + lines.torn_bytes == size, "bytes that nobody has counted");
+    geometry::RecordLog(file).append("one more");
+    auto again = geometry::read_records(file);
+    require(again.torn_bytes == 0, "a journal that stays torn");
+    require(again.records.back() == "one more", "a record that is not there");
+    again.records.pop_back();
+    require(again.records == lines.records, "records that change when another comes");
+  });
+}
+
+/// The last record of a scan's journal.
+int run_checkpoint(const std::uint8_t* bytes, std::size_t size) {
+  return run_reader("scan.journal", [&] {
+    using Json = nlohmann::ordered_json;
+    Json json;
+    try {
+      json = geometry::parse_json<Json>(text_of(bytes, size));
+    } catch (const Json::exception&) {
+      return;
+    }
+    missions::recording::json_of(
+        missions::recording::parse_laser_checkpoint(json, 1, "scan.journal"));
+  });
+}
+
+/// The two lists of a TUM sequence, behind each other, between them a line "%".
+int run_sequence(const std::uint8_t* bytes, std::size_t size) {
+  const std::string text = text_of(bytes, size);
+  const std::size_t middle = std::min(text.find("%\n"), size);
+  const fs::path folder = fresh_folder();
+  std::ofstream(folder / "depth.txt", std::ios::binary) << text.substr(0, middle);
+  std::ofstream(folder / "groundtruth.txt", std::ios::binary)
+      << text.substr(std::min(middle + 2, size));
+  return run_reader(folder.string(), [&] {
+    const auto sequence = missions::dataset::read_sequence(folder, 1000);
+    require(!sequence.frames.empty(), "a sequence of nothing");
+    for (const auto& frame : sequence.frames) {
+      require(geometry::is_place(frame.world_from_sensor.translation()), "a frame of no place");
+    }
+  });
+}
+
+/// A depth image, the checksums of its chunks made right.
+int run_depth_png(const std::uint8_t* bytes, std::size_t size) {
+  std::string text = text_of(bytes, size);
+  for (std::size_t at = 8; at + 12 <= text.size();) {
+    const auto byte = [&](std::size_t i) { return static_cast<std::uint8_t>(text[at + i]); };
+    const std::size_t length = (std::size_t{byte(0)} << 24) | (std::size_t{byte(1)} << 16) |
+                               (std::size_t{byte(2)} << 8) | byte(3);
+    if (length > text.size() - at - 12) break;
+    const std::uint32_t crc = geometry::crc32_of(std::string_view(text).substr(at + 4, length + 4));
+    for (std::size_t i = 0; i < 4; ++i) {
+      text[at + 8 + length + i] = static_cast<char>(crc >> (24 - 8 * i));
+    }
+    at += 12 + length;
+  }
+  return run_reader("depth.png", [&] {
+    const sim::DepthImage image = sim::read_depth_png(file_with("depth.png", text));
+    require(image.width > 0 && image.height > 0 &&
+                image.values.size() ==
+                    static_cast<std::size_t>(image.width) * static_cast<std::size_t>(image.height),
+            "an image of other sides");
+  });
+}
+
+int run_timetable(const std::uint8_t* bytes, std::size_t size) {
+  const std::string vehicle = "vehicle: generic";
+  static const missions::file::Mission mission = missions::derived::parse_mission(
+      tests::flown_mission().replace(tests::flown_mission().find(vehicle), vehicle.size(),
+                                     "vehicles: [generic, generic_ardupilot], separation: 6, "
+                                     "timing_tolerance: 2"),
+      "m.yaml");
+  return run_reader("timetable.csv", [&] {
+    const auto rows =
+        missions::fleet::read_timetable(file_with("timetable.csv", text_of(bytes, size)), mission);
+    for (const auto& row : rows) {
+      require(row.vehicle < 2, "a vehicle that the mission does not have");
+      require(geometry::is_place(row.pad), "a pad out of the world");
+      require(row.landing >= row.start, "a sortie that lands before it takes off");
+      require(fs::path(row.file).filename() == row.file, "a file out of the folder");
+    }
+  });
+}
+
+/// The page of results whose figures say this.
+int run_page(const char* name, const std::uint8_t* bytes, std::size_t size) {
+  namespace report = missions::report;
+  const fs::path folder = fresh_folder();
+  std::ofstream(folder / name, std::ios::binary) << text_of(bytes, size);
+  return run_reader(name, [&] {
+    for (const report::MadePage& page : report::made_pages(folder, 100, {})) {
+      require(page.text && page.text->ends_with("</html>\n"), "a page that has no end");
+      require(page.text->find("<img src=x") == std::string::npos, "a name that is no text");
+    }
+  });
+}
+
+constexpr Reader readers[] = {
+    {"records", run_records},
+    {"checkpoint", run_checkpoint},
+    {"sequence", run_sequence},
+    {"depth_png", run_depth_png},
+    {"timetable", run_timetable},
+    {"page_survey",
+     [](const std::uint8_t* b, std::size_t n) { return run_page("summary.json", b, n); }},
+    {"page_scan", [](const std::uint8_t* b, std::size_t n) { return run_page("scan.json", b, n); }},
+    {"page_trials",
+     [](const std::uint8_t* b, std::size_t n) { return run_page("trials.json", b, n); }},
+    {"page_benchmark",
+     [](const std::uint8_t* b, std::size_t n) { return run_page("results.json", b, n); }},
+};
+
+}  // namespace
+
+std::span<const Reader> record_readers() { return readers; }
+
+}  // namespace skycap::fuzz
