@@ -25,7 +25,10 @@ void MeasuredSpaceConfig::validate() const {
           "a finite number");
   if (region.isEmpty()) return;
   const double farthest = region.min().cwiseAbs().cwiseMax(region.max().cwiseAbs()).maxCoeff();
-  require(farthest < 1e5 * voxel, "measured_space.region", farthest,
+  const auto is_near = [&](const Vector3d& corner) {  // false for NaN, too
+    return (corner.array().abs() < 1e5 * voxel).all();
+  };
+  require(is_near(region.min()) && is_near(region.max()), "measured_space.region", farthest,
           "within 100,000 voxels of the origin");
 }
 

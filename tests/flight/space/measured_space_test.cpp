@@ -302,6 +302,10 @@ TEST(MeasuredSpace, BadScansAndConfigurationsAreNamed) {
   EXPECT_THROW(space.insert(scan, 0.0), Error);
   EXPECT_THROW(MeasuredSpace({.voxel = 0.0}), Error);
   EXPECT_THROW(MeasuredSpace({.max_depth = std::nan("")}), Error);
+  for (const double coordinate : {std::nan(""), -1e9}) {
+    const Eigen::AlignedBox3d region(Eigen::Vector3d(-1, -1, coordinate), Eigen::Vector3d(1, 1, 1));
+    EXPECT_THROW(MeasuredSpace({.region = region}), Error);
+  }
 }
 
 }  // namespace
