@@ -14,6 +14,7 @@ set(public_headers
   geometry/surfaces/mesh_distance.h
   sim/models/models.h
   sim/scene/scene.h
+  sim/scene/surface.h
   sim/sensors/depth_camera.h
   sim/sensors/lidar.h
   sim/sensors/sensor.h
@@ -55,7 +56,6 @@ set(supporting_headers
   flight/way_home/return_proof.h
   geometry/directions/spherical_cap.h
   geometry/points/outlier_rule.h
-  sim/scene/surface.h
   sim/sensors/depth_camera_config.h
   sim/sensors/navigation_errors.h
   sim/sensors/noise.h

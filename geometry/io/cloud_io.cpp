@@ -164,8 +164,9 @@ AttributedCloud read_cloud(const fs::path& path) {
                "a cloud file must end in .ply, .pcd, .las, .laz, .e57, .xyz, .txt or .asc (or with "
                ".gz after it)");
   }
-  AttributedCloud cloud = piecewise ? piecewise->cloud(path)
-                                    : format->second(path, read_file(path, largest_whole_cloud));
+  AttributedCloud cloud =
+      piecewise ? piecewise->cloud(path)
+                : format->second(path, read_file(path, largest_whole_file, largest_unpacked_cloud));
   if (cloud.positions.empty()) fail_cloud(path, "holds no points");
   return cloud;
 }

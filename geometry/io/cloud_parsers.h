@@ -24,9 +24,9 @@ Eigen::Vector3f cloud_position(const std::filesystem::path& path, std::size_t po
 void add_positions(const std::filesystem::path& path, std::size_t first,
                    std::span<const Eigen::Vector3d> positions, std::vector<Eigen::Vector3f>& to);
 
-/// What a cloud that is read whole may be, so that it and what is made of it on the way take less
-/// than 2 GiB.
-inline constexpr std::size_t largest_whole_cloud = std::size_t{384} << 20,  // [bytes]
+/// What a cloud may unpack to from fewer bytes, so that it and what is made of it on the way take
+/// less than 2 GiB.
+inline constexpr std::size_t largest_unpacked_cloud = std::size_t{384} << 20,  // [bytes]
     most_whole_points = std::size_t{1} << 26;
 
 /// Throws Error{bad_file} if so many points are too many.

@@ -134,7 +134,7 @@ void require_regular_file(const fs::path& path) {
   if (!fs::is_regular_file(status)) fail(path, "is a device or a pipe; a regular file is wanted");
 }
 
-std::string read_file(const fs::path& path, std::size_t most_bytes) {
+std::string read_file(const fs::path& path, std::size_t most_bytes, std::size_t most_decompressed) {
   require_regular_file(path);
   std::ifstream stream(path, std::ios::binary);
   if (!stream) fail(path, "cannot be opened: " + last_error());
@@ -153,7 +153,7 @@ std::string read_file(const fs::path& path, std::size_t most_bytes) {
   }
   if (stream.bad()) fail(path, "cannot be read: " + last_error());
   if (!is_gzip(bytes)) return bytes;
-  return inflate_gzip(path, bytes, most_bytes);
+  return inflate_gzip(path, bytes, std::min(most_bytes, most_decompressed));
 }
 
 void write_file(const fs::path& path, std::string_view bytes) {

@@ -15,11 +15,16 @@ void require_regular_file(const std::filesystem::path& path);
 /// The name's ending in lower case with its dot, not counting ".gz"; empty if it has none.
 std::string ending_of(std::filesystem::path path);
 
+/// What is read whole if nothing else is said; what is larger has to be read piece by piece.
+inline constexpr std::size_t largest_whole_file = std::size_t{1} << 30;
+
 /// The bytes of a file; one that gzip has compressed comes back decompressed, whatever its name.
 /// Throws Error{bad_file} if it is no regular file, unreadable, damaged, or larger than
-/// `most_bytes`, decompressed or not. What is larger has to be read piece by piece.
+/// `most_bytes`, decompressed or not, or decompressed than `most_decompressed`: a few bytes may
+/// unpack to as much.
 std::string read_file(const std::filesystem::path& path,
-                      std::size_t most_bytes = std::size_t{1} << 30);
+                      std::size_t most_bytes = largest_whole_file,
+                      std::size_t most_decompressed = largest_whole_file);
 
 /// Replaces the file by one with these bytes: they are written under a temporary name beside it,
 /// brought to the disk, and renamed when complete, so that no reader ever finds half a file, not

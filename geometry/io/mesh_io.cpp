@@ -22,8 +22,9 @@ namespace {
 namespace fs = std::filesystem;
 using Eigen::Vector3d;
 
-// With what is made of it on the way, the tree that rays search included, less than 2 GiB.
-constexpr std::size_t largest_mesh_file = std::size_t{256} << 20, most_corners = 30'000'000;
+// Of a file that unpacks to far more than its own bytes: with what is made of it on the way less
+// than 2 GiB. A plain file takes memory by its size, which is the user's to give.
+constexpr std::size_t largest_unpacked_mesh = std::size_t{256} << 20, most_unpacked = 10'000'000;
 
 [[noreturn]] void fail(const fs::path& path, const std::string& what) {
   throw Error(ErrorKind::bad_file, path.string() + ": " + what);
@@ -32,7 +33,9 @@ constexpr std::size_t largest_mesh_file = std::size_t{256} << 20, most_corners =
 PolygonSoup parse(const fs::path& path) {
   const std::string format = ending_of(path);
   if (format == ".drc") {
-    const Mesh mesh = decode_draco(path.string(), read_file(path, largest_mesh_file));
+    const std::string bytes = read_file(path, largest_whole_file, largest_unpacked_mesh);
+    const Mesh mesh = decode_draco(path.string(), bytes);
+    if (mesh.triangles.size() > most_unpacked) fail(path, "holds more than 1e7 triangles");
     PolygonSoup soup{mesh.vertices, {}};  // goes the way of the others, which checks it
     for (const auto& triangle : mesh.triangles) {
       soup.corners.insert(soup.corners.end(), triangle.begin(), triangle.end());
@@ -48,7 +51,7 @@ PolygonSoup parse(const fs::path& path) {
   if (parser == nullptr) {
     fail(path, "a mesh file must end in .ply, .obj, .stl, .off or .drc (or with .gz after it)");
   }
-  const std::string bytes = read_file(path, largest_mesh_file);
+  const std::string bytes = read_file(path, largest_whole_file, largest_unpacked_mesh);
   if (bytes.empty()) fail(path, "is empty");
   return parser(path.string(), bytes);
 }
@@ -92,9 +95,6 @@ Mesh clean_mesh(const fs::path& path, const PolygonSoup& soup) {
 }
 
 void require_faces(const fs::path& path, const PolygonSoup& soup) {
-  if (soup.corners.size() > most_corners) {
-    fail(path, "holds more than 1e7 triangles, or polygons of more than 3e7 corners");
-  }
   const auto is_polygon = [&](std::size_t i) {
     return soup.polygon_begin[i + 1] - soup.polygon_begin[i] >= 3;
   };

@@ -46,8 +46,7 @@ struct MeshDistance::Impl {
     nearest = {squared, facet, foot};
   }
 
-  /// Beginning with a facet that may be near.
-  Nearest find(const Vector3d& point, std::uint32_t hint) const;
+  Nearest find(const Vector3d& point) const;
 
   /// The distances of points of any type, packet by packet in an order.
   template <typename Points>
@@ -55,10 +54,9 @@ struct MeshDistance::Impl {
                 std::span<double> distances, unsigned threads) const;
 };
 
-MeshDistance::Impl::Nearest MeshDistance::Impl::find(const Vector3d& point,
-                                                     std::uint32_t hint) const {
+MeshDistance::Impl::Nearest MeshDistance::Impl::find(const Vector3d& point) const {
   Nearest nearest;
-  look_at(hint, point, nearest);
+  look_at(0, point, nearest);
   // The rounding of the place, of its distance from a side, and of the sum of their squares.
   constexpr float unit = std::numeric_limits<float>::epsilon();
   constexpr float sum_rounding = 1.0F - 4.0F * unit;
@@ -138,7 +136,7 @@ MeshDistance& MeshDistance::operator=(MeshDistance&&) noexcept = default;
 MeshDistance::~MeshDistance() = default;
 
 MeshDistance::Closest MeshDistance::closest(const Vector3d& point) const {
-  const Impl::Nearest nearest = impl_->find(point, 0);
+  const Impl::Nearest nearest = impl_->find(point);
   return {nearest.point, impl_->tree.facets[nearest.facet].index,
           std::sqrt(nearest.squared_distance)};
 }

@@ -243,6 +243,11 @@ std::string SurveyScene::ceiling_key() const {
   for (const std::string& digest : derived::priors_of(mission_).digests) inputs << "\n" << digest;
   // The surface's samples stand for the mesh that was found under the model's name.
   inputs << "\n" << sha256(std::as_bytes(std::span(samples_.points)));
+  // So do their surfaces for what a file of materials says.
+  for (std::size_t i = 0; i < samples_.triangles.size(); ++i) {
+    const sim::Surface surface = scene_.surface(samples_.triangles[i]);
+    if (surface != sim::Surface::matt) inputs << "\n" << i << " " << static_cast<int>(surface);
+  }
   const std::string text = inputs.str();
   return sha256(std::as_bytes(std::span(text)));
 }

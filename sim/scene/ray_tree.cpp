@@ -4,7 +4,6 @@
 #include <cmath>
 #include <limits>
 #include <memory>
-#include <mutex>
 #include <string>
 #include <vector>
 
@@ -126,9 +125,6 @@ TreeRef build(RTCDevice device, RTCBVH tree, std::span<RTCBuildPrimitive> primit
   arguments.setNodeBounds = set_bounds;
   arguments.createLeaf = create_leaf;
   arguments.userPtr = user;
-  // One at a time: Embree 3.13 crashed now and then where two threads built trees side by side.
-  static std::mutex mutex;
-  const std::scoped_lock lock(mutex);
   const auto root = reinterpret_cast<TreeRef>(rtcBuildBVH(&arguments));
   throw_on_device_error(device);
   return root;
@@ -166,11 +162,20 @@ void throw_on_device_error(RTCDevice device) {
                   : "Embree cannot build the scene: error " + std::to_string(error));
 }
 
-void RayTree::Release::operator()(RTCBVHTy* tree) const { rtcReleaseBVH(tree); }
+void RayTree::Release::operator()(RTCBVHTy* tree) const {
+  rtcReleaseBVH(tree);
+  rtcReleaseDevice(device);
+}
+
+RayTree::Memory RayTree::new_memory(RTCDevice device) {
+  Memory memory(rtcNewBVH(device), {device});
+  if (memory) rtcRetainDevice(device);
+  return memory;
+}
 
 RayTree::RayTree(RTCDevice device, const geometry::Mesh& mesh, const Vector3d& centre,
                  unsigned threads)
-    : memory_(rtcNewBVH(device)) {
+    : memory_(new_memory(device)) {
   RoundedMesh rounded{mesh, centre};
   const std::size_t triangles = mesh.triangles.size();
   const auto boxes = std::make_unique_for_overwrite<RTCBuildPrimitive[]>(triangles);
@@ -185,7 +190,7 @@ RayTree::RayTree(RTCDevice device, const geometry::Mesh& mesh, const Vector3d& c
 }
 
 RayTree::RayTree(RTCDevice device, std::span<const AlignedBox3f> boxes)
-    : memory_(rtcNewBVH(device)) {
+    : memory_(new_memory(device)) {
   std::vector<RTCBuildPrimitive> primitives;
   for (const AlignedBox3f& box : boxes) {
     root_.extent = std::max(root_.extent, extent_of(box));

@@ -34,10 +34,15 @@ class RayTree {
   const TreeRoot& root() const { return root_; }
 
  private:
+  // A tree tells its device when it goes, and does not keep it alive by itself.
   struct Release {
+    RTCDeviceTy* device;
     void operator()(RTCBVHTy* tree) const;
   };
-  std::unique_ptr<RTCBVHTy, Release> memory_;
+  using Memory = std::unique_ptr<RTCBVHTy, Release>;
+  static Memory new_memory(RTCDeviceTy* device);
+
+  Memory memory_;
   TreeRoot root_;
 };
 

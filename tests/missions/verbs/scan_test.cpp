@@ -342,7 +342,8 @@ TEST_F(ScanVerb, ARawlogOfNothingIsNotWritten) {
   stop.request_stop();
   EXPECT_EQ(scan({"--format", "rawlog,ply"}, stop.get_token()).exit_code, 1);
   EXPECT_THAT(files(), testing::Not(testing::Contains("scan.rawlog")));
-  for (const auto& file : summary()["files"]) EXPECT_NE(file["name"], "scan.rawlog");
+  const auto written = summary();
+  for (const auto& file : written["files"]) EXPECT_NE(file["name"], "scan.rawlog");
 }
 
 TEST_F(ScanVerb, RefusesInOneLineAndLeavesNothing) {

@@ -253,7 +253,8 @@ TEST_F(Site, IsAsHighAsAnybodySays) {
   const auto run = run_skycap("site " + path_ + "/map.geojson --id cube --height 12 --base 380 " +
                               "--out " + path_ + "/house.yaml");
   ASSERT_EQ(run.exit_code, 0) << run.err;
-  const auto& priors = derived::priors_of(mission()).priors;
+  const file::Mission proposed = mission();
+  const auto& priors = derived::priors_of(proposed).priors;
   ASSERT_EQ(priors.size(), 2U);
   EXPECT_NEAR(priors[0].box.sizes().z(), 12.0, 0.01);
   EXPECT_NEAR(priors[1].box.max().z(), 20.0, 0.01);
