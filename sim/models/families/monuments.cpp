@@ -1,7 +1,6 @@
-// Families of monuments: a church, a statue, an office block behind glass; and the list of all.
+// Families of monuments: a church, a statue, an office block behind glass.
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <numbers>
 #include <utility>
@@ -15,19 +14,6 @@ namespace {
 using Eigen::Vector3d;
 using geometry::Mesh;
 using std::numbers::pi;
-
-constexpr std::array<Family, 12> all{{{"bridge", bridge},
-                                      {"church", church},
-                                      {"factory", factory},
-                                      {"fences", fences},
-                                      {"garage", garage},
-                                      {"glass-house", glass_house},
-                                      {"grove", grove},
-                                      {"hillside", hillside},
-                                      {"hollow-house", hollow_house},
-                                      {"lattice-tower", lattice_tower},
-                                      {"old-town", old_town},
-                                      {"statue", statue}}};
 
 /// A buttress against a wall to +y that it leaves at y = 0: stepped, 0.8 m wide.
 Mesh buttress(double reach, double height) {
@@ -65,8 +51,6 @@ void add_nave(double length, double nave, double aisle, double eaves, int bays, 
 }
 
 }  // namespace
-
-std::span<const Family> families() { return all; }
 
 FamilyScene church(Draw& draw, const Fineness& fineness) {
   FamilyScene scene;
