@@ -12,6 +12,5 @@ const Example surface_example("sim/surface", [] {
   const std::vector<skycap::sim::Surface> surfaces{skycap::sim::Surface::glass};
   const std::vector<skycap::sim::ScenePart> parts{{pane, {}, {}, surfaces}};
   const skycap::sim::Scene scene(parts);
-  return scene.first_hit({0, 0, 3}, {0, 0, -1}) &&
-         scene.surface(0) == skycap::sim::Surface::glass;
+  return scene.first_hit({0, 0, 3}, {0, 0, -1}) && scene.surface(0) == skycap::sim::Surface::glass;
 });
