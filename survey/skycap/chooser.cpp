@@ -103,9 +103,12 @@ class Chooser {
     });
     const Candidate& first = candidates_[pool[first_of_batch(views)]];
     Choice choice{first.view, first.gain.area, best_gain,
-                  std::vector<bool>(field_.targets().size(), false)};
+                  std::vector<float>(field_.targets().size(), 0.0F)};
     for (const BatchView& view : views) {
-      for (const Sight& sight : view.sights) choice.in_sight[sight.target] = true;
+      for (const Sight& sight : view.sights) {
+        float& chance = choice.chances[sight.target];
+        chance = std::max(chance, sight.clearness);
+      }
     }
     return choice;
   }

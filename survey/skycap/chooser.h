@@ -21,7 +21,7 @@ struct ChooserSettings {
   int global_directions = 40;  ///< candidates spread evenly around all that is missing
   int refinements = 3;         ///< rounds of moving the best candidates
   int batch = 5;               ///< views planned ahead, at most 6; 1: the best next view only
-  double unseen_yield = 1.0;   ///< share of guessed gains that comes true, for best_gain
+  double unseen_yield = 1.0;   ///< what comes of guessed gains (guess_yield.h), for best_gain
   unsigned threads = 1;        ///< zero: all processors
 };
 
@@ -31,9 +31,9 @@ struct Choice {
   /// That of the most rewarding view anywhere in reach, guesses counted by `unseen_yield`: for stop
   /// rules.
   double best_gain;
-  /// For each target of the field, whether one of the best views of different places sees it. What
-  /// none of them sees is hidden, or not there.
-  std::vector<bool> in_sight;
+  /// For each target of the field, the probability that the one of the best views of different
+  /// places that sees it best sees it, if it is there. What none of them sees is hidden.
+  std::vector<float> chances;
 };
 
 /// Whether the sensor can be there; must be safe to call from several threads.

@@ -21,6 +21,7 @@ constexpr float neighbour_cosine = 0.75F;  // and within 41 degrees of the direc
 constexpr float off_plane_tolerance = 0.6F;
 constexpr float sharing_reach = 1.6F;   // within which noise carries measurements over
 constexpr float enlarged_reach = 1.6F;  // newcomers within it take area from enlarged surfels
+constexpr float territory_reach = 2.0F;  // within which an old surfel makes a new one no news
 constexpr int most_merges = 8;
 constexpr float opposite_sides = -0.3F;  // below this cosine: two sides of something thin
 
@@ -68,9 +69,10 @@ Vector3f open_direction(const Surfels& surfels, std::size_t i, int k) {
 DoseMap::DoseMap(float spacing) : spacing_(spacing), grid_(neighbour_reach * spacing) {}
 
 void DoseMap::add(const BlockImage& image, const DoseModel& dose, float jump,
-                  const std::optional<Eigen::AlignedBox3f>& region) {
+                  const std::optional<Eigen::AlignedBox3f>& region,
+                  const IsMeasured& was_measured) {
   add_looks(image, dose, jump);
-  add_surfels(image, dose, region);
+  add_surfels(image, dose, region, was_measured);
   // Rays come from all sides: a third of the variance along them is along any one axis.
   blur_hazards(std::hypot(dose.noise().isotropic, dose.noise().along_ray / std::sqrt(3.0)));
 }
@@ -128,7 +130,8 @@ void DoseMap::add_looks(const BlockImage& image, const DoseModel& dose, float ju
 }
 
 void DoseMap::add_surfels(const BlockImage& image, const DoseModel& dose,
-                          const std::optional<Eigen::AlignedBox3f>& region) {
+                          const std::optional<Eigen::AlignedBox3f>& region,
+                          const IsMeasured& was_measured) {
   std::uint32_t full = 0;
   for (const Block& block : image.blocks) full = std::max(full, block.returns);
   for (const Block& block : image.blocks) {
@@ -143,7 +146,8 @@ void DoseMap::add_surfels(const BlockImage& image, const DoseModel& dose,
     const float footprint = static_cast<float>(block.returns) / density;
     surfels_.positions.push_back(block.mean);
     surfels_.normals.push_back(block.normal);
-    surfels_.areas.push_back(std::clamp(footprint, packed_area * square, largest_area * square));
+    const float area = std::clamp(footprint, packed_area * square, largest_area * square);
+    surfels_.areas.push_back(was_measured && was_measured(block.mean) ? 0.0F : area);
     surfels_.hazards.push_back(dose.hazard(density, cos_incidence));
     surfels_.trusts.push_back(1.0F);
     surfels_.qualities.push_back(block.quality);
@@ -189,7 +193,7 @@ void DoseMap::close_directions(std::size_t added) {
       pairs_.push_back({i, static_cast<std::uint32_t>(added), distance * distance});
     }
     if (distance < enlarged_reach * spacing_) {
-      surfels_.areas[i] = std::max(packed, 0.75F * surfels_.areas[i]);
+      surfels_.areas[i] = std::min(surfels_.areas[i], std::max(packed, 0.75F * surfels_.areas[i]));
     }
   }
 }
@@ -200,6 +204,30 @@ bool DoseMap::has_surfel_near(const Vector3f& point, float radius, std::size_t f
   return std::any_of(found.begin(), found.end(), [&](const geometry::Neighbour& neighbour) {
     return neighbour.index >= first;
   });
+}
+
+double DoseMap::area_near(const Vector3f& point, float radius, std::size_t first) const {
+  std::vector<geometry::Neighbour> found;
+  grid_.find_within(point, radius, found);
+  double sum = 0.0;
+  for (const geometry::Neighbour& neighbour : found) {
+    if (neighbour.index >= first) sum += surfels_.areas[neighbour.index];
+  }
+  return sum;
+}
+
+double DoseMap::new_territory(std::size_t first) const {
+  double sum = 0.0;
+  std::vector<geometry::Neighbour> found;
+  for (std::size_t i = first; i < surfels_.size(); ++i) {
+    if (surfels_.areas[i] == 0.0F) continue;
+    found.clear();
+    grid_.find_within(surfels_.positions[i], territory_reach * spacing_, found);
+    const bool is_new = std::ranges::none_of(
+        found, [&](const geometry::Neighbour& neighbour) { return neighbour.index < first; });
+    if (is_new) sum += surfels_.areas[i] * surfels_.covered_share(i);
+  }
+  return sum;
 }
 
 double DoseMap::area() const {

@@ -6,6 +6,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <vector>
 
@@ -42,6 +43,9 @@ struct Surfels {
 /// Direction `k` (0 to 5) in the plane of surfel `i`.
 Eigen::Vector3f open_direction(const Surfels& surfels, std::size_t i, int k);
 
+/// Whether earlier scans have measured a place already.
+using IsMeasured = std::function<bool(const Eigen::Vector3f&)>;
+
 class DoseMap {
  public:
   /// Surfels lie about `spacing` (h) apart.
@@ -49,15 +53,23 @@ class DoseMap {
 
   /// Adds what the scan's blocks saw: looks at the surfels that are there, then surfels where there
   /// are none yet. `jump` is the J of BlockSettings. Blocks outside `region`, if given, make no
-  /// surfels.
+  /// surfels. New surfels where it `was_measured`, if that is given, only shape the surface: they
+  /// stand for no area, since surface that was between surfels so far is no new surface.
   void add(const BlockImage& image, const DoseModel& dose, float jump,
-           const std::optional<Eigen::AlignedBox3f>& region);
+           const std::optional<Eigen::AlignedBox3f>& region, const IsMeasured& was_measured = {});
 
   const Surfels& surfels() const { return surfels_; }
   float spacing() const { return spacing_; }
 
   /// Whether a surfel of index `first` or above lies within `radius`.
   bool has_surfel_near(const Eigen::Vector3f& point, float radius, std::size_t first) const;
+
+  /// Area that the surfels from index `first` on within `radius` of a point stand for [m^2].
+  double area_near(const Eigen::Vector3f& point, float radius, std::size_t first) const;
+
+  /// Covered area of the surfels from index `first` on that have none of the earlier ones within
+  /// two spacings: of new territory, and not of gaps in what was known [m^2].
+  double new_territory(std::size_t first) const;
 
   /// Lowers the trust in surfel `i` by `factor`.
   void lower_trust(std::size_t i, float factor) { surfels_.trusts[i] *= factor; }
@@ -68,7 +80,8 @@ class DoseMap {
  private:
   void add_looks(const BlockImage& image, const DoseModel& dose, float jump);
   void add_surfels(const BlockImage& image, const DoseModel& dose,
-                   const std::optional<Eigen::AlignedBox3f>& region);
+                   const std::optional<Eigen::AlignedBox3f>& region,
+                   const IsMeasured& was_measured);
   void close_directions(std::size_t added);
   void blur_hazards(double sigma);
   bool is_taken(const Block& block);

@@ -18,7 +18,7 @@ struct StopRule {
   double wanted_coverage = 1.0;
   /// Another view is not worth it: the best one promises less than this share of the known area, or
   /// of seven times what one scan covered at most, if that is less.
-  double least_gain = 0.005;
+  double least_gain = 0.003;
   std::optional<double> most_length;  ///< of the straight lines between the views
   std::optional<double> most_time;    ///< of the flight [s], by `speed` and `time_per_view`
   double speed = 5.0;                 ///< between views [m/s]

@@ -8,8 +8,10 @@
 #include "geometry/error.h"
 #include "survey/skycap/block_image.h"
 #include "survey/skycap/chooser.h"
+#include "survey/skycap/clearness.h"
 #include "survey/skycap/dose_map.h"
 #include "survey/skycap/dose_model.h"
+#include "survey/skycap/guess_yield.h"
 #include "survey/skycap/noise_estimate.h"
 #include "survey/skycap/space_memory.h"
 #include "survey/skycap/spaced_cloud.h"
@@ -28,15 +30,14 @@ using geometry::View;
 // A look that yields less than a quarter of what was promised, if that was worth mentioning, halves
 // the trust in its surfel.
 constexpr float least_promise = 0.2F, kept_promise = 0.25F, broken_trust = 0.5F;
-/// Four successive scans that each add less than this share of the area end the survey.
+/// So many successive scans that each add less than this share of the area end the survey.
 constexpr double idle_gain = 0.003;
-constexpr int most_idle_scans = 4;
+constexpr int most_idle_scans = 8;
 /// Shares are of the known area, or of this many times what one scan covered at most: objects take
 /// about as many, and a scene that takes many more is worth as small gains as an object.
 constexpr double scans_of_an_object = 7.0;
-/// How much of the evidence on guesses a scan keeps of those before it, and the least that guesses
-/// are ever counted for: a scan or two without any find must not end a survey.
-constexpr double yield_memory = 0.6, least_yield = 0.15;
+/// Of this share of d in unknown space, 37 % lets a look at what is guessed beyond it through.
+constexpr double clearness_scale = 0.15;
 /// The resolution: this many surfels across the scene, and pixels to a surfel, between a block's
 /// and what still shows the relief that a view must see.
 constexpr double surfels_across = 150.0, least_pixels = 4.0, most_pixels = 25.0;
@@ -63,6 +64,7 @@ struct SkycapPlanner::Impl {
       : config(given),
         camera(sensor),
         distance(given.view_distance.value_or(0.5 * given.coverage_radius / ray_spacing(camera))),
+        clearness(static_cast<float>(clearness_scale * distance)),
         kept(given.spacing.value_or(0.5 * given.coverage_radius), distance * ray_spacing(camera)) {
     gain.view_distance = distance;
     gain.max_incidence = std::min(gain.max_incidence, static_cast<float>(given.max_incidence));
@@ -117,16 +119,18 @@ struct SkycapPlanner::Impl {
     const View view = geometry::view_of(scan.world_from_sensor);
     std::vector<Sight> expected;
     if (field) expected = field->sights(view);
-    Promise promise;
+    struct {
+      double seen = 0.0, guessed = 0.0;
+    } promised;  // to be covered, of known surface and of guesses [m^2]
     for (const Sight& sight : expected) {
       const double area = field->targets()[sight.target].weight * sight.covered_share;
-      (field->is_patch(sight.target) ? promise.unseen : promise.seen) += area;
+      (field->is_patch(sight.target) ? promised.guessed : promised.seen) += area;
     }
     const std::vector<float> hazards = map->surfels().hazards;
     const std::size_t first_new = map->surfels().size();
     const double newly_covered = add(images);
     grade(expected, hazards, first_new);
-    learn_yield(promise, newly_covered);
+    yield.learn(promised.guessed, newly_covered - promised.seen, map->new_territory(first_new));
     const double with_way = newly_covered + std::exchange(covered_on_way, 0.0);
     idle_scans = with_way < idle_gain * reference_area() ? idle_scans + 1 : 0;
   }
@@ -135,9 +139,14 @@ struct SkycapPlanner::Impl {
   double add(const std::vector<BlockImage>& images) {
     const double covered_before = map->covered_area();
     const auto noise_along = static_cast<float>(dose->noise().across(1.0));
+    // Noise may have brought a point near that says nothing of the place.
+    const double reach = config.coverage_radius - 2.0 * dose->noise().across(1.0);
+    const IsMeasured was_measured = [&](const Vector3f& place) {
+      return reach > 0.0 && kept.has_near(place, reach, points_before);
+    };
     for (const BlockImage& image : images) {
       if (config.ideas.free_space) space->add(image, noise_along);
-      map->add(image, *dose, blocks.jump, region);
+      map->add(image, *dose, blocks.jump, region, was_measured);
     }
     const double newly_covered = map->covered_area() - covered_before;
     most_covered_at_once = std::max(most_covered_at_once, newly_covered);
@@ -148,31 +157,19 @@ struct SkycapPlanner::Impl {
   void predict() {
     is_field_old = false;
     unseen->predict(*map, *space, region);
-    field.emplace(*map, unseen->patches(), camera, *dose, gain, unseen->prior_occluders());
-  }
-
-  /// Area that a view was expected to cover newly.
-  struct Promise {
-    double seen = 0.0, unseen = 0.0;  // of known and of guessed surface
-  };
-
-  /// What guesses are worth: what came of those that the last scans should have shown.
-  void learn_yield(const Promise& promise, double newly_covered) {
-    if (promise.unseen <= 0.0) return;
-    guesses.promised = yield_memory * guesses.promised + promise.unseen;
-    guesses.found = yield_memory * guesses.found +
-                    std::clamp(newly_covered - promise.seen, 0.0, 2.0 * promise.unseen);
-    chooser.unseen_yield = std::clamp(guesses.found / guesses.promised, least_yield, 1.0);
+    clearness.update(unseen->patches(), *space);
+    field.emplace(*map, unseen->patches(), camera, *dose, gain, unseen->prior_occluders(),
+                  &clearness);
   }
 
   /// Compares what the scan should have shown with what it did.
   void grade(const std::vector<Sight>& expected, const std::vector<float>& hazards_before,
              std::size_t first_new) {
-    std::vector<std::uint32_t> patches;
+    std::vector<UnseenSurface::Expected> patches;
     for (const Sight& sight : expected) {
       const std::uint32_t source = field->source(sight.target);
       if (field->is_patch(sight.target)) {
-        patches.push_back(source);
+        patches.push_back({source, sight.clearness});
         continue;
       }
       const float promised = -std::log(std::max(1.0F - sight.covered_share, 1e-3F));
@@ -227,8 +224,9 @@ struct SkycapPlanner::Impl {
 
   std::optional<View> choose() {
     const double way = most_way();
+    chooser.unseen_yield = yield.value();
     const auto choice = choose_view(*field, config.limits, admission(), position, way, chooser);
-    in_sight = choice ? choice->in_sight : std::vector<bool>(field->targets().size(), false);
+    chances = choice ? choice->chances : std::vector<float>(field->targets().size(), 0.0F);
     next_gain = choice && map->area() > 0.0 ? choice->best_gain / map->area() : 0.0;
     stop = reason_to_stop();
     if (stop != SkycapStop::running) return std::nullopt;
@@ -260,13 +258,14 @@ struct SkycapPlanner::Impl {
     return SkycapStop::running;
   }
 
-  /// Of the guesses, only what could be seen: the others are as a rule inside of something.
+  /// What is to be expected of the guesses that could be seen: the others are as a rule inside of
+  /// something.
   double guessed_area() const {
     double area = 0.0;
-    for (std::size_t t = 0; t < in_sight.size(); ++t) {
-      if (in_sight[t] && field->is_patch(t)) area += field->targets()[t].weight;
+    for (std::size_t t = 0; t < chances.size(); ++t) {
+      if (field->is_patch(t)) area += chances[t] * field->targets()[t].weight;
     }
-    return area;
+    return yield.value() * area;
   }
 
   double predicted_coverage() const {
@@ -275,6 +274,7 @@ struct SkycapPlanner::Impl {
   }
 
   std::size_t insert(const ScanSpan& scan) {
+    points_before = kept.cloud().size();
     return kept.insert(scan, camera, region, static_cast<std::uint32_t>(taken++), config.threads);
   }
 
@@ -323,10 +323,13 @@ struct SkycapPlanner::Impl {
   ChooserSettings chooser;
   std::optional<Eigen::AlignedBox3f> region;
 
+  Clearness clearness;
+  GuessYield yield;
   SpacedCloud kept;
   PlanningStep step;
   PlanningStep on_way;          ///< what the scans since the last view add to the next step
-  std::size_t taken = 0;        ///< scans, on ways too
+  std::size_t taken = 0;          ///< scans, on ways too
+  std::size_t points_before = 0;  ///< kept of those before the last
   bool is_field_old = false;    ///< there are scans since that it does not know
   double covered_on_way = 0.0;  ///< newly, since the last view [m^2]
 
@@ -338,13 +341,10 @@ struct SkycapPlanner::Impl {
   std::optional<SpaceMemory> space;
   std::optional<UnseenSurface> unseen;
   std::optional<GainField> field;
-  std::vector<bool> in_sight;  ///< of the field's targets, from some good view
+  std::vector<float> chances;  ///< that a good view sees the field's targets, if they are there
 
   double next_gain = 0.0;             ///< of the best view, as a share of the known area
   double most_covered_at_once = 0.0;  ///< newly covered by one scan [m^2]
-  struct {
-    double promised = 0.0, found = 0.0;  // fading sums over the scans [m^2]
-  } guesses;
   std::size_t scans = 0;
   double length = 0.0;
   int idle_scans = 0;
@@ -357,7 +357,8 @@ struct SkycapPlanner::Impl {
 SurveyBelief SkycapPlanner::Impl::belief() const {
   SurveyBelief belief;
   if (!map) return belief;
-  belief.patches = believed_patches(*map, *field, unseen->patches(), in_sight);
+  belief.patches = believed_patches(*map, *field, unseen->patches(), chances,
+                                    static_cast<float>(yield.value()));
   add_up(belief);
   belief.coverage = predicted_coverage();
   belief.next_gain = next_gain;

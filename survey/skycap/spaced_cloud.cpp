@@ -89,6 +89,13 @@ void visit_tiles(const ScanSpan& scan, const geometry::Camera& camera, std::size
 SpacedCloud::SpacedCloud(double spacing, double pixel)
     : spacing_(spacing), grid_(2.0 * std::max(spacing, pixel)) {}
 
+bool SpacedCloud::has_near(const Vector3f& place, double radius, std::size_t count) const {
+  std::vector<geometry::Neighbour> found;
+  grid_.find_within(place, radius, found);
+  return std::ranges::any_of(
+      found, [&](const geometry::Neighbour& neighbour) { return neighbour.index < count; });
+}
+
 // The cloud so far turns most returns away, on all threads; the rest are tried one after the other.
 std::size_t SpacedCloud::insert(const ScanSpan& scan, const geometry::Camera& camera,
                                 const std::optional<Eigen::AlignedBox3f>& region,

@@ -28,6 +28,9 @@ class SpacedCloud {
                      const std::optional<Eigen::AlignedBox3f>& region, std::uint32_t view,
                      unsigned threads);
 
+  /// Whether one of the first `count` points is within `radius` of a place.
+  bool has_near(const Eigen::Vector3f& place, double radius, std::size_t count) const;
+
   const geometry::PointCloud& cloud() const { return cloud_; }
   /// Hands the points over; nothing may be asked afterwards.
   geometry::PointCloud release_cloud() { return std::move(cloud_); }

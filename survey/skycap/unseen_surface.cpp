@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 namespace skycap::survey::skycap {
 namespace {
@@ -156,26 +157,32 @@ bool UnseenSurface::is_told_by_prior(const UnseenPatch& patch) const {
          prior_->is_open_near(patch.position, patch.edge);
 }
 
-bool UnseenSurface::is_found(const UnseenPatch& patch, const DoseMap& map,
-                             std::size_t first_new) const {
+std::optional<double> UnseenSurface::found_share(const UnseenPatch& patch, const DoseMap& map,
+                                                 std::size_t first_new) const {
   if (patch.kind == prior_kind) {
-    return prior_->state(patch.place & ~prior_place) == PriorGuesses::State::found;
+    if (prior_->state(patch.place & ~prior_place) == PriorGuesses::State::found) return 1.0;
+    return std::nullopt;
   }
   const float reach = 0.5F * map.spacing() + 0.75F * patch.edge;
-  return map.has_surfel_near(patch.position, reach, first_new);
+  if (!(map.area_near(patch.position, reach, first_new) > 0.0)) return std::nullopt;
+  if (patch.edge <= map.spacing()) return 1.0;
+  // A ball that cuts as much out of a surface through its middle as the square is large.
+  const float square = patch.edge * patch.edge;
+  const float radius = std::sqrt(square / std::numbers::pi_v<float>);
+  return std::min(1.0, map.area_near(patch.position, radius, first_new) / double{square});
 }
 
-void UnseenSurface::grade(std::span<const std::uint32_t> expected, const DoseMap& map,
+void UnseenSurface::grade(std::span<const Expected> expected, const DoseMap& map,
                           const SpaceMemory& space, std::size_t first_new) {
   if (prior_) prior_->update(map, space);
   std::array<Rate, std::tuple_size_v<decltype(rates_)>> found = {};
-  for (const std::uint32_t i : expected) {
+  for (const auto& [i, clearness] : expected) {
     const UnseenPatch& patch = patches_[i];
-    const bool is_hit = is_found(patch, map, first_new);
-    found[patch.kind].tries += 1.0;
-    found[patch.kind].hits += is_hit ? 1.0 : 0.0;
-    if (!is_hit && space.query(patch.position) == SpaceState::unknown) {
-      trusts_.try_emplace(patch.place, 1.0F).first->second *= disappointment;
+    const std::optional<double> share = found_share(patch, map, first_new);
+    found[patch.kind].tries += clearness;
+    found[patch.kind].hits += clearness * share.value_or(0.0);
+    if (!share && space.query(patch.position) == SpaceState::unknown) {
+      trusts_.try_emplace(patch.place, 1.0F).first->second *= 1.0F - clearness * (1.0F - disappointment);
     }
   }
   if (!settings_.learns_rates) return;

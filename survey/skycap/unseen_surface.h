@@ -60,10 +60,17 @@ class UnseenSurface {
   void predict(const DoseMap& map, const SpaceMemory& space,
                const std::optional<Eigen::AlignedBox3f>& region);
 
-  /// Learns from a scan that should have shown the patches `expected` (indices); the map and the
+  /// A patch, by its index, that a scan should have shown if it is there, with the probability
+  /// that nothing hides it.
+  struct Expected {
+    std::uint32_t patch;
+    float clearness;
+  };
+
+  /// Learns from a scan that should have shown the patches `expected`; the map and the
   /// space memory hold the scan already, its surfels from index `first_new` on. Call before
   /// predict().
-  void grade(std::span<const std::uint32_t> expected, const DoseMap& map, const SpaceMemory& space,
+  void grade(std::span<const Expected> expected, const DoseMap& map, const SpaceMemory& space,
              std::size_t first_new);
 
   const std::vector<UnseenPatch>& patches() const { return patches_; }
@@ -99,8 +106,10 @@ class UnseenSurface {
   void emit_prior(const std::optional<Eigen::AlignedBox3f>& region);
   /// Whether the prior, while it is to be trusted, has a patch there that is still open.
   bool is_told_by_prior(const UnseenPatch& patch) const;
-  /// Whether a scan whose surfels begin at `first_new` has shown what was guessed.
-  bool is_found(const UnseenPatch& patch, const DoseMap& map, std::size_t first_new) const;
+  /// The share of what was guessed that a scan has shown whose surfels begin at `first_new`; nothing
+  /// if it has shown no surface there.
+  std::optional<double> found_share(const UnseenPatch& patch, const DoseMap& map,
+                                    std::size_t first_new) const;
 
   UnseenSurfaceSettings settings_;
   std::array<Rate, 16> rates_;  ///< by UnseenPatch::kind

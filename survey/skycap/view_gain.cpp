@@ -76,8 +76,10 @@ GainField::GainField(const DoseMap& map, const geometry::Camera& camera, const D
 
 GainField::GainField(const DoseMap& map, std::span<const UnseenPatch> patches,
                      const geometry::Camera& camera, const DoseModel& dose,
-                     const GainSettings& settings, std::span<const Vector3f> prior_occluders)
+                     const GainSettings& settings, std::span<const Vector3f> prior_occluders,
+                     const Clearness* clearness)
     : GainField(map, camera, dose, settings) {
+  clearness_ = clearness;
   const Surfels& surfels = map.surfels();
   const float least_weight = least_weight_share * spacing_ * spacing_;
   for (std::size_t i = 0; i < surfels.size(); ++i) {
@@ -153,6 +155,7 @@ template <typename Visit>
 void GainField::for_each_sight(const geometry::View& view, Visit visit) const {
   static thread_local Workspace work;
   const RasterView raster = raster_view(view);
+  const Vector3f sensor = view.position.cast<float>();
   splat(raster, occluders_, work.pixels.data(), work.depths.data(), work.raster);
   if (first_prior_ < end_prior_) {
     splat(raster, prior_occluders_, work.pixels.data(), work.depths.data(), work.prior_raster);
@@ -182,7 +185,9 @@ void GainField::for_each_sight(const geometry::View& view, Visit visit) const {
       }
       const float density =
           focal_length_px_.prod() * cosine * work.distances[i] / (depth * depth * depth);
-      visit(first + i, dose_.hazard(density, cosine));
+      const bool is_sure = clearness_ == nullptr || !is_patch(first + i);
+      visit(first + i, dose_.hazard(density, cosine),
+            is_sure ? 1.0F : clearness_->of(source(first + i), sensor));
     }
   }
 }
@@ -190,8 +195,8 @@ void GainField::for_each_sight(const geometry::View& view, Visit visit) const {
 Gain GainField::gain(const geometry::View& view) const {
   Gain gain;
   Eigen::Vector3d moment = Eigen::Vector3d::Zero();
-  for_each_sight(view, [&](std::size_t t, float hazard) {
-    const double area = targets_[t].weight * (1.0F - std::exp(-hazard));
+  for_each_sight(view, [&](std::size_t t, float hazard, float clearness) {
+    const double area = targets_[t].weight * clearness * (1.0F - std::exp(-hazard));
     gain.area += area;
     if (is_patch(t)) gain.unseen += area;
     moment += area * targets_[t].position.cast<double>();
@@ -202,15 +207,16 @@ Gain GainField::gain(const geometry::View& view) const {
 
 std::vector<Sight> GainField::sights(const geometry::View& view) const {
   std::vector<Sight> sights;
-  for_each_sight(view, [&](std::size_t t, float hazard) {
-    sights.push_back({static_cast<std::uint32_t>(t), 1.0F - std::exp(-hazard)});
+  for_each_sight(view, [&](std::size_t t, float hazard, float clearness) {
+    sights.push_back(
+        {static_cast<std::uint32_t>(t), clearness * (1.0F - std::exp(-hazard)), clearness});
   });
   return sights;
 }
 
 std::vector<Look> GainField::looks(const geometry::View& view) const {
   std::vector<Look> looks;
-  for_each_sight(view, [&](std::size_t t, float hazard) {
+  for_each_sight(view, [&](std::size_t t, float hazard, float /*clearness*/) {
     looks.push_back({static_cast<std::uint32_t>(t), hazard});
   });
   return looks;
@@ -218,7 +224,8 @@ std::vector<Look> GainField::looks(const geometry::View& view) const {
 
 std::vector<BelievedPatch> believed_patches(const DoseMap& map, const GainField& field,
                                             std::span<const UnseenPatch> patches,
-                                            const std::vector<bool>& in_sight) {
+                                            std::span<const float> chances,
+                                            float guess_yield) {
   constexpr float well_covered = 0.5F;  // more likely covered than not: not missing
   const Surfels& surfels = map.surfels();
   std::vector<BelievedPatch> believed;
@@ -231,11 +238,11 @@ std::vector<BelievedPatch> believed_patches(const DoseMap& map, const GainField&
     if (!field.is_patch(t)) {
       BelievedPatch& patch = believed[source];
       if (patch.covered_share >= well_covered) continue;
-      patch.reason = in_sight[t] ? MissingReason::seen_too_thinly : MissingReason::unreachable;
-    } else if (in_sight[t]) {
+      patch.reason = chances[t] > 0.0F ? MissingReason::seen_too_thinly : MissingReason::unreachable;
+    } else if (chances[t] > 0.0F) {
       const UnseenPatch& patch = patches[source];
       believed.push_back(
-          {patch.position, patch.normal, patch.weight, 0.0F, MissingReason::never_seen});
+          {patch.position, patch.normal, guess_yield * chances[t] * patch.weight, 0.0F, MissingReason::never_seen});
     }
   }
   return believed;

@@ -12,6 +12,7 @@
 #include "geometry/place/pose.h"
 #include "survey/skycap/dose_map.h"
 #include "survey/skycap/dose_model.h"
+#include "survey/skycap/clearness.h"
 #include "survey/skycap/sight_kernels.h"
 #include "survey/skycap/survey_belief.h"
 #include "survey/skycap/unseen_surface.h"
@@ -21,7 +22,8 @@ namespace skycap::survey::skycap {
 /// A target in sight of a view.
 struct Sight {
   std::uint32_t target;
-  float covered_share;  ///< of what is still uncovered of it
+  float covered_share;     ///< of what is still uncovered of it, expected
+  float clearness = 1.0F;  ///< the probability that it is in sight, counted above (clearness.h)
 };
 
 /// A target in sight of a view, and the hazard of the look (dose_model.h).
@@ -47,12 +49,14 @@ struct GainSettings {
 ///
 /// Targets are the surfels with a deficit worth a look and the unseen patches. Occlusion is decided
 /// in a depth image of all surfels, splatted as points of 2 h at the view distance. Unseen patches
-/// hide nothing; but those of prior_kind are hidden by `prior_occluders`, too.
+/// hide nothing; but those of prior_kind are hidden by `prior_occluders`, too. `clearness`, if
+/// given, says with what probability unknown space hides them; it must outlive the field.
 class GainField {
  public:
   GainField(const DoseMap& map, std::span<const UnseenPatch> patches,
             const geometry::Camera& camera, const DoseModel& dose, const GainSettings& settings,
-            std::span<const Eigen::Vector3f> prior_occluders = {});
+            std::span<const Eigen::Vector3f> prior_occluders = {},
+            const Clearness* clearness = nullptr);
 
   /// The known surface as if nothing had been measured of it yet: for views that are to cover it
   /// from an empty cloud. One target stands for each so many surfels in turn that there are
@@ -102,12 +106,14 @@ class GainField {
   std::vector<Target> targets_;
   std::array<std::vector<float>, 3> positions_, normals_;  ///< of the targets
   std::vector<std::uint32_t> sources_;
+  const Clearness* clearness_ = nullptr;
 };
 
 /// All surface, seen and guessed, as far as it can be covered: the surfels of `map`, and of the
-/// unseen `patches` those in sight. `in_sight` says of each target whether some good view sees it.
+/// unseen `patches` those in sight, their areas as expected, times `guess_yield`. `chances` says of
+/// each target with what probability some good view sees it, if it is there.
 std::vector<BelievedPatch> believed_patches(const DoseMap& map, const GainField& field,
                                             std::span<const UnseenPatch> patches,
-                                            const std::vector<bool>& in_sight);
+                                            std::span<const float> chances, float guess_yield);
 
 }  // namespace skycap::survey::skycap

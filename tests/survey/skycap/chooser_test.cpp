@@ -112,6 +112,31 @@ TEST(GainField, LooksCarryTheHazardsOfTheirShares) {
   }
 }
 
+// What unknown space may hide counts for less, known surface in full.
+TEST(GainField, CountsGuessesByTheirClearness) {
+  const Known known({2, 0, 0});
+  skycap::Clearness clearness(0.3F);
+  clearness.update(known.unseen.patches(), known.space);
+  const skycap::GainField careful(known.map, known.unseen.patches(), camera, known.dose,
+                                  {.view_distance = 2.0}, {}, &clearness);
+  const skycap::GainField hopeful = known.field();
+  for (const Vector3d& eye : {Vector3d(2, 0, 0), Vector3d(0, 2, 0), Vector3d(-2, 0, 0)}) {
+    const geometry::View view = geometry::look_at(eye, {0, 0, 0});
+    const auto sights = careful.sights(view), all = hopeful.sights(view);
+    ASSERT_EQ(sights.size(), all.size());
+    double expected = 0.0;
+    for (std::size_t i = 0; i < all.size(); ++i) {
+      const skycap::Sight& sight = sights[i];
+      EXPECT_FLOAT_EQ(sight.covered_share, sight.clearness * all[i].covered_share);
+      EXPECT_TRUE(careful.is_patch(sight.target) || sight.clearness == 1.0F);
+      expected += double{careful.targets()[sight.target].weight} * double{sight.covered_share};
+    }
+    EXPECT_NEAR(careful.gain(view).area, expected, 1e-4 * expected);
+  }
+  const geometry::View behind = geometry::look_at({-2, 0, 0}, {0, 0, 0});
+  EXPECT_LT(careful.gain(behind).unseen, 0.8 * hopeful.gain(behind).unseen);
+}
+
 // A small ball in front hides a part of a large one, whose surfels it must not see.
 TEST(GainField, NearSurfacesHideFarOnes) {
   const std::vector<tests::Sphere> two = {{{0, 0, 0}, 0.5}, {{1.2, 0, 0}, 0.2}};
@@ -147,7 +172,7 @@ TEST(Chooser, GoesWhereSomethingIsMissing) {
   EXPECT_GE(choice->best_gain, gain.area - gain.unseen);
   // Better than to look at the same half again from the same distance, 2 m before the surface.
   EXPECT_GT(choice->best_gain, field.gain(geometry::look_at({2.5, 0, 0}, {0, 0, 0})).area);
-  EXPECT_EQ(choice->in_sight.size(), field.targets().size());
+  EXPECT_EQ(choice->chances.size(), field.targets().size());
 }
 
 TEST(Chooser, DoesNotDependOnTheNumberOfThreads) {

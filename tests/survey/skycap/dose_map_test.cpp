@@ -92,6 +92,40 @@ TEST(DoseMap, OnlyTheOutlineOfWhatWasSeenIsOpen) {
   EXPECT_GT(open_outside, 40);          // the outline is 3.0 m long, 150 spacings
 }
 
+// What was measured already stands for no area when surfels come to lie there, and stays so.
+TEST(DoseMap, GapsInWhatWasMeasuredAreNoNewSurface) {
+  const auto is_upper = [](const Vector3f& p) { return p.z() > 0.0F; };
+  skycap::DoseMap map(spacing);
+  for (const Vector3d& station : {Vector3d(2, 0, 0), Vector3d(0, 2, 0)}) {
+    map.add(image_from(station), skycap::DoseModel(0.005, {}), jump, std::nullopt, is_upper);
+  }
+  const skycap::Surfels& surfels = map.surfels();
+  int upper = 0;
+  for (std::size_t i = 0; i < surfels.size(); ++i) {
+    EXPECT_EQ(surfels.areas[i] == 0.0F, surfels.positions[i].z() > 0.0F);
+    upper += is_upper(surfels.positions[i]) ? 1 : 0;
+  }
+  EXPECT_GT(upper, 300);
+  EXPECT_EQ(map.area_near({0, 0, 0.5F}, 0.2F, 0), 0.0);
+  EXPECT_GT(map.area_near({0.5F, 0, -0.05F}, 0.2F, 0), 0.0);
+}
+
+// A second look from the same place finds no new territory; one from the other side as much as the
+// first, which knew nothing before.
+TEST(DoseMap, NewTerritoryIsWhatLiesBeyondTheKnown) {
+  const skycap::DoseModel dose(0.005, {});
+  skycap::DoseMap map(spacing);
+  map.add(image_from({2, 0, 0}, 0.0, 1), dose, jump, std::nullopt);
+  EXPECT_DOUBLE_EQ(map.new_territory(0), map.covered_area());
+  const double first_half = map.covered_area();
+  std::size_t first = map.surfels().size();
+  map.add(image_from({2, 0, 0}, 0.01, 2), dose, jump, std::nullopt);
+  EXPECT_LT(map.new_territory(first), 0.005 * first_half);
+  first = map.surfels().size();
+  map.add(image_from({-2, 0, 0}), dose, jump, std::nullopt);
+  EXPECT_NEAR(map.new_territory(first), first_half, 0.05 * first_half);
+}
+
 TEST(DoseMap, LeavesOutWhatIsOutsideTheRegion) {
   skycap::DoseMap map(spacing);
   const Eigen::AlignedBox3f upper(Vector3f(-1, -1, 0), Vector3f(1, 1, 1));

@@ -106,10 +106,10 @@ double rate_after_a_look(const Vector3f& centre) {
   const double before = unseen.prior_hit_rate();
   EXPECT_GT(before, 0.8);
   unseen.predict(known.map, known.space, std::nullopt);
-  std::vector<std::uint32_t> expected;
+  std::vector<skycap::UnseenSurface::Expected> expected;
   for (std::uint32_t i = 0; i < unseen.patches().size(); ++i) {
     const skycap::UnseenPatch& patch = unseen.patches()[i];
-    if (patch.kind == skycap::prior_kind && patch.normal.x() > 0.7F) expected.push_back(i);
+    if (patch.kind == skycap::prior_kind && patch.normal.x() > 0.7F) expected.push_back({i, 1.0F});
   }
   EXPECT_GT(expected.size(), 20U);
   known.look_from({2, 0, 0});

@@ -86,11 +86,11 @@ TEST(UnseenSurface, RatesFollowWhatAppeared) {
   Knowledge known;
   known.look_from({2, 0, 0});
   skycap::UnseenSurface hopeful({}), disappointed({}), stubborn({.learns_rates = false});
-  std::vector<std::uint32_t> all;
+  std::vector<skycap::UnseenSurface::Expected> all;
   for (skycap::UnseenSurface* unseen : {&hopeful, &disappointed, &stubborn}) {
     unseen->predict(known.map, known.space, std::nullopt);
   }
-  for (std::uint32_t i = 0; i < hopeful.patches().size(); ++i) all.push_back(i);
+  for (std::uint32_t i = 0; i < hopeful.patches().size(); ++i) all.push_back({i, 1.0F});
   const double before = hopeful.hit_rate(skycap::Continuation::straight, 0);
   const float weight_before = disappointed.patches().front().weight;
 
@@ -112,6 +112,23 @@ TEST(UnseenSurface, RatesFollowWhatAppeared) {
   hopeful.grade(all, known.map, known.space, first_new);
   EXPECT_GT(hopeful.hit_rate(skycap::Continuation::straight, 0),
             disappointed.hit_rate(skycap::Continuation::straight, 0) + 0.1);
+}
+
+// What was hardly to be seen tells little by not having been seen.
+TEST(UnseenSurface, DisappointsByHowClearTheLookWas) {
+  Knowledge known;
+  known.look_from({2, 0, 0});
+  const auto weight_after = [&](float clearness) {
+    skycap::UnseenSurface unseen({.learns_rates = false});
+    unseen.predict(known.map, known.space, std::nullopt);
+    unseen.grade(std::vector<skycap::UnseenSurface::Expected>{{0, clearness}}, known.map,
+                 known.space, known.map.surfels().size());
+    unseen.predict(known.map, known.space, std::nullopt);
+    return unseen.patches().front().weight;
+  };
+  const float untouched = weight_after(0.0F);
+  EXPECT_FLOAT_EQ(weight_after(1.0F), 0.35F * untouched);
+  EXPECT_FLOAT_EQ(weight_after(0.2F), 0.87F * untouched);
 }
 
 }  // namespace
