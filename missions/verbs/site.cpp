@@ -102,13 +102,14 @@ int propose_site(const SiteOptions& options, const Console& console) {
     refuse("--out", file.string(), "a name that ends in .yaml");
   }
   const fs::path picture = fs::path(file).replace_extension(".html");
+  // First, since the mission names its files as seen from there, and a result that a kill has cut
+  // short is completed.
+  geometry::OutputFolder folder(file.has_parent_path() ? file.parent_path() : ".");
   for (const fs::path& result : {file, picture}) {
     if (!fs::exists(result)) continue;
     throw Error(ErrorKind::bad_usage,
                 result.string() + " is there already; give another --out, or move it away");
   }
-  // First, since the mission names its files as seen from there.
-  geometry::OutputFolder folder(file.has_parent_path() ? file.parent_path() : ".");
   ProgressLine progress(console, false);
   progress.show("reading " + options.map.filename().string());
   const std::string text = site::propose_mission(wishes_of(options), file);

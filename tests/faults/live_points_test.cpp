@@ -1,0 +1,110 @@
+// Live surveys live in their folders: every step that next, serve and finish take on the disk fails
+// once, and the program dies at each once. The same scan, sent again, brings the survey to where it
+// would have been.
+#include <array>
+#include <csignal>
+#include <filesystem>
+#include <span>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include "clients/skycap_live.h"
+#include "geometry/io/cloud_io.h"
+#include "tests/faults/fault_run.h"
+#include "tests/support/temporary_folder.h"
+
+namespace skycap::faults {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// A survey that has taken in one scan, and another that it has not.
+class LiveFaultPoints : public testing::Test {
+ protected:
+  LiveFaultPoints() { EXPECT_EQ(run(next("1", begun_), {}), 0); }
+
+  std::vector<std::string> verb(const std::string& name, const fs::path& folder,
+                                const std::vector<std::string>& more = {}) const {
+    std::vector<std::string> words{
+        name,    surveys_.mission(),     "--survey", folder, "--no-report",
+        "--set", "live.pose_check=false"};
+    words.insert(words.end(), more.begin(), more.end());
+    return words;
+  }
+
+  std::vector<std::string> next(const std::string& seed, const fs::path& folder) const {
+    return verb("next", folder,
+                {"--quiet", "--world", "--id", seed, "--scan", surveys_[seed] / "cloud.ply",
+                 "--pose", "0 -30 12 -0.7071068 0 0 0.7071068"});
+  }
+
+  const Surveys surveys_;
+  const testing_support::TemporaryFolder scratch_;
+  const fs::path begun_ = scratch_.path() / "begun";
+};
+
+TEST_F(LiveFaultPoints, NextGoesOnWithTheScanThatFailed) {
+  const auto take_next = [&](const fs::path& out, const Fault& fault) {
+    return run(next("2", out), fault);
+  };
+  try_going_on({.old_folder = begun_, .change = take_next, .may_also_be = {}}, all);
+}
+
+TEST_F(LiveFaultPoints, FinishLeavesAWholeResult) {
+  const auto finish = [&](const fs::path& out, const Fault& fault) {
+    return run(verb("finish", out), fault);
+  };
+  ASSERT_EQ(finish(begun_, {}), 0);
+  ASSERT_EQ(run(next("2", begun_), {}), 0);
+  try_faults({.old_folder = begun_, .change = finish, .may_also_be = is_survey_without_route},
+             {"full", "kill"}, 15);
+}
+
+/// What is written to `pipe` up to the end of a line, or of the program.
+std::string line_of(int pipe) {
+  std::string line;
+  for (char c = 0; ::read(pipe, &c, 1) == 1 && c != '\n';) line += c;
+  return line;
+}
+
+constexpr skycap_live::Pose pose{1, 0, 0, 0, 0, 0, 1, -30, 0, -1, 0, 12};
+
+/// Of a cloud in the world, as the sensor sees them.
+std::vector<float> points_of(const fs::path& cloud) {
+  std::vector<float> numbers;
+  geometry::read_positions(cloud, [&](std::span<const Eigen::Vector3f> piece, double) {
+    for (const Eigen::Vector3f& point : piece) {
+      numbers.insert(numbers.end(), {point.x(), 12.0F - point.z(), point.y() + 30.0F});
+    }
+  });
+  return numbers;
+}
+
+/// The server, to which a client sends a scan; then it finishes the survey.
+TEST_F(LiveFaultPoints, ServeGoesOnWithTheScanThatFailed) {
+  const std::vector<float> points = points_of(surveys_["2"] / "cloud.ply");
+  const auto serve = [&](const fs::path& out, const Fault& fault) {
+    std::array<int, 2> pipe{};
+    EXPECT_EQ(::pipe(pipe.data()), 0);
+    const pid_t server = start(
+        verb("serve", out, {"--quiet", "--socket", scratch_.path() / "socket"}), fault, pipe[1]);
+    ::close(pipe[1]);
+    try {
+      skycap_live::Survey client(line_of(pipe[0]));
+      client.add_cloud(points, pose);
+      client.finish();
+    } catch (const std::exception&) {  // it died, or says that it could not
+      ::kill(server, SIGTERM);
+    }
+    ::close(pipe[0]);
+    return exit_code_of(server);
+  };
+  try_going_on({.old_folder = begun_, .change = serve, .may_also_be = {}}, 12);
+}
+
+}  // namespace
+}  // namespace skycap::faults
