@@ -13,12 +13,13 @@ constexpr std::size_t most_setups = 64;
 constexpr const char* record_name = "item.json";
 
 std::shared_ptr<const Setup> setup_of(const Manifest& manifest, const ManifestEntry& entry,
-                                      const std::filesystem::path& out) {
+                                      const std::filesystem::path& out,
+                                      const derived::Report& report) {
   const benchmark::Contestant* contestant =
       entry.planner.empty() ? nullptr : benchmark::find_contestant(entry.planner);
   const std::filesystem::path file = manifest.file().folder / entry.mission;
   geometry::require_regular_file(file);  // a pipe would keep all others waiting
-  Setup setup = read_setup(file, contestant, "planners", entry.variant->changes);
+  Setup setup = read_setup(file, contestant, "planners", entry.variant->changes, report);
   setup.title = entry.title;
   setup.truth_file = out / "scenes" / setup.fingerprint;
   if (manifest.file().results == ItemResults::package) setup.fingerprint += " package";
@@ -56,7 +57,7 @@ void for_each_batch(const Manifest& manifest, const std::filesystem::path& out,
     }
     title = entry.title;
     try {
-      const auto setup = setup_of(manifest, entry, out);
+      const auto setup = setup_of(manifest, entry, out, events.reading);
       ++setups;
       for (const std::size_t number : numbers) {
         const ManifestLine line = manifest.line(number);

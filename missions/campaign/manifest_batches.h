@@ -24,6 +24,7 @@ struct BatchEvents {
   std::function<void(const Batch&)> work;
   /// A mission cannot be read, and so many of the range's items not be run.
   std::function<void(const Error&, std::size_t items)> failed;
+  derived::Report reading{};  ///< what of a mission is read
 };
 
 /// Hands on all items of the range; results are in `out`.

@@ -22,13 +22,14 @@ Setup own_setup(const std::filesystem::path& file, const file::Mission& mission)
 }
 
 Setup read_setup(const std::filesystem::path& file, const benchmark::Contestant* contestant,
-                 const std::string& origin, std::vector<file::KeyOverride> overrides) {
-  if (!contestant) return own_setup(file, derived::read_mission(file, overrides));
+                 const std::string& origin, std::vector<file::KeyOverride> overrides,
+                 const derived::Report& report) {
+  if (!contestant) return own_setup(file, derived::read_mission(file, overrides, report));
   const auto& names = file::find_key("planner.name")->choices;
   if (std::ranges::find(names, contestant->name) != names.end()) {
     overrides.push_back({origin, "planner.name", contestant->name});
   }
-  Setup setup{file, "", contestant, derived::read_mission(file, overrides), ""};
+  Setup setup{file, "", contestant, derived::read_mission(file, overrides, report), ""};
   setup.title = setup.mission.name;
   setup.fingerprint = fingerprint_of(setup);
   return setup;

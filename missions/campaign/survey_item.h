@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "missions/benchmark/contestants.h"
+#include "missions/derived/report.h"
 #include "missions/file/mission_reader.h"
 
 namespace skycap::missions::campaign {
@@ -35,7 +36,8 @@ Setup own_setup(const std::filesystem::path& file, const file::Mission& mission)
 /// Reads a mission for a contestant; null: for its own planner. `origin` is what messages call the
 /// choice of planners. Throws what derived::read_mission() throws.
 Setup read_setup(const std::filesystem::path& file, const benchmark::Contestant* contestant,
-                 const std::string& origin, std::vector<file::KeyOverride> overrides);
+                 const std::string& origin, std::vector<file::KeyOverride> overrides,
+                 const derived::Report& report = {});
 
 /// How the result of an item is kept.
 enum class ItemForm {

@@ -100,7 +100,7 @@ prior::SiteFrame frame_of(const file::Mission& mission) {
 
 }  // namespace
 
-void read_priors(file::MissionFile& given) {
+void read_priors(file::MissionFile& given, const Report& report) {
   file::Mission& mission = given.mission;
   if (mission.prior.empty()) return;
   const std::filesystem::path folder = std::filesystem::path(given.name).parent_path();
@@ -113,8 +113,15 @@ void read_priors(file::MissionFile& given) {
   const auto failed = [&](std::size_t i, const std::string& what) {
     given.refuse(key_of(i, "file"), what);
   };
+  std::size_t begun = 0;
+  const auto reading = [&](std::size_t i) {
+    if (!report) return;
+    report("reading file " + std::to_string(++begun) + " of " +
+           std::to_string(mission.prior.size()) + " of prior data, " +
+           mission.prior[i].file.filename().string());
+  };
   mission.priors = std::make_shared<const prior::SitePriors>(
-      prior::read_site_priors(mission.prior, frame_of(mission), failed));
+      prior::read_site_priors(mission.prior, frame_of(mission), failed, reading));
   check_truth(given);
 }
 

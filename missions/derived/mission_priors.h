@@ -3,6 +3,7 @@
 
 #include <memory>
 
+#include "missions/derived/report.h"
 #include "missions/file/mission_reader.h"
 #include "missions/prior/site_priors.h"
 #include "survey/skycap/prior_surface.h"
@@ -10,9 +11,9 @@
 namespace skycap::missions::derived {
 
 /// Checks the keys of `prior`, makes its paths absolute, for the package holds the mission
-/// elsewhere, and reads its files into mission.priors. Throws Error{bad_config} as
-/// MissionFile::refuse(), naming the key of the source.
-void read_priors(file::MissionFile& given);
+/// elsewhere, and reads its files into mission.priors; `report` is told which it is at. Throws
+/// Error{bad_config} as MissionFile::refuse(), naming the key of the source.
+void read_priors(file::MissionFile& given, const Report& report = {});
 
 /// planner.scene_box where the mission has none but targets: around them, with 3 m or what they may
 /// be off on every side, if that is more. Where views are taken from must not be in it: there

@@ -96,7 +96,7 @@ void derive_ground_clearance(file::Mission& mission) {
 
 }  // namespace
 
-file::Mission resolved(file::MissionFile given) {
+file::Mission resolved(file::MissionFile given, const Report& report) {
   file::Mission& mission = given.mission;
   read_vehicles(given);
   // What flies is there to be done soon: the paper's planners are for comparison.
@@ -112,7 +112,7 @@ file::Mission resolved(file::MissionFile given) {
   check_start(given);
   check_sensor(given);
   derive_undulation(mission);
-  read_priors(given);
+  read_priors(given, report);
   derive_scene_box(mission);
   check_flight(given);
   check_fleet(given);
@@ -124,7 +124,7 @@ file::Mission resolved(file::MissionFile given) {
 }
 
 file::Mission read_mission(const std::filesystem::path& file,
-                           const std::vector<file::KeyOverride>& overrides) {
+                           const std::vector<file::KeyOverride>& overrides, const Report& report) {
   file::MissionFile given = file::read_mission_file(file, overrides);
   const bool has_target = derived::has_target(given.mission);
   if (given.mission.scene.model.empty() && !is_truth_prior(given.mission)) {
@@ -135,11 +135,12 @@ file::Mission read_mission(const std::filesystem::path& file,
                         : "") +
             ". Without a scene a mission is for live surveys: skycap next, serve and finish");
   }
-  return resolved(std::move(given));
+  return resolved(std::move(given), report);
 }
 
 file::Mission read_live_mission(const std::filesystem::path& file,
-                                const std::vector<file::KeyOverride>& overrides) {
+                                const std::vector<file::KeyOverride>& overrides,
+                                const Report& report) {
   file::MissionFile given = file::read_mission_file(file, overrides);
   if (given.mission.sensor.is_moving()) {
     given.refuse("sensor.capture",
@@ -147,7 +148,7 @@ file::Mission read_live_mission(const std::filesystem::path& file,
                  "it out");
   }
   if (given.mission.scene.model.empty()) check_live(given);
-  return resolved(std::move(given));
+  return resolved(std::move(given), report);
 }
 
 file::Mission parse_mission(const std::string& text, const std::string& name,

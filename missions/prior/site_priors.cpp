@@ -47,7 +47,8 @@ flight::PriorObstacleConfig obstacle_of(const Source& source, const Prior& prior
 }
 
 SitePriors read_site_priors(std::vector<Source> sources, const SiteFrame& site,
-                            const std::function<void(std::size_t, const std::string&)>& failed) {
+                            const std::function<void(std::size_t, const std::string&)>& failed,
+                            const std::function<void(std::size_t)>& reading) {
   SitePriors result;
   result.priors.resize(sources.size());
   result.digests.resize(sources.size());
@@ -56,6 +57,7 @@ SitePriors read_site_priors(std::vector<Source> sources, const SiteFrame& site,
   std::vector<flight::PriorObstacleConfig> ground_obstacles;
   const auto read = [&](std::size_t i) {
     const Role role = sources[i].role;
+    if (reading) reading(i);
     try {
       result.priors[i] = read_prior(sources[i], site, terrain_height);
       result.digests[i] = digest_of(result.priors[i]);

@@ -27,9 +27,11 @@ struct SitePriors {
 };
 
 /// Reads them, terrain first. Whatever is thrown for a source passes through `failed`, which has to
-/// throw, too: it knows where the mission file names that source.
+/// throw, too: it knows where the mission file names that source. `reading`, if there is one, is
+/// told of each source before it is read.
 SitePriors read_site_priors(std::vector<Source> sources, const SiteFrame& site,
-                            const std::function<void(std::size_t, const std::string&)>& failed);
+                            const std::function<void(std::size_t, const std::string&)>& failed,
+                            const std::function<void(std::size_t)>& reading = {});
 
 /// Everything within the prior's uncertainty of its surfaces, points and columns of heights.
 flight::PriorObstacleConfig obstacle_of(const Source& source, const Prior& prior);

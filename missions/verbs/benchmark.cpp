@@ -64,7 +64,8 @@ std::vector<std::string> chosen_scenes(const std::vector<std::string>& names) {
 
 /// One planner on one mission, or on as many scenes of a family in its place as there are trials.
 Entry entry_of(const fs::path& file, const benchmark::Contestant* contestant,
-               const std::string& scene, const BenchmarkOptions& options) {
+               const std::string& scene, const BenchmarkOptions& options,
+               const derived::Report& report) {
   // Nothing is flown unless the user says so: as in the paper, the sensor moves freely.
   std::vector<file::KeyOverride> overrides{{"benchmark", "flight.vehicle", "none"}};
   overrides.insert(overrides.end(), options.overrides.begin(), options.overrides.end());
@@ -72,14 +73,14 @@ Entry entry_of(const fs::path& file, const benchmark::Contestant* contestant,
   entry.trials.resize(options.trials);
   if (scene.empty()) {
     const auto setup = std::make_shared<campaign::Setup>(
-        campaign::read_setup(file, contestant, "--planners", overrides));
+        campaign::read_setup(file, contestant, "--planners", overrides, report));
     entry.title = setup->title;
     entry.setups.assign(options.trials, setup);
     return entry;
   }
   overrides.push_back({"--scenes", "scene.model", "builtin:" + scene});
   for (std::size_t trial = 0; trial < options.trials; ++trial) {
-    campaign::Setup setup = campaign::read_setup(file, contestant, "--planners", overrides);
+    campaign::Setup setup = campaign::read_setup(file, contestant, "--planners", overrides, report);
     setup.mission.scene.seed = setup.mission.seed + trial;
     entry.title = options.missions.size() == 1 ? scene : setup.title + " " + scene;
     setup.title = fmt::format("{} {}", entry.title, setup.mission.scene.seed);
@@ -89,14 +90,15 @@ Entry entry_of(const fs::path& file, const benchmark::Contestant* contestant,
   return entry;
 }
 
-std::vector<Entry> entries_of(const BenchmarkOptions& options) {
+std::vector<Entry> entries_of(const BenchmarkOptions& options, const Console& console) {
+  ProgressLine progress(console, options.is_quiet);
   std::vector<Entry> entries;
   std::map<std::string, fs::path> file_of_title;
   const std::vector<std::string> scenes = chosen_scenes(options.scenes);
   for (const fs::path& file : options.missions) {
     for (const std::string& scene : scenes) {
       for (const benchmark::Contestant* contestant : chosen_contestants(options.planners)) {
-        Entry entry = entry_of(file, contestant, scene, options);
+        Entry entry = entry_of(file, contestant, scene, options, progress.teller());
         const auto [known, is_new] = file_of_title.emplace(entry.title, file);
         if (!is_new && known->second != file) {
           throw Error(ErrorKind::bad_usage, file.string() + " and " + known->second.string() +
@@ -137,7 +139,7 @@ class Benchmark {
   Benchmark(const BenchmarkOptions& options, const Console& console)
       : options_(options),
         console_(console),
-        entries_(entries_of(options)),
+        entries_(entries_of(options, console)),
         folder_(options.out.value_or("results/benchmark")),
         progress_("benchmark", console, options.is_quiet, geometry::thread_count(options.threads)) {
   }

@@ -119,7 +119,8 @@ class CampaignVerb {
       for (std::size_t i = 0; i < records.size(); ++i) done += records[i] ? 1 : 0;
       if (!runs) keep(batch, records);
     };
-    campaign::for_each_batch(manifest_, out_, range, {work, tell});
+    campaign::for_each_batch(manifest_, out_, range,
+                             {work, tell, [&](const std::string& what) { progress_.say(what); }});
     progress_.clear();
     return done;
   }

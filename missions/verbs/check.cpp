@@ -208,7 +208,7 @@ int check_survey(const CheckOptions& options, const file::Mission& mission, Prog
 }  // namespace
 
 int check(const CheckOptions& options, const Console& console) {
-  const file::Mission mission = derived::read_mission(options.mission, options.overrides);
+  const file::Mission mission = read_shown(derived::read_mission, options, console);
   if (options.route && options.route->filename() == fleet::timetable_name) {
     return check_timetable(options, mission, console);
   }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <atomic>
+#include <functional>
 #include <ostream>
 #include <stop_token>
 #include <string>
@@ -59,6 +60,11 @@ class ProgressLine {
     has_text_ = true;
   }
 
+  /// Shows what it is told. Not for longer than the line lives.
+  std::function<void(const std::string&)> teller() {
+    return [this](const std::string& text) { show(text); };
+  }
+
   void clear() {
     if (has_text_) err_ << "\r\033[K" << std::flush;
     has_text_ = false;
@@ -69,5 +75,15 @@ class ProgressLine {
   bool is_shown_;
   bool has_text_ = false;
 };
+
+/// The mission that a verb is given, by derived::read_mission() or one like it. Where that takes
+/// long, since there is much prior data, it shows how far it is.
+template <class Read, class Options>
+auto read_shown(const Read& read, const Options& options, const Console& console) {
+  bool is_quiet = false;
+  if constexpr (requires { options.is_quiet; }) is_quiet = options.is_quiet;
+  ProgressLine progress(console, is_quiet);
+  return read(options.mission, options.overrides, progress.teller());
+}
 
 }  // namespace skycap::missions::verbs

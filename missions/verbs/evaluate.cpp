@@ -32,10 +32,10 @@ bool is_mission_file(const std::filesystem::path& file) {
   return file.extension() == ".yaml" || file.extension() == ".yml";
 }
 
-Truth truth_of(const EvaluateOptions& options) {
+Truth truth_of(const EvaluateOptions& options, const derived::Report& report) {
   if (is_mission_file(options.model)) {
     const std::filesystem::path file = options.model;
-    const file::Mission mission = derived::read_mission(file);
+    const file::Mission mission = derived::read_mission(file, {}, report);
     return {scene::placed_model(mission, file.parent_path()),
             options.distance.value_or(mission.evaluation.registration_distance),
             mission.evaluation.samples};
@@ -82,7 +82,7 @@ judge::CloudJudgement judged_mesh(const std::filesystem::path& file, const Truth
 int evaluate(const EvaluateOptions& options, const Console& console) {
   ProgressLine progress(console, false);
   progress.show("making " + options.model + " ready");
-  const Truth truth = truth_of(options);
+  const Truth truth = truth_of(options, progress.teller());
   const bool is_mesh = !options.mesh.empty();
   const std::filesystem::path& file = is_mesh ? options.mesh : options.cloud;
   progress.show("reading " + file.string());

@@ -230,7 +230,7 @@ int next(const NextOptions& options, const Console& console) {
     throw Error(ErrorKind::bad_usage,
                 "--scan, --dataset and --refuse do not go together; give one");
   }
-  const file::Mission mission = derived::read_live_mission(options.mission, options.overrides);
+  const file::Mission mission = read_shown(derived::read_live_mission, options, console);
   const auto survey = live::open_survey(mission, options.mission.parent_path(), options.survey);
   if (options.scan) {
     const live::ScanInput input = input_of(options, *options.scan, pose_of(options));
@@ -249,7 +249,7 @@ int next(const NextOptions& options, const Console& console) {
 }
 
 int finish(const LiveOptions& options, const Console& console) {
-  const file::Mission mission = derived::read_live_mission(options.mission, options.overrides);
+  const file::Mission mission = read_shown(derived::read_live_mission, options, console);
   const auto survey = live::open_survey(mission, options.mission.parent_path(), options.survey);
   if (survey->views().empty()) {
     throw Error(ErrorKind::bad_usage,
@@ -264,7 +264,7 @@ int serve(const ServeOptions& options, const Console& console) {
   if (options.socket.has_value() == options.port.has_value()) {
     throw Error(ErrorKind::bad_usage, "serve needs either --socket PATH or --port NUMBER");
   }
-  const file::Mission mission = derived::read_live_mission(options.mission, options.overrides);
+  const file::Mission mission = read_shown(derived::read_live_mission, options, console);
   const auto survey = live::open_survey(mission, options.mission.parent_path(), options.survey);
   int exit_code = 1;
   const auto finish_survey = [&] {
@@ -311,7 +311,7 @@ fly::Sensor sensor_of(const FlyOptions& options, const file::Mission& mission,
 /// Exit code 0: the survey is over, the vehicle has landed, and the package has a route.
 int fly_live(const FlyOptions& options, const Console& console) {
   const fly::NetworkAddress address = fly::parse_address(options.connect);
-  const file::Mission mission = derived::read_live_mission(options.mission, options.overrides);
+  const file::Mission mission = read_shown(derived::read_live_mission, options, console);
   fly::require_flyable(mission);
   fly::Sensor sensor = sensor_of(options, mission, console);
   const auto survey = live::open_survey(mission, options.mission.parent_path(), options.survey);

@@ -91,10 +91,10 @@ bool is_mission(const std::string& name) {
   return name.ends_with(".yaml") || name.ends_with(".yml");
 }
 
-Site site_called(const ModelOptions& options) {
+Site site_called(const ModelOptions& options, const derived::Report& report) {
   std::vector<file::KeyOverride> overrides;
   if (options.detail) overrides.push_back({"--detail", "scene.detail", *options.detail});
-  file::Mission mission = derived::read_live_mission(options.name, overrides);
+  file::Mission mission = derived::read_live_mission(options.name, overrides, report);
   if (mission.prior.empty()) mission = derived::read_mission(options.name, overrides);
   if (mission.scene.model.empty() && !derived::is_truth_prior(mission)) return {mission, {}};
   geometry::Mesh model = scene::placed_model(mission, fs::path(options.name).parent_path());
@@ -117,20 +117,26 @@ int model(const ModelOptions& options, const Console& console) {
   ProgressLine progress(console, false);
   progress.show(options.name + ": making the model ready");
   std::optional<Site> site;
-  if (is_mission(options.name)) site = site_called(options);
+  if (is_mission(options.name)) site = site_called(options, progress.teller());
   const ColouredMesh whole =
       site ? coloured_site(*site, {}) : ColouredMesh{model_called(options, console), {}};
   const geometry::Mesh& mesh = whole.mesh;
   geometry::validate(mesh);
-  progress.clear();
-  if (options.out) geometry::write_mesh(*options.out, mesh);
+  if (options.out) {
+    progress.show("writing " + options.out->string());
+    geometry::write_mesh(*options.out, mesh);
+  }
   if (options.render) {
     const auto near = site ? around_targets(derived::priors_of(site->mission)) : std::nullopt;
     const ColouredMesh shown = near ? coloured_site(*site, near) : whole;
     sim::RenderOptions render;
     render.colours = shown.colours;
+    render.report = [&](double share) {
+      progress.show(fmt::format("{}: {:.0f} % of the picture", options.name, 100.0 * share));
+    };
     sim::write_png(sim::render(shown.mesh, render), *options.render);
   }
+  progress.clear();
   const Eigen::Vector3d size = geometry::bounding_box(mesh).sizes();
   console.out << fmt::format("{}: {} triangles, {:.4g} x {:.4g} x {:.4g}, area {:.4g}\n",
                              options.name, mesh.triangles.size(), size.x(), size.y(), size.z(),

@@ -180,7 +180,7 @@ int plan_trials(const PlanOptions& options, const file::Mission& mission,
 }  // namespace
 
 int plan(const PlanOptions& options, const Console& console) {
-  const file::Mission mission = derived::read_mission(options.mission, options.overrides);
+  const file::Mission mission = read_shown(derived::read_mission, options, console);
   geometry::OutputFolder folder(
       options.out.value_or(std::filesystem::path("results") / mission.name));
   if (options.trials > 0) return plan_trials(options, mission, folder, console);

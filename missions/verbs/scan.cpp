@@ -351,7 +351,7 @@ int scan_with_camera(const ScanVerbOptions& options, const file::Mission& missio
 }  // namespace
 
 int scan(const ScanVerbOptions& options, const Console& console) {
-  const file::Mission mission = derived::read_mission(options.mission, options.overrides);
+  const file::Mission mission = read_shown(derived::read_mission, options, console);
   const equipment::SensorDescription sensor = sensor_of(options, mission);
   geometry::OutputFolder folder(
       options.out.value_or(std::filesystem::path("results") / mission.name / "scan"));

@@ -15,8 +15,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-report::MadePage page_of_mission(const ViewOptions& options) {
-  const file::Mission mission = derived::read_mission(options.what, options.overrides);
+report::MadePage page_of_mission(const ViewOptions& options, const derived::Report& report) {
+  const file::Mission mission = derived::read_mission(options.what, options.overrides, report);
   const scene::SurveyScene scene(mission, options.what.parent_path());
   const geometry::View first = scene.first_view(mission.seed);
   std::optional<Eigen::Vector3d> pad;
@@ -25,7 +25,7 @@ report::MadePage page_of_mission(const ViewOptions& options) {
           report::mission_page(mission, scene.samples().points, pad)};
 }
 
-std::vector<report::MadePage> pages_of(const ViewOptions& options) {
+std::vector<report::MadePage> pages_of(const ViewOptions& options, const derived::Report& report) {
   const fs::path& what = options.what;
   std::error_code ignored;
   if (fs::is_directory(what, ignored)) {
@@ -35,7 +35,7 @@ std::vector<report::MadePage> pages_of(const ViewOptions& options) {
     throw Error(ErrorKind::bad_file, what.string() + ": is not there");
   }
   const std::string ending = what.extension().string();
-  if (ending == ".yaml" || ending == ".yml") return {page_of_mission(options)};
+  if (ending == ".yaml" || ending == ".yml") return {page_of_mission(options, report)};
   fs::path file = what;
   file.replace_extension(".html");
   return {{options.out.value_or(file), report::cloud_page(what)}};
@@ -55,7 +55,7 @@ bool is_opened(const fs::path& file) {
 int view(const ViewOptions& options, const Console& console) {
   ProgressLine progress(console, false);
   progress.show("reading " + options.what.string());
-  for (const report::MadePage& page : pages_of(options)) {
+  for (const report::MadePage& page : pages_of(options, progress.teller())) {
     if (page.text) geometry::write_file(page.file, *page.text);
     progress.clear();
     const bool is_shown = is_opened(page.file);

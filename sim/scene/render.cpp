@@ -28,6 +28,8 @@ const Vector3d sunlight(1.55, 1.42, 1.15);
 const Vector3d zenith(0.20, 0.36, 0.66);
 const Vector3d horizon(0.66, 0.76, 0.88);
 
+constexpr int rows_at_a_time = 25;  ///< some 0.1 s of work of large scenes
+
 /// Numbers in [0, 1) that look random but depend on the sample only, so that any thread may draw
 /// it: the SplitMix64 sequence, seeded with the sample's place.
 class Dice {
@@ -119,7 +121,9 @@ class Renderer {
     floor_ = box.min().z() - 1e-4 * size_;  // below a ground sheet of the mesh's own
   }
 
-  void draw(const RenderView& view, int left, int top, Image& image) {
+  /// `report` is told how many rows are drawn.
+  void draw(const RenderView& view, int left, int top, Image& image,
+            const std::function<void(int rows)>& report) {
     const Eigen::Isometry3d world_from_camera = camera_pose(view.view);
     to_sun_ = sun_of(world_from_camera);
     const double slope = std::tan(0.5 * view.horizontal_fov) / (0.5 * options_.width);
@@ -143,7 +147,12 @@ class Renderer {
         image.at(left + column, top + static_cast<int>(row)) = display(sum / (side * side));
       }
     };
-    geometry::parallel_for(static_cast<std::size_t>(options_.height), options_.threads, draw_row);
+    for (int begin = 0; begin < options_.height; begin += rows_at_a_time) {
+      const int rows = std::min(rows_at_a_time, options_.height - begin);
+      geometry::parallel_for(static_cast<std::size_t>(rows), options_.threads,
+                             [&](std::size_t row) { draw_row(begin + row); });
+      report(begin + rows);
+    }
   }
 
  private:
@@ -292,7 +301,12 @@ Image render(const Mesh& mesh, std::span<const RenderView> views, const RenderOp
   Image image{columns * options.width, rows * options.height, {}};
   image.pixels.resize(static_cast<std::size_t>(image.width) * image.height, Rgb{255, 255, 255});
   for (int i = 0; i < count; ++i) {
-    renderer.draw(views[i], i % columns * options.width, i / columns * options.height, image);
+    const auto report = [&](int drawn) {
+      const double pictures = i + static_cast<double>(drawn) / options.height;
+      if (options.report) options.report(pictures / count);
+    };
+    renderer.draw(views[i], i % columns * options.width, i / columns * options.height, image,
+                  report);
   }
   return image;
 }

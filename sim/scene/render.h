@@ -4,6 +4,7 @@
 #include <array>
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <span>
 #include <vector>
 
@@ -50,6 +51,7 @@ struct RenderOptions {
   /// Diffuse colours of the triangles, linear, in [0, 1]; empty: all are of sandstone.
   std::vector<Eigen::Vector3f> colours{};
   unsigned threads = 0;  ///< zero: all processors. The picture does not depend on it.
+  std::function<void(double share)> report{};  ///< told how much is drawn, many times a picture
 
   /// Throws Error{bad_config} naming the first field that is out of its interval.
   void validate() const;
