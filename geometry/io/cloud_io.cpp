@@ -4,6 +4,7 @@
 #include <bit>
 #include <cassert>
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <map>
 #include <optional>
@@ -24,64 +25,103 @@ namespace fs = std::filesystem;
 // Beyond this, neighbouring single-precision numbers are 2 mm apart.
 constexpr double farthest_coordinate = 16384.0;
 
-AttributedCloud parse_ply_cloud(const fs::path& path, std::string_view bytes) {
-  constexpr std::array<std::string_view, 10> names{"x",  "y",    "z",   "nx",    "ny",
-                                                   "nz", "view", "red", "green", "blue"};
+/// Takes a piece of a cloud whose first point has that number, of so many.
+using TakePiece =
+    std::function<void(const AttributedCloud& piece, std::size_t first, std::size_t count)>;
+
+constexpr std::array<std::string_view, 10> ply_names{"x",  "y",    "z",   "nx",    "ny",
+                                                     "nz", "view", "red", "green", "blue"};
+
+AttributedCloud ply_piece(const fs::path& path, const PlyTable& table, std::size_t first,
+                          std::size_t count) {
+  const auto& columns = table.columns;
+  const auto has = [&](std::size_t begin, std::size_t last) {
+    for (std::size_t i = begin; i <= last; ++i) {
+      if (columns[i].size() != count) return false;
+    }
+    return true;
+  };
+  if (!has(0, 2)) fail_cloud(path, "the element 'vertex' must have the properties x, y and z");
+  const bool has_normals = has(3, 5), has_views = has(6, 6), has_colours = has(7, 9);
+  const auto integer = [&](std::size_t column, std::size_t row, double largest) {
+    const double value = columns[column][row];
+    if (!(value >= 0.0 && value <= largest && value == std::floor(value))) {
+      fail_cloud(path, "point " + std::to_string(first + row) + " has the " +
+                           std::string(ply_names[column]) + " " + std::to_string(value) +
+                           "; it must be a whole number from 0 to " +
+                           std::to_string(static_cast<std::uint64_t>(largest)));
+    }
+    return value;
+  };
+  AttributedCloud cloud;
+  cloud.positions.reserve(count);
+  for (std::size_t i = 0; i < count; ++i) {
+    cloud.positions.push_back(
+        cloud_position(path, first + i, columns[0][i], columns[1][i], columns[2][i]));
+    if (has_normals) {
+      cloud.normals.push_back(
+          Eigen::Vector3d(columns[3][i], columns[4][i], columns[5][i]).cast<float>());
+    }
+    if (has_views) {
+      constexpr double largest = std::numeric_limits<std::uint32_t>::max();
+      cloud.views.push_back(static_cast<std::uint32_t>(integer(6, i, largest)));
+    }
+    if (!has_colours) continue;
+    auto& colour = cloud.colours.emplace_back();
+    for (std::size_t channel = 0; channel < 3; ++channel) {
+      colour[channel] = static_cast<std::uint8_t>(integer(7 + channel, i, 255.0));
+    }
+  }
+  return cloud;
+}
+
+void take_ply(const fs::path& path, std::string_view bytes, const TakePiece& take) {
   const std::string name = path.string();
   PlyReader reader(name, bytes);
   for (const PlyElement& element : reader.elements()) {
-    const PlyTable table = reader.read_element(names, {});
-    if (element.name != "vertex") continue;
-    const auto& columns = table.columns;
-    const auto has = [&](std::size_t first, std::size_t last) {
-      for (std::size_t i = first; i <= last; ++i) {
-        if (columns[i].size() != element.count) return false;
-      }
-      return true;
-    };
-    if (!has(0, 2)) fail_cloud(path, "the element 'vertex' must have the properties x, y and z");
-    const bool has_normals = has(3, 5), has_views = has(6, 6), has_colours = has(7, 9);
-    const auto integer = [&](std::size_t column, std::size_t row, double largest) {
-      const double value = columns[column][row];
-      if (!(value >= 0.0 && value <= largest && value == std::floor(value))) {
-        fail_cloud(path, "point " + std::to_string(row) + " has the " + std::string(names[column]) +
-                             " " + std::to_string(value) +
-                             "; it must be a whole number from 0 to " +
-                             std::to_string(static_cast<std::uint64_t>(largest)));
-      }
-      return value;
-    };
-    AttributedCloud cloud;
-    cloud.positions.reserve(element.count);
-    cloud.normals.reserve(has_normals ? element.count : 0);
-    cloud.views.reserve(has_views ? element.count : 0);
-    cloud.colours.reserve(has_colours ? element.count : 0);
-    for (std::size_t i = 0; i < element.count; ++i) {
-      cloud.positions.push_back(
-          cloud_position(path, i, columns[0][i], columns[1][i], columns[2][i]));
-      if (has_normals) {
-        cloud.normals.push_back(
-            Eigen::Vector3d(columns[3][i], columns[4][i], columns[5][i]).cast<float>());
-      }
-      if (has_views) {
-        constexpr double largest = std::numeric_limits<std::uint32_t>::max();
-        cloud.views.push_back(static_cast<std::uint32_t>(integer(6, i, largest)));
-      }
-      if (!has_colours) continue;
-      auto& colour = cloud.colours.emplace_back();
-      for (std::size_t channel = 0; channel < 3; ++channel) {
-        colour[channel] = static_cast<std::uint8_t>(integer(7 + channel, i, 255.0));
-      }
+    if (element.name != "vertex") {
+      reader.read_element({}, {});
+      continue;
     }
-    return cloud;
+    std::size_t first = 0;
+    do {
+      const PlyTable table = reader.read_rows(ply_names, {}, piece_size);
+      const std::size_t count = std::min<std::size_t>(piece_size, element.count - first);
+      take(ply_piece(path, table, first, count), first, element.count);
+      first += count;
+    } while (first < element.count);
+    return;
   }
   fail_cloud(path, "there is no element 'vertex'; a cloud must have one");
 }
 
-AttributedCloud parse_xyz_cloud(const fs::path& path, std::string_view text) {
+AttributedCloud parse_ply_cloud(const fs::path& path, std::string_view bytes) {
+  AttributedCloud cloud;
+  const auto append = [](auto& all, const auto& more, std::size_t count) {
+    if (all.empty() && !more.empty()) all.reserve(count);
+    all.insert(all.end(), more.begin(), more.end());
+  };
+  take_ply(path, bytes, [&](const AttributedCloud& piece, std::size_t, std::size_t count) {
+    require_few_points(path, count);
+    append(cloud.positions, piece.positions, count);
+    append(cloud.normals, piece.normals, count);
+    append(cloud.views, piece.views, count);
+    append(cloud.colours, piece.colours, count);
+  });
+  return cloud;
+}
+
+/// Hands on pieces, and how many bytes are read with them.
+void take_xyz(const fs::path& path, std::string_view text,
+              const std::function<void(std::span<const Eigen::Vector3f>, std::size_t)>& take) {
   const std::string name = path.string();
   TextScanner scanner(name, text);
-  AttributedCloud cloud;
+  std::vector<Eigen::Vector3f> piece;
+  std::size_t count = 0;
+  const auto hand_on = [&] {
+    if (!piece.empty()) take(piece, text.size() - scanner.remaining());
+    piece.clear();
+  };
   do {
     const auto x = scanner.word_in_line();
     if (!x || x->starts_with('#')) continue;
@@ -89,9 +129,18 @@ AttributedCloud parse_xyz_cloud(const fs::path& path, std::string_view text) {
     position[0] = scanner.number<double>(x, "a coordinate");
     position[1] = scanner.number<double>(scanner.word_in_line(), "a coordinate");
     position[2] = scanner.number<double>(scanner.word_in_line(), "a coordinate");
-    cloud.positions.push_back(
-        cloud_position(path, cloud.positions.size(), position[0], position[1], position[2]));
+    piece.push_back(cloud_position(path, count++, position[0], position[1], position[2]));
+    if (piece.size() == piece_size) hand_on();
   } while (scanner.next_line());
+  hand_on();
+}
+
+AttributedCloud parse_xyz_cloud(const fs::path& path, std::string_view text) {
+  AttributedCloud cloud;
+  take_xyz(path, text, [&](std::span<const Eigen::Vector3f> piece, std::size_t) {
+    cloud.positions.insert(cloud.positions.end(), piece.begin(), piece.end());
+    require_few_points(path, cloud.positions.size());
+  });
   return cloud;
 }
 
@@ -171,10 +220,43 @@ AttributedCloud read_cloud(const fs::path& path) {
   return cloud;
 }
 
+namespace {
+
+bool is_text_cloud(const fs::path& path) {
+  const std::string ending = ending_of(path);
+  return ending == ".xyz" || ending == ".txt" || ending == ".asc";
+}
+
+/// Of files that are read whole, but whose points are not held at once.
+void read_file_positions(const fs::path& path, const TakePositions& take) {
+  const std::string bytes = read_file(path, largest_whole_file, largest_unpacked_cloud);
+  bool has_points = false;
+  const auto hand_on = [&](std::span<const Eigen::Vector3f> piece, double read, double all) {
+    if (piece.empty()) return;
+    has_points = true;
+    take(piece, read / all);
+  };
+  if (is_text_cloud(path)) {
+    const auto all = static_cast<double>(bytes.size());
+    take_xyz(path, bytes, [&](std::span<const Eigen::Vector3f> piece, std::size_t read) {
+      hand_on(piece, static_cast<double>(read), all);
+    });
+  } else {
+    take_ply(path, bytes, [&](const AttributedCloud& piece, std::size_t first, std::size_t all) {
+      hand_on(piece.positions, static_cast<double>(first + piece.positions.size()),
+              static_cast<double>(all));
+    });
+  }
+  if (!has_points) fail_cloud(path, "holds no points");
+}
+
+}  // namespace
+
 void read_positions(const fs::path& path, const TakePositions& take) {
   if (const auto piecewise = piecewise_reader(ending_of(path))) {
     return piecewise->positions(path, take);
   }
+  if (is_text_cloud(path) || ending_of(path) == ".ply") return read_file_positions(path, take);
   const std::vector<Eigen::Vector3f> positions = read_cloud(path).positions;
   for (std::size_t begin = 0; begin < positions.size(); begin += piece_size) {
     const std::size_t count = std::min(piece_size, positions.size() - begin);

@@ -202,6 +202,7 @@ class Points {
             fields_[i]->name);
       }
       add(point++, values);
+      require_few_points(path_, point);
     } while (scanner.next_line());
     require(point);
   }
@@ -209,6 +210,8 @@ class Points {
   // Point after point, or field after field.
   void read_binary(std::string_view bytes, bool is_by_field) {
     require(bytes.size() / std::max<std::size_t>(1, header_.point_size));
+    require_few_points(path_, header_.points);
+    cloud_.positions.reserve(header_.points);
     for (std::size_t point = 0; point < header_.points; ++point) {
       Values values{};
       for (std::size_t i = 0; i < used(); ++i) {

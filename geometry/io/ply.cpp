@@ -122,6 +122,13 @@ PlyProperty parse_property(TextScanner& scanner) {
 struct PlyReader::Wanted {
   std::vector<int> column;
   std::size_t list;
+  std::size_t smallest_row;  // [bytes]
+};
+
+// Those to be read now.
+struct PlyReader::Rows {
+  const PlyElement& element;
+  std::uint64_t begin, end;
 };
 
 PlyReader::PlyReader(std::string_view name, std::string_view bytes) : name_(name), bytes_(bytes) {
@@ -176,17 +183,13 @@ void PlyReader::read_header() {
   line_ = scanner.line();
 }
 
-PlyTable PlyReader::read_element(std::span<const std::string_view> scalars,
-                                 std::span<const std::string_view> lists) {
-  const PlyElement& element = elements_.at(next_element_++);
-  PlyTable table;
-  table.columns.resize(scalars.size());
-  Wanted wanted{std::vector<int>(element.properties.size(), -1), element.properties.size()};
-  if (element.properties.empty() || element.count == 0) return table;
-  std::size_t smallest_row = 0;  // [bytes]
+PlyReader::Wanted PlyReader::wanted_of(const PlyElement& element,
+                                       std::span<const std::string_view> scalars,
+                                       std::span<const std::string_view> lists) const {
+  Wanted wanted{std::vector<int>(element.properties.size(), -1), element.properties.size(), 0};
   for (std::size_t p = 0; p < element.properties.size(); ++p) {
     const PlyProperty& property = element.properties[p];
-    smallest_row +=
+    wanted.smallest_row +=
         format_ == Format::ascii ? 2 : size_of(property.count_type.value_or(property.type));
     const auto names = property.count_type ? lists : scalars;
     const auto name = std::find(names.begin(), names.end(), property.name);
@@ -200,21 +203,39 @@ PlyTable PlyReader::read_element(std::span<const std::string_view> scalars,
       wanted.list = p;
     }
   }
+  return wanted;
+}
+
+PlyTable PlyReader::read_element(std::span<const std::string_view> scalars,
+                                 std::span<const std::string_view> lists) {
+  return read_rows(scalars, lists, elements_.at(next_element_).count);
+}
+
+PlyTable PlyReader::read_rows(std::span<const std::string_view> scalars,
+                              std::span<const std::string_view> lists, std::uint64_t most_rows) {
+  const PlyElement& element = elements_.at(next_element_);
+  const std::uint64_t left = element.count - next_row_;
+  const Rows rows{element, next_row_, next_row_ + std::min(left, most_rows)};
+  next_row_ = rows.end == element.count ? 0 : rows.end;
+  if (next_row_ == 0) ++next_element_;
+  PlyTable table;
+  table.columns.resize(scalars.size());
+  if (element.properties.empty() || element.count == 0) return table;
+  const Wanted wanted = wanted_of(element, scalars, lists);
 
   // The last row of ascii needs no line end, hence the 1.
-  if (element.count > (bytes_.size() - at_ + 1) / std::max<std::size_t>(smallest_row, 1)) {
+  if (left > (bytes_.size() - at_ + 1) / std::max<std::size_t>(wanted.smallest_row, 1)) {
     fail("the header promises " + std::to_string(element.count) + " of element '" + element.name +
          "', but the file is too short for so many; it may have been cut off");
   }
   for (const int column : wanted.column) {
-    if (column >= 0) table.columns[static_cast<std::size_t>(column)].reserve(element.count);
+    if (column >= 0) table.columns[static_cast<std::size_t>(column)].reserve(rows.end - rows.begin);
   }
   if (wanted.list < element.properties.size()) {
-    table.list_begin.reserve(element.count + 1);
+    table.list_begin.reserve(rows.end - rows.begin + 1);
     table.list_begin.push_back(0);
   }
-  format_ == Format::ascii ? read_ascii(element, wanted, table)
-                           : read_binary(element, wanted, table);
+  format_ == Format::ascii ? read_ascii(rows, wanted, table) : read_binary(rows, wanted, table);
   return table;
 }
 
@@ -223,11 +244,12 @@ void PlyReader::fail_within(const PlyElement& element, std::uint64_t row) const 
        std::to_string(element.count) + "; it may have been cut off");
 }
 
-void PlyReader::read_scalars(const PlyElement& element, const Wanted& wanted, PlyTable& table) {
+void PlyReader::read_scalars(const Rows& rows, const Wanted& wanted, PlyTable& table) {
+  const PlyElement& element = rows.element;
   std::size_t row_size = 0;
   for (const PlyProperty& property : element.properties) row_size += size_of(property.type);
   const std::size_t whole_rows = (bytes_.size() - at_) / row_size;
-  if (whole_rows < element.count) fail_within(element, whole_rows);
+  if (whole_rows < element.count - rows.begin) fail_within(element, rows.begin + whole_rows);
   const bool swap = format_ == Format::big_endian;
   const char* first = bytes_.data() + at_;
   for (std::size_t p = 0; p < element.properties.size(); ++p) {
@@ -235,23 +257,24 @@ void PlyReader::read_scalars(const PlyElement& element, const Wanted& wanted, Pl
     if (wanted.column[p] >= 0) {
       auto& column = table.columns[static_cast<std::size_t>(wanted.column[p])];
       with_type(type, [&]<typename Value>(std::type_identity<Value>) {
-        for (std::size_t row = 0; row < element.count; ++row) {
+        for (std::size_t row = 0; row < rows.end - rows.begin; ++row) {
           column.push_back(load<Value>(first + row * row_size, swap));
         }
       });
     }
     first += size_of(type);
   }
-  at_ += element.count * row_size;
+  at_ += (rows.end - rows.begin) * row_size;
 }
 
-void PlyReader::read_binary(const PlyElement& element, const Wanted& wanted, PlyTable& table) {
+void PlyReader::read_binary(const Rows& rows, const Wanted& wanted, PlyTable& table) {
+  const PlyElement& element = rows.element;
   const bool has_lists = std::ranges::any_of(element.properties, [](const PlyProperty& property) {
     return property.count_type.has_value();
   });
-  if (!has_lists) return read_scalars(element, wanted, table);
+  if (!has_lists) return read_scalars(rows, wanted, table);
   const bool swap = format_ == Format::big_endian;
-  for (std::uint64_t row = 0; row < element.count; ++row) {
+  for (std::uint64_t row = rows.begin; row < rows.end; ++row) {
     const auto take = [&](std::size_t size) {
       if (size > bytes_.size() - at_) {
         fail_within(element, row);
@@ -285,9 +308,10 @@ void PlyReader::read_binary(const PlyElement& element, const Wanted& wanted, Ply
   }
 }
 
-void PlyReader::read_ascii(const PlyElement& element, const Wanted& wanted, PlyTable& table) {
+void PlyReader::read_ascii(const Rows& rows, const Wanted& wanted, PlyTable& table) {
+  const PlyElement& element = rows.element;
   TextScanner scanner(name_, bytes_.substr(at_), line_);
-  for (std::uint64_t row = 0; row < element.count; ++row) {
+  for (std::uint64_t row = rows.begin; row < rows.end; ++row) {
     for (std::size_t p = 0; p < element.properties.size(); ++p) {
       const PlyProperty& property = element.properties[p];
       if (!property.count_type) {

@@ -47,12 +47,20 @@ class PlyReader {
   PlyTable read_element(std::span<const std::string_view> scalars,
                         std::span<const std::string_view> lists);
 
+  /// The same of its next `most_rows` rows, or those that are left: numbers take several times the
+  /// file's bytes. With its last row an element is read.
+  PlyTable read_rows(std::span<const std::string_view> scalars,
+                     std::span<const std::string_view> lists, std::uint64_t most_rows);
+
  private:
   struct Wanted;
+  struct Rows;
   void read_header();
-  void read_scalars(const PlyElement& element, const Wanted& wanted, PlyTable& table);
-  void read_binary(const PlyElement& element, const Wanted& wanted, PlyTable& table);
-  void read_ascii(const PlyElement& element, const Wanted& wanted, PlyTable& table);
+  Wanted wanted_of(const PlyElement& element, std::span<const std::string_view> scalars,
+                   std::span<const std::string_view> lists) const;
+  void read_scalars(const Rows& rows, const Wanted& wanted, PlyTable& table);
+  void read_binary(const Rows& rows, const Wanted& wanted, PlyTable& table);
+  void read_ascii(const Rows& rows, const Wanted& wanted, PlyTable& table);
   [[noreturn]] void fail_within(const PlyElement& element, std::uint64_t row) const;
   [[noreturn]] void fail(const std::string& what) const;
 
@@ -63,6 +71,7 @@ class PlyReader {
   enum class Format { ascii, little_endian, big_endian } format_ = Format::ascii;
   std::vector<PlyElement> elements_;
   std::size_t next_element_ = 0;
+  std::uint64_t next_row_ = 0;  // of that element
 };
 
 }  // namespace skycap::geometry

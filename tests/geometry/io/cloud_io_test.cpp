@@ -1,6 +1,7 @@
 #include "geometry/io/cloud_io.h"
 
 #include <cstring>
+#include <limits>
 #include <string>
 
 #include <CGAL/IO/read_ply_points.h>
@@ -16,6 +17,7 @@ namespace skycap::geometry {
 namespace {
 
 using Eigen::Vector3f;
+using testing::ElementsAre;
 using testing::HasSubstr;
 using testing_support::TemporaryFolder;
 
@@ -312,6 +314,33 @@ TEST(ReadPositions, HandsOutTheCloudInPieces) {
   ASSERT_EQ(shares.size(), 2U);
   EXPECT_NEAR(shares[0], 1.0 / 1.2, 1e-12);
   EXPECT_EQ(shares[1], 1.0);
+}
+
+TEST(ReadPositions, HandsOutTextInPieces) {
+  const TemporaryFolder folder;
+  std::string text = "# x y z\n";
+  for (int i = 0; i < 1'200'000; ++i) text += "1 2 3\n";
+  std::vector<std::size_t> sizes;
+  std::vector<double> shares;
+  read_positions(folder.file("long.xyz", text),
+                 [&](std::span<const Eigen::Vector3f> piece, double share) {
+                   EXPECT_EQ(piece.back(), Eigen::Vector3f(1, 2, 3));
+                   sizes.push_back(piece.size());
+                   shares.push_back(share);
+                 });
+  EXPECT_THAT(sizes, ElementsAre(1'000'000, 200'000));
+  EXPECT_NEAR(shares[0], 1.0 / 1.2, 1e-5);  // but for the comment
+  EXPECT_EQ(shares[1], 1.0);
+}
+
+TEST(ReadPositions, CountsThePointsOfAllPieces) {
+  const TemporaryFolder folder;
+  AttributedCloud cloud;
+  cloud.positions.assign(1'200'000, Vector3f::Zero());
+  cloud.positions[1'100'000].y() = std::numeric_limits<float>::quiet_NaN();
+  write_cloud(folder.path() / "long.ply", columns_of(cloud));
+  EXPECT_THAT([&] { read_positions(folder.path() / "long.ply", [](auto&&...) {}); },
+              testing::ThrowsMessage<Error>(HasSubstr("point 1100000 has a coordinate that is")));
 }
 
 }  // namespace
