@@ -164,6 +164,7 @@ CloudScan scan_of(const PointCloud2& cloud, Axes axes) {
                                          coordinate(cloud, "z")};
   const Matrix3f turn = optical_from(axes).cast<float>();
   CloudScan scan;
+  if (cloud.width == 0) return scan;  // of rows there may be billions
   scan.xyz.reserve(std::size_t{3} * cloud.width * cloud.height);
   for (std::uint32_t row = 0; row < cloud.height; ++row) {
     const std::uint8_t* point = cloud.data._buffer + std::size_t{row} * cloud.row_step;

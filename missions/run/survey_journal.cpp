@@ -1,5 +1,6 @@
 #include "missions/run/survey_journal.h"
 
+#include <algorithm>
 #include <span>
 #include <utility>
 
@@ -7,6 +8,7 @@
 
 #include "geometry/error.h"
 #include "geometry/io/json.h"
+#include "geometry/place/world.h"
 #include "missions/derived/journal_text.h"
 #include "missions/file/json_text.h"
 #include "missions/scene/sha256.h"
@@ -56,12 +58,20 @@ std::string SurveyJournal::text_of(const ViewRecord& record) {
                                 {"next", reach_json(record.reach)}});
 }
 
-SurveyJournal::ViewRecord SurveyJournal::parse(const std::string& text) {
+SurveyJournal::ViewRecord SurveyJournal::parse(const std::string& text) const {
   const Json json = geometry::parse_json<Json>(text);
-  return {.view = {vector_of(json.at("position")), vector_of(json.at("direction"))},
-          .returns = json.at("returns").get<std::size_t>(),
-          .points = json.at("points").get<std::size_t>(),
-          .reach = parse_reach(json.at("next"))};
+  ViewRecord record{.view = {vector_of(json.at("position")), vector_of(json.at("direction"))},
+                    .returns = json.at("returns").get<std::size_t>(),
+                    .points = json.at("points").get<std::size_t>(),
+                    .reach = parse_reach(json.at("next"))};
+  const bool is_in_world = geometry::is_place(record.view.position) &&
+                           std::ranges::all_of(record.reach.way.points, [](const Vector3d& place) {
+                             return geometry::is_place(place);
+                           });
+  if (!is_in_world) {
+    fail("line " + std::to_string(known_.size() + 2) + " names a place out of the world");
+  }
+  return record;
 }
 
 void SurveyJournal::attach(survey::SurveyPorts& ports, SurveyFlight* flight) {

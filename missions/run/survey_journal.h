@@ -51,7 +51,7 @@ class SurveyJournal {
   };
 
   static std::string text_of(const ViewRecord& record);
-  static ViewRecord parse(const std::string& text);
+  ViewRecord parse(const std::string& text) const;
   void read_known(const std::vector<std::string>& records);
   bool is_known() const { return at_ < known_.size(); }
   void begin_view(const geometry::View& view);

@@ -28,6 +28,9 @@ std::span<const Reader> record_readers();   ///< recordings, journals, results
 std::span<const Reader>
 mission_readers();  ///< missions, campaigns, sensors, packages, trials, journals
 
+/// Messages of ROS 2; only where Cyclone DDS is.
+std::span<const Reader> ros2_readers();
+
 /// All of them.
 std::vector<Reader> all_readers();
 

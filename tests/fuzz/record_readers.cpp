@@ -1,6 +1,8 @@
 // What a program finds in folders that it is pointed at: recordings, journals, results.
 #include <algorithm>
 #include <fstream>
+#include <span>
+#include <sstream>
 #include <string>
 #include <vector>
 
@@ -11,11 +13,15 @@
 #include "geometry/io/record_log.h"
 #include "geometry/place/world.h"
 #include "missions/dataset/recorded_sequence.h"
+#include "missions/derived/journal_text.h"
 #include "missions/derived/resolved_mission.h"
 #include "missions/fleet/timetable_file.h"
 #include "missions/package/package.h"
 #include "missions/recording/laser_checkpoint.h"
 #include "missions/report/result_pages.h"
+#include "missions/run/survey_journal.h"
+#include "missions/scene/sha256.h"
+#include "missions/scene/survey_scene.h"
 #include "sim/sensors/depth_image.h"
 #include "tests/fuzz/readers.h"
 #include "tests/fuzz/trial_run.h"
@@ -38,6 +44,34 @@ int run_records(const std::uint8_t* bytes, std::size_t size) {
     require(again.records.back() == "one more", "a record that is not there");
     again.records.pop_back();
     require(again.records == lines.records, "records that change when another comes");
+  });
+}
+
+/// A survey that is not to go on but for its journal: what it begins with, and then these lines.
+int run_survey_journal(const std::uint8_t* bytes, std::size_t size) {
+  using namespace missions;
+  static const file::Mission mission = derived::parse_mission(
+      "scene: {model: 'builtin:teapot', detail: coarse, longest_side: 1.0}\n"
+      "planner: {density: 5200, resolution_radius: 0.0525, occluder_spacing: 0.03}\n"
+      "evaluation: {registration_distance: 0.03, samples: 100, visible_directions: 10,\n"
+      "             ceiling_views: 0}\n",
+      "m.yaml");
+  static const scene::SurveyScene scene(mission, ".");
+  static const std::string identity = derived::identity_text(
+      mission,
+      {{"surface",
+        scene::sha256(std::as_bytes(std::span<const Eigen::Vector3f>(scene.samples().points)))}});
+  return run_reader("survey.journal", [&] {
+    const fs::path journal = fresh_folder() / "survey.journal";
+    std::size_t lines = 0;
+    {
+      geometry::RecordLog log(journal);
+      log.append(identity);
+      std::istringstream text(text_of(bytes, size));
+      for (std::string line; std::getline(text, line); ++lines) log.append(line);
+    }
+    const run::SurveyJournal known(journal, mission, scene, true);
+    require(known.views() == lines, "views that are not in the journal");
   });
 }
 
@@ -130,6 +164,7 @@ int run_page(const char* name, const std::uint8_t* bytes, std::size_t size) {
 
 constexpr Reader readers[] = {
     {"records", run_records},
+    {"survey_journal", run_survey_journal},
     {"checkpoint", run_checkpoint},
     {"sequence", run_sequence},
     {"depth_png", run_depth_png},

@@ -46,6 +46,10 @@ std::vector<Reader> all_readers() {
                              record_readers(), mission_readers()}) {
     all.insert(all.end(), readers.begin(), readers.end());
   }
+#ifdef SKYCAP_ROS2_READERS
+  const auto ros2 = ros2_readers();
+  all.insert(all.end(), ros2.begin(), ros2.end());
+#endif
   return all;
 }
 
