@@ -159,7 +159,7 @@ std::vector<Key> skycap_keys() {
       number_key("planner.wanted_coverage", "share", above(0, 1), stop(&Stop::wanted_coverage),
                  "skycap ends when it believes this share of the surface covered."),
       otherwise(
-          "0.005, with sensor.capture moving 0.001",
+          "0.003, with sensor.capture moving 0.001",
           number_key("planner.least_gain", "share", between(0, 1), stop(&Stop::least_gain),
                      "skycap ends when no view promises this share of the known surface, or of "
                      "seven times what one view covered at most, if that is less.")),

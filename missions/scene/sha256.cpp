@@ -4,9 +4,11 @@
 #include <cstddef>
 #include <fstream>
 #include <memory>
+#include <new>
 #include <stdexcept>
 #include <vector>
 
+#include <openssl/crypto.h>
 #include <openssl/evp.h>
 
 #include "geometry/error.h"
@@ -19,11 +21,24 @@ void require(int result) {
   if (result != 1) throw std::runtime_error("the cryptography library cannot compute SHA-256");
 }
 
+/// The algorithm, from a library context of its own: where memory is short, OpenSSL 3.0 goes on with
+/// a default context that it could not make, and crashes.
+const EVP_MD* algorithm() {
+  static const std::unique_ptr<OSSL_LIB_CTX, decltype(&OSSL_LIB_CTX_free)> library(
+      OSSL_LIB_CTX_new(), OSSL_LIB_CTX_free);
+  if (!library) throw std::bad_alloc();
+  static const std::unique_ptr<EVP_MD, decltype(&EVP_MD_free)> sha256(
+      EVP_MD_fetch(library.get(), "SHA256", nullptr), EVP_MD_free);
+  if (!sha256) throw std::bad_alloc();
+  return sha256.get();
+}
+
 /// The digest of what it is given piece by piece.
 class Sha256 {
  public:
   Sha256() : context_(EVP_MD_CTX_new(), EVP_MD_CTX_free) {
-    require(EVP_DigestInit_ex(context_.get(), EVP_sha256(), nullptr));
+    if (!context_) throw std::bad_alloc();
+    require(EVP_DigestInit_ex(context_.get(), algorithm(), nullptr));
   }
 
   void add(std::span<const std::byte> bytes) {

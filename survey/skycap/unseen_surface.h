@@ -11,7 +11,9 @@
 /// where it is wrong, its rate falls with each scan that should have shown it.
 #pragma once
 
+#include <algorithm>
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <limits>
 #include <optional>
@@ -118,6 +120,77 @@ class UnseenSurface {
   std::vector<AskedChains> asked_;                   ///< by surfel
   std::unordered_set<std::uint64_t> seen_places_;    ///< of the prediction under way
   std::unordered_map<std::uint64_t, float> trusts_;  ///< of places that disappointed
+};
+
+/// How likely it is that nothing hides a guessed place: unknown space before it may hold something,
+/// the likelier the more of it there is.
+///
+/// Of the last stretch of the way to a place, three times `scale` long, L metres are unknown; then
+/// the place is in sight with the probability exp(-L / scale). The ways to one place fall into 54
+/// directions, nine to a face of a cube. Each is asked about in pieces that double in length, each
+/// in its middle, once a view that may use it comes up; and because what is known stays known,
+/// later only what was unknown so far is asked, of new images.
+class Clearness {
+ public:
+  /// `scale` [m]: of so much unknown space 37 % lets a look through.
+  explicit Clearness(float scale);
+
+  /// Answers for `patches` from now on, with what `space` knows now; both must outlive the answers.
+  void update(std::span<const UnseenPatch> patches, const SpaceMemory& space);
+
+  /// Of patch `i`, for a sensor at `sensor`: in (0, 1]. One without any image, or of what a prior
+  /// tells, which tells what hides it too. Safe to call from several threads.
+  float of(std::size_t i, const Eigen::Vector3f& sensor) const;
+
+ private:
+  static constexpr int pieces = 5, ways_to_a_face = 3;
+  static constexpr std::size_t ways = 6UL * ways_to_a_face * ways_to_a_face;
+  static constexpr std::uint32_t all_unknown = (1U << pieces) - 1U;
+
+  static std::size_t way_towards(const Eigen::Vector3f& offset);
+
+  std::array<float, pieces> middles_;                 ///< of the pieces, from the place [m]
+  std::array<float, all_unknown + 1> probabilities_;  ///< by the unknown pieces
+  std::array<Eigen::Vector3f, ways> directions_;
+
+  std::span<const UnseenPatch> patches_;
+  const SpaceMemory* space_ = nullptr;
+  /// Of each patch and way: the pieces that are unknown, below the number of images asked.
+  mutable std::vector<std::uint32_t> asked_;
+  struct Row {
+    std::size_t number;
+    Eigen::Vector3f position;
+  };
+  std::unordered_map<std::uint64_t, Row> rows_;  ///< of asked_, by the names of places
+};
+
+/// What guesses are worth: how much surface came of those that the last scans should have shown.
+class GuessYield {
+ public:
+  /// A scan was promised `promised` square metres of guesses; it covered `beyond_known` more than
+  /// known surface had promised, and `new_territory` where nothing was known nearby. The former may
+  /// be relief, or noise, and counts for at most what was promised.
+  void learn(double promised, double beyond_known, double new_territory) {
+    if (promised <= 0.0) return;
+    const double found = std::max({0.0, std::min(beyond_known, promised),
+                                   std::min(new_territory, most_at_once * promised)});
+    promised_ = memory * promised_ + promised;
+    found_ = memory * found_ + found;
+    value_ = std::clamp(found_ / promised_, least, most);
+  }
+
+  /// Area found for each square metre that was promised; 1 as long as nothing is known. More than 1
+  /// where guesses were the beginning of something larger.
+  double value() const { return value_; }
+
+ private:
+  /// The share of the evidence that a scan keeps of those before it.
+  static constexpr double memory = 0.6;
+  /// A scan or two without any find must not end a survey, nor one great find keep it going.
+  static constexpr double least = 0.15, most = 6.0, most_at_once = 10.0;
+
+  double promised_ = 0.0, found_ = 0.0;  ///< fading sums over the scans [m^2]
+  double value_ = 1.0;
 };
 
 }  // namespace skycap::survey::skycap

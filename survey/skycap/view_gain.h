@@ -12,7 +12,6 @@
 #include "geometry/place/pose.h"
 #include "survey/skycap/dose_map.h"
 #include "survey/skycap/dose_model.h"
-#include "survey/skycap/clearness.h"
 #include "survey/skycap/sight_kernels.h"
 #include "survey/skycap/survey_belief.h"
 #include "survey/skycap/unseen_surface.h"
@@ -23,7 +22,7 @@ namespace skycap::survey::skycap {
 struct Sight {
   std::uint32_t target;
   float covered_share;     ///< of what is still uncovered of it, expected
-  float clearness = 1.0F;  ///< the probability that it is in sight, counted above (clearness.h)
+  float clearness = 1.0F;  ///< the probability that it is in sight, counted above
 };
 
 /// A target in sight of a view, and the hazard of the look (dose_model.h).

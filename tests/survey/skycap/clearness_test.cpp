@@ -1,4 +1,4 @@
-#include "survey/skycap/clearness.h"
+#include "survey/skycap/unseen_surface.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "survey/skycap/guess_yield.h"
+#include "survey/skycap/unseen_surface.h"
 
 #include <gtest/gtest.h>
 

@@ -292,15 +292,20 @@ TEST(SkycapPlanner, EveryIdeaCanBeSwitchedOff) {
   const auto flown = [](const skycap::SkycapConfig& config) {
     skycap::SkycapPlanner planner(config, camera);
     std::vector<Vector3d> places;
-    for (const View& view : fly(planner, two_balls, 0.03, 12).views)
+    for (const View& view : fly(planner, two_balls, 0.01, 12).views)
       places.push_back(view.position);
     return places;
   };
   const std::vector<Vector3d> with_all = flown(small_config());
-  for (const auto idea : {&skycap::SkycapIdeas::dose, &skycap::SkycapIdeas::unseen_surface,
-                          &skycap::SkycapIdeas::free_space, &skycap::SkycapIdeas::learned_rates,
-                          &skycap::SkycapIdeas::targeted_views, &skycap::SkycapIdeas::refinement,
-                          &skycap::SkycapIdeas::batch}) {
+  using Ideas = skycap::SkycapIdeas;
+  for (const auto& [name, idea] : {std::pair{"dose", &Ideas::dose},
+                                   {"unseen_surface", &Ideas::unseen_surface},
+                                   {"free_space", &Ideas::free_space},
+                                   {"learned_rates", &Ideas::learned_rates},
+                                   {"targeted_views", &Ideas::targeted_views},
+                                   {"refinement", &Ideas::refinement},
+                                   {"batch", &Ideas::batch}}) {
+    SCOPED_TRACE(name);
     skycap::SkycapConfig config = small_config();
     config.ideas.*idea = false;
     const std::vector<Vector3d> without = flown(config);
