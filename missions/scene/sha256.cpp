@@ -21,8 +21,8 @@ void require(int result) {
   if (result != 1) throw std::runtime_error("the cryptography library cannot compute SHA-256");
 }
 
-/// The algorithm, from a library context of its own: where memory is short, OpenSSL 3.0 goes on with
-/// a default context that it could not make, and crashes.
+/// The algorithm, from a library context of its own: where memory is short, OpenSSL 3.0 goes on
+/// with a default context that it could not make, and crashes.
 const EVP_MD* algorithm() {
   static const std::unique_ptr<OSSL_LIB_CTX, decltype(&OSSL_LIB_CTX_free)> library(
       OSSL_LIB_CTX_new(), OSSL_LIB_CTX_free);

@@ -325,11 +325,11 @@ struct SkycapPlanner::Impl {
   GuessYield yield;
   SpacedCloud kept;
   PlanningStep step;
-  PlanningStep on_way;          ///< what the scans since the last view add to the next step
+  PlanningStep on_way;            ///< what the scans since the last view add to the next step
   std::size_t taken = 0;          ///< scans, on ways too
   std::size_t points_before = 0;  ///< kept of those before the last
-  bool is_field_old = false;    ///< there are scans since that it does not know
-  double covered_on_way = 0.0;  ///< newly, since the last view [m^2]
+  bool is_field_old = false;      ///< there are scans since that it does not know
+  double covered_on_way = 0.0;    ///< newly, since the last view [m^2]
 
   BlockSettings blocks;
   double least_jump = 0.0;
@@ -355,8 +355,8 @@ struct SkycapPlanner::Impl {
 SurveyBelief SkycapPlanner::Impl::belief() const {
   SurveyBelief belief;
   if (!map) return belief;
-  belief.patches = believed_patches(*map, *field, unseen->patches(), chances,
-                                    static_cast<float>(yield.value()));
+  belief.patches =
+      believed_patches(*map, *field, unseen->patches(), chances, static_cast<float>(yield.value()));
   add_up(belief);
   belief.coverage = predicted_coverage();
   belief.next_gain = next_gain;

@@ -11,7 +11,7 @@ namespace {
 using Eigen::Vector3f;
 
 constexpr int most_steps = 5;
-constexpr float stretch = 3.0F;  // of the way before a place that is asked about, in scales
+constexpr float stretch = 3.0F;          // of the way before a place that is asked about, in scales
 constexpr double prior_strength = 40.0;  // patches' worth of evidence in the first guesses
 constexpr double most_evidence = 60.0;
 constexpr double correlation = 0.2;      // neighbouring patches share their fate: five count as one
@@ -184,7 +184,8 @@ void UnseenSurface::grade(std::span<const Expected> expected, const DoseMap& map
     found[patch.kind].tries += clearness;
     found[patch.kind].hits += clearness * share.value_or(0.0);
     if (!share && space.query(patch.position) == SpaceState::unknown) {
-      trusts_.try_emplace(patch.place, 1.0F).first->second *= 1.0F - clearness * (1.0F - disappointment);
+      trusts_.try_emplace(patch.place, 1.0F).first->second *=
+          1.0F - clearness * (1.0F - disappointment);
     }
   }
   if (!settings_.learns_rates) return;

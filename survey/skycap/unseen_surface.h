@@ -108,8 +108,8 @@ class UnseenSurface {
   void emit_prior(const std::optional<Eigen::AlignedBox3f>& region);
   /// Whether the prior, while it is to be trusted, has a patch there that is still open.
   bool is_told_by_prior(const UnseenPatch& patch) const;
-  /// The share of what was guessed that a scan has shown whose surfels begin at `first_new`; nothing
-  /// if it has shown no surface there.
+  /// The share of what was guessed that a scan has shown whose surfels begin at `first_new`;
+  /// nothing if it has shown no surface there.
   std::optional<double> found_share(const UnseenPatch& patch, const DoseMap& map,
                                     std::size_t first_new) const;
 
@@ -172,8 +172,8 @@ class GuessYield {
   /// be relief, or noise, and counts for at most what was promised.
   void learn(double promised, double beyond_known, double new_territory) {
     if (promised <= 0.0) return;
-    const double found = std::max({0.0, std::min(beyond_known, promised),
-                                   std::min(new_territory, most_at_once * promised)});
+    const double found = std::max(
+        {0.0, std::min(beyond_known, promised), std::min(new_territory, most_at_once * promised)});
     promised_ = memory * promised_ + promised;
     found_ = memory * found_ + found;
     value_ = std::clamp(found_ / promised_, least, most);

@@ -224,8 +224,7 @@ std::vector<Look> GainField::looks(const geometry::View& view) const {
 
 std::vector<BelievedPatch> believed_patches(const DoseMap& map, const GainField& field,
                                             std::span<const UnseenPatch> patches,
-                                            std::span<const float> chances,
-                                            float guess_yield) {
+                                            std::span<const float> chances, float guess_yield) {
   constexpr float well_covered = 0.5F;  // more likely covered than not: not missing
   const Surfels& surfels = map.surfels();
   std::vector<BelievedPatch> believed;
@@ -238,11 +237,12 @@ std::vector<BelievedPatch> believed_patches(const DoseMap& map, const GainField&
     if (!field.is_patch(t)) {
       BelievedPatch& patch = believed[source];
       if (patch.covered_share >= well_covered) continue;
-      patch.reason = chances[t] > 0.0F ? MissingReason::seen_too_thinly : MissingReason::unreachable;
+      patch.reason =
+          chances[t] > 0.0F ? MissingReason::seen_too_thinly : MissingReason::unreachable;
     } else if (chances[t] > 0.0F) {
       const UnseenPatch& patch = patches[source];
-      believed.push_back(
-          {patch.position, patch.normal, guess_yield * chances[t] * patch.weight, 0.0F, MissingReason::never_seen});
+      believed.push_back({patch.position, patch.normal, guess_yield * chances[t] * patch.weight,
+                          0.0F, MissingReason::never_seen});
     }
   }
   return believed;

@@ -1,10 +1,9 @@
-#include "survey/skycap/unseen_surface.h"
-
 #include <algorithm>
 #include <cmath>
 
 #include <gtest/gtest.h>
 
+#include "survey/skycap/unseen_surface.h"
 #include "tests/support/sphere_sensor.h"
 
 namespace skycap::survey {

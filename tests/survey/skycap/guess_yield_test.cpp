@@ -1,6 +1,6 @@
-#include "survey/skycap/unseen_surface.h"
-
 #include <gtest/gtest.h>
+
+#include "survey/skycap/unseen_surface.h"
 
 namespace skycap::survey {
 namespace {
