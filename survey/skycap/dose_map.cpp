@@ -198,12 +198,10 @@ void DoseMap::close_directions(std::size_t added) {
   }
 }
 
-bool DoseMap::has_surfel_near(const Vector3f& point, float radius, std::size_t first) const {
+bool DoseMap::has_surfel_near(const Vector3f& point, float radius) const {
   std::vector<geometry::Neighbour> found;
   grid_.find_within(point, radius, found);
-  return std::any_of(found.begin(), found.end(), [&](const geometry::Neighbour& neighbour) {
-    return neighbour.index >= first;
-  });
+  return !found.empty();
 }
 
 double DoseMap::area_near(const Vector3f& point, float radius, std::size_t first) const {

@@ -61,8 +61,7 @@ class DoseMap {
   const Surfels& surfels() const { return surfels_; }
   float spacing() const { return spacing_; }
 
-  /// Whether a surfel of index `first` or above lies within `radius`.
-  bool has_surfel_near(const Eigen::Vector3f& point, float radius, std::size_t first) const;
+  bool has_surfel_near(const Eigen::Vector3f& point, float radius) const;
 
   /// Area that the surfels from index `first` on within `radius` of a point stand for [m^2].
   double area_near(const Eigen::Vector3f& point, float radius, std::size_t first) const;

@@ -192,7 +192,7 @@ struct SkycapPlanner::Impl {
     const Vector3f at = view.position.cast<float>();
     const auto radius =
         static_cast<float>(std::max<double>(config.limits.stand_off, map->spacing()));
-    return space->is_proven_empty(at, radius) && !map->has_surfel_near(at, radius, 0);
+    return space->is_proven_empty(at, radius) && !map->has_surfel_near(at, radius);
   }
 
   Admission admission() const {

@@ -1,5 +1,8 @@
 #include "survey/skycap/unseen_surface.h"
 
+#include <algorithm>
+#include <cmath>
+
 #include <gtest/gtest.h>
 
 #include "tests/support/sphere_sensor.h"
@@ -129,6 +132,111 @@ TEST(UnseenSurface, DisappointsByHowClearTheLookWas) {
   const float untouched = weight_after(0.0F);
   EXPECT_FLOAT_EQ(weight_after(1.0F), 0.35F * untouched);
   EXPECT_FLOAT_EQ(weight_after(0.2F), 0.87F * untouched);
+}
+
+constexpr float scale = 0.3F;  // of the clearness
+
+std::vector<skycap::UnseenPatch> patches_at(const std::vector<Vector3f>& places) {
+  std::vector<skycap::UnseenPatch> patches;
+  for (const Vector3f& place : places) {
+    patches.push_back({place, Vector3f::UnitX(), 0.02F, 1.0F, 0, patches.size()});
+  }
+  return patches;
+}
+
+TEST(Clearness, IsOneBeforeAllThatIsKnown) {
+  Knowledge seen;
+  seen.look_from({2, 0, 0});
+  const auto patches = patches_at({{0.55F, 0, 0}});
+  skycap::Clearness clearness(scale);
+  clearness.update(patches, seen.space);
+  EXPECT_EQ(clearness.of(0, {2, 0, 0}), 1.0F);
+}
+
+// The ball's radius is 0.5. The whole stretch before a place in its shadow is unknown from behind.
+TEST(Clearness, FallsWithUnknownSpaceOnTheWay) {
+  Knowledge seen;
+  seen.look_from({2, 0, 0});
+  const auto patches = patches_at({{-0.55F, 0, 0}, {0, 0.45F, 0}});
+  skycap::Clearness clearness(scale);
+  clearness.update(patches, seen.space);
+  EXPECT_NEAR(clearness.of(0, {-2, 0, 0}), std::exp(-3.0F), 1e-6F);
+  // From the side the shadow ends soon.
+  EXPECT_GT(clearness.of(1, {0, 2, 0}), 2.0F * clearness.of(0, {-2, 0, 0}));
+  EXPECT_LT(clearness.of(1, {0, 2, 0}), 1.0F);
+}
+
+TEST(Clearness, IsOneWithoutMemoryAndForWhatAPriorTells) {
+  const Knowledge nothing;
+  auto patches = patches_at({{0, 0, 0}});
+  skycap::Clearness clearness(scale);
+  clearness.update(patches, nothing.space);
+  EXPECT_EQ(clearness.of(0, {1, 0, 0}), 1.0F);
+  Knowledge seen;
+  seen.look_from({2, 0, 0});
+  patches[0].kind = skycap::prior_kind;
+  clearness.update(patches, seen.space);
+  EXPECT_EQ(clearness.of(0, {-1, 0, 0}), 1.0F);
+}
+
+// Twin: one is asked after every scan, with other patches before and beside; the other only once.
+TEST(Clearness, AsksOnlyWhatIsNewWithTheSameAnswers) {
+  Knowledge seen;
+  const std::vector<Vector3f> places = {
+      {-0.55F, 0, 0}, {0, 0.55F, 0}, {0, 0, -0.52F}, {0.3F, -0.5F, 0.1F}};
+  const std::vector<Vector3f> sensors = {
+      {-2, 0, 0}, {0, 2, 0.3F}, {1, -1, 1}, {0.2F, 0.1F, -2}, {2, 0, 0}};
+  skycap::Clearness old(scale);
+  int between = 0;
+  for (const Vector3d& station :
+       {Vector3d(2, 0, 0), Vector3d(0, 2, 0), Vector3d(-1.2, -1.2, 0), Vector3d(0, 0, -2)}) {
+    seen.look_from(station);
+    auto patches = patches_at(places);
+    // Another order, other names, one that moved.
+    std::rotate(patches.begin(), patches.begin() + 1, patches.end());
+    patches[0].position.x() += 0.01F * static_cast<float>(seen.space.image_count());
+    old.update(patches, seen.space);
+    skycap::Clearness anew(scale);
+    anew.update(patches, seen.space);
+    for (std::size_t i = 0; i < patches.size(); ++i) {
+      for (const Vector3f& sensor : sensors) {
+        EXPECT_EQ(old.of(i, sensor), anew.of(i, sensor));
+        between += old.of(i, sensor) < 0.99F && old.of(i, sensor) > 0.06F ? 1 : 0;
+      }
+    }
+  }
+  EXPECT_GT(between, 5);
+}
+
+TEST(GuessYield, IsWhatCameOfThePromises) {
+  skycap::GuessYield yield;
+  EXPECT_EQ(yield.value(), 1.0);
+  yield.learn(2.0, 1.0, 0.0);
+  EXPECT_DOUBLE_EQ(yield.value(), 0.5);
+  yield.learn(0.0, 7.0, 7.0);  // nothing was promised: nothing is learnt
+  EXPECT_DOUBLE_EQ(yield.value(), 0.5);
+  yield.learn(4.0, 12.0, 12.0);  // 12.6 of 5.2
+  EXPECT_DOUBLE_EQ(yield.value(), 12.6 / 5.2);
+}
+
+// Relief and noise beside what is known are worth no more than was promised.
+TEST(GuessYield, IsAboveOneForNewTerritoryOnly) {
+  skycap::GuessYield yield;
+  yield.learn(1.0, 5.0, 0.1);
+  EXPECT_DOUBLE_EQ(yield.value(), 1.0);
+  yield.learn(1.0, -5.0, 0.1);  // surfels that shared their area: 1.1 - 0.4 of 1.6
+  EXPECT_DOUBLE_EQ(yield.value(), 0.7 / 1.6);
+}
+
+TEST(GuessYield, NeitherEndsASurveyAtOnceNorKeepsItGoing) {
+  skycap::GuessYield yield;
+  yield.learn(1.0, 0.0, 0.0);
+  EXPECT_DOUBLE_EQ(yield.value(), 0.15);
+  yield.learn(1.0, 1000.0, 1000.0);
+  EXPECT_DOUBLE_EQ(yield.value(), 6.0);
+  // Ten scans in vain, and the great find is forgotten.
+  for (int scan = 0; scan < 10; ++scan) yield.learn(1.0, 0.0, 0.0);
+  EXPECT_DOUBLE_EQ(yield.value(), 0.15);
 }
 
 }  // namespace
