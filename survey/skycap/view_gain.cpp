@@ -14,6 +14,7 @@ using Eigen::Vector3f;
 /// together they stay far below any stop rule.
 constexpr float least_weight_share = 2e-3F;
 constexpr float raster_spacing = 1.0F;  // pixel at the view distance, in units of h
+constexpr float largest_splat = 1e4F;   // wider than any raster [px]
 
 constexpr std::size_t chunk = 2048;  // points projected at a time: their arrays stay in the cache
 
@@ -29,18 +30,40 @@ PointArrays arrays_of(const std::array<std::vector<float>, 3>& points, std::size
   return {points[0].data() + first, points[1].data() + first, points[2].data() + first};
 }
 
-/// A depth image of points, splatted over four pixels each.
-void splat(const RasterView& view, const std::array<std::vector<float>, 3>& points,
-           std::uint32_t* pixels, float* depths, std::vector<float>& raster) {
+/// Takes a point into the square of `size` pixels that it hides, about the four nearest to it.
+void splat_square(const RasterView& view, std::uint32_t pixel, float depth, int size,
+                  std::vector<float>& raster) {
+  const int rows = static_cast<int>(view.outside) / view.stride;
+  const int row = static_cast<int>(pixel) / view.stride - (size - 2) / 2;
+  const int column = static_cast<int>(pixel) % view.stride - (size - 2) / 2;
+  const int end = std::min(view.stride, column + size);
+  for (int r = std::max(0, row); r < std::min(rows, row + size); ++r) {
+    for (int c = std::max(0, column); c < end; ++c) {
+      float& nearest = raster[static_cast<std::size_t>(r * view.stride + c)];
+      nearest = std::min(nearest, depth);
+    }
+  }
+}
+
+/// A depth image of points that stand for squares of twice `spacing`: four pixels at the view
+/// distance and beyond, and more of them nearer, lest what is behind shine through between them.
+void splat(const RasterView& view, const std::array<std::vector<float>, 3>& points, float spacing,
+           Workspace& work, std::vector<float>& raster) {
   const auto stride = static_cast<std::size_t>(view.stride);
+  const float four_pixels_beyond = view.focal_length * spacing;  // this depth
   // Behind the raster there is room for what falls outside, splats included.
   raster.assign(view.outside + stride + 2, std::numeric_limits<float>::infinity());
   for (std::size_t first = 0; first < points[0].size(); first += chunk) {
     const std::size_t count = std::min(chunk, points[0].size() - first);
-    project_points(view, count, arrays_of(points, first), pixels, depths);
+    project_points(view, count, arrays_of(points, first), work.pixels.data(), work.depths.data());
     for (std::size_t i = 0; i < count; ++i) {
-      float* pixel = &raster[pixels[i]];
-      const float depth = depths[i];
+      const float depth = work.depths[i];
+      if (depth < four_pixels_beyond && work.pixels[i] != view.outside) {
+        const float size = std::min(std::ceil(2.0F * four_pixels_beyond / depth), largest_splat);
+        splat_square(view, work.pixels[i], depth, static_cast<int>(size), raster);
+        continue;
+      }
+      float* pixel = &raster[work.pixels[i]];
       pixel[0] = std::min(pixel[0], depth);
       pixel[1] = std::min(pixel[1], depth);
       pixel[stride] = std::min(pixel[stride], depth);
@@ -156,9 +179,9 @@ void GainField::for_each_sight(const geometry::View& view, Visit visit) const {
   static thread_local Workspace work;
   const RasterView raster = raster_view(view);
   const Vector3f sensor = view.position.cast<float>();
-  splat(raster, occluders_, work.pixels.data(), work.depths.data(), work.raster);
+  splat(raster, occluders_, spacing_, work, work.raster);
   if (first_prior_ < end_prior_) {
-    splat(raster, prior_occluders_, work.pixels.data(), work.depths.data(), work.prior_raster);
+    splat(raster, prior_occluders_, spacing_, work, work.prior_raster);
   }
 
   const TargetArrays projected{work.in_view.data(), work.pixels.data(), work.depths.data(),

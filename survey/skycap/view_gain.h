@@ -47,9 +47,9 @@ struct GainSettings {
 /// from any number of threads.
 ///
 /// Targets are the surfels with a deficit worth a look and the unseen patches. Occlusion is decided
-/// in a depth image of all surfels, splatted as points of 2 h at the view distance. Unseen patches
-/// hide nothing; but those of prior_kind are hidden by `prior_occluders`, too. `clearness`, if
-/// given, says with what probability unknown space hides them; it must outlive the field.
+/// in a depth image of all surfels, splatted as squares of 2 h. Unseen patches hide nothing; but
+/// those of prior_kind are hidden by `prior_occluders`, too. `clearness`, if given, says with what
+/// probability unknown space hides them; it must outlive the field.
 class GainField {
  public:
   GainField(const DoseMap& map, std::span<const UnseenPatch> patches,

@@ -161,6 +161,27 @@ TEST(GainField, NearSurfacesHideFarOnes) {
   EXPECT_GT(seen, 50);
 }
 
+// Near a surface its surfels lie many pixels apart, and no ray passes between them for that.
+TEST(GainField, ASurfaceHidesWhatIsBehindItFromNearby) {
+  const Known known({2, 0, 0});
+  std::vector<skycap::UnseenPatch> inside;
+  for (float y = -0.2F; y <= 0.2F; y += 0.02F) {
+    for (float z = -0.2F; z <= 0.2F; z += 0.02F) {
+      inside.push_back({{0.2F, y, z}, {1, 0, 0}, spacing, 1.0F, 0, inside.size()});
+    }
+  }
+  const skycap::GainField field(known.map, inside, camera, known.dose, {.view_distance = 2.0});
+  for (const double height : {1.5, 0.7, 0.3, 0.15, 0.08}) {
+    int surfels = 0;
+    for (const skycap::Sight& sight :
+         field.sights(geometry::look_at({0.5 + height, 0, 0}, {0, 0, 0}))) {
+      EXPECT_FALSE(field.is_patch(sight.target)) << "from a height of " << height;
+      surfels += field.is_patch(sight.target) ? 0 : 1;
+    }
+    EXPECT_GT(surfels, 0) << "from a height of " << height;
+  }
+}
+
 TEST(Chooser, GoesWhereSomethingIsMissing) {
   const Known known({2, 0, 0});
   const skycap::GainField field = known.field();
