@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
+#include <iterator>
 #include <span>
 #include <string>
 
@@ -74,6 +76,19 @@ std::string fault_of_load(const Observation& observation, const std::string& nam
   }
 }
 
+/// Of pixels or points, as of a depth image in a file.
+bool is_too_much(std::ptrdiff_t count) { return count > sim::most_depth_pixels; }
+
+/// Takes the points in, unless there are too many.
+void put_points(RawlogScan& scan, std::span<const float> x, std::span<const float> y,
+                std::span<const float> z) {
+  if (is_too_much(std::ssize(x))) {
+    scan.fault = "it has more than 2.5e7 points";
+  } else {
+    scan.content = in_optical(x, y, z);
+  }
+}
+
 RangeImage image_of(const mrpt::obs::CObservation3DRangeScan& observation) {
   const auto& ranges = observation.rangeImage;
   const mrpt::img::TCamera& camera = observation.cameraParams;
@@ -98,6 +113,7 @@ RawlogScan range_scan(const mrpt::obs::CObservation3DRangeScan& observation) {
     if (scan.fault.empty()) scan.fault = fault_of(observation.cameraParams);
     const double unit = observation.rangeUnits;
     if (!(unit >= 1e-6 && unit <= 1.0)) scan.fault = "a step of its image is none of metres";
+    if (is_too_much(observation.rangeImage.size())) scan.fault = "it has more than 2.5e7 pixels";
     if (scan.fault.empty()) scan.content = image_of(observation);
     return scan;
   }
@@ -106,8 +122,7 @@ RawlogScan range_scan(const mrpt::obs::CObservation3DRangeScan& observation) {
   }
   if (!observation.hasPoints3D) scan.fault = "it has neither range image nor points";
   if (scan.fault.empty()) {
-    scan.content =
-        in_optical(observation.points3D_x, observation.points3D_y, observation.points3D_z);
+    put_points(scan, observation.points3D_x, observation.points3D_y, observation.points3D_z);
   }
   return scan;
 }
@@ -120,8 +135,8 @@ RawlogScan cloud_scan(const mrpt::obs::CObservationPointCloud& observation) {
   if (scan.fault.empty() && !observation.pointcloud) scan.fault = "it has no points";
   if (!scan.fault.empty()) return scan;
   const mrpt::maps::CPointsMap& cloud = *observation.pointcloud;
-  scan.content = in_optical(cloud.getPointsBufferRef_x(), cloud.getPointsBufferRef_y(),
-                            cloud.getPointsBufferRef_z());
+  put_points(scan, cloud.getPointsBufferRef_x(), cloud.getPointsBufferRef_y(),
+             cloud.getPointsBufferRef_z());
   return scan;
 }
 
@@ -129,7 +144,7 @@ RawlogScan velodyne_scan(const mrpt::obs::CObservationVelodyneScan& observation)
   mrpt::obs::CObservationVelodyneScan whole = observation;
   whole.generatePointCloud();
   RawlogScan scan;
-  scan.content = in_optical(whole.point_cloud.x, whole.point_cloud.y, whole.point_cloud.z);
+  put_points(scan, whole.point_cloud.x, whole.point_cloud.y, whole.point_cloud.z);
   return scan;
 }
 

@@ -12,6 +12,9 @@ namespace {
 using Eigen::Isometry3d;
 using Eigen::Vector3d;
 
+/// What a rawlog may have, which its compressed bytes do not bound.
+constexpr std::size_t most_poses = 3'000'000, most_sensors = 64, longest_label = 256;
+
 /// As they are in messages.
 std::string quoted(const std::vector<std::string>& labels) {
   std::string text;
@@ -46,22 +49,30 @@ void RawlogSequence::survey_file() {
   const auto reader = open_rawlog(file_);
   while (const auto entry = reader->next()) {
     if (const auto* pose = std::get_if<RawlogPose>(&*entry)) {
-      poses_.push_back(*pose);
+      if (poses_.size() == most_poses) fail("has more than 3 million poses; give --poses");
+      if (!choice_.poses) poses_.push_back(*pose);
       continue;
     }
     const auto& scan = std::get<RawlogScan>(*entry);
     has_movements = has_movements || scan.moved;
-    if (std::ranges::find(labels, scan.label) == labels.end()) labels.push_back(scan.label);
+    if (std::ranges::find(labels, scan.label) != labels.end()) continue;
+    if (labels.size() == most_sensors) fail("has scans of more than 64 sensors");
+    if (scan.label.size() > longest_label) fail("names a sensor with more than 256 bytes");
+    labels.push_back(scan.label);
   }
   choose_sensor(labels);
   choose_poses(has_movements);
 }
 
+void RawlogSequence::fail(const std::string& what) const {
+  throw Error(ErrorKind::bad_file, file_.string() + ": " + what);
+}
+
 void RawlogSequence::choose_sensor(const std::vector<std::string>& labels) {
   if (labels.empty()) {
-    throw Error(ErrorKind::bad_file, file_.string() +
-                                         ": has no scan that can be used (CObservation3DRangeScan, "
-                                         "CObservationPointCloud or CObservationVelodyneScan)");
+    fail(
+        "has no scan that can be used (CObservation3DRangeScan, CObservationPointCloud or "
+        "CObservationVelodyneScan)");
   }
   const bool is_chosen = !choice_.sensor.empty();
   if (!is_chosen && labels.size() > 1) {
@@ -96,11 +107,9 @@ void RawlogSequence::choose_poses(bool has_movements) {
     pose_source_ = "its CObservationOdometry, of wheels in the plane: they drift";
     poses_ = odometry;
   } else {
-    throw Error(ErrorKind::bad_file,
-                file_.string() +
-                    ": does not say where its scans are from (CObservationRobotPose, movements or "
-                    "CObservationOdometry); give --poses, a TUM trajectory of the sensor's "
-                    "optical frame");
+    fail(
+        "does not say where its scans are from (CObservationRobotPose, movements or "
+        "CObservationOdometry); give --poses, a TUM trajectory of the sensor's optical frame");
   }
 }
 

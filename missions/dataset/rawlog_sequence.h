@@ -49,6 +49,7 @@ class RawlogSequence {
 
  private:
   void survey_file();
+  [[noreturn]] void fail(const std::string& what) const;
   void choose_sensor(const std::vector<std::string>& labels);
   void choose_poses(bool has_movements);
   Eigen::Isometry3d pose_of(const RawlogScan& scan) const;

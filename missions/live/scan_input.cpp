@@ -98,6 +98,7 @@ std::vector<Vector3d> points_in_sensor(const ScanInput& input) {
 std::optional<Vector3d> Lens::ray(const Vector2d& pixel) const {
   const Vector2d wanted = (pixel - principal_point_px).cwiseQuotient(focal_length_px);
   Vector2d slope = wanted;
+  if (!wanted.allFinite()) return std::nullopt;
   if (distortion == std::array<double, 5>{}) return Vector3d(slope.x(), slope.y(), 1.0);
   constexpr int most_rounds = 50;
   for (int round = 0; round < most_rounds; ++round) {

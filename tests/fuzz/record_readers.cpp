@@ -12,6 +12,7 @@
 #include "geometry/io/json.h"
 #include "geometry/io/record_log.h"
 #include "geometry/place/world.h"
+#include "missions/dataset/rawlog_sequence.h"
 #include "missions/dataset/recorded_sequence.h"
 #include "missions/derived/journal_text.h"
 #include "missions/derived/resolved_mission.h"
@@ -107,6 +108,24 @@ int run_sequence(const std::uint8_t* bytes, std::size_t size) {
   });
 }
 
+/// As MRPT's library reads it in a process of its own, of which libFuzzer sees nothing; and what
+/// that says, which it does see.
+int run_rawlog(const std::uint8_t* bytes, std::size_t size) {
+  namespace dataset = missions::dataset;
+  static const missions::file::Mission mission =
+      missions::derived::parse_mission("sensor: {lidar: velodyne_vlp16}\n", "m.yaml");
+  return run_reader("x.rawlog", [&] {
+    const fs::path file = file_with("x.rawlog", text_of(bytes, size));
+    dataset::RawlogSequence sequence(file, {}, [](const std::string&) {});
+    require(!sequence.pose_source().empty(), "poses from nowhere");
+    while (const auto frame = sequence.next()) {
+      require(geometry::is_place(frame->world_from_sensor.translation()), "a frame of no place");
+      const auto found = dataset::scan_of(*frame, mission);
+      require(found.scan.points.size() <= sim::most_depth_pixels, "a scan of too many points");
+    }
+  });
+}
+
 /// A depth image, the checksums of its chunks made right.
 int run_depth_png(const std::uint8_t* bytes, std::size_t size) {
   std::string text = text_of(bytes, size);
@@ -167,6 +186,7 @@ constexpr Reader readers[] = {
     {"survey_journal", run_survey_journal},
     {"checkpoint", run_checkpoint},
     {"sequence", run_sequence},
+    {"rawlog", run_rawlog},
     {"depth_png", run_depth_png},
     {"timetable", run_timetable},
     {"page_survey",

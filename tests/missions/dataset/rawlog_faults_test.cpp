@@ -3,6 +3,7 @@
 #include <cstring>
 #include <functional>
 #include <string_view>
+#include <utility>
 
 #include <gmock/gmock.h>
 #include <mrpt/obs/CObservationGPS.h>
@@ -48,6 +49,26 @@ TEST_F(Rawlog, LensesAndStepsThatAreNoneAreNamed) {
               }),
               HasSubstr("beyond k1 k2"));
   EXPECT_THAT(note([](auto& scan) { scan.sensorPose.x(1e30); }), HasSubstr("its pose"));
+}
+
+/// What is compressed well is little as a file.
+TEST_F(Rawlog, OfMoreThanThereIsMemoryForIsRefused) {
+  const auto large = range_scan(1.0);
+  large->rangeImage_setSize(5001, 5000);
+  large->rangeImage.setZero();
+  const auto scattered = range_scan(1.0);
+  scattered->hasRangeImage = false;
+  scattered->hasPoints3D = true;
+  scattered->resizePoints3DVectors(25'000'001);
+  for (const auto& [scan, what] : {std::pair(large, "pixels"), std::pair(scattered, "points")}) {
+    EXPECT_THAT(frames(write({robot_pose(1.0, {}), scan}, "x.rawlog.gz")), IsEmpty());
+    EXPECT_THAT(notes_.at(0), AllOf(HasSubstr("more than 2.5e7"), HasSubstr(what)));
+  }
+  Objects sensors{robot_pose(1.0, {})};
+  for (int i = 0; i <= 64; ++i) sensors.push_back(range_scan(1.0, std::to_string(i)));
+  EXPECT_THAT(complaint(write(sensors)), HasSubstr("more than 64 sensors"));
+  EXPECT_THAT(complaint(write({range_scan(1.0, std::string(257, 'x'))})),
+              HasSubstr("more than 256 bytes"));
 }
 
 TEST_F(Rawlog, ThatEndsTooSoonIsRefused) {

@@ -67,6 +67,11 @@ TEST(Lens, HasNoRayWhereItsPolynomialFoldsOver) {
   EXPECT_FALSE(parse_lens("500 500 320 240 -3 0 0 0 0").ray({0, 0}));
 }
 
+TEST(Lens, HasNoRayWhereItIsEndless) {
+  EXPECT_FALSE(parse_lens("1e-320 1 0 0").ray({1, 0}));
+  EXPECT_TRUE(parse_lens("1e-320 1 0 0").ray({0, 1}));
+}
+
 TEST(PoseText, IsReadInEveryLayout) {
   const Isometry3d pose = some_pose();
   const Eigen::Quaterniond q(pose.linear());
