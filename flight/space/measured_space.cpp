@@ -7,6 +7,7 @@
 #include <string>
 
 #include "flight/space/measured_voxels.h"
+#include "geometry/place/world.h"
 #include "geometry/requirement.h"
 
 namespace skycap::flight {
@@ -15,10 +16,11 @@ using Eigen::AlignedBox3d;
 using Eigen::Vector3d;
 
 void MeasuredSpaceConfig::validate() const {
-  require(voxel > 0.0 && std::isfinite(voxel), "measured_space.voxel", voxel, "positive");
-  require(depth_margin >= 0.0, "measured_space.depth_margin", depth_margin, "zero or more");
-  require(free_without_return >= 0.0, "measured_space.free_without_return", free_without_return,
-          "zero or more");
+  require(voxel > 0.0 && voxel <= 1e3, "measured_space.voxel", voxel, "positive, at most 1000 m");
+  require(depth_margin >= 0.0 && std::isfinite(depth_margin), "measured_space.depth_margin",
+          depth_margin, "zero or more");
+  require(free_without_return >= 0.0 && std::isfinite(free_without_return),
+          "measured_space.free_without_return", free_without_return, "zero or more");
   require(max_depth > 0.0 && max_depth < 1e5 * voxel, "measured_space.max_depth", max_depth,
           "positive and below 100,000 voxels");
   require(!floor || std::isfinite(*floor), "measured_space.floor", floor.value_or(0.0),
@@ -26,10 +28,10 @@ void MeasuredSpaceConfig::validate() const {
   if (region.isEmpty()) return;
   const double farthest = region.min().cwiseAbs().cwiseMax(region.max().cwiseAbs()).maxCoeff();
   const auto is_near = [&](const Vector3d& corner) {  // false for NaN, too
-    return (corner.array().abs() < 1e5 * voxel).all();
+    return (corner.array().abs() < 1e5 * voxel).all() && geometry::is_place(corner);
   };
   require(is_near(region.min()) && is_near(region.max()), "measured_space.region", farthest,
-          "within 100,000 voxels of the origin");
+          "within 100,000 voxels and 1e7 m of the origin");
 }
 
 MeasuredSpace::MeasuredSpace(const MeasuredSpaceConfig& config) {

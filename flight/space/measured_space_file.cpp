@@ -10,6 +10,7 @@
 
 #include "flight/space/measured_voxels.h"
 #include "geometry/error.h"
+#include "geometry/place/world.h"
 
 namespace skycap::flight {
 namespace {
@@ -95,6 +96,11 @@ MeasuredSpaceFile read_measured_space(std::istream& stream, const std::string& n
       throw Error(ErrorKind::bad_file, name + ": ends after " + std::to_string(i) + " of " +
                                            std::to_string(head.blocks) +
                                            " blocks; copy it again, or plan again");
+    }
+    const Vector3d low = cell_of(block.key).cast<double>() * 8.0 * head.voxel;
+    if (!geometry::is_place(low)) {
+      throw Error(ErrorKind::bad_file, name + ": block " + std::to_string(i) +
+                                           " is farther than 1e7 m from the origin; plan again");
     }
     file.blocks.push_back(block);
   }

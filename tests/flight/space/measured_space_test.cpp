@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cmath>
+#include <cstring>
 #include <map>
 #include <random>
 #include <sstream>
@@ -15,6 +16,7 @@
 #include "geometry/error.h"
 #include "tests/flight/scenes.h"
 #include "tests/flight/space/ray_sensor.h"
+#include "tests/support/complaint.h"
 
 namespace skycap::flight {
 namespace {
@@ -289,6 +291,21 @@ TEST(MeasuredSpace, BrokenFilesAreRefusedByName) {
     } catch (const Error& error) {
       EXPECT_THAT(error.what(), testing::StartsWith("free.bin: "));
     }
+  }
+}
+
+/// Of blocks as wide as the Earth.
+TEST(MeasuredSpace, FilesOfBlocksOutOfTheWorldAreRefused) {
+  std::stringstream file;
+  space_with_region().write(file);
+  for (const double voxel : {1e3, 1e30, 1e300}) {
+    std::string hostile = file.str();
+    std::memcpy(&hostile[16], &voxel, sizeof voxel);
+    hostile.replace(112, 8, 8, '\0');  // the first block: as far off as a key can say
+    std::istringstream stream(hostile);
+    EXPECT_THAT(testing_support::complaint_of([&] { MeasuredSpace::read(stream, "free.bin"); }),
+                testing::StartsWith("free.bin: "))
+        << voxel;
   }
 }
 
