@@ -85,8 +85,8 @@ TEST(FaultPoints, BenchmarkLeavesAWholeResult) {
   try_faults(verb, {"full", "kill"}, 15);
 }
 
-/// On a full disk its tables may be of the items that found room: the exit code says so, and the same
-/// command goes on.
+/// On a full disk its tables may be of the items that found room: the exit code says so, and the
+/// same command goes on.
 TEST(FaultPoints, CampaignLeavesAWholeResult) {
   const testing_support::TemporaryFolder folder;
   folder.file("m.yaml", quick);
