@@ -115,9 +115,16 @@ std::optional<View> SurveySteps::refuse() {
   return within_limits(reachable(std::move(next), taken, true));
 }
 
+void SurveySteps::stop_on(const std::stop_token& stop) {
+  stop_ = stop;
+  planner_.stop_on(stop);
+  if (ports_.stop_on) ports_.stop_on(stop);
+}
+
 std::optional<View> SurveySteps::reachable(std::optional<View> next, SurveyedView& taken,
                                            bool is_refused) {
   while (next && ports_.can_reach && !ports_.can_reach(taken.view.position, *next)) {
+    if (stop_.stop_requested()) throw Interrupted();
     is_refused = true;
     next = planned(taken, [&] { return planner_.next_view_instead(); });
   }
@@ -173,7 +180,7 @@ SurveyResult run_survey(Planner& planner, const View& first_view, const SurveyLi
     if (next && stop.stop_requested()) {
       return {StopReason::interrupted, std::move(steps).views()};
     }
-    planner.stop_on(stop);  // from now on there is something to come back with
+    steps.stop_on(stop);  // from now on there is something to come back with
   }
   const StopReason reason = steps.stop_reason();
   return {reason, std::move(steps).views()};

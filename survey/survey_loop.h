@@ -77,6 +77,8 @@ struct SurveyPorts {
   std::function<bool(const Eigen::Vector3d& from, const geometry::View& to)> can_reach;
   /// Told after each view. May be empty.
   std::function<void(const SurveyedView&, const geometry::Scan&)> report;
+  /// Lets a stop end `can_reach` wherever it is: it then throws Interrupted. May be empty.
+  std::function<void(std::stop_token)> stop_on;
 };
 
 /// A survey scan by scan, for whoever moves the sensor.
@@ -95,6 +97,10 @@ class SurveySteps {
   /// Another view in place of the one that was proposed last; nothing when there is none left.
   std::optional<geometry::View> refuse();
 
+  /// Lets a stop end take_in() wherever it is: it then throws Interrupted, as if the scan had not
+  /// been taken, and nothing but views() may be asked for.
+  void stop_on(const std::stop_token& stop);
+
   const std::vector<SurveyedView>& views() const& { return views_; }
   std::vector<SurveyedView> views() && { return std::move(views_); }
 
@@ -111,6 +117,7 @@ class SurveySteps {
   SurveyPorts ports_;
   std::vector<SurveyedView> views_;
   SurveyedView coming_;  ///< what is known of the next view: the scans on the way to it
+  std::stop_token stop_;
   StopReason stop_reason_ = StopReason::complete;
 };
 

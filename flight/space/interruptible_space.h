@@ -14,8 +14,10 @@ namespace skycap::flight {
 /// question throws Error{bad_usage} with the message "interrupted".
 class InterruptibleSpace : public FreeSpace {
  public:
-  InterruptibleSpace(const FreeSpace& space, std::stop_token stop)
+  explicit InterruptibleSpace(const FreeSpace& space, std::stop_token stop = {})
       : space_(space), stop_(std::move(stop)) {}
+
+  void stop_on(std::stop_token stop) { stop_ = std::move(stop); }
 
   Closest closest(const Segment& leg, double up_to) const override;
   bool continues_free(const Segment& leg, double clearance) const override;

@@ -97,6 +97,7 @@ survey::SurveyPorts MissionPlanner::ports() {
       impl.flight->take_in(scan);
     };
     ports.sensed_on_way = [&impl](const geometry::Scan& scan) { impl.flight->take_in(scan); };
+    ports.stop_on = [&impl](std::stop_token stop) { impl.flight->stop_on(std::move(stop)); };
   }
   if (impl.mission.sensor.is_moving()) {
     ports.views_on_way = [&impl](const geometry::View& from, const geometry::View& to) {

@@ -8,6 +8,7 @@
 #include "flight/paths/path.h"
 #include "flight/route/route.h"
 #include "flight/space/clearance.h"
+#include "flight/space/interruptible_space.h"
 #include "geometry/error.h"
 #include "geometry/parallel.h"
 #include "geometry/place/camera.h"
@@ -15,6 +16,7 @@
 #include "missions/derived/pad_grounds.h"
 #include "missions/file/number_text.h"
 #include "missions/run/way_frames.h"
+#include "survey/planner.h"
 
 namespace skycap::missions::run {
 
@@ -36,7 +38,8 @@ struct SurveyFlight::Impl {
         camera(mission.sensor.camera.camera),
         measured(std::make_shared<flight::MeasuredSpace>(derived::measured_space_of(mission))),
         rules(derived::flight_rules(mission)),
-        space({measured.get(), &rules}),
+        known({measured.get(), &rules}),
+        space(known),
         finder(space, derived::clearance_of(mission).total(),
                derived::route_options_of(mission, {}).path),
         motion(mission),
@@ -65,11 +68,13 @@ struct SurveyFlight::Impl {
   geometry::Camera camera;
   std::shared_ptr<flight::MeasuredSpace> measured;
   flight::KnownSpace rules;
-  flight::JointSpace space;
+  flight::JointSpace known;
+  flight::InterruptibleSpace space;
   flight::PathFinder finder;
   WayMotion motion;
   double frame_period;
   unsigned threads;
+  std::stop_token stop;
   FlownLeg leg;  ///< that the next fly() takes
   Vector3d above_pad = Vector3d::Zero();
   std::vector<flight::PadScan> pads;
@@ -111,7 +116,7 @@ SurveyFlight::SurveyFlight(const file::Mission& mission, const geometry::View& f
 
 SurveyFlight::~SurveyFlight() = default;
 
-bool SurveyFlight::can_reach(const Vector3d& from, const geometry::View& to) {
+bool SurveyFlight::can_reach(const Vector3d& from, const geometry::View& to) try {
   if (flight::can_look(impl_->vehicle, to)) {
     if (auto way = impl_->find_way(from, to.position)) {
       impl_->leg = std::move(*way);
@@ -120,6 +125,14 @@ bool SurveyFlight::can_reach(const Vector3d& from, const geometry::View& to) {
   }
   ++impl_->survey.refused;
   return false;
+} catch (const Error&) {
+  if (impl_->stop.stop_requested()) throw survey::Interrupted();
+  throw;
+}
+
+void SurveyFlight::stop_on(std::stop_token stop) {
+  impl_->stop = stop;
+  impl_->space.stop_on(std::move(stop));
 }
 
 const FlownLeg& SurveyFlight::way() const { return impl_->leg; }
@@ -158,6 +171,8 @@ void SurveyFlight::take_in(const geometry::Scan& scan) {
 }
 
 FlownSurvey SurveyFlight::finish(const std::vector<geometry::View>& views) {
+  // Less the way to a scan that counts as not taken, if planning was interrupted.
+  if (impl_->survey.legs.size() > views.size()) impl_->survey.legs.resize(views.size());
   impl_->survey.time = impl_->motion.survey_time(impl_->survey.legs, views);
   impl_->survey.measured = std::move(impl_->measured);
   for (const flight::PadScan& pad : impl_->pads) {

@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <memory>
 #include <optional>
+#include <stop_token>
 #include <vector>
 
 #include <Eigen/Core>
@@ -44,8 +45,12 @@ class SurveyFlight {
   SurveyFlight(const file::Mission& mission, const geometry::View& first_view);
   ~SurveyFlight();
 
-  /// Whether the vehicle can look that way and get there along legs that are proven free.
+  /// Whether the vehicle can look that way and get there along legs that are proven free. Throws
+  /// survey::Interrupted after a stop.
   bool can_reach(const Eigen::Vector3d& from, const geometry::View& to);
+
+  /// Lets a stop end can_reach() wherever it is.
+  void stop_on(std::stop_token stop);
 
   /// The way that the last can_reach() found.
   const FlownLeg& way() const;

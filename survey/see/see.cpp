@@ -96,6 +96,7 @@ struct SeePlanner::Impl {
   std::vector<Vector3d> proposal_positions;
 
   PlanningStep step;
+  std::stop_token stop;
 };
 
 /// One update, in the order of the released code.
@@ -234,6 +235,7 @@ void SeePlanner::Impl::avoid_occlusions() {
     list_proposals();
     for (const std::size_t i :
          nearest_views(proposal_positions, scans.back().position, config.visibility_update_limit)) {
+      if (stop.stop_requested()) throw Interrupted();
       const std::uint32_t point = proposal_points[i];
       if (!checked.insert(point).second) continue;
       if (avoid_occlusion(point, frontiers.at(point))) continue;
@@ -288,6 +290,7 @@ void SeePlanner::Impl::update_graph() {
   graph.keep_only(proposal_points);
   const std::size_t limit = config.visibility_update_limit;
   for (const std::size_t j : nearest_views(proposal_positions, scans.back().position, limit)) {
+    if (stop.stop_requested()) throw Interrupted();
     const Frontier& from = frontiers.at(proposal_points[j]);
     std::vector<std::uint32_t> seen;
     for (const std::size_t k : nearest_views(proposal_positions, proposal_positions[j], limit)) {
@@ -373,6 +376,8 @@ SeePlanner::SeePlanner(const SeeConfig& config, const geometry::Camera& camera) 
 SeePlanner::~SeePlanner() = default;
 
 std::optional<View> SeePlanner::next_view(const ScanSpan& scan) { return impl_->update(scan); }
+
+void SeePlanner::stop_on(std::stop_token stop) { impl_->stop = std::move(stop); }
 
 std::optional<View> SeePlanner::next_view_instead() {
   if (impl_->target && impl_->frontiers.contains(*impl_->target)) {

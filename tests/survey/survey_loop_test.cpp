@@ -184,6 +184,26 @@ TEST(SurveyLoop, StopsWhileThePlannerLooksForAView) {
   EXPECT_THAT(places(result), ElementsAre(0, 1));
 }
 
+// Once there is a view to come back with, other views are not asked for to the end.
+TEST(SurveyLoop, StopsWhileViewsAreRefused) {
+  WalkingPlanner planner(1'000'000'000);
+  std::stop_source source;
+  std::stop_token told;
+  const auto near_only = [&](const Vector3d&, const View& to) {
+    if (to.position.x() == 100.0) source.request_stop();
+    return to.position.x() < 3.0;
+  };
+  const SurveyResult result =
+      run_survey(planner, start, {},
+                 {.sense = sense,
+                  .can_reach = near_only,
+                  .stop_on = [&](std::stop_token stop) { told = std::move(stop); }},
+                 source.get_token());
+  EXPECT_EQ(result.stop_reason, StopReason::interrupted);
+  EXPECT_THAT(places(result), ElementsAre(0, 1));
+  EXPECT_TRUE(told.stop_requested());
+}
+
 TEST(SurveyLoop, StopsWhenTheTimeIsUp) {
   WalkingPlanner planner(100);
   // A metre of way and a second a view: places 0, 1 and 2 take 5 s.

@@ -96,6 +96,18 @@ TEST(SurveyFlight, LooksOnlyWhereTheGimbalCan) {
                                 {place, Vector3d(std::cos(too_steep), 0, std::sin(too_steep))}));
 }
 
+TEST(SurveyFlight, StopsInTheSearchForAWay) {
+  const file::Mission mission = derived::parse_mission(flown_mission(), "m.yaml");
+  const geometry::View first = geometry::look_at({-30, 0, 8}, {0, 0, 5});
+  run::SurveyFlight flight(mission, first);
+  std::stop_source stop;
+  flight.stop_on(stop.get_token());
+  const geometry::View next{{-30, 4, 8}, Vector3d::UnitX()};
+  EXPECT_TRUE(flight.can_reach(first.position, next));
+  stop.request_stop();
+  EXPECT_THROW(flight.can_reach(first.position, next), survey::Interrupted);
+}
+
 /// The package of one survey, which all tests below only read.
 const TestFolder& package() {
   static const TestFolder folder;

@@ -199,6 +199,18 @@ TEST(SeePlanner, EndsWhenEveryLaterScanIsEmpty) {
   EXPECT_FALSE(next);  // each empty scan gave its frontier up
 }
 
+TEST(SeePlanner, StopsInTheMiddleOfAView) {
+  see::SeePlanner planner(small_config(), small_camera);
+  const View first = geometry::look_at({2.4, 0.3, 0.2}, {0, 0, 0});
+  const auto scan = tests::scan_spheres({{}}, small_camera, first, 0.02);
+  std::stop_source stop;
+  planner.stop_on(stop.get_token());
+  ASSERT_TRUE(planner.next_view(scan));
+  stop.request_stop();
+  EXPECT_THROW(planner.next_view(scan), Interrupted);
+  EXPECT_GT(planner.release_cloud().size(), 0U);
+}
+
 TEST(SeePlanner, OffersEveryFrontierInTurnWhenViewsAreRefused) {
   see::SeePlanner planner(small_config(), small_camera);
   const View first = geometry::look_at({2.4, 0.3, 0.2}, {0, 0, 0});
