@@ -35,6 +35,20 @@ std::vector<ResultPage> pages_in(const fs::path& folder) {
                                        names);
 }
 
+/// A message about staged files, by the names that they will have.
+std::string by_final_names(std::string message, const std::vector<std::string>& names,
+                           const geometry::OutputFolder& folder) {
+  for (const std::string& name : names) {
+    const std::string temporary = folder.staged(name).string();
+    if (temporary.empty()) continue;
+    const std::size_t at = message.find(temporary);
+    if (at != std::string::npos) {
+      message.replace(at, temporary.size(), (folder.path() / name).string());
+    }
+  }
+  return message;
+}
+
 }  // namespace
 
 const std::vector<ResultPage>& result_pages() {
@@ -76,12 +90,16 @@ std::optional<std::string> stage_page(const std::string& results, bool is_wanted
   const auto page = std::ranges::find(result_pages(), results, &ResultPage::results);
   folder.replace([&](std::string_view name) { return name == page->name; });
   if (!is_wanted) return std::nullopt;
+  std::vector<std::string> asked;
+  const auto staged = [&](const std::string& name) {
+    asked.push_back(name);
+    return folder.staged(name);
+  };
   std::string text;
   try {
-    text = page->make([&](const std::string& name) { return folder.staged(name); },
-                      default_report_points);
+    text = page->make(staged, default_report_points);
   } catch (const Error& error) {
-    return error.what();
+    return by_final_names(error.what(), asked, folder);
   }
   folder.write(page->name, text);
   return std::nullopt;
