@@ -36,15 +36,17 @@ std::vector<Vector3d> points_of(const RangeImage& range, std::size_t& without_re
 }  // namespace
 
 RawlogSequence::RawlogSequence(std::filesystem::path file, const RawlogChoice& choice,
-                               std::function<void(const std::string&)> note)
+                               std::function<void(const std::string&)> note,
+                               const std::function<void(const std::string&)>& report)
     : file_(std::move(file)), choice_(choice), note_(std::move(note)) {
   if (choice_.poses) trajectory_ = read_list(*choice_.poses);
-  survey_file();
+  survey_file(report);
   reader_ = open_rawlog(file_);
 }
 
-void RawlogSequence::survey_file() {
+void RawlogSequence::survey_file(const std::function<void(const std::string&)>& report) {
   std::vector<std::string> labels;
+  std::size_t scans = 0;
   bool has_movements = false;
   const auto reader = open_rawlog(file_);
   while (const auto entry = reader->next()) {
@@ -54,6 +56,7 @@ void RawlogSequence::survey_file() {
       continue;
     }
     const auto& scan = std::get<RawlogScan>(*entry);
+    if (report) report(file_.string() + ": looking for poses, scan " + std::to_string(++scans));
     has_movements = has_movements || scan.moved;
     if (std::ranges::find(labels, scan.label) != labels.end()) continue;
     if (labels.size() == most_sensors) fail("has scans of more than 64 sensors");

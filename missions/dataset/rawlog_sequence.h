@@ -35,11 +35,12 @@ struct RawlogFrame {
 /// it on the carrier.
 class RawlogSequence {
  public:
-  /// Reads the rawlog once for its poses. `note` is told, in a line, of each scan that is left out,
-  /// and why. Throws Error{bad_file} for what cannot be read or has no poses or scans, and
+  /// Reads the rawlog once for its poses, and tells `report` how far it is; it may be empty. `note`
+  /// is told, in a line, of each scan that is left out, and why. Throws Error{bad_file} for what cannot be read or has no poses or scans, and
   /// Error{bad_usage} if a sensor must be chosen.
   RawlogSequence(std::filesystem::path file, const RawlogChoice& choice,
-                 std::function<void(const std::string&)> note);
+                 std::function<void(const std::string&)> note,
+                 const std::function<void(const std::string&)>& report = {});
 
   /// What poses are taken from, for the user.
   const std::string& pose_source() const { return pose_source_; }
@@ -48,7 +49,7 @@ class RawlogSequence {
   std::optional<RawlogFrame> next();
 
  private:
-  void survey_file();
+  void survey_file(const std::function<void(const std::string&)>& report);
   [[noreturn]] void fail(const std::string& what) const;
   void choose_sensor(const std::vector<std::string>& labels);
   void choose_poses(bool has_movements);

@@ -62,10 +62,11 @@ class Rawlog final : public Recording {
 std::unique_ptr<Recording> open_recording(const std::filesystem::path& place,
                                           const RecordingChoice& choice,
                                           const file::Mission& mission,
-                                          const std::function<void(const std::string&)>& note) {
+                                          const std::function<void(const std::string&)>& note,
+                                          const std::function<void(const std::string&)>& report) {
   if (std::filesystem::is_regular_file(place)) {
-    return std::make_unique<Rawlog>(RawlogSequence(place, choice.rawlog, note), choice.count,
-                                    mission);
+    return std::make_unique<Rawlog>(RawlogSequence(place, choice.rawlog, note, report),
+                                    choice.count, mission);
   }
   if (choice.rawlog.poses || !choice.rawlog.sensor.empty()) {
     throw Error(ErrorKind::bad_usage, "--poses and --sensor are for rawlogs");

@@ -38,11 +38,13 @@ class Recording {
 };
 
 /// A rawlog, if it is a file, or else a folder as in recorded_sequence.h, whose scans become the
-/// mission's. `note` is told, in a line, of each frame that is left out, and why. Keeps a reference
-/// to the mission. Throws Error{bad_file}, and Error{bad_usage} for a choice that it does not have.
+/// mission's. `note` is told, in a line, of each frame that is left out, and why; `report`, how far
+/// it is in what it has to read first. Keeps a reference to the mission. Throws Error{bad_file},
+/// and Error{bad_usage} for a choice that it does not have.
 std::unique_ptr<Recording> open_recording(const std::filesystem::path& place,
                                           const RecordingChoice& choice,
                                           const file::Mission& mission,
-                                          const std::function<void(const std::string&)>& note);
+                                          const std::function<void(const std::string&)>& note,
+                                          const std::function<void(const std::string&)>& report);
 
 }  // namespace skycap::missions::dataset

@@ -105,8 +105,12 @@ void add_recording(const NextOptions& options, const file::Mission& mission,
       .rawlog = {.sensor = options.sensor, .poses = options.poses},
       .count = options.until,
       .image = input_of(options, {}, Eigen::Isometry3d::Identity())};
+  ProgressLine progress(console, options.is_quiet);
+  progress.show(options.dataset->string() + ": looking for poses");
   const auto recording = dataset::open_recording(
-      *options.dataset, choice, mission, [&](const std::string& note) { warn(console, note); });
+      *options.dataset, choice, mission, [&](const std::string& note) { warn(console, note); },
+      progress.teller());
+  progress.clear();
   if (const std::string source = recording->pose_source(); !source.empty() && !options.is_quiet) {
     console.err << options.dataset->string() << ": poses are from " << source << "\n";
   }

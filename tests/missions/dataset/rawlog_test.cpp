@@ -81,6 +81,7 @@ TEST_F(Rawlog, PosesAreThoseNearestInTime) {
   EXPECT_TRUE(is_near(all[1].world_from_sensor, optical(CPose3D(2, 0, 0, 0.5, 0, 0) + mount)));
   EXPECT_THAT(notes_, ElementsAre(AllOf(StartsWith("DEPTH 3 is left out"), HasSubstr("20 ms"))));
   EXPECT_THAT(source_, HasSubstr("CObservationRobotPose"));
+  EXPECT_THAT(reports_, ElementsAre(HasSubstr("scan 1"), HasSubstr("scan 2"), HasSubstr("scan 3")));
 }
 
 TEST_F(Rawlog, WheelsWillDoWhereThereIsNothingBetter) {

@@ -86,7 +86,10 @@ class Rawlog : public testing::Test {
 
   std::vector<RawlogFrame> frames(const std::string& file, const RawlogChoice& choice = {}) {
     notes_.clear();
-    RawlogSequence sequence(file, choice, [&](const std::string& note) { notes_.push_back(note); });
+    reports_.clear();
+    RawlogSequence sequence(
+        file, choice, [&](const std::string& note) { notes_.push_back(note); },
+        [&](const std::string& report) { reports_.push_back(report); });
     source_ = sequence.pose_source();
     std::vector<RawlogFrame> all;
     while (auto frame = sequence.next()) all.push_back(std::move(*frame));
@@ -107,7 +110,7 @@ class Rawlog : public testing::Test {
   }
 
   tests::TestFolder folder_;
-  std::vector<std::string> notes_;
+  std::vector<std::string> notes_, reports_;
   std::string source_;
 };
 
