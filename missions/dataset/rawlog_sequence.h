@@ -36,8 +36,8 @@ struct RawlogFrame {
 class RawlogSequence {
  public:
   /// Reads the rawlog once for its poses, and tells `report` how far it is; it may be empty. `note`
-  /// is told, in a line, of each scan that is left out, and why. Throws Error{bad_file} for what cannot be read or has no poses or scans, and
-  /// Error{bad_usage} if a sensor must be chosen.
+  /// is told, in a line, of each scan that is left out, and why. Throws Error{bad_file} for what
+  /// cannot be read or has no poses or scans, and Error{bad_usage} if a sensor must be chosen.
   RawlogSequence(std::filesystem::path file, const RawlogChoice& choice,
                  std::function<void(const std::string&)> note,
                  const std::function<void(const std::string&)>& report = {});
