@@ -97,8 +97,8 @@ class SurveySteps {
   /// Another view in place of the one that was proposed last; nothing when there is none left.
   std::optional<geometry::View> refuse();
 
-  /// Lets a stop end take_in() wherever it is: it then throws Interrupted, as if the scan had not
-  /// been taken, and nothing but views() may be asked for.
+  /// Lets a stop end take_in() wherever it is: it then throws Interrupted, and nothing but views()
+  /// may be asked for. The scan counts as not taken, though the planner may have learnt from it.
   void stop_on(const std::stop_token& stop);
 
   const std::vector<SurveyedView>& views() const& { return views_; }

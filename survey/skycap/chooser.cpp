@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "geometry/parallel.h"
+#include "survey/planner.h"
 #include "survey/skycap/view_batch.h"
 
 namespace skycap::survey::skycap {
@@ -150,8 +151,10 @@ class Chooser {
 
   void evaluate(std::size_t first) {
     geometry::parallel_for(candidates_.size() - first, settings_.threads, [&](std::size_t i) {
+      if (settings_.stop.stop_requested()) return;
       candidates_[first + i].gain = field_.gain(candidates_[first + i].view);
     });
+    if (settings_.stop.stop_requested()) throw Interrupted();
   }
 
   double score(const Candidate& c) const {

@@ -4,6 +4,7 @@
 
 #include <functional>
 #include <optional>
+#include <stop_token>
 #include <vector>
 
 #include <Eigen/Core>
@@ -23,6 +24,7 @@ struct ChooserSettings {
   int batch = 5;               ///< views planned ahead, at most 6; 1: the best next view only
   double unseen_yield = 1.0;   ///< what comes of guessed gains (GuessYield), for best_gain
   unsigned threads = 1;        ///< zero: all processors
+  std::stop_token stop{};      ///< has choose_view() throw Interrupted
 };
 
 struct Choice {

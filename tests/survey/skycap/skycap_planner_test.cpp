@@ -203,6 +203,17 @@ TEST(SkycapPlanner, ProposesOthersInsteadOfViewsThatCannotBeReached) {
   }
 }
 
+TEST(SkycapPlanner, StopsInTheMiddleOfAView) {
+  skycap::SkycapPlanner planner(small_config(), camera);
+  const geometry::Scan scan = tests::scan_spheres(ball, camera, start, 0.01);
+  std::stop_source stop;
+  planner.stop_on(stop.get_token());
+  ASSERT_TRUE(planner.next_view(scan));
+  stop.request_stop();
+  EXPECT_THROW(planner.next_view(scan), Interrupted);
+  EXPECT_GT(planner.release_cloud().size(), 0U);
+}
+
 TEST(SkycapPlanner, SaysWhatIsMissingAndWhy) {
   skycap::SkycapConfig config = small_config();
   config.limits.least_height = 0.3;
