@@ -101,12 +101,24 @@ std::optional<View> SurveySteps::take_in(const geometry::Scan& scan, double sens
   std::optional<View> next = planned(taken, [&] { return planner_.next_view(scan); });
   taken.step = planner_.last_step();
   book_rest(taken, "rest");
-  next = reachable(std::move(next), taken, false);
+  if (std::optional<View> given = opening_view(taken)) {
+    next = std::move(given);
+  } else {
+    next = reachable(std::move(next), taken, false);
+  }
   taken.points = planner_.cloud().size();
   taken.returns = scan.points.size();
   views_.push_back(std::move(taken));
   if (ports_.report) ports_.report(views_.back(), scan);
   return within_limits(std::move(next));
+}
+
+std::optional<View> SurveySteps::opening_view(const SurveyedView& taken) {
+  while (opened_ < ports_.opening.size()) {
+    const View& view = ports_.opening[opened_++];
+    if (!ports_.can_reach || ports_.can_reach(taken.view.position, view)) return view;
+  }
+  return std::nullopt;
 }
 
 std::optional<View> SurveySteps::refuse() {

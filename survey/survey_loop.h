@@ -61,6 +61,9 @@ struct SurveyResult {
 
 /// Who has a say while a survey goes on.
 struct SurveyPorts {
+  /// Views that are taken before the planner is asked for any, after the first: those that can be
+  /// reached. The planner learns from them as from its own.
+  std::vector<geometry::View> opening{};
   /// Takes a scan from a view (or as near to it as it could). The memory of `recycled`, the scan
   /// before it, may be used again. For run_survey() alone.
   std::function<geometry::Scan(const geometry::View&, geometry::Scan recycled)> sense;
@@ -111,12 +114,14 @@ class SurveySteps {
   std::optional<geometry::View> reachable(std::optional<geometry::View> next, SurveyedView& taken,
                                           bool is_refused);
   std::optional<geometry::View> within_limits(std::optional<geometry::View> next);
+  std::optional<geometry::View> opening_view(const SurveyedView& taken);
 
   Planner& planner_;
   SurveyLimits limits_;
   SurveyPorts ports_;
   std::vector<SurveyedView> views_;
-  SurveyedView coming_;  ///< what is known of the next view: the scans on the way to it
+  std::size_t opened_ = 0;  ///< views of the opening that were taken or cannot be reached
+  SurveyedView coming_;     ///< what is known of the next view: the scans on the way to it
   std::stop_token stop_;
   StopReason stop_reason_ = StopReason::complete;
 };

@@ -93,6 +93,20 @@ TEST(SurveyLoop, AsksForAnotherViewWhenOneCannotBeReached) {
   EXPECT_EQ(result.stop_reason, StopReason::nowhere_to_go);  // 4 was wanted, and refused
 }
 
+// The opening comes first; what cannot be reached of it is left out, and the planner goes on.
+TEST(SurveyLoop, TakesTheOpeningBeforeThePlannersViews) {
+  WalkingPlanner planner(4);
+  const auto view_at = [](double x) { return View{{x, 0, 0}, {1, 0, 0}}; };
+  const auto not_at_eleven = [](const Vector3d&, const View& to) { return to.position.x() != 11; };
+  const SurveyResult result = run_survey(planner, start, {},
+                                         {.opening = {view_at(10), view_at(11), view_at(12)},
+                                          .sense = sense,
+                                          .can_reach = not_at_eleven});
+  // The planner was asked after each scan of the opening, and proposed 1 and 2 in vain.
+  EXPECT_THAT(places(result), ElementsAre(0, 10, 12, 3, 4));
+  EXPECT_EQ(result.stop_reason, StopReason::complete);
+}
+
 /// Takes two milliseconds for a view and five for one in place of it, and books half of the former.
 class SlowPlanner final : public Planner {
  public:
