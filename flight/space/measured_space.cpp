@@ -74,8 +74,8 @@ void MeasuredSpace::insert(const geometry::Scan& scan, const geometry::Camera& c
   impl_->occupy(scan);
 }
 
-void MeasuredSpace::insert(const geometry::Scan& scan, double ray_spacing) {
-  impl_->carve(RangeImage(scan, ray_spacing, impl_->config.max_depth));
+void MeasuredSpace::insert(const geometry::Scan& scan, const SweepRays& rays) {
+  impl_->carve(RangeImage(scan, rays, impl_->config.max_depth));
   impl_->occupy(scan);
 }
 

@@ -43,6 +43,15 @@ struct MeasuredSpaceConfig {
   void validate() const;
 };
 
+/// How a sensor without an image, such as a spinning laser scanner, shoots around itself.
+struct SweepRays {
+  double spacing = 0.0;  ///< neighbouring rays are at most so far apart [rad], in (0, 1)
+  /// Of the turn, in the scan's frame: rows of rays are cones about it.
+  Eigen::Vector3d axis = Eigen::Vector3d::UnitY();
+  /// Rays may begin this far from the scan's own place, as those of a turn in flight do [m].
+  double origin_spread = 0.0;
+};
+
 /// Grows by insertion. Queries may run in parallel with each other, not with insertions.
 class MeasuredSpace : public FreeSpace {
  public:
@@ -61,10 +70,13 @@ class MeasuredSpace : public FreeSpace {
   /// or a pixel that the camera does not have.
   void insert(const geometry::Scan& scan, const geometry::Camera& camera);
 
-  /// Takes in a scan of a sensor that looks around itself and has no image, such as a LiDAR whose
-  /// neighbouring rays are at most `ray_spacing` [rad] apart: directions in which a cell of that
-  /// size got no return prove nothing. Throws Error{bad_config} unless 0 < ray_spacing < 1.
-  void insert(const geometry::Scan& scan, double ray_spacing);
+  /// Takes in a scan of a sensor that looks around itself and has no image, such as a LiDAR:
+  /// directions in which a cell as wide as its rays are apart got no return prove nothing. Throws
+  /// Error{bad_config} unless 0 < spacing < 1.
+  void insert(const geometry::Scan& scan, const SweepRays& rays);
+  void insert(const geometry::Scan& scan, double ray_spacing) {
+    insert(scan, SweepRays{.spacing = ray_spacing});
+  }
 
   Closest closest(const Segment& leg, double up_to) const override;
   bool continues_free(const Segment& leg, double clearance) const override;

@@ -46,8 +46,11 @@ RangeImage::RangeImage(const geometry::Scan& scan, const geometry::Camera& camer
   build_pyramid(std::move(depths));
 }
 
-RangeImage::RangeImage(const geometry::Scan& scan, double ray_spacing, double max_depth)
-    : sensor_from_world_(scan.world_from_sensor.inverse()) {
+RangeImage::RangeImage(const geometry::Scan& scan, const SweepRays& rays, double max_depth)
+    : sensor_from_world_(Eigen::Quaterniond::FromTwoVectors(rays.axis, Vector3d::UnitY()) *
+                         scan.world_from_sensor.inverse()),
+      origin_spread_(rays.origin_spread) {
+  const double ray_spacing = rays.spacing;
   if (!(ray_spacing > 0.0 && ray_spacing < 1.0)) {
     throw Error(ErrorKind::bad_config,
                 "the ray spacing is " + std::to_string(ray_spacing) + " rad; it must be in (0, 1)");
@@ -174,7 +177,8 @@ std::optional<RangeImage::Patch> RangeImage::spherical_patch(const Vector3d& cen
 BallSight RangeImage::sight(const Vector3d& centre_in_world, double radius, double margin) const {
   const Vector3d centre = sensor_from_world_ * centre_in_world;
   if (!camera_) {
-    const std::optional<Patch> patch = spherical_patch(centre, radius);
+    // A ray that begins beside the image's place passes within the spread of where it seems to.
+    const std::optional<Patch> patch = spherical_patch(centre, radius + origin_spread_);
     if (!patch) return BallSight::partial;
     const Depths depths = over_wrapped(*patch);
     if (depths.least >= patch->farthest + margin) return BallSight::free;

@@ -9,6 +9,7 @@
 #include <Eigen/Core>
 #include <Eigen/Geometry>
 
+#include "flight/space/measured_space.h"
 #include "geometry/place/camera.h"
 #include "geometry/points/scan.h"
 
@@ -29,9 +30,9 @@ class RangeImage {
   RangeImage(const geometry::Scan& scan, const geometry::Camera& camera,
              double depth_without_return, double max_depth);
 
-  /// An image of azimuth and elevation in the sensor's frame, whose cells are `ray_spacing` wide;
-  /// depth is the range. Cells without a point count as 0.
-  RangeImage(const geometry::Scan& scan, double ray_spacing, double max_depth);
+  /// An image of azimuth and elevation about the axis, whose cells are as wide as the rays are
+  /// apart; depth is the range. Cells without a point count as 0.
+  RangeImage(const geometry::Scan& scan, const SweepRays& rays, double max_depth);
 
   /// `margin` is kept free in front of the measurements.
   BallSight sight(const Eigen::Vector3d& centre_in_world, double radius, double margin) const;
@@ -57,7 +58,8 @@ class RangeImage {
   Depths over(int left, int right, int top, int bottom) const;
   Depths over_wrapped(const Patch& patch) const;
 
-  Eigen::Isometry3d sensor_from_world_;
+  Eigen::Isometry3d sensor_from_world_;  ///< of the image: y along the axis if it is spherical
+  double origin_spread_ = 0.0;
   std::optional<geometry::Camera> camera_;  ///< none: spherical
   double pixels_per_radian_ = 0.0;
   int width_ = 0, height_ = 0;

@@ -112,6 +112,36 @@ TEST(MeasuredSpace, ASensorThatLooksAroundProvesFreeSpaceToo) {
   EXPECT_TRUE(space.is_free({{-8, 8, 5}, {-7, 8, 5}}, 0.5));
 }
 
+// Rays of a turn in flight begin beside the place that the turn is taken to be from.
+TEST(MeasuredSpace, RaysThatBeginBesideTheScansPlaceProveNothingThatIsNotFree) {
+  const geometry::Mesh scene = room();
+  constexpr double spacing = 0.02, spread = 0.6;
+  MeasuredSpace spread_out({.voxel = 0.2, .depth_margin = 0.0}),
+      exact = MeasuredSpace({.voxel = 0.2, .depth_margin = 0.0});
+  for (const Vector3d& beside : {Vector3d(spread, 0, 0), Vector3d(0, -spread, 0)}) {
+    geometry::Scan scan = look_around(scene, Vector3d(-5, -5, 5) + beside, spacing * 0.9);
+    exact.insert(scan, spacing);
+    scan.world_from_sensor.translation() = Vector3d(-5, -5, 5);
+    spread_out.insert(scan, SweepRays{.spacing = spacing, .origin_spread = spread});
+  }
+  expect_truly_free(spread_out, truth_of(scene),
+                    AlignedBox3d(Vector3d(-9, -9, 1), Vector3d(9, 9, 9)), 0.5, 30);
+  EXPECT_LT(spread_out.free_volume(), exact.free_volume());
+}
+
+// Which way the axis of the turn lies makes no difference to a sensor whose rays are as dense all
+// around.
+TEST(MeasuredSpace, WhatASweepProvesIsTrulyFreeWhicheverWayItsAxisLies) {
+  const geometry::Mesh scene = room();
+  for (const Vector3d& axis : {Vector3d(1, 0, 0), Vector3d(0, 0, 1), Vector3d(1, 2, -2)}) {
+    MeasuredSpace space({.voxel = 0.2, .depth_margin = 0.0});
+    space.insert(look_around(scene, {-5, -5, 5}, 0.01), SweepRays{.spacing = 0.02, .axis = axis});
+    expect_truly_free(space, truth_of(scene), AlignedBox3d(Vector3d(-9, -9, 1), Vector3d(9, 9, 9)),
+                      0.5, 30);
+    EXPECT_FALSE(space.is_free({{8, 8, 5}, {8, 8, 5}}, 0.1));
+  }
+}
+
 TEST(MeasuredSpace, APixelWithoutAReturnProvesNothingUnlessTheSensorIsTrusted) {
   const geometry::Mesh wall = scenes::box({10, -2, -2}, {11, 2, 2});  // in half of the image
   const geometry::Scan scan = depth_image(wall, small_camera, look_at({0, 0, 0}, {10, 0, 0}));
