@@ -27,7 +27,8 @@ void CloudJudge::add(std::span<const Eigen::Vector3f> points) {
 }
 
 CloudJudgement CloudJudge::judgement() {
-  return {accuracy_.points(), coverage_.share(), accuracy_.accuracy(), area_};
+  return {accuracy_.points(), coverage_.share(), accuracy_.accuracy(), area_,
+          coverage_.is_covered()};
 }
 
 }  // namespace skycap::missions::judge

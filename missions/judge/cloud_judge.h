@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <span>
 #include <vector>
 
@@ -18,6 +19,8 @@ struct CloudJudgement {
   double coverage = 0.0;  ///< share of the surface, in [0, 1]
   CloudAccuracy accuracy;
   double area = 0.0;  ///< of the surface [m^2]
+  /// For each of the places asked, 1 if it is covered; empty where that was not kept.
+  std::vector<std::uint8_t> is_covered{};
 
   /// Points for each square metre of the surface.
   double density() const { return static_cast<double>(points) / area; }

@@ -1,4 +1,7 @@
+#include <cmath>
+#include <cstdint>
 #include <filesystem>
+#include <limits>
 #include <span>
 #include <stop_token>
 #include <vector>
@@ -26,19 +29,21 @@ struct Truth {
   geometry::Mesh model;
   double registration_distance;
   std::size_t samples;
+  std::vector<std::uint8_t> is_visible{};  ///< for each sample, if a mission says from where
 };
 
 bool is_mission_file(const std::filesystem::path& file) {
   return file.extension() == ".yaml" || file.extension() == ".yml";
 }
 
-Truth truth_of(const EvaluateOptions& options, const derived::Report& report) {
+Truth truth_of(const EvaluateOptions& options, const derived::Report& report,
+               const std::stop_token& stop) {
   if (is_mission_file(options.model)) {
     const std::filesystem::path file = options.model;
     const file::Mission mission = derived::read_mission(file, {}, report);
-    return {scene::placed_model(mission, file.parent_path()),
-            options.distance.value_or(mission.evaluation.registration_distance),
-            mission.evaluation.samples};
+    const scene::SurveyScene scene(mission, file.parent_path());
+    return {scene.model(), options.distance.value_or(mission.evaluation.registration_distance),
+            mission.evaluation.samples, scene.visible(mission.threads, stop)};
   }
   if (!options.distance) {
     throw Error(ErrorKind::bad_usage,
@@ -77,47 +82,61 @@ judge::CloudJudgement judged_mesh(const std::filesystem::path& file, const Truth
           accuracy.accuracy(), geometry::surface_area(truth.model)};
 }
 
+/// Of what is visible; NaN where nobody says from where.
+double visible_share(const judge::CloudJudgement& judged, const Truth& truth) {
+  constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
+  if (judged.is_covered.size() != truth.is_visible.size()) return unknown;
+  return judge::covered_share(judged.is_covered, truth.is_visible).value_or(unknown);
+}
+
 }  // namespace
 
 int evaluate(const EvaluateOptions& options, const Console& console) {
   ProgressLine progress(console, false);
   progress.show("making " + options.model + " ready");
-  const Truth truth = truth_of(options, progress.teller());
+  const Truth truth = truth_of(options, progress.teller(), console.stop);
   const bool is_mesh = !options.mesh.empty();
   const std::filesystem::path& file = is_mesh ? options.mesh : options.cloud;
   progress.show("reading " + file.string());
   const judge::CloudJudgement judged =
       is_mesh ? judged_mesh(file, truth) : judged_cloud(file, truth, progress, console.stop);
   const judge::CloudAccuracy& accuracy = judged.accuracy;
+  const double visible = visible_share(judged, truth);
+  const bool has_visible = !std::isnan(visible);
   progress.clear();
 
   if (options.is_json) {
-    const nlohmann::ordered_json json{{is_mesh ? "mesh" : "cloud", file.string()},
-                                      {"model", options.model},
-                                      {"points", judged.points},
-                                      {"registration_distance_m", truth.registration_distance},
-                                      {"samples", truth.samples},
-                                      {"coverage", judged.coverage},
-                                      {"distance_to_model_m",
-                                       {{"mean", accuracy.mean},
-                                        {"root_mean_square", accuracy.root_mean_square},
-                                        {"median", accuracy.median},
-                                        {"percentile_95", accuracy.percentile_95},
-                                        {"largest", accuracy.largest}}},
-                                      {"area_m2", judged.area},
-                                      {"points_per_m2", judged.density()}};
+    const nlohmann::ordered_json json{
+        {is_mesh ? "mesh" : "cloud", file.string()},
+        {"model", options.model},
+        {"points", judged.points},
+        {"registration_distance_m", truth.registration_distance},
+        {"samples", truth.samples},
+        {"coverage", judged.coverage},
+        {"coverage_visible",
+         has_visible ? nlohmann::ordered_json(visible) : nlohmann::ordered_json()},
+        {"distance_to_model_m",
+         {{"mean", accuracy.mean},
+          {"root_mean_square", accuracy.root_mean_square},
+          {"median", accuracy.median},
+          {"percentile_95", accuracy.percentile_95},
+          {"largest", accuracy.largest}}},
+        {"area_m2", judged.area},
+        {"points_per_m2", judged.density()}};
     console.out << file::json_text(json);
     return 0;
   }
   console.out << fmt::format(
       "{}: {} points against {}\n"
-      "  coverage  {:.2f} % of the surface within {:g} m\n"
+      "  coverage  {:.2f} % of the surface within {:g} m{}\n"
       "  accuracy  mean {:.4g} m, rms {:.4g} m, median {:.4g} m, 95 % below {:.4g} m, largest "
       "{:.4g} m\n"
       "  density   {:.4g} points per m^2 of the surface's {:.4g} m^2\n",
       file.filename().string(), judged.points, options.model, 100.0 * judged.coverage,
-      truth.registration_distance, accuracy.mean, accuracy.root_mean_square, accuracy.median,
-      accuracy.percentile_95, accuracy.largest, judged.density(), judged.area);
+      truth.registration_distance,
+      has_visible ? fmt::format(", {:.2f} % of what is visible", 100.0 * visible) : "",
+      accuracy.mean, accuracy.root_mean_square, accuracy.median, accuracy.percentile_95,
+      accuracy.largest, judged.density(), judged.area);
   return 0;
 }
 
