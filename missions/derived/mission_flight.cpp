@@ -192,11 +192,17 @@ flight::RouteOptions route_options_of(const file::Mission& mission, const Vector
   return options;
 }
 
+bool scans_in_flight(const file::Mission& mission) {
+  return mission.sensor.mount && mission.sensor.is_moving();
+}
+
 double hold_of(const file::Mission& mission) {
+  if (scans_in_flight(mission)) return 0.0;
   return std::max(mission.flight.hold, mission.sensor.settle);
 }
 
 double hold_after_of(const file::Mission& mission) {
+  if (scans_in_flight(mission)) return 0.0;
   const flight::Shutter& shutter = mission.sensor.shutter;
   return std::max(mission.flight.hold_after, shutter.exposure + shutter.readout);
 }

@@ -62,6 +62,9 @@ std::vector<flight::Dialect> dialects_of(const flight::Vehicle& vehicle);
 
 flight::RouteOptions route_options_of(const file::Mission& mission, const Eigen::Vector3d& pad);
 
+/// Whether a laser scanner measures all the way, so that nothing is waited for at views.
+bool scans_in_flight(const file::Mission& mission);
+
 /// Rest at a view, before the capture and after it [s]: what the flight asks for, and no less than
 /// the sensor needs.
 double hold_of(const file::Mission& mission);

@@ -1,5 +1,7 @@
 #include "missions/derived/resolved_mission.h"
 
+#include <cmath>
+#include <numbers>
 #include <utility>
 
 #include "geometry/error.h"
@@ -7,6 +9,7 @@
 #include "missions/derived/mission_flight.h"
 #include "missions/derived/mission_priors.h"
 #include "missions/derived/mission_rules.h"
+#include "missions/derived/opening_flight.h"
 #include "missions/derived/site.h"
 #include "missions/derived/survey_sensor.h"
 #include "missions/equipment/preset_files.h"
@@ -15,18 +18,48 @@
 namespace skycap::missions::derived {
 namespace {
 
+/// Fixes the scanner to the vehicle, with its axis along the flight where no key says otherwise: so
+/// it sees both sides of the way, what is below and what is above. It measures all the way.
+void mount_scanner(file::MissionFile& given) {
+  file::Mission& mission = given.mission;
+  if (!given.gives("scan.mount.rotation_deg")) {
+    mission.scan.mount_rotation = {0.0, 0.5 * std::numbers::pi, 0.0};
+  }
+  const Eigen::Isometry3d mount = mount_of(mission.scan);
+  constexpr double level = 0.02;
+  if (std::abs(mount.linear()(2, 2)) > level) {
+    given.refuse("scan.mount.rotation_deg",
+                 "does not lay the scanner's axis level, as planned flights need it; leave it out, "
+                 "or give [0, 90, 0]: along the way");
+  }
+  mission.sensor.mount = mount;
+  if (!given.gives("sensor.capture")) mission.sensor.capture = file::Capture::moving;
+  if (!given.gives("sensor.frame_period")) mission.sensor.frame_period = scanner_period;
+}
+
+/// What follows from the scanner for the flight, where no key says otherwise.
+void derive_scanner_flight(file::MissionFile& given) {
+  file::Mission& mission = given.mission;
+  if (!mission.sensor.mount) return;
+  if (!given.gives("flight.opening")) mission.flight.opening = usual_opening(mission);
+  // What is measured on the ways is measured on those of the survey.
+  const bool keeps_views = mission.flight.views == file::MissionViews::survey;
+  if (!given.gives("flight.order") && keeps_views) {
+    mission.flight.order = file::VisitOrder::survey;
+  }
+  if (!given.gives("flight.cruise_speed")) mission.flight.cruise_speed = scanning_speed(mission);
+  if (!given.gives("scan.sensor")) mission.scan.sensor = *mission.sensor.lidar;
+}
+
 /// Reads the scanner that takes the camera's place.
 void read_lidar(file::MissionFile& given) {
   for (const auto& [path, place] : given.places) {
-    if (path.starts_with("sensor.") && path != "sensor.lidar") {
+    if (path.starts_with("sensor.") && path != "sensor.lidar" && path != "sensor.capture" &&
+        path != "sensor.frame_period") {
       given.refuse(path, "does not go with sensor.lidar; leave one of the two out");
     }
   }
-  if (given.mission.flight.is_flown()) {
-    given.refuse("sensor.lidar",
-                 "does not go with flight.vehicle: free space to fly in is proven by depth images; "
-                 "give flight.vehicle: none, or a depth camera");
-  }
+  if (given.mission.flight.is_flown()) mount_scanner(given);
   try {
     use_lidar(given.mission.sensor, std::filesystem::path(given.name).parent_path());
   } catch (const Error& error) {
@@ -103,17 +136,18 @@ file::Mission resolved(file::MissionFile given, const Report& report) {
   if (mission.flight.is_flown() && !given.gives("planner.name")) {
     mission.planner.name = file::PlannerName::skycap;
   }
+  if (mission.sensor.lidar) read_lidar(given);
   if (mission.sensor.is_moving() && !given.gives("planner.least_gain")) {
     // A stop costs about a quarter of what a view costs that is taken for itself.
     mission.planner.skycap_stop.least_gain = 0.001;
   }
-  if (mission.sensor.lidar) read_lidar(given);
   check_scene(given);
   check_start(given);
   check_sensor(given);
   derive_undulation(mission);
   read_priors(given, report);
   derive_scene_box(mission);
+  derive_scanner_flight(given);
   check_flight(given);
   check_fleet(given);
   if (mission.planner.preset == file::PlannerPreset::building) derive_building_preset(given);

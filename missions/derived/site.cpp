@@ -33,8 +33,10 @@ survey::ViewLimits view_limits(const file::Mission& mission) {
   }
   if (mission.flight.is_flown()) {
     const flight::Vehicle& vehicle = vehicle_of(mission);
-    result.least_pitch = std::max(result.least_pitch, vehicle.gimbal_min);
-    result.most_pitch = std::min(result.most_pitch, vehicle.gimbal_max);
+    if (!mission.sensor.mount) {  // which is on no gimbal
+      result.least_pitch = std::max(result.least_pitch, vehicle.gimbal_min);
+      result.most_pitch = std::min(result.most_pitch, vehicle.gimbal_max);
+    }
     result.stand_off = std::max(result.stand_off, mission.flight.clearance);
   }
   return result;

@@ -17,6 +17,7 @@ namespace skycap::missions::derived {
 namespace {
 
 using Eigen::Vector3d;
+using geometry::View;
 
 struct Elevations {
   double lowest, highest;  // of the lasers [rad]
@@ -44,67 +45,130 @@ double azimuth_step(const sim::LidarConfig& lidar) {
   return 2.0 * std::numbers::pi * std::abs(lidar.rotation_rate) * lidar.firing_period;
 }
 
-geometry::Scan sweep(const sim::Lidar& lidar, const sim::Scene& scene, const geometry::View& view,
-                     std::uint64_t frame, unsigned threads, geometry::Scan recycled) {
-  geometry::Scan scan = std::move(recycled);
-  scan.world_from_sensor = geometry::camera_pose(view);
-  scan.points.clear();
-  scan.pixels.clear();
+std::uint64_t firings_in_turn(const sim::LidarConfig& lidar) {
+  return static_cast<std::uint64_t>(std::ceil(2.0 * std::numbers::pi / azimuth_step(lidar)));
+}
 
-  const sim::Trajectory standing(
-      {{.position = scan.world_from_sensor.translation(),
-        .attitude = Eigen::Quaterniond(scan.world_from_sensor.linear())}});
-  const Eigen::Isometry3d optical_from_scanner = scanner_from_optical(lidar.config()).inverse();
-  const sim::LidarFlight flight{standing, standing, optical_from_scanner, optical_from_scanner};
-
-  const auto firings =
-      static_cast<std::uint64_t>(std::ceil(2.0 * std::numbers::pi / azimuth_step(lidar.config())));
+/// Turn after turn, each from a pose of the scanner, world_from_scanner; `first_turn` numbers them.
+void append_turns(const sim::Lidar& lidar, const sim::Scene& scene,
+                  const std::vector<Eigen::Isometry3d>& poses, std::uint64_t first_turn,
+                  unsigned threads, std::vector<Eigen::Vector3f>& points) {
+  const std::uint64_t firings = firings_in_turn(lidar.config());
   constexpr std::uint64_t firings_in_task = 128;
-  std::vector<sim::LidarReturns> returns((firings + firings_in_task - 1) / firings_in_task);
+  const std::uint64_t tasks = (firings + firings_in_task - 1) / firings_in_task;
+  std::vector<sim::Trajectory> standing;
+  for (const Eigen::Isometry3d& pose : poses) {
+    standing.push_back(sim::Trajectory(
+        {{.position = pose.translation(), .attitude = Eigen::Quaterniond(pose.linear())}}));
+  }
+  std::vector<sim::LidarReturns> returns(tasks * poses.size());
   geometry::parallel_for(returns.size(), threads, [&](std::size_t task) {
-    const std::uint64_t first = task * firings_in_task;
+    const std::size_t turn = task / tasks;
+    const std::uint64_t first = task % tasks * firings_in_task;
     returns[task] = lidar.measure(
-        scene, flight, {frame * firings + first, std::min(firings_in_task, firings - first)});
+        scene, {standing[turn], standing[turn]},
+        {(first_turn + turn) * firings + first, std::min(firings_in_task, firings - first)});
   });
   for (const sim::LidarReturns& part : returns) {
     for (const Eigen::Vector3f& point : part.points) {
-      scan.points.emplace_back((part.origin + point.cast<double>()).cast<float>());
+      points.emplace_back((part.origin + point.cast<double>()).cast<float>());
     }
   }
-  return scan;
 }
 
-}  // namespace
-
-sim::DepthCameraConfig forward_camera(const sim::LidarConfig& lidar) {
-  const auto [lowest, highest] = elevations(lidar);
-  if (!lidar.prisms.empty() || lidar.rotation_rate == 0.0) {
-    throw Error(ErrorKind::bad_config,
-                "this scanner does not spin; a survey from standing views needs one that does, "
-                "such as ouster_os1_128");
-  }
-  if (highest - lowest < 0.01) {
-    throw Error(ErrorKind::bad_config,
-                "this scanner measures a line, not a field; a survey from standing views needs one "
-                "with several lasers, such as ouster_os1_128");
-  }
-  const double elevation_step = (highest - lowest) / static_cast<double>(lidar.channels.size() - 1);
-  const double around = std::min(lidar.field_of_view, 0.5 * std::numbers::pi);
-  const double up = highest - lowest + elevation_step;
+/// An image as wide and as high as these angles, with a pixel to each ray in its middle.
+sim::DepthCameraConfig ray_camera(const sim::LidarConfig& lidar, double wide, double columns_step,
+                                  double high, double rows_step) {
   // As many pixels as make the middle of the image as dense as the rays.
   const auto pixels = [](double angle, double step) {
     return std::max(1, static_cast<int>(std::lround(2.0 * std::tan(0.5 * angle) / step)));
   };
   sim::DepthCameraConfig config;
-  config.camera = {.width = pixels(around, azimuth_step(lidar)),
-                   .height = pixels(up, elevation_step),
-                   .horizontal_fov = around,
-                   .vertical_fov = up,
+  config.camera = {.width = pixels(wide, columns_step),
+                   .height = pixels(high, rows_step),
+                   .horizontal_fov = wide,
+                   .vertical_fov = high,
                    .min_range = lidar.min_range,
                    .max_range = lidar.max_range};
   config.noise.sigma = lidar.errors.sigma;
   config.noise.direction = sim::NoiseDirection::along_ray;
   return config;
+}
+
+/// Of a scanner, by its description.
+struct Field {
+  double around, around_step;  ///< what is looked at of a turn, and the angle between firings [rad]
+  double up, up_step;          ///< across the turn, and between neighbouring lasers
+};
+
+Field field_of(const sim::LidarConfig& lidar) {
+  const auto [lowest, highest] = elevations(lidar);
+  if (!lidar.prisms.empty() || lidar.rotation_rate == 0.0) {
+    throw Error(ErrorKind::bad_config,
+                "this scanner does not spin; a survey needs one that does, such as ouster_os1_128");
+  }
+  if (highest - lowest < 0.01) {
+    throw Error(ErrorKind::bad_config,
+                "this scanner measures a line, not a field; a survey needs one with several "
+                "lasers, such as ouster_os1_128");
+  }
+  const double step = (highest - lowest) / static_cast<double>(lidar.channels.size() - 1);
+  return {std::min(lidar.field_of_view, 0.5 * std::numbers::pi), azimuth_step(lidar),
+          highest - lowest + step, step};
+}
+
+Eigen::Isometry3d world_from_body(const View& nose) {
+  Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
+  pose.translation() = nose.position;
+  pose.linear() =
+      Eigen::AngleAxisd(std::atan2(nose.direction.y(), nose.direction.x()), Vector3d::UnitZ())
+          .toRotationMatrix();
+  return pose;
+}
+
+/// Of the scanner's axis in the level plane of the body's frame.
+double axis_azimuth(const Eigen::Isometry3d& mount) {
+  const Vector3d axis = mount.linear().col(2);
+  return std::atan2(axis.y(), axis.x());
+}
+
+View turned_level(const Vector3d& position, const Vector3d& direction, double angle) {
+  const Vector3d level(direction.x(), direction.y(), 0.0);
+  return {position, Eigen::AngleAxisd(angle, Vector3d::UnitZ()) * level.normalized()};
+}
+
+}  // namespace
+
+sim::DepthCameraConfig forward_camera(const sim::LidarConfig& lidar) {
+  const Field field = field_of(lidar);
+  return ray_camera(lidar, field.around, field.around_step, field.up, field.up_step);
+}
+
+sim::DepthCameraConfig side_camera(const sim::LidarConfig& lidar, std::size_t turns) {
+  const Field field = field_of(lidar);
+  // Across the axis is the middle of the image, though not of the lasers if more of them look ahead
+  // than back: as wide as there are lasers on both sides.
+  const auto [lowest, highest] = elevations(lidar);
+  const double wide = 2.0 * std::max(std::min(-lowest, highest), field.up_step) + field.up_step;
+  const double denser = std::sqrt(static_cast<double>(turns));  // each way
+  return ray_camera(lidar, wide, field.up_step / denser, field.around, field.around_step / denser);
+}
+
+std::size_t turns_of(const file::SensorConfig& sensor) {
+  if (!sensor.mount || !sensor.is_moving()) return 1;
+  const double turns = sensor.frame_period * std::abs(sensor.scanner->rotation_rate);
+  return static_cast<std::size_t>(std::max(1L, std::lround(turns)));
+}
+
+double ray_spacing(const sim::LidarConfig& lidar) {
+  std::vector<double> lasers;
+  for (const sim::Channel& channel : lidar.channels) lasers.push_back(channel.elevation);
+  std::ranges::sort(lasers);
+  double spacing = azimuth_step(lidar);
+  for (std::size_t i = 1; i < lasers.size(); ++i) {
+    spacing = std::max(spacing, lasers[i] - lasers[i - 1]);
+  }
+  return spacing;
 }
 
 void use_lidar(file::SensorConfig& sensor, const std::filesystem::path& folder) {
@@ -116,8 +180,28 @@ void use_lidar(file::SensorConfig& sensor, const std::filesystem::path& folder) 
     throw Error(ErrorKind::bad_config,
                 description.name + " is a camera; give its values as the other keys of sensor");
   }
-  sensor.camera = forward_camera(*lidar);
   sensor.scanner = *lidar;
+  sensor.camera = sensor.mount ? side_camera(*lidar, turns_of(sensor)) : forward_camera(*lidar);
+}
+
+Eigen::Isometry3d mount_of(const file::ScanConfig& scan) {
+  const Vector3d& angles = scan.mount_rotation;
+  Eigen::Isometry3d mount = Eigen::Isometry3d::Identity();
+  mount.translation() = scan.mount_position;
+  mount.linear() = (Eigen::AngleAxisd(angles.z(), Vector3d::UnitZ()) *
+                    Eigen::AngleAxisd(angles.y(), Vector3d::UnitY()) *
+                    Eigen::AngleAxisd(angles.x(), Vector3d::UnitX()))
+                       .toRotationMatrix();
+  return mount;
+}
+
+View nose_view(const Eigen::Isometry3d& mount, const View& view) {
+  const Vector3d axis = geometry::camera_pose(view).linear().col(0);  // level, to the right
+  return turned_level(view.position, axis, -axis_azimuth(mount));
+}
+
+View side_view(const Eigen::Isometry3d& mount, const View& nose) {
+  return turned_level(nose.position, nose.direction, axis_azimuth(mount) + 0.5 * std::numbers::pi);
 }
 
 SurveySensor::SurveySensor(const file::SensorConfig& config, std::uint64_t seed)
@@ -130,13 +214,44 @@ SurveySensor::SurveySensor(const file::SensorConfig& config, std::uint64_t seed)
         sim::DepthCameraConfig camera = config.camera;
         camera.noise.seed = seed;
         return sim::DepthCamera(camera);
-      }()) {}
+      }()) {
+  if (!config.scanner || !config.mount) return;
+  mount_ = config.mount;
+  turns_ = turns_of(config);
+}
 
-geometry::Scan SurveySensor::scan(const sim::Scene& scene, const geometry::View& view,
-                                  std::uint64_t frame, unsigned threads,
-                                  geometry::Scan recycled) const {
+std::vector<Eigen::Isometry3d> SurveySensor::turns(const View& view) const {
+  const sim::LidarConfig& lidar = std::get<sim::Lidar>(sensor_).config();
+  if (!mount_) return {geometry::camera_pose(view) * scanner_from_optical(lidar).inverse()};
+  // The rays of turns on a way fall between each other's: spread by the R2 sequence, in metres
+  // along the axis (some rays of a turn are that far apart at twenty metres) and between two
+  // firings.
+  constexpr double along = 0.25, first_ratio = 0.7548776662466927,
+                   second_ratio = 0.5698402909980532;
+  const Eigen::Isometry3d world_from_scanner = world_from_body(nose_view(*mount_, view)) * *mount_;
+  std::vector<Eigen::Isometry3d> poses;
+  for (std::size_t turn = 0; turn < turns_; ++turn) {
+    const auto share = [&](double ratio) {
+      const double sum = ratio * static_cast<double>(turn);
+      return sum - std::floor(sum);
+    };
+    Eigen::Isometry3d pose = world_from_scanner;
+    pose.translation() += along * (share(first_ratio) - 0.5) * pose.linear().col(2);
+    pose.rotate(Eigen::AngleAxisd(share(second_ratio) * azimuth_step(lidar), Vector3d::UnitZ()));
+    poses.push_back(pose);
+  }
+  return poses;
+}
+
+geometry::Scan SurveySensor::scan(const sim::Scene& scene, const View& view, std::uint64_t frame,
+                                  unsigned threads, geometry::Scan recycled) const {
   if (const auto* lidar = std::get_if<sim::Lidar>(&sensor_)) {
-    return sweep(*lidar, scene, view, frame, threads, std::move(recycled));
+    geometry::Scan scan = std::move(recycled);
+    scan.world_from_sensor = geometry::camera_pose(view);
+    scan.points.clear();
+    scan.pixels.clear();
+    append_turns(*lidar, scene, turns(view), frame * turns_, threads, scan.points);
+    return scan;
   }
   return std::get<sim::DepthCamera>(sensor_).scan(scene, view, frame, threads, std::move(recycled));
 }

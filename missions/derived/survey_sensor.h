@@ -1,13 +1,22 @@
-/// The simulated sensor of a survey: a depth camera, or a laser scanner on a carrier that stops at
-/// each view while the scanner turns once.
+/// The simulated sensor of a survey: a depth camera, or a laser scanner.
 ///
-/// A sweep is not organised: its scan has points and no pixels. The scanner is mounted so that the
-/// middle of its lasers, at azimuth zero, is the view's direction.
+/// A sweep is not organised: its scan has points and no pixels. A scanner that is not flown stands
+/// at each view while it turns once, so that the middle of its lasers, at azimuth zero, is the
+/// view's direction. One that is flown is fixed to an airframe that keeps level, its axis level
+/// too: a view's direction is then anywhere in the ring that it sweeps, to the left of the axis,
+/// and says where the nose points. Between two of its scans it turns several times, which are
+/// measured as if from about the same place: a scan stands for the piece of the way that it is in
+/// the middle of.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <variant>
+#include <vector>
+
+#include <Eigen/Geometry>
 
 #include "geometry/place/pose.h"
 #include "geometry/points/scan.h"
@@ -23,10 +32,29 @@ namespace skycap::missions::derived {
 /// Error{bad_config} if the scanner does not spin or has not several lasers one above the other.
 sim::DepthCameraConfig forward_camera(const sim::LidarConfig& lidar);
 
+/// The pinhole camera that sees the quarter turn to the side of a scanner whose axis is level: as
+/// wide as the lasers spread to either side, with as many pixels as rays are sent there in so many
+/// turns. Throws what forward_camera() throws.
+sim::DepthCameraConfig side_camera(const sim::LidarConfig& lidar, std::size_t turns = 1);
+
+/// How often a scanner turns in one of its scans: once, or in flight all the time between two.
+std::size_t turns_of(const file::SensorConfig& sensor);
+
+/// The greatest angle between neighbouring rays of one turn [rad].
+double ray_spacing(const sim::LidarConfig& lidar);
+
 /// Reads the scanner that `sensor.lidar` names, a path being relative to `folder`, and makes
-/// `camera` its forward camera. Throws what find_sensor() and forward_camera() throw, and
-/// Error{bad_config} if the description is a camera's.
+/// `camera` its forward camera, or its side camera if `mount` is given. Throws what find_sensor()
+/// and forward_camera() throw, and Error{bad_config} if the description is a camera's.
 void use_lidar(file::SensorConfig& sensor, const std::filesystem::path& folder);
+
+/// How the scanner sits on its carrier, body_from_sensor, as `scan.mount` says.
+Eigen::Isometry3d mount_of(const file::ScanConfig& scan);
+
+/// Where the vehicle's nose points at a view of such a scanner, level; and the level view to the
+/// left of the axis for a nose.
+geometry::View nose_view(const Eigen::Isometry3d& mount, const geometry::View& view);
+geometry::View side_view(const Eigen::Isometry3d& mount, const geometry::View& nose);
 
 /// Immutable; safe to use from any number of threads.
 class SurveySensor {
@@ -41,7 +69,11 @@ class SurveySensor {
                       unsigned threads, geometry::Scan recycled = {}) const;
 
  private:
+  std::vector<Eigen::Isometry3d> turns(const geometry::View& view) const;
+
   std::variant<sim::DepthCamera, sim::Lidar> sensor_;
+  std::optional<Eigen::Isometry3d> mount_;  ///< of a scanner that is flown
+  std::size_t turns_ = 1;                   ///< that make a scan
 };
 
 }  // namespace skycap::missions::derived

@@ -162,6 +162,12 @@ std::vector<Key> conduct_keys() {
                  flight(&FlightConfig::temperature), "Of the battery; cold ones hold less."),
       number_key("flight.reserve", "share", between(0, 0.9), flight(&FlightConfig::reserve),
                  "Of the battery, left at landing of every sortie."),
+      otherwise(
+          "orbit or strips with sensor.lidar, else none",
+          choice_key("flight.opening", {"none", "orbit", "strips"}, flight(&FlightConfig::opening),
+                     "What the survey begins with, outside of unknown_box, before the planner "
+                     "chooses: one way round the box, or strips over it, which are for boxes "
+                     "wider than twice their height.")),
       choice_key(
           "flight.views", {"survey", "anew"}, flight(&FlightConfig::views),
           "Which views the exported mission takes: those of the survey, or chosen anew, views "

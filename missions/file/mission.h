@@ -74,6 +74,9 @@ struct SensorConfig {
   /// What `lidar` names; `camera` is then forward_camera() of it (survey_sensor.h), by which
   /// planners choose views. Its seed is the mission's.
   std::optional<sim::LidarConfig> scanner;
+  /// Of a scanner that is flown: how it is fixed to the airframe, body_from_sensor; `camera` is
+  /// then its side camera. A scanner without one looks where each view does.
+  std::optional<Eigen::Isometry3d> mount;
   flight::Shutter shutter{.exposure = 0.01, .readout = 0.0};
   double settle = 0.0;  ///< at rest before a picture, for the sensor's own sake [s]
   Capture capture = Capture::stops;
@@ -152,6 +155,13 @@ enum class MissionViews {
   anew,    ///< chosen by the surface that the survey measured
 };
 
+/// What a flown survey begins with, before any view is planned: ways outside of the unknown box.
+enum class Opening {
+  none,
+  orbit,   ///< round the box
+  strips,  ///< to and fro over it
+};
+
 /// Several vehicles that share the mission; the first of them flies the survey.
 struct FleetConfig {
   std::vector<std::string> vehicles;       ///< as FlightConfig::vehicle; none, or several
@@ -185,6 +195,7 @@ struct FlightConfig {
   double wind_from = 0.0;     ///< where it blows from, clockwise from north [rad]
   double temperature = 15.0;  ///< of the battery [degrees Celsius]
   double reserve = 0.25;      ///< share of the battery left at landing
+  Opening opening = Opening::none;
   MissionViews views = MissionViews::survey;
   VisitOrder order = VisitOrder::shortest;
   flight::FlightStyle style = flight::FlightStyle::stop;  ///< of files that can hold curves

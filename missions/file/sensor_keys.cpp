@@ -26,6 +26,18 @@ Key frame_period_key() {
   return key;
 }
 
+/// The key `sensor.lidar`, whose scanner takes the camera's place.
+Key lidar_key() {
+  return otherwise("-",
+                   text_key(
+                       "sensor.lidar", [](Mission & m) -> auto& { return m.sensor.lidar; },
+                       "In place of a depth camera, a spinning laser scanner: a preset of "
+                       "sim/sensors/presets, or the path of a description (NAME.yaml), relative "
+                       "to the mission file. With a vehicle it measures all the way, fixed to the "
+                       "airframe as scan.mount says; without one it stops at each view and turns "
+                       "once. Of the section sensor only capture and frame_period go with it."));
+}
+
 }  // namespace
 
 std::vector<Key> sensor_keys() {
@@ -36,12 +48,7 @@ std::vector<Key> sensor_keys() {
           "Depth camera whose values the keys below override: d435 is an Intel RealSense D435 "
           "(848 x 480 pixels, 69.4 x 42.5 degrees), high_resolution the paper's for buildings "
           "(2400 x 1750 pixels, 60 x 40 degrees)."),
-      otherwise("-", text_key(
-                         "sensor.lidar", [](Mission & m) -> auto& { return m.sensor.lidar; },
-                         "In place of a depth camera, a spinning laser scanner that stops at each "
-                         "view and turns once: a preset of sim/sensors/presets, or the path of a "
-                         "description (NAME.yaml), relative to the mission file. No other key of "
-                         "the section sensor goes with it.")),
+      lidar_key(),
       integer_key("sensor.width", "px", between(1, 32768), image(&geometry::CameraConfig::width),
                   "Columns of the image."),
       integer_key("sensor.height", "px", between(1, 32768), image(&geometry::CameraConfig::height),

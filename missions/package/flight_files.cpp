@@ -14,6 +14,7 @@
 #include "geometry/error.h"
 #include "missions/derived/mission_flight.h"
 #include "missions/derived/pad_grounds.h"
+#include "missions/derived/survey_sensor.h"
 #include "missions/fleet/timetable_file.h"
 
 namespace skycap::missions::package {
@@ -211,10 +212,13 @@ file::Mission in_given_order(file::Mission mission) {
 std::vector<flight::Station> stations_of(const file::Mission& mission,
                                          const std::vector<geometry::View>& views,
                                          const std::vector<Way>& ways) {
+  const std::optional<Eigen::Isometry3d>& mount = mission.sensor.mount;
+  const int shots = derived::scans_in_flight(mission) ? 0 : 1;
   std::vector<flight::Station> stations;
   for (std::uint32_t i = 0; i < views.size(); ++i) {
-    stations.push_back(
-        {views[i], derived::hold_of(mission), 1, i, derived::hold_after_of(mission), ways.at(i)});
+    stations.push_back({mount ? derived::nose_view(*mount, views[i]) : views[i],
+                        derived::hold_of(mission), shots, i, derived::hold_after_of(mission),
+                        ways.at(i)});
   }
   return stations;
 }

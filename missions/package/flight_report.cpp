@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include "flight/route/route.h"
+#include "missions/derived/mission_flight.h"
 #include "missions/package/anew_mission.h"
 #include "missions/package/fleet_report.h"
 #include "missions/package/ground_json.h"
@@ -43,7 +44,10 @@ std::string flown_text(const file::Mission& mission, const run::SurveyRecord& re
   std::string text =
       fmt::format("  survey    {:.1f} m in {:.1f} min, from the pad to the last view",
                   flown.length(), flown.time / 60.0);
-  if (mission.sensor.is_moving()) {
+  if (derived::scans_in_flight(mission)) {
+    text += fmt::format("; {} scans on the way at {:g} m/s", record.frames_on_way(),
+                        mission.flight.cruise_speed);
+  } else if (mission.sensor.is_moving()) {
     const flight::PictureBounds bounds = run::moving_bounds_of(mission);
     text += fmt::format("; {} frames on the way, blurred by at most {:.2f} px",
                         record.frames_on_way(), bounds.blur_px);

@@ -33,7 +33,9 @@ Json settings_json(const file::Mission& mission) {
   Json values = Json::object();
   for (const file::Key& key : file::mission_keys()) {
     // A lidar takes the camera's place, whose keys are refused beside it.
-    const bool is_of_camera = key.path.starts_with("sensor.") && key.path != "sensor.lidar";
+    const bool is_of_flight = key.path == "sensor.capture" || key.path == "sensor.frame_period";
+    const bool is_of_camera = key.path.starts_with("sensor.") && key.path != "sensor.lidar" &&
+                              !(is_of_flight && mission.sensor.mount);
     if (is_of_camera && mission.sensor.lidar) continue;
     if (const auto value = key.get(mission)) values[key.path] = file::setting_json(*value);
   }

@@ -8,6 +8,7 @@
 
 #include "geometry/error.h"
 #include "geometry/io/record_log.h"
+#include "missions/derived/survey_sensor.h"
 #include "missions/file/number_text.h"
 
 namespace skycap::missions::recording {
@@ -24,19 +25,13 @@ ScanRoute route_of(const file::Mission& mission, const std::filesystem::path& fo
   return {orbit_trajectory(mission.scan.orbit), {}};
 }
 
-Isometry3d turned(const Vector3d& position, const Vector3d& angles) {
-  Isometry3d pose = Isometry3d::Identity();
-  pose.translation() = position;
-  pose.linear() =
-      (AngleAxisd(angles.z(), Vector3d::UnitZ()) * AngleAxisd(angles.y(), Vector3d::UnitY()) *
-       AngleAxisd(angles.x(), Vector3d::UnitX()))
-          .toRotationMatrix();
-  return pose;
-}
-
 Mount mount_of(const file::ScanConfig& scan) {
-  const Isometry3d real = turned(scan.mount_position, scan.mount_rotation);
-  Isometry3d believed = turned(Vector3d::Zero(), scan.boresight_error) * real;
+  const Isometry3d real = derived::mount_of(scan);
+  const Vector3d& error = scan.boresight_error;
+  Isometry3d believed =
+      (AngleAxisd(error.z(), Vector3d::UnitZ()) * AngleAxisd(error.y(), Vector3d::UnitY()) *
+       AngleAxisd(error.x(), Vector3d::UnitX())) *
+      real;
   believed.translation() = scan.mount_position + scan.lever_arm_error;
   return {real, believed};
 }

@@ -11,6 +11,7 @@
 #include "geometry/place/camera.h"
 #include "geometry/surfaces/mesh.h"
 #include "missions/derived/mission_flight.h"
+#include "missions/derived/opening_flight.h"
 #include "missions/derived/site.h"
 #include "missions/derived/survey_sensor.h"
 #include "missions/judge/coverage.h"
@@ -186,7 +187,9 @@ class Inspection {
 
   void check_first_view() {
     try {
-      const geometry::View first = scene_.first_view(mission_.seed);
+      const std::vector<geometry::View> opening = derived::opening_views(mission_);
+      const geometry::View first =
+          opening.empty() ? scene_.first_view(mission_.seed) : opening.front();
       const geometry::Scan scan = derived::SurveySensor(mission_.sensor, mission_.seed)
                                       .scan(scene_.scene(), first, 0, threads_);
       const auto& box = mission_.planner.see.scene_box;

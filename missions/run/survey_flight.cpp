@@ -1,6 +1,7 @@
 #include "missions/run/survey_flight.h"
 
 #include <algorithm>
+#include <cmath>
 #include <optional>
 #include <string>
 #include <utility>
@@ -14,6 +15,7 @@
 #include "geometry/place/camera.h"
 #include "missions/derived/mission_flight.h"
 #include "missions/derived/pad_grounds.h"
+#include "missions/derived/survey_sensor.h"
 #include "missions/file/number_text.h"
 #include "missions/run/way_frames.h"
 #include "survey/planner.h"
@@ -43,8 +45,26 @@ struct SurveyFlight::Impl {
         finder(space, derived::clearance_of(mission).total(),
                derived::route_options_of(mission, {}).path),
         motion(mission),
+        mount(mission.sensor.mount),
         frame_period(mission.sensor.frame_period),
-        threads(mission.threads) {}
+        threads(mission.threads) {
+    if (!mount) return;
+    const sim::LidarConfig& scanner = *mission.sensor.scanner;
+    // The turn's own cells, a little wider, so that a ray falls into each. Rays begin beside the
+    // vehicle's place by the lever arm, half of what it flies in a turn, and what SurveySensor
+    // spreads the turns by.
+    constexpr double wider = 1.02, spread = 0.125;
+    rays = flight::SweepRays{
+        .spacing = wider * derived::ray_spacing(scanner),
+        .axis = Vector3d::UnitX(),
+        .origin_spread = mount->translation().norm() + spread +
+                         0.5 * mission.flight.cruise_speed / std::abs(scanner.rotation_rate)};
+  }
+
+  /// The vehicle at a view: itself without a gimbal.
+  geometry::View carrier(const geometry::View& view) const {
+    return mount ? derived::nose_view(*mount, view) : view;
+  }
 
   std::optional<FlownLeg> proven(std::vector<Vector3d> points) const {
     FlownLeg way{std::move(points), finder.clearance() + flight::reported_surplus};
@@ -72,6 +92,8 @@ struct SurveyFlight::Impl {
   flight::InterruptibleSpace space;
   flight::PathFinder finder;
   WayMotion motion;
+  std::optional<Eigen::Isometry3d> mount;  ///< of a scanner
+  std::optional<flight::SweepRays> rays;
   double frame_period;
   unsigned threads;
   std::stop_token stop;
@@ -117,7 +139,7 @@ SurveyFlight::SurveyFlight(const file::Mission& mission, const geometry::View& f
 SurveyFlight::~SurveyFlight() = default;
 
 bool SurveyFlight::can_reach(const Vector3d& from, const geometry::View& to) try {
-  if (flight::can_look(impl_->vehicle, to)) {
+  if (flight::can_look(impl_->vehicle, impl_->carrier(to))) {
     if (auto way = impl_->find_way(from, to.position)) {
       impl_->leg = std::move(*way);
       return true;
@@ -139,7 +161,11 @@ const FlownLeg& SurveyFlight::way() const { return impl_->leg; }
 
 std::vector<geometry::View> SurveyFlight::frames(const geometry::View& from,
                                                  const geometry::View& to) const {
-  return impl_->motion.frames(impl_->leg, from, to, impl_->frame_period);
+  std::vector<geometry::View> frames = impl_->motion.frames(
+      impl_->leg, impl_->carrier(from), impl_->carrier(to), impl_->frame_period);
+  if (!impl_->mount) return frames;
+  for (geometry::View& frame : frames) frame = derived::side_view(*impl_->mount, frame);
+  return frames;
 }
 
 std::optional<FlownLeg> SurveyFlight::find_way(const Vector3d& from, const Vector3d& to) {
@@ -162,7 +188,11 @@ void SurveyFlight::fly() { impl_->survey.legs.push_back(std::move(impl_->leg)); 
 void SurveyFlight::take_in(const geometry::Scan& scan) {
   geometry::parallel_for(2, impl_->threads, [&](std::size_t part) {
     if (part == 0) {
-      impl_->measured->insert(scan, impl_->camera);
+      if (impl_->rays) {
+        impl_->measured->insert(scan, *impl_->rays);
+      } else {
+        impl_->measured->insert(scan, impl_->camera);
+      }
     } else {
       for (flight::PadScan& pad : impl_->pads) pad.take_in(scan.points);
     }
@@ -173,7 +203,9 @@ void SurveyFlight::take_in(const geometry::Scan& scan) {
 FlownSurvey SurveyFlight::finish(const std::vector<geometry::View>& views) {
   // Less the way to a scan that counts as not taken, if planning was interrupted.
   if (impl_->survey.legs.size() > views.size()) impl_->survey.legs.resize(views.size());
-  impl_->survey.time = impl_->motion.survey_time(impl_->survey.legs, views);
+  std::vector<geometry::View> carriers;
+  for (const geometry::View& view : views) carriers.push_back(impl_->carrier(view));
+  impl_->survey.time = impl_->motion.survey_time(impl_->survey.legs, carriers);
   impl_->survey.measured = std::move(impl_->measured);
   for (const flight::PadScan& pad : impl_->pads) {
     if (const auto ground = pad.ground()) impl_->survey.grounds.push_back(*ground);

@@ -2,8 +2,10 @@
 
 #include <span>
 #include <utility>
+#include <vector>
 
 #include "geometry/parallel.h"
+#include "missions/derived/opening_flight.h"
 #include "missions/derived/survey_sensor.h"
 #include "missions/judge/coverage.h"
 #include "missions/run/mission_planner.h"
@@ -25,7 +27,8 @@ SurveyRecord run_survey(const file::Mission& mission, const scene::SurveyScene& 
                         const std::function<void(const JudgedView&)>& report,
                         SurveyJournal* journal) {
   const derived::SurveySensor sensor(mission.sensor, seed);
-  const geometry::View first_view = scene.first_view(seed);
+  std::vector<geometry::View> opening = derived::opening_views(trial_mission(mission, scene, seed));
+  const geometry::View first_view = opening.empty() ? scene.first_view(seed) : opening.front();
   MissionPlanner guided(trial_mission(mission, scene, seed), first_view, threads);
   judge::CoverageMeter meter(scene.samples().points, mission.evaluation.registration_distance);
   SurveyRecord record;
@@ -35,6 +38,7 @@ SurveyRecord run_survey(const file::Mission& mission, const scene::SurveyScene& 
   std::uint64_t frame = 0;
   std::size_t points_judged = 0;
   survey::SurveyPorts ports = guided.ports();
+  if (!opening.empty()) ports.opening.assign(opening.begin() + 1, opening.end());
   ports.sense = [&](const geometry::View& view, geometry::Scan recycled) {
     record.scans.push_back({static_cast<std::uint32_t>(record.views.size()), view.position});
     return sensor.scan(scene.scene(), view, frame++, threads, std::move(recycled));

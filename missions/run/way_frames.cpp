@@ -4,7 +4,6 @@
 #include <cmath>
 #include <numbers>
 
-#include "flight/route/route.h"
 #include "geometry/place/camera.h"
 #include "missions/derived/mission_flight.h"
 #include "missions/derived/site.h"
@@ -48,7 +47,8 @@ WayMotion::WayMotion(const file::Mission& mission)
               derived::route_options_of(mission, Vector3d::Zero()).conditions),
       climb_(derived::takeoff_climb_of(mission)),
       rest_(std::max(flight::corner_hold, derived::hold_of(mission)) +
-            derived::hold_after_of(mission)) {}
+            derived::hold_after_of(mission)),
+      turns_last_(mission.sensor.mount.has_value()) {}
 
 double WayMotion::time(const FlownLeg& way, const View& from, const View& to) const {
   double time = 0.0;
@@ -74,8 +74,9 @@ std::vector<View> WayMotion::frames(const FlownLeg& way, const View& from, const
     while (piece > 0.0) {
       const double at = static_cast<double>(number) * period;
       if (at > begun + piece || at > all - 0.5 * period) break;
+      const double on_last = i + 1 < way.points.size() ? 0.0 : (at - begun) / (all - begun);
       frames.push_back({place_on(begin, end, motion_, (at - begun) / piece),
-                        direction_between(from, to, at / all)});
+                        direction_between(from, to, turns_last_ ? on_last : at / all)});
       ++number;
     }
     begun += piece + flight::corner_hold;

@@ -1,7 +1,9 @@
-/// A survey's ways in time, and the frames of a camera that also measures on them.
+/// A survey's ways in time, and the frames of a sensor that also measures on them.
 ///
-/// The camera turns evenly from one view to the next, in yaw and in pitch, so that it never leaves
-/// the gimbal's limits; it turns between frames and stands while it is exposed.
+/// A camera turns evenly from one view to the next, in yaw and in pitch, so that it never leaves
+/// the gimbal's limits; it turns between frames and stands while it is exposed. A scanner is fixed
+/// to the vehicle, which turns as in the files of its mission: evenly on the way's last straight
+/// piece.
 #pragma once
 
 #include <vector>
@@ -35,8 +37,9 @@ class WayMotion {
 
  private:
   flight::Motion motion_;
-  double climb_;  ///< from the pad to where the first way begins [m]
-  double rest_;   ///< at a view [s]
+  double climb_;     ///< from the pad to where the first way begins [m]
+  double rest_;      ///< at a view [s]
+  bool turns_last_;  ///< on the last piece of a way
 };
 
 /// How sharp frames are that a camera takes at the cruise speed.

@@ -113,6 +113,62 @@ TEST(SurveySensor, SweepsDependOnSeedAndFrameButNotOnThreads) {
   EXPECT_EQ(scan.points.size(), sensor.scan(scene, view, 4, 1).points.size());
 }
 
+/// Its axis along the flight, and across it to the left.
+Eigen::Isometry3d level_mount(double azimuth) {
+  return Eigen::Isometry3d(Eigen::AngleAxisd(azimuth, Vector3d::UnitZ()) *
+                           Eigen::AngleAxisd(90.0 * degree, Vector3d::UnitY()));
+}
+
+TEST(MountedScanner, LooksToTheLeftOfItsAxisWhereverTheNosePoints) {
+  const geometry::View north{{1, 2, 3}, {0, 1, 0}};
+  const geometry::View west = derived::side_view(level_mount(0.0), north);
+  EXPECT_LT((west.direction - Vector3d(-1, 0, 0)).norm(), 1e-12);
+  EXPECT_EQ(west.position, north.position);
+  const geometry::View south = derived::side_view(level_mount(90.0 * degree), north);
+  EXPECT_LT((south.direction - Vector3d(0, -1, 0)).norm(), 1e-12);
+  for (const double azimuth : {0.0, 0.7, -2.0}) {
+    const Eigen::Isometry3d mount = level_mount(azimuth);
+    EXPECT_LT(
+        (derived::nose_view(mount, derived::side_view(mount, north)).direction - north.direction)
+            .norm(),
+        1e-12);
+    // How steeply a view looks does not turn the nose.
+    geometry::View steep = derived::side_view(mount, north);
+    steep.direction = (steep.direction - 5.0 * Vector3d::UnitZ()).normalized();
+    EXPECT_LT((derived::nose_view(mount, steep).direction - north.direction).norm(), 1e-12);
+  }
+}
+
+// A scan in flight stands for the turns around it: all rays lie in the ring about the axis.
+TEST(MountedScanner, SweepsARingAboutItsAxisOnceForEachTurnOfThePeriod) {
+  const sim::Scene scene(room());
+  file::SensorConfig config;
+  config.scanner = scanner();
+  config.mount = level_mount(0.0);
+  config.capture = file::Capture::moving;
+  config.frame_period = 0.5;  // five turns
+  const derived::SurveySensor sensor(config, 1);
+  const geometry::View view = derived::side_view(*config.mount, {{1, 2, 3}, {0.6, 0.8, 0}});
+  const geometry::Scan scan = sensor.scan(scene, view, 0, 1);
+  EXPECT_EQ(scan.points.size(), 5U * 360U * 40U);
+  const Vector3d axis(0.6, 0.8, 0.0);
+  double ahead = -1.0, behind = 1.0;
+  for (const Vector3f& point : scan.points) {
+    const double sine = (point.cast<double>() - view.position).normalized().dot(axis);
+    ahead = std::max(ahead, sine), behind = std::min(behind, sine);
+  }
+  // Lasers from -25 to 14 degrees; turns begin up to 13 cm off, 7 m or more from the walls.
+  EXPECT_NEAR(std::asin(ahead), 14.0 * degree, 1.1 * degree);
+  EXPECT_NEAR(std::asin(behind), -25.0 * degree, 1.1 * degree);
+}
+
+// The planner's camera promises nothing that the ring has not.
+TEST(MountedScanner, TheSideCameraSeesNoDirectionThatTheRingLeavesOut) {
+  const geometry::Camera camera(derived::side_camera(scanner()).camera);
+  EXPECT_NEAR(camera.config().vertical_fov, 90.0 * degree, 1e-12);
+  EXPECT_LE(camera.config().horizontal_fov, 2.0 * 14.5 * degree);
+}
+
 TEST(RunSurvey, EveryPlannerTakesSweeps) {
   const tests::TestFolder folder;
   const std::string lidar = folder.write(
@@ -157,8 +213,14 @@ TEST(SensorLidar, IsRefusedWithOneSentenceWhereItDoesNotFit) {
   EXPECT_THAT(message_of("{lidar: os1}", ""), HasSubstr("known are"));
   EXPECT_THAT(message_of("{lidar: velodyne_vlp16, width: 100}", ""),
               HasSubstr("key sensor.width: does not go with sensor.lidar"));
-  EXPECT_THAT(message_of("{lidar: velodyne_vlp16}", "flight: {vehicle: m350_rtk}\n"),
-              HasSubstr("does not go with flight.vehicle"));
+  const std::string flown =
+      "flight: {vehicle: m350_rtk, unknown_box: {min: [-1, -1, 0], max: [1, 1, 1]}}\n";
+  EXPECT_EQ(message_of("{lidar: velodyne_vlp16}", flown), "accepted");
+  EXPECT_THAT(message_of("{lidar: velodyne_vlp16, width: 100}", flown),
+              HasSubstr("key sensor.width: does not go with sensor.lidar"));
+  EXPECT_THAT(
+      message_of("{lidar: velodyne_vlp16}", flown + "scan: {mount: {rotation_deg: [0, 0, 30]}}\n"),
+      HasSubstr("key scan.mount.rotation_deg: does not lay the scanner's axis level"));
 }
 
 }  // namespace

@@ -1,0 +1,108 @@
+#include "missions/derived/opening_flight.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "geometry/place/camera.h"
+#include "missions/derived/mission_flight.h"
+#include "missions/derived/site.h"
+#include "missions/derived/survey_sensor.h"
+
+namespace skycap::missions::derived {
+namespace {
+
+using Eigen::AlignedBox3d;
+using Eigen::Vector3d;
+using geometry::View;
+
+/// From the box: the clearance, the voxels that the box may grow by, and room to spare.
+double spare_of(const file::Mission& mission) { return 1.5 * mission.flight.clearance; }
+
+/// The least z that views may have there.
+double lowest_of(const file::Mission& mission) {
+  const std::optional<double> least = view_limits(mission).least_height;
+  return std::max(least.value_or(mission.scene.position.z()), mission.scene.position.z()) + 0.5;
+}
+
+/// Once round the box, anticlockwise, the box on the left, up and down between two heights.
+std::vector<View> orbit(const file::Mission& mission) {
+  const AlignedBox3d box = unknown_box_of(mission);
+  const double spare = spare_of(mission);
+  const Vector3d low = box.min() - Vector3d::Constant(spare);
+  const Vector3d high = box.max() + Vector3d::Constant(spare);
+  const double bottom = std::max(low.z(), lowest_of(mission));
+  constexpr double lower_share = 0.2, upper_share = 0.9;
+  std::vector<View> views;
+  for (unsigned i = 0; i < 5; ++i) {
+    const auto corner = static_cast<unsigned>((mission.seed + i) % 4);  // from the south west on
+    const double share = i % 2 == 0 ? lower_share : upper_share;
+    const Vector3d place(corner == 1 || corner == 2 ? high.x() : low.x(),
+                         corner >= 2 ? high.y() : low.y(),
+                         bottom + share * (box.max().z() - bottom));
+    const Vector3d middle(box.center().x(), box.center().y(), place.z());
+    views.push_back(geometry::look_at(place, middle));
+  }
+  return views;
+}
+
+/// To and fro over the box, along its longer side, as far apart as the flight is high over its
+/// foot; what is looked at is to the left of the way and below.
+std::vector<View> strips(const file::Mission& mission) {
+  const AlignedBox3d box = unknown_box_of(mission);
+  const int along = box.sizes().x() >= box.sizes().y() ? 0 : 1, across = 1 - along;
+  const double height = box.max().z() + spare_of(mission);
+  const double width = box.sizes()[across];
+  const auto count =
+      std::max(1, static_cast<int>(std::ceil(width / (height - box.min().z()) - 1e-9)));
+  Vector3d ahead = Vector3d::Zero();
+  ahead[along] = 1.0;
+  const Vector3d left = Vector3d::UnitZ().cross(ahead);
+  const Vector3d direction = (left - std::numbers::sqrt3 * Vector3d::UnitZ()).normalized();
+  std::vector<View> views;
+  for (int strip = 0; strip < count; ++strip) {
+    for (const bool is_end : {false, true}) {
+      Vector3d place(0.0, 0.0, height);
+      place[across] = box.min()[across] + width * (strip + 0.5) / count;
+      place[along] = is_end == (strip % 2 == 0) ? box.max()[along] : box.min()[along];
+      views.push_back({place, direction});
+    }
+  }
+  if (mission.seed % 2 == 0) std::ranges::reverse(views);
+  return views;
+}
+
+}  // namespace
+
+file::Opening usual_opening(const file::Mission& mission) {
+  const AlignedBox3d box = unknown_box_of(mission);
+  if (box.isEmpty()) return file::Opening::none;
+  const bool is_flat = box.sizes().head<2>().minCoeff() > 2.0 * box.sizes().z();
+  return is_flat ? file::Opening::strips : file::Opening::orbit;
+}
+
+double scanning_speed(const file::Mission& mission) {
+  const sim::LidarConfig& lidar = *mission.sensor.scanner;
+  const geometry::Camera camera(side_camera(lidar).camera);
+  const double distance = view_distance_of(mission);
+  const double spacing = 0.5 * mission.planner.see.effective_spacing();
+  const double rays = camera.focal_length_px().prod() / (distance * distance);  // on a m^2, a turn
+  const double swath = 2.0 * distance * std::tan(0.5 * mission.sensor.camera.camera.horizontal_fov);
+  const double dense_enough = swath * std::abs(lidar.rotation_rate) * rays * spacing * spacing;
+  return std::min(dense_enough, 0.5 * vehicle_of(mission).max_speed);
+}
+
+std::vector<View> opening_views(const file::Mission& mission) {
+  if (!mission.flight.is_flown()) return {};
+  switch (mission.flight.opening) {
+    case file::Opening::orbit:
+      return orbit(mission);
+    case file::Opening::strips:
+      return strips(mission);
+    case file::Opening::none:
+      break;
+  }
+  return {};
+}
+
+}  // namespace skycap::missions::derived
