@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <numbers>
 #include <optional>
 #include <utility>
 
@@ -10,8 +11,11 @@
 #include "flight/route/leg_certifier.h"
 #include "flight/way_home/returnable_space.h"
 #include "geometry/error.h"
+#include "geometry/parallel.h"
+#include "missions/anew/dose_sum.h"
 #include "missions/derived/mission_flight.h"
 #include "missions/derived/site.h"
+#include "missions/derived/survey_sensor.h"
 
 namespace skycap::missions::anew {
 namespace {
@@ -19,6 +23,7 @@ namespace {
 using Eigen::Vector3d;
 using geometry::View;
 using survey::skycap::GainField;
+using survey::skycap::Look;
 
 /// Views keep this much more than the clearance: room to prove the legs from there.
 constexpr double spare_clearance = 0.05;
@@ -26,6 +31,10 @@ constexpr double spare_clearance = 0.05;
 /// Covered shares that differ by less are the same: what the same views cover when they are flown
 /// again differs by several times as much.
 constexpr double equal_coverage = 5e-4;
+
+/// How much longer it takes to find what a way of a scanner sees than what a view does: tens of
+/// scans of three looks. So many times fewer moves are tried.
+constexpr std::size_t dearer_ways = 12;
 
 /// The highest place of a route.
 double top_of(const flight::Route& route) {
@@ -49,6 +58,9 @@ class MissionProblem {
         clearance_(present.clearance),
         returnable_(space, planning_law(present.options, top_of(present))),
         legs_(space, motion_, clearance_, no_ways_home_),
+        mount_(derived::scans_in_flight(mission) ? mission.sensor.mount : std::nullopt),
+        sweep_step_(mission.flight.cruise_speed * mission.sensor.frame_period),
+        threads_(mission.threads),
         home_(present.options.takeoff + Vector3d(0.0, 0.0, present.options.takeoff_climb)) {
     problem_.targets = surface.targets();
     problem_.home = home_;
@@ -58,12 +70,19 @@ class MissionProblem {
                                                 .hold = derived::hold_of(mission),
                                                 .hold_after = derived::hold_after_of(mission)})
                                  .time;
-    problem_.looks = [this](const View& view) { return surface_.looks(view); };
+    problem_.looks = [this](const View& view) {
+      return mount_ ? std::vector<Look>() : surface_.looks(view);
+    };
+    if (mount_) {
+      problem_.way_looks = [this](const View* from, const View* to) {
+        return way_looks({place(from), place(to)}, from, to);
+      };
+    }
     problem_.view_of = [this](const Vector3d& target, const Vector3d& towards, double distance) {
       return limits_.view_of_target(target, towards, distance);
     };
     problem_.is_allowed = [this](const View& view) {
-      return limits_.allow(view) && can_look(vehicle_, view);
+      return limits_.allow(view) && can_look(vehicle_, carrier(view));
     };
     problem_.is_in_free_space = [this](const View& view) {
       const double kept = std::max(clearance_, limits_.stand_off) + spare_clearance;
@@ -88,14 +107,85 @@ class MissionProblem {
 
   const TourProblem& problem() const { return problem_; }
 
+  /// What a route promises: its views, or with a scanner all its ways as they are flown.
+  double promised(const flight::Route& route) const {
+    const std::vector<View> views = views_of(route);
+    if (!mount_) return covered_by(problem_, views);
+    DoseSum covered(problem_.targets);
+    const auto add = [&](const flight::Leg& leg, const View* from, const View* to) {
+      covered.add(doses_of(way_looks(leg.points, from, to)));
+    };
+    for (const flight::Sortie& sortie : route.sorties) {
+      add(sortie.out, nullptr, &views[sortie.first]);
+      for (std::uint32_t i = sortie.first; i < sortie.last; ++i) {
+        add(route.legs[i], &views[i], &views[i + 1]);
+      }
+      add(sortie.back, &views[sortie.last], nullptr);
+    }
+    return covered.covered();
+  }
+
+  /// A station of a scanner says where the nose points.
+  std::vector<View> views_of(const flight::Route& route) const {
+    std::vector<View> views;
+    for (const flight::Station& station : route.stations) {
+      views.push_back(mount_ ? derived::side_view(*mount_, station.view) : station.view);
+    }
+    return views;
+  }
+
+  /// Stations and ways of a route as it is flown.
+  StationPlan stations_of(const flight::Route& route) const {
+    StationPlan plan{views_of(route), {}};
+    plan.ways.resize(plan.views.size());
+    for (std::size_t i = 1; i < plan.views.size(); ++i) plan.ways[i] = route.legs[i - 1].points;
+    if (!route.sorties.empty()) plan.ways.front() = route.sorties.front().out.points;
+    return plan;
+  }
+
  private:
   const Vector3d& place(const View* view) const { return view == nullptr ? home_ : view->position; }
 
   double straight_time(const View* from, const View* to) const {
     const double leg = motion_.leg_time(place(to) - place(from));
     if (from == nullptr || to == nullptr) return leg;
-    const flight::Station there{.view = *to}, here{.view = *from};
+    const flight::Station there{.view = carrier(*to)}, here{.view = carrier(*from)};
     return legs_.aimed_time(leg, &here, &there);
+  }
+
+  View carrier(const View& view) const { return mount_ ? derived::nose_view(*mount_, view) : view; }
+
+  /// What the scans on a way see, one every sweep_step_: in three quarters of the ring, since what
+  /// is above has been looked at from above or not at all. The nose turns on the last piece; at
+  /// home it points as at the other end.
+  std::vector<Look> way_looks(const std::vector<Vector3d>& points, const View* from,
+                              const View* to) const {
+    const View begin = carrier(from != nullptr ? *from : *to);
+    const double yaw = flight::yaw_of(begin);
+    const double turn = std::remainder(flight::yaw_of(carrier(to != nullptr ? *to : *from)) - yaw,
+                                       2.0 * std::numbers::pi);
+    std::vector<View> views;
+    for (std::size_t i = 1; i < points.size(); ++i) {
+      const Vector3d way = points[i] - points[i - 1];
+      const auto count = std::max(1L, std::lround(way.norm() / sweep_step_));
+      for (long k = 0; k < count; ++k) {
+        const double share = (static_cast<double>(k) + 0.5) / static_cast<double>(count);
+        const double at = yaw + (i + 1 == points.size() ? share * turn : 0.0);
+        const View side = derived::side_view(
+            *mount_, {points[i - 1] + share * way, {std::sin(at), std::cos(at), 0.0}});
+        constexpr double almost = 1e-3;  // straight down has no sides
+        views.push_back(side);
+        views.push_back({side.position, -side.direction});
+        views.push_back(
+            {side.position, (almost * side.direction - Vector3d::UnitZ()).normalized()});
+      }
+    }
+    std::vector<std::vector<Look>> looks(views.size());
+    geometry::parallel_for(views.size(), threads_,
+                           [&](std::size_t i) { looks[i] = surface_.looks(views[i]); });
+    std::vector<Look> all;
+    for (const auto& some : looks) all.insert(all.end(), some.begin(), some.end());
+    return all;
   }
 
   const GainField& surface_;
@@ -107,24 +197,12 @@ class MissionProblem {
   flight::ReturnableSpace returnable_;
   std::optional<flight::WaysHome> no_ways_home_;
   flight::LegCertifier legs_;
+  std::optional<Eigen::Isometry3d> mount_;  ///< of a scanner that measures all the way
+  double sweep_step_;                       ///< between its scans [m]
+  unsigned threads_;
   Vector3d home_;
   TourProblem problem_;
 };
-
-std::vector<View> views_of(const flight::Route& route) {
-  std::vector<View> views;
-  for (const flight::Station& station : route.stations) views.push_back(station.view);
-  return views;
-}
-
-/// Stations and ways of a route as it is flown.
-StationPlan stations_of(const flight::Route& route) {
-  StationPlan plan{views_of(route), {}};
-  plan.ways.resize(plan.views.size());
-  for (std::size_t i = 1; i < plan.views.size(); ++i) plan.ways[i] = route.legs[i - 1].points;
-  if (!route.sorties.empty()) plan.ways.front() = route.sorties.front().out.points;
-  return plan;
-}
 
 /// Nothing if there is no such route: then what was there before is flown.
 std::optional<flight::Route> certified(const PlanRoute& plan, const std::vector<View>& views) {
@@ -155,13 +233,14 @@ MissionChoice choose_mission(const file::Mission& mission, const GainField& surf
   const auto begin = std::chrono::steady_clock::now();
   const MissionProblem asked(mission, surface, space, present);
   const TourProblem& problem = asked.problem();
-  const std::vector<View> views = views_of(present);
+  const std::vector<View> views = asked.views_of(present);
   MissionChoice choice;
-  choice.survey = figures_of(present, covered_by(problem, views));
+  choice.survey = figures_of(present, asked.promised(present));
   choice.anew = choice.survey;
   choice.route = std::move(present);
   const double least = choice.survey.promised - equal_coverage;
-  const double wanted = covered_by(problem, surveyed) - equal_coverage;
+  // What a scanner covers depends on the ways, too: those that can be flown.
+  const double wanted = problem.way_looks ? least : covered_by(problem, surveyed) - equal_coverage;
   const auto cost = [&](const MissionFigures& figures) {
     return figures.duration + 100.0 * settings.price * std::max(0.0, wanted - figures.promised);
   };
@@ -170,7 +249,7 @@ MissionChoice choose_mission(const file::Mission& mission, const GainField& surf
     if (stop.stop_requested()) return;
     std::optional<flight::Route> route = certified(plan, tour.views);
     if (!route) return;
-    const MissionFigures figures = figures_of(*route, covered_by(problem, views_of(*route)));
+    const MissionFigures figures = figures_of(*route, asked.promised(*route));
     if (figures.promised < least || cost(figures) >= cost(choice.anew)) return;
     choice.anew = figures;
     choice.route = *std::move(route);
@@ -180,9 +259,10 @@ MissionChoice choose_mission(const file::Mission& mission, const GainField& surf
   if (spared.views.size() < views.size()) try_tour(spared);
   SearchSettings seeded = settings;
   seeded.seed = mission.seed;
+  if (problem.way_looks) seeded.moves_per_view /= dearer_ways;
   try_tour(anneal(problem, spared.views, wanted, seeded, stop));
 
-  choice.stations = stations_of(choice.route);
+  choice.stations = asked.stations_of(choice.route);
   choice.computing =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   return choice;

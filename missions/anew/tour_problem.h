@@ -20,6 +20,9 @@ struct TourProblem {
 
   std::span<const survey::skycap::GainField::Target> targets;
   std::function<std::vector<survey::skycap::Look>(const View&)> looks;
+  /// What is seen on the straight way between two views, null being home; the same in both
+  /// directions. Empty: nothing is measured on ways.
+  std::function<std::vector<survey::skycap::Look>(const View* from, const View* to)> way_looks{};
 
   /// The view of a target from a direction (unit) and distance, as turned as limits need; nothing
   /// if they leave none.

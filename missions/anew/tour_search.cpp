@@ -9,6 +9,7 @@
 #include "missions/anew/dose_sum.h"
 #include "missions/anew/leg_times.h"
 #include "missions/anew/tour_moves.h"
+#include "missions/anew/way_doses.h"
 
 namespace skycap::missions::anew {
 namespace {
@@ -34,6 +35,7 @@ class Search {
         random_(seed, 0),
         moves_(problem, random_),
         legs_(problem),
+        ways_(problem),
         covered_(problem.targets) {
     for (const View& view : tour) {
       const std::shared_ptr<Stop> stop = moves_.stop(view);
@@ -41,6 +43,7 @@ class Search {
       covered_.add(stop->doses);
       stops_.push_back(stop);
     }
+    ways_.change(covered_, {}, stops_);
     time_ = legs_.proven(stops_);
     keep_best();
   }
@@ -51,6 +54,7 @@ class Search {
       time_ = legs_.proven(stops_);
       covered_ = DoseSum(problem_.targets);
       for (const auto& stop : stops_) covered_.add(stop->doses);
+      ways_.change(covered_, {}, stops_);
     }
     keep_best();
   }
@@ -87,9 +91,11 @@ class Search {
       move.added->doses = doses_of(problem_.looks(view));
     }
     change(move.removed, move.added.get());
+    ways_.change(covered_, stops_, move.stops);
     double time = legs_.least(move.stops);
     while (cost(time) <= worst && legs_.ask_next(move.stops)) time = legs_.least(move.stops);
     if (cost(time) > worst || (move.added && !problem_.has_way_home(move.added->view))) {
+      ways_.change(covered_, move.stops, stops_);
       change_back(move.removed, move.added.get());
       return false;
     }
@@ -121,12 +127,14 @@ class Search {
     std::optional<Stops> best;
     double least = std::numeric_limits<double>::infinity();
     for (std::size_t i = 0; i < stops_.size(); ++i) {
-      covered_.remove(stops_[i]->doses);
-      const bool is_enough = covered_.covered() >= wanted_;
-      covered_.add(stops_[i]->doses);
-      if (!is_enough) continue;
       Stops without = stops_;
       without.erase(without.begin() + static_cast<std::ptrdiff_t>(i));
+      covered_.remove(stops_[i]->doses);
+      ways_.change(covered_, stops_, without);
+      const bool is_enough = covered_.covered() >= wanted_;
+      ways_.change(covered_, without, stops_);
+      covered_.add(stops_[i]->doses);
+      if (!is_enough) continue;
       const double time = legs_.proven(without);
       if (time < least) best = std::move(without), least = time;
     }
@@ -138,6 +146,7 @@ class Search {
   flight::RandomNumbers random_;
   TourMoves moves_;
   LegTimes legs_;
+  WayDoses ways_;
   DoseSum covered_;
   Stops stops_;
   double time_ = 0.0;
@@ -163,6 +172,12 @@ FoundTour anneal(const TourProblem& problem, const std::vector<View>& tour, doub
 double covered_by(const TourProblem& problem, const std::vector<View>& views) {
   DoseSum covered(problem.targets);
   for (const View& view : views) covered.add(doses_of(problem.looks(view)));
+  if (!problem.way_looks) return covered.covered();
+  for (std::size_t i = 0; i <= views.size() && !views.empty(); ++i) {
+    const auto* from = i == 0 ? nullptr : &views[i - 1];
+    const auto* to = i == views.size() ? nullptr : &views[i];
+    covered.add(doses_of(problem.way_looks(from, to)));
+  }
   return covered.covered();
 }
 

@@ -33,7 +33,7 @@ FoundTour spare_views(const TourProblem& problem, const std::vector<geometry::Vi
 FoundTour anneal(const TourProblem& problem, const std::vector<geometry::View>& tour, double wanted,
                  const SearchSettings& settings, const std::stop_token& stop = {});
 
-/// What views are expected to cover together: a share of the targets' area.
+/// What a tour through views is expected to cover: a share of the targets' area.
 double covered_by(const TourProblem& problem, const std::vector<geometry::View>& views);
 
 }  // namespace skycap::missions::anew

@@ -10,6 +10,7 @@
 #include "missions/file/json_text.h"
 #include "missions/judge/coverage.h"
 #include "missions/package/package.h"
+#include "missions/run/way_frames.h"
 
 namespace skycap::missions::package {
 namespace {
@@ -67,7 +68,11 @@ AnewMission anew_mission(const file::Mission& mission, const run::SurveyRecord& 
   AnewMission result{anew::choose_mission(mission, *record.surface, space, views_of(record),
                                           std::move(present), plan, {}, stop),
                      {}};
-  if (coverage.fly_again) result.again = flown_again(coverage, result.choice.stations.views);
+  if (coverage.fly_again) {
+    result.again = flown_again(coverage, derived::scans_in_flight(mission)
+                                             ? run::scans_of(mission, result.choice.route)
+                                             : result.choice.stations.views);
+  }
   return result;
 }
 

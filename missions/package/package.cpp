@@ -94,7 +94,9 @@ void plan_mission(const file::Mission& mission, const run::SurveyRecord& record,
                   SurveyMission& flight) {
   const run::FlownSurvey& flown = *record.flown;
   flight.pictures = derived::picture_bounds_of(mission);
-  flight.route = plan_flight(mission, *flown.measured, flown.pad, views_of(record), ways_of(flown),
+  // What a scanner measures on the ways of the survey it measures on no others.
+  flight.route = plan_flight(derived::scans_in_flight(mission) ? in_given_order(mission) : mission,
+                             *flown.measured, flown.pad, views_of(record), ways_of(flown),
                              flown.grounds, stop);
   if (flight.route.sorties.empty() && !flight.route.unreached.empty()) {
     const flight::Unreached& first = flight.route.unreached.front();

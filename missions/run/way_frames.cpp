@@ -7,6 +7,7 @@
 #include "geometry/place/camera.h"
 #include "missions/derived/mission_flight.h"
 #include "missions/derived/site.h"
+#include "missions/derived/survey_sensor.h"
 
 namespace skycap::missions::run {
 namespace {
@@ -92,6 +93,28 @@ double WayMotion::survey_time(const std::vector<FlownLeg>& legs,
     time += this->time(legs[i], i > 0 ? views[i - 1] : views[i], views[i]) + rest_;
   }
   return time;
+}
+
+std::vector<View> scans_of(const file::Mission& mission, const flight::Route& route) {
+  const WayMotion motion(mission);
+  const Eigen::Isometry3d& mount = mission.sensor.mount.value();
+  std::vector<View> scans;
+  const auto add = [&](const flight::Leg& leg, const View& from, const View& to) {
+    for (const View& nose : motion.frames({leg.points}, from, to, mission.sensor.frame_period)) {
+      scans.push_back(derived::side_view(mount, nose));
+    }
+    scans.push_back(derived::side_view(mount, to));
+    scans.back().position = leg.points.back();
+  };
+  for (const flight::Sortie& sortie : route.sorties) {
+    const View &first = route.stations[sortie.first].view, &last = route.stations[sortie.last].view;
+    add(sortie.out, first, first);
+    for (std::uint32_t i = sortie.first; i < sortie.last; ++i) {
+      add(route.legs[i], route.stations[i].view, route.stations[i + 1].view);
+    }
+    add(sortie.back, last, last);
+  }
+  return scans;
 }
 
 flight::PictureBounds moving_bounds_of(const file::Mission& mission) {

@@ -10,6 +10,7 @@
 
 #include "flight/motion/motion.h"
 #include "flight/motion/picture_bounds.h"
+#include "flight/route/route.h"
 #include "geometry/place/pose.h"
 #include "missions/file/mission.h"
 #include "missions/run/survey_flight.h"
@@ -41,6 +42,10 @@ class WayMotion {
   double rest_;      ///< at a view [s]
   bool turns_last_;  ///< on the last piece of a way
 };
+
+/// Views of the scans that a scanner takes all along a route, from leaving the place above the pad
+/// until it is back there.
+std::vector<geometry::View> scans_of(const file::Mission& mission, const flight::Route& route);
 
 /// How sharp frames are that a camera takes at the cruise speed.
 flight::PictureBounds moving_bounds_of(const file::Mission& mission);

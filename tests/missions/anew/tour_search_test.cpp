@@ -133,6 +133,53 @@ TEST(Anneal, FindsTheLeastToursOfAKnownWorld) {
   }
 }
 
+/// Sees nothing at its stops, and within a metre all along its ways.
+void measure_on_ways(PlaneWorld& world) {
+  world.problem.looks = [](const View&) { return std::vector<Look>(); };
+  world.problem.way_looks = [&world](const View* from, const View* to) {
+    const Vector3d a = PlaneWorld::place(from), way = PlaneWorld::place(to) - a;
+    std::vector<Look> looks;
+    for (std::uint32_t t = 0; t < world.targets.size(); ++t) {
+      const Vector3d offset = world.targets[t].position.cast<double>() - a;
+      const double share =
+          std::clamp(offset.dot(way) / std::max(way.squaredNorm(), 1e-12), 0.0, 1.0);
+      if ((offset - share * way).norm() <= 1.0) looks.push_back({t, certain});
+    }
+    return looks;
+  };
+}
+
+// Targets in a line from home: whoever measures on the way flies to where the last one is in sight,
+// and back.
+TEST(Anneal, CountsWhatIsMeasuredOnTheWays) {
+  PlaneWorld world(1.0);
+  for (int i = 1; i <= 20; ++i) world.add_target(i, 0.0);
+  measure_on_ways(world);
+  const std::vector<View> whole = {down_at(7, 3, 0), down_at(22, 0, 0)};
+  ASSERT_GE(covered_by(world.problem, whole), 0.999);
+  for (const std::uint64_t seed : {1, 2, 3}) {
+    const FoundTour found = anneal(world.problem, whole, 0.999, {.seed = seed});
+    EXPECT_THAT(found.views, SizeIs(1)) << seed;
+    EXPECT_EQ(found.covered, covered_by(world.problem, found.views)) << seed;
+    EXPECT_GE(found.time, 2.0 * 19.0 + rest - 1e-9);
+    EXPECT_LE(found.time, 2.0 * 19.0 + rest + 1.5) << seed;
+  }
+}
+
+// A stop that no way needs is spared, one that a way is bent by is kept.
+TEST(SpareViews, KnowsWhatTheWaysWithoutAViewSee) {
+  PlaneWorld world(1.0);
+  world.add_target(5, 0);
+  world.add_target(10, 0);
+  world.add_target(10, 10);
+  measure_on_ways(world);
+  const FoundTour found =
+      spare_views(world.problem, {down_at(5, 0, 0), down_at(10, 0, 0), down_at(10, 10, 0)}, 0.999);
+  ASSERT_THAT(found.views, SizeIs(2));
+  EXPECT_EQ(found.views[0].position, Vector3d(10, 0, 0));
+  EXPECT_EQ(found.covered, covered_by(world.problem, found.views));
+}
+
 // Two views that each see half of it, where one between them sees all.
 TEST(Anneal, TakesOneViewForTwo) {
   PlaneWorld world(2.0);
