@@ -48,6 +48,13 @@ void derive_scanner_flight(file::MissionFile& given) {
     mission.flight.order = file::VisitOrder::survey;
   }
   if (!given.gives("flight.cruise_speed")) mission.flight.cruise_speed = scanning_speed(mission);
+  if (!given.gives("flight.map_error")) {
+    // What is farther off than five deviations is rare among a hundred million points. Twice the
+    // view distance is as far as what is flown near to is measured from.
+    constexpr double deviations = 5.0;
+    const double noise = range_noise(*mission.sensor.scanner, 2.0 * view_distance_of(mission));
+    mission.flight.map_error = std::max(mission.flight.map_error, deviations * noise);
+  }
   if (!given.gives("scan.sensor")) mission.scan.sensor = *mission.sensor.lidar;
 }
 

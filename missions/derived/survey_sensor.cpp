@@ -171,6 +171,12 @@ double ray_spacing(const sim::LidarConfig& lidar) {
   return spacing;
 }
 
+double range_noise(const sim::LidarConfig& lidar, double range) {
+  const auto& errors = lidar.errors;
+  return std::hypot(errors.sigma, errors.sigma_per_metre * range,
+                    errors.sigma_per_square_metre * range * range);
+}
+
 void use_lidar(file::SensorConfig& sensor, const std::filesystem::path& folder) {
   const std::string& name = sensor.lidar.value();
   const equipment::SensorDescription description =

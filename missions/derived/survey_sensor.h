@@ -43,6 +43,9 @@ std::size_t turns_of(const file::SensorConfig& sensor);
 /// The greatest angle between neighbouring rays of one turn [rad].
 double ray_spacing(const sim::LidarConfig& lidar);
 
+/// Standard deviation of a range, head-on [m].
+double range_noise(const sim::LidarConfig& lidar, double range);
+
 /// Reads the scanner that `sensor.lidar` names, a path being relative to `folder`, and makes
 /// `camera` its forward camera, or its side camera if `mount` is given. Throws what find_sensor()
 /// and forward_camera() throw, and Error{bad_config} if the description is a camera's.
