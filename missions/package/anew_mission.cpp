@@ -44,6 +44,8 @@ std::string figures_text(const MissionFigures& figures) {
 
 std::string percent(double share) { return fmt::format("{:.2f} %", 100.0 * share); }
 
+}  // namespace
+
 FlownAgain flown_again(const CoverageFigures& coverage, const std::vector<geometry::View>& views) {
   const std::vector<std::uint8_t> is_covered = coverage.fly_again(views);
   FlownAgain again{judge::marked_share(is_covered), {}};
@@ -53,7 +55,16 @@ FlownAgain flown_again(const CoverageFigures& coverage, const std::vector<geomet
   return again;
 }
 
-}  // namespace
+Json again_json(const FlownAgain& again) {
+  return {{"coverage", again.all},
+          {"coverage_visible", again.visible ? Json(*again.visible) : Json()}};
+}
+
+std::string again_text(const FlownAgain& again) {
+  std::string text = "flown again " + percent(again.all) + " of the surface";
+  if (again.visible) text += ", " + percent(*again.visible) + " of what is visible";
+  return text;
+}
 
 AnewMission anew_mission(const file::Mission& mission, const run::SurveyRecord& record,
                          const CoverageFigures& coverage, flight::Route present,
@@ -81,11 +92,7 @@ Json anew_json(const AnewMission& mission) {
             {"survey", json_of(mission.choice.survey)},
             {"anew", json_of(mission.choice.anew)},
             {"computing_time_s", mission.choice.computing}};
-  if (mission.again) {
-    json["flown_again"] = {
-        {"coverage", mission.again->all},
-        {"coverage_visible", mission.again->visible ? Json(*mission.again->visible) : Json()}};
-  }
+  if (mission.again) json["flown_again"] = again_json(*mission.again);
   if (mission.choice.is_anew) json["stations"] = stations_json(mission.choice.stations);
   return json;
 }
@@ -117,12 +124,7 @@ std::string anew_text(const AnewMission& mission) {
                                           figures_text(choice.survey);
   text += "\n  promise   " + percent(choice.anew.promised) +
           " of what was measured, the survey's views " + percent(choice.survey.promised);
-  if (mission.again) {
-    text += "; flown again " + percent(mission.again->all) + " of the surface";
-    if (mission.again->visible) {
-      text += ", " + percent(*mission.again->visible) + " of what is visible";
-    }
-  }
+  if (mission.again) text += "; " + again_text(*mission.again);
   return text + "\n";
 }
 

@@ -24,6 +24,13 @@ AnewMission anew_mission(const file::Mission& mission, const run::SurveyRecord& 
                          const CoverageFigures& coverage, flight::Route present,
                          const std::stop_token& stop);
 
+/// What these views cover, or scans of a scanner, where `coverage` says how that is measured.
+FlownAgain flown_again(const CoverageFigures& coverage, const std::vector<geometry::View>& views);
+
+/// For the summary, and what the program prints.
+nlohmann::ordered_json again_json(const FlownAgain& again);
+std::string again_text(const FlownAgain& again);
+
 /// `flight.anew` of the summary.
 nlohmann::ordered_json anew_json(const AnewMission& mission);
 

@@ -78,6 +78,7 @@ std::string flight_text(const SurveyMission& flight) {
       clearance.total(), route.min_clearance, clearance.vehicle_radius, clearance.position_error,
       clearance.tracking_error, clearance.map_error, clearance.margin);
   if (flight.anew) text += anew_text(*flight.anew);
+  if (flight.again) text += "  promise   " + again_text(*flight.again) + "\n";
   const std::size_t rally_points = route.options.returns ? route.options.returns->rally.size() : 0;
   text += grounds_text(route.options.grounds, 1 + rally_points);
   text += return_text(flight);

@@ -29,6 +29,7 @@
 #include "missions/package/settings.h"
 #include "missions/run/measurement.h"
 #include "missions/run/survey_journal.h"
+#include "missions/run/way_frames.h"
 
 namespace skycap::missions::package {
 namespace {
@@ -104,7 +105,13 @@ void plan_mission(const file::Mission& mission, const run::SurveyRecord& record,
                                            std::to_string(first.station.view_index) + ": " +
                                            first.reason);
   }
-  if (!record.surface || flight.route.stations.empty()) return;
+  if (flight.route.stations.empty()) return;
+  if (!record.surface) {
+    if (derived::scans_in_flight(mission) && coverage.fly_again) {
+      flight.again = flown_again(coverage, run::scans_of(mission, flight.route));
+    }
+    return;
+  }
   flight.anew = anew_mission(mission, record, coverage, std::move(flight.route), stop);
   flight.route = std::move(flight.anew->choice.route);
 }

@@ -230,6 +230,7 @@ std::string summary_json(const file::Mission& mission, const run::SurveyRecord& 
     summary["min_clearance_m"] = flight->route.min_clearance;
     summary["flight"] = flight_summary(*record.flown, *flight);
     if (flight->anew) summary["flight"]["anew"] = anew_json(*flight->anew);
+    if (flight->again) summary["flight"]["flown_again"] = again_json(*flight->again);
     if (flight->fleet) summary["flight"]["fleet"] = fleet_json(mission, *flight->fleet);
   } else if (flight) {
     summary["flight"] = {{"pad", json_of(record.flown->pad)},

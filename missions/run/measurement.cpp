@@ -1,10 +1,28 @@
 #include "missions/run/measurement.h"
 
+#include <utility>
+
+#include "missions/derived/mission_flight.h"
+
 namespace skycap::missions::run {
 namespace {
 
 /// Keeps the noise of a mission that is flown again apart from the survey's.
 constexpr std::uint64_t flown_again_stream = 0x666c6f776e206167;
+
+/// What scans cover all of whose points are kept, as a recorder keeps them.
+std::vector<std::uint8_t> scanned(const file::Mission& mission, const scene::SurveyScene& scene,
+                                  const std::vector<geometry::View>& views, std::uint64_t seed,
+                                  unsigned threads) {
+  const derived::SurveySensor sensor(mission.sensor, seed);
+  judge::CoverageMeter meter(scene.samples().points, mission.evaluation.registration_distance);
+  geometry::Scan scan;
+  for (std::size_t i = 0; i < views.size(); ++i) {
+    scan = sensor.scan(scene.scene(), views[i], i, threads, std::move(scan));
+    meter.add(scan.points);
+  }
+  return meter.is_covered();
+}
 
 }  // namespace
 
@@ -28,7 +46,9 @@ std::vector<std::uint8_t> covered_when_flown_again(const file::Mission& mission,
                                                    const scene::SurveyScene& scene,
                                                    const std::vector<geometry::View>& views,
                                                    std::uint64_t seed, unsigned threads) {
-  Measurement measured(mission, scene, seed ^ flown_again_stream, threads);
+  seed ^= flown_again_stream;
+  if (derived::scans_in_flight(mission)) return scanned(mission, scene, views, seed, threads);
+  Measurement measured(mission, scene, seed, threads);
   for (std::size_t i = 0; i < views.size(); ++i) measured.take(views[i], i);
   return measured.meter().is_covered();
 }

@@ -39,7 +39,8 @@ class Measurement {
 };
 
 /// For each of the scene's samples, 1 if the views cover it when they are flown again: from an
-/// empty cloud, and with other noise than the survey of that seed had.
+/// empty cloud, and with other noise than the survey of that seed had. Of a scanner that measures
+/// in flight the views are its scans, and all points are kept, as a recorder keeps them.
 std::vector<std::uint8_t> covered_when_flown_again(const file::Mission& mission,
                                                    const scene::SurveyScene& scene,
                                                    const std::vector<geometry::View>& views,

@@ -10,6 +10,7 @@
 #include "flight/route/route.h"
 #include "flight/space/clearance.h"
 #include "flight/space/interruptible_space.h"
+#include "flight/way_home/ways_home.h"
 #include "geometry/error.h"
 #include "geometry/parallel.h"
 #include "geometry/place/camera.h"
@@ -84,6 +85,15 @@ struct SurveyFlight::Impl {
     return proven(std::move(path.points));
   }
 
+  /// The same with a certified way home from all of its points, if those are asked for.
+  std::optional<FlownLeg> find_returnable_way(const Vector3d& from, const Vector3d& to) {
+    if (!ways_home) return find_way(from, to);
+    if (!ways_home->why_none(to).empty()) return std::nullopt;
+    flight::Path path = finder.find(from, to);
+    if (path.status != flight::PathStatus::found) return std::nullopt;
+    return proven(ways_home->with_returns(std::move(path.points), worthwhile_saving));
+  }
+
   flight::Vehicle vehicle;
   geometry::Camera camera;
   std::shared_ptr<flight::MeasuredSpace> measured;
@@ -94,6 +104,9 @@ struct SurveyFlight::Impl {
   WayMotion motion;
   std::optional<Eigen::Isometry3d> mount;  ///< of a scanner
   std::optional<flight::SweepRays> rays;
+  /// If its ways are those of the written mission, too, from which autopilots return by themselves.
+  std::optional<flight::WaysHome> ways_home;
+  double worthwhile_saving = 0.0;  ///< that corners of such ways are worth [m]
   double frame_period;
   unsigned threads;
   std::stop_token stop;
@@ -108,6 +121,12 @@ SurveyFlight::SurveyFlight(const file::Mission& mission, const geometry::View& f
   impl_->survey.pad = derived::pad_of(mission, first_view.position);
   const Vector3d home = impl_->survey.pad + Vector3d(0.0, 0.0, derived::takeoff_climb_of(mission));
   impl_->above_pad = home;
+  if (impl_->mount) {
+    const flight::RouteOptions options = derived::route_options_of(mission, impl_->survey.pad);
+    impl_->worthwhile_saving = options.path.worthwhile_saving;
+    impl_->ways_home.emplace(impl_->space, planning_law(options, home.z()), home,
+                             impl_->finder.clearance());
+  }
   const auto refuse = [&](const std::string& place, const Vector3d& at, const std::string& cure) {
     const double clearance = impl_->finder.clearance();
     const flight::Closest closest = impl_->space.closest({at, at}, clearance + 1e-3);
@@ -140,7 +159,7 @@ SurveyFlight::~SurveyFlight() = default;
 
 bool SurveyFlight::can_reach(const Vector3d& from, const geometry::View& to) try {
   if (flight::can_look(impl_->vehicle, impl_->carrier(to))) {
-    if (auto way = impl_->find_way(from, to.position)) {
+    if (auto way = impl_->find_returnable_way(from, to.position)) {
       impl_->leg = std::move(*way);
       return true;
     }
