@@ -99,8 +99,8 @@ struct SurveyMission {
   flight::Route route;  ///< without stations if there is none
   FlightFiles files;
   std::optional<flight::PictureBounds> pictures{};  ///< how sharp they are
-  std::string failure;                          ///< why there is no route; empty if there is one
-  std::optional<AnewMission> anew{};            ///< if views were to be chosen anew
+  std::string failure;                ///< why there is no route; empty if there is one
+  std::optional<AnewMission> anew{};  ///< if views were to be chosen anew
   std::optional<FlownAgain> again{};  ///< of a scanner's mission along the ways of its survey
   std::shared_ptr<const FleetMission> fleet{};  ///< the same by several vehicles, if there are any
 };
