@@ -25,7 +25,17 @@ double lowest_of(const file::Mission& mission) {
   return std::max(least.value_or(mission.scene.position.z()), mission.scene.position.z()) + 0.5;
 }
 
-/// Once round the box, anticlockwise, the box on the left, up and down between two heights.
+/// How often round the box: once for each band of its height that is no higher than the way is from
+/// the box's middle, or than planners look from.
+unsigned circles_round(const AlignedBox3d& box, const file::Mission& mission) {
+  constexpr double most = 32.0;
+  const double away = 0.5 * box.sizes().head<2>().minCoeff() + spare_of(mission);
+  const double apart = std::max(away, view_distance_of(mission));
+  return static_cast<unsigned>(std::clamp(std::ceil(box.sizes().z() / apart - 1e-9), 1.0, most));
+}
+
+/// Round the box, anticlockwise, the box on the left: once, up and down between two heights, or in
+/// circles from the one to the other, each of whose last sides climbs to the next.
 std::vector<View> orbit(const file::Mission& mission) {
   const AlignedBox3d box = unknown_box_of(mission);
   const double spare = spare_of(mission);
@@ -33,10 +43,12 @@ std::vector<View> orbit(const file::Mission& mission) {
   const Vector3d high = box.max() + Vector3d::Constant(spare);
   const double bottom = std::max(low.z(), lowest_of(mission));
   constexpr double lower_share = 0.2, upper_share = 0.9;
+  const unsigned circles = circles_round(box, mission);
   std::vector<View> views;
-  for (unsigned i = 0; i < 5; ++i) {
+  for (unsigned i = 0; i <= 4 * circles; ++i) {
     const auto corner = static_cast<unsigned>((mission.seed + i) % 4);  // from the south west on
-    const double share = i % 2 == 0 ? lower_share : upper_share;
+    const double up = circles == 1 ? i % 2 : std::min(i / 4, circles - 1) / (circles - 1.0);
+    const double share = lower_share + up * (upper_share - lower_share);
     const Vector3d place(corner == 1 || corner == 2 ? high.x() : low.x(),
                          corner >= 2 ? high.y() : low.y(),
                          bottom + share * (box.max().z() - bottom));

@@ -60,7 +60,11 @@ struct MissionPlanner::Impl {
         planner(derived::make_planner(mission, threads)),
         gate(derived::view_limits(mission)),
         is_gated(mission.planner.name != file::PlannerName::skycap) {
-    if (mission.flight.is_flown()) flight.emplace(mission, first_view.value());
+    if (!mission.flight.is_flown()) return;
+    flight.emplace(mission, first_view.value());
+    if (auto* skycap = dynamic_cast<survey::skycap::SkycapPlanner*>(planner.get())) {
+      skycap->keep_to([this](const Eigen::Vector3d& place) { return flight->may_be_at(place); });
+    }
   }
 
   bool admits(const geometry::View& view) {

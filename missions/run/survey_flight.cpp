@@ -157,6 +157,10 @@ SurveyFlight::SurveyFlight(const file::Mission& mission, const geometry::View& f
 
 SurveyFlight::~SurveyFlight() = default;
 
+bool SurveyFlight::may_be_at(const Vector3d& place) const {
+  return !impl_->ways_home || impl_->ways_home->why_none(place).empty();
+}
+
 bool SurveyFlight::can_reach(const Vector3d& from, const geometry::View& to) try {
   if (flight::can_look(impl_->vehicle, impl_->carrier(to))) {
     if (auto way = impl_->find_returnable_way(from, to.position)) {

@@ -196,15 +196,14 @@ struct SkycapPlanner::Impl {
   }
 
   Admission admission() const {
-    const double stand_off = config.limits.stand_off;
-    Eigen::AlignedBox3d box = obstacle_box();
-    box.min().array() -= stand_off;
-    box.max().array() += stand_off;
+    const Vector3d stand_off = Vector3d::Constant(config.limits.stand_off);
+    const Eigen::AlignedBox3d seen = obstacle_box(),
+                              box(seen.min() - stand_off, seen.max() + stand_off);
     return [this, box](const View& view) {
       const bool is_refused = std::any_of(refused.begin(), refused.end(), [&](const View& other) {
         return (view.position - other.position).norm() < 0.1 * distance;
       });
-      return !is_refused && is_free(view, box);
+      return !is_refused && is_free(view, box) && (!may_be_at || may_be_at(view.position));
     };
   }
 
@@ -347,6 +346,7 @@ struct SkycapPlanner::Impl {
   double length = 0.0;
   int idle_scans = 0;
   Vector3d position = Vector3d::Zero();
+  PlaceCheck may_be_at;       ///< null: anywhere
   std::optional<View> proposed;
   std::vector<View> refused;  ///< since the last scan
   SkycapStop stop = SkycapStop::running;
@@ -376,6 +376,7 @@ std::optional<View> SkycapPlanner::next_view(const ScanSpan& scan) {
 }
 
 void SkycapPlanner::pass(const ScanSpan& scan) { impl_->pass(scan); }
+void SkycapPlanner::keep_to(PlaceCheck may_be_at) { impl_->may_be_at = std::move(may_be_at); }
 
 std::optional<View> SkycapPlanner::next_view_instead() {
   if (impl_->proposed) impl_->refused.push_back(*impl_->proposed);

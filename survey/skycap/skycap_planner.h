@@ -8,6 +8,7 @@
 /// is worth.
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <optional>
 #include <vector>
@@ -23,6 +24,9 @@ namespace skycap::survey::skycap {
 
 class GainField;
 
+/// Whether views may be at a place; must be safe to call from several threads.
+using PlaceCheck = std::function<bool(const Eigen::Vector3d&)>;
+
 enum class SkycapStop {
   running,
   wanted_coverage,
@@ -37,6 +41,9 @@ class SkycapPlanner final : public Planner {
   /// Throws what config.validate() throws.
   SkycapPlanner(const SkycapConfig& config, const geometry::Camera& camera);
   ~SkycapPlanner() override;
+
+  /// From now on only views at such places are proposed, by what is known when they are.
+  void keep_to(PlaceCheck may_be_at);
 
   /// `scan` may be organised (of the camera) or not: a sweep that shoots everywhere into the view
   /// of the camera, about as densely as its pixels lie, and maybe elsewhere too. Views are chosen

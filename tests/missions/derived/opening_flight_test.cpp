@@ -27,6 +27,7 @@ file::Mission mission_of(const std::string& box, const std::string& more = "") {
       "m.yaml");
 }
 
+constexpr const char* house = "{min: [-10, -20, 0], max: [10, 20, 20]}";
 constexpr const char* tower = "{min: [-10, -20, 0], max: [10, 20, 40]}";
 constexpr const char* block = "{min: [-100, -60, 0], max: [100, 60, 30]}";
 
@@ -43,22 +44,46 @@ double nearest(const std::vector<View>& views, const AlignedBox3d& box) {
   return least;
 }
 
+/// The angle by which the way turns about the z axis.
+double turned(const std::vector<View>& views) {
+  double turned = 0.0;
+  for (std::size_t i = 1; i < views.size(); ++i) {
+    const Vector3d &a = views[i - 1].position, &b = views[i].position;
+    turned += std::atan2(a.x() * b.y() - a.y() * b.x(), a.head<2>().dot(b.head<2>()));
+  }
+  return turned;
+}
+
 TEST(OpeningFlight, AnOrbitGoesOnceRoundTheBoxAndKeepsOutOfIt) {
   for (const std::uint64_t seed : {1U, 2U, 3U, 4U}) {
-    file::Mission mission = mission_of(tower);
+    file::Mission mission = mission_of(house);
     mission.seed = seed;
     EXPECT_EQ(mission.flight.opening, file::Opening::orbit);
     const std::vector<View> views = opening_views(mission);
     ASSERT_EQ(views.size(), 5U);
     EXPECT_GT(nearest(views, unknown_box_of(mission)), mission.flight.clearance + 0.5);
-    double turned = 0.0;
-    for (std::size_t i = 1; i < views.size(); ++i) {
-      const Vector3d &a = views[i - 1].position, &b = views[i].position;
-      turned += std::atan2(a.x() * b.y() - a.y() * b.x(), a.head<2>().dot(b.head<2>()));
-      EXPECT_LT(views[i].direction.dot(b), 0.0);  // looks at the middle
+    EXPECT_NEAR(turned(views), 2.0 * M_PI, 1e-9);
+    for (const View& view : views) {
+      EXPECT_LT(view.direction.dot(view.position), 0.0);  // looks at the middle
     }
-    EXPECT_NEAR(turned, 2.0 * M_PI, 1e-9);
   }
+}
+
+TEST(OpeningFlight, AnOrbitCirclesOftenEnoughForTheHeightOfTheBox) {
+  const file::Mission mission = mission_of(tower);  // 40 m high, looked at from 20 m
+  const std::vector<View> views = opening_views(mission);
+  EXPECT_NEAR(turned(views), 4.0 * M_PI, 1e-9);
+  EXPECT_GT(nearest(views, unknown_box_of(mission)), mission.flight.clearance + 0.5);
+  for (std::size_t i = 1; i < views.size(); ++i) {
+    const double climbed = views[i].position.z() - views[i - 1].position.z();
+    EXPECT_GE(climbed, 0.0);
+    EXPECT_LT(climbed, 0.75 * 40.0);
+  }
+  EXPECT_LT(views.front().position.z(), 0.3 * 40.0);
+  EXPECT_GT(views.back().position.z(), 0.85 * 40.0);
+  // From farther away more is seen at once; without a bound nothing else would be planned.
+  EXPECT_EQ(opening_views(mission_of("{min: [-30, -30, 0], max: [30, 30, 33]}")).size(), 5U);
+  EXPECT_LE(opening_views(mission_of("{min: [-1, -1, 0], max: [1, 1, 9000]}")).size(), 129U);
 }
 
 TEST(OpeningFlight, StripsLieOverAFlatBoxNoFartherApartThanTheyAreHigh) {

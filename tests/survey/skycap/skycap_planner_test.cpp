@@ -214,6 +214,17 @@ TEST(SkycapPlanner, StopsInTheMiddleOfAView) {
   EXPECT_GT(planner.release_cloud().size(), 0U);
 }
 
+TEST(SkycapPlanner, ProposesOnlyViewsThatItIsToKeepTo) {
+  skycap::SkycapPlanner planner(small_config(), camera);
+  planner.keep_to([](const Vector3d& place) { return place.x() > 0.0 && place.z() > 0.2; });
+  const Flight flight = fly(planner, ball, 0.01, 10);
+  ASSERT_GE(flight.views.size(), 3U);
+  for (const View& view : flight.views) {
+    EXPECT_GT(view.position.x(), 0.0);
+    EXPECT_GT(view.position.z(), 0.2);
+  }
+}
+
 TEST(SkycapPlanner, SaysWhatIsMissingAndWhy) {
   skycap::SkycapConfig config = small_config();
   config.limits.least_height = 0.3;
