@@ -166,8 +166,8 @@ std::vector<Key> conduct_keys() {
           "orbit or strips with sensor.lidar, else none",
           choice_key("flight.opening", {"none", "orbit", "strips"}, flight(&FlightConfig::opening),
                      "What the survey begins with, outside of unknown_box, before the planner "
-                     "chooses: one way round the box, or strips over it, which are for boxes "
-                     "wider than twice their height.")),
+                     "chooses: once or more often round the box, or strips over it, which are for "
+                     "boxes wider than twice their height.")),
       choice_key(
           "flight.views", {"survey", "anew"}, flight(&FlightConfig::views),
           "Which views the exported mission takes: those of the survey, or chosen anew, views "

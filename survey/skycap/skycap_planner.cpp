@@ -346,7 +346,7 @@ struct SkycapPlanner::Impl {
   double length = 0.0;
   int idle_scans = 0;
   Vector3d position = Vector3d::Zero();
-  PlaceCheck may_be_at;       ///< null: anywhere
+  PlaceCheck may_be_at;  ///< null: anywhere
   std::optional<View> proposed;
   std::vector<View> refused;  ///< since the last scan
   SkycapStop stop = SkycapStop::running;
