@@ -157,8 +157,11 @@ SurveyFlight::SurveyFlight(const file::Mission& mission, const geometry::View& f
 
 SurveyFlight::~SurveyFlight() = default;
 
-bool SurveyFlight::may_be_at(const Vector3d& place) const {
+bool SurveyFlight::may_be_at(const Vector3d& place) const try {
   return !impl_->ways_home || impl_->ways_home->why_none(place).empty();
+} catch (const Error&) {
+  if (impl_->stop.stop_requested()) throw survey::Interrupted();
+  throw;
 }
 
 bool SurveyFlight::can_reach(const Vector3d& from, const geometry::View& to) try {
