@@ -379,8 +379,7 @@ void SkycapPlanner::pass(const ScanSpan& scan) { impl_->pass(scan); }
 void SkycapPlanner::keep_to(PlaceCheck may_be_at) { impl_->may_be_at = std::move(may_be_at); }
 
 std::optional<View> SkycapPlanner::next_view_instead() {
-  if (impl_->proposed) impl_->refused.push_back(*impl_->proposed);
-  impl_->proposed.reset();
+  if (impl_->proposed) impl_->refused.push_back(*std::exchange(impl_->proposed, std::nullopt));
   return impl_->field ? impl_->choose() : std::nullopt;
 }
 
