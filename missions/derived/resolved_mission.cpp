@@ -144,10 +144,6 @@ file::Mission resolved(file::MissionFile given, const Report& report) {
     mission.planner.name = file::PlannerName::skycap;
   }
   if (mission.sensor.lidar) read_lidar(given);
-  if (mission.sensor.is_moving() && !given.gives("planner.least_gain")) {
-    // A stop costs about a quarter of what a view costs that is taken for itself.
-    mission.planner.skycap_stop.least_gain = 0.001;
-  }
   check_scene(given);
   check_start(given);
   check_sensor(given);

@@ -158,11 +158,9 @@ std::vector<Key> skycap_keys() {
   return {
       number_key("planner.wanted_coverage", "share", above(0, 1), stop(&Stop::wanted_coverage),
                  "skycap ends when it believes this share of the surface covered."),
-      otherwise(
-          "0.003, with sensor.capture moving 0.001",
-          number_key("planner.least_gain", "share", between(0, 1), stop(&Stop::least_gain),
-                     "skycap ends when no view promises this share of the known surface, or of "
-                     "seven times what one view covered at most, if that is less.")),
+      number_key("planner.least_gain", "share", between(0, 1), stop(&Stop::least_gain),
+                 "skycap ends when no view promises this share of the known surface, or of "
+                 "seven times what one view covered at most, if that is less."),
       idea("dose", &Ideas::dose, "weigh looks at a surface by the noise; off: one look covers it."),
       idea("unseen_surface", &Ideas::unseen_surface, "guess where the surface goes on."),
       idea("free_space", &Ideas::free_space, "drop guesses where the sensor saw through."),

@@ -16,7 +16,7 @@ class ReportTest(unittest.TestCase):
     def setUpClass(cls):
         cls.temporary = tempfile.TemporaryDirectory()
         cls.folder = pathlib.Path(cls.temporary.name)
-        cls.results = plan(cls.folder, MISSION % "teapot", "--max-views", "8")
+        cls.results = plan(cls.folder, MISSION % "teapot", "--max-views", "6")
         # A mission file's name has no '/', but a summary may come from anywhere.
         cls.summary = json.loads((cls.results / "summary.json").read_text())
         cls.summary["mission"] = HOSTILE

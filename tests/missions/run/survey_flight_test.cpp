@@ -209,9 +209,14 @@ TEST(FlownPackage, ChecksProveReturnsAtTheHeightThatIsStated) {
 
 TEST(FlownPackage, ChecksFindTheLegsThatAScenesOtherShapeMakesUnsafe) {
   const TestFolder& folder = package();
-  // The same route beside a teapot that has been moved into it.
+  // The same route with the teapot moved to the lowest of its stations.
+  const std::vector<geometry::View> views = package::read_package(folder / "out", {}).views;
+  const Vector3d at = std::ranges::min(views, {}, [](const geometry::View& view) {
+                        return view.position.z();
+                      }).position;
+  const std::string place = std::to_string(at.x()) + ", " + std::to_string(at.y());
   const auto run = run_skycap({"check", folder / "m.yaml", "--route", folder / "out/mission.plan",
-                               "--set", "scene.position=[12, 8, 0]"});
+                               "--set", "scene.position=[" + place + ", 0]"});
   EXPECT_EQ(run.exit_code, 1);
   EXPECT_THAT(run.out, HasSubstr("mission.plan: leg "));
   EXPECT_THAT(run.out, HasSubstr(" of the scene at ("));
@@ -268,7 +273,8 @@ TEST(FlownPackage, ReadsBackAsItWasPlanned) {
   EXPECT_EQ(route.length, summary.at("route_length_m").get<double>());
 }
 
-// In the order of the survey nothing is flown that the survey did not fly, but for the way home.
+// In the order of the survey nothing is flown that the survey did not fly, but for the way home,
+// and round corners of a way from which none is certified.
 TEST(FlownPackage, KeepsTheWaysOfTheSurveyInItsOrder) {
   const TestFolder& folder = package();
   const package::PackagedSurvey survey =
@@ -278,10 +284,14 @@ TEST(FlownPackage, KeepsTheWaysOfTheSurveyInItsOrder) {
   ASSERT_EQ(route.sorties.size(), 1U);
   ASSERT_EQ(route.stations.size(), survey.views.size());
   EXPECT_EQ(route.sorties[0].out.points, survey.ways[0]);
+  std::size_t kept = 0;
   for (std::size_t i = 0; i < route.legs.size(); ++i) {
     EXPECT_EQ(route.stations[i + 1].view_index, i + 1);
-    EXPECT_EQ(route.legs[i].points, survey.ways[i + 1]) << i;
+    EXPECT_EQ(route.legs[i].points.front(), survey.ways[i + 1].front()) << i;
+    EXPECT_EQ(route.legs[i].points.back(), survey.ways[i + 1].back()) << i;
+    kept += route.legs[i].points == survey.ways[i + 1] ? 1 : 0;
   }
+  EXPECT_GE(kept + 1, route.legs.size());
 }
 
 TEST(FlownPackage, RefusesWaysOfASummaryThatLeadNowhere) {

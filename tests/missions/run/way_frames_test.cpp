@@ -123,7 +123,7 @@ TEST(WayFrames, TimesAreThoseOfTheVehicle) {
 
 TEST(MovingSurvey, CoversAsMuchInLessTime) {
   const file::Mission stops = derived::parse_mission(flown_mission(), "m.yaml");
-  // A third of the least gain, as where no key says otherwise.
+  // At a stop less is left to gain: the way has shown much of it.
   const file::Mission moving = mission_with("planner.least_gain", "0.007");
   const scene::SurveyScene scene(moving, "");
   double standing_time = 0.0, moving_time = 0.0, standing_coverage = 0.0, moving_coverage = 0.0;
