@@ -68,8 +68,7 @@ const TestFolder& package() {
     folder.write("steep.obj", building_with_slab(14.0));
     folder.write("gentle.obj", building_with_slab(6.0));
     const std::string mission = folder.write("m.yaml", mission_round("building.obj"));
-    const auto run =
-        run_skycap({"plan", mission, "--set", "planner.least_gain=0.003", "--out", folder / "out"});
+    const auto run = run_skycap({"plan", mission, "--out", folder / "out"});
     EXPECT_EQ(run.exit_code, 0) << run.out << run.err;
     return true;
   }();

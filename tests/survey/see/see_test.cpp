@@ -12,6 +12,7 @@
 #include "geometry/error.h"
 #include "geometry/place/pose.h"
 #include "tests/support/sphere_sensor.h"
+#include "tests/support/stopped_planner.h"
 
 namespace skycap::survey {
 namespace {
@@ -203,12 +204,7 @@ TEST(SeePlanner, StopsInTheMiddleOfAView) {
   see::SeePlanner planner(small_config(), small_camera);
   const View first = geometry::look_at({2.4, 0.3, 0.2}, {0, 0, 0});
   const auto scan = tests::scan_spheres({{}}, small_camera, first, 0.02);
-  std::stop_source stop;
-  planner.stop_on(stop.get_token());
-  ASSERT_TRUE(planner.next_view(scan));
-  stop.request_stop();
-  EXPECT_THROW(planner.next_view(scan), Interrupted);
-  EXPECT_GT(planner.release_cloud().size(), 0U);
+  tests::expect_to_stop_in_the_middle_of_a_view(planner, scan);
 }
 
 TEST(SeePlanner, OffersEveryFrontierInTurnWhenViewsAreRefused) {

@@ -9,6 +9,7 @@
 #include "geometry/error.h"
 #include "geometry/points/point_grid.h"
 #include "tests/support/sphere_sensor.h"
+#include "tests/support/stopped_planner.h"
 
 namespace skycap::survey {
 namespace {
@@ -206,12 +207,7 @@ TEST(SkycapPlanner, ProposesOthersInsteadOfViewsThatCannotBeReached) {
 TEST(SkycapPlanner, StopsInTheMiddleOfAView) {
   skycap::SkycapPlanner planner(small_config(), camera);
   const geometry::Scan scan = tests::scan_spheres(ball, camera, start, 0.01);
-  std::stop_source stop;
-  planner.stop_on(stop.get_token());
-  ASSERT_TRUE(planner.next_view(scan));
-  stop.request_stop();
-  EXPECT_THROW(planner.next_view(scan), Interrupted);
-  EXPECT_GT(planner.release_cloud().size(), 0U);
+  tests::expect_to_stop_in_the_middle_of_a_view(planner, scan);
 }
 
 TEST(SkycapPlanner, ProposesOnlyViewsThatItIsToKeepTo) {

@@ -9,6 +9,7 @@
 
 #include "geometry/error.h"
 #include "tests/support/sphere_sensor.h"
+#include "tests/support/stopped_planner.h"
 
 namespace skycap::survey {
 namespace {
@@ -148,12 +149,7 @@ TEST(VolumetricPlanner, StopsInTheMiddleOfAView) {
   volumetric::VolumetricPlanner planner(config_for(occlusion_aware), camera);
   const View view = look_at({2.0, 0.0, 0.0}, Vector3d::Zero());
   const auto scan = tests::scan_spheres({{}}, camera, view, 0.01);
-  std::stop_source stop;
-  planner.stop_on(stop.get_token());
-  ASSERT_TRUE(planner.next_view(scan));
-  stop.request_stop();
-  EXPECT_THROW(planner.next_view(scan), Interrupted);
-  EXPECT_GT(planner.release_cloud().size(), 0U);
+  tests::expect_to_stop_in_the_middle_of_a_view(planner, scan);
 }
 
 TEST(VolumetricPlanner, TravelsFartherWithoutACostOfTheWay) {
