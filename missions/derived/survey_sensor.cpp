@@ -190,14 +190,15 @@ void use_lidar(file::SensorConfig& sensor, const std::filesystem::path& folder) 
   sensor.camera = sensor.mount ? side_camera(*lidar, turns_of(sensor)) : forward_camera(*lidar);
 }
 
+Eigen::Quaterniond rotation_of(const Vector3d& angles) {
+  return Eigen::AngleAxisd(angles.z(), Vector3d::UnitZ()) *
+         Eigen::AngleAxisd(angles.y(), Vector3d::UnitY()) *
+         Eigen::AngleAxisd(angles.x(), Vector3d::UnitX());
+}
+
 Eigen::Isometry3d mount_of(const file::ScanConfig& scan) {
-  const Vector3d& angles = scan.mount_rotation;
-  Eigen::Isometry3d mount = Eigen::Isometry3d::Identity();
+  Eigen::Isometry3d mount(rotation_of(scan.mount_rotation));
   mount.translation() = scan.mount_position;
-  mount.linear() = (Eigen::AngleAxisd(angles.z(), Vector3d::UnitZ()) *
-                    Eigen::AngleAxisd(angles.y(), Vector3d::UnitY()) *
-                    Eigen::AngleAxisd(angles.x(), Vector3d::UnitX()))
-                       .toRotationMatrix();
   return mount;
 }
 
@@ -229,11 +230,9 @@ SurveySensor::SurveySensor(const file::SensorConfig& config, std::uint64_t seed)
 std::vector<Eigen::Isometry3d> SurveySensor::turns(const View& view) const {
   const sim::LidarConfig& lidar = std::get<sim::Lidar>(sensor_).config();
   if (!mount_) return {geometry::camera_pose(view) * scanner_from_optical(lidar).inverse()};
-  // The rays of turns on a way fall between each other's: spread by the R2 sequence, in metres
-  // along the axis (some rays of a turn are that far apart at twenty metres) and between two
-  // firings.
-  constexpr double along = 0.25, first_ratio = 0.7548776662466927,
-                   second_ratio = 0.5698402909980532;
+  // The rays of turns on a way fall between each other's: spread by the R2 sequence, along the axis
+  // (some rays of a turn are as far apart at twenty metres) and between two firings.
+  constexpr double first_ratio = 0.7548776662466927, second_ratio = 0.5698402909980532;
   const Eigen::Isometry3d world_from_scanner = world_from_body(nose_view(*mount_, view)) * *mount_;
   std::vector<Eigen::Isometry3d> poses;
   for (std::size_t turn = 0; turn < turns_; ++turn) {
@@ -242,7 +241,7 @@ std::vector<Eigen::Isometry3d> SurveySensor::turns(const View& view) const {
       return sum - std::floor(sum);
     };
     Eigen::Isometry3d pose = world_from_scanner;
-    pose.translation() += along * (share(first_ratio) - 0.5) * pose.linear().col(2);
+    pose.translation() += spread_of_turns * (share(first_ratio) - 0.5) * pose.linear().col(2);
     pose.rotate(Eigen::AngleAxisd(share(second_ratio) * azimuth_step(lidar), Vector3d::UnitZ()));
     poses.push_back(pose);
   }

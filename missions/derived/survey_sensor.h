@@ -37,6 +37,10 @@ sim::DepthCameraConfig forward_camera(const sim::LidarConfig& lidar);
 /// turns. Throws what forward_camera() throws.
 sim::DepthCameraConfig side_camera(const sim::LidarConfig& lidar, std::size_t turns = 1);
 
+/// The turns of one scan are measured from places that are at most half of this from its own, along
+/// the axis [m].
+inline constexpr double spread_of_turns = 0.25;
+
 /// How often a scanner turns in one of its scans: once, or in flight all the time between two.
 std::size_t turns_of(const file::SensorConfig& sensor);
 
@@ -50,6 +54,9 @@ double range_noise(const sim::LidarConfig& lidar, double range);
 /// `camera` its forward camera, or its side camera if `mount` is given. Throws what find_sensor()
 /// and forward_camera() throw, and Error{bad_config} if the description is a camera's.
 void use_lidar(file::SensorConfig& sensor, const std::filesystem::path& folder);
+
+/// Of angles about the x, then the y, then the z axis, as missions give them [rad].
+Eigen::Quaterniond rotation_of(const Eigen::Vector3d& angles);
 
 /// How the scanner sits on its carrier, body_from_sensor, as `scan.mount` says.
 Eigen::Isometry3d mount_of(const file::ScanConfig& scan);

@@ -14,9 +14,7 @@
 namespace skycap::missions::recording {
 namespace {
 
-using Eigen::AngleAxisd;
 using Eigen::Isometry3d;
-using Eigen::Vector3d;
 
 ScanRoute route_of(const file::Mission& mission, const std::filesystem::path& folder,
                    const std::optional<std::filesystem::path>& route_file, Carrier carrier) {
@@ -27,11 +25,7 @@ ScanRoute route_of(const file::Mission& mission, const std::filesystem::path& fo
 
 Mount mount_of(const file::ScanConfig& scan) {
   const Isometry3d real = derived::mount_of(scan);
-  const Vector3d& error = scan.boresight_error;
-  Isometry3d believed =
-      (AngleAxisd(error.z(), Vector3d::UnitZ()) * AngleAxisd(error.y(), Vector3d::UnitY()) *
-       AngleAxisd(error.x(), Vector3d::UnitX())) *
-      real;
+  Isometry3d believed = derived::rotation_of(scan.boresight_error) * real;
   believed.translation() = scan.mount_position + scan.lever_arm_error;
   return {real, believed};
 }

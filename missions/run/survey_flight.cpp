@@ -52,13 +52,13 @@ struct SurveyFlight::Impl {
     if (!mount) return;
     const sim::LidarConfig& scanner = *mission.sensor.scanner;
     // The turn's own cells, a little wider, so that a ray falls into each. Rays begin beside the
-    // vehicle's place by the lever arm, half of what it flies in a turn, and what SurveySensor
-    // spreads the turns by.
-    constexpr double wider = 1.02, spread = 0.125;
+    // vehicle's place by the lever arm, half of what it flies in a turn, and what the turns are
+    // spread by.
+    constexpr double wider = 1.02;
     rays = flight::SweepRays{
         .spacing = wider * derived::ray_spacing(scanner),
         .axis = Vector3d::UnitX(),
-        .origin_spread = mount->translation().norm() + spread +
+        .origin_spread = mount->translation().norm() + 0.5 * derived::spread_of_turns +
                          0.5 * mission.flight.cruise_speed / std::abs(scanner.rotation_rate)};
   }
 

@@ -1,7 +1,6 @@
-#include <cmath>
 #include <cstdint>
 #include <filesystem>
-#include <limits>
+#include <optional>
 #include <span>
 #include <stop_token>
 #include <vector>
@@ -82,11 +81,10 @@ judge::CloudJudgement judged_mesh(const std::filesystem::path& file, const Truth
           accuracy.accuracy(), geometry::surface_area(truth.model)};
 }
 
-/// Of what is visible; NaN where nobody says from where.
-double visible_share(const judge::CloudJudgement& judged, const Truth& truth) {
-  constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
-  if (judged.is_covered.size() != truth.is_visible.size()) return unknown;
-  return judge::covered_share(judged.is_covered, truth.is_visible).value_or(unknown);
+/// Of what is visible; nothing where nobody says from where.
+std::optional<double> visible_share(const judge::CloudJudgement& judged, const Truth& truth) {
+  if (judged.is_covered.size() != truth.is_visible.size()) return std::nullopt;
+  return judge::covered_share(judged.is_covered, truth.is_visible);
 }
 
 }  // namespace
@@ -101,8 +99,7 @@ int evaluate(const EvaluateOptions& options, const Console& console) {
   const judge::CloudJudgement judged =
       is_mesh ? judged_mesh(file, truth) : judged_cloud(file, truth, progress, console.stop);
   const judge::CloudAccuracy& accuracy = judged.accuracy;
-  const double visible = visible_share(judged, truth);
-  const bool has_visible = !std::isnan(visible);
+  const std::optional<double> visible = visible_share(judged, truth);
   progress.clear();
 
   if (options.is_json) {
@@ -113,8 +110,7 @@ int evaluate(const EvaluateOptions& options, const Console& console) {
         {"registration_distance_m", truth.registration_distance},
         {"samples", truth.samples},
         {"coverage", judged.coverage},
-        {"coverage_visible",
-         has_visible ? nlohmann::ordered_json(visible) : nlohmann::ordered_json()},
+        {"coverage_visible", visible ? nlohmann::ordered_json(*visible) : nlohmann::ordered_json()},
         {"distance_to_model_m",
          {{"mean", accuracy.mean},
           {"root_mean_square", accuracy.root_mean_square},
@@ -134,9 +130,9 @@ int evaluate(const EvaluateOptions& options, const Console& console) {
       "  density   {:.4g} points per m^2 of the surface's {:.4g} m^2\n",
       file.filename().string(), judged.points, options.model, 100.0 * judged.coverage,
       truth.registration_distance,
-      has_visible ? fmt::format(", {:.2f} % of what is visible", 100.0 * visible) : "",
-      accuracy.mean, accuracy.root_mean_square, accuracy.median, accuracy.percentile_95,
-      accuracy.largest, judged.density(), judged.area);
+      visible ? fmt::format(", {:.2f} % of what is visible", 100.0 * *visible) : "", accuracy.mean,
+      accuracy.root_mean_square, accuracy.median, accuracy.percentile_95, accuracy.largest,
+      judged.density(), judged.area);
   return 0;
 }
 
