@@ -1,10 +1,13 @@
 // Where a vehicle takes off and lands, and how high it returns: a mission round a plain building.
+#include <array>
 #include <cmath>
+#include <cstdio>
 #include <random>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "flight/export/geodesy.h"
 #include "geometry/angle.h"
 #include "geometry/place/camera.h"
 #include "missions/derived/resolved_mission.h"
@@ -24,6 +27,7 @@ using tests::run_skycap;
 using tests::TestFolder;
 
 constexpr double building_height = 15.0;
+const Vector3d pad(-75, 0, 0);
 
 /// A closed box as an OBJ file's text; its top rises to the east by `slope` a metre.
 std::string box_obj(const Vector3d& low, const Vector3d& high, double slope, int first) {
@@ -76,18 +80,51 @@ const TestFolder& package() {
   return folder;
 }
 
-tests::ProgramRun check(const std::vector<std::string>& more) {
+/// A route from the pad over `places` and back the same way, stopping everywhere, as PX4's file.
+std::string route_there_and_back(const std::vector<Vector3d>& places) {
+  const flight::LocalFrame frame({47.1, 8.2, 480.0});
+  std::string text = "QGC WPL 110\n";
+  int items = 0;
+  const auto add = [&](int command, double hold, const Vector3d& place) {
+    const flight::GeodeticPoint point = frame.to_geodetic(place);
+    std::array<char, 160> line{};
+    std::snprintf(line.data(), line.size(), "%d\t%d\t3\t%d\t%.1f\t0.3\t0\t0\t%.9f\t%.9f\t%.4f\t1\n",
+                  items, items == 0 ? 1 : 0, command, hold, point.latitude_deg, point.longitude_deg,
+                  place.z());
+    text += line.data();
+    ++items;
+  };
+  constexpr int waypoint = 16, land = 21, take_off = 22;
+  const Vector3d above_pad = pad + Vector3d(0, 0, 5);
+  add(take_off, 0.0, above_pad);
+  text += "1\t0\t2\t178\t1\t4\t-1\t0\t0\t0\t5\t1\n";  // 4 m/s
+  ++items;
+  for (const Vector3d& place : places) add(waypoint, 0.5, place);
+  for (auto place = places.rbegin() + 1; place != places.rend(); ++place) {
+    add(waypoint, 0.5, *place);
+  }
+  add(waypoint, 0.5, above_pad);
+  add(land, 0.0, pad);
+  return text;
+}
+
+tests::ProgramRun check(const std::vector<std::string>& more,
+                        const std::string& route = "out/mission.plan") {
   const TestFolder& folder = package();
-  std::vector<std::string> arguments{"check", folder / "m.yaml", "--route",
-                                     folder / "out/mission.plan"};
+  std::vector<std::string> arguments{"check", folder / "m.yaml", "--route", folder / route};
   arguments.insert(arguments.end(), more.begin(), more.end());
   return run_skycap(arguments);
 }
 
-// Views on all four sides look at walls from below their tops: whoever returns at 5 m flies through
-// the building.
+// The route goes round the building to behind it: whoever returns from there at 5 m flies through
+// it.
 TEST(StatedReturns, AreRefusedAtAHeightThatLeadsThroughTheBuilding) {
-  const auto low = check({"--return-height", "5"});
+  package().write("behind.waypoints",
+                  route_there_and_back({{-22, -22, 6}, {22, -22, 6}, {22, 0, 6}}));
+  const auto check_return = [](const std::string& height) {
+    return check({"--return-height", height}, "behind.waypoints");
+  };
+  const auto low = check_return("5");
   EXPECT_EQ(low.exit_code, 1);
   EXPECT_THAT(low.out, HasSubstr(": fine, 0 of "));  // the mission itself is
   EXPECT_THAT(low.out, HasSubstr("not safe, at 5 m (--return-height) "));
@@ -96,7 +133,7 @@ TEST(StatedReturns, AreRefusedAtAHeightThatLeadsThroughTheBuilding) {
   ASSERT_THAT(low.out, HasSubstr(least));
   const double height = std::stod(low.out.substr(low.out.find(least) + least.size()));
   EXPECT_GE(height, building_height + 2.0 - 0.1);  // the clearance, less what proofs lose
-  EXPECT_EQ(check({"--return-height", std::to_string(height)}).exit_code, 0);
+  EXPECT_EQ(check_return(std::to_string(height)).exit_code, 0);
 }
 
 TEST(Pads, TooSteepByWhatIsDeclaredAreRefusedBeforeTheSurvey) {
@@ -156,7 +193,7 @@ geometry::Scan scan_of_ramp(const geometry::Camera& camera, const geometry::View
   scan.world_from_sensor = geometry::camera_pose(view);
   std::mt19937_64 random(4);
   std::normal_distribution<double> noise(0.0, 0.02);
-  const Vector3d normal = Vector3d(-slope, 0.0, 1.0).normalized(), pad(-75, 0, 0);
+  const Vector3d normal = Vector3d(-slope, 0.0, 1.0).normalized();
   for (int row = 0; row < camera.height(); ++row) {
     for (int column = 0; column < camera.width(); ++column) {
       const Vector3d ray = scan.world_from_sensor.linear() * camera.ray({column, row}).normalized();
