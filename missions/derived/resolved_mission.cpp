@@ -101,17 +101,19 @@ void read_vehicles(file::MissionFile& given) {
   lead_fleet(given);
 }
 
-/// The building preset's lengths, which follow from other values, where no key says otherwise.
+/// What the building preset derives from other values, where no key says otherwise.
 ///
 /// At building scale the published psi looks at a small part of the sight line only, and targets
 /// hidden by the building itself are taken for visible; it is therefore the whole line. One view
-/// proposal within a twentieth of d keeps the number of proposals below tau.
+/// proposal within a twentieth of d keeps the number of proposals below tau. Smooth walls are
+/// measured so evenly that by the published k they have no frontiers at their rims.
 void derive_building_preset(file::MissionFile& given) {
   survey::see::SeeConfig& see = given.mission.planner.see;
   const double distance = view_distance_of(given.mission);
   if (!given.gives("planner.occlusion_search_distance")) see.occlusion_search_distance = distance;
   if (!given.gives("planner.frontier_spacing")) see.frontier_spacing = 0.05 * distance;
   if (!given.gives("planner.occluder_spacing")) see.occluder_spacing = 2.0 * see.resolution_radius;
+  if (!given.gives("planner.core_threshold")) see.core_threshold = see.half_disc_threshold();
 }
 
 /// EGM96's undulation where a geoid is asked for and no key says it; nothing where PROJ does not

@@ -271,6 +271,7 @@ void apply_presets(Mission& mission) {
   if (mission.planner.preset == PlannerPreset::building) {
     see.visibility_update_limit = 1000;
     see.max_attempts = 2;
+    see.still_occluded = survey::see::StillOccluded::put_off;
   }
 }
 

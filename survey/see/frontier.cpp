@@ -22,4 +22,11 @@ geometry::View place_view(const Vector3d& frontier, const Vector3d& direction,
   return view_towards({cosine * azimuth.x(), cosine * azimuth.y(), lowest_sine});
 }
 
+geometry::View look_again(const Frontier& frontier, const ViewPlacement& placement) {
+  const Vector3d line = frontier.observed_from - frontier.position;
+  const double range = line.norm();
+  const Vector3d direction = line / range;
+  return {frontier.position + std::min(placement.distance, range) * direction, -direction};
+}
+
 }  // namespace skycap::survey::see

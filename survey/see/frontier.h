@@ -22,6 +22,7 @@ struct Frontier {
   geometry::View view;
   double clear_offset = 0.0;                  ///< zeta; see OcclusionTest
   std::optional<std::size_t> offset_of_scan;  ///< the number of scans when it was computed
+  bool was_put_off = false;                   ///< its view is from where it was seen
 };
 
 /// By index of the point, so that every loop over them has the same order.
@@ -38,5 +39,8 @@ struct ViewPlacement {
 /// place on the sphere is high enough, it is the highest one.
 geometry::View place_view(const Eigen::Vector3d& frontier, const Eigen::Vector3d& direction,
                           const ViewPlacement& placement);
+
+/// The view of `frontier` along the line on which it was seen, from no farther than that.
+geometry::View look_again(const Frontier& frontier, const ViewPlacement& placement);
 
 }  // namespace skycap::survey::see

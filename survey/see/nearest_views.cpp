@@ -68,6 +68,24 @@ std::vector<std::size_t> nearest_views(std::span<const Vector3d> positions, cons
   return order;
 }
 
+std::size_t nearest_view(std::span<const Vector3d> positions, const Vector3d& query,
+                         const Vector3d& first_view, double first_view_weight) {
+  constexpr double tie = 1e-9;
+  std::size_t best = 0;
+  double best_cost = std::numeric_limits<double>::infinity(), best_from_first = 0.0;
+  for (std::size_t i = 0; i < positions.size(); ++i) {
+    const double from_first = (positions[i] - first_view).norm();
+    const double cost = (positions[i] - query).norm() + first_view_weight * from_first;
+    const bool better =
+        cost < best_cost - tie || (cost < best_cost + tie && from_first < best_from_first - tie);
+    if (!better) continue;
+    best = i;
+    best_cost = cost;
+    best_from_first = from_first;
+  }
+  return best;
+}
+
 std::size_t approximately_nearest_view(std::span<const Vector3d> positions, const Vector3d& query,
                                        double leaf_size) {
   assert(!positions.empty());

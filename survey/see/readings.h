@@ -34,6 +34,13 @@ enum class NearestSearch {
   octree,  ///< approximate, as in the released code
 };
 
+/// What becomes of a frontier that even the view from the clearest direction does not see.
+enum class StillOccluded {
+  give_up,  ///< it is an outlier until something new is measured beside it (paper)
+  put_off,  ///< when nothing else is left it is looked at from where it was seen (ours)
+  keep,     ///< the view is taken all the same
+};
+
 /// How a view is moved after it failed to resolve its frontier.
 enum class Adjustment {
   rotation,  ///< shifted and turned about the frontier, with a gain that doubles (released code)

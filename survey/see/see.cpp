@@ -12,6 +12,7 @@
 #include "survey/see/frontier.h"
 #include "survey/see/nearest_views.h"
 #include "survey/see/occlusion.h"
+#include "survey/see/put_off.h"
 #include "survey/see/seen_through.h"
 #include "survey/see/view_adjustment.h"
 #include "survey/see/visibility_graph.h"
@@ -24,12 +25,6 @@ using Eigen::Vector3d;
 using Eigen::Vector3f;
 using geometry::ScanSpan;
 using geometry::View;
-
-Vector3d centroid(std::span<const Vector3f> points) {
-  Vector3d sum = Vector3d::Zero();
-  for (const Vector3f& point : points) sum += point.cast<double>();
-  return sum / static_cast<double>(points.size());
-}
 
 std::vector<Vector3f> points_inside(const ScanSpan& scan, const Eigen::AlignedBox3d& box) {
   std::vector<Vector3f> inside;
@@ -55,14 +50,14 @@ struct SeePlanner::Impl {
         occlusion(map.index().grid(),
                   {.radius = config.occlusion_radius.value_or(config.resolution_radius),
                    .search_distance = config.occlusion_search_distance,
-                   .end = config.march_end}) {}
+                   .end = config.march_end}),
+        put_off(config.frontier_spacing) {}
 
   std::optional<View> update(const ScanSpan& scan);
   void insert(std::span<const Vector3f> points);
   void classify();
   void propose_for_new_frontiers();
   geometry::SurfaceFrame frame_at(std::uint32_t point) const;
-  void face_free_space(geometry::SurfaceFrame& frame, const Vector3d& position) const;
   void adjust_target(std::span<const Vector3f> points);
   void avoid_occlusions();
   bool avoid_occlusion(std::uint32_t point, Frontier& frontier);
@@ -72,6 +67,8 @@ struct SeePlanner::Impl {
   std::optional<View> select();
   std::size_t nearest_proposal() const;
   void give_up(std::uint32_t point);
+  void give_up_around(std::uint32_t point);
+  void set_aside(std::uint32_t point);
   void list_proposals();
 
   const SeeConfig config;
@@ -87,6 +84,7 @@ struct SeePlanner::Impl {
 
   std::set<std::uint32_t> waiting;  // frontiers without a proposal, another one being too near
   FrontierMap frontiers;            // those with a proposal
+  PutOffFrontiers put_off;          // those that no proposal sees
   std::map<std::uint32_t, AttemptRecord> attempts;
   VisibilityGraph graph;
   std::optional<std::uint32_t> target;  // the frontier that the last proposed view is for
@@ -120,6 +118,7 @@ std::optional<View> SeePlanner::Impl::update(const ScanSpan& scan) {
   adjust_target(points);
   stopwatch.lap("controller");
   if (config.optimise_views) avoid_occlusions();
+  if (frontiers.empty()) put_off.take_up_again(placement, frontiers);
   stopwatch.lap("occlusion");
   if (config.visibility_graph) update_graph();
   stopwatch.lap("graph");
@@ -146,6 +145,7 @@ void SeePlanner::Impl::classify() {
   const geometry::DensityUpdate update = map.relabel();
   for (const std::uint32_t point : update.lost_frontiers) {
     frontiers.erase(point);
+    put_off.forget(point);
     waiting.erase(point);
   }
   waiting.insert(update.new_frontiers.begin(), update.new_frontiers.end());
@@ -192,25 +192,13 @@ geometry::SurfaceFrame SeePlanner::Impl::frame_at(std::uint32_t point) const {
   const Vector3d position = positions[point].cast<double>();
   geometry::SurfaceFrame frame =
       geometry::surface_frame(position, neighbours, scans[map.cloud().views[point]].position);
-  if (free_space) face_free_space(frame, position);
-  return frame;
-}
-
-// Probes both sides of the surface, ever farther out, until one turns out to be free (released
-// code); a normal that points to the other side is turned round.
-void SeePlanner::Impl::face_free_space(geometry::SurfaceFrame& frame,
-                                       const Vector3d& position) const {
-  const double probe_step = config.occluder_spacing;
-  double along = probe_step;
-  while (along <= config.occlusion_search_distance) {
-    if (free_space->is_free(position + along * frame.normal)) return;
-    if (free_space->is_free(position - along * frame.normal)) {
-      frame.normal = -frame.normal;
-      frame.boundary = -frame.boundary;
-      return;
-    }
-    along += probe_step;
+  // A normal that points to the side which is not free is turned round (released code).
+  if (free_space && free_space->is_free_behind(position, frame.normal, config.occluder_spacing,
+                                               config.occlusion_search_distance)) {
+    frame.normal = -frame.normal;
+    frame.boundary = -frame.boundary;
   }
+  return frame;
 }
 
 // The reactive part: the last view was for a frontier that is still one.
@@ -224,7 +212,9 @@ void SeePlanner::Impl::adjust_target(std::span<const Vector3f> points) {
   const bool adjusted =
       !seen.empty() && record.views < config.max_attempts &&
       adjust_view(found->second, record, centroid(seen), placement, config.adjustment);
-  if (!adjusted) give_up(*target);
+  if (adjusted) return;
+  if (config.still_occluded == StillOccluded::put_off) give_up_around(*target);
+  give_up(*target);
 }
 
 // The proactive part (§III-B), for the proposals nearest to the sensor.
@@ -239,7 +229,7 @@ void SeePlanner::Impl::avoid_occlusions() {
       const std::uint32_t point = proposal_points[i];
       if (!checked.insert(point).second) continue;
       if (avoid_occlusion(point, frontiers.at(point))) continue;
-      give_up(point);
+      set_aside(point);
       dropped = true;
     }
     // What was given up makes room for the frontiers around it.
@@ -249,6 +239,7 @@ void SeePlanner::Impl::avoid_occlusions() {
 
 /// Moves an occluded view to where it is clearest. False if the frontier should be given up.
 bool SeePlanner::Impl::avoid_occlusion(std::uint32_t point, Frontier& frontier) {
+  if (frontier.was_put_off) return true;
   const double offset = clear_offset(frontier);
   if (!occlusion.is_occluded(frontier.position, offset, frontier.view.position)) return true;
 
@@ -268,7 +259,7 @@ bool SeePlanner::Impl::avoid_occlusion(std::uint32_t point, Frontier& frontier) 
       config.observing_direction == ObservingDirection::ray ? observing : -frontier.observed_along;
   const auto cap = geometry::clearest_direction(occluded, known_clear, config.cap);
   if (cap) frontier.view = place_view(frontier.position, cap->direction, placement);
-  return !config.drop_if_still_occluded ||
+  return config.still_occluded == StillOccluded::keep ||
          !occlusion.is_occluded(frontier.position, offset, frontier.view.position);
 }
 
@@ -338,26 +329,35 @@ std::size_t SeePlanner::Impl::nearest_proposal() const {
   if (config.nearest == NearestSearch::octree) {
     return approximately_nearest_view(proposal_positions, sensor, config.occlusion_search_distance);
   }
-  constexpr double tie = 1e-9;
-  std::size_t best = 0;
-  double best_cost = std::numeric_limits<double>::infinity(), best_from_first = 0.0;
-  for (std::size_t i = 0; i < proposal_positions.size(); ++i) {
-    const double from_first = (proposal_positions[i] - scans.front().position).norm();
-    const double cost =
-        (proposal_positions[i] - sensor).norm() + config.first_view_weight * from_first;
-    const bool better =
-        cost < best_cost - tie || (cost < best_cost + tie && from_first < best_from_first - tie);
-    if (!better) continue;
-    best = i;
-    best_cost = cost;
-    best_from_first = from_first;
-  }
-  return best;
+  return nearest_view(proposal_positions, sensor, scans.front().position, config.first_view_weight);
 }
 
 void SeePlanner::Impl::give_up(std::uint32_t point) {
   map.give_up(point);
   frontiers.erase(point);
+}
+
+/// Gives up what `point` stood for: it was looked at as often as itself.
+void SeePlanner::Impl::give_up_around(std::uint32_t point) {
+  const auto& positions = map.cloud().positions;
+  std::vector<std::uint32_t> around = put_off.forget_around(positions[point].cast<double>());
+  for (const std::uint32_t other : waiting) {
+    const bool is_near = (positions[other] - positions[point]).norm() < config.frontier_spacing;
+    if (is_near) around.push_back(other);
+  }
+  for (const std::uint32_t other : around) {
+    waiting.erase(other);
+    map.give_up(other);
+  }
+}
+
+/// What becomes of a frontier whose view is of no use.
+void SeePlanner::Impl::set_aside(std::uint32_t point) {
+  const auto found = frontiers.find(point);
+  const bool may_come_back =
+      config.still_occluded == StillOccluded::put_off && !found->second.was_put_off;
+  if (!may_come_back) return give_up(point);
+  put_off.add(frontiers.extract(found));
 }
 
 void SeePlanner::Impl::list_proposals() {
@@ -381,8 +381,11 @@ void SeePlanner::stop_on(std::stop_token stop) { impl_->stop = std::move(stop); 
 
 std::optional<View> SeePlanner::next_view_instead() {
   if (impl_->target && impl_->frontiers.contains(*impl_->target)) {
-    impl_->give_up(*impl_->target);
+    impl_->set_aside(*impl_->target);
     impl_->propose_for_new_frontiers();
+    if (impl_->frontiers.empty()) {
+      impl_->put_off.take_up_again(impl_->placement, impl_->frontiers);
+    }
     impl_->list_proposals();
     impl_->graph.keep_only(impl_->proposal_points);
   }

@@ -21,6 +21,14 @@ int SeeConfig::effective_core_threshold() const {
   return static_cast<int>(std::min(1e9, std::ceil(volume * density)));
 }
 
+int SeeConfig::half_disc_threshold() const {
+  // Discs of diameter epsilon put down at random fill this share of a plane (Feder 1980).
+  constexpr double filled = 0.547;
+  const double radii = 2.0 * resolution_radius / effective_spacing();
+  const double half = 0.5 * filled * radii * radii;
+  return std::max(effective_core_threshold(), static_cast<int>(std::min(1e6, std::round(half))));
+}
+
 double SeeConfig::effective_spacing() const { return spacing.value_or(1.0 / std::sqrt(density)); }
 
 void SeeConfig::validate() const {

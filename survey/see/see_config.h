@@ -36,8 +36,8 @@ struct SeeConfig {
   bool optimise_views = true;  ///< propose clear views for occluded frontiers (SEE++)
   geometry::CapConfig cap;     ///< how the clear view is found (§III-B)
   ObservingDirection observing_direction = ObservingDirection::ray;
-  double occluder_spacing = 0.01;      ///< spacing of the sparse cloud that the cap is found in
-  bool drop_if_still_occluded = true;  ///< give up frontiers that even the optimised view misses
+  double occluder_spacing = 0.01;  ///< spacing of the sparse cloud that the cap is found in
+  StillOccluded still_occluded = StillOccluded::give_up;
 
   bool visibility_graph = true;     ///< weigh views by the frontiers they see (SEE++)
   bool facing_test = false;         ///< an edge needs the frontier's normal towards the view
@@ -61,6 +61,10 @@ struct SeeConfig {
 
   /// k as given, or ceil(4/3 pi r^3 rho).
   int effective_core_threshold() const;
+  /// Half of what a disc of radius r holds on a densely measured surface, and at least the above:
+  /// with it the rim of a measured surface is a frontier, which by the published k it is by noise
+  /// alone.
+  int half_disc_threshold() const;
   /// epsilon as given, or rho^(-1/2).
   double effective_spacing() const;
 };

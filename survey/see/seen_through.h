@@ -31,6 +31,16 @@ class SeenThrough {
       return ranges_[index] > ray.norm();
     });
   }
+  /// Whether of the two sides of a surface through `place` the one behind is free. Both are probed,
+  /// the front first, every `step` as far as `limit`, until one turns out to be.
+  bool is_free_behind(const Eigen::Vector3d& place, const Eigen::Vector3d& normal, double step,
+                      double limit) const {
+    for (double along = step; along <= limit; along += step) {
+      if (is_free(place + along * normal)) return false;
+      if (is_free(place - along * normal)) return true;
+    }
+    return false;
+  }
 
  private:
   static constexpr double chord = 0.01;  // between unit directions that count as the same line

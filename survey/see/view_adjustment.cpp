@@ -30,6 +30,12 @@ Vector3d adjusted_direction(const Frontier& frontier, const Vector3d& from_centr
 
 }  // namespace
 
+Vector3d centroid(std::span<const Eigen::Vector3f> points) {
+  Vector3d sum = Vector3d::Zero();
+  for (const Eigen::Vector3f& point : points) sum += point.cast<double>();
+  return sum / static_cast<double>(points.size());
+}
+
 bool adjust_view(Frontier& frontier, AttemptRecord& record, const Vector3d& scan_centroid,
                  const ViewPlacement& placement, Adjustment adjustment) {
   if (adjustment == Adjustment::none) return false;

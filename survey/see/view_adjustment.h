@@ -5,6 +5,7 @@
 #pragma once
 
 #include <limits>
+#include <span>
 
 #include <Eigen/Core>
 
@@ -21,6 +22,8 @@ struct AttemptRecord {
   bool may_switch = true;  ///< whether the second start, from the observing line, is still to come
   int views = 0;           ///< aimed at the frontier
 };
+
+Eigen::Vector3d centroid(std::span<const Eigen::Vector3f> points);
 
 /// Moves the view of a frontier that a scan with the centroid `scan_centroid` failed to resolve.
 /// While the centroids come nearer to the frontier, the view is shifted away from them, over the

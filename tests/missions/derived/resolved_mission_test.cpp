@@ -51,13 +51,17 @@ TEST(ResolvedMission, DerivesTheBuildingPresetFromTheSensorAndTheDensity) {
   EXPECT_NEAR(see.frontier_spacing, 2.0645, 5e-4);
   EXPECT_DOUBLE_EQ(see.occluder_spacing, 0.3);
   EXPECT_EQ(see.visibility_update_limit, 1000U);
-  EXPECT_TRUE(see.drop_if_still_occluded);
+  EXPECT_EQ(see.still_occluded, survey::see::StillOccluded::put_off);
+  EXPECT_EQ(see.core_threshold, 5);  // of 213 points a cubic metre, 0.0685 m apart, 10.5 on a disc
 
   const survey::see::SeeConfig overridden =
       parsed(building + ", occlusion_search_distance: 10, visibility_update_limit: 5}").planner.see;
   EXPECT_EQ(overridden.occlusion_search_distance, 10.0);
   EXPECT_EQ(overridden.visibility_update_limit, 5U);
   EXPECT_NEAR(overridden.frontier_spacing, 2.0645, 5e-4);
+  EXPECT_EQ(parsed(building + ", core_threshold: 4}").planner.see.core_threshold, 4);
+  EXPECT_EQ(parsed("planner: {density: 213, resolution_radius: 0.15}").planner.see.core_threshold,
+            std::nullopt);
 }
 
 TEST(ResolvedMission, ReadsTheSitesAirspace) {

@@ -93,7 +93,7 @@ TEST(SeePlanner, NeedsNoiseOrALargerThreshold) {
   EXPECT_FALSE(next);
 
   see::SeeConfig config = small_config();
-  config.core_threshold = 12;
+  config.core_threshold = config.half_disc_threshold();
   const Outcome larger_threshold = survey(config, 0.0);
   EXPECT_TRUE(larger_threshold.ended);
   EXPECT_GT(coverage(larger_threshold.cloud, 0.03), 0.99);
@@ -144,7 +144,7 @@ TEST(SeePlanner, WithoutOptimiserAndGraphIsSee) {
   const Outcome exact = survey(config, 0.02, 12);
   config.occlusion_search_distance = 0.3;  // parameters of SEE++ alone change nothing
   config.visibility_update_limit = 3;
-  config.drop_if_still_occluded = false;
+  config.still_occluded = see::StillOccluded::keep;
   const Outcome same = survey(config, 0.02, 12);
   ASSERT_EQ(exact.views.size(), same.views.size());
   for (std::size_t i = 0; i < exact.views.size(); ++i) {
@@ -223,6 +223,30 @@ TEST(SeePlanner, OffersEveryFrontierInTurnWhenViewsAreRefused) {
   EXPECT_EQ(offered.size(), frontiers);
 }
 
+// What is put off comes back when nothing else is left, seen along the line that it was seen on.
+TEST(SeePlanner, OffersRefusedFrontiersAgainFromWhereTheyWereSeen) {
+  see::SeeConfig config = small_config();
+  config.still_occluded = see::StillOccluded::put_off;
+  see::SeePlanner planner(config, small_camera);
+  const View first = geometry::look_at({1.9, 0.3, 0.2}, {0, 0, 0});  // nearer than d to some
+  std::optional<View> next =
+      planner.next_view(tests::scan_spheres({{}}, small_camera, first, 0.02));
+  const std::size_t frontiers = planner.last_step().frontiers;
+  std::vector<View> offered;
+  for (; next && offered.size() <= 2 * frontiers; next = planner.next_view_instead()) {
+    offered.push_back(*next);
+  }
+  EXPECT_FALSE(next);
+  ASSERT_EQ(offered.size(), 2 * frontiers);
+  for (std::size_t i = frontiers; i < offered.size(); ++i) {
+    // Between the first view and the frontier, on their line, and no farther away than d.
+    const Vector3d to_view = offered[i].position - first.position;
+    EXPECT_NEAR(to_view.cross(offered[i].direction).norm(), 0.0, 1e-6);
+    EXPECT_GE(to_view.dot(offered[i].direction), -1e-6);
+    EXPECT_LE(to_view.norm(), first.position.norm());
+  }
+}
+
 TEST(SeePlanner, DropsMeasurementsOutsideTheSceneBox) {
   see::SeeConfig config = small_config();
   config.scene_box = Eigen::AlignedBox3d(Vector3d(-1, -1, 0), Vector3d(1, 1, 1));
@@ -254,7 +278,10 @@ TEST(SeePlanner, EveryAlternativeReadingWorks) {
        [](see::SeeConfig& c) { c.cap.policy = geometry::CapPolicy::nonlinear_program; }},
       {"observing_direction",
        [](see::SeeConfig& c) { c.observing_direction = see::ObservingDirection::image_axis; }},
-      {"keep if still occluded", [](see::SeeConfig& c) { c.drop_if_still_occluded = false; }},
+      {"keep if still occluded",
+       [](see::SeeConfig& c) { c.still_occluded = see::StillOccluded::keep; }},
+      {"put off if still occluded",
+       [](see::SeeConfig& c) { c.still_occluded = see::StillOccluded::put_off; }},
       {"facing and field of view",
        [](see::SeeConfig& c) { c.facing_test = c.field_of_view_test = true; }},
       {"octree", [](see::SeeConfig& c) { c.nearest = see::NearestSearch::octree; }},
