@@ -8,6 +8,7 @@
 #include "missions/derived/pad_grounds.h"
 #include "missions/file/json_text.h"
 #include "missions/file/mission_keys.h"
+#include "missions/judge/reliability.h"
 #include "missions/package/anew_mission.h"
 #include "missions/package/fleet_report.h"
 #include "missions/package/ground_json.h"
@@ -32,8 +33,26 @@ Json json_of(const std::vector<survey::PartTime>& times) {
   return parts;
 }
 
+/// How far what the planner believes of places is true, of what can be seen.
+Json reliability_summary(const file::Mission& mission, const survey::skycap::SurveyBelief& belief,
+                         const std::optional<TrueCoverage>& truth) {
+  if (!truth) return {};
+  const double reach = 2.0 * mission.planner.see.resolution_radius;
+  const judge::Reliability found = judge::reliability(belief.patches, truth->samples,
+                                                      truth->is_covered, truth->is_visible, reach);
+  Json bands = Json::array();
+  for (const judge::Reliability::Band& band : found.bands) {
+    bands.push_back(
+        {{"believed", band.believed}, {"covered", band.covered}, {"share", band.share}});
+  }
+  return {{"error", found.error},
+          {"bands", bands},
+          {"unknown", {{"covered", found.unknown_covered}, {"share", found.unknown_share}}}};
+}
+
 /// What the planner believes at the end: shares are of the surface, seen and guessed.
-Json belief_summary(const run::SurveyRecord& record) {
+Json belief_summary(const file::Mission& mission, const run::SurveyRecord& record,
+                    const CoverageFigures& coverage) {
   if (!record.belief) return {};
   const survey::skycap::SurveyBelief& belief = *record.belief;
   // In which way it is complete, or what ended it before that: no two reasons.
@@ -47,7 +66,8 @@ Json belief_summary(const run::SurveyRecord& record) {
             {"never_seen", belief.never_seen},
             {"unreachable", belief.unreachable}}},
           {"next_gain", belief.next_gain},
-          {"noise_m", belief.noise}};
+          {"noise_m", belief.noise},
+          {"reliability", reliability_summary(mission, belief, coverage.truth)}};
 }
 
 /// What is missing, piece by piece: as the planner believes or else as the simulator knows.
@@ -220,7 +240,7 @@ std::string summary_json(const file::Mission& mission, const run::SurveyRecord& 
                {"planning_time_parts_s", json_of(planning_time_by_part(record))},
                {"sensing_time_s", record.sensing_time()},
                {"distance_m", record.distance()},
-               {"belief", belief_summary(record)},
+               {"belief", belief_summary(mission, record, coverage)},
                {"surface", surface_summary(record, coverage)}};
   if (derived::has_target(mission)) {
     summary["targets"] = targets_summary(target_coverage(mission, record.cloud.positions));

@@ -103,6 +103,17 @@ function energy_chart(data) {
   return chart("Energy left above the reserve", null, "line", lines, { x: "minutes", y: "Wh", y_more: { min: 0 } });
 }
 
+// Of the surface that the planner believes covered with probability p, p should be.
+function reliability_chart(data) {
+  const bands = value_at(data, "summary.belief.reliability.bands");
+  if (!bands) return null;
+  const seen = bands.filter((band) => band.share > 0);
+  return chart("Belief against truth",
+    "Of the surface that the planner believes covered with some probability, the share that is: on the diagonal the planner is right.",
+    "line", [line("covered", seen.map((band) => [percent(band.believed), percent(band.covered)])),
+      line("if belief were right", [[0, 0], [100, 100]], 4)], { x: "% believed", y: "% covered", y_more: { min: 0 } });
+}
+
 function survey_charts(data) {
   const { summary } = data, views = summary.per_view || [];
   if (!views.length) return null;
@@ -114,7 +125,7 @@ function survey_charts(data) {
       line("new with the view", views.map((view, i) => [i + 1, view.points_new]), 1)], { x: "views", y: "points" }),
     chart("Planning time", "Time that the planner took for each view, on this machine.", "line",
       [line("planning", views.map((view, i) => [i + 1, view.planning_time_s]))], { x: "views", y: "s" }),
-    clearance_chart(data), energy_chart(data)];
+    clearance_chart(data), energy_chart(data), reliability_chart(data)];
   return element("section", { id: "curves" }, element("h2", {}, "Curves"),
     element("div", { class: "charts" }, charts));
 }
