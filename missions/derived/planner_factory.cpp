@@ -54,9 +54,8 @@ survey::see::SeeConfig see_config(const file::Mission& mission, unsigned threads
   return config;
 }
 
-/// What a stop costs where the ways between stops measure too, as metres of way at the cruise
-/// speed: the rest, and the ramps of the straight pieces that lead there, two and a half in surveys
-/// of buildings.
+/// What a stop costs, as metres of way at the cruise speed: the rest, and the ramps of the straight
+/// pieces that lead there, two and a half in surveys of buildings.
 double price_of_stop(const file::Mission& mission) {
   constexpr double pieces = 2.5, long_way = 100.0;
   const flight::Motion motion(vehicle_of(mission),
@@ -65,6 +64,12 @@ double price_of_stop(const file::Mission& mission) {
   const double ramps = motion.leg_time({long_way, 0.0, 0.0}) - long_way / speed;
   return speed *
          (hold_of(mission) + hold_after_of(mission) + pieces * (ramps + flight::corner_hold));
+}
+
+double view_price_of(const file::Mission& mission) {
+  const double distance = view_distance_of(mission);
+  if (mission.planner.goal == file::PlannerGoal::views) return 3.0 * distance;
+  return mission.flight.is_flown() ? price_of_stop(mission) : distance;
 }
 
 survey::skycap::SkycapConfig skycap_config(const file::Mission& mission, unsigned threads) {
@@ -84,7 +89,7 @@ survey::skycap::SkycapConfig skycap_config(const file::Mission& mission, unsigne
   if (limits.max_minutes) config.stop.most_time = 60.0 * *limits.max_minutes;
   config.stop.speed = limits.speed;
   config.stop.time_per_view = limits.time_per_view;
-  if (mission.sensor.is_moving()) config.view_price = price_of_stop(mission);
+  config.view_price = view_price_of(mission);
   return config;
 }
 

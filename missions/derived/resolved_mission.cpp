@@ -145,6 +145,9 @@ file::Mission resolved(file::MissionFile given, const Report& report) {
   if (mission.flight.is_flown() && !given.gives("planner.name")) {
     mission.planner.name = file::PlannerName::skycap;
   }
+  if (mission.sensor.is_moving() && !given.gives("planner.goal")) {
+    mission.planner.goal = file::PlannerGoal::minutes;
+  }
   if (mission.sensor.lidar) read_lidar(given);
   check_scene(given);
   check_start(given);

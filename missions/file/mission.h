@@ -92,8 +92,15 @@ enum class PlannerPreset {
   building,  ///< what keeps SEE++ from stalling on large scenes: docs/mission_file.md
 };
 
+/// What the planner skycap spares.
+enum class PlannerGoal {
+  minutes,  ///< a view costs the seconds that its stop takes, or one view distance of way
+  views,    ///< a view costs three view distances of way
+};
+
 struct PlannerConfig {
   PlannerName name = PlannerName::see_plus_plus;
+  PlannerGoal goal = PlannerGoal::views;
   PlannerPreset preset = PlannerPreset::paper;
   survey::see::SeeConfig see;
   survey::skycap::StopRule

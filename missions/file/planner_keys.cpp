@@ -45,6 +45,13 @@ std::vector<Key> which_planner() {
           [](Mission & m) -> auto& { return m.planner.preset; },
           "Values that the keys below override: paper as published, building as described "
           "below."),
+      otherwise(
+          "minutes with sensor.capture: moving, else views",
+          choice_key(
+              "planner.goal", {"minutes", "views"},
+              [](Mission & m) -> auto& { return m.planner.goal; },
+              "What skycap spares. minutes: a view costs what its stop costs, or without a vehicle "
+              "one view distance of way; views: it costs three view distances.")),
   };
 }
 

@@ -64,6 +64,19 @@ TEST(ResolvedMission, DerivesTheBuildingPresetFromTheSensorAndTheDensity) {
             std::nullopt);
 }
 
+// A moving sensor measures on the way, so that stops are what is left to spare.
+TEST(ResolvedMission, SparesMinutesWhereTheWaysMeasure) {
+  const auto goal = [](const std::string& more) {
+    return parsed("planner: {name: skycap" + more).planner.goal;
+  };
+  const std::string moving =
+      "}\nflight: {vehicle: generic, unknown_box: {min: [0, 0, 0], max: [1, 1, 1]}}\n"
+      "sensor: {capture: moving}\n";
+  EXPECT_EQ(goal("}\n"), file::PlannerGoal::views);
+  EXPECT_EQ(goal(moving), file::PlannerGoal::minutes);
+  EXPECT_EQ(goal(", goal: views" + moving), file::PlannerGoal::views);
+}
+
 TEST(ResolvedMission, ReadsTheSitesAirspace) {
   const file::Mission mission = parsed(
       "site:\n"
