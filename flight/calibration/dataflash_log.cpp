@@ -154,6 +154,9 @@ class LogBuilder {
       log_.parameters.push_back({message.text("Name"), message.number_or("Value", 0.0)});
     }
     if (message.name() == "CMD") add_command(message);
+    if (log_.samples.size() + log_.parameters.size() + log_.commands.size() > most_log_samples) {
+      throw Error(ErrorKind::bad_file, "holds more than 1e7 samples, parameters and commands");
+    }
   }
 
   FlightLog finish() {

@@ -44,9 +44,9 @@ FlightLog read_dataflash(std::string_view bytes);
 
 /// Text with a header line that names the columns time_s, east_m_s, north_m_s, up_m_s and power_w,
 /// in any order, beside others. Throws Error{bad_file} naming the line.
-FlightLog read_csv_log(const std::string& text);
+FlightLog read_csv_log(std::string_view text);
 
-inline constexpr std::size_t largest_log = std::size_t{512} << 20;
+inline constexpr std::size_t largest_log = std::size_t{512} << 20, most_log_samples = 10'000'000;
 
 /// Either, by the name's ending: .csv or any other. Errors name the file.
 FlightLog read_flight_log(const std::filesystem::path& file);

@@ -25,6 +25,9 @@ std::vector<std::string> split(std::string_view text, char separator);
 /// Lines without their ends, which may be "\n" or "\r\n". A last line without an end counts.
 std::vector<std::string> lines_of(std::string_view text);
 
+/// The first line of `rest`, in the same way, which loses it; for texts of millions of lines.
+std::string_view next_line(std::string_view& rest);
+
 /// What a validator found. Each entry names the place and what is wrong with it.
 using Problems = std::vector<std::string>;
 

@@ -2,7 +2,6 @@
 
 #include <array>
 #include <cstring>
-#include <limits>
 #include <optional>
 #include <string>
 #include <tuple>
@@ -17,8 +16,6 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr std::uint64_t largest_index = std::numeric_limits<std::uint32_t>::max() - 1;
-
 [[noreturn]] void fail(std::string_view name, const std::string& what) {
   throw Error(ErrorKind::bad_file, std::string(name) + ": " + what);
 }
@@ -28,7 +25,29 @@ std::string no_such_vertex(std::int64_t vertex, std::size_t count) {
          " vertices, counted from 0";
 }
 
-void close_polygon(PolygonSoup& soup) { soup.polygon_begin.push_back(soup.corners.size()); }
+[[noreturn]] void fail_of_size(std::string_view name) {
+  fail(name, "holds more than 1e7 faces, 3e7 corners of faces or 3e7 vertices; simplify the mesh");
+}
+
+void add_vertex(std::string_view name, PolygonSoup& soup, const Vector3d& vertex) {
+  if (soup.vertices.size() == most_mesh_vertices) fail_of_size(name);
+  soup.vertices.push_back(vertex);
+}
+
+void add_corner(std::string_view name, PolygonSoup& soup, std::uint32_t vertex) {
+  if (soup.corners.size() == 3 * most_mesh_faces) fail_of_size(name);
+  soup.corners.push_back(vertex);
+}
+
+void close_polygon(std::string_view name, PolygonSoup& soup) {
+  if (soup.polygon_begin.size() > most_mesh_faces) fail_of_size(name);
+  soup.polygon_begin.push_back(soup.corners.size());
+}
+
+/// What a file promises, before memory is taken for it.
+void require_bounded(std::string_view name, std::uint64_t vertices, std::uint64_t faces) {
+  if (vertices > most_mesh_vertices || faces > most_mesh_faces) fail_of_size(name);
+}
 
 }  // namespace
 
@@ -45,6 +64,7 @@ PolygonSoup parse_ply(std::string_view name, std::string_view bytes) {
   }
   const std::uint64_t vertex_count = vertex_element->count;
   for (const PlyElement& element : reader.elements()) {
+    require_bounded(name, vertex_count, element.name == "face" ? element.count : 0);
     PlyTable table = reader.read_element(coordinates, corner_lists);
     if (&element == &*vertex_element) {
       const auto& [x, y, z] = std::tie(table.columns[0], table.columns[1], table.columns[2]);
@@ -62,9 +82,9 @@ PolygonSoup parse_ply(std::string_view name, std::string_view bytes) {
           if (vertex < 0 || static_cast<std::uint64_t>(vertex) >= vertex_count) {
             fail(name, "face " + std::to_string(face) + " " + no_such_vertex(vertex, vertex_count));
           }
-          soup.corners.push_back(static_cast<std::uint32_t>(vertex));
+          add_corner(name, soup, static_cast<std::uint32_t>(vertex));
         }
-        close_polygon(soup);
+        close_polygon(name, soup);
       }
     }
   }
@@ -75,7 +95,7 @@ namespace {
 
 class ObjReader {
  public:
-  ObjReader(std::string_view name, std::string_view text) : scanner_(name, text) {}
+  ObjReader(std::string_view name, std::string_view text) : name_(name), scanner_(name, text) {}
 
   PolygonSoup read() {
     do {
@@ -94,7 +114,7 @@ class ObjReader {
     for (double& coordinate : vertex) {
       coordinate = scanner_.number<double>(scanner_.word_in_line(), "a coordinate");
     }
-    soup_.vertices.push_back(vertex);
+    add_vertex(name_, soup_, vertex);
   }
 
   void read_material() {
@@ -107,6 +127,9 @@ class ObjReader {
   void use_material(const std::string& wanted) {
     const auto number = static_cast<std::uint32_t>(soup_.materials.size());
     const auto [known, is_new] = materials_.emplace(wanted, number);
+    if (number == most_mesh_materials) {
+      scanner_.fail("names more than 1e6 materials");
+    }
     material_ = known->second;
     if (is_new) soup_.materials.push_back(wanted);
   }
@@ -118,10 +141,10 @@ class ObjReader {
       if (corner == "\\") {  // goes on in the next line
         scanner_.next_line();
       } else {
-        soup_.corners.push_back(vertex_of(*corner));
+        add_corner(name_, soup_, vertex_of(*corner));
       }
     }
-    close_polygon(soup_);
+    close_polygon(name_, soup_);
   }
 
   std::uint32_t vertex_of(std::string_view corner) {
@@ -130,7 +153,7 @@ class ObjReader {
     // Counted from 1, or backwards from the latest vertex.
     const auto count = static_cast<std::int64_t>(soup_.vertices.size());
     const std::int64_t vertex = index > 0 ? index - 1 : index + count;
-    if (index == 0 || vertex < 0 || vertex > static_cast<std::int64_t>(largest_index)) {
+    if (index == 0 || vertex < 0 || vertex >= static_cast<std::int64_t>(most_mesh_vertices)) {
       scanner_.fail("the face names vertex " + std::to_string(index) + ", but the " +
                     std::to_string(count) + " vertices so far are counted from 1, or from -1 " +
                     "backwards");
@@ -152,6 +175,7 @@ class ObjReader {
     }
   }
 
+  std::string_view name_;
   TextScanner scanner_;
   PolygonSoup soup_;
   std::vector<std::uint32_t> lines_;  // of each polygon, for the check of its corners
@@ -192,11 +216,11 @@ PolygonSoup parse_off(std::string_view name, std::string_view text) {
   const auto face_count =
       scanner.number<std::uint64_t>(scanner.word_in_line(), "the number of faces");
   // A line of a vertex takes 6 characters or more, one of a face 2.
-  if (vertex_count > largest_index || vertex_count > scanner.remaining() / 6 + 1 ||
-      face_count > scanner.remaining() / 2 + 1) {
+  if (vertex_count > scanner.remaining() / 6 + 1 || face_count > scanner.remaining() / 2 + 1) {
     scanner.fail(std::to_string(vertex_count) + " vertices and " + std::to_string(face_count) +
                  " faces are promised, but the file is too short for so many");
   }
+  require_bounded(name, vertex_count, face_count);
 
   PolygonSoup soup;
   soup.vertices.reserve(vertex_count);
@@ -215,9 +239,9 @@ PolygonSoup parse_off(std::string_view name, std::string_view text) {
       if (vertex < 0 || static_cast<std::uint64_t>(vertex) >= vertex_count) {
         scanner.fail("the face " + no_such_vertex(vertex, vertex_count));
       }
-      soup.corners.push_back(static_cast<std::uint32_t>(vertex));
+      add_corner(name, soup, static_cast<std::uint32_t>(vertex));
     }
-    close_polygon(soup);
+    close_polygon(name, soup);
   }
   return soup;
 }
@@ -233,23 +257,25 @@ std::uint32_t stl_count(std::string_view bytes) {
   return count;
 }
 
-void add_corner(PolygonSoup& soup, const Vector3d& vertex) {
-  soup.corners.push_back(static_cast<std::uint32_t>(soup.vertices.size()));
-  soup.vertices.push_back(vertex);
+void add_own_vertex(std::string_view name, PolygonSoup& soup, const Vector3d& vertex) {
+  add_corner(name, soup, static_cast<std::uint32_t>(soup.vertices.size()));
+  add_vertex(name, soup, vertex);
 }
 
-PolygonSoup parse_binary_stl(std::string_view bytes) {
+PolygonSoup parse_binary_stl(std::string_view name, std::string_view bytes) {
   PolygonSoup soup;
   const std::uint32_t count = stl_count(bytes);
+  require_bounded(name, 0, count);
   soup.vertices.reserve(std::size_t{3} * count);
   for (std::size_t triangle = 0; triangle < count; ++triangle) {
     std::array<float, 12> numbers;  // normal and corners
     std::memcpy(numbers.data(), bytes.data() + stl_header + triangle * stl_triangle,
                 sizeof(numbers));
     for (std::size_t i = 3; i < 12; i += 3) {
-      add_corner(soup, Eigen::Vector3f(numbers[i], numbers[i + 1], numbers[i + 2]).cast<double>());
+      add_own_vertex(name, soup,
+                     Eigen::Vector3f(numbers[i], numbers[i + 1], numbers[i + 2]).cast<double>());
     }
-    close_polygon(soup);
+    close_polygon(name, soup);
   }
   return soup;
 }
@@ -264,9 +290,9 @@ PolygonSoup parse_ascii_stl(std::string_view name, std::string_view text) {
       for (double& coordinate : vertex) {
         coordinate = scanner.number<double>(scanner.word_in_line(), "a coordinate");
       }
-      add_corner(soup, vertex);
+      add_own_vertex(name, soup, vertex);
     } else if (word == "endloop") {
-      close_polygon(soup);
+      close_polygon(name, soup);
     } else if (word == "facet" || word == "solid" || word == "endsolid") {
       scanner.next_line();  // the normal or the name
     } else if (word != "outer" && word != "loop" && word != "endfacet") {
@@ -286,7 +312,7 @@ PolygonSoup parse_stl(std::string_view name, std::string_view bytes) {
   const bool has_count = bytes.size() >= stl_header;
   const std::uint64_t count = has_count ? stl_count(bytes) : 0;
   const std::uint64_t wanted = stl_header + count * stl_triangle;
-  if (has_count && wanted == bytes.size()) return parse_binary_stl(bytes);
+  if (has_count && wanted == bytes.size()) return parse_binary_stl(name, bytes);
   if (bytes.starts_with("solid")) return parse_ascii_stl(name, bytes);
   if (!has_count) fail(name, "is neither ascii STL, which begins with 'solid', nor binary STL");
   if (wanted > bytes.size()) {
@@ -294,7 +320,7 @@ PolygonSoup parse_stl(std::string_view name, std::string_view bytes) {
                    std::to_string(bytes.size()) + " bytes long instead of " +
                    std::to_string(wanted) + "; it may have been cut off");
   }
-  return parse_binary_stl(bytes);
+  return parse_binary_stl(name, bytes);
 }
 
 }  // namespace skycap::geometry

@@ -2,6 +2,7 @@
 /// Each takes a file's name (which opens every message) and its bytes, and throws Error{bad_file}.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <string>
 #include <string_view>
@@ -12,6 +13,10 @@
 #include "geometry/surfaces/mesh.h"
 
 namespace skycap::geometry {
+
+/// Of a mesh in a file: what is made of it on the way takes less than 2 GiB.
+inline constexpr std::size_t most_mesh_faces = 10'000'000, most_mesh_vertices = 30'000'000,
+                             most_mesh_materials = 1'000'000;
 
 /// Polygons as a file lists them: nothing of it is checked but that indices are those of vertices.
 struct PolygonSoup {
@@ -30,6 +35,6 @@ PolygonSoup parse_stl(std::string_view name, std::string_view bytes);  ///< asci
 /// The polygons cut into triangles of the same orientation, along the plane they are nearest to;
 /// polygons of fewer than three corners are left out. Throws Error{bad_file} if a polygon has a
 /// corner that is not finite, or is not convex and has more than 1000 corners.
-Mesh triangulate(std::string_view name, const PolygonSoup& soup);
+Mesh triangulate(std::string_view name, PolygonSoup soup);
 
 }  // namespace skycap::geometry

@@ -8,6 +8,7 @@
 #include <cstring>
 #include <limits>
 #include <string>
+#include <utility>
 
 #include <Eigen/Geometry>
 
@@ -22,9 +23,9 @@ namespace {
 namespace fs = std::filesystem;
 using Eigen::Vector3d;
 
-// Of a file that unpacks to far more than its own bytes: with what is made of it on the way less
-// than 2 GiB. A plain file takes memory by its size, which is the user's to give.
-constexpr std::size_t largest_unpacked_mesh = std::size_t{256} << 20, most_unpacked = 10'000'000;
+// With what is made of a file on the way less than 2 GiB; 1e7 triangles of binary STL fit in.
+constexpr std::size_t largest_mesh = std::size_t{512} << 20,
+                      largest_unpacked_mesh = std::size_t{256} << 20;
 
 [[noreturn]] void fail(const fs::path& path, const std::string& what) {
   throw Error(ErrorKind::bad_file, path.string() + ": " + what);
@@ -33,9 +34,9 @@ constexpr std::size_t largest_unpacked_mesh = std::size_t{256} << 20, most_unpac
 PolygonSoup parse(const fs::path& path) {
   const std::string format = ending_of(path);
   if (format == ".drc") {
-    const std::string bytes = read_file(path, largest_whole_file, largest_unpacked_mesh);
+    const std::string bytes = read_file(path, largest_mesh, largest_unpacked_mesh);
     const Mesh mesh = decode_draco(path.string(), bytes);
-    if (mesh.triangles.size() > most_unpacked) fail(path, "holds more than 1e7 triangles");
+    if (mesh.triangles.size() > most_mesh_faces) fail(path, "holds more than 1e7 triangles");
     PolygonSoup soup{mesh.vertices, {}};  // goes the way of the others, which checks it
     for (const auto& triangle : mesh.triangles) {
       soup.corners.insert(soup.corners.end(), triangle.begin(), triangle.end());
@@ -51,15 +52,19 @@ PolygonSoup parse(const fs::path& path) {
   if (parser == nullptr) {
     fail(path, "a mesh file must end in .ply, .obj, .stl, .off or .drc (or with .gz after it)");
   }
-  const std::string bytes = read_file(path, largest_whole_file, largest_unpacked_mesh);
+  const std::string bytes = read_file(path, largest_mesh, largest_unpacked_mesh);
   if (bytes.empty()) fail(path, "is empty");
   return parser(path.string(), bytes);
 }
 
 /// The polygons of each material, each with the vertices that they use; one part if there are no
 /// materials. Takes time in proportion to the file, however many materials it has.
-std::vector<PolygonSoup> parts_by_material(const PolygonSoup& soup) {
-  if (soup.materials.empty()) return {soup};
+std::vector<PolygonSoup> parts_by_material(PolygonSoup soup) {
+  if (soup.materials.empty()) {
+    std::vector<PolygonSoup> whole;
+    whole.push_back(std::move(soup));
+    return whole;
+  }
   const std::size_t count = soup.polygon_begin.size() - 1;
   std::vector<std::vector<std::size_t>> polygons(soup.materials.size());
   for (std::size_t i = 0; i < count; ++i) polygons[soup.polygon_materials[i]].push_back(i);
@@ -87,8 +92,8 @@ std::vector<PolygonSoup> parts_by_material(const PolygonSoup& soup) {
   return parts;
 }
 
-Mesh clean_mesh(const fs::path& path, const PolygonSoup& soup) {
-  Mesh mesh = triangulate(path.string(), soup);
+Mesh clean_mesh(const fs::path& path, PolygonSoup soup) {
+  Mesh mesh = triangulate(path.string(), std::move(soup));
   weld_vertices(mesh);
   drop_degenerate_triangles(mesh);
   return mesh;
@@ -203,23 +208,24 @@ bool is_mesh_file(const fs::path& path) {
 }
 
 Mesh read_mesh(const fs::path& path, const MeshOptions& options) {
-  const PolygonSoup soup = parse(path);
+  PolygonSoup soup = parse(path);
   require_faces(path, soup);
-  Mesh mesh = clean_mesh(path, soup);
+  Mesh mesh = clean_mesh(path, std::move(soup));
   if (mesh.triangles.empty()) fail(path, "holds no triangle with an area");
   if (options.orient_outward) orient_outward(mesh);
   return mesh;
 }
 
 std::vector<MaterialMesh> read_mesh_by_material(const fs::path& path) {
-  const PolygonSoup soup = parse(path);
+  PolygonSoup soup = parse(path);
   require_faces(path, soup);
   std::vector<MaterialMesh> parts;
-  const std::vector<PolygonSoup> polygons = parts_by_material(soup);
+  const std::vector<std::string> materials = soup.materials;
+  std::vector<PolygonSoup> polygons = parts_by_material(std::move(soup));
   for (std::size_t i = 0; i < polygons.size(); ++i) {
-    Mesh mesh = clean_mesh(path, polygons[i]);
+    Mesh mesh = clean_mesh(path, std::move(polygons[i]));
     if (mesh.triangles.empty()) continue;
-    parts.push_back({soup.materials.empty() ? "" : soup.materials[i], std::move(mesh)});
+    parts.push_back({materials.empty() ? "" : materials[i], std::move(mesh)});
   }
   if (parts.empty()) fail(path, "holds no triangle with an area");
   return parts;

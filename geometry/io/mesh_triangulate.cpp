@@ -2,6 +2,7 @@
 #include <cmath>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <Eigen/Geometry>
@@ -90,12 +91,12 @@ void clip_ears(Mesh& mesh, std::span<const std::uint32_t> polygon,
 
 }  // namespace
 
-Mesh triangulate(std::string_view name, const PolygonSoup& soup) {
+Mesh triangulate(std::string_view name, PolygonSoup soup) {
   const auto fail = [name](std::size_t polygon, const std::string& what) {
     throw Error(ErrorKind::bad_file,
                 std::string(name) + ": face " + std::to_string(polygon) + " " + what);
   };
-  Mesh mesh{soup.vertices, {}};
+  Mesh mesh{std::move(soup.vertices), {}};
   mesh.triangles.reserve(soup.polygon_begin.size());
   for (std::size_t i = 0; i + 1 < soup.polygon_begin.size(); ++i) {
     const std::span polygon(soup.corners.data() + soup.polygon_begin[i],

@@ -4,7 +4,6 @@
 #include <bit>
 #include <cstdint>
 #include <limits>
-#include <unordered_map>
 #include <vector>
 
 #include <Eigen/Geometry>
@@ -14,18 +13,16 @@ namespace {
 
 using Eigen::Vector3d;
 
-struct CoordinateHash {
-  std::size_t operator()(const Vector3d& p) const {
-    std::uint64_t hash = 0;
-    for (const double coordinate : p) {
-      // The two zeros are equal, so they must have one hash.
-      hash ^= std::bit_cast<std::uint64_t>(coordinate == 0.0 ? 0.0 : coordinate);
-      hash *= 0x9e3779b97f4a7c15U;
-      hash ^= hash >> 29;
-    }
-    return hash;
+std::uint64_t hash_of(const Vector3d& p) {
+  std::uint64_t hash = 0;
+  for (const double coordinate : p) {
+    // The two zeros are equal, so they must have one hash.
+    hash ^= std::bit_cast<std::uint64_t>(coordinate == 0.0 ? 0.0 : coordinate);
+    hash *= 0x9e3779b97f4a7c15U;
+    hash ^= hash >> 29;
   }
-};
+  return hash;
+}
 
 // An edge of a triangle: its vertices in ascending order as one key, and where it is.
 struct Edge {
@@ -108,21 +105,28 @@ void weld_vertices(Mesh& mesh) {
   for (const auto& triangle : mesh.triangles) {
     for (const std::uint32_t v : triangle) is_used[v] = true;
   }
-  std::unordered_map<Vector3d, std::uint32_t, CoordinateHash> index_of;
-  index_of.reserve(mesh.vertices.size());
+  // A table of kept vertices, open to the next free slot: a map has nodes of twice their size.
+  std::vector<std::uint32_t> slots(std::bit_ceil(2 * mesh.vertices.size() + 1), unused);
   std::vector<std::uint32_t> renamed(mesh.vertices.size(), unused);
-  std::vector<Vector3d> kept;
+  std::uint32_t kept = 0;  // they move to the front, where nothing is read any more
   for (std::size_t v = 0; v < mesh.vertices.size(); ++v) {
     if (!is_used[v]) continue;
-    const auto [entry, is_new] =
-        index_of.try_emplace(mesh.vertices[v], static_cast<std::uint32_t>(kept.size()));
-    if (is_new) kept.push_back(mesh.vertices[v]);
-    renamed[v] = entry->second;
+    const Vector3d vertex = mesh.vertices[v];
+    std::size_t slot = hash_of(vertex) & (slots.size() - 1);
+    while (slots[slot] != unused && mesh.vertices[slots[slot]] != vertex) {
+      slot = (slot + 1) & (slots.size() - 1);
+    }
+    if (slots[slot] == unused) {
+      slots[slot] = kept;
+      mesh.vertices[kept++] = vertex;
+    }
+    renamed[v] = slots[slot];
   }
   for (auto& triangle : mesh.triangles) {
     for (std::uint32_t& v : triangle) v = renamed[v];
   }
-  mesh.vertices = std::move(kept);
+  mesh.vertices.resize(kept);
+  mesh.vertices.shrink_to_fit();
 }
 
 void drop_degenerate_triangles(Mesh& mesh) {

@@ -210,11 +210,13 @@ FileContents cloud_contents(const Source& source) {
   contents.is_scene = true;
   CellSet cells;
   const double unit = source.unit.value_or(1.0);
-  for (const Eigen::Vector3f& point : geometry::read_cloud(source.file).positions) {
-    const Eigen::Vector3d place = point.cast<double>();
-    if (!cells.add(place * (unit / source.spacing.value_or(usual_spacing)))) continue;
-    contents.points.push_back(place);
-  }
+  const double cells_per_unit = unit / source.spacing.value_or(usual_spacing);
+  geometry::read_positions(source.file, [&](std::span<const Eigen::Vector3f> piece, double) {
+    for (const Eigen::Vector3f& point : piece) {
+      const Eigen::Vector3d place = point.cast<double>();
+      if (cells.add(place * cells_per_unit)) contents.points.push_back(place);
+    }
+  });
   return contents;
 }
 

@@ -88,7 +88,10 @@ int calibrate(const CalibrateOptions& options, const Console& console) {
   flight::Vehicle vehicle = equipment::find_vehicle(options.vehicle);
   if (options.mass) vehicle.mass = *options.mass;
   if (options.battery_wh) vehicle.battery_wh = *options.battery_wh;
+  ProgressLine progress(console, false);
+  progress.show("reading " + options.log.string());
   const flight::FlightLog log = flight::read_flight_log(options.log);
+  progress.show("fitting " + options.vehicle + " to " + options.log.string());
   Calibration calibration;
   try {
     calibration = flight::calibrate(log, vehicle, options.air_density);
@@ -104,6 +107,7 @@ int calibrate(const CalibrateOptions& options, const Console& console) {
   geometry::OutputFolder folder(file.has_parent_path() ? file.parent_path() : ".");
   folder.write(file.filename().string(), text);
   folder.commit();
+  progress.clear();
   console.out << name << ": like " << options.vehicle << ", from " << options.log.string() << "\n"
               << report(calibration, vehicle) << "  results   " << file.string() << "\n"
               << std::flush;

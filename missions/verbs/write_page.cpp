@@ -6,7 +6,8 @@ namespace skycap::missions::verbs {
 
 void write_page(const std::string& results, bool is_wanted, geometry::OutputFolder& folder,
                 const Console& console) {
-  const auto complaint = report::stage_page(results, is_wanted, folder);
+  const bool is_made = is_wanted && !console.stop.stop_requested();
+  const auto complaint = report::stage_page(results, is_made, folder);
   if (complaint) warn(console, "no report: " + *complaint);
 }
 

@@ -8,7 +8,8 @@
 
 namespace skycap::missions::verbs {
 
-/// Stages the page of staged results, if it is wanted; warns if it cannot be made.
+/// Stages the page of staged results, if it is wanted and nobody waits for the program to end:
+/// `skycap report` makes it later. Warns if it cannot be made.
 void write_page(const std::string& results, bool is_wanted, geometry::OutputFolder& folder,
                 const Console& console);
 

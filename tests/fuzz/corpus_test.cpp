@@ -1,6 +1,8 @@
 // Each file of tests/fuzz/corpus is read by its reader, whole, cut short, and with bytes changed:
-// what libFuzzer does for hours, for seconds.
+// what libFuzzer does for hours, for seconds. CORPUS_SEED and CORPUS_CHANGES in the environment
+// draw other changes, and so many for each file.
 #include <algorithm>
+#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <random>
@@ -32,6 +34,51 @@ std::string bytes_of(const fs::path& path) {
   return {std::istreambuf_iterator<char>(stream), {}};
 }
 
+std::uint32_t number_in_environment(const char* name, std::uint32_t otherwise) {
+  const char* text = std::getenv(name);
+  return text == nullptr ? otherwise : static_cast<std::uint32_t>(std::stoul(text));
+}
+
+void change_bytes(std::string& bytes, std::mt19937& random) {
+  constexpr std::string_view telling = "\xff\x7f\x80 -9e[{<:,.0\n";
+  for (int i = 0; i < 3; ++i) {
+    bytes[random() % bytes.size()] =
+        i == 0 ? static_cast<char>(random()) : telling[random() % telling.size()];
+  }
+}
+
+/// A piece is cut out, or stands a second time elsewhere.
+void move_piece(std::string& bytes, std::mt19937& random) {
+  const std::size_t begin = random() % bytes.size();
+  const std::string piece = bytes.substr(begin, 1 + random() % 64);
+  if (random() % 2 == 0) {
+    bytes.erase(begin, piece.size());
+  } else {
+    bytes.insert(random() % bytes.size(), piece);
+  }
+}
+
+/// A number in text, or four or eight bytes, become one at the end of what there is.
+void make_extreme(std::string& bytes, std::mt19937& random) {
+  static const std::vector<std::string> texts = {"0",    "-1",  "1e308",      "-1e-320",
+                                                 "nan",  "inf", "4294967296", "9223372036854775808",
+                                                 "1e39", "00"};
+  static const std::vector<std::string> binaries = {std::string(4, '\xff'),
+                                                    std::string(8, '\xff'),
+                                                    std::string("\xff\xff\xff\x7f"),
+                                                    std::string("\0\0\x80\x7f", 4),
+                                                    std::string(8, '\0'),
+                                                    std::string("\0\0\0\0\0\0\xf0\x7f", 8)};
+  const std::size_t digit = bytes.find_first_of("0123456789", random() % bytes.size());
+  if (digit != std::string::npos && random() % 2 == 0) {
+    const std::size_t end = std::min(bytes.find_first_not_of("0123456789.e-", digit), bytes.size());
+    bytes.replace(digit, end - digit, texts[random() % texts.size()]);
+  } else {
+    const std::string& binary = binaries[random() % binaries.size()];
+    bytes.replace(random() % bytes.size(), binary.size(), binary);
+  }
+}
+
 class Corpus : public testing::TestWithParam<Reader> {
  protected:
   static void expect_held(const std::string& bytes, const std::string& what) {
@@ -59,14 +106,14 @@ TEST_P(Corpus, FilesThatAreCutShortAreReadOrRefused) {
 }
 
 TEST_P(Corpus, FilesWithChangedBytesAreReadOrRefused) {
-  std::mt19937 random(1);
+  std::mt19937 random(number_in_environment("CORPUS_SEED", 1));
+  const std::uint32_t changes = number_in_environment("CORPUS_CHANGES", 200);
   for (const fs::path& path : corpus_of(GetParam())) {
-    for (int change = 0; change < 200; ++change) {
+    for (std::uint32_t change = 0; change < changes; ++change) {
       std::string bytes = bytes_of(path);
-      for (int i = 0; i < 3 && !bytes.empty(); ++i) {
-        constexpr std::string_view telling = "\xff\x7f\x80 -9e[{<:,.0\n";
-        bytes[random() % bytes.size()] =
-            i == 0 ? static_cast<char>(random()) : telling[random() % telling.size()];
+      if (bytes.empty()) continue;
+      for (const auto& make : {change_bytes, move_piece, make_extreme}) {
+        if (random() % 2 == 0 && !bytes.empty()) make(bytes, random);
       }
       expect_held(bytes, path.filename().string() + ", change " + std::to_string(change));
     }

@@ -14,6 +14,7 @@ namespace skycap::missions::prior {
 namespace {
 
 constexpr int deepest = 200;  // real files reach 25
+constexpr std::size_t most_objects = 2'000'000;
 
 using Name = std::string_view;
 
@@ -186,6 +187,7 @@ void Walker::enter_object(pugi::xml_node node, Name name, Surroundings& here) {
   const Name around = local_name(node.parent().name());
   const bool is_member = around == "cityObjectMember" || around == "featureMember";
   if (!id && !is_member) return;
+  if (contents_.objects.size() == most_objects) fail_file(file_, "has more than 2 million objects");
   FileObject& object = contents_.objects.emplace_back();
   object.id = id ? id.as_string() : std::to_string(contents_.objects.size());
   object.kind = name;
@@ -339,9 +341,25 @@ std::string version_of(pugi::xml_node root) {
 /// GML's names of authorities stand for their order of axes, latitude first; short ones do not.
 bool is_by_authority(Name crs) { return crs.starts_with("urn:") || crs.starts_with("http"); }
 
+/// Bytes that the text, its tree and its corners take: 64 for a node of pugixml, 40 for an
+/// attribute; what is kept of a text besides; 24 for a corner, twice while the list of them grows.
+std::size_t tree_bytes(std::string_view xml) {
+  std::size_t bytes = xml.size();
+  const auto is_gap = [](char c) { return c == ' ' || c == '\n' || c == '\t' || c == '\r'; };
+  for (std::size_t i = 0; i + 1 < xml.size(); ++i) {
+    const char c = xml[i], next = xml[i + 1];
+    if (c == '<' && next != '/') bytes += 64;
+    if (c == '>' && next != '<' && !is_gap(next)) bytes += 128;
+    if (c == '=') bytes += 40;
+    if ((is_gap(c) || c == ',') && next != '<' && !is_gap(next)) bytes += 16;
+  }
+  return bytes;
+}
+
 }  // namespace
 
 FileContents parse_citygml(const std::filesystem::path& file, std::string bytes) {
+  require_tree_fits(file, tree_bytes(bytes));
   pugi::xml_document document;
   const pugi::xml_parse_result result = document.load_buffer_inplace(
       bytes.data(), bytes.size(), pugi::parse_escapes | pugi::parse_cdata);

@@ -13,6 +13,8 @@ namespace {
 using Eigen::Vector3d;
 using Json = nlohmann::json;
 
+constexpr std::size_t most_json_corners = 16'000'000;
+
 SurfaceKind kind_named(const std::string& name) {
   if (name == "WallSurface") return SurfaceKind::wall;
   if (name == "RoofSurface") return SurfaceKind::roof;
@@ -203,6 +205,9 @@ void Reader::read_surface(const Json& rings, const Json* value) {
   polygon.kind = kind;
   polygon.lod = lod_;
   for (const Json& ring : rings) {
+    if (contents_.corners.size() + ring.size() > most_json_corners) {
+      fail_file(file_, "has more than 16 million corners of polygons; cut it in pieces");
+    }
     for (const Json& index : ring) {
       contents_.corners.push_back(placed_ * places_.at(index.get<std::size_t>()));
     }
@@ -219,6 +224,19 @@ void Reader::finish() {
     contents_.notes.push_back(std::to_string(without_surfaces_) +
                               " geometries of points or lines left out");
   }
+}
+
+/// Bytes that the text and its tree take: values of 16 bytes in lists that grow by doubling, lists,
+/// maps and strings with what the heap adds to each.
+std::size_t tree_bytes(std::string_view json) {
+  std::size_t bytes = json.size();
+  for (const char c : json) {
+    if (c == ',') bytes += 32;
+    if (c == '[' || c == '{') bytes += 64;
+    if (c == ':') bytes += 80;
+    if (c == '"') bytes += 24;
+  }
+  return bytes;
 }
 
 /// A file of one JSON text, or of one a line.
@@ -242,6 +260,7 @@ std::vector<Json> texts_of(const std::filesystem::path& file, std::string_view b
 }  // namespace
 
 FileContents parse_cityjson(const std::filesystem::path& file, std::string_view bytes) {
+  require_tree_fits(file, tree_bytes(bytes));
   const std::vector<Json> texts = texts_of(file, bytes);
   FileContents contents;
   try {

@@ -79,6 +79,13 @@ struct FileContents {
 inline constexpr std::size_t most_polygons = 50'000'000, most_cells = 40'000'000,
                              most_corners = 1'000'000'000, most_bytes = std::size_t{2} << 30;
 
+/// Most bytes of a text and of the tree that a parser makes of it, by what is counted in the text:
+/// with what is read of the tree less than 2 GiB.
+inline constexpr std::size_t most_tree_bytes = std::size_t{3} << 29;
+
+/// Throws Error{bad_file} if a tree would take more.
+void require_tree_fits(const std::filesystem::path& file, std::size_t bytes);
+
 /// What a file says, for a message: line ends and other control characters become blanks.
 std::string one_line(std::string text);
 

@@ -1,8 +1,10 @@
 // Wrong, extreme and hostile values for every key, made from the table of keys: each is refused in
 // one line that names file, line and key, or is taken as it stands, within the key's range.
 #include <cmath>
+#include <cstdlib>
 #include <limits>
 #include <map>
+#include <random>
 #include <sstream>
 #include <string>
 #include <vector>
@@ -171,27 +173,58 @@ void expect_sane(const file::Mission& mission, const std::string& value) {
   }
 }
 
+/// Whether they are taken; a finding if they are taken out of their ranges, or if what refuses them
+/// is not one line that names a key. `what` names them in findings.
+bool are_taken(const Values& values, const std::string& what) {
+  try {
+    expect_sane(derived::parse_mission(mission_text(values), "m.yaml"), what);
+    return true;
+  } catch (const Error& error) {
+    const std::string message = error.what();
+    EXPECT_TRUE(is_refusal_of_a_key(message))
+        << what << " is refused by " << message.substr(0, 300);
+    EXPECT_LT(message.size(), 2000U) << what;
+    EXPECT_EQ(message.find_first_of("\n\x1b"), std::string::npos) << what;
+    return false;
+  }
+}
+
 TEST(HostileKeys, AreRefusedByTheirNameOrTakenWithinTheirRange) {
   std::size_t refused = 0, taken = 0;
   for (const Key& key : file::mission_keys()) {
     for (const std::string& value : values_for(key)) {
       Values values = around(key);
       values[key.path] = value;
-      try {
-        expect_sane(derived::parse_mission(mission_text(values), "m.yaml"), value);
-        ++taken;
-      } catch (const Error& error) {
-        ++refused;
-        const std::string message = error.what();
-        EXPECT_TRUE(is_refusal_of_a_key(message)) << key.path << ": " << value.substr(0, 60)
-                                                  << " is refused by " << message.substr(0, 300);
-        EXPECT_LT(message.size(), 2000U) << key.path;
-        EXPECT_EQ(message.find_first_of("\n\x1b"), std::string::npos) << key.path;
-      }
+      ++(are_taken(values, key.path + ": " + value.substr(0, 60)) ? taken : refused);
     }
   }
   EXPECT_GT(refused, 5000U);
   EXPECT_GT(taken, 500U);
+}
+
+std::string number_drawn(std::mt19937& random) {
+  const double exponent = std::uniform_real_distribution<double>(-12.0, 12.0)(random);
+  return file::exact_text((random() % 2 == 0 ? 1.0 : -1.0) * std::pow(10.0, exponent));
+}
+
+// Several at once, of numbers of all sizes. HOSTILE_SEED and HOSTILE_MISSIONS in the environment
+// draw others, and so many.
+TEST(HostileKeys, DrawnTogetherAreRefusedByANameOrTakenWithinTheirRanges) {
+  const char *seed = std::getenv("HOSTILE_SEED"), *missions = std::getenv("HOSTILE_MISSIONS");
+  std::mt19937 random(seed == nullptr ? 1U : static_cast<unsigned>(std::stoul(seed)));
+  const auto& keys = file::mission_keys();
+  for (std::size_t i = missions == nullptr ? 2000 : std::stoul(missions); i > 0; --i) {
+    Values values;
+    std::string what;
+    for (std::size_t drawn = 1 + random() % 4; drawn > 0; --drawn) {
+      const Key& key = keys[random() % keys.size()];
+      const std::vector<std::string> known = values_for(key);
+      values.merge(around(key));
+      values[key.path] = random() % 2 == 0 ? number_drawn(random) : known[random() % known.size()];
+      what += key.path + ": " + values[key.path].substr(0, 60) + "; ";
+    }
+    are_taken(values, what);
+  }
 }
 
 TEST(HostileKeys, AreNotTakenForOtherKeys) {

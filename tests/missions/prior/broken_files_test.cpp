@@ -86,6 +86,21 @@ TEST_F(BrokenFiles, WithChangedBytesAreReadOrRefusedInOneLine) {
   EXPECT_GE(read, 10U) << "else no change got past the first check of a format";
 }
 
+// A tree takes many times the bytes of its text: 110 MB and 60 MB here.
+TEST_F(BrokenFiles, WhoseTreesWouldTakeMoreThanMemoryAreRefused) {
+  const auto expect_refused = [&](const std::string& name, const std::string& bytes) {
+    const Source source = source_of(folder_.file(name, bytes));
+    EXPECT_THAT(complaint_of([&] { read_prior(source, site_at_cube()); }),
+                testing::HasSubstr(name + ": has so many parts that reading them would take more"));
+  };
+  std::string gml = "<CityModel xmlns='http://www.opengis.net/citygml/2.0'>";
+  for (int i = 0; i < 25'000'000; ++i) gml += "<a/>";
+  expect_refused("many.gml", gml + "</CityModel>");
+  std::string json = R"({"type": "CityJSON", "version": "1.1", "CityObjects": {}, "vertices": [[])";
+  for (int i = 0; i < 17'000'000; ++i) json += ",[]";
+  expect_refused("many.json", json + "]}");
+}
+
 TEST_F(BrokenFiles, OfNoFormatAreToldWhichThereAre) {
   Source source = source_of(folder_.file("notes.doc", "dear surveyor"));
   EXPECT_THAT([&] { read_prior(source, site_at_cube()); },

@@ -97,11 +97,15 @@ TEST(SurveyReport, IsLeftOutOnRequest) {
   EXPECT_FALSE(std::filesystem::exists(survey.folder.path() / "out" / "report.html"));
 }
 
-TEST(SurveyReport, OfAnInterruptedSurveyIsWrittenToo) {
+// Somebody waits for the program to end.
+TEST(SurveyReport, OfAnInterruptedSurveyIsMadeWhenAskedFor) {
   std::stop_source stop;
   stop.request_stop();
   const Planned survey(tests::quick_mission(), {}, stop.get_token());
   EXPECT_EQ(survey.run.exit_code, 1);
+  EXPECT_TRUE(std::filesystem::exists(survey.folder.path() / "out" / "summary.json"));
+  EXPECT_FALSE(std::filesystem::exists(survey.folder.path() / "out" / "report.html"));
+  EXPECT_EQ(tests::run_skycap({"report", survey.folder / "out"}).exit_code, 0);
   const Json data = data_of(survey.page());
   EXPECT_EQ(data["verdict"]["light"], "red");
   EXPECT_EQ(data["summary"]["stop_reason"], "interrupted");
