@@ -58,7 +58,11 @@ Bridge::Bridge(BridgeConfig config, SurveyPort survey, Outlets outlets)
       survey_(std::move(survey)),
       outlets_(std::move(outlets)),
       complaints_(outlets_.warning),
-      history_(config_.history) {}
+      history_(config_.history),
+      transforms_(config_.history),
+      world_frame_(config_.world),
+      body_frame_(config_.world.empty() ? "" : config_.body),
+      doing_(config_.world.empty() ? "waiting for odometry" : "waiting for transforms") {}
 
 void Bridge::begin() { learn(survey_.next()); }
 
@@ -87,14 +91,31 @@ void Bridge::add_odometry(const Odometry& odometry) {
   const BodyPose pose = body_pose(odometry);
   require_same(world_frame_, text_of(odometry.header.frame_id), "its frame");
   require_same(body_frame_, text_of(odometry.child_frame_id), "its child frame");
-  const bool is_first = history_.is_empty();
   if (history_.add(stamp, pose) == OdometryHistory::Added::contradicts) {
     throw Error(ErrorKind::bad_geometry, "there was another pose with the same stamp");
   }
-  newest_odometry_ = stamp;
-  if (!is_first) return;
+  newest_pose_ = stamp;
+  locate();
+}
+
+/// The body is somewhere, from now on.
+void Bridge::locate() {
+  if (is_located_) return;
+  is_located_ = true;
   publish_goal();  // now in a frame
   say("waiting for a scan");
+}
+
+void Bridge::receive(const TFMessage& message, bool is_static, double now) {
+  for (std::uint32_t i = 0; i < message.transforms._length; ++i) {
+    const TransformStamped& transform = message.transforms._buffer[i];
+    guarded("transform", now, [&] {
+      transforms_.add(transform, is_static);
+      if (config_.world.empty()) return;
+      if (!is_static) newest_pose_ = stamp_of(transform.header);
+      if (!is_located_ && transforms_.newest(world_frame_, body_frame_)) locate();
+    });
+  }
 }
 
 void Bridge::receive(const PointCloud2& cloud, double now) {
@@ -138,24 +159,64 @@ void Bridge::add_scan(const Header& header, double now, const std::function<Sens
   waiting_ = Waiting{stamp, now, scan()};
 }
 
-bool Bridge::has_arrived(const BodyPose& pose) const {
-  const Isometry3d optical = config_.mount.world_from_optical(pose);
+Bridge::Whereabouts Bridge::with_mount(const PoseMatch& body, Stamp stamp) const {
+  Whereabouts found{body, config_.mount};
+  if (!config_.uses_transforms || body.state != PoseMatch::State::known) return found;
+  const PoseMatch sensor = transforms_.at(body_frame_, sensor_frame_, stamp);
+  if (sensor.state != PoseMatch::State::known) return {sensor, config_.mount};
+  found.mount = Mount(isometry_of(sensor.pose), config_.mount.axes());
+  return found;
+}
+
+Bridge::Whereabouts Bridge::at(Stamp stamp) const {
+  const bool asks_odometry = config_.world.empty();
+  return with_mount(
+      asks_odometry ? history_.at(stamp) : transforms_.at(world_frame_, body_frame_, stamp), stamp);
+}
+
+std::optional<Mount> Bridge::newest_mount() const {
+  if (!config_.uses_transforms) return config_.mount;
+  if (sensor_frame_.empty()) return std::nullopt;
+  const auto body_from_sensor = transforms_.newest(body_frame_, sensor_frame_);
+  if (!body_from_sensor) return std::nullopt;
+  return Mount(*body_from_sensor, config_.mount.axes());
+}
+
+bool Bridge::has_arrived(const Whereabouts& whereabouts) const {
+  if (whereabouts.body.state != PoseMatch::State::known) return false;
+  const Isometry3d optical = whereabouts.mount.world_from_optical(whereabouts.body.pose);
   const Vector3d axis = optical.linear().col(2), wanted = view_->linear().col(2);
   return (optical.translation() - view_->translation()).norm() <= config_.position_tolerance &&
          std::atan2(axis.cross(wanted).norm(), axis.dot(wanted)) <= config_.direction_tolerance;
 }
 
+/// At the stamp and for so long before it as it takes to come to rest.
+bool Bridge::has_settled(Stamp stamp) const {
+  const auto settling = static_cast<Stamp>(config_.settling * 1e9);
+  if (config_.world.empty()) {
+    return history_.all_between(stamp - settling, stamp, [&](Stamp then, const BodyPose& pose) {
+      return has_arrived(with_mount({PoseMatch::State::known, pose, {}}, then));
+    });
+  }
+  constexpr Stamp steps = 10;
+  for (Stamp step = 1; step <= steps; ++step) {
+    if (!has_arrived(at(stamp - settling * step / steps))) return false;
+  }
+  return true;
+}
+
 void Bridge::proceed(double now) {
+  if (lacks_mount_ && newest_mount()) publish_goal();
   if (waiting_) {
     guarded("scan", now, [&] {
-      const PoseMatch match = history_.at(waiting_->stamp);
+      const Whereabouts found = at(waiting_->stamp);
       const bool waits_more = now - waiting_->since <= config_.patience;
-      if (match.state == PoseMatch::State::open && waits_more) return;
+      if (found.body.state == PoseMatch::State::open && waits_more) return;
       const Waiting waiting = *std::exchange(waiting_, std::nullopt);
-      if (match.state != PoseMatch::State::known) {
-        throw Error(ErrorKind::bad_geometry, "its pose is not known: " + match.why);
+      if (found.body.state != PoseMatch::State::known) {
+        throw Error(ErrorKind::bad_geometry, "its pose is not known: " + found.body.why);
       }
-      take(waiting, match.pose, now);
+      take(waiting, found, now);
     });
   }
   constexpr double longest_silence = 2.0;
@@ -164,22 +225,17 @@ void Bridge::proceed(double now) {
   survey_.next();
 }
 
-void Bridge::take(const Waiting& waiting, const BodyPose& pose, double now) {
-  const auto settling = static_cast<Stamp>(config_.settling * 1e9);
+void Bridge::take(const Waiting& waiting, const Whereabouts& whereabouts, double now) {
   const bool must_arrive = config_.taking == Taking::arrived && !is_told_to_take_ && view_;
-  if (must_arrive &&
-      !(has_arrived(pose) &&
-        history_.all_between(waiting.stamp - settling, waiting.stamp,
-                             [this](const BodyPose& p) { return has_arrived(p); }))) {
-    return;
-  }
+  if (must_arrive && !(has_arrived(whereabouts) && has_settled(waiting.stamp))) return;
   say("planning");
   doing_ = "waiting for a scan";
   is_told_to_take_ = false;
-  const auto covariance = config_.uses_covariance ? config_.mount.covariance_at_sensor(pose)
-                                                  : std::optional<Covariance>();
-  const std::string answer = survey_.add(
-      waiting.scan, rows_of(config_.mount.world_from_optical(pose)), error_of(covariance));
+  const auto& [body, mount] = whereabouts;
+  const auto covariance =
+      config_.uses_covariance ? mount.covariance_at_sensor(body.pose) : std::optional<Covariance>();
+  const std::string answer =
+      survey_.add(waiting.scan, rows_of(mount.world_from_optical(body.pose)), error_of(covariance));
   last_taken_ = waiting.stamp;
   ++taken_;
   asked_at_ = now;
@@ -217,12 +273,17 @@ void Bridge::learn(const std::string& answer) {
   view_.reset();
   if (const Json& view = answer_.at("view"); !view.is_null()) view_ = view_of(view);
   holds_ = answer_.contains("warning");
-  if (!history_.is_empty()) publish_goal();
+  if (is_located_) publish_goal();
   publish_status();
 }
 
 void Bridge::publish_goal() {
-  Goal goal{.frame = world_frame_, .stamp = newest_odometry_, .view = {}, .path = {}};
+  Goal goal{.frame = world_frame_,
+            .stamp = newest_pose_,
+            .view = {},
+            .path = {},
+            .mount = newest_mount()};
+  lacks_mount_ = !goal.mount;
   if (!holds_) {
     goal.view = view_;
     for (const Json& place : answer_.value("path", Json::array())) {

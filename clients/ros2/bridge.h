@@ -14,6 +14,7 @@
 #include "clients/ros2/frames.h"
 #include "clients/ros2/odometry_history.h"
 #include "clients/ros2/sensor_scan.h"
+#include "clients/ros2/transforms.h"
 #include "clients/skycap_live.h"
 
 namespace skycap::ros2 {
@@ -27,6 +28,9 @@ enum class Taking {
 
 struct BridgeConfig {
   Mount mount{Eigen::Isometry3d::Identity(), Axes::optical};
+  bool uses_transforms = false;  ///< TF says where the sensor is on the body, not `mount`
+  std::string world;             ///< TF says where the body is in this frame; empty: odometry does
+  std::string body = "base_link";  ///< the body's frame then; odometry says its own
   Taking taking = Taking::arrived;
   double position_tolerance = 0.3;   ///< from the view asked for [m]
   double direction_tolerance = 0.1;  ///< of the optical axis [rad]
@@ -46,12 +50,13 @@ struct SurveyPort {
   std::function<std::string(std::size_t id, const std::string& reason)> refuse;
 };
 
-/// Where the robot is wanted, in the odometry's frame.
+/// Where the robot is wanted, in the odometry's frame or the one that was named.
 struct Goal {
   std::string frame;
   Stamp stamp = 0;                        ///< of the odometry that came last; 0: none yet
   std::optional<Eigen::Isometry3d> view;  ///< world from the optical frame
   std::vector<Eigen::Vector3d> path;      ///< proven way of the sensor there; empty: none
+  std::optional<Mount> mount;             ///< as it is now, if it is known
 };
 
 struct Outlets {
@@ -70,6 +75,7 @@ class Bridge {
   // Messages as they come, at `now` [s] of a clock that only goes forward. What is wrong with them
   // is said, and they are passed over.
   void receive(const Odometry& odometry, double now);
+  void receive(const TFMessage& message, bool is_static, double now);
   void receive(const PointCloud2& cloud, double now);
   void receive(const CameraInfo& info, double now);
   void receive(const Image& image, double now);
@@ -92,6 +98,12 @@ class Bridge {
     SensorScan scan;
   };
 
+  /// Body and sensor at a time; the mount counts if the body's pose is known.
+  struct Whereabouts {
+    PoseMatch body;
+    Mount mount;
+  };
+
   /// Complains of what `receive` throws.
   void guarded(const std::string& kind, double now, const std::function<void()>& receive);
   void complain(const std::string& kind, const std::string& line, double now);
@@ -99,8 +111,13 @@ class Bridge {
   void obey(const std::string& command);
   void add_scan(const Header& header, double now, const std::function<SensorScan()>& scan);
   bool wants_scan(double now) const;
-  bool has_arrived(const BodyPose& pose) const;
-  void take(const Waiting& waiting, const BodyPose& pose, double now);
+  Whereabouts at(Stamp stamp) const;
+  Whereabouts with_mount(const PoseMatch& body, Stamp stamp) const;
+  std::optional<Mount> newest_mount() const;
+  bool has_arrived(const Whereabouts& whereabouts) const;
+  bool has_settled(Stamp stamp) const;
+  void take(const Waiting& waiting, const Whereabouts& whereabouts, double now);
+  void locate();
   void learn(const std::string& answer);
   void publish_goal();
   void publish_status();
@@ -110,8 +127,11 @@ class Bridge {
   Outlets outlets_;
   Complaints complaints_;
   OdometryHistory history_;
+  Transforms transforms_;
   std::string world_frame_, body_frame_, sensor_frame_;
-  Stamp newest_odometry_ = 0;
+  bool is_located_ = false;   ///< something said where the body is
+  bool lacks_mount_ = false;  ///< the goal that was published
+  Stamp newest_pose_ = 0;     ///< the one that came last
   std::optional<CameraLens> lens_;
   std::optional<Waiting> waiting_;
   nlohmann::json answer_;                  ///< the last one of the survey
@@ -123,7 +143,7 @@ class Bridge {
   bool is_finished_ = false;
   double not_before_ = 0.0;  ///< next scan, after one that was refused
   double asked_at_ = 0.0;    ///< when the survey was last heard of
-  std::string doing_ = "waiting for odometry", status_;
+  std::string doing_, status_;
 };
 
 }  // namespace skycap::ros2

@@ -42,18 +42,30 @@ std::optional<Covariance> covariance_of(const double (&numbers)[36]) {
   return 0.5 * (given + given.transpose());
 }
 
+BodyPose checked_pose(const Vector3d& position, const QuaternionMessage& given) {
+  if (!position.allFinite()) refuse("its position has numbers that are none");
+  const Quaterniond turn(given.w, given.x, given.y, given.z);
+  if (!is_of_length_one(turn)) refuse("the length of its quaternion is not one");
+  return {.position = position, .turn = turn.normalized(), .covariance = {}};
+}
+
 }  // namespace
 
 BodyPose body_pose(const Odometry& odometry) {
   const PoseMessage& given = odometry.pose.pose;
-  const Vector3d position(given.position.x, given.position.y, given.position.z);
-  if (!position.allFinite()) refuse("its position has numbers that are none");
-  const Quaterniond turn(given.orientation.w, given.orientation.x, given.orientation.y,
-                         given.orientation.z);
-  if (!is_of_length_one(turn)) refuse("the length of its quaternion is not one");
-  return {.position = position,
-          .turn = turn.normalized(),
-          .covariance = covariance_of(odometry.pose.covariance)};
+  BodyPose pose =
+      checked_pose({given.position.x, given.position.y, given.position.z}, given.orientation);
+  pose.covariance = covariance_of(odometry.pose.covariance);
+  return pose;
+}
+
+BodyPose body_pose(const TransformMessage& transform) {
+  const auto& [x, y, z] = transform.translation;
+  return checked_pose({x, y, z}, transform.rotation);
+}
+
+Isometry3d isometry_of(const BodyPose& pose) {
+  return isometry(pose.turn.toRotationMatrix(), pose.position);
 }
 
 Matrix3d optical_from(Axes axes) {
@@ -68,7 +80,7 @@ Mount::Mount(const Isometry3d& body_from_sensor, Axes axes)
                          isometry(optical_from(axes).transpose(), Vector3d::Zero())) {}
 
 Isometry3d Mount::world_from_optical(const BodyPose& body) const {
-  return isometry(body.turn.toRotationMatrix(), body.position) * body_from_optical_;
+  return isometry_of(body) * body_from_optical_;
 }
 
 Isometry3d Mount::world_from_body(const Isometry3d& world_from_optical) const {

@@ -30,6 +30,11 @@ struct BodyPose {
 /// variances.
 BodyPose body_pose(const Odometry& odometry);
 
+/// The same of a transform: the child in its parent.
+BodyPose body_pose(const TransformMessage& transform);
+
+Eigen::Isometry3d isometry_of(const BodyPose& pose);
+
 enum class Axes { optical, flu };
 
 /// Rotation from a sensor's frame with these axes to its optical frame.

@@ -32,7 +32,7 @@ void end_on_signals() {
 
 struct Options {
   NodeConfig node;
-  std::string sensor = "0 0 0 0 0 0 1";
+  std::string sensor;
   Axes axes = Axes::optical;
   double direction_tolerance_deg = 5.0;
   bool ignores_covariance = false;
@@ -50,14 +50,21 @@ void add_topics(CLI::App& app, Options& options) {
   app.add_option("--image", node.image, "sensor_msgs/Image of depths, in place of clouds");
   app.add_option("--camera-info", node.camera_info,
                  "Of the image; without it camera_info beside the image");
+  app.add_option("--world", node.bridge.world,
+                 "Frame in which TF says where the body is, such as map, in place of odometry");
+  app.add_option("--body", node.bridge.body, "The body's frame, with --world")
+      ->capture_default_str();
+  app.add_option("--tf", node.transforms, "tf2_msgs/TFMessage")->capture_default_str();
+  app.add_option("--tf-static", node.static_transforms, "The same, of what never moves")
+      ->capture_default_str();
   app.add_option("--prefix", node.prefix, "Of the topics that are published")
       ->capture_default_str();
 }
 
 void add_rules(CLI::App& app, Options& options) {
   auto& bridge = options.node.bridge;
-  app.add_option("--sensor", options.sensor, "The sensor's frame on the body's: x y z qx qy qz qw")
-      ->capture_default_str();
+  app.add_option("--sensor", options.sensor,
+                 "The sensor's frame on the body's: x y z qx qy qz qw; without it TF says that");
   app.add_option("--axes", options.axes, "Of the sensor's frame (optical)")
       ->transform(CLI::CheckedTransformer(
           std::map<std::string, Axes>{{"optical", Axes::optical}, {"flu", Axes::flu}}))
@@ -84,7 +91,11 @@ void add_rules(CLI::App& app, Options& options) {
 /// What options say in words or degrees.
 NodeConfig node_of(const Options& options) {
   NodeConfig node = options.node;
-  node.bridge.mount = {skycap::ros2::parse_extrinsic(options.sensor, "--sensor"), options.axes};
+  node.bridge.uses_transforms = options.sensor.empty();
+  node.bridge.mount = {options.sensor.empty()
+                           ? Eigen::Isometry3d::Identity()
+                           : skycap::ros2::parse_extrinsic(options.sensor, "--sensor"),
+                       options.axes};
   node.bridge.direction_tolerance =
       options.direction_tolerance_deg * skycap::geometry::radians_per_degree;
   node.bridge.uses_covariance = !options.ignores_covariance;

@@ -8,7 +8,11 @@ namespace skycap::ros2 {
 using Header = std_msgs_msg_dds__Header_;
 using String = std_msgs_msg_dds__String_;
 using PoseMessage = geometry_msgs_msg_dds__Pose_;
+using QuaternionMessage = geometry_msgs_msg_dds__Quaternion_;
 using PoseStamped = geometry_msgs_msg_dds__PoseStamped_;
+using TransformMessage = geometry_msgs_msg_dds__Transform_;
+using TransformStamped = geometry_msgs_msg_dds__TransformStamped_;
+using TFMessage = tf2_msgs_msg_dds__TFMessage_;
 using Odometry = nav_msgs_msg_dds__Odometry_;
 using Path = nav_msgs_msg_dds__Path_;
 using PointField = sensor_msgs_msg_dds__PointField_;
@@ -29,6 +33,10 @@ inline const dds_topic_descriptor_t& descriptor<PoseStamped>() {
 template <>
 inline const dds_topic_descriptor_t& descriptor<Odometry>() {
   return nav_msgs_msg_dds__Odometry__desc;
+}
+template <>
+inline const dds_topic_descriptor_t& descriptor<TFMessage>() {
+  return tf2_msgs_msg_dds__TFMessage__desc;
 }
 template <>
 inline const dds_topic_descriptor_t& descriptor<Path>() {

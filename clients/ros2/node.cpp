@@ -55,38 +55,46 @@ PoseMessage message_of(const Isometry3d& pose) {
           .orientation = {turn.x(), turn.y(), turn.z(), turn.w()}};
 }
 
+/// The body along the way, aimed as at its end.
+std::vector<PoseStamped> body_path(const Goal& goal, const Header& header) {
+  std::vector<PoseStamped> places;
+  for (const Eigen::Vector3d& place : goal.path) {
+    Isometry3d pose = goal.view.value_or(Isometry3d::Identity());
+    pose.translation() = place;
+    places.push_back({header, message_of(goal.mount->world_from_body(pose))});
+  }
+  return places;
+}
+
 /// What is published.
 class Outputs {
  public:
-  Outputs(const Participant& participant, const std::string& prefix, Mount mount)
-      : mount_(std::move(mount)),
-        next_view_(participant, prefix + "/next_view", Writing::latched),
+  Outputs(const Participant& participant, const std::string& prefix)
+      : next_view_(participant, prefix + "/next_view", Writing::latched),
         next_sensor_pose_(participant, prefix + "/next_sensor_pose", Writing::latched),
         path_(participant, prefix + "/path", Writing::latched),
         status_(participant, prefix + "/status", Writing::latched) {}
 
   ~Outputs() { status_.flush(); }
 
-  /// The way before the view: who hears of the view can go at once.
+  /// The way before the view: who hears of the view can go at once. Without a mount nobody knows
+  /// yet where the body is round its sensor.
   void goal(const Goal& goal) const {
     const Heading heading(goal);
-    std::vector<PoseStamped> places;
-    for (const Eigen::Vector3d& place : goal.path) {
-      Isometry3d pose = goal.view.value_or(Isometry3d::Identity());
-      pose.translation() = place;
-      places.push_back({heading.header, message_of(mount_.world_from_body(pose))});
+    if (goal.mount) {
+      std::vector<PoseStamped> places = body_path(goal, heading.header);
+      const auto count = static_cast<std::uint32_t>(places.size());
+      path_.write({heading.header, {count, count, places.data(), false}});
     }
-    const auto count = static_cast<std::uint32_t>(places.size());
-    path_.write({heading.header, {count, count, places.data(), false}});
     if (!goal.view) return;
     next_sensor_pose_.write({heading.header, message_of(*goal.view)});
-    next_view_.write({heading.header, message_of(mount_.world_from_body(*goal.view))});
+    if (!goal.mount) return;
+    next_view_.write({heading.header, message_of(goal.mount->world_from_body(*goal.view))});
   }
 
   void status(std::string text) const { status_.write({text.data()}); }
 
  private:
-  Mount mount_;
   Writer<PoseStamped> next_view_, next_sensor_pose_;
   Writer<Path> path_;
   Writer<String> status_;
@@ -97,7 +105,6 @@ class Inputs {
  public:
   Inputs(const Participant& participant, const NodeConfig& config)
       : waits_(participant),
-        odometry_(participant, config.odometry, Reading::sensor, 2000),
         commands_(participant, config.prefix + "/command", Reading::command, 10) {
     constexpr int few = 2;  // while the survey plans, old scans are of no use
     if (config.image.empty()) {
@@ -113,7 +120,7 @@ class Inputs {
       waits_.add(*images_);
       waits_.add(*infos_);
     }
-    waits_.add(odometry_);
+    add_poses(participant, config);
     waits_.add(commands_);
   }
 
@@ -122,7 +129,9 @@ class Inputs {
     constexpr double moment = 0.05;
     waits_.wait(moment);
     const auto forward = [&](const auto& message) { bridge.receive(message, now()); };
-    odometry_.take(forward);
+    if (fixed_) fixed_->take([&](const TFMessage& m) { bridge.receive(m, true, now()); });
+    if (moving_) moving_->take([&](const TFMessage& m) { bridge.receive(m, false, now()); });
+    if (odometry_) odometry_->take(forward);
     commands_.take(forward);
     if (infos_) infos_->take(forward);
     if (clouds_) clouds_->take(forward);
@@ -130,8 +139,27 @@ class Inputs {
   }
 
  private:
+  /// Where body and sensor are.
+  void add_poses(const Participant& participant, const NodeConfig& config) {
+    constexpr int many = 2000;  // while the survey plans
+    const bool asks_odometry = config.bridge.world.empty();
+    if (asks_odometry) {
+      odometry_ =
+          std::make_unique<Reader<Odometry>>(participant, config.odometry, Reading::sensor, many);
+      waits_.add(*odometry_);
+    }
+    if (asks_odometry && !config.bridge.uses_transforms) return;
+    moving_ =
+        std::make_unique<Reader<TFMessage>>(participant, config.transforms, Reading::sensor, many);
+    fixed_ = std::make_unique<Reader<TFMessage>>(participant, config.static_transforms,
+                                                 Reading::latched, many);
+    waits_.add(*moving_);
+    waits_.add(*fixed_);
+  }
+
   WaitSet waits_;
-  Reader<Odometry> odometry_;
+  std::unique_ptr<Reader<Odometry>> odometry_;
+  std::unique_ptr<Reader<TFMessage>> moving_, fixed_;
   Reader<String> commands_;
   std::unique_ptr<Reader<PointCloud2>> clouds_;
   std::unique_ptr<Reader<Image>> images_;
@@ -146,7 +174,7 @@ std::string camera_info_topic(const std::string& image) {
 
 void run_node(const NodeConfig& config, const std::atomic<bool>& stop) {
   const Participant participant(config.domain);
-  const Outputs outputs(participant, config.prefix, config.bridge.mount);
+  const Outputs outputs(participant, config.prefix);
   const Inputs inputs(participant, config);
   skycap_live::Survey survey(config.address);
   Bridge bridge(config.bridge, port_of(survey),

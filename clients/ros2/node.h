@@ -13,10 +13,11 @@ struct NodeConfig {
   std::string address;       ///< what `skycap serve` prints
   std::uint32_t domain = 0;  ///< ROS_DOMAIN_ID
   std::string odometry = "/odom";
-  std::string cloud = "/points";   ///< of clouds, unless there is an `image`
-  std::string image;               ///< of depth images
-  std::string camera_info;         ///< its CameraInfo; empty: beside `image`, as ROS has it
-  std::string prefix = "/skycap";  ///< of what is published
+  std::string cloud = "/points";  ///< of clouds, unless there is an `image`
+  std::string image;              ///< of depth images
+  std::string camera_info;        ///< its CameraInfo; empty: beside `image`, as ROS has it
+  std::string transforms = "/tf", static_transforms = "/tf_static";  ///< if the bridge uses some
+  std::string prefix = "/skycap";                                    ///< of what is published
   BridgeConfig bridge;
 };
 

@@ -84,9 +84,9 @@ PoseMatch OdometryHistory::at(Stamp stamp) const {
 }
 
 bool OdometryHistory::all_between(Stamp from, Stamp to,
-                                  const std::function<bool(const BodyPose&)>& holds) const {
+                                  const std::function<bool(Stamp, const BodyPose&)>& holds) const {
   return std::all_of(poses_.lower_bound(from), poses_.upper_bound(to),
-                     [&](const auto& entry) { return holds(entry.second); });
+                     [&](const auto& entry) { return holds(entry.first, entry.second); });
 }
 
 }  // namespace skycap::ros2

@@ -53,9 +53,8 @@ class OdometryHistory {
   PoseMatch at(Stamp stamp) const;
 
   /// Whether all poses from one stamp to another, both included, have a property.
-  bool all_between(Stamp from, Stamp to, const std::function<bool(const BodyPose&)>& holds) const;
-
-  bool is_empty() const { return poses_.empty(); }
+  bool all_between(Stamp from, Stamp to,
+                   const std::function<bool(Stamp, const BodyPose&)>& holds) const;
 
  private:
   HistoryConfig config_;

@@ -8,8 +8,11 @@
 #include <variant>
 #include <vector>
 
+#include "clients/ros2/complaints.h"
 #include "clients/ros2/frames.h"
 #include "clients/ros2/sensor_scan.h"
+#include "clients/ros2/transforms.h"
+#include "geometry/error.h"
 #include "tests/fuzz/readers.h"
 #include "tests/fuzz/trial_run.h"
 
@@ -148,8 +151,42 @@ int run_odometry(const std::uint8_t* bytes, std::size_t size) {
   });
 }
 
-constexpr Reader readers[] = {
-    {"ros2_cloud", run_cloud}, {"ros2_image", run_image}, {"ros2_odometry", run_odometry}};
+/// Transforms among few frames, so that they meet, and questions between them.
+int run_transforms(const std::uint8_t* bytes, std::size_t size) {
+  constexpr std::array<const char*, 7> names{"map",    "odom", "base_link", "gimbal",
+                                             "camera", "",     nullptr};
+  Front front(bytes, size);
+  const std::size_t count = front.take<std::uint8_t>();
+  return run_reader("", [&] {
+    ros2::Transforms tree(ros2::HistoryConfig{});
+    for (std::size_t i = 0; i < count; ++i) {
+      ros2::TransformStamped transform{};
+      transform.header.frame_id = const_cast<char*>(front.choice(names));
+      transform.child_frame_id = const_cast<char*>(front.choice(names));
+      transform.header.stamp = {front.take<std::int8_t>(), front.take<std::uint32_t>()};
+      auto& [position, turn] = transform.transform;
+      for (double* number : {&position.x, &position.y, &position.z, &turn.x, &turn.y, &turn.z}) {
+        *number = front.take<std::int8_t>() / 64.0;
+      }
+      turn.w = front.take<double>();
+      const bool is_static = front.take<std::uint8_t>() % 2 == 1;
+      try {
+        tree.add(transform, is_static);
+      } catch (const Error&) {  // passed over, as the bridge does
+      }
+      const std::string target = ros2::text_of(front.choice(names));
+      const std::string source = ros2::text_of(front.choice(names));
+      const ros2::PoseMatch match = tree.at(target, source, front.take<std::int32_t>() * 1000LL);
+      if (match.state != ros2::PoseMatch::State::known) continue;
+      require(std::abs(match.pose.turn.norm() - 1.0) < 1e-9, "a chain that stretches");
+    }
+  });
+}
+
+constexpr Reader readers[] = {{"ros2_cloud", run_cloud},
+                              {"ros2_image", run_image},
+                              {"ros2_odometry", run_odometry},
+                              {"ros2_transforms", run_transforms}};
 
 }  // namespace
 

@@ -18,6 +18,15 @@ using Eigen::Quaterniond;
 using Eigen::Vector3d;
 using namespace std::chrono_literals;
 
+/// A camera that looks along x of the gimbal, with its right to minus y.
+const Quaterniond optical_on_gimbal(0.5, -0.5, 0.5, -0.5);
+const Vector3d gimbal_on_body(0.1, 0.0, -0.3);
+
+Quaterniond turn_of(const PoseMessage& pose) {
+  const auto& [x, y, z, w] = pose.orientation;
+  return Quaterniond(w, x, y, z).normalized();
+}
+
 Isometry3d isometry(const PoseMessage& pose) {
   const auto& [position, turn] = pose;
   Isometry3d world_from_sensor = Isometry3d::Identity();
@@ -26,6 +35,8 @@ Isometry3d isometry(const PoseMessage& pose) {
       Quaterniond(turn.w, turn.x, turn.y, turn.z).normalized().toRotationMatrix();
   return world_from_sensor;
 }
+
+constexpr Stamp step = 20'000'000;
 
 std::string text_of(const PoseMessage& pose) {
   const auto& [p, q] = pose;
@@ -37,17 +48,25 @@ std::string text_of(const PoseMessage& pose) {
 
 }  // namespace
 
-Robot::Robot(const std::string& mission, std::uint32_t domain, const std::string& topics)
+Robot::Robot(const std::string& mission, std::uint32_t domain, const std::string& topics,
+             bool has_gimbal)
     : mission_(missions::derived::parse_mission(mission, "m.yaml")),
       scene_(mission_, ""),
       sensor_(mission_.sensor, mission_.seed),
       participant_(domain),
+      has_gimbal_(has_gimbal),
       odometry_(participant_, topics + "/odom", Writing::sensor),
+      transforms_(participant_, topics + "/tf", Writing::sensor),
+      fixed_(participant_, topics + "/tf_static", Writing::latched),
       clouds_(participant_, topics + "/points", Writing::sensor),
       commands_(participant_, topics + "/skycap/command", Writing::command),
       views_(participant_, topics + "/skycap/next_sensor_pose", Reading::latched, 1),
       paths_(participant_, topics + "/skycap/path", Reading::latched, 10),
-      statuses_(participant_, topics + "/skycap/status", Reading::latched, 1) {}
+      statuses_(participant_, topics + "/skycap/status", Reading::latched, 1) {
+  if (!has_gimbal_) return;
+  const SampleTransforms camera(1, {{"gimbal", "camera_optical", {}, optical_on_gimbal}});
+  fixed_.write(camera.message);
+}
 
 void Robot::listen() {
   views_.take([this](const PoseStamped& message) { wanted_ = message.pose; });
@@ -72,7 +91,33 @@ Robot::Measured Robot::measure(const PoseMessage& sensor, std::size_t number) co
 void Robot::send_odometry(Stamp stamp, const PoseMessage& pose) const {
   SampleOdometry sample(stamp, Vector3d::Zero());
   sample.message.pose.pose = pose;
+  if (has_gimbal_) {
+    auto& [position, turn] = sample.message.pose.pose;
+    turn = {0, 0, 0, 1};
+    position = {position.x - gimbal_on_body.x(), position.y - gimbal_on_body.y(),
+                position.z - gimbal_on_body.z()};
+  }
   odometry_.write(sample.message);
+}
+
+void Robot::send_gimbal(const Quaterniond& sensor) const {
+  if (!has_gimbal_) return;
+  constexpr Stamp later = 7'000'000;  // than odometry
+  const SampleTransforms gimbal(clock_ + later, {{"base_link", "gimbal", gimbal_on_body,
+                                                  sensor * optical_on_gimbal.conjugate()}});
+  transforms_.write(gimbal.message);
+}
+
+void Robot::turn_to(const PoseMessage& pose) {
+  if (!has_gimbal_) return;
+  const Quaterniond from = turn_of(here_), to = turn_of(pose);
+  constexpr int steps = 20;
+  for (int i = 0; i < steps; ++i) {
+    send_odometry(clock_ += step, pose);
+    send_gimbal(from.slerp(i / static_cast<double>(steps), to));
+    if (i % 5 == 0) send_cloud(clock_ - step, {{0.0F, 0.0F, 1.0F}, {0.1F, 0.0F, 1.0F}});
+    std::this_thread::sleep_for(2ms);
+  }
 }
 
 void Robot::send_cloud(Stamp stamp, const std::vector<Eigen::Vector3f>& points) const {
@@ -81,10 +126,10 @@ void Robot::send_cloud(Stamp stamp, const std::vector<Eigen::Vector3f>& points) 
 }
 
 void Robot::stand_at(const PoseMessage& pose, int steps) {
-  constexpr Stamp step = 20'000'000;
   here_ = pose;
   for (int i = 0; i < steps; ++i) {
     send_odometry(clock_ += step, pose);
+    send_gimbal(turn_of(pose));
     std::this_thread::sleep_for(2ms);
   }
 }
@@ -132,6 +177,7 @@ bool Robot::survey() {
     const auto place = status_.at("view").at("position").get<std::vector<double>>();
     if (std::abs(place[0] - wanted_.position.x) > 1e-9) continue;  // its message is on the way
     const Measured measured = measure(wanted_, scans_.size());
+    turn_to(wanted_);
     stand_at(wanted_, 20);
     send_nonsense(measured);
     const std::size_t taken = scans_.size();

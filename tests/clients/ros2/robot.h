@@ -1,5 +1,6 @@
 /// A robot of ROS 2 in a simulated world: it publishes where it is and what it measures, and goes
-/// where it is told. Its body's frame is its camera's optical frame.
+/// where it is told. Its body's frame is its camera's optical frame; or the camera is on a gimbal
+/// under the body, which never turns itself, and TF says how that does.
 #pragma once
 
 #include <string>
@@ -24,7 +25,8 @@ struct SentScan {
 class Robot {
  public:
   /// The text of a mission with a scene; `topics` begins the names of all topics.
-  Robot(const std::string& mission, std::uint32_t domain, const std::string& topics);
+  Robot(const std::string& mission, std::uint32_t domain, const std::string& topics,
+        bool has_gimbal = false);
 
   /// Goes to the views it is told, scans there, and sends good messages among bad ones, until the
   /// survey does not want a view any more. False if that takes more than two minutes.
@@ -47,6 +49,10 @@ class Robot {
   void listen();
   Measured measure(const PoseMessage& sensor, std::size_t number) const;
   void stand_at(const PoseMessage& pose, int steps);
+  /// The body above the sensor, and the gimbal on its way there.
+  void send_gimbal(const Eigen::Quaterniond& sensor) const;
+  /// Turns while it measures: a scan that nobody may use.
+  void turn_to(const PoseMessage& pose);
   void send_nonsense(const Measured& measured);
   void send_odometry(Stamp stamp, const PoseMessage& pose) const;
   void send_cloud(Stamp stamp, const std::vector<Eigen::Vector3f>& points) const;
@@ -55,7 +61,9 @@ class Robot {
   missions::scene::SurveyScene scene_;
   missions::derived::SurveySensor sensor_;
   Participant participant_;
+  bool has_gimbal_;
   Writer<Odometry> odometry_;
+  Writer<TFMessage> transforms_, fixed_;
   Writer<PointCloud2> clouds_;
   Writer<String> commands_;
   Reader<PoseStamped> views_;

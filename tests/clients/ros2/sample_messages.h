@@ -39,6 +39,32 @@ struct SampleOdometry {
   Odometry message{};
 };
 
+/// Frames in their parents, all with one stamp.
+struct SampleTransforms {
+  struct Frame {
+    std::string parent, name;
+    Eigen::Vector3d position = Eigen::Vector3d::Zero();
+    Eigen::Quaterniond turn = Eigen::Quaterniond::Identity();
+  };
+  SampleTransforms(Stamp stamp, std::vector<Frame> given) : frames(std::move(given)) {
+    for (Frame& frame : frames) {
+      const Eigen::Vector3d& p = frame.position;
+      const Eigen::Quaterniond& q = frame.turn;
+      transforms.push_back({header_of(stamp, frame.parent),
+                            frame.name.data(),
+                            {{p.x(), p.y(), p.z()}, {q.x(), q.y(), q.z(), q.w()}}});
+    }
+    const auto count = static_cast<std::uint32_t>(transforms.size());
+    message.transforms = {count, count, transforms.data(), false};
+  }
+  SampleTransforms(const SampleTransforms&) = delete;
+  SampleTransforms& operator=(const SampleTransforms&) = delete;
+
+  std::vector<Frame> frames;
+  std::vector<TransformStamped> transforms;
+  TFMessage message{};
+};
+
 /// A cloud of one row: x y z as float32 and four bytes of something else.
 struct SampleCloud {
   SampleCloud(Stamp stamp, const std::vector<Eigen::Vector3f>& points) {

@@ -17,6 +17,9 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include "clients/ros2/frames.h"
+#include "geometry/io/record_log.h"
+#include "missions/live/live_journal.h"
 #include "tests/clients/ros2/dds_domain.h"
 #include "tests/clients/ros2/robot.h"
 #include "tests/missions/flown_mission.h"
@@ -91,12 +94,13 @@ class LiveRobot : public testing::Test {
       std::this_thread::sleep_for(100ms);
     }
   }
-  void start_bridge() {
-    bridge_.emplace(std::vector<std::string>{SKYCAP_ROS2_PROGRAM, "unix:" + (folder_ / "s"),
-                                             "--domain", std::to_string(domain_), "--odometry",
-                                             topics_ + "/odom", "--cloud", topics_ + "/points",
-                                             "--prefix", topics_ + "/skycap", "--settling", "0.2"},
-                    folder_ / "bridge.log");
+  void start_bridge(const std::vector<std::string>& more = {"--sensor", "0 0 0 0 0 0 1"}) {
+    std::vector<std::string> words{
+        SKYCAP_ROS2_PROGRAM, "unix:" + (folder_ / "s"), "--domain",   std::to_string(domain_),
+        "--odometry",        topics_ + "/odom",         "--cloud",    topics_ + "/points",
+        "--prefix",          topics_ + "/skycap",       "--settling", "0.2"};
+    words.insert(words.end(), more.begin(), more.end());
+    bridge_.emplace(words, folder_ / "bridge.log");
   }
 
   TestFolder folder_;
@@ -140,6 +144,24 @@ TEST_F(LiveRobot, IsSurveyedAsByHandWithTheSameScans) {
   EXPECT_TRUE(std::filesystem::exists(folder_.path() / "served" / "views.csv"));
   EXPECT_THAT(bridge_->said(), HasSubstr("warning: odometry: there was another pose"));
   EXPECT_THAT(bridge_->said(), HasSubstr("warning: cloud: "));
+}
+
+/// The body never turns; the gimbal does, and measures on the way, too.
+TEST_F(LiveRobot, TurnsItsCameraOnAGimbalThatTFTellsOf) {
+  const std::string mission = short_mission(tests::quick_mission(), "see++");
+  serve(mission);
+  start_bridge({"--tf", topics_ + "/tf", "--tf-static", topics_ + "/tf_static"});
+  Robot robot(mission, domain_, topics_, true);
+  ASSERT_TRUE(robot.survey()) << bridge_->said() << server_->said();
+  EXPECT_GE(robot.scans().size(), 3U);
+  server_.reset();
+  const geometry::RecordLog log(folder_.path() / "served" / "live.journal");
+  const auto events = missions::live::events_of(log.records(), "the journal");
+  ASSERT_EQ(events.size(), robot.scans().size());
+  for (std::size_t i = 0; i < events.size(); ++i) {
+    const Eigen::Isometry3d wanted = parse_extrinsic(robot.scans()[i].pose, "");
+    EXPECT_TRUE(events[i].scan->world_from_sensor.isApprox(wanted, 1e-9)) << i;
+  }
 }
 
 TEST_F(LiveRobot, IsToldWhenItsBridgeIsStopped) {

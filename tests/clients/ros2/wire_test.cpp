@@ -152,6 +152,17 @@ TEST(Wire, OfPosesAndPaths) {
   EXPECT_EQ(sent(Path{header_of(seconds(9.0), frame), {2, 2, poses.data(), false}}), two.whole());
 }
 
+/// TransformStamped[]: Header, string child_frame_id, Transform: Vector3 translation, Quaternion
+/// rotation x y z w.
+TEST(Wire, OfTransforms) {
+  const SampleTransforms sample(seconds(7.5), {{"base_link", "mast", {1, 2, 3}, {7, 4, 5, 6}},
+                                               {"mast", "camera", {8, 9, 10}, {14, 11, 12, 13}}});
+  Cdr expected;
+  expected.number(2U).header(7, 500'000'000, "base_link").string("mast").doubles(7, 1);
+  expected.header(7, 500'000'000, "mast").string("camera").doubles(7, 8);
+  EXPECT_EQ(sent(sample.message), expected.whole());
+}
+
 TEST(Wire, OfString) {
   std::string text = "take";
   EXPECT_EQ(sent(String{text.data()}), Cdr().string("take").whole());
@@ -165,6 +176,7 @@ TEST(Wire, TypesAreNamedAsROSNamesThem) {
   EXPECT_STREQ(descriptor<Odometry>().m_typename, "nav_msgs::msg::dds_::Odometry_");
   EXPECT_STREQ(descriptor<Path>().m_typename, "nav_msgs::msg::dds_::Path_");
   EXPECT_STREQ(descriptor<PoseStamped>().m_typename, "geometry_msgs::msg::dds_::PoseStamped_");
+  EXPECT_STREQ(descriptor<TFMessage>().m_typename, "tf2_msgs::msg::dds_::TFMessage_");
   EXPECT_STREQ(descriptor<String>().m_typename, "std_msgs::msg::dds_::String_");
 }
 

@@ -1,0 +1,125 @@
+#include "clients/ros2/transforms.h"
+
+#include <algorithm>
+#include <cstring>
+#include <utility>
+#include <vector>
+
+#include "clients/ros2/complaints.h"
+#include "geometry/error.h"
+
+namespace skycap::ros2 {
+namespace {
+
+[[noreturn]] void refuse(const std::string& what) { throw Error(ErrorKind::bad_geometry, what); }
+
+std::string name_of(const char* text, const std::string& what) {
+  if (text == nullptr || *text == '\0') refuse("a transform whose " + what + " has no name");
+  // Longer ones are cut where text_of() shortens them, and would be one another.
+  constexpr std::size_t longest = 100;
+  if (::strnlen(text, longest + 1) > longest) {
+    refuse("a transform whose " + what + " has a name beyond 100 bytes");
+  }
+  return text_of(text);
+}
+
+/// Of b in a, and of c in b: of c in a.
+BodyPose chained(const BodyPose& a, const BodyPose& b) {
+  return {.position = a.position + a.turn * b.position,
+          .turn = (a.turn * b.turn).normalized(),
+          .covariance = {}};
+}
+
+BodyPose inverse(const BodyPose& pose) {
+  const Eigen::Quaterniond turn = pose.turn.conjugate();
+  return {.position = -(turn * pose.position), .turn = turn, .covariance = {}};
+}
+
+}  // namespace
+
+Transforms::Transforms(HistoryConfig config) : config_(config) { config_.most = most_poses; }
+
+void Transforms::add(const TransformStamped& transform, bool is_static) {
+  const std::string parent = name_of(transform.header.frame_id, "parent");
+  const std::string name = name_of(transform.child_frame_id, "child");
+  const std::string what = "the frame '" + name + "'";
+  if (parent == name) refuse(what + " is its own parent");
+  const BodyPose pose = body_pose(transform.transform);
+  const Stamp stamp = is_static ? 0 : stamp_of(transform.header);
+  auto known = frames_.find(name);
+  if (known == frames_.end()) {
+    if (frames_.size() >= most_frames)
+      refuse("more than " + std::to_string(most_frames) + " frames");
+    Frame frame{.parent = parent, .fixed = {}, .history = OdometryHistory(config_), .last = pose};
+    if (is_static) frame.fixed = pose;
+    known = frames_.emplace(name, std::move(frame)).first;
+  }
+  Frame& frame = known->second;
+  if (frame.parent != parent) {
+    refuse(what + " is now in '" + parent + "'; it was in '" + frame.parent +
+           "' until now, and must stay");
+  }
+  if (frame.fixed.has_value() != is_static) refuse(what + " is static and moves");
+  if (is_static) {
+    frame.fixed = pose;
+  } else if (frame.history.add(stamp, pose) == OdometryHistory::Added::contradicts) {
+    refuse(what + " had another pose with the same stamp");
+  }
+  frame.last = pose;
+}
+
+PoseMatch Transforms::in_parent(const Frame& frame, std::optional<Stamp> stamp) const {
+  if (frame.fixed) return {PoseMatch::State::known, *frame.fixed, {}};
+  if (!stamp) return {PoseMatch::State::known, frame.last, {}};
+  return frame.history.at(*stamp);
+}
+
+PoseMatch Transforms::find(const std::string& target, const std::string& source,
+                           std::optional<Stamp> stamp) const {
+  // Up from a frame to the root, the frame first.
+  const auto up_from = [this](std::string name) {
+    std::vector<std::string> names{name};
+    for (auto frame = frames_.find(name); frame != frames_.end();
+         frame = frames_.find(names.back())) {
+      if (static_cast<int>(names.size()) > longest_chain) return std::vector<std::string>();
+      names.push_back(frame->second.parent);
+    }
+    return names;
+  };
+  using enum PoseMatch::State;
+  const std::vector<std::string> up = up_from(source), down = up_from(target);
+  if (up.empty() || down.empty()) {
+    return {refused, {}, "the frames above '" + source + "' and '" + target + "' have no end"};
+  }
+  const auto meeting = std::ranges::find_first_of(up, down);
+  if (meeting == up.end()) {
+    return {open, {}, "no transforms lead from '" + target + "' to '" + source + "'"};
+  }
+  const auto climb = [&](const std::vector<std::string>& names) {
+    PoseMatch match{known, {}, {}};
+    for (const std::string& name : names) {
+      if (name == *meeting) break;
+      const PoseMatch step = in_parent(frames_.at(name), stamp);
+      if (step.state != known) return PoseMatch{step.state, {}, "of '" + name + "': " + step.why};
+      match.pose = chained(step.pose, match.pose);
+    }
+    return match;
+  };
+  const PoseMatch of_source = climb(up), of_target = climb(down);
+  if (of_source.state != known) return of_source;
+  if (of_target.state != known) return of_target;
+  return {known, chained(inverse(of_target.pose), of_source.pose), {}};
+}
+
+PoseMatch Transforms::at(const std::string& target, const std::string& source, Stamp stamp) const {
+  return find(target, source, stamp);
+}
+
+std::optional<Eigen::Isometry3d> Transforms::newest(const std::string& target,
+                                                    const std::string& source) const {
+  const PoseMatch match = find(target, source, std::nullopt);
+  if (match.state != PoseMatch::State::known) return std::nullopt;
+  return isometry_of(match.pose);
+}
+
+}  // namespace skycap::ros2

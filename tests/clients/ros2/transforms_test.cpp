@@ -1,0 +1,137 @@
+// Frames of TF: chains of them, interpolated, and whatever else comes.
+#include "clients/ros2/transforms.h"
+
+#include <cmath>
+#include <limits>
+#include <string>
+#include <vector>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "geometry/angle.h"
+#include "tests/clients/ros2/sample_messages.h"
+#include "tests/support/complaint.h"
+
+namespace skycap::ros2 {
+namespace {
+
+using Eigen::AngleAxisd;
+using Eigen::Quaterniond;
+using Eigen::Vector3d;
+using testing::HasSubstr;
+using testing_support::complaint_of;
+using Frame = SampleTransforms::Frame;
+using State = PoseMatch::State;
+
+Quaterniond about_z(double degrees) {
+  return Quaterniond(AngleAxisd(degrees * geometry::radians_per_degree, Vector3d::UnitZ()));
+}
+
+class TransformTree : public testing::Test {
+ protected:
+  void add(double time, const Frame& frame, bool is_static = false) {
+    const SampleTransforms sample(seconds(time), {frame});
+    tree_.add(sample.transforms.front(), is_static);
+  }
+  std::string complaint(double time, const Frame& frame, bool is_static = false) {
+    return complaint_of([&] { add(time, frame, is_static); });
+  }
+  PoseMatch at(const std::string& target, const std::string& source, double time) const {
+    return tree_.at(target, source, seconds(time));
+  }
+
+  Transforms tree_{HistoryConfig{}};
+};
+
+/// A mast that stands, a gimbal on it that turns, and a camera on that.
+TEST_F(TransformTree, ChainsWhatStandsAndWhatTurns) {
+  add(0.0, {"base_link", "mast", {0, 0, 2}, about_z(0)}, true);
+  add(10.0, {"mast", "gimbal", {0, 0, 0}, about_z(0)});
+  add(10.1, {"mast", "gimbal", {0, 0, 0.2}, about_z(10)});
+  add(0.0, {"gimbal", "camera", {1, 0, 0}, about_z(90)}, true);
+  const PoseMatch half = at("base_link", "camera", 10.05);
+  ASSERT_EQ(half.state, State::known) << half.why;
+  const double angle = 5.0 * geometry::radians_per_degree;
+  EXPECT_LT((half.pose.position - Vector3d(std::cos(angle), std::sin(angle), 2.1)).norm(), 1e-12);
+  EXPECT_LT(half.pose.turn.angularDistance(about_z(95)), 1e-12);
+  const PoseMatch back = at("camera", "base_link", 10.05);
+  ASSERT_EQ(back.state, State::known);
+  EXPECT_LT((half.pose.turn * back.pose.position + half.pose.position).norm(), 1e-12);
+  EXPECT_EQ(at("base_link", "camera", 10.3).state, State::open);  // may still come
+  EXPECT_EQ(at("base_link", "mast", 99.0).state, State::known);   // for ever
+}
+
+/// Neither need be above the other: base_footprint is often below base_link.
+TEST_F(TransformTree, LeadsFromBranchToBranch) {
+  add(0.0, {"base_link", "base_footprint", {0, 0, -0.5}}, true);
+  add(0.0, {"base_link", "camera", {1, 0, 0}, about_z(90)}, true);
+  const PoseMatch match = at("base_footprint", "camera", 1.0);
+  ASSERT_EQ(match.state, State::known);
+  EXPECT_EQ(match.pose.position, Vector3d(1, 0, 0.5));
+  EXPECT_EQ(at("map", "camera", 1.0).state, State::open);
+  EXPECT_THAT(at("map", "camera", 1.0).why, HasSubstr("no transforms lead from 'map' to 'camera'"));
+  EXPECT_EQ(at("nobody", "nobody", 1.0).state, State::known);
+}
+
+TEST_F(TransformTree, RefusesToBridgeJumps) {
+  add(10.0, {"map", "odom", {0, 0, 0}});
+  add(10.1, {"map", "odom", {50, 0, 0}});
+  EXPECT_EQ(at("map", "odom", 10.05).state, State::refused);
+  EXPECT_EQ(at("map", "odom", 10.1).state, State::known);
+}
+
+TEST_F(TransformTree, TakesWhatCameLastWhateverItsStamp) {
+  EXPECT_FALSE(tree_.newest("base_link", "gimbal"));
+  add(10.0, {"base_link", "gimbal", {1, 0, 0}});
+  add(9.0, {"base_link", "gimbal", {2, 0, 0}});
+  EXPECT_EQ(tree_.newest("base_link", "gimbal")->translation(), Vector3d(2, 0, 0));
+}
+
+TEST_F(TransformTree, HasNoCirclesNorTooLongChains) {
+  add(0.0, {"a", "b"}, true);
+  add(0.0, {"b", "c"}, true);
+  add(0.0, {"c", "a"}, true);
+  EXPECT_EQ(at("map", "a", 1.0).state, State::refused);
+  EXPECT_THAT(at("map", "a", 1.0).why, HasSubstr("have no end"));
+  EXPECT_THAT(complaint(0.0, {"d", "d"}, true), HasSubstr("is its own parent"));
+  for (int i = 0; i < 65; ++i) {
+    add(0.0, {"f" + std::to_string(i), "f" + std::to_string(i + 1)}, true);
+  }
+  EXPECT_EQ(at("f1", "f65", 1.0).state, State::refused);
+  EXPECT_EQ(at("f0", "f60", 1.0).state, State::known);
+}
+
+TEST_F(TransformTree, PassesOverNonsense) {
+  constexpr double none = std::numeric_limits<double>::quiet_NaN();
+  add(10.0, {"base_link", "gimbal"});
+  EXPECT_THAT(complaint(10.0, {"base_link", "gimbal", {1, 0, 0}}), HasSubstr("the same stamp"));
+  EXPECT_THAT(complaint(10.1, {"mast", "gimbal"}), HasSubstr("it was in 'base_link' until now"));
+  EXPECT_THAT(complaint(10.1, {"base_link", "gimbal"}, true), HasSubstr("is static and moves"));
+  EXPECT_THAT(complaint(10.1, {"", "x"}), HasSubstr("parent has no name"));
+  EXPECT_THAT(complaint(10.1, {"x", ""}), HasSubstr("child has no name"));
+  EXPECT_THAT(complaint(10.1, {"x", std::string(101, 'y')}), HasSubstr("beyond 100 bytes"));
+  EXPECT_THAT(complaint(0.0, {"x", "y"}), HasSubstr("stamp is not set"));
+  EXPECT_THAT(complaint(10.1, {"x", "y", {none, 0, 0}}), HasSubstr("numbers that are none"));
+  EXPECT_THAT(complaint(10.1, {"x", "y", {0, 0, 0}, {0, 0, 0, 0}}), HasSubstr("quaternion"));
+  EXPECT_EQ(at("x", "y", 10.1).state, State::open);  // nothing of them stayed
+  const SampleTransforms nameless(seconds(1.0), {{"x", "y"}});
+  TransformStamped transform = nameless.transforms.front();
+  transform.child_frame_id = nullptr;
+  EXPECT_THAT(complaint_of([&] { tree_.add(transform, false); }), HasSubstr("has no name"));
+}
+
+TEST_F(TransformTree, HoldsNoMoreThanItMay) {
+  for (std::size_t i = 0; i < Transforms::most_frames; ++i) {
+    add(1.0, {"map", "f" + std::to_string(i)});
+  }
+  EXPECT_THAT(complaint(1.0, {"map", "one more"}), HasSubstr("more than 256 frames"));
+  for (std::size_t i = 0; i <= Transforms::most_poses; ++i) {
+    add(2.0 + 0.01 * static_cast<double>(i), {"map", "f0"});
+  }
+  EXPECT_EQ(at("map", "f0", 1.0).state, State::open);  // gone
+  EXPECT_EQ(at("map", "f0", 2.01).state, State::known);
+}
+
+}  // namespace
+}  // namespace skycap::ros2
