@@ -26,7 +26,7 @@ std::string no_such_vertex(std::int64_t vertex, std::size_t count) {
 }
 
 [[noreturn]] void fail_of_size(std::string_view name) {
-  fail(name, "holds more than 1e7 faces, 3e7 corners of faces or 3e7 vertices; simplify the mesh");
+  fail(name, "holds more than 4e7 faces, or 1.2e8 corners of faces or vertices; simplify the mesh");
 }
 
 void add_vertex(std::string_view name, PolygonSoup& soup, const Vector3d& vertex) {

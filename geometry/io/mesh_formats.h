@@ -14,8 +14,8 @@
 
 namespace skycap::geometry {
 
-/// Of a mesh in a file: what is made of it on the way takes less than 2 GiB.
-inline constexpr std::size_t most_mesh_faces = 10'000'000, most_mesh_vertices = 30'000'000,
+/// Of a mesh in a file.
+inline constexpr std::size_t most_mesh_faces = 40'000'000, most_mesh_vertices = 120'000'000,
                              most_mesh_materials = 1'000'000;
 
 /// Polygons as a file lists them: nothing of it is checked but that indices are those of vertices.

@@ -23,9 +23,9 @@ namespace {
 namespace fs = std::filesystem;
 using Eigen::Vector3d;
 
-// With what is made of a file on the way less than 2 GiB; 1e7 triangles of binary STL fit in.
-constexpr std::size_t largest_mesh = std::size_t{512} << 20,
-                      largest_unpacked_mesh = std::size_t{256} << 20;
+// Of a file that unpacks to far more than its own bytes: with what is made of it on the way less
+// than 2 GiB. A plain file takes memory by its size, which is the user's to give.
+constexpr std::size_t largest_unpacked_mesh = std::size_t{256} << 20, most_unpacked = 10'000'000;
 
 [[noreturn]] void fail(const fs::path& path, const std::string& what) {
   throw Error(ErrorKind::bad_file, path.string() + ": " + what);
@@ -34,9 +34,9 @@ constexpr std::size_t largest_mesh = std::size_t{512} << 20,
 PolygonSoup parse(const fs::path& path) {
   const std::string format = ending_of(path);
   if (format == ".drc") {
-    const std::string bytes = read_file(path, largest_mesh, largest_unpacked_mesh);
+    const std::string bytes = read_file(path, largest_whole_file, largest_unpacked_mesh);
     const Mesh mesh = decode_draco(path.string(), bytes);
-    if (mesh.triangles.size() > most_mesh_faces) fail(path, "holds more than 1e7 triangles");
+    if (mesh.triangles.size() > most_unpacked) fail(path, "holds more than 1e7 triangles");
     PolygonSoup soup{mesh.vertices, {}};  // goes the way of the others, which checks it
     for (const auto& triangle : mesh.triangles) {
       soup.corners.insert(soup.corners.end(), triangle.begin(), triangle.end());
@@ -52,7 +52,7 @@ PolygonSoup parse(const fs::path& path) {
   if (parser == nullptr) {
     fail(path, "a mesh file must end in .ply, .obj, .stl, .off or .drc (or with .gz after it)");
   }
-  const std::string bytes = read_file(path, largest_mesh, largest_unpacked_mesh);
+  const std::string bytes = read_file(path, largest_whole_file, largest_unpacked_mesh);
   if (bytes.empty()) fail(path, "is empty");
   return parser(path.string(), bytes);
 }
