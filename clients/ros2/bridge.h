@@ -53,7 +53,7 @@ struct SurveyPort {
 /// Where the robot is wanted, in the odometry's frame or the one that was named.
 struct Goal {
   std::string frame;
-  Stamp stamp = 0;                        ///< of the odometry that came last; 0: none yet
+  Stamp stamp = 0;                        ///< of the pose that came last; 0: none yet
   std::optional<Eigen::Isometry3d> view;  ///< world from the optical frame
   std::vector<Eigen::Vector3d> path;      ///< proven way of the sensor there; empty: none
   std::optional<Mount> mount;             ///< as it is now, if it is known

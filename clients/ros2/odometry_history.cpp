@@ -61,14 +61,14 @@ PoseMatch OdometryHistory::at(Stamp stamp) const {
                               ? config_.longest_gap + 1.0
                               : static_cast<double>(after->first - stamp) * seconds_per_nanosecond;
   if (to_after > config_.longest_gap) {
-    return {open, {}, "no odometry within " + rounded(config_.longest_gap, "s") + " after it"};
+    return {open, {}, "nothing within " + rounded(config_.longest_gap, "s") + " after it"};
   }
   const double from_before =
       after == poses_.begin()
           ? config_.longest_gap + 1.0
           : static_cast<double>(stamp - std::prev(after)->first) * seconds_per_nanosecond;
   if (from_before > config_.longest_gap) {
-    return {open, {}, "no odometry within " + rounded(config_.longest_gap, "s") + " before it"};
+    return {open, {}, "nothing within " + rounded(config_.longest_gap, "s") + " before it"};
   }
   const BodyPose &a = std::prev(after)->second, &b = after->second;
   const double time = from_before + to_after;
@@ -77,8 +77,7 @@ PoseMatch OdometryHistory::at(Stamp stamp) const {
   if (speed > config_.highest_speed || turn > config_.highest_turn) {
     return {refused,
             {},
-            "odometry jumps there, as if at " + rounded(speed, "m/s") + " and " +
-                rounded(turn, "rad/s")};
+            "it jumps there, as if at " + rounded(speed, "m/s") + " and " + rounded(turn, "rad/s")};
   }
   return {known, between(a, b, from_before / time), {}};
 }

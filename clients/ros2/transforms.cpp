@@ -89,7 +89,10 @@ PoseMatch Transforms::find(const std::string& target, const std::string& source,
   using enum PoseMatch::State;
   const std::vector<std::string> up = up_from(source), down = up_from(target);
   if (up.empty() || down.empty()) {
-    return {refused, {}, "the frames above '" + source + "' and '" + target + "' have no end"};
+    return {
+        refused,
+        {},
+        "the frames above '" + source + "' and '" + target + "' have no end, or are more than 64"};
   }
   const auto meeting = std::ranges::find_first_of(up, down);
   if (meeting == up.end()) {

@@ -127,7 +127,7 @@ class ObjReader {
   void use_material(const std::string& wanted) {
     const auto number = static_cast<std::uint32_t>(soup_.materials.size());
     const auto [known, is_new] = materials_.emplace(wanted, number);
-    if (number == most_mesh_materials) {
+    if (is_new && number == most_mesh_materials) {
       scanner_.fail("names more than 1e6 materials");
     }
     material_ = known->second;

@@ -66,11 +66,15 @@ double price_of_stop(const file::Mission& mission) {
          (hold_of(mission) + hold_after_of(mission) + pieces * (ramps + flight::corner_hold));
 }
 
+}  // namespace
+
 double view_price_of(const file::Mission& mission) {
   const double distance = view_distance_of(mission);
   if (mission.planner.goal == file::PlannerGoal::views) return 3.0 * distance;
   return mission.flight.is_flown() ? price_of_stop(mission) : distance;
 }
+
+namespace {
 
 survey::skycap::SkycapConfig skycap_config(const file::Mission& mission, unsigned threads) {
   const survey::see::SeeConfig& see = mission.planner.see;

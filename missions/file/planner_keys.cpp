@@ -70,7 +70,7 @@ std::vector<Key> density_keys() {
                   see(&See::visibility_update_limit),
                   "tau: how many views nearest the sensor are kept up to date after a scan."),
       otherwise(
-          "ceil(4/3 pi r^3 rho), in preset building at least half of what a disc of radius r holds",
+          "ceil(4/3 pi r^3 rho); in preset building 1.09 (r/epsilon)^2, rounded, if that is more",
           integer_key("planner.core_threshold", "points", between(1, 1e6),
                       see(&See::core_threshold),
                       "k: points within r, itself counted, that make a point core.")),
@@ -123,11 +123,13 @@ std::vector<Key> occlusion_keys() {
           "What is called the observing direction of a point: its ray, or the optical axis."),
       number_key("planner.occluder_spacing", "m", above(0, 1e3), see(&See::occluder_spacing),
                  "Spacing of the sparse cloud in which the clear direction is looked for."),
-      choice_key("planner.still_occluded", {"give_up", "put_off", "keep"},
-                 see(&See::still_occluded),
-                 "What becomes of frontiers that even the optimised view does not see: given up, "
-                 "looked at "
-                 "from where they were seen when nothing else is left, or looked at all the same."),
+      otherwise("give_up; in preset building put_off",
+                choice_key("planner.still_occluded", {"give_up", "put_off", "keep"},
+                           see(&See::still_occluded),
+                           "What becomes of frontiers that even the optimised view does not see: "
+                           "given up, looked "
+                           "at from where they were seen when nothing else is left, or looked at "
+                           "all the same.")),
   };
 }
 

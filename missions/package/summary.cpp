@@ -36,7 +36,7 @@ Json json_of(const std::vector<survey::PartTime>& times) {
 /// How far what the planner believes of places is true, of what can be seen.
 Json reliability_summary(const file::Mission& mission, const survey::skycap::SurveyBelief& belief,
                          const std::optional<TrueCoverage>& truth) {
-  if (!truth) return {};
+  if (!truth || truth->is_visible.empty()) return {};  // interrupted, or nobody asks
   const double reach = 2.0 * mission.planner.see.resolution_radius;
   const judge::Reliability found = judge::reliability(belief.patches, truth->samples,
                                                       truth->is_covered, truth->is_visible, reach);

@@ -25,8 +25,13 @@ geometry::View place_view(const Vector3d& frontier, const Vector3d& direction,
 geometry::View look_again(const Frontier& frontier, const ViewPlacement& placement) {
   const Vector3d line = frontier.observed_from - frontier.position;
   const double range = line.norm();
-  const Vector3d direction = line / range;
-  return {frontier.position + std::min(placement.distance, range) * direction, -direction};
+  const Vector3d direction = line.normalized();
+  double away = std::min(placement.distance, range);
+  if (placement.least_height && direction.z() > 0.0) {
+    const double high_enough = (*placement.least_height - frontier.position.z()) / direction.z();
+    away = std::min(range, std::max(away, high_enough));
+  }
+  return {frontier.position + away * direction, -direction};
 }
 
 }  // namespace skycap::survey::see

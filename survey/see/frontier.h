@@ -40,7 +40,9 @@ struct ViewPlacement {
 geometry::View place_view(const Eigen::Vector3d& frontier, const Eigen::Vector3d& direction,
                           const ViewPlacement& placement);
 
-/// The view of `frontier` along the line on which it was seen, from no farther than that.
+/// The view of `frontier` along the line on which it was seen, which was free then: from
+/// `placement.distance` away, or as much farther as it takes to be high enough, but no farther than
+/// it was seen from.
 geometry::View look_again(const Frontier& frontier, const ViewPlacement& placement);
 
 }  // namespace skycap::survey::see

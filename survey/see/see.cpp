@@ -67,7 +67,7 @@ struct SeePlanner::Impl {
   std::optional<View> select();
   std::size_t nearest_proposal() const;
   void give_up(std::uint32_t point);
-  void give_up_around(std::uint32_t point);
+  void give_up_cluster(std::uint32_t point);
   void set_aside(std::uint32_t point);
   void list_proposals();
 
@@ -124,7 +124,7 @@ std::optional<View> SeePlanner::Impl::update(const ScanSpan& scan) {
   stopwatch.lap("graph");
   std::optional<View> view = select();
   stopwatch.lap("select");
-  step.frontiers = frontiers.size() + waiting.size();
+  step.frontiers = frontiers.size() + waiting.size() + put_off.size();
   return view;
 }
 
@@ -210,11 +210,11 @@ void SeePlanner::Impl::adjust_target(std::span<const Vector3f> points) {
   const auto accepted = std::span(map.cloud().positions).subspan(first_new);
   const auto seen = config.adjustment_centroid == ScanCentroid::whole_scan ? points : accepted;
   const bool adjusted =
-      !seen.empty() && record.views < config.max_attempts &&
+      !seen.empty() && !found->second.was_put_off && record.views < config.max_attempts &&
       adjust_view(found->second, record, centroid(seen), placement, config.adjustment);
   if (adjusted) return;
-  if (config.still_occluded == StillOccluded::put_off) give_up_around(*target);
-  give_up(*target);
+  give_up_cluster(*target);
+  if (frontiers.empty()) propose_for_new_frontiers();
 }
 
 // The proactive part (§III-B), for the proposals nearest to the sensor.
@@ -237,7 +237,7 @@ void SeePlanner::Impl::avoid_occlusions() {
   }
 }
 
-/// Moves an occluded view to where it is clearest. False if the frontier should be given up.
+/// Moves an occluded view to where it is clearest. False if it is still occluded there.
 bool SeePlanner::Impl::avoid_occlusion(std::uint32_t point, Frontier& frontier) {
   if (frontier.was_put_off) return true;
   const double offset = clear_offset(frontier);
@@ -306,10 +306,8 @@ bool SeePlanner::Impl::sees(const Frontier& from, Frontier& to) {
 
 std::optional<View> SeePlanner::Impl::select() {
   list_proposals();
-  if (proposal_points.empty()) {
-    target.reset();
-    return std::nullopt;
-  }
+  if (proposal_points.empty()) target.reset();
+  if (proposal_points.empty()) return std::nullopt;
   const bool keep_target = config.stay_on_target && target && frontiers.contains(*target);
   if (!keep_target) {
     std::size_t chosen = nearest_proposal();
@@ -337,8 +335,10 @@ void SeePlanner::Impl::give_up(std::uint32_t point) {
   frontiers.erase(point);
 }
 
-/// Gives up what `point` stood for: it was looked at as often as itself.
-void SeePlanner::Impl::give_up_around(std::uint32_t point) {
+/// Gives a frontier up, and where views are put off what it stood for: it had the same looks.
+void SeePlanner::Impl::give_up_cluster(std::uint32_t point) {
+  give_up(point);
+  if (config.still_occluded != StillOccluded::put_off) return;
   const auto& positions = map.cloud().positions;
   std::vector<std::uint32_t> around = put_off.forget_around(positions[point].cast<double>());
   for (const std::uint32_t other : waiting) {
@@ -356,7 +356,7 @@ void SeePlanner::Impl::set_aside(std::uint32_t point) {
   const auto found = frontiers.find(point);
   const bool may_come_back =
       config.still_occluded == StillOccluded::put_off && !found->second.was_put_off;
-  if (!may_come_back) return give_up(point);
+  if (!may_come_back) return give_up_cluster(point);
   put_off.add(frontiers.extract(found));
 }
 

@@ -169,6 +169,8 @@ class OtherPagesTest(unittest.TestCase):
         survey.stderr.read()
         self.assertEqual(survey.wait(), 1)
         survey.stderr.close()
+        subprocess.run([os.environ["PROGRAM"], "report", str(self.folder / "out")], check=True,
+                       stdout=subprocess.DEVNULL)
         page = self.shows(self.folder / "out" / "report.html")
         self.assertIn("it was interrupted", page)
 

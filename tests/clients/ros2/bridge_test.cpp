@@ -1,6 +1,7 @@
 // Which scans go to the survey, and from where, whatever a robot sends.
 #include "clients/ros2/bridge.h"
 
+#include <functional>
 #include <limits>
 #include <memory>
 #include <stdexcept>
@@ -69,6 +70,24 @@ class Robot : public testing::Test {
     now_ += later;
     bridge_->proceed(now_);
   }
+  void transforms(double time, std::vector<SampleTransforms::Frame> frames,
+                  bool is_static = false) {
+    const SampleTransforms sample(seconds(time), std::move(frames));
+    bridge_->receive(sample.message, is_static, now_);
+  }
+  /// Begins with TF alone, by which the camera is half a metre above the body.
+  void begin_with_transforms() {
+    begin({.uses_transforms = true, .world = "map"});
+    transforms(0.0, {{"base_link", "camera_optical", {0, 0, 0.5}}}, true);
+  }
+  /// From 9 s to 11 s in steps of 0.05 s: the body is where `position` has it, by two frames.
+  void localised(const std::function<Vector3d(double)>& position) {
+    for (int step = 0; step <= 40; ++step) {
+      const double time = 9.0 + 0.05 * step;
+      transforms(time, {{"map", "odom", {1, 0, 0}}, {"odom", "base_link", position(time)}});
+    }
+  }
+
   /// At the view from 9 s on, in steps of 0.05 s.
   void arrive() {
     for (int step = 0; step <= 40; ++step) odometry(9.0 + 0.05 * step, {5, 0, 0});
@@ -117,6 +136,43 @@ TEST_F(Robot, GivesAScanOnceItIsAtTheView) {
   EXPECT_THAT(warnings_, IsEmpty());
 }
 
+TEST_F(Robot, IsWhereTransformsHaveItAndItsCamera) {
+  begin_with_transforms();
+  cloud(8.0);  // tells the frame of the camera, from a time that nobody knows of
+  proceed(1.0);
+  warnings_.clear();
+  localised([](double) { return Vector3d(4, 0, -0.5); });
+  cloud(10.02);
+  proceed();
+  ASSERT_THAT(scans_, SizeIs(1));
+  EXPECT_THAT(poses_[0], ElementsAre(1, 0, 0, 5, 0, 1, 0, 0, 0, 0, 1, 0));
+  EXPECT_THAT(warnings_, IsEmpty());
+  ASSERT_FALSE(goals_.empty());
+  EXPECT_EQ(goals_.back().frame, "map");
+  EXPECT_EQ(goals_.back().mount.value().world_from_optical({}).translation(), Vector3d(0, 0, 0.5));
+}
+
+TEST_F(Robot, WhoseTransformsMoveIsNotThereYet) {
+  begin_with_transforms();
+  cloud(8.0);
+  proceed(1.0);
+  localised([](double time) { return Vector3d(time < 9.8 ? 2 + (time - 9.0) : 4, 0, -0.5); });
+  cloud(10.02);  // there since 0.2 s
+  proceed();
+  EXPECT_THAT(scans_, IsEmpty());
+  cloud(10.5);
+  proceed();
+  EXPECT_THAT(scans_, SizeIs(1));
+}
+
+TEST_F(Robot, WithoutTransformsSaysWhatIsMissing) {
+  begin({.uses_transforms = true, .world = "map", .taking = Taking::every});
+  cloud(10.0);
+  proceed(1.0);
+  EXPECT_THAT(scans_, IsEmpty());
+  EXPECT_THAT(warnings_, testing::Contains(HasSubstr("map")));
+}
+
 TEST_F(Robot, LooksTheWrongWay) {
   begin();
   for (int step = 0; step <= 40; ++step) {
@@ -143,7 +199,7 @@ TEST_F(Robot, ScansWaitForOdometryButNotForever) {
   EXPECT_NEAR(poses_[0][3], 1.0 + 0.75 * 2 / 3, 1e-9);
   cloud(11.0);
   proceed(0.6);
-  EXPECT_THAT(warnings_, ElementsAre(HasSubstr("its pose is not known: no odometry within 0.1 s")));
+  EXPECT_THAT(warnings_, ElementsAre(HasSubstr("its pose is not known: nothing within 0.1 s")));
   EXPECT_THAT(poses_, SizeIs(1));
 }
 
