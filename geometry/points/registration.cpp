@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 #include <vector>
 
 #include <Eigen/Eigenvalues>
@@ -84,6 +85,8 @@ struct Scales {
   double flatness;  // and patches
 };
 
+Scales fine_scales(const SurfaceMap& map) { return {0.01 * map.radius(), 0.03 * map.radius()}; }
+
 Equations equations_of(const std::vector<Match>& matches, const Frame& frame,
                        const Scales& scales) {
   constexpr double normal_deviation = 1.4826, tukey = 4.685;
@@ -151,40 +154,71 @@ void measure(Registration& found, const Equations& equations, const Frame& frame
   }
 }
 
+/// A correction, and what of the scan has a partner then.
+struct Alignment {
+  Isometry3d correction = Isometry3d::Identity();
+  std::vector<Match> matches;
+};
+
+/// Moves a scan from where it is said to be to what is known, with partners ever nearer and then
+/// with ever less error. While they are looked for at a distance d, errors of so many d are noise.
+Alignment aligned(std::span<const SurfacePatch> patches, SurfaceMap& map, double reach,
+                  std::size_t least_matches, double noise_of_reach) {
+  constexpr int most_rounds = 12;  // of each stage
+  const double radius = map.radius(), last = std::min(reach, 2.0 * radius), flat = 0.03 * radius;
+  Alignment found{.matches = matches_of(patches, Isometry3d::Identity(), map, reach)};
+  const auto settle = [&](const Scales& scales) {
+    for (int round = 0; round < most_rounds && found.matches.size() >= least_matches; ++round) {
+      const Frame frame = frame_of(found.matches);
+      const Vector6d step = step_of(equations_of(found.matches, frame, scales));
+      found.correction = motion(step, frame) * found.correction;
+      found.matches = matches_of(patches, found.correction, map, reach);
+      if (step.norm() < 1e-4 * radius) break;
+    }
+  };
+  for (; reach > last; reach = std::max(last, 0.5 * reach)) settle({noise_of_reach * reach, flat});
+  settle({noise_of_reach * reach, flat});
+  settle(fine_scales(map));
+  return found;
+}
+
+/// How badly an alignment fits: what has no partner, or one a quarter of a radius off, counts
+/// whole.
+double misfit_of(const Alignment& alignment, std::size_t patches, double radius) {
+  double sum = static_cast<double>(patches - alignment.matches.size());
+  for (const Match& match : alignment.matches) {
+    const double share = std::min(1.0, std::abs(match.error) / (0.25 * radius));
+    sum += share * share;
+  }
+  return sum / static_cast<double>(patches);
+}
+
 }  // namespace
 
 Registration register_scan(std::span<const SurfacePatch> patches, SurfaceMap& map, double reach,
                            std::size_t least_matches) {
-  constexpr int most_rounds = 12;  // of each stage
-  const double radius = map.radius(), last = std::min(reach, 2.0 * radius);
-  // While the scan is far from its place, what one plane says must not make outliers of the others.
-  const auto coarse = [&](double near) { return Scales{near / 16.0, 0.03 * radius}; };
-  const Scales fine{0.01 * radius, 0.03 * radius};
-  Registration found;
-  std::vector<Match> matches = matches_of(patches, found.correction, map, reach);
-  const auto is_too_few = [&] { return matches.size() < std::max<std::size_t>(least_matches, 1); };
-  if (is_too_few()) return {.matches = matches.size()};
-  found.first_error = median_error(matches);
-  const auto settle = [&](const Scales& scales) {
-    for (int round = 0; round < most_rounds && !is_too_few(); ++round) {
-      const Frame frame = frame_of(matches);
-      const Vector6d step = step_of(equations_of(matches, frame, scales));
-      found.correction = motion(step, frame) * found.correction;
-      matches = matches_of(patches, found.correction, map, reach);
-      if (step.norm() < 1e-4 * radius) break;
-    }
-  };
-  for (; reach > last; reach = std::max(last, 0.5 * reach)) settle(coarse(reach));
-  settle(coarse(reach));
-  settle(fine);
-  if (is_too_few()) return {.matches = matches.size(), .first_error = found.first_error};
-  const Frame frame = frame_of(matches);
-  found.matches = matches.size();
+  least_matches = std::max<std::size_t>(least_matches, 1);
+  const std::vector<Match> given = matches_of(patches, Isometry3d::Identity(), map, reach);
+  if (given.size() < least_matches) return {.matches = given.size()};
+  Registration found{.first_error = median_error(given)};
+  // Narrow, most of a surface that fits holds the rest in place, also a wall that is far off though
+  // it should move; wide, all of it pulls, also what was never seen before.
+  constexpr double narrow = 1.0 / 16.0, wide = 1.0 / 4.0, clearly = 0.8;
+  Alignment best = aligned(patches, map, reach, least_matches, narrow);
+  Alignment other = aligned(patches, map, reach, least_matches, wide);
+  if (misfit_of(other, patches.size(), map.radius()) <
+      clearly * misfit_of(best, patches.size(), map.radius())) {
+    best = std::move(other);
+  }
+  found.matches = best.matches.size();
+  if (found.matches < least_matches) return found;
+  found.correction = best.correction;
+  const Frame frame = frame_of(best.matches);
   found.size = frame.size;
   found.middle = found.correction.inverse() * frame.middle;
-  found.error = median_error(matches);
-  found.deviation = median(matches, [](const Match& match) { return match.deviation; });
-  measure(found, equations_of(matches, frame, fine), frame);
+  found.error = median_error(best.matches);
+  found.deviation = median(best.matches, [](const Match& match) { return match.deviation; });
+  measure(found, equations_of(best.matches, frame, fine_scales(map)), frame);
   return found;
 }
 

