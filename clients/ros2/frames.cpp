@@ -44,6 +44,8 @@ std::optional<Covariance> covariance_of(const double (&numbers)[36]) {
 
 BodyPose checked_pose(const Vector3d& position, const QuaternionMessage& given) {
   if (!position.allFinite()) refuse("its position has numbers that are none");
+  constexpr double farthest = 1e7;  // as of all places that others give
+  if (position.cwiseAbs().maxCoeff() > farthest) refuse("its position is beyond 1e7 m");
   const Quaterniond turn(given.w, given.x, given.y, given.z);
   if (!is_of_length_one(turn)) refuse("the length of its quaternion is not one");
   return {.position = position, .turn = turn.normalized(), .covariance = {}};

@@ -64,7 +64,8 @@ Robot::Robot(const std::string& mission, std::uint32_t domain, const std::string
       paths_(participant_, topics + "/skycap/path", Reading::latched, 10),
       statuses_(participant_, topics + "/skycap/status", Reading::latched, 1) {
   if (!has_gimbal_) return;
-  const SampleTransforms camera(1, {{"gimbal", "camera_optical", {}, optical_on_gimbal}});
+  const SampleTransforms camera(
+      1, {{"gimbal", "camera_optical", Vector3d::Zero(), optical_on_gimbal}});
   fixed_.write(camera.message);
 }
 

@@ -113,6 +113,7 @@ TEST_F(TransformTree, PassesOverNonsense) {
   EXPECT_THAT(complaint(10.1, {"x", std::string(101, 'y')}), HasSubstr("beyond 100 bytes"));
   EXPECT_THAT(complaint(0.0, {"x", "y"}), HasSubstr("stamp is not set"));
   EXPECT_THAT(complaint(10.1, {"x", "y", {none, 0, 0}}), HasSubstr("numbers that are none"));
+  EXPECT_THAT(complaint(10.1, {"x", "y", {1e200, 0, 0}}), HasSubstr("beyond 1e7 m"));
   EXPECT_THAT(complaint(10.1, {"x", "y", {0, 0, 0}, {0, 0, 0, 0}}), HasSubstr("quaternion"));
   EXPECT_EQ(at("x", "y", 10.1).state, State::open);  // nothing of them stayed
   const SampleTransforms nameless(seconds(1.0), {{"x", "y"}});
