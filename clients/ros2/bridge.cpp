@@ -91,7 +91,7 @@ void Bridge::add_odometry(const Odometry& odometry) {
   const BodyPose pose = body_pose(odometry);
   require_same(world_frame_, text_of(odometry.header.frame_id), "its frame");
   require_same(body_frame_, text_of(odometry.child_frame_id), "its child frame");
-  if (history_.add(stamp, pose) == OdometryHistory::Added::contradicts) {
+  if (history_.add(stamp, pose) == PoseHistory::Added::contradicts) {
     throw Error(ErrorKind::bad_geometry, "there was another pose with the same stamp");
   }
   newest_pose_ = stamp;

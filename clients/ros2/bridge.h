@@ -12,7 +12,7 @@
 
 #include "clients/ros2/complaints.h"
 #include "clients/ros2/frames.h"
-#include "clients/ros2/odometry_history.h"
+#include "clients/ros2/pose_history.h"
 #include "clients/ros2/sensor_scan.h"
 #include "clients/ros2/transforms.h"
 #include "clients/skycap_live.h"
@@ -126,7 +126,7 @@ class Bridge {
   SurveyPort survey_;
   Outlets outlets_;
   Complaints complaints_;
-  OdometryHistory history_;
+  PoseHistory history_;
   Transforms transforms_;
   std::string world_frame_, body_frame_, sensor_frame_;
   bool is_located_ = false;   ///< something said where the body is

@@ -50,7 +50,7 @@ void Transforms::add(const TransformStamped& transform, bool is_static) {
   if (known == frames_.end()) {
     if (frames_.size() >= most_frames)
       refuse("more than " + std::to_string(most_frames) + " frames");
-    Frame frame{.parent = parent, .fixed = {}, .history = OdometryHistory(config_), .last = pose};
+    Frame frame{.parent = parent, .fixed = {}, .history = PoseHistory(config_), .last = pose};
     if (is_static) frame.fixed = pose;
     known = frames_.emplace(name, std::move(frame)).first;
   }
@@ -62,7 +62,7 @@ void Transforms::add(const TransformStamped& transform, bool is_static) {
   if (frame.fixed.has_value() != is_static) refuse(what + " is static and moves");
   if (is_static) {
     frame.fixed = pose;
-  } else if (frame.history.add(stamp, pose) == OdometryHistory::Added::contradicts) {
+  } else if (frame.history.add(stamp, pose) == PoseHistory::Added::contradicts) {
     refuse(what + " had another pose with the same stamp");
   }
   frame.last = pose;

@@ -1,7 +1,7 @@
 /// The tree of frames that /tf and /tf_static tell of: where one frame is in another at a time.
 ///
 /// Each frame has one parent, from the first message that names it on. Those of /tf_static hold for
-/// ever; the others at their stamps and between, as odometry does (OdometryHistory).
+/// ever; the others at their stamps and between, as odometry does (PoseHistory).
 #pragma once
 
 #include <cstddef>
@@ -12,7 +12,7 @@
 #include <Eigen/Geometry>
 
 #include "clients/ros2/messages.h"
-#include "clients/ros2/odometry_history.h"
+#include "clients/ros2/pose_history.h"
 
 namespace skycap::ros2 {
 
@@ -41,7 +41,7 @@ class Transforms {
   struct Frame {
     std::string parent;
     std::optional<BodyPose> fixed;  ///< in the parent, for ever
-    OdometryHistory history;        ///< and if it moves
+    PoseHistory history;            ///< and if it moves
     BodyPose last;
   };
   /// What came last if there is no stamp.

@@ -160,13 +160,15 @@ struct Alignment {
   std::vector<Match> matches;
 };
 
-/// Moves a scan from where it is said to be to what is known, with partners ever nearer and then
-/// with ever less error. While they are looked for at a distance d, errors of so many d are noise.
-Alignment aligned(std::span<const SurfacePatch> patches, SurfaceMap& map, double reach,
-                  std::size_t least_matches, double noise_of_reach) {
+/// Moves a scan, whose partners `given` are as it is said to be, to what is known: with partners
+/// ever nearer and then with ever less error. While they are looked for at a distance d, errors of
+/// so many d are noise.
+Alignment aligned(std::span<const SurfacePatch> patches, SurfaceMap& map,
+                  const std::vector<Match>& given, double reach, std::size_t least_matches,
+                  double noise_of_reach) {
   constexpr int most_rounds = 12;  // of each stage
   const double radius = map.radius(), last = std::min(reach, 2.0 * radius), flat = 0.03 * radius;
-  Alignment found{.matches = matches_of(patches, Isometry3d::Identity(), map, reach)};
+  Alignment found{.matches = given};
   const auto settle = [&](const Scales& scales) {
     for (int round = 0; round < most_rounds && found.matches.size() >= least_matches; ++round) {
       const Frame frame = frame_of(found.matches);
@@ -204,8 +206,8 @@ Registration register_scan(std::span<const SurfacePatch> patches, SurfaceMap& ma
   // Narrow, most of a surface that fits holds the rest in place, also a wall that is far off though
   // it should move; wide, all of it pulls, also what was never seen before.
   constexpr double narrow = 1.0 / 16.0, wide = 1.0 / 4.0, clearly = 0.8;
-  Alignment best = aligned(patches, map, reach, least_matches, narrow);
-  Alignment other = aligned(patches, map, reach, least_matches, wide);
+  Alignment best = aligned(patches, map, given, reach, least_matches, narrow);
+  Alignment other = aligned(patches, map, given, reach, least_matches, wide);
   if (misfit_of(other, patches.size(), map.radius()) <
       clearly * misfit_of(best, patches.size(), map.radius())) {
     best = std::move(other);

@@ -68,10 +68,9 @@ double price_of_stop(const file::Mission& mission) {
 
 }  // namespace
 
-double view_price_of(const file::Mission& mission) {
-  const double distance = view_distance_of(mission);
-  if (mission.planner.goal == file::PlannerGoal::views) return 3.0 * distance;
-  return mission.flight.is_flown() ? price_of_stop(mission) : distance;
+std::optional<double> view_price_of(const file::Mission& mission) {
+  if (mission.planner.goal == file::PlannerGoal::views) return std::nullopt;
+  return mission.flight.is_flown() ? price_of_stop(mission) : view_distance_of(mission);
 }
 
 namespace {

@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <memory>
+#include <optional>
 
 #include "missions/file/mission.h"
 #include "survey/planner.h"
@@ -18,8 +19,9 @@ std::unique_ptr<survey::Planner> make_planner(const file::Mission& mission, unsi
 /// volumetric planner follows from the scene, it is taken to be fine.
 void validate_planner(const file::Mission& mission);
 
-/// What a view costs the planner skycap besides the way to it, as metres of way: by planner.goal.
-double view_price_of(const file::Mission& mission);
+/// What a view costs the planner skycap besides the way to it, as metres of way, by planner.goal;
+/// nothing if that is the planner's own price.
+std::optional<double> view_price_of(const file::Mission& mission);
 
 /// The most views of a survey: the mission's, and for volumetric planners V if that is less.
 std::size_t view_limit(const file::Mission& mission);

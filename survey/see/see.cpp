@@ -118,7 +118,6 @@ std::optional<View> SeePlanner::Impl::update(const ScanSpan& scan) {
   adjust_target(points);
   stopwatch.lap("controller");
   if (config.optimise_views) avoid_occlusions();
-  if (frontiers.empty()) put_off.take_up_again(placement, frontiers);
   stopwatch.lap("occlusion");
   if (config.visibility_graph) update_graph();
   stopwatch.lap("graph");
@@ -306,8 +305,10 @@ bool SeePlanner::Impl::sees(const Frontier& from, Frontier& to) {
 
 std::optional<View> SeePlanner::Impl::select() {
   list_proposals();
-  if (proposal_points.empty()) target.reset();
-  if (proposal_points.empty()) return std::nullopt;
+  if (proposal_points.empty()) {
+    target.reset();
+    return std::nullopt;
+  }
   const bool keep_target = config.stay_on_target && target && frontiers.contains(*target);
   if (!keep_target) {
     std::size_t chosen = nearest_proposal();
@@ -360,7 +361,9 @@ void SeePlanner::Impl::set_aside(std::uint32_t point) {
   put_off.add(frontiers.extract(found));
 }
 
+// If there are none, what was put off comes back.
 void SeePlanner::Impl::list_proposals() {
+  if (frontiers.empty()) put_off.take_up_again(placement, frontiers);
   proposal_points.clear();
   proposal_positions.clear();
   for (const auto& [point, frontier] : frontiers) {
@@ -383,9 +386,6 @@ std::optional<View> SeePlanner::next_view_instead() {
   if (impl_->target && impl_->frontiers.contains(*impl_->target)) {
     impl_->set_aside(*impl_->target);
     impl_->propose_for_new_frontiers();
-    if (impl_->frontiers.empty()) {
-      impl_->put_off.take_up_again(impl_->placement, impl_->frontiers);
-    }
     impl_->list_proposals();
     impl_->graph.keep_only(impl_->proposal_points);
   }

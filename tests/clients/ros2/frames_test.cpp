@@ -8,7 +8,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "clients/ros2/odometry_history.h"
+#include "clients/ros2/pose_history.h"
 #include "tests/clients/ros2/sample_messages.h"
 #include "tests/support/complaint.h"
 
@@ -126,8 +126,8 @@ BodyPose pose_at(double x, double yaw = 0.0) {
           .covariance = Covariance::Identity() * (1.0 + x)};
 }
 
-TEST(OdometryHistory, GoesEvenlyFromPoseToPose) {
-  OdometryHistory history({});
+TEST(PoseHistory, GoesEvenlyFromPoseToPose) {
+  PoseHistory history({});
   history.add(seconds(10.1), pose_at(1.0, 0.4));  // out of order
   history.add(seconds(10.0), pose_at(0.0, 0.0));
   const PoseMatch match = history.at(seconds(10.025));
@@ -138,8 +138,8 @@ TEST(OdometryHistory, GoesEvenlyFromPoseToPose) {
   EXPECT_EQ(history.at(seconds(10.1)).pose.position.x(), 1.0);
 }
 
-TEST(OdometryHistory, TurnsTheShortWayWhateverTheSignsOfQuaternions) {
-  OdometryHistory history({});
+TEST(PoseHistory, TurnsTheShortWayWhateverTheSignsOfQuaternions) {
+  PoseHistory history({});
   BodyPose other = pose_at(0.0, 0.2);
   other.turn.coeffs() *= -1.0;
   history.add(seconds(10.0), pose_at(0.0, 0.0));
@@ -149,8 +149,8 @@ TEST(OdometryHistory, TurnsTheShortWayWhateverTheSignsOfQuaternions) {
   EXPECT_NEAR(match.pose.turn.angularDistance(pose_at(0.0, 0.1).turn), 0.0, 1e-9);
 }
 
-TEST(OdometryHistory, SaysWhyAPoseIsNotKnown) {
-  OdometryHistory history({});
+TEST(PoseHistory, SaysWhyAPoseIsNotKnown) {
+  PoseHistory history({});
   const auto expect = [&](double time, PoseMatch::State state, const std::string& why) {
     const PoseMatch match = history.at(seconds(time));
     EXPECT_EQ(match.state, state) << time;
@@ -170,17 +170,17 @@ TEST(OdometryHistory, SaysWhyAPoseIsNotKnown) {
   expect(10.45, PoseMatch::State::open, "after it");
 }
 
-TEST(OdometryHistory, KeepsTheFirstOfPosesWithOneStamp) {
-  OdometryHistory history({});
-  EXPECT_EQ(history.add(seconds(1.0), pose_at(1.0)), OdometryHistory::Added::taken);
-  EXPECT_EQ(history.add(seconds(1.0), pose_at(1.0)), OdometryHistory::Added::known);
-  EXPECT_EQ(history.add(seconds(1.0), pose_at(2.0)), OdometryHistory::Added::contradicts);
+TEST(PoseHistory, KeepsTheFirstOfPosesWithOneStamp) {
+  PoseHistory history({});
+  EXPECT_EQ(history.add(seconds(1.0), pose_at(1.0)), PoseHistory::Added::taken);
+  EXPECT_EQ(history.add(seconds(1.0), pose_at(1.0)), PoseHistory::Added::known);
+  EXPECT_EQ(history.add(seconds(1.0), pose_at(2.0)), PoseHistory::Added::contradicts);
   EXPECT_EQ(history.at(seconds(1.0)).pose.position.x(), 1.0);
 }
 
 /// However far in the future a stamp is, its pose goes with the others.
-TEST(OdometryHistory, ForgetsWhatCameFirst) {
-  OdometryHistory history({.most = 3});
+TEST(PoseHistory, ForgetsWhatCameFirst) {
+  PoseHistory history({.most = 3});
   history.add(seconds(1e9), pose_at(0.0));
   for (int i = 1; i <= 3; ++i) history.add(seconds(i), pose_at(i));
   EXPECT_NE(history.at(seconds(1e9)).state, PoseMatch::State::known);

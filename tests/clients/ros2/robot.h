@@ -9,7 +9,7 @@
 #include <nlohmann/json.hpp>
 
 #include "clients/ros2/dds_ports.h"
-#include "clients/ros2/odometry_history.h"
+#include "clients/ros2/pose_history.h"
 #include "missions/derived/survey_sensor.h"
 #include "missions/file/mission.h"
 #include "missions/scene/survey_scene.h"

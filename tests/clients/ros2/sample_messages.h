@@ -11,7 +11,7 @@
 #include <Eigen/Geometry>
 
 #include "clients/ros2/messages.h"
-#include "clients/ros2/odometry_history.h"
+#include "clients/ros2/pose_history.h"
 
 namespace skycap::ros2 {
 

@@ -1,4 +1,4 @@
-/// Where the body was at the time of a scan.
+/// Where something was at the time of a scan: the body by odometry, or a frame by TF.
 #pragma once
 
 #include <cstddef>
@@ -20,7 +20,7 @@ Stamp stamp_of(const Header& header);
 /// Between which poses it is fair to interpolate.
 struct HistoryConfig {
   double longest_gap = 0.1;     ///< from the stamp to the pose before, and to the one after [s]
-  double highest_speed = 30.0;  ///< between the two [m/s]; beyond, odometry has jumped
+  double highest_speed = 30.0;  ///< between the two [m/s]; beyond, it has jumped
   double highest_turn = 10.0;   ///< between the two [rad/s]
   std::size_t most = 4096;      ///< poses that are kept; those that came first go first
 };
@@ -29,8 +29,8 @@ struct HistoryConfig {
 struct PoseMatch {
   enum class State {
     known,
-    open,     ///< not yet; odometry may still come
-    refused,  ///< and will not be: odometry jumps there
+    open,     ///< not yet; poses may still come
+    refused,  ///< and will not be: it jumps there
   };
   State state = State::open;
   BodyPose pose;
@@ -39,9 +39,9 @@ struct PoseMatch {
 
 /// Messages may come in any order, twice, and with stamps from the future: a pose counts only near
 /// its own stamp.
-class OdometryHistory {
+class PoseHistory {
  public:
-  explicit OdometryHistory(const HistoryConfig& config) : config_(config) {}
+  explicit PoseHistory(const HistoryConfig& config) : config_(config) {}
 
   enum class Added { taken, known, contradicts };
   /// `known`: this very pose is there already; `contradicts`: another one with the same stamp is,

@@ -1,4 +1,4 @@
-#include "clients/ros2/odometry_history.h"
+#include "clients/ros2/pose_history.h"
 
 #include <algorithm>
 #include <cstdio>
@@ -38,7 +38,7 @@ Stamp stamp_of(const Header& header) {
   return stamp;
 }
 
-OdometryHistory::Added OdometryHistory::add(Stamp stamp, const BodyPose& pose) {
+PoseHistory::Added PoseHistory::add(Stamp stamp, const BodyPose& pose) {
   const auto [place, is_new] = poses_.try_emplace(stamp, pose);
   if (!is_new) {
     const BodyPose& kept = place->second;
@@ -53,7 +53,7 @@ OdometryHistory::Added OdometryHistory::add(Stamp stamp, const BodyPose& pose) {
   return Added::taken;
 }
 
-PoseMatch OdometryHistory::at(Stamp stamp) const {
+PoseMatch PoseHistory::at(Stamp stamp) const {
   using enum PoseMatch::State;
   const auto after = poses_.lower_bound(stamp);
   if (after != poses_.end() && after->first == stamp) return {known, after->second, {}};
@@ -82,8 +82,8 @@ PoseMatch OdometryHistory::at(Stamp stamp) const {
   return {known, between(a, b, from_before / time), {}};
 }
 
-bool OdometryHistory::all_between(Stamp from, Stamp to,
-                                  const std::function<bool(Stamp, const BodyPose&)>& holds) const {
+bool PoseHistory::all_between(Stamp from, Stamp to,
+                              const std::function<bool(Stamp, const BodyPose&)>& holds) const {
   return std::all_of(poses_.lower_bound(from), poses_.upper_bound(to),
                      [&](const auto& entry) { return holds(entry.first, entry.second); });
 }
