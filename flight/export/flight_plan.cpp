@@ -42,6 +42,16 @@ FlightPlan flight_plan(const Route& route, std::size_t index, const std::string&
       {},   rules.no_fly, rules.fence,   route.clearance,          route.returns};
   plan.priors = rules.priors;
   plan.waypoints.push_back(corner(sortie.out.points.front(), sortie.out.clearance));
+  if (corners == Corners::flown_round && sortie.passage) {
+    for (std::uint32_t i = sortie.first; i <= sortie.last; ++i) {
+      plan.passed.push_back(stop(route.stations[i], sortie.passage->clearance));
+      plan.passed.back().position = sortie.passage->views[i - sortie.first].position;
+      plan.passed.back().hold = plan.passed.back().hold_after = 0.0;
+    }
+    plan.waypoints.push_back(corner(sortie.back.points.back(), sortie.passage->clearance));
+    plan.waypoints.back().passage = sortie.passage;
+    return plan;
+  }
   const auto add = [&](const Leg& leg, Waypoint end) {
     if (corners == Corners::flown_round && leg.smooth) {
       end.curve = leg.smooth->curve;
@@ -106,9 +116,10 @@ std::vector<StopTime> stop_times(const FlightPlan& plan) {
   for (std::size_t i = 1; i < plan.waypoints.size(); ++i) {
     const Waypoint& waypoint = plan.waypoints[i];
     now = times.back().departure;
-    const double leg = waypoint.curve.empty()
+    const Curve* way = waypoint.way();
+    const double leg = way == nullptr
                            ? motion.leg_time(waypoint.position - plan.waypoints[i - 1].position)
-                           : duration(waypoint.curve) + plan.vehicle.mode.settle_time;
+                           : duration(*way) + plan.vehicle.mode.settle_time;
     double aimed = now + leg;
     if (waypoint.is_station && last_station != nullptr) {
       const double turn = std::remainder(waypoint.yaw - last_station->yaw, 2.0 * std::numbers::pi);

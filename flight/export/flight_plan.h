@@ -26,6 +26,14 @@ struct Waypoint {
   std::uint32_t view_index = 0;
   double clearance = 0.0;  ///< proven for the leg that ends here [m]
   Curve curve;             ///< how to get here from the stop before; empty: straight
+  /// How to get here past the stations of a sortie, in place of the curve.
+  std::optional<Passage> passage{};
+
+  /// Where the vehicle is on the curve or passage that leads here; null: the way is straight.
+  const Curve* way() const {
+    if (passage) return &passage->curve;
+    return curve.empty() ? nullptr : &curve;
+  }
 };
 
 struct FlightPlan {
@@ -40,6 +48,7 @@ struct FlightPlan {
   double clearance = 0.0;          ///< that the legs are certified at [m]
   std::optional<Returns> returns;  ///< of the whole mission that the sortie is a part of
   std::vector<std::shared_ptr<const PriorObstacle>> priors{};  ///< in the way of the climb, too
+  std::vector<Waypoint> passed{};  ///< stations that are not stopped at, one for each passed view
 
   /// Throws Error{bad_config} if there are none.
   const Returns& certified_returns() const;
@@ -48,7 +57,8 @@ struct FlightPlan {
 /// Where the plan's vehicle may land beside the pad when it is called home.
 std::vector<Eigen::Vector3d> rally_points(const FlightPlan& plan);
 
-/// Whether a plan's legs go round their corners where the route has a proven curve for that.
+/// Whether a plan's legs go round their corners, and past stations, where the route has a proven
+/// curve for that.
 enum class Corners { stopped_in, flown_round };
 
 /// The plan of sortie `index` of a route. Throws what Site::validate() throws.

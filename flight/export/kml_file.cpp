@@ -53,8 +53,10 @@ class KmlWriter {
     add_style(root, "path", "LineStyle", "ff00aaff");
     add_style(root, "no_fly", "PolyStyle", "600000ff");
     add_path(root);
-    for (std::size_t i = 0; i < plan_.waypoints.size(); ++i) {
-      if (plan_.waypoints[i].is_station) add_station(root, i);
+    for (const auto* waypoints : {&plan_.waypoints, &plan_.passed}) {
+      for (const Waypoint& waypoint : *waypoints) {
+        if (waypoint.is_station) add_station(root, waypoint);
+      }
     }
     for (const Prism& prism : plan_.no_fly) add_volume(root, prism);
     add_track(root);
@@ -84,24 +86,23 @@ class KmlWriter {
     add(line, "extrude", "0"), add(line, "tessellate", "0"), add(line, "altitudeMode", "absolute");
     std::string coordinates;
     for (const Waypoint& waypoint : plan_.waypoints) {
-      for (const double time : moments_on(waypoint.curve)) {
-        coordinates += " " + tuple(state_at(waypoint.curve, time).position, ",");
+      for (const double time : moments_on(waypoint)) {
+        coordinates += " " + tuple(state_at(*waypoint.way(), time).position, ",");
       }
       coordinates += (coordinates.empty() ? "" : " ") + tuple(waypoint.position, ",");
     }
     add(line, "coordinates", coordinates);
   }
 
-  /// Between the curve's ends; none on a straight way.
-  static std::vector<double> moments_on(const Curve& curve) {
+  /// Between the ends of the curve that leads there; none on a straight way.
+  static std::vector<double> moments_on(const Waypoint& waypoint) {
     std::vector<double> times;
-    const double end = duration(curve);
+    const double end = waypoint.way() == nullptr ? 0.0 : duration(*waypoint.way());
     for (int i = 1; i * curve_interval < end; ++i) times.push_back(i * curve_interval);
     return times;
   }
 
-  void add_station(pugi::xml_node root, std::size_t index) {
-    const Waypoint& station = plan_.waypoints[index];
+  void add_station(pugi::xml_node root, const Waypoint& station) {
     pugi::xml_node mark = root.append_child("Placemark");
     add(mark, "name", "view " + std::to_string(station.view_index));
     pugi::xml_node camera = mark.append_child("Camera");  // double click flies there and looks
@@ -151,7 +152,7 @@ class KmlWriter {
     const std::vector<StopTime> times = stop_times(plan_);
     double left = 0.0;
     std::vector<std::string> moments, places, angles;
-    const auto add_place = [&](double time, const Eigen::Vector3d& place, const Waypoint& aim) {
+    const auto add_place = [&](double time, const Eigen::Vector3d& place, const Aim& aim) {
       moments.push_back(moment(time));
       places.push_back(tuple(place, " "));
       angles.push_back(fixed(aim.yaw * degrees_per_radian, 4) + " " +
@@ -159,11 +160,16 @@ class KmlWriter {
     };
     for (std::size_t i = 0; i < times.size(); ++i) {
       const Waypoint& waypoint = plan_.waypoints[i];
-      for (const double time : moments_on(waypoint.curve)) {
-        add_place(left + time, state_at(waypoint.curve, time).position, waypoint);
+      const auto aim_at = [&](double time) {
+        return waypoint.passage ? waypoint.passage->aim_at(time)
+                                : Aim{waypoint.yaw, waypoint.pitch};
+      };
+      for (const double time : moments_on(waypoint)) {
+        add_place(left + time, state_at(*waypoint.way(), time).position, aim_at(time));
       }
-      add_place(times[i].arrival, waypoint.position, waypoint);
-      add_place(times[i].departure, waypoint.position, waypoint);
+      const Aim last = aim_at(times[i].arrival - left);
+      add_place(times[i].arrival, waypoint.position, last);
+      add_place(times[i].departure, waypoint.position, last);
       left = times[i].departure;
     }
     for (const std::string& text : moments) add(track, "when", text);

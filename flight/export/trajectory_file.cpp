@@ -48,11 +48,47 @@ class TrajectorySampler {
 
  private:
   void aim_at_first_station() {
-    for (const Waypoint& waypoint : plan_.waypoints) {
-      if (!waypoint.is_station) continue;
-      yaw_ = waypoint.yaw, pitch_ = waypoint.pitch;
-      return;
+    for (const auto* waypoints : {&plan_.passed, &plan_.waypoints}) {
+      for (const Waypoint& waypoint : *waypoints) {
+        if (!waypoint.is_station) continue;
+        yaw_ = waypoint.yaw, pitch_ = waypoint.pitch;
+        return;
+      }
     }
+  }
+
+  /// Moments of the interval, and those of the pictures.
+  void add_passage(const Passage& passage, double start, double end) {
+    std::vector<double> moments;
+    const auto first = static_cast<std::size_t>(std::ceil(start / interval_));
+    for (std::size_t k = first; static_cast<double>(k) * interval_ < end; ++k) {
+      moments.push_back(static_cast<double>(k) * interval_);
+    }
+    auto view = passage.views.begin();
+    const auto add_views = [&](double until) {
+      for (; view != passage.views.end() && start + view->moment <= until; ++view) {
+        add_passing(passage, start, start + view->moment);
+        states_.back().is_shot =
+            plan_.passed[static_cast<std::size_t>(view - passage.views.begin())].shots > 0;
+      }
+    };
+    for (const double moment : moments) {
+      add_views(moment);
+      if (states_.empty() || !states_.back().is_shot || moment - states_.back().time >= 1e-6) {
+        add_passing(passage, start, moment);
+      }
+    }
+    add_views(end);
+    yaw_ = passage.views.back().aim.yaw, pitch_ = passage.views.back().aim.pitch;
+  }
+
+  void add_passing(const Passage& passage, double start, double time) {
+    constexpr double step = 1e-4;  // of the difference that the yaw rate is taken from
+    const CurveState moved = state_at(passage.curve, time - start);
+    const Aim aim = passage.aim_at(time - start);
+    const double next_yaw = passage.aim_at(time - start + step).yaw;
+    add({time, moved.position, moved.velocity, moved.acceleration, aim.yaw,
+         turn(aim.yaw, next_yaw) / step, aim.pitch, false});
   }
 
   CurveState straight_state(const Vector3d& from, const Waypoint& to, double time) const {
@@ -67,6 +103,10 @@ class TrajectorySampler {
   }
 
   void add_leg(const Vector3d& from, const Waypoint& to, double start, double end) {
+    if (to.passage) {
+      add_passage(*to.passage, start, end);
+      return;
+    }
     const double target_yaw = to.is_station ? to.yaw : yaw_;
     const double target_pitch = to.is_station ? to.pitch : pitch_;
     const double duration = end - start;

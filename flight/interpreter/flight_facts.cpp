@@ -20,10 +20,7 @@ FlightFacts facts_of(const FlightPlan& plan) {
     if (!waypoint.is_station || waypoint.shots == 0) continue;
     facts.hold = is_first ? waypoint.hold : std::min(facts.hold, waypoint.hold);
     is_first = false;
-    const double level = std::cos(waypoint.pitch);
-    facts.views.push_back({waypoint.position,
-                           {level * std::sin(waypoint.yaw), level * std::cos(waypoint.yaw),
-                            std::sin(waypoint.pitch)}});
+    facts.views.push_back({waypoint.position, direction_of({waypoint.yaw, waypoint.pitch})});
   }
   return facts;
 }

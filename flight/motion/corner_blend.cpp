@@ -16,6 +16,8 @@ constexpr double shrinking = 0.8;
 constexpr int most_tries = 14;
 /// Blends that begin this near to their corner are not worth it [m].
 constexpr double least_reach = 0.02;
+/// Share of the way to the corner between the first control points of a blend, at the least.
+constexpr double least_handle = 0.30;
 /// No change of speed is done faster than in twice this time [s], no speed held for less: shorter
 /// pieces would lose digits of their jerk.
 constexpr double least_phase = 0.05;
@@ -98,29 +100,34 @@ class StraightMotion {
   CurveState now_;
 };
 
-/// How a corner is passed: from `reach` before to `reach` behind it. All zero: with a stop.
-struct Blend {
-  double reach = 0.0;
-  double handle = 0.0;  ///< of the way to the corner, from a control point to the next
-  double speed = 0.0;   ///< at both ends
+/// How a corner is passed. All zero: with a stop.
+struct Blend : CornerShape {
+  double speed = 0.0;  ///< at both ends
 };
 
 class Blender {
  public:
   Blender(const std::vector<Vector3d>& points, const FreeSpace& space, double clearance,
-          const Motion& motion)
-      : points_(points), space_(space), clearance_(clearance), motion_(motion) {}
+          const Motion& motion, std::span<const CornerRule> rules)
+      : points_(points),
+        space_(space),
+        clearance_(clearance),
+        motion_(motion),
+        rules_(rules.begin(), rules.end()) {
+    rules_.resize(points.size());
+  }
 
-  Curve blend() {
+  BlendedWay blend() {
     blends_.resize(points_.size());
     for (std::size_t i = 1; i + 1 < points_.size(); ++i) blends_[i] = largest_blend(i);
     match_speeds();
-    Curve curve;
+    BlendedWay way{{}, {0.0}, {blends_.begin(), blends_.end()}};
     for (std::size_t i = 0; i + 1 < points_.size(); ++i) {
-      if (blends_[i].reach > 0.0) curve.push_back(blend_piece(i, blends_[i]));
-      add_straight(i, curve);
+      if (i > 0) pass(i, way);
+      add_straight(i, way.curve);
     }
-    return curve;
+    way.moments.push_back(duration(way.curve));
+    return way;
   }
 
  private:
@@ -145,26 +152,67 @@ class Blender {
   /// The handle with which a blend of that reach is fastest.
   Blend fastest_blend(std::size_t corner, double reach) const {
     constexpr int tries = 11;
-    double handle = 0.30;
+    double handle = least_handle;
     Blend best;
     for (int i = 0; i < tries; ++i, handle += 0.02) {
-      Blend blend{reach, std::min(handle, 0.5), 1.0};
-      // Flown at one metre a second it may be sped up by the inverse of the slowdown it needs.
-      blend.speed = 1.0 / needed_slowdown({blend_piece(corner, blend)}, motion_);
+      const Blend blend = blend_of(corner, {reach, std::min(handle, 0.5)});
       if (blend.speed > best.speed) best = blend;
     }
     return best;
   }
 
+  Blend blend_of(std::size_t corner, const CornerShape& shape) const {
+    Blend blend{shape, 1.0};
+    // Flown at one metre a second it may be sped up by the inverse of the slowdown it needs.
+    blend.speed = 1.0 / needed_slowdown({blend_piece(corner, blend)}, motion_);
+    return blend;
+  }
+
+  bool is_proven(std::size_t corner, const Blend& blend) const {
+    return prove(space_, {blend_piece(corner, blend)}, clearance_, clearance_).is_proven;
+  }
+
+  /// The corner, round it or with a stop in it.
+  void pass(std::size_t corner, BlendedWay& way) const {
+    const double now = duration(way.curve);
+    const double wait = rules_[corner].wait;
+    if (blends_[corner].reach > 0.0) {
+      way.curve.push_back(blend_piece(corner, blends_[corner]));
+      way.moments.push_back(now + 0.5 * way.curve.back().duration);
+      return;
+    }
+    way.moments.push_back(now);
+    if (wait > 0.0) way.curve.push_back(piece_between({points_[corner]}, {points_[corner]}, wait));
+  }
+
+  /// How far before its corner a blend may begin that comes as near to it as the rule asks, by the
+  /// rounder of its shapes: the middle of a piece with the handle h is (16 - 25 h) / 32 of its
+  /// reach away, along both arms.
+  double allowed_reach(std::size_t corner) const {
+    const double bend = (direction(corner) - direction(corner - 1)).norm();
+    const double off = (16.0 - 25.0 * least_handle) / 32.0 * bend;
+    const double reach = longest_reach(corner);
+    return off * reach > rules_[corner].most_off ? rules_[corner].most_off / off : reach;
+  }
+
+  double longest_reach(std::size_t corner) const {
+    return most_of_a_piece * std::min(piece_length(corner - 1), piece_length(corner));
+  }
+
   Blend largest_blend(std::size_t corner) const {
     // Near a reversal the triangle is a line and a stop in its end is needed.
     if (direction(corner - 1).dot(direction(corner)) < -0.95) return {};
-    double reach = most_of_a_piece * std::min(piece_length(corner - 1), piece_length(corner));
+    if (rules_[corner].most_off == 0.0) return {};
+    if (std::optional<CornerShape> shape = rules_[corner].shape) {
+      shape->reach = std::min(shape->reach, longest_reach(corner));
+      if (shape->reach < least_reach) return {};
+      const Blend blend = blend_of(corner, *shape);
+      return is_proven(corner, blend) ? blend : Blend{};
+    }
+    double reach = allowed_reach(corner);
     for (int i = 0; i < most_tries && reach > least_reach; ++i, reach *= shrinking) {
       const Blend blend = fastest_blend(corner, reach);
-      if (prove(space_, {blend_piece(corner, blend)}, clearance_, clearance_).is_proven) {
-        return blend;
-      }
+      if (is_proven(corner, blend)) return blend;
     }
     return {};
   }
@@ -212,14 +260,16 @@ class Blender {
   const FreeSpace& space_;
   double clearance_;
   const Motion& motion_;
+  std::vector<CornerRule> rules_;
   std::vector<Blend> blends_;  ///< one for each point; none at the ends
 };
 
 }  // namespace
 
-Curve blend_corners(const std::vector<Vector3d>& points, const FreeSpace& space, double clearance,
-                    const Motion& motion) {
-  return Blender(points, space, clearance, motion).blend();
+BlendedWay blend_corners(const std::vector<Vector3d>& points, const FreeSpace& space,
+                         double clearance, const Motion& motion,
+                         std::span<const CornerRule> rules) {
+  return Blender(points, space, clearance, motion, rules).blend();
 }
 
 }  // namespace skycap::flight

@@ -1,16 +1,35 @@
 #include "flight/motion/picture_bounds.h"
 
+#include <algorithm>
+#include <limits>
+
 namespace skycap::flight {
+namespace {
+
+/// How far a pixel moves at most when the camera turns by a small angle, by that angle [px/rad]: at
+/// the slope s by f (1 + s^2). Moving by a small way moves it by at most f (1 + s^2)^(1/2) times
+/// the way over the depth.
+double pixels_per_radian(const geometry::Camera& camera) {
+  const Eigen::Vector2d focal = camera.focal_length_px();
+  const Eigen::Vector2d corner =
+      Eigen::Vector2d(camera.width(), camera.height()).cwiseQuotient(2.0 * focal);
+  return focal.maxCoeff() * (1.0 + corner.squaredNorm());
+}
+
+}  // namespace
+
+double sharp_speed(const Vehicle& vehicle, const geometry::Camera& camera, const Shutter& shutter,
+                   double distance) {
+  const double time = std::max(shutter.exposure, shutter.readout);
+  if (time == 0.0) return std::numeric_limits<double>::infinity();
+  const double turning = PictureBounds::sharp_px / (pixels_per_radian(camera) * time);  // [rad/s]
+  return std::max(0.0, (turning - vehicle.sway_rate) * distance - vehicle.sway_speed);
+}
 
 PictureBounds picture_bounds(const Vehicle& vehicle, const geometry::Camera& camera,
                              const Shutter& shutter, double distance) {
-  const Eigen::Vector2d focal = camera.focal_length_px();
-  // Turning by a small angle moves a pixel at the slope s by at most f (1 + s^2) times the angle;
-  // moving by a small way by at most f (1 + s^2)^(1/2) times the way over the depth.
-  const Eigen::Vector2d corner =
-      Eigen::Vector2d(camera.width(), camera.height()).cwiseQuotient(2.0 * focal);
-  const double pixels = focal.maxCoeff() * (1.0 + corner.squaredNorm());
-  const double speed = pixels * (vehicle.sway_rate + vehicle.sway_speed / distance);  // [px/s]
+  const double speed =
+      pixels_per_radian(camera) * (vehicle.sway_rate + vehicle.sway_speed / distance);  // [px/s]
   return {speed * shutter.exposure, speed * shutter.readout, distance};
 }
 

@@ -1,4 +1,4 @@
-/// How sharp pictures are that a vehicle takes at rest.
+/// How sharp pictures are that a vehicle takes, at rest or in passing.
 #pragma once
 
 #include "flight/motion/vehicle.h"
@@ -26,5 +26,10 @@ struct PictureBounds {
 
 PictureBounds picture_bounds(const Vehicle& vehicle, const geometry::Camera& camera,
                              const Shutter& shutter, double distance);
+
+/// The greatest speed over the ground at which pictures are sharp [m/s]: infinite for a shutter
+/// that takes no time, zero where they are not even at rest.
+double sharp_speed(const Vehicle& vehicle, const geometry::Camera& camera, const Shutter& shutter,
+                   double distance);
 
 }  // namespace skycap::flight

@@ -34,7 +34,8 @@ std::optional<SmoothLeg> smooth(const std::vector<Vector3d>& given, const FreeSp
                                 double clearance, double up_to, const Motion& motion,
                                 FlightStyle style) {
   const std::vector<Vector3d> points = without_repeats(given);
-  if (style == FlightStyle::stop || points.size() < 3) return std::nullopt;
+  const bool is_curved = style == FlightStyle::blend || style == FlightStyle::smooth;
+  if (!is_curved || points.size() < 3) return std::nullopt;
 
   Curve best;
   double best_time = stopping_time(points, motion);
@@ -48,7 +49,7 @@ std::optional<SmoothLeg> smooth(const std::vector<Vector3d>& given, const FreeSp
     }
     return true;
   };
-  const Curve blended = blend_corners(points, space, clearance, motion);
+  const Curve blended = blend_corners(points, space, clearance, motion).curve;
   propose(blended);
   if (style == FlightStyle::smooth) {
     for (const double offset : wall_offsets) {

@@ -23,9 +23,10 @@ struct SmoothLeg {
 };
 
 /// The leg along `points`, whose straight pieces are proven at `clearance`, in that style. Nothing
-/// if it has no corner, if the style is `stop`, or if no curve is both proven at the clearance and
-/// faster than stopping. Speed, acceleration and jerk keep the vehicle's limits everywhere, by the
-/// control points of the derivatives. Clearance is looked at up to `up_to`. Deterministic.
+/// if it has no corner, if the style stops in corners or passes views (passage.h), or if no curve
+/// is both proven at the clearance and faster than stopping. Speed, acceleration and jerk keep the
+/// vehicle's limits everywhere, by the control points of the derivatives. Clearance is looked at up
+/// to `up_to`. Deterministic.
 std::optional<SmoothLeg> smooth(const std::vector<Eigen::Vector3d>& points, const FreeSpace& space,
                                 double clearance, double up_to, const Motion& motion,
                                 FlightStyle style);

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <optional>
 
+#include "flight/route/curved_flight.h"
 #include "flight/route/leg_certifier.h"
 #include "flight/route/pad_check.h"
 #include "flight/route/sortie_split.h"
@@ -47,7 +48,7 @@ class RoutePlanner {
     split();
     add_up();
     if (ways_home_ && !route_.sorties.empty()) certify_returns();
-    smooth_legs();
+    add_curves(route_, space_, motion_, legs_);
     return std::move(route_);
   }
 
@@ -291,35 +292,6 @@ class RoutePlanner {
       const double energy = return_energy(motion_, route_.returns->law, leg.to);
       route_.returns->energy = std::max(route_.returns->energy, energy);
     }
-  }
-
-  // ---- curves --------------------------------------------------------------------------------
-
-  void smooth_legs() {
-    for (Sortie& sortie : route_.sorties) {
-      smooth_leg(sortie.out, nullptr, nullptr);
-      for (std::uint32_t i = sortie.first; i < sortie.last; ++i) {
-        smooth_leg(route_.legs[i], &route_.stations[i], &route_.stations[i + 1]);
-      }
-      smooth_leg(sortie.back, nullptr, nullptr);
-    }
-  }
-
-  /// Keeps a curve only if it fits into what the sortie has set aside for the leg.
-  void smooth_leg(Leg& leg, const Station* from, const Station* to) {
-    std::optional<SmoothLeg> curve =
-        smooth(leg.points, space_, route_.clearance, route_.clearance + reported_surplus, motion_,
-               route_.options.style);
-    if (!curve) return;
-    if (route_.returns && !has_returns(space_, curve->curve, route_.returns->law,
-                                       return_clearance(route_.clearance))) {
-      return;
-    }
-    const double in_place = curve->duration + motion_.vehicle().mode.settle_time;
-    const double aimed = legs_.aimed_time(in_place, from, to);
-    if (aimed > leg.duration) return;
-    if (curve->energy + motion_.hover_energy(aimed - curve->duration) > leg.energy) return;
-    leg.smooth = std::move(curve);
   }
 
   Motion motion_;

@@ -11,6 +11,7 @@
 #include <Eigen/Core>
 
 #include "flight/motion/motion.h"
+#include "flight/motion/passage.h"
 #include "flight/motion/smoothing.h"
 #include "flight/motion/vehicle.h"
 #include "flight/paths/path.h"
@@ -33,6 +34,8 @@ struct Station {
   std::vector<Eigen::Vector3d> way{};
 };
 
+/// The direction (unit) of a camera that looks so.
+Eigen::Vector3d direction_of(const Aim& aim);
 /// Heading of a view, clockwise from true north, in [0, 2 pi). Straight up or down: north.
 double yaw_of(const geometry::View& view);
 /// Pitch of a view, 0 at the horizon, -pi/2 straight down.
@@ -73,6 +76,7 @@ struct RouteOptions {
   PadLimits ground_limits;                ///< what they may be
   bool order_is_free = false;             ///< stations may be visited in a better order than given
   FlightStyle style = FlightStyle::stop;  ///< of files that can hold curves
+  PassRules passing;                      ///< in the style that passes views
   /// From every point of the route there is a proven way home; without: the pilot answers for that.
   std::optional<ReturnOptions> returns;
 
@@ -112,6 +116,9 @@ struct Sortie {
   double energy_left = 0.0;  ///< above the reserve, at landing [J]
   double length = 0.0;       ///< climb and descent at the pad included
   double clearance = 0.0;    ///< proven lower bound of all its legs
+  /// Another way to fly it, faster and for no more energy: past its views instead of stopping.
+  std::optional<Passage> passage;
+  double passing_time = 0.0;  ///< with that, from take-off to landing [s]
 };
 
 /// A station that is not in the route, and why.
@@ -182,6 +189,12 @@ std::vector<Violation> check_route(const std::vector<Eigen::Vector3d>& points,
 
 /// One line for the user: leg, closest place, distance.
 std::string describe(const Violation& violation);
+
+/// Of all sorties, flown past their views where the route can be flown so [s].
+double least_duration(const Route& route);
+
+/// Where the pictures of a route are taken, in their order: at its stations, or in passing.
+std::vector<geometry::View> picture_views(const Route& route);
 
 /// All points of a sortie, from above the pad and back there, stations included.
 std::vector<Eigen::Vector3d> sortie_points(const Route& route, const Sortie& sortie);

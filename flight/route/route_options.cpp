@@ -10,6 +10,11 @@
 
 namespace skycap::flight {
 
+Eigen::Vector3d direction_of(const Aim& aim) {
+  return {std::cos(aim.pitch) * std::sin(aim.yaw), std::cos(aim.pitch) * std::cos(aim.yaw),
+          std::sin(aim.pitch)};
+}
+
 double yaw_of(const geometry::View& view) {
   if (view.direction.head<2>().norm() < 1e-9) return 0.0;
   const double yaw = std::atan2(view.direction.x(), view.direction.y());

@@ -29,12 +29,22 @@ void LegTimes::for_each_leg(const Stops& stops, Visit visit) {
 }
 
 double LegTimes::least(const Stops& stops) {
-  double sum = static_cast<double>(stops.size()) * problem_.time_per_view;
+  double sum = static_cast<double>(stops.size()) * problem_.time_per_view + bends(stops);
   for_each_leg(stops, [&](Leg& leg, const auto* from, const auto* to) {
     if (leg.straight < 0.0) leg.straight = problem_.straight_time(from, to);
     sum += leg.is_blocked ? blocked_share * leg.straight + blocked_time : leg.straight;
     return true;
   });
+  return sum;
+}
+
+double LegTimes::bends(const Stops& stops) const {
+  if (!problem_.bend_time) return 0.0;
+  double sum = 0.0;
+  for (std::size_t i = 0; i < stops.size(); ++i) {
+    sum += problem_.bend_time(i == 0 ? nullptr : &stops[i - 1]->view, stops[i]->view,
+                              i + 1 == stops.size() ? nullptr : &stops[i + 1]->view);
+  }
   return sum;
 }
 

@@ -36,6 +36,8 @@ class LegTimes {
   double proven(const Stops& stops);
 
  private:
+  double bends(const Stops& stops) const;
+
   struct Leg {
     double straight = -1.0;  ///< negative: not known yet
     bool is_asked = false, is_proven = false, is_blocked = false;

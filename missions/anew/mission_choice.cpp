@@ -32,9 +32,16 @@ constexpr double spare_clearance = 0.05;
 /// again differs by several times as much.
 constexpr double equal_coverage = 5e-4;
 
+/// What a view counts that is passed [s]: without a price there would be so many that moving one
+/// brings nothing.
+constexpr double price_of_passing = 0.3;
+
 /// How much longer it takes to find what a way of a scanner sees than what a view does: tens of
 /// scans of three looks. So many times fewer moves are tried.
 constexpr std::size_t dearer_ways = 12;
+
+/// Tours past their views have so many times more of them than those that they begin from.
+constexpr std::size_t more_passed_views = 2;
 
 /// The highest place of a route.
 double top_of(const flight::Route& route) {
@@ -58,6 +65,9 @@ class MissionProblem {
         clearance_(present.clearance),
         returnable_(space, planning_law(present.options, top_of(present))),
         legs_(space, motion_, clearance_, no_ways_home_),
+        passing_(present.options.style == flight::FlightStyle::pass
+                     ? std::optional(present.options.passing)
+                     : std::nullopt),
         mount_(derived::scans_in_flight(mission) ? mission.sensor.mount : std::nullopt),
         sweep_step_(mission.flight.cruise_speed * mission.sensor.frame_period),
         threads_(mission.threads),
@@ -65,11 +75,18 @@ class MissionProblem {
     problem_.targets = surface.targets();
     problem_.home = home_;
     problem_.view_distance = derived::view_distance_of(mission);
-    problem_.time_per_view = legs_
-                                 .station_cost({.view = {},
-                                                .hold = derived::hold_of(mission),
-                                                .hold_after = derived::hold_after_of(mission)})
-                                 .time;
+    if (passing_) {
+      problem_.time_per_view = price_of_passing;
+      problem_.bend_time = [this](const View* before, const View& at, const View* after) {
+        return bend_time(at.position - place(before), place(after) - at.position);
+      };
+    } else {
+      problem_.time_per_view = legs_
+                                   .station_cost({.view = {},
+                                                  .hold = derived::hold_of(mission),
+                                                  .hold_after = derived::hold_after_of(mission)})
+                                   .time;
+    }
     problem_.looks = [this](const View& view) {
       return mount_ ? std::vector<Look>() : surface_.looks(view);
     };
@@ -109,8 +126,8 @@ class MissionProblem {
 
   /// What a route promises: its views, or with a scanner all its ways as they are flown.
   double promised(const flight::Route& route) const {
+    if (!mount_) return covered_by(problem_, picture_views(route));
     const std::vector<View> views = views_of(route);
-    if (!mount_) return covered_by(problem_, views);
     DoseSum covered(problem_.targets);
     const auto add = [&](const flight::Leg& leg, const View* from, const View* to) {
       covered.add(doses_of(way_looks(leg.points, from, to)));
@@ -147,10 +164,45 @@ class MissionProblem {
   const Vector3d& place(const View* view) const { return view == nullptr ? home_ : view->position; }
 
   double straight_time(const View* from, const View* to) const {
+    if (passing_) return passing_time(from, to);
     const double leg = motion_.leg_time(place(to) - place(from));
     if (from == nullptr || to == nullptr) return leg;
     const flight::Station there{.view = carrier(*to)}, here{.view = carrier(*from)};
     return legs_.aimed_time(leg, &here, &there);
+  }
+
+  /// Without a stop but above the pad, where half of the ramp up or down to speed is lost.
+  double passing_time(const View* from, const View* to) const {
+    const Vector3d way = place(to) - place(from);
+    if (way.norm() == 0.0) return from == nullptr || to == nullptr ? 0.0 : turn_time(*from, *to);
+    const Vector3d direction = way.normalized();
+    const double flying = way.norm() / passing_speed(direction);
+    if (from != nullptr && to != nullptr) return std::max(flying, turn_time(*from, *to));
+    return flying + ramp_loss(direction);
+  }
+
+  double passing_speed(const Vector3d& direction) const {
+    return std::min(motion_.leg_speed(direction), passing_->speed);
+  }
+
+  /// What is lost by beginning or ending a way at rest.
+  double ramp_loss(const Vector3d& direction) const {
+    const double acceleration = motion_.leg_acceleration(direction);
+    return 0.5 *
+           (passing_speed(direction) / acceleration + acceleration / motion_.vehicle().mode.jerk);
+  }
+
+  /// As the turn: nothing straight on, a stop where the way turns back.
+  double bend_time(const Vector3d& before, const Vector3d& after) const {
+    if (before.norm() == 0.0 || after.norm() == 0.0) return 0.0;
+    const Vector3d in = before.normalized(), out = after.normalized();
+    return 0.5 * (ramp_loss(in) + ramp_loss(out)) * (1.0 - in.dot(out));
+  }
+
+  double turn_time(const View& from, const View& to) const {
+    const View here = carrier(from), there = carrier(to);
+    return least_interval({flight::yaw_of(here), flight::pitch_of(here)},
+                          {flight::yaw_of(there), flight::pitch_of(there)}, motion_, *passing_);
   }
 
   View carrier(const View& view) const { return mount_ ? derived::nose_view(*mount_, view) : view; }
@@ -197,8 +249,9 @@ class MissionProblem {
   flight::ReturnableSpace returnable_;
   std::optional<flight::WaysHome> no_ways_home_;
   flight::LegCertifier legs_;
-  std::optional<Eigen::Isometry3d> mount_;  ///< of a scanner that measures all the way
-  double sweep_step_;                       ///< between its scans [m]
+  std::optional<flight::PassRules> passing_;  ///< where views are passed
+  std::optional<Eigen::Isometry3d> mount_;    ///< of a scanner that measures all the way
+  double sweep_step_;                         ///< between its scans [m]
   unsigned threads_;
   Vector3d home_;
   TourProblem problem_;
@@ -216,12 +269,16 @@ std::optional<flight::Route> certified(const PlanRoute& plan, const std::vector<
 }  // namespace
 
 MissionFigures figures_of(const flight::Route& route, double promised) {
-  MissionFigures figures{.duration = route.duration,
-                         .length = route.length,
-                         .views = route.stations.size(),
-                         .promised = promised};
+  MissionFigures figures{
+      .duration = least_duration(route), .views = route.stations.size(), .promised = promised};
   for (const flight::Sortie& sortie : route.sorties) {
-    figures.pieces += sortie_points(route, sortie).size() - 1;
+    if (const auto& passage = sortie.passage) {
+      figures.length += passage->length + 2.0 * route.options.takeoff_climb;
+      figures.pieces += passage->stops + 1;
+    } else {
+      figures.length += sortie.length;
+      figures.pieces += sortie_points(route, sortie).size() - 1;
+    }
   }
   return figures;
 }
@@ -260,6 +317,7 @@ MissionChoice choose_mission(const file::Mission& mission, const GainField& surf
   SearchSettings seeded = settings;
   seeded.seed = mission.seed;
   if (problem.way_looks) seeded.moves_per_view /= dearer_ways;
+  if (problem.bend_time) seeded.moves_per_view *= more_passed_views;
   try_tour(anneal(problem, spared.views, wanted, seeded, stop));
 
   choice.stations = asked.stations_of(choice.route);

@@ -27,7 +27,7 @@ struct MissionFigures {
   double duration = 0.0;  ///< [s]
   double length = 0.0;
   std::size_t views = 0;
-  std::size_t pieces = 0;  ///< straight ones: the vehicle stops after each
+  std::size_t pieces = 0;  ///< the vehicle stops after each
   double promised = 0.0;   ///< expected covered share of what the survey measured
 };
 

@@ -16,6 +16,8 @@ using geometry::View;
 /// How often each kind of move is proposed, of a hundred.
 constexpr std::size_t shifts = 56, drops = 6, replacements = 10, joins = 10, additions = 4,
                       carries = 7;  // the rest turns parts of the tour round
+/// Of a hundred moves where views are passed: one is added on the way.
+constexpr std::size_t additions_on_way = 20;
 /// Shifts of a view, small or large, and of what it is aimed at, in view distances.
 constexpr double small_shift = 0.036, large_shift = 0.12, aim_shift = 0.1;
 constexpr double large_share = 0.4;  ///< of the shifts
@@ -36,6 +38,7 @@ std::size_t TourMoves::below(std::size_t end) {
 
 std::optional<Move> TourMoves::propose(const Stops& stops, const DoseSum& covered, double scale) {
   if (stops.empty()) return add(stops, covered);
+  if (problem_.bend_time && below(100) < additions_on_way) return add_on_way(stops, covered);
   std::size_t kind = below(100);
   const auto is_drawn = [&](std::size_t share) {
     if (kind < share) return true;
@@ -134,6 +137,29 @@ std::optional<Move> TourMoves::add(const Stops& stops, const DoseSum& covered) {
   return move;
 }
 
+/// Where the way comes nearest to where the target would best be seen from, or beside that.
+std::optional<Move> TourMoves::add_on_way(const Stops& stops, const DoseSum& covered) {
+  constexpr double beside = 0.2;  // view distances
+  const auto& target = problem_.targets[missing_target(covered)];
+  const Vector3d seen = target.position.cast<double>();
+  const Vector3d best = seen + problem_.view_distance * target.normal.cast<double>();
+  std::size_t leg = 0;
+  Vector3d place = problem_.home;
+  for (std::size_t i = 0; i <= stops.size(); ++i) {
+    const Vector3d from = end_of_leg(stops, i), way = end_of_leg(stops, i + 1) - from;
+    const double share = way.squaredNorm() > 0.0 ? way.dot(best - from) / way.squaredNorm() : 0.0;
+    const Vector3d nearest = from + std::clamp(share, 0.0, 1.0) * way;
+    if (i == 0 || (nearest - best).norm() < (place - best).norm()) leg = i, place = nearest;
+  }
+  const Vector3d way = end_of_leg(stops, leg + 1) - end_of_leg(stops, leg);
+  if (way.norm() == 0.0) return std::nullopt;
+  place += beside * problem_.view_distance * random_.normal() * way.normalized();
+  if ((place - seen).norm() < nearest * problem_.view_distance) return std::nullopt;
+  Move move{stops, {}, stop(geometry::look_at(place, seen))};
+  move.stops.insert(move.stops.begin() + static_cast<std::ptrdiff_t>(leg), move.added);
+  return move;
+}
+
 std::optional<Move> TourMoves::carry(const Stops& stops) {
   const std::size_t count = 1 + below(3);
   if (stops.size() <= count) return std::nullopt;
@@ -160,11 +186,14 @@ std::optional<Move> TourMoves::turn(const Stops& stops) {
   return move;
 }
 
+/// Where leg `leg` begins, and the one before it ends.
+Vector3d TourMoves::end_of_leg(const Stops& stops, std::size_t leg) const {
+  return leg == 0 || leg == stops.size() + 1 ? problem_.home : stops[leg - 1]->view.position;
+}
+
 /// Where it is the least detour.
 void TourMoves::insert(Move& move, const View& view) {
-  const auto place = [&](std::size_t i) {
-    return i == 0 || i == move.stops.size() + 1 ? problem_.home : move.stops[i - 1]->view.position;
-  };
+  const auto place = [&](std::size_t i) { return end_of_leg(move.stops, i); };
   std::size_t best = 0;
   double least = std::numeric_limits<double>::infinity();
   for (std::size_t i = 0; i <= move.stops.size(); ++i) {

@@ -44,8 +44,10 @@ class TourMoves {
   std::optional<Move> replace(const Stops& stops, const DoseSum& covered);
   std::optional<Move> join(const Stops& stops);
   std::optional<Move> add(const Stops& stops, const DoseSum& covered);
+  std::optional<Move> add_on_way(const Stops& stops, const DoseSum& covered);
   std::optional<Move> carry(const Stops& stops);
   std::optional<Move> turn(const Stops& stops);
+  Eigen::Vector3d end_of_leg(const Stops& stops, std::size_t leg) const;
   void insert(Move& move, const geometry::View& view);
 
   const TourProblem& problem_;

@@ -42,7 +42,10 @@ struct TourProblem {
   /// which takes far longer to find out and is asked of tours alone that may be the best.
   std::function<bool(const View*from, const View*to)> is_free, has_returns;
 
-  double time_per_view = 0.0;  ///< at rest [s]
+  double time_per_view = 0.0;  ///< at rest, or to keep views few where they are passed [s]
+  /// Of flights that pass their views: what is lost in the bend at one, between the one before and
+  /// the next [s]; null stands for home. Empty: every view is stopped at.
+  std::function<double(const View* before, const View& at, const View* after)> bend_time{};
   double view_distance = 0.0;  ///< d: from where views are taken as a rule
 };
 

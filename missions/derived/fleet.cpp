@@ -119,6 +119,11 @@ void check_fleet(const file::MissionFile& given) {
                  "give site.latitude_deg and site.longitude_deg");
   }
   const file::FlightConfig& flight = given.mission.flight;
+  if (flight.style != flight::FlightStyle::stop) {
+    given.refuse("flight.style",
+                 "several vehicles are kept apart as they fly from stop to stop; "
+                 "leave the key out");
+  }
   if (const double least = least_separation(flight); flight.fleet.separation < least) {
     given.refuse("flight.separation",
                  "is less than two vehicles' radii, position and tracking errors make together, " +

@@ -36,6 +36,9 @@ double pad_spare_of(const file::Mission& mission) {
 /// No-fly volumes with their top above this are not flown over [m].
 constexpr double no_flight_is_higher = 500.0;
 
+/// What corners are cut by where views are passed, as a share of the view distance.
+constexpr double most_cut_by_distance = 0.03;
+
 /// Grid vertices looked at before a view counts as out of reach: some tenths of a second.
 constexpr std::size_t most_expansions = 50'000;
 
@@ -181,6 +184,7 @@ flight::RouteOptions route_options_of(const file::Mission& mission, const Vector
   options.ground_limits = ground_limits_of(mission);
   options.order_is_free = config.order == file::VisitOrder::shortest;
   options.style = config.style;
+  if (config.style == flight::FlightStyle::pass) options.passing = pass_rules_of(mission);
   // The air moves away from where the wind comes from.
   options.conditions.wind =
       -config.wind_speed * Eigen::Vector2d(std::sin(config.wind_from), std::cos(config.wind_from));
@@ -212,6 +216,21 @@ std::optional<flight::PictureBounds> picture_bounds_of(const file::Mission& miss
   const geometry::Camera camera(mission.sensor.camera.camera);
   return picture_bounds(vehicle_of(mission), camera, mission.sensor.shutter,
                         view_distance_of(mission));
+}
+
+flight::PassRules pass_rules_of(const file::Mission& mission) {
+  const double distance = view_distance_of(mission);
+  flight::PassRules rules{.speed = mission.flight.cruise_speed,
+                          .most_cut = most_cut_by_distance * distance,
+                          .exposure = 0.0,
+                          .period = 0.0};
+  if (scans_in_flight(mission)) return rules;
+  const flight::Shutter& shutter = mission.sensor.shutter;
+  rules.speed = flight::sharp_speed(
+      vehicle_of(mission), geometry::Camera(mission.sensor.camera.camera), shutter, distance);
+  rules.exposure = shutter.exposure + shutter.readout;
+  rules.period = mission.sensor.frame_period;
+  return rules;
 }
 
 bool has_place(const file::Mission& mission) {

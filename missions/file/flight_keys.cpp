@@ -176,10 +176,13 @@ std::vector<Key> conduct_keys() {
       choice_key("flight.order", {"shortest", "survey"}, flight(&FlightConfig::order),
                  "Order of the views in the exported mission: the shortest tour found, or as "
                  "surveyed."),
-      choice_key("flight.style", {"stop", "blend", "smooth"}, flight(&FlightConfig::style),
-                 "How legs with corners are flown: with a stop in each, round them, or along one "
-                 "smooth curve, where that is proven and faster. Trajectories (csv, ned-csv, tum) "
-                 "and KML hold curves; the other files stop in corners."),
+      choice_key(
+          "flight.style", {"stop", "blend", "smooth", "pass"}, flight(&FlightConfig::style),
+          "How legs with corners are flown: with a stop in each, round them, or along one "
+          "smooth curve, where that is proven and faster; pass: past the views too, pictures "
+          "being taken without a stop, no faster than they stay sharp (sensor.exposure). "
+          "Trajectories (csv, ned-csv, tum) and KML hold curves; the other files stop in "
+          "corners and at views."),
   };
 }
 

@@ -80,9 +80,7 @@ AnewMission anew_mission(const file::Mission& mission, const run::SurveyRecord& 
                                           std::move(present), plan, {}, stop),
                      {}};
   if (coverage.fly_again) {
-    result.again = flown_again(coverage, derived::scans_in_flight(mission)
-                                             ? run::scans_of(mission, result.choice.route)
-                                             : result.choice.stations.views);
+    result.again = flown_again(coverage, run::measured_views(mission, result.choice.route));
   }
   return result;
 }

@@ -171,8 +171,9 @@ class RouteFiles {
     std::vector<std::string> notes;
     const bool holds_curves = flight::holds_curves(format);
     if (!holds_curves && mission_.flight.style != flight::FlightStyle::stop) {
-      notes.push_back(stem_ + info.ending +
-                      " stops in every corner: the format cannot say which curve is flown");
+      const bool passes = mission_.flight.style == flight::FlightStyle::pass;
+      notes.push_back(stem_ + info.ending + " stops " + (passes ? "at every view and " : "") +
+                      "in every corner: the format cannot say which curve is flown");
     }
     const auto corners = holds_curves ? flight::Corners::flown_round : flight::Corners::stopped_in;
     flight::FlightPlan plan = in_dialect(flight_plan(route_, sortie, mission_.name + number,

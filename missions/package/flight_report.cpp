@@ -1,5 +1,6 @@
 #include "missions/package/flight_report.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include <fmt/format.h>
@@ -23,6 +24,29 @@ std::string return_text(const SurveyMission& flight) {
   const std::vector<std::string>& files = flight.files.parameters;
   for (std::size_t i = 0; i < files.size(); ++i) text += (i == 0 ? "; set by " : ", ") + files[i];
   return text + "\n";
+}
+
+/// What is flown past its views, by files that can say so.
+std::string passage_text(const flight::Route& route) {
+  if (route.options.style != flight::FlightStyle::pass) return "";
+  std::size_t views = 0, stops = 0;
+  double length = 0.0;
+  for (const flight::Sortie& sortie : route.sorties) {
+    if (!sortie.passage) continue;
+    views += sortie.passage->views.size(), stops += sortie.passage->stops;
+    length += sortie.passage->length + 2.0 * route.options.takeoff_climb;
+  }
+  const double speed = std::min(route.options.passing.speed, route.options.conditions.cruise_speed);
+  if (views == 0) {
+    return fmt::format(
+        "  passing   nothing: stopping is no slower than passing at {:.1f} m/s, at which pictures "
+        "are sharp; shorten sensor.exposure\n",
+        speed);
+  }
+  return fmt::format(
+      "  passing   {} views at up to {:.1f} m/s, {} stops, {:.1f} m in {:.1f} min, by the "
+      "trajectory and KML files\n",
+      views, speed, stops, length, flight::least_duration(route) / 60.0);
 }
 
 std::string pictures_text(const SurveyMission& flight) {
@@ -77,6 +101,7 @@ std::string flight_text(const SurveyMission& flight) {
       "+ tracking {:.2f} + map {:.2f} + margin {:.2f})\n",
       clearance.total(), route.min_clearance, clearance.vehicle_radius, clearance.position_error,
       clearance.tracking_error, clearance.map_error, clearance.margin);
+  text += passage_text(route);
   if (flight.anew) text += anew_text(*flight.anew);
   if (flight.again) text += "  promise   " + again_text(*flight.again) + "\n";
   const std::size_t rally_points = route.options.returns ? route.options.returns->rally.size() : 0;

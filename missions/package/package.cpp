@@ -107,8 +107,9 @@ void plan_mission(const file::Mission& mission, const run::SurveyRecord& record,
   }
   if (flight.route.stations.empty()) return;
   if (!record.surface) {
-    if (derived::scans_in_flight(mission) && coverage.fly_again) {
-      flight.again = flown_again(coverage, run::scans_of(mission, flight.route));
+    const bool passes = mission.flight.style == flight::FlightStyle::pass;
+    if ((derived::scans_in_flight(mission) || passes) && coverage.fly_again) {
+      flight.again = flown_again(coverage, run::measured_views(mission, flight.route));
     }
     return;
   }

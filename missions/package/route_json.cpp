@@ -21,6 +21,26 @@ Json json_of(const flight::Leg& leg, const Json& from, const Json& to) {
           {"points", json_of(leg.points)}};
 }
 
+/// Of a sortie that is flown past its views; null of others.
+Json passage_json(const flight::Route& route, const flight::Sortie& sortie) {
+  if (!sortie.passage) return {};
+  const flight::Passage& passage = *sortie.passage;
+  Json views = Json::array();
+  for (std::size_t i = 0; i < passage.views.size(); ++i) {
+    const flight::PassedView& view = passage.views[i];
+    const double speed = flight::state_at(passage.curve, view.moment).velocity.norm();
+    views.push_back({{"view", route.stations[sortie.first + i].view_index},
+                     {"time_s", view.moment},
+                     {"position", json_of(view.position)},
+                     {"speed_m_s", speed}});
+  }
+  return {{"duration_s", sortie.passing_time},
+          {"length_m", passage.length + 2.0 * route.options.takeoff_climb},
+          {"stops", passage.stops},
+          {"clearance_m", passage.clearance},
+          {"views", views}};
+}
+
 Json legs_of(const flight::Route& route, const flight::Sortie& sortie) {
   const auto view = [&](std::uint32_t station) { return route.stations[station].view_index; };
   Json legs = Json::array({json_of(sortie.out, {}, view(sortie.first))});
@@ -43,6 +63,7 @@ Json sorties_json(const flight::Route& route) {
                        {"energy_left_wh", sortie.energy_left / 3600.0},
                        {"length_m", sortie.length},
                        {"min_clearance_m", sortie.clearance},
+                       {"passage", passage_json(route, sortie)},
                        {"legs", legs_of(route, sortie)}});
   }
   return sorties;

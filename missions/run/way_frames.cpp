@@ -95,18 +95,31 @@ double WayMotion::survey_time(const std::vector<FlownLeg>& legs,
   return time;
 }
 
-std::vector<View> scans_of(const file::Mission& mission, const flight::Route& route) {
+std::vector<View> measured_views(const file::Mission& mission, const flight::Route& route) {
+  if (!derived::scans_in_flight(mission)) return picture_views(route);
   const WayMotion motion(mission);
   const Eigen::Isometry3d& mount = mission.sensor.mount.value();
+  const double period = mission.sensor.frame_period;
   std::vector<View> scans;
   const auto add = [&](const flight::Leg& leg, const View& from, const View& to) {
-    for (const View& nose : motion.frames({leg.points}, from, to, mission.sensor.frame_period)) {
+    for (const View& nose : motion.frames({leg.points}, from, to, period)) {
       scans.push_back(derived::side_view(mount, nose));
     }
     scans.push_back(derived::side_view(mount, to));
     scans.back().position = leg.points.back();
   };
+  const auto add_passage = [&](const flight::Passage& passage) {
+    for (std::size_t k = 1; static_cast<double>(k) * period < passage.duration; ++k) {
+      const double time = static_cast<double>(k) * period;
+      scans.push_back(derived::side_view(
+          mount, {state_at(passage.curve, time).position, direction_of(passage.aim_at(time))}));
+    }
+  };
   for (const flight::Sortie& sortie : route.sorties) {
+    if (sortie.passage) {
+      add_passage(*sortie.passage);
+      continue;
+    }
     const View &first = route.stations[sortie.first].view, &last = route.stations[sortie.last].view;
     add(sortie.out, first, first);
     for (std::uint32_t i = sortie.first; i < sortie.last; ++i) {

@@ -43,9 +43,10 @@ class WayMotion {
   bool turns_last_;  ///< on the last piece of a way
 };
 
-/// Views of the scans that a scanner takes all along a route, from leaving the place above the pad
-/// until it is back there.
-std::vector<geometry::View> scans_of(const file::Mission& mission, const flight::Route& route);
+/// Views of all that is measured on a route: its pictures, at stations or in passing, or the scans
+/// that a scanner takes from leaving the place above the pad until it is back there.
+std::vector<geometry::View> measured_views(const file::Mission& mission,
+                                           const flight::Route& route);
 
 /// How sharp frames are that a camera takes at the cruise speed.
 flight::PictureBounds moving_bounds_of(const file::Mission& mission);

@@ -83,6 +83,17 @@ function seen_from(data, hole) {
   return places_text(place);
 }
 
+/// Sorties that trajectories and KML files fly past their views.
+function passage_parts(data) {
+  return sorties_of(data).map((sortie, i) => {
+    if (!sortie.passage) return null;
+    const f = (path, form) => figure(data, "flight.route.sorties." + i + ".passage." + path, form);
+    return element("p", {}, "The trajectory and KML files fly sortie " + (i + 1) + " past its views: ", f("length_m", "metres"),
+      " in ", f("duration_s", "minutes"), " with ", f("stops", "count"), " stops, proven free at ", f("clearance_m", "metres"),
+      ". The other files stop at each.");
+  }).filter(Boolean);
+}
+
 /// The mission whose views were chosen anew beside that through the survey's views.
 function anew_parts(data) {
   const { anew } = data.summary.flight;
@@ -156,7 +167,7 @@ function flight_section(data) {
       number(f(path + "energy_wh", "watt_hours")), number(f(path + "energy_left_wh", "watt_hours")),
       number(f(path + "min_clearance_m", "metres"))];
   })));
-  section.append(...anew_parts(data), ...fleet_parts(data));
+  section.append(...passage_parts(data), ...anew_parts(data), ...fleet_parts(data));
   const terms = [["vehicle's radius", "vehicle_radius"], ["position error", "position_error"],
     ["tracking error", "tracking_error"], ["map error", "map_error"], ["margin", "margin"], ["together", "total"]];
   section.append(element("h3", {}, "What the clearance is made of"),

@@ -128,7 +128,7 @@ TEST(Export, ANameThatIsNotUtf8IsNoFailure) {
 
 TEST(Export, CurvesAreHeldByTrajectoriesAndTracks) {
   const FlightPlan stops = corner_plan(FlightStyle::stop);
-  for (const FlightStyle style : {FlightStyle::blend, FlightStyle::smooth}) {
+  for (const FlightStyle style : {FlightStyle::blend, FlightStyle::smooth, FlightStyle::pass}) {
     const FlightPlan plan = corner_plan(style);
     EXPECT_LT(plan.waypoints.size(), stops.waypoints.size());
     EXPECT_LT(stop_times(plan).back().departure, stop_times(stops).back().departure - 1.0);
@@ -213,8 +213,34 @@ TEST_P(TrajectoryOf, VelocitiesAndAccelerationsAreTheDerivatives) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Styles, TrajectoryOf,
-                         testing::Values(FlightStyle::stop, FlightStyle::blend,
-                                         FlightStyle::smooth));
+                         testing::Values(FlightStyle::stop, FlightStyle::blend, FlightStyle::smooth,
+                                         FlightStyle::pass));
+
+// In passing as at stops: each view's picture is taken in its place, looking its way; the vehicle
+// moves meanwhile, no faster than asked.
+TEST(Trajectory, PassedViewsAreThoseOfTheStops) {
+  const auto shots = [](FlightStyle style) {
+    std::vector<TimedState> taken;
+    for (const TimedState& state : trajectory(corner_plan(style), 0.1)) {
+      if (state.is_shot) taken.push_back(state);
+    }
+    return taken;
+  };
+  const std::vector<TimedState> stopped = shots(FlightStyle::stop),
+                                passed = shots(FlightStyle::pass);
+  ASSERT_EQ(stopped.size(), 3U);
+  ASSERT_EQ(passed.size(), stopped.size());
+  std::size_t moving = 0;
+  for (std::size_t i = 0; i < passed.size(); ++i) {
+    EXPECT_LT((passed[i].position - stopped[i].position).norm(), 1e-5);
+    EXPECT_NEAR(std::remainder(passed[i].yaw - stopped[i].yaw, 2 * M_PI), 0.0, 1e-9);
+    EXPECT_NEAR(passed[i].pitch, stopped[i].pitch, 1e-9);
+    EXPECT_EQ(passed[i].yaw_rate, 0.0);
+    EXPECT_LE(passed[i].velocity.norm(), 3.0 + 1e-6);
+    moving += passed[i].velocity.norm() > 0.1 ? 1 : 0;
+  }
+  EXPECT_GE(moving, 2U);
+}
 
 TEST(Trajectory, CsvRoundTripsInBothFrames) {
   const std::vector<TimedState> states = trajectory(sample_plan(vehicle_profile("generic")), 0.5);

@@ -31,6 +31,7 @@ FlightPlan plan_for(const Vehicle& vehicle, const std::vector<Eigen::Vector3d>& 
   RouteOptions options;
   options.takeoff = {-30, -25, 0};
   options.style = style;
+  options.passing = {.speed = 3.0, .most_cut = 0.5, .exposure = 0.001, .period = 1.0};
   options.returns = ReturnOptions{{Dialect::ardupilot, Dialect::px4}, 40.0};
   const Route route = plan_route(stations, vehicle, space, &pad_space, options);
   if (route.sorties.size() != 1 || !route.unreached.empty()) {

@@ -63,6 +63,22 @@ TEST(PictureBounds, HoldForAnyMotionAndPixel) {
   EXPECT_GE(largest, 0.6 * bound);
 }
 
+// At that speed the image moves by a pixel while it is exposed, or from the first row to the last.
+TEST(PictureBounds, ArePixelsAtTheSharpSpeed) {
+  const geometry::Camera camera = wide_camera();
+  Vehicle vehicle{.sway_speed = 0.1, .sway_rate = 0.002};
+  for (const Shutter& shutter : {Shutter{0.002, 0.0}, Shutter{0.001, 0.004}}) {
+    const double speed = sharp_speed(vehicle, camera, shutter, 12.0);
+    ASSERT_GT(speed, 0.5);
+    Vehicle moving = vehicle;
+    moving.sway_speed += speed;
+    const PictureBounds bounds = picture_bounds(moving, camera, shutter, 12.0);
+    EXPECT_NEAR(std::max(bounds.blur_px, bounds.shear_px), PictureBounds::sharp_px, 1e-9);
+  }
+  EXPECT_TRUE(std::isinf(sharp_speed(vehicle, camera, {0.0, 0.0}, 12.0)));
+  EXPECT_EQ(sharp_speed(vehicle, camera, {10.0, 0.0}, 12.0), 0.0) << "not even at rest";
+}
+
 TEST(PictureBounds, AreSharpUpToAPixel) {
   EXPECT_TRUE((PictureBounds{1.0, 0.0, 5.0}).is_sharp());
   EXPECT_FALSE((PictureBounds{1.01, 0.0, 5.0}).is_sharp());

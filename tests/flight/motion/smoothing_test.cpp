@@ -112,7 +112,7 @@ TEST(Curve, LengthIsTheChordsOnALineAndTheArcsOnABend) {
 
 // A bend whose hull is 1 m deep passes an obstacle inside of it: only halving proves that it does.
 TEST(Curve, ProofHalvesAHullUntilItFits) {
-  const Curve bend = blend_corners(right_angle, air_with({}), 1.0, calm());
+  const Curve bend = blend_corners(right_angle, air_with({}), 1.0, calm()).curve;
   double nearest = 1e9;
   const Vector3d inside(18, 2, 10);
   for (double t = 0.0; t < duration(bend); t += 1e-3) {

@@ -113,6 +113,51 @@ TEST(AnewMission, FilesKeepTheClearanceFromTheTruth) {
   }
 }
 
+// Past its views: faster than with stops, each view's picture in the trajectory, and proven.
+TEST(AnewMission, IsFlownPastItsViews) {
+  const TestFolder& folder = packages();
+  const auto run = run_skycap({"plan", folder / "m.yaml", "--out", folder / "passing", "--threads",
+                               "1", "--set", "flight.views=anew", "--set", "flight.style=pass",
+                               "--set", "sensor.exposure=0.0005"});
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  EXPECT_THAT(run.out, HasSubstr("  passing   "));
+  const json stopping = summary_of("anew").at("flight"),
+             passing = summary_of("passing").at("flight");
+  const auto& sorties = passing.at("route").at("sorties");
+  ASSERT_EQ(sorties.size(), 1U);
+  const json passage = sorties[0].at("passage");
+  ASSERT_FALSE(passage.is_null());
+  EXPECT_LT(passage.at("duration_s").get<double>(), sorties[0].at("duration_s").get<double>());
+  EXPECT_LT(passing.at("anew").at("anew").at("duration_s").get<double>(),
+            stopping.at("anew").at("anew").at("duration_s").get<double>());
+  EXPECT_GE(passage.at("clearance_m").get<double>(),
+            passing.at("clearance_m").at("total").get<double>());
+  const std::string csv = content_of(folder / "passing/mission.csv");
+  std::size_t shots = 0;
+  for (std::size_t at = csv.find(",1\n"); at != std::string::npos; at = csv.find(",1\n", at + 1)) {
+    ++shots;
+  }
+  EXPECT_EQ(shots, passage.at("views").size());
+  EXPECT_EQ(shots, passing.at("route").at("stations").get<std::size_t>());
+  for (const char* name : {"passing/mission.csv", "passing/mission.kml", "passing/mission.plan"}) {
+    const auto check = run_skycap({"check", folder / "m.yaml", "--route", folder / name});
+    EXPECT_EQ(check.exit_code, 0) << name << check.out << check.err;
+  }
+  const auto exported = run_skycap(
+      {"export", folder / "passing", "--format", "csv", "--out", folder / "passing again"});
+  ASSERT_EQ(exported.exit_code, 0) << exported.err;
+  EXPECT_EQ(content_of(folder / "passing again/mission.csv"), csv);
+}
+
+TEST(AnewMission, SaysWhyNothingIsPassed) {
+  const TestFolder& folder = packages();
+  const auto run = run_skycap({"plan", folder / "m.yaml", "--out", folder / "blurred", "--set",
+                               "flight.style=pass", "--set", "sensor.exposure=1", "--set",
+                               "limits.max_views=2"});
+  EXPECT_THAT(run.out, HasSubstr("  passing   nothing: ")) << run.err;
+  EXPECT_THAT(run.out, HasSubstr("shorten sensor.exposure"));
+}
+
 TEST(AnewMission, IsExportedAgainAsItWasPlanned) {
   const TestFolder& folder = packages();
   const auto run = run_skycap({"export", folder / "anew", "--format", "plan", "--format", "csv",

@@ -180,6 +180,40 @@ TEST(SpareViews, KnowsWhatTheWaysWithoutAViewSee) {
   EXPECT_EQ(found.covered, covered_by(world.problem, found.views));
 }
 
+// Three clusters that are seen from a straight line and from beside it: who loses time in bends
+// takes the line, though it takes more views.
+TEST(Anneal, KnowsWhatBendsTake) {
+  PlaneWorld world(1.0);
+  for (const double x : {10.0, 20.0, 30.0}) world.add_cluster(x, 0, 0.5);
+  world.problem.time_per_view = 0.1;
+  world.problem.bend_time = [](const View* before, const View& at, const View* after) {
+    const Vector3d in = at.position - PlaneWorld::place(before);
+    const Vector3d out = PlaneWorld::place(after) - at.position;
+    if (in.norm() == 0.0 || out.norm() == 0.0) return 0.0;
+    return 4.0 * (1.0 - in.normalized().dot(out.normalized()));
+  };
+  const std::vector<View> zigzag = {down_at(10, 0.45), down_at(20, -0.45), down_at(30, 0.45)};
+  ASSERT_GE(covered_by(world.problem, zigzag), 0.999);
+  const auto bends = [&](const std::vector<View>& views) {
+    double sum = 0.0;
+    for (std::size_t i = 0; i < views.size(); ++i) {
+      sum += world.problem.bend_time(i == 0 ? nullptr : &views[i - 1], views[i],
+                                     i + 1 == views.size() ? nullptr : &views[i + 1]);
+    }
+    return sum;
+  };
+  for (const std::uint64_t seed : {1, 2, 3}) {
+    const FoundTour found = anneal(world.problem, zigzag, 0.999, {.seed = seed});
+    EXPECT_GE(found.covered, 0.999);
+    const double rests = rest * static_cast<double>(found.views.size());
+    const double own_rests = 0.1 * static_cast<double>(found.views.size());
+    const double flown = PlaneWorld::time(found.views) - rests;
+    EXPECT_NEAR(found.time, flown + own_rests + bends(found.views), 1e-9) << seed;
+    // Out and back on a line: one turn.
+    EXPECT_LE(found.time, 2.0 * 29.5 + 8.0 + 1.5) << seed;
+  }
+}
+
 // Two views that each see half of it, where one between them sees all.
 TEST(Anneal, TakesOneViewForTwo) {
   PlaneWorld world(2.0);
