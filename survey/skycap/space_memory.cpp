@@ -21,12 +21,53 @@ bool is_amid_misses(const BlockImage& image, int row, int column) {
   return true;
 }
 
+/// On the image's axis, as far away as its returns are on average.
+Eigen::Vector3f middle_of(const BlockImage& image) {
+  float sum = 0.0F, count = 0.0F;
+  for (const Block& block : image.blocks) {
+    if (block.returns == 0) continue;
+    sum += block.depth;
+    count += 1.0F;
+  }
+  const BlockProjection& p = image.projection;
+  const Eigen::Vector3f axis = p.sensor_from_world.row(2);
+  return p.sensor_position + sum / std::max(count, 1.0F) * axis;
+}
+
 }  // namespace
+
+std::size_t SpaceMemory::DepthImage::bytes() const { return 3 * least.size() * sizeof(float); }
+
+/// Images are alike that show the same place from the same place.
+void SpaceMemory::DepthImage::compare(const DepthImage& newer) {
+  const float difference = (projection.sensor_position - newer.projection.sensor_position).norm() +
+                           (middle - newer.middle).norm();
+  if (!(difference < unlikeness)) return;
+  unlikeness = difference;
+  twin = newer.number;
+}
+
+void SpaceMemory::forget_one() {
+  const auto least = std::ranges::min_element(images_, {}, &DepthImage::unlikeness);
+  const std::size_t gone = least->number;
+  bytes_ -= least->bytes();
+  images_.erase(least);
+  for (std::size_t i = 0; i + 1 < images_.size(); ++i) {
+    DepthImage& image = images_[i];
+    if (image.number > gone || image.twin != gone) continue;
+    image.unlikeness = infinity;
+    for (std::size_t j = i + 1; j < images_.size(); ++j) image.compare(images_[j]);
+  }
+}
 
 void SpaceMemory::add(const BlockImage& image, float noise) {
   const std::size_t count = image.blocks.size();
-  DepthImage depth{image.projection, std::vector<float>(count, -infinity),
-                   std::vector<float>(count, -infinity), std::vector<float>(count, -infinity)};
+  DepthImage depth{image.projection,
+                   std::vector<float>(count, -infinity),
+                   std::vector<float>(count, -infinity),
+                   std::vector<float>(count, -infinity),
+                   count_++,
+                   middle_of(image)};
   for (std::size_t i = 0; i < count; ++i) {
     const Block& block = image.blocks[i];
     if (block.returns == 0) {
@@ -44,12 +85,15 @@ void SpaceMemory::add(const BlockImage& image, float noise) {
     depth.measured_until[i] = block.depth + relief + tolerance_;
     depth.least[i] = block.least_depth;
   }
+  for (DepthImage& older : images_) older.compare(depth);
+  bytes_ += depth.bytes();
   images_.push_back(std::move(depth));
+  while (bytes_ > most_bytes_ && images_.size() > 1) forget_one();
 }
 
 SpaceState SpaceMemory::query(const Eigen::Vector3f& point, std::size_t first) const {
   bool is_measured = false;
-  for (std::size_t i = images_.size(); i-- > first;) {
+  for (std::size_t i = images_.size(); i-- > 0 && images_[i].number >= first;) {
     const DepthImage& image = images_[i];
     const auto hit = image.projection.project(point);
     if (!hit) continue;

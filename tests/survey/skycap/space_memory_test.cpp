@@ -17,8 +17,9 @@ const std::vector<tests::Sphere> ball = {{}};  // radius 0.5 about the origin
 constexpr float tolerance = 0.01F;
 
 skycap::SpaceMemory memory_of(const std::vector<Vector3d>& stations, double sigma,
-                              bool misses_are_empty) {
-  skycap::SpaceMemory memory(tolerance, misses_are_empty);
+                              bool misses_are_empty,
+                              std::size_t most_bytes = skycap::SpaceMemory::usual_size) {
+  skycap::SpaceMemory memory(tolerance, misses_are_empty, most_bytes);
   std::uint64_t seed = 1;
   for (const Vector3d& station : stations) {
     const geometry::Scan scan =
@@ -81,6 +82,39 @@ TEST(SpaceMemory, ABallIsProvenEmptyOnlyInFrontOfReturns) {
   EXPECT_FALSE(memory.is_proven_empty({0.55F, 0, 0}, 0.1F));  // reaches into the ball
   EXPECT_FALSE(memory.is_proven_empty({1.0F, 0, 0}, 0.4F));   // reaches beyond its outline
   EXPECT_FALSE(memory.is_proven_empty({-1.0F, 0, 0}, 0.1F));
+}
+
+/// Many looks at one side, and one at the other side long before.
+TEST(SpaceMemory, ForgetsWhatOthersShowAsWell) {
+  std::mt19937_64 random(5);
+  std::uniform_real_distribution<double> uniform(-0.1, 0.1);
+  std::vector<Vector3d> stations = {{-2, 0, 0}, {0, 2, 0}};
+  for (int i = 0; i < 40; ++i) {
+    Vector3d station(2, 0, 0);
+    for (double& coordinate : station) coordinate += uniform(random);
+    stations.push_back(station);
+  }
+  constexpr std::size_t size_of_one = std::size_t{106} * 60 * 3 * sizeof(float);
+  const skycap::SpaceMemory all = memory_of(stations, 0.0, false);
+  const skycap::SpaceMemory few = memory_of(stations, 0.0, false, 12 * size_of_one);
+  EXPECT_EQ(all.bytes(), stations.size() * size_of_one);
+  EXPECT_EQ(few.bytes(), 12 * size_of_one);
+  EXPECT_EQ(few.image_count(), stations.size());
+  for (const Vector3f& p : {Vector3f(-1, 0, 0), Vector3f(0, 1, 0), Vector3f(1, 0, 0)}) {
+    EXPECT_EQ(few.query(p), skycap::SpaceState::empty) << p.transpose();
+    EXPECT_TRUE(few.is_proven_empty(p, 0.1F));
+  }
+  EXPECT_EQ(few.query({-1, 0, 0}, 1), skycap::SpaceState::unknown);  // the first one is not asked
+  for (const Vector3f& p : points_in_ball(0.499F, 2000)) {
+    ASSERT_NE(few.query(p), skycap::SpaceState::empty);
+  }
+}
+
+TEST(SpaceMemory, KeepsTheNewestHoweverLittleItMayKeep) {
+  const skycap::SpaceMemory memory = memory_of(around, 0.0, false, 1);
+  EXPECT_EQ(memory.image_count(), around.size());
+  EXPECT_EQ(memory.query({0.6F, 0.6F, 0.84F}), skycap::SpaceState::empty);
+  EXPECT_EQ(memory.query({1.0F, 0, 0}), skycap::SpaceState::unknown);
 }
 
 }  // namespace
