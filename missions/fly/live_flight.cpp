@@ -136,7 +136,7 @@ MaybeTrouble LiveFlight::sense(const geometry::View& view) {
 
 MaybeTrouble LiveFlight::plan() {
   const auto work = [this] {
-    is_new_ = survey_.add(scan_, live::scan_id(scan_));
+    is_new_ = survey_.add(scan_, "");
     home_found_.reset();
     options_.show();
     if (!survey_.proposal().warns_of_pose()) {

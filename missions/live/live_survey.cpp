@@ -41,6 +41,14 @@ fs::path made_folder(const fs::path& folder) {
                                        "); name a folder you may write to");
 }
 
+/// `sha256` is that of the scan as it is kept.
+std::string id_of(const std::string& sha256, const Eigen::Isometry3d& world_from_sensor,
+                  const std::optional<PoseCovariance>& covariance) {
+  std::string text = sha256 + pose_json(world_from_sensor).dump();
+  if (covariance) text += nlohmann::ordered_json(covariance->triangle()).dump();
+  return digest_of(text);
+}
+
 bool is_same(const ProposalRecord& a, const ProposalRecord& b) { return text_of(a) == text_of(b); }
 
 }  // namespace
@@ -274,18 +282,20 @@ std::optional<std::size_t> LiveSurvey::number_of(const std::string& id) const {
   return found == impl_->numbers.end() ? std::nullopt : std::optional(found->second);
 }
 
-bool LiveSurvey::add(const geometry::Scan& scan, const std::string& id,
+bool LiveSurvey::add(const geometry::Scan& scan, const std::string& given_id,
                      const std::optional<PoseCovariance>& covariance) {
+  const std::string bytes = kept_scan(scan), sha256 = digest_of(bytes);
+  const std::string id =
+      given_id.empty() ? id_of(sha256, scan.world_from_sensor, covariance) : given_id;
   if (number_of(id)) return false;
   if (impl_->mission.flight.is_flown() && impl_->proposal.end) {
     throw Error(ErrorKind::bad_usage,
                 "the survey is over, and no way was proven to where this scan is from; finish it");
   }
   impl_->catch_up();
-  const std::string bytes = kept_scan(scan);
   const ScanRecord record{.id = id,
                           .file = fmt::format("{}/{:06}.ply", scans_name, impl_->events.size()),
-                          .sha256 = digest_of(bytes),
+                          .sha256 = sha256,
                           .world_from_sensor = scan.world_from_sensor,
                           .pose = impl_->look_at_pose(scan, covariance)};
   geometry::write_file(impl_->folder / record.file, bytes);
@@ -322,9 +332,7 @@ run::SurveyRecord LiveSurvey::finish() {
 }
 
 std::string scan_id(const geometry::Scan& scan, const std::optional<PoseCovariance>& covariance) {
-  std::string text = kept_scan(scan) + pose_json(scan.world_from_sensor).dump();
-  if (covariance) text += nlohmann::ordered_json(covariance->triangle()).dump();
-  return digest_of(text);
+  return id_of(digest_of(kept_scan(scan)), scan.world_from_sensor, covariance);
 }
 
 }  // namespace skycap::missions::live

@@ -64,10 +64,9 @@ class LiveSurvey {
   std::optional<std::size_t> number_of(const std::string& id) const;
 
   /// Brings a scan to the disk, looks at its pose (file::LiveConfig), and plans, or sets it aside.
-  /// One whose id is known is acknowledged and ignored: false. Without a covariance it is the
-  /// mission's.
-  /// Throws Error{bad_geometry} for a scan that the planner cannot work with, and
-  /// Error{bad_file} if the disk takes no more; then nothing has changed.
+  /// One whose id is known is acknowledged and ignored: false. An empty id is scan_id()'s. Without
+  /// a covariance it is the mission's. Throws Error{bad_geometry} for a scan that the planner
+  /// cannot work with, and Error{bad_file} if the disk takes no more; then nothing has changed.
   bool add(const geometry::Scan& scan, const std::string& id,
            const std::optional<PoseCovariance>& covariance = {});
 
@@ -91,7 +90,8 @@ class LiveSurvey {
 };
 
 /// The id of a scan that has none: a digest of pose, points and pixels, and of the pose's
-/// covariance: one that was set aside may come again with a larger one.
+/// covariance: one that was set aside may come again with a larger one. add() needs it, too, and
+/// has it for less.
 std::string scan_id(const geometry::Scan& scan,
                     const std::optional<PoseCovariance>& covariance = {});
 

@@ -69,17 +69,34 @@ void organise(std::span<const Vector3d> points, const geometry::Camera& camera, 
                     static_cast<float>(points[i].z()), static_cast<std::uint32_t>(i)});
   }
   found.out_of_view = points.size() - seen.size();
-  std::ranges::sort(seen, [](const Seen& a, const Seen& b) {
+  const auto is_before = [](const Seen& a, const Seen& b) {
     return std::tie(a.pixel, a.depth, a.point) < std::tie(b.pixel, b.depth, b.point);
-  });
+  };
+  // Images of the mission's own camera come in its order.
+  if (!std::ranges::is_sorted(seen, is_before)) std::ranges::sort(seen, is_before);
   const auto last = std::unique(seen.begin(), seen.end(),
                                 [](const Seen& a, const Seen& b) { return a.pixel == b.pixel; });
   found.hidden = static_cast<std::size_t>(seen.end() - last);
   seen.erase(last, seen.end());
+  found.scan.points.reserve(seen.size());
+  found.scan.pixels.reserve(seen.size());
   for (const Seen& s : seen) {
     found.scan.points.push_back((found.scan.world_from_sensor * points[s.point]).cast<float>());
     found.scan.pixels.push_back(s.pixel);
   }
+}
+
+/// The slopes that a lens distorts into those that are wanted; nothing where there are none.
+std::optional<Vector2d> undistorted(const Vector2d& wanted, const Lens& lens) {
+  Vector2d slope = wanted;
+  constexpr int most_rounds = 50;
+  for (int round = 0; round < most_rounds; ++round) {
+    const Vector2d error = wanted - distorted(slope, lens.distortion);
+    // A thousandth of a pixel is far below what depth sensors tell apart.
+    if (error.cwiseProduct(lens.focal_length_px).norm() < 1e-3) return slope;
+    slope += error;
+  }
+  return std::nullopt;
 }
 
 /// The points of a cloud's file in the optical frame.
@@ -97,19 +114,11 @@ std::vector<Vector3d> points_in_sensor(const ScanInput& input) {
 
 std::optional<Vector3d> Lens::ray(const Vector2d& pixel) const {
   const Vector2d wanted = (pixel - principal_point_px).cwiseQuotient(focal_length_px);
-  Vector2d slope = wanted;
   if (!wanted.allFinite()) return std::nullopt;
-  if (distortion == std::array<double, 5>{}) return Vector3d(slope.x(), slope.y(), 1.0);
-  constexpr int most_rounds = 50;
-  for (int round = 0; round < most_rounds; ++round) {
-    const Vector2d error = wanted - distorted(slope, distortion);
-    // A thousandth of a pixel is far below what depth sensors tell apart.
-    if (error.cwiseProduct(focal_length_px).norm() < 1e-3) {
-      return Vector3d(slope.x(), slope.y(), 1.0);
-    }
-    slope += error;
-  }
-  return std::nullopt;
+  if (distortion == std::array<double, 5>{}) return wanted.homogeneous();
+  const std::optional<Vector2d> slope = undistorted(wanted, *this);
+  if (!slope) return std::nullopt;
+  return slope->homogeneous();
 }
 
 std::vector<double> parse_numbers(const std::string& text, const std::string& what) {
@@ -159,17 +168,16 @@ std::vector<Vector3d> points_of(const sim::DepthImage& image, const Lens& lens, 
   constexpr std::uint16_t too_near = 0, too_far = 65535;
   std::vector<Vector3d> points;
   points.reserve(image.values.size());
-  for (std::size_t i = 0; i < image.values.size(); ++i) {
-    const auto width = static_cast<std::size_t>(image.width);
-    const std::uint16_t value = image.values[i];
-    const bool is_return = value != too_near && value != too_far;
-    const auto ray =
-        is_return ? lens.ray({static_cast<double>(i % width), static_cast<double>(i / width)})
-                  : std::nullopt;
-    if (ray) {
-      points.emplace_back(*ray * (unit * value));
-    } else {
-      ++without_return;
+  auto value = image.values.begin();
+  for (int row = 0; row < image.height; ++row) {
+    for (int column = 0; column < image.width; ++column, ++value) {
+      const bool is_return = *value != too_near && *value != too_far;
+      const auto ray = is_return ? lens.ray({column, row}) : std::nullopt;
+      if (ray) {
+        points.emplace_back(*ray * (unit * *value));
+      } else {
+        ++without_return;
+      }
     }
   }
   return points;

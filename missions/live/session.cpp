@@ -186,12 +186,11 @@ Message Session::take_scan(const Message& message) {
   }
   const geometry::Scan& scan = found.scan;
   const std::optional<PoseCovariance> covariance = covariance_of(message.header);
-  const std::string id = scan_id(scan, covariance);
-  if (number < expected && survey_.number_of(id) != number) {
+  if (number < expected && survey_.number_of(scan_id(scan, covariance)) != number) {
     refuse_message("scan " + std::to_string(number) + " was another one; the next one is " +
                    std::to_string(expected));
   }
-  const bool is_new = survey_.add(scan, id, covariance);
+  const bool is_new = survey_.add(scan, "", covariance);
   has_changed_ = is_new;
   Message answer = present();
   answer.header["is_new"] = is_new;

@@ -84,11 +84,10 @@ std::string left_out_text(const live::ScanFound& found) {
 }
 
 void add_scan(const NextOptions& options, const std::string& name, const live::ScanFound& found,
-              std::string id, const file::Mission& mission, live::LiveSurvey& survey,
+              const std::string& id, const file::Mission& mission, live::LiveSurvey& survey,
               const Console& console) {
   live::require_usable(found.scan, mission);
   const std::optional<live::PoseCovariance> covariance = covariance_of(options);
-  if (id.empty()) id = live::scan_id(found.scan, covariance);
   const bool is_new = survey.add(found.scan, id, covariance);
   if (options.is_quiet) return;
   const bool is_aside = is_new && survey.proposal().warns_of_pose();
