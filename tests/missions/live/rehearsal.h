@@ -1,6 +1,7 @@
 /// A live survey in a simulated world, where it is known what has to come out.
 #pragma once
 
+#include <algorithm>
 #include <filesystem>
 #include <string>
 #include <vector>
@@ -19,21 +20,32 @@ namespace skycap::missions::live {
 /// A mission, its scene, and a sensor in it that takes the place of a real one.
 class Rehearsal {
  public:
-  explicit Rehearsal(const std::string& mission)
+  /// `folder` is what the mission's files are named from; zero threads: all processors.
+  explicit Rehearsal(const std::string& mission, const std::filesystem::path& folder = "",
+                     unsigned threads = 1)
       : mission_(derived::parse_mission(mission, "m.yaml")),
-        scene_(mission_, ""),
-        sensor_(mission_.sensor, mission_.seed) {}
+        scene_(mission_, folder),
+        sensor_(mission_.sensor, mission_.seed),
+        threads_(threads) {}
 
-  run::SurveyRecord planned() const { return run::run_survey(mission_, scene_, mission_.seed, 1); }
+  run::SurveyRecord planned() const {
+    return run::run_survey(mission_, scene_, mission_.seed, threads_);
+  }
 
   LiveSurvey open(const std::filesystem::path& folder) const {
     return {run::trial_mission(mission_, scene_, mission_.seed), folder,
-            scene_.first_view(mission_.seed), 1};
+            scene_.first_view(mission_.seed), threads_};
   }
 
   /// What `plan` would measure from the proposed view.
   geometry::Scan scan(const LiveSurvey& survey) const {
-    return sensor_.scan(scene_.scene(), *survey.proposal().view, survey.views().size(), 1);
+    return sensor_.scan(scene_.scene(), *survey.proposal().view, survey.views().size(), threads_);
+  }
+
+  /// Without a vehicle `plan` knows from the scene, and a crew by looking, what is walled in.
+  bool can_reach(const LiveSurvey& survey) const {
+    return mission_.flight.is_flown() || survey.views().empty() ||
+           scene_.is_reachable(survey.proposal().view->position);
   }
 
   void add_one(LiveSurvey& survey) const {
@@ -46,6 +58,7 @@ class Rehearsal {
   file::Mission mission_;
   scene::SurveyScene scene_;
   derived::SurveySensor sensor_;
+  unsigned threads_;
 };
 
 inline std::vector<Eigen::Vector3d> places(const std::vector<run::JudgedView>& views) {
@@ -60,7 +73,9 @@ inline std::vector<Eigen::Vector3d> places(const std::vector<run::JudgedView>& v
 /// All that both kinds of survey know, to the last bit.
 inline void expect_same(const run::SurveyRecord& live, const run::SurveyRecord& planned) {
   EXPECT_EQ(live.stop_reason, planned.stop_reason);
-  EXPECT_TRUE(places(live.views) == places(planned.views));
+  const std::vector<Eigen::Vector3d> ours = places(live.views), theirs = places(planned.views);
+  const auto other = std::ranges::mismatch(ours, theirs).in1 - ours.begin();
+  EXPECT_TRUE(ours == theirs) << "they differ from view " << other / 2 << " on";
   EXPECT_TRUE(live.cloud.positions == planned.cloud.positions);
   EXPECT_TRUE(live.cloud.views == planned.cloud.views);
   ASSERT_EQ(live.flown.has_value(), planned.flown.has_value());

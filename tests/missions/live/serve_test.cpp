@@ -1,7 +1,11 @@
 #include <chrono>
+#include <cstdlib>
+#include <filesystem>
 #include <functional>
+#include <iostream>
 #include <memory>
 #include <optional>
+#include <sstream>
 #include <stop_token>
 #include <string>
 #include <thread>
@@ -78,20 +82,50 @@ class Served {
   std::jthread thread_;
 };
 
+/// The survey as the simulator feeds it through a socket.
+run::SurveyRecord fed_by_simulator(const Rehearsal& rehearsal) {
+  const tests::TestFolder folder;
+  Served served(rehearsal, {.socket = folder / "socket", .port = {}});
+  skycap_live::Survey client(served.address());
+  while (client.next().find("\"state\":\"view\"") != std::string::npos) {
+    // Between two messages nobody else is at the survey.
+    if (!rehearsal.can_reach(served.survey())) {
+      client.refuse(served.survey().proposal().number, "walled in");
+      continue;
+    }
+    const geometry::Scan scan = rehearsal.scan(served.survey());
+    const std::string answer = client.add_points(numbers_of(scan), pose_of(scan), scan.pixels);
+    if (answer.find("\"warning\"") != std::string::npos) throw std::runtime_error(answer);
+  }
+  client.finish();
+  return served.record();
+}
+
 TEST(Serve, FedByTheSimulatorIsWhatPlanDoes) {
   for (const std::string& mission :
        {short_mission(tests::quick_mission(), "see++"), short_mission(tests::flown_mission())}) {
-    const tests::TestFolder folder;
     const Rehearsal rehearsal(mission);
-    Served served(rehearsal, {.socket = folder / "socket", .port = {}});
-    skycap_live::Survey client(served.address());
-    while (client.next().find("\"state\":\"view\"") != std::string::npos) {
-      // Between two messages nobody else is at the survey.
-      const geometry::Scan scan = rehearsal.scan(served.survey());
-      client.add_points(numbers_of(scan), pose_of(scan), scan.pixels);
-    }
-    client.finish();
-    expect_same(served.record(), rehearsal.planned());
+    expect_same(fed_by_simulator(rehearsal), rehearsal.planned());
+  }
+}
+
+/// The missions that SHIPPED_MISSIONS names, such as "bunny city_block", else a quick one, whole.
+/// With SHIPPED_VIEWS those that have no limits end after so many.
+TEST(Serve, FedByTheSimulatorIsWhatPlanDoesWithShippedMissions) {
+  const std::filesystem::path missions = std::filesystem::path(SKYCAP_SOURCE_DIR) / "missions";
+  const char *given = std::getenv("SHIPPED_MISSIONS"), *views = std::getenv("SHIPPED_VIEWS");
+  std::istringstream names(given == nullptr ? "teapot" : given);
+  for (std::string name; names >> name;) {
+    SCOPED_TRACE(name);
+    std::string mission = tests::content_of(missions / (name + ".yaml"));
+    if (views != nullptr) mission += std::string("limits: {max_views: ") + views + "}\n";
+    const Rehearsal rehearsal(mission, missions, 0);
+    const run::SurveyRecord planned = rehearsal.planned();
+    const auto start = std::chrono::steady_clock::now();
+    expect_same(fed_by_simulator(rehearsal), planned);
+    const std::chrono::duration<double> length = std::chrono::steady_clock::now() - start;
+    std::cout << name << ": " << planned.views.size() << " views, " << planned.cloud.size()
+              << " points, " << length.count() << " s\n";
   }
 }
 
