@@ -112,7 +112,6 @@ void Bridge::receive(const TFMessage& message, bool is_static, double now) {
     guarded("transform", now, [&] {
       transforms_.add(transform, is_static);
       if (config_.world.empty()) return;
-      if (!is_static) newest_pose_ = stamp_of(transform.header);
       if (!is_located_ && transforms_.newest(world_frame_, body_frame_)) locate();
     });
   }
@@ -179,7 +178,7 @@ std::optional<Mount> Bridge::newest_mount() const {
   if (sensor_frame_.empty()) return std::nullopt;
   const auto body_from_sensor = transforms_.newest(body_frame_, sensor_frame_);
   if (!body_from_sensor) return std::nullopt;
-  return Mount(*body_from_sensor, config_.mount.axes());
+  return Mount(body_from_sensor->target_from_source, config_.mount.axes());
 }
 
 bool Bridge::has_arrived(const Whereabouts& whereabouts) const {
@@ -190,19 +189,29 @@ bool Bridge::has_arrived(const Whereabouts& whereabouts) const {
          std::atan2(axis.cross(wanted).norm(), axis.dot(wanted)) <= config_.direction_tolerance;
 }
 
-/// At the stamp and for so long before it as it takes to come to rest.
+/// Where it has been for as long before the stamp as it takes to come to rest: in steps, and at all
+/// that odometry says. Throws Error{bad_geometry} if it was nowhere else, but not always known.
 bool Bridge::has_settled(Stamp stamp) const {
   const auto settling = static_cast<Stamp>(config_.settling * 1e9);
-  if (config_.world.empty()) {
-    return history_.all_between(stamp - settling, stamp, [&](Stamp then, const BodyPose& pose) {
-      return has_arrived(with_mount({PoseMatch::State::known, pose, {}}, then));
-    });
-  }
+  std::string gap;
+  const auto is_elsewhere = [&](const Whereabouts& found) {
+    const bool is_known = found.body.state == PoseMatch::State::known;
+    if (!is_known && gap.empty()) gap = found.body.why;
+    return is_known && !has_arrived(found);
+  };
   constexpr Stamp steps = 10;
   for (Stamp step = 1; step <= steps; ++step) {
-    if (!has_arrived(at(stamp - settling * step / steps))) return false;
+    if (is_elsewhere(at(stamp - settling * step / steps))) return false;
   }
-  return true;
+  const auto is_there = [&](Stamp then, const BodyPose& pose) {
+    return !is_elsewhere(with_mount({PoseMatch::State::known, pose, {}}, then));
+  };
+  if (config_.world.empty() && !history_.all_between(stamp - settling, stamp, is_there)) {
+    return false;
+  }
+  if (gap.empty()) return true;
+  throw Error(ErrorKind::bad_geometry,
+              "passed over: where its sensor was while it settled is not known: " + gap);
 }
 
 void Bridge::proceed(double now) {
@@ -277,9 +286,15 @@ void Bridge::learn(const std::string& answer) {
   publish_status();
 }
 
+Stamp Bridge::newest_stamp() const {
+  if (config_.world.empty()) return newest_pose_;
+  const auto newest = transforms_.newest(world_frame_, body_frame_);
+  return newest ? newest->stamp : 0;
+}
+
 void Bridge::publish_goal() {
   Goal goal{.frame = world_frame_,
-            .stamp = newest_pose_,
+            .stamp = newest_stamp(),
             .view = {},
             .path = {},
             .mount = newest_mount()};

@@ -116,6 +116,7 @@ class Bridge {
   std::optional<Mount> newest_mount() const;
   bool has_arrived(const Whereabouts& whereabouts) const;
   bool has_settled(Stamp stamp) const;
+  Stamp newest_stamp() const;
   void take(const Waiting& waiting, const Whereabouts& whereabouts, double now);
   void locate();
   void learn(const std::string& answer);
@@ -131,7 +132,7 @@ class Bridge {
   std::string world_frame_, body_frame_, sensor_frame_;
   bool is_located_ = false;   ///< something said where the body is
   bool lacks_mount_ = false;  ///< the goal that was published
-  Stamp newest_pose_ = 0;     ///< the one that came last
+  Stamp newest_pose_ = 0;     ///< of the odometry that came last
   std::optional<CameraLens> lens_;
   std::optional<Waiting> waiting_;
   nlohmann::json answer_;                  ///< the last one of the survey

@@ -3,6 +3,7 @@
 #include <atomic>
 #include <csignal>
 #include <cstdlib>
+#include <initializer_list>
 #include <iostream>
 #include <map>
 #include <string>
@@ -88,6 +89,29 @@ void add_rules(CLI::App& app, Options& options) {
   app.add_flag("--ignore-covariance", options.ignores_covariance, "Of the odometry");
 }
 
+/// Throws Error{bad_usage} for an option that was given, and that others leave without effect.
+void require_effect(const CLI::App& app, const Options& options) {
+  const bool has_world = !options.node.bridge.world.empty();
+  const bool has_image = !options.node.image.empty();
+  const bool asks_transforms = has_world || options.sensor.empty();
+  const bool asks_arrival = options.node.bridge.taking == Taking::arrived;
+  const auto require = [&](bool has_effect, std::initializer_list<const char*> names,
+                           const std::string& condition) {
+    for (const std::string name : names) {
+      if (has_effect || app.get_option(name)->count() == 0) continue;
+      throw skycap::Error(skycap::ErrorKind::bad_usage,
+                          name + " has no effect " + condition + "; leave it out");
+    }
+  };
+  require(has_world, {"--body"}, "without --world");
+  require(!has_world, {"--odometry", "--ignore-covariance"}, "with --world");
+  require(has_image, {"--camera-info", "--rectified"}, "without --image");
+  require(!has_image, {"--cloud"}, "with --image");
+  require(asks_transforms, {"--tf", "--tf-static"}, "with --sensor and without --world");
+  require(asks_arrival, {"--position-tolerance", "--direction-tolerance-deg", "--settling"},
+          "with --take every or command");
+}
+
 /// What options say in words or degrees.
 NodeConfig node_of(const Options& options) {
   NodeConfig node = options.node;
@@ -111,6 +135,7 @@ int main(int argc, char** argv) {
   add_rules(app, options);
   CLI11_PARSE(app, argc, argv);
   try {
+    require_effect(app, options);
     end_on_signals();
     run_node(node_of(options), is_stopped);
     return 0;

@@ -50,7 +50,11 @@ void Transforms::add(const TransformStamped& transform, bool is_static) {
   if (known == frames_.end()) {
     if (frames_.size() >= most_frames)
       refuse("more than " + std::to_string(most_frames) + " frames");
-    Frame frame{.parent = parent, .fixed = {}, .history = PoseHistory(config_), .last = pose};
+    Frame frame{.parent = parent,
+                .fixed = {},
+                .history = PoseHistory(config_),
+                .last = pose,
+                .last_stamp = stamp};
     if (is_static) frame.fixed = pose;
     known = frames_.emplace(name, std::move(frame)).first;
   }
@@ -66,16 +70,17 @@ void Transforms::add(const TransformStamped& transform, bool is_static) {
     refuse(what + " had another pose with the same stamp");
   }
   frame.last = pose;
+  frame.last_stamp = stamp;
 }
 
-PoseMatch Transforms::in_parent(const Frame& frame, std::optional<Stamp> stamp) const {
+PoseMatch Transforms::in_parent(const Frame& frame, std::optional<Stamp> stamp) {
   if (frame.fixed) return {PoseMatch::State::known, *frame.fixed, {}};
   if (!stamp) return {PoseMatch::State::known, frame.last, {}};
   return frame.history.at(*stamp);
 }
 
-PoseMatch Transforms::find(const std::string& target, const std::string& source,
-                           std::optional<Stamp> stamp) const {
+Transforms::Found Transforms::find(const std::string& target, const std::string& source,
+                                   std::optional<Stamp> stamp) const {
   // Up from a frame to the root, the frame first.
   const auto up_from = [this](std::string name) {
     std::vector<std::string> names{name};
@@ -89,40 +94,44 @@ PoseMatch Transforms::find(const std::string& target, const std::string& source,
   using enum PoseMatch::State;
   const std::vector<std::string> up = up_from(source), down = up_from(target);
   if (up.empty() || down.empty()) {
-    return {
-        refused,
-        {},
-        "the frames above '" + source + "' and '" + target + "' have no end, or are more than 64"};
+    return {{refused,
+             {},
+             "the frames above '" + source + "' and '" + target +
+                 "' have no end, or are more than 64"}};
   }
   const auto meeting = std::ranges::find_first_of(up, down);
   if (meeting == up.end()) {
-    return {open, {}, "no transforms lead from '" + target + "' to '" + source + "'"};
+    return {{open, {}, "no transforms lead from '" + target + "' to '" + source + "'"}};
   }
+  Found found;
   const auto climb = [&](const std::vector<std::string>& names) {
     PoseMatch match{known, {}, {}};
     for (const std::string& name : names) {
       if (name == *meeting) break;
-      const PoseMatch step = in_parent(frames_.at(name), stamp);
+      const Frame& frame = frames_.at(name);
+      found.newest = std::max(found.newest, frame.last_stamp);
+      const PoseMatch step = in_parent(frame, stamp);
       if (step.state != known) return PoseMatch{step.state, {}, "of '" + name + "': " + step.why};
       match.pose = chained(step.pose, match.pose);
     }
     return match;
   };
   const PoseMatch of_source = climb(up), of_target = climb(down);
-  if (of_source.state != known) return of_source;
-  if (of_target.state != known) return of_target;
-  return {known, chained(inverse(of_target.pose), of_source.pose), {}};
+  if (of_source.state != known) return {of_source};
+  if (of_target.state != known) return {of_target};
+  found.match = {known, chained(inverse(of_target.pose), of_source.pose), {}};
+  return found;
 }
 
 PoseMatch Transforms::at(const std::string& target, const std::string& source, Stamp stamp) const {
-  return find(target, source, stamp);
+  return find(target, source, stamp).match;
 }
 
-std::optional<Eigen::Isometry3d> Transforms::newest(const std::string& target,
-                                                    const std::string& source) const {
-  const PoseMatch match = find(target, source, std::nullopt);
-  if (match.state != PoseMatch::State::known) return std::nullopt;
-  return isometry_of(match.pose);
+std::optional<NewestTransform> Transforms::newest(const std::string& target,
+                                                  const std::string& source) const {
+  const Found found = find(target, source, std::nullopt);
+  if (found.match.state != PoseMatch::State::known) return std::nullopt;
+  return NewestTransform{isometry_of(found.match.pose), found.newest};
 }
 
 }  // namespace skycap::ros2

@@ -16,6 +16,12 @@
 
 namespace skycap::ros2 {
 
+/// Where a frame is by what came last.
+struct NewestTransform {
+  Eigen::Isometry3d target_from_source = Eigen::Isometry3d::Identity();
+  Stamp stamp = 0;  ///< the latest on the way from one to the other; 0 if nothing there moves
+};
+
 class Transforms {
  public:
   static constexpr std::size_t most_frames = 256;
@@ -34,8 +40,7 @@ class Transforms {
   PoseMatch at(const std::string& target, const std::string& source, Stamp stamp) const;
 
   /// The same by what came last of each frame.
-  std::optional<Eigen::Isometry3d> newest(const std::string& target,
-                                          const std::string& source) const;
+  std::optional<NewestTransform> newest(const std::string& target, const std::string& source) const;
 
  private:
   struct Frame {
@@ -43,11 +48,16 @@ class Transforms {
     std::optional<BodyPose> fixed;  ///< in the parent, for ever
     PoseHistory history;            ///< and if it moves
     BodyPose last;
+    Stamp last_stamp;  ///< 0 if it is static
+  };
+  struct Found {
+    PoseMatch match;
+    Stamp newest = 0;  ///< of what came last of the frames on the way
   };
   /// What came last if there is no stamp.
-  PoseMatch in_parent(const Frame& frame, std::optional<Stamp> stamp) const;
-  PoseMatch find(const std::string& target, const std::string& source,
-                 std::optional<Stamp> stamp) const;
+  static PoseMatch in_parent(const Frame& frame, std::optional<Stamp> stamp);
+  Found find(const std::string& target, const std::string& source,
+             std::optional<Stamp> stamp) const;
 
   HistoryConfig config_;
   std::map<std::string, Frame> frames_;

@@ -165,6 +165,35 @@ TEST_F(Robot, WhoseTransformsMoveIsNotThereYet) {
   EXPECT_THAT(scans_, SizeIs(1));
 }
 
+/// There before and after, and in between nobody knows.
+TEST_F(Robot, IsToldOfGapsWhileItSettles) {
+  const std::vector<double> times = {9.0, 9.05, 9.1, 9.6, 9.65, 9.7, 9.75};
+  begin();
+  for (const double time : times) odometry(time, {5, 0, 0});
+  cloud(9.72);
+  proceed();
+  EXPECT_THAT(warnings_, ElementsAre(HasSubstr("passed over")));
+  begin_with_transforms();
+  for (const double time : times) transforms(time, {{"map", "base_link", {5, 0, -0.5}}});
+  cloud(9.72);
+  proceed();
+  EXPECT_THAT(warnings_.back(), HasSubstr("of 'base_link': nothing within 0.1 s"));
+  EXPECT_THAT(scans_, IsEmpty());
+}
+
+/// An arm that moves beside them says nothing of when the body was last heard of.
+TEST_F(Robot, StampsItsViewsByTransformsThatLeadToTheBody) {
+  begin_with_transforms();
+  cloud(8.0);
+  transforms(9.0, {{"map", "base_link", {0, 0, 0}}});
+  transforms(12.0, {{"base_link", "arm", {0, 0, 1}}, {"map", "another_robot", {0, 0, 1}}});
+  command("refuse behind the fence");  // published anew
+  EXPECT_EQ(goals_.back().stamp, seconds(9.0));
+  transforms(9.5, {{"map", "base_link", {0, 0, 0}}});
+  command("refuse behind the fence");
+  EXPECT_EQ(goals_.back().stamp, seconds(9.5));
+}
+
 TEST_F(Robot, WithoutTransformsSaysWhatIsMissing) {
   begin({.uses_transforms = true, .world = "map", .taking = Taking::every});
   cloud(10.0);

@@ -3,9 +3,12 @@
 
 #include <chrono>
 #include <csignal>
+#include <cstdlib>
 #include <filesystem>
 #include <fstream>
+#include <iostream>
 #include <optional>
+#include <sstream>
 #include <string>
 #include <thread>
 #include <vector>
@@ -22,6 +25,8 @@
 #include "missions/live/live_journal.h"
 #include "tests/clients/ros2/dds_domain.h"
 #include "tests/clients/ros2/robot.h"
+#include "tests/clients/ros2/sample_messages.h"
+#include "tests/clients/ros2/spoiled_wire.h"
 #include "tests/missions/flown_mission.h"
 #include "tests/missions/live/rehearsal.h"
 #include "tests/missions/run_skycap.h"
@@ -199,6 +204,87 @@ TEST_F(LiveRobot, NeedsASurveyThatIsServedAndTopicsThatAreSome) {
                   folder_ / "bridge.log");
   EXPECT_EQ(bridge_->exit_code(), 2);
   EXPECT_THAT(bridge_->said(), HasSubstr("the topic 'points' must begin with /"));
+}
+
+/// What a driver sends, over and over.
+void send_all_kinds(const Participant& participant, const std::string& topics, int rounds) {
+  const Writer<Odometry> odometry(participant, topics + "/odom", Writing::sensor);
+  const Writer<TFMessage> transforms(participant, topics + "/tf", Writing::sensor);
+  const Writer<TFMessage> fixed(participant, topics + "/tf_static", Writing::latched);
+  const Writer<PointCloud2> clouds(participant, topics + "/points", Writing::sensor);
+  const Writer<Image> images(participant, topics + "/depth", Writing::sensor);
+  const Writer<CameraInfo> infos(participant, topics + "/camera_info", Writing::sensor);
+  const Writer<String> commands(participant, topics + "/skycap/command", Writing::command);
+  std::this_thread::sleep_for(1s);  // they find their readers
+  const SpoiledWire wire(7);
+  std::string take = "take";
+  std::vector<Eigen::Vector3f> points(40, {0.1F, 0.2F, 2.0F});
+  for (int i = 0; i < rounds; ++i) {
+    const Stamp now = seconds(1000.0 + 0.01 * i);
+    const std::vector<SampleTransforms::Frame> frames = {{"odom", "base_link"},
+                                                         {"base_link", "camera_optical"}};
+    odometry.write(SampleOdometry(now, {0, -2, 0.5}).message);
+    transforms.write(SampleTransforms(now, frames).message);
+    fixed.write(SampleTransforms(now, {{"base_link", "mast"}}).message);
+    clouds.write(SampleCloud(now, points).message);
+    images.write(SampleImage(now, 4, std::vector<std::uint16_t>(8, 2000), "16UC1").message);
+    infos.write(SampleInfo({0, 0, 0, 0, 0}).message);
+    if (i % 50 == 0) commands.write({take.data()});
+    std::this_thread::sleep_for(2ms);
+  }
+}
+
+/// Sound RTPS around data that is none. SPOILED_ROUNDS is how often each topic is written to, and
+/// ROS2_UNDER a program with its options to run the bridge under, such as valgrind.
+TEST_F(LiveRobot, WhoseMessagesAreSpoiledOnTheWireEndsNothing) {
+  const char* rounds = std::getenv("SPOILED_ROUNDS");
+  serve(short_mission(tests::quick_mission()));
+  for (const bool has_images : {false, true}) {
+    std::vector<std::string> words;
+    std::istringstream under(std::getenv("ROS2_UNDER") ? std::getenv("ROS2_UNDER") : "");
+    for (std::string word; under >> word;) words.push_back(word);
+    words.insert(
+        words.end(),
+        {SKYCAP_ROS2_PROGRAM, "unix:" + (folder_ / "s"), "--domain", std::to_string(domain_),
+         "--odometry", topics_ + "/odom", "--tf", topics_ + "/tf", "--tf-static",
+         topics_ + "/tf_static", "--prefix", topics_ + "/skycap", "--take", "every",
+         has_images ? "--image" : "--cloud", topics_ + (has_images ? "/depth" : "/points")});
+    bridge_.emplace(words, folder_ / "bridge.log");
+    const Participant participant(domain_);
+    Reader<String> statuses(participant, topics_ + "/skycap/status", Reading::latched, 1);
+    std::string status;
+    const auto listen = [&] { statuses.take([&](const String& m) { status = m.data; }); };
+    for (int i = 0; i < 300 && status.empty(); ++i, listen()) std::this_thread::sleep_for(100ms);
+    ASSERT_THAT(status, HasSubstr("waiting for odometry")) << bridge_->said();
+    const std::size_t before = SpoiledWire::count();
+    send_all_kinds(participant, topics_, rounds == nullptr ? 200 : std::stoi(rounds));
+    std::cout << SpoiledWire::count() - before << " pieces of data were spoiled\n";
+    std::this_thread::sleep_for(1s);
+    bridge_->signal(SIGTERM);
+    EXPECT_EQ(bridge_->exit_code(), 0) << bridge_->said();
+    EXPECT_THAT(bridge_->said(), HasSubstr("warning: "));
+    listen();
+    EXPECT_THAT(status, HasSubstr("stopped"));
+    std::this_thread::sleep_for(1s);  // until the server has noticed
+  }
+}
+
+TEST_F(LiveRobot, IsGivenNoOptionThatOthersLeaveWithoutEffect) {
+  const std::vector<std::vector<std::string>> idle = {{"--body", "base"},
+                                                      {"--rectified"},
+                                                      {"--camera-info", "/info"},
+                                                      {"--odometry", "/odom", "--world", "map"},
+                                                      {"--ignore-covariance", "--world", "map"},
+                                                      {"--cloud", "/points", "--image", "/depth"},
+                                                      {"--tf", "/tf", "--sensor", "0 0 0 0 0 0 1"},
+                                                      {"--settling", "1", "--take", "every"}};
+  for (const std::vector<std::string>& options : idle) {
+    std::vector<std::string> words{SKYCAP_ROS2_PROGRAM, "unix:s"};
+    words.insert(words.end(), options.begin(), options.end());
+    bridge_.emplace(words, folder_ / "bridge.log");
+    EXPECT_EQ(bridge_->exit_code(), 2);
+    EXPECT_THAT(bridge_->said(), HasSubstr("error: " + options.front() + " has no effect with"));
+  }
 }
 
 }  // namespace

@@ -85,7 +85,8 @@ TEST_F(TransformTree, TakesWhatCameLastWhateverItsStamp) {
   EXPECT_FALSE(tree_.newest("base_link", "gimbal"));
   add(10.0, {"base_link", "gimbal", {1, 0, 0}});
   add(9.0, {"base_link", "gimbal", {2, 0, 0}});
-  EXPECT_EQ(tree_.newest("base_link", "gimbal")->translation(), Vector3d(2, 0, 0));
+  EXPECT_EQ(tree_.newest("base_link", "gimbal")->target_from_source.translation(),
+            Vector3d(2, 0, 0));
 }
 
 TEST_F(TransformTree, HasNoCirclesNorTooLongChains) {
