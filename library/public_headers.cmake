@@ -47,6 +47,7 @@ set(supporting_headers
   flight/motion/curve.h
   flight/motion/flight_style.h
   flight/motion/motion.h
+  flight/motion/passage.h
   flight/motion/smoothing.h
   flight/paths/path.h
   flight/route/pad_ground.h

@@ -67,6 +67,7 @@ Json belief_summary(const file::Mission& mission, const run::SurveyRecord& recor
             {"unreachable", belief.unreachable}}},
           {"next_gain", belief.next_gain},
           {"noise_m", belief.noise},
+          {"growing_noise", belief.growing_noise},
           {"reliability", reliability_summary(mission, belief, coverage.truth)}};
 }
 

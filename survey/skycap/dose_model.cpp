@@ -135,9 +135,22 @@ double Noise::across(double cos_incidence) const {
   return std::hypot(isotropic, along_ray * cos_incidence);
 }
 
-DoseModel::DoseModel(double coverage_radius, const Noise& noise)
+Noise Noise::at(double z) const {
+  if (growing == 0.0) return *this;
+  const double factor = std::sqrt(1.0 - growing + growing * std::pow(z / depth, 4));
+  return {.isotropic = factor * isotropic, .along_ray = factor * along_ray};
+}
+
+bool Noise::is_like(const Noise& other, double tolerance) const {
+  const double change =
+      std::abs(other.isotropic - isotropic) + std::abs(other.along_ray - along_ray);
+  const double growth = std::abs(other.growing - growing);
+  return change <= tolerance * across(1.0) && growth <= tolerance;
+}
+
+DoseModel::DoseModel(double coverage_radius, const Noise& noise, double ray_spacing)
     : coverage_radius_(coverage_radius), noise_(noise) {
-  const RayTable ray(coverage_radius, noise);
+  const RayTable constant(coverage_radius, noise);
   for (int c = 0; c < incidence_count; ++c) {
     // At grazing incidence the grid degenerates; nothing useful is measured there.
     const double cosine = std::max(0.05, static_cast<double>(c) / (incidence_count - 1));
@@ -147,8 +160,12 @@ DoseModel::DoseModel(double coverage_radius, const Noise& noise)
       const int octave = d / 2;
       const double rays = std::exp2(double{first_octave} + octave) * (d % 2 == 0 ? 1.0 : 1.5);
       const double spacing = coverage_radius * std::sqrt(cosine / rays);
-      const bool even = noise.isotropic > 0.6 * spacing / cosine;
-      const double uncovered = uncovered_share(ray, spacing, cosine, even);
+      const Noise here = noise.at(spacing / ray_spacing);
+      const bool even = here.isotropic > 0.6 * spacing / cosine;
+      const double uncovered =
+          noise.growing > 0.0
+              ? uncovered_share(RayTable(coverage_radius, here), spacing, cosine, even)
+              : uncovered_share(constant, spacing, cosine, even);
       const double hazard =
           -std::log(std::max(uncovered, std::exp(-static_cast<double>(most_hazard))));
       hazard_per_ray_[c][d] = static_cast<float>(hazard / rays);

@@ -20,9 +20,19 @@ namespace skycap::survey::skycap {
 struct Noise {
   double isotropic = 0.0;  ///< along each axis
   double along_ray = 0.0;  ///< further noise, along the measuring ray only
+  /// Of a sensor whose noise grows with range: the share of the variance at `depth` that grows with
+  /// the fourth power of the depth. So the noise of triangulating sensors does (Khoshelham &
+  /// Elberink, Accuracy and Resolution of Kinect Depth Data, Sensors 12, 2012, Eq. (10)).
+  double growing = 0.0;
+  double depth = 1.0;  ///< that the deviations hold at if they grow [m]
 
   /// Standard deviation across a surface met at this cosine of the angle of incidence.
   double across(double cos_incidence) const;
+  /// The noise of what is so deep, which does not grow.
+  Noise at(double z) const;
+  /// Whether the other one is so much like it that doses are the same: all parts within `tolerance`
+  /// of the noise across.
+  bool is_like(const Noise& other, double tolerance) const;
 };
 
 /// The share covered by one look, for one coverage radius and noise. Immutable.
@@ -33,7 +43,9 @@ struct Noise {
 /// construction (up to a tenth of a second) and interpolated.
 class DoseModel {
  public:
-  DoseModel(double coverage_radius, const Noise& noise);
+  /// `ray_spacing` is that of neighbouring rays at one metre of depth, by which a spacing tells the
+  /// depth that noise is of; it may be left out for noise that does not grow.
+  DoseModel(double coverage_radius, const Noise& noise, double ray_spacing = 1.0);
 
   /// -ln(1 - covered share) of a look with `ray_density` rays per square metre of surface (not of
   /// the plane across the rays), at most `most_hazard` (99.9 % covered).

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <map>
 #include <optional>
 
 #include "survey/skycap/block_image.h"
@@ -14,17 +15,25 @@ namespace skycap::survey::skycap {
 /// separately for four ranges of incidence, and the least of all scans. What falls with the cosine
 /// of incidence is noise along the ray; what does not is isotropic:
 /// sigma^2(theta) = isotropic^2 + along_ray^2 cos^2(theta).
+///
+/// The same quartiles of blocks met within 41 degrees of head-on, by depth, tell whether noise
+/// grows with range: sigma^2(z) = a + b z^4. It counts as growing only where depths twice as far
+/// apart were seen, and the farther ones are clearly noisier.
 class NoiseEstimate {
  public:
   void add(const BlockImage& image);
 
-  /// Nothing until a scan held enough smooth surface; then the estimate so far. Below `negligible`
-  /// it is zero.
-  std::optional<Noise> noise(double negligible) const;
+  /// Nothing until a scan held enough smooth surface; then the estimate so far, at `depth` if it
+  /// grows with range. Below `negligible` it is zero.
+  std::optional<Noise> noise(double negligible, double depth) const;
 
  private:
   static constexpr int range_count = 4;  // of the cosine, from one half to one
+  void add_by_depth(const BlockImage& image);
+  void let_grow(Noise& noise, double depth) const;
+
   std::array<std::optional<double>, range_count> least_variance_;
+  std::map<int, double> variance_by_depth_;  ///< the least; by half octaves
 };
 
 }  // namespace skycap::survey::skycap

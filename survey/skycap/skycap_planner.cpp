@@ -100,12 +100,10 @@ struct SkycapPlanner::Impl {
   void learn_noise(const std::vector<BlockImage>& images) {
     for (const BlockImage& image : images) noise.add(image);
     if (!config.ideas.dose) return;
-    const auto estimate = noise.noise(negligible_noise * config.coverage_radius);
+    const auto estimate = noise.noise(negligible_noise * config.coverage_radius, distance);
     if (!estimate) return;
-    const double change = std::abs(estimate->isotropic - dose->noise().isotropic) +
-                          std::abs(estimate->along_ray - dose->noise().along_ray);
-    if (change > noise_change * dose->noise().across(1.0)) {
-      dose.emplace(config.coverage_radius, *estimate);
+    if (!dose->noise().is_like(*estimate, noise_change)) {
+      dose.emplace(config.coverage_radius, *estimate, ray_spacing(camera));
     }
     blocks.jump = static_cast<float>(std::max(least_jump, noise_jump * dose->noise().across(1.0)));
   }
@@ -361,6 +359,7 @@ SurveyBelief SkycapPlanner::Impl::belief() const {
   belief.coverage = predicted_coverage();
   belief.next_gain = next_gain;
   belief.noise = dose->noise().across(1.0);
+  belief.growing_noise = dose->noise().growing;
   return belief;
 }
 

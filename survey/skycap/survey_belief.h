@@ -29,7 +29,9 @@ struct SurveyBelief {
   double coverage = 0.0;  ///< expected covered share of it
   double seen_too_thinly = 0.0, never_seen = 0.0, unreachable = 0.0;  ///< missing shares of it
   double next_gain = 0.0;  ///< share of the known area that the best next view would newly cover
-  double noise = 0.0;      ///< standard deviation of a measurement head-on, as learnt
+  /// Standard deviation of a measurement head-on, as learnt; at the view distance, if it grows with
+  /// range, and the share of its variance there that does (Noise::growing).
+  double noise = 0.0, growing_noise = 0.0;
   std::vector<BelievedPatch> patches;
 };
 

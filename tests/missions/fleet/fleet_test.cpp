@@ -225,6 +225,8 @@ TEST(Fleet, KeysThatContradictEachOtherAreRefused) {
               HasSubstr("key flight.separation: is for several vehicles"));
   EXPECT_THAT(complaint("vehicles: [generic, generic], separation: 1"),
               HasSubstr("key flight.separation: is less than"));
+  EXPECT_THAT(complaint("vehicles: [generic, generic], style: pass"),
+              HasSubstr("key flight.style: several vehicles are kept apart as they fly from stop"));
 }
 
 // Along the side that the first pad is at, to either side in turn.
