@@ -147,6 +147,8 @@ class Message {
 /// Takes in message after message.
 class LogBuilder {
  public:
+  explicit LogBuilder(std::size_t most_entries) : most_entries_(most_entries) {}
+
   void add(const Message& message) {
     if (message.name() == "XKF1" || message.name() == "NKF1") set_velocity(message);
     if (message.name() == "BAT") add_sample(message);
@@ -154,8 +156,9 @@ class LogBuilder {
       log_.parameters.push_back({message.text("Name"), message.number_or("Value", 0.0)});
     }
     if (message.name() == "CMD") add_command(message);
-    if (log_.samples.size() + log_.parameters.size() + log_.commands.size() > most_log_samples) {
-      throw Error(ErrorKind::bad_file, "holds more than 1e7 samples, parameters and commands");
+    if (log_.samples.size() + log_.parameters.size() + log_.commands.size() > most_entries_) {
+      throw Error(ErrorKind::bad_file, "holds more than " + std::to_string(most_entries_) +
+                                           " samples, parameters and commands");
     }
   }
 
@@ -206,6 +209,7 @@ class LogBuilder {
                              message.number_or("Alt", 0.0)});
   }
 
+  std::size_t most_entries_;
   FlightLog log_;
   Eigen::Vector3d velocity_ = Eigen::Vector3d::Zero();
   bool has_velocity_ = false;
@@ -214,9 +218,9 @@ class LogBuilder {
 
 }  // namespace
 
-FlightLog read_dataflash(std::string_view bytes) {
+FlightLog read_dataflash(std::string_view bytes, std::size_t most_entries) {
   std::array<std::optional<Format>, 256> formats;
-  LogBuilder builder;
+  LogBuilder builder(most_entries);
   bool has_format = false;
   std::size_t i = 0;
   while (i + header_size <= bytes.size()) {

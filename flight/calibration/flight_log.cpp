@@ -47,7 +47,7 @@ LogSample sample_of(const std::vector<std::string>& fields, const Columns& colum
 
 }  // namespace
 
-FlightLog read_csv_log(std::string_view text) {
+FlightLog read_csv_log(std::string_view text, std::size_t most_samples) {
   FlightLog log;
   Columns columns{};
   std::size_t number = 0;
@@ -60,7 +60,9 @@ FlightLog read_csv_log(std::string_view text) {
       columns = columns_of(fields);
       continue;
     }
-    if (log.samples.size() == most_log_samples) fail(number, "is of more than 1e7 samples");
+    if (log.samples.size() == most_samples) {
+      fail(number, "is of more than " + std::to_string(most_samples) + " samples");
+    }
     log.samples.push_back(sample_of(fields, columns, number));
     const std::size_t count = log.samples.size();
     if (count > 1 && log.samples[count - 1].time <= log.samples[count - 2].time) {

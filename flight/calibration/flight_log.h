@@ -37,16 +37,16 @@ struct FlightLog {
   std::vector<LogCommand> commands;
 };
 
+inline constexpr std::size_t largest_log = std::size_t{512} << 20, most_log_samples = 10'000'000;
+
 /// ArduPilot's dataflash log (.bin): BAT for the power, XKF1 or NKF1 for the velocity, PARM, CMD;
 /// formats are those that the log itself describes (FMT; AP_Logger/LogStructure.h). What is damaged
 /// is skipped. Throws Error{bad_file} if it is no such log or lacks one of the first two.
-FlightLog read_dataflash(std::string_view bytes);
+FlightLog read_dataflash(std::string_view bytes, std::size_t most_entries = most_log_samples);
 
 /// Text with a header line that names the columns time_s, east_m_s, north_m_s, up_m_s and power_w,
 /// in any order, beside others. Throws Error{bad_file} naming the line.
-FlightLog read_csv_log(std::string_view text);
-
-inline constexpr std::size_t largest_log = std::size_t{512} << 20, most_log_samples = 10'000'000;
+FlightLog read_csv_log(std::string_view text, std::size_t most_samples = most_log_samples);
 
 /// Either, by the name's ending: .csv or any other. Errors name the file.
 FlightLog read_flight_log(const std::filesystem::path& file);

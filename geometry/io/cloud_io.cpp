@@ -80,7 +80,7 @@ void take_ply(const fs::path& path, std::string_view bytes, const TakePiece& tak
   PlyReader reader(name, bytes);
   for (const PlyElement& element : reader.elements()) {
     if (element.name != "vertex") {
-      reader.read_element({}, {});
+      reader.read_element({});
       continue;
     }
     std::size_t first = 0;

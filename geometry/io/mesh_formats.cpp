@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstring>
+#include <limits>
 #include <optional>
 #include <string>
 #include <tuple>
@@ -25,37 +26,93 @@ std::string no_such_vertex(std::int64_t vertex, std::size_t count) {
          " vertices, counted from 0";
 }
 
-[[noreturn]] void fail_of_size(std::string_view name) {
-  fail(name, "holds more than 4e7 faces, or 1.2e8 corners of faces or vertices; simplify the mesh");
+/// Polygons that do not grow past the limits.
+class BoundedSoup {
+ public:
+  BoundedSoup(std::string_view name, const MeshLimits& limits) : name_(name), limits_(limits) {}
+
+  const PolygonSoup& soup() const { return soup_; }
+  PolygonSoup& soup() { return soup_; }
+
+  /// What a file promises, before memory is taken for it.
+  void require(std::uint64_t vertices, std::uint64_t faces) const {
+    if (vertices > limits_.vertices || faces > limits_.faces) fail_of_size();
+  }
+
+  void add_vertex(const Vector3d& vertex) {
+    if (soup_.vertices.size() == limits_.vertices) fail_of_size();
+    soup_.vertices.push_back(vertex);
+  }
+
+  /// Of the polygon that is closed next.
+  void add_corner(std::uint32_t vertex) {
+    if (soup_.corners.size() == limits_.corners) fail_of_size();
+    if (soup_.corners.size() - soup_.polygon_begin.back() == limits_.face_corners) {
+      fail(name_, "face " + std::to_string(soup_.polygon_begin.size() - 1) + " has more than " +
+                      std::to_string(limits_.face_corners) + " corners; triangulate it first");
+    }
+    soup_.corners.push_back(vertex);
+  }
+
+  void close_polygon() {
+    if (soup_.polygon_begin.size() > limits_.faces) fail_of_size();
+    soup_.polygon_begin.push_back(soup_.corners.size());
+  }
+
+ private:
+  [[noreturn]] void fail_of_size() const {
+    fail(name_, "holds more than " + std::to_string(limits_.faces) + " faces, " +
+                    std::to_string(limits_.corners) + " corners of faces or " +
+                    std::to_string(limits_.vertices) + " vertices; simplify the mesh");
+  }
+
+  std::string_view name_;
+  MeshLimits limits_;
+  PolygonSoup soup_;
+};
+
+constexpr std::uint64_t ply_piece = 1'000'000;  // rows whose numbers are held at once
+
+void read_ply_vertices(std::string_view name, PlyReader& reader, std::uint64_t count,
+                       BoundedSoup& soup) {
+  constexpr std::array<std::string_view, 3> coordinates{"x", "y", "z"};
+  for (std::uint64_t read = 0; read < count;) {
+    const PlyTable table = reader.read_rows(coordinates, {}, ply_piece);
+    const auto& [x, y, z] = std::tie(table.columns[0], table.columns[1], table.columns[2]);
+    if (x.size() != table.rows || y.size() != table.rows || z.size() != table.rows) {
+      fail(name, "the element 'vertex' must have the properties x, y and z");
+    }
+    if (read == 0) soup.soup().vertices.reserve(count);
+    for (std::size_t i = 0; i < x.size(); ++i) soup.add_vertex({x[i], y[i], z[i]});
+    read += table.rows;
+  }
 }
 
-void add_vertex(std::string_view name, PolygonSoup& soup, const Vector3d& vertex) {
-  if (soup.vertices.size() == most_mesh_vertices) fail_of_size(name);
-  soup.vertices.push_back(vertex);
-}
-
-void add_corner(std::string_view name, PolygonSoup& soup, std::uint32_t vertex) {
-  if (soup.corners.size() == 3 * most_mesh_faces) fail_of_size(name);
-  soup.corners.push_back(vertex);
-}
-
-void close_polygon(std::string_view name, PolygonSoup& soup) {
-  if (soup.polygon_begin.size() > most_mesh_faces) fail_of_size(name);
-  soup.polygon_begin.push_back(soup.corners.size());
-}
-
-/// What a file promises, before memory is taken for it.
-void require_bounded(std::string_view name, std::uint64_t vertices, std::uint64_t faces) {
-  if (vertices > most_mesh_vertices || faces > most_mesh_faces) fail_of_size(name);
+void read_ply_faces(std::string_view name, PlyReader& reader, std::uint64_t count,
+                    std::uint64_t vertex_count, BoundedSoup& soup) {
+  constexpr std::array<std::string_view, 2> corner_lists{"vertex_indices", "vertex_index"};
+  for (std::uint64_t read = 0; read < count;) {
+    const PlyTable table = reader.read_rows({}, corner_lists, ply_piece);
+    for (std::size_t row = 0; row + 1 < table.list_begin.size(); ++row) {
+      for (std::uint64_t i = table.list_begin[row]; i < table.list_begin[row + 1]; ++i) {
+        const std::int64_t vertex = table.list_values[i];
+        if (vertex < 0 || static_cast<std::uint64_t>(vertex) >= vertex_count) {
+          fail(name,
+               "face " + std::to_string(read + row) + " " + no_such_vertex(vertex, vertex_count));
+        }
+        soup.add_corner(static_cast<std::uint32_t>(vertex));
+      }
+      soup.close_polygon();
+    }
+    read += table.rows;
+  }
 }
 
 }  // namespace
 
-PolygonSoup parse_ply(std::string_view name, std::string_view bytes) {
+PolygonSoup parse_ply(std::string_view name, std::string_view bytes, const MeshLimits& limits) {
   PlyReader reader(name, bytes);
-  constexpr std::array<std::string_view, 3> coordinates{"x", "y", "z"};
-  constexpr std::array<std::string_view, 2> corner_lists{"vertex_indices", "vertex_index"};
-  PolygonSoup soup;
+  BoundedSoup soup(name, limits);
   const auto vertex_element =
       std::find_if(reader.elements().begin(), reader.elements().end(),
                    [](const PlyElement& element) { return element.name == "vertex"; });
@@ -64,38 +121,25 @@ PolygonSoup parse_ply(std::string_view name, std::string_view bytes) {
   }
   const std::uint64_t vertex_count = vertex_element->count;
   for (const PlyElement& element : reader.elements()) {
-    require_bounded(name, vertex_count, element.name == "face" ? element.count : 0);
-    PlyTable table = reader.read_element(coordinates, corner_lists);
+    const bool is_face = element.name == "face";
+    soup.require(vertex_count, is_face ? element.count : 0);
     if (&element == &*vertex_element) {
-      const auto& [x, y, z] = std::tie(table.columns[0], table.columns[1], table.columns[2]);
-      if (x.size() != element.count || y.size() != element.count || z.size() != element.count) {
-        fail(name, "the element 'vertex' must have the properties x, y and z");
-      }
-      soup.vertices.reserve(element.count);
-      for (std::size_t i = 0; i < x.size(); ++i) soup.vertices.emplace_back(x[i], y[i], z[i]);
-    } else if (element.name == "face") {
-      soup.corners.reserve(table.list_values.size());
-      soup.polygon_begin.reserve(table.list_begin.size());
-      for (std::size_t face = 0; face + 1 < table.list_begin.size(); ++face) {
-        for (std::uint64_t i = table.list_begin[face]; i < table.list_begin[face + 1]; ++i) {
-          const std::int64_t vertex = table.list_values[i];
-          if (vertex < 0 || static_cast<std::uint64_t>(vertex) >= vertex_count) {
-            fail(name, "face " + std::to_string(face) + " " + no_such_vertex(vertex, vertex_count));
-          }
-          add_corner(name, soup, static_cast<std::uint32_t>(vertex));
-        }
-        close_polygon(name, soup);
-      }
+      read_ply_vertices(name, reader, element.count, soup);
+    } else if (is_face) {
+      read_ply_faces(name, reader, element.count, vertex_count, soup);
+    } else {
+      reader.read_element({});
     }
   }
-  return soup;
+  return std::move(soup.soup());
 }
 
 namespace {
 
 class ObjReader {
  public:
-  ObjReader(std::string_view name, std::string_view text) : name_(name), scanner_(name, text) {}
+  ObjReader(std::string_view name, std::string_view text, const MeshLimits& limits)
+      : scanner_(name, text), most_materials_(limits.materials), polygons_(name, limits) {}
 
   PolygonSoup read() {
     do {
@@ -114,7 +158,7 @@ class ObjReader {
     for (double& coordinate : vertex) {
       coordinate = scanner_.number<double>(scanner_.word_in_line(), "a coordinate");
     }
-    add_vertex(name_, soup_, vertex);
+    polygons_.add_vertex(vertex);
   }
 
   void read_material() {
@@ -127,8 +171,8 @@ class ObjReader {
   void use_material(const std::string& wanted) {
     const auto number = static_cast<std::uint32_t>(soup_.materials.size());
     const auto [known, is_new] = materials_.emplace(wanted, number);
-    if (is_new && number == most_mesh_materials) {
-      scanner_.fail("names more than 1e6 materials");
+    if (is_new && number == most_materials_) {
+      scanner_.fail("names more than " + std::to_string(most_materials_) + " materials");
     }
     material_ = known->second;
     if (is_new) soup_.materials.push_back(wanted);
@@ -141,10 +185,10 @@ class ObjReader {
       if (corner == "\\") {  // goes on in the next line
         scanner_.next_line();
       } else {
-        add_corner(name_, soup_, vertex_of(*corner));
+        polygons_.add_corner(vertex_of(*corner));
       }
     }
-    close_polygon(name_, soup_);
+    polygons_.close_polygon();
   }
 
   std::uint32_t vertex_of(std::string_view corner) {
@@ -153,7 +197,7 @@ class ObjReader {
     // Counted from 1, or backwards from the latest vertex.
     const auto count = static_cast<std::int64_t>(soup_.vertices.size());
     const std::int64_t vertex = index > 0 ? index - 1 : index + count;
-    if (index == 0 || vertex < 0 || vertex >= static_cast<std::int64_t>(most_mesh_vertices)) {
+    if (index == 0 || vertex < 0 || vertex > std::numeric_limits<std::uint32_t>::max()) {
       scanner_.fail("the face names vertex " + std::to_string(index) + ", but the " +
                     std::to_string(count) + " vertices so far are counted from 1, or from -1 " +
                     "backwards");
@@ -175,9 +219,10 @@ class ObjReader {
     }
   }
 
-  std::string_view name_;
   TextScanner scanner_;
-  PolygonSoup soup_;
+  std::size_t most_materials_;
+  BoundedSoup polygons_;
+  PolygonSoup& soup_ = polygons_.soup();
   std::vector<std::uint32_t> lines_;  // of each polygon, for the check of its corners
   std::uint32_t material_ = 0;
   std::unordered_map<std::string, std::uint32_t> materials_;  // numbers by names
@@ -185,8 +230,8 @@ class ObjReader {
 
 }  // namespace
 
-PolygonSoup parse_obj(std::string_view name, std::string_view text) {
-  return ObjReader(name, text).read();
+PolygonSoup parse_obj(std::string_view name, std::string_view text, const MeshLimits& limits) {
+  return ObjReader(name, text, limits).read();
 }
 
 namespace {
@@ -202,7 +247,7 @@ std::optional<std::string_view> off_line(TextScanner& scanner) {
 
 }  // namespace
 
-PolygonSoup parse_off(std::string_view name, std::string_view text) {
+PolygonSoup parse_off(std::string_view name, std::string_view text, const MeshLimits& limits) {
   TextScanner scanner(name, text);
   auto word = scanner.word_in_line();
   while ((!word || word->starts_with('#')) && scanner.next_line()) word = scanner.word_in_line();
@@ -220,16 +265,15 @@ PolygonSoup parse_off(std::string_view name, std::string_view text) {
     scanner.fail(std::to_string(vertex_count) + " vertices and " + std::to_string(face_count) +
                  " faces are promised, but the file is too short for so many");
   }
-  require_bounded(name, vertex_count, face_count);
-
-  PolygonSoup soup;
-  soup.vertices.reserve(vertex_count);
+  BoundedSoup soup(name, limits);
+  soup.require(vertex_count, face_count);
+  soup.soup().vertices.reserve(vertex_count);
   for (std::uint64_t v = 0; v < vertex_count; ++v) {
     Vector3d vertex;
     vertex.x() = scanner.number<double>(off_line(scanner), "a coordinate");
     vertex.y() = scanner.number<double>(scanner.word_in_line(), "a coordinate");
     vertex.z() = scanner.number<double>(scanner.word_in_line(), "a coordinate");
-    soup.vertices.push_back(vertex);
+    soup.add_vertex(vertex);
   }
   for (std::uint64_t face = 0; face < face_count; ++face) {
     const auto corners =
@@ -239,11 +283,11 @@ PolygonSoup parse_off(std::string_view name, std::string_view text) {
       if (vertex < 0 || static_cast<std::uint64_t>(vertex) >= vertex_count) {
         scanner.fail("the face " + no_such_vertex(vertex, vertex_count));
       }
-      add_corner(name, soup, static_cast<std::uint32_t>(vertex));
+      soup.add_corner(static_cast<std::uint32_t>(vertex));
     }
-    close_polygon(name, soup);
+    soup.close_polygon();
   }
-  return soup;
+  return std::move(soup.soup());
 }
 
 namespace {
@@ -257,70 +301,72 @@ std::uint32_t stl_count(std::string_view bytes) {
   return count;
 }
 
-void add_own_vertex(std::string_view name, PolygonSoup& soup, const Vector3d& vertex) {
-  add_corner(name, soup, static_cast<std::uint32_t>(soup.vertices.size()));
-  add_vertex(name, soup, vertex);
+void add_own_vertex(BoundedSoup& soup, const Vector3d& vertex) {
+  soup.add_corner(static_cast<std::uint32_t>(soup.soup().vertices.size()));
+  soup.add_vertex(vertex);
 }
 
-PolygonSoup parse_binary_stl(std::string_view name, std::string_view bytes) {
-  PolygonSoup soup;
+PolygonSoup parse_binary_stl(std::string_view name, std::string_view bytes,
+                             const MeshLimits& limits) {
+  BoundedSoup soup(name, limits);
   const std::uint32_t count = stl_count(bytes);
-  require_bounded(name, 0, count);
-  soup.vertices.reserve(std::size_t{3} * count);
+  soup.require(0, count);
+  soup.soup().vertices.reserve(std::size_t{3} * count);
   for (std::size_t triangle = 0; triangle < count; ++triangle) {
     std::array<float, 12> numbers;  // normal and corners
     std::memcpy(numbers.data(), bytes.data() + stl_header + triangle * stl_triangle,
                 sizeof(numbers));
     for (std::size_t i = 3; i < 12; i += 3) {
-      add_own_vertex(name, soup,
+      add_own_vertex(soup,
                      Eigen::Vector3f(numbers[i], numbers[i + 1], numbers[i + 2]).cast<double>());
     }
-    close_polygon(name, soup);
+    soup.close_polygon();
   }
-  return soup;
+  return std::move(soup.soup());
 }
 
-PolygonSoup parse_ascii_stl(std::string_view name, std::string_view text) {
+PolygonSoup parse_ascii_stl(std::string_view name, std::string_view text,
+                            const MeshLimits& limits) {
   TextScanner scanner(name, text);
   scanner.next_line();  // 'solid' and a name
-  PolygonSoup soup;
+  BoundedSoup soup(name, limits);
   while (const auto word = scanner.word()) {
     if (word == "vertex") {
       Vector3d vertex;
       for (double& coordinate : vertex) {
         coordinate = scanner.number<double>(scanner.word_in_line(), "a coordinate");
       }
-      add_own_vertex(name, soup, vertex);
+      add_own_vertex(soup, vertex);
     } else if (word == "endloop") {
-      close_polygon(name, soup);
+      soup.close_polygon();
     } else if (word == "facet" || word == "solid" || word == "endsolid") {
       scanner.next_line();  // the normal or the name
     } else if (word != "outer" && word != "loop" && word != "endfacet") {
       scanner.fail("'" + std::string(word->substr(0, 40)) + "' is no word of an STL file");
     }
   }
-  if (soup.corners.size() != soup.polygon_begin.back()) {
+  if (soup.soup().corners.size() != soup.soup().polygon_begin.back()) {
     scanner.fail("ends within a facet; it may have been cut off");
   }
-  return soup;
+  return std::move(soup.soup());
 }
 
 }  // namespace
 
-PolygonSoup parse_stl(std::string_view name, std::string_view bytes) {
+PolygonSoup parse_stl(std::string_view name, std::string_view bytes, const MeshLimits& limits) {
   // Some binary files begin with 'solid' too, so the length has the first say.
   const bool has_count = bytes.size() >= stl_header;
   const std::uint64_t count = has_count ? stl_count(bytes) : 0;
   const std::uint64_t wanted = stl_header + count * stl_triangle;
-  if (has_count && wanted == bytes.size()) return parse_binary_stl(name, bytes);
-  if (bytes.starts_with("solid")) return parse_ascii_stl(name, bytes);
+  if (has_count && wanted == bytes.size()) return parse_binary_stl(name, bytes, limits);
+  if (bytes.starts_with("solid")) return parse_ascii_stl(name, bytes, limits);
   if (!has_count) fail(name, "is neither ascii STL, which begins with 'solid', nor binary STL");
   if (wanted > bytes.size()) {
     fail(name, "promises " + std::to_string(count) + " triangles in binary STL, but is " +
                    std::to_string(bytes.size()) + " bytes long instead of " +
                    std::to_string(wanted) + "; it may have been cut off");
   }
-  return parse_binary_stl(name, bytes);
+  return parse_binary_stl(name, bytes, limits);
 }
 
 }  // namespace skycap::geometry

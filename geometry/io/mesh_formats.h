@@ -14,9 +14,13 @@
 
 namespace skycap::geometry {
 
-/// Of a mesh in a file.
-inline constexpr std::size_t most_mesh_faces = 40'000'000, most_mesh_vertices = 120'000'000,
-                             most_mesh_materials = 1'000'000;
+/// How large a mesh in a file may be; tests want it smaller.
+struct MeshLimits {
+  std::size_t faces = 40'000'000;
+  std::size_t vertices = 120'000'000, corners = 120'000'000;  ///< corners: of all faces
+  std::size_t face_corners = 1'000'000;                       ///< of one
+  std::size_t materials = 1'000'000;
+};
 
 /// Polygons as a file lists them: nothing of it is checked but that indices are those of vertices.
 struct PolygonSoup {
@@ -27,10 +31,11 @@ struct PolygonSoup {
   std::vector<std::uint32_t> polygon_materials;  ///< of each polygon, if there are materials
 };
 
-PolygonSoup parse_ply(std::string_view name, std::string_view bytes);
-PolygonSoup parse_obj(std::string_view name, std::string_view text);
-PolygonSoup parse_off(std::string_view name, std::string_view text);
-PolygonSoup parse_stl(std::string_view name, std::string_view bytes);  ///< ascii or binary
+PolygonSoup parse_ply(std::string_view name, std::string_view bytes, const MeshLimits& limits = {});
+PolygonSoup parse_obj(std::string_view name, std::string_view text, const MeshLimits& limits = {});
+PolygonSoup parse_off(std::string_view name, std::string_view text, const MeshLimits& limits = {});
+/// Ascii or binary.
+PolygonSoup parse_stl(std::string_view name, std::string_view bytes, const MeshLimits& limits = {});
 
 /// The polygons cut into triangles of the same orientation, along the plane they are nearest to;
 /// polygons of fewer than three corners are left out. Throws Error{bad_file} if a polygon has a

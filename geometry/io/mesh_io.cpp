@@ -54,7 +54,7 @@ PolygonSoup parse(const fs::path& path) {
   }
   const std::string bytes = read_file(path, largest_whole_file, largest_unpacked_mesh);
   if (bytes.empty()) fail(path, "is empty");
-  return parser(path.string(), bytes);
+  return parser(path.string(), bytes, {});
 }
 
 /// The polygons of each material, each with the vertices that they use; one part if there are no

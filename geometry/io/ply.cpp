@@ -101,6 +101,8 @@ double load(PlyType type, const char* bytes, bool swap) {
       type, [&]<typename Value>(std::type_identity<Value>) { return load<Value>(bytes, swap); });
 }
 
+bool is_full(const PlyTable& table) { return table.list_values.size() >= longest_ply_list; }
+
 PlyProperty parse_property(TextScanner& scanner) {
   PlyProperty property{};
   auto type = scanner.word_in_line();
@@ -206,9 +208,8 @@ PlyReader::Wanted PlyReader::wanted_of(const PlyElement& element,
   return wanted;
 }
 
-PlyTable PlyReader::read_element(std::span<const std::string_view> scalars,
-                                 std::span<const std::string_view> lists) {
-  return read_rows(scalars, lists, elements_.at(next_element_).count);
+PlyTable PlyReader::read_element(std::span<const std::string_view> scalars) {
+  return read_rows(scalars, {}, elements_.at(next_element_).count);
 }
 
 PlyTable PlyReader::read_rows(std::span<const std::string_view> scalars,
@@ -216,11 +217,13 @@ PlyTable PlyReader::read_rows(std::span<const std::string_view> scalars,
   const PlyElement& element = elements_.at(next_element_);
   const std::uint64_t left = element.count - next_row_;
   const Rows rows{element, next_row_, next_row_ + std::min(left, most_rows)};
-  next_row_ = rows.end == element.count ? 0 : rows.end;
-  if (next_row_ == 0) ++next_element_;
   PlyTable table;
   table.columns.resize(scalars.size());
-  if (element.properties.empty() || element.count == 0) return table;
+  if (element.properties.empty() || element.count == 0) {
+    table.rows = rows.end - rows.begin;
+    pass_rows(table.rows);
+    return table;
+  }
   const Wanted wanted = wanted_of(element, scalars, lists);
 
   // The last row of ascii needs no line end, hence the 1.
@@ -236,12 +239,26 @@ PlyTable PlyReader::read_rows(std::span<const std::string_view> scalars,
     table.list_begin.push_back(0);
   }
   format_ == Format::ascii ? read_ascii(rows, wanted, table) : read_binary(rows, wanted, table);
+  pass_rows(table.rows);
   return table;
+}
+
+void PlyReader::pass_rows(std::uint64_t count) {
+  next_row_ += count;
+  if (next_row_ < elements_[next_element_].count) return;
+  next_row_ = 0;
+  ++next_element_;
 }
 
 void PlyReader::fail_within(const PlyElement& element, std::uint64_t row) const {
   fail("ends within " + element.name + " " + std::to_string(row) + " of " +
        std::to_string(element.count) + "; it may have been cut off");
+}
+
+void PlyReader::require_short(const Rows& rows, const PlyTable& table, std::uint64_t values) const {
+  if (values <= longest_ply_list) return;
+  fail(rows.element.name + " " + std::to_string(rows.begin + table.rows) + " has a list of " +
+       std::to_string(values) + " values; at most 1e6 are read");
 }
 
 void PlyReader::read_scalars(const Rows& rows, const Wanted& wanted, PlyTable& table) {
@@ -264,7 +281,8 @@ void PlyReader::read_scalars(const Rows& rows, const Wanted& wanted, PlyTable& t
     }
     first += size_of(type);
   }
-  at_ += (rows.end - rows.begin) * row_size;
+  table.rows = rows.end - rows.begin;
+  at_ += table.rows * row_size;
 }
 
 void PlyReader::read_binary(const Rows& rows, const Wanted& wanted, PlyTable& table) {
@@ -274,7 +292,7 @@ void PlyReader::read_binary(const Rows& rows, const Wanted& wanted, PlyTable& ta
   });
   if (!has_lists) return read_scalars(rows, wanted, table);
   const bool swap = format_ == Format::big_endian;
-  for (std::uint64_t row = rows.begin; row < rows.end; ++row) {
+  for (std::uint64_t row = rows.begin; row < rows.end && !is_full(table); ++row, ++table.rows) {
     const auto take = [&](std::size_t size) {
       if (size > bytes_.size() - at_) {
         fail_within(element, row);
@@ -300,6 +318,7 @@ void PlyReader::read_binary(const Rows& rows, const Wanted& wanted, PlyTable& ta
       const auto values = static_cast<std::size_t>(count);
       const char* start = take(values * size);
       if (p != wanted.list) continue;
+      require_short(rows, table, values);
       for (std::size_t i = 0; i < values; ++i) {
         table.list_values.push_back(static_cast<std::int64_t>(load(type, start + i * size, swap)));
       }
@@ -311,7 +330,7 @@ void PlyReader::read_binary(const Rows& rows, const Wanted& wanted, PlyTable& ta
 void PlyReader::read_ascii(const Rows& rows, const Wanted& wanted, PlyTable& table) {
   const PlyElement& element = rows.element;
   TextScanner scanner(name_, bytes_.substr(at_), line_);
-  for (std::uint64_t row = rows.begin; row < rows.end; ++row) {
+  for (std::uint64_t row = rows.begin; row < rows.end && !is_full(table); ++row, ++table.rows) {
     for (std::size_t p = 0; p < element.properties.size(); ++p) {
       const PlyProperty& property = element.properties[p];
       if (!property.count_type) {
@@ -324,6 +343,7 @@ void PlyReader::read_ascii(const Rows& rows, const Wanted& wanted, PlyTable& tab
         continue;
       }
       const auto count = scanner.number<std::uint32_t>(scanner.word(), "the length of a list");
+      if (p == wanted.list) require_short(rows, table, count);
       for (std::uint32_t i = 0; i < count; ++i) {
         const auto word = scanner.word();
         if (p != wanted.list && word) continue;

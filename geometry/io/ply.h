@@ -28,10 +28,14 @@ struct PlyElement {
 
 /// What was asked for of an element, row by row in the file's order.
 struct PlyTable {
+  std::uint64_t rows = 0;
   std::vector<std::vector<double>> columns;  ///< as the names were given; empty if there is none
   std::vector<std::uint64_t> list_begin;     ///< row i's list: [list_begin[i], list_begin[i + 1])
   std::vector<std::int64_t> list_values;
 };
+
+/// Most values of a list that is read.
+inline constexpr std::size_t longest_ply_list = 1'000'000;
 
 /// Reads a PLY file from memory, element after element.
 class PlyReader {
@@ -42,13 +46,13 @@ class PlyReader {
 
   const std::vector<PlyElement>& elements() const { return elements_; }
 
-  /// The next element: of its properties, the scalars with these names, and the first list with one
-  /// of these names. Never allocates more than a small multiple of the file's size.
-  PlyTable read_element(std::span<const std::string_view> scalars,
-                        std::span<const std::string_view> lists);
+  /// The next element: of its properties, the scalars with these names. Never allocates more than a
+  /// small multiple of the file's size.
+  PlyTable read_element(std::span<const std::string_view> scalars);
 
-  /// The same of its next `most_rows` rows, or those that are left: numbers take several times the
-  /// file's bytes. With its last row an element is read.
+  /// The same of its next `most_rows` rows, or those that are left, with the first list with one of
+  /// these names: numbers take several times the file's bytes. Ends before with the row that brings
+  /// the lists to `longest_ply_list` values. With its last row an element is read.
   PlyTable read_rows(std::span<const std::string_view> scalars,
                      std::span<const std::string_view> lists, std::uint64_t most_rows);
 
@@ -58,7 +62,9 @@ class PlyReader {
   void read_header();
   Wanted wanted_of(const PlyElement& element, std::span<const std::string_view> scalars,
                    std::span<const std::string_view> lists) const;
+  void pass_rows(std::uint64_t count);
   void read_scalars(const Rows& rows, const Wanted& wanted, PlyTable& table);
+  void require_short(const Rows& rows, const PlyTable& table, std::uint64_t values) const;
   void read_binary(const Rows& rows, const Wanted& wanted, PlyTable& table);
   void read_ascii(const Rows& rows, const Wanted& wanted, PlyTable& table);
   [[noreturn]] void fail_within(const PlyElement& element, std::uint64_t row) const;

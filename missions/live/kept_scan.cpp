@@ -37,7 +37,7 @@ geometry::Scan parse_kept_scan(std::string_view name, std::string_view bytes) {
     throw Error(ErrorKind::bad_file, std::string(name) + ": " + what);
   };
   if (reader.elements().size() != 1) fail("is not a scan of a survey");
-  const geometry::PlyTable table = reader.read_element(wanted, {});
+  const geometry::PlyTable table = reader.read_element(wanted);
   const std::vector<double>&x = table.columns[0], &y = table.columns[1], &z = table.columns[2],
         &pixels = table.columns[3];
   if (y.size() != x.size() || z.size() != x.size() ||

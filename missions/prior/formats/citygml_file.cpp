@@ -14,7 +14,6 @@ namespace skycap::missions::prior {
 namespace {
 
 constexpr int deepest = 200;  // real files reach 25
-constexpr std::size_t most_objects = 2'000'000;
 
 using Name = std::string_view;
 
@@ -98,8 +97,8 @@ struct Surroundings {
 
 class Walker final : public pugi::xml_tree_walker {
  public:
-  Walker(const std::filesystem::path& file, FileContents& contents)
-      : file_(file), contents_(contents) {
+  Walker(const std::filesystem::path& file, FileContents& contents, std::size_t most_objects)
+      : file_(file), contents_(contents), most_objects_(most_objects) {
     around_.emplace_back();
   }
 
@@ -133,6 +132,7 @@ class Walker final : public pugi::xml_tree_walker {
 
   const std::filesystem::path& file_;
   FileContents& contents_;
+  std::size_t most_objects_;
   std::vector<Surroundings> around_;  ///< of the elements from the root to here
   std::map<std::string, std::size_t> left_out_;
   std::unordered_map<std::string, SurfaceKind> kind_of_;  ///< by identifiers that were referred to
@@ -187,7 +187,9 @@ void Walker::enter_object(pugi::xml_node node, Name name, Surroundings& here) {
   const Name around = local_name(node.parent().name());
   const bool is_member = around == "cityObjectMember" || around == "featureMember";
   if (!id && !is_member) return;
-  if (contents_.objects.size() == most_objects) fail_file(file_, "has more than 2 million objects");
+  if (contents_.objects.size() == most_objects_) {
+    fail_file(file_, "has more than " + std::to_string(most_objects_) + " objects");
+  }
   FileObject& object = contents_.objects.emplace_back();
   object.id = id ? id.as_string() : std::to_string(contents_.objects.size());
   object.kind = name;
@@ -358,7 +360,8 @@ std::size_t tree_bytes(std::string_view xml) {
 
 }  // namespace
 
-FileContents parse_citygml(const std::filesystem::path& file, std::string bytes) {
+FileContents parse_citygml(const std::filesystem::path& file, std::string bytes,
+                           std::size_t most_objects) {
   require_tree_fits(file, tree_bytes(bytes));
   pugi::xml_document document;
   const pugi::xml_parse_result result = document.load_buffer_inplace(
@@ -372,7 +375,7 @@ FileContents parse_citygml(const std::filesystem::path& file, std::string bytes)
   const pugi::xml_node root = document.document_element();
   FileContents contents;
   contents.format = version_of(root);
-  Walker walker(file, contents);
+  Walker walker(file, contents, most_objects);
   document.traverse(walker);
   walker.finish();
   contents.is_latitude_first = is_by_authority(contents.crs);

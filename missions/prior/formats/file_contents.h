@@ -99,7 +99,8 @@ void set_wkt(FileContents& contents, const std::string& wkt);
 /// level of detail around it, and to the nearest feature with a gml:id. References (xlink) are
 /// passed over, since what they point at is met where it stands. Rooms, furniture and closure
 /// surfaces are left out, with a note.
-FileContents parse_citygml(const std::filesystem::path& file, std::string bytes);
+FileContents parse_citygml(const std::filesystem::path& file, std::string bytes,
+                           std::size_t most_objects = 2'000'000);
 
 /// CityJSON 1.0 to 2.0 (OGC 20-072r5), and CityJSONSeq: one feature a line.
 FileContents parse_cityjson(const std::filesystem::path& file, std::string_view bytes);

@@ -84,6 +84,14 @@ TEST(DataflashLog, HoldsPowerVelocityParametersAndCommands) {
   EXPECT_DOUBLE_EQ(log.commands[0].height, 30.5);
 }
 
+/// Two samples, a parameter and a command.
+TEST(DataflashLog, OfMoreEntriesThanAllowedIsRefused) {
+  EXPECT_THAT(read_dataflash(sample_log(), 4).samples, SizeIs(2));
+  EXPECT_THAT(
+      [] { read_dataflash(sample_log(), 3); },
+      ThrowsMessage<Error>(HasSubstr("holds more than 3 samples, parameters and commands")));
+}
+
 TEST(DataflashLog, DamageIsSkipped) {
   const std::string good = sample_log();
   const std::string log = good.substr(0, 4 * 89) + "\xA3\x95\x77garbage\xA3" + good.substr(4 * 89);
@@ -131,6 +139,13 @@ TEST(CsvLog, FaultsAreSaidByLine) {
   refuses(header + "1,0,0\n", "line 2 has too few fields");
   refuses(header + "1,0,0,0,9\n1,0,0,0,9\n", "line 3 is not later than the line before it");
   refuses(header, "there is no sample");
+}
+
+TEST(CsvLog, OfMoreSamplesThanAllowedIsRefused) {
+  const std::string two = "time_s,east_m_s,north_m_s,up_m_s,power_w\n1,0,0,0,9\n2,0,0,0,9\n";
+  EXPECT_THAT(read_csv_log(two, 2).samples, SizeIs(2));
+  EXPECT_THAT([&] { read_csv_log(two, 1); },
+              ThrowsMessage<Error>(HasSubstr("line 3 is of more than 1 samples")));
 }
 
 }  // namespace

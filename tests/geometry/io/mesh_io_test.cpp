@@ -301,11 +301,11 @@ TEST_F(MeshIo, ReaderSaysWhatIsWrongWithAFile) {
       {"huge.ply", ply("element vertex 30000000\nproperty float x\nend_header\n1\n"),
        "promises 30000000 of element 'vertex', but the file is too short"},
       {"vertices.ply", ply("element vertex 120000001\nproperty float x\nend_header\n1\n"),
-       "holds more than 4e7 faces, or 1.2e8 corners of faces or vertices"},
+       "holds more than 40000000 faces, 120000000 corners of faces or 120000000 vertices"},
       {"faces.ply",
        ply(three + "element face 40000001\nproperty list uchar int vertex_indices\nend_header\n" +
            points),
-       "holds more than 4e7 faces"},
+       "holds more than 40000000 faces"},
       {"xy.ply", ply("element vertex 1\nproperty float x\nproperty float y\nend_header\n0 0\n"),
        "must have the properties x, y and z"},
       {"no_vertex.ply", ply(face + "3 0 1 2\n"), "there is no element 'vertex'"},

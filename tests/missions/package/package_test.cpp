@@ -205,7 +205,7 @@ TEST(Package, HasTheTruthBesideTheBelief) {
   const std::string bytes = tests::content_of(folder / "true_coverage.ply");
   geometry::PlyReader reader("true_coverage.ply", bytes);
   const std::vector<std::string_view> names{"x", "nz", "covered", "visible", "attainable"};
-  const geometry::PlyTable table = reader.read_element(names, {});
+  const geometry::PlyTable table = reader.read_element(names);
   EXPECT_THAT(table.columns[0], testing::ElementsAre(1, 2, 3, 4));
   EXPECT_THAT(table.columns[1], testing::Each(1));
   EXPECT_THAT(table.columns[2], testing::ElementsAre(1, 0, 0, 0));

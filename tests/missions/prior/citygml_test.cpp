@@ -206,6 +206,13 @@ TEST_F(CityGml, SaysWhatIsWrong) {
   }
 }
 
+TEST_F(CityGml, OfMoreObjectsThanAllowedIsRefused) {
+  const std::string two = model(building(square(1, 0)) + building(square(1, 0)));
+  EXPECT_EQ(parse_citygml("city.gml", two, 2).objects.size(), 2U);
+  EXPECT_THAT([&] { parse_citygml("city.gml", two, 1); },
+              ThrowsMessage<Error>(HasSubstr("city.gml: has more than 1 objects")));
+}
+
 TEST_F(CityGml, EndsAtDepthsAndEntitiesOfTheHostile) {
   std::string deep;
   for (int i = 0; i < 100'000; ++i) deep += "<a>";

@@ -2,6 +2,7 @@
 
 #include "geometry/error.h"
 #include "geometry/surfaces/mesh.h"
+#include "missions/prior/formats/file_contents.h"
 #include "tests/missions/prior/cube_files.h"
 #include "tests/support/temporary_folder.h"
 
@@ -91,6 +92,31 @@ TEST_F(CityJson, SaysWhatIsWrong) {
         [&] { read(broken.text); },
         ThrowsMessage<Error>(testing::AllOf(HasSubstr("city.json: "), HasSubstr(broken.message))));
   }
+}
+
+/// Property: what instances of a template make of a small file is bounded.
+TEST_F(CityJson, OfMoreCornersThanItsTreeAllowsIsRefused) {
+  std::string ring = "0", instances;
+  for (int i = 1; i < 10'000; ++i) ring += ",0";
+  for (int i = 0; i < 1601; ++i) {
+    instances += std::string(i == 0 ? "" : ",") +
+                 R"({"type":"GeometryInstance","template":0,"boundaries":[0],)"
+                 R"("transformationMatrix":[1,0,0,0,0,1,0,0,0,0,1,0,0,0,0,1]})";
+  }
+  const std::string text =
+      R"({"type":"CityJSON","version":"2.0","geometry-templates":{"vertices-templates":[[0,0,0]],)"
+      R"("templates":[{"type":"MultiSurface","lod":1,"boundaries":[[[)" +
+      ring + R"(]]]}]},"vertices":[[0,0,0]],"CityObjects":{"a":{"type":"Building","geometry":[)" +
+      instances + "]}}}";
+  EXPECT_THAT([&] { parse_cityjson("city.json", text); },
+              ThrowsMessage<Error>(HasSubstr("has more than 16 million corners of polygons")));
+}
+
+/// By what is counted in the text, before any of it is read.
+TEST_F(CityJson, WhoseTreeWouldTakeTooMuchIsRefused) {
+  EXPECT_THAT(
+      [&] { parse_cityjson("city.json", std::string(most_tree_bytes / 65 + 1, '[')); },
+      ThrowsMessage<Error>(HasSubstr("city.json: has so many parts that reading them would")));
 }
 
 }  // namespace
