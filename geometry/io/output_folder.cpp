@@ -167,7 +167,7 @@ void OutputFolder::lock_and_clean() {
 OutputFolder::~OutputFolder() {
   // What an unfinished commit still needs stays for the next program to finish it.
   if (!is_there(folder_ / journal_name)) {
-    for (const std::string& name : staged_) remove_file(temporary(name));
+    for (const Staged& file : staged_) remove_file(temporary(file.name));
   }
   if (is_new_) remove_file(folder_);  // does nothing if there are files in it
   ::close(lock_);
@@ -178,18 +178,26 @@ fs::path OutputFolder::temporary(const std::string& name) const {
 }
 
 fs::path OutputFolder::stage(const std::string& name) {
-  staged_.push_back(name);
+  staged_.push_back({name, false});
   return temporary(name);
 }
 
+fs::path OutputFolder::stage_on_disk(const std::string& name) {
+  staged_.push_back({name, true});
+  return temporary(name);
+}
+
+bool OutputFolder::is_staged(const std::string& name) const {
+  return std::ranges::find(staged_, name, &Staged::name) != staged_.end();
+}
+
 fs::path OutputFolder::staged(const std::string& name) const {
-  const bool is_staged = std::ranges::find(staged_, name) != staged_.end();
-  return is_staged ? temporary(name) : fs::path();
+  return is_staged(name) ? temporary(name) : fs::path();
 }
 
 void OutputFolder::drop(const std::string& name) {
   remove_file(temporary(name));
-  std::erase(staged_, name);
+  std::erase_if(staged_, [&](const Staged& file) { return file.name == name; });
 }
 
 void OutputFolder::write(const std::string& name, std::string_view content) {
@@ -206,8 +214,8 @@ void OutputFolder::replace(const std::function<bool(std::string_view)>& is_old) 
 
 void OutputFolder::move_to(const std::string& subfolder) {
   OutputFolder target(folder_ / subfolder);
-  for (const std::string& name : staged_) {
-    require_renamed(temporary(name), target.temporary(name));
+  for (const Staged& file : staged_) {
+    require_renamed(temporary(file.name), target.temporary(file.name));
   }
   target.staged_ = std::exchange(staged_, {});
   std::swap(folder_, target.folder_);
@@ -220,10 +228,10 @@ void OutputFolder::move_to(const std::string& subfolder) {
 void OutputFolder::commit() {
   std::vector<Change> changes;
   for (const std::string& name : old_) {
-    if (std::ranges::find(staged_, name) == staged_.end()) changes.push_back({"", name});
+    if (!is_staged(name)) changes.push_back({"", name});
   }
-  for (const std::string& name : staged_) {
-    sync_to_disk(temporary(name));
+  for (const auto& [name, is_on_disk] : staged_) {
+    if (!is_on_disk) sync_to_disk(temporary(name));
     if (fs::is_directory(fs::symlink_status(folder_ / name))) {
       fail(folder_ / name, "is a folder where a result belongs; move it away");
     }

@@ -30,6 +30,9 @@ class OutputFolder {
 
   /// Where to write the file that is to become `name`. Keeps its extension.
   std::filesystem::path stage(const std::string& name);
+  /// The same of a file whose bytes are on the disk before commit(), which then need not wait for
+  /// it: for thousands of files.
+  std::filesystem::path stage_on_disk(const std::string& name);
   /// Where stage(name) has put the file; an empty path if nothing is staged under that name.
   std::filesystem::path staged(const std::string& name) const;
   /// Takes back stage(name).
@@ -48,11 +51,17 @@ class OutputFolder {
   void commit();
 
  private:
+  struct Staged {
+    std::string name;
+    bool is_on_disk;
+  };
+
   std::filesystem::path temporary(const std::string& name) const;
   void lock_and_clean();
+  bool is_staged(const std::string& name) const;
 
   std::filesystem::path folder_;
-  std::vector<std::string> staged_;
+  std::vector<Staged> staged_;
   std::vector<std::string> old_;
   int lock_ = -1;        ///< a handle of the folder; others cannot lock it while it is open
   bool is_new_ = false;  ///< the folder was made here

@@ -130,6 +130,7 @@ class FrameRecording {
     auto written_down = Clock::now();
     while (result_.frames < frames_.size() && !options_.stop.stop_requested()) {
       take(frames_[result_.frames]);
+      if (result_.frames - synced_ == most_not_synced) sync_images();
       if (options_.report) options_.report(result_.frames, result_.points);
       const auto now = Clock::now();
       if (std::chrono::duration<double>(now - written_down).count() < options_.checkpoint_period) {
@@ -147,7 +148,7 @@ class FrameRecording {
     std::string list = "# timestamp filename\n";
     for (std::size_t i = 0; i < result_.frames; ++i) {
       const Frame& frame = frames_[i];
-      journal_.stage(file_name(i), folder);
+      journal_.stage_on_disk(file_name(i), folder);
       list += flight::fixed(frame.time, 6) + " " + file_name(i) + "\n";
       truth.push_back({frame.time, frame.world_from_camera});
       believed.push_back({frame.time, frame.believed_from_camera});
@@ -163,6 +164,8 @@ class FrameRecording {
 
  private:
   static constexpr const char* rawlog_name = "frames.rawlog";
+  // Each takes the disk some milliseconds, for which an interrupted scan must not wait long.
+  static constexpr std::size_t most_not_synced = 16;
 
   /// Takes over what a checkpoint says. How large the rawlog was.
   std::uint64_t go_on() {
@@ -205,10 +208,14 @@ class FrameRecording {
     result_.points += scan_.points.size();
   }
 
-  void write_down() {
+  void sync_images() {
     for (; synced_ < result_.frames; ++synced_) {
       geometry::sync_to_disk(journal_.path(file_name(synced_)));
     }
+  }
+
+  void write_down() {
+    sync_images();
     geometry::write_cloud(
         journal_.path(preview_name),
         {.positions = preview_.positions, .normals = {}, .views = preview_.views, .colours = {}});

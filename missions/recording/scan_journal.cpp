@@ -26,6 +26,14 @@ void copy_bytes(const fs::path& from, const fs::path& to) {
   require(failure, to, "cannot be written");
 }
 
+/// The same file under another name, or its bytes. Whether it is the same.
+bool link_or_copy(const fs::path& from, const fs::path& to) {
+  std::error_code no_links;  // as on memory cards
+  fs::create_hard_link(from, to, no_links);
+  if (no_links) copy_bytes(from, to);
+  return !no_links;
+}
+
 }  // namespace
 
 ScanJournal::ScanJournal(const fs::path& results)
@@ -73,10 +81,12 @@ void ScanJournal::checkpoint(const Json& state) {
 }
 
 void ScanJournal::stage(const std::string& name, geometry::OutputFolder& results) const {
-  const fs::path staged = results.stage(name);
-  std::error_code no_links;  // as on memory cards
-  fs::create_hard_link(folder_ / name, staged, no_links);
-  if (no_links) copy_bytes(folder_ / name, staged);
+  link_or_copy(folder_ / name, results.stage(name));
+}
+
+void ScanJournal::stage_on_disk(const std::string& name, geometry::OutputFolder& results) const {
+  const fs::path staged = results.stage_on_disk(name);
+  if (!link_or_copy(folder_ / name, staged)) geometry::sync_to_disk(staged);
 }
 
 void ScanJournal::close() {

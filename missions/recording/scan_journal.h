@@ -44,6 +44,8 @@ class ScanJournal {
 
   /// Stages a file of the scan for the results. It stays here, too: both share its bytes.
   void stage(const std::string& name, geometry::OutputFolder& results) const;
+  /// The same of a file whose bytes are on the disk.
+  void stage_on_disk(const std::string& name, geometry::OutputFolder& results) const;
 
   /// Removes all of it: the scan has ended and its results are committed.
   void close();

@@ -62,11 +62,13 @@ std::shared_ptr<const flight::UtmProjection> projection_of(const file::Mission& 
   return std::make_shared<const flight::UtmProjection>(derived::site_of(mission));
 }
 
-/// The sensor's poses as a TUM file.
-std::string sensor_tum(const sim::Trajectory& carrier, const Isometry3d& body_from_sensor) {
+/// The sensor's poses, up to the first that is not before `end`, as a TUM file.
+std::string sensor_tum(const sim::Trajectory& carrier, const Isometry3d& body_from_sensor,
+                       double end) {
   std::vector<flight::TimedPose> poses;
   for (const sim::StampedPose& pose : carrier.poses()) {
     poses.push_back({pose.time, carrier.pose(pose.time) * body_from_sensor});
+    if (pose.time >= end) break;
   }
   return flight::write_tum(poses);
 }
@@ -259,8 +261,10 @@ int scan_with_laser(const ScanVerbOptions& options, const file::Mission& mission
   std::erase_if(recorded.outputs, [](const auto& output) { return output.bytes == 0; });
   const auto firings = static_cast<double>(recorded.result.progress.firings);
   recorded.shots = channels * firings, recorded.flown = firings * config.firing_period;
-  folder.write("trajectory.tum", sensor_tum(flown.route.carrier, flown.mount.real));
-  folder.write("trajectory_believed.tum", sensor_tum(flown.believed, flown.mount.believed));
+  const double end = recorded.result.is_complete ? flown.route.carrier.end()
+                                                 : flown.route.carrier.start() + recorded.flown;
+  folder.write("trajectory.tum", sensor_tum(flown.route.carrier, flown.mount.real, end));
+  folder.write("trajectory_believed.tum", sensor_tum(flown.believed, flown.mount.believed, end));
   folder.write(scan_name, file::json_text(scan_json(mission, recorded, pieces)));
   write_page(scan_name, options.has_report, folder, console);
   commit_scan(folder, journal, recorded.result.is_complete);

@@ -102,6 +102,20 @@ TEST(OutputFolder, LetsOneWriterInAtATime) {
               ThrowsMessage<Error>(HasSubstr("is being written to by another skycap")));
 }
 
+TEST(OutputFolder, CommitsWhatIsOnTheDiskAlready) {
+  const TemporaryFolder folder;
+  {
+    OutputFolder out(folder.path());
+    write_file(out.stage_on_disk("dropped"), "1");
+    write_file(out.stage_on_disk("image"), "2");
+    out.drop("dropped");
+    EXPECT_TRUE(out.staged("dropped").empty());
+    out.commit();
+  }
+  EXPECT_EQ(read_file(folder.path() / "image"), "2");
+  EXPECT_THAT(names_in(folder.path()), ElementsAre("image"));
+}
+
 TEST(OutputFolder, MovesWhatIsStagedIntoAFolderWithin) {
   const TemporaryFolder folder;
   commit_pair(folder.path(), "whole");
