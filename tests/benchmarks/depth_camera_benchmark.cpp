@@ -1,5 +1,6 @@
 /// A whole frame of the depth camera, noise and cloud included, against Embree's bare casting of
-/// its rays and against the loop over single rays that most simulators have.
+/// its rays and against the loop over single rays that most simulators have; and our own casting
+/// alone against Embree's, which is what the same bytes on every processor cost.
 ///
 ///   depth_camera_benchmark [--threads N] [--rounds N] [--largest]
 ///
@@ -17,6 +18,7 @@
 
 #include "geometry/parallel.h"
 #include "geometry/place/pose.h"
+#include "sim/scene/scene_trees.h"
 #include "sim/sensors/depth_camera.h"
 #include "tests/benchmarks/embree_packets.h"
 #include "tests/benchmarks/interleaved.h"
@@ -41,28 +43,57 @@ struct BareRays {
   }
 };
 
+/// Of one ray of a packet after the other.
 template <int width>
-void cast_packets(const BareRays& rays, int first_row, float* ranges) {
+struct EmbreeCaster {
+  const benchmarks::EmbreeMesh& mesh;
   benchmarks::EmbreePacket<width> packet;
-  for (int lane = 0; lane < width; ++lane) {
-    packet.rays.ray.org_x[lane] = rays.origin.x();
-    packet.rays.ray.org_y[lane] = rays.origin.y();
-    packet.rays.ray.org_z[lane] = rays.origin.z();
+
+  void set_origin(int lane, const Eigen::Vector3f& origin) {
+    packet.rays.ray.org_x[lane] = origin.x();
+    packet.rays.ray.org_y[lane] = origin.y();
+    packet.rays.ray.org_z[lane] = origin.z();
   }
+  void set_direction(int lane, const Eigen::Vector3f& direction) {
+    packet.rays.ray.dir_x[lane] = direction.x();
+    packet.rays.ray.dir_y[lane] = direction.y();
+    packet.rays.ray.dir_z[lane] = direction.z();
+  }
+  void cast(float reach) { packet.cast(mesh, reach); }
+  float range(int lane) const { return packet.rays.ray.tfar[lane]; }
+};
+
+struct OwnCaster {
+  const sim::Scene& scene;
+  sim::RayPacket packet;
+
+  void set_origin(int lane, const Eigen::Vector3f& origin) {
+    for (int axis = 0; axis < 3; ++axis) packet.origin[axis][lane] = origin[axis];
+  }
+  void set_direction(int lane, const Eigen::Vector3f& direction) {
+    for (int axis = 0; axis < 3; ++axis) packet.direction[axis][lane] = direction[axis];
+  }
+  void cast(float reach) {
+    sim::ray_kernels().cast_distances(scene.trees().target, packet, sim::RayPacket::all_lanes,
+                                      reach);
+  }
+  float range(int lane) const { return packet.distance[lane]; }
+};
+
+template <int width, typename Caster>
+void cast_packets(Caster caster, const BareRays& rays, int first_row, float* ranges) {
+  for (int lane = 0; lane < width; ++lane) caster.set_origin(lane, rays.origin);
   const int columns = rays.camera.width(), rows = rays.camera.height();
   for (int tile = 0; tile < columns; tile += 32) {
     for (int row = first_row; row < std::min(first_row + 32, rows); row += width / 4) {
       for (int column = tile; column < std::min(tile + 32, columns); column += 4) {
         for (int lane = 0; lane < width; ++lane) {
-          const Eigen::Vector3f direction = rays.direction(column + lane % 4, row + lane / 4);
-          packet.rays.ray.dir_x[lane] = direction.x();
-          packet.rays.ray.dir_y[lane] = direction.y();
-          packet.rays.ray.dir_z[lane] = direction.z();
+          caster.set_direction(lane, rays.direction(column + lane % 4, row + lane / 4));
         }
-        packet.cast(rays.mesh, 1e4F);
+        caster.cast(1e4F);
         for (int lane = 0; lane < width; ++lane) {
           const int y = row + lane / 4;
-          if (y < rows) ranges[y * columns + column + lane % 4] = packet.rays.ray.tfar[lane];
+          if (y < rows) ranges[y * columns + column + lane % 4] = caster.range(lane);
         }
       }
     }
@@ -72,8 +103,17 @@ void cast_packets(const BareRays& rays, int first_row, float* ranges) {
 void cast_bare(const BareRays& rays, unsigned threads, std::vector<float>& ranges) {
   geometry::parallel_for((rays.camera.height() + 31) / 32, threads, [&](std::size_t band) {
     rays.mesh.with_packet_width([&]<int width>() {
-      cast_packets<width>(rays, static_cast<int>(band) * 32, ranges.data());
+      cast_packets<width>(EmbreeCaster<width>{rays.mesh, {}}, rays, static_cast<int>(band) * 32,
+                          ranges.data());
     });
+  });
+}
+
+void cast_own(const sim::Scene& scene, const BareRays& rays, unsigned threads,
+              std::vector<float>& ranges) {
+  geometry::parallel_for((rays.camera.height() + 31) / 32, threads, [&](std::size_t band) {
+    cast_packets<sim::RayPacket::width>(OwnCaster{scene, {}}, rays, static_cast<int>(band) * 32,
+                                        ranges.data());
   });
 }
 
@@ -115,10 +155,12 @@ void run(std::size_t triangles, unsigned threads, int rounds) {
   const auto whole = [&] { scan = camera.scan(scene, pose, frame++, threads, std::move(scan)); };
   const auto fresh = [&] { scan = camera.scan(scene, pose, frame++, threads); };
   const auto bare = [&] { cast_bare(rays, threads, ranges); };
+  const auto own = [&] { cast_own(scene, rays, threads, ranges); };
   const auto single = [&] { cast_one_by_one(rays, threads, ranges); };
 
   const auto against_bare = benchmarks::interleaved_medians(rounds, whole, bare);
   const auto against_fresh = benchmarks::interleaved_medians(rounds, fresh, bare);
+  const auto casting = benchmarks::interleaved_medians(rounds, own, bare);
   const auto against_single =
       benchmarks::interleaved_medians(std::max(1, rounds / 4), whole, single);
   std::printf("%9zu triangles, %.1f %% return, packets of %d\n", mesh.triangles.size(),
@@ -128,6 +170,9 @@ void run(std::size_t triangles, unsigned threads, int rounds) {
               1e3 * against_bare.second, against_bare.first / against_bare.second);
   std::printf("  in new memory %5.1f ms, bare packets %7.1f ms: %.3f\n", 1e3 * against_fresh.first,
               1e3 * against_fresh.second, against_fresh.first / against_fresh.second);
+  std::printf("  casting alone %5.1f ms, bare packets %7.1f ms: %.3f, so the whole frame %.3f\n",
+              1e3 * casting.first, 1e3 * casting.second, casting.first / casting.second,
+              benchmarks::cost_of_own_casting(against_bare, casting));
   std::printf("  whole frame %7.1f ms, single rays  %7.1f ms: %.2f times faster\n",
               1e3 * against_single.first, 1e3 * against_single.second,
               against_single.second / against_single.first);
