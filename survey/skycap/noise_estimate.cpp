@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 #include <vector>
 
 namespace skycap::survey::skycap {
@@ -9,10 +10,11 @@ namespace {
 
 constexpr std::size_t least_blocks = 40;  // for a quartile worth its name
 constexpr double least_cosine = 0.5;      // beyond 60 degrees few rays make the window too coarse
-constexpr double head_on = 0.75;
 
 /// Growth is not believed below this: curvature and chance make some.
 constexpr double least_growth = 2.5;  // of the variance from the nearest depths to the farthest
+constexpr double worst_fit = 0.6;     // relative error of a variance; relief does not fit
+constexpr double farther = 2.0;       // than as a rule, from where looks may be, too
 constexpr int least_span = 2;         // half octaves between their middles
 
 /// Exact, so that it is the same everywhere: [2^(n/2), 2^((n+1)/2)) has the number n.
@@ -22,18 +24,19 @@ int half_octave(float depth) {
   return 2 * (exponent - 1) + (mantissa < 0.70710678F ? 0 : 1);
 }
 
-double middle_of(int half_octave) { return std::exp2(0.5 * half_octave + 0.25); }
-
 double cosine_of(const BlockImage& image, const Block& block) {
   return (image.projection.sensor_position - block.mean).normalized().dot(block.normal);
 }
 
-/// The square of the lower quartile.
-double low_variance(std::vector<float>& residuals) {
-  const auto quartile = residuals.begin() + static_cast<std::ptrdiff_t>(residuals.size() / 4);
-  std::nth_element(residuals.begin(), quartile, residuals.end());
-  return static_cast<double>(*quartile) * *quartile;
+/// The lower quartile.
+template <typename Value>
+Value low_quartile(std::vector<Value>& values) {
+  const auto quartile = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 4);
+  std::nth_element(values.begin(), quartile, values.end());
+  return *quartile;
 }
+
+double squared(float value) { return static_cast<double>(value) * value; }
 
 }  // namespace
 
@@ -50,37 +53,40 @@ void NoiseEstimate::add(const BlockImage& image) {
   for (int i = 0; i < range_count; ++i) {
     std::vector<float>& values = residuals[i];
     if (values.size() < least_blocks) continue;
-    const double variance = low_variance(values);
+    const double variance = squared(low_quartile(values));
     least_variance_[i] = std::min(least_variance_[i].value_or(variance), variance);
   }
   add_by_depth(image);
 }
 
 void NoiseEstimate::add_by_depth(const BlockImage& image) {
-  std::map<int, std::vector<float>> residuals;
+  // A bin's quartile is mostly of its nearer part: the depth goes with it.
+  std::map<int, std::vector<std::pair<float, float>>> residuals;
   for (const Block& block : image.blocks) {
     if (block.residual <= 0.0F || !(block.depth > 0.0F)) continue;
-    if (cosine_of(image, block) >= head_on) {
-      residuals[half_octave(block.depth)].push_back(block.residual);
-    }
+    const double cosine = cosine_of(image, block);
+    if (cosine < least_cosine) continue;
+    const auto along_ray = static_cast<float>(block.residual / cosine);
+    residuals[half_octave(block.depth)].emplace_back(along_ray, block.depth);
   }
-  for (auto& [depth, values] : residuals) {
+  for (auto& [number, values] : residuals) {
     if (values.size() < least_blocks) continue;
-    const double variance = low_variance(values);
-    const auto [known, is_new] = variance_by_depth_.emplace(depth, variance);
-    if (!is_new) known->second = std::min(known->second, variance);
+    const auto [residual, depth] = low_quartile(values);
+    const VarianceAt found{squared(residual), depth};
+    VarianceAt& least = by_depth_.emplace(number, found).first->second;
+    if (found.variance < least.variance) least = found;
   }
 }
 
 /// Least squares of relative errors: (a + b z^4) / variance = 1.
 void NoiseEstimate::let_grow(Noise& noise, double depth) const {
-  if (variance_by_depth_.empty()) return;
-  const auto& [nearest, near_variance] = *variance_by_depth_.begin();
-  const auto& [farthest, far_variance] = *variance_by_depth_.rbegin();
-  if (farthest - nearest < least_span || far_variance < least_growth * near_variance) return;
+  if (by_depth_.empty()) return;
+  const auto& [nearest, near] = *by_depth_.begin();
+  const auto& [farthest, far] = *by_depth_.rbegin();
+  if (farthest - nearest < least_span || far.variance < least_growth * near.variance) return;
   double aa = 0.0, ab = 0.0, bb = 0.0, a1 = 0.0, b1 = 0.0;
-  for (const auto& [number, variance] : variance_by_depth_) {
-    const double one = 1.0 / variance, fourth = std::pow(middle_of(number), 4) / variance;
+  for (const auto& [number, at] : by_depth_) {
+    const double one = 1.0 / at.variance, fourth = std::pow(at.depth, 4) / at.variance;
     aa += one * one, ab += one * fourth, bb += fourth * fourth;
     a1 += one, b1 += fourth;
   }
@@ -88,15 +94,23 @@ void NoiseEstimate::let_grow(Noise& noise, double depth) const {
   double a = (a1 * bb - b1 * ab) / determinant, b = (aa * b1 - ab * a1) / determinant;
   if (a < 0.0) a = 0.0, b = b1 / bb;
   if (!(b > 0.0)) return;
+  const auto fitted = [&](const VarianceAt& at) { return a + b * std::pow(at.depth, 4); };
+  if (fitted(far) < least_growth * fitted(near)) return;
+  for (const auto& [number, at] : by_depth_) {
+    if (std::abs(fitted(at) / at.variance - 1.0) > worst_fit) return;
+  }
   const double grown = b * std::pow(depth, 4), variance = a + grown;
-  const double factor = std::sqrt(variance) / noise.across(1.0);
-  noise = {.isotropic = factor * noise.isotropic,
-           .along_ray = factor * noise.along_ray,
-           .growing = grown / variance,
-           .depth = depth};
+  noise = {.along_ray = std::sqrt(variance), .growing = grown / variance, .depth = depth};
 }
 
 std::optional<Noise> NoiseEstimate::noise(double negligible, double depth) const {
+  std::optional<Noise> noise = constant_noise();
+  if (!noise) return std::nullopt;
+  if (noise->across(1.0) > 0.0) let_grow(*noise, depth);
+  return noise->at(farther * depth).across(1.0) < negligible ? Noise{} : *noise;
+}
+
+std::optional<Noise> NoiseEstimate::constant_noise() const {
   // Least squares for variance = a + b c^2, the line through the ranges' middles.
   double n = 0.0, sum_x = 0.0, sum_y = 0.0, sum_xx = 0.0, sum_xy = 0.0;
   for (int i = 0; i < range_count; ++i) {
@@ -118,9 +132,7 @@ std::optional<Noise> NoiseEstimate::noise(double negligible, double depth) const
     isotropic = 0.0;
     along_ray = sum_xy / sum_xx;
   }
-  Noise noise{.isotropic = std::sqrt(isotropic), .along_ray = std::sqrt(along_ray)};
-  if (noise.across(1.0) > 0.0) let_grow(noise, depth);
-  return noise.across(1.0) < negligible ? Noise{} : noise;
+  return Noise{.isotropic = std::sqrt(isotropic), .along_ray = std::sqrt(along_ray)};
 }
 
 }  // namespace skycap::survey::skycap

@@ -89,8 +89,8 @@ function passage_parts(data) {
     if (!sortie.passage) return null;
     const f = (path, form) => figure(data, "flight.route.sorties." + i + ".passage." + path, form);
     return element("p", {}, "The trajectory and KML files fly sortie " + (i + 1) + " past its views: ", f("length_m", "metres"),
-      " in ", f("duration_s", "minutes"), " with ", f("stops", "count"), " stops, proven free at ", f("clearance_m", "metres"),
-      ". The other files stop at each.");
+      " in ", f("duration_s", "minutes"), ", proven free at ", f("clearance_m", "metres"), "; stops between: ",
+      f("stops", "count"), ". The other files stop at each view.");
   }).filter(Boolean);
 }
 
@@ -104,7 +104,7 @@ function anew_parts(data) {
     f(key + ".duration_s", "minutes"), f(key + ".promised_coverage", "share")];
   const again = value_at(anew, "flown_again.coverage_visible");
   return [element("h3", {}, "Views chosen anew"),
-    table(["", "views", "straight pieces", "length", "time", "expected of what was measured"].map((name, i) => (i ? number(name) : name)),
+    table(["", "views", "from stop to stop", "length", "time", "expected of what was measured"].map((name, i) => (i ? number(name) : name)),
       [row("the survey's views", "survey"), row(anew.is_flown ? "chosen anew, flown" : "nothing faster was found", "anew")]),
     typeof again === "number" ? element("p", {}, "Flown again in the simulator, the mission covers ",
       figure(data, "flight.anew.flown_again.coverage_visible", "share"), " of what is visible.") : null].filter(Boolean);

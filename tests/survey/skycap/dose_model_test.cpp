@@ -109,13 +109,13 @@ TEST(DoseModel, NothingIsCoveredWithoutRaysAndMoreRaysCoverMore) {
 
 // Rays 1 mm apart at a metre: a spacing tells the depth, and the look counts with the noise there.
 TEST(DoseModel, GrowingNoiseIsThatOfTheDepthWhichTheSpacingTells) {
-  constexpr double radius = 0.02, spacing = 0.001;
+  constexpr double ball = 0.02, spacing = 0.001;
   const skycap::Noise noise{.isotropic = 0.01, .growing = 1.0, .depth = 10.0};
-  const skycap::DoseModel growing(radius, noise, spacing);
+  const skycap::DoseModel growing(ball, noise, spacing);
   for (const double depth : {5.0, 10.0, 14.0}) {
     const double sigma = 0.01 * depth * depth / 100.0;
     EXPECT_NEAR(noise.at(depth).across(1.0), sigma, 1e-12);
-    const skycap::DoseModel constant(radius, {.isotropic = sigma});
+    const skycap::DoseModel constant(ball, {.isotropic = sigma});
     const auto density = static_cast<float>(1.0 / std::pow(spacing * depth, 2));
     const float expected = constant.hazard(density, 1.0F);
     // Between two nodes of the table the noise changes, too.
