@@ -23,6 +23,8 @@ constexpr double least_cut = 0.1;
 /// was.
 constexpr double near_enough = 1e-6;
 constexpr int most_bendings = 40;
+/// Nothing is flown more slowly (see Motion::leg_speed()) [m/s].
+constexpr double least_speed = 0.1;
 /// Rounding may make a curve that was slowed as needed look too fast by this share.
 constexpr double limit_tolerance = 1e-9;
 
@@ -189,7 +191,7 @@ std::optional<Passage> pass_through(const std::vector<Vector3d>& points,
                                     double clearance, double up_to, const Motion& motion,
                                     const PassRules& rules,
                                     const std::function<bool(const Curve&)>& is_allowed) {
-  if (views.empty() || !(rules.speed > 0.0)) return std::nullopt;
+  if (views.empty() || !(rules.speed >= least_speed)) return std::nullopt;
   const Motion sharp = slowed_for(motion, rules);
   Way way(points, views, rules);
   if (way.size() < 3 || way.has_view_at_end()) return std::nullopt;

@@ -64,10 +64,10 @@ struct Passage {
 };
 
 /// The passage along a polyline whose straight pieces are proven at `clearance`; nothing if it has
-/// no view, or one at an end. It keeps the vehicle's limits. Where a piece of the curve is not
-/// proven, or `is_allowed` says no of it (of straight pieces of the polyline it must say yes), the
-/// corners at its ends are cut less, and at last stopped in. Clearance is looked at up to `up_to`.
-/// Deterministic.
+/// no view, or one at an end, or if pictures are not sharp at any speed that is flown. It keeps the
+/// vehicle's limits. Where a piece of the curve is not proven, or `is_allowed` says no of it (of
+/// straight pieces of the polyline it must say yes), the corners at its ends are cut less, and at
+/// last stopped in. Clearance is looked at up to `up_to`. Deterministic.
 std::optional<Passage> pass_through(const std::vector<Eigen::Vector3d>& points,
                                     std::span<const ViewOnWay> views, const FreeSpace& space,
                                     double clearance, double up_to, const Motion& motion,

@@ -52,6 +52,12 @@ double top_of(const flight::Route& route) {
   return top;
 }
 
+/// Whether views are passed: else stopping is faster, and views are chosen for that.
+bool is_passed(const flight::Route& route) {
+  return std::ranges::any_of(
+      route.sorties, [](const flight::Sortie& sortie) { return sortie.passage.has_value(); });
+}
+
 /// The problem of a mission, and what it asks.
 class MissionProblem {
  public:
@@ -65,9 +71,7 @@ class MissionProblem {
         clearance_(present.clearance),
         returnable_(space, planning_law(present.options, top_of(present))),
         legs_(space, motion_, clearance_, no_ways_home_),
-        passing_(present.options.style == flight::FlightStyle::pass
-                     ? std::optional(present.options.passing)
-                     : std::nullopt),
+        passing_(is_passed(present) ? std::optional(present.options.passing) : std::nullopt),
         mount_(derived::scans_in_flight(mission) ? mission.sensor.mount : std::nullopt),
         sweep_step_(mission.flight.cruise_speed * mission.sensor.frame_period),
         threads_(mission.threads),
@@ -249,7 +253,7 @@ class MissionProblem {
   flight::ReturnableSpace returnable_;
   std::optional<flight::WaysHome> no_ways_home_;
   flight::LegCertifier legs_;
-  std::optional<flight::PassRules> passing_;  ///< where views are passed
+  std::optional<flight::PassRules> passing_;  ///< if views are passed
   std::optional<Eigen::Isometry3d> mount_;    ///< of a scanner that measures all the way
   double sweep_step_;                         ///< between its scans [m]
   unsigned threads_;

@@ -75,6 +75,8 @@ TEST(Passage, IsNoFasterThanPicturesStaySharp) {
     ASSERT_LE(state_at(passage->curve, t).velocity.norm(), 2.0 + 1e-6) << t;
   }
   EXPECT_FALSE(pass(Round(), {.speed = 0.0, .most_cut = 1.0}, calm())) << "never sharp";
+  EXPECT_FALSE(pass(Round(), {.speed = 0.09, .most_cut = 1.0}, calm()))
+      << "nothing flies so slowly";
 }
 
 // The camera turns by a quarter between corners, at no more than its rate, and stands still around
