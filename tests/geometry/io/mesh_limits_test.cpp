@@ -60,7 +60,7 @@ TEST(MeshLimits, LetInWhatReachesThem) {
 }
 
 TEST(MeshLimits, RefuseWhatGoesBeyondThem) {
-  const struct {
+  const struct Case {
     MeshLimits limits;
     const char* message;
   } cases[] = {
@@ -69,10 +69,11 @@ TEST(MeshLimits, RefuseWhatGoesBeyondThem) {
       {{.corners = 5}, " faces, 5 corners of faces or "},
       {{.face_corners = 2}, ": face 0 has more than 2 corners; triangulate it first"},
   };
-  for (const auto& [limits, message] : cases) {
-    for (const auto& [name, parse, bytes] : all_formats()) {
-      EXPECT_THAT([&] { parse(name, bytes, limits); },
-                  ThrowsMessage<Error>(testing::AllOf(HasSubstr(name), HasSubstr(message))));
+  for (const Case& wrong : cases) {
+    for (const TwoTriangles& file : all_formats()) {
+      EXPECT_THAT(
+          [&] { file.parse(file.name, file.bytes, wrong.limits); },
+          ThrowsMessage<Error>(testing::AllOf(HasSubstr(file.name), HasSubstr(wrong.message))));
     }
   }
 }
