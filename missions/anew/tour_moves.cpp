@@ -148,8 +148,8 @@ std::optional<Move> TourMoves::add_on_way(const Stops& stops, const DoseSum& cov
   for (std::size_t i = 0; i <= stops.size(); ++i) {
     const Vector3d from = end_of_leg(stops, i), way = end_of_leg(stops, i + 1) - from;
     const double share = way.squaredNorm() > 0.0 ? way.dot(best - from) / way.squaredNorm() : 0.0;
-    const Vector3d nearest = from + std::clamp(share, 0.0, 1.0) * way;
-    if (i == 0 || (nearest - best).norm() < (place - best).norm()) leg = i, place = nearest;
+    const Vector3d on_leg = from + std::clamp(share, 0.0, 1.0) * way;
+    if (i == 0 || (on_leg - best).norm() < (place - best).norm()) leg = i, place = on_leg;
   }
   const Vector3d way = end_of_leg(stops, leg + 1) - end_of_leg(stops, leg);
   if (way.norm() == 0.0) return std::nullopt;
