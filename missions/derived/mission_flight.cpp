@@ -174,6 +174,26 @@ std::vector<flight::Dialect> dialects_of(const flight::Vehicle& vehicle) {
   return {flight::Dialect::dji, flight::Dialect::px4, flight::Dialect::ardupilot};
 }
 
+namespace {
+
+/// What its pictures ask of a flight that passes its views.
+flight::PassRules pass_rules_of(const file::Mission& mission) {
+  const double distance = view_distance_of(mission);
+  flight::PassRules rules{.speed = mission.flight.cruise_speed,
+                          .most_cut = most_cut_by_distance * distance,
+                          .exposure = 0.0,
+                          .period = 0.0};
+  if (scans_in_flight(mission)) return rules;
+  const flight::Shutter& shutter = mission.sensor.shutter;
+  rules.speed = flight::sharp_speed(
+      vehicle_of(mission), geometry::Camera(mission.sensor.camera.camera), shutter, distance);
+  rules.exposure = shutter.exposure + shutter.readout;
+  rules.period = mission.sensor.frame_period;
+  return rules;
+}
+
+}  // namespace
+
 flight::RouteOptions route_options_of(const file::Mission& mission, const Vector3d& pad) {
   const file::FlightConfig& config = mission.flight;
   flight::RouteOptions options;
@@ -216,21 +236,6 @@ std::optional<flight::PictureBounds> picture_bounds_of(const file::Mission& miss
   const geometry::Camera camera(mission.sensor.camera.camera);
   return picture_bounds(vehicle_of(mission), camera, mission.sensor.shutter,
                         view_distance_of(mission));
-}
-
-flight::PassRules pass_rules_of(const file::Mission& mission) {
-  const double distance = view_distance_of(mission);
-  flight::PassRules rules{.speed = mission.flight.cruise_speed,
-                          .most_cut = most_cut_by_distance * distance,
-                          .exposure = 0.0,
-                          .period = 0.0};
-  if (scans_in_flight(mission)) return rules;
-  const flight::Shutter& shutter = mission.sensor.shutter;
-  rules.speed = flight::sharp_speed(
-      vehicle_of(mission), geometry::Camera(mission.sensor.camera.camera), shutter, distance);
-  rules.exposure = shutter.exposure + shutter.readout;
-  rules.period = mission.sensor.frame_period;
-  return rules;
 }
 
 bool has_place(const file::Mission& mission) {

@@ -73,9 +73,6 @@ double hold_after_of(const file::Mission& mission);
 /// How sharp its pictures are at the view distance; nothing for a laser scanner.
 std::optional<flight::PictureBounds> picture_bounds_of(const file::Mission& mission);
 
-/// What its pictures ask of a flight that passes its views.
-flight::PassRules pass_rules_of(const file::Mission& mission);
-
 /// Whether the mission says where on the Earth it is.
 bool has_place(const file::Mission& mission);
 

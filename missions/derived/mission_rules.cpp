@@ -196,6 +196,11 @@ void check_flight(const file::MissionFile& given) {
                      " m; make it larger or the errors smaller");
   }
   check_views(given);
+  if (flight.style == flight::FlightStyle::pass && mission.sensor.settle > 0.0) {
+    given.refuse("flight.style",
+                 "takes pictures without a stop, but the sensor has to rest before each "
+                 "(sensor.settle); choose stop, blend or smooth");
+  }
   if (const double climb = takeoff_climb_of(mission); climb <= flight.clearance) {
     given.refuse("flight.takeoff_climb",
                  "of " + short_text(climb) +

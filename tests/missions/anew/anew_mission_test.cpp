@@ -156,6 +156,10 @@ TEST(AnewMission, SaysWhyNothingIsPassed) {
                                "limits.max_views=2"});
   EXPECT_THAT(run.out, HasSubstr("  passing   nothing: ")) << run.err;
   EXPECT_THAT(run.out, HasSubstr("shorten sensor.exposure"));
+  const auto resting = run_skycap(
+      {"check", folder / "m.yaml", "--set", "flight.style=pass", "--set", "sensor.settle=1"});
+  EXPECT_EQ(resting.exit_code, 2);
+  EXPECT_THAT(resting.err, HasSubstr("flight.style: takes pictures without a stop"));
 }
 
 TEST(AnewMission, IsExportedAgainAsItWasPlanned) {
