@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <fstream>
 #include <limits>
+#include <new>
 #include <system_error>
 #include <utility>
 
@@ -136,7 +137,9 @@ void require_regular_file(const fs::path& path) {
 
 std::string read_file(const fs::path& path, std::size_t most_bytes, std::size_t most_decompressed) {
   require_regular_file(path);
+  errno = 0;
   std::ifstream stream(path, std::ios::binary);
+  if (!stream && errno == ENOMEM) throw std::bad_alloc();  // nothing is wrong with the file
   if (!stream) fail(path, "cannot be opened: " + last_error());
   const auto refuse_size = [&] { fail(path, "is larger than " + size_text(most_bytes)); };
   std::error_code error;
