@@ -1,10 +1,10 @@
 #include "sim/sensors/depth_camera.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstddef>
 #include <cstring>
+#include <limits>
 #include <memory>
 #include <mutex>
 #include <optional>
@@ -15,6 +15,7 @@
 #include "sim/scene/four_lanes.h"
 #include "sim/scene/scene_trees.h"
 #include "sim/scene/surface_effects.h"
+#include "sim/sensors/frame_rays.h"
 #include "sim/sensors/vector_kernels.h"
 
 namespace skycap::sim {
@@ -24,43 +25,8 @@ using Eigen::Vector3d;
 using Eigen::Vector3f;
 using geometry::Scan;
 
-constexpr int packet_columns = 4;
-constexpr int packet_rows = RayPacket::width / packet_columns;
-constexpr int tile_columns = 32;  // packets are cast tile by tile: neighbours share cached nodes
-constexpr int band_rows = 32;     // a band of tiles is one thread's piece of work
-constexpr int noise_block = 32;
 constexpr float no_return = -1.0F;
 constexpr std::uint32_t stereo_stream = 3;  // 0, 1, 2: x, y, z of the points' noise
-
-int round_up(int value, int multiple) { return (value + multiple - 1) / multiple * multiple; }
-
-// The rays of a whole image, in world axes and of depth 1, are sums of a column's and a row's part.
-struct RayTable {
-  int width, height;
-  int stride;  // columns are padded with copies of the last to whole packets
-  std::array<std::vector<float>, 3> columns;
-  std::array<std::vector<float>, 3> rows;
-  Vector3f origin;  // in the frame of the scene's trees
-
-  RayTable(const geometry::Camera& camera, const Eigen::Isometry3d& world_from_camera,
-           const Vector3d& scene_centre)
-      : width(camera.width()),
-        height(camera.height()),
-        stride(round_up(width, noise_block)),
-        origin((world_from_camera.translation() - scene_centre).cast<float>()) {
-    const Eigen::Matrix3d axes = world_from_camera.linear();
-    for (int axis = 0; axis < 3; ++axis) {
-      for (int x = 0; x < stride; ++x) {
-        const double slope = camera.ray({std::min(x, width - 1), 0}).x();
-        columns[axis].push_back(static_cast<float>(slope * axes(axis, 0) + axes(axis, 2)));
-      }
-      for (int y = 0; y < round_up(height, band_rows); ++y) {
-        const double slope = camera.ray({0, std::min(y, height - 1)}).y();
-        rows[axis].push_back(static_cast<float>(slope * axes(axis, 1)));
-      }
-    }
-  }
-};
 
 // What decides whether a hit is a return.
 struct Limits {
@@ -71,18 +37,6 @@ struct Limits {
 float min_cosine_of(double max_incidence) {
   return max_incidence < 0.5 * std::numbers::pi ? static_cast<float>(std::cos(max_incidence))
                                                 : 0.0F;
-}
-
-void aim(const RayTable& table, int first_column, int first_row, RayPacket& packet) {
-  for (int axis = 0; axis < 3; ++axis) {
-    const float* const column = table.columns[axis].data() + first_column;
-    const float* const row = table.rows[axis].data() + first_row;
-    FourFloats columns;
-    std::memcpy(&columns, column, sizeof columns);
-    for (int y = 0; y < packet_rows; ++y) {
-      put_four(packet.direction[axis] + y * packet_columns, columns + row[y]);
-    }
-  }
 }
 
 bool is_too_slanted(const RayPacket& packet, int lane, float min_cosine) {
@@ -109,14 +63,14 @@ void store_depths(const RayPacket& packet, const Limits& limits, std::ptrdiff_t 
   }
 }
 
-// Casts the rays of one band, whose depths go to `depths`, row by row with the table's stride. Rays
-// of the padding are cast like the others, being copies, and their depths are never read.
-void cast_band(const Scene::Trees& trees, const RayTable& table, const Limits& limits,
-               int first_row, float* depths) {
+// Casts the rays of one band of an image like the table's, whose depths go to `depths`, row by row
+// with the table's stride. Rays of the padding are cast like the others, being copies, and their
+// depths are never read.
+template <typename Rays>
+void cast_band(const Scene::Trees& trees, const RayTable& table, const Rays& rays,
+               const Limits& limits, int first_row, float* depths) {
   RayPacket packet;
-  for (int axis = 0; axis < 3; ++axis) {
-    std::fill_n(packet.origin[axis], RayPacket::width, table.origin[axis]);
-  }
+  rays.begin(packet);
   const RayKernels& kernels = ray_kernels();
   const auto cast = limits.min_cosine > 0.0F ? kernels.cast : kernels.cast_distances;
   const int rows = std::min(band_rows, table.height - first_row);
@@ -125,7 +79,7 @@ void cast_band(const Scene::Trees& trees, const RayTable& table, const Limits& l
     const int tile_end = std::min(tile + tile_columns, table.width);
     for (int row = 0; row < rows; row += packet_rows) {
       for (int column = tile; column < tile_end; column += packet_columns) {
-        aim(table, column, first_row + row, packet);
+        rays.aim(column, first_row + row, packet);
         if (trees.surfaces.empty()) {
           cast(trees.target, packet, RayPacket::all_lanes, limits.max_depth);
         } else {
@@ -134,6 +88,33 @@ void cast_band(const Scene::Trees& trees, const RayTable& table, const Limits& l
         store_depths(packet, limits, stride, depths + row * stride + column);
       }
     }
+  }
+}
+
+// Casts one band of an image that is exposed in motion. A pixel's depth is the mean of its
+// instants', of those with a return, which have to be half of them at least. If they are not of one
+// surface it has none: drivers leave out what mixes two.
+void cast_moving_band(const Scene::Trees& trees, const RayTable& table,
+                      const std::vector<MovingRays>& instants, const Limits& limits, int first_row,
+                      float* depths) {
+  constexpr float one_surface = 1.02F;  // greatest depth over the least
+  const std::size_t size = static_cast<std::size_t>(table.stride) * band_rows;
+  std::vector<float> one(size, no_return), sums(size, 0.0F), counts(size, 0.0F);
+  std::vector<float> least(size, std::numeric_limits<float>::infinity()), most(size, 0.0F);
+  for (const MovingRays& rays : instants) {
+    cast_band(trees, table, rays, limits, first_row, one.data());
+    for (std::size_t i = 0; i < size; ++i) {
+      if (one[i] < 0.0F) continue;
+      sums[i] += one[i];
+      counts[i] += 1.0F;
+      least[i] = std::min(least[i], one[i]);
+      most[i] = std::max(most[i], one[i]);
+    }
+  }
+  for (std::size_t i = 0; i < size; ++i) {
+    const bool is_seen =
+        counts[i] > 0.0F && 2.0F * counts[i] >= static_cast<float>(instants.size());
+    depths[i] = is_seen && most[i] <= one_surface * least[i] ? sums[i] / counts[i] : no_return;
   }
 }
 
@@ -237,6 +218,45 @@ void emit_band(const RayTable& table, PinholeRow row, int first_row, const float
   }
 }
 
+// The frame whose bands `cast` gives the depths of, as seen from `world_from_camera`.
+template <typename Cast>
+Scan frame_of(const DepthCameraConfig& config, const RayTable& table,
+              const Eigen::Isometry3d& world_from_camera, std::uint64_t frame, unsigned threads,
+              Scan recycled, const Cast& cast) {
+  const PinholeRow row = row_template(table, world_from_camera.translation(), config.noise, frame);
+  Scan scan = std::move(recycled);
+  scan.world_from_sensor = world_from_camera;
+  const auto pixels = static_cast<std::size_t>(table.width) * table.height;
+  scan.points.resize(pixels);
+  scan.pixels.resize(pixels);
+  const std::size_t band_size = static_cast<std::size_t>(table.stride) * band_rows;
+  const std::size_t bands = (table.height + band_rows - 1) / band_rows;
+  const auto depths = std::make_unique_for_overwrite<float[]>(bands * band_size);
+  BandPlaces places(bands);
+  geometry::parallel_for(bands, threads, [&](std::size_t band) {
+    const int first_row = static_cast<int>(band) * band_rows;
+    float* const band_depths = depths.get() + band * band_size;
+    cast(first_row, band_depths);
+    if (config.stereo.is_on()) {
+      const NoiseKey key = noise_key(config.noise.seed, stereo_stream, frame);
+      add_stereo_errors(table, config.stereo, key, first_row, band_depths);
+    }
+    const std::size_t returns = count_returns(table, first_row, band_depths);
+    for (const auto& [known, first_point] : places.count(band, returns)) {
+      emit_band(table, row, static_cast<int>(known) * band_rows, depths.get() + known * band_size,
+                first_point, scan);
+    }
+  });
+  scan.points.resize(places.points());
+  scan.pixels.resize(places.points());
+  return scan;
+}
+
+Limits limits_of(const DepthCameraConfig& config) {
+  return {static_cast<float>(config.camera.min_range), static_cast<float>(config.camera.max_range),
+          min_cosine_of(config.max_incidence)};
+}
+
 }  // namespace
 
 DepthCamera::DepthCamera(const DepthCameraConfig& config)
@@ -248,37 +268,25 @@ Scan DepthCamera::scan(const Scene& scene, const Eigen::Isometry3d& world_from_c
                        std::uint64_t frame, unsigned threads, Scan recycled) const {
   const Scene::Trees& trees = scene.trees();
   const RayTable table(camera_, world_from_camera, trees.centre);
-  const Limits limits = {static_cast<float>(config_.camera.min_range),
-                         static_cast<float>(config_.camera.max_range),
-                         min_cosine_of(config_.max_incidence)};
-  const PinholeRow row = row_template(table, world_from_camera.translation(), config_.noise, frame);
+  return frame_of(config_, table, world_from_camera, frame, threads, std::move(recycled),
+                  [&, limits = limits_of(config_)](int first_row, float* depths) {
+                    cast_band(trees, table, table, limits, first_row, depths);
+                  });
+}
 
-  Scan scan = std::move(recycled);
-  scan.world_from_sensor = world_from_camera;
-  const auto pixels = static_cast<std::size_t>(table.width) * table.height;
-  scan.points.resize(pixels);
-  scan.pixels.resize(pixels);
-  const std::size_t band_size = static_cast<std::size_t>(table.stride) * band_rows;
-  const std::size_t bands = round_up(table.height, band_rows) / band_rows;
-  const auto depths = std::make_unique_for_overwrite<float[]>(bands * band_size);
-  BandPlaces places(bands);
-  geometry::parallel_for(bands, threads, [&](std::size_t band) {
-    const int first_row = static_cast<int>(band) * band_rows;
-    float* const band_depths = depths.get() + band * band_size;
-    cast_band(trees, table, limits, first_row, band_depths);
-    if (config_.stereo.is_on()) {
-      const NoiseKey key = noise_key(config_.noise.seed, stereo_stream, frame);
-      add_stereo_errors(table, config_.stereo, key, first_row, band_depths);
-    }
-    const std::size_t returns = count_returns(table, first_row, band_depths);
-    for (const auto& [known, first_point] : places.count(band, returns)) {
-      emit_band(table, row, static_cast<int>(known) * band_rows, depths.get() + known * band_size,
-                first_point, scan);
-    }
-  });
-  scan.points.resize(places.points());
-  scan.pixels.resize(places.points());
-  return scan;
+Scan DepthCamera::scan(const Scene& scene, const Eigen::Isometry3d& believed,
+                       const FrameMotion& motion, std::uint64_t frame, unsigned threads,
+                       Scan recycled) const {
+  const Scene::Trees& trees = scene.trees();
+  const RayTable table(camera_, believed, trees.centre);
+  std::vector<MovingRays> instants;
+  for (int i = 0; i < motion.instants; ++i) {
+    instants.emplace_back(camera_, motion, i, trees.centre);
+  }
+  return frame_of(config_, table, believed, frame, threads, std::move(recycled),
+                  [&, limits = limits_of(config_)](int first_row, float* depths) {
+                    cast_moving_band(trees, table, instants, limits, first_row, depths);
+                  });
 }
 
 Scan DepthCamera::scan(const Scene& scene, const geometry::View& view, std::uint64_t frame,

@@ -32,7 +32,15 @@ class DepthCamera {
                       std::uint64_t frame, unsigned threads = 0,
                       geometry::Scan recycled = {}) const;
 
-  /// The same from geometry::camera_pose(view).
+  /// What it measures while it moves, and is believed to be at one pose all the time: a row's rays
+  /// are cast from where the camera is when it is exposed, and their depths taken to be those of
+  /// the believed pose's rays. So errors of the pose and a rolling shutter displace the points. The
+  /// depths of a pixel's instants make one if they are of one surface (within 2 %), and none else.
+  geometry::Scan scan(const Scene& scene, const Eigen::Isometry3d& believed,
+                      const FrameMotion& motion, std::uint64_t frame, unsigned threads = 0,
+                      geometry::Scan recycled = {}) const;
+
+  /// The same as the first from geometry::camera_pose(view).
   geometry::Scan scan(const Scene& scene, const geometry::View& view, std::uint64_t frame,
                       unsigned threads = 0, geometry::Scan recycled = {}) const;
 

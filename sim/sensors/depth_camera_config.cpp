@@ -27,6 +27,17 @@ void DepthCameraConfig::validate() const {
           "sensor.stereo.focal_length_px * baseline", product, "greater than zero");
 }
 
+Eigen::Isometry3d FrameMotion::pose(double time) const {
+  Eigen::Isometry3d pose = world_from_camera;
+  pose.translation() += time * velocity;
+  const double angle = time * turn_rate.norm();
+  if (angle != 0.0) {
+    pose.linear() =
+        Eigen::AngleAxisd(angle, turn_rate.normalized()).toRotationMatrix() * pose.linear();
+  }
+  return pose;
+}
+
 DepthCameraConfig d435() {
   return {.camera = {.width = 848,
                      .height = 480,

@@ -3,6 +3,8 @@
 
 #include <numbers>
 
+#include <Eigen/Geometry>
+
 #include "geometry/place/camera.h"
 #include "sim/sensors/noise.h"
 
@@ -30,6 +32,19 @@ struct DepthCameraConfig {
 
   /// Throws Error{bad_config} naming the first field that is out of its interval.
   void validate() const;
+};
+
+/// How a camera really moves while it takes a frame: evenly.
+struct FrameMotion {
+  Eigen::Isometry3d world_from_camera = Eigen::Isometry3d::Identity();  ///< amid the frame
+  Eigen::Vector3d velocity = Eigen::Vector3d::Zero();                   ///< world frame [m/s]
+  Eigen::Vector3d turn_rate = Eigen::Vector3d::Zero();  ///< about world axes [rad/s]
+  double exposure = 0.0;                                ///< of each row [s]
+  double readout = 0.0;  ///< from the first row's exposure to the last one's [s]; zero: global
+  int instants = 1;      ///< evenly over it, which stand for the exposure; at least one
+
+  /// Where the camera is so long after the middle of the frame [s].
+  Eigen::Isometry3d pose(double time) const;
 };
 
 /// The RealSense D435 of the SEE++ experiments: 848 x 480 pixels, 69.4 x 42.5 degrees, isotropic

@@ -1,6 +1,7 @@
 /// How well a platform knows where it is.
 #pragma once
 
+#include <array>
 #include <cstdint>
 
 namespace skycap::sim {
@@ -17,6 +18,30 @@ struct NavigationErrors {
 
   /// Throws Error{bad_config} naming the first field that is out of its interval.
   void validate() const;
+
+  bool are_on() const {
+    return horizontal_sigma > 0.0 || vertical_sigma > 0.0 || tilt_sigma > 0.0 ||
+           heading_sigma > 0.0;
+  }
+};
+
+/// The errors of one flight, moment after moment.
+class NavigationProcess {
+ public:
+  /// Throws what NavigationErrors::validate() throws.
+  explicit NavigationProcess(const NavigationErrors& errors);
+
+  /// Those of the next moment, so long after the one before [s], which may be infinite: east, north
+  /// and up [m], then small angles about the platform's three axes [rad].
+  std::array<double, 6> next(double elapsed);
+
+ private:
+  static constexpr std::size_t block = 32;  ///< of normals that are drawn at once
+  NavigationErrors errors_;
+  std::array<double, 6> sigmas_;
+  std::array<double, 6> states_{};  ///< in units of their sigmas
+  std::array<std::array<float, block>, 6> normals_;
+  std::uint32_t moment_ = 0;
 };
 
 }  // namespace skycap::sim

@@ -8,7 +8,7 @@
 
 #include "geometry/error.h"
 #include "geometry/place/world.h"
-#include "sim/sensors/noise.h"
+#include "sim/sensors/navigation_errors.h"
 
 namespace skycap::sim {
 namespace {
@@ -50,27 +50,14 @@ Eigen::Isometry3d Trajectory::pose(double time) const {
 }
 
 Trajectory believed_trajectory(const Trajectory& flown, const NavigationErrors& errors) {
-  errors.validate();
-  constexpr std::uint32_t first_stream = 0x4E415600;  // apart from the sensors' streams
-  const std::array<double, 6> sigmas = {errors.horizontal_sigma, errors.horizontal_sigma,
-                                        errors.vertical_sigma,   errors.tilt_sigma,
-                                        errors.tilt_sigma,       errors.heading_sigma};
+  NavigationProcess process(errors);
   std::vector<StampedPose> poses(flown.poses().begin(), flown.poses().end());
-  std::vector<float> normals(poses.size());
-  for (std::uint32_t kind = 0; kind < sigmas.size(); ++kind) {
-    fill_normals(noise_key(errors.seed, first_stream + kind, 0), 0, normals);
-    double error = 0.0;  // in units of sigma
-    for (std::size_t i = 0; i < poses.size(); ++i) {
-      const double elapsed = i == 0 ? INFINITY : poses[i].time - poses[i - 1].time;
-      const double kept =
-          errors.correlation_time > 0.0 ? std::exp(-elapsed / errors.correlation_time) : 0.0;
-      error = kept * error + std::sqrt(1.0 - kept * kept) * static_cast<double>(normals[i]);
-      if (kind < 3) {
-        poses[i].position[kind] += sigmas[kind] * error;
-      } else {
-        poses[i].attitude *=
-            Quaterniond(Eigen::AngleAxisd(sigmas[kind] * error, Vector3d::Unit(kind - 3)));
-      }
+  for (std::size_t i = 0; i < poses.size(); ++i) {
+    const std::array<double, 6> error =
+        process.next(i == 0 ? 0.0 : flown.poses()[i].time - flown.poses()[i - 1].time);
+    for (int axis = 0; axis < 3; ++axis) {
+      poses[i].position[axis] += error[axis];
+      poses[i].attitude *= Quaterniond(Eigen::AngleAxisd(error[3 + axis], Vector3d::Unit(axis)));
     }
   }
   return Trajectory(std::move(poses));

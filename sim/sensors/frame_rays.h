@@ -1,0 +1,130 @@
+/// The rays of a depth camera's frame, as packets of rays take them: of a camera that stands, and
+/// of one that moves while the frame is exposed.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cstring>
+#include <vector>
+
+#include <Eigen/Geometry>
+
+#include "geometry/place/camera.h"
+#include "sim/scene/four_lanes.h"
+#include "sim/scene/ray_kernels.h"
+#include "sim/sensors/depth_camera_config.h"
+
+namespace skycap::sim {
+
+/// A packet of rays is four columns wide.
+inline constexpr int packet_columns = 4;
+inline constexpr int packet_rows = RayPacket::width / packet_columns;
+inline constexpr int tile_columns = 32;  ///< packets are cast tile by tile: cached nodes are shared
+inline constexpr int band_rows = 32;     ///< a band of tiles is one thread's piece of work
+
+inline constexpr int column_block = 32;  ///< that noise is drawn for at once
+
+inline int rounded_up(int value, int multiple) {
+  return (value + multiple - 1) / multiple * multiple;
+}
+
+/// The rays of a whole image from one pose, in world axes and of depth 1: sums of a column's and a
+/// row's part. Rows are padded to whole bands, columns with copies of the last to whole blocks.
+struct RayTable {
+  int width, height;
+  int stride;
+  std::array<std::vector<float>, 3> columns;
+  std::array<std::vector<float>, 3> rows;
+  Eigen::Vector3f origin;  ///< in the frame of the scene's trees
+
+  RayTable(const geometry::Camera& camera, const Eigen::Isometry3d& world_from_camera,
+           const Eigen::Vector3d& scene_centre);
+
+  /// What all packets have in common.
+  void begin(RayPacket& packet) const {
+    for (int axis = 0; axis < 3; ++axis) {
+      for (float& lane : packet.origin[axis]) lane = origin[axis];
+    }
+  }
+
+  void aim(int first_column, int first_row, RayPacket& packet) const {
+    for (int axis = 0; axis < 3; ++axis) {
+      FourFloats four_columns;
+      std::memcpy(&four_columns, columns[axis].data() + first_column, sizeof four_columns);
+      const float* const row = rows[axis].data() + first_row;
+      for (int y = 0; y < packet_rows; ++y) {
+        put_four(packet.direction[axis] + y * packet_columns, four_columns + row[y]);
+      }
+    }
+  }
+};
+
+/// The same at one instant of each row's exposure, each row from where the camera then is.
+class MovingRays {
+ public:
+  MovingRays(const geometry::Camera& camera, const FrameMotion& motion, int instant,
+             const Eigen::Vector3d& scene_centre);
+
+  void begin(RayPacket& /*packet*/) const {}
+
+  void aim(int first_column, int first_row, RayPacket& packet) const {
+    FourFloats slopes;
+    std::memcpy(&slopes, slopes_.data() + first_column, sizeof slopes);
+    for (int axis = 0; axis < 3; ++axis) {
+      for (int y = 0; y < packet_rows; ++y) {
+        const Row& row = rows_[first_row + y];
+        put_four(packet.direction[axis] + y * packet_columns,
+                 slopes * row.right[axis] + row.ahead[axis]);
+        put_four(packet.origin[axis] + y * packet_columns, FourFloats{} + row.origin[axis]);
+      }
+    }
+  }
+
+ private:
+  /// A ray is the column's slope times `right`, plus `ahead`.
+  struct Row {
+    Eigen::Vector3f right, ahead, origin;
+  };
+  std::vector<float> slopes_;
+  std::vector<Row> rows_;
+};
+
+inline RayTable::RayTable(const geometry::Camera& camera,
+                          const Eigen::Isometry3d& world_from_camera,
+                          const Eigen::Vector3d& scene_centre)
+    : width(camera.width()),
+      height(camera.height()),
+      stride(rounded_up(width, column_block)),
+      origin((world_from_camera.translation() - scene_centre).cast<float>()) {
+  const Eigen::Matrix3d axes = world_from_camera.linear();
+  for (int axis = 0; axis < 3; ++axis) {
+    for (int x = 0; x < stride; ++x) {
+      const double slope = camera.ray({std::min(x, width - 1), 0}).x();
+      columns[axis].push_back(static_cast<float>(slope * axes(axis, 0) + axes(axis, 2)));
+    }
+    for (int y = 0; y < rounded_up(height, band_rows); ++y) {
+      const double slope = camera.ray({0, std::min(y, height - 1)}).y();
+      rows[axis].push_back(static_cast<float>(slope * axes(axis, 1)));
+    }
+  }
+}
+
+inline MovingRays::MovingRays(const geometry::Camera& camera, const FrameMotion& motion,
+                              int instant, const Eigen::Vector3d& scene_centre) {
+  const int width = camera.width(), height = camera.height();
+  for (int x = 0; x < rounded_up(width, column_block); ++x) {
+    slopes_.push_back(static_cast<float>(camera.ray({std::min(x, width - 1), 0}).x()));
+  }
+  const double in_exposure = ((instant + 0.5) / motion.instants - 0.5) * motion.exposure;
+  for (int y = 0; y < rounded_up(height, band_rows); ++y) {
+    const int row = std::min(y, height - 1);
+    const double in_readout = ((row + 0.5) / height - 0.5) * motion.readout;
+    const Eigen::Isometry3d pose = motion.pose(in_readout + in_exposure);
+    const Eigen::Matrix3d axes = pose.linear();
+    rows_.push_back({axes.col(0).cast<float>(),
+                     (camera.ray({0, row}).y() * axes.col(1) + axes.col(2)).cast<float>(),
+                     (pose.translation() - scene_centre).cast<float>()});
+  }
+}
+
+}  // namespace skycap::sim
