@@ -199,6 +199,21 @@ float BlockImage::ray_density(const Block& block, const Eigen::Vector3f& point,
          (depth * depth * cos_off_axis);
 }
 
+Scale scale_of(double extent, double pixel, std::optional<double> surfel) {
+  // So many surfels across the scene; and of pixels to a surfel between a block's and what still
+  // shows the relief that a view must see.
+  constexpr double surfels_across = 150.0, least_pixels = 4.0, most_pixels = 25.0;
+  // A block is a little narrower than a surfel, so that no surfel falls between blocks, and of at
+  // least so many pixels each way: fewer would not tell the noise.
+  constexpr double blocks_to_surfel = 0.8;
+  constexpr int least_block_px = 4;
+  constexpr double jump_slope = 4.0;  // what a slope of 76 degrees drops over a block
+  const double h = surfel.value_or(
+      std::clamp(extent / surfels_across, least_pixels * pixel, most_pixels * pixel));
+  const int block_px = std::max(least_block_px, static_cast<int>(blocks_to_surfel * h / pixel));
+  return {h, block_px, jump_slope * block_px * pixel};
+}
+
 BlockImage make_block_image(const geometry::ScanSpan& scan, const geometry::Camera& camera,
                             const BlockSettings& settings) {
   assert(scan.pixels.size() == scan.points.size());

@@ -89,6 +89,17 @@ struct BlockSettings {
   unsigned threads = 1;  ///< zero: all processors
 };
 
+/// How finely a scene is told.
+struct Scale {
+  double surfel;      ///< h, from one to the next [m]
+  int block_px;       ///< B
+  double least_jump;  ///< that is an edge whatever the noise [m]
+};
+
+/// Of a scene of that extent whose pixels are so far apart at the view distance [m]; `surfel`, if
+/// given, is what the user wants.
+Scale scale_of(double extent, double pixel, std::optional<double> surfel);
+
 /// The block image of an organised scan.
 BlockImage make_block_image(const geometry::ScanSpan& scan, const geometry::Camera& camera,
                             const BlockSettings& settings);

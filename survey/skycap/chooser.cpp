@@ -27,7 +27,8 @@ constexpr std::array<double, 5> tilts = {0.0, 0.54, 0.54, 0.94, 0.94};
 constexpr std::array<double, 4> turns = {0.35, 0.2, 0.1, 0.05};
 constexpr int refined = 3;  // candidates that a round starts from
 constexpr int turned_directions = 6;
-constexpr std::size_t pool_size = 40;  // candidates that a batch is picked from
+constexpr std::size_t pool_size = 40;   // candidates that a batch is picked from
+constexpr std::size_t most_frames = 3;  // that stand for all of a way's
 
 struct Candidate {
   View view;
@@ -75,11 +76,12 @@ std::vector<Cluster> heaviest_clusters(const GainField& field, std::size_t count
 class Chooser {
  public:
   Chooser(const GainField& field, const ViewLimits& limits, const Admission& admits,
-          const Vector3d& position, double most_way, const ChooserSettings& settings)
+          const View& present, double most_way, const ChooserSettings& settings)
       : field_(field),
         limits_(limits),
         admits_(admits),
-        position_(position),
+        present_(present),
+        position_(present.position),
         most_way_(most_way),
         settings_(settings) {}
 
@@ -100,7 +102,7 @@ class Chooser {
     std::vector<BatchView> views(pool.size());
     geometry::parallel_for(pool.size(), settings_.threads, [&](std::size_t i) {
       const View& view = candidates_[pool[i]].view;
-      views[i] = {view.position, field_.sights(view)};
+      views[i] = {view.position, sights_with_way(field_, present_, view, settings_.frame_spacing)};
     });
     const Candidate& first = candidates_[pool[first_of_batch(views)]];
     Choice choice{first.view, first.gain.area, best_gain,
@@ -228,6 +230,7 @@ class Chooser {
   const GainField& field_;
   const ViewLimits& limits_;
   const Admission& admits_;
+  const View present_;
   const Vector3d position_;
   const double most_way_;
   const ChooserSettings& settings_;
@@ -236,10 +239,57 @@ class Chooser {
 
 }  // namespace
 
+std::vector<View> views_between(const View& from, const View& to, std::size_t count) {
+  const auto yaw = [](const View& view) {
+    return std::atan2(view.direction.y(), view.direction.x());
+  };
+  const auto pitch = [](const View& view) {
+    return std::asin(std::clamp(view.direction.z(), -1.0, 1.0));
+  };
+  const double turn = std::remainder(yaw(to) - yaw(from), 2.0 * std::numbers::pi);
+  std::vector<View> views;
+  for (std::size_t i = 0; i < count; ++i) {
+    const double share = (static_cast<double>(i) + 0.5) / static_cast<double>(count);
+    const double azimuth = yaw(from) + share * turn;
+    const double elevation = pitch(from) + share * (pitch(to) - pitch(from));
+    views.push_back({from.position + share * (to.position - from.position),
+                     {std::cos(elevation) * std::cos(azimuth),
+                      std::cos(elevation) * std::sin(azimuth), std::sin(elevation)}});
+  }
+  return views;
+}
+
+std::vector<Sight> sights_with_way(const GainField& field, const View& from, const View& to,
+                                   double frame_spacing) {
+  std::vector<Sight> sights = field.sights(to);
+  if (!(frame_spacing > 0.0)) return sights;
+  const double frames = (to.position - from.position).norm() / frame_spacing;
+  const auto looked_at = static_cast<std::size_t>(std::min<double>(most_frames, frames));
+  if (looked_at == 0) return sights;
+  const auto standing_for = static_cast<float>(frames / static_cast<double>(looked_at));
+  std::vector<float> uncovered(field.targets().size(), 1.0F), clearness(uncovered.size(), 0.0F);
+  const auto add = [&](const std::vector<Sight>& seen, float times) {
+    for (const Sight& sight : seen) {
+      uncovered[sight.target] *= std::pow(1.0F - sight.covered_share, times);
+      clearness[sight.target] = std::max(clearness[sight.target], sight.clearness);
+    }
+  };
+  add(sights, 1.0F);
+  for (const View& frame : views_between(from, to, looked_at)) {
+    add(field.sights(frame), standing_for);
+  }
+  sights.clear();
+  for (std::uint32_t t = 0; t < uncovered.size(); ++t) {
+    if (clearness[t] == 0.0F) continue;  // unknown space that hides it may hide it from all
+    sights.push_back({t, std::min(1.0F - uncovered[t], clearness[t]), clearness[t]});
+  }
+  return sights;
+}
+
 std::optional<Choice> choose_view(const GainField& field, const ViewLimits& limits,
-                                  const Admission& admits, const Vector3d& position,
-                                  double most_way, const ChooserSettings& settings) {
-  return Chooser(field, limits, admits, position, most_way, settings).choose();
+                                  const Admission& admits, const View& present, double most_way,
+                                  const ChooserSettings& settings) {
+  return Chooser(field, limits, admits, present, most_way, settings).choose();
 }
 
 }  // namespace skycap::survey::skycap

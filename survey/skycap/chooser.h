@@ -25,7 +25,14 @@ struct ChooserSettings {
   double unseen_yield = 1.0;   ///< what comes of guessed gains (GuessYield), for best_gain
   unsigned threads = 1;        ///< zero: all processors
   std::stop_token stop{};      ///< has choose_view() throw Interrupted
+  /// Between frames that are taken on the way to a view, in metres of way; zero: none are.
+  double frame_spacing = 0.0;
 };
+
+/// Views on the straight way from one view to another as a camera has them that turns evenly
+/// meanwhile, in yaw and in pitch: `count` of them, none at the ends.
+std::vector<geometry::View> views_between(const geometry::View& from, const geometry::View& to,
+                                          std::size_t count);
 
 struct Choice {
   geometry::View view;
@@ -41,10 +48,17 @@ struct Choice {
 /// Whether the sensor can be there; must be safe to call from several threads.
 using Admission = std::function<bool(const geometry::View&)>;
 
-/// The next view from `position`; nothing if no admissible view has any gain. Views farther away
-/// than `most_way` are left out. The same inputs give the same choice for any number of threads.
+/// What a view and the frames on the straight way to it have in sight together, ascending: a share
+/// is of what any of them covers. A few frames stand for all; without any it is the view's own.
+std::vector<Sight> sights_with_way(const GainField& field, const geometry::View& from,
+                                   const geometry::View& to, double frame_spacing);
+
+/// The next view from `present`; nothing if no admissible view has any gain. Views farther away
+/// than `most_way` are left out. With frames on the way the best views by themselves are batched by
+/// what they and the straight ways to them would cover together. The same inputs give the same
+/// choice for any number of threads.
 std::optional<Choice> choose_view(const GainField& field, const ViewLimits& limits,
-                                  const Admission& admits, const Eigen::Vector3d& position,
+                                  const Admission& admits, const geometry::View& present,
                                   double most_way, const ChooserSettings& settings);
 
 }  // namespace skycap::survey::skycap

@@ -22,6 +22,9 @@ constexpr float off_plane_tolerance = 0.6F;
 constexpr float sharing_reach = 1.6F;    // within which noise carries measurements over
 constexpr float enlarged_reach = 1.6F;   // newcomers within it take area from enlarged surfels
 constexpr float territory_reach = 2.0F;  // within which an old surfel makes a new one no news
+constexpr float face_depth = 0.55F;      // behind a surfel, where another face may be
+constexpr float face_reach = 2.2F;       // and within which
+constexpr float other_face = 0.3F;       // below this cosine: another face
 constexpr int most_merges = 8;
 constexpr float opposite_sides = -0.3F;  // below this cosine: two sides of something thin
 
@@ -202,6 +205,16 @@ bool DoseMap::has_surfel_near(const Vector3f& point, float radius) const {
   std::vector<geometry::Neighbour> found;
   grid_.find_within(point, radius, found);
   return !found.empty();
+}
+
+bool DoseMap::has_other_face_near(std::size_t i) const {
+  const Vector3f& normal = surfels_.normals[i];
+  std::vector<geometry::Neighbour> found;
+  grid_.find_within(surfels_.positions[i] - face_depth * spacing_ * normal, face_reach * spacing_,
+                    found);
+  return std::ranges::any_of(found, [&](const geometry::Neighbour& neighbour) {
+    return surfels_.normals[neighbour.index].dot(normal) < other_face;
+  });
 }
 
 double DoseMap::area_near(const Vector3f& point, float radius, std::size_t first) const {

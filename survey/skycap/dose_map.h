@@ -63,6 +63,10 @@ class DoseMap {
 
   bool has_surfel_near(const Eigen::Vector3f& point, float radius) const;
 
+  /// Whether a surfel behind the edge that surfel `i` is at faces another way: as a rule, over a
+  /// convex edge.
+  bool has_other_face_near(std::size_t i) const;
+
   /// Area that the surfels from index `first` on within `radius` of a point stand for [m^2].
   double area_near(const Eigen::Vector3f& point, float radius, std::size_t first) const;
 

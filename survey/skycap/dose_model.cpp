@@ -75,11 +75,12 @@ class RayTable {
     for (Node& node : nodes_) node.weight /= total;
   }
 
-  double operator()(double across, double along, double cosine, double sine) const {
+  /// `lift` is by how much the whole look is displaced across the surface.
+  double operator()(double across, double along, double cosine, double sine, double lift) const {
     double probability = 0.0;
     for (const Node& node : nodes_) {
       const double lateral = along + node.displacement * sine;
-      const double normal = node.displacement * cosine;
+      const double normal = node.displacement * cosine + lift;
       const double squared = across * across + lateral * lateral + normal * normal;
       if (squared < ball_.reach() * ball_.reach()) {
         probability += node.weight * ball_(std::sqrt(squared));
@@ -101,8 +102,9 @@ class RayTable {
   std::vector<Node> nodes_;
 };
 
-/// 1 - f of the class comment, for a grid of that spacing across the rays.
-double uncovered_share(const RayTable& ray, double spacing, double cosine, bool even) {
+/// 1 - f of the class comment, for a grid of that spacing across the rays and a look that is
+/// displaced by `lift`.
+double uncovered_share(const RayTable& ray, double spacing, double cosine, bool even, double lift) {
   const double sine = std::sqrt(1.0 - cosine * cosine);
   const double step_along = spacing / cosine;
   const int reach_across = static_cast<int>(ray.reach_across() / spacing) + 1;
@@ -119,7 +121,7 @@ double uncovered_share(const RayTable& ray, double spacing, double cosine, bool 
       for (int i = -reach_across; i <= reach_across; ++i) {
         for (int j = -reach_along; j <= reach_along; ++j) {
           missed *= 1.0 - ray((i + offset_across) * spacing, (j + offset_along) * step_along,
-                              cosine, sine);
+                              cosine, sine, lift);
         }
         if (missed <= 0.0) break;
       }
@@ -129,16 +131,42 @@ double uncovered_share(const RayTable& ray, double spacing, double cosine, bool 
   return share;
 }
 
+/// Its mean over displacements of that standard deviation, by the midpoint rule: as many up as
+/// down.
+double mean_uncovered_share(const RayTable& ray, double spacing, double cosine, bool even,
+                            double deviation) {
+  if (deviation <= 0.0) return uncovered_share(ray, spacing, cosine, even, 0.0);
+  constexpr int least_nodes = 6, most_nodes = 40;  // four in the reach of the ball, if possible
+  const int nodes = static_cast<int>(std::clamp(std::ceil(12.0 * deviation / ray.reach_across()),
+                                                double{least_nodes}, double{most_nodes}));
+  double share = 0.0, total = 0.0;
+  for (int i = 0; i < nodes; ++i) {
+    const double z = 3.0 * (i + 0.5) / nodes, weight = std::exp(-0.5 * z * z);
+    share += weight * uncovered_share(ray, spacing, cosine, even, z * deviation);
+    total += weight;
+  }
+  return share / total;
+}
+
 }  // namespace
 
 double Noise::across(double cos_incidence) const {
   return std::hypot(isotropic, along_ray * cos_incidence);
 }
 
+double Noise::across_of_look(double cos_incidence, double z) const {
+  // An angle moves points across the ray.
+  const double sine = std::sqrt(std::max(0.0, 1.0 - cos_incidence * cos_incidence));
+  return std::hypot(place, angle * z * sine);
+}
+
 Noise Noise::at(double z) const {
   if (growing == 0.0) return *this;
   const double factor = std::sqrt(1.0 - growing + growing * std::pow(z / depth, 4));
-  return {.isotropic = factor * isotropic, .along_ray = factor * along_ray};
+  return {.isotropic = factor * isotropic,
+          .along_ray = factor * along_ray,
+          .place = place,
+          .angle = angle};
 }
 
 bool Noise::is_like(const Noise& other, double tolerance) const {
@@ -162,10 +190,10 @@ DoseModel::DoseModel(double coverage_radius, const Noise& noise, double ray_spac
       const double spacing = coverage_radius * std::sqrt(cosine / rays);
       const Noise here = noise.at(spacing / ray_spacing);
       const bool even = here.isotropic > 0.6 * spacing / cosine;
+      const double displaced = noise.across_of_look(cosine, spacing / ray_spacing);
       const double uncovered =
-          noise.growing > 0.0
-              ? uncovered_share(RayTable(coverage_radius, here), spacing, cosine, even)
-              : uncovered_share(constant, spacing, cosine, even);
+          mean_uncovered_share(noise.growing > 0.0 ? RayTable(coverage_radius, here) : constant,
+                               spacing, cosine, even, displaced);
       const double hazard =
           -std::log(std::max(uncovered, std::exp(-static_cast<double>(most_hazard))));
       hazard_per_ray_[c][d] = static_cast<float>(hazard / rays);

@@ -25,9 +25,15 @@ struct Noise {
   /// Elberink, Accuracy and Resolution of Kinect Depth Data, Sensors 12, 2012, Eq. (10)).
   double growing = 0.0;
   double depth = 1.0;  ///< that the deviations hold at if they grow [m]
+  /// Errors of the pose, which all points of a look have alike: of the place along each axis [m],
+  /// and small angles about each [rad].
+  double place = 0.0, angle = 0.0;
 
-  /// Standard deviation across a surface met at this cosine of the angle of incidence.
+  /// Standard deviation of the points of one look across a surface met at this cosine of the angle
+  /// of incidence.
   double across(double cos_incidence) const;
+  /// That of a whole look, at a depth [m].
+  double across_of_look(double cos_incidence, double z) const;
   /// The noise of what is so deep, which does not grow.
   Noise at(double z) const;
   /// Whether the other one is so much like it that doses are the same: all parts within `tolerance`
@@ -39,12 +45,14 @@ struct Noise {
 ///
 /// For rays in a square grid (seen by the sensor) that meet a plane at the given incidence,
 /// 1 - f is the mean over the grid's offset of prod_i (1 - p_i), where p_i is the probability that
-/// the return of ray i falls into the ball of radius r_d about the place. It is tabulated at
-/// construction (up to a tenth of a second) and interpolated.
+/// the return of ray i falls into the ball of radius r_d about the place. An error of the pose
+/// moves all returns of a look alike: the mean is over it, too, across the surface; along it the
+/// grid's offset already is any. It is tabulated at construction (up to a tenth of a second, half
+/// of one with such errors) and interpolated.
 class DoseModel {
  public:
   /// `ray_spacing` is that of neighbouring rays at one metre of depth, by which a spacing tells the
-  /// depth that noise is of; it may be left out for noise that does not grow.
+  /// depth that noise is of; it may be left out for noise that does not grow, nor has angles.
   DoseModel(double coverage_radius, const Noise& noise, double ray_spacing = 1.0);
 
   /// -ln(1 - covered share) of a look with `ray_density` rays per square metre of surface (not of

@@ -86,7 +86,7 @@ void PriorGuesses::update(const DoseMap& map, const SpaceMemory& space) {
   for (std::size_t i = 0; i < patches_.size(); ++i) {
     if (states_[i] != State::open) continue;
     const SpaceState known = space.query(patches_[i].position, images_asked_);
-    if (known == SpaceState::unknown) continue;
+    if (is_unknown(known)) continue;
     states_[i] = known == SpaceState::measured ? State::found : State::refuted;
   }
   images_asked_ = space.image_count();

@@ -39,6 +39,12 @@ void SkycapConfig::validate() const {
           "planner.stop.time_per_view", stop.time_per_view, "zero or more seconds");
   require(continuation_steps >= 1 && continuation_steps <= 5, "planner.continuation_steps",
           continuation_steps, "between 1 and 5");
+  require(place_error >= 0.0 && std::isfinite(place_error), "planner.place_error", place_error,
+          "zero or more metres");
+  require(angle_error >= 0.0 && std::isfinite(angle_error), "planner.angle_error", angle_error,
+          "zero or more radians");
+  require(frame_spacing >= 0.0 && std::isfinite(frame_spacing), "planner.frame_spacing",
+          frame_spacing, "zero or more metres");
   require(!scene_box || !scene_box->isEmpty(), "planner.scene_box", 0.0, "a box of positive size");
   limits.validate();
 }

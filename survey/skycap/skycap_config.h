@@ -58,6 +58,11 @@ struct SkycapConfig {
   /// Whether a ray without a return shows empty space, to drop guesses. Never for where to fly.
   bool misses_are_empty = true;
   unsigned threads = 1;  ///< zero: all processors; the plan does not depend on it
+  /// How far a scan's pose is known to be off: standard deviations of its place along each axis [m]
+  /// and of small angles about each [rad].
+  double place_error = 0.0, angle_error = 0.0;
+  /// Between frames that are taken on straight ways to views [m]; zero: none are.
+  double frame_spacing = 0.0;
 
   /// Throws Error{bad_config} naming the first field that is out of its interval.
   void validate() const;

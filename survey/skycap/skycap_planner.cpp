@@ -36,16 +36,9 @@ constexpr int most_idle_scans = 8;
 constexpr double scans_of_an_object = 7.0;
 /// Of this share of d in unknown space, 37 % lets a look at what is guessed beyond it through.
 constexpr double clearness_scale = 0.15;
-/// The resolution: this many surfels across the scene, and pixels to a surfel, between a block's
-/// and what still shows the relief that a view must see.
-constexpr double surfels_across = 150.0, least_pixels = 4.0, most_pixels = 25.0;
-/// A block is a little narrower than a surfel, so that no surfel falls between blocks, and of at
-/// least so many pixels each way: fewer would not tell the noise.
-constexpr double blocks_to_surfel = 0.8;
-constexpr int least_block_px = 4;
-/// Jumps in depth: what a slope of 76 degrees drops over a block; while the noise is not known, a
-/// share of the scene; then six deviations, which noise alone seldom spans in a block.
-constexpr double jump_slope = 4.0, unknown_noise_jump = 0.05, noise_jump = 6.0;
+/// A jump in depth is of six deviations, which noise alone seldom spans in a block; while the noise
+/// is not known, of a share of the scene.
+constexpr double unknown_noise_jump = 0.05, noise_jump = 6.0;
 /// Noise below the first share of r_d is as good as none; a change of the estimate by less than the
 /// second share of itself is not worth a new dose table.
 constexpr double negligible_noise = 0.12, noise_change = 0.03;
@@ -69,6 +62,7 @@ struct SkycapPlanner::Impl {
     chooser.view_distance = distance;
     chooser.view_price = given.view_price.value_or(3.0 * distance);
     chooser.threads = given.threads;
+    chooser.frame_spacing = given.frame_spacing;
     if (!given.ideas.targeted_views) chooser.clusters = 0;
     if (!given.ideas.refinement) chooser.refinements = 0;
     if (!given.ideas.batch) chooser.batch = 1;
@@ -81,20 +75,26 @@ struct SkycapPlanner::Impl {
     for (const Vector3f& point : kept.cloud().positions) seen.extend(point);
     const double extent =
         config.scene_box ? config.scene_box->sizes().maxCoeff() : seen.sizes().maxCoeff();
-    const double pixel = distance * ray_spacing(camera);
-    const double h = config.resolution.value_or(
-        std::clamp(extent / surfels_across, least_pixels * pixel, most_pixels * pixel));
-    blocks.block_px = std::max(least_block_px, static_cast<int>(blocks_to_surfel * h / pixel));
+    const auto [h, block_px, jump] =
+        scale_of(extent, distance * ray_spacing(camera), config.resolution);
+    blocks.block_px = block_px;
     blocks.threads = config.threads;
-    least_jump = jump_slope * blocks.block_px * pixel;
+    least_jump = jump;
     blocks.jump = static_cast<float>(std::max(least_jump, unknown_noise_jump * extent));
     map.emplace(static_cast<float>(h));
     space.emplace(static_cast<float>(0.6 * h), config.misses_are_empty);
-    dose.emplace(config.coverage_radius, Noise{});
+    dose.emplace(config.coverage_radius, with_pose_errors({}), ray_spacing(camera));
     unseen.emplace(
         UnseenSurfaceSettings{.steps = config.ideas.unseen_surface ? config.continuation_steps : 0,
                               .learns_rates = config.ideas.learned_rates});
     if (config.prior) unseen->expect({*config.prior, static_cast<float>(h)});
+  }
+
+  /// No scan shows them by itself.
+  Noise with_pose_errors(Noise learnt) const {
+    learnt.place = config.place_error;
+    learnt.angle = config.angle_error;
+    return learnt;
   }
 
   void learn_noise(const std::vector<BlockImage>& images) {
@@ -103,7 +103,7 @@ struct SkycapPlanner::Impl {
     const auto estimate = noise.noise(negligible_noise * config.coverage_radius, distance);
     if (!estimate) return;
     if (!dose->noise().is_like(*estimate, noise_change)) {
-      dose.emplace(config.coverage_radius, *estimate, ray_spacing(camera));
+      dose.emplace(config.coverage_radius, with_pose_errors(*estimate), ray_spacing(camera));
     }
     blocks.jump = static_cast<float>(std::max(least_jump, noise_jump * dose->noise().across(1.0)));
   }
@@ -144,6 +144,7 @@ struct SkycapPlanner::Impl {
       if (config.ideas.free_space) space->add(image, noise_along);
       map->add(image, *dose, blocks.jump, region, was_measured);
     }
+    space->compare_misses(map->surfels().positions, map->surfels().normals);
     const double newly_covered = map->covered_area() - covered_before;
     most_covered_at_once = std::max(most_covered_at_once, newly_covered);
     return newly_covered;
@@ -220,7 +221,7 @@ struct SkycapPlanner::Impl {
   std::optional<View> choose() {
     const double way = most_way();
     chooser.unseen_yield = yield.value();
-    const auto choice = choose_view(*field, config.limits, admission(), position, way, chooser);
+    const auto choice = choose_view(*field, config.limits, admission(), present, way, chooser);
     chances = choice ? choice->chances : std::vector<float>(field->targets().size(), 0.0F);
     next_gain = choice && map->area() > 0.0 ? choice->best_gain / map->area() : 0.0;
     stop = reason_to_stop();
@@ -295,8 +296,8 @@ struct SkycapPlanner::Impl {
     stopwatch.lap("insert");
     if (!map) start();
     take_in(scan);
-    if (scans > 0) length += (scan.sensor_position() - position).norm();
-    position = scan.sensor_position();
+    if (scans > 0) length += (scan.sensor_position() - present.position).norm();
+    present = geometry::view_of(scan.world_from_sensor);
     ++scans;
     refused.clear();
     proposed.reset();
@@ -343,7 +344,7 @@ struct SkycapPlanner::Impl {
   std::size_t scans = 0;
   double length = 0.0;
   int idle_scans = 0;
-  Vector3d position = Vector3d::Zero();
+  View present;          ///< of the last view's scan
   PlaceCheck may_be_at;  ///< null: anywhere
   std::optional<View> proposed;
   std::vector<View> refused;  ///< since the last scan

@@ -9,6 +9,13 @@ namespace {
 
 constexpr float infinity = std::numeric_limits<float>::infinity();
 
+/// Rays at a lower cosine of incidence may well pass a surface by.
+constexpr float least_struck_cosine = 0.3F;
+/// Such a share of the points in sight, and so many of them, on rays without a return tell of
+/// glass. Where there is none, slender bars and noise make it a thousandth or less.
+constexpr double glassy_share = 0.004;
+constexpr std::size_t least_missed = 30;
+
 /// Whether no block around has a return: then a grazed surface that swallowed the rays is unlikely,
 /// since some of the neighbours would have hit it less obliquely.
 bool is_amid_misses(const BlockImage& image, int row, int column) {
@@ -67,6 +74,7 @@ void SpaceMemory::add(const BlockImage& image, float noise) {
                    std::vector<float>(count, -infinity),
                    std::vector<float>(count, -infinity),
                    count_++,
+                   0.0F,
                    middle_of(image)};
   for (std::size_t i = 0; i < count; ++i) {
     const Block& block = image.blocks[i];
@@ -78,6 +86,7 @@ void SpaceMemory::add(const BlockImage& image, float noise) {
       }
       continue;
     }
+    depth.farthest = std::max(depth.farthest, block.depth);
     // A slanted surface spans depths of sqrt(3) standard deviations either side of their mean.
     const float relief = std::sqrt(
         3.0F * std::max(0.0F, block.depth_deviation * block.depth_deviation - noise * noise));
@@ -91,16 +100,64 @@ void SpaceMemory::add(const BlockImage& image, float noise) {
   while (bytes_ > most_bytes_ && images_.size() > 1) forget_one();
 }
 
-SpaceState SpaceMemory::query(const Eigen::Vector3f& point, std::size_t first) const {
-  bool is_measured = false;
+void SpaceMemory::compare_misses(std::span<const Eigen::Vector3f> points,
+                                 std::span<const Eigen::Vector3f> normals) {
+  if (!misses_are_empty_ || misses_lie_) return;
+  for (const DepthImage& image : images_) {
+    const std::size_t first = image.number < compared_images_ ? compared_points_ : 0;
+    count_misses(image, points.subspan(first), normals.subspan(first));
+  }
+  compared_images_ = count_;
+  compared_points_ = points.size();
+  misses_lie_ =
+      points_missed_ >= least_missed &&
+      static_cast<double>(points_missed_) > glassy_share * static_cast<double>(points_in_sight_);
+}
+
+void SpaceMemory::count_misses(const DepthImage& image, std::span<const Eigen::Vector3f> points,
+                               std::span<const Eigen::Vector3f> normals) {
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const auto hit = image.projection.project(points[i]);
+    if (!hit || hit->depth > image.farthest) continue;
+    const Eigen::Vector3f ray = (points[i] - image.projection.sensor_position).normalized();
+    if (std::abs(ray.dot(normals[i])) < least_struck_cosine) continue;
+    ++points_in_sight_;
+    if (image.empty_before[hit->block] == infinity) ++points_missed_;
+  }
+}
+
+template <typename Believes>
+SpaceState SpaceMemory::query(const Eigen::Vector3f& point, std::size_t first,
+                              Believes believes_miss) const {
+  SpaceState state = SpaceState::outside;
   for (std::size_t i = images_.size(); i-- > 0 && images_[i].number >= first;) {
     const DepthImage& image = images_[i];
     const auto hit = image.projection.project(point);
     if (!hit) continue;
-    if (hit->depth < image.empty_before[hit->block]) return SpaceState::empty;
-    is_measured = is_measured || hit->depth <= image.measured_until[hit->block];
+    const float empty_before = image.empty_before[hit->block];
+    if (hit->depth < empty_before && (empty_before < infinity || believes_miss(image))) {
+      return SpaceState::empty;
+    }
+    if (hit->depth <= image.measured_until[hit->block]) {
+      state = SpaceState::measured;
+    } else if (state == SpaceState::outside) {
+      state = SpaceState::hidden;
+    }
   }
-  return is_measured ? SpaceState::measured : SpaceState::unknown;
+  return state;
+}
+
+SpaceState SpaceMemory::query(const Eigen::Vector3f& point, std::size_t first) const {
+  return query(point, first, [](const DepthImage& /*image*/) { return true; });
+}
+
+SpaceState SpaceMemory::query_surface(const Eigen::Vector3f& point, const Eigen::Vector3f& normal,
+                                      std::size_t first) const {
+  if (!misses_lie_) return query(point, first);
+  return query(point, first, [&](const DepthImage& image) {
+    const Eigen::Vector3f towards_sensor = (image.projection.sensor_position - point).normalized();
+    return towards_sensor.dot(normal) >= least_struck_cosine;
+  });
 }
 
 bool SpaceMemory::is_proven_empty(const Eigen::Vector3f& centre, float radius) const {

@@ -4,6 +4,7 @@
 #include <atomic>
 #include <cmath>
 #include <numbers>
+#include <utility>
 
 namespace skycap::survey::skycap {
 namespace {
@@ -18,8 +19,12 @@ constexpr double correlation = 0.2;      // neighbouring patches share their fat
 constexpr float disappointment = 0.35F;  // factor on the trust in a place that stayed unknown
 
 // First guesses [continuation][step]: what tuning on three objects found, and only a start.
-constexpr std::array<std::array<double, most_steps>, 3> first_rates = {
-    {{0.8, 0.7, 0.6, 0.5, 0.4}, {0.5, 0.4, 0.3, 0.2, 0.15}, {0.4, 0.3, 0.2, 0.15, 0.1}}};
+constexpr std::array<std::array<double, most_steps>, continuations> first_rates = {
+    {{0.8, 0.7, 0.6, 0.5, 0.4},
+     {0.5, 0.4, 0.3, 0.2, 0.15},
+     {0.4, 0.3, 0.2, 0.15, 0.1},
+     {0.5, 0.4, 0.3, 0.2, 0.2},
+     {0.9, 0.85, 0.8, 0.7, 0.6}}};
 
 /// The same of what is thought to be there beforehand: a few scans without it make it unlikely.
 constexpr double first_prior_rate = 0.9;
@@ -31,7 +36,12 @@ constexpr double trusted_prior_rate = 0.5;
 constexpr std::uint64_t prior_place = std::uint64_t{1} << 63;
 
 std::uint8_t kind_of(Continuation continuation, int step) {
-  return static_cast<std::uint8_t>(3 * step + static_cast<int>(continuation));
+  return static_cast<std::uint8_t>(continuations * step + static_cast<int>(continuation));
+}
+
+/// Of a surfel's chains, which `beyond` shares with `straight`.
+std::size_t chain_number(int direction, Continuation continuation) {
+  return 4 * static_cast<std::size_t>(direction) + static_cast<std::size_t>(continuation);
 }
 
 std::uint64_t place_of(const Vector3f& position, const Vector3f& normal, float edge, int step) {
@@ -53,10 +63,10 @@ std::uint64_t place_of(const Vector3f& position, const Vector3f& normal, float e
 
 UnseenSurface::UnseenSurface(const UnseenSurfaceSettings& settings) : settings_(settings) {
   settings_.steps = std::clamp(settings.steps, 0, most_steps);
-  for (int continuation = 0; continuation < 3; ++continuation) {
+  for (int continuation = 0; continuation < continuations; ++continuation) {
     for (int step = 0; step < most_steps; ++step) {
       const double rate = first_rates[continuation][step];
-      rates_[3 * step + continuation] = {rate * prior_strength, prior_strength};
+      rates_[continuations * step + continuation] = {rate * prior_strength, prior_strength};
     }
   }
   rates_[prior_kind] = {first_prior_rate * prior_strength, prior_strength};
@@ -76,6 +86,8 @@ void UnseenSurface::predict(const DoseMap& map, const SpaceMemory& space,
     emit_prior(region);
   }
   const Surfels& surfels = map.surfels();
+  // What was known to be empty may be unknown again, this once.
+  if (std::exchange(misses_lied_, space.misses_lie()) != space.misses_lie()) asked_.clear();
   asked_.resize(surfels.size());
   for (std::size_t i = 0; i < surfels.size(); ++i) {
     if (surfels.open_directions[i] == 0) continue;
@@ -89,6 +101,13 @@ void UnseenSurface::predict(const DoseMap& map, const SpaceMemory& space,
            {Continuation::straight, Continuation::convex, Continuation::concave}) {
         emit_chain(map, space, i, k, continuation, region);
       }
+      const auto is_known_at_once = [&](Continuation continuation) {
+        return asked.chains[chain_number(k, continuation)].unknown_steps == 0;
+      };
+      if (is_known_at_once(Continuation::straight) && is_known_at_once(Continuation::convex) &&
+          !map.has_other_face_near(i)) {
+        emit_chain(map, space, i, k, Continuation::back, region);
+      }
     }
   }
 }
@@ -101,9 +120,7 @@ void UnseenSurface::emit_chain(const DoseMap& map, const SpaceMemory& space, std
   const Vector3f& origin = surfels.positions[surfel];
   const Vector3f& up = surfels.normals[surfel];
   const Vector3f along = open_direction(surfels, surfel, direction);
-  AskedChain& asked =
-      asked_[surfel]
-          .chains[static_cast<std::size_t>(3 * direction) + static_cast<std::size_t>(continuation)];
+  AskedChain& asked = asked_[surfel].chains[chain_number(direction, continuation)];
   const std::size_t first_image = asked.images;
   asked.images = static_cast<std::uint32_t>(space.image_count());
   for (int step = 0; step < settings_.steps; ++step) {
@@ -111,6 +128,7 @@ void UnseenSurface::emit_chain(const DoseMap& map, const SpaceMemory& space, std
     UnseenPatch patch;
     switch (continuation) {
       case Continuation::straight:
+      case Continuation::beyond:
         patch.position = origin + along * (1.6F * h * scale);
         patch.normal = up;
         break;
@@ -122,19 +140,29 @@ void UnseenSurface::emit_chain(const DoseMap& map, const SpaceMemory& space, std
         patch.position = origin + along * (1.1F * h) + up * (1.1F * h * scale);
         patch.normal = -along;
         break;
+      case Continuation::back:
+        patch.position = origin - along * (h * (scale - 1.0F)) - up * (1.1F * h);
+        patch.normal = -up;
+        break;
     }
     if (region && !region->contains(patch.position)) return;
     if (step >= asked.unknown_steps) return;
-    if (space.query(patch.position, first_image) != SpaceState::unknown) {
+    const SpaceState state = space.query_surface(patch.position, patch.normal, first_image);
+    if (!is_unknown(state)) {
       asked.unknown_steps = step;
       return;
     }
+    if (state == SpaceState::hidden) asked.looked_at |= static_cast<std::uint8_t>(1U << step);
+    const bool was_looked_at = (asked.looked_at >> step & 1U) != 0;
+    const Continuation kind = continuation == Continuation::straight && !was_looked_at
+                                  ? Continuation::beyond
+                                  : continuation;
     patch.edge = std::max(h, 0.8F * h * scale);
-    patch.kind = kind_of(continuation, step);
+    patch.kind = kind_of(kind, step);
     patch.place = place_of(patch.position, patch.normal, patch.edge, step);
     if (!seen_places_.insert(patch.place).second || is_told_by_prior(patch)) continue;
     const auto trust = trusts_.find(patch.place);
-    patch.weight = patch.edge * patch.edge * static_cast<float>(hit_rate(continuation, step)) *
+    patch.weight = patch.edge * patch.edge * static_cast<float>(hit_rate(kind, step)) *
                    (trust == trusts_.end() ? 1.0F : trust->second);
     patches_.push_back(patch);
   }
@@ -183,7 +211,7 @@ void UnseenSurface::grade(std::span<const Expected> expected, const DoseMap& map
     const std::optional<double> share = found_share(patch, map, first_new);
     found[patch.kind].tries += clearness;
     found[patch.kind].hits += clearness * share.value_or(0.0);
-    if (!share && space.query(patch.position) == SpaceState::unknown) {
+    if (!share && is_unknown(space.query_surface(patch.position, patch.normal))) {
       trusts_.try_emplace(patch.place, 1.0F).first->second *=
           1.0F - clearness * (1.0F - disappointment);
     }
@@ -280,7 +308,7 @@ float Clearness::of(std::size_t i, const Vector3f& sensor) const {
   for (std::size_t piece = 0; piece < pieces; ++piece) {
     if ((unknown >> piece & 1U) == 0) continue;
     const Vector3f at = patch.position + middles_[piece] * directions_[way];
-    if (space_->query(at, first) != SpaceState::unknown) unknown &= ~(1U << piece);
+    if (!is_unknown(space_->query(at, first))) unknown &= ~(1U << piece);
   }
   asked.store(images << pieces | unknown, std::memory_order_relaxed);
   return probabilities_[unknown];

@@ -2,10 +2,13 @@
 ///
 /// A surfel without a neighbour in some direction emits three chains of hypothetical patches:
 /// straight on, bent away (over a convex edge) and bent towards the free side (a concave edge), at
-/// distances that double. A chain ends at the first patch whose place is not unknown: what the
-/// sensor saw through cannot be surface. How much a hypothesis is worth is learnt: each kind of
-/// patch has a hit rate, updated after each scan with what appeared where it was expected, and a
-/// place that disappointed counts less each time. Nothing is forbidden for good.
+/// distances that double. Where the first two are known not to be, and no other face is near, the
+/// surfel is at the edge of something thin: a fourth chain guesses its back. A chain ends at the
+/// first patch whose place is not unknown: what the sensor saw through cannot be surface. How much
+/// a hypothesis is worth is learnt: each kind of patch has a hit rate, updated after each scan with
+/// what appeared where it was expected, and a place that disappointed counts less each time.
+/// Nothing is forbidden for good. What lies straight on past the border of all images is a kind of
+/// its own: only the image's border cut the surface off there, so that it is far likelier to go on.
 ///
 /// What is thought to be there beforehand (prior_guesses.h) is one more kind, graded as the others:
 /// where it is wrong, its rate falls with each scan that should have shown it.
@@ -31,17 +34,20 @@
 
 namespace skycap::survey::skycap {
 
-enum class Continuation : std::uint8_t { straight, convex, concave };
+/// How surface goes on; `back`: as the other side of something thin; `beyond`: straight, where no
+/// image looked.
+enum class Continuation : std::uint8_t { straight, convex, concave, back, beyond };
+inline constexpr int continuations = 5;
 
 /// UnseenPatch::kind of what is thought to be there beforehand.
-inline constexpr std::uint8_t prior_kind = 15;
+inline constexpr std::uint8_t prior_kind = 25;
 
 struct UnseenPatch {
   Eigen::Vector3f position;
   Eigen::Vector3f normal;  ///< unit
   float edge;              ///< of the square that it stands for
   float weight;            ///< area times the probability that there is surface
-  std::uint8_t kind;       ///< 3 * step + continuation, or prior_kind
+  std::uint8_t kind;       ///< 5 * step + continuation, or prior_kind
   std::uint64_t place;     ///< names the hypothesis: same place, facing and step, same number
 };
 
@@ -97,11 +103,12 @@ class UnseenSurface {
   struct AskedChain {
     std::uint32_t images = 0;                             ///< of the space memory that were asked
     int unknown_steps = std::numeric_limits<int>::max();  ///< no patch from this step on
+    std::uint8_t looked_at = 0;  ///< bit set: by an image, the step's place
   };
-  /// Those of one surfel, by direction and continuation, as long as it stays where it is.
+  /// Those of one surfel, as long as it stays where it is.
   struct AskedChains {
     Eigen::Vector3f position = Eigen::Vector3f::Zero(), normal = Eigen::Vector3f::Zero();
-    std::array<AskedChain, 18> chains;
+    std::array<AskedChain, 24> chains;  ///< by direction and continuation
   };
   void emit_chain(const DoseMap& map, const SpaceMemory& space, std::size_t surfel, int direction,
                   Continuation continuation, const std::optional<Eigen::AlignedBox3f>& region);
@@ -114,10 +121,11 @@ class UnseenSurface {
                                     std::size_t first_new) const;
 
   UnseenSurfaceSettings settings_;
-  std::array<Rate, 16> rates_;  ///< by UnseenPatch::kind
+  std::array<Rate, prior_kind + 1> rates_;  ///< by UnseenPatch::kind
   std::optional<PriorGuesses> prior_;
   std::vector<UnseenPatch> patches_;
   std::vector<AskedChains> asked_;                   ///< by surfel
+  bool misses_lied_ = false;                         ///< at the last prediction
   std::unordered_set<std::uint64_t> seen_places_;    ///< of the prediction under way
   std::unordered_map<std::uint64_t, float> trusts_;  ///< of places that disappointed
 };

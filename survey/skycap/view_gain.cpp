@@ -135,7 +135,13 @@ GainField GainField::of_known_surface(const DoseMap& map, const geometry::Camera
   for (std::size_t first = 0; first < surfels.size(); first += stride) {
     const std::size_t end = std::min(first + stride, surfels.size()), middle = (first + end) / 2;
     float weight = 0.0F;
-    for (std::size_t i = first; i < end; ++i) weight += surfels.areas[i] * surfels.trusts[i];
+    for (std::size_t i = first; i < end; ++i) {
+      // What was no news when it was found is there all the same, as large as others mostly are.
+      constexpr float usual_area = 1.5F;  // in squares of the spacing
+      const float area =
+          surfels.areas[i] > 0.0F ? surfels.areas[i] : usual_area * map.spacing() * map.spacing();
+      weight += area * surfels.trusts[i];
+    }
     field.targets_.push_back({surfels.positions[middle], surfels.normals[middle], weight});
     field.sources_.push_back(static_cast<std::uint32_t>(middle));
   }

@@ -2,6 +2,8 @@
 
 #include <cmath>
 #include <limits>
+#include <numbers>
+#include <vector>
 
 #include <gtest/gtest.h>
 
@@ -15,6 +17,7 @@ using Eigen::Vector3d;
 const geometry::Camera camera{geometry::CameraConfig{.width = 424, .height = 240}};
 const std::vector<tests::Sphere> ball = {{}};
 constexpr float spacing = 0.03F;
+const geometry::View from = geometry::look_at({2, 0, 0}, {0, 0, 0});
 constexpr double infinity = std::numeric_limits<double>::infinity();
 const skycap::Admission anywhere = [](const geometry::View&) { return true; };
 
@@ -68,6 +71,24 @@ TEST(GainField, SeesNothingBeyondTheIncidence) {
     const auto& target = field.targets()[sight.target];
     const float cosine = target.normal.dot((eye - target.position).normalized());
     EXPECT_GT(cosine, std::cos(0.7F) - 1e-5F);
+  }
+}
+
+// Half a ball of radius 0.5 m and a little more is seen from 2 m: 1.2 m^2, whether it was news or
+// not.
+TEST(GainField, KnownSurfaceIsAllThatWasSeen) {
+  for (const bool is_news : {true, false}) {
+    const skycap::BlockImage image = skycap::make_block_image(
+        tests::scan_spheres(ball, camera, from, 0.0), camera, {.block_px = 4, .jump = 0.1F});
+    skycap::DoseMap map{spacing};
+    const skycap::DoseModel dose(0.005, {});
+    map.add(image, dose, 0.1F, std::nullopt,
+            [is_news](const Eigen::Vector3f&) { return !is_news; });
+    const auto field =
+        skycap::GainField::of_known_surface(map, camera, dose, {.view_distance = 2.0}, 100'000);
+    double area = 0.0;
+    for (const auto& target : field.targets()) area += target.weight;
+    EXPECT_NEAR(area, 1.2, 0.4) << is_news;
   }
 }
 
@@ -185,7 +206,7 @@ TEST(GainField, ASurfaceHidesWhatIsBehindItFromNearby) {
 TEST(Chooser, GoesWhereSomethingIsMissing) {
   const Known known({2, 0, 0});
   const skycap::GainField field = known.field();
-  const auto choice = skycap::choose_view(field, {}, anywhere, {2, 0, 0}, infinity, {});
+  const auto choice = skycap::choose_view(field, {}, anywhere, from, infinity, {});
   ASSERT_TRUE(choice);
   EXPECT_NEAR(field.gain(choice->view).area, choice->gain, 1e-9);
   // For the stop rule guesses count for less, what was seen too thinly in full.
@@ -199,8 +220,8 @@ TEST(Chooser, GoesWhereSomethingIsMissing) {
 TEST(Chooser, DoesNotDependOnTheNumberOfThreads) {
   const Known known({2, 0, 0});
   const skycap::GainField field = known.field();
-  const auto one = skycap::choose_view(field, {}, anywhere, {2, 0, 0}, infinity, {.threads = 1});
-  const auto four = skycap::choose_view(field, {}, anywhere, {2, 0, 0}, infinity, {.threads = 4});
+  const auto one = skycap::choose_view(field, {}, anywhere, from, infinity, {.threads = 1});
+  const auto four = skycap::choose_view(field, {}, anywhere, from, infinity, {.threads = 4});
   ASSERT_TRUE(one && four);
   EXPECT_EQ(one->view.position, four->view.position);
   EXPECT_EQ(one->gain, four->gain);
@@ -209,17 +230,72 @@ TEST(Chooser, DoesNotDependOnTheNumberOfThreads) {
 TEST(Chooser, StaysInReachAndWhereItIsAdmitted) {
   const Known known({2, 0, 0});
   const skycap::GainField field = known.field();
-  const auto near = skycap::choose_view(field, {}, anywhere, {2, 0, 0}, 0.7, {});
+  const auto near = skycap::choose_view(field, {}, anywhere, from, 0.7, {});
   ASSERT_TRUE(near);
   EXPECT_LE((near->view.position - Vector3d(2, 0, 0)).norm(), 0.7);
   const skycap::Admission above = [](const geometry::View& view) {
     return view.position.z() > 0.5;
   };
-  const auto high = skycap::choose_view(field, {}, above, {2, 0, 0}, infinity, {});
+  const auto high = skycap::choose_view(field, {}, above, from, infinity, {});
   ASSERT_TRUE(high);
   EXPECT_GT(high->view.position.z(), 0.5);
-  EXPECT_FALSE(skycap::choose_view(field, {}, [](const geometry::View&) { return false; },
-                                   {2, 0, 0}, infinity, {}));
+  EXPECT_FALSE(skycap::choose_view(field, {}, [](const geometry::View&) { return false; }, from,
+                                   infinity, {}));
+}
+
+TEST(Chooser, TurnsEvenlyOnTheWay) {
+  const geometry::View east_down{{0, 0, 10}, Vector3d(1, 0, -1).normalized()};
+  const geometry::View north{{6, 3, 4}, {0, 1, 0}};
+  const auto frames = skycap::views_between(east_down, north, 3);
+  ASSERT_EQ(frames.size(), 3U);
+  EXPECT_TRUE(frames[1].position.isApprox(Vector3d(3, 1.5, 7)));
+  EXPECT_NEAR(frames[1].direction.z(), -std::sin(std::numbers::pi / 8.0), 1e-12);
+  EXPECT_NEAR(frames[1].direction.x(), frames[1].direction.y(), 1e-12);
+  EXPECT_NEAR(frames[0].direction.norm(), 1.0, 1e-12);
+  EXPECT_TRUE((frames[0].position + frames[2].position).isApprox(2.0 * frames[1].position));
+}
+
+TEST(Chooser, FramesOnTheWaySeeWhatAnyOfThemSees) {
+  const Known known({2, 0, 0});
+  const skycap::GainField field = known.field();
+  const geometry::View to = geometry::look_at({0.5, 2, 0.3}, {0, 0, 0});
+  const double way = (to.position - from.position).norm();
+  const auto alone = skycap::sights_with_way(field, from, to, 0.0);
+  EXPECT_EQ(alone.size(), field.sights(to).size());
+  std::vector<double> uncovered(field.targets().size(), 1.0);
+  const auto add = [&](const std::vector<skycap::Sight>& sights) {
+    for (const auto& sight : sights) uncovered[sight.target] *= 1.0 - sight.covered_share;
+  };
+  add(field.sights(to));
+  for (const geometry::View& frame : skycap::views_between(from, to, 2)) add(field.sights(frame));
+  const auto with_way = skycap::sights_with_way(field, from, to, way / 2.0 - 1e-9);
+  EXPECT_GT(with_way.size(), alone.size());
+  for (const skycap::Sight& sight : with_way) {
+    EXPECT_NEAR(sight.covered_share, std::min(1.0 - uncovered[sight.target], 1.0), 1e-5);
+  }
+}
+
+// Of the best views by themselves it takes the one that yields most with its way.
+TEST(Chooser, CountsWhatTheWayShows) {
+  const Known known({2, 0, 0});
+  const skycap::GainField field = known.field();
+  skycap::ChooserSettings settings{.view_price = 0.5, .batch = 1};
+  const auto yield = [&](const geometry::View& view, double frame_spacing) {
+    double gain = 0.0;
+    for (const auto& sight : skycap::sights_with_way(field, from, view, frame_spacing)) {
+      gain += field.targets()[sight.target].weight * sight.covered_share;
+    }
+    return gain / (settings.view_price + (view.position - from.position).norm());
+  };
+  const auto ends_alone = skycap::choose_view(field, {}, anywhere, from, infinity, settings);
+  for (const double spacing_of_frames : {0.1, 0.4}) {
+    settings.frame_spacing = spacing_of_frames;
+    const auto with_ways = skycap::choose_view(field, {}, anywhere, from, infinity, settings);
+    ASSERT_TRUE(ends_alone && with_ways);
+    EXPECT_GE(yield(with_ways->view, spacing_of_frames),
+              (1.0 - 1e-5) * yield(ends_alone->view, spacing_of_frames));
+    EXPECT_LE(yield(with_ways->view, 0.0), (1.0 + 1e-5) * yield(ends_alone->view, 0.0));
+  }
 }
 
 }  // namespace

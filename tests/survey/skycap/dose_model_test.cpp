@@ -84,6 +84,68 @@ TEST(DoseModel, NoiseAlongTheRayAgreesWithSimulation) {
   }
 }
 
+/// The same for looks whose points are all displaced alike, by the given deviation along each axis.
+double displaced_uncovered_share(double ray_density, const skycap::Noise& noise, double deviation,
+                                 int looks) {
+  std::mt19937_64 generator(2);
+  std::uniform_real_distribution<double> uniform(0.0, 1.0);
+  std::normal_distribution<double> normal;
+  const double spacing = 1.0 / std::sqrt(ray_density);
+  const int reach = static_cast<int>((radius + 4.5 * noise.isotropic) / spacing) + 1;
+  int uncovered = 0;
+  for (int look = 0; look < looks; ++look) {
+    const double u = uniform(generator), v = uniform(generator);
+    const double lift = deviation * normal(generator);  // in the plane any offset is as likely
+    bool is_covered = false;
+    for (int i = -reach; i <= reach && !is_covered; ++i) {
+      for (int j = -reach; j <= reach && !is_covered; ++j) {
+        const double x = (i + u) * spacing + noise.isotropic * normal(generator);
+        const double y = (j + v) * spacing + noise.isotropic * normal(generator);
+        const double z = lift + noise.isotropic * normal(generator);
+        is_covered = x * x + y * y + z * z < radius * radius;
+      }
+    }
+    uncovered += is_covered ? 0 : 1;
+  }
+  return static_cast<double>(uncovered) / looks;
+}
+
+// Points of one look miss together: many rays do not help against an error of the pose.
+TEST(DoseModel, ErrorsOfThePoseAgreeWithSimulation) {
+  constexpr int looks = 4000;
+  for (const double deviation : {0.5, 1.0, 3.0}) {
+    for (const double sigma : {0.0, 0.5}) {
+      skycap::Noise noise{.isotropic = sigma * radius};
+      for (const double rays : {0.5, 8.0}) {
+        const double density = rays / (radius * radius);
+        const double expected =
+            displaced_uncovered_share(density, noise, deviation * radius, looks);
+        noise.place = deviation * radius;
+        const skycap::DoseModel dose(radius, noise);
+        const double share = std::exp(-dose.hazard(static_cast<float>(density), 1.0F));
+        EXPECT_NEAR(share, expected, tolerance(expected, looks))
+            << deviation << " radii, noise " << sigma << ", " << rays << " rays";
+      }
+    }
+  }
+}
+
+// A thousandth of a radian at ten metres is a centimetre across the ray: all of it across a surface
+// that is met flat, none across one that is faced.
+TEST(DoseModel, ErrorsOfAnAngleGrowWithDepthAndCountAcrossTheRay) {
+  const skycap::Noise noise{.angle = 0.001};
+  EXPECT_NEAR(noise.across_of_look(1.0, 10.0), 0.0, 1e-12);
+  EXPECT_NEAR(noise.across_of_look(0.0, 10.0), 0.01, 1e-12);
+  EXPECT_NEAR(noise.across_of_look(std::cos(30.0 * degree), 20.0), 0.01, 1e-12);
+  constexpr double spacing = 0.0001;  // of rays at a metre
+  const skycap::DoseModel exact(radius, {}, spacing), turned(radius, noise, spacing);
+  const auto density = [](double depth) {
+    return static_cast<float>(0.5 / std::pow(spacing * depth, 2));
+  };
+  EXPECT_EQ(turned.hazard(density(20.0), 1.0F), exact.hazard(density(20.0), 1.0F));
+  EXPECT_LT(turned.hazard(density(20.0), 0.5F), 0.9F * exact.hazard(density(20.0), 0.5F));
+}
+
 // The discs of radius r_d about a grid of spacing s cover the plane if s <= r_d sqrt(2), and
 // pi r_d^2 / s^2 of it if they do not touch.
 TEST(DoseModel, CleanLooksCoverTheShareThatDiscsDo) {

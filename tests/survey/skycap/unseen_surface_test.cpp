@@ -38,7 +38,7 @@ TEST(UnseenSurface, ContinuesBeyondTheOutlineIntoTheUnknownOnly) {
   ASSERT_GT(unseen.patches().size(), 50U);
   double behind = 0.0, all = 0.0;
   for (const skycap::UnseenPatch& patch : unseen.patches()) {
-    EXPECT_EQ(known.space.query(patch.position), skycap::SpaceState::unknown);
+    EXPECT_TRUE(is_unknown(known.space.query(patch.position)));
     EXPECT_GT(patch.weight, 0.0F);
     all += patch.weight;
     // The sensor at (2, 0, 0) saw the ball up to x = 0.125.
@@ -62,8 +62,131 @@ TEST(UnseenSurface, RemembersWhatItAskedOfEarlierScans) {
     for (std::size_t i = 0; i < anew.patches().size(); ++i) {
       EXPECT_EQ(old.patches()[i].position, anew.patches()[i].position);
       EXPECT_EQ(old.patches()[i].place, anew.patches()[i].place);
+      EXPECT_EQ(old.patches()[i].kind, anew.patches()[i].kind);
     }
   }
+}
+
+// What rays without a return had refuted is open again as soon as they are found to pass through
+// surface; twin: one that never knew otherwise.
+TEST(UnseenSurface, ForgetsWhatMissesRefutedOnceTheyHaveLied) {
+  Knowledge known;
+  for (const Vector3d& station : {Vector3d(2, 0, 0), Vector3d(0, 2, 0)}) known.look_from(station);
+  skycap::UnseenSurface old({});
+  old.predict(known.map, known.space, std::nullopt);
+  const std::size_t before = old.patches().size();
+  std::vector<Vector3f> beside;  // on such rays of the first scan
+  for (int i = 0; i < 1000; ++i) {
+    beside.emplace_back(0.3F, 0.0003F * static_cast<float>(i) + 0.6F, 0.0F);
+  }
+  known.space.compare_misses(beside, std::vector<Vector3f>(beside.size(), Vector3f::UnitX()));
+  ASSERT_TRUE(known.space.misses_lie());
+  old.predict(known.map, known.space, std::nullopt);
+  skycap::UnseenSurface anew({});
+  anew.predict(known.map, known.space, std::nullopt);
+  EXPECT_GT(old.patches().size(), before);
+  ASSERT_EQ(old.patches().size(), anew.patches().size());
+  for (std::size_t i = 0; i < anew.patches().size(); ++i) {
+    EXPECT_EQ(old.patches()[i].position, anew.patches()[i].position);
+    EXPECT_EQ(old.patches()[i].place, anew.patches()[i].place);
+  }
+}
+
+int count_of(const skycap::UnseenSurface& unseen, skycap::Continuation continuation) {
+  return static_cast<int>(
+      std::ranges::count_if(unseen.patches(), [&](const skycap::UnseenPatch& patch) {
+        return patch.kind % skycap::continuations == static_cast<int>(continuation);
+      }));
+}
+
+// From nearby, images cut the ball off; from afar, it ends within them.
+TEST(UnseenSurface, TellsWhatAnImageCutOffFromWhatItHides) {
+  Knowledge near, far;
+  near.look_from({0.9, 0, 0});
+  far.look_from({2, 0, 0});
+  skycap::UnseenSurface cut({}), whole({});
+  cut.predict(near.map, near.space, std::nullopt);
+  whole.predict(far.map, far.space, std::nullopt);
+  EXPECT_EQ(count_of(whole, skycap::Continuation::beyond), 0);
+  EXPECT_GT(count_of(whole, skycap::Continuation::straight), 50);
+  EXPECT_GT(count_of(cut, skycap::Continuation::beyond), 50);
+  for (const skycap::UnseenPatch& patch : cut.patches()) {
+    const auto kind = static_cast<skycap::Continuation>(patch.kind % skycap::continuations);
+    const bool is_outside = near.space.query(patch.position) == skycap::SpaceState::outside;
+    if (kind == skycap::Continuation::beyond) {
+      EXPECT_TRUE(is_outside);
+    }
+    if (kind == skycap::Continuation::straight) {
+      EXPECT_FALSE(is_outside);
+    }
+  }
+  // Once an image has looked there, it is what something hides, or known.
+  near.look_from({2, 0, 0});
+  cut.predict(near.map, near.space, std::nullopt);
+  EXPECT_EQ(count_of(cut, skycap::Continuation::beyond), 0);
+}
+
+TEST(UnseenSurface, LearnsOfWhatImagesCutOffByItself) {
+  Knowledge known;
+  known.look_from({0.9, 0, 0});
+  skycap::UnseenSurface unseen({});
+  unseen.predict(known.map, known.space, std::nullopt);
+  std::vector<skycap::UnseenSurface::Expected> cut_off;
+  for (std::uint32_t i = 0; i < unseen.patches().size(); ++i) {
+    const int kind = unseen.patches()[i].kind % skycap::continuations;
+    if (kind == static_cast<int>(skycap::Continuation::beyond)) cut_off.push_back({i, 1.0F});
+  }
+  const double beyond = unseen.hit_rate(skycap::Continuation::beyond, 0);
+  const double straight = unseen.hit_rate(skycap::Continuation::straight, 0);
+  unseen.grade(cut_off, known.map, known.space, known.map.surfels().size());  // nothing appeared
+  EXPECT_LT(unseen.hit_rate(skycap::Continuation::beyond, 0), beyond);
+  EXPECT_EQ(unseen.hit_rate(skycap::Continuation::straight, 0), straight);
+}
+
+/// A plate, 40 cm square and 5 mm thick, its front at x = 0.
+geometry::Scan scan_plate(const geometry::View& view) {
+  geometry::Scan scan;
+  scan.world_from_sensor = geometry::camera_pose(view);
+  const double x = view.position.x() > 0.0 ? 0.0 : -0.005;
+  for (int row = 0; row < camera.height(); ++row) {
+    for (int column = 0; column < camera.width(); ++column) {
+      const Vector3d ray = scan.world_from_sensor.linear() * camera.ray({column, row});
+      const Vector3d hit = view.position + (x - view.position.x()) / ray.x() * ray;
+      if (std::abs(hit.y()) > 0.2 || std::abs(hit.z()) > 0.2) continue;
+      scan.points.push_back(hit.cast<float>());
+      scan.pixels.push_back(static_cast<std::uint32_t>(row * camera.width() + column));
+    }
+  }
+  return scan;
+}
+
+// Past the plate's rim there is nothing: it is thin, and has a back. A ball never is.
+TEST(UnseenSurface, GuessesTheBackOfWhatIsThin) {
+  Knowledge plate, solid;
+  const auto look_from = [&](const Vector3d& station) {
+    const skycap::BlockImage image = skycap::make_block_image(
+        scan_plate(geometry::look_at(station, {0, 0, 0})), camera, {.block_px = 4, .jump = jump});
+    plate.space.add(image, 0.0F);
+    plate.map.add(image, skycap::DoseModel(0.005, {}), jump, std::nullopt);
+  };
+  look_from({1, 0, 0});
+  skycap::UnseenSurface unseen({});
+  unseen.predict(plate.map, plate.space, std::nullopt);
+  EXPECT_GT(count_of(unseen, skycap::Continuation::back), 20);
+  for (const skycap::UnseenPatch& patch : unseen.patches()) {
+    const auto kind = static_cast<skycap::Continuation>(patch.kind % skycap::continuations);
+    if (kind != skycap::Continuation::back) continue;
+    EXPECT_LT(patch.normal.x(), -0.9F);
+    EXPECT_LT(patch.position.x(), -0.5F * spacing);
+    EXPECT_LT(patch.position.tail<2>().cwiseAbs().maxCoeff(), 0.2F + spacing);
+  }
+  look_from({-1, 0, 0});
+  unseen.predict(plate.map, plate.space, std::nullopt);
+  EXPECT_EQ(count_of(unseen, skycap::Continuation::back), 0);
+
+  solid.look_from({1.2, 0, 0});
+  unseen.predict(solid.map, solid.space, std::nullopt);
+  EXPECT_EQ(count_of(unseen, skycap::Continuation::back), 0);
 }
 
 TEST(UnseenSurface, IsGoneOnceAllWasSeen) {
