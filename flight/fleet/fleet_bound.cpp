@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <limits>
 
+#include "flight/fleet/collection_bound.h"
 #include "flight/route/tour.h"
 
 namespace skycap::flight {
@@ -69,7 +70,7 @@ class BestTimes {
 
 }  // namespace
 
-FleetBound fleet_bound(const FleetProblem& least) {
+FleetBound fleet_bound(const FleetProblem& least, double makespan) {
   if (least.count() == 0) return {};
   const BestTimes times(least);
   double shared = unknown;
@@ -79,7 +80,8 @@ FleetBound fleet_bound(const FleetProblem& least) {
     if (k == 1) bound.flown = flown;
     shared = std::min(shared, flown / static_cast<double>(k));
   }
-  bound.makespan = std::max(times.longest(), shared);
+  const double collected = collection_bound(least, makespan);
+  bound.makespan = std::min(makespan, std::max({times.longest(), shared, collected}));
   return bound;
 }
 

@@ -11,11 +11,12 @@ struct FleetBound {
 };
 
 /// No way of sharing the stations out is faster than this, if no part of a flight is faster than
-/// `least` says; energy is not asked about. The makespan is the greater of the longest flight to a
-/// single station and back, and, over all numbers k of vehicles that may fly, the least k-th part
-/// of what k closed tours through all stations take at least: the 1-tree bound of Held & Karp with
-/// k copies of the pad, which are not neighbours. A vehicle's own pad and speed count as those of
-/// the best placed and the fastest one.
-FleetBound fleet_bound(const FleetProblem& least);
+/// `least` says; energy is not asked about. The makespan is the greatest of collection_bound(), of
+/// the longest flight to a single station and back, and, over all numbers k of vehicles that may
+/// fly, of the least k-th part of what k closed tours through all stations take at least: the
+/// 1-tree bound of Held & Karp with k copies of the pad, which are not neighbours. In the last two
+/// a vehicle's own pad and speed count as those of the best placed and the fastest one. `makespan`
+/// is what some fleet attains; no bound is above it.
+FleetBound fleet_bound(const FleetProblem& least, double makespan);
 
 }  // namespace skycap::flight

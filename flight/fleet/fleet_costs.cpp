@@ -13,41 +13,9 @@ namespace {
 
 using Eigen::Vector3d;
 
-/// Fills in the costs of a vehicle whose straight legs take `time_of(displacement)`.
-template <typename TimeOf>
-FleetVehicle costs_of(std::span<const Station> stations, const FleetMember& member,
-                      TimeOf time_of) {
-  const KnownSpace nothing(Obstacles{});
-  const std::optional<WaysHome> no_ways_home;
-  const Motion& motion = member.motion;
-  const LegCertifier legs(nothing, motion, 0.0, no_ways_home);
-  const Vector3d home = member.pad + Vector3d(0.0, 0.0, member.takeoff_climb);
-  const auto leg = [&](const Vector3d& way, const Station* from, const Station* to) {
-    const double time = legs.aimed_time(time_of(way), from, to);
-    return PartCost{time, motion.leg_energy(way, time), 0.0};
-  };
-  FleetVehicle vehicle{.energy_per_sortie = motion.usable_energy(),
-                       .stations_per_sortie = most_stations(motion.vehicle())};
-  vehicle.legs.resize(stations.size() * stations.size());
-  for (std::uint32_t i = 0; i < stations.size(); ++i) {
-    const Vector3d& place = stations[i].view.position;
-    vehicle.out.push_back(
-        in_turn(legs.takeoff_cost(member.takeoff_climb), leg(place - home, nullptr, nullptr)));
-    vehicle.back.push_back(
-        in_turn(leg(home - place, nullptr, nullptr), legs.landing_cost(member.takeoff_climb)));
-    vehicle.station.push_back(legs.station_cost(stations[i]));
-    for (std::uint32_t j = 0; j < stations.size(); ++j) {
-      if (i == j) continue;
-      vehicle.legs[i * stations.size() + j] =
-          leg(stations[j].view.position - place, &stations[i], &stations[j]);
-    }
-  }
-  return vehicle;
-}
-
-/// From rest to rest, whatever the way: the greater of the times that its shares along the straight
-/// line and upright take at least, and of the time at full speed.
-double least_leg_time(const Motion& motion, const Vector3d& way) {
+/// From rest to rest, whatever the way, and without settling: the greater of the times that its
+/// shares along the straight line and upright take at least, and of the time at full speed.
+double least_moving_time(const Motion& motion, const Vector3d& way) {
   const double distance = way.norm();
   if (distance == 0.0) return 0.0;
   const MissionMode& mode = motion.vehicle().mode;
@@ -60,11 +28,101 @@ double least_leg_time(const Motion& motion, const Vector3d& way) {
       rest_to_rest_time(std::abs(way.z()), way.z() > 0.0 ? mode.max_ascent : mode.max_descent,
                         mode.vertical_acceleration, mode.jerk);
   // Velocities that the limits allow are a convex set: no detour is faster than its straight line.
-  const double at_speed = distance / motion.leg_speed(direction);
-  return std::max({along, upright, at_speed}) + mode.settle_time;
+  return std::max({along, upright, distance / motion.leg_speed(direction)});
+}
+
+double least_leg_time(const Motion& motion, const Vector3d& way) {
+  if (way.isZero(0.0)) return 0.0;
+  return least_moving_time(motion, way) + motion.vehicle().mode.settle_time;
+}
+
+/// What stopping at corners takes at least, because a place of the straight line, and so a ball of
+/// `shortfall` about it, is not free.
+double least_corner_time(const Motion& motion, const Vector3d& way, double shortfall) {
+  if (!(shortfall > 0.0)) return 0.0;
+  const MissionMode& mode = motion.vehicle().mode;
+  // In no direction are speed and acceleration greater; of such times that of a longer way is
+  // greater, but by less and less.
+  const auto moving = [&](double distance) {
+    return rest_to_rest_time(distance, motion.conditions().cruise_speed,
+                             std::hypot(mode.acceleration, mode.vertical_acceleration), mode.jerk);
+  };
+  // A single corner is no nearer to either end than the ball is large, and both pieces together are
+  // no shorter than the line: they take least if one of them is as short as can be.
+  const double in_two = moving(shortfall) + moving(std::max(shortfall, way.norm() - shortfall));
+  const double slower = std::max(0.0, in_two - least_moving_time(motion, way));
+  const double stop = mode.settle_time + corner_hold;
+  return stop + std::min(slower, stop);
+}
+
+/// Fills in the costs of a vehicle whose straight legs take `time_of(displacement)`.
+template <typename TimeOf>
+FleetVehicle costs_of(std::span<const Station> stations, const FleetMember& member,
+                      TimeOf time_of) {
+  const KnownSpace nothing(Obstacles{});
+  const std::optional<WaysHome> no_ways_home;
+  const Motion& motion = member.motion;
+  const LegCertifier legs(nothing, motion, 0.0, no_ways_home);
+  const auto leg = [&](const Vector3d& way, double shortfall, const Station* from,
+                       const Station* to) {
+    const double moving = time_of(way) + least_corner_time(motion, way, shortfall);
+    const double time = legs.aimed_time(moving, from, to);
+    return PartCost{time, motion.leg_energy(way, time), 0.0};
+  };
+  const auto shortfall_in = [](const std::vector<double>& list, std::size_t i) {
+    return list.empty() ? 0.0 : list[i];
+  };
+  FleetVehicle vehicle{.energy_per_sortie = motion.usable_energy(),
+                       .stations_per_sortie = most_stations(motion.vehicle())};
+  vehicle.legs.resize(stations.size() * stations.size());
+  for (std::uint32_t i = 0; i < stations.size(); ++i) {
+    const Vector3d& place = stations[i].view.position;
+    const Vector3d way = place - member.home();
+    const double shortfall = shortfall_in(member.shortfalls.home, i);
+    vehicle.out.push_back(
+        in_turn(legs.takeoff_cost(member.takeoff_climb), leg(way, shortfall, nullptr, nullptr)));
+    vehicle.back.push_back(
+        in_turn(leg(-way, shortfall, nullptr, nullptr), legs.landing_cost(member.takeoff_climb)));
+    vehicle.station.push_back(legs.station_cost(stations[i]));
+    for (std::uint32_t j = 0; j < stations.size(); ++j) {
+      if (i == j) continue;
+      const std::size_t k = i * stations.size() + j;
+      vehicle.legs[k] = leg(stations[j].view.position - place,
+                            shortfall_in(member.shortfalls.legs, k), &stations[i], &stations[j]);
+    }
+  }
+  return vehicle;
+}
+
+double shortfall(const Segment& line, const FreeSpace& space, double clearance) {
+  const LegProof proof = prove(space, line, clearance, clearance + 1.0);
+  if (proof.is_proven) return 0.0;
+  return std::max(clearance_guard, clearance - proof.closest.distance);
 }
 
 }  // namespace
+
+std::vector<double> leg_shortfalls(std::span<const Station> stations, const FreeSpace& space,
+                                   double clearance) {
+  const std::size_t count = stations.size();
+  std::vector<double> shortfalls(count * count, 0.0);
+  for (std::size_t i = 0; i < count; ++i) {
+    for (std::size_t j = 0; j < i; ++j) {
+      const Segment line{stations[i].view.position, stations[j].view.position};
+      shortfalls[i * count + j] = shortfalls[j * count + i] = shortfall(line, space, clearance);
+    }
+  }
+  return shortfalls;
+}
+
+std::vector<double> home_shortfalls(std::span<const Station> stations, const Vector3d& home,
+                                    const FreeSpace& space, double clearance) {
+  std::vector<double> shortfalls;
+  for (const Station& station : stations) {
+    shortfalls.push_back(shortfall({home, station.view.position}, space, clearance));
+  }
+  return shortfalls;
+}
 
 FleetVehicle straight_costs(std::span<const Station> stations, const FleetMember& member) {
   return costs_of(stations, member,

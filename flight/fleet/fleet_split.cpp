@@ -133,13 +133,16 @@ FleetSplit share_sorties(const FleetProblem& problem, std::span<const std::uint3
 FleetSplit share_among(const FleetProblem& problem, std::span<const std::uint32_t> order,
                        FleetGoal goal) {
   FleetSplit best;
-  for (FleetSplit split : {split_among(problem, order, goal), share_sorties(problem, order)}) {
-    if (split.parts.empty()) continue;
+  const auto keep = [&](FleetSplit split) {
+    if (split.parts.empty()) return;
     split = exchanged(problem, std::move(split), goal);
     const bool is_better = best.parts.empty() || Worth{split.makespan, split.flown}.is_better_than(
                                                      {best.makespan, best.flown}, goal);
     if (is_better) best = std::move(split);
-  }
+  };
+  keep(split_among(problem, order, goal));
+  keep(share_sorties(problem, order));
+  keep(annealed(problem, best, goal));
   return best;
 }
 

@@ -4,12 +4,15 @@
 #include <cmath>
 #include <limits>
 #include <map>
+#include <numeric>
+#include <optional>
 #include <set>
 #include <utility>
 
-#include "flight/fleet/fleet_costs.h"
 #include "flight/fleet/fleet_split.h"
+#include "flight/fleet/learned_costs.h"
 #include "flight/fleet/timetable.h"
+#include "flight/space/interruptible_space.h"
 #include "flight/space/place_text.h"
 #include "geometry/error.h"
 #include "missions/derived/fleet.h"
@@ -20,146 +23,6 @@ namespace skycap::missions::package {
 namespace {
 
 using Eigen::Vector3d;
-
-/// How often stations are shared out anew by what certified legs take.
-constexpr int most_rounds = 6;
-
-constexpr double never = std::numeric_limits<double>::infinity();
-
-/// Plans a fleet's routes.
-class FleetPlanner {
- public:
-  FleetPlanner(const file::Mission& mission, const flight::MeasuredSpace& measured,
-               const flight::Route& alone, std::span<const flight::PadGround> grounds,
-               std::stop_token stop)
-      : mission_(mission),
-        measured_(measured),
-        stations_(alone.stations),
-        grounds_(grounds),
-        stop_(std::move(stop)) {
-    for (flight::Station& station : stations_) station.way.clear();  // of the survey's order
-    const std::vector<Vector3d> pads = derived::pads_of_fleet(mission, alone.options.takeoff);
-    for (std::size_t v = 0; v < pads.size(); ++v) {
-      file::Mission own = derived::as_flown_by(mission, v, pads[v]);
-      const flight::FleetMember member = member_of(own, pads[v]);
-      problem_.vehicles.push_back(straight_costs(stations_, member));
-      least_.vehicles.push_back(least_costs(stations_, member));
-      members_.push_back({std::move(own), pads[v], {}, {}});
-    }
-  }
-
-  FleetMission plan() {
-    FleetMission best;
-    for (int round = 0; round < most_rounds; ++round) {
-      const flight::FleetSplit split = flight::share_among(problem_, order(), goal());
-      if (split.parts.empty() && !stations_.empty() && drop_unreached()) continue;
-      FleetMission fleet = certified(split);
-      const bool is_complete = learn(fleet, split);
-      const bool is_better = best.members.empty() || worth(fleet) < worth(best);
-      if (is_complete && is_better) {
-        best = std::move(fleet);
-      } else if (is_complete) {
-        break;  // what was learned does not help
-      }
-    }
-    if (best.members.empty()) {
-      throw Error(ErrorKind::bad_config,
-                  "the stations cannot be shared out among flight.vehicles: too many of them are "
-                  "out of reach for one or the other");
-    }
-    best.unreached = std::move(unreached_);
-    best.bound = fleet_bound(least_);
-    return best;
-  }
-
- private:
-  static flight::FleetMember member_of(const file::Mission& own, const Vector3d& pad) {
-    return {
-        flight::Motion(derived::vehicle_of(own), derived::route_options_of(own, pad).conditions),
-        pad, derived::takeoff_climb_of(own)};
-  }
-
-  flight::FleetGoal goal() const { return mission_.flight.fleet.goal; }
-
-  double worth(const FleetMission& fleet) const {
-    return goal() == flight::FleetGoal::makespan ? fleet.makespan : fleet.flown;
-  }
-
-  /// Of all stations that some vehicle reaches: that of the route through all.
-  std::vector<std::uint32_t> order() const {
-    std::vector<std::uint32_t> order;
-    for (std::uint32_t i = 0; i < stations_.size(); ++i) {
-      if (!is_dropped_.contains(i)) order.push_back(i);
-    }
-    return order;
-  }
-
-  /// Takes stations out that no vehicle can serve; whether there are any.
-  bool drop_unreached() {
-    const std::size_t before = is_dropped_.size();
-    for (const std::uint32_t i : order()) {
-      const std::vector<std::uint32_t> one{i};
-      const bool is_served = std::ranges::any_of(problem_.vehicles, [&](const auto& vehicle) {
-        return flight::part_time(vehicle, one) < never;
-      });
-      if (is_served) continue;
-      is_dropped_.insert(i);
-      unreached_.push_back({stations_[i], why_[i]});
-    }
-    return is_dropped_.size() > before;
-  }
-
-  FleetMission certified(const flight::FleetSplit& split) const {
-    FleetMission fleet{.members = members_};
-    for (std::size_t v = 0; v < split.parts.size(); ++v) {
-      std::vector<flight::Station> own;
-      for (const std::uint32_t i : split.parts[v].stations) own.push_back(stations_[i]);
-      if (own.empty()) continue;
-      FleetMember& member = fleet.members[v];
-      member.route =
-          plan_flight(member.mission, measured_, member.pad, std::move(own), grounds_, stop_);
-      fleet.flown += member.route.duration;
-      fleet.makespan = std::max(fleet.makespan, member.route.duration);
-    }
-    return fleet;
-  }
-
-  /// Puts what certified routes take in the place of estimates; whether every station is in one.
-  bool learn(const FleetMission& fleet, const flight::FleetSplit& split) {
-    bool is_complete = true;
-    std::map<std::uint32_t, std::uint32_t> station_of;  // by view
-    for (std::uint32_t i = 0; i < stations_.size(); ++i) station_of[stations_[i].view_index] = i;
-    for (std::size_t v = 0; v < split.parts.size(); ++v) {
-      const flight::Route& route = fleet.members[v].route;
-      flight::FleetVehicle& costs = problem_.vehicles[v];
-      const auto index = [&](const flight::Station& station) {
-        return station_of.at(station.view_index);
-      };
-      for (std::size_t i = 0; i + 1 < route.stations.size(); ++i) {
-        flight::PartCost& leg = costs.leg(index(route.stations[i]), index(route.stations[i + 1]));
-        leg = {route.legs[i].duration, route.legs[i].energy, route.legs[i].emergency};
-      }
-      for (const flight::Unreached& missed : route.unreached) {
-        const std::uint32_t i = index(missed.station);
-        costs.out[i].energy = never;  // no battery is enough
-        why_[i] = missed.reason;
-        is_complete = false;
-      }
-    }
-    return is_complete;
-  }
-
-  const file::Mission& mission_;
-  const flight::MeasuredSpace& measured_;
-  std::vector<flight::Station> stations_;
-  std::span<const flight::PadGround> grounds_;
-  std::stop_token stop_;
-  std::vector<FleetMember> members_;
-  flight::FleetProblem problem_, least_;
-  std::set<std::uint32_t> is_dropped_;
-  std::map<std::uint32_t, std::string> why_;
-  std::vector<flight::Unreached> unreached_;
-};
 
 /// Every sortie as its own autopilot's file has it.
 std::vector<flight::FleetSortie> sorties_of(FleetMission& fleet) {
@@ -222,6 +85,182 @@ void make_timetable(const file::Mission& mission, FleetMission& fleet) {
   }
 }
 
+/// How often stations are shared out anew by what certified legs take, at most and without getting
+/// better.
+constexpr int most_rounds = 30, most_in_vain = 6;
+
+constexpr double never = std::numeric_limits<double>::infinity();
+
+using Order = std::vector<std::uint32_t>;
+
+/// Plans a fleet's routes.
+class FleetPlanner {
+ public:
+  FleetPlanner(const file::Mission& mission, const flight::MeasuredSpace& measured,
+               const flight::Route& alone, std::span<const flight::PadGround> grounds,
+               std::stop_token stop)
+      : mission_(mission),
+        measured_(measured),
+        stations_(alone.stations),
+        grounds_(grounds),
+        stop_(std::move(stop)) {
+    for (flight::Station& station : stations_) station.way.clear();  // of the survey's order
+    const std::vector<Vector3d> pads = derived::pads_of_fleet(mission, alone.options.takeoff);
+    for (std::size_t v = 0; v < pads.size(); ++v) {
+      members_.push_back({derived::as_flown_by(mission, v, pads[v]), pads[v], {}, {}});
+    }
+    std::vector<flight::FleetMember> members = costed();
+    for (const flight::FleetMember& member : members) {
+      least_.vehicles.push_back(least_costs(stations_, member));
+    }
+    costs_.emplace(stations_, std::move(members));
+    Order all(stations_.size());
+    std::iota(all.begin(), all.end(), 0U);
+    costs_->learn(0, alone, all);
+    certified_.resize(pads.size());
+  }
+
+  FleetMission plan() {
+    FleetMission best;
+    for (int round = 0, in_vain = 0; round < most_rounds && in_vain < most_in_vain; ++round) {
+      const flight::FleetSplit split = flight::share_among(costs_->problem(), order(), goal());
+      if (split.parts.empty() && !stations_.empty() && drop_unreached()) continue;
+      const bool is_new = certify(split);
+      if (!learn(split)) continue;
+      FleetMission fleet = fleet_of(split);
+      const auto is_best = [&] { return best.members.empty() || worth(fleet) < worth(best); };
+      if (is_best()) make_timetable(mission_, fleet);  // lands nobody sooner
+      const bool is_better = is_best();
+      in_vain = is_better ? 0 : in_vain + 1;
+      if (is_better) best = std::move(fleet);
+      if (!is_new) break;  // nothing is left to be learned
+    }
+    if (best.members.empty()) {
+      throw Error(ErrorKind::bad_config,
+                  "the stations cannot be shared out among flight.vehicles: too many of them are "
+                  "out of reach for one or the other");
+    }
+    best.unreached = std::move(unreached_);
+    best.bound = fleet_bound(least_, best.makespan);
+    return best;
+  }
+
+ private:
+  /// The vehicles with what is known of the lines that they might fly.
+  std::vector<flight::FleetMember> costed() const {
+    std::vector<flight::FleetMember> costed;
+    for (const FleetMember& member : members_) {
+      const file::Mission& own = member.mission;
+      const flight::RouteOptions options = derived::route_options_of(own, member.pad);
+      costed.push_back({flight::Motion(derived::vehicle_of(own), options.conditions), member.pad,
+                        derived::takeoff_climb_of(own)});
+      const flight::KnownSpace known(derived::flight_rules(own));
+      const flight::JointSpace joint({&measured_, &known});
+      const flight::InterruptibleSpace space(joint, stop_);
+      const double clearance = options.clearance.total();
+      flight::Shortfalls& shortfalls = costed.back().shortfalls;
+      shortfalls.home = home_shortfalls(stations_, costed.back().home(), space, clearance);
+      const bool is_like_first = costed.size() > 1 && own.flight.vehicle == mission_.flight.vehicle;
+      shortfalls.legs = is_like_first ? costed.front().shortfalls.legs
+                                      : leg_shortfalls(stations_, space, clearance);
+    }
+    return costed;
+  }
+
+  flight::FleetGoal goal() const { return mission_.flight.fleet.goal; }
+
+  double worth(const FleetMission& fleet) const {
+    return goal() == flight::FleetGoal::makespan ? fleet.makespan : fleet.flown;
+  }
+
+  /// Of all stations that some vehicle reaches: that of the route through all.
+  Order order() const {
+    Order order;
+    for (std::uint32_t i = 0; i < stations_.size(); ++i) {
+      if (!is_dropped_.contains(i)) order.push_back(i);
+    }
+    return order;
+  }
+
+  /// Takes stations out that no vehicle can serve; whether there are any.
+  bool drop_unreached() {
+    const std::size_t before = is_dropped_.size();
+    for (const std::uint32_t i : order()) {
+      const Order one{i};
+      const bool is_served = std::ranges::any_of(
+          costs_->problem().vehicles,
+          [&](const auto& vehicle) { return flight::part_time(vehicle, one) < never; });
+      if (is_served) continue;
+      is_dropped_.insert(i);
+      unreached_.push_back({stations_[i], why_[i]});
+    }
+    return is_dropped_.size() > before;
+  }
+
+  /// Plans and certifies the routes that have not been, each once; whether there were any.
+  bool certify(const flight::FleetSplit& split) {
+    bool is_new = false;
+    for (std::size_t v = 0; v < split.parts.size(); ++v) {
+      const Order& part = split.parts[v].stations;
+      if (part.empty() || certified_[v].contains(part)) continue;
+      std::vector<flight::Station> own;
+      for (const std::uint32_t i : part) own.push_back(stations_[i]);
+      certified_[v][part] = plan_flight(members_[v].mission, measured_, members_[v].pad,
+                                        std::move(own), grounds_, stop_);
+      is_new = true;
+    }
+    return is_new;
+  }
+
+  /// Puts what certified routes take in the place of estimates; whether every station is in one.
+  bool learn(const flight::FleetSplit& split) {
+    bool is_complete = true;
+    std::map<std::uint32_t, std::uint32_t> station_of;  // by view
+    for (std::uint32_t i = 0; i < stations_.size(); ++i) station_of[stations_[i].view_index] = i;
+    for (std::size_t v = 0; v < split.parts.size(); ++v) {
+      if (split.parts[v].stations.empty()) continue;
+      const flight::Route& route = certified_[v].at(split.parts[v].stations);
+      Order flown;
+      for (const flight::Station& station : route.stations) {
+        flown.push_back(station_of.at(station.view_index));
+      }
+      costs_->learn(v, route, flown);
+      for (const flight::Unreached& missed : route.unreached) {
+        const std::uint32_t i = station_of.at(missed.station.view_index);
+        costs_->refuse(v, i);
+        why_[i] = missed.reason;
+        is_complete = false;
+      }
+    }
+    return is_complete;
+  }
+
+  FleetMission fleet_of(const flight::FleetSplit& split) const {
+    FleetMission fleet{.members = members_};
+    for (std::size_t v = 0; v < split.parts.size(); ++v) {
+      if (split.parts[v].stations.empty()) continue;
+      flight::Route& route = fleet.members[v].route;
+      route = certified_[v].at(split.parts[v].stations);
+      fleet.flown += route.duration;
+      fleet.makespan = std::max(fleet.makespan, route.duration);
+    }
+    return fleet;
+  }
+
+  const file::Mission& mission_;
+  const flight::MeasuredSpace& measured_;
+  std::vector<flight::Station> stations_;
+  std::span<const flight::PadGround> grounds_;
+  std::stop_token stop_;
+  std::vector<FleetMember> members_;
+  std::optional<flight::LearnedCosts> costs_;
+  flight::FleetProblem least_;
+  std::vector<std::map<Order, flight::Route>> certified_;  ///< by vehicle
+  std::set<std::uint32_t> is_dropped_;
+  std::map<std::uint32_t, std::string> why_;
+  std::vector<flight::Unreached> unreached_;
+};
+
 void stage_fleet(FleetMission& fleet, const flight::MeasuredSpace& measured,
                  std::span<const flight::Format> formats, geometry::OutputFolder& folder) {
   for (std::size_t v = 0; v < fleet.members.size(); ++v) {
@@ -248,9 +287,7 @@ void stage_fleet(FleetMission& fleet, const flight::MeasuredSpace& measured,
 FleetMission plan_fleet(const file::Mission& mission, const flight::MeasuredSpace& measured,
                         const flight::Route& alone, std::span<const flight::PadGround> grounds,
                         std::stop_token stop) {
-  FleetMission fleet = FleetPlanner(mission, measured, alone, grounds, std::move(stop)).plan();
-  make_timetable(mission, fleet);
-  return fleet;
+  return FleetPlanner(mission, measured, alone, grounds, std::move(stop)).plan();
 }
 
 std::shared_ptr<const FleetMission> staged_fleet(

@@ -1,0 +1,196 @@
+#include "flight/fleet/collection_bound.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <vector>
+
+namespace skycap::flight {
+namespace {
+
+constexpr std::size_t coarse_steps = 400, fine_steps = 1000;  ///< that the makespan is cut into
+constexpr double most_work = 2e9;  ///< steps of dynamic programming in all
+constexpr std::size_t most_rounds = 300;
+constexpr std::size_t patience = 8;  ///< rounds without a better bound before steps are halved
+constexpr double rounding = 1e-9;    ///< of sums of prizes
+constexpr double nothing = -1.0;     ///< the prize where no tour leads
+constexpr std::uint32_t pad = UINT32_MAX;  ///< as the station before the first
+
+/// The best tours that come to a station at a time: the best of all, and the best of those that
+/// come from another station than that one.
+struct Best {
+  double prize[2] = {nothing, nothing};
+  std::uint32_t from[2] = {pad, pad};
+
+  void offer(double offered, std::uint32_t station) {
+    if (offered <= prize[1]) return;
+    if (station == from[0] && prize[0] > nothing) {
+      prize[0] = std::max(prize[0], offered);
+    } else if (offered > prize[0]) {
+      prize[1] = prize[0], from[1] = from[0];
+      prize[0] = offered, from[0] = station;
+    } else {
+      prize[1] = offered, from[1] = station;
+    }
+  }
+  /// Which of the two a tour to `next` goes on from: it does not turn back at once.
+  std::size_t on_to(std::uint32_t next) const { return from[0] == next && next != pad ? 1 : 0; }
+};
+
+/// What one vehicle collects in tours of up to so many steps of time.
+class Collector {
+ public:
+  Collector(const FleetVehicle& vehicle, double step, std::size_t steps)
+      : count_(vehicle.count()), steps_(steps) {
+    const auto in_steps = [&](double time) {
+      return static_cast<std::size_t>(std::min(std::floor(time / step), 1.0 + double(steps)));
+    };
+    for (std::size_t i = 0; i < count_; ++i) {
+      out_.push_back(in_steps(vehicle.out[i].time + vehicle.station[i].time));
+      back_.push_back(in_steps(vehicle.back[i].time));
+    }
+    for (std::uint32_t j = 0; j < count_; ++j) {
+      for (std::uint32_t i = 0; i < count_; ++i) {
+        // Direct or by the pad, so that a vehicle with several sorties counts as one tour.
+        const double by_pad = vehicle.back[i].time + vehicle.out[j].time;
+        const double leg = std::min(vehicle.leg(i, j).time, by_pad) + vehicle.station[j].time;
+        legs_.push_back(std::max(std::size_t{1}, in_steps(leg)));
+      }
+    }
+  }
+
+  /// M(t) for t = 0, 1, ... steps, for these prizes.
+  const std::vector<double>& collect(const std::vector<double>& prizes) {
+    best_.assign((steps_ + 1) * count_, {});
+    most_.assign(steps_ + 1, 0.0);
+    ends_.assign(steps_ + 1, {pad, 0});
+    for (std::size_t t = 0; t <= steps_; ++t) {
+      for (std::uint32_t j = 0; j < count_; ++j) reach(t, j, prizes[j]);
+      if (t > 0 && most_[t - 1] > most_[t]) most_[t] = most_[t - 1], ends_[t] = ends_[t - 1];
+    }
+    return most_;
+  }
+
+  /// How often the best tour of up to t steps, of the last prizes, comes to each station.
+  void count_visits(std::size_t t, std::vector<double>& visits) const {
+    auto [station, time] = ends_[t];
+    std::uint32_t next = pad;
+    while (station != pad) {
+      visits[station] += 1.0;
+      const Best& best = at(time, station);
+      const std::uint32_t from = best.from[best.on_to(next)];
+      if (from == pad) break;
+      time -= legs_[station * count_ + from];
+      next = station;
+      station = from;
+    }
+  }
+
+ private:
+  struct End {
+    std::uint32_t station;
+    std::size_t time;
+  };
+
+  const Best& at(std::size_t t, std::uint32_t station) const { return best_[t * count_ + station]; }
+
+  void reach(std::size_t t, std::uint32_t j, double prize) {
+    if (t + back_[j] > steps_) return;
+    Best best;
+    if (t == out_[j]) best.offer(prize, pad);
+    const std::size_t* legs = &legs_[j * count_];
+    for (std::uint32_t i = 0; i < count_; ++i) {
+      if (i == j || legs[i] > t) continue;
+      const Best& before = at(t - legs[i], i);
+      const double collected = before.prize[before.on_to(j)];
+      if (collected > nothing) best.offer(collected + prize, i);
+    }
+    best_[t * count_ + j] = best;
+    const std::size_t end = t + back_[j];
+    if (best.prize[0] > most_[end]) most_[end] = best.prize[0], ends_[end] = {j, t};
+  }
+
+  std::size_t count_, steps_;
+  std::vector<std::size_t> out_, back_;  ///< with what is done at the station; in steps
+  std::vector<std::size_t> legs_;        ///< to station j from station i at [j * count + i]
+  std::vector<Best> best_;
+  std::vector<double> most_;
+  std::vector<End> ends_;  ///< the last station of the best tour, and when it was there
+};
+
+/// All vehicles at one step of time.
+class Fleet {
+ public:
+  Fleet(const FleetProblem& least, double makespan, std::size_t steps)
+      : step_(makespan / static_cast<double>(steps)), steps_(steps) {
+    for (const FleetVehicle& vehicle : least.vehicles)
+      collectors_.emplace_back(vehicle, step_, steps);
+  }
+
+  /// The first time at which all can be collected.
+  double bound(const std::vector<double>& prizes) {
+    std::vector<double> sum(steps_ + 1, 0.0);
+    for (Collector& collector : collectors_) {
+      const std::vector<double>& most = collector.collect(prizes);
+      for (std::size_t t = 0; t <= steps_; ++t) sum[t] += most[t];
+    }
+    const double all = std::accumulate(prizes.begin(), prizes.end(), 0.0);
+    first_ = 0;
+    while (first_ < steps_ && sum[first_] < all - rounding) ++first_;
+    return static_cast<double>(first_) * step_;
+  }
+
+  /// Of the best tours at the last bound, by station.
+  std::vector<double> visits(std::size_t count) const {
+    std::vector<double> visits(count, 0.0);
+    for (const Collector& collector : collectors_) collector.count_visits(first_, visits);
+    return visits;
+  }
+
+ private:
+  double step_;
+  std::size_t steps_, first_ = 0;
+  std::vector<Collector> collectors_;
+};
+
+/// Prizes after a step against the visits, none below zero, 1 together.
+std::vector<double> moved(const std::vector<double>& prizes, const std::vector<double>& visits,
+                          double length) {
+  double squared = 0.0, sum = 0.0;
+  for (const double count : visits) squared += (1.0 - count) * (1.0 - count);
+  if (squared == 0.0) return prizes;  // each once: the tours share the stations out
+  std::vector<double> after;
+  for (std::size_t i = 0; i < prizes.size(); ++i) {
+    after.push_back(std::max(0.0, prizes[i] + length * (1.0 - visits[i]) / squared));
+    sum += after.back();
+  }
+  if (!(sum > 0.0)) return prizes;
+  for (double& prize : after) prize /= sum;
+  return after;
+}
+
+}  // namespace
+
+double collection_bound(const FleetProblem& least, double makespan) {
+  const std::size_t count = least.count(), vehicles = least.vehicles.size();
+  if (count == 0 || !(makespan > 0.0)) return 0.0;
+  const double round = static_cast<double>(coarse_steps * count * count * vehicles);
+  const auto rounds = std::min(most_rounds, static_cast<std::size_t>(most_work / round));
+  if (rounds == 0) return 0.0;
+  std::vector<double> prizes(count, 1.0 / static_cast<double>(count)), best = prizes;
+  double bound = 0.0, length = 0.3 / static_cast<double>(vehicles);
+  std::size_t since = 0;
+  Fleet coarse(least, makespan, coarse_steps);
+  for (std::size_t i = 0; i < rounds; ++i) {
+    if (const double found = coarse.bound(prizes); found > bound) {
+      bound = found, best = prizes, since = 0;
+    } else if (++since == patience) {
+      length *= 0.5, since = 0, prizes = best;
+      coarse.bound(prizes);
+    }
+    prizes = moved(prizes, coarse.visits(count), length);
+  }
+  return std::max(bound, Fleet(least, makespan, fine_steps).bound(best));
+}
+
+}  // namespace skycap::flight
