@@ -53,9 +53,10 @@ struct MissionChoice {
 /// The certified route through views in the order given.
 using PlanRoute = std::function<flight::Route(const StationPlan&)>;
 
-/// Begins from `present`, the route through those of `surveyed`, the survey's views, that have a
-/// proven way home, and falls back on it: the choice never promises less, and is slower only where
-/// it covers what the views that had to be left out covered, at the price in `settings`. `space` is
+/// Begins from `present`, the route through the survey's views that have a proven way home, and
+/// falls back on it: the choice never promises less, and is slower only where it covers what else
+/// the survey has seen from `surveyed`, its views and those of frames on its ways, at the price in
+/// `settings`. `space` is
 /// what the route is proven in. Tours that `plan` throws an Error at are not flown. If a stop is
 /// requested, the choice is what was found by then.
 MissionChoice choose_mission(const file::Mission& mission, const survey::skycap::GainField& surface,

@@ -112,6 +112,7 @@ Json json_of(const BenchmarkCell& cell, const std::vector<BenchmarkCell>& cells)
   }
   if (figures.coverage_visible)
     json["coverage_visible"] = statistic_json(*figures.coverage_visible);
+  if (figures.flown_time) json["flown_s"] = statistic_json(*figures.flown_time);
   json["coverage_ceiling"] = figures.ceiling ? Json(*figures.ceiling) : Json();
   const ViewFigures per_view = view_figures(cell.trials);
   json["frontiers_per_view"] = statistic_json(per_view.frontiers);
@@ -178,6 +179,14 @@ std::string table_1(const std::vector<BenchmarkCell>& cells, Times times) {
   return text;
 }
 
+std::string with_spread(const Statistic& seconds) {
+  std::string entry = formatted("{:.0f}", seconds.mean);
+  if (std::isfinite(seconds.half_width_95)) {
+    entry += " ± " + formatted("{:.2g}", seconds.half_width_95);
+  }
+  return entry;
+}
+
 std::string with_certainty(const Column& column, const Statistic& ours,
                            const std::optional<PaperResult>& paper) {
   std::string entry = formatted(column.format, ours.mean / column.unit);
@@ -193,7 +202,8 @@ std::string details(const std::vector<BenchmarkCell>& cells, const std::string& 
                     Times times) {
   std::vector<std::string> head{"planner", "trials"};
   for (const Column& column : columns(times)) head.emplace_back(column.title);
-  head.insert(head.end(), {"of the visible surface [%]", "of the attainable [%]"});
+  head.insert(head.end(),
+              {"of the visible surface [%]", "of the attainable [%]", "survey flight [s]"});
   std::string text = row(head) + rule(head.size());
   for (const BenchmarkCell& cell : cells) {
     if (cell.mission != mission || cell.trials.empty()) continue;
@@ -209,6 +219,7 @@ std::string details(const std::vector<BenchmarkCell>& cells, const std::string& 
     line.push_back(figures.ceiling
                        ? formatted("{:.1f}", 100.0 * figures.coverage.mean / *figures.ceiling)
                        : "-");
+    line.push_back(figures.flown_time ? with_spread(*figures.flown_time) : "-");
     text += row(line);
   }
   return text;

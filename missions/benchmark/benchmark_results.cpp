@@ -74,6 +74,10 @@ CellFigures figures_of(const BenchmarkCell& cell) {
   if (std::ranges::all_of(trials, has_visible)) {
     figures.coverage_visible = over(trials, [](const Trial& t) { return *t.coverage.visible; });
   }
+  const auto is_flown = [](const Trial& t) { return t.flown_time.has_value(); };
+  if (std::ranges::all_of(trials, is_flown)) {
+    figures.flown_time = over(trials, [](const Trial& t) { return *t.flown_time; });
+  }
   return figures;
 }
 

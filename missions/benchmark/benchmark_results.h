@@ -25,6 +25,7 @@ struct CellFigures {
   std::optional<double> ceiling;              ///< attainable share of the surface
   Statistic planning_time;                    ///< [s]
   Statistic distance;
+  std::optional<Statistic> flown_time;  ///< of a vehicle [s]
 };
 
 /// `cell` must hold a trial.

@@ -47,6 +47,7 @@ Json each_trial_json(const std::vector<Trial>& trials) {
                     {"views", trial.views},
                     {"coverage", trial.coverage.all},
                     {"distance_m", trial.distance},
+                    {"flown_s", trial.flown_time ? Json(*trial.flown_time) : Json()},
                     {"planning_time_s", trial.planning_time}});
   }
   return list;

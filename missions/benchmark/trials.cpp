@@ -149,6 +149,10 @@ Trial trial_of(const run::SurveyRecord& record, const SceneTruth& truth) {
     trial.frontiers_resolved += view.surveyed.step.frontiers_resolved;
   }
   trial.targets = observed_targets(record.views);
+  if (record.flown) {
+    trial.flown_length = record.flown->length();
+    trial.flown_time = record.flown->time;
+  }
   return trial;
 }
 
@@ -162,6 +166,8 @@ std::string trial_json(const Trial& trial) {
             {"points", trial.points},
             {"planning_time_s", trial.planning_time},
             {"distance_m", trial.distance},
+            {"flown_m", json_of(trial.flown_length)},
+            {"flown_s", json_of(trial.flown_time)},
             {"frontiers_resolved", trial.frontiers_resolved},
             {"coverage_after", trial.coverage_after},
             {"distance_after_m", trial.distance_after},
@@ -186,6 +192,8 @@ Trial parse_trial(const std::string& text) {
     trial.points = json.at("points").get<std::size_t>();
     trial.planning_time = json.at("planning_time_s").get<double>();
     trial.distance = json.at("distance_m").get<double>();
+    trial.flown_length = optional_number(json.at("flown_m"));
+    trial.flown_time = optional_number(json.at("flown_s"));
     trial.frontiers_resolved = json.at("frontiers_resolved").get<std::size_t>();
     trial.coverage_after = json.at("coverage_after").get<std::vector<double>>();
     trial.distance_after = json.at("distance_after_m").get<std::vector<double>>();
@@ -202,13 +210,15 @@ Trial parse_trial(const std::string& text) {
 std::string trials_csv(const std::vector<Trial>& trials, Times times) {
   const bool has_times = times == Times::shown;
   std::string csv =
-      "seed,stop_reason,views,coverage,coverage_visible,coverage_ceiling,distance_m,points";
+      "seed,stop_reason,views,coverage,coverage_visible,coverage_ceiling,distance_m,points,flown_m,"
+      "flown_s";
   csv += has_times ? ",planning_time_s\n" : "\n";
   for (const Trial& trial : trials) {
     csv += std::to_string(trial.seed) + "," + run::name_of(trial.stop_reason) + "," +
            std::to_string(trial.views) + "," + file::exact_text(trial.coverage.all) + "," +
            csv_of(trial.coverage.visible) + "," + csv_of(trial.coverage.ceiling) + "," +
-           file::exact_text(trial.distance) + "," + std::to_string(trial.points);
+           file::exact_text(trial.distance) + "," + std::to_string(trial.points) + "," +
+           csv_of(trial.flown_length) + "," + csv_of(trial.flown_time);
     csv += has_times ? "," + file::exact_text(trial.planning_time) + "\n" : "\n";
   }
   return csv;

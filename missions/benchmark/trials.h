@@ -43,6 +43,8 @@ struct Trial {
   std::vector<double> coverage_after;  ///< each view
   std::vector<double> distance_after;
   std::vector<double> planning_time_after;
+  std::optional<double> flown_length;   ///< of a vehicle, from the pad to the last view [m]
+  std::optional<double> flown_time;     ///< [s], see run::FlownSurvey
   std::size_t frontiers_resolved = 0;   ///< points that ceased to be frontiers
   std::vector<ObservedTarget> targets;  ///< that were observed, in this order
 };

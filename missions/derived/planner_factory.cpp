@@ -93,6 +93,17 @@ survey::skycap::SkycapConfig skycap_config(const file::Mission& mission, unsigne
   config.stop.speed = limits.speed;
   config.stop.time_per_view = limits.time_per_view;
   config.view_price = view_price_of(mission);
+  if (mission.sensor.is_moving()) {
+    config.frame_spacing = mission.flight.cruise_speed * mission.sensor.frame_period;
+  }
+  if (mission.flight.is_flown()) {  // as if they were the same along and about all axes
+    const sim::NavigationErrors& poses = mission.scan.navigation;
+    const auto mean = [](double twice, double once) {
+      return std::sqrt((2.0 * twice * twice + once * once) / 3.0);
+    };
+    config.place_error = mean(poses.horizontal_sigma, poses.vertical_sigma);
+    config.angle_error = mean(poses.tilt_sigma, poses.heading_sigma);
+  }
   return config;
 }
 

@@ -51,22 +51,27 @@ std::uint64_t firings_in_turn(const sim::LidarConfig& lidar) {
 
 /// Turn after turn, each from a pose of the scanner, world_from_scanner; `first_turn` numbers them.
 void append_turns(const sim::Lidar& lidar, const sim::Scene& scene,
-                  const std::vector<Eigen::Isometry3d>& poses, std::uint64_t first_turn,
-                  unsigned threads, std::vector<Eigen::Vector3f>& points) {
+                  const std::vector<Eigen::Isometry3d>& poses, const Carriage& carriage,
+                  std::uint64_t first_turn, unsigned threads,
+                  std::vector<Eigen::Vector3f>& points) {
   const std::uint64_t firings = firings_in_turn(lidar.config());
   constexpr std::uint64_t firings_in_task = 128;
   const std::uint64_t tasks = (firings + firings_in_task - 1) / firings_in_task;
-  std::vector<sim::Trajectory> standing;
+  const auto standing = [](const Eigen::Isometry3d& pose) {
+    return sim::Trajectory(
+        {{.position = pose.translation(), .attitude = Eigen::Quaterniond(pose.linear())}});
+  };
+  std::vector<sim::Trajectory> flown, believed;
   for (const Eigen::Isometry3d& pose : poses) {
-    standing.push_back(sim::Trajectory(
-        {{.position = pose.translation(), .attitude = Eigen::Quaterniond(pose.linear())}}));
+    flown.push_back(standing(carriage.true_pose(pose)));
+    believed.push_back(standing(pose));
   }
   std::vector<sim::LidarReturns> returns(tasks * poses.size());
   geometry::parallel_for(returns.size(), threads, [&](std::size_t task) {
     const std::size_t turn = task / tasks;
     const std::uint64_t first = task % tasks * firings_in_task;
     returns[task] = lidar.measure(
-        scene, {standing[turn], standing[turn]},
+        scene, {flown[turn], believed[turn]},
         {(first_turn + turn) * firings + first, std::min(firings_in_task, firings - first)});
   });
   for (const sim::LidarReturns& part : returns) {
@@ -211,6 +216,13 @@ View side_view(const Eigen::Isometry3d& mount, const View& nose) {
   return turned_level(nose.position, nose.direction, axis_azimuth(mount) + 0.5 * std::numbers::pi);
 }
 
+Eigen::Isometry3d Carriage::true_pose(const Eigen::Isometry3d& believed) const {
+  if (turn.isZero(0.0) && shift.isZero(0.0)) return believed;
+  Eigen::Isometry3d pose(rotation_of(turn) * believed.linear());
+  pose.translation() = believed.translation() + shift;
+  return pose;
+}
+
 SurveySensor::SurveySensor(const file::SensorConfig& config, std::uint64_t seed)
     : sensor_([&]() -> std::variant<sim::DepthCamera, sim::Lidar> {
         if (config.scanner) {
@@ -221,7 +233,8 @@ SurveySensor::SurveySensor(const file::SensorConfig& config, std::uint64_t seed)
         sim::DepthCameraConfig camera = config.camera;
         camera.noise.seed = seed;
         return sim::DepthCamera(camera);
-      }()) {
+      }()),
+      shutter_(config.shutter) {
   if (!config.scanner || !config.mount) return;
   mount_ = config.mount;
   turns_ = turns_of(config);
@@ -250,15 +263,34 @@ std::vector<Eigen::Isometry3d> SurveySensor::turns(const View& view) const {
 
 geometry::Scan SurveySensor::scan(const sim::Scene& scene, const View& view, std::uint64_t frame,
                                   unsigned threads, geometry::Scan recycled) const {
+  return scan(scene, view, {}, frame, threads, std::move(recycled));
+}
+
+geometry::Scan SurveySensor::scan(const sim::Scene& scene, const View& view,
+                                  const Carriage& carriage, std::uint64_t frame, unsigned threads,
+                                  geometry::Scan recycled) const {
   if (const auto* lidar = std::get_if<sim::Lidar>(&sensor_)) {
     geometry::Scan scan = std::move(recycled);
     scan.world_from_sensor = geometry::camera_pose(view);
     scan.points.clear();
     scan.pixels.clear();
-    append_turns(*lidar, scene, turns(view), frame * turns_, threads, scan.points);
+    append_turns(*lidar, scene, turns(view), carriage, frame * turns_, threads, scan.points);
     return scan;
   }
-  return std::get<sim::DepthCamera>(sensor_).scan(scene, view, frame, threads, std::move(recycled));
+  const auto& camera = std::get<sim::DepthCamera>(sensor_);
+  const Eigen::Isometry3d believed = geometry::camera_pose(view);
+  if (carriage.instants == 0 && carriage.shift.isZero(0.0) && carriage.turn.isZero(0.0)) {
+    return camera.scan(scene, believed, frame, threads, std::move(recycled));
+  }
+  sim::FrameMotion motion{.world_from_camera = carriage.true_pose(believed)};
+  if (carriage.instants > 0) {
+    motion.velocity = carriage.velocity;
+    motion.turn_rate = carriage.turn_rate;
+    motion.exposure = shutter_.exposure;
+    motion.readout = shutter_.readout;
+    motion.instants = carriage.instants;
+  }
+  return camera.scan(scene, believed, motion, frame, threads, std::move(recycled));
 }
 
 }  // namespace skycap::missions::derived

@@ -66,6 +66,18 @@ Eigen::Isometry3d mount_of(const file::ScanConfig& scan);
 geometry::View nose_view(const Eigen::Isometry3d& mount, const geometry::View& view);
 geometry::View side_view(const Eigen::Isometry3d& mount, const geometry::View& nose);
 
+/// How a sensor is really carried, beside the view that it is believed to have.
+struct Carriage {
+  Eigen::Vector3d shift = Eigen::Vector3d::Zero();      ///< of its place [m]
+  Eigen::Vector3d turn = Eigen::Vector3d::Zero();       ///< small angles about world axes [rad]
+  Eigen::Vector3d velocity = Eigen::Vector3d::Zero();   ///< amid the scan [m/s]
+  Eigen::Vector3d turn_rate = Eigen::Vector3d::Zero();  ///< about world axes [rad/s]
+  int instants = 0;  ///< that stand for a camera's exposure; zero: it stands meanwhile
+
+  /// The true pose where this one is believed.
+  Eigen::Isometry3d true_pose(const Eigen::Isometry3d& believed) const;
+};
+
 /// Immutable; safe to use from any number of threads.
 class SurveySensor {
  public:
@@ -78,10 +90,16 @@ class SurveySensor {
   geometry::Scan scan(const sim::Scene& scene, const geometry::View& view, std::uint64_t frame,
                       unsigned threads, geometry::Scan recycled = {}) const;
 
+  /// The same by a sensor that is carried so: its points are where they are thought to be. A
+  /// scanner's velocity is not looked at, since its turns are measured from about one place.
+  geometry::Scan scan(const sim::Scene& scene, const geometry::View& view, const Carriage& carriage,
+                      std::uint64_t frame, unsigned threads, geometry::Scan recycled = {}) const;
+
  private:
   std::vector<Eigen::Isometry3d> turns(const geometry::View& view) const;
 
   std::variant<sim::DepthCamera, sim::Lidar> sensor_;
+  flight::Shutter shutter_;
   std::optional<Eigen::Isometry3d> mount_;  ///< of a scanner that is flown
   std::size_t turns_ = 1;                   ///< that make a scan
 };

@@ -39,9 +39,11 @@ std::vector<Key> navigation_keys() {
     return [member](Mission & m) -> auto& { return m.scan.navigation.*member; };
   };
   return {
-      number_key("scan.navigation.horizontal_sigma", "m", between(0, 100),
-                 navigation(&Navigation::horizontal_sigma),
-                 "Standard deviation of the believed position, east and north each."),
+      number_key(
+          "scan.navigation.horizontal_sigma", "m", between(0, 100),
+          navigation(&Navigation::horizontal_sigma),
+          "Standard deviation of the believed position, east and north each, in scans and in "
+          "surveys of a vehicle."),
       number_key("scan.navigation.vertical_sigma", "m", between(0, 100),
                  navigation(&Navigation::vertical_sigma), "The same of the height."),
       angle_key("scan.navigation.tilt_sigma_deg", between(0, 45),

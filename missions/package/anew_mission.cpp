@@ -44,25 +44,43 @@ std::string figures_text(const MissionFigures& figures) {
 
 std::string percent(double share) { return fmt::format("{:.2f} %", 100.0 * share); }
 
+/// The survey's views, and those of the frames on its ways.
+std::vector<geometry::View> all_views_of(const run::SurveyRecord& record) {
+  std::vector<geometry::View> views;
+  for (const run::JudgedView& judged : record.views) {
+    const survey::SurveyedView& taken = judged.surveyed;
+    views.insert(views.end(), taken.on_way.views.begin(), taken.on_way.views.end());
+    views.push_back(taken.view);
+  }
+  return views;
+}
+
 }  // namespace
 
-FlownAgain flown_again(const CoverageFigures& coverage, const std::vector<geometry::View>& views) {
-  const std::vector<std::uint8_t> is_covered = coverage.fly_again(views);
-  FlownAgain again{judge::marked_share(is_covered), {}};
+FlownAgain flown_again(const CoverageFigures& coverage,
+                       const std::vector<run::ViewInFlight>& views) {
+  const run::CoveredAgain covered = coverage.fly_again(views);
+  FlownAgain again{judge::marked_share(covered.stored), {}, {}};
   if (coverage.truth && !coverage.truth->is_visible.empty()) {
-    again.visible = judge::covered_share(is_covered, coverage.truth->is_visible);
+    again.visible = judge::covered_share(covered.stored, coverage.truth->is_visible);
+    again.visible_unthinned = judge::covered_share(covered.measured, coverage.truth->is_visible);
   }
   return again;
 }
 
 Json again_json(const FlownAgain& again) {
   return {{"coverage", again.all},
-          {"coverage_visible", again.visible ? Json(*again.visible) : Json()}};
+          {"coverage_visible", again.visible ? Json(*again.visible) : Json()},
+          {"coverage_visible_unthinned",
+           again.visible_unthinned ? Json(*again.visible_unthinned) : Json()}};
 }
 
 std::string again_text(const FlownAgain& again) {
   std::string text = "flown again " + percent(again.all) + " of the surface";
   if (again.visible) text += ", " + percent(*again.visible) + " of what is visible";
+  if (again.visible_unthinned && again.visible_unthinned != again.visible) {
+    text += " (" + percent(*again.visible_unthinned) + " if all points are kept)";
+  }
   return text;
 }
 
@@ -76,9 +94,14 @@ AnewMission anew_mission(const file::Mission& mission, const run::SurveyRecord& 
     return plan_flight(in_given_order(mission), *flown.measured, flown.pad, stations.views,
                        stations.ways, flown.grounds, stop);
   };
-  AnewMission result{anew::choose_mission(mission, *record.surface, space, views_of(record),
+  const std::vector<run::ViewInFlight> surveyed = run::measured_views(mission, present);
+  AnewMission result{anew::choose_mission(mission, *record.surface, space, all_views_of(record),
                                           std::move(present), plan, {}, stop),
+                     {},
                      {}};
+  if (coverage.fly_again && result.choice.is_anew) {
+    result.survey_again = flown_again(coverage, surveyed);
+  }
   if (coverage.fly_again) {
     result.again = flown_again(coverage, run::measured_views(mission, result.choice.route));
   }
@@ -91,6 +114,7 @@ Json anew_json(const AnewMission& mission) {
             {"anew", json_of(mission.choice.anew)},
             {"computing_time_s", mission.choice.computing}};
   if (mission.again) json["flown_again"] = again_json(*mission.again);
+  if (mission.survey_again) json["survey_flown_again"] = again_json(*mission.survey_again);
   if (mission.choice.is_anew) json["stations"] = stations_json(mission.choice.stations);
   return json;
 }
@@ -123,6 +147,7 @@ std::string anew_text(const AnewMission& mission) {
   text += "\n  promise   " + percent(choice.anew.promised) +
           " of what was measured, the survey's views " + percent(choice.survey.promised);
   if (mission.again) text += "; " + again_text(*mission.again);
+  if (mission.survey_again) text += "; the survey's views " + again_text(*mission.survey_again);
   return text + "\n";
 }
 

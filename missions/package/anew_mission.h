@@ -25,7 +25,8 @@ AnewMission anew_mission(const file::Mission& mission, const run::SurveyRecord& 
                          const std::stop_token& stop);
 
 /// What these views cover, or scans of a scanner, where `coverage` says how that is measured.
-FlownAgain flown_again(const CoverageFigures& coverage, const std::vector<geometry::View>& views);
+FlownAgain flown_again(const CoverageFigures& coverage,
+                       const std::vector<run::ViewInFlight>& views);
 
 /// For the summary, and what the program prints.
 nlohmann::ordered_json again_json(const FlownAgain& again);

@@ -84,12 +84,15 @@ FlightFiles stage_flight(const file::Mission& mission, const flight::Route& rout
 struct FlownAgain {
   double all = 0.0;               ///< of the whole surface
   std::optional<double> visible;  ///< of what admissible views can see
+  /// The same with all points kept, whatever the mission's spacing.
+  std::optional<double> visible_unthinned;
 };
 
 /// A mission whose views were to be chosen anew.
 struct AnewMission {
   anew::MissionChoice choice;
-  std::optional<FlownAgain> again;  ///< in simulation
+  std::optional<FlownAgain> again;           ///< in simulation
+  std::optional<FlownAgain> survey_again{};  ///< of the mission along the survey's views
 };
 
 struct FleetMission;

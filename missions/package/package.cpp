@@ -184,7 +184,7 @@ CoverageFigures coverage_figures(const file::Mission& mission, const run::Survey
       is_attainable = marks.value_or(is_attainable);
     }
     figures.fly_again = [&mission, &scene, seed = record.seed,
-                         threads](const std::vector<geometry::View>& views) {
+                         threads](const std::vector<run::ViewInFlight>& views) {
       return run::covered_when_flown_again(mission, scene, views, seed, threads);
     };
   }

@@ -17,6 +17,7 @@
 #include "missions/file/mission_reader.h"
 #include "missions/package/coverage_map.h"
 #include "missions/package/flight_files.h"
+#include "missions/run/measurement.h"
 #include "missions/run/survey_runner.h"
 #include "missions/scene/survey_scene.h"
 #include "survey/skycap/skycap_planner.h"
@@ -32,9 +33,9 @@ struct CoverageFigures {
   /// believes nothing; see true_patches().
   std::vector<survey::skycap::BelievedPatch> patches = {};
   std::optional<TrueCoverage> truth = {};  ///< of a simulated survey
-  /// For each of the scene's samples, 1 if views cover it when they are flown again; null where
-  /// that cannot be simulated, or the survey was interrupted.
-  std::function<std::vector<std::uint8_t>(const std::vector<geometry::View>&)> fly_again = {};
+  /// What views cover when they are flown again; null where that cannot be simulated, or the survey
+  /// was interrupted.
+  std::function<run::CoveredAgain(const std::vector<run::ViewInFlight>&)> fly_again = {};
 };
 
 /// What a simulated survey covered of the true surface; what could be covered at all only of one

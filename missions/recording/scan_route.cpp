@@ -48,8 +48,7 @@ ScanRoute from_tum(const std::string& text) {
   return {sim::Trajectory(std::move(poses)), {}};
 }
 
-ScanRoute from_states(const std::string& text, Carrier carrier) {
-  const std::vector<flight::TimedState> states = flight::read_trajectory_csv(text);
+ScanRoute from_states(const std::vector<flight::TimedState>& states, Carrier carrier) {
   const std::vector<flight::TimedPose> cameras = flight::camera_poses(states);
   std::vector<sim::StampedPose> poses;
   std::vector<double> image_times;
@@ -125,17 +124,66 @@ ScanRoute from_points(const std::vector<Vector3d>& points, double speed) {
   return route;
 }
 
-std::filesystem::path route_file(const std::filesystem::path& path) {
-  if (!std::filesystem::is_directory(path)) return path;
-  const std::filesystem::path flown = path / "mission.csv";
-  return std::filesystem::exists(flown) ? flown : path / "views.csv";
+std::string route_text(const std::filesystem::path& file) {
+  constexpr std::size_t largest = std::size_t{256} << 20;
+  return geometry::read_file(file, largest);
+}
+
+[[noreturn]] void fail_in(const std::filesystem::path& file, const Error& error) {
+  throw Error(ErrorKind::bad_file, file.string() + ": " + error.what());
+}
+
+/// The trajectories of a mission package: of its only sortie, or of all one after the other. Empty
+/// if it is not flown.
+std::vector<std::filesystem::path> sorties_in(const std::filesystem::path& folder) {
+  std::vector<std::filesystem::path> files;
+  if (std::filesystem::exists(folder / "mission.csv")) return {folder / "mission.csv"};
+  for (std::size_t number = 1;; ++number) {
+    const std::filesystem::path file = folder / ("mission-" + std::to_string(number) + ".csv");
+    if (!std::filesystem::exists(file)) break;
+    files.push_back(file);
+  }
+  if (files.empty() && std::filesystem::exists(folder / "free_space.bin")) {
+    throw Error(ErrorKind::bad_file,
+                folder.string() + ": is flown, but has no mission.csv; export one (skycap export " +
+                    folder.string() + " --format csv), and give that file");
+  }
+  return files;
+}
+
+/// Sorties one after the other, a moment apart, however long a battery takes to be changed.
+ScanRoute from_sorties(const std::vector<std::filesystem::path>& files, double speed,
+                       Carrier carrier) {
+  constexpr double pause = 1.0;  // [s]
+  std::vector<flight::TimedState> all;
+  for (const std::filesystem::path& file : files) {
+    try {
+      double later = 0.0;
+      for (flight::TimedState& state : flight::read_trajectory_csv(route_text(file))) {
+        if (later == 0.0 && !all.empty()) {
+          const double way = (state.position - all.back().position).norm();
+          later = all.back().time + std::max(pause, way / speed) - state.time;
+        }
+        state.time += later;
+        all.push_back(state);
+      }
+    } catch (const Error& error) {
+      fail_in(file, error);
+    }
+  }
+  return from_states(all, carrier);
 }
 
 }  // namespace
 
 ScanRoute read_scan_route(const std::filesystem::path& path, const file::Mission& mission,
                           Carrier carrier) {
-  const std::filesystem::path file = route_file(path);
+  std::filesystem::path file = path;
+  if (std::filesystem::is_directory(path)) {
+    const std::vector<std::filesystem::path> sorties = sorties_in(path);
+    if (!sorties.empty()) return from_sorties(sorties, mission.scan.speed, carrier);
+    file = path / "views.csv";
+  }
   const std::string ending = file.extension().string();
   const bool has_local_places = ending == ".tum" || ending == ".txt" || ending == ".csv";
   if (!has_local_places) {
@@ -148,14 +196,13 @@ ScanRoute read_scan_route(const std::filesystem::path& path, const file::Mission
     return from_points(flight::read_route(file, derived::site_of(mission), pad),
                        mission.scan.speed);
   }
-  constexpr std::size_t largest = std::size_t{256} << 20;
-  const std::string text = geometry::read_file(file, largest);
+  const std::string text = route_text(file);
   try {
     if (ending != ".csv") return from_tum(text);
     if (text.starts_with("view,")) return from_views(views_of(text), mission.scan.speed, carrier);
-    return from_states(text, carrier);
+    return from_states(flight::read_trajectory_csv(text), carrier);
   } catch (const Error& error) {
-    throw Error(ErrorKind::bad_file, file.string() + ": " + error.what());
+    fail_in(file, error);
   }
 }
 

@@ -10,20 +10,6 @@ namespace {
 /// Keeps the noise of a mission that is flown again apart from the survey's.
 constexpr std::uint64_t flown_again_stream = 0x666c6f776e206167;
 
-/// What scans cover all of whose points are kept, as a recorder keeps them.
-std::vector<std::uint8_t> scanned(const file::Mission& mission, const scene::SurveyScene& scene,
-                                  const std::vector<geometry::View>& views, std::uint64_t seed,
-                                  unsigned threads) {
-  const derived::SurveySensor sensor(mission.sensor, seed);
-  judge::CoverageMeter meter(scene.samples().points, mission.evaluation.registration_distance);
-  geometry::Scan scan;
-  for (std::size_t i = 0; i < views.size(); ++i) {
-    scan = sensor.scan(scene.scene(), views[i], i, threads, std::move(scan));
-    meter.add(scan.points);
-  }
-  return meter.is_covered();
-}
-
 }  // namespace
 
 Measurement::Measurement(const file::Mission& mission, const scene::SurveyScene& scene,
@@ -42,15 +28,22 @@ std::vector<Eigen::Vector3f> Measurement::take(const geometry::View& view, std::
   return stored;
 }
 
-std::vector<std::uint8_t> covered_when_flown_again(const file::Mission& mission,
-                                                   const scene::SurveyScene& scene,
-                                                   const std::vector<geometry::View>& views,
-                                                   std::uint64_t seed, unsigned threads) {
-  seed ^= flown_again_stream;
-  if (derived::scans_in_flight(mission)) return scanned(mission, scene, views, seed, threads);
-  Measurement measured(mission, scene, seed, threads);
-  for (std::size_t i = 0; i < views.size(); ++i) measured.take(views[i], i);
-  return measured.meter().is_covered();
+CoveredAgain covered_when_flown_again(const file::Mission& mission, const scene::SurveyScene& scene,
+                                      const std::vector<ViewInFlight>& views, std::uint64_t seed,
+                                      unsigned threads) {
+  CarriedSensor sensor(mission, seed ^ flown_again_stream);
+  const double near = mission.evaluation.registration_distance;
+  judge::CoverageMeter stored(scene.samples().points, near), measured(scene.samples().points, near);
+  judge::ThinnedCloud cloud(mission.planner.see.effective_spacing());
+  const Eigen::AlignedBox3d box = mission.planner.see.scene_box.value_or(Eigen::AlignedBox3d());
+  const bool keeps_all = derived::scans_in_flight(mission);
+  geometry::Scan scan;
+  for (std::size_t i = 0; i < views.size(); ++i) {
+    scan = sensor.scan(scene.scene(), views[i], i, threads, std::move(scan));
+    measured.add(scan.points);
+    if (!keeps_all) stored.add(cloud.store(scan.points, box));
+  }
+  return {keeps_all ? measured.is_covered() : stored.is_covered(), measured.is_covered()};
 }
 
 }  // namespace skycap::missions::run

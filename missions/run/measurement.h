@@ -13,6 +13,7 @@
 #include "missions/file/mission.h"
 #include "missions/judge/coverage.h"
 #include "missions/judge/thinned_cloud.h"
+#include "missions/run/carried_sensor.h"
 #include "missions/scene/survey_scene.h"
 
 namespace skycap::missions::run {
@@ -23,8 +24,8 @@ class Measurement {
   Measurement(const file::Mission& mission, const scene::SurveyScene& scene, std::uint64_t seed,
               unsigned threads);
 
-  /// Frame `number`; the same view has the same noise whenever it is taken. Stores what is at the
-  /// mission's spacing from all that is stored, and gives it back.
+  /// Frame `number`, from a sensor at rest; the same view has the same noise whenever it is taken.
+  /// Stores what is at the mission's spacing from all that is stored, and gives it back.
   std::vector<Eigen::Vector3f> take(const geometry::View& view, std::size_t number);
 
   const judge::CoverageMeter& meter() const { return meter_; }
@@ -38,12 +39,18 @@ class Measurement {
   judge::CoverageMeter meter_;
 };
 
-/// For each of the scene's samples, 1 if the views cover it when they are flown again: from an
-/// empty cloud, and with other noise than the survey of that seed had. Of a scanner that measures
-/// in flight the views are its scans, and all points are kept, as a recorder keeps them.
-std::vector<std::uint8_t> covered_when_flown_again(const file::Mission& mission,
-                                                   const scene::SurveyScene& scene,
-                                                   const std::vector<geometry::View>& views,
-                                                   std::uint64_t seed, unsigned threads);
+/// For each of the scene's samples, 1 if it is covered.
+struct CoveredAgain {
+  /// By what is stored at the mission's spacing, as a survey stores it: a point that lies near one
+  /// that came before is left out. Of a scanner that measures in flight by all points.
+  std::vector<std::uint8_t> stored;
+  std::vector<std::uint8_t> measured;  ///< by all points, as a recorder keeps them
+};
+
+/// What the views cover when they are flown again: from an empty cloud, and with other noise than
+/// the survey of that seed had. Of a scanner that measures in flight the views are its scans.
+CoveredAgain covered_when_flown_again(const file::Mission& mission, const scene::SurveyScene& scene,
+                                      const std::vector<ViewInFlight>& views, std::uint64_t seed,
+                                      unsigned threads);
 
 }  // namespace skycap::missions::run

@@ -105,7 +105,9 @@ survey::SurveyPorts MissionPlanner::ports() {
   }
   if (impl.mission.sensor.is_moving()) {
     ports.views_on_way = [&impl](const geometry::View& from, const geometry::View& to) {
-      return impl.flight->frames(from, to);
+      std::vector<geometry::View> views;
+      for (const ViewInFlight& frame : impl.flight->frames(from, to)) views.push_back(frame.view);
+      return views;
     };
   }
   if (impl.flight || impl.is_gated) {

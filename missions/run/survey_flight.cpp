@@ -185,13 +185,18 @@ void SurveyFlight::stop_on(std::stop_token stop) {
 
 const FlownLeg& SurveyFlight::way() const { return impl_->leg; }
 
-std::vector<geometry::View> SurveyFlight::frames(const geometry::View& from,
-                                                 const geometry::View& to) const {
-  std::vector<geometry::View> frames = impl_->motion.frames(
-      impl_->leg, impl_->carrier(from), impl_->carrier(to), impl_->frame_period);
+std::vector<ViewInFlight> SurveyFlight::frames(const geometry::View& from,
+                                               const geometry::View& to) const {
+  std::vector<ViewInFlight> frames = impl_->motion.frames(impl_->leg, impl_->carrier(from),
+                                                          impl_->carrier(to), impl_->frame_period);
   if (!impl_->mount) return frames;
-  for (geometry::View& frame : frames) frame = derived::side_view(*impl_->mount, frame);
+  for (ViewInFlight& frame : frames) frame.view = derived::side_view(*impl_->mount, frame.view);
   return frames;
+}
+
+double SurveyFlight::time(const geometry::View& from, const geometry::View& to) const {
+  return impl_->motion.time(impl_->leg, impl_->carrier(from), impl_->carrier(to)) +
+         impl_->motion.rest();
 }
 
 std::optional<FlownLeg> SurveyFlight::find_way(const Vector3d& from, const Vector3d& to) {

@@ -15,6 +15,7 @@
 #include "geometry/place/pose.h"
 #include "geometry/points/scan.h"
 #include "missions/file/mission.h"
+#include "missions/run/carried_sensor.h"
 
 namespace skycap::missions::run {
 
@@ -61,8 +62,12 @@ class SurveyFlight {
   /// The way that the last can_reach() found.
   const FlownLeg& way() const;
 
-  /// Views of the frames that a camera which measures on the way takes there.
-  std::vector<geometry::View> frames(const geometry::View& from, const geometry::View& to) const;
+  /// Views of the frames that a camera which measures on the way takes there, their times counted
+  /// from leaving the first view.
+  std::vector<ViewInFlight> frames(const geometry::View& from, const geometry::View& to) const;
+
+  /// How long that way takes, until the vehicle leaves the second view [s].
+  double time(const geometry::View& from, const geometry::View& to) const;
 
   /// A way from one place to another that is proven free with what is known at present; nothing if
   /// none is found. What can_reach() found stands.

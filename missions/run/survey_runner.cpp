@@ -1,13 +1,15 @@
 #include "missions/run/survey_runner.h"
 
+#include <cstdint>
+#include <optional>
 #include <span>
 #include <utility>
 #include <vector>
 
 #include "geometry/parallel.h"
 #include "missions/derived/opening_flight.h"
-#include "missions/derived/survey_sensor.h"
 #include "missions/judge/coverage.h"
+#include "missions/run/carried_sensor.h"
 #include "missions/run/mission_planner.h"
 
 namespace skycap::missions::run {
@@ -22,11 +24,51 @@ file::Mission trial_mission(const file::Mission& mission, const scene::SurveySce
   return trial;
 }
 
+namespace {
+
+/// Where the sensor of a survey is when, and how it moves there.
+class SurveyClock {
+ public:
+  /// `flight` may be null: then a view takes no time.
+  explicit SurveyClock(const SurveyFlight* flight) : flight_(flight) {}
+
+  /// The frames of the way that is flown next.
+  std::vector<geometry::View> begin_way(const geometry::View& from, const geometry::View& to) {
+    frames_ = flight_->frames(from, to);
+    next_frame_ = 0;
+    std::vector<geometry::View> views;
+    for (const ViewInFlight& frame : frames_) views.push_back(frame.view);
+    return views;
+  }
+
+  /// The next one of them.
+  ViewInFlight on_way() {
+    ViewInFlight frame = frames_.at(next_frame_++);
+    frame.time += now_;
+    return frame;
+  }
+
+  ViewInFlight at(const geometry::View& view) {
+    if (flight_ != nullptr && last_) now_ += flight_->time(*last_, view);
+    last_ = view;
+    return {.view = view, .time = now_};
+  }
+
+ private:
+  const SurveyFlight* flight_;
+  std::vector<ViewInFlight> frames_;
+  std::size_t next_frame_ = 0;
+  std::optional<geometry::View> last_;
+  double now_ = 0.0;
+};
+
+}  // namespace
+
 SurveyRecord run_survey(const file::Mission& mission, const scene::SurveyScene& scene,
                         std::uint64_t seed, unsigned threads, std::stop_token stop,
                         const std::function<void(const JudgedView&)>& report,
                         SurveyJournal* journal) {
-  const derived::SurveySensor sensor(mission.sensor, seed);
+  CarriedSensor sensor(mission, seed);
   std::vector<geometry::View> opening = derived::opening_views(trial_mission(mission, scene, seed));
   const geometry::View first_view = opening.empty() ? scene.first_view(seed) : opening.front();
   MissionPlanner guided(trial_mission(mission, scene, seed), first_view, threads);
@@ -39,11 +81,22 @@ SurveyRecord run_survey(const file::Mission& mission, const scene::SurveyScene& 
   std::size_t points_judged = 0;
   survey::SurveyPorts ports = guided.ports();
   if (!opening.empty()) ports.opening.assign(opening.begin() + 1, opening.end());
-  ports.sense = [&](const geometry::View& view, geometry::Scan recycled) {
-    record.scans.push_back({static_cast<std::uint32_t>(record.views.size()), view.position});
+  SurveyClock clock(guided.flight());
+  const auto sense = [&](const ViewInFlight& view, geometry::Scan recycled) {
+    record.scans.push_back({static_cast<std::uint32_t>(record.views.size()), view.view.position});
     return sensor.scan(scene.scene(), view, frame++, threads, std::move(recycled));
   };
-  ports.sense_on_way = ports.sense;
+  ports.sense = [&](const geometry::View& view, geometry::Scan recycled) {
+    return sense(clock.at(view), std::move(recycled));
+  };
+  ports.sense_on_way = [&](const geometry::View&, geometry::Scan recycled) {
+    return sense(clock.on_way(), std::move(recycled));
+  };
+  if (ports.views_on_way) {
+    ports.views_on_way = [&clock](const geometry::View& from, const geometry::View& to) {
+      return clock.begin_way(from, to);
+    };
+  }
   if (!mission.flight.is_flown()) {  // else ways there are proven as measured
     ports.can_reach = [&scene, allows = std::move(ports.can_reach)](const Eigen::Vector3d& from,
                                                                     const geometry::View& view) {

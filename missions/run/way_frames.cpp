@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <optional>
+#include <utility>
 
 #include "geometry/place/camera.h"
 #include "missions/derived/mission_flight.h"
@@ -27,10 +29,14 @@ Vector3d direction_between(const View& from, const View& to, double share) {
   return {std::cos(pitch) * std::sin(yaw), std::cos(pitch) * std::cos(yaw), std::sin(pitch)};
 }
 
-/// Where the vehicle is on a straight piece, `share` of its time after it began it: the profile of
-/// no autopilot differs much from that of seven phases.
-Vector3d place_on(const Vector3d& begin, const Vector3d& end, const flight::Motion& motion,
-                  double share) {
+struct PlaceInFlight {
+  Vector3d position, velocity;
+};
+
+/// Where the vehicle is on a straight piece that it flies in `duration`, `share` of that after it
+/// began it: the profile of no autopilot differs much from that of seven phases.
+PlaceInFlight place_on(const Vector3d& begin, const Vector3d& end, const flight::Motion& motion,
+                       double duration, double share) {
   const double distance = (end - begin).norm();
   const Vector3d direction = (end - begin) / distance;
   const double speed = motion.leg_speed(direction),
@@ -38,7 +44,8 @@ Vector3d place_on(const Vector3d& begin, const Vector3d& end, const flight::Moti
   const double jerk = motion.vehicle().mode.jerk;
   const double all = flight::rest_to_rest_time(distance, speed, acceleration, jerk);
   const auto state = flight::rest_to_rest_state(distance, speed, acceleration, jerk, share * all);
-  return begin + std::min(state.distance, distance) * direction;
+  return {begin + std::min(state.distance, distance) * direction,
+          all / duration * state.speed * direction};
 }
 
 }  // namespace
@@ -63,10 +70,10 @@ double WayMotion::time(const FlownLeg& way, const View& from, const View& to) co
   return time;
 }
 
-std::vector<View> WayMotion::frames(const FlownLeg& way, const View& from, const View& to,
-                                    double period) const {
+std::vector<ViewInFlight> WayMotion::frames(const FlownLeg& way, const View& from, const View& to,
+                                            double period) const {
   const double all = time(way, from, to);
-  std::vector<View> frames;
+  std::vector<ViewInFlight> frames;
   std::size_t number = 1;
   double begun = 0.0;
   for (std::size_t i = 1; i < way.points.size(); ++i) {
@@ -76,8 +83,11 @@ std::vector<View> WayMotion::frames(const FlownLeg& way, const View& from, const
       const double at = static_cast<double>(number) * period;
       if (at > begun + piece || at > all - 0.5 * period) break;
       const double on_last = i + 1 < way.points.size() ? 0.0 : (at - begun) / (all - begun);
-      frames.push_back({place_on(begin, end, motion_, (at - begun) / piece),
-                        direction_between(from, to, turns_last_ ? on_last : at / all)});
+      const PlaceInFlight place = place_on(begin, end, motion_, piece, (at - begun) / piece);
+      frames.push_back(
+          {{place.position, direction_between(from, to, turns_last_ ? on_last : at / all)},
+           place.velocity,
+           at});
       ++number;
     }
     begun += piece + flight::corner_hold;
@@ -95,39 +105,90 @@ double WayMotion::survey_time(const std::vector<FlownLeg>& legs,
   return time;
 }
 
-std::vector<View> measured_views(const file::Mission& mission, const flight::Route& route) {
-  if (!derived::scans_in_flight(mission)) return picture_views(route);
-  const WayMotion motion(mission);
-  const Eigen::Isometry3d& mount = mission.sensor.mount.value();
-  const double period = mission.sensor.frame_period;
-  std::vector<View> scans;
-  const auto add = [&](const flight::Leg& leg, const View& from, const View& to) {
-    for (const View& nose : motion.frames({leg.points}, from, to, period)) {
-      scans.push_back(derived::side_view(mount, nose));
-    }
-    scans.push_back(derived::side_view(mount, to));
-    scans.back().position = leg.points.back();
-  };
-  const auto add_passage = [&](const flight::Passage& passage) {
-    for (std::size_t k = 1; static_cast<double>(k) * period < passage.duration; ++k) {
-      const double time = static_cast<double>(k) * period;
-      scans.push_back(derived::side_view(
-          mount, {state_at(passage.curve, time).position, direction_of(passage.aim_at(time))}));
-    }
-  };
-  for (const flight::Sortie& sortie : route.sorties) {
-    if (sortie.passage) {
-      add_passage(*sortie.passage);
-      continue;
-    }
-    const View &first = route.stations[sortie.first].view, &last = route.stations[sortie.last].view;
-    add(sortie.out, first, first);
-    for (std::uint32_t i = sortie.first; i < sortie.last; ++i) {
-      add(route.legs[i], route.stations[i].view, route.stations[i + 1].view);
-    }
-    add(sortie.back, last, last);
+namespace {
+
+/// What is measured on one sortie after the other.
+class RouteViews {
+ public:
+  RouteViews(const file::Mission& mission, const flight::Route& route)
+      : route_(route), motion_(mission), period_(mission.sensor.frame_period) {
+    if (derived::scans_in_flight(mission)) mount_ = mission.sensor.mount;
   }
-  return scans;
+
+  std::vector<ViewInFlight> all() {
+    for (const flight::Sortie& sortie : route_.sorties) {
+      if (sortie.passage) {
+        mount_ ? scan_passage(*sortie.passage) : take_pictures(sortie);
+      } else {
+        fly(sortie);
+      }
+      now_ += period_;
+    }
+    return std::move(views_);
+  }
+
+ private:
+  void fly(const flight::Sortie& sortie) {
+    const View &first = route_.stations[sortie.first].view,
+               &last = route_.stations[sortie.last].view;
+    fly(sortie.out, first, first);
+    for (std::uint32_t i = sortie.first; i < sortie.last; ++i) {
+      fly(route_.legs[i], route_.stations[i].view, route_.stations[i + 1].view);
+    }
+    if (mount_) fly(sortie.back, last, last);
+  }
+
+  /// A leg, what a scanner measures on it, and what is measured at its end.
+  void fly(const flight::Leg& leg, const View& from, const View& to) {
+    const FlownLeg way{leg.points};
+    if (mount_) {
+      for (const ViewInFlight& nose : motion_.frames(way, from, to, period_)) {
+        add(derived::side_view(*mount_, nose.view), nose.velocity, nose.time);
+      }
+    }
+    now_ += motion_.time(way, from, to);
+    View view = to;
+    if (mount_) view = {leg.points.back(), derived::side_view(*mount_, to).direction};
+    add(view, Vector3d::Zero(), 0.0);
+    now_ += motion_.rest();
+  }
+
+  void scan_passage(const flight::Passage& passage) {
+    for (std::size_t k = 1; static_cast<double>(k) * period_ < passage.duration; ++k) {
+      const double time = static_cast<double>(k) * period_;
+      const flight::CurveState state = state_at(passage.curve, time);
+      add(derived::side_view(*mount_, {state.position, direction_of(passage.aim_at(time))}),
+          state.velocity, time);
+    }
+    now_ += passage.duration;
+  }
+
+  void take_pictures(const flight::Sortie& sortie) {
+    const flight::Passage& passage = *sortie.passage;
+    for (std::uint32_t i = sortie.first; i <= sortie.last; ++i) {
+      const flight::PassedView& picture = passage.views[i - sortie.first];
+      add({picture.position, route_.stations[i].view.direction},
+          state_at(passage.curve, picture.moment).velocity, picture.moment);
+    }
+    now_ += passage.duration;
+  }
+
+  void add(const View& view, const Vector3d& velocity, double time) {
+    views_.push_back({view, velocity, now_ + time});
+  }
+
+  const flight::Route& route_;
+  WayMotion motion_;
+  double period_;
+  std::optional<Eigen::Isometry3d> mount_;  ///< of a scanner
+  double now_ = 0.0;
+  std::vector<ViewInFlight> views_;
+};
+
+}  // namespace
+
+std::vector<ViewInFlight> measured_views(const file::Mission& mission, const flight::Route& route) {
+  return RouteViews(mission, route).all();
 }
 
 flight::PictureBounds moving_bounds_of(const file::Mission& mission) {

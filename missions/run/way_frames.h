@@ -13,6 +13,7 @@
 #include "flight/route/route.h"
 #include "geometry/place/pose.h"
 #include "missions/file/mission.h"
+#include "missions/run/carried_sensor.h"
 #include "missions/run/survey_flight.h"
 
 namespace skycap::missions::run {
@@ -27,9 +28,11 @@ class WayMotion {
   double time(const FlownLeg& way, const geometry::View& from, const geometry::View& to) const;
 
   /// Views of the frames on the way, one every `period` [s] from the start, none within half of one
-  /// of the end. Empty for a way of no length.
-  std::vector<geometry::View> frames(const FlownLeg& way, const geometry::View& from,
-                                     const geometry::View& to, double period) const;
+  /// of the end; their times are from the start. Empty for a way of no length.
+  std::vector<ViewInFlight> frames(const FlownLeg& way, const geometry::View& from,
+                                   const geometry::View& to, double period) const;
+
+  double rest() const { return rest_; }  ///< at a view [s]
 
   /// How long a survey takes from the pad to its last view [s]: take-off, ways, and rests at views.
   /// The way home is not part of it. `legs` as in FlownSurvey.
@@ -45,8 +48,7 @@ class WayMotion {
 
 /// Views of all that is measured on a route: its pictures, at stations or in passing, or the scans
 /// that a scanner takes from leaving the place above the pad until it is back there.
-std::vector<geometry::View> measured_views(const file::Mission& mission,
-                                           const flight::Route& route);
+std::vector<ViewInFlight> measured_views(const file::Mission& mission, const flight::Route& route);
 
 /// How sharp frames are that a camera takes at the cruise speed.
 flight::PictureBounds moving_bounds_of(const file::Mission& mission);

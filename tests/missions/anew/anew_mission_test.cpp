@@ -92,6 +92,20 @@ TEST(AnewMission, KeepsItsPromiseWhenItIsFlownAgain) {
   EXPECT_LE(again, 1.0);
 }
 
+// Frames on the survey's ways have seen what its few views have not: the mission is to cover that.
+TEST(AnewMission, CoversWhatTheFramesOnTheSurveysWaysHaveSeen) {
+  const TestFolder& folder = packages();
+  const auto run = run_skycap({"plan", folder / "m.yaml", "--out", folder / "moving", "--set",
+                               "flight.views=anew", "--set", "sensor.capture=moving"});
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  const json anew = summary_of("moving").at("flight").at("anew");
+  ASSERT_TRUE(anew.at("is_flown").get<bool>());
+  EXPECT_GT(anew.at("anew").at("promised_coverage").get<double>(),
+            anew.at("survey").at("promised_coverage").get<double>() + 0.01);
+  EXPECT_GT(anew.at("flown_again").at("coverage_visible_unthinned").get<double>(),
+            anew.at("survey_flown_again").at("coverage_visible_unthinned").get<double>() - 0.005);
+}
+
 TEST(AnewMission, DoesNotDependOnThreads) {
   const TestFolder& folder = packages();
   const auto run = run_skycap({"plan", folder / "m.yaml", "--out", folder / "threads", "--threads",

@@ -10,6 +10,7 @@
 #include "geometry/error.h"
 #include "geometry/place/pose.h"
 #include "tests/missions/run_skycap.h"
+#include "tests/support/complaint.h"
 
 namespace skycap::missions {
 namespace {
@@ -119,6 +120,43 @@ TEST_F(ScanRouteFile, TheAirframeStaysLevelWhereTheGimbalLooksDown) {
   const recording::ScanRoute airframe =
       recording::read_scan_route(file, mission, recording::Carrier::airframe);
   EXPECT_TRUE(airframe.carrier.pose(1.0).linear().isApprox(Eigen::Matrix3d::Identity(), 1e-5));
+}
+
+/// A trajectory of two seconds from one place to another, a picture taken at its end.
+std::string sortie(const Vector3d& from, const Vector3d& to, double start) {
+  std::vector<flight::TimedState> states(2);
+  states[0].time = start;
+  states[0].position = from;
+  states[1].time = start + 2.0;
+  states[1].position = to;
+  states[1].is_shot = true;
+  return flight::write_trajectory_csv(states, flight::Frame::enu);
+}
+
+TEST_F(ScanRouteFile, OfAPackageAllSortiesAreFlownOneAfterTheOther) {
+  folder.write("views.csv",
+               "view,x,y,z,direction_x,direction_y,direction_z,points\n0,10,0,5,-1,0,0,7\n");
+  folder.write("mission-1.csv", sortie({0, 0, 10}, {4, 0, 10}, 6.5));
+  folder.write("mission-2.csv", sortie({0, 0, 10}, {0, 8, 10}, 6.5));
+  mission.scan.speed = 2.0;
+  const recording::ScanRoute route =
+      recording::read_scan_route(folder.path(), mission, recording::Carrier::airframe);
+  // From the first one's end to the second one's begin it is 4 m.
+  EXPECT_THAT(route.image_times, testing::Pointwise(testing::DoubleNear(1e-6),
+                                                    std::vector<double>{8.5, 8.5 + 2.0 + 2.0}));
+  EXPECT_TRUE(route.carrier.pose(7.5).translation().isApprox(Vector3d(2, 0, 10), 1e-6));
+  EXPECT_TRUE(route.carrier.pose(11.5).translation().isApprox(Vector3d(0, 4, 10), 1e-6));
+  EXPECT_NEAR(route.carrier.end(), 12.5, 1e-6);
+}
+
+// Straight lines between the views of a flown survey lead through what stands there.
+TEST_F(ScanRouteFile, AFlownPackageWithoutATrajectoryIsRefused) {
+  folder.write("views.csv",
+               "view,x,y,z,direction_x,direction_y,direction_z,points\n0,10,0,5,-1,0,0,7\n");
+  folder.write("free_space.bin", "");
+  const std::string complaint = testing_support::complaint_of(
+      [&] { recording::read_scan_route(folder.path(), mission, recording::Carrier::airframe); });
+  EXPECT_THAT(complaint, testing::HasSubstr("is flown, but has no mission.csv; export one"));
 }
 
 // 2e-5 degrees of longitude at the equator: 2.2264 m on WGS84.
