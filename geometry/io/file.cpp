@@ -4,7 +4,6 @@
 #include <cctype>
 #include <cerrno>
 #include <cstdint>
-#include <fstream>
 #include <limits>
 #include <new>
 #include <system_error>
@@ -39,7 +38,9 @@ std::string size_text(std::size_t bytes) {
 std::string inflate_gzip(const fs::path& path, std::string_view bytes, std::size_t most_bytes) {
   z_stream stream{};
   constexpr int gzip_only = 16 + MAX_WBITS;
-  if (inflateInit2(&stream, gzip_only) != Z_OK) fail(path, "zlib cannot start");
+  const int start = inflateInit2(&stream, gzip_only);
+  if (start == Z_MEM_ERROR) throw std::bad_alloc();
+  if (start != Z_OK) fail(path, "zlib cannot start");
   std::string inflated, chunk(1 << 20, '\0');
   int status = Z_OK;
   while (status == Z_OK || (status == Z_STREAM_END && !bytes.empty())) {
@@ -56,6 +57,7 @@ std::string inflate_gzip(const fs::path& path, std::string_view bytes, std::size
     if (inflated.size() > most_bytes) break;
   }
   inflateEnd(&stream);
+  if (status == Z_MEM_ERROR) throw std::bad_alloc();
   if (inflated.size() > most_bytes) {
     fail(path, "is larger than " + size_text(most_bytes) + " when decompressed");
   }
@@ -135,11 +137,16 @@ void require_regular_file(const fs::path& path) {
   if (!fs::is_regular_file(status)) fail(path, "is a device or a pipe; a regular file is wanted");
 }
 
-std::string read_file(const fs::path& path, std::size_t most_bytes, std::size_t most_decompressed) {
-  require_regular_file(path);
+std::ifstream open_stream(const fs::path& path) {
   errno = 0;
   std::ifstream stream(path, std::ios::binary);
-  if (!stream && errno == ENOMEM) throw std::bad_alloc();  // nothing is wrong with the file
+  if (!stream && errno == ENOMEM) throw std::bad_alloc();
+  return stream;
+}
+
+std::string read_file(const fs::path& path, std::size_t most_bytes, std::size_t most_decompressed) {
+  require_regular_file(path);
+  std::ifstream stream = open_stream(path);
   if (!stream) fail(path, "cannot be opened: " + last_error());
   const auto refuse_size = [&] { fail(path, "is larger than " + size_text(most_bytes)); };
   std::error_code error;

@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <fstream>
 #include <string>
 #include <string_view>
 
@@ -11,6 +12,10 @@ namespace skycap::geometry {
 
 /// Throws Error{bad_file} unless it is a regular file: devices and pipes may never end.
 void require_regular_file(const std::filesystem::path& path);
+
+/// A stream of the file's bytes, which has failed if the file cannot be opened. Throws
+/// std::bad_alloc if memory is what is missing: then nothing is wrong with the file.
+std::ifstream open_stream(const std::filesystem::path& path);
 
 /// The name's ending in lower case with its dot, not counting ".gz"; empty if it has none.
 std::string ending_of(std::filesystem::path path);

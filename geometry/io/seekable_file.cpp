@@ -11,7 +11,7 @@ SeekableFile::SeekableFile(std::filesystem::path path) : path_(std::move(path)) 
   std::error_code failure;
   size_ = std::filesystem::file_size(path_, failure);
   const bool is_file = std::filesystem::is_regular_file(path_, failure);
-  if (is_file) stream_.open(path_, std::ios::binary);
+  if (is_file) stream_ = open_stream(path_);
   const auto beginning = [&] { return bytes(0, 2); };
   if (!is_file || !stream_ || with_name(beginning) == "\x1F\x8B") {
     decompressed_ =

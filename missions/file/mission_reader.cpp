@@ -5,7 +5,6 @@
 #include <cerrno>
 #include <charconv>
 #include <cmath>
-#include <fstream>
 #include <iterator>
 #include <optional>
 #include <span>
@@ -13,6 +12,7 @@
 #include <system_error>
 
 #include "geometry/error.h"
+#include "geometry/io/file.h"
 #include "missions/file/mission_keys.h"
 #include "missions/file/unknown_key.h"
 #include "missions/file/yaml_tree.h"
@@ -355,7 +355,7 @@ MissionFile read_mission_file(const std::filesystem::path& file,
   };
   std::error_code failure;
   if (std::filesystem::is_directory(file, failure)) refuse("is a folder; name a mission file");
-  std::ifstream stream(file, std::ios::binary);
+  std::ifstream stream = geometry::open_stream(file);
   if (!stream)
     refuse(std::string("cannot be read (") + std::generic_category().message(errno) +
            "); check its name");

@@ -230,6 +230,8 @@ std::optional<SurveyMission> stage_package(const file::Mission& mission,
   std::optional<SurveyMission> flight;
   if (record.flown) {
     std::ostringstream free_space;
+    free_space.exceptions(
+        std::ios::badbit);  // else text is lost without a word where memory is missing
     record.flown->measured->write(free_space);
     folder.write(free_space_name, free_space.str());
     flight = SurveyMission{};
@@ -315,7 +317,7 @@ PackagedSurvey read_package(const std::filesystem::path& folder,
   std::ifstream space;
   if (std::filesystem::exists(space_file)) {
     geometry::require_regular_file(space_file);
-    space.open(space_file, std::ios::binary);
+    space = geometry::open_stream(space_file);
   }
   if (!space.is_open()) fail(space_file, "cannot be read; plan the mission again");
   if (summary.anew) {

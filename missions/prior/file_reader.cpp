@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cctype>
-#include <fstream>
 
 #include "geometry/error.h"
 #include "geometry/io/cloud_io.h"
@@ -135,7 +134,7 @@ Format format_of_json(const std::string& ending, string_view text) {
 
 std::string beginning_of(const fs::path& file) {
   std::string bytes(1 << 16, '\0');
-  std::ifstream stream(file, std::ios::binary);
+  std::ifstream stream = geometry::open_stream(file);
   if (!stream) fail_file(file, "cannot be opened");
   stream.read(bytes.data(), std::ssize(bytes));
   bytes.resize(static_cast<std::size_t>(stream.gcount()));

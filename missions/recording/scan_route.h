@@ -27,8 +27,8 @@ struct ScanRoute {
 ///  - .csv: a trajectory as written by flight/export/trajectory_file.h, or views as in views.csv;
 ///  - .plan, .waypoints, .kmz, .kml, .geojson, .json: the points of any file that flight/export
 ///    reads, by the mission's georeference, looking ahead;
-///  - a folder: of the mission package in it the mission.csv, or mission-1.csv, mission-2.csv and so
-///    on one after the other, or its views.csv if it is not flown.
+///  - a folder: of the mission package in it the mission.csv, or mission-1.csv, mission-2.csv and
+///    so on one after the other, or its views.csv if it is not flown.
 /// Views and points are flown in order along straight lines at the mission's scan.speed, with turns
 /// of 1 rad/s on the spot; an image is taken at each view. Throws Error{bad_file} in one line, and
 /// Error{bad_config} if the file's places are on Earth and the mission's are not.

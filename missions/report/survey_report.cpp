@@ -1,7 +1,6 @@
 #include "missions/report/survey_report.h"
 
 #include <algorithm>
-#include <fstream>
 #include <optional>
 #include <string_view>
 #include <utility>
@@ -12,6 +11,7 @@
 #include "flight/export/geodesy.h"
 #include "flight/space/free_boundary.h"
 #include "geometry/io/cloud_io.h"
+#include "geometry/io/file.h"
 #include "geometry/io/json.h"
 #include "missions/derived/mission_flight.h"
 #include "missions/file/json_text.h"
@@ -111,7 +111,7 @@ PageCloud free_cloud(const fs::path& file) {
   constexpr std::size_t most_faces = 50'000;
   std::vector<Eigen::Vector3f> faces;
   if (is_there(file)) {
-    std::ifstream stream(file, std::ios::binary);
+    std::ifstream stream = geometry::open_stream(file);
     faces = flight::free_boundary(stream, file.string());
   }
   return {"free", encode_cloud(faces, {}, most_faces)};

@@ -2,7 +2,6 @@
 
 #include <array>
 #include <cstddef>
-#include <fstream>
 #include <memory>
 #include <new>
 #include <stdexcept>
@@ -12,6 +11,7 @@
 #include <openssl/evp.h>
 
 #include "geometry/error.h"
+#include "geometry/io/file.h"
 
 namespace skycap::missions::scene {
 
@@ -70,7 +70,7 @@ std::string sha256(std::span<const std::byte> bytes) {
 }
 
 std::string sha256_of_file(const std::filesystem::path& file) {
-  std::ifstream stream(file, std::ios::binary);
+  std::ifstream stream = geometry::open_stream(file);
   Sha256 sum;
   std::vector<char> piece(std::size_t{1} << 18);
   while (stream.read(piece.data(), static_cast<std::streamsize>(piece.size())),

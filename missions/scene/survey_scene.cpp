@@ -225,6 +225,7 @@ std::optional<std::vector<std::uint8_t>> SurveyScene::attainable(
 
 std::string SurveyScene::ceiling_key() const {
   std::ostringstream inputs;
+  inputs.exceptions(std::ios::badbit);  // else text is lost without a word where memory is missing
   inputs.precision(17);
   inputs << "ceiling 3\n" << view_distance_ << " " << mission_.planner.see.effective_spacing();
   for (const file::Key& key : file::mission_keys()) {
