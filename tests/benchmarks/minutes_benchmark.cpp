@@ -1,0 +1,139 @@
+// What it costs not to know the scene: the missions that flown surveys leave, chosen anew from what
+// they measured, beside those of the same search that knows the true surface and the free space
+// about it, for the same wanted coverage.
+//
+//   minutes_benchmark [MISSION] [--seeds 3] [--set KEY=VALUE]...
+//
+// The true surface is told to the planner by scans of views that cover the scene for one who knows
+// it, besides those of the survey. Both missions are flown again in simulation. Without a mission
+// it is a teapot of 20 m.
+#include <algorithm>
+#include <cstdio>
+#include <cstdlib>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "geometry/error.h"
+#include "geometry/parallel.h"
+#include "missions/derived/resolved_mission.h"
+#include "missions/derived/survey_sensor.h"
+#include "missions/judge/coverage.h"
+#include "missions/package/anew_mission.h"
+#include "missions/package/flight_files.h"
+#include "missions/package/package.h"
+#include "missions/run/mission_planner.h"
+#include "missions/run/omniscient.h"
+#include "missions/run/survey_runner.h"
+#include "missions/scene/survey_scene.h"
+#include "tests/missions/flown_mission.h"
+#include "tests/support/temporary_folder.h"
+
+namespace {
+
+using namespace skycap;
+using namespace skycap::missions;
+
+/// The survey as if it had seen everything: its views and legs, with the surface and the space that
+/// one measures who knows where to look.
+run::SurveyRecord all_knowing(const file::Mission& mission, const scene::SurveyScene& scene,
+                              const run::SurveyRecord& record) {
+  const unsigned threads = geometry::thread_count(mission.threads);
+  const derived::SurveySensor sensor(mission.sensor, record.seed + 1'000'000);
+  std::vector<geometry::View> views = package::views_of(record);
+  run::MissionPlanner knowing(run::trial_mission(mission, scene, record.seed), views.front(),
+                              threads);
+  for (const geometry::View& view :
+       run::known_cover(mission, scene, record.seed, threads, {.candidates = 3000})) {
+    views.push_back(view);
+  }
+  std::uint64_t frame = 0;
+  for (const geometry::View& view : views) {
+    const geometry::Scan scan = sensor.scan(scene.scene(), view, frame++, threads);
+    if (frame == 1) {
+      knowing.planner().next_view(scan);
+    } else {
+      knowing.planner().pass(scan);
+    }
+    knowing.flight()->take_in(scan);
+  }
+  run::SurveyRecord told;
+  knowing.finish(told);
+  run::SurveyRecord all = record;
+  all.surface = told.surface;
+  all.flown->measured = told.flown->measured;
+  all.flown->grounds = told.flown->grounds;
+  return all;
+}
+
+package::AnewMission choose(const file::Mission& mission, const run::SurveyRecord& record,
+                            const package::CoverageFigures& coverage) {
+  const run::FlownSurvey& flown = *record.flown;
+  std::vector<package::Way> ways;
+  for (const run::FlownLeg& leg : flown.legs) ways.push_back(leg.points);
+  flight::Route present = plan_flight(mission, *flown.measured, flown.pad,
+                                      package::views_of(record), ways, flown.grounds);
+  return package::anew_mission(mission, record, coverage, std::move(present), {});
+}
+
+void print(const char* who, const package::AnewMission& mission) {
+  const anew::MissionFigures& figures = mission.choice.anew;
+  std::printf("  %-16s %6.1f s %6.1f m %4zu views %4zu pieces, promised %.2f %%, %.2f %% covered\n",
+              who, figures.duration, figures.length, figures.views, figures.pieces,
+              100.0 * figures.promised, 100.0 * mission.again->visible.value_or(0.0));
+}
+
+void compare(const std::filesystem::path& file, const std::vector<file::KeyOverride>& overrides,
+             std::uint64_t seeds) {
+  const file::Mission mission = derived::read_mission(file, overrides);
+  const scene::SurveyScene scene(mission, file.parent_path());
+  double ours = 0.0, knowing = 0.0;
+  for (std::uint64_t seed = 1; seed <= seeds; ++seed) {
+    const run::SurveyRecord record = run::run_survey(mission, scene, seed, mission.threads);
+    const package::CoverageFigures coverage =
+        package::coverage_figures(mission, record, scene, mission.threads, {});
+    const package::AnewMission from_survey = choose(mission, record, coverage);
+    const package::AnewMission from_truth =
+        choose(mission, all_knowing(mission, scene, record), coverage);
+    std::printf("seed %llu: %zu views, %.2f %% of the visible\n",
+                static_cast<unsigned long long>(seed), record.views.size(),
+                100.0 * coverage.visible.value_or(0.0));
+    print("from the survey", from_survey);
+    print("knowing all", from_truth);
+    std::fflush(stdout);
+    ours += from_survey.choice.anew.duration;
+    knowing += from_truth.choice.anew.duration;
+  }
+  std::printf("all seeds: %.2f times the seconds of who knows all\n", ours / knowing);
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  std::filesystem::path mission;
+  std::uint64_t seeds = 3;
+  std::vector<file::KeyOverride> overrides{{"--set", "planner.name", "skycap"},
+                                           {"--set", "flight.views", "anew"}};
+  for (int i = 1; i < argc; ++i) {
+    const std::string word = argv[i];
+    if (word == "--seeds" && i + 1 < argc) {
+      seeds = std::max(1UL, std::strtoul(argv[++i], nullptr, 10));
+    } else if (word == "--set" && i + 1 < argc) {
+      const std::string setting = argv[++i];
+      const std::size_t equals = std::min(setting.find('='), setting.size() - 1);
+      overrides.push_back({"--set", setting.substr(0, equals), setting.substr(equals + 1)});
+    } else {
+      mission = word;
+    }
+  }
+  const testing_support::TemporaryFolder folder;
+  if (mission.empty()) mission = folder.file("teapot.yaml", tests::flown_mission());
+  try {
+    compare(mission, overrides, seeds);
+  } catch (const Error& error) {
+    std::fprintf(stderr, "%s\n", error.what());
+    return 2;
+  }
+  return 0;
+}
