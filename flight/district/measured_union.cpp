@@ -1,5 +1,7 @@
 #include "flight/district/measured_union.h"
 
+#include <algorithm>
+#include <optional>
 #include <utility>
 
 #include "geometry/error.h"
@@ -36,16 +38,35 @@ std::vector<MeasuredSpace> shared(std::vector<MeasuredSpace> spaces) {
   return spaces;
 }
 
+/// The part of a leg that a box, grown by `reach`, holds; nothing if that is none of it. What is in
+/// the box is no nearer than that to the rest.
+std::optional<Segment> part_near(const Segment& leg, const AlignedBox3d& box, double reach) {
+  double begin = 0.0, end = 1.0;
+  constexpr double rounding = 1e-9;  // of fractions; pieces may be longer
+  for (int axis = 0; axis < 3; ++axis) {
+    const double way = leg.to[axis] - leg.from[axis];
+    if (way == 0.0) continue;
+    const double one = (box.min()[axis] - reach - leg.from[axis]) / way;
+    const double other = (box.max()[axis] + reach - leg.from[axis]) / way;
+    begin = std::max(begin, std::min(one, other) - rounding);
+    end = std::min(end, std::max(one, other) + rounding);
+  }
+  if (begin > end) return std::nullopt;
+  return Segment{begin == 0.0 ? leg.from : leg.at(begin), end == 1.0 ? leg.to : leg.at(end)};
+}
+
 }  // namespace
 
 MeasuredUnion::MeasuredUnion(std::vector<MeasuredSpace> spaces)
-    : spaces_(shared(std::move(spaces))), tree_(extents_of(spaces_)) {}
+    : spaces_(shared(std::move(spaces))), extents_(extents_of(spaces_)), tree_(extents_) {}
 
 Closest MeasuredUnion::closest(const Segment& leg, double up_to) const {
   Closest best{up_to};
   double reach = up_to;
   tree_.visit_near(leg, reach, [&](std::uint32_t i) {
-    const Closest found = spaces_[i].closest(leg, best.distance);
+    const std::optional<Segment> part = part_near(leg, extents_[i], best.distance);
+    if (!part) return;
+    const Closest found = spaces_[i].closest(*part, best.distance);
     if (found.kind == ObstacleKind::none || found.distance >= best.distance) return;
     best = found;
     reach = best.distance;

@@ -28,7 +28,8 @@ class MeasuredUnion : public FreeSpace {
   /// Each with what the others have measured to be free: then what is free in all of them is free
   /// together.
   std::vector<MeasuredSpace> spaces_;
-  BoundingTree tree_;  ///< of their extents, outside of which nothing is in the way
+  std::vector<Eigen::AlignedBox3d> extents_;  ///< of each, outside of which nothing is in the way
+  BoundingTree tree_;                         ///< of these
 };
 
 }  // namespace skycap::flight

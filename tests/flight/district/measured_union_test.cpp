@@ -22,7 +22,8 @@ using testing_support::complaint_of;
 constexpr double voxel = 0.5;
 
 /// Boxes on whole voxels, so that a box and the voxels in it are the same.
-const AlignedBox3d west({-10, -6, 0}, {2, 6, 8}), east({-2, -6, 0}, {10, 6, 8});
+const AlignedBox3d west(Vector3d(-10, -6, 0), Vector3d(2, 6, 8));
+const AlignedBox3d east(Vector3d(-2, -6, 0), Vector3d(10, 6, 8));
 
 MeasuredSpace space_of(const AlignedBox3d& region) {
   return MeasuredSpace({.voxel = voxel, .region = region});
@@ -72,7 +73,7 @@ TEST(MeasuredUnion, IsWhatOneSurveyThatMeasuredAllOfItWouldKnow) {
     a.insert(scan_of(points_a), 0.1), all.insert(scan_of(points_a), 0.1);
     b.insert(scan_of(points_b), 0.1), all.insert(scan_of(points_b), 0.1);
     const MeasuredUnion together(both(std::move(a), std::move(b)));
-    const AlignedBox3d around({-14, -9, -2}, {14, 9, 11});
+    const AlignedBox3d around(Vector3d(-14, -9, -2), Vector3d(14, 9, 11));
     for (int i = 0; i < 300; ++i) {
       const Segment leg{scenes::point_in(random, around), scenes::point_in(random, around)};
       EXPECT_NEAR(together.closest(leg, 6.0).distance, all.closest(leg, 6.0).distance, 1e-9);

@@ -89,10 +89,11 @@ TEST(CityText, IsReadAsWhatItWasWrittenFrom) {
   tower.surfaces.back() = prior::SurfaceKind::wall;
   const prior::Object shed = object("shed", box({0, 0, 0}, {3, 2, 2}));
   prior::Source source;
-  source.file = folder.write("cut.city.json", city_text(std::vector{&tower, &shed}));
+  const std::vector<const prior::Object*> objects{&tower, &shed};
+  source.file = folder.write("cut.city.json", city_text(objects));
   const prior::Prior read = prior::read_prior(source, {});
   ASSERT_EQ(read.objects.size(), 2U);
-  for (const prior::Object* written : {&tower, &shed}) {
+  for (const prior::Object* written : objects) {
     const auto found = std::ranges::find(read.objects, written->id, &prior::Object::id);
     ASSERT_NE(found, read.objects.end());
     const auto box_read = geometry::bounding_box(found->mesh);
