@@ -40,7 +40,10 @@ class DistrictReader {
     if (auto targets = root_.section("targets")) read_targets(*targets);
     district_.together = bounded("together", 0.5, 0.0, 100.0);
     district_.pads = clicks(root_, "pads");
-    district_.wishes.vehicle = root_.text("vehicle", "generic");
+    std::string& vehicle = district_.wishes.vehicle;
+    vehicle = root_.text("vehicle", "generic");
+    // A preset has a name, a description has a path.
+    if (fs::path(vehicle).extension() == ".yaml") vehicle = path_of(vehicle).string();
     read_planner();
     const int seed = root_.integer("seed", 1);
     if (seed < 0) root_.fail_at("seed", fmt::format("is {}; it must be 0 or more", seed));

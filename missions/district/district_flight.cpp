@@ -9,6 +9,7 @@
 
 #include "flight/district/measured_union.h"
 #include "flight/district/pad_sorties.h"
+#include "flight/paths/path.h"
 #include "geometry/error.h"
 #include "missions/derived/mission_flight.h"
 #include "missions/derived/resolved_mission.h"
@@ -22,6 +23,20 @@ using flight::Station;
 
 /// How many pads a station is tried from.
 constexpr std::size_t most_pads_tried = 3;
+
+/// From above a pad to a place: straight, or over all that stands in between, and then as short as
+/// that way is pulled tight; empty where neither is free. Found at once, where a search of the way
+/// through a town takes a second.
+package::Way way_over(const flight::FreeSpace& space, const Vector3d& home, const Vector3d& place,
+                      double level, const flight::RouteOptions& options) {
+  const double clearance = options.clearance.total();
+  if (space.is_free({home, place}, clearance)) return {home, place};
+  package::Way way{home, {home.x(), home.y(), level}, {place.x(), place.y(), level}, place};
+  for (std::size_t i = 1; i < way.size(); ++i) {
+    if (!space.is_free({way[i - 1], way[i]}, clearance)) return {};
+  }
+  return flight::pull_tight(space, clearance, std::move(way), options.path.worthwhile_saving);
+}
 
 class FlightPlanner {
  public:
@@ -112,6 +127,7 @@ class FlightPlanner {
     if (own.empty()) return;
     tell_(fmt::format("proving the ways from pad {} of {} to {} stations", pad + 1,
                       missions_.size(), own.size()));
+    take_ways(pad, own);
     try {
       routes_[pad] = package::plan_flight(missions_[pad], *measured_, prepared_.pads[pad], own,
                                           grounds_, stop_);
@@ -124,6 +140,21 @@ class FlightPlanner {
     }
     for (const flight::Unreached& missed : routes_[pad]->unreached) {
       flight_.stations[missed.station.view_index].why_not = missed.reason;
+    }
+  }
+
+  /// Proposes a way from above the pad to each station.
+  void take_ways(std::size_t pad, std::vector<Station>& stations) const {
+    const file::Mission& mission = missions_[pad];
+    const Vector3d& place = prepared_.pads[pad];
+    const flight::KnownSpace known(derived::flight_rules(mission));
+    const flight::JointSpace space({measured_.get(), &known});
+    const flight::RouteOptions options = derived::route_options_of(mission, place);
+    const Vector3d home = place + options.takeoff_climb * Vector3d::UnitZ();
+    const double level = derived::highest_return(mission, place.z(), place.z());
+    for (Station& station : stations) {
+      if (stop_.stop_requested()) return;
+      station.way = way_over(space, home, station.view.position, level, options);
     }
   }
 

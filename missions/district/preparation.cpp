@@ -10,7 +10,6 @@
 
 #include "flight/route/route.h"
 #include "geometry/error.h"
-#include "geometry/io/file.h"
 #include "geometry/io/output_folder.h"
 #include "missions/derived/mission_priors.h"
 #include "missions/derived/resolved_mission.h"
@@ -69,6 +68,8 @@ class Preparer {
 
   Prepared run(std::string digest) {
     tell_("reading " + district_.wishes.map.filename().string());
+    // First, since missions name their files as seen from there.
+    geometry::OutputFolder folder(out_);
     files_ = site::files_of(district_.wishes);
     chosen_ = choose_targets(district_, files_);
     draft_ = read_draft();
@@ -76,7 +77,10 @@ class Preparer {
     group();
     place_pads();
     prepared_.digest = std::move(digest);
-    write();
+    write_missions();
+    write_flights(folder);
+    folder.write(prepared_name, prepared_json(prepared_));
+    folder.commit();
     return std::move(prepared_);
   }
 
@@ -222,7 +226,7 @@ class Preparer {
     return sources;
   }
 
-  void write() {
+  void write_missions() {
     tell_(fmt::format("writing {} missions", values_.size()));
     geometry::OutputFolder missions(out_ / missions_folder), sites(out_ / sites_folder);
     missions.replace([](std::string_view name) { return name.ends_with(".yaml"); });
@@ -238,11 +242,9 @@ class Preparer {
     }
     sites.commit();
     missions.commit();
-    write_flight();
-    geometry::write_file(out_ / prepared_name, prepared_json(prepared_));
   }
 
-  void write_flight() {
+  void write_flights(geometry::OutputFolder& folder) {
     if (prepared_.pads.empty()) return;
     MissionValues values = basics(out_);
     Group all;
@@ -269,7 +271,7 @@ class Preparer {
       }
     }
     values.sources = sources_in(out_ / city_name, ids);
-    geometry::write_file(out_ / city_name, city_near(values.fence, all));
+    folder.write(city_name, city_near(values.fence, all));
     geometry::OutputFolder flights(out_ / flights_folder);
     flights.replace([](std::string_view name) { return !name.starts_with("."); });
     for (std::size_t pad = 0; pad < prepared_.pads.size(); ++pad) {

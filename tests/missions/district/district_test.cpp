@@ -56,7 +56,7 @@ std::string town(const std::vector<Vector3d>& places) {
 }
 
 /// Two that share a wall, one by itself, and one that is no target.
-const std::vector<Vector3d> places{{0, 0, 0}, {10, 0, 0}, {60, 0, 0}, {60, 60, 0}};
+const std::vector<Vector3d> places{{0, 0, 0}, {10, 0, 0}, {60, 0, 0}, {60, 30, 0}};
 
 constexpr const char* few_views =
     "set: {limits.max_views: 3, evaluation: {samples: 2000, visible_directions: 20, "
@@ -70,9 +70,9 @@ class District : public testing::Test {
   }
 
   void write(const std::string& text) const { folder_.write("quarter.yaml", text + few_views); }
-  tests::ProgramRun run(const std::vector<std::string>& more = {}) const {
-    std::vector<std::string> words{
-        "district", folder_ / "quarter.yaml", "--out", folder_ / "out", "--threads", "1"};
+  tests::ProgramRun run(const std::vector<std::string>& more = {}, int threads = 1) const {
+    std::vector<std::string> words{"district",  folder_ / "quarter.yaml", "--out", folder_ / "out",
+                                   "--threads", std::to_string(threads)};
     words.insert(words.end(), more.begin(), more.end());
     return tests::run_skycap(words);
   }
@@ -139,18 +139,19 @@ TEST_F(District, GoesOnWhereItWasLeft) {
   EXPECT_EQ(fs::last_write_time(item / "item.json"), written);
   const std::string table = content_of(out() / "targets.csv");
   fs::remove_all(out());
-  ASSERT_EQ(run({"--threads", "2"}).exit_code, 0);
+  ASSERT_EQ(run({}, 2).exit_code, 0);
   EXPECT_EQ(content_of(out() / "targets.csv"), table);
 }
 
 TEST_F(District, CutsOutWhatIsNearEachTarget) {
   std::vector<Vector3d> far = places;
+  far.emplace_back(85, 0, 0);
   far.emplace_back(900, 0, 0);
   folder_.write("town.city.json", town(far));
   ASSERT_EQ(run({"--list"}).exit_code, 0);
   const std::string site = content_of(out() / "sites" / "house_2.city.json");
-  EXPECT_THAT(site, AllOf(HasSubstr("house_0"), HasSubstr("house_3")));
-  EXPECT_THAT(site, testing::Not(HasSubstr("house_4")));
+  EXPECT_THAT(site, AllOf(HasSubstr("house_2"), HasSubstr("house_3"), HasSubstr("house_4")));
+  EXPECT_THAT(site, testing::Not(HasSubstr("house_5")));
 }
 
 TEST_F(District, ChoosesTargetsByPlaceAndAttribute) {
@@ -186,7 +187,7 @@ TEST_F(District, RefusesAPadInABuilding) {
     const auto at = mission.find(key + ": ") + key.size() + 2;
     return mission.substr(at, mission.find(' ', at) - at);
   };
-  // The middle of the district is 30 m beside everything; that of the first house is not.
+  // The middle of the district is beside everything; that of the first house is not.
   write(map + "targets: {id: [house_0]}\n");
   ASSERT_EQ(run({"--list"}).exit_code, 0);
   const std::string house = content_of(out() / "flights" / "pad_1.yaml");
