@@ -15,10 +15,11 @@ using Order = std::vector<std::uint32_t>;
 SplitProblem split_problem(const FleetVehicle& vehicle, std::span<const std::uint32_t> stations) {
   SplitProblem problem{.energy_per_sortie = vehicle.energy_per_sortie,
                        .stations_per_sortie = vehicle.stations_per_sortie};
+  SplitProblem::Pad& pad = problem.pads.emplace_back();
   for (std::size_t i = 0; i < stations.size(); ++i) {
-    problem.out.push_back(vehicle.out[stations[i]]);
+    pad.out.push_back(vehicle.out[stations[i]]);
     problem.station.push_back(vehicle.station[stations[i]]);
-    problem.back.push_back(vehicle.back[stations[i]]);
+    pad.back.push_back(vehicle.back[stations[i]]);
     if (i > 0) problem.leg.push_back(vehicle.leg(stations[i - 1], stations[i]));
   }
   return problem;

@@ -192,9 +192,10 @@ class RoutePlanner {
 
   void split_once() {
     SplitProblem problem;
+    SplitProblem::Pad& pad = problem.pads.emplace_back();
     for (std::size_t i = 0; i < route_.stations.size(); ++i) {
-      problem.out.push_back(in_turn(takeoff_cost_, cost_of(outward_[i])));
-      problem.back.push_back(in_turn(cost_of(homeward_[i]), landing_cost_));
+      pad.out.push_back(in_turn(takeoff_cost_, cost_of(outward_[i])));
+      pad.back.push_back(in_turn(cost_of(homeward_[i]), landing_cost_));
       problem.station.push_back(legs_.station_cost(route_.stations[i]));
       if (i > 0) problem.leg.push_back(cost_of(route_.legs[i - 1]));
     }
@@ -239,7 +240,7 @@ class RoutePlanner {
   void add_sortie(const SortieRange& range, const SplitProblem& problem, const Leg& out,
                   const Leg& back) {
     Sortie sortie{range.first, range.last, out, back};
-    LegCost total = in_turn(problem.out[range.first], problem.back[range.last]);
+    LegCost total = in_turn(problem.pads[0].out[range.first], problem.pads[0].back[range.last]);
     double length = out.length + back.length + 2.0 * route_.options.takeoff_climb;
     double clearance = std::min(out.clearance, back.clearance);
     for (std::uint32_t i = range.first; i <= range.last; ++i) {

@@ -9,19 +9,35 @@ namespace {
 
 constexpr double never = std::numeric_limits<double>::infinity();
 
-/// What time any split takes at least: every way from station to station flown direct or by the
-/// pad, whichever is faster, and as many visits to the pad as the energy of all that asks for.
+using Cost = SplitProblem::Cost;
+
+/// Of one figure at a station the least of all pads.
+double least(const SplitProblem& problem, std::vector<Cost> SplitProblem::Pad::*way, std::size_t i,
+             double Cost::*figure) {
+  double best = never;
+  for (const SplitProblem::Pad& pad : problem.pads) best = std::min(best, (pad.*way)[i].*figure);
+  return best;
+}
+
+/// What time any split takes at least: every way from station to station flown direct or by a pad,
+/// whichever is faster, and as many visits to pads as the energy of all that asks for.
 double least_time(const SplitProblem& problem) {
-  const std::size_t count = problem.out.size();
-  double time = problem.out.front().time + problem.back.back().time;
-  double energy = problem.out.front().energy + problem.back.back().energy;
+  const std::size_t count = problem.station.size();
+  const auto out = [&](std::size_t i, double Cost::*figure) {
+    return least(problem, &SplitProblem::Pad::out, i, figure);
+  };
+  const auto back = [&](std::size_t i, double Cost::*figure) {
+    return least(problem, &SplitProblem::Pad::back, i, figure);
+  };
+  double time = out(0, &Cost::time) + back(count - 1, &Cost::time);
+  double energy = out(0, &Cost::energy) + back(count - 1, &Cost::energy);
   double cheapest_visit = never;
   for (std::size_t i = 0; i < count; ++i) {
     time += problem.station[i].time;
     energy += problem.station[i].energy;
     if (i + 1 == count) break;
-    const double by_pad = problem.back[i].time + problem.out[i + 1].time;
-    const double by_pad_energy = problem.back[i].energy + problem.out[i + 1].energy;
+    const double by_pad = back(i, &Cost::time) + out(i + 1, &Cost::time);
+    const double by_pad_energy = back(i, &Cost::energy) + out(i + 1, &Cost::energy);
     time += std::min(problem.leg[i].time, by_pad);
     energy += std::min(problem.leg[i].energy, by_pad_energy);
     cheapest_visit = std::min(cheapest_visit, std::max(0.0, by_pad - problem.leg[i].time));
@@ -33,46 +49,61 @@ double least_time(const SplitProblem& problem) {
   return time + (visits > 0.0 ? visits * cheapest_visit : 0.0);
 }
 
+/// The best split of the stations before each.
+struct BestSplits {
+  explicit BestSplits(std::size_t count) : time(count + 1, never), last(count + 1) {
+    time[0] = 0.0;
+  }
+  std::vector<double> time;
+  std::vector<SortieRange> last;  ///< its last sortie
+};
+
+/// Tries all sorties from a pad that begin at station `first`.
+void extend(const SplitProblem& problem, std::uint32_t pad_number, std::size_t first,
+            BestSplits& best) {
+  const SplitProblem::Pad& pad = problem.pads[pad_number];
+  const std::size_t end = std::min(problem.station.size(), first + problem.stations_per_sortie);
+  double time = pad.out[first].time, energy = pad.out[first].energy;
+  double worst = pad.out[first].emergency;
+  const auto add = [&](const Cost& part) {
+    worst = std::max(worst, energy + part.emergency);
+    time += part.time;
+    energy += part.energy;
+  };
+  for (std::size_t last = first; last < end; ++last) {
+    if (last > first) add(problem.leg[last - 1]);
+    add(problem.station[last]);
+    if (std::max(energy, worst) > problem.energy_per_sortie) break;
+    // The way home from here must be affordable, or the vehicle should not have come this far.
+    const Cost& back = pad.back[last];
+    if (energy + std::max(back.energy, back.emergency) > problem.energy_per_sortie) break;
+    const double total = best.time[first] + time + back.time;
+    if (total >= best.time[last + 1]) continue;
+    best.time[last + 1] = total;
+    best.last[last + 1] = {static_cast<std::uint32_t>(first), static_cast<std::uint32_t>(last),
+                           pad_number};
+  }
+}
+
 }  // namespace
 
 SortieSplit split_into_sorties(const SplitProblem& problem) {
-  const std::size_t count = problem.out.size();
-  if (count == 0) return {};
-  std::vector<double> best_time(count + 1, never);  // of the stations before i
-  std::vector<std::size_t> first_of_last(count + 1, 0);
-  best_time[0] = 0.0;
+  const std::size_t count = problem.station.size();
+  if (count == 0 || problem.pads.empty()) return {};
+  BestSplits best(count);
   for (std::size_t first = 0; first < count; ++first) {
-    if (best_time[first] == never) continue;
-    double time = problem.out[first].time, energy = problem.out[first].energy;
-    const std::size_t end = std::min(count, first + problem.stations_per_sortie);
-    double worst = problem.out[first].emergency;
-    const auto add = [&](const SplitProblem::Cost& part) {
-      worst = std::max(worst, energy + part.emergency);
-      time += part.time;
-      energy += part.energy;
-    };
-    for (std::size_t last = first; last < end; ++last) {
-      if (last > first) add(problem.leg[last - 1]);
-      add(problem.station[last]);
-      if (std::max(energy, worst) > problem.energy_per_sortie) break;
-      // The way home from here must be affordable, or the vehicle should not have come this far.
-      const SplitProblem::Cost& back = problem.back[last];
-      if (energy + std::max(back.energy, back.emergency) > problem.energy_per_sortie) break;
-      const double total = best_time[first] + time + problem.back[last].time;
-      if (total < best_time[last + 1]) {
-        best_time[last + 1] = total;
-        first_of_last[last + 1] = first;
-      }
+    if (best.time[first] == never) continue;
+    for (std::uint32_t pad = 0; pad < problem.pads.size(); ++pad) {
+      extend(problem, pad, first, best);
     }
   }
   SortieSplit split;
-  if (best_time[count] == never) return split;
-  for (std::size_t end = count; end > 0; end = first_of_last[end]) {
-    split.sorties.push_back(
-        {static_cast<std::uint32_t>(first_of_last[end]), static_cast<std::uint32_t>(end - 1)});
+  if (best.time[count] == never) return split;
+  for (std::size_t end = count; end > 0; end = best.last[end].first) {
+    split.sorties.push_back(best.last[end]);
   }
   std::reverse(split.sorties.begin(), split.sorties.end());
-  split.time = best_time[count];
+  split.time = best.time[count];
   split.time_bound = least_time(problem);
   return split;
 }

@@ -16,16 +16,20 @@ struct SplitProblem {
     /// energy for the return that the autopilot flies then.
     double emergency = 0.0;
   };
-  std::vector<Cost> out;      ///< pad to station, take-off included
+  struct Pad {
+    std::vector<Cost> out;   ///< pad to station, take-off included
+    std::vector<Cost> back;  ///< station to pad, landing included
+  };
+  std::vector<Pad> pads;      ///< a sortie begins and ends at one of them
   std::vector<Cost> station;  ///< what is done there
   std::vector<Cost> leg;      ///< station i to station i + 1
-  std::vector<Cost> back;     ///< station to pad, landing included
   double energy_per_sortie = 0.0;
   std::size_t stations_per_sortie = 0;
 };
 
 struct SortieRange {
   std::uint32_t first, last;
+  std::uint32_t pad = 0;
 };
 
 struct SortieSplit {
@@ -34,9 +38,10 @@ struct SortieSplit {
   double time_bound = 0.0;  ///< no split is faster
 };
 
-/// The fastest split in the given order (Beasley 1983, split of a giant tour): at every station the
-/// energy used so far and the way home fit into the battery, and so does what each part asks for an
-/// emergency. O(stations x stations in a sortie).
+/// The fastest split in the given order, each sortie from the pad that is best for it (Beasley
+/// 1983, split of a giant tour): at every station the energy used so far and the way home fit into
+/// the battery, and so does what each part asks for an emergency. O(pads x stations x stations in a
+/// sortie).
 SortieSplit split_into_sorties(const SplitProblem& problem);
 
 }  // namespace skycap::flight

@@ -16,6 +16,14 @@ inline std::uint64_t cell_key(const Cell& cell) {
   return part(cell.x()) | part(cell.y()) << 21 | part(cell.z()) << 42;
 }
 
+/// The cell of a key.
+inline Cell cell_of(std::uint64_t key) {
+  const auto part = [](std::uint64_t bits) {
+    return static_cast<int>(bits & 0x1fffff) - (1 << 20);
+  };
+  return {part(key), part(key >> 21), part(key >> 42)};
+}
+
 /// Fibonacci hashing; the upper half of the product, which depends on all of the key, comes down.
 inline std::size_t hash_of(std::uint64_t cell_key) {
   const std::uint64_t product = cell_key * 0x9e3779b97f4a7c15ULL;

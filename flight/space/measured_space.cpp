@@ -79,6 +79,24 @@ void MeasuredSpace::insert(const geometry::Scan& scan, const SweepRays& rays) {
   impl_->occupy(scan);
 }
 
+void MeasuredSpace::take_free(const MeasuredSpace& other) {
+  const double voxel = impl_->config.voxel;
+  require(other.impl_->config.voxel == voxel, "measured_space.voxel", other.impl_->config.voxel,
+          "that of the space it is added to");
+  const VoxelBlocks& blocks = other.impl_->blocks;
+  for (std::size_t i = 0; i < blocks.size(); ++i) {
+    const Cell cell = cell_of(blocks.keys()[i]);
+    const AlignedBox3d box = impl_->block_box(cell);
+    if (!impl_->region.intersects(box)) continue;
+    const VoxelBlock* known = impl_->blocks.find(blocks.keys()[i]).block;
+    VoxelBlock block = known == nullptr ? VoxelBlock{} : *known;
+    const Slices before = block.free;
+    for (int z = 0; z < 8; ++z) block.free[z] |= blocks.blocks()[i].passable(z);
+    if (block.free == before) continue;
+    if (impl_->blocks.set(blocks.keys()[i], block)) impl_->extent.extend(box);
+  }
+}
+
 Closest MeasuredSpace::closest(const Segment& leg, double up_to) const {
   // Pieces of a few blocks, so that the box around each is slim; a reach that grows until something
   // is within it, so that near things are found without looking at far ones.
@@ -110,6 +128,8 @@ std::string MeasuredSpace::name(const Closest& closest) const {
   if (closest.kind == ObstacleKind::occupied_space) return "a measured point";
   return "";
 }
+
+const MeasuredSpaceConfig& MeasuredSpace::config() const { return impl_->config; }
 
 double MeasuredSpace::free_volume() const {
   std::size_t voxels = 0;

@@ -78,10 +78,17 @@ class MeasuredSpace : public FreeSpace {
     insert(scan, SweepRays{.spacing = ray_spacing});
   }
 
+  /// Takes over what another survey of the same frame has measured to be free, in blocks that meet
+  /// the region; not what it has measured to be occupied. Throws Error{bad_config} if its voxels
+  /// are of another size.
+  void take_free(const MeasuredSpace& other);
+
   Closest closest(const Segment& leg, double up_to) const override;
   bool continues_free(const Segment& leg, double clearance) const override;
   Eigen::AlignedBox3d extent() const override;  ///< of all that was ever free
   std::string name(const Closest& closest) const override;
+
+  const MeasuredSpaceConfig& config() const;
 
   /// Volume known to be free [m^3], of the region if there is one.
   double free_volume() const;

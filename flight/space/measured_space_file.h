@@ -24,12 +24,4 @@ struct MeasuredSpaceFile {
 /// Throws what MeasuredSpace::read() throws.
 MeasuredSpaceFile read_measured_space(std::istream& stream, const std::string& name);
 
-/// The cell of a key, see cell_key().
-inline Cell cell_of(std::uint64_t key) {
-  const auto part = [](std::uint64_t bits) {
-    return static_cast<int>(bits & 0x1fffff) - (1 << 20);
-  };
-  return {part(key), part(key >> 21), part(key >> 42)};
-}
-
 }  // namespace skycap::flight

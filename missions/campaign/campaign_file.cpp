@@ -8,10 +8,8 @@
 #include "geometry/error.h"
 #include "geometry/io/file.h"
 #include "missions/benchmark/contestants.h"
+#include "missions/campaign/key_changes.h"
 #include "missions/equipment/yaml_section.h"
-#include "missions/file/flow_text.h"
-#include "missions/file/mission_keys.h"
-#include "missions/file/unknown_key.h"
 
 namespace skycap::missions::campaign {
 namespace {
@@ -21,19 +19,6 @@ using equipment::YamlSection;
 
 constexpr std::size_t largest_file = std::size_t{16} << 20;  // [byte]; 100,000 missions
 constexpr int most_of_a_list = 100'000;
-
-/// Whether a name can stand in folders and tables: no hidden file, no other column.
-bool is_plain(std::string_view name) {
-  const auto is_special = [](char c) {
-    return static_cast<unsigned char>(c) < 0x20 || c == 0x7f ||
-           std::string_view("/\\,\"|").find(c) != std::string_view::npos;
-  };
-  return !name.empty() && name.size() <= 100 && name.front() != '.' &&
-         std::ranges::none_of(name, is_special);
-}
-
-constexpr std::string_view plain_names =
-    "give one of at most 100 bytes, without / \\ , \" | and not beginning with a dot";
 
 /// Reads the keys of a campaign in the order of the manual.
 class CampaignReader {
@@ -128,30 +113,12 @@ class CampaignReader {
     campaign_.variants = std::move(variants);
   }
 
-  /// Keys of the mission file, each written out or nested as there; `path` goes before them in
-  /// messages.
   std::vector<file::KeyOverride> changes_in(const std::vector<file::YamlEntry>& entries,
-                                            const std::string& path,
-                                            const std::string& section = "") {
-    std::vector<file::KeyOverride> changes;
-    for (const file::YamlEntry& entry : entries) {
-      const std::string key = section + entry.key;
-      if (key == "name" || key == "seed" || key == "threads" || key == "planner.name") {
-        fail(entry.line, path + key,
-             "follows from the campaign; give its own name, planners, "
-             "seeds or first_seed");
-      }
-      if (file::find_key(key) != nullptr) {
-        changes.push_back({place(entry.line), key, file::flow_text(entry.value)});
-      } else if (entry.value.kind == file::YamlNode::Kind::map) {
-        for (auto& change : changes_in(entry.value.entries, path, key + ".")) {
-          changes.push_back(std::move(change));
-        }
-      } else {
-        fail(entry.line, path + key, file::unknown_key_message(key, file::mission_keys()));
-      }
-    }
-    return changes;
+                                            const std::string& path) const {
+    static const FollowingKeys following{
+        {"name", "seed", "threads", "planner.name"},
+        "the campaign; give its own name, planners, seeds or first_seed"};
+    return key_changes(entries, path, file_, following);
   }
 
   void require_bounded() {
@@ -176,6 +143,15 @@ class CampaignReader {
 };
 
 }  // namespace
+
+bool is_plain(std::string_view name) {
+  const auto is_special = [](char c) {
+    return static_cast<unsigned char>(c) < 0x20 || c == 0x7f ||
+           std::string_view("/\\,\"|").find(c) != std::string_view::npos;
+  };
+  return !name.empty() && name.size() <= 100 && name.front() != '.' &&
+         std::ranges::none_of(name, is_special);
+}
 
 std::string mission_title(const std::string& path) { return fs::path(path).stem().string(); }
 

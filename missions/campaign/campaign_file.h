@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "missions/file/mission_reader.h"
@@ -37,6 +38,13 @@ struct CampaignFile {
 
 /// No campaign has more items.
 inline constexpr std::size_t most_items = 1'000'000;
+
+/// Whether a name can stand in folders and tables: no hidden file, no other column.
+bool is_plain(std::string_view name);
+
+/// What to give instead, for messages.
+inline constexpr std::string_view plain_names =
+    "give one of at most 100 bytes, without / \\ , \" | and not beginning with a dot";
 
 /// The name of a mission among the campaign's: its file's, without folder and ending.
 std::string mission_title(const std::string& path);

@@ -1,6 +1,7 @@
 #include "missions/campaign/engine_job.h"
 
 #include <algorithm>
+#include <cctype>
 
 namespace skycap::missions::campaign {
 namespace {
@@ -16,9 +17,16 @@ std::string quoted(const std::string& word) {
   return text + "'";
 }
 
+std::string title_of(const JobRequest& request) {
+  std::string title = request.verb + " " + request.name;
+  title[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(title[0])));
+  return title;
+}
+
 Words task_words(const JobRequest& request, const std::string& index, std::size_t chunk) {
-  return {request.program, "campaign", request.file,          "--out",     request.out, "--index",
-          index,           "--chunk",  std::to_string(chunk), "--threads", "1",         "--quiet"};
+  return {request.program,       request.verb, request.file, "--out",
+          request.out,           "--index",    index,        "--chunk",
+          std::to_string(chunk), "--threads",  "1",          "--quiet"};
 }
 
 void append(Words& words, const Words& more) {
@@ -33,10 +41,10 @@ EngineJob slurm_job(const JobRequest& request, const TaskSplit& tasks) {
       "#SBATCH --open-mode=append",
   };
   const std::string tables = job_script(
-      "The tables of campaign " + request.name, {},
-      {request.program, "campaign", request.file, "--out", request.out, "--collect", "--quiet"});
-  return {{{"slurm.sh", job_script("Campaign " + request.name, directives,
-                                   task_words(request, "slurm", tasks.chunk))},
+      "The results of " + request.verb + " " + request.name, {},
+      {request.program, request.verb, request.file, "--out", request.out, "--collect", "--quiet"});
+  return {{{"slurm.sh",
+            job_script(title_of(request), directives, task_words(request, "slurm", tasks.chunk))},
            {"slurm_collect.sh", tables}},
           {"sbatch", "--parsable", "--job-name=" + request.name,
            "--output=" + (request.out / "logs" / "%A_%a.txt").string(), request.out / "slurm.sh"}};
@@ -55,9 +63,9 @@ EngineJob parallel_job(const JobRequest& request, const TaskSplit& tasks) {
                 "--arg-file",
                 request.out / "parallel_tasks.txt"};
   append(command, task_words(request, "parallel", tasks.chunk));
-  return {{{"parallel.sh", job_script("Campaign " + request.name, {}, command)},
-           {"parallel_tasks.txt", list}},
-          command};
+  return {
+      {{"parallel.sh", job_script(title_of(request), {}, command)}, {"parallel_tasks.txt", list}},
+      command};
 }
 
 EngineJob mpi_job(const JobRequest& request, const TaskSplit& tasks) {
@@ -72,7 +80,7 @@ EngineJob mpi_job(const JobRequest& request, const TaskSplit& tasks) {
                 std::to_string(tasks.tasks),
                 "--oversubscribe"};
   append(command, task_words(request, "mpi", tasks.chunk));
-  return {{{"mpi.sh", job_script("Campaign " + request.name, {}, command)}}, command};
+  return {{{"mpi.sh", job_script(title_of(request), {}, command)}}, command};
 }
 
 }  // namespace
@@ -89,7 +97,8 @@ TaskSplit split(EngineName engine, const JobRequest& request) {
 
 std::string job_script(const std::string& title, const std::vector<std::string>& directives,
                        const Words& command) {
-  std::string script = "#!/bin/sh\n# " + title + ", written by skycap campaign --submit.\n";
+  std::string script =
+      "#!/bin/sh\n# " + title + ", written by skycap " + command.at(1) + " --submit.\n";
   for (const std::string& directive : directives) script += directive + "\n";
   script += "exec";  // so that signals reach the program itself
   for (const std::string& word : command) script += " " + quoted(word);

@@ -1,4 +1,5 @@
-/// A campaign as a job of an engine that others have written: Slurm, GNU parallel, OpenMPI.
+/// The items of a campaign as a job of an engine that others have written: Slurm, GNU parallel,
+/// OpenMPI.
 #pragma once
 
 #include <cstddef>
@@ -12,8 +13,9 @@ enum class EngineName { slurm, parallel, mpi };
 
 /// What a job is made from.
 struct JobRequest {
+  std::string verb = "campaign";  ///< that runs the items
   std::filesystem::path program;  ///< skycap itself; all paths are absolute
-  std::filesystem::path file;     ///< of the campaign
+  std::filesystem::path file;     ///< that the verb is given
   std::filesystem::path out;      ///< where its results go
   std::string name;
   std::size_t items = 0;

@@ -99,6 +99,10 @@ class Runner {
     if (item.form == ItemForm::package) {
       stage_package(item, prepared, survey, *folder);
       if (stop_.stop_requested()) return std::nullopt;  // a route may be missing for it
+      if (events_.packaged) {
+        const std::lock_guard lock(telling_);
+        events_.packaged(item, *folder);
+      }
     }
     const TrialRecord record{benchmark::trial_of(survey, prepared.truth),
                              benchmark::run_here(seconds_since(start))};

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "geometry/error.h"
+#include "geometry/io/output_folder.h"
 #include "missions/benchmark/trial_files.h"
 #include "missions/campaign/survey_item.h"
 
@@ -19,6 +20,8 @@ struct RunEvents {
   std::function<void(const Item&)> unfinished;  ///< of each that will be run, before any is
   std::function<void(const Setup&)> preparing;  ///< the scene of its mission
   std::function<void(const Item&, const benchmark::TrialRecord&)> done;  ///< here, and written
+  /// Its mission package is staged there: what else belongs beside it may be, too.
+  std::function<void(const Item&, geometry::OutputFolder&)> packaged;
   /// Others go on; without this, they stop, and the first failure is thrown.
   std::function<void(const Item&, const Error&)> failed;
 };

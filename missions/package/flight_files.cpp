@@ -111,8 +111,7 @@ std::string stem_in(std::string_view name) {
 class RouteFiles {
  public:
   RouteFiles(const file::Mission& mission, const flight::Route& route,
-             const flight::MeasuredSpace& measured, geometry::OutputFolder& folder,
-             std::string stem)
+             const flight::FreeSpace& measured, geometry::OutputFolder& folder, std::string stem)
       : mission_(mission),
         route_(route),
         folder_(folder),
@@ -224,7 +223,7 @@ std::vector<flight::Station> stations_of(const file::Mission& mission,
   return stations;
 }
 
-flight::Route plan_flight(const file::Mission& mission, const flight::MeasuredSpace& measured,
+flight::Route plan_flight(const file::Mission& mission, const flight::FreeSpace& measured,
                           const Eigen::Vector3d& pad, const std::vector<geometry::View>& views,
                           const std::vector<Way>& ways, std::span<const flight::PadGround> grounds,
                           std::stop_token stop) {
@@ -232,7 +231,7 @@ flight::Route plan_flight(const file::Mission& mission, const flight::MeasuredSp
                      std::move(stop));
 }
 
-flight::Route plan_flight(const file::Mission& mission, const flight::MeasuredSpace& measured,
+flight::Route plan_flight(const file::Mission& mission, const flight::FreeSpace& measured,
                           const Eigen::Vector3d& pad, std::vector<flight::Station> stations,
                           std::span<const flight::PadGround> grounds, std::stop_token stop) {
   flight::Obstacles rules = derived::flight_rules(mission);
@@ -247,7 +246,7 @@ flight::Route plan_flight(const file::Mission& mission, const flight::MeasuredSp
 }
 
 FlightFiles stage_flight(const file::Mission& mission, const flight::Route& route,
-                         const flight::MeasuredSpace& measured, std::span<const Format> formats,
+                         const flight::FreeSpace& measured, std::span<const Format> formats,
                          geometry::OutputFolder& folder, const std::string& stem) {
   return RouteFiles(mission, route, measured, folder, stem).stage(formats);
 }

@@ -13,7 +13,7 @@
 
 #include "flight/export/export.h"
 #include "flight/route/route.h"
-#include "flight/space/measured_space.h"
+#include "flight/space/clearance.h"
 #include "geometry/io/output_folder.h"
 #include "geometry/place/pose.h"
 #include "missions/anew/mission_choice.h"
@@ -33,7 +33,7 @@ file::Mission in_given_order(file::Mission mission);
 /// that is not known); `grounds` are those of pad and rally points that were measured. Views that
 /// this flight cannot visit are listed in it. Throws what plan_route() throws, and
 /// Error{bad_usage} soon after a stop is requested.
-flight::Route plan_flight(const file::Mission& mission, const flight::MeasuredSpace& measured,
+flight::Route plan_flight(const file::Mission& mission, const flight::FreeSpace& measured,
                           const Eigen::Vector3d& pad, const std::vector<geometry::View>& views,
                           const std::vector<Way>& ways,
                           std::span<const flight::PadGround> grounds = {},
@@ -45,7 +45,7 @@ std::vector<flight::Station> stations_of(const file::Mission& mission,
                                          const std::vector<Way>& ways);
 
 /// The same through stations that are given with all that is done there.
-flight::Route plan_flight(const file::Mission& mission, const flight::MeasuredSpace& measured,
+flight::Route plan_flight(const file::Mission& mission, const flight::FreeSpace& measured,
                           const Eigen::Vector3d& pad, std::vector<flight::Station> stations,
                           std::span<const flight::PadGround> grounds = {},
                           std::stop_token stop = {});
@@ -75,9 +75,8 @@ std::span<const flight::Format> package_formats();
 /// export_flight() throws. A file that cannot be written is thrown as Error{bad_file}. Beside files
 /// for MAVLink vehicles their parameters are staged, which say how high to return.
 FlightFiles stage_flight(const file::Mission& mission, const flight::Route& route,
-                         const flight::MeasuredSpace& measured,
-                         std::span<const flight::Format> formats, geometry::OutputFolder& folder,
-                         const std::string& stem = "mission");
+                         const flight::FreeSpace& measured, std::span<const flight::Format> formats,
+                         geometry::OutputFolder& folder, const std::string& stem = "mission");
 
 /// What a mission covers when it is flown again in the simulator, from an empty cloud and with
 /// other noise: shares of samples.

@@ -6,6 +6,7 @@
 #include "geometry/io/file.h"
 #include "missions/package/package.h"
 #include "missions/report/comparison_page.h"
+#include "missions/report/district_page.h"
 #include "missions/report/scan_page.h"
 #include "missions/report/survey_report.h"
 
@@ -58,7 +59,9 @@ const std::vector<ResultPage>& result_pages() {
        [](const ResultFinder& results, std::size_t) { return trials_page(results); }},
       {"results.json", "benchmark.html",
        [](const ResultFinder& results, std::size_t) { return benchmark_page(results); }},
-      {"scan.json", "scan.html", scan_page}};
+      {"scan.json", "scan.html", scan_page},
+      {"district.json", "district.html",
+       [](const ResultFinder& results, std::size_t) { return district_page(results); }}};
   return pages;
 }
 

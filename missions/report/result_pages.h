@@ -18,7 +18,7 @@ struct ResultPage {
   std::string (*make)(const ResultFinder& results, std::size_t most_points);
 };
 
-/// A survey, its trials, a comparison, a scan.
+/// A survey, its trials, a comparison, a scan, a district.
 const std::vector<ResultPage>& result_pages();
 
 /// A page and where it belongs.

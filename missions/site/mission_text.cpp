@@ -32,6 +32,7 @@ std::string source_text(const Source& source, const std::filesystem::path& missi
   if (source.base_on_terrain) text += ", base: terrain";
   if (source.base) text += fmt::format(", base: {:g}", *source.base);
   if (source.height) text += fmt::format(", height: {:g}", *source.height);
+  if (source.uncertainty) text += fmt::format(", uncertainty: {:g}", *source.uncertainty);
   std::string ids;
   for (const std::string& id : source.select.ids)
     ids += (ids.empty() ? "" : ", ") + yaml_quoted(id);
@@ -68,16 +69,16 @@ std::string site_section(const MissionValues& values) {
   const Vector3d low = values.fence.min(), high = values.fence.max();
   return fmt::format(
       "site:\n"
-      "  # The origin of the mission's frame (x east, y north, z up): the middle of the target, at "
-      "its lowest place.\n"
+      "  # The origin of the mission's frame (x east, y north, z up): {}.\n"
       "  latitude_deg: {:.7f}  # WGS84, north\n"
       "  longitude_deg: {:.7f}  # east\n"
       "  ellipsoid_height: {:.2f}  # metres above WGS84's ellipsoid, not above the sea\n"
       "  # Views and legs stay inside of this; make it what you are allowed to fly in.\n"
       "  geofence: [[{:g}, {:g}], [{:g}, {:g}], [{:g}, {:g}], [{:g}, {:g}]]\n"
       "  highest_height: {:g}  # z; over the ground here\n",
-      values.origin.latitude_deg, values.origin.longitude_deg, values.origin.height, low.x(),
-      low.y(), high.x(), low.y(), high.x(), high.y(), low.x(), high.y(), high.z());
+      values.origin_is, values.origin.latitude_deg, values.origin.longitude_deg,
+      values.origin.height, low.x(), low.y(), high.x(), low.y(), high.x(), high.y(), low.x(),
+      high.y(), high.z());
 }
 
 std::string flight_section(const MissionValues& values) {
@@ -139,14 +140,16 @@ std::string planner_section(const MissionValues& values) {
 std::string mission_text(const MissionValues& values) {
   const std::string name = values.file.stem().string();
   return fmt::format(
-             "# A first mission, proposed by `skycap site`. It runs as it is; what the files do "
-             "not say is a guess,\n"
+             "# A first mission, proposed by `{}`. It runs as it is; what the files do not say is "
+             "a "
+             "guess,\n"
              "# so read every line of it before you fly. `skycap check` says what the files hold.\n"
              "name: {}  # of the results\n"
              "# A dry run: the target stands in for what there is. Leave `scene` out for a live "
              "survey.\n"
-             "scene: {{model: prior, ground: true}}\n",
-             yaml_quoted(name)) +
+             "scene: {{model: prior, ground: true{}}}\n",
+             values.verb, yaml_quoted(name),
+             values.ground == 0.0 ? "" : fmt::format(", position: [0, 0, {:g}]", values.ground)) +
          prior_section(values) + site_section(values) + flight_section(values) +
          planner_section(values);
 }

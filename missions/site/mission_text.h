@@ -16,10 +16,13 @@ namespace skycap::missions::site {
 
 /// What a first mission says; places in its frame, in metres.
 struct MissionValues {
-  std::filesystem::path file;  ///< that the text is for: it names others as from its folder
+  std::filesystem::path file;        ///< that the text is for: it names others as from its folder
+  std::string verb = "skycap site";  ///< that proposes it
   std::string vehicle;
   std::vector<prior::Source> sources;
   flight::GeodeticPoint origin;
+  std::string origin_is = "the middle of the target, at its lowest place";
+  double ground = 0.0;          ///< z of the ground where the sources have none
   Eigen::AlignedBox3d unknown;  ///< where nothing is free before it is measured
   Eigen::AlignedBox3d fence{};
   std::optional<Eigen::AlignedBox3d> scene{};  ///< whose surface is wanted; none in a draft

@@ -4,6 +4,10 @@
 #include <filesystem>
 #include <string>
 
+#include <Eigen/Core>
+#include <Eigen/Geometry>
+
+#include "missions/site/mission_text.h"
 #include "missions/site/wishes.h"
 
 namespace skycap::missions::site {
@@ -14,5 +18,20 @@ namespace skycap::missions::site {
 /// not found, if the files do not say where they are, or if there is no room for a pad within 100 m
 /// of the target; what derived::parse_mission() throws.
 std::string propose_mission(const Wishes& wishes, const std::filesystem::path& file);
+
+/// What is in the way of flying a proposed mission keeps so far from it at least [m].
+inline constexpr double proposed_clearance = 2.0;
+
+/// The values with what follows from the place of a target that may be off by `uncertainty`: the
+/// space around it that nobody knows, how closely and from where it is looked at, a fence around
+/// all that. Without terrain the ground is at z = 0; on terrain it may fall away beside the target.
+MissionValues values_for(MissionValues values, const Eigen::AlignedBox3d& target,
+                         double uncertainty, bool has_terrain);
+
+/// The values with a pad, and the fence around that, too.
+MissionValues with_pad(MissionValues values, const Eigen::Vector3d& pad);
+
+/// Where climbs from pads end: under the fence's top.
+double top_of_climbs(const MissionValues& values);
 
 }  // namespace skycap::missions::site

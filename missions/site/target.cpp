@@ -39,22 +39,10 @@ double distance(const Object& object, const Vector2d& place) {
   return std::max(0.01, base.exteriorDistance(place));
 }
 
-prior::Prior read_target(const std::vector<Source>& files, const flight::GeodeticPoint& origin,
-                         const std::vector<std::string>& ids) {
-  std::vector<Source> sources = sources_of(files, ids);
-  std::erase_if(sources, [](const Source& source) {
-    return source.role != Role::target && source.role != Role::terrain;
-  });
-  const auto failed = [](std::size_t, const std::string& what) {
-    throw Error(ErrorKind::bad_config, what);
-  };
-  return prior::read_site_priors(sources, {.origin = origin}, failed).priors[0];
-}
-
 std::string clicked(const std::vector<Source>& files, const Click& click) {
   const std::string file = files[0].file.string();
   const std::vector<Object> objects =
-      read_target(files, {click.latitude_deg, click.longitude_deg, 0.0}, {}).objects;
+      read_things(files, {}, {click.latitude_deg, click.longitude_deg, 0.0}).objects;
   const Object* nearest = nullptr;
   double least = std::numeric_limits<double>::infinity();
   for (const Object& object : objects) {
@@ -71,12 +59,7 @@ std::string clicked(const std::vector<Source>& files, const Click& click) {
                         ? ""
                         : fmt::format("; the nearest, {}, is {:.0f} m away", nearest->id, least)));
   }
-  if (std::ranges::count(objects, nearest->id, &Object::id) > 1) {
-    throw Error(ErrorKind::bad_config,
-                fmt::format("{}: holds several things that are called {}; give them names of "
-                            "their own",
-                            file, nearest->id));
-  }
+  require_single(objects, nearest->id, file);
   return nearest->id;
 }
 
@@ -139,13 +122,35 @@ std::vector<Source> sources_of(const std::vector<Source>& files,
   return sources;
 }
 
+prior::Prior read_things(const std::vector<Source>& files, const prior::Selection& select,
+                         const flight::GeodeticPoint& origin) {
+  std::vector<Source> sources = sources_of(files, {});
+  sources[0].select = select;
+  std::erase_if(sources, [](const Source& source) {
+    return source.role != Role::target && source.role != Role::terrain;
+  });
+  const auto failed = [](std::size_t, const std::string& what) {
+    throw Error(ErrorKind::bad_config, what);
+  };
+  return prior::read_site_priors(sources, {.origin = origin}, failed).priors[0];
+}
+
+void require_single(const std::vector<Object>& objects, const std::string& id,
+                    const std::string& file) {
+  if (std::ranges::count(objects, id, &Object::id) <= 1) return;
+  throw Error(
+      ErrorKind::bad_config,
+      fmt::format("{}: holds several things that are called {}; give them names of their own", file,
+                  id));
+}
+
 Target find_target(const std::vector<Source>& files, const Pick& pick) {
   Target target{.ids = picked(files, pick), .origin = {}, .box = {}};
   target.origin = prior::middle_of(sources_of(files, target.ids)[0]);
   constexpr double centimetre = 1e-7;  // of latitude [degrees]
   target.origin.latitude_deg = rounded(target.origin.latitude_deg, centimetre);
   target.origin.longitude_deg = rounded(target.origin.longitude_deg, centimetre);
-  const prior::Prior found = read_target(files, target.origin, target.ids);
+  const prior::Prior found = read_things(files, {.ids = target.ids}, target.origin);
   for (const Object& object : found.objects) {
     target.box.extend(geometry::bounding_box(object.mesh));
   }

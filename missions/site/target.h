@@ -7,6 +7,7 @@
 #include <Eigen/Geometry>
 
 #include "flight/export/geodesy.h"
+#include "missions/prior/prior.h"
 #include "missions/prior/source.h"
 #include "missions/site/wishes.h"
 
@@ -27,6 +28,15 @@ std::vector<prior::Source> files_of(const Wishes& wishes);
 /// The prior data of a mission: the target, of the first of the files, and all of them.
 std::vector<prior::Source> sources_of(const std::vector<prior::Source>& files,
                                       const std::vector<std::string>& target);
+
+/// What `select` means of the first of the files, on the terrain, about an origin. Throws what
+/// prior::read_prior() throws.
+prior::Prior read_things(const std::vector<prior::Source>& files, const prior::Selection& select,
+                         const flight::GeodeticPoint& origin);
+
+/// Throws Error{bad_config} if several of a file's things have that name.
+void require_single(const std::vector<prior::Object>& objects, const std::string& id,
+                    const std::string& file);
 
 /// Throws Error{bad_config} if the pick is none of the file's things, or several that are not named
 /// one by one, in words that say which there are; what prior::read_prior() throws.

@@ -16,6 +16,12 @@ struct Click {
   double latitude_deg = 0.0, longitude_deg = 0.0;
 };
 
+/// "LATITUDE,LONGITUDE" in degrees, as maps on the web copy it; nothing if it is not that.
+std::optional<Click> click_in(const std::string& text);
+
+/// What a click is to be written as, for messages.
+inline constexpr const char* click_form = "LATITUDE,LONGITUDE in degrees, such as 48.7631,11.3991";
+
 /// Which thing of a file is to be surveyed: by one of these, or the file has but one.
 struct Pick {
   std::vector<std::string> ids;

@@ -279,6 +279,7 @@ int parse_and_run(const std::vector<std::string>& arguments, const Console& cons
     add_live(app, console, action);
     add_benchmark(app, console, action);
     add_campaign(app, console, action);
+    add_district(app, console, action);
     add_scan(app, console, action);
     add_check(app, console, action);
     add_export(app, console, action);

@@ -1,6 +1,4 @@
 #include <array>
-#include <charconv>
-#include <cmath>
 
 #include <fmt/format.h>
 
@@ -40,26 +38,12 @@ struct SiteOptions {
   throw Error(ErrorKind::bad_usage, option + " is " + given + "; give " + wanted);
 }
 
-/// "LATITUDE,LONGITUDE", as maps on the web copy it.
-site::Click click_in(const std::string& text) {
-  std::array<double, 2> numbers{};
-  const char* place = text.data();
-  const char* const end = text.data() + text.size();
-  for (std::size_t i = 0; i < numbers.size(); ++i) {
-    while (place != end && (*place == ' ' || (i == 1 && *place == ','))) ++place;
-    const auto [next, error] = std::from_chars(place, end, numbers[i]);
-    if (error != std::errc()) break;
-    place = next;
-    if (i == 1 && next == end && std::abs(numbers[0]) <= 90.0 && std::abs(numbers[1]) <= 180.0) {
-      return {numbers[0], numbers[1]};
-    }
-  }
-  refuse("--at", text, "LATITUDE,LONGITUDE in degrees, such as 48.7631,11.3991");
-}
-
 site::Pick pick_of(const SiteOptions& options) {
   site::Pick pick{.ids = options.ids, .attributes = {}, .click = {}};
-  if (!options.at.empty()) pick.click = click_in(options.at);
+  if (!options.at.empty()) {
+    pick.click = site::click_in(options.at);
+    if (!pick.click) refuse("--at", options.at, site::click_form);
+  }
   for (const std::string& pair : options.attributes) {
     const auto equals = pair.find('=');
     if (equals == std::string::npos) refuse("--attribute", pair, "KEY=VALUE");

@@ -31,10 +31,11 @@ void add_set_option(CLI::App& verb, KeyOptions& keys);
 CLI::Validator number_between(double least, double most);
 
 /// Verbs whose options stand in their own sources: a first mission for a site, live surveys (next,
-/// serve, finish, fly), campaigns, models, exports.
+/// serve, finish, fly), campaigns, districts, models, exports.
 void add_site(CLI::App& app, const Console& console, Action& action);
 void add_live(CLI::App& app, const Console& console, Action& action);
 void add_campaign(CLI::App& app, const Console& console, Action& action);
+void add_district(CLI::App& app, const Console& console, Action& action);
 void add_model(CLI::App& app, const Console& console, Action& action);
 void add_export(CLI::App& app, const Console& console, Action& action);
 

@@ -8,6 +8,7 @@ import os
 import pathlib
 import signal
 import subprocess
+import sys
 import tempfile
 import time
 import unittest
@@ -234,6 +235,38 @@ class OtherPagesTest(unittest.TestCase):
                 self.assertEqual(page.complaints(), [])
             finally:
                 page.close()
+
+    def test_a_district(self):
+        script = pathlib.Path(__file__).parents[1] / "benchmarks" / "district_city.py"
+        town = subprocess.run([sys.executable, script, "3"], check=True, capture_output=True).stdout
+        (self.folder / "town.city.json").write_bytes(town)
+        quarter = self.folder / "quarter.yaml"
+        quarter.write_text("map: town.city.json\nvertical: ellipsoid\ntogether: 0\n"
+                           "targets: {id: [house_0000, house_0001]}\n"
+                           "set: {limits.max_views: 2, evaluation.samples: 2000,\n"
+                           "      evaluation.visible_directions: 20, evaluation.ceiling_views: 0}\n")
+        out = self.folder / "out"
+        run("district", str(quarter), "--quiet", "--out", str(out))
+        summary = json.loads((out / "district.json").read_text())
+        summary["district"] = summary["targets"][1]["title"] = HOSTILE
+        (out / "district.json").write_text(json.dumps(summary))
+        run("report", str(out))
+        page = Page(out / "district.html")
+        try:
+            self.assertIsNone(page.failure)
+            check_figures(self, page, summary, 20)
+            self.assertEqual(len(page.all("svg.map .target")), 2)
+            self.assertEqual(len(page.all("svg.map .pad")), len(summary["pads"]))
+            self.assertIn("</script>", page.get("document.body.innerText"))
+            self.assertEqual(page.all("img"), [])
+            links = page.get("Array.from(document.querySelectorAll('#targets a'), "
+                             "(link) => link.getAttribute('href'))")
+            self.assertEqual(len(links), 2)
+            for link in links:
+                self.assertTrue((out / link).is_file(), link)
+            self.assertEqual(page.complaints(), [])
+        finally:
+            page.close()
 
     def test_scans(self):
         """A laser's and a camera's, whose navigation is wrong by some 0.2 m."""

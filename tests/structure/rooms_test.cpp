@@ -65,6 +65,8 @@ Rooms house() {
   add("flight/fleet",
       {"flight/space", "flight/motion", "flight/way_home", "flight/route", "flight/fly_test"});
 
+  add("flight/district", {"flight/space", "flight/motion", "flight/way_home", "flight/route"});
+
   std::vector<std::string> below;  // what missions/ composes
   for (const auto& [room, others] : rooms) {
     if (!room.starts_with("geometry")) below.push_back(room);
@@ -99,11 +101,15 @@ Rooms house() {
   add_mission_room("benchmark", "file", "derived", "judge", "plugins", "scene", "run", "package");
   add_mission_room("campaign", "file", "equipment", "derived", "judge", "plugins", "scene", "run",
                    "package", "benchmark");
+  add_mission_room("district", "prior", "file", "equipment", "derived", "scene", "site", "package",
+                   "benchmark", "campaign");
   add_mission_room("library", "file", "equipment", "derived", "judge", "scene", "recording", "run",
                    "package");
   add_mission_room("verbs", "prior", "file", "equipment", "derived", "judge", "plugins", "scene",
                    "recording", "run", "package", "report", "live", "dataset", "fly", "benchmark",
                    "campaign", "site", "proof", "fleet");
+  add_mission_room("verbs/items", "verbs", "plugins", "package", "benchmark", "campaign",
+                   "district");
   // As a user of the library: public headers.
   add("python",
       {"sim/models", "sim/sensors", "survey", "flight/space", "flight/route", "missions/library"});

@@ -26,9 +26,7 @@ function cells_of(data) {
 const title_of = (cell) => cell.title || cell.planner;
 
 function planner_name({ cell, colour }) {
-  const mark = element("span", { class: "swatch" });
-  mark.style.background = colour;
-  return element("span", {}, mark, title_of(cell));
+  return element("span", {}, colour_mark(colour), title_of(cell));
 }
 
 /// Mean with its 95 % interval, the deviation and the paper's figure.

@@ -13,7 +13,7 @@ async function load_library(name) {
 }
 
 const kinds = { survey: "Survey report", cloud: "Point cloud", mission: "Mission, before the survey",
-  scan: "Scan report", comparison: "Benchmark", trials: "Trials of a mission" };
+  scan: "Scan report", comparison: "Benchmark", trials: "Trials of a mission", district: "District report" };
 
 function facts_of(data) {
   const settings = value_at(data, "summary.settings") || {}, facts = [];
@@ -84,6 +84,7 @@ function sections_of(data, skycap) {
   if (data.kind === "comparison" || data.kind === "trials") {
     return [...comparison_sections(data), files_section(data), how_section(how_compared)];
   }
+  if (data.kind === "district") return district_sections(data);
   if (data.kind === "scan") {
     return [scan_section(data), scan_charts(data), accuracy_section(data), files_section(data),
       settings_section(data), how_section(how_scanned)];

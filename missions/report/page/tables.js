@@ -11,6 +11,13 @@ function table(headings, rows, attributes_of = () => ({})) {
       row.map((content) => cell("td", content)))))));
 }
 
+/// A mark in a colour of style sheets.
+function colour_mark(colour) {
+  const mark = element("span", { class: "swatch" });
+  mark.style.background = colour;
+  return mark;
+}
+
 const reason_text = Object.fromEntries(states.map((state) => [state.key, state.name]));
 const reason_colour = Object.fromEntries(states.map((state) => [state.key, state.colour]));
 /// Of holes after the first few those of less than a share of all that is missing are summed, and

@@ -80,27 +80,35 @@ TEST(Tour, OfHardlyAnyPlacesIsTrivial) {
   EXPECT_EQ(tour_of(places(1, 3)).order.size(), 2U);
 }
 
+/// The least time of stations first to last in one sortie; infinite if no pad has the energy.
+double best_sortie(const SplitProblem& problem, std::size_t first, std::size_t last) {
+  double best = std::numeric_limits<double>::infinity();
+  for (const SplitProblem::Pad& pad : problem.pads) {
+    bool is_possible = last - first + 1 <= problem.stations_per_sortie;
+    double energy = pad.out[first].energy, time = pad.out[first].time;
+    for (std::size_t i = first; i <= last; ++i) {
+      if (i > first) energy += problem.leg[i - 1].energy, time += problem.leg[i - 1].time;
+      energy += problem.station[i].energy, time += problem.station[i].time;
+      is_possible &= energy + pad.back[i].energy <= problem.energy_per_sortie;
+    }
+    if (is_possible) best = std::min(best, time + pad.back[last].time);
+  }
+  return best;
+}
+
 /// Exhaustive twin of the split: every subset of the gaps between stations.
 double best_by_trying_all(const SplitProblem& problem) {
-  const std::size_t count = problem.out.size();
+  const std::size_t count = problem.station.size();
   double best = std::numeric_limits<double>::infinity();
   for (std::uint32_t cuts = 0; cuts < 1U << (count - 1); ++cuts) {
     double total = 0.0;
-    bool is_possible = true;
-    for (std::size_t first = 0; first < count && is_possible;) {
+    for (std::size_t first = 0; first < count;) {
       std::size_t last = first;
       while (last + 1 < count && (cuts >> last & 1) == 0) ++last;
-      double energy = problem.out[first].energy, time = problem.out[first].time;
-      for (std::size_t i = first; i <= last; ++i) {
-        if (i > first) energy += problem.leg[i - 1].energy, time += problem.leg[i - 1].time;
-        energy += problem.station[i].energy, time += problem.station[i].time;
-        is_possible &= energy + problem.back[i].energy <= problem.energy_per_sortie;
-      }
-      is_possible &= last - first + 1 <= problem.stations_per_sortie;
-      total += time + problem.back[last].time;
+      total += best_sortie(problem, first, last);
       first = last + 1;
     }
-    if (is_possible) best = std::min(best, total);
+    best = std::min(best, total);
   }
   return best;
 }
@@ -109,14 +117,19 @@ TEST(SortieSplit, IsTheBestOfAllSplitsAndItsBoundHolds) {
   std::mt19937_64 random(9);
   std::uniform_real_distribution<double> uniform(1.0, 10.0);
   int split_cases = 0;
+  std::set<std::uint32_t> pads_used;
   for (int round = 0; round < 60; ++round) {
     SplitProblem problem;
+    problem.pads.resize(1 + round % 3);
     for (int i = 0; i < 10; ++i) {
-      const double home = uniform(random);
-      problem.out.push_back({home, home});
-      problem.back.push_back({home, home});
+      for (SplitProblem::Pad& pad : problem.pads) {
+        const double home = uniform(random);
+        pad.out.push_back({home, home});
+        pad.back.push_back({home, home});
+      }
       problem.station.push_back({1, 1});
-      if (i > 0) problem.leg.push_back({uniform(random), uniform(random)});
+      const double time = uniform(random);
+      if (i > 0) problem.leg.push_back({time, uniform(random)});
     }
     problem.energy_per_sortie = 26;
     problem.stations_per_sortie = 4;
@@ -126,15 +139,24 @@ TEST(SortieSplit, IsTheBestOfAllSplitsAndItsBoundHolds) {
     EXPECT_NEAR(split.time, best, 1e-9);
     EXPECT_LE(split.time_bound, best + 1e-9);
     split_cases += split.sorties.size() > 3 ? 1 : 0;
+    double time = 0.0;
+    for (const SortieRange& sortie : split.sorties) {
+      SplitProblem alone = problem;
+      alone.pads = {problem.pads[sortie.pad]};
+      time += best_sortie(alone, sortie.first, sortie.last);
+      pads_used.insert(sortie.pad);
+    }
+    EXPECT_NEAR(time, best, 1e-9);
     EXPECT_EQ(split.sorties.front().first, 0U);
     EXPECT_EQ(split.sorties.back().last, 9U);
   }
   EXPECT_GT(split_cases, 5);
+  EXPECT_EQ(pads_used.size(), 3U);
 }
 
 TEST(SortieSplit, SaysWhenAStationIsOutOfReach) {
   SplitProblem problem;
-  problem.out = problem.back = {{1, 20}};
+  problem.pads = {{.out = {{1, 20}}, .back = {{1, 20}}}};
   problem.station = {{1, 1}};
   problem.energy_per_sortie = 30;
   problem.stations_per_sortie = 10;

@@ -1,0 +1,91 @@
+#include "flight/district/measured_union.h"
+
+#include <algorithm>
+#include <optional>
+#include <utility>
+
+#include "geometry/error.h"
+
+namespace skycap::flight {
+namespace {
+
+using Eigen::AlignedBox3d;
+
+std::vector<AlignedBox3d> extents_of(const std::vector<MeasuredSpace>& spaces) {
+  std::vector<AlignedBox3d> extents;
+  for (const MeasuredSpace& space : spaces) extents.push_back(space.extent());
+  return extents;
+}
+
+/// Spaces with what others have measured to be free in their regions, which `near` finds.
+std::vector<MeasuredSpace> shared(std::vector<MeasuredSpace> spaces) {
+  for (const MeasuredSpace& space : spaces) {
+    if (!space.config().region.isEmpty()) continue;
+    throw Error(ErrorKind::bad_config,
+                "a space without a region cannot be joined with others: nothing is free in it but "
+                "what it has measured itself");
+  }
+  const std::vector<AlignedBox3d> extents = extents_of(spaces);
+  const BoundingTree tree(extents);
+  for (std::size_t i = 0; i < spaces.size(); ++i) {
+    // A ball about the region finds all that meets it.
+    const AlignedBox3d& box = extents[i];
+    double reach = 0.5 * box.diagonal().norm();
+    tree.visit_near({box.center(), box.center()}, reach, [&](std::uint32_t j) {
+      if (j != i && box.intersects(extents[j])) spaces[i].take_free(spaces[j]);
+    });
+  }
+  return spaces;
+}
+
+/// The part of a leg that a box, grown by `reach`, holds; nothing if that is none of it. What is in
+/// the box is no nearer than that to the rest.
+std::optional<Segment> part_near(const Segment& leg, const AlignedBox3d& box, double reach) {
+  double begin = 0.0, end = 1.0;
+  constexpr double rounding = 1e-9;  // of fractions; pieces may be longer
+  for (int axis = 0; axis < 3; ++axis) {
+    const double way = leg.to[axis] - leg.from[axis];
+    if (way == 0.0) continue;
+    const double one = (box.min()[axis] - reach - leg.from[axis]) / way;
+    const double other = (box.max()[axis] + reach - leg.from[axis]) / way;
+    begin = std::max(begin, std::min(one, other) - rounding);
+    end = std::min(end, std::max(one, other) + rounding);
+  }
+  if (begin > end) return std::nullopt;
+  return Segment{begin == 0.0 ? leg.from : leg.at(begin), end == 1.0 ? leg.to : leg.at(end)};
+}
+
+}  // namespace
+
+MeasuredUnion::MeasuredUnion(std::vector<MeasuredSpace> spaces)
+    : spaces_(shared(std::move(spaces))), extents_(extents_of(spaces_)), tree_(extents_) {}
+
+Closest MeasuredUnion::closest(const Segment& leg, double up_to) const {
+  Closest best{up_to};
+  double reach = up_to;
+  tree_.visit_near(leg, reach, [&](std::uint32_t i) {
+    const std::optional<Segment> part = part_near(leg, extents_[i], best.distance);
+    if (!part) return;
+    const Closest found = spaces_[i].closest(*part, best.distance);
+    if (found.kind == ObstacleKind::none || found.distance >= best.distance) return;
+    best = found;
+    reach = best.distance;
+  });
+  return best;
+}
+
+bool MeasuredUnion::continues_free(const Segment& leg, double clearance) const {
+  return closest(leg, clearance + clearance_guard).kind == ObstacleKind::none;
+}
+
+AlignedBox3d MeasuredUnion::extent() const {
+  AlignedBox3d extent;
+  for (const MeasuredSpace& space : spaces_) extent.extend(space.extent());
+  return extent;
+}
+
+std::string MeasuredUnion::name(const Closest& closest) const {
+  return spaces_.empty() ? "" : spaces_.front().name(closest);
+}
+
+}  // namespace skycap::flight

@@ -1,0 +1,126 @@
+#include "flight/district/measured_union.h"
+
+#include <random>
+#include <utility>
+#include <vector>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "geometry/error.h"
+#include "tests/flight/scenes.h"
+#include "tests/support/complaint.h"
+
+namespace skycap::flight {
+namespace {
+
+using Eigen::AlignedBox3d;
+using Eigen::Vector3d;
+using testing::HasSubstr;
+using testing_support::complaint_of;
+
+constexpr double voxel = 0.5;
+
+/// Boxes on whole voxels, so that a box and the voxels in it are the same.
+const AlignedBox3d west(Vector3d(-10, -6, 0), Vector3d(2, 6, 8));
+const AlignedBox3d east(Vector3d(-2, -6, 0), Vector3d(10, 6, 8));
+
+MeasuredSpace space_of(const AlignedBox3d& region) {
+  return MeasuredSpace({.voxel = voxel, .region = region});
+}
+
+geometry::Scan scan_of(const std::vector<Eigen::Vector3f>& points) {
+  geometry::Scan scan;
+  scan.points = points;
+  return scan;
+}
+
+std::vector<MeasuredSpace> both(MeasuredSpace a, MeasuredSpace b) {
+  std::vector<MeasuredSpace> spaces;
+  spaces.push_back(std::move(a));
+  spaces.push_back(std::move(b));
+  return spaces;
+}
+
+/// Boxes of whole voxels in a region.
+std::vector<AlignedBox3d> measured_in(const AlignedBox3d& region, std::mt19937_64& random) {
+  std::vector<AlignedBox3d> boxes;
+  for (int i = 0; i < 12; ++i) {
+    const Vector3d a = scenes::point_in(random, region), b = scenes::point_in(random, region);
+    const Vector3d low = (a.cwiseMin(b) / voxel).array().floor() * voxel;
+    const Vector3d high = (a.cwiseMax(b) / voxel).array().ceil() * voxel;
+    boxes.push_back(AlignedBox3d(low, high).intersection(region));
+  }
+  return boxes;
+}
+
+/// The rule by itself: a space that is unknown in the hull of both regions, and in which all that
+/// is in neither, and all that one of them has measured, is free.
+TEST(MeasuredUnion, IsWhatOneSurveyThatMeasuredAllOfItWouldKnow) {
+  std::mt19937_64 random(3);
+  for (int round = 0; round < 20; ++round) {
+    MeasuredSpace a = space_of(west), b = space_of(east), all = space_of(west.merged(east));
+    for (const AlignedBox3d& box : measured_in(west, random)) {
+      a.declare_free(box);
+      all.declare_free(box);
+    }
+    for (const AlignedBox3d& box : measured_in(east, random)) {
+      b.declare_free(box);
+      all.declare_free(box);
+    }
+    const std::vector<Eigen::Vector3f> points_a{scenes::point_in(random, west).cast<float>()};
+    const std::vector<Eigen::Vector3f> points_b{scenes::point_in(random, east).cast<float>()};
+    a.insert(scan_of(points_a), 0.1), all.insert(scan_of(points_a), 0.1);
+    b.insert(scan_of(points_b), 0.1), all.insert(scan_of(points_b), 0.1);
+    const MeasuredUnion together(both(std::move(a), std::move(b)));
+    const AlignedBox3d around(Vector3d(-14, -9, -2), Vector3d(14, 9, 11));
+    for (int i = 0; i < 300; ++i) {
+      const Segment leg{scenes::point_in(random, around), scenes::point_in(random, around)};
+      EXPECT_NEAR(together.closest(leg, 6.0).distance, all.closest(leg, 6.0).distance, 1e-9);
+      EXPECT_EQ(together.is_free(leg, 1.0), all.is_free(leg, 1.0));
+    }
+  }
+}
+
+// What one survey has seen free is in the way all the same where another one has met something.
+TEST(MeasuredUnion, KeepsWhatAnyHasMetInTheWay) {
+  MeasuredSpace a = space_of(west), b = space_of(east);
+  a.declare_free(west);
+  b.declare_free(east);
+  b.insert(scan_of({{0.25F, 0.25F, 4.25F}}), 0.1);
+  const MeasuredUnion together(both(std::move(a), std::move(b)));
+  const Closest closest = together.closest({{0.25, -4, 4.25}, {0.25, -2, 4.25}}, 5.0);
+  EXPECT_EQ(closest.kind, ObstacleKind::occupied_space);
+  EXPECT_NEAR(closest.distance, 2.0, 1e-9);
+  EXPECT_EQ(together.name(closest), "a measured point");
+}
+
+// Nobody has been there: the box of a target that was not surveyed is closed.
+TEST(MeasuredUnion, IsClosedWhereNothingWasMeasured) {
+  MeasuredSpace a = space_of(west);
+  a.declare_free(west);
+  const MeasuredUnion together(both(std::move(a), space_of(east)));
+  EXPECT_TRUE(together.is_free({{-8, 0, 4}, {-5, 0, 4}}, 1.0));
+  EXPECT_FALSE(together.is_free({{-8, 0, 4}, {5, 0, 4}}, 1.0));
+  EXPECT_TRUE(together.is_free({{-8, 0, 10}, {8, 0, 10}}, 1.0));  // vouched for, over both
+  EXPECT_EQ(together.closest({{6, 0, 4}, {6, 0, 4}}, 1.0).kind, ObstacleKind::unknown_space);
+}
+
+TEST(MeasuredUnion, OfNothingIsFree) {
+  const MeasuredUnion nothing({});
+  EXPECT_TRUE(nothing.is_free({{0, 0, 0}, {100, 0, 0}}, 2.0));
+  EXPECT_TRUE(nothing.extent().isEmpty());
+}
+
+TEST(MeasuredUnion, RefusesSpacesThatDoNotGoTogether) {
+  EXPECT_THAT(
+      complaint_of([] { MeasuredUnion(both(space_of(west), MeasuredSpace({.voxel = voxel}))); }),
+      HasSubstr("a space without a region cannot be joined"));
+  EXPECT_THAT(complaint_of([] {
+                MeasuredUnion(both(space_of(west), MeasuredSpace({.voxel = 0.25, .region = east})));
+              }),
+              HasSubstr("measured_space.voxel is 0.25; it must be that of the space"));
+}
+
+}  // namespace
+}  // namespace skycap::flight
