@@ -72,8 +72,8 @@ package::AnewMission choose(const file::Mission& mission, const run::SurveyRecor
   const run::FlownSurvey& flown = *record.flown;
   std::vector<package::Way> ways;
   for (const run::FlownLeg& leg : flown.legs) ways.push_back(leg.points);
-  flight::Route present = plan_flight(mission, *flown.measured, flown.pad,
-                                      package::views_of(record), ways, flown.grounds);
+  flight::Route present = package::plan_flight(mission, *flown.measured, flown.pad,
+                                               package::views_of(record), ways, flown.grounds);
   return package::anew_mission(mission, record, coverage, std::move(present), {});
 }
 
