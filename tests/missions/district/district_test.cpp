@@ -1,4 +1,5 @@
 // From one map to surveys of its buildings, and one certified flight of all of them.
+#include <algorithm>
 #include <filesystem>
 #include <fstream>
 #include <string>
@@ -176,6 +177,37 @@ TEST_F(District, OnASlopeNeedsATerrain) {
   const auto refused = run();
   EXPECT_EQ(refused.exit_code, 2);
   EXPECT_THAT(refused.err, HasSubstr("differ by 7.0 m, and the ground between them is not known"));
+}
+
+/// Cells of 6 m whose ground rises from 380 m in the west to 387 m in the east.
+std::string rising_ground() {
+  constexpr int cells = 60;
+  std::string row;
+  for (int i = 0; i < cells; ++i) {
+    const double east = -120.0 + 6.0 * (i + 0.5);
+    row += std::to_string(std::clamp(380.0 + 7.0 * (east - 12.0) / 43.0, 380.0, 387.0)) + " ";
+  }
+  const Cube cube;
+  std::string text = "ncols 60\nnrows 60\nxllcorner " + std::to_string(cube.low.x() - 120.0) +
+                     "\nyllcorner " + std::to_string(cube.low.y() - 180.0) +
+                     "\ncellsize 6\nNODATA_value -9999\n";
+  for (int i = 0; i < cells; ++i) text += row + "\n";
+  return text;
+}
+
+TEST_F(District, OnASlopeStandsOnItsTerrain) {
+  folder_.write("town.city.json", town({{0, 0, 0}, {60, 0, 7}}));
+  folder_.write("ground.asc", rising_ground());
+  write("map: town.city.json\nvertical: ellipsoid\ncrs: 'EPSG:25832'\nterrain: ground.asc\n");
+  const auto surveyed = run({"--no-report"});
+  ASSERT_EQ(surveyed.exit_code, 0) << surveyed.err << surveyed.out;
+  const auto prepared = district::read_prepared(out() / district::prepared_name);
+  EXPECT_NEAR(prepared.targets.at(0).box.min().z(), 0.0, 0.05);
+  EXPECT_NEAR(prepared.targets.at(1).box.min().z(), 7.0, 0.05);
+  EXPECT_EQ(results().at("flight").at("views_flown"), results().at("flight").at("views"));
+  const auto check = tests::run_skycap({"check", (out() / "flights" / "pad_1.yaml").string(),
+                                        "--route", (out() / "flights" / "pad_1.plan").string()});
+  EXPECT_EQ(check.exit_code, 0) << check.out << check.err;
 }
 
 TEST_F(District, RefusesAPadInABuilding) {
