@@ -16,13 +16,20 @@ std::string quoted(const std::string& word) {
   return text + "'";
 }
 
-Words task_words(const JobRequest& request, const std::string& index, std::size_t chunk) {
-  return {request.program, "campaign", request.file,          "--out",     request.out, "--index",
-          index,           "--chunk",  std::to_string(chunk), "--threads", "1",         "--quiet"};
-}
-
 void append(Words& words, const Words& more) {
   words.insert(words.end(), more.begin(), more.end());
+}
+
+Words task_words(const JobRequest& request, const std::string& index, std::size_t chunk) {
+  Words words = request.command;
+  append(words, {"--index", index, "--chunk", std::to_string(chunk), "--threads", "1", "--quiet"});
+  return words;
+}
+
+Words collection_words(const JobRequest& request) {
+  Words words = request.command;
+  append(words, {"--collect", "--quiet"});
+  return words;
 }
 
 EngineJob slurm_job(const JobRequest& request, const TaskSplit& tasks) {
@@ -32,12 +39,10 @@ EngineJob slurm_job(const JobRequest& request, const TaskSplit& tasks) {
       "#SBATCH --requeue",  // a task that runs again skips what is complete
       "#SBATCH --open-mode=append",
   };
-  const std::string tables = job_script(
-      "The tables of campaign " + request.name, {},
-      {request.program, "campaign", request.file, "--out", request.out, "--collect", "--quiet"});
-  return {{{"slurm.sh", job_script("Campaign " + request.name, directives,
-                                   task_words(request, "slurm", tasks.chunk))},
-           {"slurm_collect.sh", tables}},
+  return {{{"slurm.sh",
+            job_script(request.title, directives, task_words(request, "slurm", tasks.chunk))},
+           {"slurm_collect.sh",
+            job_script(request.title + ", collected", {}, collection_words(request))}},
           {"sbatch", "--parsable", "--job-name=" + request.name,
            "--output=" + (request.out / "logs" / "%A_%a.txt").string(), request.out / "slurm.sh"}};
 }
@@ -55,8 +60,7 @@ EngineJob parallel_job(const JobRequest& request, const TaskSplit& tasks) {
                 "--arg-file",
                 request.out / "parallel_tasks.txt"};
   append(command, task_words(request, "parallel", tasks.chunk));
-  return {{{"parallel.sh", job_script("Campaign " + request.name, {}, command)},
-           {"parallel_tasks.txt", list}},
+  return {{{"parallel.sh", job_script(request.title, {}, command)}, {"parallel_tasks.txt", list}},
           command};
 }
 
@@ -71,11 +75,18 @@ EngineJob mpi_job(const JobRequest& request, const TaskSplit& tasks) {
                 "-n",
                 std::to_string(tasks.tasks),
                 "--oversubscribe"};
+  // mpirun would wait forever for a rank that a signal has ended; a shell ends with a status.
+  append(command, {"sh", "-c", "\"$@\"; exit $?", "rank"});
   append(command, task_words(request, "mpi", tasks.chunk));
-  return {{{"mpi.sh", job_script("Campaign " + request.name, {}, command)}}, command};
+  return {{{"mpi.sh", job_script(request.title, {}, command)}}, command};
 }
 
 }  // namespace
+
+EngineName engine_named(const std::string& name) {
+  if (name == "slurm") return EngineName::slurm;
+  return name == "mpi" ? EngineName::mpi : EngineName::parallel;
+}
 
 TaskSplit split(EngineName engine, const JobRequest& request) {
   std::size_t chunk = request.chunk;
@@ -89,7 +100,7 @@ TaskSplit split(EngineName engine, const JobRequest& request) {
 
 std::string job_script(const std::string& title, const std::vector<std::string>& directives,
                        const Words& command) {
-  std::string script = "#!/bin/sh\n# " + title + ", written by skycap campaign --submit.\n";
+  std::string script = "#!/bin/sh\n# " + title + ", written by skycap --submit.\n";
   for (const std::string& directive : directives) script += directive + "\n";
   script += "exec";  // so that signals reach the program itself
   for (const std::string& word : command) script += " " + quoted(word);

@@ -1,7 +1,6 @@
 #include <algorithm>
 #include <chrono>
 #include <condition_variable>
-#include <csignal>
 #include <cstdlib>
 #include <memory>
 #include <mutex>
@@ -17,12 +16,11 @@
 #include "geometry/error.h"
 #include "geometry/io/output_folder.h"
 #include "geometry/parallel.h"
-#include "missions/campaign/engine_job.h"
 #include "missions/campaign/item_runner.h"
 #include "missions/campaign/manifest_batches.h"
 #include "missions/campaign/tables.h"
-#include "missions/plugins/external_program.h"
 #include "missions/verbs/survey_progress.h"
+#include "missions/verbs/tasks.h"
 #include "missions/verbs/verb_options.h"
 #include "missions/verbs/write_page.h"
 
@@ -33,22 +31,13 @@ namespace fs = std::filesystem;
 
 struct CampaignOptions {
   fs::path file;
-  std::optional<fs::path> out;       ///< default: results/NAME
-  std::optional<std::string> index;  ///< of one task, see campaign::task_index()
-  std::size_t chunk = 0;             ///< items of a task; zero: one, or as the engine likes it
-  std::optional<std::string> engine;
+  std::optional<fs::path> out;  ///< default: results/NAME
+  TaskOptions task;
   std::optional<unsigned> threads;  ///< default: all processors, of one task one
   bool lists = false;
-  bool collects = false;
   bool has_report = true;
   bool is_quiet = false;
 };
-
-/// What a shell says of a program that a signal has ended, or 1.
-int interrupted_exit_code(const Console& console) {
-  const bool is_ended = console.ending_signal && *console.ending_signal == SIGTERM;
-  return is_ended ? 128 + SIGTERM : 1;
-}
 
 class CampaignVerb {
  public:
@@ -57,16 +46,16 @@ class CampaignVerb {
         console_(console),
         manifest_(campaign::read_campaign(options.file)),
         out_(options.out.value_or(fs::path("results") / manifest_.file().name)),
-        threads_(options.threads.value_or(options.index ? 1 : 0)),
+        threads_(options.threads.value_or(options.task.index ? 1 : 0)),
         progress_("campaign", console, options.is_quiet, geometry::thread_count(threads_)) {}
 
   int run() {
     if (options_.lists) return console_.out << manifest_.text() << std::flush, 0;
-    if (options_.engine) return submit();
+    if (options_.task.engine) return submit();
     const campaign::ItemRange all{0, manifest_.size()};
-    if (options_.index) return run_task();
+    if (options_.task.index) return run_task();
     geometry::OutputFolder folder(out_);
-    if (!options_.collects) work_on(all, true);
+    if (!options_.task.collects) work_on(all, true);
     if (console_.stop.stop_requested()) return interrupted_exit_code(console_);
     return collect(folder);
   }
@@ -74,13 +63,8 @@ class CampaignVerb {
  private:
   /// The items of one task. Others may be at other items of the same campaign.
   int run_task() {
-    const std::size_t task = campaign::task_index(*options_.index, campaign::program_environment());
-    const campaign::ItemRange range =
-        campaign::items_of_task(task, std::max<std::size_t>(1, options_.chunk), manifest_.size());
-    if (range.size() == 0) {
-      warn(console_, fmt::format("task {} has no items; there are {}", task, manifest_.size()));
-      return 0;
-    }
+    const campaign::ItemRange range = items_of(options_.task, manifest_.size(), console_);
+    if (range.size() == 0) return 0;
     const std::size_t done = work_on(range, true);
     if (console_.stop.stop_requested()) return interrupted_exit_code(console_);
     return done == range.size() ? 0 : 1;
@@ -163,83 +147,31 @@ class CampaignVerb {
     std::ranges::sort(times_, {}, &campaign::ItemTimes::number);
     folder.write("manifest.jsonl", manifest_.text());
     folder.write("times.csv", campaign::times_csv(times_));
+    std::ranges::sort(missing_);
     const std::string markdown =
         campaign::stage_tables(cells_, manifest_.file().name, benchmark::Times::left_out, folder);
     write_page("results.json", options_.has_report, folder, console_);
     folder.commit();
     if (!options_.is_quiet) {
       console_.out << markdown << fmt::format("\n{} of {} items", done, manifest_.size())
-                   << missing_text() << "\nresults: " << out_.string() << "\n"
+                   << missing_text(missing_) << "\nresults: " << out_.string() << "\n"
                    << std::flush;
     }
     return done == manifest_.size() ? 0 : 1;
   }
 
-  /// The first of those that are missing.
-  std::string missing_text() {
-    constexpr std::size_t most = 20;
-    if (missing_.empty()) return "";
-    std::ranges::sort(missing_);
-    std::string text = "; missing";
-    for (std::size_t i = 0; i < std::min(most, missing_.size()); ++i) {
-      text += (i == 0 ? " " : ", ") + std::to_string(missing_[i]);
-    }
-    return missing_.size() > most ? text + ", ..." : text;
-  }
-
   int submit() {
-    const campaign::EngineName engine = *options_.engine == "slurm" ? campaign::EngineName::slurm
-                                        : *options_.engine == "mpi"
-                                            ? campaign::EngineName::mpi
-                                            : campaign::EngineName::parallel;
-    const campaign::JobRequest request{.program = fs::read_symlink("/proc/self/exe"),
-                                       .file = fs::absolute(options_.file),
-                                       .out = fs::absolute(out_),
-                                       .name = manifest_.file().name,
-                                       .items = manifest_.size(),
-                                       .chunk = options_.chunk,
-                                       .jobs = geometry::thread_count(threads_)};
+    const campaign::JobRequest job{
+        .command = {"campaign", fs::absolute(options_.file), "--out", fs::absolute(out_)},
+        .out = fs::absolute(out_),
+        .title = "Campaign " + manifest_.file().name,
+        .name = manifest_.file().name,
+        .items = manifest_.size(),
+        .jobs = geometry::thread_count(threads_)};
     geometry::OutputFolder folder(out_);
-    std::error_code failure;
-    fs::create_directories(out_ / "logs", failure);
-    const campaign::EngineJob job = campaign::engine_job(engine, request);
     folder.write("manifest.jsonl", manifest_.text());
-    for (const auto& [name, text] : job.files) folder.write(name, text);
-    folder.commit();
-    progress_.say("waiting for " + job.command[0]);
-    const std::string said = started(job.command);
-    if (engine == campaign::EngineName::slurm) return queue_tables(request, said);
-    if (console_.stop.stop_requested()) return interrupted_exit_code(console_);
-    return collect(folder);
-  }
-
-  /// Runs an engine's command; returns what it said.
-  std::string started(const campaign::Words& command) {
-    const plugins::ProgramResult result =
-        plugins::run_external_program(command, ".", console_.stop);
-    progress_.clear();
-    if (result.exit_code == 127 && result.output.empty()) {
-      throw Error(ErrorKind::bad_usage, "there is no program " + command[0] +
-                                            "; install the engine, or name another one");
-    }
-    if (result.exit_code != 0 && !console_.stop.stop_requested()) {
-      warn(console_,
-           fmt::format("{} ended with {}: {}", command[0], result.exit_code, result.output));
-    }
-    return result.exit_code == 0 ? result.output : "";
-  }
-
-  int queue_tables(const campaign::JobRequest& request, const std::string& said) {
-    const std::string job = said.substr(0, said.find_first_of(";\n"));  // JOB or JOB;CLUSTER
-    if (job.empty()) return 1;
-    const std::string tables = started(campaign::slurm_collection(request, job));
-    const campaign::TaskSplit tasks = campaign::split(campaign::EngineName::slurm, request);
-    if (!options_.is_quiet) {
-      console_.out << fmt::format("job {} of Slurm: {} tasks of {} items\nresults: {}\n", job,
-                                  tasks.tasks, tasks.chunk, out_.string())
-                   << std::flush;
-    }
-    return tables.empty() ? 1 : 0;
+    return submit_job(options_.task, job, folder, options_.is_quiet, console_,
+                      [&] { return collect(folder); });
   }
 
   const CampaignOptions& options_;
@@ -298,22 +230,7 @@ void add_campaign(CLI::App& app, const Console& console, Action& action) {
                    "Items at a time, 0 for all processors; default 0, with --index 1")
       ->check(CLI::Range(0, 1024));
   auto* lists = verb->add_flag("--list", options->lists, "Print the manifest and run nothing");
-  auto* index = verb->add_option(
-      "--index", options->index,
-      "Run one task: its number from 0 on, or slurm, mpi, kubernetes, parallel or auto for the one "
-      "that the engine's environment says");
-  verb->add_option("--chunk", options->chunk, "Items of a task; default 1")
-      ->check(CLI::Range(1, 1'000'000));
-  auto* collects =
-      verb->add_flag("--collect", options->collects, "Make the tables of what is complete");
-  auto* engine = verb->add_option("--submit", options->engine,
-                                  "Have slurm, parallel or mpi run it; writes the job's script")
-                     ->check(CLI::IsMember({"slurm", "parallel", "mpi"}));
-  for (auto* one : {lists, collects}) {
-    for (auto* other : {index, engine}) one->excludes(other);
-  }
-  lists->excludes(collects);
-  index->excludes(engine);
+  for (CLI::Option* other : add_task_options(*verb, options->task, "item")) lists->excludes(other);
   verb->add_flag("!--no-report", options->has_report, "Leave out the page");
   verb->add_flag("--quiet", options->is_quiet, "Print nothing but warnings and errors");
   run(*verb, options, campaign_verb, console, action);
