@@ -95,8 +95,9 @@ class PiecesOfCloud final : public PieceWork {
   std::string identity(std::size_t number) const {
     const auto changed = fs::last_write_time(options_.cloud).time_since_epoch().count();
     return fmt::format("{} {} {} {} model {} distance {} samples {} piece {} of {}", version,
-                       options_.cloud.string(), fs::file_size(options_.cloud), changed, digest_,
-                       truth_.registration_distance, truth_.samples, number, options_.pieces);
+                       fs::absolute(options_.cloud).string(), fs::file_size(options_.cloud),
+                       changed, digest_, truth_.registration_distance, truth_.samples, number,
+                       options_.pieces);
   }
 
   const EvaluateOptions& options_;
@@ -112,7 +113,7 @@ campaign::Words command_of(const EvaluateOptions& options) {
   const bool is_file = fs::exists(options.model, missing);
   campaign::Words words{"evaluate",
                         "--cloud",
-                        options.cloud,
+                        fs::absolute(options.cloud),
                         "--model",
                         is_file ? fs::absolute(options.model).string() : options.model,
                         "--out",
@@ -129,15 +130,13 @@ campaign::Words command_of(const EvaluateOptions& options) {
 
 }  // namespace
 
-int split_evaluation(const EvaluateOptions& given, const Console& console) {
-  if (!given.mesh.empty() || !given.out) {
+int split_evaluation(const EvaluateOptions& options, const Console& console) {
+  if (!options.mesh.empty() || !options.out) {
     throw Error(ErrorKind::bad_usage,
                 "--pieces are of a cloud and need a folder; give --cloud and --out");
   }
-  EvaluateOptions options = given;
-  options.cloud = fs::absolute(given.cloud);
   if (!fs::is_regular_file(options.cloud)) {
-    throw Error(ErrorKind::bad_file, given.cloud.string() + ": there is no such file");
+    throw Error(ErrorKind::bad_file, options.cloud.string() + ": there is no such file");
   }
   const SplitWork work{.pieces = options.pieces,
                        .out = *options.out,

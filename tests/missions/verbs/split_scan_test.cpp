@@ -56,9 +56,9 @@ TEST_F(SplitScan, GivesTheBytesOfTheWholeWhoeverMeasuresWhichPiece) {
 }
 
 TEST_F(SplitScan, HasPiecesWithoutFiringsWhereThereAreMoreThanCanBe) {
-  const std::vector<std::string> short_flight{"--set", "scan.orbit.speed=300"};
+  const std::vector<std::string> short_flight{"--set", "scan.orbit.speed=100"};
   ASSERT_EQ(run_skycap(scan("whole", short_flight)).exit_code, 0);
-  const auto run = run_skycap(scan("part", with(short_flight, {"--pieces", "9"})));
+  const auto run = run_skycap(scan("part", with(short_flight, {"--pieces", "15"})));
   ASSERT_EQ(run.exit_code, 0) << run.err;
   expect_same_results();
 }
