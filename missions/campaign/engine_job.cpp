@@ -1,7 +1,6 @@
 #include "missions/campaign/engine_job.h"
 
 #include <algorithm>
-#include <cctype>
 
 namespace skycap::missions::campaign {
 namespace {
@@ -17,20 +16,20 @@ std::string quoted(const std::string& word) {
   return text + "'";
 }
 
-std::string title_of(const JobRequest& request) {
-  std::string title = request.verb + " " + request.name;
-  title[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(title[0])));
-  return title;
+void append(Words& words, const Words& more) {
+  words.insert(words.end(), more.begin(), more.end());
 }
 
 Words task_words(const JobRequest& request, const std::string& index, std::size_t chunk) {
-  return {request.program,       request.verb, request.file, "--out",
-          request.out,           "--index",    index,        "--chunk",
-          std::to_string(chunk), "--threads",  "1",          "--quiet"};
+  Words words = request.command;
+  append(words, {"--index", index, "--chunk", std::to_string(chunk), "--threads", "1", "--quiet"});
+  return words;
 }
 
-void append(Words& words, const Words& more) {
-  words.insert(words.end(), more.begin(), more.end());
+Words collection_words(const JobRequest& request) {
+  Words words = request.command;
+  append(words, {"--collect", "--quiet"});
+  return words;
 }
 
 EngineJob slurm_job(const JobRequest& request, const TaskSplit& tasks) {
@@ -40,12 +39,10 @@ EngineJob slurm_job(const JobRequest& request, const TaskSplit& tasks) {
       "#SBATCH --requeue",  // a task that runs again skips what is complete
       "#SBATCH --open-mode=append",
   };
-  const std::string tables = job_script(
-      "The results of " + request.verb + " " + request.name, {},
-      {request.program, request.verb, request.file, "--out", request.out, "--collect", "--quiet"});
   return {{{"slurm.sh",
-            job_script(title_of(request), directives, task_words(request, "slurm", tasks.chunk))},
-           {"slurm_collect.sh", tables}},
+            job_script(request.title, directives, task_words(request, "slurm", tasks.chunk))},
+           {"slurm_collect.sh",
+            job_script(request.title + ", collected", {}, collection_words(request))}},
           {"sbatch", "--parsable", "--job-name=" + request.name,
            "--output=" + (request.out / "logs" / "%A_%a.txt").string(), request.out / "slurm.sh"}};
 }
@@ -63,9 +60,8 @@ EngineJob parallel_job(const JobRequest& request, const TaskSplit& tasks) {
                 "--arg-file",
                 request.out / "parallel_tasks.txt"};
   append(command, task_words(request, "parallel", tasks.chunk));
-  return {
-      {{"parallel.sh", job_script(title_of(request), {}, command)}, {"parallel_tasks.txt", list}},
-      command};
+  return {{{"parallel.sh", job_script(request.title, {}, command)}, {"parallel_tasks.txt", list}},
+          command};
 }
 
 EngineJob mpi_job(const JobRequest& request, const TaskSplit& tasks) {
@@ -79,11 +75,18 @@ EngineJob mpi_job(const JobRequest& request, const TaskSplit& tasks) {
                 "-n",
                 std::to_string(tasks.tasks),
                 "--oversubscribe"};
+  // mpirun would wait forever for a rank that a signal has ended; a shell ends with a status.
+  append(command, {"sh", "-c", "\"$@\"; exit $?", "rank"});
   append(command, task_words(request, "mpi", tasks.chunk));
-  return {{{"mpi.sh", job_script(title_of(request), {}, command)}}, command};
+  return {{{"mpi.sh", job_script(request.title, {}, command)}}, command};
 }
 
 }  // namespace
+
+EngineName engine_named(const std::string& name) {
+  if (name == "slurm") return EngineName::slurm;
+  return name == "mpi" ? EngineName::mpi : EngineName::parallel;
+}
 
 TaskSplit split(EngineName engine, const JobRequest& request) {
   std::size_t chunk = request.chunk;
@@ -97,8 +100,7 @@ TaskSplit split(EngineName engine, const JobRequest& request) {
 
 std::string job_script(const std::string& title, const std::vector<std::string>& directives,
                        const Words& command) {
-  std::string script =
-      "#!/bin/sh\n# " + title + ", written by skycap " + command.at(1) + " --submit.\n";
+  std::string script = "#!/bin/sh\n# " + title + ", written by skycap --submit.\n";
   for (const std::string& directive : directives) script += directive + "\n";
   script += "exec";  // so that signals reach the program itself
   for (const std::string& word : command) script += " " + quoted(word);

@@ -57,7 +57,8 @@ Key model_key() {
   Key key = text_key(
       "scene.model", [](Mission & m) -> auto& { return m.scene.model; },
       "What is surveyed: builtin:NAME, model:NAME, or the path of a PLY, OBJ, STL or OFF file, "
-      "relative to the mission file; prior: the targets among the prior data stand in for it. A "
+      "relative to the mission file, or NAME.tiles of many (docs/scan.md); prior: the targets "
+      "among the prior data stand in for it. A "
       "mission without it is for live surveys (docs/live.md).");
   key.fallback = "none";
   key.get = [](const Mission& mission) -> std::optional<KeyValue> {

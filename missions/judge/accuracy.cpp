@@ -8,30 +8,36 @@ namespace skycap::missions::judge {
 void AccuracyMeter::add(std::span<const Eigen::Vector3f> points) {
   piece_.resize(points.size());
   distance_.distances(points, piece_, threads_);
-  // In the order of the points, so that the sums depend neither on pieces nor on threads.
   for (const double distance : piece_) {
-    sum_ += distance;
-    squares_ += distance * distance;
-    kept_.push_back(static_cast<float>(distance));
+    tally_.sum.add(distance);
+    tally_.squares.add(distance * distance);
+    tally_.distances.push_back(static_cast<float>(distance));
   }
 }
 
 double AccuracyMeter::share_within(double distance) const {
-  if (kept_.empty()) return 0.0;
-  const auto within = std::ranges::count_if(kept_, [&](float d) { return d <= distance; });
-  return static_cast<double>(within) / static_cast<double>(kept_.size());
+  const std::vector<float>& kept = tally_.distances;
+  if (kept.empty()) return 0.0;
+  const auto within = std::ranges::count_if(kept, [&](float d) { return d <= distance; });
+  return static_cast<double>(within) / static_cast<double>(kept.size());
 }
 
-CloudAccuracy AccuracyMeter::accuracy() {
-  if (kept_.empty()) return {};
-  const auto count = static_cast<double>(kept_.size());
+void DistanceTally::add(const DistanceTally& more) {
+  sum.add(more.sum);
+  squares.add(more.squares);
+  distances.insert(distances.end(), more.distances.begin(), more.distances.end());
+}
+
+CloudAccuracy DistanceTally::accuracy() {
+  if (distances.empty()) return {};
+  const auto count = static_cast<double>(distances.size());
   const auto quantile = [&](double share) -> double {
-    const auto place = kept_.begin() + static_cast<std::ptrdiff_t>(share * (count - 1.0));
-    std::ranges::nth_element(kept_, place);
+    const auto place = distances.begin() + static_cast<std::ptrdiff_t>(share * (count - 1.0));
+    std::ranges::nth_element(distances, place);
     return *place;
   };
-  return {sum_ / count, std::sqrt(squares_ / count), quantile(0.5), quantile(0.95),
-          *std::ranges::max_element(kept_)};
+  return {sum.value() / count, std::sqrt(squares.value() / count), quantile(0.5), quantile(0.95),
+          *std::ranges::max_element(distances)};
 }
 
 }  // namespace skycap::missions::judge

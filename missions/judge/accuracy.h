@@ -2,12 +2,14 @@
 #pragma once
 
 #include <span>
+#include <utility>
 #include <vector>
 
 #include <Eigen/Core>
 
 #include "geometry/surfaces/mesh.h"
 #include "geometry/surfaces/mesh_distance.h"
+#include "missions/judge/exact_sum.h"
 
 namespace skycap::missions::judge {
 
@@ -20,8 +22,18 @@ struct CloudAccuracy {
   double largest = 0.0;
 };
 
-/// Measures them while points come in, in any pieces: four bytes are kept of each point, whose
-/// precision median, percentile and largest have.
+/// What is kept of distances, from which all figures follow, whoever has measured which of them:
+/// four bytes of each, whose precision median, percentile and largest have.
+struct DistanceTally {
+  ExactSum sum, squares;
+  std::vector<float> distances;
+
+  void add(const DistanceTally& more);
+  /// Sorts the distances.
+  CloudAccuracy accuracy();
+};
+
+/// Measures them while points come in, in any pieces.
 class AccuracyMeter {
  public:
   explicit AccuracyMeter(const geometry::Mesh& truth, unsigned threads = 0)
@@ -29,20 +41,21 @@ class AccuracyMeter {
 
   void add(std::span<const Eigen::Vector3f> points);
 
-  std::size_t points() const { return kept_.size(); }
+  std::size_t points() const { return tally_.distances.size(); }
+  /// Leaves nothing.
+  DistanceTally take_tally() { return std::exchange(tally_, {}); }
 
   /// The share of the points so far that are no farther than that from the surface.
   double share_within(double distance) const;
 
   /// Of all points so far; sorts what is kept.
-  CloudAccuracy accuracy();
+  CloudAccuracy accuracy() { return tally_.accuracy(); }
 
  private:
   geometry::MeshDistance distance_;
   unsigned threads_;
-  double sum_ = 0.0, squares_ = 0.0;
   std::vector<double> piece_;  ///< memory for the distances of what is added
-  std::vector<float> kept_;
+  DistanceTally tally_;
 };
 
 }  // namespace skycap::missions::judge

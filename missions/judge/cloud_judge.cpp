@@ -27,8 +27,19 @@ void CloudJudge::add(std::span<const Eigen::Vector3f> points) {
 }
 
 CloudJudgement CloudJudge::judgement() {
-  return {accuracy_.points(), coverage_.share(), accuracy_.accuracy(), area_,
-          coverage_.is_covered()};
+  CloudTally tally = take_tally();
+  return judgement_of(tally, area_);
+}
+
+void CloudTally::add(const CloudTally& more) {
+  distances.add(more.distances);
+  if (is_covered.empty()) is_covered.resize(more.is_covered.size());
+  for (std::size_t i = 0; i < is_covered.size(); ++i) is_covered[i] |= more.is_covered[i];
+}
+
+CloudJudgement judgement_of(CloudTally& tally, double area) {
+  return {tally.distances.distances.size(), marked_share(tally.is_covered),
+          tally.distances.accuracy(), area, tally.is_covered};
 }
 
 }  // namespace skycap::missions::judge

@@ -26,6 +26,17 @@ struct CloudJudgement {
   double density() const { return static_cast<double>(points) / area; }
 };
 
+/// What judging is made of: parts of a cloud, judged by whoever, add up to all of it.
+struct CloudTally {
+  DistanceTally distances;
+  std::vector<std::uint8_t> is_covered;  ///< of each of the places asked; of equally many
+
+  void add(const CloudTally& more);
+};
+
+/// Of a surface of that area. Sorts the distances.
+CloudJudgement judgement_of(CloudTally& tally, double area);
+
 /// `count` places of a surface that stand for it, the same ones each time.
 std::vector<Eigen::Vector3f> places_asked(const geometry::Mesh& truth, std::size_t count);
 
@@ -38,7 +49,9 @@ class CloudJudge {
 
   void add(std::span<const Eigen::Vector3f> points);
 
-  CloudJudgement judgement();
+  /// Of all points so far, of which it keeps no distances.
+  CloudTally take_tally() { return {accuracy_.take_tally(), coverage_.is_covered()}; }
+  CloudJudgement judgement();  ///< of take_tally()
 
  private:
   double area_;

@@ -1,6 +1,8 @@
 #include "missions/recording/cloud_file.h"
 
+#include <algorithm>
 #include <cerrno>
+#include <fstream>
 #include <system_error>
 #include <utility>
 
@@ -49,13 +51,37 @@ void CloudFile::go_on(const CloudState& grown) {
 }
 
 void CloudFile::append(const CloudChunk& chunk) {
-  if (format_->is_paged()) {
-    const auto* const bytes = reinterpret_cast<const char*>(chunk.bytes.data());
-    put(pages_.continued({bytes, chunk.bytes.size()}));
-  } else {
-    put(chunk.bytes);
-  }
+  put_content(chunk.bytes);
   state_.totals.add(chunk.totals);
+}
+
+void CloudFile::append_file(const std::filesystem::path& other, const CloudState& grown) {
+  constexpr std::size_t pages = 1024, window = pages * geometry::e57::page_size;
+  std::ifstream file(other, std::ios::binary);
+  const std::size_t begin = format_->header({}).size();
+  file.seekg(static_cast<std::streamoff>(begin));
+  std::vector<std::uint8_t> bytes;
+  for (std::uint64_t at = begin; at < grown.bytes; at += bytes.size()) {
+    bytes.resize(std::min<std::uint64_t>(window, grown.bytes - at));
+    if (!file.read(reinterpret_cast<char*>(bytes.data()),
+                   static_cast<std::streamsize>(bytes.size()))) {
+      throw Error(ErrorKind::bad_file, other.string() + ": is shorter than it was written");
+    }
+    if (!format_->is_paged()) {
+      put_content(bytes);
+      continue;
+    }
+    for (std::size_t page = 0; page < bytes.size(); page += geometry::e57::page_size) {
+      put_content(std::span(bytes).subspan(
+          page, std::min(geometry::e57::page_content, bytes.size() - page)));
+    }
+  }
+  state_.totals.add(grown.totals);
+}
+
+void CloudFile::put_content(std::span<const std::uint8_t> bytes) {
+  if (!format_->is_paged()) return put(bytes);
+  put(pages_.continued({reinterpret_cast<const char*>(bytes.data()), bytes.size()}));
 }
 
 void CloudFile::sync() const { geometry::sync_to_disk(path_); }

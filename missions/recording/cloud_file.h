@@ -85,6 +85,10 @@ class CloudFile {
   /// Throws Error{bad_file} if the disk does not take it.
   void append(const CloudChunk& chunk);
 
+  /// Appends all that another file of this format held when it had `grown` so far. Throws
+  /// Error{bad_file} if it is shorter, or if the disk does not take it.
+  void append_file(const std::filesystem::path& other, const CloudState& grown);
+
   /// Completes the header and closes the file. Also after an interrupted scan: what was appended is
   /// then a valid file. Throws Error{bad_file} if the disk does not take it.
   void finish();
@@ -102,6 +106,7 @@ class CloudFile {
   };
 
   void go_on(const CloudState& grown);
+  void put_content(std::span<const std::uint8_t> bytes);
   void put(std::span<const std::uint8_t> bytes);
   void put(const std::string& bytes);
   [[noreturn]] void fail() const;

@@ -5,12 +5,17 @@
 #include <utility>
 #include <vector>
 
-#include "missions/recording/laser_checkpoint.h"
+#include "geometry/error.h"
+#include "geometry/io/file.h"
+#include "geometry/io/json.h"
+#include "missions/file/json_text.h"
 
 namespace skycap::missions::recording {
 namespace {
 
+namespace fs = std::filesystem;
 using Clock = std::chrono::steady_clock;
+using Json = nlohmann::ordered_json;
 
 /// New files, or those of the checkpoint as they were then.
 std::vector<CloudFile> open_files(std::span<const LaserOutput> outputs, const ScanJournal& journal,
@@ -55,7 +60,50 @@ LaserResult record_laser(const sim::Scene& scene, const sim::Lidar& lidar,
     // A rawlog without an observation is none.
     if (outputs[i].bytes > 0) journal.stage(outputs[i].name, folder);
   }
-  return {result, reached.time};
+  return {result, std::move(reached)};
+}
+
+std::string piece_text(const std::string& identity, const LaserCheckpoint& reached) {
+  return file::json_text({{"of", identity}, {"holds", json_of(reached)}});
+}
+
+std::optional<LaserCheckpoint> complete_piece(const fs::path& folder, const std::string& identity,
+                                              std::size_t files) {
+  const fs::path file = folder / piece_name;
+  std::error_code missing;
+  if (!fs::is_regular_file(file, missing)) return std::nullopt;
+  try {
+    const Json piece = geometry::parse_json<Json>(geometry::read_file(file));
+    if (piece.at("of") != Json(identity)) return std::nullopt;
+    return parse_laser_checkpoint(piece.at("holds"), files, file.string());
+  } catch (const Json::exception&) {
+    return std::nullopt;
+  } catch (const Error&) {  // it is made again
+    return std::nullopt;
+  }
+}
+
+LaserResult join_pieces(std::span<const CompletePiece> pieces, std::span<LaserOutput> outputs,
+                        geometry::OutputFolder& folder) {
+  LaserResult result;
+  for (const CompletePiece& piece : pieces) {
+    result.reached.progress.firings = piece.holds.progress.firings;
+    result.reached.progress.points += piece.holds.progress.points;
+    result.reached.time += piece.holds.time;
+  }
+  for (std::size_t i = 0; i < outputs.size(); ++i) {
+    LaserOutput& output = outputs[i];
+    CloudFile file(folder.stage(output.name), output.format, output.position);
+    for (const CompletePiece& piece : pieces) {
+      file.append_file(piece.folder / output.name, piece.holds.files[i]);
+    }
+    result.reached.files.push_back(file.state());
+    file.finish();
+    output.bytes = file.bytes();
+    if (output.bytes == 0) folder.drop(output.name);
+  }
+  result.scan = {result.reached.progress, true};
+  return result;
 }
 
 }  // namespace skycap::missions::recording

@@ -1,5 +1,6 @@
 #include "missions/recording/scan_flight.h"
 
+#include <algorithm>
 #include <string>
 #include <utility>
 #include <vector>
@@ -62,6 +63,26 @@ std::string digest_of(const ScanFlight& flight) {
   }
   return fmt::format("{:08x}", geometry::crc32_of({reinterpret_cast<const char*>(numbers.data()),
                                                    numbers.size() * sizeof(double)}));
+}
+
+std::function<bool(const Eigen::AlignedBox3d&)> within_reach(const ScanFlight& flight,
+                                                             const TimeSpan& span, double range) {
+  constexpr double margin = 1.0;  // beyond rounding, and beams that leave beside the axis
+  const double reach = range + flight.mount.real.translation().norm() + margin;
+  std::vector<Eigen::AlignedBox3d> ways;  // between poses the carrier flies straight
+  Eigen::Vector3d before = flight.route.carrier.pose(span.start).translation();
+  const auto fly_to = [&](const Eigen::Vector3d& place) {
+    ways.emplace_back(before.cwiseMin(place), before.cwiseMax(place));
+    before = place;
+  };
+  for (const sim::StampedPose& pose : flight.route.carrier.poses()) {
+    if (pose.time > span.start && pose.time < span.end) fly_to(pose.position);
+  }
+  fly_to(flight.route.carrier.pose(span.end).translation());
+  return [ways, reach](const Eigen::AlignedBox3d& box) {
+    return std::ranges::any_of(ways,
+                               [&](const auto& way) { return way.exteriorDistance(box) <= reach; });
+  };
 }
 
 void require_measurable(const sim::Lidar& lidar, const sim::Trajectory& flown) {

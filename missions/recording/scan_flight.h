@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <optional>
 #include <string>
 
@@ -38,6 +39,17 @@ ScanFlight scan_flight(const file::Mission& mission, const std::filesystem::path
 /// Tells it from other flights: a checksum of its poses, as they are and as they are believed to
 /// be, of both mounts and of the times of images.
 std::string digest_of(const ScanFlight& flight);
+
+/// Part of a flight [s].
+struct TimeSpan {
+  double start, end;
+};
+
+/// Whether a sensor of that range could see into a box from somewhere on that part of a flight:
+/// surely not, if it says so.
+std::function<bool(const Eigen::AlignedBox3d& box)> within_reach(const ScanFlight& flight,
+                                                                 const TimeSpan& span,
+                                                                 double range);
 
 /// Throws Error{bad_config} for what no scan would ever finish.
 void require_measurable(const sim::Lidar& lidar, const sim::Trajectory& flown);

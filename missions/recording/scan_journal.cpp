@@ -37,7 +37,7 @@ bool link_or_copy(const fs::path& from, const fs::path& to) {
 }  // namespace
 
 ScanJournal::ScanJournal(const fs::path& results)
-    : folder_(results / "unfinished"), file_(folder_ / "scan.journal") {}
+    : folder_(results / folder_name), file_(folder_ / "scan.journal") {}
 
 Json ScanJournal::open(const file::Mission& mission, const Json& more, bool resumes) {
   const std::string identity = derived::identity_text(mission, more);
@@ -50,6 +50,15 @@ Json ScanJournal::open(const file::Mission& mission, const Json& more, bool resu
   derived::require_same_survey(file_.string(), records.front(), identity,
                                "begin anew without --resume");
   return records.size() > 1 ? geometry::parse_json<Json>(records.back()) : Json();
+}
+
+bool ScanJournal::is_of(const file::Mission& mission, const Json& more) const {
+  try {
+    const std::vector<std::string> records = geometry::read_records(file_).records;
+    return !records.empty() && records.front() == derived::identity_text(mission, more);
+  } catch (const Error&) {
+    return false;  // a damaged journal is of nothing
+  }
 }
 
 void ScanJournal::begin(const std::string& identity) {

@@ -20,6 +20,9 @@ namespace skycap::missions::recording {
 
 class ScanJournal {
  public:
+  /// Of the folder, among the results.
+  static constexpr const char* folder_name = "unfinished";
+
   /// Of a scan whose results are in that folder; nothing is read or written yet.
   explicit ScanJournal(const std::filesystem::path& results);
 
@@ -31,6 +34,9 @@ class ScanJournal {
   /// the journal if it is of another scan, saying what is different, or damaged.
   nlohmann::ordered_json open(const file::Mission& mission, const nlohmann::ordered_json& more,
                               bool resumes);
+
+  /// Whether a scan of just this was interrupted there, so that open() may go on with it.
+  bool is_of(const file::Mission& mission, const nlohmann::ordered_json& more) const;
 
   /// Where a file of the scan is.
   std::filesystem::path path(const std::string& name) const { return folder_ / name; }

@@ -19,6 +19,7 @@
 #include "missions/file/yaml_tree.h"
 #include "missions/prior/prior.h"
 #include "missions/scene/model_store.h"
+#include "missions/scene/scene_tiles.h"
 #include "sim/models/models.h"
 
 namespace skycap::missions::scene {
@@ -54,9 +55,51 @@ geometry::Mesh named_model(const file::SceneConfig& scene, const std::filesystem
                                                                    : prior::read_surfaces(file);
 }
 
-Vector3d middle_of_base(const geometry::Mesh& mesh) {
-  const Eigen::AlignedBox3d box = geometry::bounding_box(mesh);
+Vector3d middle_of_base(const Eigen::AlignedBox3d& box) {
   return {box.center().x(), box.center().y(), box.min().z()};
+}
+
+constexpr double most_triangles = 1e7;  // of one mesh: about 2 GiB with the tree that rays search
+
+geometry::Mesh joined_tiles(const file::SceneConfig& scene, const std::filesystem::path& folder) {
+  geometry::Mesh all;
+  for (const TileKind& tile : tiles_of(scene, folder)) {
+    const geometry::Mesh mesh = load_model(tile.scene, folder);
+    const auto triangles =
+        static_cast<double>(all.triangles.size()) +
+        static_cast<double>(tile.shifts.size()) * static_cast<double>(mesh.triangles.size());
+    if (triangles > most_triangles) {
+      throw Error(ErrorKind::bad_config, "scene.model: the tiles have more than " +
+                                             file::short_text(most_triangles) +
+                                             " triangles; scan them, or name fewer of them here");
+    }
+    for (const Vector3d& shift : tile.shifts) {
+      geometry::Mesh copy = mesh;
+      geometry::transform(copy, Eigen::Affine3d(Eigen::Translation3d(shift)));
+      geometry::append(all, copy);
+    }
+  }
+  return all;
+}
+
+std::vector<sim::Surface> joined_surfaces(const file::SceneConfig& scene,
+                                          const std::filesystem::path& folder) {
+  std::vector<sim::Surface> all;
+  for (const TileKind& tile : tiles_of(scene, folder)) {
+    const std::vector<sim::Surface> one = load_surfaces(tile.scene, folder);
+    for (std::size_t i = 0; i < tile.shifts.size(); ++i) {
+      all.insert(all.end(), one.begin(), one.end());
+    }
+  }
+  return all;
+}
+
+Eigen::Affine3d turn_of(const file::SceneConfig& scene) {
+  const Vector3d& angles = scene.rotation;
+  const double upright = scene.up_axis == file::UpAxis::y ? 0.5 * std::numbers::pi : 0.0;
+  return Eigen::Affine3d(
+      AngleAxisd(angles.z(), Vector3d::UnitZ()) * AngleAxisd(angles.y(), Vector3d::UnitY()) *
+      AngleAxisd(angles.x(), Vector3d::UnitX()) * AngleAxisd(upright, Vector3d::UnitX()));
 }
 
 /// What a material does to light.
@@ -127,6 +170,7 @@ ReflectingScene model_of_materials(const file::SceneConfig& scene,
 }  // namespace
 
 geometry::Mesh load_model(const file::SceneConfig& scene, const std::filesystem::path& folder) {
+  if (is_tiled(scene)) return joined_tiles(scene, folder);
   geometry::Mesh mesh =
       scene.materials ? model_of_materials(scene, folder).model : named_model(scene, folder);
   try {
@@ -139,6 +183,7 @@ geometry::Mesh load_model(const file::SceneConfig& scene, const std::filesystem:
 
 std::vector<sim::Surface> load_surfaces(const file::SceneConfig& scene,
                                         const std::filesystem::path& folder) {
+  if (is_tiled(scene)) return joined_surfaces(scene, folder);
   if (scene.materials) return model_of_materials(scene, folder).surfaces;
   if (!scene.model.starts_with(builtin)) return {};
   return sim::builtin_surfaces(scene.model.substr(builtin.size()), options_of(scene));
@@ -154,17 +199,20 @@ std::vector<std::filesystem::path> files_of(const file::Mission& mission,
   if (!derived::is_truth_prior(mission) && !mission.scene.model.starts_with(builtin)) {
     files.push_back(model_file(mission.scene, folder));
   }
+  if (!derived::is_truth_prior(mission) && is_tiled(mission.scene)) {
+    for (const TileKind& tile : tiles_of(mission.scene, folder)) {
+      if (!tile.scene.model.starts_with(builtin)) files.push_back(model_file(tile.scene, folder));
+    }
+  }
   return files;
 }
 
-void place_model(const file::SceneConfig& scene, geometry::Mesh& model) {
-  const Vector3d& angles = scene.rotation;
-  const double upright = scene.up_axis == file::UpAxis::y ? 0.5 * std::numbers::pi : 0.0;
-  const Eigen::Affine3d turn(
-      AngleAxisd(angles.z(), Vector3d::UnitZ()) * AngleAxisd(angles.y(), Vector3d::UnitY()) *
-      AngleAxisd(angles.x(), Vector3d::UnitX()) * AngleAxisd(upright, Vector3d::UnitX()));
-  geometry::transform(model, turn);
+Eigen::Affine3d turn_and_scale(const file::SceneConfig& scene) {
+  return Eigen::Affine3d(Eigen::Scaling(scene.scale.value_or(1.0))) * turn_of(scene);
+}
 
+void place_model(const file::SceneConfig& scene, geometry::Mesh& model) {
+  geometry::transform(model, turn_of(scene));
   double scale = scene.scale.value_or(1.0);
   if (scene.longest_side) {
     scale = *scene.longest_side / geometry::bounding_box(model).sizes().maxCoeff();
@@ -173,8 +221,9 @@ void place_model(const file::SceneConfig& scene, geometry::Mesh& model) {
     throw Error(ErrorKind::bad_geometry, scene.model + ": is too small to be scaled");
   }
   geometry::transform(model, Eigen::Affine3d(Eigen::Scaling(scale)));
-  const Vector3d shift = scene.position - middle_of_base(model);
-  geometry::transform(model, Eigen::Affine3d(Eigen::Translation3d(shift)));
+  const Vector3d own_place =
+      is_tiled(scene) ? Vector3d(0, 0, 0) : middle_of_base(geometry::bounding_box(model));
+  geometry::transform(model, Eigen::Affine3d(Eigen::Translation3d(scene.position - own_place)));
   const Eigen::AlignedBox3d box = geometry::bounding_box(model);
   for (const Vector3d& corner : {box.min(), box.max()}) {
     geometry::require_place(corner, scene.model + ": a corner of the placed model");
@@ -192,7 +241,6 @@ std::vector<Eigen::Isometry3d> copies_of(const file::SceneConfig& scene) {
 }
 
 geometry::Mesh with_copies(const file::SceneConfig& scene, const geometry::Mesh& placed_model) {
-  constexpr double most_triangles = 1e7;  // about 2 GiB with the tree that rays search
   const std::vector<Eigen::Isometry3d> places = copies_of(scene);
   const double triangles =
       static_cast<double>(places.size()) * static_cast<double>(placed_model.triangles.size());
@@ -228,7 +276,7 @@ ReflectingScene reflecting_scene(const file::Mission& mission,
   result.reflectances.resize(result.model.triangles.size(), reflectance);
   result.places = copies_of(scene);
   if (scene.ground) {
-    result.ground = ground_of(mission, with_copies(scene, result.model));
+    result.ground = ground_of(mission, geometry::bounding_box(with_copies(scene, result.model)));
     result.ground_reflectances.resize(result.ground.triangles.size(), reflectance);
   }
   return result;
@@ -275,15 +323,14 @@ std::string ReflectingScene::digest() const {
   return digest;
 }
 
-geometry::Mesh ground_of(const file::Mission& mission, const geometry::Mesh& placed_model) {
+geometry::Mesh ground_of(const file::Mission& mission, const Eigen::AlignedBox3d& model) {
   const auto& terrain = derived::priors_of(mission).terrain;
-  return terrain ? terrain->surface() : ground_under(placed_model);
+  return terrain ? terrain->surface() : ground_under(model);
 }
 
-geometry::Mesh ground_under(const geometry::Mesh& placed_model) {
-  const Eigen::AlignedBox3d box = geometry::bounding_box(placed_model);
-  const Vector3d middle = middle_of_base(placed_model);
-  const double half = 5.0 * box.sizes().maxCoeff();
+geometry::Mesh ground_under(const Eigen::AlignedBox3d& model) {
+  const Vector3d middle = middle_of_base(model);
+  const double half = 5.0 * model.sizes().maxCoeff();
   return {{middle + Vector3d(-half, -half, 0), middle + Vector3d(half, -half, 0),
            middle + Vector3d(half, half, 0), middle + Vector3d(-half, half, 0)},
           {{0, 1, 2}, {0, 2, 3}}};

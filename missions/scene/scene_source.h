@@ -12,9 +12,10 @@
 namespace skycap::missions::scene {
 
 /// The mesh that `scene` names, in its own frame: builtin:NAME, model:NAME, or the path of a mesh
-/// or of any file of prior data that holds surfaces, relative to `folder`. Throws Error{bad_file},
-/// {bad_config} or {bad_geometry}, naming the model, if it is not there, cannot be read, or is not
-/// a mesh with a surface.
+/// or of any file of prior data that holds surfaces, relative to `folder`; of tiles
+/// (scene_tiles.h), all as one mesh. Throws Error{bad_file}, {bad_config} or {bad_geometry}, naming
+/// the model, if it is not there, cannot be read, is not a mesh with a surface, or if tiles have
+/// more triangles than a single mesh may.
 geometry::Mesh load_model(const file::SceneConfig& scene, const std::filesystem::path& folder);
 
 /// What the triangles of load_model() do to light; empty if all are matt. Throws the same.
@@ -26,8 +27,12 @@ std::vector<sim::Surface> load_surfaces(const file::SceneConfig& scene,
 std::vector<std::filesystem::path> files_of(const file::Mission& mission,
                                             const std::filesystem::path& folder);
 
-/// Turns, scales and places a model as `scene` says. Throws Error{bad_geometry} if the model has
-/// no extent to be scaled by.
+/// What turns a model upright and as `scene` says, and scales it: all but its place and what
+/// depends on its size.
+Eigen::Affine3d turn_and_scale(const file::SceneConfig& scene);
+
+/// Turns, scales and places a model as `scene` says, tiles by their own origin. Throws
+/// Error{bad_geometry} if the model has no extent to be scaled by.
 void place_model(const file::SceneConfig& scene, geometry::Mesh& model);
 
 /// world_from_world, from the first of the scene's models, as place_model() leaves it, to each; the
@@ -60,9 +65,11 @@ struct ReflectingScene {
 ReflectingScene reflecting_scene(const file::Mission& mission, const std::filesystem::path& folder);
 
 /// The ground that the sensor sees: the terrain of the mission's prior data, else ground_under().
-geometry::Mesh ground_of(const file::Mission& mission, const geometry::Mesh& placed_model);
+/// The box is that around the placed model.
+geometry::Mesh ground_of(const file::Mission& mission, const Eigen::AlignedBox3d& model);
 
-/// A square in the plane of the scene's base, ten times as wide as the model.
-geometry::Mesh ground_under(const geometry::Mesh& placed_model);
+/// A square in the plane of the scene's base, ten times as wide as the model, which the box is
+/// around.
+geometry::Mesh ground_under(const Eigen::AlignedBox3d& model);
 
 }  // namespace skycap::missions::scene

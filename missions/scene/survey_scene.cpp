@@ -45,7 +45,9 @@ sim::Scene scene_of(const geometry::Mesh& model, const file::Mission& mission,
     return reflecting_scene(mission, folder).scene(mission.threads);
   }
   geometry::Mesh mesh = model;
-  if (mission.scene.ground) geometry::append(mesh, ground_of(mission, model));
+  if (mission.scene.ground) {
+    geometry::append(mesh, ground_of(mission, geometry::bounding_box(model)));
+  }
   std::vector<sim::Surface> surfaces = surfaces_of(mission, folder);
   if (!surfaces.empty()) surfaces.resize(mesh.triangles.size(), sim::Surface::matt);
   return sim::Scene(std::array{sim::ScenePart{mesh, {}, {}, surfaces}}, mission.threads);

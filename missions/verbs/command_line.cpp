@@ -105,8 +105,15 @@ void add_scan(CLI::App& app, const Console& console, Action& action) {
       ->delimiter(',');
   verb->add_flag("--with-truth", options->with_truth,
                  "Write a second file with the points as they really were");
-  verb->add_flag("--resume", options->resumes,
-                 "Go on with the scan that was interrupted in that folder, if there is one");
+  CLI::Option* const resumes =
+      verb->add_flag("--resume", options->resumes,
+                     "Go on with the scan that was interrupted in that folder, if there is one");
+  verb->add_option("--pieces", options->pieces,
+                   "Measure the flight in so many pieces, each by itself, and join them; the same "
+                   "bytes")
+      ->check(CLI::Range(1, 1'000'000))
+      ->excludes(resumes);
+  add_task_options(*verb, options->task, "piece");
   verb->add_flag("!--no-report", options->has_report, "Leave out the page");
   verb->add_option("--seed", keys->seed, "Seed, in place of the mission's");
   verb->add_option("--threads", keys->threads, "Threads, 0 for all processors");
@@ -209,7 +216,15 @@ void add_evaluate(CLI::App& app, const Console& console, Action& action) {
       ->check(number_between(1e-6, 1e9));
   verb->add_option("--samples", options->samples, "Surface points; default 100000")
       ->check(CLI::Range(100, 10'000'000));
+  verb->add_option("--pieces", options->pieces,
+                   "Judge a cloud in so many pieces, each by itself; the same figures")
+      ->check(CLI::Range(1, 1'000'000));
+  verb->add_option("--out", options->out, "Folder for pieces, and for evaluation.json of them");
+  add_task_options(*verb, options->task, "piece");
+  verb->add_option("--threads", options->threads, "Threads, 0 for all processors")
+      ->check(CLI::Range(0, 1024));
   verb->add_flag("--json", options->is_json, "Print JSON");
+  verb->add_flag("--quiet", options->is_quiet, "Show no progress, and print nothing of pieces");
   run(*verb, options, evaluate, console, action);
 }
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <atomic>
+#include <csignal>
 #include <functional>
 #include <ostream>
 #include <stop_token>
@@ -25,6 +26,12 @@ struct Console {
 /// Says what is amiss, in one line, where the verb goes on all the same.
 inline void warn(const Console& console, const std::string& what) {
   console.err << "skycap: warning: " << printable_line(what) << "\n" << std::flush;
+}
+
+/// What a shell says of a program that a signal has ended, or 1.
+inline int interrupted_exit_code(const Console& console) {
+  const bool is_ended = console.ending_signal && *console.ending_signal == SIGTERM;
+  return is_ended ? 128 + SIGTERM : 1;
 }
 
 /// While it lives, the verb has results that Ctrl-C must not lose: it watches Console::stop and

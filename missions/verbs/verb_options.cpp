@@ -33,6 +33,26 @@ void add_set_option(CLI::App& verb, KeyOptions& keys) {
       ->allow_extra_args(false);
 }
 
+std::vector<CLI::Option*> add_task_options(CLI::App& verb, TaskOptions& options,
+                                           const std::string& item) {
+  verb.add_option("--chunk", options.chunk, "Of a task, so many " + item + "s; default 1")
+      ->check(CLI::Range(1, 1'000'000));
+  const std::vector<CLI::Option*> all{
+      verb.add_option("--index", options.index,
+                      "Run one task: its number from 0 on, or slurm, mpi, kubernetes, parallel or "
+                      "auto for the one that the engine's environment says"),
+      verb.add_flag("--collect", options.collects, "Make the results of what is complete"),
+      verb.add_option("--submit", options.engine,
+                      "Have slurm, parallel or mpi run it; writes the job's script")
+          ->check(CLI::IsMember({"slurm", "parallel", "mpi"}))};
+  for (CLI::Option* one : all) {
+    for (CLI::Option* other : all) {
+      if (one != other) one->excludes(other);
+    }
+  }
+  return all;
+}
+
 CLI::Validator number_between(double least, double most) {
   const CLI::Range range(least, most);
   return {[range](std::string& text) {

@@ -10,6 +10,7 @@
 
 #include "missions/file/mission_reader.h"
 #include "missions/verbs/console.h"
+#include "missions/verbs/verbs.h"
 
 namespace skycap::missions::verbs {
 
@@ -26,6 +27,11 @@ struct KeyOptions {
 };
 
 void add_set_option(CLI::App& verb, KeyOptions& keys);
+
+/// Options of a verb whose work are items, which it calls `item`; all but the chunk exclude each
+/// other. Returns those that do.
+std::vector<CLI::Option*> add_task_options(CLI::App& verb, TaskOptions& options,
+                                           const std::string& item);
 
 /// A number between two others; unlike CLI::Range it takes no NaN for one.
 CLI::Validator number_between(double least, double most);

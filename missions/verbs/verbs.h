@@ -14,6 +14,16 @@
 
 namespace skycap::missions::verbs {
 
+/// Of work in numbered items that engines for many jobs may run.
+struct TaskOptions {
+  std::optional<std::string> index;   ///< of one task, see campaign::task_index()
+  std::size_t chunk = 0;              ///< items of a task; zero: one, or as the engine likes it
+  bool collects = false;              ///< works on none, and makes the results of what is complete
+  std::optional<std::string> engine;  ///< that runs all tasks
+
+  bool is_given() const { return index || engine || collects || chunk > 0; }
+};
+
 struct PlanOptions {
   std::filesystem::path mission;
   std::optional<std::filesystem::path> out;  ///< default: results/NAME
@@ -159,12 +169,14 @@ struct ScanVerbOptions {
   bool with_truth = false;  ///< also where the surfaces really were
   bool resumes = false;     ///< goes on with an interrupted scan, if there is one
   bool has_report = true;   ///< the page beside the other results, too
+  std::size_t pieces = 0;   ///< of the flight, each measured by itself; zero: all at once
+  TaskOptions task;         ///< whose items are pieces
   std::vector<file::KeyOverride> overrides;
   bool is_quiet = false;
 };
 
 /// Flies a route in the simulator and records what the sensor measures on the way. Exit code 1 if
-/// the flight was interrupted.
+/// the flight was interrupted, or if a piece of it is missing.
 int scan(const ScanVerbOptions& options, const Console& console);
 
 struct EvaluateOptions {
@@ -173,10 +185,16 @@ struct EvaluateOptions {
   std::string model;               ///< builtin:NAME, model:NAME, a mesh, or a mission file
   std::optional<double> distance;  ///< r_d; a mission file says its own
   std::size_t samples = 100'000;
+  std::size_t pieces = 0;                    ///< of a cloud, each judged by itself; zero: all
+  std::optional<std::filesystem::path> out;  ///< where pieces and what is made of them go
+  TaskOptions task;                          ///< whose items are pieces
+  unsigned threads = 0;                      ///< zero: all processors
   bool is_json = false;
+  bool is_quiet = false;
 };
 
-/// Says how much of a model a cloud or a mesh covers, and how accurate it is.
+/// Says how much of a model a cloud or a mesh covers, and how accurate it is. Exit code 1 if a
+/// piece is missing.
 int evaluate(const EvaluateOptions& options, const Console& console);
 
 struct ReconstructOptions {

@@ -5,7 +5,7 @@
 #include <bit>
 #include <functional>
 #include <iterator>
-#include <string>
+#include <utility>
 
 #include "geometry/error.h"
 #include "sim/scene/scene_trees.h"
@@ -25,26 +25,6 @@ SingleRay make_ray(const Vector3d& origin, const Vector3d& direction) {
   return ray;
 }
 
-void require_one_each(std::size_t count, const char* what, const geometry::Mesh& mesh) {
-  if (count == mesh.triangles.size()) return;
-  throw Error(ErrorKind::bad_geometry, "there are " + std::to_string(count) + " " + what + " for " +
-                                           std::to_string(mesh.triangles.size()) + " triangles");
-}
-
-// The properties of all parts' triangles, in their order; none if all are the default.
-template <typename Property>
-std::vector<Property> joined(std::span<const ScenePart> parts,
-                             std::span<const Property> ScenePart::*own, Property usual) {
-  const auto has_none = [&](const ScenePart& part) { return (part.*own).empty(); };
-  if (std::ranges::all_of(parts, has_none)) return {};
-  std::vector<Property> all;
-  for (const ScenePart& part : parts) {
-    all.insert(all.end(), (part.*own).begin(), (part.*own).end());
-    all.insert(all.end(), part.mesh.triangles.size() - (part.*own).size(), usual);
-  }
-  return all;
-}
-
 }  // namespace
 
 Scene::Scene(const geometry::Mesh& mesh, unsigned threads)
@@ -52,22 +32,25 @@ Scene::Scene(const geometry::Mesh& mesh, unsigned threads)
 
 Scene::Scene(const geometry::Mesh& mesh, std::span<const float> reflectances, unsigned threads)
     : Scene(std::array{ScenePart{mesh, reflectances, {}}}, threads) {
-  require_one_each(reflectances.size(), "reflectances", mesh);
+  require_one_each(reflectances.size(), "reflectances", mesh);  // none are not the default here
 }
 
 Scene::Scene(std::span<const ScenePart> parts, unsigned threads) {
   if (parts.empty()) throw Error(ErrorKind::bad_geometry, "the scene has no meshes");
-  for (const ScenePart& part : parts) {
-    geometry::validate(part.mesh);
-    if (!part.reflectances.empty()) {
-      require_one_each(part.reflectances.size(), "reflectances", part.mesh);
-    }
-    if (!part.surfaces.empty()) require_one_each(part.surfaces.size(), "surfaces", part.mesh);
+  for (const ScenePart& part : parts) require_valid(part);
+  if (parts.size() == 1 && parts[0].places.empty()) {
+    trees_ = grow_tree(parts[0].mesh, threads);
+    reflectances_.assign(parts[0].reflectances.begin(), parts[0].reflectances.end());
+    trees_->surfaces.assign(parts[0].surfaces.begin(), parts[0].surfaces.end());
+    return;
   }
-  trees_ = grow_trees(parts, threads);
-  reflectances_ = joined(parts, &ScenePart::reflectances, default_reflectance);
-  trees_->surfaces = joined(parts, &ScenePart::surfaces, Surface::matt);
+  SceneBuilder builder(box_around(parts).center(), threads);
+  for (const ScenePart& part : parts) builder.add(part);
+  *this = builder.finish();
 }
+
+Scene::Scene(std::unique_ptr<Trees> trees, std::vector<float> reflectances)
+    : trees_(std::move(trees)), reflectances_(std::move(reflectances)) {}
 
 Scene::Scene(Scene&&) noexcept = default;
 Scene& Scene::operator=(Scene&&) noexcept = default;

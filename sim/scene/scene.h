@@ -96,10 +96,37 @@ class Scene {
   const Trees& trees() const { return *trees_; }
 
  private:
+  friend class SceneBuilder;
+  Scene(std::unique_ptr<Trees> trees, std::vector<float> reflectances);
   float own_reflectance(std::uint32_t triangle) const;
 
   std::unique_ptr<Trees> trees_;
   std::vector<float> reflectances_;  // of each part's triangles; empty: all the default
+};
+
+/// Makes a scene of parts that come one after the other, so that of many tiles but one mesh need be
+/// in memory at a time. Each part is met in a frame of its own, whose place follows from its mesh
+/// and from the centre alone: what a ray meets first is the same, to the bit, whichever further
+/// parts there are, as long as those that it meets are among them, in the same order.
+class SceneBuilder {
+ public:
+  /// Rays will be cast relative to `centre`, which should be about the middle of the scene. Trees
+  /// are built on `threads` threads (zero: all processors).
+  explicit SceneBuilder(const Eigen::Vector3d& centre, unsigned threads = 0);
+  SceneBuilder(const SceneBuilder&) = delete;
+  SceneBuilder& operator=(const SceneBuilder&) = delete;
+  ~SceneBuilder();
+
+  /// Triangles are numbered on from those of the parts before. Keeps no reference. Throws what
+  /// Scene's constructors throw.
+  void add(const ScenePart& part);
+
+  /// The scene of all parts, perhaps of none; the builder is of no use any more.
+  Scene finish();
+
+ private:
+  struct Growth;
+  std::unique_ptr<Growth> growth_;
 };
 
 }  // namespace skycap::sim

@@ -58,7 +58,19 @@ Eigen::AlignedBox3d moved(const Eigen::AlignedBox3d& box, const Eigen::Isometry3
   return all;
 }
 
-/// A box around all copies of all parts.
+/// Appends what a part says of its triangles to the same of the parts before, which have `before`
+/// triangles; as long as no part says anything, there is nothing.
+template <typename Property>
+void append_property(std::span<const Property> own, std::size_t triangles, std::size_t before,
+                     Property usual, std::vector<Property>& all) {
+  if (own.empty() && all.empty()) return;
+  all.resize(before, usual);
+  all.insert(all.end(), own.begin(), own.end());
+  all.resize(before + triangles, usual);
+}
+
+}  // namespace
+
 Eigen::AlignedBox3d box_around(std::span<const ScenePart> parts) {
   Eigen::AlignedBox3d all;
   for (const ScenePart& part : parts) {
@@ -68,48 +80,81 @@ Eigen::AlignedBox3d box_around(std::span<const ScenePart> parts) {
   return all;
 }
 
-/// A tree of each part, and one over the boxes of their copies.
-void grow_trees_of_copies(RTCDevice device, std::span<const ScenePart> parts, unsigned threads,
-                          Scene::Trees& trees) {
-  std::vector<Eigen::AlignedBox3f> boxes;
-  std::size_t first_triangle = 0, own_triangle = 0;
-  for (const ScenePart& part : parts) {
-    const Eigen::AlignedBox3d box = geometry::bounding_box(part.mesh);
-    const Vector3d middle = box.center();
-    const RayTree& tree = trees.parts.emplace_back(device, part.mesh, middle, threads);
-    for (const Eigen::Isometry3d& place : places_of(part)) {
-      const Eigen::Isometry3d scene_from_mesh = Eigen::Translation3d(-trees.centre) * place;
-      boxes.push_back(moved(box, scene_from_mesh).cast<float>());
-      trees.copies.push_back(
-          make_copy(tree.root(), scene_from_mesh * Eigen::Translation3d(middle), first_triangle));
-      trees.own_triangles.push_back(static_cast<std::uint32_t>(own_triangle));
-      first_triangle += part.mesh.triangles.size();
-    }
-    own_triangle += part.mesh.triangles.size();
-  }
-  constexpr std::size_t most = std::numeric_limits<std::uint32_t>::max();
-  if (first_triangle > most) {
-    throw Error(ErrorKind::bad_geometry,
-                "the scene's copies have " + std::to_string(first_triangle) +
-                    " triangles in all; " + std::to_string(most) + " can be numbered");
-  }
-  trees.over_copies.emplace_back(device, boxes);
-  trees.target = {trees.over_copies.back().root(), trees.copies.data()};
+void require_one_each(std::size_t count, const char* what, const geometry::Mesh& mesh) {
+  if (count == mesh.triangles.size()) return;
+  throw Error(ErrorKind::bad_geometry, "there are " + std::to_string(count) + " " + what + " for " +
+                                           std::to_string(mesh.triangles.size()) + " triangles");
 }
 
-}  // namespace
+void require_valid(const ScenePart& part) {
+  geometry::validate(part.mesh);
+  if (!part.reflectances.empty()) {
+    require_one_each(part.reflectances.size(), "reflectances", part.mesh);
+  }
+  if (!part.surfaces.empty()) require_one_each(part.surfaces.size(), "surfaces", part.mesh);
+}
 
-std::unique_ptr<Scene::Trees> grow_trees(std::span<const ScenePart> parts, unsigned threads) {
+std::unique_ptr<Scene::Trees> grow_tree(const geometry::Mesh& mesh, unsigned threads) {
   const Device device(threads);
   auto trees = std::make_unique<Scene::Trees>();
-  trees->centre = box_around(parts).center();
-  if (parts.size() == 1 && parts[0].places.empty()) {
-    trees->parts.emplace_back(device.handle, parts[0].mesh, trees->centre, threads);
-    trees->target.tree = trees->parts[0].root();
-  } else {
-    grow_trees_of_copies(device.handle, parts, threads, *trees);
-  }
+  trees->centre = geometry::bounding_box(mesh).center();
+  trees->parts.emplace_back(device.handle, mesh, trees->centre, threads);
+  trees->target.tree = trees->parts[0].root();
   return trees;
+}
+
+struct SceneBuilder::Growth {
+  Device device;
+  unsigned threads;
+  std::unique_ptr<Scene::Trees> trees = std::make_unique<Scene::Trees>();
+  std::vector<float> reflectances{};
+  std::vector<Eigen::AlignedBox3f> boxes{};  ///< of all copies
+  std::size_t first_triangle = 0;            ///< of the next copy
+  std::size_t own_triangle = 0;              ///< of the next part
+};
+
+SceneBuilder::SceneBuilder(const Vector3d& centre, unsigned threads)
+    : growth_(new Growth{Device(threads), threads}) {
+  growth_->trees->centre = centre;
+}
+
+SceneBuilder::~SceneBuilder() = default;
+
+void SceneBuilder::add(const ScenePart& part) {
+  require_valid(part);
+  Scene::Trees& trees = *growth_->trees;
+  const Eigen::AlignedBox3d box = geometry::bounding_box(part.mesh);
+  const Vector3d middle = box.center();
+  const std::size_t triangles = part.mesh.triangles.size();
+  const RayTree& tree =
+      trees.parts.emplace_back(growth_->device.handle, part.mesh, middle, growth_->threads);
+  for (const Eigen::Isometry3d& place : places_of(part)) {
+    const Eigen::Isometry3d scene_from_mesh = Eigen::Translation3d(-trees.centre) * place;
+    growth_->boxes.push_back(moved(box, scene_from_mesh).cast<float>());
+    trees.copies.push_back(make_copy(tree.root(), scene_from_mesh * Eigen::Translation3d(middle),
+                                     growth_->first_triangle));
+    trees.own_triangles.push_back(static_cast<std::uint32_t>(growth_->own_triangle));
+    growth_->first_triangle += triangles;
+  }
+  append_property(part.reflectances, triangles, growth_->own_triangle, Scene::default_reflectance,
+                  growth_->reflectances);
+  append_property(part.surfaces, triangles, growth_->own_triangle, Surface::matt, trees.surfaces);
+  growth_->own_triangle += triangles;
+}
+
+Scene SceneBuilder::finish() {
+  constexpr std::size_t most = std::numeric_limits<std::uint32_t>::max();
+  if (growth_->first_triangle > most) {
+    throw Error(ErrorKind::bad_geometry,
+                "the scene's copies have " + std::to_string(growth_->first_triangle) +
+                    " triangles in all; " + std::to_string(most) + " can be numbered");
+  }
+  Scene::Trees& trees = *growth_->trees;
+  if (!trees.copies.empty()) {
+    trees.over_copies.emplace_back(growth_->device.handle, growth_->boxes);
+    trees.target = {trees.over_copies.back().root(), trees.copies.data()};
+  }
+  return {std::move(growth_->trees), std::move(growth_->reflectances)};
 }
 
 }  // namespace skycap::sim

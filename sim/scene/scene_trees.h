@@ -32,7 +32,17 @@ struct Scene::Trees {
   }
 };
 
-/// Of parts whose meshes are valid.
-std::unique_ptr<Scene::Trees> grow_trees(std::span<const ScenePart> parts, unsigned threads);
+/// Of a single mesh, which is valid.
+std::unique_ptr<Scene::Trees> grow_tree(const geometry::Mesh& mesh, unsigned threads);
+
+/// A box around all copies of all parts.
+Eigen::AlignedBox3d box_around(std::span<const ScenePart> parts);
+
+/// Throws Error{bad_geometry} if there are so many properties for another number of triangles.
+void require_one_each(std::size_t count, const char* what, const geometry::Mesh& mesh);
+
+/// Throws what geometry::validate() throws, and Error{bad_geometry} if a property is not one for
+/// each triangle.
+void require_valid(const ScenePart& part);
 
 }  // namespace skycap::sim

@@ -85,7 +85,7 @@ Rooms house() {
   add_mission_room("judge");
   add_mission_room("equipment", "file");
   add_mission_room("derived", "file", "equipment", "prior");
-  add_mission_room("scene", "file", "derived", "judge", "plugins", "prior");
+  add_mission_room("scene", "file", "equipment", "derived", "judge", "plugins", "prior");
   add_mission_room("site", "file", "derived", "prior");
   add_mission_room("fleet", "file", "derived");
   add_mission_room("proof", "file", "derived", "fleet");
@@ -108,8 +108,10 @@ Rooms house() {
   add_mission_room("verbs", "prior", "file", "equipment", "derived", "judge", "plugins", "scene",
                    "recording", "run", "package", "report", "live", "dataset", "fly", "benchmark",
                    "campaign", "site", "proof", "fleet");
-  add_mission_room("verbs/items", "verbs", "plugins", "package", "benchmark", "campaign",
-                   "district");
+  add_mission_room("verbs/items", "verbs", "package", "benchmark", "campaign", "district");
+  // A verb's sources know what the verbs share, and nobody knows them.
+  add_mission_room("verbs/clouds", "file", "equipment", "derived", "judge", "plugins", "scene",
+                   "recording", "package", "campaign", "verbs");
   // As a user of the library: public headers.
   add("python",
       {"sim/models", "sim/sensors", "survey", "flight/space", "flight/route", "missions/library"});

@@ -48,7 +48,7 @@ int campaign_verb(const ItemOptions& options, const Console& console) {
     if (!options.is_quiet) {
       console.out << markdown
                   << fmt::format("\n{} of {} items", run->done(), run->manifest().size())
-                  << run->missing_text() << "\nresults: " << out.string() << "\n"
+                  << run->missing() << "\nresults: " << out.string() << "\n"
                   << std::flush;
     }
     return run->done() == run->manifest().size() ? 0 : 1;
@@ -67,7 +67,7 @@ void add_campaign(CLI::App& app, const Console& console, Action& action) {
   CLI::App* verb = app.add_subcommand(
       "campaign", "Run missions x planners x seeds x changes, here or on an engine for many jobs");
   const auto options = std::make_shared<ItemOptions>();
-  add_item_options(*verb, *options, "Campaign file (docs/campaigns.md)", "the tables");
+  add_item_options(*verb, *options, "Campaign file (docs/campaigns.md)");
   run(*verb, options, campaign_verb, console, action);
 }
 

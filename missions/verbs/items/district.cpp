@@ -107,7 +107,7 @@ void add_district(CLI::App& app, const Console& console, Action& action) {
   CLI::App* verb = app.add_subcommand(
       "district", "Survey the buildings of a map, here or on an engine, and fly all of them");
   const auto options = std::make_shared<ItemOptions>();
-  add_item_options(*verb, *options, "District file (docs/districts.md)", "the flight and the page");
+  add_item_options(*verb, *options, "District file (docs/districts.md)");
   run(*verb, options, district_verb, console, action);
 }
 

@@ -1,9 +1,9 @@
 #include "missions/verbs/items/item_run.h"
 
 #include <algorithm>
+#include <cctype>
 #include <chrono>
 #include <condition_variable>
-#include <csignal>
 #include <cstdlib>
 #include <mutex>
 #include <stop_token>
@@ -14,23 +14,14 @@
 
 #include "geometry/error.h"
 #include "geometry/parallel.h"
-#include "missions/campaign/engine_job.h"
 #include "missions/campaign/item_runner.h"
 #include "missions/package/package.h"
-#include "missions/plugins/external_program.h"
+#include "missions/verbs/tasks.h"
 #include "missions/verbs/write_page.h"
 
 namespace skycap::missions::verbs {
-namespace {
 
 namespace fs = std::filesystem;
-
-}  // namespace
-
-int interrupted_exit_code(const Console& console) {
-  const bool is_ended = console.ending_signal && *console.ending_signal == SIGTERM;
-  return is_ended ? 128 + SIGTERM : 1;
-}
 
 fs::path ItemOptions::folder(const std::string& name) const {
   return out.value_or(fs::path("results") / name);
@@ -43,28 +34,23 @@ ItemRun::ItemRun(const ItemOptions& options, campaign::CampaignFile file, fs::pa
       manifest_(std::move(file)),
       out_(std::move(out)),
       verb_(std::move(verb)),
-      threads_(options.threads.value_or(options.index ? 1 : 0)),
+      threads_(options.threads.value_or(options.task.index ? 1 : 0)),
       progress_(verb_.name, console, options.is_quiet, geometry::thread_count(threads_)) {}
 
 int ItemRun::run() {
   if (options_.lists) return console_.out << manifest_.text() << std::flush, 0;
-  if (options_.engine) return submit();
-  if (options_.index) return run_task();
+  if (options_.task.engine) return submit();
+  if (options_.task.index) return run_task();
   geometry::OutputFolder folder(out_);
-  if (!options_.collects) work_on({0, manifest_.size()}, true);
+  if (!options_.task.collects) work_on({0, manifest_.size()}, true);
   if (console_.stop.stop_requested()) return interrupted_exit_code(console_);
   return collect(folder);
 }
 
 /// The items of one task. Others may be at other items of the same campaign.
 int ItemRun::run_task() {
-  const std::size_t task = campaign::task_index(*options_.index, campaign::program_environment());
-  const campaign::ItemRange range =
-      campaign::items_of_task(task, std::max<std::size_t>(1, options_.chunk), manifest_.size());
-  if (range.size() == 0) {
-    warn(console_, fmt::format("task {} has no items; there are {}", task, manifest_.size()));
-    return 0;
-  }
+  const campaign::ItemRange range = items_of(options_.task, manifest_.size(), console_);
+  if (range.size() == 0) return 0;
   const std::size_t done = work_on(range, true);
   if (console_.stop.stop_requested()) return interrupted_exit_code(console_);
   return done == range.size() ? 0 : 1;
@@ -149,70 +135,26 @@ int ItemRun::collect(geometry::OutputFolder& folder) {
   return verb_.collect(folder);
 }
 
-std::string ItemRun::missing_text() const {
-  constexpr std::size_t most = 20;
-  if (missing_.empty()) return "";
+std::string ItemRun::missing() const {
   std::vector<std::size_t> missing = missing_;
   std::ranges::sort(missing);
-  std::string text = "; missing";
-  for (std::size_t i = 0; i < std::min(most, missing.size()); ++i) {
-    text += (i == 0 ? " " : ", ") + std::to_string(missing[i]);
-  }
-  return missing.size() > most ? text + ", ..." : text;
+  return missing_text(missing);
 }
 
 int ItemRun::submit() {
-  const campaign::EngineName engine = *options_.engine == "slurm" ? campaign::EngineName::slurm
-                                      : *options_.engine == "mpi" ? campaign::EngineName::mpi
-                                                                  : campaign::EngineName::parallel;
-  const campaign::JobRequest request{.verb = verb_.name,
-                                     .program = fs::read_symlink("/proc/self/exe"),
-                                     .file = fs::absolute(options_.file),
-                                     .out = fs::absolute(out_),
-                                     .name = manifest_.file().name,
-                                     .items = manifest_.size(),
-                                     .chunk = options_.chunk,
-                                     .jobs = geometry::thread_count(threads_)};
+  std::string title = verb_.name + " " + manifest_.file().name;
+  title[0] = static_cast<char>(std::toupper(static_cast<unsigned char>(title[0])));
+  const campaign::JobRequest job{
+      .command = {verb_.name, fs::absolute(options_.file), "--out", fs::absolute(out_)},
+      .out = fs::absolute(out_),
+      .title = std::move(title),
+      .name = manifest_.file().name,
+      .items = manifest_.size(),
+      .jobs = geometry::thread_count(threads_)};
   geometry::OutputFolder folder(out_);
-  std::error_code failure;
-  fs::create_directories(out_ / "logs", failure);
-  const campaign::EngineJob job = campaign::engine_job(engine, request);
   folder.write("manifest.jsonl", manifest_.text());
-  for (const auto& [name, text] : job.files) folder.write(name, text);
-  folder.commit();
-  progress_.say("waiting for " + job.command[0]);
-  const std::string said = started(job.command);
-  if (engine == campaign::EngineName::slurm) return queue_results(request, said);
-  if (console_.stop.stop_requested()) return interrupted_exit_code(console_);
-  return collect(folder);
-}
-
-/// Runs an engine's command; returns what it said.
-std::string ItemRun::started(const std::vector<std::string>& command) {
-  const plugins::ProgramResult result = plugins::run_external_program(command, ".", console_.stop);
-  progress_.clear();
-  if (result.exit_code == 127 && result.output.empty()) {
-    throw Error(ErrorKind::bad_usage,
-                "there is no program " + command[0] + "; install the engine, or name another one");
-  }
-  if (result.exit_code != 0 && !console_.stop.stop_requested()) {
-    warn(console_,
-         fmt::format("{} ended with {}: {}", command[0], result.exit_code, result.output));
-  }
-  return result.exit_code == 0 ? result.output : "";
-}
-
-int ItemRun::queue_results(const campaign::JobRequest& request, const std::string& said) {
-  const std::string job = said.substr(0, said.find_first_of(";\n"));  // JOB or JOB;CLUSTER
-  if (job.empty()) return 1;
-  const std::string tables = started(campaign::slurm_collection(request, job));
-  const campaign::TaskSplit tasks = campaign::split(campaign::EngineName::slurm, request);
-  if (!options_.is_quiet) {
-    console_.out << fmt::format("job {} of Slurm: {} tasks of {} items\nresults: {}\n", job,
-                                tasks.tasks, tasks.chunk, out_.string())
-                 << std::flush;
-  }
-  return tables.empty() ? 1 : 0;
+  return submit_job(options_.task, job, folder, options_.is_quiet, console_,
+                    [&] { return collect(folder); });
 }
 
 struct LastResort::Watcher {
@@ -240,8 +182,7 @@ LastResort::LastResort(const Console& console) {
 
 LastResort::~LastResort() = default;
 
-void add_item_options(CLI::App& verb, ItemOptions& options, const std::string& what,
-                      const std::string& results) {
+void add_item_options(CLI::App& verb, ItemOptions& options, const std::string& what) {
   verb.add_option("file", options.file, what)->required();
   verb.add_option("--out", options.out,
                   "Folder for the results; default results/NAME. What is complete there is not run "
@@ -250,22 +191,7 @@ void add_item_options(CLI::App& verb, ItemOptions& options, const std::string& w
                   "Items at a time, 0 for all processors; default 0, with --index 1")
       ->check(CLI::Range(0, 1024));
   auto* lists = verb.add_flag("--list", options.lists, "Print the manifest and run nothing");
-  auto* index = verb.add_option(
-      "--index", options.index,
-      "Run one task: its number from 0 on, or slurm, mpi, kubernetes, parallel or auto for the one "
-      "that the engine's environment says");
-  verb.add_option("--chunk", options.chunk, "Items of a task; default 1")
-      ->check(CLI::Range(1, 1'000'000));
-  auto* collects =
-      verb.add_flag("--collect", options.collects, "Make " + results + " of what is complete");
-  auto* engine = verb.add_option("--submit", options.engine,
-                                 "Have slurm, parallel or mpi run it; writes the job's script")
-                     ->check(CLI::IsMember({"slurm", "parallel", "mpi"}));
-  for (auto* one : {lists, collects}) {
-    for (auto* other : {index, engine}) one->excludes(other);
-  }
-  lists->excludes(collects);
-  index->excludes(engine);
+  for (CLI::Option* other : add_task_options(verb, options.task, "item")) lists->excludes(other);
   verb.add_flag("!--no-report", options.has_report, "Leave out the pages");
   verb.add_flag("--quiet", options.is_quiet, "Print nothing but warnings and errors");
 }

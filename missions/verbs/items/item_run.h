@@ -10,7 +10,6 @@
 #include <vector>
 
 #include "geometry/io/output_folder.h"
-#include "missions/campaign/engine_job.h"
 #include "missions/campaign/manifest_batches.h"
 #include "missions/campaign/tables.h"
 #include "missions/verbs/survey_progress.h"
@@ -21,21 +20,17 @@ namespace skycap::missions::verbs {
 struct ItemOptions {
   std::filesystem::path file;                ///< that says what is surveyed
   std::optional<std::filesystem::path> out;  ///< default: results/NAME
-  std::optional<std::string> index;          ///< of one task, see campaign::task_index()
-  std::size_t chunk = 0;  ///< items of a task; zero: one, or as the engine likes it
-  std::optional<std::string> engine;
+  TaskOptions task;
   std::optional<unsigned> threads;  ///< default: all processors, of one task one
   bool lists = false;
-  bool collects = false;
   bool has_report = true;
   bool is_quiet = false;
 
   std::filesystem::path folder(const std::string& name) const;
 };
 
-/// Adds all of them; `what` the file is called, and `results` what --collect makes.
-void add_item_options(CLI::App& verb, ItemOptions& options, const std::string& what,
-                      const std::string& results);
+/// Adds all of them; `what` the file is called.
+void add_item_options(CLI::App& verb, ItemOptions& options, const std::string& what);
 
 using Records = std::vector<std::optional<benchmark::TrialRecord>>;
 
@@ -63,7 +58,7 @@ class ItemRun {
 
   /// Of what was kept: how many items are complete, and a list of the others for the user.
   std::size_t done() const { return times_.size(); }
-  std::string missing_text() const;
+  std::string missing() const;
 
  private:
   int run_task();
@@ -73,8 +68,6 @@ class ItemRun {
   void keep(const campaign::Batch& batch, const Records& records);
   int collect(geometry::OutputFolder& folder);
   int submit();
-  int queue_results(const campaign::JobRequest& request, const std::string& said);
-  std::string started(const std::vector<std::string>& command);
 
   const ItemOptions& options_;
   const Console& console_;
@@ -86,9 +79,6 @@ class ItemRun {
   std::vector<campaign::ItemTimes> times_;
   std::vector<std::size_t> missing_;
 };
-
-/// What a shell says of a program that a signal has ended, or 1.
-int interrupted_exit_code(const Console& console);
 
 /// Ends the program when it does not end by itself soon after a signal: a large scene that is being
 /// made ready cannot be stopped. Nothing is lost by it, since results appear whole by one renaming.

@@ -83,9 +83,9 @@ TEST(TaskIndex, TasksShareItemsOut) {
 }
 
 JobRequest request(std::size_t items, std::size_t chunk = 0, unsigned jobs = 4) {
-  return {.program = "/opt/my tools/skycap",
-          .file = "/data/it's/c.yaml",
+  return {.command = {"/opt/my tools/skycap", "campaign", "/data/it's/c.yaml"},
           .out = "/data/out",
+          .title = "Campaign c",
           .name = "c",
           .items = items,
           .chunk = chunk,

@@ -1,7 +1,6 @@
 // An interrupted scan that goes on ends as if nothing had happened.
 #include <filesystem>
 #include <fstream>
-#include <map>
 #include <sstream>
 #include <string>
 #include <tuple>
@@ -13,8 +12,7 @@
 
 #include "missions/verbs/command_line.h"
 #include "tests/missions/ctrl_c.h"
-#include "tests/missions/results_in.h"
-#include "tests/missions/run_skycap.h"
+#include "tests/missions/verbs/cube_scan.h"
 
 namespace skycap::missions {
 namespace {
@@ -23,50 +21,9 @@ namespace fs = std::filesystem;
 using testing::HasSubstr;
 using tests::content_of;
 using tests::run_skycap;
-using tests::TestFolder;
 
-/// All results, but of scan.json without the time that the run took, and without the page of it.
-std::map<std::string, std::string> results_in(const fs::path& folder) {
-  std::map<std::string, std::string> results = tests::results_in(folder, {"scan.html"});
-  auto summary = nlohmann::ordered_json::parse(results.at("scan.json"));
-  EXPECT_GT(summary.at("simulation_s").get<double>(), 0.0);
-  summary.erase("simulation_s");
-  results["scan.json"] = summary.dump();
-  return results;
-}
-
-/// A second and a half of flight round a cube of 2 m.
-class ResumedScan : public testing::Test {
+class ResumedScan : public tests::CubeScan {
  protected:
-  ResumedScan() {
-    folder_.write("cube.obj",
-                  "v -1 -1 0\nv 1 -1 0\nv 1 1 0\nv -1 1 0\nv -1 -1 2\nv 1 -1 2\nv 1 1 2\n"
-                  "v -1 1 2\nf 4 3 2 1\nf 5 6 7 8\nf 1 2 6 5\nf 2 3 7 6\nf 3 4 8 7\nf 4 1 5 8\n");
-    folder_.write("laser.yaml",
-                  "name: Test laser\nkind: spinning\ncolumns_per_turn: 500\nrotation_rate_hz: 20\n"
-                  "channels: {count: 16, lowest_deg: -20, highest_deg: 10}\n"
-                  "range: {min: 0.1, max: 50}\nerrors: {sigma: 0.01}\n");
-    folder_.write("camera.yaml",
-                  "name: Test camera\nkind: camera\nwidth_px: 20\nheight_px: 10\n"
-                  "horizontal_fov_deg: 10\nvertical_fov_deg: 5\n");
-    folder_.write("views.csv",
-                  "view,x,y,z,direction_x,direction_y,direction_z\n"
-                  "0,5,0,1,-1,0,0\n1,4,0,1,-1,0,0\n2,3,0,1,-1,0,0\n3,3,.5,1,-1,0,0\n");
-    folder_.write("m.yaml",
-                  "scene: {model: cube.obj}\n"
-                  "scan:\n"
-                  "  sensor: laser.yaml\n"
-                  "  orbit: {radius: 5, lowest: 1, circles: 1, speed: 20}\n"
-                  "evaluation: {registration_distance: 0.1}\n");
-  }
-
-  std::vector<std::string> scan(const std::string& out,
-                                const std::vector<std::string>& more) const {
-    std::vector<std::string> arguments{"scan", folder_ / "m.yaml", "--out", folder_ / out};
-    arguments.insert(arguments.end(), more.begin(), more.end());
-    return arguments;
-  }
-
   /// Scans into "part" until the progress line shows a text.
   void interrupt_at(const std::string& text, const std::vector<std::string>& more) const {
     tests::CtrlC keys(text);
@@ -79,23 +36,7 @@ class ResumedScan : public testing::Test {
     ASSERT_THAT(content_of(folder_ / "part/scan.json"), HasSubstr("\"complete\": false"));
   }
 
-  void expect_same_results() const {
-    const auto part = results_in(folder_ / "part"), whole = results_in(folder_ / "whole");
-    for (const auto& [name, content] : whole) {
-      EXPECT_TRUE(part.contains(name) && part.at(name) == content) << name;
-    }
-    EXPECT_EQ(part.size(), whole.size());
-  }
-
-  static std::vector<std::string> with(std::vector<std::string> options,
-                                       const std::vector<std::string>& more) {
-    options.insert(options.end(), more.begin(), more.end());
-    return options;
-  }
-
-  TestFolder folder_;
   fs::path journal_ = folder_.path() / "part" / "unfinished" / "scan.journal";
-  const std::vector<std::string> clouds_{"--format", "las,ply,pcd,xyz,rawlog", "--with-truth"};
   const std::vector<std::string> images_{"--route",  folder_.path().string(),
                                          "--sensor", folder_ / "camera.yaml",
                                          "--format", "rawlog"};
@@ -191,11 +132,11 @@ TEST_F(ResumedScan, ThatIsInterruptedAgainKeepsWhatWasThere) {
 
 TEST_F(ResumedScan, OfAnotherScanIsRefusedAndNothingIsLost) {
   interrupt_at("% flown", clouds_);
-  const auto before = results_in(folder_ / "part");
+  const auto before = tests::scan_results_in(folder_ / "part");
   const auto refusal = [&](const std::vector<std::string>& more) {
     const auto run = run_skycap(scan("part", with(more, {"--resume"})));
     EXPECT_EQ(run.exit_code, 2);
-    EXPECT_TRUE(results_in(folder_ / "part") == before);
+    EXPECT_TRUE(tests::scan_results_in(folder_ / "part") == before);
     return run.err;
   };
   EXPECT_THAT(refusal(with(clouds_, {"--seed", "2"})), HasSubstr("seed was 1 and is 2"));

@@ -1,0 +1,302 @@
+#include "missions/scene/scene_tiles.h"
+
+#include <algorithm>
+#include <map>
+#include <span>
+#include <string_view>
+#include <system_error>
+
+#include <fmt/format.h>
+#include <fnmatch.h>
+#include <nlohmann/json.hpp>
+
+#include "geometry/error.h"
+#include "geometry/io/file.h"
+#include "geometry/io/json.h"
+#include "geometry/io/record_log.h"
+#include "geometry/parallel.h"
+#include "geometry/place/world.h"
+#include "geometry/split_mix.h"
+#include "missions/equipment/yaml_section.h"
+#include "missions/file/json_text.h"
+#include "missions/file/yaml_tree.h"
+#include "missions/scene/scene_source.h"
+#include "missions/scene/sha256.h"
+#include "missions/version.h"
+#include "sim/models/models.h"
+
+namespace skycap::missions::scene {
+namespace {
+
+namespace fs = std::filesystem;
+using Eigen::Vector3d;
+
+/// One of the entries of a file of tiles.
+class TileEntry {
+ public:
+  /// `file` is the file of tiles as the scene names it, whose folder paths count from.
+  TileEntry(equipment::YamlSection& section, const file::SceneConfig& scene, const fs::path& file,
+            const fs::path& folder)
+      : section_(section), place_(fs::path(file).parent_path()), folder_(folder) {
+    one_.ground = scene.ground;  // so that no tile brings its own
+  }
+
+  void append_to(std::vector<TileKind>& tiles) {
+    if (section_.has("files") == section_.has("model")) {
+      section_.fail_at("files",
+                       "or else model has to be given: a pattern of mesh files, such as "
+                       "tiles/*.ply, or one model");
+    }
+    origin_ = origin();
+    const std::string key = section_.has("files") ? "files" : "model";
+    if (section_.text(key).ends_with(".tiles")) {
+      section_.fail_at(key, "is a list of tiles itself; name meshes or a model");
+    }
+    if (key == "files") {
+      append_files(tiles);
+    } else {
+      append_blocks(tiles);
+    }
+    section_.finish();
+  }
+
+ private:
+  Vector3d origin() {
+    const std::vector<double> numbers = section_.numbers("position");
+    if (numbers.empty()) return Vector3d::Zero();
+    if (numbers.size() != 3) section_.fail_at("position", "must be [east, north, up] in metres");
+    return {numbers[0], numbers[1], numbers[2]};
+  }
+
+  void append_files(std::vector<TileKind>& tiles) {
+    const fs::path pattern = section_.text("files");
+    std::vector<std::string> names;
+    std::error_code failure;
+    for (const auto& entry :
+         fs::directory_iterator(folder_ / place_ / pattern.parent_path() / ".", failure)) {
+      const std::string name = entry.path().filename();
+      if (fnmatch(pattern.filename().c_str(), name.c_str(), FNM_PERIOD) == 0) {
+        names.push_back(name);
+      }
+    }
+    if (names.empty()) {
+      section_.fail_at("files", "is " + pattern.string() +
+                                    ", and no file has such a name; give a pattern of mesh files "
+                                    "in one folder, such as tiles/*.ply");
+    }
+    std::ranges::sort(names);
+    for (const std::string& name : names) {
+      one_.model = place_ / pattern.parent_path() / name;
+      tiles.push_back({one_, {origin_}});
+    }
+  }
+
+  int count(const std::string& key) {
+    const int number = section_.integer(key, 1);
+    if (number < 1 || number > 10'000) section_.fail_at(key, "must be from 1 to 10000");
+    return number;
+  }
+
+  /// Which of several kinds stands where is drawn from the place's number, so that no pattern
+  /// shows.
+  void append_blocks(std::vector<TileKind>& tiles) {
+    const std::string model = section_.text("model");
+    const bool is_builtin = model.starts_with("builtin:");
+    one_.model = is_builtin || model.starts_with("model:") ? model : (place_ / model).string();
+    const int columns = count("columns"), rows = count("rows");
+    const bool is_alone = columns == 1 && rows == 1;
+    const double spacing = is_alone ? section_.number("spacing", 0.0) : section_.number("spacing");
+    if (!is_alone && !(spacing > 0.0)) section_.fail_at("spacing", "must be more than 0");
+    const int all_kinds = section_.integer("kinds", 1), seed = section_.integer("seed", 1);
+    const bool is_drawn = is_builtin && sim::is_drawn(std::string_view(model).substr(8));
+    if (all_kinds < 0 || (all_kinds != 1 && !is_drawn)) {
+      section_.fail_at("kinds",
+                       "is of builtin models that are drawn, such as builtin:city-block: "
+                       "how many different ones there are, 0 for all");
+    }
+    if (seed < 0) section_.fail_at("seed", "must not be negative");
+    std::map<std::uint64_t, TileKind> kinds;
+    for (int row = 0; row < rows; ++row) {
+      for (int column = 0; column < columns; ++column) {
+        const auto block = static_cast<std::uint64_t>(row) * static_cast<std::uint64_t>(columns) +
+                           static_cast<std::uint64_t>(column);
+        const std::uint64_t kind =
+            all_kinds == 0 ? block
+                           : geometry::split_mix(block) % static_cast<std::uint64_t>(all_kinds);
+        TileKind& tile = kinds.try_emplace(kind, TileKind{one_, {}}).first->second;
+        tile.scene.seed = static_cast<std::uint64_t>(seed) + kind;
+        tile.shifts.push_back(origin_ + spacing * Vector3d(column - 0.5 * (columns - 1),
+                                                           row - 0.5 * (rows - 1), 0.0));
+      }
+    }
+    for (auto& [number, tile] : kinds) tiles.push_back(std::move(tile));
+  }
+
+  equipment::YamlSection& section_;
+  fs::path place_, folder_;
+  file::SceneConfig one_;
+  Vector3d origin_ = Vector3d::Zero();
+};
+
+void require_for_tiles(const file::SceneConfig& scene) {
+  const auto refuse = [](const char* key) {
+    throw Error(ErrorKind::bad_config,
+                std::string(key) + " is not for scenes of tiles; leave it out");
+  };
+  if (!scene.copies.empty()) refuse("scene.copies");
+  if (scene.longest_side) refuse("scene.longest_side");
+  if (scene.materials) refuse("scene.materials");
+}
+
+std::uint32_t checksum(const geometry::Mesh& mesh) {
+  const auto sum_of = [](const auto& items) {
+    return geometry::crc32_of(
+        {reinterpret_cast<const char*>(items.data()), items.size() * sizeof(items[0])});
+  };
+  return sum_of(mesh.vertices) ^ static_cast<std::uint32_t>(geometry::split_mix(
+                                     sum_of(mesh.triangles)));  // neither undoes the other
+}
+
+Eigen::AlignedBox3d at(const Eigen::AlignedBox3d& box, const Eigen::Isometry3d& place) {
+  return {box.min() + place.translation(), box.max() + place.translation()};
+}
+
+}  // namespace
+
+bool is_tiled(const file::SceneConfig& scene) { return scene.model.ends_with(".tiles"); }
+
+std::vector<TileKind> tiles_of(const file::SceneConfig& scene, const fs::path& folder) {
+  require_for_tiles(scene);
+  const std::string name = (folder / scene.model).string();
+  const file::YamlNode root = file::parse_yaml(geometry::read_file(name), name);
+  equipment::YamlSection sections(root, "", name);
+  std::vector<TileKind> tiles;
+  for (equipment::YamlSection& section : sections.sections("tiles")) {
+    TileEntry(section, scene, scene.model, folder).append_to(tiles);
+  }
+  sections.finish();
+  if (tiles.empty()) sections.fail_at("tiles", "is missing; list what stands in the scene");
+  return tiles;
+}
+
+TiledScene::TiledScene(const file::Mission& mission, const fs::path& folder, const fs::path& index)
+    : scene_(mission.scene), folder_(folder) {
+  for (TileKind& tile : tiles_of(scene_, folder)) kinds_.push_back({std::move(tile), {}, 0, {}});
+  if (!read_index(index)) {
+    geometry::parallel_for(kinds_.size(), mission.threads,
+                           [&](std::size_t i) { look_at(kinds_[i]); });
+    write_index(index);
+  }
+  std::string digests;
+  for (const Kind& kind : kinds_) {
+    digests += kind.digest;
+    for (const Eigen::Isometry3d& place : places_of(kind.tile)) {
+      const Eigen::AlignedBox3d box = at(kind.box, place);
+      for (const Vector3d& corner : {box.min(), box.max()}) {
+        geometry::require_place(corner, kind.tile.scene.model + ": a corner of the placed tile");
+      }
+      box_.extend(box);
+      triangles_ += kind.triangles;
+      for (const double at : place.translation()) digests += fmt::format(" {}", at);
+    }
+  }
+  if (scene_.ground) ground_ = ground_of(mission, box_);
+  digest_ = fmt::format("{} tiles {:08x} {:08x}", kinds_.size(), geometry::crc32_of(digests),
+                        checksum(ground_));
+}
+
+void TiledScene::look_at(Kind& kind) const {
+  const geometry::Mesh mesh = turned_and_scaled(kind.tile);
+  kind.box = geometry::bounding_box(mesh);
+  kind.triangles = mesh.triangles.size();
+  kind.digest = fmt::format("{:08x}", checksum(mesh));
+}
+
+/// Of all that decides what look_at() finds.
+std::string TiledScene::index_key() const {
+  std::string inputs = version;
+  const Eigen::Affine3d turn = turn_and_scale(scene_);
+  for (int i = 0; i < 16; ++i) inputs += fmt::format(" {}", turn.matrix()(i / 4, i % 4));
+  for (const Kind& kind : kinds_) {
+    const file::SceneConfig& one = kind.tile.scene;
+    inputs += fmt::format("\n{} {} {}", one.model, one.seed, one.ground);
+    const fs::path file = folder_ / one.model;
+    std::error_code none;
+    if (!fs::is_regular_file(file, none)) continue;
+    inputs += fmt::format(" {} {}", fs::file_size(file),
+                          fs::last_write_time(file).time_since_epoch().count());
+  }
+  return sha256(std::as_bytes(std::span(inputs)));
+}
+
+bool TiledScene::read_index(const fs::path& index) {
+  std::error_code none;
+  if (index.empty() || !fs::is_regular_file(index, none)) return false;
+  try {
+    const auto json = geometry::parse_json<nlohmann::ordered_json>(geometry::read_file(index));
+    const auto& kinds = json.at("kinds");
+    if (json.at("of") != index_key() || kinds.size() != kinds_.size()) return false;
+    for (std::size_t i = 0; i < kinds_.size(); ++i) {
+      kinds_[i].box = {file::vector_of(kinds[i].at("low")), file::vector_of(kinds[i].at("high"))};
+      kinds_[i].triangles = kinds[i].at("triangles").get<std::size_t>();
+      kinds_[i].digest = kinds[i].at("digest").get<std::string>();
+    }
+    return true;
+  } catch (const nlohmann::json::exception&) {
+    return false;
+  } catch (const Error&) {  // it is made again
+    return false;
+  }
+}
+
+void TiledScene::write_index(const fs::path& index) const {
+  if (index.empty()) return;
+  auto kinds = nlohmann::ordered_json::array();
+  for (const Kind& kind : kinds_) {
+    kinds.push_back({{"low", file::json_of(Vector3d(kind.box.min()))},
+                     {"high", file::json_of(Vector3d(kind.box.max()))},
+                     {"triangles", kind.triangles},
+                     {"digest", kind.digest}});
+  }
+  try {
+    geometry::write_file(index, file::json_text({{"of", index_key()}, {"kinds", kinds}}));
+  } catch (const Error&) {
+    // Another task may be writing the same; without it the next one looks at the meshes, too.
+  }
+}
+
+geometry::Mesh TiledScene::turned_and_scaled(const TileKind& tile) const {
+  geometry::Mesh mesh = load_model(tile.scene, folder_);
+  geometry::transform(mesh, turn_and_scale(scene_));
+  return mesh;
+}
+
+std::vector<Eigen::Isometry3d> TiledScene::places_of(const TileKind& tile) const {
+  const Eigen::Affine3d turn = turn_and_scale(scene_);
+  std::vector<Eigen::Isometry3d> places;
+  for (const Vector3d& shift : tile.shifts) {
+    places.emplace_back(Eigen::Translation3d(scene_.position + turn.linear() * shift));
+  }
+  return places;
+}
+
+sim::Scene TiledScene::scene(unsigned threads, const IsWanted& is_wanted) const {
+  sim::SceneBuilder builder(centre(), threads);
+  const auto reflectance = static_cast<float>(scene_.reflectance);
+  const auto reflectances_of = [&](const geometry::Mesh& mesh) {
+    const bool is_usual = reflectance == sim::Scene::default_reflectance;
+    return std::vector<float>(is_usual ? 0 : mesh.triangles.size(), reflectance);
+  };
+  for (const Kind& kind : kinds_) {
+    std::vector<Eigen::Isometry3d> places = places_of(kind.tile);
+    std::erase_if(places, [&](const auto& place) { return !is_wanted(at(kind.box, place)); });
+    if (places.empty()) continue;
+    const geometry::Mesh mesh = turned_and_scaled(kind.tile);
+    const std::vector<sim::Surface> surfaces = load_surfaces(kind.tile.scene, folder_);
+    builder.add({mesh, reflectances_of(mesh), places, surfaces});
+  }
+  if (!ground_.triangles.empty()) builder.add({ground_, reflectances_of(ground_), {}});
+  return builder.finish();
+}
+
+}  // namespace skycap::missions::scene

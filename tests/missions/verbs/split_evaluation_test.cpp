@@ -1,0 +1,123 @@
+// A cloud that is judged in pieces has the figures of the whole one.
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <random>
+#include <string>
+#include <vector>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include "geometry/io/cloud_io.h"
+#include "geometry/io/mesh_io.h"
+#include "tests/missions/run_skycap.h"
+#include "tests/sim/shapes.h"
+
+namespace skycap::missions {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::HasSubstr;
+using tests::run_skycap;
+
+/// Points about half a sphere of 2 m.
+class SplitEvaluation : public testing::Test {
+ protected:
+  SplitEvaluation() {
+    geometry::write_mesh(folder_.path() / "sphere.ply", sim::sphere({0, 0, 2}, 2.0, 3));
+  }
+
+  void write_cloud(std::size_t count) const {
+    std::mt19937_64 random(1);
+    std::normal_distribution<float> normal;
+    std::vector<Eigen::Vector3f> points;
+    while (points.size() < count) {
+      const float noise = normal(random), z = normal(random), y = normal(random),
+                  x = std::abs(normal(random));
+      const float radius = 2.0F + 0.01F * noise;
+      points.emplace_back(Eigen::Vector3f(0, 0, 2) +
+                          radius * Eigen::Vector3f(x, y, z).normalized());
+    }
+    geometry::write_cloud(folder_.path() / "cloud.ply",
+                          {.positions = points, .normals = {}, .views = {}, .colours = {}});
+  }
+
+  tests::ProgramRun evaluate(const std::vector<std::string>& more) const {
+    std::vector<std::string> words{
+        "evaluate",   "--cloud", folder_ / "cloud.ply", "--model", folder_ / "sphere.ply", "--json",
+        "--distance", "0.05",    "--samples",           "2000"};
+    words.insert(words.end(), more.begin(), more.end());
+    return run_skycap(words);
+  }
+  tests::ProgramRun pieces(std::size_t count, const std::vector<std::string>& more) const {
+    std::vector<std::string> words{"--out", folder_ / "out", "--pieces", std::to_string(count)};
+    words.insert(words.end(), more.begin(), more.end());
+    return evaluate(words);
+  }
+
+  tests::TestFolder folder_;
+};
+
+TEST_F(SplitEvaluation, HasTheFiguresOfTheWholeToTheLastDigit) {
+  write_cloud(1'100'000);  // a reader hands on up to a million at a time
+  const std::string whole = evaluate({}).out;
+  const auto figures = nlohmann::json::parse(whole);
+  EXPECT_EQ(figures.at("points"), 1'100'000);
+  EXPECT_NEAR(figures.at("coverage").get<double>(), 0.5, 0.03);  // half of the sphere
+  for (const std::size_t count : {1, 2, 4}) {
+    for (std::size_t i = count; i-- > 0;) {
+      const auto run = pieces(count, {"--index", std::to_string(i), "--threads", "1"});
+      ASSERT_EQ(run.exit_code, 0) << run.err;
+      EXPECT_EQ(run.out, "");
+    }
+    const auto run = pieces(count, {"--collect"});
+    EXPECT_EQ(run.exit_code, 0) << run.err;
+    EXPECT_EQ(run.out, whole);
+    EXPECT_THAT(tests::content_of(folder_ / "out/evaluation.json"),
+                HasSubstr("\"complete\": true"));
+    EXPECT_FALSE(fs::exists(folder_ / "out/pieces"));
+    fs::remove_all(folder_ / "out");
+  }
+}
+
+TEST_F(SplitEvaluation, SkipsWhatIsCompleteAndSaysWhatIsMissing) {
+  write_cloud(1000);
+  ASSERT_EQ(pieces(2, {"--index", "1"}).exit_code, 0);
+  const fs::path piece = folder_.path() / "out" / "pieces" / "1_of_2" / "piece.json";
+  const auto written = fs::last_write_time(piece);
+  ASSERT_EQ(pieces(2, {"--index", "1"}).exit_code, 0);
+  EXPECT_EQ(fs::last_write_time(piece), written);
+  const auto early = pieces(2, {"--collect"});
+  EXPECT_EQ(early.exit_code, 1);
+  EXPECT_THAT(early.err, HasSubstr("1 of 2 pieces are complete; missing 0"));
+  ASSERT_EQ(pieces(2, {"--index", "1", "--distance", "0.06"}).exit_code, 2);  // given twice
+  ASSERT_EQ(pieces(2, {"--index", "0"}).exit_code, 0);
+  fs::resize_file(folder_.path() / "out" / "pieces" / "0_of_2" / "distances.bin", 4);
+  const auto damaged = pieces(2, {"--collect"});
+  EXPECT_EQ(damaged.exit_code, 2);
+  EXPECT_THAT(damaged.err, HasSubstr("distances.bin: is not as long as it was written"));
+}
+
+TEST_F(SplitEvaluation, SaysWhatItCannotSplit) {
+  const auto refusal = [&](const std::vector<std::string>& words) {
+    const auto run = run_skycap(words);
+    EXPECT_EQ(run.exit_code, 2);
+    EXPECT_EQ(std::ranges::count(run.err, '\n'), 1) << run.err;
+    return run.err;
+  };
+  const std::string model = folder_ / "sphere.ply", out = folder_ / "out";
+  EXPECT_THAT(refusal({"evaluate", "--mesh", model, "--model", model, "--distance", "0.1",
+                       "--pieces", "2", "--out", out}),
+              HasSubstr("--pieces are of a cloud and need a folder; give --cloud and --out"));
+  EXPECT_THAT(
+      refusal({"evaluate", "--cloud", model, "--model", model, "--distance", "0.1", "--collect"}),
+      HasSubstr("are of a cloud in pieces; give --pieces"));
+  EXPECT_THAT(refusal({"evaluate", "--cloud", folder_ / "none.las", "--model", model, "--distance",
+                       "0.1", "--pieces", "2", "--out", out}),
+              HasSubstr("none.las: there is no such file"));
+}
+
+}  // namespace
+}  // namespace skycap::missions
