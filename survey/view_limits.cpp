@@ -41,12 +41,12 @@ void ViewLimits::validate() const {
 }
 
 bool ViewLimits::allow(const geometry::View& view) const {
-  const double pitch = std::asin(std::clamp(view.direction.z(), -1.0, 1.0));
-  if (pitch < least_pitch - angle_tolerance || pitch > most_pitch + angle_tolerance) return false;
   const double height = view.position.z();
   if ((least_height && height < *least_height) || (most_height && height > *most_height)) {
     return false;
   }
+  const double pitch = std::asin(std::clamp(view.direction.z(), -1.0, 1.0));
+  if (pitch < least_pitch - angle_tolerance || pitch > most_pitch + angle_tolerance) return false;
   if (least_height_over && height < least_height_over(view.position.head<2>())) return false;
   if (!geofence.empty() && !geometry::contains(geofence, view.position.head<2>())) return false;
   return std::ranges::none_of(no_fly, [&](const geometry::Prism& prism) {

@@ -119,6 +119,7 @@ void PadScan::take_in(std::span<const Eigen::Vector3f> points) {
   const double reach = radius_ + 1.0;
   const double cell = 2.0 * radius_ / cells_across;
   for (const Eigen::Vector3f& point : points) {
+    if (!(std::abs(double{point.x()} - pad_.x()) < radius_)) continue;  // nearly all are elsewhere
     const Vector3d offset = point.cast<double>() - pad_;
     if (!(offset.head<2>().squaredNorm() < radius_ * radius_) || std::abs(offset.z()) > reach) {
       continue;

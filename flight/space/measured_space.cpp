@@ -54,7 +54,7 @@ MeasuredSpace& MeasuredSpace::operator=(MeasuredSpace&&) noexcept = default;
 void MeasuredSpace::declare_free(const Vector3d& centre, double radius) {
   const AlignedBox3d around(centre - Vector3d::Constant(radius),
                             centre + Vector3d::Constant(radius));
-  impl_->free_where(around, [&](const AlignedBox3d& box) {
+  impl_->free_where(around, 1, [&](const AlignedBox3d& box) {
     const Vector3d farthest_corner = (centre - box.min()).cwiseMax(box.max() - centre);
     if (farthest_corner.norm() <= radius) return BallSight::free;
     return box.exteriorDistance(centre) > radius ? BallSight::hidden : BallSight::partial;
@@ -62,21 +62,23 @@ void MeasuredSpace::declare_free(const Vector3d& centre, double radius) {
 }
 
 void MeasuredSpace::declare_free(const AlignedBox3d& region) {
-  impl_->free_where(region, [&](const AlignedBox3d& box) {
+  impl_->free_where(region, 1, [&](const AlignedBox3d& box) {
     if (region.contains(box)) return BallSight::free;
     return region.intersects(box) ? BallSight::partial : BallSight::hidden;
   });
 }
 
-void MeasuredSpace::insert(const geometry::Scan& scan, const geometry::Camera& camera) {
-  impl_->carve(
-      RangeImage(scan, camera, impl_->config.free_without_return, impl_->config.max_depth));
-  impl_->occupy(scan);
+void MeasuredSpace::insert(const geometry::Scan& scan, const geometry::Camera& camera,
+                           unsigned threads) {
+  const MeasuredSpaceConfig& config = impl_->config;
+  impl_->carve(RangeImage(scan, camera, config.free_without_return, config.max_depth, threads),
+               threads);
+  impl_->occupy(scan, threads);
 }
 
-void MeasuredSpace::insert(const geometry::Scan& scan, const SweepRays& rays) {
-  impl_->carve(RangeImage(scan, rays, impl_->config.max_depth));
-  impl_->occupy(scan);
+void MeasuredSpace::insert(const geometry::Scan& scan, const SweepRays& rays, unsigned threads) {
+  impl_->carve(RangeImage(scan, rays, impl_->config.max_depth, threads), threads);
+  impl_->occupy(scan, threads);
 }
 
 void MeasuredSpace::take_free(const MeasuredSpace& other) {

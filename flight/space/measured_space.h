@@ -67,13 +67,14 @@ class MeasuredSpace : public FreeSpace {
   void declare_free(const Eigen::AlignedBox3d& box);
 
   /// Takes in an organised scan. Throws Error{bad_geometry} if the scan has points but no pixels,
-  /// or a pixel that the camera does not have.
-  void insert(const geometry::Scan& scan, const geometry::Camera& camera);
+  /// or a pixel that the camera does not have. What is known then does not depend on `threads`
+  /// (zero: all processors).
+  void insert(const geometry::Scan& scan, const geometry::Camera& camera, unsigned threads = 1);
 
   /// Takes in a scan of a sensor that looks around itself and has no image, such as a LiDAR:
   /// directions in which a cell as wide as its rays are apart got no return prove nothing. Throws
   /// Error{bad_config} unless 0 < spacing < 1.
-  void insert(const geometry::Scan& scan, const SweepRays& rays);
+  void insert(const geometry::Scan& scan, const SweepRays& rays, unsigned threads = 1);
   void insert(const geometry::Scan& scan, double ray_spacing) {
     insert(scan, SweepRays{.spacing = ray_spacing});
   }

@@ -1,12 +1,39 @@
 #include "flight/space/measured_voxels.h"
 
 #include <cmath>
-#include <optional>
+#include <span>
+#include <vector>
 
 namespace skycap::flight {
 
 using Eigen::AlignedBox3d;
 using Eigen::Vector3d;
+
+namespace {
+
+/// Those of a block that hold points.
+struct OccupiedVoxels {
+  Cell block;
+  Slices voxels{};
+};
+
+/// In the order of the points. Neighbouring pixels mostly hit the same block.
+std::vector<OccupiedVoxels> voxels_of(std::span<const Eigen::Vector3f> points,
+                                      const MeasuredSpaceConfig& config) {
+  std::vector<OccupiedVoxels> occupied;
+  for (const Eigen::Vector3f& p : points) {
+    const Vector3d point = p.cast<double>();
+    if (config.floor && point.z() < *config.floor) continue;
+    const Cell voxel = (point / config.voxel).array().floor().matrix().cast<int>();
+    const Cell block = voxel.unaryExpr([](int at) { return at >> 3; });
+    if (occupied.empty() || occupied.back().block != block) occupied.push_back({block});
+    const Cell place = voxel - 8 * block;
+    occupied.back().voxels[place.z()] |= std::uint64_t{1} << (8 * place.y() + place.x());
+  }
+  return occupied;
+}
+
+}  // namespace
 
 VoxelRegion voxel_region(const MeasuredSpaceConfig& config) {
   // Far beyond all voxels, yet so that sums and differences of them are whole numbers still.
@@ -32,33 +59,27 @@ Slices blocked_voxels(const VoxelRegion& region, const Cell& cell, const VoxelBl
   return blocked;
 }
 
-void MeasuredSpace::Impl::occupy(const geometry::Scan& scan) {
-  // Neighbouring pixels mostly hit the same block.
-  std::optional<Cell> last;
-  VoxelBlock block;
-  const auto keep = [&] {
-    if (last && blocks.set(cell_key(*last), block)) extent.extend(block_box(*last));
-  };
-  for (const Eigen::Vector3f& p : scan.points) {
-    const Vector3d point = p.cast<double>();
-    if (config.floor && point.z() < *config.floor) continue;
-    const Cell cell = block_of(point);
-    const Cell voxel = ((point / config.voxel).array().floor().matrix().cast<int>() - 8 * cell)
-                           .cwiseMax(0)
-                           .cwiseMin(7);
-    if (last != cell) {
-      keep();
-      const VoxelBlock* known = blocks.find(cell_key(cell)).block;
-      block = known == nullptr ? VoxelBlock{} : *known;
-      last = cell;
+void MeasuredSpace::Impl::occupy(const geometry::Scan& scan, unsigned threads) {
+  constexpr std::size_t part_size = 1 << 16;
+  const std::span<const Eigen::Vector3f> points = scan.points;
+  const std::size_t parts = (points.size() + part_size - 1) / part_size;
+  std::vector<std::vector<OccupiedVoxels>> occupied(parts);
+  geometry::parallel_for(parts, threads, [&](std::size_t part) {
+    const std::size_t first = part * part_size;
+    occupied[part] =
+        voxels_of(points.subspan(first, std::min(part_size, points.size() - first)), config);
+  });
+  for (const std::vector<OccupiedVoxels>& part : occupied) {
+    for (const auto& [cell, voxels] : part) {
+      VoxelBlock block = known_block(cell);
+      for (std::size_t z = 0; z < voxels.size(); ++z) block.occupied[z] |= voxels[z];
+      set(cell, block);
     }
-    block.occupied[voxel.z()] |= std::uint64_t{1} << (8 * voxel.y() + voxel.x());
   }
-  keep();
 }
 
-void MeasuredSpace::Impl::carve(const RangeImage& image) {
-  free_where(image.reach(), [&](const AlignedBox3d& box) {
+void MeasuredSpace::Impl::carve(const RangeImage& image, unsigned threads) {
+  free_where(image.reach(), threads, [&](const AlignedBox3d& box) {
     return image.sight(box.center(), 0.5 * box.diagonal().norm(), config.depth_margin);
   });
 }

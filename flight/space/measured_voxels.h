@@ -1,7 +1,9 @@
 /// The voxels of a MeasuredSpace. For the sources of measured_space.h.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
+#include <vector>
 
 #include "flight/space/bounding_tree.h"
 #include "flight/space/cell_map.h"
@@ -10,6 +12,7 @@
 #include "flight/space/segment_distance.h"
 #include "flight/space/voxel_block.h"
 #include "flight/space/voxel_blocks.h"
+#include "geometry/parallel.h"
 
 namespace skycap::flight {
 
@@ -45,14 +48,23 @@ struct MeasuredSpace::Impl {
     return {low, low + Eigen::Vector3d::Constant(cube.edge * config.voxel)};
   }
 
+  /// An unknown one if it is not listed.
+  VoxelBlock known_block(const Cell& cell) const {
+    const VoxelBlock* known = blocks.find(cell_key(cell)).block;
+    return known == nullptr ? VoxelBlock{} : *known;
+  }
+  void set(const Cell& cell, const VoxelBlock& block) {
+    if (blocks.set(cell_key(cell), block)) extent.extend(block_box(cell));
+  }
+
   template <typename Visit>
   void for_each_block(const Eigen::AlignedBox3d& box, Visit visit) const;
   template <typename Decide>
-  void free_where(const Eigen::AlignedBox3d& box, Decide decide);
+  void free_where(const Eigen::AlignedBox3d& box, unsigned threads, Decide decide);
   template <typename Decide>
   void free_within(const Cell& cell, const Cube& cube, VoxelBlock& block, Decide decide) const;
-  void occupy(const geometry::Scan& scan);
-  void carve(const RangeImage& image);
+  void occupy(const geometry::Scan& scan, unsigned threads);
+  void carve(const RangeImage& image, unsigned threads);
   void closest_in(const Segment& piece, Closest& best) const;
   void closest_in_cube(const Segment& piece, const BoxTest& test, const Cell& cell,
                        const Cube& cube, const VoxelBlock& block, const Slices& blocked,
@@ -72,19 +84,35 @@ void MeasuredSpace::Impl::for_each_block(const Eigen::AlignedBox3d& box, Visit v
   }
 }
 
-/// Frees, in blocks that meet the box, the cubes of which `decide(box)` says so.
+/// Frees, in blocks that meet the box, the cubes of which `decide(box)` says so; it is asked from
+/// several threads.
 template <typename Decide>
-void MeasuredSpace::Impl::free_where(const Eigen::AlignedBox3d& box, Decide decide) {
-  const Cube whole{Cell::Zero(), 8};
+void MeasuredSpace::Impl::free_where(const Eigen::AlignedBox3d& box, unsigned threads,
+                                     Decide decide) {
+  std::vector<Cell> cells;
   for_each_block(box.intersection(region), [&](const Cell& cell) {
-    const VoxelBlock* known = blocks.find(cell_key(cell)).block;
-    VoxelBlock block = known == nullptr ? VoxelBlock{} : *known;
-    const Slices before = block.free;
-    free_within(cell, whole, block, decide);
-    if (block.free == before) return true;
-    if (blocks.set(cell_key(cell), block)) extent.extend(cube_box(cell, whole));
+    cells.push_back(cell);
     return true;
   });
+  constexpr std::size_t part_size = 64;
+  const std::size_t parts = (cells.size() + part_size - 1) / part_size;
+  struct Changed {
+    Cell cell;
+    VoxelBlock block;
+  };
+  std::vector<std::vector<Changed>> changed(parts);
+  geometry::parallel_for(parts, threads, [&](std::size_t part) {
+    const std::size_t end = std::min(cells.size(), (part + 1) * part_size);
+    for (std::size_t i = part * part_size; i < end; ++i) {
+      VoxelBlock block = known_block(cells[i]);
+      const Slices before = block.free;
+      free_within(cells[i], {Cell::Zero(), 8}, block, decide);
+      if (block.free != before) changed[part].push_back({cells[i], block});
+    }
+  });
+  for (const std::vector<Changed>& part : changed) {
+    for (const auto& [cell, block] : part) set(cell, block);
+  }
 }
 
 /// A cube that is neither free nor hidden as a whole is cut into eight, down to voxels.

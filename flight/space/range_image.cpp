@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "geometry/error.h"
+#include "geometry/parallel.h"
 
 namespace skycap::flight {
 namespace {
@@ -22,7 +23,7 @@ std::size_t slot(int row, int column, int width) {
 }  // namespace
 
 RangeImage::RangeImage(const geometry::Scan& scan, const geometry::Camera& camera,
-                       double depth_without_return, double max_depth)
+                       double depth_without_return, double max_depth, unsigned threads)
     : sensor_from_world_(scan.world_from_sensor.inverse()),
       camera_(camera),
       width_(camera.width()),
@@ -35,18 +36,26 @@ RangeImage::RangeImage(const geometry::Scan& scan, const geometry::Camera& camer
   }
   const auto count = static_cast<std::size_t>(width_) * static_cast<std::size_t>(height_);
   std::vector<float> depths(count, static_cast<float>(std::min(depth_without_return, max_depth)));
-  for (std::size_t i = 0; i < scan.points.size(); ++i) {
-    if (scan.pixels[i] >= count) {
-      throw Error(ErrorKind::bad_geometry, "a scan names pixel " + std::to_string(scan.pixels[i]) +
-                                               ", but the camera has " + std::to_string(count));
-    }
-    const Vector3d in_sensor = sensor_from_world_ * scan.points[i].cast<double>();
-    depths[scan.pixels[i]] = static_cast<float>(std::min(in_sensor.z(), max_depth));
+  const auto beyond =
+      std::ranges::find_if(scan.pixels, [&](std::uint32_t pixel) { return pixel >= count; });
+  if (beyond != scan.pixels.end()) {
+    throw Error(ErrorKind::bad_geometry, "a scan names pixel " + std::to_string(*beyond) +
+                                             ", but the camera has " + std::to_string(count));
   }
-  build_pyramid(std::move(depths));
+  constexpr std::size_t part_size = 1 << 16;
+  const std::size_t parts = (scan.points.size() + part_size - 1) / part_size;
+  geometry::parallel_for(parts, threads, [&](std::size_t part) {
+    const std::size_t end = std::min(scan.points.size(), (part + 1) * part_size);
+    for (std::size_t i = part * part_size; i < end; ++i) {
+      const Vector3d in_sensor = sensor_from_world_ * scan.points[i].cast<double>();
+      depths[scan.pixels[i]] = static_cast<float>(std::min(in_sensor.z(), max_depth));
+    }
+  });
+  build_pyramid(std::move(depths), threads);
 }
 
-RangeImage::RangeImage(const geometry::Scan& scan, const SweepRays& rays, double max_depth)
+RangeImage::RangeImage(const geometry::Scan& scan, const SweepRays& rays, double max_depth,
+                       unsigned threads)
     : sensor_from_world_(Eigen::Quaterniond::FromTwoVectors(rays.axis, Vector3d::UnitY()) *
                          scan.world_from_sensor.inverse()),
       origin_spread_(rays.origin_spread) {
@@ -73,35 +82,41 @@ RangeImage::RangeImage(const geometry::Scan& scan, const SweepRays& rays, double
     const auto seen = static_cast<float>(std::min(range, max_depth));
     depth = depth == 0.0F ? seen : std::min(depth, seen);
   }
-  build_pyramid(std::move(depths));
+  build_pyramid(std::move(depths), threads);
 }
 
-void RangeImage::build_pyramid(std::vector<float> depths) {
-  least_.push_back(depths);
-  greatest_.push_back(std::move(depths));
-  level_widths_.push_back(width_);
-  int width = width_, height = height_;
-  while (width > 1 || height > 1) {
-    const int half_width = (width + 1) / 2, half_height = (height + 1) / 2;
-    const std::vector<float>&low = least_.back(), &high = greatest_.back();
-    std::vector<float> lower(slot(half_height, 0, half_width));
-    std::vector<float> higher(lower.size());
-    for (int row = 0; row < half_height; ++row) {
-      for (int column = 0; column < half_width; ++column) {
-        const std::size_t target = slot(row, column, half_width);
-        const int right = std::min(2 * column + 1, width - 1);
-        const int bottom = std::min(2 * row + 1, height - 1);
-        const std::size_t quad[] = {slot(2 * row, 2 * column, width), slot(2 * row, right, width),
-                                    slot(bottom, 2 * column, width), slot(bottom, right, width)};
-        lower[target] = std::min({low[quad[0]], low[quad[1]], low[quad[2]], low[quad[3]]});
-        higher[target] = std::max({high[quad[0]], high[quad[1]], high[quad[2]], high[quad[3]]});
-      }
-    }
-    least_.push_back(std::move(lower));
-    greatest_.push_back(std::move(higher));
-    level_widths_.push_back(half_width);
-    width = half_width, height = half_height;
+void RangeImage::build_pyramid(std::vector<float> depths, unsigned threads) {
+  levels_.push_back({width_, height_, std::move(depths), {}});
+  while (levels_.back().width > 1 || levels_.back().height > 1) {
+    levels_.push_back(levels_.back().halved(threads));
   }
+}
+
+RangeImage::Level RangeImage::Level::halved(unsigned threads) const {
+  Level half{(width + 1) / 2, (height + 1) / 2, {}, {}};
+  half.least_depths.resize(slot(half.height, 0, half.width));
+  half.greatest_depths.resize(half.least_depths.size());
+  const std::vector<float>&low = least(), &high = greatest();
+  const auto halve_row = [&](int row) {
+    for (int column = 0; column < half.width; ++column) {
+      const std::size_t target = slot(row, column, half.width);
+      const int right = std::min(2 * column + 1, width - 1);
+      const int bottom = std::min(2 * row + 1, height - 1);
+      const std::size_t quad[] = {slot(2 * row, 2 * column, width), slot(2 * row, right, width),
+                                  slot(bottom, 2 * column, width), slot(bottom, right, width)};
+      half.least_depths[target] =
+          std::min({low[quad[0]], low[quad[1]], low[quad[2]], low[quad[3]]});
+      half.greatest_depths[target] =
+          std::max({high[quad[0]], high[quad[1]], high[quad[2]], high[quad[3]]});
+    }
+  };
+  constexpr int rows_of_part = 64;
+  const int parts = (half.height + rows_of_part - 1) / rows_of_part;
+  geometry::parallel_for(static_cast<std::size_t>(parts), threads, [&](std::size_t part) {
+    const int first = static_cast<int>(part) * rows_of_part;
+    for (int row = first; row < std::min(half.height, first + rows_of_part); ++row) halve_row(row);
+  });
+  return half;
 }
 
 RangeImage::Depths RangeImage::over(int left, int right, int top, int bottom) const {
@@ -109,12 +124,14 @@ RangeImage::Depths RangeImage::over(int left, int right, int top, int bottom) co
   // more than the patch, which errs towards "not free".
   std::size_t level = 0;
   while (((right - left) >> level) > 2 || ((bottom - top) >> level) > 2) ++level;
+  const int width = levels_[level].width;
+  const std::vector<float>&low = levels_[level].least(), &high = levels_[level].greatest();
   Depths depths{std::numeric_limits<float>::infinity(), 0.0F};
   for (int row = top >> level; row <= bottom >> level; ++row) {
     for (int column = left >> level; column <= right >> level; ++column) {
-      const std::size_t i = slot(row, column, level_widths_[level]);
-      depths.least = std::min(depths.least, least_[level][i]);
-      depths.greatest = std::max(depths.greatest, greatest_[level][i]);
+      const std::size_t i = slot(row, column, width);
+      depths.least = std::min(depths.least, low[i]);
+      depths.greatest = std::max(depths.greatest, high[i]);
     }
   }
   return depths;

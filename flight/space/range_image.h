@@ -26,19 +26,19 @@ enum class BallSight {
 class RangeImage {
  public:
   /// A pinhole image; depth is along the optical axis. Pixels without a point count as
-  /// `depth_without_return`.
+  /// `depth_without_return`. Made on so many threads (zero: all processors).
   RangeImage(const geometry::Scan& scan, const geometry::Camera& camera,
-             double depth_without_return, double max_depth);
+             double depth_without_return, double max_depth, unsigned threads);
 
   /// An image of azimuth and elevation about the axis, whose cells are as wide as the rays are
   /// apart; depth is the range. Cells without a point count as 0.
-  RangeImage(const geometry::Scan& scan, const SweepRays& rays, double max_depth);
+  RangeImage(const geometry::Scan& scan, const SweepRays& rays, double max_depth, unsigned threads);
 
   /// `margin` is kept free in front of the measurements.
   BallSight sight(const Eigen::Vector3d& centre_in_world, double radius, double margin) const;
 
   /// The greatest depth in the image.
-  double farthest() const { return greatest_.back().front(); }
+  double farthest() const { return levels_.back().greatest().front(); }
 
   /// A box around all that the image can prove free.
   Eigen::AlignedBox3d reach() const;
@@ -51,10 +51,20 @@ class RangeImage {
   struct Depths {
     float least, greatest;
   };
+  struct Level {
+    int width, height;
+    std::vector<float> least_depths, greatest_depths;  ///< the latter empty: the same
+
+    const std::vector<float>& least() const { return least_depths; }
+    const std::vector<float>& greatest() const {
+      return greatest_depths.empty() ? least_depths : greatest_depths;
+    }
+    Level halved(unsigned threads) const;
+  };
 
   std::optional<Patch> pinhole_patch(const Eigen::Vector3d& centre, double radius) const;
   std::optional<Patch> spherical_patch(const Eigen::Vector3d& centre, double radius) const;
-  void build_pyramid(std::vector<float> depths);
+  void build_pyramid(std::vector<float> depths, unsigned threads);
   Depths over(int left, int right, int top, int bottom) const;
   Depths over_wrapped(const Patch& patch) const;
 
@@ -63,8 +73,7 @@ class RangeImage {
   std::optional<geometry::Camera> camera_;  ///< none: spherical
   double pixels_per_radian_ = 0.0;
   int width_ = 0, height_ = 0;
-  std::vector<int> level_widths_;
-  std::vector<std::vector<float>> least_, greatest_;
+  std::vector<Level> levels_;
 };
 
 }  // namespace skycap::flight

@@ -12,6 +12,7 @@
 #include "geometry/io/cloud_io.h"
 #include "geometry/io/file.h"
 #include "geometry/io/json.h"
+#include "geometry/parallel.h"
 #include "geometry/place/pose.h"
 #include "geometry/place/world.h"
 #include "geometry/surfaces/mesh.h"
@@ -90,9 +91,9 @@ std::vector<std::uint32_t> views_of_points(const run::SurveyRecord& record) {
 }
 
 /// The route of a flown survey, and how its views were chosen.
-void plan_mission(const file::Mission& mission, const run::SurveyRecord& record,
-                  const CoverageFigures& coverage, const std::stop_token& stop,
-                  SurveyMission& flight) {
+void plan_route(const file::Mission& mission, const run::SurveyRecord& record,
+                const CoverageFigures& coverage, const std::stop_token& stop,
+                SurveyMission& flight) {
   const run::FlownSurvey& flown = *record.flown;
   flight.pictures = derived::picture_bounds_of(mission);
   // What a scanner measures on the ways of the survey it measures on no others.
@@ -115,6 +116,29 @@ void plan_mission(const file::Mission& mission, const run::SurveyRecord& record,
   }
   flight.anew = anew_mission(mission, record, coverage, std::move(flight.route), stop);
   flight.route = std::move(flight.anew->choice.route);
+}
+
+/// Does a part of the flight's work. What goes wrong becomes its failure: the survey itself shall
+/// not be lost.
+template <typename Work>
+void attempt(SurveyMission& flight, const std::stop_token& stop, Work work) {
+  if (!flight.failure.empty()) return;
+  try {
+    work();
+  } catch (const Error& error) {
+    flight.failure = stop.stop_requested() ? "interrupted; skycap export makes it" : error.what();
+  }
+}
+
+/// Nothing for a survey without a vehicle.
+std::optional<SurveyMission> planned_mission(const file::Mission& mission,
+                                             const run::SurveyRecord& record,
+                                             const CoverageFigures& coverage,
+                                             const std::stop_token& stop) {
+  if (!record.flown) return std::nullopt;
+  SurveyMission flight;
+  attempt(flight, stop, [&] { plan_route(mission, record, coverage, stop, flight); });
+  return flight;
 }
 
 }  // namespace
@@ -214,9 +238,16 @@ std::optional<SurveyMission> stage_package(const file::Mission& mission,
     return name == free_space_name || name == coverage_name || name == true_coverage_name ||
            name == fly_test_name || name == report_name || is_flight_file(name);
   });
-  const double radius = 2.0 * mission.planner.see.resolution_radius;
-  const std::vector<Eigen::Vector3f> normals =
-      cloud_normals(record.cloud, sensor_positions(record), radius, threads, stop);
+  std::vector<Eigen::Vector3f> normals;
+  std::optional<SurveyMission> flight;
+  geometry::parallel_for(2, threads, [&](std::size_t part) {
+    if (part == 0) {
+      flight = planned_mission(mission, record, coverage, stop);
+    } else {
+      const double radius = 2.0 * mission.planner.see.resolution_radius;
+      normals = cloud_normals(record.cloud, sensor_positions(record), radius, threads, stop);
+    }
+  });
   const std::vector<std::uint32_t> views = views_of_points(record);
   geometry::write_cloud(
       folder.stage("cloud.ply"),
@@ -227,27 +258,19 @@ std::optional<SurveyMission> stage_package(const file::Mission& mission,
   if (coverage.truth) write_true_coverage(folder.stage(true_coverage_name), *coverage.truth);
   folder.write("views.csv", views_csv(record));
   folder.write("trajectory.tum", trajectory_tum(record));
-  std::optional<SurveyMission> flight;
-  if (record.flown) {
+  if (flight) {
     std::ostringstream free_space;
     free_space.exceptions(
         std::ios::badbit);  // else text is lost without a word where memory is missing
     record.flown->measured->write(free_space);
     folder.write(free_space_name, free_space.str());
-    flight = SurveyMission{};
-    try {
-      plan_mission(mission, record, coverage, stop, *flight);
+    attempt(*flight, stop, [&] {
       flight->files =
           stage_flight(mission, flight->route, *record.flown->measured, package_formats(), folder);
-      if (derived::is_fleet(mission)) {
-        flight->fleet = staged_fleet(mission, *record.flown->measured, flight->route,
-                                     record.flown->grounds, package_formats(), folder, stop);
-      }
-    } catch (const Error& error) {
-      // The survey itself shall not be lost.
-      flight->failure =
-          stop.stop_requested() ? "interrupted; skycap export makes it" : error.what();
-    }
+      if (!derived::is_fleet(mission)) return;
+      flight->fleet = staged_fleet(mission, *record.flown->measured, flight->route,
+                                   record.flown->grounds, package_formats(), folder, stop);
+    });
   }
   // Last, so that whoever sees the summary sees the rest.
   folder.write(summary_name, summary_json(mission, record, coverage, flight));

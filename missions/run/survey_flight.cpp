@@ -220,9 +220,9 @@ void SurveyFlight::take_in(const geometry::Scan& scan) {
   geometry::parallel_for(2, impl_->threads, [&](std::size_t part) {
     if (part == 0) {
       if (impl_->rays) {
-        impl_->measured->insert(scan, *impl_->rays);
+        impl_->measured->insert(scan, *impl_->rays, impl_->threads);
       } else {
-        impl_->measured->insert(scan, impl_->camera);
+        impl_->measured->insert(scan, impl_->camera, impl_->threads);
       }
     } else {
       for (flight::PadScan& pad : impl_->pads) pad.take_in(scan.points);

@@ -87,10 +87,15 @@ std::optional<std::vector<std::uint8_t>> marks_in_file(const std::filesystem::pa
   return marks;
 }
 
-std::string digits_of(const std::vector<std::uint8_t>& marks) {
+/// Keeps them there, if that can be: without them they are worked out again next time.
+void keep_marks(const std::filesystem::path& file, const std::vector<std::uint8_t>& marks) {
   std::string digits;
   for (const std::uint8_t mark : marks) digits += mark != 0 ? '1' : '0';
-  return digits;
+  try {
+    geometry::write_file(file, digits);
+  } catch (const Error&) {
+    return;
+  }
 }
 
 }  // namespace
@@ -188,12 +193,15 @@ judge::Admissible SurveyScene::admissible() const {
 }
 
 std::vector<std::uint8_t> SurveyScene::visible(unsigned threads, std::stop_token stop) const {
+  const std::filesystem::path cached = user_cache() / "visible" / ceiling_key();
+  if (auto known = marks_in_file(cached, samples_.points.size())) return std::move(*known);
   std::vector<std::uint8_t> marks =
-      judge::visible_samples(samples_.points, scene_, admissible(), threads, std::move(stop));
+      judge::visible_samples(samples_.points, scene_, admissible(), threads, stop);
   // Nothing comes back from glass and mirrors.
   for (std::size_t i = 0; i < marks.size(); ++i) {
     if (scene_.surface(samples_.triangles[i]) != sim::Surface::matt) marks[i] = 0;
   }
+  if (!stop.stop_requested()) keep_marks(cached, marks);
   return marks;
 }
 
@@ -217,11 +225,7 @@ std::optional<std::vector<std::uint8_t>> SurveyScene::attainable(
   std::vector<std::uint8_t> marks = judge::attainable_samples(
       samples_.points, is_visible, scene_, take_scan, admissible(), config, stop);
   if (stop.stop_requested()) return std::nullopt;
-  try {
-    geometry::write_file(cached, digits_of(marks));
-  } catch (const Error&) {
-    // Without a cache it is computed again next time.
-  }
+  keep_marks(cached, marks);
   return marks;
 }
 

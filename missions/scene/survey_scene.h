@@ -48,8 +48,8 @@ class SurveyScene {
   /// Error{bad_config} if there is no such view.
   geometry::View first_view(std::uint64_t seed) const;
 
-  /// For each sample, 1 if an admissible sensor position sees it. Takes seconds; of no use once
-  /// `stop` is requested.
+  /// For each sample, 1 if an admissible sensor position sees it. Takes a second or more, but is
+  /// kept in the user's cache as attainable() is; of no use once `stop` is requested.
   std::vector<std::uint8_t> visible(unsigned threads, std::stop_token stop = {}) const;
 
   /// For each sample, 1 if it is attainable with the mission's sensor and spacing, see

@@ -65,6 +65,8 @@ struct RayKernels {
   void (*cast_single)(const RayTarget&, SingleRay&, float reach);
   /// Whether a ray hits anything; writes no results.
   bool (*is_blocked)(const RayTarget&, const SingleRay&, float reach);
+  /// Which of the lanes do, a bit each.
+  std::uint32_t (*blocked)(const RayTarget&, const RayPacket&, std::uint32_t lanes, float reach);
 };
 
 extern const RayKernels baseline_ray_kernels;

@@ -48,7 +48,7 @@ template <Wish wish, typename Lanes, typename Set>
                                          Nearest<Lanes>& nearest) {
   for_each_bundle(tree, triangle_padding, rays, lanes, [&](const Bundle<Lanes>& bundle) {
     const TriangleTest<Lanes, wish> test(rays, bundle.active, tree.extent, copy);
-    Walk<Lanes>(bundle, nearest).template operator()<wish>(tree.ref, test);
+    Walk<Lanes>(bundle, nearest)(tree.ref, test);
   });
 }
 
@@ -79,7 +79,7 @@ void cast_at_copies(const RayTarget& target, const Rays<Lanes>& rays, Set lanes,
     return any(found.is_hit);
   };
   for_each_bundle(target.tree, copy_padding, rays, lanes, [&](const Bundle<Lanes>& bundle) {
-    Walk<Lanes>(bundle, nearest).template operator()<wish>(target.tree.ref, test);
+    Walk<Lanes>(bundle, nearest)(target.tree.ref, test);
   });
 }
 
@@ -96,14 +96,18 @@ inline Nearest<Lanes> nearest_hits(const RayTarget& target, const Rays<Lanes>& r
   return nearest;
 }
 
-template <Wish wish>
-void cast_packet(const RayTarget& target, RayPacket& packet, std::uint32_t lanes, float reach) {
+inline Rays<Floats> rays_of(const RayPacket& packet) {
   Rays<Floats> rays;
   for (int axis = 0; axis < 3; ++axis) {
     rays.origin[axis] = load(packet.origin[axis]);
     rays.direction[axis] = load(packet.direction[axis]);
   }
-  const Nearest<Floats> nearest = nearest_hits<wish>(target, rays, lanes, reach);
+  return rays;
+}
+
+template <Wish wish>
+void cast_packet(const RayTarget& target, RayPacket& packet, std::uint32_t lanes, float reach) {
+  const Nearest<Floats> nearest = nearest_hits<wish>(target, rays_of(packet), lanes, reach);
   store(chosen(nearest.is_hit, nearest.distance, every<Floats>(-1.0F)), packet.distance);
   if constexpr (wish == Wish::surface) {
     store(nearest.triangle, reinterpret_cast<float*>(packet.triangle));
@@ -131,9 +135,14 @@ bool is_blocked(const RayTarget& target, const SingleRay& ray, float reach) {
   return any(nearest_hits<Wish::any>(target, rays_of(ray), Truth{true}, reach).is_hit);
 }
 
+std::uint32_t blocked(const RayTarget& target, const RayPacket& packet, std::uint32_t lanes,
+                      float reach) {
+  return bits(nearest_hits<Wish::any>(target, rays_of(packet), lanes, reach).is_hit);
+}
+
 }  // namespace
 
 const RayKernels SKYCAP_KERNELS_NAME = {cast_packet<Wish::surface>, cast_packet<Wish::distance>,
-                                        cast_single, is_blocked};
+                                        cast_single, is_blocked, blocked};
 
 }  // namespace skycap::sim

@@ -110,10 +110,7 @@ std::uint32_t Scene::blocked(std::span<const Sight> sights) const {
     for (std::size_t i = 0; i < sights.size(); ++i) {
       if (reach[i] == its_reach) lanes |= left & 1U << i;
     }
-    ray_kernels().cast_distances(trees_->target, packet, lanes, its_reach);
-    for (std::size_t i = 0; i < sights.size(); ++i) {
-      if (packet.distance[i] != -1.0F) blocked |= lanes & 1U << i;
-    }
+    blocked |= ray_kernels().blocked(trees_->target, packet, lanes, its_reach);
     left &= ~lanes;
   }
   return blocked;

@@ -17,8 +17,6 @@
 namespace skycap::sim {
 namespace {
 
-constexpr float infinity = __builtin_inff();
-
 // How the rays of a tree of triangles, and of one of copies, pad its boxes, in shares of the
 // greatest coordinate; see TriangleTest::least_area(). A copy's box has to hold all that its own
 // tree's padding and the way into its own frame may add.
@@ -152,7 +150,7 @@ class Walk {
   Walk(const Bundle<Lanes>& bundle, Nearest<Lanes>& nearest) : bundle_(bundle), nearest_(nearest) {}
 
   // `test(leaf, active, nearest)` says whether it has found something nearer.
-  template <Wish wish, typename LeafTest>
+  template <typename LeafTest>
   [[gnu::always_inline]] void operator()(TreeRef root, const LeafTest& test) {
     float most = farthest();
     for (TreeRef at = root; at != 0;) {
@@ -160,7 +158,6 @@ class Walk {
         at = enter(*reinterpret_cast<const TreeNode*>(at), most);
         if (at != 0) continue;
       } else if (test(at, bundle_.active, nearest_)) {
-        if constexpr (wish == Wish::any) return;
         most = farthest();
       }
       at = to_visit_.pop(most);

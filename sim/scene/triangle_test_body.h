@@ -24,7 +24,10 @@ struct Rays {
   Lanes origin[3], direction[3];
 };
 
-// What rays have met up to now; before the first, no farther than their reach.
+constexpr float infinity = __builtin_inff();
+
+// What rays have met up to now; before the first, no farther than their reach. Where any hit will
+// do, a ray that has one looks for none any nearer: its distance is -infinity.
 template <typename Lanes>
 struct Nearest {
   Lanes distance;
@@ -223,7 +226,8 @@ class TriangleTest {
         nearest.normal[axis] = chosen(met, every<Lanes>(normal[axis]), nearest.normal[axis]);
       }
     }
-    nearest.distance = chosen(met, distance, nearest.distance);
+    nearest.distance =
+        chosen(met, wish == Wish::any ? every<Lanes>(-infinity) : distance, nearest.distance);
     nearest.is_hit = nearest.is_hit | met;
     return true;
   }

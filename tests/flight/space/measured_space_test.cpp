@@ -100,6 +100,24 @@ TEST(MeasuredSpace, WhatCountsAsFreeKeepsItsDistanceFromTheTruth) {
                     0.5, 30);
 }
 
+TEST(MeasuredSpace, DoesNotDependOnTheNumberOfThreads) {
+  const geometry::Mesh scene = room();
+  const auto known_on = [&](unsigned threads) {
+    MeasuredSpace space({.voxel = 0.1});
+    for (const Vector3d& target : {Vector3d(9, 0, 5), Vector3d(9, 9, 7)}) {
+      space.insert(depth_image(scene, small_camera, look_at({-7, -7, 5}, target)), small_camera,
+                   threads);
+    }
+    space.insert(look_around(scene, {5, -5, 5}, 0.01), SweepRays{.spacing = 0.02}, threads);
+    std::ostringstream file;
+    space.write(file);
+    return file.str();
+  };
+  const std::string alone = known_on(1);
+  EXPECT_GT(alone.size(), 100'000U);
+  EXPECT_EQ(known_on(3), alone);
+}
+
 TEST(MeasuredSpace, ASensorThatLooksAroundProvesFreeSpaceToo) {
   const geometry::Mesh scene = room();
   MeasuredSpace space({.voxel = 0.2, .depth_margin = 0.0});

@@ -178,11 +178,17 @@ TEST(RayKernels, AgreeInPacketsAloneAndOnEveryInstructionSet) {
       const auto lanes = static_cast<std::uint32_t>(random() & RayPacket::all_lanes);
       ray_kernels().cast(triangles.target(), packet, RayPacket::all_lanes, infinity);
       ray_kernels().cast_distances(triangles.target(), distances, lanes, infinity);
+      // A reach that some of the hits are beyond.
+      constexpr float reach = 0.5F;
+      const std::uint32_t blocked = ray_kernels().blocked(triangles.target(), packet, lanes, reach);
       for (int lane = 0; lane < RayPacket::width; ++lane) {
         const SingleRay& one = expected[first + lane];
+        const bool is_asked = (lanes >> lane & 1U) != 0;
         ASSERT_EQ(packet.distance[lane], one.distance) << static_cast<int>(set);
-        ASSERT_EQ(distances.distance[lane], (lanes >> lane & 1U) != 0 ? one.distance : -1.0F);
+        ASSERT_EQ(distances.distance[lane], is_asked ? one.distance : -1.0F);
         ASSERT_EQ(cast(triangles, rays[first + lane]).distance, one.distance);
+        ASSERT_EQ((blocked >> lane & 1U) != 0,
+                  is_asked && one.distance >= 0.0F && one.distance <= reach);
         if (one.distance < 0.0F) continue;
         ASSERT_EQ(packet.triangle[lane], one.triangle);
         for (int axis = 0; axis < 3; ++axis) {
