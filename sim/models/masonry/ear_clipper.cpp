@@ -39,6 +39,7 @@ class EarClipper {
       area_ += turn(polygon[0], polygon[i], polygon[i + 1]);
     }
     nothing_ = 1e-9 * area_;
+    touching_ = -1e-12 * area_;
     for (std::size_t i = 0; i < size; ++i) qualities_.push_back(ear_quality(i));
   }
 
@@ -56,7 +57,7 @@ class EarClipper {
     if (quality <= 1e-12) return -1.0;
     for (std::size_t j = after_[after_[i]]; j != before_[i]; j = after_[j]) {
       const Vector2d& p = polygon_[j];
-      if (turn(a, b, p) >= 0.0 && turn(b, c, p) >= 0.0 && turn(c, a, p) >= 0.0) return -1.0;
+      if (std::min({turn(a, b, p), turn(b, c, p), turn(c, a, p)}) >= touching_) return -1.0;
     }
     return quality;
   }
@@ -104,6 +105,8 @@ class EarClipper {
   std::vector<std::size_t> before_, after_;  ///< neighbours among the corners that are left
   std::vector<double> qualities_;
   double area_ = 0.0, nothing_ = 0.0;  ///< twice the area that is left, and what counts as none
+  double touching_ =
+      0.0;  ///< a turn from here on up: a corner may be on the side, but for rounding
   std::size_t corner_left_ = 0;
   Triangles triangles_;
 };

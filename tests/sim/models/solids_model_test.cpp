@@ -53,6 +53,15 @@ double area(const Polyline2& polygon, const std::vector<std::array<std::uint32_t
   return sum;
 }
 
+double shoelace_area(const Polyline2& polygon) {
+  double twice = 0.0;
+  for (std::size_t i = 0; i < polygon.size(); ++i) {
+    const Vector2d &a = polygon[i], &b = polygon[(i + 1) % polygon.size()];
+    twice += a.x() * b.y() - a.y() * b.x();
+  }
+  return 0.5 * twice;
+}
+
 // Property: n - 2 counter-clockwise triangles whose areas add up to the polygon's (shoelace).
 TEST(Triangulate, CoversStarsWithCornersInStraightSides) {
   std::mt19937_64 random(7);
@@ -64,16 +73,35 @@ TEST(Triangulate, CoversStarsWithCornersInStraightSides) {
       star.push_back(radius(random) * Vector2d(std::cos(angle), std::sin(angle)));
     }
     Polyline2 polygon;  // with a third point in each side
-    double shoelace = 0.0;
     for (std::size_t i = 0; i < star.size(); ++i) {
       const Vector2d &a = star[i], &b = star[(i + 1) % star.size()];
       polygon.push_back(a);
       polygon.push_back(0.75 * a + 0.25 * b);
-      shoelace += 0.5 * (a.x() * b.y() - a.y() * b.x());
     }
     const auto triangles = triangulate(polygon);
     EXPECT_EQ(triangles.size(), polygon.size() - 2);
-    EXPECT_NEAR(area(polygon, triangles), shoelace, 1e-9);
+    EXPECT_NEAR(area(polygon, triangles), shoelace_area(polygon), 1e-9);
+  }
+}
+
+// The tops of equal arches are in one line but for rounding: no cut may run along them.
+TEST(Triangulate, CoversArcadesOfAnyWidth) {
+  const Fineness fine{0.01};
+  for (int bays = 3; bays <= 12; ++bays) {
+    for (double width = 3.9 * bays; width < 4.3 * bays; width += 0.013 * bays) {
+      const double bay = width / bays, pier = 0.9, radius = 0.5 * (bay - pier), springing = 2.6;
+      const double top = springing + radius + 0.7, end = 0.5 * width + 0.5 * pier;
+      Profile outline(fine, -end, top);
+      outline.by(0.0, springing - top);
+      for (int i = 0; i < bays; ++i) {
+        const double left = -0.5 * width + i * bay + 0.5 * pier;
+        outline.to(left, springing).arc_to(left + 2.0 * radius, springing, -pi);
+      }
+      const Polyline2 wall = outline.to(end, springing).to(end, top).points();
+      const auto triangles = triangulate(wall);
+      ASSERT_EQ(triangles.size(), wall.size() - 2) << bays << " bays, " << width;
+      ASSERT_NEAR(area(wall, triangles), shoelace_area(wall), 1e-9) << bays << " bays, " << width;
+    }
   }
 }
 
