@@ -233,7 +233,7 @@ std::string SurveyScene::ceiling_key() const {
   std::ostringstream inputs;
   inputs.exceptions(std::ios::badbit);  // else text is lost without a word where memory is missing
   inputs.precision(17);
-  inputs << "ceiling 3\n" << view_distance_ << " " << mission_.planner.see.effective_spacing();
+  inputs << "ceiling 4\n" << view_distance_ << " " << mission_.planner.see.effective_spacing();
   for (const file::Key& key : file::mission_keys()) {
     if (!key.path.starts_with("scene.") && !key.path.starts_with("sensor.") &&
         !key.path.starts_with("evaluation.") && !key.path.starts_with("planner.scene_box") &&
@@ -248,6 +248,9 @@ std::string SurveyScene::ceiling_key() const {
   }
   // Terrain is the ground that hides things, and bounds the heights of views.
   for (const std::string& digest : derived::priors_of(mission_).digests) inputs << "\n" << digest;
+  // What a vehicle's file says, not its name alone.
+  const survey::ViewLimits limits = derived::view_limits(mission_);
+  inputs << "\n" << limits.least_pitch << " " << limits.most_pitch << " " << limits.stand_off;
   // The surface's samples stand for the mesh that was found under the model's name.
   inputs << "\n" << sha256(std::as_bytes(std::span(samples_.points)));
   // So do their surfaces for what a file of materials says.
