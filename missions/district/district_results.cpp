@@ -164,6 +164,10 @@ std::string number_or_none(bool is_there, double number) {
   return is_there ? file::exact_text(number) : "";
 }
 
+std::string counted(std::size_t count, const char* word) {
+  return fmt::format("{} {}{}", count, word, count == 1 ? "" : "s");
+}
+
 }  // namespace
 
 std::string results_json(const DistrictFile& district, const Prepared& prepared,
@@ -228,13 +232,12 @@ std::string results_text(std::span<const SurveyedTarget> targets, const District
   }
   if (!flight.pads.empty()) {
     text += fmt::format(
-        "\n  flight    {} of {} views, {:.1f} m in {:.1f} min, {} sorties from {} pads; each "
-        "target "
-        "by itself {:.1f} min\n"
+        "\n  flight    {} of {} views, {:.1f} m in {:.1f} min, {} from {}; each target by itself "
+        "{:.1f} min\n"
         "  clearance every leg proven at {:.2f} m, least {:.2f} m",
         flown(flight), flight.stations.size(), flight.length(), flight.duration() / 60.0,
-        flight.sorties(), flight.pads.size(), alone / 60.0, flight.pads[0].route.clearance,
-        least_clearance(flight));
+        counted(flight.sorties(), "sortie"), counted(flight.pads.size(), "pad"), alone / 60.0,
+        flight.pads[0].route.clearance, least_clearance(flight));
   }
   return text + "\n";
 }
