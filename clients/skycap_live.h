@@ -37,6 +37,10 @@ using PoseSigma = std::array<double, 2>;
 using PoseCovariance = std::array<double, 36>;
 using PoseError = std::variant<std::monostate, PoseSigma, PoseCovariance>;
 
+/// Where a scan was taken: at the view that is asked for, or on the way there, if the mission
+/// measures on it.
+enum class From { view, way };
+
 /// The server's answer to a message that is wrong; the survey is as it was.
 struct Refused : std::runtime_error {
   using std::runtime_error::runtime_error;
@@ -64,7 +68,7 @@ class Survey {
       open(AF_INET, place);
     }
     try {
-      scans_ = scans_of(ask("{\"type\":\"hello\"}"));
+      count(ask("{\"type\":\"hello\"}"));
     } catch (...) {
       ::close(socket_);
       throw;
@@ -79,33 +83,33 @@ class Survey {
   /// Points in the mission's frame: x y z after x y z. `pixels`, if there are some, ascend: row *
   /// width + column of the mission's camera, for each point.
   std::string add_points(const std::vector<float>& xyz, const Pose& pose,
-                         const std::vector<std::uint32_t>& pixels = {},
-                         const PoseError& error = {}) {
+                         const std::vector<std::uint32_t>& pixels = {}, const PoseError& error = {},
+                         From from = From::view) {
     std::string payload(reinterpret_cast<const char*>(xyz.data()), xyz.size() * sizeof(float));
     payload.append(reinterpret_cast<const char*>(pixels.data()), pixels.size() * sizeof pixels[0]);
     return add("\"format\":\"points\",\"points\":" + std::to_string(xyz.size() / 3) +
                    ",\"has_pixels\":" + (pixels.empty() ? "false" : "true"),
-               pose, error, payload);
+               pose, error, payload, from);
   }
 
   /// Points in the sensor's optical frame: x y z after x y z, in any order. The server gives each
   /// the pixel of the mission's camera that it is seen in.
   std::string add_cloud(const std::vector<float>& xyz, const Pose& pose,
-                        const PoseError& error = {}) {
+                        const PoseError& error = {}, From from = From::view) {
     return add("\"format\":\"cloud\",\"points\":" + std::to_string(xyz.size() / 3), pose, error,
-               {reinterpret_cast<const char*>(xyz.data()), xyz.size() * sizeof(float)});
+               {reinterpret_cast<const char*>(xyz.data()), xyz.size() * sizeof(float)}, from);
   }
 
   /// A depth image, row after row, in steps of `unit` metres; 0 and 65535 are no return. `lens`:
   /// fx fy cx cy, maybe followed by k1 k2 p1 p2 k3; else the mission's.
   std::string add_depth(const std::vector<std::uint16_t>& depth, int width, int height, double unit,
                         const Pose& pose, const PoseError& error = {},
-                        const std::vector<double>& lens = {}) {
+                        const std::vector<double>& lens = {}, From from = From::view) {
     return add("\"format\":\"depth\",\"width\":" + std::to_string(width) +
                    ",\"height\":" + std::to_string(height) + ",\"unit\":" + number(unit) +
                    (lens.empty() ? "" : row("lens", lens)),
                pose, error,
-               {reinterpret_cast<const char*>(depth.data()), depth.size() * sizeof depth[0]});
+               {reinterpret_cast<const char*>(depth.data()), depth.size() * sizeof depth[0]}, from);
   }
 
   /// Another view in place of that of the answer with this id; `reason` is put into JSON as it is.
@@ -140,23 +144,29 @@ class Survey {
   }
 
   std::string add(const std::string& fields, const Pose& pose, const PoseError& error,
-                  const std::string& payload) {
+                  const std::string& payload, From from) {
     std::string header = "{\"type\":\"scan\",\"number\":" + std::to_string(scans_) + "," + fields;
+    if (from == From::way) header += ",\"on_way\":" + std::to_string(on_way_);
     header += row("pose", pose);
     if (const auto* sigma = std::get_if<PoseSigma>(&error)) header += row("pose_sigma", *sigma);
     if (const auto* covariance = std::get_if<PoseCovariance>(&error)) {
       header += row("pose_covariance", *covariance);
     }
     std::string answer = ask(header + "}", payload);
-    scans_ = scans_of(answer);
+    count(answer);
     return answer;
   }
 
-  static std::size_t scans_of(const std::string& answer) {
-    const std::string field = "\"scans\":";
-    const std::size_t at = answer.find(field);
-    if (at == std::string::npos) throw std::runtime_error("the answer has no number of scans");
-    return std::stoul(answer.substr(at + field.size()));
+  /// The scans that an answer knows of; on the way where the mission measures there.
+  void count(const std::string& answer) {
+    const auto at = [&](const std::string& field) { return answer.find("\"" + field + "\":"); };
+    const auto number = [&](std::size_t place) {
+      return std::stoul(answer.substr(answer.find(':', place) + 1));
+    };
+    const std::size_t scans = at("scans"), on_way = at("on_way");
+    if (scans == std::string::npos) throw std::runtime_error("the answer has no number of scans");
+    scans_ = number(scans);
+    on_way_ = on_way == std::string::npos ? 0 : number(on_way);
   }
 
   std::string ask(const std::string& header, const std::string& payload = {}) {
@@ -195,7 +205,7 @@ class Survey {
   }
 
   int socket_ = -1;
-  std::size_t scans_ = 0;
+  std::size_t scans_ = 0, on_way_ = 0;
 };
 
 }  // namespace skycap_live

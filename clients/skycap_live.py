@@ -5,6 +5,7 @@
         while answer["view"]:
             depth, pose = my_drone.measure(answer["view"])
             answer = survey.add_depth(depth, width, height, unit=0.001, pose=pose)
+            # where the mission measures on the way (answer["frames"]): with on_way=True, from there
             if answer.get("warning") == "pose":
                 my_drone.hold_position()
         print(survey.finish())
@@ -33,7 +34,7 @@ class Survey:
         self._socket.settimeout(timeout)
         self._socket.connect(where)
         self.hello = self._ask({"type": "hello"})
-        self._scans = self.hello["scans"]
+        self._count(self.hello)
 
     def __enter__(self):
         return self
@@ -45,31 +46,33 @@ class Survey:
         """What to do next, as `skycap next --json` prints it."""
         return self._ask({"type": "next"})
 
-    def add_points(self, xyz, pose, pixels=None, pose_sigma=None, pose_covariance=None):
+    def add_points(self, xyz, pose, pixels=None, pose_sigma=None, pose_covariance=None,
+                   on_way=False):
         """Points in the mission's frame: bytes of float32 x y z, row after row; `pose` of the
         sensor's optical frame: x y z qx qy qz qw, or 12 numbers of a matrix by rows. `pixels`:
         bytes of ascending uint32, row * width + column of the mission's camera, for each point.
         How far off the pose may be: `pose_sigma`, (metres, degrees) along and about each axis, or
         `pose_covariance`, 36 numbers by rows, or the 21 of the upper triangle, of x y z rx ry rz
-        along and about the axes of the mission's frame [m, rad], as ROS has them."""
+        along and about the axes of the mission's frame [m, rad], as ROS has them. `on_way`: it is
+        from the way to the view that is asked for, not from there."""
         header = {"format": "points", "points": len(xyz) // 12, "has_pixels": pixels is not None}
         return self._add(header, pose, bytes(xyz) + bytes(pixels or b""), pose_sigma,
-                         pose_covariance)
+                         pose_covariance, on_way)
 
-    def add_cloud(self, xyz, pose, pose_sigma=None, pose_covariance=None):
+    def add_cloud(self, xyz, pose, pose_sigma=None, pose_covariance=None, on_way=False):
         """Points in the sensor's optical frame: bytes of float32 x y z, in any order. The server
         gives each the pixel of the mission's camera that it is seen in."""
         header = {"format": "cloud", "points": len(xyz) // 12}
-        return self._add(header, pose, bytes(xyz), pose_sigma, pose_covariance)
+        return self._add(header, pose, bytes(xyz), pose_sigma, pose_covariance, on_way)
 
     def add_depth(self, depth, width, height, unit, pose, lens=None, pose_sigma=None,
-                  pose_covariance=None):
+                  pose_covariance=None, on_way=False):
         """A depth image: bytes of uint16, row after row, in steps of `unit` metres; 0 and 65535 are
         no return. `lens`: fx fy cx cy, maybe followed by k1 k2 p1 p2 k3; else the mission's."""
         header = {"format": "depth", "width": width, "height": height, "unit": unit}
         if lens is not None:
             header["lens"] = list(lens)
-        return self._add(header, pose, bytes(depth), pose_sigma, pose_covariance)
+        return self._add(header, pose, bytes(depth), pose_sigma, pose_covariance, on_way)
 
     def refuse(self, answer, reason):
         """Another view in place of the one in `answer`."""
@@ -79,14 +82,20 @@ class Survey:
         """Has the server write the mission package, and end."""
         return self._ask({"type": "finish"})["text"]
 
-    def _add(self, header, pose, payload, pose_sigma, pose_covariance):
+    def _count(self, answer):
+        self._scans = answer["scans"]
+        self._on_way = answer.get("on_way", 0)
+
+    def _add(self, header, pose, payload, pose_sigma, pose_covariance, on_way):
         header = {"type": "scan", "number": self._scans, "pose": list(pose), **header}
+        if on_way:
+            header["on_way"] = self._on_way
         if pose_sigma is not None:
             header["pose_sigma"] = list(pose_sigma)
         if pose_covariance is not None:
             header["pose_covariance"] = list(pose_covariance)
         answer = self._ask(header, payload)
-        self._scans = answer["scans"]
+        self._count(answer)
         return answer
 
     def _ask(self, header, payload=b""):

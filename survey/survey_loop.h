@@ -104,6 +104,9 @@ class SurveySteps {
   /// may be asked for. The scan counts as not taken, though the planner may have learnt from it.
   void stop_on(const std::stop_token& stop);
 
+  /// Scans from the way to the view that was proposed last.
+  std::size_t passed() const { return coming_.on_way.views.size(); }
+
   const std::vector<SurveyedView>& views() const& { return views_; }
   std::vector<SurveyedView> views() && { return std::move(views_); }
 

@@ -184,11 +184,6 @@ file::Mission read_live_mission(const std::filesystem::path& file,
                                 const std::vector<file::KeyOverride>& overrides,
                                 const Report& report) {
   file::MissionFile given = file::read_mission_file(file, overrides);
-  if (given.mission.sensor.is_moving()) {
-    given.refuse("sensor.capture",
-                 "is moving, which a live survey is not: it takes in one scan for each view; leave "
-                 "it out");
-  }
   if (given.mission.scene.model.empty()) check_live(given);
   return resolved(std::move(given), report);
 }

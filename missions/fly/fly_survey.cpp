@@ -30,6 +30,11 @@ void require_flyable(const file::Mission& mission) {
   if (!mission.flight.is_flown()) {
     refuse("flight.vehicle is missing; what flies must be named, such as generic_ardupilot");
   }
+  if (mission.sensor.is_moving()) {
+    refuse(
+        "sensor.capture is moving, and skycap fly takes its scans at views; leave it out (skycap "
+        "serve takes in scans from the way)");
+  }
   if (derived::vehicle_of(mission).dialect != flight::Dialect::ardupilot) {
     refuse("flight.vehicle " + mission.flight.vehicle +
            " is no ArduPilot's; only ArduCopter is flown live, such as generic_ardupilot");

@@ -4,10 +4,13 @@
 #include <bit>
 #include <cstring>
 #include <limits>
+#include <span>
 #include <vector>
 
 #include "geometry/error.h"
+#include "geometry/io/file.h"
 #include "geometry/io/ply.h"
+#include "missions/scene/sha256.h"
 
 namespace skycap::missions::live {
 
@@ -56,6 +59,22 @@ geometry::Scan parse_kept_scan(std::string_view name, std::string_view bytes) {
     scan.pixels.push_back(static_cast<std::uint32_t>(pixel));
   }
   return scan;
+}
+
+std::string digest_of(std::string_view bytes) {
+  return scene::sha256(std::as_bytes(std::span(bytes)));
+}
+
+geometry::Scan read_kept_scan(const std::filesystem::path& file, const std::string& sha256) {
+  constexpr std::size_t largest = std::size_t{384} << 20;  // [byte]
+  const std::string bytes = geometry::read_file(file, largest);
+  if (digest_of(bytes) != sha256) {
+    throw Error(ErrorKind::bad_file,
+                file.string() +
+                    ": is damaged (its digest is not the one that the journal has); restore it "
+                    "from a copy");
+  }
+  return parse_kept_scan(file.string(), bytes);
 }
 
 }  // namespace skycap::missions::live

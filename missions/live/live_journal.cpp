@@ -56,7 +56,8 @@ ScanRecord parse_scan(const Json& json) {
       .file = json.at("file").get<std::string>(),
       .sha256 = json.at("sha256").get<std::string>(),
       .world_from_sensor = parse_pose(json.at("pose").get<std::vector<double>>(), "its pose"),
-      .pose = {}};
+      .pose = {},
+      .is_on_way = json.value("on_way", false)};
   if (json.contains("found")) scan.pose = parse_finding(json["found"]);
   const std::filesystem::path file = scan.file;
   if (file.is_absolute() || file.lexically_normal().string().starts_with("..")) {
@@ -78,7 +79,8 @@ ProposalRecord parse_proposal(const Json& json) {
 }
 
 void add_record(const Json& json, std::vector<LiveEvent>& events) {
-  const bool follows = !events.empty() && !events.back().proposal && !events.back().is_rejected;
+  const bool follows = !events.empty() && !events.back().proposal && !events.back().is_rejected &&
+                       !events.back().is_on_way();
   if (json.contains("scan") && !follows) {
     events.push_back({.scan = parse_scan(json["scan"])});
   } else if (json.contains("refusal") && !follows) {
@@ -100,6 +102,7 @@ std::string text_of(const ScanRecord& scan) {
             {"sha256", scan.sha256},
             {"pose", pose_json(scan.world_from_sensor)}};
   if (scan.pose) json["found"] = journal_json(*scan.pose);
+  if (scan.is_on_way) json["on_way"] = true;
   return derived::journal_line({{"scan", std::move(json)}});
 }
 

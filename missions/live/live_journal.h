@@ -22,6 +22,7 @@ struct ScanRecord {
   std::string sha256;                                                   ///< of the file
   Eigen::Isometry3d world_from_sensor = Eigen::Isometry3d::Identity();  ///< as given
   std::optional<PoseFinding> pose;  ///< what was found of it, if poses are checked
+  bool is_on_way = false;           ///< to the view that is proposed, which stands
 };
 
 /// What was proposed after a scan or a refusal.
@@ -31,12 +32,15 @@ struct ProposalRecord {
   run::ReachRecord reach;
 };
 
-/// Something that happened to the survey, and what followed if the program lived to say so.
+/// Something that happened to the survey, and what followed if the program lived to say so. Nothing
+/// follows a scan on the way.
 struct LiveEvent {
   std::optional<ScanRecord> scan;  ///< or a refusal
   std::string refusal;             ///< its reason
   bool is_rejected = false;        ///< a scan that the planner cannot work with: it does not count
   std::optional<ProposalRecord> proposal;
+
+  bool is_on_way() const { return scan && scan->is_on_way; }
 };
 
 std::string text_of(const ScanRecord& scan);

@@ -1,5 +1,7 @@
 #include "missions/live/live_survey.h"
 
+#include <algorithm>
+#include <cstdint>
 #include <limits>
 #include <map>
 #include <span>
@@ -17,7 +19,6 @@
 #include "missions/live/kept_scan.h"
 #include "missions/live/live_journal.h"
 #include "missions/run/mission_planner.h"
-#include "missions/scene/sha256.h"
 
 namespace skycap::missions::live {
 namespace {
@@ -27,11 +28,6 @@ using Eigen::Vector3d;
 
 constexpr const char* journal_name = "live.journal";
 constexpr const char* scans_name = "scans";
-constexpr std::size_t largest_scan = std::size_t{384} << 20;  // [byte]
-
-std::string digest_of(std::string_view bytes) {
-  return scene::sha256(std::as_bytes(std::span(bytes)));
-}
 
 fs::path made_folder(const fs::path& folder) {
   std::error_code failure;
@@ -78,6 +74,7 @@ struct LiveSurvey::Impl {
     }
     remembered = 0;
     numbers.clear();
+    taken.clear();
     set_aside = 0;
     guide = std::make_unique<run::MissionPlanner>(mission, first_view, threads);
     survey::SurveyPorts ports = guide->ports();
@@ -91,6 +88,11 @@ struct LiveSurvey::Impl {
     steps = std::make_unique<survey::SurveySteps>(guide->planner(), guide->limits(), ports);
     proposal = {.number = 0, .view = first_view, .way = {}, .end = {}, .pose = {}};
     if (guide->flight() != nullptr) proposal.way = guide->flight()->way();
+  }
+
+  ScanNumber next_number(bool is_on_way) const {
+    if (!is_on_way) return {steps->views().size()};
+    return {steps->views().size(), steps->passed()};
   }
 
   /// Where the way from a scan begins: at the view that was proposed, if the vehicle is as near to
@@ -111,6 +113,7 @@ struct LiveSurvey::Impl {
         catch_up();
         continue;
       }
+      if (event.is_on_way()) continue;
       if (!known) {  // a kill came before it was written down
         write_down(text_of(*event.proposal));
       } else if (!is_same(*known, *event.proposal)) {
@@ -123,19 +126,13 @@ struct LiveSurvey::Impl {
   }
 
   geometry::Scan kept(const ScanRecord& record) const {
-    const fs::path file = folder / record.file;
-    const std::string bytes = geometry::read_file(file, largest_scan);
-    if (digest_of(bytes) != record.sha256) {
-      throw Error(ErrorKind::bad_file, file.string() +
-                                           ": is damaged (its digest is not the one that " +
-                                           journal_name + " has); restore it from a copy");
-    }
-    geometry::Scan scan = parse_kept_scan(file.string(), bytes);
+    geometry::Scan scan = read_kept_scan(folder / record.file, record.sha256);
     scan.world_from_sensor = record.world_from_sensor;
     try {
       geometry::require_usable(scan, mission.sensor.camera.camera);
     } catch (const Error& failure) {
-      throw Error(ErrorKind::bad_file, file.string() + ": cannot be used: " + failure.what());
+      throw Error(ErrorKind::bad_file,
+                  (folder / record.file).string() + ": cannot be used: " + failure.what());
     }
     return as_used(std::move(scan), record);
   }
@@ -157,12 +154,24 @@ struct LiveSurvey::Impl {
 
   /// A scan that is not used: what was proposed stands, but nobody knows where the sensor is.
   void leave_aside(LiveEvent& event) {
-    numbers.emplace(event.scan->id, steps->views().size());
+    numbers.emplace(event.scan->id, next_number(event.is_on_way()));
     ++set_aside;
     ++proposal.number;
     proposal.way = {};
     proposal.pose = event.scan->pose;
-    event.proposal = ProposalRecord{proposal.view, proposal.end, {}};
+    if (!event.is_on_way()) event.proposal = ProposalRecord{proposal.view, proposal.end, {}};
+  }
+
+  /// A scan from the way: what was proposed stands, and so does the way there.
+  void pass(const LiveEvent& event, const geometry::Scan& scan) {
+    numbers.emplace(event.scan->id, next_number(true));
+    taken.push_back({static_cast<std::uint32_t>(steps->views().size()), scan.sensor_position()});
+    steps->pass(scan);
+    remember(scan);
+    departure = scan.sensor_position();
+    ++proposal.number;
+    proposal.way = way;
+    proposal.pose = event.scan->pose;
   }
 
   void remember(const geometry::Scan& scan) {
@@ -180,6 +189,10 @@ struct LiveSurvey::Impl {
       leave_aside(event);
       return true;
     }
+    if (event.is_on_way()) {
+      pass(event, scan);
+      return true;
+    }
     reach.begin(event.proposal ? std::optional(event.proposal->reach) : std::nullopt);
     if (event.scan) departure = departure_after(scan);
     std::optional<geometry::View> view;
@@ -193,7 +206,9 @@ struct LiveSurvey::Impl {
       return false;
     }
     if (event.scan) {
-      numbers.emplace(event.scan->id, steps->views().size() - 1);
+      const std::size_t number = steps->views().size() - 1;
+      numbers.emplace(event.scan->id, ScanNumber{number});
+      taken.push_back({static_cast<std::uint32_t>(number), scan.sensor_position()});
       remember(scan);
     }
     propose(event, view);
@@ -207,7 +222,8 @@ struct LiveSurvey::Impl {
     if (event.scan) pose = event.scan->pose;
     proposal = {.number = proposal.number + 1, .view = view, .way = {}, .end = {}, .pose = pose};
     if (!view) proposal.end = steps->stop_reason();
-    if (view && guide->flight() != nullptr && !is_lost) proposal.way = reach.record().way;
+    way = view && guide->flight() != nullptr ? reach.record().way : run::FlownLeg{};
+    if (!is_lost) proposal.way = way;
   }
 
   /// What cannot be written now is written before anything else is.
@@ -222,6 +238,42 @@ struct LiveSurvey::Impl {
     unwritten.reset();
   }
 
+  /// Brings a scan to the disk and takes it in. False if it is known.
+  bool bring(const geometry::Scan& scan, const std::string& given_id,
+             const std::optional<PoseCovariance>& covariance, bool is_on_way) {
+    const std::string bytes = kept_scan(scan), sha256 = digest_of(bytes);
+    const std::string id =
+        given_id.empty() ? id_of(sha256, scan.world_from_sensor, covariance) : given_id;
+    if (numbers.contains(id)) return false;
+    require_wanted(is_on_way);
+    catch_up();
+    const ScanRecord record{.id = id,
+                            .file = fmt::format("{}/{:06}.ply", scans_name, events.size()),
+                            .sha256 = sha256,
+                            .world_from_sensor = scan.world_from_sensor,
+                            .pose = look_at_pose(scan, covariance),
+                            .is_on_way = is_on_way};
+    geometry::write_file(folder / record.file, bytes);
+    geometry::sync_to_disk(folder / scans_name);
+    log.append(text_of(record));
+    take_in({.scan = record, .refusal = {}, .proposal = {}}, as_used(scan, record));
+    return true;
+  }
+
+  void require_wanted(bool is_on_way) const {
+    const auto refuse = [](const std::string& what) { throw Error(ErrorKind::bad_usage, what); };
+    if (mission.flight.is_flown() && proposal.end) {
+      refuse("the survey is over, and no way was proven to where this scan is from; finish it");
+    }
+    if (!is_on_way) return;
+    if (!mission.sensor.is_moving()) {
+      refuse("the mission measures at its views only; give it sensor.capture: moving");
+    }
+    if (steps->views().empty()) {
+      refuse("the way to the first view is not measured on; give a scan from there first");
+    }
+  }
+
   run::SurveyRecord views_record() const {
     run::SurveyRecord record;
     record.seed = mission.seed;
@@ -230,13 +282,17 @@ struct LiveSurvey::Impl {
     for (const survey::SurveyedView& view : steps->views()) {
       record.views.push_back({view, std::numeric_limits<double>::quiet_NaN()});
     }
+    record.scans = taken;
+    for (run::TakenScan& scan : record.scans) {  // also from the way to a view that was not taken
+      scan.view = std::min(scan.view, static_cast<std::uint32_t>(record.views.size() - 1));
+    }
     return record;
   }
 
   void take_in(LiveEvent event, const geometry::Scan& scan) {
     events.push_back(std::move(event));
     if (happen(events.back(), scan)) {
-      write_down(text_of(*events.back().proposal));
+      if (events.back().proposal) write_down(text_of(*events.back().proposal));
       return;
     }
     replay();  // the planner may have taken in a part of the scan
@@ -254,8 +310,10 @@ struct LiveSurvey::Impl {
   std::unique_ptr<survey::SurveySteps> steps;
   run::ReachMemory reach;
   Proposal proposal;
+  run::FlownLeg way;  ///< to the view that is proposed, also while nobody knows where the sensor is
   Vector3d departure = Vector3d::Zero();
-  std::map<std::string, std::size_t> numbers;  ///< of scans by their ids
+  std::map<std::string, ScanNumber> numbers;  ///< of scans by their ids
+  std::vector<run::TakenScan> taken;          ///< those that were used
   std::size_t set_aside = 0;
   std::optional<PoseCheck> poses;
   std::size_t remembered = 0;            ///< points of the planner's cloud that `poses` has
@@ -277,32 +335,32 @@ const std::vector<survey::SurveyedView>& LiveSurvey::views() const { return impl
 
 std::size_t LiveSurvey::set_aside() const { return impl_->set_aside; }
 
-std::optional<std::size_t> LiveSurvey::number_of(const std::string& id) const {
+std::size_t LiveSurvey::on_way() const { return impl_->steps->passed(); }
+
+std::vector<run::ViewInFlight> LiveSurvey::frames() const {
+  const Proposal& next = impl_->proposal;
+  const bool is_measured = impl_->mission.sensor.is_moving() && !views().empty();
+  if (!is_measured || !next.view || next.way.points.empty()) return {};
+  std::vector<run::ViewInFlight> frames =
+      impl_->guide->flight()->frames(views().back().view, *next.view);
+  frames.erase(frames.begin(),
+               frames.begin() + static_cast<std::ptrdiff_t>(std::min(on_way(), frames.size())));
+  return frames;
+}
+
+std::optional<ScanNumber> LiveSurvey::number_of(const std::string& id) const {
   const auto found = impl_->numbers.find(id);
   return found == impl_->numbers.end() ? std::nullopt : std::optional(found->second);
 }
 
-bool LiveSurvey::add(const geometry::Scan& scan, const std::string& given_id,
+bool LiveSurvey::add(const geometry::Scan& scan, const std::string& id,
                      const std::optional<PoseCovariance>& covariance) {
-  const std::string bytes = kept_scan(scan), sha256 = digest_of(bytes);
-  const std::string id =
-      given_id.empty() ? id_of(sha256, scan.world_from_sensor, covariance) : given_id;
-  if (number_of(id)) return false;
-  if (impl_->mission.flight.is_flown() && impl_->proposal.end) {
-    throw Error(ErrorKind::bad_usage,
-                "the survey is over, and no way was proven to where this scan is from; finish it");
-  }
-  impl_->catch_up();
-  const ScanRecord record{.id = id,
-                          .file = fmt::format("{}/{:06}.ply", scans_name, impl_->events.size()),
-                          .sha256 = sha256,
-                          .world_from_sensor = scan.world_from_sensor,
-                          .pose = impl_->look_at_pose(scan, covariance)};
-  geometry::write_file(impl_->folder / record.file, bytes);
-  geometry::sync_to_disk(impl_->folder / scans_name);
-  impl_->log.append(text_of(record));
-  impl_->take_in({.scan = record, .refusal = {}, .proposal = {}}, Impl::as_used(scan, record));
-  return true;
+  return impl_->bring(scan, id, covariance, false);
+}
+
+bool LiveSurvey::add_on_way(const geometry::Scan& scan, const std::string& id,
+                            const std::optional<PoseCovariance>& covariance) {
+  return impl_->bring(scan, id, covariance, true);
 }
 
 void LiveSurvey::refuse(const std::string& reason) {

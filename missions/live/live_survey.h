@@ -18,6 +18,7 @@
 #include "geometry/points/scan.h"
 #include "missions/file/mission.h"
 #include "missions/live/pose_check.h"
+#include "missions/run/carried_sensor.h"
 #include "missions/run/survey_record.h"
 #include "survey/survey_loop.h"
 
@@ -40,6 +41,14 @@ struct Proposal {
   bool warns_of_pose() const { return pose && pose->is_wrong; }
 };
 
+/// How many views were used before a scan and, of one from the way to the next view, how many scans
+/// on that way.
+struct ScanNumber {
+  std::size_t view = 0;
+  std::optional<std::size_t> on_way{};
+  bool operator==(const ScanNumber&) const = default;
+};
+
 class LiveSurvey {
  public:
   /// Opens the folder of a survey, or begins one in it, on so many threads (zero: all processors).
@@ -59,9 +68,15 @@ class LiveSurvey {
 
   std::size_t set_aside() const;  ///< scans whose poses were wrong
 
-  /// The number that a scan was taken in under: the scans used before the one with this id, if
-  /// there is one.
-  std::optional<std::size_t> number_of(const std::string& id) const;
+  /// Scans used since the last view, on the way to the one that is proposed.
+  std::size_t on_way() const;
+
+  /// What is still to be scanned on that way, if the mission measures there (sensor.capture), with
+  /// times since the vehicle left the last view. Empty where no way is proven.
+  std::vector<run::ViewInFlight> frames() const;
+
+  /// The number that a scan was taken in under, if there is one with this id.
+  std::optional<ScanNumber> number_of(const std::string& id) const;
 
   /// Brings a scan to the disk, looks at its pose (file::LiveConfig), and plans, or sets it aside.
   /// One whose id is known is acknowledged and ignored: false. An empty id is scan_id()'s. Without
@@ -69,6 +84,12 @@ class LiveSurvey {
   /// cannot work with, and Error{bad_file} if the disk takes no more; then nothing has changed.
   bool add(const geometry::Scan& scan, const std::string& id,
            const std::optional<PoseCovariance>& covariance = {});
+
+  /// The same with a scan from the way to the proposed view, which stands. Throws Error{bad_usage}
+  /// where no such scan is wanted: before the first view, when the survey is over, and unless the
+  /// mission measures on the way.
+  bool add_on_way(const geometry::Scan& scan, const std::string& id,
+                  const std::optional<PoseCovariance>& covariance = {});
 
   /// Asks for another view in place of the proposed one. Throws Error{bad_usage} if there is none.
   void refuse(const std::string& reason);

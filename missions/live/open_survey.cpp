@@ -2,6 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
+#include <span>
+#include <vector>
 
 #include <Eigen/Geometry>
 #include <fmt/format.h>
@@ -12,6 +15,7 @@
 #include "geometry/place/pose.h"
 #include "missions/derived/journal_text.h"
 #include "missions/derived/mission_flight.h"
+#include "missions/derived/opening_flight.h"
 #include "missions/derived/site.h"
 #include "missions/file/json_text.h"
 #include "missions/live/live_journal.h"
@@ -49,6 +53,18 @@ Json way_json(const run::FlownLeg& way) {
   return points;
 }
 
+/// The next frames on the way, as many as go into the header of a message.
+Json frames_json(const std::vector<run::ViewInFlight>& frames, const file::Mission& mission) {
+  constexpr std::size_t most = 64;
+  Json json = Json::array();
+  for (const run::ViewInFlight& frame : std::span(frames).first(std::min(frames.size(), most))) {
+    Json one = view_json(frame.view, mission);
+    one["time_s"] = frame.time;
+    json.push_back(std::move(one));
+  }
+  return json;
+}
+
 /// What a motion is like that brings a scan onto what is known.
 std::string motion_text(const PoseFinding& pose) {
   std::string text = fmt::format("moved by {:.3f} m and turned by {:.2f} deg", pose.shift,
@@ -82,12 +98,14 @@ std::unique_ptr<LiveSurvey> open_survey(const file::Mission& mission,
                                         const std::filesystem::path& mission_folder,
                                         const std::filesystem::path& survey_folder) {
   if (mission.scene.model.empty()) {
-    return std::make_unique<LiveSurvey>(mission, survey_folder, derived::given_start(mission),
-                                        mission.threads);
+    const std::vector<geometry::View> opening = derived::opening_views(mission);
+    return std::make_unique<LiveSurvey>(
+        mission, survey_folder, opening.empty() ? derived::given_start(mission) : opening.front(),
+        mission.threads);
   }
   const scene::SurveyScene scene(mission, mission_folder);
-  return std::make_unique<LiveSurvey>(run::trial_mission(mission, scene, mission.seed),
-                                      survey_folder, scene.first_view(mission.seed),
+  const file::Mission trial = run::trial_mission(mission, scene, mission.seed);
+  return std::make_unique<LiveSurvey>(trial, survey_folder, run::first_view_of(trial, scene),
                                       mission.threads);
 }
 
@@ -99,9 +117,11 @@ std::string answer_json(const LiveSurvey& survey, const file::Mission& mission) 
             {"points", survey.planner().cloud().size()},
             {"set_aside", survey.set_aside()},
             {"view", proposal.view ? view_json(*proposal.view, mission) : Json()}};
+  if (mission.sensor.is_moving()) json["on_way"] = survey.on_way();
   if (proposal.view && !proposal.way.points.empty()) {
     json["path"] = way_json(proposal.way);
     json["clearance_m"] = proposal.way.clearance;
+    if (mission.sensor.is_moving()) json["frames"] = frames_json(survey.frames(), mission);
   }
   if (proposal.warns_of_pose()) json["warning"] = "pose";
   if (proposal.pose) json["pose"] = finding_json(*proposal.pose);
@@ -128,6 +148,9 @@ std::string answer_text(const LiveSurvey& survey) {
   if (!proposal.way.points.empty()) {
     text += fmt::format("; {} legs, clearance {:.2f} m", proposal.way.points.size() - 1,
                         proposal.way.clearance);
+    if (const std::size_t frames = survey.frames().size(); frames > 0) {
+      text += fmt::format(", {} scans on the way", frames);
+    }
   }
   return text + "; " + scans;
 }

@@ -224,7 +224,8 @@ LeftOut filter(geometry::Scan& scan, const file::Mission& mission) {
 
 void require_usable(const geometry::Scan& scan, const file::Mission& mission) {
   geometry::require_usable(scan, mission.sensor.camera.camera);
-  if (mission.flight.is_flown() && scan.pixels.empty() && !scan.points.empty()) {
+  const bool needs_pixels = mission.flight.is_flown() && !mission.sensor.scanner;
+  if (needs_pixels && scan.pixels.empty() && !scan.points.empty()) {
     throw Error(ErrorKind::bad_geometry,
                 "the scan has no pixels; with flight.vehicle free space is proven by depth images");
   }

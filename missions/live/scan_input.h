@@ -79,7 +79,7 @@ ScanFound scan_of(const sim::DepthImage& image, const std::optional<Lens>& lens,
 LeftOut filter(geometry::Scan& scan, const file::Mission& mission);
 
 /// Throws Error{bad_geometry} unless a scan is one that planner and vehicle can take in: points at
-/// places, pixels (which a vehicle needs) of the mission's camera and ascending.
+/// places, pixels (which a vehicle with a camera needs) of the mission's camera and ascending.
 void require_usable(const geometry::Scan& scan, const file::Mission& mission);
 
 }  // namespace skycap::missions::live

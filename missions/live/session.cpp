@@ -63,6 +63,17 @@ std::optional<PoseCovariance> covariance_of(const Json& header) {
   return parse_pose_covariance(row_at(header, covariance), covariance);
 }
 
+ScanNumber number_of(const Json& header) {
+  ScanNumber number{count_at(header, "number")};
+  if (header.contains("on_way")) number.on_way = count_at(header, "on_way");
+  return number;
+}
+
+std::string text_of(const ScanNumber& number) {
+  const std::string text = "scan " + std::to_string(number.view);
+  return number.on_way ? text + " on the way " + std::to_string(*number.on_way) : text;
+}
+
 void require_payload(const Message& message, std::size_t size, const std::string& what_takes) {
   if (message.payload.size() == size) return;
   refuse_message("scan: the payload has " + std::to_string(message.payload.size()) + " bytes; " +
@@ -162,18 +173,35 @@ Message Session::answer_unguarded(const Message& message) {
                  "' is unknown; it must be hello, scan, next, refuse or finish");
 }
 
+bool Session::is_taken(const ScanNumber& number) const {
+  return number.view < survey_.views().size() ||
+         (number.on_way && *number.on_way < survey_.on_way());
+}
+
+std::string Session::next_text() const {
+  const std::size_t next = survey_.views().size();
+  std::string text = "the next one is " + std::to_string(next);
+  if (mission_.sensor.is_moving() && next > 0) {
+    text += ", or on the way to it " + std::to_string(survey_.on_way());
+  }
+  return text;
+}
+
+void Session::require_in_order(const ScanNumber& number) const {
+  const std::size_t next = survey_.views().size();
+  const bool is_ahead = number.view > next ||
+                        (number.view == next && number.on_way && *number.on_way > survey_.on_way());
+  if (is_ahead) refuse_message(text_of(number) + " is out of order: " + next_text());
+}
+
 Message Session::take_scan(const Message& message) {
-  const auto number = std::size_t{count_at(message.header, "number")};
   const auto format = message.header.at("format").get<std::string>();
   if (format != "points" && format != "cloud" && format != "depth") {
     refuse_message("scan: the format '" + format +
                    "' is unknown; it must be points, cloud or depth");
   }
-  const std::size_t expected = survey_.views().size();
-  if (number > expected) {
-    refuse_message("scan " + std::to_string(number) + " is out of order: the next one is " +
-                   std::to_string(expected));
-  }
+  const ScanNumber number = number_of(message.header);
+  require_in_order(number);
   ScanFound found;
   if (format == "points") {
     found.scan = cloud_scan(message);
@@ -186,11 +214,11 @@ Message Session::take_scan(const Message& message) {
   }
   const geometry::Scan& scan = found.scan;
   const std::optional<PoseCovariance> covariance = covariance_of(message.header);
-  if (number < expected && survey_.number_of(scan_id(scan, covariance)) != number) {
-    refuse_message("scan " + std::to_string(number) + " was another one; the next one is " +
-                   std::to_string(expected));
+  if (is_taken(number) && survey_.number_of(scan_id(scan, covariance)) != number) {
+    refuse_message(text_of(number) + " was another one; " + next_text());
   }
-  const bool is_new = survey_.add(scan, "", covariance);
+  const bool is_new =
+      number.on_way ? survey_.add_on_way(scan, "", covariance) : survey_.add(scan, "", covariance);
   has_changed_ = is_new;
   Message answer = present();
   answer.header["is_new"] = is_new;

@@ -30,6 +30,9 @@ class Session {
 
  private:
   Message answer_unguarded(const Message& message);
+  bool is_taken(const ScanNumber& number) const;
+  std::string next_text() const;
+  void require_in_order(const ScanNumber& number) const;
   Message take_scan(const Message& message);
   Message refuse(const Message& message);
   Message present() const;

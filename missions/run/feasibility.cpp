@@ -11,11 +11,11 @@
 #include "geometry/place/camera.h"
 #include "geometry/surfaces/mesh.h"
 #include "missions/derived/mission_flight.h"
-#include "missions/derived/opening_flight.h"
 #include "missions/derived/site.h"
 #include "missions/derived/survey_sensor.h"
 #include "missions/judge/coverage.h"
 #include "missions/run/survey_flight.h"
+#include "missions/run/survey_runner.h"
 
 namespace skycap::missions::run {
 namespace {
@@ -187,9 +187,7 @@ class Inspection {
 
   void check_first_view() {
     try {
-      const std::vector<geometry::View> opening = derived::opening_views(mission_);
-      const geometry::View first =
-          opening.empty() ? scene_.first_view(mission_.seed) : opening.front();
+      const geometry::View first = first_view_of(mission_, scene_);
       const geometry::Scan scan = derived::SurveySensor(mission_.sensor, mission_.seed)
                                       .scan(scene_.scene(), first, 0, threads_);
       const auto& box = mission_.planner.see.scene_box;

@@ -4,6 +4,7 @@
 #include <span>
 
 #include "geometry/points/point_grid.h"
+#include "missions/derived/opening_flight.h"
 #include "missions/derived/planner_factory.h"
 #include "missions/derived/site.h"
 
@@ -103,6 +104,8 @@ survey::SurveyPorts MissionPlanner::ports() {
     ports.sensed_on_way = [&impl](const geometry::Scan& scan) { impl.flight->take_in(scan); };
     ports.stop_on = [&impl](std::stop_token stop) { impl.flight->stop_on(std::move(stop)); };
   }
+  const std::vector<geometry::View> opening = derived::opening_views(impl.mission);
+  if (!opening.empty()) ports.opening.assign(opening.begin() + 1, opening.end());
   if (impl.mission.sensor.is_moving()) {
     ports.views_on_way = [&impl](const geometry::View& from, const geometry::View& to) {
       std::vector<geometry::View> views;

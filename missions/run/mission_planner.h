@@ -27,7 +27,7 @@ class MissionPlanner {
   /// Null without a vehicle.
   SurveyFlight* flight();
 
-  /// `sensed`, `can_reach` and what goes with them, which refer to this object.
+  /// `opening`, and `sensed`, `can_reach` and what goes with them, which refer to this object.
   survey::SurveyPorts ports();
 
   survey::SurveyLimits limits() const;

@@ -24,6 +24,11 @@ file::Mission trial_mission(const file::Mission& mission, const scene::SurveySce
   return trial;
 }
 
+geometry::View first_view_of(const file::Mission& trial, const scene::SurveyScene& scene) {
+  const std::vector<geometry::View> opening = derived::opening_views(trial);
+  return opening.empty() ? scene.first_view(trial.seed) : opening.front();
+}
+
 namespace {
 
 /// Where the sensor of a survey is when, and how it moves there.
@@ -69,9 +74,9 @@ SurveyRecord run_survey(const file::Mission& mission, const scene::SurveyScene& 
                         const std::function<void(const JudgedView&)>& report,
                         SurveyJournal* journal) {
   CarriedSensor sensor(mission, seed);
-  std::vector<geometry::View> opening = derived::opening_views(trial_mission(mission, scene, seed));
-  const geometry::View first_view = opening.empty() ? scene.first_view(seed) : opening.front();
-  MissionPlanner guided(trial_mission(mission, scene, seed), first_view, threads);
+  const file::Mission trial = trial_mission(mission, scene, seed);
+  const geometry::View first_view = first_view_of(trial, scene);
+  MissionPlanner guided(trial, first_view, threads);
   judge::CoverageMeter meter(scene.samples().points, mission.evaluation.registration_distance);
   SurveyRecord record;
   record.seed = seed;
@@ -80,7 +85,6 @@ SurveyRecord run_survey(const file::Mission& mission, const scene::SurveyScene& 
   std::uint64_t frame = 0;
   std::size_t points_judged = 0;
   survey::SurveyPorts ports = guided.ports();
-  if (!opening.empty()) ports.opening.assign(opening.begin() + 1, opening.end());
   SurveyClock clock(guided.flight());
   const auto sense = [&](const ViewInFlight& view, geometry::Scan recycled) {
     record.scans.push_back({static_cast<std::uint32_t>(record.views.size()), view.view.position});

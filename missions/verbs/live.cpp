@@ -88,7 +88,8 @@ void add_scan(const NextOptions& options, const std::string& name, const live::S
               const Console& console) {
   live::require_usable(found.scan, mission);
   const std::optional<live::PoseCovariance> covariance = covariance_of(options);
-  const bool is_new = survey.add(found.scan, id, covariance);
+  const bool is_new = options.is_on_way ? survey.add_on_way(found.scan, id, covariance)
+                                        : survey.add(found.scan, id, covariance);
   if (options.is_quiet) return;
   const bool is_aside = is_new && survey.proposal().warns_of_pose();
   console.err << fmt::format("{}: {} points{}{}{}\n", name, found.scan.points.size(),
@@ -190,6 +191,8 @@ void add_next(CLI::App& app, const Console& console, Action& action) {
                    "What a step of a depth image stands for [m]; default 0.001")
       ->check(number_between(1e-6, 1.0));
   verb->add_flag("--world", options->is_in_world, "The cloud is in the mission's frame already");
+  verb->add_flag("--on-way", options->is_on_way,
+                 "The scan is from the way to the view that was asked for, not from there");
   verb->add_option("--id", options->id, "Of the scan; one that is known is not taken in again");
   verb->add_option("--dataset", options->dataset,
                    "A recording, whose frames are taken in one by one: a folder of TUM RGB-D "
@@ -232,6 +235,9 @@ int next(const NextOptions& options, const Console& console) {
   if (options.scan.has_value() + options.dataset.has_value() + options.refusal.has_value() > 1) {
     throw Error(ErrorKind::bad_usage,
                 "--scan, --dataset and --refuse do not go together; give one");
+  }
+  if (options.is_on_way && !options.scan) {
+    throw Error(ErrorKind::bad_usage, "--on-way goes with --scan; give the scan, or leave it out");
   }
   const file::Mission mission = read_shown(derived::read_live_mission, options, console);
   const auto survey = live::open_survey(mission, options.mission.parent_path(), options.survey);

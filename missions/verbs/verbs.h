@@ -57,6 +57,7 @@ struct NextOptions : LiveOptions {
   std::string lens;                                ///< of a depth image
   double depth_unit = 0.001;                       ///< of a depth image [m]
   bool is_in_world = false;                        ///< the points of a cloud
+  bool is_on_way = false;                          ///< the scan is, to the view
   std::string id;                                  ///< of the scan; default: its digest
   std::optional<std::filesystem::path> dataset;    ///< a recording to be taken in, in its place
   std::string sensor;                              ///< label in a rawlog

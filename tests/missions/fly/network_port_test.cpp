@@ -136,6 +136,9 @@ TEST(FlyVerb, RefusesMissionsThatItCannotFly) {
   EXPECT_EQ(px4.exit_code, 2);
   EXPECT_THAT(px4.err, HasSubstr("flight.vehicle generic is no ArduPilot's"));
   EXPECT_THAT(refusal(tests::quick_mission(), here).err, HasSubstr("flight.vehicle is missing"));
+  std::string moving = flyable(tests::flown_mission());
+  moving.insert(moving.find("sensor: {") + 9, "capture: moving, ");
+  EXPECT_THAT(refusal(moving, here).err, HasSubstr("sensor.capture is moving, and skycap fly"));
   EXPECT_THAT(refusal(flyable(tests::flown_mission()), "udp:nobody:1").err,
               HasSubstr("--connect udp:nobody:1: must be"));
 }

@@ -30,23 +30,28 @@ using tests::content_of;
 TEST(LiveSurvey, FedByTheSimulatorIsWhatPlanDoes) {
   for (const std::string& mission :
        {short_mission(tests::quick_mission(), "see++"), short_mission(tests::quick_mission(), "oa"),
-        short_mission(tests::flown_mission())}) {
+        short_mission(tests::flown_mission()), moving_mission("live: {pose_check: false}\n")}) {
     const tests::TestFolder folder;
     const Rehearsal rehearsal(mission);
     LiveSurvey survey = rehearsal.open(folder.path());
-    while (survey.proposal().view) rehearsal.add_one(survey);
-    expect_same(survey.finish(), rehearsal.planned());
+    Carrier carrier(rehearsal);
+    while (survey.proposal().view) carrier.add_next(survey);
+    const run::SurveyRecord planned = rehearsal.planned();
+    EXPECT_EQ(planned.frames_on_way() > 0, rehearsal.mission().sensor.is_moving());
+    expect_same(survey.finish(), planned);
   }
 }
 
 TEST(LiveSurvey, GoesOnWhereItWasAfterEveryScan) {
   for (const std::string& mission :
-       {short_mission(tests::quick_mission(), "see++"), short_mission(tests::flown_mission())}) {
+       {short_mission(tests::quick_mission(), "see++"), short_mission(tests::flown_mission()),
+        moving_mission("live: {pose_check: false}\n", /*views=*/2)}) {
     const tests::TestFolder folder;
     const Rehearsal rehearsal(mission);
+    Carrier carrier(rehearsal);
     while (rehearsal.open(folder.path()).proposal().view) {
       LiveSurvey survey = rehearsal.open(folder.path());
-      rehearsal.add_one(survey);
+      carrier.add_next(survey);
     }
     expect_same(rehearsal.open(folder.path()).finish(), rehearsal.planned());
   }
@@ -80,7 +85,7 @@ TEST(LiveSurvey, IgnoresAScanThatItKnows) {
   EXPECT_TRUE(survey.add(scan, "a"));
   const Proposal before = survey.proposal();
   EXPECT_FALSE(survey.add(scan, "a"));
-  EXPECT_EQ(survey.number_of("a"), 0);
+  EXPECT_EQ(survey.number_of("a"), ScanNumber{0});
   EXPECT_EQ(survey.number_of("b"), std::nullopt);
   EXPECT_EQ(survey.views().size(), 1U);
   EXPECT_EQ(survey.proposal().view->position, before.view->position);
@@ -189,6 +194,53 @@ TEST(LiveSurvey, GivesNoWayFromWhereNobodyKnows) {
   EXPECT_TRUE(survey.proposal().way.points.empty());
   rehearsal.add_one(survey);
   EXPECT_FALSE(survey.proposal().way.points.empty());
+}
+
+/// Whoever flies on while nobody knows where, has no way; the next scan that fits gives it back.
+TEST(LiveSurvey, KeepsTheWayThroughAWrongPoseOnIt) {
+  const tests::TestFolder folder;
+  const Rehearsal rehearsal(moving_mission());
+  std::string answer;
+  {
+    LiveSurvey survey = rehearsal.open(folder.path());
+    Carrier carrier(rehearsal);
+    carrier.add_next(survey);
+    const std::vector<Eigen::Vector3d> way = survey.proposal().way.points;
+    const geometry::View view = *survey.proposal().view;
+    survey.add_on_way(displaced(carrier.next(survey).scan, 2.0, 5.0), "wrong");
+    ASSERT_TRUE(survey.proposal().warns_of_pose());
+    EXPECT_TRUE(survey.proposal().way.points.empty());
+    EXPECT_EQ(survey.on_way(), 0U);
+    EXPECT_EQ(survey.proposal().view->position, view.position);
+    EXPECT_EQ(rehearsal.open(folder.path() / "other").on_way(), 0U);
+  }
+  LiveSurvey survey = rehearsal.open(folder.path());
+  EXPECT_TRUE(survey.proposal().way.points.empty());
+  EXPECT_EQ(survey.set_aside(), 1U);
+  const geometry::View view = *survey.proposal().view;
+  geometry::View between = view;
+  between.position = 0.5 * (view.position + survey.views().back().view.position);
+  run::CarriedSensor sensor(rehearsal.mission(), 1);
+  survey.add_on_way(rehearsal.scan(sensor, {.view = between}, 2), "right");
+  EXPECT_FALSE(survey.proposal().warns_of_pose());
+  EXPECT_EQ(survey.on_way(), 1U);
+  ASSERT_FALSE(survey.proposal().way.points.empty());
+  EXPECT_EQ(survey.proposal().way.points.back(), view.position);
+  // A way that is asked for now begins where the vehicle is.
+  survey.refuse("elsewhere");
+  ASSERT_FALSE(survey.proposal().way.points.empty());
+  EXPECT_LT((survey.proposal().way.points.front() - between.position).norm(), 1e-9);
+}
+
+TEST(LiveSurvey, TakesNoScansFromWaysThatAreNotMeasuredOn) {
+  const tests::TestFolder folder;
+  const Rehearsal rehearsal(short_mission(tests::flown_mission()));
+  LiveSurvey survey = rehearsal.open(folder.path());
+  rehearsal.add_one(survey);
+  EXPECT_TRUE(survey.frames().empty());
+  const geometry::Scan scan = rehearsal.scan(survey);
+  EXPECT_THAT(complaint_of([&] { survey.add_on_way(scan, "a"); }),
+              HasSubstr("measures at its views only; give it sensor.capture: moving"));
 }
 
 // Of houses, whose walls and roofs show every way to move and are large beside the patches that are

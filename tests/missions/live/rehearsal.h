@@ -2,8 +2,10 @@
 #pragma once
 
 #include <algorithm>
+#include <cstdint>
 #include <filesystem>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -11,8 +13,10 @@
 #include "missions/derived/resolved_mission.h"
 #include "missions/derived/survey_sensor.h"
 #include "missions/live/live_survey.h"
+#include "missions/run/carried_sensor.h"
 #include "missions/run/survey_runner.h"
 #include "missions/scene/survey_scene.h"
+#include "tests/missions/flown_mission.h"
 #include "tests/missions/run_skycap.h"
 
 namespace skycap::missions::live {
@@ -26,6 +30,8 @@ class Rehearsal {
       : mission_(derived::parse_mission(mission, "m.yaml")),
         scene_(mission_, folder),
         sensor_(mission_.sensor, mission_.seed),
+        first_view_(
+            run::first_view_of(run::trial_mission(mission_, scene_, mission_.seed), scene_)),
         threads_(threads) {}
 
   run::SurveyRecord planned() const {
@@ -33,8 +39,7 @@ class Rehearsal {
   }
 
   LiveSurvey open(const std::filesystem::path& folder) const {
-    return {run::trial_mission(mission_, scene_, mission_.seed), folder,
-            scene_.first_view(mission_.seed), threads_};
+    return {run::trial_mission(mission_, scene_, mission_.seed), folder, first_view_, threads_};
   }
 
   /// What `plan` would measure from the proposed view.
@@ -48,6 +53,11 @@ class Rehearsal {
            scene_.is_reachable(survey.proposal().view->position);
   }
 
+  geometry::Scan scan(run::CarriedSensor& carried, const run::ViewInFlight& at,
+                      std::uint64_t scans) const {
+    return carried.scan(scene_.scene(), at, scans, threads_);
+  }
+
   void add_one(LiveSurvey& survey) const {
     survey.add(scan(survey), "scan " + std::to_string(survey.views().size()));
   }
@@ -58,7 +68,45 @@ class Rehearsal {
   file::Mission mission_;
   scene::SurveyScene scene_;
   derived::SurveySensor sensor_;
+  geometry::View first_view_;
   unsigned threads_;
+};
+
+/// A rehearsal's sensor as its vehicle carries it, on the ways too.
+class Carrier {
+ public:
+  explicit Carrier(const Rehearsal& rehearsal)
+      : rehearsal_(rehearsal), sensor_(rehearsal.mission(), rehearsal.mission().seed) {}
+
+  struct Taken {
+    geometry::Scan scan;
+    bool is_on_way;
+  };
+
+  /// What `plan` would measure next: on the way to the proposed view, if something is to be
+  /// measured there, or else from the view.
+  Taken next(LiveSurvey& survey) {
+    const std::vector<run::ViewInFlight> frames = survey.frames();
+    const geometry::View& view = *survey.proposal().view;
+    run::ViewInFlight at = frames.empty() ? run::ViewInFlight{.view = view} : frames.front();
+    if (frames.empty() && survey.flight() != nullptr && !survey.views().empty()) {
+      elapsed_ += survey.flight()->time(survey.views().back().view, view);
+    }
+    at.time += elapsed_;
+    return {rehearsal_.scan(sensor_, at, scans_++), !frames.empty()};
+  }
+
+  void add_next(LiveSurvey& survey) {
+    const Taken taken = next(survey);
+    const std::string id = "scan " + std::to_string(scans_);
+    taken.is_on_way ? survey.add_on_way(taken.scan, id) : survey.add(taken.scan, id);
+  }
+
+ private:
+  const Rehearsal& rehearsal_;
+  run::CarriedSensor sensor_;
+  std::uint64_t scans_ = 0;
+  double elapsed_ = 0.0;  ///< [s]
 };
 
 inline std::vector<Eigen::Vector3d> places(const std::vector<run::JudgedView>& views) {
@@ -83,15 +131,26 @@ inline void expect_same(const run::SurveyRecord& live, const run::SurveyRecord& 
   EXPECT_EQ(live.flown->refused, planned.flown->refused);
   EXPECT_EQ(live.flown->length(), planned.flown->length());
   EXPECT_EQ(live.flown->min_clearance(), planned.flown->min_clearance());
+  EXPECT_EQ(live.frames_on_way(), planned.frames_on_way());
+  EXPECT_EQ(live.flown->time, planned.flown->time);
 }
 
-/// Five views at most, and by another planner if one is named.
-inline std::string short_mission(std::string mission, const std::string& planner = "") {
+/// Five views at most, or so many, and by another planner if one is named.
+inline std::string short_mission(std::string mission, const std::string& planner = "",
+                                 int views = 5) {
   const std::string limit = "max_views: ", section = "planner: {";
   const std::size_t at = mission.find(limit) + limit.size();
-  mission.replace(at, mission.find('}', at) - at, "5");
+  mission.replace(at, mission.find('}', at) - at, std::to_string(views));
   if (planner.empty()) return mission;
   return mission.insert(mission.find(section) + section.size(), "name: " + planner + ", ");
+}
+
+/// A vehicle's, whose camera also measures on the ways. It is too far from its teapot, and that too
+/// round, for poses to be judged by it: some of the many frames would be suspected.
+inline std::string moving_mission(const std::string& live = "", int views = 5) {
+  std::string mission = short_mission(tests::flown_mission(live), "", views);
+  const std::string section = "sensor: {";
+  return mission.insert(mission.find(section) + section.size(), "capture: moving, ");
 }
 
 /// The teapot, measured well enough for poses to be looked at, and what `live` says.

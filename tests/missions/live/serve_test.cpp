@@ -41,6 +41,19 @@ std::vector<float> numbers_of(const geometry::Scan& scan) {
   return {begin, begin + 3 * scan.points.size()};
 }
 
+/// A scanner that measures all the way, round a teapot of 20 m.
+std::string scanner_mission() {
+  return "scene: {model: builtin:teapot, longest_side: 20, ground: true}\n"
+         "sensor: {lidar: velodyne_vlp16}\n"
+         "planner: {density: 4, resolution_radius: 1.2, view_distance: 16,\n"
+         "          scene_box: {min: [-14, -11, 0.3], max: [14, 11, 13]}}\n"
+         "flight: {vehicle: generic, takeoff: [-75, 0, 0],\n"
+         "         unknown_box: {min: [-14, -11, 0], max: [14, 11, 13]}}\n"
+         "evaluation: {registration_distance: 0.6, samples: 3000, visible_directions: 30,\n"
+         "             ceiling_views: 0}\n"
+         "limits: {max_views: 6}\n";
+}
+
 /// A survey that is served from a thread of its own.
 class Served {
  public:
@@ -87,14 +100,18 @@ run::SurveyRecord fed_by_simulator(const Rehearsal& rehearsal) {
   const tests::TestFolder folder;
   Served served(rehearsal, {.socket = folder / "socket", .port = {}});
   skycap_live::Survey client(served.address());
+  Carrier carrier(rehearsal);
   while (client.next().find("\"state\":\"view\"") != std::string::npos) {
     // Between two messages nobody else is at the survey.
-    if (!rehearsal.can_reach(served.survey())) {
-      client.refuse(served.survey().proposal().number, "walled in");
+    LiveSurvey& survey = served.survey();
+    if (!rehearsal.can_reach(survey)) {
+      client.refuse(survey.proposal().number, "walled in");
       continue;
     }
-    const geometry::Scan scan = rehearsal.scan(served.survey());
-    const std::string answer = client.add_points(numbers_of(scan), pose_of(scan), scan.pixels);
+    const auto [scan, is_on_way] = carrier.next(survey);
+    const std::string answer =
+        client.add_points(numbers_of(scan), pose_of(scan), scan.pixels, {},
+                          is_on_way ? skycap_live::From::way : skycap_live::From::view);
     if (answer.find("\"warning\"") != std::string::npos) throw std::runtime_error(answer);
   }
   client.finish();
@@ -103,7 +120,8 @@ run::SurveyRecord fed_by_simulator(const Rehearsal& rehearsal) {
 
 TEST(Serve, FedByTheSimulatorIsWhatPlanDoes) {
   for (const std::string& mission :
-       {short_mission(tests::quick_mission(), "see++"), short_mission(tests::flown_mission())}) {
+       {short_mission(tests::quick_mission(), "see++"), short_mission(tests::flown_mission()),
+        moving_mission("live: {pose_check: false}\n"), scanner_mission()}) {
     const Rehearsal rehearsal(mission);
     expect_same(fed_by_simulator(rehearsal), rehearsal.planned());
   }
@@ -174,6 +192,51 @@ class SessionAnswers : public testing::Test {
   Session session_{rehearsal_.mission(), survey_, [] { return std::string(); }};
 };
 
+/// Each in its place among the frames of the way, and the view only then.
+TEST(Serve, TakesScansFromTheWayInOrderAndOnce) {
+  const Rehearsal rehearsal(moving_mission());
+  const tests::TestFolder folder;
+  LiveSurvey survey = rehearsal.open(folder.path());
+  Session session(rehearsal.mission(), survey, [] { return std::string(); });
+  const auto ask = [&](const geometry::Scan& scan, int number, std::optional<int> on_way) {
+    nlohmann::ordered_json header{{"type", "scan"},
+                                  {"number", number},
+                                  {"pose", pose_of(scan)},
+                                  {"format", "points"},
+                                  {"points", scan.points.size()},
+                                  {"has_pixels", true}};
+    if (on_way) header["on_way"] = *on_way;
+    const std::vector<float> numbers = numbers_of(scan);
+    std::string payload(reinterpret_cast<const char*>(numbers.data()),
+                        numbers.size() * sizeof(float));
+    payload.append(reinterpret_cast<const char*>(scan.pixels.data()),
+                   scan.pixels.size() * sizeof scan.pixels[0]);
+    return session.answer({header, payload}).header;
+  };
+  const geometry::Scan first = rehearsal.scan(survey);
+  EXPECT_THAT(ask(first, 0, 0).dump(), HasSubstr("the way to the first view is not measured on"));
+  nlohmann::ordered_json answer = ask(first, 0, {});
+  ASSERT_GT(answer.at("frames").size(), 2U);
+  EXPECT_EQ(answer.at("on_way"), 0);
+  Carrier carrier(rehearsal);
+  const geometry::Scan frame = carrier.next(survey).scan;
+  EXPECT_THAT(ask(frame, 1, 1).dump(), HasSubstr("scan 1 on the way 1 is out of order: the next "
+                                                 "one is 1, or on the way to it 0"));
+  const std::size_t frames = answer.at("frames").size();
+  answer = ask(frame, 1, 0);
+  EXPECT_EQ(answer.at("is_new"), true);
+  EXPECT_EQ(answer.at("on_way"), 1);
+  EXPECT_EQ(answer.at("scans"), 1);
+  EXPECT_EQ(answer.at("frames").size(), frames - 1);
+  EXPECT_EQ(ask(frame, 1, 0).at("is_new"), false);
+  EXPECT_THAT(ask(first, 1, 0).dump(), HasSubstr("scan 1 on the way 0 was another one"));
+  // Frames are left out as one likes: the view may come at any time.
+  answer = ask(rehearsal.scan(survey), 1, {});
+  EXPECT_EQ(answer.at("scans"), 2);
+  EXPECT_EQ(answer.at("on_way"), 0);
+  EXPECT_EQ(ask(frame, 1, 0).at("is_new"), false);
+}
+
 TEST_F(SessionAnswers, ScansOutOfOrderAndTwice) {
   const geometry::Scan scan = rehearsal_.scan(survey_);
   const std::string payload = payload_of(scan);
@@ -205,7 +268,7 @@ TEST_F(SessionAnswers, GiveCloudsOfTheSensorsFrameTheirPixels) {
   EXPECT_THAT(ask(header, payload), HasSubstr("\"is_new\":true"));
   const ScanFound same = scan_of(points, scan.world_from_sensor, rehearsal_.mission());
   EXPECT_FALSE(same.scan.pixels.empty());
-  EXPECT_EQ(survey_.number_of(scan_id(same.scan)), 0U);
+  EXPECT_EQ(survey_.number_of(scan_id(same.scan)), ScanNumber{0});
 }
 
 TEST_F(SessionAnswers, WarnOfPosesThatAreWrong) {

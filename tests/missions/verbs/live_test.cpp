@@ -158,6 +158,11 @@ TEST_F(LiveVerbs, SayWhatIsMissing) {
   EXPECT_THAT(refusal(verb("finish")), HasSubstr("has no scan yet"));
   EXPECT_THAT(refusal(verb("next", {"--scan", "x.ply"})), HasSubstr("--pose"));
   EXPECT_THAT(refusal(verb("next", {"--refuse", "no"})), HasSubstr("no view to refuse"));
+  EXPECT_THAT(refusal(verb("next", {"--on-way"})), HasSubstr("--on-way goes with --scan"));
+  std::vector<std::string> on_way =
+      measured(geometry::look_at({2.5, 1.0, 1.2}, {0.0, 0.0, 0.3}), 0);
+  on_way.emplace_back("--on-way");
+  EXPECT_THAT(refusal(verb("next", on_way)), HasSubstr("give it sensor.capture: moving"));
   const std::string bare = folder_.write("bare.yaml", "evaluation: {registration_distance: 1}\n");
   EXPECT_THAT(refusal({"next", bare, "--survey", folder_ / "s"}), HasSubstr("planner.scene_box"));
 }
