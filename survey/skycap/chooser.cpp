@@ -159,8 +159,13 @@ class Chooser {
     if (settings_.stop.stop_requested()) throw Interrupted();
   }
 
+  /// That guessed gains count for beside known surface. What guesses are the beginning of is no
+  /// reason to leave it for later.
+  double guess_weight() const { return std::min(1.0, settings_.unseen_yield); }
+
   double score(const Candidate& c) const {
-    return c.gain.area / (settings_.view_price + (c.view.position - position_).norm());
+    const double gain = c.gain.area - (1.0 - guess_weight()) * c.gain.unseen;
+    return gain / (settings_.view_price + (c.view.position - position_).norm());
   }
 
   /// Indices of the candidates, best first.
@@ -220,7 +225,10 @@ class Chooser {
   /// Index into the views of the first stop of a batch of them.
   std::size_t first_of_batch(const std::vector<BatchView>& views) const {
     std::vector<float> weights;
-    for (const auto& target : field_.targets()) weights.push_back(target.weight);
+    const auto guess = static_cast<float>(guess_weight());
+    for (std::size_t t = 0; t < field_.targets().size(); ++t) {
+      weights.push_back(field_.targets()[t].weight * (field_.is_patch(t) ? guess : 1.0F));
+    }
     const BatchSettings batch{.size = static_cast<std::size_t>(settings_.batch),
                               .view_price = settings_.view_price};
     const std::vector<Stop> stops = pick_batch(views, std::move(weights), position_, batch);

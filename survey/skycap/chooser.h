@@ -22,7 +22,7 @@ struct ChooserSettings {
   int global_directions = 40;  ///< candidates spread evenly around all that is missing
   int refinements = 3;         ///< rounds of moving the best candidates
   int batch = 5;               ///< views planned ahead, at most 6; 1: the best next view only
-  double unseen_yield = 1.0;   ///< what comes of guessed gains (GuessYield), for best_gain
+  double unseen_yield = 1.0;   ///< what comes of guessed gains (GuessYield)
   unsigned threads = 1;        ///< zero: all processors
   std::stop_token stop{};      ///< has choose_view() throw Interrupted
   /// Between frames that are taken on the way to a view, in metres of way; zero: none are.

@@ -182,8 +182,9 @@ class GuessYield {
     if (promised <= 0.0) return;
     const double found = std::max(
         {0.0, std::min(beyond_known, promised), std::min(new_territory, most_at_once * promised)});
-    promised_ = memory * promised_ + promised;
-    found_ = memory * found_ + found;
+    const double kept = promised_ > 0.0 ? std::min(memory, most_past * promised / promised_) : 0.0;
+    promised_ = kept * promised_ + promised;
+    found_ = kept * found_ + found;
     value_ = std::clamp(found_ / promised_, least, most);
   }
 
@@ -194,6 +195,9 @@ class GuessYield {
  private:
   /// The share of the evidence that a scan keeps of those before it.
   static constexpr double memory = 0.6;
+  /// What was promised before counts for no more than so many times what a scan was promised: the
+  /// large finds at the beginning say little of the small promises at the end.
+  static constexpr double most_past = 2.0;
   /// A scan or two without any find must not end a survey, nor one great find keep it going.
   static constexpr double least = 0.15, most = 6.0, most_at_once = 10.0;
 

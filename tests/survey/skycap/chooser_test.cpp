@@ -217,6 +217,23 @@ TEST(Chooser, GoesWhereSomethingIsMissing) {
   EXPECT_EQ(choice->chances.size(), field.targets().size());
 }
 
+// Among the same candidates, wherever they are: who expects nothing of guesses takes the view that
+// covers most of what is known.
+TEST(Chooser, PrefersKnownSurfaceWhereGuessesCameToNothing) {
+  const Known known({2, 0, 0});
+  const skycap::GainField field = known.field();
+  const auto gain_at = [&](double yield) {
+    const auto choice = skycap::choose_view(
+        field, {}, anywhere, from, infinity,
+        {.view_price = 1e6, .refinements = 0, .batch = 1, .unseen_yield = yield});
+    return field.gain(choice.value().view);
+  };
+  const skycap::Gain hopeful = gain_at(1.0), sober = gain_at(0.0), lucky = gain_at(6.0);
+  EXPECT_GT(sober.area - sober.unseen, 1.02 * (hopeful.area - hopeful.unseen));
+  EXPECT_GT(hopeful.area, 1.02 * sober.area);
+  EXPECT_EQ(lucky.area, hopeful.area);
+}
+
 TEST(Chooser, DoesNotDependOnTheNumberOfThreads) {
   const Known known({2, 0, 0});
   const skycap::GainField field = known.field();

@@ -342,6 +342,17 @@ TEST(GuessYield, IsWhatCameOfThePromises) {
   EXPECT_DOUBLE_EQ(yield.value(), 12.6 / 5.2);
 }
 
+// All that came of a hundred square metres says little of one: half of what is believed is new.
+TEST(GuessYield, CountsThePastForAtMostTwiceThePresent) {
+  skycap::GuessYield yield;
+  yield.learn(100.0, 100.0, 0.0);
+  EXPECT_EQ(yield.value(), 1.0);
+  yield.learn(1.0, 0.0, 0.0);
+  EXPECT_DOUBLE_EQ(yield.value(), 2.0 / 3.0);
+  yield.learn(1.0, 0.0, 0.0);  // 0.6 of two from three
+  EXPECT_DOUBLE_EQ(yield.value(), 1.2 / 2.8);
+}
+
 // Relief and noise beside what is known are worth no more than was promised.
 TEST(GuessYield, IsAboveOneForNewTerritoryOnly) {
   skycap::GuessYield yield;
