@@ -234,21 +234,35 @@ void Bridge::proceed(double now) {
   survey_.next();
 }
 
+/// Whether the survey takes scans from the way that the robot is on.
+bool Bridge::measures_on_way() const {
+  return answer_.contains("on_way") && view_ && answer_.at("scans").get<std::size_t>() > 0;
+}
+
 void Bridge::take(const Waiting& waiting, const Whereabouts& whereabouts, double now) {
-  const bool must_arrive = config_.taking == Taking::arrived && !is_told_to_take_ && view_;
-  if (must_arrive && !(has_arrived(whereabouts) && has_settled(waiting.stamp))) return;
+  auto from = skycap_live::From::view;
+  if (config_.taking == Taking::arrived && view_) {
+    const bool is_there = has_arrived(whereabouts);
+    if (!is_there && measures_on_way()) {
+      from = skycap_live::From::way;
+      const auto period = static_cast<Stamp>(1e9 * answer_.at("frame_period_s").get<double>());
+      if (!is_told_to_take_ && waiting.stamp - last_taken_ < period) return;
+    } else if (!is_told_to_take_ && !(is_there && has_settled(waiting.stamp))) {
+      return;
+    }
+  }
   say("planning");
   doing_ = "waiting for a scan";
   is_told_to_take_ = false;
   const auto& [body, mount] = whereabouts;
   const auto covariance =
       config_.uses_covariance ? mount.covariance_at_sensor(body.pose) : std::optional<Covariance>();
-  const std::string answer =
-      survey_.add(waiting.scan, rows_of(mount.world_from_optical(body.pose)), error_of(covariance));
+  const std::string answer = survey_.add(waiting.scan, rows_of(mount.world_from_optical(body.pose)),
+                                         error_of(covariance), from);
   last_taken_ = waiting.stamp;
   ++taken_;
   asked_at_ = now;
-  learn(answer);
+  learn(answer, from);
   if (!holds_) return;
   complain("pose",
            "scan: set aside, its pose does not fit what is known; hold position, and send the "
@@ -277,12 +291,15 @@ void Bridge::obey(const std::string& command) {
   }
 }
 
-void Bridge::learn(const std::string& answer) {
+void Bridge::learn(const std::string& answer, skycap_live::From from) {
+  const bool held = holds_;
   answer_ = Json::parse(answer);
   view_.reset();
   if (const Json& view = answer_.at("view"); !view.is_null()) view_ = view_of(view);
   holds_ = answer_.contains("warning");
-  if (is_located_) publish_goal();
+  // A scan from the way changes nothing of where it leads.
+  const bool is_new = from == skycap_live::From::view || holds_ != held;
+  if (is_located_ && is_new) publish_goal();
   publish_status();
 }
 
@@ -320,7 +337,7 @@ void Bridge::publish_status() {
               {"warnings", complaints_.count()},
               {"last_warning", complaints_.last()}};
   for (const char* key : {"id", "state", "scans", "points", "set_aside", "view", "clearance_m",
-                          "believed_coverage", "pose"}) {
+                          "on_way", "believed_coverage", "pose"}) {
     if (answer_.contains(key)) status[key] = answer_[key];
   }
   const std::string text = status.dump(-1, ' ', true, Json::error_handler_t::replace);

@@ -21,7 +21,8 @@ namespace skycap::ros2 {
 
 /// When a scan is taken in.
 enum class Taking {
-  arrived,  ///< from the view that was asked for; the first one from anywhere, if none was
+  arrived,  ///< from the view that was asked for, and from the way there if the mission measures
+            ///< on it; the first one from anywhere, if none was
   every,    ///< whenever there is one
   command,  ///< when told
 };
@@ -45,7 +46,7 @@ struct BridgeConfig {
 struct SurveyPort {
   std::function<std::string()> next, finish;
   std::function<std::string(const SensorScan&, const skycap_live::Pose&,
-                            const skycap_live::PoseError&)>
+                            const skycap_live::PoseError&, skycap_live::From)>
       add;
   std::function<std::string(std::size_t id, const std::string& reason)> refuse;
 };
@@ -116,10 +117,11 @@ class Bridge {
   std::optional<Mount> newest_mount() const;
   bool has_arrived(const Whereabouts& whereabouts) const;
   bool has_settled(Stamp stamp) const;
+  bool measures_on_way() const;
   Stamp newest_stamp() const;
   void take(const Waiting& waiting, const Whereabouts& whereabouts, double now);
   void locate();
-  void learn(const std::string& answer);
+  void learn(const std::string& answer, skycap_live::From from = skycap_live::From::view);
   void publish_goal();
   void publish_status();
 

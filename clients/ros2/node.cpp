@@ -24,13 +24,13 @@ SurveyPort port_of(skycap_live::Survey& survey) {
           .finish = [&] { return survey.finish(); },
           .add =
               [&](const SensorScan& scan, const skycap_live::Pose& pose,
-                  const skycap_live::PoseError& error) {
+                  const skycap_live::PoseError& error, skycap_live::From from) {
                 if (const auto* cloud = std::get_if<CloudScan>(&scan)) {
-                  return survey.add_cloud(cloud->xyz, pose, error);
+                  return survey.add_cloud(cloud->xyz, pose, error, from);
                 }
                 const auto& image = std::get<DepthScan>(scan);
                 return survey.add_depth(image.depth, image.width, image.height, image.unit, pose,
-                                        error, image.lens);
+                                        error, image.lens, from);
               },
           .refuse = [&](std::size_t id, const std::string& why) { return survey.refuse(id, why); }};
 }

@@ -117,7 +117,10 @@ std::string answer_json(const LiveSurvey& survey, const file::Mission& mission) 
             {"points", survey.planner().cloud().size()},
             {"set_aside", survey.set_aside()},
             {"view", proposal.view ? view_json(*proposal.view, mission) : Json()}};
-  if (mission.sensor.is_moving()) json["on_way"] = survey.on_way();
+  if (mission.sensor.is_moving()) {
+    json["on_way"] = survey.on_way();
+    json["frame_period_s"] = mission.sensor.frame_period;
+  }
   if (proposal.view && !proposal.way.points.empty()) {
     json["path"] = way_json(proposal.way);
     json["clearance_m"] = proposal.way.clearance;

@@ -39,11 +39,12 @@ class Robot : public testing::Test {
                    .finish = [this] { return ++finished_, std::string(); },
                    .add =
                        [this](const SensorScan& scan, const skycap_live::Pose& pose,
-                              const skycap_live::PoseError& error) {
+                              const skycap_live::PoseError& error, skycap_live::From from) {
                          if (!refusal_.empty()) throw skycap_live::Refused(refusal_);
                          scans_.push_back(scan);
                          poses_.push_back(pose);
                          errors_.push_back(error);
+                         origins_.push_back(from);
                          return answer_;
                        },
                    .refuse =
@@ -99,6 +100,7 @@ class Robot : public testing::Test {
   std::vector<SensorScan> scans_;
   std::vector<skycap_live::Pose> poses_;
   std::vector<skycap_live::PoseError> errors_;
+  std::vector<skycap_live::From> origins_;
   std::vector<std::string> warnings_, refused_;
   std::vector<Goal> goals_;
   std::unique_ptr<Bridge> bridge_;
@@ -133,6 +135,31 @@ TEST_F(Robot, GivesAScanOnceItIsAtTheView) {
   ASSERT_THAT(scans_, SizeIs(1));
   EXPECT_THAT(std::get<CloudScan>(scans_[0]).xyz, ElementsAre(1, 2, 3));
   EXPECT_THAT(poses_[0], ElementsAre(1, 0, 0, 5, 0, 1, 0, 0, 0, 0, 1, 0));
+  EXPECT_THAT(warnings_, IsEmpty());
+}
+
+TEST_F(Robot, GivesScansFromTheWayWhereTheMissionMeasuresThere) {
+  const std::string begun = R"({"on_way": 0, "frame_period_s": 1.0, )";
+  answer_ = begun + std::string(wanted).substr(1);
+  begin();
+  for (int step = 0; step <= 40; ++step) odometry(8.0 + 0.05 * step, {2.5 * 0.05 * step, 0, 0});
+  for (const double time : {8.5, 9.02, 9.4, 9.6}) {  // within tolerance from 9.88 s on
+    cloud(time);
+    proceed();
+  }
+  using skycap_live::From;
+  EXPECT_THAT(origins_, ElementsAre(From::way, From::way));  // a second and more apart
+  EXPECT_NEAR(poses_.back()[3], 2.5 * 1.6, 1e-9);
+  EXPECT_THAT(goals_, SizeIs(1));  // the way stands
+  cloud(9.95);                     // there, but not at rest
+  proceed();
+  EXPECT_THAT(origins_, SizeIs(2));
+  for (int step = 1; step <= 20; ++step) odometry(10.0 + 0.05 * step, {5, 0, 0});
+  cloud(10.9);
+  proceed();
+  ASSERT_THAT(origins_, SizeIs(3));
+  EXPECT_EQ(origins_.back(), From::view);
+  EXPECT_THAT(goals_, SizeIs(2));
   EXPECT_THAT(warnings_, IsEmpty());
 }
 
