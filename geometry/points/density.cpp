@@ -6,6 +6,19 @@
 #include "geometry/parallel.h"
 
 namespace skycap::geometry {
+namespace {
+
+/// Calls `work` for each place below `count`, from several threads.
+template <typename Work>
+void for_each_place(std::size_t count, unsigned threads, const Work& work) {
+  constexpr std::size_t task_size = 1024;
+  parallel_for((count + task_size - 1) / task_size, threads, [&](std::size_t task) {
+    const std::size_t end = std::min(count, (task + 1) * task_size);
+    for (std::size_t i = task * task_size; i < end; ++i) work(i);
+  });
+}
+
+}  // namespace
 
 DensityMap::DensityMap(const DensityConfig& config)
     : config_(config),
@@ -48,34 +61,38 @@ void DensityMap::insert(std::span<const Eigen::Vector3f> points, std::uint32_t v
   given_up_.resize(cloud_.size(), 0);
 }
 
+std::uint32_t DensityMap::neighbours_of(std::uint32_t point) const {
+  return static_cast<std::uint32_t>(index_.grid().count_within(
+      cloud_.positions[point], config_.radius, static_cast<std::size_t>(config_.core_threshold)));
+}
+
 // Counts the neighbours of new points, and of old non-core points that have new neighbours; labels
 // those that have enough as core. Returns the old points among them, whose promotion can change
 // labels farther than r from anything new.
-std::vector<std::uint32_t> DensityMap::promote_dense_points(std::uint32_t first_new) {
-  const PointGrid& grid = index_.grid();
-  const auto threshold = static_cast<std::size_t>(config_.core_threshold);
+std::vector<std::uint32_t> DensityMap::promote_dense_points(std::uint32_t first_new,
+                                                            unsigned threads) {
+  const auto threshold = static_cast<std::uint32_t>(config_.core_threshold);
+  std::vector<NonCore> counted = non_core_;
+  for (auto point = first_new; point < cloud_.size(); ++point) counted.push_back({point, 0});
+  for_each_place(counted.size(), threads, [&](std::size_t i) {
+    const std::uint32_t point = counted[i].point;
+    if (point >= first_new || index_.grid().is_near_batch(cloud_.positions[point])) {
+      counted[i].neighbours = neighbours_of(point);
+    }
+  });
+
   std::vector<std::uint32_t> promoted;
   std::vector<NonCore> still_non_core;
-  still_non_core.reserve(non_core_.size());
-  for (NonCore entry : non_core_) {
-    if (grid.is_near_batch(cloud_.positions[entry.point])) {
-      const auto count = static_cast<std::uint32_t>(
-          grid.count_within(cloud_.positions[entry.point], config_.radius, threshold));
-      if (count != entry.neighbours) given_up_[entry.point] = 0;
-      entry.neighbours = count;
-    }
-    if (entry.neighbours >= threshold) {
-      promoted.push_back(entry.point);
+  for (std::size_t i = 0; i < counted.size(); ++i) {
+    const auto [point, neighbours] = counted[i];
+    const bool is_old = i < non_core_.size();
+    if (is_old && neighbours != non_core_[i].neighbours) given_up_[point] = 0;
+    if (neighbours < threshold) {
+      still_non_core.push_back(counted[i]);
+    } else if (is_old) {
+      promoted.push_back(point);
     } else {
-      still_non_core.push_back(entry);
-    }
-  }
-  for (auto point = first_new; point < cloud_.size(); ++point) {
-    const std::size_t count = grid.count_within(cloud_.positions[point], config_.radius, threshold);
-    if (count >= threshold) {
       labels_[point] = PointLabel::core;
-    } else {
-      still_non_core.push_back({point, static_cast<std::uint32_t>(count)});
     }
   }
   non_core_ = std::move(still_non_core);
@@ -122,11 +139,11 @@ bool DensityMap::is_frontier(std::uint32_t point) const {
   return has_core && has_outlier;
 }
 
-DensityUpdate DensityMap::relabel() {
+DensityUpdate DensityMap::relabel(unsigned threads) {
   DensityUpdate update;
   update.first_new = labelled_;
   labelled_ = static_cast<std::uint32_t>(cloud_.size());
-  const std::vector<std::uint32_t> promoted = promote_dense_points(update.first_new);
+  const std::vector<std::uint32_t> promoted = promote_dense_points(update.first_new, threads);
   for (const std::uint32_t point : promoted) {
     if (labels_[point] == PointLabel::frontier) update.lost_frontiers.push_back(point);
     labels_[point] = PointLabel::core;
@@ -136,9 +153,17 @@ DensityUpdate DensityMap::relabel() {
   std::vector<std::uint32_t> points = points_to_relabel(promoted);
   const auto first_new = std::lower_bound(points.begin(), points.end(), update.first_new);
   std::rotate(points.begin(), first_new, points.end());
-  for (const std::uint32_t point : points) {
+  std::vector<std::uint8_t> is_one(points.size());
+  const bool in_order = config_.rule == OutlierRule::labelled;
+  if (!in_order) {
+    for_each_place(points.size(), threads,
+                   [&](std::size_t i) { is_one[i] = is_frontier(points[i]) ? 1 : 0; });
+  }
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const std::uint32_t point = points[i];
     const PointLabel before = labels_[point];
-    labels_[point] = is_frontier(point) ? PointLabel::frontier : PointLabel::outlier;
+    const bool is_now = in_order ? is_frontier(point) : is_one[i] != 0;
+    labels_[point] = is_now ? PointLabel::frontier : PointLabel::outlier;
     if (labels_[point] == before) continue;
     auto& changed = before == PointLabel::frontier ? update.lost_frontiers : update.new_frontiers;
     changed.push_back(point);

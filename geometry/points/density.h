@@ -60,8 +60,9 @@ class DensityMap {
   /// before; they are said to come from scan `view`. relabel() must follow. What is kept does not
   /// depend on `threads` (zero: all processors).
   void insert(std::span<const Eigen::Vector3f> points, std::uint32_t view, unsigned threads = 1);
-  /// Brings the labels up to date with all insertions since the last call.
-  DensityUpdate relabel();
+  /// Brings the labels up to date with all insertions since the last call. They do not depend on
+  /// `threads`, either.
+  DensityUpdate relabel(unsigned threads = 1);
 
   /// Makes a frontier an outlier until a new point arrives within r of it.
   void give_up(std::uint32_t frontier);
@@ -73,7 +74,8 @@ class DensityMap {
   };
 
   void keep_if_room(std::span<const Eigen::Vector3f> points, std::uint32_t view);
-  std::vector<std::uint32_t> promote_dense_points(std::uint32_t first_new);
+  std::vector<std::uint32_t> promote_dense_points(std::uint32_t first_new, unsigned threads);
+  std::uint32_t neighbours_of(std::uint32_t point) const;
   std::vector<std::uint32_t> points_to_relabel(const std::vector<std::uint32_t>& promoted) const;
   bool is_frontier(std::uint32_t point) const;
 

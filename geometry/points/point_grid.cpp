@@ -235,12 +235,13 @@ std::size_t PointGrid::count_within(const Eigen::Vector3f& query, double radius,
   return count;
 }
 
-void PointGrid::find_within(const Eigen::Vector3f& query, double radius,
-                            std::vector<Neighbour>& found) const {
+// The same for balls of any size, and all points within them.
+template <typename Visit>
+void PointGrid::visit_within(const Eigen::Vector3f& query, double radius, Visit visit) const {
   const double bricks_across = 2.0 * radius / (brick_width * cell_size_) + 1.0;
   if (bricks_across * bricks_across * bricks_across <= static_cast<double>(bricks_.size() + 8)) {
     visit_near(query, radius, [&](float distance, std::uint32_t index) {
-      found.push_back({distance, index});
+      visit(distance, index);
       return false;
     });
     return;
@@ -249,8 +250,20 @@ void PointGrid::find_within(const Eigen::Vector3f& query, double radius,
   const auto squared_radius = static_cast<float>(radius * radius);
   for (std::uint32_t index = 0; index < nodes_.size(); ++index) {
     const float distance = squared_distance(query, point(index));
-    if (distance <= squared_radius) found.push_back({distance, index});
+    if (distance <= squared_radius) visit(distance, index);
   }
+}
+
+void PointGrid::find_within(const Eigen::Vector3f& query, double radius,
+                            std::vector<Neighbour>& found) const {
+  visit_within(query, radius, [&](float distance, std::uint32_t index) {
+    found.push_back({distance, index});
+  });
+}
+
+void PointGrid::find_points_within(const Eigen::Vector3f& query, double radius,
+                                   std::vector<Eigen::Vector3f>& found) const {
+  visit_within(query, radius, [&](float, std::uint32_t index) { found.push_back(point(index)); });
 }
 
 double PointGrid::empty_length(const Eigen::Vector3f& origin,

@@ -75,6 +75,10 @@ class PointGrid {
   void find_within(const Eigen::Vector3f& query, double radius,
                    std::vector<Neighbour>& found) const;
 
+  /// The same, the points themselves.
+  void find_points_within(const Eigen::Vector3f& query, double radius,
+                          std::vector<Eigen::Vector3f>& found) const;
+
   /// A lower bound, zero or more, of the length of the empty piece of the ray from `origin` along
   /// the unit vector `direction`: on it no point is within cell_size() of the ray. Large steps are
   /// certain only in wide empty space; zero says nothing.
@@ -130,6 +134,8 @@ class PointGrid {
   void mark_surroundings(const Cell& cell);
   template <typename Visit>
   static bool visit_bricks(const Cell& lowest, const Cell& highest, Visit visit);
+  template <typename Visit>
+  void visit_within(const Eigen::Vector3f& query, double radius, Visit visit) const;
   template <typename Visit>
   void visit_near(const Eigen::Vector3f& query, double radius, Visit visit) const;
 

@@ -7,6 +7,8 @@
 #include <numeric>
 #include <utility>
 
+#include "geometry/parallel.h"
+
 namespace skycap::geometry {
 namespace {
 
@@ -72,10 +74,12 @@ float below(double x) {
 }
 float above(double x) { return -below(-x); }
 
-/// A tree of four-fold nodes, each made by parting twice.
+/// A tree of four-fold nodes, each made by parting twice. What is below the root's four parts is
+/// made by threads of its own; nodes stand in the order in which one thread would make them.
 class TreeBuilder {
  public:
-  explicit TreeBuilder(std::vector<Facet>& facets) : facets_(facets), order_(facets.size()) {
+  TreeBuilder(std::vector<Facet>& facets, unsigned threads)
+      : facets_(facets), order_(facets.size()) {
     std::iota(order_.begin(), order_.end(), 0U);
     for (const Facet& facet : facets) {
       const Corners of(facet);
@@ -83,7 +87,7 @@ class TreeBuilder {
       box.extend(of.corner + of.to_second).extend(of.corner + of.to_third);
       boxes_.push_back(box);
     }
-    if (!facets.empty()) build(0, static_cast<std::uint32_t>(facets.size()), 0);
+    if (!facets.empty()) build_root(static_cast<std::uint32_t>(facets.size()), threads);
     std::vector<Facet> sorted;
     sorted.reserve(facets.size());
     for (const std::uint32_t i : order_) sorted.push_back(facets[i]);
@@ -93,27 +97,54 @@ class TreeBuilder {
   std::vector<Node> nodes;
 
  private:
-  std::uint32_t build(std::uint32_t begin, std::uint32_t end, int depth) {
-    const auto index = static_cast<std::uint32_t>(nodes.size());
-    nodes.emplace_back();
-    const std::uint32_t middle = part(begin, end, depth);
-    const std::array<std::uint32_t, lanes + 1> cuts{begin, part(begin, middle, depth), middle,
-                                                    part(middle, end, depth), end};
+  using Cuts = std::array<std::uint32_t, lanes + 1>;
+
+  void build_root(std::uint32_t count, unsigned threads) {
+    const Cuts cuts = cuts_of(0, count, 0);
+    Node root;
+    std::array<std::vector<Node>, lanes> parts;
+    parallel_for(lanes, threads, [&](std::size_t lane) {
+      set_lane(root, static_cast<int>(lane), cuts, 0, parts[lane]);
+    });
+    nodes.push_back(root);
+    for (int lane = 0; lane < lanes; ++lane) {
+      const auto first = static_cast<std::uint32_t>(nodes.size());
+      const auto move_behind = [first](std::uint32_t& child) {
+        if ((child & FacetNode::is_facet) == 0) child += first;
+      };
+      move_behind(nodes.front().child[lane]);
+      for (Node& node : parts[lane]) {
+        for (int i = 0; i < lanes; ++i) move_behind(node.child[i]);
+        nodes.push_back(node);
+      }
+    }
+  }
+
+  std::uint32_t build(std::uint32_t begin, std::uint32_t end, int depth, std::vector<Node>& made) {
+    const auto index = static_cast<std::uint32_t>(made.size());
+    made.emplace_back();
+    const Cuts cuts = cuts_of(begin, end, depth);
     Node node;
-    for (int lane = 0; lane < lanes; ++lane)
-      set_lane(node, lane, cuts[lane], cuts[lane + 1], depth);
-    nodes[index] = node;
+    for (int lane = 0; lane < lanes; ++lane) set_lane(node, lane, cuts, depth, made);
+    made[index] = node;
     return index;
   }
 
-  void set_lane(Node& node, int lane, std::uint32_t begin, std::uint32_t end, int depth) {
+  Cuts cuts_of(std::uint32_t begin, std::uint32_t end, int depth) {
+    const std::uint32_t middle = part(begin, end, depth);
+    return {begin, part(begin, middle, depth), middle, part(middle, end, depth), end};
+  }
+
+  void set_lane(Node& node, int lane, const Cuts& cuts, int depth, std::vector<Node>& made) {
+    const std::uint32_t begin = cuts[lane], end = cuts[lane + 1];
     Eigen::AlignedBox3d box;
     for (std::uint32_t slot = begin; slot < end; ++slot) box.extend(boxes_[order_[slot]]);
     for (int axis = 0; axis < 3; ++axis) {
       node.low[axis][lane] = begin < end ? below(box.min()[axis]) : far_away;
       node.high[axis][lane] = begin < end ? above(box.max()[axis]) : far_away;
     }
-    node.child[lane] = end - begin > 1 ? build(begin, end, depth + 1) : begin | FacetNode::is_facet;
+    node.child[lane] =
+        end - begin > 1 ? build(begin, end, depth + 1, made) : begin | FacetNode::is_facet;
   }
 
   /// Sorts slots into two parts, neither empty, and returns where the second begins.
@@ -231,10 +262,10 @@ std::vector<Facet> facets_of(const Mesh& mesh) {
 
 }  // namespace
 
-FacetTree facet_tree(const Mesh& mesh) {
+FacetTree facet_tree(const Mesh& mesh, unsigned threads) {
   FacetTree tree;
   tree.facets = facets_of(mesh);
-  tree.nodes = std::move(TreeBuilder(tree.facets).nodes);
+  tree.nodes = std::move(TreeBuilder(tree.facets, threads).nodes);
   return tree;
 }
 

@@ -15,8 +15,8 @@ struct FacetTree {
   std::vector<FacetNode> nodes;  ///< the first one is the root
 };
 
-/// Triangles without area are passed over.
-FacetTree facet_tree(const Mesh& mesh);
+/// Triangles without area are passed over. The tree does not depend on `threads`.
+FacetTree facet_tree(const Mesh& mesh, unsigned threads);
 
 /// The facet's point nearest to `point`.
 Eigen::Vector3d nearest_on(const Facet& facet, const Eigen::Vector3d& point);

@@ -126,9 +126,9 @@ void MeshDistance::Impl::find_all(const Points& points, std::span<const CurveEnt
   });
 }
 
-MeshDistance::MeshDistance(const Mesh& mesh) : impl_(std::make_unique<Impl>()) {
+MeshDistance::MeshDistance(const Mesh& mesh, unsigned threads) : impl_(std::make_unique<Impl>()) {
   validate(mesh);
-  impl_->tree = facet_tree(mesh);
+  impl_->tree = facet_tree(mesh, threads);
 }
 
 MeshDistance::MeshDistance(MeshDistance&&) noexcept = default;

@@ -15,9 +15,9 @@ namespace skycap::geometry {
 /// number of threads.
 class MeshDistance {
  public:
-  /// Keeps no reference to `mesh`; triangles without area are passed over. Throws what validate()
-  /// of mesh.h throws.
-  explicit MeshDistance(const Mesh& mesh);
+  /// Built on `threads` threads (zero: all processors). Keeps no reference to `mesh`; triangles
+  /// without area are passed over. Throws what validate() of mesh.h throws.
+  explicit MeshDistance(const Mesh& mesh, unsigned threads = 0);
   MeshDistance(MeshDistance&&) noexcept;
   MeshDistance& operator=(MeshDistance&&) noexcept;
   ~MeshDistance();

@@ -37,7 +37,7 @@ struct DistanceTally {
 class AccuracyMeter {
  public:
   explicit AccuracyMeter(const geometry::Mesh& truth, unsigned threads = 0)
-      : distance_(truth), threads_(threads) {}
+      : distance_(truth, threads), threads_(threads) {}
 
   void add(std::span<const Eigen::Vector3f> points);
 

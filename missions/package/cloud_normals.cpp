@@ -15,18 +15,24 @@ using Eigen::Vector3f;
 constexpr std::size_t points_in_a_task = 4096;
 
 /// The normal of the plane that fits `neighbours` best, towards `to_sensor`.
-Vector3f plane_normal(const geometry::PointGrid& surface,
-                      std::span<const geometry::Neighbour> neighbours, const Vector3f& point,
+Vector3f plane_normal(std::span<const Vector3f> neighbours, const Vector3f& point,
                       const Vector3f& to_sensor) {
   if (neighbours.size() < 3) return to_sensor;
   // Sums relative to the point itself: single precision is then enough.
   Vector3f sum = Vector3f::Zero();
-  Eigen::Matrix3f squares = Eigen::Matrix3f::Zero();
-  for (const geometry::Neighbour& neighbour : neighbours) {
-    const Vector3f offset = surface.point(neighbour.index) - point;
+  float xx = 0.0F, xy = 0.0F, xz = 0.0F, yy = 0.0F, yz = 0.0F, zz = 0.0F;
+  for (const Vector3f& neighbour : neighbours) {
+    const Vector3f offset = neighbour - point;
     sum += offset;
-    squares += offset * offset.transpose();
+    xx += offset.x() * offset.x();
+    xy += offset.x() * offset.y();
+    xz += offset.x() * offset.z();
+    yy += offset.y() * offset.y();
+    yz += offset.y() * offset.z();
+    zz += offset.z() * offset.z();
   }
+  Eigen::Matrix3f squares;
+  squares << xx, xy, xz, xy, yy, yz, xz, yz, zz;
   const Vector3f mean = sum / static_cast<float>(neighbours.size());
   const Eigen::Matrix3f covariance = squares - sum * mean.transpose();
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3f> axes(covariance);
@@ -50,15 +56,15 @@ std::vector<Vector3f> cloud_normals(const geometry::PointCloud& cloud,
   const std::size_t tasks = (cloud.size() + points_in_a_task - 1) / points_in_a_task;
   geometry::parallel_for(tasks, threads, [&](std::size_t task) {
     if (stop.stop_requested()) return;
-    std::vector<geometry::Neighbour> neighbours;
+    std::vector<Vector3f> neighbours;
     const std::size_t end = std::min(cloud.size(), (task + 1) * points_in_a_task);
     for (std::size_t i = task * points_in_a_task; i < end; ++i) {
       const Vector3f& point = cloud.positions[i];
       neighbours.clear();
-      grid.find_within(point, radius, neighbours);
+      grid.find_points_within(point, radius, neighbours);
       const Vector3f to_sensor =
           (sensors[cloud.views[i]] - point.cast<double>()).normalized().cast<float>();
-      normals[i] = plane_normal(grid, neighbours, point, to_sensor);
+      normals[i] = plane_normal(neighbours, point, to_sensor);
     }
   });
   if (stop.stop_requested()) normals.clear();

@@ -115,7 +115,7 @@ SurveyScene::SurveyScene(const file::Mission& mission, const std::filesystem::pa
       samples_(geometry::sample_surface(model_, mission.evaluation.samples, sample_seed)),
       view_distance_(derived::view_distance_of(mission)),
       view_sphere_(sphere_around(samples_.points, view_distance_)),
-      truth_(std::make_shared<geometry::MeshDistance>(model_)),
+      truth_(std::make_shared<geometry::MeshDistance>(model_, mission.threads)),
       radius_(mission.evaluation.radius.value_or(derived::view_limits(mission).stand_off)),
       reachable_(reachable_space()) {
   if (std::max(radius_, derived::view_limits(mission).stand_off) <= 0.0) truth_.reset();

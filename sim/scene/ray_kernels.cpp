@@ -7,8 +7,11 @@ namespace skycap::sim {
 const RayKernels& ray_kernels() {
 #ifdef SKYCAP_X86_64_KERNELS
   // A single ray meets eight boxes at a time, half a register of AVX-512.
-  static const RayKernels for_avx512 = {avx512_ray_kernels.cast, avx512_ray_kernels.cast_distances,
-                                        avx2_ray_kernels.cast_single, avx2_ray_kernels.is_blocked,
+  static const RayKernels for_avx512 = {avx512_ray_kernels.cast,
+                                        avx512_ray_kernels.cast_tile,
+                                        avx512_ray_kernels.cast_tile_distances,
+                                        avx2_ray_kernels.cast_single,
+                                        avx2_ray_kernels.is_blocked,
                                         avx512_ray_kernels.blocked};
   switch (geometry::instruction_set()) {
     case geometry::InstructionSet::avx512:

@@ -60,8 +60,11 @@ struct SingleRay {
 /// not to be cast get the distance -1; normal and triangle mean nothing where there is no hit.
 struct RayKernels {
   void (*cast)(const RayTarget&, RayPacket&, std::uint32_t lanes, float reach);
+  /// All lanes of several packets that run side by side, as those of a tile of an image: quicker
+  /// than one after the other where triangles are large beside the tile.
+  void (*cast_tile)(const RayTarget&, RayPacket* packets, int count, float reach);
   /// The same without normals and triangles.
-  void (*cast_distances)(const RayTarget&, RayPacket&, std::uint32_t lanes, float reach);
+  void (*cast_tile_distances)(const RayTarget&, RayPacket* packets, int count, float reach);
   void (*cast_single)(const RayTarget&, SingleRay&, float reach);
   /// Whether a ray hits anything; writes no results.
   bool (*is_blocked)(const RayTarget&, const SingleRay&, float reach);

@@ -5,6 +5,7 @@
 
 #include "sim/scene/lanes_body.h"
 #include "sim/scene/ray_kernels.h"
+#include "sim/scene/tile_walk_body.h"
 #include "sim/scene/tree_walk_body.h"
 #include "sim/scene/triangle_test_body.h"
 
@@ -96,22 +97,21 @@ inline Nearest<Lanes> nearest_hits(const RayTarget& target, const Rays<Lanes>& r
   return nearest;
 }
 
-inline Rays<Floats> rays_of(const RayPacket& packet) {
-  Rays<Floats> rays;
-  for (int axis = 0; axis < 3; ++axis) {
-    rays.origin[axis] = load(packet.origin[axis]);
-    rays.direction[axis] = load(packet.direction[axis]);
-  }
-  return rays;
+template <Wish wish>
+void cast_packet(const RayTarget& target, RayPacket& packet, std::uint32_t lanes, float reach) {
+  store_nearest<wish>(nearest_hits<wish>(target, rays_of(packet), lanes, reach), packet);
 }
 
 template <Wish wish>
-void cast_packet(const RayTarget& target, RayPacket& packet, std::uint32_t lanes, float reach) {
-  const Nearest<Floats> nearest = nearest_hits<wish>(target, rays_of(packet), lanes, reach);
-  store(chosen(nearest.is_hit, nearest.distance, every<Floats>(-1.0F)), packet.distance);
-  if constexpr (wish == Wish::surface) {
-    store(nearest.triangle, reinterpret_cast<float*>(packet.triangle));
-    for (int axis = 0; axis < 3; ++axis) store(nearest.normal[axis], packet.normal[axis]);
+void cast_tile(const RayTarget& target, RayPacket* packets, int count, float reach) {
+  constexpr int least_count = 4;  // for fewer it takes longer than one by one
+  const bool is_tree =
+      target.copies == nullptr && target.tree.ref != 0 && (target.tree.ref & tree_ref_entries) == 0;
+  if (is_tree && count >= least_count && cast_together<wish>(target.tree, packets, count, reach)) {
+    return;
+  }
+  for (int i = 0; i < count; ++i) {
+    cast_packet<wish>(target, packets[i], RayPacket::all_lanes, reach);
   }
 }
 
@@ -142,7 +142,11 @@ std::uint32_t blocked(const RayTarget& target, const RayPacket& packet, std::uin
 
 }  // namespace
 
-const RayKernels SKYCAP_KERNELS_NAME = {cast_packet<Wish::surface>, cast_packet<Wish::distance>,
-                                        cast_single, is_blocked, blocked};
+const RayKernels SKYCAP_KERNELS_NAME = {cast_packet<Wish::surface>,
+                                        cast_tile<Wish::surface>,
+                                        cast_tile<Wish::distance>,
+                                        cast_single,
+                                        is_blocked,
+                                        blocked};
 
 }  // namespace skycap::sim

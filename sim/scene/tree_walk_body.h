@@ -22,17 +22,22 @@ namespace {
 // tree's padding and the way into its own frame may add.
 constexpr float triangle_padding = 0x1p-16F, copy_padding = 0x1p-13F;
 
+// All rays of a bundle as they meet whole nodes, nearer bounds and then farther ones: the greatest
+// origins, mirrored and padded, and the bounds of the inverse directions.
+struct BundleBounds {
+  int nearer[3];  // where in a node's planes the nearer bounds begin
+  float padding;
+  Floats origin[3], least_inverse[3], greatest_inverse[3];
+};
+
 // Rays whose directions have the same signs, as they meet boxes.
 template <typename Lanes>
 struct Bundle {
   MaskOf<Lanes> active;
-  int nearer[3];             // where in a node's planes the nearer bounds begin
   Lanes origin_for_near[3];  // mirrored and padded
   Lanes origin_for_far[3];   // the same, negated
   Lanes inverse[3];          // of the direction's magnitude
-  // The same for whole nodes, nearer bounds and then farther ones: the greatest origins, and the
-  // bounds of the inverse directions.
-  Floats bounding_origin[3], least_inverse[3], greatest_inverse[3];
+  BundleBounds bounds;
 };
 
 template <typename Lanes>
@@ -44,6 +49,54 @@ struct Interval {
 };
 
 template <typename Lanes>
+inline Lanes inverse_magnitude(const Lanes& direction) {
+  constexpr float least_direction = 1e-18F;  // keeps the inverse and products with it finite
+  return every<Lanes>(1.0F) / greatest(magnitude(direction), every<Lanes>(least_direction));
+}
+
+// Of rays whose origins and inverse directions lie in these intervals.
+template <typename Interval>
+[[gnu::always_inline]] inline BundleBounds make_bounds(const Interval (&origins)[3],
+                                                       const Interval (&inverses)[3],
+                                                       const bool (&is_backwards)[3], float extent,
+                                                       float padding_share) {
+  float farthest = 0.0F;
+  for (const Interval& origin : origins) {
+    farthest = greatest(farthest, greatest(origin.greatest, -origin.least));
+  }
+  BundleBounds bounds;
+  bounds.padding = padding_share * (farthest + extent);
+  for (int axis = 0; axis < 3; ++axis) {
+    const bool mirrored = is_backwards[axis];
+    bounds.nearer[axis] = mirrored ? TreeNode::arity : 0;
+    bounds.least_inverse[axis] = every<Floats>(inverses[axis].least);
+    bounds.greatest_inverse[axis] = every<Floats>(inverses[axis].greatest);
+    const float least_origin = mirrored ? -origins[axis].greatest : origins[axis].least;
+    const float greatest_origin = mirrored ? -origins[axis].least : origins[axis].greatest;
+    bounds.origin[axis] = chosen(mask_of(0xFF), every<Floats>(greatest_origin + bounds.padding),
+                                 every<Floats>(bounds.padding - least_origin));
+  }
+  return bounds;
+}
+
+// Rays within bounds that may be those of more rays.
+template <typename Lanes>
+[[gnu::always_inline]] inline Bundle<Lanes> make_bundle(const Rays<Lanes>& rays,
+                                                        const MaskOf<Lanes>& active,
+                                                        const BundleBounds& bounds) {
+  Bundle<Lanes> bundle;
+  bundle.active = active;
+  bundle.bounds = bounds;
+  for (int axis = 0; axis < 3; ++axis) {
+    const Lanes origin = bounds.nearer[axis] != 0 ? -rays.origin[axis] : rays.origin[axis];
+    bundle.origin_for_near[axis] = origin + every<Lanes>(bounds.padding);
+    bundle.origin_for_far[axis] = every<Lanes>(bounds.padding) - origin;
+    bundle.inverse[axis] = inverse_magnitude(rays.direction[axis]);
+  }
+  return bundle;
+}
+
+template <typename Lanes>
 [[gnu::always_inline]] inline Bundle<Lanes> make_bundle(const Rays<Lanes>& rays,
                                                         const MaskOf<Lanes>& active,
                                                         const bool (&is_backwards)[3], float extent,
@@ -51,31 +104,11 @@ template <typename Lanes>
   using All = Interval<Lanes>;
   const All origins[3] = {
       {rays.origin[0], active}, {rays.origin[1], active}, {rays.origin[2], active}};
-  Bundle<Lanes> bundle;
-  bundle.active = active;
-  float farthest = 0.0F;
-  for (const All& origin : origins) {
-    farthest = greatest(farthest, greatest(origin.greatest, -origin.least));
-  }
-  const float padding = padding_share * (farthest + extent);
-  constexpr float least_direction = 1e-18F;  // keeps the inverse and products with it finite
-  for (int axis = 0; axis < 3; ++axis) {
-    const bool mirrored = is_backwards[axis];
-    bundle.nearer[axis] = mirrored ? TreeNode::arity : 0;
-    const Lanes origin = mirrored ? -rays.origin[axis] : rays.origin[axis];
-    bundle.origin_for_near[axis] = origin + every<Lanes>(padding);
-    bundle.origin_for_far[axis] = every<Lanes>(padding) - origin;
-    bundle.inverse[axis] = every<Lanes>(1.0F) /
-                           greatest(magnitude(rays.direction[axis]), every<Lanes>(least_direction));
-    const All inverses(bundle.inverse[axis], active);
-    bundle.least_inverse[axis] = every<Floats>(inverses.least);
-    bundle.greatest_inverse[axis] = every<Floats>(inverses.greatest);
-    const float least_origin = mirrored ? -origins[axis].greatest : origins[axis].least;
-    const float greatest_origin = mirrored ? -origins[axis].least : origins[axis].greatest;
-    bundle.bounding_origin[axis] = chosen(mask_of(0xFF), every<Floats>(greatest_origin + padding),
-                                          every<Floats>(padding - least_origin));
-  }
-  return bundle;
+  const All inverses[3] = {{inverse_magnitude(rays.direction[0]), active},
+                           {inverse_magnitude(rays.direction[1]), active},
+                           {inverse_magnitude(rays.direction[2]), active}};
+  return make_bundle(rays, active,
+                     make_bounds(origins, inverses, is_backwards, extent, padding_share));
 }
 
 // The nearer bounds of eight children along an axis, and their farther ones, both mirrored if need
@@ -111,6 +144,22 @@ inline std::uint32_t entered(const Floats& near_and_far, float most, float (&nea
   }
   return boxes;
 #endif
+}
+
+// No later than any of the rays enters a child of the node, no sooner than any leaves it, the
+// latter negated.
+template <bool is_one_ray>
+[[gnu::always_inline]] inline Floats box_distances(const TreeNode& node,
+                                                   const BundleBounds& bounds) {
+  Floats all;
+#pragma GCC unroll 3
+  for (int axis = 0; axis < 3; ++axis) {
+    const Floats way = near_and_far(node.planes[axis], bounds.nearer[axis]) - bounds.origin[axis];
+    Floats distance = way * bounds.least_inverse[axis];
+    if constexpr (!is_one_ray) distance = least(distance, way * bounds.greatest_inverse[axis]);
+    all = axis == 0 ? distance : greatest(all, distance);
+  }
+  return all;
 }
 
 inline void prefetch(TreeRef ref) {
@@ -164,15 +213,33 @@ class Walk {
     }
   }
 
- private:
+  // What has been met up to now is no farther than this.
   float farthest() const {
     return greatest_lane(chosen(bundle_.active, nearest_.distance, every<Lanes>(-infinity)));
   }
 
+  // Whether one of the rays enters a child.
+  [[gnu::always_inline]] bool is_entered(const TreeNode& node, int child) const {
+    Lanes enter = every<Lanes>(0.0F), leave = -nearest_.distance;  // the latter negated
+#pragma GCC unroll 3
+    for (int axis = 0; axis < 3; ++axis) {
+      const float* const near = node.planes[axis] + bundle_.bounds.nearer[axis] + child;
+      const float* const far =
+          node.planes[axis] + (bundle_.bounds.nearer[axis] ^ TreeNode::arity) + child;
+      enter = greatest(
+          enter, (every<Lanes>(*near) - bundle_.origin_for_near[axis]) * bundle_.inverse[axis]);
+      leave = greatest(leave,
+                       (every<Lanes>(*far) - bundle_.origin_for_far[axis]) * bundle_.inverse[axis]);
+    }
+    return any(is_at_most(enter, -leave) & bundle_.active);
+  }
+
+ private:
   // The child to visit next; the others that have to be visited are noted.
   [[gnu::always_inline]] TreeRef enter(const TreeNode& node, float most) {
     alignas(64) float near[TreeNode::arity];
-    std::uint32_t children = entered(bounds(node), most, near);
+    std::uint32_t children =
+        entered(box_distances<__is_same(Lanes, float)>(node, bundle_.bounds), most, near);
     if constexpr (__is_same(Lanes, float)) {
       if (children == 0) return 0;
       const auto* const first = to_visit_.end;
@@ -199,37 +266,6 @@ class Walk {
       nearest_near = near[child];
     }
     return nearest;
-  }
-
-  // No later than any of the rays enters a child, no sooner than any leaves it.
-  [[gnu::always_inline]] Floats bounds(const TreeNode& node) const {
-    Floats all;
-#pragma GCC unroll 3
-    for (int axis = 0; axis < 3; ++axis) {
-      const Floats way =
-          near_and_far(node.planes[axis], bundle_.nearer[axis]) - bundle_.bounding_origin[axis];
-      Floats distance = way * bundle_.least_inverse[axis];
-      if constexpr (!__is_same(Lanes, float)) {
-        distance = least(distance, way * bundle_.greatest_inverse[axis]);
-      }
-      all = axis == 0 ? distance : greatest(all, distance);
-    }
-    return all;
-  }
-
-  // Whether one of the rays enters a child.
-  [[gnu::always_inline]] bool is_entered(const TreeNode& node, int child) const {
-    Lanes enter = every<Lanes>(0.0F), leave = -nearest_.distance;  // the latter negated
-#pragma GCC unroll 3
-    for (int axis = 0; axis < 3; ++axis) {
-      const float* const near = node.planes[axis] + bundle_.nearer[axis] + child;
-      const float* const far = node.planes[axis] + (bundle_.nearer[axis] ^ TreeNode::arity) + child;
-      enter = greatest(
-          enter, (every<Lanes>(*near) - bundle_.origin_for_near[axis]) * bundle_.inverse[axis]);
-      leave = greatest(leave,
-                       (every<Lanes>(*far) - bundle_.origin_for_far[axis]) * bundle_.inverse[axis]);
-    }
-    return any(is_at_most(enter, -leave) & bundle_.active);
   }
 
   const Bundle<Lanes>& bundle_;

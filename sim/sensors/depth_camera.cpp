@@ -1,6 +1,7 @@
 #include "sim/sensors/depth_camera.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <cstring>
@@ -63,30 +64,45 @@ void store_depths(const RayPacket& packet, const Limits& limits, std::ptrdiff_t 
   }
 }
 
+// Calls `work` with the first column and row of each packet of a tile.
+template <typename Work>
+void for_each_packet(int left, int right, int top, int bottom, const Work& work) {
+  for (int row = top; row < bottom; row += packet_rows) {
+    for (int column = left; column < right; column += packet_columns) work(column, row);
+  }
+}
+
 // Casts the rays of one band of an image like the table's, whose depths go to `depths`, row by row
 // with the table's stride. Rays of the padding are cast like the others, being copies, and their
 // depths are never read.
 template <typename Rays>
 void cast_band(const Scene::Trees& trees, const RayTable& table, const Rays& rays,
                const Limits& limits, int first_row, float* depths) {
-  RayPacket packet;
-  rays.begin(packet);
+  std::array<RayPacket, packets_in_tile> packets;
+  for (RayPacket& packet : packets) rays.begin(packet);
   const RayKernels& kernels = ray_kernels();
-  const auto cast = limits.min_cosine > 0.0F ? kernels.cast : kernels.cast_distances;
+  const auto cast = limits.min_cosine > 0.0F ? kernels.cast_tile : kernels.cast_tile_distances;
   const int rows = std::min(band_rows, table.height - first_row);
   const std::ptrdiff_t stride = table.stride;
-  for (int tile = 0; tile < table.width; tile += tile_columns) {
-    const int tile_end = std::min(tile + tile_columns, table.width);
-    for (int row = 0; row < rows; row += packet_rows) {
-      for (int column = tile; column < tile_end; column += packet_columns) {
-        rays.aim(column, first_row + row, packet);
-        if (trees.surfaces.empty()) {
-          cast(trees.target, packet, RayPacket::all_lanes, limits.max_depth);
-        } else {
-          cast_at_surfaces(trees, packet, RayPacket::all_lanes, limits.max_depth);
+  for (int top = 0; top < rows; top += tile_rows) {
+    for (int left = 0; left < table.width; left += tile_columns) {
+      const int bottom = std::min(top + tile_rows, rows);
+      const int right = std::min(left + tile_columns, table.width);
+      int count = 0;
+      for_each_packet(left, right, top, bottom, [&](int column, int row) {
+        rays.aim(column, first_row + row, packets[count++]);
+      });
+      if (trees.surfaces.empty()) {
+        cast(trees.target, packets.data(), count, limits.max_depth);
+      } else {
+        for (int i = 0; i < count; ++i) {
+          cast_at_surfaces(trees, packets[i], RayPacket::all_lanes, limits.max_depth);
         }
-        store_depths(packet, limits, stride, depths + row * stride + column);
       }
+      count = 0;
+      for_each_packet(left, right, top, bottom, [&](int column, int row) {
+        store_depths(packets[count++], limits, stride, depths + row * stride + column);
+      });
     }
   }
 }

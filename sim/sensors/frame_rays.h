@@ -19,8 +19,9 @@ namespace skycap::sim {
 /// A packet of rays is four columns wide.
 inline constexpr int packet_columns = 4;
 inline constexpr int packet_rows = RayPacket::width / packet_columns;
-inline constexpr int tile_columns = 32;  ///< packets are cast tile by tile: cached nodes are shared
-inline constexpr int band_rows = 32;     ///< a band of tiles is one thread's piece of work
+inline constexpr int tile_columns = 16, tile_rows = 16;  ///< of the packets that are cast together
+inline constexpr int packets_in_tile = tile_columns * tile_rows / RayPacket::width;
+inline constexpr int band_rows = 32;  ///< a band of tiles is one thread's piece of work
 
 inline constexpr int column_block = 32;  ///< that noise is drawn for at once
 

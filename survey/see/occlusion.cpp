@@ -39,4 +39,19 @@ bool OcclusionTest::is_occluded(const Vector3d& frontier, double offset,
   return false;
 }
 
+std::vector<Vector3d> directions_to_near(const geometry::PointGrid& points,
+                                         const Eigen::Vector3f& place, double radius,
+                                         const Vector3d& from) {
+  std::vector<geometry::Neighbour> near;
+  points.find_within(place, radius, near);
+  std::vector<Vector3d> directions;
+  directions.reserve(near.size());
+  for (const geometry::Neighbour& neighbour : near) {
+    const Vector3d ray = points.point(neighbour.index).cast<double>() - from;
+    const double range = ray.norm();
+    if (range > 1e-9) directions.push_back(ray / range);
+  }
+  return directions;
+}
+
 }  // namespace skycap::survey::see

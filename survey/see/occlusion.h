@@ -2,6 +2,8 @@
 /// SEE++ (§III-A).
 #pragma once
 
+#include <vector>
+
 #include <Eigen/Core>
 
 #include "geometry/points/point_grid.h"
@@ -36,5 +38,11 @@ class OcclusionTest {
   const geometry::PointGrid& grid_;
   OcclusionConfig config_;
 };
+
+/// The unit vectors from `from` to the points that are within `radius` of `place`, but for those
+/// that are at `from` itself.
+std::vector<Eigen::Vector3d> directions_to_near(const geometry::PointGrid& points,
+                                                const Eigen::Vector3f& place, double radius,
+                                                const Eigen::Vector3d& from);
 
 }  // namespace skycap::survey::see

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "geometry/error.h"
+#include "geometry/parallel.h"
 #include "geometry/points/density.h"
 #include "geometry/points/spaced_points.h"
 #include "geometry/points/spatial_index.h"
@@ -19,22 +20,11 @@
 #include "survey/stopwatch.h"
 
 namespace skycap::survey::see {
-namespace {
 
 using Eigen::Vector3d;
 using Eigen::Vector3f;
 using geometry::ScanSpan;
 using geometry::View;
-
-std::vector<Vector3f> points_inside(const ScanSpan& scan, const Eigen::AlignedBox3d& box) {
-  std::vector<Vector3f> inside;
-  for (const Vector3f& point : scan.points) {
-    if (box.contains(point.cast<double>())) inside.push_back(point);
-  }
-  return inside;
-}
-
-}  // namespace
 
 struct SeePlanner::Impl {
   Impl(const SeeConfig& see_config, const geometry::Camera& sensor)
@@ -104,7 +94,7 @@ std::optional<View> SeePlanner::Impl::update(const ScanSpan& scan) {
   std::vector<Vector3f> cropped;
   std::span<const Vector3f> points = scan.points;
   if (config.scene_box) {
-    cropped = points_inside(scan, *config.scene_box);
+    cropped = points_inside(scan.points, *config.scene_box);
     points = cropped;
   }
   scans.push_back(geometry::view_of(scan.world_from_sensor));
@@ -141,7 +131,7 @@ void SeePlanner::Impl::insert(std::span<const Vector3f> points) {
 }
 
 void SeePlanner::Impl::classify() {
-  const geometry::DensityUpdate update = map.relabel();
+  const geometry::DensityUpdate update = map.relabel(config.threads);
   for (const std::uint32_t point : update.lost_frontiers) {
     frontiers.erase(point);
     put_off.forget(point);
@@ -216,19 +206,25 @@ void SeePlanner::Impl::adjust_target(std::span<const Vector3f> points) {
   if (frontiers.empty()) propose_for_new_frontiers();
 }
 
-// The proactive part (§III-B), for the proposals nearest to the sensor.
+// The proactive part (§III-B), for the proposals nearest to the sensor, each for itself.
 void SeePlanner::Impl::avoid_occlusions() {
   std::set<std::uint32_t> checked;
   bool dropped = true;
   while (std::exchange(dropped, false)) {
     list_proposals();
+    std::vector<std::uint32_t> unchecked;
     for (const std::size_t i :
          nearest_views(proposal_positions, scans.back().position, config.visibility_update_limit)) {
+      if (checked.insert(proposal_points[i]).second) unchecked.push_back(proposal_points[i]);
+    }
+    std::vector<std::uint8_t> is_of_use(unchecked.size());
+    geometry::parallel_for(unchecked.size(), config.threads, [&](std::size_t i) {
       if (stop.stop_requested()) throw Interrupted();
-      const std::uint32_t point = proposal_points[i];
-      if (!checked.insert(point).second) continue;
-      if (avoid_occlusion(point, frontiers.at(point))) continue;
-      set_aside(point);
+      is_of_use[i] = avoid_occlusion(unchecked[i], frontiers.at(unchecked[i])) ? 1 : 0;
+    });
+    for (std::size_t i = 0; i < unchecked.size(); ++i) {
+      if (is_of_use[i] != 0) continue;
+      set_aside(unchecked[i]);
       dropped = true;
     }
     // What was given up makes room for the frontiers around it.
@@ -244,16 +240,8 @@ bool SeePlanner::Impl::avoid_occlusion(std::uint32_t point, Frontier& frontier) 
 
   const Vector3d observing = (frontier.observed_from - frontier.position).normalized();
   const Vector3d centre = frontier.position + offset * observing;
-  std::vector<geometry::Neighbour> near;
-  occluders.grid().find_within(map.cloud().positions[point], config.occlusion_search_distance,
-                               near);
-  std::vector<Vector3d> occluded;
-  occluded.reserve(near.size());
-  for (const geometry::Neighbour& neighbour : near) {
-    const Vector3d ray = occluders.grid().point(neighbour.index).cast<double>() - centre;
-    const double range = ray.norm();
-    if (range > 1e-9) occluded.push_back(ray / range);
-  }
+  const std::vector<Vector3d> occluded = directions_to_near(
+      occluders.grid(), map.cloud().positions[point], config.occlusion_search_distance, centre);
   const Vector3d known_clear =
       config.observing_direction == ObservingDirection::ray ? observing : -frontier.observed_along;
   const auto cap = geometry::clearest_direction(occluded, known_clear, config.cap);
@@ -279,16 +267,22 @@ void SeePlanner::Impl::update_graph() {
   list_proposals();
   graph.keep_only(proposal_points);
   const std::size_t limit = config.visibility_update_limit;
-  for (const std::size_t j : nearest_views(proposal_positions, scans.back().position, limit)) {
+  const auto updated = nearest_views(proposal_positions, scans.back().position, limit);
+  geometry::parallel_for(proposal_points.size(), config.threads,
+                         [&](std::size_t i) { clear_offset(frontiers.at(proposal_points[i])); });
+  std::vector<std::vector<std::uint32_t>> seen(updated.size());
+  geometry::parallel_for(updated.size(), config.threads, [&](std::size_t i) {
     if (stop.stop_requested()) throw Interrupted();
+    const std::size_t j = updated[i];
     const Frontier& from = frontiers.at(proposal_points[j]);
-    std::vector<std::uint32_t> seen;
     for (const std::size_t k : nearest_views(proposal_positions, proposal_positions[j], limit)) {
       if (k != j && sees(from, frontiers.at(proposal_points[k]))) {
-        seen.push_back(proposal_points[k]);
+        seen[i].push_back(proposal_points[k]);
       }
     }
-    graph.set_edges(proposal_points[j], std::move(seen));
+  });
+  for (std::size_t i = 0; i < updated.size(); ++i) {
+    graph.set_edges(proposal_points[updated[i]], std::move(seen[i]));
   }
 }
 

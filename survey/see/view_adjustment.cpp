@@ -36,6 +36,15 @@ Vector3d centroid(std::span<const Eigen::Vector3f> points) {
   return sum / static_cast<double>(points.size());
 }
 
+std::vector<Eigen::Vector3f> points_inside(std::span<const Eigen::Vector3f> points,
+                                           const Eigen::AlignedBox3d& box) {
+  std::vector<Eigen::Vector3f> inside;
+  for (const Eigen::Vector3f& point : points) {
+    if (box.contains(point.cast<double>())) inside.push_back(point);
+  }
+  return inside;
+}
+
 bool adjust_view(Frontier& frontier, AttemptRecord& record, const Vector3d& scan_centroid,
                  const ViewPlacement& placement, Adjustment adjustment) {
   if (adjustment == Adjustment::none) return false;

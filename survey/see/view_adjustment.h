@@ -6,8 +6,9 @@
 
 #include <limits>
 #include <span>
+#include <vector>
 
-#include <Eigen/Core>
+#include <Eigen/Geometry>
 
 #include "survey/see/frontier.h"
 #include "survey/see/readings.h"
@@ -24,6 +25,9 @@ struct AttemptRecord {
 };
 
 Eigen::Vector3d centroid(std::span<const Eigen::Vector3f> points);
+/// Those of the points that lie in a box, in their order.
+std::vector<Eigen::Vector3f> points_inside(std::span<const Eigen::Vector3f> points,
+                                           const Eigen::AlignedBox3d& box);
 
 /// Moves the view of a frontier that a scan with the centroid `scan_centroid` failed to resolve.
 /// While the centroids come nearer to the frontier, the view is shifted away from them, over the

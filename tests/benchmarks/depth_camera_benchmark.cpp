@@ -74,8 +74,7 @@ struct OwnCaster {
     for (int axis = 0; axis < 3; ++axis) packet.direction[axis][lane] = direction[axis];
   }
   void cast(float reach) {
-    sim::ray_kernels().cast_distances(scene.trees().target, packet, sim::RayPacket::all_lanes,
-                                      reach);
+    sim::ray_kernels().cast_tile_distances(scene.trees().target, &packet, 1, reach);
   }
   float range(int lane) const { return packet.distance[lane]; }
 };

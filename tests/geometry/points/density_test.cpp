@@ -53,14 +53,14 @@ std::vector<std::uint32_t> frontiers(const std::vector<PointLabel>& labels) {
 }
 
 // Sparse noise around a sphere, in batches: points turn core late, through neighbours of
-// neighbours.
+// neighbours. On one thread, and on several.
 TEST(DensityMap, LabelsEqualAFullRecomputationAfterEveryUpdate) {
   for (const int threshold : {4, 5, 8}) {
     DensityMap map({.radius = 0.12, .core_threshold = threshold, .spacing = 0.02});
     std::vector<std::uint32_t> frontiers_before;
     for (std::uint32_t batch = 0; batch < 8; ++batch) {
       map.insert(tests::noisy_sphere(150, 0.05, batch), batch);
-      const DensityUpdate update = map.relabel();
+      const DensityUpdate update = map.relabel(threshold == 5 ? 3 : 1);
 
       const auto expected = labels_by_definition(map.cloud().positions, 0.12, threshold);
       ASSERT_EQ(map.labels(), expected) << "batch " << batch << ", k " << threshold;

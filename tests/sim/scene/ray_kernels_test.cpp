@@ -17,6 +17,7 @@
 #include "geometry/error.h"
 #include "sim/scene/ray_tree.h"
 #include "tests/sim/shapes.h"
+#include "tests/sim/triangle_soup.h"
 #include "tests/support/instruction_sets.h"
 
 namespace skycap::sim {
@@ -25,66 +26,6 @@ namespace {
 using Eigen::Vector3d;
 using Eigen::Vector3f;
 using geometry::Mesh;
-
-constexpr float infinity = std::numeric_limits<float>::infinity();
-
-RTCDevice device() {
-  struct Release {
-    void operator()(RTCDevice device) const { rtcReleaseDevice(device); }
-  };
-  static const std::unique_ptr<RTCDeviceTy, Release> only(rtcNewDevice("threads=1"));
-  return only.get();
-}
-
-/// Triangles with their coordinates as they are.
-class Triangles {
- public:
-  explicit Triangles(const Mesh& mesh) : tree_(device(), mesh, Vector3d::Zero(), 1) {}
-  RayTarget target() const { return {tree_.root()}; }
-
- private:
-  RayTree tree_;
-};
-
-SingleRay ray(const Vector3f& origin, const Vector3f& direction) {
-  SingleRay made = {};
-  for (int axis = 0; axis < 3; ++axis) {
-    made.origin[axis] = origin[axis];
-    made.direction[axis] = direction[axis];
-  }
-  return made;
-}
-
-SingleRay cast(const Triangles& triangles, SingleRay ray, float reach = infinity) {
-  ray_kernels().cast_single(triangles.target(), ray, reach);
-  return ray;
-}
-
-Vector3f random_point(std::mt19937_64& random, float size) {
-  std::uniform_real_distribution<float> coordinate(-size, size);
-  const float x = coordinate(random), y = coordinate(random), z = coordinate(random);
-  return {x, y, z};
-}
-
-/// Triangles of all kinds: large, small, thin, flat along an axis, some twice. The first, which no
-/// ray hits, makes the extent of a scene with any of the others that of the whole.
-Mesh random_soup(std::mt19937_64& random, std::size_t count) {
-  Mesh mesh{{{12, 12, 12}}, {{0, 0, 0}}};
-  std::uniform_int_distribution<int> kind(0, 4);
-  while (mesh.triangles.size() < count) {
-    const int what = kind(random);
-    const Vector3f a = random_point(random, 4.0F);
-    Vector3f b = a + random_point(random, what == 0 ? 6.0F : 0.5F);
-    Vector3f c = a + random_point(random, what == 0 ? 6.0F : 0.5F);
-    if (what == 1) c = a + 0.7F * (b - a) + random_point(random, 1e-6F);  // next to a line
-    if (what == 2) b.z() = c.z() = a.z();
-    const auto first = static_cast<std::uint32_t>(mesh.vertices.size());
-    for (const Vector3f& corner : {a, b, c}) mesh.vertices.emplace_back(corner.cast<double>());
-    mesh.triangles.push_back({first, first + 1, first + 2});
-    if (what == 3) mesh.triangles.push_back({first + 1, first, first + 2});
-  }
-  return mesh;
-}
 
 /// Rays that have something to decide: at corners, along edges, across, from inside a plane.
 std::vector<SingleRay> hard_rays(const Mesh& mesh, std::mt19937_64& random, std::size_t count) {
@@ -167,17 +108,18 @@ TEST(RayKernels, AgreeInPacketsAloneAndOnEveryInstructionSet) {
     const InstructionSetLimit limit(set);
     for (std::size_t first = 0; first + RayPacket::width <= rays.size();
          first += RayPacket::width) {
-      RayPacket packet, distances;
+      RayPacket packet, distances, some;
       for (int lane = 0; lane < RayPacket::width; ++lane) {
         for (int axis = 0; axis < 3; ++axis) {
           packet.origin[axis][lane] = rays[first + lane].origin[axis];
           packet.direction[axis][lane] = rays[first + lane].direction[axis];
         }
       }
-      distances = packet;
+      some = distances = packet;
       const auto lanes = static_cast<std::uint32_t>(random() & RayPacket::all_lanes);
       ray_kernels().cast(triangles.target(), packet, RayPacket::all_lanes, infinity);
-      ray_kernels().cast_distances(triangles.target(), distances, lanes, infinity);
+      ray_kernels().cast(triangles.target(), some, lanes, infinity);
+      ray_kernels().cast_tile_distances(triangles.target(), &distances, 1, infinity);
       // A reach that some of the hits are beyond.
       constexpr float reach = 0.5F;
       const std::uint32_t blocked = ray_kernels().blocked(triangles.target(), packet, lanes, reach);
@@ -185,7 +127,8 @@ TEST(RayKernels, AgreeInPacketsAloneAndOnEveryInstructionSet) {
         const SingleRay& one = expected[first + lane];
         const bool is_asked = (lanes >> lane & 1U) != 0;
         ASSERT_EQ(packet.distance[lane], one.distance) << static_cast<int>(set);
-        ASSERT_EQ(distances.distance[lane], is_asked ? one.distance : -1.0F);
+        ASSERT_EQ(some.distance[lane], is_asked ? one.distance : -1.0F);
+        ASSERT_EQ(distances.distance[lane], one.distance);
         ASSERT_EQ(cast(triangles, rays[first + lane]).distance, one.distance);
         ASSERT_EQ((blocked >> lane & 1U) != 0,
                   is_asked && one.distance >= 0.0F && one.distance <= reach);

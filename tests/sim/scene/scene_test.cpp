@@ -118,7 +118,7 @@ void expect_no_leaks(const Scene& scene, const Vector3d& origin,
       const Vector3d& target = targets[std::min(first + lane, targets.size() - 1)];
       aim(packet, lane, scene, origin, target - origin);
     }
-    ray_kernels().cast_distances(scene.trees().target, packet, RayPacket::all_lanes, reach);
+    ray_kernels().cast_tile_distances(scene.trees().target, &packet, 1, reach);
     for (const float distance : packet.distance) packet_leaks += distance < 0.0F ? 1 : 0;
   }
   EXPECT_EQ(leaks, 0) << "single rays";

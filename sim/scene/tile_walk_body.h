@@ -1,0 +1,167 @@
+/// The way of many packets of rays that run side by side down a tree of triangles, as of a tile of
+/// an image. For the sources that are compiled for one instruction set each.
+///
+/// All packets go down together, by the bounds of all their rays, as far as the nearest boxes that
+/// they may meet, most of them leaves: each packet then begins there, nearest box first, and not at
+/// the root. Where boxes are too many for that, since triangles are small beside the tile, every
+/// packet walks on its own. Which of these is done decides the time alone.
+#pragma once
+
+#include <cstdint>
+
+#include "sim/scene/lanes_body.h"
+#include "sim/scene/ray_kernels.h"
+#include "sim/scene/tree_layout.h"
+#include "sim/scene/tree_walk_body.h"
+#include "sim/scene/triangle_test_body.h"
+
+namespace skycap::sim {
+namespace {
+
+// Where packets begin: boxes, nearest first.
+class Entries {
+ public:
+  struct Entry {
+    const TreeNode* node;
+    int child;
+    float near;  // none of the rays enters the box sooner
+
+    TreeRef ref() const { return node->children[child]; }
+    bool is_leaf() const { return (ref() & tree_ref_entries) != 0; }
+    const TreeNode& node_below() const { return *reinterpret_cast<const TreeNode*>(ref()); }
+  };
+
+  const Entry* begin() const { return entries_; }
+  const Entry* end() const { return entries_ + count_; }
+
+  // Those below a node that rays within the bounds enter, and no farther than `reach`. False, with
+  // nothing done, if there is no room for them.
+  bool add_below(const TreeNode& node, const BundleBounds& bounds, float reach) {
+    alignas(64) float near[TreeNode::arity];
+    std::uint32_t children = entered(box_distances<false>(node, bounds), reach, near);
+    if (count_ + __builtin_popcount(children) > most) return false;
+    for (; children != 0; children &= children - 1) {
+      const int child = __builtin_ctz(children);
+      int place = count_++;
+      for (; place > 0 && entries_[place - 1].near > near[child]; --place) {
+        entries_[place] = entries_[place - 1];
+      }
+      entries_[place] = {&node, child, near[child]};
+    }
+    return true;
+  }
+
+  // Puts in place of nodes that rays enter no farther than `expected`, as long as there is room,
+  // what is below them.
+  void open_nearest(const BundleBounds& bounds, float reach, float expected) {
+    for (int i = 0; i < count_ && entries_[i].near <= expected;) {
+      const Entry opened = entries_[i];
+      if (opened.is_leaf() || !add_below(opened.node_below(), bounds, reach)) {
+        ++i;
+        continue;
+      }
+      // What is below it was added behind it.
+      --count_;
+      for (int later = i; later < count_; ++later) entries_[later] = entries_[later + 1];
+    }
+  }
+
+ private:
+  static constexpr int most = 32;
+  Entry entries_[most];
+  int count_ = 0;
+};
+
+// The bounds of all rays; false if their directions have not all the same signs.
+inline bool bound(const RayPacket* packets, int count, float extent, BundleBounds& bounds) {
+  struct Bounds {
+    float least, greatest;
+  } origins[3], inverses[3];
+  bool is_backwards[3];
+  for (int axis = 0; axis < 3; ++axis) {
+    Floats least_origin = load(packets[0].origin[axis]), greatest_origin = least_origin;
+    Floats least_direction = load(packets[0].direction[axis]);
+    Floats greatest_direction = least_direction;
+    for (int i = 1; i < count; ++i) {
+      const Floats origin = load(packets[i].origin[axis]);
+      const Floats direction = load(packets[i].direction[axis]);
+      least_origin = least(least_origin, origin);
+      greatest_origin = greatest(greatest_origin, origin);
+      least_direction = least(least_direction, direction);
+      greatest_direction = greatest(greatest_direction, direction);
+    }
+    origins[axis] = {least_lane(least_origin), greatest_lane(greatest_origin)};
+    const float from = least_lane(least_direction), to = greatest_lane(greatest_direction);
+    is_backwards[axis] = from < 0.0F;
+    if (is_backwards[axis] && to >= 0.0F) return false;
+    // Division is monotone: the bounds of the inverses are the inverses of the bounds.
+    const float one = inverse_magnitude(from), other = inverse_magnitude(to);
+    inverses[axis] = {least(one, other), greatest(one, other)};
+  }
+  bounds = make_bounds(origins, inverses, is_backwards, extent, triangle_padding);
+  return true;
+}
+
+template <Wish wish>
+void store_nearest(const Nearest<Floats>& nearest, RayPacket& packet) {
+  store(chosen(nearest.is_hit, nearest.distance, every<Floats>(-1.0F)), packet.distance);
+  if constexpr (wish == Wish::surface) {
+    store(nearest.triangle, reinterpret_cast<float*>(packet.triangle));
+    for (int axis = 0; axis < 3; ++axis) store(nearest.normal[axis], packet.normal[axis]);
+  }
+}
+
+inline Rays<Floats> rays_of(const RayPacket& packet) {
+  Rays<Floats> rays;
+  for (int axis = 0; axis < 3; ++axis) {
+    rays.origin[axis] = load(packet.origin[axis]);
+    rays.direction[axis] = load(packet.direction[axis]);
+  }
+  return rays;
+}
+
+inline Nearest<Floats> nothing_within(float reach) {
+  const Floats zero = every<Floats>(0.0F);
+  return {every<Floats>(reach), is_less(zero, zero), zero, {zero, zero, zero}};
+}
+
+// How far its rays go.
+template <Wish wish>
+[[gnu::noinline]] float cast_from(const Entries& entries, const TreeRoot& tree,
+                                  const BundleBounds& bounds, RayPacket& packet, float reach) {
+  const Rays<Floats> rays = rays_of(packet);
+  const Bundle<Floats> bundle = make_bundle(rays, mask_of(RayPacket::all_lanes), bounds);
+  const TriangleTest<Floats, wish> test(rays, bundle.active, tree.extent, nullptr);
+  Nearest<Floats> nearest = nothing_within(reach);
+  Walk<Floats> walk(bundle, nearest);
+  float most = reach;
+  for (const Entries::Entry& entry : entries) {
+    if (entry.near > most) break;
+    if (!walk.is_entered(*entry.node, entry.child)) continue;
+    if (!entry.is_leaf()) {
+      walk(entry.ref(), test);
+    } else if (!test(entry.ref(), bundle.active, nearest)) {
+      continue;
+    }
+    most = walk.farthest();
+  }
+  store_nearest<wish>(nearest, packet);
+  return most;
+}
+
+// False, with nothing done, if they have to be cast one by one.
+template <Wish wish>
+bool cast_together(const TreeRoot& tree, RayPacket* packets, int count, float reach) {
+  BundleBounds bounds;
+  if (!bound(packets, count, tree.extent, bounds)) return false;
+  Entries entries;
+  entries.add_below(*reinterpret_cast<const TreeNode*>(tree.ref), bounds, reach);
+  // Behind what the first packet meets there is most often nothing to be seen by the others either.
+  const float expected = cast_from<wish>(entries, tree, bounds, packets[0], reach);
+  entries.open_nearest(bounds, reach, expected);
+  for (int i = 1; i < count; ++i) cast_from<wish>(entries, tree, bounds, packets[i], reach);
+  return true;
+}
+
+}  // namespace
+}  // namespace skycap::sim
