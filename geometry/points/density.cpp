@@ -72,30 +72,31 @@ std::uint32_t DensityMap::neighbours_of(std::uint32_t point) const {
 std::vector<std::uint32_t> DensityMap::promote_dense_points(std::uint32_t first_new,
                                                             unsigned threads) {
   const auto threshold = static_cast<std::uint32_t>(config_.core_threshold);
-  std::vector<NonCore> counted = non_core_;
-  for (auto point = first_new; point < cloud_.size(); ++point) counted.push_back({point, 0});
-  for_each_place(counted.size(), threads, [&](std::size_t i) {
-    const std::uint32_t point = counted[i].point;
-    if (point >= first_new || index_.grid().is_near_batch(cloud_.positions[point])) {
-      counted[i].neighbours = neighbours_of(point);
-    }
+  for_each_place(non_core_.size(), threads, [&](std::size_t i) {
+    NonCore& entry = non_core_[i];
+    if (!index_.grid().is_near_batch(cloud_.positions[entry.point])) return;
+    const std::uint32_t count = neighbours_of(entry.point);
+    if (count != entry.neighbours) given_up_[entry.point] = 0;
+    entry.neighbours = count;
+  });
+  std::vector<std::uint32_t> promoted;
+  std::erase_if(non_core_, [&](const NonCore& entry) {
+    if (entry.neighbours >= threshold) promoted.push_back(entry.point);
+    return entry.neighbours >= threshold;
   });
 
-  std::vector<std::uint32_t> promoted;
-  std::vector<NonCore> still_non_core;
-  for (std::size_t i = 0; i < counted.size(); ++i) {
-    const auto [point, neighbours] = counted[i];
-    const bool is_old = i < non_core_.size();
-    if (is_old && neighbours != non_core_[i].neighbours) given_up_[point] = 0;
-    if (neighbours < threshold) {
-      still_non_core.push_back(counted[i]);
-    } else if (is_old) {
-      promoted.push_back(point);
-    } else {
+  std::vector<std::uint32_t> counts(cloud_.size() - first_new);
+  for_each_place(counts.size(), threads, [&](std::size_t i) {
+    counts[i] = neighbours_of(first_new + static_cast<std::uint32_t>(i));
+  });
+  for (auto point = first_new; point < cloud_.size(); ++point) {
+    const std::uint32_t count = counts[point - first_new];
+    if (count >= threshold) {
       labels_[point] = PointLabel::core;
+    } else {
+      non_core_.push_back({point, count});
     }
   }
-  non_core_ = std::move(still_non_core);
   return promoted;
 }
 
