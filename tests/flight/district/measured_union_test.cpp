@@ -125,7 +125,7 @@ TEST(MeasuredUnion, CountsWhatASurveyHasSeenBeyondItsRegion) {
   EXPECT_EQ(without.closest(beyond, 1.0).distance, 0.0);
   const MeasuredUnion with(both(read_again(kept), space_of(east)));
   EXPECT_TRUE(with.is_free(beyond, 1.0));
-  EXPECT_FALSE(with.is_free({{7, 0, 4}, {9, 0, 4}}, 0.1));  // the wall
+  EXPECT_FALSE(with.is_free({{7, 0, 4}, {9, 0, 4}}, 0.1));                      // the wall
   EXPECT_FALSE(with.is_free({{-1.75, 5.75, 7.75}, {-1.75, 5.75, 7.75}}, 0.1));  // out of sight
   EXPECT_TRUE(with.is_free({{-4, 0, 4}, {7, 0, 4}}, 0.5));  // from one box into the other
 }
