@@ -25,14 +25,15 @@ std::vector<MeasuredSpace> shared(std::vector<MeasuredSpace> spaces) {
                 "a space without a region cannot be joined with others: nothing is free in it but "
                 "what it has measured itself");
   }
-  const std::vector<AlignedBox3d> extents = extents_of(spaces);
-  const BoundingTree tree(extents);
+  std::vector<AlignedBox3d> known;
+  for (const MeasuredSpace& space : spaces) known.push_back(space.known_box());
+  const BoundingTree tree(known);
   for (std::size_t i = 0; i < spaces.size(); ++i) {
     // A ball about the region finds all that meets it.
-    const AlignedBox3d& box = extents[i];
+    const AlignedBox3d& box = spaces[i].config().region;
     double reach = 0.5 * box.diagonal().norm();
     tree.visit_near({box.center(), box.center()}, reach, [&](std::uint32_t j) {
-      if (j != i && box.intersects(extents[j])) spaces[i].take_free(spaces[j]);
+      if (j != i && box.intersects(known[j])) spaces[i].take_free(spaces[j]);
     });
   }
   return spaces;

@@ -44,11 +44,12 @@ using Blocks = std::unordered_map<std::uint64_t, const VoxelBlock*>;
 /// Adds the faces of a block's free voxels.
 void add_faces(const FileBlock& record, const Blocks& blocks, const MeasuredSpaceConfig& config,
                std::vector<Eigen::Vector3f>& faces) {
-  const VoxelRegion region = voxel_region(config);
+  const VoxelRegion region = voxel_region(config.region, config.voxel);
   const Cell cell = cell_of(record.key);
   const auto blocked = [&](const Cell& place) {
     const auto found = blocks.find(cell_key(place));
-    return blocked_voxels(region, place, found == blocks.end() ? VoxelBlock{} : *found->second);
+    return blocked_voxels({&region, 1}, place,
+                          found == blocks.end() ? VoxelBlock{} : *found->second);
   };
   const Slices own = blocked(cell);
   for (const Side& side : sides) {

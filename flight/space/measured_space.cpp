@@ -25,25 +25,37 @@ void MeasuredSpaceConfig::validate() const {
           "positive and below 100,000 voxels");
   require(!floor || std::isfinite(*floor), "measured_space.floor", floor.value_or(0.0),
           "a finite number");
-  if (region.isEmpty()) return;
-  const double farthest = region.min().cwiseAbs().cwiseMax(region.max().cwiseAbs()).maxCoeff();
   const auto is_near = [&](const Vector3d& corner) {  // false for NaN, too
     return (corner.array().abs() < 1e5 * voxel).all() && geometry::is_place(corner);
   };
-  require(is_near(region.min()) && is_near(region.max()), "measured_space.region", farthest,
-          "within 100,000 voxels and 1e7 m of the origin");
+  const auto require_near = [&](const AlignedBox3d& box, const char* name) {
+    if (box.isEmpty()) return;
+    const double farthest = box.min().cwiseAbs().cwiseMax(box.max().cwiseAbs()).maxCoeff();
+    require(is_near(box.min()) && is_near(box.max()), name, farthest,
+            "within 100,000 voxels and 1e7 m of the origin");
+  };
+  require_near(region, "measured_space.region");
+  for (const AlignedBox3d& box : beside) require_near(box, "measured_space.beside");
 }
 
 MeasuredSpace::MeasuredSpace(const MeasuredSpaceConfig& config) {
   config.validate();
   impl_ = std::make_unique<Impl>();
   impl_->config = config;
-  impl_->region_voxels = voxel_region(config);
-  constexpr double infinity = std::numeric_limits<double>::infinity();
-  impl_->region = {Vector3d::Constant(-infinity), Vector3d::Constant(infinity)};
-  if (impl_->is_bounded()) {
-    impl_->region = {impl_->region_voxels.low.cast<double>() * config.voxel,
-                     impl_->region_voxels.high.cast<double>() * config.voxel};
+  const auto add = [&](const AlignedBox3d& region) {
+    const VoxelRegion voxels = voxel_region(region, config.voxel);
+    impl_->regions.push_back(voxels);
+    impl_->boxes.emplace_back(voxels.low.cast<double>() * config.voxel,
+                              voxels.high.cast<double>() * config.voxel);
+  };
+  add(config.region);
+  if (!impl_->is_bounded()) {
+    constexpr double infinity = std::numeric_limits<double>::infinity();
+    impl_->boxes[0] = {Vector3d::Constant(-infinity), Vector3d::Constant(infinity)};
+    return;
+  }
+  for (const AlignedBox3d& box : config.beside) {
+    if (!box.isEmpty()) add(box);
   }
 }
 
@@ -89,13 +101,13 @@ void MeasuredSpace::take_free(const MeasuredSpace& other) {
   for (std::size_t i = 0; i < blocks.size(); ++i) {
     const Cell cell = cell_of(blocks.keys()[i]);
     const AlignedBox3d box = impl_->block_box(cell);
-    if (!impl_->region.intersects(box)) continue;
+    if (!impl_->meets_region(box)) continue;
     const VoxelBlock* known = impl_->blocks.find(blocks.keys()[i]).block;
     VoxelBlock block = known == nullptr ? VoxelBlock{} : *known;
     const Slices before = block.free;
     for (int z = 0; z < 8; ++z) block.free[z] |= blocks.blocks()[i].passable(z);
     if (block.free == before) continue;
-    if (impl_->blocks.set(blocks.keys()[i], block)) impl_->extent.extend(box);
+    impl_->set(cell, block);
   }
 }
 
@@ -121,8 +133,13 @@ bool MeasuredSpace::continues_free(const Segment& leg, double clearance) const {
 
 AlignedBox3d MeasuredSpace::extent() const {
   AlignedBox3d extent = impl_->extent;
-  if (impl_->is_bounded()) extent.extend(impl_->region);
+  if (!impl_->is_bounded()) return extent;
+  for (const AlignedBox3d& box : impl_->boxes) extent.extend(box);
   return extent;
+}
+
+AlignedBox3d MeasuredSpace::known_box() const {
+  return impl_->is_bounded() ? impl_->listed.merged(impl_->boxes[0]) : impl_->listed;
 }
 
 std::string MeasuredSpace::name(const Closest& closest) const {
@@ -135,9 +152,12 @@ const MeasuredSpaceConfig& MeasuredSpace::config() const { return impl_->config;
 
 double MeasuredSpace::free_volume() const {
   std::size_t voxels = 0;
-  for (const VoxelBlock& block : impl_->blocks.blocks()) {
-    for (int z = 0; z < 8; ++z)
-      voxels += static_cast<std::size_t>(std::popcount(block.passable(z)));
+  const VoxelBlocks& blocks = impl_->blocks;
+  for (std::size_t i = 0; i < blocks.size(); ++i) {
+    if (!impl_->boxes[0].intersects(impl_->block_box(cell_of(blocks.keys()[i])))) continue;
+    for (int z = 0; z < 8; ++z) {
+      voxels += static_cast<std::size_t>(std::popcount(blocks.blocks()[i].passable(z)));
+    }
   }
   return static_cast<double>(voxels) * std::pow(impl_->config.voxel, 3);
 }

@@ -13,6 +13,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include <Eigen/Core>
 #include <Eigen/Geometry>
@@ -35,6 +36,10 @@ struct MeasuredSpaceConfig {
   /// airspace: there everything is free but measured points. Grows to whole voxels. Empty (as by
   /// default): everywhere.
   Eigen::AlignedBox3d region;
+  /// Further boxes where space has to be measured to be free: regions of others, with a region of
+  /// its own only. What is measured there is kept for them, but is neither in the volume nor, when
+  /// it was read from a file, in the way.
+  std::vector<Eigen::AlignedBox3d> beside;
   /// Points below this height, if it is given, are not kept: they are of the ground, which is known
   /// from elsewhere and exactly, not to a voxel.
   std::optional<double> floor;
@@ -86,10 +91,13 @@ class MeasuredSpace : public FreeSpace {
 
   Closest closest(const Segment& leg, double up_to) const override;
   bool continues_free(const Segment& leg, double clearance) const override;
-  Eigen::AlignedBox3d extent() const override;  ///< of all that was ever free
+  Eigen::AlignedBox3d extent() const override;
   std::string name(const Closest& closest) const override;
 
   const MeasuredSpaceConfig& config() const;
+
+  /// A box around all that is kept of places, free or not, and the region.
+  Eigen::AlignedBox3d known_box() const;
 
   /// Volume known to be free [m^3], of the region if there is one.
   double free_volume() const;

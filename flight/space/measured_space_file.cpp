@@ -115,8 +115,7 @@ MeasuredSpace MeasuredSpace::read(std::istream& stream, const std::string& name)
   MeasuredSpace space(file.config);
   for (const FileBlock& record : file.blocks) {
     const Cell cell = cell_of(record.key);  // whatever bits a file has beside it
-    space.impl_->blocks.set(cell_key(cell), record.block);
-    space.impl_->extent.extend(space.impl_->block_box(cell));
+    space.impl_->set(cell, record.block);
   }
   return space;
 }

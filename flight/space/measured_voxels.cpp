@@ -35,27 +35,32 @@ std::vector<OccupiedVoxels> voxels_of(std::span<const Eigen::Vector3f> points,
 
 }  // namespace
 
-VoxelRegion voxel_region(const MeasuredSpaceConfig& config) {
+VoxelRegion voxel_region(const AlignedBox3d& region, double voxel) {
   // Far beyond all voxels, yet so that sums and differences of them are whole numbers still.
   constexpr int far = 1 << 28;
-  if (config.region.isEmpty()) return {Cell::Constant(-far), Cell::Constant(far)};
-  return {(config.region.min() / config.voxel).array().floor().matrix().cast<int>(),
-          (config.region.max() / config.voxel).array().ceil().matrix().cast<int>()};
+  if (region.isEmpty()) return {Cell::Constant(-far), Cell::Constant(far)};
+  return {(region.min() / voxel).array().floor().matrix().cast<int>(),
+          (region.max() / voxel).array().ceil().matrix().cast<int>()};
 }
 
-Slices blocked_voxels(const VoxelRegion& region, const Cell& cell, const VoxelBlock& block) {
-  Slices blocked{};
-  const Cell low = (region.low - 8 * cell).cwiseMax(0), high = (region.high - 8 * cell).cwiseMin(8);
-  const bool is_cut = low.maxCoeff() > 0 || high.minCoeff() < 8;
-  for (int z = 0; z < 8; ++z) {
-    blocked[z] = ~block.passable(z);
-    if (!is_cut) continue;
-    std::uint64_t inside = 0;
-    for (int y = low.y(); y < high.y() && z >= low.z() && z < high.z(); ++y) {
-      for (int x = low.x(); x < high.x(); ++x) inside |= std::uint64_t{1} << (8 * y + x);
+Slices blocked_voxels(std::span<const VoxelRegion> regions, const Cell& cell,
+                      const VoxelBlock& block) {
+  Slices inside{};
+  for (const VoxelRegion& region : regions) {
+    const Cell low = (region.low - 8 * cell).cwiseMax(0);
+    const Cell high = (region.high - 8 * cell).cwiseMin(8);
+    if (low.maxCoeff() == 0 && high.minCoeff() == 8) {
+      inside.fill(~std::uint64_t{0});
+      break;
     }
-    blocked[z] &= inside | block.occupied[z];
+    for (int z = low.z(); z < high.z(); ++z) {
+      for (int y = low.y(); y < high.y(); ++y) {
+        for (int x = low.x(); x < high.x(); ++x) inside[z] |= std::uint64_t{1} << (8 * y + x);
+      }
+    }
   }
+  Slices blocked{};
+  for (int z = 0; z < 8; ++z) blocked[z] = ~block.passable(z) & (inside[z] | block.occupied[z]);
   return blocked;
 }
 
@@ -130,16 +135,18 @@ void MeasuredSpace::Impl::closest_in(const Segment& piece, Closest& best) const 
     if (!test.is_near(box, best.distance)) return true;
     if (found.block != nullptr) {
       closest_in_cube(piece, test, cell, {Cell::Zero(), 8}, *found.block,
-                      blocked_voxels(region_voxels, cell, *found.block), best);
+                      blocked_voxels(regions, cell, *found.block), best);
       return best.distance > 0.0;
     }
-    const bool is_inside = (8 * cell.array() < region_voxels.high.array()).all() &&
-                           (8 * cell.array() + 8 > region_voxels.low.array()).all();
-    if (!is_inside) return true;
-    const NearestPoints pair = nearest(piece, box.intersection(region));
-    if (pair.squared_distance < best.distance * best.distance) {
-      best = {std::sqrt(pair.squared_distance), ObstacleKind::unknown_space, 0, pair.on_segment,
-              pair.on_other};
+    for (std::size_t i = 0; i < regions.size(); ++i) {
+      const bool is_inside = (8 * cell.array() < regions[i].high.array()).all() &&
+                             (8 * cell.array() + 8 > regions[i].low.array()).all();
+      if (!is_inside) continue;
+      const NearestPoints pair = nearest(piece, box.intersection(boxes[i]));
+      if (pair.squared_distance < best.distance * best.distance) {
+        best = {std::sqrt(pair.squared_distance), ObstacleKind::unknown_space, 0, pair.on_segment,
+                pair.on_other};
+      }
     }
     return best.distance > 0.0;
   });

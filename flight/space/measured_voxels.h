@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "flight/space/bounding_tree.h"
@@ -21,20 +22,27 @@ struct VoxelRegion {
   Cell low, high;
 };
 
-/// Those where space has to be measured to be free: the configuration's, else all of space.
-VoxelRegion voxel_region(const MeasuredSpaceConfig& config);
+/// Those of a region; if that is empty, all of space.
+VoxelRegion voxel_region(const Eigen::AlignedBox3d& region, double voxel);
 
-/// The voxels of a block that are not free, or outside of the region occupied.
-Slices blocked_voxels(const VoxelRegion& region, const Cell& cell, const VoxelBlock& block);
+/// The voxels of a block that are not free, or outside of all regions occupied.
+Slices blocked_voxels(std::span<const VoxelRegion> regions, const Cell& cell,
+                      const VoxelBlock& block);
 
 struct MeasuredSpace::Impl {
   MeasuredSpaceConfig config;
-  VoxelBlocks blocks;          ///< a block not listed is unknown
-  Eigen::AlignedBox3d region;  ///< the configuration's, of whole voxels; without one all of space
-  VoxelRegion region_voxels;
-  Eigen::AlignedBox3d extent;  ///< of all listed blocks
+  VoxelBlocks blocks;  ///< a block not listed is unknown
+  /// The configuration's region, or all of space without one, and those beside it; of whole voxels.
+  std::vector<VoxelRegion> regions;
+  std::vector<Eigen::AlignedBox3d> boxes;  ///< the same
+  /// Of all listed blocks, and of those that are in the way: in the regions, or with points.
+  Eigen::AlignedBox3d listed, extent;
 
   bool is_bounded() const { return !config.region.isEmpty(); }
+  bool meets_region(const Eigen::AlignedBox3d& box) const {
+    return std::ranges::any_of(
+        boxes, [&](const Eigen::AlignedBox3d& region) { return region.intersects(box); });
+  }
   double block_size() const { return 8.0 * config.voxel; }
   Cell block_of(const Eigen::Vector3d& point) const {
     return (point / block_size()).array().floor().matrix().cast<int>();
@@ -54,7 +62,10 @@ struct MeasuredSpace::Impl {
     return known == nullptr ? VoxelBlock{} : *known;
   }
   void set(const Cell& cell, const VoxelBlock& block) {
-    if (blocks.set(cell_key(cell), block)) extent.extend(block_box(cell));
+    blocks.set(cell_key(cell), block);
+    const Eigen::AlignedBox3d box = block_box(cell);
+    listed.extend(box);
+    if (block.is_any_occupied() || meets_region(box)) extent.extend(box);
   }
 
   template <typename Visit>
@@ -84,14 +95,16 @@ void MeasuredSpace::Impl::for_each_block(const Eigen::AlignedBox3d& box, Visit v
   }
 }
 
-/// Frees, in blocks that meet the box, the cubes of which `decide(box)` says so; it is asked from
-/// several threads.
+/// Frees, in blocks that meet the box and a region, the cubes of which `decide(box)` says so; it is
+/// asked from several threads.
 template <typename Decide>
 void MeasuredSpace::Impl::free_where(const Eigen::AlignedBox3d& box, unsigned threads,
                                      Decide decide) {
   std::vector<Cell> cells;
-  for_each_block(box.intersection(region), [&](const Cell& cell) {
-    cells.push_back(cell);
+  Eigen::AlignedBox3d hull;
+  for (const Eigen::AlignedBox3d& region : boxes) hull.extend(region);
+  for_each_block(box.intersection(hull), [&](const Cell& cell) {
+    if (boxes.size() == 1 || meets_region(block_box(cell))) cells.push_back(cell);
     return true;
   });
   constexpr std::size_t part_size = 64;

@@ -1,6 +1,7 @@
 /// 512 voxels and what is known of each: one bit for free, one for occupied.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 
@@ -43,6 +44,9 @@ struct VoxelBlock {
       if ((free[z] & mask) != mask) return false;
     }
     return true;
+  }
+  bool is_any_occupied() const {
+    return std::ranges::any_of(occupied, [](std::uint64_t slice) { return slice != 0; });
   }
   void set_free(const Cube& cube) {
     for (int z = cube.low.z(); z < cube.low.z() + cube.edge; ++z) free[z] |= cube.mask();

@@ -75,7 +75,9 @@ std::shared_ptr<const PreparedScene> PreparedScenes::take(const Setup& setup,
     try {
       file::Mission mission = setup.mission;
       mission.threads = threads_;
-      scene::SurveyScene scene(mission, setup.folder());
+      std::filesystem::path reached = setup.truth_file;
+      if (!reached.empty()) reached += "_reached";
+      scene::SurveyScene scene(mission, setup.folder(), reached);
       benchmark::SceneTruth truth = truth_of(setup, scene, threads_, stop);
       if (stop.stop_requested()) return nullptr;  // the truth is of no use
       slot.scene.reset(new PreparedScene{std::move(scene), std::move(truth)});

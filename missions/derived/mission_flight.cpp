@@ -77,10 +77,22 @@ AlignedBox3d unknown_box_of(const file::Mission& mission) {
                                     : mission.planner.see.scene_box.value_or(AlignedBox3d());
 }
 
+std::vector<AlignedBox3d> unknown_beside_of(const file::Mission& mission) {
+  const std::vector<Vector3d>& corners = mission.flight.unknown_beside;
+  std::vector<AlignedBox3d> boxes;
+  for (std::size_t i = 0; i + 1 < corners.size(); i += 2) {
+    boxes.emplace_back(corners[i], corners[i + 1]);
+  }
+  return boxes;
+}
+
 bool is_in_known_airspace(const file::Mission& mission, const Vector3d& place) {
   if (!mission.flight.is_flown()) return true;
   const double spare = spare_of(mission);
   return unknown_box_of(mission).exteriorDistance(place) >= spare &&
+         std::ranges::all_of(
+             unknown_beside_of(mission),
+             [&](const AlignedBox3d& box) { return box.exteriorDistance(place) >= spare; }) &&
          std::ranges::all_of(priors_of(mission).obstacles, [&](const auto& obstacle) {
            return obstacle->closest({place, place}, spare).distance >= spare;
          });
@@ -93,6 +105,7 @@ flight::MeasuredSpaceConfig measured_space_of(const file::Mission& mission) {
           .free_without_return = mission.flight.free_without_return,
           .max_depth = std::min(mission.sensor.camera.camera.max_range, 1e4 * voxel),
           .region = unknown_box_of(mission),
+          .beside = unknown_beside_of(mission),
           .floor = priors_of(mission).terrain
                        ? std::nullopt
                        : std::optional(mission.scene.position.z() + mission.flight.map_error)};

@@ -35,8 +35,11 @@ flight::ClearanceBudget clearance_of(const file::Mission& mission);
 /// Where space must be measured to be free.
 Eigen::AlignedBox3d unknown_box_of(const file::Mission& mission);
 
-/// Whether a survey may begin there: outside of that box and off what prior data knows, with room
-/// to spare; or with nothing flown.
+/// Further boxes where it must.
+std::vector<Eigen::AlignedBox3d> unknown_beside_of(const file::Mission& mission);
+
+/// Whether a survey may begin there: outside of those boxes and off what prior data knows, with
+/// room to spare; or with nothing flown.
 bool is_in_known_airspace(const file::Mission& mission, const Eigen::Vector3d& place);
 
 /// Measured space before anything is measured.

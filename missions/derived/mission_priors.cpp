@@ -1,6 +1,7 @@
 #include "missions/derived/mission_priors.h"
 
 #include <algorithm>
+#include <map>
 #include <memory>
 #include <string>
 #include <utility>
@@ -24,8 +25,8 @@ std::string key_of(std::size_t source, const std::string& key) {
 /// scene.model of a mission whose targets stand in as truth.
 constexpr const char* targets_as_truth = "prior";
 
-/// How far beside its place on a map a target is looked for at least [m].
-constexpr double beside_targets = 3.0;
+/// How far beside its place on a map a target is looked for, unless it may be off by more [m].
+constexpr double most_beside_targets = 3.0;
 
 /// Of one object, for the planner to guess by.
 constexpr std::size_t most_target_points = 300'000;
@@ -87,6 +88,44 @@ void check_truth(const file::MissionFile& given) {
   }
 }
 
+/// The surfaces of things in the way but for those that are targets or the truth as well. Files
+/// that hold a target mostly hold what stands around it, and are read once for each role.
+std::vector<const geometry::Mesh*> neighbours_of(const prior::SitePriors& site) {
+  std::map<std::string, const geometry::Mesh*> surveyed;
+  std::vector<const geometry::Mesh*> neighbours;
+  const auto visit = [&](auto is_wanted, auto&& take) {
+    for (std::size_t i = 0; i < site.priors.size(); ++i) {
+      if (!is_wanted(site.sources[i].role)) continue;
+      for (const prior::Object& object : site.priors[i].objects) take(object);
+    }
+  };
+  visit([](Role role) { return role == Role::target || role == Role::truth; },
+        [&](const prior::Object& object) { surveyed[object.id] = &object.mesh; });
+  visit([](Role role) { return role == Role::obstacle; },
+        [&](const prior::Object& object) {
+          const auto same = surveyed.find(object.id);
+          if (same != surveyed.end() && same->second->vertices == object.mesh.vertices) return;
+          if (prior::has_area(object.mesh)) neighbours.push_back(&object.mesh);
+        });
+  return neighbours;
+}
+
+/// So far beside targets their surface is looked for: not where neighbours are that the sensor will
+/// see.
+double beside_targets_of(const file::Mission& mission, const Eigen::AlignedBox3d& targets) {
+  double beside = most_beside_targets;
+  if (mission.scene.neighbours || mission.scene.model.empty()) {
+    for (const geometry::Mesh* neighbour : neighbours_of(priors_of(mission))) {
+      beside = std::min(beside, 0.5 * targets.exteriorDistance(geometry::bounding_box(*neighbour)));
+    }
+  }
+  for (std::size_t i = 0; i < priors_of(mission).priors.size(); ++i) {
+    if (priors_of(mission).sources[i].role != Role::target) continue;
+    beside = std::max(beside, priors_of(mission).priors[i].uncertainty);
+  }
+  return beside;
+}
+
 prior::SiteFrame frame_of(const file::Mission& mission) {
   prior::SiteFrame frame{.ground_z = mission.scene.position.z(),
                          .undulation = mission.georeference.geoid_undulation};
@@ -130,12 +169,8 @@ void derive_scene_box(file::Mission& mission) {
   if (see.scene_box) return;
   const geometry::Mesh targets = surfaces_of(priors_of(mission), Role::target);
   if (targets.triangles.empty()) return;
-  double beside = beside_targets;
-  for (std::size_t i = 0; i < priors_of(mission).priors.size(); ++i) {
-    if (priors_of(mission).sources[i].role != Role::target) continue;
-    beside = std::max(beside, priors_of(mission).priors[i].uncertainty);
-  }
   Eigen::AlignedBox3d box = geometry::bounding_box(targets);
+  const double beside = beside_targets_of(mission, box);
   box.min().array() -= beside;
   box.max().array() += beside;
   if (mission.scene.ground || mission.flight.is_flown()) {
@@ -175,6 +210,17 @@ geometry::Mesh prior_truth(const file::Mission& mission) {
 }
 
 bool has_target(const file::Mission& mission) { return has_role(mission, Role::target); }
+
+bool has_obstacle(const file::Mission& mission) { return has_role(mission, Role::obstacle); }
+
+geometry::Mesh prior_neighbours(const file::Mission& mission) {
+  geometry::Mesh mesh;
+  if (!mission.scene.neighbours) return mesh;
+  for (const geometry::Mesh* neighbour : neighbours_of(priors_of(mission))) {
+    geometry::append(mesh, *neighbour);
+  }
+  return mesh;
+}
 
 std::shared_ptr<const survey::skycap::PriorSurface> prior_surface(const file::Mission& mission) {
   const prior::SitePriors& site = priors_of(mission);

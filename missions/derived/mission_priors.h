@@ -15,9 +15,10 @@ namespace skycap::missions::derived {
 /// Error{bad_config} as MissionFile::refuse(), naming the key of the source.
 void read_priors(file::MissionFile& given, const Report& report = {});
 
-/// planner.scene_box where the mission has none but targets: around them, with 3 m or what they may
-/// be off on every side, if that is more. Where views are taken from must not be in it: there
-/// nothing is free before it is measured.
+/// planner.scene_box where the mission has none but targets: around them, with 3 m on every side,
+/// or half of the way to the nearest neighbour that the sensor sees, if that is less, or what they
+/// may be off, if that is more. Where views are taken from must not be in it: there nothing is free
+/// before it is measured.
 void derive_scene_box(file::Mission& mission);
 
 /// z below which everything is solid: the scene's, or of a terrain its lowest place less what that
@@ -35,8 +36,13 @@ bool is_truth_prior(const file::Mission& mission);
 /// That, as one mesh. Empty if the mission's truth is none of its prior data.
 geometry::Mesh prior_truth(const file::Mission& mission);
 
-/// Whether the mission has a target among its prior data.
+/// Whether the mission has a target, or something in the way, among its prior data.
 bool has_target(const file::Mission& mission);
+bool has_obstacle(const file::Mission& mission);
+
+/// What stands beside the truth by prior data in the way, as one mesh: all that has a surface but
+/// for what is a target or the truth, too. Empty unless the mission's sensor is to see it.
+geometry::Mesh prior_neighbours(const file::Mission& mission);
 
 /// The surfaces of the mission's targets for its planner to guess by; null without any.
 std::shared_ptr<const survey::skycap::PriorSurface> prior_surface(const file::Mission& mission);

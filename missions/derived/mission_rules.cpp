@@ -120,6 +120,10 @@ void check_scene(const file::MissionFile& given) {
                  "needs planner.scene_box, or the plan would cover the ground too; give the box's "
                  "min and max");
   }
+  if (scene.neighbours && !has_obstacle(mission)) {
+    given.refuse("scene.neighbours",
+                 "needs a file of prior data whose role is obstacle, which holds them");
+  }
   if (box && !(box->min().array() < box->max().array()).all()) {
     given.refuse("planner.scene_box.max",
                  "is not above planner.scene_box.min on every axis; swap or widen the corners");
@@ -168,6 +172,21 @@ void check_sensor(const file::MissionFile& given) {
   check_capture(given);
 }
 
+void check_boxes_beside(const file::MissionFile& given) {
+  const std::vector<Eigen::Vector3d>& corners = given.mission.flight.unknown_beside;
+  if (corners.size() % 2 != 0) {
+    given.refuse("flight.unknown_beside",
+                 "has " + std::to_string(corners.size()) +
+                     " corners; give the lower and the upper one of each box");
+  }
+  for (std::size_t i = 0; i < corners.size(); i += 2) {
+    if ((corners[i].array() < corners[i + 1].array()).all()) continue;
+    given.refuse("flight.unknown_beside",
+                 "has an upper corner that is not above its lower one on every axis; swap or "
+                 "widen the corners");
+  }
+}
+
 void check_flight(const file::MissionFile& given) {
   const file::Mission& mission = given.mission;
   const file::Georeference& place = mission.georeference;
@@ -182,6 +201,7 @@ void check_flight(const file::MissionFile& given) {
     given.refuse("flight.unknown_box.max",
                  "is not above flight.unknown_box.min on every axis; swap or widen the corners");
   }
+  check_boxes_beside(given);
   if (unknown_box_of(mission).isEmpty()) {
     given.refuse("flight.vehicle",
                  "needs flight.unknown_box, around the building: in it nothing is free until "

@@ -118,7 +118,7 @@ class DistrictReader {
         {"name", "seed", "threads", "planner.name", "planner.scene_box", "prior", "scene.",
          "site.latitude_deg", "site.longitude_deg", "site.ellipsoid_height", "site.geofence",
          "flight.vehicle", "flight.vehicles", "flight.takeoff", "flight.rally",
-         "flight.unknown_box", "flight.order"},
+         "flight.unknown_box", "flight.unknown_beside", "flight.order"},
         "the district's files, targets, pads, vehicle, planner and seed; give those"};
     district_.set = campaign::key_changes(root_.entries("set"), "set.", file_, following);
   }

@@ -33,7 +33,7 @@ struct FlownViews {
     const auto most =
         std::ranges::max_element(why_not, {}, [](const auto& one) { return one.second; });
     if (most == why_not.end()) return "";
-    std::string text = all == 1 ? "1 view" : fmt::format("{} views", all);
+    std::string text = file::counted(all, "view");
     if (most->second < all) text += fmt::format("; {} of them", most->second);
     return text + ": " + most->first;
   }
@@ -164,10 +164,6 @@ std::string number_or_none(bool is_there, double number) {
   return is_there ? file::exact_text(number) : "";
 }
 
-std::string counted(std::size_t count, const char* word) {
-  return fmt::format("{} {}{}", count, word, count == 1 ? "" : "s");
-}
-
 }  // namespace
 
 std::string results_json(const DistrictFile& district, const Prepared& prepared,
@@ -236,8 +232,8 @@ std::string results_text(std::span<const SurveyedTarget> targets, const District
         "{:.1f} min\n"
         "  clearance every leg proven at {:.2f} m, least {:.2f} m",
         flown(flight), flight.stations.size(), flight.length(), flight.duration() / 60.0,
-        counted(flight.sorties(), "sortie"), counted(flight.pads.size(), "pad"), alone / 60.0,
-        flight.pads[0].route.clearance, least_clearance(flight));
+        file::counted(flight.sorties(), "sortie"), file::counted(flight.pads.size(), "pad"),
+        alone / 60.0, flight.pads[0].route.clearance, least_clearance(flight));
   }
   return text + "\n";
 }

@@ -226,6 +226,19 @@ class Preparer {
     return sources;
   }
 
+  /// The boxes of other targets as far as the sensor of one reaches from its own.
+  std::vector<AlignedBox3d> boxes_beside(std::size_t target) const {
+    const AlignedBox3d& own = values_[target].unknown;
+    const Vector3d reach = Vector3d::Constant(site::sensor_range(values_[target]));
+    const AlignedBox3d reached(own.min() - reach, own.max() + reach);
+    std::vector<AlignedBox3d> boxes;
+    for (std::size_t i = 0; i < values_.size(); ++i) {
+      if (i != target && reached.intersects(values_[i].unknown))
+        boxes.push_back(values_[i].unknown);
+    }
+    return boxes;
+  }
+
   void write_missions() {
     tell_(fmt::format("writing {} missions", values_.size()));
     geometry::OutputFolder missions(out_ / missions_folder), sites(out_ / sites_folder);
@@ -238,6 +251,8 @@ class Preparer {
       const std::string city = target.title + ".city.json";
       sites.write(city, city_near(values.fence, groups_[i]));
       values.sources = sources_in(out_ / sites_folder / city, target.ids);
+      values.sees_neighbours = true;
+      values.unknown_beside = boxes_beside(i);
       missions.write(target.title + ".yaml", mission_text(values));
     }
     sites.commit();

@@ -95,6 +95,18 @@ std::vector<Key> fleet_keys() {
   };
 }
 
+/// The key `flight.unknown_beside`: boxes of neighbours.
+Key unknown_beside_key() {
+  Key key =
+      list_key("flight.unknown_beside", KeyType::vectors, flight(&FlightConfig::unknown_beside),
+               "Further boxes in which only what has been measured free is flown through, "
+               "such as those of neighbours that are surveyed, too: the lower and the upper "
+               "corner of each, one behind the other. The package keeps what was measured in "
+               "them for the flight of all.");
+  key.range = between(-1e6, 1e6);
+  return key;
+}
+
 /// What proves a leg.
 std::vector<Key> safety_keys() {
   return {
@@ -123,6 +135,7 @@ std::vector<Key> safety_keys() {
       otherwise("planner.scene_box",
                 box_corner("flight.unknown_box.max", flight(&FlightConfig::unknown_box), true,
                            "Upper corner of that box.")),
+      unknown_beside_key(),
       number_key("flight.free_without_return", "m", between(0, 1e4),
                  flight(&FlightConfig::free_without_return),
                  "Up to this depth pixels without a return prove space free. 0: they prove "

@@ -51,6 +51,7 @@ struct SceneConfig {
   /// The model again: x and y from its position [m], and a turn about its own upright [rad].
   std::vector<Eigen::Vector3d> copies;
   bool ground = false;       ///< whether the sensor also sees a plane under the model
+  bool neighbours = false;   ///< and what stands beside it by prior data
   double reflectance = 0.4;  ///< diffuse, at the laser's wavelength, where no other is given
   std::optional<std::string> materials;  ///< a file of reflectances, glass and mirrors, by name
 };
@@ -189,6 +190,7 @@ struct FlightConfig {
   double tracking_error = 0.3;
   double map_error = 0.1;
   std::optional<Eigen::AlignedBox3d> unknown_box;  ///< where space must be measured to be free
+  std::vector<Eigen::Vector3d> unknown_beside;     ///< corners of further such boxes, two of each
   double free_without_return = 0.0;
   std::optional<Eigen::Vector3d> takeoff;  ///< the pad
   std::optional<double> takeoff_climb;     ///< else 5 m, or a metre more than the clearance

@@ -15,4 +15,8 @@ std::string exact_text(double number) {
 
 std::string short_text(double number) { return fmt::format("{:.4g}", number); }
 
+std::string counted(std::size_t count, std::string_view word) {
+  return fmt::format("{} {}{}", count, word, count == 1 ? "" : "s");
+}
+
 }  // namespace skycap::missions::file

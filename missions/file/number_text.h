@@ -1,7 +1,9 @@
 /// Numbers as text.
 #pragma once
 
+#include <cstddef>
 #include <string>
+#include <string_view>
 
 namespace skycap::missions::file {
 
@@ -10,5 +12,8 @@ std::string exact_text(double number);
 
 /// Four significant digits, for people.
 std::string short_text(double number);
+
+/// "1 point", "2 points".
+std::string counted(std::size_t count, std::string_view word);
 
 }  // namespace skycap::missions::file

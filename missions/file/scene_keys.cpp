@@ -115,6 +115,10 @@ std::vector<Key> scene_keys() {
           "scene.ground", [](Mission & m) -> auto& { return m.scene.ground; },
           "Whether the sensor also sees a ground plane under the model. It is not part of the "
           "coverage; planner.scene_box has to keep it out of the plan."),
+      boolean_key(
+          "scene.neighbours", [](Mission & m) -> auto& { return m.scene.neighbours; },
+          "Whether the sensor also sees the buildings that prior data of the role obstacle hold "
+          "beside what is surveyed. They are not part of the coverage."),
       number_key(
           "scene.reflectance", "", between(0, 1),
           [](Mission & m) -> auto& { return m.scene.reflectance; },

@@ -20,8 +20,6 @@ constexpr std::uint32_t closed = std::numeric_limits<std::uint32_t>::max();
 constexpr std::uint32_t open = closed - 1;
 constexpr std::uint32_t reached = closed - 2;
 
-bool is_leaf(std::uint32_t node) { return node >= reached; }
-
 // Of a cell whose children are looked at next; the root is nobody's child.
 constexpr std::uint32_t divided = 0;
 
@@ -57,6 +55,8 @@ const std::vector<Place>& steps_around() {
 }
 
 }  // namespace
+
+bool ReachableSpace::is_leaf(std::uint32_t node) { return node >= reached; }
 
 ReachableSpace::ReachableSpace(const geometry::MeshDistance& surface,
                                const Eigen::AlignedBox3d& box, const Config& config,

@@ -16,6 +16,8 @@
 #include <functional>
 #include <optional>
 #include <span>
+#include <string>
+#include <string_view>
 #include <vector>
 
 #include <Eigen/Core>
@@ -59,7 +61,15 @@ class ReachableSpace {
   /// How many cells there are of any size, for tests and benchmarks.
   std::size_t size() const { return nodes_.size(); }
 
+  /// All of it for a file, for read() on a machine of the same byte order.
+  std::string bytes() const;
+  /// What bytes() gave; nothing if it is anything else.
+  static std::optional<ReachableSpace> read(std::string_view bytes);
+
  private:
+  ReachableSpace() = default;
+  static bool is_leaf(std::uint32_t node);
+  bool is_whole() const;
   using Place = std::array<std::int32_t, 3>;  // in finest cells from the domain's corner
   struct Cell {
     std::uint32_t node = 0;

@@ -7,6 +7,7 @@
 
 #include "flight/route/route.h"
 #include "missions/derived/mission_flight.h"
+#include "missions/file/number_text.h"
 #include "missions/package/anew_mission.h"
 #include "missions/package/fleet_report.h"
 #include "missions/package/ground_json.h"
@@ -88,9 +89,9 @@ std::string flight_text(const SurveyMission& flight) {
   const flight::Route& route = flight.route;
   const flight::ClearanceBudget& clearance = route.options.clearance;
   std::string text =
-      fmt::format("  flight    {}, {} views, {:.1f} m in {:.1f} min, {} {}", route.vehicle.name,
-                  route.stations.size(), route.length, route.duration / 60.0, route.sorties.size(),
-                  route.sorties.size() == 1 ? "sortie" : "sorties");
+      fmt::format("  flight    {}, {} views, {:.1f} m in {:.1f} min, {}", route.vehicle.name,
+                  route.stations.size(), route.length, route.duration / 60.0,
+                  file::counted(route.sorties.size(), "sortie"));
   if (route.options.order_is_free && route.order_bound > 0.0) {
     text += fmt::format("; order within {:.1f} % of the shortest",
                         100.0 * (route.order_length / route.order_bound - 1.0));

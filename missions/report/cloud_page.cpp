@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "geometry/io/cloud_io.h"
+#include "missions/file/number_text.h"
 #include "missions/report/page.h"
 #include "missions/report/point_figures.h"
 #include "missions/report/results.h"
@@ -66,7 +67,7 @@ std::string cloud_page(const std::filesystem::path& file) {
   const std::string name = file.filename().string();
   const Json data = {{"kind", "cloud"},
                      {"title", name},
-                     {"facts", {counted(cloud.positions.size(), "point")}},
+                     {"facts", {file::counted(cloud.positions.size(), "point")}},
                      {"palette", palette.colours}};
   return page_text(
       name, data, {{"measured", encode_cloud(cloud.positions, attributes, default_report_points)}});

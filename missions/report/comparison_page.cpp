@@ -5,6 +5,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "missions/file/number_text.h"
 #include "missions/report/page.h"
 #include "missions/report/verdict.h"
 
@@ -27,8 +28,8 @@ std::string benchmark_page(const ResultFinder& results) {
         {"kind", "comparison"},
         {"title", "Comparison of planners"},
         {"facts",
-         {counted(missions.size(), "mission"), counted(planners.size(), "planner"),
-          counted(trials, "survey")}},
+         {file::counted(missions.size(), "mission"), file::counted(planners.size(), "planner"),
+          file::counted(trials, "survey")}},
         {"summary", summary},
         {"files", files_json({"results.json", "table1.csv", "trials.csv", "report.md"}, results)}};
     return page_text(data.at("title"), data, {});
@@ -52,7 +53,7 @@ std::string trials_page(const ResultFinder& results) {
           "first seed " + std::to_string(summary.at("first_seed").get<std::uint64_t>())}},
         {"verdict",
          json_of(Verdict{.is_complete = is_whole,
-                         .because = std::to_string(done) + " of " + counted(asked, "trial"),
+                         .because = std::to_string(done) + " of " + file::counted(asked, "trial"),
                          .lights = {}})},
         {"summary", summary},
         {"stop_words", stop_words()},

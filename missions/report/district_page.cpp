@@ -4,6 +4,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "missions/file/number_text.h"
 #include "missions/report/page.h"
 #include "missions/report/verdict.h"
 
@@ -16,8 +17,8 @@ Verdict district_verdict(const Json& summary) {
   const Json& targets = summary.at("targets");
   const auto surveyed = summary.at("surveyed").get<std::size_t>();
   Verdict verdict{.is_complete = summary.at("complete").get<bool>(),
-                  .because = std::to_string(surveyed) + " of " + counted(targets.size(), "target") +
-                             " surveyed",
+                  .because = std::to_string(surveyed) + " of " +
+                             file::counted(targets.size(), "target") + " surveyed",
                   .lights = {}};
   if (const Json& flight = summary.at("flight"); flight.is_object()) {
     const auto views = flight.at("views").get<std::size_t>();
@@ -44,7 +45,7 @@ std::string district_page(const ResultFinder& results) {
         {"kind", "district"},
         {"title", title},
         {"facts",
-         {summary.at("map"), counted(summary.at("targets").size(), "target"),
+         {summary.at("map"), file::counted(summary.at("targets").size(), "target"),
           "vehicle " + summary.at("vehicle").get<std::string>(),
           "planner " + summary.at("planner").get<std::string>()}},
         {"verdict", json_of(district_verdict(summary))},

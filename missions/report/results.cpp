@@ -40,10 +40,6 @@ void refuse_results(const fs::path& file, std::string_view why) {
               file.string() + ": is not as skycap wrote it (" + std::string(why) + ")");
 }
 
-std::string counted(std::size_t count, std::string_view word) {
-  return std::to_string(count) + " " + std::string(word) + (count == 1 ? "" : "s");
-}
-
 Json files_json(const std::vector<std::string>& names, const ResultFinder& results,
                 bool has_digests) {
   Json files = Json::array();

@@ -32,9 +32,6 @@ nlohmann::ordered_json read_results(const std::filesystem::path& file);
 /// Throws Error{bad_file}: values of the file are missing or of another kind.
 [[noreturn]] void refuse_results(const std::filesystem::path& file, std::string_view why);
 
-/// "1 point", "2 points".
-std::string counted(std::size_t count, std::string_view word);
-
 /// {"name", "bytes", "sha256"} of those that are there, so that whoever has a file can see that it
 /// is the one of the page; digests of large files take seconds, which who has pressed Ctrl-C does
 /// not wait for. Names that lead to other folders are passed over.

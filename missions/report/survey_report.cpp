@@ -15,6 +15,7 @@
 #include "geometry/io/json.h"
 #include "missions/derived/mission_flight.h"
 #include "missions/file/json_text.h"
+#include "missions/file/number_text.h"
 #include "missions/fleet/timetable_file.h"
 #include "missions/package/coverage_map.h"
 #include "missions/package/package.h"
@@ -139,7 +140,7 @@ std::string live_page(const file::Mission& mission, run::SurveyRecord so_far,
   Json shown = verdict(summary);
   const bool goes_on = next.view.has_value();
   shown["answer"] = goes_on ? "running" : "over";
-  shown["because"] = counted(so_far.views.size(), "scan") + " so far" +
+  shown["because"] = file::counted(so_far.views.size(), "scan") + " so far" +
                      (goes_on ? "" : "; skycap finish makes the package");
   shown["light"] = "none";
   const Json data = {{"kind", "survey"},

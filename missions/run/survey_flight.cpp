@@ -47,6 +47,7 @@ struct SurveyFlight::Impl {
                derived::route_options_of(mission, {}).path),
         motion(mission),
         mount(mission.sensor.mount),
+        is_crowded(!mission.flight.unknown_beside.empty()),
         frame_period(mission.sensor.frame_period),
         threads(mission.threads) {
     if (!mount) return;
@@ -107,6 +108,9 @@ struct SurveyFlight::Impl {
   /// If its ways are those of the written mission, too, from which autopilots return by themselves.
   std::optional<flight::WaysHome> ways_home;
   double worthwhile_saving = 0.0;  ///< that corners of such ways are worth [m]
+  /// Among neighbours most places beside the target are not free, and to look for ways to them in
+  /// vain takes long.
+  bool is_crowded;
   double frame_period;
   unsigned threads;
   std::stop_token stop;
@@ -158,6 +162,9 @@ SurveyFlight::SurveyFlight(const file::Mission& mission, const geometry::View& f
 SurveyFlight::~SurveyFlight() = default;
 
 bool SurveyFlight::may_be_at(const Vector3d& place) const try {
+  if (impl_->is_crowded && !impl_->space.is_free({place, place}, impl_->finder.clearance())) {
+    return false;
+  }
   return !impl_->ways_home || impl_->ways_home->why_none(place).empty();
 } catch (const Error&) {
   if (impl_->stop.stop_requested()) throw survey::Interrupted();

@@ -46,9 +46,9 @@ class SurveyFlight {
   SurveyFlight(const file::Mission& mission, const geometry::View& first_view);
   ~SurveyFlight();
 
-  /// Whether views may be there by what is known at present: a scanner's only where there is a
-  /// certified way home. Cheaper than can_reach(), which asks more; safe to call in parallel.
-  /// Throws survey::Interrupted after a stop.
+  /// Whether views may be there by what is known at present: among neighbours only where it is
+  /// free, and a scanner's only where there is a certified way home. Cheaper than can_reach(),
+  /// which asks more; safe to call in parallel. Throws survey::Interrupted after a stop.
   bool may_be_at(const Eigen::Vector3d& place) const;
 
   /// Whether the vehicle can look that way and get there along legs that are proven free, by a

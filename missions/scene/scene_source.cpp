@@ -275,10 +275,11 @@ ReflectingScene reflecting_scene(const file::Mission& mission,
   const auto reflectance = static_cast<float>(scene.reflectance);
   result.reflectances.resize(result.model.triangles.size(), reflectance);
   result.places = copies_of(scene);
-  if (scene.ground) {
-    result.ground = ground_of(mission, geometry::bounding_box(with_copies(scene, result.model)));
-    result.ground_reflectances.resize(result.ground.triangles.size(), reflectance);
+  if (scene.ground || scene.neighbours) {
+    const geometry::Mesh all = with_copies(scene, result.model);
+    result.beside = surroundings_of(mission, geometry::bounding_box(all));
   }
+  result.beside_reflectances.resize(result.beside.triangles.size(), reflectance);
   return result;
 }
 
@@ -287,13 +288,13 @@ sim::Scene ReflectingScene::scene(unsigned threads) const {
     geometry::Mesh mesh = model;
     std::vector<float> all = reflectances;
     std::vector<sim::Surface> lit = surfaces;
-    geometry::append(mesh, ground);
-    all.insert(all.end(), ground_reflectances.begin(), ground_reflectances.end());
+    geometry::append(mesh, beside);
+    all.insert(all.end(), beside_reflectances.begin(), beside_reflectances.end());
     if (!lit.empty()) lit.resize(mesh.triangles.size(), sim::Surface::matt);
     return sim::Scene(std::array{sim::ScenePart{mesh, all, {}, lit}}, threads);
   }
   std::vector<sim::ScenePart> parts = {{model, reflectances, places, surfaces}};
-  if (!ground.triangles.empty()) parts.push_back({ground, ground_reflectances, {}});
+  if (!beside.triangles.empty()) parts.push_back({beside, beside_reflectances, {}});
   return sim::Scene(parts, threads);
 }
 
@@ -312,12 +313,12 @@ std::string ReflectingScene::digest() const {
     const auto sum = geometry::crc32_of({bytes, items.size() * sizeof(items[0])});
     digest += fmt::format("{}{:08x}", digest.empty() ? "" : " ", sum);
   };
-  for (const geometry::Mesh* mesh : {&model, &ground}) {
+  for (const geometry::Mesh* mesh : {&model, &beside}) {
     add(mesh->vertices);
     add(mesh->triangles);
   }
   add(reflectances);
-  add(ground_reflectances);
+  add(beside_reflectances);
   add(places);
   if (!surfaces.empty()) add(surfaces);
   return digest;
@@ -326,6 +327,12 @@ std::string ReflectingScene::digest() const {
 geometry::Mesh ground_of(const file::Mission& mission, const Eigen::AlignedBox3d& model) {
   const auto& terrain = derived::priors_of(mission).terrain;
   return terrain ? terrain->surface() : ground_under(model);
+}
+
+geometry::Mesh surroundings_of(const file::Mission& mission, const Eigen::AlignedBox3d& model) {
+  geometry::Mesh mesh = derived::prior_neighbours(mission);
+  if (mission.scene.ground) geometry::append(mesh, ground_of(mission, model));
+  return mesh;
 }
 
 geometry::Mesh ground_under(const Eigen::AlignedBox3d& model) {

@@ -48,8 +48,8 @@ struct ReflectingScene {
   std::vector<float> reflectances;     ///< diffuse, of each of its triangles
   std::vector<sim::Surface> surfaces;  ///< of each of its triangles; empty: all matt
   std::vector<Eigen::Isometry3d> places;
-  geometry::Mesh ground;  ///< without triangles if there is none
-  std::vector<float> ground_reflectances;
+  geometry::Mesh beside;  ///< surroundings_of() it
+  std::vector<float> beside_reflectances;
 
   /// Made ready for rays; copies take no memory to speak of.
   sim::Scene scene(unsigned threads) const;
@@ -59,14 +59,18 @@ struct ReflectingScene {
   std::string digest() const;
 };
 
-/// The model as placed, its copies, and the ground if there is one, with the reflectances of
-/// `scene`. Throws what load_model() and place_model() throw, and Error{bad_config} if the file of
-/// materials is wrong.
+/// The model as placed, its copies, and what is beside it, with the reflectances of `scene`. Throws
+/// what load_model() and place_model() throw, and Error{bad_config} if the file of materials is
+/// wrong.
 ReflectingScene reflecting_scene(const file::Mission& mission, const std::filesystem::path& folder);
 
 /// The ground that the sensor sees: the terrain of the mission's prior data, else ground_under().
 /// The box is that around the placed model.
 geometry::Mesh ground_of(const file::Mission& mission, const Eigen::AlignedBox3d& model);
+
+/// What the sensor sees beside the model, which the box is around: the ground and neighbours, as
+/// far as the scene asks for them. Without triangles if it asks for neither.
+geometry::Mesh surroundings_of(const file::Mission& mission, const Eigen::AlignedBox3d& model);
 
 /// A square in the plane of the scene's base, ten times as wide as the model, which the box is
 /// around.

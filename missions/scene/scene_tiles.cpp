@@ -200,9 +200,9 @@ TiledScene::TiledScene(const file::Mission& mission, const fs::path& folder, con
       for (const double at : place.translation()) digests += fmt::format(" {}", at);
     }
   }
-  if (scene_.ground) ground_ = ground_of(mission, box_);
+  beside_ = surroundings_of(mission, box_);
   digest_ = fmt::format("{} tiles {:08x} {:08x}", kinds_.size(), geometry::crc32_of(digests),
-                        checksum(ground_));
+                        checksum(beside_));
 }
 
 void TiledScene::look_at(Kind& kind) const {
@@ -295,7 +295,7 @@ sim::Scene TiledScene::scene(unsigned threads, const IsWanted& is_wanted) const 
     const std::vector<sim::Surface> surfaces = load_surfaces(kind.tile.scene, folder_);
     builder.add({mesh, reflectances_of(mesh), places, surfaces});
   }
-  if (!ground_.triangles.empty()) builder.add({ground_, reflectances_of(ground_), {}});
+  if (!beside_.triangles.empty()) builder.add({beside_, reflectances_of(beside_), {}});
   return builder.finish();
 }
 

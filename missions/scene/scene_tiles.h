@@ -51,7 +51,7 @@ class TiledScene {
   const std::string& digest() const { return digest_; }
   std::size_t triangles() const { return triangles_; }
 
-  /// Those tiles that are wanted, and the ground if there is one, made ready for rays. What a ray
+  /// Those tiles that are wanted, and what is beside all tiles, made ready for rays. What a ray
   /// meets of them does not depend on which others are wanted.
   sim::Scene scene(unsigned threads, const IsWanted& is_wanted) const;
 
@@ -71,7 +71,7 @@ class TiledScene {
 
   file::SceneConfig scene_;
   std::filesystem::path folder_;
-  geometry::Mesh ground_;  ///< without triangles if there is none
+  geometry::Mesh beside_;  ///< surroundings_of() the tiles
   std::vector<Kind> kinds_;
   Eigen::AlignedBox3d box_;
   std::size_t triangles_ = 0;

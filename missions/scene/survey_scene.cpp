@@ -45,9 +45,7 @@ sim::Scene scene_of(const geometry::Mesh& model, const file::Mission& mission,
     return reflecting_scene(mission, folder).scene(mission.threads);
   }
   geometry::Mesh mesh = model;
-  if (mission.scene.ground) {
-    geometry::append(mesh, ground_of(mission, geometry::bounding_box(model)));
-  }
+  geometry::append(mesh, surroundings_of(mission, geometry::bounding_box(model)));
   std::vector<sim::Surface> surfaces = surfaces_of(mission, folder);
   if (!surfaces.empty()) surfaces.resize(mesh.triangles.size(), sim::Surface::matt);
   return sim::Scene(std::array{sim::ScenePart{mesh, {}, {}, surfaces}}, mission.threads);
@@ -108,22 +106,42 @@ geometry::Mesh placed_model(const file::Mission& mission, const std::filesystem:
   return scene.copies.empty() ? model : with_copies(scene, model);
 }
 
-SurveyScene::SurveyScene(const file::Mission& mission, const std::filesystem::path& folder)
+SurveyScene::SurveyScene(const file::Mission& mission, const std::filesystem::path& folder,
+                         const std::filesystem::path& kept)
     : mission_(mission),
       model_(placed_model(mission, folder)),
       scene_(scene_of(model_, mission, folder)),
       samples_(geometry::sample_surface(model_, mission.evaluation.samples, sample_seed)),
       view_distance_(derived::view_distance_of(mission)),
       view_sphere_(sphere_around(samples_.points, view_distance_)),
-      truth_(std::make_shared<geometry::MeshDistance>(model_, mission.threads)),
       radius_(mission.evaluation.radius.value_or(derived::view_limits(mission).stand_off)),
-      reachable_(reachable_space()) {
-  if (std::max(radius_, derived::view_limits(mission).stand_off) <= 0.0) truth_.reset();
+      kept_(kept) {}
+
+const judge::ReachableSpace& SurveyScene::reachable() const {
+  std::call_once(lazily_->reached_once, [&] {
+    std::error_code ignored;
+    if (std::filesystem::is_regular_file(kept_, ignored)) {
+      lazily_->reached = judge::ReachableSpace::read(geometry::read_file(kept_));
+    }
+    if (lazily_->reached) return;
+    lazily_->reached = reachable_space();
+    if (!kept_.empty()) geometry::write_file(kept_, lazily_->reached->bytes());
+  });
+  return *lazily_->reached;
+}
+
+const geometry::MeshDistance& SurveyScene::truth() const {
+  std::call_once(lazily_->distance_once, [&] {
+    geometry::Mesh all = model_;
+    geometry::append(all, derived::prior_neighbours(mission_));
+    lazily_->distance.emplace(all, mission_.threads);
+  });
+  return *lazily_->distance;
 }
 
 judge::ReachableSpace SurveyScene::reachable_space() const {
   const survey::ViewLimits limits = derived::view_limits(mission_);
-  return {*truth_,
+  return {truth(),
           geometry::bounding_box(model_),
           {.radius = radius_,
            .least_height = limits.least_height,
@@ -140,17 +158,17 @@ bool SurveyScene::is_in_sight(const Vector3d& a, const Vector3d& b) const {
 }
 
 bool SurveyScene::is_reachable(const Vector3d& place) const {
-  return reachable_.leads_to(place, [this](const Vector3d& from, const Vector3d& reached) {
+  return reachable().leads_to(place, [this](const Vector3d& from, const Vector3d& reached) {
     return is_in_sight(from, reached);
   });
 }
 
 geometry::View SurveyScene::first_view(std::uint64_t seed) const {
   if (const auto start = derived::given_start(mission_)) {
-    if (!reachable_.is_empty()) return *start;
+    if (!reachable().is_empty()) return *start;
     throw Error(ErrorKind::bad_config,
                 "start.position is inside the model, or so enclosed by it that a ball of " +
-                    file::to_text(radius_ + reachable_.cell()) +
+                    file::to_text(radius_ + reachable().cell()) +
                     " m does not fit; move it, or make evaluation.radius less");
   }
 
@@ -178,13 +196,14 @@ judge::Admissible SurveyScene::admissible() const {
   limits.least_pitch -= half_fov;
   limits.most_pitch += half_fov;
   const auto joins = [this](const Vector3d& place, const Vector3d& reached) {
-    return radius_ > 0.0 ? truth_->keeps(place, reached, radius_) : is_in_sight(place, reached);
+    return radius_ > 0.0 ? truth().keeps(place, reached, radius_) : is_in_sight(place, reached);
   };
-  // Whatever leads there keeps the radius already.
-  const bool asks_distance = limits.stand_off > radius_;
-  const auto allows = [this, limits, joins, asks_distance](const geometry::View& view) {
-    return limits.allow(view) && reachable_.leads_to(view.position, joins) &&
-           (!asks_distance || truth_->distance(view.position) >= limits.stand_off);
+  // Whatever leads there keeps the radius already, from the model: neighbours are beyond its box.
+  const bool asks_distance = limits.stand_off > radius_ || mission_.scene.neighbours;
+  const double least = std::max(limits.stand_off, radius_);
+  const auto allows = [this, limits, joins, asks_distance, least](const geometry::View& view) {
+    return limits.allow(view) && reachable().leads_to(view.position, joins) &&
+           (!asks_distance || truth().distance(view.position) >= least);
   };
   return {.view_distance = view_distance_,
           .allows = allows,

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <memory>
+#include <mutex>
 #include <optional>
 #include <stop_token>
 #include <vector>
@@ -30,12 +31,15 @@ struct ViewSphere {
 
 class SurveyScene {
  public:
-  /// Loads and places the mission's model; `folder` is where relative paths start. Throws what
-  /// load_model() and place_model() throw.
-  SurveyScene(const file::Mission& mission, const std::filesystem::path& folder);
+  /// Loads and places the mission's model; `folder` is where relative paths start. The file `kept`
+  /// keeps for other programs what of the scene can be reached, and whoever names it answers for it
+  /// being of the same mission and model; without it everybody finds that out anew, when it is
+  /// first asked for. Throws what load_model() and place_model() throw.
+  SurveyScene(const file::Mission& mission, const std::filesystem::path& folder,
+              const std::filesystem::path& kept = {});
 
-  const geometry::Mesh& model() const { return model_; }  ///< as placed, without ground
-  const sim::Scene& scene() const { return scene_; }      ///< with ground, if there is one
+  const geometry::Mesh& model() const { return model_; }  ///< as placed, by itself
+  const sim::Scene& scene() const { return scene_; }  ///< with what is beside it, such as ground
   const geometry::SurfaceSamples& samples() const { return samples_; }  ///< of the model
 
   /// d: as the mission gives it, or from its camera and density.
@@ -67,8 +71,17 @@ class SurveyScene {
   bool is_reachable(const Eigen::Vector3d& place) const;
 
  private:
+  /// Made when they are first asked for, by any thread: a survey may need neither.
+  struct Lazily {
+    std::once_flag reached_once, distance_once;
+    std::optional<judge::ReachableSpace> reached;
+    std::optional<geometry::MeshDistance> distance;
+  };
+
   std::string ceiling_key() const;
+  const judge::ReachableSpace& reachable() const;
   judge::ReachableSpace reachable_space() const;
+  const geometry::MeshDistance& truth() const;
   bool is_in_sight(const Eigen::Vector3d& a, const Eigen::Vector3d& b) const;
 
   file::Mission mission_;
@@ -77,9 +90,9 @@ class SurveyScene {
   geometry::SurfaceSamples samples_;
   double view_distance_;
   ViewSphere view_sphere_;
-  std::shared_ptr<const geometry::MeshDistance> truth_;  ///< if a distance is asked for
-  double radius_;                                        ///< that has to fit through ways
-  judge::ReachableSpace reachable_;
+  double radius_;  ///< that has to fit through ways
+  std::filesystem::path kept_;
+  std::shared_ptr<Lazily> lazily_ = std::make_shared<Lazily>();
 };
 
 /// The mission's mesh as surveyed: loaded and placed, or as its prior data has it; without ground.

@@ -96,13 +96,24 @@ std::string flight_section(const MissionValues& values) {
         "  takeoff: {}\n",
         vector_text(*values.pad));
   }
-  return text +
-         fmt::format(
-             "  # In this box nothing is free before it is measured. Outside of it you vouch "
-             "for the air, but\n"
-             "  # for what prior files have there: widen it over trees, wires and cranes.\n"
-             "  unknown_box: {{min: {}, max: {}}}\n",
-             vector_text(values.unknown.min()), vector_text(values.unknown.max()));
+  text += fmt::format(
+      "  # In this box nothing is free before it is measured. Outside of it you vouch "
+      "for the air, but\n"
+      "  # for what prior files have there: widen it over trees, wires and cranes.\n"
+      "  unknown_box: {{min: {}, max: {}}}\n",
+      vector_text(values.unknown.min()), vector_text(values.unknown.max()));
+  std::string corners;
+  for (const Eigen::AlignedBox3d& box : values.unknown_beside) {
+    corners += fmt::format("{}{}, {}", corners.empty() ? "" : ",\n    ", vector_text(box.min()),
+                           vector_text(box.max()));
+  }
+  if (!corners.empty()) {
+    text +=
+        "  # Nor in those of neighbours, which are surveyed, too: the corners of each.\n"
+        "  unknown_beside: [" +
+        corners + "]\n";
+  }
+  return text;
 }
 
 std::string planner_section(const MissionValues& values) {
@@ -114,7 +125,7 @@ std::string planner_section(const MissionValues& values) {
       "  max_range: {:g}  # metres\n"
       "  noise: {{sigma: 0.02}}  # metres, one standard deviation\n"
       "planner:\n",
-      4.0 * values.view_distance);
+      sensor_range(values));
   if (values.scene) {
     text += fmt::format(
         "  # Surface in this box is wanted; what is lower counts as the ground.\n"
@@ -137,6 +148,8 @@ std::string planner_section(const MissionValues& values) {
 
 }  // namespace
 
+double sensor_range(const MissionValues& values) { return 4.0 * values.view_distance; }
+
 std::string mission_text(const MissionValues& values) {
   const std::string name = values.file.stem().string();
   return fmt::format(
@@ -145,10 +158,13 @@ std::string mission_text(const MissionValues& values) {
              "guess,\n"
              "# so read every line of it before you fly. `skycap check` says what the files hold.\n"
              "name: {}  # of the results\n"
-             "# A dry run: the target stands in for what there is. Leave `scene` out for a live "
+             "# A dry run: {} what there is. Leave `scene` out for a live "
              "survey.\n"
-             "scene: {{model: prior, ground: true{}}}\n",
+             "scene: {{model: prior, ground: true{}{}}}\n",
              values.verb, yaml_quoted(name),
+             values.sees_neighbours ? "the target and its neighbours stand in for"
+                                    : "the target stands in for",
+             values.sees_neighbours ? ", neighbours: true" : "",
              values.ground == 0.0 ? "" : fmt::format(", position: [0, 0, {:g}]", values.ground)) +
          prior_section(values) + site_section(values) + flight_section(values) +
          planner_section(values);

@@ -22,13 +22,18 @@ struct MissionValues {
   std::vector<prior::Source> sources;
   flight::GeodeticPoint origin;
   std::string origin_is = "the middle of the target, at its lowest place";
-  double ground = 0.0;          ///< z of the ground where the sources have none
-  Eigen::AlignedBox3d unknown;  ///< where nothing is free before it is measured
+  double ground = 0.0;           ///< z of the ground where the sources have none
+  bool sees_neighbours = false;  ///< of the sources in the dry run
+  Eigen::AlignedBox3d unknown;   ///< where nothing is free before it is measured
+  std::vector<Eigen::AlignedBox3d> unknown_beside{};  ///< likewise, of neighbours
   Eigen::AlignedBox3d fence{};
   std::optional<Eigen::AlignedBox3d> scene{};  ///< whose surface is wanted; none in a draft
   std::optional<Eigen::Vector3d> pad{};        ///< likewise
   double clearance = 0.0, registration_distance = 0.0, view_distance = 0.0;
 };
+
+/// How far the sensor measures that the mission proposes [m].
+double sensor_range(const MissionValues& values);
 
 std::string mission_text(const MissionValues& values);
 

@@ -6,10 +6,13 @@
 #include "geometry/io/file.h"
 #include "geometry/io/output_folder.h"
 #include "geometry/place/world.h"
+#include "missions/benchmark/contestants.h"
 #include "missions/benchmark/trial_files.h"
 #include "missions/campaign/campaign_file.h"
 #include "missions/campaign/manifest.h"
 #include "missions/derived/resolved_mission.h"
+#include "missions/district/district_file.h"
+#include "missions/district/prepared.h"
 #include "missions/equipment/sensor_reader.h"
 #include "missions/equipment/vehicle_reader.h"
 #include "missions/file/mission_keys.h"
@@ -89,6 +92,45 @@ int run_campaign(const std::uint8_t* bytes, std::size_t size) {
   });
 }
 
+bool is_on_earth(const missions::site::Click& place) {
+  return std::abs(place.latitude_deg) <= 90.0 && std::abs(place.longitude_deg) <= 180.0;
+}
+
+/// Results go to a folder of the district's name, and places are on the Earth.
+int run_district(const std::uint8_t* bytes, std::size_t size) {
+  namespace district = missions::district;
+  return run_reader("d.yaml", [&] {
+    const auto given = district::parse_district(text_of(bytes, size), "d.yaml");
+    require(missions::campaign::is_plain(given.name), "no name of a folder: " + given.name);
+    require(missions::benchmark::find_contestant(given.planner) != nullptr,
+            "no planner: " + given.planner);
+    require(given.together >= 0.0 && given.together <= 100.0, "together is out of its range");
+    const district::TargetChoice& targets = given.targets;
+    require(targets.within.empty() || targets.within.size() == 2, "a box without two corners");
+    require(targets.distance >= 0.0 && targets.distance <= 50'000.0,
+            "distance is out of its range");
+    for (const auto& places : {given.pads, targets.within}) {
+      for (const auto& place : places) require(is_on_earth(place), "a place off the Earth");
+    }
+    require(!targets.near || is_on_earth(*targets.near), "a place off the Earth");
+    for (const file::KeyOverride& change : given.set) {
+      require(file::find_key(change.path) != nullptr, "a change of no key: " + change.path);
+    }
+  });
+}
+
+/// What is made of it is read as the same.
+int run_prepared(const std::uint8_t* bytes, std::size_t size) {
+  namespace district = missions::district;
+  return run_reader(district::prepared_name, [&] {
+    const auto path = file_with(district::prepared_name, text_of(bytes, size));
+    const std::string text = district::prepared_json(district::read_prepared(path));
+    const auto again = file_with(district::prepared_name, text);
+    require(district::prepared_json(district::read_prepared(again)) == text,
+            "it is another when it is read again");
+  });
+}
+
 /// A trial that is damaged counts as not run: there is nothing to refuse.
 int run_trial(const std::uint8_t* bytes, std::size_t size) {
   const auto path = file_with("trial.json", text_of(bytes, size));
@@ -112,10 +154,10 @@ int run_journal(const std::uint8_t* bytes, std::size_t size) {
   return 0;
 }
 
-constexpr Reader readers[] = {{"mission", run_mission},  {"sensor", run_sensor},
-                              {"vehicle", run_vehicle},  {"summary", run_summary},
-                              {"trial", run_trial},      {"journal", run_journal},
-                              {"campaign", run_campaign}};
+constexpr Reader readers[] = {
+    {"mission", run_mission},   {"sensor", run_sensor},     {"vehicle", run_vehicle},
+    {"summary", run_summary},   {"trial", run_trial},       {"journal", run_journal},
+    {"campaign", run_campaign}, {"district", run_district}, {"prepared", run_prepared}};
 
 }  // namespace
 

@@ -26,7 +26,7 @@ std::span<const Reader> prior_readers();    ///< city models, earlier scans
 std::span<const Reader> link_readers();     ///< MAVLink, messages of live surveys
 std::span<const Reader> record_readers();   ///< recordings, journals, results
 std::span<const Reader>
-mission_readers();  ///< missions, campaigns, sensors, packages, trials, journals
+mission_readers();  ///< missions, campaigns, districts, sensors, packages, trials, journals
 
 /// Messages of ROS 2; only where Cyclone DDS is.
 std::span<const Reader> ros2_readers();

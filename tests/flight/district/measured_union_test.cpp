@@ -1,6 +1,7 @@
 #include "flight/district/measured_union.h"
 
 #include <random>
+#include <sstream>
 #include <utility>
 #include <vector>
 
@@ -9,6 +10,7 @@
 
 #include "geometry/error.h"
 #include "tests/flight/scenes.h"
+#include "tests/flight/space/ray_sensor.h"
 #include "tests/support/complaint.h"
 
 namespace skycap::flight {
@@ -93,6 +95,58 @@ TEST(MeasuredUnion, KeepsWhatAnyHasMetInTheWay) {
   EXPECT_EQ(closest.kind, ObstacleKind::occupied_space);
   EXPECT_NEAR(closest.distance, 2.0, 1e-9);
   EXPECT_EQ(together.name(closest), "a measured point");
+}
+
+/// A wall in the east, as a survey of the west sees it over its own box.
+MeasuredSpace seen_from_the_west(const std::vector<AlignedBox3d>& beside) {
+  MeasuredSpace space({.voxel = voxel, .region = west, .beside = beside});
+  const geometry::Camera camera(
+      {.width = 96, .height = 64, .horizontal_fov = 1.5, .vertical_fov = 1.1});
+  const geometry::Mesh wall = scenes::box({9, -20, -20}, {10, 20, 30});
+  space.insert(depth_image(wall, camera, geometry::look_at({-8, 0, 4}, {10, 0, 4})), camera);
+  return space;
+}
+
+/// As a package hands it on.
+MeasuredSpace read_again(const MeasuredSpace& space) {
+  std::stringstream file;
+  space.write(file);
+  return MeasuredSpace::read(file, "free.bin");
+}
+
+// What a survey has seen free beyond its own box is free in the boxes of others, too.
+TEST(MeasuredUnion, CountsWhatASurveyHasSeenBeyondItsRegion) {
+  const Segment beyond{{3.5, 0, 4}, {7, 0, 4}};
+  const MeasuredSpace alone = seen_from_the_west({}), kept = seen_from_the_west({east});
+  EXPECT_EQ(kept.free_volume(), alone.free_volume());
+  EXPECT_TRUE(read_again(kept).extent().isApprox(alone.extent()));
+  EXPECT_TRUE(kept.known_box().contains(Vector3d(7, 0, 4)));
+  const MeasuredUnion without(both(read_again(alone), space_of(east)));
+  EXPECT_EQ(without.closest(beyond, 1.0).distance, 0.0);
+  const MeasuredUnion with(both(read_again(kept), space_of(east)));
+  EXPECT_TRUE(with.is_free(beyond, 1.0));
+  EXPECT_FALSE(with.is_free({{7, 0, 4}, {9, 0, 4}}, 0.1));                      // the wall
+  EXPECT_FALSE(with.is_free({{-1.75, 5.75, 7.75}, {-1.75, 5.75, 7.75}}, 0.1));  // out of sight
+  EXPECT_TRUE(with.is_free({{-4, 0, 4}, {7, 0, 4}}, 0.5));  // from one box into the other
+}
+
+// For the survey itself a box beside it is as closed as its own; what is free is what would be if
+// both were one, wherever neither leaves a gap to the hull.
+TEST(MeasuredUnion, LetsASurveyFlyInTheBoxesOfOthersWhereItHasSeenThemFreeOnly) {
+  const MeasuredSpace beside = seen_from_the_west({east});
+  MeasuredSpace one({.voxel = voxel, .region = west.merged(east)});
+  EXPECT_EQ(beside.closest({{9.5, 5, 1}, {9.5, 5, 2}}, 1.0).kind, ObstacleKind::unknown_space);
+  EXPECT_TRUE(seen_from_the_west({}).is_free({{6, 5.5, 7.5}, {6, 5.5, 7.5}}, 0.2));
+  const geometry::Camera camera(
+      {.width = 96, .height = 64, .horizontal_fov = 1.5, .vertical_fov = 1.1});
+  const geometry::Mesh wall = scenes::box({9, -20, -20}, {10, 20, 30});
+  one.insert(depth_image(wall, camera, geometry::look_at({-8, 0, 4}, {10, 0, 4})), camera);
+  std::mt19937_64 random(5);
+  const AlignedBox3d around(Vector3d(-14, -9, -2), Vector3d(14, 9, 11));
+  for (int i = 0; i < 500; ++i) {
+    const Segment leg{scenes::point_in(random, around), scenes::point_in(random, around)};
+    EXPECT_NEAR(beside.closest(leg, 6.0).distance, one.closest(leg, 6.0).distance, 1e-9);
+  }
 }
 
 // Nobody has been there: the box of a target that was not surveyed is closed.

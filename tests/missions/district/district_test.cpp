@@ -10,6 +10,7 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
+#include "missions/derived/resolved_mission.h"
 #include "missions/district/prepared.h"
 #include "tests/missions/prior/cube_files.h"
 #include "tests/missions/run_skycap.h"
@@ -153,6 +154,27 @@ TEST_F(District, CutsOutWhatIsNearEachTarget) {
   const std::string site = content_of(out() / "sites" / "house_2.city.json");
   EXPECT_THAT(site, AllOf(HasSubstr("house_2"), HasSubstr("house_3"), HasSubstr("house_4")));
   EXPECT_THAT(site, testing::Not(HasSubstr("house_5")));
+}
+
+// A neighbour stands in the scene that a target's sensor sees; what it sees free up to the boxes of
+// others is kept for the flight of all. A target by itself needs neither box.
+TEST_F(District, KeepsWhatTargetsSeeOfEachOther) {
+  folder_.write("town.city.json", town({{0, 0, 0}, {18, 0, 0}, {500, 0, 0}}));
+  write("map: town.city.json\nvertical: ellipsoid\n");
+  ASSERT_EQ(run({"--list"}).exit_code, 0);
+  const auto prepared = district::read_prepared(out() / district::prepared_name);
+  ASSERT_EQ(prepared.targets.size(), 3U);
+  for (int house = 0; house < 3; ++house) {
+    const fs::path file = out() / "missions" / ("house_" + std::to_string(house) + ".yaml");
+    const file::Mission mission = derived::read_mission(file);
+    EXPECT_TRUE(mission.scene.neighbours);
+    const std::vector<Vector3d>& corners = mission.flight.unknown_beside;
+    ASSERT_EQ(corners.size(), house < 2 ? 2U : 0U) << house;
+    if (house == 2) continue;
+    const Eigen::AlignedBox3d& other = prepared.targets[1 - house].unknown;
+    EXPECT_EQ(corners[0], other.min());
+    EXPECT_EQ(corners[1], other.max());
+  }
 }
 
 TEST_F(District, ChoosesTargetsByPlaceAndAttribute) {

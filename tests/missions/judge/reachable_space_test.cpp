@@ -2,6 +2,7 @@
 
 #include <queue>
 #include <random>
+#include <string>
 
 #include <gtest/gtest.h>
 
@@ -188,6 +189,42 @@ TEST(ReachableSpace, IsTheSameForAnyNumberOfThreads) {
   for (int i = 0; i < 2000; ++i) {
     const Vector3d place{uniform(random), uniform(random), uniform(random)};
     EXPECT_EQ(one.leads_to(place, joins), three.leads_to(place, joins));
+  }
+}
+
+ReachableSpace of_a_room(const geometry::MeshDistance& distance, const geometry::Mesh& mesh) {
+  return {distance, geometry::bounding_box(mesh), {.radius = 1.0}, keeping(1.0, distance)};
+}
+
+TEST(ReachableSpace, IsTheSameFromAFile) {
+  const geometry::Mesh mesh = room_mesh({.door_width = 5.0, .door_height = 5.0});
+  const geometry::MeshDistance distance(mesh);
+  const ReachableSpace space = of_a_room(distance, mesh);
+  const auto again = ReachableSpace::read(space.bytes());
+  ASSERT_TRUE(again);
+  EXPECT_EQ(again->bytes(), space.bytes());
+  EXPECT_EQ(again->cell(), space.cell());
+  std::mt19937_64 random(2);
+  std::uniform_real_distribution<double> somewhere(-16.0, 16.0);
+  for (int i = 0; i < 2000; ++i) {
+    const double z = somewhere(random), y = somewhere(random), x = somewhere(random);
+    const auto joins = keeping(1.0, distance);
+    EXPECT_EQ(again->leads_to({x, y, z}, joins), space.leads_to({x, y, z}, joins));
+  }
+}
+
+TEST(ReachableSpace, IsNotReadFromAFileThatIsSpoiled) {
+  const geometry::Mesh mesh = room_mesh({.door_width = 5.0, .door_height = 5.0});
+  const geometry::MeshDistance distance(mesh);
+  const std::string whole = of_a_room(distance, mesh).bytes();
+  EXPECT_FALSE(ReachableSpace::read(""));
+  EXPECT_FALSE(ReachableSpace::read(whole.substr(0, whole.size() - 4)));
+  EXPECT_FALSE(ReachableSpace::read(whole + "more"));
+  // The mark, the cells' size and number, and cells: none may be another.
+  for (const std::size_t at : {0UL, 23UL, 48UL, 56UL, 64UL, whole.size() / 2, whole.size() - 1}) {
+    std::string other = whole;
+    other[at] = static_cast<char>(other[at] ^ 0x40);
+    EXPECT_FALSE(ReachableSpace::read(other)) << at;
   }
 }
 

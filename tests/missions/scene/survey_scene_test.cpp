@@ -7,6 +7,7 @@
 #include <gtest/gtest.h>
 
 #include "geometry/io/mesh_io.h"
+#include "missions/derived/mission_priors.h"
 #include "missions/derived/resolved_mission.h"
 #include "tests/missions/room_scene.h"
 #include "tests/missions/run_skycap.h"
@@ -42,8 +43,9 @@ class WindowedRoom {
     return mission;
   }
 
-  scene::SurveyScene scene(const std::vector<file::KeyOverride>& more) const {
-    return {mission(more), folder_.path()};
+  scene::SurveyScene scene(const std::vector<file::KeyOverride>& more,
+                           const std::filesystem::path& kept = {}) const {
+    return {mission(more), folder_.path(), kept};
   }
 
  private:
@@ -110,6 +112,59 @@ TEST(SurveyScene, RefusesAStartInsideOfAWall) {
                                                {"--set", "evaluation.radius", "1"}});
   EXPECT_THAT(complaint_of([&] { scene.first_view(1); }),
               HasSubstr("start.position is inside the model"));
+}
+
+// The file stands for the mission and its model: whoever reads it computes nothing.
+TEST(SurveyScene, KeepsWhatCanBeReachedInAFile) {
+  const WindowedRoom room(3.0);
+  const TestFolder folder;
+  const std::filesystem::path kept = folder.path() / "reached";
+  const std::vector<file::KeyOverride> wide{{"--set", "evaluation.radius", "1"}};
+  EXPECT_TRUE(room.scene(wide, kept).is_reachable({0, 0, 5}));
+  ASSERT_TRUE(std::filesystem::exists(kept));
+  // As it is kept, whatever would be found.
+  EXPECT_TRUE(room.scene({{"--set", "evaluation.radius", "2"}}, kept).is_reachable({0, 0, 5}));
+  folder.write("reached", "spoiled");
+  EXPECT_FALSE(room.scene({{"--set", "evaluation.radius", "2"}}, kept).is_reachable({0, 0, 5}));
+  EXPECT_GT(std::filesystem::file_size(kept), 100U);
+}
+
+/// A cube of 4 m that is surveyed, and one that stands 6 m beside it, in the way.
+std::string two_cubes(const TestFolder& folder, const char* neighbours) {
+  geometry::Mesh cube = sim::models::box({-2, -2, 0}, {2, 2, 4});
+  geometry::write_mesh(folder / "cube.obj", cube);
+  geometry::write_mesh(folder / "beside.obj", sim::models::box({8, -2, 0}, {12, 2, 4}));
+  const std::string near = "uncertainty: 0.1}";
+  return "scene: {model: prior, neighbours: " + std::string(neighbours) +
+         "}\nprior:\n  - {file: '" + folder / "cube.obj" + "', role: target, " + near +
+         "\n  - {file: '" + folder / "cube.obj" + "', role: obstacle, " + near + "\n  - {file: '" +
+         folder / "beside.obj" + "', role: obstacle, " + near +
+         "\nevaluation: {registration_distance: 0.1, samples: 2000, radius: 0.5}\n";
+}
+
+// Rays end on what stands beside the target, the sensor keeps off it, and none of it is judged.
+TEST(SurveyScene, HasNeighboursThatAreNotJudged) {
+  const TestFolder folder;
+  const auto mission_of = [&](const char* neighbours) {
+    return derived::parse_mission(two_cubes(folder, neighbours), "m.yaml");
+  };
+  const auto scene_of = [&](const char* neighbours) {
+    return scene::SurveyScene(mission_of(neighbours), "");
+  };
+  const scene::SurveyScene alone = scene_of("false"), beside = scene_of("true");
+  EXPECT_EQ(beside.model().triangles.size(), 12U);
+  EXPECT_EQ(beside.samples().points, alone.samples().points);
+  EXPECT_FALSE(alone.scene().is_blocked({6, 0, 2}, {14, 0, 2}));
+  EXPECT_TRUE(beside.scene().is_blocked({6, 0, 2}, {14, 0, 2}));
+  // The target, which is in the way as well, is not there twice.
+  EXPECT_EQ(derived::prior_neighbours(mission_of("true")).triangles.size(), 12U);
+  EXPECT_TRUE(derived::prior_neighbours(mission_of("false")).triangles.empty());
+  const auto allows = [](const scene::SurveyScene& scene, double x) {
+    return scene.admissible().allows(geometry::look_at({x, 0, 2}, {0, 0, 2}));
+  };
+  EXPECT_TRUE(allows(alone, 7.8));
+  EXPECT_FALSE(allows(beside, 7.8));
+  EXPECT_TRUE(allows(beside, 5.0));
 }
 
 }  // namespace
