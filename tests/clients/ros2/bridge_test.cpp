@@ -11,102 +11,19 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "tests/clients/ros2/sample_messages.h"
+#include "tests/clients/ros2/bridged_robot.h"
 
 namespace skycap::ros2 {
 namespace {
 
 using Eigen::Quaterniond;
-using Eigen::Vector3d;
 using testing::AllOf;
 using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
 using testing::SizeIs;
 
-/// A survey that wants a view at (5, 0, 0), along z of the world: the robot does not have to turn.
-constexpr const char* wanted =
-    R"({"id": 3, "state": "view", "scans": 2, "points": 9, "set_aside": 0,
-        "view": {"position": [5, 0, 0], "direction": [0, 0, 1], "quaternion_xyzw": [0, 0, 0, 1]},
-        "path": [[0, 0, 0], [5, 0, 0]], "clearance_m": 2})";
-
-class Robot : public testing::Test {
- protected:
-  void begin(BridgeConfig config = {}) {
-    bridge_ = std::make_unique<Bridge>(
-        std::move(config),
-        SurveyPort{.next = [this] { return answer_; },
-                   .finish = [this] { return ++finished_, std::string(); },
-                   .add =
-                       [this](const SensorScan& scan, const skycap_live::Pose& pose,
-                              const skycap_live::PoseError& error, skycap_live::From from) {
-                         if (!refusal_.empty()) throw skycap_live::Refused(refusal_);
-                         scans_.push_back(scan);
-                         poses_.push_back(pose);
-                         errors_.push_back(error);
-                         origins_.push_back(from);
-                         return answer_;
-                       },
-                   .refuse =
-                       [this](std::size_t id, const std::string& reason) {
-                         refused_.push_back(std::to_string(id) + " " + reason);
-                         return answer_;
-                       }},
-        Outlets{.goal = [this](const Goal& goal) { goals_.push_back(goal); },
-                .status = [this](const std::string& text) { status_ = text; },
-                .warning = [this](const std::string& line) { warnings_.push_back(line); }});
-    bridge_->begin();
-  }
-
-  void odometry(double time, const Vector3d& position) {
-    const SampleOdometry sample(seconds(time), position);
-    bridge_->receive(sample.message, now_);
-  }
-  void cloud(double time) {
-    const SampleCloud sample(seconds(time), {{1, 2, 3}});
-    bridge_->receive(sample.message, now_);
-  }
-  void command(std::string text) { bridge_->receive(String{text.data()}, now_); }
-  void proceed(double later = 0.0) {
-    now_ += later;
-    bridge_->proceed(now_);
-  }
-  void transforms(double time, std::vector<SampleTransforms::Frame> frames,
-                  bool is_static = false) {
-    const SampleTransforms sample(seconds(time), std::move(frames));
-    bridge_->receive(sample.message, is_static, now_);
-  }
-  /// Begins with TF alone, by which the camera is half a metre above the body.
-  void begin_with_transforms() {
-    begin({.uses_transforms = true, .world = "map"});
-    transforms(0.0, {{"base_link", "camera_optical", {0, 0, 0.5}}}, true);
-  }
-  /// From 9 s to 11 s in steps of 0.05 s: the body is where `position` has it, by two frames.
-  void localised(const std::function<Vector3d(double)>& position) {
-    for (int step = 0; step <= 40; ++step) {
-      const double time = 9.0 + 0.05 * step;
-      transforms(time, {{"map", "odom", {1, 0, 0}}, {"odom", "base_link", position(time)}});
-    }
-  }
-
-  /// At the view from 9 s on, in steps of 0.05 s.
-  void arrive() {
-    for (int step = 0; step <= 40; ++step) odometry(9.0 + 0.05 * step, {5, 0, 0});
-  }
-
-  double now_ = 100.0;
-  std::string answer_ = wanted, refusal_, status_;
-  int finished_ = 0;
-  std::vector<SensorScan> scans_;
-  std::vector<skycap_live::Pose> poses_;
-  std::vector<skycap_live::PoseError> errors_;
-  std::vector<skycap_live::From> origins_;
-  std::vector<std::string> warnings_, refused_;
-  std::vector<Goal> goals_;
-  std::unique_ptr<Bridge> bridge_;
-};
-
-TEST_F(Robot, IsToldTheViewAndTheWayInTheFrameOfItsOdometry) {
+TEST_F(BridgedRobot, IsToldTheViewAndTheWayInTheFrameOfItsOdometry) {
   begin();
   EXPECT_THAT(goals_, IsEmpty());
   odometry(9.0, {0, 0, 0});
@@ -119,7 +36,7 @@ TEST_F(Robot, IsToldTheViewAndTheWayInTheFrameOfItsOdometry) {
                              HasSubstr(R"("hold":false)")));
 }
 
-TEST_F(Robot, GivesAScanOnceItIsAtTheView) {
+TEST_F(BridgedRobot, GivesAScanOnceItIsAtTheView) {
   begin();
   odometry(8.0, {0, 0, 0});
   odometry(8.05, {0, 0, 0});
@@ -138,7 +55,7 @@ TEST_F(Robot, GivesAScanOnceItIsAtTheView) {
   EXPECT_THAT(warnings_, IsEmpty());
 }
 
-TEST_F(Robot, GivesScansFromTheWayWhereTheMissionMeasuresThere) {
+TEST_F(BridgedRobot, GivesScansFromTheWayWhereTheMissionMeasuresThere) {
   const std::string begun = R"({"on_way": 0, "frame_period_s": 1.0, )";
   answer_ = begun + std::string(wanted).substr(1);
   begin();
@@ -163,7 +80,7 @@ TEST_F(Robot, GivesScansFromTheWayWhereTheMissionMeasuresThere) {
   EXPECT_THAT(warnings_, IsEmpty());
 }
 
-TEST_F(Robot, IsWhereTransformsHaveItAndItsCamera) {
+TEST_F(BridgedRobot, IsWhereTransformsHaveItAndItsCamera) {
   begin_with_transforms();
   cloud(8.0);  // tells the frame of the camera, from a time that nobody knows of
   proceed(1.0);
@@ -179,7 +96,7 @@ TEST_F(Robot, IsWhereTransformsHaveItAndItsCamera) {
   EXPECT_EQ(goals_.back().mount.value().world_from_optical({}).translation(), Vector3d(0, 0, 0.5));
 }
 
-TEST_F(Robot, WhoseTransformsMoveIsNotThereYet) {
+TEST_F(BridgedRobot, WhoseTransformsMoveIsNotThereYet) {
   begin_with_transforms();
   cloud(8.0);
   proceed(1.0);
@@ -193,7 +110,7 @@ TEST_F(Robot, WhoseTransformsMoveIsNotThereYet) {
 }
 
 /// There before and after, and in between nobody knows.
-TEST_F(Robot, IsToldOfGapsWhileItSettles) {
+TEST_F(BridgedRobot, IsToldOfGapsWhileItSettles) {
   const std::vector<double> times = {9.0, 9.05, 9.1, 9.6, 9.65, 9.7, 9.75};
   begin();
   for (const double time : times) odometry(time, {5, 0, 0});
@@ -209,7 +126,7 @@ TEST_F(Robot, IsToldOfGapsWhileItSettles) {
 }
 
 /// An arm that moves beside them says nothing of when the body was last heard of.
-TEST_F(Robot, StampsItsViewsByTransformsThatLeadToTheBody) {
+TEST_F(BridgedRobot, StampsItsViewsByTransformsThatLeadToTheBody) {
   begin_with_transforms();
   cloud(8.0);
   transforms(9.0, {{"map", "base_link", {0, 0, 0}}});
@@ -221,7 +138,7 @@ TEST_F(Robot, StampsItsViewsByTransformsThatLeadToTheBody) {
   EXPECT_EQ(goals_.back().stamp, seconds(9.5));
 }
 
-TEST_F(Robot, WithoutTransformsSaysWhatIsMissing) {
+TEST_F(BridgedRobot, WithoutTransformsSaysWhatIsMissing) {
   begin({.uses_transforms = true, .world = "map", .taking = Taking::every});
   cloud(10.0);
   proceed(1.0);
@@ -229,7 +146,7 @@ TEST_F(Robot, WithoutTransformsSaysWhatIsMissing) {
   EXPECT_THAT(warnings_, testing::Contains(HasSubstr("map")));
 }
 
-TEST_F(Robot, LooksTheWrongWay) {
+TEST_F(BridgedRobot, LooksTheWrongWay) {
   begin();
   for (int step = 0; step <= 40; ++step) {
     const SampleOdometry sample(
@@ -242,7 +159,7 @@ TEST_F(Robot, LooksTheWrongWay) {
   EXPECT_THAT(scans_, IsEmpty());
 }
 
-TEST_F(Robot, ScansWaitForOdometryButNotForever) {
+TEST_F(BridgedRobot, ScansWaitForOdometryButNotForever) {
   begin({.taking = Taking::every});
   cloud(10.0);
   proceed(0.4);
@@ -261,7 +178,7 @@ TEST_F(Robot, ScansWaitForOdometryButNotForever) {
 
 /// Lost, late, twice, from the future, or nonsense: no scan with a wrong pose, no crash, a line
 /// each.
-TEST_F(Robot, NothingThatIsWrongGetsIntoTheSurvey) {
+TEST_F(BridgedRobot, NothingThatIsWrongGetsIntoTheSurvey) {
   begin({.taking = Taking::every});
   const double none = std::numeric_limits<double>::quiet_NaN();
   odometry(9.95, {none, 0, 0});
@@ -308,7 +225,7 @@ TEST_F(Robot, NothingThatIsWrongGetsIntoTheSurvey) {
   EXPECT_THAT(poses_, SizeIs(2));
 }
 
-TEST_F(Robot, ComplainsOfAKindOnceInFiveSeconds) {
+TEST_F(BridgedRobot, ComplainsOfAKindOnceInFiveSeconds) {
   begin();
   for (int i = 0; i < 100; ++i) {
     odometry(-1.0, {0, 0, 0});
@@ -318,7 +235,7 @@ TEST_F(Robot, ComplainsOfAKindOnceInFiveSeconds) {
   EXPECT_THAT(warnings_[1], HasSubstr("more)"));
 }
 
-TEST_F(Robot, HoldsAfterAPoseThatWasWrongUntilToldToScanAgain) {
+TEST_F(BridgedRobot, HoldsAfterAPoseThatWasWrongUntilToldToScanAgain) {
   begin();
   arrive();
   answer_ = std::string(wanted);
@@ -341,7 +258,7 @@ TEST_F(Robot, HoldsAfterAPoseThatWasWrongUntilToldToScanAgain) {
   EXPECT_TRUE(goals_.back().view);
 }
 
-TEST_F(Robot, TriesAScanThatTheSurveyRefusedAgainLater) {
+TEST_F(BridgedRobot, TriesAScanThatTheSurveyRefusedAgainLater) {
   begin({.taking = Taking::every});
   arrive();
   refusal_ = R"({"type":"error","what":"the scan has no pixels"})";
@@ -357,7 +274,7 @@ TEST_F(Robot, TriesAScanThatTheSurveyRefusedAgainLater) {
   EXPECT_THAT(scans_, SizeIs(1));
 }
 
-TEST_F(Robot, SendsWhatItsOdometryKnowsOfItsErrors) {
+TEST_F(BridgedRobot, SendsWhatItsOdometryKnowsOfItsErrors) {
   for (const bool is_used : {true, false}) {
     begin({.taking = Taking::every, .uses_covariance = is_used});
     SampleOdometry sample(seconds(10.0), {0, 0, 0});
@@ -373,7 +290,7 @@ TEST_F(Robot, SendsWhatItsOdometryKnowsOfItsErrors) {
   }
 }
 
-TEST_F(Robot, TakesDepthImagesWithTheirCamera) {
+TEST_F(BridgedRobot, TakesDepthImagesWithTheirCamera) {
   begin({.taking = Taking::every});
   odometry(10.0, {0, 0, 0});
   const SampleImage image(seconds(10.0), 4, std::vector<std::uint16_t>(8, 2000), "16UC1");
@@ -386,7 +303,7 @@ TEST_F(Robot, TakesDepthImagesWithTheirCamera) {
   EXPECT_THAT(std::get<DepthScan>(scans_[0]).lens, ElementsAre(2, 4, 1.5, 0.5));
 }
 
-TEST_F(Robot, IsToldByCommands) {
+TEST_F(BridgedRobot, IsToldByCommands) {
   begin({.taking = Taking::command});
   arrive();
   cloud(10.0);
@@ -401,7 +318,7 @@ TEST_F(Robot, IsToldByCommands) {
   EXPECT_TRUE(bridge_->is_finished());
 }
 
-TEST_F(Robot, AsksForTheSurveyNowAndThen) {
+TEST_F(BridgedRobot, AsksForTheSurveyNowAndThen) {
   int asked = 0;
   Bridge lost({},
               {.next = [&]() -> std::string {

@@ -30,8 +30,9 @@ TEST(Omniscient, NeedsFewerViewsThanAPlannerForTheSameCoverage) {
     return view.coverage >= *config.wanted_coverage;
   });
   EXPECT_LE(known.views.size(), reached - planned.views.begin() + 1);
-  // The tour takes the views in another order, so that other points are left out as too near.
-  EXPECT_NEAR(known.coverage(), *config.wanted_coverage, 0.03);
+  // The tour takes the views in another order, so that other points are left out as too near; and
+  // the last view may show more than was wanted.
+  EXPECT_GE(known.coverage(), *config.wanted_coverage - 0.03);
 }
 
 TEST(Omniscient, StartsWhereThePlannersStartAndKeepsTheLimits) {
