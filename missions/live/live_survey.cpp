@@ -170,7 +170,7 @@ struct LiveSurvey::Impl {
     remember(scan);
     departure = scan.sensor_position();
     ++proposal.number;
-    proposal.way = way;
+    proposal.way = reach.record().way;
     proposal.pose = event.scan->pose;
   }
 
@@ -222,8 +222,7 @@ struct LiveSurvey::Impl {
     if (event.scan) pose = event.scan->pose;
     proposal = {.number = proposal.number + 1, .view = view, .way = {}, .end = {}, .pose = pose};
     if (!view) proposal.end = steps->stop_reason();
-    way = view && guide->flight() != nullptr ? reach.record().way : run::FlownLeg{};
-    if (!is_lost) proposal.way = way;
+    if (view && guide->flight() != nullptr && !is_lost) proposal.way = reach.record().way;
   }
 
   /// What cannot be written now is written before anything else is.
@@ -310,7 +309,6 @@ struct LiveSurvey::Impl {
   std::unique_ptr<survey::SurveySteps> steps;
   run::ReachMemory reach;
   Proposal proposal;
-  run::FlownLeg way;  ///< to the view that is proposed, also while nobody knows where the sensor is
   Vector3d departure = Vector3d::Zero();
   std::map<std::string, ScanNumber> numbers;  ///< of scans by their ids
   std::vector<run::TakenScan> taken;          ///< those that were used

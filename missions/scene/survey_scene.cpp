@@ -85,15 +85,19 @@ std::optional<std::vector<std::uint8_t>> marks_in_file(const std::filesystem::pa
   return marks;
 }
 
-/// Keeps them there, if that can be: without them they are worked out again next time.
-void keep_marks(const std::filesystem::path& file, const std::vector<std::uint8_t>& marks) {
-  std::string digits;
-  for (const std::uint8_t mark : marks) digits += mark != 0 ? '1' : '0';
+/// Keeps what was worked out, if that can be: without the file it is worked out again next time.
+void keep(const std::filesystem::path& file, const std::string& bytes) {
   try {
-    geometry::write_file(file, digits);
+    geometry::write_file(file, bytes);
   } catch (const Error&) {
     return;
   }
+}
+
+void keep_marks(const std::filesystem::path& file, const std::vector<std::uint8_t>& marks) {
+  std::string digits;
+  for (const std::uint8_t mark : marks) digits += mark != 0 ? '1' : '0';
+  keep(file, digits);
 }
 
 }  // namespace
@@ -125,7 +129,7 @@ const judge::ReachableSpace& SurveyScene::reachable() const {
     }
     if (lazily_->reached) return;
     lazily_->reached = reachable_space();
-    if (!kept_.empty()) geometry::write_file(kept_, lazily_->reached->bytes());
+    if (!kept_.empty()) keep(kept_, lazily_->reached->bytes());
   });
   return *lazily_->reached;
 }
