@@ -4,8 +4,12 @@
 const coverage_steps = [[0.5, "#d7301f"], [0.8, "#fc8d59"], [0.9, "#fdcc8a"], [0.95, "#9ecae1"], [0.98, "#4292c6"], [2, "#08519c"]];
 const not_surveyed = "#ae017e";
 
+/// The share of a target's surface that is covered: of what can be seen where that is known, since
+/// walls between houses cannot.
+const covered_share = (survey) => survey.coverage_visible ?? survey.coverage;
+
 function coverage_colour(target) {
-  return target.survey ? coverage_steps.find(([to]) => target.survey.coverage < to)[1] : not_surveyed;
+  return target.survey ? coverage_steps.find(([to]) => covered_share(target.survey) < to)[1] : not_surveyed;
 }
 
 const reaching = (to, i) => (i === 0 ? "below " + percent(to) + " %" : i === coverage_steps.length - 1
@@ -49,7 +53,7 @@ const report_of = (target) => target.survey.folder + "/report.html";
 
 function target_mark(target) {
   const mark = drawn("path", { d: ring_path(target.outlines), fill: coverage_colour(target), "fill-rule": "evenodd", class: "target" },
-    drawn("title", {}, target.title + (target.survey ? ", " + shown(target.survey.coverage, "share") + ", " + target.survey.views + " views" : ": " + target.why_none)));
+    drawn("title", {}, target.title + (target.survey ? ", " + shown(covered_share(target.survey), "share") + ", " + target.survey.views + " views" : ": " + target.why_none)));
   return target.survey ? drawn("a", { href: report_of(target) }, mark) : mark;
 }
 
@@ -83,8 +87,9 @@ function district_map(data) {
 function map_legend(summary) {
   const entry = (colour, text) => element("span", {}, colour_mark(colour), text);
   const used = new Set(summary.targets.map(coverage_colour));
+  const knows_visible = summary.targets.some((target) => target.survey && target.survey.coverage_visible !== null);
   return element("p", { class: "legend-line" },
-    coverage_steps.map(([to, colour], i) => (used.has(colour) ? entry(colour, reaching(to, i) + " covered") : null)),
+    coverage_steps.map(([to, colour], i) => (used.has(colour) ? entry(colour, reaching(to, i) + (knows_visible ? " of the visible" : "") + " covered") : null)),
     used.has(not_surveyed) ? entry(not_surveyed, "not surveyed") : null,
     summary.neighbours.length ? entry("#c3cad1", "obstacle") : null);
 }
@@ -101,10 +106,10 @@ function target_table(data) {
     const name = element("span", {}, colour_mark(coverage_colour(target)),
       target.survey ? element("a", { href: report_of(target) }, target.title) : target.title);
     const views = target.survey ? target.survey.views : 0;
-    return [name, number(String(target.ids.length)), f("survey.views", "count"), f("survey.coverage", "share"), f("survey.alone_duration_s", "minutes"),
+    return [name, number(String(target.ids.length)), f("survey.views", "count"), f("survey.coverage", "share"), f("survey.coverage_visible", "share"), f("survey.alone_duration_s", "minutes"),
       number(target.survey ? target.views_flown + " of " + views : "–"), target.why_none || target.why_not_flown];
   });
-  return table(["target", number("buildings"), number("views"), number("covered"), number("flight by itself"), number("views flown"), "remark"], rows);
+  return table(["target", number("buildings"), number("views"), number("covered"), number("of the visible"), number("flight by itself"), number("views flown"), "remark"], rows);
 }
 
 function targets_of_district(data) {
