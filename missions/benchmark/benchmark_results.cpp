@@ -23,6 +23,8 @@ double place(const Trial& trial, CurveAxis axis, std::size_t view) {
       return static_cast<double>(view + 1);
     case CurveAxis::planning_time:
       return trial.planning_time_after[view];
+    case CurveAxis::flown_time:
+      return trial.flown_time_after[view];
     case CurveAxis::distance:
       break;
   }
@@ -74,9 +76,8 @@ CellFigures figures_of(const BenchmarkCell& cell) {
   if (std::ranges::all_of(trials, has_visible)) {
     figures.coverage_visible = over(trials, [](const Trial& t) { return *t.coverage.visible; });
   }
-  const auto is_flown = [](const Trial& t) { return t.flown_time.has_value(); };
-  if (std::ranges::all_of(trials, is_flown)) {
-    figures.flown_time = over(trials, [](const Trial& t) { return *t.flown_time; });
+  if (std::ranges::all_of(trials, &Trial::is_flown)) {
+    figures.flown_time = over(trials, [](const Trial& t) { return *t.flown_time(); });
   }
   return figures;
 }
@@ -107,6 +108,8 @@ std::optional<ReachFigures> reach_figures(const std::vector<Trial>& trials, doub
 std::vector<CurvePoint> coverage_curve(const std::vector<Trial>& trials, CurveAxis axis,
                                        std::size_t count) {
   std::vector<CurvePoint> curve;
+  const bool is_of_flights = axis == CurveAxis::flown_time;
+  if (is_of_flights && !std::ranges::all_of(trials, &Trial::is_flown)) return curve;
   for (const double x : places(trials, axis, count)) {
     const Statistic coverage =
         over(trials, [&](const Trial& trial) { return coverage_at(trial, axis, x); });

@@ -49,7 +49,7 @@ struct ReachFigures {
 std::optional<ReachFigures> reach_figures(const std::vector<Trial>& trials, double coverage);
 
 /// Along what coverage is drawn.
-enum class CurveAxis { views, planning_time, distance };
+enum class CurveAxis { views, planning_time, distance, flown_time };
 
 struct CurvePoint {
   double x = 0.0;
@@ -57,9 +57,9 @@ struct CurvePoint {
   double deviation = 0.0;  ///< standard deviation over the trials
 };
 
-/// Mean coverage over the trials at `count` places: evenly spread along views and distance, by
-/// equal factors along the planning time. A trial that has ended keeps its coverage. Empty
-/// without trials.
+/// Mean coverage over the trials at `count` places: evenly spread along views, distance and time in
+/// the air, by equal factors along the planning time. A trial that has ended keeps its coverage.
+/// Empty without trials, and along the time in the air of surveys that are not flown.
 std::vector<CurvePoint> coverage_curve(const std::vector<Trial>& trials, CurveAxis axis,
                                        std::size_t count);
 

@@ -36,7 +36,8 @@ Json statistic_json(const Statistic& statistic) {
 Json curves_json(const std::vector<Trial>& trials) {
   return {{"views", curve_json(trials, CurveAxis::views)},
           {"planning_time_s", curve_json(trials, CurveAxis::planning_time)},
-          {"distance_m", curve_json(trials, CurveAxis::distance)}};
+          {"distance_m", curve_json(trials, CurveAxis::distance)},
+          {"flown_s", curve_json(trials, CurveAxis::flown_time)}};
 }
 
 Json each_trial_json(const std::vector<Trial>& trials) {
@@ -47,7 +48,7 @@ Json each_trial_json(const std::vector<Trial>& trials) {
                     {"views", trial.views},
                     {"coverage", trial.coverage.all},
                     {"distance_m", trial.distance},
-                    {"flown_s", trial.flown_time ? Json(*trial.flown_time) : Json()},
+                    {"flown_s", trial.is_flown() ? Json(*trial.flown_time()) : Json()},
                     {"planning_time_s", trial.planning_time}});
   }
   return list;

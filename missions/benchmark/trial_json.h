@@ -12,8 +12,8 @@ namespace skycap::missions::benchmark {
 /// {"mean", "standard_deviation", "half_width_95"}; of one number the half width is null.
 nlohmann::ordered_json statistic_json(const Statistic& statistic);
 
-/// {"views", "planning_time_s", "distance_m"}: the mean coverage over the trials along each, as
-/// {"x", "coverage", "standard_deviation"}.
+/// {"views", "planning_time_s", "distance_m", "flown_s"}: the mean coverage over the trials along
+/// each, as {"x", "coverage", "standard_deviation"}; lists are empty for what no trial has.
 nlohmann::ordered_json curves_json(const std::vector<Trial>& trials);
 
 /// Of each trial {"seed", "stop_reason", "views", "coverage", "distance_m", "planning_time_s"}.

@@ -151,7 +151,7 @@ Trial trial_of(const run::SurveyRecord& record, const SceneTruth& truth) {
   trial.targets = observed_targets(record.views);
   if (record.flown) {
     trial.flown_length = record.flown->length();
-    trial.flown_time = record.flown->time;
+    trial.flown_time_after = record.flown->times;
   }
   return trial;
 }
@@ -167,11 +167,12 @@ std::string trial_json(const Trial& trial) {
             {"planning_time_s", trial.planning_time},
             {"distance_m", trial.distance},
             {"flown_m", json_of(trial.flown_length)},
-            {"flown_s", json_of(trial.flown_time)},
+            {"flown_s", json_of(trial.flown_time())},
             {"frontiers_resolved", trial.frontiers_resolved},
             {"coverage_after", trial.coverage_after},
             {"distance_after_m", trial.distance_after},
             {"planning_time_after_s", trial.planning_time_after},
+            {"flown_after_s", trial.flown_time_after},
             {"targets", Json::array()}};
   for (const ObservedTarget& target : trial.targets) {
     json["targets"].push_back({target.views, target.distance});
@@ -193,11 +194,11 @@ Trial parse_trial(const std::string& text) {
     trial.planning_time = json.at("planning_time_s").get<double>();
     trial.distance = json.at("distance_m").get<double>();
     trial.flown_length = optional_number(json.at("flown_m"));
-    trial.flown_time = optional_number(json.at("flown_s"));
     trial.frontiers_resolved = json.at("frontiers_resolved").get<std::size_t>();
     trial.coverage_after = json.at("coverage_after").get<std::vector<double>>();
     trial.distance_after = json.at("distance_after_m").get<std::vector<double>>();
     trial.planning_time_after = json.at("planning_time_after_s").get<std::vector<double>>();
+    trial.flown_time_after = json.at("flown_after_s").get<std::vector<double>>();
     for (const Json& target : json.at("targets")) {
       trial.targets.push_back({target.at(0).get<std::size_t>(), target.at(1).get<double>()});
     }
@@ -218,7 +219,7 @@ std::string trials_csv(const std::vector<Trial>& trials, Times times) {
            std::to_string(trial.views) + "," + file::exact_text(trial.coverage.all) + "," +
            csv_of(trial.coverage.visible) + "," + csv_of(trial.coverage.ceiling) + "," +
            file::exact_text(trial.distance) + "," + std::to_string(trial.points) + "," +
-           csv_of(trial.flown_length) + "," + csv_of(trial.flown_time);
+           csv_of(trial.flown_length) + "," + csv_of(trial.flown_time());
     csv += has_times ? "," + file::exact_text(trial.planning_time) + "\n" : "\n";
   }
   return csv;
@@ -244,6 +245,10 @@ std::string trials_json(const file::Mission& mission, const std::vector<Trial>& 
     if (const auto reference = reference_of(mission, figure)) {
       json[figure.name]["paper"] = *reference;
     }
+  }
+  if (std::ranges::all_of(trials, &Trial::is_flown)) {
+    json["flown_s"] = statistic_json(
+        statistic_of(trials, {"", [](const Trial& t) { return *t.flown_time(); }, {}, {}}));
   }
   json["mean_after_view"] = {{"coverage", mean_curve(trials, &Trial::coverage_after)},
                              {"distance_m", mean_curve(trials, &Trial::distance_after)}};

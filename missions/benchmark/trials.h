@@ -43,10 +43,16 @@ struct Trial {
   std::vector<double> coverage_after;  ///< each view
   std::vector<double> distance_after;
   std::vector<double> planning_time_after;
+  std::vector<double> flown_time_after;  ///< of a vehicle; else empty [s]
   std::optional<double> flown_length;   ///< of a vehicle, from the pad to the last view [m]
-  std::optional<double> flown_time;     ///< [s], see run::FlownSurvey
   std::size_t frontiers_resolved = 0;   ///< points that ceased to be frontiers
   std::vector<ObservedTarget> targets;  ///< that were observed, in this order
+
+  bool is_flown() const { return !flown_time_after.empty(); }
+  /// Of a vehicle, from the pad to the last view [s], see run::FlownSurvey.
+  std::optional<double> flown_time() const {
+    return is_flown() ? std::optional(flown_time_after.back()) : std::nullopt;
+  }
 };
 
 /// The figures of a survey that is over.

@@ -68,7 +68,7 @@ std::string flown_text(const file::Mission& mission, const run::SurveyRecord& re
   const run::FlownSurvey& flown = record.flown.value();
   std::string text =
       fmt::format("  survey    {:.1f} m in {:.1f} min, from the pad to the last view",
-                  flown.length(), flown.time / 60.0);
+                  flown.length(), flown.time() / 60.0);
   if (derived::scans_in_flight(mission)) {
     text += fmt::format("; {} scans on the way at {:g} m/s", record.frames_on_way(),
                         mission.flight.cruise_speed);

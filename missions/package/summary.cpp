@@ -141,7 +141,7 @@ Json pictures_summary(const SurveyMission& flight) {
 /// The flight of the survey and the route in the package, in metres, seconds and watt hours.
 Json survey_flight_summary(const run::FlownSurvey& flown) {
   return {{"length_m", flown.length()},
-          {"duration_s", flown.time},
+          {"duration_s", flown.time()},
           {"min_clearance_m", flown.min_clearance()},
           {"views_refused", flown.refused},
           {"free_volume_m3", flown.measured->free_volume()}};

@@ -243,7 +243,7 @@ FlownSurvey SurveyFlight::finish(const std::vector<geometry::View>& views) {
   if (impl_->survey.legs.size() > views.size()) impl_->survey.legs.resize(views.size());
   std::vector<geometry::View> carriers;
   for (const geometry::View& view : views) carriers.push_back(impl_->carrier(view));
-  impl_->survey.time = impl_->motion.survey_time(impl_->survey.legs, carriers);
+  impl_->survey.times = impl_->motion.survey_times(impl_->survey.legs, carriers);
   impl_->survey.measured = std::move(impl_->measured);
   for (const flight::PadScan& pad : impl_->pads) {
     if (const auto ground = pad.ground()) impl_->survey.grounds.push_back(*ground);

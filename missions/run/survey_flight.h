@@ -33,8 +33,10 @@ struct FlownSurvey {
   std::size_t refused = 0;     ///< proposed views that could not be reached
   std::vector<flight::PadGround> grounds{};  ///< of pad and rally points, where it was measured
 
-  double time = 0.0;  ///< from the pad to the last view [s], see WayMotion::survey_time()
+  /// From the pad until each view is left [s], see WayMotion::survey_times().
+  std::vector<double> times{};
 
+  double time() const { return times.empty() ? 0.0 : times.back(); }  ///< of all views [s]
   double length() const;
   double min_clearance() const;  ///< of all legs
 };

@@ -96,13 +96,15 @@ std::vector<ViewInFlight> WayMotion::frames(const FlownLeg& way, const View& fro
   return frames;
 }
 
-double WayMotion::survey_time(const std::vector<FlownLeg>& legs,
-                              const std::vector<View>& views) const {
-  double time = motion_.takeoff_time(climb_) + flight::corner_hold;
+std::vector<double> WayMotion::survey_times(const std::vector<FlownLeg>& legs,
+                                            const std::vector<View>& views) const {
+  std::vector<double> times;
+  double now = motion_.takeoff_time(climb_) + flight::corner_hold;
   for (std::size_t i = 0; i < views.size(); ++i) {
-    time += this->time(legs[i], i > 0 ? views[i - 1] : views[i], views[i]) + rest_;
+    now += time(legs[i], i > 0 ? views[i - 1] : views[i], views[i]) + rest_;
+    times.push_back(now);
   }
-  return time;
+  return times;
 }
 
 namespace {

@@ -34,10 +34,10 @@ class WayMotion {
 
   double rest() const { return rest_; }  ///< at a view [s]
 
-  /// How long a survey takes from the pad to its last view [s]: take-off, ways, and rests at views.
-  /// The way home is not part of it. `legs` as in FlownSurvey.
-  double survey_time(const std::vector<FlownLeg>& legs,
-                     const std::vector<geometry::View>& views) const;
+  /// How long a survey takes from the pad until it leaves each of its views [s]: take-off, ways, and
+  /// rests at views. The way home is not part of it. `legs` as in FlownSurvey.
+  std::vector<double> survey_times(const std::vector<FlownLeg>& legs,
+                                   const std::vector<geometry::View>& views) const;
 
  private:
   flight::Motion motion_;

@@ -10,6 +10,7 @@ const compared = [
   { key: "coverage", name: "coverage", form: "share" },
   { key: "coverage_visible", name: "of the visible", form: "share" },
   { key: "distance_m", name: "distance", form: "metres" },
+  { key: "flown_s", name: "in the air", form: "minutes" },
   { key: "planning_time_s", name: "planning, of a processor", form: "seconds" },
 ];
 
@@ -44,21 +45,22 @@ function compared_figure(data, { cell, path }, { key, form }) {
 }
 
 function comparison_table(data, cells) {
-  const heading = [cells.length > 1 ? "planner" : "", { number: "trials" }, ...compared.map(({ name }) => ({ number: name })),
+  const known = compared.filter(({ key }) => cells.some(({ cell }) => cell[key]));
+  const heading = [cells.length > 1 ? "planner" : "", { number: "trials" }, ...known.map(({ name }) => ({ number: name })),
     { number: "of the attainable" }];
   return table(heading, cells.map((one) => {
     const { cell, path } = one, ceiling = cell.coverage_ceiling;
     return [planner_name(one), { number: figure(data, path + "trials", "count") },
-      ...compared.map((what) => compared_figure(data, one, what)),
+      ...known.map((what) => compared_figure(data, one, what)),
       { number: ceiling > 0 ? shown(cell.coverage.mean / ceiling, "share") : "–" }];
   }));
 }
 
 /// Mean coverage with a band of one standard deviation over the trials.
-function curve_lines(one, axis) {
+function curve_lines(one, axis, unit) {
   const curve = value_at(one.cell, "curves." + axis);
   if (!curve || !curve.x.length) return [];
-  const points = (shift) => curve.x.map((x, i) => [x,
+  const points = (shift) => curve.x.map((x, i) => [x / unit,
     percent(Math.min(1, curve.coverage[i] + shift * curve.standard_deviation[i]))]);
   const hidden = { borderWidth: 0, pointRadius: 0, borderColor: "transparent" };
   const band = one.colour + "26";
@@ -68,13 +70,15 @@ function curve_lines(one, axis) {
     line(title_of(one.cell), points(0), 0, mean)];
 }
 
+/// Figure, title, name and kind of the axis, and what its unit is in that of the figure.
 const curve_axes = [["views", "Coverage over views", "views", "linear"],
   ["distance_m", "Coverage over the way", "metres", "linear"],
+  ["flown_s", "Coverage over the time in the air", "minutes from the pad", "linear", 60],
   ["planning_time_s", "Coverage over planning time", "seconds of a processor", "logarithmic"]];
 
 function coverage_curves(cells) {
-  return curve_axes.map(([axis, title, x, type]) => {
-    const lines = cells.flatMap((one) => curve_lines(one, axis));
+  return curve_axes.map(([axis, title, x, type, unit = 1]) => {
+    const lines = cells.flatMap((one) => curve_lines(one, axis, unit));
     return lines.length ? chart(title, null, "line", lines,
       { x, y: "% of the surface", x_more: { type }, y_more: { min: 0, max: 100 } }) : null;
   });
@@ -93,7 +97,7 @@ function trials_chart(cells) {
 function interval_chart(cells, { key, name, form }) {
   const known = cells.filter(({ cell }) => cell[key]);
   if (!known.length) return null;
-  const scale = form === "share" ? 100 : 1;
+  const scale = { share: 100, minutes: 1 / 60 }[form] || 1;
   const bounded = (value) => (form === "share" ? Math.min(100, value) : value);
   const ends = ({ cell }) => [-1, 1].map((side) => bounded(scale * (cell[key].mean + side * (cell[key].half_width_95 || 0))));
   const colours = known.map(({ colour }) => colour);
@@ -103,7 +107,7 @@ function interval_chart(cells, { key, name, form }) {
     { type: "line", label: "paper", data: known.map(({ cell }) => (typeof cell[key].paper === "number" ? scale * cell[key].paper : null)), showLine: false, pointRadius: 6, pointStyle: "crossRot", borderColor: "#17212b" }];
   const has_paper = known.some(({ cell }) => typeof cell[key].paper === "number");
   return chart(name[0].toUpperCase() + name.slice(1), null, "bar", has_paper ? sets : sets.slice(0, 2),
-    { labels: known.map(({ cell }) => title_of(cell)), y: { share: "%", metres: "m", seconds: "s" }[form] || name, is_free: true,
+    { labels: known.map(({ cell }) => title_of(cell)), y: { share: "%", metres: "m", minutes: "min", seconds: "s" }[form] || name, is_free: true,
       y_more: form === "seconds" ? { type: "logarithmic" } : {} });
 }
 

@@ -132,7 +132,7 @@ inline void expect_same(const run::SurveyRecord& live, const run::SurveyRecord& 
   EXPECT_EQ(live.flown->length(), planned.flown->length());
   EXPECT_EQ(live.flown->min_clearance(), planned.flown->min_clearance());
   EXPECT_EQ(live.frames_on_way(), planned.frames_on_way());
-  EXPECT_EQ(live.flown->time, planned.flown->time);
+  EXPECT_EQ(live.flown->times, planned.flown->times);
 }
 
 /// Five views at most, or so many, and by another planner if one is named.

@@ -133,7 +133,7 @@ TEST(WayFrames, TimesAreThoseOfTheVehicle) {
   EXPECT_NEAR(motion.time(corner, west, same), 2.0 * one + flight::corner_hold, 1e-9);
   const double rest = derived::hold_of(mission) + derived::hold_after_of(mission);
   const double start = vehicle.takeoff_time(derived::takeoff_climb_of(mission));
-  EXPECT_NEAR(motion.survey_time({corner, corner}, {same, same}),
+  EXPECT_NEAR(motion.survey_times({corner, corner}, {same, same}).back(),
               start + flight::corner_hold + 2.0 * (2.0 * one + flight::corner_hold + rest), 1e-9);
 }
 
@@ -149,8 +149,8 @@ TEST(MovingSurvey, CoversAsMuchInLessTime) {
                             passing = run::run_survey(moving, scene, seed, 2);
     EXPECT_EQ(standing.frames_on_way(), 0U);
     EXPECT_GT(passing.frames_on_way(), 10U);
-    standing_time += standing.flown->time;
-    moving_time += passing.flown->time;
+    standing_time += standing.flown->time();
+    moving_time += passing.flown->time();
     standing_coverage += standing.coverage();
     moving_coverage += passing.coverage();
   }
