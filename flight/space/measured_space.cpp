@@ -93,6 +93,10 @@ void MeasuredSpace::insert(const geometry::Scan& scan, const SweepRays& rays, un
   impl_->occupy(scan, threads);
 }
 
+void MeasuredSpace::insert_points(const geometry::Scan& scan, unsigned threads) {
+  impl_->occupy(scan, threads);
+}
+
 void MeasuredSpace::take_free(const MeasuredSpace& other) {
   const double voxel = impl_->config.voxel;
   require(other.impl_->config.voxel == voxel, "measured_space.voxel", other.impl_->config.voxel,

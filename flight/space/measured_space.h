@@ -55,6 +55,10 @@ struct SweepRays {
   Eigen::Vector3d axis = Eigen::Vector3d::UnitY();
   /// Rays may begin this far from the scan's own place, as those of a turn in flight do [m].
   double origin_spread = 0.0;
+  /// Rays fall as in a pattern without rows, or as at random: a cell says something only if those
+  /// around it do, too, and then what is nearest in all nine. So what is free is well inside of
+  /// where the sensor looked, and every place in it has rays on all sides, two cells away at most.
+  bool is_scattered = false;
 };
 
 /// Grows by insertion. Queries may run in parallel with each other, not with insertions.
@@ -83,6 +87,9 @@ class MeasuredSpace : public FreeSpace {
   void insert(const geometry::Scan& scan, double ray_spacing) {
     insert(scan, SweepRays{.spacing = ray_spacing});
   }
+
+  /// Takes in what is in the way, of a scan that proves nothing free.
+  void insert_points(const geometry::Scan& scan, unsigned threads = 1);
 
   /// Takes over what another survey of the same frame has measured to be free, in blocks that meet
   /// the region; not what it has measured to be occupied. Throws Error{bad_config} if its voxels

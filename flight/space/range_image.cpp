@@ -20,6 +20,24 @@ std::size_t slot(int row, int column, int width) {
          static_cast<std::size_t>(column);
 }
 
+/// Of each cell and those around it, over the seam behind the sensor; next to the poles nothing,
+/// which is no depth at all.
+std::vector<float> least_around(const std::vector<float>& depths, int width, int height) {
+  std::vector<float> least(depths.size(), 0.0F);
+  for (int row = 1; row + 1 < height; ++row) {
+    for (int column = 0; column < width; ++column) {
+      float nearest = std::numeric_limits<float>::infinity();
+      for (int r = row - 1; r <= row + 1; ++r) {
+        for (const int c : {(column + width - 1) % width, column, (column + 1) % width}) {
+          nearest = std::min(nearest, depths[slot(r, c, width)]);
+        }
+      }
+      least[slot(row, column, width)] = nearest;
+    }
+  }
+  return least;
+}
+
 }  // namespace
 
 RangeImage::RangeImage(const geometry::Scan& scan, const geometry::Camera& camera,
@@ -82,6 +100,7 @@ RangeImage::RangeImage(const geometry::Scan& scan, const SweepRays& rays, double
     const auto seen = static_cast<float>(std::min(range, max_depth));
     depth = depth == 0.0F ? seen : std::min(depth, seen);
   }
+  if (rays.is_scattered) depths = least_around(depths, width_, height_);
   build_pyramid(std::move(depths), threads);
 }
 

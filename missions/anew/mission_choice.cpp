@@ -73,6 +73,7 @@ class MissionProblem {
         legs_(space, motion_, clearance_, no_ways_home_),
         passing_(is_passed(present) ? std::optional(present.options.passing) : std::nullopt),
         mount_(derived::scans_in_flight(mission) ? mission.sensor.mount : std::nullopt),
+        kind_(mount_ ? derived::kind_of(*mission.sensor.scanner) : derived::ScannerKind::ring),
         sweep_step_(mission.flight.cruise_speed * mission.sensor.frame_period),
         threads_(mission.threads),
         home_(present.options.takeoff + Vector3d(0.0, 0.0, present.options.takeoff_climb)) {
@@ -150,7 +151,7 @@ class MissionProblem {
   std::vector<View> views_of(const flight::Route& route) const {
     std::vector<View> views;
     for (const flight::Station& station : route.stations) {
-      views.push_back(mount_ ? derived::side_view(*mount_, station.view) : station.view);
+      views.push_back(mount_ ? derived::scanner_view(*mount_, station.view) : station.view);
     }
     return views;
   }
@@ -211,9 +212,19 @@ class MissionProblem {
 
   View carrier(const View& view) const { return mount_ ? derived::nose_view(*mount_, view) : view; }
 
-  /// What the scans on a way see, one every sweep_step_: in three quarters of the ring, since what
-  /// is above has been looked at from above or not at all. The nose turns on the last piece; at
-  /// home it points as at the other end.
+  /// Where a scanner looks for a nose: in three quarters of its ring, since what is above has been
+  /// looked at from above or not at all, or where its field is.
+  std::vector<View> looks_of(const View& nose) const {
+    const View view = derived::scanner_view(*mount_, nose);
+    if (kind_ == derived::ScannerKind::rosette) return {view};
+    constexpr double almost = 1e-3;  // straight down has no sides
+    return {view,
+            {view.position, -view.direction},
+            {view.position, (almost * view.direction - Vector3d::UnitZ()).normalized()}};
+  }
+
+  /// What the scans on a way see, one every sweep_step_. The nose turns on the last piece; at home
+  /// it points as at the other end. Lines see what they sweep at the view distance.
   std::vector<Look> way_looks(const std::vector<Vector3d>& points, const View* from,
                               const View* to) const {
     const View begin = carrier(from != nullptr ? *from : *to);
@@ -221,27 +232,35 @@ class MissionProblem {
     const double turn = std::remainder(flight::yaw_of(carrier(to != nullptr ? *to : *from)) - yaw,
                                        2.0 * std::numbers::pi);
     std::vector<View> views;
+    std::vector<float> shares;  // of each view's looks that are had
     for (std::size_t i = 1; i < points.size(); ++i) {
       const Vector3d way = points[i] - points[i - 1];
       const auto count = std::max(1L, std::lround(way.norm() / sweep_step_));
       for (long k = 0; k < count; ++k) {
         const double share = (static_cast<double>(k) + 0.5) / static_cast<double>(count);
-        const double at = yaw + (i + 1 == points.size() ? share * turn : 0.0);
-        const View side = derived::side_view(
-            *mount_, {points[i - 1] + share * way, {std::sin(at), std::cos(at), 0.0}});
-        constexpr double almost = 1e-3;  // straight down has no sides
-        views.push_back(side);
-        views.push_back({side.position, -side.direction});
-        views.push_back(
-            {side.position, (almost * side.direction - Vector3d::UnitZ()).normalized()});
+        const double turned = i + 1 == points.size() ? turn : 0.0, at = yaw + share * turned;
+        const View nose{points[i - 1] + share * way, {std::sin(at), std::cos(at), 0.0}};
+        for (const View& view : looks_of(nose)) views.push_back(view);
+        shares.resize(views.size(), kind_ == derived::ScannerKind::line
+                                        ? swept_share(way, nose.direction, turned, count)
+                                        : 1.0F);
       }
     }
     std::vector<std::vector<Look>> looks(views.size());
     geometry::parallel_for(views.size(), threads_,
                            [&](std::size_t i) { looks[i] = surface_.looks(views[i]); });
     std::vector<Look> all;
-    for (const auto& some : looks) all.insert(all.end(), some.begin(), some.end());
+    for (std::size_t i = 0; i < looks.size(); ++i) {
+      for (const Look& look : looks[i]) all.push_back({look.target, shares[i] * look.hazard});
+    }
     return all;
+  }
+
+  /// Of sweep_step_, that each of so many scans on a straight way sweeps, at the view distance to
+  /// the left, while the nose turns clockwise by `turn`.
+  float swept_share(const Vector3d& way, const Vector3d& nose, double turn, long count) const {
+    const double swept = way.dot(nose) + problem_.view_distance * turn;
+    return static_cast<float>(std::abs(swept) / static_cast<double>(count) / sweep_step_);
   }
 
   const GainField& surface_;
@@ -254,8 +273,9 @@ class MissionProblem {
   std::optional<flight::WaysHome> no_ways_home_;
   flight::LegCertifier legs_;
   std::optional<flight::PassRules> passing_;  ///< if views are passed
-  std::optional<Eigen::Isometry3d> mount_;    ///< of a scanner that measures all the way
-  double sweep_step_;                         ///< between its scans [m]
+  std::optional<file::ScannerMount> mount_;   ///< of a scanner that measures all the way
+  derived::ScannerKind kind_;
+  double sweep_step_;  ///< between its scans [m]
   unsigned threads_;
   Vector3d home_;
   TourProblem problem_;

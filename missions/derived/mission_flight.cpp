@@ -9,6 +9,7 @@
 #include "missions/derived/mission_priors.h"
 #include "missions/derived/pad_grounds.h"
 #include "missions/derived/site.h"
+#include "missions/derived/survey_sensor.h"
 #include "missions/equipment/vehicle_reader.h"
 
 namespace skycap::missions::derived {
@@ -109,6 +110,37 @@ flight::MeasuredSpaceConfig measured_space_of(const file::Mission& mission) {
           .floor = priors_of(mission).terrain
                        ? std::nullopt
                        : std::optional(mission.scene.position.z() + mission.flight.map_error)};
+}
+
+std::optional<flight::SweepRays> sweep_rays_of(const file::Mission& mission) {
+  const sim::LidarConfig& scanner = *mission.sensor.scanner;
+  const double speed = mission.flight.cruise_speed;
+  const double lever_arm = mission.sensor.mount.value().body_from_scanner.translation().norm();
+  switch (kind_of(scanner)) {
+    case ScannerKind::ring: {
+      // The turn's own cells, a little wider, so that a ray falls into each. Rays begin beside the
+      // vehicle's place by the lever arm, half of what it flies in a turn, and what the turns are
+      // spread by.
+      constexpr double wider = 1.02;
+      return flight::SweepRays{.spacing = wider * ray_spacing(scanner),
+                               .axis = Vector3d::UnitX(),
+                               .origin_spread = lever_arm + 0.5 * spread_of_turns +
+                                                0.5 * speed / std::abs(scanner.rotation_rate)};
+    }
+    case ScannerKind::rosette: {
+      // Rays of a pattern that is drawn in flight do not fall between each other as they do at
+      // rest, but as if at random: cells of at least four times as many rays.
+      constexpr double wider = 2.0;
+      const double flown = mission.sensor.is_moving() ? speed * mission.sensor.frame_period : 0.0;
+      return flight::SweepRays{.spacing = wider * rosette_of(mission.sensor).gap,
+                               .axis = Vector3d::UnitX(),
+                               .origin_spread = lever_arm + 0.5 * flown,
+                               .is_scattered = true};
+    }
+    case ScannerKind::line:
+      break;
+  }
+  return std::nullopt;
 }
 
 flight::Obstacles flight_rules(const file::Mission& mission) {

@@ -45,6 +45,10 @@ bool is_in_known_airspace(const file::Mission& mission, const Eigen::Vector3d& p
 /// Measured space before anything is measured.
 flight::MeasuredSpaceConfig measured_space_of(const file::Mission& mission);
 
+/// How the scans of a scanner that is flown prove space free; nothing if they do not: lines prove
+/// nothing between them.
+std::optional<flight::SweepRays> sweep_rays_of(const file::Mission& mission);
+
 /// What holds whatever is measured: the ground, no-fly volumes, the geofence.
 flight::Obstacles flight_rules(const file::Mission& mission);
 

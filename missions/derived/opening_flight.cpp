@@ -84,6 +84,15 @@ std::vector<View> strips(const file::Mission& mission) {
   return views;
 }
 
+/// A line that stands at the box's edge may see nothing of what is in it, and nothing can be
+/// planned from that: such a flight begins within the first strip, and flies back to its beginning.
+void begin_inside(std::vector<View>& strips) {
+  constexpr double share = 0.25;
+  View inside = strips.front();
+  inside.position += share * (strips[1].position - strips[0].position);
+  strips.insert(strips.begin(), inside);
+}
+
 }  // namespace
 
 file::Opening usual_opening(const file::Mission& mission) {
@@ -93,28 +102,51 @@ file::Opening usual_opening(const file::Mission& mission) {
   return is_flat ? file::Opening::strips : file::Opening::orbit;
 }
 
-double scanning_speed(const file::Mission& mission) {
+namespace {
+
+/// Points a second on each metre along the way and each across it, at the view distance.
+double points_abeam(const file::Mission& mission) {
   const sim::LidarConfig& lidar = *mission.sensor.scanner;
-  const geometry::Camera camera(side_camera(lidar).camera);
   const double distance = view_distance_of(mission);
-  const double spacing = 0.5 * mission.planner.see.effective_spacing();
-  const double rays = camera.focal_length_px().prod() / (distance * distance);  // on a m^2, a turn
   const double swath = 2.0 * distance * std::tan(0.5 * mission.sensor.camera.camera.horizontal_fov);
-  const double dense_enough = swath * std::abs(lidar.rotation_rate) * rays * spacing * spacing;
-  return std::min(dense_enough, 0.5 * vehicle_of(mission).max_speed);
+  switch (kind_of(lidar)) {
+    case ScannerKind::ring: {
+      const geometry::Camera camera(side_camera(lidar).camera);
+      const double rays = camera.focal_length_px().prod() / (distance * distance);  // on a m^2
+      return swath * std::abs(lidar.rotation_rate) * rays;
+    }
+    case ScannerKind::line:
+      return std::abs(lidar.rotation_rate) / (distance * azimuth_step(lidar));
+    case ScannerKind::rosette:
+      break;
+  }
+  const geometry::Camera camera(mission.sensor.camera.camera);
+  const double period = mission.sensor.is_moving() ? mission.sensor.frame_period : rosette_period;
+  return swath * camera.focal_length_px().prod() / (distance * distance) / period;
+}
+
+}  // namespace
+
+double scanning_speed(const file::Mission& mission) {
+  // Lines are even, and lie over each other nowhere: what is stored of them is most of what comes.
+  const bool is_even = kind_of(*mission.sensor.scanner) == ScannerKind::line;
+  const double spacing = (is_even ? 1.0 : 0.5) * mission.planner.see.effective_spacing();
+  return std::min(points_abeam(mission) * spacing * spacing, 0.5 * vehicle_of(mission).max_speed);
 }
 
 std::vector<View> opening_views(const file::Mission& mission) {
   if (!mission.flight.is_flown()) return {};
-  switch (mission.flight.opening) {
-    case file::Opening::orbit:
-      return orbit(mission);
-    case file::Opening::strips:
-      return strips(mission);
-    case file::Opening::none:
-      break;
+  std::vector<View> views;
+  if (mission.flight.opening == file::Opening::orbit) views = orbit(mission);
+  if (mission.flight.opening == file::Opening::strips) {
+    views = strips(mission);
+    const auto& scanner = mission.sensor.scanner;
+    if (scanner && kind_of(*scanner) == ScannerKind::line) begin_inside(views);
   }
-  return {};
+  if (const auto& mount = mission.sensor.mount; mount && mount->look_pitch != 0.0) {
+    for (View& view : views) view = scanner_view(*mount, nose_view(*mount, view));
+  }
+  return views;
 }
 
 }  // namespace skycap::missions::derived

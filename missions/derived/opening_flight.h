@@ -16,7 +16,8 @@ inline constexpr double scanner_period = 0.5;
 file::Opening usual_opening(const file::Mission& mission);
 
 /// As fast as the scanner's points on a wall at the view distance are still as dense as the planner
-/// stores them, twice over each way; no faster than half of what the vehicle can.
+/// stores them, twice over each way unless they are even lines; no faster than half of what the
+/// vehicle can.
 double scanning_speed(const file::Mission& mission);
 
 /// The corners of the opening in the order flown; the first is where the survey begins. Empty

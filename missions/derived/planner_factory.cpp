@@ -9,6 +9,7 @@
 #include "geometry/place/camera.h"
 #include "missions/derived/mission_flight.h"
 #include "missions/derived/mission_priors.h"
+#include "missions/derived/scanner_field.h"
 #include "missions/derived/site.h"
 #include "missions/file/number_text.h"
 #include "missions/file/planner_titles.h"
@@ -95,6 +96,9 @@ survey::skycap::SkycapConfig skycap_config(const file::Mission& mission, unsigne
   config.view_price = view_price_of(mission);
   if (mission.sensor.is_moving()) {
     config.frame_spacing = mission.flight.cruise_speed * mission.sensor.frame_period;
+    const auto& scanner = mission.sensor.scanner;
+    config.counts_ways = scanner && kind_of(*scanner) != ScannerKind::ring;
+    config.sees_lines = scanner && kind_of(*scanner) == ScannerKind::line;
   }
   if (mission.flight.is_flown()) {  // as if they were the same along and about all axes
     const sim::NavigationErrors& poses = mission.scan.navigation;

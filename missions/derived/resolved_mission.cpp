@@ -18,23 +18,60 @@
 namespace skycap::missions::derived {
 namespace {
 
-/// Fixes the scanner to the vehicle, with its axis along the flight where no key says otherwise: so
-/// it sees both sides of the way, what is below and what is above. It measures all the way.
+/// Fixes the scanner to the vehicle. Where no key says otherwise the axis of one that spins lies
+/// along the flight, so that it sees both sides of the way, what is below and what is above; one
+/// that looks one way looks to the left and down. It measures all the way.
 void mount_scanner(file::MissionFile& given) {
   file::Mission& mission = given.mission;
+  const sim::LidarConfig& lidar = *mission.sensor.scanner;
+  const bool spins = kind_of(lidar) != ScannerKind::rosette;
   if (!given.gives("scan.mount.rotation_deg")) {
-    mission.scan.mount_rotation = {0.0, 0.5 * std::numbers::pi, 0.0};
+    constexpr double right_angle = 0.5 * std::numbers::pi;
+    mission.scan.mount_rotation = spins ? Eigen::Vector3d(0.0, right_angle, 0.0)
+                                        : Eigen::Vector3d(0.0, right_angle / 3.0, right_angle);
   }
   const Eigen::Isometry3d mount = mount_of(mission.scan);
   constexpr double level = 0.02;
-  if (std::abs(mount.linear()(2, 2)) > level) {
+  if (spins && std::abs(mount.linear()(2, 2)) > level) {
     given.refuse("scan.mount.rotation_deg",
                  "does not lay the scanner's axis level, as planned flights need it; leave it out, "
                  "or give [0, 90, 0]: along the way");
   }
-  mission.sensor.mount = mount;
+  constexpr double steepest = 75.0 * std::numbers::pi / 180.0;
+  if (!spins && std::abs(mount.linear()(2, 0)) > std::sin(steepest)) {
+    given.refuse("scan.mount.rotation_deg",
+                 "has the scanner look up or down by more than 75 degrees, so that planned flights "
+                 "could not turn it to what they want to see; leave it out, or give [0, 30, 90]: "
+                 "to the left, 30 degrees down");
+  }
+  mission.sensor.mount = scanner_mount(lidar, mount);
+  if (kind_of(lidar) == ScannerKind::line && given.gives("sensor.capture") &&
+      !mission.sensor.is_moving()) {
+    given.refuse("sensor.capture",
+                 "is stops, at which a scanner that measures a line sees next to nothing; leave it "
+                 "out");
+  }
   if (!given.gives("sensor.capture")) mission.sensor.capture = file::Capture::moving;
   if (!given.gives("sensor.frame_period")) mission.sensor.frame_period = scanner_period;
+}
+
+/// How far aside a rosette's points are displaced, whose directions are far less exact than those
+/// of turning lasers: also those of the ground at the pad, which is seen from all over the box.
+double noise_aside(const file::Mission& mission) {
+  const sim::LidarConfig& scanner = *mission.sensor.scanner;
+  const Eigen::AlignedBox3d box = unknown_box_of(mission);
+  if (kind_of(scanner) != ScannerKind::rosette || box.isEmpty()) return 0.0;
+  return scanner.errors.angle_sigma * box.sizes().head<2>().norm();
+}
+
+/// A line's camera is as wide as it flies in a period.
+void derive_line_camera(file::Mission& mission) {
+  file::SensorConfig& sensor = mission.sensor;
+  if (kind_of(*sensor.scanner) != ScannerKind::line) return;
+  const double distance = view_distance_of(mission);
+  mission.planner.see.view_distance = distance;
+  sensor.camera = line_camera(*sensor.scanner, sensor.frame_period,
+                              mission.flight.cruise_speed * sensor.frame_period / distance);
 }
 
 /// What follows from the scanner for the flight, where no key says otherwise.
@@ -48,12 +85,15 @@ void derive_scanner_flight(file::MissionFile& given) {
     mission.flight.order = file::VisitOrder::survey;
   }
   if (!given.gives("flight.cruise_speed")) mission.flight.cruise_speed = scanning_speed(mission);
+  derive_line_camera(mission);
   if (!given.gives("flight.map_error")) {
     // What is farther off than five deviations is rare among a hundred million points. Twice the
     // view distance is as far as what is flown near to is measured from.
     constexpr double deviations = 5.0;
     const double noise = range_noise(*mission.sensor.scanner, 2.0 * view_distance_of(mission));
-    mission.flight.map_error = std::max(mission.flight.map_error, deviations * noise);
+    const double aside = noise_aside(mission);
+    mission.flight.map_error =
+        std::max(mission.flight.map_error, deviations * std::hypot(noise, aside));
   }
   if (!given.gives("scan.sensor")) mission.scan.sensor = *mission.sensor.lidar;
 }
@@ -66,9 +106,16 @@ void read_lidar(file::MissionFile& given) {
       given.refuse(path, "does not go with sensor.lidar; leave one of the two out");
     }
   }
+  file::SensorConfig& sensor = given.mission.sensor;
+  try {
+    sensor.scanner = read_scanner(*sensor.lidar, std::filesystem::path(given.name).parent_path());
+    kind_of(*sensor.scanner);
+  } catch (const Error& error) {
+    given.refuse("sensor.lidar", error.what());
+  }
   if (given.mission.flight.is_flown()) mount_scanner(given);
   try {
-    use_lidar(given.mission.sensor, std::filesystem::path(given.name).parent_path());
+    sensor.camera = planning_camera(sensor);
   } catch (const Error& error) {
     given.refuse("sensor.lidar", error.what());
   }

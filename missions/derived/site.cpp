@@ -5,6 +5,7 @@
 #include "geometry/place/camera.h"
 #include "missions/derived/mission_flight.h"
 #include "missions/derived/mission_priors.h"
+#include "missions/derived/scanner_field.h"
 
 namespace skycap::missions::derived {
 
@@ -36,6 +37,10 @@ survey::ViewLimits view_limits(const file::Mission& mission) {
     if (!mission.sensor.mount) {  // which is on no gimbal
       result.least_pitch = std::max(result.least_pitch, vehicle.gimbal_min);
       result.most_pitch = std::min(result.most_pitch, vehicle.gimbal_max);
+    } else if (kind_of(*mission.sensor.scanner) == ScannerKind::rosette) {
+      constexpr double hair = 1e-5;  // less than no way up or down is a limit that nothing keeps
+      result.least_pitch = std::max(result.least_pitch, mission.sensor.mount->look_pitch - hair);
+      result.most_pitch = std::min(result.most_pitch, mission.sensor.mount->look_pitch + hair);
     }
     result.stand_off = std::max(result.stand_off, mission.flight.clearance);
   }

@@ -19,16 +19,6 @@ namespace {
 using Eigen::Vector3d;
 using geometry::View;
 
-struct Elevations {
-  double lowest, highest;  // of the lasers [rad]
-};
-
-Elevations elevations(const sim::LidarConfig& lidar) {
-  const auto [lowest, highest] =
-      std::ranges::minmax_element(lidar.channels, {}, &sim::Channel::elevation);
-  return {lowest->elevation, highest->elevation};
-}
-
 /// Of the optical frame in the scanner's (x forward, y left, z up): the axis is level in azimuth
 /// and in the middle of the lasers.
 Eigen::Isometry3d scanner_from_optical(const sim::LidarConfig& lidar) {
@@ -40,13 +30,16 @@ Eigen::Isometry3d scanner_from_optical(const sim::LidarConfig& lidar) {
   return pose;
 }
 
-/// Angle that the scanner turns between two firings [rad].
-double azimuth_step(const sim::LidarConfig& lidar) {
-  return 2.0 * std::numbers::pi * std::abs(lidar.rotation_rate) * lidar.firing_period;
-}
-
 std::uint64_t firings_in_turn(const sim::LidarConfig& lidar) {
   return static_cast<std::uint64_t>(std::ceil(2.0 * std::numbers::pi / azimuth_step(lidar)));
+}
+
+void append(const std::vector<sim::LidarReturns>& returns, std::vector<Eigen::Vector3f>& points) {
+  for (const sim::LidarReturns& part : returns) {
+    for (const Eigen::Vector3f& point : part.points) {
+      points.emplace_back((part.origin + point.cast<double>()).cast<float>());
+    }
+  }
 }
 
 /// Turn after turn, each from a pose of the scanner, world_from_scanner; `first_turn` numbers them.
@@ -74,52 +67,7 @@ void append_turns(const sim::Lidar& lidar, const sim::Scene& scene,
         scene, {flown[turn], believed[turn]},
         {(first_turn + turn) * firings + first, std::min(firings_in_task, firings - first)});
   });
-  for (const sim::LidarReturns& part : returns) {
-    for (const Eigen::Vector3f& point : part.points) {
-      points.emplace_back((part.origin + point.cast<double>()).cast<float>());
-    }
-  }
-}
-
-/// An image as wide and as high as these angles, with a pixel to each ray in its middle.
-sim::DepthCameraConfig ray_camera(const sim::LidarConfig& lidar, double wide, double columns_step,
-                                  double high, double rows_step) {
-  // As many pixels as make the middle of the image as dense as the rays.
-  const auto pixels = [](double angle, double step) {
-    return std::max(1, static_cast<int>(std::lround(2.0 * std::tan(0.5 * angle) / step)));
-  };
-  sim::DepthCameraConfig config;
-  config.camera = {.width = pixels(wide, columns_step),
-                   .height = pixels(high, rows_step),
-                   .horizontal_fov = wide,
-                   .vertical_fov = high,
-                   .min_range = lidar.min_range,
-                   .max_range = lidar.max_range};
-  config.noise.sigma = lidar.errors.sigma;
-  config.noise.direction = sim::NoiseDirection::along_ray;
-  return config;
-}
-
-/// Of a scanner, by its description.
-struct Field {
-  double around, around_step;  ///< what is looked at of a turn, and the angle between firings [rad]
-  double up, up_step;          ///< across the turn, and between neighbouring lasers
-};
-
-Field field_of(const sim::LidarConfig& lidar) {
-  const auto [lowest, highest] = elevations(lidar);
-  if (!lidar.prisms.empty() || lidar.rotation_rate == 0.0) {
-    throw Error(ErrorKind::bad_config,
-                "this scanner does not spin; a survey needs one that does, such as ouster_os1_128");
-  }
-  if (highest - lowest < 0.01) {
-    throw Error(ErrorKind::bad_config,
-                "this scanner measures a line, not a field; a survey needs one with several "
-                "lasers, such as ouster_os1_128");
-  }
-  const double step = (highest - lowest) / static_cast<double>(lidar.channels.size() - 1);
-  return {std::min(lidar.field_of_view, 0.5 * std::numbers::pi), azimuth_step(lidar),
-          highest - lowest + step, step};
+  append(returns, points);
 }
 
 Eigen::Isometry3d world_from_body(const View& nose) {
@@ -131,10 +79,16 @@ Eigen::Isometry3d world_from_body(const View& nose) {
   return pose;
 }
 
-/// Of the scanner's axis in the level plane of the body's frame.
-double axis_azimuth(const Eigen::Isometry3d& mount) {
-  const Vector3d axis = mount.linear().col(2);
-  return std::atan2(axis.y(), axis.x());
+/// A way of the body, flown from one nose view to the other from some firing on, and all firings
+/// numbered from zero: it stands before and after.
+sim::Trajectory way_of(const Eigen::Isometry3d& from, const Eigen::Isometry3d& to, double begin,
+                       double end) {
+  const auto stamped = [](double time, const Eigen::Isometry3d& pose) {
+    return sim::StampedPose{time, pose.translation(), Eigen::Quaterniond(pose.linear())};
+  };
+  std::vector<sim::StampedPose> poses{stamped(begin, from), stamped(end, to)};
+  if (begin > 0.0) poses.insert(poses.begin(), stamped(0.0, from));
+  return sim::Trajectory(std::move(poses));
 }
 
 View turned_level(const Vector3d& position, const Vector3d& direction, double angle) {
@@ -144,46 +98,13 @@ View turned_level(const Vector3d& position, const Vector3d& direction, double an
 
 }  // namespace
 
-sim::DepthCameraConfig forward_camera(const sim::LidarConfig& lidar) {
-  const Field field = field_of(lidar);
-  return ray_camera(lidar, field.around, field.around_step, field.up, field.up_step);
-}
-
-sim::DepthCameraConfig side_camera(const sim::LidarConfig& lidar, std::size_t turns) {
-  const Field field = field_of(lidar);
-  // Across the axis is the middle of the image, though not of the lasers if more of them look ahead
-  // than back: as wide as there are lasers on both sides.
-  const auto [lowest, highest] = elevations(lidar);
-  const double wide = 2.0 * std::max(std::min(-lowest, highest), field.up_step) + field.up_step;
-  const double denser = std::sqrt(static_cast<double>(turns));  // each way
-  return ray_camera(lidar, wide, field.up_step / denser, field.around, field.around_step / denser);
-}
-
 std::size_t turns_of(const file::SensorConfig& sensor) {
   if (!sensor.mount || !sensor.is_moving()) return 1;
   const double turns = sensor.frame_period * std::abs(sensor.scanner->rotation_rate);
   return static_cast<std::size_t>(std::max(1L, std::lround(turns)));
 }
 
-double ray_spacing(const sim::LidarConfig& lidar) {
-  std::vector<double> lasers;
-  for (const sim::Channel& channel : lidar.channels) lasers.push_back(channel.elevation);
-  std::ranges::sort(lasers);
-  double spacing = azimuth_step(lidar);
-  for (std::size_t i = 1; i < lasers.size(); ++i) {
-    spacing = std::max(spacing, lasers[i] - lasers[i - 1]);
-  }
-  return spacing;
-}
-
-double range_noise(const sim::LidarConfig& lidar, double range) {
-  const auto& errors = lidar.errors;
-  return std::hypot(errors.sigma, errors.sigma_per_metre * range,
-                    errors.sigma_per_square_metre * range * range);
-}
-
-void use_lidar(file::SensorConfig& sensor, const std::filesystem::path& folder) {
-  const std::string& name = sensor.lidar.value();
+sim::LidarConfig read_scanner(const std::string& name, const std::filesystem::path& folder) {
   const equipment::SensorDescription description =
       equipment::find_sensor(equipment::named_from(folder, name));
   const auto* lidar = std::get_if<sim::LidarConfig>(&description.sensor);
@@ -191,8 +112,7 @@ void use_lidar(file::SensorConfig& sensor, const std::filesystem::path& folder) 
     throw Error(ErrorKind::bad_config,
                 description.name + " is a camera; give its values as the other keys of sensor");
   }
-  sensor.scanner = *lidar;
-  sensor.camera = sensor.mount ? side_camera(*lidar, turns_of(sensor)) : forward_camera(*lidar);
+  return *lidar;
 }
 
 Eigen::Quaterniond rotation_of(const Vector3d& angles) {
@@ -207,17 +127,56 @@ Eigen::Isometry3d mount_of(const file::ScanConfig& scan) {
   return mount;
 }
 
-View nose_view(const Eigen::Isometry3d& mount, const View& view) {
-  const Vector3d axis = geometry::camera_pose(view).linear().col(0);  // level, to the right
-  return turned_level(view.position, axis, -axis_azimuth(mount));
+file::ScannerMount scanner_mount(const sim::LidarConfig& lidar,
+                                 const Eigen::Isometry3d& body_from_scanner) {
+  if (kind_of(lidar) == ScannerKind::rosette) {
+    const Vector3d look = body_from_scanner.linear().col(0);
+    return {body_from_scanner, std::atan2(look.y(), look.x()),
+            std::asin(std::clamp(look.z(), -1.0, 1.0))};
+  }
+  const Vector3d axis = body_from_scanner.linear().col(2);
+  return {body_from_scanner, std::atan2(axis.y(), axis.x()) + 0.5 * std::numbers::pi, 0.0};
 }
 
-View side_view(const Eigen::Isometry3d& mount, const View& nose) {
-  return turned_level(nose.position, nose.direction, axis_azimuth(mount) + 0.5 * std::numbers::pi);
+View nose_view(const file::ScannerMount& mount, const View& view) {
+  const Vector3d right = geometry::camera_pose(view).linear().col(0);  // level
+  return turned_level(view.position, right, 0.5 * std::numbers::pi - mount.look_azimuth);
+}
+
+View scanner_view(const file::ScannerMount& mount, const View& nose) {
+  View view = turned_level(nose.position, nose.direction, mount.look_azimuth);
+  if (mount.look_pitch != 0.0) {
+    view.direction *= std::cos(mount.look_pitch);
+    view.direction.z() = std::sin(mount.look_pitch);
+  }
+  return view;
+}
+
+sim::DepthCameraConfig planning_camera(const file::SensorConfig& sensor) {
+  const sim::LidarConfig& lidar = sensor.scanner.value();
+  if (!sensor.mount) return forward_camera(lidar);
+  switch (kind_of(lidar)) {
+    case ScannerKind::ring:
+      return side_camera(lidar, turns_of(sensor));
+    case ScannerKind::line:
+      return line_camera(lidar, sensor.frame_period,
+                         static_cast<double>(turns_of(sensor)) * azimuth_step(lidar));
+    case ScannerKind::rosette:
+      break;
+  }
+  return rosette_camera(lidar, rosette_of(sensor));
+}
+
+RosetteField rosette_of(const file::SensorConfig& sensor) {
+  const file::ScannerMount& mount = sensor.mount.value();
+  const View look = scanner_view(mount, {Vector3d::Zero(), Vector3d::UnitX()});
+  return rosette_field(
+      sensor.scanner.value(), sensor.is_moving() ? sensor.frame_period : rosette_period,
+      geometry::camera_pose(look).linear().transpose() * mount.body_from_scanner.linear());
 }
 
 Eigen::Isometry3d Carriage::true_pose(const Eigen::Isometry3d& believed) const {
-  if (turn.isZero(0.0) && shift.isZero(0.0)) return believed;
+  if (is_exact()) return believed;
   Eigen::Isometry3d pose(rotation_of(turn) * believed.linear());
   pose.translation() = believed.translation() + shift;
   return pose;
@@ -235,9 +194,12 @@ SurveySensor::SurveySensor(const file::SensorConfig& config, std::uint64_t seed)
         return sim::DepthCamera(camera);
       }()),
       shutter_(config.shutter) {
-  if (!config.scanner || !config.mount) return;
+  if (!config.scanner) return;
+  kind_ = kind_of(*config.scanner);
+  if (!config.mount) return;
   mount_ = config.mount;
   turns_ = turns_of(config);
+  if (config.is_moving()) period_ = config.frame_period;
 }
 
 std::vector<Eigen::Isometry3d> SurveySensor::turns(const View& view) const {
@@ -246,7 +208,8 @@ std::vector<Eigen::Isometry3d> SurveySensor::turns(const View& view) const {
   // The rays of turns on a way fall between each other's: spread by the R2 sequence, along the axis
   // (some rays of a turn are as far apart at twenty metres) and between two firings.
   constexpr double first_ratio = 0.7548776662466927, second_ratio = 0.5698402909980532;
-  const Eigen::Isometry3d world_from_scanner = world_from_body(nose_view(*mount_, view)) * *mount_;
+  const Eigen::Isometry3d world_from_scanner =
+      world_from_body(nose_view(*mount_, view)) * mount_->body_from_scanner;
   std::vector<Eigen::Isometry3d> poses;
   for (std::size_t turn = 0; turn < turns_; ++turn) {
     const auto share = [&](double ratio) {
@@ -261,6 +224,45 @@ std::vector<Eigen::Isometry3d> SurveySensor::turns(const View& view) const {
   return poses;
 }
 
+void SurveySensor::measure_way(const sim::Lidar& lidar, const sim::Scene& scene, const View& view,
+                               const Carriage& carriage, std::uint64_t frame, unsigned threads,
+                               std::vector<Eigen::Vector3f>& points) const {
+  constexpr double most_periods = 2.0;  // of a stretch, so that no firing is another scan's
+  const double firing = lidar.config().firing_period;
+  const auto apart = static_cast<std::uint64_t>(std::ceil(most_periods * period_ / firing));
+  Eigen::Isometry3d from =
+      geometry::camera_pose(view) * scanner_from_optical(lidar.config()).inverse();
+  if (mount_) from = world_from_body(nose_view(*mount_, view));
+  Eigen::Isometry3d to = from;
+  // At rest a line shows in a turn what there is to see.
+  double duration =
+      kind_ == ScannerKind::line ? 1.0 / std::abs(lidar.config().rotation_rate) : period_;
+  if (carriage.stretch) {
+    from = world_from_body(carriage.stretch->from);
+    to = world_from_body(carriage.stretch->to);
+    duration = carriage.stretch->duration;
+  }
+  const auto count = std::clamp<std::uint64_t>(
+      static_cast<std::uint64_t>(std::llround(duration / firing)), 1, apart);
+  const double begin = static_cast<double>(frame * apart) * firing;
+  const double end = begin + static_cast<double>(count) * firing;
+  const sim::Trajectory believed = way_of(from, to, begin, end);
+  const sim::Trajectory flown =
+      way_of(carriage.true_pose(from), carriage.true_pose(to), begin, end);
+  const Eigen::Isometry3d body_from_scanner =
+      mount_ ? mount_->body_from_scanner : Eigen::Isometry3d::Identity();
+  const sim::LidarFlight flight{flown, carriage.is_exact() ? flown : believed, body_from_scanner,
+                                body_from_scanner};
+  constexpr std::uint64_t firings_in_task = 4096;
+  std::vector<sim::LidarReturns> returns((count + firings_in_task - 1) / firings_in_task);
+  geometry::parallel_for(returns.size(), threads, [&](std::size_t task) {
+    const std::uint64_t first = task * firings_in_task;
+    returns[task] = lidar.measure(
+        scene, flight, {frame * apart + first, std::min(firings_in_task, count - first)});
+  });
+  append(returns, points);
+}
+
 geometry::Scan SurveySensor::scan(const sim::Scene& scene, const View& view, std::uint64_t frame,
                                   unsigned threads, geometry::Scan recycled) const {
   return scan(scene, view, {}, frame, threads, std::move(recycled));
@@ -271,10 +273,17 @@ geometry::Scan SurveySensor::scan(const sim::Scene& scene, const View& view,
                                   geometry::Scan recycled) const {
   if (const auto* lidar = std::get_if<sim::Lidar>(&sensor_)) {
     geometry::Scan scan = std::move(recycled);
-    scan.world_from_sensor = geometry::camera_pose(view);
+    // What is fixed to the vehicle looks as its mount has it, whatever was wished for.
+    const bool is_fixed = mount_ && kind_ == ScannerKind::rosette;
+    scan.world_from_sensor =
+        geometry::camera_pose(is_fixed ? scanner_view(*mount_, nose_view(*mount_, view)) : view);
     scan.points.clear();
     scan.pixels.clear();
-    append_turns(*lidar, scene, turns(view), carriage, frame * turns_, threads, scan.points);
+    if (kind_ == ScannerKind::ring) {
+      append_turns(*lidar, scene, turns(view), carriage, frame * turns_, threads, scan.points);
+    } else {
+      measure_way(*lidar, scene, view, carriage, frame, threads, scan.points);
+    }
     return scan;
   }
   const auto& camera = std::get<sim::DepthCamera>(sensor_);

@@ -67,17 +67,23 @@ enum class Capture {
   moving,  ///< and on the ways between them
 };
 
+/// How a laser scanner is fixed to the vehicle that carries it.
+struct ScannerMount {
+  Eigen::Isometry3d body_from_scanner = Eigen::Isometry3d::Identity();
+  double look_azimuth = 0.0;  ///< where its views look, anticlockwise from the nose [rad]
+  double look_pitch = 0.0;    ///< of a scanner that looks one way only [rad]
+};
+
 struct SensorConfig {
   SensorPreset preset = SensorPreset::d435;
   sim::DepthCameraConfig camera = sim::d435();  ///< its noise's seed is the mission's
-  /// In place of the camera: a spinning scanner's preset, or the path of a description.
+  /// In place of the camera: a laser scanner's preset, or the path of a description.
   std::optional<std::string> lidar;
-  /// What `lidar` names; `camera` is then forward_camera() of it (survey_sensor.h), by which
+  /// What `lidar` names; `camera` is then planning_camera() of it (survey_sensor.h), by which
   /// planners choose views. Its seed is the mission's.
   std::optional<sim::LidarConfig> scanner;
-  /// Of a scanner that is flown: how it is fixed to the airframe, body_from_sensor; `camera` is
-  /// then its side camera. A scanner without one looks where each view does.
-  std::optional<Eigen::Isometry3d> mount;
+  /// Of a scanner that is flown. One without looks where each view does.
+  std::optional<ScannerMount> mount;
   flight::Shutter shutter{.exposure = 0.01, .readout = 0.0};
   double settle = 0.0;  ///< at rest before a picture, for the sensor's own sake [s]
   Capture capture = Capture::stops;

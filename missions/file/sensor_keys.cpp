@@ -31,11 +31,12 @@ Key lidar_key() {
   return otherwise("-",
                    text_key(
                        "sensor.lidar", [](Mission & m) -> auto& { return m.sensor.lidar; },
-                       "In place of a depth camera, a spinning laser scanner: a preset of "
+                       "In place of a depth camera, a laser scanner: a preset of "
                        "sim/sensors/presets, or the path of a description (NAME.yaml), relative "
                        "to the mission file. With a vehicle it measures all the way, fixed to the "
                        "airframe as scan.mount says; without one it stops at each view and turns "
-                       "once. Of the section sensor only capture and frame_period go with it."));
+                       "once, or looks for half a second; a scanner of a single line needs one. "
+                       "Of the section sensor only capture and frame_period go with it."));
 }
 
 }  // namespace

@@ -212,7 +212,7 @@ file::Mission in_given_order(file::Mission mission) {
 std::vector<flight::Station> stations_of(const file::Mission& mission,
                                          const std::vector<geometry::View>& views,
                                          const std::vector<Way>& ways) {
-  const std::optional<Eigen::Isometry3d>& mount = mission.sensor.mount;
+  const std::optional<file::ScannerMount>& mount = mission.sensor.mount;
   const int shots = derived::scans_in_flight(mission) ? 0 : 1;
   std::vector<flight::Station> stations;
   for (std::uint32_t i = 0; i < views.size(); ++i) {

@@ -52,7 +52,7 @@ CarriedSensor::CarriedSensor(const file::Mission& mission, std::uint64_t seed)
 }
 
 derived::Carriage CarriedSensor::carriage(const ViewInFlight& view, std::uint64_t frame) const {
-  derived::Carriage carriage;
+  derived::Carriage carriage{.stretch = view.stretch};
   if (!vehicle_) return carriage;
   constexpr std::uint32_t drift_stream = 0x53574159, turn_stream = 0x53574154;
   flight::Vehicle moving = *vehicle_;

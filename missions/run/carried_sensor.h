@@ -23,6 +23,8 @@ struct ViewInFlight {
   geometry::View view;
   Eigen::Vector3d velocity = Eigen::Vector3d::Zero();  ///< of the vehicle, in the middle [m/s]
   double time = 0.0;                                   ///< since some moment before the first [s]
+  /// Of a scanner that measures in flight; none: it stands.
+  std::optional<derived::Stretch> stretch{};
 };
 
 /// Scans in the order flown. Without a vehicle, and for movements of less than half a pixel, it is

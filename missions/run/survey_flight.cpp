@@ -50,17 +50,15 @@ struct SurveyFlight::Impl {
         is_crowded(!mission.flight.unknown_beside.empty()),
         frame_period(mission.sensor.frame_period),
         threads(mission.threads) {
-    if (!mount) return;
-    const sim::LidarConfig& scanner = *mission.sensor.scanner;
-    // The turn's own cells, a little wider, so that a ray falls into each. Rays begin beside the
-    // vehicle's place by the lever arm, half of what it flies in a turn, and what the turns are
-    // spread by.
-    constexpr double wider = 1.02;
-    rays = flight::SweepRays{
-        .spacing = wider * derived::ray_spacing(scanner),
-        .axis = Vector3d::UnitX(),
-        .origin_spread = mount->translation().norm() + 0.5 * derived::spread_of_turns +
-                         0.5 * mission.flight.cruise_speed / std::abs(scanner.rotation_rate)};
+    if (mount) rays = derived::sweep_rays_of(mission);
+  }
+
+  void take_in_sweep(const geometry::Scan& scan) {
+    if (rays) {
+      measured->insert(scan, *rays, threads);
+    } else {
+      measured->insert_points(scan, threads);
+    }
   }
 
   /// The vehicle at a view: itself without a gimbal.
@@ -103,8 +101,8 @@ struct SurveyFlight::Impl {
   flight::InterruptibleSpace space;
   flight::PathFinder finder;
   WayMotion motion;
-  std::optional<Eigen::Isometry3d> mount;  ///< of a scanner
-  std::optional<flight::SweepRays> rays;
+  std::optional<file::ScannerMount> mount;  ///< of a scanner
+  std::optional<flight::SweepRays> rays;    ///< of its scans, if they prove space free
   /// If its ways are those of the written mission, too, from which autopilots return by themselves.
   std::optional<flight::WaysHome> ways_home;
   double worthwhile_saving = 0.0;  ///< that corners of such ways are worth [m]
@@ -197,7 +195,7 @@ std::vector<ViewInFlight> SurveyFlight::frames(const geometry::View& from,
   std::vector<ViewInFlight> frames = impl_->motion.frames(impl_->leg, impl_->carrier(from),
                                                           impl_->carrier(to), impl_->frame_period);
   if (!impl_->mount) return frames;
-  for (ViewInFlight& frame : frames) frame.view = derived::side_view(*impl_->mount, frame.view);
+  for (ViewInFlight& frame : frames) frame.view = derived::scanner_view(*impl_->mount, frame.view);
   return frames;
 }
 
@@ -226,8 +224,8 @@ void SurveyFlight::fly() { impl_->survey.legs.push_back(std::move(impl_->leg)); 
 void SurveyFlight::take_in(const geometry::Scan& scan) {
   geometry::parallel_for(2, impl_->threads, [&](std::size_t part) {
     if (part == 0) {
-      if (impl_->rays) {
-        impl_->measured->insert(scan, *impl_->rays, impl_->threads);
+      if (impl_->mount) {
+        impl_->take_in_sweep(scan);
       } else {
         impl_->measured->insert(scan, impl_->camera, impl_->threads);
       }

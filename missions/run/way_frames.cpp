@@ -82,12 +82,18 @@ std::vector<ViewInFlight> WayMotion::frames(const FlownLeg& way, const View& fro
     while (piece > 0.0) {
       const double at = static_cast<double>(number) * period;
       if (at > begun + piece || at > all - 0.5 * period) break;
-      const double on_last = i + 1 < way.points.size() ? 0.0 : (at - begun) / (all - begun);
       const PlaceInFlight place = place_on(begin, end, motion_, piece, (at - begun) / piece);
-      frames.push_back(
-          {{place.position, direction_between(from, to, turns_last_ ? on_last : at / all)},
-           place.velocity,
-           at});
+      const auto view_at = [&](double moment) {
+        const double on_last = i + 1 < way.points.size() ? 0.0 : (moment - begun) / (all - begun);
+        return View{place_on(begin, end, motion_, piece, (moment - begun) / piece).position,
+                    direction_between(from, to, turns_last_ ? on_last : moment / all)};
+      };
+      frames.push_back({view_at(at), place.velocity, at});
+      if (turns_last_) {
+        const double first = std::max(at - 0.5 * period, begun);
+        const double last = std::min(at + 0.5 * period, begun + piece);
+        frames.back().stretch = {view_at(first), view_at(last), last - first};
+      }
       ++number;
     }
     begun += piece + flight::corner_hold;
@@ -145,22 +151,29 @@ class RouteViews {
     const FlownLeg way{leg.points};
     if (mount_) {
       for (const ViewInFlight& nose : motion_.frames(way, from, to, period_)) {
-        add(derived::side_view(*mount_, nose.view), nose.velocity, nose.time);
+        add(derived::scanner_view(*mount_, nose.view), nose.velocity, nose.time);
+        views_.back().stretch = nose.stretch;
       }
     }
     now_ += motion_.time(way, from, to);
     View view = to;
-    if (mount_) view = {leg.points.back(), derived::side_view(*mount_, to).direction};
+    if (mount_) view = derived::scanner_view(*mount_, {leg.points.back(), to.direction});
     add(view, Vector3d::Zero(), 0.0);
     now_ += motion_.rest();
+  }
+
+  static View nose_on(const flight::Passage& passage, double time) {
+    return {state_at(passage.curve, time).position, direction_of(passage.aim_at(time))};
   }
 
   void scan_passage(const flight::Passage& passage) {
     for (std::size_t k = 1; static_cast<double>(k) * period_ < passage.duration; ++k) {
       const double time = static_cast<double>(k) * period_;
-      const flight::CurveState state = state_at(passage.curve, time);
-      add(derived::side_view(*mount_, {state.position, direction_of(passage.aim_at(time))}),
-          state.velocity, time);
+      const View nose = nose_on(passage, time);
+      add(derived::scanner_view(*mount_, nose), state_at(passage.curve, time).velocity, time);
+      const double last = std::min(time + 0.5 * period_, passage.duration);
+      const double first = time - 0.5 * period_;
+      views_.back().stretch = {nose_on(passage, first), nose_on(passage, last), last - first};
     }
     now_ += passage.duration;
   }
@@ -182,7 +195,7 @@ class RouteViews {
   const flight::Route& route_;
   WayMotion motion_;
   double period_;
-  std::optional<Eigen::Isometry3d> mount_;  ///< of a scanner
+  std::optional<file::ScannerMount> mount_;  ///< of a scanner
   double now_ = 0.0;
   std::vector<ViewInFlight> views_;
 };

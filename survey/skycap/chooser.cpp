@@ -27,8 +27,9 @@ constexpr std::array<double, 5> tilts = {0.0, 0.54, 0.54, 0.94, 0.94};
 constexpr std::array<double, 4> turns = {0.35, 0.2, 0.1, 0.05};
 constexpr int refined = 3;  // candidates that a round starts from
 constexpr int turned_directions = 6;
-constexpr std::size_t pool_size = 40;   // candidates that a batch is picked from
-constexpr std::size_t most_frames = 3;  // that stand for all of a way's
+constexpr std::size_t pool_size = 40;         // candidates that a batch is picked from
+constexpr std::size_t most_frames = 3;        // that stand for all of a way's
+constexpr std::size_t most_line_frames = 16;  // the same of lines, whose frames are narrow
 
 struct Candidate {
   View view;
@@ -102,10 +103,12 @@ class Chooser {
     std::vector<BatchView> views(pool.size());
     geometry::parallel_for(pool.size(), settings_.threads, [&](std::size_t i) {
       const View& view = candidates_[pool[i]].view;
-      views[i] = {view.position, sights_with_way(field_, present_, view, settings_.frame_spacing)};
+      views[i] = {view.position, sights_on_way_to(view)};
     });
-    const Candidate& first = candidates_[pool[first_of_batch(views)]];
-    Choice choice{first.view, first.gain.area, best_gain,
+    if (settings_.counts_ways) best_gain = best_on_ways(views);
+    const std::size_t first = first_of_batch(views);
+    Choice choice{candidates_[pool[first]].view, candidates_[pool[first]].gain.area,
+                  views[first].sights, best_gain,
                   std::vector<float>(field_.targets().size(), 0.0F)};
     for (const BatchView& view : views) {
       for (const Sight& sight : view.sights) {
@@ -222,6 +225,28 @@ class Chooser {
     return pool;
   }
 
+  std::vector<Sight> sights_on_way_to(const View& view) const {
+    if (!settings_.sees_lines) {
+      return sights_with_way(field_, present_, view, settings_.frame_spacing);
+    }
+    return sights_of_lines(field_, present_, view, settings_.frame_spacing,
+                           settings_.view_distance);
+  }
+
+  /// The most that any of the views and the way to it would cover, as Choice counts it.
+  double best_on_ways(const std::vector<BatchView>& views) const {
+    double best = 0.0;
+    for (const BatchView& view : views) {
+      double gain = 0.0;
+      for (const Sight& sight : view.sights) {
+        const double chance = field_.is_patch(sight.target) ? settings_.unseen_yield : 1.0;
+        gain += chance * field_.targets()[sight.target].weight * sight.covered_share;
+      }
+      best = std::max(best, gain);
+    }
+    return best;
+  }
+
   /// Index into the views of the first stop of a batch of them.
   std::size_t first_of_batch(const std::vector<BatchView>& views) const {
     std::vector<float> weights;
@@ -232,7 +257,8 @@ class Chooser {
     const BatchSettings batch{.size = static_cast<std::size_t>(settings_.batch),
                               .view_price = settings_.view_price};
     const std::vector<Stop> stops = pick_batch(views, std::move(weights), position_, batch);
-    return stops[first_stop(views, stops, position_, batch.impatience)].view;
+    // Lines may sweep nothing on any way: then to the best place by itself.
+    return stops.empty() ? 0 : stops[first_stop(views, stops, position_, batch.impatience)].view;
   }
 
   const GainField& field_;
@@ -267,6 +293,36 @@ std::vector<View> views_between(const View& from, const View& to, std::size_t co
   return views;
 }
 
+namespace {
+
+/// What several looks have in sight together.
+class JointSights {
+ public:
+  explicit JointSights(std::size_t targets)
+      : uncovered_(targets, 1.0F), clearness_(targets, 0.0F) {}
+
+  void add(const std::vector<Sight>& seen, float times) {
+    for (const Sight& sight : seen) {
+      uncovered_[sight.target] *= std::pow(1.0F - sight.covered_share, times);
+      clearness_[sight.target] = std::max(clearness_[sight.target], sight.clearness);
+    }
+  }
+
+  std::vector<Sight> all() const {
+    std::vector<Sight> sights;
+    for (std::uint32_t t = 0; t < uncovered_.size(); ++t) {
+      if (clearness_[t] == 0.0F) continue;  // unknown space that hides it may hide it from all
+      sights.push_back({t, std::min(1.0F - uncovered_[t], clearness_[t]), clearness_[t]});
+    }
+    return sights;
+  }
+
+ private:
+  std::vector<float> uncovered_, clearness_;
+};
+
+}  // namespace
+
 std::vector<Sight> sights_with_way(const GainField& field, const View& from, const View& to,
                                    double frame_spacing) {
   std::vector<Sight> sights = field.sights(to);
@@ -275,23 +331,31 @@ std::vector<Sight> sights_with_way(const GainField& field, const View& from, con
   const auto looked_at = static_cast<std::size_t>(std::min<double>(most_frames, frames));
   if (looked_at == 0) return sights;
   const auto standing_for = static_cast<float>(frames / static_cast<double>(looked_at));
-  std::vector<float> uncovered(field.targets().size(), 1.0F), clearness(uncovered.size(), 0.0F);
-  const auto add = [&](const std::vector<Sight>& seen, float times) {
-    for (const Sight& sight : seen) {
-      uncovered[sight.target] *= std::pow(1.0F - sight.covered_share, times);
-      clearness[sight.target] = std::max(clearness[sight.target], sight.clearness);
-    }
-  };
-  add(sights, 1.0F);
+  JointSights joint(field.targets().size());
+  joint.add(sights, 1.0F);
   for (const View& frame : views_between(from, to, looked_at)) {
-    add(field.sights(frame), standing_for);
+    joint.add(field.sights(frame), standing_for);
   }
-  sights.clear();
-  for (std::uint32_t t = 0; t < uncovered.size(); ++t) {
-    if (clearness[t] == 0.0F) continue;  // unknown space that hides it may hide it from all
-    sights.push_back({t, std::min(1.0F - uncovered[t], clearness[t]), clearness[t]});
+  return joint.all();
+}
+
+std::vector<Sight> sights_of_lines(const GainField& field, const View& from, const View& to,
+                                   double frame_spacing, double view_distance) {
+  const Vector3d way = to.position - from.position;
+  const auto looked_at = static_cast<std::size_t>(
+      std::min<double>(most_line_frames, std::ceil(way.norm() / frame_spacing)));
+  const double turn = std::remainder(std::atan2(to.direction.y(), to.direction.x()) -
+                                         std::atan2(from.direction.y(), from.direction.x()),
+                                     2.0 * std::numbers::pi);
+  JointSights joint(field.targets().size());
+  for (const View& frame : views_between(from, to, looked_at)) {
+    // The nose is to the right of where lines look; turning left carries them back.
+    const Vector3d nose = Vector3d(frame.direction.y(), -frame.direction.x(), 0.0).normalized();
+    const double swept = std::abs(way.dot(nose) - view_distance * turn);
+    joint.add(field.sights(frame),
+              static_cast<float>(swept / frame_spacing / static_cast<double>(looked_at)));
   }
-  return sights;
+  return joint.all();
 }
 
 std::optional<Choice> choose_view(const GainField& field, const ViewLimits& limits,

@@ -27,6 +27,7 @@ struct ChooserSettings {
   std::stop_token stop{};      ///< has choose_view() throw Interrupted
   /// Between frames that are taken on the way to a view, in metres of way; zero: none are.
   double frame_spacing = 0.0;
+  bool counts_ways = false, sees_lines = false;  ///< as SkycapConfig says
 };
 
 /// Views on the straight way from one view to another as a camera has them that turns evenly
@@ -36,9 +37,10 @@ std::vector<geometry::View> views_between(const geometry::View& from, const geom
 
 struct Choice {
   geometry::View view;
-  double gain;  ///< expected newly covered area of this view [m^2]
+  double gain;                  ///< expected newly covered area of this view [m^2]
+  std::vector<Sight> with_way;  ///< what it and the straight way there have in sight
   /// That of the most rewarding view anywhere in reach, guesses counted by `unseen_yield`: for stop
-  /// rules.
+  /// rules. With `counts_ways` it is that of a view and the way there.
   double best_gain;
   /// For each target of the field, the probability that the one of the best views of different
   /// places that sees it best sees it, if it is there. What none of them sees is hidden.
@@ -52,6 +54,13 @@ using Admission = std::function<bool(const geometry::View&)>;
 /// is of what any of them covers. A few frames stand for all; without any it is the view's own.
 std::vector<Sight> sights_with_way(const GainField& field, const geometry::View& from,
                                    const geometry::View& to, double frame_spacing);
+
+/// The same of a sensor that sees lines only, which stand upright across what it looks along to the
+/// left of its nose: a view shows nothing, and the way there what the lines sweep at the view
+/// distance, by moving across themselves and by turning.
+std::vector<Sight> sights_of_lines(const GainField& field, const geometry::View& from,
+                                   const geometry::View& to, double frame_spacing,
+                                   double view_distance);
 
 /// The next view from `present`; nothing if no admissible view has any gain. Views farther away
 /// than `most_way` are left out. With frames on the way the best views by themselves are batched by

@@ -63,6 +63,11 @@ struct SkycapConfig {
   double place_error = 0.0, angle_error = 0.0;
   /// Between frames that are taken on straight ways to views [m]; zero: none are.
   double frame_spacing = 0.0;
+  /// Whether a single scan shows so little that stop rules count a view with the way to it.
+  bool counts_ways = false;
+  /// Whether the sensor sees upright lines only, which are to the left of a level nose: then the
+  /// camera stands for what is swept in a frame's spacing, and only ways measure.
+  bool sees_lines = false;
 
   /// Throws Error{bad_config} naming the first field that is out of its interval.
   void validate() const;

@@ -25,9 +25,6 @@ using Eigen::Vector3f;
 using geometry::ScanSpan;
 using geometry::View;
 
-// A look that yields less than a quarter of what was promised, if that was worth mentioning, halves
-// the trust in its surfel.
-constexpr float least_promise = 0.2F, kept_promise = 0.25F, broken_trust = 0.5F;
 /// So many successive scans that each add less than this share of the area end the survey.
 constexpr double idle_gain = 0.003;
 constexpr int most_idle_scans = 8;
@@ -63,6 +60,8 @@ struct SkycapPlanner::Impl {
     chooser.view_price = given.view_price.value_or(3.0 * distance);
     chooser.threads = given.threads;
     chooser.frame_spacing = given.frame_spacing;
+    chooser.counts_ways = given.counts_ways;
+    chooser.sees_lines = given.sees_lines;
     if (!given.ideas.targeted_views) chooser.clusters = 0;
     if (!given.ideas.refinement) chooser.refinements = 0;
     if (!given.ideas.batch) chooser.batch = 1;
@@ -109,25 +108,27 @@ struct SkycapPlanner::Impl {
   }
 
   void take_in(const ScanSpan& scan) {
-    if (is_field_old) predict();  // what the view promised has been seen in part on the way there
+    // What the view promised has been seen in part on the way there; lines promise ways.
+    if (is_field_old && !config.sees_lines) predict();
     const std::vector<BlockImage> images = make_block_images(scan, camera, blocks);
     learn_noise(images);
     const View view = geometry::view_of(scan.world_from_sensor);
-    std::vector<Sight> expected;
-    if (field) expected = field->sights(view);
-    struct {
-      double seen = 0.0, guessed = 0.0;
-    } promised;  // to be covered, of known surface and of guesses [m^2]
-    for (const Sight& sight : expected) {
-      const double area = field->targets()[sight.target].weight * sight.covered_share;
-      (field->is_patch(sight.target) ? promised.guessed : promised.seen) += area;
+    Promise promised;
+    if (!config.sees_lines && field) {
+      promised = promise_of(*field, *map, field->sights(view));
+    } else if (proposed && (proposed->position - view.position).norm() < 0.1 * distance) {
+      promised = std::exchange(promise, {});
     }
-    const std::vector<float> hazards = map->surfels().hazards;
-    const std::size_t first_new = map->surfels().size();
-    const double newly_covered = add(images);
-    grade(expected, hazards, first_new);
+    const std::size_t first_new = promised.surfels();
+    const double here = add(images), with_way = here + std::exchange(covered_on_way, 0.0);
+    const double newly_covered = config.sees_lines ? with_way : here;
+    most_covered_at_once = std::max(most_covered_at_once, config.counts_ways ? with_way : here);
+    if (field) {
+      grade(promised, *field, *map, *unseen, *space);
+    } else {
+      unseen->grade({}, *map, *space, 0);
+    }
     yield.learn(promised.guessed, newly_covered - promised.seen, map->new_territory(first_new));
-    const double with_way = newly_covered + std::exchange(covered_on_way, 0.0);
     idle_scans = with_way < idle_gain * reference_area() ? idle_scans + 1 : 0;
   }
 
@@ -145,9 +146,7 @@ struct SkycapPlanner::Impl {
       map->add(image, *dose, blocks.jump, region, was_measured);
     }
     space->compare_misses(map->surfels().positions, map->surfels().normals);
-    const double newly_covered = map->covered_area() - covered_before;
-    most_covered_at_once = std::max(most_covered_at_once, newly_covered);
-    return newly_covered;
+    return map->covered_area() - covered_before;
   }
 
   /// Guesses where the surface goes on, and lists all that a view could cover.
@@ -157,25 +156,6 @@ struct SkycapPlanner::Impl {
     clearness.update(unseen->patches(), *space);
     field.emplace(*map, unseen->patches(), camera, *dose, gain, unseen->prior_occluders(),
                   &clearness);
-  }
-
-  /// Compares what the scan should have shown with what it did.
-  void grade(const std::vector<Sight>& expected, const std::vector<float>& hazards_before,
-             std::size_t first_new) {
-    std::vector<UnseenSurface::Expected> patches;
-    for (const Sight& sight : expected) {
-      const std::uint32_t source = field->source(sight.target);
-      if (field->is_patch(sight.target)) {
-        patches.push_back({source, sight.clearness});
-        continue;
-      }
-      const float promised = -std::log(std::max(1.0F - sight.covered_share, 1e-3F));
-      const float given = map->surfels().hazards[source] - hazards_before[source];
-      if (promised > least_promise && given < kept_promise * promised) {
-        map->lower_trust(source, broken_trust);
-      }
-    }
-    unseen->grade(patches, *map, *space, first_new);
   }
 
   /// The box in which unknown space may hold an obstacle.
@@ -237,6 +217,7 @@ struct SkycapPlanner::Impl {
       return std::nullopt;
     }
     proposed = choice->view;
+    if (config.sees_lines) promise = promise_of(*field, *map, choice->with_way);
     return proposed;
   }
 
@@ -280,7 +261,9 @@ struct SkycapPlanner::Impl {
     stopwatch.lap("insert");
     const std::vector<BlockImage> images = make_block_images(scan, camera, blocks);
     learn_noise(images);
-    covered_on_way += add(images);
+    const double newly_covered = add(images);
+    if (!config.counts_ways) most_covered_at_once = std::max(most_covered_at_once, newly_covered);
+    covered_on_way += newly_covered;
     is_field_old = true;
     stopwatch.lap("update");
   }
@@ -337,6 +320,7 @@ struct SkycapPlanner::Impl {
   std::optional<SpaceMemory> space;
   std::optional<UnseenSurface> unseen;
   std::optional<GainField> field;
+  Promise promise;             ///< of the way to the view that is proposed, by lines
   std::vector<float> chances;  ///< that a good view sees the field's targets, if they are there
 
   double next_gain = 0.0;             ///< of the best view, as a share of the known area

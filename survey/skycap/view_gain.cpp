@@ -4,11 +4,16 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 namespace skycap::survey::skycap {
 namespace {
 
 using Eigen::Vector3f;
+
+// A look that yields less than a quarter of what was promised, if that was worth mentioning, halves
+// the trust in its surfel.
+constexpr float least_promise = 0.2F, kept_promise = 0.25F, broken_trust = 0.5F;
 
 /// Surfels whose missing area is a smaller share of the largest one's are not worth a look each;
 /// together they stay far below any stop rule.
@@ -249,6 +254,33 @@ std::vector<Look> GainField::looks(const geometry::View& view) const {
     looks.push_back({static_cast<std::uint32_t>(t), hazard});
   });
   return looks;
+}
+
+Promise promise_of(const GainField& field, const DoseMap& map, std::vector<Sight> sights) {
+  Promise promise{std::move(sights), map.surfels().hazards};
+  for (const Sight& sight : promise.sights) {
+    const double area = field.targets()[sight.target].weight * sight.covered_share;
+    (field.is_patch(sight.target) ? promise.guessed : promise.seen) += area;
+  }
+  return promise;
+}
+
+void grade(const Promise& promise, const GainField& field, DoseMap& map, UnseenSurface& unseen,
+           const SpaceMemory& space) {
+  std::vector<UnseenSurface::Expected> patches;
+  for (const Sight& sight : promise.sights) {
+    const std::uint32_t source = field.source(sight.target);
+    if (field.is_patch(sight.target)) {
+      patches.push_back({source, sight.clearness});
+      continue;
+    }
+    const float promised = -std::log(std::max(1.0F - sight.covered_share, 1e-3F));
+    const float given = map.surfels().hazards[source] - promise.hazards[source];
+    if (promised > least_promise && given < kept_promise * promised) {
+      map.lower_trust(source, broken_trust);
+    }
+  }
+  unseen.grade(patches, map, space, promise.surfels());
 }
 
 std::vector<BelievedPatch> believed_patches(const DoseMap& map, const GainField& field,

@@ -108,6 +108,21 @@ class GainField {
   const Clearness* clearness_ = nullptr;
 };
 
+/// What was promised of the surface that a field tells of, and what was known of it then.
+struct Promise {
+  std::vector<Sight> sights;
+  std::vector<float> hazards;        ///< of the surfels
+  double seen = 0.0, guessed = 0.0;  ///< to be covered, of known surface and of guesses [m^2]
+
+  std::size_t surfels() const { return hazards.size(); }
+};
+Promise promise_of(const GainField& field, const DoseMap& map, std::vector<Sight> sights);
+
+/// Compares it with what became of it: surfels that keep withholding what they promise are trusted
+/// less, guesses are graded.
+void grade(const Promise& promise, const GainField& field, DoseMap& map, UnseenSurface& unseen,
+           const SpaceMemory& space);
+
 /// All surface, seen and guessed, as far as it can be covered: the surfels of `map`, and of the
 /// unseen `patches` those in sight, their areas as expected, times `guess_yield`. `chances` says of
 /// each target with what probability some good view sees it, if it is there.

@@ -160,6 +160,28 @@ TEST(MeasuredSpace, WhatASweepProvesIsTrulyFreeWhicheverWayItsAxisLies) {
   }
 }
 
+// A ball before the middle of a wall that is hit all over is free; the same ball is not with a cell
+// in its middle, or next to its rim, that no ray hit, though all rays are far behind it.
+TEST(MeasuredSpace, ScatteredRaysProveNothingBesideACellThatNoneHit) {
+  const auto space_with_hole = [](double hole_at) {
+    geometry::Scan scan;  // along z
+    for (double x = -5.0; x < 5.0; x += 0.05) {
+      for (double y = -5.0; y < 5.0; y += 0.05) {
+        if (std::hypot(x - hole_at, y) > 0.4) scan.points.emplace_back(x, y, 10.0);
+      }
+    }
+    MeasuredSpace space({.voxel = 0.2, .depth_margin = 0.0});
+    space.insert(scan, SweepRays{.spacing = 0.02, .is_scattered = true});
+    return space;
+  };
+  const Segment ahead{{0, 0, 4.9}, {0, 0, 5.1}};
+  EXPECT_TRUE(space_with_hole(3.0).is_free(ahead, 0.3));
+  EXPECT_FALSE(space_with_hole(0.0).is_free(ahead, 0.3));
+  EXPECT_FALSE(space_with_hole(1.0).is_free(ahead, 0.3));
+  // Where the rays end, so does what is known, two cells or more inside of them.
+  EXPECT_FALSE(space_with_hole(3.0).is_free({{-2.4, 0, 5}, {-2.4, 0, 5}}, 0.05));
+}
+
 TEST(MeasuredSpace, APixelWithoutAReturnProvesNothingUnlessTheSensorIsTrusted) {
   const geometry::Mesh wall = scenes::box({10, -2, -2}, {11, 2, 2});  // in half of the image
   const geometry::Scan scan = depth_image(wall, small_camera, look_at({0, 0, 0}, {10, 0, 0}));

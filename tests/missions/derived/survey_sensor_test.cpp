@@ -114,26 +114,27 @@ TEST(SurveySensor, SweepsDependOnSeedAndFrameButNotOnThreads) {
 }
 
 /// Its axis along the flight, and across it to the left.
-Eigen::Isometry3d level_mount(double azimuth) {
-  return Eigen::Isometry3d(Eigen::AngleAxisd(azimuth, Vector3d::UnitZ()) *
-                           Eigen::AngleAxisd(90.0 * degree, Vector3d::UnitY()));
+file::ScannerMount level_mount(double azimuth) {
+  return derived::scanner_mount(
+      scanner(), Eigen::Isometry3d(Eigen::AngleAxisd(azimuth, Vector3d::UnitZ()) *
+                                   Eigen::AngleAxisd(90.0 * degree, Vector3d::UnitY())));
 }
 
 TEST(MountedScanner, LooksToTheLeftOfItsAxisWhereverTheNosePoints) {
   const geometry::View north{{1, 2, 3}, {0, 1, 0}};
-  const geometry::View west = derived::side_view(level_mount(0.0), north);
+  const geometry::View west = derived::scanner_view(level_mount(0.0), north);
   EXPECT_LT((west.direction - Vector3d(-1, 0, 0)).norm(), 1e-12);
   EXPECT_EQ(west.position, north.position);
-  const geometry::View south = derived::side_view(level_mount(90.0 * degree), north);
+  const geometry::View south = derived::scanner_view(level_mount(90.0 * degree), north);
   EXPECT_LT((south.direction - Vector3d(0, -1, 0)).norm(), 1e-12);
   for (const double azimuth : {0.0, 0.7, -2.0}) {
-    const Eigen::Isometry3d mount = level_mount(azimuth);
+    const file::ScannerMount mount = level_mount(azimuth);
     EXPECT_LT(
-        (derived::nose_view(mount, derived::side_view(mount, north)).direction - north.direction)
+        (derived::nose_view(mount, derived::scanner_view(mount, north)).direction - north.direction)
             .norm(),
         1e-12);
     // How steeply a view looks does not turn the nose.
-    geometry::View steep = derived::side_view(mount, north);
+    geometry::View steep = derived::scanner_view(mount, north);
     steep.direction = (steep.direction - 5.0 * Vector3d::UnitZ()).normalized();
     EXPECT_LT((derived::nose_view(mount, steep).direction - north.direction).norm(), 1e-12);
   }
@@ -148,7 +149,7 @@ TEST(MountedScanner, SweepsARingAboutItsAxisOnceForEachTurnOfThePeriod) {
   config.capture = file::Capture::moving;
   config.frame_period = 0.5;  // five turns
   const derived::SurveySensor sensor(config, 1);
-  const geometry::View view = derived::side_view(*config.mount, {{1, 2, 3}, {0.6, 0.8, 0}});
+  const geometry::View view = derived::scanner_view(*config.mount, {{1, 2, 3}, {0.6, 0.8, 0}});
   const geometry::Scan scan = sensor.scan(scene, view, 0, 1);
   EXPECT_EQ(scan.points.size(), 5U * 360U * 40U);
   const Vector3d axis(0.6, 0.8, 0.0);
@@ -206,9 +207,11 @@ TEST(SensorLidar, IsRefusedWithOneSentenceWhereItDoesNotFit) {
     return "accepted";
   };
   EXPECT_EQ(message_of("{lidar: velodyne_vlp16}", ""), "accepted");
-  EXPECT_THAT(message_of("{lidar: livox_avia}", ""),
-              HasSubstr("m.yaml:2: key sensor.lidar: this scanner does not spin"));
-  EXPECT_THAT(message_of("{lidar: riegl_vux_1uav}", ""), HasSubstr("measures a line"));
+  EXPECT_EQ(message_of("{lidar: livox_avia}", ""), "accepted");
+  EXPECT_THAT(
+      message_of("{lidar: riegl_vux_1uav}", ""),
+      HasSubstr("m.yaml:2: key sensor.lidar: this scanner measures a line, which is no field "
+                "unless it is flown: give flight.vehicle"));
   EXPECT_THAT(message_of("{lidar: see_d435}", ""), HasSubstr("is a camera"));
   EXPECT_THAT(message_of("{lidar: os1}", ""), HasSubstr("known are"));
   EXPECT_THAT(message_of("{lidar: velodyne_vlp16, width: 100}", ""),
@@ -221,6 +224,13 @@ TEST(SensorLidar, IsRefusedWithOneSentenceWhereItDoesNotFit) {
   EXPECT_THAT(
       message_of("{lidar: velodyne_vlp16}", flown + "scan: {mount: {rotation_deg: [0, 0, 30]}}\n"),
       HasSubstr("key scan.mount.rotation_deg: does not lay the scanner's axis level"));
+  EXPECT_EQ(message_of("{lidar: livox_avia}", flown), "accepted");
+  EXPECT_THAT(
+      message_of("{lidar: livox_avia}", flown + "scan: {mount: {rotation_deg: [0, 90, 0]}}\n"),
+      HasSubstr("key scan.mount.rotation_deg: has the scanner look up or down by more than 75"));
+  EXPECT_EQ(message_of("{lidar: riegl_vux_1uav}", flown), "accepted");
+  EXPECT_THAT(message_of("{lidar: riegl_vux_1uav, capture: stops}", flown),
+              HasSubstr("key sensor.capture: is stops, at which a scanner that measures a line"));
 }
 
 }  // namespace

@@ -96,7 +96,7 @@ TEST(WayFrames, LookAtTheSceneWhereBothViewsDo) {
   const Vector3d scene(50, 60, 5);
   const View from = geometry::look_at({0, 0, 20}, scene),
              to = geometry::look_at({0, 30, 20}, scene);
-  for (const auto& [frame, velocity, time] :
+  for (const auto& [frame, velocity, time, stretch] :
        motion.frames({{from.position, to.position}, 2.0}, from, to, 1.0)) {
     const Vector3d wanted = (scene - frame.position).normalized();
     EXPECT_LT(std::acos(wanted.dot(frame.direction)), 0.1);

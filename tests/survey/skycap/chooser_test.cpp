@@ -315,5 +315,30 @@ TEST(Chooser, CountsWhatTheWayShows) {
   }
 }
 
+// Known answer: a line that moves along itself sweeps nothing; one that moves across itself sweeps
+// as much, whichever way round; and so does one that turns on the spot, by the angle times d.
+TEST(Chooser, LinesSeeWhatTheySweep) {
+  const Known known({2, 0, 0});
+  const skycap::GainField field = known.field();
+  constexpr double frame_spacing = 0.05, d = 2.0;
+  const auto gain = [&](const geometry::View& begin, const geometry::View& end) {
+    double sum = 0.0;
+    for (const auto& sight : skycap::sights_of_lines(field, begin, end, frame_spacing, d)) {
+      sum += field.targets()[sight.target].weight * sight.covered_share;
+    }
+    return sum;
+  };
+  const Vector3d ahead(-1, 0, 0), aside(0, 1, 0);
+  const geometry::View begin{from.position, ahead};
+  EXPECT_EQ(gain(begin, {from.position + 0.5 * ahead, ahead}), 0.0);
+  const double across = gain(begin, {from.position + 0.5 * aside, ahead});
+  EXPECT_GT(across, 0.0);
+  EXPECT_NEAR(gain({from.position + 0.5 * aside, ahead}, begin), across, 1e-6 * across);
+  // Both at once: to the right the turn to the left takes away what the way brings.
+  constexpr double turn = 0.25;
+  const Vector3d turned(-std::cos(turn), -std::sin(turn), 0);
+  EXPECT_LT(gain(begin, {from.position + d * turn * aside, turned}), 0.2 * across);
+}
+
 }  // namespace
 }  // namespace skycap::survey
