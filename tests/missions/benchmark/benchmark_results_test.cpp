@@ -67,17 +67,16 @@ TEST(CoverageCurve, KeepsTheEndOfTrialsThatAreOver) {
 TEST(CoverageCurve, OverTheTimeInTheAirIsOfFlights) {
   benchmark::Trial flown = trial(0.2, 0.4, 0.8);
   flown.flown_time_after = {60.0, 90.0, 180.0};
-  const auto curve =
-      benchmark::coverage_curve({flown, flown}, benchmark::CurveAxis::flown_time, 5);
+  const auto curve = benchmark::coverage_curve({flown, flown}, benchmark::CurveAxis::flown_time, 5);
   ASSERT_EQ(curve.size(), 5U);
   EXPECT_DOUBLE_EQ(curve[0].x, 60.0);
   EXPECT_DOUBLE_EQ(curve[1].x, 90.0);
   EXPECT_DOUBLE_EQ(curve[1].mean, 0.4);
   EXPECT_DOUBLE_EQ(curve[3].mean, 0.4);
   EXPECT_DOUBLE_EQ(curve[4].mean, 0.8);
-  EXPECT_TRUE(benchmark::coverage_curve({flown, trial(0.2, 0.4, 0.8)},
-                                        benchmark::CurveAxis::flown_time, 5)
-                  .empty());
+  EXPECT_TRUE(
+      benchmark::coverage_curve({flown, trial(0.2, 0.4, 0.8)}, benchmark::CurveAxis::flown_time, 5)
+          .empty());
 }
 
 TEST(CoverageCurve, WithoutTrialsIsEmpty) {
