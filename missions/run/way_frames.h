@@ -34,8 +34,8 @@ class WayMotion {
 
   double rest() const { return rest_; }  ///< at a view [s]
 
-  /// How long a survey takes from the pad until it leaves each of its views [s]: take-off, ways, and
-  /// rests at views. The way home is not part of it. `legs` as in FlownSurvey.
+  /// How long a survey takes from the pad until it leaves each of its views [s]: take-off, ways,
+  /// and rests at views. The way home is not part of it. `legs` as in FlownSurvey.
   std::vector<double> survey_times(const std::vector<FlownLeg>& legs,
                                    const std::vector<geometry::View>& views) const;
 
