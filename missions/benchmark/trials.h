@@ -44,9 +44,9 @@ struct Trial {
   std::vector<double> distance_after;
   std::vector<double> planning_time_after;
   std::vector<double> flown_time_after;  ///< of a vehicle; else empty [s]
-  std::optional<double> flown_length;   ///< of a vehicle, from the pad to the last view [m]
-  std::size_t frontiers_resolved = 0;   ///< points that ceased to be frontiers
-  std::vector<ObservedTarget> targets;  ///< that were observed, in this order
+  std::optional<double> flown_length;    ///< of a vehicle, from the pad to the last view [m]
+  std::size_t frontiers_resolved = 0;    ///< points that ceased to be frontiers
+  std::vector<ObservedTarget> targets;   ///< that were observed, in this order
 
   bool is_flown() const { return !flown_time_after.empty(); }
   /// Of a vehicle, from the pad to the last view [s], see run::FlownSurvey.
