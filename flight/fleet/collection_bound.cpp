@@ -8,12 +8,14 @@
 namespace skycap::flight {
 namespace {
 
-constexpr std::size_t coarse_steps = 400, fine_steps = 1000;  ///< that the makespan is cut into
-constexpr double most_work = 2e9;  ///< steps of dynamic programming in all
-constexpr std::size_t most_rounds = 300;
-constexpr std::size_t patience = 8;  ///< rounds without a better bound before steps are halved
-constexpr double rounding = 1e-9;    ///< of sums of prizes
-constexpr double nothing = -1.0;     ///< the prize where no tour leads
+/// That the makespan is cut into: for the ascent, and for the last word.
+constexpr std::size_t coarse_steps = 400, most_fine_steps = 4000;
+constexpr double most_work = 4e9;       ///< steps of dynamic programming in the ascent
+constexpr double most_fine_work = 5e8;  ///< and in the last word
+constexpr std::size_t most_rounds = 600;
+constexpr std::size_t patience = 15;  ///< rounds without a better bound before steps are halved
+constexpr double rounding = 1e-9;     ///< of sums of prizes
+constexpr double nothing = -1.0;      ///< the prize where no tour leads
 constexpr std::uint32_t pad = UINT32_MAX;  ///< as the station before the first
 
 /// The best tours that come to a station at a time: the best of all, and the best of those that
@@ -174,8 +176,9 @@ std::vector<double> moved(const std::vector<double>& prizes, const std::vector<d
 double collection_bound(const FleetProblem& least, double makespan) {
   const std::size_t count = least.count(), vehicles = least.vehicles.size();
   if (count == 0 || !(makespan > 0.0)) return 0.0;
-  const double round = static_cast<double>(coarse_steps * count * count * vehicles);
-  const auto rounds = std::min(most_rounds, static_cast<std::size_t>(most_work / round));
+  const auto step = static_cast<double>(count * count * vehicles);
+  const auto rounds =
+      std::min(most_rounds, static_cast<std::size_t>(most_work / (step * double(coarse_steps))));
   if (rounds == 0) return 0.0;
   std::vector<double> prizes(count, 1.0 / static_cast<double>(count)), best = prizes;
   double bound = 0.0, length = 0.3 / static_cast<double>(vehicles);
@@ -190,6 +193,8 @@ double collection_bound(const FleetProblem& least, double makespan) {
     }
     prizes = moved(prizes, coarse.visits(count), length);
   }
+  const auto fine_steps =
+      std::clamp(static_cast<std::size_t>(most_fine_work / step), coarse_steps, most_fine_steps);
   return std::max(bound, Fleet(least, makespan, fine_steps).bound(best));
 }
 

@@ -14,8 +14,9 @@ namespace skycap::flight {
 
 /// No way of sharing the stations out lands everybody sooner, if no part of a flight is faster than
 /// `least` says; energy is not asked about. At most `makespan`, which some fleet attains. Times are
-/// cut down to multiples of 1/1000 of that. Deterministic. The ascent takes at most about 2e9
-/// steps, fewer rounds where there are many stations; 0 if there are too many for a single one.
+/// cut down to multiples of 1/4000 of that, of a greater share where there are many stations.
+/// Deterministic. The ascent takes at most about 4e9 steps, in fewer rounds where there are many
+/// stations; 0 if there are too many for a single one.
 double collection_bound(const FleetProblem& least, double makespan);
 
 }  // namespace skycap::flight

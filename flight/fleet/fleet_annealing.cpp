@@ -13,24 +13,57 @@ using Order = std::vector<std::uint32_t>;
 
 constexpr double never = std::numeric_limits<double>::infinity();
 constexpr std::uint64_t seed = 1, stream_of_annealing = 6ULL << 32;
-constexpr std::size_t moves_per_station = 6000, least_moves = 20'000;
-constexpr double most_work = 6e7;  ///< stations in the orders that are tried, in all
+constexpr std::size_t moves_per_station = 30'000, least_moves = 20'000;
+constexpr double most_work = 3e8;  ///< stations in the orders that are tried, in all
 constexpr std::size_t longest_chain = 4;
-constexpr double first_temperature = 0.03, last_temperature = 0.0003;  ///< shares of the goal
+constexpr double first_temperature = 0.1, last_temperature = 0.0003;  ///< shares of the goal
 /// What the other figure counts: a shorter flight of one vehicle makes room for the others'.
 constexpr double share_of_other = 0.02;
 
 std::ptrdiff_t offset(std::size_t index) { return static_cast<std::ptrdiff_t>(index); }
 
+/// What a vehicle takes from place to place, the pad being the last, with what is done there.
+class Times {
+ public:
+  explicit Times(const FleetVehicle& vehicle)
+      : pad_(static_cast<std::uint32_t>(vehicle.count())),
+        times_((vehicle.count() + 1) * (vehicle.count() + 1), 0.0) {
+    for (std::uint32_t j = 0; j < pad_; ++j) {
+      const double rest = vehicle.station[j].time;
+      at(pad_, j) = vehicle.out[j].time + rest;
+      at(j, pad_) = vehicle.back[j].time;
+      for (std::uint32_t i = 0; i < pad_; ++i) at(i, j) = vehicle.leg(i, j).time + rest;
+    }
+  }
+
+  /// In one sortie, whatever its battery says.
+  double of(const Order& order) const {
+    double time = 0.0;
+    std::uint32_t from = pad_;
+    for (const std::uint32_t to : order) time += times_[index(from, to)], from = to;
+    return time + times_[index(from, pad_)];
+  }
+
+ private:
+  std::size_t index(std::uint32_t from, std::uint32_t to) const {
+    return std::size_t{from} * (pad_ + 1) + to;
+  }
+  double& at(std::uint32_t from, std::uint32_t to) { return times_[index(from, to)]; }
+
+  std::uint32_t pad_;
+  std::vector<double> times_;
+};
+
 /// Simulated annealing (Kirkpatrick, Gelatt & Vecchi 1983) of orders of all vehicles.
 class Annealing {
  public:
-  Annealing(const FleetProblem& problem, FleetSplit split, FleetGoal goal)
+  Annealing(const FleetProblem& problem, FleetSplit split, FleetGoal goal, std::uint64_t chain)
       : problem_(problem),
         goal_(goal),
         parts_(std::move(split.parts)),
         best_(parts_),
-        random_(seed, stream_of_annealing) {
+        random_(seed, stream_of_annealing + chain) {
+    for (const FleetVehicle& vehicle : problem.vehicles) in_one_.emplace_back(vehicle);
     for (const FleetPart& part : parts_) times_.push_back(part.time);
     cost_ = best_cost_ = cost_of(times_);
   }
@@ -83,79 +116,86 @@ class Annealing {
   }
 
   void reverse_in(std::size_t v) {
-    Order order = parts_[v].stations;
-    if (order.size() < 2) return;
-    std::size_t first = draw(order.size()), last = draw(order.size());
+    one_ = parts_[v].stations;
+    if (one_.size() < 2) return;
+    std::size_t first = draw(one_.size()), last = draw(one_.size());
     if (first > last) std::swap(first, last);
-    std::reverse(order.begin() + offset(first), order.begin() + offset(last + 1));
-    decide(v, std::move(order), v, {});
+    std::reverse(one_.begin() + offset(first), one_.begin() + offset(last + 1));
+    decide(v, v);
   }
 
   void move_chain(std::size_t v, std::size_t w) {
-    Order order = parts_[v].stations;
-    if (order.empty()) return;
-    const std::size_t first = draw(order.size());
-    const std::size_t size = 1 + draw(std::min(longest_chain, order.size() - first));
-    Order chain(order.begin() + offset(first), order.begin() + offset(first + size));
-    order.erase(order.begin() + offset(first), order.begin() + offset(first + size));
-    if (random_.uniform() < 0.5) std::ranges::reverse(chain);
-    Order target = v == w ? order : parts_[w].stations;
+    one_ = parts_[v].stations;
+    if (one_.empty()) return;
+    const std::size_t first = draw(one_.size());
+    const std::size_t size = 1 + draw(std::min(longest_chain, one_.size() - first));
+    const auto begin = one_.begin() + offset(first);
+    chain_.assign(begin, begin + offset(size));
+    one_.erase(begin, begin + offset(size));
+    if (random_.uniform() < 0.5) std::ranges::reverse(chain_);
+    if (v != w) other_ = parts_[w].stations;
+    Order& target = v == w ? one_ : other_;
     const std::size_t place = draw(target.size() + 1);
-    target.insert(target.begin() + offset(place), chain.begin(), chain.end());
-    if (v == w) {
-      decide(v, std::move(target), v, {});
-    } else {
-      decide(v, std::move(order), w, std::move(target));
-    }
+    target.insert(target.begin() + offset(place), chain_.begin(), chain_.end());
+    decide(v, w);
   }
 
   void swap_stations(std::size_t v, std::size_t w) {
-    Order one = parts_[v].stations, other = parts_[w].stations;
-    if (one.empty() || other.empty()) return;
-    const std::size_t i = draw(one.size()), j = draw(other.size());
-    std::swap(one[i], other[j]);
-    decide(v, std::move(one), w, std::move(other));
+    one_ = parts_[v].stations, other_ = parts_[w].stations;
+    if (one_.empty() || other_.empty()) return;
+    std::swap(one_[draw(one_.size())], other_[draw(other_.size())]);
+    decide(v, w);
   }
 
   void swap_tails(std::size_t v, std::size_t w) {
     const Order &first = parts_[v].stations, &second = parts_[w].stations;
-    const std::size_t i = draw(first.size() + 1), j = draw(second.size() + 1);
-    Order one(first.begin(), first.begin() + offset(i));
-    Order other(second.begin(), second.begin() + offset(j));
-    one.insert(one.end(), second.begin() + offset(j), second.end());
-    other.insert(other.end(), first.begin() + offset(i), first.end());
-    decide(v, std::move(one), w, std::move(other));
+    const auto i = offset(draw(first.size() + 1)), j = offset(draw(second.size() + 1));
+    one_.assign(first.begin(), first.begin() + i);
+    one_.insert(one_.end(), second.begin() + j, second.end());
+    other_.assign(second.begin(), second.begin() + j);
+    other_.insert(other_.end(), first.begin() + i, first.end());
+    decide(v, w);
   }
 
-  /// Takes new orders of two vehicles (or of one, twice) if they are better, or by chance.
-  void decide(std::size_t v, Order order, std::size_t w, Order other) {
-    std::vector<double> times = times_;
-    times[v] = part_time(problem_.vehicles[v], order);
-    if (v != w) times[w] = part_time(problem_.vehicles[w], other);
-    if (times[v] == never || times[w] == never) return;
-    const double cost = cost_of(times);
+  /// Takes the new orders of two vehicles (or of one, twice) if they are better, or by chance.
+  void decide(std::size_t v, std::size_t w) {
     const double chance = random_.uniform();
-    if (cost > cost_ && chance >= std::exp((cost_ - cost) / temperature_)) return;
-    parts_[v] = {std::move(order), times[v]};
-    if (v != w) parts_[w] = {std::move(other), times[w]};
-    times_ = std::move(times);
-    cost_ = cost;
+    const auto is_good = [&] {
+      const double cost = cost_of(tried_);
+      return cost <= cost_ || chance < std::exp((cost_ - cost) / temperature_);
+    };
+    tried_ = times_;
+    // Most are not good even if one battery were enough, which is soon known.
+    tried_[v] = one_.empty() ? 0.0 : in_one_[v].of(one_);
+    if (v != w) tried_[w] = other_.empty() ? 0.0 : in_one_[w].of(other_);
+    if (!is_good()) return;
+    tried_[v] = part_time(problem_.vehicles[v], one_);
+    if (v != w) tried_[w] = part_time(problem_.vehicles[w], other_);
+    if (tried_[v] == never || tried_[w] == never || !is_good()) return;
+    parts_[v].stations.swap(one_), parts_[v].time = tried_[v];
+    if (v != w) parts_[w].stations.swap(other_), parts_[w].time = tried_[w];
+    times_.swap(tried_);
+    cost_ = cost_of(times_);
     if (cost_ < best_cost_) best_cost_ = cost_, best_ = parts_;
   }
 
   const FleetProblem& problem_;
   FleetGoal goal_;
   std::vector<FleetPart> parts_, best_;
+  std::vector<Times> in_one_;  ///< by vehicle
   std::vector<double> times_;  ///< of the parts
+  Order one_, other_, chain_;  ///< that are tried
+  std::vector<double> tried_;
   double cost_ = 0.0, best_cost_ = 0.0, temperature_ = 1.0;
   RandomNumbers random_;
 };
 
 }  // namespace
 
-FleetSplit annealed(const FleetProblem& problem, FleetSplit split, FleetGoal goal) {
+FleetSplit annealed(const FleetProblem& problem, FleetSplit split, FleetGoal goal,
+                    std::uint64_t chain) {
   if (split.parts.empty()) return split;
-  return Annealing(problem, std::move(split), goal).run();
+  return Annealing(problem, std::move(split), goal, chain).run();
 }
 
 }  // namespace skycap::flight

@@ -55,45 +55,6 @@ double least_corner_time(const Motion& motion, const Vector3d& way, double short
   return stop + std::min(slower, stop);
 }
 
-/// Fills in the costs of a vehicle whose straight legs take `time_of(displacement)`.
-template <typename TimeOf>
-FleetVehicle costs_of(std::span<const Station> stations, const FleetMember& member,
-                      TimeOf time_of) {
-  const KnownSpace nothing(Obstacles{});
-  const std::optional<WaysHome> no_ways_home;
-  const Motion& motion = member.motion;
-  const LegCertifier legs(nothing, motion, 0.0, no_ways_home);
-  const auto leg = [&](const Vector3d& way, double shortfall, const Station* from,
-                       const Station* to) {
-    const double moving = time_of(way) + least_corner_time(motion, way, shortfall);
-    const double time = legs.aimed_time(moving, from, to);
-    return PartCost{time, motion.leg_energy(way, time), 0.0};
-  };
-  const auto shortfall_in = [](const std::vector<double>& list, std::size_t i) {
-    return list.empty() ? 0.0 : list[i];
-  };
-  FleetVehicle vehicle{.energy_per_sortie = motion.usable_energy(),
-                       .stations_per_sortie = most_stations(motion.vehicle())};
-  vehicle.legs.resize(stations.size() * stations.size());
-  for (std::uint32_t i = 0; i < stations.size(); ++i) {
-    const Vector3d& place = stations[i].view.position;
-    const Vector3d way = place - member.home();
-    const double shortfall = shortfall_in(member.shortfalls.home, i);
-    vehicle.out.push_back(
-        in_turn(legs.takeoff_cost(member.takeoff_climb), leg(way, shortfall, nullptr, nullptr)));
-    vehicle.back.push_back(
-        in_turn(leg(-way, shortfall, nullptr, nullptr), legs.landing_cost(member.takeoff_climb)));
-    vehicle.station.push_back(legs.station_cost(stations[i]));
-    for (std::uint32_t j = 0; j < stations.size(); ++j) {
-      if (i == j) continue;
-      const std::size_t k = i * stations.size() + j;
-      vehicle.legs[k] = leg(stations[j].view.position - place,
-                            shortfall_in(member.shortfalls.legs, k), &stations[i], &stations[j]);
-    }
-  }
-  return vehicle;
-}
-
 double shortfall(const Segment& line, const FreeSpace& space, double clearance) {
   const LegProof proof = prove(space, line, clearance, clearance + 1.0);
   if (proof.is_proven) return 0.0;
@@ -124,14 +85,41 @@ std::vector<double> home_shortfalls(std::span<const Station> stations, const Vec
   return shortfalls;
 }
 
-FleetVehicle straight_costs(std::span<const Station> stations, const FleetMember& member) {
-  return costs_of(stations, member,
-                  [&](const Vector3d& way) { return member.motion.leg_time(way); });
-}
-
-FleetVehicle least_costs(std::span<const Station> stations, const FleetMember& member) {
-  return costs_of(stations, member,
-                  [&](const Vector3d& way) { return least_leg_time(member.motion, way); });
+FleetVehicle least_costs(std::span<const Station> stations, const FleetMember& member,
+                         const Shortfalls& shortfalls) {
+  const KnownSpace nothing(Obstacles{});
+  const std::optional<WaysHome> no_ways_home;
+  const Motion motion(member.vehicle, member.options.conditions);
+  const LegCertifier legs(nothing, motion, 0.0, no_ways_home);
+  const auto leg = [&](const Vector3d& way, double shortfall, const Station* from,
+                       const Station* to) {
+    const double moving = least_leg_time(motion, way) + least_corner_time(motion, way, shortfall);
+    const double time = legs.aimed_time(moving, from, to);
+    return PartCost{time, motion.leg_energy(way, time), 0.0};
+  };
+  const auto shortfall_in = [](const std::vector<double>& list, std::size_t i) {
+    return list.empty() ? 0.0 : list[i];
+  };
+  const double climb = member.options.takeoff_climb;
+  FleetVehicle vehicle{.energy_per_sortie = motion.usable_energy(),
+                       .stations_per_sortie = most_stations(motion.vehicle())};
+  vehicle.legs.resize(stations.size() * stations.size());
+  for (std::uint32_t i = 0; i < stations.size(); ++i) {
+    const Vector3d& place = stations[i].view.position;
+    const Vector3d way = place - member.home();
+    const double shortfall = shortfall_in(shortfalls.home, i);
+    vehicle.out.push_back(in_turn(legs.takeoff_cost(climb), leg(way, shortfall, nullptr, nullptr)));
+    vehicle.back.push_back(
+        in_turn(leg(-way, shortfall, nullptr, nullptr), legs.landing_cost(climb)));
+    vehicle.station.push_back(legs.station_cost(stations[i]));
+    for (std::uint32_t j = 0; j < stations.size(); ++j) {
+      if (i == j) continue;
+      const std::size_t k = i * stations.size() + j;
+      vehicle.legs[k] = leg(stations[j].view.position - place, shortfall_in(shortfalls.legs, k),
+                            &stations[i], &stations[j]);
+    }
+  }
+  return vehicle;
 }
 
 }  // namespace skycap::flight

@@ -1,4 +1,4 @@
-/// What the parts of a fleet's flights take, before any leg is proven.
+/// What the parts of a fleet's flights take at least, before any leg is proven.
 #pragma once
 
 #include <span>
@@ -7,7 +7,7 @@
 #include <Eigen/Core>
 
 #include "flight/fleet/fleet_problem.h"
-#include "flight/motion/motion.h"
+#include "flight/motion/vehicle.h"
 #include "flight/route/route.h"
 #include "flight/space/clearance.h"
 
@@ -20,14 +20,14 @@ struct Shortfalls {
   std::vector<double> legs;  ///< from station i to station j at [i * count + j] [m]
 };
 
-/// One vehicle of a fleet and its pad.
+/// One vehicle of a fleet, and how it flies; its pad is options.takeoff.
 struct FleetMember {
-  Motion motion;
-  Eigen::Vector3d pad = Eigen::Vector3d::Zero();
-  double takeoff_climb = 5.0;  ///< straight up from the pad before the first leg [m]
-  Shortfalls shortfalls{};
+  Vehicle vehicle;
+  RouteOptions options;
 
-  Eigen::Vector3d home() const { return pad + Eigen::Vector3d(0.0, 0.0, takeoff_climb); }
+  Eigen::Vector3d home() const {
+    return options.takeoff + Eigen::Vector3d(0.0, 0.0, options.takeoff_climb);
+  }
 };
 
 /// Of the lines between stations.
@@ -37,15 +37,12 @@ std::vector<double> leg_shortfalls(std::span<const Station> stations, const Free
 std::vector<double> home_shortfalls(std::span<const Station> stations, const Eigen::Vector3d& home,
                                     const FreeSpace& space, double clearance);
 
-/// As if every leg were straight, in the times that plan_route() counts; where the line is not
-/// free, with what least_costs() counts for that.
-FleetVehicle straight_costs(std::span<const Station> stations, const FleetMember& member);
-
 /// Times that no certified legs undercut, corners and detours as they may be; energies are not
 /// looked at. A motion from rest to rest is, along any direction, one from rest to rest under the
 /// greatest speed and acceleration that the vehicle has in that direction, whatever its way. Where
 /// the straight line is not free there is a stop at a corner, outside of a ball about the line's
 /// worst place, or there are two.
-FleetVehicle least_costs(std::span<const Station> stations, const FleetMember& member);
+FleetVehicle least_costs(std::span<const Station> stations, const FleetMember& member,
+                         const Shortfalls& shortfalls = {});
 
 }  // namespace skycap::flight

@@ -47,13 +47,15 @@ FleetSplit share_sorties(const FleetProblem& problem, std::span<const std::uint3
 FleetSplit exchanged(const FleetProblem& problem, FleetSplit split, FleetGoal goal);
 
 /// The best that random exchanges between vehicles, and within, came by, at first with losses and
-/// ever less so. A fixed number of moves, about 6000 for each station (fewer from hundreds on);
-/// deterministic.
-FleetSplit annealed(const FleetProblem& problem, FleetSplit split, FleetGoal goal);
+/// ever less so. A fixed number of moves, 30,000 for each station (fewer from hundreds on);
+/// deterministic: each `chain` draws other numbers.
+FleetSplit annealed(const FleetProblem& problem, FleetSplit split, FleetGoal goal,
+                    std::uint64_t chain = 0);
 
-/// The better of both splits of an order, each after its exchanges, annealed and exchanged again.
-/// Empty parts if there is none.
+/// The best of both splits of an order, each after its exchanges, and of a dozen annealings of the
+/// better one, exchanged again. Empty parts if there is none. The same for any number of `threads`
+/// (0: all processors).
 FleetSplit share_among(const FleetProblem& problem, std::span<const std::uint32_t> order,
-                       FleetGoal goal);
+                       FleetGoal goal, unsigned threads = 0);
 
 }  // namespace skycap::flight

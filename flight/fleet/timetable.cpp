@@ -18,21 +18,26 @@ class Scheduler {
  public:
   Scheduler(const std::vector<FleetSortie>& sorties, std::size_t vehicles,
             const SeparationRule& rule)
-      : sorties_(sorties), rule_(rule), of_(vehicles), work_(vehicles, 0.0) {
+      : sorties_(sorties), rule_(rule), of_(vehicles) {
     for (std::size_t i = 0; i < sorties.size(); ++i) {
-      of_[sorties[i].vehicle].push_back(i);
+      std::vector<Variant>& variants = of_[sorties[i].vehicle];
+      variants.resize(std::max(variants.size(), sorties[i].variant + 1));
+      variants[sorties[i].variant].sorties.push_back(i);
+      variants[sorties[i].variant].work += duration(sorties[i].script);
       durations_.push_back(std::ceil(duration(sorties[i].script)));
-      work_[sorties[i].vehicle] += duration(sorties[i].script);
     }
-    for (std::vector<std::size_t>& own : of_) {
-      std::ranges::stable_sort(own, {}, [&](std::size_t i) { return sorties_[i].number; });
+    for (std::vector<Variant>& variants : of_) {
+      for (Variant& variant : variants) {
+        std::ranges::stable_sort(variant.sorties, {},
+                                 [&](std::size_t i) { return sorties_[i].number; });
+      }
     }
   }
 
   Timetable best() {
     std::vector<std::size_t> turns(of_.size());
     std::iota(turns.begin(), turns.end(), std::size_t{0});
-    std::ranges::stable_sort(turns, std::greater(), [&](std::size_t v) { return work_[v]; });
+    std::ranges::stable_sort(turns, std::greater(), [&](std::size_t v) { return least_work(v); });
     Timetable best = by_turns(turns, std::numeric_limits<double>::infinity()).value();
     if (turns.size() > most_in_every_order) return with_delay(best);
     std::vector<std::size_t> rank = turns, places(turns.size());
@@ -45,16 +50,35 @@ class Scheduler {
   }
 
  private:
+  /// What a vehicle may fly: its sorties in their order.
+  struct Variant {
+    std::vector<std::size_t> sorties;
+    double work = 0.0;  ///< of them all [s]
+  };
+
+  double least_work(std::size_t vehicle) const {
+    double least = of_[vehicle].empty() ? 0.0 : std::numeric_limits<double>::infinity();
+    for (const Variant& variant : of_[vehicle]) least = std::min(least, variant.work);
+    return least;
+  }
+
   /// The vehicles in turn, a sortie each, until all have their starts; nothing if that is not
   /// sooner done than `below`.
   std::optional<Timetable> by_turns(const std::vector<std::size_t>& turns, double below) {
-    Timetable table{.starts = std::vector<double>(sorties_.size(), 0.0)};
+    Timetable table{.starts = std::vector<double>(sorties_.size(), 0.0),
+                    .variants = std::vector<std::size_t>(of_.size(), 0)};
     std::vector<std::size_t> placed;
     std::vector<double> ready(of_.size(), 0.0);
-    for (std::size_t number = 0; placed.size() < sorties_.size(); ++number) {
+    bool is_done = false;
+    for (std::size_t number = 0; !is_done; ++number) {
+      is_done = true;
       for (const std::size_t v : turns) {
-        if (number >= of_[v].size()) continue;
-        const std::size_t i = of_[v][number];
+        if (of_[v].empty()) continue;
+        if (number == 0) table.variants[v] = soonest(v, placed, table.starts);
+        const std::vector<std::size_t>& own = of_[v][table.variants[v]].sorties;
+        if (number >= own.size()) continue;
+        is_done = false;
+        const std::size_t i = own[number];
         table.starts[i] = first_start(i, ready[v], placed, table.starts);
         ready[v] = table.starts[i] + durations_[i];
         placed.push_back(i);
@@ -64,6 +88,19 @@ class Scheduler {
       }
     }
     return table;
+  }
+
+  /// The variant that has landed first if nothing but its first start is put off.
+  std::size_t soonest(std::size_t vehicle, const std::vector<std::size_t>& placed,
+                      const std::vector<double>& starts) {
+    std::size_t best = 0;
+    double least = std::numeric_limits<double>::infinity();
+    for (std::size_t k = 0; k < of_[vehicle].size(); ++k) {
+      const Variant& variant = of_[vehicle][k];
+      const double start = first_start(variant.sorties.front(), 0.0, placed, starts);
+      if (start + variant.work < least) least = start + variant.work, best = k;
+    }
+    return best;
   }
 
   double first_start(std::size_t i, double ready, const std::vector<std::size_t>& placed,
@@ -93,15 +130,16 @@ class Scheduler {
   }
 
   Timetable with_delay(Timetable table) const {
-    table.delay = table.makespan - *std::ranges::max_element(work_);
+    double longest = 0.0;
+    for (std::size_t v = 0; v < of_.size(); ++v) longest = std::max(longest, least_work(v));
+    table.delay = table.makespan - longest;
     return table;
   }
 
   const std::vector<FleetSortie>& sorties_;
   SeparationRule rule_;
-  std::vector<std::vector<std::size_t>> of_;  ///< sorties by vehicle
-  std::vector<double> durations_;             ///< in whole seconds, rounded up
-  std::vector<double> work_;                  ///< by vehicle [s]
+  std::vector<std::vector<Variant>> of_;  ///< by vehicle
+  std::vector<double> durations_;         ///< in whole seconds, rounded up
   std::map<std::tuple<std::size_t, std::size_t, double>, bool> known_;
 };
 

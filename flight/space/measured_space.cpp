@@ -136,10 +136,7 @@ bool MeasuredSpace::continues_free(const Segment& leg, double clearance) const {
 }
 
 AlignedBox3d MeasuredSpace::extent() const {
-  AlignedBox3d extent = impl_->extent;
-  if (!impl_->is_bounded()) return extent;
-  for (const AlignedBox3d& box : impl_->boxes) extent.extend(box);
-  return extent;
+  return impl_->is_bounded() ? impl_->in_the_way() : impl_->extent;
 }
 
 AlignedBox3d MeasuredSpace::known_box() const {

@@ -125,8 +125,9 @@ void MeasuredSpace::Impl::closest_in_cube(const Segment& piece, const BoxTest& t
 /// Lowers `best` to what is nearer to a short piece than that.
 void MeasuredSpace::Impl::closest_in(const Segment& piece, Closest& best) const {
   const Vector3d reach = Vector3d::Constant(best.distance);
-  const AlignedBox3d around(piece.from.cwiseMin(piece.to) - reach,
-                            piece.from.cwiseMax(piece.to) + reach);
+  const AlignedBox3d around = in_the_way().intersection(
+      {piece.from.cwiseMin(piece.to) - reach, piece.from.cwiseMax(piece.to) + reach});
+  if (around.isEmpty()) return;  // such as a return above all that there is
   const BoxTest test(piece);
   for_each_block(around, [&](const Cell& cell) {
     const VoxelBlocks::Found found = blocks.find(cell_key(cell));

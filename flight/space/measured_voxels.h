@@ -43,6 +43,12 @@ struct MeasuredSpace::Impl {
     return std::ranges::any_of(
         boxes, [&](const Eigen::AlignedBox3d& region) { return region.intersects(box); });
   }
+  /// Outside of it everything is free.
+  Eigen::AlignedBox3d in_the_way() const {
+    Eigen::AlignedBox3d hull = extent;
+    for (const Eigen::AlignedBox3d& region : boxes) hull.extend(region);
+    return hull;
+  }
   double block_size() const { return 8.0 * config.voxel; }
   Cell block_of(const Eigen::Vector3d& point) const {
     return (point / block_size()).array().floor().matrix().cast<int>();

@@ -33,19 +33,20 @@ struct FleetMission {
   std::vector<flight::Unreached> unreached;    ///< by any of them
   double makespan = 0.0;                       ///< from the first take-off to the last landing [s]
   double flown = 0.0;                          ///< all together in the air [s]
-  double delay = 0.0;  ///< of the last landing, for the separation's sake [s]
-  flight::FleetBound bound;
-  double distance = 0.0;  ///< proven between any two at all times, at most reported_distance [m]
+  double delay = 0.0;        ///< of the last landing, for the separation's sake [s]
+  flight::FleetBound bound;  ///< of all fleets on legs like these, see flight::CertifiedCosts
+  flight::FleetBound least;  ///< of all fleets whatever their legs
+  double distance = 0.0;     ///< proven between any two at all times, at most reported_distance [m]
 };
 
 /// Distances between vehicles are reported up to this [m].
 inline constexpr double reported_distance = 100.0;
 
 /// Shares the stations of `alone`, the certified route of the first vehicle, among the mission's
-/// fleet: first by straight legs, then again and again by what the certified ones take, as long as
-/// that helps. Every vehicle's route is planned and certified as plan_flight() does it; starts are
-/// put off until all flights are proven to keep apart. Throws what plan_route() throws, and
-/// Error{bad_config} if a vehicle flies too low over where another one stands.
+/// fleet, by what certified legs take. Every vehicle's route is planned and certified as
+/// plan_flight() does it; starts are put off until all flights are proven to keep apart. Throws
+/// what plan_route() throws, and Error{bad_config} if the stations cannot be shared out or if a
+/// vehicle flies too low over where another one stands.
 FleetMission plan_fleet(const file::Mission& mission, const flight::MeasuredSpace& measured,
                         const flight::Route& alone, std::span<const flight::PadGround> grounds,
                         std::stop_token stop = {});

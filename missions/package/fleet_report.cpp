@@ -49,9 +49,11 @@ Json member_json(const FleetMember& member) {
 std::string fleet_text(const FleetMission& fleet) {
   std::string text = fmt::format(
       "  fleet     {} vehicles, {:.1f} min until the last has landed, {:.1f} min in the air; "
-      "within {:.1f} % and {:.1f} % of what no fleet undercuts\n",
+      "within {:.1f} % and {:.1f} % of what no fleet on such legs undercuts, {:.1f} % and {:.1f} % "
+      "of what none does on any\n",
       fleet.members.size(), fleet.makespan / 60.0, fleet.flown / 60.0,
-      gap(fleet.makespan, fleet.bound.makespan), gap(fleet.flown, fleet.bound.flown));
+      gap(fleet.makespan, fleet.bound.makespan), gap(fleet.flown, fleet.bound.flown),
+      gap(fleet.makespan, fleet.least.makespan), gap(fleet.flown, fleet.least.flown));
   text += fmt::format(
       "  apart     proven at {:.2f} m at all times; the last landing {:.0f} s later for it\n",
       fleet.distance, fleet.delay);
@@ -76,8 +78,10 @@ Json fleet_json(const file::Mission& mission, const FleetMission& fleet) {
       {"goal", file::to_text(*file::find_key("flight.fleet_goal")->get(mission))},
       {"makespan_s", fleet.makespan},
       {"makespan_bound_s", fleet.bound.makespan},
+      {"makespan_least_s", fleet.least.makespan},
       {"flown_s", fleet.flown},
       {"flown_bound_s", fleet.bound.flown},
+      {"flown_least_s", fleet.least.flown},
       {"delay_s", fleet.delay},
       {"separation",
        {{"asked_m", rule.distance}, {"tolerance_s", rule.tolerance}, {"proven_m", fleet.distance}}},

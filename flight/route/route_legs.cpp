@@ -1,0 +1,167 @@
+#include "flight/route/route_legs.h"
+
+#include <algorithm>
+#include <string>
+#include <utility>
+
+#include "flight/space/place_text.h"
+
+namespace skycap::flight {
+
+using Eigen::Vector3d;
+
+namespace {
+
+std::vector<Vector3d> reversed(const std::vector<Vector3d>& way) {
+  return {way.rbegin(), way.rend()};
+}
+
+}  // namespace
+
+RouteLegs::RouteLegs(const Vehicle& vehicle, const FreeSpace& space, const RouteOptions& options)
+    : motion_(vehicle, options.conditions),
+      space_(space),
+      options_(options),
+      clearance_(options.clearance.total()),
+      home_(options.takeoff + Vector3d(0.0, 0.0, options.takeoff_climb)),
+      ways_(space, home_, options),
+      legs_(space, motion_, clearance_, ways_home_),
+      takeoff_cost_(legs_.takeoff_cost(options.takeoff_climb)),
+      landing_cost_(legs_.landing_cost(options.takeoff_climb)) {}
+
+void RouteLegs::refuse(const Station& station, const std::string& reason) {
+  unreached_.push_back({station, reason});
+}
+
+std::vector<Station> RouteLegs::allowed(std::vector<Station> stations) {
+  std::erase_if(stations, [&](const Station& station) {
+    const std::string why = why_not_allowed(station);
+    if (!why.empty()) refuse(station, why);
+    return !why.empty();
+  });
+  if (options_.returns) keep_with_return(stations);
+  return stations;
+}
+
+std::string RouteLegs::why_not_allowed(const Station& station) const {
+  const Vehicle& vehicle = motion_.vehicle();
+  if (!can_look(vehicle, station.view)) {
+    return "the gimbal of \"" + vehicle.name + "\" cannot look that way";
+  }
+  const Segment place{station.view.position, station.view.position};
+  if (space_.is_free(place, clearance_)) return "";
+  const Closest closest = space_.closest(place, clearance_ + 1.0);
+  return "it is " + length_text(closest.distance) + " from " + space_.name(closest);
+}
+
+/// Drops stations that no vehicle can be called home from.
+void RouteLegs::keep_with_return(std::vector<Station>& stations) {
+  double top = home_.z();
+  for (const Station& station : stations) top = std::max(top, station.view.position.z());
+  ways_home_.emplace(space_, planning_law(options_, top), home_, clearance_);
+  std::erase_if(stations, [&](const Station& station) {
+    const std::string why = ways_home_->why_none(station.view.position);
+    if (!why.empty()) refuse(station, "there is no certified way home: " + why);
+    return !why.empty();
+  });
+}
+
+void RouteLegs::admit(const std::vector<Station>& allowed) {
+  // Those without a way are listed before those whose way cannot be flown.
+  std::vector<std::vector<Vector3d>> ways;
+  for (const Station& station : allowed) {
+    ways.push_back(ways_.from_home(station));
+    if (!ways.back().empty()) continue;
+    refuse(station, "there is no way to it at a clearance of " + length_text(clearance_));
+  }
+  for (std::size_t i = 0; i < allowed.size(); ++i) {
+    if (ways[i].empty()) continue;
+    std::optional<Ends> ends = ends_along(std::move(ways[i]));
+    const std::string why =
+        ends ? why_out_of_range(allowed[i], *ends)
+             : "the way to it cannot be proven at a clearance of " + length_text(clearance_);
+    if (!why.empty()) {
+      refuse(allowed[i], why);
+      continue;
+    }
+    stations_.push_back(allowed[i]);
+    ends_.push_back(*std::move(ends));
+  }
+}
+
+/// Nothing if the way cannot be proven in both directions.
+std::optional<RouteLegs::Ends> RouteLegs::ends_along(std::vector<Vector3d> way) const {
+  std::optional<Leg> out = legs_.leg(way, nullptr, nullptr);
+  std::optional<Leg> back = legs_.leg(reversed(way), nullptr, nullptr);
+  if (!out || !back) return std::nullopt;
+  return Ends{std::move(way), *std::move(out), *std::move(back)};
+}
+
+std::string RouteLegs::why_out_of_range(const Station& station, const Ends& ends) const {
+  const LegCost there = in_turn(takeoff_cost_, cost_of(ends.out));
+  const LegCost home = in_turn(cost_of(ends.back), landing_cost_);
+  const LegCost total = in_turn(in_turn(there, legs_.station_cost(station)), home);
+  const double needed = std::max(total.energy, total.emergency);
+  if (needed <= motion_.usable_energy()) return "";
+  return "getting there and back takes " + std::to_string(needed / 3600) + " Wh; the battery has " +
+         std::to_string(motion_.usable_energy() / 3600) + " Wh above its reserve";
+}
+
+bool RouteLegs::give_returns(std::size_t station) {
+  Ends& ends = ends_[station];
+  if (!ways_home_ || ends.has_returns) return false;
+  ends.has_returns = true;
+  std::vector<Vector3d> way = with_returns(ends.way);
+  if (way == ends.way) return false;
+  std::optional<Ends> changed = ends_along(std::move(way));
+  if (!changed) return false;  // the returns' own proof will name the place
+  ends = *std::move(changed);
+  ends.has_returns = true;
+  return true;
+}
+
+std::vector<Vector3d> RouteLegs::with_returns(std::vector<Vector3d> way) const {
+  if (!ways_home_) return way;
+  return ways_home_->with_returns(std::move(way), options_.path.worthwhile_saving);
+}
+
+std::vector<Vector3d> RouteLegs::found(std::size_t from, std::size_t to) {
+  return ways_.found(stations_[from].view.position, stations_[to].view.position);
+}
+
+std::optional<Leg> RouteLegs::along(std::vector<Vector3d> way, std::size_t from,
+                                    std::size_t to) const {
+  if (way.empty()) return std::nullopt;
+  return legs_.leg(with_returns(std::move(way)), &stations_[from], &stations_[to]);
+}
+
+Leg RouteLegs::by_home(std::size_t from, std::size_t to) const {
+  // Both are connected to the pad, so there is a way, though a long one.
+  std::vector<Vector3d> points = reversed(ends_[from].way);
+  points.insert(points.end(), ends_[to].way.begin() + 1, ends_[to].way.end());
+  const std::vector<Vector3d> tight =
+      pull_tight(space_, clearance_, points, options_.path.worthwhile_saving);
+  if (std::optional<Leg> leg = along(tight, from, to)) return *std::move(leg);
+  return legs_.leg(points, &stations_[from], &stations_[to]).value();  // its parts were proven
+}
+
+Leg RouteLegs::between(std::size_t from, std::size_t to) {
+  const Vector3d& place = stations_[from].view.position;
+  if (auto leg = along(ways_.flown(place, stations_[to]), from, to)) return *std::move(leg);
+  if (auto leg = along(found(from, to), from, to)) return *std::move(leg);
+  return by_home(from, to);
+}
+
+LegCost RouteLegs::out_cost(std::size_t station) const {
+  return in_turn(takeoff_cost_, cost_of(out(station)));
+}
+
+LegCost RouteLegs::back_cost(std::size_t station) const {
+  return in_turn(cost_of(back(station)), landing_cost_);
+}
+
+LegCost RouteLegs::station_cost(std::size_t station) const {
+  return legs_.station_cost(stations_[station]);
+}
+
+}  // namespace skycap::flight
