@@ -143,7 +143,8 @@ class Annealing {
   void swap_stations(std::size_t v, std::size_t w) {
     one_ = parts_[v].stations, other_ = parts_[w].stations;
     if (one_.empty() || other_.empty()) return;
-    std::swap(one_[draw(one_.size())], other_[draw(other_.size())]);
+    const std::size_t i = draw(one_.size()), j = draw(other_.size());
+    std::swap(one_[i], other_[j]);
     decide(v, w);
   }
 
