@@ -73,18 +73,26 @@ std::vector<Vector3d> directions_in(const sim::LidarConfig& lidar, double period
   return directions;
 }
 
+/// Azimuth and elevation about the x axis [rad] of what looks ahead.
+std::vector<Vector2d> angles_of(const std::vector<Vector3d>& directions) {
+  std::vector<Vector2d> angles;
+  for (const Vector3d& d : directions) {
+    if (d.z() <= 0.0) continue;
+    angles.emplace_back(std::atan2(d.y(), d.z()), std::asin(std::clamp(d.x(), -1.0, 1.0)));
+  }
+  return angles;
+}
+
 /// The share of the cells, so wide in azimuth and elevation about the x axis, in a rectangle of the
 /// image plane that hold a ray.
-double filled_share(const std::vector<Vector3d>& directions, const Vector2d& half_slopes,
+double filled_share(const std::vector<Vector2d>& angles, const Vector2d& half_slopes,
                     double width) {
   const auto cells = static_cast<int>(std::ceil(0.5 * std::numbers::pi / width));  // each way
   const int across = 2 * cells;
   std::vector<char> is_filled(static_cast<std::size_t>(across) * across, 0);
-  for (const Vector3d& d : directions) {
-    if (d.z() <= 0.0) continue;
-    const int column = cells + static_cast<int>(std::floor(std::atan2(d.y(), d.z()) / width));
-    const int row =
-        cells + static_cast<int>(std::floor(std::asin(std::clamp(d.x(), -1.0, 1.0)) / width));
+  for (const Vector2d& angle : angles) {
+    const int column = cells + static_cast<int>(std::floor(angle.x() / width));
+    const int row = cells + static_cast<int>(std::floor(angle.y() / width));
     is_filled[static_cast<std::size_t>(row) * across + column] = 1;
   }
   std::size_t all = 0, filled = 0;
@@ -180,8 +188,9 @@ RosetteField rosette_field(const sim::LidarConfig& lidar, double period,
     field.rays += (slopes.array() <= field.half_slopes.array()).all() ? 1 : 0;
   }
   constexpr double finest = 0.003, coarsest = 0.2, step = 1.15, enough = 0.995;
+  const std::vector<Vector2d> angles = angles_of(directions);
   field.gap = finest;
-  while (field.gap < coarsest && filled_share(directions, field.half_slopes, field.gap) < enough) {
+  while (field.gap < coarsest && filled_share(angles, field.half_slopes, field.gap) < enough) {
     field.gap *= step;
   }
   return field;

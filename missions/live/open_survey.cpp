@@ -105,7 +105,7 @@ std::unique_ptr<LiveSurvey> open_survey(const file::Mission& mission,
   }
   const scene::SurveyScene scene(mission, mission_folder);
   const file::Mission trial = run::trial_mission(mission, scene, mission.seed);
-  return std::make_unique<LiveSurvey>(trial, survey_folder, run::first_view_of(trial, scene),
+  return std::make_unique<LiveSurvey>(trial, survey_folder, scene.first_view(trial.seed),
                                       mission.threads);
 }
 

@@ -187,7 +187,7 @@ class Inspection {
 
   void check_first_view() {
     try {
-      const geometry::View first = first_view_of(mission_, scene_);
+      const geometry::View first = scene_.first_view(mission_.seed);
       const geometry::Scan scan = derived::SurveySensor(mission_.sensor, mission_.seed)
                                       .scan(scene_.scene(), first, 0, threads_);
       const auto& box = mission_.planner.see.scene_box;

@@ -7,7 +7,6 @@
 #include <vector>
 
 #include "geometry/parallel.h"
-#include "missions/derived/opening_flight.h"
 #include "missions/judge/coverage.h"
 #include "missions/run/carried_sensor.h"
 #include "missions/run/mission_planner.h"
@@ -22,11 +21,6 @@ file::Mission trial_mission(const file::Mission& mission, const scene::SurveySce
   if (!settings.sphere_centre) settings.sphere_centre = scene.view_sphere().centre;
   if (!settings.sphere_radius) settings.sphere_radius = scene.view_sphere().radius;
   return trial;
-}
-
-geometry::View first_view_of(const file::Mission& trial, const scene::SurveyScene& scene) {
-  const std::vector<geometry::View> opening = derived::opening_views(trial);
-  return opening.empty() ? scene.first_view(trial.seed) : opening.front();
 }
 
 namespace {
@@ -75,7 +69,7 @@ SurveyRecord run_survey(const file::Mission& mission, const scene::SurveyScene& 
                         SurveyJournal* journal) {
   CarriedSensor sensor(mission, seed);
   const file::Mission trial = trial_mission(mission, scene, seed);
-  const geometry::View first_view = first_view_of(trial, scene);
+  const geometry::View first_view = scene.first_view(trial.seed);
   MissionPlanner guided(trial, first_view, threads);
   judge::CoverageMeter meter(scene.samples().points, mission.evaluation.registration_distance);
   SurveyRecord record;

@@ -17,9 +17,6 @@ namespace skycap::missions::run {
 file::Mission trial_mission(const file::Mission& mission, const scene::SurveyScene& scene,
                             std::uint64_t seed);
 
-/// Where the survey of a trial_mission() begins.
-geometry::View first_view_of(const file::Mission& trial, const scene::SurveyScene& scene);
-
 /// Surveys the mission's scene with that seed and so many threads (zero: all processors). The
 /// record does not depend on the threads but for its times. A mission with a vehicle goes only to
 /// views that it can safely reach; without one, whatever the planner, only to places that

@@ -12,6 +12,7 @@
 #include "geometry/io/file.h"
 #include "missions/derived/mission_flight.h"
 #include "missions/derived/mission_priors.h"
+#include "missions/derived/opening_flight.h"
 #include "missions/derived/site.h"
 #include "missions/derived/survey_sensor.h"
 #include "missions/file/mission_keys.h"
@@ -168,6 +169,10 @@ bool SurveyScene::is_reachable(const Vector3d& place) const {
 }
 
 geometry::View SurveyScene::first_view(std::uint64_t seed) const {
+  file::Mission trial = mission_;
+  trial.seed = seed;
+  const std::vector<geometry::View> opening = derived::opening_views(trial);
+  if (!opening.empty()) return opening.front();
   if (const auto start = derived::given_start(mission_)) {
     if (!reachable().is_empty()) return *start;
     throw Error(ErrorKind::bad_config,

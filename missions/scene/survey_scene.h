@@ -47,9 +47,9 @@ class SurveyScene {
 
   const ViewSphere& view_sphere() const { return view_sphere_; }
 
-  /// The first view of the survey with that seed: as the mission gives it, or at random on the
-  /// view sphere, within the mission's limits and reachable, looking at the sphere's centre. Throws
-  /// Error{bad_config} if there is no such view.
+  /// The first view of the survey with that seed: of its opening, as the mission gives it, or at
+  /// random on the view sphere, within the mission's limits and reachable, looking at the sphere's
+  /// centre. Throws Error{bad_config} if there is no such view.
   geometry::View first_view(std::uint64_t seed) const;
 
   /// For each sample, 1 if an admissible sensor position sees it. Takes a second or more, but is

@@ -30,8 +30,7 @@ class Rehearsal {
       : mission_(derived::parse_mission(mission, "m.yaml")),
         scene_(mission_, folder),
         sensor_(mission_.sensor, mission_.seed),
-        first_view_(
-            run::first_view_of(run::trial_mission(mission_, scene_, mission_.seed), scene_)),
+        first_view_(scene_.first_view(mission_.seed)),
         threads_(threads) {}
 
   run::SurveyRecord planned() const {
