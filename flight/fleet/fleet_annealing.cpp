@@ -17,6 +17,7 @@ constexpr std::size_t moves_per_station = 30'000, least_moves = 20'000;
 constexpr double most_work = 3e8;  ///< stations in the orders that are tried, in all
 constexpr std::size_t longest_chain = 4;
 constexpr double first_temperature = 0.1, last_temperature = 0.0003;  ///< shares of the goal
+constexpr double hopeless = -40.0;  ///< exponent of a chance that no draw is below
 /// What the other figure counts: a shorter flight of one vehicle makes room for the others'.
 constexpr double share_of_other = 0.02;
 
@@ -73,13 +74,10 @@ class Annealing {
     const double wanted = std::max<double>(least_moves, moves_per_station * stations);
     const double most = most_work * static_cast<double>(parts_.size()) / stations;
     const auto moves = static_cast<std::size_t>(std::min(wanted, most));
-    const double start = cost_;
-    for (std::size_t i = 0; i < moves; ++i) {
-      const double progress = static_cast<double>(i) / static_cast<double>(moves);
-      temperature_ =
-          start * first_temperature * std::pow(last_temperature / first_temperature, progress);
-      change();
-    }
+    temperature_ = cost_ * first_temperature;
+    const double cooling =
+        std::pow(last_temperature / first_temperature, 1.0 / static_cast<double>(moves));
+    for (std::size_t i = 0; i < moves; ++i, temperature_ *= cooling) change();
     FleetSplit split{.parts = std::move(best_)};
     for (const FleetPart& part : split.parts) {
       split.makespan = std::max(split.makespan, part.time);
@@ -163,12 +161,14 @@ class Annealing {
     const double chance = random_.uniform();
     const auto is_good = [&] {
       const double cost = cost_of(tried_);
-      return cost <= cost_ || chance < std::exp((cost_ - cost) / temperature_);
+      if (cost <= cost_) return true;
+      const double exponent = (cost_ - cost) / temperature_;
+      return exponent > hopeless && chance < std::exp(exponent);
     };
     tried_ = times_;
     // Most are not good even if one battery were enough, which is soon known.
-    tried_[v] = one_.empty() ? 0.0 : in_one_[v].of(one_);
-    if (v != w) tried_[w] = other_.empty() ? 0.0 : in_one_[w].of(other_);
+    tried_[v] = in_one_[v].of(one_);
+    if (v != w) tried_[w] = in_one_[w].of(other_);
     if (!is_good()) return;
     tried_[v] = part_time(problem_.vehicles[v], one_);
     if (v != w) tried_[w] = part_time(problem_.vehicles[w], other_);

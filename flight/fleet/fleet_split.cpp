@@ -12,9 +12,6 @@ namespace {
 
 constexpr double never = std::numeric_limits<double>::infinity();
 
-/// Tries at annealing: of a city block's 36 stations about every fourth comes by the best known.
-constexpr std::size_t chains = 12;
-
 using Order = std::vector<std::uint32_t>;
 
 SplitProblem split_problem(const FleetVehicle& vehicle, std::span<const std::uint32_t> stations) {
@@ -137,7 +134,7 @@ FleetSplit share_sorties(const FleetProblem& problem, std::span<const std::uint3
 }
 
 FleetSplit share_among(const FleetProblem& problem, std::span<const std::uint32_t> order,
-                       FleetGoal goal, unsigned threads) {
+                       FleetGoal goal, std::size_t chains, unsigned threads) {
   FleetSplit best;
   const auto keep = [&](FleetSplit split) {
     if (split.parts.empty()) return;

@@ -125,10 +125,6 @@ std::vector<Vector3d> RouteLegs::with_returns(std::vector<Vector3d> way) const {
   return ways_home_->with_returns(std::move(way), options_.path.worthwhile_saving);
 }
 
-std::vector<Vector3d> RouteLegs::found(std::size_t from, std::size_t to) {
-  return ways_.found(stations_[from].view.position, stations_[to].view.position);
-}
-
 std::optional<Leg> RouteLegs::along(std::vector<Vector3d> way, std::size_t from,
                                     std::size_t to) const {
   if (way.empty()) return std::nullopt;
@@ -146,9 +142,9 @@ Leg RouteLegs::by_home(std::size_t from, std::size_t to) const {
 }
 
 Leg RouteLegs::between(std::size_t from, std::size_t to) {
-  const Vector3d& place = stations_[from].view.position;
+  const Vector3d &place = stations_[from].view.position, &next = stations_[to].view.position;
   if (auto leg = along(ways_.flown(place, stations_[to]), from, to)) return *std::move(leg);
-  if (auto leg = along(found(from, to), from, to)) return *std::move(leg);
+  if (auto leg = along(ways_.found(place, next), from, to)) return *std::move(leg);
   return by_home(from, to);
 }
 

@@ -44,9 +44,6 @@ class RouteLegs {
   /// Has out() and back() lead where every point has a proven way home; whether that changed them.
   bool give_returns(std::size_t station);
 
-  /// The shortest way found from one station to another; empty if there is none.
-  std::vector<Eigen::Vector3d> found(std::size_t from, std::size_t to);
-
   /// From one station to another along a way, or along one near it that has returns; nothing if
   /// that cannot be proven, or if the way is empty.
   std::optional<Leg> along(std::vector<Eigen::Vector3d> way, std::size_t from,

@@ -141,13 +141,17 @@ std::vector<std::uint32_t> order_of(const std::vector<flight::Station>& stations
   return order;
 }
 
-/// Until every leg of it is certified. Throws Error{bad_config} if there is no way to share.
+/// Until every leg of it is certified, quickly first: that tells which legs matter. Throws
+/// Error{bad_config} if there is no way to share.
 flight::FleetSplit share(const file::Mission& mission, flight::CertifiedCosts& costs,
                          const std::vector<std::uint32_t>& order) {
   flight::FleetSplit split;
-  do {
-    split = flight::share_among(costs.problem(), order, mission.flight.fleet.goal, mission.threads);
-  } while (costs.certify(split));
+  for (const std::size_t chains : {std::size_t{1}, flight::thorough}) {
+    do {
+      split = flight::share_among(costs.problem(), order, mission.flight.fleet.goal, chains,
+                                  mission.threads);
+    } while (costs.certify(split));
+  }
   if (!split.parts.empty()) return split;
   throw Error(ErrorKind::bad_config,
               "the stations cannot be shared out among flight.vehicles: too many of them are "

@@ -87,5 +87,20 @@ TEST(Timetable, LetsAVehicleLandBeforeItsNextSortie) {
   EXPECT_LE(table.starts[0], duration(sorties[1].script) + 1.0);
 }
 
+// The way to the left crosses that of the other vehicle, the one to the right is a little longer.
+TEST(Timetable, HasAVehicleFlyWhichOfItsVariantsLandsFirst) {
+  std::vector<FleetSortie> sorties{{0, 0, there_and_back({0, 0, 0}, {0, 50, 10}), jerk},
+                                   {1, 0, there_and_back({30, 0, 0}, {0, 40, 10}), jerk, 0},
+                                   {1, 0, there_and_back({30, 0, 0}, {60, 45, 10}), jerk, 1}};
+  const SeparationRule rule{.distance = 15.0, .tolerance = 3.0};
+  const Timetable table = timetable(sorties, 2, rule);
+  EXPECT_EQ(table.variants, (std::vector<std::size_t>{0, 1}));
+  EXPECT_EQ(table.starts, (std::vector<double>{0.0, 0.0, 0.0}));
+  sorties.pop_back();
+  const Timetable alone = timetable(sorties, 2, rule);
+  EXPECT_EQ(alone.variants, (std::vector<std::size_t>{0, 0}));
+  EXPECT_GT(alone.makespan, table.makespan);
+}
+
 }  // namespace
 }  // namespace skycap::flight
