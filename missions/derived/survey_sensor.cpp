@@ -288,7 +288,7 @@ geometry::Scan SurveySensor::scan(const sim::Scene& scene, const View& view,
   }
   const auto& camera = std::get<sim::DepthCamera>(sensor_);
   const Eigen::Isometry3d believed = geometry::camera_pose(view);
-  if (carriage.instants == 0 && carriage.shift.isZero(0.0) && carriage.turn.isZero(0.0)) {
+  if (carriage.instants == 0 && carriage.is_exact()) {
     return camera.scan(scene, believed, frame, threads, std::move(recycled));
   }
   sim::FrameMotion motion{.world_from_camera = carriage.true_pose(believed)};

@@ -62,9 +62,8 @@ Rooms house() {
   add("flight/calibration", {"flight/space", "flight/autopilot", "flight/motion", "flight/export"});
   add("flight/fly_test", {"flight/space", "flight/autopilot", "flight/motion", "flight/way_home",
                           "flight/interpreter"});
-  add("flight/fleet",
-      {"flight/space", "flight/motion", "flight/way_home", "flight/route", "flight/fly_test"});
-
+  add("flight/fleet", {"flight/space", "flight/motion", "flight/paths", "flight/way_home",
+                       "flight/route", "flight/fly_test"});
   add("flight/district", {"flight/space", "flight/motion", "flight/way_home", "flight/route"});
 
   std::vector<std::string> below;  // what missions/ composes
