@@ -74,17 +74,24 @@ std::vector<Cluster> heaviest_clusters(const GainField& field, std::size_t count
   return sorted;
 }
 
+ChoiceMemory::Key key_of(const View& view) {
+  return {view.position.x(),  view.position.y(),  view.position.z(),
+          view.direction.x(), view.direction.y(), view.direction.z()};
+}
+
 class Chooser {
  public:
   Chooser(const GainField& field, const ViewLimits& limits, const Admission& admits,
-          const View& present, double most_way, const ChooserSettings& settings)
+          const View& present, double most_way, const ChooserSettings& settings,
+          ChoiceMemory& memory)
       : field_(field),
         limits_(limits),
         admits_(admits),
         present_(present),
         position_(present.position),
         most_way_(most_way),
-        settings_(settings) {}
+        settings_(settings),
+        memory_(memory) {}
 
   std::optional<Choice> choose() {
     propose_candidates();
@@ -100,11 +107,7 @@ class Chooser {
       best_gain = std::max(best_gain, c.gain.area - (1.0 - settings_.unseen_yield) * c.gain.unseen);
     }
     const std::vector<std::size_t> pool = diverse_pool();
-    std::vector<BatchView> views(pool.size());
-    geometry::parallel_for(pool.size(), settings_.threads, [&](std::size_t i) {
-      const View& view = candidates_[pool[i]].view;
-      views[i] = {view.position, sights_on_way_to(view)};
-    });
+    std::vector<BatchView> views = seen_from(pool);
     if (settings_.counts_ways) best_gain = best_on_ways(views);
     const std::size_t first = first_of_batch(views);
     Choice choice{candidates_[pool[first]].view, candidates_[pool[first]].gain.area,
@@ -115,6 +118,9 @@ class Chooser {
         float& chance = choice.chances[sight.target];
         chance = std::max(chance, sight.clearness);
       }
+    }
+    for (std::size_t i = 0; i < pool.size(); ++i) {
+      memory_.pool.emplace(key_of(candidates_[pool[i]].view), std::move(views[i].sights));
     }
     return choice;
   }
@@ -155,11 +161,23 @@ class Chooser {
   }
 
   void evaluate(std::size_t first) {
-    geometry::parallel_for(candidates_.size() - first, settings_.threads, [&](std::size_t i) {
+    std::vector<Candidate*> unknown;
+    for (std::size_t i = first; i < candidates_.size(); ++i) {
+      const auto known = memory_.gains.find(key_of(candidates_[i].view));
+      if (known == memory_.gains.end()) {
+        unknown.push_back(&candidates_[i]);
+      } else {
+        candidates_[i].gain = known->second;
+      }
+    }
+    geometry::parallel_for(unknown.size(), settings_.threads, [&](std::size_t i) {
       if (settings_.stop.stop_requested()) return;
-      candidates_[first + i].gain = field_.gain(candidates_[first + i].view);
+      unknown[i]->gain = field_.gain(unknown[i]->view);
     });
     if (settings_.stop.stop_requested()) throw Interrupted();
+    for (const Candidate* asked : unknown) {
+      memory_.gains.emplace(key_of(asked->view), asked->gain);
+    }
   }
 
   /// That guessed gains count for beside known surface. What guesses are the beginning of is no
@@ -225,6 +243,19 @@ class Chooser {
     return pool;
   }
 
+  /// What the views of the pool have in sight; takes what is remembered of the last one.
+  std::vector<BatchView> seen_from(const std::vector<std::size_t>& pool) {
+    std::map<ChoiceMemory::Key, std::vector<Sight>> known = std::exchange(memory_.pool, {});
+    std::vector<BatchView> views(pool.size());
+    geometry::parallel_for(pool.size(), settings_.threads, [&](std::size_t i) {
+      const View& view = candidates_[pool[i]].view;
+      const auto remembered = known.find(key_of(view));
+      views[i] = {view.position, remembered == known.end() ? sights_on_way_to(view)
+                                                           : std::move(remembered->second)};
+    });
+    return views;
+  }
+
   std::vector<Sight> sights_on_way_to(const View& view) const {
     if (!settings_.sees_lines) {
       return sights_with_way(field_, present_, view, settings_.frame_spacing);
@@ -268,6 +299,7 @@ class Chooser {
   const Vector3d position_;
   const double most_way_;
   const ChooserSettings& settings_;
+  ChoiceMemory& memory_;
   std::vector<Candidate> candidates_;
 };
 
@@ -360,8 +392,8 @@ std::vector<Sight> sights_of_lines(const GainField& field, const View& from, con
 
 std::optional<Choice> choose_view(const GainField& field, const ViewLimits& limits,
                                   const Admission& admits, const View& present, double most_way,
-                                  const ChooserSettings& settings) {
-  return Chooser(field, limits, admits, present, most_way, settings).choose();
+                                  const ChooserSettings& settings, ChoiceMemory& memory) {
+  return Chooser(field, limits, admits, present, most_way, settings, memory).choose();
 }
 
 }  // namespace skycap::survey::skycap

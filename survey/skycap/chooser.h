@@ -2,7 +2,9 @@
 /// complement each other, a short tour through them, of which the first stop is flown.
 #pragma once
 
+#include <array>
 #include <functional>
+#include <map>
 #include <optional>
 #include <stop_token>
 #include <vector>
@@ -47,6 +49,15 @@ struct Choice {
   std::vector<float> chances;
 };
 
+/// What a field said of views, by their positions and directions. After a refusal the next view is
+/// chosen from nearly the same candidates: only the others are asked about. Of one field, one
+/// present view and the same settings but for `unseen_yield`.
+struct ChoiceMemory {
+  using Key = std::array<double, 6>;
+  std::map<Key, Gain> gains;
+  std::map<Key, std::vector<Sight>> pool;  ///< the last one's views, with the ways to them
+};
+
 /// Whether the sensor can be there; must be safe to call from several threads.
 using Admission = std::function<bool(const geometry::View&)>;
 
@@ -65,9 +76,10 @@ std::vector<Sight> sights_of_lines(const GainField& field, const geometry::View&
 /// The next view from `present`; nothing if no admissible view has any gain. Views farther away
 /// than `most_way` are left out. With frames on the way the best views by themselves are batched by
 /// what they and the straight ways to them would cover together. The same inputs give the same
-/// choice for any number of threads.
+/// choice for any number of threads, whatever is remembered.
 std::optional<Choice> choose_view(const GainField& field, const ViewLimits& limits,
                                   const Admission& admits, const geometry::View& present,
-                                  double most_way, const ChooserSettings& settings);
+                                  double most_way, const ChooserSettings& settings,
+                                  ChoiceMemory& memory);
 
 }  // namespace skycap::survey::skycap

@@ -7,12 +7,16 @@
 namespace skycap::survey::skycap {
 namespace {
 
+constexpr float largest_square = 1e4F;  // wider than any raster [px]
+
 [[gnu::always_inline]] inline void project_points_body(const RasterView& given, std::size_t count,
-                                                       const PointArrays& points,
-                                                       std::uint32_t* pixels, float* depths) {
-  const RasterView view = given;  // a copy of our own: nothing that is written can alias it
+                                                       const PointArrays& points, float spacing,
+                                                       const PointPixels& projected) {
+  const RasterView view = given;  // copies of our own: nothing that is written can alias them
+  const PointPixels out = projected;
   const float *const x = points.x, *const y = points.y, *const z = points.z;
   const float centre_column = 0.5F * view.width, centre_row = 0.5F * view.height;
+  const float one_pixel_at = 2.0F * (view.focal_length * spacing);
 #pragma GCC ivdep
   for (std::size_t i = 0; i < count; ++i) {
     const float dx = x[i] - view.position[0], dy = y[i] - view.position[1],
@@ -27,8 +31,13 @@ namespace {
     const std::int32_t pixel =
         static_cast<std::int32_t>(is_inside ? row + 0.5F : 0.0F) * view.stride +
         static_cast<std::int32_t>(is_inside ? column + 0.5F : 0.0F);
-    pixels[i] = is_inside ? static_cast<std::uint32_t>(pixel) : view.outside;
-    depths[i] = forward;
+    const float wanted = is_inside ? one_pixel_at / forward : 2.0F;
+    const float at_most = wanted < largest_square ? wanted : largest_square;
+    const float width = at_most > 2.0F ? at_most : 2.0F;
+    const auto whole = static_cast<std::int32_t>(width);
+    out.pixels[i] = is_inside ? static_cast<std::uint32_t>(pixel) : view.outside;
+    out.depths[i] = forward;
+    out.sizes[i] = whole + (static_cast<float>(whole) < width ? 1 : 0);
   }
 }
 
@@ -67,14 +76,35 @@ namespace {
   }
 }
 
+[[gnu::always_inline]] inline void least_in_windows_body(int first, int last, int step,
+                                                         std::size_t count, const float* values,
+                                                         float* least) {
+  for (int k = first; k <= last; ++k) {
+    const float* const shifted = values + static_cast<std::ptrdiff_t>(k) * step;
+#pragma GCC ivdep
+    for (std::size_t i = 0; i < count; ++i) {
+      least[i] = shifted[i] < least[i] ? shifted[i] : least[i];
+    }
+  }
+}
+
 void project_points_anywhere(const RasterView& view, std::size_t count, const PointArrays& points,
-                             std::uint32_t* pixels, float* depths) {
-  project_points_body(view, count, points, pixels, depths);
+                             float spacing, const PointPixels& projected) {
+  project_points_body(view, count, points, spacing, projected);
 }
 SKYCAP_FOR_AVX2 void project_points_with_avx2(const RasterView& view, std::size_t count,
-                                              const PointArrays& points, std::uint32_t* pixels,
-                                              float* depths) {
-  project_points_body(view, count, points, pixels, depths);
+                                              const PointArrays& points, float spacing,
+                                              const PointPixels& projected) {
+  project_points_body(view, count, points, spacing, projected);
+}
+
+void least_in_windows_anywhere(int first, int last, int step, std::size_t count,
+                               const float* values, float* least) {
+  least_in_windows_body(first, last, step, count, values, least);
+}
+SKYCAP_FOR_AVX2 void least_in_windows_with_avx2(int first, int last, int step, std::size_t count,
+                                                const float* values, float* least) {
+  least_in_windows_body(first, last, step, count, values, least);
 }
 
 void project_targets_anywhere(const RasterView& view, std::size_t count,
@@ -92,9 +122,15 @@ SKYCAP_FOR_AVX2 void project_targets_with_avx2(const RasterView& view, std::size
 }  // namespace
 
 void project_points(const RasterView& view, std::size_t count, const PointArrays& points,
-                    std::uint32_t* pixels, float* depths) {
+                    float spacing, const PointPixels& projected) {
   const auto project = has_avx2() ? project_points_with_avx2 : project_points_anywhere;
-  project(view, count, points, pixels, depths);
+  project(view, count, points, spacing, projected);
+}
+
+void least_in_windows(int first, int last, int step, std::size_t count, const float* values,
+                      float* least) {
+  const auto take_least = has_avx2() ? least_in_windows_with_avx2 : least_in_windows_anywhere;
+  take_least(first, last, step, count, values, least);
 }
 
 void project_targets(const RasterView& view, std::size_t count, const PointArrays& positions,

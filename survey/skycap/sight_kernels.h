@@ -8,8 +8,11 @@
 
 namespace skycap::survey::skycap {
 
-/// A view and the raster in which it decides visibility. The raster has a border of one pixel, and
-/// behind its last row a spare pixel that takes what falls outside.
+/// The widest square that is drawn by windows [px], and how far they reach: so many pixels to the
+/// right of each row are spare.
+constexpr int largest_window = 8, row_margin = largest_window / 2;
+
+/// A view and the raster in which it decides visibility, with a border of one pixel and the margin.
 struct RasterView {
   float position[3];              ///< of the sensor, world frame
   float right[3];                 ///< the camera's axes, world frame
@@ -17,8 +20,8 @@ struct RasterView {
   float forward[3];               ///< of it
   float focal_length;             ///< [px]
   float width, height;            ///< without the border [px]
-  std::int32_t stride;            ///< width with the border [px]
-  std::uint32_t outside;          ///< number of the spare pixel
+  std::int32_t stride;            ///< width with border and margin [px]
+  std::uint32_t outside;          ///< of all pixels; the number of what falls outside
   float half_slope[2];            ///< tangents of half the angles of view, right and down
   float least_range, most_range;  ///< along the optical axis
   float least_cosine;             ///< of the angle of incidence
@@ -29,14 +32,26 @@ struct PointArrays {
   const float *x, *y, *z;
 };
 
-/// For each point the top left one of the four pixels nearest to it, and its depth.
+/// Where points are in the raster.
+struct PointPixels {
+  std::uint32_t* pixels;  ///< the top left one of the four nearest; `outside` if not in view
+  float* depths;          ///< along the optical axis
+  std::int32_t* sizes;    ///< of the squares that they hide, 2 and more [px]
+};
+
+/// Points that stand for squares of twice `spacing`: of two pixels where it is at least as deep as
+/// the focal length times the spacing, of more where it is nearer.
 void project_points(const RasterView& view, std::size_t count, const PointArrays& points,
-                    std::uint32_t* pixels, float* depths);
+                    float spacing, const PointPixels& projected);
+
+/// Takes into each value of `least` those of `values` that are `first` to `last` steps from it.
+void least_in_windows(int first, int last, int step, std::size_t count, const float* values,
+                      float* least);
 
 /// What the visibility of a target is decided by.
 struct TargetArrays {
   std::uint32_t* in_view;  ///< 1 if it faces the sensor inside the frustum, else 0
-  std::uint32_t* pixels;   ///< that it falls into; the spare one if not in view
+  std::uint32_t* pixels;   ///< that it falls into; `outside` if not in view
   float* depths;           ///< along the optical axis
   float* distances;        ///< from the sensor
   float* cosines;          ///< of the angle of incidence

@@ -156,6 +156,7 @@ struct SkycapPlanner::Impl {
     clearness.update(unseen->patches(), *space);
     field.emplace(*map, unseen->patches(), camera, *dose, gain, unseen->prior_occluders(),
                   &clearness);
+    asked = {};
   }
 
   /// The box in which unknown space may hold an obstacle.
@@ -201,7 +202,8 @@ struct SkycapPlanner::Impl {
   std::optional<View> choose() {
     const double way = most_way();
     chooser.unseen_yield = yield.value();
-    const auto choice = choose_view(*field, config.limits, admission(), present, way, chooser);
+    const auto choice =
+        choose_view(*field, config.limits, admission(), present, way, chooser, asked);
     chances = choice ? choice->chances : std::vector<float>(field->targets().size(), 0.0F);
     next_gain = choice && map->area() > 0.0 ? choice->best_gain / map->area() : 0.0;
     stop = reason_to_stop();
@@ -320,6 +322,7 @@ struct SkycapPlanner::Impl {
   std::optional<SpaceMemory> space;
   std::optional<UnseenSurface> unseen;
   std::optional<GainField> field;
+  ChoiceMemory asked;          ///< of the field, from the present view
   Promise promise;             ///< of the way to the view that is proposed, by lines
   std::vector<float> chances;  ///< that a good view sees the field's targets, if they are there
 

@@ -275,17 +275,25 @@ std::size_t Clearness::way_towards(const Vector3f& offset) {
 }
 
 void Clearness::update(std::span<const UnseenPatch> patches, const SpaceMemory& space) {
-  std::vector<std::uint32_t> asked(patches.size() * ways, all_unknown);
+  constexpr std::size_t none = std::numeric_limits<std::size_t>::max();
+  std::vector<std::size_t> known_as(patches.size(), none);
   std::unordered_map<std::uint64_t, Row> rows;
   for (std::size_t i = 0; i < patches.size(); ++i) {
     const UnseenPatch& patch = patches[i];
     const auto old = rows_.find(patch.place);
     // Another surfel's guess may go by the same name, a little beside.
     if (old != rows_.end() && old->second.position == patch.position) {
-      std::copy_n(asked_.begin() + static_cast<std::ptrdiff_t>(old->second.number * ways), ways,
-                  asked.begin() + static_cast<std::ptrdiff_t>(i * ways));
+      known_as[i] = old->second.number;
     }
     rows.emplace(patch.place, Row{i, patch.position});
+  }
+  std::vector<std::uint32_t> asked;
+  asked.reserve(ways * patches.size());
+  for (std::size_t way = 0; way < ways; ++way) {
+    const std::size_t first = way * patches_.size();
+    for (const std::size_t old : known_as) {
+      asked.push_back(old == none ? all_unknown : asked_[first + old]);
+    }
   }
   asked_ = std::move(asked);
   rows_ = std::move(rows);
@@ -300,7 +308,7 @@ float Clearness::of(std::size_t i, const Vector3f& sensor) const {
   const Vector3f offset = sensor - patch.position;
   const std::size_t way = offset.isZero() ? 0 : way_towards(offset);
   // Threads that ask the same at once find the same.
-  std::atomic_ref<std::uint32_t> asked(asked_[i * ways + way]);
+  std::atomic_ref<std::uint32_t> asked(asked_[way * patches_.size() + i]);
   const std::uint32_t before = asked.load(std::memory_order_relaxed);
   std::uint32_t unknown = before & all_unknown;
   const std::uint32_t first = before >> pieces;

@@ -163,7 +163,8 @@ class Clearness {
 
   std::span<const UnseenPatch> patches_;
   const SpaceMemory* space_ = nullptr;
-  /// Of each patch and way: the pieces that are unknown, below the number of images asked.
+  /// Of each way and patch: the pieces that are unknown, below the number of images asked. A sensor
+  /// sees neighbours by the same way.
   mutable std::vector<std::uint32_t> asked_;
   struct Row {
     std::size_t number;

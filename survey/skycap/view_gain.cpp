@@ -3,8 +3,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 #include <utility>
+
+#include "survey/skycap/depth_raster.h"
 
 namespace skycap::survey::skycap {
 namespace {
@@ -19,62 +20,19 @@ constexpr float least_promise = 0.2F, kept_promise = 0.25F, broken_trust = 0.5F;
 /// together they stay far below any stop rule.
 constexpr float least_weight_share = 2e-3F;
 constexpr float raster_spacing = 1.0F;  // pixel at the view distance, in units of h
-constexpr float largest_splat = 1e4F;   // wider than any raster [px]
 
-constexpr std::size_t chunk = 2048;  // points projected at a time: their arrays stay in the cache
+constexpr std::size_t chunk = 2048;  // targets projected at a time: their arrays stay in the cache
 
-/// Depths of the nearest surfels, and what the kernels say of a chunk of points; reused between
+/// Depths of the nearest surfels, and what the kernels say of a chunk of targets; reused between
 /// calls on one thread.
 struct Workspace {
-  std::vector<float> raster, prior_raster;
+  DepthRaster raster, prior_raster;
   std::array<std::uint32_t, chunk> in_view, pixels, candidates;
   std::array<float, chunk> depths, distances, cosines;
 };
 
 PointArrays arrays_of(const std::array<std::vector<float>, 3>& points, std::size_t first) {
   return {points[0].data() + first, points[1].data() + first, points[2].data() + first};
-}
-
-/// Takes a point into the square of `size` pixels that it hides, about the four nearest to it.
-void splat_square(const RasterView& view, std::uint32_t pixel, float depth, int size,
-                  std::vector<float>& raster) {
-  const int rows = static_cast<int>(view.outside) / view.stride;
-  const int row = static_cast<int>(pixel) / view.stride - (size - 2) / 2;
-  const int column = static_cast<int>(pixel) % view.stride - (size - 2) / 2;
-  const int end = std::min(view.stride, column + size);
-  for (int r = std::max(0, row); r < std::min(rows, row + size); ++r) {
-    for (int c = std::max(0, column); c < end; ++c) {
-      float& nearest = raster[static_cast<std::size_t>(r * view.stride + c)];
-      nearest = std::min(nearest, depth);
-    }
-  }
-}
-
-/// A depth image of points that stand for squares of twice `spacing`: four pixels at the view
-/// distance and beyond, and more of them nearer, lest what is behind shine through between them.
-void splat(const RasterView& view, const std::array<std::vector<float>, 3>& points, float spacing,
-           Workspace& work, std::vector<float>& raster) {
-  const auto stride = static_cast<std::size_t>(view.stride);
-  const float four_pixels_beyond = view.focal_length * spacing;  // this depth
-  // Behind the raster there is room for what falls outside, splats included.
-  raster.assign(view.outside + stride + 2, std::numeric_limits<float>::infinity());
-  for (std::size_t first = 0; first < points[0].size(); first += chunk) {
-    const std::size_t count = std::min(chunk, points[0].size() - first);
-    project_points(view, count, arrays_of(points, first), work.pixels.data(), work.depths.data());
-    for (std::size_t i = 0; i < count; ++i) {
-      const float depth = work.depths[i];
-      if (depth < four_pixels_beyond && work.pixels[i] != view.outside) {
-        const float size = std::min(std::ceil(2.0F * four_pixels_beyond / depth), largest_splat);
-        splat_square(view, work.pixels[i], depth, static_cast<int>(size), raster);
-        continue;
-      }
-      float* pixel = &raster[work.pixels[i]];
-      pixel[0] = std::min(pixel[0], depth);
-      pixel[1] = std::min(pixel[1], depth);
-      pixel[stride] = std::min(pixel[stride], depth);
-      pixel[stride + 1] = std::min(pixel[stride + 1], depth);
-    }
-  }
 }
 
 void append(std::array<std::vector<float>, 3>& points, const Vector3f& point) {
@@ -165,16 +123,16 @@ void GainField::index_targets() {
 RasterView GainField::raster_view(const geometry::View& view) const {
   const Eigen::Isometry3d world_from_camera = geometry::camera_pose(view);
   const Eigen::Matrix3f axes = world_from_camera.linear().cast<float>();
-  RasterView raster{
-      .focal_length = raster_focal_length_px_,
-      .width = static_cast<float>(raster_width_),
-      .height = static_cast<float>(raster_height_),
-      .stride = raster_width_ + 2,
-      .outside = static_cast<std::uint32_t>((raster_width_ + 2) * (raster_height_ + 2)),
-      .half_slope = {half_slope_.x(), half_slope_.y()},
-      .least_range = least_range_,
-      .most_range = most_range_,
-      .least_cosine = least_cosine_};
+  RasterView raster{.focal_length = raster_focal_length_px_,
+                    .width = static_cast<float>(raster_width_),
+                    .height = static_cast<float>(raster_height_),
+                    .stride = raster_width_ + 2 + row_margin,
+                    .outside = static_cast<std::uint32_t>((raster_width_ + 2 + row_margin) *
+                                                          (raster_height_ + 2)),
+                    .half_slope = {half_slope_.x(), half_slope_.y()},
+                    .least_range = least_range_,
+                    .most_range = most_range_,
+                    .least_cosine = least_cosine_};
   const Vector3f position = view.position.cast<float>();
   for (int axis = 0; axis < 3; ++axis) {
     raster.position[axis] = position[axis];
@@ -190,9 +148,10 @@ void GainField::for_each_sight(const geometry::View& view, Visit visit) const {
   static thread_local Workspace work;
   const RasterView raster = raster_view(view);
   const Vector3f sensor = view.position.cast<float>();
-  splat(raster, occluders_, spacing_, work, work.raster);
+  work.raster.draw(raster, occluders_[0].size(), arrays_of(occluders_, 0), spacing_);
   if (first_prior_ < end_prior_) {
-    splat(raster, prior_occluders_, spacing_, work, work.prior_raster);
+    work.prior_raster.draw(raster, prior_occluders_[0].size(), arrays_of(prior_occluders_, 0),
+                           spacing_);
   }
 
   const TargetArrays projected{work.in_view.data(), work.pixels.data(), work.depths.data(),
@@ -213,8 +172,8 @@ void GainField::for_each_sight(const geometry::View& view, Visit visit) const {
       const float slope = std::sqrt(std::max(0.0F, 1.0F - cosine * cosine)) / cosine;
       const float own_tolerance = spacing_ * (1.5F + 2.0F * std::min(slope, 4.0F));
       const float tolerance = first + i < surfel_targets_ ? own_tolerance : spacing_;
-      if (depth > work.raster[work.pixels[i]] + tolerance) continue;
-      if (is_prior(first + i) && depth > work.prior_raster[work.pixels[i]] + own_tolerance) {
+      if (depth > work.raster.depth(work.pixels[i]) + tolerance) continue;
+      if (is_prior(first + i) && depth > work.prior_raster.depth(work.pixels[i]) + own_tolerance) {
         continue;
       }
       const float density =

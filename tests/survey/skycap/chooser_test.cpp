@@ -203,10 +203,17 @@ TEST(GainField, ASurfaceHidesWhatIsBehindItFromNearby) {
   }
 }
 
+std::optional<skycap::Choice> choose(const skycap::GainField& field,
+                                     const skycap::Admission& admits, double most_way,
+                                     const skycap::ChooserSettings& settings) {
+  skycap::ChoiceMemory nothing;
+  return skycap::choose_view(field, {}, admits, from, most_way, settings, nothing);
+}
+
 TEST(Chooser, GoesWhereSomethingIsMissing) {
   const Known known({2, 0, 0});
   const skycap::GainField field = known.field();
-  const auto choice = skycap::choose_view(field, {}, anywhere, from, infinity, {});
+  const auto choice = choose(field, anywhere, infinity, {});
   ASSERT_TRUE(choice);
   EXPECT_NEAR(field.gain(choice->view).area, choice->gain, 1e-9);
   // For the stop rule guesses count for less, what was seen too thinly in full.
@@ -223,9 +230,9 @@ TEST(Chooser, PrefersKnownSurfaceWhereGuessesCameToNothing) {
   const Known known({2, 0, 0});
   const skycap::GainField field = known.field();
   const auto gain_at = [&](double yield) {
-    const auto choice = skycap::choose_view(
-        field, {}, anywhere, from, infinity,
-        {.view_price = 1e6, .refinements = 0, .batch = 1, .unseen_yield = yield});
+    const auto choice =
+        choose(field, anywhere, infinity,
+               {.view_price = 1e6, .refinements = 0, .batch = 1, .unseen_yield = yield});
     return field.gain(choice.value().view);
   };
   const skycap::Gain hopeful = gain_at(1.0), sober = gain_at(0.0), lucky = gain_at(6.0);
@@ -237,27 +244,57 @@ TEST(Chooser, PrefersKnownSurfaceWhereGuessesCameToNothing) {
 TEST(Chooser, DoesNotDependOnTheNumberOfThreads) {
   const Known known({2, 0, 0});
   const skycap::GainField field = known.field();
-  const auto one = skycap::choose_view(field, {}, anywhere, from, infinity, {.threads = 1});
-  const auto four = skycap::choose_view(field, {}, anywhere, from, infinity, {.threads = 4});
+  const auto one = choose(field, anywhere, infinity, {.threads = 1});
+  const auto four = choose(field, anywhere, infinity, {.threads = 4});
   ASSERT_TRUE(one && four);
   EXPECT_EQ(one->view.position, four->view.position);
   EXPECT_EQ(one->gain, four->gain);
 }
 
+// Every view is refused as soon as it is chosen, until there is none: with the memory of all
+// choices before, the same views and figures as with none.
+TEST(Chooser, ChoosesTheSameWhateverItRemembers) {
+  const Known known({2, 0, 0});
+  const skycap::GainField field = known.field();
+  skycap::ChooserSettings settings;
+  for (const double frame_spacing : {0.0, 0.4}) {
+    settings.frame_spacing = frame_spacing;
+    std::vector<Vector3d> refused;
+    const skycap::Admission admits = [&](const geometry::View& view) {
+      return std::ranges::none_of(
+          refused, [&](const Vector3d& other) { return (view.position - other).norm() < 0.4; });
+    };
+    skycap::ChoiceMemory memory;
+    for (;;) {
+      const auto anew = choose(field, admits, infinity, settings);
+      const auto again = skycap::choose_view(field, {}, admits, from, infinity, settings, memory);
+      ASSERT_EQ(anew.has_value(), again.has_value());
+      if (!anew) break;
+      EXPECT_EQ(anew->view.position, again->view.position);
+      EXPECT_EQ(anew->view.direction, again->view.direction);
+      EXPECT_EQ(anew->gain, again->gain);
+      EXPECT_EQ(anew->best_gain, again->best_gain);
+      EXPECT_EQ(anew->chances, again->chances);
+      EXPECT_EQ(anew->with_way.size(), again->with_way.size());
+      refused.push_back(anew->view.position);
+    }
+    EXPECT_GT(refused.size(), 10U);
+  }
+}
+
 TEST(Chooser, StaysInReachAndWhereItIsAdmitted) {
   const Known known({2, 0, 0});
   const skycap::GainField field = known.field();
-  const auto near = skycap::choose_view(field, {}, anywhere, from, 0.7, {});
+  const auto near = choose(field, anywhere, 0.7, {});
   ASSERT_TRUE(near);
   EXPECT_LE((near->view.position - Vector3d(2, 0, 0)).norm(), 0.7);
   const skycap::Admission above = [](const geometry::View& view) {
     return view.position.z() > 0.5;
   };
-  const auto high = skycap::choose_view(field, {}, above, from, infinity, {});
+  const auto high = choose(field, above, infinity, {});
   ASSERT_TRUE(high);
   EXPECT_GT(high->view.position.z(), 0.5);
-  EXPECT_FALSE(skycap::choose_view(field, {}, [](const geometry::View&) { return false; }, from,
-                                   infinity, {}));
+  EXPECT_FALSE(choose(field, [](const geometry::View&) { return false; }, infinity, {}));
 }
 
 TEST(Chooser, TurnsEvenlyOnTheWay) {
@@ -304,10 +341,10 @@ TEST(Chooser, CountsWhatTheWayShows) {
     }
     return gain / (settings.view_price + (view.position - from.position).norm());
   };
-  const auto ends_alone = skycap::choose_view(field, {}, anywhere, from, infinity, settings);
+  const auto ends_alone = choose(field, anywhere, infinity, settings);
   for (const double spacing_of_frames : {0.1, 0.4}) {
     settings.frame_spacing = spacing_of_frames;
-    const auto with_ways = skycap::choose_view(field, {}, anywhere, from, infinity, settings);
+    const auto with_ways = choose(field, anywhere, infinity, settings);
     ASSERT_TRUE(ends_alone && with_ways);
     EXPECT_GE(yield(with_ways->view, spacing_of_frames),
               (1.0 - 1e-5) * yield(ends_alone->view, spacing_of_frames));

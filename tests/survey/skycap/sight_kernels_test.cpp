@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <random>
 #include <vector>
 
@@ -10,6 +11,7 @@
 #include <gtest/gtest.h>
 
 #include "geometry/place/pose.h"
+#include "survey/skycap/depth_raster.h"
 
 namespace skycap::survey {
 namespace {
@@ -57,8 +59,8 @@ class SightKernels : public testing::Test {
   skycap::RasterView raster{.focal_length = 40.0F,
                             .width = 60.0F,
                             .height = 50.0F,
-                            .stride = 62,
-                            .outside = 62 * 52,
+                            .stride = 62 + skycap::row_margin,
+                            .outside = (62 + skycap::row_margin) * 52,
                             .half_slope = {0.75F, 0.62F},
                             .least_range = 2.0F,
                             .most_range = 7.0F,
@@ -69,7 +71,9 @@ class SightKernels : public testing::Test {
 TEST_F(SightKernels, PointsFallIntoThePixelsThatAPinholeCameraSays) {
   std::vector<std::uint32_t> pixels(count);
   std::vector<float> depths(count);
-  skycap::project_points(raster, count, arrays_of(positions), pixels.data(), depths.data());
+  std::vector<std::int32_t> sizes(count);
+  skycap::project_points(raster, count, arrays_of(positions), 0.1F,
+                         {pixels.data(), depths.data(), sizes.data()});
   int inside = 0;
   for (std::size_t i = 0; i < count; ++i) {
     const Vector3d p = in_camera(i);
@@ -84,11 +88,57 @@ TEST_F(SightKernels, PointsFallIntoThePixelsThatAPinholeCameraSays) {
     }
     const bool is_inside =
         p.z() > 0.0 && column >= 0.0 && row >= 0.0 && column < 60.0 && row < 50.0;
-    const double pixel = std::floor(row + 0.5) * 62.0 + std::floor(column + 0.5);
+    const double pixel = std::floor(row + 0.5) * raster.stride + std::floor(column + 0.5);
     EXPECT_EQ(pixels[i], is_inside ? pixel : raster.outside) << "point " << i;
     inside += is_inside ? 1 : 0;
+    // At 40 px a metre, 0.1 m are four pixels; twice that, and an eighth of them at 8 m.
+    if (is_inside) {
+      EXPECT_NEAR(sizes[i], std::max(2.0, std::ceil(8.0 / p.z() - 1e-5)), 0.0) << "point " << i;
+    }
   }
   EXPECT_GT(inside, 300);
+}
+
+// Twin: each square drawn pixel by pixel. Points come as near as a few centimetres, where squares
+// are wider than the raster.
+TEST_F(SightKernels, DepthsAreThoseOfTheNearestSquares) {
+  std::mt19937_64 random(8);
+  std::uniform_real_distribution<float> nearness(0.02F, 1.0F);
+  for (std::size_t i = 0; i < count; ++i) {
+    const float share = i % 3 == 0 ? nearness(random) * nearness(random) : 1.0F;
+    for (int axis = 0; axis < 3; ++axis) {
+      float& x = positions[static_cast<std::size_t>(axis)][i];
+      x = raster.position[axis] + share * (x - raster.position[axis]);
+    }
+  }
+  std::vector<std::uint32_t> pixels(count);
+  std::vector<float> depths(count);
+  std::vector<std::int32_t> sizes(count);
+  skycap::DepthRaster drawn;
+  for (const float spacing : {0.1F, 0.02F, 0.3F}) {
+    skycap::project_points(raster, count, arrays_of(positions), spacing,
+                           {pixels.data(), depths.data(), sizes.data()});
+    drawn.draw(raster, count, arrays_of(positions), spacing);
+    std::vector<float> expected(raster.outside, std::numeric_limits<float>::infinity());
+    for (std::size_t i = 0; i < count; ++i) {
+      if (pixels[i] == raster.outside) continue;
+      const int pixel = static_cast<int>(pixels[i]), before = (sizes[i] - 2) / 2;
+      const int row = pixel / raster.stride - before, column = pixel % raster.stride - before;
+      for (int r = std::max(0, row); r < std::min(52, row + sizes[i]); ++r) {
+        for (int c = std::max(0, column); c < std::min(62, column + sizes[i]); ++c) {
+          float& depth = expected[static_cast<std::size_t>(r * raster.stride + c)];
+          depth = std::min(depth, depths[i]);
+        }
+      }
+    }
+    for (int row = 0; row < 52; ++row) {
+      for (int column = 0; column < 62; ++column) {
+        const auto pixel = static_cast<std::uint32_t>(row * raster.stride + column);
+        ASSERT_EQ(drawn.depth(pixel), expected[pixel]) << row << ' ' << column << ' ' << spacing;
+      }
+    }
+    EXPECT_GT(*std::ranges::max_element(sizes), spacing > 0.05F ? 60 : skycap::largest_window);
+  }
 }
 
 TEST_F(SightKernels, TargetsAreInViewWhenTheyFaceTheSensorInsideTheFrustum) {

@@ -1,0 +1,103 @@
+#include "survey/skycap/depth_raster.h"
+
+#include <algorithm>
+#include <limits>
+
+namespace skycap::survey::skycap {
+namespace {
+
+constexpr float nothing = std::numeric_limits<float>::infinity();
+
+/// A square that wide about the four pixels nearest to its point begins so far before the first
+/// one.
+int pixels_before(int size) { return (size - 2) / 2; }
+
+/// Where the pixels of a plane begin.
+std::size_t margin_of(const RasterView& view) {
+  return static_cast<std::size_t>(row_margin) * static_cast<std::size_t>(view.stride);
+}
+
+}  // namespace
+
+void DepthRaster::draw(const RasterView& view, std::size_t count, const PointArrays& points,
+                       float spacing) {
+  if (depths_.size() != view.outside || stride_ != view.stride) {
+    stride_ = view.stride;
+    const std::size_t with_margins = view.outside + 2 * margin_of(view);
+    for (Plane& plane : nearest_) plane.assign(with_margins, nothing);
+    row_wise_.assign(with_margins, nothing);
+    depths_.resize(view.outside);
+  }
+  is_used_.fill(false);
+  large_.clear();
+  for (std::size_t first = 0; first < count; first += chunk) {
+    draw_chunk(view, {points.x + first, points.y + first, points.z + first},
+               std::min(chunk, count - first), spacing);
+  }
+  std::ranges::fill(depths_, nothing);
+  for (int size = 2; size <= largest_window; ++size) {
+    if (is_used_[static_cast<std::size_t>(size)]) spread(view, size);
+  }
+  for (const Square& square : large_) draw_square(view, square);
+}
+
+void DepthRaster::draw_chunk(const RasterView& view, const PointArrays& points, std::size_t count,
+                             float spacing) {
+  project_points(view, count, points, spacing,
+                 {pixels_.data(), chunk_depths_.data(), sizes_.data()});
+  // Values in place of references and branches: what is nearer is anybody's guess.
+  const std::uint32_t outside = view.outside;
+  std::size_t inside = 0;
+  for (std::size_t i = 0; i < count; ++i) {
+    inside_[inside] = static_cast<std::uint32_t>(i);
+    inside += pixels_[i] != outside ? 1 : 0;
+  }
+  std::array<float*, largest_window + 1> planes{};
+  std::array<bool, largest_window + 1> is_used = is_used_;
+  for (std::size_t size = 2; size < planes.size(); ++size) {
+    planes[size] = nearest_[size].data() + margin_of(view);
+  }
+  for (std::size_t k = 0; k < inside; ++k) {
+    const std::size_t i = inside_[k];
+    const float depth = chunk_depths_[i];
+    if (sizes_[i] > largest_window) {
+      large_.push_back({pixels_[i], depth, sizes_[i]});
+      continue;
+    }
+    const auto size = static_cast<std::size_t>(sizes_[i]);
+    is_used[size] = true;
+    float* const pixel = planes[size] + pixels_[i];
+    const float before = *pixel;
+    *pixel = depth < before ? depth : before;
+  }
+  is_used_ = is_used;
+}
+
+/// Draws all squares of that width at once: a pixel is in those whose points are in a window of as
+/// many pixels about it.
+void DepthRaster::spread(const RasterView& view, int size) {
+  const std::size_t margin = margin_of(view), count = view.outside;
+  const int last = pixels_before(size), first = last + 1 - size;
+  float* const nearest = nearest_[static_cast<std::size_t>(size)].data() + margin;
+  float* const row_wise = row_wise_.data() + margin;
+  std::fill_n(row_wise, count, nothing);
+  least_in_windows(first, last, 1, count, nearest, row_wise);
+  least_in_windows(first, last, view.stride, count, row_wise, depths_.data());
+  std::fill_n(nearest, count, nothing);
+}
+
+void DepthRaster::draw_square(const RasterView& view, const Square& square) {
+  const int rows = static_cast<int>(view.outside) / view.stride;
+  const auto pixel = static_cast<int>(square.pixel);
+  const int row = pixel / view.stride - pixels_before(square.size);
+  const int column = pixel % view.stride - pixels_before(square.size);
+  const int end = std::min(view.stride, column + square.size);
+  for (int r = std::max(0, row); r < std::min(rows, row + square.size); ++r) {
+    for (int c = std::max(0, column); c < end; ++c) {
+      float& nearest = depths_[static_cast<std::size_t>(r * view.stride + c)];
+      nearest = std::min(nearest, square.depth);
+    }
+  }
+}
+
+}  // namespace skycap::survey::skycap
