@@ -8,10 +8,6 @@ namespace {
 
 constexpr float nothing = std::numeric_limits<float>::infinity();
 
-/// A square that wide about the four pixels nearest to its point begins so far before the first
-/// one.
-int pixels_before(int size) { return (size - 2) / 2; }
-
 /// Where the pixels of a plane begin.
 std::size_t margin_of(const RasterView& view) {
   return static_cast<std::size_t>(row_margin) * static_cast<std::size_t>(view.stride);
@@ -36,7 +32,9 @@ void DepthRaster::draw(const RasterView& view, std::size_t count, const PointArr
   }
   std::ranges::fill(depths_, nothing);
   for (int size = 2; size <= largest_window; ++size) {
-    if (is_used_[static_cast<std::size_t>(size)]) spread(view, size);
+    if (!is_used_[static_cast<std::size_t>(size)]) continue;
+    float* const nearest = nearest_[static_cast<std::size_t>(size)].data() + margin_of(view);
+    draw_squares(view, size, nearest, row_wise_.data() + margin_of(view), depths_.data());
   }
   for (const Square& square : large_) draw_square(view, square);
 }
@@ -73,24 +71,11 @@ void DepthRaster::draw_chunk(const RasterView& view, const PointArrays& points, 
   is_used_ = is_used;
 }
 
-/// Draws all squares of that width at once: a pixel is in those whose points are in a window of as
-/// many pixels about it.
-void DepthRaster::spread(const RasterView& view, int size) {
-  const std::size_t margin = margin_of(view), count = view.outside;
-  const int last = pixels_before(size), first = last + 1 - size;
-  float* const nearest = nearest_[static_cast<std::size_t>(size)].data() + margin;
-  float* const row_wise = row_wise_.data() + margin;
-  std::fill_n(row_wise, count, nothing);
-  least_in_windows(first, last, 1, count, nearest, row_wise);
-  least_in_windows(first, last, view.stride, count, row_wise, depths_.data());
-  std::fill_n(nearest, count, nothing);
-}
-
 void DepthRaster::draw_square(const RasterView& view, const Square& square) {
   const int rows = static_cast<int>(view.outside) / view.stride;
   const auto pixel = static_cast<int>(square.pixel);
-  const int row = pixel / view.stride - pixels_before(square.size);
-  const int column = pixel % view.stride - pixels_before(square.size);
+  const int row = pixel / view.stride - pixels_before_square(square.size);
+  const int column = pixel % view.stride - pixels_before_square(square.size);
   const int end = std::min(view.stride, column + square.size);
   for (int r = std::max(0, row); r < std::min(rows, row + square.size); ++r) {
     for (int c = std::max(0, column); c < end; ++c) {

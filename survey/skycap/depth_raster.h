@@ -34,7 +34,6 @@ class DepthRaster {
 
   void draw_chunk(const RasterView& view, const PointArrays& points, std::size_t count,
                   float spacing);
-  void spread(const RasterView& view, int size);
   void draw_square(const RasterView& view, const Square& square);
 
   /// By the width of squares: the nearest of them in their points' pixels. Infinite between calls.

@@ -1,6 +1,8 @@
 #include "survey/skycap/sight_kernels.h"
 
 #include <cmath>
+#include <cstddef>
+#include <limits>
 
 #include "survey/vector_clones.h"
 
@@ -76,15 +78,54 @@ constexpr float largest_square = 1e4F;  // wider than any raster [px]
   }
 }
 
-[[gnu::always_inline]] inline void least_in_windows_body(int first, int last, int step,
-                                                         std::size_t count, const float* values,
-                                                         float* least) {
-  for (int k = first; k <= last; ++k) {
-    const float* const shifted = values + static_cast<std::ptrdiff_t>(k) * step;
+/// The least of `size` values, `step` apart, about the one at `at`.
+template <int size>
+[[gnu::always_inline]] inline float least_about(const float* at, std::ptrdiff_t step) {
+  const float* value = at - (size - 1 - pixels_before_square(size)) * step;
+  float least = *value;
+#pragma GCC unroll 8
+  for (int k = 1; k < size; ++k) {
+    value += step;
+    least = *value < least ? *value : least;
+  }
+  return least;
+}
+
+/// A pixel is in the squares whose points are in a window of as many pixels about it: the least of
+/// each row's, then of these.
+template <int size>
+[[gnu::always_inline]] inline void draw_squares_of(const RasterView& view, float* nearest,
+                                                   float* row_wise, float* depths) {
+  const std::size_t count = view.outside;
+  const std::ptrdiff_t stride = view.stride;
 #pragma GCC ivdep
-    for (std::size_t i = 0; i < count; ++i) {
-      least[i] = shifted[i] < least[i] ? shifted[i] : least[i];
-    }
+  for (std::size_t i = 0; i < count; ++i) row_wise[i] = least_about<size>(nearest + i, 1);
+#pragma GCC ivdep
+  for (std::size_t i = 0; i < count; ++i) {
+    const float least = least_about<size>(row_wise + i, stride);
+    depths[i] = least < depths[i] ? least : depths[i];
+    nearest[i] = std::numeric_limits<float>::infinity();
+  }
+}
+
+[[gnu::always_inline]] inline void draw_squares_body(const RasterView& view, int size,
+                                                     float* nearest, float* row_wise,
+                                                     float* depths) {
+  switch (size) {
+    case 2:
+      return draw_squares_of<2>(view, nearest, row_wise, depths);
+    case 3:
+      return draw_squares_of<3>(view, nearest, row_wise, depths);
+    case 4:
+      return draw_squares_of<4>(view, nearest, row_wise, depths);
+    case 5:
+      return draw_squares_of<5>(view, nearest, row_wise, depths);
+    case 6:
+      return draw_squares_of<6>(view, nearest, row_wise, depths);
+    case 7:
+      return draw_squares_of<7>(view, nearest, row_wise, depths);
+    default:
+      return draw_squares_of<largest_window>(view, nearest, row_wise, depths);
   }
 }
 
@@ -98,13 +139,13 @@ SKYCAP_FOR_AVX2 void project_points_with_avx2(const RasterView& view, std::size_
   project_points_body(view, count, points, spacing, projected);
 }
 
-void least_in_windows_anywhere(int first, int last, int step, std::size_t count,
-                               const float* values, float* least) {
-  least_in_windows_body(first, last, step, count, values, least);
+void draw_squares_anywhere(const RasterView& view, int size, float* nearest, float* row_wise,
+                           float* depths) {
+  draw_squares_body(view, size, nearest, row_wise, depths);
 }
-SKYCAP_FOR_AVX2 void least_in_windows_with_avx2(int first, int last, int step, std::size_t count,
-                                                const float* values, float* least) {
-  least_in_windows_body(first, last, step, count, values, least);
+SKYCAP_FOR_AVX2 void draw_squares_with_avx2(const RasterView& view, int size, float* nearest,
+                                            float* row_wise, float* depths) {
+  draw_squares_body(view, size, nearest, row_wise, depths);
 }
 
 void project_targets_anywhere(const RasterView& view, std::size_t count,
@@ -127,10 +168,10 @@ void project_points(const RasterView& view, std::size_t count, const PointArrays
   project(view, count, points, spacing, projected);
 }
 
-void least_in_windows(int first, int last, int step, std::size_t count, const float* values,
-                      float* least) {
-  const auto take_least = has_avx2() ? least_in_windows_with_avx2 : least_in_windows_anywhere;
-  take_least(first, last, step, count, values, least);
+void draw_squares(const RasterView& view, int size, float* nearest, float* row_wise,
+                  float* depths) {
+  const auto draw = has_avx2() ? draw_squares_with_avx2 : draw_squares_anywhere;
+  draw(view, size, nearest, row_wise, depths);
 }
 
 void project_targets(const RasterView& view, std::size_t count, const PointArrays& positions,

@@ -44,9 +44,15 @@ struct PointPixels {
 void project_points(const RasterView& view, std::size_t count, const PointArrays& points,
                     float spacing, const PointPixels& projected);
 
-/// Takes into each value of `least` those of `values` that are `first` to `last` steps from it.
-void least_in_windows(int first, int last, int step, std::size_t count, const float* values,
-                      float* least);
+/// A square that wide about the four pixels nearest to its point begins so far before the first
+/// one.
+constexpr int pixels_before_square(int size) { return (size - 2) / 2; }
+
+/// Draws squares of one width, at most `largest_window`, into the raster's `depths`, given the
+/// depth of the nearest in each of their points' pixels, which is infinite afterwards. Before and
+/// behind `nearest` and `row_wise`, whose content does not matter, are `row_margin` rows of
+/// infinite depth.
+void draw_squares(const RasterView& view, int size, float* nearest, float* row_wise, float* depths);
 
 /// What the visibility of a target is decided by.
 struct TargetArrays {
