@@ -43,7 +43,8 @@ constexpr float largest_square = 1e4F;  // wider than any raster [px]
   }
 }
 
-[[gnu::always_inline]] inline void project_targets_body(const RasterView& given, std::size_t count,
+[[gnu::always_inline]] inline void project_targets_body(const RasterView& given, float rays,
+                                                        std::size_t count,
                                                         const PointArrays& positions,
                                                         const PointArrays& normals,
                                                         const TargetArrays& projected) {
@@ -73,8 +74,11 @@ constexpr float largest_square = 1e4F;  // wider than any raster [px]
     out.in_view[i] = is_inside ? 1 : 0;
     out.pixels[i] = is_inside ? static_cast<std::uint32_t>(pixel) : view.outside;
     out.depths[i] = forward;
-    out.distances[i] = distance;
     out.cosines[i] = cosine;
+    out.densities[i] = rays * cosine * distance / (forward * forward * forward);
+    const float squared_sine = 1.0F - cosine * cosine;
+    const float slope = std::sqrt(squared_sine > 0.0F ? squared_sine : 0.0F) / cosine;
+    out.slopes[i] = slope < 4.0F ? slope : 4.0F;
   }
 }
 
@@ -148,16 +152,16 @@ SKYCAP_FOR_AVX2 void draw_squares_with_avx2(const RasterView& view, int size, fl
   draw_squares_body(view, size, nearest, row_wise, depths);
 }
 
-void project_targets_anywhere(const RasterView& view, std::size_t count,
+void project_targets_anywhere(const RasterView& view, float rays, std::size_t count,
                               const PointArrays& positions, const PointArrays& normals,
                               const TargetArrays& projected) {
-  project_targets_body(view, count, positions, normals, projected);
+  project_targets_body(view, rays, count, positions, normals, projected);
 }
-SKYCAP_FOR_AVX2 void project_targets_with_avx2(const RasterView& view, std::size_t count,
-                                               const PointArrays& positions,
+SKYCAP_FOR_AVX2 void project_targets_with_avx2(const RasterView& view, float rays,
+                                               std::size_t count, const PointArrays& positions,
                                                const PointArrays& normals,
                                                const TargetArrays& projected) {
-  project_targets_body(view, count, positions, normals, projected);
+  project_targets_body(view, rays, count, positions, normals, projected);
 }
 
 }  // namespace
@@ -174,10 +178,11 @@ void draw_squares(const RasterView& view, int size, float* nearest, float* row_w
   draw(view, size, nearest, row_wise, depths);
 }
 
-void project_targets(const RasterView& view, std::size_t count, const PointArrays& positions,
-                     const PointArrays& normals, const TargetArrays& projected) {
+void project_targets(const RasterView& view, float rays, std::size_t count,
+                     const PointArrays& positions, const PointArrays& normals,
+                     const TargetArrays& projected) {
   const auto project = has_avx2() ? project_targets_with_avx2 : project_targets_anywhere;
-  project(view, count, positions, normals, projected);
+  project(view, rays, count, positions, normals, projected);
 }
 
 }  // namespace skycap::survey::skycap

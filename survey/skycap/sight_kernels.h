@@ -59,11 +59,14 @@ struct TargetArrays {
   std::uint32_t* in_view;  ///< 1 if it faces the sensor inside the frustum, else 0
   std::uint32_t* pixels;   ///< that it falls into; `outside` if not in view
   float* depths;           ///< along the optical axis
-  float* distances;        ///< from the sensor
   float* cosines;          ///< of the angle of incidence
+  float* densities;        ///< rays a square metre of it
+  float* slopes;           ///< how much deeper it gets per metre across the look, at most 4
 };
 
-void project_targets(const RasterView& view, std::size_t count, const PointArrays& positions,
-                     const PointArrays& normals, const TargetArrays& projected);
+/// Seen by a camera with `rays` a square of one radian.
+void project_targets(const RasterView& view, float rays, std::size_t count,
+                     const PointArrays& positions, const PointArrays& normals,
+                     const TargetArrays& projected);
 
 }  // namespace skycap::survey::skycap

@@ -27,8 +27,8 @@ constexpr std::size_t chunk = 2048;  // targets projected at a time: their array
 /// calls on one thread.
 struct Workspace {
   DepthRaster raster, prior_raster;
-  std::array<std::uint32_t, chunk> in_view, pixels, candidates;
-  std::array<float, chunk> depths, distances, cosines;
+  std::array<std::uint32_t, chunk> in_view, pixels, numbers;
+  std::array<float, chunk> depths, cosines, densities, slopes;
 };
 
 PointArrays arrays_of(const std::array<std::vector<float>, 3>& points, std::size_t first) {
@@ -154,32 +154,34 @@ void GainField::for_each_sight(const geometry::View& view, Visit visit) const {
                            spacing_);
   }
 
-  const TargetArrays projected{work.in_view.data(), work.pixels.data(), work.depths.data(),
-                               work.distances.data(), work.cosines.data()};
+  const TargetArrays projected{work.in_view.data(), work.pixels.data(),    work.depths.data(),
+                               work.cosines.data(), work.densities.data(), work.slopes.data()};
   for (std::size_t first = 0; first < targets_.size(); first += chunk) {
     const std::size_t count = std::min(chunk, targets_.size() - first);
-    project_targets(raster, count, arrays_of(positions_, first), arrays_of(normals_, first),
-                    projected);
-    std::size_t candidates = 0;
+    project_targets(raster, focal_length_px_.prod(), count, arrays_of(positions_, first),
+                    arrays_of(normals_, first), projected);
+    // Lists in place of branches, which nobody could foresee.
+    std::size_t in_view = 0, in_sight = 0;
     for (std::size_t i = 0; i < count; ++i) {
-      work.candidates[candidates] = static_cast<std::uint32_t>(i);
-      candidates += work.in_view[i];
+      work.numbers[in_view] = static_cast<std::uint32_t>(i);
+      in_view += work.in_view[i];
     }
-    for (std::size_t k = 0; k < candidates; ++k) {
-      const std::size_t i = work.candidates[k];
-      const float cosine = work.cosines[i], depth = work.depths[i];
-      // A slanted surface hides itself by as much as it falls off over a splat.
-      const float slope = std::sqrt(std::max(0.0F, 1.0F - cosine * cosine)) / cosine;
-      const float own_tolerance = spacing_ * (1.5F + 2.0F * std::min(slope, 4.0F));
+    for (std::size_t k = 0; k < in_view; ++k) {
+      const std::uint32_t i = work.numbers[k];
+      // A slanted surface hides itself by as much as it falls off over a square.
+      const float own_tolerance = spacing_ * (1.5F + 2.0F * work.slopes[i]);
       const float tolerance = first + i < surfel_targets_ ? own_tolerance : spacing_;
-      if (depth > work.raster.depth(work.pixels[i]) + tolerance) continue;
-      if (is_prior(first + i) && depth > work.prior_raster.depth(work.pixels[i]) + own_tolerance) {
-        continue;
+      work.numbers[in_sight] = i;
+      in_sight += work.depths[i] > work.raster.depth(work.pixels[i]) + tolerance ? 0 : 1;
+    }
+    for (std::size_t k = 0; k < in_sight; ++k) {
+      const std::size_t i = work.numbers[k];
+      if (is_prior(first + i)) {
+        const float own_tolerance = spacing_ * (1.5F + 2.0F * work.slopes[i]);
+        if (work.depths[i] > work.prior_raster.depth(work.pixels[i]) + own_tolerance) continue;
       }
-      const float density =
-          focal_length_px_.prod() * cosine * work.distances[i] / (depth * depth * depth);
       const bool is_sure = clearness_ == nullptr || !is_patch(first + i);
-      visit(first + i, dose_.hazard(density, cosine),
+      visit(first + i, dose_.hazard(work.densities[i], work.cosines[i]),
             is_sure ? 1.0F : clearness_->of(source(first + i), sensor));
     }
   }

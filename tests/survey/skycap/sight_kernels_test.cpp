@@ -143,15 +143,14 @@ TEST_F(SightKernels, DepthsAreThoseOfTheNearestSquares) {
 
 TEST_F(SightKernels, TargetsAreInViewWhenTheyFaceTheSensorInsideTheFrustum) {
   std::vector<std::uint32_t> in_view(count), pixels(count);
-  std::vector<float> depths(count), distances(count), cosines(count);
-  skycap::project_targets(
-      raster, count, arrays_of(positions), arrays_of(normals),
-      {in_view.data(), pixels.data(), depths.data(), distances.data(), cosines.data()});
+  std::vector<float> depths(count), cosines(count), densities(count), slopes(count);
+  skycap::project_targets(raster, 1e4F, count, arrays_of(positions), arrays_of(normals),
+                          {in_view.data(), pixels.data(), depths.data(), cosines.data(),
+                           densities.data(), slopes.data()});
   std::uint32_t seen = 0;
   for (std::size_t i = 0; i < count; ++i) {
     const Vector3d p = in_camera(i);
     const double cosine = -p.normalized().dot(normal(i));
-    EXPECT_NEAR(distances[i], p.norm(), 1e-5);
     EXPECT_NEAR(cosines[i], cosine, 1e-5);
     const std::array<double, 5> margins = {p.z() - 2.0, 7.0 - p.z(), 0.75 * p.z() - std::abs(p.x()),
                                            0.62 * p.z() - std::abs(p.y()), cosine - 0.2};
@@ -160,6 +159,12 @@ TEST_F(SightKernels, TargetsAreInViewWhenTheyFaceTheSensorInsideTheFrustum) {
     EXPECT_EQ(in_view[i], least > 0.0 ? 1U : 0U) << "target " << i;
     if (in_view[i] == 0) {
       EXPECT_EQ(pixels[i], raster.outside);
+    }
+    // A pixel off the axis sees less of the sphere by the cube of its angle's cosine.
+    if (in_view[i] != 0) {
+      EXPECT_NEAR(densities[i], 1e4 * cosine * std::pow(p.norm() / p.z(), 3) / p.squaredNorm(),
+                  1e-4 * densities[i]);
+      EXPECT_NEAR(slopes[i], std::min(4.0, std::tan(std::acos(cosine))), 1e-3);
     }
     seen += in_view[i];
   }
