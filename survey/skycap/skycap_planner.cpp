@@ -85,7 +85,8 @@ struct SkycapPlanner::Impl {
     dose.emplace(config.coverage_radius, with_pose_errors({}), ray_spacing(camera));
     unseen.emplace(
         UnseenSurfaceSettings{.steps = config.ideas.unseen_surface ? config.continuation_steps : 0,
-                              .learns_rates = config.ideas.learned_rates});
+                              .learns_rates = config.ideas.learned_rates,
+                              .threads = config.threads});
     if (config.prior) unseen->expect({*config.prior, static_cast<float>(h)});
   }
 
@@ -153,7 +154,7 @@ struct SkycapPlanner::Impl {
   void predict() {
     is_field_old = false;
     unseen->predict(*map, *space, region);
-    clearness.update(unseen->patches(), *space);
+    clearness.update(unseen->patches(), *space, config.threads);
     field.emplace(*map, unseen->patches(), camera, *dose, gain, unseen->prior_occluders(),
                   &clearness);
     asked = {};

@@ -6,6 +6,8 @@
 #include <numbers>
 #include <utility>
 
+#include "geometry/parallel.h"
+
 namespace skycap::survey::skycap {
 namespace {
 
@@ -89,32 +91,51 @@ void UnseenSurface::predict(const DoseMap& map, const SpaceMemory& space,
   // What was known to be empty may be unknown again, this once.
   if (std::exchange(misses_lied_, space.misses_lie()) != space.misses_lie()) asked_.clear();
   asked_.resize(surfels.size());
-  for (std::size_t i = 0; i < surfels.size(); ++i) {
-    if (surfels.open_directions[i] == 0) continue;
-    AskedChains& asked = asked_[i];
-    if (asked.position != surfels.positions[i] || asked.normal != surfels.normals[i]) {
-      asked = {surfels.positions[i], surfels.normals[i], {}};
+  constexpr std::size_t some = 512;  // surfels at a time
+  std::vector<std::vector<UnseenPatch>> guesses((surfels.size() + some - 1) / some);
+  geometry::parallel_for(guesses.size(), settings_.threads, [&](std::size_t part) {
+    const std::size_t end = std::min(surfels.size(), (part + 1) * some);
+    for (std::size_t i = part * some; i < end; ++i) {
+      if (surfels.open_directions[i] != 0) emit_chains(map, space, i, region, guesses[part]);
     }
-    for (int k = 0; k < 6; ++k) {
-      if ((surfels.open_directions[i] >> k & 1U) == 0) continue;
-      for (const auto continuation :
-           {Continuation::straight, Continuation::convex, Continuation::concave}) {
-        emit_chain(map, space, i, k, continuation, region);
-      }
-      const auto is_known_at_once = [&](Continuation continuation) {
-        return asked.chains[chain_number(k, continuation)].unknown_steps == 0;
-      };
-      if (is_known_at_once(Continuation::straight) && is_known_at_once(Continuation::convex) &&
-          !map.has_other_face_near(i)) {
-        emit_chain(map, space, i, k, Continuation::back, region);
-      }
+  });
+  for (const std::vector<UnseenPatch>& part : guesses) {
+    for (const UnseenPatch& guess : part) {
+      if (!seen_places_.insert(guess.place).second || is_told_by_prior(guess)) continue;
+      const auto trust = trusts_.find(guess.place);
+      patches_.push_back(guess);
+      patches_.back().weight *= trust == trusts_.end() ? 1.0F : trust->second;
+    }
+  }
+}
+
+void UnseenSurface::emit_chains(const DoseMap& map, const SpaceMemory& space, std::size_t surfel,
+                                const std::optional<Eigen::AlignedBox3f>& region,
+                                std::vector<UnseenPatch>& guesses) {
+  const Surfels& surfels = map.surfels();
+  const Vector3f &position = surfels.positions[surfel], &normal = surfels.normals[surfel];
+  AskedChains& asked = asked_[surfel];
+  if (asked.position != position || asked.normal != normal) asked = {position, normal, {}};
+  for (int k = 0; k < 6; ++k) {
+    if ((surfels.open_directions[surfel] >> k & 1U) == 0) continue;
+    for (const auto continuation :
+         {Continuation::straight, Continuation::convex, Continuation::concave}) {
+      emit_chain(map, space, surfel, k, continuation, region, guesses);
+    }
+    const auto is_known_at_once = [&](Continuation continuation) {
+      return asked.chains[chain_number(k, continuation)].unknown_steps == 0;
+    };
+    if (is_known_at_once(Continuation::straight) && is_known_at_once(Continuation::convex) &&
+        !map.has_other_face_near(surfel)) {
+      emit_chain(map, space, surfel, k, Continuation::back, region, guesses);
     }
   }
 }
 
 void UnseenSurface::emit_chain(const DoseMap& map, const SpaceMemory& space, std::size_t surfel,
                                int direction, Continuation continuation,
-                               const std::optional<Eigen::AlignedBox3f>& region) {
+                               const std::optional<Eigen::AlignedBox3f>& region,
+                               std::vector<UnseenPatch>& guesses) {
   const Surfels& surfels = map.surfels();
   const float h = map.spacing();
   const Vector3f& origin = surfels.positions[surfel];
@@ -160,11 +181,8 @@ void UnseenSurface::emit_chain(const DoseMap& map, const SpaceMemory& space, std
     patch.edge = std::max(h, 0.8F * h * scale);
     patch.kind = kind_of(kind, step);
     patch.place = place_of(patch.position, patch.normal, patch.edge, step);
-    if (!seen_places_.insert(patch.place).second || is_told_by_prior(patch)) continue;
-    const auto trust = trusts_.find(patch.place);
-    patch.weight = patch.edge * patch.edge * static_cast<float>(hit_rate(kind, step)) *
-                   (trust == trusts_.end() ? 1.0F : trust->second);
-    patches_.push_back(patch);
+    patch.weight = patch.edge * patch.edge * static_cast<float>(hit_rate(kind, step));
+    guesses.push_back(patch);
   }
 }
 
@@ -274,7 +292,8 @@ std::size_t Clearness::way_towards(const Vector3f& offset) {
   return (face * ways_to_a_face + cell(axis + 1)) * ways_to_a_face + cell(axis + 2);
 }
 
-void Clearness::update(std::span<const UnseenPatch> patches, const SpaceMemory& space) {
+void Clearness::update(std::span<const UnseenPatch> patches, const SpaceMemory& space,
+                       unsigned threads) {
   constexpr std::size_t none = std::numeric_limits<std::size_t>::max();
   std::vector<std::size_t> known_as(patches.size(), none);
   std::unordered_map<std::uint64_t, Row> rows;
@@ -287,14 +306,13 @@ void Clearness::update(std::span<const UnseenPatch> patches, const SpaceMemory& 
     }
     rows.emplace(patch.place, Row{i, patch.position});
   }
-  std::vector<std::uint32_t> asked;
-  asked.reserve(ways * patches.size());
-  for (std::size_t way = 0; way < ways; ++way) {
+  std::vector<std::uint32_t> asked(ways * patches.size());
+  geometry::parallel_for(ways, threads, [&](std::size_t way) {
     const std::size_t first = way * patches_.size();
-    for (const std::size_t old : known_as) {
-      asked.push_back(old == none ? all_unknown : asked_[first + old]);
-    }
-  }
+    std::ranges::transform(
+        known_as, asked.begin() + static_cast<std::ptrdiff_t>(way * patches.size()),
+        [&](std::size_t old) { return old == none ? all_unknown : asked_[first + old]; });
+  });
   asked_ = std::move(asked);
   rows_ = std::move(rows);
   patches_ = patches;

@@ -55,6 +55,7 @@ struct UnseenSurfaceSettings {
   int steps = 3;             ///< patches in a chain, at most 5
   bool learns_rates = true;  ///< otherwise the rates stay at their first guesses
   float memory = 0.85F;      ///< share of the evidence on rates kept from scan to scan
+  unsigned threads = 1;      ///< zero: all processors
 };
 
 class UnseenSurface {
@@ -110,8 +111,14 @@ class UnseenSurface {
     Eigen::Vector3f position = Eigen::Vector3f::Zero(), normal = Eigen::Vector3f::Zero();
     std::array<AskedChain, 24> chains;  ///< by direction and continuation
   };
+  /// Of one surfel, whatever other surfels emit and places that disappointed aside; may be called
+  /// for several at once.
+  void emit_chains(const DoseMap& map, const SpaceMemory& space, std::size_t surfel,
+                   const std::optional<Eigen::AlignedBox3f>& region,
+                   std::vector<UnseenPatch>& guesses);
   void emit_chain(const DoseMap& map, const SpaceMemory& space, std::size_t surfel, int direction,
-                  Continuation continuation, const std::optional<Eigen::AlignedBox3f>& region);
+                  Continuation continuation, const std::optional<Eigen::AlignedBox3f>& region,
+                  std::vector<UnseenPatch>& guesses);
   void emit_prior(const std::optional<Eigen::AlignedBox3f>& region);
   /// Whether the prior, while it is to be trusted, has a patch there that is still open.
   bool is_told_by_prior(const UnseenPatch& patch) const;
@@ -144,7 +151,7 @@ class Clearness {
   explicit Clearness(float scale);
 
   /// Answers for `patches` from now on, with what `space` knows now; both must outlive the answers.
-  void update(std::span<const UnseenPatch> patches, const SpaceMemory& space);
+  void update(std::span<const UnseenPatch> patches, const SpaceMemory& space, unsigned threads = 1);
 
   /// Of patch `i`, for a sensor at `sensor`: in (0, 1]. One without any image, or of what a prior
   /// tells, which tells what hides it too. Safe to call from several threads.
