@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "geometry/parallel.h"
 #include "geometry/place/pose.h"
 
 namespace skycap::survey::skycap {
@@ -69,7 +70,8 @@ Vector3f open_direction(const Surfels& surfels, std::size_t i, int k) {
   return open_directions(surfels, i)[static_cast<std::size_t>(k)];
 }
 
-DoseMap::DoseMap(float spacing) : spacing_(spacing), grid_(neighbour_reach * spacing) {}
+DoseMap::DoseMap(float spacing, unsigned threads)
+    : spacing_(spacing), threads_(threads), grid_(neighbour_reach * spacing) {}
 
 void DoseMap::add(const BlockImage& image, const DoseModel& dose, float jump,
                   const std::optional<Eigen::AlignedBox3f>& region,
@@ -99,18 +101,18 @@ void DoseMap::add_looks(const BlockImage& image, const DoseModel& dose, float ju
   const BlockProjection& projection = image.projection;
   const float across =
       std::max(off_plane_tolerance * spacing_, 2.0F * static_cast<float>(dose.noise().across(1.0)));
-  for (std::size_t i = 0; i < surfels_.size(); ++i) {
+  const auto add_look = [&](std::size_t i) {
     const auto hit = projection.project(surfels_.positions[i]);
-    if (!hit) continue;
+    if (!hit) return;
     const Block& block = image.blocks[hit->block];
-    if (block.returns == 0 || std::abs(hit->depth - block.depth) > jump) continue;
+    if (block.returns == 0 || std::abs(hit->depth - block.depth) > jump) return;
     const Vector3f offset = block.mean - surfels_.positions[i];
     const float off_plane = offset.dot(block.normal);
-    if (std::abs(off_plane) > across) continue;
+    if (std::abs(off_plane) > across) return;
     const float agreement = block.normal.dot(surfels_.normals[i]);
     const bool is_better = block.quality > 2.0F * surfels_.qualities[i];
     // The other side of something thin.
-    if (agreement < opposite_sides && !is_better) continue;
+    if (agreement < opposite_sides && !is_better) return;
     const Vector3f towards_sensor =
         (projection.sensor_position - surfels_.positions[i]).normalized();
     const float cos_incidence = std::max(0.05F, towards_sensor.dot(block.normal));
@@ -129,7 +131,12 @@ void DoseMap::add_looks(const BlockImage& image, const DoseModel& dose, float ju
       }
     }
     surfels_.qualities[i] = std::max(surfels_.qualities[i], block.quality);
-  }
+  };
+  constexpr std::size_t some = 1024;  // surfels at a time
+  geometry::parallel_for((surfels_.size() + some - 1) / some, threads_, [&](std::size_t part) {
+    const std::size_t end = std::min(surfels_.size(), (part + 1) * some);
+    for (std::size_t i = part * some; i < end; ++i) add_look(i);
+  });
 }
 
 void DoseMap::add_surfels(const BlockImage& image, const DoseModel& dose,

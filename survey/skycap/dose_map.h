@@ -49,7 +49,7 @@ using IsMeasured = std::function<bool(const Eigen::Vector3f&)>;
 class DoseMap {
  public:
   /// Surfels lie about `spacing` (h) apart.
-  explicit DoseMap(float spacing);
+  explicit DoseMap(float spacing, unsigned threads = 1);
 
   /// Adds what the scan's blocks saw: looks at the surfels that are there, then surfels where there
   /// are none yet. `jump` is the J of BlockSettings. Blocks outside `region`, if given, make no
@@ -90,6 +90,7 @@ class DoseMap {
   bool is_taken(const Block& block);
 
   float spacing_;
+  unsigned threads_;
   geometry::PointGrid grid_;  ///< of the surfels where they were made
   Surfels surfels_;
   /// Two surfels near enough to share measurements.

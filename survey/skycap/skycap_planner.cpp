@@ -80,7 +80,7 @@ struct SkycapPlanner::Impl {
     blocks.threads = config.threads;
     least_jump = jump;
     blocks.jump = static_cast<float>(std::max(least_jump, unknown_noise_jump * extent));
-    map.emplace(static_cast<float>(h));
+    map.emplace(static_cast<float>(h), config.threads);
     space.emplace(static_cast<float>(0.6 * h), config.misses_are_empty);
     dose.emplace(config.coverage_radius, with_pose_errors({}), ray_spacing(camera));
     unseen.emplace(
