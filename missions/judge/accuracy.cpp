@@ -2,13 +2,27 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace skycap::missions::judge {
+
+AccuracyMeter::AccuracyMeter(const geometry::Mesh& truth, unsigned threads,
+                             const geometry::Mesh& beside)
+    : distance_(truth, threads), threads_(threads) {
+  if (!beside.triangles.empty()) beside_.emplace(beside, threads);
+}
 
 void AccuracyMeter::add(std::span<const Eigen::Vector3f> points) {
   piece_.resize(points.size());
   distance_.distances(points, piece_, threads_);
-  for (const double distance : piece_) {
+  piece_beside_.assign(points.size(), std::numeric_limits<double>::infinity());
+  if (beside_) beside_->distances(points, piece_beside_, threads_);
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const double distance = piece_[i];
+    if (piece_beside_[i] < distance) {
+      ++tally_.beside;
+      continue;
+    }
     tally_.sum.add(distance);
     tally_.squares.add(distance * distance);
     tally_.distances.push_back(static_cast<float>(distance));
@@ -26,6 +40,7 @@ void DistanceTally::add(const DistanceTally& more) {
   sum.add(more.sum);
   squares.add(more.squares);
   distances.insert(distances.end(), more.distances.begin(), more.distances.end());
+  beside += more.beside;
 }
 
 CloudAccuracy DistanceTally::accuracy() {

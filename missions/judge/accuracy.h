@@ -1,6 +1,8 @@
 /// How accurate a cloud is: the distances of its points from the true surface.
 #pragma once
 
+#include <cstdint>
+#include <optional>
 #include <span>
 #include <utility>
 #include <vector>
@@ -27,21 +29,24 @@ struct CloudAccuracy {
 struct DistanceTally {
   ExactSum sum, squares;
   std::vector<float> distances;
+  std::uint64_t beside = 0;  ///< points of what stands beside the surface
 
   void add(const DistanceTally& more);
   /// Sorts the distances.
   CloudAccuracy accuracy();
 };
 
-/// Measures them while points come in, in any pieces.
+/// Measures them while points come in, in any pieces. Points that are nearer to what stands
+/// `beside` the surface, such as ground, are of that, and have no part in the figures.
 class AccuracyMeter {
  public:
-  explicit AccuracyMeter(const geometry::Mesh& truth, unsigned threads = 0)
-      : distance_(truth, threads), threads_(threads) {}
+  explicit AccuracyMeter(const geometry::Mesh& truth, unsigned threads = 0,
+                         const geometry::Mesh& beside = {});
 
   void add(std::span<const Eigen::Vector3f> points);
 
-  std::size_t points() const { return tally_.distances.size(); }
+  std::size_t points() const { return tally_.distances.size(); }  ///< of the surface
+  std::uint64_t beside() const { return tally_.beside; }
   /// Leaves nothing.
   DistanceTally take_tally() { return std::exchange(tally_, {}); }
 
@@ -53,8 +58,9 @@ class AccuracyMeter {
 
  private:
   geometry::MeshDistance distance_;
+  std::optional<geometry::MeshDistance> beside_;
   unsigned threads_;
-  std::vector<double> piece_;  ///< memory for the distances of what is added
+  std::vector<double> piece_, piece_beside_;  ///< memory for the distances of what is added
   DistanceTally tally_;
 };
 

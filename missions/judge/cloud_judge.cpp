@@ -10,11 +10,11 @@ std::vector<Eigen::Vector3f> places_asked(const geometry::Mesh& truth, std::size
 }
 
 CloudJudge::CloudJudge(const geometry::Mesh& truth, std::size_t places,
-                       double registration_distance, unsigned threads)
+                       double registration_distance, unsigned threads, const geometry::Mesh& beside)
     : area_(geometry::surface_area(truth)),
       threads_(threads),
       coverage_(places_asked(truth, places), registration_distance),
-      accuracy_(truth, threads) {}
+      accuracy_(truth, threads, beside) {}
 
 void CloudJudge::add(std::span<const Eigen::Vector3f> points) {
   geometry::parallel_for(2, threads_, [&](std::size_t part) {
@@ -38,8 +38,12 @@ void CloudTally::add(const CloudTally& more) {
 }
 
 CloudJudgement judgement_of(CloudTally& tally, double area) {
-  return {tally.distances.distances.size(), marked_share(tally.is_covered),
-          tally.distances.accuracy(), area, tally.is_covered};
+  return {tally.distances.distances.size(),
+          tally.distances.beside,
+          marked_share(tally.is_covered),
+          tally.distances.accuracy(),
+          area,
+          tally.is_covered};
 }
 
 }  // namespace skycap::missions::judge

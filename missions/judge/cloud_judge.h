@@ -15,8 +15,9 @@
 namespace skycap::missions::judge {
 
 struct CloudJudgement {
-  std::size_t points = 0;
-  double coverage = 0.0;  ///< share of the surface, in [0, 1]
+  std::size_t points = 0;    ///< of the surface
+  std::uint64_t beside = 0;  ///< points of what stands beside it
+  double coverage = 0.0;     ///< share of the surface, in [0, 1]
   CloudAccuracy accuracy;
   double area = 0.0;  ///< of the surface [m^2]
   /// For each of the places asked, 1 if it is covered; empty where that was not kept.
@@ -43,9 +44,10 @@ std::vector<Eigen::Vector3f> places_asked(const geometry::Mesh& truth, std::size
 /// Takes in a cloud of any length, in any pieces.
 class CloudJudge {
  public:
-  /// `places` of the surface are covered by points within `registration_distance` of them.
+  /// `places` of the surface are covered by points within `registration_distance` of them. What is
+  /// `beside` it counts as AccuracyMeter says.
   CloudJudge(const geometry::Mesh& truth, std::size_t places, double registration_distance,
-             unsigned threads = 0);
+             unsigned threads = 0, const geometry::Mesh& beside = {});
 
   void add(std::span<const Eigen::Vector3f> points);
 

@@ -33,6 +33,7 @@ void stage_tally(const std::string& identity, const CloudTally& tally,
   for (const std::uint8_t mark : tally.is_covered) covered += mark != 0 ? '1' : '0';
   const Json json{{"of", identity},
                   {"points", tally.distances.distances.size()},
+                  {"beside", tally.distances.beside},
                   {"sum", tally.distances.sum.all_digits()},
                   {"squares", tally.distances.squares.all_digits()},
                   {"covered", covered}};
@@ -59,6 +60,7 @@ CloudTally read_tally(const fs::path& folder) {
     const Json json = parsed(folder);
     CloudTally tally;
     tally.distances.sum = ExactSum(json.at("sum").get<ExactSum::Digits>());
+    tally.distances.beside = json.at("beside").get<std::uint64_t>();
     tally.distances.squares = ExactSum(json.at("squares").get<ExactSum::Digits>());
     for (const char mark : json.at("covered").get<std::string>()) {
       tally.is_covered.push_back(mark == '1' ? 1 : 0);

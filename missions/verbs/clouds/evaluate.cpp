@@ -28,7 +28,8 @@ bool is_mission_file(const std::filesystem::path& file) {
 judge::CloudJudgement judged_cloud(const EvaluateOptions& options, const Truth& truth,
                                    ProgressLine& progress, const std::stop_token& stop) {
   const std::filesystem::path& file = options.cloud;
-  judge::CloudJudge judge(truth.model, truth.samples, truth.registration_distance, options.threads);
+  judge::CloudJudge judge(truth.model, truth.samples, truth.registration_distance, options.threads,
+                          truth.beside);
   geometry::read_positions(file, [&](std::span<const Eigen::Vector3f> piece, double share) {
     if (stop.stop_requested()) throw Error(ErrorKind::bad_usage, "interrupted");
     progress.show(fmt::format("{}: {:.0f} %", file.string(), 100.0 * share));
@@ -40,12 +41,14 @@ judge::CloudJudgement judged_cloud(const EvaluateOptions& options, const Truth& 
 /// Of a mesh the whole surface counts, not its vertices.
 judge::CloudJudgement judged_mesh(const EvaluateOptions& options, const Truth& truth) {
   const geometry::Mesh mesh = geometry::read_mesh(options.mesh);
-  judge::AccuracyMeter accuracy(truth.model, options.threads), completeness(mesh, options.threads);
+  judge::AccuracyMeter accuracy(truth.model, options.threads, truth.beside);
+  judge::AccuracyMeter completeness(mesh, options.threads);
   constexpr std::uint64_t seed = 2;  // not the places that are asked about
   accuracy.add(geometry::sample_surface(mesh, truth.samples, seed).points);
   completeness.add(judge::places_asked(truth.model, truth.samples));
-  return {accuracy.points(), completeness.share_within(truth.registration_distance),
-          accuracy.accuracy(), geometry::surface_area(truth.model)};
+  return {accuracy.points(), accuracy.beside(),
+          completeness.share_within(truth.registration_distance), accuracy.accuracy(),
+          geometry::surface_area(truth.model)};
 }
 
 /// Of what is visible; nothing where nobody says from where.
@@ -62,12 +65,15 @@ Truth truth_of(const EvaluateOptions& options, bool wants_visible, const derived
     const std::filesystem::path file = options.model;
     const file::Mission mission = derived::read_mission(file, {}, report);
     const double distance = options.distance.value_or(mission.evaluation.registration_distance);
+    const auto beside = [&](const geometry::Mesh& model) {
+      return scene::surroundings_of(mission, geometry::bounding_box(model));
+    };
     if (!wants_visible) {
-      return {scene::placed_model(mission, file.parent_path()), distance,
-              mission.evaluation.samples};
+      const geometry::Mesh model = scene::placed_model(mission, file.parent_path());
+      return {model, beside(model), distance, mission.evaluation.samples};
     }
     const scene::SurveyScene scene(mission, file.parent_path());
-    return {scene.model(), distance, mission.evaluation.samples,
+    return {scene.model(), beside(scene.model()), distance, mission.evaluation.samples,
             scene.visible(mission.threads, stop)};
   }
   if (!options.distance) {
@@ -78,7 +84,7 @@ Truth truth_of(const EvaluateOptions& options, bool wants_visible, const derived
   file::SceneConfig scene;
   scene.model = options.model;
   try {
-    return {scene::load_model(scene, ""), *options.distance, options.samples};
+    return {scene::load_model(scene, ""), {}, *options.distance, options.samples};
   } catch (const Error& error) {
     throw Error(error.kind(), std::string("--model: ") + error.what());
   }
@@ -93,6 +99,7 @@ nlohmann::ordered_json evaluation_json(const EvaluateOptions& options, const Tru
       {is_mesh ? "mesh" : "cloud", (is_mesh ? options.mesh : options.cloud).string()},
       {"model", options.model},
       {"points", judged.points},
+      {"points_beside", judged.beside},
       {"registration_distance_m", truth.registration_distance},
       {"samples", truth.samples},
       {"coverage", judged.coverage},
@@ -117,13 +124,16 @@ void print_evaluation(const EvaluateOptions& options, const Truth& truth,
   const std::optional<double> visible = visible_share(judged, truth);
   const std::filesystem::path& file = options.mesh.empty() ? options.cloud : options.mesh;
   out << fmt::format(
-      "{}: {} points against {}\n"
+      "{}: {} points against {}{}\n"
       "  coverage  {:.2f} % of the surface within {:g} m{}\n"
       "  accuracy  mean {:.4g} m, rms {:.4g} m, median {:.4g} m, 95 % below {:.4g} m, largest "
       "{:.4g} m\n"
       "  density   {:.4g} points per m^2 of the surface's {:.4g} m^2\n",
-      file.filename().string(), judged.points, options.model, 100.0 * judged.coverage,
-      truth.registration_distance,
+      file.filename().string(), judged.points, options.model,
+      truth.beside.triangles.empty()
+          ? ""
+          : fmt::format("; {} more are of the ground and what else stands there", judged.beside),
+      100.0 * judged.coverage, truth.registration_distance,
       visible ? fmt::format(", {:.2f} % of what is visible", 100.0 * *visible) : "", accuracy.mean,
       accuracy.root_mean_square, accuracy.median, accuracy.percentile_95, accuracy.largest,
       judged.density(), judged.area);

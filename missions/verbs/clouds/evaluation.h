@@ -17,6 +17,7 @@ namespace skycap::missions::verbs {
 /// What a cloud is compared with.
 struct Truth {
   geometry::Mesh model;
+  geometry::Mesh beside{};  ///< what a mission's sensor sees beside it: ground, neighbours
   double registration_distance;
   std::size_t samples;
   std::vector<std::uint8_t> is_visible{};  ///< for each sample, if a mission says from where

@@ -39,13 +39,13 @@ class PiecesOfCloud final : public PieceWork {
         console_(console),
         progress_(console, options.is_quiet),
         truth_(read_truth()),
-        digest_(checksum(truth_.model)) {}
+        digest_(checksum(truth_.model) + " beside " + checksum(truth_.beside)) {}
 
   bool do_piece(std::size_t number) override {
     geometry::OutputFolder folder(piece_folder(number));
     if (judge::has_tally(folder.path(), identity(number))) return true;
     judge::CloudJudge judge(truth_.model, truth_.samples, truth_.registration_distance,
-                            options_.threads);
+                            options_.threads, truth_.beside);
     double begin = 0.0;  // of what is read next, as a share of the file
     geometry::read_positions(
         options_.cloud, [&](std::span<const Eigen::Vector3f> points, double end) {

@@ -67,6 +67,26 @@ TEST(AccuracyMeter, DependsNeitherOnPiecesNorOnThreads) {
   EXPECT_EQ(one.percentile_95, other.percentile_95);
 }
 
+// Known answer: a wall that stands on the ground, in the plane x = 0. Of points above the diagonal
+// the wall is nearer.
+TEST(AccuracyMeter, LeavesOutPointsOfWhatStandsBeside) {
+  const geometry::Mesh wall{{{0, -9, 0}, {0, 9, 0}, {0, 9, 9}, {0, -9, 9}}, {{0, 1, 2}, {0, 2, 3}}};
+  const geometry::Mesh ground{{{-9, -9, 0}, {9, -9, 0}, {9, 9, 0}, {-9, 9, 0}},
+                              {{0, 1, 2}, {0, 2, 3}}};
+  const std::vector<Eigen::Vector3f> points = {
+      {0.25F, 0, 1}, {-0.5F, 1, 2}, {3, 0, 0.125F}, {-7, 2, -0.5F}, {0, 0, 0}};
+  judge::AccuracyMeter meter(wall, 1, ground);
+  meter.add(points);
+  EXPECT_EQ(meter.points(), 3U);
+  EXPECT_EQ(meter.beside(), 2U);
+  EXPECT_DOUBLE_EQ(meter.accuracy().mean, 0.25);
+  EXPECT_DOUBLE_EQ(meter.accuracy().largest, 0.5);
+  judge::AccuracyMeter alone(wall, 1);
+  alone.add(points);
+  EXPECT_EQ(alone.points(), 5U);
+  EXPECT_FLOAT_EQ(static_cast<float>(alone.accuracy().largest), std::hypot(7.0F, 0.5F));
+}
+
 TEST(AccuracyMeter, OfNoPointsIsZero) {
   judge::AccuracyMeter meter(square);
   EXPECT_EQ(meter.accuracy().largest, 0.0);

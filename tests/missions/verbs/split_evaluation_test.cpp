@@ -1,5 +1,6 @@
 // A cloud that is judged in pieces has the figures of the whole one.
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <fstream>
 #include <random>
@@ -80,6 +81,39 @@ TEST_F(SplitEvaluation, HasTheFiguresOfTheWholeToTheLastDigit) {
     EXPECT_FALSE(fs::exists(folder_ / "out/pieces"));
     fs::remove_all(folder_ / "out");
   }
+}
+
+// The scanner of a mission with ground measures that, too: it is no error of the model's points.
+TEST_F(SplitEvaluation, TellsGroundFromTheModel) {
+  std::vector<Eigen::Vector3f> points;
+  for (int i = 0; i < 500; ++i) {
+    const float angle = 0.01F * static_cast<float>(i);
+    points.push_back({2.01F * std::cos(angle), 2.01F * std::sin(angle), 2.0F});
+    points.push_back({5.0F * std::cos(angle), 5.0F * std::sin(angle), 0.01F});
+  }
+  geometry::write_cloud(folder_.path() / "cloud.ply",
+                        {.positions = points, .normals = {}, .views = {}, .colours = {}});
+  folder_.write("m.yaml",
+                "scene: {model: sphere.ply, ground: true}\n"
+                "planner: {view_distance: 5, density: 100, resolution_radius: 0.5, scene_box: "
+                "{min: [-3, -3, 0.1], max: [3, 3, 5]}}\n"
+                "evaluation: {registration_distance: 0.1, visible_directions: 20}\n");
+  const std::vector<std::string> words{"evaluate", "--cloud", folder_ / "cloud.ply", "--model",
+                                       folder_ / "m.yaml"};
+  const auto json_of = [&](const std::vector<std::string>& more) {
+    std::vector<std::string> all = words;
+    all.insert(all.end(), more.begin(), more.end());
+    const auto run = run_skycap(all);
+    EXPECT_EQ(run.exit_code, 0) << run.err;
+    return run.out;
+  };
+  const std::string whole = json_of({"--json"});
+  const auto figures = nlohmann::json::parse(whole);
+  EXPECT_EQ(figures.at("points"), 500);
+  EXPECT_EQ(figures.at("points_beside"), 500);
+  EXPECT_NEAR(figures.at("distance_to_model_m").at("mean").get<double>(), 0.01, 0.02);
+  EXPECT_THAT(json_of({}), HasSubstr("500 more are of the ground"));
+  EXPECT_EQ(json_of({"--json", "--out", folder_ / "out", "--pieces", "2"}), whole);
 }
 
 TEST_F(SplitEvaluation, SkipsWhatIsCompleteAndSaysWhatIsMissing) {
