@@ -5,7 +5,7 @@
 #include <cmath>
 #include <utility>
 
-#include "survey/skycap/depth_raster.h"
+#include "survey/skycap/raster/depth_raster.h"
 
 namespace skycap::survey::skycap {
 namespace {

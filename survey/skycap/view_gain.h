@@ -12,7 +12,7 @@
 #include "geometry/place/pose.h"
 #include "survey/skycap/dose_map.h"
 #include "survey/skycap/dose_model.h"
-#include "survey/skycap/sight_kernels.h"
+#include "survey/skycap/raster/sight_kernels.h"
 #include "survey/skycap/survey_belief.h"
 #include "survey/skycap/unseen_surface.h"
 

@@ -45,9 +45,10 @@ Rooms house() {
   add("sim/sensors", {"sim/scene"});
 
   add("survey", {});
-  for (const char* planner : {"survey/see", "survey/skycap", "survey/volumetric"}) {
-    add(planner, {"survey"});
-  }
+  add("survey/see", {"survey"});
+  add("survey/skycap/raster", {"survey"});
+  add("survey/skycap", {"survey", "survey/skycap/raster"});
+  add("survey/volumetric", {"survey"});
 
   add("flight/space", {});
   add("flight/autopilot", {});

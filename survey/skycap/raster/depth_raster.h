@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "survey/skycap/sight_kernels.h"
+#include "survey/skycap/raster/sight_kernels.h"
 
 namespace skycap::survey::skycap {
 

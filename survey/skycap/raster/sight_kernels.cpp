@@ -1,4 +1,4 @@
-#include "survey/skycap/sight_kernels.h"
+#include "survey/skycap/raster/sight_kernels.h"
 
 #include <cmath>
 #include <cstddef>

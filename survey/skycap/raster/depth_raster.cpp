@@ -1,4 +1,4 @@
-#include "survey/skycap/depth_raster.h"
+#include "survey/skycap/raster/depth_raster.h"
 
 #include <algorithm>
 #include <limits>

@@ -1,4 +1,4 @@
-#include "survey/skycap/sight_kernels.h"
+#include "survey/skycap/raster/sight_kernels.h"
 
 #include <algorithm>
 #include <array>
@@ -11,7 +11,7 @@
 #include <gtest/gtest.h>
 
 #include "geometry/place/pose.h"
-#include "survey/skycap/depth_raster.h"
+#include "survey/skycap/raster/depth_raster.h"
 
 namespace skycap::survey {
 namespace {
