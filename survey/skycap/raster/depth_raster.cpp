@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <utility>
 
 namespace skycap::survey::skycap {
 namespace {
@@ -17,8 +18,9 @@ std::size_t margin_of(const RasterView& view) {
 
 void DepthRaster::draw(const RasterView& view, std::size_t count, const PointArrays& points,
                        float spacing) {
-  if (depths_.size() != view.outside || stride_ != view.stride) {
-    stride_ = view.stride;
+  // Until the end, no plane is as it has to be: an exception leaves it so.
+  const int stride = std::exchange(stride_, 0);
+  if (depths_.size() != view.outside || stride != view.stride) {
     const std::size_t with_margins = view.outside + 2 * margin_of(view);
     for (Plane& plane : nearest_) plane.assign(with_margins, nothing);
     row_wise_.assign(with_margins, nothing);
@@ -37,6 +39,7 @@ void DepthRaster::draw(const RasterView& view, std::size_t count, const PointArr
     draw_squares(view, size, nearest, row_wise_.data() + margin_of(view), depths_.data());
   }
   for (const Square& square : large_) draw_square(view, square);
+  stride_ = view.stride;
 }
 
 void DepthRaster::draw_chunk(const RasterView& view, const PointArrays& points, std::size_t count,

@@ -13,7 +13,7 @@ namespace skycap::survey::skycap {
 /// A depth image of points that stand for squares. Its memory is used again: one for each thread.
 class DepthRaster {
  public:
-  /// Points of `given` that stand for squares of twice `spacing`: of four pixels at the depth of
+  /// Points that stand for squares of twice `spacing`: of four pixels at the depth of
   /// focal_length times spacing and beyond, and of more nearer, lest what is behind shine through.
   void draw(const RasterView& view, std::size_t count, const PointArrays& points, float spacing);
 
@@ -40,7 +40,7 @@ class DepthRaster {
   std::array<Plane, largest_window + 1> nearest_;
   std::array<bool, largest_window + 1> is_used_{};
   Plane row_wise_;
-  int stride_ = 0;  ///< of the planes
+  int stride_ = 0;  ///< of the planes; 0: they are to be made anew
   std::vector<float> depths_;
   std::vector<Square> large_;  ///< too wide for windows
 
