@@ -1,5 +1,6 @@
 #include "missions/derived/resolved_mission.h"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <utility>
@@ -148,6 +149,15 @@ void read_vehicles(file::MissionFile& given) {
   lead_fleet(given);
 }
 
+/// Where no more points fit in, one is within the spacing of every place of the surface: that is as
+/// near as the registration distance asks, with a fifth of it left to the noise.
+void derive_spacing(file::MissionFile& given) {
+  constexpr double share = 0.8;
+  survey::see::SeeConfig& see = given.mission.planner.see;
+  const double covering = share * given.mission.evaluation.registration_distance;
+  if (!given.gives("planner.spacing")) see.spacing = std::min(see.effective_spacing(), covering);
+}
+
 /// What the building preset derives from other values, where no key says otherwise.
 ///
 /// At building scale the published psi looks at a small part of the sight line only, and targets
@@ -195,6 +205,7 @@ file::Mission resolved(file::MissionFile given, const Report& report) {
   if (mission.sensor.is_moving() && !given.gives("planner.goal")) {
     mission.planner.goal = file::PlannerGoal::minutes;
   }
+  derive_spacing(given);
   if (mission.sensor.lidar) read_lidar(given);
   check_scene(given);
   check_start(given);

@@ -162,7 +162,7 @@ class Inspection {
       warn(
           "points are stored {:.4g} m apart, and evaluation.registration_distance is {:.4g} m: "
           "what lies between them does not count; lower planner.spacing to {:.4g} m",
-          spacing, radius, radius);
+          spacing, radius, 0.8 * radius);
     }
   }
 

@@ -1,5 +1,6 @@
 #include "missions/derived/opening_flight.h"
 
+#include <cmath>
 #include <string>
 #include <vector>
 
@@ -108,10 +109,10 @@ TEST(OpeningFlight, FliesSlowerWhereMorePointsAreAskedFor) {
   const double coarse = mission_of(tower).flight.cruise_speed;
   EXPECT_DOUBLE_EQ(coarse, 7.5);  // the m350_rtk flies 15 m/s
   file::Mission fine = mission_of(tower);
-  fine.planner.see.density = 1600.0;
+  fine.planner.see.spacing = 0.025;
   const double fine_speed = scanning_speed(fine);
   EXPECT_LT(fine_speed, coarse);
-  fine.planner.see.density = 3200.0;
+  fine.planner.see.spacing = 0.025 * std::sqrt(0.5);
   EXPECT_NEAR(scanning_speed(fine), 0.5 * fine_speed, 1e-9);  // as many rays on half the area
 }
 

@@ -46,15 +46,14 @@ TEST(ResolvedMission, TakesEgm96WhereAGeoidIsAskedForAndNoneIsGiven) {
 TEST(ResolvedMission, DerivesTheBuildingPresetFromTheSensorAndTheDensity) {
   const std::string building =
       "sensor: {preset: high_resolution}\n"
-      "planner: {preset: building, density: 213, resolution_radius: 0.15";
+      "planner: {preset: building, density: 213, spacing: 0.0685, resolution_radius: 0.15";
   const survey::see::SeeConfig see = parsed(building + "}").planner.see;
   EXPECT_NEAR(see.occlusion_search_distance, 41.29, 5e-3);  // d, as published
   EXPECT_NEAR(see.frontier_spacing, 2.0645, 5e-4);
   EXPECT_DOUBLE_EQ(see.occluder_spacing, 0.3);
   EXPECT_EQ(see.visibility_update_limit, 1000U);
   EXPECT_EQ(see.still_occluded, survey::see::StillOccluded::put_off);
-  EXPECT_EQ(see.core_threshold,
-            5);  // of 213 points a cubic metre, 0.0685 m apart, 10.5 on a disc
+  EXPECT_EQ(see.core_threshold, 5);  // 10.5 on a disc of points so far apart
 
   const survey::see::SeeConfig overridden =
       parsed(building + ", occlusion_search_distance: 10, visibility_update_limit: 5}").planner.see;
@@ -64,6 +63,21 @@ TEST(ResolvedMission, DerivesTheBuildingPresetFromTheSensorAndTheDensity) {
   EXPECT_EQ(parsed(building + ", core_threshold: 4}").planner.see.core_threshold, 4);
   EXPECT_EQ(parsed("planner: {density: 213, resolution_radius: 0.15}").planner.see.core_threshold,
             std::nullopt);
+}
+
+// Points as far apart as the paper's would leave gaps that do not count as covered.
+TEST(ResolvedMission, StoresPointsSoThatTheyCanCover) {
+  const auto spacing = [](const std::string& distance, const std::string& more) {
+    return derived::parse_mission(
+               "scene: {model: 'builtin:teapot'}\n"
+               "planner: {density: 400, resolution_radius: 0.15" +
+                   more + "}\nevaluation: {registration_distance: " + distance + "}\n",
+               "m.yaml")
+        .planner.see.effective_spacing();
+  };
+  EXPECT_DOUBLE_EQ(spacing("0.1", ""), 0.05) << "the paper's, rho^(-1/2)";
+  EXPECT_DOUBLE_EQ(spacing("0.05", ""), 0.04);
+  EXPECT_DOUBLE_EQ(spacing("0.05", ", spacing: 0.06"), 0.06) << "as the mission says";
 }
 
 // A moving sensor measures on the way, so that stops are what is left to spare.
