@@ -4,7 +4,6 @@
 #include <array>
 #include <cmath>
 #include <limits>
-#include <numeric>
 #include <utility>
 
 #include "geometry/parallel.h"
@@ -12,6 +11,7 @@
 namespace skycap::geometry {
 namespace {
 
+using Eigen::AlignedBox3f;
 using Eigen::Vector3d;
 using Node = FacetNode;
 
@@ -74,24 +74,75 @@ float below(double x) {
 }
 float above(double x) { return -below(-x); }
 
+/// Thinner than this in parts of its longest edge, the plane of a triangle is not known well.
+constexpr double sliver = 1e-6;
+
+Facet facet_of(const Mesh& mesh, std::uint32_t triangle) {
+  const auto& [a, b, c] = mesh.triangles[triangle];
+  const Vector3d &corner = mesh.vertices[a], ab = mesh.vertices[b] - corner,
+                 ac = mesh.vertices[c] - corner;
+  const double longest = std::max({ab.squaredNorm(), ac.squaredNorm(), (ac - ab).squaredNorm()});
+  return {{corner.x(), corner.y(), corner.z()},
+          {ab.x(), ab.y(), ab.z()},
+          {ac.x(), ac.y(), ac.z()},
+          triangle,
+          ab.cross(ac).norm() < sliver * longest};
+}
+
+bool has_area(const Facet& facet) {
+  const Corners of(facet);
+  return of.to_second.cross(of.to_third).norm() != 0.0;
+}
+
+/// What the tree is made of: the box around a triangle, in floats that leave nothing outside.
+struct Item {
+  AlignedBox3f box;
+  std::uint32_t triangle = 0;
+
+  Item() = default;
+  explicit Item(const Facet& facet) : triangle(facet.index) {
+    const Corners of(facet);
+    Eigen::AlignedBox3d exact(of.corner);
+    exact.extend(of.corner + of.to_second).extend(of.corner + of.to_third);
+    for (int axis = 0; axis < 3; ++axis) {
+      box.min()[axis] = below(exact.min()[axis]);
+      box.max()[axis] = above(exact.max()[axis]);
+    }
+  }
+  /// Twice its middle.
+  float middle(Eigen::Index axis) const { return box.min()[axis] + box.max()[axis]; }
+};
+
+/// Calls `work(i)` for each i below `count`, a block of them at a time on any thread.
+template <typename Work>
+void in_blocks(std::size_t count, unsigned threads, const Work& work) {
+  constexpr std::size_t block = 1 << 14;
+  parallel_for((count + block - 1) / block, threads, [&](std::size_t number) {
+    const std::size_t end = std::min(count, (number + 1) * block);
+    for (std::size_t i = number * block; i < end; ++i) work(i);
+  });
+}
+
+/// Of the triangles that have an area, in the mesh's order.
+std::vector<Item> items_of(const Mesh& mesh, unsigned threads) {
+  constexpr std::uint32_t none = std::numeric_limits<std::uint32_t>::max();
+  std::vector<Item> items(mesh.triangles.size());
+  in_blocks(items.size(), threads, [&](std::size_t t) {
+    const Facet facet = facet_of(mesh, static_cast<std::uint32_t>(t));
+    items[t] = Item(facet);
+    if (!has_area(facet)) items[t].triangle = none;
+  });
+  std::erase_if(items, [](const Item& item) { return item.triangle == none; });
+  return items;
+}
+
 /// A tree of four-fold nodes, each made by parting twice. What is below the root's four parts is
-/// made by threads of its own; nodes stand in the order in which one thread would make them.
+/// made by threads of its own; nodes stand in the order in which one thread would make them, and
+/// items are brought into theirs.
 class TreeBuilder {
  public:
-  TreeBuilder(std::vector<Facet>& facets, unsigned threads)
-      : facets_(facets), order_(facets.size()) {
-    std::iota(order_.begin(), order_.end(), 0U);
-    for (const Facet& facet : facets) {
-      const Corners of(facet);
-      Eigen::AlignedBox3d box(of.corner);
-      box.extend(of.corner + of.to_second).extend(of.corner + of.to_third);
-      boxes_.push_back(box);
-    }
-    if (!facets.empty()) build_root(static_cast<std::uint32_t>(facets.size()), threads);
-    std::vector<Facet> sorted;
-    sorted.reserve(facets.size());
-    for (const std::uint32_t i : order_) sorted.push_back(facets[i]);
-    facets_ = std::move(sorted);
+  TreeBuilder(std::vector<Item>& items, unsigned threads) : items_(items) {
+    if (!items.empty()) build_root(static_cast<std::uint32_t>(items.size()), threads);
   }
 
   std::vector<Node> nodes;
@@ -106,6 +157,9 @@ class TreeBuilder {
     parallel_for(lanes, threads, [&](std::size_t lane) {
       set_lane(root, static_cast<int>(lane), cuts, 0, parts[lane]);
     });
+    std::size_t all = 1;
+    for (const std::vector<Node>& part : parts) all += part.size();
+    nodes.reserve(all);
     nodes.push_back(root);
     for (int lane = 0; lane < lanes; ++lane) {
       const auto first = static_cast<std::uint32_t>(nodes.size());
@@ -117,6 +171,7 @@ class TreeBuilder {
         for (int i = 0; i < lanes; ++i) move_behind(node.child[i]);
         nodes.push_back(node);
       }
+      parts[lane] = {};
     }
   }
 
@@ -137,11 +192,11 @@ class TreeBuilder {
 
   void set_lane(Node& node, int lane, const Cuts& cuts, int depth, std::vector<Node>& made) {
     const std::uint32_t begin = cuts[lane], end = cuts[lane + 1];
-    Eigen::AlignedBox3d box;
-    for (std::uint32_t slot = begin; slot < end; ++slot) box.extend(boxes_[order_[slot]]);
+    AlignedBox3f box;
+    for (std::uint32_t slot = begin; slot < end; ++slot) box.extend(items_[slot].box);
     for (int axis = 0; axis < 3; ++axis) {
-      node.low[axis][lane] = begin < end ? below(box.min()[axis]) : far_away;
-      node.high[axis][lane] = begin < end ? above(box.max()[axis]) : far_away;
+      node.low[axis][lane] = begin < end ? box.min()[axis] : far_away;
+      node.high[axis][lane] = begin < end ? box.max()[axis] : far_away;
     }
     node.child[lane] =
         end - begin > 1 ? build(begin, end, depth + 1, made) : begin | FacetNode::is_facet;
@@ -150,22 +205,22 @@ class TreeBuilder {
   /// Sorts slots into two parts, neither empty, and returns where the second begins.
   std::uint32_t part(std::uint32_t begin, std::uint32_t end, int depth) {
     if (end - begin < 2) return end;
-    Eigen::AlignedBox3d centres;
+    AlignedBox3f middles;
     for (std::uint32_t slot = begin; slot < end; ++slot) {
-      centres.extend(boxes_[order_[slot]].center());
+      const AlignedBox3f& box = items_[slot].box;
+      middles.extend(box.min() + box.max());
     }
     Eigen::Index axis = 0;
-    const double length = centres.sizes().maxCoeff(&axis);
-    const double scale = slabs / length;
+    const float length = middles.sizes().maxCoeff(&axis);
+    const float scale = slabs / length;
     if (std::isfinite(scale) && depth < most_cuts) {
-      return cut({begin, end, axis, centres.min()[axis], scale});
+      return cut({begin, end, axis, middles.min()[axis], scale});
     }
     const std::uint32_t middle = begin + (end - begin) / 2;
-    std::nth_element(order_.begin() + begin, order_.begin() + middle, order_.begin() + end,
-                     [&](std::uint32_t a, std::uint32_t b) {
-                       const double at_a = boxes_[a].center()[axis];
-                       const double at_b = boxes_[b].center()[axis];
-                       return at_a != at_b ? at_a < at_b : a < b;
+    std::nth_element(items_.begin() + begin, items_.begin() + middle, items_.begin() + end,
+                     [&](const Item& a, const Item& b) {
+                       const float at_a = a.middle(axis), at_b = b.middle(axis);
+                       return at_a != at_b ? at_a < at_b : a.triangle < b.triangle;
                      });
     return middle;
   }
@@ -174,98 +229,74 @@ class TreeBuilder {
   struct Range {
     std::uint32_t begin, end;
     Eigen::Index axis;
-    double low, scale;
+    float low, scale;
   };
 
   struct Group {
-    Eigen::AlignedBox3d box;
-    double count = 0.0;
+    AlignedBox3f box;
+    std::uint32_t count = 0;
 
-    void add(const Group& other) {
-      box.extend(other.box);
-      count += other.count;
+    void add(const AlignedBox3f& other, std::uint32_t how_many = 1) {
+      box.extend(other);
+      count += how_many;
     }
     /// How often it is met, by the surface of its box, times what is in it.
     double cost() const {
-      if (count == 0.0) return 0.0;
-      const Vector3d side = box.sizes();
+      if (count == 0) return 0.0;
+      const Vector3d side = box.sizes().cast<double>();
       return count * (side.x() * side.y() + side.y() * side.z() + side.z() * side.x());
     }
   };
 
-  std::size_t slab_of(std::uint32_t item, const Range& range) const {
-    const double at = boxes_[item].center()[range.axis];
-    return std::min<std::size_t>(slabs - 1,
-                                 static_cast<std::size_t>((at - range.low) * range.scale));
+  static std::size_t slab_of(const Item& item, const Range& range) {
+    return std::min<std::size_t>(
+        slabs - 1, static_cast<std::size_t>((item.middle(range.axis) - range.low) * range.scale));
   }
 
   /// Between the two slabs where the parts cost least.
   std::uint32_t cut(const Range& range) {
     std::array<Group, slabs> groups;
     for (std::uint32_t slot = range.begin; slot < range.end; ++slot) {
-      const std::uint32_t item = order_[slot];
-      groups[slab_of(item, range)].add({boxes_[item], 1.0});
+      groups[slab_of(items_[slot], range)].add(items_[slot].box);
     }
     std::array<double, slabs> cost_from{};
     Group sum;
     for (std::size_t i = slabs - 1; i > 0; --i) {
-      sum.add(groups[i]);
+      sum.add(groups[i].box, groups[i].count);
       cost_from[i] = sum.cost();
     }
     sum = {};
     double least = std::numeric_limits<double>::infinity();
     std::size_t last = 0;  // of the first part
     for (std::size_t i = 0; i + 1 < slabs; ++i) {
-      sum.add(groups[i]);  // the first and the last slab are never empty
+      sum.add(groups[i].box, groups[i].count);  // the first and the last slab are never empty
       if (const double cost = sum.cost() + cost_from[i + 1]; cost < least) {
         least = cost;
         last = i;
       }
     }
     const auto second =
-        std::partition(order_.begin() + range.begin, order_.begin() + range.end,
-                       [&](std::uint32_t item) { return slab_of(item, range) <= last; });
-    return static_cast<std::uint32_t>(second - order_.begin());
+        std::partition(items_.begin() + range.begin, items_.begin() + range.end,
+                       [&](const Item& item) { return slab_of(item, range) <= last; });
+    return static_cast<std::uint32_t>(second - items_.begin());
   }
 
   static constexpr std::size_t slabs = 16;
   static constexpr int most_cuts = 12;  ///< levels; below them parts are halved by count
   static constexpr float far_away = std::numeric_limits<float>::infinity();
 
-  std::vector<Facet>& facets_;
-  std::vector<std::uint32_t> order_;
-  std::vector<Eigen::AlignedBox3d> boxes_;
+  std::vector<Item>& items_;
 };
-
-/// Thinner than this in parts of its longest edge, the plane of a triangle is not known well.
-constexpr double sliver = 1e-6;
-
-/// Nothing for a triangle without area.
-std::vector<Facet> facets_of(const Mesh& mesh) {
-  std::vector<Facet> facets;
-  facets.reserve(mesh.triangles.size());
-  for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
-    const auto& [a, b, c] = mesh.triangles[t];
-    const Vector3d &corner = mesh.vertices[a], ab = mesh.vertices[b] - corner,
-                   ac = mesh.vertices[c] - corner;
-    const double twice_area = ab.cross(ac).norm();
-    if (twice_area == 0.0) continue;
-    const double longest = std::max({ab.squaredNorm(), ac.squaredNorm(), (ac - ab).squaredNorm()});
-    facets.push_back({{corner.x(), corner.y(), corner.z()},
-                      {ab.x(), ab.y(), ab.z()},
-                      {ac.x(), ac.y(), ac.z()},
-                      t,
-                      twice_area < sliver * longest});
-  }
-  return facets;
-}
 
 }  // namespace
 
 FacetTree facet_tree(const Mesh& mesh, unsigned threads) {
+  std::vector<Item> items = items_of(mesh, threads);
   FacetTree tree;
-  tree.facets = facets_of(mesh);
-  tree.nodes = std::move(TreeBuilder(tree.facets, threads).nodes);
+  tree.nodes = std::move(TreeBuilder(items, threads).nodes);
+  tree.facets.resize(items.size());
+  in_blocks(items.size(), threads,
+            [&](std::size_t i) { tree.facets[i] = facet_of(mesh, items[i].triangle); });
   return tree;
 }
 
