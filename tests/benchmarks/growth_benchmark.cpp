@@ -184,13 +184,19 @@ void grow_triangles(std::size_t most) {
 /// A sixteenth of a D435's pixels, with as much less density: distances stay as published.
 const geometry::Camera small_camera(geometry::CameraConfig{.width = 212, .height = 120});
 
+/// Of points at the least spacing within the resolution radius. With the published threshold, a
+/// sphere so large that it fills the image has no frontiers: nothing is sparse where images end.
+constexpr std::size_t half_a_disc = 18;
+
 void grow_views(double most_area) {
   Curve planning("plan a survey by SEE++", "views");
   Curve kept("the same survey, by the points that it keeps", "points");
   for (double area = 1.0; area <= most_area; area *= 2.0) {
     const tests::Sphere sphere{.radius = 0.5 * std::sqrt(area)};
-    survey::see::SeePlanner planner(
-        {.density = 146'000.0 / 16, .resolution_radius = 0.017 * std::cbrt(16.0)}, small_camera);
+    survey::see::SeePlanner planner({.density = 146'000.0 / 16,
+                                     .resolution_radius = 0.017 * std::cbrt(16.0),
+                                     .core_threshold = half_a_disc},
+                                    small_camera);
     std::optional<geometry::View> next =
         geometry::look_at({sphere.radius + planner.view_distance(), 0.3, 0.2}, {0, 0, 0});
     std::size_t views = 0;
@@ -212,6 +218,7 @@ void grow_views(double most_area) {
 }  // namespace
 
 int main(int argc, char** argv) {
+  std::setvbuf(stdout, nullptr, _IOLBF, BUFSIZ);  // the largest sizes may not end
   std::size_t points = 10'000'000, triangles = 10'000'000;
   double area = 32.0;
   for (int i = 1; i + 1 < argc; i += 2) {
