@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "geometry/error.h"
+#include "geometry/place/camera.h"
 #include "missions/derived/fleet.h"
 #include "missions/derived/mission_flight.h"
 #include "missions/derived/mission_priors.h"
@@ -150,12 +151,19 @@ void read_vehicles(file::MissionFile& given) {
 }
 
 /// Where no more points fit in, one is within the spacing of every place of the surface: that is as
-/// near as the registration distance asks, with a fifth of it left to the noise.
+/// near as the registration distance asks, with a fifth of it left to the noise. Points nearer to
+/// each other than a camera's rays no view could measure.
 void derive_spacing(file::MissionFile& given) {
+  if (given.gives("planner.spacing")) return;
   constexpr double share = 0.8;
+  const file::SensorConfig& sensor = given.mission.sensor;
   survey::see::SeeConfig& see = given.mission.planner.see;
-  const double covering = share * given.mission.evaluation.registration_distance;
-  if (!given.gives("planner.spacing")) see.spacing = std::min(see.effective_spacing(), covering);
+  double covering = share * given.mission.evaluation.registration_distance;
+  if (!sensor.lidar) {
+    const Eigen::Vector2d pixels = geometry::Camera(sensor.camera.camera).focal_length_px();
+    covering = std::max(covering, view_distance_of(given.mission) / std::sqrt(pixels.prod()));
+  }
+  see.spacing = std::min(see.effective_spacing(), covering);
 }
 
 /// What the building preset derives from other values, where no key says otherwise.
@@ -205,11 +213,11 @@ file::Mission resolved(file::MissionFile given, const Report& report) {
   if (mission.sensor.is_moving() && !given.gives("planner.goal")) {
     mission.planner.goal = file::PlannerGoal::minutes;
   }
-  derive_spacing(given);
   if (mission.sensor.lidar) read_lidar(given);
   check_scene(given);
   check_start(given);
   check_sensor(given);
+  derive_spacing(given);
   derive_undulation(mission);
   read_priors(given, report);
   derive_scene_box(mission);

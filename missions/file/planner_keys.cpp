@@ -74,9 +74,11 @@ std::vector<Key> density_keys() {
           integer_key("planner.core_threshold", "points", between(1, 1e6),
                       see(&See::core_threshold),
                       "k: points within r, itself counted, that make a point core.")),
-      otherwise("rho^(-1/2), or 0.8 evaluation.registration_distance if that is less",
-                number_key("planner.spacing", "m", above(0, 1e3), see(&See::spacing),
-                           "epsilon: least distance of stored measurements.")),
+      otherwise(
+          "rho^(-1/2), or 0.8 evaluation.registration_distance if that is less, but then no less "
+          "than a camera's rays are apart at the view distance",
+          number_key("planner.spacing", "m", above(0, 1e3), see(&See::spacing),
+                     "epsilon: least distance of stored measurements.")),
       otherwise("from the sensor and rho",
                 number_key("planner.view_distance", "m", above(0, 1e6), see(&See::view_distance),
                            "d: distance from a frontier to the view proposed for it.")),
