@@ -55,7 +55,7 @@ class Planner {
 
   /// Lets a stop end next_view() wherever it is: it then throws Interrupted, and may not be called
   /// again. Planners whose views take no time to speak of need not listen.
-  virtual void stop_on(std::stop_token /*stop*/) {}
+  virtual void stop_on(const std::stop_token& /*stop*/) {}
 
   /// The measurements kept so far.
   virtual const geometry::PointCloud& cloud() const = 0;

@@ -13,6 +13,7 @@ using Eigen::AlignedBox3d;
 
 std::vector<AlignedBox3d> extents_of(const std::vector<MeasuredSpace>& spaces) {
   std::vector<AlignedBox3d> extents;
+  extents.reserve(spaces.size());
   for (const MeasuredSpace& space : spaces) extents.push_back(space.extent());
   return extents;
 }
@@ -26,6 +27,7 @@ std::vector<MeasuredSpace> shared(std::vector<MeasuredSpace> spaces) {
                 "what it has measured itself");
   }
   std::vector<AlignedBox3d> known;
+  known.reserve(spaces.size());
   for (const MeasuredSpace& space : spaces) known.push_back(space.known_box());
   const BoundingTree tree(known);
   for (std::size_t i = 0; i < spaces.size(); ++i) {

@@ -52,7 +52,8 @@ class CertifiedCosts {
   /// Two stations, the lower number first.
   struct Pair {
     std::uint32_t low, high;
-    auto operator<=>(const Pair&) const = default;
+    // clang-tidy 14 takes the zero that its results are compared with for a null pointer.
+    auto operator<=>(const Pair&) const = default;  // NOLINT(modernize-use-nullptr)
   };
   using Way = std::vector<Eigen::Vector3d>;
   struct Vehicle;

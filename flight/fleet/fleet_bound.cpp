@@ -42,7 +42,7 @@ class BestTimes {
     const auto stations = static_cast<std::uint32_t>(count());
     const auto nodes = static_cast<std::uint32_t>(count() + tours);
     const auto cost = [&](std::uint32_t a, std::uint32_t b) {
-      if (a >= stations && b >= stations) return apart_;
+      if (a >= stations && b >= stations) return apart;
       if (a >= stations) return pad_[b];
       return b >= stations ? pad_[a] : between(a, b);
     };
@@ -60,7 +60,7 @@ class BestTimes {
     return time;
   }
 
-  static constexpr double apart_ = 1e6;  ///< of two copies of the pad: no tour has them in a row
+  static constexpr double apart = 1e6;  ///< of two copies of the pad: no tour has them in a row
 
   const FleetProblem& least_;
   std::vector<double> pad_;  ///< to a station or from it, whichever is shorter

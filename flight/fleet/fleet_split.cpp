@@ -41,7 +41,8 @@ double sortie_time(const FleetVehicle& vehicle, std::span<const std::uint32_t> s
     add(vehicle.station[stations[i]]);
   }
   add(vehicle.back[stations.back()]);
-  return std::max(sum.energy, sum.emergency) > vehicle.energy_per_sortie ? never : sum.time;
+  if (std::max(sum.energy, sum.emergency) > vehicle.energy_per_sortie) return never;
+  return sum.time;
 }
 
 FleetSplit added_up(std::vector<FleetPart> parts) {
@@ -71,7 +72,8 @@ double part_time(const FleetVehicle& vehicle, std::span<const std::uint32_t> sta
   if (stations.empty()) return 0.0;
   if (const double time = sortie_time(vehicle, stations); time < never) return time;
   const SortieSplit split = split_into_sorties(split_problem(vehicle, stations));
-  return split.sorties.empty() ? never : split.time;
+  if (split.sorties.empty()) return never;
+  return split.time;
 }
 
 FleetSplit split_among(const FleetProblem& problem, std::span<const std::uint32_t> order,

@@ -109,11 +109,13 @@ class Scheduler {
     for (const std::size_t j : placed) {
       last = std::max(last, starts[j] + durations_[j] + std::ceil(2.0 * rule_.tolerance) + 1.0);
     }
-    for (double start = ready; start < last; start += later_by) {
+    double start = ready;
+    while (start < last) {
       const bool is_free = std::ranges::all_of(placed, [&](std::size_t j) {
         return sorties_[i].vehicle == sorties_[j].vehicle || is_apart(i, start, j, starts[j]);
       });
       if (is_free) return start;
+      start += later_by;
     }
     return last;
   }

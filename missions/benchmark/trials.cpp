@@ -57,6 +57,7 @@ std::optional<double> reference_of(const file::Mission& mission, const Figure& f
 
 Statistic statistic_of(const std::vector<Trial>& trials, const Figure& figure) {
   std::vector<double> numbers;
+  numbers.reserve(trials.size());
   for (const Trial& trial : trials) numbers.push_back(figure.of(trial));
   return statistic(numbers);
 }
@@ -124,7 +125,8 @@ Statistic statistic(const std::vector<double>& numbers) {
   return {mean, deviation, t * deviation / std::sqrt(count)};
 }
 
-SceneTruth scene_truth(const scene::SurveyScene& scene, unsigned threads, std::stop_token stop) {
+SceneTruth scene_truth(const scene::SurveyScene& scene, unsigned threads,
+                       const std::stop_token& stop) {
   SceneTruth truth{scene.visible(threads, stop), {}};
   if (const auto marks = scene.attainable(truth.is_visible, threads, stop)) {
     truth.ceiling = judge::marked_share(*marks);

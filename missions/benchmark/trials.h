@@ -23,7 +23,7 @@ struct SceneTruth {
 
 /// Takes seconds to minutes. Of no use once `stop` is requested.
 SceneTruth scene_truth(const scene::SurveyScene& scene, unsigned threads,
-                       std::stop_token stop = {});
+                       const std::stop_token& stop = {});
 
 /// What it took until a frontier that views were aimed at was observed: paper Figure 6.
 struct ObservedTarget {

@@ -57,7 +57,7 @@ benchmark::SceneTruth truth_of(const Setup& setup, const scene::SurveyScene& sce
 
 }  // namespace
 
-PreparedScenes::PreparedScenes(std::map<std::string, std::size_t> uses, unsigned threads) {
+PreparedScenes::PreparedScenes(const std::map<std::string, std::size_t>& uses, unsigned threads) {
   for (const auto& [title, count] : uses) slots_[title].uses = count;
   const auto scenes = static_cast<unsigned>(std::max<std::size_t>(1, slots_.size()));
   threads_ = std::max(1U, geometry::thread_count(threads) / scenes);

@@ -27,7 +27,7 @@ class PreparedScenes {
  public:
   /// `uses` are how often each title's scene will be taken. All scenes together are made ready with
   /// `threads` threads.
-  PreparedScenes(std::map<std::string, std::size_t> uses, unsigned threads);
+  PreparedScenes(const std::map<std::string, std::size_t>& uses, unsigned threads);
 
   /// The scene of the setup's mission, for one use; null if `stop` came first. `preparing` is
   /// called before it is made ready. Throws what that throws, each time, and Error{bad_config} if

@@ -374,7 +374,7 @@ SeePlanner::~SeePlanner() = default;
 
 std::optional<View> SeePlanner::next_view(const ScanSpan& scan) { return impl_->update(scan); }
 
-void SeePlanner::stop_on(std::stop_token stop) { impl_->stop = std::move(stop); }
+void SeePlanner::stop_on(const std::stop_token& stop) { impl_->stop = stop; }
 
 std::optional<View> SeePlanner::next_view_instead() {
   if (impl_->target && impl_->frontiers.contains(*impl_->target)) {

@@ -374,7 +374,7 @@ std::optional<View> SkycapPlanner::next_view_instead() {
 const geometry::PointCloud& SkycapPlanner::cloud() const { return impl_->kept.cloud(); }
 geometry::PointCloud SkycapPlanner::release_cloud() { return impl_->kept.release_cloud(); }
 const PlanningStep& SkycapPlanner::last_step() const { return impl_->step; }
-void SkycapPlanner::stop_on(std::stop_token stop) { impl_->chooser.stop = std::move(stop); }
+void SkycapPlanner::stop_on(const std::stop_token& stop) { impl_->chooser.stop = stop; }
 SkycapStop SkycapPlanner::stop() const { return impl_->stop; }
 double SkycapPlanner::predicted_coverage() const { return impl_->predicted_coverage(); }
 SurveyBelief SkycapPlanner::belief() const { return impl_->belief(); }

@@ -53,7 +53,7 @@ class SkycapPlanner final : public Planner {
   /// promised.
   void pass(const geometry::ScanSpan& scan) override;
   std::optional<geometry::View> next_view_instead() override;
-  void stop_on(std::stop_token stop) override;
+  void stop_on(const std::stop_token& stop) override;
   const geometry::PointCloud& cloud() const override;
   geometry::PointCloud release_cloud() override;
   const PlanningStep& last_step() const override;

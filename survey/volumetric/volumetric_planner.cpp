@@ -123,7 +123,7 @@ VolumetricPlanner::VolumetricPlanner(const VolumetricConfig& config, const geome
 
 VolumetricPlanner::~VolumetricPlanner() = default;
 
-void VolumetricPlanner::stop_on(std::stop_token stop) { impl_->stop = std::move(stop); }
+void VolumetricPlanner::stop_on(const std::stop_token& stop) { impl_->stop = stop; }
 const geometry::PointCloud& VolumetricPlanner::cloud() const { return impl_->cloud; }
 geometry::PointCloud VolumetricPlanner::release_cloud() { return std::move(impl_->cloud); }
 const PlanningStep& VolumetricPlanner::last_step() const { return impl_->step; }

@@ -44,7 +44,7 @@ class VolumetricPlanner final : public Planner {
 
   std::optional<geometry::View> next_view(const geometry::ScanSpan& scan) override;
   std::optional<geometry::View> next_view_instead() override;
-  void stop_on(std::stop_token stop) override;
+  void stop_on(const std::stop_token& stop) override;
   const geometry::PointCloud& cloud() const override;
   geometry::PointCloud release_cloud() override;
   const PlanningStep& last_step() const override;

@@ -177,7 +177,7 @@ class StoppedPlanner final : public Planner {
     return next;
   }
   std::optional<View> next_view_instead() override { return walking_.next_view_instead(); }
-  void stop_on(std::stop_token stop) override { stop_ = std::move(stop); }
+  void stop_on(const std::stop_token& stop) override { stop_ = stop; }
   const geometry::PointCloud& cloud() const override { return walking_.cloud(); }
   geometry::PointCloud release_cloud() override { return walking_.release_cloud(); }
   const PlanningStep& last_step() const override { return walking_.last_step(); }
