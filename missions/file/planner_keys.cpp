@@ -23,6 +23,7 @@ Key idea(const std::string& name, bool survey::skycap::SkycapIdeas::*member,
 
 std::vector<std::string> planner_words() {
   std::vector<std::string> words;
+  words.reserve(std::size(planner_titles));
   for (const PlannerTitle& planner : planner_titles) words.emplace_back(planner.word);
   return words;
 }
