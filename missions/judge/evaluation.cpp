@@ -94,7 +94,8 @@ std::vector<std::uint8_t> attainable_samples(std::span<const Vector3f> samples,
                                              std::span<const std::uint8_t> is_visible,
                                              const sim::Scene& scene, const TakeScan& take_scan,
                                              const Admissible& admissible,
-                                             const CeilingConfig& config, std::stop_token stop) {
+                                             const CeilingConfig& config,
+                                             const std::stop_token& stop) {
   const std::vector<Vector3d> directions = fibonacci_directions(admissible.directions);
   std::mt19937_64 random(config.seed);
   std::vector<std::uint32_t> targets;  // visible samples in random order

@@ -64,6 +64,6 @@ std::vector<std::uint8_t> attainable_samples(std::span<const Eigen::Vector3f> sa
                                              const sim::Scene& scene, const TakeScan& take_scan,
                                              const Admissible& admissible,
                                              const CeilingConfig& config,
-                                             std::stop_token stop = {});
+                                             const std::stop_token& stop = {});
 
 }  // namespace skycap::missions::judge

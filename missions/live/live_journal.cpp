@@ -127,7 +127,8 @@ std::vector<LiveEvent> events_of(const std::vector<std::string>& records, const 
   for (std::size_t i = 1; i < records.size(); ++i) {
     const auto fail = [&](const std::string& what) {
       throw Error(ErrorKind::bad_file,
-                  file + ": line " + std::to_string(i + 1) + " cannot be used: " + what);
+                  std::string(file).append(": line ").append(std::to_string(i + 1)) +
+                      " cannot be used: " + what);
     };
     try {
       add_record(geometry::parse_json<Json>(records[i]), events);

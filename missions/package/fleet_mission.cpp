@@ -121,6 +121,7 @@ class FleetSpace {
 
 std::vector<flight::FleetMember> flown_members(const std::vector<FleetMember>& members) {
   std::vector<flight::FleetMember> flown;
+  flown.reserve(members.size());
   for (const FleetMember& member : members) {
     flown.push_back({derived::vehicle_of(member.mission),
                      derived::route_options_of(member.mission, member.pad)});
@@ -183,7 +184,7 @@ void stage_fleet(FleetMission& fleet, const flight::MeasuredSpace& measured,
 
 FleetMission plan_fleet(const file::Mission& mission, const flight::MeasuredSpace& measured,
                         const flight::Route& alone, std::span<const flight::PadGround> grounds,
-                        std::stop_token stop) {
+                        const std::stop_token& stop) {
   FleetMission fleet;
   const std::vector<Vector3d> pads = derived::pads_of_fleet(mission, alone.options.takeoff);
   for (std::size_t v = 0; v < pads.size(); ++v) {

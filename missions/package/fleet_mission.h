@@ -49,7 +49,7 @@ inline constexpr double reported_distance = 100.0;
 /// vehicle flies too low over where another one stands.
 FleetMission plan_fleet(const file::Mission& mission, const flight::MeasuredSpace& measured,
                         const flight::Route& alone, std::span<const flight::PadGround> grounds,
-                        std::stop_token stop = {});
+                        const std::stop_token& stop = {});
 
 /// The same with every vehicle's route files in these formats and its own autopilot's, and the
 /// timetable, staged.

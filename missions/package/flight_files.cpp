@@ -91,7 +91,7 @@ bool has_parameters(Format format) { return format == Format::plan || format == 
 
 /// The parameter file, read back: it must say what was proven.
 std::string checked_parameters(const flight::FlightPlan& plan) {
-  const std::string text = flight::write_parameters(plan);
+  std::string text = flight::write_parameters(plan);
   const flight::Dialect dialect = plan.vehicle.dialect;
   const std::vector<flight::Parameter> read = flight::read_parameters(text);
   flight::throw_first(flight::return_problems(read, dialect), "not good parameters");

@@ -62,7 +62,7 @@ Eigen::AlignedBox3d encode_on_grid(const CoordinateGrid& grid, const sim::LidarR
   Eigen::AlignedBox3d box;
   const auto units = [&](const Eigen::Vector3f& point) -> Eigen::Vector3d {
     const Eigen::Vector3d local = returns.origin + point.cast<double>();
-    const Eigen::Vector3d place = (grid.projection->to_map(local) - grid.offset) * per_unit;
+    Eigen::Vector3d place = (grid.projection->to_map(local) - grid.offset) * per_unit;
     box.extend(place);
     return place;
   };

@@ -72,7 +72,7 @@ void ScanJournal::begin(const std::string& identity) {
 }
 
 fs::path ScanJournal::path_to_change(const std::string& name) const {
-  const fs::path path = folder_ / name;
+  fs::path path = folder_ / name;
   std::error_code missing;
   if (fs::hard_link_count(path, missing) > 1 && !missing) {
     const fs::path own = folder_ / ("own-" + name);

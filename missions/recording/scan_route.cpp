@@ -233,9 +233,10 @@ sim::Trajectory orbit_trajectory(const file::OrbitConfig& orbit) {
                     " are made; fly faster, or fewer or smaller circles");
   }
   std::vector<sim::StampedPose> poses;
-  for (double time = 0.0; time < duration - 1e-6;
-       time = interval * static_cast<double>(poses.size())) {
+  double time = 0.0;
+  while (time < duration - 1e-6) {
     poses.push_back(pose_after(time, time * orbit.speed));
+    time = interval * static_cast<double>(poses.size());
   }
   poses.push_back(pose_after(duration, length));
   return sim::Trajectory(std::move(poses));

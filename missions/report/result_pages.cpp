@@ -82,6 +82,7 @@ std::vector<MadePage> made_pages(const fs::path& folder, std::size_t most_points
                     "folder of their own");
   }
   std::vector<MadePage> pages;
+  pages.reserve(found.size());
   for (const ResultPage& page : found) {
     pages.push_back({out.value_or(folder / page.name), page.make(results_in(folder), most_points)});
   }

@@ -240,6 +240,7 @@ FlownSurvey SurveyFlight::finish(const std::vector<geometry::View>& views) {
   // Less the way to a scan that counts as not taken, if planning was interrupted.
   if (impl_->survey.legs.size() > views.size()) impl_->survey.legs.resize(views.size());
   std::vector<geometry::View> carriers;
+  carriers.reserve(views.size());
   for (const geometry::View& view : views) carriers.push_back(impl_->carrier(view));
   impl_->survey.times = impl_->motion.survey_times(impl_->survey.legs, carriers);
   impl_->survey.measured = std::move(impl_->measured);

@@ -186,7 +186,7 @@ geometry::View SurveyScene::first_view(std::uint64_t seed) const {
   constexpr int most_attempts = 10'000;
   for (int attempt = 0; attempt < most_attempts; ++attempt) {
     const Vector3d position = view_sphere_.centre + view_sphere_.radius * uniform_direction(random);
-    const geometry::View view = geometry::look_at(position, view_sphere_.centre);
+    geometry::View view = geometry::look_at(position, view_sphere_.centre);
     if (limits.allow(view) && derived::is_in_known_airspace(mission_, position) &&
         is_reachable(position)) {
       return view;
@@ -220,7 +220,8 @@ judge::Admissible SurveyScene::admissible() const {
           .clearance = 0.01 * mission_.evaluation.registration_distance};
 }
 
-std::vector<std::uint8_t> SurveyScene::visible(unsigned threads, std::stop_token stop) const {
+std::vector<std::uint8_t> SurveyScene::visible(unsigned threads,
+                                               const std::stop_token& stop) const {
   const std::filesystem::path cached = user_cache() / "visible" / ceiling_key();
   if (auto known = marks_in_file(cached, samples_.points.size())) return std::move(*known);
   std::vector<std::uint8_t> marks =
@@ -234,7 +235,8 @@ std::vector<std::uint8_t> SurveyScene::visible(unsigned threads, std::stop_token
 }
 
 std::optional<std::vector<std::uint8_t>> SurveyScene::attainable(
-    const std::vector<std::uint8_t>& is_visible, unsigned threads, std::stop_token stop) const {
+    const std::vector<std::uint8_t>& is_visible, unsigned threads,
+    const std::stop_token& stop) const {
   if (mission_.evaluation.ceiling_views == 0) return std::nullopt;
   const std::filesystem::path cached = user_cache() / "ceilings" / ceiling_key();
   if (auto known = marks_in_file(cached, samples_.points.size())) return known;

@@ -54,14 +54,14 @@ class SurveyScene {
 
   /// For each sample, 1 if an admissible sensor position sees it. Takes a second or more, but is
   /// kept in the user's cache as attainable() is; of no use once `stop` is requested.
-  std::vector<std::uint8_t> visible(unsigned threads, std::stop_token stop = {}) const;
+  std::vector<std::uint8_t> visible(unsigned threads, const std::stop_token& stop = {}) const;
 
   /// For each sample, 1 if it is attainable with the mission's sensor and spacing, see
   /// judge::attainable_samples(). Takes seconds to minutes; kept in the user's cache under a
   /// checksum of everything it depends on. Nothing if the mission leaves it out, or if stopped.
   std::optional<std::vector<std::uint8_t>> attainable(const std::vector<std::uint8_t>& is_visible,
                                                       unsigned threads,
-                                                      std::stop_token stop = {}) const;
+                                                      const std::stop_token& stop = {}) const;
 
   /// Where the mission lets the sensor look at the scene from; refers to this scene.
   judge::Admissible admissible() const;

@@ -42,7 +42,8 @@ std::optional<Vector3d> PadSearch::beside(const AlignedBox3d& unknown, double to
   const double wanted = 3.0 * clearance;
   const Vector2d middle = unknown.center().head<2>();
   const Vector2d corner = 0.5 * std::numbers::sqrt2 * unknown.sizes().head<2>();
-  for (double beside = first; beside <= farthest; beside += step) {
+  for (int steps = 0; first + steps * step <= farthest; ++steps) {
+    const double beside = first + steps * step;
     Vector3d best = Vector3d::Zero();
     double most_room = wanted;
     for (int i = 0; i < directions; ++i) {

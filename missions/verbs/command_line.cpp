@@ -286,6 +286,7 @@ int parse_and_run(const std::vector<std::string>& arguments, const Console& cons
   Action action;
   try {
     // So that tests and comparisons can do on this processor what another one would.
+    // NOLINTNEXTLINE(concurrency-mt-unsafe): nothing sets variables
     if (const char* const widest = std::getenv("SKYCAP_INSTRUCTION_SET")) {
       geometry::limit_instruction_set(widest);
     }

@@ -37,7 +37,7 @@ std::vector<CLI::Option*> add_task_options(CLI::App& verb, TaskOptions& options,
                                            const std::string& item) {
   verb.add_option("--chunk", options.chunk, "Of a task, so many " + item + "s; default 1")
       ->check(CLI::Range(1, 1'000'000));
-  const std::vector<CLI::Option*> all{
+  std::vector<CLI::Option*> all{
       verb.add_option("--index", options.index,
                       "Run one task: its number from 0 on, or slurm, mpi, kubernetes, parallel or "
                       "auto for the one that the engine's environment says"),

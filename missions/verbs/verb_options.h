@@ -56,7 +56,7 @@ void run(CLI::App& verb, std::shared_ptr<Options> options,
 /// The same with those that are keys of the mission file as its overrides.
 template <class Options>
 void run_with_keys(CLI::App& verb, std::shared_ptr<Options> options,
-                   std::shared_ptr<KeyOptions> keys,
+                   const std::shared_ptr<KeyOptions>& keys,
                    int (*run_verb)(const Options&, const Console&), const Console& console,
                    Action& action) {
   verb.callback([=, &console, &action] {

@@ -51,7 +51,7 @@ bool is_too_slanted(const RayPacket& packet, int lane, float min_cosine) {
 void store_depths(const RayPacket& packet, const Limits& limits, std::ptrdiff_t stride,
                   float* depths) {
   const FourFloats none = FourFloats{} + no_return;
-  for (int row = 0; row < packet_rows; ++row) {
+  for (std::ptrdiff_t row = 0; row < packet_rows; ++row) {
     const auto hit = four<FourFloats>(packet.distance + row * packet_columns);
     const FourFloats depth = hit < limits.min_depth ? none : hit;
     std::memcpy(depths + row * stride, &depth, sizeof depth);
@@ -296,6 +296,7 @@ Scan DepthCamera::scan(const Scene& scene, const Eigen::Isometry3d& believed,
   const Scene::Trees& trees = scene.trees();
   const RayTable table(camera_, believed, trees.centre);
   std::vector<MovingRays> instants;
+  instants.reserve(static_cast<std::size_t>(motion.instants));
   for (int i = 0; i < motion.instants; ++i) {
     instants.emplace_back(camera_, motion, i, trees.centre);
   }

@@ -53,7 +53,7 @@ struct RayTable {
       FourFloats four_columns;
       std::memcpy(&four_columns, columns[axis].data() + first_column, sizeof four_columns);
       const float* const row = rows[axis].data() + first_row;
-      for (int y = 0; y < packet_rows; ++y) {
+      for (std::ptrdiff_t y = 0; y < packet_rows; ++y) {
         put_four(packet.direction[axis] + y * packet_columns, four_columns + row[y]);
       }
     }
@@ -72,7 +72,7 @@ class MovingRays {
     FourFloats slopes;
     std::memcpy(&slopes, slopes_.data() + first_column, sizeof slopes);
     for (int axis = 0; axis < 3; ++axis) {
-      for (int y = 0; y < packet_rows; ++y) {
+      for (std::ptrdiff_t y = 0; y < packet_rows; ++y) {
         const Row& row = rows_[first_row + y];
         put_four(packet.direction[axis] + y * packet_columns,
                  slopes * row.right[axis] + row.ahead[axis]);

@@ -29,12 +29,13 @@ bool OcclusionTest::is_occluded(const Vector3d& frontier, double offset,
 
   // The samples are at offset + step * radius; a hair of tolerance keeps the last one, at the end.
   const double last_step = std::floor((end - offset) / config_.radius + 1e-9);
-  for (double step = 0; step <= last_step; ++step) {
+  double step = 0.0;
+  while (step <= last_step) {
     const Vector3d centre = frontier + (offset + step * config_.radius) * direction;
     if (grid_.any_within(centre.cast<float>(), config_.radius)) return true;
     // Wide empty space is passed in one go. One step is held back for the rounding of positions.
     const double empty = grid_.empty_length(centre.cast<float>(), direction.cast<float>());
-    step += std::max(0.0, std::floor(empty / config_.radius) - 1.0);
+    step += std::max(1.0, std::floor(empty / config_.radius));
   }
   return false;
 }

@@ -35,9 +35,11 @@ class SeenThrough {
   /// the front first, every `step` as far as `limit`, until one turns out to be.
   bool is_free_behind(const Eigen::Vector3d& place, const Eigen::Vector3d& normal, double step,
                       double limit) const {
-    for (double along = step; along <= limit; along += step) {
+    double along = step;
+    while (along <= limit) {
       if (is_free(place + along * normal)) return false;
       if (is_free(place - along * normal)) return true;
+      along += step;
     }
     return false;
   }

@@ -57,6 +57,7 @@ struct Function {
   double least, greatest;  // magnitudes of arguments, spread evenly over exponents
   double bound;            // ulp
 };
+// NOLINTNEXTLINE(readability-identifier-naming): gtest looks for it
 void PrintTo(const Function& function, std::ostream* out) { *out << function.name; }
 
 class Elementary : public testing::TestWithParam<Function> {};

@@ -82,7 +82,7 @@ void DepthRaster::draw_square(const RasterView& view, const Square& square) {
   const int end = std::min(view.stride, column + square.size);
   for (int r = std::max(0, row); r < std::min(rows, row + square.size); ++r) {
     for (int c = std::max(0, column); c < end; ++c) {
-      float& nearest = depths_[static_cast<std::size_t>(r * view.stride + c)];
+      float& nearest = depths_[static_cast<std::size_t>(r) * view.stride + c];
       nearest = std::min(nearest, square.depth);
     }
   }

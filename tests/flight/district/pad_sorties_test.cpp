@@ -82,7 +82,8 @@ TEST(PadSorties, OrderThousandsOfStationsNearlyAsShortAsAllAtOnce) {
   std::mt19937_64 random(3);
   Stations given;
   for (std::uint32_t target = 0; target < 240; ++target) {
-    given.add({40.0 * (target % 16), 40.0 * (target / 16), 15}, 5, target, random);
+    const std::uint32_t row = target / 16;
+    given.add({40.0 * (target % 16), 40.0 * row, 15}, 5, target, random);
   }
   const std::vector<Vector3d> pads{{-30, -30, 0}};
   const PadSorties sorties = sorties_from_pads(given.stations, given.targets, pads, 5.0, motion());

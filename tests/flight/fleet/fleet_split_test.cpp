@@ -75,7 +75,8 @@ std::vector<double> best_tours(const FleetVehicle& vehicle) {
     for (std::uint32_t last = 0; last < count; ++last) {
       const std::size_t before = set & ~(std::size_t{1} << last);
       if (before == set) continue;
-      double way = before == 0 ? vehicle.out[last].time : never;
+      double way = never;
+      if (before == 0) way = vehicle.out[last].time;
       for (std::uint32_t from = 0; from < count; ++from) {
         way = std::min(way, ways[before * count + from] + vehicle.leg(from, last).time);
       }

@@ -53,7 +53,8 @@ TEST(Timetable, DelaysAsLittleAsCanBeWhereTwoCross) {
   EXPECT_TRUE(first_conflict(flights_of(sorties, {.starts = {0.0, 0.0}}), vehicles, rule));
   const Timetable table = timetable(sorties, 2, rule);
   EXPECT_FALSE(first_conflict(flights_of(sorties, table), vehicles, rule));
-  for (double later = 0.0; later < 60.0; later += 1.0) {
+  for (int seconds = 0; seconds < 60; ++seconds) {
+    const double later = seconds;
     for (const auto& starts : {std::vector<double>{0.0, later}, std::vector<double>{later, 0.0}}) {
       const std::vector<TimedFlight> flights = flights_of(sorties, {.starts = starts});
       if (first_conflict(flights, vehicles, rule)) continue;

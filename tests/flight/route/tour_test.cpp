@@ -18,6 +18,7 @@ using Eigen::Vector3d;
 std::vector<Vector3d> places(std::uint64_t seed, int count) {
   std::mt19937_64 random(seed);
   std::vector<Vector3d> result;
+  result.reserve(static_cast<std::size_t>(count));
   for (int i = 0; i < count; ++i) {
     result.push_back(scenes::point_in(random, {Vector3d::Zero(), Vector3d(60, 60, 20)}));
   }
@@ -99,6 +100,7 @@ double best_sortie(const SplitProblem& problem, std::size_t first, std::size_t l
 /// Exhaustive twin of the split: every subset of the gaps between stations.
 double best_by_trying_all(const SplitProblem& problem) {
   const std::size_t count = problem.station.size();
+  if (count == 0) return 0.0;
   double best = std::numeric_limits<double>::infinity();
   for (std::uint32_t cuts = 0; cuts < 1U << (count - 1); ++cuts) {
     double total = 0.0;

@@ -28,6 +28,7 @@ struct Scene {
   double clearance;
 };
 
+// NOLINTNEXTLINE(readability-identifier-naming): gtest looks for it
 void PrintTo(const Scene& scene, std::ostream* out) { *out << scene.name; }
 
 class RandomScene : public testing::TestWithParam<Scene> {};

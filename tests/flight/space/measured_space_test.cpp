@@ -165,8 +165,9 @@ TEST(MeasuredSpace, WhatASweepProvesIsTrulyFreeWhicheverWayItsAxisLies) {
 TEST(MeasuredSpace, ScatteredRaysProveNothingBesideACellThatNoneHit) {
   const auto space_with_hole = [](double hole_at) {
     geometry::Scan scan;  // along z
-    for (double x = -5.0; x < 5.0; x += 0.05) {
-      for (double y = -5.0; y < 5.0; y += 0.05) {
+    for (int i = -100; i < 100; ++i) {
+      for (int j = -100; j < 100; ++j) {
+        const double x = 0.05 * i, y = 0.05 * j;
         if (std::hypot(x - hole_at, y) > 0.4) scan.points.emplace_back(x, y, 10.0);
       }
     }

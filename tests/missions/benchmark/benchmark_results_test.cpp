@@ -13,7 +13,6 @@
 namespace skycap::missions {
 namespace {
 
-using testing::DoubleEq;
 using testing::HasSubstr;
 
 /// A survey of three views: 0, 1 and 3 m, after 1, 2 and 4 s.

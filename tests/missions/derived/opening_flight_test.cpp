@@ -36,7 +36,8 @@ constexpr const char* block = "{min: [-100, -60, 0], max: [100, 60, 30]}";
 double nearest(const std::vector<View>& views, const AlignedBox3d& box) {
   double least = 1e9;
   for (std::size_t i = 1; i < views.size(); ++i) {
-    for (double share = 0.0; share <= 1.0; share += 0.01) {
+    for (int hundredth = 0; hundredth <= 100; ++hundredth) {
+      const double share = 0.01 * hundredth;
       const Vector3d at =
           views[i - 1].position + share * (views[i].position - views[i - 1].position);
       least = std::min(least, box.exteriorDistance(at));

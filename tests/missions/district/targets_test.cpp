@@ -72,6 +72,7 @@ TEST(Groups, AreOfWhatIsNearerThanAsked) {
 // A street of houses that share walls is not one survey.
 TEST(Groups, AreNoLargerThanASurvey) {
   std::vector<prior::Object> street;
+  street.reserve(20);
   for (int i = 0; i < 20; ++i) {
     street.push_back(object(std::to_string(i), box({10.0 * i, 0, 0}, {10.0 * i + 10, 10, 8})));
   }

@@ -33,7 +33,7 @@ std::uint16_t free_port() {
   address.sin_family = AF_INET;
   address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
   socklen_t size = sizeof address;
-  ::bind(handle, reinterpret_cast<const sockaddr*>(&address), size);
+  EXPECT_EQ(::bind(handle, reinterpret_cast<const sockaddr*>(&address), size), 0);
   ::getsockname(handle, reinterpret_cast<sockaddr*>(&address), &size);
   ::close(handle);
   return ntohs(address.sin_port);

@@ -21,6 +21,7 @@ std::vector<Vector3f> noisy_points(int count, float sigma) {
   std::uniform_real_distribution<float> uniform(-1.9F, 1.9F);
   std::normal_distribution<float> noise(0.0F, sigma);
   std::vector<Vector3f> points;
+  points.reserve(static_cast<std::size_t>(count));
   for (int i = 0; i < count; ++i) {
     points.push_back(Vector3f{uniform(random), uniform(random), noise(random)});
   }

@@ -139,8 +139,9 @@ class GridFlood {
   }
 
   static Vector3d place(int node) {
-    return step * Vector3d(node % count - count / 2, node / count % count - count / 2,
-                           node / (count * count) - count / 4);
+    const Eigen::Vector3i cell(node % count - count / 2, node / count % count - count / 2,
+                               node / (count * count) - count / 4);
+    return step * cell.cast<double>();
   }
 
   std::vector<bool> is_reached;
@@ -154,6 +155,7 @@ TEST(ReachableSpace, LiesBetweenAStricterAndALooserGrid) {
     const geometry::Mesh mesh = cluttered_room(seed);
     const geometry::MeshDistance distance(mesh);
     std::vector<double> distances;
+    distances.reserve(GridFlood::count * GridFlood::count * GridFlood::count);
     for (int i = 0; i < GridFlood::count * GridFlood::count * GridFlood::count; ++i) {
       distances.push_back(distance.distance(GridFlood::place(i)));
     }

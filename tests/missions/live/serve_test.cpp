@@ -131,6 +131,7 @@ TEST(Serve, FedByTheSimulatorIsWhatPlanDoes) {
 /// With SHIPPED_VIEWS those that have no limits end after so many.
 TEST(Serve, FedByTheSimulatorIsWhatPlanDoesWithShippedMissions) {
   const std::filesystem::path missions = std::filesystem::path(SKYCAP_SOURCE_DIR) / "missions";
+  // NOLINTNEXTLINE(concurrency-mt-unsafe): nothing sets variables
   const char *given = std::getenv("SHIPPED_MISSIONS"), *views = std::getenv("SHIPPED_VIEWS");
   std::istringstream names(given == nullptr ? "teapot" : given);
   for (std::string name; names >> name;) {
@@ -261,6 +262,7 @@ TEST_F(SessionAnswers, GiveCloudsOfTheSensorsFrameTheirPixels) {
   const std::string payload(reinterpret_cast<const char*>(places.data()),
                             places.size() * sizeof places[0]);
   std::vector<Eigen::Vector3d> points;
+  points.reserve(places.size());
   for (const Eigen::Vector3f& place : places) points.push_back(place.cast<double>());
   nlohmann::ordered_json header = scan_header(0, scan);
   header["format"] = "cloud";

@@ -70,7 +70,7 @@ class ScanRouteFile : public testing::Test {
     EXPECT_TRUE(seen.direction.isApprox(view.direction, 1e-5)) << seen.direction.transpose();
   }
 
-  const tests::TestFolder folder;
+  const tests::TestFolder folder{};
   file::Mission mission;
   const View first = geometry::look_at({10, 0, 5}, {0, 0, 3});
   const View second = geometry::look_at({10, 8, 5}, {0, 0, 9});

@@ -27,6 +27,7 @@ struct BadInput {
   std::vector<std::string> arguments = {};  ///< after "plan MISSION --out OUT"
 };
 
+// NOLINTNEXTLINE(readability-identifier-naming): gtest looks for it
 void PrintTo(const BadInput& input, std::ostream* stream) { *stream << input.name; }
 
 const std::string model = "scene: {model: 'builtin:teapot'}\n";

@@ -88,7 +88,8 @@ TEST(Triangulate, CoversStarsWithCornersInStraightSides) {
 TEST(Triangulate, CoversArcadesOfAnyWidth) {
   const Fineness fine{0.01};
   for (int bays = 3; bays <= 12; ++bays) {
-    for (double width = 3.9 * bays; width < 4.3 * bays; width += 0.013 * bays) {
+    for (int step = 0; step < 31; ++step) {
+      const double width = (3.9 + 0.013 * step) * bays;
       const double bay = width / bays, pier = 0.9, radius = 0.5 * (bay - pier), springing = 2.6;
       const double top = springing + radius + 0.7, end = 0.5 * width + 0.5 * pier;
       Profile outline(fine, -end, top);

@@ -23,8 +23,9 @@ std::vector<RayPacket> tile(std::mt19937_64& random, std::size_t count, float wi
   std::vector<RayPacket> packets(count);
   for (std::size_t i = 0; i < count; ++i) {
     for (int lane = 0; lane < RayPacket::width; ++lane) {
-      const float x = static_cast<float>(i % 4 * 4 + lane % 4) / 16.0F;
-      const float y = static_cast<float>(i / 4 * 4 + lane / 4) / 16.0F;
+      const std::size_t column = i % 4 * 4 + lane % 4, row = i / 4 * 4 + lane / 4;
+      const float x = static_cast<float>(column) / 16.0F;
+      const float y = static_cast<float>(row) / 16.0F;
       const Vector3f direction = ahead + width * (x * right + y * down);
       for (int axis = 0; axis < 3; ++axis) {
         packets[i].origin[axis][lane] = origin[axis];

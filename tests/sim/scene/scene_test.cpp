@@ -282,6 +282,7 @@ TEST(Scene, CopiesTakeNoMemoryToSpeakOf) {
   const geometry::Mesh ball = sphere({0, 0, 0}, 1.0, 7);
   ASSERT_EQ(ball.triangles.size(), 131'072U);
   std::vector<Eigen::Isometry3d> places;
+  places.reserve(200);
   for (int i = 0; i < 200; ++i) places.push_back(place({3.0 * i, 0, 0}, 0.1 * i));
   const std::size_t before = resident_bytes();
   const Scene scene(std::array{ScenePart{ball, {}, places}}, 1);
