@@ -94,6 +94,14 @@ bool has_area(const Facet& facet) {
   return of.to_second.cross(of.to_third).norm() != 0.0;
 }
 
+/// Boxes end there as long as the tree is made, so that their middles are numbers.
+constexpr float far_off = 1e37F;
+constexpr float endless = std::numeric_limits<float>::infinity();
+
+float within(float x) { return std::clamp(x, -far_off, far_off); }
+float low_end(float x) { return x > -far_off ? x : -endless; }
+float high_end(float x) { return x < far_off ? x : endless; }
+
 /// What the tree is made of: the box around a triangle, in floats that leave nothing outside.
 struct Item {
   AlignedBox3f box;
@@ -105,8 +113,8 @@ struct Item {
     Eigen::AlignedBox3d exact(of.corner);
     exact.extend(of.corner + of.to_second).extend(of.corner + of.to_third);
     for (int axis = 0; axis < 3; ++axis) {
-      box.min()[axis] = below(exact.min()[axis]);
-      box.max()[axis] = above(exact.max()[axis]);
+      box.min()[axis] = within(below(exact.min()[axis]));
+      box.max()[axis] = within(above(exact.max()[axis]));
     }
   }
   /// Twice its middle.
@@ -195,8 +203,8 @@ class TreeBuilder {
     AlignedBox3f box;
     for (std::uint32_t slot = begin; slot < end; ++slot) box.extend(items_[slot].box);
     for (int axis = 0; axis < 3; ++axis) {
-      node.low[axis][lane] = begin < end ? box.min()[axis] : far_away;
-      node.high[axis][lane] = begin < end ? box.max()[axis] : far_away;
+      node.low[axis][lane] = begin < end ? low_end(box.min()[axis]) : endless;
+      node.high[axis][lane] = begin < end ? high_end(box.max()[axis]) : endless;
     }
     node.child[lane] =
         end - begin > 1 ? build(begin, end, depth + 1, made) : begin | FacetNode::is_facet;
@@ -283,7 +291,6 @@ class TreeBuilder {
 
   static constexpr std::size_t slabs = 16;
   static constexpr int most_cuts = 12;  ///< levels; below them parts are halved by count
-  static constexpr float far_away = std::numeric_limits<float>::infinity();
 
   std::vector<Item>& items_;
 };

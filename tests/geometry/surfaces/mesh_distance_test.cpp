@@ -195,6 +195,23 @@ TEST(MeshDistance, HasTheAnswersOfASquare) {
   EXPECT_EQ(surface.closest({0.9, 0.1, 7}).triangle, 0U);
 }
 
+TEST(MeshDistance, EndsWithCoordinatesThatNoFloatHolds) {
+  for (const double far_off : {1e37, 1e39, 1e60}) {
+    Mesh mesh;
+    for (int i = 0; i < 200; ++i) {
+      const auto first = static_cast<std::uint32_t>(mesh.vertices.size());
+      const double z = (i - 100) * 1e-2 * far_off;
+      mesh.vertices.insert(mesh.vertices.end(),
+                           {{-far_off, -far_off, z}, {far_off, -z, far_off}, {z, far_off, -z}});
+      mesh.triangles.push_back({first, first + 1, first + 2});
+    }
+    const MeshDistance distance(mesh);
+    for (const double x : {0.0, 1.0, 0.5 * far_off, 2.0 * far_off}) {
+      EXPECT_TRUE(std::isfinite(distance.distance({x, 0.0, -x}))) << far_off << " " << x;
+    }
+  }
+}
+
 TEST(MeshDistance, RefusesAMeshWithoutSurface) { EXPECT_THROW(MeshDistance(Mesh{}), Error); }
 
 }  // namespace
