@@ -99,8 +99,11 @@ constexpr float far_off = 1e37F;
 constexpr float endless = std::numeric_limits<float>::infinity();
 
 float within(float x) { return std::clamp(x, -far_off, far_off); }
-float low_end(float x) { return x > -far_off ? x : -endless; }
-float high_end(float x) { return x < far_off ? x : endless; }
+float high_end(float x) {
+  if (x < far_off) return x;
+  return endless;
+}
+float low_end(float x) { return -high_end(-x); }
 
 /// What the tree is made of: the box around a triangle, in floats that leave nothing outside.
 struct Item {

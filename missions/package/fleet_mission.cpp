@@ -213,9 +213,8 @@ FleetMission plan_fleet(const file::Mission& mission, const flight::MeasuredSpac
 std::shared_ptr<const FleetMission> staged_fleet(
     const file::Mission& mission, const flight::MeasuredSpace& measured, const flight::Route& alone,
     std::span<const flight::PadGround> grounds, std::span<const flight::Format> formats,
-    geometry::OutputFolder& folder, std::stop_token stop) {
-  auto fleet = std::make_shared<FleetMission>(
-      plan_fleet(mission, measured, alone, grounds, std::move(stop)));
+    geometry::OutputFolder& folder, const std::stop_token& stop) {
+  auto fleet = std::make_shared<FleetMission>(plan_fleet(mission, measured, alone, grounds, stop));
   stage_fleet(*fleet, measured, formats, folder);
   return fleet;
 }

@@ -56,6 +56,6 @@ FleetMission plan_fleet(const file::Mission& mission, const flight::MeasuredSpac
 std::shared_ptr<const FleetMission> staged_fleet(
     const file::Mission& mission, const flight::MeasuredSpace& measured, const flight::Route& alone,
     std::span<const flight::PadGround> grounds, std::span<const flight::Format> formats,
-    geometry::OutputFolder& folder, std::stop_token stop = {});
+    geometry::OutputFolder& folder, const std::stop_token& stop = {});
 
 }  // namespace skycap::missions::package

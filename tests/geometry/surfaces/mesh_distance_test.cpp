@@ -94,6 +94,7 @@ TEST(MeshDistance, OfManyPointsEqualsThatOfEach) {
   std::mt19937_64 random(2);
   const Mesh mesh = random_soup(random, 200);
   std::vector<Eigen::Vector3f> points;
+  points.reserve(1500 + mesh.vertices.size());
   for (int i = 0; i < 500; ++i) points.push_back(random_point(random, 3.0).cast<float>());
   for (int i = 0; i < 500; ++i) points.emplace_back(0.01F * float(i) - 2.5F, 0.3F, 0.1F);
   for (int i = 0; i < 500; ++i) points.push_back(random_point(random, 200.0).cast<float>());
@@ -106,6 +107,7 @@ TEST(MeshDistance, OfFewPointsEqualsThatOfEach) {
   const Mesh mesh = random_soup(random, 3);
   for (const int count : {0, 1, 15, 17}) {
     std::vector<Eigen::Vector3f> points;
+    points.reserve(static_cast<std::size_t>(count));
     for (int i = 0; i < count; ++i) points.push_back(random_point(random, 3.0).cast<float>());
     expect_those_of_each(mesh, points);
   }

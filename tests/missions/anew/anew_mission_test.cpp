@@ -45,7 +45,8 @@ json summary_of(const std::string& package) {
 }
 
 TEST(AnewMission, IsFasterAndPromisesNoLess) {
-  const json flight = summary_of("anew").at("flight"), anew = flight.at("anew");
+  const json flight = summary_of("anew").at("flight");
+  const json& anew = flight.at("anew");
   ASSERT_TRUE(anew.at("is_flown").get<bool>());
   const auto figure = [&](const char* whose, const char* name) {
     return anew.at(whose).at(name).get<double>();

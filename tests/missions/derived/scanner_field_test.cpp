@@ -126,7 +126,7 @@ TEST(ScannerField, WhatARosetteInFlightProvesFreeHoldsNothing) {
         {.voxel = 0.25, .depth_margin = mission.flight.map_error, .max_depth = 60.0});
     const double step = mission.flight.cruise_speed * mission.sensor.frame_period;
     std::uint64_t frame = 0;
-    for (double x = -16.0; x < 16.0; x = -16.0 + step * static_cast<double>(frame)) {
+    for (double x = -16.0; x < 16.0; x += step) {
       const double turn = 0.05 * x;
       const View from{{x, -12, 12}, {std::cos(turn), std::sin(turn), 0}};
       const View to{{x + step, -12, 12}, from.direction};

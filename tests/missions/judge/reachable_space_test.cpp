@@ -155,8 +155,9 @@ TEST(ReachableSpace, LiesBetweenAStricterAndALooserGrid) {
     const geometry::Mesh mesh = cluttered_room(seed);
     const geometry::MeshDistance distance(mesh);
     std::vector<double> distances;
-    distances.reserve(GridFlood::count * GridFlood::count * GridFlood::count);
-    for (int i = 0; i < GridFlood::count * GridFlood::count * GridFlood::count; ++i) {
+    constexpr int nodes = GridFlood::count * GridFlood::count * GridFlood::count;
+    distances.reserve(nodes);
+    for (int i = 0; i < nodes; ++i) {
       distances.push_back(distance.distance(GridFlood::place(i)));
     }
     const auto joins = keeping(radius, distance);
