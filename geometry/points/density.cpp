@@ -6,19 +6,6 @@
 #include "geometry/parallel.h"
 
 namespace skycap::geometry {
-namespace {
-
-/// Calls `work` for each place below `count`, from several threads.
-template <typename Work>
-void for_each_place(std::size_t count, unsigned threads, const Work& work) {
-  constexpr std::size_t task_size = 1024;
-  parallel_for((count + task_size - 1) / task_size, threads, [&](std::size_t task) {
-    const std::size_t end = std::min(count, (task + 1) * task_size);
-    for (std::size_t i = task * task_size; i < end; ++i) work(i);
-  });
-}
-
-}  // namespace
 
 DensityMap::DensityMap(const DensityConfig& config)
     : config_(config),
@@ -72,7 +59,7 @@ std::uint32_t DensityMap::neighbours_of(std::uint32_t point) const {
 std::vector<std::uint32_t> DensityMap::promote_dense_points(std::uint32_t first_new,
                                                             unsigned threads) {
   const auto threshold = static_cast<std::uint32_t>(config_.core_threshold);
-  for_each_place(non_core_.size(), threads, [&](std::size_t i) {
+  parallel_for_each(non_core_.size(), threads, [&](std::size_t i) {
     NonCore& entry = non_core_[i];
     if (!index_.grid().is_near_batch(cloud_.positions[entry.point])) return;
     const std::uint32_t count = neighbours_of(entry.point);
@@ -86,7 +73,7 @@ std::vector<std::uint32_t> DensityMap::promote_dense_points(std::uint32_t first_
   });
 
   std::vector<std::uint32_t> counts(cloud_.size() - first_new);
-  for_each_place(counts.size(), threads, [&](std::size_t i) {
+  parallel_for_each(counts.size(), threads, [&](std::size_t i) {
     counts[i] = neighbours_of(first_new + static_cast<std::uint32_t>(i));
   });
   for (auto point = first_new; point < cloud_.size(); ++point) {
@@ -157,8 +144,8 @@ DensityUpdate DensityMap::relabel(unsigned threads) {
   std::vector<std::uint8_t> is_one(points.size());
   const bool in_order = config_.rule == OutlierRule::labelled;
   if (!in_order) {
-    for_each_place(points.size(), threads,
-                   [&](std::size_t i) { is_one[i] = is_frontier(points[i]) ? 1 : 0; });
+    parallel_for_each(points.size(), threads,
+                      [&](std::size_t i) { is_one[i] = is_frontier(points[i]) ? 1 : 0; });
   }
   for (std::size_t i = 0; i < points.size(); ++i) {
     const std::uint32_t point = points[i];

@@ -124,21 +124,11 @@ struct Item {
   float middle(Eigen::Index axis) const { return box.min()[axis] + box.max()[axis]; }
 };
 
-/// Calls `work(i)` for each i below `count`, a block of them at a time on any thread.
-template <typename Work>
-void in_blocks(std::size_t count, unsigned threads, const Work& work) {
-  constexpr std::size_t block = 1 << 14;
-  parallel_for((count + block - 1) / block, threads, [&](std::size_t number) {
-    const std::size_t end = std::min(count, (number + 1) * block);
-    for (std::size_t i = number * block; i < end; ++i) work(i);
-  });
-}
-
 /// Of the triangles that have an area, in the mesh's order.
 std::vector<Item> items_of(const Mesh& mesh, unsigned threads) {
   constexpr std::uint32_t none = std::numeric_limits<std::uint32_t>::max();
   std::vector<Item> items(mesh.triangles.size());
-  in_blocks(items.size(), threads, [&](std::size_t t) {
+  parallel_for_each(items.size(), threads, [&](std::size_t t) {
     const Facet facet = facet_of(mesh, static_cast<std::uint32_t>(t));
     items[t] = Item(facet);
     if (!has_area(facet)) items[t].triangle = none;
@@ -305,8 +295,8 @@ FacetTree facet_tree(const Mesh& mesh, unsigned threads) {
   FacetTree tree;
   tree.nodes = std::move(TreeBuilder(items, threads).nodes);
   tree.facets.resize(items.size());
-  in_blocks(items.size(), threads,
-            [&](std::size_t i) { tree.facets[i] = facet_of(mesh, items[i].triangle); });
+  parallel_for_each(items.size(), threads,
+                    [&](std::size_t i) { tree.facets[i] = facet_of(mesh, items[i].triangle); });
   return tree;
 }
 

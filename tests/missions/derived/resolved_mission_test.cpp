@@ -79,7 +79,7 @@ TEST(ResolvedMission, StoresPointsSoThatTheyCanCover) {
   EXPECT_DOUBLE_EQ(spacing("0.05", ""), 0.04);
   EXPECT_DOUBLE_EQ(spacing("0.05", ", spacing: 0.06"), 0.06) << "as the mission says";
   // A D435's image is 2 tan(69.4 deg / 2) = 1.385 m wide at a metre.
-  EXPECT_NEAR(spacing("0.001", ", view_distance: 10"), 10 * 1.385 / 848, 1e-3) << "as rays meet it";
+  EXPECT_NEAR(spacing("0.001", ", view_distance: 10"), 10 * 1.385 / 848, 1e-4) << "as rays meet it";
 }
 
 // A moving sensor measures on the way, so that stops are what is left to spare.
