@@ -6,6 +6,35 @@
 #include "geometry/parallel.h"
 
 namespace skycap::geometry {
+namespace {
+
+/// Asks a grid whether it has a point within a radius, for points of one scan in their order.
+class ScanNeighbours {
+ public:
+  ScanNeighbours(const PointGrid& grid, double radius, const ImagePixels& image)
+      : nearby_(grid, radius), row_(grid, radius, image.width), image_(image) {}
+
+  /// Whether there is one near `point`, which has that number in the scan.
+  bool any_near(const Eigen::Vector3f& point, std::size_t number) {
+    if (image_.pixels.empty()) return nearby_.any_near(point);
+    const std::uint32_t pixel = image_.pixels[number];
+    while (pixel - first_of_row_ >= image_.width) first_of_row_ += image_.width;
+    column_ = pixel - first_of_row_;
+    return row_.any_near(point, column_);
+  }
+  /// The last point that was asked for is in the grid now.
+  void remember(const Eigen::Vector3f& point) {
+    if (!image_.pixels.empty()) row_.remember(point, column_);
+  }
+
+ private:
+  NearbyPoints nearby_;
+  RowNeighbours row_;
+  ImagePixels image_;
+  std::uint32_t first_of_row_ = 0, column_ = 0;  // of the last point
+};
+
+}  // namespace
 
 DensityMap::DensityMap(const DensityConfig& config)
     : config_(config),
@@ -14,36 +43,71 @@ DensityMap::DensityMap(const DensityConfig& config)
   assert(config.spacing < config.radius);
 }
 
-void DensityMap::keep_if_room(std::span<const Eigen::Vector3f> points, std::uint32_t view) {
-  for (const Eigen::Vector3f& point : points) {
-    if (!spaced_.keep(point)) continue;
-    index_.insert(point);
-    cloud_.positions.push_back(point);
-    cloud_.views.push_back(view);
+// Which points have room depends on the order within a scan, but whether one is too near to an
+// earlier scan's does not: that is found out on all threads and turns most away, while the others
+// before it are compared with each other.
+std::vector<Eigen::Vector3f> DensityMap::points_with_room(std::span<const Eigen::Vector3f> points,
+                                                          const ImagePixels& image,
+                                                          unsigned threads) const {
+  constexpr std::size_t part_size = 1 << 15, parts_at_a_time = 8;
+  SpacedPoints fresh(config_.spacing, spaced_.grid().cell_size());
+  ScanNeighbours near_fresh(fresh.grid(), config_.spacing, image);
+  std::vector<Eigen::Vector3f> kept;
+  const auto keep_in_order = [&](const std::vector<std::uint32_t>& candidates) {
+    for (const std::uint32_t i : candidates) {
+      if (near_fresh.any_near(points[i], i)) continue;
+      fresh.add(points[i]);
+      near_fresh.remember(points[i]);
+      kept.push_back(points[i]);
+    }
+  };
+  const std::size_t parts = (points.size() + part_size - 1) / part_size;
+  std::vector<std::vector<std::uint32_t>> before, now;
+  for (std::size_t first = 0; first < parts || !before.empty(); first += parts_at_a_time) {
+    now.resize(first < parts ? std::min(parts_at_a_time, parts - first) : 0);
+    parallel_for(now.size() + 1, threads, [&](std::size_t task) {
+      if (task == 0) {
+        for (const auto& part : before) keep_in_order(part);
+        return;
+      }
+      const std::size_t part = first + task - 1;
+      const std::size_t end = std::min(points.size(), (part + 1) * part_size);
+      ScanNeighbours near_earlier(spaced_.grid(), config_.spacing, image);
+      std::vector<std::uint32_t> candidates;
+      for (std::size_t i = part * part_size; i < end; ++i) {
+        if (!near_earlier.any_near(points[i], i)) candidates.push_back(static_cast<std::uint32_t>(i));
+      }
+      now[task - 1] = std::move(candidates);
+    });
+    before.swap(now);
   }
+  return kept;
 }
 
-// Which points are kept depends on the order within a scan, but whether one is too near to an
-// earlier scan's does not: with several threads that is found out first, and turns most away.
 void DensityMap::insert(std::span<const Eigen::Vector3f> points, std::uint32_t view,
-                        unsigned threads) {
+                        unsigned threads, const ImagePixels& image) {
   if (cloud_.size() == labelled_) index_.grid().begin_batch();
   if (thread_count(threads) == 1 || cloud_.size() == 0) {
-    keep_if_room(points, view);
+    ScanNeighbours near(spaced_.grid(), config_.spacing, image);
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      if (near.any_near(points[i], i)) continue;
+      spaced_.add(points[i]);
+      near.remember(points[i]);
+      index_.insert(points[i]);
+      cloud_.positions.push_back(points[i]);
+    }
   } else {
-    constexpr std::size_t part_size = 1 << 15;
-    const std::size_t parts = (points.size() + part_size - 1) / part_size;
-    std::vector<std::vector<Eigen::Vector3f>> remaining(parts);
-    parallel_for(parts, threads, [&](std::size_t part) {
-      NearbyPoints kept(spaced_.grid(), config_.spacing);
-      const std::size_t first = part * part_size;
-      for (const Eigen::Vector3f& point :
-           points.subspan(first, std::min(part_size, points.size() - first))) {
-        if (!kept.any_near(point)) remaining[part].push_back(point);
+    const std::vector<Eigen::Vector3f> kept = points_with_room(points, image, threads);
+    parallel_for(2, threads, [&](std::size_t task) {
+      if (task == 0) {
+        for (const Eigen::Vector3f& point : kept) index_.insert(point);
+      } else {
+        for (const Eigen::Vector3f& point : kept) spaced_.add(point);
       }
     });
-    for (const auto& part : remaining) keep_if_room(part, view);
+    cloud_.positions.insert(cloud_.positions.end(), kept.begin(), kept.end());
   }
+  cloud_.views.resize(cloud_.size(), view);
   labels_.resize(cloud_.size(), PointLabel::outlier);
   given_up_.resize(cloud_.size(), 0);
 }

@@ -18,6 +18,7 @@
 
 #include "geometry/points/outlier_rule.h"
 #include "geometry/points/point_cloud.h"
+#include "geometry/points/scan.h"
 #include "geometry/points/spaced_points.h"
 #include "geometry/points/spatial_index.h"
 
@@ -57,9 +58,10 @@ class DensityMap {
   const std::vector<PointLabel>& labels() const { return labels_; }
 
   /// Keeps those of `points`, in order, that are farther than the spacing from every point kept
-  /// before; they are said to come from scan `view`. relabel() must follow. What is kept does not
-  /// depend on `threads` (zero: all processors).
-  void insert(std::span<const Eigen::Vector3f> points, std::uint32_t view, unsigned threads = 1);
+  /// before; they are said to come from scan `view`. relabel() must follow. What is kept depends
+  /// neither on `threads` (zero: all processors) nor on `image`, which says where neighbours are.
+  void insert(std::span<const Eigen::Vector3f> points, std::uint32_t view, unsigned threads = 1,
+              const ImagePixels& image = {});
   /// Brings the labels up to date with all insertions since the last call. They do not depend on
   /// `threads`, either.
   DensityUpdate relabel(unsigned threads = 1);
@@ -73,7 +75,8 @@ class DensityMap {
     std::uint32_t neighbours;  // within r, itself included
   };
 
-  void keep_if_room(std::span<const Eigen::Vector3f> points, std::uint32_t view);
+  std::vector<Eigen::Vector3f> points_with_room(std::span<const Eigen::Vector3f> points,
+                                                const ImagePixels& image, unsigned threads) const;
   std::vector<std::uint32_t> promote_dense_points(std::uint32_t first_new, unsigned threads);
   std::uint32_t neighbours_of(std::uint32_t point) const;
   std::vector<std::uint32_t> points_to_relabel(const std::vector<std::uint32_t>& promoted) const;

@@ -40,4 +40,11 @@ struct ScanSpan {
   Eigen::Vector3d sensor_position() const { return world_from_sensor.translation(); }
 };
 
+/// Where in an image its points were measured: their pixels, as a Scan has them. Of points that are
+/// of no image there are none.
+struct ImagePixels {
+  std::span<const std::uint32_t> pixels;
+  std::uint32_t width = 0;  ///< of the image
+};
+
 }  // namespace skycap::geometry

@@ -4,6 +4,8 @@
 
 #include <array>
 #include <cstddef>
+#include <limits>
+#include <vector>
 
 #include <Eigen/Core>
 
@@ -52,6 +54,42 @@ class NearbyPoints {
   std::size_t next_ = 0;
 };
 
+/// The same for the pixels of an image, row by row: what was near to the pixel above or to the one
+/// on the left is mostly near to this one, too.
+class RowNeighbours {
+ public:
+  /// For images of so many columns, and a radius up to the grid's cell_size().
+  RowNeighbours(const PointGrid& grid, double radius, std::size_t columns)
+      : grid_(grid),
+        radius_(radius),
+        squared_radius_(static_cast<float>(radius * radius)),
+        found_(columns + 2, Eigen::Vector3f::Constant(std::numeric_limits<float>::infinity())) {}
+
+  /// Whether the grid has a point within the radius of `query`, which is of that column.
+  bool any_near(const Eigen::Vector3f& query, std::size_t column) {
+    Eigen::Vector3f* const above = &found_[column + 1];
+    if (squared_distance(*above, query) <= squared_radius_) return true;
+    for (const int beside : {-1, 1}) {
+      if (squared_distance(above[beside], query) > squared_radius_) continue;
+      *above = above[beside];
+      return true;
+    }
+    const std::uint32_t found = grid_.first_within(query, radius_);
+    if (found == PointGrid::none) return false;
+    *above = grid_.point(found);
+    return true;
+  }
+
+  /// A point that is now in the grid, of that column.
+  void remember(const Eigen::Vector3f& point, std::size_t column) { found_[column + 1] = point; }
+
+ private:
+  const PointGrid& grid_;
+  double radius_;
+  float squared_radius_;
+  std::vector<Eigen::Vector3f> found_;  // by column; one more before them and one behind
+};
+
 /// Points of which none is nearer to an earlier one than a spacing. What is kept depends on the
 /// order of the points alone, not on the cells of the grid.
 class SpacedPoints {
@@ -70,6 +108,9 @@ class SpacedPoints {
     grid_.insert(point);
     return true;
   }
+
+  /// Keeps a point that is known to have room.
+  void add(const Eigen::Vector3f& point) { grid_.insert(point); }
 
   /// The points that were kept, in that order.
   const PointGrid& grid() const { return grid_; }

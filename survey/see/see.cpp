@@ -44,7 +44,7 @@ struct SeePlanner::Impl {
         put_off(config.frontier_spacing) {}
 
   std::optional<View> update(const ScanSpan& scan);
-  void insert(std::span<const Vector3f> points);
+  void insert(std::span<const Vector3f> points, const geometry::ImagePixels& image);
   void classify();
   void propose_for_new_frontiers();
   geometry::SurfaceFrame frame_at(std::uint32_t point) const;
@@ -93,12 +93,14 @@ std::optional<View> SeePlanner::Impl::update(const ScanSpan& scan) {
   Stopwatch stopwatch(step.times);
   std::vector<Vector3f> cropped;
   std::span<const Vector3f> points = scan.points;
+  geometry::ImagePixels image{scan.pixels, static_cast<std::uint32_t>(camera.width())};
   if (config.scene_box) {
     cropped = points_inside(scan.points, *config.scene_box);
     points = cropped;
+    image = {};
   }
   scans.push_back(geometry::view_of(scan.world_from_sensor));
-  insert(points);
+  insert(points, image);
   stopwatch.lap("insert");
   classify();
   stopwatch.lap("classify");
@@ -117,9 +119,10 @@ std::optional<View> SeePlanner::Impl::update(const ScanSpan& scan) {
   return view;
 }
 
-void SeePlanner::Impl::insert(std::span<const Vector3f> points) {
+void SeePlanner::Impl::insert(std::span<const Vector3f> points,
+                              const geometry::ImagePixels& image) {
   first_new = static_cast<std::uint32_t>(map.cloud().size());
-  map.insert(points, static_cast<std::uint32_t>(scans.size() - 1), config.threads);
+  map.insert(points, static_cast<std::uint32_t>(scans.size() - 1), config.threads, image);
   const auto& positions = map.cloud().positions;
   if (positions.empty()) {
     throw Error(ErrorKind::bad_geometry,

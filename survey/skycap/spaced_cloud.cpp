@@ -2,10 +2,10 @@
 
 #include <algorithm>
 #include <array>
-#include <limits>
 #include <vector>
 
 #include "geometry/parallel.h"
+#include "geometry/points/spaced_points.h"
 
 namespace skycap::survey::skycap {
 namespace {
@@ -15,42 +15,6 @@ using geometry::ScanSpan;
 
 constexpr std::uint32_t tile_px = 32;
 constexpr std::size_t sweep_chunk = 4096;  // returns without an image that a thread takes at a time
-
-/// Asks a grid for points within a distance, for the pixels of a tile row by row: what turned away
-/// the pixel to the left or the one above mostly turns away this one too, and is tried first.
-class TileNeighbours {
- public:
-  TileNeighbours(const geometry::PointGrid& grid, double distance)
-      : grid_(grid),
-        distance_(distance),
-        squared_distance_(static_cast<float>(distance * distance)) {
-    found_.fill(Vector3f::Constant(std::numeric_limits<float>::infinity()));
-  }
-
-  bool any_within(const Vector3f& point, std::size_t column) {
-    Vector3f& above = found_[column];
-    if (geometry::squared_distance(above, point) <= squared_distance_) return true;
-    for (const std::size_t beside : {column + tile_px - 1, column + 1}) {
-      const Vector3f& other = found_[beside % tile_px];
-      if (geometry::squared_distance(other, point) > squared_distance_) continue;
-      above = other;
-      return true;
-    }
-    const std::uint32_t found = grid_.first_within(point, distance_);
-    if (found == geometry::PointGrid::none) return false;
-    above = grid_.point(found);
-    return true;
-  }
-
-  /// A point that is now in the grid.
-  void remember(const Vector3f& point, std::size_t column) { found_[column] = point; }
-
- private:
-  const geometry::PointGrid& grid_;
-  double distance_;
-  float squared_distance_;
-  std::array<Vector3f, tile_px> found_;  // by the pixel's column in its tile
-};
 
 /// Calls `visit` with the index of each return of a row of tiles and its column in its tile, tile
 /// by tile, so that consecutive returns are neighbours in space. Returns without an image go by
@@ -108,20 +72,20 @@ std::size_t SpacedCloud::insert(const ScanSpan& scan, const geometry::Camera& ca
                           : (static_cast<std::size_t>(camera.height()) + tile_px - 1) / tile_px;
   std::vector<std::vector<Candidate>> candidates(tile_rows);
   geometry::parallel_for(tile_rows, threads, [&](std::size_t row) {
-    TileNeighbours nearby(grid_, spacing_);
+    geometry::RowNeighbours nearby(grid_, spacing_, tile_px);
     visit_tiles(scan, camera, row, [&](std::size_t i, std::size_t column) {
       const Vector3f& point = scan.points[i];
-      if ((region && !region->contains(point)) || nearby.any_within(point, column)) return;
+      if ((region && !region->contains(point)) || nearby.any_near(point, column)) return;
       candidates[row].push_back(
           {static_cast<std::uint32_t>(i), static_cast<std::uint32_t>(column)});
     });
   });
   const std::size_t before = cloud_.size();
-  TileNeighbours nearby(grid_, spacing_);
+  geometry::RowNeighbours nearby(grid_, spacing_, tile_px);
   for (const std::vector<Candidate>& row : candidates) {
     for (const Candidate& candidate : row) {
       const Vector3f& point = scan.points[candidate.point];
-      if (nearby.any_within(point, candidate.column)) continue;
+      if (nearby.any_near(point, candidate.column)) continue;
       grid_.insert(point);
       nearby.remember(point, candidate.column);
       cloud_.positions.push_back(point);
