@@ -8,31 +8,25 @@
 namespace skycap::geometry {
 namespace {
 
-/// Asks a grid whether it has a point within a radius, for points of one scan in their order.
-class ScanNeighbours {
- public:
-  ScanNeighbours(const PointGrid& grid, double radius, const ImagePixels& image)
-      : nearby_(grid, radius), row_(grid, radius, image.width), image_(image) {}
+constexpr std::size_t returns_in_part = 1 << 15;
+constexpr std::uint32_t columns_without_image = 32;  // so many points ago
 
-  /// Whether there is one near `point`, which has that number in the scan.
-  bool any_near(const Eigen::Vector3f& point, std::size_t number) {
-    if (image_.pixels.empty()) return nearby_.any_near(point);
-    const std::uint32_t pixel = image_.pixels[number];
-    while (pixel - first_of_row_ >= image_.width) first_of_row_ += image_.width;
-    column_ = pixel - first_of_row_;
-    return row_.any_near(point, column_);
+/// Calls `visit(number, column)` for the points of one part of a scan.
+template <typename Visit>
+void visit_part(std::size_t part, std::size_t points, const ImagePixels& image, Visit visit) {
+  const std::size_t first = part * returns_in_part;
+  const std::size_t end = std::min(points, first + returns_in_part);
+  std::uint32_t first_of_row = 0;
+  for (std::size_t i = first; i < end; ++i) {
+    const auto number = static_cast<std::uint32_t>(i);
+    if (image.pixels.empty()) {
+      visit(number, number % columns_without_image);
+      continue;
+    }
+    while (image.pixels[i] - first_of_row >= image.width) first_of_row += image.width;
+    visit(number, image.pixels[i] - first_of_row);
   }
-  /// The last point that was asked for is in the grid now.
-  void remember(const Eigen::Vector3f& point) {
-    if (!image_.pixels.empty()) row_.remember(point, column_);
-  }
-
- private:
-  NearbyPoints nearby_;
-  RowNeighbours row_;
-  ImagePixels image_;
-  std::uint32_t first_of_row_ = 0, column_ = 0;  // of the last point
-};
+}
 
 }  // namespace
 
@@ -43,70 +37,17 @@ DensityMap::DensityMap(const DensityConfig& config)
   assert(config.spacing < config.radius);
 }
 
-// Which points have room depends on the order within a scan, but whether one is too near to an
-// earlier scan's does not: that is found out on all threads and turns most away, while the others
-// before it are compared with each other.
-std::vector<Eigen::Vector3f> DensityMap::points_with_room(std::span<const Eigen::Vector3f> points,
-                                                          const ImagePixels& image,
-                                                          unsigned threads) const {
-  constexpr std::size_t part_size = 1 << 15, parts_at_a_time = 8;
-  SpacedPoints fresh(config_.spacing, spaced_.grid().cell_size());
-  ScanNeighbours near_fresh(fresh.grid(), config_.spacing, image);
-  std::vector<Eigen::Vector3f> kept;
-  const auto keep_in_order = [&](const std::vector<std::uint32_t>& candidates) {
-    for (const std::uint32_t i : candidates) {
-      if (near_fresh.any_near(points[i], i)) continue;
-      fresh.add(points[i]);
-      near_fresh.remember(points[i]);
-      kept.push_back(points[i]);
-    }
-  };
-  const std::size_t parts = (points.size() + part_size - 1) / part_size;
-  std::vector<std::vector<std::uint32_t>> before, now;
-  for (std::size_t first = 0; first < parts || !before.empty(); first += parts_at_a_time) {
-    now.resize(first < parts ? std::min(parts_at_a_time, parts - first) : 0);
-    parallel_for(now.size() + 1, threads, [&](std::size_t task) {
-      if (task == 0) {
-        for (const auto& part : before) keep_in_order(part);
-        return;
-      }
-      const std::size_t part = first + task - 1;
-      const std::size_t end = std::min(points.size(), (part + 1) * part_size);
-      ScanNeighbours near_earlier(spaced_.grid(), config_.spacing, image);
-      std::vector<std::uint32_t> candidates;
-      for (std::size_t i = part * part_size; i < end; ++i) {
-        if (!near_earlier.any_near(points[i], i)) candidates.push_back(static_cast<std::uint32_t>(i));
-      }
-      now[task - 1] = std::move(candidates);
-    });
-    before.swap(now);
-  }
-  return kept;
-}
-
 void DensityMap::insert(std::span<const Eigen::Vector3f> points, std::uint32_t view,
                         unsigned threads, const ImagePixels& image) {
   if (cloud_.size() == labelled_) index_.grid().begin_batch();
-  if (thread_count(threads) == 1 || cloud_.size() == 0) {
-    ScanNeighbours near(spaced_.grid(), config_.spacing, image);
-    for (std::size_t i = 0; i < points.size(); ++i) {
-      if (near.any_near(points[i], i)) continue;
-      spaced_.add(points[i]);
-      near.remember(points[i]);
-      index_.insert(points[i]);
-      cloud_.positions.push_back(points[i]);
-    }
-  } else {
-    const std::vector<Eigen::Vector3f> kept = points_with_room(points, image, threads);
-    parallel_for(2, threads, [&](std::size_t task) {
-      if (task == 0) {
-        for (const Eigen::Vector3f& point : kept) index_.insert(point);
-      } else {
-        for (const Eigen::Vector3f& point : kept) spaced_.add(point);
-      }
-    });
-    cloud_.positions.insert(cloud_.positions.end(), kept.begin(), kept.end());
-  }
+  spaced_.keep_all(
+      points, image.pixels.empty() ? columns_without_image : image.width,
+      (points.size() + returns_in_part - 1) / returns_in_part, threads,
+      [&](std::size_t part, auto visit) { visit_part(part, points.size(), image, visit); },
+      [&](std::uint32_t number) {
+        index_.insert(points[number]);
+        cloud_.positions.push_back(points[number]);
+      });
   cloud_.views.resize(cloud_.size(), view);
   labels_.resize(cloud_.size(), PointLabel::outlier);
   given_up_.resize(cloud_.size(), 0);

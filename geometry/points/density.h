@@ -75,8 +75,6 @@ class DensityMap {
     std::uint32_t neighbours;  // within r, itself included
   };
 
-  std::vector<Eigen::Vector3f> points_with_room(std::span<const Eigen::Vector3f> points,
-                                                const ImagePixels& image, unsigned threads) const;
   std::vector<std::uint32_t> promote_dense_points(std::uint32_t first_new, unsigned threads);
   std::uint32_t neighbours_of(std::uint32_t point) const;
   std::vector<std::uint32_t> points_to_relabel(const std::vector<std::uint32_t>& promoted) const;

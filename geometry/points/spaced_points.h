@@ -2,13 +2,18 @@
 /// first thing every planner asks.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
+#include <cstdint>
 #include <limits>
+#include <span>
+#include <utility>
 #include <vector>
 
 #include <Eigen/Core>
 
+#include "geometry/parallel.h"
 #include "geometry/points/point_grid.h"
 
 namespace skycap::geometry {
@@ -109,17 +114,97 @@ class SpacedPoints {
     return true;
   }
 
-  /// Keeps a point that is known to have room.
-  void add(const Eigen::Vector3f& point) { grid_.insert(point); }
+  /// The same for all points of a scan, in the order in which `visit_part(part, visit)`, for one
+  /// part of it after the other, calls `visit(number, column)`; columns are less than `columns`,
+  /// and points that follow each other in one are neighbours (an image's, say). `on_kept(number)`
+  /// is told of those that are kept, in that order. With several threads parts are visited at the
+  /// same time, which changes nothing of what is kept.
+  template <typename VisitPart, typename OnKept>
+  void keep_all(std::span<const Eigen::Vector3f> points, std::size_t columns, std::size_t parts,
+                unsigned threads, VisitPart visit_part, OnKept on_kept);
 
   /// The points that were kept, in that order.
   const PointGrid& grid() const { return grid_; }
   double spacing() const { return spacing_; }
 
  private:
+  struct Candidate {
+    std::uint32_t number, column;
+  };
+  template <typename VisitPart>
+  std::vector<std::uint32_t> with_room(std::span<const Eigen::Vector3f> points, std::size_t columns,
+                                       std::size_t parts, unsigned threads,
+                                       VisitPart visit_part) const;
+
   double spacing_;
   PointGrid grid_;
   NearbyPoints nearby_;
 };
+
+template <typename VisitPart, typename OnKept>
+void SpacedPoints::keep_all(std::span<const Eigen::Vector3f> points, std::size_t columns,
+                            std::size_t parts, unsigned threads, VisitPart visit_part,
+                            OnKept on_kept) {
+  if (thread_count(threads) == 1 || grid_.size() == 0) {
+    RowNeighbours near(grid_, spacing_, columns);
+    for (std::size_t part = 0; part < parts; ++part) {
+      visit_part(part, [&](std::uint32_t number, std::size_t column) {
+        if (near.any_near(points[number], column)) return;
+        grid_.insert(points[number]);
+        near.remember(points[number], column);
+        on_kept(number);
+      });
+    }
+    return;
+  }
+  const std::vector<std::uint32_t> kept = with_room(points, columns, parts, threads, visit_part);
+  parallel_for(2, threads, [&](std::size_t task) {
+    if (task == 0) {
+      for (const std::uint32_t number : kept) on_kept(number);
+    } else {
+      for (const std::uint32_t number : kept) grid_.insert(points[number]);
+    }
+  });
+}
+
+// Which points have room depends on their order, but whether one is too near to an earlier scan's
+// does not: that is found out on all threads and turns most away, while those of the parts before
+// that it left are compared with each other.
+template <typename VisitPart>
+std::vector<std::uint32_t> SpacedPoints::with_room(std::span<const Eigen::Vector3f> points,
+                                                   std::size_t columns, std::size_t parts,
+                                                   unsigned threads, VisitPart visit_part) const {
+  constexpr std::size_t parts_at_once = 8;
+  PointGrid fresh(grid_.cell_size());
+  RowNeighbours near_fresh(fresh, spacing_, columns);
+  std::vector<std::uint32_t> kept;
+  const auto compare = [&](const std::vector<Candidate>& candidates) {
+    for (const auto& [number, column] : candidates) {
+      if (near_fresh.any_near(points[number], column)) continue;
+      fresh.insert(points[number]);
+      near_fresh.remember(points[number], column);
+      kept.push_back(number);
+    }
+  };
+  std::vector<std::vector<Candidate>> before, now;
+  for (std::size_t first = 0; first < parts || !before.empty(); first += parts_at_once) {
+    now.resize(first < parts ? std::min(parts_at_once, parts - first) : 0);
+    parallel_for(now.size() + 1, threads, [&](std::size_t task) {
+      if (task == 0) {
+        std::ranges::for_each(before, compare);
+        return;
+      }
+      RowNeighbours near_earlier(grid_, spacing_, columns);
+      std::vector<Candidate> candidates;
+      visit_part(first + task - 1, [&](std::uint32_t number, std::size_t column) {
+        if (near_earlier.any_near(points[number], column)) return;
+        candidates.push_back({number, static_cast<std::uint32_t>(column)});
+      });
+      now[task - 1] = std::move(candidates);
+    });
+    before.swap(now);
+  }
+  return kept;
+}
 
 }  // namespace skycap::geometry

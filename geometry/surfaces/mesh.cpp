@@ -2,10 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <random>
 #include <string>
 
 #include "geometry/error.h"
+#include "geometry/parallel.h"
 
 namespace skycap::geometry {
 namespace {
@@ -17,37 +19,75 @@ Vector3d area_vector(const Mesh& mesh, const std::array<std::uint32_t, 3>& trian
   return 0.5 * (mesh.vertices[triangle[1]] - a).cross(mesh.vertices[triangle[2]] - a);
 }
 
+constexpr std::size_t things_in_block = 1 << 14;
+
+std::size_t blocks_of(std::size_t count) { return (count + things_in_block - 1) / things_in_block; }
+
+/// Calls `work(block, first, end)` for each block of so many things.
+template <typename Work>
+void for_each_block(std::size_t count, unsigned threads, Work work) {
+  parallel_for(blocks_of(count), threads, [&](std::size_t block) {
+    work(block, block * things_in_block, std::min(count, (block + 1) * things_in_block));
+  });
+}
+
+/// The first of so many numbers that is bad; `count` if none is.
+template <typename IsBad>
+std::size_t first_bad(std::size_t count, unsigned threads, IsBad is_bad) {
+  std::vector<std::size_t> found(blocks_of(count), count);
+  for_each_block(count, threads, [&](std::size_t block, std::size_t first, std::size_t end) {
+    while (first < end && !is_bad(first)) ++first;
+    if (first < end) found[block] = first;
+  });
+  const auto bad = std::ranges::find_if(found, [&](std::size_t number) { return number < count; });
+  return bad == found.end() ? count : *bad;
+}
+
 }  // namespace
 
-void validate(const Mesh& mesh) {
-  for (std::size_t v = 0; v < mesh.vertices.size(); ++v) {
-    if (!mesh.vertices[v].allFinite()) {
-      throw Error(ErrorKind::bad_geometry,
-                  "vertex " + std::to_string(v) + " has a coordinate that is not a finite number");
-    }
+void validate(const Mesh& mesh, unsigned threads) {
+  const std::size_t vertices = mesh.vertices.size(), triangles = mesh.triangles.size();
+  const std::size_t vertex =
+      first_bad(vertices, threads, [&](std::size_t v) { return !mesh.vertices[v].allFinite(); });
+  if (vertex < vertices) {
+    throw Error(ErrorKind::bad_geometry, "vertex " + std::to_string(vertex) +
+                                             " has a coordinate that is not a finite number");
   }
-  double area = 0.0;
-  for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
-    for (const std::uint32_t v : mesh.triangles[t]) {
-      if (v >= mesh.vertices.size()) {
-        throw Error(ErrorKind::bad_geometry, "triangle " + std::to_string(t) + " names vertex " +
-                                                 std::to_string(v) + ", but there are only " +
-                                                 std::to_string(mesh.vertices.size()));
-      }
-    }
-    area += area_vector(mesh, mesh.triangles[t]).norm();
+  const std::size_t triangle = first_bad(triangles, threads, [&](std::size_t t) {
+    return std::ranges::any_of(mesh.triangles[t], [&](std::uint32_t v) { return v >= vertices; });
+  });
+  if (triangle < triangles) {
+    const auto& corners = mesh.triangles[triangle];
+    const auto missing =
+        std::ranges::find_if(corners, [&](std::uint32_t corner) { return corner >= vertices; });
+    throw Error(ErrorKind::bad_geometry, "triangle " + std::to_string(triangle) + " names vertex " +
+                                             std::to_string(*missing) + ", but there are only " +
+                                             std::to_string(vertices));
   }
-  if (!(area > 0.0)) {
+  std::vector<double> areas(blocks_of(triangles), 0.0);
+  for_each_block(triangles, threads, [&](std::size_t block, std::size_t first, std::size_t end) {
+    for (; first < end; ++first) {
+      areas[block] += area_vector(mesh, mesh.triangles[first]).norm();
+    }
+  });
+  if (!(std::accumulate(areas.begin(), areas.end(), 0.0) > 0.0)) {
     throw Error(ErrorKind::bad_geometry, "there is no triangle with a positive area");
   }
 }
 
-Eigen::AlignedBox3d bounding_box(const Mesh& mesh) {
-  Eigen::AlignedBox3d box;
-  for (const auto& triangle : mesh.triangles) {
-    for (const std::uint32_t v : triangle) box.extend(mesh.vertices[v]);
-  }
-  return box;
+Eigen::AlignedBox3d bounding_box(const Mesh& mesh, unsigned threads) {
+  std::vector<Eigen::AlignedBox3d> boxes(blocks_of(mesh.triangles.size()));
+  for_each_block(mesh.triangles.size(), threads,
+                 [&](std::size_t block, std::size_t first, std::size_t end) {
+                   for (; first < end; ++first) {
+                     for (const std::uint32_t v : mesh.triangles[first]) {
+                       boxes[block].extend(mesh.vertices[v]);
+                     }
+                   }
+                 });
+  Eigen::AlignedBox3d all;
+  for (const Eigen::AlignedBox3d& box : boxes) all.extend(box);
+  return all;
 }
 
 double surface_area(const Mesh& mesh) {

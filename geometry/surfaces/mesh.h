@@ -20,11 +20,11 @@ struct Mesh {
 };
 
 /// Throws Error{bad_geometry} if a mesh has no triangle of positive area, a triangle names a vertex
-/// that does not exist, or a coordinate is not finite; the message says which.
-void validate(const Mesh& mesh);
+/// that does not exist, or a coordinate is not finite; the message says which is the first.
+void validate(const Mesh& mesh, unsigned threads = 1);
 
 /// The smallest axis-aligned box around the vertices that triangles use.
-Eigen::AlignedBox3d bounding_box(const Mesh& mesh);
+Eigen::AlignedBox3d bounding_box(const Mesh& mesh, unsigned threads = 1);
 
 double surface_area(const Mesh& mesh);
 

@@ -127,7 +127,7 @@ void MeshDistance::Impl::find_all(const Points& points, std::span<const CurveEnt
 }
 
 MeshDistance::MeshDistance(const Mesh& mesh, unsigned threads) : impl_(std::make_unique<Impl>()) {
-  validate(mesh);
+  validate(mesh, threads);
   impl_->tree = facet_tree(mesh, threads);
 }
 

@@ -1,12 +1,12 @@
 #include "missions/package/holes.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstdint>
 #include <map>
 #include <numeric>
-#include <unordered_map>
+
+#include "geometry/points/point_grid.h"
 
 namespace skycap::missions::package {
 namespace {
@@ -67,29 +67,19 @@ Sets connected(std::span<const BelievedPatch> pieces, double usual) {
   std::vector<double> links;
   for (const BelievedPatch& piece : pieces) links.push_back(link_of(piece, usual));
   const double longest = *std::ranges::max_element(links);
-  using Cell = std::array<std::int64_t, 3>;
-  std::map<Cell, std::vector<std::size_t>> cells;
-  const auto cell_of = [&](const Eigen::Vector3f& point) {
-    const Vector3d cell = (point.cast<double>() / longest).array().floor();
-    return Cell{static_cast<std::int64_t>(cell.x()), static_cast<std::int64_t>(cell.y()),
-                static_cast<std::int64_t>(cell.z())};
-  };
-  const auto join_with = [&](std::size_t i, const Cell& cell) {
-    const auto found = cells.find(cell);
-    if (found == cells.end()) return;
-    for (const std::size_t other : found->second) {
-      const auto apart = static_cast<double>((pieces[i].position - pieces[other].position).norm());
-      const bool is_near = apart <= std::max(links[i], links[other]);
-      if (is_near && pieces[i].reason == pieces[other].reason) sets.join(i, other);
-    }
-  };
+  // The grid's rounding asks for a little more than is then compared.
+  geometry::PointGrid before((1.0 + 1e-5) * longest);
+  std::vector<geometry::Neighbour> near;
   for (std::size_t i = 0; i < pieces.size(); ++i) {
-    const Cell own = cell_of(pieces[i].position);
-    for (int neighbour = 0; neighbour < 27; ++neighbour) {
-      join_with(i, {own[0] + neighbour % 3 - 1, own[1] + neighbour / 3 % 3 - 1,
-                    own[2] + neighbour / 9 - 1});
+    near.clear();
+    before.find_within(pieces[i].position, before.cell_size(), near);
+    for (const geometry::Neighbour& neighbour : near) {
+      const BelievedPatch& other = pieces[neighbour.index];
+      const auto apart = static_cast<double>((pieces[i].position - other.position).norm());
+      const bool is_near = apart <= std::max(links[i], links[neighbour.index]);
+      if (is_near && pieces[i].reason == other.reason) sets.join(i, neighbour.index);
     }
-    cells[own].push_back(i);
+    before.insert(pieces[i].position);
   }
   return sets;
 }

@@ -141,6 +141,32 @@ std::optional<SurveyMission> planned_mission(const file::Mission& mission,
   return flight;
 }
 
+/// The free space and the files of the flight.
+void stage_mission(const file::Mission& mission, const run::SurveyRecord& record,
+                   SurveyMission& flight, geometry::OutputFolder& folder,
+                   const std::stop_token& stop) {
+  std::ostringstream free_space;
+  free_space.exceptions(
+      std::ios::badbit);  // else text is lost without a word where memory is missing
+  record.flown->measured->write(free_space);
+  folder.write(free_space_name, free_space.str());
+  attempt(flight, stop, [&] {
+    flight.files =
+        stage_flight(mission, flight.route, *record.flown->measured, package_formats(), folder);
+    if (!derived::is_fleet(mission)) return;
+    flight.fleet = staged_fleet(mission, *record.flown->measured, flight.route,
+                                record.flown->grounds, package_formats(), folder, stop);
+  });
+}
+
+void stage_coverage(const run::SurveyRecord& record, const CoverageFigures& coverage,
+                    geometry::OutputFolder& folder) {
+  if (const auto patches = known_surface(record, coverage); !patches.empty()) {
+    geometry::write_cloud(folder.stage(coverage_name), columns_of(coverage_map(patches)));
+  }
+  if (coverage.truth) write_true_coverage(folder.stage(true_coverage_name), *coverage.truth);
+}
+
 }  // namespace
 
 std::vector<geometry::View> views_of(const run::SurveyRecord& record) {
@@ -243,35 +269,25 @@ std::optional<SurveyMission> stage_package(const file::Mission& mission,
   geometry::parallel_for(2, threads, [&](std::size_t part) {
     if (part == 0) {
       flight = planned_mission(mission, record, coverage, stop);
+      if (flight) stage_mission(mission, record, *flight, folder, stop);
     } else {
       const double radius = 2.0 * mission.planner.see.resolution_radius;
       normals = cloud_normals(record.cloud, sensor_positions(record), radius, threads, stop);
     }
   });
-  const std::vector<std::uint32_t> views = views_of_points(record);
-  geometry::write_cloud(
-      folder.stage("cloud.ply"),
-      {.positions = record.cloud.positions, .normals = normals, .views = views, .colours = {}});
-  if (const auto patches = known_surface(record, coverage); !patches.empty()) {
-    geometry::write_cloud(folder.stage(coverage_name), columns_of(coverage_map(patches)));
-  }
-  if (coverage.truth) write_true_coverage(folder.stage(true_coverage_name), *coverage.truth);
-  folder.write("views.csv", views_csv(record));
-  folder.write("trajectory.tum", trajectory_tum(record));
-  if (flight) {
-    std::ostringstream free_space;
-    free_space.exceptions(
-        std::ios::badbit);  // else text is lost without a word where memory is missing
-    record.flown->measured->write(free_space);
-    folder.write(free_space_name, free_space.str());
-    attempt(*flight, stop, [&] {
-      flight->files =
-          stage_flight(mission, flight->route, *record.flown->measured, package_formats(), folder);
-      if (!derived::is_fleet(mission)) return;
-      flight->fleet = staged_fleet(mission, *record.flown->measured, flight->route,
-                                   record.flown->grounds, package_formats(), folder, stop);
-    });
-  }
+  const std::filesystem::path cloud_file = folder.stage("cloud.ply");
+  geometry::parallel_for(2, threads, [&](std::size_t part) {
+    if (part == 0) {
+      const std::vector<std::uint32_t> views = views_of_points(record);
+      geometry::write_cloud(
+          cloud_file,
+          {.positions = record.cloud.positions, .normals = normals, .views = views, .colours = {}});
+    } else {
+      stage_coverage(record, coverage, folder);
+      folder.write("views.csv", views_csv(record));
+      folder.write("trajectory.tum", trajectory_tum(record));
+    }
+  });
   // Last, so that whoever sees the summary sees the rest.
   folder.write(summary_name, summary_json(mission, record, coverage, flight));
   return flight;

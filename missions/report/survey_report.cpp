@@ -13,6 +13,7 @@
 #include "geometry/io/cloud_io.h"
 #include "geometry/io/file.h"
 #include "geometry/io/json.h"
+#include "geometry/parallel.h"
 #include "missions/derived/mission_flight.h"
 #include "missions/file/json_text.h"
 #include "missions/file/number_text.h"
@@ -168,23 +169,32 @@ std::string survey_report(const ResultFinder& results, std::size_t most_points) 
     const Json summary = geometry::parse_json<Json>(text);
     const geometry::AttributedCloud cloud = cloud_if_there(results("cloud.ply"));
     const geometry::AttributedCloud map = cloud_if_there(results("coverage.ply"));
-    const std::vector<std::uint16_t> states = point_states(cloud, map, reach_of(summary));
     const std::vector<std::uint16_t> incidence = incidence_steps(cloud, survey.views);
-    const PointNoise noise = noise_of(summary, survey.mission);
-    const std::vector<float> errors =
-        surface_errors(cloud, incidence, noise, survey.mission.evaluation.registration_distance);
+    const fs::path free_space = results(package::free_space_name);
+    std::vector<PageCloud> clouds(3);
+    Json accuracy;
+    geometry::parallel_for(2, survey.mission.threads, [&](std::size_t part) {
+      if (part == 0) {
+        const std::vector<std::uint16_t> states = point_states(cloud, map, reach_of(summary));
+        clouds[0] = measured_cloud(cloud, states, incidence, most_points);
+        return;
+      }
+      clouds[1] = missing_cloud(map, most_points);
+      clouds[2] = free_cloud(free_space);
+      const std::vector<float> errors =
+          surface_errors(cloud, incidence, noise_of(summary, survey.mission),
+                         survey.mission.evaluation.registration_distance);
+      accuracy = accuracy_json(incidence, ranges(cloud, survey.views), errors);
+    });
     const Json data = {{"kind", "survey"},
                        {"title", summary.value("mission", std::string())},
                        {"verdict", verdict(summary)},
                        {"summary", summary},
                        {"scene", scene_outline(survey.mission, survey.pad)},
                        {"hole_places", hole_places(summary, survey.mission)},
-                       {"accuracy", accuracy_json(incidence, ranges(cloud, survey.views), errors)},
+                       {"accuracy", std::move(accuracy)},
                        {"files", files_of(summary, results)}};
-    return page_text(
-        data.at("title"), data,
-        {measured_cloud(cloud, states, incidence, most_points), missing_cloud(map, most_points),
-         free_cloud(results(package::free_space_name))});
+    return page_text(data.at("title"), data, clouds);
   } catch (const Json::exception& error) {
     refuse_results(summary_file, error.what());
   }

@@ -37,7 +37,7 @@ Scene::Scene(const geometry::Mesh& mesh, std::span<const float> reflectances, un
 
 Scene::Scene(std::span<const ScenePart> parts, unsigned threads) {
   if (parts.empty()) throw Error(ErrorKind::bad_geometry, "the scene has no meshes");
-  for (const ScenePart& part : parts) require_valid(part);
+  for (const ScenePart& part : parts) require_valid(part, threads);
   if (parts.size() == 1 && parts[0].places.empty()) {
     trees_ = grow_tree(parts[0].mesh, threads);
     reflectances_.assign(parts[0].reflectances.begin(), parts[0].reflectances.end());

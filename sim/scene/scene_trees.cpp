@@ -86,8 +86,8 @@ void require_one_each(std::size_t count, const char* what, const geometry::Mesh&
                                            std::to_string(mesh.triangles.size()) + " triangles");
 }
 
-void require_valid(const ScenePart& part) {
-  geometry::validate(part.mesh);
+void require_valid(const ScenePart& part, unsigned threads) {
+  geometry::validate(part.mesh, threads);
   if (!part.reflectances.empty()) {
     require_one_each(part.reflectances.size(), "reflectances", part.mesh);
   }
@@ -97,7 +97,7 @@ void require_valid(const ScenePart& part) {
 std::unique_ptr<Scene::Trees> grow_tree(const geometry::Mesh& mesh, unsigned threads) {
   const Device device(threads);
   auto trees = std::make_unique<Scene::Trees>();
-  trees->centre = geometry::bounding_box(mesh).center();
+  trees->centre = geometry::bounding_box(mesh, threads).center();
   trees->parts.emplace_back(device.handle, mesh, trees->centre, threads);
   trees->target.tree = trees->parts[0].root();
   return trees;
@@ -121,9 +121,9 @@ SceneBuilder::SceneBuilder(const Vector3d& centre, unsigned threads)
 SceneBuilder::~SceneBuilder() = default;
 
 void SceneBuilder::add(const ScenePart& part) {
-  require_valid(part);
+  require_valid(part, growth_->threads);
   Scene::Trees& trees = *growth_->trees;
-  const Eigen::AlignedBox3d box = geometry::bounding_box(part.mesh);
+  const Eigen::AlignedBox3d box = geometry::bounding_box(part.mesh, growth_->threads);
   const Vector3d middle = box.center();
   const std::size_t triangles = part.mesh.triangles.size();
   const RayTree& tree =

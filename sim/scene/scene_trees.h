@@ -43,6 +43,6 @@ void require_one_each(std::size_t count, const char* what, const geometry::Mesh&
 
 /// Throws what geometry::validate() throws, and Error{bad_geometry} if a property is not one for
 /// each triangle.
-void require_valid(const ScenePart& part);
+void require_valid(const ScenePart& part, unsigned threads);
 
 }  // namespace skycap::sim

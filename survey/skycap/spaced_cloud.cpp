@@ -4,9 +4,6 @@
 #include <array>
 #include <vector>
 
-#include "geometry/parallel.h"
-#include "geometry/points/spaced_points.h"
-
 namespace skycap::survey::skycap {
 namespace {
 
@@ -51,47 +48,34 @@ void visit_tiles(const ScanSpan& scan, const geometry::Camera& camera, std::size
 
 // Cells wider than pixels: else each return would have one, and a brick, of its own.
 SpacedCloud::SpacedCloud(double spacing, double pixel)
-    : spacing_(spacing), grid_(2.0 * std::max(spacing, pixel)) {}
+    : points_(spacing, 2.0 * std::max(spacing, pixel)) {}
 
 bool SpacedCloud::has_near(const Vector3f& place, double radius, std::size_t count) const {
   std::vector<geometry::Neighbour> found;
-  grid_.find_within(place, radius, found);
+  points_.grid().find_within(place, radius, found);
   return std::ranges::any_of(
       found, [&](const geometry::Neighbour& neighbour) { return neighbour.index < count; });
 }
 
-// The cloud so far turns most returns away, on all threads; the rest are tried one after the other.
 std::size_t SpacedCloud::insert(const ScanSpan& scan, const geometry::Camera& camera,
                                 const std::optional<Eigen::AlignedBox3f>& region,
                                 std::uint32_t view, unsigned threads) {
-  struct Candidate {
-    std::uint32_t point, column;
-  };
   const std::size_t tile_rows =
       scan.pixels.empty() ? (scan.points.size() + sweep_chunk - 1) / sweep_chunk
                           : (static_cast<std::size_t>(camera.height()) + tile_px - 1) / tile_px;
-  std::vector<std::vector<Candidate>> candidates(tile_rows);
-  geometry::parallel_for(tile_rows, threads, [&](std::size_t row) {
-    geometry::RowNeighbours nearby(grid_, spacing_, tile_px);
-    visit_tiles(scan, camera, row, [&](std::size_t i, std::size_t column) {
-      const Vector3f& point = scan.points[i];
-      if ((region && !region->contains(point)) || nearby.any_near(point, column)) return;
-      candidates[row].push_back(
-          {static_cast<std::uint32_t>(i), static_cast<std::uint32_t>(column)});
-    });
-  });
   const std::size_t before = cloud_.size();
-  geometry::RowNeighbours nearby(grid_, spacing_, tile_px);
-  for (const std::vector<Candidate>& row : candidates) {
-    for (const Candidate& candidate : row) {
-      const Vector3f& point = scan.points[candidate.point];
-      if (nearby.any_near(point, candidate.column)) continue;
-      grid_.insert(point);
-      nearby.remember(point, candidate.column);
-      cloud_.positions.push_back(point);
-      cloud_.views.push_back(view);
-    }
-  }
+  points_.keep_all(
+      scan.points, tile_px, tile_rows, threads,
+      [&](std::size_t row, auto visit) {
+        visit_tiles(scan, camera, row, [&](std::size_t i, std::size_t column) {
+          if (region && !region->contains(scan.points[i])) return;
+          visit(static_cast<std::uint32_t>(i), column);
+        });
+      },
+      [&](std::uint32_t number) {
+        cloud_.positions.push_back(scan.points[number]);
+        cloud_.views.push_back(view);
+      });
   return cloud_.size() - before;
 }
 

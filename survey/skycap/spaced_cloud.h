@@ -12,8 +12,8 @@
 
 #include "geometry/place/camera.h"
 #include "geometry/points/point_cloud.h"
-#include "geometry/points/point_grid.h"
 #include "geometry/points/scan.h"
+#include "geometry/points/spaced_points.h"
 
 namespace skycap::survey::skycap {
 
@@ -36,8 +36,7 @@ class SpacedCloud {
   geometry::PointCloud release_cloud() { return std::move(cloud_); }
 
  private:
-  double spacing_;
-  geometry::PointGrid grid_;
+  geometry::SpacedPoints points_;
   geometry::PointCloud cloud_;
 };
 
