@@ -66,9 +66,9 @@ void validate(const Mesh& mesh, unsigned threads) {
   }
   std::vector<double> areas(blocks_of(triangles), 0.0);
   for_each_block(triangles, threads, [&](std::size_t block, std::size_t first, std::size_t end) {
-    for (; first < end; ++first) {
-      areas[block] += area_vector(mesh, mesh.triangles[first]).norm();
-    }
+    double area = 0.0;
+    for (; first < end; ++first) area += area_vector(mesh, mesh.triangles[first]).norm();
+    areas[block] = area;
   });
   if (!(std::accumulate(areas.begin(), areas.end(), 0.0) > 0.0)) {
     throw Error(ErrorKind::bad_geometry, "there is no triangle with a positive area");
@@ -79,11 +79,13 @@ Eigen::AlignedBox3d bounding_box(const Mesh& mesh, unsigned threads) {
   std::vector<Eigen::AlignedBox3d> boxes(blocks_of(mesh.triangles.size()));
   for_each_block(mesh.triangles.size(), threads,
                  [&](std::size_t block, std::size_t first, std::size_t end) {
+                   Eigen::AlignedBox3d box;
                    for (; first < end; ++first) {
                      for (const std::uint32_t v : mesh.triangles[first]) {
-                       boxes[block].extend(mesh.vertices[v]);
+                       box.extend(mesh.vertices[v]);
                      }
                    }
+                   boxes[block] = box;
                  });
   Eigen::AlignedBox3d all;
   for (const Eigen::AlignedBox3d& box : boxes) all.extend(box);
