@@ -170,6 +170,27 @@ TEST(DensityMap, KeepsTheSamePointsOnAnyNumberOfThreads) {
   }
 }
 
+// Pixels without a return lie between the others; a fifth of the rows has none at all.
+TEST(DensityMap, KeepsTheSamePointsOfAnImageAndOfAList) {
+  const DensityConfig config{.radius = 0.02, .core_threshold = 4, .spacing = 0.01};
+  DensityMap list(config), one(config), three(config);
+  for (std::uint32_t view = 0; view < 3; ++view) {
+    const auto points = tests::noisy_sphere(70'000, 0.01, view);
+    constexpr std::uint32_t width = 300;
+    std::vector<std::uint32_t> pixels;
+    for (std::uint32_t pixel = 0; pixels.size() < points.size(); ++pixel) {
+      if (pixel / width % 5 != 4 && pixel % 7 != 3) pixels.push_back(pixel);
+    }
+    list.insert(points, view);
+    one.insert(points, view, 1, {pixels, width});
+    three.insert(points, view, 3, {pixels, width});
+    for (DensityMap* map : {&list, &one, &three}) map->relabel();
+    ASSERT_EQ(one.cloud().positions, list.cloud().positions);
+    ASSERT_EQ(three.cloud().positions, list.cloud().positions);
+    ASSERT_EQ(three.cloud().views, list.cloud().views);
+  }
+}
+
 TEST(DensityMap, KeepsTheSpacingAndTheScanOfEachPoint) {
   DensityMap map({.radius = 0.5, .core_threshold = 4, .spacing = 0.1});
   map.insert(std::vector<Vector3f>{{0, 0, 0}, {0.05F, 0, 0}, {0.2F, 0, 0}}, 7);
