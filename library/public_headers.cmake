@@ -33,12 +33,12 @@ set(public_headers
   flight/route/route.h
   flight/space/clearance.h
   flight/space/obstacles.h
-  missions/library/evaluation.h
-  missions/library/laser_scan.h
-  missions/library/mission.h
-  missions/library/sensors.h
-  missions/library/simulation.h
-  missions/library/survey.h)
+  missions/api/evaluation.h
+  missions/api/laser_scan.h
+  missions/api/mission.h
+  missions/api/sensors.h
+  missions/api/simulation.h
+  missions/api/survey.h)
 
 # What those include: installed under skycap/LIBRARY/detail, not for others, may change any day.
 set(supporting_headers

@@ -6,18 +6,18 @@
 #include <pybind11/stl.h>
 #include <pybind11/stl/filesystem.h>
 
-#include "missions/library/mission.h"
-#include "missions/library/sensors.h"
-#include "missions/library/simulation.h"
+#include "missions/api/mission.h"
+#include "missions/api/sensors.h"
+#include "missions/api/simulation.h"
 #include "python/arrays.h"
 #include "python/bindings.h"
 
 namespace skycap::python {
 namespace {
 
-using missions::library::Mission;
-using missions::library::Setting;
-using missions::library::Simulation;
+using missions::api::Mission;
+using missions::api::Setting;
+using missions::api::Simulation;
 
 std::string yaml_of(const py::handle& value);
 
@@ -139,11 +139,10 @@ void bind_missions(py::module_& module) {
       .def("__repr__",
            [](const Mission& mission) { return "<skycap.Mission " + mission.name() + ">"; });
   bind_simulation(module);
-  module.def("sensors", &missions::library::sensor_names,
+  module.def("sensors", &missions::api::sensor_names,
              "sensors()\n--\n\nThe names of the sensors that come with Skycap.");
   module.def(
-      "camera",
-      [](const std::string& name) { return missions::library::depth_camera(name).camera; },
+      "camera", [](const std::string& name) { return missions::api::depth_camera(name).camera; },
       py::arg("name"),
       "camera(name)\n--\n\n"
       "The depth camera of that name, or that a .yaml file describes; see sensors().");

@@ -9,7 +9,7 @@
 #include <pybind11/stl.h>
 
 #include "geometry/points/usable_scan.h"
-#include "missions/library/mission.h"
+#include "missions/api/mission.h"
 #include "python/arrays.h"
 #include "python/bindings.h"
 
@@ -17,7 +17,7 @@ namespace skycap::python {
 namespace {
 
 using geometry::View;
-using missions::library::Mission;
+using missions::api::Mission;
 using survey::PlanningStep;
 using Lock = std::unique_lock<std::mutex>;
 

@@ -8,15 +8,15 @@
 #include <pybind11/stl.h>
 #include <pybind11/stl/filesystem.h>
 
-#include "missions/library/laser_scan.h"
+#include "missions/api/laser_scan.h"
 #include "python/arrays.h"
 #include "python/bindings.h"
 
 namespace skycap::python {
 namespace {
 
-using missions::library::LaserScan;
-using missions::library::Mission;
+using missions::api::LaserScan;
+using missions::api::Mission;
 
 /// One return as numpy sees it. Without gaps: the fields come by their size.
 struct Return {
@@ -57,7 +57,7 @@ void append(const sim::LidarReturns& part, Return*& next) {
 /// One thread at a time.
 class ScanPieces {
  public:
-  ScanPieces(const Mission& mission, const missions::library::ScanRequest& request)
+  ScanPieces(const Mission& mission, const missions::api::ScanRequest& request)
       : scan_(mission, request) {}
 
   py::array next() {
@@ -86,8 +86,8 @@ class ScanPieces {
 std::unique_ptr<ScanPieces> scan(const Mission& mission, const std::optional<std::string>& sensor,
                                  const std::optional<std::filesystem::path>& route) {
   py::gil_scoped_release others_go_on;
-  return std::make_unique<ScanPieces>(
-      mission, missions::library::ScanRequest{.sensor = sensor, .route = route});
+  return std::make_unique<ScanPieces>(mission,
+                                      missions::api::ScanRequest{.sensor = sensor, .route = route});
 }
 
 }  // namespace

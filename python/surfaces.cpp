@@ -8,7 +8,7 @@
 
 #include "geometry/io/mesh_io.h"
 #include "geometry/surfaces/mesh.h"
-#include "missions/library/evaluation.h"
+#include "missions/api/evaluation.h"
 #include "python/arrays.h"
 #include "python/bindings.h"
 #include "python/interruptible.h"
@@ -18,7 +18,7 @@ namespace skycap::python {
 namespace {
 
 using geometry::Mesh;
-using missions::library::Evaluation;
+using missions::api::Evaluation;
 
 Mesh mesh_from(const Array<double>& vertices, const py::object& corners) {
   const Array<std::uint32_t> triangles = indices_in(corners, "triangles");
@@ -50,8 +50,7 @@ Evaluation evaluate(const Array<float>& points, const Mesh& model, double distan
   const auto cloud = points_in(points, "points");
   Evaluation evaluation;
   run_interruptibly([&](const std::stop_token&) {
-    evaluation =
-        missions::library::evaluate(cloud, model, {.distance = distance, .samples = samples});
+    evaluation = missions::api::evaluate(cloud, model, {.distance = distance, .samples = samples});
   });
   return evaluation;
 }
@@ -70,7 +69,7 @@ void bind_evaluation(py::module_& module) {
       .def_readonly("area", &Evaluation::area, "Of the surface, in square metres.")
       .def_readonly("density", &Evaluation::density, "Points per square metre of the surface.");
   module.def("evaluate", &evaluate, py::arg("points"), py::arg("model"), py::arg("distance"),
-             py::arg("samples") = missions::library::EvaluationRequest{}.samples,
+             py::arg("samples") = missions::api::EvaluationRequest{}.samples,
              "evaluate(points, model, distance, samples=100000)\n--\n\n"
              "Judges a cloud, (N, 3) in the frame of the mesh `model`, as `skycap evaluate` does.\n"
              "A surface point counts as covered with a point within `distance` metres; that is\n"

@@ -8,8 +8,8 @@
 #include <pybind11/stl.h>
 #include <pybind11/stl/filesystem.h>
 
-#include "missions/library/mission.h"
-#include "missions/library/survey.h"
+#include "missions/api/mission.h"
+#include "missions/api/survey.h"
 #include "python/arrays.h"
 #include "python/bindings.h"
 #include "python/interruptible.h"
@@ -17,22 +17,22 @@
 namespace skycap::python {
 namespace {
 
-using missions::library::Mission;
-using missions::library::Survey;
+using missions::api::Mission;
+using missions::api::Survey;
 using survey::SurveyedView;
 
 Survey plan(const Mission& mission, const std::optional<std::filesystem::path>& out,
             const py::object& progress) {
   Survey survey;
   run_interruptibly([&](const std::stop_token& stop) {
-    missions::library::SurveyRequest request{.folder = out, .report = {}, .stop = stop};
+    missions::api::SurveyRequest request{.folder = out, .report = {}, .stop = stop};
     if (!progress.is_none()) {
       request.report = [&](const SurveyedView& view, double coverage) {
         py::gil_scoped_acquire lock;
         progress(py::cast(view), coverage);
       };
     }
-    survey = missions::library::plan(mission, request);
+    survey = missions::api::plan(mission, request);
   });
   return survey;
 }

@@ -1,5 +1,5 @@
 /// Where LAS 1.0 to 1.4 (ASPRS specification R15) keep what, for readers (las_reader.h) and the
-/// writer (missions/recording/las_format.h): places in bytes, of little-endian values.
+/// writer (missions/scan/las_format.h): places in bytes, of little-endian values.
 #pragma once
 
 #include <array>

@@ -6,17 +6,17 @@
 
 #include "flight/space/clearance.h"
 #include "geometry/place/world.h"
-#include "missions/derived/mission_flight.h"
-#include "missions/file/json_text.h"
-#include "missions/judge/coverage.h"
+#include "missions/config/mission_flight.h"
+#include "missions/evaluation/coverage.h"
 #include "missions/package/package.h"
-#include "missions/run/way_frames.h"
+#include "missions/session/way_frames.h"
+#include "missions/support/json_text.h"
 
 namespace skycap::missions::package {
 namespace {
 
-using anew::MissionFigures;
-using anew::StationPlan;
+using package::MissionFigures;
+using package::StationPlan;
 using Json = nlohmann::ordered_json;
 
 Json json_of(const MissionFigures& figures) {
@@ -30,9 +30,9 @@ Json json_of(const MissionFigures& figures) {
 Json stations_json(const StationPlan& stations) {
   Json list = Json::array();
   for (std::size_t i = 0; i < stations.views.size(); ++i) {
-    list.push_back({{"position", file::json_of(stations.views[i].position)},
-                    {"direction", file::json_of(stations.views[i].direction)},
-                    {"way", file::json_of(stations.ways[i])}});
+    list.push_back({{"position", support::json_of(stations.views[i].position)},
+                    {"direction", support::json_of(stations.views[i].direction)},
+                    {"way", support::json_of(stations.ways[i])}});
   }
   return list;
 }
@@ -45,9 +45,9 @@ std::string figures_text(const MissionFigures& figures) {
 std::string percent(double share) { return fmt::format("{:.2f} %", 100.0 * share); }
 
 /// The survey's views, and those of the frames on its ways.
-std::vector<geometry::View> all_views_of(const run::SurveyRecord& record) {
+std::vector<geometry::View> all_views_of(const session::SurveyRecord& record) {
   std::vector<geometry::View> views;
-  for (const run::JudgedView& judged : record.views) {
+  for (const session::JudgedView& judged : record.views) {
     const survey::SurveyedView& taken = judged.surveyed;
     views.insert(views.end(), taken.on_way.views.begin(), taken.on_way.views.end());
     views.push_back(taken.view);
@@ -58,12 +58,13 @@ std::vector<geometry::View> all_views_of(const run::SurveyRecord& record) {
 }  // namespace
 
 FlownAgain flown_again(const CoverageFigures& coverage,
-                       const std::vector<run::ViewInFlight>& views) {
-  const run::CoveredAgain covered = coverage.fly_again(views);
-  FlownAgain again{judge::marked_share(covered.stored), {}, {}};
+                       const std::vector<session::ViewInFlight>& views) {
+  const simulation::CoveredAgain covered = coverage.fly_again(views);
+  FlownAgain again{evaluation::marked_share(covered.stored), {}, {}};
   if (coverage.truth && !coverage.truth->is_visible.empty()) {
-    again.visible = judge::covered_share(covered.stored, coverage.truth->is_visible);
-    again.visible_unthinned = judge::covered_share(covered.measured, coverage.truth->is_visible);
+    again.visible = evaluation::covered_share(covered.stored, coverage.truth->is_visible);
+    again.visible_unthinned =
+        evaluation::covered_share(covered.measured, coverage.truth->is_visible);
   }
   return again;
 }
@@ -84,26 +85,26 @@ std::string again_text(const FlownAgain& again) {
   return text;
 }
 
-AnewMission anew_mission(const file::Mission& mission, const run::SurveyRecord& record,
+AnewMission anew_mission(const config::Mission& mission, const session::SurveyRecord& record,
                          const CoverageFigures& coverage, flight::Route present,
                          const std::stop_token& stop) {
-  const run::FlownSurvey& flown = *record.flown;
-  const flight::KnownSpace rules(derived::flight_rules(mission));
+  const session::FlownSurvey& flown = *record.flown;
+  const flight::KnownSpace rules(config::flight_rules(mission));
   const flight::JointSpace space({flown.measured.get(), &rules});
   const auto plan = [&](const StationPlan& stations) {
     return plan_flight(in_given_order(mission), *flown.measured, flown.pad, stations.views,
                        stations.ways, flown.grounds, stop);
   };
-  const std::vector<run::ViewInFlight> surveyed = run::measured_views(mission, present);
-  AnewMission result{anew::choose_mission(mission, *record.surface, space, all_views_of(record),
-                                          std::move(present), plan, {}, stop),
+  const std::vector<session::ViewInFlight> surveyed = session::measured_views(mission, present);
+  AnewMission result{package::choose_mission(mission, *record.surface, space, all_views_of(record),
+                                             std::move(present), plan, {}, stop),
                      {},
                      {}};
   if (coverage.fly_again && result.choice.is_anew) {
     result.survey_again = flown_again(coverage, surveyed);
   }
   if (coverage.fly_again) {
-    result.again = flown_again(coverage, run::measured_views(mission, result.choice.route));
+    result.again = flown_again(coverage, session::measured_views(mission, result.choice.route));
   }
   return result;
 }
@@ -126,12 +127,12 @@ std::optional<StationPlan> anew_stations(const Json& json, const std::string& na
     const std::string place =
         name + ": flight.anew.stations[" + std::to_string(plan.views.size()) + "].";
     plan.views.push_back(
-        {file::vector_of(station.at("position")), file::vector_of(station.at("direction"))});
+        {support::vector_of(station.at("position")), support::vector_of(station.at("direction"))});
     geometry::require_place(plan.views.back().position, place + "position");
     geometry::require_direction(plan.views.back().direction, place + "direction");
     plan.ways.emplace_back();
     for (const Json& point : station.at("way")) {
-      plan.ways.back().push_back(file::vector_of(point));
+      plan.ways.back().push_back(support::vector_of(point));
       geometry::require_place(plan.ways.back().back(), place + "way");
     }
   }
@@ -139,7 +140,7 @@ std::optional<StationPlan> anew_stations(const Json& json, const std::string& na
 }
 
 std::string anew_text(const AnewMission& mission) {
-  const anew::MissionChoice& choice = mission.choice;
+  const package::MissionChoice& choice = mission.choice;
   std::string text = choice.is_anew ? "  anew      " + figures_text(choice.anew) +
                                           "; the survey's " + figures_text(choice.survey)
                                     : "  anew      nothing better was found than the survey's " +

@@ -1,5 +1,5 @@
-/// The mission that was chosen anew (missions/anew), beside the survey's: in summary.json, and as
-/// the program prints it.
+/// The mission that was chosen anew (missions/package/replan), beside the survey's: in
+/// summary.json, and as the program prints it.
 #pragma once
 
 #include <optional>
@@ -10,23 +10,23 @@
 #include <nlohmann/json.hpp>
 
 #include "flight/route/route.h"
-#include "missions/anew/mission_choice.h"
-#include "missions/file/mission.h"
+#include "missions/config/mission.h"
 #include "missions/package/package.h"
-#include "missions/run/survey_record.h"
+#include "missions/package/replan/mission_choice.h"
+#include "missions/session/survey_record.h"
 
 namespace skycap::missions::package {
 
 /// The choice between `present`, the route through the survey's views, and views chosen anew. The
 /// record is of a flown survey that knows its surface. Coverage when it is flown again is measured
 /// where `coverage` says how.
-AnewMission anew_mission(const file::Mission& mission, const run::SurveyRecord& record,
+AnewMission anew_mission(const config::Mission& mission, const session::SurveyRecord& record,
                          const CoverageFigures& coverage, flight::Route present,
                          const std::stop_token& stop);
 
 /// What these views cover, or scans of a scanner, where `coverage` says how that is measured.
 FlownAgain flown_again(const CoverageFigures& coverage,
-                       const std::vector<run::ViewInFlight>& views);
+                       const std::vector<session::ViewInFlight>& views);
 
 /// For the summary, and what the program prints.
 nlohmann::ordered_json again_json(const FlownAgain& again);
@@ -38,8 +38,8 @@ nlohmann::ordered_json anew_json(const AnewMission& mission);
 /// The stations that it has; nothing if the mission takes the survey's views. Throws what
 /// nlohmann::json throws, and Error{bad_file} on values that no station has; `name` stands for the
 /// file.
-std::optional<anew::StationPlan> anew_stations(const nlohmann::ordered_json& json,
-                                               const std::string& name);
+std::optional<package::StationPlan> anew_stations(const nlohmann::ordered_json& json,
+                                                  const std::string& name);
 
 /// What the program prints.
 std::string anew_text(const AnewMission& mission);

@@ -10,9 +10,9 @@
 #include "flight/space/interruptible_space.h"
 #include "flight/space/place_text.h"
 #include "geometry/error.h"
-#include "missions/derived/fleet.h"
-#include "missions/derived/mission_flight.h"
-#include "missions/fleet/timetable_proof.h"
+#include "missions/config/fleet.h"
+#include "missions/config/mission_flight.h"
+#include "missions/package/fleet/timetable_proof.h"
 
 namespace skycap::missions::package {
 namespace {
@@ -25,21 +25,21 @@ using Variants = std::vector<flight::Route>;
 /// Sorties and their rows in the timetable.
 struct RowedSorties {
   std::vector<flight::FleetSortie> sorties;
-  std::vector<fleet::TimetableRow> rows;
+  std::vector<package::TimetableRow> rows;
 };
 
 /// Every sortie of every variant as its own autopilot's file has it.
 RowedSorties sorties_of(const FleetMission& fleet, const std::vector<Variants>& variants) {
   RowedSorties all;
   const auto add = [&](std::size_t v, std::size_t variant, std::size_t i) {
-    const file::Mission& own = fleet.members[v].mission;
+    const config::Mission& own = fleet.members[v].mission;
     const flight::Route& route = variants[v][variant];
-    const flight::Format format = fleet::own_format(derived::vehicle_of(own).dialect);
+    const flight::Format format = package::own_format(config::vehicle_of(own).dialect);
     const std::string number = route.sorties.size() > 1 ? "-" + std::to_string(i + 1) : "";
-    const std::string name = fleet::stem_of(v) + number;
+    const std::string name = package::stem_of(v) + number;
     const flight::FlightPlan plan =
-        flight_plan(route, i, name, derived::site_of(own), derived::flight_rules(own));
-    all.sorties.push_back({v, i, fleet::flown_file(own, write(plan, format), format).script,
+        flight_plan(route, i, name, config::site_of(own), config::flight_rules(own));
+    all.sorties.push_back({v, i, package::flown_file(own, write(plan, format), format).script,
                            plan.vehicle.mode.jerk, variant});
     all.rows.push_back({v, own.flight.vehicle, i, name + flight::format_info(format).ending, 0.0,
                         0.0, fleet.members[v].pad});
@@ -68,10 +68,10 @@ void check_pads(const FleetMission& fleet, const std::vector<flight::FleetSortie
 }
 
 /// Gives every vehicle the variant and the starts by which the last has landed soonest.
-void make_timetable(const file::Mission& mission, std::vector<Variants> variants,
+void make_timetable(const config::Mission& mission, std::vector<Variants> variants,
                     FleetMission& fleet) {
   RowedSorties all = sorties_of(fleet, variants);
-  const flight::SeparationRule rule = derived::separation_of(mission);
+  const flight::SeparationRule rule = config::separation_of(mission);
   const flight::Timetable table = timetable(all.sorties, fleet.members.size(), rule);
   std::vector<flight::FleetSortie> sorties;
   std::vector<flight::TimedFlight> flights;
@@ -105,9 +105,9 @@ void make_timetable(const file::Mission& mission, std::vector<Variants> variants
 /// What is free for all of a fleet.
 class FleetSpace {
  public:
-  FleetSpace(const file::Mission& mission, const flight::MeasuredSpace& measured,
+  FleetSpace(const config::Mission& mission, const flight::MeasuredSpace& measured,
              std::stop_token stop)
-      : known_(derived::flight_rules(mission)),
+      : known_(config::flight_rules(mission)),
         joint_({&measured, &known_}),
         space_(joint_, std::move(stop)) {}
 
@@ -123,8 +123,8 @@ std::vector<flight::FleetMember> flown_members(const std::vector<FleetMember>& m
   std::vector<flight::FleetMember> flown;
   flown.reserve(members.size());
   for (const FleetMember& member : members) {
-    flown.push_back({derived::vehicle_of(member.mission),
-                     derived::route_options_of(member.mission, member.pad)});
+    flown.push_back(
+        {config::vehicle_of(member.mission), config::route_options_of(member.mission, member.pad)});
   }
   return flown;
 }
@@ -144,7 +144,7 @@ std::vector<std::uint32_t> order_of(const std::vector<flight::Station>& stations
 
 /// Until every leg of it is certified, quickly first: that tells which legs matter. Throws
 /// Error{bad_config} if there is no way to share.
-flight::FleetSplit share(const file::Mission& mission, flight::CertifiedCosts& costs,
+flight::FleetSplit share(const config::Mission& mission, flight::CertifiedCosts& costs,
                          const std::vector<std::uint32_t>& order) {
   flight::FleetSplit split;
   for (const std::size_t chains : {std::size_t{1}, flight::thorough}) {
@@ -164,31 +164,31 @@ void stage_fleet(FleetMission& fleet, const flight::MeasuredSpace& measured,
   for (std::size_t v = 0; v < fleet.members.size(); ++v) {
     FleetMember& member = fleet.members[v];
     if (member.route.sorties.empty()) continue;
-    const flight::Format own = fleet::own_format(derived::vehicle_of(member.mission).dialect);
+    const flight::Format own = package::own_format(config::vehicle_of(member.mission).dialect);
     std::vector<flight::Format> all(formats.begin(), formats.end());
     if (std::ranges::find(all, own) == all.end()) all.push_back(own);
     member.files =
-        stage_flight(member.mission, member.route, measured, all, folder, fleet::stem_of(v));
+        stage_flight(member.mission, member.route, measured, all, folder, package::stem_of(v));
   }
-  for (const fleet::TimetableRow& row : fleet.timetable) {
+  for (const package::TimetableRow& row : fleet.timetable) {
     if (!folder.staged(row.file).empty()) continue;
     std::string why;
     for (const std::string& note : fleet.members[row.vehicle].files.notes) why += "; " + note;
     throw Error(ErrorKind::bad_config, "vehicle " + std::to_string(row.vehicle + 1) +
                                            " of the fleet has no " + row.file + why);
   }
-  folder.write(fleet::timetable_name, fleet::timetable_csv(fleet.timetable));
+  folder.write(package::timetable_name, package::timetable_csv(fleet.timetable));
 }
 
 }  // namespace
 
-FleetMission plan_fleet(const file::Mission& mission, const flight::MeasuredSpace& measured,
+FleetMission plan_fleet(const config::Mission& mission, const flight::MeasuredSpace& measured,
                         const flight::Route& alone, std::span<const flight::PadGround> grounds,
                         const std::stop_token& stop) {
   FleetMission fleet;
-  const std::vector<Vector3d> pads = derived::pads_of_fleet(mission, alone.options.takeoff);
+  const std::vector<Vector3d> pads = config::pads_of_fleet(mission, alone.options.takeoff);
   for (std::size_t v = 0; v < pads.size(); ++v) {
-    fleet.members.push_back({derived::as_flown_by(mission, v, pads[v]), pads[v], {}, {}});
+    fleet.members.push_back({config::as_flown_by(mission, v, pads[v]), pads[v], {}, {}});
   }
   const FleetSpace free(mission, measured, stop);
   flight::CertifiedCosts costs(alone.stations, flown_members(fleet.members), free.space(),
@@ -210,10 +210,13 @@ FleetMission plan_fleet(const file::Mission& mission, const flight::MeasuredSpac
   return fleet;
 }
 
-std::shared_ptr<const FleetMission> staged_fleet(
-    const file::Mission& mission, const flight::MeasuredSpace& measured, const flight::Route& alone,
-    std::span<const flight::PadGround> grounds, std::span<const flight::Format> formats,
-    geometry::OutputFolder& folder, const std::stop_token& stop) {
+std::shared_ptr<const FleetMission> staged_fleet(const config::Mission& mission,
+                                                 const flight::MeasuredSpace& measured,
+                                                 const flight::Route& alone,
+                                                 std::span<const flight::PadGround> grounds,
+                                                 std::span<const flight::Format> formats,
+                                                 geometry::OutputFolder& folder,
+                                                 const std::stop_token& stop) {
   auto fleet = std::make_shared<FleetMission>(plan_fleet(mission, measured, alone, grounds, stop));
   stage_fleet(*fleet, measured, formats, folder);
   return fleet;

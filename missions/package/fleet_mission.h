@@ -13,26 +13,26 @@
 #include "flight/route/route.h"
 #include "flight/space/measured_space.h"
 #include "geometry/io/output_folder.h"
-#include "missions/file/mission.h"
-#include "missions/fleet/timetable_file.h"
+#include "missions/config/mission.h"
+#include "missions/package/fleet/timetable_file.h"
 #include "missions/package/flight_files.h"
 
 namespace skycap::missions::package {
 
 /// One vehicle, and its certified route; a route without stations if nothing is left for it.
 struct FleetMember {
-  file::Mission mission;  ///< as it flies it, see derived::as_flown_by()
+  config::Mission mission;  ///< as it flies it, see config::as_flown_by()
   Eigen::Vector3d pad = Eigen::Vector3d::Zero();
   flight::Route route;
   FlightFiles files;
 };
 
 struct FleetMission {
-  std::vector<FleetMember> members;            ///< by vehicle
-  std::vector<fleet::TimetableRow> timetable;  ///< by vehicle and sortie
-  std::vector<flight::Unreached> unreached;    ///< by any of them
-  double makespan = 0.0;                       ///< from the first take-off to the last landing [s]
-  double flown = 0.0;                          ///< all together in the air [s]
+  std::vector<FleetMember> members;              ///< by vehicle
+  std::vector<package::TimetableRow> timetable;  ///< by vehicle and sortie
+  std::vector<flight::Unreached> unreached;      ///< by any of them
+  double makespan = 0.0;     ///< from the first take-off to the last landing [s]
+  double flown = 0.0;        ///< all together in the air [s]
   double delay = 0.0;        ///< of the last landing, for the separation's sake [s]
   flight::FleetBound bound;  ///< of all fleets on legs like these, see flight::CertifiedCosts
   flight::FleetBound least;  ///< of all fleets whatever their legs
@@ -47,15 +47,18 @@ inline constexpr double reported_distance = 100.0;
 /// plan_flight() does it; starts are put off until all flights are proven to keep apart. Throws
 /// what plan_route() throws, and Error{bad_config} if the stations cannot be shared out or if a
 /// vehicle flies too low over where another one stands.
-FleetMission plan_fleet(const file::Mission& mission, const flight::MeasuredSpace& measured,
+FleetMission plan_fleet(const config::Mission& mission, const flight::MeasuredSpace& measured,
                         const flight::Route& alone, std::span<const flight::PadGround> grounds,
                         const std::stop_token& stop = {});
 
 /// The same with every vehicle's route files in these formats and its own autopilot's, and the
 /// timetable, staged.
-std::shared_ptr<const FleetMission> staged_fleet(
-    const file::Mission& mission, const flight::MeasuredSpace& measured, const flight::Route& alone,
-    std::span<const flight::PadGround> grounds, std::span<const flight::Format> formats,
-    geometry::OutputFolder& folder, const std::stop_token& stop = {});
+std::shared_ptr<const FleetMission> staged_fleet(const config::Mission& mission,
+                                                 const flight::MeasuredSpace& measured,
+                                                 const flight::Route& alone,
+                                                 std::span<const flight::PadGround> grounds,
+                                                 std::span<const flight::Format> formats,
+                                                 geometry::OutputFolder& folder,
+                                                 const std::stop_token& stop = {});
 
 }  // namespace skycap::missions::package

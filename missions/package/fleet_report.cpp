@@ -3,15 +3,15 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include "missions/derived/fleet.h"
-#include "missions/file/json_text.h"
-#include "missions/file/mission_keys.h"
+#include "missions/config/fleet.h"
+#include "missions/config/mission_keys.h"
 #include "missions/package/route_json.h"
+#include "missions/support/json_text.h"
 
 namespace skycap::missions::package {
 namespace {
 
-using file::json_of;
+using support::json_of;
 using Json = nlohmann::ordered_json;
 
 /// How far a figure is above what no fleet undercuts [%].
@@ -19,7 +19,7 @@ double gap(double figure, double bound) {
   return bound > 0.0 ? 100.0 * (figure / bound - 1.0) : 0.0;
 }
 
-Json json_of(const fleet::TimetableRow& row) {
+Json json_of(const package::TimetableRow& row) {
   return {{"vehicle", row.vehicle + 1},
           {"sortie", row.sortie + 1},
           {"file", row.file},
@@ -57,7 +57,7 @@ std::string fleet_text(const FleetMission& fleet) {
   text += fmt::format(
       "  apart     proven at {:.2f} m at all times; the last landing {:.0f} s later for it\n",
       fleet.distance, fleet.delay);
-  for (const fleet::TimetableRow& row : fleet.timetable) {
+  for (const package::TimetableRow& row : fleet.timetable) {
     text +=
         fmt::format("  {:9} starts at {:.0f} s, lands at {:.0f} s: {}\n",
                     fmt::format("vehicle {}", row.vehicle + 1), row.start, row.landing, row.file);
@@ -69,13 +69,13 @@ std::string fleet_text(const FleetMission& fleet) {
   return text;
 }
 
-Json fleet_json(const file::Mission& mission, const FleetMission& fleet) {
+Json fleet_json(const config::Mission& mission, const FleetMission& fleet) {
   Json vehicles = Json::array(), timetable = Json::array();
   for (const FleetMember& member : fleet.members) vehicles.push_back(member_json(member));
-  for (const fleet::TimetableRow& row : fleet.timetable) timetable.push_back(json_of(row));
-  const flight::SeparationRule rule = derived::separation_of(mission);
+  for (const package::TimetableRow& row : fleet.timetable) timetable.push_back(json_of(row));
+  const flight::SeparationRule rule = config::separation_of(mission);
   return {
-      {"goal", file::to_text(*file::find_key("flight.fleet_goal")->get(mission))},
+      {"goal", config::to_text(*config::find_key("flight.fleet_goal")->get(mission))},
       {"makespan_s", fleet.makespan},
       {"makespan_bound_s", fleet.bound.makespan},
       {"makespan_least_s", fleet.least.makespan},

@@ -13,6 +13,6 @@ namespace skycap::missions::package {
 std::string fleet_text(const FleetMission& fleet);
 
 /// `flight.fleet` of summary.json.
-nlohmann::ordered_json fleet_json(const file::Mission& mission, const FleetMission& fleet);
+nlohmann::ordered_json fleet_json(const config::Mission& mission, const FleetMission& fleet);
 
 }  // namespace skycap::missions::package

@@ -12,10 +12,10 @@
 #include "flight/space/clearance.h"
 #include "flight/space/interruptible_space.h"
 #include "geometry/error.h"
-#include "missions/derived/mission_flight.h"
-#include "missions/derived/pad_grounds.h"
-#include "missions/derived/survey_sensor.h"
-#include "missions/fleet/timetable_file.h"
+#include "missions/config/mission_flight.h"
+#include "missions/config/pad_grounds.h"
+#include "missions/config/survey_sensor.h"
+#include "missions/package/fleet/timetable_file.h"
 
 namespace skycap::missions::package {
 namespace {
@@ -32,14 +32,14 @@ bool is_local(Format format) {
 }
 
 /// What the mission would have to say for a file of that format; empty if nothing.
-std::string what_is_missing_for(Format format, const file::Mission& mission) {
+std::string what_is_missing_for(Format format, const config::Mission& mission) {
   if (is_local(format)) return "";
-  if (!derived::has_place(mission)) {
+  if (!config::has_place(mission)) {
     return "it needs the place on the Earth; give site.latitude_deg and site.longitude_deg";
   }
   const bool has_sea_level =
       format == Format::plan || format == Format::kml ||
-      (format == Format::waypoints && derived::vehicle_of(mission).dialect != Dialect::px4);
+      (format == Format::waypoints && config::vehicle_of(mission).dialect != Dialect::px4);
   if (!has_sea_level || mission.georeference.geoid_undulation) return "";
   return "its heights count from sea level; give site.geoid_undulation";
 }
@@ -54,14 +54,14 @@ flight::FlightPlan in_dialect(flight::FlightPlan plan, Format format,
   const auto write_for = [&](Dialect dialect, const std::string& file, const std::string& whom) {
     notes.push_back(file + " is written for " + whom + ": " + plan.vehicle.name +
                     " does not read this format");
-    plan.vehicle = derived::flown_by(std::move(plan.vehicle), dialect);
+    plan.vehicle = config::flown_by(std::move(plan.vehicle), dialect);
   };
   if (format == Format::plan && is_dji) write_for(Dialect::px4, "the .plan file", "PX4");
   if (format == Format::waypoints && is_dji) {
     write_for(Dialect::ardupilot, "the .waypoints file", "ArduPilot");
   }
   if (format == Format::kmz && !is_dji) {
-    write_for(Dialect::dji, "the .kmz file", derived::stand_in(Dialect::dji).name);
+    write_for(Dialect::dji, "the .kmz file", config::stand_in(Dialect::dji).name);
   }
   return plan;
 }
@@ -103,20 +103,20 @@ std::string checked_parameters(const flight::FlightPlan& plan) {
 
 /// What the file's name begins with if it is a flight's.
 std::string stem_in(std::string_view name) {
-  const std::optional<std::size_t> vehicle = fleet::vehicle_of_file(name);
-  return vehicle ? fleet::stem_of(*vehicle) : "mission";
+  const std::optional<std::size_t> vehicle = package::vehicle_of_file(name);
+  return vehicle ? package::stem_of(*vehicle) : "mission";
 }
 
 /// Stages a route format by format, sortie by sortie.
 class RouteFiles {
  public:
-  RouteFiles(const file::Mission& mission, const flight::Route& route,
+  RouteFiles(const config::Mission& mission, const flight::Route& route,
              const flight::FreeSpace& measured, geometry::OutputFolder& folder, std::string stem)
       : mission_(mission),
         route_(route),
         folder_(folder),
         stem_(std::move(stem)),
-        rules_(derived::flight_rules(mission)),
+        rules_(config::flight_rules(mission)),
         known_(rules_),
         space_({&measured, &known_}) {}
 
@@ -176,9 +176,9 @@ class RouteFiles {
     }
     const auto corners = holds_curves ? flight::Corners::flown_round : flight::Corners::stopped_in;
     flight::FlightPlan plan = in_dialect(flight_plan(route_, sortie, mission_.name + number,
-                                                     derived::site_of(mission_), rules_, corners),
+                                                     config::site_of(mission_), rules_, corners),
                                          format, notes);
-    certify_dialect(plan, space_, derived::highest_return(mission_, plan.pad.z(), plan.pad.z()));
+    certify_dialect(plan, space_, config::highest_return(mission_, plan.pad.z(), plan.pad.z()));
     if (has_parameters(format) && plan.returns) {
       parameters_[flight::parameters_name(plan.vehicle.dialect, stem_)] = checked_parameters(plan);
     }
@@ -188,7 +188,7 @@ class RouteFiles {
     for (const std::string& note : result.notes) add_note(note);
   }
 
-  const file::Mission& mission_;
+  const config::Mission& mission_;
   const flight::Route& route_;
   geometry::OutputFolder& folder_;
   std::string stem_;  ///< of the names of all files
@@ -204,26 +204,26 @@ class RouteFiles {
 
 std::span<const Format> package_formats() { return formats_of_packages; }
 
-file::Mission in_given_order(file::Mission mission) {
-  mission.flight.order = file::VisitOrder::survey;
+config::Mission in_given_order(config::Mission mission) {
+  mission.flight.order = config::VisitOrder::survey;
   return mission;
 }
 
-std::vector<flight::Station> stations_of(const file::Mission& mission,
+std::vector<flight::Station> stations_of(const config::Mission& mission,
                                          const std::vector<geometry::View>& views,
                                          const std::vector<Way>& ways) {
-  const std::optional<file::ScannerMount>& mount = mission.sensor.mount;
-  const int shots = derived::scans_in_flight(mission) ? 0 : 1;
+  const std::optional<config::ScannerMount>& mount = mission.sensor.mount;
+  const int shots = config::scans_in_flight(mission) ? 0 : 1;
   std::vector<flight::Station> stations;
   for (std::uint32_t i = 0; i < views.size(); ++i) {
-    stations.push_back({mount ? derived::nose_view(*mount, views[i]) : views[i],
-                        derived::hold_of(mission), shots, i, derived::hold_after_of(mission),
+    stations.push_back({mount ? config::nose_view(*mount, views[i]) : views[i],
+                        config::hold_of(mission), shots, i, config::hold_after_of(mission),
                         ways.at(i)});
   }
   return stations;
 }
 
-flight::Route plan_flight(const file::Mission& mission, const flight::FreeSpace& measured,
+flight::Route plan_flight(const config::Mission& mission, const flight::FreeSpace& measured,
                           const Eigen::Vector3d& pad, const std::vector<geometry::View>& views,
                           const std::vector<Way>& ways, std::span<const flight::PadGround> grounds,
                           std::stop_token stop) {
@@ -231,21 +231,21 @@ flight::Route plan_flight(const file::Mission& mission, const flight::FreeSpace&
                      std::move(stop));
 }
 
-flight::Route plan_flight(const file::Mission& mission, const flight::FreeSpace& measured,
+flight::Route plan_flight(const config::Mission& mission, const flight::FreeSpace& measured,
                           const Eigen::Vector3d& pad, std::vector<flight::Station> stations,
                           std::span<const flight::PadGround> grounds, std::stop_token stop) {
-  flight::Obstacles rules = derived::flight_rules(mission);
+  flight::Obstacles rules = config::flight_rules(mission);
   const flight::KnownSpace known(rules);
   // The climb starts on the measured ground: what was measured there is for the pilot to judge.
   const flight::KnownSpace pad_space(without_ground(std::move(rules)));
   const flight::JointSpace joint({&measured, &known});
   const flight::InterruptibleSpace space(joint, std::move(stop));
-  flight::RouteOptions options = derived::route_options_of(mission, pad);
-  options.grounds = derived::grounds_of(mission, pad, grounds);
-  return plan_route(std::move(stations), derived::vehicle_of(mission), space, &pad_space, options);
+  flight::RouteOptions options = config::route_options_of(mission, pad);
+  options.grounds = config::grounds_of(mission, pad, grounds);
+  return plan_route(std::move(stations), config::vehicle_of(mission), space, &pad_space, options);
 }
 
-FlightFiles stage_flight(const file::Mission& mission, const flight::Route& route,
+FlightFiles stage_flight(const config::Mission& mission, const flight::Route& route,
                          const flight::FreeSpace& measured, std::span<const Format> formats,
                          geometry::OutputFolder& folder, const std::string& stem) {
   return RouteFiles(mission, route, measured, folder, stem).stage(formats);
@@ -255,7 +255,7 @@ bool is_flight_file(std::string_view name) {
   const auto is_parameters = [&](Dialect dialect) {
     return name == flight::parameters_name(dialect, stem_in(name));
   };
-  return name == fleet::timetable_name || is_parameters(Dialect::ardupilot) ||
+  return name == package::timetable_name || is_parameters(Dialect::ardupilot) ||
          is_parameters(Dialect::px4) ||
          std::ranges::any_of(flight::formats(), [&](const flight::FormatInfo& info) {
            return is_flight_file(name, info.format);

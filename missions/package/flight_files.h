@@ -16,8 +16,8 @@
 #include "flight/space/clearance.h"
 #include "geometry/io/output_folder.h"
 #include "geometry/place/pose.h"
-#include "missions/anew/mission_choice.h"
-#include "missions/file/mission.h"
+#include "missions/config/mission.h"
+#include "missions/package/replan/mission_choice.h"
 
 namespace skycap::missions::package {
 
@@ -26,26 +26,26 @@ using Way = std::vector<Eigen::Vector3d>;
 
 /// The mission with its views in the order given, and with the ways to them: as views chosen anew
 /// are flown, or those of the survey in its own order.
-file::Mission in_given_order(file::Mission mission);
+config::Mission in_given_order(config::Mission mission);
 
 /// The flight of a mission's vehicle through views of its survey, proven in what the survey has
 /// measured; ways[i] is how it came to view i from the view before or from above the pad (empty if
 /// that is not known); `grounds` are those of pad and rally points that were measured. Views that
 /// this flight cannot visit are listed in it. Throws what plan_route() throws, and
 /// Error{bad_usage} soon after a stop is requested.
-flight::Route plan_flight(const file::Mission& mission, const flight::FreeSpace& measured,
+flight::Route plan_flight(const config::Mission& mission, const flight::FreeSpace& measured,
                           const Eigen::Vector3d& pad, const std::vector<geometry::View>& views,
                           const std::vector<Way>& ways,
                           std::span<const flight::PadGround> grounds = {},
                           std::stop_token stop = {});
 
 /// The stations of these views, with the rests that the mission asks for.
-std::vector<flight::Station> stations_of(const file::Mission& mission,
+std::vector<flight::Station> stations_of(const config::Mission& mission,
                                          const std::vector<geometry::View>& views,
                                          const std::vector<Way>& ways);
 
 /// The same through stations that are given with all that is done there.
-flight::Route plan_flight(const file::Mission& mission, const flight::FreeSpace& measured,
+flight::Route plan_flight(const config::Mission& mission, const flight::FreeSpace& measured,
                           const Eigen::Vector3d& pad, std::vector<flight::Station> stations,
                           std::span<const flight::PadGround> grounds = {},
                           std::stop_token stop = {});
@@ -74,7 +74,7 @@ std::span<const flight::Format> package_formats();
 /// with a note, unless it is the only one: then that is thrown, as Error{bad_config} or what
 /// export_flight() throws. A file that cannot be written is thrown as Error{bad_file}. Beside files
 /// for MAVLink vehicles their parameters are staged, which say how high to return.
-FlightFiles stage_flight(const file::Mission& mission, const flight::Route& route,
+FlightFiles stage_flight(const config::Mission& mission, const flight::Route& route,
                          const flight::FreeSpace& measured, std::span<const flight::Format> formats,
                          geometry::OutputFolder& folder, const std::string& stem = "mission");
 
@@ -89,7 +89,7 @@ struct FlownAgain {
 
 /// A mission whose views were to be chosen anew.
 struct AnewMission {
-  anew::MissionChoice choice;
+  package::MissionChoice choice;
   std::optional<FlownAgain> again;           ///< in simulation
   std::optional<FlownAgain> survey_again{};  ///< of the mission along the survey's views
 };

@@ -6,12 +6,12 @@
 #include <fmt/format.h>
 
 #include "flight/route/route.h"
-#include "missions/derived/mission_flight.h"
-#include "missions/file/number_text.h"
+#include "missions/config/mission_flight.h"
 #include "missions/package/anew_mission.h"
 #include "missions/package/fleet_report.h"
 #include "missions/package/ground_json.h"
-#include "missions/run/way_frames.h"
+#include "missions/session/way_frames.h"
+#include "missions/support/number_text.h"
 
 namespace skycap::missions::package {
 namespace {
@@ -64,16 +64,16 @@ std::string pictures_text(const SurveyMission& flight) {
 
 }  // namespace
 
-std::string flown_text(const file::Mission& mission, const run::SurveyRecord& record) {
-  const run::FlownSurvey& flown = record.flown.value();
+std::string flown_text(const config::Mission& mission, const session::SurveyRecord& record) {
+  const session::FlownSurvey& flown = record.flown.value();
   std::string text =
       fmt::format("  survey    {:.1f} m in {:.1f} min, from the pad to the last view",
                   flown.length(), flown.time() / 60.0);
-  if (derived::scans_in_flight(mission)) {
+  if (config::scans_in_flight(mission)) {
     text += fmt::format("; {} scans on the way at {:g} m/s", record.frames_on_way(),
                         mission.flight.cruise_speed);
   } else if (mission.sensor.is_moving()) {
-    const flight::PictureBounds bounds = run::moving_bounds_of(mission);
+    const flight::PictureBounds bounds = session::moving_bounds_of(mission);
     text += fmt::format("; {} frames on the way, blurred by at most {:.2f} px",
                         record.frames_on_way(), bounds.blur_px);
     if (bounds.shear_px > 0.0) text += fmt::format(" and sheared by {:.2f} px", bounds.shear_px);
@@ -91,7 +91,7 @@ std::string flight_text(const SurveyMission& flight) {
   std::string text =
       fmt::format("  flight    {}, {} views, {:.1f} m in {:.1f} min, {}", route.vehicle.name,
                   route.stations.size(), route.length, route.duration / 60.0,
-                  file::counted(route.sorties.size(), "sortie"));
+                  support::counted(route.sorties.size(), "sortie"));
   if (route.options.order_is_free && route.order_bound > 0.0) {
     text += fmt::format("; order within {:.1f} % of the shortest",
                         100.0 * (route.order_length / route.order_bound - 1.0));

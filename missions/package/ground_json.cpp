@@ -5,7 +5,7 @@
 #include "geometry/angle.h"
 #include "geometry/error.h"
 #include "geometry/place/world.h"
-#include "missions/file/json_text.h"
+#include "missions/support/json_text.h"
 
 namespace skycap::missions::package {
 
@@ -16,7 +16,7 @@ using Json = nlohmann::ordered_json;
 Json grounds_json(std::span<const PadGround> grounds) {
   Json list = Json::array();
   for (const PadGround& ground : grounds) {
-    list.push_back({{"place", file::json_of(ground.place)},
+    list.push_back({{"place", support::json_of(ground.place)},
                     {"slope_deg", ground.slope * geometry::degrees_per_radian},
                     {"unevenness_m", ground.unevenness},
                     {"rise_m", ground.rise},
@@ -33,7 +33,7 @@ std::vector<PadGround> measured_grounds(const Json& list, const std::string& nam
                                   json.at("unevenness_m").get<double>(),
                                   json.at("rise_m").get<double>());
     geometry::require_place(figures, name + ": flight.grounds");
-    grounds.push_back({file::vector_of(json.at("place")),
+    grounds.push_back({support::vector_of(json.at("place")),
                        figures.x() * geometry::radians_per_degree, figures.y(), figures.z(),
                        GroundSource::measured});
     geometry::require_place(grounds.back().place, name + ": flight.grounds");

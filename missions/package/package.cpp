@@ -16,11 +16,9 @@
 #include "geometry/place/pose.h"
 #include "geometry/place/world.h"
 #include "geometry/surfaces/mesh.h"
-#include "missions/derived/fleet.h"
-#include "missions/derived/mission_flight.h"
-#include "missions/file/json_text.h"
-#include "missions/file/number_text.h"
-#include "missions/judge/coverage.h"
+#include "missions/config/fleet.h"
+#include "missions/config/mission_flight.h"
+#include "missions/evaluation/coverage.h"
 #include "missions/package/anew_mission.h"
 #include "missions/package/cloud_normals.h"
 #include "missions/package/coverage_map.h"
@@ -28,14 +26,16 @@
 #include "missions/package/ground_json.h"
 #include "missions/package/holes.h"
 #include "missions/package/settings.h"
-#include "missions/run/measurement.h"
-#include "missions/run/survey_journal.h"
-#include "missions/run/way_frames.h"
+#include "missions/session/way_frames.h"
+#include "missions/simulation/measurement.h"
+#include "missions/simulation/survey_journal.h"
+#include "missions/support/json_text.h"
+#include "missions/support/number_text.h"
 
 namespace skycap::missions::package {
 namespace {
 
-using file::vector_of;
+using support::vector_of;
 using Json = nlohmann::ordered_json;
 
 constexpr const char* coverage_name = "coverage.ply";
@@ -65,25 +65,25 @@ Way way_of(const Json& view, const std::string& what) {
   return way;
 }
 
-std::vector<Way> ways_of(const run::FlownSurvey& flown) {
+std::vector<Way> ways_of(const session::FlownSurvey& flown) {
   std::vector<Way> ways;
-  for (const run::FlownLeg& leg : flown.legs) ways.push_back(leg.points);
+  for (const session::FlownLeg& leg : flown.legs) ways.push_back(leg.points);
   return ways;
 }
 
 /// By number of the scan.
-std::vector<Eigen::Vector3d> sensor_positions(const run::SurveyRecord& record) {
+std::vector<Eigen::Vector3d> sensor_positions(const session::SurveyRecord& record) {
   std::vector<Eigen::Vector3d> positions;
-  for (const run::TakenScan& scan : record.scans) positions.push_back(scan.position);
+  for (const session::TakenScan& scan : record.scans) positions.push_back(scan.position);
   if (!positions.empty()) return positions;
-  for (const run::JudgedView& judged : record.views) {
+  for (const session::JudgedView& judged : record.views) {
     positions.push_back(judged.surveyed.view.position);
   }
   return positions;
 }
 
 /// For each point of the cloud, the view that it was measured at, or on the way to.
-std::vector<std::uint32_t> views_of_points(const run::SurveyRecord& record) {
+std::vector<std::uint32_t> views_of_points(const session::SurveyRecord& record) {
   std::vector<std::uint32_t> views = record.cloud.views;
   if (record.scans.empty()) return views;
   for (std::uint32_t& view : views) view = record.scans[view].view;
@@ -91,13 +91,13 @@ std::vector<std::uint32_t> views_of_points(const run::SurveyRecord& record) {
 }
 
 /// The route of a flown survey, and how its views were chosen.
-void plan_route(const file::Mission& mission, const run::SurveyRecord& record,
+void plan_route(const config::Mission& mission, const session::SurveyRecord& record,
                 const CoverageFigures& coverage, const std::stop_token& stop,
                 SurveyMission& flight) {
-  const run::FlownSurvey& flown = *record.flown;
-  flight.pictures = derived::picture_bounds_of(mission);
+  const session::FlownSurvey& flown = *record.flown;
+  flight.pictures = config::picture_bounds_of(mission);
   // What a scanner measures on the ways of the survey it measures on no others.
-  flight.route = plan_flight(derived::scans_in_flight(mission) ? in_given_order(mission) : mission,
+  flight.route = plan_flight(config::scans_in_flight(mission) ? in_given_order(mission) : mission,
                              *flown.measured, flown.pad, views_of(record), ways_of(flown),
                              flown.grounds, stop);
   if (flight.route.sorties.empty() && !flight.route.unreached.empty()) {
@@ -109,8 +109,8 @@ void plan_route(const file::Mission& mission, const run::SurveyRecord& record,
   if (flight.route.stations.empty()) return;
   if (!record.surface) {
     const bool passes = mission.flight.style == flight::FlightStyle::pass;
-    if ((derived::scans_in_flight(mission) || passes) && coverage.fly_again) {
-      flight.again = flown_again(coverage, run::measured_views(mission, flight.route));
+    if ((config::scans_in_flight(mission) || passes) && coverage.fly_again) {
+      flight.again = flown_again(coverage, session::measured_views(mission, flight.route));
     }
     return;
   }
@@ -131,8 +131,8 @@ void attempt(SurveyMission& flight, const std::stop_token& stop, Work work) {
 }
 
 /// Nothing for a survey without a vehicle.
-std::optional<SurveyMission> planned_mission(const file::Mission& mission,
-                                             const run::SurveyRecord& record,
+std::optional<SurveyMission> planned_mission(const config::Mission& mission,
+                                             const session::SurveyRecord& record,
                                              const CoverageFigures& coverage,
                                              const std::stop_token& stop) {
   if (!record.flown) return std::nullopt;
@@ -142,7 +142,7 @@ std::optional<SurveyMission> planned_mission(const file::Mission& mission,
 }
 
 /// The free space and the files of the flight.
-void stage_mission(const file::Mission& mission, const run::SurveyRecord& record,
+void stage_mission(const config::Mission& mission, const session::SurveyRecord& record,
                    SurveyMission& flight, geometry::OutputFolder& folder,
                    const std::stop_token& stop) {
   std::ostringstream free_space;
@@ -153,13 +153,13 @@ void stage_mission(const file::Mission& mission, const run::SurveyRecord& record
   attempt(flight, stop, [&] {
     flight.files =
         stage_flight(mission, flight.route, *record.flown->measured, package_formats(), folder);
-    if (!derived::is_fleet(mission)) return;
+    if (!config::is_fleet(mission)) return;
     flight.fleet = staged_fleet(mission, *record.flown->measured, flight.route,
                                 record.flown->grounds, package_formats(), folder, stop);
   });
 }
 
-void stage_coverage(const run::SurveyRecord& record, const CoverageFigures& coverage,
+void stage_coverage(const session::SurveyRecord& record, const CoverageFigures& coverage,
                     geometry::OutputFolder& folder) {
   if (const auto patches = known_surface(record, coverage); !patches.empty()) {
     geometry::write_cloud(folder.stage(coverage_name), columns_of(coverage_map(patches)));
@@ -169,39 +169,40 @@ void stage_coverage(const run::SurveyRecord& record, const CoverageFigures& cove
 
 }  // namespace
 
-std::vector<geometry::View> views_of(const run::SurveyRecord& record) {
+std::vector<geometry::View> views_of(const session::SurveyRecord& record) {
   std::vector<geometry::View> views;
-  for (const run::JudgedView& judged : record.views) views.push_back(judged.surveyed.view);
+  for (const session::JudgedView& judged : record.views) views.push_back(judged.surveyed.view);
   return views;
 }
 
-std::span<const survey::skycap::BelievedPatch> known_surface(const run::SurveyRecord& record,
+std::span<const survey::skycap::BelievedPatch> known_surface(const session::SurveyRecord& record,
                                                              const CoverageFigures& coverage) {
   return record.belief ? record.belief->patches : coverage.patches;
 }
 
-std::string views_csv(const run::SurveyRecord& record) {
+std::string views_csv(const session::SurveyRecord& record) {
   std::string csv =
       "view,x,y,z,direction_x,direction_y,direction_z,returns,points_new,points,frontiers,"
       "coverage,distance_m\n";
   for (std::size_t i = 0; i < record.views.size(); ++i) {
-    const run::JudgedView& judged = record.views[i];
+    const session::JudgedView& judged = record.views[i];
     const survey::SurveyedView& view = judged.surveyed;
     csv += std::to_string(i);
     for (const Eigen::Vector3d& vector : {view.view.position, view.view.direction}) {
-      for (int axis = 0; axis < 3; ++axis) csv.append(",").append(file::exact_text(vector[axis]));
+      for (int axis = 0; axis < 3; ++axis)
+        csv.append(",").append(support::exact_text(vector[axis]));
     }
     for (const std::size_t count :
          {view.returns, view.step.points_new, view.points, view.step.frontiers}) {
       csv.append(",").append(std::to_string(count));
     }
-    csv.append(",").append(file::exact_text(judged.coverage));
-    csv.append(",").append(file::exact_text(view.distance)).append("\n");
+    csv.append(",").append(support::exact_text(judged.coverage));
+    csv.append(",").append(support::exact_text(view.distance)).append("\n");
   }
   return csv;
 }
 
-std::string trajectory_tum(const run::SurveyRecord& record) {
+std::string trajectory_tum(const session::SurveyRecord& record) {
   std::string tum = "# timestamp tx ty tz qx qy qz qw\n";
   for (std::size_t i = 0; i < record.views.size(); ++i) {
     const Eigen::Isometry3d world_from_camera =
@@ -211,15 +212,16 @@ std::string trajectory_tum(const run::SurveyRecord& record) {
     tum += std::to_string(i);
     for (const double number :
          {position.x(), position.y(), position.z(), turn.x(), turn.y(), turn.z(), turn.w()}) {
-      tum.append(" ").append(file::exact_text(number));
+      tum.append(" ").append(support::exact_text(number));
     }
     tum += "\n";
   }
   return tum;
 }
 
-CoverageFigures coverage_figures(const file::Mission& mission, const run::SurveyRecord& record,
-                                 const scene::SurveyScene& scene, unsigned threads,
+CoverageFigures coverage_figures(const config::Mission& mission,
+                                 const session::SurveyRecord& record,
+                                 const evaluation::SurveyScene& scene, unsigned threads,
                                  const std::stop_token& stop) {
   CoverageFigures figures{record.coverage(), {}, {}};
   std::vector<std::uint8_t> is_visible, is_attainable;
@@ -229,13 +231,13 @@ CoverageFigures coverage_figures(const file::Mission& mission, const run::Survey
     if (stop.stop_requested()) {
       is_visible.clear();
     } else {
-      figures.visible = judge::covered_share(record.is_covered, is_visible);
-      if (marks) figures.ceiling = judge::marked_share(*marks);
+      figures.visible = evaluation::covered_share(record.is_covered, is_visible);
+      if (marks) figures.ceiling = evaluation::marked_share(*marks);
       is_attainable = marks.value_or(is_attainable);
     }
     figures.fly_again = [&mission, &scene, seed = record.seed,
-                         threads](const std::vector<run::ViewInFlight>& views) {
-      return run::covered_when_flown_again(mission, scene, views, seed, threads);
+                         threads](const std::vector<session::ViewInFlight>& views) {
+      return simulation::covered_when_flown_again(mission, scene, views, seed, threads);
     };
   }
   if (!record.belief) {
@@ -247,17 +249,17 @@ CoverageFigures coverage_figures(const file::Mission& mission, const run::Survey
   return figures;
 }
 
-void commit_package(const run::SurveyRecord& record, geometry::OutputFolder& folder) {
+void commit_package(const session::SurveyRecord& record, geometry::OutputFolder& folder) {
   if (record.stop_reason != survey::StopReason::interrupted) {
-    folder.replace([](std::string_view name) { return name == run::journal_name; });
+    folder.replace([](std::string_view name) { return name == simulation::journal_name; });
   } else if (is_complete_result(folder.path() / summary_name)) {
     folder.move_to("interrupted");
   }
   folder.commit();
 }
 
-std::optional<SurveyMission> stage_package(const file::Mission& mission,
-                                           const run::SurveyRecord& record,
+std::optional<SurveyMission> stage_package(const config::Mission& mission,
+                                           const session::SurveyRecord& record,
                                            const CoverageFigures& coverage, unsigned threads,
                                            geometry::OutputFolder& folder, std::stop_token stop) {
   folder.replace([](std::string_view name) {
@@ -294,7 +296,7 @@ std::optional<SurveyMission> stage_package(const file::Mission& mission,
 }
 
 PackageSummary read_package_summary(const std::filesystem::path& folder,
-                                    const std::vector<file::KeyOverride>& overrides) {
+                                    const std::vector<config::KeyOverride>& overrides) {
   const std::filesystem::path file = folder / summary_name;
   geometry::finish_commit(folder);
   return parse_package_summary(geometry::read_file(file, geometry::largest_json), file.string(),
@@ -302,7 +304,7 @@ PackageSummary read_package_summary(const std::filesystem::path& folder,
 }
 
 PackageSummary parse_package_summary(const std::string& text, const std::string& name,
-                                     const std::vector<file::KeyOverride>& overrides) {
+                                     const std::vector<config::KeyOverride>& overrides) {
   try {
     const Json json = json_of_summary(text, name);
     PackageSummary summary;
@@ -314,7 +316,7 @@ PackageSummary parse_package_summary(const std::string& text, const std::string&
         summary.grounds = measured_grounds(json["flight"]["grounds"], name);
       }
       summary.has_choice = json["flight"].contains("anew");
-      if (summary.has_choice && summary.mission.flight.views == file::MissionViews::anew) {
+      if (summary.has_choice && summary.mission.flight.views == config::MissionViews::anew) {
         summary.anew = anew_stations(json["flight"]["anew"], name);
       }
     }
@@ -343,12 +345,12 @@ bool is_complete_result(const std::filesystem::path& json_file) {
 }
 
 PackagedSurvey read_package(const std::filesystem::path& folder,
-                            const std::vector<file::KeyOverride>& overrides) {
+                            const std::vector<config::KeyOverride>& overrides) {
   PackageSummary summary = read_package_summary(folder, overrides);
   if (!summary.pad) {
     fail(folder / summary_name, "is of a survey without a vehicle; plan it with flight.vehicle");
   }
-  if (summary.mission.flight.views == file::MissionViews::anew && !summary.has_choice) {
+  if (summary.mission.flight.views == config::MissionViews::anew && !summary.has_choice) {
     fail(folder / summary_name,
          "has no views chosen anew; plan the mission again, or say flight.views=survey");
   }

@@ -13,13 +13,13 @@
 #include "flight/space/measured_space.h"
 #include "geometry/io/output_folder.h"
 #include "geometry/place/pose.h"
-#include "missions/file/mission.h"
-#include "missions/file/mission_reader.h"
+#include "missions/config/mission.h"
+#include "missions/config/mission_reader.h"
+#include "missions/evaluation/survey_scene.h"
 #include "missions/package/coverage_map.h"
 #include "missions/package/flight_files.h"
-#include "missions/run/measurement.h"
-#include "missions/run/survey_runner.h"
-#include "missions/scene/survey_scene.h"
+#include "missions/simulation/measurement.h"
+#include "missions/simulation/survey_runner.h"
 #include "survey/skycap/skycap_planner.h"
 
 namespace skycap::missions::package {
@@ -35,18 +35,19 @@ struct CoverageFigures {
   std::optional<TrueCoverage> truth = {};  ///< of a simulated survey
   /// What views cover when they are flown again; null where that cannot be simulated, or the survey
   /// was interrupted.
-  std::function<run::CoveredAgain(const std::vector<run::ViewInFlight>&)> fly_again = {};
+  std::function<simulation::CoveredAgain(const std::vector<session::ViewInFlight>&)> fly_again = {};
 };
 
 /// What a simulated survey covered of the true surface; what could be covered at all only of one
 /// that has ended, unless a stop is requested. Keeps references to mission and scene.
-CoverageFigures coverage_figures(const file::Mission& mission, const run::SurveyRecord& record,
-                                 const scene::SurveyScene& scene, unsigned threads,
+CoverageFigures coverage_figures(const config::Mission& mission,
+                                 const session::SurveyRecord& record,
+                                 const evaluation::SurveyScene& scene, unsigned threads,
                                  const std::stop_token& stop);
 
 /// Commits what stage_package() and others have staged. A survey that was interrupted goes beside a
 /// complete one instead of over it, into the folder "interrupted", and keeps its journal.
-void commit_package(const run::SurveyRecord& record, geometry::OutputFolder& folder);
+void commit_package(const session::SurveyRecord& record, geometry::OutputFolder& folder);
 
 /// Stages summary.json, cloud.ply, views.csv and trajectory.tum in `folder`; the caller commits. A
 /// flown survey's package also holds its route files and free_space.bin, which they were proven in
@@ -55,8 +56,8 @@ void commit_package(const run::SurveyRecord& record, geometry::OutputFolder& fol
 /// summary.json holds times. A stop that is requested leaves the cloud without normals and, while
 /// the route is made, the survey without one, and its failure says so: `skycap export` makes it
 /// later.
-std::optional<SurveyMission> stage_package(const file::Mission& mission,
-                                           const run::SurveyRecord& record,
+std::optional<SurveyMission> stage_package(const config::Mission& mission,
+                                           const session::SurveyRecord& record,
                                            const CoverageFigures& coverage, unsigned threads,
                                            geometry::OutputFolder& folder,
                                            std::stop_token stop = {});
@@ -75,13 +76,13 @@ inline constexpr const char* fly_test_name = "fly_test.json";
 
 /// What a package's summary says of its survey.
 struct PackageSummary {
-  file::Mission mission;  ///< with all keys as they were in force
+  config::Mission mission;  ///< with all keys as they were in force
   std::vector<geometry::View> views;
   std::vector<Way> ways;                   ///< ways[i] was flown to view i; empty if it is not said
   std::optional<Eigen::Vector3d> pad;      ///< of a survey that was flown
   std::vector<flight::PadGround> grounds;  ///< of pad and rally points, where it was measured
   bool has_choice = false;  ///< whether views were to be chosen anew when it was planned
-  std::optional<anew::StationPlan> anew{};  ///< the mission's stations, if they were chosen so
+  std::optional<package::StationPlan> anew{};  ///< the mission's stations, if they were chosen so
 
   /// What is flown: those stations, or the survey's views.
   const std::vector<geometry::View>& stations() const { return anew ? anew->views : views; }
@@ -89,16 +90,16 @@ struct PackageSummary {
 
 /// The same of a summary's text; `name` stands for the file in messages.
 PackageSummary parse_package_summary(const std::string& text, const std::string& name,
-                                     const std::vector<file::KeyOverride>& overrides = {});
+                                     const std::vector<config::KeyOverride>& overrides = {});
 
 /// Reads a package's summary; `overrides` take the place of the mission's keys. Throws
 /// Error{bad_file} naming the file if it is missing or not as stage_package() wrote it.
 PackageSummary read_package_summary(const std::filesystem::path& folder,
-                                    const std::vector<file::KeyOverride>& overrides);
+                                    const std::vector<config::KeyOverride>& overrides);
 
 /// What a package holds of a flown survey.
 struct PackagedSurvey {
-  file::Mission mission;  ///< with all keys as they were in force; in_given_order() of stations
+  config::Mission mission;  ///< with all keys as they were in force; in_given_order() of stations
   std::vector<geometry::View> views;  ///< that are flown: PackageSummary::stations()
   std::vector<Way> ways;              ///< to them
   Eigen::Vector3d pad = Eigen::Vector3d::Zero();
@@ -111,28 +112,28 @@ bool is_complete_result(const std::filesystem::path& json_file);
 
 /// Reads the package of a flown survey, as read_package_summary() does.
 PackagedSurvey read_package(const std::filesystem::path& folder,
-                            const std::vector<file::KeyOverride>& overrides);
+                            const std::vector<config::KeyOverride>& overrides);
 
 /// The views of a survey, in their order.
-std::vector<geometry::View> views_of(const run::SurveyRecord& record);
+std::vector<geometry::View> views_of(const session::SurveyRecord& record);
 
 /// The pieces of surface that are known: as the planner believes, or else as the simulator knows.
-std::span<const survey::skycap::BelievedPatch> known_surface(const run::SurveyRecord& record,
+std::span<const survey::skycap::BelievedPatch> known_surface(const session::SurveyRecord& record,
                                                              const CoverageFigures& coverage);
 
 /// views.csv: a line for each view.
-std::string views_csv(const run::SurveyRecord& record);
+std::string views_csv(const session::SurveyRecord& record);
 
 /// trajectory.tum: "timestamp tx ty tz qx qy qz qw" of world_from_camera for each view, the
 /// format of the TUM RGB-D benchmark. Nothing was flown, so a view's number is its timestamp.
-std::string trajectory_tum(const run::SurveyRecord& record);
+std::string trajectory_tum(const session::SurveyRecord& record);
 
 /// summary.json, as docs/mission_file.md describes it.
-std::string summary_json(const file::Mission& mission, const run::SurveyRecord& record,
+std::string summary_json(const config::Mission& mission, const session::SurveyRecord& record,
                          const CoverageFigures& coverage,
                          const std::optional<SurveyMission>& flight = {});
 
 /// Planning time of a whole survey by part, in the order of execution.
-std::vector<survey::PartTime> planning_time_by_part(const run::SurveyRecord& record);
+std::vector<survey::PartTime> planning_time_by_part(const session::SurveyRecord& record);
 
 }  // namespace skycap::missions::package

@@ -4,12 +4,12 @@
 
 #include <nlohmann/json.hpp>
 
-#include "missions/file/json_text.h"
+#include "missions/support/json_text.h"
 
 namespace skycap::missions::package {
 namespace {
 
-using file::json_of;
+using support::json_of;
 using Json = nlohmann::ordered_json;
 
 Json json_of(const flight::Leg& leg, const Json& from, const Json& to) {

@@ -5,9 +5,9 @@
 #include <nlohmann/json.hpp>
 
 #include "geometry/error.h"
-#include "missions/derived/resolved_mission.h"
-#include "missions/file/mission_keys.h"
-#include "missions/file/setting_json.h"
+#include "missions/config/mission_keys.h"
+#include "missions/config/resolved_mission.h"
+#include "missions/config/setting_json.h"
 
 namespace skycap::missions::package {
 namespace {
@@ -19,7 +19,8 @@ std::string mission_text(const Json& settings) {
   Json nested = Json::object();
   for (const auto& [path, value] : settings.items()) {
     // A pointer with a number in it would grow a list; no key of ours has one.
-    if (!file::find_key(path)) throw Error(ErrorKind::bad_file, "settings." + path + " is unknown");
+    if (!config::find_key(path))
+      throw Error(ErrorKind::bad_file, "settings." + path + " is unknown");
     std::string pointer = "/" + path;
     std::ranges::replace(pointer, '.', '/');
     nested[Json::json_pointer(pointer)] = value;
@@ -29,28 +30,28 @@ std::string mission_text(const Json& settings) {
 
 }  // namespace
 
-Json settings_json(const file::Mission& mission) {
+Json settings_json(const config::Mission& mission) {
   Json values = Json::object();
-  for (const file::Key& key : file::mission_keys()) {
+  for (const config::Key& key : config::mission_keys()) {
     // A lidar takes the camera's place, whose keys are refused beside it.
     const bool is_of_flight = key.path == "sensor.capture" || key.path == "sensor.frame_period";
     const bool is_of_camera = key.path.starts_with("sensor.") && key.path != "sensor.lidar" &&
                               !(is_of_flight && mission.sensor.mount);
     if (is_of_camera && mission.sensor.lidar) continue;
-    if (const auto value = key.get(mission)) values[key.path] = file::setting_json(*value);
+    if (const auto value = key.get(mission)) values[key.path] = config::setting_json(*value);
   }
   return values;
 }
 
-file::Mission mission_of_settings(const Json& settings, const std::string& name,
-                                  const std::vector<file::KeyOverride>& overrides) {
+config::Mission mission_of_settings(const Json& settings, const std::string& name,
+                                    const std::vector<config::KeyOverride>& overrides) {
   std::string text;
   try {
     text = mission_text(settings);
   } catch (const Error& error) {
     throw Error(error.kind(), name + ": " + error.what());
   }
-  return derived::parse_mission(text, name, overrides);
+  return config::parse_mission(text, name, overrides);
 }
 
 }  // namespace skycap::missions::package

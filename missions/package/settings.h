@@ -6,17 +6,17 @@
 
 #include <nlohmann/json_fwd.hpp>
 
-#include "missions/file/mission.h"
-#include "missions/file/mission_reader.h"
+#include "missions/config/mission.h"
+#include "missions/config/mission_reader.h"
 
 namespace skycap::missions::package {
 
 /// All keys as they are in force, by their paths.
-nlohmann::ordered_json settings_json(const file::Mission& mission);
+nlohmann::ordered_json settings_json(const config::Mission& mission);
 
 /// The mission that settings stand for, with overrides; `name` is the file in messages. Throws
 /// Error{bad_file} for what is no key, and what parse_mission() throws.
-file::Mission mission_of_settings(const nlohmann::ordered_json& settings, const std::string& name,
-                                  const std::vector<file::KeyOverride>& overrides = {});
+config::Mission mission_of_settings(const nlohmann::ordered_json& settings, const std::string& name,
+                                    const std::vector<config::KeyOverride>& overrides = {});
 
 }  // namespace skycap::missions::package

@@ -4,11 +4,10 @@
 
 #include <nlohmann/json.hpp>
 
-#include "missions/derived/mission_priors.h"
-#include "missions/derived/pad_grounds.h"
-#include "missions/file/json_text.h"
-#include "missions/file/mission_keys.h"
-#include "missions/judge/reliability.h"
+#include "missions/config/mission_keys.h"
+#include "missions/config/mission_priors.h"
+#include "missions/config/pad_grounds.h"
+#include "missions/evaluation/reliability.h"
 #include "missions/package/anew_mission.h"
 #include "missions/package/fleet_report.h"
 #include "missions/package/ground_json.h"
@@ -17,12 +16,13 @@
 #include "missions/package/route_json.h"
 #include "missions/package/settings.h"
 #include "missions/package/target_coverage.h"
+#include "missions/support/json_text.h"
 #include "missions/version.h"
 
 namespace skycap::missions::package {
 namespace {
 
-using file::json_of;
+using support::json_of;
 using Json = nlohmann::ordered_json;
 
 Json json_of(const std::optional<double>& number) { return number ? Json(*number) : Json(); }
@@ -34,14 +34,14 @@ Json json_of(const std::vector<survey::PartTime>& times) {
 }
 
 /// How far what the planner believes of places is true, of what can be seen.
-Json reliability_summary(const file::Mission& mission, const survey::skycap::SurveyBelief& belief,
+Json reliability_summary(const config::Mission& mission, const survey::skycap::SurveyBelief& belief,
                          const std::optional<TrueCoverage>& truth) {
   if (!truth || truth->is_visible.empty()) return {};  // interrupted, or nobody asks
   const double reach = 2.0 * mission.planner.see.resolution_radius;
-  const judge::Reliability found = judge::reliability(belief.patches, truth->samples,
-                                                      truth->is_covered, truth->is_visible, reach);
+  const evaluation::Reliability found = evaluation::reliability(
+      belief.patches, truth->samples, truth->is_covered, truth->is_visible, reach);
   Json bands = Json::array();
-  for (const judge::Reliability::Band& band : found.bands) {
+  for (const evaluation::Reliability::Band& band : found.bands) {
     bands.push_back(
         {{"believed", band.believed}, {"covered", band.covered}, {"share", band.share}});
   }
@@ -51,13 +51,13 @@ Json reliability_summary(const file::Mission& mission, const survey::skycap::Sur
 }
 
 /// What the planner believes at the end: shares are of the surface, seen and guessed.
-Json belief_summary(const file::Mission& mission, const run::SurveyRecord& record,
+Json belief_summary(const config::Mission& mission, const session::SurveyRecord& record,
                     const CoverageFigures& coverage) {
   if (!record.belief) return {};
   const survey::skycap::SurveyBelief& belief = *record.belief;
   // In which way it is complete, or what ended it before that: no two reasons.
-  const char* stop =
-      record.is_complete() ? run::name_of(record.skycap_stop) : run::name_of(record.stop_reason);
+  const char* stop = record.is_complete() ? session::name_of(record.skycap_stop)
+                                          : session::name_of(record.stop_reason);
   return {{"stop", stop},
           {"predicted_coverage", belief.coverage},
           {"area_m2", belief.area},
@@ -72,7 +72,7 @@ Json belief_summary(const file::Mission& mission, const run::SurveyRecord& recor
 }
 
 /// What is missing, piece by piece: as the planner believes or else as the simulator knows.
-Json surface_summary(const run::SurveyRecord& record, const CoverageFigures& coverage) {
+Json surface_summary(const session::SurveyRecord& record, const CoverageFigures& coverage) {
   const auto patches = known_surface(record, coverage);
   if (patches.empty()) return {};
   const MissingSurface missing = missing_surface(patches, views_of(record));
@@ -112,8 +112,8 @@ Json targets_summary(const std::vector<TargetCoverage>& targets) {
   return list;
 }
 
-std::string value_text(const file::Mission& mission, const char* key) {
-  return file::to_text(*file::find_key(key)->get(mission));
+std::string value_text(const config::Mission& mission, const char* key) {
+  return config::to_text(*config::find_key(key)->get(mission));
 }
 
 /// How the vehicle comes home when its link, its battery or its pilot asks for it.
@@ -139,7 +139,7 @@ Json pictures_summary(const SurveyMission& flight) {
 }
 
 /// The flight of the survey and the route in the package, in metres, seconds and watt hours.
-Json survey_flight_summary(const run::FlownSurvey& flown) {
+Json survey_flight_summary(const session::FlownSurvey& flown) {
   return {{"length_m", flown.length()},
           {"duration_s", flown.time()},
           {"min_clearance_m", flown.min_clearance()},
@@ -147,7 +147,7 @@ Json survey_flight_summary(const run::FlownSurvey& flown) {
           {"free_volume_m3", flown.measured->free_volume()}};
 }
 
-Json flight_summary(const run::FlownSurvey& flown, const SurveyMission& flight) {
+Json flight_summary(const session::FlownSurvey& flown, const SurveyMission& flight) {
   const flight::Route& route = flight.route;
   const flight::ClearanceBudget& clearance = route.options.clearance;
   Json files = Json::array();
@@ -187,7 +187,7 @@ Json flight_summary(const run::FlownSurvey& flown, const SurveyMission& flight) 
           {"notes", flight.files.notes}};
 }
 
-Json view_summary(std::size_t number, const run::JudgedView& judged) {
+Json view_summary(std::size_t number, const session::JudgedView& judged) {
   const survey::SurveyedView& view = judged.surveyed;
   return {{"view", number},
           {"position", json_of(view.view.position)},
@@ -206,9 +206,9 @@ Json view_summary(std::size_t number, const run::JudgedView& judged) {
 
 }  // namespace
 
-std::vector<survey::PartTime> planning_time_by_part(const run::SurveyRecord& record) {
+std::vector<survey::PartTime> planning_time_by_part(const session::SurveyRecord& record) {
   std::vector<survey::PartTime> sums;
-  for (const run::JudgedView& judged : record.views) {
+  for (const session::JudgedView& judged : record.views) {
     for (const auto& [part, seconds] : judged.surveyed.step.times) {
       const auto sum = std::ranges::find(sums, part, &survey::PartTime::part);
       if (sum == sums.end()) {
@@ -221,7 +221,7 @@ std::vector<survey::PartTime> planning_time_by_part(const run::SurveyRecord& rec
   return sums;
 }
 
-std::string summary_json(const file::Mission& mission, const run::SurveyRecord& record,
+std::string summary_json(const config::Mission& mission, const session::SurveyRecord& record,
                          const CoverageFigures& coverage,
                          const std::optional<SurveyMission>& flight) {
   Json summary{{"mission", mission.name},
@@ -231,7 +231,7 @@ std::string summary_json(const file::Mission& mission, const run::SurveyRecord& 
                {"threads", record.threads},
                {"version", version},
                {"complete", record.is_complete()},
-               {"stop_reason", run::name_of(record.stop_reason)},
+               {"stop_reason", session::name_of(record.stop_reason)},
                {"views", record.views.size()},
                {"points", record.cloud.size()},
                {"coverage", coverage.all},
@@ -243,7 +243,7 @@ std::string summary_json(const file::Mission& mission, const run::SurveyRecord& 
                {"distance_m", record.distance()},
                {"belief", belief_summary(mission, record, coverage)},
                {"surface", surface_summary(record, coverage)}};
-  if (derived::has_target(mission)) {
+  if (config::has_target(mission)) {
     summary["targets"] = targets_summary(target_coverage(mission, record.cloud.positions));
   }
   if (flight && flight->failure.empty()) {
@@ -259,9 +259,9 @@ std::string summary_json(const file::Mission& mission, const run::SurveyRecord& 
                          {"failure", flight->failure}};
   }
   if (flight) {
-    const run::FlownSurvey& flown = *record.flown;
+    const session::FlownSurvey& flown = *record.flown;
     summary["flight"]["grounds"] =
-        grounds_json(derived::grounds_of(mission, flown.pad, flown.grounds));
+        grounds_json(config::grounds_of(mission, flown.pad, flown.grounds));
   }
   summary["settings"] = settings_json(mission);
   summary["per_view"] = Json::array();
@@ -269,7 +269,7 @@ std::string summary_json(const file::Mission& mission, const run::SurveyRecord& 
     summary["per_view"].push_back(view_summary(i, record.views[i]));
     if (record.flown) summary["per_view"].back()["way"] = json_of(record.flown->legs[i].points);
   }
-  return file::json_text(summary);
+  return support::json_text(summary);
 }
 
 }  // namespace skycap::missions::package

@@ -5,14 +5,14 @@
 
 #include <fmt/format.h>
 
-#include "missions/derived/mission_priors.h"
-#include "missions/judge/coverage.h"
-#include "missions/prior/surface_points.h"
+#include "missions/config/mission_priors.h"
+#include "missions/evaluation/coverage.h"
+#include "missions/site_data/surface_points.h"
 
 namespace skycap::missions::package {
 namespace {
 
-using prior::SurfaceKind;
+using site_data::SurfaceKind;
 
 /// Points on an object: enough to tell shares to a tenth of a percent.
 constexpr std::size_t most_points = 100'000;
@@ -30,7 +30,7 @@ constexpr std::array<NamedKind, 4> told_kinds{{{SurfaceKind::wall, "wall"},
                                                {SurfaceKind::other, "other"}}};
 
 template <typename IsMeant>
-CoveredPart part_of(const std::string& name, const prior::SurfacePoints& points,
+CoveredPart part_of(const std::string& name, const site_data::SurfacePoints& points,
                     std::span<const std::uint8_t> is_covered, IsMeant is_meant) {
   std::size_t all = 0, covered = 0;
   for (std::size_t i = 0; i < points.kinds.size(); ++i) {
@@ -42,9 +42,9 @@ CoveredPart part_of(const std::string& name, const prior::SurfacePoints& points,
           all > 0 ? static_cast<double>(covered) / static_cast<double>(all) : 0.0};
 }
 
-TargetCoverage coverage_of(const prior::Object& object, const prior::SurfacePoints& points,
+TargetCoverage coverage_of(const site_data::Object& object, const site_data::SurfacePoints& points,
                            std::span<const Eigen::Vector3f> measured, double radius) {
-  judge::CoverageMeter meter(points.positions, radius);
+  evaluation::CoverageMeter meter(points.positions, radius);
   meter.add(measured);
   const auto& is_covered = meter.is_covered();
   TargetCoverage coverage{.radius = radius};
@@ -63,16 +63,16 @@ std::string text_of(const CoveredPart& part) {
 
 }  // namespace
 
-std::vector<TargetCoverage> target_coverage(const file::Mission& mission,
+std::vector<TargetCoverage> target_coverage(const config::Mission& mission,
                                             std::span<const Eigen::Vector3f> measured) {
   std::vector<TargetCoverage> targets;
-  const prior::SitePriors& site = derived::priors_of(mission);
+  const site_data::SitePriors& site = config::priors_of(mission);
   for (std::size_t i = 0; i < site.priors.size(); ++i) {
-    if (site.sources[i].role != prior::Role::target) continue;
+    if (site.sources[i].role != site_data::Role::target) continue;
     const double radius = mission.evaluation.registration_distance + site.priors[i].uncertainty;
-    for (const prior::Object& object : site.priors[i].objects) {
-      const prior::SurfacePoints points =
-          prior::spread_over(object, most_points, radius / points_per_radius);
+    for (const site_data::Object& object : site.priors[i].objects) {
+      const site_data::SurfacePoints points =
+          site_data::spread_over(object, most_points, radius / points_per_radius);
       if (points.positions.empty()) continue;
       targets.push_back(coverage_of(object, points, measured, radius));
     }

@@ -8,7 +8,7 @@
 
 #include <Eigen/Core>
 
-#include "missions/file/mission.h"
+#include "missions/config/mission.h"
 
 namespace skycap::missions::package {
 
@@ -28,7 +28,7 @@ struct TargetCoverage {
 };
 
 /// Of each object of the targets that has a surface to be seen, in the order of the mission.
-std::vector<TargetCoverage> target_coverage(const file::Mission& mission,
+std::vector<TargetCoverage> target_coverage(const config::Mission& mission,
                                             std::span<const Eigen::Vector3f> measured);
 
 /// A line for each; empty without any.

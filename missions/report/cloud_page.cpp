@@ -7,11 +7,11 @@
 #include <vector>
 
 #include "geometry/io/cloud_io.h"
-#include "missions/file/number_text.h"
 #include "missions/report/page.h"
 #include "missions/report/point_figures.h"
 #include "missions/report/results.h"
 #include "missions/report/scene_outline.h"
+#include "missions/support/number_text.h"
 
 namespace skycap::missions::report {
 namespace {
@@ -67,13 +67,13 @@ std::string cloud_page(const std::filesystem::path& file) {
   const std::string name = file.filename().string();
   const Json data = {{"kind", "cloud"},
                      {"title", name},
-                     {"facts", {file::counted(cloud.positions.size(), "point")}},
+                     {"facts", {support::counted(cloud.positions.size(), "point")}},
                      {"palette", palette.colours}};
   return page_text(
       name, data, {{"measured", encode_cloud(cloud.positions, attributes, default_report_points)}});
 }
 
-std::string mission_page(const file::Mission& mission, std::span<const Eigen::Vector3f> surface,
+std::string mission_page(const config::Mission& mission, std::span<const Eigen::Vector3f> surface,
                          const std::optional<Eigen::Vector3d>& pad) {
   const Json data = {
       {"kind", "mission"},

@@ -4,9 +4,9 @@
 
 #include <nlohmann/json.hpp>
 
-#include "missions/file/number_text.h"
 #include "missions/report/page.h"
 #include "missions/report/verdict.h"
+#include "missions/support/number_text.h"
 
 namespace skycap::missions::report {
 namespace {
@@ -18,7 +18,7 @@ Verdict district_verdict(const Json& summary) {
   const auto surveyed = summary.at("surveyed").get<std::size_t>();
   Verdict verdict{.is_complete = summary.at("complete").get<bool>(),
                   .because = std::to_string(surveyed) + " of " +
-                             file::counted(targets.size(), "target") + " surveyed",
+                             support::counted(targets.size(), "target") + " surveyed",
                   .lights = {}};
   if (const Json& flight = summary.at("flight"); flight.is_object()) {
     const auto views = flight.at("views").get<std::size_t>();
@@ -45,7 +45,7 @@ std::string district_page(const ResultFinder& results) {
         {"kind", "district"},
         {"title", title},
         {"facts",
-         {summary.at("map"), file::counted(summary.at("targets").size(), "target"),
+         {summary.at("map"), support::counted(summary.at("targets").size(), "target"),
           "vehicle " + summary.at("vehicle").get<std::string>(),
           "planner " + summary.at("planner").get<std::string>()}},
         {"verdict", json_of(district_verdict(summary))},

@@ -7,7 +7,7 @@
 #include "geometry/error.h"
 #include "geometry/io/file.h"
 #include "geometry/io/json.h"
-#include "missions/scene/sha256.h"
+#include "missions/support/sha256.h"
 
 namespace skycap::missions::report {
 
@@ -46,7 +46,7 @@ Json files_json(const std::vector<std::string>& names, const ResultFinder& resul
   for (const std::string& name : names) {
     if (fs::path(name).filename() != name || !is_there(results(name))) continue;
     files.push_back({{"name", name}, {"bytes", fs::file_size(results(name))}});
-    if (has_digests) files.back()["sha256"] = scene::sha256_of_file(results(name));
+    if (has_digests) files.back()["sha256"] = support::sha256_of_file(results(name));
   }
   return files;
 }

@@ -11,7 +11,6 @@
 #include "geometry/error.h"
 #include "geometry/io/cloud_io.h"
 #include "geometry/io/file.h"
-#include "missions/file/json_text.h"
 #include "missions/package/cloud_normals.h"
 #include "missions/package/settings.h"
 #include "missions/report/cloud_code.h"
@@ -19,6 +18,7 @@
 #include "missions/report/point_figures.h"
 #include "missions/report/scene_outline.h"
 #include "missions/report/verdict.h"
+#include "missions/support/json_text.h"
 
 namespace skycap::missions::report {
 namespace {
@@ -49,7 +49,7 @@ Json trajectory_json(const std::vector<flight::TimedPose>& poses) {
   Json times = Json::array(), points = Json::array();
   for (const flight::TimedPose& pose : thinned(poses)) {
     times.push_back(pose.time);
-    points.push_back(file::json_of(Eigen::Vector3d(pose.world_from_camera.translation())));
+    points.push_back(support::json_of(Eigen::Vector3d(pose.world_from_camera.translation())));
   }
   return {{"times", times}, {"points", points}};
 }
@@ -81,8 +81,8 @@ Json pieces_json(const std::vector<flight::TimedPose>& poses,
   for (std::size_t i = 0; i < poses.size(); ++i) {
     const Eigen::Isometry3d& pose = poses[i].world_from_camera;
     list.push_back({{"time_s", poses[i].time},
-                    {"position", file::json_of(Eigen::Vector3d(pose.translation()))},
-                    {"direction", file::json_of(Eigen::Vector3d(pose.linear().col(2)))},
+                    {"position", support::json_of(Eigen::Vector3d(pose.translation()))},
+                    {"direction", support::json_of(Eigen::Vector3d(pose.linear().col(2)))},
                     {"points", i < points.size() ? points[i] : 0}});
   }
   return list;
@@ -167,7 +167,8 @@ Json page_data(const Json& summary, const fs::path& file) {
                {"verdict", verdict_of(summary)},
                {"summary", summary}};
   if (summary.contains("settings")) {
-    const file::Mission mission = package::mission_of_settings(summary["settings"], file.string());
+    const config::Mission mission =
+        package::mission_of_settings(summary["settings"], file.string());
     data["facts"].push_back(mission.scene.model);
     data["scene"] = scene_outline(mission, std::nullopt);
   }

@@ -6,10 +6,10 @@
 #include <utility>
 
 #include "flight/space/obstacles.h"
-#include "missions/derived/mission_flight.h"
-#include "missions/derived/mission_priors.h"
-#include "missions/prior/prior_text.h"
-#include "missions/prior/terrain.h"
+#include "missions/config/mission_flight.h"
+#include "missions/config/mission_priors.h"
+#include "missions/site_data/prior_text.h"
+#include "missions/site_data/terrain.h"
 
 namespace skycap::missions::report {
 namespace {
@@ -42,16 +42,16 @@ Json box(const char* role, const char* name, const Eigen::AlignedBox3d& box) {
 }
 
 /// The corners of a prior's triangles, to a centimetre; none of too many to be shown.
-Json surface(const prior::Source& source, const prior::Prior& prior) {
+Json surface(const site_data::Source& source, const site_data::Prior& prior) {
   constexpr std::size_t most_triangles = 20'000;
   geometry::Mesh mesh;
-  for (const prior::Object& object : prior.objects) geometry::append(mesh, object.mesh);
+  for (const site_data::Object& object : prior.objects) geometry::append(mesh, object.mesh);
   if (prior.grid.rows > 0) {
     const std::size_t cells = prior.grid.rows * prior.grid.columns;
     const auto step = static_cast<std::size_t>(
         std::max(1.0, std::ceil(std::sqrt(2.0 * static_cast<double>(cells) / most_triangles))));
     geometry::append(
-        mesh, prior::mesh_of(triangles_of(step > 1 ? thinned(prior.grid, step) : prior.grid)));
+        mesh, site_data::mesh_of(triangles_of(step > 1 ? thinned(prior.grid, step) : prior.grid)));
   }
   Json corners = Json::array();
   if (mesh.triangles.size() <= most_triangles) {
@@ -63,15 +63,15 @@ Json surface(const prior::Source& source, const prior::Prior& prior) {
       }
     }
   }
-  return {{"role", prior::name_of(source.role)},
+  return {{"role", site_data::name_of(source.role)},
           {"name", source.file.filename().string()},
           {"corners", corners}};
 }
 
 }  // namespace
 
-Json scene_outline(const file::Mission& mission, const std::optional<Eigen::Vector3d>& pad) {
-  const flight::Obstacles rules = derived::flight_rules(mission);
+Json scene_outline(const config::Mission& mission, const std::optional<Eigen::Vector3d>& pad) {
+  const flight::Obstacles rules = config::flight_rules(mission);
   Json volumes = Json::array();
   for (const geometry::Prism& prism : rules.no_fly) volumes.push_back(volume("no_fly", prism));
   // A fence of 100 km is the height limit alone.
@@ -85,7 +85,7 @@ Json scene_outline(const file::Mission& mission, const std::optional<Eigen::Vect
     volumes.push_back(box("scene", "planner.scene_box", *mission.planner.see.scene_box));
   }
   Json priors = Json::array();
-  const prior::SitePriors& site = derived::priors_of(mission);
+  const site_data::SitePriors& site = config::priors_of(mission);
   for (std::size_t i = 0; i < site.priors.size(); ++i) {
     priors.push_back(surface(site.sources[i], site.priors[i]));
   }

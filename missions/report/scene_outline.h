@@ -6,7 +6,7 @@
 #include <Eigen/Core>
 #include <nlohmann/json.hpp>
 
-#include "missions/file/mission.h"
+#include "missions/config/mission.h"
 
 namespace skycap::missions::report {
 
@@ -14,7 +14,7 @@ namespace skycap::missions::report {
 /// "top"}], "sensor": {"horizontal_fov", "vertical_fov", "view_distance", "lidar"}}, in metres and
 /// radians. Roles: no_fly, geofence, unknown (what must be measured before it counts as free) and
 /// scene (what is to be surveyed). A bottom or top of null has no end.
-nlohmann::ordered_json scene_outline(const file::Mission& mission,
+nlohmann::ordered_json scene_outline(const config::Mission& mission,
                                      const std::optional<Eigen::Vector3d>& pad);
 
 }  // namespace skycap::missions::report

@@ -11,7 +11,7 @@
 #include <openssl/evp.h>
 #include <zlib.h>
 
-#include "missions/scene/sha256.h"
+#include "missions/support/sha256.h"
 
 namespace skycap::missions::report {
 namespace {
@@ -114,7 +114,7 @@ std::string base93(std::string_view bytes) {
 }
 
 std::string policy_hash(std::string_view text) {
-  const std::string hexadecimal = scene::sha256(std::as_bytes(std::span(text)));
+  const std::string hexadecimal = support::sha256(std::as_bytes(std::span(text)));
   std::string digest;
   for (std::size_t i = 0; i < hexadecimal.size(); i += 2) {
     unsigned byte = 0;

@@ -14,16 +14,16 @@
 #include "geometry/io/file.h"
 #include "geometry/io/json.h"
 #include "geometry/parallel.h"
-#include "missions/derived/mission_flight.h"
-#include "missions/file/json_text.h"
-#include "missions/file/number_text.h"
-#include "missions/fleet/timetable_file.h"
+#include "missions/config/mission_flight.h"
 #include "missions/package/coverage_map.h"
+#include "missions/package/fleet/timetable_file.h"
 #include "missions/package/package.h"
 #include "missions/report/page.h"
 #include "missions/report/point_figures.h"
 #include "missions/report/scene_outline.h"
 #include "missions/report/verdict.h"
+#include "missions/support/json_text.h"
+#include "missions/support/number_text.h"
 
 namespace skycap::missions::report {
 namespace {
@@ -50,18 +50,18 @@ Json files_of(const Json& summary, const ResultFinder& results) {
   add_all(Json::json_pointer("/flight/return/parameters"), "");
   const Json::json_pointer vehicles("/flight/fleet/vehicles");
   if (summary.contains(vehicles)) {
-    names.emplace_back(fleet::timetable_name);
+    names.emplace_back(package::timetable_name);
     for (std::size_t i = 0; i < summary[vehicles].size(); ++i) add_all(vehicles / i / "files", "");
   }
   return files_json(names, results);
 }
 
 /// Latitude, longitude and ellipsoid height of the holes' centres.
-Json hole_places(const Json& summary, const file::Mission& mission) {
+Json hole_places(const Json& summary, const config::Mission& mission) {
   Json places = Json::array();
   const Json::json_pointer holes("/surface/holes");
-  if (!derived::has_place(mission) || !summary.contains(holes)) return places;
-  const flight::LocalFrame frame(derived::site_of(mission).origin);
+  if (!config::has_place(mission) || !summary.contains(holes)) return places;
+  const flight::LocalFrame frame(config::site_of(mission).origin);
   for (const Json& hole : summary[holes]) {
     const Json& centre = hole.at("centre");
     const flight::GeodeticPoint place = frame.to_geodetic(
@@ -72,7 +72,7 @@ Json hole_places(const Json& summary, const file::Mission& mission) {
 }
 
 /// As the planner has learnt it, else as the mission says.
-PointNoise noise_of(const Json& summary, const file::Mission& mission) {
+PointNoise noise_of(const Json& summary, const config::Mission& mission) {
   const sim::NoiseConfig& stated = mission.sensor.camera.noise;
   const Json::json_pointer learnt("/belief/noise_m");
   const bool is_learnt = summary.contains(learnt) && summary[learnt].is_number() &&
@@ -128,7 +128,7 @@ double reach_of(const Json& summary) {
 
 }  // namespace
 
-std::string live_page(const file::Mission& mission, run::SurveyRecord so_far,
+std::string live_page(const config::Mission& mission, session::SurveyRecord so_far,
                       const NextView& next) {
   constexpr std::size_t most_points = 250'000;
   const package::CoverageFigures unknown{so_far.coverage(), {}, {}};
@@ -141,7 +141,7 @@ std::string live_page(const file::Mission& mission, run::SurveyRecord so_far,
   Json shown = verdict(summary);
   const bool goes_on = next.view.has_value();
   shown["answer"] = goes_on ? "running" : "over";
-  shown["because"] = file::counted(so_far.views.size(), "scan") + " so far" +
+  shown["because"] = support::counted(so_far.views.size(), "scan") + " so far" +
                      (goes_on ? "" : "; skycap finish makes the package");
   shown["light"] = "none";
   const Json data = {{"kind", "survey"},
@@ -151,9 +151,9 @@ std::string live_page(const file::Mission& mission, run::SurveyRecord so_far,
                      {"scene", scene_outline(mission, mission.flight.takeoff)},
                      {"hole_places", hole_places(summary, mission)},
                      {"live",
-                      {{"position", goes_on ? file::json_of(next.view->position) : Json()},
-                       {"direction", goes_on ? file::json_of(next.view->direction) : Json()},
-                       {"way", file::json_of(next.way)}}}};
+                      {{"position", goes_on ? support::json_of(next.view->position) : Json()},
+                       {"direction", goes_on ? support::json_of(next.view->direction) : Json()},
+                       {"way", support::json_of(next.way)}}}};
   return page_text(
       mission.name, data,
       {measured_cloud(cloud, point_states(cloud, map, reach_of(summary)), {}, most_points),

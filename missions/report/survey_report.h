@@ -9,9 +9,9 @@
 #include <Eigen/Core>
 
 #include "geometry/place/pose.h"
-#include "missions/file/mission.h"
+#include "missions/config/mission.h"
 #include "missions/report/results.h"
-#include "missions/run/survey_record.h"
+#include "missions/session/survey_record.h"
 
 namespace skycap::missions::report {
 
@@ -28,6 +28,7 @@ struct NextView {
 
 /// The page of a survey that goes on: a browser that shows it reads it again now and then. Shows
 /// fewer points than the page of a finished one, and no incidence, so that it costs little.
-std::string live_page(const file::Mission& mission, run::SurveyRecord so_far, const NextView& next);
+std::string live_page(const config::Mission& mission, session::SurveyRecord so_far,
+                      const NextView& next);
 
 }  // namespace skycap::missions::report

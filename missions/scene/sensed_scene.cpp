@@ -1,14 +1,14 @@
 #include "missions/scene/sensed_scene.h"
 
-#include "missions/derived/mission_priors.h"
+#include "missions/config/mission_priors.h"
 
 namespace skycap::missions::scene {
 namespace {
 
-std::variant<ReflectingScene, TiledScene> read(const file::Mission& mission,
+std::variant<ReflectingScene, TiledScene> read(const config::Mission& mission,
                                                const std::filesystem::path& folder,
                                                const std::filesystem::path& index) {
-  if (!derived::is_truth_prior(mission) && is_tiled(mission.scene)) {
+  if (!config::is_truth_prior(mission) && is_tiled(mission.scene)) {
     return TiledScene(mission, folder, index);
   }
   return reflecting_scene(mission, folder);
@@ -16,7 +16,7 @@ std::variant<ReflectingScene, TiledScene> read(const file::Mission& mission,
 
 }  // namespace
 
-SensedScene::SensedScene(const file::Mission& mission, const std::filesystem::path& folder,
+SensedScene::SensedScene(const config::Mission& mission, const std::filesystem::path& folder,
                          const std::filesystem::path& index)
     : scene_(read(mission, folder, index)) {}
 

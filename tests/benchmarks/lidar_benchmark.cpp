@@ -27,8 +27,8 @@
 #include <unistd.h>
 
 #include "geometry/parallel.h"
-#include "missions/recording/las_format.h"
-#include "missions/recording/scan_runner.h"
+#include "missions/scan/las_format.h"
+#include "missions/scan/scan_runner.h"
 #include "sim/models/models.h"
 #include "sim/sensors/echo.h"
 #include "sim/sensors/lidar.h"
@@ -228,13 +228,13 @@ void fly_into_file(const Ground& ground, sim::LidarConfig config, const Eigen::V
   const Eigen::Vector3d to = from + Eigen::Vector3d(10.0 * duration, 0, 0);
   const sim::Trajectory trajectory({{0.0, from, level}, {duration, to, level}});
   const sim::Lidar lidar(config);
-  missions::recording::ScanResult result;
+  missions::scan::ScanResult result;
   std::uint64_t bytes = 0;
   const auto whole = [&] {
-    std::vector<missions::recording::CloudFile> files;
-    files.emplace_back(path, missions::recording::las_format({}));
-    result = missions::recording::run_scan(ground.scene, lidar, {trajectory, trajectory}, files,
-                                           {.threads = threads, .report = {}, .stop = {}});
+    std::vector<missions::scan::CloudFile> files;
+    files.emplace_back(path, missions::scan::las_format({}));
+    result = missions::scan::run_scan(ground.scene, lidar, {trajectory, trajectory}, files,
+                                      {.threads = threads, .report = {}, .stop = {}});
     files[0].finish();
     bytes = files[0].bytes();
   };

@@ -17,16 +17,16 @@
 
 #include "geometry/error.h"
 #include "geometry/parallel.h"
-#include "missions/derived/resolved_mission.h"
-#include "missions/derived/survey_sensor.h"
-#include "missions/judge/coverage.h"
+#include "missions/config/resolved_mission.h"
+#include "missions/config/survey_sensor.h"
+#include "missions/evaluation/coverage.h"
+#include "missions/evaluation/survey_scene.h"
 #include "missions/package/anew_mission.h"
 #include "missions/package/flight_files.h"
 #include "missions/package/package.h"
-#include "missions/run/mission_planner.h"
-#include "missions/run/omniscient.h"
-#include "missions/run/survey_runner.h"
-#include "missions/scene/survey_scene.h"
+#include "missions/session/mission_planner.h"
+#include "missions/simulation/omniscient.h"
+#include "missions/simulation/survey_runner.h"
 #include "tests/missions/flown_mission.h"
 #include "tests/support/temporary_folder.h"
 
@@ -37,15 +37,16 @@ using namespace skycap::missions;
 
 /// The survey as if it had seen everything: its views and legs, with the surface and the space that
 /// one measures who knows where to look.
-run::SurveyRecord all_knowing(const file::Mission& mission, const scene::SurveyScene& scene,
-                              const run::SurveyRecord& record) {
+session::SurveyRecord all_knowing(const config::Mission& mission,
+                                  const evaluation::SurveyScene& scene,
+                                  const session::SurveyRecord& record) {
   const unsigned threads = geometry::thread_count(mission.threads);
-  const derived::SurveySensor sensor(mission.sensor, record.seed + 1'000'000);
+  const config::SurveySensor sensor(mission.sensor, record.seed + 1'000'000);
   std::vector<geometry::View> views = package::views_of(record);
-  run::MissionPlanner knowing(run::trial_mission(mission, scene, record.seed), views.front(),
-                              threads);
+  session::MissionPlanner knowing(simulation::trial_mission(mission, scene, record.seed),
+                                  views.front(), threads);
   for (const geometry::View& view :
-       run::known_cover(mission, scene, record.seed, threads, {.candidates = 3000})) {
+       simulation::known_cover(mission, scene, record.seed, threads, {.candidates = 3000})) {
     views.push_back(view);
   }
   std::uint64_t frame = 0;
@@ -58,39 +59,40 @@ run::SurveyRecord all_knowing(const file::Mission& mission, const scene::SurveyS
     }
     knowing.flight()->take_in(scan);
   }
-  run::SurveyRecord told;
+  session::SurveyRecord told;
   knowing.finish(told);
-  run::SurveyRecord all = record;
+  session::SurveyRecord all = record;
   all.surface = told.surface;
   all.flown->measured = told.flown->measured;
   all.flown->grounds = told.flown->grounds;
   return all;
 }
 
-package::AnewMission choose(const file::Mission& mission, const run::SurveyRecord& record,
+package::AnewMission choose(const config::Mission& mission, const session::SurveyRecord& record,
                             const package::CoverageFigures& coverage) {
-  const run::FlownSurvey& flown = *record.flown;
+  const session::FlownSurvey& flown = *record.flown;
   std::vector<package::Way> ways;
-  for (const run::FlownLeg& leg : flown.legs) ways.push_back(leg.points);
+  for (const session::FlownLeg& leg : flown.legs) ways.push_back(leg.points);
   flight::Route present = package::plan_flight(mission, *flown.measured, flown.pad,
                                                package::views_of(record), ways, flown.grounds);
   return package::anew_mission(mission, record, coverage, std::move(present), {});
 }
 
 void print(const char* who, const package::AnewMission& mission) {
-  const anew::MissionFigures& figures = mission.choice.anew;
+  const package::MissionFigures& figures = mission.choice.anew;
   std::printf("  %-16s %6.1f s %6.1f m %4zu views %4zu pieces, promised %.2f %%, %.2f %% covered\n",
               who, figures.duration, figures.length, figures.views, figures.pieces,
               100.0 * figures.promised, 100.0 * mission.again->visible.value_or(0.0));
 }
 
-void compare(const std::filesystem::path& file, const std::vector<file::KeyOverride>& overrides,
+void compare(const std::filesystem::path& file, const std::vector<config::KeyOverride>& overrides,
              std::uint64_t seeds) {
-  const file::Mission mission = derived::read_mission(file, overrides);
-  const scene::SurveyScene scene(mission, file.parent_path());
+  const config::Mission mission = config::read_mission(file, overrides);
+  const evaluation::SurveyScene scene(mission, file.parent_path());
   double ours = 0.0, knowing = 0.0;
   for (std::uint64_t seed = 1; seed <= seeds; ++seed) {
-    const run::SurveyRecord record = run::run_survey(mission, scene, seed, mission.threads);
+    const session::SurveyRecord record =
+        simulation::run_survey(mission, scene, seed, mission.threads);
     const package::CoverageFigures coverage =
         package::coverage_figures(mission, record, scene, mission.threads, {});
     const package::AnewMission from_survey = choose(mission, record, coverage);
@@ -113,8 +115,8 @@ void compare(const std::filesystem::path& file, const std::vector<file::KeyOverr
 int main(int argc, char** argv) {
   std::filesystem::path mission;
   std::uint64_t seeds = 3;
-  std::vector<file::KeyOverride> overrides{{"--set", "planner.name", "skycap"},
-                                           {"--set", "flight.views", "anew"}};
+  std::vector<config::KeyOverride> overrides{{"--set", "planner.name", "skycap"},
+                                             {"--set", "flight.views", "anew"}};
   for (int i = 1; i < argc; ++i) {
     const std::string word = argv[i];
     if (word == "--seeds" && i + 1 < argc) {

@@ -11,8 +11,8 @@
 #include <string>
 
 #include "geometry/place/pose.h"
-#include "missions/derived/resolved_mission.h"
-#include "missions/scene/survey_scene.h"
+#include "missions/config/resolved_mission.h"
+#include "missions/evaluation/survey_scene.h"
 #include "sim/sensors/depth_camera.h"
 #include "survey/volumetric/volumetric_planner.h"
 #include "tests/benchmarks/processor_time.h"
@@ -47,8 +47,8 @@ constexpr Gain gains[] = {
 
 void run(const std::string& name, const std::string& mission_text, double resolution,
          std::size_t clouds, std::size_t twin_candidates) {
-  const missions::file::Mission mission = missions::derived::parse_mission(mission_text, name);
-  const missions::scene::SurveyScene scene(mission, std::filesystem::current_path());
+  const missions::config::Mission mission = missions::config::parse_mission(mission_text, name);
+  const missions::evaluation::SurveyScene scene(mission, std::filesystem::current_path());
   const sim::DepthCamera camera(mission.sensor.camera);
   const auto [centre, radius] = scene.view_sphere();
   const auto views =

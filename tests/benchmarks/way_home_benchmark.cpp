@@ -12,9 +12,9 @@
 #include <string>
 #include <vector>
 
-#include "missions/derived/mission_flight.h"
+#include "missions/cli/command_line.h"
+#include "missions/config/mission_flight.h"
 #include "missions/package/package.h"
-#include "missions/verbs/command_line.h"
 #include "tests/benchmarks/interleaved.h"
 #include "tests/missions/flown_mission.h"
 #include "tests/support/temporary_folder.h"
@@ -25,19 +25,19 @@ using namespace skycap;
 using namespace skycap::missions;
 
 flight::Route plan(const package::PackagedSurvey& survey, bool has_returns) {
-  const file::Mission& mission = survey.mission;
+  const config::Mission& mission = survey.mission;
   std::vector<flight::Station> stations;
   for (std::uint32_t i = 0; i < survey.views.size(); ++i) {
-    stations.push_back({survey.views[i], derived::hold_of(mission), 1, i,
-                        derived::hold_after_of(mission), survey.ways[i]});
+    stations.push_back({survey.views[i], config::hold_of(mission), 1, i,
+                        config::hold_after_of(mission), survey.ways[i]});
   }
-  flight::Obstacles rules = derived::flight_rules(mission);
+  flight::Obstacles rules = config::flight_rules(mission);
   const flight::KnownSpace known(rules);
   const flight::KnownSpace pad_space(without_ground(std::move(rules)));
   const flight::JointSpace space({&survey.measured, &known});
-  flight::RouteOptions options = derived::route_options_of(mission, survey.pad);
+  flight::RouteOptions options = config::route_options_of(mission, survey.pad);
   if (!has_returns) options.returns.reset();
-  return plan_route(std::move(stations), derived::vehicle_of(mission), space, &pad_space, options);
+  return plan_route(std::move(stations), config::vehicle_of(mission), space, &pad_space, options);
 }
 
 /// Only what both visit can be compared: views without a way home are left out by the one alone.
@@ -73,7 +73,7 @@ void measure(const std::filesystem::path& folder, int rounds) {
 /// The package of a small survey.
 void survey_teapot(const std::filesystem::path& mission, const std::filesystem::path& package) {
   std::ostringstream out, err;
-  verbs::run_command_line(
+  cli::run_command_line(
       {"plan", mission.string(), "--quiet", "--no-report", "--out", package.string()}, {out, err});
 }
 

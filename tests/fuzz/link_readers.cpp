@@ -10,21 +10,21 @@
 #include "flight/link/guided_messages.h"
 #include "flight/link/vehicle_state.h"
 #include "geometry/place/world.h"
-#include "missions/derived/resolved_mission.h"
-#include "missions/live/kept_scan.h"
-#include "missions/live/live_journal.h"
-#include "missions/live/live_survey.h"
-#include "missions/live/pose_covariance.h"
-#include "missions/live/scan_input.h"
-#include "missions/live/session.h"
-#include "missions/live/wire.h"
+#include "missions/config/resolved_mission.h"
+#include "missions/online/live/kept_scan.h"
+#include "missions/online/live/live_journal.h"
+#include "missions/online/live/live_survey.h"
+#include "missions/online/live/pose_covariance.h"
+#include "missions/online/live/scan_input.h"
+#include "missions/online/live/session.h"
+#include "missions/online/live/wire.h"
 #include "tests/fuzz/readers.h"
 #include "tests/fuzz/trial_run.h"
 
 namespace skycap::fuzz {
 namespace {
 
-namespace live = missions::live;
+namespace online = missions::online;
 namespace mavlink = flight::mavlink;
 
 void require_sane(const mavlink::VehicleState& state) {
@@ -79,14 +79,14 @@ int run_mavlink(const std::uint8_t* bytes, std::size_t size) {
 /// As they come on the socket.
 int run_wire(const std::uint8_t* bytes, std::size_t size) {
   return run_reader("", [&] {
-    live::FrameReader reader;
+    online::FrameReader reader;
     const std::string text = text_of(bytes, size);
     for (std::size_t at = 0; at < size; at += 61) {
       reader.feed(std::string_view(text).substr(at, 61));
       while (const auto message = reader.next()) {
         require(message->header.is_object(), "a header that is no object");
-        live::FrameReader again;
-        again.feed(live::frame_of(*message));
+        online::FrameReader again;
+        again.feed(online::frame_of(*message));
         require(again.next()->payload == message->payload, "a message changes on its way");
       }
     }
@@ -94,16 +94,16 @@ int run_wire(const std::uint8_t* bytes, std::size_t size) {
 }
 
 /// A survey that takes what it is given: of a depth camera, or of a scanner.
-const missions::file::Mission& live_mission(bool has_scanner) {
+const missions::config::Mission& live_mission(bool has_scanner) {
   constexpr const char* rest =
       "planner: {name: see++, density: 5200, resolution_radius: 0.0525, occluder_spacing: 0.03,\n"
       "          view_distance: 1, scene_box: {min: [-1, -1, -1], max: [1, 1, 1]}}\n"
       "evaluation: {registration_distance: 0.03}\n"
       "live: {remove_flying_pixels: true, registration: true, pose_sigma: 0.01}\n"
       "limits: {max_views: 4}\n";
-  static const missions::file::Mission camera = missions::derived::parse_mission(
+  static const missions::config::Mission camera = missions::config::parse_mission(
       std::string("sensor: {width: 16, height: 12}\n") + rest, "m.yaml");
-  static const missions::file::Mission scanner = missions::derived::parse_mission(
+  static const missions::config::Mission scanner = missions::config::parse_mission(
       std::string("sensor: {lidar: velodyne_vlp16}\n") + rest, "m.yaml");
   return has_scanner ? scanner : camera;
 }
@@ -112,15 +112,15 @@ const missions::file::Mission& live_mission(bool has_scanner) {
 /// payload, the payload. The first byte chooses the sensor.
 int run_session(const std::uint8_t* bytes, std::size_t size) {
   if (size == 0) return 0;
-  const missions::file::Mission& mission = live_mission(bytes[0] == 's');
-  live::LiveSurvey survey(mission, fresh_folder(), {}, 1);
-  live::Session session(mission, survey, [] { return std::string("done"); });
+  const missions::config::Mission& mission = live_mission(bytes[0] == 's');
+  online::LiveSurvey survey(mission, fresh_folder(), {}, 1);
+  online::Session session(mission, survey, [] { return std::string("done"); });
   const std::string text = text_of(bytes + 1, size - 1);
   for (std::size_t at = 0, messages = 0; at < text.size() && messages < 6; ++messages) {
     const std::size_t end = std::min(text.find('\n', at), text.size());
     const std::string header = text.substr(at, end - at);
     at = std::min(end + 3, text.size());
-    live::Message message{live::Message().header.parse(header, nullptr, false), {}};
+    online::Message message{online::Message().header.parse(header, nullptr, false), {}};
     if (!message.header.is_object()) return 0;
     if (end + 2 < text.size()) {
       const auto low = static_cast<std::uint8_t>(text[end + 1]);
@@ -128,9 +128,9 @@ int run_session(const std::uint8_t* bytes, std::size_t size) {
       message.payload = text.substr(at, low + (std::size_t{high} << 8));
       at += message.payload.size();
     }
-    const live::Message answer = session.answer(message);
+    const online::Message answer = session.answer(message);
     require(answer.header.contains("type"), "an answer of no type");
-    live::frame_of(answer);
+    online::frame_of(answer);
     session.settle();
   }
   return 0;
@@ -140,19 +140,19 @@ int run_session(const std::uint8_t* bytes, std::size_t size) {
 int run_pose(const std::uint8_t* bytes, std::size_t size) {
   const std::string text = text_of(bytes, size);
   run_reader("pose.txt", [&] {
-    const Eigen::Isometry3d pose = live::parse_pose_text(text, "pose.txt");
+    const Eigen::Isometry3d pose = online::parse_pose_text(text, "pose.txt");
     require(geometry::is_place(pose.translation()), "a pose out of the world");
     const Eigen::Matrix3d turn = pose.linear();
     require((turn * turn.transpose()).isIdentity(1e-6), "a pose that stretches");
   });
   run_reader("lens", [&] {
-    const live::Lens lens = live::parse_lens(text, "lens");
+    const online::Lens lens = online::parse_lens(text, "lens");
     const auto ray = lens.ray({3.0, 5.0});
     require(!ray || ray->allFinite(), "a ray of no number");
   });
-  run_reader("sigma", [&] { live::parse_pose_sigma(text, "sigma"); });
+  run_reader("sigma", [&] { online::parse_pose_sigma(text, "sigma"); });
   return run_reader("covariance", [&] {
-    const auto covariance = live::parse_pose_covariance(text, "covariance");
+    const auto covariance = online::parse_pose_covariance(text, "covariance");
     require(covariance.position() >= 0.0 && covariance.position() <= 101.0, "an error of no size");
     require(covariance.angle() >= 0.0 && covariance.angle() <= 2.0, "an error of no angle");
   });
@@ -169,7 +169,7 @@ int run_live_journal(const std::uint8_t* bytes, std::size_t size) {
         records.back() += c;
       }
     }
-    for (const live::LiveEvent& event : live::events_of(records, "live.journal")) {
+    for (const online::LiveEvent& event : online::events_of(records, "live.journal")) {
       if (!event.scan) continue;
       require(geometry::is_place(event.scan->world_from_sensor.translation()),
               "a scan out of the world");
@@ -182,7 +182,7 @@ int run_live_journal(const std::uint8_t* bytes, std::size_t size) {
 /// A scan as a live survey keeps it.
 int run_kept_scan(const std::uint8_t* bytes, std::size_t size) {
   return run_reader("scan.ply", [&] {
-    const geometry::Scan scan = live::parse_kept_scan("scan.ply", text_of(bytes, size));
+    const geometry::Scan scan = online::parse_kept_scan("scan.ply", text_of(bytes, size));
     require(scan.pixels.empty() || scan.pixels.size() == scan.points.size(), "pixels of no point");
   });
 }

@@ -6,16 +6,16 @@
 #include "geometry/io/file.h"
 #include "geometry/io/output_folder.h"
 #include "geometry/place/world.h"
-#include "missions/benchmark/contestants.h"
-#include "missions/benchmark/trial_files.h"
-#include "missions/campaign/campaign_file.h"
-#include "missions/campaign/manifest.h"
-#include "missions/derived/resolved_mission.h"
-#include "missions/district/district_file.h"
-#include "missions/district/prepared.h"
-#include "missions/equipment/sensor_reader.h"
-#include "missions/equipment/vehicle_reader.h"
-#include "missions/file/mission_keys.h"
+#include "missions/batch/benchmark/contestants.h"
+#include "missions/batch/benchmark/trial_files.h"
+#include "missions/batch/campaign/campaign_file.h"
+#include "missions/batch/campaign/manifest.h"
+#include "missions/batch/district/district_file.h"
+#include "missions/batch/district/prepared.h"
+#include "missions/config/mission_keys.h"
+#include "missions/config/resolved_mission.h"
+#include "missions/config/sensor_reader.h"
+#include "missions/config/vehicle_reader.h"
 #include "missions/package/package.h"
 #include "tests/fuzz/readers.h"
 #include "tests/fuzz/trial_run.h"
@@ -23,17 +23,17 @@
 namespace skycap::fuzz {
 namespace {
 
-namespace file = missions::file;
+namespace config = missions::config;
 
 /// Numbers that got through are in their keys' ranges, up to the rounding of degrees.
-void require_in_range(const file::Key& key, double value) {
+void require_in_range(const config::Key& key, double value) {
   const double slack = 1e-12 * std::abs(value);
   require(value >= key.range.least - slack && value <= key.range.most + slack,
           key.path + " is " + std::to_string(value));
 }
 
-void require_sane(const file::Mission& mission) {
-  for (const file::Key& key : file::mission_keys()) {
+void require_sane(const config::Mission& mission) {
+  for (const config::Key& key : config::mission_keys()) {
     const auto value = key.get(mission);
     if (!value) continue;
     if (const auto* number = std::get_if<double>(&*value)) require_in_range(key, *number);
@@ -45,21 +45,20 @@ void require_sane(const file::Mission& mission) {
 
 int run_mission(const std::uint8_t* bytes, std::size_t size) {
   return run_reader("m.yaml", [&] {
-    require_sane(missions::derived::parse_mission(text_of(bytes, size), "m.yaml"));
+    require_sane(missions::config::parse_mission(text_of(bytes, size), "m.yaml"));
   });
 }
 
 int run_sensor(const std::uint8_t* bytes, std::size_t size) {
   return run_reader("s.yaml", [&] {
-    const auto sensor = missions::equipment::read_sensor(text_of(bytes, size), "s.yaml");
+    const auto sensor = missions::config::read_sensor(text_of(bytes, size), "s.yaml");
     std::visit([](const auto& config) { config.validate(); }, sensor.sensor);
   });
 }
 
 int run_vehicle(const std::uint8_t* bytes, std::size_t size) {
-  return run_reader("v.yaml", [&] {
-    missions::equipment::read_vehicle(text_of(bytes, size), "v.yaml").validate();
-  });
+  return run_reader(
+      "v.yaml", [&] { missions::config::read_vehicle(text_of(bytes, size), "v.yaml").validate(); });
 }
 
 int run_summary(const std::uint8_t* bytes, std::size_t size) {
@@ -77,12 +76,12 @@ int run_summary(const std::uint8_t* bytes, std::size_t size) {
 
 /// Names of items lead nowhere but into the campaign's folder.
 int run_campaign(const std::uint8_t* bytes, std::size_t size) {
-  namespace campaign = missions::campaign;
+  namespace batch = missions::batch;
   return run_reader("c.yaml", [&] {
-    const campaign::Manifest manifest(campaign::parse_campaign(text_of(bytes, size), "c.yaml"));
-    require(manifest.size() > 0 && manifest.size() <= campaign::most_items, "items without bound");
+    const batch::Manifest manifest(batch::parse_campaign(text_of(bytes, size), "c.yaml"));
+    require(manifest.size() > 0 && manifest.size() <= batch::most_items, "items without bound");
     for (const std::size_t number : {std::size_t{0}, manifest.size() - 1}) {
-      const campaign::ManifestLine line = manifest.line(number);
+      const batch::ManifestLine line = manifest.line(number);
       for (const auto& part : line.folder()) {
         require(!part.empty() && part != "/" && !part.string().starts_with("."),
                 "an item out of its campaign: " + line.folder().string());
@@ -92,20 +91,20 @@ int run_campaign(const std::uint8_t* bytes, std::size_t size) {
   });
 }
 
-bool is_on_earth(const missions::site::Click& place) {
+bool is_on_earth(const missions::wizard::Click& place) {
   return std::abs(place.latitude_deg) <= 90.0 && std::abs(place.longitude_deg) <= 180.0;
 }
 
 /// Results go to a folder of the district's name, and places are on the Earth.
 int run_district(const std::uint8_t* bytes, std::size_t size) {
-  namespace district = missions::district;
+  namespace batch = missions::batch;
   return run_reader("d.yaml", [&] {
-    const auto given = district::parse_district(text_of(bytes, size), "d.yaml");
-    require(missions::campaign::is_plain(given.name), "no name of a folder: " + given.name);
-    require(missions::benchmark::find_contestant(given.planner) != nullptr,
+    const auto given = batch::parse_district(text_of(bytes, size), "d.yaml");
+    require(missions::batch::is_plain(given.name), "no name of a folder: " + given.name);
+    require(missions::batch::find_contestant(given.planner) != nullptr,
             "no planner: " + given.planner);
     require(given.together >= 0.0 && given.together <= 100.0, "together is out of its range");
-    const district::TargetChoice& targets = given.targets;
+    const batch::TargetChoice& targets = given.targets;
     require(targets.within.empty() || targets.within.size() == 2, "a box without two corners");
     require(targets.distance >= 0.0 && targets.distance <= 50'000.0,
             "distance is out of its range");
@@ -113,20 +112,20 @@ int run_district(const std::uint8_t* bytes, std::size_t size) {
       for (const auto& place : places) require(is_on_earth(place), "a place off the Earth");
     }
     require(!targets.near || is_on_earth(*targets.near), "a place off the Earth");
-    for (const file::KeyOverride& change : given.set) {
-      require(file::find_key(change.path) != nullptr, "a change of no key: " + change.path);
+    for (const config::KeyOverride& change : given.set) {
+      require(config::find_key(change.path) != nullptr, "a change of no key: " + change.path);
     }
   });
 }
 
 /// What is made of it is read as the same.
 int run_prepared(const std::uint8_t* bytes, std::size_t size) {
-  namespace district = missions::district;
-  return run_reader(district::prepared_name, [&] {
-    const auto path = file_with(district::prepared_name, text_of(bytes, size));
-    const std::string text = district::prepared_json(district::read_prepared(path));
-    const auto again = file_with(district::prepared_name, text);
-    require(district::prepared_json(district::read_prepared(again)) == text,
+  namespace batch = missions::batch;
+  return run_reader(batch::prepared_name, [&] {
+    const auto path = file_with(batch::prepared_name, text_of(bytes, size));
+    const std::string text = batch::prepared_json(batch::read_prepared(path));
+    const auto again = file_with(batch::prepared_name, text);
+    require(batch::prepared_json(batch::read_prepared(again)) == text,
             "it is another when it is read again");
   });
 }
@@ -134,7 +133,7 @@ int run_prepared(const std::uint8_t* bytes, std::size_t size) {
 /// A trial that is damaged counts as not run: there is nothing to refuse.
 int run_trial(const std::uint8_t* bytes, std::size_t size) {
   const auto path = file_with("trial.json", text_of(bytes, size));
-  missions::benchmark::finished_trial(path, "");
+  missions::batch::finished_trial(path, "");
   return 0;
 }
 

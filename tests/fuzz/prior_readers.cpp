@@ -1,32 +1,32 @@
 #include "geometry/place/world.h"
-#include "missions/prior/formats/file_contents.h"
-#include "missions/prior/prior.h"
+#include "missions/site_data/formats/file_contents.h"
+#include "missions/site_data/prior.h"
 #include "tests/fuzz/readers.h"
 #include "tests/fuzz/trial_run.h"
 
 namespace skycap::fuzz {
 namespace {
 
-namespace prior = missions::prior;
+namespace site_data = missions::site_data;
 
-void require_sane(const prior::FileContents& contents) {
+void require_sane(const site_data::FileContents& contents) {
   const std::size_t rings = contents.ring_begin.size() - 1;
   for (std::size_t i = 0; i < rings; ++i) {
     require(contents.ring_begin[i] <= contents.ring_begin[i + 1], "a ring that ends before itself");
   }
   require(contents.ring_begin.back() <= contents.corners.size(), "a ring of corners not there");
-  for (const prior::FileObject& object : contents.objects) {
+  for (const site_data::FileObject& object : contents.objects) {
     require(!object.parent || *object.parent < contents.objects.size(),
             "part of what is not there");
-    for (const prior::FilePolygon& polygon : object.polygons) {
+    for (const site_data::FilePolygon& polygon : object.polygons) {
       require(polygon.first_ring + polygon.rings <= rings, "a polygon of rings that are not there");
     }
   }
 }
 
-void require_sane(const prior::Prior& known) {
+void require_sane(const site_data::Prior& known) {
   require(!known.box.isEmpty(), "a prior of nothing");
-  for (const prior::Object& object : known.objects) {
+  for (const site_data::Object& object : known.objects) {
     require(object.surfaces.size() == object.mesh.triangles.size(), "triangles without a kind");
     for (const auto& triangle : object.mesh.triangles) {
       for (const std::uint32_t v : triangle) {
@@ -42,30 +42,31 @@ template <typename Parse>
 int run(const char* name, const std::uint8_t* bytes, std::size_t size, Parse parse) {
   run_reader(name, [&] { require_sane(parse(text_of(bytes, size))); });
   return run_reader(name, [&] {
-    prior::Source source;
+    site_data::Source source;
     source.file = file_with(name, text_of(bytes, size));
-    source.place = prior::Place{};
-    require_sane(prior::read_prior(source, {}));
+    source.place = site_data::Place{};
+    require_sane(site_data::read_prior(source, {}));
   });
 }
 
 int run_citygml(const std::uint8_t* bytes, std::size_t size) {
-  return run("city.gml", bytes, size,
-             [](std::string text) { return prior::parse_citygml("city.gml", std::move(text)); });
+  return run("city.gml", bytes, size, [](std::string text) {
+    return site_data::parse_citygml("city.gml", std::move(text));
+  });
 }
 
 int run_cityjson(const std::uint8_t* bytes, std::size_t size) {
   return run("city.json", bytes, size,
-             [](const std::string& text) { return prior::parse_cityjson("city.json", text); });
+             [](const std::string& text) { return site_data::parse_cityjson("city.json", text); });
 }
 
 /// An earlier scan, thinned while it is read.
 int run_scan(const char* name, const std::uint8_t* bytes, std::size_t size) {
   return run_reader(name, [&] {
-    prior::Source source;
+    site_data::Source source;
     source.file = file_with(name, text_of(bytes, size));
-    source.place = prior::Place{};
-    const prior::Prior known = prior::read_prior(source, {});
+    source.place = site_data::Place{};
+    const site_data::Prior known = site_data::read_prior(source, {});
     require(!known.box.isEmpty(), "a prior of nothing");
     for (const Eigen::Vector3f& point : known.points) {
       require(geometry::is_place(point.cast<double>()), "a point out of the world");

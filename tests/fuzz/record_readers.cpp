@@ -12,17 +12,17 @@
 #include "geometry/io/json.h"
 #include "geometry/io/record_log.h"
 #include "geometry/place/world.h"
-#include "missions/dataset/rawlog_sequence.h"
-#include "missions/dataset/recorded_sequence.h"
-#include "missions/derived/journal_text.h"
-#include "missions/derived/resolved_mission.h"
-#include "missions/fleet/timetable_file.h"
+#include "missions/config/journal_text.h"
+#include "missions/config/resolved_mission.h"
+#include "missions/evaluation/survey_scene.h"
+#include "missions/online/recordings/rawlog_sequence.h"
+#include "missions/online/recordings/recorded_sequence.h"
+#include "missions/package/fleet/timetable_file.h"
 #include "missions/package/package.h"
-#include "missions/recording/laser_checkpoint.h"
 #include "missions/report/result_pages.h"
-#include "missions/run/survey_journal.h"
-#include "missions/scene/sha256.h"
-#include "missions/scene/survey_scene.h"
+#include "missions/scan/laser_checkpoint.h"
+#include "missions/simulation/survey_journal.h"
+#include "missions/support/sha256.h"
 #include "sim/sensors/depth_image.h"
 #include "tests/fuzz/readers.h"
 #include "tests/fuzz/trial_run.h"
@@ -51,17 +51,17 @@ int run_records(const std::uint8_t* bytes, std::size_t size) {
 /// A survey that is not to go on but for its journal: what it begins with, and then these lines.
 int run_survey_journal(const std::uint8_t* bytes, std::size_t size) {
   using namespace missions;
-  static const file::Mission mission = derived::parse_mission(
+  static const config::Mission mission = config::parse_mission(
       "scene: {model: 'builtin:teapot', detail: coarse, longest_side: 1.0}\n"
       "planner: {density: 5200, resolution_radius: 0.0525, occluder_spacing: 0.03}\n"
       "evaluation: {registration_distance: 0.03, samples: 100, visible_directions: 10,\n"
       "             ceiling_views: 0}\n",
       "m.yaml");
-  static const scene::SurveyScene scene(mission, ".");
-  static const std::string identity = derived::identity_text(
+  static const evaluation::SurveyScene scene(mission, ".");
+  static const std::string identity = config::identity_text(
       mission,
       {{"surface",
-        scene::sha256(std::as_bytes(std::span<const Eigen::Vector3f>(scene.samples().points)))}});
+        support::sha256(std::as_bytes(std::span<const Eigen::Vector3f>(scene.samples().points)))}});
   return run_reader("survey.journal", [&] {
     const fs::path journal = fresh_folder() / "survey.journal";
     std::size_t lines = 0;
@@ -71,7 +71,7 @@ int run_survey_journal(const std::uint8_t* bytes, std::size_t size) {
       std::istringstream text(text_of(bytes, size));
       for (std::string line; std::getline(text, line); ++lines) log.append(line);
     }
-    const run::SurveyJournal known(journal, mission, scene, true);
+    const simulation::SurveyJournal known(journal, mission, scene, true);
     require(known.views() == lines, "views that are not in the journal");
   });
 }
@@ -86,8 +86,7 @@ int run_checkpoint(const std::uint8_t* bytes, std::size_t size) {
     } catch (const Json::exception&) {
       return;
     }
-    missions::recording::json_of(
-        missions::recording::parse_laser_checkpoint(json, 1, "scan.journal"));
+    missions::scan::json_of(missions::scan::parse_laser_checkpoint(json, 1, "scan.journal"));
   });
 }
 
@@ -100,7 +99,7 @@ int run_sequence(const std::uint8_t* bytes, std::size_t size) {
   std::ofstream(folder / "groundtruth.txt", std::ios::binary)
       << text.substr(std::min(middle + 2, size));
   return run_reader(folder.string(), [&] {
-    const auto sequence = missions::dataset::read_sequence(folder, 1000);
+    const auto sequence = missions::online::read_sequence(folder, 1000);
     require(!sequence.frames.empty(), "a sequence of nothing");
     for (const auto& frame : sequence.frames) {
       require(geometry::is_place(frame.world_from_sensor.translation()), "a frame of no place");
@@ -111,16 +110,16 @@ int run_sequence(const std::uint8_t* bytes, std::size_t size) {
 /// As MRPT's library reads it in a process of its own, of which libFuzzer sees nothing; and what
 /// that says, which it does see.
 int run_rawlog(const std::uint8_t* bytes, std::size_t size) {
-  namespace dataset = missions::dataset;
-  missions::file::Mission mission;
+  namespace online = missions::online;
+  missions::config::Mission mission;
   mission.sensor.scanner = sim::LidarConfig{};
   return run_reader("x.rawlog", [&] {
     const fs::path file = file_with("x.rawlog", text_of(bytes, size));
-    dataset::RawlogSequence sequence(file, {}, [](const std::string&) {});
+    online::RawlogSequence sequence(file, {}, [](const std::string&) {});
     require(!sequence.pose_source().empty(), "poses from nowhere");
     while (const auto frame = sequence.next()) {
       require(geometry::is_place(frame->world_from_sensor.translation()), "a frame of no place");
-      const auto found = dataset::scan_of(*frame, mission);
+      const auto found = online::scan_of(*frame, mission);
       require(found.scan.points.size() <= sim::most_depth_pixels, "a scan of too many points");
     }
   });
@@ -151,14 +150,14 @@ int run_depth_png(const std::uint8_t* bytes, std::size_t size) {
 
 int run_timetable(const std::uint8_t* bytes, std::size_t size) {
   const std::string vehicle = "vehicle: generic";
-  static const missions::file::Mission mission = missions::derived::parse_mission(
+  static const missions::config::Mission mission = missions::config::parse_mission(
       tests::flown_mission().replace(tests::flown_mission().find(vehicle), vehicle.size(),
                                      "vehicles: [generic, generic_ardupilot], separation: 6, "
                                      "timing_tolerance: 2"),
       "m.yaml");
   return run_reader("timetable.csv", [&] {
-    const auto rows =
-        missions::fleet::read_timetable(file_with("timetable.csv", text_of(bytes, size)), mission);
+    const auto rows = missions::package::read_timetable(
+        file_with("timetable.csv", text_of(bytes, size)), mission);
     for (const auto& row : rows) {
       require(row.vehicle < 2, "a vehicle that the mission does not have");
       require(geometry::is_place(row.pad), "a pad out of the world");

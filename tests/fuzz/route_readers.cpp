@@ -6,8 +6,8 @@
 #include "flight/export/parameters.h"
 #include "flight/interpreter/interpret.h"
 #include "geometry/place/world.h"
-#include "missions/equipment/vehicle_reader.h"
-#include "missions/recording/scan_route.h"
+#include "missions/config/vehicle_reader.h"
+#include "missions/scan/scan_route.h"
 #include "tests/fuzz/readers.h"
 #include "tests/fuzz/trial_run.h"
 
@@ -26,7 +26,7 @@ int run_route(const char* name, const std::uint8_t* bytes, std::size_t size) {
     const auto height = flight::read_return_height(path);
     require(!height || std::isfinite(*height), "a height of return that is no number");
     flight::FlightFacts facts{.site = site};
-    facts.vehicle = missions::equipment::find_vehicle("generic");
+    facts.vehicle = missions::config::find_vehicle("generic");
     for (const flight::FlownPiece& piece : flight::interpret_file(path, facts).pieces) {
       require(piece.to.allFinite(), "a stretch to nowhere");
     }
@@ -37,8 +37,7 @@ int run_route(const char* name, const std::uint8_t* bytes, std::size_t size) {
 int run_scan_route(const char* name, const std::uint8_t* bytes, std::size_t size) {
   return run_reader(name, [&] {
     const auto path = file_with(name, text_of(bytes, size));
-    const auto route =
-        missions::recording::read_scan_route(path, {}, missions::recording::Carrier::gimbal);
+    const auto route = missions::scan::read_scan_route(path, {}, missions::scan::Carrier::gimbal);
     for (const sim::StampedPose& pose : route.carrier.poses()) {
       require(geometry::is_place(pose.position), "a pose out of the world");
       require(std::isfinite(pose.time), "a pose at no time");

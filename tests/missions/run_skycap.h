@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "missions/verbs/command_line.h"
+#include "missions/cli/command_line.h"
 #include "tests/support/temporary_folder.h"
 
 namespace skycap::tests {
@@ -21,8 +21,8 @@ struct ProgramRun {
 inline ProgramRun run_skycap(const std::vector<std::string>& arguments,
                              bool err_is_terminal = false, std::stop_token stop = {}) {
   std::ostringstream out, err;
-  const missions::verbs::Console console{out, err, err_is_terminal, std::move(stop)};
-  const int exit_code = missions::verbs::run_command_line(arguments, console);
+  const missions::cli::Console console{out, err, err_is_terminal, std::move(stop)};
+  const int exit_code = missions::cli::run_command_line(arguments, console);
   return {exit_code, out.str(), err.str()};
 }
 

@@ -43,30 +43,6 @@ std::size_t end_of_words(const std::string& text, std::size_t i) {
   return std::min(end + 1, text.size());
 }
 
-/// What stands before a brace since the last statement or block.
-std::string head_of(const std::string& code, std::size_t brace) {
-  const std::size_t begin = code.find_last_of(";{}", brace - 1);
-  return code.substr(begin == std::string::npos ? 0 : begin + 1,
-                     brace - (begin == std::string::npos ? 0 : begin + 1));
-}
-
-/// Whether a block holds declarations: its own blocks may be functions.
-bool is_container(const std::string& head) {
-  static const std::regex container(
-      R"(^\s*(template\s*<[^{]*>\s*)?(\[\[[^{]*\]\]\s*)?)"
-      R"((inline\s+)?(namespace|class|struct|union|extern)\b[^()]*$)");
-  return std::regex_search(head, container);
-}
-
-std::size_t closing(const std::string& code, std::size_t open) {
-  int depth = 0;
-  for (std::size_t i = open; i < code.size(); ++i) {
-    if (code[i] == '{') ++depth;
-    if (code[i] == '}' && --depth == 0) return i;
-  }
-  return code.size();
-}
-
 struct Arguments {
   std::size_t begin = 0;
   std::vector<std::string> texts;
@@ -117,41 +93,6 @@ std::string code_of(const std::string& text) {
     i = std::max(end, i + 1);
   }
   return code;
-}
-
-std::vector<std::string> long_files(const std::filesystem::path& root,
-                                    const std::vector<SourceFile>& sources,
-                                    std::size_t most_lines) {
-  std::vector<std::string> found;
-  for (const SourceFile& source : sources) {
-    const std::string text = text_of(root / source.path);
-    const auto lines = static_cast<std::size_t>(std::count(text.begin(), text.end(), '\n'));
-    if (lines > most_lines) {
-      found.push_back(source.path + " has " + std::to_string(lines) + " lines");
-    }
-  }
-  return found;
-}
-
-std::vector<std::string> long_functions(const std::filesystem::path& root,
-                                        const std::vector<SourceFile>& sources,
-                                        std::size_t most_lines) {
-  std::vector<std::string> found;
-  for (const SourceFile& source : sources) {
-    const std::string code = code_of(text_of(root / source.path));
-    for (std::size_t i = code.find('{'); i < code.size(); i = code.find('{', i + 1)) {
-      const std::string head = head_of(code, i);
-      if (is_container(head)) continue;
-      const std::size_t end = closing(code, i);
-      const std::size_t lines = line_at(code, end) - line_at(code, i) + 1;
-      if (head.find('(') != std::string::npos && lines > most_lines) {
-        found.push_back(source.path + ":" + std::to_string(line_at(code, i)) + " has " +
-                        std::to_string(lines) + " lines");
-      }
-      i = end;
-    }
-  }
-  return found;
 }
 
 std::vector<std::string> unordered_draws(const std::filesystem::path& root,

@@ -1,5 +1,5 @@
-/// What can be told from a source's text without a compiler: its size, and draws of random numbers
-/// whose order is the compiler's to choose.
+/// What can be told from a source's text without a compiler: draws of random numbers whose order is
+/// the compiler's to choose.
 #pragma once
 
 #include <string>
@@ -11,15 +11,6 @@ namespace skycap::structure {
 
 /// The text with spaces for comments, directives and what stands in quotes; lines stay.
 std::string code_of(const std::string& text);
-
-/// One line for each file that is longer than that.
-std::vector<std::string> long_files(const std::filesystem::path& root,
-                                    const std::vector<SourceFile>& sources, std::size_t most_lines);
-
-/// One line for each function that is longer than that, from the line of its brace to the last.
-std::vector<std::string> long_functions(const std::filesystem::path& root,
-                                        const std::vector<SourceFile>& sources,
-                                        std::size_t most_lines);
 
 /// One line for each call whose arguments hold two draws of random numbers: compilers take
 /// arguments of a call in any order, those within braces from left to right.

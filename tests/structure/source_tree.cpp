@@ -114,14 +114,4 @@ std::vector<std::string> heavy_headers(const std::vector<SourceFile>& sources,
   return heavy;
 }
 
-std::vector<std::string> crowded_rooms(const std::vector<SourceFile>& sources, std::size_t most) {
-  std::map<std::string, std::size_t> files;
-  for (const SourceFile& source : sources) ++files[source.room()];
-  std::vector<std::string> crowded;
-  for (const auto& [room, count] : files) {
-    if (count > most) crowded.push_back(room + " has " + std::to_string(count) + " files");
-  }
-  return crowded;
-}
-
 }  // namespace skycap::structure

@@ -40,7 +40,4 @@ std::vector<std::string> circular_headers(const std::vector<SourceFile>& sources
 std::vector<std::string> heavy_headers(const std::vector<SourceFile>& sources,
                                        const std::vector<std::string>& heavy_packages);
 
-/// One line for each folder with more files than that.
-std::vector<std::string> crowded_rooms(const std::vector<SourceFile>& sources, std::size_t most);
-
 }  // namespace skycap::structure

@@ -7,7 +7,7 @@
 #include <thread>
 
 #include "geometry/place/pose.h"
-#include "missions/derived/resolved_mission.h"
+#include "missions/config/resolved_mission.h"
 #include "tests/clients/ros2/sample_messages.h"
 
 namespace skycap::ros2 {
@@ -50,7 +50,7 @@ std::string text_of(const PoseMessage& pose) {
 
 Robot::Robot(const std::string& mission, std::uint32_t domain, const std::string& topics,
              bool has_gimbal)
-    : mission_(missions::derived::parse_mission(mission, "m.yaml")),
+    : mission_(missions::config::parse_mission(mission, "m.yaml")),
       scene_(mission_, ""),
       sensor_(mission_.sensor, mission_.seed),
       participant_(domain),

@@ -22,19 +22,19 @@
 
 #include "clients/ros2/frames.h"
 #include "geometry/io/record_log.h"
-#include "missions/live/live_journal.h"
+#include "missions/online/live/live_journal.h"
 #include "tests/clients/ros2/dds_domain.h"
 #include "tests/clients/ros2/robot.h"
 #include "tests/clients/ros2/sample_messages.h"
 #include "tests/clients/ros2/spoiled_wire.h"
 #include "tests/missions/flown_mission.h"
-#include "tests/missions/live/rehearsal.h"
+#include "tests/missions/online/live/rehearsal.h"
 #include "tests/missions/run_skycap.h"
 
 namespace skycap::ros2 {
 namespace {
 
-using missions::live::short_mission;
+using missions::online::short_mission;
 using testing::HasSubstr;
 using tests::content_of;
 using tests::TestFolder;
@@ -161,7 +161,7 @@ TEST_F(LiveRobot, TurnsItsCameraOnAGimbalThatTFTellsOf) {
   EXPECT_GE(robot.scans().size(), 3U);
   server_.reset();
   const geometry::RecordLog log(folder_.path() / "served" / "live.journal");
-  const auto events = missions::live::events_of(log.records(), "the journal");
+  const auto events = missions::online::events_of(log.records(), "the journal");
   ASSERT_EQ(events.size(), robot.scans().size());
   for (std::size_t i = 0; i < events.size(); ++i) {
     const Eigen::Isometry3d wanted = parse_extrinsic(robot.scans()[i].pose, "");

@@ -14,10 +14,10 @@
 #include "geometry/io/cloud_io.h"
 #include "geometry/io/ply.h"
 #include "geometry/place/pose.h"
-#include "missions/derived/resolved_mission.h"
-#include "missions/judge/coverage.h"
+#include "missions/config/resolved_mission.h"
+#include "missions/evaluation/coverage.h"
 #include "missions/package/cloud_normals.h"
-#include "missions/scene/sha256.h"
+#include "missions/support/sha256.h"
 #include "tests/missions/run_skycap.h"
 
 namespace skycap::missions {
@@ -29,11 +29,11 @@ using Json = nlohmann::json;
 using testing::HasSubstr;
 
 /// A survey of two views with numbers that have no short decimal form.
-run::SurveyRecord two_views() {
-  run::SurveyRecord record;
+session::SurveyRecord two_views() {
+  session::SurveyRecord record;
   record.seed = 9;
   record.stop_reason = survey::StopReason::view_limit;
-  run::JudgedView first, second;
+  session::JudgedView first, second;
   first.surveyed.view = geometry::look_at({1.0 / 3.0, -2, 0.1}, {0, 0, 0});
   first.surveyed.step = {.points_new = 2, .frontiers = 5, .times = {{"insert", 0.25}}};
   first.surveyed.points = 2;
@@ -69,7 +69,7 @@ std::vector<double> numbers_in(std::string line) {
 }
 
 TEST(Package, ViewsReadBackExactly) {
-  const run::SurveyRecord record = two_views();
+  const session::SurveyRecord record = two_views();
   const auto lines = lines_of(package::views_csv(record));
   ASSERT_EQ(lines.size(), 3U);
   EXPECT_EQ(lines[0],
@@ -84,7 +84,7 @@ TEST(Package, ViewsReadBackExactly) {
 }
 
 TEST(Package, TrajectoryHoldsTheCamerasPoses) {
-  const run::SurveyRecord record = two_views();
+  const session::SurveyRecord record = two_views();
   const auto lines = lines_of(package::trajectory_tum(record));
   ASSERT_EQ(lines.size(), 3U);
   EXPECT_EQ(lines[0], "# timestamp tx ty tz qx qy qz qw");
@@ -102,7 +102,7 @@ TEST(Package, TrajectoryHoldsTheCamerasPoses) {
 TEST(Package, SummaryHasTheContractsFields) {
   const package::CoverageFigures coverage{2.0 / 7.0, 0.5, {}};
   const auto summary =
-      nlohmann::json::parse(package::summary_json(file::Mission{}, two_views(), coverage));
+      nlohmann::json::parse(package::summary_json(config::Mission{}, two_views(), coverage));
   for (const char* field :
        {"mission", "planner", "preset", "seed", "threads", "version", "views", "points", "coverage",
         "coverage_visible", "coverage_ceiling", "planning_time_s", "sensing_time_s", "distance_m",
@@ -126,7 +126,7 @@ TEST(Package, SummaryHasTheContractsFields) {
 
 TEST(Package, SettingsAreThoseThatTheMissionMayHave) {
   const auto settings = [](const std::string& model) {
-    file::Mission mission;
+    config::Mission mission;
     mission.scene.model = model;
     return nlohmann::json::parse(package::summary_json(mission, two_views(), {}))["settings"];
   };
@@ -135,7 +135,7 @@ TEST(Package, SettingsAreThoseThatTheMissionMayHave) {
 }
 
 TEST(Package, SummaryShowsNamesThatAreNotUtf8) {
-  file::Mission mission;
+  config::Mission mission;
   mission.name = "vase\xff";
   EXPECT_THAT(package::summary_json(mission, two_views(), {}), HasSubstr("vase\xef\xbf\xbd"));
 }
@@ -144,7 +144,7 @@ TEST(Package, CloudReadsBackWithNormalsTowardsItsSensors) {
   const tests::TestFolder folder;
   {
     geometry::OutputFolder out(folder.path());
-    package::stage_package(file::Mission{}, two_views(), {}, 1, out);
+    package::stage_package(config::Mission{}, two_views(), {}, 1, out);
     EXPECT_FALSE(std::filesystem::exists(folder / "cloud.ply"));  // not before commit()
     out.commit();
   }
@@ -157,10 +157,11 @@ TEST(Package, CloudReadsBackWithNormalsTowardsItsSensors) {
 
 // The planner's belief is written as numbers that fit together and as a map coloured by them.
 TEST(Package, ShowsWhatThePlannerBelieves) {
-  const file::Mission mission = derived::parse_mission(
+  const config::Mission mission = config::parse_mission(
       tests::quick_mission(), "m.yaml",
       {{"--planner", "planner.name", "skycap"}, {"--set", "limits.max_views", "3"}});
-  const run::SurveyRecord record = run::run_survey(mission, scene::SurveyScene(mission, ""), 1, 1);
+  const session::SurveyRecord record =
+      simulation::run_survey(mission, evaluation::SurveyScene(mission, ""), 1, 1);
   const tests::TestFolder folder;
   geometry::OutputFolder out(folder.path());
   package::stage_package(mission, record, {}, 1, out);
@@ -199,7 +200,7 @@ TEST(Package, HasTheTruthBesideTheBelief) {
       .is_attainable = {1, 1, 0, 0}};
   const tests::TestFolder folder;
   geometry::OutputFolder out(folder.path());
-  package::stage_package(file::Mission{}, two_views(), {.truth = truth}, 1, out);
+  package::stage_package(config::Mission{}, two_views(), {.truth = truth}, 1, out);
   out.commit();
 
   const std::string bytes = tests::content_of(folder / "true_coverage.ply");
@@ -218,7 +219,7 @@ TEST(Package, HasTheTruthBesideTheBelief) {
 TEST(Package, OfAPlannerWithoutBeliefsHasNoMapOfThem) {
   const tests::TestFolder folder;
   geometry::OutputFolder out(folder.path());
-  package::stage_package(file::Mission{}, two_views(), {}, 1, out);
+  package::stage_package(config::Mission{}, two_views(), {}, 1, out);
   out.commit();
   EXPECT_FALSE(std::filesystem::exists(folder / "coverage.ply"));
   EXPECT_TRUE(Json::parse(tests::content_of(folder.path() / "summary.json"))["belief"].is_null());
@@ -228,7 +229,7 @@ TEST(Package, OfAPlannerWithoutBeliefsHasNoMapOfThem) {
 // opposite.
 TEST(CloudNormals, AreThoseOfASphereTowardsTheSensor) {
   geometry::PointCloud cloud;
-  for (const Vector3d& direction : judge::fibonacci_directions(5000)) {
+  for (const Vector3d& direction : evaluation::fibonacci_directions(5000)) {
     cloud.positions.push_back(direction.cast<float>());
     cloud.views.push_back(direction.z() > 0.0 ? 0 : 1);
   }
@@ -297,7 +298,7 @@ TEST(OutputFolder, SaysWhyItCannotBeWrittenTo) {
 // FIPS 180-4's examples: one block, and two.
 TEST(Sha256, MatchesTheStandardsExamples) {
   const auto of = [](std::string_view text) {
-    return scene::sha256(std::as_bytes(std::span(text)));
+    return support::sha256(std::as_bytes(std::span(text)));
   };
   EXPECT_EQ(of("abc"), "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad");
   EXPECT_EQ(of("abcdbcdecdefdefgefghfghighijhijkijkljklmklmnlmnomnopnopq"),

@@ -8,8 +8,8 @@
 #include <gtest/gtest.h>
 
 #include "geometry/error.h"
-#include "missions/plugins/external_program.h"
 #include "missions/scene/scene_source.h"
+#include "missions/support/external_program.h"
 #include "tests/missions/run_skycap.h"
 #include "tests/support/complaint.h"
 
@@ -119,17 +119,17 @@ TEST_F(ModelStore, PassesOnWhatNpmSays) {
 
 TEST(ExternalProgram, RunsInItsFolderWithoutAShell) {
   const tests::TestFolder folder;
-  const plugins::ProgramResult result =
-      plugins::run_external_program({"ls", "-a", "$HOME;*"}, folder.path());
+  const support::ProgramResult result =
+      support::run_external_program({"ls", "-a", "$HOME;*"}, folder.path());
   EXPECT_NE(result.exit_code, 0);
   EXPECT_THAT(result.output, HasSubstr("$HOME;*"));
   folder.write("here", "");
-  EXPECT_EQ(plugins::run_external_program({"ls"}, folder.path()).output, "here\n");
-  EXPECT_EQ(plugins::run_external_program({"no-such-program"}, folder.path()).exit_code, 127);
+  EXPECT_EQ(support::run_external_program({"ls"}, folder.path()).output, "here\n");
+  EXPECT_EQ(support::run_external_program({"no-such-program"}, folder.path()).exit_code, 127);
 }
 
 /// The vertices' box of a placed mesh.
-Eigen::AlignedBox3d placed_box(file::SceneConfig scene) {
+Eigen::AlignedBox3d placed_box(config::SceneConfig scene) {
   geometry::Mesh mesh{{{1, 2, 3}, {3, 2, 3}, {1, 6, 3}, {1, 2, 4}},
                       {{0, 2, 1}, {0, 1, 3}, {0, 3, 2}, {1, 2, 3}}};  // 2 x 4 x 1
   scene::place_model(scene, mesh);
@@ -137,7 +137,7 @@ Eigen::AlignedBox3d placed_box(file::SceneConfig scene) {
 }
 
 TEST(PlaceModel, PutsTheMiddleOfTheBaseAtThePosition) {
-  file::SceneConfig scene;
+  config::SceneConfig scene;
   scene.position = {10, 20, 30};
   const auto box = placed_box(scene);
   EXPECT_LT((box.min() - Eigen::Vector3d(9, 18, 30)).norm(), 1e-12);
@@ -145,8 +145,8 @@ TEST(PlaceModel, PutsTheMiddleOfTheBaseAtThePosition) {
 }
 
 TEST(PlaceModel, TurnsUprightRotatesAndScales) {
-  file::SceneConfig scene;
-  scene.up_axis = file::UpAxis::y;  // its y side, of 4, becomes the height
+  config::SceneConfig scene;
+  scene.up_axis = config::UpAxis::y;  // its y side, of 4, becomes the height
   scene.longest_side = 1.0;
   EXPECT_LT((placed_box(scene).sizes() - Eigen::Vector3d(0.5, 0.25, 1)).norm(), 1e-12);
   scene.longest_side.reset();

@@ -14,9 +14,9 @@
 
 #include "geometry/error.h"
 #include "geometry/io/mesh_io.h"
-#include "missions/derived/resolved_mission.h"
+#include "missions/config/resolved_mission.h"
 #include "missions/scene/scene_source.h"
-#include "tests/missions/verbs/cube_scan.h"
+#include "tests/missions/cli/cube_scan.h"
 #include "tests/sim/shapes.h"
 
 namespace skycap::missions {
@@ -52,7 +52,7 @@ class TileScan : public tests::CubeScan {
     folder_.write("scene.tiles", "tiles: " + tiles + "\n");
     write_mission("scene.tiles");
   }
-  file::Mission mission() const { return derived::read_mission(folder_ / "m.yaml", {}, {}); }
+  config::Mission mission() const { return config::read_mission(folder_ / "m.yaml", {}, {}); }
 
   std::string refusal() const {
     const auto run = run_skycap(scan("part", {}));

@@ -1,0 +1,50 @@
+#include "missions/api/evaluation.h"
+
+#include <algorithm>
+#include <string>
+
+#include "geometry/error.h"
+#include "missions/evaluation/cloud_judge.h"
+
+namespace skycap::missions::api {
+namespace {
+
+void validate(std::span<const Eigen::Vector3f> points, const EvaluationRequest& request) {
+  if (!(request.distance > 0.0)) {
+    throw Error(ErrorKind::bad_config, "distance is " + std::to_string(request.distance) +
+                                           "; it must be above zero, in metres");
+  }
+  if (request.samples == 0) {
+    throw Error(ErrorKind::bad_config, "samples is 0; it must be above zero");
+  }
+  if (points.empty()) {
+    throw Error(ErrorKind::bad_geometry, "the cloud has no points; there is nothing to evaluate");
+  }
+  const auto bad = std::ranges::find_if_not(
+      points, [](const Eigen::Vector3f& point) { return point.allFinite(); });
+  if (bad != points.end()) {
+    throw Error(ErrorKind::bad_geometry, "point " + std::to_string(bad - points.begin()) +
+                                             " of the cloud is not finite; leave it out");
+  }
+}
+
+}  // namespace
+
+Evaluation evaluate(std::span<const Eigen::Vector3f> points, const geometry::Mesh& model,
+                    const EvaluationRequest& request) {
+  validate(points, request);
+  geometry::validate(model);
+  evaluation::CloudJudge judge(model, request.samples, request.distance, request.threads);
+  judge.add(points);
+  const evaluation::CloudJudgement found = judge.judgement();
+  return {.coverage = found.coverage,
+          .mean = found.accuracy.mean,
+          .root_mean_square = found.accuracy.root_mean_square,
+          .median = found.accuracy.median,
+          .percentile_95 = found.accuracy.percentile_95,
+          .largest = found.accuracy.largest,
+          .area = found.area,
+          .density = found.density()};
+}
+
+}  // namespace skycap::missions::api

@@ -1,0 +1,76 @@
+#include "missions/api/laser_scan.h"
+
+#include <algorithm>
+#include <utility>
+#include <vector>
+
+#include "geometry/parallel.h"
+#include "missions/api/mission_contents.h"
+#include "missions/api/sensors.h"
+#include "missions/config/preset_files.h"
+#include "missions/scan/scan_flight.h"
+#include "missions/scene/scene_source.h"
+
+namespace skycap::missions::api {
+namespace {
+
+/// As many firings as a part's returns stay in a processor's cache, in whole blocks of noise.
+std::uint64_t firings_in_part(std::size_t channels) {
+  constexpr std::uint64_t shots_in_part = 1 << 12, block = 32;
+  return std::max<std::uint64_t>(1, shots_in_part / (channels * block)) * block;
+}
+
+/// A piece is a quarter of a million shots.
+constexpr std::size_t parts_in_piece = 64;
+
+sim::LidarConfig scanner_of(const Mission::Contents& contents, const ScanRequest& request) {
+  const std::string& own = contents.mission.scan.sensor;
+  sim::LidarConfig scanner =
+      laser_scanner(request.sensor.value_or(config::named_from(contents.folder, own)));
+  scanner.seed = contents.mission.seed;
+  return scanner;
+}
+
+}  // namespace
+
+struct LaserScan::Impl {
+  Impl(const Mission::Contents& contents, const ScanRequest& request)
+      : threads(contents.mission.threads),
+        lidar(scanner_of(contents, request)),
+        flown(scan::scan_flight(contents.mission, contents.folder, request.route,
+                                scan::Carrier::airframe)),
+        scene(scene::reflecting_scene(contents.mission, contents.folder).scene(threads)),
+        firings(lidar.firings(flown.route.carrier)),
+        parts(parts_in_piece) {
+    scan::require_measurable(lidar, flown.route.carrier);
+  }
+
+  unsigned threads;
+  sim::Lidar lidar;
+  scan::ScanFlight flown;
+  sim::Scene scene;
+  std::uint64_t firings, done = 0;
+  std::vector<sim::LidarReturns> parts;
+};
+
+LaserScan::LaserScan(const Mission& mission, const ScanRequest& request)
+    : impl_(std::make_unique<Impl>(mission.contents(), request)) {}
+
+LaserScan::~LaserScan() = default;
+
+std::span<const sim::LidarReturns> LaserScan::next() {
+  Impl& scan = *impl_;
+  const sim::LidarFlight flight = scan.flown.of_scanner();
+  const std::uint64_t step = firings_in_part(scan.lidar.config().channels.size());
+  const std::uint64_t left = scan.firings - scan.done;
+  const std::size_t count = std::min<std::uint64_t>(parts_in_piece, (left + step - 1) / step);
+  geometry::parallel_for(count, scan.threads, [&](std::size_t i) {
+    const std::uint64_t first = scan.done + i * step;
+    const sim::FiringRange range{first, std::min(step, scan.firings - first)};
+    scan.parts[i] = scan.lidar.measure(scan.scene, flight, range, std::move(scan.parts[i]));
+  });
+  scan.done += std::min<std::uint64_t>(left, count * step);
+  return std::span(scan.parts).first(count);
+}
+
+}  // namespace skycap::missions::api

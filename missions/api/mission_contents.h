@@ -1,0 +1,16 @@
+/// What is in a mission's handle.
+#pragma once
+
+#include <filesystem>
+
+#include "missions/api/mission.h"
+#include "missions/config/mission.h"
+
+namespace skycap::missions::api {
+
+struct Mission::Contents {
+  config::Mission mission;
+  std::filesystem::path folder;  ///< where relative paths start
+};
+
+}  // namespace skycap::missions::api

@@ -1,0 +1,57 @@
+#include "missions/api/survey.h"
+
+#include <utility>
+
+#include "geometry/error.h"
+#include "geometry/io/output_folder.h"
+#include "missions/api/mission_contents.h"
+#include "missions/evaluation/survey_scene.h"
+#include "missions/package/package.h"
+#include "missions/simulation/feasibility.h"
+#include "missions/simulation/survey_runner.h"
+
+namespace skycap::missions::api {
+namespace {
+
+Survey survey_of(const Mission::Contents& contents, const SurveyRequest& request) {
+  const config::Mission& mission = contents.mission;
+  std::optional<geometry::OutputFolder> folder;
+  if (request.folder) folder.emplace(*request.folder);
+  const evaluation::SurveyScene scene(mission, contents.folder);
+  simulation::require_feasible(mission, scene, mission.threads);
+  Survey survey;
+  session::SurveyRecord record =
+      simulation::run_survey(mission, scene, mission.seed, mission.threads, request.stop,
+                             [&](const session::JudgedView& view) {
+                               survey.views.push_back(view.surveyed);
+                               survey.coverages.push_back(view.coverage);
+                               if (request.report) request.report(view.surveyed, view.coverage);
+                             });
+  const package::CoverageFigures figures =
+      package::coverage_figures(mission, record, scene, mission.threads, request.stop);
+  std::optional<package::SurveyMission> flight;
+  if (folder) {
+    flight =
+        package::stage_package(mission, record, figures, mission.threads, *folder, request.stop);
+    package::commit_package(record, *folder);
+  }
+  if (flight) survey.failure = flight->failure;
+  survey.summary = package::summary_json(mission, record, figures, flight);
+  survey.end = record.stop_reason;
+  survey.visible_coverage = figures.visible;
+  survey.attainable_coverage = figures.ceiling;
+  survey.cloud = std::move(record.cloud);
+  return survey;
+}
+
+}  // namespace
+
+Survey plan(const Mission& mission, const SurveyRequest& request) {
+  try {
+    return survey_of(mission.contents(), request);
+  } catch (const Error& error) {
+    throw Error(error.kind(), mission.name() + ": " + error.what());
+  }
+}
+
+}  // namespace skycap::missions::api

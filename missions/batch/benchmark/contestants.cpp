@@ -1,0 +1,73 @@
+#include "missions/batch/benchmark/contestants.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "geometry/error.h"
+#include "missions/config/planner_titles.h"
+#include "missions/simulation/omniscient.h"
+#include "missions/simulation/survey_runner.h"
+
+namespace skycap::missions::batch {
+namespace {
+
+/// A planner that planner.name knows.
+Contestant contestant_of(const config::PlannerTitle& planner) {
+  return {.name = std::string(planner.word),
+          .title = std::string(planner.title),
+          .is_in_all = planner.name != config::PlannerName::skycap,  // not of the paper
+          .is_volumetric = planner.metric.has_value(),
+          .survey = [](const config::Mission& mission, const evaluation::SurveyScene& scene,
+                       std::uint64_t seed, std::stop_token stop) {
+            return simulation::run_survey(mission, scene, seed, 1, std::move(stop));
+          }};
+}
+
+/// The reference that knows the scene.
+Contestant omniscient() {
+  const auto survey = [](const config::Mission& mission, const evaluation::SurveyScene& scene,
+                         std::uint64_t seed, std::stop_token stop) {
+    return simulation::survey_omnisciently(mission, scene, seed, 1, {}, std::move(stop));
+  };
+  return {.name = "omniscient", .title = "Omniscient", .is_in_all = false, .survey = survey};
+}
+
+}  // namespace
+
+const std::vector<Contestant>& contestants() {
+  static const std::vector<Contestant> all = [] {
+    std::vector<Contestant> list;
+    for (const config::PlannerTitle& planner : config::planner_titles) {
+      list.push_back(contestant_of(planner));
+    }
+    // clang 14 does not compile the ranges' own.
+    std::stable_partition(list.begin(), list.end(), std::mem_fn(&Contestant::is_in_all));
+    list.push_back(omniscient());
+    return list;
+  }();
+  return all;
+}
+
+std::vector<const Contestant*> contestants_named(const std::vector<std::string>& names) {
+  std::vector<const Contestant*> chosen;
+  std::string known;
+  const bool has_all = std::ranges::find(names, "all") != names.end();
+  for (const Contestant& contestant : contestants()) {
+    known += (known.empty() ? "" : ", ") + contestant.name;
+    const bool is_named = std::ranges::find(names, contestant.name) != names.end();
+    if (is_named || (has_all && contestant.is_in_all)) chosen.push_back(&contestant);
+  }
+  for (const std::string& name : names) {
+    if (name == "all" || find_contestant(name)) continue;
+    throw Error(ErrorKind::bad_usage,
+                "there is no planner '" + name + "'; give all or some of " + known);
+  }
+  return chosen;
+}
+
+const Contestant* find_contestant(std::string_view name) {
+  const auto found = std::ranges::find(contestants(), name, &Contestant::name);
+  return found == contestants().end() ? nullptr : &*found;
+}
+
+}  // namespace skycap::missions::batch

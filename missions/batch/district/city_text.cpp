@@ -1,0 +1,69 @@
+#include "missions/batch/district/city_text.h"
+
+#include <cmath>
+#include <cstdint>
+#include <vector>
+
+#include <nlohmann/json.hpp>
+
+namespace skycap::missions::batch {
+namespace {
+
+using Json = nlohmann::ordered_json;
+using site_data::SurfaceKind;
+
+/// The surfaces that triangles may be of, by their kinds.
+const char* const surface_types[] = {"WallSurface", "RoofSurface", "GroundSurface", "Window",
+                                     "OuterFloorSurface"};
+
+/// The number of a kind's surface; null: the file does not say what it is.
+Json surface_of(SurfaceKind kind) {
+  if (kind == SurfaceKind::unknown) return nullptr;
+  return static_cast<int>(kind) - 1;
+}
+
+Json semantics_of(const site_data::Object& object) {
+  Json surfaces = Json::array(), values = Json::array();
+  for (const char* type : surface_types) surfaces.push_back({{"type", type}});
+  for (const SurfaceKind kind : object.surfaces) values.push_back(surface_of(kind));
+  return {{"surfaces", surfaces}, {"values", values}};
+}
+
+/// `first` is the number of its first vertex in the file.
+Json geometry_of(const site_data::Object& object, std::size_t first) {
+  Json boundaries = Json::array();
+  for (const auto& [a, b, c] : object.mesh.triangles) {
+    boundaries.push_back(Json::array({Json::array({first + a, first + b, first + c})}));
+  }
+  return {{"type", "MultiSurface"},
+          {"lod", "2"},
+          {"boundaries", boundaries},
+          {"semantics", semantics_of(object)}};
+}
+
+}  // namespace
+
+std::string city_text(std::span<const site_data::Object* const> objects) {
+  Json city = {
+      {"type", "CityJSON"},
+      {"version", "2.0"},
+      {"transform", {{"scale", {city_step, city_step, city_step}}, {"translate", {0, 0, 0}}}},
+      {"CityObjects", Json::object()},
+      {"vertices", Json::array()}};
+  std::size_t vertices = 0;
+  for (const site_data::Object* object : objects) {
+    city["CityObjects"][object->id] = {{"type", "Building"},
+                                       {"geometry", Json::array({geometry_of(*object, vertices)})}};
+    for (const Eigen::Vector3d& vertex : object->mesh.vertices) {
+      Json corner = Json::array();
+      for (int axis = 0; axis < 3; ++axis) {
+        corner.push_back(std::llround(vertex[axis] / city_step));
+      }
+      city["vertices"].push_back(std::move(corner));
+    }
+    vertices += object->mesh.vertices.size();
+  }
+  return city.dump(-1, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+}  // namespace skycap::missions::batch

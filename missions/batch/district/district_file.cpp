@@ -1,0 +1,169 @@
+#include "missions/batch/district/district_file.h"
+
+#include <algorithm>
+#include <array>
+#include <string_view>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "geometry/error.h"
+#include "geometry/io/file.h"
+#include "missions/batch/benchmark/contestants.h"
+#include "missions/batch/campaign/campaign_file.h"
+#include "missions/batch/campaign/key_changes.h"
+#include "missions/support/flow_text.h"
+#include "missions/support/yaml_section.h"
+
+namespace skycap::missions::batch {
+namespace {
+
+namespace fs = std::filesystem;
+using support::YamlSection;
+
+constexpr std::size_t largest_file = std::size_t{16} << 20;  // [byte]; 100,000 names
+constexpr double farthest = 50e3;                            // of anything from the site [m]
+
+/// Reads the keys of a district in the order of the manual.
+class DistrictReader {
+ public:
+  DistrictReader(const support::YamlNode& root, const std::string& name)
+      : root_(root, "", name), file_(name) {}
+
+  DistrictFile read() {
+    district_.file = file_;
+    district_.name = root_.text("name", fs::path(file_).stem().string());
+    if (!batch::is_plain(district_.name)) {
+      root_.fail_at("name", "is no name of a folder; " + std::string(batch::plain_names));
+    }
+    read_files();
+    if (auto targets = root_.section("targets")) read_targets(*targets);
+    district_.together = bounded("together", 0.5, 0.0, 100.0);
+    district_.pads = clicks(root_, "pads");
+    std::string& vehicle = district_.wishes.vehicle;
+    vehicle = root_.text("vehicle", "generic");
+    // A preset has a name, a description has a path.
+    if (fs::path(vehicle).extension() == ".yaml") vehicle = path_of(vehicle).string();
+    read_planner();
+    const int seed = root_.integer("seed", 1);
+    if (seed < 0) root_.fail_at("seed", fmt::format("is {}; it must be 0 or more", seed));
+    district_.seed = static_cast<std::uint64_t>(seed);
+    read_changes();
+    root_.finish();
+    return district_;
+  }
+
+ private:
+  fs::path path_of(const std::string& path) const { return fs::path(file_).parent_path() / path; }
+
+  void read_files() {
+    wizard::Wishes& wishes = district_.wishes;
+    wishes.map = path_of(root_.text("map"));
+    wizard::Reading& reading = wishes.reading;
+    reading.crs = root_.text("crs", "");
+    if (root_.has("vertical")) {
+      reading.vertical = root_.choice<site_data::HeightDatum>(
+          "vertical", {{"ellipsoid", site_data::HeightDatum::ellipsoid},
+                       {"geoid", site_data::HeightDatum::geoid}});
+    }
+    if (root_.has("base")) reading.base = bounded("base", 0.0, -1e4, 1e4);
+    if (root_.has("height")) reading.height = bounded("height", 0.0, 0.01, 1e4);
+    if (root_.has("terrain")) wishes.terrain = path_of(root_.text("terrain"));
+    for (const std::string& path : root_.texts("obstacles")) {
+      wishes.obstacles.push_back(path_of(path));
+    }
+  }
+
+  void read_targets(YamlSection& section) {
+    TargetChoice& choice = district_.targets;
+    choice.ids = section.texts("id");
+    for (const support::YamlEntry& entry : section.entries("attribute")) {
+      if (entry.value.kind != support::YamlNode::Kind::scalar) {
+        section.fail_at("attribute", "holds a value for each key, such as {street: Am Ring}");
+      }
+      choice.attributes[entry.key] = entry.value.text;
+    }
+    choice.within = clicks(section, "within");
+    if (section.has("within") && choice.within.size() != 2) {
+      section.fail_at("within", fmt::format("has {} places; give two opposite corners of a box",
+                                            choice.within.size()));
+    }
+    if (section.has("near") != section.has("distance")) {
+      section.fail_at(section.has("near") ? "near" : "distance",
+                      "needs the other one of near, a place, and distance, in metres");
+    }
+    if (section.has("near")) {
+      choice.near = click(section, "near", section.text("near"));
+      choice.distance = section.number("distance");
+      if (!(choice.distance >= 0.0 && choice.distance <= farthest)) {
+        section.fail_at("distance",
+                        fmt::format("is {:g} m; it must be from 0 to 50000", choice.distance));
+      }
+    }
+    section.finish();
+  }
+
+  void read_planner() {
+    district_.planner = root_.text("planner", "skycap");
+    if (batch::find_contestant(district_.planner) != nullptr) return;
+    std::string known;
+    for (const batch::Contestant& one : batch::contestants()) {
+      known += (known.empty() ? "" : ", ") + one.name;
+    }
+    root_.fail_at("planner", "is " + district_.planner + "; it must be one of " + known);
+  }
+
+  void read_changes() {
+    static const batch::FollowingKeys following{
+        {"name", "seed", "threads", "planner.name", "planner.scene_box", "prior", "scene.",
+         "site.latitude_deg", "site.longitude_deg", "site.ellipsoid_height", "site.geofence",
+         "flight.vehicle", "flight.vehicles", "flight.takeoff", "flight.rally",
+         "flight.unknown_box", "flight.unknown_beside", "flight.order"},
+        "the district's files, targets, pads, vehicle, planner and seed; give those"};
+    district_.set = batch::key_changes(root_.entries("set"), "set.", file_, following);
+  }
+
+  double bounded(const std::string& key, double fallback, double least, double most) {
+    const double number = root_.number(key, fallback);
+    if (!(number >= least && number <= most)) {
+      root_.fail_at(key,
+                    fmt::format("is {:g} m; it must be from {:g} to {:g}", number, least, most));
+    }
+    return number;
+  }
+
+  static wizard::Click click(YamlSection& section, const std::string& key,
+                             const std::string& text) {
+    const auto found = wizard::click_in(text);
+    if (!found)
+      section.fail_at(key, "has " + text + "; give " + wizard::click_form + ", in quotes");
+    return *found;
+  }
+
+  static std::vector<wizard::Click> clicks(YamlSection& section, const std::string& key) {
+    std::vector<wizard::Click> found;
+    for (const std::string& text : section.texts(key)) found.push_back(click(section, key, text));
+    return found;
+  }
+
+  YamlSection root_;
+  const std::string& file_;
+  DistrictFile district_;
+};
+
+}  // namespace
+
+DistrictFile parse_district(const std::string& text, const std::string& name) {
+  const support::YamlNode root = support::parse_yaml(text, name);
+  if (root.kind != support::YamlNode::Kind::map) {
+    throw Error(ErrorKind::bad_config, name + ":" + std::to_string(root.line) +
+                                           ": is not a map; a district is a list of 'key: value'");
+  }
+  return DistrictReader(root, name).read();
+}
+
+DistrictFile read_district(const fs::path& file) {
+  return parse_district(geometry::read_file(file, largest_file), file.string());
+}
+
+}  // namespace skycap::missions::batch

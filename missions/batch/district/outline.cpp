@@ -1,0 +1,118 @@
+#include "missions/batch/district/outline.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <map>
+#include <set>
+#include <tuple>
+#include <utility>
+
+#include "geometry/place/prism.h"
+
+namespace skycap::missions::batch {
+namespace {
+
+using Eigen::Vector2d;
+using Eigen::Vector3d;
+
+/// Faces no higher above the lowest place than this are what the building stands on [m].
+constexpr double foot_height = 0.5;
+
+/// A place to the centimetre: corners of two faces are seldom the same numbers.
+using Corner = std::pair<std::int64_t, std::int64_t>;
+using Edge = std::pair<Corner, Corner>;
+
+Corner corner_of(const Vector3d& vertex) {
+  return {std::llround(100.0 * vertex.x()), std::llround(100.0 * vertex.y())};
+}
+
+Vector2d place_of(const Corner& corner) {
+  return 0.01 * Vector2d(static_cast<double>(corner.first), static_cast<double>(corner.second));
+}
+
+/// The edges that belong to one face and not to two.
+std::set<Edge> border_of(const geometry::Mesh& mesh) {
+  double lowest = std::numeric_limits<double>::infinity();
+  for (const Vector3d& vertex : mesh.vertices) lowest = std::min(lowest, vertex.z());
+  std::set<Edge> border;
+  for (const auto& triangle : mesh.triangles) {
+    std::array<Corner, 3> corners;
+    bool is_low = true;
+    for (std::size_t i = 0; i < 3; ++i) {
+      const Vector3d& vertex = mesh.vertices[triangle[i]];
+      corners[i] = corner_of(vertex);
+      is_low = is_low && vertex.z() <= lowest + foot_height;
+    }
+    if (!is_low) continue;
+    for (std::size_t i = 0; i < 3; ++i) {
+      const auto [a, b] = std::minmax(corners[i], corners[(i + 1) % 3]);
+      if (a == b) continue;
+      if (const auto [known, is_new] = border.insert({a, b}); !is_new) border.erase(known);
+    }
+  }
+  return border;
+}
+
+/// The rings that edges make; none if one does not close.
+std::vector<Ring> chained(const std::set<Edge>& border) {
+  std::map<Corner, std::set<Corner>> next;
+  for (const auto& [a, b] : border) {
+    next[a].insert(b);
+    next[b].insert(a);
+  }
+  std::vector<Ring> rings;
+  while (!next.empty()) {
+    const Corner start = next.begin()->first;
+    Ring& ring = rings.emplace_back();
+    Corner here = start;
+    do {
+      ring.push_back(place_of(here));
+      const auto found = next.find(here);
+      if (found == next.end() || found->second.empty()) return {};
+      const Corner to = *found->second.begin();
+      found->second.erase(to);
+      if (found->second.empty()) next.erase(found);
+      next[to].erase(here);
+      if (next[to].empty()) next.erase(to);
+      here = to;
+    } while (here != start);
+    if (ring.size() < 3) return {};
+  }
+  return rings;
+}
+
+}  // namespace
+
+std::vector<Ring> outline_of(const geometry::Mesh& mesh) {
+  std::vector<Ring> rings = chained(border_of(mesh));
+  if (!rings.empty()) return rings;
+  std::vector<Vector2d> places;
+  for (const Vector3d& vertex : mesh.vertices) places.push_back(vertex.head<2>());
+  return {convex_hull(std::move(places))};
+}
+
+// Andrew's monotone chain (1979).
+Ring convex_hull(std::vector<Vector2d> places) {
+  const auto less = [](const Vector2d& a, const Vector2d& b) {
+    return std::tuple(a.x(), a.y()) < std::tuple(b.x(), b.y());
+  };
+  std::ranges::sort(places, less);
+  Ring hull;
+  const auto add = [&](const Vector2d& place, std::size_t fixed) {
+    while (hull.size() > fixed &&
+           geometry::turn(hull[hull.size() - 2], hull.back(), place) <= 0.0) {
+      hull.pop_back();
+    }
+    hull.push_back(place);
+  };
+  for (const Vector2d& place : places) add(place, 1);
+  const std::size_t upper = hull.size();
+  for (auto place = places.rbegin() + 1; place < places.rend(); ++place) add(*place, upper);
+  if (hull.size() > 1) hull.pop_back();
+  return hull;
+}
+
+}  // namespace skycap::missions::batch

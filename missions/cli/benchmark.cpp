@@ -1,0 +1,245 @@
+#include <algorithm>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <nlohmann/json.hpp>
+
+#include "geometry/error.h"
+#include "geometry/io/output_folder.h"
+#include "geometry/parallel.h"
+#include "missions/batch/benchmark/benchmark_results.h"
+#include "missions/batch/benchmark/contestants.h"
+#include "missions/batch/campaign/item_runner.h"
+#include "missions/batch/campaign/tables.h"
+#include "missions/cli/survey_progress.h"
+#include "missions/cli/verbs.h"
+#include "missions/cli/write_page.h"
+#include "missions/support/json_text.h"
+#include "missions/version.h"
+#include "sim/models/models.h"
+
+namespace skycap::missions::cli {
+namespace {
+
+namespace fs = std::filesystem;
+using Json = nlohmann::ordered_json;
+
+/// A mission as one of the contestants surveys it, and its trials so far, by seed.
+struct Entry {
+  std::string title;
+  const batch::Contestant* contestant;
+  std::vector<std::shared_ptr<batch::Setup>> setups;  ///< of each trial; one, or one a scene
+  std::vector<std::optional<batch::Trial>> trials;
+
+  std::uint64_t seed(std::size_t trial) const { return setups[trial]->mission.seed + trial; }
+};
+
+std::vector<const batch::Contestant*> chosen_contestants(const std::vector<std::string>& names) {
+  try {
+    return batch::contestants_named(names);
+  } catch (const Error& error) {
+    throw Error(error.kind(), std::string("--planners: ") + error.what());
+  }
+}
+
+/// The scenes that stand in for the missions' own; one without a name: none does.
+std::vector<std::string> chosen_scenes(const std::vector<std::string>& names) {
+  if (names.empty()) return {""};
+  const auto families = sim::model_families();
+  if (names == std::vector<std::string>{"all"}) return {families.begin(), families.end()};
+  for (const std::string& name : names) {
+    if (std::ranges::find(families, name) != families.end()) continue;
+    throw Error(ErrorKind::bad_usage,
+                fmt::format("--scenes: there is no family '{}'; there are all, {}", name,
+                            fmt::join(families, ", ")));
+  }
+  return names;
+}
+
+/// One planner on one mission, or on as many scenes of a family in its place as there are trials.
+Entry entry_of(const fs::path& file, const batch::Contestant* contestant, const std::string& scene,
+               const BenchmarkOptions& options, const config::Report& report) {
+  // Nothing is flown unless the user says so: as in the paper, the sensor moves freely.
+  std::vector<config::KeyOverride> overrides{{"benchmark", "flight.vehicle", "none"}};
+  overrides.insert(overrides.end(), options.overrides.begin(), options.overrides.end());
+  Entry entry{"", contestant, {}, {}};
+  entry.trials.resize(options.trials);
+  if (scene.empty()) {
+    const auto setup = std::make_shared<batch::Setup>(
+        batch::read_setup(file, contestant, "--planners", overrides, report));
+    entry.title = setup->title;
+    entry.setups.assign(options.trials, setup);
+    return entry;
+  }
+  overrides.push_back({"--scenes", "scene.model", "builtin:" + scene});
+  for (std::size_t trial = 0; trial < options.trials; ++trial) {
+    batch::Setup setup = batch::read_setup(file, contestant, "--planners", overrides, report);
+    setup.mission.scene.seed = setup.mission.seed + trial;
+    entry.title = options.missions.size() == 1 ? scene : setup.title + " " + scene;
+    setup.title = fmt::format("{} {}", entry.title, setup.mission.scene.seed);
+    setup.fingerprint = batch::fingerprint_of(setup);
+    entry.setups.push_back(std::make_shared<batch::Setup>(std::move(setup)));
+  }
+  return entry;
+}
+
+std::vector<Entry> entries_of(const BenchmarkOptions& options, const Console& console) {
+  ProgressLine progress(console, options.is_quiet);
+  std::vector<Entry> entries;
+  std::map<std::string, fs::path> file_of_title;
+  const std::vector<std::string> scenes = chosen_scenes(options.scenes);
+  for (const fs::path& file : options.missions) {
+    for (const std::string& scene : scenes) {
+      for (const batch::Contestant* contestant : chosen_contestants(options.planners)) {
+        Entry entry = entry_of(file, contestant, scene, options, progress.teller());
+        const auto [known, is_new] = file_of_title.emplace(entry.title, file);
+        if (!is_new && known->second != file) {
+          throw Error(ErrorKind::bad_usage, file.string() + " and " + known->second.string() +
+                                                " have the same name; give one of them a name key");
+        }
+        entries.push_back(std::move(entry));
+      }
+    }
+  }
+  return entries;
+}
+
+fs::path item_file(const fs::path& folder, const Entry& entry, std::uint64_t seed) {
+  return folder / "items" / entry.title / entry.contestant->name /
+         ("seed_" + std::to_string(seed) + ".json");
+}
+
+std::string manifest(const BenchmarkOptions& options, const std::vector<Entry>& entries,
+                     bool is_whole) {
+  Json json{{"version", version},
+            {"trials", options.trials},
+            {"threads", geometry::thread_count(options.threads)},
+            {"complete", is_whole},
+            {"entries", Json::array()}};
+  for (const Entry& entry : entries) {
+    const batch::Setup& first = *entry.setups.front();
+    json["entries"].push_back({{"mission", entry.title},
+                               {"file", first.file.string()},
+                               {"planner", entry.contestant->name},
+                               {"first_seed", first.mission.seed},
+                               {"fingerprint", first.fingerprint}});
+  }
+  return support::json_text(json);
+}
+
+class Benchmark {
+ public:
+  Benchmark(const BenchmarkOptions& options, const Console& console)
+      : options_(options),
+        console_(console),
+        entries_(entries_of(options, console)),
+        folder_(options.out.value_or("results/benchmark")),
+        progress_("benchmark", console, options.is_quiet, geometry::thread_count(options.threads)) {
+  }
+
+  int run() {
+    run_entries([](const Entry& entry) { return !entry.contestant->is_volumetric; });
+    take_view_limits_from_see();
+    run_entries([](const Entry& entry) { return entry.contestant->is_volumetric; });
+    report();
+    return is_whole() ? 0 : 1;
+  }
+
+ private:
+  template <typename Choice>
+  void run_entries(Choice is_chosen) {
+    std::vector<batch::Item> items;
+    std::vector<std::optional<batch::Trial>*> trials;
+    // Seeds outermost: whoever stops early has some trials of everything.
+    for (std::size_t trial = 0; trial < options_.trials; ++trial) {
+      for (Entry& entry : entries_) {
+        if (!is_chosen(entry)) continue;
+        const std::uint64_t seed = entry.seed(trial);
+        items.push_back({entry.setups[trial], seed, item_file(folder_.path(), entry, seed)});
+        trials.push_back(&entry.trials[trial]);
+      }
+    }
+    const auto kind = [](const batch::Item& item) {
+      return item.setup->title + " " + item.setup->contestant->title;
+    };
+    const batch::RunEvents events{
+        .unfinished = [&](const batch::Item& item) { progress_.expect(kind(item), 1); },
+        .preparing =
+            [&](const batch::Setup& setup) {
+              progress_.say(setup.title + ": measuring what could be covered at all");
+            },
+        .done =
+            [&](const batch::Item& item, const batch::TrialRecord& record) {
+              progress_.survey_done(kind(item), record.run.wall_time);
+            },
+        .failed = {}};
+    auto records = batch::run_items(items, options_.threads, console_.stop, events);
+    for (std::size_t i = 0; i < items.size(); ++i) {
+      if (records[i]) *trials[i] = std::move(records[i]->trial);
+    }
+  }
+
+  /// Paper §IV-B: a volumetric survey has as many views as SEE needed at most.
+  void take_view_limits_from_see() {
+    for (Entry& entry : entries_) {
+      if (!entry.contestant->is_volumetric || entry.setups.front()->mission.volumetric.view_limit) {
+        continue;
+      }
+      std::size_t most = 0;
+      for (const Entry& other : entries_) {
+        if (other.title != entry.title || other.contestant->name != "see") continue;
+        for (const auto& trial : other.trials) most = std::max(most, trial ? trial->views : 0);
+      }
+      if (most == 0) continue;
+      for (const auto& setup : entry.setups) {
+        setup->mission.volumetric.view_limit = most;
+        setup->fingerprint = batch::fingerprint_of(*setup);
+      }
+    }
+  }
+
+  bool is_whole() const {
+    return std::ranges::all_of(entries_, [](const Entry& entry) {
+      return std::ranges::all_of(entry.trials, [](const auto& trial) { return trial.has_value(); });
+    });
+  }
+
+  void report() {
+    std::vector<batch::BenchmarkCell> cells;
+    for (const Entry& entry : entries_) {
+      batch::BenchmarkCell cell{entry.title, entry.contestant->name, {}};
+      for (const auto& trial : entry.trials) {
+        if (trial) cell.trials.push_back(*trial);
+      }
+      cells.push_back(std::move(cell));
+    }
+    folder_.write("manifest.json", manifest(options_, entries_, is_whole()));
+    const std::string markdown =
+        batch::stage_tables(cells, "Benchmark", batch::Times::shown, folder_);
+    progress_.clear();
+    write_page("results.json", options_.has_report, folder_, console_);
+    folder_.commit();
+    if (options_.is_quiet) return;
+    console_.out << markdown << "\nresults: " << folder_.path().string() << "\n" << std::flush;
+  }
+
+  const BenchmarkOptions& options_;
+  const Console& console_;
+  std::vector<Entry> entries_;
+  geometry::OutputFolder folder_;
+  SurveyProgress progress_;
+};
+
+}  // namespace
+
+int benchmark(const BenchmarkOptions& options, const Console& console) {
+  const HoldsResults results(console);
+  return Benchmark(options, console).run();
+}
+
+}  // namespace skycap::missions::cli

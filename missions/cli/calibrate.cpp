@@ -1,0 +1,117 @@
+#include <cmath>
+#include <filesystem>
+#include <string>
+
+#include <fmt/format.h>
+
+#include "flight/calibration/calibration.h"
+#include "geometry/angle.h"
+#include "geometry/error.h"
+#include "geometry/io/output_folder.h"
+#include "missions/cli/verbs.h"
+#include "missions/config/vehicle_reader.h"
+#include "missions/support/number_text.h"
+
+namespace skycap::missions::cli {
+namespace {
+
+using flight::Calibration;
+
+/// With as many digits as a fit is good for.
+std::string figure(double value) { return fmt::format("{:.5g}", value); }
+
+std::string vehicle_text(const Calibration& calibration, const std::string& preset,
+                         const std::string& log, const std::string& name) {
+  const flight::Vehicle& vehicle = calibration.vehicle;
+  const flight::MissionMode& mode = vehicle.mode;
+  constexpr double degree = geometry::radians_per_degree;
+  return fmt::format(
+      "# From {}: {} windows of steady flight, {:.0f} s, scatter {:.1f} W; energy of parts that\n"
+      "# the fit has not seen within {:.1f} %.\n"
+      "name: {}\n"
+      "like: {}\n"
+      "mass: {}\n"
+      "battery_wh: {}\n"
+      "endurance_min: {}\n"
+      "avionics_power: {}\n"
+      "drag_area: {}\n"
+      "energy_error: {}\n"
+      "mode:\n"
+      "  max_ascent: {}\n"
+      "  max_descent: {}\n"
+      "  acceleration: {}\n"
+      "  vertical_acceleration: {}\n"
+      "  jerk: {}\n"
+      "  jerk_rise: {}\n"
+      "  settle_time: {}\n"
+      "  yaw_rate_deg: {}\n"
+      "  yaw_acceleration_deg: {}\n"
+      "  landing_speed: {}\n"
+      "  landing_height: {}\n",
+      log, calibration.windows, calibration.flown, calibration.scatter,
+      100.0 * calibration.energy_error, name, preset, figure(vehicle.mass),
+      figure(vehicle.battery_wh), figure(vehicle.endurance_min), figure(vehicle.avionics_power),
+      figure(vehicle.drag_area), figure(vehicle.energy_error), figure(mode.max_ascent),
+      figure(mode.max_descent), figure(mode.acceleration), figure(mode.vertical_acceleration),
+      figure(mode.jerk), figure(mode.jerk_rise), figure(mode.settle_time),
+      figure(mode.yaw_rate / degree), figure(mode.yaw_acceleration / degree),
+      figure(mode.landing_speed), figure(mode.landing_height));
+}
+
+std::string report(const Calibration& calibration, const flight::Vehicle& before) {
+  const flight::Vehicle& vehicle = calibration.vehicle;
+  std::string text = fmt::format(
+      "  power     hover {:.1f} W, {:.1f} min to the last drop (preset {:.1f}); avionics {:.1f} W, "
+      "drag area {:.4f} m^2\n"
+      "  fit       {} windows, {:.0f} s, scatter {:.1f} W; unseen parts within {:.1f} %: "
+      "energy_error {:.2f}\n"
+      "  wind      {:.1f} m/s that day\n",
+      calibration.hover_power, vehicle.endurance_min, before.endurance_min, vehicle.avionics_power,
+      vehicle.drag_area, calibration.windows, calibration.flown, calibration.scatter,
+      100.0 * calibration.energy_error, vehicle.energy_error, calibration.wind.norm());
+  text += fmt::format("  minutes   {} of the autopilot's parameters", calibration.parameters);
+  if (calibration.settling) {
+    return text + fmt::format(", {:.2f} s to settle by {} legs\n", *calibration.settling,
+                              calibration.legs);
+  }
+  return text + fmt::format("; {} legs with a stop are too few to say how long it settles\n",
+                            calibration.legs);
+}
+
+}  // namespace
+
+int calibrate(const CalibrateOptions& options, const Console& console) {
+  if (options.vehicle.ends_with(".yaml")) {
+    throw Error(ErrorKind::bad_usage, "--vehicle is " + options.vehicle +
+                                          "; it must be a preset, which the new file can be like");
+  }
+  flight::Vehicle vehicle = config::find_vehicle(options.vehicle);
+  if (options.mass) vehicle.mass = *options.mass;
+  if (options.battery_wh) vehicle.battery_wh = *options.battery_wh;
+  ProgressLine progress(console, false);
+  progress.show("reading " + options.log.string());
+  const flight::FlightLog log = flight::read_flight_log(options.log);
+  progress.show("fitting " + options.vehicle + " to " + options.log.string());
+  Calibration calibration;
+  try {
+    calibration = flight::calibrate(log, vehicle, options.air_density);
+  } catch (const Error& error) {
+    throw Error(error.kind(), options.log.string() + ": " + error.what());
+  }
+  std::filesystem::path file = options.log;
+  file = options.out.value_or(file.replace_extension(".yaml"));
+  const std::string name = file.stem().string();
+  const std::string text =
+      vehicle_text(calibration, options.vehicle, options.log.filename().string(), name);
+  config::read_vehicle(text, file.string());  // what is written must be what missions can name
+  geometry::OutputFolder folder(file.has_parent_path() ? file.parent_path() : ".");
+  folder.write(file.filename().string(), text);
+  folder.commit();
+  progress.clear();
+  console.out << name << ": like " << options.vehicle << ", from " << options.log.string() << "\n"
+              << report(calibration, vehicle) << "  results   " << file.string() << "\n"
+              << std::flush;
+  return 0;
+}
+
+}  // namespace skycap::missions::cli

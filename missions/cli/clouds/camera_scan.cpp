@@ -1,0 +1,112 @@
+#include "missions/cli/clouds/camera_scan.h"
+
+#include <algorithm>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "geometry/error.h"
+#include "missions/cli/clouds/scan_results.h"
+#include "missions/cli/write_page.h"
+#include "missions/package/settings.h"
+#include "missions/scan/frame_recorder.h"
+#include "missions/support/json_text.h"
+#include "missions/support/number_text.h"
+
+namespace skycap::missions::cli {
+namespace {
+
+std::vector<double> image_times(const scan::ScanRoute& route, double period) {
+  if (!route.image_times.empty()) return route.image_times;
+  constexpr double rounding = 1e-9;
+  constexpr double most_images = 1e6;
+  std::vector<double> times;
+  const double start = route.carrier.start(), duration = route.carrier.end() - start;
+  if (!(duration / period <= most_images)) {
+    throw Error(ErrorKind::bad_config, "scan.frame_period: every " + support::short_text(period) +
+                                           " s of a flight of " + support::short_text(duration) +
+                                           " s would be " + support::short_text(duration / period) +
+                                           " images; at most " + support::short_text(most_images) +
+                                           " are taken");
+  }
+  for (std::size_t i = 0; static_cast<double>(i) * period <= duration + rounding; ++i) {
+    times.push_back(start + static_cast<double>(i) * period);
+  }
+  return times;
+}
+
+/// No ray of the camera is longer; the range counts along its axis.
+double longest_ray(const geometry::Camera& camera) {
+  const Eigen::Vector2d& focal_length = camera.focal_length_px();
+  return camera.config().max_range *
+         (1.0 + camera.width() / focal_length.x() + camera.height() / focal_length.y());
+}
+
+}  // namespace
+
+int scan_with_camera(const ScanVerbOptions& options, const config::Mission& mission,
+                     const config::SensorDescription& sensor, geometry::OutputFolder& folder,
+                     const Console& console) {
+  auto config = std::get<sim::DepthCameraConfig>(sensor.sensor);
+  config.noise.seed = mission.seed;
+  const scan::ScanFlight flown = flown_by(options, mission, scan::Carrier::gimbal);
+  const auto& [route, believed, mount] = flown;
+  std::vector<scan::Frame> frames;
+  for (const double time : image_times(route, mission.scan.frame_period)) {
+    frames.push_back({time, route.carrier.pose(time) * mount.real * scan::body_from_camera(),
+                      believed.pose(time) * mount.believed * scan::body_from_camera()});
+  }
+  ProgressLine progress(console, options.is_quiet);
+  progress.show(mission.name + ": making the scene ready");
+  const scene::SensedScene truth(mission, options.mission.parent_path());
+  const sim::DepthCamera camera(config);
+  const sim::Scene scene =
+      truth.scene(mission.threads, within_reach(flown, {route.carrier.start(), route.carrier.end()},
+                                                longest_ray(camera.camera())));
+  const auto report = [&](std::size_t taken, std::size_t points) {
+    progress.show(fmt::format("{}: image {} of {}, {:.1f} M points", mission.name, taken,
+                              frames.size(), 1e-6 * static_cast<double>(points)));
+  };
+  const bool has_rawlog = std::ranges::find(options.formats, "rawlog") != options.formats.end();
+  const HoldsResults results(console);
+  scan::ScanJournal journal(folder.path());
+  nlohmann::ordered_json identity = identity_of(sensor, truth, flown);
+  identity["rawlog"] = has_rawlog;
+  const nlohmann::ordered_json begun =
+      open_journal(journal, options.resumes, options, mission, identity, console);
+  const scan::FrameResult result = scan::record_frames(scene, camera, frames, journal, folder,
+                                                       {.depth_unit = mission.scan.depth_unit,
+                                                        .has_rawlog = has_rawlog,
+                                                        .threads = mission.threads,
+                                                        .begun = begun,
+                                                        .report = report,
+                                                        .stop = console.stop});
+  const bool is_complete = result.frames == frames.size();
+  folder.write(scan_name, support::json_text({{"mission", mission.name},
+                                              {"sensor", sensor.name},
+                                              {"seed", mission.seed},
+                                              {"complete", is_complete},
+                                              {"images", result.frames},
+                                              {"images_planned", frames.size()},
+                                              {"points", result.points},
+                                              {"simulation_s", result.time},
+                                              {"settings", package::settings_json(mission)}}));
+  write_page(scan_name, options.has_report, folder, console);
+  commit_scan(folder, is_complete);
+  if (is_complete) journal.close();
+  progress.clear();
+  if (!options.is_quiet) {
+    console.out << fmt::format(
+                       "{}: {}{}\n  scan      {} depth images, {:.2f} M points in {:.1f} s\n",
+                       mission.name, sensor.name, is_complete ? "" : ", interrupted", result.frames,
+                       1e-6 * static_cast<double>(result.points), result.time)
+                << "  results   " << folder.path().string() << "\n"
+                << std::flush;
+  }
+  return is_complete ? 0 : 1;
+}
+
+}  // namespace skycap::missions::cli

@@ -1,0 +1,42 @@
+#include "missions/cli/clouds/scan_results.h"
+
+#include <fmt/format.h>
+
+#include "geometry/io/record_log.h"
+#include "missions/package/package.h"
+
+namespace skycap::missions::cli {
+
+scan::ScanFlight flown_by(const ScanVerbOptions& options, const config::Mission& mission,
+                          scan::Carrier carrier) {
+  return scan::scan_flight(mission, options.mission.parent_path(), options.route, carrier);
+}
+
+nlohmann::ordered_json identity_of(const config::SensorDescription& sensor,
+                                   const scene::SensedScene& scene,
+                                   const scan::ScanFlight& flight) {
+  return {{"sensor", sensor.name},
+          {"sensor_digest", fmt::format("{:08x}", geometry::crc32_of(sensor.text))},
+          {"scene_digest", scene.digest()},
+          {"route_digest", digest_of(flight)}};
+}
+
+nlohmann::ordered_json open_journal(scan::ScanJournal& journal, bool resumes,
+                                    const ScanVerbOptions& options, const config::Mission& mission,
+                                    const nlohmann::ordered_json& identity,
+                                    const Console& console) {
+  nlohmann::ordered_json begun = journal.open(mission, identity, resumes);
+  if (begun.is_object() && !options.is_quiet) {
+    console.err << "going on with an interrupted scan\n" << std::flush;
+  }
+  return begun;
+}
+
+void commit_scan(geometry::OutputFolder& folder, bool is_complete) {
+  if (!is_complete && package::is_complete_result(folder.path() / scan_name)) {
+    folder.move_to("interrupted");
+  }
+  folder.commit();
+}
+
+}  // namespace skycap::missions::cli

@@ -1,0 +1,138 @@
+#include "flight/export/export.h"
+
+#include <algorithm>
+
+#include "geometry/error.h"
+#include "geometry/io/output_folder.h"
+#include "missions/cli/verb_options.h"
+#include "missions/cli/verbs.h"
+#include "missions/config/fleet.h"
+#include "missions/config/mission_flight.h"
+#include "missions/package/fleet/timetable_proof.h"
+#include "missions/package/fleet_mission.h"
+#include "missions/package/flight_report.h"
+#include "missions/package/package.h"
+
+namespace skycap::missions::cli {
+namespace {
+
+/// A survey's stations, and who is to fly to them from where.
+struct Task {
+  config::Mission mission;
+  Eigen::Vector3d pad = Eigen::Vector3d::Zero();
+  std::vector<flight::Station> stations;
+};
+
+/// What a lost vehicle of the package's fleet has left, for the rest of the fleet.
+Task task_of_rest(const ExportOptions& options, const package::PackagedSurvey& survey, Task task) {
+  const config::Mission& mission = survey.mission;
+  const std::size_t lost = *options.lost - 1, count = mission.flight.fleet.vehicles.size();
+  if (!config::is_fleet(mission) || lost >= count) {
+    throw Error(ErrorKind::bad_usage, "--lost " + std::to_string(*options.lost) +
+                                          ": flight.vehicles of the package has " +
+                                          std::to_string(count));
+  }
+  const std::filesystem::path table = options.package / package::timetable_name;
+  std::vector<Eigen::Vector3d> pads = config::pads_of_fleet(mission, survey.pad);
+  for (const package::TimetableRow& row : package::read_timetable(table, mission)) {
+    pads[row.vehicle] = row.pad;
+  }
+  const std::vector<Eigen::Vector3d> left =
+      package::left_by(table, mission, lost, options.after.value_or(0.0));
+  std::erase_if(task.stations, [&](const flight::Station& station) {
+    return std::ranges::none_of(left, [&](const Eigen::Vector3d& place) {
+      return (station.view.position - place).norm() <= flight::rounding_bound;
+    });
+  });
+  if (task.stations.empty()) {
+    throw Error(ErrorKind::bad_usage, "--lost " + std::to_string(*options.lost) +
+                                          ": it had photographed all of its views by then");
+  }
+  std::vector<std::size_t> kept;
+  for (std::size_t v = 0; v < count; ++v) {
+    if (v != lost) kept.push_back(v);
+  }
+  task.mission = config::with_vehicles(mission, kept, pads);
+  task.pad = *task.mission.flight.takeoff;
+  return task;
+}
+
+Task task_of(const ExportOptions& options, const package::PackagedSurvey& survey) {
+  Task task{survey.mission, survey.pad,
+            package::stations_of(survey.mission, survey.views, survey.ways)};
+  return options.lost ? task_of_rest(options, survey, std::move(task)) : task;
+}
+
+void check_lost(const ExportOptions& options) {
+  if (options.after && !options.lost) {
+    throw Error(ErrorKind::bad_usage, "--after: says when a vehicle was lost; give --lost, too");
+  }
+  if (options.lost && !options.out) {
+    throw Error(ErrorKind::bad_usage,
+                "--lost: the others still fly by the files of the package; give --out");
+  }
+}
+
+}  // namespace
+
+int export_package(const ExportOptions& options, const Console& console) {
+  std::vector<flight::Format> formats;
+  for (const std::string& name : options.formats) formats.push_back(flight::format_named(name));
+  check_lost(options);
+
+  ProgressLine progress(console, false);
+  progress.show("reading " + options.package.string());
+  const package::PackagedSurvey survey = package::read_package(options.package, options.overrides);
+  const Task task = task_of(options, survey);
+  geometry::OutputFolder folder(options.out.value_or(options.package));
+  progress.show(task.mission.name + ": planning the flight");
+  package::SurveyMission flight;
+  flight.pictures = config::picture_bounds_of(task.mission);
+  flight.route = package::plan_flight(task.mission, survey.measured, task.pad, task.stations,
+                                      survey.grounds, console.stop);
+  const bool is_fleet = config::is_fleet(task.mission);
+  if (is_fleet) {
+    flight.fleet = package::staged_fleet(task.mission, survey.measured, flight.route,
+                                         survey.grounds, formats, folder, console.stop);
+  } else {
+    flight.files =
+        package::stage_flight(task.mission, flight.route, survey.measured, formats, folder);
+  }
+  folder.replace([&](std::string_view name) {
+    if (is_fleet != package::is_fleet_file(name)) return false;
+    return is_fleet || std::ranges::any_of(formats, [&](flight::Format format) {
+             return package::is_flight_file(name, format);
+           });
+  });
+  folder.commit();
+  progress.clear();
+  console.out << package::flight_text(flight) << "  results   " << folder.path().string() << "\n"
+              << std::flush;
+  return flight.route.sorties.empty() ? 1 : 0;
+}
+
+void add_export(CLI::App& app, const Console& console, Action& action) {
+  CLI::App* verb =
+      app.add_subcommand("export", "Write the flight of a mission package in another format");
+  const auto options = std::make_shared<ExportOptions>();
+  const auto keys = std::make_shared<KeyOptions>();
+  verb->add_option("package", options->package, "Folder that plan wrote")->required();
+  verb->add_option("--format", options->formats,
+                   "plan, waypoints, kmz, kml, geojson, litchi, csv, ned-csv or tum; may be given "
+                   "again")
+      ->required()
+      ->type_size(1)
+      ->allow_extra_args(false);
+  verb->add_option("--out", options->out, "Folder for the files; default the package");
+  verb->add_option("--lost", options->lost,
+                   "Number of a vehicle of the package's fleet that is lost: the rest share what "
+                   "it has left")
+      ->check(CLI::Range(1, 1000));
+  verb->add_option("--after", options->after,
+                   "When it was lost, by the timetable [s]; default before its start")
+      ->check(number_between(0.0, 1e9));
+  add_set_option(*verb, *keys);
+  run_with_keys(*verb, options, keys, export_package, console, action);
+}
+
+}  // namespace skycap::missions::cli

@@ -1,0 +1,207 @@
+#include "missions/cli/fly_test_report.h"
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "missions/support/json_text.h"
+
+namespace skycap::missions::cli {
+namespace {
+
+using flight::TestFlight;
+using support::json_of;
+using Json = nlohmann::ordered_json;
+
+constexpr double joules_per_wh = 3600.0;
+
+/// Some figure of many flights, ascending.
+class Distribution {
+ public:
+  explicit Distribution(std::vector<double> values) : values_(std::move(values)) {
+    std::ranges::sort(values_);
+  }
+
+  bool is_empty() const { return values_.empty(); }
+
+  /// The least value that is not below that share of them.
+  double percentile(double percent) const {
+    const auto rank = std::ceil(0.01 * percent * static_cast<double>(values_.size()));
+    return values_[static_cast<std::size_t>(std::max(1.0, rank)) - 1];
+  }
+
+  Json json() const {
+    if (values_.empty()) return nullptr;
+    return {{"least", values_.front()},
+            {"percentile_5", percentile(5)},
+            {"median", percentile(50)},
+            {"percentile_95", percentile(95)},
+            {"greatest", values_.back()}};
+  }
+
+ private:
+  std::vector<double> values_;
+};
+
+/// Of the flights that `counts` holds for.
+Distribution distribution(const TestedFile& file,
+                          const std::function<double(const TestFlight&)>& figure,
+                          const std::function<bool(const TestFlight&)>& counts) {
+  std::vector<double> values;
+  for (const TestFlight& flight : file.test.flights) {
+    if (counts(flight)) values.push_back(figure(flight));
+  }
+  return Distribution(std::move(values));
+}
+
+bool any(const TestFlight&) { return true; }
+bool is_whole(const TestFlight& flight) { return !flight.draw.called_home; }
+
+Distribution clearance(const TestedFile& file, std::size_t judge) {
+  return distribution(
+      file, [judge](const TestFlight& f) { return f.flown.nearest[judge].closest.distance; }, any);
+}
+
+std::size_t empty_batteries(const TestedFile& file) {
+  return static_cast<std::size_t>(std::ranges::count_if(
+      file.test.flights,
+      [&](const TestFlight& flight) { return flight.flown.energy > file.battery; }));
+}
+
+double time_of(const TestFlight& flight) { return flight.flown.time; }
+double energy_wh_of(const TestFlight& flight) { return flight.flown.energy / joules_per_wh; }
+double off_line_of(const TestFlight& flight) { return flight.flown.off_line; }
+
+Json json_of(const TestFlight& flight) {
+  Json json{{"flight", flight.draw.number},
+            {"wind_m_s", {flight.draw.wind.x(), flight.draw.wind.y()}},
+            {"called_home_s", nullptr},
+            {"time_s", flight.flown.time},
+            {"energy_wh", energy_wh_of(flight)},
+            {"off_line_m", flight.flown.off_line},
+            {"clearance_m", Json::array()}};
+  if (flight.draw.called_home) json["called_home_s"] = *flight.draw.called_home;
+  for (const flight::NearestPlace& nearest : flight.flown.nearest) {
+    json["clearance_m"].push_back(nearest.closest.distance);
+  }
+  return json;
+}
+
+/// The flight that came nearest.
+const TestFlight& nearest_flight(const TestedFile& file, std::size_t judge) {
+  return *std::ranges::min_element(file.test.flights, {}, [judge](const TestFlight& flight) {
+    return flight.flown.nearest[judge].closest.distance;
+  });
+}
+
+std::string judge_text(const TestedFile& file, std::size_t j) {
+  const flight::Judge& judge = file.judges[j];
+  const Distribution distances = clearance(file, j);
+  std::string text = fmt::format(
+      "  clearance least {:.2f} m from {}, 5 % below {:.2f}, median {:.2f}; allowed {:.2f}, {} "
+      "flights nearer\n",
+      distances.percentile(0), judge.name, distances.percentile(5), distances.percentile(50),
+      judge.limit, flights_nearer(file.test, file.judges, j));
+  const TestFlight& nearest = nearest_flight(file, j);
+  const flight::NearestPlace& place = nearest.flown.nearest[j];
+  if (place.closest.kind != flight::ObstacleKind::none) {
+    text += fmt::format("            nearest in flight {} after {:.0f} s{}, to {}\n",
+                        nearest.draw.number, place.time,
+                        place.is_on_way_home ? ", on its way home" : "", file.obstacles[j]);
+  }
+  if (file.test.returns.empty() || file.test.returns[j].flown == 0) return text;
+  const flight::ReturnTest& returns = file.test.returns[j];
+  return text + fmt::format(
+                    "  returns   {} from anywhere, least {:.3f} m from {}; allowed {:.3f}, "
+                    "{} nearer\n",
+                    returns.flown, returns.nearest.distance, judge.name, judge.return_limit,
+                    returns.nearer);
+}
+
+}  // namespace
+
+std::size_t failures(const TestedFile& file) {
+  std::size_t sum = empty_batteries(file);
+  for (std::size_t j = 0; j < file.judges.size(); ++j) {
+    sum += flights_nearer(file.test, file.judges, j);
+    if (!file.test.returns.empty()) sum += file.test.returns[j].nearer;
+  }
+  return sum;
+}
+
+std::string text_of(const TestedFile& file) {
+  const flight::FlyTest& test = file.test;
+  const auto home =
+      test.flights.size() - static_cast<std::size_t>(std::ranges::count_if(test.flights, is_whole));
+  std::string text = fmt::format("{}: {}, {} flights, {} of them called home\n", file.name,
+                                 file.autopilot, test.flights.size(), home);
+  if (test.flights.empty()) return text;
+  const Distribution times = distribution(file, time_of, is_whole);
+  const Distribution energies = distribution(file, energy_wh_of, is_whole);
+  if (!times.is_empty()) {
+    text += fmt::format(
+        "  time      planned {:.0f} s; flown to the end {:.0f} to {:.0f}, median {:.0f}\n"
+        "  energy    {:.1f} to {:.1f} Wh, median {:.1f}\n",
+        test.planned_time, times.percentile(0), times.percentile(100), times.percentile(50),
+        energies.percentile(0), energies.percentile(100), energies.percentile(50));
+  }
+  const Distribution all = distribution(file, energy_wh_of, any);
+  const Distribution off_line = distribution(file, off_line_of, any);
+  text += fmt::format(
+      "  battery   {:.0f} % left at the least, {} flights beyond it\n"
+      "  off line  median {:.2f} m, 95 % below {:.2f}, farthest {:.2f}\n",
+      100.0 * (1.0 - all.percentile(100) * joules_per_wh / file.battery), empty_batteries(file),
+      off_line.percentile(50), off_line.percentile(95), off_line.percentile(100));
+  for (std::size_t j = 0; j < file.judges.size(); ++j) text += judge_text(file, j);
+  return text;
+}
+
+Json json_of(const TestedFile& file) {
+  Json json{{"file", file.name},
+            {"autopilot", file.autopilot},
+            {"failures", failures(file)},
+            {"planned_time_s", file.test.planned_time},
+            {"battery_wh", file.battery / joules_per_wh},
+            {"time_s", distribution(file, time_of, is_whole).json()},
+            {"energy_wh", distribution(file, energy_wh_of, is_whole).json()},
+            {"off_line_m", distribution(file, off_line_of, any).json()},
+            {"clearance", Json::array()},
+            {"flights", Json::array()}};
+  for (std::size_t j = 0; j < file.judges.size(); ++j) {
+    Json clearances{{"from", file.judges[j].name},
+                    {"allowed_m", file.judges[j].limit},
+                    {"flights_nearer", flights_nearer(file.test, file.judges, j)},
+                    {"distance_m", clearance(file, j).json()}};
+    if (!file.test.returns.empty() && file.test.returns[j].flown > 0) {
+      const flight::ReturnTest& returns = file.test.returns[j];
+      clearances["returns"] = {{"flown", returns.flown},
+                               {"allowed_m", file.judges[j].return_limit},
+                               {"nearer", returns.nearer},
+                               {"least_m", returns.nearest.distance},
+                               {"least_from", json_of(returns.from)}};
+    }
+    json["clearance"].push_back(std::move(clearances));
+  }
+  for (const TestFlight& flight : file.test.flights) json["flights"].push_back(json_of(flight));
+  return json;
+}
+
+std::string text_of(const flight::FleetFlightTest& test) {
+  return fmt::format(
+      "the fleet: {} flights of all vehicles, any two of them at least {:.2f} m apart (median of "
+      "flights {:.2f} m), {} nearer than {:.2f} m\n",
+      test.flown, test.least, test.least_median, test.nearer, test.limit);
+}
+
+Json json_of(const flight::FleetFlightTest& test) {
+  return {{"flights", test.flown},
+          {"nearer", test.nearer},
+          {"limit_m", test.limit},
+          {"least_m", test.least},
+          {"least_median_m", test.least_median}};
+}
+
+}  // namespace skycap::missions::cli

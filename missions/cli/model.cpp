@@ -1,0 +1,160 @@
+#include <algorithm>
+#include <optional>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "geometry/error.h"
+#include "geometry/io/mesh_io.h"
+#include "geometry/surfaces/mesh.h"
+#include "missions/cli/verb_options.h"
+#include "missions/cli/verbs.h"
+#include "missions/config/mission_keys.h"
+#include "missions/config/mission_priors.h"
+#include "missions/config/resolved_mission.h"
+#include "missions/evaluation/survey_scene.h"
+#include "missions/scene/model_store.h"
+#include "missions/scene/scene_source.h"
+#include "sim/models/models.h"
+#include "sim/scene/render.h"
+
+namespace skycap::missions::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+bool contains(const auto& names, const std::string& name) {
+  return std::ranges::find(names, name) != names.end();
+}
+
+geometry::Mesh mesh_of(const std::string& model, const std::optional<std::string>& detail) {
+  config::Mission mission;
+  mission.scene.model = model;
+  if (detail) {
+    if (!model.starts_with("builtin:")) {
+      throw Error(ErrorKind::bad_config,
+                  "--detail needs a builtin model; " + model + " is as detailed as its file");
+    }
+    config::find_key("scene.detail")->set(mission, *detail);
+  }
+  return scene::load_model(mission.scene, "");
+}
+
+void obtain_if_missing(const std::string& name, const Console& console) {
+  if (contains(scene::obtainable_models(), name) && !scene::is_stored(name)) {
+    scene::obtain_model(
+        name, [&](const std::string& step) { console.err << "skycap: " << step << "\n"; });
+  }
+}
+
+/// A scene in sandstone, and what is known of its site in the colours of its roles.
+struct ColouredMesh {
+  geometry::Mesh mesh;
+  std::vector<Eigen::Vector3f> colours;  ///< of the triangles; empty: all are of sandstone
+
+  void add(const geometry::Mesh& more, const Eigen::Vector3f& colour) {
+    geometry::append(mesh, more);
+    colours.resize(mesh.triangles.size(), colour);
+  }
+};
+
+/// A mission and the scene that it simulates; no scene if it is flown live.
+struct Site {
+  config::Mission mission;
+  geometry::Mesh model;
+};
+
+/// The targets and as much around them as they are large: a tile may hold a whole town.
+std::optional<Eigen::AlignedBox3d> around_targets(const site_data::SitePriors& site) {
+  const geometry::Mesh targets = surfaces_of(site, site_data::Role::target);
+  if (targets.triangles.empty()) return std::nullopt;
+  const Eigen::AlignedBox3d box = geometry::bounding_box(targets);
+  const Eigen::Vector3d reach = Eigen::Vector3d::Constant(box.sizes().maxCoeff());
+  return Eigen::AlignedBox3d(box.min() - reach, box.max() + reach);
+}
+
+/// All of it, or what is near.
+ColouredMesh coloured_site(const Site& given, const std::optional<Eigen::AlignedBox3d>& near) {
+  const auto& [mission, model] = given;
+  const site_data::SitePriors& site = config::priors_of(mission);
+  if (site.priors.empty()) return {model, {}};
+  ColouredMesh coloured;
+  if (!config::is_truth_prior(mission)) coloured.add(model, {0.80F, 0.71F, 0.55F});
+  coloured.add(surfaces_of(site, site_data::Role::truth, near), {0.62F, 0.68F, 0.75F});
+  coloured.add(surfaces_of(site, site_data::Role::target, near), {0.20F, 0.55F, 0.30F});
+  coloured.add(surfaces_of(site, site_data::Role::obstacle, near), {0.75F, 0.28F, 0.12F});
+  coloured.add(surfaces_of(site, site_data::Role::terrain, near), {0.42F, 0.38F, 0.26F});
+  return coloured;
+}
+
+bool is_mission(const std::string& name) {
+  return name.ends_with(".yaml") || name.ends_with(".yml");
+}
+
+Site site_called(const ModelOptions& options, const config::Report& report) {
+  std::vector<config::KeyOverride> overrides;
+  if (options.detail) overrides.push_back({"--detail", "scene.detail", *options.detail});
+  config::Mission mission = config::read_live_mission(options.name, overrides, report);
+  if (mission.prior.empty()) mission = config::read_mission(options.name, overrides);
+  if (mission.scene.model.empty() && !config::is_truth_prior(mission)) return {mission, {}};
+  geometry::Mesh model = evaluation::placed_model(mission, fs::path(options.name).parent_path());
+  return {std::move(mission), std::move(model)};
+}
+
+geometry::Mesh model_called(const ModelOptions& options, const Console& console) {
+  const std::string& name = options.name;
+  if (name.find(':') != std::string::npos || fs::path(name).has_extension()) {
+    return mesh_of(name, options.detail);
+  }
+  if (contains(sim::builtin_models(), name)) return mesh_of("builtin:" + name, options.detail);
+  obtain_if_missing(name, console);
+  return mesh_of("model:" + name, options.detail);
+}
+
+}  // namespace
+
+int model(const ModelOptions& options, const Console& console) {
+  ProgressLine progress(console, false);
+  progress.show(options.name + ": making the model ready");
+  std::optional<Site> site;
+  if (is_mission(options.name)) site = site_called(options, progress.teller());
+  const ColouredMesh whole =
+      site ? coloured_site(*site, {}) : ColouredMesh{model_called(options, console), {}};
+  const geometry::Mesh& mesh = whole.mesh;
+  geometry::validate(mesh);
+  if (options.out) {
+    progress.show("writing " + options.out->string());
+    geometry::write_mesh(*options.out, mesh);
+  }
+  if (options.render) {
+    const auto near = site ? around_targets(config::priors_of(site->mission)) : std::nullopt;
+    const ColouredMesh shown = near ? coloured_site(*site, near) : whole;
+    sim::RenderOptions render;
+    render.colours = shown.colours;
+    render.report = [&](double share) {
+      progress.show(fmt::format("{}: {:.0f} % of the picture", options.name, 100.0 * share));
+    };
+    sim::write_png(sim::render(shown.mesh, render), *options.render);
+  }
+  progress.clear();
+  const Eigen::Vector3d size = geometry::bounding_box(mesh).sizes();
+  console.out << fmt::format("{}: {} triangles, {:.4g} x {:.4g} x {:.4g}, area {:.4g}\n",
+                             options.name, mesh.triangles.size(), size.x(), size.y(), size.z(),
+                             geometry::surface_area(mesh));
+  return 0;
+}
+
+void add_model(CLI::App& app, const Console& console, Action& action) {
+  CLI::App* verb = app.add_subcommand("model", "Obtain, write or render a scene model");
+  const auto options = std::make_shared<ModelOptions>();
+  verb->add_option("name", options->name,
+                   "teapot, bunny, dragon, radcliffe-camera, ..., a mesh, or a mission file")
+      ->required();
+  verb->add_option("--out", options->out, "Write the mesh to this PLY file");
+  verb->add_option("--detail", options->detail, "Of a builtin model: coarse, standard or fine")
+      ->check(CLI::IsMember({"coarse", "standard", "fine"}));
+  verb->add_option("--render", options->render, "Draw the model into this PNG file");
+  run(*verb, options, model, console, action);
+}
+
+}  // namespace skycap::missions::cli

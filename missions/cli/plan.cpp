@@ -1,0 +1,199 @@
+#include <memory>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "geometry/error.h"
+#include "geometry/io/output_folder.h"
+#include "missions/batch/benchmark/trial_files.h"
+#include "missions/batch/benchmark/trials.h"
+#include "missions/batch/campaign/item_runner.h"
+#include "missions/cli/verbs.h"
+#include "missions/cli/write_page.h"
+#include "missions/config/resolved_mission.h"
+#include "missions/evaluation/survey_scene.h"
+#include "missions/package/flight_report.h"
+#include "missions/package/package.h"
+#include "missions/package/target_coverage.h"
+#include "missions/simulation/feasibility.h"
+#include "missions/simulation/survey_runner.h"
+
+namespace skycap::missions::cli {
+namespace {
+
+std::string percent(double share) { return fmt::format("{:.2f} %", 100.0 * share); }
+
+std::string seconds(double time) {
+  return time < 1.0 ? fmt::format("{:.1f} ms", 1e3 * time) : fmt::format("{:.2f} s", time);
+}
+
+std::string progress_text(const std::string& name, std::size_t views,
+                          const session::JudgedView& judged, double planning_time) {
+  return fmt::format("{}: view {}, {} points, {} frontiers, {} covered, planned in {}", name, views,
+                     judged.surveyed.points, judged.surveyed.step.frontiers,
+                     percent(judged.coverage), seconds(planning_time));
+}
+
+/// A line of the --verbose table: planning time of one view, in milliseconds by part.
+std::string times_row(std::size_t view, const session::JudgedView& judged) {
+  const survey::PlanningStep& step = judged.surveyed.step;
+  std::string row;
+  if (view == 0) {
+    row = "view  frontiers  total ms";
+    for (const survey::PartTime& time : step.times) {
+      row += fmt::format(" {:>10}", time.part);
+    }
+    row += "\n";
+  }
+  row +=
+      fmt::format("{:4} {:10} {:9.2f}", view, step.frontiers, 1e3 * judged.surveyed.planning_time);
+  for (const survey::PartTime& time : step.times) {
+    row += fmt::format(" {:10.3f}", 1e3 * time.seconds);
+  }
+  return row + "\n";
+}
+
+std::string summary_text(const config::Mission& mission, const session::SurveyRecord& record,
+                         const package::CoverageFigures& coverage,
+                         const std::optional<package::SurveyMission>& flight,
+                         const std::filesystem::path& folder) {
+  std::string text =
+      fmt::format("{}: {} after {} views, {:.2f} m\n", mission.name,
+                  session::name_of(record.stop_reason), record.views.size(), record.distance());
+  text += "  coverage  " + percent(coverage.all) + " of the surface";
+  if (coverage.visible) text += ", " + percent(*coverage.visible) + " of what is visible";
+  if (coverage.ceiling) text += "; attainable " + percent(*coverage.ceiling);
+  text += "\n" + package::target_text(package::target_coverage(mission, record.cloud.positions));
+  if (mission.scene.model == "prior")
+    text += "  truth     the targets' prior data stand in for it\n";
+  text += "  planning  " + seconds(record.planning_time()) + " (";
+  bool is_first = true;
+  for (const auto& [part, time] : package::planning_time_by_part(record)) {
+    text += (is_first ? "" : ", ") + part + " " + seconds(time);
+    is_first = false;
+  }
+  text += ")\n";
+  if (record.flown) text += package::flown_text(mission, record);
+  if (flight) text += package::flight_text(*flight);
+  return text + "  results   " + folder.string() + "\n";
+}
+
+int plan_once(const PlanOptions& options, const config::Mission& mission,
+              const evaluation::SurveyScene& scene, geometry::OutputFolder& folder,
+              const Console& console) {
+  ProgressLine progress(console, options.is_quiet);
+  std::size_t views = 0;
+  double planning_time = 0.0;
+  const auto report = [&](const session::JudgedView& judged) {
+    planning_time += judged.surveyed.planning_time;
+    if (options.is_verbose) console.err << times_row(views, judged) << std::flush;
+    progress.show(progress_text(mission.name, ++views, judged, planning_time));
+  };
+  const HoldsResults results(console);
+  simulation::SurveyJournal journal(folder.path() / simulation::journal_name, mission, scene,
+                                    options.resumes);
+  if (journal.views() > 0 && !options.is_quiet) {
+    console.err << "going on after " << journal.views() << " views of an interrupted survey\n";
+  }
+  const session::SurveyRecord record = simulation::run_survey(
+      mission, scene, mission.seed, mission.threads, console.stop, report, &journal);
+
+  const bool is_over = record.stop_reason != survey::StopReason::interrupted;
+  if (is_over) progress.show(mission.name + ": measuring what could be covered at all");
+  const package::CoverageFigures coverage =
+      package::coverage_figures(mission, record, scene, mission.threads, console.stop);
+  progress.show(mission.name + ": writing " + folder.path().string());
+  const std::optional<package::SurveyMission> flight =
+      package::stage_package(mission, record, coverage, mission.threads, folder, console.stop);
+  write_page(package::summary_name, options.has_report, folder, console);
+  package::commit_package(record, folder);
+  progress.clear();
+  if (!options.is_quiet) {
+    console.out << summary_text(mission, record, coverage, flight, folder.path()) << std::flush;
+  }
+  // A flown survey ends with views that nobody can reach; at the start it has not begun.
+  const bool went_through =
+      is_over &&
+      (record.stop_reason != survey::StopReason::nowhere_to_go || record.views.size() > 1) &&
+      (!flight || flight->failure.empty());
+  return went_through ? 0 : 1;
+}
+
+/// The surveys of all seeds; those that were finished before are not run again.
+std::vector<batch::Trial> run_trials(const PlanOptions& options, const config::Mission& mission,
+                                     const std::filesystem::path& folder, const Console& console,
+                                     ProgressLine& progress) {
+  const auto setup =
+      std::make_shared<const batch::Setup>(batch::own_setup(options.mission, mission));
+  std::vector<batch::Item> items;
+  for (std::size_t i = 0; i < options.trials; ++i) {
+    const std::uint64_t seed = mission.seed + i;
+    items.push_back({setup, seed, folder / "items" / ("seed_" + std::to_string(seed) + ".json")});
+  }
+  std::size_t ended = 0;
+  const batch::RunEvents events{
+      .unfinished = {},
+      .preparing =
+          [&](const batch::Setup&) {
+            progress.show(mission.name + ": measuring what could be covered at all");
+          },
+      .done =
+          [&](const batch::Item& item, const batch::TrialRecord& done) {
+            progress.show(fmt::format("{}: trial {} of {}, seed {}: {} views, {}", mission.name,
+                                      ++ended, options.trials, item.seed, done.trial.views,
+                                      percent(done.trial.coverage.all)));
+          },
+      .failed = {}};
+  std::vector<batch::Trial> trials;
+  for (auto& done : batch::run_items(items, mission.threads, console.stop, events)) {
+    if (done) trials.push_back(std::move(done->trial));
+  }
+  return trials;
+}
+
+int plan_trials(const PlanOptions& options, const config::Mission& mission,
+                geometry::OutputFolder& folder, const Console& console) {
+  ProgressLine progress(console, options.is_quiet);
+  const HoldsResults results(console);
+  const std::vector<batch::Trial> trials =
+      run_trials(options, mission, folder.path(), console, progress);
+  progress.clear();
+  folder.write("trials.csv", batch::trials_csv(trials));
+  folder.write("trials.json", batch::trials_json(mission, trials, options.trials, mission.threads));
+  write_page("trials.json", options.has_report, folder, console);
+  if (trials.size() < options.trials &&
+      package::is_complete_result(folder.path() / "trials.json")) {
+    folder.move_to("interrupted");  // the trials themselves are kept, and not run again
+  }
+  folder.commit();
+  if (!options.is_quiet) {
+    console.out << batch::trials_table(mission, trials) << "  results   " << folder.path().string()
+                << "\n"
+                << std::flush;
+  }
+  return trials.size() == options.trials ? 0 : 1;
+}
+
+}  // namespace
+
+int plan(const PlanOptions& options, const Console& console) {
+  const config::Mission mission = read_shown(config::read_mission, options, console);
+  geometry::OutputFolder folder(
+      options.out.value_or(std::filesystem::path("results") / mission.name));
+  if (options.trials > 0) return plan_trials(options, mission, folder, console);
+  ProgressLine progress(console, options.is_quiet);
+  progress.show(mission.name + ": making the scene ready");
+  try {
+    const evaluation::SurveyScene scene(mission, options.mission.parent_path());
+    simulation::require_feasible(mission, scene, mission.threads);
+    return plan_once(options, mission, scene, folder, console);
+  } catch (const Error& error) {
+    // What goes wrong during the survey follows from the mission; say which.
+    throw Error(error.kind(), options.mission.string() + ": " + error.what());
+  }
+}
+
+}  // namespace skycap::missions::cli

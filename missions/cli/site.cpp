@@ -1,0 +1,153 @@
+#include <array>
+
+#include <fmt/format.h>
+
+#include "geometry/error.h"
+#include "geometry/io/output_folder.h"
+#include "missions/cli/verb_options.h"
+#include "missions/config/mission_priors.h"
+#include "missions/config/resolved_mission.h"
+#include "missions/evaluation/survey_scene.h"
+#include "missions/report/cloud_page.h"
+#include "missions/site_data/prior_text.h"
+#include "missions/wizard/proposal.h"
+
+namespace skycap::missions::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// What heights may count from where there is no pad yet.
+constexpr std::array datums{site_data::HeightDatum::ellipsoid, site_data::HeightDatum::geoid};
+
+struct SiteOptions {
+  fs::path map;                         ///< file that holds the target and its neighbours
+  std::vector<std::string> ids;         ///< of the target; either this
+  std::string at;                       ///< or LATITUDE,LONGITUDE of a click on it
+  std::vector<std::string> attributes;  ///< or KEY=VALUE, all of which it has
+  std::string crs, vertical;            ///< as the keys of prior of these names
+  std::optional<double> base, height;   ///< the same
+  std::optional<fs::path> terrain;
+  std::vector<fs::path> obstacles;
+  std::string vehicle = "generic";
+  std::optional<fs::path> out;  ///< the mission file; default: site.yaml
+};
+
+[[noreturn]] void refuse(const std::string& option, const std::string& given,
+                         const std::string& wanted) {
+  throw Error(ErrorKind::bad_usage, option + " is " + given + "; give " + wanted);
+}
+
+wizard::Pick pick_of(const SiteOptions& options) {
+  wizard::Pick pick{.ids = options.ids, .attributes = {}, .click = {}};
+  if (!options.at.empty()) {
+    pick.click = wizard::click_in(options.at);
+    if (!pick.click) refuse("--at", options.at, wizard::click_form);
+  }
+  for (const std::string& pair : options.attributes) {
+    const auto equals = pair.find('=');
+    if (equals == std::string::npos) refuse("--attribute", pair, "KEY=VALUE");
+    pick.attributes[pair.substr(0, equals)] = pair.substr(equals + 1);
+  }
+  const int ways =
+      (pick.ids.empty() ? 0 : 1) + (pick.attributes.empty() ? 0 : 1) + (pick.click ? 1 : 0);
+  if (ways > 1) {
+    throw Error(ErrorKind::bad_usage,
+                "--id, --at and --attribute each say what the target is; give one of them");
+  }
+  return pick;
+}
+
+wizard::Wishes wishes_of(const SiteOptions& options) {
+  wizard::Wishes wishes{.map = options.map,
+                        .target = pick_of(options),
+                        .reading = {.crs = options.crs,
+                                    .vertical = {},
+                                    .base = options.base,
+                                    .height = options.height},
+                        .terrain = options.terrain,
+                        .obstacles = options.obstacles,
+                        .vehicle = options.vehicle};
+  for (const site_data::HeightDatum datum : datums) {
+    if (options.vertical == name_of(datum)) wishes.reading.vertical = datum;
+  }
+  return wishes;
+}
+
+std::string page_of(const config::Mission& mission, const fs::path& file) {
+  const evaluation::SurveyScene scene(mission, file.parent_path());
+  return report::mission_page(mission, scene.samples().points, mission.flight.takeoff);
+}
+
+/// Writes a first mission file and the page that shows it; never over an older file.
+int propose_site(const SiteOptions& options, const Console& console) {
+  const fs::path file = options.out.value_or("site.yaml");
+  if (file.extension() != ".yaml" && file.extension() != ".yml") {
+    refuse("--out", file.string(), "a name that ends in .yaml");
+  }
+  const fs::path picture = fs::path(file).replace_extension(".html");
+  // First, since the mission names its files as seen from there, and a result that a kill has cut
+  // short is completed.
+  geometry::OutputFolder folder(file.has_parent_path() ? file.parent_path() : ".");
+  for (const fs::path& result : {file, picture}) {
+    if (!fs::exists(result)) continue;
+    throw Error(ErrorKind::bad_usage,
+                result.string() + " is there already; give another --out, or move it away");
+  }
+  ProgressLine progress(console, false);
+  progress.show("reading " + options.map.filename().string());
+  const std::string text = wizard::propose_mission(wishes_of(options), file);
+  progress.show("drawing the site");
+  const config::Mission mission = config::parse_mission(text, file.string());
+  const std::string page = page_of(mission, file);
+  progress.clear();
+  folder.write(file.filename().string(), text);
+  folder.write(picture.filename().string(), page);
+  folder.commit();
+  const Eigen::Vector3d pad = mission.flight.takeoff.value();
+  console.out << fmt::format("{}: a first mission for {}\n", file.string(), mission.name)
+              << site_data::text_of(config::priors_of(mission))
+              << fmt::format("  pad       {:g} {:g} {:g}\n", pad.x(), pad.y(), pad.z())
+              << "  picture   " << picture.string() << "\n"
+              << "  next      skycap plan " << file.string() << "\n"
+              << std::flush;
+  return 0;
+}
+
+}  // namespace
+
+void add_site(CLI::App& app, const Console& console, Action& action) {
+  CLI::App* verb = app.add_subcommand(
+      "site", "Propose a first mission from a map, a city model, a terrain or an earlier scan");
+  const auto options = std::make_shared<SiteOptions>();
+  verb->add_option("map", options->map,
+                   "File with the target and what is around it (docs/sites.md)")
+      ->required();
+  verb->add_option("--id", options->ids, "Target by its name in the file; may be given again")
+      ->type_size(1)
+      ->allow_extra_args(false);
+  verb->add_option("--at", options->at, "Target by a click on it: LATITUDE,LONGITUDE");
+  verb->add_option("--attribute", options->attributes,
+                   "Target by KEY=VALUE, such as a part of its address; may be given again")
+      ->type_size(1)
+      ->allow_extra_args(false);
+  verb->add_option("--crs", options->crs, "Reference system of the files, if they do not say it");
+  verb->add_option("--vertical", options->vertical,
+                   "What their heights count from, if they do not say it: ellipsoid, geoid")
+      ->check(CLI::IsMember({name_of(datums[0]), name_of(datums[1])}));
+  verb->add_option("--base", options->base,
+                   "Of outlines: the height that they stand at, in --vertical [m]")
+      ->check(number_between(-1e4, 1e4));
+  verb->add_option("--height", options->height,
+                   "Of outlines without a height of their own: how high they are [m]")
+      ->check(number_between(0.01, 1e4));
+  verb->add_option("--terrain", options->terrain, "File of the ground; outlines stand on it");
+  verb->add_option("--obstacle", options->obstacles, "Further file of what is in the way")
+      ->type_size(1)
+      ->allow_extra_args(false);
+  verb->add_option("--vehicle", options->vehicle, "Preset or description; default generic");
+  verb->add_option("--out", options->out, "Mission file; default site.yaml");
+  run(*verb, options, propose_site, console, action);
+}
+
+}  // namespace skycap::missions::cli

@@ -1,0 +1,68 @@
+#include <cstdlib>
+
+#include "geometry/error.h"
+#include "geometry/io/file.h"
+#include "missions/cli/verbs.h"
+#include "missions/config/mission_flight.h"
+#include "missions/config/resolved_mission.h"
+#include "missions/evaluation/survey_scene.h"
+#include "missions/report/cloud_page.h"
+#include "missions/report/result_pages.h"
+#include "missions/support/external_program.h"
+
+namespace skycap::missions::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+report::MadePage page_of_mission(const ViewOptions& options, const config::Report& report) {
+  const config::Mission mission = config::read_mission(options.what, options.overrides, report);
+  const evaluation::SurveyScene scene(mission, options.what.parent_path());
+  const geometry::View first = scene.first_view(mission.seed);
+  std::optional<Eigen::Vector3d> pad;
+  if (mission.flight.is_flown()) pad = config::pad_of(mission, first.position);
+  return {options.out.value_or(fs::path("results") / mission.name / "mission.html"),
+          report::mission_page(mission, scene.samples().points, pad)};
+}
+
+std::vector<report::MadePage> pages_of(const ViewOptions& options, const config::Report& report) {
+  const fs::path& what = options.what;
+  std::error_code ignored;
+  if (fs::is_directory(what, ignored)) {
+    return report::made_pages(what, report::default_report_points, options.out);
+  }
+  if (!options.out && !fs::exists(what, ignored)) {
+    throw Error(ErrorKind::bad_file, what.string() + ": is not there");
+  }
+  const std::string ending = what.extension().string();
+  if (ending == ".yaml" || ending == ".yml") return {page_of_mission(options, report)};
+  fs::path file = what;
+  file.replace_extension(".html");
+  return {{options.out.value_or(file), report::cloud_page(what)}};
+}
+
+/// Whether a browser was told to show the file. Programs without a screen start browsers of text,
+/// which wait for a terminal.
+bool is_opened(const fs::path& file) {
+  const bool has_screen =
+      std::getenv("DISPLAY") != nullptr || std::getenv("WAYLAND_DISPLAY") != nullptr;
+  if (!has_screen) return false;
+  return support::start_external_program({"xdg-open", fs::absolute(file).string()});
+}
+
+}  // namespace
+
+int view(const ViewOptions& options, const Console& console) {
+  ProgressLine progress(console, false);
+  progress.show("reading " + options.what.string());
+  for (const report::MadePage& page : pages_of(options, progress.teller())) {
+    if (page.text) geometry::write_file(page.file, *page.text);
+    progress.clear();
+    const bool is_shown = is_opened(page.file);
+    console.out << (is_shown ? "opened in the browser: " : "open this in a browser: ")
+                << page.file.string() << "\n";
+  }
+  return 0;
+}
+
+}  // namespace skycap::missions::cli

@@ -1,0 +1,372 @@
+#include "missions/config/mission_reader.h"
+
+#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <charconv>
+#include <cmath>
+#include <iterator>
+#include <optional>
+#include <span>
+#include <string_view>
+#include <system_error>
+
+#include "geometry/error.h"
+#include "geometry/io/file.h"
+#include "missions/config/mission_keys.h"
+#include "missions/config/unknown_key.h"
+#include "missions/support/yaml_tree.h"
+
+namespace skycap::missions::config {
+namespace {
+
+constexpr std::size_t largest_file = 1 << 20;  // [byte]; a mission has a few thousand
+
+/// A value and where it stands.
+struct Given {
+  std::string file;   ///< or an option's name
+  std::string place;  ///< "FILE:LINE" or an option's name
+  support::YamlNode node;
+};
+
+/// The values of a mission by key, checked to be known but not yet read.
+using GivenValues = std::map<std::string, Given, std::less<>>;
+
+/// The keys that a map may have, and what messages call it.
+struct KnownKeys {
+  std::span<const Key> keys;
+  std::string of;  ///< comes before the key, such as "prior[0]."
+  std::string file;
+
+  const Key* find(std::string_view path) const {
+    const auto key = std::ranges::find(keys, path, &Key::path);
+    return key == keys.end() ? nullptr : &*key;
+  }
+  bool has_section(const std::string& path) const {
+    return std::ranges::any_of(keys,
+                               [&](const Key& key) { return key.path.starts_with(path + "."); });
+  }
+};
+
+[[noreturn]] void fail(const std::string& place, std::string_view key, const std::string& what) {
+  throw Error(ErrorKind::bad_config, place + ": key " + std::string(key) + ": " + what);
+}
+
+/// Files the values of a map, and of the maps in it, under their keys.
+void collect(const support::YamlNode& map, const std::string& prefix, const KnownKeys& known,
+             GivenValues& values) {
+  for (const support::YamlEntry& entry : map.entries) {
+    const std::string path = prefix + entry.key;
+    const std::string place = known.file + ":" + std::to_string(entry.line);
+    if (known.find(path)) {
+      values[path] = {known.file, place, entry.value};
+    } else if (!known.has_section(path)) {
+      fail(place, known.of + path, unknown_key_message(path, known.keys));
+    } else if (entry.value.kind == support::YamlNode::Kind::map) {
+      collect(entry.value, path + ".", known, values);
+    } else {
+      fail(place, known.of + path, "is a section; put its keys below it, indented");
+    }
+  }
+}
+
+template <class Number>
+std::optional<Number> parsed(std::string_view text) {
+  if (text.starts_with('+')) text.remove_prefix(1);
+  Number number{};
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
+  if (error != std::errc() || end != text.data() + text.size()) return std::nullopt;
+  return number;
+}
+
+std::string described(const support::YamlNode& node) {
+  switch (node.kind) {
+    case support::YamlNode::Kind::null:
+      return "has no value";
+    case support::YamlNode::Kind::list:
+      return "is a list";
+    case support::YamlNode::Kind::map:
+      return "is a map";
+    case support::YamlNode::Kind::scalar:
+      break;
+  }
+  const std::string text = node.text.size() <= 60 ? node.text : node.text.substr(0, 60) + "...";
+  return node.is_quoted ? "is the text '" + text + "'" : "is " + text;
+}
+
+bool contains(const KeyRange& range, double value) {
+  return value <= range.most && (range.excludes_least ? value > range.least : value >= range.least);
+}
+
+/// The node's number if it is one, finite, and in range.
+std::optional<double> number_in(const support::YamlNode& node, const KeyRange& range) {
+  if (node.kind != support::YamlNode::Kind::scalar || node.is_quoted) return std::nullopt;
+  const auto number = parsed<double>(node.text);
+  if (!number || !std::isfinite(*number) || !contains(range, *number)) return std::nullopt;
+  return number;
+}
+
+std::optional<Eigen::Vector3d> vector_in(const support::YamlNode& node, const KeyRange& range) {
+  if (node.items.size() != 3) return std::nullopt;
+  Eigen::Vector3d vector;
+  for (int axis = 0; axis < 3; ++axis) {
+    const auto number = number_in(node.items[axis], range);
+    if (!number) return std::nullopt;
+    vector[axis] = *number;
+  }
+  return vector;
+}
+
+std::optional<std::vector<Eigen::Vector2d>> polygon_in(const support::YamlNode& node) {
+  std::vector<Eigen::Vector2d> polygon;
+  for (const support::YamlNode& corner : node.items) {
+    if (corner.items.size() != 2) return std::nullopt;
+    const auto x = number_in(corner.items[0], {}), y = number_in(corner.items[1], {});
+    if (!x || !y) return std::nullopt;
+    polygon.push_back({*x, *y});
+  }
+  return polygon.size() >= 3 ? std::optional(polygon) : std::nullopt;
+}
+
+std::optional<geometry::Prism> volume_in(const support::YamlNode& node) {
+  const auto entry = [&](std::string_view name) {
+    const auto found = std::ranges::find(node.entries, name, &support::YamlEntry::key);
+    return found == node.entries.end() ? support::YamlNode{} : found->value;
+  };
+  const auto corners = polygon_in(entry("corners"));
+  const auto bottom = number_in(entry("bottom"), {}), top = number_in(entry("top"), {});
+  if (node.entries.size() != 3 || !corners || !bottom || !top || *bottom >= *top) {
+    return std::nullopt;
+  }
+  return geometry::Prism{.name = "", .footprint = *corners, .floor = *bottom, .ceiling = *top};
+}
+
+template <typename Item, typename ReadItem>
+std::optional<KeyValue> list_in(const support::YamlNode& node, const ReadItem& read_item) {
+  if (node.kind != support::YamlNode::Kind::list) return std::nullopt;
+  std::vector<Item> list;
+  for (const support::YamlNode& item : node.items) {
+    std::optional<Item> value = read_item(item);
+    if (!value) return std::nullopt;
+    list.push_back(std::move(*value));
+  }
+  return list;
+}
+
+bool is_control_character(unsigned char c) { return c < 0x20 || c == 0x7f; }
+
+std::optional<std::string> text_in(const support::YamlNode& node) {
+  if (node.kind != support::YamlNode::Kind::scalar || node.text.empty()) return std::nullopt;
+  if (std::ranges::any_of(node.text, is_control_character)) return std::nullopt;
+  return node.text;
+}
+
+std::optional<int> integer_in(const support::YamlNode& node, const KeyRange& range) {
+  const auto number = number_in(node, range);
+  if (!number || std::abs(*number) > 1e9 || *number != std::round(*number)) return std::nullopt;
+  return static_cast<int>(*number);
+}
+
+std::optional<KeyValue> pairs_in(const support::YamlNode& node) {
+  if (node.kind != support::YamlNode::Kind::map) return std::nullopt;
+  std::map<std::string, std::string> pairs;
+  for (const support::YamlEntry& entry : node.entries) {
+    const auto text = text_in(entry.value);
+    if (!text) return std::nullopt;
+    pairs[entry.key] = *text;
+  }
+  return pairs;
+}
+
+/// A number, or one of the words that the key takes as well.
+std::optional<KeyValue> number_or_word(const Key& key, const support::YamlNode& node) {
+  const bool is_word = node.kind == support::YamlNode::Kind::scalar &&
+                       std::ranges::find(key.choices, node.text) != key.choices.end();
+  if (is_word) return node.text;
+  return number_in(node, key.range);
+}
+
+/// The node's value as `key` takes it; nothing if it does not.
+std::optional<KeyValue> value_for(const Key& key, const support::YamlNode& node) {
+  if (key.type == KeyType::vector) return vector_in(node, key.range);
+  if (key.type == KeyType::polygon) return polygon_in(node);
+  if (key.type == KeyType::volumes) return list_in<geometry::Prism>(node, volume_in);
+  const auto vector = [&](const support::YamlNode& item) { return vector_in(item, key.range); };
+  if (key.type == KeyType::vectors) return list_in<Eigen::Vector3d>(node, vector);
+  if (key.type == KeyType::number) return number_or_word(key, node);
+  if (key.type == KeyType::texts) return list_in<std::string>(node, text_in);
+  const auto integer = [&](const support::YamlNode& item) { return integer_in(item, key.range); };
+  if (key.type == KeyType::integers) return list_in<int>(node, integer);
+  if (key.type == KeyType::pairs) return pairs_in(node);
+  if (node.kind != support::YamlNode::Kind::scalar) return std::nullopt;
+  switch (key.type) {
+    case KeyType::integer: {
+      const auto number = parsed<std::int64_t>(node.text);
+      if (!number || node.is_quoted || !contains(key.range, static_cast<double>(*number))) break;
+      return *number;
+    }
+    case KeyType::boolean:
+      if (node.is_quoted || (node.text != "true" && node.text != "false")) break;
+      return node.text == "true";
+    case KeyType::choice:
+      if (std::ranges::find(key.choices, node.text) == key.choices.end()) break;
+      return node.text;
+    default:
+      if (const auto text = text_in(node)) return *text;
+  }
+  return std::nullopt;
+}
+
+[[noreturn]] void refuse_value(const Given& given, const Key& key, const std::string& of) {
+  fail(given.place, of + key.path, described(given.node) + "; give " + expected_value(key));
+}
+
+void apply(const Given& given, const Key& key, Mission& mission, const std::string& of = "") {
+  const auto value = value_for(key, given.node);
+  if (!value) refuse_value(given, key, of);
+  key.set(mission, *value);
+}
+
+/// One map of a list of them; `places` learns where its keys stand.
+site_data::Source source_in(const support::YamlNode& node, const KnownKeys& known,
+                            MissionFile& result) {
+  const std::string place = known.file + ":" + std::to_string(node.line);
+  const std::string name = known.of.substr(0, known.of.size() - 1);
+  if (node.kind != support::YamlNode::Kind::map)
+    fail(place, name, described(node) + "; give a map");
+  GivenValues values;
+  collect(node, "", known, values);
+  Mission mission;
+  mission.prior.emplace_back();
+  result.places[name] = place;
+  for (const auto& [path, given] : values) {
+    apply(given, *known.find(path), mission, known.of);
+    result.places[known.of + path] = given.place;
+  }
+  for (const Key& key : known.keys) {
+    if (!key.is_required || values.contains(key.path)) continue;
+    fail(place, known.of + key.path, "is missing; give " + expected_value(key));
+  }
+  return mission.prior.back();
+}
+
+void apply_sources(const Given& given, const Key& key, MissionFile& result) {
+  if (given.node.kind != support::YamlNode::Kind::list) refuse_value(given, key, "");
+  std::vector<site_data::Source> sources;
+  for (const support::YamlNode& item : given.node.items) {
+    const std::string of = key.path + "[" + std::to_string(sources.size()) + "].";
+    sources.push_back(source_in(item, {key.items, of, given.file}, result));
+  }
+  key.set(result.mission, sources);
+}
+
+/// Sets up what the named presets stand for, before the other keys override it.
+void apply_presets(Mission& mission) {
+  if (mission.sensor.preset == SensorPreset::high_resolution) {
+    mission.sensor.camera = sim::high_resolution();
+  }
+  survey::see::SeeConfig& see = mission.planner.see;
+  if (mission.planner.name == PlannerName::see) {
+    see.optimise_views = false;
+    see.visibility_graph = false;
+  }
+  if (mission.planner.preset == PlannerPreset::building) {
+    see.visibility_update_limit = 1000;
+    see.max_attempts = 2;
+    see.still_occluded = survey::see::StillOccluded::put_off;
+  }
+}
+
+GivenValues collected(const std::string& text, const std::string& name,
+                      const std::vector<KeyOverride>& overrides) {
+  const support::YamlNode root = support::parse_yaml(text, name);
+  if (root.kind == support::YamlNode::Kind::null) {
+    throw Error(ErrorKind::bad_config, name +
+                                           ":1: is empty; a mission needs at least scene.model and "
+                                           "evaluation.registration_distance");
+  }
+  if (root.kind != support::YamlNode::Kind::map) {
+    throw Error(ErrorKind::bad_config, name + ":" + std::to_string(root.line) +
+                                           ": is not a map; a mission is a list of 'key: value'");
+  }
+  GivenValues values;
+  collect(root, "", {mission_keys(), "", name}, values);
+  for (const auto& [origin, path, value] : overrides) {
+    if (!find_key(path)) fail(origin, path, unknown_key_message(path, mission_keys()));
+    // What a publication reports is for the planner that the file names.
+    if (path == "planner.name") {
+      std::erase_if(values, [](const auto& entry) { return entry.first.starts_with("paper."); });
+    }
+    values[path] = {origin, origin, support::parse_yaml(value, origin)};
+  }
+  return values;
+}
+
+MissionFile mission_from(const std::string& text, const std::string& name,
+                         const std::vector<KeyOverride>& overrides) {
+  const GivenValues given = collected(text, name, overrides);
+  MissionFile result{.name = name, .mission = {}, .places = {}};
+  for (const auto& [path, value] : given) result.places[path] = value.place;
+  Mission& mission = result.mission;
+  mission.name = std::filesystem::path(name).stem().string();
+
+  for (const char* path : {"sensor.preset", "planner.preset", "planner.name"}) {
+    const auto preset = given.find(path);
+    if (preset != given.end()) apply(preset->second, *find_key(path), mission);
+  }
+  apply_presets(mission);
+  for (const auto& [path, value] : given) {
+    const Key& key = *find_key(path);
+    key.type == KeyType::sources ? apply_sources(value, key, result) : apply(value, key, mission);
+  }
+  for (const Key& key : mission_keys()) {
+    if (!key.is_required || given.contains(key.path)) continue;
+    result.refuse(key.path, "is missing; give " + expected_value(key));
+  }
+  return result;
+}
+
+/// Keys and texts are shown as they were written; what would break the line becomes a space.
+std::string one_line(std::string message) {
+  std::ranges::replace_if(message, is_control_character, ' ');
+  return message;
+}
+
+}  // namespace
+
+bool MissionFile::gives(std::string_view key) const { return places.contains(key); }
+
+void MissionFile::refuse(std::string_view key, const std::string& what) const {
+  const auto place = places.find(key);
+  fail(one_line(place == places.end() ? name + ":1" : place->second), key, one_line(what));
+}
+
+MissionFile parse_mission_file(const std::string& text, const std::string& name,
+                               const std::vector<KeyOverride>& overrides) {
+  try {
+    return mission_from(text, name, overrides);
+  } catch (const Error& error) {
+    throw Error(error.kind(), one_line(error.what()));
+  }
+}
+
+MissionFile read_mission_file(const std::filesystem::path& file,
+                              const std::vector<KeyOverride>& overrides) {
+  const auto refuse = [&](const std::string& what) {
+    throw Error(ErrorKind::bad_file, file.string() + ": " + what);
+  };
+  std::error_code failure;
+  if (std::filesystem::is_directory(file, failure)) refuse("is a folder; name a mission file");
+  std::ifstream stream = geometry::open_stream(file);
+  if (!stream)
+    refuse(std::string("cannot be read (") + std::generic_category().message(errno) +
+           "); check its name");
+  std::string text(largest_file + 1, '\0');
+  stream.read(text.data(), static_cast<std::streamsize>(text.size()));
+  text.resize(static_cast<std::size_t>(stream.gcount()));
+  if (text.size() > largest_file) refuse("is larger than 1 MiB; that is not a mission file");
+  if (text.find('\0') != std::string::npos) refuse("is not text; name a mission file");
+  return parse_mission_file(text, file.string(), overrides);
+}
+
+}  // namespace skycap::missions::config

@@ -1,0 +1,237 @@
+// The key `prior`, and those of each map in its list.
+#include "missions/config/key_builders.h"
+#include "missions/config/key_sections.h"
+#include "missions/site_data/prior_text.h"
+
+namespace skycap::missions::config {
+namespace {
+
+using site_data::HeightDatum;
+using site_data::Role;
+using site_data::Source;
+
+/// The words for these, which have to be all of their kind, in order.
+template <typename Word>
+std::vector<std::string> names_of(std::initializer_list<Word> all) {
+  std::vector<std::string> names;
+  for (const Word each : all) names.emplace_back(name_of(each));
+  return names;
+}
+
+/// The field of the list's last source that `member` points to.
+auto source(auto member) {
+  return [member](Mission & m) -> auto& { return m.prior.back().*member; };
+}
+auto selection(auto member) {
+  return [member](Mission & m) -> auto& { return m.prior.back().select.*member; };
+}
+
+/// A key whose value is a list or map; an empty one stands for none.
+template <class Field>
+Key list_key(std::string path, KeyType type, Field field, std::string meaning) {
+  Key key = key_for(std::move(path), type, field, std::move(meaning));
+  key.get = [get = key.get](const Mission& mission) -> std::optional<KeyValue> {
+    auto value = get(mission);
+    const bool is_empty = std::visit(
+        [](const auto& list) {
+          if constexpr (requires { list.empty(); }) return list.empty();
+          return false;
+        },
+        *value);
+    return is_empty ? std::nullopt : value;
+  };
+  return key;
+}
+
+/// A text that may be left out.
+template <class Field>
+Key optional_text_key(std::string path, std::string fallback, Field field, std::string meaning) {
+  Key key = list_key(std::move(path), KeyType::text, field, std::move(meaning));
+  return otherwise(std::move(fallback), std::move(key));
+}
+
+/// A text that is a path.
+template <class Field>
+Key path_key(std::string path, Field field, std::string meaning) {
+  Key key;
+  key.path = std::move(path);
+  key.meaning = std::move(meaning);
+  key.set = [field](Mission& mission, const KeyValue& value) {
+    field(mission) = std::get<std::string>(value);
+  };
+  key.get = [field](const Mission& mission) -> std::optional<KeyValue> {
+    const std::string text = field(const_cast<Mission&>(mission)).string();
+    return text.empty() ? std::nullopt : std::optional<KeyValue>(text);
+  };
+  return key;
+}
+
+Key vertical_key() {
+  Key key;
+  key.path = "vertical";
+  key.type = KeyType::choice;
+  key.choices = names_of({HeightDatum::ellipsoid, HeightDatum::geoid, HeightDatum::takeoff});
+  key.meaning =
+      "What the file's heights count from: WGS84's ellipsoid, the geoid (the file's own, else "
+      "EGM96), or the pad.";
+  key.set = [names = key.choices](Mission& mission, const KeyValue& value) {
+    const auto name = std::ranges::find(names, std::get<std::string>(value));
+    mission.prior.back().vertical = static_cast<HeightDatum>(name - names.begin());
+  };
+  key.get = [names = key.choices](const Mission& mission) -> std::optional<KeyValue> {
+    const auto& stored = mission.prior.back().vertical;
+    if (!stored) return std::nullopt;
+    return names[static_cast<std::size_t>(*stored)];
+  };
+  return otherwise("the coordinate system's; without one the mission's frame", key);
+}
+
+Key up_axis_key() {
+  Key key;
+  key.path = "up_axis";
+  key.type = KeyType::choice;
+  key.choices = {"z", "y"};
+  key.meaning = "Of models of scenes: which axis points up, whatever the file says.";
+  key.set = [](Mission& mission, const KeyValue& value) {
+    mission.prior.back().is_y_up = std::get<std::string>(value) == "y";
+  };
+  key.get = [](const Mission& mission) -> std::optional<KeyValue> {
+    const std::optional<bool>& stored = mission.prior.back().is_y_up;
+    return stored ? std::optional<KeyValue>(*stored ? "y" : "z") : std::nullopt;
+  };
+  return otherwise("the file's, else z", key);
+}
+
+Key base_key() {
+  Key key;
+  key.path = "base";
+  key.type = KeyType::number;
+  key.unit = std::string(1, 'm');  // of a literal, GCC 12 warns without cause
+  key.range = between(-1e4, 1e4);
+  key.choices = {"terrain"};
+  key.meaning = "Of polygons: the height they are extruded from.";
+  key.set = [](Mission& mission, const KeyValue& value) {
+    Source& source = mission.prior.back();
+    source.base_on_terrain = std::holds_alternative<std::string>(value);
+    if (!source.base_on_terrain) source.base = std::get<double>(value);
+  };
+  key.get = [](const Mission& mission) -> std::optional<KeyValue> {
+    const Source& source = mission.prior.back();
+    if (source.base_on_terrain) return std::string("terrain");
+    return source.base ? std::optional<KeyValue>(*source.base) : std::nullopt;
+  };
+  return otherwise("the file's", key);
+}
+
+/// A key of the optional place, which the first of them brings about.
+template <class Value>
+Key place_key(std::string path, KeyType type, std::string unit, KeyRange range, double factor,
+              Value site_data::Place::*member, std::string meaning) {
+  Key key;
+  key.path = std::move(path);
+  key.type = type;
+  key.unit = std::move(unit);
+  key.range = range;
+  key.meaning = std::move(meaning);
+  key.set = [=](Mission& mission, const KeyValue& value) {
+    std::optional<site_data::Place>& place = mission.prior.back().place;
+    if (!place) place.emplace();
+    (*place).*member = factor * std::get<Value>(value);
+  };
+  key.get = [=](const Mission& mission) -> std::optional<KeyValue> {
+    const std::optional<site_data::Place>& place = mission.prior.back().place;
+    if (!place) return std::nullopt;
+    return KeyValue(Value((*place).*member / factor));
+  };
+  return key;
+}
+
+/// Which file, what it is for, and where it is.
+std::vector<Key> place_keys() {
+  return {
+      required(path_key(
+          "file", source(&Source::file),
+          "A map, model, terrain or scan, relative to the mission file; its format is told by its "
+          "content (docs/sites.md).")),
+      required(choice_key(
+          "role", names_of({Role::target, Role::obstacle, Role::terrain, Role::truth}),
+          source(&Source::role),
+          "What it is to the survey. target: what is surveyed, guessed where not measured yet. "
+          "obstacle: in the way of every leg. terrain: the ground. truth: what the simulated "
+          "sensor measures, in place of scene.model. None proves that space is free.")),
+      optional_text_key("crs", "the file's; without one the mission's frame", source(&Source::crs),
+                        "Coordinate reference system, horizontal or compound, such as "
+                        "EPSG:25832+7837: anything that PROJ knows."),
+      vertical_key(),
+      otherwise("-", place_key("place.position", KeyType::vector, "m", between(-1e6, 1e6), 1.0,
+                               &site_data::Place::position,
+                               "Where the origin of a file without coordinate reference system is "
+                               "in the mission's frame; excludes crs.")),
+      otherwise("0", place_key("place.heading_deg", KeyType::number, "degrees", between(-360, 360),
+                               geometry::radians_per_degree, &site_data::Place::heading,
+                               "Where its y axis points, clockwise from north.")),
+      vector_key("offset", "m", between(-1e8, 1e8), source(&Source::offset),
+                 "Added to coordinates, in the file's system: what photogrammetry took off."),
+      otherwise("the file's, else 1",
+                number_key("unit", "m", above(0, 1e6), source(&Source::unit),
+                           "How long one unit of the file's coordinates is.")),
+      up_axis_key(),
+  };
+}
+
+/// Which part of it.
+std::vector<Key> selection_keys() {
+  using site_data::Selection;
+  const auto all = [](Key key) { return otherwise("all", std::move(key)); };
+  Key classes = all(list_key("select.classes", KeyType::integers, selection(&Selection::classes),
+                             "Of points: only those of these ASPRS classes."));
+  classes.range = between(0, 255);
+  return {
+      all(list_key("select.id", KeyType::texts, selection(&Selection::ids),
+                   "Only the objects of these names, and what is part of them.")),
+      all(list_key("select.attribute", KeyType::pairs, selection(&Selection::attributes),
+                   "Only the objects whose attributes are these.")),
+      all(path_key("select.within", selection(&Selection::within),
+                   "Only what is inside of the polygons of this file.")),
+      classes,
+      optional_text_key("select.layer", "all", selection(&Selection::layer),
+                        "Only this layer of the file."),
+      otherwise("each object's highest",
+                number_key("select.lod", "", between(0, 4), selection(&Selection::lod),
+                           "Only this level of detail.")),
+  };
+}
+
+/// How it is understood.
+std::vector<Key> meaning_keys() {
+  return {
+      base_key(),
+      otherwise("the file's", number_key("height", "m", above(0, 1e4), source(&Source::height),
+                                         "Of polygons: how high they are above their base.")),
+      number_key("min_height", "m", between(0, 1e4), source(&Source::min_height),
+                 "Of polygons: how high above their base they begin."),
+      otherwise("0.3; 1 for extruded polygons",
+                number_key("uncertainty", "m", between(0, 1000), source(&Source::uncertainty),
+                           "How far off its surfaces may be: obstacles are in the way that much "
+                           "farther out, on top of flight.map_error. What stand-ins for a geoid "
+                           "or a datum may be off is added to it.")),
+      otherwise("0.25", number_key("spacing", "m", above(0, 100), source(&Source::spacing),
+                                   "Clouds are thinned to one point in a cube of this side, which "
+                                   "should be no less than the points are apart.")),
+  };
+}
+
+}  // namespace
+
+std::vector<Key> prior_keys() {
+  Key key = key_for(
+      "prior", KeyType::sources, [](Mission & m) -> auto& { return m.prior; },
+      "What is known of the site before it is measured; docs/sites.md.");
+  key.get = [](const Mission& mission) -> std::optional<KeyValue> {
+    return mission.prior.empty() ? std::nullopt : std::optional<KeyValue>(mission.prior);
+  };
+  key.items = joined({place_keys(), selection_keys(), meaning_keys()});
+  return {otherwise("none", key)};
+}
+
+}  // namespace skycap::missions::config

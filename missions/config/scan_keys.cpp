@@ -1,0 +1,108 @@
+// The keys of `scan`: what is recorded, and how the carrier flies.
+#include "missions/config/key_builders.h"
+#include "missions/config/key_sections.h"
+
+namespace skycap::missions::config {
+namespace {
+
+/// The field of the scan's settings that `member` points to.
+auto scan(auto member) {
+  return [member](Mission & m) -> auto& { return m.scan.*member; };
+}
+
+std::vector<Key> orbit_keys() {
+  using Orbit = OrbitConfig;
+  const auto orbit = [](auto member) {
+    return [member](Mission & m) -> auto& { return m.scan.orbit.*member; };
+  };
+  return {
+      vector_key("scan.orbit.centre", "m", between(-1e6, 1e6), orbit(&Orbit::centre),
+                 "Point round which the carrier circles; heights count from its z."),
+      number_key("scan.orbit.radius", "m", above(0, 1e4), orbit(&Orbit::radius),
+                 "Radius of the circles."),
+      number_key("scan.orbit.lowest", "m", between(-1e4, 1e4), orbit(&Orbit::lowest),
+                 "Height of the first circle."),
+      number_key("scan.orbit.highest", "m", between(-1e4, 1e4), orbit(&Orbit::highest),
+                 "Height of the last circle."),
+      integer_key("scan.orbit.circles", "", between(1, 1000), orbit(&Orbit::circles),
+                  "How many circles, evenly spaced in height; a single one is the lowest."),
+      number_key("scan.orbit.speed", "m/s", above(0, 100), orbit(&Orbit::speed),
+                 "Speed along the circles and the climbs between them."),
+      angle_key("scan.orbit.start_deg", between(-360, 360), orbit(&Orbit::start),
+                "Where the circles begin: direction from the centre, anticlockwise from east."),
+  };
+}
+
+std::vector<Key> navigation_keys() {
+  using Navigation = sim::NavigationErrors;
+  const auto navigation = [](auto member) {
+    return [member](Mission & m) -> auto& { return m.scan.navigation.*member; };
+  };
+  return {
+      number_key(
+          "scan.navigation.horizontal_sigma", "m", between(0, 100),
+          navigation(&Navigation::horizontal_sigma),
+          "Standard deviation of the believed position, east and north each, in scans and in "
+          "surveys of a vehicle."),
+      number_key("scan.navigation.vertical_sigma", "m", between(0, 100),
+                 navigation(&Navigation::vertical_sigma), "The same of the height."),
+      angle_key("scan.navigation.tilt_sigma_deg", between(0, 45),
+                navigation(&Navigation::tilt_sigma), "The same of roll and of pitch."),
+      angle_key("scan.navigation.heading_sigma_deg", between(0, 45),
+                navigation(&Navigation::heading_sigma), "The same of the heading."),
+      number_key("scan.navigation.correlation_time", "s", between(0, 1e5),
+                 navigation(&Navigation::correlation_time),
+                 "How long these errors take to change: their correlation falls to 1/e."),
+  };
+}
+
+std::vector<Key> source_keys() {
+  return {
+      text_key(
+          "scan.sensor", scan(&ScanConfig::sensor),
+          "Sensor of skycap scan: a preset of sim/sensors/presets, or the path of a description "
+          "(NAME.yaml), relative to the mission file."),
+      otherwise(
+          "the orbit below",
+          text_key("scan.route", scan(&ScanConfig::route),
+                   "File of the route that is flown, relative to the mission file; the same as "
+                   "--route.")),
+  };
+}
+
+std::vector<Key> carrier_keys() {
+  return {
+      choice_key(
+          "scan.crs", {"local", "utm"}, scan(&ScanConfig::crs),
+          "Coordinates of LAS and E57 files: the mission's frame, or UTM on WGS84, in the zone of "
+          "the site, which utm needs; heights are then above the EGM96 geoid if "
+          "site.geoid_undulation is known, else above the ellipsoid."),
+      number_key("scan.speed", "m/s", above(0, 100), scan(&ScanConfig::speed),
+                 "Speed along a route whose file has no times."),
+      vector_key("scan.mount.position", "m", between(-10, 10), scan(&ScanConfig::mount_position),
+                 "Where the sensor is on its carrier, whose x points forward, y left, z up."),
+      angles_key("scan.mount.rotation_deg", between(-360, 360), scan(&ScanConfig::mount_rotation),
+                 "How the sensor is turned on its carrier: about x, then y, then z."),
+  };
+}
+
+std::vector<Key> recording_keys() {
+  return {
+      vector_key("scan.lever_arm_error", "m", between(-10, 10), scan(&ScanConfig::lever_arm_error),
+                 "Error of the believed mount.position."),
+      angles_key("scan.boresight_error_deg", between(-45, 45), scan(&ScanConfig::boresight_error),
+                 "Error of the believed rotation, small angles about the carrier's axes."),
+      number_key("scan.frame_period", "s", between(1e-6, 1e5), scan(&ScanConfig::frame_period),
+                 "Time between the images of a camera, along a route that does not say where."),
+      number_key("scan.depth_unit", "m", above(0, 1), scan(&ScanConfig::depth_unit),
+                 "What one step of a 16-bit depth image stands for."),
+  };
+}
+
+}  // namespace
+
+std::vector<Key> scan_keys() {
+  return joined({source_keys(), orbit_keys(), carrier_keys(), navigation_keys(), recording_keys()});
+}
+
+}  // namespace skycap::missions::config

@@ -1,0 +1,197 @@
+#include "missions/config/vehicle_reader.h"
+
+#include <array>
+#include <optional>
+#include <span>
+
+#include "flight/motion/motion.h"
+#include "geometry/angle.h"
+#include "geometry/error.h"
+#include "missions/config/preset_files.h"
+#include "missions/support/number_text.h"
+#include "missions/support/yaml_section.h"
+
+namespace skycap::missions::config {
+namespace {
+
+using flight::MissionMode;
+using flight::Vehicle;
+
+constexpr double degree = geometry::radians_per_degree;
+
+/// A number of a description, what it may be in the file's unit, and that unit in ours.
+template <typename Owner>
+struct NumberKey {
+  const char* key;
+  double Owner::*field;
+  double least, most;
+  double unit = 1.0;
+};
+
+constexpr std::array vehicle_numbers{
+    NumberKey<Vehicle>{"radius", &Vehicle::radius, 0.01, 20},
+    NumberKey<Vehicle>{"max_speed", &Vehicle::max_speed, 0.1, 100},
+    NumberKey<Vehicle>{"max_wind", &Vehicle::max_wind, 0, 50},
+    NumberKey<Vehicle>{"gimbal_rate_deg", &Vehicle::gimbal_rate, 1, 1000, degree},
+    NumberKey<Vehicle>{"gimbal_min_deg", &Vehicle::gimbal_min, -180, 90, degree},
+    NumberKey<Vehicle>{"gimbal_max_deg", &Vehicle::gimbal_max, -90, 180, degree},
+    NumberKey<Vehicle>{"sway_speed", &Vehicle::sway_speed, 0, 10},
+    NumberKey<Vehicle>{"sway_rate_deg", &Vehicle::sway_rate, 0, 100, degree},
+    NumberKey<Vehicle>{"mass", &Vehicle::mass, 0.01, 1000},
+    NumberKey<Vehicle>{"rotor_diameter", &Vehicle::rotor_diameter, 0.01, 10},
+    NumberKey<Vehicle>{"battery_wh", &Vehicle::battery_wh, 0.1, 1e5},
+    NumberKey<Vehicle>{"endurance_min", &Vehicle::endurance_min, 0.1, 1e4},
+    NumberKey<Vehicle>{"avionics_power", &Vehicle::avionics_power, 0, 1e4},
+    NumberKey<Vehicle>{"drag_area", &Vehicle::drag_area, 0, 10},
+    NumberKey<Vehicle>{"energy_error", &Vehicle::energy_error, 0, 0.9},
+};
+
+constexpr std::array mode_numbers{
+    NumberKey<MissionMode>{"max_ascent", &MissionMode::max_ascent, 0.1, 50},
+    NumberKey<MissionMode>{"max_descent", &MissionMode::max_descent, 0.1, 50},
+    NumberKey<MissionMode>{"acceleration", &MissionMode::acceleration, 0.1, 50},
+    NumberKey<MissionMode>{"vertical_acceleration", &MissionMode::vertical_acceleration, 0.1, 50},
+    NumberKey<MissionMode>{"jerk", &MissionMode::jerk, 0.1, 500},
+    NumberKey<MissionMode>{"jerk_rise", &MissionMode::jerk_rise, 0, 5},
+    NumberKey<MissionMode>{"settle_time", &MissionMode::settle_time, 0, 60},
+    NumberKey<MissionMode>{"yaw_rate_deg", &MissionMode::yaw_rate, 1, 1000, degree},
+    NumberKey<MissionMode>{"yaw_acceleration_deg", &MissionMode::yaw_acceleration, 1, 1e4, degree},
+    NumberKey<MissionMode>{"takeoff_speed", &MissionMode::takeoff_speed, 0.1, 50},
+    NumberKey<MissionMode>{"takeoff_ramp", &MissionMode::takeoff_ramp, 0, 60},
+    NumberKey<MissionMode>{"landing_speed", &MissionMode::landing_speed, 0.05, 20},
+    NumberKey<MissionMode>{"landing_height", &MissionMode::landing_height, 0, 1000},
+    NumberKey<MissionMode>{"touchdown_time", &MissionMode::touchdown_time, 0, 60},
+};
+
+/// Reads the keys of one description; `keeps` what it does not name, or refuses that it is missing.
+class VehicleReader {
+ public:
+  VehicleReader(support::YamlSection& root, Vehicle& vehicle, bool keeps)
+      : root_(root), vehicle_(vehicle), keeps_(keeps) {}
+
+  void read() {
+    using flight::Dialect;
+    vehicle_.name = root_.text("name");
+    if (wants(root_, "dialect")) {
+      vehicle_.dialect = root_.choice<Dialect>(
+          "dialect",
+          {{"px4", Dialect::px4}, {"ardupilot", Dialect::ardupilot}, {"dji", Dialect::dji}});
+    }
+    if (vehicle_.dialect == Dialect::dji || root_.has("wpml")) read_codes();
+    read_numbers<Vehicle>(root_, vehicle_, vehicle_numbers);
+    if (wants(root_, "rotors")) vehicle_.rotors = whole_number("rotors", 1, 100);
+    if (wants(root_, "max_waypoints")) {
+      vehicle_.max_waypoints = whole_number("max_waypoints", 20, 65535);
+    }
+    read_mode();
+  }
+
+ private:
+  bool wants(support::YamlSection& section, const std::string& key) const {
+    return !keeps_ || section.has(key);
+  }
+
+  std::optional<support::YamlSection> part(const std::string& key) {
+    std::optional<support::YamlSection> section = root_.section(key);
+    if (!section && !keeps_) root_.fail_at(key, "is missing");
+    return section;
+  }
+
+  template <typename Owner>
+  void read_numbers(support::YamlSection& section, Owner& owner,
+                    std::span<const NumberKey<Owner>> keys) {
+    for (const NumberKey<Owner>& number : keys) {
+      if (!wants(section, number.key)) continue;
+      const double value = section.number(number.key);
+      check_range(section, number.key, value, number.least, number.most);
+      owner.*number.field = number.unit * value;
+    }
+  }
+
+  static void check_range(support::YamlSection& section, const std::string& key, double value,
+                          double least, double most) {
+    if (value >= least && value <= most) return;
+    section.fail_at(key, "is " + support::short_text(value) + "; it must be from " +
+                             support::short_text(least) + " to " + support::short_text(most));
+  }
+
+  int whole_number(const std::string& key, int least, int most) {
+    const double value = root_.number(key);
+    check_range(root_, key, value, least, most);
+    return root_.integer(key, least);
+  }
+
+  void read_mode() {
+    std::optional<support::YamlSection> section = part("mode");
+    if (!section) return;
+    MissionMode& mode = vehicle_.mode;
+    if (wants(*section, "law")) {
+      mode.law = section->choice<flight::LegLaw>(
+          "law", {{"s_curve", flight::LegLaw::s_curve},
+                  {"braking_distance", flight::LegLaw::braking_distance}});
+    }
+    read_numbers<MissionMode>(*section, mode, mode_numbers);
+    section->finish();
+  }
+
+  void read_codes() {
+    std::optional<support::YamlSection> section = part("wpml");
+    if (!section) {
+      if (vehicle_.wpml.drone <= 0) root_.fail_at("wpml", "is missing; DJI's vehicles have codes");
+      return;
+    }
+    flight::WpmlCodes& codes = vehicle_.wpml;
+    if (wants(*section, "version")) codes.version = section->text("version");
+    codes.drone = section->integer("drone", codes.drone);
+    codes.drone_variant = section->integer("drone_variant", codes.drone_variant);
+    codes.payload = section->integer("payload", codes.payload);
+    section->finish();
+    if (codes.drone <= 0) root_.fail_at("wpml", "must give DJI's number of the drone");
+  }
+
+  support::YamlSection& root_;
+  Vehicle& vehicle_;
+  bool keeps_;
+};
+
+}  // namespace
+
+flight::Vehicle read_vehicle(const std::string& text, const std::string& file) {
+  const support::YamlNode tree = support::parse_yaml(text, file);
+  support::YamlSection root(tree, "", file);
+  Vehicle vehicle;
+  const bool is_like_another = root.has("like");
+  if (is_like_another) {
+    const std::string preset = root.text("like");
+    if (preset.ends_with(".yaml")) root.fail_at("like", "must be the name of a preset");
+    try {
+      vehicle = find_vehicle(preset);
+    } catch (const Error& error) {
+      root.fail_at("like", error.what());
+    }
+  }
+  VehicleReader(root, vehicle, is_like_another).read();
+  root.finish();
+  if (vehicle.gimbal_min >= vehicle.gimbal_max) {
+    root.fail_at("gimbal_max_deg", "is not above gimbal_min_deg");
+  }
+  try {
+    const flight::Motion motion(vehicle, {.cruise_speed = vehicle.max_speed});
+  } catch (const Error& error) {  // what does not go together
+    root.fail_at("endurance_min", error.what());
+  }
+  return vehicle;
+}
+
+std::vector<std::string_view> vehicle_presets() {
+  std::vector<std::string_view> names;
+  for (const PresetFile& preset : vehicle_preset_files()) names.push_back(preset.name);
+  return names;
+}
+
+flight::Vehicle find_vehicle(const std::string& name_or_file) {
+  const PresetText found = preset_text("vehicle", name_or_file, vehicle_preset_files());
+  return read_vehicle(found.text, found.file);
+}
+
+}  // namespace skycap::missions::config

@@ -1,0 +1,121 @@
+#include "missions/evaluation/coverage.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <numbers>
+#include <numeric>
+
+#include "geometry/points/point_grid.h"
+
+namespace skycap::missions::evaluation {
+
+CoverageMeter::CoverageMeter(std::span<const Eigen::Vector3f> samples, double registration_distance)
+    // A ball of radius r_d then touches at most two cells on each axis. The margin is for the
+    // rounding of coordinates to cells.
+    : cell_size_(2.0 * registration_distance * (1.0 + 1e-6)),
+      squared_distance_(static_cast<float>(registration_distance * registration_distance)),
+      is_covered_(samples.size(), 0),
+      slots_(std::bit_ceil(2 * samples.size() + 1)) {
+  std::vector<Cell> cells;
+  cells.reserve(samples.size());
+  for (const Eigen::Vector3f& sample : samples) cells.push_back(cell_of(sample));
+  std::vector<std::uint32_t> order(samples.size());
+  std::iota(order.begin(), order.end(), 0U);
+  std::ranges::stable_sort(order, {}, [&](std::uint32_t i) { return cells[i]; });
+  samples_.reserve(samples.size());
+  for (const std::uint32_t i : order) {
+    Slot& slot = slot_of(cells[i]);
+    const auto place = static_cast<std::uint32_t>(samples_.size());
+    if (slot.cell == no_cell) slot = {cells[i], place, place};
+    samples_.push_back({samples[i], i});
+    ++slot.end;
+  }
+}
+
+CoverageMeter::Cell CoverageMeter::cell_at(std::int64_t x, std::int64_t y, std::int64_t z) {
+  // 21 bits an axis. Cells that share a number are merely searched together.
+  constexpr std::int64_t mask = (1 << 21) - 1;
+  return static_cast<Cell>((x & mask) << 42 | (y & mask) << 21 | (z & mask));
+}
+
+CoverageMeter::Cell CoverageMeter::cell_of(const Eigen::Vector3f& sample) const {
+  const auto cell = [&](int axis) {
+    return static_cast<std::int64_t>(std::floor(double{sample[axis]} / cell_size_));
+  };
+  return cell_at(cell(0), cell(1), cell(2));
+}
+
+CoverageMeter::Slot& CoverageMeter::slot_of(Cell cell) {
+  const std::size_t mask = slots_.size() - 1;
+  constexpr std::uint64_t golden = 0x9E3779B97F4A7C15;  // 2^64 over the golden ratio
+  std::size_t place = (cell * golden >> 32) & mask;
+  while (slots_[place].cell != cell && slots_[place].cell != no_cell) place = (place + 1) & mask;
+  return slots_[place];
+}
+
+void CoverageMeter::add(std::span<const Eigen::Vector3f> points) {
+  for (const Eigen::Vector3f& point : points) {
+    // The cell corner nearest to the point: the eight cells around it hold the whole ball.
+    const auto corner = [&](int axis) {
+      return static_cast<std::int64_t>(std::floor(double{point[axis]} / cell_size_ + 0.5));
+    };
+    const std::int64_t x = corner(0), y = corner(1), z = corner(2);
+    for (std::int64_t i = x - 1; i <= x; ++i) {
+      for (std::int64_t j = y - 1; j <= y; ++j) {
+        for (std::int64_t k = z - 1; k <= z; ++k) cover_cell(cell_at(i, j, k), point);
+      }
+    }
+  }
+}
+
+void CoverageMeter::cover_cell(Cell cell, const Eigen::Vector3f& point) {
+  Slot& slot = slot_of(cell);
+  for (std::uint32_t i = slot.begin; i < slot.end;) {
+    if (geometry::squared_distance(samples_[i].position, point) > squared_distance_) {
+      ++i;
+      continue;
+    }
+    is_covered_[samples_[i].index] = 1;
+    ++covered_;
+    samples_[i] = samples_[--slot.end];
+  }
+}
+
+double CoverageMeter::share() const {
+  if (is_covered_.empty()) return 0.0;
+  return static_cast<double>(covered_) / static_cast<double>(is_covered_.size());
+}
+
+std::optional<double> covered_share(std::span<const std::uint8_t> is_covered,
+                                    std::span<const std::uint8_t> counts) {
+  std::size_t marked = 0, covered = 0;
+  for (std::size_t i = 0; i < counts.size(); ++i) {
+    if (!counts[i]) continue;
+    ++marked;
+    covered += is_covered[i];
+  }
+  if (marked == 0) return std::nullopt;
+  return static_cast<double>(covered) / static_cast<double>(marked);
+}
+
+double marked_share(std::span<const std::uint8_t> marks) {
+  if (marks.empty()) return 0.0;
+  const auto marked = marks.size() - static_cast<std::size_t>(std::ranges::count(marks, 0));
+  return static_cast<double>(marked) / static_cast<double>(marks.size());
+}
+
+std::vector<Eigen::Vector3d> fibonacci_directions(std::size_t count) {
+  const double golden_angle = std::numbers::pi * (3.0 - std::sqrt(5.0));
+  std::vector<Eigen::Vector3d> directions;
+  directions.reserve(count);
+  for (std::size_t i = 0; i < count; ++i) {
+    const double z = 1.0 - (2.0 * static_cast<double>(i) + 1.0) / static_cast<double>(count);
+    const double radius = std::sqrt(1.0 - z * z);
+    const double azimuth = golden_angle * static_cast<double>(i);
+    directions.emplace_back(radius * std::cos(azimuth), radius * std::sin(azimuth), z);
+  }
+  return directions;
+}
+
+}  // namespace skycap::missions::evaluation

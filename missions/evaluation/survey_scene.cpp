@@ -1,0 +1,295 @@
+#include "missions/evaluation/survey_scene.h"
+
+#include <algorithm>
+#include <array>
+#include <random>
+#include <span>
+#include <sstream>
+#include <string>
+#include <utility>
+
+#include "geometry/error.h"
+#include "geometry/io/file.h"
+#include "missions/config/mission_flight.h"
+#include "missions/config/mission_keys.h"
+#include "missions/config/mission_priors.h"
+#include "missions/config/opening_flight.h"
+#include "missions/config/site.h"
+#include "missions/config/survey_sensor.h"
+#include "missions/scene/model_store.h"
+#include "missions/scene/scene_source.h"
+#include "missions/support/sha256.h"
+
+namespace skycap::missions::evaluation {
+namespace {
+
+using Eigen::Vector3d;
+
+constexpr std::uint64_t sample_seed = 1;  // coverage is measured by the same samples in all runs
+constexpr std::uint64_t ceiling_seed = 1;
+
+/// Of the triangles of placed_model(); empty if all are matt.
+std::vector<sim::Surface> surfaces_of(const config::Mission& mission,
+                                      const std::filesystem::path& folder) {
+  if (config::is_truth_prior(mission)) return {};
+  const std::vector<sim::Surface> one = scene::load_surfaces(mission.scene, folder);
+  std::vector<sim::Surface> all;
+  for (std::size_t i = 0; i <= mission.scene.copies.size(); ++i) {
+    all.insert(all.end(), one.begin(), one.end());
+  }
+  return all;
+}
+
+sim::Scene scene_of(const geometry::Mesh& model, const config::Mission& mission,
+                    const std::filesystem::path& folder) {
+  if (mission.sensor.scanner) {  // what a laser measures depends on the surfaces' reflectances
+    return scene::reflecting_scene(mission, folder).scene(mission.threads);
+  }
+  geometry::Mesh mesh = model;
+  geometry::append(mesh, scene::surroundings_of(mission, geometry::bounding_box(model)));
+  std::vector<sim::Surface> surfaces = surfaces_of(mission, folder);
+  if (!surfaces.empty()) surfaces.resize(mesh.triangles.size(), sim::Surface::matt);
+  return sim::Scene(std::array{sim::ScenePart{mesh, {}, {}, surfaces}}, mission.threads);
+}
+
+Vector3d uniform_direction(std::mt19937_64& random) {
+  std::normal_distribution<double> normal;
+  for (;;) {
+    // From z to x, one a declarator: arguments of a call are drawn in an order that is each
+    // compiler's own.
+    const double z = normal(random), y = normal(random), x = normal(random);
+    const Vector3d direction(x, y, z);
+    if (direction.norm() > 1e-3) return direction.normalized();
+  }
+}
+
+ViewSphere sphere_around(std::span<const Eigen::Vector3f> surface, double view_distance) {
+  Vector3d centroid = Vector3d::Zero();
+  for (const auto& point : surface) centroid += point.cast<double>();
+  centroid /= static_cast<double>(surface.size());
+  double mean_distance = 0.0;
+  for (const auto& point : surface) mean_distance += (point.cast<double>() - centroid).norm();
+  mean_distance /= static_cast<double>(surface.size());
+  return {centroid, view_distance + mean_distance};
+}
+
+/// Marks of samples in a file: a digit for each. Nothing if it does not hold so many.
+std::optional<std::vector<std::uint8_t>> marks_in_file(const std::filesystem::path& file,
+                                                       std::size_t count) {
+  std::error_code ignored;
+  if (!std::filesystem::is_regular_file(file, ignored)) return std::nullopt;
+  const std::string digits = geometry::read_file(file);
+  const auto is_mark = [](char digit) { return digit == '0' || digit == '1'; };
+  if (digits.size() != count || !std::ranges::all_of(digits, is_mark)) return std::nullopt;
+  std::vector<std::uint8_t> marks;
+  for (const char digit : digits) marks.push_back(digit == '1' ? 1 : 0);
+  return marks;
+}
+
+/// Keeps what was worked out, if that can be: without the file it is worked out again next time.
+void keep(const std::filesystem::path& file, const std::string& bytes) {
+  try {
+    geometry::write_file(file, bytes);
+  } catch (const Error&) {
+    return;
+  }
+}
+
+void keep_marks(const std::filesystem::path& file, const std::vector<std::uint8_t>& marks) {
+  std::string digits;
+  for (const std::uint8_t mark : marks) digits += mark != 0 ? '1' : '0';
+  keep(file, digits);
+}
+
+}  // namespace
+
+geometry::Mesh placed_model(const config::Mission& mission, const std::filesystem::path& folder) {
+  if (config::is_truth_prior(mission)) return config::prior_truth(mission);
+  const config::SceneConfig& scene = mission.scene;
+  geometry::Mesh model = scene::load_model(scene, folder);
+  scene::place_model(scene, model);
+  return scene.copies.empty() ? model : scene::with_copies(scene, model);
+}
+
+SurveyScene::SurveyScene(const config::Mission& mission, const std::filesystem::path& folder,
+                         const std::filesystem::path& kept)
+    : mission_(mission),
+      model_(placed_model(mission, folder)),
+      scene_(scene_of(model_, mission, folder)),
+      samples_(geometry::sample_surface(model_, mission.evaluation.samples, sample_seed)),
+      view_distance_(config::view_distance_of(mission)),
+      view_sphere_(sphere_around(samples_.points, view_distance_)),
+      radius_(mission.evaluation.radius.value_or(config::view_limits(mission).stand_off)),
+      kept_(kept) {}
+
+const ReachableSpace& SurveyScene::reachable() const {
+  std::call_once(lazily_->reached_once, [&] {
+    std::error_code ignored;
+    if (std::filesystem::is_regular_file(kept_, ignored)) {
+      lazily_->reached = ReachableSpace::read(geometry::read_file(kept_));
+    }
+    if (lazily_->reached) return;
+    lazily_->reached = reachable_space();
+    if (!kept_.empty()) keep(kept_, lazily_->reached->bytes());
+  });
+  return *lazily_->reached;
+}
+
+const geometry::MeshDistance& SurveyScene::truth() const {
+  std::call_once(lazily_->distance_once, [&] {
+    geometry::Mesh all = model_;
+    geometry::append(all, config::prior_neighbours(mission_));
+    lazily_->distance.emplace(all, mission_.threads);
+  });
+  return *lazily_->distance;
+}
+
+ReachableSpace SurveyScene::reachable_space() const {
+  const survey::ViewLimits limits = config::view_limits(mission_);
+  return {truth(),
+          geometry::bounding_box(model_),
+          {.radius = radius_,
+           .least_height = limits.least_height,
+           .most_height = limits.most_height,
+           .start = mission_.start.position,
+           .threads = mission_.threads},
+          [this](const Vector3d& place, const Vector3d& reached) {
+            return is_in_sight(place, reached);
+          }};
+}
+
+bool SurveyScene::is_in_sight(const Vector3d& a, const Vector3d& b) const {
+  return !scene_.is_blocked(a, b);
+}
+
+bool SurveyScene::is_reachable(const Vector3d& place) const {
+  return reachable().leads_to(place, [this](const Vector3d& from, const Vector3d& reached) {
+    return is_in_sight(from, reached);
+  });
+}
+
+geometry::View SurveyScene::first_view(std::uint64_t seed) const {
+  config::Mission trial = mission_;
+  trial.seed = seed;
+  const std::vector<geometry::View> opening = config::opening_views(trial);
+  if (!opening.empty()) return opening.front();
+  if (const auto start = config::given_start(mission_)) {
+    if (!reachable().is_empty()) return *start;
+    throw Error(ErrorKind::bad_config,
+                "start.position is inside the model, or so enclosed by it that a ball of " +
+                    config::to_text(radius_ + reachable().cell()) +
+                    " m does not fit; move it, or make evaluation.radius less");
+  }
+
+  const survey::ViewLimits limits = config::view_limits(mission_);
+  std::mt19937_64 random(seed);
+  constexpr int most_attempts = 10'000;
+  for (int attempt = 0; attempt < most_attempts; ++attempt) {
+    const Vector3d position = view_sphere_.centre + view_sphere_.radius * uniform_direction(random);
+    geometry::View view = geometry::look_at(position, view_sphere_.centre);
+    if (limits.allow(view) && config::is_in_known_airspace(mission_, position) &&
+        is_reachable(position)) {
+      return view;
+    }
+  }
+  throw Error(ErrorKind::bad_config,
+              "limits.ground_clearance, the gimbal's pitch, evaluation.radius, the site and "
+              "flight.unknown_box leave no place for a random start at the view distance of " +
+                  config::to_text(view_distance_) + " m; loosen them or give start.position");
+}
+
+Admissible SurveyScene::admissible() const {
+  survey::ViewLimits limits = config::view_limits(mission_);
+  // A surface need not be in the middle of the image.
+  const double half_fov = 0.5 * mission_.sensor.camera.camera.vertical_fov;
+  limits.least_pitch -= half_fov;
+  limits.most_pitch += half_fov;
+  const auto joins = [this](const Vector3d& place, const Vector3d& reached) {
+    return radius_ > 0.0 ? truth().keeps(place, reached, radius_) : is_in_sight(place, reached);
+  };
+  // Whatever leads there keeps the radius already, from the model: neighbours are beyond its box.
+  const bool asks_distance = limits.stand_off > radius_ || mission_.scene.neighbours;
+  const double least = std::max(limits.stand_off, radius_);
+  const auto allows = [this, limits, joins, asks_distance, least](const geometry::View& view) {
+    return limits.allow(view) && reachable().leads_to(view.position, joins) &&
+           (!asks_distance || truth().distance(view.position) >= least);
+  };
+  return {.view_distance = view_distance_,
+          .allows = allows,
+          .directions = mission_.evaluation.visible_directions,
+          .clearance = 0.01 * mission_.evaluation.registration_distance};
+}
+
+std::vector<std::uint8_t> SurveyScene::visible(unsigned threads,
+                                               const std::stop_token& stop) const {
+  const std::filesystem::path cached = scene::user_cache() / "visible" / ceiling_key();
+  if (auto known = marks_in_file(cached, samples_.points.size())) return std::move(*known);
+  std::vector<std::uint8_t> marks =
+      visible_samples(samples_.points, scene_, admissible(), threads, stop);
+  // Nothing comes back from glass and mirrors.
+  for (std::size_t i = 0; i < marks.size(); ++i) {
+    if (scene_.surface(samples_.triangles[i]) != sim::Surface::matt) marks[i] = 0;
+  }
+  if (!stop.stop_requested()) keep_marks(cached, marks);
+  return marks;
+}
+
+std::optional<std::vector<std::uint8_t>> SurveyScene::attainable(
+    const std::vector<std::uint8_t>& is_visible, unsigned threads,
+    const std::stop_token& stop) const {
+  if (mission_.evaluation.ceiling_views == 0) return std::nullopt;
+  const std::filesystem::path cached = scene::user_cache() / "ceilings" / ceiling_key();
+  if (auto known = marks_in_file(cached, samples_.points.size())) return known;
+
+  CeilingConfig config;
+  config.views = mission_.evaluation.ceiling_views;
+  config.spacing = mission_.planner.see.effective_spacing();
+  config.registration_distance = mission_.evaluation.registration_distance;
+  if (mission_.planner.see.scene_box) config.box = *mission_.planner.see.scene_box;
+  config.seed = ceiling_seed;
+  const config::SurveySensor sensor(mission_.sensor, mission_.sensor.camera.noise.seed);
+  const auto take_scan = [&](const geometry::View& view, std::uint64_t frame,
+                             geometry::Scan recycled) {
+    return sensor.scan(scene_, view, frame, threads, std::move(recycled));
+  };
+  std::vector<std::uint8_t> marks = attainable_samples(samples_.points, is_visible, scene_,
+                                                       take_scan, admissible(), config, stop);
+  if (stop.stop_requested()) return std::nullopt;
+  keep_marks(cached, marks);
+  return marks;
+}
+
+std::string SurveyScene::ceiling_key() const {
+  std::ostringstream inputs;
+  inputs.exceptions(std::ios::badbit);  // else text is lost without a word where memory is missing
+  inputs.precision(17);
+  inputs << "ceiling 4\n" << view_distance_ << " " << mission_.planner.see.effective_spacing();
+  for (const config::Key& key : config::mission_keys()) {
+    if (!key.path.starts_with("scene.") && !key.path.starts_with("sensor.") &&
+        !key.path.starts_with("evaluation.") && !key.path.starts_with("planner.scene_box") &&
+        !key.path.starts_with("site.") && key.path != "start.position" &&
+        key.path != "limits.ground_clearance" && key.path != "limits.stand_off" &&
+        !key.path.ends_with("_pitch_deg") && key.path != "flight.vehicle" &&
+        key.path != "flight.clearance") {
+      continue;
+    }
+    const auto value = key.get(mission_);
+    inputs << "\n" << key.path << " " << (value ? config::to_text(*value) : "-");
+  }
+  // Terrain is the ground that hides things, and bounds the heights of views.
+  for (const std::string& digest : config::priors_of(mission_).digests) inputs << "\n" << digest;
+  // What a vehicle's file says, not its name alone.
+  const survey::ViewLimits limits = config::view_limits(mission_);
+  inputs << "\n" << limits.least_pitch << " " << limits.most_pitch << " " << limits.stand_off;
+  // The surface's samples stand for the mesh that was found under the model's name.
+  inputs << "\n" << support::sha256(std::as_bytes(std::span(samples_.points)));
+  // So do their surfaces for what a file of materials says.
+  for (std::size_t i = 0; i < samples_.triangles.size(); ++i) {
+    const sim::Surface surface = scene_.surface(samples_.triangles[i]);
+    if (surface != sim::Surface::matt) inputs << "\n" << i << " " << static_cast<int>(surface);
+  }
+  const std::string text = inputs.str();
+  return support::sha256(std::as_bytes(std::span(text)));
+}
+
+}  // namespace skycap::missions::evaluation

@@ -1,0 +1,82 @@
+#include "missions/evaluation/tally_file.h"
+
+#include <bit>
+#include <fstream>
+#include <system_error>
+
+#include <nlohmann/json.hpp>
+
+#include "geometry/error.h"
+#include "geometry/io/file.h"
+#include "geometry/io/json.h"
+
+namespace skycap::missions::evaluation {
+namespace {
+
+namespace fs = std::filesystem;
+using Json = nlohmann::ordered_json;
+
+constexpr const char* piece_name = "piece.json";
+constexpr const char* distances_name = "distances.bin";
+
+static_assert(std::endian::native == std::endian::little);
+
+Json parsed(const fs::path& folder) {
+  return geometry::parse_json<Json>(geometry::read_file(folder / piece_name));
+}
+
+}  // namespace
+
+void stage_tally(const std::string& identity, const CloudTally& tally,
+                 geometry::OutputFolder& folder) {
+  std::string covered;
+  for (const std::uint8_t mark : tally.is_covered) covered += mark != 0 ? '1' : '0';
+  const Json json{{"of", identity},
+                  {"points", tally.distances.distances.size()},
+                  {"beside", tally.distances.beside},
+                  {"sum", tally.distances.sum.all_digits()},
+                  {"squares", tally.distances.squares.all_digits()},
+                  {"covered", covered}};
+  const std::vector<float>& distances = tally.distances.distances;
+  folder.write(distances_name,
+               {reinterpret_cast<const char*>(distances.data()), distances.size() * sizeof(float)});
+  folder.write(piece_name, json.dump() + "\n");
+}
+
+bool has_tally(const fs::path& folder, const std::string& identity) {
+  std::error_code missing;
+  if (!fs::is_regular_file(folder / piece_name, missing)) return false;
+  try {
+    return parsed(folder).at("of") == Json(identity);
+  } catch (const Json::exception&) {
+    return false;
+  } catch (const Error&) {  // it is made again
+    return false;
+  }
+}
+
+CloudTally read_tally(const fs::path& folder) {
+  try {
+    const Json json = parsed(folder);
+    CloudTally tally;
+    tally.distances.sum = ExactSum(json.at("sum").get<ExactSum::Digits>());
+    tally.distances.beside = json.at("beside").get<std::uint64_t>();
+    tally.distances.squares = ExactSum(json.at("squares").get<ExactSum::Digits>());
+    for (const char mark : json.at("covered").get<std::string>()) {
+      tally.is_covered.push_back(mark == '1' ? 1 : 0);
+    }
+    std::vector<float>& distances = tally.distances.distances;
+    distances.resize(json.at("points").get<std::size_t>());
+    std::ifstream file(folder / distances_name, std::ios::binary);
+    if (!file.read(reinterpret_cast<char*>(distances.data()),
+                   static_cast<std::streamsize>(distances.size() * sizeof(float)))) {
+      throw Error(ErrorKind::bad_file,
+                  (folder / distances_name).string() + ": is not as long as it was written");
+    }
+    return tally;
+  } catch (const Json::exception& failure) {
+    throw Error(ErrorKind::bad_file, (folder / piece_name).string() + ": " + failure.what());
+  }
+}
+
+}  // namespace skycap::missions::evaluation

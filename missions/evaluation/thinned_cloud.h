@@ -1,0 +1,34 @@
+/// Points at a least spacing, as every planner stores them.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include <Eigen/Core>
+#include <Eigen/Geometry>
+
+#include "geometry/points/spaced_points.h"
+
+namespace skycap::missions::evaluation {
+
+class ThinnedCloud {
+ public:
+  explicit ThinnedCloud(double spacing) : kept_(spacing) {}
+
+  /// Stores those of `points` that are in the box, if it is not empty, and farther than the spacing
+  /// from all stored ones; gives them back.
+  std::vector<Eigen::Vector3f> store(std::span<const Eigen::Vector3f> points,
+                                     const Eigen::AlignedBox3d& box) {
+    std::vector<Eigen::Vector3f> stored;
+    for (const Eigen::Vector3f& point : points) {
+      if (!box.isEmpty() && !box.contains(point.cast<double>())) continue;
+      if (kept_.keep(point)) stored.push_back(point);
+    }
+    return stored;
+  }
+
+ private:
+  geometry::SpacedPoints kept_;
+};
+
+}  // namespace skycap::missions::evaluation

@@ -1,0 +1,58 @@
+#include "missions/online/guided/link_watch.h"
+
+#include <algorithm>
+
+#include <fmt/format.h>
+
+namespace skycap::missions::online {
+namespace {
+
+namespace mavlink = flight::mavlink;
+
+/// EKF_STATUS_FLAGS: attitude, velocity, place on the Earth and height are known; and none of those
+/// that say that it is only guessed.
+constexpr std::uint16_t estimates_needed = 1 | 2 | 4 | 16 | 32, guesses = 128 | 1024;
+
+constexpr double heartbeat_patience = 5.0;  ///< heartbeats come once a second
+constexpr double position_patience = 1.5;   ///< positions come ten times a second
+constexpr double silence_patience = 0.75;   ///< something comes with each of them
+
+}  // namespace
+
+bool is_sure_of_place(const mavlink::VehicleState& state) {
+  return state.estimator() && (*state.estimator() & estimates_needed) == estimates_needed &&
+         (*state.estimator() & guesses) == 0;
+}
+
+Eigen::Vector3d place_of(const mavlink::VehicleState& state, const FlightFrame& frame) {
+  const mavlink::HeardPosition& heard = state.position().value();
+  return frame.to_mission({heard.latitude_deg, heard.longitude_deg, heard.height_above_home});
+}
+
+MaybeTrouble watch_link(const mavlink::VehicleState& state, std::uint32_t mode, double now) {
+  const mavlink::HeardHeartbeat& heartbeat = state.heartbeat().value();
+  if (!heartbeat.is_armed) return Trouble{TroubleKind::pilot, "the vehicle was disarmed"};
+  if (heartbeat.mode != mode) {
+    return Trouble{TroubleKind::pilot, fmt::format("somebody else has control: the vehicle is in "
+                                                   "mode {}, which was not set from here",
+                                                   heartbeat.mode)};
+  }
+  const double silence = now - state.last_heard().value();
+  const double without_beat = now - heartbeat.time;
+  const double age = now - state.position().value().time;
+  // What else it said just after its last position makes a silence no shorter.
+  const bool is_silent = age > position_patience && silence > silence_patience;
+  if (is_silent || without_beat > heartbeat_patience) {
+    return Trouble{TroubleKind::link, fmt::format("the link is lost: the vehicle was not heard for "
+                                                  "{:.1f} s",
+                                                  std::max(silence, without_beat))};
+  }
+  if (age > position_patience) {
+    return Trouble{TroubleKind::position,
+                   fmt::format("the vehicle's position is {:.1f} s old", age)};
+  }
+  if (is_sure_of_place(state)) return std::nullopt;
+  return Trouble{TroubleKind::position, "the vehicle is not sure any more where it is"};
+}
+
+}  // namespace skycap::missions::online

@@ -1,0 +1,80 @@
+#include "missions/online/live/kept_scan.h"
+
+#include <array>
+#include <bit>
+#include <cstring>
+#include <limits>
+#include <span>
+#include <vector>
+
+#include "geometry/error.h"
+#include "geometry/io/file.h"
+#include "geometry/io/ply.h"
+#include "missions/support/sha256.h"
+
+namespace skycap::missions::online {
+
+static_assert(std::endian::native == std::endian::little, "the file is written by copying bytes");
+
+std::string kept_scan(const geometry::Scan& scan) {
+  const bool is_organised = !scan.pixels.empty();
+  std::string bytes = "ply\nformat binary_little_endian 1.0\nelement vertex " +
+                      std::to_string(scan.points.size()) +
+                      "\nproperty float x\nproperty float y\nproperty float z\n" +
+                      (is_organised ? "property uint pixel\n" : "") + "end_header\n";
+  constexpr std::size_t point_size = 3 * sizeof(float), pixel_size = sizeof(std::uint32_t);
+  const std::size_t row = point_size + (is_organised ? pixel_size : 0);
+  std::size_t at = bytes.size();
+  bytes.resize(at + row * scan.points.size());
+  for (std::size_t i = 0; i < scan.points.size(); ++i, at += row) {
+    std::memcpy(&bytes[at], scan.points[i].data(), point_size);
+    if (is_organised) std::memcpy(&bytes[at + point_size], &scan.pixels[i], pixel_size);
+  }
+  return bytes;
+}
+
+geometry::Scan parse_kept_scan(std::string_view name, std::string_view bytes) {
+  geometry::PlyReader reader(name, bytes);
+  constexpr std::array<std::string_view, 4> wanted{"x", "y", "z", "pixel"};
+  const auto fail = [&](const std::string& what) {
+    throw Error(ErrorKind::bad_file, std::string(name) + ": " + what);
+  };
+  if (reader.elements().size() != 1) fail("is not a scan of a survey");
+  const geometry::PlyTable table = reader.read_element(wanted);
+  const std::vector<double>&x = table.columns[0], &y = table.columns[1], &z = table.columns[2],
+        &pixels = table.columns[3];
+  if (y.size() != x.size() || z.size() != x.size() ||
+      (!pixels.empty() && pixels.size() != x.size())) {
+    fail("is not a scan of a survey");
+  }
+  geometry::Scan scan;
+  scan.points.reserve(x.size());
+  for (std::size_t i = 0; i < x.size(); ++i) {
+    scan.points.push_back(Eigen::Vector3d(x[i], y[i], z[i]).cast<float>());
+  }
+  for (const double pixel : pixels) {
+    if (!(pixel >= 0.0 && pixel <= std::numeric_limits<std::uint32_t>::max())) {
+      fail("has a pixel that is no number of one");
+    }
+    scan.pixels.push_back(static_cast<std::uint32_t>(pixel));
+  }
+  return scan;
+}
+
+std::string digest_of(std::string_view bytes) {
+  return support::sha256(std::as_bytes(std::span(bytes)));
+}
+
+geometry::Scan read_kept_scan(const std::filesystem::path& file, const std::string& sha256) {
+  constexpr std::size_t largest = std::size_t{384} << 20;  // [byte]
+  const std::string bytes = geometry::read_file(file, largest);
+  if (digest_of(bytes) != sha256) {
+    throw Error(ErrorKind::bad_file,
+                file.string() +
+                    ": is damaged (its digest is not the one that the journal has); restore it "
+                    "from a copy");
+  }
+  return parse_kept_scan(file.string(), bytes);
+}
+
+}  // namespace skycap::missions::online

@@ -1,0 +1,186 @@
+#include "missions/online/live/live_journal.h"
+
+#include <cmath>
+#include <filesystem>
+#include <utility>
+
+#include <nlohmann/json.hpp>
+
+#include "geometry/angle.h"
+#include "geometry/error.h"
+#include "geometry/io/json.h"
+#include "geometry/place/world.h"
+#include "missions/config/journal_text.h"
+#include "missions/session/survey_record.h"
+#include "missions/support/json_text.h"
+
+namespace skycap::missions::online {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json json_of(const std::optional<geometry::View>& view) {
+  if (!view) return {};
+  return {{"position", support::json_of(view->position)},
+          {"direction", support::json_of(view->direction)}};
+}
+
+PoseFinding parse_finding(const Json& json) {
+  PoseFinding finding{.matches = json.at("matches").get<std::size_t>(),
+                      .error = json.at("error_m").get<double>(),
+                      .shift = json.at("shift_m").get<double>(),
+                      .turn = json.at("turn").get<double>(),
+                      .seen_through = json.at("seen_through").get<double>(),
+                      .unobservable = json.at("unobservable").get<int>(),
+                      .is_checked = json.at("checked").get<bool>(),
+                      .is_wrong = json.at("set_aside").get<bool>(),
+                      .correction = {}};
+  if (json.contains("correction")) {
+    finding.correction =
+        parse_pose(json["correction"].get<std::vector<double>>(), "its correction");
+  }
+  return finding;
+}
+
+/// Whole, with the turn as it is.
+Json journal_json(const PoseFinding& finding) {
+  Json json = finding_json(finding);
+  json["turn"] = finding.turn;
+  if (finding.correction) json["correction"] = pose_json(*finding.correction);
+  return json;
+}
+
+ScanRecord parse_scan(const Json& json) {
+  ScanRecord scan{
+      .id = json.at("id").get<std::string>(),
+      .file = json.at("file").get<std::string>(),
+      .sha256 = json.at("sha256").get<std::string>(),
+      .world_from_sensor = parse_pose(json.at("pose").get<std::vector<double>>(), "its pose"),
+      .pose = {},
+      .is_on_way = json.value("on_way", false)};
+  if (json.contains("found")) scan.pose = parse_finding(json["found"]);
+  const std::filesystem::path file = scan.file;
+  if (file.is_absolute() || file.lexically_normal().string().starts_with("..")) {
+    throw Error(ErrorKind::bad_file, "its scan is outside of the folder");
+  }
+  return scan;
+}
+
+ProposalRecord parse_proposal(const Json& json) {
+  ProposalRecord proposal;
+  if (const Json& view = json.at("view"); !view.is_null()) {
+    proposal.view = {support::vector_of(view.at("position")),
+                     support::vector_of(view.at("direction"))};
+  }
+  if (const Json& end = json.at("end"); !end.is_null()) {
+    proposal.end = session::stop_reason_named(end.get<std::string>());
+  }
+  proposal.reach = session::parse_reach(json.at("reach"));
+  return proposal;
+}
+
+void add_record(const Json& json, std::vector<LiveEvent>& events) {
+  const bool follows = !events.empty() && !events.back().proposal && !events.back().is_rejected &&
+                       !events.back().is_on_way();
+  if (json.contains("scan") && !follows) {
+    events.push_back({.scan = parse_scan(json["scan"])});
+  } else if (json.contains("refusal") && !follows) {
+    events.push_back({.refusal = json["refusal"].get<std::string>()});
+  } else if (json.contains("rejected") && follows) {
+    events.back().is_rejected = true;
+  } else if (json.contains("proposal") && follows) {
+    events.back().proposal = parse_proposal(json["proposal"]);
+  } else {
+    throw Error(ErrorKind::bad_file, "it is no scan, refusal, proposal or rejection in its place");
+  }
+}
+
+}  // namespace
+
+std::string text_of(const ScanRecord& scan) {
+  Json json{{"id", scan.id},
+            {"file", scan.file},
+            {"sha256", scan.sha256},
+            {"pose", pose_json(scan.world_from_sensor)}};
+  if (scan.pose) json["found"] = journal_json(*scan.pose);
+  if (scan.is_on_way) json["on_way"] = true;
+  return config::journal_line({{"scan", std::move(json)}});
+}
+
+std::string refusal_text(const std::string& reason) {
+  return config::journal_line({{"refusal", reason}});
+}
+
+std::string rejection_text(const std::string& reason) {
+  return config::journal_line({{"rejected", reason}});
+}
+
+std::string text_of(const ProposalRecord& proposal) {
+  return config::journal_line(
+      {{"proposal",
+        {{"view", json_of(proposal.view)},
+         {"end", proposal.end ? Json(session::name_of(*proposal.end)) : Json()},
+         {"reach", session::reach_json(proposal.reach)}}}});
+}
+
+std::vector<LiveEvent> events_of(const std::vector<std::string>& records, const std::string& file) {
+  std::vector<LiveEvent> events;
+  for (std::size_t i = 1; i < records.size(); ++i) {
+    const auto fail = [&](const std::string& what) {
+      throw Error(ErrorKind::bad_file,
+                  std::string(file).append(": line ").append(std::to_string(i + 1)) +
+                      " cannot be used: " + what);
+    };
+    try {
+      add_record(geometry::parse_json<Json>(records[i]), events);
+    } catch (const Json::exception& failure) {
+      fail(failure.what());
+    } catch (const Error& failure) {
+      fail(failure.what());
+    }
+  }
+  return events;
+}
+
+Json finding_json(const PoseFinding& finding) {
+  return {{"set_aside", finding.is_wrong},
+          {"corrected", finding.correction.has_value()},
+          {"checked", finding.is_checked},
+          {"matches", finding.matches},
+          {"error_m", finding.error},
+          {"shift_m", finding.shift},
+          {"turn_deg", finding.turn / geometry::radians_per_degree},
+          {"unobservable", finding.unobservable},
+          {"seen_through", finding.seen_through}};
+}
+
+Json pose_json(const Eigen::Isometry3d& pose) {
+  Json numbers = Json::array();
+  for (int row = 0; row < 3; ++row) {
+    for (int column = 0; column < 4; ++column) numbers.push_back(pose(row, column));
+  }
+  return numbers;
+}
+
+Eigen::Isometry3d parse_pose(const std::vector<double>& numbers, const std::string& what) {
+  const auto refuse = [&](const std::string& why) {
+    throw Error(ErrorKind::bad_file, what + " " + why);
+  };
+  if (numbers.size() != 12) refuse("must have twelve numbers, of [rotation | position] by rows");
+  Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
+  for (int i = 0; i < 12; ++i) pose(i / 4, i % 4) = numbers[static_cast<std::size_t>(i)];
+  const Eigen::Matrix3d turn = pose.linear();
+  const double stretch = (turn * turn.transpose() - Eigen::Matrix3d::Identity()).norm();
+  constexpr double rounding = 1e-9, sloppiness = 1e-2;
+  if (!(stretch < sloppiness && turn.determinant() > 0.0)) {
+    refuse("must turn without stretching or mirroring");
+  }
+  // Trackers let rotations drift; ours stay as they are, to the last bit.
+  if (stretch > rounding) {
+    pose.linear() = Eigen::Quaterniond(turn).normalized().toRotationMatrix();
+  }
+  geometry::require_place(pose.translation(), what);
+  return pose;
+}
+
+}  // namespace skycap::missions::online

@@ -1,0 +1,395 @@
+#include "missions/online/live/live_survey.h"
+
+#include <algorithm>
+#include <cstdint>
+#include <limits>
+#include <map>
+#include <span>
+#include <utility>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "geometry/error.h"
+#include "geometry/io/file.h"
+#include "geometry/io/record_log.h"
+#include "geometry/parallel.h"
+#include "geometry/points/usable_scan.h"
+#include "missions/config/journal_text.h"
+#include "missions/online/live/kept_scan.h"
+#include "missions/online/live/live_journal.h"
+#include "missions/session/mission_planner.h"
+
+namespace skycap::missions::online {
+namespace {
+
+namespace fs = std::filesystem;
+using Eigen::Vector3d;
+
+constexpr const char* journal_name = "live.journal";
+constexpr const char* scans_name = "scans";
+
+fs::path made_folder(const fs::path& folder) {
+  std::error_code failure;
+  fs::create_directories(folder / scans_name, failure);
+  if (!failure) return folder;
+  throw Error(ErrorKind::bad_file, folder.string() + ": cannot be made (" + failure.message() +
+                                       "); name a folder you may write to");
+}
+
+/// `sha256` is that of the scan as it is kept.
+std::string id_of(const std::string& sha256, const Eigen::Isometry3d& world_from_sensor,
+                  const std::optional<PoseCovariance>& covariance) {
+  std::string text = sha256 + pose_json(world_from_sensor).dump();
+  if (covariance) text += nlohmann::ordered_json(covariance->triangle()).dump();
+  return digest_of(text);
+}
+
+bool is_same(const ProposalRecord& a, const ProposalRecord& b) { return text_of(a) == text_of(b); }
+
+}  // namespace
+
+struct LiveSurvey::Impl {
+  Impl(const config::Mission& given, const fs::path& place,
+       const std::optional<geometry::View>& begin, unsigned thread_count)
+      : mission(given),
+        folder(made_folder(place)),
+        first_view(begin),
+        threads(thread_count),
+        log(folder / journal_name) {
+    const std::string identity = config::identity_text(mission, {{"surface", "live"}});
+    if (log.records().empty()) {
+      log.append(identity);
+    } else {
+      config::require_same_survey(log.file().string(), log.records().front(), identity,
+                                  "name another folder");
+    }
+    events = events_of(log.records(), log.file().string());
+    replay();
+  }
+
+  void begin() {
+    if (mission.live.checks_poses || mission.live.registers) {
+      poses.emplace(mission.planner.see.resolution_radius, mission.live.registers);
+    }
+    remembered = 0;
+    numbers.clear();
+    taken.clear();
+    set_aside = 0;
+    guide = std::make_unique<session::MissionPlanner>(mission, first_view, threads);
+    survey::SurveyPorts ports = guide->ports();
+    if (ports.can_reach) {
+      ports.can_reach = [this, can_reach = std::move(ports.can_reach)](const Vector3d&,
+                                                                       const geometry::View& to) {
+        return can_reach(departure, to);
+      };
+      ports.can_reach = reach.remembering(std::move(ports.can_reach), guide->flight());
+    }
+    steps = std::make_unique<survey::SurveySteps>(guide->planner(), guide->limits(), ports);
+    proposal = {.number = 0, .view = first_view, .way = {}, .end = {}, .pose = {}};
+    if (guide->flight() != nullptr) proposal.way = guide->flight()->way();
+  }
+
+  ScanNumber next_number(bool is_on_way) const {
+    if (!is_on_way) return {steps->views().size()};
+    return {steps->views().size(), steps->passed()};
+  }
+
+  /// Where the way from a scan begins: at the view that was proposed, if the vehicle is as near to
+  /// it as the errors that the clearance already holds let it be.
+  Vector3d departure_after(const geometry::Scan& scan) const {
+    const Vector3d place = scan.sensor_position();
+    const double errors = mission.flight.position_error + mission.flight.tracking_error;
+    const bool is_there = proposal.view && (proposal.view->position - place).norm() <= errors;
+    return is_there ? proposal.view->position : place;
+  }
+
+  void replay() {
+    begin();
+    for (LiveEvent& event : events) {
+      if (event.is_rejected) continue;
+      const std::optional<ProposalRecord> known = event.proposal;
+      if (!happen(event, event.scan ? kept(*event.scan) : geometry::Scan{})) {
+        catch_up();
+        continue;
+      }
+      if (event.is_on_way()) continue;
+      if (!known) {  // a kill came before it was written down
+        write_down(text_of(*event.proposal));
+      } else if (!is_same(*known, *event.proposal)) {
+        throw Error(ErrorKind::bad_file,
+                    log.file().string() + ": proposal " + std::to_string(proposal.number) +
+                        " comes out otherwise than it was written down; use the program that the "
+                        "survey was begun with");
+      }
+    }
+  }
+
+  geometry::Scan kept(const ScanRecord& record) const {
+    geometry::Scan scan = read_kept_scan(folder / record.file, record.sha256);
+    scan.world_from_sensor = record.world_from_sensor;
+    try {
+      geometry::require_usable(scan, mission.sensor.camera.camera);
+    } catch (const Error& failure) {
+      throw Error(ErrorKind::bad_file,
+                  (folder / record.file).string() + ": cannot be used: " + failure.what());
+    }
+    return as_used(std::move(scan), record);
+  }
+
+  static geometry::Scan as_used(geometry::Scan scan, const ScanRecord& record) {
+    if (!record.pose || !record.pose->correction) return scan;
+    return corrected(std::move(scan), *record.pose->correction);
+  }
+
+  std::optional<PoseFinding> look_at_pose(const geometry::Scan& scan,
+                                          const std::optional<PoseCovariance>& covariance) {
+    if (!poses) return std::nullopt;
+    const config::LiveConfig& config = mission.live;
+    PoseFinding finding = poses->find(
+        scan, covariance.value_or(PoseCovariance::of(config.pose_sigma, config.pose_sigma_angle)));
+    if (!config.checks_poses) finding.is_wrong = false;
+    return finding;
+  }
+
+  /// A scan that is not used: what was proposed stands, but nobody knows where the sensor is.
+  void leave_aside(LiveEvent& event) {
+    numbers.emplace(event.scan->id, next_number(event.is_on_way()));
+    ++set_aside;
+    ++proposal.number;
+    proposal.way = {};
+    proposal.pose = event.scan->pose;
+    if (!event.is_on_way()) event.proposal = ProposalRecord{proposal.view, proposal.end, {}};
+  }
+
+  /// A scan from the way: what was proposed stands, and so does the way there.
+  void pass(const LiveEvent& event, const geometry::Scan& scan) {
+    numbers.emplace(event.scan->id, next_number(true));
+    taken.push_back({static_cast<std::uint32_t>(steps->views().size()), scan.sensor_position()});
+    steps->pass(scan);
+    remember(scan);
+    departure = scan.sensor_position();
+    ++proposal.number;
+    proposal.way = reach.record().way;
+    proposal.pose = event.scan->pose;
+  }
+
+  void remember(const geometry::Scan& scan) {
+    if (!poses) return;
+    const std::span kept(guide->planner().cloud().positions);
+    poses->remember(scan, kept.subspan(remembered));
+    remembered = kept.size();
+  }
+
+  /// Takes in an event and fills in what is proposed after it. False if it was a scan that the
+  /// planner cannot work with: `why` says so, what is to be written down is `unwritten`, and the
+  /// planner has to begin anew.
+  bool happen(LiveEvent& event, const geometry::Scan& scan) {
+    if (event.scan && event.scan->pose && event.scan->pose->is_wrong) {
+      leave_aside(event);
+      return true;
+    }
+    if (event.is_on_way()) {
+      pass(event, scan);
+      return true;
+    }
+    reach.begin(event.proposal ? std::optional(event.proposal->reach) : std::nullopt);
+    if (event.scan) departure = departure_after(scan);
+    std::optional<geometry::View> view;
+    try {
+      view = event.scan ? steps->take_in(scan) : steps->refuse();
+    } catch (const Error& failure) {
+      if (!event.scan || event.proposal) throw;
+      event.is_rejected = true;
+      why = failure.what();
+      unwritten = rejection_text(why);
+      return false;
+    }
+    if (event.scan) {
+      const std::size_t number = steps->views().size() - 1;
+      numbers.emplace(event.scan->id, ScanNumber{number});
+      taken.push_back({static_cast<std::uint32_t>(number), scan.sensor_position()});
+      remember(scan);
+    }
+    propose(event, view);
+    event.proposal = ProposalRecord{proposal.view, proposal.end, reach.record()};
+    return true;
+  }
+
+  void propose(const LiveEvent& event, const std::optional<geometry::View>& view) {
+    const bool is_lost = !event.scan && proposal.warns_of_pose();
+    std::optional<PoseFinding> pose = is_lost ? proposal.pose : std::nullopt;
+    if (event.scan) pose = event.scan->pose;
+    proposal = {.number = proposal.number + 1, .view = view, .way = {}, .end = {}, .pose = pose};
+    if (!view) proposal.end = steps->stop_reason();
+    if (view && guide->flight() != nullptr && !is_lost) proposal.way = reach.record().way;
+  }
+
+  /// What cannot be written now is written before anything else is.
+  void write_down(const std::string& text) {
+    unwritten = text;
+    catch_up();
+  }
+
+  void catch_up() {
+    if (!unwritten) return;
+    log.append(*unwritten);
+    unwritten.reset();
+  }
+
+  /// Brings a scan to the disk and takes it in. False if it is known.
+  bool bring(const geometry::Scan& scan, const std::string& given_id,
+             const std::optional<PoseCovariance>& covariance, bool is_on_way) {
+    const std::string bytes = kept_scan(scan), sha256 = digest_of(bytes);
+    const std::string id =
+        given_id.empty() ? id_of(sha256, scan.world_from_sensor, covariance) : given_id;
+    if (numbers.contains(id)) return false;
+    require_wanted(is_on_way);
+    catch_up();
+    const ScanRecord record{.id = id,
+                            .file = fmt::format("{}/{:06}.ply", scans_name, events.size()),
+                            .sha256 = sha256,
+                            .world_from_sensor = scan.world_from_sensor,
+                            .pose = look_at_pose(scan, covariance),
+                            .is_on_way = is_on_way};
+    geometry::write_file(folder / record.file, bytes);
+    geometry::sync_to_disk(folder / scans_name);
+    log.append(text_of(record));
+    take_in({.scan = record, .refusal = {}, .proposal = {}}, as_used(scan, record));
+    return true;
+  }
+
+  void require_wanted(bool is_on_way) const {
+    const auto refuse = [](const std::string& what) { throw Error(ErrorKind::bad_usage, what); };
+    if (mission.flight.is_flown() && proposal.end) {
+      refuse("the survey is over, and no way was proven to where this scan is from; finish it");
+    }
+    if (!is_on_way) return;
+    if (!mission.sensor.is_moving()) {
+      refuse("the mission measures at its views only; give it sensor.capture: moving");
+    }
+    if (steps->views().empty()) {
+      refuse("the way to the first view is not measured on; give a scan from there first");
+    }
+  }
+
+  session::SurveyRecord views_record() const {
+    session::SurveyRecord record;
+    record.seed = mission.seed;
+    record.threads = geometry::thread_count(threads);
+    record.stop_reason = proposal.end.value_or(survey::StopReason::interrupted);
+    for (const survey::SurveyedView& view : steps->views()) {
+      record.views.push_back({view, std::numeric_limits<double>::quiet_NaN()});
+    }
+    record.scans = taken;
+    for (session::TakenScan& scan :
+         record.scans) {  // also from the way to a view that was not taken
+      scan.view = std::min(scan.view, static_cast<std::uint32_t>(record.views.size() - 1));
+    }
+    return record;
+  }
+
+  void take_in(LiveEvent event, const geometry::Scan& scan) {
+    events.push_back(std::move(event));
+    if (happen(events.back(), scan)) {
+      if (events.back().proposal) write_down(text_of(*events.back().proposal));
+      return;
+    }
+    replay();  // the planner may have taken in a part of the scan
+    catch_up();
+    throw Error(ErrorKind::bad_geometry, why);
+  }
+
+  config::Mission mission;
+  fs::path folder;
+  std::optional<geometry::View> first_view;
+  unsigned threads;
+  geometry::RecordLog log;
+  std::vector<LiveEvent> events;
+  std::unique_ptr<session::MissionPlanner> guide;
+  std::unique_ptr<survey::SurveySteps> steps;
+  session::ReachMemory reach;
+  Proposal proposal;
+  Vector3d departure = Vector3d::Zero();
+  std::map<std::string, ScanNumber> numbers;  ///< of scans by their ids
+  std::vector<session::TakenScan> taken;      ///< those that were used
+  std::size_t set_aside = 0;
+  std::optional<PoseCheck> poses;
+  std::size_t remembered = 0;            ///< points of the planner's cloud that `poses` has
+  std::string why;                       ///< the last scan was rejected
+  std::optional<std::string> unwritten;  ///< record that the disk did not take
+};
+
+LiveSurvey::LiveSurvey(const config::Mission& mission, const fs::path& folder,
+                       const std::optional<geometry::View>& first_view, unsigned threads)
+    : impl_(std::make_unique<Impl>(mission, folder, first_view, threads)) {}
+
+LiveSurvey::~LiveSurvey() = default;
+
+const Proposal& LiveSurvey::proposal() const { return impl_->proposal; }
+
+const survey::Planner& LiveSurvey::planner() const { return impl_->guide->planner(); }
+
+const std::vector<survey::SurveyedView>& LiveSurvey::views() const { return impl_->steps->views(); }
+
+std::size_t LiveSurvey::set_aside() const { return impl_->set_aside; }
+
+std::size_t LiveSurvey::on_way() const { return impl_->steps->passed(); }
+
+std::vector<session::ViewInFlight> LiveSurvey::frames() const {
+  const Proposal& next = impl_->proposal;
+  const bool is_measured = impl_->mission.sensor.is_moving() && !views().empty();
+  if (!is_measured || !next.view || next.way.points.empty()) return {};
+  std::vector<session::ViewInFlight> frames =
+      impl_->guide->flight()->frames(views().back().view, *next.view);
+  frames.erase(frames.begin(),
+               frames.begin() + static_cast<std::ptrdiff_t>(std::min(on_way(), frames.size())));
+  return frames;
+}
+
+std::optional<ScanNumber> LiveSurvey::number_of(const std::string& id) const {
+  const auto found = impl_->numbers.find(id);
+  return found == impl_->numbers.end() ? std::nullopt : std::optional(found->second);
+}
+
+bool LiveSurvey::add(const geometry::Scan& scan, const std::string& id,
+                     const std::optional<PoseCovariance>& covariance) {
+  return impl_->bring(scan, id, covariance, false);
+}
+
+bool LiveSurvey::add_on_way(const geometry::Scan& scan, const std::string& id,
+                            const std::optional<PoseCovariance>& covariance) {
+  return impl_->bring(scan, id, covariance, true);
+}
+
+void LiveSurvey::refuse(const std::string& reason) {
+  if (!impl_->proposal.view || views().empty()) {
+    throw Error(
+        ErrorKind::bad_usage,
+        "there is no view to refuse: " +
+            std::string(views().empty() ? "the first one is the mission's" : "the survey is over"));
+  }
+  impl_->catch_up();
+  impl_->log.append(refusal_text(reason));
+  impl_->take_in({.scan = {}, .refusal = reason, .proposal = {}}, {});
+}
+
+session::SurveyFlight* LiveSurvey::flight() { return impl_->guide->flight(); }
+
+session::SurveyRecord LiveSurvey::so_far() const {
+  session::SurveyRecord record = impl_->views_record();
+  impl_->guide->tell(record);
+  return record;
+}
+
+session::SurveyRecord LiveSurvey::finish() {
+  session::SurveyRecord record = impl_->views_record();
+  impl_->guide->finish(record);
+  return record;
+}
+
+std::string scan_id(const geometry::Scan& scan, const std::optional<PoseCovariance>& covariance) {
+  return id_of(digest_of(kept_scan(scan)), scan.world_from_sensor, covariance);
+}
+
+}  // namespace skycap::missions::online

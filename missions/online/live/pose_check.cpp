@@ -1,0 +1,161 @@
+#include "missions/online/live/pose_check.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "geometry/angle.h"
+#include "geometry/points/registration.h"
+
+namespace skycap::missions::online {
+namespace {
+
+using Eigen::Isometry3d;
+using Eigen::Vector3d;
+using geometry::Registration;
+using geometry::RigidDirection;
+using geometry::SurfacePatch;
+
+constexpr std::size_t most_points = 100'000;  // of a scan, that become patches
+constexpr std::size_t most_patches = 1500;
+constexpr std::size_t least_matches = 50;
+constexpr double sigmas = 5.0;  // beyond, nobody says chance
+
+struct Patches {
+  std::vector<SurfacePatch> patches;
+  std::size_t level = 0;  // of the maps
+};
+
+/// Whether noise leaves them much flatter than they are wide.
+bool are_flat(const std::vector<SurfacePatch>& patches, double radius) {
+  constexpr double flat = 0.15;
+  const auto is_flat = [&](const SurfacePatch& patch) { return patch.deviation <= flat * radius; };
+  return 2 * std::ranges::count_if(patches, is_flat) >= std::ssize(patches);
+}
+
+/// The scan's patches, as small as noise lets most of them be flat; none if it never does.
+Patches patches_of(const geometry::ScanSpan& scan, std::span<const geometry::SurfaceMap> maps) {
+  for (std::size_t level = 0; level < maps.size(); ++level) {
+    const double radius = maps[level].radius();
+    geometry::ScanPatches all = geometry::scan_patches(scan, radius, most_points, most_patches);
+    const bool is_surface = 3 * all.patches.size() >= all.tried;
+    if (is_surface && are_flat(all.patches, radius)) return {std::move(all.patches), level};
+  }
+  return {};
+}
+
+/// What a pose's covariance lets its scan be moved along a direction: one standard deviation.
+double deviation_along(const RigidDirection& direction, const Registration& found,
+                       const Vector3d& sensor, const PoseCovariance& covariance) {
+  // Of a pose's error t, w about the sensor s: d . (t + w x (m - s)) + (L w) . (L turn).
+  PoseCovariance::Vector along;
+  along << direction.displacement, (found.middle - sensor).cross(direction.displacement) +
+                                       found.size * found.size * direction.turn;
+  return covariance.deviation(along);
+}
+
+/// Whether the surfaces' own errors and the pose's explain the motion.
+bool is_explained(const Registration& found, const Vector3d& sensor,
+                  const PoseCovariance& covariance, double radius) {
+  // What patches have in common by curvature, edges and uneven noise does not average out; what it
+  // moves along a direction is the more, the less the surface shows of that.
+  const double common = std::hypot(0.02 * radius, 0.2 * found.deviation);
+  const double own = 1.5 * found.error / std::sqrt(static_cast<double>(found.matches));
+  return std::ranges::all_of(found.directions, [&](const RigidDirection& direction) {
+    if (!direction.is_observable()) return true;
+    const double surfaces = std::hypot(common, own) / std::sqrt(direction.information);
+    const double pose = deviation_along(direction, found, sensor, covariance);
+    return std::abs(direction.amount) <= sigmas * std::hypot(surfaces, pose);
+  });
+}
+
+/// Whether a correction is one that the pose's covariance allows, as a whole.
+bool is_allowed(const Isometry3d& correction, const Vector3d& sensor,
+                const PoseCovariance& covariance, double radius) {
+  const Eigen::AngleAxisd turn(correction.linear());
+  PoseCovariance::Vector error;
+  error << correction * sensor - sensor, turn.angle() * turn.axis();
+  return covariance.distance(error, 0.1 * radius, 0.1 * geometry::radians_per_degree) <= sigmas;
+}
+
+}  // namespace
+
+geometry::Scan corrected(geometry::Scan scan, const Isometry3d& correction) {
+  for (Eigen::Vector3f& point : scan.points) {
+    point = (correction * point.cast<double>()).cast<float>();
+  }
+  scan.world_from_sensor = correction * scan.world_from_sensor;
+  return scan;
+}
+
+PoseCheck::PoseCheck(double radius, bool registers)
+    : registers_(registers),
+      maps_{geometry::SurfaceMap(radius), geometry::SurfaceMap(2.0 * radius),
+            geometry::SurfaceMap(4.0 * radius), geometry::SurfaceMap(8.0 * radius)} {}
+
+void PoseCheck::remember(const geometry::ScanSpan& scan, std::span<const Eigen::Vector3f> kept) {
+  constexpr std::size_t most_images = 16;
+  for (geometry::SurfaceMap& map : maps_) map.add(kept, scan.sensor_position());
+  last_.emplace_back(scan);
+  if (last_.size() > most_images) last_.pop_front();
+}
+
+PoseFinding PoseCheck::find(const geometry::ScanSpan& scan, const PoseCovariance& covariance) {
+  PoseFinding finding;
+  if (last_.empty()) return finding;
+  const Patches patches = patches_of(scan, maps_);
+  geometry::SurfaceMap& map = maps_[patches.level];
+  const double reach =
+      std::min(4.0 * map.radius() + sigmas * covariance.position(), 8.0 * map.radius());
+  const Registration found = geometry::register_scan(patches.patches, map, reach, least_matches);
+  const Vector3d sensor = scan.sensor_position();
+  finding.matches = found.matches;
+  finding.error = found.first_error;
+  finding.is_checked = found.matches >= least_matches;
+  constexpr double much = 0.1;
+  finding.seen_through = seen_through(scan, patches.patches, covariance, map);
+  finding.is_wrong = finding.seen_through > much;
+  if (!finding.is_checked) return finding;
+  finding.shift = (found.correction * sensor - sensor).norm();
+  finding.turn = Eigen::AngleAxisd(found.correction.linear()).angle();
+  finding.unobservable =
+      static_cast<int>(std::ranges::count_if(found.directions, [](const RigidDirection& direction) {
+        return !direction.is_observable();
+      }));
+  finding.is_wrong = finding.is_wrong || !is_explained(found, sensor, covariance, map.radius());
+  if (registers_ && !finding.is_wrong &&
+      is_allowed(found.correction, sensor, covariance, map.radius())) {
+    finding.correction = found.correction;
+  }
+  return finding;
+}
+
+double PoseCheck::seen_through(const geometry::ScanSpan& scan,
+                               const std::vector<SurfacePatch>& patches,
+                               const PoseCovariance& covariance,
+                               const geometry::SurfaceMap& map) const {
+  constexpr std::size_t most_tests = 20'000, least_tests = 50;
+  std::size_t there = 0, through = 0;
+  const Vector3d sensor = scan.sensor_position();
+  const double along = covariance.position(), about = covariance.angle();
+  const auto look = [&](const RangeImage& image, const Vector3d& point) {
+    const double range = (point - sensor).norm();
+    const double tolerance = 2.0 * map.radius() + 0.02 * range + sigmas * (along + about * range);
+    const Sight sight = image.sight(point, tolerance);
+    there += sight == Sight::there ? 1 : 0;
+    through += sight == Sight::through ? 1 : 0;
+  };
+  const RangeImage image(scan);
+  const geometry::PointGrid& known = map.spread_points();
+  const std::size_t stride = std::max<std::size_t>(1, known.size() / most_tests);
+  for (std::size_t i = 0; i < known.size(); i += stride) {
+    look(image, known.point(static_cast<std::uint32_t>(i)).cast<double>());
+  }
+  for (const SurfacePatch& patch : patches) {
+    for (const RangeImage& earlier : last_) look(earlier, patch.mean);
+  }
+  if (there + through < least_tests) return 0.0;
+  return static_cast<double>(through) / static_cast<double>(there + through);
+}
+
+}  // namespace skycap::missions::online

@@ -1,0 +1,112 @@
+#include "missions/online/live/scan_filter.h"
+
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <cstdlib>
+#include <vector>
+
+namespace skycap::missions::online {
+namespace {
+
+constexpr double steepest = 5.67;    // tangent of 80 degrees
+constexpr double least_jump = 0.03;  // of the depth: coarser than the steps that depths come in
+
+/// Depths by pixel; zero where there is no return.
+class DepthGrid {
+ public:
+  DepthGrid(const geometry::Scan& scan, const geometry::Camera& camera)
+      : width_(camera.width()),
+        height_(camera.height()),
+        pixel_size_(1.0 / camera.focal_length_px().minCoeff()),
+        depths_(static_cast<std::size_t>(width_) * static_cast<std::size_t>(height_), 0.0F) {
+    const Eigen::Isometry3d sensor_from_world = scan.world_from_sensor.inverse();
+    for (std::size_t i = 0; i < scan.points.size(); ++i) {
+      const Eigen::Vector3d point = sensor_from_world * scan.points[i].cast<double>();
+      depths_[scan.pixels[i]] = static_cast<float>(point.z());
+    }
+  }
+
+  bool is_flying(std::uint32_t pixel) const {
+    const int row = row_of(pixel), column = column_of(pixel);
+    constexpr std::array<std::array<int, 2>, 4> ways{{{0, 1}, {1, 0}, {1, 1}, {1, -1}}};
+    for (const auto& [down, right] : ways) {
+      for (int far = 1; far <= 2; ++far) {
+        if (is_between(row, column, far * down, far * right)) return true;
+      }
+    }
+    return false;
+  }
+
+  bool is_isolated(std::uint32_t pixel) const {
+    constexpr int least = 3;
+    const int row = row_of(pixel), column = column_of(pixel);
+    const double depth = at(row, column);
+    int others = 0;
+    for (int down = -2; down <= 2; ++down) {
+      for (int right = -2; right <= 2; ++right) {
+        const double other = at(row + down, column + right);
+        const int far = std::max(std::abs(down), std::abs(right));
+        others += far > 0 && other > 0.0 && std::abs(other - depth) <= far * step(depth) ? 1 : 0;
+      }
+    }
+    return others < least;
+  }
+
+ private:
+  int row_of(std::uint32_t pixel) const {
+    return static_cast<int>(pixel / static_cast<std::uint32_t>(width_));
+  }
+  int column_of(std::uint32_t pixel) const {
+    return static_cast<int>(pixel % static_cast<std::uint32_t>(width_));
+  }
+  double at(int row, int column) const {
+    if (row < 0 || column < 0 || row >= height_ || column >= width_) return 0.0;
+    return depths_[static_cast<std::size_t>(row) * static_cast<std::size_t>(width_) +
+                   static_cast<std::size_t>(column)];
+  }
+  /// How much depth changes from pixel to pixel on the steepest surface.
+  double step(double depth) const { return steepest * pixel_size_ * depth; }
+
+  bool is_between(int row, int column, int down, int right) const {
+    const double depth = at(row, column);
+    const double before = at(row - down, column - right), after = at(row + down, column + right);
+    if (before == 0.0 || after == 0.0) return false;
+    const double most =
+        std::max(step(depth) * std::max(std::abs(down), std::abs(right)), least_jump * depth);
+    const bool is_steep = (before < depth - most && after > depth + most) ||
+                          (before > depth + most && after < depth - most);
+    return is_steep && goes_on(before, at(row - 2 * down, column - 2 * right), most) &&
+           goes_on(after, at(row + 2 * down, column + 2 * right), most);
+  }
+  static bool goes_on(double depth, double beyond, double most) {
+    return beyond == 0.0 || std::abs(beyond - depth) <= most;
+  }
+
+  int width_, height_;
+  double pixel_size_;  // at a depth of one
+  std::vector<float> depths_;
+};
+
+}  // namespace
+
+LeftOut remove_flying_pixels(geometry::Scan& scan, const geometry::Camera& camera) {
+  LeftOut left_out;
+  if (scan.pixels.empty()) return left_out;
+  const DepthGrid grid(scan, camera);
+  std::size_t kept = 0;
+  for (std::size_t i = 0; i < scan.pixels.size(); ++i) {
+    const bool is_isolated = grid.is_isolated(scan.pixels[i]);
+    const bool is_flying = !is_isolated && grid.is_flying(scan.pixels[i]);
+    left_out.isolated += is_isolated ? 1 : 0;
+    left_out.flying += is_flying ? 1 : 0;
+    if (is_isolated || is_flying) continue;
+    scan.points[kept] = scan.points[i];
+    scan.pixels[kept++] = scan.pixels[i];
+  }
+  scan.points.resize(kept);
+  scan.pixels.resize(kept);
+  return left_out;
+}
+
+}  // namespace skycap::missions::online

@@ -1,0 +1,234 @@
+#include "missions/online/live/scan_input.h"
+
+#include <algorithm>
+#include <cmath>
+#include <tuple>
+#include <utility>
+
+#include "geometry/error.h"
+#include "geometry/io/cloud_io.h"
+#include "geometry/io/text_scanner.h"
+#include "geometry/place/camera.h"
+#include "geometry/place/world.h"
+#include "geometry/points/usable_scan.h"
+#include "missions/online/live/live_journal.h"
+
+namespace skycap::missions::online {
+namespace {
+
+using Eigen::Isometry3d;
+using Eigen::Vector2d;
+using Eigen::Vector3d;
+
+/// From position and quaternion.
+Isometry3d pose_of(const std::vector<double>& n, const std::string& what) {
+  const Eigen::Quaterniond turn(n[6], n[3], n[4], n[5]);
+  if (!(std::abs(turn.norm() - 1.0) < 1e-2)) {
+    throw Error(ErrorKind::bad_file,
+                what + ": the quaternion's length is not one; give x y z qx qy qz qw");
+  }
+  Isometry3d pose = Isometry3d::Identity();
+  pose.translation() = Vector3d(n[0], n[1], n[2]);
+  pose.linear() = turn.normalized().toRotationMatrix();
+  geometry::require_place(pose.translation(), what);
+  return pose;
+}
+
+/// Brown and Conrady's distortion of the slopes x/z, y/z of a ray.
+Vector2d distorted(const Vector2d& slope, const std::array<double, 5>& coefficients) {
+  const auto& [k1, k2, p1, p2, k3] = coefficients;
+  const double x = slope.x(), y = slope.y(), r2 = slope.squaredNorm();
+  const double radial = 1.0 + r2 * (k1 + r2 * (k2 + r2 * k3));
+  return {x * radial + 2.0 * p1 * x * y + p2 * (r2 + 2.0 * x * x),
+          y * radial + p1 * (r2 + 2.0 * y * y) + 2.0 * p2 * x * y};
+}
+
+Lens lens_of(const geometry::Camera& camera) {
+  return {.focal_length_px = camera.focal_length_px(),
+          .principal_point_px = camera.principal_point_px(),
+          .distortion = {}};
+}
+
+struct Seen {
+  std::uint32_t pixel;
+  float depth;
+  std::uint32_t point;
+};
+
+/// Puts the points, in the optical frame, into the pixels that the camera sees them in: of those in
+/// one pixel the nearest.
+void organise(std::span<const Vector3d> points, const geometry::Camera& camera, ScanFound& found) {
+  std::vector<Seen> seen;
+  seen.reserve(points.size());
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const auto place = camera.project(points[i]);
+    if (!place) continue;
+    const long column = std::clamp(std::lround(place->x()), 0L, camera.width() - 1L);
+    const long row = std::clamp(std::lround(place->y()), 0L, camera.height() - 1L);
+    seen.push_back({static_cast<std::uint32_t>(row * camera.width() + column),
+                    static_cast<float>(points[i].z()), static_cast<std::uint32_t>(i)});
+  }
+  found.out_of_view = points.size() - seen.size();
+  const auto is_before = [](const Seen& a, const Seen& b) {
+    return std::tie(a.pixel, a.depth, a.point) < std::tie(b.pixel, b.depth, b.point);
+  };
+  // Images of the mission's own camera come in its order.
+  if (!std::ranges::is_sorted(seen, is_before)) std::ranges::sort(seen, is_before);
+  const auto last = std::unique(seen.begin(), seen.end(),
+                                [](const Seen& a, const Seen& b) { return a.pixel == b.pixel; });
+  found.hidden = static_cast<std::size_t>(seen.end() - last);
+  seen.erase(last, seen.end());
+  found.scan.points.reserve(seen.size());
+  found.scan.pixels.reserve(seen.size());
+  for (const Seen& s : seen) {
+    found.scan.points.push_back((found.scan.world_from_sensor * points[s.point]).cast<float>());
+    found.scan.pixels.push_back(s.pixel);
+  }
+}
+
+/// The slopes that a lens distorts into those that are wanted; nothing where there are none.
+std::optional<Vector2d> undistorted(const Vector2d& wanted, const Lens& lens) {
+  Vector2d slope = wanted;
+  constexpr int most_rounds = 50;
+  for (int round = 0; round < most_rounds; ++round) {
+    const Vector2d error = wanted - distorted(slope, lens.distortion);
+    // A thousandth of a pixel is far below what depth sensors tell apart.
+    if (error.cwiseProduct(lens.focal_length_px).norm() < 1e-3) return slope;
+    slope += error;
+  }
+  return std::nullopt;
+}
+
+/// The points of a cloud's file in the optical frame.
+std::vector<Vector3d> points_in_sensor(const ScanInput& input) {
+  const Isometry3d sensor_from_file =
+      input.is_in_world ? input.world_from_sensor.inverse() : Isometry3d::Identity();
+  std::vector<Vector3d> points;
+  for (const Eigen::Vector3f& point : geometry::read_cloud(input.file).positions) {
+    points.push_back(sensor_from_file * point.cast<double>());
+  }
+  return points;
+}
+
+}  // namespace
+
+std::optional<Vector3d> Lens::ray(const Vector2d& pixel) const {
+  const Vector2d wanted = (pixel - principal_point_px).cwiseQuotient(focal_length_px);
+  if (!wanted.allFinite()) return std::nullopt;
+  if (distortion == std::array<double, 5>{}) return wanted.homogeneous();
+  const std::optional<Vector2d> slope = undistorted(wanted, *this);
+  if (!slope) return std::nullopt;
+  return slope->homogeneous();
+}
+
+std::vector<double> parse_numbers(const std::string& text, const std::string& what) {
+  geometry::TextScanner scanner(what, text);
+  std::vector<double> numbers;
+  while (const auto word = scanner.word()) {
+    numbers.push_back(scanner.number<double>(word, "a number"));
+    if (!std::isfinite(numbers.back()) || numbers.size() > 36) {
+      throw Error(ErrorKind::bad_file, what + ": is not a short row of finite numbers");
+    }
+  }
+  return numbers;
+}
+
+Lens parse_lens(const std::string& text, const std::string& what) {
+  const std::vector<double> n = parse_numbers(text, what);
+  if ((n.size() != 4 && n.size() != 9) || !(n[0] > 0.0) || !(n[1] > 0.0)) {
+    throw Error(ErrorKind::bad_usage,
+                what +
+                    ": give \"fx fy cx cy\" or \"fx fy cx cy k1 k2 p1 p2 k3\", with focal lengths "
+                    "above zero");
+  }
+  Lens lens{.focal_length_px = {n[0], n[1]}, .principal_point_px = {n[2], n[3]}, .distortion = {}};
+  if (n.size() == 9) std::copy(n.begin() + 4, n.end(), lens.distortion.begin());
+  return lens;
+}
+
+Isometry3d parse_pose_text(const std::string& text, const std::string& what) {
+  std::vector<double> numbers = parse_numbers(text, what);
+  if (numbers.size() == 8) numbers.erase(numbers.begin());
+  if (numbers.size() == 7) return pose_of(numbers, what);
+  if (numbers.size() == 16) {
+    if (!std::equal(numbers.begin() + 12, numbers.end(), std::begin({0.0, 0.0, 0.0, 1.0}))) {
+      throw Error(ErrorKind::bad_file,
+                  what + ": the fourth row is not 0 0 0 1; give the matrix by rows");
+    }
+    numbers.resize(12);
+  }
+  if (numbers.size() == 12) return parse_pose(numbers, what);
+  throw Error(ErrorKind::bad_file, what + ": has " + std::to_string(numbers.size()) +
+                                       " numbers; give x y z qx qy qz qw, or a matrix of three or "
+                                       "four rows of four");
+}
+
+std::vector<Vector3d> points_of(const sim::DepthImage& image, const Lens& lens, double unit,
+                                std::size_t& without_return) {
+  constexpr std::uint16_t too_near = 0, too_far = 65535;
+  std::vector<Vector3d> points;
+  points.reserve(image.values.size());
+  auto value = image.values.begin();
+  for (int row = 0; row < image.height; ++row) {
+    for (int column = 0; column < image.width; ++column, ++value) {
+      const bool is_return = *value != too_near && *value != too_far;
+      const auto ray = is_return ? lens.ray({column, row}) : std::nullopt;
+      if (ray) {
+        points.emplace_back(*ray * (unit * *value));
+      } else {
+        ++without_return;
+      }
+    }
+  }
+  return points;
+}
+
+ScanFound read_scan(const ScanInput& input, const config::Mission& mission) {
+  if (input.file.extension() == ".png") {
+    return scan_of(sim::read_depth_png(input.file), input.lens, input.depth_unit,
+                   input.world_from_sensor, mission);
+  }
+  return scan_of(points_in_sensor(input), input.world_from_sensor, mission);
+}
+
+ScanFound scan_of(std::span<const Vector3d> points, const Isometry3d& world_from_sensor,
+                  const config::Mission& mission) {
+  ScanFound found;
+  found.scan.world_from_sensor = world_from_sensor;
+  if (mission.sensor.scanner) {
+    for (const Vector3d& point : points) {
+      found.scan.points.push_back((world_from_sensor * point).cast<float>());
+    }
+  } else {
+    organise(points, geometry::Camera(mission.sensor.camera.camera), found);
+  }
+  found.left_out = filter(found.scan, mission);
+  return found;
+}
+
+ScanFound scan_of(const sim::DepthImage& image, const std::optional<Lens>& lens, double unit,
+                  const Isometry3d& world_from_sensor, const config::Mission& mission) {
+  const geometry::Camera camera(mission.sensor.camera.camera);
+  ScanFound found;
+  found.scan.world_from_sensor = world_from_sensor;
+  organise(points_of(image, lens.value_or(lens_of(camera)), unit, found.without_return), camera,
+           found);
+  found.left_out = filter(found.scan, mission);
+  return found;
+}
+
+LeftOut filter(geometry::Scan& scan, const config::Mission& mission) {
+  if (!mission.live.removes_flying_pixels) return {};
+  return remove_flying_pixels(scan, geometry::Camera(mission.sensor.camera.camera));
+}
+
+void require_usable(const geometry::Scan& scan, const config::Mission& mission) {
+  geometry::require_usable(scan, mission.sensor.camera.camera);
+  const bool needs_pixels = mission.flight.is_flown() && !mission.sensor.scanner;
+  if (needs_pixels && scan.pixels.empty() && !scan.points.empty()) {
+    throw Error(ErrorKind::bad_geometry,
+                "the scan has no pixels; with flight.vehicle free space is proven by depth images");
+  }
+}
+
+}  // namespace skycap::missions::online

@@ -1,0 +1,233 @@
+#include "missions/online/live/server.h"
+
+#include <array>
+#include <cerrno>
+#include <chrono>
+#include <cstring>
+#include <system_error>
+#include <utility>
+
+#include <arpa/inet.h>
+#include <netinet/in.h>
+#include <poll.h>
+#include <sys/socket.h>
+#include <sys/stat.h>
+#include <sys/un.h>
+#include <unistd.h>
+
+#include "geometry/error.h"
+
+namespace skycap::missions::online {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+constexpr auto patience = std::chrono::seconds(30);
+constexpr int poll_period = 100;  // [ms]: how late a stop may be noticed
+
+[[noreturn]] void fail(const std::string& place, const std::string& what) {
+  throw Error(ErrorKind::bad_usage, place + ": " + what);
+}
+
+std::string last_error() { return std::generic_category().message(errno); }
+
+class Handle {
+ public:
+  explicit Handle(int handle = -1) : handle_(handle) {}
+  Handle(Handle&& other) noexcept : handle_(std::exchange(other.handle_, -1)) {}
+  Handle& operator=(Handle&& other) noexcept {
+    std::swap(handle_, other.handle_);
+    return *this;
+  }
+  ~Handle() {
+    if (handle_ >= 0) ::close(handle_);
+  }
+  int get() const { return handle_; }
+  bool is_open() const { return handle_ >= 0; }
+  int release() { return std::exchange(handle_, -1); }
+
+ private:
+  int handle_;
+};
+
+/// Whether there is something to read within `milliseconds`.
+bool is_readable(int handle, int milliseconds) {
+  pollfd wanted{handle, POLLIN, 0};
+  return ::poll(&wanted, 1, milliseconds) > 0;
+}
+
+/// False if the client does not take it within the time that it is given.
+bool send_all(int handle, const Message& message) {
+  const std::string frame = frame_of(message);
+  std::string_view rest = frame;
+  const Clock::time_point begun = Clock::now();
+  while (!rest.empty() && Clock::now() - begun < patience) {
+    const ssize_t count = ::send(handle, rest.data(), rest.size(), MSG_NOSIGNAL | MSG_DONTWAIT);
+    if (count > 0) rest.remove_prefix(static_cast<std::size_t>(count));
+    if (count < 0 && errno != EAGAIN && errno != EINTR) return false;
+    if (count < 0) {
+      pollfd wanted{handle, POLLOUT, 0};
+      ::poll(&wanted, 1, poll_period);
+    }
+  }
+  return rest.empty();
+}
+
+/// Says something to a client that is let go, and waits a moment for it to listen: what it has sent
+/// and nobody reads would otherwise have the connection torn down before.
+void dismiss(int handle, const Message& message) {
+  send_all(handle, message);
+  ::shutdown(handle, SHUT_WR);
+  std::array<char, 4096> unread{};
+  constexpr int most_reads = 16, moment = 50;  // [ms]
+  for (int i = 0; i < most_reads && is_readable(handle, moment); ++i) {
+    if (::recv(handle, unread.data(), unread.size(), MSG_DONTWAIT) <= 0) return;
+  }
+}
+
+/// A client, from its coming to its going.
+class Client {
+ public:
+  explicit Client(Handle handle) : handle_(std::move(handle)) {}
+
+  /// Reads what has come and answers it. False, with a reason, when the client is gone or let go.
+  bool serve(Session& session, std::string& reason) {
+    try {
+      return receive(reason) && answer(session, reason);
+    } catch (const Error& failure) {  // what it sends are no messages
+      reason = failure.what();
+      dismiss(handle_.get(), error_message(reason));
+      return false;
+    }
+  }
+
+ private:
+  bool receive(std::string& reason) {
+    if (!is_readable(handle_.get(), poll_period)) {
+      const bool is_late = reader_.is_within_message() && Clock::now() - heard_ > patience;
+      if (!is_late) return true;
+      reason = "sent a part of a message and no more for 30 s";
+      dismiss(handle_.get(), error_message(reason));
+      return false;
+    }
+    const ssize_t count = ::recv(handle_.get(), chunk_.data(), chunk_.size(), MSG_DONTWAIT);
+    if (count < 0 && (errno == EAGAIN || errno == EINTR)) return true;
+    if (count <= 0) {
+      reason = reader_.is_within_message() ? "left within a message, which is dropped" : "left";
+      return false;
+    }
+    heard_ = Clock::now();
+    reader_.feed({chunk_.data(), static_cast<std::size_t>(count)});
+    return true;
+  }
+
+  bool answer(Session& session, std::string& reason) {
+    while (const std::optional<Message> message = reader_.next()) {
+      if (!send_all(handle_.get(), session.answer(*message))) {
+        reason = "does not take its answer";
+        return false;
+      }
+      session.settle();
+      if (session.is_finished()) {
+        reason = "finished the survey";
+        return false;
+      }
+    }
+    return true;
+  }
+
+  Handle handle_;
+  FrameReader reader_;
+  std::vector<char> chunk_ = std::vector<char>(1 << 20);
+  Clock::time_point heard_ = Clock::now();
+};
+
+template <typename Address>
+bool is_bound(int handle, const Address& address) {
+  return ::bind(handle, reinterpret_cast<const sockaddr*>(&address), sizeof address) == 0 &&
+         ::listen(handle, 4) == 0;
+}
+
+Handle unix_listener(const std::filesystem::path& path) {
+  sockaddr_un address{};
+  address.sun_family = AF_UNIX;
+  const std::string name = path.string();
+  if (name.size() >= sizeof address.sun_path) {
+    fail(name, "is too long for a socket's name; give one of at most 107 bytes");
+  }
+  std::memcpy(address.sun_path, name.data(), name.size());
+  Handle probe(::socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0));
+  if (::connect(probe.get(), reinterpret_cast<const sockaddr*>(&address), sizeof address) == 0) {
+    fail(name, "is served by another program; name another socket");
+  }
+  if (errno != ECONNREFUSED && errno != ENOENT) fail(name, "cannot be looked at: " + last_error());
+  struct stat status {};
+  if (::lstat(name.c_str(), &status) == 0) {
+    if (!S_ISSOCK(status.st_mode)) fail(name, "is there and no socket; name another");
+    ::unlink(name.c_str());  // a killed server left it
+  }
+  Handle listener(::socket(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0));
+  const mode_t mask = ::umask(0177);  // for its owner alone
+  const bool is_made = is_bound(listener.get(), address);
+  const std::string why = is_made ? "" : last_error();
+  ::umask(mask);
+  if (!is_made) fail(name, "cannot be made: " + why);
+  return listener;
+}
+
+Handle tcp_listener(std::uint16_t& port) {
+  sockaddr_in address{};
+  address.sin_family = AF_INET;
+  address.sin_port = htons(port);
+  address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+  Handle listener(::socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0));
+  constexpr int yes = 1;
+  ::setsockopt(listener.get(), SOL_SOCKET, SO_REUSEADDR, &yes, sizeof yes);
+  if (!is_bound(listener.get(), address)) {
+    fail("port " + std::to_string(port), "cannot be had: " + last_error());
+  }
+  socklen_t size = sizeof address;
+  ::getsockname(listener.get(), reinterpret_cast<sockaddr*>(&address), &size);
+  port = ntohs(address.sin_port);
+  return listener;
+}
+
+}  // namespace
+
+Server::Server(ServerPlace place) : place_(std::move(place)) {
+  if (place_.port) {
+    listener_ = tcp_listener(*place_.port).release();
+    address_ = "tcp:127.0.0.1:" + std::to_string(*place_.port);
+  } else {
+    listener_ = unix_listener(place_.socket).release();
+    address_ = "unix:" + place_.socket.string();
+  }
+}
+
+Server::~Server() {
+  ::close(listener_);
+  if (!place_.port) ::unlink(place_.socket.c_str());
+}
+
+void Server::run(Session& session, const std::function<void(const std::string&)>& note,
+                 const std::stop_token& stop) {
+  std::optional<Client> client;
+  while (!stop.stop_requested() && !session.is_finished()) {
+    if (is_readable(listener_, client ? 0 : poll_period)) {
+      Handle visitor(::accept4(listener_, nullptr, nullptr, SOCK_CLOEXEC));
+      if (visitor.is_open() && client) {
+        dismiss(visitor.get(), error_message("another client is served; come back later"));
+        note("a second client was sent away");
+      } else if (visitor.is_open()) {
+        client.emplace(std::move(visitor));
+        note("a client came");
+      }
+    }
+    std::string reason;
+    if (!client || client->serve(session, reason)) continue;
+    note("the client " + reason);
+    client.reset();
+  }
+}
+
+}  // namespace skycap::missions::online

@@ -1,0 +1,253 @@
+#include "missions/online/live/session.h"
+
+#include <array>
+#include <cstdint>
+#include <cstring>
+#include <limits>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "geometry/error.h"
+#include "missions/online/live/open_survey.h"
+#include "missions/online/live/scan_input.h"
+#include "missions/version.h"
+
+namespace skycap::missions::online {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+[[noreturn]] void refuse_message(const std::string& what) {
+  throw Error(ErrorKind::bad_file, what);
+}
+
+template <typename Value>
+std::vector<Value> values_at(const std::string& payload, std::size_t begin, std::size_t count) {
+  std::vector<Value> values(count);
+  std::memcpy(values.data(), payload.data() + begin, count * sizeof(Value));
+  return values;
+}
+
+/// A whole number, zero or more; up to 2^32 - 1.
+std::uint32_t count_at(const Json& header, const char* key) {
+  const Json& number = header.at(key);
+  constexpr auto most = std::numeric_limits<std::uint32_t>::max();
+  const bool is_whole = number.is_number_unsigned() ||
+                        (number.is_number_integer() && number.get<std::int64_t>() >= 0);
+  if (!is_whole || number.get<std::uint64_t>() > most) {
+    refuse_message(std::string(key) + " must be a whole number from 0 to " + std::to_string(most));
+  }
+  return number.get<std::uint32_t>();
+}
+
+/// A row of numbers as text, for the parsers of text.
+std::string row_at(const Json& header, const char* key) {
+  std::string text;
+  for (const Json& number : header.at(key)) text += number.dump() + " ";
+  return text;
+}
+
+Eigen::Isometry3d pose_of(const Json& header) {
+  return parse_pose_text(row_at(header, "pose"), "pose");
+}
+
+/// A scan's own.
+std::optional<PoseCovariance> covariance_of(const Json& header) {
+  constexpr const char *sigma = "pose_sigma", *covariance = "pose_covariance";
+  if (header.contains(sigma) && header.contains(covariance)) {
+    refuse_message("pose_sigma and pose_covariance do not go together; give one");
+  }
+  if (header.contains(sigma)) return parse_pose_sigma(row_at(header, sigma), sigma);
+  if (!header.contains(covariance)) return std::nullopt;
+  return parse_pose_covariance(row_at(header, covariance), covariance);
+}
+
+ScanNumber number_of(const Json& header) {
+  ScanNumber number{count_at(header, "number")};
+  if (header.contains("on_way")) number.on_way = count_at(header, "on_way");
+  return number;
+}
+
+std::string text_of(const ScanNumber& number) {
+  const std::string text = "scan " + std::to_string(number.view);
+  return number.on_way ? text + " on the way " + std::to_string(*number.on_way) : text;
+}
+
+void require_payload(const Message& message, std::size_t size, const std::string& what_takes) {
+  if (message.payload.size() == size) return;
+  refuse_message("scan: the payload has " + std::to_string(message.payload.size()) + " bytes; " +
+                 what_takes + std::to_string(size));
+}
+
+/// Points in the world frame, as floats, and then the pixels if there are some.
+geometry::Scan cloud_scan(const Message& message) {
+  const auto count = count_at(message.header, "points");
+  const bool has_pixels = message.header.value("has_pixels", false);
+  constexpr std::size_t point = 3 * sizeof(float), pixel = sizeof(std::uint32_t);
+  const std::size_t size = std::size_t{count} * (point + (has_pixels ? pixel : 0));
+  require_payload(message, size, std::to_string(count) + " points take ");
+  geometry::Scan scan;
+  scan.world_from_sensor = pose_of(message.header);
+  scan.points.resize(count);
+  if (count > 0) std::memcpy(scan.points.data()->data(), message.payload.data(), count * point);
+  if (has_pixels) {
+    scan.pixels = values_at<std::uint32_t>(message.payload, count * point, count);
+  }
+  return scan;
+}
+
+/// Points in the sensor's optical frame, as floats; as a file of them.
+ScanFound sensor_cloud_scan(const Message& message, const config::Mission& mission) {
+  const auto count = count_at(message.header, "points");
+  constexpr std::size_t point = 3 * sizeof(float);
+  require_payload(message, std::size_t{count} * point, std::to_string(count) + " points take ");
+  std::vector<Eigen::Vector3d> points;
+  points.reserve(count);
+  for (const auto& place : values_at<std::array<float, 3>>(message.payload, 0, count)) {
+    points.emplace_back(place[0], place[1], place[2]);
+  }
+  return scan_of(points, pose_of(message.header), mission);
+}
+
+ScanFound depth_scan(const Message& message, const config::Mission& mission) {
+  const Json& header = message.header;
+  const std::uint32_t width = count_at(header, "width"), height = count_at(header, "height");
+  constexpr std::uint32_t largest_side = 1 << 15;
+  if (width < 1 || height < 1 || width > largest_side || height > largest_side) {
+    refuse_message("scan: width and height must be from 1 to 32768");
+  }
+  if (std::uint64_t{width} * height > sim::most_depth_pixels) {
+    refuse_message("scan: the image has more than 2.5e7 pixels");
+  }
+  sim::DepthImage image{static_cast<int>(width), static_cast<int>(height), {}};
+  const std::size_t count = std::size_t{width} * height;
+  require_payload(message, count * sizeof(std::uint16_t), "the image takes ");
+  image.values = values_at<std::uint16_t>(message.payload, 0, count);
+  std::optional<Lens> lens;
+  if (header.contains("lens")) lens = parse_lens(row_at(header, "lens"), "lens");
+  const double unit = header.at("unit").get<double>();
+  if (!(unit >= 1e-6 && unit <= 1.0)) refuse_message("scan: unit must be from 1e-6 to 1 m");
+  return scan_of(image, lens, unit, pose_of(header), mission);
+}
+
+}  // namespace
+
+Session::Session(const config::Mission& mission, LiveSurvey& survey,
+                 std::function<std::string()> finish, std::function<void()> show)
+    : mission_(mission), survey_(survey), finish_(std::move(finish)), show_(std::move(show)) {}
+
+void Session::settle() {
+  if (std::exchange(has_changed_, false)) show_();
+}
+
+Message Session::answer(const Message& message) {
+  try {
+    return answer_unguarded(message);
+  } catch (const Json::exception& failure) {
+    return error_message(std::string("the header is not as docs/live.md has it: ") +
+                         failure.what());
+  } catch (const Error& failure) {
+    return error_message(failure.what());
+  }
+}
+
+Message Session::answer_unguarded(const Message& message) {
+  const auto type = message.header.at("type").get<std::string>();
+  if (type == "hello") {
+    Message answer = present();
+    answer.header["version"] = version;
+    answer.header["mission"] = mission_.name;
+    return answer;
+  }
+  if (type == "next") return present();
+  if (type == "scan") return take_scan(message);
+  if (type == "refuse") return refuse(message);
+  if (type == "finish") {
+    if (survey_.views().empty()) refuse_message("finish: there is no scan yet");
+    Message answer{{{"type", "finished"}, {"text", finish_()}}, {}};
+    is_finished_ = true;
+    return answer;
+  }
+  refuse_message("the type '" + type +
+                 "' is unknown; it must be hello, scan, next, refuse or finish");
+}
+
+bool Session::is_taken(const ScanNumber& number) const {
+  return number.view < survey_.views().size() ||
+         (number.on_way && *number.on_way < survey_.on_way());
+}
+
+std::string Session::next_text() const {
+  const std::size_t next = survey_.views().size();
+  std::string text = "the next one is " + std::to_string(next);
+  if (mission_.sensor.is_moving() && next > 0) {
+    text += ", or on the way to it " + std::to_string(survey_.on_way());
+  }
+  return text;
+}
+
+void Session::require_in_order(const ScanNumber& number) const {
+  const std::size_t next = survey_.views().size();
+  const bool is_ahead = number.view > next ||
+                        (number.view == next && number.on_way && *number.on_way > survey_.on_way());
+  if (is_ahead) refuse_message(text_of(number) + " is out of order: " + next_text());
+}
+
+Message Session::take_scan(const Message& message) {
+  const auto format = message.header.at("format").get<std::string>();
+  if (format != "points" && format != "cloud" && format != "depth") {
+    refuse_message("scan: the format '" + format +
+                   "' is unknown; it must be points, cloud or depth");
+  }
+  const ScanNumber number = number_of(message.header);
+  require_in_order(number);
+  ScanFound found;
+  if (format == "points") {
+    found.scan = cloud_scan(message);
+    require_usable(found.scan, mission_);
+    found.left_out = filter(found.scan, mission_);
+  } else {
+    found =
+        format == "cloud" ? sensor_cloud_scan(message, mission_) : depth_scan(message, mission_);
+    require_usable(found.scan, mission_);
+  }
+  const geometry::Scan& scan = found.scan;
+  const std::optional<PoseCovariance> covariance = covariance_of(message.header);
+  if (is_taken(number) && survey_.number_of(scan_id(scan, covariance)) != number) {
+    refuse_message(text_of(number) + " was another one; " + next_text());
+  }
+  const bool is_new =
+      number.on_way ? survey_.add_on_way(scan, "", covariance) : survey_.add(scan, "", covariance);
+  has_changed_ = is_new;
+  Message answer = present();
+  answer.header["is_new"] = is_new;
+  if (mission_.live.removes_flying_pixels) {
+    answer.header["flying_pixels"] = found.left_out.flying;
+    answer.header["isolated_returns"] = found.left_out.isolated;
+  }
+  return answer;
+}
+
+Message Session::refuse(const Message& message) {
+  const auto id = std::size_t{count_at(message.header, "id")};
+  const std::size_t present_id = survey_.proposal().number;
+  if (id > present_id) {
+    refuse_message("refuse: there is no proposal " + std::to_string(id) + "; the present one is " +
+                   std::to_string(present_id));
+  }
+  // One that was refused already is acknowledged.
+  if (id == present_id) {
+    survey_.refuse(message.header.value("reason", std::string("none given")));
+    has_changed_ = true;
+  }
+  return present();
+}
+
+Message Session::present() const {
+  Message answer{Json::parse(answer_json(survey_, mission_)), {}};
+  answer.header["type"] = "answer";
+  return answer;
+}
+
+}  // namespace skycap::missions::online

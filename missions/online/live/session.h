@@ -1,0 +1,48 @@
+/// What a live survey answers to a client's messages: docs/live.md describes them.
+#pragma once
+
+#include <functional>
+#include <string>
+
+#include "missions/config/mission.h"
+#include "missions/online/live/live_survey.h"
+#include "missions/online/live/wire.h"
+
+namespace skycap::missions::online {
+
+class Session {
+ public:
+  /// Keeps references. `finish` writes the package and returns what is to be said of it; the survey
+  /// is over for this program then, unless it throws.
+  /// `show` is called by settle().
+  Session(
+      const config::Mission& mission, LiveSurvey& survey, std::function<std::string()> finish,
+      std::function<void()> show = [] {});
+
+  /// One answer for each message. What is wrong with a message is answered as
+  /// {"type": "error", "what": ...} and changes nothing.
+  Message answer(const Message& message);
+
+  /// To be called when an answer is sent: shows what has changed with it, if something has.
+  void settle();
+
+  bool is_finished() const { return is_finished_; }
+
+ private:
+  Message answer_unguarded(const Message& message);
+  bool is_taken(const ScanNumber& number) const;
+  std::string next_text() const;
+  void require_in_order(const ScanNumber& number) const;
+  Message take_scan(const Message& message);
+  Message refuse(const Message& message);
+  Message present() const;
+
+  const config::Mission& mission_;
+  LiveSurvey& survey_;
+  std::function<std::string()> finish_;
+  std::function<void()> show_;
+  bool has_changed_ = false;
+  bool is_finished_ = false;
+};
+
+}  // namespace skycap::missions::online

@@ -1,0 +1,171 @@
+// Reads rawlogs with MRPT; rawlog_reader.cpp loads the module.
+#include <cmath>
+#include <deque>
+#include <utility>
+
+#include <mrpt/io/lazy_load_path.h>
+#include <mrpt/obs/CActionCollection.h>
+#include <mrpt/obs/CActionRobotMovement2D.h>
+#include <mrpt/obs/CActionRobotMovement3D.h>
+#include <mrpt/obs/CObservationOdometry.h>
+#include <mrpt/obs/CObservationRobotPose.h>
+#include <mrpt/obs/CRawlog.h>
+#include <mrpt/obs/CSensoryFrame.h>
+#include <mrpt/serialization/CArchive.h>
+
+#include "geometry/error.h"
+#include "missions/online/recordings/rawlog_reader.h"
+#include "missions/online/recordings/rawlog_scans.h"
+#include "missions/online/recordings/rawlog_stream.h"
+
+namespace skycap::missions::online {
+namespace {
+
+using Eigen::Isometry3d;
+using Entry = std::variant<RawlogScan, RawlogPose>;
+
+/// RawlogBytes as MRPT wants them.
+class Archive final : public mrpt::serialization::CArchive {
+ public:
+  explicit Archive(const std::filesystem::path& file) : bytes_(file) {}
+
+  std::string getArchiveDescription() const override { return "the rawlog"; }
+  std::string damage() const { return bytes_.damage(); }
+
+ protected:
+  std::size_t read(void* buffer, std::size_t count) override { return bytes_.read(buffer, count); }
+  std::size_t write(const void*, std::size_t) override { return 0; }
+
+ private:
+  RawlogBytes bytes_;
+};
+
+/// The message in what MRPT throws, which has lines before and behind it.
+std::string message_of(const std::exception& failure) {
+  std::string text = failure.what();
+  constexpr std::string_view begin = "Message:";
+  if (const auto at = text.find(begin); at != std::string::npos) text.erase(0, at + begin.size());
+  text.erase(0, text.find_first_not_of(" \n"));
+  return text.substr(0, std::min<std::size_t>(text.find('\n'), 200));
+}
+
+/// The folder of what a rawlog keeps in other files: MRPT's own detectImagesDirectory passes over
+/// folders.
+std::string images_of(const std::filesystem::path& file) {
+  std::string name = file.filename().string();
+  name.erase(std::min(name.find(".rawlog"), name.size()));
+  for (const char* ending : {"_Images", "_images", "_IMAGES"}) {
+    const std::filesystem::path folder = file.parent_path() / (name + ending);
+    if (std::filesystem::is_directory(folder)) return folder.string();
+  }
+  return (file.parent_path() / "Images").string();
+}
+
+class Reader final : public RawlogReader {
+ public:
+  explicit Reader(std::filesystem::path file)
+      : file_(std::move(file)), images_(images_of(file_)), archive_(file_) {}
+
+  std::optional<Entry> next() override {
+    while (found_.empty()) {
+      const mrpt::serialization::CSerializable::Ptr object = read_object();
+      if (is_at_end_) return std::nullopt;
+      try {
+        take_in(*object);
+      } catch (const std::exception& failure) {
+        fail(message_of(failure));
+      }
+    }
+    Entry entry = std::move(found_.front());
+    found_.pop_front();
+    return entry;
+  }
+
+ private:
+  [[noreturn]] void fail(const std::string& what) const {
+    throw Error(ErrorKind::bad_file, file_.string() + ": entry " + std::to_string(entries_) +
+                                         " cannot be read: " + what);
+  }
+
+  /// The file's next object, or none with `is_at_end_`.
+  mrpt::serialization::CSerializable::Ptr read_object() {
+    try {
+      auto object = archive_.ReadObject();
+      ++entries_;
+      if (object) return object;
+    } catch (const mrpt::serialization::CExceptionEOF&) {
+      if (const std::string damage = archive_.damage(); !damage.empty()) fail(damage);
+      if (entries_ == 0) fail("the file is empty");
+      is_at_end_ = true;
+      return nullptr;
+    } catch (const std::bad_alloc&) {
+      fail("it asks for more than 2 GiB of memory");
+    } catch (const std::exception& failure) {
+      const std::string damage = archive_.damage();
+      fail(damage.empty() ? message_of(failure) : damage);
+    }
+    fail("it has no object");
+  }
+
+  void take_in(const mrpt::serialization::CSerializable& object) {
+    if (const auto* frame = dynamic_cast<const mrpt::obs::CSensoryFrame*>(&object)) {
+      for (const auto& observation : *frame) take_observation(*observation);
+    } else if (const auto* actions = dynamic_cast<const mrpt::obs::CActionCollection*>(&object)) {
+      take_actions(*actions);
+    } else if (const auto* one = dynamic_cast<const mrpt::obs::CObservation*>(&object)) {
+      take_observation(*one);
+    } else if (const auto* all = dynamic_cast<const mrpt::obs::CRawlog*>(&object)) {
+      for (std::size_t i = 0; i < all->size(); ++i) take_in(*all->getAsGeneric(i));
+    }
+  }
+
+  void take_actions(const mrpt::obs::CActionCollection& actions) {
+    if (!moved_) moved_ = Isometry3d::Identity();
+    if (const auto in_space = actions.getActionByClass<mrpt::obs::CActionRobotMovement3D>()) {
+      *moved_ = *moved_ * isometry_of(in_space->poseChange.getMeanVal());
+    } else if (const auto in_plane = actions.getBestMovementEstimation()) {
+      *moved_ = *moved_ * isometry_of(mrpt::poses::CPose3D(in_plane->poseChange->getMeanVal()));
+    }
+  }
+
+  void take_observation(const mrpt::obs::CObservation& observation) {
+    const double time = mrpt::Clock::toDouble(observation.timestamp);
+    if (const auto* estimate =
+            dynamic_cast<const mrpt::obs::CObservationRobotPose*>(&observation)) {
+      const Isometry3d carrier_from_estimated = isometry_of(estimate->sensorPose);
+      found_.emplace_back(
+          RawlogPose{PoseSource::estimate, time,
+                     isometry_of(estimate->pose.getMeanVal()) * carrier_from_estimated.inverse()});
+    } else if (const auto* wheels =
+                   dynamic_cast<const mrpt::obs::CObservationOdometry*>(&observation)) {
+      found_.emplace_back(RawlogPose{PoseSource::odometry, time,
+                                     isometry_of(mrpt::poses::CPose3D(wheels->odometry))});
+    } else {
+      mrpt::io::setLazyLoadPathBase(images_);
+      if (auto scan = scan_of(observation)) {
+        scan->number = observations_;
+        scan->label = observation.sensorLabel;
+        scan->time = time;
+        scan->moved = moved_;
+        found_.emplace_back(std::move(*scan));
+      }
+    }
+    ++observations_;
+  }
+
+  std::filesystem::path file_;
+  std::string images_;  ///< folder of what the rawlog keeps in other files
+  Archive archive_;
+  std::deque<Entry> found_;
+  std::optional<Isometry3d> moved_;
+  std::size_t entries_ = 0, observations_ = 0;
+  bool is_at_end_ = false;
+};
+
+}  // namespace
+}  // namespace skycap::missions::online
+
+extern "C" [[gnu::visibility("default")]] skycap::missions::online::RawlogReader*
+skycap_make_rawlog_reader(const std::filesystem::path& file) {
+  return new skycap::missions::online::Reader(file);
+}

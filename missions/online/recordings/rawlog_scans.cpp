@@ -1,0 +1,179 @@
+#include "missions/online/recordings/rawlog_scans.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <iterator>
+#include <span>
+#include <string>
+
+#include <mrpt/maps/CPointsMap.h>
+#include <mrpt/obs/CObservation3DRangeScan.h>
+#include <mrpt/obs/CObservationPointCloud.h>
+#include <mrpt/obs/CObservationVelodyneScan.h>
+
+namespace skycap::missions::online {
+namespace {
+
+using Eigen::Isometry3d;
+using Eigen::Matrix3d;
+using Eigen::Vector3f;
+using mrpt::img::DistortionModel;
+using Points = std::vector<Vector3f>;
+
+/// MRPT's axes of a sensor from those of its optical frame.
+Isometry3d sensor_from_optical() {
+  Isometry3d turn = Isometry3d::Identity();
+  turn.linear() = (Matrix3d() << 0, 0, 1, -1, 0, 0, 0, -1, 0).finished();
+  return turn;
+}
+
+/// Points x y z of a sensor in its optical frame.
+Points in_optical(std::span<const float> x, std::span<const float> y, std::span<const float> z) {
+  Points points;
+  points.reserve(x.size());
+  for (std::size_t i = 0; i < std::min({x.size(), y.size(), z.size()}); ++i) {
+    const Vector3f point(-y[i], -z[i], x[i]);
+    if (point.allFinite()) points.push_back(point);
+  }
+  return points;
+}
+
+/// What keeps a camera's parameters from being a Lens; empty if nothing does.
+std::string fault_of(const mrpt::img::TCamera& camera) {
+  const auto is_focal = [](double length) { return std::isfinite(length) && length > 0.0; };
+  if (!is_focal(camera.fx()) || !is_focal(camera.fy()) || !std::isfinite(camera.cx()) ||
+      !std::isfinite(camera.cy())) {
+    return "it has no focal length or image centre";
+  }
+  if (camera.distortion == DistortionModel::none) return {};
+  if (camera.distortion != DistortionModel::plumb_bob) {
+    return "its lens is a fisheye's; those of Brown and Conrady are known";
+  }
+  const std::span<const double> known = std::span(camera.dist).first(5);
+  const std::span<const double> others = std::span(camera.dist).subspan(5);
+  const bool is_known = std::ranges::all_of(known, [](double k) { return std::isfinite(k); }) &&
+                        std::ranges::all_of(others, [](double k) { return k == 0.0; });
+  return is_known ? "" : "its lens has coefficients beyond k1 k2 p1 p2 k3, or some that are none";
+}
+
+/// A name in the folder of the rawlog's images, and none elsewhere on this machine.
+bool is_beside(const std::string& name) {
+  const std::filesystem::path path = name;
+  const bool leaves = std::ranges::find(path, std::filesystem::path("..")) != path.end();
+  return name.size() > 2 && path.is_relative() && !leaves;
+}
+
+/// What keeps a file of an observation from being read; empty if nothing does.
+template <typename Observation>
+std::string fault_of_load(const Observation& observation, const std::string& name) {
+  if (!is_beside(name)) return "it is kept in '" + name + "', outside of the rawlog's folder";
+  try {
+    observation.load();
+    return {};
+  } catch (const std::exception&) {
+    return "it is kept in '" + name + "', which is not there or cannot be read";
+  }
+}
+
+/// Of pixels or points, as of a depth image in a file.
+bool is_too_much(std::ptrdiff_t count) { return count > sim::most_depth_pixels; }
+
+/// Takes the points in, unless there are too many.
+void put_points(RawlogScan& scan, std::span<const float> x, std::span<const float> y,
+                std::span<const float> z) {
+  if (is_too_much(std::ssize(x))) {
+    scan.fault = "it has more than 2.5e7 points";
+  } else {
+    scan.content = in_optical(x, y, z);
+  }
+}
+
+RecordedImage image_of(const mrpt::obs::CObservation3DRangeScan& observation) {
+  const auto& ranges = observation.rangeImage;
+  const mrpt::img::TCamera& camera = observation.cameraParams;
+  RecordedImage image{
+      .image = {static_cast<int>(ranges.cols()), static_cast<int>(ranges.rows()), {}},
+      .unit = observation.rangeUnits,
+      .is_depth = observation.range_is_depth,
+      .focal_length_px = {camera.fx(), camera.fy()},
+      .principal_point_px = {camera.cx(), camera.cy()}};
+  image.image.values.assign(ranges.data(), ranges.data() + ranges.size());
+  if (camera.distortion == DistortionModel::plumb_bob) {
+    std::copy_n(camera.dist.begin(), image.distortion.size(), image.distortion.begin());
+  }
+  return image;
+}
+
+RawlogScan range_scan(const mrpt::obs::CObservation3DRangeScan& observation) {
+  RawlogScan scan;
+  if (observation.hasRangeImage) {
+    if (observation.rangeImage_isExternallyStored()) {
+      scan.fault = fault_of_load(observation, observation.rangeImage_getExternalStorageFile(""));
+    }
+    if (scan.fault.empty()) scan.fault = fault_of(observation.cameraParams);
+    const double unit = observation.rangeUnits;
+    if (!(unit >= 1e-6 && unit <= 1.0)) scan.fault = "a step of its image is none of metres";
+    if (is_too_much(observation.rangeImage.size())) scan.fault = "it has more than 2.5e7 pixels";
+    if (scan.fault.empty()) scan.content = image_of(observation);
+    return scan;
+  }
+  if (observation.hasPoints3D && observation.points3D_isExternallyStored()) {
+    scan.fault = fault_of_load(observation, observation.points3D_getExternalStorageFile());
+  }
+  if (!observation.hasPoints3D) scan.fault = "it has neither range image nor points";
+  if (scan.fault.empty()) {
+    put_points(scan, observation.points3D_x, observation.points3D_y, observation.points3D_z);
+  }
+  return scan;
+}
+
+RawlogScan cloud_scan(const mrpt::obs::CObservationPointCloud& observation) {
+  RawlogScan scan;
+  if (observation.isExternallyStored()) {
+    scan.fault = fault_of_load(observation, observation.getExternalStorageFile());
+  }
+  if (scan.fault.empty() && !observation.pointcloud) scan.fault = "it has no points";
+  if (!scan.fault.empty()) return scan;
+  const mrpt::maps::CPointsMap& cloud = *observation.pointcloud;
+  put_points(scan, cloud.getPointsBufferRef_x(), cloud.getPointsBufferRef_y(),
+             cloud.getPointsBufferRef_z());
+  return scan;
+}
+
+RawlogScan velodyne_scan(const mrpt::obs::CObservationVelodyneScan& observation) {
+  mrpt::obs::CObservationVelodyneScan whole = observation;
+  whole.generatePointCloud();
+  RawlogScan scan;
+  put_points(scan, whole.point_cloud.x, whole.point_cloud.y, whole.point_cloud.z);
+  return scan;
+}
+
+}  // namespace
+
+Isometry3d isometry_of(const mrpt::poses::CPose3D& pose) {
+  Isometry3d isometry = Isometry3d::Identity();
+  isometry.linear() = pose.getRotationMatrix().asEigen();
+  isometry.translation() = Eigen::Vector3d(pose.x(), pose.y(), pose.z());
+  return isometry;
+}
+
+std::optional<RawlogScan> scan_of(const mrpt::obs::CObservation& observation) {
+  std::optional<RawlogScan> scan;
+  if (const auto* range = dynamic_cast<const mrpt::obs::CObservation3DRangeScan*>(&observation)) {
+    scan = range_scan(*range);
+  } else if (const auto* cloud =
+                 dynamic_cast<const mrpt::obs::CObservationPointCloud*>(&observation)) {
+    scan = cloud_scan(*cloud);
+  } else if (const auto* turning =
+                 dynamic_cast<const mrpt::obs::CObservationVelodyneScan*>(&observation)) {
+    scan = velodyne_scan(*turning);
+  }
+  if (!scan) return std::nullopt;
+  mrpt::poses::CPose3D place;
+  observation.getSensorPose(place);
+  scan->carrier_from_sensor = isometry_of(place) * sensor_from_optical();
+  return scan;
+}
+
+}  // namespace skycap::missions::online

@@ -1,0 +1,79 @@
+#include "missions/online/recordings/recording.h"
+
+#include <utility>
+
+#include "geometry/error.h"
+#include "missions/online/recordings/recorded_sequence.h"
+
+namespace skycap::missions::online {
+namespace {
+
+class Folder final : public Recording {
+ public:
+  Folder(RecordedSequence sequence, online::ScanInput image, const config::Mission& mission)
+      : frames_(std::move(sequence.frames)), image_(std::move(image)), mission_(mission) {}
+
+  std::string pose_source() const override { return ""; }
+
+  std::optional<Frame> next() override {
+    if (next_ == frames_.size()) return std::nullopt;
+    const RecordedFrame& frame = frames_[next_++];
+    return Frame{frame.id, frame.file.string(), [this, &frame] {
+                   online::ScanInput input = image_;
+                   input.file = frame.file;
+                   input.world_from_sensor = frame.world_from_sensor;
+                   return online::read_scan(input, mission_);
+                 }};
+  }
+
+ private:
+  std::vector<RecordedFrame> frames_;
+  std::size_t next_ = 0;
+  online::ScanInput image_;
+  const config::Mission& mission_;
+};
+
+class Rawlog final : public Recording {
+ public:
+  Rawlog(RawlogSequence sequence, std::size_t count, const config::Mission& mission)
+      : sequence_(std::move(sequence)), left_(count), mission_(mission) {}
+
+  std::string pose_source() const override { return sequence_.pose_source(); }
+
+  std::optional<Frame> next() override {
+    if (left_ == 0) return std::nullopt;
+    --left_;
+    std::optional<RawlogFrame> frame = sequence_.next();
+    if (!frame) return std::nullopt;
+    const std::string id = frame->id;
+    return Frame{id, id, [this, frame = std::make_shared<const RawlogFrame>(*std::move(frame))] {
+                   return scan_of(*frame, mission_);
+                 }};
+  }
+
+ private:
+  RawlogSequence sequence_;
+  std::size_t left_;
+  const config::Mission& mission_;
+};
+
+}  // namespace
+
+std::unique_ptr<Recording> open_recording(const std::filesystem::path& place,
+                                          const RecordingChoice& choice,
+                                          const config::Mission& mission,
+                                          const std::function<void(const std::string&)>& note,
+                                          const std::function<void(const std::string&)>& report) {
+  if (std::filesystem::is_regular_file(place)) {
+    return std::make_unique<Rawlog>(RawlogSequence(place, choice.rawlog, note, report),
+                                    choice.count, mission);
+  }
+  if (choice.rawlog.poses || !choice.rawlog.sensor.empty()) {
+    throw Error(ErrorKind::bad_usage, "--poses and --sensor are for rawlogs");
+  }
+  RecordedSequence sequence = read_sequence(place, choice.count);
+  for (const std::string& left_out : sequence.notes) note(left_out);
+  return std::make_unique<Folder>(std::move(sequence), choice.image, mission);
+}
+
+}  // namespace skycap::missions::online

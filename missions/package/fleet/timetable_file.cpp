@@ -1,0 +1,153 @@
+#include "missions/package/fleet/timetable_file.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "geometry/error.h"
+#include "geometry/io/file.h"
+#include "geometry/place/world.h"
+#include "missions/config/fleet.h"
+#include "missions/support/number_text.h"
+
+namespace skycap::missions::package {
+namespace {
+
+constexpr std::string_view header = "vehicle,name,sortie,file,start_s,landing_s,pad_x,pad_y,pad_z";
+constexpr std::string_view stem = "fleet-";
+constexpr std::size_t largest_timetable = 1 << 20;  ///< [byte], of thousands of sorties
+
+/// A whole number from 1 on as an index from 0; nothing if the text is none.
+std::optional<std::size_t> index_in(std::string_view text) {
+  const std::optional<double> number = flight::to_number(text);
+  if (!number || *number < 1.0 || *number > 1e6 || *number != std::floor(*number)) return {};
+  return static_cast<std::size_t>(*number) - 1;
+}
+
+/// Reads one row; problems are thrown with the place.
+class RowReader {
+ public:
+  RowReader(std::string place, const config::Mission& mission)
+      : place_(std::move(place)), mission_(mission) {}
+
+  TimetableRow read(const std::string& line) const {
+    const std::vector<std::string> fields = flight::split(line, ',');
+    if (fields.size() != 9) fail("has " + std::to_string(fields.size()) + " fields; there are 9");
+    TimetableRow row;
+    row.vehicle = index(fields[0], "vehicle");
+    row.name = fields[1];
+    check_vehicle(row);
+    row.sortie = index(fields[2], "sortie");
+    row.file = fields[3];
+    const bool is_beside = row.file.find('/') == std::string::npos;
+    if (!is_beside || vehicle_of_file(row.file) != row.vehicle) {
+      fail("the file \"" + row.file + "\" is not one of " + stem_of(row.vehicle) + ".*");
+    }
+    row.start = number(fields[4], "start_s");
+    row.landing = number(fields[5], "landing_s");
+    if (row.start < 0.0 || row.landing <= row.start) fail("it does not land after it starts");
+    for (int axis = 0; axis < 3; ++axis) row.pad[axis] = number(fields[6 + axis], "pad");
+    geometry::require_place(row.pad, place_ + "pad");
+    return row;
+  }
+
+ private:
+  [[noreturn]] void fail(const std::string& what) const {
+    throw Error(ErrorKind::bad_file, place_ + what);
+  }
+
+  std::size_t index(const std::string& field, const std::string& name) const {
+    const auto index = index_in(field);
+    if (!index) fail(name + " is \"" + field + "\"; it is a whole number from 1 on");
+    return *index;
+  }
+
+  double number(const std::string& field, const std::string& name) const {
+    const auto number = flight::to_number(field);
+    if (!number) fail(name + " is \"" + field + "\"; it is a number");
+    return *number;
+  }
+
+  void check_vehicle(const TimetableRow& row) const {
+    const std::vector<std::string>& vehicles = mission_.flight.fleet.vehicles;
+    if (row.vehicle >= vehicles.size()) {
+      fail("there is no vehicle " + std::to_string(row.vehicle + 1) + ": flight.vehicles has " +
+           std::to_string(vehicles.size()));
+    }
+    if (row.name == vehicles[row.vehicle]) return;
+    fail("vehicle " + std::to_string(row.vehicle + 1) + " is " + vehicles[row.vehicle] +
+         " in flight.vehicles, not " + row.name);
+  }
+
+  std::string place_;
+  const config::Mission& mission_;
+};
+
+}  // namespace
+
+std::string timetable_csv(std::span<const TimetableRow> rows) {
+  std::string csv = std::string(header) + "\n";
+  for (const TimetableRow& row : rows) {
+    csv += std::to_string(row.vehicle + 1) + "," + row.name + "," + std::to_string(row.sortie + 1) +
+           "," + row.file;
+    for (const double number : {row.start, row.landing, row.pad.x(), row.pad.y(), row.pad.z()}) {
+      csv.append(",").append(support::exact_text(number));
+    }
+    csv += "\n";
+  }
+  return csv;
+}
+
+std::vector<TimetableRow> read_timetable(const std::filesystem::path& path,
+                                         const config::Mission& mission) {
+  const std::string text = geometry::read_file(path, largest_timetable);
+  const std::vector<std::string> lines = flight::lines_of(text);
+  if (lines.empty() || lines.front() != header) {
+    throw Error(ErrorKind::bad_file,
+                path.string() + ":1: is no timetable; its first line is " + std::string(header));
+  }
+  std::vector<TimetableRow> rows;
+  for (std::size_t i = 1; i < lines.size(); ++i) {
+    const std::string place = path.string() + ":" + std::to_string(i + 1) + ": ";
+    TimetableRow row = RowReader(place, mission).read(lines[i]);
+    const bool is_twice = std::ranges::any_of(rows, [&](const TimetableRow& other) {
+      return other.vehicle == row.vehicle && other.sortie == row.sortie;
+    });
+    if (is_twice) throw Error(ErrorKind::bad_file, place + "the sortie stands there twice");
+    rows.push_back(std::move(row));
+  }
+  if (!rows.empty()) return rows;
+  throw Error(ErrorKind::bad_file, path.string() + ": has no sorties");
+}
+
+std::string stem_of(std::size_t vehicle) { return std::string(stem) + std::to_string(vehicle + 1); }
+
+std::optional<std::size_t> vehicle_of_file(std::string_view name) {
+  if (!name.starts_with(stem)) return std::nullopt;
+  name.remove_prefix(stem.size());
+  const std::size_t end = name.find_first_not_of("0123456789");
+  if (end == std::string_view::npos || (name[end] != '.' && name[end] != '-')) return std::nullopt;
+  return index_in(name.substr(0, end));
+}
+
+bool is_fleet_file(std::string_view name) {
+  return name == timetable_name || vehicle_of_file(name).has_value();
+}
+
+config::Mission mission_of_file(const std::filesystem::path& file, const config::Mission& mission) {
+  const std::optional<std::size_t> vehicle = vehicle_of_file(file.filename().string());
+  if (!vehicle || !config::is_fleet(mission)) return mission;
+  const std::filesystem::path table = file.parent_path() / timetable_name;
+  for (const TimetableRow& row : read_timetable(table, mission)) {
+    if (row.vehicle == *vehicle) return config::as_flown_by(mission, *vehicle, row.pad);
+  }
+  throw Error(ErrorKind::bad_file, table.string() + ": has no sortie of vehicle " +
+                                       std::to_string(*vehicle + 1) + ", whose file is " +
+                                       file.filename().string());
+}
+
+flight::Format own_format(flight::Dialect dialect) {
+  if (dialect == flight::Dialect::dji) return flight::Format::kmz;
+  return dialect == flight::Dialect::px4 ? flight::Format::plan : flight::Format::waypoints;
+}
+
+}  // namespace skycap::missions::package

@@ -1,0 +1,169 @@
+#include "missions/package/fleet/timetable_proof.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "flight/fleet/timetable.h"
+#include "flight/interpreter/interpret.h"
+#include "flight/space/place_text.h"
+#include "geometry/error.h"
+#include "geometry/io/file.h"
+#include "missions/config/fleet.h"
+#include "missions/config/mission_flight.h"
+#include "missions/support/number_text.h"
+
+namespace skycap::missions::package {
+namespace {
+
+using Eigen::Vector3d;
+using support::short_text;
+
+/// Landings are written as they are computed; files round places to centimetres [s].
+constexpr double landing_tolerance = 0.5;
+
+std::string title_of(const TimetableRow& row) {
+  return "vehicle " + std::to_string(row.vehicle + 1) + ", " + row.file;
+}
+
+/// Rows with their flights.
+class Proof {
+ public:
+  Proof(const std::filesystem::path& path, const config::Mission& mission)
+      : path_(path), mission_(mission), rows_(read_timetable(path, mission)) {
+    for (const TimetableRow& row : rows_) {
+      flights_.push_back(flight_of(row));
+      vehicles_.push_back(row.vehicle);
+    }
+  }
+
+  TimetableProof run(double up_to) {
+    proof_.sorties = rows_.size();
+    for (std::size_t i = 0; i < rows_.size(); ++i) {
+      proof_.makespan = std::max(proof_.makespan, flights_[i].landing());
+      check_landing(i);
+      for (std::size_t j = 0; j < rows_.size(); ++j) check_pads_and_turns(i, j);
+    }
+    check_pairs(up_to);
+    return std::move(proof_);
+  }
+
+ private:
+  flight::TimedFlight flight_of(const TimetableRow& row) const {
+    const double jerk = mission_.flight.fleet.described.at(row.vehicle).mode.jerk;
+    return {flown_file(path_, row, mission_).script, jerk, row.start};
+  }
+
+  void check_landing(std::size_t i) {
+    const double landing = flights_[i].landing();
+    if (std::abs(landing - rows_[i].landing) <= landing_tolerance) return;
+    proof_.problems.push_back(title_of(rows_[i]) + " lands at " + short_text(landing) +
+                              " s, not at " + short_text(rows_[i].landing) + " s");
+  }
+
+  void check_pads_and_turns(std::size_t i, std::size_t j) {
+    const TimetableRow &one = rows_[i], &other = rows_[j];
+    if (one.vehicle == other.vehicle) {
+      if (one.sortie >= other.sortie || flights_[i].landing() <= other.start) return;
+      proof_.problems.push_back(title_of(other) + " starts at " + short_text(other.start) +
+                                " s, before " + one.file + " has landed");
+      return;
+    }
+    const double distance = distance_from(flights_[i].script, other.pad);
+    if (distance >= mission_.flight.clearance) return;
+    proof_.problems.push_back(title_of(one) + " comes within " + short_text(distance) +
+                              " m of the pad of vehicle " + std::to_string(other.vehicle + 1));
+  }
+
+  void check_pairs(double up_to) {
+    const flight::SeparationRule rule = config::separation_of(mission_);
+    proof_.distance = up_to;
+    for (std::size_t i = 0; i < rows_.size(); ++i) {
+      for (std::size_t j = i + 1; j < rows_.size(); ++j) {
+        if (vehicles_[i] == vehicles_[j]) continue;
+        proof_.distance = std::min(
+            proof_.distance, proven_distance(flights_[i], flights_[j], rule.tolerance, up_to));
+        const auto encounter = too_near(flights_[i], flights_[j], rule);
+        if (!encounter) continue;
+        proof_.problems.push_back(
+            title_of(rows_[i]) + " and " + title_of(rows_[j]) + " may come within " +
+            short_text(encounter->distance) + " m of each other, " + short_text(encounter->time) +
+            " s after the first start, at " + flight::place_text(encounter->first) + " and " +
+            flight::place_text(encounter->second));
+      }
+    }
+  }
+
+  const std::filesystem::path& path_;
+  const config::Mission& mission_;
+  std::vector<TimetableRow> rows_;
+  std::vector<flight::TimedFlight> flights_;
+  std::vector<std::size_t> vehicles_;
+  TimetableProof proof_;
+};
+
+}  // namespace
+
+FlownFile flown_file(const config::Mission& own, const std::string& content,
+                     flight::Format format) {
+  const flight::FlightFacts facts = config::flight_facts(own);
+  FlownFile flown{flight::interpret(content, format, facts), {}};
+  flight::throw_first(flown.route.problems, "is not flown");
+  if (flown.route.pieces.empty()) throw Error(ErrorKind::bad_file, "flies nowhere");
+  const flight::Motion motion(config::vehicle_of(own),
+                              config::route_options_of(own, facts.pad).conditions);
+  flown.script = script_of(flown.route, motion);
+  return flown;
+}
+
+FlownFile flown_file(const std::filesystem::path& path, const TimetableRow& row,
+                     const config::Mission& mission) {
+  const std::filesystem::path file = path.parent_path() / row.file;
+  const std::string content = geometry::read_file(file, flight::largest_route_file);
+  try {
+    return flown_file(config::as_flown_by(mission, row.vehicle, row.pad), content,
+                      flight::format_of_file(file, content));
+  } catch (const Error& error) {
+    throw Error(error.kind(), file.string() + ": " + error.what());
+  }
+}
+
+std::vector<flight::FleetFlight> fleet_flights(const std::filesystem::path& path,
+                                               const config::Mission& mission) {
+  std::vector<flight::FleetFlight> flights;
+  for (const TimetableRow& row : read_timetable(path, mission)) {
+    const config::Mission own = config::as_flown_by(mission, row.vehicle, row.pad);
+    const flight::Motion motion(config::vehicle_of(own),
+                                config::route_options_of(own, row.pad).conditions);
+    flights.push_back(
+        {{flown_file(path, row, mission).script, motion, std::nullopt}, row.vehicle, row.start});
+  }
+  return flights;
+}
+
+std::vector<Vector3d> left_by(const std::filesystem::path& path, const config::Mission& mission,
+                              std::size_t vehicle, double after) {
+  const double tolerance = config::separation_of(mission).tolerance;
+  std::vector<Vector3d> left;
+  for (const TimetableRow& row : read_timetable(path, mission)) {
+    if (row.vehicle != vehicle) continue;
+    const FlownFile flown = flown_file(path, row, mission);
+    double now = row.start;
+    std::size_t next = 0;
+    for (std::size_t i = 0; i < flown.script.size(); ++i) {
+      now += flown.script[i].duration();
+      if (next == flown.route.stops.size()) break;
+      const flight::FlownStop& stop = flown.route.stops[next];
+      if (stop.item != flown.route.pieces[i].to_item) continue;
+      ++next;
+      if (now + tolerance > after) left.push_back(stop.position);
+    }
+  }
+  return left;
+}
+
+TimetableProof prove_timetable(const std::filesystem::path& path, const config::Mission& mission,
+                               double up_to) {
+  return Proof(path, mission).run(up_to);
+}
+
+}  // namespace skycap::missions::package

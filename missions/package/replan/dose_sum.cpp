@@ -1,0 +1,76 @@
+#include "missions/package/replan/dose_sum.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace skycap::missions::package {
+namespace {
+
+constexpr float steps = 256.0F;          ///< of hazard 1
+constexpr std::size_t most_hazard = 16;  ///< from there on nothing is missing
+/// Shares and weights as whole numbers: together with a million targets they fit into 64 bits.
+constexpr double one_share = 0x1p24, one_weight = 0x1p20;
+
+/// exp(-hazard) by hazard.
+std::span<const std::uint64_t> missing_shares() {
+  static const auto table = [] {
+    std::array<std::uint64_t, most_hazard* static_cast<std::size_t>(steps)> shares{};
+    for (std::size_t i = 0; i < shares.size(); ++i) {
+      const double missing = std::exp(-static_cast<double>(i) / double{steps});
+      shares[i] = static_cast<std::uint64_t>(std::llround(one_share * missing));
+    }
+    return shares;
+  }();
+  return table;
+}
+
+}  // namespace
+
+std::vector<Dose> doses_of(std::span<const survey::skycap::Look> looks) {
+  std::vector<Dose> doses;
+  doses.reserve(looks.size());
+  for (const survey::skycap::Look& look : looks) {
+    doses.push_back({look.target, static_cast<std::uint32_t>(std::lround(steps * look.hazard))});
+  }
+  return doses;
+}
+
+DoseSum::DoseSum(std::span<const survey::skycap::GainField::Target> targets)
+    : shares_(missing_shares()), hazards_(targets.size(), 0) {
+  float heaviest = 0.0F;
+  for (const auto& target : targets) heaviest = std::max(heaviest, target.weight);
+  for (const auto& target : targets) {
+    weights_.push_back(
+        static_cast<std::uint64_t>(std::llround(one_weight * target.weight / heaviest)));
+    all_ += weights_.back() * shares_.front();
+  }
+  missing_ = all_;
+}
+
+void DoseSum::add(std::span<const Dose> doses) {
+  for (const Dose& dose : doses) {
+    missing_ -= missing(dose.target);
+    hazards_[dose.target] += dose.hazard;
+    missing_ += missing(dose.target);
+  }
+}
+
+void DoseSum::remove(std::span<const Dose> doses) {
+  for (const Dose& dose : doses) {
+    missing_ -= missing(dose.target);
+    hazards_[dose.target] -= dose.hazard;
+    missing_ += missing(dose.target);
+  }
+}
+
+double DoseSum::covered() const {
+  return 1.0 - static_cast<double>(missing_) / static_cast<double>(all_);
+}
+
+std::uint64_t DoseSum::missing(std::uint32_t target) const {
+  const std::uint32_t hazard = hazards_[target];
+  return hazard < shares_.size() ? weights_[target] * shares_[hazard] : 0;
+}
+
+}  // namespace skycap::missions::package

@@ -1,0 +1,70 @@
+#include "missions/package/verification/check_returns.h"
+
+#include <algorithm>
+
+#include "flight/export/export.h"
+#include "flight/way_home/least_return.h"
+#include "missions/config/mission_flight.h"
+#include "missions/package/verification/stated_return.h"
+#include "missions/support/number_text.h"
+
+namespace skycap::missions::package {
+namespace {
+
+using Eigen::Vector3d;
+using flight::Dialect;
+
+std::string metres(double length) { return support::short_text(length) + " m"; }
+
+}  // namespace
+
+ReturnCheck check_returns(const std::filesystem::path& file,
+                          const std::optional<double>& return_height,
+                          const config::Mission& mission, const flight::FreeSpace& space,
+                          const std::vector<Vector3d>& points) {
+  const std::optional<Dialect> dialect =
+      mission.flight.is_flown() ? dialect_of(file, config::vehicle_of(mission)) : std::nullopt;
+  if (!dialect || points.size() < 2) {
+    return {true, "returns are not checked: no autopilot flies home by this file"};
+  }
+  std::vector<flight::Segment> legs;
+  for (std::size_t i = 1; i < points.size(); ++i) legs.push_back({points[i - 1], points[i]});
+  const double ground = config::pad_of(mission, mission.scene.position).z();
+  flight::ReturnLaw law{.dialects = {*dialect},
+                        .landings = {{points[0].x(), points[0].y(), ground}},
+                        .landing_climb = config::takeoff_climb_of(mission)};
+  if (*dialect != Dialect::dji) {
+    const std::vector<Vector3d>& rally = mission.flight.rally;
+    law.landings.insert(law.landings.end(), rally.begin(), rally.end());
+  }
+  const double clearance =
+      std::max(0.0, flight::return_clearance(mission.flight.clearance) - flight::rounding_bound);
+
+  const auto stated = stated_height(file, return_height, *dialect);
+  if (stated && !stated->problems.empty()) {
+    return {false, "not safe, " + stated->by + ": " + stated->problems.front()};
+  }
+  std::string fault;
+  if (stated) {
+    law.level = ground + stated->height;
+    const flight::ReturnSearch proof = prove_returns(space, legs, law, clearance);
+    if (proof.found) {
+      return {true, "all returns at " + metres(stated->height) + " (" + stated->by +
+                        ") are proven, the nearest at " + metres(proof.found->clearance)};
+    }
+    fault = "not safe, at " + metres(stated->height) + " (" + stated->by + ") " + proof.why + "; ";
+  }
+  const double top = space.extent().isEmpty() ? ground : space.extent().max().z();
+  const flight::ReturnSearch least =
+      least_return(space, legs, law, config::highest_return(mission, ground, top), clearance);
+  if (!least.found) {
+    return {false, fault.empty() ? "not safe, no height of return is: " + least.why
+                                 : fault + "no other height is safe"};
+  }
+  const std::string needed = metres(least.found->height);
+  if (!fault.empty()) return {false, fault + "the least safe height of return is " + needed};
+  return {true, "the file does not say how high the vehicle returns: set it to " + needed +
+                    " above take-off, the least that is safe"};
+}
+
+}  // namespace skycap::missions::package

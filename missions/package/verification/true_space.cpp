@@ -1,0 +1,85 @@
+#include "missions/package/verification/true_space.h"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <utility>
+
+#include "flight/space/segment_distance.h"
+#include "missions/config/mission_flight.h"
+#include "missions/config/pad_grounds.h"
+
+namespace skycap::missions::package {
+namespace {
+
+using Eigen::Vector3d;
+
+/// The triangles of which some part is above that height.
+geometry::Mesh above(geometry::Mesh mesh, double height) {
+  std::erase_if(mesh.triangles, [&](const auto& triangle) {
+    return std::ranges::all_of(triangle,
+                               [&](auto vertex) { return mesh.vertices[vertex].z() < height; });
+  });
+  return mesh;
+}
+
+/// The triangles above and below the ground round a place.
+std::vector<flight::Triangle> triangles_at(const geometry::Mesh& mesh, const Vector3d& place,
+                                           double radius) {
+  const Eigen::AlignedBox2d around(place.head<2>().array() - radius,
+                                   place.head<2>().array() + radius);
+  std::vector<flight::Triangle> near;
+  for (const auto& [a, b, c] : mesh.triangles) {
+    const flight::Triangle triangle{mesh.vertices[a], mesh.vertices[b], mesh.vertices[c]};
+    Eigen::AlignedBox2d box;
+    for (const Vector3d& corner : triangle) box.extend(corner.head<2>());
+    if (around.intersects(box)) near.push_back(triangle);
+  }
+  return near;
+}
+
+/// Of all heights of the mesh there, within a metre of `z` and what a slope of 45 degrees explains,
+/// the one nearest to it.
+std::optional<double> height_at(const std::vector<flight::Triangle>& triangles,
+                                const Eigen::Vector2d& at, double z, double reach) {
+  const flight::Segment plumb{{at.x(), at.y(), z - reach}, {at.x(), at.y(), z + reach}};
+  constexpr double touching = 1e-6;
+  std::optional<double> height;
+  for (const flight::Triangle& triangle : triangles) {
+    const flight::NearestPoints pair = flight::nearest(plumb, triangle);
+    if (pair.squared_distance > touching * touching) continue;
+    const double met = pair.on_other.z();
+    if (!height || std::abs(met - z) < std::abs(*height - z)) height = met;
+  }
+  return height;
+}
+
+}  // namespace
+
+TrueSpace true_space(const config::Mission& mission, const geometry::Mesh& model,
+                     double pad_height) {
+  flight::Obstacles obstacles = config::flight_rules(mission);
+  obstacles.mesh = model;
+  flight::KnownSpace everywhere(obstacles);
+  obstacles.mesh = above(model, pad_height + flight::pad_roughness);
+  return {std::move(everywhere), flight::KnownSpace(without_ground(std::move(obstacles)))};
+}
+
+std::vector<flight::PadGround> true_grounds(const config::Mission& mission,
+                                            const geometry::Mesh& model, const Vector3d& pad) {
+  const double radius = config::pad_radius_of(mission);
+  std::vector<flight::PadGround> found;
+  for (const Vector3d& place : config::landings_of(mission, pad)) {
+    const std::vector<flight::Triangle> near = triangles_at(model, place, radius);
+    std::vector<Vector3d> heights;
+    for (const Eigen::Vector2d& at : flight::places_on(place, radius)) {
+      const auto height = height_at(near, at, place.z(), radius + 1.0);
+      if (height) heights.emplace_back(at.x(), at.y(), *height);
+    }
+    const auto ground = flight::pad_ground(place, heights, flight::GroundSource::scene);
+    if (ground) found.push_back(*ground);
+  }
+  return config::grounds_of(mission, pad, found);
+}
+
+}  // namespace skycap::missions::package

@@ -1,0 +1,178 @@
+#include "missions/scan/cloud_formats.h"
+
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <cstdio>
+
+#include "geometry/error.h"
+#include "missions/scan/las_format.h"
+#include "missions/scan/little_endian.h"
+
+namespace skycap::missions::scan {
+namespace {
+
+/// Beyond this, neighbouring single-precision numbers are 2 mm apart.
+constexpr double farthest_coordinate = 16384.0;
+
+CloudTotals totals_of(const sim::LidarReturns& returns) {
+  CloudTotals totals;  // what these formats' headers need
+  totals.points = returns.size();
+  return totals;
+}
+
+const std::vector<Eigen::Vector3f>& positions(const sim::LidarReturns& returns,
+                                              ReturnPosition position) {
+  return position == ReturnPosition::reported ? returns.points : returns.true_points;
+}
+
+std::vector<std::uint8_t> bytes_of(const std::string& text) { return {text.begin(), text.end()}; }
+
+/// PLY and PCD differ in their headers only.
+class RecordFormat : public CloudFormat {
+ public:
+  void encode(const sim::LidarReturns& returns, ReturnPosition position,
+              CloudChunk& chunk) const override {
+    constexpr std::size_t size = 28;
+    chunk.totals = totals_of(returns);
+    chunk.bytes.resize(returns.size() * size);
+    const auto& points = positions(returns, position);
+    std::uint8_t* out = chunk.bytes.data();
+    double farthest = 0.0;
+    for (std::size_t i = 0; i < returns.size(); ++i, out += size) {
+      const Eigen::Vector3d point = returns.origin + points[i].cast<double>();
+      farthest = std::max(farthest, point.cwiseAbs().maxCoeff());
+      for (int axis = 0; axis < 3; ++axis) store(out + 4UL * axis, static_cast<float>(point[axis]));
+      store(out + 12, returns.intensities[i]);
+      store(out + 16, returns.times[i]);
+      store(out + 24, returns.channels[i]);
+      out[26] = returns.return_numbers[i];
+      out[27] = returns.returns_of_shots[i];
+    }
+    if (farthest > farthest_coordinate) {
+      throw Error(ErrorKind::bad_geometry,
+                  "a point is " + std::to_string(farthest) +
+                      " m from the origin, too far for single precision; write LAS or xyz");
+    }
+  }
+};
+
+class PlyFormat final : public RecordFormat {
+ public:
+  std::vector<std::uint8_t> header(const CloudState& grown) const override {
+    const std::string count = std::to_string(grown.totals.points);
+    // The comment takes up what the number of points leaves.
+    return bytes_of(
+        "ply\nformat binary_little_endian 1.0\ncomment written by Skycap" +
+        std::string(20 - count.size(), ' ') + "\nelement vertex " + count +
+        "\nproperty float x\nproperty float y\nproperty float z\nproperty float intensity\n"
+        "property double time\nproperty ushort channel\nproperty uchar return_number\n"
+        "property uchar returns\nend_header\n");
+  }
+};
+
+class PcdFormat final : public RecordFormat {
+ public:
+  std::vector<std::uint8_t> header(const CloudState& grown) const override {
+    const std::string count = std::to_string(grown.totals.points);
+    return bytes_of("# .PCD v0.7 - Point Cloud Data file format, written by Skycap" +
+                    std::string(2 * (20 - count.size()), ' ') +
+                    "\nVERSION 0.7\nFIELDS x y z intensity time channel return_number returns\n"
+                    "SIZE 4 4 4 4 8 2 1 1\nTYPE F F F F F U U U\nCOUNT 1 1 1 1 1 1 1 1\n"
+                    "WIDTH " +
+                    count + "\nHEIGHT 1\nVIEWPOINT 0 0 0 1 0 0 0\nPOINTS " + count +
+                    "\nDATA binary\n");
+  }
+};
+
+class XyzFormat final : public CloudFormat {
+ public:
+  std::vector<std::uint8_t> header(const CloudState&) const override {
+    return bytes_of("# x y z intensity time channel return_number returns\n");
+  }
+
+  void encode(const sim::LidarReturns& returns, ReturnPosition position,
+              CloudChunk& chunk) const override {
+    constexpr std::size_t longest_line = 200;  // eight numbers below 1e15 in size
+    chunk.totals = totals_of(returns);
+    chunk.bytes.resize(returns.size() * longest_line);
+    const auto& points = positions(returns, position);
+    char* const begin = reinterpret_cast<char*>(chunk.bytes.data());
+    char* out = begin;
+    const auto put = [&](double number, int decimals) {
+      out = std::to_chars(out, out + 24, number, std::chars_format::fixed, decimals).ptr;
+      *out++ = ' ';
+    };
+    const auto put_whole = [&](unsigned number, char end) {
+      out = std::to_chars(out, out + 8, number).ptr;
+      *out++ = end;
+    };
+    for (std::size_t i = 0; i < returns.size(); ++i) {
+      const Eigen::Vector3d point = returns.origin + points[i].cast<double>();
+      for (int axis = 0; axis < 3; ++axis) put(point[axis], 4);
+      put(static_cast<double>(returns.intensities[i]), 4);
+      put(returns.times[i], 7);
+      put_whole(returns.channels[i], ' ');
+      put_whole(returns.return_numbers[i], ' ');
+      put_whole(returns.returns_of_shots[i], '\n');
+    }
+    chunk.bytes.resize(static_cast<std::size_t>(out - begin));
+  }
+};
+
+CoordinateGrid grid_of(const CloudFormatContext& context) {
+  CoordinateGrid grid;
+  Eigen::Vector3d centre = context.scene_centre;
+  if (context.projection != nullptr) {
+    grid.projection = context.projection;
+    grid.crs_wkt = context.projection->wkt();
+    centre = context.projection->to_map(centre);
+  }
+  // Whole kilometres: a local scene keeps the offset zero.
+  grid.offset = 1000.0 * (centre / 1000.0).array().round().matrix();
+  return grid;
+}
+
+const std::array<CloudFormatInfo, 7>& formats() {
+  using Context = CloudFormatContext;
+  static const std::array<CloudFormatInfo, 7> all = {{
+      {"las", ".las",
+       [](const Context& context) {
+         return las_format({6, grid_of(context)});
+       }},
+      {"las7", ".las",
+       [](const Context& context) {
+         return las_format({7, grid_of(context)});
+       }},
+      {"e57", ".e57",
+       [](const Context& context) { return e57_format(grid_of(context), context.sensor_name); }},
+      {"ply", ".ply", [](const Context&) { return ply_format(); }},
+      {"pcd", ".pcd", [](const Context&) { return pcd_format(); }},
+      {"xyz", ".xyz", [](const Context&) { return xyz_format(); }},
+      {"rawlog", ".rawlog", rawlog_format},
+  }};
+  return all;
+}
+
+}  // namespace
+
+std::shared_ptr<const CloudFormat> ply_format() { return std::make_shared<PlyFormat>(); }
+std::shared_ptr<const CloudFormat> pcd_format() { return std::make_shared<PcdFormat>(); }
+std::shared_ptr<const CloudFormat> xyz_format() { return std::make_shared<XyzFormat>(); }
+
+const CloudFormatInfo& cloud_format_named(const std::string& name) {
+  for (const CloudFormatInfo& format : formats()) {
+    if (format.name == name) return format;
+  }
+  throw Error(ErrorKind::bad_usage,
+              "there is no point format '" + name + "'; the formats are " + cloud_format_names());
+}
+
+std::string cloud_format_names() {
+  std::string names;
+  for (const CloudFormatInfo& format : formats())
+    names += (names.empty() ? "" : ", ") + format.name;
+  return names;
+}
+
+}  // namespace skycap::missions::scan

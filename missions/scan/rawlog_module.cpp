@@ -1,0 +1,192 @@
+// A rawlog of MRPT: observations one after another, each as MRPT's own library serialises it.
+#include "missions/scan/rawlog_module.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <numbers>
+#include <vector>
+
+#include <mrpt/io/CMemoryStream.h>
+#include <mrpt/maps/CPointsMapXYZI.h>
+#include <mrpt/obs/CObservationPointCloud.h>
+#include <mrpt/obs/CObservationRobotPose.h>
+#include <mrpt/obs/CObservationRotatingScan.h>
+#include <mrpt/serialization/CArchive.h>
+
+namespace skycap::missions::scan {
+namespace {
+
+using Eigen::Isometry3d;
+using Eigen::Vector3d;
+
+mrpt::poses::CPose3D mrpt_pose(const Isometry3d& pose) {
+  return mrpt::poses::CPose3D(mrpt::math::CMatrixDouble44(pose.matrix()));
+}
+
+class RawlogFormat final : public CloudFormat {
+ public:
+  explicit RawlogFormat(const RawlogSetup& setup) : setup_(setup) {
+    // Ranges are 16 bits: the smallest whole millimetres that reach far enough.
+    const double finest = setup.sensor.max_range / std::numeric_limits<std::uint16_t>::max();
+    range_step_ = 1e-3 * std::max(1.0, std::ceil(1e3 * finest));
+  }
+
+  std::vector<std::uint8_t> header(const CloudState&) const override { return {}; }
+
+  void encode(const sim::LidarReturns& returns, ReturnPosition position,
+              CloudChunk& chunk) const override {
+    chunk.totals = {};
+    chunk.totals.points = returns.size();
+    chunk.bytes.clear();
+    if (returns.size() == 0) return;
+    const SensorMotion& motion =
+        position == ReturnPosition::reported ? setup_.reported : setup_.actual;
+    const Piece piece = piece_of(returns, position, motion);
+    mrpt::io::CMemoryStream stream;
+    auto archive = mrpt::serialization::archiveFrom(stream);
+    archive << pose_observation(piece, motion);
+    if (setup_.sensor.prisms.empty()) archive << range_image(piece, returns, motion);
+    archive << point_cloud(piece, returns, motion);
+    const auto* bytes = static_cast<const std::uint8_t*>(stream.getRawBufferData());
+    chunk.bytes.assign(bytes, bytes + stream.getTotalBytesCount());
+  }
+
+ private:
+  // Returns as the sensor sees them.
+  struct Piece {
+    double time = 0.0;                   // of its first firing
+    std::uint64_t first = 0, count = 0;  // firings
+    std::vector<std::uint64_t> firings;  // of each return
+    std::vector<Vector3d> now;           // in the sensor's frame when the return was measured
+    std::vector<Vector3d> at_start;      // in the sensor's frame at `time`
+  };
+
+  double firing_time(std::uint64_t firing) const {
+    return setup_.start + static_cast<double>(firing) * setup_.sensor.firing_period;
+  }
+
+  Piece piece_of(const sim::LidarReturns& returns, ReturnPosition position,
+                 const SensorMotion& motion) const {
+    const auto& points =
+        position == ReturnPosition::reported ? returns.points : returns.true_points;
+    Piece piece;
+    for (std::size_t i = 0; i < returns.size(); ++i) {
+      const double since_start =
+          returns.times[i] - setup_.start - setup_.sensor.channels[returns.channels[i]].delay;
+      piece.firings.push_back(
+          static_cast<std::uint64_t>(std::llround(since_start / setup_.sensor.firing_period)));
+    }
+    const auto [least, most] = std::minmax_element(piece.firings.begin(), piece.firings.end());
+    piece.first = *least;
+    piece.count = *most - *least + 1;
+    piece.time = firing_time(piece.first);
+    const auto sensor_from_world = [&](double time) {
+      return (motion.world_from_carrier(time) * motion.carrier_from_sensor).inverse();
+    };
+    const Isometry3d start_from_world = sensor_from_world(piece.time);
+    for (std::size_t i = 0; i < returns.size(); ++i) {
+      const Vector3d world = returns.origin + points[i].cast<double>();
+      piece.now.push_back(sensor_from_world(returns.times[i]) * world);
+      piece.at_start.push_back(start_from_world * world);
+    }
+    return piece;
+  }
+
+  template <typename Observation>
+  void label(Observation& observation, const Piece& piece, const char* name) const {
+    observation.timestamp = mrpt::Clock::fromDouble(piece.time);
+    observation.sensorLabel = name;
+  }
+
+  mrpt::obs::CObservationRobotPose pose_observation(const Piece& piece,
+                                                    const SensorMotion& motion) const {
+    mrpt::obs::CObservationRobotPose observation;
+    label(observation, piece, "CARRIER");
+    observation.pose.mean = mrpt_pose(motion.world_from_carrier(piece.time));
+    return observation;
+  }
+
+  double encoder(std::uint64_t firing) const {
+    const double turns =
+        setup_.sensor.rotation_rate * static_cast<double>(firing) * setup_.sensor.firing_period;
+    return 2.0 * std::numbers::pi * (turns - std::floor(turns));
+  }
+
+  // Where the laser beam leaves the sensor.
+  Vector3d exit_of(std::uint64_t firing, const sim::Channel& channel) const {
+    const double angle =
+        encoder(firing) + 2.0 * std::numbers::pi * setup_.sensor.rotation_rate * channel.delay;
+    const double radius = setup_.sensor.radial_offset;
+    return {radius * std::cos(angle), radius * std::sin(angle), channel.height};
+  }
+
+  mrpt::obs::CObservationRotatingScan range_image(const Piece& piece,
+                                                  const sim::LidarReturns& returns,
+                                                  const SensorMotion& motion) const {
+    const sim::LidarConfig& sensor = setup_.sensor;
+    mrpt::obs::CObservationRotatingScan scan;
+    label(scan, piece, "LIDAR_RANGES");
+    scan.originalReceivedTimestamp = scan.timestamp;
+    scan.rowCount = static_cast<std::uint16_t>(sensor.channels.size());
+    scan.columnCount = static_cast<std::uint16_t>(piece.count);
+    scan.rangeImage.resize(scan.rowCount, scan.columnCount);
+    scan.rangeImage.fill(0);
+    scan.intensityImage.resize(scan.rowCount, scan.columnCount);
+    scan.intensityImage.fill(0);
+    scan.rangeResolution = range_step_;
+    scan.startAzimuth = std::remainder(encoder(piece.first), 2.0 * std::numbers::pi);
+    const double duration = static_cast<double>(piece.count) * sensor.firing_period;
+    scan.azimuthSpan = 2.0 * std::numbers::pi * sensor.rotation_rate * duration;
+    scan.sweepDuration = duration;
+    scan.lidarModel = setup_.sensor_name;
+    scan.minRange = sensor.min_range;
+    scan.maxRange = sensor.max_range;
+    scan.sensorPose = mrpt_pose(motion.carrier_from_sensor);
+    for (std::size_t i = 0; i < returns.size(); ++i) {
+      const std::uint64_t firing = piece.firings[i];
+      const int row = returns.channels[i], column = static_cast<int>(firing - piece.first);
+      const double range =
+          (piece.now[i] - exit_of(firing, sensor.channels[returns.channels[i]])).norm();
+      const auto steps =
+          static_cast<std::uint16_t>(std::clamp<long>(std::lround(range / range_step_), 1, 65535));
+      // The image has the strongest return of a shot; the others are in the point cloud.
+      const auto brightness = static_cast<std::uint8_t>(
+          std::lround(255.0F * std::clamp(returns.intensities[i], 0.0F, 1.0F)));
+      if (scan.rangeImage(row, column) != 0 && scan.intensityImage(row, column) >= brightness) {
+        continue;
+      }
+      scan.rangeImage(row, column) = steps;
+      scan.intensityImage(row, column) = brightness;
+    }
+    return scan;
+  }
+
+  mrpt::obs::CObservationPointCloud point_cloud(const Piece& piece,
+                                                const sim::LidarReturns& returns,
+                                                const SensorMotion& motion) const {
+    auto points = mrpt::maps::CPointsMapXYZI::Create();
+    points->reserve(returns.size());
+    for (std::size_t i = 0; i < returns.size(); ++i) {
+      const Eigen::Vector3f point = piece.at_start[i].cast<float>();
+      points->insertPointRGB(point.x(), point.y(), point.z(), returns.intensities[i], 0.0F, 0.0F);
+    }
+    mrpt::obs::CObservationPointCloud observation;
+    label(observation, piece, "LIDAR_POINTS");
+    observation.pointcloud = points;
+    observation.sensorPose = mrpt_pose(motion.carrier_from_sensor);
+    return observation;
+  }
+
+  RawlogSetup setup_;
+  double range_step_ = 1e-3;
+};
+
+}  // namespace
+}  // namespace skycap::missions::scan
+
+extern "C" [[gnu::visibility("default")]] skycap::missions::scan::CloudFormat*
+skycap_make_rawlog_format(const skycap::missions::scan::RawlogSetup& setup) {
+  return new skycap::missions::scan::RawlogFormat(setup);
+}

@@ -1,0 +1,253 @@
+#include "missions/session/survey_flight.h"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <string>
+#include <utility>
+
+#include "flight/paths/path.h"
+#include "flight/route/route.h"
+#include "flight/space/clearance.h"
+#include "flight/space/interruptible_space.h"
+#include "flight/way_home/ways_home.h"
+#include "geometry/error.h"
+#include "geometry/parallel.h"
+#include "geometry/place/camera.h"
+#include "missions/config/mission_flight.h"
+#include "missions/config/pad_grounds.h"
+#include "missions/config/survey_sensor.h"
+#include "missions/session/way_frames.h"
+#include "missions/support/number_text.h"
+#include "survey/planner.h"
+
+namespace skycap::missions::session {
+
+using Eigen::Vector3d;
+
+double FlownSurvey::length() const {
+  double sum = 0.0;
+  for (const FlownLeg& leg : legs) sum += flight::length(leg.points);
+  return sum;
+}
+
+double FlownSurvey::min_clearance() const {
+  return std::ranges::min_element(legs, {}, &FlownLeg::clearance)->clearance;
+}
+
+struct SurveyFlight::Impl {
+  explicit Impl(const config::Mission& mission)
+      : vehicle(config::vehicle_of(mission)),
+        camera(mission.sensor.camera.camera),
+        measured(std::make_shared<flight::MeasuredSpace>(config::measured_space_of(mission))),
+        rules(config::flight_rules(mission)),
+        known({measured.get(), &rules}),
+        space(known),
+        finder(space, config::clearance_of(mission).total(),
+               config::route_options_of(mission, {}).path),
+        motion(mission),
+        mount(mission.sensor.mount),
+        is_crowded(!mission.flight.unknown_beside.empty()),
+        frame_period(mission.sensor.frame_period),
+        threads(mission.threads) {
+    if (mount) rays = config::sweep_rays_of(mission);
+  }
+
+  void take_in_sweep(const geometry::Scan& scan) {
+    if (rays) {
+      measured->insert(scan, *rays, threads);
+    } else {
+      measured->insert_points(scan, threads);
+    }
+  }
+
+  /// The vehicle at a view: itself without a gimbal.
+  geometry::View carrier(const geometry::View& view) const {
+    return mount ? config::nose_view(*mount, view) : view;
+  }
+
+  std::optional<FlownLeg> proven(std::vector<Vector3d> points) const {
+    FlownLeg way{std::move(points), finder.clearance() + flight::reported_surplus};
+    for (std::size_t i = 1; i < way.points.size(); ++i) {
+      const flight::LegProof proof =
+          flight::prove(space, {way.points[i - 1], way.points[i]}, finder.clearance(),
+                        finder.clearance() + flight::reported_surplus);
+      if (!proof.is_proven) return std::nullopt;
+      way.clearance = std::min(way.clearance, proof.clearance);
+    }
+    return way;
+  }
+
+  std::optional<FlownLeg> find_way(const Vector3d& from, const Vector3d& to) {
+    flight::Path path = finder.find(from, to);
+    if (path.status != flight::PathStatus::found) return std::nullopt;
+    return proven(std::move(path.points));
+  }
+
+  /// The same with a certified way home from all of its points, if those are asked for.
+  std::optional<FlownLeg> find_returnable_way(const Vector3d& from, const Vector3d& to) {
+    if (!ways_home) return find_way(from, to);
+    if (!ways_home->why_none(to).empty()) return std::nullopt;
+    flight::Path path = finder.find(from, to);
+    if (path.status != flight::PathStatus::found) return std::nullopt;
+    return proven(ways_home->with_returns(std::move(path.points), worthwhile_saving));
+  }
+
+  flight::Vehicle vehicle;
+  geometry::Camera camera;
+  std::shared_ptr<flight::MeasuredSpace> measured;
+  flight::KnownSpace rules;
+  flight::JointSpace known;
+  flight::InterruptibleSpace space;
+  flight::PathFinder finder;
+  WayMotion motion;
+  std::optional<config::ScannerMount> mount;  ///< of a scanner
+  std::optional<flight::SweepRays> rays;      ///< of its scans, if they prove space free
+  /// If its ways are those of the written mission, too, from which autopilots return by themselves.
+  std::optional<flight::WaysHome> ways_home;
+  double worthwhile_saving = 0.0;  ///< that corners of such ways are worth [m]
+  /// Among neighbours most places beside the target are not free, and to look for ways to them in
+  /// vain takes long.
+  bool is_crowded;
+  double frame_period;
+  unsigned threads;
+  std::stop_token stop;
+  FlownLeg leg;  ///< that the next fly() takes
+  Vector3d above_pad = Vector3d::Zero();
+  std::vector<flight::PadScan> pads;
+  FlownSurvey survey;
+};
+
+SurveyFlight::SurveyFlight(const config::Mission& mission, const geometry::View& first_view)
+    : impl_(std::make_unique<Impl>(mission)) {
+  impl_->survey.pad = config::pad_of(mission, first_view.position);
+  const Vector3d home = impl_->survey.pad + Vector3d(0.0, 0.0, config::takeoff_climb_of(mission));
+  impl_->above_pad = home;
+  if (impl_->mount) {
+    const flight::RouteOptions options = config::route_options_of(mission, impl_->survey.pad);
+    impl_->worthwhile_saving = options.path.worthwhile_saving;
+    impl_->ways_home.emplace(impl_->space, planning_law(options, home.z()), home,
+                             impl_->finder.clearance());
+  }
+  const auto refuse = [&](const std::string& place, const Vector3d& at, const std::string& cure) {
+    const double clearance = impl_->finder.clearance();
+    const flight::Closest closest = impl_->space.closest({at, at}, clearance + 1e-3);
+    const std::string why = closest.distance < clearance
+                                ? "is " + support::short_text(closest.distance) + " m from " +
+                                      impl_->space.name(closest)
+                                : "cannot be reached through space that is known to be free";
+    throw Error(ErrorKind::bad_config,
+                place + " at (" + support::short_text(at.x()) + ", " + support::short_text(at.y()) +
+                    ", " + support::short_text(at.z()) + ") " + why + ", at a clearance of " +
+                    support::short_text(clearance) + " m; " + cure);
+  };
+  if (!impl_->space.is_free({home, home}, impl_->finder.clearance())) {
+    refuse("the place above the take-off pad", home,
+           "move flight.takeoff, raise flight.takeoff_climb, or shrink flight.unknown_box");
+  }
+  flight::check_grounds(config::grounds_of(mission, impl_->survey.pad, {}),
+                        config::ground_limits_of(mission));
+  for (const Vector3d& place : config::landings_of(mission, impl_->survey.pad)) {
+    impl_->pads.emplace_back(place, config::pad_radius_of(mission));
+  }
+  if (!can_reach(home, first_view)) {
+    refuse("the first view", first_view.position,
+           "give another start.position (or seed), within the gimbal's limits and outside of "
+           "flight.unknown_box");
+  }
+}
+
+SurveyFlight::~SurveyFlight() = default;
+
+bool SurveyFlight::may_be_at(const Vector3d& place) const try {
+  if (impl_->is_crowded && !impl_->space.is_free({place, place}, impl_->finder.clearance())) {
+    return false;
+  }
+  return !impl_->ways_home || impl_->ways_home->why_none(place).empty();
+} catch (const Error&) {
+  if (impl_->stop.stop_requested()) throw survey::Interrupted();
+  throw;
+}
+
+bool SurveyFlight::can_reach(const Vector3d& from, const geometry::View& to) try {
+  if (flight::can_look(impl_->vehicle, impl_->carrier(to))) {
+    if (auto way = impl_->find_returnable_way(from, to.position)) {
+      impl_->leg = std::move(*way);
+      return true;
+    }
+  }
+  ++impl_->survey.refused;
+  return false;
+} catch (const Error&) {
+  if (impl_->stop.stop_requested()) throw survey::Interrupted();
+  throw;
+}
+
+void SurveyFlight::stop_on(std::stop_token stop) {
+  impl_->stop = stop;
+  impl_->space.stop_on(std::move(stop));
+}
+
+const FlownLeg& SurveyFlight::way() const { return impl_->leg; }
+
+std::vector<ViewInFlight> SurveyFlight::frames(const geometry::View& from,
+                                               const geometry::View& to) const {
+  std::vector<ViewInFlight> frames = impl_->motion.frames(impl_->leg, impl_->carrier(from),
+                                                          impl_->carrier(to), impl_->frame_period);
+  if (!impl_->mount) return frames;
+  for (ViewInFlight& frame : frames) frame.view = config::scanner_view(*impl_->mount, frame.view);
+  return frames;
+}
+
+double SurveyFlight::time(const geometry::View& from, const geometry::View& to) const {
+  return impl_->motion.time(impl_->leg, impl_->carrier(from), impl_->carrier(to)) +
+         impl_->motion.rest();
+}
+
+std::optional<FlownLeg> SurveyFlight::find_way(const Vector3d& from, const Vector3d& to) {
+  return impl_->find_way(from, to);
+}
+
+const Vector3d& SurveyFlight::pad() const { return impl_->survey.pad; }
+
+const Vector3d& SurveyFlight::above_pad() const { return impl_->above_pad; }
+
+std::size_t SurveyFlight::refused() const { return impl_->survey.refused; }
+
+void SurveyFlight::take_way(FlownLeg way, std::size_t refused) {
+  impl_->leg = std::move(way);
+  impl_->survey.refused = refused;
+}
+
+void SurveyFlight::fly() { impl_->survey.legs.push_back(std::move(impl_->leg)); }
+
+void SurveyFlight::take_in(const geometry::Scan& scan) {
+  geometry::parallel_for(2, impl_->threads, [&](std::size_t part) {
+    if (part == 0) {
+      if (impl_->mount) {
+        impl_->take_in_sweep(scan);
+      } else {
+        impl_->measured->insert(scan, impl_->camera, impl_->threads);
+      }
+    } else {
+      for (flight::PadScan& pad : impl_->pads) pad.take_in(scan.points);
+    }
+  });
+  impl_->finder.forget();
+}
+
+FlownSurvey SurveyFlight::finish(const std::vector<geometry::View>& views) {
+  // Less the way to a scan that counts as not taken, if planning was interrupted.
+  if (impl_->survey.legs.size() > views.size()) impl_->survey.legs.resize(views.size());
+  std::vector<geometry::View> carriers;
+  carriers.reserve(views.size());
+  for (const geometry::View& view : views) carriers.push_back(impl_->carrier(view));
+  impl_->survey.times = impl_->motion.survey_times(impl_->survey.legs, carriers);
+  impl_->survey.measured = std::move(impl_->measured);
+  for (const flight::PadScan& pad : impl_->pads) {
+    if (const auto ground = pad.ground()) impl_->survey.grounds.push_back(*ground);
+  }
+  return std::move(impl_->survey);
+}
+
+}  // namespace skycap::missions::session

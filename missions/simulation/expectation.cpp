@@ -1,0 +1,111 @@
+#include "missions/simulation/expectation.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <limits>
+#include <memory>
+#include <vector>
+
+#include "geometry/surfaces/mesh.h"
+#include "missions/config/mission_flight.h"
+#include "missions/config/planner_factory.h"
+#include "missions/config/planner_titles.h"
+#include "missions/config/survey_sensor.h"
+#include "missions/simulation/omniscient.h"
+#include "missions/simulation/survey_runner.h"
+
+namespace skycap::missions::simulation {
+namespace {
+
+using geometry::View;
+
+constexpr OmniscientConfig few{.candidates = 400, .samples = 2000, .wanted_coverage = {}};
+
+// Bytes of the whole program, from the peaks of the shipped missions' surveys.
+constexpr double of_program = 5e7;
+constexpr double a_triangle = 150.0;
+constexpr double a_pixel = 50.0;
+constexpr double a_point = 60.0;
+constexpr double packing = 0.7;  // stored points on a square of their spacing
+
+/// Views of a planner over those of one who knows the scene, in the surveys of docs/.
+struct Share {
+  double least, most;
+};
+
+Share share_of(const config::Mission& mission) {
+  switch (mission.planner.name) {
+    case config::PlannerName::skycap:
+      return {1.1, 2.0};
+    case config::PlannerName::see_plus_plus:
+      return {1.3, 4.0};
+    default:
+      return {6.0, 9.0};
+  }
+}
+
+double way_of(const std::vector<View>& views) {
+  double way = 0.0;
+  for (std::size_t i = 1; i < views.size(); ++i) {
+    way += (views[i].position - views[i - 1].position).norm();
+  }
+  return way;
+}
+
+/// Minutes for so many views, if ways between them grow as their number's root: a tour's do.
+double minutes_of(const config::Mission& mission, const std::vector<View>& known, double views) {
+  const bool is_flown = mission.flight.is_flown();
+  const double speed = is_flown ? mission.flight.cruise_speed : mission.limits.speed;
+  const double stop = is_flown ? config::hold_of(mission) + config::hold_after_of(mission)
+                               : mission.limits.time_per_view;
+  const double more = std::sqrt(views / static_cast<double>(known.size()));
+  constexpr double seconds_per_minute = 60.0;
+  return (way_of(known) * more / speed + views * stop) / seconds_per_minute;
+}
+
+double memory_of(const config::Mission& mission, const evaluation::SurveyScene& scene,
+                 double views) {
+  const auto pixels =
+      static_cast<double>(mission.sensor.camera.camera.width) * mission.sensor.camera.camera.height;
+  const double spacing = mission.planner.see.effective_spacing();
+  const double area = geometry::surface_area(scene.model());
+  const double points = std::min(packing * area / (spacing * spacing), views * pixels);
+  return of_program + a_triangle * static_cast<double>(scene.model().triangles.size()) +
+         a_pixel * pixels + a_point * points;
+}
+
+/// Seconds to measure and plan the first view.
+double time_of_a_view(const config::Mission& mission, const evaluation::SurveyScene& scene,
+                      unsigned threads) {
+  const auto planner = config::make_planner(trial_mission(mission, scene, mission.seed), threads);
+  const config::SurveySensor sensor(mission.sensor, mission.seed);
+  const auto begun = std::chrono::steady_clock::now();
+  planner->next_view(sensor.scan(scene.scene(), scene.first_view(mission.seed), 0, threads));
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - begun).count();
+}
+
+}  // namespace
+
+Expectation expectation(const config::Mission& mission, const evaluation::SurveyScene& scene,
+                        unsigned threads) {
+  const std::vector<View> known = known_cover(mission, scene, mission.seed, threads, few);
+  const double limit = static_cast<double>(config::view_limit(mission));
+  const auto count = static_cast<double>(known.size());
+  const bool is_volumetric = config::title_of(mission.planner.name).metric.has_value();
+  const Share share = share_of(mission);
+  const double least = is_volumetric ? limit : std::min(limit, std::round(share.least * count));
+  const double most = is_volumetric ? limit : std::min(limit, std::round(share.most * count));
+  const double minutes = mission.limits.max_minutes.value_or(std::numeric_limits<double>::max());
+  const double time = time_of_a_view(mission, scene, threads);
+  return {.known_views = known.size(),
+          .least_views = static_cast<std::size_t>(least),
+          .most_views = static_cast<std::size_t>(most),
+          .least_minutes = std::min(minutes, minutes_of(mission, known, least)),
+          .most_minutes = std::min(minutes, minutes_of(mission, known, most)),
+          .memory = memory_of(mission, scene, most),
+          .least_time = time * least,
+          .most_time = time * most};
+}
+
+}  // namespace skycap::missions::simulation

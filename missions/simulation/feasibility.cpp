@@ -1,0 +1,230 @@
+#include "missions/simulation/feasibility.h"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <span>
+
+#include <fmt/format.h>
+
+#include "geometry/error.h"
+#include "geometry/place/camera.h"
+#include "geometry/surfaces/mesh.h"
+#include "missions/config/mission_flight.h"
+#include "missions/config/site.h"
+#include "missions/config/survey_sensor.h"
+#include "missions/evaluation/coverage.h"
+#include "missions/session/survey_flight.h"
+#include "missions/simulation/survey_runner.h"
+
+namespace skycap::missions::simulation {
+namespace {
+
+using Eigen::AlignedBox3d;
+using Eigen::Vector3d;
+using Eigen::Vector3f;
+
+// Far beyond what a survey of the largest site takes: another unit was meant.
+constexpr double most_views = 1e5;
+constexpr std::size_t places_asked_for = 2000;  // of the surface, whether anything sees them
+constexpr double little = 0.1;                  // share of them that is a warning
+constexpr double cut_off = 0.02;                // share of the surface, outside of a box
+
+std::string text_of(const Vector3d& place) {
+  return fmt::format("({:.4g}, {:.4g}, {:.4g})", place.x(), place.y(), place.z());
+}
+
+/// All problems are told, though one may follow from another: what to do about it is said of each.
+class Inspection {
+ public:
+  Inspection(const config::Mission& mission, const evaluation::SurveyScene& scene, unsigned threads)
+      : mission_(mission),
+        scene_(scene),
+        threads_(threads),
+        camera_(mission.sensor.camera.camera),
+        bounds_(geometry::bounding_box(scene.model())),
+        longest_(bounds_.sizes().maxCoeff()),
+        distance_(scene.view_distance()) {}
+
+  Feasibility found() {
+    check_first_view();
+    check_size();
+    check_distances();
+    check_boxes();
+    check_density();
+    check_places();
+    return std::move(found_);
+  }
+
+ private:
+  template <class... Values>
+  void problem(fmt::format_string<Values...> text, Values&&... values) {
+    found_.problems.push_back(fmt::format(text, std::forward<Values>(values)...));
+  }
+  template <class... Values>
+  void warn(fmt::format_string<Values...> text, Values&&... values) {
+    found_.warnings.push_back(fmt::format(text, std::forward<Values>(values)...));
+  }
+
+  void check_size() {
+    const double footprint = distance_ * distance_ * camera_.width() * camera_.height() /
+                             camera_.focal_length_px().prod();
+    const double views = geometry::surface_area(scene_.model()) / footprint;
+    if (views > most_views) {
+      problem(
+          "the model is {:.4g} m long, and from the view distance of {:.4g} m a view covers {:.3g} "
+          "m^2: over {:.2g} views; if the model is in millimetres, give scene.scale: 0.001, else "
+          "raise planner.view_distance",
+          longest_, distance_, footprint, views);
+    }
+    const double radius = mission_.evaluation.registration_distance;
+    if (longest_ < 2.0 * radius) {
+      problem(
+          "the model is {:.4g} m long, less than twice evaluation.registration_distance of {:.4g} "
+          "m: one point would cover it; check its unit (scene.scale), or lower the distance",
+          longest_, radius);
+    }
+  }
+
+  void check_distances() {
+    const double stand_off = config::view_limits(mission_).stand_off;
+    if (stand_off >= distance_) {
+      problem(
+          "{} of {:.4g} m is not less than the view distance of {:.4g} m: no view is so near to "
+          "what it looks at; lower it, or raise planner.view_distance",
+          stand_off > mission_.limits.stand_off ? "flight.clearance" : "limits.stand_off",
+          stand_off, distance_);
+    }
+    const geometry::CameraConfig& camera = camera_.config();
+    if (camera.max_range <= distance_) {
+      problem(
+          "the sensor measures up to {:.4g} m, and the view distance is {:.4g} m; lower "
+          "planner.view_distance, or raise sensor.max_range",
+          camera.max_range, distance_);
+    }
+    if (camera.min_range >= distance_) {
+      problem(
+          "the sensor measures from {:.4g} m on, and the view distance is {:.4g} m; raise "
+          "planner.view_distance, or lower sensor.min_range",
+          camera.min_range, distance_);
+    }
+  }
+
+  /// The share of the surface outside of a box, but for what lies on its faces.
+  double share_outside(AlignedBox3d box) const {
+    const double slack = mission_.evaluation.registration_distance;
+    box = AlignedBox3d(box.min().array() - slack, box.max().array() + slack);
+    const auto& points = scene_.samples().points;
+    const auto outside = std::ranges::count_if(
+        points, [&](const Vector3f& point) { return !box.contains(point.cast<double>()); });
+    return static_cast<double>(outside) / static_cast<double>(points.size());
+  }
+
+  void check_boxes() {
+    const std::string reach = text_of(bounds_.min()) + " to " + text_of(bounds_.max());
+    if (const auto& box = mission_.planner.see.scene_box) {
+      const double outside = share_outside(*box);
+      if (outside >= 1.0) {
+        problem("planner.scene_box holds nothing of the model, which reaches from {}; move it",
+                reach);
+      } else if (outside > cut_off) {
+        warn(
+            "planner.scene_box leaves {:.3g} % of the surface out, which no survey then covers; "
+            "widen it to hold the model, {}",
+            100.0 * outside, reach);
+      }
+    }
+    if (!mission_.flight.is_flown()) return;
+    const double outside = share_outside(config::unknown_box_of(mission_));
+    if (outside > cut_off) {
+      problem(
+          "{} leaves {:.3g} % of the surface out, where the vehicle would take all for free; widen "
+          "it to hold the model, {}",
+          mission_.flight.unknown_box ? "flight.unknown_box" : "planner.scene_box", 100.0 * outside,
+          reach);
+    }
+  }
+
+  void check_density() {
+    const double rays = camera_.focal_length_px().prod() / (distance_ * distance_);  // a m^2
+    const double radius = mission_.evaluation.registration_distance;
+    // Four rays round a sample are half a diagonal of their square away from it at most.
+    const double gap = std::sqrt(0.5 / rays);
+    if (gap > radius) {
+      warn(
+          "from the view distance of {:.4g} m rays meet a wall {:.3g} m apart, so that a view "
+          "covers only some of what it sees within evaluation.registration_distance of {:.4g} m; "
+          "lower planner.view_distance to {:.4g} m",
+          distance_, std::sqrt(1.0 / rays), radius, distance_ * radius / gap);
+    }
+    const double spacing = mission_.planner.see.effective_spacing();
+    if (spacing > std::sqrt(3.0) * radius) {  // even points in a hexagonal lattice leave holes
+      warn(
+          "points are stored {:.4g} m apart, and evaluation.registration_distance is {:.4g} m: "
+          "what lies between them does not count; lower planner.spacing to {:.4g} m",
+          spacing, radius, 0.8 * radius);
+    }
+  }
+
+  void check_places() {
+    const auto& all = scene_.samples().points;
+    const std::size_t step = std::max<std::size_t>(1, all.size() / places_asked_for);
+    std::vector<Vector3f> some;
+    for (std::size_t i = 0; i < all.size(); i += step) some.push_back(all[i]);
+    const double share = evaluation::marked_share(
+        evaluation::visible_samples(some, scene_.scene(), scene_.admissible(), threads_));
+    const char* remedy =
+        "loosen the heights, the fence and the gimbal's pitches, or lower limits.stand_off, "
+        "flight.clearance or evaluation.radius";
+    if (share == 0.0) {
+      problem("nothing of the model can be seen from {:.4g} m away and where the limits allow; {}",
+              distance_, remedy);
+    } else if (share < little) {
+      warn("only {:.2g} % of the surface can be seen from where the limits allow; {}",
+           100.0 * share, remedy);
+    }
+  }
+
+  void check_first_view() {
+    try {
+      const geometry::View first = scene_.first_view(mission_.seed);
+      const geometry::Scan scan = config::SurveySensor(mission_.sensor, mission_.seed)
+                                      .scan(scene_.scene(), first, 0, threads_);
+      const auto& box = mission_.planner.see.scene_box;
+      const bool sees = std::ranges::any_of(scan.points, [&](const Vector3f& point) {
+        return !box || box->contains(point.cast<double>());
+      });
+      if (!sees) {
+        problem("the first scan holds no point of the scene; start from a place that sees it");
+      } else if (mission_.flight.is_flown()) {
+        const session::SurveyFlight way(mission_, first);
+      }
+    } catch (const Error& error) {
+      problem("{}", error.what());
+    }
+  }
+
+  const config::Mission& mission_;
+  const evaluation::SurveyScene& scene_;
+  unsigned threads_;
+  geometry::Camera camera_;
+  AlignedBox3d bounds_;
+  double longest_, distance_;
+  Feasibility found_;
+};
+
+}  // namespace
+
+Feasibility feasibility(const config::Mission& mission, const evaluation::SurveyScene& scene,
+                        unsigned threads) {
+  return Inspection(mission, scene, threads).found();
+}
+
+void require_feasible(const config::Mission& mission, const evaluation::SurveyScene& scene,
+                      unsigned threads) {
+  const Feasibility found = feasibility(mission, scene, threads);
+  if (found.problems.empty()) return;
+  throw Error(ErrorKind::bad_config, fmt::format("{}", fmt::join(found.problems, "; and ")));
+}
+
+}  // namespace skycap::missions::simulation

@@ -1,0 +1,51 @@
+#include "missions/simulation/measurement.h"
+
+#include <utility>
+
+#include "missions/config/mission_flight.h"
+
+namespace skycap::missions::simulation {
+namespace {
+
+/// Keeps the noise of a mission that is flown again apart from the survey's.
+constexpr std::uint64_t flown_again_stream = 0x666c6f776e206167;
+
+}  // namespace
+
+Measurement::Measurement(const config::Mission& mission, const evaluation::SurveyScene& scene,
+                         std::uint64_t seed, unsigned threads)
+    : scene_(scene),
+      threads_(threads),
+      sensor_(mission.sensor, seed),
+      box_(mission.planner.see.scene_box.value_or(Eigen::AlignedBox3d())),
+      cloud_(mission.planner.see.effective_spacing()),
+      meter_(scene.samples().points, mission.evaluation.registration_distance) {}
+
+std::vector<Eigen::Vector3f> Measurement::take(const geometry::View& view, std::size_t number) {
+  const geometry::Scan scan = sensor_.scan(scene_.scene(), view, number, threads_);
+  std::vector<Eigen::Vector3f> stored = cloud_.store(scan.points, box_);
+  meter_.add(stored);
+  return stored;
+}
+
+CoveredAgain covered_when_flown_again(const config::Mission& mission,
+                                      const evaluation::SurveyScene& scene,
+                                      const std::vector<session::ViewInFlight>& views,
+                                      std::uint64_t seed, unsigned threads) {
+  CarriedSensor sensor(mission, seed ^ flown_again_stream);
+  const double near = mission.evaluation.registration_distance;
+  evaluation::CoverageMeter stored(scene.samples().points, near),
+      measured(scene.samples().points, near);
+  evaluation::ThinnedCloud cloud(mission.planner.see.effective_spacing());
+  const Eigen::AlignedBox3d box = mission.planner.see.scene_box.value_or(Eigen::AlignedBox3d());
+  const bool keeps_all = config::scans_in_flight(mission);
+  geometry::Scan scan;
+  for (std::size_t i = 0; i < views.size(); ++i) {
+    scan = sensor.scan(scene.scene(), views[i], i, threads, std::move(scan));
+    measured.add(scan.points);
+    if (!keeps_all) stored.add(cloud.store(scan.points, box));
+  }
+  return {keeps_all ? measured.is_covered() : stored.is_covered(), measured.is_covered()};
+}
+
+}  // namespace skycap::missions::simulation

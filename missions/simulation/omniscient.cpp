@@ -1,0 +1,233 @@
+#include "missions/simulation/omniscient.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <random>
+#include <utility>
+#include <vector>
+
+#include "geometry/parallel.h"
+#include "geometry/place/camera.h"
+#include "geometry/place/pose.h"
+#include "missions/evaluation/coverage.h"
+#include "missions/evaluation/evaluation.h"
+#include "missions/simulation/measurement.h"
+#include "sim/sensors/depth_camera.h"
+#include "survey/skycap/dose_model.h"
+
+namespace skycap::missions::simulation {
+namespace {
+
+using Eigen::Vector3d;
+using Eigen::Vector3f;
+using geometry::View;
+
+constexpr std::uint64_t sample_seed = 2;  // other samples than coverage is measured by
+
+/// A place that a candidate sees, and the hazard of its look.
+struct Look {
+  std::uint32_t sample;
+  float hazard;
+};
+
+survey::skycap::Noise true_noise(const sim::NoiseConfig& noise) {
+  return noise.direction == sim::NoiseDirection::isotropic
+             ? survey::skycap::Noise{.isotropic = noise.sigma, .along_ray = 0.0}
+             : survey::skycap::Noise{.isotropic = 0.0, .along_ray = noise.sigma};
+}
+
+/// Weighs views by the true surface.
+class Truth {
+ public:
+  Truth(const config::Mission& mission, const evaluation::SurveyScene& scene,
+        std::size_t sample_count, unsigned threads)
+      : scene_(scene),
+        admissible_(scene.admissible()),
+        camera_(mission.sensor.camera.camera),
+        least_cosine_(std::cos(mission.sensor.camera.max_incidence)),
+        dose_(mission.evaluation.registration_distance, true_noise(mission.sensor.camera.noise)) {
+    const geometry::SurfaceSamples all =
+        geometry::sample_surface(scene.model(), sample_count, sample_seed);
+    const std::vector<std::uint8_t> is_visible =
+        evaluation::visible_samples(all.points, scene.scene(), admissible_, threads);
+    for (std::size_t i = 0; i < all.points.size(); ++i) {
+      if (!is_visible[i]) continue;
+      points_.push_back(all.points[i]);
+      normals_.push_back(all.normals[i]);
+    }
+  }
+
+  std::size_t size() const { return points_.size(); }
+
+  /// Views that the mission allows, each aimed at a random place.
+  std::vector<View> candidates(std::size_t count, std::uint64_t seed) const {
+    const std::vector<Vector3d> directions =
+        evaluation::fibonacci_directions(admissible_.directions);
+    std::mt19937_64 random(seed);
+    std::vector<View> views;
+    for (std::size_t i = 0; i < count && !points_.empty(); ++i) {
+      const Vector3d target = points_[random() % points_.size()].cast<double>();
+      const auto position = evaluation::free_position(
+          target, directions, random() % directions.size(), scene_.scene(), admissible_);
+      if (position) views.push_back(geometry::look_at(*position, target));
+    }
+    return views;
+  }
+
+  std::vector<Look> looks(const View& view) const {
+    const Eigen::Isometry3d camera_from_world = geometry::camera_pose(view).inverse();
+    std::vector<Look> looks;
+    for (std::uint32_t i = 0; i < points_.size(); ++i) {
+      const Vector3d point = points_[i].cast<double>(), normal = normals_[i].cast<double>();
+      const Vector3d towards = view.position - point;
+      const double distance = towards.norm(), cosine = normal.dot(towards) / distance;
+      if (cosine <= least_cosine_) continue;
+      const Vector3d in_camera = camera_from_world * point;
+      if (!camera_.project(in_camera)) continue;
+      if (scene_.scene().is_blocked(view.position,
+                                    point + admissible_.clearance * towards / distance)) {
+        continue;
+      }
+      const double depth = in_camera.z();
+      const double density =
+          camera_.focal_length_px().prod() * cosine * distance / (depth * depth * depth);
+      looks.push_back({i, dose_.hazard(static_cast<float>(density), static_cast<float>(cosine))});
+    }
+    return looks;
+  }
+
+ private:
+  const evaluation::SurveyScene& scene_;
+  evaluation::Admissible admissible_;
+  geometry::Camera camera_;
+  double least_cosine_;
+  survey::skycap::DoseModel dose_;
+  std::vector<Vector3f> points_, normals_;
+};
+
+/// Expected newly covered places of a look, given what the looks before leave uncovered.
+double gain_of(const std::vector<Look>& looks, const std::vector<float>& uncovered) {
+  double gain = 0.0;
+  for (const Look& look : looks) gain += uncovered[look.sample] * (1.0F - std::exp(-look.hazard));
+  return gain;
+}
+
+void cover(const std::vector<Look>& looks, std::vector<float>& uncovered) {
+  for (const Look& look : looks) uncovered[look.sample] *= std::exp(-look.hazard);
+}
+
+/// A short open way through all views from the first: nearest neighbour, then 2-opt.
+std::vector<std::size_t> short_tour(const std::vector<View>& views) {
+  const auto way = [&](std::size_t a, std::size_t b) {
+    return (views[a].position - views[b].position).norm();
+  };
+  std::vector<std::size_t> order(views.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  for (std::size_t i = 0; i + 2 < order.size(); ++i) {
+    const auto nearest =
+        std::ranges::min_element(order.begin() + static_cast<std::ptrdiff_t>(i) + 1, order.end(),
+                                 {}, [&](std::size_t k) { return way(order[i], k); });
+    std::swap(order[i + 1], *nearest);
+  }
+  for (bool is_better = true; is_better;) {
+    is_better = false;
+    for (std::size_t i = 1; i + 1 < order.size(); ++i) {
+      for (std::size_t j = i + 1; j < order.size(); ++j) {
+        const double tail = j + 1 < order.size() ? way(order[j], order[j + 1]) : 0.0;
+        const double turned_tail = j + 1 < order.size() ? way(order[i], order[j + 1]) : 0.0;
+        const double change =
+            way(order[i - 1], order[j]) + turned_tail - way(order[i - 1], order[i]) - tail;
+        if (change >= -1e-9) continue;
+        std::reverse(order.begin() + static_cast<std::ptrdiff_t>(i),
+                     order.begin() + static_cast<std::ptrdiff_t>(j) + 1);
+        is_better = true;
+      }
+    }
+  }
+  return order;
+}
+
+/// The views of the greedy cover, the first view first.
+std::vector<View> greedy_cover(const config::Mission& mission, const evaluation::SurveyScene& scene,
+                               std::uint64_t seed, unsigned threads, const OmniscientConfig& config,
+                               const std::stop_token& stop, survey::StopReason& reason) {
+  const Truth truth(mission, scene, config.samples, threads);
+  std::vector<View> candidates = truth.candidates(config.candidates, seed);
+  candidates.push_back(scene.first_view(seed));
+  std::vector<std::vector<Look>> looks(candidates.size());
+  geometry::parallel_for(candidates.size(), threads,
+                         [&](std::size_t i) { looks[i] = truth.looks(candidates[i]); });
+
+  const double least_gain =
+      mission.planner.skycap_stop.least_gain * static_cast<double>(truth.size());
+  std::vector<float> uncovered(truth.size(), 1.0F);
+  std::optional<Measurement> measured;
+  if (config.wanted_coverage) measured.emplace(mission, scene, seed, threads);
+  std::vector<View> views;
+  std::size_t next = candidates.size() - 1;
+  reason = survey::StopReason::complete;
+  while (true) {
+    if (measured) measured->take(candidates[next], views.size());
+    views.push_back(candidates[next]);
+    cover(looks[next], uncovered);
+    if (measured && measured->meter().share() >= *config.wanted_coverage) break;
+    if (views.size() >= mission.limits.max_views) reason = survey::StopReason::view_limit;
+    if (stop.stop_requested()) reason = survey::StopReason::interrupted;
+    if (reason != survey::StopReason::complete) break;
+
+    double best = 0.0;
+    for (std::size_t i = 0; i < candidates.size(); ++i) {
+      const double gain = gain_of(looks[i], uncovered);
+      if (gain > best) best = gain, next = i;
+    }
+    if (best <= 0.0 || (!config.wanted_coverage && best < least_gain)) break;
+  }
+  return views;
+}
+
+}  // namespace
+
+std::vector<View> known_cover(const config::Mission& mission, const evaluation::SurveyScene& scene,
+                              std::uint64_t seed, unsigned threads,
+                              const OmniscientConfig& config) {
+  survey::StopReason reason{};
+  const std::vector<View> views = greedy_cover(mission, scene, seed, threads, config, {}, reason);
+  std::vector<View> tour;
+  for (const std::size_t i : short_tour(views)) tour.push_back(views[i]);
+  return tour;
+}
+
+session::SurveyRecord survey_omnisciently(const config::Mission& mission,
+                                          const evaluation::SurveyScene& scene, std::uint64_t seed,
+                                          unsigned threads, const OmniscientConfig& config,
+                                          std::stop_token stop) {
+  session::SurveyRecord record;
+  record.seed = seed;
+  record.threads = geometry::thread_count(threads);
+  const std::vector<View> views =
+      greedy_cover(mission, scene, seed, threads, config, stop, record.stop_reason);
+
+  Measurement measured(mission, scene, seed, threads);
+  double distance = 0.0;
+  for (const std::size_t i : short_tour(views)) {
+    session::JudgedView judged;
+    judged.surveyed.view = views[i];
+    if (!record.views.empty()) {
+      distance += (views[i].position - record.views.back().surveyed.view.position).norm();
+    }
+    judged.surveyed.distance = distance;
+    for (const Vector3f& point : measured.take(views[i], i)) {
+      record.cloud.positions.push_back(point);
+      record.cloud.views.push_back(static_cast<std::uint32_t>(record.views.size()));
+      ++judged.surveyed.step.points_new;
+    }
+    judged.surveyed.points = record.cloud.size();
+    judged.coverage = measured.meter().share();
+    record.views.push_back(std::move(judged));
+  }
+  record.is_covered = measured.meter().is_covered();
+  return record;
+}
+
+}  // namespace skycap::missions::simulation

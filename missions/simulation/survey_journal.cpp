@@ -1,0 +1,126 @@
+#include "missions/simulation/survey_journal.h"
+
+#include <algorithm>
+#include <span>
+#include <utility>
+
+#include <nlohmann/json.hpp>
+
+#include "geometry/error.h"
+#include "geometry/io/json.h"
+#include "geometry/place/world.h"
+#include "missions/config/journal_text.h"
+#include "missions/support/json_text.h"
+#include "missions/support/sha256.h"
+
+namespace skycap::missions::simulation {
+namespace {
+
+using Eigen::Vector3d;
+using support::json_of;
+using support::vector_of;
+using Json = nlohmann::ordered_json;
+
+/// The surface's samples stand for the mesh that was found under the model's name.
+std::string digest_of(const evaluation::SurveyScene& scene) {
+  return support::sha256(std::as_bytes(std::span<const Eigen::Vector3f>(scene.samples().points)));
+}
+
+}  // namespace
+
+SurveyJournal::SurveyJournal(std::filesystem::path file, const config::Mission& mission,
+                             const evaluation::SurveyScene& scene, bool resumes)
+    : file_(std::move(file)),
+      identity_(config::identity_text(mission, {{"surface", digest_of(scene)}})) {
+  if (!resumes || !std::filesystem::exists(file_)) return;
+  log_.emplace(file_);
+  if (!log_->records().empty()) read_known(log_->records());
+}
+
+void SurveyJournal::read_known(const std::vector<std::string>& records) {
+  config::require_same_survey(file_.string(), records.front(), identity_,
+                              "begin anew without --resume");
+  try {
+    for (const std::string& record : std::span(records).subspan(1)) {
+      known_.push_back(parse(record));
+    }
+  } catch (const Json::exception& failure) {
+    fail("line " + std::to_string(known_.size() + 2) +
+         " is not as plan writes it: " + failure.what());
+  }
+}
+
+std::string SurveyJournal::text_of(const ViewRecord& record) {
+  return config::journal_line({{"position", json_of(record.view.position)},
+                               {"direction", json_of(record.view.direction)},
+                               {"returns", record.returns},
+                               {"points", record.points},
+                               {"next", session::reach_json(record.reach)}});
+}
+
+SurveyJournal::ViewRecord SurveyJournal::parse(const std::string& text) const {
+  const Json json = geometry::parse_json<Json>(text);
+  ViewRecord record{.view = {vector_of(json.at("position")), vector_of(json.at("direction"))},
+                    .returns = json.at("returns").get<std::size_t>(),
+                    .points = json.at("points").get<std::size_t>(),
+                    .reach = session::parse_reach(json.at("next"))};
+  const bool is_in_world = geometry::is_place(record.view.position) &&
+                           std::ranges::all_of(record.reach.way.points, [](const Vector3d& place) {
+                             return geometry::is_place(place);
+                           });
+  if (!is_in_world) {
+    fail("line " + std::to_string(known_.size() + 2) + " names a place out of the world");
+  }
+  return record;
+}
+
+void SurveyJournal::attach(survey::SurveyPorts& ports, session::SurveyFlight* flight) {
+  ports.sense = [this, sense = std::move(ports.sense)](const geometry::View& view,
+                                                       geometry::Scan recycled) {
+    begin_view(view);
+    return sense(view, std::move(recycled));
+  };
+  if (ports.can_reach) {
+    ports.can_reach = reach_.remembering(std::move(ports.can_reach), flight);
+  }
+  ports.report = [this, report = std::move(ports.report)](const survey::SurveyedView& view,
+                                                          const geometry::Scan& scan) {
+    end_view(view);
+    if (report) report(view, scan);
+  };
+}
+
+void SurveyJournal::begin_view(const geometry::View& view) {
+  reach_.begin(is_known() ? std::optional(known_[at_].reach) : std::nullopt);
+  current_ = {.view = view};
+  if (!is_known()) return;
+  const geometry::View& known = known_[at_].view;
+  if (view.position == known.position && view.direction == known.direction) return;
+  fail("says that view " + std::to_string(at_) +
+       " was taken elsewhere; begin anew without --resume");
+}
+
+void SurveyJournal::end_view(const survey::SurveyedView& view) {
+  current_.returns = view.returns;
+  current_.points = view.points;
+  current_.reach = reach_.record();
+  if (!is_known()) {
+    if (!log_) {
+      std::filesystem::remove(file_);
+      log_.emplace(file_);
+    }
+    if (at_ == 0 && log_->records().empty()) log_->append(identity_);
+    log_->append(text_of(current_));
+    known_.push_back(current_);
+  } else if (text_of(current_) != text_of(known_[at_])) {
+    fail("says that view " + std::to_string(at_) +
+         " gave something else; begin anew without --resume");
+  }
+  ++at_;
+}
+
+void SurveyJournal::fail(const std::string& what) const {
+  throw Error(ErrorKind::bad_file, file_.string() + ": " + what);
+}
+
+}  // namespace skycap::missions::simulation

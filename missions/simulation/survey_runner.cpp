@@ -1,0 +1,124 @@
+#include "missions/simulation/survey_runner.h"
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "geometry/parallel.h"
+#include "missions/evaluation/coverage.h"
+#include "missions/session/mission_planner.h"
+#include "missions/simulation/carried_sensor.h"
+
+namespace skycap::missions::simulation {
+
+config::Mission trial_mission(const config::Mission& mission, const evaluation::SurveyScene& scene,
+                              std::uint64_t seed) {
+  config::Mission trial = mission;
+  trial.seed = seed;
+  survey::volumetric::VolumetricSettings& settings = trial.volumetric;
+  if (!settings.sphere_centre) settings.sphere_centre = scene.view_sphere().centre;
+  if (!settings.sphere_radius) settings.sphere_radius = scene.view_sphere().radius;
+  return trial;
+}
+
+namespace {
+
+/// Where the sensor of a survey is when, and how it moves there.
+class SurveyClock {
+ public:
+  /// `flight` may be null: then a view takes no time.
+  explicit SurveyClock(const session::SurveyFlight* flight) : flight_(flight) {}
+
+  /// The frames of the way that is flown next.
+  std::vector<geometry::View> begin_way(const geometry::View& from, const geometry::View& to) {
+    frames_ = flight_->frames(from, to);
+    next_frame_ = 0;
+    std::vector<geometry::View> views;
+    for (const session::ViewInFlight& frame : frames_) views.push_back(frame.view);
+    return views;
+  }
+
+  /// The next one of them.
+  session::ViewInFlight on_way() {
+    session::ViewInFlight frame = frames_.at(next_frame_++);
+    frame.time += now_;
+    return frame;
+  }
+
+  session::ViewInFlight at(const geometry::View& view) {
+    if (flight_ != nullptr && last_) now_ += flight_->time(*last_, view);
+    last_ = view;
+    return {.view = view, .time = now_};
+  }
+
+ private:
+  const session::SurveyFlight* flight_;
+  std::vector<session::ViewInFlight> frames_;
+  std::size_t next_frame_ = 0;
+  std::optional<geometry::View> last_;
+  double now_ = 0.0;
+};
+
+}  // namespace
+
+session::SurveyRecord run_survey(const config::Mission& mission,
+                                 const evaluation::SurveyScene& scene, std::uint64_t seed,
+                                 unsigned threads, std::stop_token stop,
+                                 const std::function<void(const session::JudgedView&)>& report,
+                                 SurveyJournal* journal) {
+  CarriedSensor sensor(mission, seed);
+  const config::Mission trial = trial_mission(mission, scene, seed);
+  const geometry::View first_view = scene.first_view(trial.seed);
+  session::MissionPlanner guided(trial, first_view, threads);
+  evaluation::CoverageMeter meter(scene.samples().points, mission.evaluation.registration_distance);
+  session::SurveyRecord record;
+  record.seed = seed;
+  record.threads = geometry::thread_count(threads);
+
+  std::uint64_t frame = 0;
+  std::size_t points_judged = 0;
+  survey::SurveyPorts ports = guided.ports();
+  SurveyClock clock(guided.flight());
+  const auto sense = [&](const session::ViewInFlight& view, geometry::Scan recycled) {
+    record.scans.push_back({static_cast<std::uint32_t>(record.views.size()), view.view.position});
+    return sensor.scan(scene.scene(), view, frame++, threads, std::move(recycled));
+  };
+  ports.sense = [&](const geometry::View& view, geometry::Scan recycled) {
+    return sense(clock.at(view), std::move(recycled));
+  };
+  ports.sense_on_way = [&](const geometry::View&, geometry::Scan recycled) {
+    return sense(clock.on_way(), std::move(recycled));
+  };
+  if (ports.views_on_way) {
+    ports.views_on_way = [&clock](const geometry::View& from, const geometry::View& to) {
+      return clock.begin_way(from, to);
+    };
+  }
+  if (!mission.flight.is_flown()) {  // else ways there are proven as measured
+    ports.can_reach = [&scene, allows = std::move(ports.can_reach)](const Eigen::Vector3d& from,
+                                                                    const geometry::View& view) {
+      return (!allows || allows(from, view)) && scene.is_reachable(view.position);
+    };
+  }
+  ports.report = [&](const survey::SurveyedView& view, const geometry::Scan&) {
+    const std::span stored(guided.planner().cloud().positions);
+    meter.add(stored.subspan(points_judged));
+    points_judged = stored.size();
+    record.views.push_back({view, meter.share()});
+    if (report) report(record.views.back());
+  };
+  if (journal != nullptr) journal->attach(ports, guided.flight());
+  record.stop_reason =
+      survey::run_survey(guided.planner(), first_view, guided.limits(), ports, std::move(stop))
+          .stop_reason;
+  guided.finish(record);
+  // Less what came after the last view, if planning was interrupted.
+  record.cloud.positions.resize(points_judged);
+  record.cloud.views.resize(points_judged);
+  record.is_covered = meter.is_covered();
+  return record;
+}
+
+}  // namespace skycap::missions::simulation

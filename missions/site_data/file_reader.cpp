@@ -1,0 +1,257 @@
+#include "missions/site_data/file_reader.h"
+
+#include <algorithm>
+#include <cctype>
+
+#include "geometry/error.h"
+#include "geometry/io/cloud_io.h"
+#include "geometry/io/file.h"
+#include "geometry/io/mesh_io.h"
+#include "missions/site_data/formats/cell_set.h"
+#include "missions/site_data/formats/cloud_files.h"
+#include "missions/site_data/formats/geodata_file.h"
+#include "missions/site_data/site_transform.h"
+
+namespace skycap::missions::site_data {
+namespace {
+
+using std::string_view;
+namespace fs = std::filesystem;
+
+enum class Format { citygml, cityjson, map, raster, las, e57, scene, mesh, cloud };
+
+bool is_one_of(string_view text, std::initializer_list<string_view> wanted) {
+  return std::ranges::find(wanted, text) != wanted.end();
+}
+
+bool begins_with_one_of(string_view text, std::initializer_list<string_view> wanted) {
+  return std::ranges::any_of(wanted, [&](string_view begin) { return text.starts_with(begin); });
+}
+
+/// The local name of an XML text's first element; empty if it is no XML.
+string_view root_of(string_view text) {
+  if (text.starts_with("\xEF\xBB\xBF")) text.remove_prefix(3);
+  const std::size_t first = text.find_first_not_of(" \t\r\n");
+  if (first == string_view::npos || text[first] != '<') return {};
+  std::size_t place = first;
+  while (place + 1 < text.size() && (text[place + 1] == '?' || text[place + 1] == '!')) {
+    const bool is_comment = text.substr(place).starts_with("<!--");
+    place = text.find(is_comment ? "-->" : ">", place);
+    if (place != string_view::npos) place = text.find('<', place);
+    if (place == string_view::npos) return {};
+  }
+  const std::size_t end = std::min(text.find_first_of(" \t\r\n/>", place + 1), text.size());
+  string_view name = text.substr(place + 1, end - place - 1);
+  return name.substr(name.rfind(':') + 1);
+}
+
+std::optional<Format> format_of_xml(string_view root, string_view text) {
+  if (root == "CityModel") return Format::citygml;
+  if (root == "FeatureCollection" && text.find("citygml") != string_view::npos) {
+    return Format::citygml;  // what feature servers answer with
+  }
+  if (root == "kml" || root == "osm") return Format::map;
+  if (root == "COLLADA") return Format::scene;
+  return std::nullopt;
+}
+
+std::optional<Format> format_by_content(string_view beginning) {
+  using namespace std::string_view_literals;
+  if (beginning.starts_with("LASF")) return Format::las;
+  if (beginning.starts_with("ASTM-E57")) return Format::e57;
+  if (begins_with_one_of(beginning, {"glTF", "Kaydara FBX", "; FBX", "ISO-10303-21"})) {
+    return Format::scene;
+  }
+  if (begins_with_one_of(beginning, {"SQLite format 3", "\0\0\x27\x0A"sv, "fgb\3fgb"})) {
+    return Format::map;
+  }
+  if (begins_with_one_of(beginning, {"II*\0"sv, "MM\0*"sv, "II+\0"sv, "MM\0+"sv, "\0\0\0\x0CjP"sv,
+                                     "ncols", "NCOLS"})) {
+    return Format::raster;
+  }
+  if (begins_with_one_of(beginning, {"ply\n", "ply\r"})) {
+    return beginning.find("element face") != string_view::npos ? Format::mesh : Format::cloud;
+  }
+  if (begins_with_one_of(beginning, {"# .PCD", "VERSION"})) return Format::cloud;
+  if (begins_with_one_of(beginning, {"OFF", "DRACO"})) return Format::mesh;
+  return format_of_xml(root_of(beginning), beginning);
+}
+
+std::optional<Format> format_by_ending(const std::string& ending, Role role) {
+  if (is_one_of(ending, {".obj", ".off", ".stl", ".drc", ".ply"})) return Format::mesh;
+  if (is_one_of(ending, {".pcd", ".txt"})) return Format::cloud;
+  if (is_one_of(ending, {".dae", ".fbx", ".3ds", ".ifc", ".gltf", ".glb"})) return Format::scene;
+  if (is_one_of(ending, {".dxf", ".pbf", ".shp", ".geojson", ".fgb", ".gpkg"})) return Format::map;
+  if (is_one_of(ending, {".tif", ".tiff", ".asc", ".jp2"})) return Format::raster;
+  // Surveys give terrain as lines of x y z, on a grid.
+  if (ending == ".xyz") return role == Role::terrain ? Format::raster : Format::cloud;
+  return std::nullopt;
+}
+
+/// Where a JSON text's string that begins at `quote` ends: behind its closing quote.
+std::size_t end_of_string(string_view text, std::size_t quote) {
+  std::size_t place = quote + 1;
+  while (place < text.size() && text[place] != '"') place += text[place] == '\\' ? 2 : 1;
+  return std::min(place + 1, text.size());
+}
+
+/// What the outermost object of a JSON text says that it is.
+struct JsonKind {
+  string_view type;        ///< the value of its key "type"
+  bool has_asset = false;  ///< as glTF has to
+};
+
+JsonKind kind_of_json(string_view text) {
+  JsonKind kind;
+  int depth = 0;
+  string_view key;  // whose value comes next
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    const char c = text[i];
+    depth += c == '{' || c == '[' ? 1 : c == '}' || c == ']' ? -1 : 0;
+    if (depth == 0 && c == '}') break;
+    if (c == ',' && depth == 1) key = {};
+    if (c != '"') continue;
+    const std::size_t end = end_of_string(text, i);
+    const string_view quoted = text.substr(i + 1, end - i - 2);
+    i = end - 1;
+    if (depth != 1) continue;
+    if (!key.empty()) {
+      if (key == "type") kind.type = quoted;
+      continue;
+    }
+    key = quoted;
+    kind.has_asset |= key == "asset";
+  }
+  return kind;
+}
+
+Format format_of_json(const std::string& ending, string_view text) {
+  const JsonKind kind = kind_of_json(text);
+  if (is_one_of(kind.type, {"CityJSON", "CityJSONFeature"})) return Format::cityjson;
+  const bool is_gltf = ending == ".gltf" || (kind.has_asset && kind.type.empty());
+  return is_gltf ? Format::scene : Format::map;
+}
+
+std::string beginning_of(const fs::path& file) {
+  std::string bytes(1 << 16, '\0');
+  std::ifstream stream = geometry::open_stream(file);
+  if (!stream) fail_file(file, "cannot be opened");
+  stream.read(bytes.data(), std::ssize(bytes));
+  bytes.resize(static_cast<std::size_t>(stream.gcount()));
+  return bytes;
+}
+
+// What is made of them takes three times as much, and up to twenty times.
+constexpr std::size_t largest_citygml = std::size_t{512} << 20,
+                      largest_cityjson = std::size_t{128} << 20;
+
+struct Opened {
+  Format format;
+  std::string bytes;  ///< all of them, of formats that are parsed whole
+};
+
+Opened open_file(const fs::path& file, Role role) {
+  std::error_code failure;
+  if (!fs::is_regular_file(file, failure)) fail_file(file, "is not there, or is no regular file");
+  const std::string beginning = beginning_of(file);
+  const bool is_read_piece_by_piece = begins_with_one_of(beginning, {"LASF", "ASTM-E57"});
+  if (!is_read_piece_by_piece && fs::file_size(file, failure) > most_bytes) {
+    fail_file(file, "is larger than 2 GB");
+  }
+  if (beginning.empty()) fail_file(file, "is empty");
+  const std::string ending = geometry::ending_of(file);
+  Opened opened{Format::mesh, {}};
+  const bool is_compressed = beginning.starts_with("\x1F\x8B");
+  if (is_compressed) opened.bytes = geometry::read_file(file, most_bytes);
+  const string_view text = is_compressed ? string_view(opened.bytes) : string_view(beginning);
+  std::optional<Format> format = format_by_content(text.substr(0, 1 << 16));
+  const std::size_t first = text.find_first_not_of(" \t\r\n");
+  if (!format && first != string_view::npos && text[first] == '{') {
+    if (!is_compressed) opened.bytes = geometry::read_file(file, most_bytes);
+    format = format_of_json(ending, opened.bytes);
+  }
+  if (!format) format = format_by_ending(ending, role);
+  if (!format) {
+    fail_file(
+        file,
+        "is of no format that is known here: CityGML, CityJSON, GeoJSON, GPKG, Shapefile, "
+        "KML, OSM, DXF, GeoTIFF, ASCII grid, XYZ, LAS, E57, glTF, Collada, FBX, IFC, PLY, OBJ, "
+        "STL, OFF, PCD");
+  }
+  opened.format = *format;
+  const bool is_parsed_here = *format == Format::citygml || *format == Format::cityjson;
+  if (is_parsed_here) {
+    const std::size_t most = *format == Format::citygml ? largest_citygml : largest_cityjson;
+    if (opened.bytes.empty()) opened.bytes = geometry::read_file(file, most);
+    if (opened.bytes.size() > most) {
+      fail_file(file, "is larger than " + std::to_string(most >> 20) + " MiB");
+    }
+  }
+  if (is_compressed && !is_parsed_here && *format != Format::mesh && *format != Format::cloud) {
+    fail_file(file, "is compressed by gzip; decompress it first");
+  }
+  return opened;
+}
+
+FileContents mesh_contents(const fs::path& file) {
+  FileContents contents;
+  contents.format = "mesh" + geometry::ending_of(file);
+  contents.is_scene = true;
+  FileObject& object = contents.objects.emplace_back();
+  object.id = file.stem().string();
+  object.mesh = geometry::read_mesh(file);
+  return contents;
+}
+
+FileContents cloud_contents(const Source& source) {
+  FileContents contents;
+  contents.format = "cloud" + geometry::ending_of(source.file);
+  contents.is_scene = true;
+  CellSet cells;
+  const double unit = source.unit.value_or(1.0);
+  const double cells_per_unit = unit / source.spacing.value_or(usual_spacing);
+  geometry::read_positions(source.file, [&](std::span<const Eigen::Vector3f> piece, double) {
+    for (const Eigen::Vector3f& point : piece) {
+      const Eigen::Vector3d place = point.cast<double>();
+      if (cells.add(place * cells_per_unit)) contents.points.push_back(place);
+    }
+  });
+  return contents;
+}
+
+}  // namespace
+
+FileContents read_contents(const Source& source, const SiteFrame& site) {
+  const fs::path& file = source.file;
+  Opened opened = open_file(file, source.role);
+  const CloudThinning thinning{source.spacing.value_or(usual_spacing),
+                               [&](const FileContents& header) {
+                                 return SiteTransform(source, header, site).metres_per_unit();
+                               }};
+  switch (opened.format) {
+    case Format::citygml:
+      return parse_citygml(file, std::move(opened.bytes));
+    case Format::cityjson:
+      return parse_cityjson(file, opened.bytes);
+    case Format::map:
+      return read_map(file, source.select.layer);
+    case Format::raster:
+      return read_raster(file);
+    case Format::las:
+      return read_las(file, source.select.classes, thinning);
+    case Format::e57:
+      return read_e57(file, thinning);
+    case Format::scene: {
+      FileContents contents = read_scene(file);
+      contents.format = "scene" + geometry::ending_of(file);
+      return contents;
+    }
+    case Format::mesh:
+      return mesh_contents(file);
+    case Format::cloud:
+      break;
+  }
+  return cloud_contents(source);
+}
+
+}  // namespace skycap::missions::site_data

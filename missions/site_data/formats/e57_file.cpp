@@ -1,0 +1,24 @@
+#include "geometry/io/e57_reader.h"
+#include "missions/site_data/formats/cell_set.h"
+#include "missions/site_data/formats/cloud_files.h"
+
+namespace skycap::missions::site_data {
+
+FileContents read_e57(const std::filesystem::path& file, const CloudThinning& thinning) {
+  geometry::E57Reader input(file);
+  FileContents contents;
+  contents.format =
+      "E57 of " + std::to_string(input.scans()) + (input.scans() == 1 ? " scan" : " scans");
+  set_wkt(contents, input.reference_system());
+  CellSet cells;
+  const Eigen::Vector3d cells_per_unit = thinning.metres_per_unit(contents) / thinning.spacing;
+  geometry::E57Points points;
+  while (input.next(points)) {
+    for (const Eigen::Vector3d& place : points.positions) {
+      if (cells.add(place.cwiseProduct(cells_per_unit))) contents.points.push_back(place);
+    }
+  }
+  return contents;
+}
+
+}  // namespace skycap::missions::site_data

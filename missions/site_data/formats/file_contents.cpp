@@ -1,0 +1,31 @@
+#include "missions/site_data/formats/file_contents.h"
+
+#include "geometry/error.h"
+
+namespace skycap::missions::site_data {
+
+std::string one_line(std::string text) {
+  for (char& c : text) {
+    if (static_cast<unsigned char>(c) < ' ') c = ' ';
+  }
+  return text;
+}
+
+void fail_file(const std::filesystem::path& file, const std::string& what) {
+  throw Error(ErrorKind::bad_file, file.string() + ": " + one_line(what));
+}
+
+void require_tree_fits(const std::filesystem::path& file, std::size_t bytes) {
+  if (bytes > most_tree_bytes) {
+    fail_file(file,
+              "has so many parts that reading them would take more than 2 GiB of memory; cut it in "
+              "pieces");
+  }
+}
+
+void set_wkt(FileContents& contents, const std::string& wkt) {
+  contents.is_local_frame = wkt.starts_with("LOCAL_CS[\"local east-north-up\"");
+  if (!contents.is_local_frame) contents.crs = wkt;
+}
+
+}  // namespace skycap::missions::site_data

@@ -1,0 +1,124 @@
+// Scenes by assimp; scene_file.cpp loads the module, in a process of its own.
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include <assimp/DefaultIOSystem.h>
+#include <assimp/Importer.hpp>
+#include <assimp/postprocess.h>
+#include <assimp/scene.h>
+
+#include "missions/site_data/formats/file_contents.h"
+#include "missions/site_data/formats/scene_nodes.h"
+
+namespace skycap::missions::site_data {
+namespace {
+
+constexpr int deepest = 60;  ///< of nodes, as of objects in selection.cpp
+
+/// Opens files of one folder alone: buffers and materials beside a scene, and nothing that a scene
+/// names elsewhere.
+class OneFolder final : public Assimp::DefaultIOSystem {
+ public:
+  explicit OneFolder(const std::filesystem::path& file) : folder_(folder_of(file)) {}
+
+  Assimp::IOStream* Open(const char* file, const char* mode) override {
+    const bool is_for_reading = mode != nullptr && mode[0] == 'r';
+    if (!is_for_reading || folder_of(file) != folder_) return nullptr;
+    return Assimp::DefaultIOSystem::Open(file, mode);
+  }
+
+ private:
+  /// Links are followed, so that none leads out.
+  static std::filesystem::path folder_of(const std::filesystem::path& file) {
+    std::error_code failure;
+    return std::filesystem::weakly_canonical(file, failure).parent_path();
+  }
+  std::filesystem::path folder_;
+};
+
+Eigen::Affine3d affine_of(const aiMatrix4x4& m) {
+  Eigen::Affine3d result;
+  result.matrix() << m.a1, m.a2, m.a3, m.a4, m.b1, m.b2, m.b3, m.b4, m.c1, m.c2, m.c3, m.c4, 0.0,
+      0.0, 0.0, 1.0;
+  return result;
+}
+
+class SceneReader {
+ public:
+  SceneReader(const std::filesystem::path& file, const aiScene& scene,
+              std::vector<SceneNode>& nodes)
+      : file_(file), scene_(scene), nodes_(nodes) {}
+
+  void read(const aiNode& node, const Eigen::Affine3d& world_from_parent,
+            std::optional<std::size_t> parent, int depth);
+
+ private:
+  void add_mesh(const aiMesh& mesh, const Eigen::Affine3d& world_from_node, SceneNode& object);
+
+  const std::filesystem::path& file_;
+  const aiScene& scene_;
+  std::vector<SceneNode>& nodes_;
+  std::size_t triangles_ = 0;
+};
+
+void SceneReader::read(const aiNode& node, const Eigen::Affine3d& world_from_parent,
+                       std::optional<std::size_t> parent, int depth) {
+  if (depth > deepest) fail_file(file_, "has nodes nested deeper than 60");
+  const Eigen::Affine3d world_from_node = world_from_parent * affine_of(node.mTransformation);
+  const std::size_t index = nodes_.size();
+  SceneNode& object = nodes_.emplace_back();
+  object.id = node.mName.length > 0 ? node.mName.C_Str() : std::to_string(index + 1);
+  object.parent = parent;
+  for (unsigned i = 0; i < node.mNumMeshes; ++i) {
+    add_mesh(*scene_.mMeshes[node.mMeshes[i]], world_from_node, object);
+  }
+  for (unsigned i = 0; i < node.mNumChildren; ++i) {
+    read(*node.mChildren[i], world_from_node, index, depth + 1);
+  }
+}
+
+void SceneReader::add_mesh(const aiMesh& mesh, const Eigen::Affine3d& world_from_node,
+                           SceneNode& object) {
+  triangles_ += mesh.mNumFaces;
+  if (triangles_ > most_polygons) fail_file(file_, "has more than 50 million polygons");
+  const auto first = static_cast<std::uint32_t>(object.mesh.vertices.size());
+  for (unsigned i = 0; i < mesh.mNumVertices; ++i) {
+    const aiVector3D& vertex = mesh.mVertices[i];
+    object.mesh.vertices.push_back(world_from_node * Eigen::Vector3d(vertex.x, vertex.y, vertex.z));
+    if (!object.mesh.vertices.back().allFinite()) {
+      fail_file(file_, "has a vertex that is not finite in " + object.id);
+    }
+  }
+  const bool is_mirrored = world_from_node.linear().determinant() < 0.0;
+  for (unsigned i = 0; i < mesh.mNumFaces; ++i) {
+    const aiFace& face = mesh.mFaces[i];
+    if (face.mNumIndices != 3) continue;  // points and lines
+    if (std::max({face.mIndices[0], face.mIndices[1], face.mIndices[2]}) >= mesh.mNumVertices) {
+      fail_file(file_, "has a face of vertices that are not there, in " + object.id);
+    }
+    const std::uint32_t second = first + face.mIndices[is_mirrored ? 2 : 1],
+                        third = first + face.mIndices[is_mirrored ? 1 : 2];
+    object.mesh.triangles.push_back({first + face.mIndices[0], second, third});
+  }
+}
+
+}  // namespace
+
+extern "C" void skycap_read_scene(const std::filesystem::path& file,
+                                  std::vector<SceneNode>& nodes) {
+  Assimp::Importer importer;
+  importer.SetIOHandler(new OneFolder(file));  // the importer owns it
+  const aiScene* const scene =
+      importer.ReadFile(file.string(), aiProcess_Triangulate | aiProcess_GlobalScale |
+                                           aiProcess_ValidateDataStructure);
+  if (scene == nullptr || scene->mRootNode == nullptr) {
+    std::string complaint = importer.GetErrorString();
+    std::ranges::replace(complaint, '\n', ' ');
+    fail_file(file, "cannot be read (assimp: " + complaint.substr(0, 300) + ")");
+  }
+  SceneReader(file, *scene, nodes).read(*scene->mRootNode, Eigen::Affine3d::Identity(), {}, 0);
+}
+
+}  // namespace skycap::missions::site_data

@@ -1,0 +1,179 @@
+#include "missions/site_data/height_grid.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <optional>
+
+namespace skycap::missions::site_data {
+namespace {
+
+using Eigen::AlignedBox3d;
+using Eigen::Vector3d;
+using Eigen::Vector3f;
+
+constexpr double most_nodes = 2e6;
+
+const Vector3f& node_of(const HeightGrid& grid, std::size_t row, std::size_t line) {
+  return grid.nodes[row * grid.columns + line];
+}
+
+/// A place beside a node, in cells, at the node's height.
+Vector3d beside(const HeightGrid& grid, const Vector3f& node, float across, float down) {
+  const Eigen::Vector2f place = node.head<2>() + across * grid.right + down * grid.down;
+  return Vector3f(place.x(), place.y(), node.z()).cast<double>();
+}
+
+/// Over the part of the grid from row `top` - 1 to row `top` + `step` - 1 and from line `left` - 1
+/// on, as far as cells reach: of the first node's cell the half behind it belongs to that part, of
+/// the last node's the half before it.
+AlignedBox3d column_of(const HeightGrid& grid, std::size_t top, std::size_t left,
+                       std::size_t step) {
+  AlignedBox3d column;
+  const std::size_t bottom = top + step - 1, right = left + step - 1;
+  for (std::size_t row = top - std::min<std::size_t>(top, 1); row <= bottom; ++row) {
+    if (row >= grid.rows) break;
+    const float up = row + 1 == top ? 0.0F : -0.5F, down = row == bottom ? 0.0F : 0.5F;
+    for (std::size_t line = left - std::min<std::size_t>(left, 1); line <= right; ++line) {
+      if (line >= grid.columns) break;
+      const Vector3f& node = node_of(grid, row, line);
+      if (!node.allFinite()) continue;
+      const float west = line + 1 == left ? 0.0F : -0.5F, east = line == right ? 0.0F : 0.5F;
+      for (const float v : {up, down}) {
+        for (const float u : {west, east}) column.extend(beside(grid, node, u, v));
+      }
+    }
+  }
+  return column;
+}
+
+/// The highest node around one, at the place of that one.
+Vector3f highest_around(const HeightGrid& grid, std::size_t row, std::size_t line,
+                        std::size_t reach) {
+  Vector3f highest = Vector3f::Constant(std::numeric_limits<float>::quiet_NaN());
+  for (std::size_t r = row - std::min(row, reach); r <= std::min(row + reach, grid.rows - 1); ++r) {
+    for (std::size_t c = line - std::min(line, reach);
+         c <= std::min(line + reach, grid.columns - 1); ++c) {
+      const Vector3f& node = node_of(grid, r, c);
+      if (!node.allFinite() || node.z() <= highest.z()) continue;
+      highest = beside(grid, node, static_cast<float>(line) - static_cast<float>(c),
+                       static_cast<float>(row) - static_cast<float>(r))
+                    .cast<float>();
+    }
+  }
+  return highest;
+}
+
+/// The square between four nodes, as far as they are there and have heights: above left, above
+/// right, below left, below right.
+using Square = std::array<std::optional<Vector3f>, 4>;
+
+/// The square whose node below right is at that row and line, or would be.
+Square square_at(const HeightGrid& grid, std::size_t row, std::size_t line) {
+  Square square;
+  for (std::size_t i = 0; i < square.size(); ++i) {
+    const std::size_t r = row + i / 2, c = line + i % 2;  // one too large
+    if (r == 0 || c == 0 || r > grid.rows || c > grid.columns) continue;
+    const Vector3f& node = node_of(grid, r - 1, c - 1);
+    if (node.allFinite()) square[i] = node;
+  }
+  return square;
+}
+
+/// A place of the square that is `across` and `down` of its sides from each node's own corner,
+/// towards the middle: the mean of what the nodes in `of` say of it.
+Vector3d place_in(const HeightGrid& grid, const Square& square,
+                  std::initializer_list<std::size_t> of, float across, float down) {
+  Vector3d sum = Vector3d::Zero();
+  double count = 0.0;
+  for (const std::size_t i : of) {
+    if (!square[i]) continue;
+    sum += beside(grid, *square[i], i % 2 == 0 ? across : -across, i / 2 == 0 ? down : -down);
+    count += 1.0;
+  }
+  return sum / count;
+}
+
+void add_quarters(const HeightGrid& grid, const Square& square,
+                  std::vector<flight::Triangle>& triangles) {
+  const Vector3d middle = place_in(grid, square, {0, 1, 2, 3}, 0.5F, 0.5F);
+  for (std::size_t i = 0; i < square.size(); ++i) {
+    if (!square[i]) continue;
+    const Vector3d node = square[i]->cast<double>();
+    const Vector3d beside_it = place_in(grid, square, {i, i ^ 1U}, 0.5F, 0.0F),
+                   below_it = place_in(grid, square, {i, i ^ 2U}, 0.0F, 0.5F);
+    triangles.push_back({node, beside_it, middle});
+    triangles.push_back({node, middle, below_it});
+  }
+}
+
+}  // namespace
+
+std::size_t step_of(const HeightGrid& grid) {
+  const double nodes = static_cast<double>(grid.columns) * static_cast<double>(grid.rows);
+  return static_cast<std::size_t>(std::max(1.0, std::ceil(std::sqrt(nodes / most_nodes))));
+}
+
+HeightGrid thinned(const HeightGrid& grid, std::size_t step) {
+  const auto kept = [step](std::size_t nodes) {
+    return nodes == 0 ? 0 : (nodes - 1 + step - 1) / step + 1;
+  };
+  HeightGrid result{.columns = kept(grid.columns),
+                    .rows = kept(grid.rows),
+                    .nodes = {},
+                    .right = static_cast<float>(step) * grid.right,
+                    .down = static_cast<float>(step) * grid.down};
+  result.nodes.reserve(result.columns * result.rows);
+  for (std::size_t row = 0; row < result.rows; ++row) {
+    for (std::size_t line = 0; line < result.columns; ++line) {
+      result.nodes.push_back(highest_around(grid, std::min(row * step, grid.rows - 1),
+                                            std::min(line * step, grid.columns - 1), step));
+    }
+  }
+  return result;
+}
+
+std::vector<AlignedBox3d> columns_of(const HeightGrid& grid) {
+  std::vector<AlignedBox3d> columns;
+  if (grid.nodes.empty()) return columns;
+  const std::size_t step = step_of(grid);
+  for (std::size_t top = 0; top <= grid.rows; top += step) {
+    for (std::size_t left = 0; left <= grid.columns; left += step) {
+      const AlignedBox3d column = column_of(grid, top, left, step);
+      if (!column.isEmpty()) columns.push_back(column);
+    }
+  }
+  return columns;
+}
+
+std::vector<flight::Triangle> triangles_of(const HeightGrid& grid) {
+  std::vector<flight::Triangle> triangles;
+  for (std::size_t row = 1; row < grid.rows; ++row) {
+    for (std::size_t line = 1; line < grid.columns; ++line) {
+      const auto node = [&](std::size_t up, std::size_t left) -> Vector3d {
+        return node_of(grid, row - up, line - left).cast<double>();
+      };
+      const Vector3d a = node(1, 1), b = node(1, 0), c = node(0, 0), d = node(0, 1);
+      if (!(a + b + c + d).allFinite()) continue;
+      triangles.push_back({a, b, c});
+      triangles.push_back({a, c, d});
+    }
+  }
+  return triangles;
+}
+
+std::vector<flight::Triangle> rim_of(const HeightGrid& grid) {
+  std::vector<flight::Triangle> triangles;
+  for (std::size_t row = 0; row <= grid.rows && grid.rows > 0; ++row) {
+    for (std::size_t line = 0; line <= grid.columns; ++line) {
+      const Square square = square_at(grid, row, line);
+      const auto there =
+          std::ranges::count_if(square, [](const auto& node) { return node.has_value(); });
+      if (there > 0 && there < 4) add_quarters(grid, square, triangles);
+    }
+  }
+  return triangles;
+}
+
+}  // namespace skycap::missions::site_data

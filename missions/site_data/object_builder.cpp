@@ -1,0 +1,164 @@
+#include "missions/site_data/object_builder.h"
+
+#include <algorithm>
+#include <limits>
+
+#include "geometry/error.h"
+#include "geometry/surfaces/mesh_repair.h"
+#include "geometry/surfaces/polygon_triangulation.h"
+#include "missions/site_data/extrusion.h"
+
+namespace skycap::missions::site_data {
+namespace {
+
+using Eigen::Vector3d;
+
+/// Flat outlines on the ground have no heights to transform.
+bool needs_heights(const Source& source, const FileContents& contents) {
+  return !(contents.is_outlines && source.base_on_terrain);
+}
+
+}  // namespace
+
+ObjectBuilder::ObjectBuilder(const Source& source, const FileContents& contents,
+                             const SiteFrame& site, const TerrainHeight& terrain)
+    : source_(source),
+      contents_(contents),
+      terrain_(terrain),
+      transform_(source, contents, site, needs_heights(source, contents)) {}
+
+Object ObjectBuilder::build(const SelectedObject& selected) {
+  const FileObject& named = contents_.objects[selected.object];
+  Object result{named.id, named.kind, named.attributes, {}, {}};
+  for (const std::size_t member : selected.members) {
+    const FileObject& object = contents_.objects[member];
+    if (is_extruded(object)) {
+      add_solids(object, result);
+    } else {
+      add_surfaces(object, result);
+    }
+    if (object.mesh.triangles.empty()) continue;
+    geometry::Mesh mesh = object.mesh;
+    transform_.to_site(mesh.vertices);
+    geometry::append(result.mesh, mesh);
+    result.surfaces.resize(result.mesh.triangles.size(), SurfaceKind::unknown);
+  }
+  geometry::weld_vertices(result.mesh);
+  return result;
+}
+
+ObjectBuilder::Rings ObjectBuilder::rings_of(const FileObject& object) const {
+  Rings rings;
+  for (const FilePolygon& polygon : select_polygons(object, source_.select.lod)) {
+    rings.first_ring.push_back(rings.begin.size() - 1);
+    rings.kinds.push_back(polygon.kind);
+    for (std::uint32_t r = polygon.first_ring; r < polygon.first_ring + polygon.rings; ++r) {
+      const auto corners = contents_.corners.begin();
+      rings.corners.insert(rings.corners.end(), corners + contents_.ring_begin[r],
+                           corners + contents_.ring_begin[r + 1]);
+      rings.begin.push_back(static_cast<std::uint32_t>(rings.corners.size()));
+    }
+  }
+  rings.first_ring.push_back(rings.begin.size() - 1);
+  return rings;
+}
+
+/// Polygons with heights of their own are surfaces, unless they are put on the terrain or given
+/// a height.
+bool ObjectBuilder::is_extruded(const FileObject& object) const {
+  const bool is_put = source_.base_on_terrain || source_.height || object.height;
+  return contents_.is_outlines && !object.polygons.empty() && (!object.has_heights || is_put);
+}
+
+void ObjectBuilder::add_surfaces(const FileObject& object, Object& result) {
+  Rings rings = rings_of(object);
+  transform_.to_site(rings.corners);
+  for (std::size_t i = 0; i < rings.kinds.size(); ++i) {
+    const auto begin =
+        std::span(rings.begin)
+            .subspan(rings.first_ring[i], rings.first_ring[i + 1] - rings.first_ring[i] + 1);
+    if (geometry::add_polygon(result.mesh, rings.corners, begin) == 0) ++dropped_;
+    result.surfaces.resize(result.mesh.triangles.size(), rings.kinds[i]);
+  }
+}
+
+void ObjectBuilder::add_solids(const FileObject& object, Object& result) {
+  std::optional<double> height = source_.height ? source_.height : object.height;
+  // What is in the way is as high as anybody says.
+  if (source_.role == Role::obstacle && object.height) {
+    height = std::max(*height, *object.height);
+  }
+  if (!height) {
+    throw Error(ErrorKind::bad_config, source_.file.string() + ": does not say how high " +
+                                           one_line(object.id) +
+                                           " is; give height, in metres above its base");
+  }
+  const double least =
+      source_.min_height > 0.0 ? source_.min_height : object.min_height.value_or(0.0);
+  if (!(*height > least)) {
+    throw Error(ErrorKind::bad_config, source_.file.string() + ": the height of " +
+                                           one_line(object.id) + ", " + std::to_string(*height) +
+                                           " m, is not above where it begins, " +
+                                           std::to_string(least) + " m");
+  }
+  has_extruded_ = true;
+  Rings bottom = rings_of(object), top = bottom;
+  if (source_.base_on_terrain) {
+    place_on_terrain(bottom, top, least, *height);
+  } else {
+    place_on_base(object.has_heights, bottom, top, least, *height);
+  }
+  for (std::size_t i = 0; i < bottom.kinds.size(); ++i) {
+    const std::size_t first = bottom.first_ring[i], end = bottom.first_ring[i + 1];
+    const std::uint32_t shift = bottom.begin[first];
+    std::vector<std::uint32_t> begin(bottom.begin.begin() + static_cast<std::ptrdiff_t>(first),
+                                     bottom.begin.begin() + static_cast<std::ptrdiff_t>(end) + 1);
+    for (std::uint32_t& place : begin) place -= shift;
+    const auto part = [&](const Rings& rings) {
+      return std::span(rings.corners).subspan(shift, begin.back());
+    };
+    if (!add_extruded(result, part(bottom), part(top), begin)) ++dropped_;
+  }
+}
+
+void ObjectBuilder::place_on_base(bool has_heights, Rings& bottom, Rings& top, double least,
+                                  double most) const {
+  const double unit = transform_.metres_per_unit().z();
+  double base = std::numeric_limits<double>::infinity();  // in the file's units
+  if (source_.base) {
+    base = *source_.base / unit;
+  } else if (has_heights) {
+    for (const Vector3d& corner : bottom.corners) base = std::min(base, corner.z());
+  } else {
+    throw Error(ErrorKind::bad_config,
+                source_.file.string() +
+                    ": does not say where its outlines stand; give base, a height or terrain");
+  }
+  for (Vector3d& corner : bottom.corners) corner.z() = base + least / unit;
+  for (Vector3d& corner : top.corners) corner.z() = base + most / unit;
+  transform_.to_site(bottom.corners);
+  transform_.to_site(top.corners);
+}
+
+void ObjectBuilder::place_on_terrain(Rings& bottom, Rings& top, double least, double most) const {
+  if (!terrain_) {
+    throw Error(ErrorKind::bad_config,
+                source_.file.string() + ": base is terrain, but no prior has the role terrain");
+  }
+  transform_.to_site(bottom.corners);
+  double base = std::numeric_limits<double>::infinity();
+  for (const Vector3d& corner : bottom.corners) {
+    if (const std::optional<double> ground = terrain_(corner.head<2>())) {
+      base = std::min(base, *ground);
+    }
+  }
+  if (!std::isfinite(base)) {
+    throw Error(ErrorKind::bad_config,
+                source_.file.string() + ": an outline stands where the terrain is not known");
+  }
+  top.corners = bottom.corners;
+  for (Vector3d& corner : bottom.corners) corner.z() = base + least;
+  for (Vector3d& corner : top.corners) corner.z() = base + most;
+}
+
+}  // namespace skycap::missions::site_data

@@ -1,0 +1,48 @@
+/// From a file's polygons and meshes to objects in the site's frame.
+#pragma once
+
+#include "missions/site_data/formats/file_contents.h"
+#include "missions/site_data/prior.h"
+#include "missions/site_data/selection.h"
+#include "missions/site_data/site_transform.h"
+
+namespace skycap::missions::site_data {
+
+/// Builds the objects of one file, one after the other.
+class ObjectBuilder {
+ public:
+  /// All must outlive the builder. Throws what SiteTransform throws.
+  ObjectBuilder(const Source& source, const FileContents& contents, const SiteFrame& site,
+                const TerrainHeight& terrain);
+
+  /// Throws Error{bad_config} if outlines lack a base or a height.
+  Object build(const SelectedObject& selected);
+
+  const SiteTransform& transform() const { return transform_; }
+  std::size_t dropped_polygons() const { return dropped_; }
+  bool has_extruded() const { return has_extruded_; }
+
+ private:
+  struct Rings {
+    std::vector<Eigen::Vector3d> corners;
+    std::vector<std::uint32_t> begin{0};  ///< as in geometry::add_polygon
+    std::vector<std::size_t> first_ring;  ///< of each polygon
+    std::vector<SurfaceKind> kinds;       ///< of each polygon
+  };
+
+  Rings rings_of(const FileObject& object) const;
+  bool is_extruded(const FileObject& object) const;
+  void add_surfaces(const FileObject& object, Object& result);
+  void add_solids(const FileObject& object, Object& result);
+  void place_on_base(bool has_heights, Rings& bottom, Rings& top, double least, double most) const;
+  void place_on_terrain(Rings& bottom, Rings& top, double least, double most) const;
+
+  const Source& source_;
+  const FileContents& contents_;
+  const TerrainHeight& terrain_;
+  SiteTransform transform_;
+  std::size_t dropped_ = 0;
+  bool has_extruded_ = false;
+};
+
+}  // namespace skycap::missions::site_data

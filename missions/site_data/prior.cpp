@@ -1,0 +1,306 @@
+#include "missions/site_data/prior.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+#include "geometry/error.h"
+#include "geometry/place/prism.h"
+#include "missions/site_data/file_reader.h"
+#include "missions/site_data/object_builder.h"
+
+namespace skycap::missions::site_data {
+namespace {
+
+using Eigen::Vector2d;
+using Eigen::Vector3d;
+
+/// Whether an object has anything at the level that is asked for.
+bool is_empty(const Object& object) { return object.mesh.triangles.empty(); }
+
+/// The region of `select.within`, in the site's frame.
+class Region {
+ public:
+  Region(const Source& source, const SiteFrame& site) {
+    if (source.select.within.empty()) return;
+    Source polygons;
+    polygons.file = source.select.within;
+    const FileContents contents = read_contents(polygons, site);
+    const SiteTransform transform(polygons, contents, site, false);
+    std::vector<Vector3d> corners = contents.corners;
+    transform.to_site(corners);
+    for (std::size_t r = 0; r + 1 < contents.ring_begin.size(); ++r) {
+      std::vector<Vector2d>& ring = rings_.emplace_back();
+      for (std::size_t i = contents.ring_begin[r]; i < contents.ring_begin[r + 1]; ++i) {
+        ring.push_back(corners[i].head<2>());
+      }
+    }
+    if (rings_.empty()) fail_file(polygons.file, "holds no polygons; those of select.within do");
+  }
+
+  /// Without a file everything is inside. A ring within a ring is a hole.
+  bool contains(const Vector2d& place) const {
+    bool is_inside = rings_.empty();
+    for (const std::vector<Vector2d>& ring : rings_) {
+      if (geometry::contains(ring, place)) is_inside = !is_inside;
+    }
+    return is_inside;
+  }
+
+ private:
+  std::vector<std::vector<Vector2d>> rings_;
+};
+
+/// Returns what stand-ins for the way to WGS84 may be off [m].
+double add_objects(const Source& source, const SiteFrame& site, const FileContents& contents,
+                   const Region& region, const TerrainHeight& terrain, Prior& prior) {
+  ObjectBuilder builder(source, contents, site, terrain);
+  std::size_t outside = 0, without_level = 0;
+  for (const SelectedObject& selected : select_objects(source, contents)) {
+    Object object = builder.build(selected);
+    if (is_empty(object)) {
+      ++without_level;
+    } else if (!region.contains(geometry::bounding_box(object.mesh).center().head<2>())) {
+      ++outside;
+    } else {
+      prior.objects.push_back(std::move(object));
+    }
+  }
+  prior.dropped_polygons = builder.dropped_polygons();
+  prior.crs = builder.transform().crs();
+  const std::vector<std::string>& notes = builder.transform().notes();
+  prior.notes.insert(prior.notes.end(), notes.begin(), notes.end());
+  if (outside > 0) prior.notes.push_back(std::to_string(outside) + " objects outside of within");
+  if (without_level > 0) {
+    prior.notes.push_back(std::to_string(without_level) + " objects without surfaces of that lod");
+  }
+  if (builder.has_extruded()) prior.uncertainty = 1.0;
+  return builder.transform().stand_in_error();
+}
+
+void add_points(FileContents& contents, const SiteTransform& transform, const Region& region,
+                Prior& prior) {
+  transform.to_site(contents.points);
+  prior.points.reserve(contents.points.size());
+  for (const Vector3d& point : contents.points) {
+    if (region.contains(point.head<2>())) prior.points.push_back(point.cast<float>());
+  }
+}
+
+/// From node to node about the middle of the raster.
+void add_steps(const FileContents& contents, const SiteTransform& transform, HeightGrid& grid) {
+  const std::size_t middle = contents.rows / 2 * contents.columns + contents.columns / 2;
+  const Vector2d here = contents.nodes[middle].head<2>();
+  std::array<Vector3d, 3> places;
+  places.fill(Vector3d::Zero());
+  places[0].head<2>() = here;
+  places[1].head<2>() = here + contents.right;
+  places[2].head<2>() = here + contents.down;
+  transform.to_site(places);
+  grid.right = (places[1] - places[0]).head<2>().cast<float>();
+  grid.down = (places[2] - places[0]).head<2>().cast<float>();
+}
+
+void add_grid(FileContents& contents, const SiteTransform& transform, const Region& region,
+              Prior& prior) {
+  prior.grid.columns = contents.columns;
+  prior.grid.rows = contents.rows;
+  add_steps(contents, transform, prior.grid);
+  const auto none = Eigen::Vector3f::Constant(std::numeric_limits<float>::quiet_NaN());
+  prior.grid.nodes.reserve(contents.nodes.size());
+  std::vector<Vector3d> row;
+  for (std::size_t first = 0; first < contents.nodes.size(); first += contents.columns) {
+    row.clear();
+    const std::span nodes = std::span(contents.nodes).subspan(first, contents.columns);
+    std::ranges::copy_if(nodes, std::back_inserter(row),
+                         [](const Vector3d& node) { return std::isfinite(node.z()); });
+    transform.to_site(row);
+    auto next = row.begin();
+    for (const Vector3d& node : nodes) {
+      const bool is_there = std::isfinite(node.z()) && region.contains((*next).head<2>());
+      prior.grid.nodes.push_back(is_there ? Eigen::Vector3f(next->cast<float>()) : none);
+      if (std::isfinite(node.z())) ++next;
+    }
+  }
+}
+
+/// Calls `visit` with every place of a prior.
+template <typename Visit>
+void visit_places(const Prior& prior, const Visit& visit) {
+  for (const Object& object : prior.objects) {
+    for (const Vector3d& vertex : object.mesh.vertices) visit(vertex);
+  }
+  for (const Eigen::Vector3f& point : prior.points) visit(point.cast<double>());
+  for (const Eigen::Vector3f& node : prior.grid.nodes) {
+    if (node.allFinite()) visit(node.cast<double>());
+  }
+}
+
+/// Box and heights. The lowest and the highest place are found on a ball, which puts no two places
+/// of a site that differ by a millimetre the other way round within a kilometre.
+void measure(const SiteFrame& site, Prior& prior) {
+  constexpr double earth_radius = 6.371e6;
+  double least = std::numeric_limits<double>::infinity(), most = -least;
+  Vector3d lowest = Vector3d::Zero(), highest = lowest;
+  visit_places(prior, [&](const Vector3d& place) {
+    prior.box.extend(place);
+    const double height = place.z() + place.head<2>().squaredNorm() / (2.0 * earth_radius);
+    if (height < least) lowest = place;
+    if (height > most) highest = place;
+    least = std::min(least, height);
+    most = std::max(most, height);
+  });
+  if (!site.origin || prior.box.isEmpty()) return;
+  const flight::LocalFrame frame(*site.origin);
+  const flight::GeodeticPoint low = frame.to_geodetic(lowest), high = frame.to_geodetic(highest);
+  prior.ellipsoid_heights = {low.height, high.height};
+  if (!site.undulation) return;
+  prior.sea_level_heights = {low.height - *site.undulation, high.height - *site.undulation};
+}
+
+/// Throws unless the file has what the role needs.
+void require_use(const Source& source, const Prior& prior) {
+  const auto refuse = [&](const std::string& what) {
+    throw Error(ErrorKind::bad_config, source.file.string() + ": " + what);
+  };
+  if (source.role == Role::target && prior.objects.empty()) {
+    refuse("holds no surfaces of objects, which a target has to; give role: obstacle");
+  }
+  const auto is_surface = [](const Object& object) { return has_area(object.mesh); };
+  if (source.role == Role::terrain && prior.points.empty() && prior.grid.nodes.empty() &&
+      std::ranges::none_of(prior.objects, is_surface)) {
+    refuse("holds no surface, which the ground has to be; give role: obstacle");
+  }
+  if (source.role == Role::terrain && !prior.points.empty()) {
+    refuse("holds points, which are no ground; make a raster of them, or give role: obstacle");
+  }
+  if (source.role == Role::truth && !prior.points.empty()) {
+    refuse("holds points, which no sensor can be simulated on; give surfaces or a raster");
+  }
+}
+
+Prior prior_of(FileContents contents, const Source& source, const SiteFrame& site,
+               const TerrainHeight& terrain) {
+  refuse_unused(source, contents);
+  Prior prior;
+  prior.role = source.role;
+  prior.uncertainty = 0.3;
+  prior.format = contents.format;
+  prior.notes = contents.notes;
+  const Region region(source, site);
+  double stand_in_error = 0.0;
+  if (contents.points.empty() && contents.nodes.empty()) {
+    stand_in_error = add_objects(source, site, contents, region, terrain, prior);
+  } else {
+    const SiteTransform transform(source, contents, site);
+    add_points(contents, transform, region, prior);
+    if (!contents.nodes.empty()) add_grid(contents, transform, region, prior);
+    stand_in_error = transform.stand_in_error();
+    prior.crs = transform.crs();
+    prior.notes.insert(prior.notes.end(), transform.notes().begin(), transform.notes().end());
+  }
+  prior.uncertainty = source.uncertainty.value_or(prior.uncertainty) + stand_in_error;
+  measure(site, prior);
+  if (prior.box.isEmpty()) {
+    fail_file(source.file, "holds neither surfaces nor points that select lets through");
+  }
+  require_use(source, prior);
+  return prior;
+}
+
+/// All coordinates of what is selected of a file.
+std::vector<Vector3d> places_of(const Source& source, const FileContents& contents) {
+  std::vector<Vector3d> places = contents.points;
+  places.insert(places.end(), contents.nodes.begin(), contents.nodes.end());
+  for (const SelectedObject& selected : select_objects(source, contents)) {
+    for (const std::size_t member : selected.members) {
+      const FileObject& object = contents.objects[member];
+      places.insert(places.end(), object.mesh.vertices.begin(), object.mesh.vertices.end());
+      for (const FilePolygon& polygon : object.polygons) {
+        for (std::uint32_t r = polygon.first_ring; r < polygon.first_ring + polygon.rings; ++r) {
+          places.insert(places.end(), contents.corners.begin() + contents.ring_begin[r],
+                        contents.corners.begin() + contents.ring_begin[r + 1]);
+        }
+      }
+    }
+  }
+  return places;
+}
+
+flight::GeodeticPoint middle_of(const Source& source, const FileContents& contents) {
+  if (contents.crs.empty() && source.crs.empty()) {
+    throw Error(ErrorKind::bad_config, source.file.string() +
+                                           ": does not say which coordinates it is in; give crs, "
+                                           "such as \"EPSG:25832+7837\"");
+  }
+  const SiteTransform transform(source, contents, {}, false);
+  std::vector<Vector3d> places = places_of(source, contents);
+  for (Vector3d& place : places) place.z() = 0.0;
+  transform.to_geodetic(places);
+  Eigen::AlignedBox2d box;  // longitudes within half a turn of the first
+  std::optional<double> first;
+  for (const Vector3d& place : places) {
+    if (!place.head<2>().allFinite()) continue;
+    if (!first) first = place.x();
+    box.extend(Vector2d(*first + std::remainder(place.x() - *first, 360.0), place.y()));
+  }
+  if (box.isEmpty()) fail_file(source.file, "holds nothing that is somewhere on the Earth");
+  return {box.center().y(), std::remainder(box.center().x(), 360.0), 0.0};
+}
+
+}  // namespace
+
+bool has_area(const geometry::Mesh& mesh) {
+  return !mesh.triangles.empty() && geometry::surface_area(mesh) > 0.0;
+}
+
+Prior read_prior(const Source& source, const SiteFrame& site, const TerrainHeight& terrain) {
+  return prior_of(read_contents(source, site), source, site, terrain);
+}
+
+flight::GeodeticPoint middle_of(const Source& source) {
+  return middle_of(source, read_contents(source, {}));
+}
+
+Source completed(Source source, const Assumptions& assumed) {
+  const FileContents contents = read_contents(source, {});
+  if (contents.crs.empty()) source.crs = assumed.crs;
+  if (contents.crs.empty() && source.crs.empty()) return source;  // in the mission's frame
+  const bool is_flat = std::ranges::none_of(contents.objects, &FileObject::has_heights);
+  if (contents.is_outlines && is_flat && assumed.has_terrain && !source.base) {
+    source.base_on_terrain = true;
+    return source;
+  }
+  const SiteTransform transform(source, contents, {}, false);
+  // EGM96 may stand in for a geoid whose grid is not installed.
+  const bool may_stand_in =
+      transform.has_vertical_datum() && assumed.vertical == HeightDatum::geoid;
+  if ((!transform.has_own_heights() || may_stand_in) && !contents.vertical) {
+    source.vertical = assumed.vertical;
+  }
+  return source;
+}
+
+geometry::Mesh read_surfaces(const std::filesystem::path& file) {
+  Source source;
+  source.file = file;
+  source.role = Role::truth;
+  SiteFrame site;
+  FileContents contents = read_contents(source, site);
+  if (contents.crs.empty()) {
+    source.place = Place{};
+  } else {
+    source.vertical = HeightDatum::geoid;  // stand-ins will do: heights among each other count
+    site.origin = middle_of(source, contents);
+  }
+  const bool is_flat = std::ranges::none_of(contents.objects, &FileObject::has_heights);
+  if (contents.is_outlines && is_flat) source.base = 0.0;
+  const Prior prior = prior_of(std::move(contents), source, site, {});
+  geometry::Mesh mesh;
+  for (const Object& object : prior.objects) geometry::append(mesh, object.mesh);
+  if (mesh.triangles.empty()) fail_file(file, "holds no surfaces; a mesh is wanted");
+  return mesh;
+}
+
+}  // namespace skycap::missions::site_data

@@ -1,0 +1,123 @@
+#include "missions/site_data/site_priors.h"
+
+#include <numbers>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "geometry/error.h"
+#include "geometry/io/record_log.h"
+#include "missions/site_data/unknown_ground.h"
+
+namespace skycap::missions::site_data {
+namespace {
+
+template <typename Item>
+std::uint32_t crc_of(const std::vector<Item>& items) {
+  return geometry::crc32_of(
+      {reinterpret_cast<const char*>(items.data()), items.size() * sizeof(Item)});
+}
+
+/// Of what was read: the same file at another place, or in another format, is the same prior.
+std::string digest_of(const Prior& prior) {
+  std::vector<std::uint32_t> sums{crc_of(prior.points), crc_of(prior.grid.nodes)};
+  for (const Object& object : prior.objects) {
+    sums.push_back(geometry::crc32_of(object.id));
+    sums.push_back(crc_of(object.mesh.vertices));
+    sums.push_back(crc_of(object.mesh.triangles));
+  }
+  return fmt::format("{:08x}", crc_of(sums));
+}
+
+}  // namespace
+
+flight::PriorObstacleConfig obstacle_of(const Source& source, const Prior& prior) {
+  flight::PriorObstacleConfig obstacle;
+  obstacle.name = "the prior " + source.file.filename().string();
+  for (const Object& object : prior.objects) {
+    if (has_area(object.mesh)) obstacle.surfaces.push_back({object.id, object.mesh});
+  }
+  obstacle.points = prior.points;
+  // Of those in a cube of that side one is left.
+  obstacle.point_radius = std::numbers::sqrt3 * source.spacing.value_or(usual_spacing);
+  obstacle.columns = columns_of(prior.grid);
+  obstacle.uncertainty = prior.uncertainty;
+  obstacle.is_ground = source.role == Role::terrain;
+  return obstacle;
+}
+
+SitePriors read_site_priors(std::vector<Source> sources, const SiteFrame& site,
+                            const std::function<void(std::size_t, const std::string&)>& failed,
+                            const std::function<void(std::size_t)>& reading) {
+  SitePriors result;
+  result.priors.resize(sources.size());
+  result.digests.resize(sources.size());
+  TerrainHeight terrain_height;
+  std::vector<const Prior*> grounds;
+  std::vector<flight::PriorObstacleConfig> ground_obstacles;
+  const auto read = [&](std::size_t i) {
+    const Role role = sources[i].role;
+    if (reading) reading(i);
+    try {
+      result.priors[i] = read_prior(sources[i], site, terrain_height);
+      result.digests[i] = digest_of(result.priors[i]);
+      if (role != Role::obstacle && role != Role::terrain) return;
+      auto obstacle = obstacle_of(sources[i], result.priors[i]);
+      result.obstacles.push_back(std::make_shared<const flight::PriorObstacle>(obstacle));
+      if (role == Role::terrain) ground_obstacles.push_back(std::move(obstacle));
+    } catch (const Error& error) {
+      failed(i, error.what());
+    }
+  };
+  for (std::size_t i = 0; i < sources.size(); ++i) {
+    if (sources[i].role != Role::terrain) continue;
+    read(i);
+    grounds.push_back(&result.priors[i]);
+  }
+  if (!grounds.empty()) {
+    const auto unknown = std::make_shared<UnknownGround>(ground_obstacles, site.ground_z);
+    result.ground_note = unknown->note();
+    result.obstacles.push_back(std::make_shared<const flight::PriorObstacle>(unknown->obstacle()));
+    result.terrain = std::make_shared<const Terrain>(grounds);
+    result.ground = [unknown, terrain = result.terrain](const Eigen::Vector2d& place) {
+      const std::optional<double> known = terrain->height(place);
+      return known ? known : unknown->height(place);
+    };
+    terrain_height = [terrain = result.terrain](const Eigen::Vector2d& place) {
+      return terrain->height(place);
+    };
+  }
+  for (std::size_t i = 0; i < sources.size(); ++i) {
+    if (sources[i].role != Role::terrain) read(i);
+  }
+  result.sources = std::move(sources);
+  return result;
+}
+
+geometry::Mesh surfaces_of(const SitePriors& site, Role role,
+                           const std::optional<Eigen::AlignedBox3d>& near) {
+  geometry::Mesh mesh;
+  const auto add_faces = [&](std::vector<flight::Triangle> faces) {
+    if (near) {
+      std::erase_if(faces, [&](const auto& face) {
+        Eigen::AlignedBox3d box;
+        for (const Eigen::Vector3d& corner : face) box.extend(corner);
+        return !near->intersects(box);
+      });
+    }
+    geometry::append(mesh, mesh_of(faces));
+  };
+  for (std::size_t i = 0; i < site.priors.size(); ++i) {
+    if (site.sources[i].role != role) continue;
+    for (const Object& object : site.priors[i].objects) {
+      if (!has_area(object.mesh)) continue;
+      if (near && !near->intersects(geometry::bounding_box(object.mesh))) continue;
+      geometry::append(mesh, object.mesh);
+    }
+    add_faces(triangles_of(site.priors[i].grid));
+    add_faces(rim_of(site.priors[i].grid));
+  }
+  return mesh;
+}
+
+}  // namespace skycap::missions::site_data

@@ -1,0 +1,196 @@
+#include "missions/site_data/site_transform.h"
+
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <utility>
+
+#include "geometry/angle.h"
+#include "geometry/error.h"
+
+namespace skycap::missions::site_data {
+namespace {
+
+using Eigen::Vector3d;
+
+std::string decimal(double value, int digits) {
+  std::array<char, 64> text;
+  std::snprintf(text.data(), text.size(), "%.*f", digits, value);
+  return text.data();
+}
+
+std::string place_text(double latitude_deg, double longitude_deg) {
+  return "latitude " + decimal(latitude_deg, 6) + ", longitude " + decimal(longitude_deg, 6);
+}
+
+/// y up, as modellers have it, to z up: what faced the viewer faces south.
+Eigen::Matrix3d upright(const Source& source, const FileContents& contents) {
+  Eigen::Matrix3d turn = Eigen::Matrix3d::Identity();
+  if (source.is_y_up.value_or(contents.is_y_up.value_or(false))) turn << 1, 0, 0, 0, 0, -1, 0, 1, 0;
+  return turn;
+}
+
+flight::GeodeticPoint geodetic_point(const Vector3d& place) {
+  return {place.y(), place.x(), place.z()};
+}
+
+}  // namespace
+
+SiteTransform::SiteTransform(const Source& source, const FileContents& contents,
+                             const SiteFrame& site, bool needs_heights)
+    : file_(source.file), needs_heights_(needs_heights), origin_(site.origin) {
+  if (source.place || (contents.crs.empty() && source.crs.empty())) {
+    prepare_place(source, contents);
+    if (!source.place && !contents.is_local_frame) {
+      notes_.push_back("it names no reference system: taken to be in the mission's frame");
+    }
+  } else {
+    prepare_crs(source, contents, site);
+  }
+}
+
+void SiteTransform::prepare_place(const Source& source, const FileContents& contents) {
+  if (!source.crs.empty()) {
+    throw Error(ErrorKind::bad_config,
+                file_.string() + ": has both a place and a crs; one of them puts it on the site");
+  }
+  if (source.vertical) {
+    throw Error(ErrorKind::bad_config,
+                file_.string() +
+                    ": vertical has no use here, as no reference system puts it on the site; its "
+                    "heights are z in the mission's frame");
+  }
+  const Place place = source.place.value_or(Place{});
+  const double unit = source.unit.value_or(contents.unit.value_or(1.0));
+  const Eigen::AngleAxisd heading(-place.heading, Vector3d::UnitZ());
+  // A transform times a mere matrix would take its columns for points.
+  const Eigen::Affine3d upright_metres(Eigen::Matrix3d(unit * upright(source, contents)));
+  prepared_ = Eigen::Translation3d(place.position) * heading * Eigen::Translation3d(source.offset) *
+              upright_metres;
+  metres_per_unit_ = Vector3d::Constant(unit);
+  name_ = "the mission's frame";
+}
+
+void SiteTransform::prepare_crs(const Source& source, const FileContents& contents,
+                                const SiteFrame& site) {
+  if (source.crs.empty() && !contents.other_crs.empty()) {
+    throw Error(ErrorKind::bad_config, file_.string() + ": names two reference systems, " +
+                                           one_line(contents.crs) + " and " +
+                                           one_line(contents.other_crs) +
+                                           "; give the one that all of it is in as crs");
+  }
+  ReferenceRequest request;
+  request.crs = source.crs.empty() ? contents.crs : source.crs;
+  request.is_latitude_first = source.crs.empty() && contents.is_latitude_first;
+  request.vertical = source.vertical;
+  request.vertical_if_silent = contents.vertical;
+  request.needs_heights = needs_heights_;
+  request.near = site.origin;
+  if (site.origin && site.takeoff_z) {
+    const flight::LocalFrame frame(*site.origin);
+    request.takeoff_height = frame.to_geodetic({0.0, 0.0, *site.takeoff_z}).height;
+  }
+  try {
+    geodetic_ = geodetic_transform(request);
+  } catch (const Error& error) {
+    throw Error(error.kind(), file_.string() + ": " + one_line(error.what()));
+  }
+  name_ = geodetic_->name;
+  notes_ = geodetic_->notes;
+  prepare_units(source, contents);
+}
+
+void SiteTransform::prepare_units(const Source& source, const FileContents& contents) {
+  if (source.unit && geodetic_->has_own_heights && !contents.is_scene) {
+    throw Error(ErrorKind::bad_config, file_.string() + ": unit does not go with " + name_ +
+                                           ", which says itself what its heights are in");
+  }
+  const double across = geodetic_->horizontal_unit;
+  const std::optional<double> scene_unit = source.unit ? source.unit : contents.unit;
+  const double all = contents.is_scene ? scene_unit.value_or(1.0) : 1.0;
+  double up = 1.0;
+  if (!geodetic_->has_own_heights && !contents.is_scene) {
+    up = source.unit.value_or(contents.height_unit.value_or(across));
+  } else if (!geodetic_->has_own_heights && !scene_unit) {
+    up = across;
+  }
+  if (needs_heights_ && across != 1.0 && !source.unit && up == across) {
+    notes_.push_back("heights are taken in units of " + decimal(across, 6) +
+                     " m, as the map is; unit says otherwise");
+  }
+  prepared_ =
+      Eigen::Translation3d(source.offset) *
+      Eigen::Matrix3d(Vector3d(1.0, 1.0, up).asDiagonal() * upright(source, contents) * all);
+  metres_per_unit_ = Vector3d(across, across, up * geodetic_->height_unit) * all;
+  if (geodetic_->is_geographic) {
+    constexpr double metres_per_degree = 111'320.0;
+    const double latitude = origin_ ? origin_->latitude_deg * geometry::radians_per_degree : 0.0;
+    metres_per_unit_.x() = metres_per_degree * std::cos(latitude);
+    metres_per_unit_.y() = metres_per_degree;
+  }
+}
+
+void SiteTransform::to_geodetic(std::span<Vector3d> coordinates) const {
+  for (Vector3d& coordinate : coordinates) coordinate = prepared_ * coordinate;
+  geodetic_->apply(coordinates);
+}
+
+void SiteTransform::to_site(std::span<Vector3d> coordinates) const {
+  if (!geodetic_) {
+    for (Vector3d& coordinate : coordinates) {
+      const Vector3d place = prepared_ * coordinate;
+      if (!(place.norm() <= farthest_from_site)) refuse(coordinate, place);
+      coordinate = place;
+    }
+    return;
+  }
+  if (!origin_) {
+    throw Error(ErrorKind::bad_config, file_.string() + ": is in " + name_ +
+                                           "; give site.latitude_deg and site.longitude_deg");
+  }
+  const flight::LocalFrame frame(*origin_);
+  constexpr std::size_t at_once = 1 << 16;
+  std::vector<Vector3d> batch;
+  for (std::size_t first = 0; first < coordinates.size(); first += at_once) {
+    const auto some = coordinates.subspan(first, std::min(at_once, coordinates.size() - first));
+    batch.assign(some.begin(), some.end());
+    to_geodetic(batch);
+    for (std::size_t i = 0; i < some.size(); ++i) {
+      if (!needs_heights_) batch[i].z() = origin_->height;
+      const Vector3d place =
+          batch[i].allFinite() ? frame.to_local(geodetic_point(batch[i])) : batch[i];
+      if (!(place.norm() <= farthest_from_site)) refuse(some[i], batch[i]);
+      some[i] = place;
+    }
+  }
+}
+
+void SiteTransform::refuse(const Vector3d& coordinate, const Vector3d& place) const {
+  const std::string what = file_.string() + ": has " + decimal(coordinate.x(), 3) + " " +
+                           decimal(coordinate.y(), 3) + " " + decimal(coordinate.z(), 3);
+  if (!geodetic_) {
+    throw Error(ErrorKind::bad_config, what +
+                                           ", more than 50 km from the site; its unit, offset "
+                                           "or place must be wrong");
+  }
+  std::string message = what + " in " + name_;
+  if (place.allFinite()) {
+    message += ", which is at " + place_text(place.y(), place.x()) +
+               ", more than 50 km from the site at " +
+               place_text(origin_->latitude_deg, origin_->longitude_deg);
+  } else {
+    message += ", which is no place on the Earth; the site is at " +
+               place_text(origin_->latitude_deg, origin_->longitude_deg);
+  }
+  std::array<Vector3d, 1> swapped = {Vector3d(coordinate.y(), coordinate.x(), coordinate.z())};
+  to_geodetic(swapped);
+  const bool is_swapped =
+      swapped[0].allFinite() &&
+      flight::LocalFrame(*origin_).to_local(geodetic_point(swapped[0])).norm() <=
+          farthest_from_site;
+  throw Error(ErrorKind::bad_config,
+              message + (is_swapped ? "; its axes seem to be swapped: east must come first"
+                                    : "; is its crs right, and the site's place?"));
+}
+
+}  // namespace skycap::missions::site_data

@@ -1,0 +1,86 @@
+#include "missions/site_data/surface_points.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "flight/space/triangle_tree.h"
+#include "flight/space/winding.h"
+
+namespace skycap::missions::site_data {
+namespace {
+
+using Eigen::Vector3d;
+using Eigen::Vector3f;
+
+/// What is level this near to the lowest vertex is the foot [m].
+constexpr double foot_height = 0.5;
+constexpr double level = 0.9;  // z of such a normal, up or down
+
+/// How far beside a surface it is asked whether that is inside of the object [m].
+constexpr float beside = 0.05F;
+
+Vector3d area_vector(const geometry::Mesh& mesh, std::size_t triangle) {
+  const auto& [a, b, c] = mesh.triangles[triangle];
+  const Vector3d &p = mesh.vertices[a], &q = mesh.vertices[b], &r = mesh.vertices[c];
+  return 0.5 * (q - p).cross(r - p);
+}
+
+SurfaceKind kind_of(const Object& object, std::size_t triangle) {
+  return triangle < object.surfaces.size() ? object.surfaces[triangle] : SurfaceKind::unknown;
+}
+
+/// The object's visible triangles, and which of the object's each is.
+struct VisiblePart {
+  geometry::Mesh mesh;
+  std::vector<std::size_t> triangles;
+};
+
+VisiblePart visible_part(const Object& object) {
+  VisiblePart part;
+  part.mesh.vertices = object.mesh.vertices;
+  const double foot = geometry::bounding_box(object.mesh).min().z() + foot_height;
+  for (std::size_t t = 0; t < object.mesh.triangles.size(); ++t) {
+    const auto& corners = object.mesh.triangles[t];
+    const Vector3d normal = area_vector(object.mesh, t);
+    const bool is_low = std::ranges::all_of(
+        corners, [&](auto vertex) { return object.mesh.vertices[vertex].z() < foot; });
+    const bool is_foot = is_low && std::abs(normal.z()) >= level * normal.norm();
+    if (is_foot || normal.norm() == 0.0 || kind_of(object, t) == SurfaceKind::ground) continue;
+    part.mesh.triangles.push_back(corners);
+    part.triangles.push_back(t);
+  }
+  return part;
+}
+
+}  // namespace
+
+SurfacePoints spread_over(const Object& object, std::size_t most, double spacing) {
+  SurfacePoints points;
+  if (object.mesh.triangles.empty()) return points;
+  const VisiblePart part = visible_part(object);
+  if (part.mesh.triangles.empty()) return points;
+  const double area = geometry::surface_area(part.mesh);
+  const double wanted = std::ceil(area / (spacing * spacing));
+  const auto count = static_cast<std::size_t>(std::clamp(wanted, 1.0, static_cast<double>(most)));
+  constexpr std::uint64_t seed = 1;
+  const geometry::SurfaceSamples samples = geometry::sample_surface(part.mesh, count, seed);
+  points.area_of_each = area / static_cast<double>(count);
+  flight::TriangleTree solid;
+  solid.triangles = flight::triangles_of(object.mesh);
+  solid.index();
+  const flight::WindingNumber winding(solid.tree, solid.triangles);
+  const auto is_inside = [&](const Vector3f& point) {
+    return winding.at(solid.tree, solid.triangles, point.cast<double>()) > 0.5;
+  };
+  for (std::size_t i = 0; i < samples.points.size(); ++i) {
+    const Vector3f &position = samples.points[i], &normal = samples.normals[i];
+    const bool is_turned = is_inside(position + beside * normal);
+    if (is_turned && is_inside(position - beside * normal)) continue;  // solid on both sides
+    points.positions.push_back(position);
+    points.normals.push_back(is_turned ? Vector3f(-normal) : normal);
+    points.kinds.push_back(kind_of(object, part.triangles[samples.triangles[i]]));
+  }
+  return points;
+}
+
+}  // namespace skycap::missions::site_data

@@ -1,0 +1,70 @@
+#include "missions/site_data/terrain.h"
+
+#include <algorithm>
+
+#include "flight/space/triangle_tree.h"
+
+namespace skycap::missions::site_data {
+namespace {
+
+using Eigen::Vector3d;
+using flight::NearestPoints;
+using flight::Segment;
+
+/// Beyond every height on the Earth [m].
+constexpr double far = 2e4;
+
+}  // namespace
+
+geometry::Mesh mesh_of(const std::vector<flight::Triangle>& triangles) {
+  geometry::Mesh mesh;
+  mesh.vertices.reserve(3 * triangles.size());
+  for (const flight::Triangle& triangle : triangles) {
+    const auto first = static_cast<std::uint32_t>(mesh.vertices.size());
+    mesh.vertices.insert(mesh.vertices.end(), triangle.begin(), triangle.end());
+    mesh.triangles.push_back({first, first + 1, first + 2});
+  }
+  return mesh;
+}
+
+struct Terrain::Impl {
+  flight::TriangleTree surface;
+};
+
+Terrain::Terrain(const std::vector<const Prior*>& priors) {
+  auto impl = std::make_unique<Impl>();
+  auto& triangles = impl->surface.triangles;
+  for (const Prior* prior : priors) {
+    for (const Object& object : prior->objects) {
+      const auto more = flight::triangles_of(object.mesh);
+      triangles.insert(triangles.end(), more.begin(), more.end());
+    }
+    const std::size_t step = step_of(prior->grid);
+    const HeightGrid coarse = step > 1 ? thinned(prior->grid, step) : HeightGrid{};
+    const HeightGrid& grid = step > 1 ? coarse : prior->grid;
+    for (const auto& more : {triangles_of(grid), rim_of(grid)}) {
+      triangles.insert(triangles.end(), more.begin(), more.end());
+    }
+  }
+  impl->surface.index();
+  impl_ = std::move(impl);
+}
+
+Terrain::~Terrain() = default;
+
+geometry::Mesh Terrain::surface() const { return mesh_of(impl_->surface.triangles); }
+
+std::optional<double> Terrain::height(const Eigen::Vector2d& place) const {
+  const Segment plumb{{place.x(), place.y(), -far}, {place.x(), place.y(), far}};
+  std::optional<double> highest;
+  double reach = 1e-6;
+  const flight::TriangleTree& surface = impl_->surface;
+  surface.tree.visit_near(plumb, reach, [&](std::uint32_t t) {
+    const NearestPoints pair = nearest(plumb, surface.triangles[t]);
+    if (pair.squared_distance > reach * reach) return;
+    highest = std::max(highest.value_or(-far), pair.on_other.z());
+  });
+  return highest;
+}
+
+}  // namespace skycap::missions::site_data

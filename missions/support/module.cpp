@@ -1,0 +1,61 @@
+#include "missions/support/module.h"
+
+#include <algorithm>
+#include <array>
+#include <cstdlib>
+#include <filesystem>
+#include <string>
+#include <system_error>
+
+#include <dlfcn.h>
+
+#include "geometry/error.h"
+
+namespace skycap::missions::support {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// The program, or the library or module of Python that this code is in.
+fs::path file_of_this_code() {
+  Dl_info info;
+  const bool is_known = ::dladdr(reinterpret_cast<void*>(&module_symbol), &info) != 0;
+  const fs::path file = is_known && info.dli_fname != nullptr ? info.dli_fname : "";
+  if (file.filename().string().find(".so") != std::string::npos) return fs::canonical(file);
+  std::error_code failure;  // programs are known by how they were called
+  const fs::path program = fs::read_symlink("/proc/self/exe", failure);
+  if (!failure) return program;
+  throw Error(ErrorKind::bad_file, "/proc/self/exe cannot be read (" + failure.message() +
+                                       "); name the folder of libskycap_*.so in $SKYCAP_PLUGINS");
+}
+
+/// Where the modules are, from there, wherever that was put: beside the program or where its
+/// installation puts them; beside shared libraries; from the module of Python, in its build folder
+/// and from lib/python3/dist-packages/skycap.
+constexpr std::array folders{SKYCAP_PLUGINS_OF_PROGRAM, ".", "skycap", "../..", "../../../skycap"};
+
+fs::path module_folder(const std::string& module) {
+  const char* folder = std::getenv("SKYCAP_PLUGINS");  // NOLINT(concurrency-mt-unsafe): never set
+  if (folder != nullptr && *folder != '\0') return folder;
+  const fs::path here = file_of_this_code().parent_path();
+  std::error_code ignored;
+  const auto found = std::ranges::find_if(
+      folders, [&](const char* way) { return fs::exists(here / way / module, ignored); });
+  return found == folders.end() ? here : here / *found;
+}
+
+}  // namespace
+
+void* module_symbol(const std::string& module, const std::string& function) {
+  const std::string path = (module_folder(module) / module).string();
+  void* const handle = ::dlopen(path.c_str(), RTLD_NOW | RTLD_LOCAL);
+  void* const symbol = handle != nullptr ? ::dlsym(handle, function.c_str()) : nullptr;
+  if (symbol == nullptr) {
+    throw Error(ErrorKind::bad_file,
+                path + ": this part of the program cannot be loaded (" + ::dlerror() +
+                    "); put it beside the program, or name its folder in $SKYCAP_PLUGINS");
+  }
+  return symbol;
+}
+
+}  // namespace skycap::missions::support

@@ -1,0 +1,84 @@
+#include "missions/support/sha256.h"
+
+#include <array>
+#include <cstddef>
+#include <memory>
+#include <new>
+#include <stdexcept>
+#include <vector>
+
+#include <openssl/crypto.h>
+#include <openssl/evp.h>
+
+#include "geometry/error.h"
+#include "geometry/io/file.h"
+
+namespace skycap::missions::support {
+
+namespace {
+
+void require(int result) {
+  if (result != 1) throw std::runtime_error("the cryptography library cannot compute SHA-256");
+}
+
+/// The algorithm, from a library context of its own: where memory is short, OpenSSL 3.0 goes on
+/// with a default context that it could not make, and crashes.
+const EVP_MD* algorithm() {
+  static const std::unique_ptr<OSSL_LIB_CTX, decltype(&OSSL_LIB_CTX_free)> library(
+      OSSL_LIB_CTX_new(), OSSL_LIB_CTX_free);
+  if (!library) throw std::bad_alloc();
+  static const std::unique_ptr<EVP_MD, decltype(&EVP_MD_free)> sha256(
+      EVP_MD_fetch(library.get(), "SHA256", nullptr), EVP_MD_free);
+  if (!sha256) throw std::bad_alloc();
+  return sha256.get();
+}
+
+/// The digest of what it is given piece by piece.
+class Sha256 {
+ public:
+  Sha256() : context_(EVP_MD_CTX_new(), EVP_MD_CTX_free) {
+    if (!context_) throw std::bad_alloc();
+    require(EVP_DigestInit_ex(context_.get(), algorithm(), nullptr));
+  }
+
+  void add(std::span<const std::byte> bytes) {
+    require(EVP_DigestUpdate(context_.get(), bytes.data(), bytes.size()));
+  }
+
+  std::string finish() {
+    std::array<unsigned char, 32> digest{};
+    require(EVP_DigestFinal_ex(context_.get(), digest.data(), nullptr));
+    std::string text;
+    constexpr char digits[] = "0123456789abcdef";
+    for (const unsigned char byte : digest) {
+      text += digits[byte >> 4];
+      text += digits[byte & 15];
+    }
+    return text;
+  }
+
+ private:
+  std::unique_ptr<EVP_MD_CTX, decltype(&EVP_MD_CTX_free)> context_;
+};
+
+}  // namespace
+
+std::string sha256(std::span<const std::byte> bytes) {
+  Sha256 sum;
+  sum.add(bytes);
+  return sum.finish();
+}
+
+std::string sha256_of_file(const std::filesystem::path& file) {
+  std::ifstream stream = geometry::open_stream(file);
+  Sha256 sum;
+  std::vector<char> piece(std::size_t{1} << 18);
+  while (stream.read(piece.data(), static_cast<std::streamsize>(piece.size())),
+         stream.gcount() > 0) {
+    sum.add(std::as_bytes(std::span(piece).first(static_cast<std::size_t>(stream.gcount()))));
+  }
+  if (!stream.eof()) throw Error(ErrorKind::bad_file, file.string() + ": cannot be read");
+  return sum.finish();
+}
+
+}  // namespace skycap::missions::support

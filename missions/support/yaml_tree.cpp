@@ -1,0 +1,164 @@
+#include "missions/support/yaml_tree.h"
+
+#include <cstddef>
+#include <map>
+#include <sstream>
+
+#include <yaml-cpp/eventhandler.h>
+#include <yaml-cpp/exceptions.h>
+#include <yaml-cpp/mark.h>
+#include <yaml-cpp/parser.h>
+
+#include "geometry/error.h"
+
+namespace skycap::missions::support {
+namespace {
+
+constexpr std::size_t deepest_nesting = 16;
+
+/// Builds the tree from the parser's events. Unlike yaml-cpp's own nodes this keeps the line of
+/// every key, sees repeated keys, and never expands an alias.
+class TreeBuilder final : public YAML::EventHandler {
+ public:
+  explicit TreeBuilder(const std::string& name) : name_(name) {}
+
+  YamlNode take_root() { return std::move(root_); }
+
+  void OnDocumentStart(const YAML::Mark&) override {}
+  void OnDocumentEnd() override {}
+
+  void OnNull(const YAML::Mark& mark, YAML::anchor_t anchor) override {
+    refuse_anchor(mark, anchor);
+    add(node_at(mark, YamlNode::Kind::null));
+  }
+
+  void OnAlias(const YAML::Mark& mark, YAML::anchor_t) override {
+    fail(line_of(mark), "aliases ('*name') are not used in mission files; write the value out");
+  }
+
+  void OnScalar(const YAML::Mark& mark, const std::string& tag, YAML::anchor_t anchor,
+                const std::string& value) override {
+    refuse_anchor(mark, anchor);
+    const bool is_quoted = tag == "!";  // how the parser marks quotes
+    if (!is_quoted) refuse_tag(mark, tag);
+    YamlNode node = node_at(mark, YamlNode::Kind::scalar);
+    node.text = value;
+    node.is_quoted = is_quoted;
+    add(std::move(node));
+  }
+
+  void OnSequenceStart(const YAML::Mark& mark, const std::string& tag, YAML::anchor_t anchor,
+                       YAML::EmitterStyle::value) override {
+    open(mark, tag, anchor, YamlNode::Kind::list);
+  }
+  void OnSequenceEnd() override { close(); }
+
+  void OnMapStart(const YAML::Mark& mark, const std::string& tag, YAML::anchor_t anchor,
+                  YAML::EmitterStyle::value) override {
+    open(mark, tag, anchor, YamlNode::Kind::map);
+  }
+  void OnMapEnd() override { close(); }
+
+ private:
+  /// A list or map that is being read.
+  struct Open {
+    YamlNode node;
+    bool awaits_value = false;         // of the map's last entry
+    std::map<std::string, int> lines;  // of the map's keys: a search for each takes too long
+  };
+
+  [[noreturn]] void fail(int line, const std::string& what) const {
+    throw Error(ErrorKind::bad_config, name_ + ":" + std::to_string(line) + ": " + what);
+  }
+
+  static int line_of(const YAML::Mark& mark) { return mark.line + 1; }
+
+  static YamlNode node_at(const YAML::Mark& mark, YamlNode::Kind kind) {
+    YamlNode node;
+    node.kind = kind;
+    node.line = line_of(mark);
+    return node;
+  }
+
+  void refuse_anchor(const YAML::Mark& mark, YAML::anchor_t anchor) const {
+    if (anchor == YAML::NullAnchor) return;
+    fail(line_of(mark), "anchors ('&name') are not used in mission files; leave it out");
+  }
+
+  void refuse_tag(const YAML::Mark& mark, const std::string& tag) const {
+    if (tag.empty() || tag == "?") return;
+    fail(line_of(mark), "tags ('" + tag + "') are not used in mission files; leave it out");
+  }
+
+  void open(const YAML::Mark& mark, const std::string& tag, YAML::anchor_t anchor,
+            YamlNode::Kind kind) {
+    refuse_anchor(mark, anchor);
+    refuse_tag(mark, tag);
+    if (open_.size() == deepest_nesting) {
+      fail(line_of(mark), "lists and maps are nested deeper than 16; a mission file needs 3");
+    }
+    open_.push_back({node_at(mark, kind), false, {}});
+  }
+
+  void close() {
+    YamlNode node = std::move(open_.back().node);
+    open_.pop_back();
+    add(std::move(node));
+  }
+
+  /// Puts a finished node where it belongs.
+  void add(YamlNode node) {
+    if (open_.empty()) {
+      root_ = std::move(node);
+    } else if (open_.back().node.kind == YamlNode::Kind::list) {
+      open_.back().node.items.push_back(std::move(node));
+    } else if (open_.back().awaits_value) {
+      open_.back().node.entries.back().value = std::move(node);
+      open_.back().awaits_value = false;
+    } else {
+      add_key(node);
+      open_.back().awaits_value = true;
+    }
+  }
+
+  void add_key(const YamlNode& key) {
+    if (key.kind != YamlNode::Kind::scalar) fail(key.line, "a key must be a plain word");
+    constexpr std::size_t longest = 1000;
+    if (key.text.size() > longest) fail(key.line, "a key has more than 1000 characters");
+    const auto [same, is_new] = open_.back().lines.emplace(key.text, key.line);
+    if (!is_new) {
+      fail(key.line, "key " + key.text + ": is given twice, first in line " +
+                         std::to_string(same->second) + "; keep one");
+    }
+    open_.back().node.entries.push_back({key.text, key.line, {}});
+  }
+
+  const std::string& name_;
+  YamlNode root_;
+  std::vector<Open> open_;
+};
+
+}  // namespace
+
+YamlNode parse_yaml(const std::string& text, const std::string& name) {
+  std::istringstream stream(text);
+  TreeBuilder builder(name);
+  try {
+    YAML::Parser parser(stream);
+    parser.HandleNextDocument(builder);
+    YamlNode root = builder.take_root();
+    TreeBuilder rest(name);
+    if (parser.HandleNextDocument(rest)) {
+      throw Error(ErrorKind::bad_config,
+                  name + ":1: holds more than one YAML document; a mission is one");
+    }
+    return root;
+  } catch (const YAML::Exception& failure) {
+    const int line = failure.mark.is_null() ? 1 : failure.mark.line + 1;
+    throw Error(ErrorKind::bad_config, name + ":" + std::to_string(line) + ": is not valid YAML (" +
+                                           failure.msg +
+                                           "); check the line's indentation, colons and brackets");
+  }
+}
+
+}  // namespace skycap::missions::support

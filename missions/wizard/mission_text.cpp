@@ -1,0 +1,173 @@
+#include "missions/wizard/mission_text.h"
+
+#include <fmt/format.h>
+
+#include "missions/site_data/prior_text.h"
+#include "missions/support/flow_text.h"
+
+namespace skycap::missions::wizard {
+namespace {
+
+using Eigen::Vector2d;
+using Eigen::Vector3d;
+using site_data::Source;
+using support::yaml_quoted;
+
+std::string vector_text(const Vector3d& place) {
+  return fmt::format("[{:g}, {:g}, {:g}]", place.x(), place.y(), place.z());
+}
+
+/// In quotes, and as from the mission file's folder.
+std::string path_text(const std::filesystem::path& file, const std::filesystem::path& mission) {
+  const auto absolute = std::filesystem::absolute(file).lexically_normal();
+  const auto folder = std::filesystem::absolute(mission).lexically_normal().parent_path();
+  return yaml_quoted(absolute.lexically_proximate(folder).string());
+}
+
+std::string source_text(const Source& source, const std::filesystem::path& mission) {
+  std::string text = fmt::format("{{file: {}, role: {}", path_text(source.file, mission),
+                                 site_data::name_of(source.role));
+  if (!source.crs.empty()) text += ", crs: " + yaml_quoted(source.crs);
+  if (source.vertical) text += std::string(", vertical: ") + site_data::name_of(*source.vertical);
+  if (source.base_on_terrain) text += ", base: terrain";
+  if (source.base) text += fmt::format(", base: {:g}", *source.base);
+  if (source.height) text += fmt::format(", height: {:g}", *source.height);
+  if (source.uncertainty) text += fmt::format(", uncertainty: {:g}", *source.uncertainty);
+  std::string ids;
+  for (const std::string& id : source.select.ids)
+    ids += (ids.empty() ? "" : ", ") + yaml_quoted(id);
+  if (!ids.empty()) text += ", select: {id: [" + ids + "]}";
+  return text + "}";
+}
+
+const char* purpose_of(site_data::Role role) {
+  switch (role) {
+    case site_data::Role::target:
+      return "what is surveyed; coverage is told of it";
+    case site_data::Role::obstacle:
+      return "in the way of every leg, widened by its uncertainty; it frees nothing";
+    case site_data::Role::terrain:
+      return "the ground: legs keep off it, the pad stands on it";
+    case site_data::Role::truth:
+      break;
+  }
+  return "what the simulated sensor measures";
+}
+
+std::string prior_section(const MissionValues& values) {
+  std::string text =
+      "# What is known before anything is measured; uncertainty: METRES says how far "
+      "off it may be.\nprior:\n";
+  for (const Source& source : values.sources) {
+    text +=
+        fmt::format("  # {}\n  - {}\n", purpose_of(source.role), source_text(source, values.file));
+  }
+  return text;
+}
+
+std::string site_section(const MissionValues& values) {
+  const Vector3d low = values.fence.min(), high = values.fence.max();
+  return fmt::format(
+      "site:\n"
+      "  # The origin of the mission's frame (x east, y north, z up): {}.\n"
+      "  latitude_deg: {:.7f}  # WGS84, north\n"
+      "  longitude_deg: {:.7f}  # east\n"
+      "  ellipsoid_height: {:.2f}  # metres above WGS84's ellipsoid, not above the sea\n"
+      "  # Views and legs stay inside of this; make it what you are allowed to fly in.\n"
+      "  geofence: [[{:g}, {:g}], [{:g}, {:g}], [{:g}, {:g}], [{:g}, {:g}]]\n"
+      "  highest_height: {:g}  # z; over the ground here\n",
+      values.origin_is, values.origin.latitude_deg, values.origin.longitude_deg,
+      values.origin.height, low.x(), low.y(), high.x(), low.y(), high.x(), high.y(), low.x(),
+      high.y(), high.z());
+}
+
+std::string flight_section(const MissionValues& values) {
+  // A preset has a name, a description has a path.
+  const bool is_file = std::filesystem::path(values.vehicle).extension() == ".yaml";
+  std::string text = fmt::format(
+      "flight:\n"
+      "  vehicle: {}  # a preset, or the path of a description\n"
+      "  clearance: {:g}  # least distance of the vehicle's centre from anything\n",
+      is_file ? path_text(values.vehicle, values.file) : yaml_quoted(values.vehicle),
+      values.clearance);
+  if (values.pad) {
+    text += fmt::format(
+        "  # Where it takes off and lands; go and see that it is free, and the air over it.\n"
+        "  takeoff: {}\n",
+        vector_text(*values.pad));
+  }
+  text += fmt::format(
+      "  # In this box nothing is free before it is measured. Outside of it you vouch "
+      "for the air, but\n"
+      "  # for what prior files have there: widen it over trees, wires and cranes.\n"
+      "  unknown_box: {{min: {}, max: {}}}\n",
+      vector_text(values.unknown.min()), vector_text(values.unknown.max()));
+  std::string corners;
+  for (const Eigen::AlignedBox3d& box : values.unknown_beside) {
+    corners += fmt::format("{}{}, {}", corners.empty() ? "" : ",\n    ", vector_text(box.min()),
+                           vector_text(box.max()));
+  }
+  if (!corners.empty()) {
+    text +=
+        "  # Nor in those of neighbours, which are surveyed, too: the corners of each.\n"
+        "  unknown_beside: [" +
+        corners + "]\n";
+  }
+  return text;
+}
+
+std::string planner_section(const MissionValues& values) {
+  const double distance = values.registration_distance;
+  std::string text = fmt::format(
+      "sensor:  # a depth camera; `skycap check` says what it resolves\n"
+      "  width: 320  # pixels\n"
+      "  height: 240  # pixels\n"
+      "  max_range: {:g}  # metres\n"
+      "  noise: {{sigma: 0.02}}  # metres, one standard deviation\n"
+      "planner:\n",
+      sensor_range(values));
+  if (values.scene) {
+    text += fmt::format(
+        "  # Surface in this box is wanted; what is lower counts as the ground.\n"
+        "  scene_box: {{min: {}, max: {}}}\n",
+        vector_text(values.scene->min()), vector_text(values.scene->max()));
+  }
+  return text +
+         fmt::format(
+             "  view_distance: {:g}  # metres, from which surfaces are looked at\n"
+             "  density: {:.3g}  # points a square metre, wanted everywhere\n"
+             "  resolution_radius: {:g}  # metres, in which they are counted\n"
+             "  spacing: {:g}  # metres; points nearer to each other than this are not kept\n"
+             "evaluation:\n"
+             "  registration_distance: {:g}  # a surface is covered with a point so near to it\n"
+             "limits:\n"
+             "  max_views: 150  # the survey ends before, when nothing is left to see\n",
+             values.view_distance, 0.36 / (distance * distance), 3.0 * distance, 0.5 * distance,
+             distance);
+}
+
+}  // namespace
+
+double sensor_range(const MissionValues& values) { return 4.0 * values.view_distance; }
+
+std::string mission_text(const MissionValues& values) {
+  const std::string name = values.file.stem().string();
+  return fmt::format(
+             "# A first mission, proposed by `{}`. It runs as it is; what the files do not say is "
+             "a "
+             "guess,\n"
+             "# so read every line of it before you fly. `skycap check` says what the files hold.\n"
+             "name: {}  # of the results\n"
+             "# A dry run: {} what there is. Leave `scene` out for a live "
+             "survey.\n"
+             "scene: {{model: prior, ground: true{}{}}}\n",
+             values.verb, yaml_quoted(name),
+             values.sees_neighbours ? "the target and its neighbours stand in for"
+                                    : "the target stands in for",
+             values.sees_neighbours ? ", neighbours: true" : "",
+             values.ground == 0.0 ? "" : fmt::format(", position: [0, 0, {:g}]", values.ground)) +
+         prior_section(values) + site_section(values) + flight_section(values) +
+         planner_section(values);
+}
+
+}  // namespace skycap::missions::wizard

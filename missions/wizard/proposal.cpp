@@ -1,0 +1,102 @@
+#include "missions/wizard/proposal.h"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <utility>
+
+#include "geometry/error.h"
+#include "missions/config/resolved_mission.h"
+#include "missions/wizard/pad_search.h"
+#include "missions/wizard/target.h"
+
+namespace skycap::missions::wizard {
+namespace {
+
+using Eigen::AlignedBox3d;
+using Eigen::Vector3d;
+
+/// Trees, wires and people are beside buildings, and their files are off: so far around the target
+/// at least nothing is vouched for [m].
+constexpr double unknown_beside = 5.0, unknown_above = 3.0;
+
+double rounded_up(double value, double unit) { return std::ceil(value / unit) * unit; }
+
+/// How closely a target is looked at: the larger it is, the less.
+double registration_distance_of(const AlignedBox3d& target) {
+  return std::clamp(rounded_up(target.sizes().maxCoeff() / 60.0, 0.05), 0.1, 1.0);
+}
+
+/// The box with its corners on multiples of a length, no smaller than it was.
+AlignedBox3d rounded_out(const AlignedBox3d& box, double unit) {
+  return {(box.min().array() / unit).floor() * unit, (box.max().array() / unit).ceil() * unit};
+}
+
+AlignedBox3d unknown_box(const AlignedBox3d& target, double uncertainty, bool has_terrain) {
+  const double beside = std::max(unknown_beside, uncertainty);
+  AlignedBox3d box = target;
+  box.min().array() -= beside;
+  box.max().array() += beside;
+  box.max().z() = target.max().z() + std::max(unknown_above, uncertainty);
+  const double foot = std::round(100.0 * target.min().z()) / 100.0;
+  box.min().z() = has_terrain ? foot - beside : 0.0;
+  return rounded_out(box, 1.0);
+}
+
+/// A fence around a box and a pad.
+AlignedBox3d fence_around(const AlignedBox3d& unknown, const std::optional<Vector3d>& pad,
+                          double view_distance) {
+  constexpr double spare = 10.0;
+  AlignedBox3d fence = unknown;
+  fence.min().array() -= view_distance + spare;
+  fence.max().array() += view_distance + spare;
+  if (pad)
+    fence.extend(AlignedBox3d(*pad - Vector3d(spare, spare, 0), *pad + Vector3d(spare, spare, 0)));
+  return rounded_out(fence, 1.0);
+}
+
+}  // namespace
+
+MissionValues values_for(MissionValues values, const AlignedBox3d& target, double uncertainty,
+                         bool has_terrain) {
+  values.unknown = unknown_box(target, uncertainty, has_terrain);
+  values.clearance = proposed_clearance;
+  values.registration_distance = registration_distance_of(target);
+  values.view_distance = std::round(std::clamp(target.sizes().maxCoeff(), 10.0, 25.0));
+  values.fence = fence_around(values.unknown, std::nullopt, values.view_distance);
+  return values;
+}
+
+MissionValues with_pad(MissionValues values, const Vector3d& pad) {
+  values.pad = pad;
+  values.fence = fence_around(values.unknown, pad, values.view_distance);
+  return values;
+}
+
+double top_of_climbs(const MissionValues& values) {
+  return values.fence.max().z() - values.clearance;
+}
+
+std::string propose_mission(const Wishes& wishes, const std::filesystem::path& file) {
+  const std::vector<site_data::Source> files = files_of(wishes);
+  const Target target = find_target(files, wishes.target);
+  MissionValues values = values_for({.file = file,
+                                     .vehicle = wishes.vehicle,
+                                     .sources = sources_of(files, target.ids),
+                                     .origin = target.origin,
+                                     .unknown = {}},
+                                    target.box, target.uncertainty, wishes.terrain.has_value());
+  const config::Mission mission = config::parse_mission(mission_text(values), file.string());
+  values.scene = rounded_out(mission.planner.see.scene_box.value(), 0.1);
+  const auto pad = PadSearch(mission).beside(values.unknown, top_of_climbs(values));
+  if (!pad) {
+    throw Error(ErrorKind::bad_config,
+                wishes.map.string() +
+                    ": leaves no room for a pad within 100 m of the target, by what stands there "
+                    "and how steep and even the ground is; what is in the way may be left out by "
+                    "select");
+  }
+  return mission_text(with_pad(std::move(values), *pad));
+}
+
+}  // namespace skycap::missions::wizard

@@ -1,0 +1,164 @@
+#include "missions/wizard/target.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+#include <fmt/format.h>
+
+#include "geometry/error.h"
+#include "geometry/place/prism.h"
+#include "missions/site_data/site_priors.h"
+
+namespace skycap::missions::wizard {
+namespace {
+
+using Eigen::Vector2d;
+using site_data::Object;
+using site_data::Role;
+using site_data::Source;
+
+/// What is clicked on is no farther from the click than this [m].
+constexpr double near_click = 10.0;
+
+bool is_over(const geometry::Mesh& mesh, const Vector2d& place) {
+  return std::ranges::any_of(mesh.triangles, [&](const auto& triangle) {
+    std::array<Vector2d, 3> corners;
+    for (std::size_t i = 0; i < 3; ++i) corners[i] = mesh.vertices[triangle[i]].template head<2>();
+    return geometry::turn(corners[0], corners[1], corners[2]) != 0.0 &&
+           geometry::contains(corners, place);
+  });
+}
+
+/// From a place on the map to an object: zero on it, else to the box around it.
+double distance(const Object& object, const Vector2d& place) {
+  if (is_over(object.mesh, place)) return 0.0;
+  const Eigen::AlignedBox3d box = geometry::bounding_box(object.mesh);
+  const Eigen::AlignedBox2d base(box.min().head<2>().eval(), box.max().head<2>().eval());
+  return std::max(0.01, base.exteriorDistance(place));
+}
+
+std::string clicked(const std::vector<Source>& files, const Click& click) {
+  const std::string file = files[0].file.string();
+  const std::vector<Object> objects =
+      read_things(files, {}, {click.latitude_deg, click.longitude_deg, 0.0}).objects;
+  const Object* nearest = nullptr;
+  double least = std::numeric_limits<double>::infinity();
+  for (const Object& object : objects) {
+    const double here = distance(object, Vector2d::Zero());
+    if (here < least) nearest = &object;
+    least = std::min(least, here);
+  }
+  if (nearest == nullptr || least > near_click) {
+    throw Error(
+        ErrorKind::bad_config,
+        fmt::format("{}: has nothing within {:.0f} m of latitude {:.7f}, longitude {:.7f}{}", file,
+                    near_click, click.latitude_deg, click.longitude_deg,
+                    nearest == nullptr
+                        ? ""
+                        : fmt::format("; the nearest, {}, is {:.0f} m away", nearest->id, least)));
+  }
+  require_single(objects, nearest->id, file);
+  return nearest->id;
+}
+
+/// The ids of what the pick means.
+std::vector<std::string> picked(const std::vector<Source>& files, const Pick& pick) {
+  if (pick.click) return {clicked(files, *pick.click)};
+  Source source = files[0];
+  source.role = Role::target;
+  source.select.ids = pick.ids;
+  source.select.attributes = pick.attributes;
+  std::vector<std::string> ids;
+  for (const Object& object :
+       site_data::read_prior(source, {.origin = site_data::middle_of(source)}, [](const Vector2d&) {
+         return std::optional(0.0);  // the terrain is no matter here
+       }).objects) {
+    ids.push_back(object.id);
+  }
+  if (ids.size() == 1 || !pick.ids.empty()) return ids;
+  std::string some;
+  for (std::size_t i = 0; i < std::min<std::size_t>(5, ids.size()); ++i) {
+    some += (i == 0 ? "" : ", ") + ids[i];
+  }
+  throw Error(ErrorKind::bad_config,
+              fmt::format("{}: holds {} things, {}{}; say which by --id, --at or --attribute",
+                          source.file.string(), ids.size(), some, ids.size() > 5 ? ", ..." : ""));
+}
+
+double rounded(double value, double unit) { return std::round(value / unit) * unit; }
+
+}  // namespace
+
+std::vector<Source> files_of(const Wishes& wishes) {
+  const auto file = [&](const std::filesystem::path& path, Role role) {
+    Source source;
+    source.file = path;
+    source.role = role;
+    return source;
+  };
+  const site_data::Assumptions assumed{wishes.reading.crs, wishes.reading.vertical,
+                                       wishes.terrain.has_value()};
+  Source map = file(wishes.map, Role::obstacle);
+  map.base = wishes.reading.base;
+  map.height = wishes.reading.height;
+  std::vector<Source> files{site_data::completed(map, assumed)};
+  for (const std::filesystem::path& path : wishes.obstacles) {
+    files.push_back(site_data::completed(file(path, Role::obstacle), assumed));
+  }
+  if (wishes.terrain) {
+    files.push_back(site_data::completed(file(*wishes.terrain, Role::terrain), assumed));
+  }
+  return files;
+}
+
+std::vector<Source> sources_of(const std::vector<Source>& files,
+                               const std::vector<std::string>& target) {
+  std::vector<Source> sources = files;
+  sources.insert(sources.begin(), files[0]);
+  sources[0].role = Role::target;
+  sources[0].select.ids = target;
+  return sources;
+}
+
+site_data::Prior read_things(const std::vector<Source>& files, const site_data::Selection& select,
+                             const flight::GeodeticPoint& origin) {
+  std::vector<Source> sources = sources_of(files, {});
+  sources[0].select = select;
+  std::erase_if(sources, [](const Source& source) {
+    return source.role != Role::target && source.role != Role::terrain;
+  });
+  const auto failed = [](std::size_t, const std::string& what) {
+    throw Error(ErrorKind::bad_config, what);
+  };
+  return site_data::read_site_priors(sources, {.origin = origin}, failed).priors[0];
+}
+
+void require_single(const std::vector<Object>& objects, const std::string& id,
+                    const std::string& file) {
+  if (std::ranges::count(objects, id, &Object::id) <= 1) return;
+  throw Error(
+      ErrorKind::bad_config,
+      fmt::format("{}: holds several things that are called {}; give them names of their own", file,
+                  id));
+}
+
+Target find_target(const std::vector<Source>& files, const Pick& pick) {
+  Target target{.ids = picked(files, pick), .origin = {}, .box = {}};
+  target.origin = site_data::middle_of(sources_of(files, target.ids)[0]);
+  constexpr double centimetre = 1e-7;  // of latitude [degrees]
+  target.origin.latitude_deg = rounded(target.origin.latitude_deg, centimetre);
+  target.origin.longitude_deg = rounded(target.origin.longitude_deg, centimetre);
+  const site_data::Prior found = read_things(files, {.ids = target.ids}, target.origin);
+  for (const Object& object : found.objects) {
+    target.box.extend(geometry::bounding_box(object.mesh));
+  }
+  target.uncertainty = found.uncertainty;
+  // Along the same plumb line the frame's other origin moves heights alone.
+  target.origin.height = rounded(target.box.min().z(), 0.01);
+  target.box.translate(Eigen::Vector3d(0.0, 0.0, -target.origin.height));
+  return target;
+}
+
+}  // namespace skycap::missions::wizard

@@ -1,0 +1,211 @@
+#include "missions/batch/benchmark/benchmark_results.h"
+
+#include <cmath>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include "geometry/error.h"
+#include "missions/batch/benchmark/benchmark_report.h"
+#include "missions/batch/benchmark/paper_results.h"
+
+namespace skycap::missions {
+namespace {
+
+using testing::HasSubstr;
+
+/// A survey of three views: 0, 1 and 3 m, after 1, 2 and 4 s.
+batch::Trial trial(double a, double b, double c) {
+  batch::Trial trial;
+  trial.views = 3;
+  trial.coverage = {c, c + 0.1, 0.95};
+  trial.coverage_after = {a, b, c};
+  trial.distance_after = {0.0, 1.0, 3.0};
+  trial.planning_time_after = {1.0, 2.0, 4.0};
+  trial.distance = 3.0;
+  trial.planning_time = 4.0;
+  trial.frontiers_resolved = 6;
+  return trial;
+}
+
+TEST(CoverageCurve, AveragesStepsAtEvenPlaces) {
+  const std::vector<batch::Trial> trials{trial(0.2, 0.4, 0.8), trial(0.4, 0.4, 0.6)};
+  const auto curve =
+      batch::coverage_curve(trials, batch::CurveAxis::distance, 7);  // every half metre
+  ASSERT_EQ(curve.size(), 7U);
+  EXPECT_DOUBLE_EQ(curve[1].x, 0.5);
+  EXPECT_DOUBLE_EQ(curve[1].mean, 0.3);
+  EXPECT_DOUBLE_EQ(curve[1].deviation, std::sqrt(0.02));
+  EXPECT_DOUBLE_EQ(curve[2].mean, 0.4);  // the second view is at 1 m
+  EXPECT_DOUBLE_EQ(curve[5].mean, 0.4);
+  EXPECT_DOUBLE_EQ(curve[6].mean, 0.7);
+}
+
+TEST(CoverageCurve, SpreadsTimesByFactors) {
+  const auto curve =
+      batch::coverage_curve({trial(0.2, 0.4, 0.8)}, batch::CurveAxis::planning_time, 3);
+  ASSERT_EQ(curve.size(), 3U);
+  EXPECT_DOUBLE_EQ(curve[0].x, 1.0);
+  EXPECT_DOUBLE_EQ(curve[1].x, 2.0);
+  EXPECT_DOUBLE_EQ(curve[2].x, 4.0);
+  EXPECT_DOUBLE_EQ(curve[2].mean, 0.8);
+}
+
+TEST(CoverageCurve, KeepsTheEndOfTrialsThatAreOver) {
+  batch::Trial longer = trial(0.2, 0.4, 0.6);
+  longer.coverage_after.push_back(1.0);
+  longer.distance_after.push_back(9.0);
+  longer.planning_time_after.push_back(5.0);
+  const auto curve =
+      batch::coverage_curve({trial(0.2, 0.4, 0.6), longer}, batch::CurveAxis::views, 4);
+  EXPECT_DOUBLE_EQ(curve.back().x, 4.0);
+  EXPECT_DOUBLE_EQ(curve.back().mean, 0.8);
+}
+
+TEST(CoverageCurve, OverTheTimeInTheAirIsOfFlights) {
+  batch::Trial flown = trial(0.2, 0.4, 0.8);
+  flown.flown_time_after = {60.0, 90.0, 180.0};
+  const auto curve = batch::coverage_curve({flown, flown}, batch::CurveAxis::flown_time, 5);
+  ASSERT_EQ(curve.size(), 5U);
+  EXPECT_DOUBLE_EQ(curve[0].x, 60.0);
+  EXPECT_DOUBLE_EQ(curve[1].x, 90.0);
+  EXPECT_DOUBLE_EQ(curve[1].mean, 0.4);
+  EXPECT_DOUBLE_EQ(curve[3].mean, 0.4);
+  EXPECT_DOUBLE_EQ(curve[4].mean, 0.8);
+  EXPECT_TRUE(batch::coverage_curve({flown, trial(0.2, 0.4, 0.8)}, batch::CurveAxis::flown_time, 5)
+                  .empty());
+}
+
+TEST(CoverageCurve, WithoutTrialsIsEmpty) {
+  EXPECT_TRUE(batch::coverage_curve({}, batch::CurveAxis::views, 4).empty());
+}
+
+TEST(TargetFigures, CountViewsAndDistancesUntilATargetIsObserved) {
+  batch::Trial a = trial(0.1, 0.2, 0.3);
+  a.targets = {{1, 0.4}, {2, 0.7}, {1, 1.6}, {40, 99.0}};
+  const batch::TargetFigures figures = batch::target_figures({a});
+  EXPECT_EQ(figures.targets, 4U);
+  EXPECT_DOUBLE_EQ(figures.share_by_views[0], 0.5);
+  EXPECT_DOUBLE_EQ(figures.share_by_views[1], 0.25);
+  EXPECT_DOUBLE_EQ(figures.share_by_views.back(), 0.25);  // ten or more
+  EXPECT_DOUBLE_EQ(figures.share_by_distance[0], 0.25);   // below 0.5 m
+  EXPECT_DOUBLE_EQ(figures.share_by_distance[1], 0.5);
+  EXPECT_DOUBLE_EQ(figures.share_by_distance.back(), 0.75);
+}
+
+TEST(ReachFigures, AreOfTheFirstViewThatComesToTheCoverage) {
+  const auto reach = batch::reach_figures({trial(0.2, 0.4, 0.8), trial(0.4, 0.5, 0.6)}, 0.4);
+  ASSERT_TRUE(reach);
+  EXPECT_EQ(reach->reached, 2U);
+  EXPECT_DOUBLE_EQ(reach->views.mean, 1.5);
+  EXPECT_DOUBLE_EQ(reach->distance.mean, 0.5);
+  EXPECT_DOUBLE_EQ(reach->planning_time.mean, 1.5);
+}
+
+TEST(ReachFigures, LeaveOutTrialsThatEndBefore) {
+  const std::vector<batch::Trial> trials{trial(0.2, 0.4, 0.8), trial(0.4, 0.5, 0.6)};
+  const auto reach = batch::reach_figures(trials, 0.7);
+  ASSERT_TRUE(reach);
+  EXPECT_EQ(reach->reached, 1U);
+  EXPECT_EQ(reach->views.mean, 3.0);
+  EXPECT_FALSE(batch::reach_figures(trials, 0.9));
+}
+
+TEST(ViewFigures, AreMeansOverTheTrials) {
+  const batch::ViewFigures figures =
+      batch::view_figures({trial(0.1, 0.2, 0.6), trial(0.1, 0.2, 0.9)});
+  EXPECT_DOUBLE_EQ(figures.frontiers.mean, 2.0);
+  EXPECT_DOUBLE_EQ(figures.coverage.mean, 0.25);
+}
+
+// Table 1 as printed.
+TEST(PaperResults, AreThoseOfTheTables) {
+  const auto dragon = batch::paper_result("dragon", "pc");
+  ASSERT_TRUE(dragon);
+  EXPECT_EQ(dragon->views, 130);
+  EXPECT_EQ(dragon->coverage, 0.972);
+  EXPECT_EQ(dragon->planning_time, 306);
+  EXPECT_EQ(dragon->distance, 59.2);
+  EXPECT_EQ(batch::paper_result("radcliffe_camera", "see")->distance, 1302);
+  EXPECT_EQ(batch::paper_result("teapot", "uv")->distance,
+            batch::paper_result("teapot", "oa")->distance);
+  EXPECT_FALSE(batch::paper_result("teapot", "skycap"));
+  EXPECT_FALSE(batch::paper_result("vase", "see"));
+  EXPECT_EQ(batch::paper_view_result("see++")->frontiers, 6.51);
+  EXPECT_FALSE(batch::paper_view_result("oa"));
+  EXPECT_TRUE(batch::is_standard_model("bunny"));
+  EXPECT_FALSE(batch::is_standard_model("radcliffe_camera"));
+}
+
+std::vector<batch::BenchmarkCell> two_cells() {
+  batch::Trial see = trial(0.2, 0.4, 0.8);
+  see.targets = {{1, 0.4}};
+  return {{"teapot", "see", {see, trial(0.4, 0.5, 0.6)}}, {"teapot", "oa", {trial(0, 0, 0.5)}}};
+}
+
+TEST(BenchmarkReport, PutsRatiosToThePaperBesideOurFigures) {
+  const auto json = nlohmann::json::parse(batch::results_json(two_cells()));
+  const auto& see = json["results"][0];
+  EXPECT_EQ(see["views"]["mean"], 3.0);
+  EXPECT_EQ(see["views"]["paper"], 60.0);
+  EXPECT_DOUBLE_EQ(see["views"]["ratio_to_paper"], 0.05);
+  EXPECT_DOUBLE_EQ(see["coverage"]["mean"], 0.7);
+  EXPECT_DOUBLE_EQ(see["coverage_visible"]["mean"], 0.8);
+  EXPECT_TRUE(json["results"][1]["views"]["half_width_95"].is_null());  // one trial
+}
+
+TEST(BenchmarkReport, MarkdownHasBothTables) {
+  const std::string text = batch::report_markdown(two_cells());
+  EXPECT_THAT(text, HasSubstr("| SEE | 3.0 (60.0) | 70.0 (98.1) | 4 (4.13) | 3.0 (42.8) |"));
+  EXPECT_THAT(text, HasSubstr("| OA | 3.0 (105.0) |"));
+  EXPECT_THAT(text, HasSubstr("| SEE | 2.00 | 4.49 | 23.33 | 1.39 |"));
+  EXPECT_THAT(text, HasSubstr("| SEE | 1 | 100.0 | 100.0 |"));
+}
+
+TEST(BenchmarkReport, SaysWhatItTakesToReachTheCoverageOfSee) {
+  std::vector<batch::BenchmarkCell> cells = two_cells();
+  cells[1].trials = {trial(0.1, 0.75, 0.9), trial(0.1, 0.2, 0.3)};
+  const std::string text = batch::report_markdown(cells);
+  // SEE ends at 70 % after 3 views and 3 m; one of two surveys with OA is there at view 2, 1 m.
+  EXPECT_THAT(text,
+              HasSubstr("| SEE here, 70.0 | OA | 1 of 2 | 2.0, 0.67× | 2, 0.50× | 1.0, 0.33× |"));
+  EXPECT_THAT(text, HasSubstr("| the paper's SEE++, 97.1 | OA | 0 of 2 | - | - | - |"));
+  const auto json = nlohmann::json::parse(batch::results_json(cells));
+  EXPECT_EQ(json["results"][1]["until_coverage_of"]["see"]["views"]["mean"], 2.0);
+  EXPECT_EQ(json["results"][1]["until_coverage_of"]["paper"]["trials"], 0);
+}
+
+TEST(BenchmarkReport, CsvHasALineForEachCellAndTrial) {
+  const std::string table = batch::table_1_csv(two_cells());
+  EXPECT_EQ(std::ranges::count(table, '\n'), 3);
+  EXPECT_THAT(table, HasSubstr("\nteapot,oa,1,3,0,,105,"));
+  const std::string trials = batch::all_trials_csv(two_cells());
+  EXPECT_EQ(std::ranges::count(trials, '\n'), 4);
+  EXPECT_THAT(trials, HasSubstr("mission,planner,seed,"));
+  EXPECT_THAT(trials, HasSubstr("\nteapot,oa,0,complete,3,"));
+}
+
+TEST(TrialText, GivesTheSameTrialBack) {
+  batch::Trial before = trial(0.1 + 0.2, 1.0 / 3.0, 0.7);
+  before.seed = 18'000'000'000'000'000'001ULL;
+  before.stop_reason = survey::StopReason::view_limit;
+  before.points = 7;
+  before.targets = {{2, 1.0 / 7.0}};
+  before.coverage.ceiling = {};
+  const batch::Trial after = batch::parse_trial(batch::trial_json(before));
+  EXPECT_EQ(batch::trial_json(after), batch::trial_json(before));
+  EXPECT_EQ(after.seed, before.seed);
+  EXPECT_EQ(after.coverage_after, before.coverage_after);
+  EXPECT_EQ(after.stop_reason, before.stop_reason);
+  EXPECT_FALSE(after.coverage.ceiling);
+}
+
+TEST(TrialText, RefusesWhatIsNoTrial) {
+  for (const char* text : {"", "{}", "[1, 2]", "{\"seed\": \"x\"}"}) {
+    EXPECT_THROW(batch::parse_trial(text), Error) << text;
+  }
+}
+
+}  // namespace
+}  // namespace skycap::missions

@@ -1,0 +1,261 @@
+// From one map to surveys of its buildings, and one certified flight of all of them.
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include "missions/batch/district/prepared.h"
+#include "missions/config/resolved_mission.h"
+#include "tests/missions/run_skycap.h"
+#include "tests/missions/site_data/cube_files.h"
+
+namespace skycap::missions {
+namespace {
+
+namespace fs = std::filesystem;
+using Eigen::Vector3d;
+using nlohmann::json;
+using testing::AllOf;
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing_support::Cube;
+using tests::content_of;
+
+/// Buildings of 10 m in UTM 32, feet at 380 m and so much elsewhere, as CityJSON.
+std::string town(const std::vector<Vector3d>& places) {
+  json town = {{"type", "CityJSON"},
+               {"version", "1.0"},
+               {"metadata", {{"referenceSystem", "EPSG:25832"}}},
+               {"CityObjects", json::object()},
+               {"vertices", json::array()}};
+  for (std::size_t i = 0; i < places.size(); ++i) {
+    Cube cube;
+    cube.low += places[i];
+    const std::size_t first = town["vertices"].size();
+    for (int corner = 0; corner < 8; ++corner) {
+      const Vector3d place = cube.corner(corner);
+      town["vertices"].push_back({place.x(), place.y(), place.z()});
+    }
+    json faces = json::array();
+    for (const auto& face : Cube::faces) {
+      json ring = json::array();
+      for (const int corner : face) ring.push_back(first + static_cast<std::size_t>(corner));
+      faces.push_back(json::array({ring}));
+    }
+    town["CityObjects"]["house_" + std::to_string(i)] = {
+        {"type", "Building"},
+        {"attributes", {{"number", std::to_string(i)}}},
+        {"geometry", {{{"type", "MultiSurface"}, {"lod", "2"}, {"boundaries", std::move(faces)}}}}};
+  }
+  return town.dump();
+}
+
+/// Two that share a wall, one by itself, and one that is no target.
+const std::vector<Vector3d> places{{0, 0, 0}, {10, 0, 0}, {60, 0, 0}, {60, 30, 0}};
+
+constexpr const char* few_views =
+    "set: {limits.max_views: 3, evaluation: {samples: 2000, visible_directions: 20, "
+    "ceiling_views: 0}}\n";
+
+class District : public testing::Test {
+ protected:
+  District() {
+    folder_.write("town.city.json", town(places));
+    write("map: town.city.json\nvertical: ellipsoid\ntargets: {id: [house_0, house_1, house_2]}\n");
+  }
+
+  void write(const std::string& text) const { folder_.write("quarter.yaml", text + few_views); }
+  tests::ProgramRun run(const std::vector<std::string>& more = {}, int threads = 1) const {
+    std::vector<std::string> words{"district",  folder_ / "quarter.yaml", "--out", folder_ / "out",
+                                   "--threads", std::to_string(threads)};
+    words.insert(words.end(), more.begin(), more.end());
+    return tests::run_skycap(words);
+  }
+  json results() const { return json::parse(content_of(out() / "district.json")); }
+  fs::path out() const { return folder_.path() / "out"; }
+
+  const tests::TestFolder folder_;
+};
+
+TEST_F(District, IsSurveyedAndFlownWithOneCommand) {
+  const auto run_once = run();
+  ASSERT_EQ(run_once.exit_code, 0) << run_once.err << run_once.out;
+  EXPECT_THAT(run_once.out, HasSubstr("2 of 2 surveyed"));
+  const json all = results();
+  ASSERT_EQ(all.at("targets").size(), 2U);
+  EXPECT_THAT(all["targets"][0].at("ids"), ElementsAre("house_0", "house_1"));
+  EXPECT_EQ(all["targets"][0].at("title"), "house_0_and_1");
+  for (const json& target : all["targets"]) {
+    EXPECT_GT(target.at("survey").at("coverage").get<double>(), 0.3);
+    const fs::path package = out() / target["survey"].at("folder").get<std::string>();
+    EXPECT_TRUE(fs::exists(package / "report.html"));
+    EXPECT_EQ(target.at("views_flown"), target["survey"].at("views")) << target.at("why_not_flown");
+  }
+  EXPECT_EQ(all.at("neighbours").size(), 1U);
+  const json& flight = all.at("flight");
+  EXPECT_GE(flight.at("min_clearance_m").get<double>(), 2.0);
+  EXPECT_GE(flight.at("sorties").get<int>(), 1);
+  EXPECT_THAT(content_of(out() / "district.html"),
+              AllOf(HasSubstr("quarter"), HasSubstr("house_2")));
+  EXPECT_THAT(content_of(out() / "targets.csv"), HasSubstr("house_0_and_1,2,3,"));
+}
+
+// By the file as an autopilot reads it, in the space as it truly is: all buildings, the ground.
+TEST_F(District, IsProvenAgainFromItsFiles) {
+  ASSERT_EQ(run({"--no-report"}).exit_code, 0);
+  const json flight = results().at("flight");
+  int checked = 0;
+  for (const json& pad : flight.at("pads")) {
+    const std::string mission =
+        out() / batch::flights_folder / (batch::pad_name(pad.at("pad")) + ".yaml");
+    for (const json& file : pad.at("files")) {
+      const std::string name = file.at("name");
+      if (!name.ends_with(".plan") && !name.ends_with(".waypoints")) continue;
+      const auto check = tests::run_skycap({"check", mission, "--route", (out() / name).string()});
+      EXPECT_EQ(check.exit_code, 0) << check.out << check.err;
+      ++checked;
+    }
+  }
+  EXPECT_GE(checked, 2);
+}
+
+TEST_F(District, GoesOnWhereItWasLeft) {
+  const auto first = run({"--index", "1"});
+  ASSERT_EQ(first.exit_code, 0) << first.err;
+  const auto partly = run({"--collect"});
+  EXPECT_EQ(partly.exit_code, 1);
+  EXPECT_THAT(partly.out, HasSubstr("1 of 2 surveyed"));
+  const json before = results();
+  EXPECT_TRUE(before["targets"][0]["survey"].is_null());
+  EXPECT_THAT(before["targets"][0]["why_none"], HasSubstr("is not complete"));
+  const fs::path item = out() / before["targets"][1]["survey"]["folder"].get<std::string>();
+  const auto written = fs::last_write_time(item / "item.json");
+  ASSERT_EQ(run().exit_code, 0);
+  EXPECT_EQ(fs::last_write_time(item / "item.json"), written);
+  const std::string table = content_of(out() / "targets.csv");
+  fs::remove_all(out());
+  ASSERT_EQ(run({}, 2).exit_code, 0);
+  EXPECT_EQ(content_of(out() / "targets.csv"), table);
+}
+
+TEST_F(District, CutsOutWhatIsNearEachTarget) {
+  std::vector<Vector3d> far = places;
+  far.emplace_back(85, 0, 0);
+  far.emplace_back(900, 0, 0);
+  folder_.write("town.city.json", town(far));
+  ASSERT_EQ(run({"--list"}).exit_code, 0);
+  const std::string site = content_of(out() / "sites" / "house_2.city.json");
+  EXPECT_THAT(site, AllOf(HasSubstr("house_2"), HasSubstr("house_3"), HasSubstr("house_4")));
+  EXPECT_THAT(site, testing::Not(HasSubstr("house_5")));
+}
+
+// A neighbour stands in the scene that a target's sensor sees; what it sees free up to the boxes of
+// others is kept for the flight of all. A target by itself needs neither box.
+TEST_F(District, KeepsWhatTargetsSeeOfEachOther) {
+  folder_.write("town.city.json", town({{0, 0, 0}, {18, 0, 0}, {500, 0, 0}}));
+  write("map: town.city.json\nvertical: ellipsoid\n");
+  ASSERT_EQ(run({"--list"}).exit_code, 0);
+  const auto prepared = batch::read_prepared(out() / batch::prepared_name);
+  ASSERT_EQ(prepared.targets.size(), 3U);
+  for (int house = 0; house < 3; ++house) {
+    const fs::path file = out() / "missions" / ("house_" + std::to_string(house) + ".yaml");
+    const config::Mission mission = config::read_mission(file);
+    EXPECT_TRUE(mission.scene.neighbours);
+    const std::vector<Vector3d>& corners = mission.flight.unknown_beside;
+    ASSERT_EQ(corners.size(), house < 2 ? 2U : 0U) << house;
+    if (house == 2) continue;
+    const Eigen::AlignedBox3d& other = prepared.targets[1 - house].unknown;
+    EXPECT_EQ(corners[0], other.min());
+    EXPECT_EQ(corners[1], other.max());
+  }
+}
+
+TEST_F(District, ChoosesTargetsByPlaceAndAttribute) {
+  write("map: town.city.json\nvertical: ellipsoid\ntargets: {attribute: {number: '3'}}\n");
+  EXPECT_THAT(run({"--list"}).out,
+              AllOf(HasSubstr("house_3.yaml"), testing::Not(HasSubstr("house_2"))));
+  const auto prepared = batch::read_prepared(out() / batch::prepared_name);
+  ASSERT_EQ(prepared.targets.size(), 1U);
+  EXPECT_NEAR(prepared.targets[0].box.center().head<2>().norm(), 0.0, 0.02);
+  EXPECT_NEAR(prepared.targets[0].box.min().z(), 0.0, 0.02);
+}
+
+TEST_F(District, SaysWhyThereIsNothingToSurvey) {
+  write("map: town.city.json\nvertical: ellipsoid\ntargets: {near: '48.0,11.0', distance: 10}\n");
+  EXPECT_THAT(run().err, HasSubstr("key targets: leaves none of the 4 things of"));
+  write("map: town.city.json\nvertical: ellipsoid\ntargets: {id: [castle]}\n");
+  EXPECT_THAT(run().err, HasSubstr("castle"));
+}
+
+TEST_F(District, OnASlopeNeedsATerrain) {
+  folder_.write("town.city.json", town({{0, 0, 0}, {60, 0, 7}, {120, 0, 3}}));
+  const auto refused = run();
+  EXPECT_EQ(refused.exit_code, 2);
+  EXPECT_THAT(refused.err, HasSubstr("differ by 7.0 m, and the ground between them is not known"));
+}
+
+/// Cells of 6 m whose ground rises from 380 m in the west to 387 m in the east.
+std::string rising_ground() {
+  constexpr int cells = 60;
+  std::string row;
+  for (int i = 0; i < cells; ++i) {
+    const double east = -120.0 + 6.0 * (i + 0.5);
+    row += std::to_string(std::clamp(380.0 + 7.0 * (east - 12.0) / 43.0, 380.0, 387.0)) + " ";
+  }
+  const Cube cube;
+  std::string text = "ncols 60\nnrows 60\nxllcorner " + std::to_string(cube.low.x() - 120.0) +
+                     "\nyllcorner " + std::to_string(cube.low.y() - 180.0) +
+                     "\ncellsize 6\nNODATA_value -9999\n";
+  for (int i = 0; i < cells; ++i) text += row + "\n";
+  return text;
+}
+
+TEST_F(District, OnASlopeStandsOnItsTerrain) {
+  folder_.write("town.city.json", town({{0, 0, 0}, {60, 0, 7}}));
+  folder_.write("ground.asc", rising_ground());
+  write("map: town.city.json\nvertical: ellipsoid\ncrs: 'EPSG:25832'\nterrain: ground.asc\n");
+  const auto surveyed = run({"--no-report"});
+  ASSERT_EQ(surveyed.exit_code, 0) << surveyed.err << surveyed.out;
+  const auto prepared = batch::read_prepared(out() / batch::prepared_name);
+  EXPECT_NEAR(prepared.targets.at(0).box.min().z(), 0.0, 0.05);
+  EXPECT_NEAR(prepared.targets.at(1).box.min().z(), 7.0, 0.05);
+  EXPECT_EQ(results().at("flight").at("views_flown"), results().at("flight").at("views"));
+  const auto check = tests::run_skycap({"check", (out() / "flights" / "pad_1.yaml").string(),
+                                        "--route", (out() / "flights" / "pad_1.plan").string()});
+  EXPECT_EQ(check.exit_code, 0) << check.out << check.err;
+}
+
+TEST_F(District, RefusesAPadInABuilding) {
+  const std::string map = "map: town.city.json\nvertical: ellipsoid\n";
+  write(map);
+  ASSERT_EQ(run({"--list"}).exit_code, 0);
+  const std::string mission = content_of(out() / "flights" / "pad_1.yaml");
+  const auto value = [&](const std::string& key) {
+    const auto at = mission.find(key + ": ") + key.size() + 2;
+    return mission.substr(at, mission.find(' ', at) - at);
+  };
+  // The middle of the district is beside everything; that of the first house is not.
+  write(map + "targets: {id: [house_0]}\n");
+  ASSERT_EQ(run({"--list"}).exit_code, 0);
+  const std::string house = content_of(out() / "flights" / "pad_1.yaml");
+  const auto at = house.find("latitude_deg: ") + 14, to = house.find("longitude_deg: ") + 15;
+  const std::string place =
+      house.substr(at, house.find(' ', at) - at) + "," + house.substr(to, house.find(' ', to) - to);
+  write(map + "pads: ['" + place + "']\n");
+  const auto refused = run();
+  EXPECT_EQ(refused.exit_code, 2);
+  EXPECT_THAT(refused.err, AllOf(HasSubstr("key pads: "), HasSubstr("is no pad, by what stands")));
+  write(map + "pads: ['" + value("latitude_deg") + "," + value("longitude_deg") + "']\n");
+  const auto given = run({"--list"});
+  EXPECT_EQ(given.exit_code, 0) << given.err;
+  EXPECT_EQ(batch::read_prepared(out() / batch::prepared_name).pads.size(), 1U);
+}
+
+}  // namespace
+}  // namespace skycap::missions

@@ -1,0 +1,193 @@
+// skycap benchmark as a user runs it.
+#include <filesystem>
+#include <fstream>
+#include <set>
+#include <sstream>
+#include <stop_token>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include "missions/batch/benchmark/contestants.h"
+#include "tests/missions/run_skycap.h"
+
+namespace skycap::missions {
+namespace {
+
+using testing::HasSubstr;
+using tests::content_of;
+using tests::ProgramRun;
+using tests::quick_mission;
+using tests::run_skycap;
+using Json = nlohmann::json;
+
+class BenchmarkVerb : public testing::Test {
+ protected:
+  ProgramRun run(const std::string& planners, const std::vector<std::string>& more = {},
+                 std::stop_token stop = {}) const {
+    std::vector<std::string> arguments{"benchmark", mission_, "--planners", planners,
+                                       "--trials",  "2",      "--out",      folder_ / "out"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return run_skycap(arguments, false, std::move(stop));
+  }
+  std::filesystem::path item(const std::string& planner, int seed) const {
+    return folder_.path() / "out" / "items" / "quick" / planner /
+           ("seed_" + std::to_string(seed) + ".json");
+  }
+  Json trial(const std::string& planner, int seed) const {
+    return Json::parse(content_of(item(planner, seed)))["trial"];
+  }
+  /// trials.csv without its last column, the planning time.
+  std::string trials_without_times() const {
+    std::istringstream lines(content_of(folder_.path() / "out" / "trials.csv"));
+    std::string text;
+    for (std::string line; std::getline(lines, line);) {
+      text += line.substr(0, line.rfind(',')) + "\n";
+    }
+    return text;
+  }
+
+  tests::TestFolder folder_;
+  std::string mission_ = folder_.write("quick.yaml", quick_mission());
+};
+
+TEST_F(BenchmarkVerb, WritesTablesForEveryPlannerOfThePaper) {
+  const ProgramRun result = run("all", {"--max-views", "5"});
+  EXPECT_EQ(result.exit_code, 0) << result.err;
+  EXPECT_EQ(result.err, "");  // no progress where there is no terminal
+  const Json json = Json::parse(content_of(folder_.path() / "out" / "results.json"));
+  EXPECT_EQ(json["results"].size(), 9U);
+  for (const Json& cell : json["results"]) EXPECT_EQ(cell["trials"], 2) << cell["planner"];
+  for (const char* title : {"SEE++", "SEE", "RSV", "RSE", "OA", "UV", "PC", "AF", "AE"}) {
+    EXPECT_THAT(result.out, HasSubstr(std::string("| ") + title + " |"));
+  }
+}
+
+TEST_F(BenchmarkVerb, StartsAllPlannersFromTheSameView) {
+  ASSERT_EQ(run("see,see++,oa,skycap", {"--max-views", "3"}).exit_code, 0);
+  for (const int seed : {1, 2}) {
+    // The same pose and noise, and so the same first points and coverage.
+    const Json first = trial("see", seed)["coverage_after"][0];
+    for (const char* planner : {"see++", "oa", "skycap"}) {
+      EXPECT_EQ(trial(planner, seed)["coverage_after"][0], first) << planner;
+    }
+  }
+  EXPECT_NE(trial("see", 1)["coverage_after"][0], trial("see", 2)["coverage_after"][0]);
+}
+
+TEST_F(BenchmarkVerb, GivesTheSameTablesAfterItWasStopped) {
+  ASSERT_EQ(run("see++,oa", {"--max-views", "6"}).exit_code, 0);
+  const std::string whole = trials_without_times();
+  std::filesystem::remove(item("oa", 1));
+  std::ofstream(item("see++", 2)) << content_of(item("see++", 2)).substr(0, 50);  // cut off
+  ASSERT_EQ(run("see++,oa", {"--max-views", "6"}).exit_code, 0);
+  EXPECT_EQ(trials_without_times(), whole);
+}
+
+TEST_F(BenchmarkVerb, DoesNotRunAgainWhatIsFinished) {
+  ASSERT_EQ(run("oa", {"--max-views", "4"}).exit_code, 0);
+  Json stored = Json::parse(content_of(item("oa", 1)));
+  stored["trial"]["points"] = 123456789;
+  std::ofstream(item("oa", 1)) << stored;
+  ASSERT_EQ(run("oa", {"--max-views", "4"}).exit_code, 0);
+  EXPECT_EQ(trial("oa", 1)["points"], 123456789);
+  EXPECT_THAT(trials_without_times(), HasSubstr("123456789"));
+}
+
+TEST_F(BenchmarkVerb, RunsAgainWhatOtherSettingsMade) {
+  ASSERT_EQ(run("oa", {"--max-views", "4"}).exit_code, 0);
+  ASSERT_EQ(run("oa", {"--max-views", "5"}).exit_code, 0);
+  EXPECT_EQ(trial("oa", 1)["views"], 5);
+}
+
+TEST_F(BenchmarkVerb, IsTheSameForAnyNumberOfThreads) {
+  ASSERT_EQ(run("see,oa,pc", {"--max-views", "6", "--threads", "1"}).exit_code, 0);
+  const std::string alone = trials_without_times();
+  std::filesystem::remove_all(folder_.path() / "out");
+  ASSERT_EQ(run("see,oa,pc", {"--max-views", "6", "--threads", "3"}).exit_code, 0);
+  EXPECT_EQ(trials_without_times(), alone);
+}
+
+// Paper, section IV-B.
+TEST_F(BenchmarkVerb, LimitsVolumetricSurveysToTheMostViewsThatSeeNeeded) {
+  ASSERT_EQ(run("see,oa").exit_code, 0);
+  const int most =
+      std::max(trial("see", 1)["views"].get<int>(), trial("see", 2)["views"].get<int>());
+  EXPECT_EQ(trial("oa", 1)["views"], most);
+  EXPECT_EQ(trial("oa", 2)["views"], most);
+}
+
+TEST_F(BenchmarkVerb, ReportsWhatThereIsWhenItIsInterrupted) {
+  ASSERT_EQ(run("oa", {"--max-views", "3"}).exit_code, 0);
+  std::stop_source stop;
+  stop.request_stop();
+  const ProgramRun result = run("oa,pc", {"--max-views", "3"}, stop.get_token());
+  EXPECT_EQ(result.exit_code, 1);
+  EXPECT_THAT(result.out, HasSubstr("| OA | 2 |"));
+  EXPECT_FALSE(std::filesystem::exists(item("pc", 1)));
+}
+
+TEST_F(BenchmarkVerb, LeavesAPageThatReportWritesAnew) {
+  const ProgramRun result = run("see,see++", {"--max-views", "4"});
+  EXPECT_EQ(result.err, "");
+  const std::string page = content_of(folder_.path() / "out" / "benchmark.html");
+  EXPECT_THAT(page, HasSubstr("\"kind\":\"comparison\""));
+  std::filesystem::remove(folder_.path() / "out" / "benchmark.html");
+  const ProgramRun again = run_skycap({"report", folder_ / "out"});
+  EXPECT_EQ(again.exit_code, 0) << again.err;
+  EXPECT_TRUE(content_of(folder_.path() / "out" / "benchmark.html") == page);
+  ASSERT_EQ(run("see,see++", {"--max-views", "4", "--no-report"}).exit_code, 0);
+  EXPECT_FALSE(std::filesystem::exists(folder_.path() / "out" / "benchmark.html"));
+}
+
+TEST_F(BenchmarkVerb, RefusesPlannersThatItDoesNotKnow) {
+  const ProgramRun result = run("see,frontier");
+  EXPECT_EQ(result.exit_code, 2);
+  EXPECT_THAT(result.err, HasSubstr("there is no planner 'frontier'; give all or some of see++"));
+}
+
+TEST_F(BenchmarkVerb, DrawsASceneOfAFamilyForEachSeed) {
+  const ProgramRun result =
+      run("see", {"--scenes", "fences,statue", "--max-views", "1", "--set",
+                  "evaluation.samples=1000", "--set", "scene.longest_side=1", "--no-report"});
+  ASSERT_EQ(result.exit_code, 0) << result.err;
+  const Json manifest = Json::parse(content_of(folder_.path() / "out" / "manifest.json"));
+  ASSERT_EQ(manifest["entries"].size(), 2U);
+  EXPECT_EQ(manifest["entries"][0]["mission"], "fences");
+  EXPECT_EQ(manifest["entries"][1]["mission"], "statue");
+  // What can be seen of two scenes of a family differs, whatever the start.
+  for (const char* family : {"fences", "statue"}) {
+    const auto items = folder_.path() / "out" / "items" / family / "see";
+    const Json one = Json::parse(content_of(items / "seed_1.json"));
+    const Json two = Json::parse(content_of(items / "seed_2.json"));
+    EXPECT_NE(one["fingerprint"], two["fingerprint"]) << family;
+  }
+}
+
+TEST_F(BenchmarkVerb, RefusesFamiliesThatItDoesNotKnow) {
+  const ProgramRun result = run("see", {"--scenes", "garage,castle"});
+  EXPECT_EQ(result.exit_code, 2);
+  EXPECT_THAT(result.err,
+              HasSubstr("--scenes: there is no family 'castle'; there are all, bridge"));
+}
+
+TEST_F(BenchmarkVerb, RefusesMissionsOfTheSameName) {
+  std::filesystem::create_directory(folder_.path() / "other");
+  const std::string other = folder_.write("other/quick.yaml", quick_mission());
+  const ProgramRun result = run("oa", {other});
+  EXPECT_EQ(result.exit_code, 2);
+  EXPECT_THAT(result.err, HasSubstr("have the same name"));
+}
+
+TEST(Contestants, HaveNamesOfTheirOwn) {
+  std::set<std::string> names;
+  for (const batch::Contestant& contestant : batch::contestants()) {
+    EXPECT_TRUE(names.insert(contestant.name).second) << contestant.name;
+    EXPECT_EQ(batch::find_contestant(contestant.name), &contestant);
+  }
+  EXPECT_EQ(batch::find_contestant("frontier"), nullptr);
+}
+
+}  // namespace
+}  // namespace skycap::missions

@@ -1,0 +1,170 @@
+// An interrupted survey that goes on ends as if nothing had happened.
+#include <filesystem>
+#include <map>
+#include <sstream>
+#include <stop_token>
+#include <string>
+#include <vector>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "geometry/io/record_log.h"
+#include "missions/cli/command_line.h"
+#include "tests/missions/ctrl_c.h"
+#include "tests/missions/flown_mission.h"
+#include "tests/missions/results_in.h"
+#include "tests/missions/run_skycap.h"
+
+namespace skycap::missions {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::HasSubstr;
+using testing::IsEmpty;
+using tests::content_of;
+using tests::CtrlC;
+using tests::flown_mission;
+using tests::quick_mission;
+using tests::run_skycap;
+using tests::TestFolder;
+
+/// All results but those that say how long the run took.
+std::map<std::string, std::string> results_in(const fs::path& folder) {
+  return tests::results_in(folder, {"summary.json", "report.html"});
+}
+
+class ResumedPlan : public testing::Test {
+ protected:
+  std::vector<std::string> plan(const std::string& out, const std::vector<std::string>& more = {},
+                                const std::string& mission = "m.yaml") const {
+    std::vector<std::string> arguments{"plan", folder_ / mission, "--out", folder_ / out};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return arguments;
+  }
+
+  /// Plans into "part" until that many views are taken.
+  void interrupt_after(int views, const std::vector<std::string>& more = {}) const {
+    CtrlC keys("view " + std::to_string(views) + ",");
+    std::ostringstream out;
+    std::ostream err(&keys);
+    EXPECT_EQ(cli::run_command_line(plan("part", more), {out, err, true, keys.token()}), 1);
+    ASSERT_EQ(geometry::read_records(journal_).records.size(), views + 1);
+  }
+
+  TestFolder folder_;
+  fs::path journal_ = folder_.path() / "part" / "survey.journal";
+};
+
+/// One that measures between its views, too.
+std::string moving_mission() {
+  std::string text = flown_mission();
+  const std::string sensor = "sensor: {";
+  return text.insert(text.find(sensor) + sensor.size(), "capture: moving, ");
+}
+
+TEST_F(ResumedPlan, EndsAsIfNothingHadHappened) {
+  struct Case {
+    std::string mission, planner;
+    int views;  ///< until it is interrupted, and as many more
+  };
+  for (const auto& [mission, planner, views] : {Case{quick_mission(), "see++", 3},
+                                                {quick_mission(), "oa", 4},
+                                                {flown_mission(), "skycap", 2},
+                                                {moving_mission(), "skycap", 2}}) {
+    folder_.write("m.yaml", mission);
+    const std::vector<std::string> more{"--planner", planner, "--max-views",
+                                        std::to_string(2 * views)};
+    ASSERT_EQ(run_skycap(plan("whole", more)).exit_code, 0) << planner;
+    interrupt_after(views, more);
+    std::vector<std::string> resume = more;
+    resume.insert(resume.end(), {"--resume", "--threads", "2"});
+    const tests::ProgramRun run = run_skycap(plan("part", resume));
+    EXPECT_EQ(run.exit_code, 0) << run.err;
+    EXPECT_THAT(run.err, HasSubstr("going on after " + std::to_string(views) + " views"));
+    EXPECT_TRUE(results_in(folder_ / "part") == results_in(folder_ / "whole")) << planner;
+    fs::remove_all(folder_.path() / "whole");
+    fs::remove_all(folder_.path() / "part");
+  }
+}
+
+/// What a kill leaves is the beginning of a journal, of any length.
+TEST_F(ResumedPlan, GoesOnFromAnyPartOfAJournal) {
+  folder_.write("m.yaml", quick_mission());
+  const std::vector<std::string> more{"--max-views", "6"};
+  ASSERT_EQ(run_skycap(plan("whole", more)).exit_code, 0);
+  interrupt_after(5, more);
+  const std::string journal = content_of(journal_);
+  for (std::size_t part = 0; part <= 7; ++part) {
+    std::ofstream(journal_, std::ios::binary) << journal.substr(0, part * journal.size() / 7);
+    ASSERT_EQ(run_skycap(plan("part", {"--max-views", "6", "--resume", "--quiet"})).exit_code, 0);
+    EXPECT_TRUE(results_in(folder_ / "part") == results_in(folder_ / "whole")) << part;
+  }
+}
+
+TEST_F(ResumedPlan, IsInterruptedAgainWithoutLoss) {
+  folder_.write("m.yaml", quick_mission());
+  const std::vector<std::string> more{"--max-views", "6"};
+  ASSERT_EQ(run_skycap(plan("whole", more)).exit_code, 0);
+  interrupt_after(2, more);
+  interrupt_after(5, {"--max-views", "6", "--resume"});
+  ASSERT_EQ(run_skycap(plan("part", {"--max-views", "6", "--resume"})).exit_code, 0);
+  EXPECT_TRUE(results_in(folder_ / "part") == results_in(folder_ / "whole"));
+}
+
+TEST_F(ResumedPlan, WithoutAJournalBegins) {
+  folder_.write("m.yaml", quick_mission());
+  const tests::ProgramRun run = run_skycap(plan("out", {"--resume"}));
+  EXPECT_EQ(run.exit_code, 0) << run.err;
+  EXPECT_THAT(run.err, IsEmpty());
+  EXPECT_FALSE(fs::exists(folder_.path() / "out" / "survey.journal"));
+}
+
+TEST_F(ResumedPlan, OfAnotherSurveyIsRefused) {
+  folder_.write("m.yaml", quick_mission());
+  interrupt_after(2);
+  const std::string journal = content_of(journal_);
+  const auto refusal = [&](const std::vector<std::string>& more) {
+    const tests::ProgramRun run = run_skycap(plan("part", more));
+    EXPECT_EQ(run.exit_code, 2);
+    EXPECT_EQ(content_of(journal_), journal);
+    return run.err;
+  };
+  EXPECT_THAT(refusal({"--resume", "--seed", "2"}), HasSubstr("seed was 1 and is 2"));
+  EXPECT_THAT(refusal({"--resume", "--set", "planner.density=5300"}),
+              HasSubstr("planner.density was \"5200\" and is \"5300\""));
+  EXPECT_THAT(refusal({"--resume", "--set", "scene.longest_side=1.01"}), HasSubstr("surface"));
+}
+
+TEST_F(ResumedPlan, FromADamagedJournalIsRefusedAndABeginningIsNot) {
+  folder_.write("m.yaml", quick_mission());
+  interrupt_after(3);
+  std::string journal = content_of(journal_);
+  journal[journal.find("\"position\"") + 15] ^= 1;
+  std::ofstream(journal_, std::ios::binary) << journal;
+  const tests::ProgramRun run = run_skycap(plan("part", {"--resume"}));
+  EXPECT_EQ(run.exit_code, 2);
+  EXPECT_THAT(run.err, HasSubstr("survey.journal: line 2 is damaged"));
+  EXPECT_EQ(run_skycap(plan("part")).exit_code, 0);
+  EXPECT_FALSE(fs::exists(journal_));
+}
+
+/// A journal whose checksums are right, and which says something else than the survey does.
+TEST_F(ResumedPlan, ThatGoesAnotherWayIsNoticed) {
+  folder_.write("m.yaml", quick_mission());
+  interrupt_after(3);
+  std::vector<std::string> records = geometry::read_records(journal_).records;
+  const std::string field = "\"returns\":";
+  records[2].insert(records[2].find(field) + field.size(), "1");
+  fs::remove(journal_);
+  {
+    geometry::RecordLog log(journal_);
+    for (const std::string& record : records) log.append(record);
+  }
+  const tests::ProgramRun run = run_skycap(plan("part", {"--resume"}));
+  EXPECT_EQ(run.exit_code, 2);
+  EXPECT_THAT(run.err, HasSubstr("says that view 1 gave something else"));
+}
+
+}  // namespace
+}  // namespace skycap::missions

@@ -1,0 +1,191 @@
+// An interrupted scan that goes on ends as if nothing had happened.
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+#include <string>
+#include <tuple>
+#include <vector>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include "missions/cli/command_line.h"
+#include "tests/missions/cli/cube_scan.h"
+#include "tests/missions/ctrl_c.h"
+
+namespace skycap::missions {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::HasSubstr;
+using tests::content_of;
+using tests::run_skycap;
+
+class ResumedScan : public tests::CubeScan {
+ protected:
+  /// Scans into "part" until the progress line shows a text.
+  void interrupt_at(const std::string& text, const std::vector<std::string>& more) const {
+    tests::CtrlC keys(text);
+    std::ostringstream out;
+    std::ostream err(&keys);
+    ASSERT_EQ(cli::run_command_line(scan("part", with(more, {"--threads", "1"})),
+                                    {out, err, true, keys.token()}),
+              1);
+    ASSERT_TRUE(fs::exists(journal_));
+    ASSERT_THAT(content_of(folder_ / "part/scan.json"), HasSubstr("\"complete\": false"));
+  }
+
+  fs::path journal_ = folder_.path() / "part" / "unfinished" / "scan.journal";
+  const std::vector<std::string> images_{"--route",  folder_.path().string(),
+                                         "--sensor", folder_ / "camera.yaml",
+                                         "--format", "rawlog"};
+};
+
+TEST_F(ResumedScan, OfALaserEndsAsIfNothingHadHappened) {
+  ASSERT_EQ(run_skycap(scan("whole", with(clouds_, {"--threads", "2"}))).exit_code, 0);
+  interrupt_at("% flown", clouds_);
+  for (const char* name : {"scan.las", "trajectory.tum", "trajectory_believed.tum"}) {
+    EXPECT_LT(fs::file_size(folder_.path() / "part" / name),
+              fs::file_size(folder_.path() / "whole" / name));
+  }
+  const auto run = run_skycap(scan("part", with(clouds_, {"--resume", "--threads", "2"})));
+  EXPECT_EQ(run.exit_code, 0) << run.err;
+  EXPECT_THAT(run.err, HasSubstr("going on with an interrupted scan"));
+  expect_same_results();
+}
+
+// What a kill leaves: more in the files than the journal knows, and a part of a record.
+TEST_F(ResumedScan, CutsOffWhatItsJournalDoesNotKnow) {
+  ASSERT_EQ(run_skycap(scan("whole", clouds_)).exit_code, 0);
+  interrupt_at("% flown", clouds_);
+  const std::string partial = content_of(folder_ / "part/scan.las");
+  for (const char* name : {"scan.las", "scan.ply", "scan.rawlog", "preview.ply"}) {
+    // As a kill would: not through the name that shares its bytes with the results.
+    const fs::path file = journal_.parent_path() / name;
+    const std::string content = content_of(file);
+    fs::remove(file);
+    std::ofstream(file, std::ios::binary) << content << std::string(1000, 'x');
+  }
+  std::ofstream(journal_, std::ios::binary | std::ios::app) << "0123abcd 3 {\"fir";
+  EXPECT_EQ(run_skycap(scan("part", with(clouds_, {"--resume"}))).exit_code, 0);
+  expect_same_results();
+  EXPECT_NE(partial, content_of(folder_ / "part/scan.las"));
+}
+
+TEST_F(ResumedScan, OfACameraEndsAsIfNothingHadHappened) {
+  ASSERT_EQ(run_skycap(scan("whole", images_)).exit_code, 0);
+  interrupt_at("image 2 of 4", images_);
+  EXPECT_FALSE(fs::exists(folder_ / "part/depth_000002.png"));
+  const auto run = run_skycap(scan("part", with(images_, {"--resume"})));
+  EXPECT_EQ(run.exit_code, 0) << run.err;
+  expect_same_results();
+}
+
+// What a kill leaves of a camera's: half an image that the journal does not know, a longer log.
+TEST_F(ResumedScan, OfACameraCutsOffWhatItsJournalDoesNotKnow) {
+  ASSERT_EQ(run_skycap(scan("whole", images_)).exit_code, 0);
+  interrupt_at("image 2 of 4", images_);
+  const fs::path log = journal_.parent_path() / "frames.rawlog";
+  const std::string content = content_of(log);
+  fs::remove(log);
+  std::ofstream(log, std::ios::binary) << content << std::string(1000, 'x');
+  std::ofstream(journal_.parent_path() / "depth_000002.png", std::ios::binary) << "\x89PNG";
+  EXPECT_EQ(run_skycap(scan("part", with(images_, {"--resume"}))).exit_code, 0);
+  expect_same_results();
+}
+
+// Bytes that were on the disk and are not there any more cannot be made up.
+TEST_F(ResumedScan, WhoseFilesHaveShrunkIsRefused) {
+  for (const auto& [options, until, name] :
+       {std::tuple{clouds_, "% flown", "scan.las"},
+        std::tuple{images_, "image 2 of 4", "frames.rawlog"}}) {
+    interrupt_at(until, options);
+    const fs::path file = journal_.parent_path() / name;
+    const std::string content = content_of(file);
+    fs::remove(file);
+    std::ofstream(file, std::ios::binary) << content.substr(0, content.size() - 1);
+    const auto run = run_skycap(scan("part", with(options, {"--resume"})));
+    EXPECT_EQ(run.exit_code, 2);
+    EXPECT_THAT(run.err, HasSubstr(std::string(name) + ": holds "));
+    fs::remove_all(folder_ / "part");
+  }
+}
+
+// The results of the interrupted run share bytes with the files that grow on.
+TEST_F(ResumedScan, ThatIsInterruptedAgainKeepsWhatWasThere) {
+  ASSERT_EQ(run_skycap(scan("whole", clouds_)).exit_code, 0);
+  interrupt_at("% flown", clouds_);
+  const fs::path kept = folder_ / "kept.las";
+  fs::create_hard_link(folder_ / "part/scan.las", kept);
+  const std::string partial = content_of(kept);
+  const auto shots = [&] {
+    return nlohmann::json::parse(content_of(folder_ / "part/scan.json")).at("shots").get<int>();
+  };
+  const int shots_before = shots();
+  interrupt_at("% flown", with(clouds_, {"--resume"}));
+  EXPECT_EQ(content_of(kept), partial);
+  EXPECT_GT(shots(), shots_before);
+  ASSERT_EQ(run_skycap(scan("part", with(clouds_, {"--resume"}))).exit_code, 0);
+  expect_same_results();
+}
+
+TEST_F(ResumedScan, OfAnotherScanIsRefusedAndNothingIsLost) {
+  interrupt_at("% flown", clouds_);
+  const auto before = tests::scan_results_in(folder_ / "part");
+  const auto refusal = [&](const std::vector<std::string>& more) {
+    const auto run = run_skycap(scan("part", with(more, {"--resume"})));
+    EXPECT_EQ(run.exit_code, 2);
+    EXPECT_TRUE(tests::scan_results_in(folder_ / "part") == before);
+    return run.err;
+  };
+  EXPECT_THAT(refusal(with(clouds_, {"--seed", "2"})), HasSubstr("seed was 1 and is 2"));
+  EXPECT_THAT(refusal({"--format", "las"}), HasSubstr("formats was "));
+  EXPECT_THAT(refusal(with(clouds_, {"--set", "scan.orbit.speed=21"})),
+              HasSubstr("was begun otherwise: "));
+  folder_.write("cube.obj",
+                content_of(folder_ / "cube.obj") + "v 2 2 0\nv 2 3 0\nv 2 3 3\n" + "f 9 10 11\n");
+  EXPECT_THAT(refusal(clouds_), HasSubstr("scene_digest was "));
+}
+
+// Of files that a key names, what they hold counts.
+TEST_F(ResumedScan, OfAnotherSensorOrRouteIsRefused) {
+  interrupt_at("image 2 of 4", images_);
+  const auto refusal_with = [&](const std::string& file, const std::string& from,
+                                const std::string& to) {
+    const std::string kept = content_of(folder_ / file);
+    std::string changed = kept;
+    changed.replace(changed.find(from), from.size(), to);
+    folder_.write(file, changed);
+    const auto run = run_skycap(scan("part", with(images_, {"--resume"})));
+    EXPECT_EQ(run.exit_code, 2);
+    folder_.write(file, kept);
+    return run.err;
+  };
+  EXPECT_THAT(refusal_with("camera.yaml", "_deg: 5", "_deg: 5.1"), HasSubstr("sensor_digest was "));
+  EXPECT_THAT(refusal_with("views.csv", "2,3,0,1", "2,3,0,1.001"), HasSubstr("route_digest was "));
+  EXPECT_EQ(run_skycap(scan("part", with(images_, {"--resume"}))).exit_code, 0);
+}
+
+TEST_F(ResumedScan, FromADamagedJournalIsRefusedAndABeginningIsNot) {
+  interrupt_at("% flown", clouds_);
+  std::string journal = content_of(journal_);
+  journal[journal.find("\"seed\"") + 1] ^= 1;
+  std::ofstream(journal_, std::ios::binary) << journal;
+  const auto run = run_skycap(scan("part", with(clouds_, {"--resume"})));
+  EXPECT_EQ(run.exit_code, 2);
+  EXPECT_THAT(run.err, HasSubstr("scan.journal: line 1 is damaged"));
+  EXPECT_EQ(run_skycap(scan("part", clouds_)).exit_code, 0);
+  EXPECT_FALSE(fs::exists(journal_.parent_path()));
+}
+
+TEST_F(ResumedScan, WithoutAJournalBegins) {
+  ASSERT_EQ(run_skycap(scan("whole", clouds_)).exit_code, 0);
+  const auto run = run_skycap(scan("part", with(clouds_, {"--resume"})));
+  EXPECT_EQ(run.exit_code, 0) << run.err;
+  EXPECT_EQ(run.err, "");
+  expect_same_results();
+}
+
+}  // namespace
+}  // namespace skycap::missions

@@ -1,0 +1,171 @@
+// Every mission file of the packages in SKYCAP_PACKAGES (folders, between colons), spoiled at
+// random 200 times: each is refused and the message says where, or an independent flight of the
+// same items keeps the mission's clearance from the scene by CGAL's exact distances.
+#include <cstdlib>
+#include <filesystem>
+#include <functional>
+#include <iostream>
+#include <sstream>
+
+#include <gtest/gtest.h>
+
+#include "flight/export/wpml_file.h"
+#include "flight/interpreter/flown_route.h"
+#include "flight/interpreter/mission_interpreter.h"
+#include "flight/interpreter/wpml_interpreter.h"
+#include "geometry/error.h"
+#include "geometry/io/file.h"
+#include "missions/config/mission_flight.h"
+#include "missions/evaluation/survey_scene.h"
+#include "missions/package/package.h"
+#include "missions/package/verification/stated_return.h"
+#include "missions/package/verification/true_space.h"
+#include "tests/flight/interpreter/random_spoiling.h"
+
+namespace skycap::missions::cli {
+namespace {
+
+using flight::Problems;
+
+constexpr int spoilings = 200;
+
+std::vector<std::filesystem::path> packages() {
+  const char* const named = std::getenv("SKYCAP_PACKAGES");
+  std::vector<std::filesystem::path> folders;
+  std::stringstream list(named == nullptr ? "" : named);
+  for (std::string folder; std::getline(list, folder, ':');) folders.emplace_back(folder);
+  return folders;
+}
+
+/// Whether a message says which item, waypoint or part of the file is meant.
+bool says_where(const std::string& problem) {
+  for (const char* where : {"item ", "waypoint ", "line ", "mission.", "geoFence", "template.kml",
+                            "waylines.wpml", "doJumpId", "the mission ends in the air"}) {
+    if (problem.find(where) != std::string::npos) return true;
+  }
+  return false;
+}
+
+/// A package's mission, and what judges its files.
+class Shipped {
+ public:
+  explicit Shipped(const std::filesystem::path& folder)
+      : summary_(package::read_package_summary(folder, {})),
+        model_(evaluation::placed_model(summary_.mission, "")),
+        space_(package::true_space(summary_.mission, model_, summary_.pad->z())),
+        oracle_(model_) {}
+
+  flight::Ground ground() const {
+    const flight::Site site = config::site_of(summary_.mission);
+    return {site.origin.latitude_deg, site.origin.longitude_deg, site.origin.height,
+            site.undulation_for("the test"), *summary_.pad};
+  }
+
+  flight::FlightFacts facts(flight::Dialect dialect) const {
+    flight::FlightFacts facts = config::flight_facts(summary_.mission);
+    facts.pad = *summary_.pad;
+    facts.is_pad_known = true;
+    facts.views = summary_.views;
+    facts.vehicle = config::flown_by(config::vehicle_of(summary_.mission), dialect);
+    return facts;
+  }
+
+  flight::Dialect dialect_of(const std::filesystem::path& file) const {
+    return *package::dialect_of(file, config::vehicle_of(summary_.mission));
+  }
+
+  /// All that `check --route` would say, but returns.
+  Problems problems_of(const flight::FlownRoute& route) const {
+    Problems problems = route.problems;
+    const double clearance = summary_.mission.flight.clearance;
+    const flight::FlownProof proof = prove(route, space_.everywhere, space_.over_pad,
+                                           clearance - flight::rounding_bound, clearance + 1.0);
+    problems.insert(problems.end(), proof.problems.begin(), proof.problems.end());
+    return problems;
+  }
+
+  bool keeps_clear(const std::vector<Eigen::Vector3d>& places) const {
+    const double clearance = summary_.mission.flight.clearance - 3.0 * flight::rounding_bound;
+    return flight::keeps_clear(oracle_, places, clearance);
+  }
+
+ private:
+  package::PackageSummary summary_;
+  geometry::Mesh model_;
+  package::TrueSpace space_;
+  flight::CgalOracle oracle_;
+};
+
+struct Spoiled {
+  Problems problems;
+  std::vector<Eigen::Vector3d> places;  ///< of an independent flight
+};
+
+void expect_refused_or_harmless(const Shipped& shipped, const std::filesystem::path& file,
+                                const std::function<Spoiled()>& spoil) {
+  int refused = 0;
+  for (int i = 0; i < spoilings; ++i) {
+    const Spoiled spoiled = spoil();
+    if (spoiled.problems.empty()) {
+      EXPECT_TRUE(shipped.keeps_clear(spoiled.places)) << file << ", spoiling " << i;
+      continue;
+    }
+    ++refused;
+    for (const std::string& problem : spoiled.problems) {
+      EXPECT_TRUE(says_where(problem)) << file << ", spoiling " << i << ": " << problem;
+    }
+  }
+  std::cout << file.string() << ": " << refused << " of " << spoilings << " refused, "
+            << spoilings - refused << " harmless\n";
+  EXPECT_GT(refused, spoilings / 4);
+}
+
+void spoil_items(const Shipped& shipped, const std::filesystem::path& path) {
+  const std::string content = geometry::read_file(path);
+  const flight::MissionFile good =
+      path.extension() == ".plan" ? flight::read_plan(content) : flight::read_waypoints(content);
+  const flight::FlightFacts facts = shipped.facts(shipped.dialect_of(path));
+  ASSERT_TRUE(shipped.problems_of(interpret(good, facts)).empty()) << path;
+  const flight::Ground ground = shipped.ground();
+  std::mt19937_64 random(11);
+  expect_refused_or_harmless(shipped, path, [&]() -> Spoiled {
+    flight::MissionFile file = good;
+    spoil(file, random, ground.around(40, 40));
+    return {shipped.problems_of(interpret(file, facts)), flight_of(file.items, ground)};
+  });
+}
+
+void spoil_wpml(const Shipped& shipped, const std::filesystem::path& path) {
+  const flight::KmzContent good = flight::unpack_kmz(geometry::read_file(path));
+  const flight::FlightFacts facts = shipped.facts(flight::Dialect::dji);
+  ASSERT_TRUE(shipped.problems_of(interpret(good, facts)).empty()) << path;
+  const flight::Ground ground = shipped.ground();
+  std::mt19937_64 random(12);
+  int number = 0;
+  expect_refused_or_harmless(shipped, path, [&]() -> Spoiled {
+    flight::KmzContent kmz = good;
+    std::string& text = number++ % 4 == 0 ? kmz.template_kml : kmz.waylines_wpml;
+    text = flight::spoiled(text, random);
+    Problems problems = flight::validate_kmz(flight::pack_kmz(kmz));
+    if (problems.empty()) problems = shipped.problems_of(interpret(kmz, facts));
+    return {problems, flight_of(kmz.waylines_wpml, ground)};
+  });
+}
+
+TEST(ShippedFiles, AreRefusedOrHarmlessWhenSpoiled) {
+  if (packages().empty()) GTEST_SKIP() << "SKYCAP_PACKAGES names no packages";
+  for (const std::filesystem::path& folder : packages()) {
+    const Shipped shipped(folder);
+    for (const auto& entry : std::filesystem::directory_iterator(folder)) {
+      const std::filesystem::path& path = entry.path();
+      if (path.extension() == ".plan" || path.extension() == ".waypoints") {
+        spoil_items(shipped, path);
+      } else if (path.extension() == ".kmz") {
+        spoil_wpml(shipped, path);
+      }
+    }
+  }
+}
+
+}  // namespace
+}  // namespace skycap::missions::cli

@@ -1,0 +1,312 @@
+// From one tile of a city model to a certified mission in two commands.
+#include <algorithm>
+#include <fstream>
+#include <iterator>
+#include <set>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include "geometry/place/prism.h"
+#include "missions/config/mission_flight.h"
+#include "missions/config/mission_priors.h"
+#include "missions/config/resolved_mission.h"
+#include "missions/evaluation/survey_scene.h"
+#include "missions/site_data/prior.h"
+#include "tests/missions/run_skycap.h"
+#include "tests/missions/site_data/cube_files.h"
+
+namespace skycap::missions {
+namespace {
+
+using Eigen::AlignedBox3d;
+using Eigen::Vector3d;
+using nlohmann::json;
+using testing::AllOf;
+using testing::HasSubstr;
+using testing_support::Cube;
+using tests::content_of;
+using tests::TestFolder;
+
+tests::ProgramRun run_skycap(const std::string& line) {
+  std::istringstream words(line);
+  return tests::run_skycap(std::vector<std::string>(std::istream_iterator<std::string>(words), {}));
+}
+
+/// With 15 m between them in a row eastward.
+const std::vector<Vector3d> in_a_row{{0, 0, 0}, {25, 0, 0}, {50, 0, 0}};
+
+/// Buildings of 10 m in UTM 32, feet at 380 m and so much elsewhere; the second one has an address.
+/// One file, as an authority gives it.
+std::string tile(const std::vector<Vector3d>& places = in_a_row,
+                 const std::string& crs = "EPSG:25832") {
+  std::string text;
+  for (std::size_t i = 0; i < places.size(); ++i) {
+    Cube cube;
+    cube.low += places[i];
+    std::string one = citygml_of(cube, crs);
+    const std::string name = "DEBY_" + std::to_string(i);
+    one.replace(one.find("\"cube\""), 6, "\"" + name + "\"");
+    if (i == 1) {
+      one.insert(one.find("<bldg:function>"),
+                 "<bldg:address><core:Address><xal:ThoroughfareName>Am Ring"
+                 "</xal:ThoroughfareName></core:Address></bldg:address>");
+    }
+    const std::string member = "<cityObjectMember>", end = "</CityModel>";
+    if (i == 0) text = one.substr(0, one.find(member));
+    text += one.substr(one.find(member), one.find(end) - one.find(member));
+  }
+  return text + "</CityModel>\n";
+}
+
+class Site : public testing::Test {
+ protected:
+  Site() { write("tile.gml", tile()); }
+
+  tests::ProgramRun propose(const std::string& options) {
+    return run_skycap("site " + path_ + "/tile.gml --vertical ellipsoid --out " + path_ +
+                      "/house.yaml " + options);
+  }
+  void remove_proposal() const {
+    for (const char* name : {"house.yaml", "house.html"})
+      std::filesystem::remove(folder_.path() / name);
+  }
+  void write(const std::string& name, const std::string& content) const {
+    std::ofstream(folder_.path() / name, std::ios::binary) << content;
+  }
+  config::Mission mission() const { return config::read_mission(folder_.path() / "house.yaml"); }
+
+  const TestFolder folder_;
+  const std::string path_ = folder_.path().string();
+};
+
+TEST_F(Site, IsACertifiedMissionInTwoCommands) {
+  const auto site = propose("--id DEBY_1");
+  ASSERT_EQ(site.exit_code, 0) << site.err;
+  EXPECT_TRUE(std::filesystem::exists(folder_.path() / "house.html"));
+  const auto plan = run_skycap("plan " + path_ + "/house.yaml --out " + path_ + "/out");
+  ASSERT_EQ(plan.exit_code, 0) << plan.err << plan.out;
+  const json summary = json::parse(content_of(folder_.path() / "out" / "summary.json"));
+  ASSERT_EQ(summary.at("targets").size(), 1U);
+  EXPECT_EQ(summary.at("targets")[0].at("name"), "DEBY_1");
+  EXPECT_GT(summary.at("targets")[0].at("coverage").get<double>(), 0.9);
+  EXPECT_GE(summary.at("min_clearance_m").get<double>(), 2.0);
+  // Of the file as autopilots read it, neighbours and all.
+  const auto check =
+      run_skycap("check " + path_ + "/house.yaml --route " + path_ + "/out/mission.plan");
+  EXPECT_EQ(check.exit_code, 0) << check.out;
+}
+
+// A hill that is in the same file is higher than anything that may be flown at the target.
+TEST_F(Site, IsFlownBelowTheHillsOfItsTile) {
+  write("tile.gml", tile({{0, 0, 0}, {25, 0, 0}, {50, 0, 0}, {900, 0, 150}}));
+  ASSERT_EQ(propose("--id DEBY_1").exit_code, 0);
+  ASSERT_LT(mission().site.highest_height.value(), 150.0);
+  const auto plan = run_skycap("plan " + path_ + "/house.yaml --out " + path_ + "/out");
+  EXPECT_EQ(plan.exit_code, 0) << plan.err << plan.out;
+  EXPECT_TRUE(std::filesystem::exists(folder_.path() / "out" / "mission.plan"));
+}
+
+// Wherever the first view is drawn, it is not in the house next door.
+TEST_F(Site, BeginsOutsideOfTheNeighbours) {
+  std::vector<Vector3d> crowd;
+  for (int x = -2; x <= 2; ++x) {
+    for (int y = -2; y <= 2; ++y) crowd.emplace_back(16.0 * x, 16.0 * y, 0.0);
+  }
+  write("tile.gml", tile(crowd));
+  ASSERT_EQ(propose("--id DEBY_12").exit_code, 0);
+  const config::Mission mission = this->mission();
+  const evaluation::SurveyScene scene(mission, folder_.path());
+  std::set<double> heights;
+  for (std::uint64_t seed = 1; seed <= 40; ++seed) {
+    const Vector3d place = scene.first_view(seed).position;
+    heights.insert(place.z());
+    for (const site_data::Object& object : config::priors_of(mission).priors[1].objects) {
+      EXPECT_GE(geometry::bounding_box(object.mesh).exteriorDistance(place),
+                mission.flight.clearance)
+          << seed << " in " << object.id;
+    }
+  }
+  EXPECT_GT(heights.size(), 30U);
+}
+
+// Known places: the building's middle, its foot, and what must lie outside of everything.
+TEST_F(Site, IsProposedAboutItsTarget) {
+  ASSERT_EQ(propose("--id DEBY_1").exit_code, 0);
+  const config::Mission mission = this->mission();
+  // echo 676330 5403905 | cs2cs EPSG:25832 EPSG:4326
+  EXPECT_NEAR(mission.georeference.latitude_deg.value(), 48.76315751, 2e-7);
+  EXPECT_NEAR(mission.georeference.longitude_deg.value(), 11.39950772, 2e-7);
+  EXPECT_NEAR(mission.georeference.ellipsoid_height, 380.0, 0.011);
+  const Vector3d pad = mission.flight.takeoff.value();
+  const AlignedBox3d unknown = config::unknown_box_of(mission);
+  for (const site_data::Prior& prior : config::priors_of(mission).priors) {
+    for (const site_data::Object& object : prior.objects) {
+      const AlignedBox3d box = geometry::bounding_box(object.mesh);
+      EXPECT_GT(box.exteriorDistance(pad), 3.0 * mission.flight.clearance);
+      EXPECT_EQ(unknown.contains(box.center().eval()), object.id == "DEBY_1");
+    }
+  }
+  EXPECT_GT(unknown.exteriorDistance(pad), 2.0 * mission.flight.clearance);
+  EXPECT_TRUE(geometry::contains(mission.site.geofence, pad.head<2>()));
+  EXPECT_EQ(config::priors_of(mission).priors.size(), 2U);
+  EXPECT_EQ(config::priors_of(mission).priors[1].objects.size(), 3U);
+}
+
+// Each value has a word on it, beside it or over it.
+TEST_F(Site, IsCommentedValueByValue) {
+  ASSERT_EQ(propose("--id DEBY_1").exit_code, 0);
+  std::istringstream text(content_of(folder_.path() / "house.yaml"));
+  std::size_t values = 0;
+  bool is_under_comment = false;
+  for (std::string line; std::getline(text, line);) {
+    const bool is_comment = line.find_first_not_of(' ') == line.find('#');
+    const bool is_section = line[0] != ' ' && line.ends_with(':');
+    if (!is_comment && !is_section) {
+      ++values;
+      EXPECT_TRUE(is_under_comment || line.find('#') != std::string::npos) << line;
+    }
+    is_under_comment = is_comment;
+  }
+  EXPECT_GT(values, 20U);
+}
+
+TEST_F(Site, IsPickedByNameAddressOrClick) {
+  ASSERT_EQ(propose("--id DEBY_1").exit_code, 0);
+  const std::string by_name = content_of(folder_.path() / "house.yaml");
+  for (const char* pick : {"--at 48.76318391,11.39953620", "--at 48.76304965,11.39950258"}) {
+    remove_proposal();
+    const auto run = propose(pick);
+    ASSERT_EQ(run.exit_code, 0) << run.err;
+    EXPECT_EQ(content_of(folder_.path() / "house.yaml"), by_name);
+  }
+  remove_proposal();
+  const auto run =
+      tests::run_skycap({"site", path_ + "/tile.gml", "--vertical", "ellipsoid", "--out",
+                         path_ + "/house.yaml", "--attribute", "ThoroughfareName=Am Ring"});
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  EXPECT_EQ(content_of(folder_.path() / "house.yaml"), by_name);
+}
+
+TEST_F(Site, SaysWhatIsMissing) {
+  EXPECT_THAT(propose("").err, AllOf(HasSubstr("holds 3 things, DEBY_0, DEBY_1, DEBY_2"),
+                                     HasSubstr("--id, --at or --attribute")));
+  EXPECT_THAT(propose("--id DEBY_7").err, HasSubstr("no object with the id DEBY_7"));
+  EXPECT_THAT(propose("--at 48.75,11.39").err, HasSubstr("has nothing within 10 m"));
+  EXPECT_THAT(propose("--at north").err, HasSubstr("--at is north; give LATITUDE,LONGITUDE"));
+  EXPECT_THAT(propose("--id DEBY_1 --at 48,11").err, HasSubstr("give one of them"));
+  EXPECT_FALSE(std::filesystem::exists(folder_.path() / "house.yaml"));
+  std::ofstream(folder_.path() / "house.yaml") << "mine";
+  EXPECT_THAT(propose("--id DEBY_1").err, HasSubstr("house.yaml is there already"));
+  EXPECT_EQ(content_of(folder_.path() / "house.yaml"), "mine");
+  std::filesystem::rename(folder_.path() / "house.yaml", folder_.path() / "house.html");
+  EXPECT_THAT(propose("--id DEBY_1").err, HasSubstr("house.html is there already"));
+  EXPECT_EQ(content_of(folder_.path() / "house.html"), "mine");
+  EXPECT_FALSE(std::filesystem::exists(folder_.path() / "house.yaml"));
+}
+
+// What a file says of itself holds, whatever is said of those that do not.
+TEST_F(Site, TakesWordsForFilesThatDoNotSayIt) {
+  // Ground above EGM96's geoid; the top of a slab is where the buildings' feet are.
+  const double undulation = site_data::egm96_undulation(48.7632, 11.3995);
+  Cube ground;
+  ground.size = {400.0, 400.0, 1.0};
+  ground.low = {676130.0, 5403705.0, 379.0 - undulation};
+  write("ground.gml", citygml_of(ground, "EPSG:25832+5773"));
+  const auto run = propose("--id DEBY_1 --terrain " + path_ + "/ground.gml");
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  EXPECT_NEAR(mission().flight.takeoff.value().z(), 0.0, 0.05);
+  EXPECT_FALSE(mission().prior.back().vertical.has_value());
+  EXPECT_TRUE(mission().prior.front().vertical.has_value());
+}
+
+// Heights above DHHN2016's geoid, whose grid Debian does not have, and EGM96 is within metres of
+// it.
+TEST_F(Site, LetsEgm96StandInWhereThatIsAskedFor) {
+  write("tile.gml", tile(in_a_row, "EPSG:25832+7837"));
+  EXPECT_THAT(
+      run_skycap("site " + path_ + "/tile.gml --id DEBY_1 --out " + path_ + "/house.yaml").err,
+      HasSubstr("say vertical: geoid to let EGM96 stand in"));
+  const auto run = run_skycap("site " + path_ + "/tile.gml --id DEBY_1 --vertical geoid --out " +
+                              path_ + "/house.yaml");
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  EXPECT_NEAR(mission().georeference.ellipsoid_height,
+              380.0 + site_data::egm96_undulation(48.7632, 11.3995), 0.02);
+}
+
+TEST_F(Site, IsAsHighAsAnybodySays) {
+  Cube low, high;
+  high.low.x() += 30.0;
+  std::string map = geojson_of(low);
+  std::string other = geojson_of(high);
+  other.replace(other.find("\"cube\""), 6, "\"tower\",\"height\":20");
+  const auto feature_of = [](const std::string& text) {
+    const auto begin = text.find("{\"type\":\"Feature\",");
+    return text.substr(begin, text.rfind("]}") - begin);
+  };
+  map.insert(map.rfind("]}"), "," + feature_of(other));
+  write("map.geojson", map);
+  const auto run = run_skycap("site " + path_ + "/map.geojson --id cube --height 12 --base 380 " +
+                              "--out " + path_ + "/house.yaml");
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  const config::Mission proposed = mission();
+  const auto& priors = config::priors_of(proposed).priors;
+  ASSERT_EQ(priors.size(), 2U);
+  EXPECT_NEAR(priors[0].box.sizes().z(), 12.0, 0.01);
+  EXPECT_NEAR(priors[1].box.max().z(), 20.0, 0.01);
+  ASSERT_EQ(priors[1].objects.size(), 2U);
+}
+
+// A name is a name, whatever YAML would make of it.
+TEST_F(Site, TakesFilesOfAnyName) {
+  const std::string name = "a 'tile': #1 \\n \"{x}\".gml";
+  std::filesystem::rename(folder_.path() / "tile.gml", folder_.path() / name);
+  const auto run = tests::run_skycap({"site", path_ + "/" + name, "--vertical", "ellipsoid", "--id",
+                                      "DEBY_1", "--out", path_ + "/house.yaml"});
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  EXPECT_EQ(mission().prior.front().file.filename(), name);
+}
+
+/// A crown of 3 m that begins 5 m over the pad, as a laser scanner sees it: eight points.
+TEST_F(Site, HasNoPadUnderACrown) {
+  ASSERT_EQ(propose("--id DEBY_1").exit_code, 0);
+  const Vector3d free_pad = mission().flight.takeoff.value();
+  remove_proposal();
+  Cube crown;
+  crown.size.setConstant(3.0);
+  crown.low = Vector3d(676330.0, 5403905.0, 385.0) + free_pad - Vector3d(1.5, 1.5, 0.0);
+  write("tree.las", las_of(crown, 4, 6));
+  const auto run = propose("--id DEBY_1 --crs EPSG:25832 --obstacle " + path_ + "/tree.las");
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  const Vector3d pad = mission().flight.takeoff.value();
+  const AlignedBox3d tree = config::priors_of(mission()).priors.back().box;
+  const AlignedBox3d climb(pad, pad + Vector3d(0.0, 0.0, 20.0));
+  EXPECT_GE(climb.exteriorDistance(tree), mission().flight.clearance);
+  EXPECT_LT(AlignedBox3d(free_pad, free_pad + Vector3d(0.0, 0.0, 20.0)).exteriorDistance(tree),
+            mission().flight.clearance);
+}
+
+// South of the houses, where pads are looked for first, the ground falls by one in two.
+TEST_F(Site, HasItsPadWhereTheGroundIsLevel) {
+  std::string grid =
+      "ncols 80\nnrows 80\nxllcorner 676130\nyllcorner 5403705\ncellsize 5\n"
+      "NODATA_value -9999\n";
+  for (int row = 0; row < 80; ++row) {
+    const double fall = std::max(0.0, 5403900.0 - (5403705.0 + 5.0 * (79.5 - row)));
+    for (int column = 0; column < 80; ++column) grid += std::to_string(380.0 - 0.5 * fall) + " ";
+    grid += "\n";
+  }
+  write("ground.asc", grid);
+  const auto run = propose("--id DEBY_1 --crs EPSG:25832 --terrain " + path_ + "/ground.asc");
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  const Vector3d pad = mission().flight.takeoff.value();
+  EXPECT_NEAR(pad.z(), 0.0, 0.05);
+  EXPECT_GT(pad.y(), 0.0);
+}
+
+}  // namespace
+}  // namespace skycap::missions

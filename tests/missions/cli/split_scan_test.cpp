@@ -1,0 +1,142 @@
+// A flight that is measured in pieces gives the bytes of the whole one.
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include "missions/cli/command_line.h"
+#include "tests/missions/cli/cube_scan.h"
+#include "tests/missions/ctrl_c.h"
+
+namespace skycap::missions {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::HasSubstr;
+using tests::content_of;
+using tests::run_skycap;
+
+class SplitScan : public tests::CubeScan {
+ protected:
+  /// Measures one piece, as a task does.
+  tests::ProgramRun task(std::size_t piece, std::size_t pieces,
+                         const std::vector<std::string>& more = {}) const {
+    return run_skycap(scan("part", with(more, {"--pieces", std::to_string(pieces), "--index",
+                                               std::to_string(piece), "--quiet"})));
+  }
+  tests::ProgramRun collect(std::size_t pieces, const std::vector<std::string>& more = {}) const {
+    return run_skycap(scan("part", with(more, {"--pieces", std::to_string(pieces), "--collect"})));
+  }
+  fs::path piece_folder(const std::string& name) const {
+    return folder_.path() / "part" / "pieces" / name;
+  }
+
+  const std::vector<std::string> all_{"--format", "las,ply,pcd,xyz,rawlog,e57", "--with-truth"};
+};
+
+TEST_F(SplitScan, GivesTheBytesOfTheWholeWhoeverMeasuresWhichPiece) {
+  ASSERT_EQ(run_skycap(scan("whole", all_)).exit_code, 0);
+  for (const std::size_t pieces : {1, 2, 4}) {
+    for (std::size_t i = 0; i < pieces; ++i) {  // not in their order
+      const auto run =
+          task((3 * i + 2) % pieces, pieces, with(all_, {"--threads", i % 2 == 0 ? "1" : "2"}));
+      ASSERT_EQ(run.exit_code, 0) << run.err;
+    }
+    const auto run = collect(pieces, all_);
+    ASSERT_EQ(run.exit_code, 0) << run.err;
+    expect_same_results();
+    fs::remove_all(folder_ / "part");
+  }
+}
+
+TEST_F(SplitScan, HasPiecesWithoutFiringsWhereThereAreMoreThanCanBe) {
+  const std::vector<std::string> short_flight{"--set", "scan.orbit.speed=100"};
+  ASSERT_EQ(run_skycap(scan("whole", short_flight)).exit_code, 0);
+  const auto run = run_skycap(scan("part", with(short_flight, {"--pieces", "15"})));
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  expect_same_results();
+}
+
+TEST_F(SplitScan, MeasuresSeveralPiecesInATask) {
+  ASSERT_EQ(run_skycap(scan("whole", {})).exit_code, 0);
+  ASSERT_EQ(task(1, 5, {"--chunk", "3"}).exit_code, 0);
+  EXPECT_TRUE(fs::exists(piece_folder("3_of_5")));
+  EXPECT_TRUE(fs::exists(piece_folder("4_of_5")));
+  const auto beyond = task(2, 5, {"--chunk", "3"});
+  EXPECT_EQ(beyond.exit_code, 0);
+  EXPECT_THAT(beyond.err, HasSubstr("task 2 has no items; there are 5"));
+  const auto early = collect(5);
+  EXPECT_EQ(early.exit_code, 1);
+  EXPECT_THAT(early.err, HasSubstr("2 of 5 pieces are complete; missing 0, 1, 2"));
+  EXPECT_FALSE(fs::exists(folder_ / "part/scan.las"));
+  ASSERT_EQ(task(0, 5, {"--chunk", "3"}).exit_code, 0);
+  ASSERT_EQ(collect(5).exit_code, 0);
+  expect_same_results();
+  const auto again = collect(5);
+  EXPECT_EQ(again.exit_code, 0);
+  EXPECT_THAT(again.err, HasSubstr("has no pieces; its results are complete already"));
+}
+
+TEST_F(SplitScan, SkipsWhatIsCompleteAndMeasuresAnewWhatIsOfAnotherScan) {
+  ASSERT_EQ(task(1, 2).exit_code, 0);
+  const fs::path cloud = piece_folder("1_of_2") / "scan.las";
+  const auto written = fs::last_write_time(cloud);
+  ASSERT_EQ(task(1, 2).exit_code, 0);
+  EXPECT_EQ(fs::last_write_time(cloud), written);
+  const std::string before = content_of(cloud);
+  ASSERT_EQ(task(1, 2, {"--seed", "2"}).exit_code, 0);
+  EXPECT_NE(content_of(cloud), before);
+  EXPECT_EQ(collect(2).exit_code, 1);  // that piece is of another seed
+}
+
+TEST_F(SplitScan, GoesOnWithAPieceThatWasInterrupted) {
+  ASSERT_EQ(run_skycap(scan("whole", clouds_)).exit_code, 0);
+  tests::CtrlC keys("% flown");
+  std::ostringstream out;
+  std::ostream err(&keys);
+  const auto second = with(clouds_, {"--pieces", "2", "--index", "1", "--threads", "1"});
+  ASSERT_EQ(cli::run_command_line(scan("part", second), {out, err, true, keys.token()}), 1);
+  EXPECT_FALSE(fs::exists(piece_folder("1_of_2") / "piece.json"));
+  // As a kill leaves it: more in a file than the journal knows of.
+  const fs::path grown = piece_folder("1_of_2") / "unfinished" / "scan.las";
+  ASSERT_TRUE(fs::exists(grown));
+  std::ofstream(grown, std::ios::binary | std::ios::app) << std::string(1000, 'x');
+  const auto run = run_skycap(scan("part", second));
+  EXPECT_EQ(run.exit_code, 0) << run.err;
+  EXPECT_THAT(run.err, HasSubstr("going on with an interrupted scan"));
+  ASSERT_EQ(task(0, 2, clouds_).exit_code, 0);
+  ASSERT_EQ(collect(2, clouds_).exit_code, 0);
+  expect_same_results();
+}
+
+TEST_F(SplitScan, TakesNoDamagedPieceForComplete) {
+  ASSERT_EQ(run_skycap(scan("part", {"--pieces", "1", "--index", "0"})).exit_code, 0);
+  std::ofstream(piece_folder("0_of_1") / "piece.json") << "{";
+  EXPECT_THAT(collect(1).err, HasSubstr("0 of 1 pieces are complete; missing 0"));
+  ASSERT_EQ(task(0, 1).exit_code, 0);
+  EXPECT_EQ(collect(1).exit_code, 0);
+}
+
+TEST_F(SplitScan, SaysWhatItCannotSplit) {
+  const auto refusal = [&](const std::vector<std::string>& options) {
+    const auto run = run_skycap(scan("part", options));
+    EXPECT_EQ(run.exit_code, 2);
+    EXPECT_EQ(std::ranges::count(run.err, '\n'), 1) << run.err;
+    return run.err;
+  };
+  EXPECT_THAT(refusal({"--index", "1"}), HasSubstr("are of a flight in pieces; give --pieces"));
+  EXPECT_THAT(refusal({"--pieces", "2", "--index", "one"}),
+              HasSubstr("--index is 'one'; it must be a whole number from 0 on"));
+  EXPECT_THAT(refusal({"--pieces", "2", "--sensor", folder_ / "camera.yaml"}),
+              HasSubstr("Test camera is a camera; only the flights of laser scanners are split"));
+  EXPECT_THAT(refusal({"--pieces", "2", "--resume"}), HasSubstr("--resume excludes --pieces"));
+}
+
+}  // namespace
+}  // namespace skycap::missions

@@ -1,0 +1,154 @@
+#include "missions/config/mission_reader.h"
+
+#include <numbers>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "geometry/error.h"
+#include "missions/config/mission_keys.h"
+#include "tests/support/complaint.h"
+
+namespace skycap::missions {
+namespace {
+
+using testing::HasSubstr;
+
+const std::string smallest =
+    "scene: {model: 'builtin:teapot'}\nevaluation: {registration_distance: 0.005}\n";
+
+config::Mission parsed(const std::string& more,
+                       const std::vector<config::KeyOverride>& overrides = {}) {
+  return config::parse_mission_file(smallest + more, "some/folder/vase.yaml", overrides).mission;
+}
+
+std::string complaint(const std::string& text,
+                      const std::vector<config::KeyOverride>& overrides = {}) {
+  return testing_support::complaint_of(
+      [&] { config::parse_mission_file(text, "m.yaml", overrides); });
+}
+
+TEST(MissionReader, NeedsOnlyAModelAndARegistrationDistance) {
+  const config::Mission mission = parsed("");
+  EXPECT_EQ(mission.name, "vase");
+  EXPECT_EQ(mission.scene.model, "builtin:teapot");
+  EXPECT_EQ(mission.evaluation.registration_distance, 0.005);
+  EXPECT_TRUE(mission.planner.see.optimise_views);
+}
+
+TEST(MissionReader, TurnsDegreesIntoRadians) {
+  const config::Mission mission =
+      parsed("sensor: {horizontal_fov_deg: 90}\nplanner: {name: see}\n", {});
+  EXPECT_DOUBLE_EQ(mission.sensor.camera.camera.horizontal_fov, 0.5 * std::numbers::pi);
+}
+
+TEST(MissionReader, SetsEachKeyToWhatItGivesBack) {
+  config::Mission mission;
+  for (const config::Key& key : config::mission_keys()) {
+    config::KeyValue value;
+    switch (key.type) {
+      case config::KeyType::text:
+        value = std::string("builtin:city-block");
+        break;
+      case config::KeyType::boolean:
+        value = true;
+        break;
+      case config::KeyType::choice:
+        value = key.choices.back();
+        break;
+      case config::KeyType::integer:
+        value = std::int64_t{7};
+        break;
+      case config::KeyType::vector:
+        value = Eigen::Vector3d(1, 2, 3);
+        break;
+      case config::KeyType::number:
+        value = 0.25;
+        break;
+      case config::KeyType::polygon:
+        value = std::vector<Eigen::Vector2d>{{0, 0}, {9, 0}, {0, 9.5}};
+        break;
+      case config::KeyType::volumes:
+        value = std::vector<geometry::Prism>{{"", {{0, 0}, {1, 0}, {0, 1}}, -2.0, 30.0}};
+        break;
+      case config::KeyType::vectors:
+        value = std::vector<Eigen::Vector3d>{{10, -20, 90}, {0.5, 0, -45}};
+        break;
+      case config::KeyType::sources:
+        value =
+            std::vector<site_data::Source>{{.file = "/tile.gml", .role = site_data::Role::terrain}};
+        break;
+      case config::KeyType::texts:
+        value = std::vector<std::string>{"m350_rtk", "mavic_3e"};
+        break;
+      case config::KeyType::integers:
+      case config::KeyType::pairs:
+        FAIL() << key.path << " is of a list's maps";
+    }
+    key.set(mission, value);
+    const auto back = key.get(mission);
+    ASSERT_TRUE(back) << key.path;
+    EXPECT_EQ(config::to_text(*back), config::to_text(value)) << key.path;
+  }
+}
+
+TEST(MissionReader, TakesPresetsFirstWhereverTheyStand) {
+  const config::Mission mission = parsed(
+      "sensor: {width: 600, preset: high_resolution}\nplanner: {visibility_graph: true, name: "
+      "see}\n");
+  EXPECT_EQ(mission.sensor.camera.camera.width, 600);
+  EXPECT_EQ(mission.sensor.camera.camera.height, 1750);
+  EXPECT_TRUE(mission.planner.see.visibility_graph);
+  EXPECT_FALSE(mission.planner.see.optimise_views);
+}
+
+TEST(MissionReader, LetsOverridesReplaceKeysAndNamesTheirOrigin) {
+  const config::Mission mission = parsed("seed: 3\n", {{"--seed", "seed", "8"}});
+  EXPECT_EQ(mission.seed, 8U);
+  EXPECT_EQ(complaint(smallest, {{"--seed", "seed", "many"}}),
+            "--seed: key seed: is many; give a whole number from 0 to 1e+15");
+  EXPECT_THAT(complaint(smallest, {{"--set", "planner.densty", "1"}}),
+              HasSubstr("did you mean planner.density?"));
+}
+
+TEST(MissionReader, SuggestsTheKeyInItsRightSection) {
+  EXPECT_EQ(complaint(smallest + "sensor:\n  sigma: 0.1\n"),
+            "m.yaml:4: key sensor.sigma: is unknown; did you mean sensor.noise.sigma?");
+  EXPECT_THAT(complaint(smallest + "colour_of_the_sky: blue\n"),
+              HasSubstr("known are name, seed, threads, scene, sensor, planner, volumetric, "
+                        "start, limits, evaluation, paper, site, flight, scan"));
+}
+
+// The parser must survive what people and fuzzers write: here, every prefix of a valid mission and
+// every single damaged byte of it either parses or is refused in one line.
+TEST(MissionReader, RefusesDamagedFilesInOneLine) {
+  const std::string whole =
+      "scene:\n  model: builtin:teapot  # a comment\n  position: [1, 2.5, -3e1]\n"
+      "evaluation: {registration_distance: 0.005}\nname: \"a\\tb\"\nsensor: {preset: 'd435'}\n";
+  std::size_t refused = 0;
+  const auto try_text = [&](const std::string& text) {
+    const std::string message = complaint(text);
+    EXPECT_EQ(message.find('\n'), std::string::npos) << message;
+    refused += message.empty() ? 0 : 1;
+  };
+  for (std::size_t length = 0; length < whole.size(); ++length) try_text(whole.substr(0, length));
+  for (std::size_t i = 0; i < whole.size(); ++i) {
+    for (const char byte : {'\x01', '{', ']', '&', '*', '!', '|', '%', '\xff', '"', '-', '\n'}) {
+      std::string damaged = whole;
+      damaged[i] = byte;
+      try_text(damaged);
+    }
+  }
+  EXPECT_GT(refused, whole.size());
+}
+
+TEST(MissionReader, SurvivesDeepNesting) {
+  for (const char* bracket : {"[", "{a: ", "- ", "? "}) {
+    std::string deep;
+    for (int i = 0; i < 20'000; ++i) deep += bracket;
+    EXPECT_THAT(complaint(deep), HasSubstr("m.yaml:1: ")) << bracket;
+  }
+}
+
+}  // namespace
+}  // namespace skycap::missions

@@ -1,0 +1,152 @@
+// The key table, the JSON Schema, the manual and the shipped missions say the same.
+#include <filesystem>
+#include <set>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include "geometry/error.h"
+#include "missions/config/key_sections.h"
+#include "missions/config/mission_keys.h"
+#include "missions/config/resolved_mission.h"
+#include "tests/missions/run_skycap.h"
+
+namespace skycap::missions {
+namespace {
+
+using Json = nlohmann::json;
+using testing::HasSubstr;
+
+const std::filesystem::path source = SKYCAP_SOURCE_DIR;
+
+Json shipped_schema() {
+  return Json::parse(tests::content_of(source / "missions" / "mission.schema.json"));
+}
+
+/// Paths of all properties of a schema that are not sections.
+void collect_paths(const Json& section, const std::string& prefix, std::set<std::string>& paths) {
+  for (const auto& [name, property] : section["properties"].items()) {
+    if (property.contains("properties")) {
+      EXPECT_EQ(property["additionalProperties"], false) << prefix + name;
+      collect_paths(property, prefix + name + ".", paths);
+    } else {
+      paths.insert(prefix + name);
+    }
+  }
+}
+
+const Json& property_of(const Json& schema, const std::string& path) {
+  const Json* property = &schema;
+  std::istringstream parts(path);
+  for (std::string part; std::getline(parts, part, '.');) {
+    property = &(*property)["properties"][part];
+  }
+  return *property;
+}
+
+TEST(MissionSchema, KnowsExactlyTheKeysOfTheReader) {
+  std::set<std::string> in_schema, in_reader;
+  collect_paths(shipped_schema(), "", in_schema);
+  for (const config::Key& key : config::mission_keys()) in_reader.insert(key.path);
+  EXPECT_EQ(in_schema, in_reader);
+}
+
+TEST(MissionKeys, StandInTheirSectionAndOnce) {
+  std::set<std::string> paths;
+  for (const config::KeySection& section : config::key_sections) {
+    for (const config::Key& key : section.keys()) {
+      EXPECT_EQ(key.path.substr(0, key.path.find('.')) == section.name, !section.name.empty())
+          << key.path;
+      EXPECT_TRUE(paths.insert(key.path).second) << key.path;
+    }
+  }
+  EXPECT_EQ(paths.size(), config::mission_keys().size());
+}
+
+// For each key, what the schema calls the limits is where the reader starts to refuse.
+TEST(MissionSchema, HasTheReadersTypesAndRanges) {
+  const Json schema = shipped_schema();
+  for (const config::Key& key : config::mission_keys()) {
+    const Json& property = property_of(schema, key.path);
+    const Json& number = key.type == config::KeyType::vector ? property["items"] : property;
+    if (key.type == config::KeyType::choice) {
+      EXPECT_EQ(property["enum"], Json(key.choices)) << key.path;
+    }
+    const auto is_refused = [&](const std::string& value) {
+      const std::string text = key.type == config::KeyType::vector
+                                   ? "[" + value + ", " + value + ", " + value + "]"
+                                   : value;
+      try {
+        config::parse_mission("seed: 1", "m", {{"--set", key.path, text}});
+      } catch (const Error& error) {
+        return std::string(error.what()).find("; give ") != std::string::npos &&
+               std::string(error.what()).starts_with("--set: key " + key.path + ":");
+      }
+      return false;
+    };
+    const auto beyond = [](double limit, double sign) {
+      return std::to_string(limit + sign * std::max(1.0, 1e-3 * std::abs(limit)));
+    };
+    for (const char* least : {"minimum", "exclusiveMinimum"}) {
+      if (!number.contains(least)) continue;
+      EXPECT_TRUE(is_refused(std::to_string(static_cast<long long>(number[least]) - 1)))
+          << key.path;
+    }
+    if (number.contains("exclusiveMinimum")) {
+      EXPECT_TRUE(is_refused("0")) << key.path;
+    }
+    if (number.contains("maximum")) {
+      EXPECT_TRUE(is_refused(beyond(number["maximum"], 1.0))) << key.path;
+    }
+    EXPECT_TRUE(is_refused("{a: 1}")) << key.path;
+  }
+}
+
+TEST(MissionSchema, IsTheFileThatIsShipped) {
+  EXPECT_EQ(tests::content_of(source / "missions" / "mission.schema.json"),
+            config::mission_json_schema())
+      << "run: build/release/skycap check --schema > missions/mission.schema.json";
+}
+
+TEST(MissionManual, HoldsTheTableOfKeys) {
+  EXPECT_THAT(tests::content_of(source / "docs" / "mission_file.md"),
+              HasSubstr(config::mission_key_table()))
+      << "replace the table by the output of: build/release/skycap check --keys";
+}
+
+TEST(ShippedMissions, AreValid) {
+  std::size_t count = 0;
+  for (const auto& entry : std::filesystem::directory_iterator(source / "missions")) {
+    if (entry.path().extension() != ".yaml") continue;
+    EXPECT_NO_THROW(config::read_mission(entry.path())) << entry.path();
+    ++count;
+  }
+  EXPECT_GE(count, 4U);
+}
+
+// Table 1 and section IV of the paper.
+TEST(ShippedMissions, HaveThePapersParameters) {
+  for (const char* name : {"teapot", "bunny", "dragon"}) {
+    const config::Mission mission =
+        config::read_mission(source / "missions" / (std::string(name) + ".yaml"));
+    EXPECT_EQ(mission.planner.see.density, 146'000.0);
+    EXPECT_EQ(mission.planner.see.resolution_radius, 0.017);
+    EXPECT_EQ(mission.planner.see.effective_core_threshold(), 4);
+    EXPECT_EQ(mission.evaluation.registration_distance, 0.005);
+    EXPECT_EQ(mission.scene.longest_side, 1.0);
+  }
+  const config::Mission radcliffe =
+      config::read_mission(source / "missions" / "radcliffe_camera.yaml");
+  EXPECT_EQ(radcliffe.planner.see.density, 213.0);
+  EXPECT_EQ(radcliffe.planner.see.resolution_radius, 0.15);
+  EXPECT_EQ(radcliffe.sensor.camera.camera.width, 2400);
+  EXPECT_EQ(radcliffe.evaluation.registration_distance, 0.05);
+  const config::Mission published = config::read_mission(
+      source / "missions" / "radcliffe_camera.yaml", {{"--set", "planner.preset", "paper"}});
+  EXPECT_EQ(published.planner.see.occlusion_search_distance, 1.0);
+  EXPECT_EQ(published.planner.see.visibility_update_limit, 100U);
+}
+
+}  // namespace
+}  // namespace skycap::missions

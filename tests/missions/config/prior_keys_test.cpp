@@ -1,0 +1,157 @@
+// The key prior: a list of maps whose keys stand in a table of their own.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "geometry/angle.h"
+#include "geometry/error.h"
+#include "missions/config/mission_keys.h"
+#include "missions/config/mission_reader.h"
+#include "missions/config/setting_json.h"
+#include "tests/support/complaint.h"
+
+namespace skycap::missions {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::StartsWith;
+
+const std::string mission =
+    "scene: {model: 'builtin:teapot'}\nevaluation: {registration_distance: 0.005}\n";
+
+config::MissionFile parsed(const std::string& more) {
+  return config::parse_mission_file(mission + more, "m.yaml");
+}
+
+std::string complaint(const std::string& more) {
+  return testing_support::complaint_of([&] { parsed(more); });
+}
+
+TEST(PriorKeys, SayAllThatASourceHas) {
+  const config::MissionFile given = parsed(
+      "prior:\n"
+      "  - {file: tile.gml, role: obstacle, select: {lod: 2, id: [A1, B2]}}\n"
+      "  - file: yard.kml\n"
+      "    role: target\n"
+      "    base: terrain\n"
+      "    height: 18\n"
+      "    uncertainty: 1.5\n"
+      "    select: {attribute: {use: church}, layer: roofs, within: area.geojson}\n"
+      "  - {file: scan.laz, role: truth, crs: 'EPSG:25832+7837', vertical: geoid,\n"
+      "     select: {classes: [2, 5]}, spacing: 0.5, offset: [1, 2, 3]}\n"
+      "  - {file: a.obj, role: terrain, place: {position: [4, 5, 6], heading_deg: 90},\n"
+      "     up_axis: y, unit: 0.3048, base: 2.5, min_height: 1}\n");
+  const std::vector<site_data::Source>& sources = given.mission.prior;
+  ASSERT_EQ(sources.size(), 4U);
+  EXPECT_EQ(sources[0].file, "tile.gml");
+  EXPECT_EQ(sources[0].role, site_data::Role::obstacle);
+  EXPECT_THAT(sources[0].select.ids, ElementsAre("A1", "B2"));
+  EXPECT_EQ(sources[0].select.lod, 2.0);
+  EXPECT_TRUE(sources[1].base_on_terrain);
+  EXPECT_EQ(sources[1].height, 18.0);
+  EXPECT_EQ(sources[1].uncertainty, 1.5);
+  EXPECT_EQ(sources[1].select.attributes.at("use"), "church");
+  EXPECT_EQ(sources[1].select.layer, "roofs");
+  EXPECT_EQ(sources[1].select.within, "area.geojson");
+  EXPECT_EQ(sources[2].crs, "EPSG:25832+7837");
+  EXPECT_EQ(sources[2].vertical, site_data::HeightDatum::geoid);
+  EXPECT_THAT(sources[2].select.classes, ElementsAre(2, 5));
+  EXPECT_EQ(sources[2].spacing, 0.5);
+  EXPECT_EQ(sources[2].offset, Eigen::Vector3d(1, 2, 3));
+  EXPECT_EQ(sources[3].place.value().position, Eigen::Vector3d(4, 5, 6));
+  EXPECT_NEAR(sources[3].place.value().heading, 90 * geometry::radians_per_degree, 1e-12);
+  EXPECT_EQ(sources[3].is_y_up, true);
+  EXPECT_EQ(sources[3].unit, 0.3048);
+  EXPECT_EQ(sources[3].base, 2.5);
+  EXPECT_EQ(sources[3].min_height, 1.0);
+  EXPECT_EQ(given.places.at("prior[1].height"), "m.yaml:8");
+}
+
+// What a package keeps of a mission is read back as the same sources.
+TEST(PriorKeys, AreReadBackFromSettings) {
+  const config::MissionFile given = parsed(
+      "prior: [{file: tile.gml, role: target, base: terrain, place: {heading_deg: 90}},\n"
+      "        {file: x.las, role: obstacle, select: {classes: [6], attribute: {a: b}}}]\n");
+  const config::Key& key = *config::find_key("prior");
+  const std::string text = config::to_text(*key.get(given.mission));
+  const config::MissionFile again = parsed("prior: " + text + "\n");
+  EXPECT_EQ(config::to_text(*key.get(again.mission)), text);
+  EXPECT_EQ(again.mission.prior.size(), 2U);
+  EXPECT_TRUE(again.mission.prior[0].base_on_terrain);
+  EXPECT_EQ(text.find("uncertainty"), std::string::npos) << "what was not given is not said";
+}
+
+TEST(PriorKeys, AreNamedWithTheirLineWhenTheyAreWrong) {
+  EXPECT_EQ(complaint("prior: {file: a.obj}\n"),
+            "m.yaml:3: key prior: is a map; give a list of maps, each with file, role and what "
+            "else is needed");
+  EXPECT_EQ(complaint("prior: [a.obj]\n"), "m.yaml:3: key prior[0]: is a.obj; give a map");
+  EXPECT_THAT(complaint("prior:\n  - {file: a.obj, role: target}\n  - {role: target}\n"),
+              StartsWith("m.yaml:5: key prior[1].file: is missing; give a text"));
+  EXPECT_THAT(complaint("prior:\n  - file: a.obj\n    role: wall\n"),
+              StartsWith("m.yaml:5: key prior[0].role: is wall; give target, obstacle, terrain or "
+                         "truth"));
+  EXPECT_THAT(complaint("prior: [{file: a.obj, role: target, hight: 3}]\n"),
+              HasSubstr("key prior[0].hight: is unknown; did you mean height?"));
+  EXPECT_THAT(complaint("prior: [{file: a.obj, role: target, base: sea}]\n"),
+              HasSubstr("key prior[0].base: is sea; give terrain or a number"));
+  EXPECT_THAT(complaint("prior: [{file: a.obj, role: target, select: all}]\n"),
+              HasSubstr("key prior[0].select: is a section"));
+}
+
+// The hostile values that no key takes, at each key of a source: refused by its name, or taken
+// within its range.
+TEST(PriorKeys, RefuseHostileValues) {
+  const std::vector<std::string> hostile = {"",
+                                            "~",
+                                            "nan",
+                                            "-.inf",
+                                            "1e999",
+                                            "0x10",
+                                            "'1'",
+                                            "\"a\\nb\"",
+                                            "{}",
+                                            "[]",
+                                            "{a: {b: c}}",
+                                            "[[1]]",
+                                            "*x",
+                                            "&x 1",
+                                            "!!int 1",
+                                            "[1e999, 0, 0]",
+                                            "-1e30",
+                                            "1e30",
+                                            "[-1]",
+                                            "[1.5]",
+                                            "[999999999999]",
+                                            "[~]",
+                                            "{1: [2]}"};
+  std::size_t refused = 0;
+  for (const config::Key& key : config::find_key("prior")->items) {
+    for (const std::string& value : hostile) {
+      std::string path = key.path, open;
+      for (auto dot = path.find('.'); dot != std::string::npos; dot = path.find('.')) {
+        open += path.substr(0, dot) + ":\n" + std::string(open.empty() ? 6 : 8, ' ');
+        path.erase(0, dot + 1);
+      }
+      std::string text = "prior:\n  - ";
+      if (key.path != "file") text += "file: a.obj\n    ";
+      if (key.path != "role") text += "role: target\n    ";
+      text += open + path + ": " + value + "\n";
+      try {
+        const config::Mission taken = parsed(text).mission;
+        const auto number = key.get(taken);
+        if (!number || !std::holds_alternative<double>(*number)) continue;
+        EXPECT_GE(std::get<double>(*number), key.range.least) << text;
+        EXPECT_LE(std::get<double>(*number), key.range.most) << text;
+      } catch (const Error& error) {
+        ++refused;
+        EXPECT_THAT(error.what(), StartsWith("m.yaml:")) << text;
+        EXPECT_EQ(std::string(error.what()).find('\n'), std::string::npos) << text;
+      }
+    }
+  }
+  EXPECT_GT(refused, 200U);
+}
+
+}  // namespace
+}  // namespace skycap::missions

@@ -1,0 +1,131 @@
+#include "missions/config/sensor_reader.h"
+
+#include <cmath>
+#include <numbers>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "geometry/error.h"
+#include "sim/sensors/scan_pattern.h"
+
+namespace skycap::missions {
+namespace {
+
+using sim::DepthCameraConfig;
+using sim::LidarConfig;
+using testing::HasSubstr;
+
+constexpr double degree = std::numbers::pi / 180.0;
+
+const LidarConfig& lidar(const config::SensorDescription& description) {
+  return std::get<LidarConfig>(description.sensor);
+}
+
+double shots_per_second(const char* preset) {
+  const config::SensorDescription description = config::find_sensor(preset);
+  const LidarConfig& config = lidar(description);
+  return static_cast<double>(config.channels.size()) / config.firing_period;
+}
+
+TEST(SensorPresets, AllAreValid) {
+  EXPECT_EQ(config::sensor_presets().size(), 15U);
+  for (const std::string_view preset : config::sensor_presets()) {
+    EXPECT_FALSE(config::find_sensor(std::string(preset)).name.empty()) << preset;
+  }
+}
+
+// The data sheets' rates, each the number of lasers over the firing period.
+TEST(SensorPresets, ShootAsOftenAsTheDataSheetsSay) {
+  EXPECT_NEAR(shots_per_second("velodyne_vlp16"), 289'352, 1);
+  EXPECT_NEAR(shots_per_second("velodyne_vlp32c"), 578'704, 1);
+  EXPECT_NEAR(shots_per_second("ouster_os1_64"), 655'360, 1);
+  EXPECT_NEAR(shots_per_second("ouster_os1_128"), 2'621'440, 1);
+  EXPECT_NEAR(shots_per_second("livox_mid70"), 100'000, 1);
+  EXPECT_NEAR(shots_per_second("livox_avia"), 240'000, 1);
+  EXPECT_NEAR(shots_per_second("dji_zenmuse_l1"), 240'000, 1);
+  EXPECT_NEAR(shots_per_second("dji_zenmuse_l2"), 240'000, 1);
+  EXPECT_NEAR(shots_per_second("riegl_minivux_1uav"), 100'000, 1);
+  EXPECT_NEAR(shots_per_second("riegl_vux_1uav"), 550'000, 1);
+}
+
+// The widest angle off the axis that a rosette reaches, against half its sold field of view.
+TEST(SensorPresets, RosettesReachTheirFieldsOfView) {
+  const auto widest = [](const char* preset) {
+    const config::SensorDescription description = config::find_sensor(preset);
+    double angle = 0.0;
+    for (int i = 0; i < 20'000; ++i) {
+      const Eigen::Vector3d beam =
+          sim::refract(lidar(description).prisms, 1.7e-4 * i, Eigen::Vector3d::UnitX());
+      angle = std::max(angle, std::acos(beam.x()));
+    }
+    return angle / degree;
+  };
+  EXPECT_NEAR(widest("livox_mid70"), 0.5 * 70.4, 0.2);
+  EXPECT_NEAR(widest("livox_avia"), 0.5 * 77.2, 0.5);
+  EXPECT_NEAR(widest("dji_zenmuse_l2"), 0.5 * 70.0, 0.5);
+}
+
+TEST(SensorPresets, WidthsAtHalfMaximumBecomeWidthsAtOneOverESquared) {
+  const config::SensorDescription description = config::find_sensor("dji_zenmuse_l2");
+  EXPECT_NEAR(lidar(description).beam.divergence_horizontal, 1.02e-3, 1e-5);
+  EXPECT_NEAR(lidar(description).beam.divergence_vertical, 0.34e-3, 1e-5);
+}
+
+TEST(SensorPresets, TheExperimentsCamerasAreThoseOfTheSimulator) {
+  const auto camera = [](const char* preset) {
+    const config::SensorDescription description = config::find_sensor(preset);
+    return std::get<DepthCameraConfig>(description.sensor);
+  };
+  const DepthCameraConfig high = camera("see_high_resolution"), known = sim::high_resolution();
+  EXPECT_EQ(high.camera.width, known.camera.width);
+  EXPECT_DOUBLE_EQ(high.camera.horizontal_fov, known.camera.horizontal_fov);
+  EXPECT_DOUBLE_EQ(high.camera.vertical_fov, known.camera.vertical_fov);
+  EXPECT_EQ(high.noise.sigma, known.noise.sigma);
+  // sigma_z = s z^2 / (f B): 3.8 mm at 1 m.
+  const sim::StereoErrors stereo = camera("intel_d435").stereo;
+  EXPECT_NEAR(stereo.disparity_sigma_px / (stereo.focal_length_px * stereo.baseline), 3.8e-3, 5e-5);
+}
+
+void expect_message(const std::string& text, const char* message) {
+  try {
+    config::read_sensor(text, "my.yaml");
+    FAIL() << "accepted: " << message;
+  } catch (const Error& error) {
+    EXPECT_EQ(error.kind(), ErrorKind::bad_config);
+    EXPECT_THAT(error.what(), HasSubstr(message));
+  }
+}
+
+TEST(ReadSensor, NamesFileLineAndKeyOfWhatIsWrong) {
+  const std::string head = "name: X\nkind: spinning\n";
+  expect_message("name: X\n", "my.yaml:1: key kind: is missing");
+  expect_message("name: X\nkind: sonar\n", "my.yaml:2: key kind: is sonar; it must be one of");
+  expect_message(head, "my.yaml:1: key rotation_rate_hz: is missing");
+  const std::string turning = head + "rotation_rate_hz: 10\nfiring_period_us: 50\n";
+  expect_message(turning + "wings: 2\n", "my.yaml:5: key wings: is unknown; known are");
+  expect_message(turning + "range: {min: near, max: 9}\n",
+                 "my.yaml:5: key range.min: must be a number");
+  expect_message(turning + "range: {min: 1, max: 9, middle: 5}\n", "key range.middle: is unknown");
+  expect_message(turning + "channels:\n  elevation_deg: [1, 2]\n  delay_us: [0]\n",
+                 "my.yaml:7: key channels.delay_us: has 1 numbers for 2 channels");
+  expect_message(turning + "channels: {count: 1, lowest_deg: 0, highest_deg: 1}\n",
+                 "my.yaml:5: key channels.count: must be between 2 and 1024");
+  expect_message(turning + "returns: {max: 1.5, choice: first}\n", "must be a whole number");
+  expect_message(turning + "range: 5\n", "my.yaml:5: key range: must be a map");
+  expect_message(turning + "range: {min: 9, max: 1}\n", "my.yaml: sensor.max_range is 1");
+  expect_message("name: X\nkind: rosette\nfiring_period_us: 10\n", "key prisms: must list");
+}
+
+TEST(FindSensor, SaysWhichSensorsThereAre) {
+  try {
+    config::find_sensor("ouster");
+    FAIL() << "found";
+  } catch (const Error& error) {
+    EXPECT_THAT(error.what(), HasSubstr("known are dji_zenmuse_l1"));
+  }
+  EXPECT_THROW(config::find_sensor("no/such/file.yaml"), Error);
+}
+
+}  // namespace
+}  // namespace skycap::missions

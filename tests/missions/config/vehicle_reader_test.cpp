@@ -1,0 +1,105 @@
+#include "missions/config/vehicle_reader.h"
+
+#include <fstream>
+#include <numbers>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "flight/motion/motion.h"
+#include "geometry/error.h"
+#include "tests/support/complaint.h"
+#include "tests/support/temporary_folder.h"
+
+namespace skycap::missions {
+namespace {
+
+using flight::Dialect;
+using flight::LegLaw;
+using testing::HasSubstr;
+
+constexpr double degree = std::numbers::pi / 180.0;
+
+std::string complaint(const std::string& text) {
+  return testing_support::complaint_of([&] { config::read_vehicle(text, "kite.yaml"); });
+}
+
+TEST(VehiclePresets, AllAreValidAndNamedAsTheirFiles) {
+  EXPECT_EQ(config::vehicle_presets().size(), 7U);
+  for (const std::string_view preset : config::vehicle_presets()) {
+    const flight::Vehicle vehicle = config::find_vehicle(std::string(preset));
+    EXPECT_EQ(vehicle.name, preset);
+    EXPECT_NO_THROW(vehicle.validate()) << preset;
+    EXPECT_EQ(vehicle.dialect == Dialect::dji, vehicle.wpml.drone > 0) << preset;
+  }
+}
+
+// The energy model's calibration holds for every one: a full battery hovers as long as the sheet
+// says.
+TEST(VehiclePresets, HoverAsLongAsTheDataSheetsSay) {
+  for (const std::string_view preset : config::vehicle_presets()) {
+    const flight::Vehicle vehicle = config::find_vehicle(std::string(preset));
+    const flight::Motion motion(vehicle, {.reserve = 0.0});
+    const double battery = motion.usable_energy() * (1.0 + vehicle.energy_error);
+    EXPECT_NEAR(battery / motion.hover_power() / 60.0, vehicle.endurance_min, 1e-6) << preset;
+  }
+}
+
+// ArduPilot's documentation: WP_SPD_UP, WP_SPD_DN, WP_ACC, WP_ACC_Z, WP_JERK, LAND_SPD_MS.
+TEST(VehiclePresets, ArduCopterFliesByItsDefaults) {
+  const flight::Vehicle vehicle = config::find_vehicle("generic_ardupilot");
+  EXPECT_EQ(vehicle.dialect, Dialect::ardupilot);
+  EXPECT_EQ(vehicle.mode.law, LegLaw::s_curve);
+  EXPECT_EQ(vehicle.mode.max_ascent, 2.5);
+  EXPECT_EQ(vehicle.mode.max_descent, 1.5);
+  EXPECT_EQ(vehicle.mode.acceleration, 2.5);
+  EXPECT_EQ(vehicle.mode.vertical_acceleration, 1.0);
+  EXPECT_EQ(vehicle.mode.jerk, 1.0);
+  EXPECT_NEAR(vehicle.mode.yaw_rate, 60 * degree, 1e-12);
+  EXPECT_EQ(vehicle.mode.landing_speed, 0.5);
+}
+
+TEST(VehicleReader, ADescriptionMaySayWhatIsDifferent) {
+  const flight::Vehicle like = config::find_vehicle("m350_rtk");
+  const flight::Vehicle vehicle = config::read_vehicle(
+      "name: mine\nlike: m350_rtk\nmass: 8\ngimbal_rate_deg: 45\nwpml: {payload: 65534}\n"
+      "mode: {max_ascent: 4}\n",
+      "mine.yaml");
+  EXPECT_EQ(vehicle.name, "mine");
+  EXPECT_EQ(vehicle.mass, 8.0);
+  EXPECT_NEAR(vehicle.gimbal_rate, 45 * degree, 1e-12);
+  EXPECT_EQ(vehicle.wpml.payload, 65534);
+  EXPECT_EQ(vehicle.wpml.drone, like.wpml.drone);
+  EXPECT_EQ(vehicle.mode.max_ascent, 4.0);
+  EXPECT_EQ(vehicle.mode.max_descent, like.mode.max_descent);
+  EXPECT_EQ(vehicle.battery_wh, like.battery_wh);
+}
+
+TEST(VehicleReader, WhatIsWrongIsNamedByLine) {
+  const std::string base = "name: kite\nlike: generic\n";
+  EXPECT_THAT(complaint(base + "masss: 3\n"), HasSubstr("kite.yaml:3: key masss: is unknown"));
+  EXPECT_THAT(complaint(base + "mass: heavy\n"), HasSubstr("kite.yaml:3: key mass: must be a num"));
+  EXPECT_THAT(complaint(base + "mass: -1\n"),
+              HasSubstr("kite.yaml:3: key mass: is -1; it must be from 0.01 to 1000"));
+  EXPECT_THAT(complaint(base + "mode:\n  jerk: 0\n"),
+              HasSubstr("kite.yaml:4: key mode.jerk: is 0; it must be from"));
+  EXPECT_THAT(complaint(base + "mode: {law: straight}\n"), HasSubstr("it must be one of s_curve"));
+  EXPECT_THAT(complaint(base + "rotors: 4.5\n"), HasSubstr("key rotors: must be a whole number"));
+  EXPECT_THAT(complaint(base + "gimbal_max_deg: -90\n"), HasSubstr("is not above gimbal_min_deg"));
+  EXPECT_THAT(complaint(base + "mass: 20\n"), HasSubstr("less than its mass takes to hover"));
+  EXPECT_THAT(complaint("name: kite\nlike: dragon\n"),
+              HasSubstr("kite.yaml:2: key like: there is no vehicle dragon; known are generic, "));
+  EXPECT_THAT(complaint("name: kite\n"), HasSubstr("key dialect: is missing"));
+  EXPECT_THAT(complaint("like: generic\n"), HasSubstr("key name: is missing"));
+}
+
+TEST(VehicleReader, ReadsFiles) {
+  const testing_support::TemporaryFolder folder;
+  const std::string path = (folder.path() / "mine.yaml").string();
+  std::ofstream(path) << "name: mine\nlike: skydio_x10\nmax_speed: 12\n";
+  EXPECT_EQ(config::find_vehicle(path).max_speed, 12.0);
+  EXPECT_THROW(config::find_vehicle((folder.path() / "none.yaml").string()), Error);
+}
+
+}  // namespace
+}  // namespace skycap::missions

@@ -1,0 +1,129 @@
+#include "missions/evaluation/evaluation.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <random>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "missions/evaluation/coverage.h"
+#include "sim/sensors/depth_camera.h"
+
+namespace skycap::missions {
+namespace {
+
+using Eigen::Vector3d;
+using Eigen::Vector3f;
+
+/// A cube around the origin, outward.
+geometry::Mesh cube(double half) {
+  geometry::Mesh mesh;
+  for (int i = 0; i < 8; ++i) {
+    mesh.vertices.emplace_back(i & 1 ? half : -half, i & 2 ? half : -half, i & 4 ? half : -half);
+  }
+  mesh.triangles = {{0, 2, 1}, {1, 2, 3}, {4, 5, 6}, {5, 7, 6}, {0, 1, 4}, {1, 5, 4},
+                    {2, 6, 3}, {3, 6, 7}, {0, 4, 2}, {2, 4, 6}, {1, 3, 5}, {3, 7, 5}};
+  return mesh;
+}
+
+/// A cube of edge 2 with a smaller one inside, which nothing outside can see.
+geometry::Mesh cube_in_a_cube() {
+  geometry::Mesh mesh = cube(1.0);
+  geometry::append(mesh, cube(0.3));
+  return mesh;
+}
+
+const evaluation::Admissible from_anywhere{
+    .view_distance = 4.0, .allows = {}, .directions = 200, .clearance = 1e-4};
+
+TEST(VisibleSamples, AreThoseOutside) {
+  const geometry::Mesh mesh = cube_in_a_cube();
+  const sim::Scene scene(mesh);
+  const auto samples = geometry::sample_surface(mesh, 3000, 1);
+  const auto is_visible = evaluation::visible_samples(samples.points, scene, from_anywhere);
+  for (std::size_t i = 0; i < samples.points.size(); ++i) {
+    const bool is_outside = samples.points[i].cwiseAbs().maxCoeff() > 0.9F;
+    ASSERT_EQ(is_visible[i], is_outside ? 1 : 0) << samples.points[i].transpose();
+  }
+}
+
+// From z >= 0 only, the bottom of a cube that stands on z = 0 is hidden.
+TEST(VisibleSamples, ObeyTheGroundClearance) {
+  geometry::Mesh mesh = cube(1.0);
+  geometry::transform(mesh, Eigen::Affine3d(Eigen::Translation3d(0, 0, 1)));
+  const sim::Scene scene(mesh);
+  const auto samples = geometry::sample_surface(mesh, 3000, 1);
+  evaluation::Admissible above = from_anywhere;
+  above.allows = [](const geometry::View& view) { return view.position.z() >= 0.0; };
+  const auto is_visible = evaluation::visible_samples(samples.points, scene, above);
+  for (std::size_t i = 0; i < samples.points.size(); ++i) {
+    ASSERT_EQ(is_visible[i], samples.normals[i].z() > -0.5F ? 1 : 0);
+  }
+}
+
+TEST(VisibleSamples, AreTheSameForAnyNumberOfThreads) {
+  const geometry::Mesh mesh = cube_in_a_cube();
+  const sim::Scene scene(mesh);
+  const auto samples = geometry::sample_surface(mesh, 5000, 1);
+  EXPECT_EQ(evaluation::visible_samples(samples.points, scene, from_anywhere, 1),
+            evaluation::visible_samples(samples.points, scene, from_anywhere, 3));
+}
+
+evaluation::TakeScan quick_scans(const sim::Scene& scene) {
+  sim::DepthCameraConfig config = sim::d435();
+  config.camera.width = 212;
+  config.camera.height = 120;
+  config.noise.sigma = 0.0;
+  return [&scene, camera = sim::DepthCamera(config)](const geometry::View& view,
+                                                     std::uint64_t frame, geometry::Scan recycled) {
+    return camera.scan(scene, view, frame, 1, std::move(recycled));
+  };
+}
+
+// With a spacing well below r_d and no noise, all that can be seen can be covered; the cube inside
+// (its share of the area is 0.09 / 1.09) cannot.
+TEST(CoverageCeiling, IsTheVisibleShareWhenNothingElseLimits) {
+  const geometry::Mesh mesh = cube_in_a_cube();
+  const sim::Scene scene(mesh);
+  const auto samples = geometry::sample_surface(mesh, 3000, 1);
+  const auto is_visible = evaluation::visible_samples(samples.points, scene, from_anywhere);
+  const evaluation::CeilingConfig config{
+      .views = 60, .spacing = 0.02, .registration_distance = 0.1, .box = {}};
+  const double ceiling = evaluation::marked_share(evaluation::attainable_samples(
+      samples.points, is_visible, scene, quick_scans(scene), from_anywhere, config));
+  EXPECT_NEAR(ceiling, 1.0 / 1.09, 1e-3);  // one sample is 3e-4
+}
+
+// Where the spacing exceeds r_d, holes stay between the stored points: one disc of radius r_d at
+// most every spacing^2 sqrt(3)/2, the densest packing.
+TEST(CoverageCeiling, IsLimitedByTheSpacingOfStoredPoints) {
+  const geometry::Mesh mesh = cube(1.0);
+  const sim::Scene scene(mesh);
+  const auto samples = geometry::sample_surface(mesh, 3000, 1);
+  const auto is_visible = evaluation::visible_samples(samples.points, scene, from_anywhere);
+  const evaluation::CeilingConfig config{
+      .views = 40, .spacing = 0.2, .registration_distance = 0.1, .box = {}};
+  const double ceiling = evaluation::marked_share(evaluation::attainable_samples(
+      samples.points, is_visible, scene, quick_scans(scene), from_anywhere, config));
+  EXPECT_LT(ceiling, std::numbers::pi * 0.01 / (0.04 * std::sqrt(3.0) / 2.0));
+  EXPECT_GT(ceiling, 0.5);  // random packings reach 0.55 of the plane
+}
+
+TEST(CoverageCeiling, LeavesOutWhatLiesOutsideTheBox) {
+  const geometry::Mesh mesh = cube(1.0);
+  const sim::Scene scene(mesh);
+  const auto samples = geometry::sample_surface(mesh, 3000, 1);
+  const auto is_visible = evaluation::visible_samples(samples.points, scene, from_anywhere);
+  evaluation::CeilingConfig config{
+      .views = 60, .spacing = 0.02, .registration_distance = 0.05, .box = {}};
+  config.box = Eigen::AlignedBox3d(Vector3d(-2, -2, 0), Vector3d(2, 2, 2));
+  const double ceiling = evaluation::marked_share(evaluation::attainable_samples(
+      samples.points, is_visible, scene, quick_scans(scene), from_anywhere, config));
+  // The upper half, and a rim of r_d below z = 0 on four sides of width 2: 0.4 / 24 of the area.
+  EXPECT_NEAR(ceiling, 0.5 + 0.4 / 24.0, 4e-3);
+}
+
+}  // namespace
+}  // namespace skycap::missions

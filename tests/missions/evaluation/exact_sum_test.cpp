@@ -1,0 +1,79 @@
+#include "missions/evaluation/exact_sum.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <random>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+namespace skycap::missions {
+namespace {
+
+/// Numbers of all sizes from 2^-60 to 2^60.
+std::vector<double> numbers(std::size_t count) {
+  std::mt19937_64 random(1);
+  std::uniform_real_distribution<double> mantissa(1.0, 2.0);
+  std::uniform_int_distribution<int> exponent(-60, 60);
+  std::vector<double> all;
+  for (std::size_t i = 0; i < count; ++i) {
+    const double number = mantissa(random);
+    all.push_back(std::ldexp(number, exponent(random)));
+  }
+  return all;
+}
+
+evaluation::ExactSum sum_of(const std::vector<double>& all) {
+  evaluation::ExactSum sum;
+  for (const double number : all) sum.add(number);
+  return sum;
+}
+
+TEST(ExactSum, LosesNothing) {
+  // 2^70 + 2^-70, times 3: the small parts would be lost in double precision.
+  evaluation::ExactSum sum;
+  for (int i = 0; i < 3; ++i) {
+    sum.add(std::ldexp(1.0, 70));
+    sum.add(std::ldexp(1.0, -70));
+  }
+  EXPECT_EQ(sum.value(), 3.0 * std::ldexp(1.0, 70));
+  evaluation::ExactSum small;
+  for (int i = 0; i < 1 << 20; ++i) small.add(std::ldexp(1.0, -70));
+  evaluation::ExactSum one;
+  one.add(1.0);
+  one.add(small);
+  EXPECT_EQ(one.value(), 1.0 + std::ldexp(1.0, -50));
+  EXPECT_EQ(evaluation::ExactSum().value(), 0.0);
+}
+
+// Property: any order and any parts give the same digits.
+TEST(ExactSum, DependsNeitherOnOrderNorOnParts) {
+  std::vector<double> all = numbers(10'000);
+  const evaluation::ExactSum::Digits digits = sum_of(all).all_digits();
+  std::shuffle(all.begin(), all.end(), std::mt19937_64(2));
+  EXPECT_EQ(sum_of(all).all_digits(), digits);
+  evaluation::ExactSum of_parts;
+  for (std::size_t first = 0; first < all.size(); first += 1234) {
+    const std::size_t end = std::min(all.size(), first + 1234);
+    const auto part = sum_of({all.begin() + static_cast<std::ptrdiff_t>(first),
+                              all.begin() + static_cast<std::ptrdiff_t>(end)});
+    of_parts.add(evaluation::ExactSum(part.all_digits()));
+  }
+  EXPECT_EQ(of_parts.all_digits(), digits);
+  long double twin = 0.0L;
+  std::ranges::sort(all);
+  for (const double number : all) twin += static_cast<long double>(number);
+  EXPECT_NEAR(of_parts.value(), static_cast<double>(twin), 1e-13 * static_cast<double>(twin));
+}
+
+TEST(ExactSum, HoldsTheLeastAndTheGreatestNumbers) {
+  evaluation::ExactSum sum;
+  sum.add(std::numeric_limits<double>::denorm_min());
+  EXPECT_EQ(sum.value(), std::numeric_limits<double>::denorm_min());
+  sum.add(std::numeric_limits<double>::max());
+  EXPECT_EQ(sum.value(), std::numeric_limits<double>::max());
+}
+
+}  // namespace
+}  // namespace skycap::missions

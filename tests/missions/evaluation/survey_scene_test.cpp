@@ -1,0 +1,171 @@
+#include "missions/evaluation/survey_scene.h"
+
+#include <algorithm>
+#include <string_view>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "geometry/io/mesh_io.h"
+#include "missions/config/mission_priors.h"
+#include "missions/config/resolved_mission.h"
+#include "tests/missions/room_scene.h"
+#include "tests/missions/run_skycap.h"
+#include "tests/support/complaint.h"
+
+namespace skycap::missions {
+namespace {
+
+using testing::HasSubstr;
+using testing_support::complaint_of;
+using tests::TestFolder;
+
+/// A room of 20 m with a window into it; its planners look from 6 m. No place that is looked from
+/// is on its surface to the last bit.
+class WindowedRoom {
+ public:
+  explicit WindowedRoom(double width, double height = 5.0) {
+    geometry::write_mesh(
+        folder_ / "room.ply",
+        tests::room_mesh({.wall = 0.67, .door_width = width, .door_height = height}));
+  }
+
+  config::Mission mission(const std::vector<config::KeyOverride>& more) const {
+    config::Mission mission = config::parse_mission(
+        "scene: {model: room.ply, position: [0, 0, -0.67]}\n"  // the floor inside at z = 0
+        "sensor: {width: 160, height: 100, noise: {sigma: 0.05}}\n"
+        "planner: {density: 25, resolution_radius: 0.7, view_distance: 6, occluder_spacing: 0.4,\n"
+        "          max_attempts: 2, occlusion_search_distance: 6}\n"
+        "evaluation: {registration_distance: 0.4, samples: 4000, visible_directions: 60,\n"
+        "             ceiling_views: 60}\n"
+        "limits: {max_views: 40}\n",
+        "m.yaml", more);
+    return mission;
+  }
+
+  evaluation::SurveyScene scene(const std::vector<config::KeyOverride>& more,
+                                const std::filesystem::path& kept = {}) const {
+    return {mission(more), folder_.path(), kept};
+  }
+
+ private:
+  TestFolder folder_;
+};
+
+bool is_on_inside(const Eigen::Vector3f& point) {
+  return Eigen::AlignedBox3f(Eigen::Vector3f(-10.01F, -10.01F, -0.01F),
+                             Eigen::Vector3f(10.01F, 10.01F, 10.01F))
+      .contains(point);
+}
+
+// What is in a sealed room counts neither as visible nor as attainable, whatever fits; all of the
+// outside does. Walls of closed solids have nothing else.
+TEST(SurveyScene, CountsNothingInSealedRooms) {
+  const WindowedRoom sealed(0.0);
+  const evaluation::SurveyScene scene = sealed.scene({});
+  const std::vector<std::uint8_t> visible = scene.visible(2);
+  const auto attainable = scene.attainable(visible, 2);
+  ASSERT_TRUE(attainable);
+  EXPECT_FALSE(scene.is_reachable({0, 0, 5}));
+  EXPECT_TRUE(scene.is_reachable({0, 0, 20}));
+  std::size_t missed = 0, outside = 0;
+  for (std::size_t i = 0; i < visible.size(); ++i) {
+    const Eigen::Vector3f& point = scene.samples().points[i];
+    if (is_on_inside(point)) {
+      ASSERT_EQ(visible[i], 0) << point.transpose();
+      ASSERT_EQ((*attainable)[i], 0) << point.transpose();
+    } else if (point.cwiseAbs().head<2>().maxCoeff() > 10.66F || point.z() > 10.66F) {
+      ++outside;
+      missed += visible[i] == 0;
+    }
+  }
+  EXPECT_GT(outside, 1000U);
+  EXPECT_LT(missed, outside / 100);  // 60 directions are few
+}
+
+// A way in that is 3 m wide is one for a ball of 1 m, and none for a ball of 2 m, for the
+// evaluation and for planners alike.
+TEST(SurveyScene, CountsRoomsThatTheRadiusFitsInto) {
+  const WindowedRoom room(3.0);
+  const auto seen_inside = [&](const char* radius) {
+    const evaluation::SurveyScene scene = room.scene({{"--set", "evaluation.radius", radius}});
+    const std::vector<std::uint8_t> visible = scene.visible(2);
+    std::size_t seen = 0, inside = 0;
+    for (std::size_t i = 0; i < visible.size(); ++i) {
+      const Eigen::Vector3f& point = scene.samples().points[i];
+      if (point.y() < 5.0F || !is_on_inside(point)) continue;  // hardly seen through the window
+      ++inside;
+      seen += visible[i];
+    }
+    EXPECT_EQ(scene.is_reachable({0, 0, 5}), std::string_view(radius) != "2") << radius;
+    return static_cast<double>(seen) / static_cast<double>(inside);
+  };
+  EXPECT_GT(seen_inside("0"), 0.95);
+  EXPECT_GT(seen_inside("1"), 0.85);  // places keep a metre from the walls
+  EXPECT_LT(seen_inside("2"), 0.2);
+}
+
+TEST(SurveyScene, RefusesAStartInsideOfAWall) {
+  const WindowedRoom room(3.0);
+  const evaluation::SurveyScene scene = room.scene({{"--set", "start.position", "[10.25, 0, 5]"},
+                                                    {"--set", "start.look_at", "[0, 0, 5]"},
+                                                    {"--set", "evaluation.radius", "1"}});
+  EXPECT_THAT(complaint_of([&] { scene.first_view(1); }),
+              HasSubstr("start.position is inside the model"));
+}
+
+// The file stands for the mission and its model: whoever reads it computes nothing.
+TEST(SurveyScene, KeepsWhatCanBeReachedInAFile) {
+  const WindowedRoom room(3.0);
+  const TestFolder folder;
+  const std::filesystem::path kept = folder.path() / "reached";
+  const std::vector<config::KeyOverride> wide{{"--set", "evaluation.radius", "1"}};
+  EXPECT_TRUE(room.scene(wide, kept).is_reachable({0, 0, 5}));
+  ASSERT_TRUE(std::filesystem::exists(kept));
+  // As it is kept, whatever would be found.
+  EXPECT_TRUE(room.scene({{"--set", "evaluation.radius", "2"}}, kept).is_reachable({0, 0, 5}));
+  folder.write("reached", "spoiled");
+  EXPECT_FALSE(room.scene({{"--set", "evaluation.radius", "2"}}, kept).is_reachable({0, 0, 5}));
+  EXPECT_GT(std::filesystem::file_size(kept), 100U);
+}
+
+/// A cube of 4 m that is surveyed, and one that stands 6 m beside it, in the way.
+std::string two_cubes(const TestFolder& folder, const char* neighbours) {
+  geometry::Mesh cube = sim::models::box({-2, -2, 0}, {2, 2, 4});
+  geometry::write_mesh(folder / "cube.obj", cube);
+  geometry::write_mesh(folder / "beside.obj", sim::models::box({8, -2, 0}, {12, 2, 4}));
+  const std::string near = "uncertainty: 0.1}";
+  return "scene: {model: prior, neighbours: " + std::string(neighbours) +
+         "}\nprior:\n  - {file: '" + folder / "cube.obj" + "', role: target, " + near +
+         "\n  - {file: '" + folder / "cube.obj" + "', role: obstacle, " + near + "\n  - {file: '" +
+         folder / "beside.obj" + "', role: obstacle, " + near +
+         "\nevaluation: {registration_distance: 0.1, samples: 2000, radius: 0.5}\n";
+}
+
+// Rays end on what stands beside the target, the sensor keeps off it, and none of it is judged.
+TEST(SurveyScene, HasNeighboursThatAreNotJudged) {
+  const TestFolder folder;
+  const auto mission_of = [&](const char* neighbours) {
+    return config::parse_mission(two_cubes(folder, neighbours), "m.yaml");
+  };
+  const auto scene_of = [&](const char* neighbours) {
+    return evaluation::SurveyScene(mission_of(neighbours), "");
+  };
+  const evaluation::SurveyScene alone = scene_of("false"), beside = scene_of("true");
+  EXPECT_EQ(beside.model().triangles.size(), 12U);
+  EXPECT_EQ(beside.samples().points, alone.samples().points);
+  EXPECT_FALSE(alone.scene().is_blocked({6, 0, 2}, {14, 0, 2}));
+  EXPECT_TRUE(beside.scene().is_blocked({6, 0, 2}, {14, 0, 2}));
+  // The target, which is in the way as well, is not there twice.
+  EXPECT_EQ(config::prior_neighbours(mission_of("true")).triangles.size(), 12U);
+  EXPECT_TRUE(config::prior_neighbours(mission_of("false")).triangles.empty());
+  const auto allows = [](const evaluation::SurveyScene& scene, double x) {
+    return scene.admissible().allows(geometry::look_at({x, 0, 2}, {0, 0, 2}));
+  };
+  EXPECT_TRUE(allows(alone, 7.8));
+  EXPECT_FALSE(allows(beside, 7.8));
+  EXPECT_TRUE(allows(beside, 5.0));
+}
+
+}  // namespace
+}  // namespace skycap::missions

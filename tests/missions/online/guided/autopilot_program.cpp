@@ -1,0 +1,40 @@
+// The autopilot of the tests as a program, to fly a live survey by hand: real time, no faults.
+//
+//     test_autopilot MISSION PORT
+//
+// sends to udp:127.0.0.1:PORT until its vehicle, which stands on the mission's pad, has landed.
+#include <filesystem>
+#include <iostream>
+#include <string>
+
+#include "geometry/error.h"
+#include "missions/config/mission_flight.h"
+#include "missions/config/resolved_mission.h"
+#include "missions/evaluation/survey_scene.h"
+#include "missions/online/guided/network_port.h"
+#include "tests/missions/online/guided/test_autopilot.h"
+
+int main(int argc, char** argv) {
+  using namespace skycap::missions;
+  if (argc != 3) {
+    std::cerr << "test_autopilot MISSION PORT\n";
+    return 2;
+  }
+  try {
+    const std::filesystem::path file = argv[1];
+    const config::Mission mission = config::read_mission(file);
+    const evaluation::SurveyScene scene(mission, file.parent_path());
+    online::TestAutopilot autopilot(
+        mission, config::pad_of(mission, scene.first_view(mission.seed).position), {});
+    online::NetworkPort port(online::parse_address(std::string("udpout:127.0.0.1:") + argv[2]));
+    double flown = 0.0;
+    online::fly_in_real_time(autopilot, port, [&] {
+      constexpr double farewell = 5.0;  // to say that it has landed [s]
+      if (!autopilot.has_landed()) flown = autopilot.time();
+      return autopilot.time() > flown + farewell;
+    });
+  } catch (const skycap::Error& error) {
+    std::cerr << error.what() << "\n";
+    return 2;
+  }
+}

@@ -1,0 +1,270 @@
+// A live survey flown on an autopilot of our own that has what faults a test wants.
+#include "missions/online/guided/fly_survey.h"
+
+#include <algorithm>
+#include <functional>
+#include <future>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "geometry/error.h"
+#include "geometry/surfaces/mesh_distance.h"
+#include "missions/config/mission_flight.h"
+#include "missions/evaluation/survey_scene.h"
+#include "tests/missions/flown_mission.h"
+#include "tests/missions/online/guided/test_autopilot.h"
+#include "tests/missions/online/live/rehearsal.h"
+#include "tests/support/complaint.h"
+
+namespace skycap::missions::online {
+namespace {
+
+using Eigen::Vector3d;
+using testing::HasSubstr;
+
+std::string mission_text() {
+  std::string text = online::short_mission(tests::flown_mission());
+  const std::string vehicle = "vehicle: generic";
+  return text.insert(text.find(vehicle) + vehicle.size(), "_ardupilot");
+}
+
+/// Work is done at once, as long as it takes: the autopilot's time stands still meanwhile.
+std::future<void> done_at_once(const std::function<void()>& work) {
+  work();
+  std::promise<void> done;
+  done.set_value();
+  return done.get_future();
+}
+
+/// A survey, its autopilot, and what is said of the flight.
+class FlySurvey : public testing::Test {
+ protected:
+  FlightEnd fly(const Faults& faults = {}, FlightOptions options = {}) {
+    survey_.reset();
+    survey_.reset(new online::LiveSurvey(rehearsal_.open(folder_->path())));
+    autopilot_ =
+        std::make_unique<TestAutopilot>(rehearsal_.mission(), survey_->flight()->pad(), faults);
+    if (!launches_) options.launch = done_at_once;
+    options.note = [this](const std::string& text) { notes_ += text + "\n"; };
+    SteppedPort port(*autopilot_);
+    return fly_survey(rehearsal_.mission(), *survey_, port, sensor_, options, stop_.get_token());
+  }
+
+  void begin_anew() {
+    survey_.reset();
+    folder_ = std::make_unique<tests::TestFolder>();
+  }
+
+  const online::Rehearsal rehearsal_{mission_text()};
+  std::unique_ptr<tests::TestFolder> folder_ = std::make_unique<tests::TestFolder>();
+  /// Poses are exact: what plan would measure.
+  Sensor sensor_ = [this](const geometry::View&, const geometry::View&, std::size_t) {
+    return rehearsal_.scan(*survey_);
+  };
+  bool launches_ = false;
+  std::stop_source stop_;
+  std::unique_ptr<online::LiveSurvey> survey_;
+  std::unique_ptr<TestAutopilot> autopilot_;
+  std::string notes_;
+};
+
+double nearest_of(const std::vector<Vector3d>& places, const config::Mission& mission) {
+  const geometry::MeshDistance truth(evaluation::placed_model(mission, ""));
+  double nearest = 1e9;
+  for (const Vector3d& place : places) nearest = std::min(nearest, truth.distance(place));
+  return nearest;
+}
+
+TEST_F(FlySurvey, IsWhatPlanDoesAndKeepsItsClearance) {
+  const FlightEnd end = fly();
+  ASSERT_FALSE(end.trouble) << end.trouble->what << "\n" << notes_;
+  EXPECT_TRUE(end.has_landed);
+  EXPECT_FALSE(autopilot_->is_armed());
+  const config::Mission& mission = rehearsal_.mission();
+  const Vector3d off = autopilot_->position() - survey_->flight()->pad();
+  EXPECT_LT(off.norm(), mission.flight.tracking_error);
+  const flight::ClearanceBudget clearance = config::clearance_of(mission);
+  // A set point is rounded to 1e-7 degrees, 1.1 cm.
+  EXPECT_GT(nearest_of(autopilot_->set_points(), mission),
+            clearance.total() - clearance.map_error - 0.02);
+  EXPECT_GT(nearest_of(autopilot_->track(), mission),
+            clearance.total() - clearance.map_error - clearance.tracking_error);
+  online::expect_same(survey_->finish(), rehearsal_.planned());
+}
+
+/// One frame in ten is lost, one in twenty damaged, others come twice or once more and late.
+TEST_F(FlySurvey, IsTheSameOverABadLink) {
+  const FlightEnd end = fly({.lost = 0.1, .doubled = 0.1, .damaged = 0.05, .late = 0.1});
+  ASSERT_FALSE(end.trouble) << end.trouble->what << "\n" << notes_;
+  EXPECT_TRUE(end.has_landed);
+  online::expect_same(survey_->finish(), rehearsal_.planned());
+}
+
+TEST_F(FlySurvey, FliesHomeWhenItIsInterruptedAndGoesOnLater) {
+  const Sensor exact = sensor_;
+  sensor_ = [&](const geometry::View& wanted, const geometry::View& taken, std::size_t number) {
+    if (number == 2) stop_.request_stop();
+    return exact(wanted, taken, number);
+  };
+  const FlightEnd end = fly({}, {.returns_on_failure = true});
+  ASSERT_TRUE(end.trouble);
+  EXPECT_EQ(end.trouble->kind, TroubleKind::interrupted);
+  EXPECT_TRUE(end.has_landed);
+  EXPECT_FALSE(autopilot_->is_armed());
+
+  stop_ = {};
+  sensor_ = exact;
+  const FlightEnd second = fly();
+  ASSERT_FALSE(second.trouble) << second.trouble->what;
+  EXPECT_TRUE(second.has_landed);
+  const session::SurveyRecord record = survey_->finish();
+  EXPECT_EQ(online::places(record.views), online::places(rehearsal_.planned().views));
+}
+
+TEST_F(FlySurvey, LeavesControlToAPilotAtOnce) {
+  const FlightEnd end = fly({.pilot_takes_over = 30.0}, {.returns_on_failure = true});
+  ASSERT_TRUE(end.trouble);
+  EXPECT_EQ(end.trouble->kind, TroubleKind::pilot);
+  EXPECT_THAT(end.trouble->what, HasSubstr("mode 5"));
+  EXPECT_FALSE(end.has_landed);
+  EXPECT_EQ(autopilot_->mode(), 5U);
+  // Modes are told once a second.
+  EXPECT_LT(autopilot_->time() - autopilot_->taken_off() - 30.0, 1.3);
+}
+
+/// Whether each place is as near to one of the others as legs are flown.
+bool are_near(const std::vector<Vector3d>& places, const std::vector<Vector3d>& others,
+              double distance) {
+  return std::ranges::all_of(places, [&](const Vector3d& place) {
+    return std::ranges::any_of(
+        others, [&](const Vector3d& other) { return (place - other).norm() < distance; });
+  });
+}
+
+/// Set points are at most half a metre apart, and the way from the pad begins with none.
+TEST_F(FlySurvey, StaysOnItsLegsWhereverTheLinkIsLost) {
+  fly();
+  const std::vector<Vector3d> legs = autopilot_->set_points();
+  const Vector3d above_pad = survey_->flight()->above_pad();
+  const double near = rehearsal_.mission().flight.tracking_error + 0.25;
+  for (int i = 0; i < 12; ++i) {
+    begin_anew();
+    const double silent = 8.0 + 3.7 * i;
+    const FlightEnd end = fly({.silent = silent}, {.returns_on_failure = true});
+    ASSERT_TRUE(end.trouble);
+    EXPECT_EQ(end.trouble->kind, TroubleKind::link) << end.trouble->what;
+    std::vector<Vector3d> track;
+    for (const Vector3d& place : autopilot_->track()) {
+      if ((place - above_pad).head<2>().norm() > near) track.push_back(place);
+    }
+    EXPECT_TRUE(are_near(track, legs, near)) << "silent after " << silent << " s";
+    const std::vector<Vector3d>& whole = autopilot_->track();
+    EXPECT_LT((whole.back() - whole[whole.size() - 25]).norm(), 0.01);  // at rest
+  }
+}
+
+struct HeldFlight {
+  const char* name;
+  Faults faults;
+  TroubleKind kind;
+};
+
+class HeldFlights : public FlySurvey, public testing::WithParamInterface<HeldFlight> {};
+
+/// Even where a return is asked for: nobody knows where the vehicle is.
+TEST_P(HeldFlights, HoldUntilAPilotComes) {
+  const FlightEnd end = fly(GetParam().faults, {.returns_on_failure = true});
+  ASSERT_TRUE(end.trouble);
+  EXPECT_EQ(end.trouble->kind, GetParam().kind) << end.trouble->what;
+  EXPECT_FALSE(end.has_landed);
+  EXPECT_THAT(notes_, HasSubstr("holding position"));
+  EXPECT_THAT(notes_, HasSubstr("somebody else has control"));
+  const std::vector<Vector3d>& sent = autopilot_->set_points();
+  EXPECT_EQ(sent.back(), sent[sent.size() - 50]);
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    All, HeldFlights,
+    testing::Values(HeldFlight{"position_stops",
+                               {.position_stops = 30.0, .pilot_takes_over = 60.0},
+                               TroubleKind::position},
+                    HeldFlight{"estimate_lost",
+                               {.estimate_lost = 30.0, .pilot_takes_over = 60.0},
+                               TroubleKind::position},
+                    HeldFlight{"blown_away",
+                               {.pilot_takes_over = 60.0, .blown_away = 30.0},
+                               TroubleKind::off_leg}),
+    [](const auto& test) { return test.param.name; });
+
+TEST_F(FlySurvey, HoldsIfNoReturnIsAskedFor) {
+  sensor_ = [](const geometry::View&, const geometry::View&, std::size_t) -> geometry::Scan {
+    throw Error(ErrorKind::bad_file, "the camera does not answer");
+  };
+  const FlightEnd end = fly({.pilot_takes_over = 90.0});
+  EXPECT_EQ(end.trouble->kind, TroubleKind::sensor);
+  EXPECT_THAT(end.trouble->what, HasSubstr("the camera does not answer"));
+  EXPECT_FALSE(end.has_landed);
+}
+
+TEST_F(FlySurvey, FliesHomeWithoutAPlanner) {
+  std::vector<std::promise<void>> never;
+  FlightOptions options{.returns_on_failure = true};
+  int works = 0;
+  launches_ = true;
+  options.launch = [&](const std::function<void()>& work) {
+    constexpr int of_second_plan = 6;
+    return ++works < of_second_plan ? done_at_once(work) : never.emplace_back().get_future();
+  };
+  const FlightEnd end = fly({}, options);
+  ASSERT_TRUE(end.trouble);
+  EXPECT_EQ(end.trouble->kind, TroubleKind::planner);
+  EXPECT_THAT(end.trouble->what, HasSubstr("longer than 60 s"));
+  EXPECT_TRUE(end.has_landed);
+  EXPECT_GT(nearest_of(autopilot_->set_points(), rehearsal_.mission()), 1.88);
+}
+
+TEST_F(FlySurvey, FliesHomeWhileItsBatteryLasts) {
+  const FlightEnd end = fly({.battery_fails = 30.0});
+  ASSERT_TRUE(end.trouble);
+  EXPECT_EQ(end.trouble->kind, TroubleKind::battery);
+  EXPECT_TRUE(end.has_landed);
+}
+
+struct GroundedFlight {
+  const char* name;
+  Faults faults;
+  const char* message;
+};
+
+class GroundedFlights : public FlySurvey, public testing::WithParamInterface<GroundedFlight> {};
+
+TEST_P(GroundedFlights, DoNotTakeOff) {
+  const FlightEnd end = fly(GetParam().faults);
+  ASSERT_TRUE(end.trouble);
+  EXPECT_THAT(end.trouble->what, HasSubstr(GetParam().message));
+  EXPECT_TRUE(autopilot_->track().empty());
+  EXPECT_TRUE(autopilot_->set_points().empty());
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    All, GroundedFlights,
+    testing::Values(
+        GroundedFlight{"not_armed", {.refuses_arming = true}, "arm (result 4): PreArm: Compass"},
+        GroundedFlight{"armed", {.is_armed = true}, "is armed"},
+        GroundedFlight{"px4", {.autopilot = 12}, "only ArduCopter is flown"},
+        GroundedFlight{"beside_the_pad", {.beside_pad = {3.0, 4.0, 0.0}}, "5.0 m beside"},
+        GroundedFlight{"flat_battery", {.battery = 0.265}, "the battery is at 26 %"}),
+    [](const auto& test) { return test.param.name; });
+
+TEST_F(FlySurvey, StandsBesideThePadsMiddle) {
+  const FlightEnd end = fly({.beside_pad = {1.0, -1.0, 0.0}});
+  ASSERT_FALSE(end.trouble) << end.trouble->what;
+  EXPECT_LT((autopilot_->position() - survey_->flight()->pad()).norm(), 0.3);
+}
+
+}  // namespace
+}  // namespace skycap::missions::online

@@ -1,0 +1,147 @@
+#include "missions/online/guided/network_port.h"
+
+#include <atomic>
+#include <string>
+#include <thread>
+
+#include <arpa/inet.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <netinet/in.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
+#include "missions/config/resolved_mission.h"
+#include "tests/missions/flown_mission.h"
+#include "tests/missions/online/guided/test_autopilot.h"
+#include "tests/missions/run_skycap.h"
+#include "tests/support/complaint.h"
+
+namespace skycap::missions::online {
+namespace {
+
+using flight::mavlink::Bytes;
+using testing::HasSubstr;
+using testing_support::complaint_of;
+
+constexpr std::uint32_t this_machine = 0x7F000001;
+
+/// A port of this machine that nobody has at present.
+std::uint16_t free_port() {
+  const int handle = ::socket(AF_INET, SOCK_DGRAM, 0);
+  sockaddr_in address{};
+  address.sin_family = AF_INET;
+  address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+  socklen_t size = sizeof address;
+  EXPECT_EQ(::bind(handle, reinterpret_cast<const sockaddr*>(&address), size), 0);
+  ::getsockname(handle, reinterpret_cast<sockaddr*>(&address), &size);
+  ::close(handle);
+  return ntohs(address.sin_port);
+}
+
+/// All that comes until there is as much as is waited for.
+Bytes received(NetworkPort& port, std::size_t size) {
+  Bytes all;
+  const double end = port.now() + 20.0;
+  while (all.size() < size && port.now() < end) {
+    const Bytes more = port.receive(0.1);
+    all.insert(all.end(), more.begin(), more.end());
+  }
+  return all;
+}
+
+TEST(NetworkAddress, IsOfThreeKinds) {
+  const NetworkAddress waits = parse_address("udp:127.0.0.1:14550");
+  EXPECT_EQ(waits.kind, NetworkAddress::Kind::udp_wait);
+  EXPECT_EQ(waits.host, this_machine);
+  EXPECT_EQ(waits.port, 14550);
+  EXPECT_TRUE(waits.is_of_this_machine());
+  EXPECT_EQ(parse_address("udpout:10.0.0.7:1").kind, NetworkAddress::Kind::udp_send);
+  EXPECT_EQ(parse_address("tcp:127.0.0.1:5760").kind, NetworkAddress::Kind::tcp);
+  EXPECT_FALSE(parse_address("udp:0.0.0.0:14550").is_of_this_machine());
+}
+
+TEST(NetworkAddress, IsRefusedInOneLine) {
+  for (const char* wrong : {"", "udp", "udp:14550", "serial:127.0.0.1:1", "udp:localhost:1",
+                            "udp::1", "udp:1.2.3:4:5", "udp:1.2.3.4.5:6"}) {
+    EXPECT_THAT(complaint_of([&] { parse_address(wrong); }), HasSubstr("must be udp:HOST:PORT"))
+        << wrong;
+  }
+  for (const char* wrong : {"udp:127.0.0.1:0", "udp:127.0.0.1:65536",
+                            "udp:127.0.0.1:", "udp:127.0.0.1:80x", "udp:127.0.0.1:-1"}) {
+    EXPECT_THAT(complaint_of([&] { parse_address(wrong); }), HasSubstr("from 1 to 65535")) << wrong;
+  }
+}
+
+TEST(NetworkPort, HearsOnlyTheFirstWhoSpeaks) {
+  const std::uint16_t number = free_port();
+  NetworkPort port({NetworkAddress::Kind::udp_wait, this_machine, number});
+  NetworkPort first({NetworkAddress::Kind::udp_send, this_machine, number});
+  NetworkPort second({NetworkAddress::Kind::udp_send, this_machine, number});
+  port.send(Bytes{9});  // to nobody
+  first.send(Bytes{1, 2});
+  EXPECT_EQ(received(port, 2), (Bytes{1, 2}));
+  second.send(Bytes{3});
+  first.send(Bytes{4});
+  EXPECT_EQ(received(port, 1), Bytes{4});
+  port.send(Bytes{5});
+  EXPECT_EQ(received(first, 1), Bytes{5});
+  EXPECT_TRUE(second.receive(0.05).empty());
+}
+
+TEST(NetworkPort, RefusesAnAddressThatIsTaken) {
+  const std::uint16_t number = free_port();
+  const NetworkAddress address{NetworkAddress::Kind::udp_wait, this_machine, number};
+  const NetworkPort port(address);
+  EXPECT_THAT(complaint_of([&] { NetworkPort other(address); }), HasSubstr("cannot be had"));
+  const NetworkAddress nobody{NetworkAddress::Kind::tcp, this_machine, number};
+  EXPECT_THAT(complaint_of([&] { NetworkPort other(nobody); }), HasSubstr("cannot be had"));
+}
+
+std::string flyable(std::string mission) {
+  const std::string vehicle = "vehicle: generic";
+  return mission.insert(mission.find(vehicle) + vehicle.size(), "_ardupilot");
+}
+
+/// The program itself, over the network and in real time, as far as the ground.
+TEST(FlyVerb, SaysWhatTheAutopilotSays) {
+  const tests::TestFolder folder;
+  const std::string text = flyable(tests::flown_mission());
+  const std::string mission = folder.write("m.yaml", text);
+  const std::string number = std::to_string(free_port());
+  std::atomic<bool> is_over = false;
+  std::jthread vehicle([&] {
+    TestAutopilot autopilot(config::parse_mission(text, "m.yaml"), {-75.0, 0.0, 0.0},
+                            {.refuses_arming = true});
+    NetworkPort port(parse_address("udpout:127.0.0.1:" + number));
+    fly_in_real_time(autopilot, port, [&] { return is_over.load(); });
+  });
+  const tests::ProgramRun run = tests::run_skycap(
+      {"fly", mission, "--survey", folder / "survey", "--connect", "udp:127.0.0.1:" + number});
+  is_over = true;
+  EXPECT_EQ(run.exit_code, 1);
+  EXPECT_THAT(run.err, HasSubstr("the autopilot refuses to arm (result 4): PreArm: Compass"));
+  EXPECT_THAT(run.err, HasSubstr("goes on when it is flown again"));
+  EXPECT_EQ(run.out, "");
+}
+
+TEST(FlyVerb, RefusesMissionsThatItCannotFly) {
+  const tests::TestFolder folder;
+  const auto refusal = [&](const std::string& text, const std::string& address) {
+    return tests::run_skycap(
+        {"fly", folder.write("m.yaml", text), "--survey", folder / "survey", "--connect", address});
+  };
+  const std::string here = "udp:127.0.0.1:1";
+  const tests::ProgramRun px4 = refusal(tests::flown_mission(), here);
+  EXPECT_EQ(px4.exit_code, 2);
+  EXPECT_THAT(px4.err, HasSubstr("flight.vehicle generic is no ArduPilot's"));
+  EXPECT_THAT(refusal(tests::quick_mission(), here).err, HasSubstr("flight.vehicle is missing"));
+  std::string moving = flyable(tests::flown_mission());
+  moving.insert(moving.find("sensor: {") + 9, "capture: moving, ");
+  EXPECT_THAT(refusal(moving, here).err, HasSubstr("sensor.capture is moving, and skycap fly"));
+  EXPECT_THAT(refusal(flyable(tests::flown_mission()), "udp:nobody:1").err,
+              HasSubstr("--connect udp:nobody:1: must be"));
+}
+
+}  // namespace
+}  // namespace skycap::missions::online

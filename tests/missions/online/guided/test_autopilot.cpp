@@ -1,0 +1,196 @@
+#include "tests/missions/online/guided/test_autopilot.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "flight/export/mission_items.h"
+#include "geometry/angle.h"
+#include "missions/config/mission_flight.h"
+
+namespace skycap::missions::online {
+namespace {
+
+using Eigen::Vector3d;
+using flight::mavlink::Bytes;
+namespace mavlink = flight::mavlink;
+
+constexpr double step_time = 0.04, words_period = 0.1;  ///< [s]
+constexpr double guided_timeout = 3.0;                  ///< GUID_TIMEOUT
+constexpr std::uint32_t guided = 4, loiter = 5, landing = 9;
+constexpr mavlink::Address itself{1, 1};
+
+double turned(double from, double to, double most) {
+  return from + std::clamp(std::remainder(to - from, 2.0 * std::numbers::pi), -most, most);
+}
+
+}  // namespace
+
+TestAutopilot::TestAutopilot(const config::Mission& mission, const Vector3d& pad,
+                             const Faults& faults)
+    : faults_(faults),
+      frame_(config::site_of(mission).origin, pad),
+      motion_(config::vehicle_of(mission), config::route_options_of(mission, pad).conditions),
+      vehicle_(motion_, pad + faults.beside_pad),
+      pad_(pad + faults.beside_pad),
+      is_armed_(faults.is_armed) {}
+
+bool TestAutopilot::is_past(const std::optional<double>& moment) const {
+  return moment && taken_off_ && time_ - *taken_off_ >= *moment;
+}
+
+void TestAutopilot::hear(std::span<const std::uint8_t> bytes) {
+  std::uniform_real_distribution<double> share(0.0, 1.0);
+  if (is_past(faults_.silent) || share(random_) < faults_.lost) return;
+  reader_.feed(bytes);
+  while (const auto frame = reader_.next()) {
+    if (const auto command = mavlink::decode<mavlink::CommandLong>(*frame)) obey(*command);
+    if (const auto target = mavlink::decode<mavlink::PositionTarget>(*frame)) aim_at(*target);
+  }
+}
+
+void TestAutopilot::obey(const mavlink::CommandLong& command) {
+  constexpr std::uint16_t set_mode = 176, arm = 400;
+  bool is_accepted = true;
+  if (command.command == set_mode) {
+    mode_ = static_cast<std::uint32_t>(command.params[1]);
+  } else if (command.command == arm) {
+    is_accepted = !faults_.refuses_arming;
+    is_armed_ = is_armed_ || is_accepted;
+    mavlink::StatusText text;
+    text.severity = 2;
+    const std::string why = "PreArm: Compass not calibrated";
+    std::ranges::copy(why, text.text.begin());
+    if (!is_accepted) say(text);
+  } else if (command.command == flight::command::takeoff) {
+    is_accepted = is_armed_ && mode_ == guided;
+    if (is_accepted && !taken_off_) {
+      taken_off_ = time_;
+      climb_ = flight::scripted_leg(motion_, pad_, pad_ + Vector3d(0, 0, command.params[6]));
+      target_ = {climb_->to};
+    }
+  } else if (command.command == flight::command::mount_control) {
+    wanted_pitch_ = command.params[0] * geometry::radians_per_degree;
+  }
+  mavlink::CommandAnswer answer;
+  answer.command = command.command;
+  answer.result = is_accepted ? 0 : 4;
+  say(answer);
+}
+
+void TestAutopilot::aim_at(const mavlink::PositionTarget& target) {
+  const Vector3d place =
+      frame_.to_mission({1e-7 * target.latitude, 1e-7 * target.longitude, target.height});
+  set_points_.push_back(place);
+  if (mode_ != guided || !is_armed_) return;
+  climb_.reset();
+  target_ = {place, {target.velocity[1], target.velocity[0], -target.velocity[2]}};
+  target_time_ = time_;
+  wanted_yaw_ = target.yaw;
+}
+
+flight::SetPoint TestAutopilot::wanted() {
+  if (mode_ == landing) {
+    flight::SetPoint down{vehicle_.position(), {0, 0, -motion_.vehicle().mode.landing_speed}};
+    down.position.head<2>() = target_.position.head<2>();
+    return down;
+  }
+  if (climb_) return flight::set_point(*climb_, motion_.vehicle().mode.jerk, time_ - *taken_off_);
+  flight::SetPoint point = target_;
+  const double age = time_ - target_time_;
+  point.position += std::min(age, guided_timeout) * point.velocity;
+  if (age > guided_timeout) point.velocity.setZero();
+  return point;
+}
+
+void TestAutopilot::step() {
+  time_ += step_time;
+  if (is_past(faults_.pilot_takes_over)) {
+    mode_ = loiter;
+    faults_.pilot_takes_over.reset();
+  }
+  yaw_ = turned(yaw_, wanted_yaw_, step_time * motion_.vehicle().mode.yaw_rate);
+  pitch_ = turned(pitch_, wanted_pitch_, step_time * motion_.vehicle().gimbal_rate);
+  if (is_armed_ && taken_off_) {
+    flight::SetPoint point = wanted();
+    if (is_past(faults_.blown_away)) {
+      point.position.x() += 0.5 * (time_ - *taken_off_ - *faults_.blown_away);
+    }
+    vehicle_.fly(point, Vector3d::Zero(), Vector3d::Zero(), step_time);
+    track_.push_back(vehicle_.position());
+    if (mode_ == landing && vehicle_.position().z() <= pad_.z()) is_armed_ = false;
+  }
+  if (time_ >= next_words_) speak();
+}
+
+template <class M>
+void TestAutopilot::say(const M& message) {
+  std::uniform_real_distribution<double> share(0.0, 1.0);
+  const std::uint8_t sequence = sequence_++;
+  if (is_past(faults_.silent) || share(random_) < faults_.lost) return;
+  Bytes frame = mavlink::encode(message, itself, sequence);
+  if (share(random_) < faults_.damaged) frame[frame.size() / 2] ^= 0x10;
+  const int times = share(random_) < faults_.doubled ? 2 : 1;
+  for (int i = 0; i < times; ++i) said_.insert(said_.end(), frame.begin(), frame.end());
+  if (share(random_) < faults_.late) late_ = frame;  // comes once more, after what follows it
+}
+
+void TestAutopilot::speak() {
+  next_words_ += words_period;
+  said_.insert(said_.end(), late_.begin(), late_.end());
+  late_.clear();
+  constexpr std::uint64_t a_second = 10;
+  const VehiclePlace place = frame_.to_vehicle(vehicle_.position());
+  const Vector3d& velocity = vehicle_.velocity();
+  mavlink::GlobalPosition position;
+  position.time_boot_ms = static_cast<std::uint32_t>(1e3 * time_);
+  position.latitude = static_cast<std::int32_t>(std::lround(1e7 * place.latitude_deg));
+  position.longitude = static_cast<std::int32_t>(std::lround(1e7 * place.longitude_deg));
+  position.height_above_home =
+      static_cast<std::int32_t>(std::lround(1e3 * place.height_above_home));
+  position.east_speed = static_cast<std::int16_t>(std::lround(100 * velocity.x()));
+  position.north_speed = static_cast<std::int16_t>(std::lround(100 * velocity.y()));
+  position.down_speed = static_cast<std::int16_t>(std::lround(-100 * velocity.z()));
+  if (!is_past(faults_.position_stops)) say(position);
+  mavlink::Attitude attitude;
+  attitude.yaw = static_cast<float>(std::remainder(yaw_, 2.0 * std::numbers::pi));
+  say(attitude);
+  mavlink::GimbalAttitude gimbal;
+  gimbal.turn = {static_cast<float>(std::cos(0.5 * pitch_)), 0.0F,
+                 static_cast<float>(std::sin(0.5 * pitch_)), 0.0F};
+  say(gimbal);
+  if (words_++ % a_second != 0) return;
+  mavlink::Heartbeat heartbeat;
+  heartbeat.type = 2;
+  heartbeat.autopilot = faults_.autopilot;
+  heartbeat.custom_mode = mode_;
+  heartbeat.base_mode = is_armed_ ? 128 : 0;
+  say(heartbeat);
+  mavlink::SystemStatus status;
+  const double used = vehicle_.energy() / (3600.0 * motion_.vehicle().battery_wh);
+  const double left = is_past(faults_.battery_fails) ? 0.1 : faults_.battery - used;
+  status.battery_remaining = static_cast<std::int8_t>(std::floor(100.0 * left));
+  say(status);
+  mavlink::EstimatorStatus estimator;
+  estimator.flags = is_past(faults_.estimate_lost) ? 1 | 2 | 4 | 128 : 1 | 2 | 4 | 8 | 16 | 32;
+  say(estimator);
+}
+
+Bytes TestAutopilot::fly_on(double duration) {
+  const double end = time_ + duration;
+  while (time_ < end) step();
+  return std::exchange(said_, {});
+}
+
+void fly_in_real_time(TestAutopilot& autopilot, flight::mavlink::Port& port,
+                      const std::function<bool()>& is_over) {
+  constexpr double listening = 0.02;  ///< [s]
+  for (double last = port.now(); !is_over();) {
+    autopilot.hear(port.receive(listening));
+    const double now = port.now();
+    port.send(autopilot.fly_on(now - last));
+    last = now;
+  }
+}
+
+}  // namespace skycap::missions::online

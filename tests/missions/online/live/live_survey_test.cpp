@@ -1,0 +1,360 @@
+#include "missions/online/live/live_survey.h"
+
+#include <filesystem>
+#include <fstream>
+#include <string>
+#include <vector>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "geometry/angle.h"
+#include "geometry/error.h"
+#include "geometry/io/record_log.h"
+#include "missions/online/live/open_survey.h"
+#include "missions/support/sha256.h"
+#include "tests/missions/flown_mission.h"
+#include "tests/missions/online/live/rehearsal.h"
+#include "tests/missions/run_skycap.h"
+#include "tests/support/complaint.h"
+
+namespace skycap::missions::online {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::HasSubstr;
+using testing::Not;
+using testing_support::complaint_of;
+using tests::content_of;
+
+TEST(LiveSurvey, FedByTheSimulatorIsWhatPlanDoes) {
+  for (const std::string& mission :
+       {short_mission(tests::quick_mission(), "see++"), short_mission(tests::quick_mission(), "oa"),
+        short_mission(tests::flown_mission()), moving_mission("live: {pose_check: false}\n")}) {
+    const tests::TestFolder folder;
+    const Rehearsal rehearsal(mission);
+    LiveSurvey survey = rehearsal.open(folder.path());
+    Carrier carrier(rehearsal);
+    while (survey.proposal().view) carrier.add_next(survey);
+    const session::SurveyRecord planned = rehearsal.planned();
+    EXPECT_EQ(planned.frames_on_way() > 0, rehearsal.mission().sensor.is_moving());
+    expect_same(survey.finish(), planned);
+  }
+}
+
+TEST(LiveSurvey, GoesOnWhereItWasAfterEveryScan) {
+  for (const std::string& mission :
+       {short_mission(tests::quick_mission(), "see++"), short_mission(tests::flown_mission()),
+        moving_mission("live: {pose_check: false}\n", /*views=*/2)}) {
+    const tests::TestFolder folder;
+    const Rehearsal rehearsal(mission);
+    Carrier carrier(rehearsal);
+    while (rehearsal.open(folder.path()).proposal().view) {
+      LiveSurvey survey = rehearsal.open(folder.path());
+      carrier.add_next(survey);
+    }
+    expect_same(rehearsal.open(folder.path()).finish(), rehearsal.planned());
+  }
+}
+
+/// A kill leaves any beginning of the journal, and maybe a scan that it does not know yet.
+TEST(LiveSurvey, GoesOnFromAnyBeginningOfItsJournal) {
+  const tests::TestFolder folder;
+  const Rehearsal rehearsal(short_mission(tests::quick_mission(), "see++"));
+  {
+    LiveSurvey survey = rehearsal.open(folder.path());
+    for (int i = 0; i < 5; ++i) rehearsal.add_one(survey);
+  }
+  const fs::path journal = folder.path() / "live.journal";
+  const std::string whole = content_of(journal);
+  const session::SurveyRecord planned = rehearsal.planned();
+  constexpr std::size_t parts = 9;
+  for (std::size_t part = 0; part <= parts; ++part) {
+    std::ofstream(journal, std::ios::binary) << whole.substr(0, part * whole.size() / parts);
+    LiveSurvey survey = rehearsal.open(folder.path());
+    while (survey.proposal().view) rehearsal.add_one(survey);
+    expect_same(survey.finish(), planned);
+  }
+}
+
+TEST(LiveSurvey, IgnoresAScanThatItKnows) {
+  const tests::TestFolder folder;
+  const Rehearsal rehearsal(tests::quick_mission());
+  LiveSurvey survey = rehearsal.open(folder.path());
+  const geometry::Scan scan = rehearsal.scan(survey);
+  EXPECT_TRUE(survey.add(scan, "a"));
+  const Proposal before = survey.proposal();
+  EXPECT_FALSE(survey.add(scan, "a"));
+  EXPECT_EQ(survey.number_of("a"), ScanNumber{0});
+  EXPECT_EQ(survey.number_of("b"), std::nullopt);
+  EXPECT_EQ(survey.views().size(), 1U);
+  EXPECT_EQ(survey.proposal().view->position, before.view->position);
+}
+
+TEST(LiveSurvey, RemembersRefusals) {
+  const tests::TestFolder folder;
+  const Rehearsal rehearsal(tests::quick_mission());
+  Eigen::Vector3d first, second;
+  {
+    LiveSurvey survey = rehearsal.open(folder.path());
+    EXPECT_THROW(survey.refuse("too early"), Error);
+    rehearsal.add_one(survey);
+    first = survey.proposal().view->position;
+    survey.refuse("behind the fence");
+    ASSERT_TRUE(survey.proposal().view);
+    second = survey.proposal().view->position;
+    EXPECT_NE(first, second);
+  }
+  const LiveSurvey survey = rehearsal.open(folder.path());
+  EXPECT_EQ(survey.proposal().view->position, second);
+  EXPECT_EQ(survey.proposal().number, 2U);
+}
+
+TEST(LiveSurvey, DoesNotCountAScanThatCannotBePlannedWith) {
+  const tests::TestFolder folder;
+  const Rehearsal rehearsal(tests::quick_mission());
+  {
+    LiveSurvey survey = rehearsal.open(folder.path());
+    EXPECT_THROW(survey.add({}, "nothing"), Error);
+    EXPECT_TRUE(survey.views().empty());
+    rehearsal.add_one(survey);
+  }
+  EXPECT_EQ(rehearsal.open(folder.path()).views().size(), 1U);
+}
+
+/// Wrong by so many metres along x, and so many degrees about the sensor's own x.
+Eigen::Isometry3d error_of(const geometry::Scan& scan, double shift, double turn_deg) {
+  Eigen::Isometry3d error = Eigen::Isometry3d::Identity();
+  const Eigen::Vector3d sensor = scan.sensor_position();
+  error.linear() = Eigen::AngleAxisd(turn_deg * geometry::radians_per_degree,
+                                     scan.world_from_sensor.linear().col(0))
+                       .toRotationMatrix();
+  error.translation() = sensor + Eigen::Vector3d(shift, 0.0, 0.0) - error.linear() * sensor;
+  return error;
+}
+
+geometry::Scan displaced(const geometry::Scan& scan, double shift, double turn_deg) {
+  return corrected(scan, error_of(scan, shift, turn_deg));
+}
+
+TEST(LiveSurvey, IsTheSameAsIfScansThatItSetsAsideHadNeverBeen) {
+  const tests::TestFolder folder;
+  const Rehearsal rehearsal(fine_mission());
+  std::size_t wrong = 0;
+  while (true) {
+    LiveSurvey survey = rehearsal.open(folder.path());
+    EXPECT_EQ(survey.set_aside(), wrong);
+    EXPECT_EQ(survey.proposal().warns_of_pose(), false);
+    if (!survey.proposal().view) break;
+    if (survey.views().size() > 0) {
+      const Proposal before = survey.proposal();
+      EXPECT_TRUE(survey.add(displaced(rehearsal.scan(survey), 0.1, 1.0), std::to_string(wrong)));
+      ++wrong;
+      EXPECT_FALSE(
+          survey.add(displaced(rehearsal.scan(survey), 0.1, 1.0), std::to_string(wrong - 1)));
+      ASSERT_TRUE(survey.proposal().warns_of_pose()) << survey.views().size();
+      EXPECT_EQ(survey.proposal().number, before.number + 1);
+      EXPECT_EQ(survey.proposal().view->position, before.view->position);
+    }
+    rehearsal.add_one(survey);
+  }
+  EXPECT_EQ(wrong, 4U);
+  expect_same(rehearsal.open(folder.path()).finish(), rehearsal.planned());
+}
+
+TEST(LiveSurvey, KeepsItsWarningUntilAScanIsUsed) {
+  const tests::TestFolder folder;
+  const Rehearsal rehearsal(fine_mission());
+  std::string answer;
+  {
+    LiveSurvey survey = rehearsal.open(folder.path());
+    rehearsal.add_one(survey);
+    survey.add(displaced(rehearsal.scan(survey), 0.1, 1.0), "wrong");
+    survey.refuse("elsewhere");
+    answer = answer_json(survey, rehearsal.mission());
+    EXPECT_THAT(answer, HasSubstr("\"warning\":\"pose\""));
+    EXPECT_THAT(answer, HasSubstr("\"set_aside\":1"));
+  }
+  LiveSurvey survey = rehearsal.open(folder.path());
+  EXPECT_EQ(answer_json(survey, rehearsal.mission()), answer);
+  rehearsal.add_one(survey);
+  EXPECT_THAT(answer_json(survey, rehearsal.mission()), Not(HasSubstr("warning")));
+}
+
+TEST(LiveSurvey, GivesNoWayFromWhereNobodyKnows) {
+  const tests::TestFolder folder;
+  const Rehearsal rehearsal(short_mission(tests::flown_mission()));
+  LiveSurvey survey = rehearsal.open(folder.path());
+  rehearsal.add_one(survey);
+  EXPECT_FALSE(survey.proposal().way.points.empty());
+  survey.add(displaced(rehearsal.scan(survey), 2.0, 5.0), "wrong");
+  ASSERT_TRUE(survey.proposal().warns_of_pose());
+  EXPECT_TRUE(survey.proposal().way.points.empty());
+  survey.refuse("elsewhere");
+  EXPECT_TRUE(survey.proposal().way.points.empty());
+  rehearsal.add_one(survey);
+  EXPECT_FALSE(survey.proposal().way.points.empty());
+}
+
+/// Whoever flies on while nobody knows where, has no way; the next scan that fits gives it back.
+TEST(LiveSurvey, KeepsTheWayThroughAWrongPoseOnIt) {
+  const tests::TestFolder folder;
+  const Rehearsal rehearsal(moving_mission());
+  std::string answer;
+  {
+    LiveSurvey survey = rehearsal.open(folder.path());
+    Carrier carrier(rehearsal);
+    carrier.add_next(survey);
+    const std::vector<Eigen::Vector3d> way = survey.proposal().way.points;
+    const geometry::View view = *survey.proposal().view;
+    survey.add_on_way(displaced(carrier.next(survey).scan, 2.0, 5.0), "wrong");
+    ASSERT_TRUE(survey.proposal().warns_of_pose());
+    EXPECT_TRUE(survey.proposal().way.points.empty());
+    EXPECT_EQ(survey.on_way(), 0U);
+    EXPECT_EQ(survey.proposal().view->position, view.position);
+    EXPECT_EQ(rehearsal.open(folder.path() / "other").on_way(), 0U);
+  }
+  LiveSurvey survey = rehearsal.open(folder.path());
+  EXPECT_TRUE(survey.proposal().way.points.empty());
+  EXPECT_EQ(survey.set_aside(), 1U);
+  const geometry::View view = *survey.proposal().view;
+  geometry::View between = view;
+  between.position = 0.5 * (view.position + survey.views().back().view.position);
+  simulation::CarriedSensor sensor(rehearsal.mission(), 1);
+  survey.add_on_way(rehearsal.scan(sensor, {.view = between}, 2), "right");
+  EXPECT_FALSE(survey.proposal().warns_of_pose());
+  EXPECT_EQ(survey.on_way(), 1U);
+  ASSERT_FALSE(survey.proposal().way.points.empty());
+  EXPECT_EQ(survey.proposal().way.points.back(), view.position);
+  // A way that is asked for now begins where the vehicle is.
+  survey.refuse("elsewhere");
+  ASSERT_FALSE(survey.proposal().way.points.empty());
+  EXPECT_LT((survey.proposal().way.points.front() - between.position).norm(), 1e-9);
+}
+
+TEST(LiveSurvey, TakesNoScansFromWaysThatAreNotMeasuredOn) {
+  const tests::TestFolder folder;
+  const Rehearsal rehearsal(short_mission(tests::flown_mission()));
+  LiveSurvey survey = rehearsal.open(folder.path());
+  rehearsal.add_one(survey);
+  EXPECT_TRUE(survey.frames().empty());
+  const geometry::Scan scan = rehearsal.scan(survey);
+  EXPECT_THAT(complaint_of([&] { survey.add_on_way(scan, "a"); }),
+              HasSubstr("measures at its views only; give it sensor.capture: moving"));
+}
+
+// Of houses, whose walls and roofs show every way to move and are large beside the patches that are
+// compared; a teapot is too round.
+TEST(LiveSurvey, CorrectsPosesTheSameWayAgain) {
+  const tests::TestFolder folder;
+  std::string houses = fine_mission(
+      "live: {registration: true, pose_sigma: 0.02, pose_sigma_deg: 0.5}\n"
+      "start: {position: [6, -5, 6], look_at: [0, 0, 1]}\n");
+  houses.replace(houses.find("builtin:teapot"), 14, "builtin:city-block");
+  houses.replace(houses.find("longest_side: 1.0"), 17, "longest_side: 8.0");
+  const Rehearsal rehearsal(houses);
+  std::string answer;
+  {
+    LiveSurvey survey = rehearsal.open(folder.path());
+    const geometry::Scan scan = rehearsal.scan(survey);
+    rehearsal.add_one(survey);
+    const Eigen::Isometry3d error = error_of(scan, 0.03, 0.5);
+    survey.add(corrected(scan, error), "from the same place");
+    answer = answer_json(survey, rehearsal.mission());
+    ASSERT_TRUE(survey.proposal().pose->correction) << answer;
+    const Eigen::Isometry3d left = *survey.proposal().pose->correction * error;
+    const Eigen::Vector3d sensor = scan.sensor_position();
+    EXPECT_LT((left * sensor - sensor).norm(), 0.01) << answer;
+    EXPECT_LT(Eigen::AngleAxisd(left.linear()).angle(), 0.1 * geometry::radians_per_degree);
+  }
+  const LiveSurvey survey = rehearsal.open(folder.path());
+  EXPECT_EQ(answer_json(survey, rehearsal.mission()), answer);
+  EXPECT_THAT(answer, HasSubstr("\"corrected\":true"));
+}
+
+TEST(LiveSurvey, TakesPosesAsTheyAreIfAsked) {
+  const tests::TestFolder folder;
+  const Rehearsal rehearsal(fine_mission("live: {pose_check: false}\n"));
+  LiveSurvey survey = rehearsal.open(folder.path());
+  rehearsal.add_one(survey);
+  survey.add(displaced(rehearsal.scan(survey), 0.1, 1.0), "wrong");
+  EXPECT_EQ(survey.views().size(), 2U);
+  EXPECT_FALSE(survey.proposal().pose);
+}
+
+TEST(LiveSurvey, RefusesWhatItCannotTrust) {
+  const tests::TestFolder folder;
+  const Rehearsal rehearsal(tests::quick_mission()), other(tests::quick_mission("seed: 2\n"));
+  {
+    LiveSurvey survey = rehearsal.open(folder.path());
+    rehearsal.add_one(survey);
+    EXPECT_THAT(complaint_of([&] { rehearsal.open(folder.path()); }), HasSubstr("another skycap"));
+  }
+  EXPECT_THAT(complaint_of([&] { other.open(folder.path()); }), HasSubstr("seed was 1 and is 2"));
+
+  const fs::path scan = fs::directory_iterator(folder.path() / "scans")->path();
+  std::string bytes = content_of(scan);
+  bytes.back() ^= 1;
+  std::ofstream(scan, std::ios::binary) << bytes;
+  EXPECT_THAT(complaint_of([&] { rehearsal.open(folder.path()); }), HasSubstr("is damaged"));
+}
+
+/// Writes the one scan of a survey's folder anew, and its digest in the journal.
+void replace_scan(const fs::path& folder, const std::string& bytes) {
+  const fs::path scan = fs::directory_iterator(folder / "scans")->path(),
+                 journal = folder / "live.journal";
+  const std::string digest = support::sha256_of_file(scan);
+  std::ofstream(scan, std::ios::binary) << bytes;
+  const std::vector<std::string> records = geometry::read_records(journal).records;
+  fs::remove(journal);
+  geometry::RecordLog log(journal);
+  for (std::string record : records) {
+    const std::size_t at = record.find(digest);
+    if (at != std::string::npos) record.replace(at, digest.size(), support::sha256_of_file(scan));
+    log.append(record);
+  }
+}
+
+/// As somebody else's folder may be, whose digests are right.
+TEST(LiveSurvey, RefusesKeptScansThatItWouldNeverHaveKept) {
+  const Rehearsal rehearsal(tests::quick_mission());
+  const auto complaint = [&](const std::string& part, const std::string& to) {
+    const tests::TestFolder folder;
+    {
+      LiveSurvey survey = rehearsal.open(folder.path());
+      rehearsal.add_one(survey);
+    }
+    std::string bytes = content_of(fs::directory_iterator(folder.path() / "scans")->path());
+    // The last four bytes are the last pixel.
+    const std::size_t at = part.empty() ? bytes.size() - to.size() : bytes.find(part);
+    bytes.replace(at, to.size(), to);
+    replace_scan(folder.path(), bytes);
+    return complaint_of([&] { rehearsal.open(folder.path()); });
+  };
+  EXPECT_THAT(complaint("float y", "float w"), HasSubstr(".ply: is not a scan of a survey"));
+  EXPECT_THAT(complaint("", "\xff\xff\xff\x7f"), HasSubstr(".ply: cannot be used: "));
+}
+
+/// As from a program that plans otherwise.
+TEST(LiveSurvey, NoticesProposalsThatComeOutOtherwise) {
+  const tests::TestFolder folder;
+  const Rehearsal rehearsal(tests::quick_mission());
+  {
+    LiveSurvey survey = rehearsal.open(folder.path());
+    rehearsal.add_one(survey);
+  }
+  const fs::path journal = folder.path() / "live.journal";
+  std::vector<std::string> records = geometry::read_records(journal).records;
+  const std::string field = "\"position\":[";
+  records.back().insert(records.back().find(field) + field.size(), "1");
+  fs::remove(journal);
+  {
+    geometry::RecordLog log(journal);
+    for (const std::string& record : records) log.append(record);
+  }
+  EXPECT_THAT(complaint_of([&] { rehearsal.open(folder.path()); }),
+              HasSubstr("comes out otherwise"));
+}
+
+}  // namespace
+}  // namespace skycap::missions::online

@@ -1,0 +1,217 @@
+// Scans from poses that are off, in scenes that show more or less of it, with other random numbers
+// each: what is corrected is right where the surface shows all six ways to move.
+#include <cstdlib>
+#include <iostream>
+#include <random>
+#include <string>
+#include <vector>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "geometry/angle.h"
+#include "geometry/points/spaced_points.h"
+#include "missions/online/live/pose_check.h"
+#include "sim/models/masonry/solids.h"
+#include "sim/scene/scene.h"
+#include "sim/sensors/depth_camera.h"
+#include "tests/missions/room_scene.h"
+
+namespace skycap::missions::online {
+namespace {
+
+using Eigen::Isometry3d;
+using Eigen::Vector3d;
+using sim::models::box;
+
+/// Where a sensor may be and what it may look at.
+struct Place {
+  std::string name;
+  geometry::Mesh mesh;
+  double radius;
+  Eigen::AlignedBox3d sensors, targets;
+};
+
+geometry::Mesh solids(const std::vector<Eigen::AlignedBox3d>& boxes) {
+  geometry::Mesh mesh;
+  for (const auto& solid : boxes) geometry::append(mesh, box(solid.min(), solid.max()));
+  return mesh;
+}
+
+/// Three squares of two metres.
+Place corner() {
+  return {"corner",
+          solids({{Vector3d(-0.2, -0.2, -0.2), Vector3d(2, 2, 0)},
+                  {Vector3d(-0.2, -0.2, 0), Vector3d(0, 2, 2)},
+                  {Vector3d(0, -0.2, 0), Vector3d(2, 0, 2)}}),
+          0.1,
+          {Vector3d(1.8, 1.8, 1.6), Vector3d(2.8, 2.8, 2.6)},
+          {Vector3d(0.5, 0.5, 0.5), Vector3d(0.8, 0.8, 0.8)}};
+}
+
+/// Six metres wide, with a cupboard and a pillar.
+Place room() {
+  geometry::Mesh mesh = tests::room_mesh({.width = 6.0, .height = 3.0, .wall = 0.2});
+  geometry::append(mesh, solids({{Vector3d(-3, 1.5, 0), Vector3d(-1.2, 3, 2)},
+                                 {Vector3d(1, 1, 0), Vector3d(1.5, 1.4, 3)}}));
+  return {"room",
+          mesh,
+          0.1,
+          {Vector3d(-1, -1.5, 1), Vector3d(0.5, 0.5, 1.9)},
+          {Vector3d(-2, 2, 0.6), Vector3d(-1, 2.8, 1.6)}};
+}
+
+/// With a porch, a pilaster, eaves and the ground before it, seen from outside.
+Place building() {
+  return {"building",
+          solids({{Vector3d(-30, -30, -0.5), Vector3d(30, 30, 0)},
+                  {Vector3d(-5, -4, 0), Vector3d(5, 4, 6)},
+                  {Vector3d(-1.5, -5.2, 0), Vector3d(1.5, -4, 6)},
+                  {Vector3d(-4, -4.6, 0), Vector3d(-3, -4, 4)},
+                  {Vector3d(-5.3, -4.3, 6), Vector3d(5.3, 4.3, 6.4)}}),
+          0.2,
+          {Vector3d(-8, -16, 2), Vector3d(4, -11, 7)},
+          {Vector3d(-2, -4, 2.5), Vector3d(2, -4, 4)}};
+}
+
+/// The foot of a wall.
+Place edge() {
+  return {"edge",
+          solids({{Vector3d(-8, -8, -0.2), Vector3d(8, 8, 0)},
+                  {Vector3d(-8, 8, 0), Vector3d(8, 8.2, 8)}}),
+          0.1,
+          {Vector3d(-1, 3, 1), Vector3d(1, 5, 3)},
+          {Vector3d(-0.5, 8, 0.5), Vector3d(0.5, 8, 1.5)}};
+}
+
+Place wall() {
+  return {"wall",
+          box({-10, 3, -10}, {10, 3.2, 10}),
+          0.1,
+          {Vector3d(-1, 0, -1), Vector3d(1, 1, 1)},
+          {Vector3d(-0.3, 3, -0.3), Vector3d(0.3, 3, 0.3)}};
+}
+
+class Numbers {
+ public:
+  explicit Numbers(std::uint64_t seed) : random_(seed) {}
+
+  Vector3d within(const Eigen::AlignedBox3d& box) {
+    std::uniform_real_distribution<double> share;
+    Vector3d shares;
+    for (double& number : shares) number = share(random_);
+    return box.min() + shares.cwiseProduct(box.sizes());
+  }
+  Vector3d way() {
+    std::normal_distribution<double> number;
+    Vector3d way;
+    for (double& coordinate : way) coordinate = number(random_);
+    return way.normalized();
+  }
+
+ private:
+  std::mt19937_64 random_;
+};
+
+/// A scan that was moved, beside one that was not.
+struct Trial {
+  PoseFinding known, unknown;  ///< with the pose's covariance and registration, and with neither
+  double shift, turn;          ///< what is left of the error [m], [rad]
+};
+
+/// 10 cm and a degree off.
+Trial tried(const Place& place, const sim::Scene& scene, double noise, std::uint64_t seed) {
+  constexpr double shift = 0.1, angle = geometry::radians_per_degree;
+  Numbers numbers(seed);
+  sim::DepthCameraConfig config;
+  config.camera = {.width = 160, .height = 120, .horizontal_fov = 1.05, .vertical_fov = 0.82};
+  config.camera.max_range = 40.0;
+  config.noise = {.sigma = noise, .direction = sim::NoiseDirection::along_ray, .seed = seed};
+  const sim::DepthCamera camera(config);
+  const auto look = [&] {
+    const Vector3d from = numbers.within(place.sensors);
+    return geometry::look_at(from, numbers.within(place.targets));
+  };
+  const geometry::Scan first = camera.scan(scene, look(), 0, 1);
+  geometry::SpacedPoints spaced(0.3 * place.radius);
+  std::vector<Eigen::Vector3f> kept;
+  for (const Eigen::Vector3f& point : first.points) {
+    if (spaced.keep(point)) kept.push_back(point);
+  }
+  const geometry::Scan scan = camera.scan(scene, look(), 1, 1);
+  const Vector3d sensor = scan.sensor_position();
+  Isometry3d error = Isometry3d::Identity();
+  error.linear() = Eigen::AngleAxisd(angle, numbers.way()).toRotationMatrix();
+  error.translation() = sensor + shift * numbers.way() - error.linear() * sensor;
+  const auto found = [&](bool registers, const PoseCovariance& covariance) {
+    PoseCheck check(place.radius, registers);
+    check.remember(first, kept);
+    return check.find(corrected(scan, error), covariance);
+  };
+  Trial trial{.known = found(true, PoseCovariance::of(0.5 * shift, 0.6 * angle)),
+              .unknown = found(false, {}),
+              .shift = 0.0,
+              .turn = 0.0};
+  const Isometry3d rest = trial.known.correction.value_or(Isometry3d::Identity()) * error;
+  trial.shift = (rest * sensor - sensor).norm();
+  trial.turn = Eigen::AngleAxisd(rest.linear()).angle();
+  return trial;
+}
+
+struct Counts {
+  int all = 0;
+  int missed = 0;     ///< not said to be wrong, where nothing is known of the pose
+  int corrected = 0;  ///< and shown whole
+  int fine = 0;       ///< of those, within a centimetre and a tenth of a degree
+  int far = 0;        ///< of those, off by more than three centimetres or half a degree
+};
+
+/// So many scans for each noise.
+Counts count(const Place& place) {
+  const char* const more = std::getenv("REGISTERED_SCANS");
+  const std::uint64_t scans = more == nullptr ? 16 : std::strtoul(more, nullptr, 10);
+  const sim::Scene scene(geometry::Mesh(place.mesh), 1);
+  Counts counts;
+  for (const double noise : {0.0, 0.005, 0.01, 0.02}) {
+    for (std::uint64_t seed = 1; seed <= scans; ++seed) {
+      const Trial trial = tried(place, scene, noise, seed);
+      ++counts.all;
+      const PoseFinding& unknown = trial.unknown;
+      counts.missed += unknown.is_checked && unknown.unobservable == 0 && !unknown.is_wrong ? 1 : 0;
+      if (!trial.known.correction || trial.known.unobservable > 0) continue;
+      const double turn_deg = trial.turn / geometry::radians_per_degree;
+      ++counts.corrected;
+      counts.fine += trial.shift <= 0.01 && turn_deg <= 0.1 ? 1 : 0;
+      const bool is_far = trial.shift > 0.03 || turn_deg > 0.5;
+      counts.far += is_far ? 1 : 0;
+      if (is_far) {
+        std::cout << place.name << ", noise " << noise << ", seed " << seed << ": " << trial.shift
+                  << " m, " << turn_deg << " deg left\n";
+      }
+    }
+  }
+  std::cout << place.name << ": of " << counts.all << " scans " << counts.corrected
+            << " corrected and shown whole, " << counts.fine
+            << " of them to within 1 cm and 0.1 deg, " << counts.far
+            << " off by more than 3 cm or 0.5 deg; " << counts.missed << " not flagged\n";
+  return counts;
+}
+
+// REGISTERED_SCANS in the environment for more than 16 of each noise.
+TEST(RegisteredScans, AreRightWhereTheSurfaceShowsAll) {
+  const Counts of_corner = count(corner()), of_room = count(room()),
+               of_building = count(building());
+  EXPECT_EQ(of_corner.far + of_room.far + of_building.far, 0);
+  EXPECT_GE(of_corner.fine, of_corner.all * 8 / 10);
+  const int missed = of_corner.missed + of_room.missed + of_building.missed;
+  EXPECT_LE(missed, 3 * of_corner.all / 50);
+}
+
+/// A wall, and the foot of one, never show all.
+TEST(RegisteredScans, SayWhatSlides) {
+  EXPECT_EQ(count(wall()).corrected, 0);
+  EXPECT_EQ(count(edge()).corrected, 0);
+}
+
+}  // namespace
+}  // namespace skycap::missions::online

@@ -1,0 +1,164 @@
+/// A live survey in a simulated world, where it is known what has to come out.
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "missions/config/resolved_mission.h"
+#include "missions/config/survey_sensor.h"
+#include "missions/evaluation/survey_scene.h"
+#include "missions/online/live/live_survey.h"
+#include "missions/simulation/carried_sensor.h"
+#include "missions/simulation/survey_runner.h"
+#include "tests/missions/flown_mission.h"
+#include "tests/missions/run_skycap.h"
+
+namespace skycap::missions::online {
+
+/// A mission, its scene, and a sensor in it that takes the place of a real one.
+class Rehearsal {
+ public:
+  /// `folder` is what the mission's files are named from; zero threads: all processors.
+  explicit Rehearsal(const std::string& mission, const std::filesystem::path& folder = "",
+                     unsigned threads = 1)
+      : mission_(config::parse_mission(mission, "m.yaml")),
+        scene_(mission_, folder),
+        sensor_(mission_.sensor, mission_.seed),
+        first_view_(scene_.first_view(mission_.seed)),
+        threads_(threads) {}
+
+  session::SurveyRecord planned() const {
+    return simulation::run_survey(mission_, scene_, mission_.seed, threads_);
+  }
+
+  LiveSurvey open(const std::filesystem::path& folder) const {
+    return {simulation::trial_mission(mission_, scene_, mission_.seed), folder, first_view_,
+            threads_};
+  }
+
+  /// What `plan` would measure from the proposed view.
+  geometry::Scan scan(const LiveSurvey& survey) const {
+    return sensor_.scan(scene_.scene(), *survey.proposal().view, survey.views().size(), threads_);
+  }
+
+  /// Without a vehicle `plan` knows from the scene, and a crew by looking, what is walled in.
+  bool can_reach(const LiveSurvey& survey) const {
+    return mission_.flight.is_flown() || survey.views().empty() ||
+           scene_.is_reachable(survey.proposal().view->position);
+  }
+
+  geometry::Scan scan(simulation::CarriedSensor& carried, const session::ViewInFlight& at,
+                      std::uint64_t scans) const {
+    return carried.scan(scene_.scene(), at, scans, threads_);
+  }
+
+  void add_one(LiveSurvey& survey) const {
+    survey.add(scan(survey), "scan " + std::to_string(survey.views().size()));
+  }
+
+  const config::Mission& mission() const { return mission_; }
+
+ private:
+  config::Mission mission_;
+  evaluation::SurveyScene scene_;
+  config::SurveySensor sensor_;
+  geometry::View first_view_;
+  unsigned threads_;
+};
+
+/// A rehearsal's sensor as its vehicle carries it, on the ways too.
+class Carrier {
+ public:
+  explicit Carrier(const Rehearsal& rehearsal)
+      : rehearsal_(rehearsal), sensor_(rehearsal.mission(), rehearsal.mission().seed) {}
+
+  struct Taken {
+    geometry::Scan scan;
+    bool is_on_way;
+  };
+
+  /// What `plan` would measure next: on the way to the proposed view, if something is to be
+  /// measured there, or else from the view.
+  Taken next(LiveSurvey& survey) {
+    const std::vector<session::ViewInFlight> frames = survey.frames();
+    const geometry::View& view = *survey.proposal().view;
+    session::ViewInFlight at =
+        frames.empty() ? session::ViewInFlight{.view = view} : frames.front();
+    if (frames.empty() && survey.flight() != nullptr && !survey.views().empty()) {
+      elapsed_ += survey.flight()->time(survey.views().back().view, view);
+    }
+    at.time += elapsed_;
+    return {rehearsal_.scan(sensor_, at, scans_++), !frames.empty()};
+  }
+
+  void add_next(LiveSurvey& survey) {
+    const Taken taken = next(survey);
+    const std::string id = "scan " + std::to_string(scans_);
+    taken.is_on_way ? survey.add_on_way(taken.scan, id) : survey.add(taken.scan, id);
+  }
+
+ private:
+  const Rehearsal& rehearsal_;
+  simulation::CarriedSensor sensor_;
+  std::uint64_t scans_ = 0;
+  double elapsed_ = 0.0;  ///< [s]
+};
+
+inline std::vector<Eigen::Vector3d> places(const std::vector<session::JudgedView>& views) {
+  std::vector<Eigen::Vector3d> places;
+  for (const session::JudgedView& view : views) {
+    places.push_back(view.surveyed.view.position);
+    places.push_back(view.surveyed.view.direction);
+  }
+  return places;
+}
+
+/// All that both kinds of survey know, to the last bit.
+inline void expect_same(const session::SurveyRecord& live, const session::SurveyRecord& planned) {
+  EXPECT_EQ(live.stop_reason, planned.stop_reason);
+  const std::vector<Eigen::Vector3d> ours = places(live.views), theirs = places(planned.views);
+  const auto other = std::ranges::mismatch(ours, theirs).in1 - ours.begin();
+  EXPECT_TRUE(ours == theirs) << "they differ from view " << other / 2 << " on";
+  EXPECT_TRUE(live.cloud.positions == planned.cloud.positions);
+  EXPECT_TRUE(live.cloud.views == planned.cloud.views);
+  ASSERT_EQ(live.flown.has_value(), planned.flown.has_value());
+  if (!live.flown) return;
+  EXPECT_EQ(live.flown->refused, planned.flown->refused);
+  EXPECT_EQ(live.flown->length(), planned.flown->length());
+  EXPECT_EQ(live.flown->min_clearance(), planned.flown->min_clearance());
+  EXPECT_EQ(live.frames_on_way(), planned.frames_on_way());
+  EXPECT_EQ(live.flown->times, planned.flown->times);
+}
+
+/// Five views at most, or so many, and by another planner if one is named.
+inline std::string short_mission(std::string mission, const std::string& planner = "",
+                                 int views = 5) {
+  const std::string limit = "max_views: ", section = "planner: {";
+  const std::size_t at = mission.find(limit) + limit.size();
+  mission.replace(at, mission.find('}', at) - at, std::to_string(views));
+  if (planner.empty()) return mission;
+  return mission.insert(mission.find(section) + section.size(), "name: " + planner + ", ");
+}
+
+/// A vehicle's, whose camera also measures on the ways. It is too far from its teapot, and that too
+/// round, for poses to be judged by it: some of the many frames would be suspected.
+inline std::string moving_mission(const std::string& live = "", int views = 5) {
+  std::string mission = short_mission(tests::flown_mission(live), "", views);
+  const std::string section = "sensor: {";
+  return mission.insert(mission.find(section) + section.size(), "capture: moving, ");
+}
+
+/// The teapot, measured well enough for poses to be looked at, and what `live` says.
+inline std::string fine_mission(const std::string& live = "") {
+  std::string mission = short_mission(tests::quick_mission(live), "see++");
+  const std::string noise = "sigma: 0.03";
+  return mission.replace(mission.find(noise), noise.size(), "sigma: 0.001");
+}
+
+}  // namespace skycap::missions::online

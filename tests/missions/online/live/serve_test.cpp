@@ -1,0 +1,362 @@
+#include <chrono>
+#include <cstdlib>
+#include <filesystem>
+#include <functional>
+#include <iostream>
+#include <memory>
+#include <optional>
+#include <sstream>
+#include <stop_token>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "clients/skycap_live.h"
+#include "missions/online/live/scan_input.h"
+#include "missions/online/live/server.h"
+#include "missions/online/live/session.h"
+#include "tests/missions/flown_mission.h"
+#include "tests/missions/online/live/rehearsal.h"
+#include "tests/missions/run_skycap.h"
+
+namespace skycap::missions::online {
+namespace {
+
+using testing::HasSubstr;
+using testing::Not;
+
+skycap_live::Pose pose_of(const geometry::Scan& scan) {
+  skycap_live::Pose pose{};
+  for (int i = 0; i < 12; ++i) {
+    pose[static_cast<std::size_t>(i)] = scan.world_from_sensor(i / 4, i % 4);
+  }
+  return pose;
+}
+
+std::vector<float> numbers_of(const geometry::Scan& scan) {
+  const float* begin = scan.points.data()->data();
+  return {begin, begin + 3 * scan.points.size()};
+}
+
+/// A scanner that measures all the way, round a teapot of 20 m.
+std::string scanner_mission() {
+  return "scene: {model: builtin:teapot, longest_side: 20, ground: true}\n"
+         "sensor: {lidar: velodyne_vlp16}\n"
+         "planner: {density: 4, resolution_radius: 1.2, view_distance: 16,\n"
+         "          scene_box: {min: [-14, -11, 0.3], max: [14, 11, 13]}}\n"
+         "flight: {vehicle: generic, takeoff: [-75, 0, 0],\n"
+         "         unknown_box: {min: [-14, -11, 0], max: [14, 11, 13]}}\n"
+         "evaluation: {registration_distance: 0.6, samples: 3000, visible_directions: 30,\n"
+         "             ceiling_views: 0}\n"
+         "limits: {max_views: 6}\n";
+}
+
+/// A survey that is served from a thread of its own.
+class Served {
+ public:
+  Served(const Rehearsal& rehearsal, ServerPlace place)
+      : survey_(rehearsal.open(folder_.path() / "survey")),
+        session_(rehearsal.mission(), survey_,
+                 [this] {
+                   record_ = survey_.finish();
+                   return std::string("done");
+                 }),
+        server_(std::move(place)),
+        thread_([this](const std::stop_token& stop) {
+          server_.run(
+              session_, [this](const std::string& note) { notes_ += note + "\n"; }, stop);
+        }) {}
+
+  const std::string& address() const { return server_.address(); }
+
+  /// Ends the server.
+  session::SurveyRecord record() {
+    thread_.join();
+    return std::move(record_).value();
+  }
+  std::string notes() {
+    thread_.request_stop();
+    thread_.join();
+    return notes_;
+  }
+
+  LiveSurvey& survey() { return survey_; }
+
+ private:
+  tests::TestFolder folder_;
+  LiveSurvey survey_;
+  Session session_;
+  Server server_;
+  std::optional<session::SurveyRecord> record_;
+  std::string notes_;
+  std::jthread thread_;
+};
+
+/// The survey as the simulator feeds it through a socket.
+session::SurveyRecord fed_by_simulator(const Rehearsal& rehearsal) {
+  const tests::TestFolder folder;
+  Served served(rehearsal, {.socket = folder / "socket", .port = {}});
+  skycap_live::Survey client(served.address());
+  Carrier carrier(rehearsal);
+  while (client.next().find("\"state\":\"view\"") != std::string::npos) {
+    // Between two messages nobody else is at the survey.
+    LiveSurvey& survey = served.survey();
+    if (!rehearsal.can_reach(survey)) {
+      client.refuse(survey.proposal().number, "walled in");
+      continue;
+    }
+    const auto [scan, is_on_way] = carrier.next(survey);
+    const std::string answer =
+        client.add_points(numbers_of(scan), pose_of(scan), scan.pixels, {},
+                          is_on_way ? skycap_live::From::way : skycap_live::From::view);
+    if (answer.find("\"warning\"") != std::string::npos) throw std::runtime_error(answer);
+  }
+  client.finish();
+  return served.record();
+}
+
+TEST(Serve, FedByTheSimulatorIsWhatPlanDoes) {
+  for (const std::string& mission :
+       {short_mission(tests::quick_mission(), "see++"), short_mission(tests::flown_mission()),
+        moving_mission("live: {pose_check: false}\n"), scanner_mission()}) {
+    const Rehearsal rehearsal(mission);
+    expect_same(fed_by_simulator(rehearsal), rehearsal.planned());
+  }
+}
+
+/// The missions that SHIPPED_MISSIONS names, such as "bunny city_block", else a quick one, whole.
+/// With SHIPPED_VIEWS those that have no limits end after so many.
+TEST(Serve, FedByTheSimulatorIsWhatPlanDoesWithShippedMissions) {
+  const std::filesystem::path missions = std::filesystem::path(SKYCAP_SOURCE_DIR) / "missions";
+  // NOLINTNEXTLINE(concurrency-mt-unsafe): nothing sets variables
+  const char *given = std::getenv("SHIPPED_MISSIONS"), *views = std::getenv("SHIPPED_VIEWS");
+  std::istringstream names(given == nullptr ? "teapot" : given);
+  for (std::string name; names >> name;) {
+    SCOPED_TRACE(name);
+    std::string mission = tests::content_of(missions / (name + ".yaml"));
+    if (views != nullptr) mission += std::string("limits: {max_views: ") + views + "}\n";
+    const Rehearsal rehearsal(mission, missions, 0);
+    const session::SurveyRecord planned = rehearsal.planned();
+    const auto start = std::chrono::steady_clock::now();
+    expect_same(fed_by_simulator(rehearsal), planned);
+    const std::chrono::duration<double> length = std::chrono::steady_clock::now() - start;
+    std::cout << name << ": " << planned.views.size() << " views, " << planned.cloud.size()
+              << " points, " << length.count() << " s\n";
+  }
+}
+
+TEST(Serve, AnswersOneClientAtATime) {
+  const Rehearsal rehearsal(tests::quick_mission());
+  Served served(rehearsal, {.socket = {}, .port = 0});
+  {
+    skycap_live::Survey first(served.address());
+    EXPECT_THROW(skycap_live::Survey second(served.address()), std::runtime_error);
+    EXPECT_THAT(first.next(), HasSubstr("\"state\":\"view\""));
+  }
+  std::optional<std::string> answer;
+  for (int attempt = 0; attempt < 100 && !answer; ++attempt) {
+    try {  // until the server has noticed that the first one left
+      answer = skycap_live::Survey(served.address()).next();
+    } catch (const std::runtime_error&) {
+      std::this_thread::sleep_for(std::chrono::milliseconds(20));
+    }
+  }
+  EXPECT_TRUE(answer);
+  EXPECT_THAT(served.notes(), HasSubstr("a second client was sent away"));
+}
+
+class SessionAnswers : public testing::Test {
+ protected:
+  std::string ask(const nlohmann::ordered_json& header, const std::string& payload = {}) {
+    return session_.answer({header, payload}).header.dump();
+  }
+
+  nlohmann::ordered_json scan_header(int number, const geometry::Scan& scan) const {
+    return {{"type", "scan"},
+            {"number", number},
+            {"pose", pose_of(scan)},
+            {"format", "points"},
+            {"points", scan.points.size()}};
+  }
+
+  static std::string payload_of(const geometry::Scan& scan) {
+    const std::vector<float> numbers = numbers_of(scan);
+    return {reinterpret_cast<const char*>(numbers.data()), numbers.size() * sizeof(float)};
+  }
+
+  tests::TestFolder folder_;
+  Rehearsal rehearsal_{fine_mission()};
+  LiveSurvey survey_ = rehearsal_.open(folder_.path());
+  Session session_{rehearsal_.mission(), survey_, [] { return std::string(); }};
+};
+
+/// Each in its place among the frames of the way, and the view only then.
+TEST(Serve, TakesScansFromTheWayInOrderAndOnce) {
+  const Rehearsal rehearsal(moving_mission());
+  const tests::TestFolder folder;
+  LiveSurvey survey = rehearsal.open(folder.path());
+  Session session(rehearsal.mission(), survey, [] { return std::string(); });
+  const auto ask = [&](const geometry::Scan& scan, int number, std::optional<int> on_way) {
+    nlohmann::ordered_json header{{"type", "scan"},
+                                  {"number", number},
+                                  {"pose", pose_of(scan)},
+                                  {"format", "points"},
+                                  {"points", scan.points.size()},
+                                  {"has_pixels", true}};
+    if (on_way) header["on_way"] = *on_way;
+    const std::vector<float> numbers = numbers_of(scan);
+    std::string payload(reinterpret_cast<const char*>(numbers.data()),
+                        numbers.size() * sizeof(float));
+    payload.append(reinterpret_cast<const char*>(scan.pixels.data()),
+                   scan.pixels.size() * sizeof scan.pixels[0]);
+    return session.answer({header, payload}).header;
+  };
+  const geometry::Scan first = rehearsal.scan(survey);
+  EXPECT_THAT(ask(first, 0, 0).dump(), HasSubstr("the way to the first view is not measured on"));
+  nlohmann::ordered_json answer = ask(first, 0, {});
+  ASSERT_GT(answer.at("frames").size(), 2U);
+  EXPECT_EQ(answer.at("on_way"), 0);
+  Carrier carrier(rehearsal);
+  const geometry::Scan frame = carrier.next(survey).scan;
+  EXPECT_THAT(ask(frame, 1, 1).dump(), HasSubstr("scan 1 on the way 1 is out of order: the next "
+                                                 "one is 1, or on the way to it 0"));
+  const std::size_t frames = answer.at("frames").size();
+  answer = ask(frame, 1, 0);
+  EXPECT_EQ(answer.at("is_new"), true);
+  EXPECT_EQ(answer.at("on_way"), 1);
+  EXPECT_EQ(answer.at("scans"), 1);
+  EXPECT_EQ(answer.at("frames").size(), frames - 1);
+  EXPECT_EQ(ask(frame, 1, 0).at("is_new"), false);
+  EXPECT_THAT(ask(first, 1, 0).dump(), HasSubstr("scan 1 on the way 0 was another one"));
+  // Frames are left out as one likes: the view may come at any time.
+  answer = ask(rehearsal.scan(survey), 1, {});
+  EXPECT_EQ(answer.at("scans"), 2);
+  EXPECT_EQ(answer.at("on_way"), 0);
+  EXPECT_EQ(ask(frame, 1, 0).at("is_new"), false);
+}
+
+TEST_F(SessionAnswers, ScansOutOfOrderAndTwice) {
+  const geometry::Scan scan = rehearsal_.scan(survey_);
+  const std::string payload = payload_of(scan);
+  EXPECT_THAT(ask(scan_header(1, scan), payload), HasSubstr("out of order: the next one is 0"));
+  const std::string first = ask(scan_header(0, scan), payload);
+  EXPECT_THAT(first, HasSubstr("\"is_new\":true"));
+  EXPECT_THAT(ask(scan_header(0, scan), payload), HasSubstr("\"is_new\":false"));
+  geometry::Scan other = scan;
+  other.points[0].x() += 1.0F;
+  EXPECT_THAT(ask(scan_header(0, other), payload_of(other)), HasSubstr("was another one"));
+  EXPECT_EQ(survey_.views().size(), 1U);
+}
+
+/// As those of files: each point in the pixel that it is seen in, the nearest of several.
+TEST_F(SessionAnswers, GiveCloudsOfTheSensorsFrameTheirPixels) {
+  const geometry::Scan scan = rehearsal_.scan(survey_);
+  const Eigen::Isometry3d sensor_from_world = scan.world_from_sensor.inverse();
+  std::vector<Eigen::Vector3f> places;
+  for (const Eigen::Vector3f& point : scan.points) {
+    places.push_back((sensor_from_world * point.cast<double>()).cast<float>());
+  }
+  const std::string payload(reinterpret_cast<const char*>(places.data()),
+                            places.size() * sizeof places[0]);
+  std::vector<Eigen::Vector3d> points;
+  points.reserve(places.size());
+  for (const Eigen::Vector3f& place : places) points.push_back(place.cast<double>());
+  nlohmann::ordered_json header = scan_header(0, scan);
+  header["format"] = "cloud";
+  EXPECT_THAT(ask(header, payload.substr(1)), HasSubstr("points take"));
+  EXPECT_THAT(ask(header, payload), HasSubstr("\"is_new\":true"));
+  const ScanFound same = scan_of(points, scan.world_from_sensor, rehearsal_.mission());
+  EXPECT_FALSE(same.scan.pixels.empty());
+  EXPECT_EQ(survey_.number_of(scan_id(same.scan)), ScanNumber{0});
+}
+
+TEST_F(SessionAnswers, WarnOfPosesThatAreWrong) {
+  const geometry::Scan first = rehearsal_.scan(survey_);
+  ask(scan_header(0, first), payload_of(first));
+  geometry::Scan scan = rehearsal_.scan(survey_);
+  Eigen::Isometry3d jump = Eigen::Isometry3d::Identity();
+  jump.translation() = 0.1 * scan.world_from_sensor.linear().col(0);
+  const geometry::Scan wrong = corrected(scan, jump);
+  const std::string answer = ask(scan_header(1, wrong), payload_of(wrong));
+  EXPECT_THAT(answer, HasSubstr("\"warning\":\"pose\""));
+  EXPECT_THAT(answer, HasSubstr("\"scans\":1"));
+  EXPECT_THAT(ask(scan_header(1, wrong), payload_of(wrong)), HasSubstr("\"is_new\":false"));
+  nlohmann::ordered_json header = scan_header(1, scan);
+  header["pose_sigma"] = {0.01, "x"};
+  EXPECT_THAT(ask(header, payload_of(scan)), HasSubstr("pose_sigma"));
+  header["pose_sigma"] = {0.01, 0.1};
+  header["pose_covariance"] = {1, 2, 3};
+  EXPECT_THAT(ask(header, payload_of(scan)), HasSubstr("do not go together"));
+  header.erase("pose_sigma");
+  EXPECT_THAT(ask(header, payload_of(scan)), HasSubstr("pose_covariance: has 3 numbers"));
+  header["pose_covariance"] = PoseCovariance::of(0.01, 0.002).triangle();
+  EXPECT_THAT(ask(header, payload_of(scan)), Not(HasSubstr("warning")));
+  EXPECT_THAT(ask(scan_header(1, wrong), payload_of(wrong)), HasSubstr("\"is_new\":false"));
+  EXPECT_EQ(survey_.views().size(), 2U);
+}
+
+/// A jump is one that the covariance explains, or one that sets the scan aside.
+TEST(Serve, TakesWhatIsKnownOfPosesFromItsClient) {
+  const tests::TestFolder folder;
+  const Rehearsal rehearsal(fine_mission());
+  Served served(rehearsal, {.socket = folder / "socket", .port = {}});
+  skycap_live::Survey client(served.address());
+  const geometry::Scan first = rehearsal.scan(served.survey());
+  client.add_points(numbers_of(first), pose_of(first));
+  const geometry::Scan scan = rehearsal.scan(served.survey());
+  Eigen::Isometry3d jump = Eigen::Isometry3d::Identity();
+  jump.translation() = 0.1 * scan.world_from_sensor.linear().col(0);
+  const geometry::Scan moved = corrected(scan, jump);
+  const auto answer = [&](const skycap_live::PoseError& error) {
+    return client.add_points(numbers_of(moved), pose_of(moved), {}, error);
+  };
+  skycap_live::PoseCovariance covariance{};
+  EXPECT_THAT(answer(covariance), HasSubstr("\"warning\":\"pose\""));
+  covariance[1] = 0.01;
+  EXPECT_THROW(answer(covariance), skycap_live::Refused);
+  EXPECT_THAT(answer(skycap_live::PoseSigma{0.001, 0.01}), HasSubstr("\"warning\":\"pose\""));
+  covariance[1] = 0.0;
+  for (const std::size_t i : {0U, 7U, 14U}) covariance[i] = 0.01;
+  EXPECT_THAT(answer(covariance), Not(HasSubstr("warning")));
+}
+
+TEST_F(SessionAnswers, RefusalsTwiceAreOne) {
+  const geometry::Scan scan = rehearsal_.scan(survey_);
+  ask(scan_header(0, scan), payload_of(scan));
+  const std::string other = ask({{"type", "refuse"}, {"id", 1}});
+  EXPECT_EQ(ask({{"type", "refuse"}, {"id", 1}}), other);
+  EXPECT_THAT(ask({{"type", "refuse"}, {"id", 9}}), HasSubstr("there is no proposal 9"));
+}
+
+TEST_F(SessionAnswers, WhatIsWrongIsSaidAndChangesNothing) {
+  const geometry::Scan scan = rehearsal_.scan(survey_);
+  nlohmann::ordered_json header = scan_header(0, scan);
+  EXPECT_THAT(ask(header, "short"), HasSubstr("the payload has 5 bytes"));
+  header["points"] = -1;
+  EXPECT_THAT(ask(header, payload_of(scan)), HasSubstr("error"));
+  header["points"] = 4294967295U;
+  EXPECT_THAT(ask(header, payload_of(scan)), HasSubstr("the payload has"));
+  header = scan_header(0, scan);
+  header["pose"] = {1, 2, 3};
+  EXPECT_THAT(ask(header, payload_of(scan)), HasSubstr("pose"));
+  header["pose"] = "here";
+  EXPECT_THAT(ask(header, payload_of(scan)), HasSubstr("error"));
+  header["format"] = "mp3";
+  EXPECT_THAT(ask(header, payload_of(scan)), HasSubstr("must be points, cloud or depth"));
+  EXPECT_THAT(ask({{"type", "dance"}}), HasSubstr("the type 'dance' is unknown"));
+  EXPECT_THAT(ask({{"number", 1}}), HasSubstr("error"));
+  EXPECT_THAT(ask({{"type", "finish"}}), HasSubstr("there is no scan yet"));
+  nlohmann::ordered_json depth{{"type", "scan"},    {"number", 0}, {"pose", pose_of(scan)},
+                               {"format", "depth"}, {"width", 2},  {"height", 2},
+                               {"unit", 0.001}};
+  EXPECT_THAT(ask(depth, "12345"), HasSubstr("the image takes 8"));
+  depth["width"] = 1 << 20;
+  EXPECT_THAT(ask(depth, "12345678"), HasSubstr("from 1 to 32768"));
+  EXPECT_TRUE(survey_.views().empty());
+}
+
+}  // namespace
+}  // namespace skycap::missions::online

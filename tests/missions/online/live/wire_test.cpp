@@ -1,0 +1,88 @@
+#include "missions/online/live/wire.h"
+
+#include <cstdint>
+#include <cstring>
+#include <random>
+#include <string>
+#include <vector>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "geometry/error.h"
+#include "tests/support/complaint.h"
+
+namespace skycap::missions::online {
+namespace {
+
+using testing::HasSubstr;
+
+const Message sample{{{"type", "scan"}, {"number", 3}}, std::string("\0\x01payload\n", 10)};
+
+std::string refusal(const std::string& bytes) {
+  FrameReader reader;
+  reader.feed(bytes);
+  return testing_support::complaint_of([&] { reader.next(); });
+}
+
+TEST(Wire, GivesBackMessagesHoweverTheyArrive) {
+  const std::string two = frame_of(sample) + frame_of({{{"type", "next"}}, {}});
+  for (std::size_t piece = 1; piece <= two.size(); ++piece) {
+    FrameReader reader;
+    std::vector<Message> messages;
+    for (std::size_t at = 0; at < two.size(); at += piece) {
+      reader.feed(std::string_view(two).substr(at, piece));
+      while (auto message = reader.next()) messages.push_back(std::move(*message));
+    }
+    ASSERT_EQ(messages.size(), 2U) << piece;
+    EXPECT_EQ(messages[0].header, sample.header);
+    EXPECT_EQ(messages[0].payload, sample.payload);
+    EXPECT_EQ(messages[1].header["type"], "next");
+    EXPECT_FALSE(reader.is_within_message());
+  }
+}
+
+/// Written by hand from docs/live.md, the checksum by Python's zlib.crc32(b'{"type":"next"}').
+TEST(Wire, IsWhatTheDocumentationSays) {
+  const std::string frame("\x0f\0\0\0\0\0\0\0\x1c\xab\x42\xde{\"type\":\"next\"}", 27);
+  EXPECT_EQ(frame_of({{{"type", "next"}}, {}}), frame);
+}
+
+TEST(Wire, WaitsForTheRestOfAMessage) {
+  const std::string frame = frame_of(sample);
+  for (std::size_t size = 0; size < frame.size(); ++size) {
+    FrameReader reader;
+    reader.feed(frame.substr(0, size));
+    EXPECT_FALSE(reader.next()) << size;
+    EXPECT_EQ(reader.is_within_message(), size > 0);
+  }
+}
+
+TEST(Wire, RefusesWhatIsNoMessage) {
+  EXPECT_THAT(refusal(std::string(12, '\xff')), HasSubstr("more bytes than any may have"));
+  std::string damaged = frame_of(sample);
+  damaged.back() ^= 1;
+  EXPECT_THAT(refusal(damaged), HasSubstr("checksum"));
+  EXPECT_THAT(refusal(frame_of({"text", {}})), HasSubstr("no JSON object"));
+  EXPECT_THAT(refusal(frame_of({nlohmann::ordered_json::array(), {}})), HasSubstr("JSON object"));
+}
+
+/// No bytes do more than be refused or waited for; one changed bit is never taken for a message.
+TEST(Wire, TakesNoHarmFromAnyBytes) {
+  std::mt19937_64 random(1);
+  const std::string frame = frame_of(sample);
+  for (int i = 0; i < 20'000; ++i) {
+    std::string bytes = frame;
+    bytes[random() % bytes.size()] ^= static_cast<char>(1 << random() % 8);
+    if (i % 2 == 1) bytes.resize(random() % bytes.size());
+    FrameReader reader;
+    reader.feed(bytes);
+    try {
+      EXPECT_FALSE(reader.next()) << i;
+    } catch (const Error&) {
+    }
+  }
+}
+
+}  // namespace
+}  // namespace skycap::missions::online

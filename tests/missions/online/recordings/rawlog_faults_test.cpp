@@ -1,0 +1,133 @@
+// Rawlogs that lack something, are damaged, or lie about their sizes.
+#include <cmath>
+#include <cstring>
+#include <functional>
+#include <string_view>
+#include <utility>
+
+#include <gmock/gmock.h>
+#include <mrpt/obs/CObservationGPS.h>
+#include <mrpt/obs/CSensoryFrame.h>
+
+#include "tests/missions/online/recordings/written_rawlog.h"
+
+namespace skycap::missions::online {
+namespace {
+
+using testing::AllOf;
+using testing::HasSubstr;
+using testing::IsEmpty;
+
+TEST_F(Rawlog, WithoutPosesScansOrAChoiceIsRefused) {
+  EXPECT_THAT(complaint(write({range_scan(1.0), std::make_shared<mrpt::obs::CObservationGPS>()})),
+              AllOf(HasSubstr("x.rawlog: does not say where"), HasSubstr("--poses")));
+  EXPECT_THAT(complaint(write({robot_pose(1.0, {})})), HasSubstr("has no scan that can be used"));
+  const std::string two = write({robot_pose(1.0, {}), range_scan(1.0, "L"), range_scan(1.0, "R")});
+  EXPECT_THAT(complaint(two), AllOf(HasSubstr("'L', 'R'"), HasSubstr("--sensor")));
+  EXPECT_THAT(complaint(two, {.sensor = "M", .poses = {}}), HasSubstr("'M'; it has 'L', 'R'"));
+  EXPECT_EQ(frames(two, {.sensor = "R", .poses = {}}).at(0).id, "R 2");
+}
+
+TEST_F(Rawlog, LensesAndStepsThatAreNoneAreNamed) {
+  const auto note = [&](const std::function<void(CObservation3DRangeScan&)>& spoil) {
+    const auto scan = range_scan(1.0);
+    spoil(*scan);
+    EXPECT_THAT(frames(write({robot_pose(1.0, {}), scan})), IsEmpty());
+    return notes_.at(0);
+  };
+  EXPECT_THAT(note([](auto& scan) { scan.cameraParams.fx(0.0); }), HasSubstr("no focal length"));
+  EXPECT_THAT(note([](auto& scan) { scan.cameraParams.cx(NAN); }), HasSubstr("image centre"));
+  EXPECT_THAT(note([](auto& scan) { scan.rangeUnits = 0.0F; }), HasSubstr("a step of its image"));
+  EXPECT_THAT(note([](auto& scan) { scan.hasRangeImage = false; }), HasSubstr("neither"));
+  EXPECT_THAT(note([](auto& scan) {
+                scan.cameraParams.distortion = mrpt::img::DistortionModel::kannala_brandt;
+              }),
+              HasSubstr("fisheye"));
+  EXPECT_THAT(note([](auto& scan) {
+                scan.cameraParams.distortion = mrpt::img::DistortionModel::plumb_bob;
+                scan.cameraParams.dist[6] = 0.1;
+              }),
+              HasSubstr("beyond k1 k2"));
+  EXPECT_THAT(note([](auto& scan) { scan.sensorPose.x(1e30); }), HasSubstr("its pose"));
+}
+
+/// What is compressed well is little as a file.
+TEST_F(Rawlog, OfMoreThanThereIsMemoryForIsRefused) {
+  const auto large = range_scan(1.0);
+  large->rangeImage_setSize(5001, 5000);
+  large->rangeImage.setZero();
+  const auto scattered = range_scan(1.0);
+  scattered->hasRangeImage = false;
+  scattered->hasPoints3D = true;
+  scattered->resizePoints3DVectors(25'000'001);
+  for (const auto& [scan, what] : {std::pair(large, "pixels"), std::pair(scattered, "points")}) {
+    EXPECT_THAT(frames(write({robot_pose(1.0, {}), scan}, "x.rawlog.gz")), IsEmpty());
+    EXPECT_THAT(notes_.at(0), AllOf(HasSubstr("more than 2.5e7"), HasSubstr(what)));
+  }
+  Objects sensors{robot_pose(1.0, {})};
+  for (int i = 0; i <= 64; ++i) sensors.push_back(range_scan(1.0, std::to_string(i)));
+  EXPECT_THAT(complaint(write(sensors)), HasSubstr("more than 64 sensors"));
+  EXPECT_THAT(complaint(write({range_scan(1.0, std::string(257, 'x'))})),
+              HasSubstr("more than 256 bytes"));
+}
+
+TEST_F(Rawlog, ThatEndsTooSoonIsRefused) {
+  for (const std::string name : {"x.rawlog", "x.rawlog.gz"}) {
+    const std::string whole =
+        tests::content_of(write({robot_pose(1.0, {}), range_scan(1.0)}, name));
+    for (std::size_t size = 0; size < whole.size(); size += 1 + whole.size() / 50) {
+      const std::string what = complaint(folder_.write("cut_" + name, whole.substr(0, size)));
+      EXPECT_THAT(what, HasSubstr("cut_" + name)) << size;
+    }
+  }
+  EXPECT_THAT(complaint(folder_.write("text.rawlog", "this is a text and no rawlog at all")),
+              HasSubstr("text.rawlog: entry 0 cannot be read"));
+  EXPECT_THAT(complaint(folder_ / "nowhere.rawlog"), HasSubstr("is no file"));
+}
+
+/// MRPT allocates what a file says it needs: a count of points, and the sides of an image.
+TEST_F(Rawlog, WithCountsThatAreNoneIsRefused) {
+  const std::string whole = tests::content_of(write({robot_pose(1.0, {}), range_scan(1.0)}));
+  const std::string sides{"\x18\0\0\0\x20\0\0\0", 8};
+  const std::size_t at = whole.find(sides);
+  ASSERT_NE(at, std::string::npos);
+  for (const auto& [rows, columns] : {std::pair(0xffffffffU, 0xffffffffU),
+                                      {0x80000000U, 2U},
+                                      {0x10000U, 0x10000U},
+                                      {0x7fffffffU, 0x7fffffffU},
+                                      {24U, 0xffffffffU},
+                                      {0x7fffffffU, 1U},
+                                      {25U, 32U}}) {
+    std::string hostile = whole;
+    std::memcpy(&hostile[at], &rows, 4);
+    std::memcpy(&hostile[at + 4], &columns, 4);
+    EXPECT_THAT(complaint(folder_.write("hostile.rawlog", hostile)), HasSubstr("hostile.rawlog"))
+        << rows << " x " << columns;
+  }
+}
+
+TEST_F(Rawlog, ThatIsDamagedIsReadOrRefused) {
+  auto frame = std::make_shared<mrpt::obs::CSensoryFrame>();
+  frame->insert(range_scan(1.0));
+  const std::string whole = tests::content_of(
+      write({robot_pose(1.0, {}), wheels(1.0, 0, 0), range_scan(1.0, "DEPTH"), frame}));
+  std::mt19937_64 random(1);
+  // The bytes of the images' pixels are of no interest.
+  std::vector<std::size_t> places;
+  for (std::size_t i = 0; i < whole.size(); ++i) {
+    const bool is_pixel = std::string_view(whole).substr(i, 3).find('\0') == std::string::npos;
+    if (!is_pixel || i < 1000) places.push_back(i);
+  }
+  std::size_t refused = 0;
+  for (int trial = 0; trial < 400; ++trial) {
+    std::string damaged = whole;
+    for (std::uint64_t count = 1 + random() % 3; count > 0; --count) {
+      damaged[places[random() % places.size()]] = static_cast<char>(random());
+    }
+    refused += complaint(folder_.write("damaged.rawlog", damaged)).empty() ? 0 : 1;
+  }
+  EXPECT_GT(refused, 20U);
+}
+
+}  // namespace
+}  // namespace skycap::missions::online

@@ -1,0 +1,106 @@
+#include "missions/online/recordings/recorded_sequence.h"
+
+#include <string>
+#include <vector>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "geometry/error.h"
+#include "tests/missions/run_skycap.h"
+#include "tests/support/complaint.h"
+
+namespace skycap::missions::online {
+namespace {
+
+using testing::AllOf;
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing_support::complaint_of;
+
+constexpr std::size_t all = 1000;
+
+class Recording : public testing::Test {
+ protected:
+  void write(const std::string& name, const std::string& text) const { folder_.write(name, text); }
+  /// Three images and two poses.
+  void write_tum(const std::string& poses) const {
+    for (const char* name : {"a.png", "b.png", "c.png"}) write(name, "");
+    write("depth.txt", "# depth maps\n1.00 a.png\n1.10 b.png\n1.20 c.png\n");
+    write("groundtruth.txt", poses);
+  }
+  RecordedSequence read(std::size_t count = all) const {
+    return read_sequence(folder_.path(), count);
+  }
+  std::string complaint() const {
+    return complaint_of([&] { read(); });
+  }
+  static std::vector<std::string> ids(const RecordedSequence& sequence) {
+    std::vector<std::string> ids;
+    for (const RecordedFrame& frame : sequence.frames) ids.push_back(frame.id);
+    return ids;
+  }
+
+  tests::TestFolder folder_;
+};
+
+TEST_F(Recording, OfTumIsPairedByTime) {
+  write_tum("#t x y z qx qy qz qw\n0.99 1 2 3 0 0 0 1\n1.115 4 5 6 0 0 0 1\n1.125 7 8 9 0 0 0 1\n");
+  const RecordedSequence sequence = read();
+  EXPECT_THAT(ids(sequence), ElementsAre("1.00", "1.10"));
+  EXPECT_EQ(sequence.frames[0].world_from_sensor.translation(), Eigen::Vector3d(1, 2, 3));
+  EXPECT_EQ(sequence.frames[1].world_from_sensor.translation(), Eigen::Vector3d(4, 5, 6));
+  EXPECT_EQ(sequence.frames[1].file, folder_.path() / "b.png");
+  EXPECT_THAT(sequence.notes,
+              ElementsAre(AllOf(HasSubstr("1.20 is left out"), HasSubstr("no pose within 20 ms"),
+                                HasSubstr("0.075 s off"))));
+}
+
+TEST_F(Recording, EndsWhereItIsToldTo) {
+  write_tum("1.00 0 0 0 0 0 0 1\n1.10 0 0 0 0 0 0 1\n1.20 0 0 0 0 0 0 1\n");
+  EXPECT_THAT(ids(read(2)), ElementsAre("1.00", "1.10"));
+}
+
+TEST_F(Recording, SaysWhatIsWrongWithAFrame) {
+  write_tum("1.00 0 0 0 0 0 0 1\n1.10 0 0 0 0 0 0 3\n1.20 0 0 0 0 0 0 1\n");
+  std::filesystem::remove(folder_.path() / "c.png");
+  const RecordedSequence sequence = read();
+  EXPECT_THAT(ids(sequence), ElementsAre("1.00"));
+  EXPECT_THAT(sequence.notes,
+              ElementsAre(AllOf(HasSubstr("groundtruth.txt: time 1.10"), HasSubstr("quaternion")),
+                          HasSubstr("c.png: is not there")));
+}
+
+TEST_F(Recording, WithTimesThatGoBackIsRefused) {
+  write_tum("1.00 0 0 0 0 0 0 1\n0.90 0 0 0 0 0 0 1\n");
+  EXPECT_THAT(complaint(), AllOf(HasSubstr("groundtruth.txt: line 2"), HasSubstr("0.90")));
+  write("groundtruth.txt", "now 0 0 0 0 0 0 1\n");
+  EXPECT_THAT(complaint(), HasSubstr("'now' stands where a time is expected"));
+}
+
+TEST_F(Recording, OfSevenScenesHasItsPosesBesideTheImages) {
+  for (const char* frame : {"frame-000010", "frame-000005", "frame-000000", "frame-000015"}) {
+    write(std::string(frame) + ".depth.png", "");
+  }
+  write("frame-000000.pose.txt", "1 0 0 1\n0 1 0 2\n0 0 1 3\n0 0 0 1\n");
+  write("frame-000005.pose.txt", "1 0 0 4\n0 1 0 5\n0 0 1 6\n0 0 0 1\n");
+  write("frame-000010.pose.txt", "2 0 0 4\n0 2 0 5\n0 0 2 6\n0 0 0 1\n");
+  const RecordedSequence sequence = read();
+  EXPECT_THAT(ids(sequence), ElementsAre("frame-000000", "frame-000005"));
+  EXPECT_EQ(sequence.frames[1].world_from_sensor.translation(), Eigen::Vector3d(4, 5, 6));
+  EXPECT_THAT(sequence.notes,
+              ElementsAre(HasSubstr("without stretching"), HasSubstr("frame-000015.pose.txt")));
+}
+
+TEST_F(Recording, ThatIsNoneIsRefused) {
+  EXPECT_THAT(complaint(), HasSubstr("has neither depth.txt and groundtruth.txt"));
+  EXPECT_THAT(complaint_of([&] { read_sequence(folder_.path() / "x", all); }),
+              HasSubstr("is no folder"));
+  write("depth.txt", "1.0 a.png\n");
+  EXPECT_THAT(complaint(), HasSubstr("groundtruth.txt"));
+  write("groundtruth.txt", "");
+  EXPECT_THAT(complaint(), HasSubstr("has no usable frame"));
+}
+
+}  // namespace
+}  // namespace skycap::missions::online

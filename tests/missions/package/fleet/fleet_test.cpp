@@ -1,0 +1,244 @@
+#include "missions/config/fleet.h"
+
+#include <algorithm>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include "flight/export/text.h"
+#include "missions/config/resolved_mission.h"
+#include "missions/package/fleet/timetable_proof.h"
+#include "missions/package/settings.h"
+#include "tests/missions/flown_mission.h"
+#include "tests/missions/run_skycap.h"
+#include "tests/support/complaint.h"
+
+namespace skycap::missions {
+namespace {
+
+using nlohmann::json;
+using testing::HasSubstr;
+using testing_support::complaint_of;
+using tests::content_of;
+using tests::flown_mission;
+using tests::run_skycap;
+using tests::TestFolder;
+
+/// The mission with what `flight` says beside its vehicle.
+std::string fleet_mission(const std::string& flight) {
+  std::string text = flown_mission();
+  const std::string vehicle = "vehicle: generic,";
+  return text.replace(text.find(vehicle), vehicle.size(), flight + ",");
+}
+
+/// The package of one survey by two vehicles, which all tests below only read.
+const TestFolder& package() {
+  static const TestFolder folder;
+  static const bool is_made = [] {
+    const std::string mission = folder.write(
+        "m.yaml", fleet_mission("vehicles: [generic, generic_ardupilot], separation: 6, "
+                                "timing_tolerance: 2"));
+    const auto run = run_skycap({"plan", mission, "--out", folder / "out"});
+    EXPECT_EQ(run.exit_code, 0) << run.err;
+    EXPECT_THAT(run.out, HasSubstr("  fleet     2 vehicles, "));
+    return true;
+  }();
+  EXPECT_TRUE(is_made);
+  return folder;
+}
+
+json fleet_summary() {
+  return json::parse(content_of(package() / "out/summary.json")).at("flight").at("fleet");
+}
+
+auto check(const std::string& route, const std::vector<std::string>& more = {}) {
+  std::vector<std::string> arguments{"check", package() / "m.yaml", "--route", route};
+  arguments.insert(arguments.end(), more.begin(), more.end());
+  return run_skycap(arguments);
+}
+
+/// The package's fleet in another folder, where tests may spoil it.
+class Spoiled {
+ public:
+  Spoiled() {
+    for (const char* name : {"timetable.csv", "fleet-1.plan", "fleet-2.waypoints"}) {
+      folder_.write(name, content_of(package() / ("out/" + std::string(name))));
+    }
+  }
+
+  std::string table() const { return folder_ / "timetable.csv"; }
+
+  /// Puts `to` into a field of a line, both counted from 1.
+  void set(std::size_t line, std::size_t field, const std::string& to) {
+    std::vector<std::string> lines = flight::lines_of(content_of(table()));
+    std::vector<std::string> fields = flight::split(lines.at(line - 1), ',');
+    fields.at(field - 1) = to;
+    std::string joined, all;
+    for (const std::string& text : fields) joined += (joined.empty() ? "" : ",") + text;
+    lines[line - 1] = joined;
+    for (const std::string& text : lines) all += text + "\n";
+    folder_.write("timetable.csv", all);
+  }
+
+  std::string get(std::size_t line, std::size_t field) const {
+    return flight::split(flight::lines_of(content_of(table())).at(line - 1), ',').at(field - 1);
+  }
+
+  TestFolder folder_;
+};
+
+TEST(Fleet, SharesAllStationsAndItsFilesAreProven) {
+  const json fleet = fleet_summary();
+  const json summary = json::parse(content_of(package() / "out/summary.json"));
+  std::vector<int> shared, alone = summary["flight"]["route"]["order"];
+  for (const json& vehicle : fleet["vehicles"]) {
+    for (const int view : vehicle["order"]) shared.push_back(view);
+  }
+  for (const json& missed : fleet["unreached"]) shared.push_back(missed["view"]);
+  std::ranges::sort(shared);
+  std::ranges::sort(alone);
+  EXPECT_EQ(shared, alone);
+  EXPECT_GE(fleet["makespan_s"], fleet["makespan_bound_s"]);
+  EXPECT_GE(fleet["flown_s"], fleet["flown_bound_s"]);
+  EXPECT_GE(fleet["separation"]["proven_m"], 6.0);
+
+  const auto proof = check(package() / "out/timetable.csv");
+  EXPECT_EQ(proof.exit_code, 0) << proof.out << proof.err;
+  EXPECT_THAT(proof.out, HasSubstr(": fine, 2 sorties of 2 vehicles in "));
+  for (const char* file : {"out/fleet-1.plan", "out/fleet-2.waypoints", "out/fleet-2.kmz"}) {
+    const auto own = check(package() / file);
+    EXPECT_EQ(own.exit_code, 0) << file << own.out << own.err;
+    EXPECT_THAT(own.out, HasSubstr(": fine, 0 of "));
+  }
+}
+
+TEST(Fleet, FliesInTheSimulatorWithoutComingNearer) {
+  const auto run = run_skycap({"fly-test", package() / "out", "--flights", "20", "--returns", "0",
+                               "--out", package() / "flown"});
+  const json test = json::parse(content_of(package() / "flown/fly_test.json")).at("fleet");
+  EXPECT_EQ(test["flights"], 20);
+  EXPECT_EQ(test["nearer"], 0) << run.out;
+  EXPECT_DOUBLE_EQ(test["limit_m"], 6.0 - 2.0 * (0.1 + 0.3));
+  EXPECT_GE(test["least_m"], test["limit_m"]);
+}
+
+TEST(Fleet, TimetablesThatBringVehiclesTogetherAreRefused) {
+  Spoiled spoiled;
+  EXPECT_EQ(check(spoiled.table()).exit_code, 0);
+  // Pads seven metres apart, both up at the same time.
+  spoiled.set(2, 5, "0");
+  spoiled.set(3, 5, "0");
+  const auto together = check(spoiled.table(), {"--set", "flight.separation=20"});
+  EXPECT_EQ(together.exit_code, 1);
+  EXPECT_THAT(together.out, HasSubstr("vehicle 1, fleet-1.plan and vehicle 2, fleet-2.waypoints "
+                                      "may come within "));
+  EXPECT_THAT(together.out, HasSubstr(": not safe, 2 sorties"));
+}
+
+TEST(Fleet, TimetablesThatSayOtherwiseThanTheFilesAreRefused) {
+  Spoiled late;
+  late.set(2, 6, std::to_string(std::stod(late.get(2, 6)) + 5.0));
+  const auto landing = check(late.table());
+  EXPECT_EQ(landing.exit_code, 1);
+  EXPECT_THAT(landing.out, HasSubstr("vehicle 1, fleet-1.plan lands at "));
+
+  Spoiled moved;
+  json plan = json::parse(content_of(moved.folder_ / "fleet-1.plan"));
+  json& item = plan["mission"]["items"][6];
+  if (item["params"][6].is_number()) item["params"][6] = item["params"][6].get<double>() + 30.0;
+  moved.folder_.write("fleet-1.plan", plan.dump());
+  EXPECT_NE(check(moved.table()).exit_code, 0);
+}
+
+TEST(Fleet, SpoiledRowsAreRefusedWithTheirLine) {
+  const auto complaint = [](std::size_t line, std::size_t field, const std::string& to) {
+    Spoiled spoiled;
+    spoiled.set(line, field, to);
+    const auto run = check(spoiled.table());
+    EXPECT_EQ(run.exit_code, 2) << run.out;
+    return run.err;
+  };
+  EXPECT_THAT(complaint(1, 1, "drone"), HasSubstr("timetable.csv:1: is no timetable"));
+  EXPECT_THAT(complaint(3, 1, "3"), HasSubstr("timetable.csv:3: there is no vehicle 3"));
+  EXPECT_THAT(complaint(3, 1, "x"), HasSubstr("timetable.csv:3: vehicle is \"x\""));
+  EXPECT_THAT(complaint(2, 2, "m30t"), HasSubstr("timetable.csv:2: vehicle 1 is generic in"));
+  EXPECT_THAT(complaint(3, 3, "0"), HasSubstr("timetable.csv:3: sortie is \"0\""));
+  EXPECT_THAT(complaint(3, 4, "fleet-1.plan"), HasSubstr("is not one of fleet-2.*"));
+  EXPECT_THAT(complaint(3, 4, "fleet-2.plan"), HasSubstr("fleet-2.plan"));
+  EXPECT_THAT(complaint(3, 4, "fleet-2.plan/../../x.plan"), HasSubstr("is not one of fleet-2.*"));
+  EXPECT_THAT(complaint(2, 5, "soon"), HasSubstr("timetable.csv:2: start_s is \"soon\""));
+  EXPECT_THAT(complaint(2, 6, "-1"), HasSubstr("timetable.csv:2: it does not land after"));
+  EXPECT_THAT(complaint(2, 9, "1e300"), HasSubstr("timetable.csv:2: pad"));
+}
+
+TEST(Fleet, TheRestSharesWhatALostVehicleLeaves) {
+  const auto rest_of = [](const std::vector<std::string>& more) {
+    std::vector<std::string> arguments{"export", package() / "out", "--format", "plan"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return run_skycap(arguments);
+  };
+  const std::size_t left = fleet_summary()["vehicles"][1]["order"].size();
+  const auto all = rest_of({"--lost", "2", "--out", package() / "rest"});
+  EXPECT_EQ(all.exit_code, 0) << all.err;
+  EXPECT_THAT(all.out, HasSubstr("generic, " + std::to_string(left) + " views"));
+  EXPECT_TRUE(std::filesystem::exists(package() / "rest/mission.plan"));
+
+  const std::string landing = std::to_string(fleet_summary()["makespan_s"].get<double>() + 10.0);
+  const auto none = rest_of({"--lost", "2", "--after", landing, "--out", package() / "none"});
+  EXPECT_EQ(none.exit_code, 2);
+  EXPECT_THAT(none.err, HasSubstr("it had photographed all of its views by then"));
+  EXPECT_THAT(rest_of({"--lost", "2"}).err, HasSubstr("give --out"));
+  EXPECT_THAT(rest_of({"--lost", "3", "--out", package() / "none"}).err, HasSubstr("--lost 3"));
+  EXPECT_THAT(rest_of({"--after", "3"}).err, HasSubstr("give --lost"));
+}
+
+// A list of one is the vehicle: the same settings, and so the same survey and files.
+TEST(Fleet, OfOneIsTheVehicleItself) {
+  const auto settings = [](const std::string& flight) {
+    return package::settings_json(config::parse_mission(fleet_mission(flight), "m.yaml"));
+  };
+  const auto alone = settings("vehicle: generic");
+  EXPECT_EQ(settings("vehicles: [generic]"), alone);
+  EXPECT_EQ(settings("vehicles: [generic], pads: [[-75, 0, 0]]"), alone);
+  for (const char* key : {"flight.vehicles", "flight.pads", "flight.fleet_goal",
+                          "flight.separation", "flight.timing_tolerance"}) {
+    EXPECT_FALSE(alone.contains(key)) << key;
+    EXPECT_TRUE(settings("vehicles: [generic, generic]").contains(key) ||
+                std::string(key) == "flight.pads")
+        << key;
+  }
+}
+
+TEST(Fleet, KeysThatContradictEachOtherAreRefused) {
+  const auto complaint = [](const std::string& flight) {
+    return complaint_of([&] { config::parse_mission(fleet_mission(flight), "m.yaml"); });
+  };
+  EXPECT_THAT(complaint("vehicle: m30t, vehicles: [generic, generic]"),
+              HasSubstr("key flight.vehicle: is not the first of flight.vehicles"));
+  EXPECT_THAT(complaint("vehicles: [generic, no_such]"), HasSubstr("key flight.vehicles: "));
+  EXPECT_THAT(complaint("vehicles: [generic, generic], pads: [[-75, 0, 0]]"),
+              HasSubstr("key flight.pads: has 1 pads for the 2"));
+  EXPECT_THAT(complaint("vehicles: [generic, generic], pads: [[-70, 0, 0], [-75, 0, 0]]"),
+              HasSubstr("key flight.takeoff: is not the first of flight.pads"));
+  EXPECT_THAT(complaint("vehicle: generic, separation: 8"),
+              HasSubstr("key flight.separation: is for several vehicles"));
+  EXPECT_THAT(complaint("vehicles: [generic, generic], separation: 1"),
+              HasSubstr("key flight.separation: is less than"));
+  EXPECT_THAT(complaint("vehicles: [generic, generic], style: pass"),
+              HasSubstr("key flight.style: several vehicles are kept apart as they fly from stop"));
+}
+
+// Along the side that the first pad is at, to either side in turn.
+TEST(Fleet, StandsInARowWherePadsAreNotGiven) {
+  const config::Mission mission = config::parse_mission(
+      fleet_mission("vehicles: [generic, generic, generic], separation: 9"), "m.yaml");
+  const std::vector<Eigen::Vector3d> pads = config::pads_of_fleet(mission, {-75, 0, 0});
+  ASSERT_EQ(pads.size(), 3U);
+  EXPECT_EQ(pads[0], Eigen::Vector3d(-75, 0, 0));
+  EXPECT_EQ(pads[1], Eigen::Vector3d(-75, 10, 0));
+  EXPECT_EQ(pads[2], Eigen::Vector3d(-75, -10, 0));
+}
+
+}  // namespace
+}  // namespace skycap::missions

@@ -1,0 +1,209 @@
+#include "missions/scan/scan_runner.h"
+
+#include <cstring>
+#include <fstream>
+#include <iterator>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include "geometry/error.h"
+#include "geometry/io/e57_reader.h"
+#include "missions/scan/cloud_formats.h"
+#include "missions/scan/las_format.h"
+#include "tests/missions/scan/las_file.h"
+#include "tests/sim/shapes.h"
+
+namespace skycap::missions {
+namespace {
+
+using Eigen::Vector3d;
+
+class ScanRunner : public testing::Test {
+ protected:
+  ScanRunner() {
+    config.firing_period = 1e-4;
+    config.rotation_rate = 20.0;
+    config.channels.clear();
+    for (int i = 0; i < 16; ++i) config.channels.push_back({.elevation = 0.03 * i - 0.2});
+    config.errors.sigma = 0.01;
+    std::filesystem::create_directories(folder);
+  }
+  ~ScanRunner() override { std::filesystem::remove_all(folder); }
+
+  scan::ScanResult run(const std::filesystem::path& file, unsigned threads) {
+    std::vector<scan::CloudFile> files;
+    files.emplace_back(file, format_for(file));
+    const scan::ScanResult result = scan::run_scan(
+        scene, sim::Lidar(config), {trajectory, trajectory}, files, {.threads = threads});
+    files[0].finish();
+    return result;
+  }
+
+  /// By its ending.
+  std::shared_ptr<const scan::CloudFormat> format_for(const std::filesystem::path& file) const {
+    if (file.extension() == ".e57") return scan::e57_format({.offset = far}, "test");
+    return scan::las_format({.point_format = 6, .grid = {.offset = far}});
+  }
+
+  std::vector<scan::CloudFile> las_files(const std::filesystem::path& file,
+                                         int point_format = 6) const {
+    std::vector<scan::CloudFile> files;
+    files.emplace_back(file,
+                       scan::las_format({.point_format = point_format, .grid = {.offset = far}}));
+    return files;
+  }
+
+  const std::filesystem::path folder =
+      std::filesystem::temp_directory_path() / ("skycap_scan_" + std::to_string(getpid()));
+  const Vector3d far{474'500.0, 5'474'500.0, 120.0};  // UTM: single precision has half metres there
+  const sim::Scene scene{sim::sphere(far, 20.0, 4), 1};
+  const sim::Trajectory trajectory{
+      {{5.0, far, Eigen::Quaterniond::Identity()},
+       {6.0, far + Vector3d(3, 0, 0), Eigen::Quaterniond::Identity()}}};
+  sim::LidarConfig config;
+};
+
+TEST_F(ScanRunner, TheFileHoldsEveryReturnFieldByField) {
+  config.beam = {
+      .rings = 1, .divergence_horizontal = 0.002, .divergence_vertical = 0.002, .max_returns = 3};
+  const scan::ScanResult result = run(folder / "scan.las", 2);
+  EXPECT_TRUE(result.is_complete);
+  const LasFile file(folder / "scan.las");
+  std::vector<scan::CloudFile> coloured = las_files(folder / "coloured.las", 7);
+  scan::run_scan(scene, sim::Lidar(config), {trajectory, trajectory}, coloured, {});
+  coloured[0].finish();
+  EXPECT_EQ(LasFile(folder / "coloured.las", 7).points.size(), file.points.size());
+  const sim::LidarReturns returns =
+      sim::Lidar(config).measure(scene, {trajectory, trajectory}, {0, 10'000});
+  ASSERT_EQ(file.points.size(), returns.size());
+  ASSERT_EQ(result.progress.points, returns.size());
+  EXPECT_THAT(file.crs, testing::StartsWith("LOCAL_CS["));
+  for (std::size_t i = 0; i < returns.size(); i += 37) {
+    const LasPoint& point = file.points[i];
+    const Vector3d expected = returns.origin + returns.points[i].cast<double>();
+    ASSERT_LT((point.position - expected).lpNorm<Eigen::Infinity>(), 0.51e-4);  // half a unit
+    ASSERT_NEAR(point.intensity, 65535.0 * returns.intensities[i], 0.51);
+    ASSERT_EQ(point.return_number, returns.return_numbers[i]);
+    ASSERT_EQ(point.returns, returns.returns_of_shots[i]);
+    ASSERT_EQ(point.channel, returns.channels[i]);
+    ASSERT_NEAR(point.angle_deg, returns.scan_angles[i] * 57.29578, 0.0031);  // half a unit
+    ASSERT_EQ(point.time, returns.times[i]);
+  }
+}
+
+TEST_F(ScanRunner, AnE57FileHoldsEveryReturn) {
+  const scan::ScanResult result = run(folder / "scan.e57", 2);
+  geometry::E57Reader reader(folder / "scan.e57");
+  EXPECT_THAT(reader.reference_system(), testing::StartsWith("LOCAL_CS["));
+  EXPECT_EQ(reader.scans(), 1U);
+  const sim::LidarReturns returns =
+      sim::Lidar(config).measure(scene, {trajectory, trajectory}, {0, 10'000});
+  ASSERT_EQ(result.progress.points, returns.size());
+  ASSERT_EQ(reader.points(), returns.size());
+  std::size_t next = 0;
+  geometry::E57Points points;
+  while (reader.next(points)) {
+    for (const Vector3d& position : points.positions) {
+      const Vector3d expected = returns.origin + returns.points[next++].cast<double>();
+      ASSERT_LT((position - expected).lpNorm<Eigen::Infinity>(), 0.51e-4);  // half a unit
+    }
+  }
+  EXPECT_EQ(next, returns.size());
+}
+
+TEST_F(ScanRunner, GivesTheSameBytesForAnyNumberOfThreads) {
+  for (const std::string ending : {".las", ".e57"}) {
+    run(folder / ("one" + ending), 1);
+    const std::vector<char> expected = bytes_of(folder / ("one" + ending));
+    ASSERT_GT(expected.size(), 1'000'000U);
+    for (const unsigned threads : {2U, 4U}) {
+      run(folder / ("more" + ending), threads);
+      EXPECT_EQ(bytes_of(folder / ("more" + ending)), expected) << ending << ", " << threads;
+    }
+  }
+}
+
+TEST_F(ScanRunner, AStoppedScanLeavesAValidFileOfItsBeginning) {
+  std::stop_source stop;
+  std::vector<scan::CloudFile> files = las_files(folder / "part.las");
+  const auto stop_at_once = [&](const scan::ScanProgress&) { stop.request_stop(); };
+  config.channels.resize(1);
+  const sim::Trajectory longer(
+      {{0.0, far, Eigen::Quaterniond::Identity()}, {1000.0, far, Eigen::Quaterniond::Identity()}});
+  const scan::ScanResult result =
+      scan::run_scan(scene, sim::Lidar(config), {longer, longer}, files,
+                     {.threads = 1, .report = stop_at_once, .stop = stop.get_token()});
+  files[0].finish();
+  EXPECT_FALSE(result.is_complete);
+  EXPECT_LT(result.progress.firings, result.progress.all_firings);
+  EXPECT_EQ(LasFile(folder / "part.las").points.size(), result.progress.points);
+  EXPECT_GT(result.progress.points, 0U);
+}
+
+// From each checkpoint that a kill may leave behind, whatever was appended after it.
+TEST_F(ScanRunner, GoesOnFromAnyCheckpointToTheSameBytes) {
+  struct Checkpoint {
+    scan::ScanProgress progress;
+    scan::CloudState state;
+  };
+  for (const std::string ending : {".las", ".e57"}) {
+    const std::filesystem::path whole = folder / ("whole" + ending),
+                                killed = folder / ("killed" + ending);
+    run(whole, 1);
+    std::vector<Checkpoint> checkpoints;
+    std::vector<scan::CloudFile> files;
+    files.emplace_back(killed, format_for(killed));
+    scan::run_scan(scene, sim::Lidar(config), {trajectory, trajectory}, files,
+                   {.threads = 2,
+                    .checkpoint =
+                        [&](const scan::ScanProgress& progress) {
+                          checkpoints.push_back({progress, files[0].state()});
+                        },
+                    .checkpoint_period = 0.0});
+    files.clear();
+    ASSERT_GT(checkpoints.size(), 10U);
+    for (std::size_t i = 0; i < checkpoints.size(); i += 9) {
+      const auto& [progress, state] = checkpoints[i];
+      const std::filesystem::path file = folder / ("from" + std::to_string(i) + ending);
+      std::filesystem::copy_file(killed, file);
+      std::vector<scan::CloudFile> grown;
+      grown.emplace_back(file, format_for(file), scan::ReturnPosition::reported, state);
+      const scan::ScanResult result =
+          scan::run_scan(scene, sim::Lidar(config), {trajectory, trajectory}, grown,
+                         {.threads = 2, .begun = progress});
+      grown[0].finish();
+      EXPECT_TRUE(result.is_complete);
+      EXPECT_EQ(bytes_of(file), bytes_of(whole)) << file;
+    }
+  }
+  std::vector<scan::CloudFile> none;
+  EXPECT_THROW(scan::run_scan(scene, sim::Lidar(config), {trajectory, trajectory}, none,
+                              {.begun = {.firings = 1}}),
+               Error);
+  EXPECT_THROW(scan::CloudFile(folder / "whole.las", scan::las_format({}),
+                               scan::ReturnPosition::reported, scan::CloudState{{}, 1'000'000'000}),
+               Error);
+}
+
+TEST_F(ScanRunner, SaysWhatCannotBeWritten) {
+  try {
+    const scan::CloudFile file(folder / "missing" / "scan.las", scan::las_format({}));
+    FAIL() << "written";
+  } catch (const Error& error) {
+    EXPECT_EQ(error.kind(), ErrorKind::bad_file);
+    EXPECT_THAT(error.what(), testing::HasSubstr("scan.las: cannot be written"));
+  }
+  for (const auto& format :
+       {scan::las_format({}), scan::e57_format({}, ""), scan::ply_format(), scan::pcd_format()}) {
+    std::vector<scan::CloudFile> near_zero;
+    near_zero.emplace_back(folder / "scan", format);
+    EXPECT_THROW(scan::run_scan(scene, sim::Lidar(config), {trajectory, trajectory}, near_zero, {}),
+                 Error);
+  }
+  EXPECT_THROW(scan::las_format({.point_format = 5}), Error);
+}
+
+}  // namespace
+}  // namespace skycap::missions

@@ -1,0 +1,229 @@
+// Where a vehicle takes off and lands, and how high it returns: a mission round a plain building.
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <random>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "flight/export/geodesy.h"
+#include "geometry/angle.h"
+#include "geometry/place/camera.h"
+#include "missions/config/resolved_mission.h"
+#include "missions/package/package.h"
+#include "missions/session/survey_flight.h"
+#include "tests/missions/flown_mission.h"
+#include "tests/missions/run_skycap.h"
+#include "tests/support/complaint.h"
+
+namespace skycap::missions {
+namespace {
+
+using Eigen::Vector3d;
+using geometry::radians_per_degree;
+using testing::HasSubstr;
+using tests::run_skycap;
+using tests::TestFolder;
+
+constexpr double building_height = 15.0;
+const Vector3d pad(-75, 0, 0);
+
+/// A closed box as an OBJ file's text; its top rises to the east by `slope` a metre.
+std::string box_obj(const Vector3d& low, const Vector3d& high, double slope, int first) {
+  std::string text;
+  for (int corner = 0; corner < 8; ++corner) {
+    Vector3d place(corner & 1 ? high.x() : low.x(), corner & 2 ? high.y() : low.y(),
+                   corner & 4 ? high.z() : low.z());
+    if (corner & 4) place.z() += slope * (place.x() - 0.5 * (low.x() + high.x()));
+    text += "v " + std::to_string(place.x()) + " " + std::to_string(place.y()) + " " +
+            std::to_string(place.z()) + "\n";
+  }
+  const int faces[6][4] = {{0, 2, 3, 1}, {4, 5, 7, 6}, {0, 1, 5, 4},
+                           {2, 6, 7, 3}, {0, 4, 6, 2}, {1, 3, 7, 5}};
+  for (const auto& face : faces) {
+    text += "f";
+    for (const int corner : face) text += " " + std::to_string(first + corner);
+    text += "\n";
+  }
+  return text;
+}
+
+std::string building() { return box_obj({-10, -10, 0}, {10, 10, building_height}, 0.0, 1); }
+
+/// The building, and a slab of 2 m on which the pad is, so steep; another on the other side keeps
+/// the middle of it all where it is. Its lowest place is a metre below the pad.
+std::string building_with_slab(double slope_deg) {
+  const double slope = std::tan(slope_deg * radians_per_degree);
+  return building() + box_obj({-76, -1, -1}, {-74, 1, 0}, slope, 9) +
+         box_obj({74, -1, -1}, {76, 1, 0}, 0.0, 17);
+}
+
+std::string mission_round(const std::string& model) {
+  return tests::flown_mission_round("{model: '" + model + "', ground: true}", "-14, -14",
+                                    "14, 14, 18");
+}
+
+/// The package of one survey, which the tests only read.
+const TestFolder& package() {
+  static const TestFolder folder;
+  static const bool is_made = [] {
+    folder.write("building.obj", building());
+    folder.write("steep.obj", building_with_slab(14.0));
+    folder.write("gentle.obj", building_with_slab(6.0));
+    const std::string mission = folder.write("m.yaml", mission_round("building.obj"));
+    const auto run = run_skycap({"plan", mission, "--out", folder / "out"});
+    EXPECT_EQ(run.exit_code, 0) << run.out << run.err;
+    return true;
+  }();
+  EXPECT_TRUE(is_made);
+  return folder;
+}
+
+/// A route from the pad over `places` and back the same way, stopping everywhere, as PX4's file.
+std::string route_there_and_back(const std::vector<Vector3d>& places) {
+  const flight::LocalFrame frame({47.1, 8.2, 480.0});
+  std::string text = "QGC WPL 110\n";
+  int items = 0;
+  const auto add = [&](int command, double hold, const Vector3d& place) {
+    const flight::GeodeticPoint point = frame.to_geodetic(place);
+    std::array<char, 160> line{};
+    std::snprintf(line.data(), line.size(), "%d\t%d\t3\t%d\t%.1f\t0.3\t0\t0\t%.9f\t%.9f\t%.4f\t1\n",
+                  items, items == 0 ? 1 : 0, command, hold, point.latitude_deg, point.longitude_deg,
+                  place.z());
+    text += line.data();
+    ++items;
+  };
+  constexpr int waypoint = 16, land = 21, take_off = 22;
+  const Vector3d above_pad = pad + Vector3d(0, 0, 5);
+  add(take_off, 0.0, above_pad);
+  text += "1\t0\t2\t178\t1\t4\t-1\t0\t0\t0\t5\t1\n";  // 4 m/s
+  ++items;
+  for (const Vector3d& place : places) add(waypoint, 0.5, place);
+  for (auto place = places.rbegin() + 1; place != places.rend(); ++place) {
+    add(waypoint, 0.5, *place);
+  }
+  add(waypoint, 0.5, above_pad);
+  add(land, 0.0, pad);
+  return text;
+}
+
+tests::ProgramRun check(const std::vector<std::string>& more,
+                        const std::string& route = "out/mission.plan") {
+  const TestFolder& folder = package();
+  std::vector<std::string> arguments{"check", folder / "m.yaml", "--route", folder / route};
+  arguments.insert(arguments.end(), more.begin(), more.end());
+  return run_skycap(arguments);
+}
+
+// The route goes round the building to behind it: whoever returns from there at 5 m flies through
+// it.
+TEST(StatedReturns, AreRefusedAtAHeightThatLeadsThroughTheBuilding) {
+  package().write("behind.waypoints",
+                  route_there_and_back({{-22, -22, 6}, {22, -22, 6}, {22, 0, 6}}));
+  const auto check_return = [](const std::string& height) {
+    return check({"--return-height", height}, "behind.waypoints");
+  };
+  const auto low = check_return("5");
+  EXPECT_EQ(low.exit_code, 1);
+  EXPECT_THAT(low.out, HasSubstr(": fine, 0 of "));  // the mission itself is
+  EXPECT_THAT(low.out, HasSubstr("not safe, at 5 m (--return-height) "));
+  EXPECT_THAT(low.out, HasSubstr(" of the scene"));
+  const std::string least = "the least safe height of return is ";
+  ASSERT_THAT(low.out, HasSubstr(least));
+  const double height = std::stod(low.out.substr(low.out.find(least) + least.size()));
+  EXPECT_GE(height, building_height + 2.0 - 0.1);  // the clearance, less what proofs lose
+  EXPECT_EQ(check_return(std::to_string(height)).exit_code, 0);
+}
+
+TEST(Pads, TooSteepByWhatIsDeclaredAreRefusedBeforeTheSurvey) {
+  const TestFolder& folder = package();
+  const auto run = run_skycap(
+      {"plan", folder / "m.yaml", "--out", folder / "steep", "--set", "flight.pad_slope_deg=12"});
+  EXPECT_EQ(run.exit_code, 2);
+  EXPECT_THAT(run.err, HasSubstr("the place to land at (-75.00, 0.00, 0.00) is 12.0 degrees steep "
+                                 "as declared; at most 10.0 degrees (flight.steepest_pad_deg)"));
+  EXPECT_FALSE(std::filesystem::exists(folder / "steep/summary.json"));
+
+  const auto exported = [&](const std::vector<std::string>& more) {
+    std::vector<std::string> arguments{
+        "export", folder / "out",   "--format", "csv",
+        "--out",  folder / "again", "--set",    "flight.pad_slope_deg=12"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return run_skycap(arguments);
+  };
+  EXPECT_EQ(exported({}).exit_code, 2);
+  const auto allowed = exported({"--set", "flight.steepest_pad_deg=15"});
+  EXPECT_EQ(allowed.exit_code, 0) << allowed.err;
+  EXPECT_THAT(allowed.out, HasSubstr("  pad       12.0 degrees steep as declared\n"));
+}
+
+TEST(Pads, TooSteepByTheTerrainAreRefused) {
+  const TestFolder folder;
+  folder.write("building.obj", building());
+  folder.write("slope.obj",
+               "v -80 -5 -1.25\nv -70 -5 1.25\nv -70 5 1.25\nv -80 5 -1.25\nf 1 2 3\nf 1 3 4\n");
+  const std::string mission =
+      folder.write("m.yaml", mission_round("building.obj") +
+                                 "prior: [{file: slope.obj, role: terrain, uncertainty: 0.1}]\n");
+  const auto run = run_skycap({"check", mission});
+  EXPECT_EQ(run.exit_code, 1) << run.err;
+  // A rise of 2.5 m on 10 m.
+  EXPECT_THAT(run.out, HasSubstr("is 14.0 degrees steep by the terrain")) << run.out;
+}
+
+TEST(Pads, OfRouteFilesAreHeldToTheSceneAsItIs) {
+  const TestFolder& folder = package();
+  const auto with = [&](const std::string& model) {
+    return check(
+        {"--set", "scene.model=" + (folder / model), "--set", "scene.position=[0, 0, -1]"});
+  };
+  const auto steep = with("steep.obj");
+  EXPECT_EQ(steep.exit_code, 1);
+  EXPECT_THAT(steep.out, HasSubstr(": fine, 0 of "));
+  EXPECT_THAT(steep.out, HasSubstr("not safe, the place to land at (-75.00, 0.00, 0.00) is 14.0 "
+                                   "degrees steep in the scene"));
+  EXPECT_EQ(with("gentle.obj").exit_code, 0);
+}
+
+/// What the mission's camera measures of a ramp through the pad that rises to the east.
+geometry::Scan scan_of_ramp(const geometry::Camera& camera, const geometry::View& view,
+                            double slope) {
+  geometry::Scan scan;
+  scan.world_from_sensor = geometry::camera_pose(view);
+  std::mt19937_64 random(4);
+  std::normal_distribution<double> noise(0.0, 0.02);
+  const Vector3d normal = Vector3d(-slope, 0.0, 1.0).normalized();
+  for (int row = 0; row < camera.height(); ++row) {
+    for (int column = 0; column < camera.width(); ++column) {
+      const Vector3d ray = scan.world_from_sensor.linear() * camera.ray({column, row}).normalized();
+      const double range = normal.dot(pad - view.position) / normal.dot(ray);
+      if (!(range > 0.0 && range < 50.0)) continue;
+      scan.points.push_back((view.position + (range + noise(random)) * ray).cast<float>());
+      scan.pixels.push_back(static_cast<std::uint32_t>(row * camera.width() + column));
+    }
+  }
+  return scan;
+}
+
+TEST(Pads, AreMeasuredByTheSurveyAndRefusedInItsRoute) {
+  const TestFolder& folder = package();
+  const config::Mission mission = config::read_mission(folder / "m.yaml");
+  const double slope = std::tan(13.0 * radians_per_degree);
+  session::SurveyFlight flight(mission, geometry::look_at({-30, 0, 8}, {0, 0, 5}));
+  flight.take_in(scan_of_ramp(geometry::Camera(mission.sensor.camera.camera),
+                              geometry::look_at({-75, -8, 8}, {-75, 0, 0}), slope));
+  const session::FlownSurvey flown = flight.finish({});
+  ASSERT_EQ(flown.grounds.size(), 1U);
+  EXPECT_NEAR(flown.grounds[0].slope, 13.0 * radians_per_degree, 0.5 * radians_per_degree);
+
+  const package::PackagedSurvey survey = package::read_package(folder / "out", {});
+  EXPECT_THAT(testing_support::complaint_of([&] {
+                package::plan_flight(survey.mission, survey.measured, survey.pad, survey.views,
+                                     survey.ways, flown.grounds);
+              }),
+              HasSubstr("degrees steep as measured; at most 10.0 degrees"));
+}
+
+}  // namespace
+}  // namespace skycap::missions

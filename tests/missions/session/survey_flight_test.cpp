@@ -1,0 +1,394 @@
+#include "missions/session/survey_flight.h"
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include "flight/export/export.h"
+#include "flight/route/route.h"
+#include "flight/space/clearance.h"
+#include "flight/way_home/returnable_space.h"
+#include "missions/config/mission_flight.h"
+#include "missions/config/resolved_mission.h"
+#include "missions/package/package.h"
+#include "missions/simulation/survey_runner.h"
+#include "tests/missions/flown_mission.h"
+#include "tests/missions/run_skycap.h"
+#include "tests/support/complaint.h"
+
+namespace skycap::missions {
+namespace {
+
+using Eigen::Vector3d;
+using nlohmann::json;
+using testing::EndsWith;
+using testing::HasSubstr;
+using tests::content_of;
+using tests::flown_mission;
+using tests::run_skycap;
+using tests::TestFolder;
+
+/// What the flight must keep away from, seen or not.
+flight::KnownSpace truth_of(const config::Mission& mission, const evaluation::SurveyScene& scene) {
+  flight::Obstacles obstacles = config::flight_rules(mission);
+  obstacles.mesh = scene.model();
+  return flight::KnownSpace(obstacles);
+}
+
+// The planner's and the flight's world is what was measured. This is the other one.
+TEST(SurveyFlight, NeverComesNearWhatItHasNotSeen) {
+  const config::Mission mission = config::parse_mission(flown_mission(), "m.yaml");
+  const evaluation::SurveyScene scene(mission, "");
+  const flight::KnownSpace truth = truth_of(mission, scene);
+  for (const std::uint64_t seed : {1, 2}) {
+    const session::SurveyRecord record = simulation::run_survey(mission, scene, seed, 1);
+    ASSERT_TRUE(record.flown);
+    ASSERT_EQ(record.flown->legs.size(), record.views.size());
+    EXPECT_GT(record.views.size(), 4U);
+    for (std::size_t i = 0; i < record.views.size(); ++i) {
+      const session::FlownLeg& leg = record.flown->legs[i];
+      EXPECT_EQ(leg.points.back(), record.views[i].surveyed.view.position);
+      EXPECT_GE(leg.clearance, 2.0);
+      EXPECT_TRUE(flight::check_route(leg.points, truth, 2.0).empty()) << "leg to view " << i;
+      const Vector3d from =
+          i > 0 ? record.views[i - 1].surveyed.view.position
+                : record.flown->pad + Vector3d(0, 0, config::takeoff_climb_of(mission));
+      EXPECT_EQ(leg.points.front(), from);
+    }
+    EXPECT_GE(record.flown->length(), record.distance());
+  }
+}
+
+TEST(SurveyFlight, DoesNotDependOnThreads) {
+  const config::Mission mission = config::parse_mission(flown_mission(), "m.yaml");
+  const evaluation::SurveyScene scene(mission, "");
+  const session::SurveyRecord one = simulation::run_survey(mission, scene, 1, 1),
+                              two = simulation::run_survey(mission, scene, 1, 2);
+  EXPECT_EQ(package::views_csv(one), package::views_csv(two));
+  EXPECT_EQ(one.flown->length(), two.flown->length());
+  EXPECT_EQ(one.flown->measured->free_volume(), two.flown->measured->free_volume());
+}
+
+// The shipped missions that fly, from any random start.
+TEST(SurveyFlight, ReachesTheFirstViewOfTheShippedMissions) {
+  const std::filesystem::path folder = std::filesystem::path(SKYCAP_SOURCE_DIR) / "missions";
+  for (const char* name : {"radcliffe_camera.yaml", "city_block.yaml"}) {
+    const config::Mission mission =
+        config::read_mission(folder / name, {{"--set", "evaluation.samples", "1000"}});
+    ASSERT_TRUE(mission.flight.is_flown()) << name;
+    const evaluation::SurveyScene scene(mission, folder);
+    for (std::uint64_t seed = 1; seed <= 20; ++seed) {
+      EXPECT_NO_THROW(session::SurveyFlight(mission, scene.first_view(seed)))
+          << name << " " << seed;
+    }
+  }
+}
+
+TEST(SurveyFlight, LooksOnlyWhereTheGimbalCan) {
+  const config::Mission mission = config::parse_mission(flown_mission(), "m.yaml");
+  const geometry::View first = geometry::look_at({-30, 0, 8}, {0, 0, 5});
+  session::SurveyFlight flight(mission, first);
+  const Vector3d place(-30, 4, 8);
+  EXPECT_TRUE(flight.can_reach(first.position, {place, Vector3d::UnitX()}));
+  const double too_steep = config::vehicle_of(mission).gimbal_max + 0.01;
+  EXPECT_FALSE(flight.can_reach(first.position,
+                                {place, Vector3d(std::cos(too_steep), 0, std::sin(too_steep))}));
+}
+
+TEST(SurveyFlight, StopsInTheSearchForAWay) {
+  const config::Mission mission = config::parse_mission(flown_mission(), "m.yaml");
+  const geometry::View first = geometry::look_at({-30, 0, 8}, {0, 0, 5});
+  session::SurveyFlight flight(mission, first);
+  std::stop_source stop;
+  flight.stop_on(stop.get_token());
+  const geometry::View next{{-30, 4, 8}, Vector3d::UnitX()};
+  EXPECT_TRUE(flight.can_reach(first.position, next));
+  stop.request_stop();
+  EXPECT_THROW(flight.can_reach(first.position, next), survey::Interrupted);
+}
+
+/// The package of one survey, which all tests below only read.
+const TestFolder& package() {
+  static const TestFolder folder;
+  static const bool is_made = [] {
+    const std::string mission = folder.write("m.yaml", flown_mission());
+    const auto run = run_skycap({"plan", mission, "--out", folder / "out"});
+    EXPECT_EQ(run.exit_code, 0) << run.err;
+    EXPECT_THAT(run.out, HasSubstr("every leg proven at 2.00 m"));
+    return true;
+  }();
+  EXPECT_TRUE(is_made);
+  return folder;
+}
+
+TEST(FlownPackage, HoldsTheRouteInEveryFormatAndEachFileIsProvenAgainstTheTruth) {
+  const TestFolder& folder = package();
+  const json summary = json::parse(content_of(folder / "out/summary.json"));
+  const json& flight = summary.at("flight");
+  EXPECT_GE(summary.at("min_clearance_m").get<double>(), 2.0);
+  EXPECT_EQ(summary.at("route_length_m"), flight.at("route").at("length_m"));
+  EXPECT_GE(flight.at("route").at("order_length_m"), flight.at("route").at("order_bound_m"));
+  double terms = 0.0;
+  for (const char* term :
+       {"vehicle_radius", "position_error", "tracking_error", "map_error", "margin"}) {
+    terms += flight.at("clearance_m").at(term).get<double>();
+  }
+  EXPECT_NEAR(terms, 2.0, 1e-12);
+  EXPECT_EQ(flight.at("route").at("stations").get<std::size_t>() +
+                flight.at("route").at("unreached").size(),
+            summary.at("views").get<std::size_t>());
+
+  for (const char* ending : {"plan", "waypoints", "kmz", "kml", "geojson", "csv"}) {
+    const std::string file = folder / ("out/mission." + std::string(ending));
+    const auto check = run_skycap({"check", folder / "m.yaml", "--route", file});
+    EXPECT_EQ(check.exit_code, 0) << ending << check.out << check.err;
+    EXPECT_THAT(check.out, HasSubstr(": fine, 0 of "));
+  }
+}
+
+// Returns as PX4 flies them, from anywhere on the route, against the teapot as it is: a point every
+// 10 cm, asked for its distance alone.
+TEST(FlownPackage, NoReturnFromAnywhereComesNearTheTruth) {
+  const TestFolder& folder = package();
+  const package::PackagedSurvey survey = package::read_package(folder / "out", {});
+  const flight::Route route =
+      package::plan_flight(survey.mission, survey.measured, survey.pad, survey.views, survey.ways);
+  ASSERT_TRUE(route.returns);
+  const json stated =
+      json::parse(content_of(folder / "out/summary.json")).at("flight").at("return");
+  EXPECT_EQ(stated.at("height_m").get<double>(), route.returns->height);
+  EXPECT_EQ(stated.at("parameters"), json::array({"mission.params"}));
+
+  const evaluation::SurveyScene scene(survey.mission, "");
+  const flight::KnownSpace truth = truth_of(survey.mission, scene);
+  std::mt19937_64 random(3);
+  std::uniform_real_distribution<double> share(0.0, 1.0);
+  const std::vector<Vector3d> points = flight::sortie_points(route, route.sorties.at(0));
+  const double level = survey.pad.z() + route.returns->height;
+  for (int i = 0; i < 1000; ++i) {
+    const std::size_t leg = 1 + random() % (points.size() - 1);
+    const Vector3d from = flight::Segment{points[leg - 1], points[leg]}.at(share(random));
+    // PX4 begins to fly level from up to 0.8 m below the height of return on.
+    const double top = std::max(from.z(), level - 0.8 * share(random));
+    const Vector3d above(from.x(), from.y(), top), home(survey.pad.x(), survey.pad.y(), top);
+    for (const flight::Segment& piece : {flight::Segment{from, above}, {above, home}}) {
+      const int steps = 1 + static_cast<int>(piece.length() / 0.1);
+      for (int step = 0; step <= steps; ++step) {
+        const Vector3d place = piece.at(static_cast<double>(step) / steps);
+        ASSERT_GE(truth.distance(place, 3.0), route.returns->clearance - 1e-6)
+            << place.transpose() << " from " << from.transpose();
+      }
+    }
+  }
+}
+
+TEST(FlownPackage, ChecksProveReturnsAtTheHeightThatIsStated) {
+  const TestFolder& folder = package();
+  const auto check = [&](const std::string& file, const std::vector<std::string>& more) {
+    std::vector<std::string> arguments{"check", folder / "m.yaml", "--route", file};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return run_skycap(arguments);
+  };
+  EXPECT_THAT(check(folder / "out/mission.plan", {}).out, HasSubstr("(mission.params) are proven"));
+  EXPECT_THAT(check(folder / "out/mission.kmz", {}).out, HasSubstr("(globalRTHHeight) are proven"));
+  EXPECT_THAT(check(folder / "out/mission.csv", {}).out, HasSubstr("returns are not checked"));
+
+  // Alone, the file says nothing of returns; beside other parameters those count.
+  const TestFolder alone;
+  const std::string plan = alone.write("mission.plan", content_of(folder / "out/mission.plan"));
+  const auto unsaid = check(plan, {});
+  EXPECT_EQ(unsaid.exit_code, 0);
+  EXPECT_THAT(unsaid.out, HasSubstr("does not say how high the vehicle returns: set it to "));
+  alone.write("mission.params", "1\t1\tRTL_RETURN_ALT\t40\t9\n");
+  const auto cone = check(plan, {});
+  EXPECT_EQ(cone.exit_code, 1);
+  EXPECT_THAT(cone.out, HasSubstr("not safe, mission.params: RTL_CONE_ANG is 45; it must be 0"));
+}
+
+TEST(FlownPackage, ChecksFindTheLegsThatAScenesOtherShapeMakesUnsafe) {
+  const TestFolder& folder = package();
+  // The same route with the teapot moved to the lowest of its stations.
+  const std::vector<geometry::View> views = package::read_package(folder / "out", {}).views;
+  const Vector3d at = std::ranges::min(views, {}, [](const geometry::View& view) {
+                        return view.position.z();
+                      }).position;
+  const std::string place = std::to_string(at.x()) + ", " + std::to_string(at.y());
+  const auto run = run_skycap({"check", folder / "m.yaml", "--route", folder / "out/mission.plan",
+                               "--set", "scene.position=[" + place + ", 0]"});
+  EXPECT_EQ(run.exit_code, 1);
+  EXPECT_THAT(run.out, HasSubstr("mission.plan: leg "));
+  EXPECT_THAT(run.out, HasSubstr(" of the scene at ("));
+  EXPECT_THAT(run.out, HasSubstr(": not safe, "));
+}
+
+// In its package a file is held to the package's pad; items are named as the ground station does.
+TEST(FlownPackage, ChecksNameTheItemsOfSpoiledFiles) {
+  const TestFolder& folder = package();
+  json plan = json::parse(content_of(folder / "out/mission.plan"));
+  const auto check = [&](const json& spoiled) {
+    std::filesystem::create_directory(folder / "spoiled");
+    std::filesystem::copy_file(folder / "out/summary.json", folder / "spoiled/summary.json",
+                               std::filesystem::copy_options::overwrite_existing);
+    folder.write("spoiled/mission.plan", spoiled.dump());
+    return run_skycap({"check", folder / "m.yaml", "--route", folder / "spoiled/mission.plan"});
+  };
+  EXPECT_EQ(check(plan).exit_code, 0);
+  json moved = plan;
+  moved["mission"]["plannedHomePosition"][2] =
+      moved["mission"]["plannedHomePosition"][2].get<double>() + 30.0;
+  EXPECT_EQ(check(moved).exit_code, 1);
+  EXPECT_THAT(check(moved).out, HasSubstr("mission.plannedHomePosition is 30.0 m above the pad"));
+  json skipping = plan;
+  const std::size_t last = skipping["mission"]["items"].size() - 2;
+  skipping["mission"]["items"][last]["command"] = 82;
+  EXPECT_EQ(check(skipping).exit_code, 1);
+  EXPECT_THAT(check(skipping).out, HasSubstr("mission.plan: item " + std::to_string(last + 1) +
+                                             " (command 82) is a NAV_SPLINE_WAYPOINT"));
+}
+
+TEST(FlownPackage, IsExportedAgainForAnotherVehicle) {
+  const TestFolder& folder = package();
+  const auto run = run_skycap({"export", folder / "out", "--format", "kmz", "--format", "litchi",
+                               "--set", "flight.vehicle=mavic_3e", "--out", folder / "again"});
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  EXPECT_THAT(run.out, HasSubstr("mavic_3e, "));
+  EXPECT_FALSE(std::filesystem::exists(folder / "again/mission.plan"));
+  for (const char* file : {"again/mission.kmz", "again/mission.litchi.csv"}) {
+    EXPECT_EQ(run_skycap({"check", folder / "m.yaml", "--route", folder / file}).exit_code, 0);
+  }
+}
+
+TEST(FlownPackage, ReadsBackAsItWasPlanned) {
+  const TestFolder& folder = package();
+  const package::PackagedSurvey survey = package::read_package(folder / "out", {});
+  const config::Mission mission = config::read_mission(folder / "m.yaml");
+  EXPECT_EQ(survey.mission.flight.clearance, mission.flight.clearance);
+  EXPECT_EQ(survey.mission.planner.see.view_distance, mission.planner.see.view_distance);
+  const json summary = json::parse(content_of(folder / "out/summary.json"));
+  EXPECT_EQ(survey.views.size(), summary.at("views").get<std::size_t>());
+  const flight::Route route =
+      package::plan_flight(survey.mission, survey.measured, survey.pad, survey.views, survey.ways);
+  EXPECT_EQ(route.length, summary.at("route_length_m").get<double>());
+}
+
+// In the order of the survey nothing is flown that the survey did not fly, but for the way home,
+// and in place of ways that nobody could be called home from.
+TEST(FlownPackage, KeepsTheWaysOfTheSurveyInItsOrder) {
+  const TestFolder& folder = package();
+  const package::PackagedSurvey survey =
+      package::read_package(folder / "out", {{"--set", "flight.order", "survey"}});
+  const flight::Route route =
+      package::plan_flight(survey.mission, survey.measured, survey.pad, survey.views, survey.ways);
+  ASSERT_EQ(route.sorties.size(), 1U);
+  ASSERT_EQ(route.stations.size(), survey.views.size());
+  EXPECT_EQ(route.sorties[0].out.points, survey.ways[0]);
+  const flight::KnownSpace rules(config::flight_rules(survey.mission));
+  const flight::JointSpace space({&survey.measured, &rules});
+  double top = survey.pad.z() + route.options.takeoff_climb;
+  for (const geometry::View& view : survey.views) top = std::max(top, view.position.z());
+  const flight::ReturnableSpace returnable(space, planning_law(route.options, top));
+  for (std::size_t i = 0; i < route.legs.size(); ++i) {
+    EXPECT_EQ(route.stations[i + 1].view_index, i + 1);
+    EXPECT_EQ(route.legs[i].points.front(), survey.ways[i + 1].front()) << i;
+    EXPECT_EQ(route.legs[i].points.back(), survey.ways[i + 1].back()) << i;
+    EXPECT_EQ(route.legs[i].points == survey.ways[i + 1],
+              returnable.has_returns(survey.ways[i + 1], route.clearance))
+        << i;
+  }
+}
+
+TEST(FlownPackage, RefusesWaysOfASummaryThatLeadNowhere) {
+  const TestFolder& folder = package();
+  json summary = json::parse(content_of(folder / "out/summary.json"));
+  summary["per_view"][1]["way"][0][2] = 1e300;
+  EXPECT_THAT(testing_support::complaint_of(
+                  [&] { package::parse_package_summary(summary.dump(), "summary.json"); }),
+              HasSubstr("summary.json: per_view[1].way"));
+}
+
+TEST(FlownPackage, SmallBatteriesGiveAFileForEachSortie) {
+  const TestFolder& folder = package();
+  const auto run = run_skycap({"export", folder / "out", "--format", "plan", "--set",
+                               "flight.hold=300", "--out", folder / "sorties"});
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  EXPECT_TRUE(std::filesystem::exists(folder / "sorties/mission-1.plan"));
+  EXPECT_TRUE(std::filesystem::exists(folder / "sorties/mission-2.plan"));
+  // Exported again with full batteries, the files of the other split do not stay.
+  EXPECT_EQ(run_skycap({"export", folder / "out", "--format", "plan", "--out", folder / "sorties"})
+                .exit_code,
+            0);
+  EXPECT_TRUE(std::filesystem::exists(folder / "sorties/mission.plan"));
+  EXPECT_FALSE(std::filesystem::exists(folder / "sorties/mission-1.plan"));
+}
+
+TEST(FlownPackage, SaysWhatAFormatLacks) {
+  const TestFolder folder;
+  std::string text = flown_mission();
+  text.erase(text.find("site:"), text.find("evaluation:") - text.find("site:"));
+  const std::string mission = folder.write("m.yaml", text);
+  const auto run = run_skycap({"plan", mission, "--out", folder / "out", "--max-views", "3"});
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  EXPECT_THAT(run.out, HasSubstr("no mission.kmz: it needs the place on the Earth"));
+  EXPECT_TRUE(std::filesystem::exists(folder / "out/mission.csv"));
+
+  const auto alone = run_skycap({"export", folder / "out", "--format", "plan", "--set",
+                                 "site.latitude_deg=1", "--set", "site.longitude_deg=2"});
+  EXPECT_EQ(alone.exit_code, 0) << alone.err;  // above sea level by EGM96
+}
+
+// The pilot vouched for the air above the pad, but the tip of the spout is there.
+TEST(FlownPackage, KeepsTheSurveyWhenThereIsNoRoute) {
+  const TestFolder folder;
+  const std::string mission = folder.write("m.yaml", flown_mission());
+  const auto run =
+      run_skycap({"plan", mission, "--out", folder / "out", "--max-views", "4", "--set",
+                  "flight.unknown_box.max=[9.3, 11, 13]", "--set", "flight.takeoff=[11.6, 0, 0]",
+                  "--set", "flight.takeoff_climb=7.4", "--set", "start.position=[32, 0, 8]",
+                  "--set", "start.look_at=[0, 0, 5]"});
+  EXPECT_EQ(run.exit_code, 1) << run.err;
+  EXPECT_THAT(run.out, HasSubstr("flight    no route: the place above the take-off pad"));
+  EXPECT_TRUE(std::filesystem::exists(folder / "out/cloud.ply"));
+  EXPECT_FALSE(std::filesystem::exists(folder / "out/mission.plan"));
+  const json summary = json::parse(content_of(folder / "out/summary.json"));
+  EXPECT_THAT(summary.at("flight").at("failure").get<std::string>(), HasSubstr("a measured point"));
+  // From another pad there is one.
+  EXPECT_EQ(run_skycap({"export", folder / "out", "--format", "plan", "--set",
+                        "flight.takeoff=[-30, 0, 0]"})
+                .exit_code,
+            0);
+}
+
+TEST(FlownPackage, BrokenPackagesAndRoutesAreNamed) {
+  const TestFolder& folder = package();
+  const auto message = [](const std::vector<std::string>& arguments) {
+    const auto run = run_skycap(arguments);
+    EXPECT_EQ(run.exit_code, 2);
+    EXPECT_EQ(std::ranges::count(run.err, '\n'), 1);
+    return run.err;
+  };
+  EXPECT_THAT(message({"export", folder / "nowhere", "--format", "kml"}),
+              HasSubstr("summary.json: there is no such file"));
+  EXPECT_THAT(message({"export", folder / "out", "--format", "pdf"}),
+              HasSubstr("format \"pdf\" is not known; there are plan, "));
+  const TestFolder broken;
+  broken.write("summary.json", "{\"mission\": 3");
+  EXPECT_THAT(message({"export", broken.path().string(), "--format", "kml"}),
+              HasSubstr("summary.json: is not a package's summary"));
+  broken.write("summary.json", content_of(folder / "out/summary.json"));
+  EXPECT_THAT(message({"export", broken.path().string(), "--format", "kml"}),
+              HasSubstr("free_space.bin: cannot be read; plan the mission again"));
+  broken.write("free_space.bin", "skycap free v1");
+  EXPECT_THAT(message({"export", broken.path().string(), "--format", "kml"}),
+              HasSubstr("free_space.bin: is not a file of measured free space"));
+  EXPECT_THAT(message({"check", folder / "m.yaml", "--route", folder / "out/cloud.ply"}),
+              HasSubstr("cloud.ply is no route file: its name must end in .plan"));
+  EXPECT_THAT(message({"check", folder / "m.yaml", "--route", folder / "no.plan"}),
+              HasSubstr("no.plan: there is no such file"));
+}
+
+}  // namespace
+}  // namespace skycap::missions

@@ -1,0 +1,139 @@
+#include "missions/simulation/feasibility.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "missions/config/resolved_mission.h"
+#include "missions/simulation/expectation.h"
+#include "missions/simulation/survey_runner.h"
+#include "tests/missions/flown_mission.h"
+#include "tests/missions/run_skycap.h"
+
+namespace skycap::missions {
+namespace {
+
+using testing::Contains;
+using testing::HasSubstr;
+using testing::IsEmpty;
+using tests::flown_mission;
+using tests::quick_mission;
+using tests::run_skycap;
+using tests::TestFolder;
+
+using Settings = std::vector<std::pair<std::string, std::string>>;
+
+std::vector<config::KeyOverride> overrides(const Settings& settings) {
+  std::vector<config::KeyOverride> overrides;
+  for (const auto& [key, value] : settings) overrides.push_back({"--set", key, value});
+  return overrides;
+}
+
+simulation::Feasibility of(const std::string& text, const Settings& settings) {
+  const config::Mission mission = config::parse_mission(text, "m.yaml", overrides(settings));
+  return simulation::feasibility(mission, evaluation::SurveyScene(mission, ""), 2);
+}
+
+TEST(Feasibility, FindsNothingInMissionsThatWork) {
+  for (const std::string& text : {quick_mission(), flown_mission()}) {
+    const simulation::Feasibility found = of(text, {});
+    EXPECT_THAT(found.problems, IsEmpty());
+    EXPECT_THAT(found.warnings, IsEmpty());
+  }
+}
+
+struct Flaw {
+  Settings settings;
+  std::string sentence;  ///< a part of it
+};
+
+const std::string box_min = "planner.scene_box.min", box_max = "planner.scene_box.max";
+
+TEST(Feasibility, SaysWhatCannotWork) {
+  const std::vector<Flaw> flaws{
+      {{{"limits.stand_off", "100"}}, "limits.stand_off of 100 m is not less than the view dist"},
+      {{{"scene.longest_side", "5000"}}, "in millimetres, give scene.scale: 0.001"},
+      {{{"scene.longest_side", "0.05"}}, "one point would cover it; check its unit"},
+      {{{"sensor.max_range", "0.1"}}, "the sensor measures up to 0.1 m"},
+      {{{"sensor.min_range", "50"}}, "the sensor measures from 50 m on"},
+      {{{box_min, "[8, 8, 8]"}, {box_max, "[9, 9, 9]"}},
+       "holds nothing of the model, which reaches"},
+      {{{"limits.ground_clearance", "50"}}, "nothing of the model can be seen"},
+      {{{"start.position", "[0, 3, 1]"}, {"start.look_at", "[0, 6, 1]"}},
+       "the first scan holds no point of the scene; start from a place that sees it"}};
+  for (const Flaw& flaw : flaws) {
+    EXPECT_THAT(of(quick_mission(), flaw.settings).problems, Contains(HasSubstr(flaw.sentence)))
+        << flaw.sentence;
+  }
+  const Settings small_box{{"flight.unknown_box.max", "[0, 11, 13]"}};
+  EXPECT_THAT(of(flown_mission(), small_box).problems,
+              Contains(HasSubstr("flight.unknown_box leaves")));
+}
+
+TEST(Feasibility, WarnsOfWhatIsHardlyMeant) {
+  const std::vector<Flaw> flaws{
+      {{{box_min, "[-1, -1, 0]"}, {box_max, "[0, 1, 1]"}}, "of the surface out, which no survey"},
+      {{{"planner.view_distance", "20"}}, "covers only some of what it sees"},
+      {{{"planner.resolution_radius", "0.1"}, {"planner.spacing", "0.06"}},
+       "what lies between them does not count"}};
+  for (const Flaw& flaw : flaws) {
+    const simulation::Feasibility found = of(quick_mission(), flaw.settings);
+    EXPECT_THAT(found.warnings, Contains(HasSubstr(flaw.sentence))) << flaw.sentence;
+    EXPECT_THAT(found.problems, IsEmpty()) << flaw.sentence;
+  }
+}
+
+TEST(Feasibility, IsAskedBeforeASurveyBegins) {
+  const TestFolder folder;
+  const std::string mission = folder.write("m.yaml", quick_mission());
+  const std::string sentence = "limits.stand_off of 100 m is not less than the view distance";
+  const auto checked = run_skycap({"check", mission, "--set", "limits.stand_off=100"});
+  EXPECT_EQ(checked.exit_code, 1);
+  EXPECT_THAT(checked.out, HasSubstr("m.yaml: cannot work"));
+  EXPECT_THAT(checked.out, HasSubstr(sentence));
+  for (const char* trials : {"", "2"}) {
+    std::vector<std::string> arguments{"plan",  mission,       "--set", "limits.stand_off=100",
+                                       "--out", folder / "out"};
+    if (*trials != '\0') arguments.insert(arguments.end(), {"--trials", trials});
+    const auto planned = run_skycap(arguments);
+    EXPECT_EQ(planned.exit_code, 2);
+    EXPECT_THAT(planned.err, HasSubstr(sentence));
+    EXPECT_FALSE(std::filesystem::exists(folder / "out"));
+  }
+}
+
+// The survey takes at least half the fewest views that were expected and at most twice the most; a
+// limit is not expected to be broken.
+TEST(Expectation, HoldsTheSurvey) {
+  const config::Mission mission =
+      config::parse_mission(quick_mission(), "m.yaml", {{"--planner", "planner.name", "skycap"}});
+  const evaluation::SurveyScene scene(mission, "");
+  const simulation::Expectation expected = simulation::expectation(mission, scene, 2);
+  const std::size_t views = simulation::run_survey(mission, scene, 1, 2).views.size();
+  EXPECT_GE(2 * views, expected.least_views);
+  EXPECT_LE(views, 2 * expected.most_views);
+  EXPECT_LE(expected.known_views, expected.least_views);
+  EXPECT_LT(expected.least_views, expected.most_views);
+  EXPECT_GT(expected.least_minutes, 0.0);
+  EXPECT_GT(expected.most_time, 0.0);
+  EXPECT_GT(expected.memory, 1e7);
+
+  const config::Mission limited =
+      config::parse_mission(quick_mission(), "m.yaml",
+                            overrides({{"limits.max_views", "3"}, {"limits.max_minutes", "1"}}));
+  const simulation::Expectation at_most = simulation::expectation(limited, scene, 2);
+  EXPECT_EQ(at_most.most_views, 3U);
+  EXPECT_LE(at_most.most_minutes, 1.0);
+}
+
+TEST(Expectation, OfAVolumetricPlannerIsItsNumberOfViews) {
+  const config::Mission mission =
+      config::parse_mission(quick_mission(), "m.yaml",
+                            overrides({{"planner.name", "oa"}, {"volumetric.view_limit", "8"}}));
+  const simulation::Expectation expected =
+      simulation::expectation(mission, evaluation::SurveyScene(mission, ""), 2);
+  EXPECT_EQ(expected.least_views, 8U);
+  EXPECT_EQ(expected.most_views, 8U);
+}
+
+}  // namespace
+}  // namespace skycap::missions

@@ -1,0 +1,73 @@
+#include "missions/simulation/omniscient.h"
+
+#include <algorithm>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "missions/config/resolved_mission.h"
+#include "missions/evaluation/coverage.h"
+#include "tests/missions/run_skycap.h"
+
+namespace skycap::missions {
+namespace {
+
+using tests::quick_mission;
+
+constexpr simulation::OmniscientConfig quick{
+    .candidates = 200, .samples = 1500, .wanted_coverage = {}};
+
+TEST(Omniscient, NeedsFewerViewsThanAPlannerForTheSameCoverage) {
+  const config::Mission mission = config::parse_mission(quick_mission("seed: 3\n"), "m.yaml",
+                                                        {{"--planner", "planner.name", "skycap"}});
+  const evaluation::SurveyScene scene(mission, "");
+  const session::SurveyRecord planned = simulation::run_survey(mission, scene, 3, 1);
+  // The last places are found by luck among so few candidates.
+  simulation::OmniscientConfig config = quick;
+  config.candidates = 600;
+  config.wanted_coverage = 0.95 * planned.coverage();
+  const session::SurveyRecord known = simulation::survey_omnisciently(mission, scene, 3, 1, config);
+  const auto reached = std::ranges::find_if(planned.views, [&](const session::JudgedView& view) {
+    return view.coverage >= *config.wanted_coverage;
+  });
+  EXPECT_LE(known.views.size(), reached - planned.views.begin() + 1);
+  // The tour takes the views in another order, so that other points are left out as too near; and
+  // the last view may show more than was wanted.
+  EXPECT_GE(known.coverage(), *config.wanted_coverage - 0.03);
+}
+
+TEST(Omniscient, StartsWhereThePlannersStartAndKeepsTheLimits) {
+  const config::Mission mission =
+      config::parse_mission(quick_mission("site: {lowest_height: 0.3}\n"), "m.yaml");
+  const evaluation::SurveyScene scene(mission, "");
+  const session::SurveyRecord record = simulation::survey_omnisciently(mission, scene, 1, 1, quick);
+  EXPECT_EQ(record.views.front().surveyed.view.position, scene.first_view(1).position);
+  for (const session::JudgedView& judged : record.views) {
+    EXPECT_GE(judged.surveyed.view.position.z(), 0.3);
+  }
+  evaluation::CoverageMeter meter(scene.samples().points, mission.evaluation.registration_distance);
+  meter.add(record.cloud.positions);
+  EXPECT_EQ(record.coverage(), meter.share());
+  EXPECT_GT(record.coverage(), 0.5);
+}
+
+TEST(Omniscient, IsTheSameForAnyNumberOfThreads) {
+  const config::Mission mission = config::parse_mission(quick_mission(), "m.yaml");
+  const evaluation::SurveyScene scene(mission, "");
+  const session::SurveyRecord one = simulation::survey_omnisciently(mission, scene, 2, 1, quick);
+  const session::SurveyRecord three = simulation::survey_omnisciently(mission, scene, 2, 3, quick);
+  EXPECT_EQ(one.cloud.positions, three.cloud.positions);
+  EXPECT_EQ(one.distance(), three.distance());
+}
+
+TEST(Omniscient, EndsAtTheLimitOfViews) {
+  const config::Mission mission =
+      config::parse_mission(quick_mission(), "m.yaml", {{"--max-views", "limits.max_views", "2"}});
+  const session::SurveyRecord record =
+      simulation::survey_omnisciently(mission, evaluation::SurveyScene(mission, ""), 1, 1, quick);
+  EXPECT_EQ(record.views.size(), 2U);
+  EXPECT_EQ(record.stop_reason, survey::StopReason::view_limit);
+}
+
+}  // namespace
+}  // namespace skycap::missions

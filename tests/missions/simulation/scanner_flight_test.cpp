@@ -1,0 +1,57 @@
+#include <algorithm>
+#include <cmath>
+
+#include <gtest/gtest.h>
+
+#include "geometry/place/camera.h"
+#include "missions/config/resolved_mission.h"
+#include "missions/session/survey_flight.h"
+
+namespace skycap::missions {
+namespace {
+
+using Eigen::Vector3d;
+
+/// Returns from the ground, and from fifty metres away up to some elevation.
+geometry::Scan far_returns(const geometry::View& from, double highest) {
+  geometry::Scan scan{.world_from_sensor = geometry::camera_pose(from)};
+  constexpr double step = 0.003, lowest = -0.8, widest = 1.2, farthest = 50.0;
+  for (double up = lowest; up < highest; up += step) {
+    const double range = std::min(farthest, from.position.z() / std::max(-std::sin(up), 1e-9));
+    for (double aside = -widest; aside < widest; aside += step) {
+      const Vector3d direction(std::cos(up) * std::cos(aside), std::cos(up) * std::sin(aside),
+                               std::sin(up));
+      scan.points.emplace_back((from.position + range * direction).cast<float>());
+    }
+  }
+  return scan;
+}
+
+// Autopilots climb before they return: a view is no good below air that nobody has seen, though the
+// way there is free.
+TEST(ScannerFlight, GoesOnlyWhereItsAutopilotCanReturnFrom) {
+  const config::Mission mission = config::parse_mission(
+      "scene: {model: builtin:teapot, longest_side: 20}\n"
+      "sensor: {lidar: ouster_os1_128}\n"
+      "planner: {density: 100, resolution_radius: 0.5, view_distance: 20}\n"
+      "evaluation: {registration_distance: 0.1}\n"
+      "flight: {vehicle: m350_rtk, unknown_box: {min: [-15, -15, 0], max: [15, 15, 30]}}\n",
+      "m.yaml");
+  const geometry::View first = geometry::look_at({-20, 0, 10}, {0, 0, 10});
+  const geometry::View inside = geometry::look_at({0, 0, 10}, {0, 10, 10});
+  session::SurveyFlight flight(mission, first);
+  EXPECT_TRUE(flight.can_reach(first.position, geometry::look_at({-20, 15, 20}, {0, 0, 20})));
+  EXPECT_FALSE(flight.find_way(first.position, inside.position));
+  flight.take_in(far_returns(first, 0.25));
+  EXPECT_TRUE(flight.find_way(first.position, inside.position));
+  EXPECT_FALSE(flight.may_be_at(inside.position));
+  EXPECT_FALSE(flight.can_reach(first.position, inside));
+  // All air above the way, up to the box's near upper edge, which is 76 degrees up from there:
+  // this autopilot may also return without a climb, at any height that it has risen to.
+  flight.take_in(far_returns(first, 1.4));
+  EXPECT_TRUE(flight.may_be_at(inside.position));
+  EXPECT_TRUE(flight.can_reach(first.position, inside));
+}
+
+}  // namespace
+}  // namespace skycap::missions

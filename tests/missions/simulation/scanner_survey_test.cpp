@@ -1,0 +1,67 @@
+// Surveys by scanners that do not see a ring at a time: from the opening flight to the end.
+#include <string>
+
+#include <gtest/gtest.h>
+
+#include "missions/config/opening_flight.h"
+#include "missions/config/resolved_mission.h"
+#include "missions/evaluation/coverage.h"
+#include "missions/evaluation/survey_scene.h"
+#include "missions/simulation/expectation.h"
+#include "missions/simulation/survey_runner.h"
+
+namespace skycap::missions {
+namespace {
+
+/// A teapot of 20 m in a box, on the ground.
+config::Mission mission_by(const std::string& lidar) {
+  return config::parse_mission(
+      "scene: {model: 'builtin:teapot', longest_side: 20.0, ground: true}\n"
+      "sensor: {lidar: " +
+          lidar +
+          "}\n"
+          "planner: {density: 4, resolution_radius: 1, spacing: 0.2, view_distance: 14,\n"
+          "          scene_box: {min: [-11, -9, 0.3], max: [11, 9, 11]}}\n"
+          "flight: {vehicle: m350_rtk, takeoff: [-60, 0, 0], cruise_speed: 5,\n"
+          "         unknown_box: {min: [-11, -9, 0], max: [11, 9, 11]}}\n"
+          "evaluation: {registration_distance: 0.4, samples: 3000, visible_directions: 30,\n"
+          "             ceiling_views: 0}\n"
+          "limits: {max_views: 40}\n",
+      "m.yaml");
+}
+
+/// What the planner believes of its coverage, against the share that is covered of what could be
+/// seen.
+void expect_survey(const std::string& lidar, double least_coverage) {
+  const config::Mission mission = mission_by(lidar);
+  const evaluation::SurveyScene scene(mission, "");
+  const session::SurveyRecord record = simulation::run_survey(mission, scene, 1, 1);
+  EXPECT_TRUE(record.is_complete()) << survey::name_of(record.stop_reason);
+  EXPECT_LT(record.views.size(), 40U);
+  EXPECT_GE(record.flown.value().min_clearance(), mission.flight.clearance);
+  const double share = evaluation::covered_share(record.is_covered, scene.visible(1)).value();
+  EXPECT_GT(share, least_coverage);
+  EXPECT_NEAR(record.belief.value().coverage, share, 0.06);
+}
+
+TEST(ScannerSurvey, ByARosetteEndsByItselfAndKnowsWhatItCovered) {
+  expect_survey("livox_mid70", 0.85);
+}
+
+TEST(ScannerSurvey, ByALineEndsByItselfAndKnowsWhatItCovered) {
+  expect_survey("riegl_minivux_1uav", 0.85);
+}
+
+// A scanner that looks down at a fixed pitch may have no random view of the scene's middle.
+TEST(ScannerSurvey, IsForetoldFromWhereItsOpeningBegins) {
+  for (const char* lidar : {"livox_avia", "riegl_minivux_1uav", "ouster_os1_128"}) {
+    const config::Mission mission = mission_by(lidar);
+    const evaluation::SurveyScene scene(mission, "");
+    EXPECT_EQ(scene.first_view(mission.seed).position,
+              config::opening_views(mission).front().position);
+    EXPECT_GT(simulation::expectation(mission, scene, 2).known_views, 0U) << lidar;
+  }
+}
+
+}  // namespace
+}  // namespace skycap::missions

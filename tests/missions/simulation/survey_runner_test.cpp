@@ -1,0 +1,394 @@
+#include "missions/simulation/survey_runner.h"
+
+#include <algorithm>
+#include <chrono>
+#include <random>
+#include <stop_token>
+#include <thread>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include "geometry/error.h"
+#include "geometry/surfaces/mesh_distance.h"
+#include "missions/batch/benchmark/trials.h"
+#include "missions/config/mission_keys.h"
+#include "missions/config/planner_factory.h"
+#include "missions/config/resolved_mission.h"
+#include "missions/config/site.h"
+#include "missions/evaluation/coverage.h"
+#include "tests/missions/run_skycap.h"
+
+namespace skycap::missions {
+namespace {
+
+using nlohmann::json;
+using testing::HasSubstr;
+using testing::Not;
+using tests::content_of;
+using tests::quick_mission;
+using tests::run_skycap;
+using tests::TestFolder;
+
+TEST(SurveyScene, StartsWhereTheMissionSaysOrAtRandomAtTheStatedDistance) {
+  const config::Mission mission = config::parse_mission(quick_mission(), "m.yaml");
+  const evaluation::SurveyScene scene(mission, "");
+  const geometry::View a = scene.first_view(1), b = scene.first_view(2);
+  EXPECT_EQ(a.position, scene.first_view(1).position);
+  EXPECT_GT((a.position - b.position).norm(), 0.1);  // another direction
+  // Both are at d + mean distance from the same centroid, which both look at: the viewing lines
+  // meet there.
+  Eigen::Vector3d centroid = Eigen::Vector3d::Zero();
+  double mean_distance = 0.0;
+  const auto& points = scene.samples().points;
+  for (const auto& point : points) centroid += point.cast<double>() / double(points.size());
+  for (const auto& point : points) {
+    mean_distance += (point.cast<double>() - centroid).norm() / double(points.size());
+  }
+  for (const geometry::View& view : {a, b}) {
+    const double distance = scene.view_distance() + mean_distance;
+    EXPECT_LT((view.position + distance * view.direction - centroid).norm(), 1e-6);
+  }
+
+  const config::Mission given = config::parse_mission(
+      quick_mission("start: {position: [0, 3, 1], look_at: [0, 0, 1]}"), "m.yaml");
+  const geometry::View view = evaluation::SurveyScene(given, "").first_view(1);
+  EXPECT_EQ(view.position, Eigen::Vector3d(0, 3, 1));
+  EXPECT_LT((view.direction + Eigen::Vector3d::UnitY()).norm(), 1e-12);
+}
+
+// The order of the draws is part of a seed's meaning: the same start from every compiler.
+TEST(SurveyScene, DrawsRandomStartsInAStatedOrder) {
+  const config::Mission mission = config::parse_mission(quick_mission(), "m.yaml");
+  const evaluation::SurveyScene scene(mission, "");
+  for (std::uint64_t seed = 0; seed < 5; ++seed) {
+    std::mt19937_64 random(seed);
+    std::normal_distribution<double> normal;
+    Eigen::Vector3d from_centre;
+    for (const int axis : {2, 1, 0}) from_centre[axis] = normal(random);
+    EXPECT_LT((scene.first_view(seed).direction + from_centre.normalized()).norm(), 1e-12) << seed;
+  }
+}
+
+TEST(SurveyScene, KeepsRandomStartsAboveTheGroundClearance) {
+  const config::Mission mission = config::parse_mission(
+      quick_mission(), "m.yaml", {{"--set", "limits.ground_clearance", "0.5"}});
+  const evaluation::SurveyScene scene(mission, "");
+  for (std::uint64_t seed = 0; seed < 50; ++seed) {
+    EXPECT_GE(scene.first_view(seed).position.z(), 0.5);
+  }
+}
+
+/// All that planner.name knows.
+std::vector<std::string> planner_names() {
+  std::vector<std::string> names;
+  for (const config::Key& key : config::mission_keys()) {
+    if (key.path == "planner.name") names.assign(key.choices.begin(), key.choices.end());
+  }
+  return names;
+}
+
+// Each planner that a mission can name surveys the quick mission's scene.
+TEST(RunSurvey, EveryPlannerCoversMostOfTheScene) {
+  EXPECT_EQ(planner_names().size(), 10U);
+  for (const std::string& name : planner_names()) {
+    const config::Mission mission = config::parse_mission(
+        quick_mission(), "m.yaml",
+        {{"--planner", "planner.name", name}, {"--set", "volumetric.view_limit", "8"}});
+    const session::SurveyRecord record =
+        simulation::run_survey(mission, evaluation::SurveyScene(mission, ""), 1, 1);
+    EXPECT_GT(record.coverage(), 0.6) << name;
+    EXPECT_GE(record.views.size(), 2U) << name;
+  }
+}
+
+// The fence leaves a half plane, the prism takes a bite out of it, the gimbal looks down only.
+TEST(RunSurvey, EveryPlannerKeepsToTheSiteAndTheLimits) {
+  const std::string site =
+      "site:\n"
+      "  geofence: [[-9, -9], [9, -9], [9, 0.5], [-9, 0.5]]\n"
+      "  no_fly: [{corners: [[1, -3], [3, -3], [3, 1], [1, 1]], bottom: -5, top: 1.5}]\n"
+      "  lowest_height: 0.2\n"
+      "  highest_height: 1.9\n";
+  for (const std::string& name : planner_names()) {
+    const config::Mission mission =
+        config::parse_mission(quick_mission(site), "m.yaml",
+                              {{"--planner", "planner.name", name},
+                               {"--set", "volumetric.view_limit", "8"},
+                               {"--set", "limits.stand_off", "0.4"},
+                               {"--set", "limits.highest_pitch_deg", "0"}});
+    const evaluation::SurveyScene scene(mission, "");
+    const session::SurveyRecord record = simulation::run_survey(mission, scene, 1, 1);
+    const geometry::MeshDistance truth(scene.model());
+    const survey::ViewLimits limits = config::view_limits(mission);
+    EXPECT_GE(record.views.size(), 2U) << name;
+    for (const session::JudgedView& judged : record.views) {
+      const geometry::View& view = judged.surveyed.view;
+      EXPECT_TRUE(limits.allow(view)) << name << " at " << view.position.transpose();
+      // Noise of 0.03 m brings measurements nearer to the sensor than the truth is, or farther.
+      EXPECT_GT(truth.distance(view.position), 0.4 - 0.1) << name;
+    }
+  }
+}
+
+TEST(MakePlanner, NeedsToKnowTheSphereOfAVolumetricPlanner) {
+  config::Mission mission =
+      config::parse_mission(quick_mission(), "m.yaml", {{"", "planner.name", "oa"}});
+  try {
+    config::make_planner(mission, 1);
+    FAIL();
+  } catch (const Error& error) {
+    EXPECT_THAT(error.what(), HasSubstr("volumetric.sphere_centre"));
+  }
+  mission.volumetric.sphere_centre = Eigen::Vector3d::Zero();
+  mission.volumetric.sphere_radius = 2.0;
+  EXPECT_NE(config::make_planner(mission, 1), nullptr);
+}
+
+TEST(RunSurvey, EndsWhenABudgetIsSpent) {
+  for (const char* name : {"see++", "skycap"}) {
+    const auto record_with = [&](const char* key, const char* value) {
+      const config::Mission mission = config::parse_mission(
+          quick_mission(), "m.yaml", {{"--planner", "planner.name", name}, {"--set", key, value}});
+      return simulation::run_survey(mission, evaluation::SurveyScene(mission, ""), 1, 1);
+    };
+    const session::SurveyRecord by_length = record_with("limits.max_distance", "6");
+    EXPECT_EQ(by_length.stop_reason, survey::StopReason::distance_limit) << name;
+    EXPECT_LE(by_length.distance(), 6.0) << name;
+
+    const session::SurveyRecord by_time = record_with("limits.max_minutes", "0.4");
+    EXPECT_EQ(by_time.stop_reason, survey::StopReason::time_limit) << name;
+    // 5 m/s and 5 s a view, of 24 s.
+    EXPECT_LE(by_time.distance() / 5.0 + 5.0 * static_cast<double>(by_time.views.size()), 24.0);
+    EXPECT_GE(by_time.views.size(), 3U) << name;
+
+    const session::SurveyRecord by_views = record_with("limits.max_views", "3");
+    EXPECT_EQ(by_views.stop_reason, survey::StopReason::view_limit) << name;
+  }
+}
+
+// An admissible place is one that the mission's limits allow: from above only, tops are visible.
+TEST(SurveyScene, CountsAsVisibleWhatIsSeenFromAdmissiblePlaces) {
+  const auto share = [](const std::string& more) {
+    const config::Mission mission = config::parse_mission(quick_mission(more), "m.yaml");
+    const std::vector<std::uint8_t> visible = evaluation::SurveyScene(mission, "").visible(1);
+    return static_cast<double>(std::ranges::count(visible, 1)) / double(visible.size());
+  };
+  const double anywhere = share(""), above = share("site: {lowest_height: 1.0}");
+  const double south = share("site: {geofence: [[-9, -9], [9, -9], [9, -1.5], [-9, -1.5]]}");
+  EXPECT_GT(anywhere, 0.75);  // the rest is inside the pot
+  EXPECT_LT(above, 0.9 * anywhere);
+  EXPECT_LT(south, 0.9 * anywhere);
+  EXPECT_GT(south, 0.3 * anywhere);
+}
+
+// Coverage along the way is what the final cloud covers, and grows.
+TEST(RunSurvey, JudgesEveryView) {
+  const config::Mission mission = config::parse_mission(quick_mission(), "m.yaml");
+  const evaluation::SurveyScene scene(mission, "");
+  std::size_t reported = 0;
+  const session::SurveyRecord record = simulation::run_survey(
+      mission, scene, 3, 1, {}, [&](const session::JudgedView&) { ++reported; });
+  ASSERT_GT(record.views.size(), 2U);
+  EXPECT_EQ(reported, record.views.size());
+  EXPECT_EQ(record.views.back().surveyed.points, record.cloud.size());
+  for (std::size_t i = 1; i < record.views.size(); ++i) {
+    EXPECT_GE(record.views[i].coverage, record.views[i - 1].coverage);
+  }
+  evaluation::CoverageMeter meter(scene.samples().points, mission.evaluation.registration_distance);
+  meter.add(record.cloud.positions);
+  EXPECT_EQ(record.coverage(), meter.share());
+  EXPECT_GT(record.coverage(), 0.5);  // it is a survey, not one look
+}
+
+// Wherever a stop meets it: the cloud is that of the views that are reported.
+TEST(RunSurvey, HoldsWhatItsViewsMeasuredWhenItIsStopped) {
+  const config::Mission mission = config::parse_mission(
+      quick_mission(), "m.yaml",
+      {{"--planner", "planner.name", "rsv"}, {"--set", "volumetric.view_limit", "100"}});
+  const evaluation::SurveyScene scene(mission, "");
+  int stopped = 0;
+  for (const int delay : {1, 5, 20, 60, 120}) {
+    std::stop_source stop;
+    std::jthread finger;
+    const session::SurveyRecord record = simulation::run_survey(
+        mission, scene, 1, 1, stop.get_token(), [&](const session::JudgedView&) {
+          if (finger.joinable()) return;
+          finger = std::jthread([&] {
+            std::this_thread::sleep_for(std::chrono::milliseconds(delay));
+            stop.request_stop();
+          });
+        });
+    if (record.stop_reason == survey::StopReason::interrupted) ++stopped;  // else it was over
+    ASSERT_FALSE(record.views.empty());
+    EXPECT_EQ(record.cloud.size(), record.views.back().surveyed.points);
+    EXPECT_LT(record.cloud.views.back(), record.views.size());
+  }
+  EXPECT_GT(stopped, 0);
+}
+
+TEST(Plan, RepeatsItselfByteByByteWithAnyNumberOfThreads) {
+  const TestFolder folder;
+  const std::string mission = folder.write("m.yaml", quick_mission());
+  for (const char* threads : {"1", "2", "3"}) {
+    const auto run = run_skycap({"plan", mission, "--out", folder / threads, "--threads", threads});
+    ASSERT_EQ(run.exit_code, 0) << run.err;
+  }
+  for (const char* file : {"views.csv", "cloud.ply", "trajectory.tum"}) {
+    const std::string first = content_of(folder.path() / "1" / file);
+    EXPECT_GT(first.size(), 100U);
+    EXPECT_EQ(first, content_of(folder.path() / "2" / file)) << file;
+    EXPECT_EQ(first, content_of(folder.path() / "3" / file)) << file;
+  }
+}
+
+TEST(Plan, MakesAnotherSurveyOfAnotherSeed) {
+  const TestFolder folder;
+  const std::string mission = folder.write("m.yaml", quick_mission());
+  for (const char* seed : {"1", "2"}) {
+    ASSERT_EQ(run_skycap({"plan", mission, "--out", folder / seed, "--seed", seed}).exit_code, 0);
+  }
+  EXPECT_NE(content_of(folder.path() / "1" / "views.csv"),
+            content_of(folder.path() / "2" / "views.csv"));
+}
+
+// A stop that is requested during the first view: that view is finished and kept.
+TEST(Plan, LeavesAWholeIncompletePackageWhenInterrupted) {
+  const TestFolder folder;
+  const std::string mission = folder.write("m.yaml", quick_mission());
+  std::stop_source stop;
+  stop.request_stop();
+  const auto run = run_skycap({"plan", mission, "--out", folder / "out"}, false, stop.get_token());
+  EXPECT_EQ(run.exit_code, 1);
+  const json summary = json::parse(content_of(folder.path() / "out" / "summary.json"));
+  EXPECT_EQ(summary["complete"], false);
+  EXPECT_EQ(summary["stop_reason"], "interrupted");
+  EXPECT_EQ(summary["views"], 1);
+  for (const char* file : {"views.csv", "cloud.ply", "trajectory.tum"}) {
+    EXPECT_TRUE(std::filesystem::exists(folder.path() / "out" / file)) << file;
+  }
+  // Somebody waits: normals take as long as views.
+  EXPECT_THAT(content_of(folder.path() / "out" / "cloud.ply"), Not(HasSubstr("property float nx")));
+}
+
+TEST(Plan, ShowsProgressOnATerminalOnlyAndNothingWhenQuiet) {
+  const TestFolder folder;
+  const std::string mission = folder.write("m.yaml", quick_mission());
+  const std::vector<std::string> plain{"plan",         mission,       "--out",
+                                       folder / "out", "--max-views", "2"};
+  const auto on_terminal = run_skycap(plain, true);
+  EXPECT_THAT(on_terminal.err, HasSubstr("view 2, "));
+  EXPECT_THAT(on_terminal.err, HasSubstr("frontiers"));
+  EXPECT_THAT(on_terminal.out, HasSubstr("view_limit after 2 views"));
+  EXPECT_EQ(run_skycap(plain).err, "");
+
+  std::vector<std::string> quiet = plain;
+  quiet.push_back("--quiet");
+  const auto silent = run_skycap(quiet, true);
+  EXPECT_EQ(silent.out + silent.err, "");
+  EXPECT_EQ(silent.exit_code, 0);
+
+  std::vector<std::string> verbose = plain;
+  verbose.push_back("--verbose");
+  EXPECT_THAT(run_skycap(verbose).err, HasSubstr("insert"));
+}
+
+// Trials side by side are the surveys that separate runs make.
+TEST(Plan, TrialsEqualSeparateSurveys) {
+  const TestFolder folder;
+  const std::string mission = folder.write("m.yaml", quick_mission());
+  const std::vector<std::string> trials{"plan", mission,  "--out", folder / "t", "--trials",
+                                        "3",    "--seed", "5",     "--threads",  "2"};
+  ASSERT_EQ(run_skycap(trials).exit_code, 0);
+  std::istringstream csv(content_of(folder.path() / "t" / "trials.csv"));
+  std::string line;
+  std::getline(csv, line);
+  for (const char* seed : {"5", "6", "7"}) {
+    ASSERT_EQ(run_skycap({"plan", mission, "--out", folder / "s", "--seed", seed}).exit_code, 0);
+    const json summary = json::parse(content_of(folder.path() / "s" / "summary.json"));
+    ASSERT_TRUE(std::getline(csv, line));
+    EXPECT_THAT(line, testing::StartsWith(std::string(seed) + "," +
+                                          summary["stop_reason"].get<std::string>() + "," +
+                                          std::to_string(summary["views"].get<int>()) + "," +
+                                          summary["coverage"].dump() + ","));
+  }
+}
+
+// SEE++ without its two additions is SEE, bit by bit.
+TEST(Plan, SeeIsSeePlusPlusWithoutOptimiserAndGraph) {
+  const TestFolder folder;
+  const std::string mission = folder.write("m.yaml", quick_mission());
+  ASSERT_EQ(run_skycap({"plan", mission, "--out", folder / "see", "--planner", "see"}).exit_code,
+            0);
+  ASSERT_EQ(run_skycap({"plan", mission, "--out", folder / "without", "--set",
+                        "planner.optimise_views=false", "--set", "planner.visibility_graph=false"})
+                .exit_code,
+            0);
+  EXPECT_EQ(content_of(folder.path() / "see" / "cloud.ply"),
+            content_of(folder.path() / "without" / "cloud.ply"));
+}
+
+// evaluate, from files, must find the coverage that plan measured on the way.
+TEST(Evaluate, AgreesWithThePlansOwnCoverage) {
+  const TestFolder folder;
+  const std::string mission = folder.write("m.yaml", quick_mission());
+  ASSERT_EQ(run_skycap({"plan", mission, "--out", folder / "out"}).exit_code, 0);
+  const json summary = json::parse(content_of(folder.path() / "out" / "summary.json"));
+  const auto run =
+      run_skycap({"evaluate", "--cloud", folder / "out/cloud.ply", "--model", mission, "--json"});
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  const json evaluation = json::parse(run.out);
+  EXPECT_EQ(evaluation["coverage"], summary["coverage"]);
+  EXPECT_EQ(evaluation["points"], summary["points"]);
+  // Isotropic noise of 3 cm moves points off the surface by 3 cm rms or, at edges, a little less.
+  EXPECT_NEAR(evaluation["distance_to_model_m"]["root_mean_square"], 0.03, 0.008);
+}
+
+TEST(Plan, SurveysCopiesOfTheModelAndKeepsThemInTheSettings) {
+  const TestFolder folder;
+  const std::string mission = folder.write("m.yaml", quick_mission());
+  const auto run = run_skycap({"plan", mission, "--set", "scene.copies=[[1.5, 0, 90]]",
+                               "--max-views", "2", "--out", folder / "out"});
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  const json summary = json::parse(content_of(folder.path() / "out" / "summary.json"));
+  EXPECT_EQ(summary["settings"]["scene.copies"], json::parse("[[1.5, 0.0, 90.0]]"));
+}
+
+TEST(Model, HasLevelsOfDetailOfTheSameShape) {
+  const TestFolder folder;
+  const auto printed = [](const std::string& model, const char* detail) {
+    return run_skycap({"model", model, "--detail", detail});
+  };
+  const auto number_after = [](const std::string& text, const std::string& word) {
+    return std::stod(text.substr(text.find(word) + word.size()));
+  };
+  const auto coarse = printed("radcliffe-camera", "coarse");
+  const auto fine = printed("radcliffe-camera", "fine");
+  EXPECT_GT(number_after(fine.out, ": "), 10.0 * number_after(coarse.out, ": "));  // triangles
+  EXPECT_THAT(coarse.out, HasSubstr(" x 40, area"));
+  EXPECT_THAT(fine.out, HasSubstr(" x 40, area"));
+  // Coarse ornaments are plain boxes and curves of few chords.
+  const double area = number_after(fine.out, "area ");
+  EXPECT_NEAR(number_after(coarse.out, "area "), area, 0.25 * area);
+
+  const std::string mission = folder.write("m.yaml", quick_mission());
+  EXPECT_NE(printed(mission, "coarse").out, printed(mission, "fine").out);
+
+  const auto refused = printed("scan.ply", "fine");
+  EXPECT_EQ(refused.exit_code, 2);
+  EXPECT_THAT(refused.err, HasSubstr("--detail needs a builtin model; scan.ply is as detailed"));
+  EXPECT_EQ(printed("radcliffe-camera", "finest").exit_code, 2);
+}
+
+TEST(Model, WritesAMissionsSceneAsSurveyed) {
+  const TestFolder folder;
+  const std::string mission = folder.write("m.yaml", quick_mission());
+  const auto run = run_skycap({"model", mission, "--out", folder / "scene.ply"});
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  EXPECT_THAT(run.out, HasSubstr("1 x 0.6"));  // metres; the teapot is 6.434 x 4 x 3.15 units
+  EXPECT_THAT(run_skycap({"model", folder / "scene.ply"}).out, HasSubstr("1 x 0.6"));
+}
+
+}  // namespace
+}  // namespace skycap::missions

@@ -1,0 +1,136 @@
+// Files that are cut short or have bytes changed are read or refused in one line, whatever they
+// hold: every format that is read by code of ours or of others.
+
+#include <random>
+
+#include "geometry/error.h"
+#include "tests/missions/site_data/cube_files.h"
+#include "tests/support/complaint.h"
+#include "tests/support/temporary_folder.h"
+
+namespace skycap::missions::site_data {
+namespace {
+
+using namespace testing_support;
+
+struct Whole {
+  const char* name;
+  std::string bytes;
+};
+
+std::vector<Whole> whole_files() {
+  const Cube cube;
+  return {{"cube.gml", citygml_of(cube)},     {"cube.json", cityjson_of(cube)},
+          {"cube.geojson", geojson_of(cube)}, {"cube.obj", obj_of(cube)},
+          {"cube.glb", glb_of(cube)},         {"cube.asc", ascii_grid_of(cube)},
+          {"cube.las", las_of(cube, 4, 6)},   {"old.las", las_of(cube, 2, 3)},
+          {"cube.e57", e57_of(cube)}};
+}
+
+class BrokenFiles : public testing::Test {
+ protected:
+  /// Whether it was refused; a finding if the message is not one line that names the file.
+  bool is_refused(const std::string& name, const std::string& bytes, const std::string& what) {
+    Source source = source_of(folder_.file(name, bytes));
+    if (name == "cube.geojson") {
+      source.base = 380.0;
+      source.height = 10.0;
+    }
+    if (name == "cube.glb") source.offset = Cube().low;
+    try {
+      read_prior(source, site_at_cube());
+      return false;
+    } catch (const Error& error) {
+      const std::string message = error.what();
+      EXPECT_NE(message.find(name), std::string::npos) << what << ": " << message;
+      EXPECT_EQ(message.find('\n'), std::string::npos) << what << ": " << message;
+      return true;
+    } catch (const std::exception& error) {
+      ADD_FAILURE() << what << ": " << error.what();
+      return true;
+    }
+  }
+  TemporaryFolder folder_;
+};
+
+TEST_F(BrokenFiles, AreReadWhole) {
+  for (const Whole& whole : whole_files()) {
+    EXPECT_FALSE(is_refused(whole.name, whole.bytes, "whole")) << whole.name;
+  }
+}
+
+TEST_F(BrokenFiles, ThatAreCutShortAreRefusedInOneLine) {
+  std::size_t refused = 0;
+  for (const Whole& whole : whole_files()) {
+    for (std::size_t i = 0; i < 20; ++i) {
+      const std::size_t size = whole.bytes.size() * i / 20;
+      const std::string what = std::string(whole.name) + " of " + std::to_string(size) + " bytes";
+      refused += is_refused(whole.name, whole.bytes.substr(0, size), what) ? 1 : 0;
+    }
+  }
+  EXPECT_GE(refused, 100U);  // text of whole lines, such as an OBJ, may still be a mesh
+}
+
+TEST_F(BrokenFiles, WithChangedBytesAreReadOrRefusedInOneLine) {
+  std::mt19937_64 random(1);
+  std::size_t refused = 0, read = 0;
+  for (const Whole& whole : whole_files()) {
+    for (int i = 0; i < 40; ++i) {
+      std::string bytes = whole.bytes;
+      for (int j = 0; j < 4; ++j) bytes[random() % bytes.size()] = static_cast<char>(random());
+      const std::string what = std::string(whole.name) + ", change " + std::to_string(i);
+      ++(is_refused(whole.name, bytes, what) ? refused : read);
+    }
+  }
+  EXPECT_GE(refused, 100U);
+  EXPECT_GE(read, 10U) << "else no change got past the first check of a format";
+}
+
+// A tree takes many times the bytes of its text: 110 MB and 60 MB here.
+TEST_F(BrokenFiles, WhoseTreesWouldTakeMoreThanMemoryAreRefused) {
+  const auto expect_refused = [&](const std::string& name, const std::string& bytes) {
+    const Source source = source_of(folder_.file(name, bytes));
+    EXPECT_THAT(complaint_of([&] { read_prior(source, site_at_cube()); }),
+                testing::HasSubstr(name + ": has so many parts that reading them would take more"));
+  };
+  std::string gml = "<CityModel xmlns='http://www.opengis.net/citygml/2.0'>";
+  for (int i = 0; i < 25'000'000; ++i) gml += "<a/>";
+  expect_refused("many.gml", gml + "</CityModel>");
+  std::string json = R"({"type": "CityJSON", "version": "1.1", "CityObjects": {}, "vertices": [[])";
+  for (int i = 0; i < 17'000'000; ++i) json += ",[]";
+  expect_refused("many.json", json + "]}");
+}
+
+TEST_F(BrokenFiles, OfNoFormatAreToldWhichThereAre) {
+  Source source = source_of(folder_.file("notes.doc", "dear surveyor"));
+  EXPECT_THAT([&] { read_prior(source, site_at_cube()); },
+              testing::ThrowsMessage<Error>(testing::AllOf(testing::HasSubstr("notes.doc: "),
+                                                           testing::HasSubstr("CityGML"))));
+  source.file = folder_.path() / "none.gml";
+  EXPECT_THROW(read_prior(source, site_at_cube()), Error);
+  source.file = folder_.path();
+  EXPECT_THROW(read_prior(source, site_at_cube()), Error);
+}
+
+// The first crashes assimp 5.2 itself, the second has it take memory without end; it
+// therefore runs in a process of its own.
+TEST_F(BrokenFiles, ThatMakeTheirLibraryCrashOrLoopAreRefused) {
+  const auto complaint = [&](const std::string& name, const std::string& bytes) {
+    return complaint_of([&] { read_prior(source_of(folder_.file(name, bytes)), site_at_cube()); });
+  };
+  EXPECT_EQ(complaint("cut.ifc",
+                      "ISO-10303-21;\nFILE_SCHEMA(('IFC2X3'));\nDATA;\n"
+                      "#6=IFCPROJECT('0YvctVUKr0kugbFTf53O9L',#11,'p',$,$,$,$,(#5),#2);\n"
+                      "#8=IFCSITE"),
+            (folder_.path() / "cut.ifc").string() + ": is damaged: assimp ends within it");
+  EXPECT_THAT(
+      complaint("loop.dae",
+                R"(<COLLADA version="1.4.1"><asset></asset><library_geometries><geometry id="g">)"
+                R"(<mesh><source id="p"><float_array count="3">0 0 0</float_array></source>)"
+                R"(<vertices id="v"></vertices><triangles count="12"><p>0 1e999 3</p></triangles>)"
+                R"(</mesh></geometry></library_geometries></COLLADA>)"),
+      testing::StartsWith((folder_.path() / "loop.dae").string() + ": "));
+}
+
+}  // namespace
+}  // namespace skycap::missions::site_data

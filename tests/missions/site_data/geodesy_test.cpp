@@ -1,0 +1,261 @@
+// From reference systems to the site's frame, against formulas, GeographicLib's projections, which
+// share nothing with PROJ's, and cs2cs, PROJ's own program.
+#include <bit>
+#include <cstring>
+#include <fstream>
+
+#include <GeographicLib/UTMUPS.hpp>
+
+#include "geometry/error.h"
+#include "missions/site_data/prior.h"
+#include "missions/site_data/reference_system.h"
+#include "missions/site_data/site_transform.h"
+
+namespace skycap::missions::site_data {
+namespace {
+
+using Eigen::Vector3d;
+using testing::AllOf;
+using testing::HasSubstr;
+using testing::ThrowsMessage;
+
+/// Longitude, latitude, height.
+Vector3d geodetic(const ReferenceRequest& request, Vector3d place) {
+  geodetic_transform(request).apply({&place, 1});
+  return place;
+}
+
+Vector3d in_site(const std::string& crs, const flight::GeodeticPoint& origin, Vector3d place) {
+  Source source;
+  source.crs = crs;
+  source.vertical = HeightDatum::ellipsoid;
+  SiteTransform(source, {}, {.origin = origin}).to_site({&place, 1});
+  return place;
+}
+
+/// East, north of UTM by GeographicLib; convergence and scale with it.
+struct OnMap {
+  double east, north, convergence, scale;
+};
+OnMap utm(double latitude, double longitude, int zone) {
+  int used_zone = 0;
+  bool is_north = false;
+  OnMap map{};
+  GeographicLib::UTMUPS::Forward(latitude, longitude, used_zone, is_north, map.east, map.north,
+                                 map.convergence, map.scale, zone);
+  return map;
+}
+
+/// A value of a file that was written with its highest byte first.
+template <typename Value>
+Value big_endian(const std::string& bytes, std::size_t place) {
+  std::array<char, sizeof(Value)> turned;
+  std::copy_n(bytes.begin() + static_cast<std::ptrdiff_t>(place), sizeof(Value), turned.rbegin());
+  return std::bit_cast<Value>(turned);
+}
+
+// Known answer: the published grid itself (EGM96, 15'), read and interpolated here.
+TEST(Geodesy, KnowsTheGeoidAsItsGridHasIt) {
+  std::ifstream stream("/usr/share/proj/egm96_15.gtx", std::ios::binary);
+  if (!stream) GTEST_SKIP() << "Debian's proj-data is not there";
+  const std::string bytes((std::istreambuf_iterator<char>(stream)), {});
+  const auto south = big_endian<double>(bytes, 0), west = big_endian<double>(bytes, 8),
+             step_north = big_endian<double>(bytes, 16), step_east = big_endian<double>(bytes, 24);
+  const auto columns = static_cast<std::size_t>(big_endian<std::int32_t>(bytes, 36));
+  const auto node = [&](double row, double column) {
+    const auto index =
+        static_cast<std::size_t>(row) * columns + static_cast<std::size_t>(column) % columns;
+    return static_cast<double>(big_endian<float>(bytes, 40 + 4 * index));
+  };
+  for (double latitude = -88.0; latitude < 89.0; latitude += 7.3) {
+    for (double longitude = -179.0; longitude < 179.0; longitude += 13.7) {
+      const double row = (latitude - south) / step_north,
+                   column = std::fmod(longitude - west + 720.0, 360.0) / step_east;
+      const double r = std::floor(row), c = std::floor(column), v = row - r, u = column - c;
+      const double expected = (1 - v) * ((1 - u) * node(r, c) + u * node(r, c + 1)) +
+                              v * ((1 - u) * node(r + 1, c) + u * node(r + 1, c + 1));
+      // Single precision holds 100 m to 4 micrometres.
+      EXPECT_NEAR(egm96_undulation(latitude, longitude), expected, 1e-4)
+          << latitude << ", " << longitude;
+    }
+  }
+}
+
+// echo LAT LON 0 | cs2cs EPSG:4326+5773 EPSG:4979 -f %.6f
+TEST(Geodesy, KnowsTheGeoid) {
+  EXPECT_NEAR(egm96_undulation(51.7534, -1.254), 47.760744, 1e-6);
+  EXPECT_NEAR(egm96_undulation(48.75, 11.42), 46.466337, 1e-6);
+  EXPECT_NEAR(egm96_undulation(0.0, 0.0), 17.161579, 1e-6);
+  EXPECT_NEAR(egm96_undulation(13.08, 80.27), -92.245137, 1e-6);
+}
+
+// 1e-9 degrees are a tenth of a millimetre.
+TEST(Geodesy, FollowsTheMapsProjection) {
+  const ReferenceRequest request{.crs = "EPSG:32632", .vertical = HeightDatum::ellipsoid};
+  for (double latitude = 1.0; latitude < 84.0; latitude += 9.0) {
+    for (double longitude = 6.0; longitude <= 12.0; longitude += 1.3) {
+      const OnMap map = utm(latitude, longitude, 32);
+      const Vector3d place = geodetic(request, {map.east, map.north, 380.0});
+      EXPECT_NEAR(place.y(), latitude, 1e-9);
+      EXPECT_NEAR(place.x(), longitude, 1e-9);
+      EXPECT_EQ(place.z(), 380.0);
+    }
+  }
+}
+
+TEST(Geodesy, CountsHeightsFromGeoidOrPad) {
+  ReferenceRequest request{.crs = "EPSG:25832", .takeoff_height = 400.0};
+  request.vertical = HeightDatum::geoid;
+  const Vector3d place(677863.1, 5402477.3, 100.0);  // echo 48.749889290871 11.419734136004 100 |
+  EXPECT_NEAR(geodetic(request, place).z(), 146.466455, 1e-6);  // cs2cs EPSG:4326+5773 EPSG:4979
+  EXPECT_THAT(geodetic_transform(request).notes,
+              testing::ElementsAre(AllOf(HasSubstr("EGM96"), HasSubstr("1 m"))));
+  request.vertical = HeightDatum::takeoff;
+  EXPECT_NEAR(geodetic(request, place).z(), 500.0, 1e-9);
+  request.takeoff_height.reset();
+  EXPECT_THAT([&] { geodetic_transform(request); },
+              ThrowsMessage<Error>(HasSubstr("flight.takeoff is not given")));
+}
+
+// What stands in for something better is within what PROJ states, and that is added up.
+TEST(Geodesy, AddsUpWhatStandInsMayBeOff) {
+  ReferenceRequest request{.crs = "EPSG:27700"};  // Debian has no OSTN15
+  request.vertical = HeightDatum::ellipsoid;
+  request.near = flight::GeodeticPoint{51.6965, -1.278, 0.0};
+  const GeodeticTransform helmert = geodetic_transform(request);
+  EXPECT_EQ(helmert.stand_in_error, 2.0);  // projinfo -s EPSG:27700 -t EPSG:4326 --summary
+  EXPECT_THAT(helmert.notes, testing::ElementsAre(HasSubstr("stands in for")));
+  const Vector3d place = geodetic(request, {450000.0, 200000.0, 0.0});
+  EXPECT_NEAR(place.y(), 51.696528816, 1e-8);  // echo 450000 200000 | cs2cs EPSG:27700 EPSG:4326
+  EXPECT_NEAR(place.x(), -1.277971385, 1e-8);
+  request.vertical = HeightDatum::geoid;
+  EXPECT_EQ(geodetic_transform(request).stand_in_error, 3.0);
+  EXPECT_EQ(
+      geodetic_transform({.crs = "EPSG:25832", .vertical = HeightDatum::ellipsoid}).stand_in_error,
+      0.0);
+}
+
+// echo 48.763 11.3985 330 | cs2cs EPSG:4326+5773 EPSG:4979 -f %.6f
+TEST(Geodesy, HeightsOfASystemOfThreeAxesCountFromTheGeoidIfThatIsSaid) {
+  ReferenceRequest request{.crs = "EPSG:4979"};
+  EXPECT_EQ(geodetic(request, {11.3985, 48.763, 330.0}).z(), 330.0);
+  request.vertical = HeightDatum::geoid;
+  EXPECT_NEAR(geodetic(request, {11.3985, 48.763, 330.0}).z(), 376.490242, 1e-6);
+}
+
+TEST(Geodesy, RefusesAGeoidWhoseGridIsMissingUnlessToldOtherwise) {
+  ReferenceRequest request{.crs = "urn:adv:crs:ETRS89_UTM32*DE_DHHN2016_NH"};
+  EXPECT_THAT(
+      [&] { geodetic_transform(request); },
+      ThrowsMessage<Error>(AllOf(HasSubstr("DHHN2016"), testing::ContainsRegex("[Gg][Cc][Gg]2016"),
+                                 HasSubstr("vertical: geoid"))));
+  request.vertical = HeightDatum::geoid;
+  const Vector3d place = geodetic(request, {677863.1, 5402477.3, 100.0});
+  EXPECT_NEAR(place.z(), 146.466455, 1e-6);
+}
+
+TEST(Geodesy, RefusesWhatIsNoReferenceSystem) {
+  for (const char* crs : {"EPSG:1", "nonsense", "EPSG:4978", "EPSG:5773", "+proj=pipeline"}) {
+    EXPECT_THROW(geodetic_transform({.crs = crs, .vertical = HeightDatum::ellipsoid}), Error)
+        << crs;
+  }
+}
+
+TEST(Geodesy, TakesEastFirstWhateverTheAuthoritySays) {
+  // EPSG:4326 has latitude first, EPSG:31467 north first; files have not.
+  const ReferenceRequest plain{.crs = "EPSG:4326", .vertical = HeightDatum::ellipsoid};
+  EXPECT_TRUE(geodetic(plain, {11.4, 48.7, 5.0}).isApprox(Vector3d(11.4, 48.7, 5.0), 1e-12));
+  ReferenceRequest by_letter = plain;
+  by_letter.is_latitude_first = true;
+  EXPECT_TRUE(geodetic(by_letter, {48.7, 11.4, 5.0}).isApprox(Vector3d(11.4, 48.7, 5.0), 1e-12));
+  const ReferenceRequest map{.crs = "EPSG:31467", .vertical = HeightDatum::ellipsoid};
+  // echo 5429191 3451262 | cs2cs EPSG:31467 EPSG:4326
+  EXPECT_NEAR(geodetic(map, {3451262.0, 5429191.0, 0.0}).y(), 48.998099132, 1e-8);
+  EXPECT_NEAR(geodetic(map, {3451262.0, 5429191.0, 0.0}).x(), 8.332915889, 1e-8);
+}
+
+/// A metre of the map is 0.9996 m on the ground at the central meridian, and 1.0004 at its zone's
+/// border, where the map's north is turned to the east.
+TEST(Geodesy, UndoesScaleAndConvergenceOfTheGrid) {
+  for (const double longitude : {9.0, 10.5, 12.0}) {
+    const flight::GeodeticPoint origin{48.0, longitude, 0.0};
+    const OnMap map = utm(origin.latitude_deg, origin.longitude_deg, 32);
+    const Vector3d a = in_site("EPSG:32632", origin, {map.east, map.north - 50.0, 0.0});
+    const Vector3d b = in_site("EPSG:32632", origin, {map.east, map.north + 50.0, 0.0});
+    EXPECT_LT((0.5 * (a + b)).norm(), 1e-3);
+    EXPECT_NEAR((b - a).norm(), 100.0 / map.scale, 1e-5);
+    EXPECT_NEAR(std::atan2(b.x() - a.x(), b.y() - a.y()), map.convergence * M_PI / 180.0, 1e-7);
+  }
+}
+
+/// On a sphere's curve alone: a place 10 km away on the ellipsoid is d^2 / 2 R below the plane.
+TEST(Geodesy, CurvesWithTheEarth) {
+  const Vector3d place = in_site("EPSG:4326", {0.0, 0.0, 0.0}, {0.0, 0.09, 0.0});
+  const double radius = 6378137.0 * (1.0 - 0.00669437999014);  // of the meridian at the equator
+  const double angle = 0.09 * M_PI / 180.0;
+  EXPECT_NEAR(place.y(), radius * std::sin(angle), 1e-3);
+  EXPECT_NEAR(place.z(), -radius * (1.0 - std::cos(angle)), 1e-3);
+}
+
+TEST(Geodesy, CrossesTheAntimeridian) {
+  const double metres = 6378137.0 * M_PI / 180.0;  // of a degree at the equator
+  const Vector3d place = in_site("EPSG:4326", {0.0, 179.9999, 0.0}, {-179.9999, 0.0, 0.0});
+  EXPECT_NEAR(place.x(), 0.0002 * metres, 1e-3);
+  const Vector3d back = in_site("EPSG:4326", {0.0, -179.9999, 0.0}, {179.9999, 0.0, 0.0});
+  EXPECT_NEAR(back.x(), -0.0002 * metres, 1e-3);
+  // UTM zone 60 ends there; what lies beyond has eastings that go on.
+  const OnMap map = utm(-17.0, -179.9, 60);
+  const Vector3d fiji = in_site("EPSG:32760", {-17.0, -179.9, 0.0}, {map.east, map.north, 0.0});
+  EXPECT_LT(fiji.norm(), 1e-3);
+}
+
+TEST(Geodesy, HoldsAtThePoles) {
+  const flight::GeodeticPoint pole{90.0, 0.0, 0.0};
+  const double metres =
+      6399593.6258 * M_PI / 180.0;  // of a degree there: polar radius of curvature
+  const Vector3d east = in_site("EPSG:4326", pole, {90.0, 89.999, 0.0});
+  EXPECT_NEAR(east.x(), 0.001 * metres, 1e-3);
+  EXPECT_NEAR(east.y(), 0.0, 1e-6);
+  const Vector3d beyond = in_site("EPSG:4326", pole, {180.0, 89.999, 0.0});
+  EXPECT_NEAR(beyond.y(), 0.001 * metres, 1e-3);
+  // Polar stereographic: its grid north is along the meridian of 180 degrees.
+  EXPECT_LT(in_site("EPSG:32661", pole, {2000000.0, 2000000.0, 0.0}).norm(), 1e-3);
+}
+
+TEST(Geodesy, CountsInFeet) {
+  // Oregon Lambert (ft): EPSG:2994; heights in feet, too, as nothing else is said.
+  Source source;
+  source.crs = "EPSG:2994";
+  source.vertical = HeightDatum::ellipsoid;
+  const flight::GeodeticPoint origin{44.05, -123.07, 0.0};
+  const SiteTransform transform(source, {}, {.origin = origin});
+  std::array<Vector3d, 2> places = {Vector3d(636500, 849000, 0), Vector3d(636500, 849000, 1000)};
+  transform.to_site(places);
+  EXPECT_NEAR((places[1] - places[0]).norm(), 304.8, 1e-6);
+  EXPECT_NEAR(transform.metres_per_unit().x(), 0.3048, 1e-12);
+  EXPECT_THAT(transform.notes(), testing::Contains(HasSubstr("units of 0.304800 m")));
+}
+
+// A wall of 100 ft whose foot is 1000 ft high. The foot above the ellipsoid:
+// echo 44.050126698 -123.071508372 304.8 | cs2cs EPSG:4326+5773 EPSG:4979 -f %.6f
+TEST(Geodesy, CountsHeightsInFeetWhereTheSystemHasThem) {
+  Source source;
+  source.file = "wall.gml";
+  source.crs = "EPSG:2994+8228";  // heights in feet, NAVD88's
+  const SiteFrame site{.origin = flight::GeodeticPoint{44.05, -123.07, 0.0}};
+  for (const HeightDatum datum : {HeightDatum::geoid, HeightDatum::ellipsoid}) {
+    source.vertical = datum;
+    const SiteTransform transform(source, {}, site);
+    std::array<Vector3d, 2> wall = {Vector3d(636500, 849000, 1000), Vector3d(636500, 849000, 1100)};
+    transform.to_geodetic(wall);
+    EXPECT_NEAR(wall[0].z(), datum == HeightDatum::geoid ? 282.406812 : 304.8, 1e-6);
+    EXPECT_NEAR(wall[1].z() - wall[0].z(), 30.48, 1e-6);
+    EXPECT_NEAR(transform.metres_per_unit().z(), 0.3048, 1e-12);
+  }
+  source.unit = 1.0;
+  EXPECT_THAT([&] { SiteTransform(source, {}, site); },
+              ThrowsMessage<Error>(HasSubstr("wall.gml: unit does not go with")));
+}
+
+}  // namespace
+}  // namespace skycap::missions::site_data

@@ -1,0 +1,191 @@
+// Outlines from maps, rasters and their traps.
+
+#include "geometry/error.h"
+#include "geometry/surfaces/mesh.h"
+#include "tests/missions/site_data/cube_files.h"
+#include "tests/support/temporary_folder.h"
+
+namespace skycap::missions::site_data {
+namespace {
+
+using testing::Contains;
+using testing::HasSubstr;
+using testing::ThrowsMessage;
+
+const flight::GeodeticPoint origin{48.0, 9.0, 500.0};
+
+class Map : public testing::Test {
+ protected:
+  Prior read(const std::string& name, const std::string& text,
+             const std::function<void(Source&)>& change = {}) {
+    Source source;
+    source.file = folder_.file(name, text);
+    source.base = 500.0;
+    source.vertical = HeightDatum::ellipsoid;
+    if (change) change(source);
+    return read_prior(source, {.origin = origin});
+  }
+  static double volume(const geometry::Mesh& mesh) {
+    double sum = 0.0;
+    for (const auto& t : mesh.triangles) {
+      sum += mesh.vertices[t[0]].dot(mesh.vertices[t[1]].cross(mesh.vertices[t[2]])) / 6.0;
+    }
+    return sum;
+  }
+  testing_support::TemporaryFolder folder_;
+};
+
+/// A ring round 48 N, 9 E: 0.0002 degrees are 14.93 m east and 22.24 m north.
+const std::string ring = "9,48 9.0002,48 9.0002,48.0002 9,48.0002 9,48";
+constexpr double ring_area = 14.9256 * 22.2394;
+
+std::string json_ring() { return "[[9,48],[9.0002,48],[9.0002,48.0002],[9,48.0002],[9,48]]"; }
+
+std::string feature(const std::string& properties, const std::string& rings) {
+  return R"({"type":"Feature","properties":)" + properties +
+         R"(,"geometry":{"type":"Polygon","coordinates":[)" + rings + "]}}";
+}
+
+/// A polygon as Google Earth writes it.
+std::string kml_of(const std::string& mode, const std::string& coordinates) {
+  return "<?xml version=\"1.0\"?><kml xmlns=\"http://www.opengis.net/kml/2.2\"><Document>"
+         "<Placemark><name>court</name><Polygon>" +
+         mode + "<outerBoundaryIs><LinearRing><coordinates>" + coordinates +
+         "</coordinates></LinearRing></outerBoundaryIs></Polygon></Placemark></Document></kml>";
+}
+
+/// The ring with a height at each corner.
+std::string ring_at(const std::string& height) {
+  std::string text;
+  for (const char c : ring) text += c == ' ' ? "," + height + " " : std::string(1, c);
+  return text + "," + height;
+}
+
+TEST_F(Map, ExtrudesAPolygonDrawnInGoogleEarth) {
+  const Prior prior =
+      read("court.kml", kml_of("", ring_at("0")), [](Source& s) { s.height = 18.0; });
+  ASSERT_EQ(prior.objects.size(), 1U);
+  EXPECT_EQ(prior.objects[0].id, "court");
+  EXPECT_NEAR(volume(prior.objects[0].mesh), ring_area * 18.0, 1.0);
+  EXPECT_NEAR(prior.box.min().z(), 0.0, 1e-3);
+  EXPECT_NEAR(prior.box.max().z(), 18.0, 1e-3);
+}
+
+TEST_F(Map, HeightsOfAPolygonInGoogleEarthCountOnlyIfTheyAreAbsolute) {
+  const auto unplaced = [](Source& s) {
+    s.base.reset();
+    s.height = 18.0;
+  };
+  for (const char* mode : {"", "<altitudeMode>clampToGround</altitudeMode>",
+                           "<extrude>1</extrude><altitudeMode>relativeToGround</altitudeMode>"}) {
+    EXPECT_THAT([&] { read("court.kml", kml_of(mode, ring_at("30")), unplaced); },
+                ThrowsMessage<Error>(HasSubstr("give base")))
+        << mode;
+  }
+  const Prior prior =
+      read("court.kml", kml_of("<altitudeMode>absolute</altitudeMode>", ring_at("520")), unplaced);
+  EXPECT_NEAR(prior.box.min().z(), 20.0, 1e-3);
+  EXPECT_NEAR(prior.box.max().z(), 38.0, 1e-3);
+}
+
+TEST_F(Map, APolygonWithHeightsMakesNoSurfacesOfThoseWithout) {
+  const std::string roof = "[[9,48,510],[9.0002,48,510],[9.0002,48.0002,512],[9,48,510]]";
+  const std::string text = R"({"type":"FeatureCollection","features":[)" +
+                           feature(R"({"id":"roof"})", roof) + "," +
+                           feature(R"({"id":"flat","height":7})", json_ring()) + "]}";
+  const Prior prior = read("mixed.geojson", text);
+  ASSERT_EQ(prior.objects.size(), 2U);
+  EXPECT_NEAR(geometry::bounding_box(prior.objects[0].mesh).min().z(), 10.0, 1e-3);
+  EXPECT_NEAR(geometry::bounding_box(prior.objects[1].mesh).max().z(), 7.0, 1e-3);
+  const std::string unsaid = R"({"type":"FeatureCollection","features":[)" +
+                             feature(R"({"id":"roof"})", roof) + "," +
+                             feature(R"({"id":"flat"})", json_ring()) + "]}";
+  EXPECT_THAT([&] { read("mixed.geojson", unsaid); },
+              ThrowsMessage<Error>(HasSubstr("how high flat is; give height")));
+}
+
+TEST_F(Map, TakesHeightsAndLevelsFromAttributes) {
+  const std::string text =
+      R"({"type":"FeatureCollection","features":[)" +
+      feature(R"({"id":"tall","height":"21.5 m"})", json_ring()) + "," +
+      feature(R"({"id":"flat","building:levels":"4","building:min_level":"1"})", json_ring()) +
+      "]}";
+  const Prior prior = read("houses.geojson", text);
+  ASSERT_EQ(prior.objects.size(), 2U);
+  EXPECT_NEAR(geometry::bounding_box(prior.objects[0].mesh).max().z(), 21.5, 1e-3);
+  const Eigen::AlignedBox3d flat = geometry::bounding_box(prior.objects[1].mesh);
+  EXPECT_NEAR(flat.min().z(), 3.0, 1e-3);
+  EXPECT_NEAR(flat.max().z(), 12.0, 1e-3);
+  EXPECT_THAT(prior.notes, Contains(HasSubstr("1 outlines state levels alone")));
+}
+
+TEST_F(Map, ReadsBuildingsOfOpenStreetMap) {
+  // Editors write nodes in any order.
+  const std::string osm = R"(<?xml version="1.0"?><osm version="0.6">
+<node id="4" lat="48.0002" lon="9.0"/><node id="3" lat="48.0002" lon="9.0002"/>
+<node id="1" lat="48.0" lon="9.0"/><node id="2" lat="48.0" lon="9.0002"/>
+<way id="77"><nd ref="1"/><nd ref="2"/><nd ref="3"/><nd ref="4"/><nd ref="1"/>
+<tag k="building" v="yes"/><tag k="height" v="9"/></way></osm>)";
+  const Prior prior = read("town.osm", osm);
+  ASSERT_EQ(prior.objects.size(), 1U);
+  EXPECT_EQ(prior.objects[0].id, "77");
+  EXPECT_NEAR(volume(prior.objects[0].mesh), ring_area * 9.0, 1.0);
+}
+
+TEST_F(Map, CutsCourtyardsOut) {
+  const std::string hole =
+      "[[9.00005,48.00005],[9.00015,48.00005],[9.00015,48.00015],[9.00005,48.00015],"
+      "[9.00005,48.00005]]";
+  const Prior prior = read("yard.geojson", feature(R"({"height":10})", json_ring() + "," + hole));
+  EXPECT_NEAR(volume(prior.objects[0].mesh), 0.75 * ring_area * 10.0, 1.0);
+}
+
+TEST_F(Map, AsksForWhatItCannotKnow) {
+  const std::string text = feature("{}", json_ring());
+  EXPECT_THAT([&] { read("a.geojson", text); }, ThrowsMessage<Error>(HasSubstr("give height")));
+  EXPECT_THAT(
+      [&] {
+        read("a.geojson", text, [](Source& s) {
+          s.height = 5.0;
+          s.base.reset();
+        });
+      },
+      ThrowsMessage<Error>(HasSubstr("give base")));
+  EXPECT_THAT(
+      [&] {
+        read("a.geojson", text, [](Source& s) {
+          s.height = 5.0;
+          s.vertical.reset();
+          s.base_on_terrain = true;
+        });
+      },
+      ThrowsMessage<Error>(HasSubstr("no prior has the role terrain")));
+  EXPECT_THAT([&] { read("a.geojson", text, [](Source& s) { s.select.layer = "b"; }); },
+              ThrowsMessage<Error>(HasSubstr("has no layer b; it has a")));
+}
+
+TEST_F(Map, KeepsWhatIsWithinAPolygon) {
+  const std::string two =
+      R"({"type":"FeatureCollection","features":[)" +
+      feature(R"({"id":"in","height":5})", json_ring()) + "," +
+      feature(R"({"id":"out","height":5})", "[[9.01,48],[9.0102,48],[9.0102,48.0002],[9.01,48]]") +
+      "]}";
+  const auto region =
+      folder_.file("site.geojson",
+                   feature("{}", "[[8.999,47.999],[9.001,47.999],[9.001,48.001],[8.999,47.999]]"));
+  const Prior prior = read("two.geojson", two, [&](Source& s) { s.select.within = region; });
+  ASSERT_EQ(prior.objects.size(), 1U);
+  EXPECT_EQ(prior.objects[0].id, "in");
+}
+
+TEST_F(Map, OpensNothingButTheFile) {
+  // A VRT may name any other file: its driver is not among those that are asked.
+  EXPECT_THROW(read("a.tif", "<VRTDataset rasterXSize=\"1\" rasterYSize=\"1\"/>"), Error);
+  EXPECT_THROW(read("a.gpkg", "<OGRVRTDataSource/>"), Error);
+  Source source;
+  source.file = "/vsizip/a.zip";
+  EXPECT_THROW(read_prior(source, {}), Error);
+}
+
+}  // namespace
+}  // namespace skycap::missions::site_data

@@ -1,0 +1,184 @@
+// Legs near prior data, from files to certificates: what a leg is certified against is off by no
+// more than its uncertainty, and then every certified leg keeps its clearance from what is really
+// there. The judge knows the truth and shares no code with those who certify.
+//
+// PRIOR_LEGS in the environment is how many legs are tried; 100000 is the whole test.
+
+#include <cstdlib>
+#include <fstream>
+#include <random>
+
+#include "flight/space/clearance.h"
+#include "geometry/error.h"
+#include "missions/site_data/site_priors.h"
+#include "tests/flight/scenes.h"
+#include "tests/missions/site_data/cube_files.h"
+#include "tests/support/temporary_folder.h"
+
+namespace skycap::missions::site_data {
+namespace {
+
+using Eigen::AlignedBox3d;
+using Eigen::Vector3d;
+using flight::Segment;
+using testing_support::Cube;
+
+/// Convex things: blocks, points (blocks without sides), and the ground under a height model.
+using Truth = std::vector<AlignedBox3d>;
+
+/// A leg's distance from a block, too large by rounding at most: it is convex along the leg, so a
+/// golden-section search finds its least, here with a plain point-to-box distance.
+double distance(const Segment& leg, const AlignedBox3d& box) {
+  const auto at = [&](double t) {
+    const Vector3d p = leg.from + t * (leg.to - leg.from);
+    const Vector3d off = (box.min() - p).cwiseMax(p - box.max()).cwiseMax(Vector3d::Zero());
+    return off.norm();
+  };
+  double low = 0.0, high = 1.0;
+  while (high - low > 1e-10) {
+    const double a = low + 0.382 * (high - low), b = low + 0.618 * (high - low);
+    (at(a) < at(b) ? high : low) = at(a) < at(b) ? b : a;
+  }
+  return std::min({at(low), at(high), at(0.0), at(1.0)});
+}
+
+/// One random site: files in the mission's frame, and the truth that they are off from.
+class RandomSite {
+ public:
+  RandomSite(std::mt19937_64& random, const testing_support::TemporaryFolder& folder, int number)
+      : random_(random), name_(folder.path() / std::to_string(number)) {
+    write_blocks();
+    write_scan();
+    write_height_model();
+  }
+  const std::vector<Source>& sources() const { return sources_; }
+  const Truth& truth() const { return truth_; }
+
+ private:
+  double between(double low, double high) {
+    return std::uniform_real_distribution<double>(low, high)(random_);
+  }
+  /// In whole millimetres, as files have them.
+  double length(double low, double high) { return std::round(1e3 * between(low, high)) / 1e3; }
+  Vector3d place(const AlignedBox3d& box) {
+    return (flight::scenes::point_in(random_, box) * 1e3).array().round() / 1e3;
+  }
+
+  /// Off by as much as the source may be, in any direction.
+  Vector3d error(double uncertainty) {
+    return uncertainty *
+           flight::scenes::point_in(random_, {Vector3d(-1, -1, -1), Vector3d(1, 1, 1)})
+               .normalized();
+  }
+
+  Source& add_source(const std::string& ending, const std::string& bytes) {
+    Source& source = sources_.emplace_back();
+    source.file = name_.string() + ending;
+    std::ofstream(source.file, std::ios::binary) << bytes;
+    source.place = Place{};
+    source.uncertainty = between(0.0, 1.5);
+    return source;
+  }
+
+  void write_blocks() {
+    for (int i = 0; i < 4; ++i) {
+      Cube block{.low = place({Vector3d(-30, -30, 0), Vector3d(20, 20, 10)}),
+                 .size = {length(1, 9), length(1, 9), length(1, 9)}};
+      const Source& source = i % 2 == 0 ? add_source(std::to_string(i) + ".obj", obj_of(block))
+                                        : add_source(std::to_string(i) + ".gml", citygml_of(block));
+      const Vector3d off = error(*source.uncertainty);
+      truth_.emplace_back(block.low + off, block.low + block.size + off);
+    }
+  }
+
+  /// Points of a surface; in the file they are thinned to one in a cube, which stands for the rest.
+  void write_scan() {
+    Cube corners{.low = place({Vector3d(-30, -30, 5), Vector3d(20, 20, 25)}),
+                 .size = {length(0.05, 1), length(0.05, 1), length(0.05, 1)}};
+    Source& source = add_source(".las", las_of(corners, 4, 6, local_wkt));
+    source.spacing = between(0.1, 1.0);
+    const Vector3d off = error(*source.uncertainty);
+    for (int i = 0; i < 8; ++i)
+      truth_.emplace_back(corners.corner(i) + off, corners.corner(i) + off);
+  }
+
+  /// Cells of 2 m; what is under them reaches down without end.
+  void write_height_model() {
+    const Vector3d corner = place({Vector3d(-30, -30, 0), Vector3d(0, 0, 0)});
+    std::string text = "ncols 6\nnrows 5\nxllcorner " + std::to_string(corner.x()) +
+                       "\nyllcorner " + std::to_string(corner.y()) +
+                       "\ncellsize 2\nNODATA_value -9999\n";
+    Truth cells;
+    for (int row = 4; row >= 0; --row) {
+      for (int column = 0; column < 6; ++column) {
+        const bool is_there = between(0, 1) < 0.8;
+        const double height = std::round(100.0 * between(0, 12)) / 100.0;
+        text += (is_there ? std::to_string(height) : "-9999") + (column == 5 ? "\n" : " ");
+        if (!is_there) continue;
+        const Vector3d low(corner.x() + 2 * column, corner.y() + 2 * row, -1000.0);
+        cells.emplace_back(low, Vector3d(low.x() + 2, low.y() + 2, height));
+      }
+    }
+    const Source& source = add_source(".asc", text);
+    const Vector3d off = error(*source.uncertainty);
+    for (AlignedBox3d& cell : cells) truth_.push_back(cell.translate(off));
+  }
+
+  static constexpr const char* local_wkt =
+      "LOCAL_CS[\"local east-north-up\",LOCAL_DATUM[\"mission origin\",0]]";
+
+  std::mt19937_64& random_;
+  std::filesystem::path name_;
+  std::vector<Source> sources_;
+  Truth truth_;
+};
+
+flight::KnownSpace known_space(const RandomSite& site) {
+  flight::Obstacles obstacles;
+  obstacles.priors = read_site_priors(site.sources(), {}, [](std::size_t, const std::string& what) {
+                       throw Error(ErrorKind::bad_config, what);
+                     }).obstacles;
+  return flight::KnownSpace(obstacles);
+}
+
+std::size_t legs_to_try() {
+  const char* const wanted = std::getenv("PRIOR_LEGS");  // NOLINT(concurrency-mt-unsafe)
+  return wanted == nullptr ? 10'000 : std::stoul(wanted);
+}
+
+TEST(PriorLegs, NoneIsCertifiedThatWhatIsReallyThereRefuses) {
+  std::mt19937_64 random(1019);
+  const testing_support::TemporaryFolder folder;
+  constexpr std::size_t legs_of_a_site = 500;
+  std::size_t certified = 0, refused = 0, touching = 0;
+  for (std::size_t done = 0; done < legs_to_try(); done += legs_of_a_site) {
+    const RandomSite site(random, folder, static_cast<int>(done / legs_of_a_site));
+    const flight::KnownSpace space = known_space(site);
+    std::uniform_real_distribution<double> clearances(0.2, 3.0);
+    const AlignedBox3d around(Vector3d(-40, -40, 0), Vector3d(35, 35, 35));
+    for (const Segment& leg : flight::scenes::legs(random, legs_of_a_site, around)) {
+      const double clearance = clearances(random);
+      double least = 1e9;
+      for (const AlignedBox3d& thing : site.truth()) {
+        least = std::min(least, distance(leg, thing));
+      }
+      touching += least == 0.0 ? 1 : 0;
+      if (!space.is_free(leg, clearance)) {
+        ++refused;
+        continue;
+      }
+      ++certified;
+      // Single precision rounds to less than a tenth of a millimetre.
+      ASSERT_GE(least, clearance - 1e-4) << "leg " << certified + refused;
+    }
+  }
+  RecordProperty("legs", static_cast<int>(certified + refused));
+  RecordProperty("certified", static_cast<int>(certified));
+  RecordProperty("really in the way", static_cast<int>(touching));
+  EXPECT_GT(certified, legs_to_try() / 10);
+  EXPECT_GT(refused, legs_to_try() / 20);
+  EXPECT_GT(touching, legs_to_try() / 50);
+}
+
+}  // namespace
+}  // namespace skycap::missions::site_data

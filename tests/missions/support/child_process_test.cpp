@@ -1,0 +1,52 @@
+#include "missions/support/child_process.h"
+
+#include <csignal>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "tests/support/complaint.h"
+
+namespace skycap::missions::support {
+namespace {
+
+std::string complaint(const std::function<void(PipeWriter&)>& work) {
+  return testing_support::complaint_of([&] {
+    ChildProcess({"x.file", "their library", 1}, work).take<int>();
+  });
+}
+
+TEST(ChildProcess, HandsOverWhatItFinds) {
+  ChildProcess child({"x.file", "their library", 1}, [](PipeWriter& pipe) {
+    pipe.put(7);
+    pipe.put_text("words");
+    const std::vector<double> numbers(100'000, 0.5);
+    pipe.put_row(numbers.data(), numbers.size());
+  });
+  EXPECT_EQ(child.take<int>(), 7);
+  EXPECT_EQ(child.take_text(), "words");
+  EXPECT_EQ(child.take_row<std::vector<double>>(), std::vector<double>(100'000, 0.5));
+}
+
+TEST(ChildProcess, ThatCrashesOrEndsEarlyIsAComplaint) {
+  const std::string end = "x.file: is damaged: their library ends within it";
+  EXPECT_EQ(complaint([](PipeWriter&) { std::raise(SIGKILL); }), end);
+  EXPECT_EQ(complaint([](PipeWriter&) {}), end);
+}
+
+TEST(ChildProcess, ThatNeverEndsIsEnded) {
+  const auto loop = [](PipeWriter&) {
+    for (volatile bool goes_on = true; goes_on;) {
+    }
+  };
+  EXPECT_EQ(complaint(loop),
+            "x.file: takes their library longer than 1 s to read, which no sound file of its size "
+            "does");
+  const ChildProcess left({"x.file", "their library"}, loop);  // goes with its owner
+}
+
+}  // namespace
+}  // namespace skycap::missions::support
