@@ -62,5 +62,7 @@ set(supporting_headers
   sim/sensors/noise.h
   survey/see/readings.h
   survey/see/see_config.h
+  survey/coverage_estimator.h
+  survey/survey_limits.h
   survey/skycap/prior_surface.h
   survey/skycap/skycap_config.h)

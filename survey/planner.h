@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <exception>
+#include <functional>
 #include <optional>
 #include <stop_token>
 #include <string>
@@ -12,8 +13,14 @@
 #include "geometry/place/pose.h"
 #include "geometry/points/point_cloud.h"
 #include "geometry/points/scan.h"
+#include "survey/survey_limits.h"
 
 namespace skycap::survey {
+
+class CoverageEstimator;
+
+/// Whether views may be at a place; must be safe to call from several threads.
+using PlaceCheck = std::function<bool(const Eigen::Vector3d&)>;
 
 /// Time one part of the planner took for one view.
 struct PartTime {
@@ -53,6 +60,14 @@ class Planner {
   /// is none left. May be called repeatedly.
   virtual std::optional<geometry::View> next_view_instead() = 0;
 
+  /// Tells the planner where views may be, by what is known when they are proposed. A planner that
+  /// does not ask learns it from next_view_instead(), view by view.
+  virtual void keep_to(PlaceCheck /*may_be_at*/) {}
+
+  /// Whether the limits that the planner keeps its own views to allow a view that the survey asks
+  /// for, such as one of its opening. A planner without such limits allows any.
+  virtual bool allows(const geometry::View& /*view*/) { return true; }
+
   /// Lets a stop end next_view() wherever it is: it then throws Interrupted, and may not be called
   /// again. Planners whose views take no time to speak of need not listen.
   virtual void stop_on(const std::stop_token& /*stop*/) {}
@@ -65,6 +80,13 @@ class Planner {
 
   /// What the last next_view() did.
   virtual const PlanningStep& last_step() const = 0;
+
+  /// Why the last call proposed nothing. A planner that knows limits of the survey says which of
+  /// them it would break.
+  virtual StopReason stop_reason() const { return StopReason::complete; }
+
+  /// What the planner estimates of the surface; null if it does not.
+  virtual const CoverageEstimator* estimator() const { return nullptr; }
 
  protected:
   Planner() = default;

@@ -28,17 +28,6 @@ double processor_time() {
   return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
 }
 
-/// The limit that one more view would break, after so many and with all ways this long.
-std::optional<StopReason> broken_limit(const SurveyLimits& limits, std::size_t views,
-                                       double distance) {
-  if (views >= limits.max_views) return StopReason::view_limit;
-  if (limits.max_distance && distance > *limits.max_distance) return StopReason::distance_limit;
-  const double time =
-      distance / limits.speed + static_cast<double>(views + 1) * limits.time_per_view;
-  if (limits.max_time && time > *limits.max_time) return StopReason::time_limit;
-  return std::nullopt;
-}
-
 /// Has the planner do something, and adds the time that it took.
 template <typename Work>
 auto planned(SurveyedView& taken, Work work) {
@@ -56,24 +45,6 @@ void book_rest(SurveyedView& taken, const char* part) {
 }
 
 }  // namespace
-
-const char* name_of(StopReason reason) {
-  switch (reason) {
-    case StopReason::complete:
-      return "complete";
-    case StopReason::view_limit:
-      return "view_limit";
-    case StopReason::distance_limit:
-      return "distance_limit";
-    case StopReason::time_limit:
-      return "time_limit";
-    case StopReason::nowhere_to_go:
-      return "nowhere_to_go";
-    case StopReason::interrupted:
-      break;
-  }
-  return "interrupted";
-}
 
 SurveySteps::SurveySteps(Planner& planner, const SurveyLimits& limits, SurveyPorts ports)
     : planner_(planner), limits_(limits), ports_(std::move(ports)) {}
@@ -116,6 +87,7 @@ std::optional<View> SurveySteps::take_in(const geometry::Scan& scan, double sens
 std::optional<View> SurveySteps::opening_view(const SurveyedView& taken) {
   while (opened_ < ports_.opening.size()) {
     const View& view = ports_.opening[opened_++];
+    if (!planner_.allows(view)) continue;
     if (!ports_.can_reach || ports_.can_reach(taken.view.position, view)) return view;
   }
   return std::nullopt;
@@ -141,7 +113,7 @@ std::optional<View> SurveySteps::reachable(std::optional<View> next, SurveyedVie
     next = planned(taken, [&] { return planner_.next_view_instead(); });
   }
   if (is_refused) book_rest(taken, "instead");
-  if (!next) stop_reason_ = is_refused ? StopReason::nowhere_to_go : StopReason::complete;
+  if (!next) stop_reason_ = is_refused ? StopReason::nowhere_to_go : planner_.stop_reason();
   return next;
 }
 
@@ -149,7 +121,7 @@ std::optional<View> SurveySteps::within_limits(std::optional<View> next) {
   if (!next) return std::nullopt;
   const SurveyedView& last = views_.back();
   const double way = (next->position - last.view.position).norm();
-  const auto reason = broken_limit(limits_, views_.size(), last.distance + way);
+  const auto reason = broken_limit(limits_, {views_.size(), last.distance + way});
   if (!reason) return next;
   stop_reason_ = *reason;
   return std::nullopt;

@@ -11,29 +11,9 @@
 #include "geometry/place/pose.h"
 #include "geometry/points/scan.h"
 #include "survey/planner.h"
+#include "survey/survey_limits.h"
 
 namespace skycap::survey {
-
-/// Why a survey ended.
-enum class StopReason {
-  complete,  ///< the planner has nowhere left to look
-  view_limit,
-  distance_limit,
-  time_limit,
-  nowhere_to_go,  ///< every view the planner still wanted was refused
-  interrupted,    ///< the user asked to stop
-};
-
-/// "complete", "view_limit" and so on, as the enumerators are called.
-const char* name_of(StopReason reason);
-
-struct SurveyLimits {
-  std::size_t max_views = 1000;
-  std::optional<double> max_distance;  ///< straight lines between views
-  std::optional<double> max_time;      ///< of the flight [s], by the two below
-  double speed = 5.0;                  ///< between views [m/s]
-  double time_per_view = 5.0;          ///< to stop, turn and measure [s]
-};
 
 /// Scans that were taken on the way to a view.
 struct ScansOnWay {
@@ -61,8 +41,8 @@ struct SurveyResult {
 
 /// Who has a say while a survey goes on.
 struct SurveyPorts {
-  /// Views that are taken before the planner is asked for any, after the first: those that can be
-  /// reached. The planner learns from them as from its own.
+  /// Views that are taken before the planner is asked for any, after the first: those that it
+  /// allows and that can be reached. The planner learns from them as from its own.
   std::vector<geometry::View> opening{};
   /// Takes a scan from a view (or as near to it as it could). The memory of `recycled`, the scan
   /// before it, may be used again. For run_survey() alone.

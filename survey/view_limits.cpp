@@ -17,7 +17,7 @@ using Eigen::Vector3d;
 constexpr double angle_tolerance = 1e-6;
 
 void require(bool holds, const std::string& what) {
-  if (!holds) throw Error(ErrorKind::bad_config, "limits." + what);
+  if (!holds) throw Error(ErrorKind::bad_config, what);
 }
 
 }  // namespace

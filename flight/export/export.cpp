@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <array>
+#include <cassert>
 #include <cmath>
+#include <cstddef>
 
 #include "flight/export/map_files.h"
 #include "flight/export/mavlink_files.h"
@@ -17,140 +19,167 @@ namespace {
 
 using Eigen::Vector3d;
 
+/// A format with all that is done with it.
+struct FormatRecord {
+  FormatInfo info;
+  bool holds_curves = false;
+  std::string (*write)(const FlightPlan& plan);
+  Problems (*validate)(const std::string& content);
+  /// In the local frame, in the order of the file.
+  std::vector<Vector3d> (*places)(const std::string& content, const Site& site,
+                                  const Vector3d& pad);
+  std::vector<std::string> (*notes)(const FlightPlan& plan) = nullptr;  ///< what it leaves out
+};
+
 /// Between the rows of trajectory files [s].
 constexpr double trajectory_interval = 0.1;
-
-constexpr std::array<FormatInfo, 9> all_formats{{
-    {Format::plan, "plan", ".plan", "above take-off; home above mean sea level"},
-    {Format::waypoints, "waypoints", ".waypoints", "above take-off"},
-    {Format::kmz, "kmz", ".kmz", "above take-off"},
-    {Format::kml, "kml", ".kml", "above mean sea level"},
-    {Format::geojson, "geojson", ".geojson", "above the WGS84 ellipsoid"},
-    {Format::litchi, "litchi", ".litchi.csv", "above take-off"},
-    {Format::csv, "csv", ".csv", "local frame"},
-    {Format::ned_csv, "ned-csv", ".ned.csv", "local frame, down"},
-    {Format::tum, "tum", ".tum", "local frame"},
-}};
 
 std::vector<TimedState> states_of(const FlightPlan& plan) {
   return trajectory(plan, trajectory_interval);
 }
 
-/// The route as written, for formats with places on the Earth.
-RouteFile route_file(const std::string& content, Format format) {
-  switch (format) {
-    case Format::plan:
-      return route_of(read_plan(content).items);
-    case Format::waypoints:
-      return route_of(read_waypoints(content).items);
-    case Format::kmz:
-      return read_kmz(content);
-    case Format::kml:
-      return read_kml(content);
-    case Format::geojson:
-      return read_geojson(content);
-    default:
-      return read_litchi(content);
+/// Places of a file that has them on the Earth.
+template <class Read>
+std::vector<Vector3d> earth_places(const std::string& content, const Site& site,
+                                   const Vector3d& pad, const Read& read) {
+  return local_points(read(content), site, pad);
+}
+
+std::vector<Vector3d> csv_places(const std::string& content, const Site&, const Vector3d&) {
+  std::vector<Vector3d> points;
+  for (const TimedState& state : read_trajectory_csv(content)) points.push_back(state.position);
+  return points;
+}
+
+std::vector<Vector3d> tum_places(const std::string& content, const Site&, const Vector3d&) {
+  std::vector<Vector3d> points;
+  for (const TimedPose& pose : read_tum(content)) {
+    points.emplace_back(pose.world_from_camera.translation());
   }
+  return points;
+}
+
+std::vector<std::string> notes_of_plan(const FlightPlan& plan) {
+  std::vector<std::string> notes;
+  for (const std::string& name : flat_no_fly(plan).left_out) {
+    notes.push_back("no-fly volume \"" + name +
+                    "\" is passed over or under; the format has no heights, so it is left out");
+  }
+  return notes;
+}
+
+std::vector<std::string> notes_of_litchi(const FlightPlan&) {
+  return {
+      "Litchi's mission settings are not in the file: set heading mode \"Custom\" and path mode "
+      "\"Straight Lines\"; gimbal pitch is in whole degrees"};
+}
+
+/// Everything about the formats, in the order of Format. A new one has a row here, an enumerator,
+/// and a source with its writer, its reader and its checks.
+const std::array<FormatRecord, 9> records{{
+    {.info = {Format::plan, "plan", ".plan", "above take-off; home above mean sea level"},
+     .write = write_plan,
+     .validate = [](const std::string& content) { return validate_plan(content); },
+     .places =
+         [](const auto& content, const auto& site, const auto& pad) {
+           return earth_places(content, site, pad,
+                               [](const auto& text) { return route_of(read_plan(text).items); });
+         },
+     .notes = notes_of_plan},
+    {.info = {Format::waypoints, "waypoints", ".waypoints", "above take-off"},
+     .write = write_waypoints,
+     .validate = [](const std::string& content) { return validate_waypoints(content); },
+     .places =
+         [](const auto& content, const auto& site, const auto& pad) {
+           return earth_places(content, site, pad, [](const auto& text) {
+             return route_of(read_waypoints(text).items);
+           });
+         }},
+    {.info = {Format::kmz, "kmz", ".kmz", "above take-off"},
+     .write = write_kmz,
+     .validate = validate_kmz,
+     .places = [](const auto& content, const auto& site,
+                  const auto& pad) { return earth_places(content, site, pad, read_kmz); }},
+    {.info = {Format::kml, "kml", ".kml", "above mean sea level"},
+     .holds_curves = true,
+     .write = write_kml,
+     .validate = validate_kml,
+     .places = [](const auto& content, const auto& site,
+                  const auto& pad) { return earth_places(content, site, pad, read_kml); }},
+    {.info = {Format::geojson, "geojson", ".geojson", "above the WGS84 ellipsoid"},
+     .write = write_geojson,
+     .validate = validate_geojson,
+     .places = [](const auto& content, const auto& site,
+                  const auto& pad) { return earth_places(content, site, pad, read_geojson); }},
+    {.info = {Format::litchi, "litchi", ".litchi.csv", "above take-off"},
+     .write = write_litchi,
+     .validate = validate_litchi,
+     .places = [](const auto& content, const auto& site,
+                  const auto& pad) { return earth_places(content, site, pad, read_litchi); },
+     .notes = notes_of_litchi},
+    {.info = {Format::csv, "csv", ".csv", "local frame"},
+     .holds_curves = true,
+     .write =
+         [](const FlightPlan& plan) { return write_trajectory_csv(states_of(plan), Frame::enu); },
+     .validate = validate_trajectory_csv,
+     .places = csv_places},
+    {.info = {Format::ned_csv, "ned-csv", ".ned.csv", "local frame, down"},
+     .holds_curves = true,
+     .write =
+         [](const FlightPlan& plan) { return write_trajectory_csv(states_of(plan), Frame::ned); },
+     .validate = validate_trajectory_csv,
+     .places = csv_places},
+    {.info = {Format::tum, "tum", ".tum", "local frame"},
+     .holds_curves = true,
+     .write = [](const FlightPlan& plan) { return write_tum(camera_poses(states_of(plan))); },
+     .validate = validate_tum,
+     .places = tum_places},
+}};
+
+const FormatRecord& record_of(Format format) {
+  const FormatRecord& record = records.at(static_cast<std::size_t>(format));
+  assert(record.info.format == format);
+  return record;
 }
 
 }  // namespace
 
-std::span<const FormatInfo> formats() { return all_formats; }
-
-const FormatInfo& format_info(Format format) {
-  return *std::ranges::find(all_formats, format, &FormatInfo::format);
+std::span<const FormatInfo> formats() {
+  static const std::array<FormatInfo, records.size()> infos = [] {
+    std::array<FormatInfo, records.size()> all{};
+    std::ranges::transform(records, all.begin(), &FormatRecord::info);
+    return all;
+  }();
+  return infos;
 }
+
+const FormatInfo& format_info(Format format) { return record_of(format).info; }
 
 Format format_named(const std::string& name) {
   std::string names;
-  for (const FormatInfo& info : all_formats) {
+  for (const FormatInfo& info : formats()) {
     if (name == info.name) return info.format;
     names += (names.empty() ? "" : ", ") + std::string(info.name);
   }
   throw Error(ErrorKind::bad_usage, "format \"" + name + "\" is not known; there are " + names);
 }
 
-bool holds_curves(Format format) {
-  return format == Format::csv || format == Format::ned_csv || format == Format::tum ||
-         format == Format::kml;
-}
+bool holds_curves(Format format) { return record_of(format).holds_curves; }
 
-std::string write(const FlightPlan& plan, Format format) {
-  switch (format) {
-    case Format::plan:
-      return write_plan(plan);
-    case Format::waypoints:
-      return write_waypoints(plan);
-    case Format::kmz:
-      return write_kmz(plan);
-    case Format::kml:
-      return write_kml(plan);
-    case Format::geojson:
-      return write_geojson(plan);
-    case Format::litchi:
-      return write_litchi(plan);
-    case Format::csv:
-      return write_trajectory_csv(states_of(plan), Frame::enu);
-    case Format::ned_csv:
-      return write_trajectory_csv(states_of(plan), Frame::ned);
-    case Format::tum:
-      return write_tum(camera_poses(states_of(plan)));
-  }
-  return {};
-}
+std::string write(const FlightPlan& plan, Format format) { return record_of(format).write(plan); }
 
 std::vector<std::string> notes_of(const FlightPlan& plan, Format format) {
-  std::vector<std::string> notes;
-  if (format == Format::plan) {
-    for (const std::string& name : flat_no_fly(plan).left_out) {
-      notes.push_back("no-fly volume \"" + name +
-                      "\" is passed over or under; the format has no heights, so it is left out");
-    }
-  }
-  if (format == Format::litchi) {
-    notes.emplace_back(
-        "Litchi's mission settings are not in the file: set heading mode \"Custom\" and path mode "
-        "\"Straight Lines\"; gimbal pitch is in whole degrees");
-  }
-  return notes;
+  const FormatRecord& record = record_of(format);
+  return record.notes != nullptr ? record.notes(plan) : std::vector<std::string>();
 }
 
 Problems validate(const std::string& content, Format format) {
-  switch (format) {
-    case Format::plan:
-      return validate_plan(content);
-    case Format::waypoints:
-      return validate_waypoints(content);
-    case Format::kmz:
-      return validate_kmz(content);
-    case Format::kml:
-      return validate_kml(content);
-    case Format::geojson:
-      return validate_geojson(content);
-    case Format::litchi:
-      return validate_litchi(content);
-    case Format::csv:
-    case Format::ned_csv:
-      return validate_trajectory_csv(content);
-    case Format::tum:
-      return validate_tum(content);
-  }
-  return {};
+  return record_of(format).validate(content);
 }
 
 std::vector<Vector3d> places_of(const std::string& content, Format format, const Site& site,
                                 const Vector3d& pad) {
-  std::vector<Vector3d> points;
-  if (format == Format::csv || format == Format::ned_csv) {
-    for (const TimedState& state : read_trajectory_csv(content)) points.push_back(state.position);
-  } else if (format == Format::tum) {
-    for (const TimedPose& pose : read_tum(content)) {
-      points.emplace_back(pose.world_from_camera.translation());
-    }
-  } else {
-    points = local_points(route_file(content, format), site, pad);
-  }
+  std::vector<Vector3d> points = record_of(format).places(content, site, pad);
   for (std::size_t i = 0; i < points.size(); ++i) {
     geometry::require_place(points[i], "place " + std::to_string(i + 1));
   }
@@ -163,7 +192,7 @@ Format format_of_file(const std::filesystem::path& path, const std::string& cont
     return content.starts_with("latitude,") ? Format::litchi : Format::csv;
   }
   if (path.extension() == ".txt") return Format::waypoints;
-  for (const FormatInfo& info : all_formats) {
+  for (const FormatInfo& info : formats()) {
     if (name.ends_with(info.ending)) return info.format;
   }
   throw Error(ErrorKind::bad_file, path.string() +

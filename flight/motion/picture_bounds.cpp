@@ -18,7 +18,7 @@ double pixels_per_radian(const geometry::Camera& camera) {
 
 }  // namespace
 
-double sharp_speed(const Vehicle& vehicle, const geometry::Camera& camera, const Shutter& shutter,
+double sharp_speed(const Vehicle& vehicle, const geometry::Camera& camera, const geometry::Shutter& shutter,
                    double distance) {
   const double time = std::max(shutter.exposure, shutter.readout);
   if (time == 0.0) return std::numeric_limits<double>::infinity();
@@ -27,7 +27,7 @@ double sharp_speed(const Vehicle& vehicle, const geometry::Camera& camera, const
 }
 
 PictureBounds picture_bounds(const Vehicle& vehicle, const geometry::Camera& camera,
-                             const Shutter& shutter, double distance) {
+                             const geometry::Shutter& shutter, double distance) {
   const double speed =
       pixels_per_radian(camera) * (vehicle.sway_rate + vehicle.sway_speed / distance);  // [px/s]
   return {speed * shutter.exposure, speed * shutter.readout, distance};

@@ -3,14 +3,9 @@
 
 #include "flight/motion/vehicle.h"
 #include "geometry/place/camera.h"
+#include "geometry/place/platform.h"
 
 namespace skycap::flight {
-
-/// When a sensor takes its pictures.
-struct Shutter {
-  double exposure = 0.0;  ///< of each pixel [s]
-  double readout = 0.0;   ///< from the first row's exposure to the last one's [s]; zero: global
-};
 
 /// How far what is `distance` away moves at most over the image, anywhere in it, while the vehicle
 /// sways and its camera turns as it says of itself.
@@ -25,11 +20,11 @@ struct PictureBounds {
 };
 
 PictureBounds picture_bounds(const Vehicle& vehicle, const geometry::Camera& camera,
-                             const Shutter& shutter, double distance);
+                             const geometry::Shutter& shutter, double distance);
 
 /// The greatest speed over the ground at which pictures are sharp [m/s]: infinite for a shutter
 /// that takes no time, zero where they are not even at rest.
-double sharp_speed(const Vehicle& vehicle, const geometry::Camera& camera, const Shutter& shutter,
+double sharp_speed(const Vehicle& vehicle, const geometry::Camera& camera, const geometry::Shutter& shutter,
                    double distance);
 
 }  // namespace skycap::flight

@@ -35,3 +35,7 @@ Evaluation evaluate(std::span<const Eigen::Vector3f> points, const geometry::Mes
                     const EvaluationRequest& request = {});
 
 }  // namespace skycap::missions::api
+
+namespace skycap::missions {
+namespace library = api;  ///< the name in programs of users
+}

@@ -24,10 +24,10 @@ std::uint64_t firings_in_part(std::size_t channels) {
 constexpr std::size_t parts_in_piece = 64;
 
 sim::LidarConfig scanner_of(const Mission::Contents& contents, const ScanRequest& request) {
-  const std::string& own = contents.mission.scan.sensor;
+  const std::string& own = contents.setup.scan.sensor;
   sim::LidarConfig scanner =
       laser_scanner(request.sensor.value_or(config::named_from(contents.folder, own)));
-  scanner.seed = contents.mission.seed;
+  scanner.seed = contents.setup.run.seed;
   return scanner;
 }
 
@@ -35,11 +35,11 @@ sim::LidarConfig scanner_of(const Mission::Contents& contents, const ScanRequest
 
 struct LaserScan::Impl {
   Impl(const Mission::Contents& contents, const ScanRequest& request)
-      : threads(contents.mission.threads),
+      : threads(contents.setup.run.threads),
         lidar(scanner_of(contents, request)),
-        flown(scan::scan_flight(contents.mission, contents.folder, request.route,
-                                scan::Carrier::airframe)),
-        scene(scene::reflecting_scene(contents.mission, contents.folder).scene(threads)),
+        flown(scan::scan_flight(contents.setup.scan, contents.setup.run.seed, contents.folder,
+                                request.route, scan::Carrier::airframe)),
+        scene(scene::reflecting_scene(contents.setup.scene(), contents.folder).scene(threads)),
         firings(lidar.firings(flown.route.carrier)),
         parts(parts_in_piece) {
     scan::require_measurable(lidar, flown.route.carrier);

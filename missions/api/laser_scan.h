@@ -38,3 +38,7 @@ class LaserScan {
 };
 
 }  // namespace skycap::missions::api
+
+namespace skycap::missions {
+namespace library = api;  ///< the name in programs of users
+}

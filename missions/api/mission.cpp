@@ -3,8 +3,7 @@
 #include <utility>
 
 #include "missions/api/mission_contents.h"
-#include "missions/config/planner_factory.h"
-#include "missions/config/resolved_mission.h"
+#include "missions/config/resolve.h"
 #include "missions/evaluation/survey_scene.h"
 
 namespace skycap::missions::api {
@@ -32,24 +31,25 @@ Mission Mission::parse(const std::string& text, const std::string& name,
                std::filesystem::path(name).parent_path()}));
 }
 
-const std::string& Mission::name() const { return contents_->mission.name; }
+const std::string& Mission::name() const { return contents_->setup.name; }
 
-std::uint64_t Mission::seed() const { return contents_->mission.seed; }
+std::uint64_t Mission::seed() const { return contents_->setup.run.seed; }
 
 const geometry::CameraConfig& Mission::camera() const {
-  return contents_->mission.sensor.camera.camera;
+  return contents_->setup.survey().planner.camera;
 }
 
 double Mission::coverage_distance() const {
-  return contents_->mission.evaluation.registration_distance;
+  return contents_->setup.evaluation().registration_distance;
 }
 
 geometry::Mesh Mission::model() const {
-  return evaluation::placed_model(contents_->mission, contents_->folder);
+  return evaluation::placed_model(contents_->setup.scene(), contents_->folder);
 }
 
 std::unique_ptr<survey::Planner> Mission::planner() const {
-  return config::make_planner(contents_->mission, contents_->mission.threads);
+  const session::RunOptions& run = contents_->setup.run;
+  return survey::make_planner(contents_->setup.survey().planner, {run.seed, run.threads, {}});
 }
 
 }  // namespace skycap::missions::api

@@ -60,3 +60,7 @@ class Mission {
 };
 
 }  // namespace skycap::missions::api
+
+namespace skycap::missions {
+namespace library = api;  ///< the name in programs of users
+}

@@ -4,12 +4,12 @@
 #include <filesystem>
 
 #include "missions/api/mission.h"
-#include "missions/config/mission.h"
+#include "missions/config/mission_setup.h"
 
 namespace skycap::missions::api {
 
 struct Mission::Contents {
-  config::Mission mission;
+  config::MissionSetup setup;
   std::filesystem::path folder;  ///< where relative paths start
 };
 

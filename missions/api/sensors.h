@@ -20,3 +20,7 @@ sim::DepthCameraConfig depth_camera(const std::string& name_or_file);
 sim::LidarConfig laser_scanner(const std::string& name_or_file);
 
 }  // namespace skycap::missions::api
+
+namespace skycap::missions {
+namespace library = api;  ///< the name in programs of users
+}

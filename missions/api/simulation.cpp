@@ -1,20 +1,20 @@
 #include "missions/api/simulation.h"
 
 #include "missions/api/mission_contents.h"
-#include "missions/config/survey_sensor.h"
 #include "missions/evaluation/survey_scene.h"
+#include "sim/sensors/survey_sensor.h"
 
 namespace skycap::missions::api {
 
 struct Simulation::Impl {
   explicit Impl(const Mission::Contents& contents)
-      : scene(contents.mission, contents.folder),
-        sensor(contents.mission.sensor, contents.mission.seed),
-        seed(contents.mission.seed),
-        threads(contents.mission.threads) {}
+      : scene(contents.setup.simulation, contents.folder, contents.setup.run.threads),
+        sensor(contents.setup.sensor(), contents.setup.run.seed),
+        seed(contents.setup.run.seed),
+        threads(contents.setup.run.threads) {}
 
   evaluation::SurveyScene scene;
-  config::SurveySensor sensor;
+  sim::SurveySensor sensor;
   std::uint64_t seed;
   unsigned threads;
 };

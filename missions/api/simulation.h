@@ -32,3 +32,7 @@ class Simulation {
 };
 
 }  // namespace skycap::missions::api
+
+namespace skycap::missions {
+namespace library = api;  ///< the name in programs of users
+}

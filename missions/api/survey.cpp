@@ -14,29 +14,29 @@ namespace skycap::missions::api {
 namespace {
 
 Survey survey_of(const Mission::Contents& contents, const SurveyRequest& request) {
-  const config::Mission& mission = contents.mission;
+  const config::MissionSetup& setup = contents.setup;
+  const unsigned threads = setup.run.threads;
   std::optional<geometry::OutputFolder> folder;
   if (request.folder) folder.emplace(*request.folder);
-  const evaluation::SurveyScene scene(mission, contents.folder);
-  simulation::require_feasible(mission, scene, mission.threads);
+  const evaluation::SurveyScene scene(setup.simulation, contents.folder, threads);
+  simulation::require_feasible(setup.simulation, scene, setup.run);
   Survey survey;
   session::SurveyRecord record =
-      simulation::run_survey(mission, scene, mission.seed, mission.threads, request.stop,
+      simulation::run_survey(setup.simulation, scene, setup.run.seed, threads, request.stop,
                              [&](const session::JudgedView& view) {
                                survey.views.push_back(view.surveyed);
                                survey.coverages.push_back(view.coverage);
                                if (request.report) request.report(view.surveyed, view.coverage);
                              });
   const package::CoverageFigures figures =
-      package::coverage_figures(mission, record, scene, mission.threads, request.stop);
+      package::coverage_figures(setup.simulation, record, scene, threads, request.stop);
   std::optional<package::SurveyMission> flight;
   if (folder) {
-    flight =
-        package::stage_package(mission, record, figures, mission.threads, *folder, request.stop);
+    flight = package::stage_package(setup, record, figures, threads, *folder, request.stop);
     package::commit_package(record, *folder);
   }
   if (flight) survey.failure = flight->failure;
-  survey.summary = package::summary_json(mission, record, figures, flight);
+  survey.summary = package::summary_json(setup, record, figures, flight);
   survey.end = record.stop_reason;
   survey.visible_coverage = figures.visible;
   survey.attainable_coverage = figures.ceiling;

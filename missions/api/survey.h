@@ -42,3 +42,7 @@ struct Survey {
 Survey plan(const Mission& mission, const SurveyRequest& request = {});
 
 }  // namespace skycap::missions::api
+
+namespace skycap::missions {
+namespace library = api;  ///< the name in programs of users
+}

@@ -19,6 +19,7 @@
 #include "missions/cli/survey_progress.h"
 #include "missions/cli/verbs.h"
 #include "missions/cli/write_page.h"
+#include "missions/config/resolve.h"
 #include "missions/support/json_text.h"
 #include "missions/version.h"
 #include "sim/models/models.h"
@@ -36,7 +37,7 @@ struct Entry {
   std::vector<std::shared_ptr<batch::Setup>> setups;  ///< of each trial; one, or one a scene
   std::vector<std::optional<batch::Trial>> trials;
 
-  std::uint64_t seed(std::size_t trial) const { return setups[trial]->mission.seed + trial; }
+  std::uint64_t seed(std::size_t trial) const { return setups[trial]->mission.run.seed + trial; }
 };
 
 std::vector<const batch::Contestant*> chosen_contestants(const std::vector<std::string>& names) {
@@ -79,9 +80,10 @@ Entry entry_of(const fs::path& file, const batch::Contestant* contestant, const 
   overrides.push_back({"--scenes", "scene.model", "builtin:" + scene});
   for (std::size_t trial = 0; trial < options.trials; ++trial) {
     batch::Setup setup = batch::read_setup(file, contestant, "--planners", overrides, report);
-    setup.mission.scene.seed = setup.mission.seed + trial;
+    const std::string seed = std::to_string(setup.mission.run.seed + trial);
+    setup.mission = config::with_keys(setup.mission, {{"--scenes", "scene.seed", seed}});
     entry.title = options.missions.size() == 1 ? scene : setup.title + " " + scene;
-    setup.title = fmt::format("{} {}", entry.title, setup.mission.scene.seed);
+    setup.title = fmt::format("{} {}", entry.title, seed);
     setup.fingerprint = batch::fingerprint_of(setup);
     entry.setups.push_back(std::make_shared<batch::Setup>(std::move(setup)));
   }
@@ -114,6 +116,10 @@ fs::path item_file(const fs::path& folder, const Entry& entry, std::uint64_t see
          ("seed_" + std::to_string(seed) + ".json");
 }
 
+bool gives_view_limit(const batch::Setup& setup) {
+  return setup.mission.text("volumetric.view_limit") != "-";
+}
+
 std::string manifest(const BenchmarkOptions& options, const std::vector<Entry>& entries,
                      bool is_whole) {
   Json json{{"version", version},
@@ -126,7 +132,7 @@ std::string manifest(const BenchmarkOptions& options, const std::vector<Entry>& 
     json["entries"].push_back({{"mission", entry.title},
                                {"file", first.file.string()},
                                {"planner", entry.contestant->name},
-                               {"first_seed", first.mission.seed},
+                               {"first_seed", first.mission.run.seed},
                                {"fingerprint", first.fingerprint}});
   }
   return support::json_text(json);
@@ -187,9 +193,7 @@ class Benchmark {
   /// Paper §IV-B: a volumetric survey has as many views as SEE needed at most.
   void take_view_limits_from_see() {
     for (Entry& entry : entries_) {
-      if (!entry.contestant->is_volumetric || entry.setups.front()->mission.volumetric.view_limit) {
-        continue;
-      }
+      if (!entry.contestant->is_volumetric || gives_view_limit(*entry.setups.front())) continue;
       std::size_t most = 0;
       for (const Entry& other : entries_) {
         if (other.title != entry.title || other.contestant->name != "see") continue;
@@ -197,7 +201,8 @@ class Benchmark {
       }
       if (most == 0) continue;
       for (const auto& setup : entry.setups) {
-        setup->mission.volumetric.view_limit = most;
+        setup->mission = config::with_keys(
+            setup->mission, {{"benchmark", "volumetric.view_limit", std::to_string(most)}});
         setup->fingerprint = batch::fingerprint_of(*setup);
       }
     }

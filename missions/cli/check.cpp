@@ -5,6 +5,7 @@
 #include <vector>
 
 #include <fmt/format.h>
+#include <nlohmann/json.hpp>
 
 #include "flight/export/export.h"
 #include "flight/interpreter/interpret.h"
@@ -12,29 +13,29 @@
 #include "geometry/error.h"
 #include "geometry/surfaces/mesh.h"
 #include "missions/cli/verbs.h"
-#include "missions/config/fleet.h"
-#include "missions/config/mission_flight.h"
-#include "missions/config/mission_priors.h"
-#include "missions/config/pad_grounds.h"
-#include "missions/config/planner_titles.h"
-#include "missions/config/resolved_mission.h"
+#include "missions/config/resolve.h"
+#include "missions/config/setup_text.h"
 #include "missions/evaluation/survey_scene.h"
 #include "missions/package/fleet/timetable_proof.h"
 #include "missions/package/fleet_mission.h"
 #include "missions/package/package.h"
+#include "missions/package/settings.h"
 #include "missions/package/verification/check_returns.h"
 #include "missions/package/verification/true_space.h"
 #include "missions/simulation/expectation.h"
 #include "missions/simulation/feasibility.h"
 #include "missions/site_data/prior_text.h"
 #include "missions/support/number_text.h"
+#include "survey/planners/planner_names.h"
+#include "survey/see/see_config.h"
 
 namespace skycap::missions::cli {
 namespace {
 
 /// What the mission says of a file; the pad and the views are those of the package it lies in.
-flight::FlightFacts facts_of(const config::Mission& mission, const std::filesystem::path& route) {
-  flight::FlightFacts facts = config::flight_facts(mission);
+flight::FlightFacts facts_of(const flight::FlightOptions& flight,
+                             const std::filesystem::path& route) {
+  flight::FlightFacts facts = flight.facts();
   const std::filesystem::path folder = route.parent_path();
   if (!std::filesystem::exists(folder / package::summary_name)) return facts;
   package::PackageSummary summary = package::read_package_summary(folder, {});
@@ -58,21 +59,21 @@ std::vector<Eigen::Vector3d> places_of(const flight::FlownRoute& route) {
 }
 
 /// Errors of the mission's model name the mission, too.
-geometry::Mesh model_of(const config::Mission& mission, const std::filesystem::path& file) {
+geometry::Mesh model_of(const scene::SceneOptions& scene, const std::filesystem::path& file) {
   try {
-    return evaluation::placed_model(mission, file.parent_path());
+    return evaluation::placed_model(scene, file.parent_path());
   } catch (const Error& error) {
     throw Error(error.kind(), file.string() + ": " + error.what());
   }
 }
 
 /// Says what of the ground that the file takes off from and lands on is unfit; whether none is.
-bool check_pads(const std::string& file, const config::Mission& mission,
+bool check_pads(const std::string& file, const flight::FlightOptions& flight,
                 const geometry::Mesh& model, const Eigen::Vector3d& pad, const Console& console) {
-  if (!mission.flight.is_flown()) return true;
+  if (!flight.is_flown()) return true;
   bool are_fit = true;
-  for (const flight::PadGround& ground : package::true_grounds(mission, model, pad)) {
-    const std::string why = why_unfit(ground, config::ground_limits_of(mission));
+  for (const flight::PadGround& ground : package::true_grounds(flight, model, pad)) {
+    const std::string why = why_unfit(ground, flight.ground_limits());
     if (why.empty()) continue;
     are_fit = false;
     console.out << file << ": not safe, the place to land at " << flight::place_text(ground.place)
@@ -82,39 +83,39 @@ bool check_pads(const std::string& file, const config::Mission& mission,
 }
 
 /// Proves from a fleet's timetable and the files that it names that its vehicles keep apart.
-int check_timetable(const CheckOptions& options, const config::Mission& mission,
+int check_timetable(const CheckOptions& options, const flight::FlightOptions& flight,
                     const Console& console) {
-  if (!config::is_fleet(mission)) {
+  if (!flight.is_fleet()) {
     throw Error(ErrorKind::bad_usage, "a timetable is for several vehicles; give flight.vehicles");
   }
   const std::string file = options.route->string();
-  const flight::SeparationRule rule = config::separation_of(mission);
+  const flight::SeparationRule rule = flight.fleet.rule();
   const package::TimetableProof proof =
-      package::prove_timetable(*options.route, mission, package::reported_distance);
+      package::prove_timetable(*options.route, flight, package::reported_distance);
   for (const std::string& problem : proof.problems) console.out << file << ": " << problem << "\n";
   console.out << file << ": "
               << fmt::format(
                      "{}, {} sorties of {} vehicles in {:.0f} s, apart by {:.2f} m at all times, "
                      "each up to {} s early or late; {} m is asked for\n",
                      proof.problems.empty() ? "fine" : "not safe", proof.sorties,
-                     mission.flight.fleet.vehicles.size(), proof.makespan, proof.distance,
+                     flight.fleet.vehicles.size(), proof.makespan, proof.distance,
                      support::short_text(rule.tolerance), support::short_text(rule.distance))
               << std::flush;
   return proof.problems.empty() ? 0 : 1;
 }
 
 /// Proves what a route file's vehicle flies against the mission's scene as it truly is.
-int check_route_file(const CheckOptions& options, const config::Mission& given,
+int check_route_file(const CheckOptions& options, const flight::FlightOptions& given,
                      const geometry::Mesh& model, const Console& console) {
   const std::string file = options.route->string();
-  const config::Mission mission = package::mission_of_file(*options.route, given);
-  const flight::FlightFacts facts = facts_of(mission, *options.route);
+  const flight::FlightOptions flight = package::flight_of_file(*options.route, given);
+  const flight::FlightFacts facts = facts_of(flight, *options.route);
   const flight::FlownRoute route = flight::interpret_file(*options.route, facts);
-  const package::TrueSpace space = package::true_space(mission, model, facts.pad.z());
+  const package::TrueSpace space = package::true_space(flight, model, facts.pad.z());
 
   ProgressLine progress(console, false);
   progress.show(file + ": proving " + std::to_string(route.pieces.size()) + " legs");
-  const double asked_for = mission.flight.clearance;
+  const double asked_for = flight.clearance;
   const flight::FlownProof proof = prove(route, space.everywhere, space.over_pad,
                                          std::max(0.0, asked_for - flight::rounding_bound),
                                          asked_for + flight::reported_surplus);
@@ -134,26 +135,35 @@ int check_route_file(const CheckOptions& options, const config::Mission& given,
   }
   console.out << "\n";
   const package::ReturnCheck returns = package::check_returns(
-      *options.route, options.return_height, mission, space.everywhere, places_of(route));
+      *options.route, options.return_height, flight, space.everywhere, places_of(route));
   console.out << file << ": " << returns.text << "\n";
   Eigen::Vector3d pad = facts.pad;
   if (!facts.is_pad_known && !route.pieces.empty()) {
     pad.head<2>() = route.pieces.front().start.to.head<2>();
   }
-  const bool are_pads_fit = check_pads(file, mission, model, pad, console);
+  const bool are_pads_fit = check_pads(file, flight, model, pad, console);
   console.out << std::flush;
   return is_fine && returns.is_safe && are_pads_fit ? 0 : 1;
 }
 
-std::string scene_text(const config::Mission& mission, const evaluation::SurveyScene& scene) {
-  const survey::see::SeeConfig& see = mission.planner.see;
+/// k by the values of all keys, of planners that do not use it, too.
+int core_threshold(const nlohmann::ordered_json& keys) {
+  survey::see::SeeConfig see{.density = keys.at("planner.density"),
+                             .resolution_radius = keys.at("planner.resolution_radius")};
+  const auto given = keys.find("planner.core_threshold");
+  if (given != keys.end()) see.core_threshold = *given;
+  return see.effective_core_threshold();
+}
+
+std::string scene_text(const survey::PlannerOptions& planner, int core_threshold,
+                       const evaluation::SurveyScene& scene) {
   const Eigen::Vector3d size = geometry::bounding_box(scene.model()).sizes();
   return fmt::format(
       "  scene     {} triangles, {:.4g} x {:.4g} x {:.4g} m, {:.4g} m^2\n"
       "  planner   {}, view distance d {:.4g} m, spacing epsilon {:.4g} m, core threshold k {}\n",
       scene.model().triangles.size(), size.x(), size.y(), size.z(),
-      geometry::surface_area(scene.model()), config::title_of(mission.planner.name).word,
-      scene.view_distance(), see.effective_spacing(), see.effective_core_threshold());
+      geometry::surface_area(scene.model()), survey::title_of(planner.name).word,
+      scene.view_distance(), planner.spacing, core_threshold);
 }
 
 /// An estimate: two digits, and zeros after them.
@@ -182,19 +192,23 @@ std::string expectation_text(const simulation::Expectation& expected) {
 }
 
 /// Says whether a survey of the mission can work, and what it will take.
-int check_survey(const CheckOptions& options, const config::Mission& mission,
+int check_survey(const CheckOptions& options, const config::MissionSetup& setup,
                  ProgressLine& progress, const Console& console) {
   const std::string file = options.mission.string();
   try {
-    const evaluation::SurveyScene scene(mission, options.mission.parent_path());
-    const simulation::Feasibility found = simulation::feasibility(mission, scene, mission.threads);
-    std::string text = file + (found.problems.empty() ? ": fine\n" : ": cannot work\n") +
-                       scene_text(mission, scene) + site_data::text_of(config::priors_of(mission));
+    const evaluation::SurveyScene scene(setup.simulation, options.mission.parent_path(),
+                                        setup.run.threads);
+    const simulation::Feasibility found =
+        simulation::feasibility(setup.simulation, scene, setup.run);
+    std::string text = file + (found.problems.empty() ? ": fine\n" : ": cannot work\n");
+    text +=
+        scene_text(setup.survey().planner, core_threshold(package::settings_json(setup)), scene);
+    if (setup.scene().priors) text += site_data::text_of(*setup.scene().priors);
     for (const std::string& problem : found.problems) text += "  problem   " + problem + "\n";
     for (const std::string& warning : found.warnings) text += "  warning   " + warning + "\n";
     if (found.problems.empty()) {
-      progress.show(mission.name + ": looking for views");
-      text += expectation_text(simulation::expectation(mission, scene, mission.threads));
+      progress.show(setup.name + ": looking for views");
+      text += expectation_text(simulation::expectation(setup.simulation, scene, setup.run));
     }
     progress.clear();
     console.out << text << std::flush;
@@ -208,16 +222,20 @@ int check_survey(const CheckOptions& options, const config::Mission& mission,
 }  // namespace
 
 int check(const CheckOptions& options, const Console& console) {
-  const config::Mission mission = read_shown(config::read_mission, options, console);
+  if (options.prints_setup) {  // of live missions, too
+    console.out << config::setup_text(read_shown(config::read_live_mission, options, console));
+    return 0;
+  }
+  const config::MissionSetup setup = read_shown(config::read_mission, options, console);
   if (options.route && options.route->filename() == package::timetable_name) {
-    return check_timetable(options, mission, console);
+    return check_timetable(options, setup.flight(), console);
   }
   ProgressLine progress(console, false);
-  progress.show(mission.name + ": making the scene ready");
-  if (!options.route) return check_survey(options, mission, progress, console);
-  const geometry::Mesh model = model_of(mission, options.mission);
+  progress.show(setup.name + ": making the scene ready");
+  if (!options.route) return check_survey(options, setup, progress, console);
+  const geometry::Mesh model = model_of(setup.scene(), options.mission);
   progress.clear();
-  return check_route_file(options, mission, model, console);
+  return check_route_file(options, setup.flight(), model, console);
 }
 
 }  // namespace skycap::missions::cli

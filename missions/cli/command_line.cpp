@@ -18,9 +18,9 @@
 #include "missions/cli/verb_options.h"
 #include "missions/cli/verbs.h"
 #include "missions/config/mission_keys.h"
-#include "missions/config/planner_titles.h"
 #include "missions/scan/cloud_formats.h"
 #include "missions/version.h"
+#include "survey/planners/planner_names.h"
 
 namespace skycap::missions::cli {
 namespace {
@@ -28,7 +28,7 @@ namespace {
 /// What planner.name may be.
 std::string planner_list() {
   std::string list;
-  for (const config::PlannerTitle& title : config::planner_titles) {
+  for (const survey::PlannerTitle& title : survey::planner_titles) {
     list.append(list.empty() ? "" : ", ").append(title.word);
   }
   return list;
@@ -137,6 +137,8 @@ void add_check(CLI::App& app, const Console& console, Action& action) {
   add_set_option(*verb, *keys);
   verb->add_flag("--schema", *prints_schema, "Print the JSON Schema of mission files instead");
   verb->add_flag("--keys", *prints_keys, "Print the table of all keys instead");
+  verb->add_flag("--setup", options->prints_setup,
+                 "Print the completed keys and the values derived from them as YAML");
   verb->callback([=, &console, &action] {
     options->overrides = keys->overrides();
     action = [=, &console] {

@@ -6,8 +6,6 @@
 #include "geometry/io/output_folder.h"
 #include "missions/cli/verb_options.h"
 #include "missions/cli/verbs.h"
-#include "missions/config/fleet.h"
-#include "missions/config/mission_flight.h"
 #include "missions/package/fleet/timetable_proof.h"
 #include "missions/package/fleet_mission.h"
 #include "missions/package/flight_report.h"
@@ -18,27 +16,27 @@ namespace {
 
 /// A survey's stations, and who is to fly to them from where.
 struct Task {
-  config::Mission mission;
+  flight::FlightOptions flight;
   Eigen::Vector3d pad = Eigen::Vector3d::Zero();
   std::vector<flight::Station> stations;
 };
 
 /// What a lost vehicle of the package's fleet has left, for the rest of the fleet.
 Task task_of_rest(const ExportOptions& options, const package::PackagedSurvey& survey, Task task) {
-  const config::Mission& mission = survey.mission;
-  const std::size_t lost = *options.lost - 1, count = mission.flight.fleet.vehicles.size();
-  if (!config::is_fleet(mission) || lost >= count) {
+  const flight::FlightOptions& flight = survey.flight;
+  const std::size_t lost = *options.lost - 1, count = flight.fleet.vehicles.size();
+  if (!flight.is_fleet() || lost >= count) {
     throw Error(ErrorKind::bad_usage, "--lost " + std::to_string(*options.lost) +
                                           ": flight.vehicles of the package has " +
                                           std::to_string(count));
   }
   const std::filesystem::path table = options.package / package::timetable_name;
-  std::vector<Eigen::Vector3d> pads = config::pads_of_fleet(mission, survey.pad);
-  for (const package::TimetableRow& row : package::read_timetable(table, mission)) {
+  std::vector<Eigen::Vector3d> pads = flight.fleet_pads(survey.pad);
+  for (const package::TimetableRow& row : package::read_timetable(table, flight)) {
     pads[row.vehicle] = row.pad;
   }
   const std::vector<Eigen::Vector3d> left =
-      package::left_by(table, mission, lost, options.after.value_or(0.0));
+      package::left_by(table, flight, lost, options.after.value_or(0.0));
   std::erase_if(task.stations, [&](const flight::Station& station) {
     return std::ranges::none_of(left, [&](const Eigen::Vector3d& place) {
       return (station.view.position - place).norm() <= flight::rounding_bound;
@@ -52,14 +50,14 @@ Task task_of_rest(const ExportOptions& options, const package::PackagedSurvey& s
   for (std::size_t v = 0; v < count; ++v) {
     if (v != lost) kept.push_back(v);
   }
-  task.mission = config::with_vehicles(mission, kept, pads);
-  task.pad = *task.mission.flight.takeoff;
+  task.flight = flight.with_vehicles(kept, pads);
+  task.pad = *task.flight.takeoff;
   return task;
 }
 
 Task task_of(const ExportOptions& options, const package::PackagedSurvey& survey) {
-  Task task{survey.mission, survey.pad,
-            package::stations_of(survey.mission, survey.views, survey.ways)};
+  Task task{survey.flight, survey.pad,
+            package::stations_of(survey.flight, survey.views, survey.ways)};
   return options.lost ? task_of_rest(options, survey, std::move(task)) : task;
 }
 
@@ -85,18 +83,19 @@ int export_package(const ExportOptions& options, const Console& console) {
   const package::PackagedSurvey survey = package::read_package(options.package, options.overrides);
   const Task task = task_of(options, survey);
   geometry::OutputFolder folder(options.out.value_or(options.package));
-  progress.show(task.mission.name + ": planning the flight");
+  progress.show(survey.name + ": planning the flight");
   package::SurveyMission flight;
-  flight.pictures = config::picture_bounds_of(task.mission);
-  flight.route = package::plan_flight(task.mission, survey.measured, task.pad, task.stations,
+  flight.pictures = task.flight.picture_bounds();
+  flight.route = package::plan_flight(task.flight, survey.measured, task.pad, task.stations,
                                       survey.grounds, console.stop);
-  const bool is_fleet = config::is_fleet(task.mission);
+  const bool is_fleet = task.flight.is_fleet();
   if (is_fleet) {
-    flight.fleet = package::staged_fleet(task.mission, survey.measured, flight.route,
-                                         survey.grounds, formats, folder, console.stop);
+    flight.fleet =
+        package::staged_fleet(survey.name, task.flight, survey.measured, flight.route,
+                              survey.grounds, formats, folder, survey.run.threads, console.stop);
   } else {
-    flight.files =
-        package::stage_flight(task.mission, flight.route, survey.measured, formats, folder);
+    flight.files = package::stage_flight(survey.name, task.flight, flight.route, survey.measured,
+                                         formats, folder);
   }
   folder.replace([&](std::string_view name) {
     if (is_fleet != package::is_fleet_file(name)) return false;

@@ -14,9 +14,7 @@
 #include "geometry/io/output_folder.h"
 #include "missions/cli/fly_test_report.h"
 #include "missions/cli/verbs.h"
-#include "missions/config/fleet.h"
-#include "missions/config/mission_flight.h"
-#include "missions/config/resolved_mission.h"
+#include "missions/config/resolve.h"
 #include "missions/evaluation/survey_scene.h"
 #include "missions/package/fleet/timetable_proof.h"
 #include "missions/package/fleet_mission.h"
@@ -60,25 +58,27 @@ class TestedPackage {
  public:
   TestedPackage(const FlyTestVerbOptions& options, package::PackagedSurvey survey)
       : survey_(std::move(survey)),
-        rules_(config::flight_rules(survey_.mission)),
+        rules_(survey_.flight.rules()),
         space_({&survey_.measured, &rules_}),
-        pad_space_(without_ground(config::flight_rules(survey_.mission))) {
+        pad_space_(without_ground(survey_.flight.rules())) {
     if (!options.truth) return;
-    const config::Mission mission = config::read_mission(*options.truth);
-    truth_ = package::true_space(survey_.mission,
-                                 evaluation::placed_model(mission, options.truth->parent_path()),
-                                 survey_.pad.z());
+    const config::MissionSetup truth = config::read_mission(*options.truth);
+    truth_ = package::true_space(
+        survey_.flight, evaluation::placed_model(truth.scene(), options.truth->parent_path()),
+        survey_.pad.z());
   }
 
-  const config::Mission& mission() const { return survey_.mission; }
+  const std::string& name() const { return survey_.name; }
+  const flight::FlightOptions& flight() const { return survey_.flight; }
+  const session::RunOptions& run() const { return survey_.run; }
   const Eigen::Vector3d& pad() const { return survey_.pad; }
 
   flight::FlownMission read(const std::filesystem::path& file, Dialect dialect,
                             const std::optional<double>& return_height) const {
-    const config::Mission own = package::mission_of_file(file, mission());
+    const flight::FlightOptions own = package::flight_of_file(file, flight());
     const Eigen::Vector3d pad = pad_of(own);
-    const flight::Vehicle vehicle = config::flown_by(config::vehicle_of(own), dialect);
-    flight::FlightFacts facts = config::flight_facts(own);
+    const flight::Vehicle vehicle = own.flown_by(own.flown(), dialect);
+    flight::FlightFacts facts = own.facts();
     facts.pad = pad;
     facts.is_pad_known = true;
     facts.views = survey_.views;
@@ -87,28 +87,27 @@ class TestedPackage {
     if (!route.problems.empty()) {
       throw Error(ErrorKind::bad_file, file.string() + " is not flown: " + route.problems.front());
     }
-    const flight::Motion motion(vehicle, config::route_options_of(own, pad).conditions);
+    const flight::Motion motion(vehicle, own.route(pad).conditions);
     return {script_of(route, motion), motion, law_of(file, dialect, pad, return_height)};
   }
 
   /// Legs are certified at the clearance; vehicles may stray by the errors that are a part of it.
   std::vector<flight::Judge> judges(double position_error) const {
-    const config::FlightConfig& config = mission().flight;
-    const double certified = flight::return_clearance(config.clearance) - flight::rounding_bound;
-    const double strayed = certified - config.tracking_error - position_error;
+    const double certified = flight::return_clearance(flight().clearance) - flight::rounding_bound;
+    const double strayed = certified - flight().tracking_error - position_error;
     std::vector<flight::Judge> judges{
         {"what is not measured free", space_, pad_space_, strayed, certified}};
     if (truth_) {
       judges.push_back({"the true scene", truth_->everywhere, truth_->over_pad,
-                        strayed - config.map_error, certified - config.map_error});
+                        strayed - flight().map_error, certified - flight().map_error});
     }
     return judges;
   }
 
  private:
   /// The pad of a fleet's vehicle, or the package's.
-  Eigen::Vector3d pad_of(const config::Mission& own) const {
-    return config::is_fleet(mission()) ? own.flight.takeoff.value_or(pad()) : pad();
+  Eigen::Vector3d pad_of(const flight::FlightOptions& own) const {
+    return flight().is_fleet() ? own.takeoff.value_or(pad()) : pad();
   }
 
   std::optional<flight::ReturnLaw> law_of(const std::filesystem::path& file, Dialect dialect,
@@ -122,8 +121,8 @@ class TestedPackage {
     flight::ReturnLaw law{.dialects = {dialect},
                           .level = pad.z() + stated->height,
                           .landings = {pad},
-                          .landing_climb = config::takeoff_climb_of(mission())};
-    const std::vector<Eigen::Vector3d>& rally = mission().flight.rally;
+                          .landing_climb = flight().climb()};
+    const std::vector<Eigen::Vector3d>& rally = flight().rally;
     if (dialect != Dialect::dji)
       law.landings.insert(law.landings.end(), rally.begin(), rally.end());
     return law;
@@ -159,24 +158,23 @@ double battery_of(const flight::Motion& motion) {
 TestedFile test_file(const FlyTestVerbOptions& options, const TestedPackage& package,
                      const std::filesystem::path& file, const Console& console) {
   const std::string name = file.filename().string();
-  const config::Mission own = package::mission_of_file(file, package.mission());
-  const Dialect dialect = *package::dialect_of(file, config::vehicle_of(own));
+  const flight::FlightOptions& flown = package.flight();
+  const Dialect dialect = *package::dialect_of(file, package::flight_of_file(file, flown).flown());
   const flight::FlownMission mission = package.read(file, dialect, options.return_height);
-  const config::FlightConfig& config = package.mission().flight;
   flight::FlyTestOptions test;
   test.flights = options.flights;
   test.returns = options.returns;
-  test.wind_speed = options.wind_speed.value_or(std::max(config.wind_speed, test.wind_speed));
-  test.position_error = options.position_error.value_or(config.position_error);
-  test.up_to = config.clearance + surplus_of_interest;
-  test.seed = package.mission().seed;
-  test.threads = package.mission().threads;
+  test.wind_speed = options.wind_speed.value_or(std::max(flown.wind_speed, test.wind_speed));
+  test.position_error = options.position_error.value_or(flown.position_error);
+  test.up_to = flown.clearance + surplus_of_interest;
+  test.seed = package.run().seed;
+  test.threads = package.run().threads;
   test.stop = console.stop;
   ProgressLine progress(console, options.is_quiet);
-  test.report = [&](std::size_t flown) {
-    progress.show(fmt::format("{}: flight {} of {}", name, flown, options.flights));
+  test.report = [&](std::size_t count) {
+    progress.show(fmt::format("{}: flight {} of {}", name, count, options.flights));
   };
-  const std::vector<flight::Judge> judges = package.judges(config.position_error);
+  const std::vector<flight::Judge> judges = package.judges(flown.position_error);
   TestedFile tested{
       name, name_of(dialect), judges, fly_test(mission, judges, test), battery_of(mission.motion),
       {}};
@@ -186,22 +184,21 @@ TestedFile test_file(const FlyTestVerbOptions& options, const TestedPackage& pac
 
 /// All vehicles of a fleet at once; nothing if the package holds none.
 std::optional<flight::FleetFlightTest> test_fleet(const FlyTestVerbOptions& options,
-                                                  const config::Mission& mission,
+                                                  const TestedPackage& package,
                                                   const Console& console) {
+  const flight::FlightOptions& flown = package.flight();
   const std::filesystem::path table = options.package / package::timetable_name;
-  if (!config::is_fleet(mission) || !std::filesystem::exists(table)) return std::nullopt;
-  const config::FlightConfig& config = mission.flight;
+  if (!flown.is_fleet() || !std::filesystem::exists(table)) return std::nullopt;
   flight::FlyTestOptions test;
   test.flights = options.flights;
-  test.wind_speed = options.wind_speed.value_or(std::max(config.wind_speed, test.wind_speed));
-  test.position_error = options.position_error.value_or(config.position_error);
+  test.wind_speed = options.wind_speed.value_or(std::max(flown.wind_speed, test.wind_speed));
+  test.position_error = options.position_error.value_or(flown.position_error);
   test.up_to = package::reported_distance;
-  test.seed = mission.seed;
-  test.threads = mission.threads;
+  test.seed = package.run().seed;
+  test.threads = package.run().threads;
   test.stop = console.stop;
-  const double strays = 2.0 * (config.position_error + config.tracking_error);
-  return fly_fleet(package::fleet_flights(table, mission), config::separation_of(mission), strays,
-                   test);
+  const double strays = 2.0 * (flown.position_error + flown.tracking_error);
+  return fly_fleet(package::fleet_flights(table, flown), flown.fleet.rule(), strays, test);
 }
 
 /// Results that are not whole go beside whole ones instead of over them.
@@ -219,8 +216,8 @@ int fly_test(const FlyTestVerbOptions& options, const Console& console) {
   const std::vector<std::filesystem::path> files = flown_files(options.package);
   geometry::OutputFolder folder(options.out.value_or(options.package));
   const HoldsResults results(console);
-  nlohmann::ordered_json json{{"mission", package.mission().name},
-                              {"seed", package.mission().seed},
+  nlohmann::ordered_json json{{"mission", package.name()},
+                              {"seed", package.run().seed},
                               {"complete", true},
                               {"files", nlohmann::ordered_json::array()}};
   std::size_t failed = 0;
@@ -231,7 +228,7 @@ int fly_test(const FlyTestVerbOptions& options, const Console& console) {
     if (!options.is_quiet) console.out << text_of(tested) << std::flush;
     if (console.stop.stop_requested()) break;
   }
-  if (const auto test = test_fleet(options, package.mission(), console)) {
+  if (const auto test = test_fleet(options, package, console)) {
     failed += test->nearer;
     json["fleet"] = json_of(*test);
     if (!options.is_quiet) console.out << text_of(*test) << std::flush;

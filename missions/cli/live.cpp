@@ -9,14 +9,15 @@
 #include "geometry/error.h"
 #include "geometry/io/file.h"
 #include "geometry/io/output_folder.h"
+#include "missions/cli/live_scene.h"
 #include "missions/cli/verb_options.h"
 #include "missions/cli/verbs.h"
 #include "missions/cli/write_page.h"
-#include "missions/config/resolved_mission.h"
+#include "missions/config/resolve.h"
 #include "missions/online/guided/fly_survey.h"
 #include "missions/online/guided/network_port.h"
 #include "missions/online/guided/sensors.h"
-#include "missions/online/live/open_survey.h"
+#include "missions/online/live/answer.h"
 #include "missions/online/live/scan_input.h"
 #include "missions/online/live/server.h"
 #include "missions/online/recordings/recording.h"
@@ -84,9 +85,9 @@ std::string left_out_text(const online::ScanFound& found) {
 }
 
 void add_scan(const NextOptions& options, const std::string& name, const online::ScanFound& found,
-              const std::string& id, const config::Mission& mission, online::LiveSurvey& survey,
-              const Console& console) {
-  online::require_usable(found.scan, mission);
+              const std::string& id, const flight::FlightOptions& flight,
+              online::LiveSurvey& survey, const Console& console) {
+  online::require_usable(found.scan, flight);
   const std::optional<online::PoseCovariance> covariance = covariance_of(options);
   const bool is_new = options.is_on_way ? survey.add_on_way(found.scan, id, covariance)
                                         : survey.add(found.scan, id, covariance);
@@ -99,8 +100,9 @@ void add_scan(const NextOptions& options, const std::string& name, const online:
 }
 
 /// The frames of a recording that the survey does not have yet, one after another.
-void add_recording(const NextOptions& options, const config::Mission& mission,
-                   online::LiveSurvey& survey, const Console& console) {
+void add_recording(const NextOptions& options, const flight::FlightOptions& flight,
+                   const online::LiveOptions& live, online::LiveSurvey& survey,
+                   const Console& console) {
   const online::RecordingChoice choice{
       .rawlog = {.sensor = options.sensor, .poses = options.poses},
       .count = options.until,
@@ -108,8 +110,8 @@ void add_recording(const NextOptions& options, const config::Mission& mission,
   ProgressLine progress(console, options.is_quiet);
   progress.show(options.dataset->string() + ": looking for poses");
   const auto recording = online::open_recording(
-      *options.dataset, choice, mission, [&](const std::string& note) { warn(console, note); },
-      progress.teller());
+      *options.dataset, choice, flight.capture, live,
+      [&](const std::string& note) { warn(console, note); }, progress.teller());
   progress.clear();
   if (const std::string source = recording->pose_source(); !source.empty() && !options.is_quiet) {
     console.err << options.dataset->string() << ": poses are from " << source << "\n";
@@ -118,19 +120,22 @@ void add_recording(const NextOptions& options, const config::Mission& mission,
     const std::optional<online::Frame> frame = recording->next();
     if (!frame) return;
     if (survey.number_of(frame->id)) continue;
-    add_scan(options, frame->name, frame->scan(), frame->id, mission, survey, console);
+    add_scan(options, frame->name, frame->scan(), frame->id, flight, survey, console);
   }
 }
 
 /// Shows the survey so far in the folder's page, which a browser reads again.
-void show_survey(const LiveOptions& options, const config::Mission& mission,
+void show_survey(const LiveOptions& options, const config::MissionSetup& setup,
                  const online::LiveSurvey& survey, const Console& console) {
   if (!options.has_report || survey.views().empty()) return;
   const online::Proposal& proposal = survey.proposal();
   try {
+    session::SurveyRecord so_far = survey.so_far();
+    const std::string summary = package::summary_json(setup, so_far, {so_far.coverage(), {}, {}});
     geometry::write_file(
         options.survey / package::report_name,
-        report::live_page(mission, survey.so_far(), {proposal.view, proposal.way.points}));
+        report::live_page(summary, setup.survey(), setup.scene(), std::move(so_far),
+                          {proposal.view, proposal.way.points}));
   } catch (const Error& error) {  // a page shall not cost a survey
     warn(console, "no report: " + std::string(error.what()));
   }
@@ -141,17 +146,17 @@ struct Finished {
   bool has_route = true;
 };
 
-Finished write_package(const LiveOptions& options, const config::Mission& mission,
+Finished write_package(const LiveOptions& options, const config::MissionSetup& setup,
                        online::LiveSurvey& survey, const Console& console) {
   geometry::OutputFolder folder(options.survey);
   const session::SurveyRecord record = survey.finish();
   const package::CoverageFigures unknown{record.coverage(), {}, {}};
   const std::optional<package::SurveyMission> flight =
-      package::stage_package(mission, record, unknown, mission.threads, folder, console.stop);
+      package::stage_package(setup, record, unknown, setup.run.threads, folder, console.stop);
   write_page(package::summary_name, options.has_report, folder, console);
   folder.commit();
   std::string text =
-      fmt::format("{}: {} after {} scans, {} points\n", mission.name,
+      fmt::format("{}: {} after {} scans, {} points\n", setup.name,
                   session::name_of(record.stop_reason), record.views.size(), record.cloud.size());
   if (flight) text += package::flight_text(*flight);
   return {text + "  results   " + options.survey.string() + "\n",
@@ -239,18 +244,18 @@ int next(const NextOptions& options, const Console& console) {
   if (options.is_on_way && !options.scan) {
     throw Error(ErrorKind::bad_usage, "--on-way goes with --scan; give the scan, or leave it out");
   }
-  const config::Mission mission = read_shown(config::read_live_mission, options, console);
-  const auto survey = online::open_survey(mission, options.mission.parent_path(), options.survey);
+  const config::MissionSetup setup = read_shown(config::read_live_mission, options, console);
+  const auto survey = open_survey(setup, options.mission.parent_path(), options.survey);
   if (options.scan) {
     const online::ScanInput input = input_of(options, *options.scan, pose_of(options));
-    add_scan(options, options.scan->string(), online::read_scan(input, mission), options.id,
-             mission, *survey, console);
+    const online::ScanFound found = online::read_scan(input, setup.flight().capture, setup.live);
+    add_scan(options, options.scan->string(), found, options.id, setup.flight(), *survey, console);
   }
-  if (options.dataset) add_recording(options, mission, *survey, console);
+  if (options.dataset) add_recording(options, setup.flight(), setup.live, *survey, console);
   if (options.refusal) survey->refuse(*options.refusal);
   if (options.scan || options.dataset || options.refusal)
-    show_survey(options, mission, *survey, console);
-  console.out << (options.is_json ? online::answer_json(*survey, mission)
+    show_survey(options, setup, *survey, console);
+  console.out << (options.is_json ? online::answer_json(*survey, setup.flight())
                                   : online::answer_text(*survey))
               << "\n"
               << std::flush;
@@ -258,13 +263,13 @@ int next(const NextOptions& options, const Console& console) {
 }
 
 int finish(const LiveOptions& options, const Console& console) {
-  const config::Mission mission = read_shown(config::read_live_mission, options, console);
-  const auto survey = online::open_survey(mission, options.mission.parent_path(), options.survey);
+  const config::MissionSetup setup = read_shown(config::read_live_mission, options, console);
+  const auto survey = open_survey(setup, options.mission.parent_path(), options.survey);
   if (survey->views().empty()) {
     throw Error(ErrorKind::bad_usage,
                 options.survey.string() + ": has no scan yet; add some with skycap next --scan");
   }
-  const Finished finished = write_package(options, mission, *survey, console);
+  const Finished finished = write_package(options, setup, *survey, console);
   console.out << finished.text << std::flush;
   return finished.has_route ? 0 : 1;
 }
@@ -273,16 +278,16 @@ int serve(const ServeOptions& options, const Console& console) {
   if (options.socket.has_value() == options.port.has_value()) {
     throw Error(ErrorKind::bad_usage, "serve needs either --socket PATH or --port NUMBER");
   }
-  const config::Mission mission = read_shown(config::read_live_mission, options, console);
-  const auto survey = online::open_survey(mission, options.mission.parent_path(), options.survey);
+  const config::MissionSetup setup = read_shown(config::read_live_mission, options, console);
+  const auto survey = open_survey(setup, options.mission.parent_path(), options.survey);
   int exit_code = 1;
   const auto finish_survey = [&] {
-    Finished finished = write_package(options, mission, *survey, console);
+    Finished finished = write_package(options, setup, *survey, console);
     exit_code = finished.has_route ? 0 : 1;
     return std::move(finished.text);
   };
-  online::Session session(mission, *survey, finish_survey,
-                          [&] { show_survey(options, mission, *survey, console); });
+  online::Session session(setup.name, setup.flight(), setup.live, *survey, finish_survey,
+                          [&] { show_survey(options, setup, *survey, console); });
   const HoldsResults results(console);
   online::Server server({.socket = options.socket.value_or(""), .port = options.port});
   console.out << server.address() << "\n" << std::flush;
@@ -305,25 +310,26 @@ struct FlyOptions : LiveOptions {
   bool is_quiet = false;
 };
 
-online::Sensor sensor_of(const FlyOptions& options, const config::Mission& mission,
+online::Sensor sensor_of(const FlyOptions& options, const evaluation::SimulationOptions& simulation,
+                         const online::LiveOptions& live, const session::RunOptions& run,
                          const Console& console) {
   if (options.sensor == "simulated") {
-    return online::simulated_sensor(mission, options.mission.parent_path());
+    return simulated_sensor(simulation, options.mission.parent_path(), run);
   }
   online::ScanInput input;
   input.depth_unit = options.depth_unit;
   if (!options.lens.empty()) input.lens = online::parse_lens(options.lens);
-  return online::folder_sensor(mission, options.sensor, std::move(input),
+  return online::folder_sensor(simulation.survey.flight, live, options.sensor, std::move(input),
                                online::FlightOptions{}.sensing_limit, console.stop);
 }
 
 /// Exit code 0: the survey is over, the vehicle has landed, and the package has a route.
 int fly_live(const FlyOptions& options, const Console& console) {
   const online::NetworkAddress address = online::parse_address(options.connect);
-  const config::Mission mission = read_shown(config::read_live_mission, options, console);
-  online::require_flyable(mission);
-  online::Sensor sensor = sensor_of(options, mission, console);
-  const auto survey = online::open_survey(mission, options.mission.parent_path(), options.survey);
+  const config::MissionSetup setup = read_shown(config::read_live_mission, options, console);
+  online::require_flyable(setup.flight());
+  online::Sensor sensor = sensor_of(options, setup.simulation, setup.live, setup.run, console);
+  const auto survey = open_survey(setup, options.mission.parent_path(), options.survey);
   online::NetworkPort port(address);
   if (!address.is_of_this_machine()) {
     warn(console,
@@ -332,11 +338,11 @@ int fly_live(const FlyOptions& options, const Console& console) {
   const HoldsResults results(console);
   online::FlightOptions flight;
   flight.returns_on_failure = options.on_failure == "return";
-  flight.show = [&] { show_survey(options, mission, *survey, console); };
+  flight.show = [&] { show_survey(options, setup, *survey, console); };
   flight.note = [&](const std::string& text) {
     if (!options.is_quiet) console.err << printable_line(text) << "\n" << std::flush;
   };
-  const online::FlightEnd end = online::fly_survey(mission, *survey, port, std::move(sensor),
+  const online::FlightEnd end = online::fly_survey(setup.flight(), *survey, port, std::move(sensor),
                                                    std::move(flight), console.stop);
   if (end.trouble) {
     console.err << "skycap: the flight ended: " << printable_line(end.trouble->what)
@@ -345,7 +351,7 @@ int fly_live(const FlyOptions& options, const Console& console) {
                 << std::flush;
     return 1;
   }
-  const Finished finished = write_package(options, mission, *survey, console);
+  const Finished finished = write_package(options, setup, *survey, console);
   console.out << finished.text << std::flush;
   return finished.has_route ? 0 : 1;
 }

@@ -9,9 +9,7 @@
 #include "geometry/surfaces/mesh.h"
 #include "missions/cli/verb_options.h"
 #include "missions/cli/verbs.h"
-#include "missions/config/mission_keys.h"
-#include "missions/config/mission_priors.h"
-#include "missions/config/resolved_mission.h"
+#include "missions/config/resolve.h"
 #include "missions/evaluation/survey_scene.h"
 #include "missions/scene/model_store.h"
 #include "missions/scene/scene_source.h"
@@ -27,17 +25,21 @@ bool contains(const auto& names, const std::string& name) {
   return std::ranges::find(names, name) != names.end();
 }
 
+sim::LevelOfDetail level_of_detail(const std::string& word) {
+  if (word == "coarse") return sim::LevelOfDetail::coarse;
+  return word == "fine" ? sim::LevelOfDetail::fine : sim::LevelOfDetail::standard;
+}
+
 geometry::Mesh mesh_of(const std::string& model, const std::optional<std::string>& detail) {
-  config::Mission mission;
-  mission.scene.model = model;
+  scene::SceneOptions scene{.model = model};
   if (detail) {
     if (!model.starts_with("builtin:")) {
       throw Error(ErrorKind::bad_config,
                   "--detail needs a builtin model; " + model + " is as detailed as its file");
     }
-    config::find_key("scene.detail")->set(mission, *detail);
+    scene.detail = level_of_detail(*detail);
   }
-  return scene::load_model(mission.scene, "");
+  return scene::load_model(scene, "");
 }
 
 void obtain_if_missing(const std::string& name, const Console& console) {
@@ -58,9 +60,9 @@ struct ColouredMesh {
   }
 };
 
-/// A mission and the scene that it simulates; no scene if it is flown live.
+/// A mission's scene, and what it simulates; nothing if it is flown live.
 struct Site {
-  config::Mission mission;
+  scene::SceneOptions scene;
   geometry::Mesh model;
 };
 
@@ -75,11 +77,11 @@ std::optional<Eigen::AlignedBox3d> around_targets(const site_data::SitePriors& s
 
 /// All of it, or what is near.
 ColouredMesh coloured_site(const Site& given, const std::optional<Eigen::AlignedBox3d>& near) {
-  const auto& [mission, model] = given;
-  const site_data::SitePriors& site = config::priors_of(mission);
-  if (site.priors.empty()) return {model, {}};
+  const auto& [scene, model] = given;
+  if (!scene.priors) return {model, {}};
+  const site_data::SitePriors& site = *scene.priors;
   ColouredMesh coloured;
-  if (!config::is_truth_prior(mission)) coloured.add(model, {0.80F, 0.71F, 0.55F});
+  if (!scene.is_truth_prior()) coloured.add(model, {0.80F, 0.71F, 0.55F});
   coloured.add(surfaces_of(site, site_data::Role::truth, near), {0.62F, 0.68F, 0.75F});
   coloured.add(surfaces_of(site, site_data::Role::target, near), {0.20F, 0.55F, 0.30F});
   coloured.add(surfaces_of(site, site_data::Role::obstacle, near), {0.75F, 0.28F, 0.12F});
@@ -94,11 +96,11 @@ bool is_mission(const std::string& name) {
 Site site_called(const ModelOptions& options, const config::Report& report) {
   std::vector<config::KeyOverride> overrides;
   if (options.detail) overrides.push_back({"--detail", "scene.detail", *options.detail});
-  config::Mission mission = config::read_live_mission(options.name, overrides, report);
-  if (mission.prior.empty()) mission = config::read_mission(options.name, overrides);
-  if (mission.scene.model.empty() && !config::is_truth_prior(mission)) return {mission, {}};
-  geometry::Mesh model = evaluation::placed_model(mission, fs::path(options.name).parent_path());
-  return {std::move(mission), std::move(model)};
+  config::MissionSetup setup = config::read_live_mission(options.name, overrides, report);
+  if (!setup.scene().priors) setup = config::read_mission(options.name, overrides);
+  if (setup.is_live()) return {setup.scene(), {}};
+  return {setup.scene(),
+          evaluation::placed_model(setup.scene(), fs::path(options.name).parent_path())};
 }
 
 geometry::Mesh model_called(const ModelOptions& options, const Console& console) {
@@ -127,7 +129,8 @@ int model(const ModelOptions& options, const Console& console) {
     geometry::write_mesh(*options.out, mesh);
   }
   if (options.render) {
-    const auto near = site ? around_targets(config::priors_of(site->mission)) : std::nullopt;
+    const bool has_priors = site && site->scene.priors;
+    const auto near = has_priors ? around_targets(*site->scene.priors) : std::nullopt;
     const ColouredMesh shown = near ? coloured_site(*site, near) : whole;
     sim::RenderOptions render;
     render.colours = shown.colours;

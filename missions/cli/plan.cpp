@@ -13,7 +13,7 @@
 #include "missions/batch/campaign/item_runner.h"
 #include "missions/cli/verbs.h"
 #include "missions/cli/write_page.h"
-#include "missions/config/resolved_mission.h"
+#include "missions/config/resolve.h"
 #include "missions/evaluation/survey_scene.h"
 #include "missions/package/flight_report.h"
 #include "missions/package/package.h"
@@ -56,18 +56,21 @@ std::string times_row(std::size_t view, const session::JudgedView& judged) {
   return row + "\n";
 }
 
-std::string summary_text(const config::Mission& mission, const session::SurveyRecord& record,
+std::string summary_text(const std::string& name, const evaluation::SimulationOptions& options,
+                         const session::SurveyRecord& record,
                          const package::CoverageFigures& coverage,
                          const std::optional<package::SurveyMission>& flight,
                          const std::filesystem::path& folder) {
   std::string text =
-      fmt::format("{}: {} after {} views, {:.2f} m\n", mission.name,
-                  session::name_of(record.stop_reason), record.views.size(), record.distance());
+      fmt::format("{}: {} after {} views, {:.2f} m\n", name, session::name_of(record.stop_reason),
+                  record.views.size(), record.distance());
   text += "  coverage  " + percent(coverage.all) + " of the surface";
   if (coverage.visible) text += ", " + percent(*coverage.visible) + " of what is visible";
   if (coverage.ceiling) text += "; attainable " + percent(*coverage.ceiling);
-  text += "\n" + package::target_text(package::target_coverage(mission, record.cloud.positions));
-  if (mission.scene.model == "prior")
+  text +=
+      "\n" + package::target_text(package::target_coverage(
+                 options.scene, options.evaluation.registration_distance, record.cloud.positions));
+  if (options.scene.model == "prior")
     text += "  truth     the targets' prior data stand in for it\n";
   text += "  planning  " + seconds(record.planning_time()) + " (";
   bool is_first = true;
@@ -76,12 +79,12 @@ std::string summary_text(const config::Mission& mission, const session::SurveyRe
     is_first = false;
   }
   text += ")\n";
-  if (record.flown) text += package::flown_text(mission, record);
+  if (record.flown) text += package::flown_text(options.survey.flight, record);
   if (flight) text += package::flight_text(*flight);
   return text + "  results   " + folder.string() + "\n";
 }
 
-int plan_once(const PlanOptions& options, const config::Mission& mission,
+int plan_once(const PlanOptions& options, const config::MissionSetup& setup,
               const evaluation::SurveyScene& scene, geometry::OutputFolder& folder,
               const Console& console) {
   ProgressLine progress(console, options.is_quiet);
@@ -90,29 +93,31 @@ int plan_once(const PlanOptions& options, const config::Mission& mission,
   const auto report = [&](const session::JudgedView& judged) {
     planning_time += judged.surveyed.planning_time;
     if (options.is_verbose) console.err << times_row(views, judged) << std::flush;
-    progress.show(progress_text(mission.name, ++views, judged, planning_time));
+    progress.show(progress_text(setup.name, ++views, judged, planning_time));
   };
   const HoldsResults results(console);
-  simulation::SurveyJournal journal(folder.path() / simulation::journal_name, mission, scene,
-                                    options.resumes);
+  simulation::SurveyJournal journal(folder.path() / simulation::journal_name, setup.identity(),
+                                    scene, options.resumes);
   if (journal.views() > 0 && !options.is_quiet) {
     console.err << "going on after " << journal.views() << " views of an interrupted survey\n";
   }
   const session::SurveyRecord record = simulation::run_survey(
-      mission, scene, mission.seed, mission.threads, console.stop, report, &journal);
+      setup.simulation, scene, setup.run.seed, setup.run.threads, console.stop, report, &journal);
 
   const bool is_over = record.stop_reason != survey::StopReason::interrupted;
-  if (is_over) progress.show(mission.name + ": measuring what could be covered at all");
+  if (is_over) progress.show(setup.name + ": measuring what could be covered at all");
   const package::CoverageFigures coverage =
-      package::coverage_figures(mission, record, scene, mission.threads, console.stop);
-  progress.show(mission.name + ": writing " + folder.path().string());
+      package::coverage_figures(setup.simulation, record, scene, setup.run.threads, console.stop);
+  progress.show(setup.name + ": writing " + folder.path().string());
   const std::optional<package::SurveyMission> flight =
-      package::stage_package(mission, record, coverage, mission.threads, folder, console.stop);
+      package::stage_package(setup, record, coverage, setup.run.threads, folder, console.stop);
   write_page(package::summary_name, options.has_report, folder, console);
   package::commit_package(record, folder);
   progress.clear();
   if (!options.is_quiet) {
-    console.out << summary_text(mission, record, coverage, flight, folder.path()) << std::flush;
+    console.out << summary_text(setup.name, setup.simulation, record, coverage, flight,
+                                folder.path())
+                << std::flush;
   }
   // A flown survey ends with views that nobody can reach; at the start it has not begun.
   const bool went_through =
@@ -123,14 +128,14 @@ int plan_once(const PlanOptions& options, const config::Mission& mission,
 }
 
 /// The surveys of all seeds; those that were finished before are not run again.
-std::vector<batch::Trial> run_trials(const PlanOptions& options, const config::Mission& mission,
+std::vector<batch::Trial> run_trials(const PlanOptions& options, const batch::Setup& own,
                                      const std::filesystem::path& folder, const Console& console,
                                      ProgressLine& progress) {
-  const auto setup =
-      std::make_shared<const batch::Setup>(batch::own_setup(options.mission, mission));
+  const config::MissionSetup& mission = own.mission;
+  const auto setup = std::make_shared<const batch::Setup>(own);
   std::vector<batch::Item> items;
   for (std::size_t i = 0; i < options.trials; ++i) {
-    const std::uint64_t seed = mission.seed + i;
+    const std::uint64_t seed = mission.run.seed + i;
     items.push_back({setup, seed, folder / "items" / ("seed_" + std::to_string(seed) + ".json")});
   }
   std::size_t ended = 0;
@@ -148,21 +153,22 @@ std::vector<batch::Trial> run_trials(const PlanOptions& options, const config::M
           },
       .failed = {}};
   std::vector<batch::Trial> trials;
-  for (auto& done : batch::run_items(items, mission.threads, console.stop, events)) {
+  for (auto& done : batch::run_items(items, mission.run.threads, console.stop, events)) {
     if (done) trials.push_back(std::move(done->trial));
   }
   return trials;
 }
 
-int plan_trials(const PlanOptions& options, const config::Mission& mission,
+int plan_trials(const PlanOptions& options, const config::MissionSetup& mission,
                 geometry::OutputFolder& folder, const Console& console) {
   ProgressLine progress(console, options.is_quiet);
   const HoldsResults results(console);
-  const std::vector<batch::Trial> trials =
-      run_trials(options, mission, folder.path(), console, progress);
+  const std::vector<batch::Trial> trials = run_trials(
+      options, batch::own_setup(options.mission, mission), folder.path(), console, progress);
   progress.clear();
   folder.write("trials.csv", batch::trials_csv(trials));
-  folder.write("trials.json", batch::trials_json(mission, trials, options.trials, mission.threads));
+  folder.write("trials.json",
+               batch::trials_json(mission, trials, options.trials, mission.run.threads));
   write_page("trials.json", options.has_report, folder, console);
   if (trials.size() < options.trials &&
       package::is_complete_result(folder.path() / "trials.json")) {
@@ -180,16 +186,17 @@ int plan_trials(const PlanOptions& options, const config::Mission& mission,
 }  // namespace
 
 int plan(const PlanOptions& options, const Console& console) {
-  const config::Mission mission = read_shown(config::read_mission, options, console);
+  const config::MissionSetup setup = read_shown(config::read_mission, options, console);
   geometry::OutputFolder folder(
-      options.out.value_or(std::filesystem::path("results") / mission.name));
-  if (options.trials > 0) return plan_trials(options, mission, folder, console);
+      options.out.value_or(std::filesystem::path("results") / setup.name));
+  if (options.trials > 0) return plan_trials(options, setup, folder, console);
   ProgressLine progress(console, options.is_quiet);
-  progress.show(mission.name + ": making the scene ready");
+  progress.show(setup.name + ": making the scene ready");
   try {
-    const evaluation::SurveyScene scene(mission, options.mission.parent_path());
-    simulation::require_feasible(mission, scene, mission.threads);
-    return plan_once(options, mission, scene, folder, console);
+    const evaluation::SurveyScene scene(setup.simulation, options.mission.parent_path(),
+                                        setup.run.threads);
+    simulation::require_feasible(setup.simulation, scene, setup.run);
+    return plan_once(options, setup, scene, folder, console);
   } catch (const Error& error) {
     // What goes wrong during the survey follows from the mission; say which.
     throw Error(error.kind(), options.mission.string() + ": " + error.what());

@@ -5,8 +5,7 @@
 #include "geometry/error.h"
 #include "geometry/io/output_folder.h"
 #include "missions/cli/verb_options.h"
-#include "missions/config/mission_priors.h"
-#include "missions/config/resolved_mission.h"
+#include "missions/config/resolve.h"
 #include "missions/evaluation/survey_scene.h"
 #include "missions/report/cloud_page.h"
 #include "missions/site_data/prior_text.h"
@@ -74,9 +73,12 @@ wizard::Wishes wishes_of(const SiteOptions& options) {
   return wishes;
 }
 
-std::string page_of(const config::Mission& mission, const fs::path& file) {
-  const evaluation::SurveyScene scene(mission, file.parent_path());
-  return report::mission_page(mission, scene.samples().points, mission.flight.takeoff);
+std::string page_of(const std::string& name, const evaluation::SimulationOptions& options,
+                    const fs::path& file) {
+  constexpr unsigned all_processors = 0;
+  const evaluation::SurveyScene scene(options, file.parent_path(), all_processors);
+  return report::mission_page(name, options.survey, options.scene, scene.samples().points,
+                              options.survey.flight.takeoff);
 }
 
 /// Writes a first mission file and the page that shows it; never over an older file.
@@ -98,15 +100,15 @@ int propose_site(const SiteOptions& options, const Console& console) {
   progress.show("reading " + options.map.filename().string());
   const std::string text = wizard::propose_mission(wishes_of(options), file);
   progress.show("drawing the site");
-  const config::Mission mission = config::parse_mission(text, file.string());
-  const std::string page = page_of(mission, file);
+  const config::MissionSetup setup = config::parse_mission(text, file.string());
+  const std::string page = page_of(setup.name, setup.simulation, file);
   progress.clear();
   folder.write(file.filename().string(), text);
   folder.write(picture.filename().string(), page);
   folder.commit();
-  const Eigen::Vector3d pad = mission.flight.takeoff.value();
-  console.out << fmt::format("{}: a first mission for {}\n", file.string(), mission.name)
-              << site_data::text_of(config::priors_of(mission))
+  const Eigen::Vector3d pad = setup.flight().takeoff.value();
+  console.out << fmt::format("{}: a first mission for {}\n", file.string(), setup.name)
+              << site_data::text_of(*setup.scene().priors)
               << fmt::format("  pad       {:g} {:g} {:g}\n", pad.x(), pad.y(), pad.z())
               << "  picture   " << picture.string() << "\n"
               << "  next      skycap plan " << file.string() << "\n"

@@ -109,6 +109,7 @@ struct CheckOptions {
   std::filesystem::path mission;
   std::optional<std::filesystem::path> route;
   std::optional<double> return_height;  ///< that the vehicle is set to, above take-off
+  bool prints_setup = false;            ///< the resolved setup instead of checking the scene
   std::vector<config::KeyOverride> overrides;
 };
 

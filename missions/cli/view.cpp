@@ -3,8 +3,7 @@
 #include "geometry/error.h"
 #include "geometry/io/file.h"
 #include "missions/cli/verbs.h"
-#include "missions/config/mission_flight.h"
-#include "missions/config/resolved_mission.h"
+#include "missions/config/resolve.h"
 #include "missions/evaluation/survey_scene.h"
 #include "missions/report/cloud_page.h"
 #include "missions/report/result_pages.h"
@@ -16,13 +15,15 @@ namespace {
 namespace fs = std::filesystem;
 
 report::MadePage page_of_mission(const ViewOptions& options, const config::Report& report) {
-  const config::Mission mission = config::read_mission(options.what, options.overrides, report);
-  const evaluation::SurveyScene scene(mission, options.what.parent_path());
-  const geometry::View first = scene.first_view(mission.seed);
+  const config::MissionSetup setup = config::read_mission(options.what, options.overrides, report);
+  const evaluation::SurveyScene scene(setup.simulation, options.what.parent_path(),
+                                      setup.run.threads);
+  const geometry::View first = scene.first_view(setup.run.seed);
   std::optional<Eigen::Vector3d> pad;
-  if (mission.flight.is_flown()) pad = config::pad_of(mission, first.position);
-  return {options.out.value_or(fs::path("results") / mission.name / "mission.html"),
-          report::mission_page(mission, scene.samples().points, pad)};
+  if (setup.flight().is_flown()) pad = setup.flight().pad(first.position);
+  return {
+      options.out.value_or(fs::path("results") / setup.name / "mission.html"),
+      report::mission_page(setup.name, setup.survey(), setup.scene(), scene.samples().points, pad)};
 }
 
 std::vector<report::MadePage> pages_of(const ViewOptions& options, const config::Report& report) {

@@ -1,5 +1,5 @@
-/// One key of the mission file: its name, what it takes, what it means, and which field of Mission
-/// it stands for.
+/// One key of the mission file: its name, what it takes, what it means, and which field of
+/// MissionDocument it stands for.
 #pragma once
 
 #include <cstdint>
@@ -13,7 +13,7 @@
 
 #include <Eigen/Core>
 
-#include "missions/config/mission.h"
+#include "missions/config/mission_document.h"
 
 namespace skycap::missions::config {
 
@@ -60,9 +60,9 @@ struct Key {
   std::vector<Key> items;
 
   /// Puts a value of the right type and range into a mission.
-  std::function<void(Mission&, const KeyValue&)> set;
+  std::function<void(MissionDocument&, const KeyValue&)> set;
   /// The value in a mission; nothing if it is left to be derived.
-  std::function<std::optional<KeyValue>(const Mission&)> get;
+  std::function<std::optional<KeyValue>(const MissionDocument&)> get;
 };
 
 }  // namespace skycap::missions::config

@@ -29,19 +29,19 @@ struct Unwrapped<std::optional<T>> {
   using Type = T;
 };
 
-/// The key that stands for the field of Mission which `field` returns a reference to. A field of
-/// type std::optional is left to be derived when the key is missing. `factor` turns the file's
-/// numbers into the field's.
+/// The key that stands for the field of MissionDocument which `field` returns a reference to. A
+/// field of type std::optional is left to be derived when the key is missing. `factor` turns the
+/// file's numbers into the field's.
 template <class Field>
 Key key_for(std::string path, KeyType type, Field field, std::string meaning, double factor = 1.0) {
-  using Stored = std::remove_reference_t<decltype(field(std::declval<Mission&>()))>;
+  using Stored = std::remove_reference_t<decltype(field(std::declval<MissionDocument&>()))>;
   using Value = typename Unwrapped<Stored>::Type;
 
   Key key;
   key.path = std::move(path);
   key.type = type;
   key.meaning = std::move(meaning);
-  key.set = [=](Mission& mission, const KeyValue& value) {
+  key.set = [=](MissionDocument& mission, const KeyValue& value) {
     if constexpr (std::is_same_v<Value, double>) {
       field(mission) = factor * std::get<double>(value);
     } else if constexpr (std::is_same_v<Value, Eigen::Vector3d>) {
@@ -52,8 +52,8 @@ Key key_for(std::string path, KeyType type, Field field, std::string meaning, do
       field(mission) = std::get<Value>(value);
     }
   };
-  key.get = [=](const Mission& mission) -> std::optional<KeyValue> {
-    const Stored stored = field(const_cast<Mission&>(mission));
+  key.get = [=](const MissionDocument& mission) -> std::optional<KeyValue> {
+    const Stored stored = field(mission);
     Value value;
     if constexpr (std::is_same_v<Stored, Value>) {
       value = stored;
@@ -133,18 +133,19 @@ Key angles_key(std::string path, KeyRange range, Field field, std::string meanin
 template <class Field>
 Key choice_key(std::string path, std::vector<std::string> choices, Field field,
                std::string meaning) {
-  using Value = std::remove_reference_t<decltype(field(std::declval<Mission&>()))>;
+  using Value = std::remove_reference_t<decltype(field(std::declval<MissionDocument&>()))>;
   Key key;
   key.path = std::move(path);
   key.type = KeyType::choice;
   key.choices = std::move(choices);
   key.meaning = std::move(meaning);
-  key.set = [field, names = key.choices](Mission& mission, const KeyValue& value) {
+  key.set = [field, names = key.choices](MissionDocument& mission, const KeyValue& value) {
     const auto name = std::ranges::find(names, std::get<std::string>(value));
     field(mission) = static_cast<Value>(name - names.begin());
   };
-  key.get = [field, names = key.choices](const Mission& mission) -> std::optional<KeyValue> {
-    return names[static_cast<std::size_t>(field(const_cast<Mission&>(mission)))];
+  key.get = [field,
+             names = key.choices](const MissionDocument& mission) -> std::optional<KeyValue> {
+    return names[static_cast<std::size_t>(field(mission))];
   };
   return key;
 }
@@ -169,7 +170,7 @@ Key box_corner(std::string path, Field field, bool is_upper, std::string meaning
   key.unit = std::string(1, 'm');  // of a literal, GCC 12 warns without cause
   key.range = between(-far_away, far_away);
   key.meaning = std::move(meaning);
-  key.set = [field, is_upper](Mission& mission, const KeyValue& value) {
+  key.set = [field, is_upper](MissionDocument& mission, const KeyValue& value) {
     std::optional<Eigen::AlignedBox3d>& box = field(mission);
     if (!box) {
       box = Eigen::AlignedBox3d(Eigen::Vector3d::Constant(-far_away),
@@ -177,8 +178,8 @@ Key box_corner(std::string path, Field field, bool is_upper, std::string meaning
     }
     (is_upper ? box->max() : box->min()) = std::get<Eigen::Vector3d>(value);
   };
-  key.get = [field, is_upper](const Mission& mission) -> std::optional<KeyValue> {
-    const std::optional<Eigen::AlignedBox3d>& box = field(const_cast<Mission&>(mission));
+  key.get = [field, is_upper](const MissionDocument& mission) -> std::optional<KeyValue> {
+    const std::optional<Eigen::AlignedBox3d>& box = field(mission);
     if (!box) return std::nullopt;
     return is_upper ? box->max() : box->min();
   };

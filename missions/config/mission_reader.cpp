@@ -221,7 +221,8 @@ std::optional<KeyValue> value_for(const Key& key, const support::YamlNode& node)
   fail(given.place, of + key.path, described(given.node) + "; give " + expected_value(key));
 }
 
-void apply(const Given& given, const Key& key, Mission& mission, const std::string& of = "") {
+void apply(const Given& given, const Key& key, MissionDocument& mission,
+           const std::string& of = "") {
   const auto value = value_for(key, given.node);
   if (!value) refuse_value(given, key, of);
   key.set(mission, *value);
@@ -229,14 +230,14 @@ void apply(const Given& given, const Key& key, Mission& mission, const std::stri
 
 /// One map of a list of them; `places` learns where its keys stand.
 site_data::Source source_in(const support::YamlNode& node, const KnownKeys& known,
-                            MissionFile& result) {
+                            MissionDocument& result) {
   const std::string place = known.file + ":" + std::to_string(node.line);
   const std::string name = known.of.substr(0, known.of.size() - 1);
   if (node.kind != support::YamlNode::Kind::map)
     fail(place, name, described(node) + "; give a map");
   GivenValues values;
   collect(node, "", known, values);
-  Mission mission;
+  MissionDocument mission;
   mission.prior.emplace_back();
   result.places[name] = place;
   for (const auto& [path, given] : values) {
@@ -250,23 +251,23 @@ site_data::Source source_in(const support::YamlNode& node, const KnownKeys& know
   return mission.prior.back();
 }
 
-void apply_sources(const Given& given, const Key& key, MissionFile& result) {
+void apply_sources(const Given& given, const Key& key, MissionDocument& result) {
   if (given.node.kind != support::YamlNode::Kind::list) refuse_value(given, key, "");
   std::vector<site_data::Source> sources;
   for (const support::YamlNode& item : given.node.items) {
     const std::string of = key.path + "[" + std::to_string(sources.size()) + "].";
     sources.push_back(source_in(item, {key.items, of, given.file}, result));
   }
-  key.set(result.mission, sources);
+  key.set(result, sources);
 }
 
 /// Sets up what the named presets stand for, before the other keys override it.
-void apply_presets(Mission& mission) {
+void apply_presets(MissionDocument& mission) {
   if (mission.sensor.preset == SensorPreset::high_resolution) {
-    mission.sensor.camera = sim::high_resolution();
+    mission.sensor.options.camera = sim::high_resolution();
   }
   survey::see::SeeConfig& see = mission.planner.see;
-  if (mission.planner.name == PlannerName::see) {
+  if (mission.planner.name == survey::PlannerName::see) {
     see.optimise_views = false;
     see.visibility_graph = false;
   }
@@ -302,22 +303,21 @@ GivenValues collected(const std::string& text, const std::string& name,
   return values;
 }
 
-MissionFile mission_from(const std::string& text, const std::string& name,
-                         const std::vector<KeyOverride>& overrides) {
+MissionDocument mission_from(const std::string& text, const std::string& name,
+                             const std::vector<KeyOverride>& overrides) {
   const GivenValues given = collected(text, name, overrides);
-  MissionFile result{.name = name, .mission = {}, .places = {}};
+  MissionDocument result{.file = name};
   for (const auto& [path, value] : given) result.places[path] = value.place;
-  Mission& mission = result.mission;
-  mission.name = std::filesystem::path(name).stem().string();
+  result.name = std::filesystem::path(name).stem().string();
 
   for (const char* path : {"sensor.preset", "planner.preset", "planner.name"}) {
     const auto preset = given.find(path);
-    if (preset != given.end()) apply(preset->second, *find_key(path), mission);
+    if (preset != given.end()) apply(preset->second, *find_key(path), result);
   }
-  apply_presets(mission);
+  apply_presets(result);
   for (const auto& [path, value] : given) {
     const Key& key = *find_key(path);
-    key.type == KeyType::sources ? apply_sources(value, key, result) : apply(value, key, mission);
+    key.type == KeyType::sources ? apply_sources(value, key, result) : apply(value, key, result);
   }
   for (const Key& key : mission_keys()) {
     if (!key.is_required || given.contains(key.path)) continue;
@@ -334,15 +334,15 @@ std::string one_line(std::string message) {
 
 }  // namespace
 
-bool MissionFile::gives(std::string_view key) const { return places.contains(key); }
+bool MissionDocument::gives(std::string_view key) const { return places.contains(key); }
 
-void MissionFile::refuse(std::string_view key, const std::string& what) const {
+void MissionDocument::refuse(std::string_view key, const std::string& what) const {
   const auto place = places.find(key);
-  fail(one_line(place == places.end() ? name + ":1" : place->second), key, one_line(what));
+  fail(one_line(place == places.end() ? file + ":1" : place->second), key, one_line(what));
 }
 
-MissionFile parse_mission_file(const std::string& text, const std::string& name,
-                               const std::vector<KeyOverride>& overrides) {
+MissionDocument parse_mission_document(const std::string& text, const std::string& name,
+                                       const std::vector<KeyOverride>& overrides) {
   try {
     return mission_from(text, name, overrides);
   } catch (const Error& error) {
@@ -350,8 +350,17 @@ MissionFile parse_mission_file(const std::string& text, const std::string& name,
   }
 }
 
-MissionFile read_mission_file(const std::filesystem::path& file,
-                              const std::vector<KeyOverride>& overrides) {
+void override_keys(MissionDocument& document, const std::vector<KeyOverride>& changes) {
+  for (const auto& [origin, path, value] : changes) {
+    const Key* const key = find_key(path);
+    if (!key) fail(origin, path, unknown_key_message(path, mission_keys()));
+    apply({origin, origin, support::parse_yaml(value, origin)}, *key, document);
+    document.places[path] = origin;
+  }
+}
+
+MissionDocument read_mission_document(const std::filesystem::path& file,
+                                      const std::vector<KeyOverride>& overrides) {
   const auto refuse = [&](const std::string& what) {
     throw Error(ErrorKind::bad_file, file.string() + ": " + what);
   };
@@ -366,7 +375,7 @@ MissionFile read_mission_file(const std::filesystem::path& file,
   text.resize(static_cast<std::size_t>(stream.gcount()));
   if (text.size() > largest_file) refuse("is larger than 1 MiB; that is not a mission file");
   if (text.find('\0') != std::string::npos) refuse("is not text; name a mission file");
-  return parse_mission_file(text, file.string(), overrides);
+  return parse_mission_document(text, file.string(), overrides);
 }
 
 }  // namespace skycap::missions::config

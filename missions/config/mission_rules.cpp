@@ -1,109 +1,101 @@
 #include "missions/config/mission_rules.h"
 
 #include <algorithm>
-#include <array>
+#include <functional>
 #include <string>
 #include <string_view>
+#include <variant>
+#include <vector>
 
 #include "geometry/error.h"
-#include "missions/config/mission_flight.h"
+#include "missions/config/derived_values.h"
+#include "missions/config/field_keys.h"
 #include "missions/config/mission_keys.h"
-#include "missions/config/mission_priors.h"
-#include "missions/config/planner_factory.h"
-#include "missions/config/planner_titles.h"
-#include "missions/config/site.h"
 #include "missions/support/number_text.h"
 #include "sim/models/models.h"
+#include "survey/planners/planner_names.h"
 
 namespace skycap::missions::config {
 namespace {
 
 using support::short_text;
 
-/// What planners call a setting, after "planner." or not, and the key that gives it. The others are
-/// called by their key, or by its end, in the section planner.
-struct SettingKey {
-  std::string_view setting, key;
-};
-
-constexpr std::array<SettingKey, 13> setting_keys{{
-    {"coverage_radius", "evaluation.registration_distance"},
-    {"stop.wanted_coverage", "planner.wanted_coverage"},
-    {"stop.least_gain", "planner.least_gain"},
-    {"stop.most_length", "limits.max_distance"},
-    {"stop.most_time", "limits.max_minutes"},
-    {"stop.speed", "limits.speed"},
-    {"stop.time_per_view", "limits.time_per_view"},
-    {"scene_box", "planner.scene_box.max"},
-    {"stand_off", "limits.stand_off"},
-    {"least_height", "site.highest_height"},
-    {"least_pitch", "limits.highest_pitch_deg"},
-    {"geofence", "site.geofence"},
-    {"no_fly", "site.no_fly"},
-}};
-
-std::string key_of(std::string_view setting) {
-  constexpr std::string_view section = "planner.";
-  if (config::find_key(setting)) return std::string(setting);
-  if (setting.starts_with(section)) setting.remove_prefix(section.size());
-  const auto known = std::ranges::find(setting_keys, setting, &SettingKey::setting);
-  return known == setting_keys.end() ? std::string(section).append(setting)
-                                     : std::string(known->key);
-}
-
-void check_builtin(const config::MissionFile& given, std::string_view name) {
+void check_builtin(const MissionDocument& given, std::string_view name) {
   const auto models = sim::builtin_models();
   if (std::ranges::find(models, name) != models.end()) return;
   std::string known;
   for (const std::string_view model : models) {
     known += (known.empty() ? "builtin:" : ", builtin:") + std::string(model);
   }
-  given.refuse("scene.model", "is " + given.mission.scene.model + "; there are " + known);
+  given.refuse("scene.model", "is " + given.scene.model + "; there are " + known);
 }
 
-void check_views(const config::MissionFile& given) {
-  const config::Mission& mission = given.mission;
-  if (mission.flight.views != config::MissionViews::anew) return;
-  if (mission.planner.name != config::PlannerName::skycap) {
+void check_views(const MissionDocument& given) {
+  if (given.flight.options.views != flight::MissionViews::anew) return;
+  if (given.planner.name != survey::PlannerName::skycap) {
     given.refuse("flight.views",
                  "is anew, and the planner " +
-                     std::string(config::title_of(mission.planner.name).word) +
+                     std::string(survey::title_of(given.planner.name).word) +
                      " keeps no surface that views could be chosen by; plan with planner.name "
                      "skycap or leave it out");
   }
-  if (mission.flight.order == config::VisitOrder::survey) {
+  if (given.flight.options.order == flight::VisitOrder::survey) {
     given.refuse("flight.views",
                  "is anew, and such views have no order of the survey; leave out flight.order or "
                  "flight.views");
   }
 }
 
-void check_capture(const config::MissionFile& given) {
-  const config::Mission& mission = given.mission;
-  if (!mission.sensor.is_moving()) {
+void check_capture(const MissionDocument& given) {
+  if (!given.sensor.options.is_moving()) {
     if (!given.gives("sensor.frame_period")) return;
     given.refuse("sensor.frame_period",
                  "is for frames on the way, which sensor.capture moving takes; leave it out");
   }
   const char* const wants = "is moving; it needs ";
-  if (!mission.flight.is_flown()) {
+  if (!given.flight.is_flown()) {
     given.refuse("sensor.capture", std::string(wants) + "a vehicle, give flight.vehicle");
   }
-  if (mission.planner.name != config::PlannerName::skycap) {
+  if (given.planner.name != survey::PlannerName::skycap) {
     given.refuse("sensor.capture",
                  std::string(wants) +
                      "a planner that learns from more than its own views, planner.name skycap");
   }
 }
 
+/// Keys that say nothing without several vehicles.
+constexpr const char* keys_of_fleets[] = {"flight.pads", "flight.fleet_goal", "flight.separation",
+                                          "flight.timing_tolerance"};
+
+/// What two vehicles' places may be off together, and their sizes.
+double least_separation(const flight::FlightOptions& flight) {
+  std::vector<double> radii;
+  for (const flight::Vehicle& vehicle : flight.fleet.vehicles) radii.push_back(vehicle.radius);
+  std::ranges::sort(radii, std::greater());
+  return radii[0] + radii[1] + 2.0 * (flight.position_error + flight.tracking_error);
+}
+
+void check_pads_given(const MissionDocument& given) {
+  const flight::FlightOptions& flight = given.flight.options;
+  const std::vector<Eigen::Vector3d>& pads = flight.fleet.pads;
+  if (pads.empty()) return;
+  if (pads.size() != flight.fleet.names.size()) {
+    given.refuse("flight.pads", "has " + std::to_string(pads.size()) + " pads for the " +
+                                    std::to_string(flight.fleet.names.size()) +
+                                    " of flight.vehicles; give one for each");
+  }
+  if (flight.takeoff && *flight.takeoff != pads.front()) {
+    given.refuse("flight.takeoff", "is not the first of flight.pads; leave it out");
+  }
+}
+
 }  // namespace
 
-void check_scene(const config::MissionFile& given) {
-  const config::Mission& mission = given.mission;
-  const config::SceneConfig& scene = mission.scene;
-  if (mission.name.find('/') != std::string::npos || mission.name.starts_with('.')) {
+void check_scene(const MissionDocument& given) {
+  const scene::SceneOptions& scene = given.scene;
+  if (given.name.find('/') != std::string::npos || given.name.starts_with('.')) {
     given.refuse("name",
-                 "is " + mission.name + "; it names a folder, give it without '/' and leading '.'");
+                 "is " + given.name + "; it names a folder, give it without '/' and leading '.'");
   }
   constexpr std::string_view builtin = "builtin:";
   if (scene.model.starts_with(builtin)) check_builtin(given, scene.model.substr(builtin.size()));
@@ -114,13 +106,13 @@ void check_scene(const config::MissionFile& given) {
   if (scene.longest_side && scene.scale) {
     given.refuse("scene.scale", "excludes scene.longest_side; keep one of the two");
   }
-  const auto& box = mission.planner.see.scene_box;
-  if (scene.ground && !box && !has_target(mission)) {
+  const auto& box = given.planner.sampling.scene_box;
+  if (scene.ground && !box && !has_target(given)) {
     given.refuse("scene.ground",
                  "needs planner.scene_box, or the plan would cover the ground too; give the box's "
                  "min and max");
   }
-  if (scene.neighbours && !has_obstacle(mission)) {
+  if (scene.neighbours && !has_obstacle(given)) {
     given.refuse("scene.neighbours",
                  "needs a file of prior data whose role is obstacle, which holds them");
   }
@@ -130,21 +122,21 @@ void check_scene(const config::MissionFile& given) {
   }
 }
 
-void check_live(const config::MissionFile& given) {
-  if (!given.mission.planner.see.scene_box && !has_target(given.mission)) {
+void check_live(const MissionDocument& given) {
+  if (!given.planner.sampling.scene_box && !has_target(given)) {
     given.refuse("planner.scene_box.min",
                  "is missing; without scene.model the mission is live, and has to say with "
                  "planner.scene_box where the scene is: give the box's min and max");
   }
-  if (given.mission.flight.is_flown() && !given.mission.start.position) {
+  if (given.flight.is_flown() && !given.start.position) {
     given.refuse("start.position",
                  "is missing; a live mission with a vehicle has to say where its first view is, so "
                  "that the way there can be proven");
   }
 }
 
-void check_start(const config::MissionFile& given) {
-  const config::StartConfig& start = given.mission.start;
+void check_start(const MissionDocument& given) {
+  const StartSection& start = given.start;
   if (!start.position && (start.look_at || start.direction)) {
     given.refuse(start.look_at ? "start.look_at" : "start.direction",
                  "needs start.position; give it, or leave both out for a random start");
@@ -160,8 +152,8 @@ void check_start(const config::MissionFile& given) {
   }
 }
 
-void check_sensor(const config::MissionFile& given) {
-  const geometry::CameraConfig& camera = given.mission.sensor.camera.camera;
+void check_sensor(const MissionDocument& given) {
+  const geometry::CameraConfig& camera = given.sensor.options.camera.camera;
   if (camera.max_range <= camera.min_range) {
     given.refuse("sensor.max_range", "is not above sensor.min_range; make it larger");
   }
@@ -172,8 +164,8 @@ void check_sensor(const config::MissionFile& given) {
   check_capture(given);
 }
 
-void check_boxes_beside(const config::MissionFile& given) {
-  const std::vector<Eigen::Vector3d>& corners = given.mission.flight.unknown_beside;
+void check_boxes_beside(const MissionDocument& given) {
+  const std::vector<Eigen::Vector3d>& corners = given.flight.unknown_beside;
   if (corners.size() % 2 != 0) {
     given.refuse("flight.unknown_beside",
                  "has " + std::to_string(corners.size()) +
@@ -187,27 +179,26 @@ void check_boxes_beside(const config::MissionFile& given) {
   }
 }
 
-void check_flight(const config::MissionFile& given) {
-  const config::Mission& mission = given.mission;
-  const config::Georeference& place = mission.georeference;
+void check_flight(const MissionDocument& given) {
+  const Georeference& place = given.georeference;
   if (place.latitude_deg.has_value() != place.longitude_deg.has_value()) {
     given.refuse(place.latitude_deg ? "site.latitude_deg" : "site.longitude_deg",
                  "is half a place; give site.latitude_deg and site.longitude_deg");
   }
-  const config::FlightConfig& flight = mission.flight;
-  if (!flight.is_flown()) return;
-  if (const auto& box = flight.unknown_box;
+  if (!given.flight.is_flown()) return;
+  const flight::FlightOptions flight = flight_options(given);
+  if (const auto& box = given.flight.unknown_box;
       box && !(box->min().array() < box->max().array()).all()) {
     given.refuse("flight.unknown_box.max",
                  "is not above flight.unknown_box.min on every axis; swap or widen the corners");
   }
   check_boxes_beside(given);
-  if (unknown_box_of(mission).isEmpty()) {
+  if (flight.unknown_box.isEmpty()) {
     given.refuse("flight.vehicle",
                  "needs flight.unknown_box, around the building: in it nothing is free until "
                  "measured; give the box's min and max");
   }
-  const flight::ClearanceBudget budget = clearance_of(mission);
+  const flight::ClearanceBudget budget = flight.budget();
   if (budget.margin < 0.0) {
     given.refuse("flight.clearance",
                  "is less than the vehicle's radius of " + short_text(budget.vehicle_radius) +
@@ -216,34 +207,81 @@ void check_flight(const config::MissionFile& given) {
                      " m; make it larger or the errors smaller");
   }
   check_views(given);
-  if (flight.style == flight::FlightStyle::pass && mission.sensor.settle > 0.0) {
+  if (flight.style == flight::FlightStyle::pass && given.sensor.options.settle > 0.0) {
     given.refuse("flight.style",
                  "takes pictures without a stop, but the sensor has to rest before each "
                  "(sensor.settle); choose stop, blend or smooth");
   }
-  if (const double climb = takeoff_climb_of(mission); climb <= flight.clearance) {
+  if (const double climb = flight.climb(); climb <= flight.clearance) {
     given.refuse("flight.takeoff_climb",
                  "of " + short_text(climb) +
                      " m ends within the clearance of the ground; make it more than "
                      "flight.clearance");
   }
-  if (!flight.rally.empty() && vehicle_of(mission).dialect == flight::Dialect::dji) {
-    given.refuse("flight.rally", "is not for " + flight.vehicle +
+  if (!flight.rally.empty() && flight.flown().dialect == flight::Dialect::dji) {
+    given.refuse("flight.rally", "is not for " + flight.vehicle_name +
                                      ": DJI's vehicles return to their pad only; leave it out");
   }
-  if (const double sigma = mission.sensor.camera.noise.sigma; flight.map_error < 3.0 * sigma) {
+  if (const double sigma = given.sensor.options.camera.noise.sigma;
+      flight.map_error < 3.0 * sigma) {
     given.refuse("flight.map_error",
                  "is below three standard deviations of the sensor's noise; make it at least " +
                      short_text(3.0 * sigma) + " m");
   }
-  if (const double most = vehicle_of(mission).max_wind; flight.wind_speed >= most) {
+  if (const double most = flight.flown().max_wind; flight.wind_speed >= most) {
     given.refuse("flight.wind_speed", "is not below the " + short_text(most) + " m/s that " +
-                                          flight.vehicle + " is made for");
+                                          flight.vehicle_name + " is made for");
   }
 }
 
-void check_view_limits(const config::MissionFile& given) {
-  const survey::ViewLimits limits = view_limits(given.mission);
+void lead_fleet(MissionDocument& given) {
+  flight::FlightOptions& flight = given.flight.options;
+  flight::FleetOptions& fleet = flight.fleet;
+  if (fleet.names.empty()) {
+    // A fleet of one is a vehicle once it is resolved.
+    if (given.gives("flight.vehicles") && given.flight.is_flown()) return;
+    for (const char* key : keys_of_fleets) {
+      if (given.gives(key)) given.refuse(key, "is for several vehicles; give flight.vehicles");
+    }
+    return;
+  }
+  if (given.flight.is_flown() && flight.vehicle_name != fleet.names.front()) {
+    given.refuse("flight.vehicle", "is not the first of flight.vehicles; leave it out");
+  }
+  check_pads_given(given);
+  flight.vehicle_name = fleet.names.front();
+  flight.vehicle = fleet.vehicles.front();
+  if (!fleet.pads.empty()) flight.takeoff = fleet.pads.front();
+  if (fleet.names.size() == 1) fleet = {};
+}
+
+void check_fleet(const MissionDocument& given) {
+  if (!given.flight.options.is_fleet()) return;
+  if (!has_place(given)) {
+    given.refuse("flight.vehicles",
+                 "needs a place on the Earth: vehicles are kept apart as their route files say; "
+                 "give site.latitude_deg and site.longitude_deg");
+  }
+  const flight::FlightOptions& flight = given.flight.options;
+  if (flight.style != flight::FlightStyle::stop) {
+    given.refuse("flight.style",
+                 "several vehicles are kept apart as they fly from stop to stop; "
+                 "leave the key out");
+  }
+  if (const double least = least_separation(flight); flight.fleet.separation < least) {
+    given.refuse("flight.separation",
+                 "is less than two vehicles' radii, position and tracking errors make together, " +
+                     support::short_text(least) + " m; make it larger");
+  }
+  for (std::size_t v = 1; v < flight.fleet.names.size(); ++v) {
+    MissionDocument own = given;
+    own.flight.options = flight.of_vehicle(v, flight.takeoff.value_or(Eigen::Vector3d::Zero()));
+    check_flight(own);
+  }
+}
+
+void check_view_limits(const MissionDocument& given) {
+  const survey::ViewLimits limits = view_limits(given);
   if (limits.least_height && limits.most_height && *limits.least_height >= *limits.most_height) {
     given.refuse("site.highest_height",
                  "is not above site.lowest_height and limits.ground_clearance; nothing is left to "
@@ -254,16 +292,58 @@ void check_view_limits(const config::MissionFile& given) {
   }
 }
 
-void check_planner(const config::MissionFile& given) {
+namespace {
+
+/// Throws if the candidates' sphere, where both of its keys are given, is below the least height.
+void validate_sphere(const survey::volumetric::VolumetricConfig& config) {
+  const survey::volumetric::VolumetricSettings& settings = config.settings;
+  if (!settings.sphere_centre || !settings.sphere_radius || !config.least_height) return;
+  const double highest = config.sphere_centre.z() + config.sphere_radius;
+  if (highest > *config.least_height) return;
+  throw Error(ErrorKind::bad_config,
+              "sphere_radius is " + short_text(config.sphere_radius) +
+                  "; it must be large enough for the sphere to reach above the least height of " +
+                  short_text(*config.least_height) + " m, which limits.ground_clearance gives");
+}
+
+}  // namespace
+
+namespace {
+
+/// The message with the key in place of every field that it names by a word of its own.
+std::string in_keys(std::string_view message) {
+  const auto is_of_name = [](char c) { return c == '_' || c == '.' || (c >= 'a' && c <= 'z'); };
+  std::string text;
+  while (!message.empty()) {
+    const auto end = std::ranges::find_if_not(message, is_of_name);
+    const std::string_view word(message.begin(), end);
+    const bool is_name = word.find('_') != std::string_view::npos;
+    const std::string_view key = is_name ? key_of_field(word) : std::string_view();
+    text += key.empty() ? word : key;
+    const std::size_t rest = std::min(message.size(), std::max<std::size_t>(word.size(), 1));
+    if (word.empty()) text += message.front();
+    message.remove_prefix(rest);
+  }
+  return text;
+}
+
+}  // namespace
+
+void check_planner(const MissionDocument& given) {
   try {
-    validate_planner(given.mission);
+    const survey::PlannerOptions planner = planner_options(given, flight_options(given));
+    planner.validate();
+    if (const auto* volumetric =
+            std::get_if<survey::volumetric::VolumetricConfig>(&planner.method)) {
+      validate_sphere(*volumetric);
+    }
   } catch (const Error& error) {
-    // "SETTING is 3; it must be ...", or a sentence about several settings.
+    // "FIELD is 3; it must be ...", or a sentence about several fields.
     const std::string_view message = error.what();
-    const std::string_view setting = message.substr(0, message.find(' '));
-    const std::string key = key_of(setting);
-    if (!config::find_key(key)) given.refuse("planner", std::string(message));
-    given.refuse(key, std::string(message.substr(std::min(setting.size() + 1, message.size()))));
+    const std::string_view field = message.substr(0, message.find(' '));
+    const std::string_view key = key_of_field(field);
+    if (key.empty()) given.refuse("planner", in_keys(message));
+    given.refuse(key, in_keys(message.substr(std::min(field.size() + 1, message.size()))));
   }
 }
 

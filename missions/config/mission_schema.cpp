@@ -43,7 +43,7 @@ std::string listed(const std::vector<std::string>& choices) {
 std::string default_text(const Key& key) {
   if (key.is_required) return "required";
   if (!key.fallback.empty()) return key.fallback;
-  Mission blank;
+  MissionDocument blank;
   blank.prior.emplace_back();  // for the keys of a list's maps
   return to_text(*key.get(blank));
 }

@@ -1,7 +1,7 @@
 // The keys of `planner`.
 #include "missions/config/key_builders.h"
 #include "missions/config/key_sections.h"
-#include "missions/config/planner_titles.h"
+#include "survey/planners/planner_names.h"
 
 namespace skycap::missions::config {
 namespace {
@@ -10,21 +10,26 @@ using See = survey::see::SeeConfig;
 
 /// The field of SEE's settings that `member` points to.
 auto see(auto member) {
-  return [member](Mission & m) -> auto& { return m.planner.see.*member; };
+  return [member](auto& m) -> auto& { return m.planner.see.*member; };
+}
+
+/// The same of what every planner uses.
+auto sampling(auto member) {
+  return [member](auto& m) -> auto& { return m.planner.sampling.*member; };
 }
 
 Key idea(const std::string& name, bool survey::skycap::SkycapIdeas::*member,
          const std::string& meaning) {
   return boolean_key(
       "planner.ideas." + name,
-      [member](Mission & m) -> auto& { return m.planner.skycap_ideas.*member; },
-      "skycap: " + meaning);
+      [member](auto& m) -> auto& { return m.planner.skycap_ideas.*member; }, "skycap: " + meaning);
 }
 
 std::vector<std::string> planner_words() {
   std::vector<std::string> words;
-  words.reserve(std::size(planner_titles));
-  for (const PlannerTitle& planner : planner_titles) words.emplace_back(planner.word);
+  words.reserve(std::size(survey::planner_titles));
+  for (const survey::PlannerTitle& planner : survey::planner_titles)
+    words.emplace_back(planner.word);
   return words;
 }
 
@@ -33,7 +38,7 @@ std::vector<Key> which_planner() {
       otherwise(
           "skycap with a vehicle, else see++",
           choice_key(
-              "planner.name", planner_words(), [](Mission & m) -> auto& { return m.planner.name; },
+              "planner.name", planner_words(), [](auto& m) -> auto& { return m.planner.name; },
               "The planner. see is see++ without optimise_views and visibility_graph; skycap is "
               "our "
               "own, which of the keys below uses spacing, view_distance, scene_box, "
@@ -43,14 +48,13 @@ std::vector<Key> which_planner() {
               "those of the section volumetric.")),
       choice_key(
           "planner.preset", {"paper", "building"},
-          [](Mission & m) -> auto& { return m.planner.preset; },
+          [](auto& m) -> auto& { return m.planner.preset; },
           "Values that the keys below override: paper as published, building as described "
           "below."),
       otherwise(
           "minutes with sensor.capture: moving, else views",
           choice_key(
-              "planner.goal", {"minutes", "views"},
-              [](Mission & m) -> auto& { return m.planner.goal; },
+              "planner.goal", {"minutes", "views"}, [](auto& m) -> auto& { return m.planner.goal; },
               "What skycap spares. minutes: a view costs what its stop costs, or without a vehicle "
               "one view distance of way; views: it costs three view distances.")),
   };
@@ -58,11 +62,12 @@ std::vector<Key> which_planner() {
 
 /// How measurements are kept and classified.
 std::vector<Key> density_keys() {
-  const auto scene_box = [](Mission & m) -> auto& { return m.planner.see.scene_box; };
+  const auto scene_box = [](auto& m) -> auto& { return m.planner.sampling.scene_box; };
   return {
-      number_key("planner.density", "points/m^3", above(0, 1e12), see(&See::density),
-                 "rho: wanted density of the measurements."),
-      number_key("planner.resolution_radius", "m", above(0, 1e3), see(&See::resolution_radius),
+      number_key("planner.density", "points/m^3", above(0, 1e12),
+                 sampling(&SamplingSection::density), "rho: wanted density of the measurements."),
+      number_key("planner.resolution_radius", "m", above(0, 1e3),
+                 sampling(&SamplingSection::resolution_radius),
                  "r: radius in which the density is counted."),
       number_key("planner.occlusion_search_distance", "m", above(0, 1e6),
                  see(&See::occlusion_search_distance),
@@ -78,10 +83,11 @@ std::vector<Key> density_keys() {
       otherwise(
           "rho^(-1/2), or 0.8 evaluation.registration_distance if that is less, but then no less "
           "than a camera's rays are apart at the view distance",
-          number_key("planner.spacing", "m", above(0, 1e3), see(&See::spacing),
+          number_key("planner.spacing", "m", above(0, 1e3), sampling(&SamplingSection::spacing),
                      "epsilon: least distance of stored measurements.")),
       otherwise("from the sensor and rho",
-                number_key("planner.view_distance", "m", above(0, 1e6), see(&See::view_distance),
+                number_key("planner.view_distance", "m", above(0, 1e6),
+                           sampling(&SamplingSection::view_distance),
                            "d: distance from a frontier to the view proposed for it.")),
       otherwise("unlimited",
                 box_corner("planner.scene_box.min", scene_box, false,
@@ -115,12 +121,12 @@ std::vector<Key> occlusion_keys() {
                   "Whether occluded frontiers are given a view from a clear direction (SEE++)."),
       choice_key(
           "planner.cap.policy", {"local", "global", "nonlinear_program"},
-          [](Mission & m) -> auto& { return m.planner.see.cap.policy; },
+          [](auto& m) -> auto& { return m.planner.see.cap.policy; },
           "Which clear direction: the one downhill from the observing direction, the centre of "
           "the largest empty cap, or what the published program finds with NLopt."),
       integer_key(
           "planner.cap.max_evaluations", "", between(1, 1e6),
-          [](Mission & m) -> auto& { return m.planner.see.cap.max_evaluations; },
+          [](auto& m) -> auto& { return m.planner.see.cap.max_evaluations; },
           "Evaluations in each of the published program's two optimisations."),
       choice_key(
           "planner.observing_direction", {"ray", "image_axis"}, see(&See::observing_direction),
@@ -170,7 +176,7 @@ std::vector<Key> skycap_keys() {
   using Stop = survey::skycap::StopRule;
   using Ideas = survey::skycap::SkycapIdeas;
   const auto stop = [](auto member) {
-    return [member](Mission & m) -> auto& { return m.planner.skycap_stop.*member; };
+    return [member](auto& m) -> auto& { return m.planner.skycap_stop.*member; };
   };
   return {
       number_key("planner.wanted_coverage", "share", above(0, 1), stop(&Stop::wanted_coverage),

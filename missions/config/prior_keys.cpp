@@ -20,17 +20,17 @@ std::vector<std::string> names_of(std::initializer_list<Word> all) {
 
 /// The field of the list's last source that `member` points to.
 auto source(auto member) {
-  return [member](Mission & m) -> auto& { return m.prior.back().*member; };
+  return [member](auto& m) -> auto& { return m.prior.back().*member; };
 }
 auto selection(auto member) {
-  return [member](Mission & m) -> auto& { return m.prior.back().select.*member; };
+  return [member](auto& m) -> auto& { return m.prior.back().select.*member; };
 }
 
 /// A key whose value is a list or map; an empty one stands for none.
 template <class Field>
 Key list_key(std::string path, KeyType type, Field field, std::string meaning) {
   Key key = key_for(std::move(path), type, field, std::move(meaning));
-  key.get = [get = key.get](const Mission& mission) -> std::optional<KeyValue> {
+  key.get = [get = key.get](const MissionDocument& mission) -> std::optional<KeyValue> {
     auto value = get(mission);
     const bool is_empty = std::visit(
         [](const auto& list) {
@@ -56,11 +56,11 @@ Key path_key(std::string path, Field field, std::string meaning) {
   Key key;
   key.path = std::move(path);
   key.meaning = std::move(meaning);
-  key.set = [field](Mission& mission, const KeyValue& value) {
+  key.set = [field](MissionDocument& mission, const KeyValue& value) {
     field(mission) = std::get<std::string>(value);
   };
-  key.get = [field](const Mission& mission) -> std::optional<KeyValue> {
-    const std::string text = field(const_cast<Mission&>(mission)).string();
+  key.get = [field](const MissionDocument& mission) -> std::optional<KeyValue> {
+    const std::string text = field(mission).string();
     return text.empty() ? std::nullopt : std::optional<KeyValue>(text);
   };
   return key;
@@ -74,11 +74,11 @@ Key vertical_key() {
   key.meaning =
       "What the file's heights count from: WGS84's ellipsoid, the geoid (the file's own, else "
       "EGM96), or the pad.";
-  key.set = [names = key.choices](Mission& mission, const KeyValue& value) {
+  key.set = [names = key.choices](MissionDocument& mission, const KeyValue& value) {
     const auto name = std::ranges::find(names, std::get<std::string>(value));
     mission.prior.back().vertical = static_cast<HeightDatum>(name - names.begin());
   };
-  key.get = [names = key.choices](const Mission& mission) -> std::optional<KeyValue> {
+  key.get = [names = key.choices](const MissionDocument& mission) -> std::optional<KeyValue> {
     const auto& stored = mission.prior.back().vertical;
     if (!stored) return std::nullopt;
     return names[static_cast<std::size_t>(*stored)];
@@ -92,10 +92,10 @@ Key up_axis_key() {
   key.type = KeyType::choice;
   key.choices = {"z", "y"};
   key.meaning = "Of models of scenes: which axis points up, whatever the file says.";
-  key.set = [](Mission& mission, const KeyValue& value) {
+  key.set = [](MissionDocument& mission, const KeyValue& value) {
     mission.prior.back().is_y_up = std::get<std::string>(value) == "y";
   };
-  key.get = [](const Mission& mission) -> std::optional<KeyValue> {
+  key.get = [](const MissionDocument& mission) -> std::optional<KeyValue> {
     const std::optional<bool>& stored = mission.prior.back().is_y_up;
     return stored ? std::optional<KeyValue>(*stored ? "y" : "z") : std::nullopt;
   };
@@ -110,12 +110,12 @@ Key base_key() {
   key.range = between(-1e4, 1e4);
   key.choices = {"terrain"};
   key.meaning = "Of polygons: the height they are extruded from.";
-  key.set = [](Mission& mission, const KeyValue& value) {
+  key.set = [](MissionDocument& mission, const KeyValue& value) {
     Source& source = mission.prior.back();
     source.base_on_terrain = std::holds_alternative<std::string>(value);
     if (!source.base_on_terrain) source.base = std::get<double>(value);
   };
-  key.get = [](const Mission& mission) -> std::optional<KeyValue> {
+  key.get = [](const MissionDocument& mission) -> std::optional<KeyValue> {
     const Source& source = mission.prior.back();
     if (source.base_on_terrain) return std::string("terrain");
     return source.base ? std::optional<KeyValue>(*source.base) : std::nullopt;
@@ -133,12 +133,12 @@ Key place_key(std::string path, KeyType type, std::string unit, KeyRange range, 
   key.unit = std::move(unit);
   key.range = range;
   key.meaning = std::move(meaning);
-  key.set = [=](Mission& mission, const KeyValue& value) {
+  key.set = [=](MissionDocument& mission, const KeyValue& value) {
     std::optional<site_data::Place>& place = mission.prior.back().place;
     if (!place) place.emplace();
     (*place).*member = factor * std::get<Value>(value);
   };
-  key.get = [=](const Mission& mission) -> std::optional<KeyValue> {
+  key.get = [=](const MissionDocument& mission) -> std::optional<KeyValue> {
     const std::optional<site_data::Place>& place = mission.prior.back().place;
     if (!place) return std::nullopt;
     return KeyValue(Value((*place).*member / factor));
@@ -225,9 +225,9 @@ std::vector<Key> meaning_keys() {
 
 std::vector<Key> prior_keys() {
   Key key = key_for(
-      "prior", KeyType::sources, [](Mission & m) -> auto& { return m.prior; },
+      "prior", KeyType::sources, [](auto& m) -> auto& { return m.prior; },
       "What is known of the site before it is measured; docs/sites.md.");
-  key.get = [](const Mission& mission) -> std::optional<KeyValue> {
+  key.get = [](const MissionDocument& mission) -> std::optional<KeyValue> {
     return mission.prior.empty() ? std::nullopt : std::optional<KeyValue>(mission.prior);
   };
   key.items = joined({place_keys(), selection_keys(), meaning_keys()});

@@ -7,13 +7,13 @@ namespace {
 
 /// The field of the scan's settings that `member` points to.
 auto scan(auto member) {
-  return [member](Mission & m) -> auto& { return m.scan.*member; };
+  return [member](auto& m) -> auto& { return m.scan.*member; };
 }
 
 std::vector<Key> orbit_keys() {
-  using Orbit = OrbitConfig;
+  using Orbit = scan::OrbitOptions;
   const auto orbit = [](auto member) {
-    return [member](Mission & m) -> auto& { return m.scan.orbit.*member; };
+    return [member](auto& m) -> auto& { return m.scan.orbit.*member; };
   };
   return {
       vector_key("scan.orbit.centre", "m", between(-1e6, 1e6), orbit(&Orbit::centre),
@@ -36,7 +36,7 @@ std::vector<Key> orbit_keys() {
 std::vector<Key> navigation_keys() {
   using Navigation = sim::NavigationErrors;
   const auto navigation = [](auto member) {
-    return [member](Mission & m) -> auto& { return m.scan.navigation.*member; };
+    return [member](auto& m) -> auto& { return m.scan.navigation.*member; };
   };
   return {
       number_key(
@@ -59,12 +59,12 @@ std::vector<Key> navigation_keys() {
 std::vector<Key> source_keys() {
   return {
       text_key(
-          "scan.sensor", scan(&ScanConfig::sensor),
+          "scan.sensor", scan(&scan::FlownScanOptions::sensor),
           "Sensor of skycap scan: a preset of sim/sensors/presets, or the path of a description "
           "(NAME.yaml), relative to the mission file."),
       otherwise(
           "the orbit below",
-          text_key("scan.route", scan(&ScanConfig::route),
+          text_key("scan.route", scan(&scan::FlownScanOptions::route),
                    "File of the route that is flown, relative to the mission file; the same as "
                    "--route.")),
   };
@@ -73,28 +73,33 @@ std::vector<Key> source_keys() {
 std::vector<Key> carrier_keys() {
   return {
       choice_key(
-          "scan.crs", {"local", "utm"}, scan(&ScanConfig::crs),
+          "scan.crs", {"local", "utm"}, scan(&scan::FlownScanOptions::crs),
           "Coordinates of LAS and E57 files: the mission's frame, or UTM on WGS84, in the zone of "
           "the site, which utm needs; heights are then above the EGM96 geoid if "
           "site.geoid_undulation is known, else above the ellipsoid."),
-      number_key("scan.speed", "m/s", above(0, 100), scan(&ScanConfig::speed),
+      number_key("scan.speed", "m/s", above(0, 100), scan(&scan::FlownScanOptions::speed),
                  "Speed along a route whose file has no times."),
-      vector_key("scan.mount.position", "m", between(-10, 10), scan(&ScanConfig::mount_position),
+      vector_key("scan.mount.position", "m", between(-10, 10),
+                 scan(&scan::FlownScanOptions::mount_position),
                  "Where the sensor is on its carrier, whose x points forward, y left, z up."),
-      angles_key("scan.mount.rotation_deg", between(-360, 360), scan(&ScanConfig::mount_rotation),
+      angles_key("scan.mount.rotation_deg", between(-360, 360),
+                 scan(&scan::FlownScanOptions::mount_rotation),
                  "How the sensor is turned on its carrier: about x, then y, then z."),
   };
 }
 
 std::vector<Key> recording_keys() {
   return {
-      vector_key("scan.lever_arm_error", "m", between(-10, 10), scan(&ScanConfig::lever_arm_error),
+      vector_key("scan.lever_arm_error", "m", between(-10, 10),
+                 scan(&scan::FlownScanOptions::lever_arm_error),
                  "Error of the believed mount.position."),
-      angles_key("scan.boresight_error_deg", between(-45, 45), scan(&ScanConfig::boresight_error),
+      angles_key("scan.boresight_error_deg", between(-45, 45),
+                 scan(&scan::FlownScanOptions::boresight_error),
                  "Error of the believed rotation, small angles about the carrier's axes."),
-      number_key("scan.frame_period", "s", between(1e-6, 1e5), scan(&ScanConfig::frame_period),
+      number_key("scan.frame_period", "s", between(1e-6, 1e5),
+                 scan(&scan::FlownScanOptions::frame_period),
                  "Time between the images of a camera, along a route that does not say where."),
-      number_key("scan.depth_unit", "m", above(0, 1), scan(&ScanConfig::depth_unit),
+      number_key("scan.depth_unit", "m", above(0, 1), scan(&scan::FlownScanOptions::depth_unit),
                  "What one step of a 16-bit depth image stands for."),
   };
 }

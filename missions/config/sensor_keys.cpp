@@ -6,22 +6,22 @@ namespace skycap::missions::config {
 namespace {
 
 auto image(auto member) {
-  return [member](Mission & m) -> auto& { return m.sensor.camera.camera.*member; };
+  return [member](auto& m) -> auto& { return m.sensor.options.camera.camera.*member; };
 }
 auto noise(auto member) {
-  return [member](Mission & m) -> auto& { return m.sensor.camera.noise.*member; };
+  return [member](auto& m) -> auto& { return m.sensor.options.camera.noise.*member; };
 }
 
 /// The key `sensor.frame_period`, which means nothing without frames on the way.
 Key frame_period_key() {
   Key key = number_key(
       "sensor.frame_period", "s", between(0.05, 3600),
-      [](Mission & m) -> auto& { return m.sensor.frame_period; },
+      [](auto& m) -> auto& { return m.sensor.options.frame_period; },
       "Time between the frames that are taken on the way, with sensor.capture moving. The camera "
       "turns from each to the next, and stands while it is exposed.");
   key.fallback = "1 s";
-  key.get = [get = key.get](const Mission& mission) -> std::optional<KeyValue> {
-    return mission.sensor.is_moving() ? get(mission) : std::nullopt;
+  key.get = [get = key.get](const MissionDocument& mission) -> std::optional<KeyValue> {
+    return mission.sensor.options.is_moving() ? get(mission) : std::nullopt;
   };
   return key;
 }
@@ -30,7 +30,7 @@ Key frame_period_key() {
 Key lidar_key() {
   return otherwise("-",
                    text_key(
-                       "sensor.lidar", [](Mission & m) -> auto& { return m.sensor.lidar; },
+                       "sensor.lidar", [](auto& m) -> auto& { return m.sensor.lidar; },
                        "In place of a depth camera, a laser scanner: a preset of "
                        "sim/sensors/presets, or the path of a description (NAME.yaml), relative "
                        "to the mission file. With a vehicle it measures all the way, fixed to the "
@@ -45,7 +45,7 @@ std::vector<Key> sensor_keys() {
   return {
       choice_key(
           "sensor.preset", {"d435", "high_resolution"},
-          [](Mission & m) -> auto& { return m.sensor.preset; },
+          [](auto& m) -> auto& { return m.sensor.preset; },
           "Depth camera whose values the keys below override: d435 is an Intel RealSense D435 "
           "(848 x 480 pixels, 69.4 x 42.5 degrees), high_resolution the paper's for buildings "
           "(2400 x 1750 pixels, 60 x 40 degrees)."),
@@ -65,26 +65,26 @@ std::vector<Key> sensor_keys() {
                  "Farthest depth, along the optical axis, that is measured."),
       angle_key(
           "sensor.max_incidence_deg", above(0, 90),
-          [](Mission & m) -> auto& { return m.sensor.camera.max_incidence; },
+          [](auto& m) -> auto& { return m.sensor.options.camera.max_incidence; },
           "Surfaces whose normal makes a larger angle than this with the ray give no return; 90 "
           "switches the limit off."),
       number_key(
           "sensor.exposure", "s", between(0, 10),
-          [](Mission & m) -> auto& { return m.sensor.shutter.exposure; },
+          [](auto& m) -> auto& { return m.sensor.options.shutter.exposure; },
           "How long a picture is exposed. A flown view lasts at least as long as exposure "
           "and readout, and the summary bounds the blur."),
       number_key(
           "sensor.readout", "s", between(0, 10),
-          [](Mission & m) -> auto& { return m.sensor.shutter.readout; },
+          [](auto& m) -> auto& { return m.sensor.options.shutter.readout; },
           "Of a rolling shutter, the time between the exposures of the first row and of the "
           "last; 0 is a global one."),
       number_key(
           "sensor.settle", "s", between(0, 3600),
-          [](Mission & m) -> auto& { return m.sensor.settle; },
+          [](auto& m) -> auto& { return m.sensor.options.settle; },
           "Least time at rest before the capture; flight.hold may ask for more."),
       choice_key(
           "sensor.capture", {"stops", "moving"},
-          [](Mission & m) -> auto& { return m.sensor.capture; },
+          [](auto& m) -> auto& { return m.sensor.options.capture; },
           "Whether a flown survey measures at its views only, or on the ways between them too; "
           "moving needs a vehicle and the planner skycap."),
       frame_period_key(),

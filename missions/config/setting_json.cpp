@@ -30,7 +30,7 @@ Json list_json(const std::vector<geometry::Prism>& volumes) {
 
 /// A map of the keys that are not as by default: what must be given, then what was.
 Json map_json(const site_data::Source& source) {
-  Mission mission, blank;
+  MissionDocument mission, blank;
   mission.prior.push_back(source);
   blank.prior.emplace_back();
   Json map = Json::object();

@@ -11,13 +11,13 @@ using survey::volumetric::RayPattern;
 using Settings = survey::volumetric::VolumetricSettings;
 
 auto setting(auto member) {
-  return [member](Mission & m) -> auto& { return m.volumetric.*member; };
+  return [member](auto& m) -> auto& { return m.planner.volumetric.*member; };
 }
 auto gain(auto member) {
-  return [member](Mission & m) -> auto& { return m.volumetric.gain.*member; };
+  return [member](auto& m) -> auto& { return m.planner.volumetric.gain.*member; };
 }
 auto rays(auto member) {
-  return [member](Mission & m) -> auto& { return m.volumetric.rays.*member; };
+  return [member](auto& m) -> auto& { return m.planner.volumetric.rays.*member; };
 }
 
 /// Which views are candidates, and which of them is taken.

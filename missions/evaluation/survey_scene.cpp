@@ -8,17 +8,15 @@
 #include <string>
 #include <utility>
 
+#include <fmt/format.h>
+
 #include "geometry/error.h"
 #include "geometry/io/file.h"
-#include "missions/config/mission_flight.h"
-#include "missions/config/mission_keys.h"
-#include "missions/config/mission_priors.h"
-#include "missions/config/opening_flight.h"
-#include "missions/config/site.h"
-#include "missions/config/survey_sensor.h"
 #include "missions/scene/model_store.h"
 #include "missions/scene/scene_source.h"
+#include "missions/session/opening_flight.h"
 #include "missions/support/sha256.h"
+#include "sim/sensors/survey_sensor.h"
 
 namespace skycap::missions::evaluation {
 namespace {
@@ -29,28 +27,30 @@ constexpr std::uint64_t sample_seed = 1;  // coverage is measured by the same sa
 constexpr std::uint64_t ceiling_seed = 1;
 
 /// Of the triangles of placed_model(); empty if all are matt.
-std::vector<sim::Surface> surfaces_of(const config::Mission& mission,
+std::vector<sim::Surface> surfaces_of(const scene::SceneOptions& options,
                                       const std::filesystem::path& folder) {
-  if (config::is_truth_prior(mission)) return {};
-  const std::vector<sim::Surface> one = scene::load_surfaces(mission.scene, folder);
+  if (options.is_truth_prior()) return {};
+  const std::vector<sim::Surface> one = scene::load_surfaces(options, folder);
   std::vector<sim::Surface> all;
-  for (std::size_t i = 0; i <= mission.scene.copies.size(); ++i) {
+  for (std::size_t i = 0; i <= options.copies.size(); ++i) {
     all.insert(all.end(), one.begin(), one.end());
   }
   return all;
 }
 
-sim::Scene scene_of(const geometry::Mesh& model, const config::Mission& mission,
-                    const std::filesystem::path& folder) {
-  if (mission.sensor.scanner) {  // what a laser measures depends on the surfaces' reflectances
-    return scene::reflecting_scene(mission, folder).scene(mission.threads);
+sim::Scene scene_of(const geometry::Mesh& model, const SimulationOptions& options,
+                    const std::filesystem::path& folder, unsigned threads) {
+  if (options.sensor.scanner) {  // what a laser measures depends on the surfaces' reflectances
+    return scene::reflecting_scene(options.scene, folder).scene(threads);
   }
   geometry::Mesh mesh = model;
-  geometry::append(mesh, scene::surroundings_of(mission, geometry::bounding_box(model)));
-  std::vector<sim::Surface> surfaces = surfaces_of(mission, folder);
+  geometry::append(mesh, scene::surroundings_of(options.scene, geometry::bounding_box(model)));
+  std::vector<sim::Surface> surfaces = surfaces_of(options.scene, folder);
   if (!surfaces.empty()) surfaces.resize(mesh.triangles.size(), sim::Surface::matt);
-  return sim::Scene(std::array{sim::ScenePart{mesh, {}, {}, surfaces}}, mission.threads);
+  return sim::Scene(std::array{sim::ScenePart{mesh, {}, {}, surfaces}}, threads);
 }
+
+std::string metres_text(double length) { return fmt::format("{:.12g}", length); }
 
 Vector3d uniform_direction(std::mt19937_64& random) {
   std::normal_distribution<double> normal;
@@ -63,7 +63,7 @@ Vector3d uniform_direction(std::mt19937_64& random) {
   }
 }
 
-ViewSphere sphere_around(std::span<const Eigen::Vector3f> surface, double view_distance) {
+survey::ViewSphere sphere_around(std::span<const Eigen::Vector3f> surface, double view_distance) {
   Vector3d centroid = Vector3d::Zero();
   for (const auto& point : surface) centroid += point.cast<double>();
   centroid /= static_cast<double>(surface.size());
@@ -103,23 +103,24 @@ void keep_marks(const std::filesystem::path& file, const std::vector<std::uint8_
 
 }  // namespace
 
-geometry::Mesh placed_model(const config::Mission& mission, const std::filesystem::path& folder) {
-  if (config::is_truth_prior(mission)) return config::prior_truth(mission);
-  const config::SceneConfig& scene = mission.scene;
-  geometry::Mesh model = scene::load_model(scene, folder);
-  scene::place_model(scene, model);
-  return scene.copies.empty() ? model : scene::with_copies(scene, model);
+geometry::Mesh placed_model(const scene::SceneOptions& options,
+                            const std::filesystem::path& folder) {
+  if (options.is_truth_prior()) return scene::prior_truth(options);
+  geometry::Mesh model = scene::load_model(options, folder);
+  scene::place_model(options, model);
+  return options.copies.empty() ? model : scene::with_copies(options, model);
 }
 
-SurveyScene::SurveyScene(const config::Mission& mission, const std::filesystem::path& folder,
-                         const std::filesystem::path& kept)
-    : mission_(mission),
-      model_(placed_model(mission, folder)),
-      scene_(scene_of(model_, mission, folder)),
-      samples_(geometry::sample_surface(model_, mission.evaluation.samples, sample_seed)),
-      view_distance_(config::view_distance_of(mission)),
+SurveyScene::SurveyScene(const SimulationOptions& options, const std::filesystem::path& folder,
+                         unsigned threads, const std::filesystem::path& kept)
+    : options_(options),
+      threads_(threads),
+      model_(placed_model(options.scene, folder)),
+      scene_(scene_of(model_, options, folder, threads)),
+      samples_(geometry::sample_surface(model_, options.evaluation.samples, sample_seed)),
+      view_distance_(options.survey.planner.view_distance),
       view_sphere_(sphere_around(samples_.points, view_distance_)),
-      radius_(mission.evaluation.radius.value_or(config::view_limits(mission).stand_off)),
+      radius_(options.evaluation.radius.value_or(options.survey.planner.limits.stand_off)),
       kept_(kept) {}
 
 const ReachableSpace& SurveyScene::reachable() const {
@@ -138,21 +139,22 @@ const ReachableSpace& SurveyScene::reachable() const {
 const geometry::MeshDistance& SurveyScene::truth() const {
   std::call_once(lazily_->distance_once, [&] {
     geometry::Mesh all = model_;
-    geometry::append(all, config::prior_neighbours(mission_));
-    lazily_->distance.emplace(all, mission_.threads);
+    geometry::append(all, scene::prior_neighbours(options_.scene));
+    lazily_->distance.emplace(all, threads_);
   });
   return *lazily_->distance;
 }
 
 ReachableSpace SurveyScene::reachable_space() const {
-  const survey::ViewLimits limits = config::view_limits(mission_);
+  const survey::ViewLimits& limits = options_.survey.planner.limits;
+  const std::optional<geometry::View>& start = options_.survey.start.view;
   return {truth(),
           geometry::bounding_box(model_),
           {.radius = radius_,
            .least_height = limits.least_height,
            .most_height = limits.most_height,
-           .start = mission_.start.position,
-           .threads = mission_.threads},
+           .start = start ? std::optional(start->position) : std::nullopt,
+           .threads = threads_},
           [this](const Vector3d& place, const Vector3d& reached) {
             return is_in_sight(place, reached);
           }};
@@ -169,25 +171,24 @@ bool SurveyScene::is_reachable(const Vector3d& place) const {
 }
 
 geometry::View SurveyScene::first_view(std::uint64_t seed) const {
-  config::Mission trial = mission_;
-  trial.seed = seed;
-  const std::vector<geometry::View> opening = config::opening_views(trial);
+  const session::StartOptions& begins = options_.survey.start;
+  const std::vector<geometry::View> opening = session::opening_views(begins, seed);
   if (!opening.empty()) return opening.front();
-  if (const auto start = config::given_start(mission_)) {
+  if (const auto& start = begins.view) {
     if (!reachable().is_empty()) return *start;
     throw Error(ErrorKind::bad_config,
                 "start.position is inside the model, or so enclosed by it that a ball of " +
-                    config::to_text(radius_ + reachable().cell()) +
+                    metres_text(radius_ + reachable().cell()) +
                     " m does not fit; move it, or make evaluation.radius less");
   }
 
-  const survey::ViewLimits limits = config::view_limits(mission_);
+  const survey::ViewLimits& limits = options_.survey.planner.limits;
   std::mt19937_64 random(seed);
   constexpr int most_attempts = 10'000;
   for (int attempt = 0; attempt < most_attempts; ++attempt) {
     const Vector3d position = view_sphere_.centre + view_sphere_.radius * uniform_direction(random);
     geometry::View view = geometry::look_at(position, view_sphere_.centre);
-    if (limits.allow(view) && config::is_in_known_airspace(mission_, position) &&
+    if (limits.allow(view) && options_.survey.flight.is_in_known_airspace(position) &&
         is_reachable(position)) {
       return view;
     }
@@ -195,20 +196,20 @@ geometry::View SurveyScene::first_view(std::uint64_t seed) const {
   throw Error(ErrorKind::bad_config,
               "limits.ground_clearance, the gimbal's pitch, evaluation.radius, the site and "
               "flight.unknown_box leave no place for a random start at the view distance of " +
-                  config::to_text(view_distance_) + " m; loosen them or give start.position");
+                  metres_text(view_distance_) + " m; loosen them or give start.position");
 }
 
 Admissible SurveyScene::admissible() const {
-  survey::ViewLimits limits = config::view_limits(mission_);
+  survey::ViewLimits limits = options_.survey.planner.limits;
   // A surface need not be in the middle of the image.
-  const double half_fov = 0.5 * mission_.sensor.camera.camera.vertical_fov;
+  const double half_fov = 0.5 * options_.survey.planner.camera.vertical_fov;
   limits.least_pitch -= half_fov;
   limits.most_pitch += half_fov;
   const auto joins = [this](const Vector3d& place, const Vector3d& reached) {
     return radius_ > 0.0 ? truth().keeps(place, reached, radius_) : is_in_sight(place, reached);
   };
   // Whatever leads there keeps the radius already, from the model: neighbours are beyond its box.
-  const bool asks_distance = limits.stand_off > radius_ || mission_.scene.neighbours;
+  const bool asks_distance = limits.stand_off > radius_ || options_.scene.neighbours;
   const double least = std::max(limits.stand_off, radius_);
   const auto allows = [this, limits, joins, asks_distance, least](const geometry::View& view) {
     return limits.allow(view) && reachable().leads_to(view.position, joins) &&
@@ -216,8 +217,8 @@ Admissible SurveyScene::admissible() const {
   };
   return {.view_distance = view_distance_,
           .allows = allows,
-          .directions = mission_.evaluation.visible_directions,
-          .clearance = 0.01 * mission_.evaluation.registration_distance};
+          .directions = options_.evaluation.visible_directions,
+          .clearance = 0.01 * options_.evaluation.registration_distance};
 }
 
 std::vector<std::uint8_t> SurveyScene::visible(unsigned threads,
@@ -237,17 +238,17 @@ std::vector<std::uint8_t> SurveyScene::visible(unsigned threads,
 std::optional<std::vector<std::uint8_t>> SurveyScene::attainable(
     const std::vector<std::uint8_t>& is_visible, unsigned threads,
     const std::stop_token& stop) const {
-  if (mission_.evaluation.ceiling_views == 0) return std::nullopt;
+  if (options_.evaluation.ceiling_views == 0) return std::nullopt;
   const std::filesystem::path cached = scene::user_cache() / "ceilings" / ceiling_key();
   if (auto known = marks_in_file(cached, samples_.points.size())) return known;
 
   CeilingConfig config;
-  config.views = mission_.evaluation.ceiling_views;
-  config.spacing = mission_.planner.see.effective_spacing();
-  config.registration_distance = mission_.evaluation.registration_distance;
-  if (mission_.planner.see.scene_box) config.box = *mission_.planner.see.scene_box;
+  config.views = options_.evaluation.ceiling_views;
+  config.spacing = options_.survey.planner.spacing;
+  config.registration_distance = options_.evaluation.registration_distance;
+  config.box = options_.scene_box();
   config.seed = ceiling_seed;
-  const config::SurveySensor sensor(mission_.sensor, mission_.sensor.camera.noise.seed);
+  const sim::SurveySensor sensor(options_.sensor, options_.sensor.camera.noise.seed);
   const auto take_scan = [&](const geometry::View& view, std::uint64_t frame,
                              geometry::Scan recycled) {
     return sensor.scan(scene_, view, frame, threads, std::move(recycled));
@@ -263,23 +264,10 @@ std::string SurveyScene::ceiling_key() const {
   std::ostringstream inputs;
   inputs.exceptions(std::ios::badbit);  // else text is lost without a word where memory is missing
   inputs.precision(17);
-  inputs << "ceiling 4\n" << view_distance_ << " " << mission_.planner.see.effective_spacing();
-  for (const config::Key& key : config::mission_keys()) {
-    if (!key.path.starts_with("scene.") && !key.path.starts_with("sensor.") &&
-        !key.path.starts_with("evaluation.") && !key.path.starts_with("planner.scene_box") &&
-        !key.path.starts_with("site.") && key.path != "start.position" &&
-        key.path != "limits.ground_clearance" && key.path != "limits.stand_off" &&
-        !key.path.ends_with("_pitch_deg") && key.path != "flight.vehicle" &&
-        key.path != "flight.clearance") {
-      continue;
-    }
-    const auto value = key.get(mission_);
-    inputs << "\n" << key.path << " " << (value ? config::to_text(*value) : "-");
-  }
-  // Terrain is the ground that hides things, and bounds the heights of views.
-  for (const std::string& digest : config::priors_of(mission_).digests) inputs << "\n" << digest;
+  inputs << "ceiling 4\n" << view_distance_ << " " << options_.survey.planner.spacing;
+  inputs << options_.attainable_inputs;
   // What a vehicle's file says, not its name alone.
-  const survey::ViewLimits limits = config::view_limits(mission_);
+  const survey::ViewLimits& limits = options_.survey.planner.limits;
   inputs << "\n" << limits.least_pitch << " " << limits.most_pitch << " " << limits.stand_off;
   // The surface's samples stand for the mesh that was found under the model's name.
   inputs << "\n" << support::sha256(std::as_bytes(std::span(samples_.points)));

@@ -15,19 +15,13 @@
 #include "geometry/place/pose.h"
 #include "geometry/surfaces/mesh.h"
 #include "geometry/surfaces/mesh_distance.h"
-#include "missions/config/mission.h"
 #include "missions/evaluation/evaluation.h"
 #include "missions/evaluation/reachable_space.h"
+#include "missions/evaluation/simulation_options.h"
 #include "sim/scene/scene.h"
+#include "survey/planners/planner_options.h"
 
 namespace skycap::missions::evaluation {
-
-/// Where the first view, and all views of the volumetric planners, are looked for: around the
-/// surface's centroid, as far as d and the surface's mean distance to it (paper §IV-B).
-struct ViewSphere {
-  Eigen::Vector3d centre = Eigen::Vector3d::Zero();
-  double radius = 0.0;
-};
 
 class SurveyScene {
  public:
@@ -35,8 +29,8 @@ class SurveyScene {
   /// keeps for other programs what of the scene can be reached, and whoever names it answers for it
   /// being of the same mission and model; without it everybody finds that out anew, when it is
   /// first asked for. Throws what scene::load_model() and scene::place_model() throw.
-  SurveyScene(const config::Mission& mission, const std::filesystem::path& folder,
-              const std::filesystem::path& kept = {});
+  SurveyScene(const SimulationOptions& options, const std::filesystem::path& folder,
+              unsigned threads, const std::filesystem::path& kept = {});
 
   const geometry::Mesh& model() const { return model_; }  ///< as placed, by itself
   const sim::Scene& scene() const { return scene_; }  ///< with what is beside it, such as ground
@@ -45,7 +39,7 @@ class SurveyScene {
   /// d: as the mission gives it, or from its camera and density.
   double view_distance() const { return view_distance_; }
 
-  const ViewSphere& view_sphere() const { return view_sphere_; }
+  const survey::ViewSphere& view_sphere() const { return view_sphere_; }
 
   /// The first view of the survey with that seed: of its opening, as the mission gives it, or at
   /// random on the view sphere, within the mission's limits and reachable, looking at the sphere's
@@ -84,18 +78,20 @@ class SurveyScene {
   const geometry::MeshDistance& truth() const;
   bool is_in_sight(const Eigen::Vector3d& a, const Eigen::Vector3d& b) const;
 
-  config::Mission mission_;
+  SimulationOptions options_;
+  unsigned threads_;
   geometry::Mesh model_;
   sim::Scene scene_;
   geometry::SurfaceSamples samples_;
   double view_distance_;
-  ViewSphere view_sphere_;
+  survey::ViewSphere view_sphere_;
   double radius_;  ///< that has to fit through ways
   std::filesystem::path kept_;
   std::shared_ptr<Lazily> lazily_ = std::make_shared<Lazily>();
 };
 
 /// The mission's mesh as surveyed: loaded and placed, or as its prior data has it; without ground.
-geometry::Mesh placed_model(const config::Mission& mission, const std::filesystem::path& folder);
+geometry::Mesh placed_model(const scene::SceneOptions& options,
+                            const std::filesystem::path& folder);
 
 }  // namespace skycap::missions::evaluation

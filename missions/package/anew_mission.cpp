@@ -6,7 +6,6 @@
 
 #include "flight/space/clearance.h"
 #include "geometry/place/world.h"
-#include "missions/config/mission_flight.h"
 #include "missions/evaluation/coverage.h"
 #include "missions/package/package.h"
 #include "missions/session/way_frames.h"
@@ -15,8 +14,6 @@
 namespace skycap::missions::package {
 namespace {
 
-using package::MissionFigures;
-using package::StationPlan;
 using Json = nlohmann::ordered_json;
 
 Json json_of(const MissionFigures& figures) {
@@ -85,26 +82,35 @@ std::string again_text(const FlownAgain& again) {
   return text;
 }
 
-AnewMission anew_mission(const config::Mission& mission, const session::SurveyRecord& record,
-                         const CoverageFigures& coverage, flight::Route present,
-                         const std::stop_token& stop) {
+ChoiceOptions choice_options(const sim::SurveySensorOptions& sensor,
+                             const session::RunOptions& run) {
+  ChoiceOptions choice{.search = {.seed = run.seed}, .threads = run.threads};
+  if (sensor.scans_in_flight()) choice.scanner = kind_of(*sensor.scanner);
+  return choice;
+}
+
+AnewMission anew_mission(const session::SurveyOptions& options, const ChoiceOptions& choice,
+                         const session::SurveyRecord& record, const CoverageFigures& coverage,
+                         flight::Route present, const std::stop_token& stop) {
   const session::FlownSurvey& flown = *record.flown;
-  const flight::KnownSpace rules(config::flight_rules(mission));
+  const flight::KnownSpace rules(options.flight.rules());
   const flight::JointSpace space({flown.measured.get(), &rules});
   const auto plan = [&](const StationPlan& stations) {
-    return plan_flight(in_given_order(mission), *flown.measured, flown.pad, stations.views,
+    return plan_flight(in_given_order(options.flight), *flown.measured, flown.pad, stations.views,
                        stations.ways, flown.grounds, stop);
   };
-  const std::vector<session::ViewInFlight> surveyed = session::measured_views(mission, present);
-  AnewMission result{package::choose_mission(mission, *record.surface, space, all_views_of(record),
-                                             std::move(present), plan, {}, stop),
+  const std::vector<session::ViewInFlight> surveyed =
+      session::measured_views(options.flight, present);
+  AnewMission result{choose_mission(options.flight, options.planner, choice, *record.surface, space,
+                                    all_views_of(record), std::move(present), plan, stop),
                      {},
                      {}};
   if (coverage.fly_again && result.choice.is_anew) {
     result.survey_again = flown_again(coverage, surveyed);
   }
   if (coverage.fly_again) {
-    result.again = flown_again(coverage, session::measured_views(mission, result.choice.route));
+    result.again =
+        flown_again(coverage, session::measured_views(options.flight, result.choice.route));
   }
   return result;
 }

@@ -10,19 +10,24 @@
 #include <nlohmann/json.hpp>
 
 #include "flight/route/route.h"
-#include "missions/config/mission.h"
 #include "missions/package/package.h"
 #include "missions/package/replan/mission_choice.h"
+#include "missions/session/survey_options.h"
 #include "missions/session/survey_record.h"
+#include "sim/sensors/survey_sensor.h"
 
 namespace skycap::missions::package {
+
+/// What the choice depends on where that sensor is flown.
+ChoiceOptions choice_options(const sim::SurveySensorOptions& sensor,
+                             const session::RunOptions& run);
 
 /// The choice between `present`, the route through the survey's views, and views chosen anew. The
 /// record is of a flown survey that knows its surface. Coverage when it is flown again is measured
 /// where `coverage` says how.
-AnewMission anew_mission(const config::Mission& mission, const session::SurveyRecord& record,
-                         const CoverageFigures& coverage, flight::Route present,
-                         const std::stop_token& stop);
+AnewMission anew_mission(const session::SurveyOptions& options, const ChoiceOptions& choice,
+                         const session::SurveyRecord& record, const CoverageFigures& coverage,
+                         flight::Route present, const std::stop_token& stop);
 
 /// What these views cover, or scans of a scanner, where `coverage` says how that is measured.
 FlownAgain flown_again(const CoverageFigures& coverage,

@@ -10,8 +10,6 @@
 #include "flight/space/interruptible_space.h"
 #include "flight/space/place_text.h"
 #include "geometry/error.h"
-#include "missions/config/fleet.h"
-#include "missions/config/mission_flight.h"
 #include "missions/package/fleet/timetable_proof.h"
 
 namespace skycap::missions::package {
@@ -25,24 +23,23 @@ using Variants = std::vector<flight::Route>;
 /// Sorties and their rows in the timetable.
 struct RowedSorties {
   std::vector<flight::FleetSortie> sorties;
-  std::vector<package::TimetableRow> rows;
+  std::vector<TimetableRow> rows;
 };
 
 /// Every sortie of every variant as its own autopilot's file has it.
 RowedSorties sorties_of(const FleetMission& fleet, const std::vector<Variants>& variants) {
   RowedSorties all;
   const auto add = [&](std::size_t v, std::size_t variant, std::size_t i) {
-    const config::Mission& own = fleet.members[v].mission;
+    const flight::FlightOptions& own = fleet.members[v].flight;
     const flight::Route& route = variants[v][variant];
-    const flight::Format format = package::own_format(config::vehicle_of(own).dialect);
+    const flight::Format format = own_format(own.flown().dialect);
     const std::string number = route.sorties.size() > 1 ? "-" + std::to_string(i + 1) : "";
-    const std::string name = package::stem_of(v) + number;
-    const flight::FlightPlan plan =
-        flight_plan(route, i, name, config::site_of(own), config::flight_rules(own));
-    all.sorties.push_back({v, i, package::flown_file(own, write(plan, format), format).script,
+    const std::string name = stem_of(v) + number;
+    const flight::FlightPlan plan = flight_plan(route, i, name, own.site, own.rules());
+    all.sorties.push_back({v, i, flown_file(own, write(plan, format), format).script,
                            plan.vehicle.mode.jerk, variant});
-    all.rows.push_back({v, own.flight.vehicle, i, name + flight::format_info(format).ending, 0.0,
-                        0.0, fleet.members[v].pad});
+    all.rows.push_back({v, own.vehicle_name, i, name + flight::format_info(format).ending, 0.0, 0.0,
+                        fleet.members[v].pad});
   };
   for (std::size_t v = 0; v < variants.size(); ++v) {
     for (std::size_t k = 0; k < variants[v].size(); ++k) {
@@ -58,7 +55,7 @@ void check_pads(const FleetMission& fleet, const std::vector<flight::FleetSortie
     for (std::size_t v = 0; v < fleet.members.size(); ++v) {
       if (v == sortie.vehicle) continue;
       const double distance = distance_from(sortie.script, fleet.members[v].pad);
-      if (distance >= fleet.members[v].mission.flight.clearance) continue;
+      if (distance >= fleet.members[v].flight.clearance) continue;
       throw Error(ErrorKind::bad_config, "vehicle " + std::to_string(sortie.vehicle + 1) +
                                              " comes within " + flight::length_text(distance) +
                                              " of the pad of vehicle " + std::to_string(v + 1) +
@@ -68,10 +65,9 @@ void check_pads(const FleetMission& fleet, const std::vector<flight::FleetSortie
 }
 
 /// Gives every vehicle the variant and the starts by which the last has landed soonest.
-void make_timetable(const config::Mission& mission, std::vector<Variants> variants,
+void make_timetable(const flight::SeparationRule& rule, std::vector<Variants> variants,
                     FleetMission& fleet) {
   RowedSorties all = sorties_of(fleet, variants);
-  const flight::SeparationRule rule = config::separation_of(mission);
   const flight::Timetable table = timetable(all.sorties, fleet.members.size(), rule);
   std::vector<flight::FleetSortie> sorties;
   std::vector<flight::TimedFlight> flights;
@@ -105,11 +101,8 @@ void make_timetable(const config::Mission& mission, std::vector<Variants> varian
 /// What is free for all of a fleet.
 class FleetSpace {
  public:
-  FleetSpace(const config::Mission& mission, const flight::MeasuredSpace& measured,
-             std::stop_token stop)
-      : known_(config::flight_rules(mission)),
-        joint_({&measured, &known_}),
-        space_(joint_, std::move(stop)) {}
+  FleetSpace(flight::Obstacles rules, const flight::MeasuredSpace& measured, std::stop_token stop)
+      : known_(std::move(rules)), joint_({&measured, &known_}), space_(joint_, std::move(stop)) {}
 
   const flight::FreeSpace& space() const { return space_; }
 
@@ -123,8 +116,7 @@ std::vector<flight::FleetMember> flown_members(const std::vector<FleetMember>& m
   std::vector<flight::FleetMember> flown;
   flown.reserve(members.size());
   for (const FleetMember& member : members) {
-    flown.push_back(
-        {config::vehicle_of(member.mission), config::route_options_of(member.mission, member.pad)});
+    flown.push_back({member.flight.flown(), member.flight.route(member.pad)});
   }
   return flown;
 }
@@ -144,13 +136,12 @@ std::vector<std::uint32_t> order_of(const std::vector<flight::Station>& stations
 
 /// Until every leg of it is certified, quickly first: that tells which legs matter. Throws
 /// Error{bad_config} if there is no way to share.
-flight::FleetSplit share(const config::Mission& mission, flight::CertifiedCosts& costs,
-                         const std::vector<std::uint32_t>& order) {
+flight::FleetSplit share(flight::FleetGoal goal, flight::CertifiedCosts& costs,
+                         const std::vector<std::uint32_t>& order, unsigned threads) {
   flight::FleetSplit split;
   for (const std::size_t chains : {std::size_t{1}, flight::thorough}) {
     do {
-      split = flight::share_among(costs.problem(), order, mission.flight.fleet.goal, chains,
-                                  mission.threads);
+      split = flight::share_among(costs.problem(), order, goal, chains, threads);
     } while (costs.certify(split));
   }
   if (!split.parts.empty()) return split;
@@ -159,66 +150,66 @@ flight::FleetSplit share(const config::Mission& mission, flight::CertifiedCosts&
               "out of reach for one or the other");
 }
 
-void stage_fleet(FleetMission& fleet, const flight::MeasuredSpace& measured,
-                 std::span<const flight::Format> formats, geometry::OutputFolder& folder) {
+void stage_fleet(const std::string& name, FleetMission& fleet,
+                 const flight::MeasuredSpace& measured, std::span<const flight::Format> formats,
+                 geometry::OutputFolder& folder) {
   for (std::size_t v = 0; v < fleet.members.size(); ++v) {
     FleetMember& member = fleet.members[v];
     if (member.route.sorties.empty()) continue;
-    const flight::Format own = package::own_format(config::vehicle_of(member.mission).dialect);
+    const flight::Format own = own_format(member.flight.flown().dialect);
     std::vector<flight::Format> all(formats.begin(), formats.end());
     if (std::ranges::find(all, own) == all.end()) all.push_back(own);
     member.files =
-        stage_flight(member.mission, member.route, measured, all, folder, package::stem_of(v));
+        stage_flight(name, member.flight, member.route, measured, all, folder, stem_of(v));
   }
-  for (const package::TimetableRow& row : fleet.timetable) {
+  for (const TimetableRow& row : fleet.timetable) {
     if (!folder.staged(row.file).empty()) continue;
     std::string why;
     for (const std::string& note : fleet.members[row.vehicle].files.notes) why += "; " + note;
     throw Error(ErrorKind::bad_config, "vehicle " + std::to_string(row.vehicle + 1) +
                                            " of the fleet has no " + row.file + why);
   }
-  folder.write(package::timetable_name, package::timetable_csv(fleet.timetable));
+  folder.write(timetable_name, timetable_csv(fleet.timetable));
 }
 
 }  // namespace
 
-FleetMission plan_fleet(const config::Mission& mission, const flight::MeasuredSpace& measured,
+FleetMission plan_fleet(const flight::FlightOptions& options, const flight::MeasuredSpace& measured,
                         const flight::Route& alone, std::span<const flight::PadGround> grounds,
-                        const std::stop_token& stop) {
+                        unsigned threads, const std::stop_token& stop) {
   FleetMission fleet;
-  const std::vector<Vector3d> pads = config::pads_of_fleet(mission, alone.options.takeoff);
+  const std::vector<Vector3d> pads = options.fleet_pads(alone.options.takeoff);
   for (std::size_t v = 0; v < pads.size(); ++v) {
-    fleet.members.push_back({config::as_flown_by(mission, v, pads[v]), pads[v], {}, {}});
+    fleet.members.push_back({options.of_vehicle(v, pads[v]), pads[v], {}, {}});
   }
-  const FleetSpace free(mission, measured, stop);
-  flight::CertifiedCosts costs(alone.stations, flown_members(fleet.members), free.space(),
-                               mission.threads);
+  const FleetSpace free(options.rules(), measured, stop);
+  flight::CertifiedCosts costs(alone.stations, flown_members(fleet.members), free.space(), threads);
   fleet.unreached = costs.unreached();
-  const flight::FleetSplit split = share(mission, costs, order_of(alone.stations, fleet.unreached));
+  const flight::FleetSplit split =
+      share(options.fleet.goal, costs, order_of(alone.stations, fleet.unreached), threads);
   std::vector<Variants> variants(pads.size());
   for (std::size_t v = 0; v < pads.size(); ++v) {
     std::vector<std::uint32_t> order = split.parts[v].stations;
     for (int turns = 0; turns < 2 && !order.empty(); ++turns, std::ranges::reverse(order)) {
       const FleetMember& member = fleet.members[v];
-      variants[v].push_back(plan_flight(member.mission, measured, member.pad,
+      variants[v].push_back(plan_flight(member.flight, measured, member.pad,
                                         costs.stations_of(v, order), grounds, stop));
     }
   }
-  make_timetable(mission, std::move(variants), fleet);
+  make_timetable(options.fleet.rule(), std::move(variants), fleet);
   fleet.bound = fleet_bound(costs.problem(), fleet.makespan);
   fleet.least = fleet_bound(costs.least(), fleet.makespan);
   return fleet;
 }
 
-std::shared_ptr<const FleetMission> staged_fleet(const config::Mission& mission,
-                                                 const flight::MeasuredSpace& measured,
-                                                 const flight::Route& alone,
-                                                 std::span<const flight::PadGround> grounds,
-                                                 std::span<const flight::Format> formats,
-                                                 geometry::OutputFolder& folder,
-                                                 const std::stop_token& stop) {
-  auto fleet = std::make_shared<FleetMission>(plan_fleet(mission, measured, alone, grounds, stop));
-  stage_fleet(*fleet, measured, formats, folder);
+std::shared_ptr<const FleetMission> staged_fleet(
+    const std::string& name, const flight::FlightOptions& options,
+    const flight::MeasuredSpace& measured, const flight::Route& alone,
+    std::span<const flight::PadGround> grounds, std::span<const flight::Format> formats,
+    geometry::OutputFolder& folder, unsigned threads, const std::stop_token& stop) {
+  auto fleet =
+      std::make_shared<FleetMission>(plan_fleet(options, measured, alone, grounds, threads, stop));
+  stage_fleet(name, *fleet, measured, formats, folder);
   return fleet;
 }
 

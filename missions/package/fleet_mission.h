@@ -10,10 +10,10 @@
 #include <Eigen/Core>
 
 #include "flight/fleet/fleet_bound.h"
+#include "flight/flight_options.h"
 #include "flight/route/route.h"
 #include "flight/space/measured_space.h"
 #include "geometry/io/output_folder.h"
-#include "missions/config/mission.h"
 #include "missions/package/fleet/timetable_file.h"
 #include "missions/package/flight_files.h"
 
@@ -21,7 +21,7 @@ namespace skycap::missions::package {
 
 /// One vehicle, and its certified route; a route without stations if nothing is left for it.
 struct FleetMember {
-  config::Mission mission;  ///< as it flies it, see config::as_flown_by()
+  flight::FlightOptions flight;  ///< its own, see FlightOptions::of_vehicle()
   Eigen::Vector3d pad = Eigen::Vector3d::Zero();
   flight::Route route;
   FlightFiles files;
@@ -47,18 +47,16 @@ inline constexpr double reported_distance = 100.0;
 /// plan_flight() does it; starts are put off until all flights are proven to keep apart. Throws
 /// what plan_route() throws, and Error{bad_config} if the stations cannot be shared out or if a
 /// vehicle flies too low over where another one stands.
-FleetMission plan_fleet(const config::Mission& mission, const flight::MeasuredSpace& measured,
+FleetMission plan_fleet(const flight::FlightOptions& options, const flight::MeasuredSpace& measured,
                         const flight::Route& alone, std::span<const flight::PadGround> grounds,
-                        const std::stop_token& stop = {});
+                        unsigned threads, const std::stop_token& stop = {});
 
 /// The same with every vehicle's route files in these formats and its own autopilot's, and the
-/// timetable, staged.
-std::shared_ptr<const FleetMission> staged_fleet(const config::Mission& mission,
-                                                 const flight::MeasuredSpace& measured,
-                                                 const flight::Route& alone,
-                                                 std::span<const flight::PadGround> grounds,
-                                                 std::span<const flight::Format> formats,
-                                                 geometry::OutputFolder& folder,
-                                                 const std::stop_token& stop = {});
+/// timetable, staged. `name` is the mission's.
+std::shared_ptr<const FleetMission> staged_fleet(
+    const std::string& name, const flight::FlightOptions& options,
+    const flight::MeasuredSpace& measured, const flight::Route& alone,
+    std::span<const flight::PadGround> grounds, std::span<const flight::Format> formats,
+    geometry::OutputFolder& folder, unsigned threads, const std::stop_token& stop = {});
 
 }  // namespace skycap::missions::package

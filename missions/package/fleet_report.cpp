@@ -3,8 +3,6 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include "missions/config/fleet.h"
-#include "missions/config/mission_keys.h"
 #include "missions/package/route_json.h"
 #include "missions/support/json_text.h"
 
@@ -19,7 +17,7 @@ double gap(double figure, double bound) {
   return bound > 0.0 ? 100.0 * (figure / bound - 1.0) : 0.0;
 }
 
-Json json_of(const package::TimetableRow& row) {
+Json json_of(const TimetableRow& row) {
   return {{"vehicle", row.vehicle + 1},
           {"sortie", row.sortie + 1},
           {"file", row.file},
@@ -32,7 +30,7 @@ Json member_json(const FleetMember& member) {
   for (const FlightFile& file : member.files.written) files.push_back(file.name);
   for (const std::string& name : member.files.parameters) files.push_back(name);
   const std::optional<flight::Returns>& returns = member.route.returns;
-  return {{"vehicle", member.mission.flight.vehicle},
+  return {{"vehicle", member.flight.vehicle_name},
           {"pad", json_of(member.pad)},
           {"order", order_json(member.route)},
           {"sorties", sorties_json(member.route)},
@@ -57,7 +55,7 @@ std::string fleet_text(const FleetMission& fleet) {
   text += fmt::format(
       "  apart     proven at {:.2f} m at all times; the last landing {:.0f} s later for it\n",
       fleet.distance, fleet.delay);
-  for (const package::TimetableRow& row : fleet.timetable) {
+  for (const TimetableRow& row : fleet.timetable) {
     text +=
         fmt::format("  {:9} starts at {:.0f} s, lands at {:.0f} s: {}\n",
                     fmt::format("vehicle {}", row.vehicle + 1), row.start, row.landing, row.file);
@@ -69,25 +67,26 @@ std::string fleet_text(const FleetMission& fleet) {
   return text;
 }
 
-Json fleet_json(const config::Mission& mission, const FleetMission& fleet) {
+Json fleet_json(const FleetMission& fleet, const std::string& goal,
+                const flight::SeparationRule& asked) {
   Json vehicles = Json::array(), timetable = Json::array();
   for (const FleetMember& member : fleet.members) vehicles.push_back(member_json(member));
-  for (const package::TimetableRow& row : fleet.timetable) timetable.push_back(json_of(row));
-  const flight::SeparationRule rule = config::separation_of(mission);
-  return {
-      {"goal", config::to_text(*config::find_key("flight.fleet_goal")->get(mission))},
-      {"makespan_s", fleet.makespan},
-      {"makespan_bound_s", fleet.bound.makespan},
-      {"makespan_least_s", fleet.least.makespan},
-      {"flown_s", fleet.flown},
-      {"flown_bound_s", fleet.bound.flown},
-      {"flown_least_s", fleet.least.flown},
-      {"delay_s", fleet.delay},
-      {"separation",
-       {{"asked_m", rule.distance}, {"tolerance_s", rule.tolerance}, {"proven_m", fleet.distance}}},
-      {"vehicles", vehicles},
-      {"timetable", timetable},
-      {"unreached", unreached_json(fleet.unreached)}};
+  for (const TimetableRow& row : fleet.timetable) timetable.push_back(json_of(row));
+  return {{"goal", goal},
+          {"makespan_s", fleet.makespan},
+          {"makespan_bound_s", fleet.bound.makespan},
+          {"makespan_least_s", fleet.least.makespan},
+          {"flown_s", fleet.flown},
+          {"flown_bound_s", fleet.bound.flown},
+          {"flown_least_s", fleet.least.flown},
+          {"delay_s", fleet.delay},
+          {"separation",
+           {{"asked_m", asked.distance},
+            {"tolerance_s", asked.tolerance},
+            {"proven_m", fleet.distance}}},
+          {"vehicles", vehicles},
+          {"timetable", timetable},
+          {"unreached", unreached_json(fleet.unreached)}};
 }
 
 }  // namespace skycap::missions::package

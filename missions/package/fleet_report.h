@@ -5,6 +5,7 @@
 
 #include <nlohmann/json_fwd.hpp>
 
+#include "flight/fleet/separation.h"
 #include "missions/package/fleet_mission.h"
 
 namespace skycap::missions::package {
@@ -12,7 +13,8 @@ namespace skycap::missions::package {
 /// Some lines for the user.
 std::string fleet_text(const FleetMission& fleet);
 
-/// `flight.fleet` of summary.json.
-nlohmann::ordered_json fleet_json(const config::Mission& mission, const FleetMission& fleet);
+/// `flight.fleet` of summary.json; `goal` is the text of flight.fleet_goal.
+nlohmann::ordered_json fleet_json(const FleetMission& fleet, const std::string& goal,
+                                  const flight::SeparationRule& asked);
 
 }  // namespace skycap::missions::package

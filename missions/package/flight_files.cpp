@@ -12,9 +12,6 @@
 #include "flight/space/clearance.h"
 #include "flight/space/interruptible_space.h"
 #include "geometry/error.h"
-#include "missions/config/mission_flight.h"
-#include "missions/config/pad_grounds.h"
-#include "missions/config/survey_sensor.h"
 #include "missions/package/fleet/timetable_file.h"
 
 namespace skycap::missions::package {
@@ -32,15 +29,15 @@ bool is_local(Format format) {
 }
 
 /// What the mission would have to say for a file of that format; empty if nothing.
-std::string what_is_missing_for(Format format, const config::Mission& mission) {
+std::string what_is_missing_for(Format format, const flight::FlightOptions& options) {
   if (is_local(format)) return "";
-  if (!config::has_place(mission)) {
+  if (!options.has_place) {
     return "it needs the place on the Earth; give site.latitude_deg and site.longitude_deg";
   }
   const bool has_sea_level =
       format == Format::plan || format == Format::kml ||
-      (format == Format::waypoints && config::vehicle_of(mission).dialect != Dialect::px4);
-  if (!has_sea_level || mission.georeference.geoid_undulation) return "";
+      (format == Format::waypoints && options.flown().dialect != Dialect::px4);
+  if (!has_sea_level || options.site.geoid_undulation) return "";
   return "its heights count from sea level; give site.geoid_undulation";
 }
 
@@ -49,19 +46,22 @@ std::string what_is_missing_for(Format format, const config::Mission& mission) {
 /// fly by default; DJI's with the codes of one of theirs. Size, energy and gimbal stay the
 /// vehicle's.
 flight::FlightPlan in_dialect(flight::FlightPlan plan, Format format,
+                              const flight::FlightOptions& options,
                               std::vector<std::string>& notes) {
   const bool is_dji = plan.vehicle.dialect == Dialect::dji;
   const auto write_for = [&](Dialect dialect, const std::string& file, const std::string& whom) {
     notes.push_back(file + " is written for " + whom + ": " + plan.vehicle.name +
                     " does not read this format");
-    plan.vehicle = config::flown_by(std::move(plan.vehicle), dialect);
+    plan.vehicle = options.flown_by(std::move(plan.vehicle), dialect);
   };
   if (format == Format::plan && is_dji) write_for(Dialect::px4, "the .plan file", "PX4");
   if (format == Format::waypoints && is_dji) {
     write_for(Dialect::ardupilot, "the .waypoints file", "ArduPilot");
   }
   if (format == Format::kmz && !is_dji) {
-    write_for(Dialect::dji, "the .kmz file", config::stand_in(Dialect::dji).name);
+    const auto stand_in =
+        std::ranges::find(options.stand_ins, Dialect::dji, &flight::Vehicle::dialect);
+    write_for(Dialect::dji, "the .kmz file", stand_in->name);
   }
   return plan;
 }
@@ -103,27 +103,29 @@ std::string checked_parameters(const flight::FlightPlan& plan) {
 
 /// What the file's name begins with if it is a flight's.
 std::string stem_in(std::string_view name) {
-  const std::optional<std::size_t> vehicle = package::vehicle_of_file(name);
-  return vehicle ? package::stem_of(*vehicle) : "mission";
+  const std::optional<std::size_t> vehicle = vehicle_of_file(name);
+  return vehicle ? stem_of(*vehicle) : "mission";
 }
 
 /// Stages a route format by format, sortie by sortie.
 class RouteFiles {
  public:
-  RouteFiles(const config::Mission& mission, const flight::Route& route,
-             const flight::FreeSpace& measured, geometry::OutputFolder& folder, std::string stem)
-      : mission_(mission),
+  RouteFiles(const std::string& name, const flight::FlightOptions& options,
+             const flight::Route& route, const flight::FreeSpace& measured,
+             geometry::OutputFolder& folder, std::string stem)
+      : name_(name),
+        options_(options),
         route_(route),
         folder_(folder),
         stem_(std::move(stem)),
-        rules_(config::flight_rules(mission)),
+        rules_(options.rules()),
         known_(rules_),
         space_({&measured, &known_}) {}
 
   FlightFiles stage(std::span<const Format> formats) {
     has_one_format_ = formats.size() == 1;
     for (const Format format : formats) {
-      if (const std::string lack = what_is_missing_for(format, mission_); !lack.empty()) {
+      if (const std::string lack = what_is_missing_for(format, options_); !lack.empty()) {
         leave_out(format, lack, ErrorKind::bad_config);
         continue;
       }
@@ -169,16 +171,16 @@ class RouteFiles {
     const flight::FormatInfo& info = flight::format_info(format);
     std::vector<std::string> notes;
     const bool holds_curves = flight::holds_curves(format);
-    if (!holds_curves && mission_.flight.style != flight::FlightStyle::stop) {
-      const bool passes = mission_.flight.style == flight::FlightStyle::pass;
+    if (!holds_curves && options_.style != flight::FlightStyle::stop) {
+      const bool passes = options_.style == flight::FlightStyle::pass;
       notes.push_back(stem_ + info.ending + " stops " + (passes ? "at every view and " : "") +
                       "in every corner: the format cannot say which curve is flown");
     }
     const auto corners = holds_curves ? flight::Corners::flown_round : flight::Corners::stopped_in;
-    flight::FlightPlan plan = in_dialect(flight_plan(route_, sortie, mission_.name + number,
-                                                     config::site_of(mission_), rules_, corners),
-                                         format, notes);
-    certify_dialect(plan, space_, config::highest_return(mission_, plan.pad.z(), plan.pad.z()));
+    flight::FlightPlan plan =
+        in_dialect(flight_plan(route_, sortie, name_ + number, options_.site, rules_, corners),
+                   format, options_, notes);
+    certify_dialect(plan, space_, options_.highest_return(plan.pad.z(), plan.pad.z()));
     if (has_parameters(format) && plan.returns) {
       parameters_[flight::parameters_name(plan.vehicle.dialect, stem_)] = checked_parameters(plan);
     }
@@ -188,7 +190,8 @@ class RouteFiles {
     for (const std::string& note : result.notes) add_note(note);
   }
 
-  const config::Mission& mission_;
+  const std::string& name_;  ///< the mission's
+  const flight::FlightOptions& options_;
   const flight::Route& route_;
   geometry::OutputFolder& folder_;
   std::string stem_;  ///< of the names of all files
@@ -204,58 +207,58 @@ class RouteFiles {
 
 std::span<const Format> package_formats() { return formats_of_packages; }
 
-config::Mission in_given_order(config::Mission mission) {
-  mission.flight.order = config::VisitOrder::survey;
-  return mission;
+flight::FlightOptions in_given_order(flight::FlightOptions options) {
+  options.order = flight::VisitOrder::survey;
+  return options;
 }
 
-std::vector<flight::Station> stations_of(const config::Mission& mission,
+std::vector<flight::Station> stations_of(const flight::FlightOptions& options,
                                          const std::vector<geometry::View>& views,
                                          const std::vector<Way>& ways) {
-  const std::optional<config::ScannerMount>& mount = mission.sensor.mount;
-  const int shots = config::scans_in_flight(mission) ? 0 : 1;
+  const std::optional<geometry::ScannerMount>& mount = options.capture.mount;
+  const int shots = options.capture.scans_in_flight() ? 0 : 1;
   std::vector<flight::Station> stations;
   for (std::uint32_t i = 0; i < views.size(); ++i) {
-    stations.push_back({mount ? config::nose_view(*mount, views[i]) : views[i],
-                        config::hold_of(mission), shots, i, config::hold_after_of(mission),
-                        ways.at(i)});
+    stations.push_back({mount ? geometry::nose_view(*mount, views[i]) : views[i],
+                        options.rest_before(), shots, i, options.rest_after(), ways.at(i)});
   }
   return stations;
 }
 
-flight::Route plan_flight(const config::Mission& mission, const flight::FreeSpace& measured,
+flight::Route plan_flight(const flight::FlightOptions& options, const flight::FreeSpace& measured,
                           const Eigen::Vector3d& pad, const std::vector<geometry::View>& views,
                           const std::vector<Way>& ways, std::span<const flight::PadGround> grounds,
                           std::stop_token stop) {
-  return plan_flight(mission, measured, pad, stations_of(mission, views, ways), grounds,
+  return plan_flight(options, measured, pad, stations_of(options, views, ways), grounds,
                      std::move(stop));
 }
 
-flight::Route plan_flight(const config::Mission& mission, const flight::FreeSpace& measured,
+flight::Route plan_flight(const flight::FlightOptions& options, const flight::FreeSpace& measured,
                           const Eigen::Vector3d& pad, std::vector<flight::Station> stations,
                           std::span<const flight::PadGround> grounds, std::stop_token stop) {
-  flight::Obstacles rules = config::flight_rules(mission);
+  flight::Obstacles rules = options.rules();
   const flight::KnownSpace known(rules);
   // The climb starts on the measured ground: what was measured there is for the pilot to judge.
   const flight::KnownSpace pad_space(without_ground(std::move(rules)));
   const flight::JointSpace joint({&measured, &known});
   const flight::InterruptibleSpace space(joint, std::move(stop));
-  flight::RouteOptions options = config::route_options_of(mission, pad);
-  options.grounds = config::grounds_of(mission, pad, grounds);
-  return plan_route(std::move(stations), config::vehicle_of(mission), space, &pad_space, options);
+  flight::RouteOptions route = options.route(pad);
+  route.grounds = options.grounds(pad, grounds);
+  return plan_route(std::move(stations), options.flown(), space, &pad_space, route);
 }
 
-FlightFiles stage_flight(const config::Mission& mission, const flight::Route& route,
-                         const flight::FreeSpace& measured, std::span<const Format> formats,
-                         geometry::OutputFolder& folder, const std::string& stem) {
-  return RouteFiles(mission, route, measured, folder, stem).stage(formats);
+FlightFiles stage_flight(const std::string& name, const flight::FlightOptions& options,
+                         const flight::Route& route, const flight::FreeSpace& measured,
+                         std::span<const Format> formats, geometry::OutputFolder& folder,
+                         const std::string& stem) {
+  return RouteFiles(name, options, route, measured, folder, stem).stage(formats);
 }
 
 bool is_flight_file(std::string_view name) {
   const auto is_parameters = [&](Dialect dialect) {
     return name == flight::parameters_name(dialect, stem_in(name));
   };
-  return name == package::timetable_name || is_parameters(Dialect::ardupilot) ||
+  return name == timetable_name || is_parameters(Dialect::ardupilot) ||
          is_parameters(Dialect::px4) ||
          std::ranges::any_of(flight::formats(), [&](const flight::FormatInfo& info) {
            return is_flight_file(name, info.format);

@@ -12,11 +12,11 @@
 #include <Eigen/Core>
 
 #include "flight/export/export.h"
+#include "flight/flight_options.h"
 #include "flight/route/route.h"
 #include "flight/space/clearance.h"
 #include "geometry/io/output_folder.h"
 #include "geometry/place/pose.h"
-#include "missions/config/mission.h"
 #include "missions/package/replan/mission_choice.h"
 
 namespace skycap::missions::package {
@@ -24,28 +24,28 @@ namespace skycap::missions::package {
 /// A way through space, point by point.
 using Way = std::vector<Eigen::Vector3d>;
 
-/// The mission with its views in the order given, and with the ways to them: as views chosen anew
+/// The flight with its views in the order given, and with the ways to them: as views chosen anew
 /// are flown, or those of the survey in its own order.
-config::Mission in_given_order(config::Mission mission);
+flight::FlightOptions in_given_order(flight::FlightOptions options);
 
 /// The flight of a mission's vehicle through views of its survey, proven in what the survey has
 /// measured; ways[i] is how it came to view i from the view before or from above the pad (empty if
 /// that is not known); `grounds` are those of pad and rally points that were measured. Views that
 /// this flight cannot visit are listed in it. Throws what plan_route() throws, and
 /// Error{bad_usage} soon after a stop is requested.
-flight::Route plan_flight(const config::Mission& mission, const flight::FreeSpace& measured,
+flight::Route plan_flight(const flight::FlightOptions& options, const flight::FreeSpace& measured,
                           const Eigen::Vector3d& pad, const std::vector<geometry::View>& views,
                           const std::vector<Way>& ways,
                           std::span<const flight::PadGround> grounds = {},
                           std::stop_token stop = {});
 
 /// The stations of these views, with the rests that the mission asks for.
-std::vector<flight::Station> stations_of(const config::Mission& mission,
+std::vector<flight::Station> stations_of(const flight::FlightOptions& options,
                                          const std::vector<geometry::View>& views,
                                          const std::vector<Way>& ways);
 
 /// The same through stations that are given with all that is done there.
-flight::Route plan_flight(const config::Mission& mission, const flight::FreeSpace& measured,
+flight::Route plan_flight(const flight::FlightOptions& options, const flight::FreeSpace& measured,
                           const Eigen::Vector3d& pad, std::vector<flight::Station> stations,
                           std::span<const flight::PadGround> grounds = {},
                           std::stop_token stop = {});
@@ -68,15 +68,17 @@ struct FlightFiles {
 /// The formats of a mission package.
 std::span<const flight::Format> package_formats();
 
-/// Stages the route in each of the formats; with several sorties a file for each, "mission-1.plan"
-/// and so on, or with another `stem`. Every file is read back and proved. A format that needs what
-/// the mission does not say, such as the geoid's height, or whose file fails its proof, is left out
-/// with a note, unless it is the only one: then that is thrown, as Error{bad_config} or what
-/// export_flight() throws. A file that cannot be written is thrown as Error{bad_file}. Beside files
-/// for MAVLink vehicles their parameters are staged, which say how high to return.
-FlightFiles stage_flight(const config::Mission& mission, const flight::Route& route,
-                         const flight::FreeSpace& measured, std::span<const flight::Format> formats,
-                         geometry::OutputFolder& folder, const std::string& stem = "mission");
+/// Stages the route of the mission `name` in each of the formats; with several sorties a file for
+/// each, "mission-1.plan" and so on, or with another `stem`. Every file is read back and proved. A
+/// format that needs what the mission does not say, such as the geoid's height, or whose file fails
+/// its proof, is left out with a note, unless it is the only one: then that is thrown, as
+/// Error{bad_config} or what export_flight() throws. A file that cannot be written is thrown as
+/// Error{bad_file}. Beside files for MAVLink vehicles their parameters are staged, which say how
+/// high to return.
+FlightFiles stage_flight(const std::string& name, const flight::FlightOptions& options,
+                         const flight::Route& route, const flight::FreeSpace& measured,
+                         std::span<const flight::Format> formats, geometry::OutputFolder& folder,
+                         const std::string& stem = "mission");
 
 /// What a mission covers when it is flown again in the simulator, from an empty cloud and with
 /// other noise: shares of samples.

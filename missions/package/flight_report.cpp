@@ -6,7 +6,6 @@
 #include <fmt/format.h>
 
 #include "flight/route/route.h"
-#include "missions/config/mission_flight.h"
 #include "missions/package/anew_mission.h"
 #include "missions/package/fleet_report.h"
 #include "missions/package/ground_json.h"
@@ -64,16 +63,16 @@ std::string pictures_text(const SurveyMission& flight) {
 
 }  // namespace
 
-std::string flown_text(const config::Mission& mission, const session::SurveyRecord& record) {
+std::string flown_text(const flight::FlightOptions& options, const session::SurveyRecord& record) {
   const session::FlownSurvey& flown = record.flown.value();
   std::string text =
       fmt::format("  survey    {:.1f} m in {:.1f} min, from the pad to the last view",
                   flown.length(), flown.time() / 60.0);
-  if (config::scans_in_flight(mission)) {
+  if (options.capture.scans_in_flight()) {
     text += fmt::format("; {} scans on the way at {:g} m/s", record.frames_on_way(),
-                        mission.flight.cruise_speed);
-  } else if (mission.sensor.is_moving()) {
-    const flight::PictureBounds bounds = session::moving_bounds_of(mission);
+                        options.cruise_speed);
+  } else if (options.capture.is_moving) {
+    const flight::PictureBounds bounds = session::moving_bounds_of(options);
     text += fmt::format("; {} frames on the way, blurred by at most {:.2f} px",
                         record.frames_on_way(), bounds.blur_px);
     if (bounds.shear_px > 0.0) text += fmt::format(" and sheared by {:.2f} px", bounds.shear_px);

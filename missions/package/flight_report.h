@@ -3,14 +3,14 @@
 
 #include <string>
 
-#include "missions/config/mission.h"
+#include "flight/flight_options.h"
 #include "missions/package/flight_files.h"
 #include "missions/session/survey_record.h"
 
 namespace skycap::missions::package {
 
 /// A line about the survey's own flight.
-std::string flown_text(const config::Mission& mission, const session::SurveyRecord& record);
+std::string flown_text(const flight::FlightOptions& options, const session::SurveyRecord& record);
 
 /// Some lines: the route, what its clearance is made of, views left out, files and notes.
 std::string flight_text(const SurveyMission& flight);

@@ -16,8 +16,6 @@
 #include "geometry/place/pose.h"
 #include "geometry/place/world.h"
 #include "geometry/surfaces/mesh.h"
-#include "missions/config/fleet.h"
-#include "missions/config/mission_flight.h"
 #include "missions/evaluation/coverage.h"
 #include "missions/package/anew_mission.h"
 #include "missions/package/cloud_normals.h"
@@ -91,15 +89,16 @@ std::vector<std::uint32_t> views_of_points(const session::SurveyRecord& record) 
 }
 
 /// The route of a flown survey, and how its views were chosen.
-void plan_route(const config::Mission& mission, const session::SurveyRecord& record,
-                const CoverageFigures& coverage, const std::stop_token& stop,
-                SurveyMission& flight) {
+void plan_route(const evaluation::SimulationOptions& simulation, const session::RunOptions& run,
+                const session::SurveyRecord& record, const CoverageFigures& coverage,
+                const std::stop_token& stop, SurveyMission& flight) {
   const session::FlownSurvey& flown = *record.flown;
-  flight.pictures = config::picture_bounds_of(mission);
+  const flight::FlightOptions& options = simulation.survey.flight;
+  const bool scans_in_flight = options.capture.scans_in_flight();
+  flight.pictures = options.picture_bounds();
   // What a scanner measures on the ways of the survey it measures on no others.
-  flight.route = plan_flight(config::scans_in_flight(mission) ? in_given_order(mission) : mission,
-                             *flown.measured, flown.pad, views_of(record), ways_of(flown),
-                             flown.grounds, stop);
+  flight.route = plan_flight(scans_in_flight ? in_given_order(options) : options, *flown.measured,
+                             flown.pad, views_of(record), ways_of(flown), flown.grounds, stop);
   if (flight.route.sorties.empty() && !flight.route.unreached.empty()) {
     const flight::Unreached& first = flight.route.unreached.front();
     throw Error(ErrorKind::bad_config, "no view can be flown to; view " +
@@ -108,13 +107,14 @@ void plan_route(const config::Mission& mission, const session::SurveyRecord& rec
   }
   if (flight.route.stations.empty()) return;
   if (!record.surface) {
-    const bool passes = mission.flight.style == flight::FlightStyle::pass;
-    if ((config::scans_in_flight(mission) || passes) && coverage.fly_again) {
-      flight.again = flown_again(coverage, session::measured_views(mission, flight.route));
+    const bool passes = options.style == flight::FlightStyle::pass;
+    if ((scans_in_flight || passes) && coverage.fly_again) {
+      flight.again = flown_again(coverage, session::measured_views(options, flight.route));
     }
     return;
   }
-  flight.anew = anew_mission(mission, record, coverage, std::move(flight.route), stop);
+  flight.anew = anew_mission(simulation.survey, choice_options(simulation.sensor, run), record,
+                             coverage, std::move(flight.route), stop);
   flight.route = std::move(flight.anew->choice.route);
 }
 
@@ -131,31 +131,32 @@ void attempt(SurveyMission& flight, const std::stop_token& stop, Work work) {
 }
 
 /// Nothing for a survey without a vehicle.
-std::optional<SurveyMission> planned_mission(const config::Mission& mission,
+std::optional<SurveyMission> planned_mission(const evaluation::SimulationOptions& simulation,
+                                             const session::RunOptions& run,
                                              const session::SurveyRecord& record,
                                              const CoverageFigures& coverage,
                                              const std::stop_token& stop) {
   if (!record.flown) return std::nullopt;
   SurveyMission flight;
-  attempt(flight, stop, [&] { plan_route(mission, record, coverage, stop, flight); });
+  attempt(flight, stop, [&] { plan_route(simulation, run, record, coverage, stop, flight); });
   return flight;
 }
 
 /// The free space and the files of the flight.
-void stage_mission(const config::Mission& mission, const session::SurveyRecord& record,
-                   SurveyMission& flight, geometry::OutputFolder& folder,
-                   const std::stop_token& stop) {
+void stage_mission(const std::string& name, const flight::FlightOptions& options, unsigned threads,
+                   const session::SurveyRecord& record, SurveyMission& flight,
+                   geometry::OutputFolder& folder, const std::stop_token& stop) {
   std::ostringstream free_space;
   free_space.exceptions(
       std::ios::badbit);  // else text is lost without a word where memory is missing
   record.flown->measured->write(free_space);
   folder.write(free_space_name, free_space.str());
   attempt(flight, stop, [&] {
-    flight.files =
-        stage_flight(mission, flight.route, *record.flown->measured, package_formats(), folder);
-    if (!config::is_fleet(mission)) return;
-    flight.fleet = staged_fleet(mission, *record.flown->measured, flight.route,
-                                record.flown->grounds, package_formats(), folder, stop);
+    const flight::MeasuredSpace& measured = *record.flown->measured;
+    flight.files = stage_flight(name, options, flight.route, measured, package_formats(), folder);
+    if (!options.is_fleet()) return;
+    flight.fleet = staged_fleet(name, options, measured, flight.route, record.flown->grounds,
+                                package_formats(), folder, threads, stop);
   });
 }
 
@@ -219,7 +220,7 @@ std::string trajectory_tum(const session::SurveyRecord& record) {
   return tum;
 }
 
-CoverageFigures coverage_figures(const config::Mission& mission,
+CoverageFigures coverage_figures(const evaluation::SimulationOptions& options,
                                  const session::SurveyRecord& record,
                                  const evaluation::SurveyScene& scene, unsigned threads,
                                  const std::stop_token& stop) {
@@ -235,9 +236,9 @@ CoverageFigures coverage_figures(const config::Mission& mission,
       if (marks) figures.ceiling = evaluation::marked_share(*marks);
       is_attainable = marks.value_or(is_attainable);
     }
-    figures.fly_again = [&mission, &scene, seed = record.seed,
+    figures.fly_again = [&options, &scene, seed = record.seed,
                          threads](const std::vector<session::ViewInFlight>& views) {
-      return simulation::covered_when_flown_again(mission, scene, views, seed, threads);
+      return simulation::covered_when_flown_again(options, scene, views, seed, threads);
     };
   }
   if (!record.belief) {
@@ -258,7 +259,7 @@ void commit_package(const session::SurveyRecord& record, geometry::OutputFolder&
   folder.commit();
 }
 
-std::optional<SurveyMission> stage_package(const config::Mission& mission,
+std::optional<SurveyMission> stage_package(const config::MissionSetup& setup,
                                            const session::SurveyRecord& record,
                                            const CoverageFigures& coverage, unsigned threads,
                                            geometry::OutputFolder& folder, std::stop_token stop) {
@@ -270,10 +271,12 @@ std::optional<SurveyMission> stage_package(const config::Mission& mission,
   std::optional<SurveyMission> flight;
   geometry::parallel_for(2, threads, [&](std::size_t part) {
     if (part == 0) {
-      flight = planned_mission(mission, record, coverage, stop);
-      if (flight) stage_mission(mission, record, *flight, folder, stop);
+      flight = planned_mission(setup.simulation, setup.run, record, coverage, stop);
+      if (flight) {
+        stage_mission(setup.name, setup.flight(), setup.run.threads, record, *flight, folder, stop);
+      }
     } else {
-      const double radius = 2.0 * mission.planner.see.resolution_radius;
+      const double radius = 2.0 * setup.survey().planner.resolution_radius;
       normals = cloud_normals(record.cloud, sensor_positions(record), radius, threads, stop);
     }
   });
@@ -291,7 +294,7 @@ std::optional<SurveyMission> stage_package(const config::Mission& mission,
     }
   });
   // Last, so that whoever sees the summary sees the rest.
-  folder.write(summary_name, summary_json(mission, record, coverage, flight));
+  folder.write(summary_name, summary_json(setup, record, coverage, flight));
   return flight;
 }
 
@@ -310,13 +313,13 @@ PackageSummary parse_package_summary(const std::string& text, const std::string&
     PackageSummary summary;
     summary.mission = mission_of_settings(json.at("settings"), name, overrides);
     if (json.contains("flight")) {
-      summary.pad = summary.mission.flight.takeoff.value_or(vector_of(json["flight"].at("pad")));
+      summary.pad = summary.mission.flight().takeoff.value_or(vector_of(json["flight"].at("pad")));
       geometry::require_place(*summary.pad, name + ": flight.pad");
       if (json["flight"].contains("grounds")) {
         summary.grounds = measured_grounds(json["flight"]["grounds"], name);
       }
       summary.has_choice = json["flight"].contains("anew");
-      if (summary.has_choice && summary.mission.flight.views == config::MissionViews::anew) {
+      if (summary.has_choice && summary.mission.flight().views == flight::MissionViews::anew) {
         summary.anew = anew_stations(json["flight"]["anew"], name);
       }
     }
@@ -350,7 +353,7 @@ PackagedSurvey read_package(const std::filesystem::path& folder,
   if (!summary.pad) {
     fail(folder / summary_name, "is of a survey without a vehicle; plan it with flight.vehicle");
   }
-  if (summary.mission.flight.views == config::MissionViews::anew && !summary.has_choice) {
+  if (summary.mission.flight().views == flight::MissionViews::anew && !summary.has_choice) {
     fail(folder / summary_name,
          "has no views chosen anew; plan the mission again, or say flight.views=survey");
   }
@@ -361,14 +364,20 @@ PackagedSurvey read_package(const std::filesystem::path& folder,
     space = geometry::open_stream(space_file);
   }
   if (!space.is_open()) fail(space_file, "cannot be read; plan the mission again");
+  flight::FlightOptions options = summary.mission.flight();
   if (summary.anew) {
-    summary.mission = in_given_order(std::move(summary.mission));
+    options = in_given_order(std::move(options));
     summary.views = std::move(summary.anew->views);
     summary.ways = std::move(summary.anew->ways);
   }
-  return {std::move(summary.mission), std::move(summary.views),
-          std::move(summary.ways),    *summary.pad,
-          std::move(summary.grounds), flight::MeasuredSpace::read(space, space_file.string())};
+  return {.name = summary.mission.name,
+          .flight = std::move(options),
+          .run = summary.mission.run,
+          .views = std::move(summary.views),
+          .ways = std::move(summary.ways),
+          .pad = *summary.pad,
+          .grounds = std::move(summary.grounds),
+          .measured = flight::MeasuredSpace::read(space, space_file.string())};
 }
 
 }  // namespace skycap::missions::package

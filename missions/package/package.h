@@ -13,8 +13,8 @@
 #include "flight/space/measured_space.h"
 #include "geometry/io/output_folder.h"
 #include "geometry/place/pose.h"
-#include "missions/config/mission.h"
-#include "missions/config/mission_reader.h"
+#include "missions/config/key_override.h"
+#include "missions/config/mission_setup.h"
 #include "missions/evaluation/survey_scene.h"
 #include "missions/package/coverage_map.h"
 #include "missions/package/flight_files.h"
@@ -39,8 +39,8 @@ struct CoverageFigures {
 };
 
 /// What a simulated survey covered of the true surface; what could be covered at all only of one
-/// that has ended, unless a stop is requested. Keeps references to mission and scene.
-CoverageFigures coverage_figures(const config::Mission& mission,
+/// that has ended, unless a stop is requested. Keeps references to options and scene.
+CoverageFigures coverage_figures(const evaluation::SimulationOptions& options,
                                  const session::SurveyRecord& record,
                                  const evaluation::SurveyScene& scene, unsigned threads,
                                  const std::stop_token& stop);
@@ -56,7 +56,7 @@ void commit_package(const session::SurveyRecord& record, geometry::OutputFolder&
 /// summary.json holds times. A stop that is requested leaves the cloud without normals and, while
 /// the route is made, the survey without one, and its failure says so: `skycap export` makes it
 /// later.
-std::optional<SurveyMission> stage_package(const config::Mission& mission,
+std::optional<SurveyMission> stage_package(const config::MissionSetup& setup,
                                            const session::SurveyRecord& record,
                                            const CoverageFigures& coverage, unsigned threads,
                                            geometry::OutputFolder& folder,
@@ -76,7 +76,7 @@ inline constexpr const char* fly_test_name = "fly_test.json";
 
 /// What a package's summary says of its survey.
 struct PackageSummary {
-  config::Mission mission;  ///< with all keys as they were in force
+  config::MissionSetup mission;  ///< with all keys as they were in force
   std::vector<geometry::View> views;
   std::vector<Way> ways;                   ///< ways[i] was flown to view i; empty if it is not said
   std::optional<Eigen::Vector3d> pad;      ///< of a survey that was flown
@@ -99,7 +99,10 @@ PackageSummary read_package_summary(const std::filesystem::path& folder,
 
 /// What a package holds of a flown survey.
 struct PackagedSurvey {
-  config::Mission mission;  ///< with all keys as they were in force; in_given_order() of stations
+  std::string name;  ///< of the mission
+  /// By all keys as they were in force; in_given_order() of stations chosen anew.
+  flight::FlightOptions flight;
+  session::RunOptions run;
   std::vector<geometry::View> views;  ///< that are flown: PackageSummary::stations()
   std::vector<Way> ways;              ///< to them
   Eigen::Vector3d pad = Eigen::Vector3d::Zero();
@@ -129,7 +132,7 @@ std::string views_csv(const session::SurveyRecord& record);
 std::string trajectory_tum(const session::SurveyRecord& record);
 
 /// summary.json, as docs/mission_file.md describes it.
-std::string summary_json(const config::Mission& mission, const session::SurveyRecord& record,
+std::string summary_json(const config::MissionSetup& setup, const session::SurveyRecord& record,
                          const CoverageFigures& coverage,
                          const std::optional<SurveyMission>& flight = {});
 

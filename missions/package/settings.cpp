@@ -5,8 +5,9 @@
 #include <nlohmann/json.hpp>
 
 #include "geometry/error.h"
+#include "missions/config/mission_document.h"
 #include "missions/config/mission_keys.h"
-#include "missions/config/resolved_mission.h"
+#include "missions/config/resolve.h"
 #include "missions/config/setting_json.h"
 
 namespace skycap::missions::package {
@@ -19,8 +20,9 @@ std::string mission_text(const Json& settings) {
   Json nested = Json::object();
   for (const auto& [path, value] : settings.items()) {
     // A pointer with a number in it would grow a list; no key of ours has one.
-    if (!config::find_key(path))
+    if (!config::find_key(path)) {
       throw Error(ErrorKind::bad_file, "settings." + path + " is unknown");
+    }
     std::string pointer = "/" + path;
     std::ranges::replace(pointer, '.', '/');
     nested[Json::json_pointer(pointer)] = value;
@@ -30,21 +32,24 @@ std::string mission_text(const Json& settings) {
 
 }  // namespace
 
-Json settings_json(const config::Mission& mission) {
+Json settings_json(const config::MissionSetup& setup) {
+  config::MissionDocument document = *setup.document;
+  document.seed = setup.run.seed;
+  document.threads = setup.run.threads;
   Json values = Json::object();
   for (const config::Key& key : config::mission_keys()) {
     // A lidar takes the camera's place, whose keys are refused beside it.
     const bool is_of_flight = key.path == "sensor.capture" || key.path == "sensor.frame_period";
     const bool is_of_camera = key.path.starts_with("sensor.") && key.path != "sensor.lidar" &&
-                              !(is_of_flight && mission.sensor.mount);
-    if (is_of_camera && mission.sensor.lidar) continue;
-    if (const auto value = key.get(mission)) values[key.path] = config::setting_json(*value);
+                              !(is_of_flight && setup.sensor().mount);
+    if (is_of_camera && document.sensor.lidar) continue;
+    if (const auto value = key.get(document)) values[key.path] = config::setting_json(*value);
   }
   return values;
 }
 
-config::Mission mission_of_settings(const Json& settings, const std::string& name,
-                                    const std::vector<config::KeyOverride>& overrides) {
+config::MissionSetup mission_of_settings(const Json& settings, const std::string& name,
+                                         const std::vector<config::KeyOverride>& overrides) {
   std::string text;
   try {
     text = mission_text(settings);

@@ -6,17 +6,18 @@
 
 #include <nlohmann/json_fwd.hpp>
 
-#include "missions/config/mission.h"
-#include "missions/config/mission_reader.h"
+#include "missions/config/key_override.h"
+#include "missions/config/mission_setup.h"
 
 namespace skycap::missions::package {
 
-/// All keys as they are in force, by their paths.
-nlohmann::ordered_json settings_json(const config::Mission& mission);
+/// All keys as they are in force, by their paths; seed and threads are those of the run.
+nlohmann::ordered_json settings_json(const config::MissionSetup& setup);
 
 /// The mission that settings stand for, with overrides; `name` is the file in messages. Throws
 /// Error{bad_file} for what is no key, and what parse_mission() throws.
-config::Mission mission_of_settings(const nlohmann::ordered_json& settings, const std::string& name,
-                                    const std::vector<config::KeyOverride>& overrides = {});
+config::MissionSetup mission_of_settings(const nlohmann::ordered_json& settings,
+                                         const std::string& name,
+                                         const std::vector<config::KeyOverride>& overrides = {});
 
 }  // namespace skycap::missions::package

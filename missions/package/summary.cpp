@@ -1,12 +1,10 @@
 /// summary.json: all that a survey says of itself.
 
+#include <algorithm>
 #include <utility>
 
 #include <nlohmann/json.hpp>
 
-#include "missions/config/mission_keys.h"
-#include "missions/config/mission_priors.h"
-#include "missions/config/pad_grounds.h"
 #include "missions/evaluation/reliability.h"
 #include "missions/package/anew_mission.h"
 #include "missions/package/fleet_report.h"
@@ -16,6 +14,7 @@
 #include "missions/package/route_json.h"
 #include "missions/package/settings.h"
 #include "missions/package/target_coverage.h"
+#include "missions/site_data/site_priors.h"
 #include "missions/support/json_text.h"
 #include "missions/version.h"
 
@@ -34,10 +33,10 @@ Json json_of(const std::vector<survey::PartTime>& times) {
 }
 
 /// How far what the planner believes of places is true, of what can be seen.
-Json reliability_summary(const config::Mission& mission, const survey::skycap::SurveyBelief& belief,
-                         const std::optional<TrueCoverage>& truth) {
+Json reliability_summary(const survey::skycap::SurveyBelief& belief,
+                         const std::optional<TrueCoverage>& truth, double resolution_radius) {
   if (!truth || truth->is_visible.empty()) return {};  // interrupted, or nobody asks
-  const double reach = 2.0 * mission.planner.see.resolution_radius;
+  const double reach = 2.0 * resolution_radius;
   const evaluation::Reliability found = evaluation::reliability(
       belief.patches, truth->samples, truth->is_covered, truth->is_visible, reach);
   Json bands = Json::array();
@@ -51,13 +50,13 @@ Json reliability_summary(const config::Mission& mission, const survey::skycap::S
 }
 
 /// What the planner believes at the end: shares are of the surface, seen and guessed.
-Json belief_summary(const config::Mission& mission, const session::SurveyRecord& record,
-                    const CoverageFigures& coverage) {
+Json belief_summary(const session::SurveyRecord& record, const CoverageFigures& coverage,
+                    double resolution_radius) {
   if (!record.belief) return {};
   const survey::skycap::SurveyBelief& belief = *record.belief;
   // In which way it is complete, or what ended it before that: no two reasons.
-  const char* stop = record.is_complete() ? session::name_of(record.skycap_stop)
-                                          : session::name_of(record.stop_reason);
+  const std::string stop =
+      record.is_complete() ? record.stop_rule : session::name_of(record.stop_reason);
   return {{"stop", stop},
           {"predicted_coverage", belief.coverage},
           {"area_m2", belief.area},
@@ -68,7 +67,7 @@ Json belief_summary(const config::Mission& mission, const session::SurveyRecord&
           {"next_gain", belief.next_gain},
           {"noise_m", belief.noise},
           {"growing_noise", belief.growing_noise},
-          {"reliability", reliability_summary(mission, belief, coverage.truth)}};
+          {"reliability", reliability_summary(belief, coverage.truth, resolution_radius)}};
 }
 
 /// What is missing, piece by piece: as the planner believes or else as the simulator knows.
@@ -112,8 +111,11 @@ Json targets_summary(const std::vector<TargetCoverage>& targets) {
   return list;
 }
 
-std::string value_text(const config::Mission& mission, const char* key) {
-  return config::to_text(*config::find_key(key)->get(mission));
+bool has_target(const scene::SceneOptions& scene) {
+  return scene.priors &&
+         std::ranges::any_of(scene.priors->sources, [](const site_data::Source& source) {
+           return source.role == site_data::Role::target;
+         });
 }
 
 /// How the vehicle comes home when its link, its battery or its pilot asks for it.
@@ -221,30 +223,32 @@ std::vector<survey::PartTime> planning_time_by_part(const session::SurveyRecord&
   return sums;
 }
 
-std::string summary_json(const config::Mission& mission, const session::SurveyRecord& record,
+std::string summary_json(const config::MissionSetup& setup, const session::SurveyRecord& record,
                          const CoverageFigures& coverage,
                          const std::optional<SurveyMission>& flight) {
-  Json summary{{"mission", mission.name},
-               {"planner", value_text(mission, "planner.name")},
-               {"preset", value_text(mission, "planner.preset")},
-               {"seed", record.seed},
-               {"threads", record.threads},
-               {"version", version},
-               {"complete", record.is_complete()},
-               {"stop_reason", session::name_of(record.stop_reason)},
-               {"views", record.views.size()},
-               {"points", record.cloud.size()},
-               {"coverage", coverage.all},
-               {"coverage_visible", json_of(coverage.visible)},
-               {"coverage_ceiling", json_of(coverage.ceiling)},
-               {"planning_time_s", record.planning_time()},
-               {"planning_time_parts_s", json_of(planning_time_by_part(record))},
-               {"sensing_time_s", record.sensing_time()},
-               {"distance_m", record.distance()},
-               {"belief", belief_summary(mission, record, coverage)},
-               {"surface", surface_summary(record, coverage)}};
-  if (config::has_target(mission)) {
-    summary["targets"] = targets_summary(target_coverage(mission, record.cloud.positions));
+  Json summary{
+      {"mission", setup.name},
+      {"planner", setup.text("planner.name")},
+      {"preset", setup.text("planner.preset")},
+      {"seed", record.seed},
+      {"threads", record.threads},
+      {"version", version},
+      {"complete", record.is_complete()},
+      {"stop_reason", session::name_of(record.stop_reason)},
+      {"views", record.views.size()},
+      {"points", record.cloud.size()},
+      {"coverage", coverage.all},
+      {"coverage_visible", json_of(coverage.visible)},
+      {"coverage_ceiling", json_of(coverage.ceiling)},
+      {"planning_time_s", record.planning_time()},
+      {"planning_time_parts_s", json_of(planning_time_by_part(record))},
+      {"sensing_time_s", record.sensing_time()},
+      {"distance_m", record.distance()},
+      {"belief", belief_summary(record, coverage, setup.survey().planner.resolution_radius)},
+      {"surface", surface_summary(record, coverage)}};
+  if (has_target(setup.scene())) {
+    summary["targets"] = targets_summary(target_coverage(
+        setup.scene(), setup.evaluation().registration_distance, record.cloud.positions));
   }
   if (flight && flight->failure.empty()) {
     summary["route_length_m"] = flight->route.length;
@@ -252,7 +256,10 @@ std::string summary_json(const config::Mission& mission, const session::SurveyRe
     summary["flight"] = flight_summary(*record.flown, *flight);
     if (flight->anew) summary["flight"]["anew"] = anew_json(*flight->anew);
     if (flight->again) summary["flight"]["flown_again"] = again_json(*flight->again);
-    if (flight->fleet) summary["flight"]["fleet"] = fleet_json(mission, *flight->fleet);
+    if (flight->fleet) {
+      summary["flight"]["fleet"] =
+          fleet_json(*flight->fleet, setup.text("flight.fleet_goal"), setup.flight().fleet.rule());
+    }
   } else if (flight) {
     summary["flight"] = {{"pad", json_of(record.flown->pad)},
                          {"survey", survey_flight_summary(*record.flown)},
@@ -260,10 +267,9 @@ std::string summary_json(const config::Mission& mission, const session::SurveyRe
   }
   if (flight) {
     const session::FlownSurvey& flown = *record.flown;
-    summary["flight"]["grounds"] =
-        grounds_json(config::grounds_of(mission, flown.pad, flown.grounds));
+    summary["flight"]["grounds"] = grounds_json(setup.flight().grounds(flown.pad, flown.grounds));
   }
-  summary["settings"] = settings_json(mission);
+  summary["settings"] = settings_json(setup);
   summary["per_view"] = Json::array();
   for (std::size_t i = 0; i < record.views.size(); ++i) {
     summary["per_view"].push_back(view_summary(i, record.views[i]));

@@ -5,8 +5,8 @@
 
 #include <fmt/format.h>
 
-#include "missions/config/mission_priors.h"
 #include "missions/evaluation/coverage.h"
+#include "missions/site_data/site_priors.h"
 #include "missions/site_data/surface_points.h"
 
 namespace skycap::missions::package {
@@ -63,13 +63,15 @@ std::string text_of(const CoveredPart& part) {
 
 }  // namespace
 
-std::vector<TargetCoverage> target_coverage(const config::Mission& mission,
+std::vector<TargetCoverage> target_coverage(const scene::SceneOptions& scene,
+                                            double registration_distance,
                                             std::span<const Eigen::Vector3f> measured) {
   std::vector<TargetCoverage> targets;
-  const site_data::SitePriors& site = config::priors_of(mission);
+  if (!scene.priors) return targets;
+  const site_data::SitePriors& site = *scene.priors;
   for (std::size_t i = 0; i < site.priors.size(); ++i) {
     if (site.sources[i].role != site_data::Role::target) continue;
-    const double radius = mission.evaluation.registration_distance + site.priors[i].uncertainty;
+    const double radius = registration_distance + site.priors[i].uncertainty;
     for (const site_data::Object& object : site.priors[i].objects) {
       const site_data::SurfacePoints points =
           site_data::spread_over(object, most_points, radius / points_per_radius);

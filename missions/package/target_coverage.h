@@ -8,7 +8,7 @@
 
 #include <Eigen/Core>
 
-#include "missions/config/mission.h"
+#include "missions/scene/scene_options.h"
 
 namespace skycap::missions::package {
 
@@ -28,7 +28,8 @@ struct TargetCoverage {
 };
 
 /// Of each object of the targets that has a surface to be seen, in the order of the mission.
-std::vector<TargetCoverage> target_coverage(const config::Mission& mission,
+std::vector<TargetCoverage> target_coverage(const scene::SceneOptions& scene,
+                                            double registration_distance,
                                             std::span<const Eigen::Vector3f> measured);
 
 /// A line for each; empty without any.

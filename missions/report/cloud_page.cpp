@@ -73,15 +73,14 @@ std::string cloud_page(const std::filesystem::path& file) {
       name, data, {{"measured", encode_cloud(cloud.positions, attributes, default_report_points)}});
 }
 
-std::string mission_page(const config::Mission& mission, std::span<const Eigen::Vector3f> surface,
+std::string mission_page(const std::string& name, const session::SurveyOptions& survey,
+                         const scene::SceneOptions& scene, std::span<const Eigen::Vector3f> surface,
                          const std::optional<Eigen::Vector3d>& pad) {
-  const Json data = {
-      {"kind", "mission"},
-      {"title", mission.name},
-      {"facts", {mission.scene.model, "nothing is measured yet: the simulator's model"}},
-      {"scene", scene_outline(mission, pad)}};
-  return page_text(mission.name, data,
-                   {{"model", encode_cloud(surface, {}, default_report_points)}});
+  const Json data = {{"kind", "mission"},
+                     {"title", name},
+                     {"facts", {scene.model, "nothing is measured yet: the simulator's model"}},
+                     {"scene", scene_outline(survey, scene, pad)}};
+  return page_text(name, data, {{"model", encode_cloud(surface, {}, default_report_points)}});
 }
 
 }  // namespace skycap::missions::report

@@ -8,7 +8,8 @@
 
 #include <Eigen/Core>
 
-#include "missions/config/mission.h"
+#include "missions/scene/scene_options.h"
+#include "missions/session/survey_options.h"
 
 namespace skycap::missions::report {
 
@@ -16,7 +17,8 @@ namespace skycap::missions::report {
 std::string cloud_page(const std::filesystem::path& cloud);
 
 /// A mission's scene with all that a flight must keep away from; `surface` are points of the model.
-std::string mission_page(const config::Mission& mission, std::span<const Eigen::Vector3f> surface,
+std::string mission_page(const std::string& name, const session::SurveyOptions& survey,
+                         const scene::SceneOptions& scene, std::span<const Eigen::Vector3f> surface,
                          const std::optional<Eigen::Vector3d>& pad);
 
 }  // namespace skycap::missions::report

@@ -167,10 +167,10 @@ Json page_data(const Json& summary, const fs::path& file) {
                {"verdict", verdict_of(summary)},
                {"summary", summary}};
   if (summary.contains("settings")) {
-    const config::Mission mission =
+    const config::MissionSetup setup =
         package::mission_of_settings(summary["settings"], file.string());
-    data["facts"].push_back(mission.scene.model);
-    data["scene"] = scene_outline(mission, std::nullopt);
+    data["facts"].push_back(setup.scene().model);
+    data["scene"] = scene_outline(setup.survey(), setup.scene(), std::nullopt);
   }
   return data;
 }

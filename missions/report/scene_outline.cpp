@@ -6,9 +6,8 @@
 #include <utility>
 
 #include "flight/space/obstacles.h"
-#include "missions/config/mission_flight.h"
-#include "missions/config/mission_priors.h"
 #include "missions/site_data/prior_text.h"
+#include "missions/site_data/site_priors.h"
 #include "missions/site_data/terrain.h"
 
 namespace skycap::missions::report {
@@ -70,34 +69,35 @@ Json surface(const site_data::Source& source, const site_data::Prior& prior) {
 
 }  // namespace
 
-Json scene_outline(const config::Mission& mission, const std::optional<Eigen::Vector3d>& pad) {
-  const flight::Obstacles rules = config::flight_rules(mission);
+Json scene_outline(const session::SurveyOptions& survey, const scene::SceneOptions& scene,
+                   const std::optional<Eigen::Vector3d>& pad) {
+  const flight::FlightOptions& flight = survey.flight;
+  const flight::Obstacles rules = flight.rules();
   Json volumes = Json::array();
   for (const geometry::Prism& prism : rules.no_fly) volumes.push_back(volume("no_fly", prism));
   // A fence of 100 km is the height limit alone.
-  if (rules.fence && !mission.site.geofence.empty()) {
+  if (rules.fence && !flight.airspace.geofence.empty()) {
     volumes.push_back(volume("geofence", *rules.fence));
   }
-  if (mission.flight.unknown_box) {
-    volumes.push_back(box("unknown", "flight.unknown_box", *mission.flight.unknown_box));
+  if (flight.has_own_box) {
+    volumes.push_back(box("unknown", "flight.unknown_box", flight.unknown_box));
   }
-  if (mission.planner.see.scene_box) {
-    volumes.push_back(box("scene", "planner.scene_box", *mission.planner.see.scene_box));
+  if (survey.planner.scene_box) {
+    volumes.push_back(box("scene", "planner.scene_box", *survey.planner.scene_box));
   }
   Json priors = Json::array();
-  const site_data::SitePriors& site = config::priors_of(mission);
-  for (std::size_t i = 0; i < site.priors.size(); ++i) {
-    priors.push_back(surface(site.sources[i], site.priors[i]));
+  for (std::size_t i = 0; scene.priors && i < scene.priors->priors.size(); ++i) {
+    priors.push_back(surface(scene.priors->sources[i], scene.priors->priors[i]));
   }
-  const geometry::CameraConfig& camera = mission.sensor.camera.camera;
-  Json outline{{"ground", mission.scene.position.z()},
-               {"flown", mission.flight.is_flown()},
+  const geometry::CameraConfig& camera = flight.capture.camera;
+  Json outline{{"ground", scene.position.z()},
+               {"flown", flight.is_flown()},
                {"pad", pad ? Json{pad->x(), pad->y(), pad->z()} : Json()},
                {"volumes", volumes},
                {"sensor",
                 {{"horizontal_fov", camera.horizontal_fov},
                  {"vertical_fov", camera.vertical_fov},
-                 {"lidar", mission.sensor.lidar.has_value()}}}};
+                 {"lidar", flight.capture.is_scanner}}}};
   if (!priors.empty()) outline["priors"] = std::move(priors);
   return outline;
 }

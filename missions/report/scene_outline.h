@@ -6,7 +6,8 @@
 #include <Eigen/Core>
 #include <nlohmann/json.hpp>
 
-#include "missions/config/mission.h"
+#include "missions/scene/scene_options.h"
+#include "missions/session/survey_options.h"
 
 namespace skycap::missions::report {
 
@@ -14,7 +15,8 @@ namespace skycap::missions::report {
 /// "top"}], "sensor": {"horizontal_fov", "vertical_fov", "view_distance", "lidar"}}, in metres and
 /// radians. Roles: no_fly, geofence, unknown (what must be measured before it counts as free) and
 /// scene (what is to be surveyed). A bottom or top of null has no end.
-nlohmann::ordered_json scene_outline(const config::Mission& mission,
+nlohmann::ordered_json scene_outline(const session::SurveyOptions& survey,
+                                     const scene::SceneOptions& scene,
                                      const std::optional<Eigen::Vector3d>& pad);
 
 }  // namespace skycap::missions::report

@@ -14,7 +14,6 @@
 #include "geometry/io/file.h"
 #include "geometry/io/json.h"
 #include "geometry/parallel.h"
-#include "missions/config/mission_flight.h"
 #include "missions/package/coverage_map.h"
 #include "missions/package/fleet/timetable_file.h"
 #include "missions/package/package.h"
@@ -57,11 +56,11 @@ Json files_of(const Json& summary, const ResultFinder& results) {
 }
 
 /// Latitude, longitude and ellipsoid height of the holes' centres.
-Json hole_places(const Json& summary, const config::Mission& mission) {
+Json hole_places(const Json& summary, const flight::FlightOptions& options) {
   Json places = Json::array();
   const Json::json_pointer holes("/surface/holes");
-  if (!config::has_place(mission) || !summary.contains(holes)) return places;
-  const flight::LocalFrame frame(config::site_of(mission).origin);
+  if (!options.has_place || !summary.contains(holes)) return places;
+  const flight::LocalFrame frame(options.site.origin);
   for (const Json& hole : summary[holes]) {
     const Json& centre = hole.at("centre");
     const flight::GeodeticPoint place = frame.to_geodetic(
@@ -72,8 +71,7 @@ Json hole_places(const Json& summary, const config::Mission& mission) {
 }
 
 /// As the planner has learnt it, else as the mission says.
-PointNoise noise_of(const Json& summary, const config::Mission& mission) {
-  const sim::NoiseConfig& stated = mission.sensor.camera.noise;
+PointNoise noise_of(const Json& summary, const sim::NoiseConfig& stated) {
   const Json::json_pointer learnt("/belief/noise_m");
   const bool is_learnt = summary.contains(learnt) && summary[learnt].is_number() &&
                          summary[learnt].get<double>() > 0.0;
@@ -128,11 +126,12 @@ double reach_of(const Json& summary) {
 
 }  // namespace
 
-std::string live_page(const config::Mission& mission, session::SurveyRecord so_far,
+std::string live_page(const std::string& summary_text, const session::SurveyOptions& survey,
+                      const scene::SceneOptions& scene, session::SurveyRecord so_far,
                       const NextView& next) {
   constexpr std::size_t most_points = 250'000;
   const package::CoverageFigures unknown{so_far.coverage(), {}, {}};
-  const Json summary = Json::parse(package::summary_json(mission, so_far, unknown));
+  const Json summary = Json::parse(summary_text);
   const auto patches = package::known_surface(so_far, unknown);
   const geometry::AttributedCloud map = package::coverage_map(patches);
   geometry::AttributedCloud cloud;
@@ -144,18 +143,19 @@ std::string live_page(const config::Mission& mission, session::SurveyRecord so_f
   shown["because"] = support::counted(so_far.views.size(), "scan") + " so far" +
                      (goes_on ? "" : "; skycap finish makes the package");
   shown["light"] = "none";
+  const auto name = summary.at("mission").get<std::string>();
   const Json data = {{"kind", "survey"},
-                     {"title", mission.name},
+                     {"title", name},
                      {"verdict", shown},
                      {"summary", summary},
-                     {"scene", scene_outline(mission, mission.flight.takeoff)},
-                     {"hole_places", hole_places(summary, mission)},
+                     {"scene", scene_outline(survey, scene, survey.flight.takeoff)},
+                     {"hole_places", hole_places(summary, survey.flight)},
                      {"live",
                       {{"position", goes_on ? support::json_of(next.view->position) : Json()},
                        {"direction", goes_on ? support::json_of(next.view->direction) : Json()},
                        {"way", support::json_of(next.way)}}}};
   return page_text(
-      mission.name, data,
+      name, data,
       {measured_cloud(cloud, point_states(cloud, map, reach_of(summary)), {}, most_points),
        missing_cloud(map, most_points)});
 }
@@ -173,7 +173,7 @@ std::string survey_report(const ResultFinder& results, std::size_t most_points) 
     const fs::path free_space = results(package::free_space_name);
     std::vector<PageCloud> clouds(3);
     Json accuracy;
-    geometry::parallel_for(2, survey.mission.threads, [&](std::size_t part) {
+    geometry::parallel_for(2, survey.mission.run.threads, [&](std::size_t part) {
       if (part == 0) {
         const std::vector<std::uint16_t> states = point_states(cloud, map, reach_of(summary));
         clouds[0] = measured_cloud(cloud, states, incidence, most_points);
@@ -182,18 +182,19 @@ std::string survey_report(const ResultFinder& results, std::size_t most_points) 
       clouds[1] = missing_cloud(map, most_points);
       clouds[2] = free_cloud(free_space);
       const std::vector<float> errors =
-          surface_errors(cloud, incidence, noise_of(summary, survey.mission),
-                         survey.mission.evaluation.registration_distance);
+          surface_errors(cloud, incidence, noise_of(summary, survey.mission.sensor().camera.noise),
+                         survey.mission.evaluation().registration_distance);
       accuracy = accuracy_json(incidence, ranges(cloud, survey.views), errors);
     });
-    const Json data = {{"kind", "survey"},
-                       {"title", summary.value("mission", std::string())},
-                       {"verdict", verdict(summary)},
-                       {"summary", summary},
-                       {"scene", scene_outline(survey.mission, survey.pad)},
-                       {"hole_places", hole_places(summary, survey.mission)},
-                       {"accuracy", std::move(accuracy)},
-                       {"files", files_of(summary, results)}};
+    const Json data = {
+        {"kind", "survey"},
+        {"title", summary.value("mission", std::string())},
+        {"verdict", verdict(summary)},
+        {"summary", summary},
+        {"scene", scene_outline(survey.mission.survey(), survey.mission.scene(), survey.pad)},
+        {"hole_places", hole_places(summary, survey.mission.flight())},
+        {"accuracy", std::move(accuracy)},
+        {"files", files_of(summary, results)}};
     return page_text(data.at("title"), data, clouds);
   } catch (const Json::exception& error) {
     refuse_results(summary_file, error.what());

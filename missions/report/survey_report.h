@@ -9,8 +9,9 @@
 #include <Eigen/Core>
 
 #include "geometry/place/pose.h"
-#include "missions/config/mission.h"
 #include "missions/report/results.h"
+#include "missions/scene/scene_options.h"
+#include "missions/session/survey_options.h"
 #include "missions/session/survey_record.h"
 
 namespace skycap::missions::report {
@@ -28,7 +29,9 @@ struct NextView {
 
 /// The page of a survey that goes on: a browser that shows it reads it again now and then. Shows
 /// fewer points than the page of a finished one, and no incidence, so that it costs little.
-std::string live_page(const config::Mission& mission, session::SurveyRecord so_far,
+/// `summary_text` is package::summary_json() of the same record.
+std::string live_page(const std::string& summary_text, const session::SurveyOptions& survey,
+                      const scene::SceneOptions& scene, session::SurveyRecord so_far,
                       const NextView& next);
 
 }  // namespace skycap::missions::report

@@ -18,13 +18,13 @@
 #include "geometry/io/cloud_io.h"
 #include "geometry/io/file.h"
 #include "geometry/io/record_log.h"
+#include "geometry/points/depth_image.h"
 #include "geometry/points/point_cloud.h"
 #include "missions/scan/preview.h"
 #include "missions/scan/rawlog_module.h"
 #include "missions/scan/scan_route.h"
 #include "missions/support/json_text.h"
 #include "missions/support/module.h"
-#include "sim/sensors/depth_image.h"
 
 namespace skycap::missions::scan {
 namespace {
@@ -60,7 +60,7 @@ class FrameRawlog {
     require_written();
   }
 
-  void append(const Frame& frame, const sim::DepthImage& image) {
+  void append(const Frame& frame, const geometry::DepthImage& image) {
     const Eigen::Isometry3d world_from_sensor =
         frame.believed_from_camera * body_from_camera().inverse();
     encode_({frame.time, world_from_sensor, image, camera_.focal_length_px(),
@@ -200,8 +200,9 @@ class FrameRecording {
   void take(const Frame& frame) {
     scan_ = camera_.scan(scene_, frame.world_from_camera, result_.frames, options_.threads,
                          std::move(scan_));
-    const sim::DepthImage image = sim::depth_image(scan_, camera_.camera(), options_.depth_unit);
-    sim::write_depth_png(image, journal_.path(file_name(result_.frames)));
+    const geometry::DepthImage image =
+        geometry::depth_image(scan_, camera_.camera(), options_.depth_unit);
+    geometry::write_depth_png(image, journal_.path(file_name(result_.frames)));
     if (rawlog_) rawlog_->append(frame, image);
     add_preview(scan_, frame, static_cast<std::uint32_t>(result_.frames), preview_share_, preview_);
     ++result_.frames;

@@ -42,7 +42,7 @@ LaserResult record_laser(const sim::Scene& scene, const sim::Lidar& lidar,
 /// The file that makes a piece complete: what it is of, and what its other files hold.
 inline constexpr const char* piece_name = "piece.json";
 
-/// The text of piece_name. `identity` is what decides the piece (config::identity_text()).
+/// The text of piece_name. `identity` is what decides the piece (support::identity_text()).
 std::string piece_text(const std::string& identity, const LaserCheckpoint& reached);
 
 /// What a piece that is complete and of that identity holds in so many files; nothing without one.

@@ -11,8 +11,8 @@
 
 #include <Eigen/Geometry>
 
+#include "geometry/points/depth_image.h"
 #include "missions/scan/cloud_file.h"
-#include "sim/sensors/depth_image.h"
 #include "sim/sensors/sensor.h"
 
 namespace skycap::missions::scan {
@@ -34,7 +34,7 @@ struct RawlogSetup {
 struct DepthFrame {
   double time = 0.0;  ///< [s]
   Eigen::Isometry3d world_from_sensor = Eigen::Isometry3d::Identity();
-  const sim::DepthImage& image;
+  const geometry::DepthImage& image;
   Eigen::Vector2d focal_length_px, principal_point_px;
   double unit = 0.001;     ///< what one step of the image stands for [m]
   double max_range = 0.0;  ///< [m]

@@ -9,7 +9,7 @@
 
 #include "geometry/error.h"
 #include "geometry/io/record_log.h"
-#include "missions/config/survey_sensor.h"
+#include "geometry/place/platform.h"
 #include "missions/support/number_text.h"
 
 namespace skycap::missions::scan {
@@ -17,33 +17,34 @@ namespace {
 
 using Eigen::Isometry3d;
 
-ScanRoute route_of(const config::Mission& mission, const std::filesystem::path& folder,
+ScanRoute route_of(const FlownScanOptions& options, const std::filesystem::path& folder,
                    const std::optional<std::filesystem::path>& route_file, Carrier carrier) {
-  if (route_file) return read_scan_route(*route_file, mission, carrier);
-  if (mission.scan.route) return read_scan_route(folder / *mission.scan.route, mission, carrier);
-  return {orbit_trajectory(mission.scan.orbit), {}};
+  if (route_file) return read_scan_route(*route_file, options, carrier);
+  if (options.route) return read_scan_route(folder / *options.route, options, carrier);
+  return {orbit_trajectory(options.orbit), {}};
 }
 
-Mount calibrated_mount(const config::ScanConfig& scan) {
-  const Isometry3d real = config::mount_of(scan);
-  Isometry3d believed = config::rotation_of(scan.boresight_error) * real;
-  believed.translation() = scan.mount_position + scan.lever_arm_error;
+Mount calibrated_mount(const FlownScanOptions& options) {
+  const Isometry3d real = options.mount();
+  Isometry3d believed = geometry::rotation_of(options.boresight_error) * real;
+  believed.translation() = options.mount_position + options.lever_arm_error;
   return {real, believed};
 }
 
-sim::Trajectory believed_by(const config::Mission& mission, const sim::Trajectory& flown) {
-  sim::NavigationErrors errors = mission.scan.navigation;
-  errors.seed = mission.seed;
+sim::Trajectory believed_by(sim::NavigationErrors errors, std::uint64_t seed,
+                            const sim::Trajectory& flown) {
+  errors.seed = seed;
   return sim::believed_trajectory(flown, errors);
 }
 
 }  // namespace
 
-ScanFlight scan_flight(const config::Mission& mission, const std::filesystem::path& folder,
+ScanFlight scan_flight(const FlownScanOptions& options, std::uint64_t seed,
+                       const std::filesystem::path& folder,
                        const std::optional<std::filesystem::path>& route_file, Carrier carrier) {
-  ScanRoute route = route_of(mission, folder, route_file, carrier);
-  sim::Trajectory believed = believed_by(mission, route.carrier);
-  return {std::move(route), std::move(believed), calibrated_mount(mission.scan)};
+  ScanRoute route = route_of(options, folder, route_file, carrier);
+  sim::Trajectory believed = believed_by(options.navigation, seed, route.carrier);
+  return {std::move(route), std::move(believed), calibrated_mount(options)};
 }
 
 std::string digest_of(const ScanFlight& flight) {

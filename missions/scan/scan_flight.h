@@ -1,6 +1,7 @@
 /// How a mission's sensor is carried while it scans, and how its carrier believes that it is.
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <functional>
 #include <optional>
@@ -8,7 +9,7 @@
 
 #include <Eigen/Geometry>
 
-#include "missions/config/mission.h"
+#include "missions/scan/scan_options.h"
 #include "missions/scan/scan_route.h"
 #include "sim/sensors/lidar.h"
 #include "sim/sensors/trajectory.h"
@@ -31,9 +32,10 @@ struct ScanFlight {
   }
 };
 
-/// The flight of `route_file`, else of the mission's route, which is relative to `folder`, else of
-/// its orbit. Throws what read_scan_route() throws.
-ScanFlight scan_flight(const config::Mission& mission, const std::filesystem::path& folder,
+/// The flight of `route_file`, else of the options' route, which is relative to `folder`, else of
+/// their orbit. The seed is that of the navigation's errors. Throws what read_scan_route() throws.
+ScanFlight scan_flight(const FlownScanOptions& options, std::uint64_t seed,
+                       const std::filesystem::path& folder,
                        const std::optional<std::filesystem::path>& route_file, Carrier carrier);
 
 /// Tells it from other flights: a checksum of its poses, as they are and as they are believed to

@@ -6,7 +6,7 @@
 #include "geometry/error.h"
 #include "geometry/io/file.h"
 #include "geometry/io/json.h"
-#include "missions/config/journal_text.h"
+#include "missions/support/journal_text.h"
 
 namespace skycap::missions::scan {
 namespace {
@@ -39,23 +39,23 @@ bool link_or_copy(const fs::path& from, const fs::path& to) {
 ScanJournal::ScanJournal(const fs::path& results)
     : folder_(results / folder_name), file_(folder_ / "scan.journal") {}
 
-Json ScanJournal::open(const config::Mission& mission, const Json& more, bool resumes) {
-  const std::string identity = config::identity_text(mission, more);
+Json ScanJournal::open(const support::Identity& run, const Json& more, bool resumes) {
+  const std::string identity = support::identity_text(run, more);
   if (resumes && fs::exists(file_)) log_.emplace(file_);
   if (!log_ || log_->records().empty()) {
     begin(identity);
     return nullptr;
   }
   const std::vector<std::string>& records = log_->records();
-  config::require_same_survey(file_.string(), records.front(), identity,
-                              "begin anew without --resume");
+  support::require_same_survey(file_.string(), records.front(), identity,
+                               "begin anew without --resume");
   return records.size() > 1 ? geometry::parse_json<Json>(records.back()) : Json();
 }
 
-bool ScanJournal::is_of(const config::Mission& mission, const Json& more) const {
+bool ScanJournal::is_of(const support::Identity& run, const Json& more) const {
   try {
     const std::vector<std::string> records = geometry::read_records(file_).records;
-    return !records.empty() && records.front() == config::identity_text(mission, more);
+    return !records.empty() && records.front() == support::identity_text(run, more);
   } catch (const Error&) {
     return false;  // a damaged journal is of nothing
   }
@@ -86,7 +86,7 @@ fs::path ScanJournal::path_to_change(const std::string& name) const {
 
 void ScanJournal::checkpoint(const Json& state) {
   geometry::sync_to_disk(folder_);  // the names of new files
-  log_->append(config::journal_line(state));
+  log_->append(support::journal_line(state));
 }
 
 void ScanJournal::stage(const std::string& name, geometry::OutputFolder& results) const {

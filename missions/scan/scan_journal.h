@@ -14,7 +14,7 @@
 
 #include "geometry/io/output_folder.h"
 #include "geometry/io/record_log.h"
-#include "missions/config/mission.h"
+#include "missions/support/identity.h"
 
 namespace skycap::missions::scan {
 
@@ -30,13 +30,13 @@ class ScanJournal {
 
   /// Begins a scan, in place of what was there; or goes on with the one that was interrupted
   /// there, if there is one (`resumes`), and returns what its last checkpoint() said. Null without
-  /// one. `more` is what beside the mission's keys decides the files. Throws Error{bad_file} naming
+  /// one. `more` is what beside the identity decides the files. Throws Error{bad_file} naming
   /// the journal if it is of another scan, saying what is different, or damaged.
-  nlohmann::ordered_json open(const config::Mission& mission, const nlohmann::ordered_json& more,
+  nlohmann::ordered_json open(const support::Identity& run, const nlohmann::ordered_json& more,
                               bool resumes);
 
   /// Whether a scan of just this was interrupted there, so that open() may go on with it.
-  bool is_of(const config::Mission& mission, const nlohmann::ordered_json& more) const;
+  bool is_of(const support::Identity& run, const nlohmann::ordered_json& more) const;
 
   /// Where a file of the scan is.
   std::filesystem::path path(const std::string& name) const { return folder_ / name; }

@@ -12,7 +12,6 @@
 #include "geometry/error.h"
 #include "geometry/io/file.h"
 #include "geometry/place/pose.h"
-#include "missions/config/mission_flight.h"
 #include "missions/support/number_text.h"
 
 namespace skycap::missions::scan {
@@ -176,36 +175,35 @@ ScanRoute from_sorties(const std::vector<std::filesystem::path>& files, double s
 
 }  // namespace
 
-ScanRoute read_scan_route(const std::filesystem::path& path, const config::Mission& mission,
+ScanRoute read_scan_route(const std::filesystem::path& path, const FlownScanOptions& options,
                           Carrier carrier) {
   std::filesystem::path file = path;
   if (std::filesystem::is_directory(path)) {
     const std::vector<std::filesystem::path> sorties = sorties_in(path);
-    if (!sorties.empty()) return from_sorties(sorties, mission.scan.speed, carrier);
+    if (!sorties.empty()) return from_sorties(sorties, options.speed, carrier);
     file = path / "views.csv";
   }
   const std::string ending = file.extension().string();
   const bool has_local_places = ending == ".tum" || ending == ".txt" || ending == ".csv";
   if (!has_local_places) {
-    if (!config::has_place(mission)) {
+    if (!options.site) {
       throw Error(
           ErrorKind::bad_config,
           file.string() + ": has places on Earth; give site.latitude_deg and site.longitude_deg");
     }
-    const Vector3d pad = mission.flight.takeoff.value_or(Vector3d::Zero());
-    return from_points(flight::read_route(file, config::site_of(mission), pad), mission.scan.speed);
+    return from_points(flight::read_route(file, *options.site, options.pad), options.speed);
   }
   const std::string text = route_text(file);
   try {
     if (ending != ".csv") return from_tum(text);
-    if (text.starts_with("view,")) return from_views(views_of(text), mission.scan.speed, carrier);
+    if (text.starts_with("view,")) return from_views(views_of(text), options.speed, carrier);
     return from_states(flight::read_trajectory_csv(text), carrier);
   } catch (const Error& error) {
     fail_in(file, error);
   }
 }
 
-sim::Trajectory orbit_trajectory(const config::OrbitConfig& orbit) {
+sim::Trajectory orbit_trajectory(const OrbitOptions& orbit) {
   constexpr double interval = 0.02;  // [s]; at 10 m/s on 30 m the chords are off by 0.2 mm
   const double round = 2.0 * std::numbers::pi * orbit.radius;
   const double step =

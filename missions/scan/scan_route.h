@@ -5,7 +5,7 @@
 #include <optional>
 #include <vector>
 
-#include "missions/config/mission.h"
+#include "missions/scan/scan_options.h"
 #include "sim/sensors/trajectory.h"
 
 namespace skycap::missions::scan {
@@ -26,17 +26,17 @@ struct ScanRoute {
 ///    it a gimbal or not;
 ///  - .csv: a trajectory as written by flight/export/trajectory_file.h, or views as in views.csv;
 ///  - .plan, .waypoints, .kmz, .kml, .geojson, .json: the points of any file that flight/export
-///    reads, by the mission's georeference, looking ahead;
+///    reads, by the options' site and pad, looking ahead;
 ///  - a folder: of the mission package in it the mission.csv, or mission-1.csv, mission-2.csv and
 ///    so on one after the other, or its views.csv if it is not flown.
-/// Views and points are flown in order along straight lines at the mission's scan.speed, with turns
+/// Views and points are flown in order along straight lines at the options' speed, with turns
 /// of 1 rad/s on the spot; an image is taken at each view. Throws Error{bad_file} in one line, and
-/// Error{bad_config} if the file's places are on Earth and the mission's are not.
-ScanRoute read_scan_route(const std::filesystem::path& path, const config::Mission& mission,
+/// Error{bad_config} if the file's places are on Earth and the options have no site.
+ScanRoute read_scan_route(const std::filesystem::path& path, const FlownScanOptions& options,
                           Carrier carrier);
 
 /// Circles at constant speed, level, nose in the direction of flight. Time starts at zero.
-sim::Trajectory orbit_trajectory(const config::OrbitConfig& orbit);
+sim::Trajectory orbit_trajectory(const OrbitOptions& orbit);
 
 /// body_from_camera of a camera that looks forward: its optical axis is the body's x.
 Eigen::Isometry3d body_from_camera();

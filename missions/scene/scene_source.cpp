@@ -14,10 +14,10 @@
 #include "geometry/io/mesh_io.h"
 #include "geometry/io/record_log.h"
 #include "geometry/place/world.h"
-#include "missions/config/mission_priors.h"
 #include "missions/scene/model_store.h"
 #include "missions/scene/scene_tiles.h"
 #include "missions/site_data/prior.h"
+#include "missions/site_data/site_priors.h"
 #include "missions/support/number_text.h"
 #include "missions/support/yaml_tree.h"
 #include "sim/models/models.h"
@@ -31,13 +31,12 @@ using Eigen::Vector3d;
 constexpr std::string_view builtin = "builtin:", stored = "model:";
 
 /// Of a model that is not built in.
-std::filesystem::path model_file(const config::SceneConfig& scene,
-                                 const std::filesystem::path& folder) {
+std::filesystem::path model_file(const SceneOptions& scene, const std::filesystem::path& folder) {
   return scene.model.starts_with(stored) ? find_model(scene.model.substr(stored.size()))
                                          : folder / scene.model;
 }
 
-sim::ModelOptions options_of(const config::SceneConfig& scene) {
+sim::ModelOptions options_of(const SceneOptions& scene) {
   sim::ModelOptions options;
   options.detail = scene.detail;
   options.seed = scene.seed;
@@ -45,7 +44,7 @@ sim::ModelOptions options_of(const config::SceneConfig& scene) {
   return options;
 }
 
-geometry::Mesh named_model(const config::SceneConfig& scene, const std::filesystem::path& folder) {
+geometry::Mesh named_model(const SceneOptions& scene, const std::filesystem::path& folder) {
   const std::string& model = scene.model;
   if (model.starts_with(builtin)) {
     return sim::builtin_model(model.substr(builtin.size()), options_of(scene));
@@ -61,7 +60,7 @@ Vector3d middle_of_base(const Eigen::AlignedBox3d& box) {
 
 constexpr double most_triangles = 1e7;  // of one mesh: about 2 GiB with the tree that rays search
 
-geometry::Mesh joined_tiles(const config::SceneConfig& scene, const std::filesystem::path& folder) {
+geometry::Mesh joined_tiles(const SceneOptions& scene, const std::filesystem::path& folder) {
   geometry::Mesh all;
   for (const TileKind& tile : tiles_of(scene, folder)) {
     const geometry::Mesh mesh = load_model(tile.scene, folder);
@@ -82,7 +81,7 @@ geometry::Mesh joined_tiles(const config::SceneConfig& scene, const std::filesys
   return all;
 }
 
-std::vector<sim::Surface> joined_surfaces(const config::SceneConfig& scene,
+std::vector<sim::Surface> joined_surfaces(const SceneOptions& scene,
                                           const std::filesystem::path& folder) {
   std::vector<sim::Surface> all;
   for (const TileKind& tile : tiles_of(scene, folder)) {
@@ -94,9 +93,9 @@ std::vector<sim::Surface> joined_surfaces(const config::SceneConfig& scene,
   return all;
 }
 
-Eigen::Affine3d turn_of(const config::SceneConfig& scene) {
+Eigen::Affine3d turn_of(const SceneOptions& scene) {
   const Vector3d& angles = scene.rotation;
-  const double upright = scene.up_axis == config::UpAxis::y ? 0.5 * std::numbers::pi : 0.0;
+  const double upright = scene.up_axis == UpAxis::y ? 0.5 * std::numbers::pi : 0.0;
   return Eigen::Affine3d(
       AngleAxisd(angles.z(), Vector3d::UnitZ()) * AngleAxisd(angles.y(), Vector3d::UnitY()) *
       AngleAxisd(angles.x(), Vector3d::UnitX()) * AngleAxisd(upright, Vector3d::UnitX()));
@@ -136,8 +135,7 @@ std::map<std::string, Material> materials_of(const std::filesystem::path& file,
 }
 
 /// The model in its own frame, with reflectances by the names of its materials.
-ReflectingScene model_of_materials(const config::SceneConfig& scene,
-                                   const std::filesystem::path& folder) {
+ReflectingScene model_of_materials(const SceneOptions& scene, const std::filesystem::path& folder) {
   if (scene.model.starts_with(builtin)) {
     throw Error(ErrorKind::bad_config,
                 "scene.materials needs a model from a file; " + scene.model + " has no materials");
@@ -169,7 +167,7 @@ ReflectingScene model_of_materials(const config::SceneConfig& scene,
 
 }  // namespace
 
-geometry::Mesh load_model(const config::SceneConfig& scene, const std::filesystem::path& folder) {
+geometry::Mesh load_model(const SceneOptions& scene, const std::filesystem::path& folder) {
   if (is_tiled(scene)) return joined_tiles(scene, folder);
   geometry::Mesh mesh =
       scene.materials ? model_of_materials(scene, folder).model : named_model(scene, folder);
@@ -181,7 +179,7 @@ geometry::Mesh load_model(const config::SceneConfig& scene, const std::filesyste
   return mesh;
 }
 
-std::vector<sim::Surface> load_surfaces(const config::SceneConfig& scene,
+std::vector<sim::Surface> load_surfaces(const SceneOptions& scene,
                                         const std::filesystem::path& folder) {
   if (is_tiled(scene)) return joined_surfaces(scene, folder);
   if (scene.materials) return model_of_materials(scene, folder).surfaces;
@@ -189,29 +187,28 @@ std::vector<sim::Surface> load_surfaces(const config::SceneConfig& scene,
   return sim::builtin_surfaces(scene.model.substr(builtin.size()), options_of(scene));
 }
 
-std::vector<std::filesystem::path> files_of(const config::Mission& mission,
+std::vector<std::filesystem::path> files_of(const SceneOptions& scene,
+                                            const std::optional<std::string>& lidar,
                                             const std::filesystem::path& folder) {
   std::vector<std::filesystem::path> files;
-  if (mission.sensor.lidar && mission.sensor.lidar->ends_with(".yaml")) {
-    files.push_back(folder / *mission.sensor.lidar);
+  if (lidar && lidar->ends_with(".yaml")) files.push_back(folder / *lidar);
+  if (scene.materials) files.push_back(folder / *scene.materials);
+  if (!scene.is_truth_prior() && !scene.model.starts_with(builtin)) {
+    files.push_back(model_file(scene, folder));
   }
-  if (mission.scene.materials) files.push_back(folder / *mission.scene.materials);
-  if (!config::is_truth_prior(mission) && !mission.scene.model.starts_with(builtin)) {
-    files.push_back(model_file(mission.scene, folder));
-  }
-  if (!config::is_truth_prior(mission) && is_tiled(mission.scene)) {
-    for (const TileKind& tile : tiles_of(mission.scene, folder)) {
+  if (!scene.is_truth_prior() && is_tiled(scene)) {
+    for (const TileKind& tile : tiles_of(scene, folder)) {
       if (!tile.scene.model.starts_with(builtin)) files.push_back(model_file(tile.scene, folder));
     }
   }
   return files;
 }
 
-Eigen::Affine3d turn_and_scale(const config::SceneConfig& scene) {
+Eigen::Affine3d turn_and_scale(const SceneOptions& scene) {
   return Eigen::Affine3d(Eigen::Scaling(scene.scale.value_or(1.0))) * turn_of(scene);
 }
 
-void place_model(const config::SceneConfig& scene, geometry::Mesh& model) {
+void place_model(const SceneOptions& scene, geometry::Mesh& model) {
   geometry::transform(model, turn_of(scene));
   double scale = scene.scale.value_or(1.0);
   if (scene.longest_side) {
@@ -230,7 +227,7 @@ void place_model(const config::SceneConfig& scene, geometry::Mesh& model) {
   }
 }
 
-std::vector<Eigen::Isometry3d> copies_of(const config::SceneConfig& scene) {
+std::vector<Eigen::Isometry3d> copies_of(const SceneOptions& scene) {
   std::vector<Eigen::Isometry3d> places = {Eigen::Isometry3d::Identity()};
   for (const Vector3d& copy : scene.copies) {
     places.push_back(Eigen::Translation3d(scene.position + Vector3d(copy.x(), copy.y(), 0.0)) *
@@ -240,7 +237,7 @@ std::vector<Eigen::Isometry3d> copies_of(const config::SceneConfig& scene) {
   return places;
 }
 
-geometry::Mesh with_copies(const config::SceneConfig& scene, const geometry::Mesh& placed_model) {
+geometry::Mesh with_copies(const SceneOptions& scene, const geometry::Mesh& placed_model) {
   const std::vector<Eigen::Isometry3d> places = copies_of(scene);
   const double triangles =
       static_cast<double>(places.size()) * static_cast<double>(placed_model.triangles.size());
@@ -259,25 +256,23 @@ geometry::Mesh with_copies(const config::SceneConfig& scene, const geometry::Mes
   return all;
 }
 
-ReflectingScene reflecting_scene(const config::Mission& mission,
-                                 const std::filesystem::path& folder) {
-  const config::SceneConfig& scene = mission.scene;
+ReflectingScene reflecting_scene(const SceneOptions& scene, const std::filesystem::path& folder) {
   ReflectingScene result;
-  if (config::is_truth_prior(mission)) {
-    result.model = config::prior_truth(mission);
+  if (scene.is_truth_prior()) {
+    result.model = prior_truth(scene);
   } else if (scene.materials) {
     result = model_of_materials(scene, folder);
   } else {
     result.model = load_model(scene, folder);
     result.surfaces = load_surfaces(scene, folder);
   }
-  if (!config::is_truth_prior(mission)) place_model(scene, result.model);
+  if (!scene.is_truth_prior()) place_model(scene, result.model);
   const auto reflectance = static_cast<float>(scene.reflectance);
   result.reflectances.resize(result.model.triangles.size(), reflectance);
   result.places = copies_of(scene);
   if (scene.ground || scene.neighbours) {
     const geometry::Mesh all = with_copies(scene, result.model);
-    result.beside = surroundings_of(mission, geometry::bounding_box(all));
+    result.beside = surroundings_of(scene, geometry::bounding_box(all));
   }
   result.beside_reflectances.resize(result.beside.triangles.size(), reflectance);
   return result;
@@ -324,14 +319,14 @@ std::string ReflectingScene::digest() const {
   return digest;
 }
 
-geometry::Mesh ground_of(const config::Mission& mission, const Eigen::AlignedBox3d& model) {
-  const auto& terrain = config::priors_of(mission).terrain;
-  return terrain ? terrain->surface() : ground_under(model);
+geometry::Mesh ground_of(const SceneOptions& scene, const Eigen::AlignedBox3d& model) {
+  const bool has_terrain = scene.priors && scene.priors->terrain;
+  return has_terrain ? scene.priors->terrain->surface() : ground_under(model);
 }
 
-geometry::Mesh surroundings_of(const config::Mission& mission, const Eigen::AlignedBox3d& model) {
-  geometry::Mesh mesh = config::prior_neighbours(mission);
-  if (mission.scene.ground) geometry::append(mesh, ground_of(mission, model));
+geometry::Mesh surroundings_of(const SceneOptions& scene, const Eigen::AlignedBox3d& model) {
+  geometry::Mesh mesh = prior_neighbours(scene);
+  if (scene.ground) geometry::append(mesh, ground_of(scene, model));
   return mesh;
 }
 

@@ -35,7 +35,7 @@ using Eigen::Vector3d;
 class TileEntry {
  public:
   /// `file` is the file of tiles as the scene names it, whose folder paths count from.
-  TileEntry(support::YamlSection& section, const config::SceneConfig& scene, const fs::path& file,
+  TileEntry(support::YamlSection& section, const SceneOptions& scene, const fs::path& file,
             const fs::path& folder)
       : section_(section), place_(fs::path(file).parent_path()), folder_(folder) {
     one_.ground = scene.ground;  // so that no tile brings its own
@@ -134,11 +134,11 @@ class TileEntry {
 
   support::YamlSection& section_;
   fs::path place_, folder_;
-  config::SceneConfig one_;
+  SceneOptions one_;
   Vector3d origin_ = Vector3d::Zero();
 };
 
-void require_for_tiles(const config::SceneConfig& scene) {
+void require_for_tiles(const SceneOptions& scene) {
   const auto refuse = [](const char* key) {
     throw Error(ErrorKind::bad_config,
                 std::string(key) + " is not for scenes of tiles; leave it out");
@@ -163,9 +163,9 @@ Eigen::AlignedBox3d at(const Eigen::AlignedBox3d& box, const Eigen::Isometry3d& 
 
 }  // namespace
 
-bool is_tiled(const config::SceneConfig& scene) { return scene.model.ends_with(".tiles"); }
+bool is_tiled(const SceneOptions& scene) { return scene.model.ends_with(".tiles"); }
 
-std::vector<TileKind> tiles_of(const config::SceneConfig& scene, const fs::path& folder) {
+std::vector<TileKind> tiles_of(const SceneOptions& scene, const fs::path& folder) {
   require_for_tiles(scene);
   const std::string name = (folder / scene.model).string();
   const support::YamlNode root = support::parse_yaml(geometry::read_file(name), name);
@@ -179,13 +179,12 @@ std::vector<TileKind> tiles_of(const config::SceneConfig& scene, const fs::path&
   return tiles;
 }
 
-TiledScene::TiledScene(const config::Mission& mission, const fs::path& folder,
+TiledScene::TiledScene(const SceneOptions& scene, const fs::path& folder, unsigned threads,
                        const fs::path& index)
-    : scene_(mission.scene), folder_(folder) {
+    : scene_(scene), folder_(folder) {
   for (TileKind& tile : tiles_of(scene_, folder)) kinds_.push_back({std::move(tile), {}, 0, {}});
   if (!read_index(index)) {
-    geometry::parallel_for(kinds_.size(), mission.threads,
-                           [&](std::size_t i) { look_at(kinds_[i]); });
+    geometry::parallel_for(kinds_.size(), threads, [&](std::size_t i) { look_at(kinds_[i]); });
     write_index(index);
   }
   std::string digests;
@@ -201,7 +200,7 @@ TiledScene::TiledScene(const config::Mission& mission, const fs::path& folder,
       for (const double at : place.translation()) digests += fmt::format(" {}", at);
     }
   }
-  beside_ = surroundings_of(mission, box_);
+  beside_ = surroundings_of(scene, box_);
   digest_ = fmt::format("{} tiles {:08x} {:08x}", kinds_.size(), geometry::crc32_of(digests),
                         checksum(beside_));
 }
@@ -219,7 +218,7 @@ std::string TiledScene::index_key() const {
   const Eigen::Affine3d turn = turn_and_scale(scene_);
   for (int i = 0; i < 16; ++i) inputs += fmt::format(" {}", turn.matrix()(i / 4, i % 4));
   for (const Kind& kind : kinds_) {
-    const config::SceneConfig& one = kind.tile.scene;
+    const SceneOptions& one = kind.tile.scene;
     inputs += fmt::format("\n{} {} {}", one.model, one.seed, one.ground);
     const fs::path file = folder_ / one.model;
     std::error_code none;

@@ -13,27 +13,26 @@
 #include <Eigen/Geometry>
 
 #include "geometry/surfaces/mesh.h"
-#include "missions/config/mission.h"
+#include "missions/scene/scene_options.h"
 #include "sim/scene/scene.h"
 
 namespace skycap::missions::scene {
 
 /// A mesh that stands in the scene, once or several times.
 struct TileKind {
-  config::SceneConfig scene;  ///< names it
+  SceneOptions scene;  ///< names it
   /// Where its own origin is put, before the whole scene is turned, scaled and placed.
   std::vector<Eigen::Vector3d> shifts;
 };
 
 /// Whether the scene is of tiles.
-bool is_tiled(const config::SceneConfig& scene);
+bool is_tiled(const SceneOptions& scene);
 
 /// The tiles of such a scene in the order of its file; files of a pattern by name, models by the
 /// seed that they are drawn from, places from south to north and from west to east. Throws Error
 /// naming the file if it is not there or wrong, if no file has a name of a pattern, or if a key of
 /// `scene` is not for tiles.
-std::vector<TileKind> tiles_of(const config::SceneConfig& scene,
-                               const std::filesystem::path& folder);
+std::vector<TileKind> tiles_of(const SceneOptions& scene, const std::filesystem::path& folder);
 
 /// Which parts of a scene are asked for, by boxes around them.
 using IsWanted = std::function<bool(const Eigen::AlignedBox3d& box)>;
@@ -41,9 +40,9 @@ using IsWanted = std::function<bool(const Eigen::AlignedBox3d& box)>;
 /// What sensors measure of a scene of tiles. Has looked at each mesh, and keeps none.
 class TiledScene {
  public:
-  /// Reads all meshes, on mission.threads at a time, unless the file `index` says what there is to
+  /// Reads all meshes, on so many threads, unless the file `index` says what there is to
   /// know of them; else it will, for whoever asks next. Throws what load_model() throws.
-  TiledScene(const config::Mission& mission, const std::filesystem::path& folder,
+  TiledScene(const SceneOptions& scene, const std::filesystem::path& folder, unsigned threads,
              const std::filesystem::path& index = {});
 
   /// Of the box around all tiles.
@@ -70,7 +69,7 @@ class TiledScene {
   geometry::Mesh turned_and_scaled(const TileKind& tile) const;
   std::vector<Eigen::Isometry3d> places_of(const TileKind& tile) const;
 
-  config::SceneConfig scene_;
+  SceneOptions scene_;
   std::filesystem::path folder_;
   geometry::Mesh beside_;  ///< surroundings_of() the tiles
   std::vector<Kind> kinds_;

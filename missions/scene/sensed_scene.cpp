@@ -1,24 +1,23 @@
 #include "missions/scene/sensed_scene.h"
 
-#include "missions/config/mission_priors.h"
-
 namespace skycap::missions::scene {
 namespace {
 
-std::variant<ReflectingScene, TiledScene> read(const config::Mission& mission,
+std::variant<ReflectingScene, TiledScene> read(const SceneOptions& scene,
                                                const std::filesystem::path& folder,
+                                               unsigned threads,
                                                const std::filesystem::path& index) {
-  if (!config::is_truth_prior(mission) && is_tiled(mission.scene)) {
-    return TiledScene(mission, folder, index);
+  if (!scene.is_truth_prior() && is_tiled(scene)) {
+    return TiledScene(scene, folder, threads, index);
   }
-  return reflecting_scene(mission, folder);
+  return reflecting_scene(scene, folder);
 }
 
 }  // namespace
 
-SensedScene::SensedScene(const config::Mission& mission, const std::filesystem::path& folder,
-                         const std::filesystem::path& index)
-    : scene_(read(mission, folder, index)) {}
+SensedScene::SensedScene(const SceneOptions& scene, const std::filesystem::path& folder,
+                         unsigned threads, const std::filesystem::path& index)
+    : scene_(read(scene, folder, threads, index)) {}
 
 Eigen::Vector3d SensedScene::centre() const {
   return std::visit([](const auto& scene) -> Eigen::Vector3d { return scene.centre(); }, scene_);

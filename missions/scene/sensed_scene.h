@@ -7,7 +7,7 @@
 
 #include <Eigen/Core>
 
-#include "missions/config/mission.h"
+#include "missions/scene/scene_options.h"
 #include "missions/scene/scene_source.h"
 #include "missions/scene/scene_tiles.h"
 #include "sim/scene/scene.h"
@@ -18,7 +18,7 @@ class SensedScene {
  public:
   /// `index` is of tiles, see TiledScene. Throws what reflecting_scene() and TiledScene's
   /// constructor throw.
-  SensedScene(const config::Mission& mission, const std::filesystem::path& folder,
+  SensedScene(const SceneOptions& scene, const std::filesystem::path& folder, unsigned threads,
               const std::filesystem::path& index = {});
 
   /// Whether scene() is of what is wanted alone.

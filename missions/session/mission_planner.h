@@ -6,20 +6,21 @@
 #include <optional>
 
 #include "geometry/place/pose.h"
-#include "missions/config/mission.h"
 #include "missions/session/survey_flight.h"
+#include "missions/session/survey_options.h"
 #include "missions/session/survey_record.h"
 #include "survey/planner.h"
+#include "survey/planners/planner_options.h"
 #include "survey/survey_loop.h"
 
 namespace skycap::missions::session {
 
 class MissionPlanner {
  public:
-  /// On so many threads (zero: all processors). Only a mission with a vehicle needs to know the
-  /// first view. Throws what config::make_planner() and SurveyFlight throw.
-  MissionPlanner(const config::Mission& mission, const std::optional<geometry::View>& first_view,
-                 unsigned threads);
+  /// Only a mission with a vehicle needs to know the first view. Throws what survey::make_planner()
+  /// and SurveyFlight throw.
+  MissionPlanner(const SurveyOptions& options, const std::optional<geometry::View>& first_view,
+                 const survey::PlannerRun& run);
   ~MissionPlanner();
 
   survey::Planner& planner();
@@ -35,8 +36,8 @@ class MissionPlanner {
   /// What the planner holds and believes at present; the flight is not in it.
   void tell(SurveyRecord& record) const;
 
-  /// Hands over the cloud, the flight, and what the planner believes at the end; it may turn out to
-  /// have stopped for another reason than the record's. Nothing else may be called afterwards.
+  /// Hands over the cloud, the flight, and what the planner believes at the end. Nothing else may
+  /// be called afterwards.
   void finish(SurveyRecord& record);
 
  private:

@@ -14,9 +14,7 @@
 #include "geometry/error.h"
 #include "geometry/parallel.h"
 #include "geometry/place/camera.h"
-#include "missions/config/mission_flight.h"
-#include "missions/config/pad_grounds.h"
-#include "missions/config/survey_sensor.h"
+#include "geometry/place/platform.h"
 #include "missions/session/way_frames.h"
 #include "missions/support/number_text.h"
 #include "survey/planner.h"
@@ -36,22 +34,20 @@ double FlownSurvey::min_clearance() const {
 }
 
 struct SurveyFlight::Impl {
-  explicit Impl(const config::Mission& mission)
-      : vehicle(config::vehicle_of(mission)),
-        camera(mission.sensor.camera.camera),
-        measured(std::make_shared<flight::MeasuredSpace>(config::measured_space_of(mission))),
-        rules(config::flight_rules(mission)),
+  Impl(const flight::FlightOptions& options, unsigned thread_count)
+      : vehicle(options.flown()),
+        camera(options.capture.camera),
+        measured(std::make_shared<flight::MeasuredSpace>(options.measured_space())),
+        rules(options.rules()),
         known({measured.get(), &rules}),
         space(known),
-        finder(space, config::clearance_of(mission).total(),
-               config::route_options_of(mission, {}).path),
-        motion(mission),
-        mount(mission.sensor.mount),
-        is_crowded(!mission.flight.unknown_beside.empty()),
-        frame_period(mission.sensor.frame_period),
-        threads(mission.threads) {
-    if (mount) rays = config::sweep_rays_of(mission);
-  }
+        finder(space, options.budget().total(), options.route(Vector3d::Zero()).path),
+        motion(options),
+        mount(options.capture.mount),
+        rays(options.capture.rays),
+        is_crowded(!options.unknown_beside.empty()),
+        frame_period(options.capture.frame_period),
+        threads(thread_count) {}
 
   void take_in_sweep(const geometry::Scan& scan) {
     if (rays) {
@@ -63,7 +59,7 @@ struct SurveyFlight::Impl {
 
   /// The vehicle at a view: itself without a gimbal.
   geometry::View carrier(const geometry::View& view) const {
-    return mount ? config::nose_view(*mount, view) : view;
+    return mount ? geometry::nose_view(*mount, view) : view;
   }
 
   std::optional<FlownLeg> proven(std::vector<Vector3d> points) const {
@@ -101,8 +97,8 @@ struct SurveyFlight::Impl {
   flight::InterruptibleSpace space;
   flight::PathFinder finder;
   WayMotion motion;
-  std::optional<config::ScannerMount> mount;  ///< of a scanner
-  std::optional<flight::SweepRays> rays;      ///< of its scans, if they prove space free
+  std::optional<geometry::ScannerMount> mount;  ///< of a scanner
+  std::optional<flight::SweepRays> rays;        ///< of its scans, if they prove space free
   /// If its ways are those of the written mission, too, from which autopilots return by themselves.
   std::optional<flight::WaysHome> ways_home;
   double worthwhile_saving = 0.0;  ///< that corners of such ways are worth [m]
@@ -118,15 +114,16 @@ struct SurveyFlight::Impl {
   FlownSurvey survey;
 };
 
-SurveyFlight::SurveyFlight(const config::Mission& mission, const geometry::View& first_view)
-    : impl_(std::make_unique<Impl>(mission)) {
-  impl_->survey.pad = config::pad_of(mission, first_view.position);
-  const Vector3d home = impl_->survey.pad + Vector3d(0.0, 0.0, config::takeoff_climb_of(mission));
+SurveyFlight::SurveyFlight(const flight::FlightOptions& options, const geometry::View& first_view,
+                           unsigned threads)
+    : impl_(std::make_unique<Impl>(options, threads)) {
+  impl_->survey.pad = options.pad(first_view.position);
+  const Vector3d home = impl_->survey.pad + Vector3d(0.0, 0.0, options.climb());
   impl_->above_pad = home;
   if (impl_->mount) {
-    const flight::RouteOptions options = config::route_options_of(mission, impl_->survey.pad);
-    impl_->worthwhile_saving = options.path.worthwhile_saving;
-    impl_->ways_home.emplace(impl_->space, planning_law(options, home.z()), home,
+    const flight::RouteOptions route = options.route(impl_->survey.pad);
+    impl_->worthwhile_saving = route.path.worthwhile_saving;
+    impl_->ways_home.emplace(impl_->space, planning_law(route, home.z()), home,
                              impl_->finder.clearance());
   }
   const auto refuse = [&](const std::string& place, const Vector3d& at, const std::string& cure) {
@@ -145,10 +142,9 @@ SurveyFlight::SurveyFlight(const config::Mission& mission, const geometry::View&
     refuse("the place above the take-off pad", home,
            "move flight.takeoff, raise flight.takeoff_climb, or shrink flight.unknown_box");
   }
-  flight::check_grounds(config::grounds_of(mission, impl_->survey.pad, {}),
-                        config::ground_limits_of(mission));
-  for (const Vector3d& place : config::landings_of(mission, impl_->survey.pad)) {
-    impl_->pads.emplace_back(place, config::pad_radius_of(mission));
+  flight::check_grounds(options.grounds(impl_->survey.pad, {}), options.ground_limits());
+  for (const Vector3d& place : options.landings(impl_->survey.pad)) {
+    impl_->pads.emplace_back(place, options.pad_radius());
   }
   if (!can_reach(home, first_view)) {
     refuse("the first view", first_view.position,
@@ -195,7 +191,7 @@ std::vector<ViewInFlight> SurveyFlight::frames(const geometry::View& from,
   std::vector<ViewInFlight> frames = impl_->motion.frames(impl_->leg, impl_->carrier(from),
                                                           impl_->carrier(to), impl_->frame_period);
   if (!impl_->mount) return frames;
-  for (ViewInFlight& frame : frames) frame.view = config::scanner_view(*impl_->mount, frame.view);
+  for (ViewInFlight& frame : frames) frame.view = geometry::scanner_view(*impl_->mount, frame.view);
   return frames;
 }
 

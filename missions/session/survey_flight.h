@@ -10,11 +10,11 @@
 
 #include <Eigen/Core>
 
+#include "flight/flight_options.h"
 #include "flight/route/pad_ground.h"
 #include "flight/space/measured_space.h"
 #include "geometry/place/pose.h"
 #include "geometry/points/scan.h"
-#include "missions/config/mission.h"
 #include "missions/session/view_in_flight.h"
 
 namespace skycap::missions::session {
@@ -45,7 +45,8 @@ class SurveyFlight {
  public:
   /// Throws Error{bad_config} if the first view cannot be reached from the pad through space that
   /// the pilot vouches for, or the ground of pad or rally points is known to be unfit.
-  SurveyFlight(const config::Mission& mission, const geometry::View& first_view);
+  SurveyFlight(const flight::FlightOptions& options, const geometry::View& first_view,
+               unsigned threads);
   ~SurveyFlight();
 
   /// Whether views may be there by what is known at present: among neighbours only where it is

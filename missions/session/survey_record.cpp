@@ -29,30 +29,8 @@ double SurveyRecord::sensing_time() const {
 }
 
 survey::StopReason stop_reason_named(const std::string& name) {
-  using enum survey::StopReason;
-  for (const auto reason :
-       {complete, view_limit, distance_limit, time_limit, nowhere_to_go, interrupted}) {
-    if (name == name_of(reason)) return reason;
-  }
+  if (const auto reason = survey::stop_reason_named(name)) return *reason;
   throw Error(ErrorKind::bad_file, "'" + name + "' is no reason for a survey to stop");
-}
-
-const char* name_of(survey::skycap::SkycapStop stop) {
-  switch (stop) {
-    case survey::skycap::SkycapStop::wanted_coverage:
-      return "wanted_coverage";
-    case survey::skycap::SkycapStop::little_gain:
-      return "little_gain";
-    case survey::skycap::SkycapStop::most_length:
-      return "most_length";
-    case survey::skycap::SkycapStop::most_time:
-      return "most_time";
-    case survey::skycap::SkycapStop::nothing_in_reach:
-      return "nothing_in_reach";
-    case survey::skycap::SkycapStop::running:
-      break;
-  }
-  return "running";
 }
 
 }  // namespace skycap::missions::session

@@ -11,7 +11,8 @@
 
 #include "geometry/points/point_cloud.h"
 #include "missions/session/survey_flight.h"
-#include "survey/skycap/skycap_planner.h"
+#include "survey/coverage_estimator.h"
+#include "survey/skycap/survey_belief.h"
 #include "survey/survey_loop.h"
 
 namespace skycap::missions::session {
@@ -40,11 +41,12 @@ struct SurveyRecord {
   std::vector<std::uint8_t> is_covered;  ///< for each of the scene's samples
   std::optional<FlownSurvey> flown;      ///< of a mission with a vehicle
 
-  /// What the planner skycap believed at the end, and why it stopped; nothing with the others.
+  /// What a planner that estimates coverage believed at the end; nothing with the others.
   std::optional<survey::skycap::SurveyBelief> belief;
   /// The surface that it measured, of a mission whose views are to be chosen anew; else null.
   std::shared_ptr<const survey::skycap::GainField> surface;
-  survey::skycap::SkycapStop skycap_stop = survey::skycap::SkycapStop::running;
+  /// The rule by which that planner stopped, see CoverageEstimator::stop_rule(); else empty.
+  std::string stop_rule{};
 
   bool is_complete() const { return stop_reason == survey::StopReason::complete; }
   double coverage() const { return views.empty() ? 0.0 : views.back().coverage; }
@@ -59,9 +61,5 @@ using survey::name_of;
 
 /// The reason of that name. Throws Error{bad_file}.
 survey::StopReason stop_reason_named(const std::string& name);
-
-/// The word for it in files: wanted_coverage, little_gain, ...; running if a limit of the survey
-/// came first.
-const char* name_of(survey::skycap::SkycapStop stop);
 
 }  // namespace skycap::missions::session

@@ -5,8 +5,8 @@
 
 #include <Eigen/Core>
 
+#include "geometry/place/platform.h"
 #include "geometry/place/pose.h"
-#include "missions/config/survey_sensor.h"
 
 namespace skycap::missions::session {
 
@@ -16,7 +16,7 @@ struct ViewInFlight {
   Eigen::Vector3d velocity = Eigen::Vector3d::Zero();  ///< of the vehicle, in the middle [m/s]
   double time = 0.0;                                   ///< since some moment before the first [s]
   /// Of a scanner that measures in flight; none: it stands.
-  std::optional<config::Stretch> stretch{};
+  std::optional<geometry::Stretch> stretch{};
 };
 
 }  // namespace skycap::missions::session

@@ -7,9 +7,7 @@
 #include <utility>
 
 #include "geometry/place/camera.h"
-#include "missions/config/mission_flight.h"
-#include "missions/config/site.h"
-#include "missions/config/survey_sensor.h"
+#include "geometry/place/platform.h"
 
 namespace skycap::missions::session {
 namespace {
@@ -50,13 +48,11 @@ PlaceInFlight place_on(const Vector3d& begin, const Vector3d& end, const flight:
 
 }  // namespace
 
-WayMotion::WayMotion(const config::Mission& mission)
-    : motion_(config::vehicle_of(mission),
-              config::route_options_of(mission, Vector3d::Zero()).conditions),
-      climb_(config::takeoff_climb_of(mission)),
-      rest_(std::max(flight::corner_hold, config::hold_of(mission)) +
-            config::hold_after_of(mission)),
-      turns_last_(mission.sensor.mount.has_value()) {}
+WayMotion::WayMotion(const flight::FlightOptions& options)
+    : motion_(options.flown(), options.route(Vector3d::Zero()).conditions),
+      climb_(options.climb()),
+      rest_(std::max(flight::corner_hold, options.rest_before()) + options.rest_after()),
+      turns_last_(options.capture.mount.has_value()) {}
 
 double WayMotion::time(const FlownLeg& way, const View& from, const View& to) const {
   double time = 0.0;
@@ -118,9 +114,9 @@ namespace {
 /// What is measured on one sortie after the other.
 class RouteViews {
  public:
-  RouteViews(const config::Mission& mission, const flight::Route& route)
-      : route_(route), motion_(mission), period_(mission.sensor.frame_period) {
-    if (config::scans_in_flight(mission)) mount_ = mission.sensor.mount;
+  RouteViews(const flight::FlightOptions& options, const flight::Route& route)
+      : route_(route), motion_(options), period_(options.capture.frame_period) {
+    if (options.capture.scans_in_flight()) mount_ = options.capture.mount;
   }
 
   std::vector<ViewInFlight> all() {
@@ -151,13 +147,13 @@ class RouteViews {
     const FlownLeg way{leg.points};
     if (mount_) {
       for (const ViewInFlight& nose : motion_.frames(way, from, to, period_)) {
-        add(config::scanner_view(*mount_, nose.view), nose.velocity, nose.time);
+        add(geometry::scanner_view(*mount_, nose.view), nose.velocity, nose.time);
         views_.back().stretch = nose.stretch;
       }
     }
     now_ += motion_.time(way, from, to);
     View view = to;
-    if (mount_) view = config::scanner_view(*mount_, {leg.points.back(), to.direction});
+    if (mount_) view = geometry::scanner_view(*mount_, {leg.points.back(), to.direction});
     add(view, Vector3d::Zero(), 0.0);
     now_ += motion_.rest();
   }
@@ -170,7 +166,7 @@ class RouteViews {
     for (std::size_t k = 1; static_cast<double>(k) * period_ < passage.duration; ++k) {
       const double time = static_cast<double>(k) * period_;
       const View nose = nose_on(passage, time);
-      add(config::scanner_view(*mount_, nose), state_at(passage.curve, time).velocity, time);
+      add(geometry::scanner_view(*mount_, nose), state_at(passage.curve, time).velocity, time);
       const double last = std::min(time + 0.5 * period_, passage.duration);
       const double first = time - 0.5 * period_;
       views_.back().stretch = {nose_on(passage, first), nose_on(passage, last), last - first};
@@ -195,23 +191,24 @@ class RouteViews {
   const flight::Route& route_;
   WayMotion motion_;
   double period_;
-  std::optional<config::ScannerMount> mount_;  ///< of a scanner
+  std::optional<geometry::ScannerMount> mount_;  ///< of a scanner
   double now_ = 0.0;
   std::vector<ViewInFlight> views_;
 };
 
 }  // namespace
 
-std::vector<ViewInFlight> measured_views(const config::Mission& mission,
+std::vector<ViewInFlight> measured_views(const flight::FlightOptions& options,
                                          const flight::Route& route) {
-  return RouteViews(mission, route).all();
+  return RouteViews(options, route).all();
 }
 
-flight::PictureBounds moving_bounds_of(const config::Mission& mission) {
-  flight::Vehicle vehicle = config::vehicle_of(mission);
-  vehicle.sway_speed += mission.flight.cruise_speed;
-  return picture_bounds(vehicle, geometry::Camera(mission.sensor.camera.camera),
-                        mission.sensor.shutter, config::view_distance_of(mission));
+flight::PictureBounds moving_bounds_of(const flight::FlightOptions& options) {
+  flight::Vehicle vehicle = options.flown();
+  vehicle.sway_speed += options.cruise_speed;
+  const flight::CaptureOptions& capture = options.capture;
+  return picture_bounds(vehicle, geometry::Camera(capture.camera), capture.shutter,
+                        capture.view_distance);
 }
 
 }  // namespace skycap::missions::session

@@ -8,11 +8,11 @@
 
 #include <vector>
 
+#include "flight/flight_options.h"
 #include "flight/motion/motion.h"
 #include "flight/motion/picture_bounds.h"
 #include "flight/route/route.h"
 #include "geometry/place/pose.h"
-#include "missions/config/mission.h"
 #include "missions/session/survey_flight.h"
 #include "missions/session/view_in_flight.h"
 
@@ -20,8 +20,8 @@ namespace skycap::missions::session {
 
 class WayMotion {
  public:
-  /// Of the mission's vehicle, in its weather.
-  explicit WayMotion(const config::Mission& mission);
+  /// Of the vehicle, in its weather.
+  explicit WayMotion(const flight::FlightOptions& options);
 
   /// From leaving a view until the camera looks along `to` at the way's end, with a stop in each
   /// corner [s].
@@ -48,10 +48,10 @@ class WayMotion {
 
 /// Views of all that is measured on a route: its pictures, at stations or in passing, or the scans
 /// that a scanner takes from leaving the place above the pad until it is back there.
-std::vector<ViewInFlight> measured_views(const config::Mission& mission,
+std::vector<ViewInFlight> measured_views(const flight::FlightOptions& options,
                                          const flight::Route& route);
 
 /// How sharp frames are that a camera takes at the cruise speed.
-flight::PictureBounds moving_bounds_of(const config::Mission& mission);
+flight::PictureBounds moving_bounds_of(const flight::FlightOptions& options);
 
 }  // namespace skycap::missions::session

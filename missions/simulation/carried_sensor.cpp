@@ -7,9 +7,6 @@
 #include <utility>
 
 #include "flight/motion/picture_bounds.h"
-#include "missions/config/mission_flight.h"
-#include "missions/config/planner_factory.h"
-#include "missions/config/site.h"
 #include "sim/sensors/noise.h"
 
 namespace skycap::missions::simulation {
@@ -34,26 +31,27 @@ Vector3d direction_of(std::uint64_t seed, std::uint32_t stream, std::uint64_t fr
 
 }  // namespace
 
-CarriedSensor::CarriedSensor(const config::Mission& mission, std::uint64_t seed)
-    : sensor_(mission.sensor, seed),
+CarriedSensor::CarriedSensor(const evaluation::SimulationOptions& options, std::uint64_t seed)
+    : sensor_(options.sensor, seed),
       seed_(seed),
-      camera_(mission.sensor.camera.camera),
-      shutter_(mission.sensor.shutter) {
-  if (!mission.flight.is_flown()) return;
-  if (!mission.sensor.scanner) {
-    vehicle_ = config::vehicle_of(mission);
-    distance_ = config::view_distance_of(mission);
+      camera_(options.sensor.camera.camera),
+      shutter_(options.sensor.shutter) {
+  const flight::FlightOptions& flight = options.survey.flight;
+  if (!flight.is_flown()) return;
+  if (!options.sensor.scanner) {
+    vehicle_ = flight.flown();
+    distance_ = flight.capture.view_distance;
   }
-  if (mission.scan.navigation.are_on()) {
-    sim::NavigationErrors errors = mission.scan.navigation;
+  if (options.sensor.navigation.are_on()) {
+    sim::NavigationErrors errors = options.sensor.navigation;
     errors.seed = seed;
     navigation_.emplace(errors);
   }
 }
 
-config::Carriage CarriedSensor::carriage(const session::ViewInFlight& view,
-                                         std::uint64_t frame) const {
-  config::Carriage carriage{.stretch = view.stretch};
+sim::Carriage CarriedSensor::carriage(const session::ViewInFlight& view,
+                                      std::uint64_t frame) const {
+  sim::Carriage carriage{.stretch = view.stretch};
   if (!vehicle_) return carriage;
   constexpr std::uint32_t drift_stream = 0x53574159, turn_stream = 0x53574154;
   flight::Vehicle moving = *vehicle_;
@@ -70,7 +68,7 @@ config::Carriage CarriedSensor::carriage(const session::ViewInFlight& view,
 
 geometry::Scan CarriedSensor::scan(const sim::Scene& scene, const session::ViewInFlight& view,
                                    std::uint64_t frame, unsigned threads, geometry::Scan recycled) {
-  config::Carriage carriage = this->carriage(view, frame);
+  sim::Carriage carriage = this->carriage(view, frame);
   if (navigation_) {
     const std::array<double, 6> error = navigation_->next(view.time - last_time_);
     last_time_ = view.time;

@@ -9,13 +9,14 @@
 
 #include "flight/motion/vehicle.h"
 #include "geometry/place/camera.h"
+#include "geometry/place/platform.h"
 #include "geometry/place/pose.h"
 #include "geometry/points/scan.h"
-#include "missions/config/mission.h"
-#include "missions/config/survey_sensor.h"
+#include "missions/evaluation/simulation_options.h"
 #include "missions/session/view_in_flight.h"
 #include "sim/scene/scene.h"
 #include "sim/sensors/navigation_errors.h"
+#include "sim/sensors/survey_sensor.h"
 
 namespace skycap::missions::simulation {
 
@@ -24,23 +25,23 @@ namespace skycap::missions::simulation {
 class CarriedSensor {
  public:
   /// Throws what the sensor throws.
-  CarriedSensor(const config::Mission& mission, std::uint64_t seed);
+  CarriedSensor(const evaluation::SimulationOptions& options, std::uint64_t seed);
 
   geometry::Scan scan(const sim::Scene& scene, const session::ViewInFlight& view,
                       std::uint64_t frame, unsigned threads, geometry::Scan recycled = {});
 
   /// The sensor itself, which stands where it believes to be.
-  const config::SurveySensor& at_rest() const { return sensor_; }
+  const sim::SurveySensor& at_rest() const { return sensor_; }
 
  private:
   /// How it moves while it measures.
-  config::Carriage carriage(const session::ViewInFlight& view, std::uint64_t frame) const;
+  sim::Carriage carriage(const session::ViewInFlight& view, std::uint64_t frame) const;
 
-  config::SurveySensor sensor_;
+  sim::SurveySensor sensor_;
   std::uint64_t seed_;
   std::optional<flight::Vehicle> vehicle_;  ///< of a camera that is flown
   geometry::Camera camera_;
-  flight::Shutter shutter_;
+  geometry::Shutter shutter_;
   double distance_ = 0.0;  ///< at which pixels are counted [m]
   std::optional<sim::NavigationProcess> navigation_;
   double last_time_ = 0.0;  ///< of a scan [s]

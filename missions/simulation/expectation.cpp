@@ -8,12 +8,10 @@
 #include <vector>
 
 #include "geometry/surfaces/mesh.h"
-#include "missions/config/mission_flight.h"
-#include "missions/config/planner_factory.h"
-#include "missions/config/planner_titles.h"
-#include "missions/config/survey_sensor.h"
 #include "missions/simulation/omniscient.h"
-#include "missions/simulation/survey_runner.h"
+#include "sim/sensors/survey_sensor.h"
+#include "survey/planners/planner_names.h"
+#include "survey/planners/planner_options.h"
 
 namespace skycap::missions::simulation {
 namespace {
@@ -27,6 +25,7 @@ constexpr double of_program = 5e7;
 constexpr double a_triangle = 150.0;
 constexpr double a_pixel = 50.0;
 constexpr double a_point = 60.0;
+constexpr double seconds_per_minute = 60.0;
 constexpr double packing = 0.7;  // stored points on a square of their spacing
 
 /// Views of a planner over those of one who knows the scene, in the surveys of docs/.
@@ -34,11 +33,11 @@ struct Share {
   double least, most;
 };
 
-Share share_of(const config::Mission& mission) {
-  switch (mission.planner.name) {
-    case config::PlannerName::skycap:
+Share share_of(survey::PlannerName planner) {
+  switch (planner) {
+    case survey::PlannerName::skycap:
       return {1.1, 2.0};
-    case config::PlannerName::see_plus_plus:
+    case survey::PlannerName::see_plus_plus:
       return {1.3, 4.0};
     default:
       return {6.0, 9.0};
@@ -54,21 +53,21 @@ double way_of(const std::vector<View>& views) {
 }
 
 /// Minutes for so many views, if ways between them grow as their number's root: a tour's do.
-double minutes_of(const config::Mission& mission, const std::vector<View>& known, double views) {
-  const bool is_flown = mission.flight.is_flown();
-  const double speed = is_flown ? mission.flight.cruise_speed : mission.limits.speed;
-  const double stop = is_flown ? config::hold_of(mission) + config::hold_after_of(mission)
-                               : mission.limits.time_per_view;
+double minutes_of(const session::SurveyOptions& options, const std::vector<View>& known,
+                  double views) {
+  const flight::FlightOptions& flight = options.flight;
+  const bool is_flown = flight.is_flown();
+  const double speed = is_flown ? flight.cruise_speed : options.limits.speed;
+  const double stop =
+      is_flown ? flight.rest_before() + flight.rest_after() : options.limits.time_per_view;
   const double more = std::sqrt(views / static_cast<double>(known.size()));
-  constexpr double seconds_per_minute = 60.0;
   return (way_of(known) * more / speed + views * stop) / seconds_per_minute;
 }
 
-double memory_of(const config::Mission& mission, const evaluation::SurveyScene& scene,
+double memory_of(const survey::PlannerOptions& planner, const evaluation::SurveyScene& scene,
                  double views) {
-  const auto pixels =
-      static_cast<double>(mission.sensor.camera.camera.width) * mission.sensor.camera.camera.height;
-  const double spacing = mission.planner.see.effective_spacing();
+  const auto pixels = static_cast<double>(planner.camera.width) * planner.camera.height;
+  const double spacing = planner.spacing;
   const double area = geometry::surface_area(scene.model());
   const double points = std::min(packing * area / (spacing * spacing), views * pixels);
   return of_program + a_triangle * static_cast<double>(scene.model().triangles.size()) +
@@ -76,34 +75,38 @@ double memory_of(const config::Mission& mission, const evaluation::SurveyScene& 
 }
 
 /// Seconds to measure and plan the first view.
-double time_of_a_view(const config::Mission& mission, const evaluation::SurveyScene& scene,
-                      unsigned threads) {
-  const auto planner = config::make_planner(trial_mission(mission, scene, mission.seed), threads);
-  const config::SurveySensor sensor(mission.sensor, mission.seed);
+double time_of_a_view(const evaluation::SimulationOptions& options,
+                      const evaluation::SurveyScene& scene, const session::RunOptions& run) {
+  const auto planner = survey::make_planner(
+      options.survey.planner,
+      {.seed = run.seed, .threads = run.threads, .sphere = scene.view_sphere()});
+  const sim::SurveySensor sensor(options.sensor, run.seed);
   const auto begun = std::chrono::steady_clock::now();
-  planner->next_view(sensor.scan(scene.scene(), scene.first_view(mission.seed), 0, threads));
+  planner->next_view(sensor.scan(scene.scene(), scene.first_view(run.seed), 0, run.threads));
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - begun).count();
 }
 
 }  // namespace
 
-Expectation expectation(const config::Mission& mission, const evaluation::SurveyScene& scene,
-                        unsigned threads) {
-  const std::vector<View> known = known_cover(mission, scene, mission.seed, threads, few);
-  const double limit = static_cast<double>(config::view_limit(mission));
+Expectation expectation(const evaluation::SimulationOptions& options,
+                        const evaluation::SurveyScene& scene, const session::RunOptions& run) {
+  const session::SurveyOptions& asked = options.survey;
+  const std::vector<View> known = known_cover(options, scene, run.seed, run.threads, few);
+  const double limit = static_cast<double>(asked.limits.max_views);
   const auto count = static_cast<double>(known.size());
-  const bool is_volumetric = config::title_of(mission.planner.name).metric.has_value();
-  const Share share = share_of(mission);
+  const bool is_volumetric = survey::title_of(asked.planner.name).metric.has_value();
+  const Share share = share_of(asked.planner.name);
   const double least = is_volumetric ? limit : std::min(limit, std::round(share.least * count));
   const double most = is_volumetric ? limit : std::min(limit, std::round(share.most * count));
-  const double minutes = mission.limits.max_minutes.value_or(std::numeric_limits<double>::max());
-  const double time = time_of_a_view(mission, scene, threads);
+  const double minutes =
+      asked.limits.max_time.value_or(std::numeric_limits<double>::max()) / seconds_per_minute;
+  const double time = time_of_a_view(options, scene, run);
   return {.known_views = known.size(),
           .least_views = static_cast<std::size_t>(least),
           .most_views = static_cast<std::size_t>(most),
-          .least_minutes = std::min(minutes, minutes_of(mission, known, least)),
-          .most_minutes = std::min(minutes, minutes_of(mission, known, most)),
-          .memory = memory_of(mission, scene, most),
+          .least_minutes = std::min(minutes, minutes_of(asked, known, least)),
+          .most_minutes = std::min(minutes, minutes_of(asked, known, most)),
+          .memory = memory_of(asked.planner, scene, most),
           .least_time = time * least,
           .most_time = time * most};
 }

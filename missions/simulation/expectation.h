@@ -3,8 +3,9 @@
 
 #include <cstddef>
 
-#include "missions/config/mission.h"
+#include "missions/evaluation/simulation_options.h"
 #include "missions/evaluation/survey_scene.h"
+#include "missions/session/survey_options.h"
 
 namespace skycap::missions::simulation {
 
@@ -21,7 +22,7 @@ struct Expectation {
 
 /// Takes a few seconds: samples of the surface seen from some hundred views, and one view of the
 /// survey. Only of a feasible mission. Throws what planner and sensor throw.
-Expectation expectation(const config::Mission& mission, const evaluation::SurveyScene& scene,
-                        unsigned threads);
+Expectation expectation(const evaluation::SimulationOptions& options,
+                        const evaluation::SurveyScene& scene, const session::RunOptions& run);
 
 }  // namespace skycap::missions::simulation

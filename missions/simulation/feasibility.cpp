@@ -10,12 +10,9 @@
 #include "geometry/error.h"
 #include "geometry/place/camera.h"
 #include "geometry/surfaces/mesh.h"
-#include "missions/config/mission_flight.h"
-#include "missions/config/site.h"
-#include "missions/config/survey_sensor.h"
 #include "missions/evaluation/coverage.h"
 #include "missions/session/survey_flight.h"
-#include "missions/simulation/survey_runner.h"
+#include "sim/sensors/survey_sensor.h"
 
 namespace skycap::missions::simulation {
 namespace {
@@ -37,11 +34,12 @@ std::string text_of(const Vector3d& place) {
 /// All problems are told, though one may follow from another: what to do about it is said of each.
 class Inspection {
  public:
-  Inspection(const config::Mission& mission, const evaluation::SurveyScene& scene, unsigned threads)
-      : mission_(mission),
+  Inspection(const evaluation::SimulationOptions& options, const evaluation::SurveyScene& scene,
+             const session::RunOptions& run)
+      : options_(options),
         scene_(scene),
-        threads_(threads),
-        camera_(mission.sensor.camera.camera),
+        run_(run),
+        camera_(options.sensor.camera.camera),
         bounds_(geometry::bounding_box(scene.model())),
         longest_(bounds_.sizes().maxCoeff()),
         distance_(scene.view_distance()) {}
@@ -77,7 +75,7 @@ class Inspection {
           "raise planner.view_distance",
           longest_, distance_, footprint, views);
     }
-    const double radius = mission_.evaluation.registration_distance;
+    const double radius = options_.evaluation.registration_distance;
     if (longest_ < 2.0 * radius) {
       problem(
           "the model is {:.4g} m long, less than twice evaluation.registration_distance of {:.4g} "
@@ -87,12 +85,14 @@ class Inspection {
   }
 
   void check_distances() {
-    const double stand_off = config::view_limits(mission_).stand_off;
+    const double stand_off = options_.survey.planner.limits.stand_off;
+    const flight::FlightOptions& flight = options_.survey.flight;
     if (stand_off >= distance_) {
       problem(
           "{} of {:.4g} m is not less than the view distance of {:.4g} m: no view is so near to "
           "what it looks at; lower it, or raise planner.view_distance",
-          stand_off > mission_.limits.stand_off ? "flight.clearance" : "limits.stand_off",
+          flight.is_flown() && stand_off == flight.clearance ? "flight.clearance"
+                                                             : "limits.stand_off",
           stand_off, distance_);
     }
     const geometry::CameraConfig& camera = camera_.config();
@@ -112,7 +112,7 @@ class Inspection {
 
   /// The share of the surface outside of a box, but for what lies on its faces.
   double share_outside(AlignedBox3d box) const {
-    const double slack = mission_.evaluation.registration_distance;
+    const double slack = options_.evaluation.registration_distance;
     box = AlignedBox3d(box.min().array() - slack, box.max().array() + slack);
     const auto& points = scene_.samples().points;
     const auto outside = std::ranges::count_if(
@@ -122,7 +122,7 @@ class Inspection {
 
   void check_boxes() {
     const std::string reach = text_of(bounds_.min()) + " to " + text_of(bounds_.max());
-    if (const auto& box = mission_.planner.see.scene_box) {
+    if (const auto& box = options_.survey.planner.scene_box) {
       const double outside = share_outside(*box);
       if (outside >= 1.0) {
         problem("planner.scene_box holds nothing of the model, which reaches from {}; move it",
@@ -134,20 +134,20 @@ class Inspection {
             100.0 * outside, reach);
       }
     }
-    if (!mission_.flight.is_flown()) return;
-    const double outside = share_outside(config::unknown_box_of(mission_));
+    const flight::FlightOptions& flight = options_.survey.flight;
+    if (!flight.is_flown()) return;
+    const double outside = share_outside(flight.unknown_box);
     if (outside > cut_off) {
       problem(
           "{} leaves {:.3g} % of the surface out, where the vehicle would take all for free; widen "
           "it to hold the model, {}",
-          mission_.flight.unknown_box ? "flight.unknown_box" : "planner.scene_box", 100.0 * outside,
-          reach);
+          flight.has_own_box ? "flight.unknown_box" : "planner.scene_box", 100.0 * outside, reach);
     }
   }
 
   void check_density() {
     const double rays = camera_.focal_length_px().prod() / (distance_ * distance_);  // a m^2
-    const double radius = mission_.evaluation.registration_distance;
+    const double radius = options_.evaluation.registration_distance;
     // Four rays round a sample are half a diagonal of their square away from it at most.
     const double gap = std::sqrt(0.5 / rays);
     if (gap > radius) {
@@ -157,7 +157,7 @@ class Inspection {
           "lower planner.view_distance to {:.4g} m",
           distance_, std::sqrt(1.0 / rays), radius, distance_ * radius / gap);
     }
-    const double spacing = mission_.planner.see.effective_spacing();
+    const double spacing = options_.survey.planner.spacing;
     if (spacing > std::sqrt(3.0) * radius) {  // even points in a hexagonal lattice leave holes
       warn(
           "points are stored {:.4g} m apart, and evaluation.registration_distance is {:.4g} m: "
@@ -172,7 +172,7 @@ class Inspection {
     std::vector<Vector3f> some;
     for (std::size_t i = 0; i < all.size(); i += step) some.push_back(all[i]);
     const double share = evaluation::marked_share(
-        evaluation::visible_samples(some, scene_.scene(), scene_.admissible(), threads_));
+        evaluation::visible_samples(some, scene_.scene(), scene_.admissible(), run_.threads));
     const char* remedy =
         "loosen the heights, the fence and the gimbal's pitches, or lower limits.stand_off, "
         "flight.clearance or evaluation.radius";
@@ -187,26 +187,26 @@ class Inspection {
 
   void check_first_view() {
     try {
-      const geometry::View first = scene_.first_view(mission_.seed);
-      const geometry::Scan scan = config::SurveySensor(mission_.sensor, mission_.seed)
-                                      .scan(scene_.scene(), first, 0, threads_);
-      const auto& box = mission_.planner.see.scene_box;
+      const geometry::View first = scene_.first_view(run_.seed);
+      const geometry::Scan scan = sim::SurveySensor(options_.sensor, run_.seed)
+                                      .scan(scene_.scene(), first, 0, run_.threads);
+      const auto& box = options_.survey.planner.scene_box;
       const bool sees = std::ranges::any_of(scan.points, [&](const Vector3f& point) {
         return !box || box->contains(point.cast<double>());
       });
       if (!sees) {
         problem("the first scan holds no point of the scene; start from a place that sees it");
-      } else if (mission_.flight.is_flown()) {
-        const session::SurveyFlight way(mission_, first);
+      } else if (options_.survey.flight.is_flown()) {
+        const session::SurveyFlight way(options_.survey.flight, first, run_.threads);
       }
     } catch (const Error& error) {
       problem("{}", error.what());
     }
   }
 
-  const config::Mission& mission_;
+  const evaluation::SimulationOptions& options_;
   const evaluation::SurveyScene& scene_;
-  unsigned threads_;
+  session::RunOptions run_;
   geometry::Camera camera_;
   AlignedBox3d bounds_;
   double longest_, distance_;
@@ -215,14 +215,14 @@ class Inspection {
 
 }  // namespace
 
-Feasibility feasibility(const config::Mission& mission, const evaluation::SurveyScene& scene,
-                        unsigned threads) {
-  return Inspection(mission, scene, threads).found();
+Feasibility feasibility(const evaluation::SimulationOptions& options,
+                        const evaluation::SurveyScene& scene, const session::RunOptions& run) {
+  return Inspection(options, scene, run).found();
 }
 
-void require_feasible(const config::Mission& mission, const evaluation::SurveyScene& scene,
-                      unsigned threads) {
-  const Feasibility found = feasibility(mission, scene, threads);
+void require_feasible(const evaluation::SimulationOptions& options,
+                      const evaluation::SurveyScene& scene, const session::RunOptions& run) {
+  const Feasibility found = feasibility(options, scene, run);
   if (found.problems.empty()) return;
   throw Error(ErrorKind::bad_config, fmt::format("{}", fmt::join(found.problems, "; and ")));
 }

@@ -4,8 +4,9 @@
 #include <string>
 #include <vector>
 
-#include "missions/config/mission.h"
+#include "missions/evaluation/simulation_options.h"
 #include "missions/evaluation/survey_scene.h"
+#include "missions/session/survey_options.h"
 
 namespace skycap::missions::simulation {
 
@@ -17,11 +18,11 @@ struct Feasibility {
 
 /// Compares the mission's distances with its scene, takes a first scan, and looks for places that
 /// see something. Takes about as long as a view or two.
-Feasibility feasibility(const config::Mission& mission, const evaluation::SurveyScene& scene,
-                        unsigned threads);
+Feasibility feasibility(const evaluation::SimulationOptions& options,
+                        const evaluation::SurveyScene& scene, const session::RunOptions& run);
 
 /// Throws Error{bad_config} with all problems, if there are any.
-void require_feasible(const config::Mission& mission, const evaluation::SurveyScene& scene,
-                      unsigned threads);
+void require_feasible(const evaluation::SimulationOptions& options,
+                      const evaluation::SurveyScene& scene, const session::RunOptions& run);
 
 }  // namespace skycap::missions::simulation

@@ -2,7 +2,7 @@
 
 #include <utility>
 
-#include "missions/config/mission_flight.h"
+#include "missions/simulation/carried_sensor.h"
 
 namespace skycap::missions::simulation {
 namespace {
@@ -12,14 +12,14 @@ constexpr std::uint64_t flown_again_stream = 0x666c6f776e206167;
 
 }  // namespace
 
-Measurement::Measurement(const config::Mission& mission, const evaluation::SurveyScene& scene,
-                         std::uint64_t seed, unsigned threads)
+Measurement::Measurement(const evaluation::SimulationOptions& options,
+                         const evaluation::SurveyScene& scene, std::uint64_t seed, unsigned threads)
     : scene_(scene),
       threads_(threads),
-      sensor_(mission.sensor, seed),
-      box_(mission.planner.see.scene_box.value_or(Eigen::AlignedBox3d())),
-      cloud_(mission.planner.see.effective_spacing()),
-      meter_(scene.samples().points, mission.evaluation.registration_distance) {}
+      sensor_(options.sensor, seed),
+      box_(options.scene_box()),
+      cloud_(options.survey.planner.spacing),
+      meter_(scene.samples().points, options.evaluation.registration_distance) {}
 
 std::vector<Eigen::Vector3f> Measurement::take(const geometry::View& view, std::size_t number) {
   const geometry::Scan scan = sensor_.scan(scene_.scene(), view, number, threads_);
@@ -28,17 +28,17 @@ std::vector<Eigen::Vector3f> Measurement::take(const geometry::View& view, std::
   return stored;
 }
 
-CoveredAgain covered_when_flown_again(const config::Mission& mission,
+CoveredAgain covered_when_flown_again(const evaluation::SimulationOptions& options,
                                       const evaluation::SurveyScene& scene,
                                       const std::vector<session::ViewInFlight>& views,
                                       std::uint64_t seed, unsigned threads) {
-  CarriedSensor sensor(mission, seed ^ flown_again_stream);
-  const double near = mission.evaluation.registration_distance;
+  CarriedSensor sensor(options, seed ^ flown_again_stream);
+  const double near = options.evaluation.registration_distance;
   evaluation::CoverageMeter stored(scene.samples().points, near),
       measured(scene.samples().points, near);
-  evaluation::ThinnedCloud cloud(mission.planner.see.effective_spacing());
-  const Eigen::AlignedBox3d box = mission.planner.see.scene_box.value_or(Eigen::AlignedBox3d());
-  const bool keeps_all = config::scans_in_flight(mission);
+  evaluation::ThinnedCloud cloud(options.survey.planner.spacing);
+  const Eigen::AlignedBox3d box = options.scene_box();
+  const bool keeps_all = options.sensor.scans_in_flight();
   geometry::Scan scan;
   for (std::size_t i = 0; i < views.size(); ++i) {
     scan = sensor.scan(scene.scene(), views[i], i, threads, std::move(scan));

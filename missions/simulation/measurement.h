@@ -9,19 +9,19 @@
 #include <Eigen/Geometry>
 
 #include "geometry/place/pose.h"
-#include "missions/config/mission.h"
-#include "missions/config/survey_sensor.h"
 #include "missions/evaluation/coverage.h"
+#include "missions/evaluation/simulation_options.h"
 #include "missions/evaluation/survey_scene.h"
 #include "missions/evaluation/thinned_cloud.h"
 #include "missions/simulation/carried_sensor.h"
+#include "sim/sensors/survey_sensor.h"
 
 namespace skycap::missions::simulation {
 
 class Measurement {
  public:
   /// Throws what the sensor throws. Keeps a reference to the scene.
-  Measurement(const config::Mission& mission, const evaluation::SurveyScene& scene,
+  Measurement(const evaluation::SimulationOptions& options, const evaluation::SurveyScene& scene,
               std::uint64_t seed, unsigned threads);
 
   /// Frame `number`, from a sensor at rest; the same view has the same noise whenever it is taken.
@@ -33,7 +33,7 @@ class Measurement {
  private:
   const evaluation::SurveyScene& scene_;
   unsigned threads_;
-  config::SurveySensor sensor_;
+  sim::SurveySensor sensor_;
   Eigen::AlignedBox3d box_;
   evaluation::ThinnedCloud cloud_;
   evaluation::CoverageMeter meter_;
@@ -49,7 +49,7 @@ struct CoveredAgain {
 
 /// What the views cover when they are flown again: from an empty cloud, and with other noise than
 /// the survey of that seed had. Of a scanner that measures in flight the views are its scans.
-CoveredAgain covered_when_flown_again(const config::Mission& mission,
+CoveredAgain covered_when_flown_again(const evaluation::SimulationOptions& options,
                                       const evaluation::SurveyScene& scene,
                                       const std::vector<session::ViewInFlight>& views,
                                       std::uint64_t seed, unsigned threads);

@@ -40,13 +40,13 @@ survey::skycap::Noise true_noise(const sim::NoiseConfig& noise) {
 /// Weighs views by the true surface.
 class Truth {
  public:
-  Truth(const config::Mission& mission, const evaluation::SurveyScene& scene,
+  Truth(const evaluation::SimulationOptions& options, const evaluation::SurveyScene& scene,
         std::size_t sample_count, unsigned threads)
       : scene_(scene),
         admissible_(scene.admissible()),
-        camera_(mission.sensor.camera.camera),
-        least_cosine_(std::cos(mission.sensor.camera.max_incidence)),
-        dose_(mission.evaluation.registration_distance, true_noise(mission.sensor.camera.noise)) {
+        camera_(options.sensor.camera.camera),
+        least_cosine_(std::cos(options.sensor.camera.max_incidence)),
+        dose_(options.evaluation.registration_distance, true_noise(options.sensor.camera.noise)) {
     const geometry::SurfaceSamples all =
         geometry::sample_surface(scene.model(), sample_count, sample_seed);
     const std::vector<std::uint8_t> is_visible =
@@ -149,21 +149,21 @@ std::vector<std::size_t> short_tour(const std::vector<View>& views) {
 }
 
 /// The views of the greedy cover, the first view first.
-std::vector<View> greedy_cover(const config::Mission& mission, const evaluation::SurveyScene& scene,
-                               std::uint64_t seed, unsigned threads, const OmniscientConfig& config,
+std::vector<View> greedy_cover(const evaluation::SimulationOptions& options,
+                               const evaluation::SurveyScene& scene, std::uint64_t seed,
+                               unsigned threads, const OmniscientConfig& config,
                                const std::stop_token& stop, survey::StopReason& reason) {
-  const Truth truth(mission, scene, config.samples, threads);
+  const Truth truth(options, scene, config.samples, threads);
   std::vector<View> candidates = truth.candidates(config.candidates, seed);
   candidates.push_back(scene.first_view(seed));
   std::vector<std::vector<Look>> looks(candidates.size());
   geometry::parallel_for(candidates.size(), threads,
                          [&](std::size_t i) { looks[i] = truth.looks(candidates[i]); });
 
-  const double least_gain =
-      mission.planner.skycap_stop.least_gain * static_cast<double>(truth.size());
+  const double least_gain = options.oracle.least_gain * static_cast<double>(truth.size());
   std::vector<float> uncovered(truth.size(), 1.0F);
   std::optional<Measurement> measured;
-  if (config.wanted_coverage) measured.emplace(mission, scene, seed, threads);
+  if (config.wanted_coverage) measured.emplace(options, scene, seed, threads);
   std::vector<View> views;
   std::size_t next = candidates.size() - 1;
   reason = survey::StopReason::complete;
@@ -172,7 +172,7 @@ std::vector<View> greedy_cover(const config::Mission& mission, const evaluation:
     views.push_back(candidates[next]);
     cover(looks[next], uncovered);
     if (measured && measured->meter().share() >= *config.wanted_coverage) break;
-    if (views.size() >= mission.limits.max_views) reason = survey::StopReason::view_limit;
+    if (views.size() >= options.oracle.max_views) reason = survey::StopReason::view_limit;
     if (stop.stop_requested()) reason = survey::StopReason::interrupted;
     if (reason != survey::StopReason::complete) break;
 
@@ -188,17 +188,17 @@ std::vector<View> greedy_cover(const config::Mission& mission, const evaluation:
 
 }  // namespace
 
-std::vector<View> known_cover(const config::Mission& mission, const evaluation::SurveyScene& scene,
-                              std::uint64_t seed, unsigned threads,
-                              const OmniscientConfig& config) {
+std::vector<View> known_cover(const evaluation::SimulationOptions& options,
+                              const evaluation::SurveyScene& scene, std::uint64_t seed,
+                              unsigned threads, const OmniscientConfig& config) {
   survey::StopReason reason{};
-  const std::vector<View> views = greedy_cover(mission, scene, seed, threads, config, {}, reason);
+  const std::vector<View> views = greedy_cover(options, scene, seed, threads, config, {}, reason);
   std::vector<View> tour;
   for (const std::size_t i : short_tour(views)) tour.push_back(views[i]);
   return tour;
 }
 
-session::SurveyRecord survey_omnisciently(const config::Mission& mission,
+session::SurveyRecord survey_omnisciently(const evaluation::SimulationOptions& options,
                                           const evaluation::SurveyScene& scene, std::uint64_t seed,
                                           unsigned threads, const OmniscientConfig& config,
                                           std::stop_token stop) {
@@ -206,9 +206,9 @@ session::SurveyRecord survey_omnisciently(const config::Mission& mission,
   record.seed = seed;
   record.threads = geometry::thread_count(threads);
   const std::vector<View> views =
-      greedy_cover(mission, scene, seed, threads, config, stop, record.stop_reason);
+      greedy_cover(options, scene, seed, threads, config, stop, record.stop_reason);
 
-  Measurement measured(mission, scene, seed, threads);
+  Measurement measured(options, scene, seed, threads);
   double distance = 0.0;
   for (const std::size_t i : short_tour(views)) {
     session::JudgedView judged;

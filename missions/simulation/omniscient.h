@@ -9,9 +9,9 @@
 #include <vector>
 
 #include "geometry/place/pose.h"
-#include "missions/config/mission.h"
+#include "missions/evaluation/simulation_options.h"
 #include "missions/evaluation/survey_scene.h"
-#include "missions/simulation/survey_runner.h"
+#include "missions/session/survey_record.h"
 
 namespace skycap::missions::simulation {
 
@@ -19,13 +19,13 @@ struct OmniscientConfig {
   std::size_t candidates = 1500;  ///< views that it picks from, each aimed at a visible place
   std::size_t samples = 8000;     ///< of the surface, that candidates are weighed by
   /// Ends when the measurements cover this share of the surface. Nothing: when no view promises
-  /// `planner.least_gain` of the visible surface any more, as the planner skycap.
+  /// `options.oracle.least_gain` of the visible surface any more.
   std::optional<double> wanted_coverage;
 };
 
 /// Views that cover the scene for one who knows it, in the order of the tour; see
 /// survey_omnisciently(), which takes them. Nothing is measured unless a coverage is wanted.
-std::vector<geometry::View> known_cover(const config::Mission& mission,
+std::vector<geometry::View> known_cover(const evaluation::SimulationOptions& options,
                                         const evaluation::SurveyScene& scene, std::uint64_t seed,
                                         unsigned threads, const OmniscientConfig& config = {});
 
@@ -37,7 +37,7 @@ std::vector<geometry::View> known_cover(const config::Mission& mission,
 /// `record.views` is in the order of the tour. Greedy covers are not optimal, and neither is the
 /// tour, so this bounds the best possible survey from above. Keeps the mission's limits. Throws
 /// what the sensor throws.
-session::SurveyRecord survey_omnisciently(const config::Mission& mission,
+session::SurveyRecord survey_omnisciently(const evaluation::SimulationOptions& options,
                                           const evaluation::SurveyScene& scene, std::uint64_t seed,
                                           unsigned threads, const OmniscientConfig& config = {},
                                           std::stop_token stop = {});

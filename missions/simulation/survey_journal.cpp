@@ -9,7 +9,7 @@
 #include "geometry/error.h"
 #include "geometry/io/json.h"
 #include "geometry/place/world.h"
-#include "missions/config/journal_text.h"
+#include "missions/support/journal_text.h"
 #include "missions/support/json_text.h"
 #include "missions/support/sha256.h"
 
@@ -28,18 +28,19 @@ std::string digest_of(const evaluation::SurveyScene& scene) {
 
 }  // namespace
 
-SurveyJournal::SurveyJournal(std::filesystem::path file, const config::Mission& mission,
+SurveyJournal::SurveyJournal(std::filesystem::path file, const support::Identity& run,
                              const evaluation::SurveyScene& scene, bool resumes)
     : file_(std::move(file)),
-      identity_(config::identity_text(mission, {{"surface", digest_of(scene)}})) {
+      identity_(support::identity_text(
+          run, {{"format", support::journal_format}, {"surface", digest_of(scene)}})) {
   if (!resumes || !std::filesystem::exists(file_)) return;
   log_.emplace(file_);
   if (!log_->records().empty()) read_known(log_->records());
 }
 
 void SurveyJournal::read_known(const std::vector<std::string>& records) {
-  config::require_same_survey(file_.string(), records.front(), identity_,
-                              "begin anew without --resume");
+  support::require_same_survey(file_.string(), records.front(), identity_,
+                               "begin anew without --resume");
   try {
     for (const std::string& record : std::span(records).subspan(1)) {
       known_.push_back(parse(record));
@@ -51,11 +52,11 @@ void SurveyJournal::read_known(const std::vector<std::string>& records) {
 }
 
 std::string SurveyJournal::text_of(const ViewRecord& record) {
-  return config::journal_line({{"position", json_of(record.view.position)},
-                               {"direction", json_of(record.view.direction)},
-                               {"returns", record.returns},
-                               {"points", record.points},
-                               {"next", session::reach_json(record.reach)}});
+  return support::journal_line({{"position", json_of(record.view.position)},
+                                {"direction", json_of(record.view.direction)},
+                                {"returns", record.returns},
+                                {"points", record.points},
+                                {"next", session::reach_json(record.reach)}});
 }
 
 SurveyJournal::ViewRecord SurveyJournal::parse(const std::string& text) const {

@@ -14,10 +14,10 @@
 #include <vector>
 
 #include "geometry/io/record_log.h"
-#include "missions/config/mission.h"
 #include "missions/evaluation/survey_scene.h"
 #include "missions/session/reach_record.h"
 #include "missions/session/survey_flight.h"
+#include "missions/support/identity.h"
 #include "survey/survey_loop.h"
 
 namespace skycap::missions::simulation {
@@ -30,7 +30,7 @@ class SurveyJournal {
   /// Of a survey that begins: the file is made, in place of what was there, after the first view.
   /// Of one that continues (`resumes`): reads the file, if there is one. Throws Error{bad_file}
   /// naming the file if it is of another survey, saying what is different, or not sound.
-  SurveyJournal(std::filesystem::path file, const config::Mission& mission,
+  SurveyJournal(std::filesystem::path file, const support::Identity& run,
                 const evaluation::SurveyScene& scene, bool resumes);
 
   /// Views that the file already had.

@@ -13,16 +13,6 @@
 
 namespace skycap::missions::simulation {
 
-config::Mission trial_mission(const config::Mission& mission, const evaluation::SurveyScene& scene,
-                              std::uint64_t seed) {
-  config::Mission trial = mission;
-  trial.seed = seed;
-  survey::volumetric::VolumetricSettings& settings = trial.volumetric;
-  if (!settings.sphere_centre) settings.sphere_centre = scene.view_sphere().centre;
-  if (!settings.sphere_radius) settings.sphere_radius = scene.view_sphere().radius;
-  return trial;
-}
-
 namespace {
 
 /// Where the sensor of a survey is when, and how it moves there.
@@ -63,16 +53,16 @@ class SurveyClock {
 
 }  // namespace
 
-session::SurveyRecord run_survey(const config::Mission& mission,
+session::SurveyRecord run_survey(const evaluation::SimulationOptions& options,
                                  const evaluation::SurveyScene& scene, std::uint64_t seed,
                                  unsigned threads, std::stop_token stop,
                                  const std::function<void(const session::JudgedView&)>& report,
                                  SurveyJournal* journal) {
-  CarriedSensor sensor(mission, seed);
-  const config::Mission trial = trial_mission(mission, scene, seed);
-  const geometry::View first_view = scene.first_view(trial.seed);
-  session::MissionPlanner guided(trial, first_view, threads);
-  evaluation::CoverageMeter meter(scene.samples().points, mission.evaluation.registration_distance);
+  CarriedSensor sensor(options, seed);
+  const geometry::View first_view = scene.first_view(seed);
+  session::MissionPlanner guided(options.survey, first_view,
+                                 {.seed = seed, .threads = threads, .sphere = scene.view_sphere()});
+  evaluation::CoverageMeter meter(scene.samples().points, options.evaluation.registration_distance);
   session::SurveyRecord record;
   record.seed = seed;
   record.threads = geometry::thread_count(threads);
@@ -96,10 +86,9 @@ session::SurveyRecord run_survey(const config::Mission& mission,
       return clock.begin_way(from, to);
     };
   }
-  if (!mission.flight.is_flown()) {  // else ways there are proven as measured
-    ports.can_reach = [&scene, allows = std::move(ports.can_reach)](const Eigen::Vector3d& from,
-                                                                    const geometry::View& view) {
-      return (!allows || allows(from, view)) && scene.is_reachable(view.position);
+  if (guided.flight() == nullptr) {  // else ways there are proven as measured
+    ports.can_reach = [&scene](const Eigen::Vector3d&, const geometry::View& view) {
+      return scene.is_reachable(view.position);
     };
   }
   ports.report = [&](const survey::SurveyedView& view, const geometry::Scan&) {

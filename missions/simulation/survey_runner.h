@@ -5,17 +5,12 @@
 #include <functional>
 #include <stop_token>
 
-#include "missions/config/mission.h"
+#include "missions/evaluation/simulation_options.h"
 #include "missions/evaluation/survey_scene.h"
 #include "missions/session/survey_record.h"
 #include "missions/simulation/survey_journal.h"
 
 namespace skycap::missions::simulation {
-
-/// The mission of a survey with that seed: what volumetric planners take from the scene is filled
-/// in.
-config::Mission trial_mission(const config::Mission& mission, const evaluation::SurveyScene& scene,
-                              std::uint64_t seed);
 
 /// Surveys the mission's scene with that seed and so many threads (zero: all processors). The
 /// record does not depend on the threads but for its times. A mission with a vehicle goes only to
@@ -23,7 +18,7 @@ config::Mission trial_mission(const config::Mission& mission, const evaluation::
 /// scene.is_reachable() knows a way to. `report` is told of each view; it may be empty. Throws what
 /// planner, sensor and session::SurveyFlight throw. With a journal the survey is written down, and
 /// goes on where the journal's ended: the record is the same but for its times.
-session::SurveyRecord run_survey(const config::Mission& mission,
+session::SurveyRecord run_survey(const evaluation::SimulationOptions& options,
                                  const evaluation::SurveyScene& scene, std::uint64_t seed,
                                  unsigned threads, std::stop_token stop = {},
                                  const std::function<void(const session::JudgedView&)>& report = {},

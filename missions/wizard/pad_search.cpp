@@ -9,9 +9,6 @@
 #include "flight/space/segment_distance.h"
 #include "flight/way_home/return_law.h"
 #include "geometry/error.h"
-#include "missions/config/mission_flight.h"
-#include "missions/config/mission_priors.h"
-#include "missions/config/pad_grounds.h"
 
 namespace skycap::missions::wizard {
 namespace {
@@ -27,15 +24,15 @@ flight::Obstacles without_fence(flight::Obstacles rules) {
 
 }  // namespace
 
-PadSearch::PadSearch(const config::Mission& mission, std::vector<AlignedBox3d> unknown)
-    : mission_(mission),
+PadSearch::PadSearch(flight::FlightOptions flight, std::vector<AlignedBox3d> unknown)
+    : flight_(std::move(flight)),
       unknown_(std::move(unknown)),
-      space_(without_fence(config::flight_rules(mission))),
-      pad_space_(without_ground(without_fence(config::flight_rules(mission)))) {}
+      space_(without_fence(flight_.rules())),
+      pad_space_(without_ground(without_fence(flight_.rules()))) {}
 
 std::optional<Vector3d> PadSearch::beside(const AlignedBox3d& unknown, double top) const {
-  const bool is_dji = config::vehicle_of(mission_).dialect == flight::Dialect::dji;
-  const double clearance = mission_.flight.clearance;
+  const bool is_dji = flight_.flown().dialect == flight::Dialect::dji;
+  const double clearance = flight_.clearance;
   const double first = 2.0 * clearance + 1.0 + (is_dji ? flight::dji_lands_at_once : 0.0);
   constexpr int directions = 16;
   constexpr double step = 5.0, farthest = 100.0;
@@ -63,16 +60,16 @@ std::optional<Vector3d> PadSearch::beside(const AlignedBox3d& unknown, double to
 }
 
 std::optional<Vector3d> PadSearch::at(const Vector2d& place) const {
-  const auto& terrain = config::priors_of(mission_).terrain;
+  const flight::AirspaceOptions& airspace = flight_.airspace;
   const std::optional<double> ground =
-      terrain ? terrain->height(place) : mission_.scene.position.z();
+      airspace.terrain ? airspace.terrain(place) : airspace.base.z();
   if (!ground) return std::nullopt;
   return Vector3d(place.x(), place.y(), std::round(100.0 * *ground) / 100.0);
 }
 
 double PadSearch::room_over(const Vector3d& pad, double top, double up_to) const {
-  flight::RouteOptions options = config::route_options_of(mission_, pad);
-  options.grounds = config::grounds_of(mission_, pad, {});
+  flight::RouteOptions options = flight_.route(pad);
+  options.grounds = flight_.grounds(pad, {});
   options.takeoff_climb = std::max(options.takeoff_climb, top - pad.z());
   const Vector3d home = pad + options.takeoff_climb * Vector3d::UnitZ();
   if (comes_near_unknown({pad, home})) return 0.0;
@@ -86,8 +83,8 @@ double PadSearch::room_over(const Vector3d& pad, double top, double up_to) const
 
 /// Whether a climb comes near a box in which nothing is free.
 bool PadSearch::comes_near_unknown(const flight::Segment& climb) const {
-  const bool is_dji = config::vehicle_of(mission_).dialect == flight::Dialect::dji;
-  const double spare = 2.0 * mission_.flight.clearance + (is_dji ? flight::dji_lands_at_once : 0.0);
+  const bool is_dji = flight_.flown().dialect == flight::Dialect::dji;
+  const double spare = 2.0 * flight_.clearance + (is_dji ? flight::dji_lands_at_once : 0.0);
   return std::ranges::any_of(unknown_, [&](const AlignedBox3d& box) {
     return nearest(climb, box).squared_distance < spare * spare;
   });

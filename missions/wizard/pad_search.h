@@ -7,17 +7,17 @@
 #include <Eigen/Core>
 #include <Eigen/Geometry>
 
+#include "flight/flight_options.h"
 #include "flight/space/clearance.h"
-#include "missions/config/mission.h"
 
 namespace skycap::missions::wizard {
 
 class PadSearch {
  public:
-  /// Keeps a reference to the mission, whose prior data is what the files hold and whose scene is
-  /// the ground where there is no terrain. `unknown` are boxes in which nothing is free before it
+  /// Of the flight's airspace, whose prior data is what the files hold; where there is no terrain
+  /// its base is the ground. `unknown` are boxes in which nothing is free before it
   /// is measured, those of other targets: no climb comes near them.
-  explicit PadSearch(const config::Mission& mission, std::vector<Eigen::AlignedBox3d> unknown = {});
+  explicit PadSearch(flight::FlightOptions flight, std::vector<Eigen::AlignedBox3d> unknown = {});
 
   /// On the ground beside an unknown box, with nothing known over it or near it up to `top` (z): as
   /// near as there is room, and there where most of it is; nothing within 100 m has room.
@@ -33,7 +33,7 @@ class PadSearch {
  private:
   bool comes_near_unknown(const flight::Segment& climb) const;
 
-  const config::Mission& mission_;
+  flight::FlightOptions flight_;
   std::vector<Eigen::AlignedBox3d> unknown_;
   flight::KnownSpace space_, pad_space_;
 };

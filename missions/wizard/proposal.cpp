@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "geometry/error.h"
-#include "missions/config/resolved_mission.h"
+#include "missions/config/resolve.h"
 #include "missions/wizard/pad_search.h"
 #include "missions/wizard/target.h"
 
@@ -86,9 +86,9 @@ std::string propose_mission(const Wishes& wishes, const std::filesystem::path& f
                                      .origin = target.origin,
                                      .unknown = {}},
                                     target.box, target.uncertainty, wishes.terrain.has_value());
-  const config::Mission mission = config::parse_mission(mission_text(values), file.string());
-  values.scene = rounded_out(mission.planner.see.scene_box.value(), 0.1);
-  const auto pad = PadSearch(mission).beside(values.unknown, top_of_climbs(values));
+  const config::MissionSetup mission = config::parse_mission(mission_text(values), file.string());
+  values.scene = rounded_out(mission.survey().planner.scene_box.value(), 0.1);
+  const auto pad = PadSearch(mission.flight()).beside(values.unknown, top_of_climbs(values));
   if (!pad) {
     throw Error(ErrorKind::bad_config,
                 wishes.map.string() +

@@ -16,15 +16,15 @@ constexpr double degree = geometry::radians_per_degree;
 void DepthCameraConfig::validate() const {
   camera.validate();
   noise.validate();
-  require(max_incidence > 0.0 && max_incidence <= 0.5 * std::numbers::pi, "sensor.max_incidence",
+  require(max_incidence > 0.0 && max_incidence <= 0.5 * std::numbers::pi, "max_incidence",
           max_incidence, "greater than 0 and at most pi/2 radians");
   require(stereo.disparity_sigma_px >= 0.0 && std::isfinite(stereo.disparity_sigma_px),
-          "sensor.stereo.disparity_sigma_px", stereo.disparity_sigma_px, "zero or more pixels");
+          "stereo.disparity_sigma_px", stereo.disparity_sigma_px, "zero or more pixels");
   require(stereo.disparity_step_px >= 0.0 && std::isfinite(stereo.disparity_step_px),
-          "sensor.stereo.disparity_step_px", stereo.disparity_step_px, "zero or more pixels");
+          "stereo.disparity_step_px", stereo.disparity_step_px, "zero or more pixels");
   const double product = stereo.focal_length_px * stereo.baseline;
   require(!stereo.is_on() || (product > 0.0 && std::isfinite(product)),
-          "sensor.stereo.focal_length_px * baseline", product, "greater than zero");
+          "stereo.focal_length_px * baseline", product, "greater than zero");
 }
 
 Eigen::Isometry3d FrameMotion::pose(double time) const {

@@ -33,46 +33,46 @@ double SeeConfig::effective_spacing() const { return spacing.value_or(1.0 / std:
 
 void SeeConfig::validate() const {
   constexpr const char* length = "a positive number of metres";
-  require(std::isfinite(density) && density > 0.0, "planner.density", density,
+  require(std::isfinite(density) && density > 0.0, "density", density,
           "a positive number of points per cubic metre");
-  require(is_length(resolution_radius), "planner.resolution_radius", resolution_radius, length);
-  require(is_length(occlusion_search_distance), "planner.occlusion_search_distance",
+  require(is_length(resolution_radius), "resolution_radius", resolution_radius, length);
+  require(is_length(occlusion_search_distance), "occlusion_search_distance",
           occlusion_search_distance, length);
-  require(visibility_update_limit > 0, "planner.visibility_update_limit",
+  require(visibility_update_limit > 0, "visibility_update_limit",
           static_cast<double>(visibility_update_limit), "at least 1");
-  require(std::isfinite(effective_spacing()) && effective_spacing() >= 0.0, "planner.spacing",
+  require(std::isfinite(effective_spacing()) && effective_spacing() >= 0.0, "spacing",
           effective_spacing(), "zero or a positive number of metres");
-  require(effective_spacing() < resolution_radius, "planner.spacing", effective_spacing(),
+  require(effective_spacing() < resolution_radius, "spacing", effective_spacing(),
           "less than resolution_radius, or no point has neighbours (by default it is "
           "density^(-1/2))");
-  require(!view_distance || is_length(*view_distance), "planner.view_distance",
+  require(!view_distance || is_length(*view_distance), "view_distance",
           view_distance.value_or(0.0), length);
   if (scene_box && (scene_box->isEmpty() || !scene_box->diagonal().allFinite())) {
     throw Error(ErrorKind::bad_config,
-                "planner.scene_box is empty; it must be a box whose minimum is below its maximum");
+                "scene_box is empty; it must be a box whose minimum is below its maximum");
   }
-  require(!frame_neighbours || *frame_neighbours >= 3, "planner.frame_neighbours",
+  require(!frame_neighbours || *frame_neighbours >= 3, "frame_neighbours",
           frame_neighbours.value_or(0), "at least 3");
   require(
       !occlusion_radius || (is_length(*occlusion_radius) && *occlusion_radius <= resolution_radius),
-      "planner.occlusion_radius", occlusion_radius.value_or(0.0),
+      "occlusion_radius", occlusion_radius.value_or(0.0),
       "positive and at most resolution_radius");
-  require(is_length(occluder_spacing), "planner.occluder_spacing", occluder_spacing, length);
-  require(std::isfinite(first_view_weight) && first_view_weight >= 0.0, "planner.first_view_weight",
+  require(is_length(occluder_spacing), "occluder_spacing", occluder_spacing, length);
+  require(std::isfinite(first_view_weight) && first_view_weight >= 0.0, "first_view_weight",
           first_view_weight, "zero or more");
-  require(max_attempts >= 1, "planner.max_attempts", max_attempts, "at least 1");
-  require(std::isfinite(frontier_spacing) && frontier_spacing >= 0.0, "planner.frontier_spacing",
+  require(max_attempts >= 1, "max_attempts", max_attempts, "at least 1");
+  require(std::isfinite(frontier_spacing) && frontier_spacing >= 0.0, "frontier_spacing",
           frontier_spacing, "zero or a positive number of metres");
-  require(!least_height || std::isfinite(*least_height), "planner.least_height",
+  require(!least_height || std::isfinite(*least_height), "least_height",
           least_height.value_or(0.0), "a finite height");
   cap.validate();
 
   const int k = effective_core_threshold();
   if (core_threshold) {
-    require(k >= 4, "planner.core_threshold", k, "at least 4, or no point can be a frontier");
+    require(k >= 4, "core_threshold", k, "at least 4, or no point can be a frontier");
   } else if (k < 4) {
     std::ostringstream message;
-    message << "planner.density " << density << " and planner.resolution_radius "
+    message << "density " << density << " and resolution_radius "
             << resolution_radius << " give a core threshold of " << k
             << ", which admits no frontier; with this radius the density must be above "
             << 9.0 / (4.0 * std::numbers::pi * std::pow(resolution_radius, 3))

@@ -376,6 +376,30 @@ geometry::PointCloud SkycapPlanner::release_cloud() { return impl_->kept.release
 const PlanningStep& SkycapPlanner::last_step() const { return impl_->step; }
 void SkycapPlanner::stop_on(const std::stop_token& stop) { impl_->chooser.stop = stop; }
 SkycapStop SkycapPlanner::stop() const { return impl_->stop; }
+
+StopReason SkycapPlanner::stop_reason() const {
+  if (impl_->stop == SkycapStop::most_length) return StopReason::distance_limit;
+  return impl_->stop == SkycapStop::most_time ? StopReason::time_limit : StopReason::complete;
+}
+
+std::string_view SkycapPlanner::stop_rule() const {
+  switch (impl_->stop) {
+    case SkycapStop::wanted_coverage:
+      return "wanted_coverage";
+    case SkycapStop::little_gain:
+      return "little_gain";
+    case SkycapStop::most_length:
+      return "most_length";
+    case SkycapStop::most_time:
+      return "most_time";
+    case SkycapStop::nothing_in_reach:
+      return "nothing_in_reach";
+    case SkycapStop::running:
+      break;
+  }
+  return "running";
+}
+
 double SkycapPlanner::predicted_coverage() const { return impl_->predicted_coverage(); }
 SurveyBelief SkycapPlanner::belief() const { return impl_->belief(); }
 

@@ -8,24 +8,20 @@
 /// is worth.
 #pragma once
 
-#include <functional>
 #include <memory>
 #include <optional>
+#include <string_view>
 #include <vector>
 
 #include <Eigen/Core>
 
 #include "geometry/place/camera.h"
+#include "survey/coverage_estimator.h"
 #include "survey/planner.h"
 #include "survey/skycap/skycap_config.h"
 #include "survey/skycap/survey_belief.h"
 
 namespace skycap::survey::skycap {
-
-class GainField;
-
-/// Whether views may be at a place; must be safe to call from several threads.
-using PlaceCheck = std::function<bool(const Eigen::Vector3d&)>;
 
 enum class SkycapStop {
   running,
@@ -36,14 +32,11 @@ enum class SkycapStop {
   nothing_in_reach,  ///< no admissible view sees anything that is missing
 };
 
-class SkycapPlanner final : public Planner {
+class SkycapPlanner final : public Planner, public CoverageEstimator {
  public:
   /// Throws what config.validate() throws.
   SkycapPlanner(const SkycapConfig& config, const geometry::Camera& camera);
   ~SkycapPlanner() override;
-
-  /// From now on only views at such places are proposed, by what is known when they are.
-  void keep_to(PlaceCheck may_be_at);
 
   /// `scan` may be organised (of the camera) or not: a sweep that shoots everywhere into the view
   /// of the camera, about as densely as its pixels lie, and maybe elsewhere too. Views are chosen
@@ -53,20 +46,25 @@ class SkycapPlanner final : public Planner {
   /// promised.
   void pass(const geometry::ScanSpan& scan) override;
   std::optional<geometry::View> next_view_instead() override;
+  /// From now on only views at such places are proposed, by what is known when they are.
+  void keep_to(PlaceCheck may_be_at) override;
   void stop_on(const std::stop_token& stop) override;
   const geometry::PointCloud& cloud() const override;
   geometry::PointCloud release_cloud() override;
   const PlanningStep& last_step() const override;
+  StopReason stop_reason() const override;
+  const CoverageEstimator* estimator() const override { return this; }
 
   /// Why the last call proposed nothing.
   SkycapStop stop() const;
   /// Expected covered share of the surface, seen and guessed.
-  double predicted_coverage() const;
+  double predicted_coverage() const override;
   /// All that the planner believes of the surface. O(surfels).
-  SurveyBelief belief() const;
+  SurveyBelief belief() const override;
+  std::string_view stop_rule() const override;
   /// What views would cover of all that was measured, from an empty cloud, by so many targets at
   /// most (GainField::of_known_surface()); null before the first scan.
-  std::shared_ptr<const GainField> known_surface(std::size_t most_targets) const;
+  std::shared_ptr<const GainField> known_surface(std::size_t most_targets) const override;
 
  private:
   struct Impl;

@@ -17,8 +17,7 @@
 
 #include "geometry/error.h"
 #include "geometry/parallel.h"
-#include "missions/config/resolved_mission.h"
-#include "missions/config/survey_sensor.h"
+#include "missions/config/resolve.h"
 #include "missions/evaluation/coverage.h"
 #include "missions/evaluation/survey_scene.h"
 #include "missions/package/anew_mission.h"
@@ -27,6 +26,7 @@
 #include "missions/session/mission_planner.h"
 #include "missions/simulation/omniscient.h"
 #include "missions/simulation/survey_runner.h"
+#include "sim/sensors/survey_sensor.h"
 #include "tests/missions/flown_mission.h"
 #include "tests/support/temporary_folder.h"
 
@@ -37,16 +37,15 @@ using namespace skycap::missions;
 
 /// The survey as if it had seen everything: its views and legs, with the surface and the space that
 /// one measures who knows where to look.
-session::SurveyRecord all_knowing(const config::Mission& mission,
+session::SurveyRecord all_knowing(const evaluation::SimulationOptions& options,
                                   const evaluation::SurveyScene& scene,
-                                  const session::SurveyRecord& record) {
-  const unsigned threads = geometry::thread_count(mission.threads);
-  const config::SurveySensor sensor(mission.sensor, record.seed + 1'000'000);
+                                  const session::SurveyRecord& record, unsigned threads) {
+  const sim::SurveySensor sensor(options.sensor, record.seed + 1'000'000);
   std::vector<geometry::View> views = package::views_of(record);
-  session::MissionPlanner knowing(simulation::trial_mission(mission, scene, record.seed),
-                                  views.front(), threads);
+  session::MissionPlanner knowing(options.survey, views.front(),
+                                  {record.seed, threads, scene.view_sphere()});
   for (const geometry::View& view :
-       simulation::known_cover(mission, scene, record.seed, threads, {.candidates = 3000})) {
+       simulation::known_cover(options, scene, record.seed, threads, {.candidates = 3000})) {
     views.push_back(view);
   }
   std::uint64_t frame = 0;
@@ -68,14 +67,16 @@ session::SurveyRecord all_knowing(const config::Mission& mission,
   return all;
 }
 
-package::AnewMission choose(const config::Mission& mission, const session::SurveyRecord& record,
+package::AnewMission choose(const evaluation::SimulationOptions& options,
+                            const session::RunOptions& run, const session::SurveyRecord& record,
                             const package::CoverageFigures& coverage) {
   const session::FlownSurvey& flown = *record.flown;
   std::vector<package::Way> ways;
   for (const session::FlownLeg& leg : flown.legs) ways.push_back(leg.points);
-  flight::Route present = package::plan_flight(mission, *flown.measured, flown.pad,
+  flight::Route present = package::plan_flight(options.survey.flight, *flown.measured, flown.pad,
                                                package::views_of(record), ways, flown.grounds);
-  return package::anew_mission(mission, record, coverage, std::move(present), {});
+  return package::anew_mission(options.survey, package::choice_options(options.sensor, run), record,
+                               coverage, std::move(present), {});
 }
 
 void print(const char* who, const package::AnewMission& mission) {
@@ -87,17 +88,18 @@ void print(const char* who, const package::AnewMission& mission) {
 
 void compare(const std::filesystem::path& file, const std::vector<config::KeyOverride>& overrides,
              std::uint64_t seeds) {
-  const config::Mission mission = config::read_mission(file, overrides);
-  const evaluation::SurveyScene scene(mission, file.parent_path());
+  const config::MissionSetup mission = config::read_mission(file, overrides);
+  const evaluation::SimulationOptions& options = mission.simulation;
+  const unsigned threads = geometry::thread_count(mission.run.threads);
+  const evaluation::SurveyScene scene(options, file.parent_path(), mission.run.threads);
   double ours = 0.0, knowing = 0.0;
   for (std::uint64_t seed = 1; seed <= seeds; ++seed) {
-    const session::SurveyRecord record =
-        simulation::run_survey(mission, scene, seed, mission.threads);
+    const session::SurveyRecord record = simulation::run_survey(options, scene, seed, threads);
     const package::CoverageFigures coverage =
-        package::coverage_figures(mission, record, scene, mission.threads, {});
-    const package::AnewMission from_survey = choose(mission, record, coverage);
+        package::coverage_figures(options, record, scene, threads, {});
+    const package::AnewMission from_survey = choose(options, mission.run, record, coverage);
     const package::AnewMission from_truth =
-        choose(mission, all_knowing(mission, scene, record), coverage);
+        choose(options, mission.run, all_knowing(options, scene, record, threads), coverage);
     std::printf("seed %llu: %zu views, %.2f %% of the visible\n",
                 static_cast<unsigned long long>(seed), record.views.size(),
                 100.0 * coverage.visible.value_or(0.0));

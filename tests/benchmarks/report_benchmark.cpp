@@ -14,7 +14,6 @@
 #include <vector>
 
 #include "geometry/io/cloud_io.h"
-#include "missions/config/resolved_mission.h"
 #include "missions/evaluation/survey_scene.h"
 #include "missions/package/package.h"
 #include "missions/report/survey_report.h"
@@ -51,9 +50,10 @@ std::uint32_t view_near(const Eigen::Vector3f& place, const std::vector<geometry
 void replace_cloud(const std::filesystem::path& folder, std::size_t points) {
   const missions::package::PackageSummary survey =
       missions::package::read_package_summary(folder, {});
-  missions::config::Mission dense = survey.mission;
+  missions::evaluation::SimulationOptions dense = survey.mission.simulation;
   dense.evaluation.samples = points;
-  geometry::SurfaceSamples surface = missions::evaluation::SurveyScene(dense, "").samples();
+  geometry::SurfaceSamples surface =
+      missions::evaluation::SurveyScene(dense, "", survey.mission.run.threads).samples();
   std::mt19937_64 random(5);
   std::normal_distribution<float> noise(0.0F, 0.01F);
   std::vector<std::uint32_t> views;

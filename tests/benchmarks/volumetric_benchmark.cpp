@@ -11,7 +11,7 @@
 #include <string>
 
 #include "geometry/place/pose.h"
-#include "missions/config/resolved_mission.h"
+#include "missions/config/resolve.h"
 #include "missions/evaluation/survey_scene.h"
 #include "sim/sensors/depth_camera.h"
 #include "survey/volumetric/volumetric_planner.h"
@@ -47,14 +47,16 @@ constexpr Gain gains[] = {
 
 void run(const std::string& name, const std::string& mission_text, double resolution,
          std::size_t clouds, std::size_t twin_candidates) {
-  const missions::config::Mission mission = missions::config::parse_mission(mission_text, name);
-  const missions::evaluation::SurveyScene scene(mission, std::filesystem::current_path());
-  const sim::DepthCamera camera(mission.sensor.camera);
+  const missions::config::MissionSetup mission =
+      missions::config::parse_mission(mission_text, name);
+  const missions::evaluation::SurveyScene scene(mission.simulation, std::filesystem::current_path(),
+                                                mission.run.threads);
+  const sim::DepthCamera camera(mission.sensor().camera);
   const auto [centre, radius] = scene.view_sphere();
   const auto views =
       survey::volumetric::sphere_views(clouds + 1 + candidates, centre, radius, std::nullopt, 1);
   const auto directions =
-      survey::volumetric::ray_directions(geometry::Camera(mission.sensor.camera.camera), {});
+      survey::volumetric::ray_directions(geometry::Camera(mission.sensor().camera.camera), {});
 
   const double shadow = 18.0 * resolution;
   survey::volumetric::VolumetricMap map(resolution, shadow);

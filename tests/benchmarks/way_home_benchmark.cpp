@@ -13,7 +13,6 @@
 #include <vector>
 
 #include "missions/cli/command_line.h"
-#include "missions/config/mission_flight.h"
 #include "missions/package/package.h"
 #include "tests/benchmarks/interleaved.h"
 #include "tests/missions/flown_mission.h"
@@ -25,19 +24,18 @@ using namespace skycap;
 using namespace skycap::missions;
 
 flight::Route plan(const package::PackagedSurvey& survey, bool has_returns) {
-  const config::Mission& mission = survey.mission;
   std::vector<flight::Station> stations;
   for (std::uint32_t i = 0; i < survey.views.size(); ++i) {
-    stations.push_back({survey.views[i], config::hold_of(mission), 1, i,
-                        config::hold_after_of(mission), survey.ways[i]});
+    stations.push_back({survey.views[i], survey.flight.rest_before(), 1, i,
+                        survey.flight.rest_after(), survey.ways[i]});
   }
-  flight::Obstacles rules = config::flight_rules(mission);
+  flight::Obstacles rules = survey.flight.rules();
   const flight::KnownSpace known(rules);
   const flight::KnownSpace pad_space(without_ground(std::move(rules)));
   const flight::JointSpace space({&survey.measured, &known});
-  flight::RouteOptions options = config::route_options_of(mission, survey.pad);
+  flight::RouteOptions options = survey.flight.route(survey.pad);
   if (!has_returns) options.returns.reset();
-  return plan_route(std::move(stations), config::vehicle_of(mission), space, &pad_space, options);
+  return plan_route(std::move(stations), survey.flight.flown(), space, &pad_space, options);
 }
 
 /// Only what both visit can be compared: views without a way home are left out by the one alone.

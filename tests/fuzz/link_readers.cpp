@@ -10,7 +10,7 @@
 #include "flight/link/guided_messages.h"
 #include "flight/link/vehicle_state.h"
 #include "geometry/place/world.h"
-#include "missions/config/resolved_mission.h"
+#include "missions/config/resolve.h"
 #include "missions/online/live/kept_scan.h"
 #include "missions/online/live/live_journal.h"
 #include "missions/online/live/live_survey.h"
@@ -94,16 +94,16 @@ int run_wire(const std::uint8_t* bytes, std::size_t size) {
 }
 
 /// A survey that takes what it is given: of a depth camera, or of a scanner.
-const missions::config::Mission& live_mission(bool has_scanner) {
+const missions::config::MissionSetup& live_setup(bool has_scanner) {
   constexpr const char* rest =
       "planner: {name: see++, density: 5200, resolution_radius: 0.0525, occluder_spacing: 0.03,\n"
       "          view_distance: 1, scene_box: {min: [-1, -1, -1], max: [1, 1, 1]}}\n"
       "evaluation: {registration_distance: 0.03}\n"
       "live: {remove_flying_pixels: true, registration: true, pose_sigma: 0.01}\n"
       "limits: {max_views: 4}\n";
-  static const missions::config::Mission camera = missions::config::parse_mission(
+  static const missions::config::MissionSetup camera = missions::config::parse_mission(
       std::string("sensor: {width: 16, height: 12}\n") + rest, "m.yaml");
-  static const missions::config::Mission scanner = missions::config::parse_mission(
+  static const missions::config::MissionSetup scanner = missions::config::parse_mission(
       std::string("sensor: {lidar: velodyne_vlp16}\n") + rest, "m.yaml");
   return has_scanner ? scanner : camera;
 }
@@ -112,9 +112,10 @@ const missions::config::Mission& live_mission(bool has_scanner) {
 /// payload, the payload. The first byte chooses the sensor.
 int run_session(const std::uint8_t* bytes, std::size_t size) {
   if (size == 0) return 0;
-  const missions::config::Mission& mission = live_mission(bytes[0] == 's');
-  online::LiveSurvey survey(mission, fresh_folder(), {}, 1);
-  online::Session session(mission, survey, [] { return std::string("done"); });
+  const missions::config::MissionSetup& setup = live_setup(bytes[0] == 's');
+  online::LiveSurvey survey(setup.survey(), setup.live, setup.identity(), fresh_folder(), {}, 1);
+  online::Session session(setup.name, setup.flight(), setup.live, survey,
+                          [] { return std::string("done"); });
   const std::string text = text_of(bytes + 1, size - 1);
   for (std::size_t at = 0, messages = 0; at < text.size() && messages < 6; ++messages) {
     const std::size_t end = std::min(text.find('\n', at), text.size());

@@ -10,12 +10,12 @@
 #include "missions/batch/benchmark/trial_files.h"
 #include "missions/batch/campaign/campaign_file.h"
 #include "missions/batch/campaign/manifest.h"
+#include "missions/config/resolve.h"
 #include "missions/batch/district/district_file.h"
 #include "missions/batch/district/prepared.h"
-#include "missions/config/mission_keys.h"
-#include "missions/config/resolved_mission.h"
 #include "missions/config/sensor_reader.h"
 #include "missions/config/vehicle_reader.h"
+#include "missions/config/mission_keys.h"
 #include "missions/package/package.h"
 #include "tests/fuzz/readers.h"
 #include "tests/fuzz/trial_run.h"
@@ -32,9 +32,9 @@ void require_in_range(const config::Key& key, double value) {
           key.path + " is " + std::to_string(value));
 }
 
-void require_sane(const config::Mission& mission) {
+void require_sane(const config::MissionSetup& setup) {
   for (const config::Key& key : config::mission_keys()) {
-    const auto value = key.get(mission);
+    const auto value = key.get(*setup.document);
     if (!value) continue;
     if (const auto* number = std::get_if<double>(&*value)) require_in_range(key, *number);
     if (const auto* vector = std::get_if<Eigen::Vector3d>(&*value)) {
@@ -57,8 +57,9 @@ int run_sensor(const std::uint8_t* bytes, std::size_t size) {
 }
 
 int run_vehicle(const std::uint8_t* bytes, std::size_t size) {
-  return run_reader(
-      "v.yaml", [&] { missions::config::read_vehicle(text_of(bytes, size), "v.yaml").validate(); });
+  return run_reader("v.yaml", [&] {
+    missions::config::read_vehicle(text_of(bytes, size), "v.yaml").validate();
+  });
 }
 
 int run_summary(const std::uint8_t* bytes, std::size_t size) {

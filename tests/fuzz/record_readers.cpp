@@ -12,8 +12,8 @@
 #include "geometry/io/json.h"
 #include "geometry/io/record_log.h"
 #include "geometry/place/world.h"
-#include "missions/config/journal_text.h"
-#include "missions/config/resolved_mission.h"
+#include "geometry/points/depth_image.h"
+#include "missions/config/resolve.h"
 #include "missions/evaluation/survey_scene.h"
 #include "missions/online/recordings/rawlog_sequence.h"
 #include "missions/online/recordings/recorded_sequence.h"
@@ -22,8 +22,8 @@
 #include "missions/report/result_pages.h"
 #include "missions/scan/laser_checkpoint.h"
 #include "missions/simulation/survey_journal.h"
+#include "missions/support/journal_text.h"
 #include "missions/support/sha256.h"
-#include "sim/sensors/depth_image.h"
 #include "tests/fuzz/readers.h"
 #include "tests/fuzz/trial_run.h"
 #include "tests/missions/flown_mission.h"
@@ -51,16 +51,17 @@ int run_records(const std::uint8_t* bytes, std::size_t size) {
 /// A survey that is not to go on but for its journal: what it begins with, and then these lines.
 int run_survey_journal(const std::uint8_t* bytes, std::size_t size) {
   using namespace missions;
-  static const config::Mission mission = config::parse_mission(
+  static const config::MissionSetup setup = config::parse_mission(
       "scene: {model: 'builtin:teapot', detail: coarse, longest_side: 1.0}\n"
       "planner: {density: 5200, resolution_radius: 0.0525, occluder_spacing: 0.03}\n"
       "evaluation: {registration_distance: 0.03, samples: 100, visible_directions: 10,\n"
       "             ceiling_views: 0}\n",
       "m.yaml");
-  static const evaluation::SurveyScene scene(mission, ".");
-  static const std::string identity = config::identity_text(
-      mission,
-      {{"surface",
+  static const evaluation::SurveyScene scene(setup.simulation, ".", setup.run.threads);
+  static const std::string identity = support::identity_text(
+      setup.identity(),
+      {{"format", support::journal_format},
+       {"surface",
         support::sha256(std::as_bytes(std::span<const Eigen::Vector3f>(scene.samples().points)))}});
   return run_reader("survey.journal", [&] {
     const fs::path journal = fresh_folder() / "survey.journal";
@@ -71,7 +72,7 @@ int run_survey_journal(const std::uint8_t* bytes, std::size_t size) {
       std::istringstream text(text_of(bytes, size));
       for (std::string line; std::getline(text, line); ++lines) log.append(line);
     }
-    const simulation::SurveyJournal known(journal, mission, scene, true);
+    const simulation::SurveyJournal known(journal, setup.identity(), scene, true);
     require(known.views() == lines, "views that are not in the journal");
   });
 }
@@ -111,16 +112,14 @@ int run_sequence(const std::uint8_t* bytes, std::size_t size) {
 /// that says, which it does see.
 int run_rawlog(const std::uint8_t* bytes, std::size_t size) {
   namespace online = missions::online;
-  missions::config::Mission mission;
-  mission.sensor.scanner = sim::LidarConfig{};
   return run_reader("x.rawlog", [&] {
     const fs::path file = file_with("x.rawlog", text_of(bytes, size));
     online::RawlogSequence sequence(file, {}, [](const std::string&) {});
     require(!sequence.pose_source().empty(), "poses from nowhere");
     while (const auto frame = sequence.next()) {
       require(geometry::is_place(frame->world_from_sensor.translation()), "a frame of no place");
-      const auto found = online::scan_of(*frame, mission);
-      require(found.scan.points.size() <= sim::most_depth_pixels, "a scan of too many points");
+      const auto found = online::scan_of(*frame, {.is_scanner = true}, {});
+      require(found.scan.points.size() <= geometry::most_depth_pixels, "a scan of too many points");
     }
   });
 }
@@ -140,7 +139,7 @@ int run_depth_png(const std::uint8_t* bytes, std::size_t size) {
     at += 12 + length;
   }
   return run_reader("depth.png", [&] {
-    const sim::DepthImage image = sim::read_depth_png(file_with("depth.png", text));
+    const geometry::DepthImage image = geometry::read_depth_png(file_with("depth.png", text));
     require(image.width > 0 && image.height > 0 &&
                 image.values.size() ==
                     static_cast<std::size_t>(image.width) * static_cast<std::size_t>(image.height),
@@ -150,14 +149,14 @@ int run_depth_png(const std::uint8_t* bytes, std::size_t size) {
 
 int run_timetable(const std::uint8_t* bytes, std::size_t size) {
   const std::string vehicle = "vehicle: generic";
-  static const missions::config::Mission mission = missions::config::parse_mission(
+  static const missions::config::MissionSetup setup = missions::config::parse_mission(
       tests::flown_mission().replace(tests::flown_mission().find(vehicle), vehicle.size(),
                                      "vehicles: [generic, generic_ardupilot], separation: 6, "
                                      "timing_tolerance: 2"),
       "m.yaml");
   return run_reader("timetable.csv", [&] {
     const auto rows = missions::package::read_timetable(
-        file_with("timetable.csv", text_of(bytes, size)), mission);
+        file_with("timetable.csv", text_of(bytes, size)), setup.flight());
     for (const auto& row : rows) {
       require(row.vehicle < 2, "a vehicle that the mission does not have");
       require(geometry::is_place(row.pad), "a pad out of the world");

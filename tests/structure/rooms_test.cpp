@@ -52,6 +52,8 @@ Rooms house() {
   add("survey/skycap/raster", {"survey"});
   add("survey/skycap", {"survey", "survey/skycap/raster"});
   add("survey/volumetric", {"survey"});
+  add("survey/planners", {"survey", "survey/see", "survey/skycap", "survey/skycap/raster",
+                          "survey/volumetric"});
 
   add("flight/space", {});
   add("flight/autopilot", {});
@@ -69,6 +71,9 @@ Rooms house() {
   add("flight/fleet", {"flight/space", "flight/motion", "flight/paths", "flight/way_home",
                        "flight/route", "flight/fly_test"});
   add("flight/district", {"flight/space", "flight/motion", "flight/way_home", "flight/route"});
+  add("flight", {"flight/space", "flight/motion", "flight/autopilot", "flight/paths",
+                 "flight/way_home", "flight/route", "flight/export", "flight/interpreter",
+                 "flight/fly_test", "flight/fleet"});
 
   std::map<std::string, std::vector<std::string>> rooms_of;  // of each library below missions/
   for (const auto& [room, others] : rooms) {
@@ -95,39 +100,51 @@ Rooms house() {
       rooms_of["missions/" + name].push_back(room);
     }
   };
-  add_library({"support"}, {"sim", "survey", "flight"}, {});
-  add_library({"site_data/formats", "site_data"}, {"sim", "survey", "flight"}, {"support"});
-  add_library({"config"}, {"sim", "survey", "flight"}, {"support", "site_data"});
-  add_library({"scene"}, {"sim", "survey", "flight"}, {"support", "site_data", "config"});
-  add_library({"evaluation"}, {"sim", "survey", "flight"},
-              {"support", "site_data", "config", "scene"});
-  add_library({"session"}, {"sim", "survey", "flight"},
-              {"support", "site_data", "config", "scene", "evaluation"});
-  add_library({"simulation"}, {"sim", "survey", "flight"},
-              {"support", "site_data", "config", "scene", "evaluation", "session"});
-  add_library({"scan"}, {"sim", "survey", "flight"},
-              {"support", "site_data", "config", "scene", "evaluation", "session", "simulation"});
-  add_library(
-      {"online/live", "online/guided", "online/recordings"}, {"sim", "survey", "flight"},
-      {"support", "site_data", "config", "scene", "evaluation", "session", "simulation", "scan"});
-  add_library(
-      {"package/fleet", "package/replan", "package/verification", "package"},
-      {"sim", "survey", "flight"},
-      {"support", "site_data", "config", "scene", "evaluation", "session", "simulation", "scan"});
-  add_library({"wizard"}, {"sim", "survey", "flight"},
-              {"support", "site_data", "config", "scene", "evaluation", "session", "simulation"});
-  add_library({"report"}, {"sim", "survey", "flight"},
-              {"support", "site_data", "config", "scene", "evaluation", "session", "simulation",
-               "scan", "package"});
-  add_library({"batch/benchmark", "batch/campaign", "batch/district"}, {"sim", "survey", "flight"},
-              {"support", "site_data", "config", "scene", "evaluation", "session", "simulation",
-               "scan", "package", "wizard"});
-  add_library({"api"}, {"sim", "survey", "flight"},
-              {"support", "site_data", "config", "scene", "evaluation", "session", "simulation",
-               "scan", "package"});
-  add_library({"cli", "cli/clouds", "cli/items"}, {"sim", "survey", "flight"},
-              {"support", "site_data", "config", "scene", "evaluation", "session", "simulation",
-               "scan", "online", "package", "wizard", "report", "batch", "api"});
+  add_library({"support"},
+              {"geometry"},
+              {});
+  add_library({"site_data/formats", "site_data"},
+              {"flight"},
+              {"support"});
+  add_library({"scene"},
+              {"sim", "flight"},
+              {"site_data", "support"});
+  add_library({"session"},
+              {"survey", "flight"},
+              {"support"});
+  add_library({"evaluation"},
+              {"sim", "survey", "flight"},
+              {"scene", "session", "site_data", "support"});
+  add_library({"simulation"},
+              {"sim", "survey", "flight"},
+              {"evaluation", "scene", "session", "support"});
+  add_library({"scan"},
+              {"sim", "flight"},
+              {"scene", "support"});
+  add_library({"online/live", "online/guided", "online/recordings"},
+              {"survey", "flight"},
+              {"session", "support"});
+  add_library({"config"},
+              {"sim", "survey", "flight"},
+              {"online", "scan", "simulation", "evaluation", "session", "scene", "site_data", "support"});
+  add_library({"package/fleet", "package/replan", "package/verification", "package"},
+              {"sim", "survey", "flight"},
+              {"config", "scan", "simulation", "evaluation", "session", "scene", "site_data", "support"});
+  add_library({"wizard"},
+              {"flight"},
+              {"config", "site_data", "support"});
+  add_library({"report"},
+              {"sim", "survey", "flight"},
+              {"package", "config", "scan", "simulation", "evaluation", "session", "scene", "site_data", "support"});
+  add_library({"batch/benchmark", "batch/campaign", "batch/district"},
+              {"sim", "survey", "flight"},
+              {"package", "wizard", "config", "simulation", "evaluation", "session", "scene", "site_data", "support"});
+  add_library({"api"},
+              {"sim", "survey", "flight"},
+              {"package", "config", "scan", "simulation", "evaluation", "session", "scene", "site_data", "support"});
+  add_library({"cli", "cli/clouds", "cli/items"},
+              {"sim", "survey", "flight"},
+              {"report", "batch", "wizard", "package", "config", "online", "scan", "simulation", "evaluation", "session", "scene", "site_data", "support"});
   // As a user of the library: public headers.
   add("python",
       {"sim/models", "sim/sensors", "survey", "flight/space", "flight/route", "missions/api"});

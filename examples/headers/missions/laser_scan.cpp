@@ -4,12 +4,12 @@
 
 // A laser scanner flown around a scene, measured piece by piece.
 const Example laser_scan_example("missions/laser_scan", [] {
-  const auto mission = skycap::missions::api::Mission::parse(
+  const auto mission = skycap::missions::library::Mission::parse(
       "scene: {model: builtin:teapot, longest_side: 20}\n"
       "evaluation: {registration_distance: 0.1}\n"
       "scan: {orbit: {radius: 25, speed: 40}}\n",
       "orbit.yaml");
-  skycap::missions::api::LaserScan scan(mission, {.sensor = "velodyne_vlp16"});
+  skycap::missions::library::LaserScan scan(mission, {.sensor = "velodyne_vlp16"});
   std::size_t returns = 0;
   for (auto piece = scan.next(); !piece.empty(); piece = scan.next()) {
     for (const auto& part : piece) returns += part.size();

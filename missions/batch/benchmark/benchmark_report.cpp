@@ -334,8 +334,7 @@ std::string table_1_csv(const std::vector<BenchmarkCell>& cells, Times times) {
                          support::exact_text(ours.mean / (*paper).*column.papers)
                    : ",,";
     }
-    csv +=
-        "," + (figures.coverage_visible ? support::exact_text(figures.coverage_visible->mean) : "");
+    csv += "," + (figures.coverage_visible ? support::exact_text(figures.coverage_visible->mean) : "");
     csv += "," + (figures.ceiling ? support::exact_text(*figures.ceiling) : "") + "\n";
   }
   return csv;

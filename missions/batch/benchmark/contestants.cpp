@@ -4,30 +4,32 @@
 #include <utility>
 
 #include "geometry/error.h"
-#include "missions/config/planner_titles.h"
 #include "missions/simulation/omniscient.h"
 #include "missions/simulation/survey_runner.h"
+#include "survey/planners/planner_names.h"
 
 namespace skycap::missions::batch {
 namespace {
 
 /// A planner that planner.name knows.
-Contestant contestant_of(const config::PlannerTitle& planner) {
-  return {.name = std::string(planner.word),
-          .title = std::string(planner.title),
-          .is_in_all = planner.name != config::PlannerName::skycap,  // not of the paper
-          .is_volumetric = planner.metric.has_value(),
-          .survey = [](const config::Mission& mission, const evaluation::SurveyScene& scene,
-                       std::uint64_t seed, std::stop_token stop) {
-            return simulation::run_survey(mission, scene, seed, 1, std::move(stop));
-          }};
+Contestant contestant_of(const survey::PlannerTitle& planner) {
+  return {
+      .name = std::string(planner.word),
+      .title = std::string(planner.title),
+      .is_in_all = planner.name != survey::PlannerName::skycap,  // not of the paper
+      .is_volumetric = planner.metric.has_value(),
+      .survey = [](const evaluation::SimulationOptions& options,
+                   const evaluation::SurveyScene& scene, std::uint64_t seed, std::stop_token stop) {
+        return simulation::run_survey(options, scene, seed, 1, std::move(stop));
+      }};
 }
 
 /// The reference that knows the scene.
 Contestant omniscient() {
-  const auto survey = [](const config::Mission& mission, const evaluation::SurveyScene& scene,
-                         std::uint64_t seed, std::stop_token stop) {
-    return simulation::survey_omnisciently(mission, scene, seed, 1, {}, std::move(stop));
+  const auto survey = [](const evaluation::SimulationOptions& options,
+                         const evaluation::SurveyScene& scene, std::uint64_t seed,
+                         std::stop_token stop) {
+    return simulation::survey_omnisciently(options, scene, seed, 1, {}, std::move(stop));
   };
   return {.name = "omniscient", .title = "Omniscient", .is_in_all = false, .survey = survey};
 }
@@ -37,7 +39,7 @@ Contestant omniscient() {
 const std::vector<Contestant>& contestants() {
   static const std::vector<Contestant> all = [] {
     std::vector<Contestant> list;
-    for (const config::PlannerTitle& planner : config::planner_titles) {
+    for (const survey::PlannerTitle& planner : survey::planner_titles) {
       list.push_back(contestant_of(planner));
     }
     // clang 14 does not compile the ranges' own.

@@ -8,7 +8,6 @@
 #include <string_view>
 #include <vector>
 
-#include "missions/config/mission.h"
 #include "missions/evaluation/survey_scene.h"
 #include "missions/session/survey_record.h"
 
@@ -22,8 +21,9 @@ struct Contestant {
 
   /// Surveys a mission in one thread. The start and the sensor's noise must follow from the seed
   /// alone. Called from several threads.
-  std::function<session::SurveyRecord(const config::Mission&, const evaluation::SurveyScene&,
-                                      std::uint64_t seed, std::stop_token)>
+  std::function<session::SurveyRecord(const evaluation::SimulationOptions&,
+                                      const evaluation::SurveyScene&, std::uint64_t seed,
+                                      std::stop_token)>
       survey;
 };
 

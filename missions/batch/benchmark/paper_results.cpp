@@ -4,7 +4,7 @@
 #include <array>
 #include <cstddef>
 
-#include "missions/config/planner_titles.h"
+#include "survey/planners/planner_names.h"
 
 namespace skycap::missions::batch {
 namespace {
@@ -12,53 +12,53 @@ namespace {
 constexpr std::array<std::string_view, 4> models{"teapot", "bunny", "dragon", "radcliffe_camera"};
 
 struct Row {
-  config::PlannerName planner;
+  survey::PlannerName planner;
   std::array<PaperResult, 4> of_model;
 };
 
 // Coverage in percent, as printed.
 constexpr std::array<Row, 9> table_1{{
-    {config::PlannerName::see_plus_plus,
+    {survey::PlannerName::see_plus_plus,
      {{{22.3, 97.1, 20.1, 29.7},
        {31.5, 99.4, 46.0, 40.9},
        {35.5, 97.3, 34.0, 40.6},
        {27.1, 95.3, 121, 806}}}},
-    {config::PlannerName::see,
+    {survey::PlannerName::see,
      {{{60.0, 98.1, 4.13, 42.8},
        {75.3, 99.5, 24.7, 56.3},
        {78.0, 98.0, 15.4, 56.8},
        {64.5, 96.6, 74.4, 1302}}}},
-    {config::PlannerName::rsv,
+    {survey::PlannerName::rsv,
      {{{105, 97.6, 196, 49.6},
        {129, 97.6, 325, 64.8},
        {130, 96.1, 311, 58.2},
        {130, 91.4, 648, 4008}}}},
-    {config::PlannerName::rse,
+    {survey::PlannerName::rse,
      {{{105, 97.8, 200, 50.7},
        {129, 95.1, 324, 62.7},
        {130, 97.2, 311, 61.1},
        {130, 89.7, 630, 6375}}}},
-    {config::PlannerName::oa,
+    {survey::PlannerName::oa,
      {{{105, 98.8, 194, 37.8},
        {129, 99.5, 313, 45.1},
        {130, 98.4, 300, 43.1},
        {130, 93.9, 675, 1098}}}},
-    {config::PlannerName::uv,
+    {survey::PlannerName::uv,
      {{{105, 98.8, 194, 37.8},
        {129, 99.5, 313, 45.1},
        {130, 98.4, 300, 43.1},
        {130, 93.9, 675, 1098}}}},
-    {config::PlannerName::pc,
+    {survey::PlannerName::pc,
      {{{105, 97.6, 198, 50.0},
        {129, 98.9, 320, 62.9},
        {130, 97.2, 306, 59.2},
        {130, 91.9, 622, 3272}}}},
-    {config::PlannerName::af,
+    {survey::PlannerName::af,
      {{{105, 97.6, 196, 49.9},
        {129, 96.4, 326, 64.3},
        {130, 97.1, 306, 63.8},
        {130, 90.7, 628, 2615}}}},
-    {config::PlannerName::ae,
+    {survey::PlannerName::ae,
      {{{105, 97.4, 196, 48.5},
        {129, 97.4, 324, 59.8},
        {130, 97.3, 311, 58.0},
@@ -69,7 +69,7 @@ constexpr std::array<Row, 9> table_1{{
 
 std::optional<PaperResult> paper_result(std::string_view mission, std::string_view planner) {
   const auto model = std::ranges::find(models, mission);
-  const auto row = std::ranges::find(table_1, config::planner_called(planner),
+  const auto row = std::ranges::find(table_1, survey::planner_called(planner),
                                      [](const Row& entry) { return std::optional(entry.planner); });
   if (model == models.end() || row == table_1.end()) return std::nullopt;
   PaperResult result = row->of_model[static_cast<std::size_t>(model - models.begin())];

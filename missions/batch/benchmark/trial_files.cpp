@@ -10,7 +10,6 @@
 #include "geometry/error.h"
 #include "geometry/io/file.h"
 #include "geometry/io/json.h"
-#include "missions/config/survey_settings.h"
 #include "missions/scene/scene_source.h"
 #include "missions/support/json_text.h"
 #include "missions/support/sha256.h"
@@ -21,13 +20,13 @@ namespace skycap::missions::batch {
 namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 
-std::string trial_fingerprint(const config::Mission& mission, const std::string& contestant,
+std::string trial_fingerprint(const config::MissionSetup& mission, const std::string& contestant,
                               const fs::path& folder) {
   std::string inputs = std::string(version) + "\n" + contestant;
-  for (const auto& [key, value] : config::survey_settings(mission)) {
+  for (const auto& [key, value] : mission.settings) {
     inputs.append("\n").append(key).append(" ").append(value);
   }
-  for (const fs::path& file : scene::files_of(mission, folder)) {
+  for (const fs::path& file : scene::files_of(mission.scene(), mission.lidar, folder)) {
     std::error_code ignored;  // what is missing is refused when the scene is made ready
     const bool is_there = fs::is_regular_file(file, ignored);
     inputs.append("\n").append(is_there ? support::sha256_of_file(file) : "-");

@@ -13,7 +13,7 @@ namespace skycap::missions::batch {
 /// Stands for everything that a trial depends on but its seed: version, planner (`contestant`),
 /// settings, and the contents of the files that they name. `folder` is where relative paths start.
 /// Throws Error{bad_file} if one of them cannot be read.
-std::string trial_fingerprint(const config::Mission& mission, const std::string& contestant,
+std::string trial_fingerprint(const config::MissionSetup& mission, const std::string& contestant,
                               const std::filesystem::path& folder);
 
 /// Where a trial ran and what that took: of the machine, not of the trial.

@@ -14,12 +14,11 @@
 #include "geometry/parallel.h"
 #include "missions/batch/benchmark/paper_results.h"
 #include "missions/batch/benchmark/trial_json.h"
-#include "missions/config/mission_keys.h"
-#include "missions/config/planner_titles.h"
 #include "missions/evaluation/coverage.h"
 #include "missions/support/json_text.h"
 #include "missions/support/number_text.h"
 #include "missions/version.h"
+#include "survey/planners/planner_names.h"
 
 namespace skycap::missions::batch {
 namespace {
@@ -30,28 +29,29 @@ using Json = nlohmann::ordered_json;
 struct Figure {
   const char* name;
   double (*of)(const Trial&);
-  std::optional<double> config::ReferenceConfig::*reference;  ///< or null
-  double PaperResult::*in_table_1;                            ///< or null
+  std::optional<double> config::ReferenceResults::*reference;  ///< or null
+  double PaperResult::*in_table_1;                             ///< or null
 };
 
 constexpr std::array figures{
     Figure{"views", [](const Trial& t) { return static_cast<double>(t.views); },
-           &config::ReferenceConfig::views, &PaperResult::views},
+           &config::ReferenceResults::views, &PaperResult::views},
     Figure{"coverage", [](const Trial& t) { return t.coverage.all; },
-           &config::ReferenceConfig::coverage, &PaperResult::coverage},
+           &config::ReferenceResults::coverage, &PaperResult::coverage},
     // No reference: publications do not say which surface cannot be seen.
     Figure{"coverage_visible", [](const Trial& t) { return t.coverage.visible.value_or(0.0); },
            nullptr, nullptr},
     Figure{"distance_m", [](const Trial& t) { return t.distance; },
-           &config::ReferenceConfig::distance, &PaperResult::distance},
+           &config::ReferenceResults::distance, &PaperResult::distance},
     Figure{"planning_time_s", [](const Trial& t) { return t.planning_time; },
-           &config::ReferenceConfig::planning_time, &PaperResult::planning_time}};
+           &config::ReferenceResults::planning_time, &PaperResult::planning_time}};
 
 /// What the mission says of a publication, or else what the SEE++ paper has of its model.
-std::optional<double> reference_of(const config::Mission& mission, const Figure& figure) {
+std::optional<double> reference_of(const config::MissionSetup& mission, const Figure& figure) {
   if (figure.reference == nullptr) return std::nullopt;
-  if (const auto& given = mission.paper.*figure.reference) return given;
-  const auto paper = paper_result(mission.name, config::title_of(mission.planner.name).word);
+  if (const auto& given = mission.reference.*figure.reference) return given;
+  const auto paper =
+      paper_result(mission.name, survey::title_of(mission.survey().planner.name).word);
   return paper ? std::optional((*paper).*figure.in_table_1) : std::nullopt;
 }
 
@@ -227,13 +227,13 @@ std::string trials_csv(const std::vector<Trial>& trials, Times times) {
   return csv;
 }
 
-std::string trials_json(const config::Mission& mission, const std::vector<Trial>& trials,
+std::string trials_json(const config::MissionSetup& mission, const std::vector<Trial>& trials,
                         std::size_t requested, unsigned threads) {
   Json json{{"mission", mission.name},
-            {"planner", config::title_of(mission.planner.name).word},
-            {"title", config::title_of(mission.planner.name).title},
-            {"preset", config::to_text(*config::find_key("planner.preset")->get(mission))},
-            {"first_seed", mission.seed},
+            {"planner", survey::title_of(mission.survey().planner.name).word},
+            {"title", survey::title_of(mission.survey().planner.name).title},
+            {"preset", mission.text("planner.preset")},
+            {"first_seed", mission.run.seed},
             {"threads", geometry::thread_count(threads)},
             {"version", version},
             {"complete", trials.size() == requested},
@@ -259,7 +259,7 @@ std::string trials_json(const config::Mission& mission, const std::vector<Trial>
   return support::json_text(json);
 }
 
-std::string trials_table(const config::Mission& mission, const std::vector<Trial>& trials) {
+std::string trials_table(const config::MissionSetup& mission, const std::vector<Trial>& trials) {
   if (trials.empty()) return "";
   std::string table =
       fmt::format("{}: {} trials, {} complete\n{:<18} {:>12} {:>10} {:>10} {:>12}\n", mission.name,

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "missions/config/mission.h"
+#include "missions/config/mission_setup.h"
 #include "missions/evaluation/survey_scene.h"
 #include "missions/package/package.h"
 #include "missions/simulation/survey_runner.h"
@@ -81,10 +81,10 @@ std::string trials_csv(const std::vector<Trial>& trials, Times times = Times::sh
 
 /// trials.json: statistics, mean curves (a finished trial keeps its last coverage), each trial,
 /// and the mission's reference figures beside them.
-std::string trials_json(const config::Mission& mission, const std::vector<Trial>& trials,
+std::string trials_json(const config::MissionSetup& mission, const std::vector<Trial>& trials,
                         std::size_t requested, unsigned threads);
 
 /// The table for the terminal: means and half widths, and the mission's reference figures.
-std::string trials_table(const config::Mission& mission, const std::vector<Trial>& trials);
+std::string trials_table(const config::MissionSetup& mission, const std::vector<Trial>& trials);
 
 }  // namespace skycap::missions::batch

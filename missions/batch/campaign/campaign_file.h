@@ -9,7 +9,7 @@
 #include <string_view>
 #include <vector>
 
-#include "missions/config/mission_reader.h"
+#include "missions/config/key_override.h"
 
 namespace skycap::missions::batch {
 

@@ -94,7 +94,7 @@ class Runner {
     const auto start = Clock::now();
     const Setup& setup = *item.setup;
     const session::SurveyRecord survey =
-        setup.contestant->survey(setup.mission, prepared.scene, item.seed, stop_);
+        setup.contestant->survey(setup.mission.simulation, prepared.scene, item.seed, stop_);
     if (survey.stop_reason == survey::StopReason::interrupted) return std::nullopt;
     if (item.form == ItemForm::package) {
       stage_package(item, prepared, survey, *folder);
@@ -120,10 +120,10 @@ class Runner {
 
   void stage_package(const Item& item, const PreparedScene& prepared,
                      const session::SurveyRecord& survey, geometry::OutputFolder& folder) const {
-    config::Mission mission = item.setup->mission;
-    mission.seed = item.seed;
+    config::MissionSetup mission = item.setup->mission;
+    mission.run.seed = item.seed;
     const package::CoverageFigures coverage =
-        package::coverage_figures(mission, survey, prepared.scene, 1, stop_);
+        package::coverage_figures(mission.simulation, survey, prepared.scene, 1, stop_);
     package::stage_package(mission, survey, coverage, 1, folder, stop_);
   }
 

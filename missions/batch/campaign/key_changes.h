@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "missions/config/mission_reader.h"
+#include "missions/config/key_override.h"
 #include "missions/support/yaml_tree.h"
 
 namespace skycap::missions::batch {

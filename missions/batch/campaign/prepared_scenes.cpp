@@ -49,7 +49,7 @@ void keep_truth(const std::filesystem::path& file, const batch::SceneTruth& trut
 batch::SceneTruth truth_of(const Setup& setup, const evaluation::SurveyScene& scene,
                            unsigned threads, const std::stop_token& stop) {
   if (auto kept = kept_truth(setup.truth_file, scene.samples().points.size())) return *kept;
-  simulation::require_feasible(setup.mission, scene, threads);
+  simulation::require_feasible(setup.mission.simulation, scene, {setup.mission.run.seed, threads});
   batch::SceneTruth truth = batch::scene_truth(scene, threads, stop);
   if (!stop.stop_requested()) keep_truth(setup.truth_file, truth);
   return truth;
@@ -73,11 +73,9 @@ std::shared_ptr<const PreparedScene> PreparedScenes::take(const Setup& setup,
   if (!slot.scene) {
     preparing();
     try {
-      config::Mission mission = setup.mission;
-      mission.threads = threads_;
       std::filesystem::path reached = setup.truth_file;
       if (!reached.empty()) reached += "_reached";
-      evaluation::SurveyScene scene(mission, setup.folder(), reached);
+      evaluation::SurveyScene scene(setup.mission.simulation, setup.folder(), threads_, reached);
       batch::SceneTruth truth = truth_of(setup, scene, threads_, stop);
       if (stop.stop_requested()) return nullptr;  // the truth is of no use
       slot.scene.reset(new PreparedScene{std::move(scene), std::move(truth)});

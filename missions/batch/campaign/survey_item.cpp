@@ -5,8 +5,8 @@
 
 #include "missions/batch/benchmark/trial_files.h"
 #include "missions/config/mission_keys.h"
-#include "missions/config/planner_titles.h"
-#include "missions/config/resolved_mission.h"
+#include "missions/config/resolve.h"
+#include "survey/planners/planner_names.h"
 
 namespace skycap::missions::batch {
 
@@ -14,9 +14,9 @@ std::string fingerprint_of(const Setup& setup) {
   return batch::trial_fingerprint(setup.mission, setup.contestant->name, setup.folder());
 }
 
-Setup own_setup(const std::filesystem::path& file, const config::Mission& mission) {
+Setup own_setup(const std::filesystem::path& file, const config::MissionSetup& mission) {
   Setup setup{file, mission.name, nullptr, mission, ""};
-  setup.contestant = batch::find_contestant(config::title_of(mission.planner.name).word);
+  setup.contestant = batch::find_contestant(survey::title_of(mission.survey().planner.name).word);
   setup.fingerprint = fingerprint_of(setup);
   return setup;
 }

@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "missions/batch/benchmark/contestants.h"
-#include "missions/config/mission_reader.h"
-#include "missions/config/report.h"
+#include "missions/config/key_override.h"
+#include "missions/config/resolve.h"
 
 namespace skycap::missions::batch {
 
@@ -18,7 +18,7 @@ struct Setup {
   std::filesystem::path file;  ///< of the mission
   std::string title;           ///< in tables; setups of the same title have the same scene
   const batch::Contestant* contestant = nullptr;
-  config::Mission mission;
+  config::MissionSetup mission;
   std::string fingerprint;  ///< fingerprint_of() all this
   /// Keeps the scene's truth for other tasks; empty: nothing does.
   std::filesystem::path truth_file = {};
@@ -31,7 +31,7 @@ struct Setup {
 std::string fingerprint_of(const Setup& setup);
 
 /// A mission that was read already, by its own planner.
-Setup own_setup(const std::filesystem::path& file, const config::Mission& mission);
+Setup own_setup(const std::filesystem::path& file, const config::MissionSetup& mission);
 
 /// Reads a mission for a contestant; null: for its own planner. `origin` is what messages call the
 /// choice of planners. Throws what config::read_mission() throws.

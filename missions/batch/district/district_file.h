@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "missions/config/mission_reader.h"
+#include "missions/config/key_override.h"
 #include "missions/wizard/wishes.h"
 
 namespace skycap::missions::batch {

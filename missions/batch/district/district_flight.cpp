@@ -11,8 +11,7 @@
 #include "flight/district/pad_sorties.h"
 #include "flight/paths/path.h"
 #include "geometry/error.h"
-#include "missions/config/mission_flight.h"
-#include "missions/config/resolved_mission.h"
+#include "missions/config/resolve.h"
 
 namespace skycap::missions::batch {
 namespace {
@@ -46,18 +45,20 @@ class FlightPlanner {
       : prepared_(prepared), targets_(targets), tell_(tell), stop_(stop) {
     for (std::size_t pad = 0; pad < prepared.pads.size(); ++pad) {
       const fs::path file = out / flights_folder / (pad_name(pad) + ".yaml");
-      missions_.push_back(package::in_given_order(config::read_mission(file, district.set)));
+      const config::MissionSetup mission = config::read_mission(file, district.set);
+      names_.push_back(mission.name);
+      flights_.push_back(package::in_given_order(mission.flight()));
     }
   }
 
   DistrictFlight plan(geometry::OutputFolder& folder) {
-    if (missions_.empty()) return {};
+    if (flights_.empty()) return {};
     take_surveys();
     if (!choose_pads()) return {};
-    routes_.resize(missions_.size());
-    std::vector<bool> is_changed(missions_.size(), true);
+    routes_.resize(flights_.size());
+    std::vector<bool> is_changed(flights_.size(), true);
     while (std::ranges::count(is_changed, true) > 0 && !stop_.stop_requested()) {
-      for (std::size_t pad = 0; pad < missions_.size(); ++pad) {
+      for (std::size_t pad = 0; pad < flights_.size(); ++pad) {
         if (is_changed[pad]) plan_pad(pad);
       }
       is_changed = move_refused();
@@ -75,16 +76,16 @@ class FlightPlanner {
       const SurveyedTarget& target = targets_[t];
       tell_(fmt::format("taking in survey {} of {}", t + 1, targets_.size()));
       if (!target.figures) {
-        config::Mission mission = missions_.front();
-        mission.flight.unknown_box = target.target.unknown;
-        spaces.emplace_back(config::measured_space_of(mission));
+        flight::FlightOptions unmeasured = flights_.front();
+        unmeasured.unknown_box = target.target.unknown;
+        spaces.emplace_back(unmeasured.measured_space());
         continue;
       }
       FlightInput input = flight_input(target.figures->folder);
       spaces.push_back(std::move(input.measured));
       grounds_.insert(grounds_.end(), input.grounds.begin(), input.grounds.end());
       const std::vector<package::Way> ways(input.views.size());
-      for (Station& station : package::stations_of(missions_.front(), input.views, ways)) {
+      for (Station& station : package::stations_of(flights_.front(), input.views, ways)) {
         flight_.stations.push_back({t, station.view_index, ""});
         of_target_.push_back(static_cast<std::uint32_t>(t));
         station.view_index = static_cast<std::uint32_t>(stations_.size());
@@ -97,9 +98,8 @@ class FlightPlanner {
   /// An order and pads for all stations; whether there is anything to fly.
   bool choose_pads() {
     tell_(fmt::format("ordering {} stations", stations_.size()));
-    const config::Mission& mission = missions_.front();
-    const flight::RouteOptions options = config::route_options_of(mission, prepared_.pads[0]);
-    const flight::Motion motion(config::vehicle_of(mission), options.conditions);
+    const flight::RouteOptions options = flights_.front().route(prepared_.pads[0]);
+    const flight::Motion motion(flights_.front().flown(), options.conditions);
     const flight::PadSorties sorties = flight::sorties_from_pads(
         stations_, of_target_, prepared_.pads, options.takeoff_climb, motion);
     for (const std::uint32_t i : sorties.out_of_reach) {
@@ -108,7 +108,7 @@ class FlightPlanner {
     }
     order_ = sorties.order;
     flight_.order_length = sorties.length;
-    pad_of_.resize(stations_.size(), missions_.size());
+    pad_of_.resize(stations_.size(), flights_.size());
     tried_.resize(stations_.size());
     for (std::size_t i = 0; i < order_.size(); ++i) {
       pad_of_[order_[i]] = sorties.pads[i];
@@ -125,11 +125,11 @@ class FlightPlanner {
     routes_[pad].reset();
     for (const Station& station : own) flight_.stations[station.view_index].why_not.clear();
     if (own.empty()) return;
-    tell_(fmt::format("proving the ways from pad {} of {} to {} stations", pad + 1,
-                      missions_.size(), own.size()));
+    tell_(fmt::format("proving the ways from pad {} of {} to {} stations", pad + 1, flights_.size(),
+                      own.size()));
     take_ways(pad, own);
     try {
-      routes_[pad] = package::plan_flight(missions_[pad], *measured_, prepared_.pads[pad], own,
+      routes_[pad] = package::plan_flight(flights_[pad], *measured_, prepared_.pads[pad], own,
                                           grounds_, stop_);
     } catch (const Error& error) {
       if (stop_.stop_requested()) return;
@@ -145,13 +145,13 @@ class FlightPlanner {
 
   /// Proposes a way from above the pad to each station.
   void take_ways(std::size_t pad, std::vector<Station>& stations) const {
-    const config::Mission& mission = missions_[pad];
+    const flight::FlightOptions& flight = flights_[pad];
     const Vector3d& place = prepared_.pads[pad];
-    const flight::KnownSpace known(config::flight_rules(mission));
+    const flight::KnownSpace known(flight.rules());
     const flight::JointSpace space({measured_.get(), &known});
-    const flight::RouteOptions options = config::route_options_of(mission, place);
+    const flight::RouteOptions options = flight.route(place);
     const Vector3d home = place + options.takeoff_climb * Vector3d::UnitZ();
-    const double level = config::highest_return(mission, place.z(), place.z());
+    const double level = flight.highest_return(place.z(), place.z());
     for (Station& station : stations) {
       if (stop_.stop_requested()) return;
       station.way = way_over(space, home, station.view.position, level, options);
@@ -161,7 +161,7 @@ class FlightPlanner {
   /// Gives stations that were refused to the nearest pad that they were not tried from; returns
   /// which pads have others now.
   std::vector<bool> move_refused() {
-    std::vector<bool> is_changed(missions_.size(), false);
+    std::vector<bool> is_changed(flights_.size(), false);
     for (const std::uint32_t i : order_) {
       if (flight_.stations[i].why_not.empty() || tried_[i].size() >= most_pads_tried) continue;
       const std::optional<std::size_t> next = nearest_untried(i);
@@ -190,7 +190,7 @@ class FlightPlanner {
       if (!routes_[pad] || routes_[pad]->sorties.empty()) continue;
       tell_(fmt::format("writing {} sorties from pad {}", routes_[pad]->sorties.size(), pad + 1));
       PadFlight own{pad, *std::move(routes_[pad])};
-      own.files = package::stage_flight(missions_[pad], own.route, *measured_,
+      own.files = package::stage_flight(names_[pad], flights_[pad], own.route, *measured_,
                                         package::package_formats(), folder, pad_name(pad));
       for (const std::string& note : own.files.notes) flight_.notes.push_back(note);
       flight_.pads.push_back(std::move(own));
@@ -201,7 +201,8 @@ class FlightPlanner {
   std::span<const SurveyedTarget> targets_;
   const Tell& tell_;
   const std::stop_token& stop_;
-  std::vector<config::Mission> missions_;  ///< by pad
+  std::vector<std::string> names_;              ///< of the missions, by pad
+  std::vector<flight::FlightOptions> flights_;  ///< their flights, in the order given
   std::unique_ptr<const flight::MeasuredUnion> measured_;
   std::vector<flight::PadGround> grounds_;
   std::vector<Station> stations_;

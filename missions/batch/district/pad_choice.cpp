@@ -30,7 +30,7 @@ double distance(const Vector3d& pad, const AlignedBox3d& box) {
 
 }  // namespace
 
-PadChoice::PadChoice(const DistrictFile& district, const config::Mission& draft,
+PadChoice::PadChoice(const DistrictFile& district, const flight::FlightOptions& draft,
                      const flight::GeodeticPoint& origin, std::span<const PreparedTarget> targets)
     : targets_(targets), search_(draft, unknown_boxes(targets)), own_(targets.size()) {
   take_given(district, origin);

@@ -9,6 +9,7 @@
 #include <Eigen/Core>
 
 #include "flight/export/geodesy.h"
+#include "flight/flight_options.h"
 #include "missions/batch/district/prepared.h"
 #include "missions/wizard/pad_search.h"
 
@@ -17,7 +18,7 @@ namespace skycap::missions::batch {
 class PadChoice {
  public:
   /// Keeps references to all. Throws Error{bad_config} if a pad that the district gives is none.
-  PadChoice(const DistrictFile& district, const config::Mission& draft,
+  PadChoice(const DistrictFile& district, const flight::FlightOptions& draft,
             const flight::GeodeticPoint& origin, std::span<const PreparedTarget> targets);
 
   /// The pad of a target's survey: beside it, or else the nearest that the district gives.

@@ -14,8 +14,7 @@
 #include "missions/batch/district/city_text.h"
 #include "missions/batch/district/pad_choice.h"
 #include "missions/batch/district/targets.h"
-#include "missions/config/mission_priors.h"
-#include "missions/config/resolved_mission.h"
+#include "missions/config/resolve.h"
 #include "missions/wizard/proposal.h"
 #include "missions/wizard/target.h"
 
@@ -98,7 +97,7 @@ class Preparer {
   bool has_terrain() const { return district_.wishes.terrain.has_value(); }
 
   /// All that the files hold, in the district's frame.
-  config::Mission read_draft() const {
+  config::MissionSetup read_draft() const {
     MissionValues values = basics(out_ / "all.yaml");
     values.sources =
         wizard::sources_of(files_, chosen_.are_all ? std::vector<std::string>() : chosen_.ids);
@@ -111,7 +110,7 @@ class Preparer {
   /// Splits what is in the way into things, which are cut out for each target, and files that each
   /// mission names.
   void take_things() {
-    const site_data::SitePriors& site = config::priors_of(draft_);
+    const site_data::SitePriors& site = *draft_.scene().priors;
     targets_ = &site.priors[0].objects;
     target_error_ = site.priors[0].uncertainty;
     std::map<std::string, int> times;
@@ -158,7 +157,7 @@ class Preparer {
         values.view_distance = std::max(values.view_distance, own.view_distance);
       }
       values.ground = has_terrain() ? std::round(100.0 * target.box.min().z()) / 100.0 : 0.0;
-      values.clearance = draft_.flight.clearance;
+      values.clearance = draft_.flight().clearance;
       target.unknown = values.unknown;
       prepared_.targets.push_back(std::move(target));
       values_.push_back(std::move(values));
@@ -168,7 +167,7 @@ class Preparer {
 
   void place_pads() {
     tell_(fmt::format("looking for pads beside {} targets", values_.size()));
-    PadChoice choice(district_, draft_, chosen_.origin, prepared_.targets);
+    PadChoice choice(district_, draft_.flight(), chosen_.origin, prepared_.targets);
     for (std::size_t i = 0; i < values_.size(); ++i) {
       const auto pad = choice.pad_of(i, wizard::top_of_climbs(values_[i]));
       if (!pad) {
@@ -185,7 +184,7 @@ class Preparer {
 
   /// So far from a fence nothing that it encloses comes near to, nor is it reported to.
   double beyond_fence() const {
-    return draft_.flight.clearance + flight::reported_surplus + thing_error_;
+    return draft_.flight().clearance + flight::reported_surplus + thing_error_;
   }
 
   /// A model of the targets and of all that stands within the fence or near it.
@@ -279,7 +278,7 @@ class Preparer {
     for (const Vector3d& pad : prepared_.pads) {
       values.fence.extend(wizard::with_pad(values, pad).fence);
     }
-    values.clearance = draft_.flight.clearance;
+    values.clearance = draft_.flight().clearance;
     for (const std::size_t i : things_near(values.fence)) {
       if (names.contains(things_[i].id)) continue;
       for (Ring& ring : outline_of(things_[i].mesh)) {
@@ -303,7 +302,7 @@ class Preparer {
   const Tell& tell_;
   std::vector<Source> files_, rest_;
   ChosenTargets chosen_;
-  config::Mission draft_;
+  config::MissionSetup draft_;
   const std::vector<Object>* targets_ = nullptr;
   double target_error_ = 0.0, thing_error_ = 0.0;
   std::vector<Object> things_;  ///< in the way, with names of their own

@@ -47,27 +47,28 @@ double longest_ray(const geometry::Camera& camera) {
 
 }  // namespace
 
-int scan_with_camera(const ScanVerbOptions& options, const config::Mission& mission,
+int scan_with_camera(const ScanVerbOptions& options, const config::MissionSetup& setup,
                      const config::SensorDescription& sensor, geometry::OutputFolder& folder,
                      const Console& console) {
   auto config = std::get<sim::DepthCameraConfig>(sensor.sensor);
-  config.noise.seed = mission.seed;
-  const scan::ScanFlight flown = flown_by(options, mission, scan::Carrier::gimbal);
+  config.noise.seed = setup.run.seed;
+  const scan::ScanFlight flown =
+      flown_by(options, setup.scan, setup.run.seed, scan::Carrier::gimbal);
   const auto& [route, believed, mount] = flown;
   std::vector<scan::Frame> frames;
-  for (const double time : image_times(route, mission.scan.frame_period)) {
+  for (const double time : image_times(route, setup.scan.frame_period)) {
     frames.push_back({time, route.carrier.pose(time) * mount.real * scan::body_from_camera(),
                       believed.pose(time) * mount.believed * scan::body_from_camera()});
   }
   ProgressLine progress(console, options.is_quiet);
-  progress.show(mission.name + ": making the scene ready");
-  const scene::SensedScene truth(mission, options.mission.parent_path());
+  progress.show(setup.name + ": making the scene ready");
+  const scene::SensedScene truth(setup.scene(), options.mission.parent_path(), setup.run.threads);
   const sim::DepthCamera camera(config);
-  const sim::Scene scene =
-      truth.scene(mission.threads, within_reach(flown, {route.carrier.start(), route.carrier.end()},
-                                                longest_ray(camera.camera())));
+  const sim::Scene scene = truth.scene(
+      setup.run.threads, within_reach(flown, {route.carrier.start(), route.carrier.end()},
+                                      longest_ray(camera.camera())));
   const auto report = [&](std::size_t taken, std::size_t points) {
-    progress.show(fmt::format("{}: image {} of {}, {:.1f} M points", mission.name, taken,
+    progress.show(fmt::format("{}: image {} of {}, {:.1f} M points", setup.name, taken,
                               frames.size(), 1e-6 * static_cast<double>(points)));
   };
   const bool has_rawlog = std::ranges::find(options.formats, "rawlog") != options.formats.end();
@@ -76,24 +77,24 @@ int scan_with_camera(const ScanVerbOptions& options, const config::Mission& miss
   nlohmann::ordered_json identity = identity_of(sensor, truth, flown);
   identity["rawlog"] = has_rawlog;
   const nlohmann::ordered_json begun =
-      open_journal(journal, options.resumes, options, mission, identity, console);
+      open_journal(journal, options.resumes, options, setup.identity(), identity, console);
   const scan::FrameResult result = scan::record_frames(scene, camera, frames, journal, folder,
-                                                       {.depth_unit = mission.scan.depth_unit,
+                                                       {.depth_unit = setup.scan.depth_unit,
                                                         .has_rawlog = has_rawlog,
-                                                        .threads = mission.threads,
+                                                        .threads = setup.run.threads,
                                                         .begun = begun,
                                                         .report = report,
                                                         .stop = console.stop});
   const bool is_complete = result.frames == frames.size();
-  folder.write(scan_name, support::json_text({{"mission", mission.name},
+  folder.write(scan_name, support::json_text({{"mission", setup.name},
                                               {"sensor", sensor.name},
-                                              {"seed", mission.seed},
+                                              {"seed", setup.run.seed},
                                               {"complete", is_complete},
                                               {"images", result.frames},
                                               {"images_planned", frames.size()},
                                               {"points", result.points},
                                               {"simulation_s", result.time},
-                                              {"settings", package::settings_json(mission)}}));
+                                              {"settings", package::settings_json(setup)}}));
   write_page(scan_name, options.has_report, folder, console);
   commit_scan(folder, is_complete);
   if (is_complete) journal.close();
@@ -101,7 +102,7 @@ int scan_with_camera(const ScanVerbOptions& options, const config::Mission& miss
   if (!options.is_quiet) {
     console.out << fmt::format(
                        "{}: {}{}\n  scan      {} depth images, {:.2f} M points in {:.1f} s\n",
-                       mission.name, sensor.name, is_complete ? "" : ", interrupted", result.frames,
+                       setup.name, sensor.name, is_complete ? "" : ", interrupted", result.frames,
                        1e-6 * static_cast<double>(result.points), result.time)
                 << "  results   " << folder.path().string() << "\n"
                 << std::flush;

@@ -63,26 +63,25 @@ Truth truth_of(const EvaluateOptions& options, bool wants_visible, const config:
                const std::stop_token& stop) {
   if (is_mission_file(options.model)) {
     const std::filesystem::path file = options.model;
-    const config::Mission mission = config::read_mission(file, {}, report);
-    const double distance = options.distance.value_or(mission.evaluation.registration_distance);
+    const config::MissionSetup setup = config::read_mission(file, {}, report);
+    const double distance = options.distance.value_or(setup.evaluation().registration_distance);
     const auto beside = [&](const geometry::Mesh& model) {
-      return scene::surroundings_of(mission, geometry::bounding_box(model));
+      return scene::surroundings_of(setup.scene(), geometry::bounding_box(model));
     };
     if (!wants_visible) {
-      const geometry::Mesh model = evaluation::placed_model(mission, file.parent_path());
-      return {model, beside(model), distance, mission.evaluation.samples};
+      const geometry::Mesh model = evaluation::placed_model(setup.scene(), file.parent_path());
+      return {model, beside(model), distance, setup.evaluation().samples};
     }
-    const evaluation::SurveyScene scene(mission, file.parent_path());
-    return {scene.model(), beside(scene.model()), distance, mission.evaluation.samples,
-            scene.visible(mission.threads, stop)};
+    const evaluation::SurveyScene scene(setup.simulation, file.parent_path(), setup.run.threads);
+    return {scene.model(), beside(scene.model()), distance, setup.evaluation().samples,
+            scene.visible(setup.run.threads, stop)};
   }
   if (!options.distance) {
     throw Error(ErrorKind::bad_usage,
                 "--distance is missing; give the distance within which a surface point counts as "
                 "covered, in metres");
   }
-  config::SceneConfig scene;
-  scene.model = options.model;
+  const scene::SceneOptions scene{.model = options.model};
   try {
     return {scene::load_model(scene, ""), {}, *options.distance, options.samples};
   } catch (const Error& error) {

@@ -9,7 +9,7 @@
 
 #include "geometry/surfaces/mesh.h"
 #include "missions/cli/verbs.h"
-#include "missions/config/resolved_mission.h"
+#include "missions/config/resolve.h"
 #include "missions/evaluation/cloud_judge.h"
 
 namespace skycap::missions::cli {

@@ -13,10 +13,9 @@
 #include "missions/cli/clouds/scan_results.h"
 #include "missions/cli/clouds/split_work.h"
 #include "missions/cli/write_page.h"
-#include "missions/config/journal_text.h"
-#include "missions/config/mission_flight.h"
 #include "missions/package/settings.h"
 #include "missions/scan/cloud_formats.h"
+#include "missions/support/journal_text.h"
 #include "missions/support/json_text.h"
 
 namespace skycap::missions::cli {
@@ -31,14 +30,14 @@ sim::LidarConfig seeded(sim::LidarConfig config, std::uint64_t seed) {
   return config;
 }
 
-std::shared_ptr<const flight::UtmProjection> projection_of(const config::Mission& mission) {
-  if (mission.scan.crs == config::ScanCrs::local) return nullptr;
-  if (!config::has_place(mission)) {
+std::shared_ptr<const flight::UtmProjection> projection_of(const scan::FlownScanOptions& scan) {
+  if (scan.crs == scan::ScanCrs::local) return nullptr;
+  if (!scan.site) {
     throw Error(ErrorKind::bad_config,
                 "scan.crs is utm, but the mission has no place; add site.latitude_deg and "
                 "site.longitude_deg, or say local");
   }
-  return std::make_shared<const flight::UtmProjection>(config::site_of(mission));
+  return std::make_shared<const flight::UtmProjection>(*scan.site);
 }
 
 /// The sensor's poses, up to the first that is not before `end`, as a TUM file.
@@ -115,17 +114,17 @@ std::vector<scan::LaserOutput> output_files(const ScanVerbOptions& options,
 
 }  // namespace
 
-LaserScan::LaserScan(const ScanVerbOptions& options, const config::Mission& mission,
+LaserScan::LaserScan(const ScanVerbOptions& options, const config::MissionSetup& setup,
                      const config::SensorDescription& sensor, const Console& console,
                      const std::filesystem::path& index)
     : options_(options),
-      mission_(mission),
+      setup_(setup),
       sensor_(sensor),
       console_(console),
-      lidar_(seeded(std::get<sim::LidarConfig>(sensor.sensor), mission.seed)),
-      flown_(flown_by(options, mission, scan::Carrier::airframe)),
+      lidar_(seeded(std::get<sim::LidarConfig>(sensor.sensor), setup.run.seed)),
+      flown_(flown_by(options, setup.scan, setup.run.seed, scan::Carrier::airframe)),
       flight_(flown_.of_scanner()),
-      projection_(projection_of(mission)),
+      projection_(projection_of(setup.scan)),
       preview_(scan::preview_pieces(lidar_.config(), flown_.route.carrier)),
       progress_(console, options.is_quiet),
       truth_(read_scene(index)) {
@@ -154,8 +153,8 @@ Json LaserScan::identity(const scan::FlightPiece& piece) const {
 
 scene::SensedScene LaserScan::read_scene(const std::filesystem::path& index) {
   scan::require_measurable(lidar_, flown_.route.carrier);
-  progress_.show(mission_.name + ": making the scene ready");
-  return {mission_, options_.mission.parent_path(), index};
+  progress_.show(setup_.name + ": making the scene ready");
+  return {setup_.scene(), options_.mission.parent_path(), setup_.run.threads, index};
 }
 
 void LaserScan::prepare(const scan::FlightPiece& piece) {
@@ -166,16 +165,16 @@ void LaserScan::prepare(const scan::FlightPiece& piece) {
   const scan::TimeSpan span{start + seconds_of(range.first),
                             start + seconds_of(range.first + range.count)};
   scene_ =
-      truth_.scene(mission_.threads, scan::within_reach(flown_, span, lidar_.config().max_range));
+      truth_.scene(setup_.run.threads, scan::within_reach(flown_, span, lidar_.config().max_range));
 }
 
 scan::LaserResult LaserScan::record(const scan::FlightPiece& piece, scan::ScanJournal& journal,
                                     const Json& begun, geometry::OutputFolder& folder) {
   const sim::FiringRange range = firings_of(piece, lidar_, flown_.route.carrier);
   return record_laser(*scene_, lidar_, flight_, outputs_, journal, begun, folder,
-                      {.threads = mission_.threads,
+                      {.threads = setup_.run.threads,
                        .piece = piece,
-                       .report = ScanReport(progress_, mission_.name, shots_of(1), range),
+                       .report = ScanReport(progress_, setup_.name, shots_of(1), range),
                        .stop = console_.stop});
 }
 
@@ -184,7 +183,7 @@ int LaserScan::run(geometry::OutputFolder& folder) {
   const HoldsResults results(console_);
   scan::ScanJournal journal(folder.path());
   const Json begun =
-      open_journal(journal, options_.resumes, options_, mission_, identity_, console_);
+      open_journal(journal, options_.resumes, options_, setup_.identity(), identity_, console_);
   const scan::LaserResult recorded = record({}, journal, begun, folder);
   const int exit_code = finish(recorded, folder);
   if (recorded.scan.is_complete) journal.close();
@@ -197,16 +196,18 @@ bool LaserScan::run_piece(const scan::FlightPiece& piece, const std::filesystem:
   prepare(piece);
   const HoldsResults holds(console_);
   scan::ScanJournal journal(folder.path());
-  const bool resumes = journal.is_of(mission_, identity(piece));
-  const Json begun = open_journal(journal, resumes, options_, mission_, identity(piece), console_);
+  const bool resumes = journal.is_of(setup_.identity(), identity(piece));
+  const Json begun =
+      open_journal(journal, resumes, options_, setup_.identity(), identity(piece), console_);
   const scan::LaserResult recorded = record(piece, journal, begun, folder);
   progress_.clear();
   if (!recorded.scan.is_complete) return false;
   folder.replace([](std::string_view name) {
     return !name.starts_with(".") && name != scan::ScanJournal::folder_name;
   });
-  folder.write(scan::piece_name, scan::piece_text(config::identity_text(mission_, identity(piece)),
-                                                  recorded.reached));
+  folder.write(scan::piece_name,
+               scan::piece_text(support::identity_text(setup_.identity(), identity(piece)),
+                                recorded.reached));
   folder.commit();
   journal.close();
   return true;
@@ -215,15 +216,15 @@ bool LaserScan::run_piece(const scan::FlightPiece& piece, const std::filesystem:
 std::optional<scan::CompletePiece> LaserScan::complete(const scan::FlightPiece& piece,
                                                        const std::filesystem::path& results) const {
   const std::filesystem::path folder = folder_of_piece(results, piece.number, piece.count);
-  auto holds = scan::complete_piece(folder, config::identity_text(mission_, identity(piece)),
-                                    outputs_.size());
+  auto holds = scan::complete_piece(
+      folder, support::identity_text(setup_.identity(), identity(piece)), outputs_.size());
   if (!holds) return std::nullopt;
   return scan::CompletePiece{folder, std::move(*holds)};
 }
 
 int LaserScan::join(std::span<const scan::CompletePiece> pieces, geometry::OutputFolder& folder) {
   const HoldsResults results(console_);
-  progress_.show(mission_.name + ": joining the pieces");
+  progress_.show(setup_.name + ": joining the pieces");
   return finish(join_pieces(pieces, outputs_, folder), folder);
 }
 
@@ -248,15 +249,15 @@ Json LaserScan::figures(const scan::LaserResult& recorded) const {
   for (const scan::LaserOutput& file : outputs_) {
     files.push_back({{"name", file.name}, {"bytes", file.bytes}});
   }
-  const sim::NavigationErrors& navigation = mission_.scan.navigation;
-  return {{"mission", mission_.name},
+  const sim::NavigationErrors& navigation = setup_.scan.navigation;
+  return {{"mission", setup_.name},
           {"sensor", sensor_.name},
-          {"seed", mission_.seed},
+          {"seed", setup_.run.seed},
           {"complete", recorded.scan.is_complete},
           {"flight_s", seconds_of(recorded.scan.progress.firings)},
           {"shots", static_cast<std::uint64_t>(shots_of(recorded.scan.progress.firings))},
           {"points", recorded.scan.progress.points},
-          {"las_crs", mission_.scan.crs == config::ScanCrs::utm ? "utm" : "local"},
+          {"las_crs", setup_.scan.crs == scan::ScanCrs::utm ? "utm" : "local"},
           {"simulation_s", recorded.reached.time},
           {"navigation",
            {{"horizontal_sigma_m", navigation.horizontal_sigma},
@@ -266,7 +267,7 @@ Json LaserScan::figures(const scan::LaserResult& recorded) const {
             {"correlation_time_s", navigation.correlation_time}}},
           {"files", files},
           {"preview", {{"start_s", preview_.start}, {"piece_s", preview_.length}}},
-          {"settings", package::settings_json(mission_)}};
+          {"settings", package::settings_json(setup_)}};
 }
 
 void LaserScan::print(const scan::LaserResult& recorded,
@@ -276,7 +277,7 @@ void LaserScan::print(const scan::LaserResult& recorded,
   out << fmt::format(
              "{}: {}, {:.1f} s of flight{}\n"
              "  scan      {:.2f} M shots, {:.2f} M points in {:.1f} s, {:.1f} M shots/s\n",
-             mission_.name, sensor_.name, seconds_of(recorded.scan.progress.firings),
+             setup_.name, sensor_.name, seconds_of(recorded.scan.progress.firings),
              recorded.scan.is_complete ? "" : ", interrupted", 1e-6 * shots,
              1e-6 * static_cast<double>(recorded.scan.progress.points), time, 1e-6 * shots / time)
       << "  results   " << folder.string();

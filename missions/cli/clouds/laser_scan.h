@@ -10,7 +10,7 @@
 #include "flight/export/utm.h"
 #include "geometry/io/output_folder.h"
 #include "missions/cli/verbs.h"
-#include "missions/config/mission.h"
+#include "missions/config/mission_setup.h"
 #include "missions/config/sensor_reader.h"
 #include "missions/scan/laser_recorder.h"
 #include "missions/scan/preview.h"
@@ -24,7 +24,7 @@ class LaserScan {
  public:
   /// Reads the flight and the model, of tiles with that `index` (scene::TiledScene). What is given
   /// must outlive it. Throws Error if a key, an option or a file is wrong.
-  LaserScan(const ScanVerbOptions& options, const config::Mission& mission,
+  LaserScan(const ScanVerbOptions& options, const config::MissionSetup& setup,
             const config::SensorDescription& sensor, const Console& console,
             const std::filesystem::path& index = {});
   LaserScan(const LaserScan&) = delete;
@@ -58,7 +58,7 @@ class LaserScan {
   double seconds_of(std::uint64_t firings) const;
 
   const ScanVerbOptions& options_;
-  const config::Mission& mission_;
+  const config::MissionSetup& setup_;
   const config::SensorDescription& sensor_;
   const Console& console_;
   sim::Lidar lidar_;

@@ -8,24 +8,24 @@
 #include "missions/cli/clouds/split_scan.h"
 #include "missions/cli/verbs.h"
 #include "missions/config/preset_files.h"
-#include "missions/config/resolved_mission.h"
+#include "missions/config/resolve.h"
 
 namespace skycap::missions::cli {
 namespace {
 
 config::SensorDescription sensor_of(const ScanVerbOptions& options,
-                                    const config::Mission& mission) {
-  return config::find_sensor(options.sensor.value_or(
-      config::named_from(options.mission.parent_path(), mission.scan.sensor)));
+                                    const scan::FlownScanOptions& scan) {
+  return config::find_sensor(
+      options.sensor.value_or(config::named_from(options.mission.parent_path(), scan.sensor)));
 }
 
 }  // namespace
 
 int scan(const ScanVerbOptions& options, const Console& console) {
-  const config::Mission mission = read_shown(config::read_mission, options, console);
-  const config::SensorDescription sensor = sensor_of(options, mission);
+  const config::MissionSetup setup = read_shown(config::read_mission, options, console);
+  const config::SensorDescription sensor = sensor_of(options, setup.scan);
   const std::filesystem::path out =
-      options.out.value_or(std::filesystem::path("results") / mission.name / "scan");
+      options.out.value_or(std::filesystem::path("results") / setup.name / "scan");
   const bool is_laser = std::holds_alternative<sim::LidarConfig>(sensor.sensor);
   if (options.pieces > 0) {
     if (!is_laser) {
@@ -33,7 +33,7 @@ int scan(const ScanVerbOptions& options, const Console& console) {
                   "--pieces: " + sensor.name +
                       " is a camera; only the flights of laser scanners are split");
     }
-    return split_scan(options, mission, sensor, out, console);
+    return split_scan(options, setup, sensor, out, console);
   }
   if (options.task.is_given()) {
     throw Error(
@@ -41,8 +41,8 @@ int scan(const ScanVerbOptions& options, const Console& console) {
         "--index, --chunk, --collect and --submit are of a flight in pieces; give --pieces");
   }
   geometry::OutputFolder folder(out);
-  if (!is_laser) return scan_with_camera(options, mission, sensor, folder, console);
-  return LaserScan(options, mission, sensor, console).run(folder);
+  if (!is_laser) return scan_with_camera(options, setup, sensor, folder, console);
+  return LaserScan(options, setup, sensor, console).run(folder);
 }
 
 }  // namespace skycap::missions::cli

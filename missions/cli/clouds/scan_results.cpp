@@ -7,9 +7,9 @@
 
 namespace skycap::missions::cli {
 
-scan::ScanFlight flown_by(const ScanVerbOptions& options, const config::Mission& mission,
-                          scan::Carrier carrier) {
-  return scan::scan_flight(mission, options.mission.parent_path(), options.route, carrier);
+scan::ScanFlight flown_by(const ScanVerbOptions& options, const scan::FlownScanOptions& scan,
+                          std::uint64_t seed, scan::Carrier carrier) {
+  return scan::scan_flight(scan, seed, options.mission.parent_path(), options.route, carrier);
 }
 
 nlohmann::ordered_json identity_of(const config::SensorDescription& sensor,
@@ -22,10 +22,10 @@ nlohmann::ordered_json identity_of(const config::SensorDescription& sensor,
 }
 
 nlohmann::ordered_json open_journal(scan::ScanJournal& journal, bool resumes,
-                                    const ScanVerbOptions& options, const config::Mission& mission,
+                                    const ScanVerbOptions& options, const support::Identity& run,
                                     const nlohmann::ordered_json& identity,
                                     const Console& console) {
-  nlohmann::ordered_json begun = journal.open(mission, identity, resumes);
+  nlohmann::ordered_json begun = journal.open(run, identity, resumes);
   if (begun.is_object() && !options.is_quiet) {
     console.err << "going on with an interrupted scan\n" << std::flush;
   }

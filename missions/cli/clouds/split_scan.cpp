@@ -19,10 +19,10 @@ namespace fs = std::filesystem;
 
 class PiecesOfFlight final : public PieceWork {
  public:
-  PiecesOfFlight(const ScanVerbOptions& options, const config::Mission& mission,
+  PiecesOfFlight(const ScanVerbOptions& options, const config::MissionSetup& setup,
                  const config::SensorDescription& sensor, const fs::path& out,
                  const Console& console)
-      : scan_(options, mission, sensor, console, folder_of_pieces(out) / "tiles.json"),
+      : scan_(options, setup, sensor, console, folder_of_pieces(out) / "tiles.json"),
         pieces_(options.pieces),
         out_(out) {}
 
@@ -67,19 +67,19 @@ batch::Words command_of(const ScanVerbOptions& options, const fs::path& out) {
 
 }  // namespace
 
-int split_scan(const ScanVerbOptions& options, const config::Mission& mission,
+int split_scan(const ScanVerbOptions& options, const config::MissionSetup& setup,
                const config::SensorDescription& sensor, const fs::path& out,
                const Console& console) {
   const SplitWork work{.pieces = options.pieces,
                        .out = out,
                        .summary = scan_name,
-                       .title = "Scan " + mission.name,
-                       .name = mission.name,
+                       .title = "Scan " + setup.name,
+                       .name = setup.name,
                        .command = command_of(options, out),
-                       .jobs = geometry::thread_count(mission.threads),
+                       .jobs = geometry::thread_count(setup.run.threads),
                        .is_quiet = options.is_quiet,
                        .begin = [&]() -> std::unique_ptr<PieceWork> {
-                         return std::make_unique<PiecesOfFlight>(options, mission, sensor, out,
+                         return std::make_unique<PiecesOfFlight>(options, setup, sensor, out,
                                                                  console);
                        }};
   return run_split(work, options.task, console);

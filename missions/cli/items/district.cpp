@@ -41,8 +41,8 @@ class DistrictVerb {
       }
     };
     const auto collect = [this](geometry::OutputFolder& folder) { return this->collect(folder); };
-    run_ = std::make_unique<ItemRun>(options_, batch::campaign_of(district_, prepared_, out_), out_,
-                                     ItemVerb{"district", keep, collect}, console_);
+    run_ = std::make_unique<ItemRun>(options_, batch::campaign_of(district_, prepared_, out_),
+                                     out_, ItemVerb{"district", keep, collect}, console_);
     return run_->run();
   }
 

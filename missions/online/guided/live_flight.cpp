@@ -30,8 +30,8 @@ bool may_return(TroubleKind kind) {
 
 }  // namespace
 
-LiveFlight::LiveFlight(online::LiveSurvey& survey, GuidedFlight& vehicle,
-                       const flight::Motion& motion, Sensor sensor, FlightOptions options)
+LiveFlight::LiveFlight(LiveSurvey& survey, GuidedFlight& vehicle, const flight::Motion& motion,
+                       Sensor sensor, FlightOptions options)
     : survey_(survey),
       vehicle_(vehicle),
       motion_(motion),

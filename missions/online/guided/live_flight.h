@@ -50,8 +50,8 @@ struct FlightEnd {
 class LiveFlight {
  public:
   /// Keeps references. The survey must be one with a vehicle.
-  LiveFlight(online::LiveSurvey& survey, GuidedFlight& vehicle, const flight::Motion& motion,
-             Sensor sensor, FlightOptions options);
+  LiveFlight(LiveSurvey& survey, GuidedFlight& vehicle, const flight::Motion& motion, Sensor sensor,
+             FlightOptions options);
 
   /// Flies from a vehicle that is prepared (preflight.h) to the end of the survey, or of the
   /// flight.
@@ -74,7 +74,7 @@ class LiveFlight {
   double share_for(const std::vector<Eigen::Vector3d>& way) const;
   std::vector<Eigen::Vector3d> way_home() const;
 
-  online::LiveSurvey& survey_;
+  LiveSurvey& survey_;
   GuidedFlight& vehicle_;
   flight::Motion motion_;
   Eigen::Vector3d pad_, above_pad_;

@@ -13,8 +13,6 @@
 
 #include "geometry/error.h"
 #include "geometry/io/file.h"
-#include "missions/config/survey_sensor.h"
-#include "missions/evaluation/survey_scene.h"
 
 namespace skycap::missions::online {
 
@@ -53,38 +51,25 @@ fs::path wait_for_scan(const fs::path& folder, const std::string& name, double p
 
 }  // namespace
 
-Sensor folder_sensor(const config::Mission& mission, const fs::path& folder,
-                     online::ScanInput input, double patience, std::stop_token stop) {
+Sensor folder_sensor(const flight::FlightOptions& flight, const LiveOptions& live,
+                     const fs::path& folder, ScanInput input, double patience,
+                     std::stop_token stop) {
   if (!fs::is_directory(folder)) {
     throw Error(ErrorKind::bad_file, folder.string() + ": is no folder; name one for scans");
   }
-  return [mission, folder, input = std::move(input), patience, stop = std::move(stop)](
+  return [flight, live, folder, input = std::move(input), patience, stop = std::move(stop)](
              const geometry::View&, const geometry::View& taken, std::size_t number) {
     const std::string name = fmt::format("scan-{:04}", number);
     if (const auto old = scan_in(folder, name)) {
       throw Error(ErrorKind::bad_file, old->string() + ": is there before the scan was taken");
     }
-    online::ScanInput wanted = input;
+    ScanInput wanted = input;
     wanted.world_from_sensor = geometry::camera_pose(taken);
     geometry::write_file(folder / (name + ".pose"), pose_text(wanted.world_from_sensor));
     wanted.file = wait_for_scan(folder, name, patience, stop);
-    online::ScanFound found = online::read_scan(wanted, mission);
-    online::require_usable(found.scan, mission);
+    ScanFound found = read_scan(wanted, flight.capture, live);
+    require_usable(found.scan, flight);
     return std::move(found.scan);
-  };
-}
-
-Sensor simulated_sensor(const config::Mission& mission,
-                        const std::filesystem::path& mission_folder) {
-  if (mission.scene.model.empty()) {
-    throw Error(ErrorKind::bad_config,
-                "scene.model is missing; a simulated sensor needs a scene to measure");
-  }
-  const auto scene = std::make_shared<evaluation::SurveyScene>(mission, mission_folder);
-  const auto sensor = std::make_shared<config::SurveySensor>(mission.sensor, mission.seed);
-  return [scene, sensor, threads = mission.threads](
-             const geometry::View&, const geometry::View& taken, std::size_t number) {
-    return sensor->scan(scene->scene(), taken, number, threads);
   };
 }
 

@@ -4,25 +4,21 @@
 #include <filesystem>
 #include <stop_token>
 
-#include "missions/config/mission.h"
+#include "flight/flight_options.h"
 #include "missions/online/guided/live_flight.h"
+#include "missions/online/live/live_options.h"
 #include "missions/online/live/scan_input.h"
 
 namespace skycap::missions::online {
 
-/// The mission's simulated sensor in the mission's scene, at the place where the vehicle takes
-/// itself to be: hardware in the loop. Throws Error{bad_config} if the mission has no scene, and
-/// what SurveyScene throws.
-Sensor simulated_sensor(const config::Mission& mission,
-                        const std::filesystem::path& mission_folder);
-
 /// Scans that another program leaves in a folder. For scan 7 the file scan-0007.pose is written, in
-/// one line as online::parse_pose_text() reads it, when the vehicle is at rest at the view; the
+/// one line as parse_pose_text() reads it, when the vehicle is at rest at the view; the
 /// scan is the file scan-0007.EXT that then appears (.ply, .pcd, .las, .laz, .e57, .xyz or .png),
 /// in the sensor's optical frame, which gets that name when it is whole. `input` says how depth
 /// images are read. The sensor gives up when the stop is requested or after `patience` [s] by the
 /// clock on the wall, with Error{bad_file}. Throws that, too, if the folder is none.
-Sensor folder_sensor(const config::Mission& mission, const std::filesystem::path& folder,
-                     online::ScanInput input, double patience, std::stop_token stop);
+Sensor folder_sensor(const flight::FlightOptions& flight, const LiveOptions& live,
+                     const std::filesystem::path& folder, ScanInput input, double patience,
+                     std::stop_token stop);
 
 }  // namespace skycap::missions::online

@@ -10,8 +10,8 @@
 #include "geometry/error.h"
 #include "geometry/io/json.h"
 #include "geometry/place/world.h"
-#include "missions/config/journal_text.h"
 #include "missions/session/survey_record.h"
+#include "missions/support/journal_text.h"
 #include "missions/support/json_text.h"
 
 namespace skycap::missions::online {
@@ -104,19 +104,19 @@ std::string text_of(const ScanRecord& scan) {
             {"pose", pose_json(scan.world_from_sensor)}};
   if (scan.pose) json["found"] = journal_json(*scan.pose);
   if (scan.is_on_way) json["on_way"] = true;
-  return config::journal_line({{"scan", std::move(json)}});
+  return support::journal_line({{"scan", std::move(json)}});
 }
 
 std::string refusal_text(const std::string& reason) {
-  return config::journal_line({{"refusal", reason}});
+  return support::journal_line({{"refusal", reason}});
 }
 
 std::string rejection_text(const std::string& reason) {
-  return config::journal_line({{"rejected", reason}});
+  return support::journal_line({{"rejected", reason}});
 }
 
 std::string text_of(const ProposalRecord& proposal) {
-  return config::journal_line(
+  return support::journal_line(
       {{"proposal",
         {{"view", json_of(proposal.view)},
          {"end", proposal.end ? Json(session::name_of(*proposal.end)) : Json()},

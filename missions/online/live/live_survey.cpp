@@ -15,10 +15,10 @@
 #include "geometry/io/record_log.h"
 #include "geometry/parallel.h"
 #include "geometry/points/usable_scan.h"
-#include "missions/config/journal_text.h"
 #include "missions/online/live/kept_scan.h"
 #include "missions/online/live/live_journal.h"
 #include "missions/session/mission_planner.h"
+#include "missions/support/journal_text.h"
 
 namespace skycap::missions::online {
 namespace {
@@ -50,33 +50,36 @@ bool is_same(const ProposalRecord& a, const ProposalRecord& b) { return text_of(
 }  // namespace
 
 struct LiveSurvey::Impl {
-  Impl(const config::Mission& given, const fs::path& place,
-       const std::optional<geometry::View>& begin, unsigned thread_count)
-      : mission(given),
+  Impl(const session::SurveyOptions& survey_options, const LiveOptions& live_options,
+       const support::Identity& identity, const fs::path& place, const LiveStart& begin,
+       unsigned threads)
+      : options(survey_options),
+        live(live_options),
         folder(made_folder(place)),
-        first_view(begin),
-        threads(thread_count),
+        first_view(begin.view),
+        run{.seed = identity.seed, .threads = threads, .sphere = begin.sphere},
         log(folder / journal_name) {
-    const std::string identity = config::identity_text(mission, {{"surface", "live"}});
+    const std::string text = support::identity_text(
+        identity, {{"format", support::journal_format}, {"surface", "live"}});
     if (log.records().empty()) {
-      log.append(identity);
+      log.append(text);
     } else {
-      config::require_same_survey(log.file().string(), log.records().front(), identity,
-                                  "name another folder");
+      support::require_same_survey(log.file().string(), log.records().front(), text,
+                                   "name another folder");
     }
     events = events_of(log.records(), log.file().string());
     replay();
   }
 
   void begin() {
-    if (mission.live.checks_poses || mission.live.registers) {
-      poses.emplace(mission.planner.see.resolution_radius, mission.live.registers);
+    if (live.checks_poses || live.registers) {
+      poses.emplace(options.planner.resolution_radius, live.registers);
     }
     remembered = 0;
     numbers.clear();
     taken.clear();
     set_aside = 0;
-    guide = std::make_unique<session::MissionPlanner>(mission, first_view, threads);
+    guide = std::make_unique<session::MissionPlanner>(options, first_view, run);
     survey::SurveyPorts ports = guide->ports();
     if (ports.can_reach) {
       ports.can_reach = [this, can_reach = std::move(ports.can_reach)](const Vector3d&,
@@ -99,7 +102,7 @@ struct LiveSurvey::Impl {
   /// it as the errors that the clearance already holds let it be.
   Vector3d departure_after(const geometry::Scan& scan) const {
     const Vector3d place = scan.sensor_position();
-    const double errors = mission.flight.position_error + mission.flight.tracking_error;
+    const double errors = options.flight.position_error + options.flight.tracking_error;
     const bool is_there = proposal.view && (proposal.view->position - place).norm() <= errors;
     return is_there ? proposal.view->position : place;
   }
@@ -129,7 +132,7 @@ struct LiveSurvey::Impl {
     geometry::Scan scan = read_kept_scan(folder / record.file, record.sha256);
     scan.world_from_sensor = record.world_from_sensor;
     try {
-      geometry::require_usable(scan, mission.sensor.camera.camera);
+      geometry::require_usable(scan, options.flight.capture.camera);
     } catch (const Error& failure) {
       throw Error(ErrorKind::bad_file,
                   (folder / record.file).string() + ": cannot be used: " + failure.what());
@@ -145,10 +148,9 @@ struct LiveSurvey::Impl {
   std::optional<PoseFinding> look_at_pose(const geometry::Scan& scan,
                                           const std::optional<PoseCovariance>& covariance) {
     if (!poses) return std::nullopt;
-    const config::LiveConfig& config = mission.live;
     PoseFinding finding = poses->find(
-        scan, covariance.value_or(PoseCovariance::of(config.pose_sigma, config.pose_sigma_angle)));
-    if (!config.checks_poses) finding.is_wrong = false;
+        scan, covariance.value_or(PoseCovariance::of(live.pose_sigma, live.pose_sigma_angle)));
+    if (!live.checks_poses) finding.is_wrong = false;
     return finding;
   }
 
@@ -261,11 +263,11 @@ struct LiveSurvey::Impl {
 
   void require_wanted(bool is_on_way) const {
     const auto refuse = [](const std::string& what) { throw Error(ErrorKind::bad_usage, what); };
-    if (mission.flight.is_flown() && proposal.end) {
+    if (options.flight.is_flown() && proposal.end) {
       refuse("the survey is over, and no way was proven to where this scan is from; finish it");
     }
     if (!is_on_way) return;
-    if (!mission.sensor.is_moving()) {
+    if (!options.flight.capture.is_moving) {
       refuse("the mission measures at its views only; give it sensor.capture: moving");
     }
     if (steps->views().empty()) {
@@ -275,8 +277,8 @@ struct LiveSurvey::Impl {
 
   session::SurveyRecord views_record() const {
     session::SurveyRecord record;
-    record.seed = mission.seed;
-    record.threads = geometry::thread_count(threads);
+    record.seed = run.seed;
+    record.threads = geometry::thread_count(run.threads);
     record.stop_reason = proposal.end.value_or(survey::StopReason::interrupted);
     for (const survey::SurveyedView& view : steps->views()) {
       record.views.push_back({view, std::numeric_limits<double>::quiet_NaN()});
@@ -300,10 +302,11 @@ struct LiveSurvey::Impl {
     throw Error(ErrorKind::bad_geometry, why);
   }
 
-  config::Mission mission;
+  session::SurveyOptions options;
+  LiveOptions live;
   fs::path folder;
   std::optional<geometry::View> first_view;
-  unsigned threads;
+  survey::PlannerRun run;
   geometry::RecordLog log;
   std::vector<LiveEvent> events;
   std::unique_ptr<session::MissionPlanner> guide;
@@ -320,9 +323,10 @@ struct LiveSurvey::Impl {
   std::optional<std::string> unwritten;  ///< record that the disk did not take
 };
 
-LiveSurvey::LiveSurvey(const config::Mission& mission, const fs::path& folder,
-                       const std::optional<geometry::View>& first_view, unsigned threads)
-    : impl_(std::make_unique<Impl>(mission, folder, first_view, threads)) {}
+LiveSurvey::LiveSurvey(const session::SurveyOptions& options, const LiveOptions& live,
+                       const support::Identity& identity, const fs::path& folder,
+                       const LiveStart& start, unsigned threads)
+    : impl_(std::make_unique<Impl>(options, live, identity, folder, start, threads)) {}
 
 LiveSurvey::~LiveSurvey() = default;
 
@@ -338,7 +342,7 @@ std::size_t LiveSurvey::on_way() const { return impl_->steps->passed(); }
 
 std::vector<session::ViewInFlight> LiveSurvey::frames() const {
   const Proposal& next = impl_->proposal;
-  const bool is_measured = impl_->mission.sensor.is_moving() && !views().empty();
+  const bool is_measured = impl_->options.flight.capture.is_moving && !views().empty();
   if (!is_measured || !next.view || next.way.points.empty()) return {};
   std::vector<session::ViewInFlight> frames =
       impl_->guide->flight()->frames(views().back().view, *next.view);

@@ -16,10 +16,13 @@
 
 #include "geometry/place/pose.h"
 #include "geometry/points/scan.h"
-#include "missions/config/mission.h"
+#include "missions/online/live/live_options.h"
 #include "missions/online/live/pose_check.h"
+#include "missions/session/survey_options.h"
 #include "missions/session/survey_record.h"
-#include "missions/simulation/carried_sensor.h"
+#include "missions/session/view_in_flight.h"
+#include "missions/support/identity.h"
+#include "survey/planners/planner_options.h"
 #include "survey/survey_loop.h"
 
 namespace skycap::missions::online {
@@ -49,14 +52,23 @@ struct ScanNumber {
   bool operator==(const ScanNumber&) const = default;
 };
 
+/// Where a live survey begins.
+struct LiveStart {
+  /// Proposed for the first scan; nothing: that may be from anywhere. A survey with a vehicle needs
+  /// it.
+  std::optional<geometry::View> view;
+  std::optional<survey::ViewSphere> sphere;  ///< of volumetric planners whose settings give none
+};
+
 class LiveSurvey {
  public:
   /// Opens the folder of a survey, or begins one in it, on so many threads (zero: all processors).
-  /// `first_view` is proposed for the first scan; a mission with a vehicle needs it. Throws
-  /// Error{bad_file} naming the file if the folder is of another survey, which says what differs,
-  /// is damaged, or in use by another program; and what MissionPlanner throws.
-  LiveSurvey(const config::Mission& mission, const std::filesystem::path& folder,
-             const std::optional<geometry::View>& first_view, unsigned threads);
+  /// Throws Error{bad_file} naming the file if the folder is of another survey than `identity`,
+  /// which says what differs, is damaged, or in use by another program; and what MissionPlanner
+  /// throws.
+  LiveSurvey(const session::SurveyOptions& options, const LiveOptions& live,
+             const support::Identity& identity, const std::filesystem::path& folder,
+             const LiveStart& start, unsigned threads);
   ~LiveSurvey();
 
   const Proposal& proposal() const;
@@ -71,31 +83,30 @@ class LiveSurvey {
   /// Scans used since the last view, on the way to the one that is proposed.
   std::size_t on_way() const;
 
-  /// What is still to be scanned on that way, if the mission measures there (sensor.capture), with
+  /// What is still to be scanned on that way, if the survey measures there (CaptureOptions), with
   /// times since the vehicle left the last view. Empty where no way is proven.
   std::vector<session::ViewInFlight> frames() const;
 
   /// The number that a scan was taken in under, if there is one with this id.
   std::optional<ScanNumber> number_of(const std::string& id) const;
 
-  /// Brings a scan to the disk, looks at its pose (config::LiveConfig), and plans, or sets it
-  /// aside. One whose id is known is acknowledged and ignored: false. An empty id is scan_id()'s.
-  /// Without a covariance it is the mission's. Throws Error{bad_geometry} for a scan that the
-  /// planner cannot work with, and Error{bad_file} if the disk takes no more; then nothing has
-  /// changed.
+  /// Brings a scan to the disk, looks at its pose (LiveOptions), and plans, or sets it aside.
+  /// One whose id is known is acknowledged and ignored: false. An empty id is scan_id()'s. Without
+  /// a covariance it is that of LiveOptions. Throws Error{bad_geometry} for a scan that the planner
+  /// cannot work with, and Error{bad_file} if the disk takes no more; then nothing has changed.
   bool add(const geometry::Scan& scan, const std::string& id,
            const std::optional<PoseCovariance>& covariance = {});
 
   /// The same with a scan from the way to the proposed view, which stands. Throws Error{bad_usage}
   /// where no such scan is wanted: before the first view, when the survey is over, and unless the
-  /// mission measures on the way.
+  /// survey measures on the way.
   bool add_on_way(const geometry::Scan& scan, const std::string& id,
                   const std::optional<PoseCovariance>& covariance = {});
 
   /// Asks for another view in place of the proposed one. Throws Error{bad_usage} if there is none.
   void refuse(const std::string& reason);
 
-  /// What knows the ways of the mission's vehicle; null without one.
+  /// What knows the ways of the vehicle; null without one.
   session::SurveyFlight* flight();
 
   /// The survey so far, to be looked at: interrupted, if a view is still proposed; without its

@@ -72,7 +72,7 @@ void organise(std::span<const Vector3d> points, const geometry::Camera& camera, 
   const auto is_before = [](const Seen& a, const Seen& b) {
     return std::tie(a.pixel, a.depth, a.point) < std::tie(b.pixel, b.depth, b.point);
   };
-  // Images of the mission's own camera come in its order.
+  // Images of the survey's own camera come in its order.
   if (!std::ranges::is_sorted(seen, is_before)) std::ranges::sort(seen, is_before);
   const auto last = std::unique(seen.begin(), seen.end(),
                                 [](const Seen& a, const Seen& b) { return a.pixel == b.pixel; });
@@ -163,7 +163,7 @@ Isometry3d parse_pose_text(const std::string& text, const std::string& what) {
                                        "four rows of four");
 }
 
-std::vector<Vector3d> points_of(const sim::DepthImage& image, const Lens& lens, double unit,
+std::vector<Vector3d> points_of(const geometry::DepthImage& image, const Lens& lens, double unit,
                                 std::size_t& without_return) {
   constexpr std::uint16_t too_near = 0, too_far = 65535;
   std::vector<Vector3d> points;
@@ -183,48 +183,51 @@ std::vector<Vector3d> points_of(const sim::DepthImage& image, const Lens& lens, 
   return points;
 }
 
-ScanFound read_scan(const ScanInput& input, const config::Mission& mission) {
+ScanFound read_scan(const ScanInput& input, const flight::CaptureOptions& capture,
+                    const LiveOptions& live) {
   if (input.file.extension() == ".png") {
-    return scan_of(sim::read_depth_png(input.file), input.lens, input.depth_unit,
-                   input.world_from_sensor, mission);
+    return scan_of(geometry::read_depth_png(input.file), input.lens, input.depth_unit,
+                   input.world_from_sensor, capture, live);
   }
-  return scan_of(points_in_sensor(input), input.world_from_sensor, mission);
+  return scan_of(points_in_sensor(input), input.world_from_sensor, capture, live);
 }
 
 ScanFound scan_of(std::span<const Vector3d> points, const Isometry3d& world_from_sensor,
-                  const config::Mission& mission) {
+                  const flight::CaptureOptions& capture, const LiveOptions& live) {
   ScanFound found;
   found.scan.world_from_sensor = world_from_sensor;
-  if (mission.sensor.scanner) {
+  if (capture.is_scanner) {
     for (const Vector3d& point : points) {
       found.scan.points.push_back((world_from_sensor * point).cast<float>());
     }
   } else {
-    organise(points, geometry::Camera(mission.sensor.camera.camera), found);
+    organise(points, geometry::Camera(capture.camera), found);
   }
-  found.left_out = filter(found.scan, mission);
+  found.left_out = filter(found.scan, capture.camera, live);
   return found;
 }
 
-ScanFound scan_of(const sim::DepthImage& image, const std::optional<Lens>& lens, double unit,
-                  const Isometry3d& world_from_sensor, const config::Mission& mission) {
-  const geometry::Camera camera(mission.sensor.camera.camera);
+ScanFound scan_of(const geometry::DepthImage& image, const std::optional<Lens>& lens, double unit,
+                  const Isometry3d& world_from_sensor, const flight::CaptureOptions& capture,
+                  const LiveOptions& live) {
+  const geometry::Camera camera(capture.camera);
   ScanFound found;
   found.scan.world_from_sensor = world_from_sensor;
   organise(points_of(image, lens.value_or(lens_of(camera)), unit, found.without_return), camera,
            found);
-  found.left_out = filter(found.scan, mission);
+  found.left_out = filter(found.scan, capture.camera, live);
   return found;
 }
 
-LeftOut filter(geometry::Scan& scan, const config::Mission& mission) {
-  if (!mission.live.removes_flying_pixels) return {};
-  return remove_flying_pixels(scan, geometry::Camera(mission.sensor.camera.camera));
+LeftOut filter(geometry::Scan& scan, const geometry::CameraConfig& camera,
+               const LiveOptions& live) {
+  if (!live.removes_flying_pixels) return {};
+  return remove_flying_pixels(scan, geometry::Camera(camera));
 }
 
-void require_usable(const geometry::Scan& scan, const config::Mission& mission) {
-  geometry::require_usable(scan, mission.sensor.camera.camera);
-  const bool needs_pixels = mission.flight.is_flown() && !mission.sensor.scanner;
+void require_usable(const geometry::Scan& scan, const flight::FlightOptions& flight) {
+  geometry::require_usable(scan, flight.capture.camera);
+  const bool needs_pixels = flight.is_flown() && !flight.capture.is_scanner;
   if (needs_pixels && scan.pixels.empty() && !scan.points.empty()) {
     throw Error(ErrorKind::bad_geometry,
                 "the scan has no pixels; with flight.vehicle free space is proven by depth images");

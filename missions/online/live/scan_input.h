@@ -12,10 +12,12 @@
 #include <Eigen/Core>
 #include <Eigen/Geometry>
 
+#include "flight/flight_options.h"
+#include "geometry/place/camera.h"
+#include "geometry/points/depth_image.h"
 #include "geometry/points/scan.h"
-#include "missions/config/mission.h"
+#include "missions/online/live/live_options.h"
 #include "missions/online/live/scan_filter.h"
-#include "sim/sensors/depth_image.h"
 
 namespace skycap::missions::online {
 
@@ -45,7 +47,7 @@ struct ScanInput {
       file;  ///< .png: a depth image; else a cloud that geometry::read_cloud reads
   Eigen::Isometry3d world_from_sensor = Eigen::Isometry3d::Identity();  ///< optical frame
   bool is_in_world = false;   ///< the cloud's points are in the world frame already
-  std::optional<Lens> lens;   ///< of a depth image; else the mission's camera
+  std::optional<Lens> lens;   ///< of a depth image; else the survey's camera
   double depth_unit = 0.001;  ///< what a step of a depth image stands for [m]
 };
 
@@ -53,33 +55,36 @@ struct ScanInput {
 struct ScanFound {
   geometry::Scan scan;
   std::size_t without_return = 0;  ///< pixels of 0 or 65535, or without a ray of the lens
-  std::size_t out_of_view = 0;     ///< points that the mission's camera cannot see from that pose
+  std::size_t out_of_view = 0;     ///< points that the survey's camera cannot see from that pose
   std::size_t hidden = 0;          ///< farther away than another point in the same pixel
-  LeftOut left_out;                ///< if the mission wants it (config::LiveConfig)
+  LeftOut left_out;                ///< if LiveOptions asks for it
 };
 
-/// Reads a scan for a mission. With a depth camera each point gets the pixel of the mission's
-/// camera that it is seen in, whatever the file's own order is; with a scanner (sensor.lidar) the
-/// points are taken as they are. Throws Error{bad_file} naming the file.
-ScanFound read_scan(const ScanInput& input, const config::Mission& mission);
+/// Reads a scan for a survey. With a depth camera each point gets the pixel of the survey's camera
+/// that it is seen in, whatever the file's own order is; with a scanner the points are taken as
+/// they are. Throws Error{bad_file} naming the file.
+ScanFound read_scan(const ScanInput& input, const flight::CaptureOptions& capture,
+                    const LiveOptions& live);
 
 /// The points of a depth image in its optical frame; `without_return` counts the others.
-std::vector<Eigen::Vector3d> points_of(const sim::DepthImage& image, const Lens& lens, double unit,
-                                       std::size_t& without_return);
+std::vector<Eigen::Vector3d> points_of(const geometry::DepthImage& image, const Lens& lens,
+                                       double unit, std::size_t& without_return);
 
-/// Points of the sensor's optical frame as a scan of a mission, as read_scan has it.
+/// Points of the sensor's optical frame as a scan of a survey, as read_scan has it.
 ScanFound scan_of(std::span<const Eigen::Vector3d> points,
-                  const Eigen::Isometry3d& world_from_sensor, const config::Mission& mission);
+                  const Eigen::Isometry3d& world_from_sensor, const flight::CaptureOptions& capture,
+                  const LiveOptions& live);
 
-/// A depth image as a scan of a mission with a depth camera; without a lens, of the mission's.
-ScanFound scan_of(const sim::DepthImage& image, const std::optional<Lens>& lens, double unit,
-                  const Eigen::Isometry3d& world_from_sensor, const config::Mission& mission);
+/// A depth image as a scan of a survey with a depth camera; without a lens, of the survey's.
+ScanFound scan_of(const geometry::DepthImage& image, const std::optional<Lens>& lens, double unit,
+                  const Eigen::Isometry3d& world_from_sensor, const flight::CaptureOptions& capture,
+                  const LiveOptions& live);
 
-/// Leaves out flying pixels and isolated returns, if the mission wants it.
-LeftOut filter(geometry::Scan& scan, const config::Mission& mission);
+/// Leaves out flying pixels and isolated returns, if the options ask for it.
+LeftOut filter(geometry::Scan& scan, const geometry::CameraConfig& camera, const LiveOptions& live);
 
 /// Throws Error{bad_geometry} unless a scan is one that planner and vehicle can take in: points at
-/// places, pixels (which a vehicle with a camera needs) of the mission's camera and ascending.
-void require_usable(const geometry::Scan& scan, const config::Mission& mission);
+/// places, pixels (which a vehicle with a camera needs) of the survey's camera and ascending.
+void require_usable(const geometry::Scan& scan, const flight::FlightOptions& flight);
 
 }  // namespace skycap::missions::online

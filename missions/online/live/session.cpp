@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "geometry/error.h"
-#include "missions/online/live/open_survey.h"
+#include "missions/online/live/answer.h"
 #include "missions/online/live/scan_input.h"
 #include "missions/version.h"
 
@@ -98,7 +98,8 @@ geometry::Scan cloud_scan(const Message& message) {
 }
 
 /// Points in the sensor's optical frame, as floats; as a file of them.
-ScanFound sensor_cloud_scan(const Message& message, const config::Mission& mission) {
+ScanFound sensor_cloud_scan(const Message& message, const flight::CaptureOptions& capture,
+                            const LiveOptions& live) {
   const auto count = count_at(message.header, "points");
   constexpr std::size_t point = 3 * sizeof(float);
   require_payload(message, std::size_t{count} * point, std::to_string(count) + " points take ");
@@ -107,20 +108,21 @@ ScanFound sensor_cloud_scan(const Message& message, const config::Mission& missi
   for (const auto& place : values_at<std::array<float, 3>>(message.payload, 0, count)) {
     points.emplace_back(place[0], place[1], place[2]);
   }
-  return scan_of(points, pose_of(message.header), mission);
+  return scan_of(points, pose_of(message.header), capture, live);
 }
 
-ScanFound depth_scan(const Message& message, const config::Mission& mission) {
+ScanFound depth_scan(const Message& message, const flight::CaptureOptions& capture,
+                     const LiveOptions& live) {
   const Json& header = message.header;
   const std::uint32_t width = count_at(header, "width"), height = count_at(header, "height");
   constexpr std::uint32_t largest_side = 1 << 15;
   if (width < 1 || height < 1 || width > largest_side || height > largest_side) {
     refuse_message("scan: width and height must be from 1 to 32768");
   }
-  if (std::uint64_t{width} * height > sim::most_depth_pixels) {
+  if (std::uint64_t{width} * height > geometry::most_depth_pixels) {
     refuse_message("scan: the image has more than 2.5e7 pixels");
   }
-  sim::DepthImage image{static_cast<int>(width), static_cast<int>(height), {}};
+  geometry::DepthImage image{static_cast<int>(width), static_cast<int>(height), {}};
   const std::size_t count = std::size_t{width} * height;
   require_payload(message, count * sizeof(std::uint16_t), "the image takes ");
   image.values = values_at<std::uint16_t>(message.payload, 0, count);
@@ -128,14 +130,20 @@ ScanFound depth_scan(const Message& message, const config::Mission& mission) {
   if (header.contains("lens")) lens = parse_lens(row_at(header, "lens"), "lens");
   const double unit = header.at("unit").get<double>();
   if (!(unit >= 1e-6 && unit <= 1.0)) refuse_message("scan: unit must be from 1e-6 to 1 m");
-  return scan_of(image, lens, unit, pose_of(header), mission);
+  return scan_of(image, lens, unit, pose_of(header), capture, live);
 }
 
 }  // namespace
 
-Session::Session(const config::Mission& mission, LiveSurvey& survey,
-                 std::function<std::string()> finish, std::function<void()> show)
-    : mission_(mission), survey_(survey), finish_(std::move(finish)), show_(std::move(show)) {}
+Session::Session(std::string mission, const flight::FlightOptions& flight, const LiveOptions& live,
+                 LiveSurvey& survey, std::function<std::string()> finish,
+                 std::function<void()> show)
+    : mission_(std::move(mission)),
+      flight_(flight),
+      live_(live),
+      survey_(survey),
+      finish_(std::move(finish)),
+      show_(std::move(show)) {}
 
 void Session::settle() {
   if (std::exchange(has_changed_, false)) show_();
@@ -157,7 +165,7 @@ Message Session::answer_unguarded(const Message& message) {
   if (type == "hello") {
     Message answer = present();
     answer.header["version"] = version;
-    answer.header["mission"] = mission_.name;
+    answer.header["mission"] = mission_;
     return answer;
   }
   if (type == "next") return present();
@@ -181,7 +189,7 @@ bool Session::is_taken(const ScanNumber& number) const {
 std::string Session::next_text() const {
   const std::size_t next = survey_.views().size();
   std::string text = "the next one is " + std::to_string(next);
-  if (mission_.sensor.is_moving() && next > 0) {
+  if (flight_.capture.is_moving && next > 0) {
     text += ", or on the way to it " + std::to_string(survey_.on_way());
   }
   return text;
@@ -205,12 +213,12 @@ Message Session::take_scan(const Message& message) {
   ScanFound found;
   if (format == "points") {
     found.scan = cloud_scan(message);
-    require_usable(found.scan, mission_);
-    found.left_out = filter(found.scan, mission_);
+    require_usable(found.scan, flight_);
+    found.left_out = filter(found.scan, flight_.capture.camera, live_);
   } else {
-    found =
-        format == "cloud" ? sensor_cloud_scan(message, mission_) : depth_scan(message, mission_);
-    require_usable(found.scan, mission_);
+    found = format == "cloud" ? sensor_cloud_scan(message, flight_.capture, live_)
+                              : depth_scan(message, flight_.capture, live_);
+    require_usable(found.scan, flight_);
   }
   const geometry::Scan& scan = found.scan;
   const std::optional<PoseCovariance> covariance = covariance_of(message.header);
@@ -222,7 +230,7 @@ Message Session::take_scan(const Message& message) {
   has_changed_ = is_new;
   Message answer = present();
   answer.header["is_new"] = is_new;
-  if (mission_.live.removes_flying_pixels) {
+  if (live_.removes_flying_pixels) {
     answer.header["flying_pixels"] = found.left_out.flying;
     answer.header["isolated_returns"] = found.left_out.isolated;
   }
@@ -245,7 +253,7 @@ Message Session::refuse(const Message& message) {
 }
 
 Message Session::present() const {
-  Message answer{Json::parse(answer_json(survey_, mission_)), {}};
+  Message answer{Json::parse(answer_json(survey_, flight_)), {}};
   answer.header["type"] = "answer";
   return answer;
 }

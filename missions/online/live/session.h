@@ -4,7 +4,8 @@
 #include <functional>
 #include <string>
 
-#include "missions/config/mission.h"
+#include "flight/flight_options.h"
+#include "missions/online/live/live_options.h"
 #include "missions/online/live/live_survey.h"
 #include "missions/online/live/wire.h"
 
@@ -12,12 +13,12 @@ namespace skycap::missions::online {
 
 class Session {
  public:
-  /// Keeps references. `finish` writes the package and returns what is to be said of it; the survey
-  /// is over for this program then, unless it throws.
-  /// `show` is called by settle().
+  /// Keeps references to the survey and its options; `mission` is the mission's name. `finish`
+  /// writes the package and returns what is to be said of it; the survey is over for this program
+  /// then, unless it throws. `show` is called by settle().
   Session(
-      const config::Mission& mission, LiveSurvey& survey, std::function<std::string()> finish,
-      std::function<void()> show = [] {});
+      std::string mission, const flight::FlightOptions& flight, const LiveOptions& live,
+      LiveSurvey& survey, std::function<std::string()> finish, std::function<void()> show = [] {});
 
   /// One answer for each message. What is wrong with a message is answered as
   /// {"type": "error", "what": ...} and changes nothing.
@@ -37,7 +38,9 @@ class Session {
   Message refuse(const Message& message);
   Message present() const;
 
-  const config::Mission& mission_;
+  std::string mission_;
+  const flight::FlightOptions& flight_;
+  const LiveOptions& live_;
   LiveSurvey& survey_;
   std::function<std::string()> finish_;
   std::function<void()> show_;

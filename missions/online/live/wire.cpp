@@ -8,7 +8,7 @@
 #include "geometry/error.h"
 #include "geometry/io/json.h"
 #include "geometry/io/record_log.h"
-#include "missions/config/journal_text.h"
+#include "missions/support/journal_text.h"
 
 namespace skycap::missions::online {
 namespace {
@@ -26,7 +26,7 @@ void require(bool is_right, const std::string& what) {
 Message error_message(const std::string& what) { return {{{"type", "error"}, {"what", what}}, {}}; }
 
 std::string frame_of(const Message& message) {
-  const std::string body = config::journal_line(message.header) + message.payload;
+  const std::string body = support::journal_line(message.header) + message.payload;
   const Lengths lengths{static_cast<std::uint32_t>(body.size() - message.payload.size()),
                         static_cast<std::uint32_t>(message.payload.size()),
                         geometry::crc32_of(body)};

@@ -17,15 +17,15 @@
 #include <Eigen/Core>
 #include <Eigen/Geometry>
 
-#include "sim/sensors/depth_image.h"
+#include "geometry/points/depth_image.h"
 
 namespace skycap::missions::online {
 
 /// An image of CObservation3DRangeScan, with its lens in the notation of OpenCV's calibration.
 struct RecordedImage {
-  sim::DepthImage image;  ///< 0 is no return
-  double unit = 0.001;    ///< what one step stands for [m]
-  bool is_depth = true;   ///< along the optical axis; else along the pixel's ray
+  geometry::DepthImage image;  ///< 0 is no return
+  double unit = 0.001;         ///< what one step stands for [m]
+  bool is_depth = true;        ///< along the optical axis; else along the pixel's ray
   Eigen::Vector2d focal_length_px, principal_point_px;
   std::array<double, 5> distortion{};  ///< k1 k2 p1 p2 k3
 };

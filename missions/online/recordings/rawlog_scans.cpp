@@ -77,7 +77,7 @@ std::string fault_of_load(const Observation& observation, const std::string& nam
 }
 
 /// Of pixels or points, as of a depth image in a file.
-bool is_too_much(std::ptrdiff_t count) { return count > sim::most_depth_pixels; }
+bool is_too_much(std::ptrdiff_t count) { return count > geometry::most_depth_pixels; }
 
 /// Takes the points in, unless there are too many.
 void put_points(RawlogScan& scan, std::span<const float> x, std::span<const float> y,

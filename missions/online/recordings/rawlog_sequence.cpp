@@ -23,10 +23,10 @@ std::string quoted(const std::vector<std::string>& labels) {
 }
 
 std::vector<Vector3d> points_of(const RecordedImage& range, std::size_t& without_return) {
-  const online::Lens lens{.focal_length_px = range.focal_length_px,
-                          .principal_point_px = range.principal_point_px,
-                          .distortion = range.distortion};
-  std::vector<Vector3d> points = online::points_of(range.image, lens, range.unit, without_return);
+  const Lens lens{.focal_length_px = range.focal_length_px,
+                  .principal_point_px = range.principal_point_px,
+                  .distortion = range.distortion};
+  std::vector<Vector3d> points = points_of(range.image, lens, range.unit, without_return);
   if (range.is_depth) return points;
   // Such a point's depth is its range so far.
   for (Vector3d& point : points) point *= point.z() / point.norm();
@@ -149,7 +149,8 @@ std::optional<RawlogFrame> RawlogSequence::next() {
   return std::nullopt;
 }
 
-online::ScanFound scan_of(const RawlogFrame& frame, const config::Mission& mission) {
+ScanFound scan_of(const RawlogFrame& frame, const flight::CaptureOptions& capture,
+                  const LiveOptions& live) {
   std::size_t without_return = 0;
   std::vector<Vector3d> points;
   if (const auto* range = std::get_if<RecordedImage>(&frame.scan.content)) {
@@ -160,7 +161,7 @@ online::ScanFound scan_of(const RawlogFrame& frame, const config::Mission& missi
       points.push_back(point.cast<double>());
     }
   }
-  online::ScanFound found = online::scan_of(points, frame.world_from_sensor, mission);
+  ScanFound found = scan_of(points, frame.world_from_sensor, capture, live);
   found.without_return = without_return;
   return found;
 }

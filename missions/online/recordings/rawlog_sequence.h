@@ -11,6 +11,8 @@
 
 #include <Eigen/Geometry>
 
+#include "flight/flight_options.h"
+#include "missions/online/live/live_options.h"
 #include "missions/online/live/scan_input.h"
 #include "missions/online/recordings/rawlog_reader.h"
 #include "missions/online/recordings/stamped_list.h"
@@ -64,7 +66,8 @@ class RawlogSequence {
   std::unique_ptr<RawlogReader> reader_;
 };
 
-/// A rawlog's scan as one of the mission's.
-online::ScanFound scan_of(const RawlogFrame& frame, const config::Mission& mission);
+/// A rawlog's scan as one of the survey's.
+ScanFound scan_of(const RawlogFrame& frame, const flight::CaptureOptions& capture,
+                  const LiveOptions& live);
 
 }  // namespace skycap::missions::online

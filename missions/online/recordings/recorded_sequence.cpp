@@ -60,7 +60,7 @@ RecordedSequence read_numbered(const std::vector<fs::path>& images, std::size_t 
     const std::string id = name.substr(0, name.size() - image_ending.size());
     add_frame(sequence, id, images[i], [&] {
       const fs::path pose = images[i].parent_path() / (id + ".pose.txt");
-      return online::parse_pose_text(geometry::read_file(pose, largest_pose), pose.string());
+      return parse_pose_text(geometry::read_file(pose, largest_pose), pose.string());
     });
   }
   return sequence;

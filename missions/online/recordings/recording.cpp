@@ -10,8 +10,12 @@ namespace {
 
 class Folder final : public Recording {
  public:
-  Folder(RecordedSequence sequence, online::ScanInput image, const config::Mission& mission)
-      : frames_(std::move(sequence.frames)), image_(std::move(image)), mission_(mission) {}
+  Folder(RecordedSequence sequence, ScanInput image, const flight::CaptureOptions& capture,
+         const LiveOptions& live)
+      : frames_(std::move(sequence.frames)),
+        image_(std::move(image)),
+        capture_(capture),
+        live_(live) {}
 
   std::string pose_source() const override { return ""; }
 
@@ -19,24 +23,26 @@ class Folder final : public Recording {
     if (next_ == frames_.size()) return std::nullopt;
     const RecordedFrame& frame = frames_[next_++];
     return Frame{frame.id, frame.file.string(), [this, &frame] {
-                   online::ScanInput input = image_;
+                   ScanInput input = image_;
                    input.file = frame.file;
                    input.world_from_sensor = frame.world_from_sensor;
-                   return online::read_scan(input, mission_);
+                   return read_scan(input, capture_, live_);
                  }};
   }
 
  private:
   std::vector<RecordedFrame> frames_;
   std::size_t next_ = 0;
-  online::ScanInput image_;
-  const config::Mission& mission_;
+  ScanInput image_;
+  flight::CaptureOptions capture_;
+  LiveOptions live_;
 };
 
 class Rawlog final : public Recording {
  public:
-  Rawlog(RawlogSequence sequence, std::size_t count, const config::Mission& mission)
-      : sequence_(std::move(sequence)), left_(count), mission_(mission) {}
+  Rawlog(RawlogSequence sequence, std::size_t count, const flight::CaptureOptions& capture,
+         const LiveOptions& live)
+      : sequence_(std::move(sequence)), left_(count), capture_(capture), live_(live) {}
 
   std::string pose_source() const override { return sequence_.pose_source(); }
 
@@ -47,33 +53,35 @@ class Rawlog final : public Recording {
     if (!frame) return std::nullopt;
     const std::string id = frame->id;
     return Frame{id, id, [this, frame = std::make_shared<const RawlogFrame>(*std::move(frame))] {
-                   return scan_of(*frame, mission_);
+                   return scan_of(*frame, capture_, live_);
                  }};
   }
 
  private:
   RawlogSequence sequence_;
   std::size_t left_;
-  const config::Mission& mission_;
+  flight::CaptureOptions capture_;
+  LiveOptions live_;
 };
 
 }  // namespace
 
 std::unique_ptr<Recording> open_recording(const std::filesystem::path& place,
                                           const RecordingChoice& choice,
-                                          const config::Mission& mission,
+                                          const flight::CaptureOptions& capture,
+                                          const LiveOptions& live,
                                           const std::function<void(const std::string&)>& note,
                                           const std::function<void(const std::string&)>& report) {
   if (std::filesystem::is_regular_file(place)) {
     return std::make_unique<Rawlog>(RawlogSequence(place, choice.rawlog, note, report),
-                                    choice.count, mission);
+                                    choice.count, capture, live);
   }
   if (choice.rawlog.poses || !choice.rawlog.sensor.empty()) {
     throw Error(ErrorKind::bad_usage, "--poses and --sensor are for rawlogs");
   }
   RecordedSequence sequence = read_sequence(place, choice.count);
   for (const std::string& left_out : sequence.notes) note(left_out);
-  return std::make_unique<Folder>(std::move(sequence), choice.image, mission);
+  return std::make_unique<Folder>(std::move(sequence), choice.image, capture, live);
 }
 
 }  // namespace skycap::missions::online

@@ -8,6 +8,8 @@
 #include <optional>
 #include <string>
 
+#include "flight/flight_options.h"
+#include "missions/online/live/live_options.h"
 #include "missions/online/live/scan_input.h"
 #include "missions/online/recordings/rawlog_sequence.h"
 
@@ -17,13 +19,13 @@ struct RecordingChoice {
   RawlogChoice rawlog;            ///< for rawlogs alone
   std::size_t count = 1'000'000;  ///< so many of its frames
   /// How images of folders are read; rawlogs say that themselves. `file` and pose are not used.
-  online::ScanInput image;
+  ScanInput image;
 };
 
 struct Frame {
-  std::string id;                           ///< what the recording calls it
-  std::string name;                         ///< for the user
-  std::function<online::ScanFound()> scan;  ///< reads it; throws Error{bad_file}
+  std::string id;                   ///< what the recording calls it
+  std::string name;                 ///< for the user
+  std::function<ScanFound()> scan;  ///< reads it; throws Error{bad_file}
 };
 
 class Recording {
@@ -38,12 +40,13 @@ class Recording {
 };
 
 /// A rawlog, if it is a file, or else a folder as in recorded_sequence.h, whose scans become the
-/// mission's. `note` is told, in a line, of each frame that is left out, and why; `report`, how far
-/// it is in what it has to read first. Keeps a reference to the mission. Throws Error{bad_file},
+/// survey's. `note` is told, in a line, of each frame that is left out, and why; `report`, how far
+/// it is in what it has to read first. Throws Error{bad_file},
 /// and Error{bad_usage} for a choice that it does not have.
 std::unique_ptr<Recording> open_recording(const std::filesystem::path& place,
                                           const RecordingChoice& choice,
-                                          const config::Mission& mission,
+                                          const flight::CaptureOptions& capture,
+                                          const LiveOptions& live,
                                           const std::function<void(const std::string&)>& note,
                                           const std::function<void(const std::string&)>& report);
 

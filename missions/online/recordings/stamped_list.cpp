@@ -31,7 +31,7 @@ std::vector<Stamped> read_list(const std::filesystem::path& file) {
 
 Eigen::Isometry3d pose_at(std::span<const Stamped> poses, double time, const std::string& file) {
   const Stamped& pose = nearest_pose(poses, time, file);
-  return online::parse_pose_text(pose.rest, file + ": time " + pose.time_text);
+  return parse_pose_text(pose.rest, file + ": time " + pose.time_text);
 }
 
 }  // namespace skycap::missions::online

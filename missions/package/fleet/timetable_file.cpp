@@ -6,7 +6,6 @@
 #include "geometry/error.h"
 #include "geometry/io/file.h"
 #include "geometry/place/world.h"
-#include "missions/config/fleet.h"
 #include "missions/support/number_text.h"
 
 namespace skycap::missions::package {
@@ -26,8 +25,8 @@ std::optional<std::size_t> index_in(std::string_view text) {
 /// Reads one row; problems are thrown with the place.
 class RowReader {
  public:
-  RowReader(std::string place, const config::Mission& mission)
-      : place_(std::move(place)), mission_(mission) {}
+  RowReader(std::string place, std::span<const std::string> vehicles)
+      : place_(std::move(place)), vehicles_(vehicles) {}
 
   TimetableRow read(const std::string& line) const {
     const std::vector<std::string> fields = flight::split(line, ',');
@@ -68,18 +67,17 @@ class RowReader {
   }
 
   void check_vehicle(const TimetableRow& row) const {
-    const std::vector<std::string>& vehicles = mission_.flight.fleet.vehicles;
-    if (row.vehicle >= vehicles.size()) {
+    if (row.vehicle >= vehicles_.size()) {
       fail("there is no vehicle " + std::to_string(row.vehicle + 1) + ": flight.vehicles has " +
-           std::to_string(vehicles.size()));
+           std::to_string(vehicles_.size()));
     }
-    if (row.name == vehicles[row.vehicle]) return;
-    fail("vehicle " + std::to_string(row.vehicle + 1) + " is " + vehicles[row.vehicle] +
+    if (row.name == vehicles_[row.vehicle]) return;
+    fail("vehicle " + std::to_string(row.vehicle + 1) + " is " + vehicles_[row.vehicle] +
          " in flight.vehicles, not " + row.name);
   }
 
   std::string place_;
-  const config::Mission& mission_;
+  std::span<const std::string> vehicles_;  ///< of the mission
 };
 
 }  // namespace
@@ -98,7 +96,7 @@ std::string timetable_csv(std::span<const TimetableRow> rows) {
 }
 
 std::vector<TimetableRow> read_timetable(const std::filesystem::path& path,
-                                         const config::Mission& mission) {
+                                         const flight::FlightOptions& options) {
   const std::string text = geometry::read_file(path, largest_timetable);
   const std::vector<std::string> lines = flight::lines_of(text);
   if (lines.empty() || lines.front() != header) {
@@ -108,7 +106,7 @@ std::vector<TimetableRow> read_timetable(const std::filesystem::path& path,
   std::vector<TimetableRow> rows;
   for (std::size_t i = 1; i < lines.size(); ++i) {
     const std::string place = path.string() + ":" + std::to_string(i + 1) + ": ";
-    TimetableRow row = RowReader(place, mission).read(lines[i]);
+    TimetableRow row = RowReader(place, options.fleet.names).read(lines[i]);
     const bool is_twice = std::ranges::any_of(rows, [&](const TimetableRow& other) {
       return other.vehicle == row.vehicle && other.sortie == row.sortie;
     });
@@ -133,12 +131,13 @@ bool is_fleet_file(std::string_view name) {
   return name == timetable_name || vehicle_of_file(name).has_value();
 }
 
-config::Mission mission_of_file(const std::filesystem::path& file, const config::Mission& mission) {
+flight::FlightOptions flight_of_file(const std::filesystem::path& file,
+                                     const flight::FlightOptions& options) {
   const std::optional<std::size_t> vehicle = vehicle_of_file(file.filename().string());
-  if (!vehicle || !config::is_fleet(mission)) return mission;
+  if (!vehicle || !options.is_fleet()) return options;
   const std::filesystem::path table = file.parent_path() / timetable_name;
-  for (const TimetableRow& row : read_timetable(table, mission)) {
-    if (row.vehicle == *vehicle) return config::as_flown_by(mission, *vehicle, row.pad);
+  for (const TimetableRow& row : read_timetable(table, options)) {
+    if (row.vehicle == *vehicle) return options.of_vehicle(*vehicle, row.pad);
   }
   throw Error(ErrorKind::bad_file, table.string() + ": has no sortie of vehicle " +
                                        std::to_string(*vehicle + 1) + ", whose file is " +

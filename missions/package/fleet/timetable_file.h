@@ -18,7 +18,7 @@
 #include <Eigen/Core>
 
 #include "flight/export/export.h"
-#include "missions/config/mission.h"
+#include "flight/flight_options.h"
 
 namespace skycap::missions::package {
 
@@ -39,7 +39,7 @@ std::string timetable_csv(std::span<const TimetableRow> rows);
 /// Throws Error{bad_file}, "FILE:LINE: what is wrong", for the first row that is no row, whose
 /// vehicle is not the mission's, whose file is not beside it, or that stands there twice.
 std::vector<TimetableRow> read_timetable(const std::filesystem::path& path,
-                                         const config::Mission& mission);
+                                         const flight::FlightOptions& options);
 
 /// What the names of a vehicle's route files begin with: "fleet-1" for the first.
 std::string stem_of(std::size_t vehicle);
@@ -50,9 +50,10 @@ std::optional<std::size_t> vehicle_of_file(std::string_view name);
 /// Whether a file of that name is the timetable or one of a fleet's vehicles.
 bool is_fleet_file(std::string_view name);
 
-/// The mission as the vehicle that a route file is for flies it, from the pad that the timetable
-/// beside the file says; of other files the mission itself. Throws as read_timetable().
-config::Mission mission_of_file(const std::filesystem::path& file, const config::Mission& mission);
+/// The flight of the vehicle that a route file is for, from the pad that the timetable beside the
+/// file says; of other files the flight itself. Throws as read_timetable().
+flight::FlightOptions flight_of_file(const std::filesystem::path& file,
+                                     const flight::FlightOptions& options);
 
 /// The format that an autopilot flies itself.
 flight::Format own_format(flight::Dialect dialect);

@@ -8,8 +8,6 @@
 #include "flight/space/place_text.h"
 #include "geometry/error.h"
 #include "geometry/io/file.h"
-#include "missions/config/fleet.h"
-#include "missions/config/mission_flight.h"
 #include "missions/support/number_text.h"
 
 namespace skycap::missions::package {
@@ -28,8 +26,8 @@ std::string title_of(const TimetableRow& row) {
 /// Rows with their flights.
 class Proof {
  public:
-  Proof(const std::filesystem::path& path, const config::Mission& mission)
-      : path_(path), mission_(mission), rows_(read_timetable(path, mission)) {
+  Proof(const std::filesystem::path& path, const flight::FlightOptions& options)
+      : path_(path), options_(options), rows_(read_timetable(path, options)) {
     for (const TimetableRow& row : rows_) {
       flights_.push_back(flight_of(row));
       vehicles_.push_back(row.vehicle);
@@ -49,8 +47,8 @@ class Proof {
 
  private:
   flight::TimedFlight flight_of(const TimetableRow& row) const {
-    const double jerk = mission_.flight.fleet.described.at(row.vehicle).mode.jerk;
-    return {flown_file(path_, row, mission_).script, jerk, row.start};
+    const double jerk = options_.fleet.vehicles.at(row.vehicle).mode.jerk;
+    return {flown_file(path_, row, options_).script, jerk, row.start};
   }
 
   void check_landing(std::size_t i) {
@@ -69,13 +67,13 @@ class Proof {
       return;
     }
     const double distance = distance_from(flights_[i].script, other.pad);
-    if (distance >= mission_.flight.clearance) return;
+    if (distance >= options_.clearance) return;
     proof_.problems.push_back(title_of(one) + " comes within " + short_text(distance) +
                               " m of the pad of vehicle " + std::to_string(other.vehicle + 1));
   }
 
   void check_pairs(double up_to) {
-    const flight::SeparationRule rule = config::separation_of(mission_);
+    const flight::SeparationRule rule = options_.fleet.rule();
     proof_.distance = up_to;
     for (std::size_t i = 0; i < rows_.size(); ++i) {
       for (std::size_t j = i + 1; j < rows_.size(); ++j) {
@@ -94,7 +92,7 @@ class Proof {
   }
 
   const std::filesystem::path& path_;
-  const config::Mission& mission_;
+  const flight::FlightOptions& options_;
   std::vector<TimetableRow> rows_;
   std::vector<flight::TimedFlight> flights_;
   std::vector<std::size_t> vehicles_;
@@ -103,24 +101,23 @@ class Proof {
 
 }  // namespace
 
-FlownFile flown_file(const config::Mission& own, const std::string& content,
+FlownFile flown_file(const flight::FlightOptions& own, const std::string& content,
                      flight::Format format) {
-  const flight::FlightFacts facts = config::flight_facts(own);
+  const flight::FlightFacts facts = own.facts();
   FlownFile flown{flight::interpret(content, format, facts), {}};
   flight::throw_first(flown.route.problems, "is not flown");
   if (flown.route.pieces.empty()) throw Error(ErrorKind::bad_file, "flies nowhere");
-  const flight::Motion motion(config::vehicle_of(own),
-                              config::route_options_of(own, facts.pad).conditions);
+  const flight::Motion motion(own.flown(), own.route(facts.pad).conditions);
   flown.script = script_of(flown.route, motion);
   return flown;
 }
 
 FlownFile flown_file(const std::filesystem::path& path, const TimetableRow& row,
-                     const config::Mission& mission) {
+                     const flight::FlightOptions& options) {
   const std::filesystem::path file = path.parent_path() / row.file;
   const std::string content = geometry::read_file(file, flight::largest_route_file);
   try {
-    return flown_file(config::as_flown_by(mission, row.vehicle, row.pad), content,
+    return flown_file(options.of_vehicle(row.vehicle, row.pad), content,
                       flight::format_of_file(file, content));
   } catch (const Error& error) {
     throw Error(error.kind(), file.string() + ": " + error.what());
@@ -128,25 +125,25 @@ FlownFile flown_file(const std::filesystem::path& path, const TimetableRow& row,
 }
 
 std::vector<flight::FleetFlight> fleet_flights(const std::filesystem::path& path,
-                                               const config::Mission& mission) {
+                                               const flight::FlightOptions& options) {
   std::vector<flight::FleetFlight> flights;
-  for (const TimetableRow& row : read_timetable(path, mission)) {
-    const config::Mission own = config::as_flown_by(mission, row.vehicle, row.pad);
-    const flight::Motion motion(config::vehicle_of(own),
-                                config::route_options_of(own, row.pad).conditions);
+  for (const TimetableRow& row : read_timetable(path, options)) {
+    const flight::FlightOptions own = options.of_vehicle(row.vehicle, row.pad);
+    const flight::Motion motion(own.flown(), own.route(row.pad).conditions);
     flights.push_back(
-        {{flown_file(path, row, mission).script, motion, std::nullopt}, row.vehicle, row.start});
+        {{flown_file(path, row, options).script, motion, std::nullopt}, row.vehicle, row.start});
   }
   return flights;
 }
 
-std::vector<Vector3d> left_by(const std::filesystem::path& path, const config::Mission& mission,
-                              std::size_t vehicle, double after) {
-  const double tolerance = config::separation_of(mission).tolerance;
+std::vector<Vector3d> left_by(const std::filesystem::path& path,
+                              const flight::FlightOptions& options, std::size_t vehicle,
+                              double after) {
+  const double tolerance = options.fleet.timing_tolerance;
   std::vector<Vector3d> left;
-  for (const TimetableRow& row : read_timetable(path, mission)) {
+  for (const TimetableRow& row : read_timetable(path, options)) {
     if (row.vehicle != vehicle) continue;
-    const FlownFile flown = flown_file(path, row, mission);
+    const FlownFile flown = flown_file(path, row, options);
     double now = row.start;
     std::size_t next = 0;
     for (std::size_t i = 0; i < flown.script.size(); ++i) {
@@ -161,9 +158,9 @@ std::vector<Vector3d> left_by(const std::filesystem::path& path, const config::M
   return left;
 }
 
-TimetableProof prove_timetable(const std::filesystem::path& path, const config::Mission& mission,
-                               double up_to) {
-  return Proof(path, mission).run(up_to);
+TimetableProof prove_timetable(const std::filesystem::path& path,
+                               const flight::FlightOptions& options, double up_to) {
+  return Proof(path, options).run(up_to);
 }
 
 }  // namespace skycap::missions::package

@@ -5,9 +5,9 @@
 #include <string>
 
 #include "flight/fleet/fleet_flights.h"
+#include "flight/flight_options.h"
 #include "flight/fly_test/flight_script.h"
 #include "flight/interpreter/flown_route.h"
-#include "missions/config/mission.h"
 #include "missions/package/fleet/timetable_file.h"
 
 namespace skycap::missions::package {
@@ -18,13 +18,14 @@ struct FlownFile {
   flight::FlightScript script;  ///< a leg for each of its pieces
 };
 
-/// The flight of a file with that content; `own` is the mission as its vehicle flies it, with the
-/// pad as flight.takeoff. Throws Error{bad_file} with the file's first problem.
-FlownFile flown_file(const config::Mission& own, const std::string& content, flight::Format format);
+/// The flight of a file with that content; `own` is that of its vehicle, with the pad as its
+/// take-off. Throws Error{bad_file} with the file's first problem.
+FlownFile flown_file(const flight::FlightOptions& own, const std::string& content,
+                     flight::Format format);
 
 /// Of the file of a row of the timetable at `path`. Errors name it.
 FlownFile flown_file(const std::filesystem::path& path, const TimetableRow& row,
-                     const config::Mission& mission);
+                     const flight::FlightOptions& options);
 
 struct TimetableProof {
   flight::Problems problems;  ///< rows and pairs that are not proven
@@ -37,18 +38,18 @@ struct TimetableProof {
 /// each as early or late as flight.timing_tolerance allows; to flight.clearance from where others
 /// stand on the ground; to the landings that the timetable states; and to one sortie after another
 /// of each vehicle. Throws Error{bad_file} if the timetable or a file cannot be read.
-TimetableProof prove_timetable(const std::filesystem::path& path, const config::Mission& mission,
-                               double up_to);
+TimetableProof prove_timetable(const std::filesystem::path& path,
+                               const flight::FlightOptions& options, double up_to);
 
 /// All sorties of a timetable, ready for the simulator. Throws as prove_timetable().
 std::vector<flight::FleetFlight> fleet_flights(const std::filesystem::path& path,
-                                               const config::Mission& mission);
+                                               const flight::FlightOptions& options);
 
 /// The views that a vehicle has not certainly photographed by the time `after` its timetable began,
 /// being late by as much as flight.timing_tolerance allows: places that its files photograph from.
 /// Throws as prove_timetable().
 std::vector<Eigen::Vector3d> left_by(const std::filesystem::path& path,
-                                     const config::Mission& mission, std::size_t vehicle,
+                                     const flight::FlightOptions& options, std::size_t vehicle,
                                      double after);
 
 }  // namespace skycap::missions::package

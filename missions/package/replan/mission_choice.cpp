@@ -12,9 +12,7 @@
 #include "flight/way_home/returnable_space.h"
 #include "geometry/error.h"
 #include "geometry/parallel.h"
-#include "missions/config/mission_flight.h"
-#include "missions/config/site.h"
-#include "missions/config/survey_sensor.h"
+#include "geometry/place/platform.h"
 #include "missions/package/replan/dose_sum.h"
 
 namespace skycap::missions::package {
@@ -61,36 +59,35 @@ bool is_passed(const flight::Route& route) {
 /// The problem of a mission, and what it asks.
 class MissionProblem {
  public:
-  MissionProblem(const config::Mission& mission, const GainField& surface,
+  MissionProblem(const flight::FlightOptions& flight, const survey::PlannerOptions& planner,
+                 const ChoiceOptions& choice, const GainField& surface,
                  const flight::FreeSpace& space, const flight::Route& present)
       : surface_(surface),
         space_(space),
         vehicle_(present.vehicle),
-        limits_(config::view_limits(mission)),
+        limits_(planner.limits),
         motion_(present.vehicle, present.options.conditions),
         clearance_(present.clearance),
         returnable_(space, planning_law(present.options, top_of(present))),
         legs_(space, motion_, clearance_, no_ways_home_),
         passing_(is_passed(present) ? std::optional(present.options.passing) : std::nullopt),
-        mount_(config::scans_in_flight(mission) ? mission.sensor.mount : std::nullopt),
-        kind_(mount_ ? config::kind_of(*mission.sensor.scanner) : config::ScannerKind::ring),
-        sweep_step_(mission.flight.cruise_speed * mission.sensor.frame_period),
-        threads_(mission.threads),
+        mount_(flight.capture.scans_in_flight() ? flight.capture.mount : std::nullopt),
+        kind_(choice.scanner),
+        sweep_step_(flight.cruise_speed * flight.capture.frame_period),
+        threads_(choice.threads),
         home_(present.options.takeoff + Vector3d(0.0, 0.0, present.options.takeoff_climb)) {
     problem_.targets = surface.targets();
     problem_.home = home_;
-    problem_.view_distance = config::view_distance_of(mission);
+    problem_.view_distance = planner.view_distance;
     if (passing_) {
       problem_.time_per_view = price_of_passing;
       problem_.bend_time = [this](const View* before, const View& at, const View* after) {
         return bend_time(at.position - place(before), place(after) - at.position);
       };
     } else {
-      problem_.time_per_view = legs_
-                                   .station_cost({.view = {},
-                                                  .hold = config::hold_of(mission),
-                                                  .hold_after = config::hold_after_of(mission)})
-                                   .time;
+      const flight::Station station{
+          .view = {}, .hold = flight.rest_before(), .hold_after = flight.rest_after()};
+      problem_.time_per_view = legs_.station_cost(station).time;
     }
     problem_.looks = [this](const View& view) {
       return mount_ ? std::vector<Look>() : surface_.looks(view);
@@ -151,7 +148,7 @@ class MissionProblem {
   std::vector<View> views_of(const flight::Route& route) const {
     std::vector<View> views;
     for (const flight::Station& station : route.stations) {
-      views.push_back(mount_ ? config::scanner_view(*mount_, station.view) : station.view);
+      views.push_back(mount_ ? geometry::scanner_view(*mount_, station.view) : station.view);
     }
     return views;
   }
@@ -210,13 +207,15 @@ class MissionProblem {
                           {flight::yaw_of(there), flight::pitch_of(there)}, motion_, *passing_);
   }
 
-  View carrier(const View& view) const { return mount_ ? config::nose_view(*mount_, view) : view; }
+  View carrier(const View& view) const {
+    return mount_ ? geometry::nose_view(*mount_, view) : view;
+  }
 
   /// Where a scanner looks for a nose: in three quarters of its ring, since what is above has been
   /// looked at from above or not at all, or where its field is.
   std::vector<View> looks_of(const View& nose) const {
-    const View view = config::scanner_view(*mount_, nose);
-    if (kind_ == config::ScannerKind::rosette) return {view};
+    const View view = geometry::scanner_view(*mount_, nose);
+    if (kind_ == sim::ScannerKind::rosette) return {view};
     constexpr double almost = 1e-3;  // straight down has no sides
     return {view,
             {view.position, -view.direction},
@@ -241,7 +240,7 @@ class MissionProblem {
         const double turned = i + 1 == points.size() ? turn : 0.0, at = yaw + share * turned;
         const View nose{points[i - 1] + share * way, {std::sin(at), std::cos(at), 0.0}};
         for (const View& view : looks_of(nose)) views.push_back(view);
-        shares.resize(views.size(), kind_ == config::ScannerKind::line
+        shares.resize(views.size(), kind_ == sim::ScannerKind::line
                                         ? swept_share(way, nose.direction, turned, count)
                                         : 1.0F);
       }
@@ -272,9 +271,9 @@ class MissionProblem {
   flight::ReturnableSpace returnable_;
   std::optional<flight::WaysHome> no_ways_home_;
   flight::LegCertifier legs_;
-  std::optional<flight::PassRules> passing_;   ///< if views are passed
-  std::optional<config::ScannerMount> mount_;  ///< of a scanner that measures all the way
-  config::ScannerKind kind_;
+  std::optional<flight::PassRules> passing_;     ///< if views are passed
+  std::optional<geometry::ScannerMount> mount_;  ///< of a scanner that measures all the way
+  sim::ScannerKind kind_;
   double sweep_step_;  ///< between its scans [m]
   unsigned threads_;
   Vector3d home_;
@@ -307,12 +306,13 @@ MissionFigures figures_of(const flight::Route& route, double promised) {
   return figures;
 }
 
-MissionChoice choose_mission(const config::Mission& mission, const GainField& surface,
-                             const flight::FreeSpace& space, const std::vector<View>& surveyed,
-                             flight::Route present, const PlanRoute& plan,
-                             const SearchSettings& settings, const std::stop_token& stop) {
+MissionChoice choose_mission(const flight::FlightOptions& flight,
+                             const survey::PlannerOptions& planner, const ChoiceOptions& options,
+                             const GainField& surface, const flight::FreeSpace& space,
+                             const std::vector<View>& surveyed, flight::Route present,
+                             const PlanRoute& plan, const std::stop_token& stop) {
   const auto begin = std::chrono::steady_clock::now();
-  const MissionProblem asked(mission, surface, space, present);
+  const MissionProblem asked(flight, planner, options, surface, space, present);
   const TourProblem& problem = asked.problem();
   const std::vector<View> views = asked.views_of(present);
   MissionChoice choice;
@@ -323,7 +323,8 @@ MissionChoice choose_mission(const config::Mission& mission, const GainField& su
   // What a scanner covers depends on the ways, too: those that can be flown.
   const double wanted = problem.way_looks ? least : covered_by(problem, surveyed) - equal_coverage;
   const auto cost = [&](const MissionFigures& figures) {
-    return figures.duration + 100.0 * settings.price * std::max(0.0, wanted - figures.promised);
+    return figures.duration +
+           100.0 * options.search.price * std::max(0.0, wanted - figures.promised);
   };
 
   const auto try_tour = [&](const FoundTour& tour) {
@@ -338,11 +339,10 @@ MissionChoice choose_mission(const config::Mission& mission, const GainField& su
   };
   const FoundTour spared = spare_views(problem, views, least);
   if (spared.views.size() < views.size()) try_tour(spared);
-  SearchSettings seeded = settings;
-  seeded.seed = mission.seed;
-  if (problem.way_looks) seeded.moves_per_view /= dearer_ways;
-  if (problem.bend_time) seeded.moves_per_view *= more_passed_views;
-  try_tour(anneal(problem, spared.views, wanted, seeded, stop));
+  SearchSettings search = options.search;
+  if (problem.way_looks) search.moves_per_view /= dearer_ways;
+  if (problem.bend_time) search.moves_per_view *= more_passed_views;
+  try_tour(anneal(problem, spared.views, wanted, search, stop));
 
   choice.stations = asked.stations_of(choice.route);
   choice.computing =

@@ -13,11 +13,13 @@
 
 #include <Eigen/Core>
 
+#include "flight/flight_options.h"
 #include "flight/route/route.h"
 #include "flight/space/clearance.h"
 #include "geometry/place/pose.h"
-#include "missions/config/mission.h"
 #include "missions/package/replan/tour_search.h"
+#include "sim/sensors/scanner_field.h"
+#include "survey/planners/planner_options.h"
 #include "survey/skycap/view_gain.h"
 
 namespace skycap::missions::package {
@@ -53,17 +55,23 @@ struct MissionChoice {
 /// The certified route through views in the order given.
 using PlanRoute = std::function<flight::Route(const StationPlan&)>;
 
+/// What the choice depends on besides flight and planner.
+struct ChoiceOptions {
+  SearchSettings search;
+  sim::ScannerKind scanner = sim::ScannerKind::ring;  ///< of one that measures all the way
+  unsigned threads = 0;  ///< zero: all processors; does not change the result
+};
+
 /// Begins from `present`, the route through the survey's views that have a proven way home, and
 /// falls back on it: the choice never promises less, and is slower only where it covers what else
 /// the survey has seen from `surveyed`, its views and those of frames on its ways, at the price in
-/// `settings`. `space` is
-/// what the route is proven in. Tours that `plan` throws an Error at are not flown. If a stop is
-/// requested, the choice is what was found by then.
-MissionChoice choose_mission(const config::Mission& mission,
+/// `options`. `space` is what the route is proven in. Tours that `plan` throws an Error at are not
+/// flown. If a stop is requested, the choice is what was found by then.
+MissionChoice choose_mission(const flight::FlightOptions& flight,
+                             const survey::PlannerOptions& planner, const ChoiceOptions& options,
                              const survey::skycap::GainField& surface,
                              const flight::FreeSpace& space,
                              const std::vector<geometry::View>& surveyed, flight::Route present,
-                             const PlanRoute& plan, const SearchSettings& settings = {},
-                             const std::stop_token& stop = {});
+                             const PlanRoute& plan, const std::stop_token& stop = {});
 
 }  // namespace skycap::missions::package

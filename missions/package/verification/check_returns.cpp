@@ -4,7 +4,6 @@
 
 #include "flight/export/export.h"
 #include "flight/way_home/least_return.h"
-#include "missions/config/mission_flight.h"
 #include "missions/package/verification/stated_return.h"
 #include "missions/support/number_text.h"
 
@@ -20,25 +19,25 @@ std::string metres(double length) { return support::short_text(length) + " m"; }
 
 ReturnCheck check_returns(const std::filesystem::path& file,
                           const std::optional<double>& return_height,
-                          const config::Mission& mission, const flight::FreeSpace& space,
+                          const flight::FlightOptions& options, const flight::FreeSpace& space,
                           const std::vector<Vector3d>& points) {
   const std::optional<Dialect> dialect =
-      mission.flight.is_flown() ? dialect_of(file, config::vehicle_of(mission)) : std::nullopt;
+      options.is_flown() ? dialect_of(file, options.flown()) : std::nullopt;
   if (!dialect || points.size() < 2) {
     return {true, "returns are not checked: no autopilot flies home by this file"};
   }
   std::vector<flight::Segment> legs;
   for (std::size_t i = 1; i < points.size(); ++i) legs.push_back({points[i - 1], points[i]});
-  const double ground = config::pad_of(mission, mission.scene.position).z();
+  const double ground = options.pad(options.airspace.base).z();
   flight::ReturnLaw law{.dialects = {*dialect},
                         .landings = {{points[0].x(), points[0].y(), ground}},
-                        .landing_climb = config::takeoff_climb_of(mission)};
+                        .landing_climb = options.climb()};
   if (*dialect != Dialect::dji) {
-    const std::vector<Vector3d>& rally = mission.flight.rally;
+    const std::vector<Vector3d>& rally = options.rally;
     law.landings.insert(law.landings.end(), rally.begin(), rally.end());
   }
   const double clearance =
-      std::max(0.0, flight::return_clearance(mission.flight.clearance) - flight::rounding_bound);
+      std::max(0.0, flight::return_clearance(options.clearance) - flight::rounding_bound);
 
   const auto stated = stated_height(file, return_height, *dialect);
   if (stated && !stated->problems.empty()) {
@@ -56,7 +55,7 @@ ReturnCheck check_returns(const std::filesystem::path& file,
   }
   const double top = space.extent().isEmpty() ? ground : space.extent().max().z();
   const flight::ReturnSearch least =
-      least_return(space, legs, law, config::highest_return(mission, ground, top), clearance);
+      least_return(space, legs, law, options.highest_return(ground, top), clearance);
   if (!least.found) {
     return {false, fault.empty() ? "not safe, no height of return is: " + least.why
                                  : fault + "no other height is safe"};

@@ -8,8 +8,8 @@
 
 #include <Eigen/Core>
 
+#include "flight/flight_options.h"
 #include "flight/space/clearance.h"
-#include "missions/config/mission.h"
 
 namespace skycap::missions::package {
 
@@ -24,7 +24,7 @@ struct ReturnCheck {
 /// Error{bad_file} for a parameter file that cannot be read.
 ReturnCheck check_returns(const std::filesystem::path& file,
                           const std::optional<double>& return_height,
-                          const config::Mission& mission, const flight::FreeSpace& space,
+                          const flight::FlightOptions& options, const flight::FreeSpace& space,
                           const std::vector<Eigen::Vector3d>& points);
 
 }  // namespace skycap::missions::package

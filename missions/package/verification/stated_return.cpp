@@ -16,9 +16,9 @@ namespace {
 
 std::optional<StatedHeight> stated_by_parameters(const std::filesystem::path& route,
                                                  Dialect dialect) {
-  const std::optional<std::size_t> vehicle = package::vehicle_of_file(route.filename().string());
+  const std::optional<std::size_t> vehicle = vehicle_of_file(route.filename().string());
   const std::string name =
-      flight::parameters_name(dialect, vehicle ? package::stem_of(*vehicle) : "mission");
+      flight::parameters_name(dialect, vehicle ? stem_of(*vehicle) : "mission");
   const std::filesystem::path file = route.parent_path() / name;
   if (name.empty() || !std::filesystem::exists(file)) return std::nullopt;
   constexpr std::size_t largest = 1 << 20;  // [byte]; a vehicle has some thousand parameters

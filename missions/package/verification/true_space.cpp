@@ -6,8 +6,6 @@
 #include <utility>
 
 #include "flight/space/segment_distance.h"
-#include "missions/config/mission_flight.h"
-#include "missions/config/pad_grounds.h"
 
 namespace skycap::missions::package {
 namespace {
@@ -56,20 +54,20 @@ std::optional<double> height_at(const std::vector<flight::Triangle>& triangles,
 
 }  // namespace
 
-TrueSpace true_space(const config::Mission& mission, const geometry::Mesh& model,
+TrueSpace true_space(const flight::FlightOptions& options, const geometry::Mesh& model,
                      double pad_height) {
-  flight::Obstacles obstacles = config::flight_rules(mission);
+  flight::Obstacles obstacles = options.rules();
   obstacles.mesh = model;
   flight::KnownSpace everywhere(obstacles);
   obstacles.mesh = above(model, pad_height + flight::pad_roughness);
   return {std::move(everywhere), flight::KnownSpace(without_ground(std::move(obstacles)))};
 }
 
-std::vector<flight::PadGround> true_grounds(const config::Mission& mission,
+std::vector<flight::PadGround> true_grounds(const flight::FlightOptions& options,
                                             const geometry::Mesh& model, const Vector3d& pad) {
-  const double radius = config::pad_radius_of(mission);
+  const double radius = options.pad_radius();
   std::vector<flight::PadGround> found;
-  for (const Vector3d& place : config::landings_of(mission, pad)) {
+  for (const Vector3d& place : options.landings(pad)) {
     const std::vector<flight::Triangle> near = triangles_at(model, place, radius);
     std::vector<Vector3d> heights;
     for (const Eigen::Vector2d& at : flight::places_on(place, radius)) {
@@ -79,7 +77,7 @@ std::vector<flight::PadGround> true_grounds(const config::Mission& mission,
     const auto ground = flight::pad_ground(place, heights, flight::GroundSource::scene);
     if (ground) found.push_back(*ground);
   }
-  return config::grounds_of(mission, pad, found);
+  return options.grounds(pad, found);
 }
 
 }  // namespace skycap::missions::package

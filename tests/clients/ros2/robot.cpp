@@ -7,7 +7,7 @@
 #include <thread>
 
 #include "geometry/place/pose.h"
-#include "missions/config/resolved_mission.h"
+#include "missions/config/resolve.h"
 #include "tests/clients/ros2/sample_messages.h"
 
 namespace skycap::ros2 {
@@ -50,9 +50,9 @@ std::string text_of(const PoseMessage& pose) {
 
 Robot::Robot(const std::string& mission, std::uint32_t domain, const std::string& topics,
              bool has_gimbal)
-    : mission_(missions::config::parse_mission(mission, "m.yaml")),
-      scene_(mission_, ""),
-      sensor_(mission_.sensor, mission_.seed),
+    : setup_(missions::config::parse_mission(mission, "m.yaml")),
+      scene_(setup_.simulation, "", setup_.run.threads),
+      sensor_(setup_.sensor(), setup_.run.seed),
       participant_(domain),
       has_gimbal_(has_gimbal),
       odometry_(participant_, topics + "/odom", Writing::sensor),

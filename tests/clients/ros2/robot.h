@@ -10,9 +10,9 @@
 
 #include "clients/ros2/dds_ports.h"
 #include "clients/ros2/pose_history.h"
-#include "missions/config/mission.h"
-#include "missions/config/survey_sensor.h"
+#include "missions/config/mission_setup.h"
 #include "missions/evaluation/survey_scene.h"
+#include "sim/sensors/survey_sensor.h"
 
 namespace skycap::ros2 {
 
@@ -57,9 +57,9 @@ class Robot {
   void send_odometry(Stamp stamp, const PoseMessage& pose) const;
   void send_cloud(Stamp stamp, const std::vector<Eigen::Vector3f>& points) const;
 
-  missions::config::Mission mission_;
+  missions::config::MissionSetup setup_;
   missions::evaluation::SurveyScene scene_;
-  missions::config::SurveySensor sensor_;
+  sim::SurveySensor sensor_;
   Participant participant_;
   bool has_gimbal_;
   Writer<Odometry> odometry_;

@@ -117,7 +117,7 @@ std::vector<BadInput> bad_inputs() {
       {"CoreThresholdOf3", whole + "planner: {core_threshold: 3}\n",
        "MISSION:3: key planner.core_threshold: is 3; it must be at least 4"},
       {"SpacingAboveRadius", whole + "planner:\n  spacing: 0.5\n",
-       "MISSION:4: key planner.spacing: is 0.5; it must be less than resolution_radius"},
+       "MISSION:4: key planner.spacing: is 0.5; it must be less than planner.resolution_radius"},
       {"UnknownBuiltin", "scene: {model: 'builtin:kettle'}\n" + judged, "kettle"},
       {"UnknownModel", "scene: {model: 'model:kettle'}\n" + judged,
        "model:kettle is not in $SKYCAP_MODELS"},

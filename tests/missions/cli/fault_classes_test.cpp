@@ -17,7 +17,7 @@
 #include <zlib.h>
 
 #include "geometry/io/file.h"
-#include "sim/sensors/depth_image.h"
+#include "geometry/points/depth_image.h"
 #include "tests/missions/flown_mission.h"
 #include "tests/missions/run_skycap.h"
 
@@ -179,8 +179,9 @@ TEST(FaultClasses, WhatWouldTakeMoreMemoryThanAProgramMayIsRefused) {
               HasSubstr("larger than 384 MiB"));
   EXPECT_THAT(refusal({"report", fs::path(blanks(folder, "summary.json", 65)).parent_path()}),
               HasSubstr("larger than 64 MiB"));
-  const sim::DepthImage image{5001, 5000, std::vector<std::uint16_t>(std::size_t{5001} * 5000)};
-  sim::write_depth_png(image, folder / "d.png");
+  const geometry::DepthImage image{5001, 5000,
+                                   std::vector<std::uint16_t>(std::size_t{5001} * 5000)};
+  geometry::write_depth_png(image, folder / "d.png");
   EXPECT_THAT(refusal({"next", folder.write("m.yaml", tests::quick_mission()), "--survey",
                        folder / "live", "--scan", folder / "d.png", "--pose", "0 0 2 1 0 0 0"}),
               HasSubstr("more than 2.5e7 pixels"));

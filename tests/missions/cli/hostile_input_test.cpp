@@ -17,9 +17,9 @@
 #include <unistd.h>
 
 #include "geometry/io/mesh_io.h"
-#include "missions/cli/printable.h"
-#include "missions/config/resolved_mission.h"
+#include "missions/config/resolve.h"
 #include "missions/evaluation/survey_scene.h"
+#include "missions/cli/printable.h"
 #include "tests/missions/run_skycap.h"
 
 namespace skycap::missions {
@@ -235,9 +235,9 @@ TEST(HostileInput, CtrlCEndsWhatWaitsForever) {
 TEST(HostileInput, CtrlCEndsTheMeasureOfWhatIsAttainable) {
   const TestFolder folder;
   const std::string file = folder.write("m.yaml", quick_mission());
-  const config::Mission mission = config::read_mission(
+  const config::MissionSetup mission = config::read_mission(
       file, {{"--set", "evaluation.ceiling_views", "7"}});  // whose ceiling no cache holds
-  const evaluation::SurveyScene scene(mission, folder.path());
+  const evaluation::SurveyScene scene(mission.simulation, folder.path(), 0);
   std::stop_source stopped;
   stopped.request_stop();
   EXPECT_THAT(scene.visible(1, stopped.get_token()), testing::Each(0));

@@ -7,11 +7,11 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
-#include "missions/config/resolved_mission.h"
+#include "missions/config/resolve.h"
 #include "missions/support/number_text.h"
 #include "sim/models/models.h"
 #include "sim/sensors/depth_camera.h"
-#include "sim/sensors/depth_image.h"
+#include "geometry/points/depth_image.h"
 #include "tests/missions/run_skycap.h"
 
 namespace skycap::missions {
@@ -66,10 +66,10 @@ class LiveVerbs : public testing::Test {
   /// A depth image, as a sensor that knows nothing of Skycap would write it: the teapot with
   /// millimetres for steps. Returns the arguments that hand it on.
   std::vector<std::string> measured(const geometry::View& view, int number) const {
-    const sim::DepthCamera camera(config::parse_mission(live_mission, "barn.yaml").sensor.camera);
+    const sim::DepthCamera camera(config::parse_mission(live_mission, "barn.yaml").sensor().camera);
     const geometry::Scan scan = camera.scan(scene_, view, number, 1);
     const std::string file = folder_ / ("depth_" + std::to_string(number) + ".png");
-    sim::write_depth_png(sim::depth_image(scan, camera.camera(), 0.001), file);
+    geometry::write_depth_png(geometry::depth_image(scan, camera.camera(), 0.001), file);
     const Eigen::Quaterniond q(scan.world_from_sensor.linear());
     std::string pose;
     for (const double n :

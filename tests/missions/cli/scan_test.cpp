@@ -11,8 +11,8 @@
 #include "flight/export/utm.h"
 #include "geometry/io/cloud_io.h"
 #include "geometry/io/mesh_io.h"
+#include "geometry/points/depth_image.h"
 #include "missions/scan/preview.h"
-#include "sim/sensors/depth_image.h"
 #include "tests/missions/run_skycap.h"
 #include "tests/missions/scan/las_file.h"
 
@@ -234,8 +234,9 @@ TEST_F(ScanVerb, ACameraLeavesADatasetOfDepthImages) {
                                    "scan.html", "scan.json"));
   EXPECT_THAT(tests::content_of(folder / "out/depth.txt"),
               HasSubstr("0.000000 depth_000000.png\n0.500000 depth_000001.png\n"));
-  EXPECT_THAT(sim::read_depth_png(folder / "out/depth_000000.png").values, testing::Each(2000));
-  const sim::DepthImage near = sim::read_depth_png(folder / "out/depth_000001.png");
+  EXPECT_THAT(geometry::read_depth_png(folder / "out/depth_000000.png").values,
+              testing::Each(2000));
+  const geometry::DepthImage near = geometry::read_depth_png(folder / "out/depth_000001.png");
   EXPECT_EQ(near.width, 20);
   EXPECT_EQ(near.height, 10);
   EXPECT_THAT(near.values, testing::Each(1000));

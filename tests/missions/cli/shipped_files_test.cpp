@@ -15,11 +15,10 @@
 #include "flight/interpreter/wpml_interpreter.h"
 #include "geometry/error.h"
 #include "geometry/io/file.h"
-#include "missions/config/mission_flight.h"
-#include "missions/evaluation/survey_scene.h"
 #include "missions/package/package.h"
 #include "missions/package/verification/stated_return.h"
 #include "missions/package/verification/true_space.h"
+#include "missions/evaluation/survey_scene.h"
 #include "tests/flight/interpreter/random_spoiling.h"
 
 namespace skycap::missions::cli {
@@ -51,33 +50,33 @@ class Shipped {
  public:
   explicit Shipped(const std::filesystem::path& folder)
       : summary_(package::read_package_summary(folder, {})),
-        model_(evaluation::placed_model(summary_.mission, "")),
-        space_(package::true_space(summary_.mission, model_, summary_.pad->z())),
+        model_(evaluation::placed_model(summary_.mission.scene(), "")),
+        space_(package::true_space(flight(), model_, summary_.pad->z())),
         oracle_(model_) {}
 
   flight::Ground ground() const {
-    const flight::Site site = config::site_of(summary_.mission);
+    const flight::Site& site = flight().site;
     return {site.origin.latitude_deg, site.origin.longitude_deg, site.origin.height,
             site.undulation_for("the test"), *summary_.pad};
   }
 
   flight::FlightFacts facts(flight::Dialect dialect) const {
-    flight::FlightFacts facts = config::flight_facts(summary_.mission);
+    flight::FlightFacts facts = flight().facts();
     facts.pad = *summary_.pad;
     facts.is_pad_known = true;
     facts.views = summary_.views;
-    facts.vehicle = config::flown_by(config::vehicle_of(summary_.mission), dialect);
+    facts.vehicle = flight().flown_by(flight().flown(), dialect);
     return facts;
   }
 
   flight::Dialect dialect_of(const std::filesystem::path& file) const {
-    return *package::dialect_of(file, config::vehicle_of(summary_.mission));
+    return *package::dialect_of(file, flight().flown());
   }
 
   /// All that `check --route` would say, but returns.
   Problems problems_of(const flight::FlownRoute& route) const {
     Problems problems = route.problems;
-    const double clearance = summary_.mission.flight.clearance;
+    const double clearance = flight().clearance;
     const flight::FlownProof proof = prove(route, space_.everywhere, space_.over_pad,
                                            clearance - flight::rounding_bound, clearance + 1.0);
     problems.insert(problems.end(), proof.problems.begin(), proof.problems.end());
@@ -85,11 +84,13 @@ class Shipped {
   }
 
   bool keeps_clear(const std::vector<Eigen::Vector3d>& places) const {
-    const double clearance = summary_.mission.flight.clearance - 3.0 * flight::rounding_bound;
+    const double clearance = flight().clearance - 3.0 * flight::rounding_bound;
     return flight::keeps_clear(oracle_, places, clearance);
   }
 
  private:
+  const flight::FlightOptions& flight() const { return summary_.mission.flight(); }
+
   package::PackageSummary summary_;
   geometry::Mesh model_;
   package::TrueSpace space_;

@@ -12,13 +12,11 @@
 #include <nlohmann/json.hpp>
 
 #include "geometry/place/prism.h"
-#include "missions/config/mission_flight.h"
-#include "missions/config/mission_priors.h"
-#include "missions/config/resolved_mission.h"
-#include "missions/evaluation/survey_scene.h"
+#include "missions/config/resolve.h"
 #include "missions/site_data/prior.h"
-#include "tests/missions/run_skycap.h"
+#include "missions/evaluation/survey_scene.h"
 #include "tests/missions/site_data/cube_files.h"
+#include "tests/missions/run_skycap.h"
 
 namespace skycap::missions {
 namespace {
@@ -78,7 +76,9 @@ class Site : public testing::Test {
   void write(const std::string& name, const std::string& content) const {
     std::ofstream(folder_.path() / name, std::ios::binary) << content;
   }
-  config::Mission mission() const { return config::read_mission(folder_.path() / "house.yaml"); }
+  config::MissionSetup mission() const {
+    return config::read_mission(folder_.path() / "house.yaml");
+  }
 
   const TestFolder folder_;
   const std::string path_ = folder_.path().string();
@@ -105,7 +105,7 @@ TEST_F(Site, IsACertifiedMissionInTwoCommands) {
 TEST_F(Site, IsFlownBelowTheHillsOfItsTile) {
   write("tile.gml", tile({{0, 0, 0}, {25, 0, 0}, {50, 0, 0}, {900, 0, 150}}));
   ASSERT_EQ(propose("--id DEBY_1").exit_code, 0);
-  ASSERT_LT(mission().site.highest_height.value(), 150.0);
+  ASSERT_LT(mission().flight().airspace.highest_height.value(), 150.0);
   const auto plan = run_skycap("plan " + path_ + "/house.yaml --out " + path_ + "/out");
   EXPECT_EQ(plan.exit_code, 0) << plan.err << plan.out;
   EXPECT_TRUE(std::filesystem::exists(folder_.path() / "out" / "mission.plan"));
@@ -119,15 +119,15 @@ TEST_F(Site, BeginsOutsideOfTheNeighbours) {
   }
   write("tile.gml", tile(crowd));
   ASSERT_EQ(propose("--id DEBY_12").exit_code, 0);
-  const config::Mission mission = this->mission();
-  const evaluation::SurveyScene scene(mission, folder_.path());
+  const config::MissionSetup mission = this->mission();
+  const evaluation::SurveyScene scene(mission.simulation, folder_.path(), 0);
   std::set<double> heights;
   for (std::uint64_t seed = 1; seed <= 40; ++seed) {
     const Vector3d place = scene.first_view(seed).position;
     heights.insert(place.z());
-    for (const site_data::Object& object : config::priors_of(mission).priors[1].objects) {
+    for (const site_data::Object& object : mission.scene().priors->priors[1].objects) {
       EXPECT_GE(geometry::bounding_box(object.mesh).exteriorDistance(place),
-                mission.flight.clearance)
+                mission.flight().clearance)
           << seed << " in " << object.id;
     }
   }
@@ -137,24 +137,25 @@ TEST_F(Site, BeginsOutsideOfTheNeighbours) {
 // Known places: the building's middle, its foot, and what must lie outside of everything.
 TEST_F(Site, IsProposedAboutItsTarget) {
   ASSERT_EQ(propose("--id DEBY_1").exit_code, 0);
-  const config::Mission mission = this->mission();
+  const config::MissionSetup mission = this->mission();
+  const flight::GeodeticPoint& origin = mission.flight().site.origin;
   // echo 676330 5403905 | cs2cs EPSG:25832 EPSG:4326
-  EXPECT_NEAR(mission.georeference.latitude_deg.value(), 48.76315751, 2e-7);
-  EXPECT_NEAR(mission.georeference.longitude_deg.value(), 11.39950772, 2e-7);
-  EXPECT_NEAR(mission.georeference.ellipsoid_height, 380.0, 0.011);
-  const Vector3d pad = mission.flight.takeoff.value();
-  const AlignedBox3d unknown = config::unknown_box_of(mission);
-  for (const site_data::Prior& prior : config::priors_of(mission).priors) {
+  EXPECT_NEAR(origin.latitude_deg, 48.76315751, 2e-7);
+  EXPECT_NEAR(origin.longitude_deg, 11.39950772, 2e-7);
+  EXPECT_NEAR(origin.height, 380.0, 0.011);
+  const Vector3d pad = mission.flight().takeoff.value();
+  const AlignedBox3d& unknown = mission.flight().unknown_box;
+  for (const site_data::Prior& prior : mission.scene().priors->priors) {
     for (const site_data::Object& object : prior.objects) {
       const AlignedBox3d box = geometry::bounding_box(object.mesh);
-      EXPECT_GT(box.exteriorDistance(pad), 3.0 * mission.flight.clearance);
+      EXPECT_GT(box.exteriorDistance(pad), 3.0 * mission.flight().clearance);
       EXPECT_EQ(unknown.contains(box.center().eval()), object.id == "DEBY_1");
     }
   }
-  EXPECT_GT(unknown.exteriorDistance(pad), 2.0 * mission.flight.clearance);
-  EXPECT_TRUE(geometry::contains(mission.site.geofence, pad.head<2>()));
-  EXPECT_EQ(config::priors_of(mission).priors.size(), 2U);
-  EXPECT_EQ(config::priors_of(mission).priors[1].objects.size(), 3U);
+  EXPECT_GT(unknown.exteriorDistance(pad), 2.0 * mission.flight().clearance);
+  EXPECT_TRUE(geometry::contains(mission.flight().airspace.geofence, pad.head<2>()));
+  EXPECT_EQ(mission.scene().priors->priors.size(), 2U);
+  EXPECT_EQ(mission.scene().priors->priors[1].objects.size(), 3U);
 }
 
 // Each value has a word on it, beside it or over it.
@@ -219,9 +220,9 @@ TEST_F(Site, TakesWordsForFilesThatDoNotSayIt) {
   write("ground.gml", citygml_of(ground, "EPSG:25832+5773"));
   const auto run = propose("--id DEBY_1 --terrain " + path_ + "/ground.gml");
   ASSERT_EQ(run.exit_code, 0) << run.err;
-  EXPECT_NEAR(mission().flight.takeoff.value().z(), 0.0, 0.05);
-  EXPECT_FALSE(mission().prior.back().vertical.has_value());
-  EXPECT_TRUE(mission().prior.front().vertical.has_value());
+  EXPECT_NEAR(mission().flight().takeoff.value().z(), 0.0, 0.05);
+  EXPECT_FALSE(mission().scene().priors->sources.back().vertical.has_value());
+  EXPECT_TRUE(mission().scene().priors->sources.front().vertical.has_value());
 }
 
 // Heights above DHHN2016's geoid, whose grid Debian does not have, and EGM96 is within metres of
@@ -234,7 +235,7 @@ TEST_F(Site, LetsEgm96StandInWhereThatIsAskedFor) {
   const auto run = run_skycap("site " + path_ + "/tile.gml --id DEBY_1 --vertical geoid --out " +
                               path_ + "/house.yaml");
   ASSERT_EQ(run.exit_code, 0) << run.err;
-  EXPECT_NEAR(mission().georeference.ellipsoid_height,
+  EXPECT_NEAR(mission().flight().site.origin.height,
               380.0 + site_data::egm96_undulation(48.7632, 11.3995), 0.02);
 }
 
@@ -253,8 +254,8 @@ TEST_F(Site, IsAsHighAsAnybodySays) {
   const auto run = run_skycap("site " + path_ + "/map.geojson --id cube --height 12 --base 380 " +
                               "--out " + path_ + "/house.yaml");
   ASSERT_EQ(run.exit_code, 0) << run.err;
-  const config::Mission proposed = mission();
-  const auto& priors = config::priors_of(proposed).priors;
+  const config::MissionSetup proposed = mission();
+  const auto& priors = proposed.scene().priors->priors;
   ASSERT_EQ(priors.size(), 2U);
   EXPECT_NEAR(priors[0].box.sizes().z(), 12.0, 0.01);
   EXPECT_NEAR(priors[1].box.max().z(), 20.0, 0.01);
@@ -268,13 +269,13 @@ TEST_F(Site, TakesFilesOfAnyName) {
   const auto run = tests::run_skycap({"site", path_ + "/" + name, "--vertical", "ellipsoid", "--id",
                                       "DEBY_1", "--out", path_ + "/house.yaml"});
   ASSERT_EQ(run.exit_code, 0) << run.err;
-  EXPECT_EQ(mission().prior.front().file.filename(), name);
+  EXPECT_EQ(mission().scene().priors->sources.front().file.filename(), name);
 }
 
 /// A crown of 3 m that begins 5 m over the pad, as a laser scanner sees it: eight points.
 TEST_F(Site, HasNoPadUnderACrown) {
   ASSERT_EQ(propose("--id DEBY_1").exit_code, 0);
-  const Vector3d free_pad = mission().flight.takeoff.value();
+  const Vector3d free_pad = mission().flight().takeoff.value();
   remove_proposal();
   Cube crown;
   crown.size.setConstant(3.0);
@@ -282,12 +283,12 @@ TEST_F(Site, HasNoPadUnderACrown) {
   write("tree.las", las_of(crown, 4, 6));
   const auto run = propose("--id DEBY_1 --crs EPSG:25832 --obstacle " + path_ + "/tree.las");
   ASSERT_EQ(run.exit_code, 0) << run.err;
-  const Vector3d pad = mission().flight.takeoff.value();
-  const AlignedBox3d tree = config::priors_of(mission()).priors.back().box;
+  const Vector3d pad = mission().flight().takeoff.value();
+  const AlignedBox3d tree = mission().scene().priors->priors.back().box;
   const AlignedBox3d climb(pad, pad + Vector3d(0.0, 0.0, 20.0));
-  EXPECT_GE(climb.exteriorDistance(tree), mission().flight.clearance);
+  EXPECT_GE(climb.exteriorDistance(tree), mission().flight().clearance);
   EXPECT_LT(AlignedBox3d(free_pad, free_pad + Vector3d(0.0, 0.0, 20.0)).exteriorDistance(tree),
-            mission().flight.clearance);
+            mission().flight().clearance);
 }
 
 // South of the houses, where pads are looked for first, the ground falls by one in two.
@@ -303,7 +304,7 @@ TEST_F(Site, HasItsPadWhereTheGroundIsLevel) {
   write("ground.asc", grid);
   const auto run = propose("--id DEBY_1 --crs EPSG:25832 --terrain " + path_ + "/ground.asc");
   ASSERT_EQ(run.exit_code, 0) << run.err;
-  const Vector3d pad = mission().flight.takeoff.value();
+  const Vector3d pad = mission().flight().takeoff.value();
   EXPECT_NEAR(pad.z(), 0.0, 0.05);
   EXPECT_GT(pad.y(), 0.0);
 }

@@ -13,7 +13,7 @@
 
 #include "geometry/error.h"
 #include "missions/config/mission_keys.h"
-#include "missions/config/resolved_mission.h"
+#include "missions/config/resolve.h"
 #include "missions/support/number_text.h"
 
 namespace skycap::missions {
@@ -162,9 +162,9 @@ void expect_in_range(const Key& key, double number, const std::string& value) {
       << key.path << ": " << value.substr(0, 60) << " is taken as " << number;
 }
 
-void expect_sane(const config::Mission& mission, const std::string& value) {
+void expect_sane(const config::MissionDocument& document, const std::string& value) {
   for (const Key& key : config::mission_keys()) {
-    const auto taken = key.get(mission);
+    const auto taken = key.get(document);
     if (!taken) continue;
     if (const auto* number = std::get_if<double>(&*taken)) expect_in_range(key, *number, value);
     if (const auto* vector = std::get_if<Eigen::Vector3d>(&*taken)) {
@@ -177,7 +177,7 @@ void expect_sane(const config::Mission& mission, const std::string& value) {
 /// is not one line that names a key. `what` names them in findings.
 bool are_taken(const Values& values, const std::string& what) {
   try {
-    expect_sane(config::parse_mission(mission_text(values), "m.yaml"), what);
+    expect_sane(*config::parse_mission(mission_text(values), "m.yaml").document, what);
     return true;
   } catch (const Error& error) {
     const std::string message = error.what();

@@ -1,6 +1,7 @@
 // The key table, the JSON Schema, the manual and the shipped missions say the same.
 #include <filesystem>
 #include <set>
+#include <variant>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -9,7 +10,7 @@
 #include "geometry/error.h"
 #include "missions/config/key_sections.h"
 #include "missions/config/mission_keys.h"
-#include "missions/config/resolved_mission.h"
+#include "missions/config/resolve.h"
 #include "tests/missions/run_skycap.h"
 
 namespace skycap::missions {
@@ -125,27 +126,31 @@ TEST(ShippedMissions, AreValid) {
   EXPECT_GE(count, 4U);
 }
 
+const survey::see::SeeConfig& see_of(const config::MissionSetup& setup) {
+  return std::get<survey::see::SeeConfig>(setup.survey().planner.method);
+}
+
 // Table 1 and section IV of the paper.
 TEST(ShippedMissions, HaveThePapersParameters) {
   for (const char* name : {"teapot", "bunny", "dragon"}) {
-    const config::Mission mission =
+    const config::MissionSetup mission =
         config::read_mission(source / "missions" / (std::string(name) + ".yaml"));
-    EXPECT_EQ(mission.planner.see.density, 146'000.0);
-    EXPECT_EQ(mission.planner.see.resolution_radius, 0.017);
-    EXPECT_EQ(mission.planner.see.effective_core_threshold(), 4);
-    EXPECT_EQ(mission.evaluation.registration_distance, 0.005);
-    EXPECT_EQ(mission.scene.longest_side, 1.0);
+    EXPECT_EQ(see_of(mission).density, 146'000.0);
+    EXPECT_EQ(see_of(mission).resolution_radius, 0.017);
+    EXPECT_EQ(see_of(mission).effective_core_threshold(), 4);
+    EXPECT_EQ(mission.evaluation().registration_distance, 0.005);
+    EXPECT_EQ(mission.scene().longest_side, 1.0);
   }
-  const config::Mission radcliffe =
+  const config::MissionSetup radcliffe =
       config::read_mission(source / "missions" / "radcliffe_camera.yaml");
-  EXPECT_EQ(radcliffe.planner.see.density, 213.0);
-  EXPECT_EQ(radcliffe.planner.see.resolution_radius, 0.15);
-  EXPECT_EQ(radcliffe.sensor.camera.camera.width, 2400);
-  EXPECT_EQ(radcliffe.evaluation.registration_distance, 0.05);
-  const config::Mission published = config::read_mission(
+  EXPECT_EQ(see_of(radcliffe).density, 213.0);
+  EXPECT_EQ(see_of(radcliffe).resolution_radius, 0.15);
+  EXPECT_EQ(radcliffe.sensor().camera.camera.width, 2400);
+  EXPECT_EQ(radcliffe.evaluation().registration_distance, 0.05);
+  const config::MissionSetup published = config::read_mission(
       source / "missions" / "radcliffe_camera.yaml", {{"--set", "planner.preset", "paper"}});
-  EXPECT_EQ(published.planner.see.occlusion_search_distance, 1.0);
-  EXPECT_EQ(published.planner.see.visibility_update_limit, 100U);
+  EXPECT_EQ(see_of(published).occlusion_search_distance, 1.0);
+  EXPECT_EQ(see_of(published).visibility_update_limit, 100U);
 }
 
 }  // namespace

@@ -19,8 +19,8 @@ using testing::StartsWith;
 const std::string mission =
     "scene: {model: 'builtin:teapot'}\nevaluation: {registration_distance: 0.005}\n";
 
-config::MissionFile parsed(const std::string& more) {
-  return config::parse_mission_file(mission + more, "m.yaml");
+config::MissionDocument parsed(const std::string& more) {
+  return config::parse_mission_document(mission + more, "m.yaml");
 }
 
 std::string complaint(const std::string& more) {
@@ -28,7 +28,7 @@ std::string complaint(const std::string& more) {
 }
 
 TEST(PriorKeys, SayAllThatASourceHas) {
-  const config::MissionFile given = parsed(
+  const config::MissionDocument given = parsed(
       "prior:\n"
       "  - {file: tile.gml, role: obstacle, select: {lod: 2, id: [A1, B2]}}\n"
       "  - file: yard.kml\n"
@@ -41,7 +41,7 @@ TEST(PriorKeys, SayAllThatASourceHas) {
       "     select: {classes: [2, 5]}, spacing: 0.5, offset: [1, 2, 3]}\n"
       "  - {file: a.obj, role: terrain, place: {position: [4, 5, 6], heading_deg: 90},\n"
       "     up_axis: y, unit: 0.3048, base: 2.5, min_height: 1}\n");
-  const std::vector<site_data::Source>& sources = given.mission.prior;
+  const std::vector<site_data::Source>& sources = given.prior;
   ASSERT_EQ(sources.size(), 4U);
   EXPECT_EQ(sources[0].file, "tile.gml");
   EXPECT_EQ(sources[0].role, site_data::Role::obstacle);
@@ -69,15 +69,15 @@ TEST(PriorKeys, SayAllThatASourceHas) {
 
 // What a package keeps of a mission is read back as the same sources.
 TEST(PriorKeys, AreReadBackFromSettings) {
-  const config::MissionFile given = parsed(
+  const config::MissionDocument given = parsed(
       "prior: [{file: tile.gml, role: target, base: terrain, place: {heading_deg: 90}},\n"
       "        {file: x.las, role: obstacle, select: {classes: [6], attribute: {a: b}}}]\n");
   const config::Key& key = *config::find_key("prior");
-  const std::string text = config::to_text(*key.get(given.mission));
-  const config::MissionFile again = parsed("prior: " + text + "\n");
-  EXPECT_EQ(config::to_text(*key.get(again.mission)), text);
-  EXPECT_EQ(again.mission.prior.size(), 2U);
-  EXPECT_TRUE(again.mission.prior[0].base_on_terrain);
+  const std::string text = config::to_text(*key.get(given));
+  const config::MissionDocument again = parsed("prior: " + text + "\n");
+  EXPECT_EQ(config::to_text(*key.get(again)), text);
+  EXPECT_EQ(again.prior.size(), 2U);
+  EXPECT_TRUE(again.prior[0].base_on_terrain);
   EXPECT_EQ(text.find("uncertainty"), std::string::npos) << "what was not given is not said";
 }
 
@@ -138,7 +138,7 @@ TEST(PriorKeys, RefuseHostileValues) {
       if (key.path != "role") text += "role: target\n    ";
       text += open + path + ": " + value + "\n";
       try {
-        const config::Mission taken = parsed(text).mission;
+        const config::MissionDocument taken = parsed(text);
         const auto number = key.get(taken);
         if (!number || !std::holds_alternative<double>(*number)) continue;
         EXPECT_GE(std::get<double>(*number), key.range.least) << text;

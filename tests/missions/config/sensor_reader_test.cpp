@@ -113,7 +113,7 @@ TEST(ReadSensor, NamesFileLineAndKeyOfWhatIsWrong) {
                  "my.yaml:5: key channels.count: must be between 2 and 1024");
   expect_message(turning + "returns: {max: 1.5, choice: first}\n", "must be a whole number");
   expect_message(turning + "range: 5\n", "my.yaml:5: key range: must be a map");
-  expect_message(turning + "range: {min: 9, max: 1}\n", "my.yaml: sensor.max_range is 1");
+  expect_message(turning + "range: {min: 9, max: 1}\n", "my.yaml: max_range is 1");
   expect_message("name: X\nkind: rosette\nfiring_period_us: 10\n", "key prisms: must list");
 }
 

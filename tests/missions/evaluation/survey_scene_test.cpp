@@ -7,8 +7,7 @@
 #include <gtest/gtest.h>
 
 #include "geometry/io/mesh_io.h"
-#include "missions/config/mission_priors.h"
-#include "missions/config/resolved_mission.h"
+#include "missions/config/resolve.h"
 #include "tests/missions/room_scene.h"
 #include "tests/missions/run_skycap.h"
 #include "tests/support/complaint.h"
@@ -30,8 +29,8 @@ class WindowedRoom {
         tests::room_mesh({.wall = 0.67, .door_width = width, .door_height = height}));
   }
 
-  config::Mission mission(const std::vector<config::KeyOverride>& more) const {
-    config::Mission mission = config::parse_mission(
+  config::MissionSetup mission(const std::vector<config::KeyOverride>& more) const {
+    return config::parse_mission(
         "scene: {model: room.ply, position: [0, 0, -0.67]}\n"  // the floor inside at z = 0
         "sensor: {width: 160, height: 100, noise: {sigma: 0.05}}\n"
         "planner: {density: 25, resolution_radius: 0.7, view_distance: 6, occluder_spacing: 0.4,\n"
@@ -40,12 +39,11 @@ class WindowedRoom {
         "             ceiling_views: 60}\n"
         "limits: {max_views: 40}\n",
         "m.yaml", more);
-    return mission;
   }
 
   evaluation::SurveyScene scene(const std::vector<config::KeyOverride>& more,
                                 const std::filesystem::path& kept = {}) const {
-    return {mission(more), folder_.path(), kept};
+    return {mission(more).simulation, folder_.path(), 0, kept};
   }
 
  private:
@@ -149,7 +147,7 @@ TEST(SurveyScene, HasNeighboursThatAreNotJudged) {
     return config::parse_mission(two_cubes(folder, neighbours), "m.yaml");
   };
   const auto scene_of = [&](const char* neighbours) {
-    return evaluation::SurveyScene(mission_of(neighbours), "");
+    return evaluation::SurveyScene(mission_of(neighbours).simulation, "", 0);
   };
   const evaluation::SurveyScene alone = scene_of("false"), beside = scene_of("true");
   EXPECT_EQ(beside.model().triangles.size(), 12U);
@@ -157,8 +155,8 @@ TEST(SurveyScene, HasNeighboursThatAreNotJudged) {
   EXPECT_FALSE(alone.scene().is_blocked({6, 0, 2}, {14, 0, 2}));
   EXPECT_TRUE(beside.scene().is_blocked({6, 0, 2}, {14, 0, 2}));
   // The target, which is in the way as well, is not there twice.
-  EXPECT_EQ(config::prior_neighbours(mission_of("true")).triangles.size(), 12U);
-  EXPECT_TRUE(config::prior_neighbours(mission_of("false")).triangles.empty());
+  EXPECT_EQ(scene::prior_neighbours(mission_of("true").scene()).triangles.size(), 12U);
+  EXPECT_TRUE(scene::prior_neighbours(mission_of("false").scene()).triangles.empty());
   const auto allows = [](const evaluation::SurveyScene& scene, double x) {
     return scene.admissible().allows(geometry::look_at({x, 0, 2}, {0, 0, 2}));
   };

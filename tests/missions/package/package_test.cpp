@@ -14,7 +14,7 @@
 #include "geometry/io/cloud_io.h"
 #include "geometry/io/ply.h"
 #include "geometry/place/pose.h"
-#include "missions/config/resolved_mission.h"
+#include "missions/config/resolve.h"
 #include "missions/evaluation/coverage.h"
 #include "missions/package/cloud_normals.h"
 #include "missions/support/sha256.h"
@@ -51,6 +51,12 @@ session::SurveyRecord two_views() {
   record.cloud.positions = {{0, 0, 0}, {0.1F, 0, 0}, {0, 0.1F, 0}};
   record.cloud.views = {0, 0, 1};
   return record;
+}
+
+/// A mission of few words.
+config::MissionSetup mission_of(const std::string& model = "builtin:teapot") {
+  return config::parse_mission(
+      "scene: {model: '" + model + "'}\nevaluation: {registration_distance: 0.01}\n", "m.yaml");
 }
 
 std::vector<std::string> lines_of(const std::string& text) {
@@ -102,7 +108,7 @@ TEST(Package, TrajectoryHoldsTheCamerasPoses) {
 TEST(Package, SummaryHasTheContractsFields) {
   const package::CoverageFigures coverage{2.0 / 7.0, 0.5, {}};
   const auto summary =
-      nlohmann::json::parse(package::summary_json(config::Mission{}, two_views(), coverage));
+      nlohmann::json::parse(package::summary_json(mission_of(), two_views(), coverage));
   for (const char* field :
        {"mission", "planner", "preset", "seed", "threads", "version", "views", "points", "coverage",
         "coverage_visible", "coverage_ceiling", "planning_time_s", "sensing_time_s", "distance_m",
@@ -126,16 +132,15 @@ TEST(Package, SummaryHasTheContractsFields) {
 
 TEST(Package, SettingsAreThoseThatTheMissionMayHave) {
   const auto settings = [](const std::string& model) {
-    config::Mission mission;
-    mission.scene.model = model;
-    return nlohmann::json::parse(package::summary_json(mission, two_views(), {}))["settings"];
+    return nlohmann::json::parse(
+        package::summary_json(mission_of(model), two_views(), {}))["settings"];
   };
   EXPECT_EQ(settings("builtin:teapot")["scene.detail"], "standard");
   EXPECT_FALSE(settings("house.ply").contains("scene.detail"));
 }
 
 TEST(Package, SummaryShowsNamesThatAreNotUtf8) {
-  config::Mission mission;
+  config::MissionSetup mission = mission_of();
   mission.name = "vase\xff";
   EXPECT_THAT(package::summary_json(mission, two_views(), {}), HasSubstr("vase\xef\xbf\xbd"));
 }
@@ -144,7 +149,7 @@ TEST(Package, CloudReadsBackWithNormalsTowardsItsSensors) {
   const tests::TestFolder folder;
   {
     geometry::OutputFolder out(folder.path());
-    package::stage_package(config::Mission{}, two_views(), {}, 1, out);
+    package::stage_package(mission_of(), two_views(), {}, 1, out);
     EXPECT_FALSE(std::filesystem::exists(folder / "cloud.ply"));  // not before commit()
     out.commit();
   }
@@ -157,11 +162,12 @@ TEST(Package, CloudReadsBackWithNormalsTowardsItsSensors) {
 
 // The planner's belief is written as numbers that fit together and as a map coloured by them.
 TEST(Package, ShowsWhatThePlannerBelieves) {
-  const config::Mission mission = config::parse_mission(
+  const config::MissionSetup mission = config::parse_mission(
       tests::quick_mission(), "m.yaml",
       {{"--planner", "planner.name", "skycap"}, {"--set", "limits.max_views", "3"}});
-  const session::SurveyRecord record =
-      simulation::run_survey(mission, evaluation::SurveyScene(mission, ""), 1, 1);
+  const session::SurveyRecord record = simulation::run_survey(
+      mission.simulation, evaluation::SurveyScene(mission.simulation, "", mission.run.threads), 1,
+      1);
   const tests::TestFolder folder;
   geometry::OutputFolder out(folder.path());
   package::stage_package(mission, record, {}, 1, out);
@@ -200,7 +206,7 @@ TEST(Package, HasTheTruthBesideTheBelief) {
       .is_attainable = {1, 1, 0, 0}};
   const tests::TestFolder folder;
   geometry::OutputFolder out(folder.path());
-  package::stage_package(config::Mission{}, two_views(), {.truth = truth}, 1, out);
+  package::stage_package(mission_of(), two_views(), {.truth = truth}, 1, out);
   out.commit();
 
   const std::string bytes = tests::content_of(folder / "true_coverage.ply");
@@ -219,7 +225,7 @@ TEST(Package, HasTheTruthBesideTheBelief) {
 TEST(Package, OfAPlannerWithoutBeliefsHasNoMapOfThem) {
   const tests::TestFolder folder;
   geometry::OutputFolder out(folder.path());
-  package::stage_package(config::Mission{}, two_views(), {}, 1, out);
+  package::stage_package(mission_of(), two_views(), {}, 1, out);
   out.commit();
   EXPECT_FALSE(std::filesystem::exists(folder / "coverage.ply"));
   EXPECT_TRUE(Json::parse(tests::content_of(folder.path() / "summary.json"))["belief"].is_null());

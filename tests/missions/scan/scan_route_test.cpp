@@ -23,13 +23,13 @@ constexpr double pi = std::numbers::pi;
 
 // Whatever the moment: on the circle or on the climb, at the given speed, nose along the way.
 TEST(OrbitTrajectory, KeepsRadiusSpeedAndHeading) {
-  const config::OrbitConfig orbit{.centre = {5, -3, 2},
-                                  .radius = 20,
-                                  .lowest = 10,
-                                  .highest = 40,
-                                  .circles = 4,
-                                  .speed = 5,
-                                  .start = 0.5};
+  const scan::OrbitOptions orbit{.centre = {5, -3, 2},
+                                 .radius = 20,
+                                 .lowest = 10,
+                                 .highest = 40,
+                                 .circles = 4,
+                                 .speed = 5,
+                                 .start = 0.5};
   const sim::Trajectory trajectory = scan::orbit_trajectory(orbit);
   const double length = 4 * 2 * pi * 20 + 30;
   EXPECT_NEAR(trajectory.end(), length / 5, 1e-9);
@@ -71,7 +71,7 @@ class ScanRouteFile : public testing::Test {
   }
 
   const tests::TestFolder folder{};
-  config::Mission mission;
+  scan::FlownScanOptions options;
   const View first = geometry::look_at({10, 0, 5}, {0, 0, 3});
   const View second = geometry::look_at({10, 8, 5}, {0, 0, 9});
 };
@@ -80,7 +80,7 @@ TEST_F(ScanRouteFile, ATumTrajectoryKeepsItsTimesAndPoses) {
   const std::string file =
       folder.write("flight.tum", flight::write_tum({{2.0, geometry::camera_pose(first)},
                                                     {3.5, geometry::camera_pose(second)}}));
-  const scan::ScanRoute route = scan::read_scan_route(file, mission, scan::Carrier::airframe);
+  const scan::ScanRoute route = scan::read_scan_route(file, options, scan::Carrier::airframe);
   EXPECT_EQ(route.carrier.start(), 2.0);
   EXPECT_EQ(route.carrier.end(), 3.5);
   EXPECT_TRUE(route.image_times.empty());
@@ -89,12 +89,12 @@ TEST_F(ScanRouteFile, ATumTrajectoryKeepsItsTimesAndPoses) {
 }
 
 TEST_F(ScanRouteFile, ViewsAreFlownInAStraightLineAtTheGivenSpeed) {
-  mission.scan.speed = 4.0;
+  options.speed = 4.0;
   folder.write("views.csv",
                "view,x,y,z,direction_x,direction_y,direction_z,points\n"
                "0,10,0,5,-1,0,0,7\n1,10,8,5,-1,0,0,9\n2,10,8,5,0,-1,0,9\n");
   const scan::ScanRoute route =
-      scan::read_scan_route(folder.path(), mission, scan::Carrier::gimbal);
+      scan::read_scan_route(folder.path(), options, scan::Carrier::gimbal);
   // 8 m at 4 m/s, then a quarter turn at 1 rad/s.
   EXPECT_THAT(route.image_times, testing::Pointwise(testing::DoubleNear(1e-9),
                                                     std::vector<double>{0.0, 2.0, 2.0 + 0.5 * pi}));
@@ -112,10 +112,10 @@ TEST_F(ScanRouteFile, TheAirframeStaysLevelWhereTheGimbalLooksDown) {
   states[1].is_shot = true;
   const std::string file =
       folder.write("trajectory.csv", flight::write_trajectory_csv(states, flight::Frame::enu));
-  const scan::ScanRoute gimbal = scan::read_scan_route(file, mission, scan::Carrier::gimbal);
+  const scan::ScanRoute gimbal = scan::read_scan_route(file, options, scan::Carrier::gimbal);
   expect_view(gimbal.carrier, 1.0, {{1, 2, 30}, {std::cos(0.8), 0, -std::sin(0.8)}});
   EXPECT_THAT(gimbal.image_times, testing::ElementsAre(testing::DoubleNear(4.0, 1e-6)));
-  const scan::ScanRoute airframe = scan::read_scan_route(file, mission, scan::Carrier::airframe);
+  const scan::ScanRoute airframe = scan::read_scan_route(file, options, scan::Carrier::airframe);
   EXPECT_TRUE(airframe.carrier.pose(1.0).linear().isApprox(Eigen::Matrix3d::Identity(), 1e-5));
 }
 
@@ -135,9 +135,9 @@ TEST_F(ScanRouteFile, OfAPackageAllSortiesAreFlownOneAfterTheOther) {
                "view,x,y,z,direction_x,direction_y,direction_z,points\n0,10,0,5,-1,0,0,7\n");
   folder.write("mission-1.csv", sortie({0, 0, 10}, {4, 0, 10}, 6.5));
   folder.write("mission-2.csv", sortie({0, 0, 10}, {0, 8, 10}, 6.5));
-  mission.scan.speed = 2.0;
+  options.speed = 2.0;
   const scan::ScanRoute route =
-      scan::read_scan_route(folder.path(), mission, scan::Carrier::airframe);
+      scan::read_scan_route(folder.path(), options, scan::Carrier::airframe);
   // From the first one's end to the second one's begin it is 4 m.
   EXPECT_THAT(route.image_times, testing::Pointwise(testing::DoubleNear(1e-6),
                                                     std::vector<double>{8.5, 8.5 + 2.0 + 2.0}));
@@ -152,7 +152,7 @@ TEST_F(ScanRouteFile, AFlownPackageWithoutATrajectoryIsRefused) {
                "view,x,y,z,direction_x,direction_y,direction_z,points\n0,10,0,5,-1,0,0,7\n");
   folder.write("free_space.bin", "");
   const std::string complaint = testing_support::complaint_of(
-      [&] { scan::read_scan_route(folder.path(), mission, scan::Carrier::airframe); });
+      [&] { scan::read_scan_route(folder.path(), options, scan::Carrier::airframe); });
   EXPECT_THAT(complaint, testing::HasSubstr("is flown, but has no mission.csv; export one"));
 }
 
@@ -167,14 +167,14 @@ TEST_F(ScanRouteFile, PointsOnEarthAreFlownLookingAhead) {
                    "3\t0\t3\t16\t0\t0\t0\t0\t0.0000000\t0.0000200\t12.000000\t1\n"
                    "4\t0\t3\t21\t0\t0\t0\t0\t0.0000000\t0.0000200\t0.000000\t1\n");
   try {
-    scan::read_scan_route(file, mission, scan::Carrier::airframe);
+    scan::read_scan_route(file, options, scan::Carrier::airframe);
     FAIL() << "read without a georeference";
   } catch (const Error& error) {
     EXPECT_THAT(error.what(), testing::HasSubstr("give site.latitude_deg and site.longitude_deg"));
   }
-  mission.georeference.latitude_deg = mission.georeference.longitude_deg = 0.0;
-  mission.scan.speed = 2.0;
-  const scan::ScanRoute route = scan::read_scan_route(file, mission, scan::Carrier::airframe);
+  options.site = flight::Site{};
+  options.speed = 2.0;
+  const scan::ScanRoute route = scan::read_scan_route(file, options, scan::Carrier::airframe);
   const double way = 2e-5 * pi / 180.0 * 6378137.0;
   EXPECT_NEAR(route.carrier.end() - route.carrier.start(), (way + 2.0) / 2.0, 0.01);
   const Isometry3d last = route.carrier.pose(route.carrier.end());
@@ -186,7 +186,7 @@ TEST_F(ScanRouteFile, PointsOnEarthAreFlownLookingAhead) {
 TEST_F(ScanRouteFile, SaysWhatIsWrongWithARoute) {
   const auto message = [&](const std::string& name, const std::string& content) -> std::string {
     try {
-      scan::read_scan_route(folder.write(name, content), mission, scan::Carrier::gimbal);
+      scan::read_scan_route(folder.write(name, content), options, scan::Carrier::gimbal);
     } catch (const Error& error) {
       EXPECT_EQ(error.kind(), ErrorKind::bad_file);
       return error.what();
@@ -199,7 +199,7 @@ TEST_F(ScanRouteFile, SaysWhatIsWrongWithARoute) {
   EXPECT_THAT(message("b.csv", "view,x\n0,1,2,3,0,0,0\n"), HasSubstr("without length"));
   EXPECT_THAT(message("c.csv", "view,x\n0,1,2,x,0,0,1\n"), HasSubstr("line 2"));
   EXPECT_THAT(message("d.csv", "view,x\n"), HasSubstr("the trajectory has no poses"));
-  mission.georeference.latitude_deg = mission.georeference.longitude_deg = 0.1;
+  options.site = flight::Site{.origin = {0.1, 0.1, 0.0}};
   EXPECT_THAT(message("a.plan", "{}"), HasSubstr("a.plan"));
 }
 

@@ -129,7 +129,7 @@ TEST(ExternalProgram, RunsInItsFolderWithoutAShell) {
 }
 
 /// The vertices' box of a placed mesh.
-Eigen::AlignedBox3d placed_box(config::SceneConfig scene) {
+Eigen::AlignedBox3d placed_box(scene::SceneOptions scene) {
   geometry::Mesh mesh{{{1, 2, 3}, {3, 2, 3}, {1, 6, 3}, {1, 2, 4}},
                       {{0, 2, 1}, {0, 1, 3}, {0, 3, 2}, {1, 2, 3}}};  // 2 x 4 x 1
   scene::place_model(scene, mesh);
@@ -137,7 +137,7 @@ Eigen::AlignedBox3d placed_box(config::SceneConfig scene) {
 }
 
 TEST(PlaceModel, PutsTheMiddleOfTheBaseAtThePosition) {
-  config::SceneConfig scene;
+  scene::SceneOptions scene;
   scene.position = {10, 20, 30};
   const auto box = placed_box(scene);
   EXPECT_LT((box.min() - Eigen::Vector3d(9, 18, 30)).norm(), 1e-12);
@@ -145,8 +145,8 @@ TEST(PlaceModel, PutsTheMiddleOfTheBaseAtThePosition) {
 }
 
 TEST(PlaceModel, TurnsUprightRotatesAndScales) {
-  config::SceneConfig scene;
-  scene.up_axis = config::UpAxis::y;  // its y side, of 4, becomes the height
+  scene::SceneOptions scene;
+  scene.up_axis = scene::UpAxis::y;  // its y side, of 4, becomes the height
   scene.longest_side = 1.0;
   EXPECT_LT((placed_box(scene).sizes() - Eigen::Vector3d(0.5, 0.25, 1)).norm(), 1e-12);
   scene.longest_side.reset();

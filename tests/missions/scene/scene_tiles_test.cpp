@@ -14,7 +14,7 @@
 
 #include "geometry/error.h"
 #include "geometry/io/mesh_io.h"
-#include "missions/config/resolved_mission.h"
+#include "missions/config/resolve.h"
 #include "missions/scene/scene_source.h"
 #include "tests/missions/cli/cube_scan.h"
 #include "tests/sim/shapes.h"
@@ -52,7 +52,7 @@ class TileScan : public tests::CubeScan {
     folder_.write("scene.tiles", "tiles: " + tiles + "\n");
     write_mission("scene.tiles");
   }
-  config::Mission mission() const { return config::read_mission(folder_ / "m.yaml", {}, {}); }
+  config::MissionSetup mission() const { return config::read_mission(folder_ / "m.yaml"); }
 
   std::string refusal() const {
     const auto run = run_skycap(scan("part", {}));
@@ -101,7 +101,7 @@ TEST_F(TileScan, MeasuresWhatOneMeshWouldShow) {
 
 // Property: of what is in reach, rays meet the same bits, whichever other tiles there are.
 TEST_F(TileScan, RaysMeetTheSameWhicheverFurtherTilesAreInMemory) {
-  const scene::TiledScene tiles(mission(), folder_.path());
+  const scene::TiledScene tiles(mission().scene(), folder_.path(), 0);
   EXPECT_EQ(tiles.triangles(), joined_.triangles.size());
   std::vector<AlignedBox3d> boxes;
   const sim::Scene all = tiles.scene(1, [&](const AlignedBox3d& box) {
@@ -132,7 +132,7 @@ TEST_F(TileScan, RaysMeetTheSameWhicheverFurtherTilesAreInMemory) {
 }
 
 TEST_F(TileScan, AreOneMeshForWhoNeedsOne) {
-  const geometry::Mesh mesh = scene::load_model(mission().scene, folder_.path());
+  const geometry::Mesh mesh = scene::load_model(mission().scene(), folder_.path());
   EXPECT_EQ(mesh.triangles.size(), joined_.triangles.size());
   const AlignedBox3d box = geometry::bounding_box(mesh), wanted = geometry::bounding_box(joined_);
   EXPECT_LT((box.min() - wanted.min()).norm(), 1e-5);
@@ -142,7 +142,7 @@ TEST_F(TileScan, AreOneMeshForWhoNeedsOne) {
 TEST_F(TileScan, StandInRowsAndColumnsOfSeveralKinds) {
   write_tiles(
       "[{model: 'builtin:city-block', columns: 3, rows: 2, spacing: 250, kinds: 0, seed: 7}]");
-  const auto tiles = scene::tiles_of(mission().scene, folder_.path());
+  const auto tiles = scene::tiles_of(mission().scene(), folder_.path());
   ASSERT_EQ(tiles.size(), 6U);
   std::set<std::uint64_t> seeds;
   Vector3d sum = Vector3d::Zero();
@@ -157,7 +157,7 @@ TEST_F(TileScan, StandInRowsAndColumnsOfSeveralKinds) {
   EXPECT_EQ(tiles[5].shifts[0], Vector3d(250, 125, 0));
 
   write_tiles("[{model: 'builtin:city-block', columns: 9, rows: 9, spacing: 250, kinds: 2}]");
-  const auto few = scene::tiles_of(mission().scene, folder_.path());
+  const auto few = scene::tiles_of(mission().scene(), folder_.path());
   ASSERT_EQ(few.size(), 2U);
   EXPECT_EQ(few[0].shifts.size() + few[1].shifts.size(), 81U);
 }

@@ -10,7 +10,7 @@
 #include "flight/export/geodesy.h"
 #include "geometry/angle.h"
 #include "geometry/place/camera.h"
-#include "missions/config/resolved_mission.h"
+#include "missions/config/resolve.h"
 #include "missions/package/package.h"
 #include "missions/session/survey_flight.h"
 #include "tests/missions/flown_mission.h"
@@ -208,10 +208,10 @@ geometry::Scan scan_of_ramp(const geometry::Camera& camera, const geometry::View
 
 TEST(Pads, AreMeasuredByTheSurveyAndRefusedInItsRoute) {
   const TestFolder& folder = package();
-  const config::Mission mission = config::read_mission(folder / "m.yaml");
+  const config::MissionSetup mission = config::read_mission(folder / "m.yaml");
   const double slope = std::tan(13.0 * radians_per_degree);
-  session::SurveyFlight flight(mission, geometry::look_at({-30, 0, 8}, {0, 0, 5}));
-  flight.take_in(scan_of_ramp(geometry::Camera(mission.sensor.camera.camera),
+  session::SurveyFlight flight(mission.flight(), geometry::look_at({-30, 0, 8}, {0, 0, 5}), 0);
+  flight.take_in(scan_of_ramp(geometry::Camera(mission.flight().capture.camera),
                               geometry::look_at({-75, -8, 8}, {-75, 0, 0}), slope));
   const session::FlownSurvey flown = flight.finish({});
   ASSERT_EQ(flown.grounds.size(), 1U);
@@ -219,7 +219,7 @@ TEST(Pads, AreMeasuredByTheSurveyAndRefusedInItsRoute) {
 
   const package::PackagedSurvey survey = package::read_package(folder / "out", {});
   EXPECT_THAT(testing_support::complaint_of([&] {
-                package::plan_flight(survey.mission, survey.measured, survey.pad, survey.views,
+                package::plan_flight(survey.flight, survey.measured, survey.pad, survey.views,
                                      survey.ways, flown.grounds);
               }),
               HasSubstr("degrees steep as measured; at most 10.0 degrees"));

@@ -12,8 +12,7 @@
 #include "flight/route/route.h"
 #include "flight/space/clearance.h"
 #include "flight/way_home/returnable_space.h"
-#include "missions/config/mission_flight.h"
-#include "missions/config/resolved_mission.h"
+#include "missions/config/resolve.h"
 #include "missions/package/package.h"
 #include "missions/simulation/survey_runner.h"
 #include "tests/missions/flown_mission.h"
@@ -33,19 +32,20 @@ using tests::run_skycap;
 using tests::TestFolder;
 
 /// What the flight must keep away from, seen or not.
-flight::KnownSpace truth_of(const config::Mission& mission, const evaluation::SurveyScene& scene) {
-  flight::Obstacles obstacles = config::flight_rules(mission);
+flight::KnownSpace truth_of(const flight::FlightOptions& options,
+                            const evaluation::SurveyScene& scene) {
+  flight::Obstacles obstacles = options.rules();
   obstacles.mesh = scene.model();
   return flight::KnownSpace(obstacles);
 }
 
 // The planner's and the flight's world is what was measured. This is the other one.
 TEST(SurveyFlight, NeverComesNearWhatItHasNotSeen) {
-  const config::Mission mission = config::parse_mission(flown_mission(), "m.yaml");
-  const evaluation::SurveyScene scene(mission, "");
-  const flight::KnownSpace truth = truth_of(mission, scene);
+  const config::MissionSetup mission = config::parse_mission(flown_mission(), "m.yaml");
+  const evaluation::SurveyScene scene(mission.simulation, "", 0);
+  const flight::KnownSpace truth = truth_of(mission.flight(), scene);
   for (const std::uint64_t seed : {1, 2}) {
-    const session::SurveyRecord record = simulation::run_survey(mission, scene, seed, 1);
+    const session::SurveyRecord record = simulation::run_survey(mission.simulation, scene, seed, 1);
     ASSERT_TRUE(record.flown);
     ASSERT_EQ(record.flown->legs.size(), record.views.size());
     EXPECT_GT(record.views.size(), 4U);
@@ -54,9 +54,8 @@ TEST(SurveyFlight, NeverComesNearWhatItHasNotSeen) {
       EXPECT_EQ(leg.points.back(), record.views[i].surveyed.view.position);
       EXPECT_GE(leg.clearance, 2.0);
       EXPECT_TRUE(flight::check_route(leg.points, truth, 2.0).empty()) << "leg to view " << i;
-      const Vector3d from =
-          i > 0 ? record.views[i - 1].surveyed.view.position
-                : record.flown->pad + Vector3d(0, 0, config::takeoff_climb_of(mission));
+      const Vector3d from = i > 0 ? record.views[i - 1].surveyed.view.position
+                                  : record.flown->pad + Vector3d(0, 0, mission.flight().climb());
       EXPECT_EQ(leg.points.front(), from);
     }
     EXPECT_GE(record.flown->length(), record.distance());
@@ -64,10 +63,10 @@ TEST(SurveyFlight, NeverComesNearWhatItHasNotSeen) {
 }
 
 TEST(SurveyFlight, DoesNotDependOnThreads) {
-  const config::Mission mission = config::parse_mission(flown_mission(), "m.yaml");
-  const evaluation::SurveyScene scene(mission, "");
-  const session::SurveyRecord one = simulation::run_survey(mission, scene, 1, 1),
-                              two = simulation::run_survey(mission, scene, 1, 2);
+  const config::MissionSetup mission = config::parse_mission(flown_mission(), "m.yaml");
+  const evaluation::SurveyScene scene(mission.simulation, "", 0);
+  const session::SurveyRecord one = simulation::run_survey(mission.simulation, scene, 1, 1),
+                              two = simulation::run_survey(mission.simulation, scene, 1, 2);
   EXPECT_EQ(package::views_csv(one), package::views_csv(two));
   EXPECT_EQ(one.flown->length(), two.flown->length());
   EXPECT_EQ(one.flown->measured->free_volume(), two.flown->measured->free_volume());
@@ -77,32 +76,32 @@ TEST(SurveyFlight, DoesNotDependOnThreads) {
 TEST(SurveyFlight, ReachesTheFirstViewOfTheShippedMissions) {
   const std::filesystem::path folder = std::filesystem::path(SKYCAP_SOURCE_DIR) / "missions";
   for (const char* name : {"radcliffe_camera.yaml", "city_block.yaml"}) {
-    const config::Mission mission =
+    const config::MissionSetup mission =
         config::read_mission(folder / name, {{"--set", "evaluation.samples", "1000"}});
-    ASSERT_TRUE(mission.flight.is_flown()) << name;
-    const evaluation::SurveyScene scene(mission, folder);
+    ASSERT_TRUE(mission.flight().is_flown()) << name;
+    const evaluation::SurveyScene scene(mission.simulation, folder, 0);
     for (std::uint64_t seed = 1; seed <= 20; ++seed) {
-      EXPECT_NO_THROW(session::SurveyFlight(mission, scene.first_view(seed)))
+      EXPECT_NO_THROW(session::SurveyFlight(mission.flight(), scene.first_view(seed), 0))
           << name << " " << seed;
     }
   }
 }
 
 TEST(SurveyFlight, LooksOnlyWhereTheGimbalCan) {
-  const config::Mission mission = config::parse_mission(flown_mission(), "m.yaml");
+  const config::MissionSetup mission = config::parse_mission(flown_mission(), "m.yaml");
   const geometry::View first = geometry::look_at({-30, 0, 8}, {0, 0, 5});
-  session::SurveyFlight flight(mission, first);
+  session::SurveyFlight flight(mission.flight(), first, 0);
   const Vector3d place(-30, 4, 8);
   EXPECT_TRUE(flight.can_reach(first.position, {place, Vector3d::UnitX()}));
-  const double too_steep = config::vehicle_of(mission).gimbal_max + 0.01;
+  const double too_steep = mission.flight().flown().gimbal_max + 0.01;
   EXPECT_FALSE(flight.can_reach(first.position,
                                 {place, Vector3d(std::cos(too_steep), 0, std::sin(too_steep))}));
 }
 
 TEST(SurveyFlight, StopsInTheSearchForAWay) {
-  const config::Mission mission = config::parse_mission(flown_mission(), "m.yaml");
+  const config::MissionSetup mission = config::parse_mission(flown_mission(), "m.yaml");
   const geometry::View first = geometry::look_at({-30, 0, 8}, {0, 0, 5});
-  session::SurveyFlight flight(mission, first);
+  session::SurveyFlight flight(mission.flight(), first, 0);
   std::stop_source stop;
   flight.stop_on(stop.get_token());
   const geometry::View next{{-30, 4, 8}, Vector3d::UnitX()};
@@ -156,15 +155,16 @@ TEST(FlownPackage, NoReturnFromAnywhereComesNearTheTruth) {
   const TestFolder& folder = package();
   const package::PackagedSurvey survey = package::read_package(folder / "out", {});
   const flight::Route route =
-      package::plan_flight(survey.mission, survey.measured, survey.pad, survey.views, survey.ways);
+      package::plan_flight(survey.flight, survey.measured, survey.pad, survey.views, survey.ways);
   ASSERT_TRUE(route.returns);
   const json stated =
       json::parse(content_of(folder / "out/summary.json")).at("flight").at("return");
   EXPECT_EQ(stated.at("height_m").get<double>(), route.returns->height);
   EXPECT_EQ(stated.at("parameters"), json::array({"mission.params"}));
 
-  const evaluation::SurveyScene scene(survey.mission, "");
-  const flight::KnownSpace truth = truth_of(survey.mission, scene);
+  const config::MissionSetup mission = config::read_mission(folder / "m.yaml");
+  const evaluation::SurveyScene scene(mission.simulation, "", 0);
+  const flight::KnownSpace truth = truth_of(survey.flight, scene);
   std::mt19937_64 random(3);
   std::uniform_real_distribution<double> share(0.0, 1.0);
   const std::vector<Vector3d> points = flight::sortie_points(route, route.sorties.at(0));
@@ -265,13 +265,13 @@ TEST(FlownPackage, IsExportedAgainForAnotherVehicle) {
 TEST(FlownPackage, ReadsBackAsItWasPlanned) {
   const TestFolder& folder = package();
   const package::PackagedSurvey survey = package::read_package(folder / "out", {});
-  const config::Mission mission = config::read_mission(folder / "m.yaml");
-  EXPECT_EQ(survey.mission.flight.clearance, mission.flight.clearance);
-  EXPECT_EQ(survey.mission.planner.see.view_distance, mission.planner.see.view_distance);
+  const config::MissionSetup mission = config::read_mission(folder / "m.yaml");
+  EXPECT_EQ(survey.flight.clearance, mission.flight().clearance);
+  EXPECT_EQ(survey.flight.capture.view_distance, mission.flight().capture.view_distance);
   const json summary = json::parse(content_of(folder / "out/summary.json"));
   EXPECT_EQ(survey.views.size(), summary.at("views").get<std::size_t>());
   const flight::Route route =
-      package::plan_flight(survey.mission, survey.measured, survey.pad, survey.views, survey.ways);
+      package::plan_flight(survey.flight, survey.measured, survey.pad, survey.views, survey.ways);
   EXPECT_EQ(route.length, summary.at("route_length_m").get<double>());
 }
 
@@ -282,11 +282,11 @@ TEST(FlownPackage, KeepsTheWaysOfTheSurveyInItsOrder) {
   const package::PackagedSurvey survey =
       package::read_package(folder / "out", {{"--set", "flight.order", "survey"}});
   const flight::Route route =
-      package::plan_flight(survey.mission, survey.measured, survey.pad, survey.views, survey.ways);
+      package::plan_flight(survey.flight, survey.measured, survey.pad, survey.views, survey.ways);
   ASSERT_EQ(route.sorties.size(), 1U);
   ASSERT_EQ(route.stations.size(), survey.views.size());
   EXPECT_EQ(route.sorties[0].out.points, survey.ways[0]);
-  const flight::KnownSpace rules(config::flight_rules(survey.mission));
+  const flight::KnownSpace rules(survey.flight.rules());
   const flight::JointSpace space({&survey.measured, &rules});
   double top = survey.pad.z() + route.options.takeoff_climb;
   for (const geometry::View& view : survey.views) top = std::max(top, view.position.z());

@@ -12,8 +12,7 @@
 #include "flight/paths/path.h"
 #include "flight/route/route.h"
 #include "geometry/io/cloud_io.h"
-#include "missions/config/mission_flight.h"
-#include "missions/config/resolved_mission.h"
+#include "missions/config/resolve.h"
 #include "missions/package/package.h"
 #include "missions/simulation/survey_runner.h"
 #include "tests/missions/flown_mission.h"
@@ -28,7 +27,7 @@ using geometry::View;
 using testing::HasSubstr;
 using tests::flown_mission;
 
-config::Mission mission_with(const std::string& key = "", const std::string& value = "") {
+config::MissionSetup mission_with(const std::string& key = "", const std::string& value = "") {
   std::vector<config::KeyOverride> overrides{{"--set", "sensor.capture", "moving"}};
   if (!key.empty()) overrides.push_back({"--set", key, value});
   return config::parse_mission(flown_mission(), "m.yaml", overrides);
@@ -50,8 +49,8 @@ const View west{{0, 0, 10}, -Vector3d::UnitX()};
 const View north_down{{20, 20, 10}, Vector3d(0, 1, -1).normalized()};
 
 TEST(WayFrames, LieOnTheWayInTheOrderFlownNoFasterThanTheVehicle) {
-  const config::Mission mission = mission_with();
-  const session::WayMotion motion(mission);
+  const config::MissionSetup mission = mission_with();
+  const session::WayMotion motion(mission.flight());
   const session::FlownLeg way{{{0, 0, 10}, {20, 0, 10}, {20, 20, 10}}, 2.0};
   for (const double period : {0.25, 1.0, 2.5}) {
     const auto frames = motion.frames(way, west, north_down, period);
@@ -63,10 +62,10 @@ TEST(WayFrames, LieOnTheWayInTheOrderFlownNoFasterThanTheVehicle) {
       EXPECT_LT(off_way(place, way.points), 1e-9);
       const double now = place.x() + place.y();  // along the corner
       EXPECT_GT(now, travelled);
-      EXPECT_LE(now - travelled, mission.flight.cruise_speed * period + 1e-9);
+      EXPECT_LE(now - travelled, mission.flight().cruise_speed * period + 1e-9);
       travelled = now;
       const Vector3d& velocity = frames[i].velocity;
-      EXPECT_LE(velocity.norm(), mission.flight.cruise_speed + 1e-9);
+      EXPECT_LE(velocity.norm(), mission.flight().cruise_speed + 1e-9);
       EXPECT_NEAR(frames[i].time, static_cast<double>(i + 1) * period, 1e-9);
     }
     EXPECT_LT(travelled, 40.0);
@@ -74,7 +73,7 @@ TEST(WayFrames, LieOnTheWayInTheOrderFlownNoFasterThanTheVehicle) {
 }
 
 TEST(WayFrames, TurnEvenlyTheShorterWayWithinTheGimbalsLimits) {
-  const session::WayMotion motion(mission_with());
+  const session::WayMotion motion(mission_with().flight());
   const session::FlownLeg way{{{0, 0, 10}, {40, 0, 10}}, 2.0};
   const View south_east{{0, 0, 10}, Vector3d(1, -1, 0).normalized()};
   const View north_east_down{{40, 0, 10}, Vector3d(1, 1, -std::numbers::sqrt2).normalized()};
@@ -92,7 +91,7 @@ TEST(WayFrames, TurnEvenlyTheShorterWayWithinTheGimbalsLimits) {
 }
 
 TEST(WayFrames, LookAtTheSceneWhereBothViewsDo) {
-  const session::WayMotion motion(mission_with());
+  const session::WayMotion motion(mission_with().flight());
   const Vector3d scene(50, 60, 5);
   const View from = geometry::look_at({0, 0, 20}, scene),
              to = geometry::look_at({0, 30, 20}, scene);
@@ -105,7 +104,7 @@ TEST(WayFrames, LookAtTheSceneWhereBothViewsDo) {
 
 // Between frames a tenth of a second apart the place changes as the velocities say.
 TEST(WayFrames, MoveAsTheirVelocitiesSay) {
-  const session::WayMotion motion(mission_with());
+  const session::WayMotion motion(mission_with().flight());
   const auto frames = motion.frames({{{0, 0, 10}, {30, 0, 20}}, 2.0}, west, west, 0.1);
   ASSERT_GT(frames.size(), 50U);
   for (std::size_t i = 1; i < frames.size(); ++i) {
@@ -116,37 +115,37 @@ TEST(WayFrames, MoveAsTheirVelocitiesSay) {
 }
 
 TEST(WayFrames, AreNoneOnAWayThatIsOverBeforeTheFirst) {
-  const session::WayMotion motion(mission_with());
+  const session::WayMotion motion(mission_with().flight());
   EXPECT_TRUE(motion.frames({{{0, 0, 10}, {0.5, 0, 10}}, 2.0}, west, west, 60.0).empty());
   EXPECT_TRUE(motion.frames({{{0, 0, 10}, {0, 0, 10}}, 2.0}, west, west, 1.0).empty());
 }
 
 // Distance over speed, a ramp at both ends, a stop in the corner; then rests, the pad's climb.
 TEST(WayFrames, TimesAreThoseOfTheVehicle) {
-  const config::Mission mission = mission_with();
-  const session::WayMotion motion(mission);
-  const flight::Motion vehicle(config::vehicle_of(mission),
-                               config::route_options_of(mission, {}).conditions);
+  const config::MissionSetup mission = mission_with();
+  const session::WayMotion motion(mission.flight());
+  const flight::Motion vehicle(mission.flight().flown(),
+                               mission.flight().route(Vector3d::Zero()).conditions);
   const session::FlownLeg corner{{{0, 0, 10}, {20, 0, 10}, {20, 20, 10}}, 2.0};
   const View same{{20, 20, 10}, west.direction};
   const double one = vehicle.leg_time({20, 0, 0});
   EXPECT_NEAR(motion.time(corner, west, same), 2.0 * one + flight::corner_hold, 1e-9);
-  const double rest = config::hold_of(mission) + config::hold_after_of(mission);
-  const double start = vehicle.takeoff_time(config::takeoff_climb_of(mission));
+  const double rest = mission.flight().rest_before() + mission.flight().rest_after();
+  const double start = vehicle.takeoff_time(mission.flight().climb());
   EXPECT_NEAR(motion.survey_times({corner, corner}, {same, same}).back(),
               start + flight::corner_hold + 2.0 * (2.0 * one + flight::corner_hold + rest), 1e-9);
 }
 
 TEST(MovingSurvey, CoversAsMuchInLessTime) {
-  const config::Mission stops = config::parse_mission(flown_mission(), "m.yaml");
+  const config::MissionSetup stops = config::parse_mission(flown_mission(), "m.yaml");
   // At a stop less is left to gain: the way has shown much of it.
-  const config::Mission moving = mission_with("planner.least_gain", "0.01");
-  const evaluation::SurveyScene scene(moving, "");
+  const config::MissionSetup moving = mission_with("planner.least_gain", "0.01");
+  const evaluation::SurveyScene scene(moving.simulation, "", 0);
   double standing_time = 0.0, moving_time = 0.0, standing_coverage = 0.0, moving_coverage = 0.0;
   const std::vector<std::uint64_t> seeds{1, 2, 3};
   for (const std::uint64_t seed : seeds) {
-    const session::SurveyRecord standing = simulation::run_survey(stops, scene, seed, 2),
-                                passing = simulation::run_survey(moving, scene, seed, 2);
+    const session::SurveyRecord standing = simulation::run_survey(stops.simulation, scene, seed, 2),
+                                passing = simulation::run_survey(moving.simulation, scene, seed, 2);
     EXPECT_EQ(standing.frames_on_way(), 0U);
     EXPECT_GT(passing.frames_on_way(), 10U);
     standing_time += standing.flown->time();
@@ -159,19 +158,19 @@ TEST(MovingSurvey, CoversAsMuchInLessTime) {
 }
 
 TEST(MovingSurvey, DoesNotDependOnThreads) {
-  const config::Mission mission = mission_with("limits.max_views", "4");
-  const evaluation::SurveyScene scene(mission, "");
-  const session::SurveyRecord one = simulation::run_survey(mission, scene, 1, 1),
-                              two = simulation::run_survey(mission, scene, 1, 2);
+  const config::MissionSetup mission = mission_with("limits.max_views", "4");
+  const evaluation::SurveyScene scene(mission.simulation, "", 0);
+  const session::SurveyRecord one = simulation::run_survey(mission.simulation, scene, 1, 1),
+                              two = simulation::run_survey(mission.simulation, scene, 1, 2);
   EXPECT_EQ(package::views_csv(one), package::views_csv(two));
   EXPECT_EQ(one.cloud.positions, two.cloud.positions);
   EXPECT_EQ(one.flown->measured->free_volume(), two.flown->measured->free_volume());
 }
 
 TEST(MovingSurvey, KnowsOfEachPointWhereItWasMeasuredFrom) {
-  const config::Mission mission = mission_with("limits.max_views", "4");
-  const evaluation::SurveyScene scene(mission, "");
-  const session::SurveyRecord record = simulation::run_survey(mission, scene, 1, 2);
+  const config::MissionSetup mission = mission_with("limits.max_views", "4");
+  const evaluation::SurveyScene scene(mission.simulation, "", 0);
+  const session::SurveyRecord record = simulation::run_survey(mission.simulation, scene, 1, 2);
   ASSERT_EQ(record.scans.size(), record.views.size() + record.frames_on_way());
   ASSERT_EQ(record.cloud.views.size(), record.cloud.positions.size());
   std::vector<bool> brought(record.scans.size(), false);

@@ -2,7 +2,9 @@
 /// nanoflann's neighbour search, which shares no code with ours.
 #include <cmath>
 #include <cstdint>
+#include <optional>
 #include <utility>
+#include <variant>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -10,7 +12,7 @@
 
 #include "geometry/error.h"
 #include "geometry/points/density.h"
-#include "missions/config/resolved_mission.h"
+#include "missions/config/resolve.h"
 #include "missions/evaluation/survey_scene.h"
 #include "sim/sensors/depth_camera.h"
 #include "survey/see/see.h"
@@ -62,25 +64,25 @@ std::vector<PointLabel> recomputed_labels(const std::vector<Eigen::Vector3f>& po
 
 // A sixteenth of the D435's pixels and of the density, so that the recomputation takes a second.
 TEST(BunnySurvey, LabelsEqualAFullRecomputationAfterEveryView) {
-  const config::Mission mission = config::read_mission(
+  const config::MissionSetup mission = config::read_mission(
       SKYCAP_SOURCE_DIR "/missions/bunny.yaml", {{"--set", "sensor.width", "212"},
                                                  {"--set", "sensor.height", "120"},
                                                  {"--set", "planner.density", "9125"},
                                                  {"--set", "planner.resolution_radius", "0.0429"}});
   std::optional<evaluation::SurveyScene> scene;
   try {
-    scene.emplace(mission, "");
+    scene.emplace(mission.simulation, "", 0);
   } catch (const Error& error) {
     GTEST_SKIP() << error.what();
   }
 
-  const survey::see::SeeConfig& see = mission.planner.see;
+  const auto& see = std::get<survey::see::SeeConfig>(mission.survey().planner.method);
   const auto threshold = see.effective_core_threshold();
   geometry::DensityMap map({.radius = see.resolution_radius,
                             .core_threshold = threshold,
                             .spacing = see.effective_spacing()});
-  survey::see::SeePlanner planner(see, geometry::Camera(mission.sensor.camera.camera));
-  const sim::DepthCamera camera(mission.sensor.camera);
+  survey::see::SeePlanner planner(see, geometry::Camera(mission.survey().planner.camera));
+  const sim::DepthCamera camera(mission.sensor().camera);
   std::uint32_t frame = 0;
   std::size_t frontiers = 0;
   const auto check = [&](const survey::SurveyedView&, const geometry::Scan& scan) {
@@ -91,7 +93,7 @@ TEST(BunnySurvey, LabelsEqualAFullRecomputationAfterEveryView) {
         << "view " << frame;
     for (const PointLabel label : map.labels()) frontiers += label == PointLabel::frontier ? 1 : 0;
   };
-  survey::run_survey(planner, scene->first_view(mission.seed), {.max_views = 40},
+  survey::run_survey(planner, scene->first_view(mission.run.seed), {.max_views = 40},
                      {.sense =
                           [&](const geometry::View& view, geometry::Scan recycled) {
                             return camera.scan(scene->scene(), view, frame++, 1,

@@ -6,7 +6,7 @@
 
 #include <gtest/gtest.h>
 
-#include "missions/config/resolved_mission.h"
+#include "missions/config/resolve.h"
 #include "missions/simulation/survey_runner.h"
 #include "tests/missions/flown_mission.h"
 #include "tests/sim/shapes.h"
@@ -19,14 +19,14 @@ using geometry::Scan;
 
 using Keys = std::vector<std::pair<std::string, std::string>>;
 
-config::Mission mission_with(const Keys& keys) {
+config::MissionSetup mission_with(const Keys& keys) {
   std::vector<config::KeyOverride> overrides;
   for (const auto& [key, value] : keys) overrides.push_back({"--set", key, value});
   return config::parse_mission(tests::flown_mission(), "m.yaml", overrides);
 }
 
 /// What all missions here have: no noise.
-config::Mission exact_mission(Keys keys = {}) {
+config::MissionSetup exact_mission(Keys keys = {}) {
   keys.emplace_back("sensor.noise.sigma", "0");
   return mission_with(keys);
 }
@@ -35,17 +35,17 @@ const sim::Scene wall(sim::square({12, 0, 0}, -Vector3d::UnitX(), 400.0), 1);
 const geometry::View at_wall{Vector3d::Zero(), Vector3d::UnitX()};
 
 TEST(CarriedSensor, StandsWhereItMovesByLessThanHalfAPixel) {
-  const config::Mission mission = mission_with({});
-  simulation::CarriedSensor carried(mission, 3);
+  const config::MissionSetup mission = mission_with({});
+  simulation::CarriedSensor carried(mission.simulation, 3);
   const Scan scan = carried.scan(wall, {.view = at_wall}, 5, 1);
   EXPECT_EQ(scan.points, carried.at_rest().scan(wall, at_wall, 5, 1).points);
 }
 
 // 160 pixels of 69.4 degrees: f = 116 px. At 16 m, 8 m/s and 0.2 s are 11.5 of them and more.
 TEST(CarriedSensor, FlyingAtAWallARollingShutterTiltsIt) {
-  const config::Mission mission =
+  const config::MissionSetup mission =
       exact_mission({{"sensor.exposure", "0.001"}, {"sensor.readout", "0.2"}});
-  simulation::CarriedSensor carried(mission, 3);
+  simulation::CarriedSensor carried(mission.simulation, 3);
   const Scan scan = carried.scan(wall, {.view = at_wall, .velocity = {8.0, 0.0, 0.0}}, 0, 1);
   ASSERT_GT(scan.points.size(), 1000U);
   // What is seen above is read first: farther, by 0.8 m before the middle of the frame at most.
@@ -56,9 +56,9 @@ TEST(CarriedSensor, FlyingAtAWallARollingShutterTiltsIt) {
 }
 
 TEST(CarriedSensor, SwaysAtAStopDifferentlyInEachFrameAndAlikeWithEachSeed) {
-  const config::Mission mission = exact_mission({{"sensor.readout", "3"}});
+  const config::MissionSetup mission = exact_mission({{"sensor.readout", "3"}});
   const auto first_point = [&](std::uint64_t seed, std::uint64_t frame) {
-    simulation::CarriedSensor carried(mission, seed);
+    simulation::CarriedSensor carried(mission.simulation, seed);
     return carried.scan(wall, {.view = at_wall}, frame, 1).points.front();
   };
   EXPECT_EQ(first_point(1, 0), first_point(1, 0));
@@ -67,11 +67,11 @@ TEST(CarriedSensor, SwaysAtAStopDifferentlyInEachFrameAndAlikeWithEachSeed) {
 }
 
 TEST(CarriedSensor, PosesAreOffAsTheNavigationIsAndAtMomentsNearEachOtherAlike) {
-  const config::Mission mission = exact_mission(
+  const config::MissionSetup mission = exact_mission(
       {{"scan.navigation.horizontal_sigma", "0.3"}, {"scan.navigation.correlation_time", "50"}});
   double square = 0.0, change = 0.0, before = 0.0;
   constexpr int pairs = 200, frames = 2 * pairs;
-  simulation::CarriedSensor carried(mission, 1);
+  simulation::CarriedSensor carried(mission.simulation, 1);
   for (int i = 0; i < frames; ++i) {
     // Every second one follows the one before it at once.
     const int pair = i / 2;
@@ -95,8 +95,8 @@ TEST(CarriedSensor, WithoutAVehicleNavigationIsThatOfScansAlone) {
       "scene: {model: 'builtin:teapot'}\nevaluation: {registration_distance: 0.05}\n"
       "planner: {name: skycap, density: 100, resolution_radius: 0.2}\n"
       "scan: {navigation: {horizontal_sigma: 0.5}}\n";
-  const config::Mission mission = config::parse_mission(text, "m.yaml");
-  simulation::CarriedSensor carried(mission, 1);
+  const config::MissionSetup mission = config::parse_mission(text, "m.yaml");
+  simulation::CarriedSensor carried(mission.simulation, 1);
   const geometry::View near{{10, 0, 0}, Vector3d::UnitX()};
   EXPECT_EQ(carried.scan(wall, {.view = near}, 0, 1).points,
             carried.at_rest().scan(wall, near, 0, 1).points);
@@ -105,15 +105,15 @@ TEST(CarriedSensor, WithoutAVehicleNavigationIsThatOfScansAlone) {
 // A survey whose poses are off by as much as points may be covers less than it would, and knows it.
 TEST(CarriedSensor, ASurveyWithErrorsOfItsPosesBelievesLess) {
   const Keys few{{"limits.max_views", "5"}, {"planner.wanted_coverage", "1"}};
-  const config::Mission exact = mission_with(few);
+  const config::MissionSetup exact = mission_with(few);
   Keys keys = few;
   keys.insert(keys.end(), {{"scan.navigation.horizontal_sigma", "0.5"},
                            {"scan.navigation.vertical_sigma", "0.5"},
                            {"scan.navigation.correlation_time", "1"}});
-  const config::Mission astray = mission_with(keys);
-  const evaluation::SurveyScene scene(exact, "");
-  const session::SurveyRecord well = simulation::run_survey(exact, scene, 1, 2),
-                              badly = simulation::run_survey(astray, scene, 1, 2);
+  const config::MissionSetup astray = mission_with(keys);
+  const evaluation::SurveyScene scene(exact.simulation, "", 0);
+  const session::SurveyRecord well = simulation::run_survey(exact.simulation, scene, 1, 2),
+                              badly = simulation::run_survey(astray.simulation, scene, 1, 2);
   EXPECT_LT(badly.coverage(), well.coverage() - 0.05);
   EXPECT_LT(badly.belief->coverage, well.belief->coverage - 0.05);
 }

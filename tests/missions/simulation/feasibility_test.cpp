@@ -3,7 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "missions/config/resolved_mission.h"
+#include "missions/config/resolve.h"
 #include "missions/simulation/expectation.h"
 #include "missions/simulation/survey_runner.h"
 #include "tests/missions/flown_mission.h"
@@ -29,8 +29,9 @@ std::vector<config::KeyOverride> overrides(const Settings& settings) {
 }
 
 simulation::Feasibility of(const std::string& text, const Settings& settings) {
-  const config::Mission mission = config::parse_mission(text, "m.yaml", overrides(settings));
-  return simulation::feasibility(mission, evaluation::SurveyScene(mission, ""), 2);
+  const config::MissionSetup mission = config::parse_mission(text, "m.yaml", overrides(settings));
+  return simulation::feasibility(
+      mission.simulation, evaluation::SurveyScene(mission.simulation, "", 0), {.threads = 2});
 }
 
 TEST(Feasibility, FindsNothingInMissionsThatWork) {
@@ -104,11 +105,12 @@ TEST(Feasibility, IsAskedBeforeASurveyBegins) {
 // The survey takes at least half the fewest views that were expected and at most twice the most; a
 // limit is not expected to be broken.
 TEST(Expectation, HoldsTheSurvey) {
-  const config::Mission mission =
+  const config::MissionSetup mission =
       config::parse_mission(quick_mission(), "m.yaml", {{"--planner", "planner.name", "skycap"}});
-  const evaluation::SurveyScene scene(mission, "");
-  const simulation::Expectation expected = simulation::expectation(mission, scene, 2);
-  const std::size_t views = simulation::run_survey(mission, scene, 1, 2).views.size();
+  const evaluation::SurveyScene scene(mission.simulation, "", 0);
+  const simulation::Expectation expected =
+      simulation::expectation(mission.simulation, scene, {.threads = 2});
+  const std::size_t views = simulation::run_survey(mission.simulation, scene, 1, 2).views.size();
   EXPECT_GE(2 * views, expected.least_views);
   EXPECT_LE(views, 2 * expected.most_views);
   EXPECT_LE(expected.known_views, expected.least_views);
@@ -117,20 +119,21 @@ TEST(Expectation, HoldsTheSurvey) {
   EXPECT_GT(expected.most_time, 0.0);
   EXPECT_GT(expected.memory, 1e7);
 
-  const config::Mission limited =
+  const config::MissionSetup limited =
       config::parse_mission(quick_mission(), "m.yaml",
                             overrides({{"limits.max_views", "3"}, {"limits.max_minutes", "1"}}));
-  const simulation::Expectation at_most = simulation::expectation(limited, scene, 2);
+  const simulation::Expectation at_most =
+      simulation::expectation(limited.simulation, scene, {.threads = 2});
   EXPECT_EQ(at_most.most_views, 3U);
   EXPECT_LE(at_most.most_minutes, 1.0);
 }
 
 TEST(Expectation, OfAVolumetricPlannerIsItsNumberOfViews) {
-  const config::Mission mission =
+  const config::MissionSetup mission =
       config::parse_mission(quick_mission(), "m.yaml",
                             overrides({{"planner.name", "oa"}, {"volumetric.view_limit", "8"}}));
-  const simulation::Expectation expected =
-      simulation::expectation(mission, evaluation::SurveyScene(mission, ""), 2);
+  const simulation::Expectation expected = simulation::expectation(
+      mission.simulation, evaluation::SurveyScene(mission.simulation, "", 0), {.threads = 2});
   EXPECT_EQ(expected.least_views, 8U);
   EXPECT_EQ(expected.most_views, 8U);
 }

@@ -5,8 +5,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "missions/config/resolved_mission.h"
+#include "missions/config/resolve.h"
 #include "missions/evaluation/coverage.h"
+#include "missions/simulation/survey_runner.h"
 #include "tests/missions/run_skycap.h"
 
 namespace skycap::missions {
@@ -18,15 +19,16 @@ constexpr simulation::OmniscientConfig quick{
     .candidates = 200, .samples = 1500, .wanted_coverage = {}};
 
 TEST(Omniscient, NeedsFewerViewsThanAPlannerForTheSameCoverage) {
-  const config::Mission mission = config::parse_mission(quick_mission("seed: 3\n"), "m.yaml",
-                                                        {{"--planner", "planner.name", "skycap"}});
-  const evaluation::SurveyScene scene(mission, "");
-  const session::SurveyRecord planned = simulation::run_survey(mission, scene, 3, 1);
+  const config::MissionSetup mission = config::parse_mission(
+      quick_mission("seed: 3\n"), "m.yaml", {{"--planner", "planner.name", "skycap"}});
+  const evaluation::SurveyScene scene(mission.simulation, "", 0);
+  const session::SurveyRecord planned = simulation::run_survey(mission.simulation, scene, 3, 1);
   // The last places are found by luck among so few candidates.
   simulation::OmniscientConfig config = quick;
   config.candidates = 600;
   config.wanted_coverage = 0.95 * planned.coverage();
-  const session::SurveyRecord known = simulation::survey_omnisciently(mission, scene, 3, 1, config);
+  const session::SurveyRecord known =
+      simulation::survey_omnisciently(mission.simulation, scene, 3, 1, config);
   const auto reached = std::ranges::find_if(planned.views, [&](const session::JudgedView& view) {
     return view.coverage >= *config.wanted_coverage;
   });
@@ -37,34 +39,38 @@ TEST(Omniscient, NeedsFewerViewsThanAPlannerForTheSameCoverage) {
 }
 
 TEST(Omniscient, StartsWhereThePlannersStartAndKeepsTheLimits) {
-  const config::Mission mission =
+  const config::MissionSetup mission =
       config::parse_mission(quick_mission("site: {lowest_height: 0.3}\n"), "m.yaml");
-  const evaluation::SurveyScene scene(mission, "");
-  const session::SurveyRecord record = simulation::survey_omnisciently(mission, scene, 1, 1, quick);
+  const evaluation::SurveyScene scene(mission.simulation, "", 0);
+  const session::SurveyRecord record =
+      simulation::survey_omnisciently(mission.simulation, scene, 1, 1, quick);
   EXPECT_EQ(record.views.front().surveyed.view.position, scene.first_view(1).position);
   for (const session::JudgedView& judged : record.views) {
     EXPECT_GE(judged.surveyed.view.position.z(), 0.3);
   }
-  evaluation::CoverageMeter meter(scene.samples().points, mission.evaluation.registration_distance);
+  evaluation::CoverageMeter meter(scene.samples().points,
+                                  mission.evaluation().registration_distance);
   meter.add(record.cloud.positions);
   EXPECT_EQ(record.coverage(), meter.share());
   EXPECT_GT(record.coverage(), 0.5);
 }
 
 TEST(Omniscient, IsTheSameForAnyNumberOfThreads) {
-  const config::Mission mission = config::parse_mission(quick_mission(), "m.yaml");
-  const evaluation::SurveyScene scene(mission, "");
-  const session::SurveyRecord one = simulation::survey_omnisciently(mission, scene, 2, 1, quick);
-  const session::SurveyRecord three = simulation::survey_omnisciently(mission, scene, 2, 3, quick);
+  const config::MissionSetup mission = config::parse_mission(quick_mission(), "m.yaml");
+  const evaluation::SurveyScene scene(mission.simulation, "", 0);
+  const session::SurveyRecord one =
+      simulation::survey_omnisciently(mission.simulation, scene, 2, 1, quick);
+  const session::SurveyRecord three =
+      simulation::survey_omnisciently(mission.simulation, scene, 2, 3, quick);
   EXPECT_EQ(one.cloud.positions, three.cloud.positions);
   EXPECT_EQ(one.distance(), three.distance());
 }
 
 TEST(Omniscient, EndsAtTheLimitOfViews) {
-  const config::Mission mission =
+  const config::MissionSetup mission =
       config::parse_mission(quick_mission(), "m.yaml", {{"--max-views", "limits.max_views", "2"}});
-  const session::SurveyRecord record =
-      simulation::survey_omnisciently(mission, evaluation::SurveyScene(mission, ""), 1, 1, quick);
+  const session::SurveyRecord record = simulation::survey_omnisciently(
+      mission.simulation, evaluation::SurveyScene(mission.simulation, "", 0), 1, 1, quick);
   EXPECT_EQ(record.views.size(), 2U);
   EXPECT_EQ(record.stop_reason, survey::StopReason::view_limit);
 }

@@ -10,10 +10,7 @@
 
 #include "geometry/error.h"
 #include "geometry/io/mesh_io.h"
-#include "missions/config/mission_flight.h"
-#include "missions/config/mission_priors.h"
-#include "missions/config/resolved_mission.h"
-#include "missions/config/site.h"
+#include "missions/config/resolve.h"
 #include "missions/package/package.h"
 #include "missions/package/target_coverage.h"
 #include "missions/simulation/survey_runner.h"
@@ -65,20 +62,21 @@ double nearest(const std::vector<Vector3d>& way, const AlignedBox3d& box) {
 
 TEST(PriorSurvey, KeepsEveryLegClearOfObstaclesNobodyMeasured) {
   const TestFolder folder;
-  const config::Mission mission = config::parse_mission(with_obstacle(folder.path()), "m.yaml");
-  const config::Mission without = config::parse_mission(flown_mission(), "m.yaml");
+  const config::MissionSetup mission =
+      config::parse_mission(with_obstacle(folder.path()), "m.yaml");
+  const config::MissionSetup without = config::parse_mission(flown_mission(), "m.yaml");
   bool was_in_the_way = false;
   for (const std::uint64_t seed : {1, 2, 3}) {
-    const session::SurveyRecord record =
-        simulation::run_survey(mission, evaluation::SurveyScene(mission, ""), seed, 1);
+    const session::SurveyRecord record = simulation::run_survey(
+        mission.simulation, evaluation::SurveyScene(mission.simulation, "", 0), seed, 1);
     ASSERT_GT(record.views.size(), 3U);
     for (const session::FlownLeg& leg : record.flown->legs) {
-      EXPECT_GE(nearest(leg.points, mast), mission.flight.clearance + uncertainty);
+      EXPECT_GE(nearest(leg.points, mast), mission.flight().clearance + uncertainty);
     }
-    const session::SurveyRecord other =
-        simulation::run_survey(without, evaluation::SurveyScene(without, ""), seed, 1);
+    const session::SurveyRecord other = simulation::run_survey(
+        without.simulation, evaluation::SurveyScene(without.simulation, "", 0), seed, 1);
     for (const session::FlownLeg& leg : other.flown->legs) {
-      was_in_the_way |= nearest(leg.points, mast) < mission.flight.clearance + uncertainty;
+      was_in_the_way |= nearest(leg.points, mast) < mission.flight().clearance + uncertainty;
     }
   }
   EXPECT_TRUE(was_in_the_way) << "else the test says nothing";
@@ -141,17 +139,17 @@ TEST(PriorSurvey, ATerrainIsTheGroundOfViewsPadsAndLegs) {
   const TestFolder folder;
   const std::filesystem::path file = folder.path() / "hill.obj";
   geometry::write_mesh(file, hillside());
-  const config::Mission mission = config::parse_mission(
+  const config::MissionSetup mission = config::parse_mission(
       flown_mission("prior: [{file: '" + file.string() + "', role: terrain, uncertainty: 0.2}]\n"),
       "m.yaml", {{"--set", "flight.takeoff", "[-75, 0, -3.75]"}});
-  EXPECT_NEAR(config::ground_at(mission, {40, 10}), slope(40), 1e-9);
-  EXPECT_EQ(config::ground_at(mission, {400, 10}), -3.75) << "beyond it, at the pad's height";
+  EXPECT_NEAR(mission.flight().ground_at({40, 10}), slope(40), 1e-9);
+  EXPECT_EQ(mission.flight().ground_at({400, 10}), -3.75) << "beyond it, at the pad's height";
 
-  const survey::ViewLimits limits = config::view_limits(mission);
+  const survey::ViewLimits& limits = mission.survey().planner.limits;
   const auto allows = [&](double x, double z) {
     return limits.allow(geometry::look_at({x, 0, z}, {0, 0, 5}));
   };
-  const double clearance = mission.limits.ground_clearance.value();
+  const double clearance = std::stod(mission.text("limits.ground_clearance"));
   EXPECT_TRUE(allows(40, slope(40) + clearance + 0.01));
   EXPECT_FALSE(allows(40, slope(40) + clearance - 0.01));
   EXPECT_TRUE(allows(-40, slope(-40) + clearance + 0.01)) << "lower than the scene's base";
@@ -163,14 +161,14 @@ TEST(PriorSurvey, ATerrainIsTheGroundOfViewsPadsAndLegs) {
     EXPECT_GE(view->position.z(), slope(view->position.x()) + clearance);
   }
 
-  const flight::KnownSpace space(config::flight_rules(mission));
+  const flight::KnownSpace space(mission.flight().rules());
   const Vector3d place(50, 20, slope(50) + 6.0);
   const double true_distance = 6.0 * std::cos(std::atan(0.05));
   EXPECT_NEAR(space.distance(place, 100), true_distance - 0.2, 1e-6);
   EXPECT_EQ(space.distance({300, 0, -5}, 100), 0.0) << "beyond it, solid up to the pad's height";
 
-  const session::SurveyRecord record =
-      simulation::run_survey(mission, evaluation::SurveyScene(mission, ""), 1, 1);
+  const session::SurveyRecord record = simulation::run_survey(
+      mission.simulation, evaluation::SurveyScene(mission.simulation, "", 0), 1, 1);
   ASSERT_GT(record.views.size(), 3U);
   for (const session::FlownLeg& leg : record.flown->legs) {
     for (const Vector3d& point : leg.points) {
@@ -194,11 +192,11 @@ TEST(PriorSurvey, ATargetSaysWhereTheSceneIs) {
   const std::filesystem::path file = folder.path() / "house.obj";
   geometry::write_mesh(file, flight::scenes::box({-5, -4, 0}, {5, 4, 6}));
   const std::string prior = "prior: [{file: '" + file.string() + "', role: target}]\n";
-  const config::Mission mission = config::parse_mission(live_mission(prior), "m.yaml");
-  const AlignedBox3d box = mission.planner.see.scene_box.value();
+  const config::MissionSetup mission = config::parse_mission(live_mission(prior), "m.yaml");
+  const AlignedBox3d box = mission.survey().planner.scene_box.value();
   EXPECT_TRUE(box.min().isApprox(Vector3d(-5 - 3, -4 - 3, 1.2)));
   EXPECT_TRUE(box.max().isApprox(Vector3d(5 + 3, 4 + 3, 6 + 3)));
-  const auto surface = config::prior_surface(mission);
+  const auto surface = mission.survey().planner.prior_surface();
   ASSERT_TRUE(surface);
   for (std::size_t i = 0; i < surface->size(); ++i) {
     EXPECT_GT(surface->positions[i].z(), 0.0F) << "nobody sees a house from below";
@@ -225,8 +223,8 @@ TEST(PriorSurvey, HeightsCountFromAPadThatIsGiven) {
                 read({latitude, longitude});
               }),
               HasSubstr("flight.takeoff is not given"));
-  const config::Mission mission = read({latitude, longitude, pad});
-  EXPECT_NEAR(config::priors_of(mission).priors[0].box.min().z(), -3.75, 1e-3);
+  const config::MissionSetup mission = read({latitude, longitude, pad});
+  EXPECT_NEAR(mission.scene().priors->priors[0].box.min().z(), -3.75, 1e-3);
 }
 
 // With nothing but a map of the house: a dry run in which the map is the truth, and says so.
@@ -260,14 +258,15 @@ TEST(TargetCoverage, TellsWhatOfAnObjectWasMeasured) {
   const TestFolder folder;
   const std::filesystem::path file = folder.path() / "house.obj";
   geometry::write_mesh(file, flight::scenes::box({0, 0, 0}, {10, 10, 10}));
-  const config::Mission mission = config::parse_mission(
+  const config::MissionSetup mission = config::parse_mission(
       flown_mission("prior: [{file: '" + file.string() + "', role: target, uncertainty: 0.1}]\n"),
       "m.yaml");
   std::vector<Eigen::Vector3f> roof;
   for (float x = 0.0F; x <= 10.0F; x += 0.25F) {
     for (float y = 0.0F; y <= 10.0F; y += 0.25F) roof.emplace_back(x, y, 10.0F);
   }
-  const auto coverage = package::target_coverage(mission, roof);
+  const auto coverage =
+      package::target_coverage(mission.scene(), mission.evaluation().registration_distance, roof);
   ASSERT_EQ(coverage.size(), 1U);
   // The roof, and of the walls what is within 0.7 m of it.
   EXPECT_NEAR(coverage[0].object.covered, (100.0 + 40.0 * 0.7) / 500.0, 0.01);

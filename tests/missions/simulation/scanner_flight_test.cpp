@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "geometry/place/camera.h"
-#include "missions/config/resolved_mission.h"
+#include "missions/config/resolve.h"
 #include "missions/session/survey_flight.h"
 
 namespace skycap::missions {
@@ -30,7 +30,7 @@ geometry::Scan far_returns(const geometry::View& from, double highest) {
 // Autopilots climb before they return: a view is no good below air that nobody has seen, though the
 // way there is free.
 TEST(ScannerFlight, GoesOnlyWhereItsAutopilotCanReturnFrom) {
-  const config::Mission mission = config::parse_mission(
+  const config::MissionSetup mission = config::parse_mission(
       "scene: {model: builtin:teapot, longest_side: 20}\n"
       "sensor: {lidar: ouster_os1_128}\n"
       "planner: {density: 100, resolution_radius: 0.5, view_distance: 20}\n"
@@ -39,7 +39,7 @@ TEST(ScannerFlight, GoesOnlyWhereItsAutopilotCanReturnFrom) {
       "m.yaml");
   const geometry::View first = geometry::look_at({-20, 0, 10}, {0, 0, 10});
   const geometry::View inside = geometry::look_at({0, 0, 10}, {0, 10, 10});
-  session::SurveyFlight flight(mission, first);
+  session::SurveyFlight flight(mission.flight(), first, 0);
   EXPECT_TRUE(flight.can_reach(first.position, geometry::look_at({-20, 15, 20}, {0, 0, 20})));
   EXPECT_FALSE(flight.find_way(first.position, inside.position));
   flight.take_in(far_returns(first, 0.25));

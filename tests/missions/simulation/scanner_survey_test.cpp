@@ -3,18 +3,19 @@
 
 #include <gtest/gtest.h>
 
-#include "missions/config/opening_flight.h"
-#include "missions/config/resolved_mission.h"
+#include "missions/config/resolve.h"
 #include "missions/evaluation/coverage.h"
 #include "missions/evaluation/survey_scene.h"
+#include "missions/session/opening_flight.h"
 #include "missions/simulation/expectation.h"
 #include "missions/simulation/survey_runner.h"
+#include "tests/missions/run_skycap.h"
 
 namespace skycap::missions {
 namespace {
 
 /// A teapot of 20 m in a box, on the ground.
-config::Mission mission_by(const std::string& lidar) {
+config::MissionSetup mission_by(const std::string& lidar) {
   return config::parse_mission(
       "scene: {model: 'builtin:teapot', longest_side: 20.0, ground: true}\n"
       "sensor: {lidar: " +
@@ -33,12 +34,12 @@ config::Mission mission_by(const std::string& lidar) {
 /// What the planner believes of its coverage, against the share that is covered of what could be
 /// seen.
 void expect_survey(const std::string& lidar, double least_coverage) {
-  const config::Mission mission = mission_by(lidar);
-  const evaluation::SurveyScene scene(mission, "");
-  const session::SurveyRecord record = simulation::run_survey(mission, scene, 1, 1);
+  const config::MissionSetup mission = mission_by(lidar);
+  const evaluation::SurveyScene scene(mission.simulation, "", 0);
+  const session::SurveyRecord record = simulation::run_survey(mission.simulation, scene, 1, 1);
   EXPECT_TRUE(record.is_complete()) << survey::name_of(record.stop_reason);
   EXPECT_LT(record.views.size(), 40U);
-  EXPECT_GE(record.flown.value().min_clearance(), mission.flight.clearance);
+  EXPECT_GE(record.flown.value().min_clearance(), mission.flight().clearance);
   const double share = evaluation::covered_share(record.is_covered, scene.visible(1)).value();
   EXPECT_GT(share, least_coverage);
   EXPECT_NEAR(record.belief.value().coverage, share, 0.06);
@@ -55,11 +56,34 @@ TEST(ScannerSurvey, ByALineEndsByItselfAndKnowsWhatItCovered) {
 // A scanner that looks down at a fixed pitch may have no random view of the scene's middle.
 TEST(ScannerSurvey, IsForetoldFromWhereItsOpeningBegins) {
   for (const char* lidar : {"livox_avia", "riegl_minivux_1uav", "ouster_os1_128"}) {
-    const config::Mission mission = mission_by(lidar);
-    const evaluation::SurveyScene scene(mission, "");
-    EXPECT_EQ(scene.first_view(mission.seed).position,
-              config::opening_views(mission).front().position);
-    EXPECT_GT(simulation::expectation(mission, scene, 2).known_views, 0U) << lidar;
+    const config::MissionSetup mission = mission_by(lidar);
+    const evaluation::SurveyScene scene(mission.simulation, "", 0);
+    EXPECT_EQ(scene.first_view(mission.run.seed).position,
+              session::opening_views(mission.survey().start, mission.run.seed).front().position);
+    EXPECT_GT(simulation::expectation(mission.simulation, scene, {.threads = 2}).known_views, 0U)
+        << lidar;
+  }
+}
+
+TEST(ScannerSurvey, IsTakenByEveryPlanner) {
+  const tests::TestFolder folder;
+  const std::string lidar = folder.write(
+      "lidar.yaml",
+      "name: test\nkind: spinning\ncolumns_per_turn: 720\nrotation_rate_hz: 10\n"
+      "channels: {count: 64, lowest_deg: -20, highest_deg: 20}\nrange: {min: 0.1, max: 20}\n"
+      "errors: {sigma: 0.01}\n");
+  for (const char* name : {"see++", "see", "skycap", "rsv"}) {
+    const config::MissionSetup mission = config::parse_mission(
+        "scene: {model: builtin:teapot, longest_side: 1}\nsensor: {lidar: " + lidar +
+            "}\nplanner: {name: " + name +
+            ", density: 20000, resolution_radius: 0.08, spacing: 0.02, view_distance: 1.5}\n"
+            "limits: {max_views: 30}\n"
+            "evaluation: {registration_distance: 0.03, samples: 2000, ceiling_views: 0}\n",
+        "m.yaml");
+    const session::SurveyRecord record = simulation::run_survey(
+        mission.simulation, evaluation::SurveyScene(mission.simulation, "", 0), 1, 1);
+    EXPECT_GT(record.views.size(), 2U) << name;
+    EXPECT_GT(record.coverage(), 0.4) << name;  // twice what one view shows of the teapot
   }
 }
 

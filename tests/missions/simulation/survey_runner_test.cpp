@@ -14,11 +14,11 @@
 #include "geometry/surfaces/mesh_distance.h"
 #include "missions/batch/benchmark/trials.h"
 #include "missions/config/mission_keys.h"
-#include "missions/config/planner_factory.h"
-#include "missions/config/resolved_mission.h"
-#include "missions/config/site.h"
+#include "missions/config/resolve.h"
 #include "missions/evaluation/coverage.h"
+#include "survey/planners/planner_options.h"
 #include "tests/missions/run_skycap.h"
+#include "tests/support/complaint.h"
 
 namespace skycap::missions {
 namespace {
@@ -32,8 +32,8 @@ using tests::run_skycap;
 using tests::TestFolder;
 
 TEST(SurveyScene, StartsWhereTheMissionSaysOrAtRandomAtTheStatedDistance) {
-  const config::Mission mission = config::parse_mission(quick_mission(), "m.yaml");
-  const evaluation::SurveyScene scene(mission, "");
+  const config::MissionSetup mission = config::parse_mission(quick_mission(), "m.yaml");
+  const evaluation::SurveyScene scene(mission.simulation, "", 0);
   const geometry::View a = scene.first_view(1), b = scene.first_view(2);
   EXPECT_EQ(a.position, scene.first_view(1).position);
   EXPECT_GT((a.position - b.position).norm(), 0.1);  // another direction
@@ -51,17 +51,17 @@ TEST(SurveyScene, StartsWhereTheMissionSaysOrAtRandomAtTheStatedDistance) {
     EXPECT_LT((view.position + distance * view.direction - centroid).norm(), 1e-6);
   }
 
-  const config::Mission given = config::parse_mission(
+  const config::MissionSetup given = config::parse_mission(
       quick_mission("start: {position: [0, 3, 1], look_at: [0, 0, 1]}"), "m.yaml");
-  const geometry::View view = evaluation::SurveyScene(given, "").first_view(1);
+  const geometry::View view = evaluation::SurveyScene(given.simulation, "", 0).first_view(1);
   EXPECT_EQ(view.position, Eigen::Vector3d(0, 3, 1));
   EXPECT_LT((view.direction + Eigen::Vector3d::UnitY()).norm(), 1e-12);
 }
 
 // The order of the draws is part of a seed's meaning: the same start from every compiler.
 TEST(SurveyScene, DrawsRandomStartsInAStatedOrder) {
-  const config::Mission mission = config::parse_mission(quick_mission(), "m.yaml");
-  const evaluation::SurveyScene scene(mission, "");
+  const config::MissionSetup mission = config::parse_mission(quick_mission(), "m.yaml");
+  const evaluation::SurveyScene scene(mission.simulation, "", 0);
   for (std::uint64_t seed = 0; seed < 5; ++seed) {
     std::mt19937_64 random(seed);
     std::normal_distribution<double> normal;
@@ -72,9 +72,9 @@ TEST(SurveyScene, DrawsRandomStartsInAStatedOrder) {
 }
 
 TEST(SurveyScene, KeepsRandomStartsAboveTheGroundClearance) {
-  const config::Mission mission = config::parse_mission(
+  const config::MissionSetup mission = config::parse_mission(
       quick_mission(), "m.yaml", {{"--set", "limits.ground_clearance", "0.5"}});
-  const evaluation::SurveyScene scene(mission, "");
+  const evaluation::SurveyScene scene(mission.simulation, "", 0);
   for (std::uint64_t seed = 0; seed < 50; ++seed) {
     EXPECT_GE(scene.first_view(seed).position.z(), 0.5);
   }
@@ -93,11 +93,11 @@ std::vector<std::string> planner_names() {
 TEST(RunSurvey, EveryPlannerCoversMostOfTheScene) {
   EXPECT_EQ(planner_names().size(), 10U);
   for (const std::string& name : planner_names()) {
-    const config::Mission mission = config::parse_mission(
+    const config::MissionSetup mission = config::parse_mission(
         quick_mission(), "m.yaml",
         {{"--planner", "planner.name", name}, {"--set", "volumetric.view_limit", "8"}});
-    const session::SurveyRecord record =
-        simulation::run_survey(mission, evaluation::SurveyScene(mission, ""), 1, 1);
+    const session::SurveyRecord record = simulation::run_survey(
+        mission.simulation, evaluation::SurveyScene(mission.simulation, "", 0), 1, 1);
     EXPECT_GT(record.coverage(), 0.6) << name;
     EXPECT_GE(record.views.size(), 2U) << name;
   }
@@ -112,16 +112,16 @@ TEST(RunSurvey, EveryPlannerKeepsToTheSiteAndTheLimits) {
       "  lowest_height: 0.2\n"
       "  highest_height: 1.9\n";
   for (const std::string& name : planner_names()) {
-    const config::Mission mission =
+    const config::MissionSetup mission =
         config::parse_mission(quick_mission(site), "m.yaml",
                               {{"--planner", "planner.name", name},
                                {"--set", "volumetric.view_limit", "8"},
                                {"--set", "limits.stand_off", "0.4"},
                                {"--set", "limits.highest_pitch_deg", "0"}});
-    const evaluation::SurveyScene scene(mission, "");
-    const session::SurveyRecord record = simulation::run_survey(mission, scene, 1, 1);
+    const evaluation::SurveyScene scene(mission.simulation, "", 0);
+    const session::SurveyRecord record = simulation::run_survey(mission.simulation, scene, 1, 1);
     const geometry::MeshDistance truth(scene.model());
-    const survey::ViewLimits limits = config::view_limits(mission);
+    const survey::ViewLimits& limits = mission.survey().planner.limits;
     EXPECT_GE(record.views.size(), 2U) << name;
     for (const session::JudgedView& judged : record.views) {
       const geometry::View& view = judged.surveyed.view;
@@ -133,25 +133,29 @@ TEST(RunSurvey, EveryPlannerKeepsToTheSiteAndTheLimits) {
 }
 
 TEST(MakePlanner, NeedsToKnowTheSphereOfAVolumetricPlanner) {
-  config::Mission mission =
-      config::parse_mission(quick_mission(), "m.yaml", {{"", "planner.name", "oa"}});
-  try {
-    config::make_planner(mission, 1);
-    FAIL();
-  } catch (const Error& error) {
-    EXPECT_THAT(error.what(), HasSubstr("volumetric.sphere_centre"));
-  }
-  mission.volumetric.sphere_centre = Eigen::Vector3d::Zero();
-  mission.volumetric.sphere_radius = 2.0;
-  EXPECT_NE(config::make_planner(mission, 1), nullptr);
+  const config::KeyOverride name{"", "planner.name", "oa"};
+  const auto planner_of = [](const std::vector<config::KeyOverride>& keys,
+                             const survey::PlannerRun& run) {
+    const config::MissionSetup mission = config::parse_mission(quick_mission(), "m.yaml", keys);
+    return survey::make_planner(mission.survey().planner, run);
+  };
+  EXPECT_THAT(testing_support::complaint_of([&] { planner_of({name}, {}); }),
+              HasSubstr("volumetric.sphere_centre"));
+  EXPECT_NE(planner_of({name}, {.sphere = survey::ViewSphere{.radius = 2.0}}), nullptr);
+  EXPECT_NE(planner_of({name,
+                        {"", "volumetric.sphere_centre", "[0, 0, 0]"},
+                        {"", "volumetric.sphere_radius", "2"}},
+                       {}),
+            nullptr);
 }
 
 TEST(RunSurvey, EndsWhenABudgetIsSpent) {
   for (const char* name : {"see++", "skycap"}) {
     const auto record_with = [&](const char* key, const char* value) {
-      const config::Mission mission = config::parse_mission(
+      const config::MissionSetup mission = config::parse_mission(
           quick_mission(), "m.yaml", {{"--planner", "planner.name", name}, {"--set", key, value}});
-      return simulation::run_survey(mission, evaluation::SurveyScene(mission, ""), 1, 1);
+      return simulation::run_survey(mission.simulation,
+                                    evaluation::SurveyScene(mission.simulation, "", 0), 1, 1);
     };
     const session::SurveyRecord by_length = record_with("limits.max_distance", "6");
     EXPECT_EQ(by_length.stop_reason, survey::StopReason::distance_limit) << name;
@@ -171,8 +175,9 @@ TEST(RunSurvey, EndsWhenABudgetIsSpent) {
 // An admissible place is one that the mission's limits allow: from above only, tops are visible.
 TEST(SurveyScene, CountsAsVisibleWhatIsSeenFromAdmissiblePlaces) {
   const auto share = [](const std::string& more) {
-    const config::Mission mission = config::parse_mission(quick_mission(more), "m.yaml");
-    const std::vector<std::uint8_t> visible = evaluation::SurveyScene(mission, "").visible(1);
+    const config::MissionSetup mission = config::parse_mission(quick_mission(more), "m.yaml");
+    const std::vector<std::uint8_t> visible =
+        evaluation::SurveyScene(mission.simulation, "", 0).visible(1);
     return static_cast<double>(std::ranges::count(visible, 1)) / double(visible.size());
   };
   const double anywhere = share(""), above = share("site: {lowest_height: 1.0}");
@@ -185,18 +190,19 @@ TEST(SurveyScene, CountsAsVisibleWhatIsSeenFromAdmissiblePlaces) {
 
 // Coverage along the way is what the final cloud covers, and grows.
 TEST(RunSurvey, JudgesEveryView) {
-  const config::Mission mission = config::parse_mission(quick_mission(), "m.yaml");
-  const evaluation::SurveyScene scene(mission, "");
+  const config::MissionSetup mission = config::parse_mission(quick_mission(), "m.yaml");
+  const evaluation::SurveyScene scene(mission.simulation, "", 0);
   std::size_t reported = 0;
   const session::SurveyRecord record = simulation::run_survey(
-      mission, scene, 3, 1, {}, [&](const session::JudgedView&) { ++reported; });
+      mission.simulation, scene, 3, 1, {}, [&](const session::JudgedView&) { ++reported; });
   ASSERT_GT(record.views.size(), 2U);
   EXPECT_EQ(reported, record.views.size());
   EXPECT_EQ(record.views.back().surveyed.points, record.cloud.size());
   for (std::size_t i = 1; i < record.views.size(); ++i) {
     EXPECT_GE(record.views[i].coverage, record.views[i - 1].coverage);
   }
-  evaluation::CoverageMeter meter(scene.samples().points, mission.evaluation.registration_distance);
+  evaluation::CoverageMeter meter(scene.samples().points,
+                                  mission.evaluation().registration_distance);
   meter.add(record.cloud.positions);
   EXPECT_EQ(record.coverage(), meter.share());
   EXPECT_GT(record.coverage(), 0.5);  // it is a survey, not one look
@@ -204,16 +210,16 @@ TEST(RunSurvey, JudgesEveryView) {
 
 // Wherever a stop meets it: the cloud is that of the views that are reported.
 TEST(RunSurvey, HoldsWhatItsViewsMeasuredWhenItIsStopped) {
-  const config::Mission mission = config::parse_mission(
+  const config::MissionSetup mission = config::parse_mission(
       quick_mission(), "m.yaml",
       {{"--planner", "planner.name", "rsv"}, {"--set", "volumetric.view_limit", "100"}});
-  const evaluation::SurveyScene scene(mission, "");
+  const evaluation::SurveyScene scene(mission.simulation, "", 0);
   int stopped = 0;
   for (const int delay : {1, 5, 20, 60, 120}) {
     std::stop_source stop;
     std::jthread finger;
     const session::SurveyRecord record = simulation::run_survey(
-        mission, scene, 1, 1, stop.get_token(), [&](const session::JudgedView&) {
+        mission.simulation, scene, 1, 1, stop.get_token(), [&](const session::JudgedView&) {
           if (finger.joinable()) return;
           finger = std::jthread([&] {
             std::this_thread::sleep_for(std::chrono::milliseconds(delay));

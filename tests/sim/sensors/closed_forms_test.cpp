@@ -7,8 +7,8 @@
 #include <gtest/gtest.h>
 
 #include "geometry/place/pose.h"
+#include "geometry/points/depth_image.h"
 #include "sim/sensors/depth_camera.h"
-#include "sim/sensors/depth_image.h"
 #include "sim/sensors/lidar.h"
 #include "tests/sim/packets.h"
 #include "tests/sim/shapes.h"
@@ -306,7 +306,7 @@ TEST(ClosedForm, ADepthImageHasTheNoiseOnce) {
   config.noise.sigma = sigma;
   const DepthCamera camera(config);
   const geometry::Scan scan = camera.scan(scene, geometry::View{{0, 0, 0}, {1, 0, 0}}, 0, 1);
-  const DepthImage image = depth_image(scan, camera.camera(), unit);
+  const geometry::DepthImage image = geometry::depth_image(scan, camera.camera(), unit);
   const auto n = static_cast<double>(image.values.size());
   double sum = 0.0, squares = 0.0;
   for (const std::uint16_t value : image.values) {

@@ -241,8 +241,8 @@ TEST(VolumetricConfig, NamesTheFieldThatIsWrong) {
   };
   using Config = volumetric::VolumetricConfig;
   EXPECT_EQ(message([](Config&) {}), "");
-  EXPECT_THAT(message([](Config& c) { c.resolution = 0.0; }), HasSubstr("resolution_radius is 0"));
-  EXPECT_THAT(message([](Config& c) { c.spacing = -1.0; }), HasSubstr("planner.spacing is -1"));
+  EXPECT_THAT(message([](Config& c) { c.resolution = 0.0; }), HasSubstr("resolution is 0"));
+  EXPECT_THAT(message([](Config& c) { c.spacing = -1.0; }), HasSubstr("spacing is -1"));
   EXPECT_THAT(message([](Config& c) { c.sphere_radius = -2.0; }), HasSubstr("sphere_radius is -2"));
   EXPECT_THAT(message([](Config& c) { c.candidates = 0; }), HasSubstr("candidates_per_view"));
   EXPECT_THAT(message([](Config& c) { c.settings.cost_weight = -1.0; }), HasSubstr("cost_weight"));

@@ -7,6 +7,8 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
+#include "missions/config/resolve.h"
+
 namespace skycap::missions {
 namespace {
 
@@ -40,9 +42,17 @@ std::vector<batch::Trial> two_trials() {
   return {a, b};
 }
 
+config::MissionSetup mission_called(const std::string& name, const std::string& more = "") {
+  return config::parse_mission("name: " + name +
+                                   "\nscene: {model: 'builtin:teapot'}\n"
+                                   "evaluation: {registration_distance: 0.005}\n" +
+                                   more,
+                               "m.yaml");
+}
+
 TEST(Trials, CurvesKeepTheEndOfSurveysThatAreOver) {
   const auto json =
-      nlohmann::json::parse(batch::trials_json(config::Mission{}, two_trials(), 2, 1));
+      nlohmann::json::parse(batch::trials_json(mission_called("vase"), two_trials(), 2, 1));
   EXPECT_EQ(json["trials"], 2);
   EXPECT_EQ(json["trials_complete"], 1);
   EXPECT_EQ(json["views"]["mean"], 3.0);
@@ -54,9 +64,7 @@ TEST(Trials, CurvesKeepTheEndOfSurveysThatAreOver) {
 }
 
 TEST(Trials, PutThePapersFiguresBesideTheirs) {
-  config::Mission mission;
-  mission.name = "vase";
-  mission.paper.views = 22.3;
+  const config::MissionSetup mission = mission_called("vase", "paper: {views: 22.3}\n");
   const auto json = nlohmann::json::parse(batch::trials_json(mission, two_trials(), 2, 1));
   EXPECT_EQ(json["views"]["paper"], 22.3);
   EXPECT_FALSE(json["coverage"].contains("paper"));
@@ -67,10 +75,8 @@ TEST(Trials, PutThePapersFiguresBesideTheirs) {
 
 // Table 1, where the mission is one of its models and names no other publication.
 TEST(Trials, TakeThePapersRowOfTheirPlanner) {
-  config::Mission mission;
-  mission.name = "bunny";
-  mission.planner.name = config::PlannerName::see;
-  mission.paper.coverage = 0.5;
+  const config::MissionSetup mission =
+      mission_called("bunny", "planner: {name: see}\npaper: {coverage: 0.5}\n");
   const auto json = nlohmann::json::parse(batch::trials_json(mission, two_trials(), 2, 1));
   EXPECT_EQ(json["views"]["paper"], 75.3);
   EXPECT_EQ(json["coverage"]["paper"], 0.5);
@@ -79,8 +85,7 @@ TEST(Trials, TakeThePapersRowOfTheirPlanner) {
 }
 
 TEST(Trials, TableHoldsNamesOfAnyLength) {
-  config::Mission mission;
-  mission.name = std::string(1000, 'v');
+  const config::MissionSetup mission = mission_called(std::string(1000, 'v'));
   EXPECT_THAT(batch::trials_table(mission, two_trials()),
               testing::StartsWith(mission.name + ": 2 trials, 1 complete\n"));
 }

@@ -11,8 +11,8 @@
 #include "geometry/error.h"
 #include "missions/batch/campaign/manifest.h"
 #include "missions/batch/campaign/manifest_batches.h"
-#include "missions/config/mission_reader.h"
 #include "missions/support/flow_text.h"
+#include "missions/config/mission_reader.h"
 
 namespace skycap::missions::batch {
 namespace {
@@ -159,7 +159,7 @@ TEST(Campaign, ChangesKnowTheirLine) {
   const std::string mission =
       "scene: {model: 'builtin:teapot'}\nevaluation: {registration_distance: 0.03}\n";
   try {
-    config::parse_mission_file(mission, "m.yaml", file.variants.at(0).changes);
+    config::parse_mission_document(mission, "m.yaml", file.variants.at(0).changes);
     FAIL() << "was taken";
   } catch (const Error& error) {
     EXPECT_THAT(error.what(), HasSubstr("c.yaml:4: key planner.density: is much; give"));

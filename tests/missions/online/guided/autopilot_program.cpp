@@ -8,8 +8,7 @@
 #include <string>
 
 #include "geometry/error.h"
-#include "missions/config/mission_flight.h"
-#include "missions/config/resolved_mission.h"
+#include "missions/config/resolve.h"
 #include "missions/evaluation/survey_scene.h"
 #include "missions/online/guided/network_port.h"
 #include "tests/missions/online/guided/test_autopilot.h"
@@ -22,10 +21,10 @@ int main(int argc, char** argv) {
   }
   try {
     const std::filesystem::path file = argv[1];
-    const config::Mission mission = config::read_mission(file);
-    const evaluation::SurveyScene scene(mission, file.parent_path());
+    const config::MissionSetup setup = config::read_mission(file);
+    const evaluation::SurveyScene scene(setup.simulation, file.parent_path(), setup.run.threads);
     online::TestAutopilot autopilot(
-        mission, config::pad_of(mission, scene.first_view(mission.seed).position), {});
+        setup.flight(), setup.flight().pad(scene.first_view(setup.run.seed).position), {});
     online::NetworkPort port(online::parse_address(std::string("udpout:127.0.0.1:") + argv[2]));
     double flown = 0.0;
     online::fly_in_real_time(autopilot, port, [&] {

@@ -13,7 +13,6 @@
 
 #include "geometry/error.h"
 #include "geometry/surfaces/mesh_distance.h"
-#include "missions/config/mission_flight.h"
 #include "missions/evaluation/survey_scene.h"
 #include "tests/missions/flown_mission.h"
 #include "tests/missions/online/guided/test_autopilot.h"
@@ -46,12 +45,13 @@ class FlySurvey : public testing::Test {
   FlightEnd fly(const Faults& faults = {}, FlightOptions options = {}) {
     survey_.reset();
     survey_.reset(new online::LiveSurvey(rehearsal_.open(folder_->path())));
-    autopilot_ =
-        std::make_unique<TestAutopilot>(rehearsal_.mission(), survey_->flight()->pad(), faults);
+    autopilot_ = std::make_unique<TestAutopilot>(rehearsal_.setup().flight(),
+                                                 survey_->flight()->pad(), faults);
     if (!launches_) options.launch = done_at_once;
     options.note = [this](const std::string& text) { notes_ += text + "\n"; };
     SteppedPort port(*autopilot_);
-    return fly_survey(rehearsal_.mission(), *survey_, port, sensor_, options, stop_.get_token());
+    return fly_survey(rehearsal_.setup().flight(), *survey_, port, sensor_, options,
+                      stop_.get_token());
   }
 
   void begin_anew() {
@@ -72,8 +72,8 @@ class FlySurvey : public testing::Test {
   std::string notes_;
 };
 
-double nearest_of(const std::vector<Vector3d>& places, const config::Mission& mission) {
-  const geometry::MeshDistance truth(evaluation::placed_model(mission, ""));
+double nearest_of(const std::vector<Vector3d>& places, const scene::SceneOptions& scene) {
+  const geometry::MeshDistance truth(evaluation::placed_model(scene, ""));
   double nearest = 1e9;
   for (const Vector3d& place : places) nearest = std::min(nearest, truth.distance(place));
   return nearest;
@@ -84,14 +84,14 @@ TEST_F(FlySurvey, IsWhatPlanDoesAndKeepsItsClearance) {
   ASSERT_FALSE(end.trouble) << end.trouble->what << "\n" << notes_;
   EXPECT_TRUE(end.has_landed);
   EXPECT_FALSE(autopilot_->is_armed());
-  const config::Mission& mission = rehearsal_.mission();
+  const config::MissionSetup& setup = rehearsal_.setup();
   const Vector3d off = autopilot_->position() - survey_->flight()->pad();
-  EXPECT_LT(off.norm(), mission.flight.tracking_error);
-  const flight::ClearanceBudget clearance = config::clearance_of(mission);
+  EXPECT_LT(off.norm(), setup.flight().tracking_error);
+  const flight::ClearanceBudget clearance = setup.flight().budget();
   // A set point is rounded to 1e-7 degrees, 1.1 cm.
-  EXPECT_GT(nearest_of(autopilot_->set_points(), mission),
+  EXPECT_GT(nearest_of(autopilot_->set_points(), setup.scene()),
             clearance.total() - clearance.map_error - 0.02);
-  EXPECT_GT(nearest_of(autopilot_->track(), mission),
+  EXPECT_GT(nearest_of(autopilot_->track(), setup.scene()),
             clearance.total() - clearance.map_error - clearance.tracking_error);
   online::expect_same(survey_->finish(), rehearsal_.planned());
 }
@@ -150,7 +150,7 @@ TEST_F(FlySurvey, StaysOnItsLegsWhereverTheLinkIsLost) {
   fly();
   const std::vector<Vector3d> legs = autopilot_->set_points();
   const Vector3d above_pad = survey_->flight()->above_pad();
-  const double near = rehearsal_.mission().flight.tracking_error + 0.25;
+  const double near = rehearsal_.setup().flight().tracking_error + 0.25;
   for (int i = 0; i < 12; ++i) {
     begin_anew();
     const double silent = 8.0 + 3.7 * i;
@@ -224,7 +224,7 @@ TEST_F(FlySurvey, FliesHomeWithoutAPlanner) {
   EXPECT_EQ(end.trouble->kind, TroubleKind::planner);
   EXPECT_THAT(end.trouble->what, HasSubstr("longer than 60 s"));
   EXPECT_TRUE(end.has_landed);
-  EXPECT_GT(nearest_of(autopilot_->set_points(), rehearsal_.mission()), 1.88);
+  EXPECT_GT(nearest_of(autopilot_->set_points(), rehearsal_.setup().scene()), 1.88);
 }
 
 TEST_F(FlySurvey, FliesHomeWhileItsBatteryLasts) {

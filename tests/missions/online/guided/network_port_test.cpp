@@ -11,7 +11,7 @@
 #include <sys/socket.h>
 #include <unistd.h>
 
-#include "missions/config/resolved_mission.h"
+#include "missions/config/resolve.h"
 #include "tests/missions/flown_mission.h"
 #include "tests/missions/online/guided/test_autopilot.h"
 #include "tests/missions/run_skycap.h"
@@ -111,7 +111,7 @@ TEST(FlyVerb, SaysWhatTheAutopilotSays) {
   const std::string number = std::to_string(free_port());
   std::atomic<bool> is_over = false;
   std::jthread vehicle([&] {
-    TestAutopilot autopilot(config::parse_mission(text, "m.yaml"), {-75.0, 0.0, 0.0},
+    TestAutopilot autopilot(config::parse_mission(text, "m.yaml").flight(), {-75.0, 0.0, 0.0},
                             {.refuses_arming = true});
     NetworkPort port(parse_address("udpout:127.0.0.1:" + number));
     fly_in_real_time(autopilot, port, [&] { return is_over.load(); });

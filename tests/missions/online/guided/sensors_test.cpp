@@ -10,7 +10,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "missions/config/resolved_mission.h"
+#include "missions/config/resolve.h"
 #include "tests/missions/run_skycap.h"
 #include "tests/support/complaint.h"
 
@@ -25,11 +25,11 @@ class FolderSensor : public testing::Test {
  protected:
   geometry::Scan scan(std::size_t number, double patience = 5.0) {
     const geometry::View view{{1.0, 2.0, 3.0}, {1.0, 0.0, 0.0}};
-    return folder_sensor(mission_, folder_.path(), {}, patience, stop_.get_token())(view, view,
-                                                                                    number);
+    return folder_sensor(setup_.flight(), setup_.live, folder_.path(), {}, patience,
+                         stop_.get_token())(view, view, number);
   }
 
-  const config::Mission mission_ = config::parse_mission(tests::quick_mission(), "m.yaml");
+  const config::MissionSetup setup_ = config::parse_mission(tests::quick_mission(), "m.yaml");
   const tests::TestFolder folder_;
   std::stop_source stop_;
 };
@@ -59,14 +59,10 @@ TEST_F(FolderSensor, GivesUp) {
   EXPECT_THAT(complaint_of([&] { scan(3, 0.1); }), HasSubstr("no scan came"));
   stop_.request_stop();
   EXPECT_THAT(complaint_of([&] { scan(4, 600.0); }), HasSubstr("no scan came"));
-  EXPECT_THAT(complaint_of([&] { folder_sensor(mission_, folder_.path() / "none", {}, 1.0, {}); }),
+  EXPECT_THAT(complaint_of([&] {
+                folder_sensor(setup_.flight(), setup_.live, folder_.path() / "none", {}, 1.0, {});
+              }),
               HasSubstr("is no folder"));
-}
-
-TEST(SimulatedSensor, NeedsAScene) {
-  config::Mission mission = config::parse_mission(tests::quick_mission(), "m.yaml");
-  mission.scene.model.clear();
-  EXPECT_THAT(complaint_of([&] { simulated_sensor(mission, ""); }), HasSubstr("scene.model"));
 }
 
 }  // namespace

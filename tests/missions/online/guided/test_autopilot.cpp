@@ -6,7 +6,6 @@
 
 #include "flight/export/mission_items.h"
 #include "geometry/angle.h"
-#include "missions/config/mission_flight.h"
 
 namespace skycap::missions::online {
 namespace {
@@ -26,11 +25,11 @@ double turned(double from, double to, double most) {
 
 }  // namespace
 
-TestAutopilot::TestAutopilot(const config::Mission& mission, const Vector3d& pad,
+TestAutopilot::TestAutopilot(const flight::FlightOptions& flight, const Vector3d& pad,
                              const Faults& faults)
     : faults_(faults),
-      frame_(config::site_of(mission).origin, pad),
-      motion_(config::vehicle_of(mission), config::route_options_of(mission, pad).conditions),
+      frame_(flight.site.origin, pad),
+      motion_(flight.flown(), flight.route(pad).conditions),
       vehicle_(motion_, pad + faults.beside_pad),
       pad_(pad + faults.beside_pad),
       is_armed_(faults.is_armed) {}

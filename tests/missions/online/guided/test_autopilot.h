@@ -11,11 +11,11 @@
 
 #include <Eigen/Core>
 
+#include "flight/flight_options.h"
 #include "flight/fly_test/flight_script.h"
 #include "flight/fly_test/vehicle_model.h"
 #include "flight/link/guided_messages.h"
 #include "flight/link/port.h"
-#include "missions/config/mission.h"
 #include "missions/online/guided/flight_frame.h"
 
 namespace skycap::missions::online {
@@ -38,7 +38,8 @@ struct Faults {
 
 class TestAutopilot {
  public:
-  TestAutopilot(const config::Mission& mission, const Eigen::Vector3d& pad, const Faults& faults);
+  TestAutopilot(const flight::FlightOptions& flight, const Eigen::Vector3d& pad,
+                const Faults& faults);
 
   /// Takes in what was sent to it.
   void hear(std::span<const std::uint8_t> bytes);

@@ -7,11 +7,12 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
 
 #include "geometry/angle.h"
 #include "geometry/error.h"
 #include "geometry/io/record_log.h"
-#include "missions/online/live/open_survey.h"
+#include "missions/online/live/answer.h"
 #include "missions/support/sha256.h"
 #include "tests/missions/flown_mission.h"
 #include "tests/missions/online/live/rehearsal.h"
@@ -37,7 +38,7 @@ TEST(LiveSurvey, FedByTheSimulatorIsWhatPlanDoes) {
     Carrier carrier(rehearsal);
     while (survey.proposal().view) carrier.add_next(survey);
     const session::SurveyRecord planned = rehearsal.planned();
-    EXPECT_EQ(planned.frames_on_way() > 0, rehearsal.mission().sensor.is_moving());
+    EXPECT_EQ(planned.frames_on_way() > 0, rehearsal.setup().sensor().is_moving());
     expect_same(survey.finish(), planned);
   }
 }
@@ -171,14 +172,14 @@ TEST(LiveSurvey, KeepsItsWarningUntilAScanIsUsed) {
     rehearsal.add_one(survey);
     survey.add(displaced(rehearsal.scan(survey), 0.1, 1.0), "wrong");
     survey.refuse("elsewhere");
-    answer = answer_json(survey, rehearsal.mission());
+    answer = answer_json(survey, rehearsal.setup().flight());
     EXPECT_THAT(answer, HasSubstr("\"warning\":\"pose\""));
     EXPECT_THAT(answer, HasSubstr("\"set_aside\":1"));
   }
   LiveSurvey survey = rehearsal.open(folder.path());
-  EXPECT_EQ(answer_json(survey, rehearsal.mission()), answer);
+  EXPECT_EQ(answer_json(survey, rehearsal.setup().flight()), answer);
   rehearsal.add_one(survey);
-  EXPECT_THAT(answer_json(survey, rehearsal.mission()), Not(HasSubstr("warning")));
+  EXPECT_THAT(answer_json(survey, rehearsal.setup().flight()), Not(HasSubstr("warning")));
 }
 
 TEST(LiveSurvey, GivesNoWayFromWhereNobodyKnows) {
@@ -220,7 +221,7 @@ TEST(LiveSurvey, KeepsTheWayThroughAWrongPoseOnIt) {
   const geometry::View view = *survey.proposal().view;
   geometry::View between = view;
   between.position = 0.5 * (view.position + survey.views().back().view.position);
-  simulation::CarriedSensor sensor(rehearsal.mission(), 1);
+  simulation::CarriedSensor sensor(rehearsal.setup().simulation, 1);
   survey.add_on_way(rehearsal.scan(sensor, {.view = between}, 2), "right");
   EXPECT_FALSE(survey.proposal().warns_of_pose());
   EXPECT_EQ(survey.on_way(), 1U);
@@ -260,7 +261,7 @@ TEST(LiveSurvey, CorrectsPosesTheSameWayAgain) {
     rehearsal.add_one(survey);
     const Eigen::Isometry3d error = error_of(scan, 0.03, 0.5);
     survey.add(corrected(scan, error), "from the same place");
-    answer = answer_json(survey, rehearsal.mission());
+    answer = answer_json(survey, rehearsal.setup().flight());
     ASSERT_TRUE(survey.proposal().pose->correction) << answer;
     const Eigen::Isometry3d left = *survey.proposal().pose->correction * error;
     const Eigen::Vector3d sensor = scan.sensor_position();
@@ -268,7 +269,7 @@ TEST(LiveSurvey, CorrectsPosesTheSameWayAgain) {
     EXPECT_LT(Eigen::AngleAxisd(left.linear()).angle(), 0.1 * geometry::radians_per_degree);
   }
   const LiveSurvey survey = rehearsal.open(folder.path());
-  EXPECT_EQ(answer_json(survey, rehearsal.mission()), answer);
+  EXPECT_EQ(answer_json(survey, rehearsal.setup().flight()), answer);
   EXPECT_THAT(answer, HasSubstr("\"corrected\":true"));
 }
 
@@ -299,20 +300,40 @@ TEST(LiveSurvey, RefusesWhatItCannotTrust) {
   EXPECT_THAT(complaint_of([&] { rehearsal.open(folder.path()); }), HasSubstr("is damaged"));
 }
 
+void write_records(const fs::path& journal, const std::vector<std::string>& records) {
+  fs::remove(journal);
+  geometry::RecordLog log(journal);
+  for (const std::string& record : records) log.append(record);
+}
+
+TEST(LiveSurvey, RefusesAJournalOfAnotherFormatNamingItsVersion) {
+  const tests::TestFolder folder;
+  const Rehearsal rehearsal(tests::quick_mission());
+  rehearsal.open(folder.path());
+  const fs::path journal = folder.path() / "live.journal";
+  std::vector<std::string> records = geometry::read_records(journal).records;
+  auto identity = nlohmann::ordered_json::parse(records.at(0));
+  identity["version"] = "0.1.0";
+  identity.erase("format");
+  records[0] = identity.dump();
+  write_records(journal, records);
+  EXPECT_THAT(complaint_of([&] { rehearsal.open(folder.path()); }),
+              HasSubstr("was written by version 0.1.0, whose journals this version cannot "
+                        "continue; name another folder"));
+}
+
 /// Writes the one scan of a survey's folder anew, and its digest in the journal.
 void replace_scan(const fs::path& folder, const std::string& bytes) {
   const fs::path scan = fs::directory_iterator(folder / "scans")->path(),
                  journal = folder / "live.journal";
   const std::string digest = support::sha256_of_file(scan);
   std::ofstream(scan, std::ios::binary) << bytes;
-  const std::vector<std::string> records = geometry::read_records(journal).records;
-  fs::remove(journal);
-  geometry::RecordLog log(journal);
-  for (std::string record : records) {
+  std::vector<std::string> records = geometry::read_records(journal).records;
+  for (std::string& record : records) {
     const std::size_t at = record.find(digest);
     if (at != std::string::npos) record.replace(at, digest.size(), support::sha256_of_file(scan));
-    log.append(record);
   }
+  write_records(journal, records);
 }
 
 /// As somebody else's folder may be, whose digests are right.
@@ -347,11 +368,7 @@ TEST(LiveSurvey, NoticesProposalsThatComeOutOtherwise) {
   std::vector<std::string> records = geometry::read_records(journal).records;
   const std::string field = "\"position\":[";
   records.back().insert(records.back().find(field) + field.size(), "1");
-  fs::remove(journal);
-  {
-    geometry::RecordLog log(journal);
-    for (const std::string& record : records) log.append(record);
-  }
+  write_records(journal, records);
   EXPECT_THAT(complaint_of([&] { rehearsal.open(folder.path()); }),
               HasSubstr("comes out otherwise"));
 }

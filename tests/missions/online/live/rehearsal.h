@@ -10,12 +10,12 @@
 
 #include <gtest/gtest.h>
 
-#include "missions/config/resolved_mission.h"
-#include "missions/config/survey_sensor.h"
+#include "missions/config/resolve.h"
 #include "missions/evaluation/survey_scene.h"
 #include "missions/online/live/live_survey.h"
 #include "missions/simulation/carried_sensor.h"
 #include "missions/simulation/survey_runner.h"
+#include "sim/sensors/survey_sensor.h"
 #include "tests/missions/flown_mission.h"
 #include "tests/missions/run_skycap.h"
 
@@ -27,18 +27,22 @@ class Rehearsal {
   /// `folder` is what the mission's files are named from; zero threads: all processors.
   explicit Rehearsal(const std::string& mission, const std::filesystem::path& folder = "",
                      unsigned threads = 1)
-      : mission_(config::parse_mission(mission, "m.yaml")),
-        scene_(mission_, folder),
-        sensor_(mission_.sensor, mission_.seed),
-        first_view_(scene_.first_view(mission_.seed)),
+      : setup_(config::parse_mission(mission, "m.yaml")),
+        scene_(setup_.simulation, folder, setup_.run.threads),
+        sensor_(setup_.sensor(), setup_.run.seed),
+        first_view_(scene_.first_view(setup_.run.seed)),
         threads_(threads) {}
 
   session::SurveyRecord planned() const {
-    return simulation::run_survey(mission_, scene_, mission_.seed, threads_);
+    return simulation::run_survey(setup_.simulation, scene_, setup_.run.seed, threads_);
   }
 
   LiveSurvey open(const std::filesystem::path& folder) const {
-    return {simulation::trial_mission(mission_, scene_, mission_.seed), folder, first_view_,
+    return {setup_.survey(),
+            setup_.live,
+            setup_.identity(),
+            folder,
+            {first_view_, scene_.view_sphere()},
             threads_};
   }
 
@@ -49,7 +53,7 @@ class Rehearsal {
 
   /// Without a vehicle `plan` knows from the scene, and a crew by looking, what is walled in.
   bool can_reach(const LiveSurvey& survey) const {
-    return mission_.flight.is_flown() || survey.views().empty() ||
+    return setup_.flight().is_flown() || survey.views().empty() ||
            scene_.is_reachable(survey.proposal().view->position);
   }
 
@@ -62,12 +66,12 @@ class Rehearsal {
     survey.add(scan(survey), "scan " + std::to_string(survey.views().size()));
   }
 
-  const config::Mission& mission() const { return mission_; }
+  const config::MissionSetup& setup() const { return setup_; }
 
  private:
-  config::Mission mission_;
+  config::MissionSetup setup_;
   evaluation::SurveyScene scene_;
-  config::SurveySensor sensor_;
+  sim::SurveySensor sensor_;
   geometry::View first_view_;
   unsigned threads_;
 };
@@ -76,7 +80,7 @@ class Rehearsal {
 class Carrier {
  public:
   explicit Carrier(const Rehearsal& rehearsal)
-      : rehearsal_(rehearsal), sensor_(rehearsal.mission(), rehearsal.mission().seed) {}
+      : rehearsal_(rehearsal), sensor_(rehearsal.setup().simulation, rehearsal.setup().run.seed) {}
 
   struct Taken {
     geometry::Scan scan;

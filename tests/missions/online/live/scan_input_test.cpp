@@ -10,7 +10,7 @@
 #include "geometry/error.h"
 #include "geometry/io/cloud_io.h"
 #include "geometry/place/camera.h"
-#include "missions/config/resolved_mission.h"
+#include "missions/config/resolve.h"
 #include "missions/online/live/kept_scan.h"
 #include "tests/support/complaint.h"
 #include "tests/support/temporary_folder.h"
@@ -27,7 +27,7 @@ using testing::IsEmpty;
 using testing_support::complaint_of;
 
 /// A camera of 64 x 48 pixels and right angles both ways: f = 32 and 24.
-config::Mission mission(const std::string& more = "") {
+config::MissionSetup setup_of(const std::string& more = "") {
   return config::parse_mission(
       "sensor: {width: 64, height: 48, horizontal_fov_deg: 90, vertical_fov_deg: 90,\n"
       "         max_range: 20}\n"
@@ -36,6 +36,11 @@ config::Mission mission(const std::string& more = "") {
       "evaluation: {registration_distance: 0.03}\n" +
           more,
       "m.yaml");
+}
+
+ScanFound read(const ScanInput& input) {
+  const config::MissionSetup setup = setup_of();
+  return read_scan(input, setup.flight().capture, setup.live);
 }
 
 Isometry3d some_pose() {
@@ -108,14 +113,13 @@ TEST(PoseText, ThatIsNoPoseIsRefused) {
 
 TEST(DepthImage, BecomesPointsAlongTheRays) {
   const testing_support::TemporaryFolder folder;
-  sim::DepthImage image{64, 48, std::vector<std::uint16_t>(64 * 48, 0)};
+  geometry::DepthImage image{64, 48, std::vector<std::uint16_t>(64 * 48, 0)};
   image.values[10 * 64 + 20] = 1500;
   image.values[11 * 64 + 21] = 65535;
   image.values[47 * 64 + 63] = 4000;
   const auto file = folder.path() / "depth.png";
-  sim::write_depth_png(image, file);
-  const ScanFound found =
-      read_scan({.file = file, .world_from_sensor = some_pose(), .lens = {}}, mission());
+  geometry::write_depth_png(image, file);
+  const ScanFound found = read({.file = file, .world_from_sensor = some_pose(), .lens = {}});
   ASSERT_EQ(found.scan.points.size(), 2U);
   EXPECT_THAT(found.scan.pixels, ElementsAre(10 * 64 + 20, 47 * 64 + 63));
   EXPECT_EQ(found.without_return, 64U * 48U - 2U);
@@ -127,19 +131,19 @@ TEST(DepthImage, BecomesPointsAlongTheRays) {
 /// The lens looks elsewhere than the mission's camera: points stay true, and pixels follow them.
 TEST(DepthImage, OfAnotherLensIsPutIntoTheMissionsPixels) {
   const testing_support::TemporaryFolder folder;
-  const sim::DepthImage image{64, 48, std::vector<std::uint16_t>(64 * 48, 2000)};
+  const geometry::DepthImage image{64, 48, std::vector<std::uint16_t>(64 * 48, 2000)};
   const auto file = folder.path() / "depth.png";
-  sim::write_depth_png(image, file);
+  geometry::write_depth_png(image, file);
   const Lens lens = parse_lens("40 40 30 25");
-  const ScanFound found = read_scan({.file = file, .lens = lens}, mission());
-  const geometry::Camera camera(mission().sensor.camera.camera);
+  const ScanFound found = read({.file = file, .lens = lens});
+  const geometry::Camera camera(setup_of().flight().capture.camera);
   EXPECT_EQ(found.scan.points.size() + found.hidden + found.out_of_view, 64U * 48U);
   for (std::size_t i = 0; i < found.scan.points.size(); ++i) {
     const auto pixel = camera.project(found.scan.points[i].cast<double>());
     ASSERT_TRUE(pixel);
     EXPECT_EQ(std::lround(pixel->x()) + 64 * std::lround(pixel->y()), found.scan.pixels[i]);
   }
-  EXPECT_NO_THROW(require_usable(found.scan, mission()));
+  EXPECT_NO_THROW(require_usable(found.scan, setup_of().flight()));
 }
 
 TEST(Cloud, OfAnyOrderIsSeenByTheCamera) {
@@ -149,7 +153,7 @@ TEST(Cloud, OfAnyOrderIsSeenByTheCamera) {
   const std::vector<Eigen::Vector3f> points{
       {0, 0, -1}, {9, 0, 1}, {1, 0.5, 4}, {0.5, 0.25, 2}, {0, 0, 1}};
   geometry::write_cloud(file, {.positions = points, .normals = {}, .views = {}, .colours = {}});
-  const ScanFound found = read_scan({.file = file, .lens = {}}, mission());
+  const ScanFound found = read({.file = file, .lens = {}});
   EXPECT_EQ(found.out_of_view, 2U);
   EXPECT_EQ(found.hidden, 1U);
   EXPECT_THAT(found.scan.points, testing::UnorderedElementsAre(points[3], points[4]));
@@ -161,8 +165,8 @@ TEST(Cloud, InTheWorldStaysWhereItIs) {
   const Vector3d in_view = some_pose() * Vector3d(0.1, 0.1, 2.0);
   const std::vector<Eigen::Vector3f> points{in_view.cast<float>()};
   geometry::write_cloud(file, {.positions = points, .normals = {}, .views = {}, .colours = {}});
-  const ScanFound found = read_scan(
-      {.file = file, .world_from_sensor = some_pose(), .is_in_world = true, .lens = {}}, mission());
+  const ScanFound found =
+      read({.file = file, .world_from_sensor = some_pose(), .is_in_world = true, .lens = {}});
   ASSERT_EQ(found.scan.points.size(), 1U);
   EXPECT_LT((found.scan.points[0] - points[0]).norm(), 1e-6);
 }
@@ -182,7 +186,7 @@ TEST(KeptScan, GivesBackEveryBit) {
 
 TEST(RequireUsable, RefusesScansThatWouldHarm) {
   const auto message = [](const geometry::Scan& scan, const std::string& more = "") {
-    return complaint_of([&] { require_usable(scan, mission(more)); });
+    return complaint_of([&] { require_usable(scan, setup_of(more).flight()); });
   };
   geometry::Scan scan;
   scan.points = {{0, 0, 1}, {0, 0, 2}};

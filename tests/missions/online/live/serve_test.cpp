@@ -59,7 +59,8 @@ class Served {
  public:
   Served(const Rehearsal& rehearsal, ServerPlace place)
       : survey_(rehearsal.open(folder_.path() / "survey")),
-        session_(rehearsal.mission(), survey_,
+        session_(rehearsal.setup().name, rehearsal.setup().flight(), rehearsal.setup().live,
+                 survey_,
                  [this] {
                    record_ = survey_.finish();
                    return std::string("done");
@@ -190,7 +191,8 @@ class SessionAnswers : public testing::Test {
   tests::TestFolder folder_;
   Rehearsal rehearsal_{fine_mission()};
   LiveSurvey survey_ = rehearsal_.open(folder_.path());
-  Session session_{rehearsal_.mission(), survey_, [] { return std::string(); }};
+  Session session_{rehearsal_.setup().name, rehearsal_.setup().flight(), rehearsal_.setup().live,
+                   survey_, [] { return std::string(); }};
 };
 
 /// Each in its place among the frames of the way, and the view only then.
@@ -198,7 +200,8 @@ TEST(Serve, TakesScansFromTheWayInOrderAndOnce) {
   const Rehearsal rehearsal(moving_mission());
   const tests::TestFolder folder;
   LiveSurvey survey = rehearsal.open(folder.path());
-  Session session(rehearsal.mission(), survey, [] { return std::string(); });
+  Session session(rehearsal.setup().name, rehearsal.setup().flight(), rehearsal.setup().live,
+                  survey, [] { return std::string(); });
   const auto ask = [&](const geometry::Scan& scan, int number, std::optional<int> on_way) {
     nlohmann::ordered_json header{{"type", "scan"},
                                   {"number", number},
@@ -268,7 +271,8 @@ TEST_F(SessionAnswers, GiveCloudsOfTheSensorsFrameTheirPixels) {
   header["format"] = "cloud";
   EXPECT_THAT(ask(header, payload.substr(1)), HasSubstr("points take"));
   EXPECT_THAT(ask(header, payload), HasSubstr("\"is_new\":true"));
-  const ScanFound same = scan_of(points, scan.world_from_sensor, rehearsal_.mission());
+  const ScanFound same = scan_of(points, scan.world_from_sensor,
+                                 rehearsal_.setup().flight().capture, rehearsal_.setup().live);
   EXPECT_FALSE(same.scan.pixels.empty());
   EXPECT_EQ(survey_.number_of(scan_id(same.scan)), ScanNumber{0});
 }

@@ -15,7 +15,7 @@
 #include <mrpt/obs/CObservationVelodyneScan.h>
 #include <mrpt/obs/CSensoryFrame.h>
 
-#include "missions/config/resolved_mission.h"
+#include "geometry/points/depth_image.h"
 #include "tests/missions/online/recordings/written_rawlog.h"
 
 namespace skycap::missions::online {
@@ -213,9 +213,9 @@ TEST_F(Rawlog, IsTakenInAsItsImagesWouldBe) {
   EXPECT_THAT(next("all", {"--dataset", rawlog}).err, testing::Not(HasSubstr("points")));
   for (const double time : {1.0, 2.0}) {
     const auto scan = range_scan(time);
-    const sim::DepthImage image{
+    const geometry::DepthImage image{
         32, 24, {scan->rangeImage.data(), scan->rangeImage.data() + scan->rangeImage.size()}};
-    sim::write_depth_png(image, folder_.path() / "image.png");
+    geometry::write_depth_png(image, folder_.path() / "image.png");
     const Eigen::Matrix<double, 4, 4, Eigen::RowMajor> pose =
         optical(mount).getHomogeneousMatrixVal<mrpt::math::CMatrixDouble44>().asEigen();
     std::ostringstream text;

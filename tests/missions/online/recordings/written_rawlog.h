@@ -102,11 +102,9 @@ class Rawlog : public testing::Test {
     return what;
   }
 
-  /// The scan as of a mission that takes all points in.
+  /// The scan as of a survey that takes all points in.
   static std::vector<Eigen::Vector3f> points(const RawlogFrame& frame) {
-    config::Mission mission;
-    mission.sensor.scanner = sim::LidarConfig{};
-    return scan_of(frame, mission).scan.points;
+    return scan_of(frame, {.is_scanner = true}, {}).scan.points;
   }
 
   tests::TestFolder folder_;

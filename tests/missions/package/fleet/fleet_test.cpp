@@ -1,5 +1,3 @@
-#include "missions/config/fleet.h"
-
 #include <algorithm>
 
 #include <gmock/gmock.h>
@@ -7,7 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "flight/export/text.h"
-#include "missions/config/resolved_mission.h"
+#include "missions/config/resolve.h"
 #include "missions/package/fleet/timetable_proof.h"
 #include "missions/package/settings.h"
 #include "tests/missions/flown_mission.h"
@@ -231,9 +229,9 @@ TEST(Fleet, KeysThatContradictEachOtherAreRefused) {
 
 // Along the side that the first pad is at, to either side in turn.
 TEST(Fleet, StandsInARowWherePadsAreNotGiven) {
-  const config::Mission mission = config::parse_mission(
+  const config::MissionSetup mission = config::parse_mission(
       fleet_mission("vehicles: [generic, generic, generic], separation: 9"), "m.yaml");
-  const std::vector<Eigen::Vector3d> pads = config::pads_of_fleet(mission, {-75, 0, 0});
+  const std::vector<Eigen::Vector3d> pads = mission.flight().fleet_pads({-75, 0, 0});
   ASSERT_EQ(pads.size(), 3U);
   EXPECT_EQ(pads[0], Eigen::Vector3d(-75, 0, 0));
   EXPECT_EQ(pads[1], Eigen::Vector3d(-75, 10, 0));

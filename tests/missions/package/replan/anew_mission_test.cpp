@@ -6,7 +6,7 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
-#include "missions/config/resolved_mission.h"
+#include "missions/config/resolve.h"
 #include "missions/package/package.h"
 #include "tests/missions/flown_mission.h"
 #include "tests/missions/results_in.h"

@@ -1,0 +1,319 @@
+#include "flight/flight_options.h"
+
+#include <algorithm>
+#include <cassert>
+#include <cmath>
+#include <utility>
+
+#include "flight/space/prior_obstacle.h"
+#include "flight/way_home/return_law.h"
+
+namespace skycap::flight {
+namespace {
+
+using Eigen::AlignedBox3d;
+using Eigen::Vector3d;
+
+/// Voxels of a quarter of the clearance lose little of the free space beside what was measured.
+constexpr double voxels_per_clearance = 4.0;
+
+/// How far beside the unknown box places are proposed: more than the clearance and a voxel.
+double spare_of(const FlightOptions& options) { return 2.0 * options.clearance; }
+
+/// The same for pads. Near home DJI's vehicles may land where they are instead of on the pad
+/// (ReturnLaw): those columns must not lead into the box, which grows to whole voxels.
+double pad_spare_of(const FlightOptions& options) {
+  constexpr double voxel_spare = 1.0;
+  const bool is_dji = options.is_flown() && options.flown().dialect == Dialect::dji;
+  const double needed = options.clearance + dji_lands_at_once + voxel_spare;
+  return is_dji ? std::max(spare_of(options), needed) : spare_of(options);
+}
+
+/// No-fly volumes with their top above this are not flown over [m].
+constexpr double no_flight_is_higher = 500.0;
+
+/// What corners are cut by where views are passed, as a share of the view distance.
+constexpr double most_cut_by_distance = 0.03;
+
+/// Grid vertices looked at before a view counts as out of reach: some tenths of a second.
+constexpr std::size_t most_expansions = 50'000;
+
+}  // namespace
+
+ClearanceBudget FlightOptions::budget() const {
+  ClearanceBudget budget{.vehicle_radius = flown().radius,
+                         .position_error = position_error,
+                         .tracking_error = tracking_error,
+                         .map_error = map_error,
+                         .margin = 0.0};
+  budget.margin = clearance - budget.total();
+  return budget;
+}
+
+Vehicle FlightOptions::flown_by(Vehicle own, Dialect dialect) const {
+  if (own.dialect == dialect) return own;
+  const auto other = std::ranges::find(stand_ins, dialect, &Vehicle::dialect);
+  assert(other != stand_ins.end());
+  own.dialect = dialect;
+  own.mode = other->mode;
+  if (dialect == Dialect::dji) own.wpml = other->wpml;
+  return own;
+}
+
+std::vector<Vector3d> FlightOptions::fleet_pads(const Vector3d& first) const {
+  if (!fleet.pads.empty()) return fleet.pads;
+  const bool is_west_or_east =
+      first.x() < unknown_box.min().x() || first.x() > unknown_box.max().x();
+  const Vector3d along = is_west_or_east ? Vector3d::UnitY() : Vector3d::UnitX();
+  std::vector<Vector3d> pads{first};
+  for (std::size_t i = 1; i < fleet.names.size(); ++i) {
+    const double side = i % 2 == 1 ? 1.0 : -1.0;
+    const double steps = static_cast<double>((i + 1) / 2);
+    Vector3d pad = first + side * steps * (fleet.separation + 1.0) * along;
+    pad.z() = ground_at(pad.head<2>());
+    pads.push_back(pad);
+  }
+  return pads;
+}
+
+FlightOptions FlightOptions::of_vehicle(std::size_t number, const Vector3d& pad) const {
+  FlightOptions own = *this;
+  own.vehicle_name = fleet.names.at(number);
+  own.vehicle = fleet.vehicles.at(number);
+  own.takeoff = pad;
+  own.order = VisitOrder::survey;
+  own.fleet = {};
+  return own;
+}
+
+FlightOptions FlightOptions::with_vehicles(const std::vector<std::size_t>& kept,
+                                           const std::vector<Vector3d>& pads) const {
+  FlightOptions some = *this;
+  some.fleet.names.clear(), some.fleet.vehicles.clear(), some.fleet.pads.clear();
+  for (const std::size_t v : kept) {
+    some.fleet.names.push_back(fleet.names.at(v));
+    some.fleet.vehicles.push_back(fleet.vehicles.at(v));
+    some.fleet.pads.push_back(pads.at(v));
+  }
+  some.vehicle_name = some.fleet.names.front();
+  some.vehicle = some.fleet.vehicles.front();
+  some.takeoff = some.fleet.pads.front();
+  if (kept.size() == 1) some.fleet = {};
+  return some;
+}
+
+bool FlightOptions::is_in_known_airspace(const Vector3d& place) const {
+  if (!is_flown()) return true;
+  const double spare = spare_of(*this);
+  return unknown_box.exteriorDistance(place) >= spare &&
+         std::ranges::all_of(
+             unknown_beside,
+             [&](const AlignedBox3d& box) { return box.exteriorDistance(place) >= spare; }) &&
+         std::ranges::all_of(airspace.priors, [&](const auto& obstacle) {
+           return obstacle->closest({place, place}, spare).distance >= spare;
+         });
+}
+
+MeasuredSpaceConfig FlightOptions::measured_space() const {
+  const double voxel = clearance / voxels_per_clearance;
+  return {.voxel = voxel,
+          .depth_margin = map_error,
+          .free_without_return = free_without_return,
+          .max_depth = std::min(capture.camera.max_range, 1e4 * voxel),
+          .region = unknown_box,
+          .beside = unknown_beside,
+          .floor = airspace.terrain ? std::nullopt : std::optional(airspace.base.z() + map_error)};
+}
+
+Obstacles FlightOptions::rules() const {
+  Obstacles rules;
+  rules.ground_height = airspace.ground_height;
+  rules.priors = airspace.priors;
+  for (const geometry::Prism& volume : airspace.no_fly) {
+    rules.no_fly.push_back(volume);
+    rules.no_fly.back().name = std::to_string(rules.no_fly.size());
+  }
+  if (!airspace.geofence.empty() || airspace.highest_height) {
+    geometry::Prism fence{.name = "site.geofence", .footprint = airspace.geofence};
+    // The fence must not hold the vehicle up on its way from and to the pad.
+    if (airspace.highest_height) fence.ceiling = *airspace.highest_height;
+    if (fence.footprint.empty()) {
+      fence.name = "site.highest_height";
+      constexpr double far = 1e5;
+      fence.footprint = {{-far, -far}, {far, -far}, {far, far}, {-far, far}};
+    }
+    rules.fence = fence;
+  }
+  return rules;
+}
+
+double FlightOptions::ground_at(const Eigen::Vector2d& place) const {
+  return airspace.ground ? airspace.ground(place) : airspace.base.z();
+}
+
+Vector3d FlightOptions::pad(const Vector3d& first_view) const {
+  if (takeoff) return *takeoff;
+  const AlignedBox3d box = unknown_box;
+  const Vector3d spare = Vector3d::Constant(pad_spare_of(*this));
+  const Vector3d low = box.min() - spare, high = box.max() + spare;
+  Vector3d pad(first_view.x(), first_view.y(), 0.0);
+  pad.z() = ground_at(pad.head<2>());
+  if (pad.x() <= low.x() || pad.x() >= high.x() || pad.y() <= low.y() || pad.y() >= high.y()) {
+    return pad;
+  }
+  const double west = pad.x() - low.x(), east = high.x() - pad.x();
+  const double south = pad.y() - low.y(), north = high.y() - pad.y();
+  const double least = std::min({west, east, south, north});
+  if (least == west) {
+    pad.x() = low.x();
+  } else if (least == east) {
+    pad.x() = high.x();
+  } else {
+    pad.y() = least == south ? low.y() : high.y();
+  }
+  pad.z() = ground_at(pad.head<2>());
+  return pad;
+}
+
+double FlightOptions::climb() const {
+  return takeoff_climb.value_or(std::max(5.0, clearance + 1.0));
+}
+
+double FlightOptions::highest_return(double pad_z, double obstacles_top) const {
+  /// A whole metre is lost in rounding, and autopilots may fly level up to 2 m lower.
+  constexpr double spare = 3.0;
+  const AlignedBox3d box = unknown_box;
+  double top = std::max(obstacles_top, airspace.base.z());
+  if (!box.isEmpty()) top = std::max(top, box.max().z());
+  for (const auto& obstacle : airspace.priors) {
+    if (!obstacle->extent().isEmpty()) top = std::max(top, obstacle->extent().max().z());
+  }
+  for (const geometry::Prism& volume : airspace.no_fly) {
+    if (volume.ceiling < no_flight_is_higher) top = std::max(top, volume.ceiling);
+  }
+  const double highest = std::max(top + clearance + spare, pad_z + least_of_dji);
+  if (!airspace.highest_height) return highest;
+  /// A proof right at the fence's clearance fails by rounding.
+  constexpr double rounding = 0.01;
+  return std::min(highest, *airspace.highest_height - clearance - rounding);
+}
+
+std::vector<Dialect> dialects_of(const Vehicle& vehicle) {
+  if (vehicle.dialect != Dialect::dji) return {vehicle.dialect};
+  return {Dialect::dji, Dialect::px4, Dialect::ardupilot};
+}
+
+namespace {
+
+/// What its pictures ask of a flight that passes its views.
+PassRules pass_rules_of(const FlightOptions& options) {
+  const double distance = options.capture.view_distance;
+  PassRules rules{.speed = options.cruise_speed,
+                  .most_cut = most_cut_by_distance * distance,
+                  .exposure = 0.0,
+                  .period = 0.0};
+  if (options.capture.scans_in_flight()) return rules;
+  const geometry::Shutter& shutter = options.capture.shutter;
+  rules.speed =
+      sharp_speed(options.flown(), geometry::Camera(options.capture.camera), shutter, distance);
+  rules.exposure = shutter.exposure + shutter.readout;
+  rules.period = options.capture.frame_period;
+  return rules;
+}
+
+}  // namespace
+
+RouteOptions FlightOptions::route(const Vector3d& pad) const {
+  RouteOptions options;
+  options.clearance = budget();
+  options.path.max_expansions = most_expansions;
+  options.takeoff = pad;
+  options.takeoff_climb = climb();
+  options.ground_limits = ground_limits();
+  options.order_is_free = order == VisitOrder::shortest;
+  options.style = style;
+  if (style == FlightStyle::pass) options.passing = pass_rules_of(*this);
+  // The air moves away from where the wind comes from.
+  options.conditions.wind = -wind_speed * Eigen::Vector2d(std::sin(wind_from), std::cos(wind_from));
+  options.conditions.temperature_c = temperature;
+  options.conditions.cruise_speed = cruise_speed;
+  options.conditions.reserve = reserve;
+  options.returns = ReturnOptions{dialects_of(flown()), highest_return(pad.z(), pad.z()), rally};
+  return options;
+}
+
+double FlightOptions::rest_before() const {
+  if (capture.scans_in_flight()) return 0.0;
+  return std::max(hold, capture.settle);
+}
+
+double FlightOptions::rest_after() const {
+  if (capture.scans_in_flight()) return 0.0;
+  const geometry::Shutter& shutter = capture.shutter;
+  return std::max(hold_after, shutter.exposure + shutter.readout);
+}
+
+std::optional<PictureBounds> FlightOptions::picture_bounds() const {
+  if (capture.is_scanner) return std::nullopt;
+  const geometry::Camera camera(capture.camera);
+  return flight::picture_bounds(flown(), camera, capture.shutter, capture.view_distance);
+}
+
+FlightFacts FlightOptions::facts() const {
+  FlightFacts facts;
+  facts.site = site;
+  facts.pad = takeoff.value_or(airspace.base);
+  facts.is_pad_known = takeoff.has_value();
+  if (is_flown()) facts.vehicle = flown();
+  facts.takeoff_climb = climb();
+  facts.rally = rally;
+  facts.cruise_speed = cruise_speed;
+  facts.hold = hold;
+  Obstacles rules = this->rules();
+  facts.no_fly = std::move(rules.no_fly);
+  facts.fence = std::move(rules.fence);
+  return facts;
+}
+
+double FlightOptions::pad_radius() const { return flown().radius + position_error; }
+
+std::vector<Vector3d> FlightOptions::landings(const Vector3d& pad) const {
+  std::vector<Vector3d> landings{pad};
+  landings.insert(landings.end(), rally.begin(), rally.end());
+  return landings;
+}
+
+std::vector<PadGround> FlightOptions::grounds(const Vector3d& pad,
+                                              std::span<const PadGround> measured) const {
+  const auto by_terrain = [&](const Vector3d& place) -> std::optional<PadGround> {
+    if (!airspace.terrain) return std::nullopt;
+    std::vector<Vector3d> heights;
+    for (const Eigen::Vector2d& at : places_on(place, pad_radius())) {
+      if (const auto height = airspace.terrain(at)) heights.emplace_back(at.x(), at.y(), *height);
+    }
+    return pad_ground(place, heights, GroundSource::terrain);
+  };
+  std::vector<PadGround> grounds;
+  for (const Vector3d& place : landings(pad)) {
+    const auto known = std::ranges::find(measured, place, &PadGround::place);
+    if (known != measured.end()) {
+      grounds.push_back(*known);
+    } else if (pad_slope) {
+      grounds.push_back({place, *pad_slope, 0.0, 0.0, GroundSource::declared});
+    } else if (const auto ground = by_terrain(place)) {
+      grounds.push_back(*ground);
+    }
+  }
+  return grounds;
+}
+
+PadLimits FlightOptions::ground_limits() const {
+  PadLimits limits{steepest_pad, 0.0};
+  for (const auto& obstacle : airspace.priors) {
+    if (!obstacle->is_ground()) continue;
+    limits.height_error = std::max(limits.height_error, obstacle->uncertainty());
+  }
+  return limits;
+}
+
+}  // namespace skycap::flight

@@ -1,0 +1,371 @@
+#include "missions/config/derived_values.h"
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+
+#include "flight/motion/motion.h"
+#include "flight/route/route.h"
+#include "geometry/place/camera.h"
+#include "missions/site_data/site_priors.h"
+#include "missions/site_data/surface_points.h"
+#include "sim/sensors/scanner_field.h"
+
+namespace skycap::missions::config {
+namespace {
+
+using Eigen::AlignedBox3d;
+using Eigen::Vector3d;
+using sim::ScannerKind;
+using site_data::Role;
+
+/// A volumetric survey's V where neither mission nor benchmark says it: the paper's for its last
+/// two models.
+constexpr std::size_t usual_view_limit = 130;
+
+/// scene.model of a mission whose targets stand in as truth.
+constexpr const char* targets_as_truth = "prior";
+
+/// Of one object, for the planner to guess by.
+constexpr std::size_t most_target_points = 300'000;
+
+bool has_role(const MissionDocument& document, Role role) {
+  return std::ranges::find(document.prior, role, &site_data::Source::role) != document.prior.end();
+}
+
+/// How the scans of a scanner that is flown prove space free; nothing if they do not: lines prove
+/// nothing between them.
+std::optional<flight::SweepRays> sweep_rays_of(const MissionDocument& document) {
+  const sim::SurveySensorOptions& sensor = document.sensor.options;
+  const sim::LidarConfig& scanner = *sensor.scanner;
+  const double speed = document.flight.options.cruise_speed;
+  const double lever_arm = sensor.mount.value().body_from_scanner.translation().norm();
+  switch (kind_of(scanner)) {
+    case ScannerKind::ring: {
+      // The turn's own cells, a little wider, so that a ray falls into each. Rays begin beside the
+      // vehicle's place by the lever arm, half of what it flies in a turn, and what the turns are
+      // spread by.
+      constexpr double wider = 1.02;
+      return flight::SweepRays{.spacing = wider * ray_spacing(scanner),
+                               .axis = Vector3d::UnitX(),
+                               .origin_spread = lever_arm + 0.5 * sim::spread_of_turns +
+                                                0.5 * speed / std::abs(scanner.rotation_rate)};
+    }
+    case ScannerKind::rosette: {
+      // Rays of a pattern that is drawn in flight do not fall between each other as they do at
+      // rest, but as if at random: cells of at least four times as many rays.
+      constexpr double wider = 2.0;
+      const double flown = sensor.is_moving() ? speed * sensor.frame_period : 0.0;
+      return flight::SweepRays{.spacing = wider * rosette_of(sensor).gap,
+                               .axis = Vector3d::UnitX(),
+                               .origin_spread = lever_arm + 0.5 * flown,
+                               .is_scattered = true};
+    }
+    case ScannerKind::line:
+      break;
+  }
+  return std::nullopt;
+}
+
+flight::AirspaceOptions airspace_options(const MissionDocument& document) {
+  flight::AirspaceOptions airspace{.base = document.scene.position,
+                                   .ground_height = ground_height_of(document),
+                                   .geofence = document.site.geofence,
+                                   .no_fly = document.site.no_fly,
+                                   .highest_height = document.site.highest_height};
+  const std::shared_ptr<const site_data::SitePriors>& priors = document.scene.priors;
+  if (!priors) return airspace;
+  airspace.priors = priors->obstacles;
+  if (priors->ground) {
+    airspace.ground = [priors](const Eigen::Vector2d& at) { return priors->ground(at).value(); };
+  }
+  if (priors->terrain) {
+    airspace.terrain = [terrain = priors->terrain](const Eigen::Vector2d& at) {
+      return terrain->height(at);
+    };
+  }
+  return airspace;
+}
+
+flight::CaptureOptions capture_options(const MissionDocument& document) {
+  const sim::SurveySensorOptions& sensor = document.sensor.options;
+  flight::CaptureOptions capture{.camera = sensor.camera.camera,
+                                 .view_distance = view_distance_of(document),
+                                 .is_scanner = document.sensor.lidar.has_value(),
+                                 .mount = sensor.mount,
+                                 .shutter = sensor.shutter,
+                                 .settle = sensor.settle,
+                                 .is_moving = sensor.is_moving(),
+                                 .frame_period = sensor.frame_period};
+  if (sensor.mount) capture.rays = sweep_rays_of(document);
+  return capture;
+}
+
+/// What a stop costs, as metres of way at the cruise speed: the rest, and the ramps of the straight
+/// pieces that lead there, two and a half in surveys of buildings.
+double price_of_stop(const flight::FlightOptions& flight) {
+  constexpr double pieces = 2.5, long_way = 100.0;
+  const flight::Motion motion(flight.flown(), flight.route(Vector3d::Zero()).conditions);
+  const double speed = motion.leg_speed(Vector3d::UnitX());
+  const double ramps = motion.leg_time({long_way, 0.0, 0.0}) - long_way / speed;
+  return speed *
+         (flight.rest_before() + flight.rest_after() + pieces * (ramps + flight::corner_hold));
+}
+
+/// What a view costs the planner skycap besides the way to it, as metres of way, by planner.goal;
+/// nothing if that is the planner's own price.
+std::optional<double> view_price_of(const MissionDocument& document,
+                                    const flight::FlightOptions& flight) {
+  if (document.planner.goal == PlannerGoal::views) return std::nullopt;
+  return flight.is_flown() ? price_of_stop(flight) : view_distance_of(document);
+}
+
+survey::skycap::SkycapConfig skycap_config(const MissionDocument& document,
+                                           const flight::FlightOptions& flight) {
+  const sim::SurveySensorOptions& sensor = document.sensor.options;
+  survey::skycap::SkycapConfig config{.coverage_radius = document.evaluation.registration_distance,
+                                      .spacing = spacing_of(document),
+                                      .view_distance = view_distance_of(document),
+                                      .max_incidence = sensor.camera.max_incidence,
+                                      .scene_box = document.planner.sampling.scene_box,
+                                      .limits = view_limits(document),
+                                      .stop = document.planner.skycap_stop,
+                                      .ideas = document.planner.skycap_ideas};
+  // Told of the budgets, it looks for the best view that is still in reach.
+  const LimitsSection& limits = document.limits;
+  config.stop.most_length = limits.options.max_distance;
+  if (limits.max_minutes) config.stop.most_time = 60.0 * *limits.max_minutes;
+  config.stop.speed = limits.options.speed;
+  config.stop.time_per_view = limits.options.time_per_view;
+  config.view_price = view_price_of(document, flight);
+  if (sensor.is_moving()) {
+    config.frame_spacing = flight.cruise_speed * sensor.frame_period;
+    const auto& scanner = sensor.scanner;
+    config.counts_ways = scanner && kind_of(*scanner) != ScannerKind::ring;
+    config.sees_lines = scanner && kind_of(*scanner) == ScannerKind::line;
+  }
+  if (flight.is_flown()) {  // as if they were the same along and about all axes
+    const sim::NavigationErrors& poses = document.scan.navigation;
+    const auto mean = [](double twice, double once) {
+      return std::sqrt((2.0 * twice * twice + once * once) / 3.0);
+    };
+    config.place_error = mean(poses.horizontal_sigma, poses.vertical_sigma);
+    config.angle_error = mean(poses.tilt_sigma, poses.heading_sigma);
+  }
+  return config;
+}
+
+survey::volumetric::VolumetricConfig volumetric_config(
+    const MissionDocument& document, survey::volumetric::VolumetricMetric metric) {
+  const survey::volumetric::VolumetricSettings& settings = document.planner.volumetric;
+  const double views = static_cast<double>(view_limit(document)) * settings.candidates_per_view;
+  survey::volumetric::VolumetricConfig config{
+      .metric = metric,
+      .resolution = document.planner.sampling.resolution_radius,
+      .spacing = spacing_of(document),
+      .scene_box = document.planner.sampling.scene_box,
+      .candidates = static_cast<std::size_t>(std::lround(views)),
+      .least_height = least_view_height(document),
+      .settings = settings};
+  if (settings.sphere_centre) config.sphere_centre = *settings.sphere_centre;
+  if (settings.sphere_radius) config.sphere_radius = *settings.sphere_radius;
+  return config;
+}
+
+/// The surfaces of the targets for a planner to guess by; null without any.
+std::shared_ptr<const survey::skycap::PriorSurface> prior_surface(
+    const site_data::SitePriors& site, const geometry::CameraConfig& camera, double distance) {
+  auto surface = std::make_shared<survey::skycap::PriorSurface>();
+  // Four pixels are the finest resolution of the planner: a point each is enough.
+  const double pixel = distance / geometry::Camera(camera).focal_length_px().minCoeff();
+  for (std::size_t i = 0; i < site.priors.size(); ++i) {
+    if (site.sources[i].role != Role::target) continue;
+    for (const site_data::Object& object : site.priors[i].objects) {
+      const site_data::SurfacePoints points =
+          site_data::spread_over(object, most_target_points, 2.0 * pixel);
+      surface->positions.insert(surface->positions.end(), points.positions.begin(),
+                                points.positions.end());
+      surface->normals.insert(surface->normals.end(), points.normals.begin(), points.normals.end());
+      surface->areas.resize(surface->positions.size(), static_cast<float>(points.area_of_each));
+      surface->uncertainties.resize(surface->positions.size(),
+                                    static_cast<float>(site.priors[i].uncertainty));
+    }
+  }
+  return surface->size() > 0 ? surface : nullptr;
+}
+
+}  // namespace
+
+bool has_place(const MissionDocument& document) {
+  return document.georeference.latitude_deg && document.georeference.longitude_deg;
+}
+
+flight::Site site_of(const MissionDocument& document) {
+  const Georeference& place = document.georeference;
+  flight::Site site;
+  site.origin = {place.latitude_deg.value_or(0.0), place.longitude_deg.value_or(0.0),
+                 place.ellipsoid_height};
+  site.geoid_undulation = place.geoid_undulation;
+  return site;
+}
+
+survey::see::SeeConfig see_config(const MissionDocument& document) {
+  const SamplingSection& sampling = document.planner.sampling;
+  survey::see::SeeConfig see = document.planner.see;
+  see.density = sampling.density;
+  see.resolution_radius = sampling.resolution_radius;
+  see.spacing = sampling.spacing;
+  see.view_distance = sampling.view_distance;
+  see.scene_box = sampling.scene_box;
+  return see;
+}
+
+double spacing_of(const MissionDocument& document) {
+  return see_config(document).effective_spacing();
+}
+
+double view_distance_of(const MissionDocument& document) {
+  const SamplingSection& sampling = document.planner.sampling;
+  return sampling.view_distance.value_or(geometry::view_distance(
+      geometry::Camera(document.sensor.options.camera.camera), sampling.density));
+}
+
+AlignedBox3d unknown_box_of(const MissionDocument& document) {
+  return document.flight.unknown_box ? *document.flight.unknown_box
+                                     : document.planner.sampling.scene_box.value_or(AlignedBox3d());
+}
+
+double ground_height_of(const MissionDocument& document) {
+  double height = document.scene.position.z();
+  if (!document.scene.priors) return height;
+  const site_data::SitePriors& site = *document.scene.priors;
+  for (std::size_t i = 0; i < site.priors.size(); ++i) {
+    const site_data::Prior& known = site.priors[i];
+    if (site.sources[i].role != Role::terrain) continue;
+    height = std::min(height, known.box.min().z() - known.uncertainty);
+  }
+  return height;
+}
+
+std::optional<double> least_view_height(const MissionDocument& document) {
+  const std::optional<double>& clearance = document.limits.ground_clearance;
+  return clearance ? std::optional(ground_height_of(document) + *clearance) : std::nullopt;
+}
+
+survey::ViewLimits view_limits(const MissionDocument& document) {
+  const LimitsSection& limits = document.limits;
+  const sim::SurveySensorOptions& sensor = document.sensor.options;
+  survey::ViewLimits result{.least_height = document.site.lowest_height,
+                            .most_height = document.site.highest_height,
+                            .geofence = document.site.geofence,
+                            .no_fly = document.site.no_fly,
+                            .stand_off = limits.stand_off,
+                            .least_pitch = limits.lowest_pitch,
+                            .most_pitch = limits.highest_pitch};
+  if (const std::optional<double> least = least_view_height(document)) {
+    result.least_height = std::max(*least, result.least_height.value_or(*least));
+  }
+  const auto terrain = document.scene.priors ? document.scene.priors->terrain : nullptr;
+  if (terrain && limits.ground_clearance) {
+    result.least_height_over = [terrain, plane = document.scene.position.z(),
+                                clearance = *limits.ground_clearance](const Eigen::Vector2d& at) {
+      return terrain->height(at).value_or(plane) + clearance;
+    };
+  }
+  if (document.flight.is_flown()) {
+    const flight::Vehicle& vehicle = document.flight.options.flown();
+    if (!sensor.mount) {  // which is on no gimbal
+      result.least_pitch = std::max(result.least_pitch, vehicle.gimbal_min);
+      result.most_pitch = std::min(result.most_pitch, vehicle.gimbal_max);
+    } else if (kind_of(*sensor.scanner) == ScannerKind::rosette) {
+      constexpr double hair = 1e-5;  // less than no way up or down is a limit that nothing keeps
+      result.least_pitch = std::max(result.least_pitch, sensor.mount->look_pitch - hair);
+      result.most_pitch = std::min(result.most_pitch, sensor.mount->look_pitch + hair);
+    }
+    result.stand_off = std::max(result.stand_off, document.flight.options.clearance);
+  }
+  return result;
+}
+
+std::size_t view_limit(const MissionDocument& document) {
+  const bool is_volumetric = survey::title_of(document.planner.name).metric.has_value();
+  return is_volumetric ? std::min(document.planner.volumetric.view_limit.value_or(usual_view_limit),
+                                  document.limits.options.max_views)
+                       : document.limits.options.max_views;
+}
+
+bool has_target(const MissionDocument& document) { return has_role(document, Role::target); }
+
+bool has_obstacle(const MissionDocument& document) { return has_role(document, Role::obstacle); }
+
+std::optional<Role> truth_role(const MissionDocument& document) {
+  if (document.scene.model == targets_as_truth) return Role::target;
+  if (document.scene.model.empty() && has_role(document, Role::truth)) return Role::truth;
+  return std::nullopt;
+}
+
+flight::FlightOptions flight_options(const MissionDocument& document) {
+  flight::FlightOptions options = document.flight.options;
+  options.unknown_box = unknown_box_of(document);
+  options.has_own_box = document.flight.unknown_box.has_value();
+  const std::vector<Vector3d>& corners = document.flight.unknown_beside;
+  for (std::size_t i = 0; i + 1 < corners.size(); i += 2) {
+    options.unknown_beside.emplace_back(corners[i], corners[i + 1]);
+  }
+  options.airspace = airspace_options(document);
+  options.capture = capture_options(document);
+  options.site = site_of(document);
+  options.has_place = has_place(document);
+  return options;
+}
+
+survey::PlannerOptions planner_options(const MissionDocument& document,
+                                       const flight::FlightOptions& flight) {
+  const SamplingSection& sampling = document.planner.sampling;
+  survey::PlannerOptions options{.name = document.planner.name,
+                                 .camera = document.sensor.options.camera.camera,
+                                 .spacing = spacing_of(document),
+                                 .view_distance = view_distance_of(document),
+                                 .resolution_radius = sampling.resolution_radius,
+                                 .scene_box = sampling.scene_box,
+                                 .max_incidence = document.sensor.options.camera.max_incidence,
+                                 .limits = view_limits(document)};
+  if (const auto metric = survey::title_of(options.name).metric) {
+    options.method = volumetric_config(document, *metric);
+  } else if (options.name == survey::PlannerName::skycap) {
+    options.method = skycap_config(document, flight);
+    if (document.scene.priors) {
+      options.prior_surface = [priors = document.scene.priors, camera = options.camera,
+                               distance = options.view_distance] {
+        return prior_surface(*priors, camera, distance);
+      };
+    }
+  } else {
+    survey::see::SeeConfig see = see_config(document);
+    see.least_height = least_view_height(document);
+    options.method = see;
+  }
+  return options;
+}
+
+session::StartOptions start_options(const MissionDocument& document,
+                                    const flight::FlightOptions& flight) {
+  const double base = document.scene.position.z();
+  const auto& scanner = document.sensor.options.scanner;
+  session::StartOptions start{
+      .box = flight.unknown_box,
+      .clearance = flight.clearance,
+      .lowest = std::max(view_limits(document).least_height.value_or(base), base),
+      .view_distance = flight.capture.view_distance,
+      .mount = document.sensor.options.mount,
+      .sees_lines = scanner && kind_of(*scanner) == ScannerKind::line};
+  if (flight.is_flown()) start.opening = document.flight.opening;
+  if (const auto& position = document.start.position) {
+    start.view = document.start.look_at
+                     ? geometry::look_at(*position, *document.start.look_at)
+                     : geometry::View{*position, document.start.direction->normalized()};
+  }
+  return start;
+}
+
+}  // namespace skycap::missions::config

@@ -1,0 +1,88 @@
+/// Which key of the mission file gives a field that a library's validate() complains of. Libraries
+/// know their own fields only.
+#pragma once
+
+#include <array>
+#include <string_view>
+
+namespace skycap::missions::config {
+
+/// A field as validate() names it, and its key.
+struct FieldKey {
+  std::string_view field, key;
+};
+
+/// Of the options of planners, cameras and navigation; a field of the same name has the same key in
+/// all of them.
+inline constexpr auto field_keys = std::to_array<FieldKey>({
+    // geometry::CameraConfig, sim::DepthCameraConfig
+    {"width", "sensor.width"},
+    {"height", "sensor.height"},
+    {"horizontal_fov", "sensor.horizontal_fov_deg"},
+    {"vertical_fov", "sensor.vertical_fov_deg"},
+    {"min_range", "sensor.min_range"},
+    {"max_range", "sensor.max_range"},
+    {"max_incidence", "sensor.max_incidence_deg"},
+    {"noise.sigma", "sensor.noise.sigma"},
+    // survey::ViewLimits
+    {"stand_off", "limits.stand_off"},
+    {"least_height", "site.highest_height"},
+    {"least_pitch", "limits.highest_pitch_deg"},
+    {"geofence", "site.geofence"},
+    {"no_fly", "site.no_fly"},
+    // what several planners use
+    {"density", "planner.density"},
+    {"resolution_radius", "planner.resolution_radius"},
+    {"resolution", "planner.resolution_radius"},
+    {"spacing", "planner.spacing"},
+    {"view_distance", "planner.view_distance"},
+    {"scene_box", "planner.scene_box.max"},
+    // survey::see::SeeConfig
+    {"occlusion_search_distance", "planner.occlusion_search_distance"},
+    {"visibility_update_limit", "planner.visibility_update_limit"},
+    {"frame_neighbours", "planner.frame_neighbours"},
+    {"occlusion_radius", "planner.occlusion_radius"},
+    {"occluder_spacing", "planner.occluder_spacing"},
+    {"first_view_weight", "planner.first_view_weight"},
+    {"max_attempts", "planner.max_attempts"},
+    {"frontier_spacing", "planner.frontier_spacing"},
+    {"core_threshold", "planner.core_threshold"},
+    {"max_evaluations", "planner.cap.max_evaluations"},
+    // survey::skycap::SkycapConfig
+    {"coverage_radius", "evaluation.registration_distance"},
+    {"view_price", "planner.goal"},
+    {"stop.wanted_coverage", "planner.wanted_coverage"},
+    {"stop.least_gain", "planner.least_gain"},
+    {"stop.most_length", "limits.max_distance"},
+    {"stop.most_time", "limits.max_minutes"},
+    {"stop.speed", "limits.speed"},
+    {"stop.time_per_view", "limits.time_per_view"},
+    {"place_error", "scan.navigation.horizontal_sigma"},
+    {"angle_error", "scan.navigation.tilt_sigma_deg"},
+    {"frame_spacing", "sensor.frame_period"},
+    // survey::volumetric::VolumetricConfig
+    {"sphere_radius", "volumetric.sphere_radius"},
+    {"candidates_per_view", "volumetric.candidates_per_view"},
+    {"cost_weight", "volumetric.cost_weight"},
+    {"ray_depth", "volumetric.ray_depth"},
+    {"shadow_length", "volumetric.shadow_length"},
+    {"rays.rays_per_pixel", "volumetric.rays_per_pixel"},
+    {"rays.window_begin", "volumetric.window_begin"},
+    {"rays.window_end", "volumetric.window_end"},
+    // sim::NavigationErrors
+    {"navigation.horizontal_sigma", "scan.navigation.horizontal_sigma"},
+    {"navigation.vertical_sigma", "scan.navigation.vertical_sigma"},
+    {"navigation.tilt_sigma", "scan.navigation.tilt_sigma_deg"},
+    {"navigation.heading_sigma", "scan.navigation.heading_sigma_deg"},
+    {"navigation.correlation_time", "scan.navigation.correlation_time"},
+});
+
+/// The key of a field; empty if no key gives it.
+constexpr std::string_view key_of_field(std::string_view field) {
+  for (const FieldKey& known : field_keys) {
+    if (known.field == field) return known.key;
+  }
+  return {};
+}
+
+}  // namespace skycap::missions::config

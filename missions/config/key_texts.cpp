@@ -1,0 +1,75 @@
+#include "missions/config/key_texts.h"
+
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "geometry/io/file.h"
+#include "geometry/io/record_log.h"
+#include "missions/config/mission_keys.h"
+#include "missions/site_data/site_priors.h"
+
+namespace skycap::missions::config {
+namespace {
+
+/// The sources without the folders of their files.
+std::vector<site_data::Source> wherever_they_lie(std::vector<site_data::Source> sources) {
+  for (site_data::Source& source : sources) {
+    source.file = source.file.filename();
+    source.select.within = source.select.within.filename();
+  }
+  return sources;
+}
+
+bool decides_what_is_attainable(std::string_view path) {
+  return path.starts_with("scene.") || path.starts_with("sensor.") ||
+         path.starts_with("evaluation.") || path.starts_with("planner.scene_box") ||
+         path.starts_with("site.") || path == "start.position" ||
+         path == "limits.ground_clearance" || path == "limits.stand_off" ||
+         path.ends_with("_pitch_deg") || path == "flight.vehicle" || path == "flight.clearance";
+}
+
+}  // namespace
+
+std::vector<support::Setting> survey_settings(const MissionDocument& document) {
+  constexpr std::size_t largest = 1 << 20;  // of a description, which was read before [byte]
+  std::vector<support::Setting> settings;
+  for (const Key& key : mission_keys()) {
+    if (key.path == "name" || key.path == "seed" || key.path == "threads" ||
+        key.path.starts_with("paper.")) {
+      continue;
+    }
+    const auto value = key.get(document);
+    std::string text = value ? to_text(*value) : "-";
+    // Of a description in a file what it says, wherever it lies.
+    const std::string& vehicle = document.flight.options.vehicle_name;
+    if (key.path == "flight.vehicle" && vehicle.ends_with(".yaml")) {
+      text = fmt::format("description {:08x}",
+                         geometry::crc32_of(geometry::read_file(vehicle, largest)));
+    }
+    if (key.path == "prior") text = to_text(wherever_they_lie(document.prior));
+    settings.push_back({key.path, std::move(text)});
+  }
+  // Of prior data what it holds, too.
+  if (!document.scene.priors) return settings;
+  std::size_t number = 0;
+  for (const std::string& digest : document.scene.priors->digests) {
+    settings.push_back({"prior[" + std::to_string(number++) + "]", digest});
+  }
+  return settings;
+}
+
+std::string attainable_inputs(const MissionDocument& document) {
+  std::string inputs;
+  for (const Key& key : mission_keys()) {
+    if (!decides_what_is_attainable(key.path)) continue;
+    const auto value = key.get(document);
+    inputs += "\n" + key.path + " " + (value ? to_text(*value) : "-");
+  }
+  // Terrain is the ground that hides things, and bounds the heights of views.
+  if (!document.scene.priors) return inputs;
+  for (const std::string& digest : document.scene.priors->digests) inputs += "\n" + digest;
+  return inputs;
+}
+
+}  // namespace skycap::missions::config

@@ -1,0 +1,114 @@
+// The prior data of a document: its keys checked, its files read.
+#include "missions/config/prior_sources.h"
+
+#include <algorithm>
+#include <filesystem>
+#include <utility>
+
+#include "missions/config/derived_values.h"
+#include "missions/config/mission_keys.h"
+
+namespace skycap::missions::config {
+namespace {
+
+using site_data::Role;
+using site_data::Source;
+
+std::string key_of(std::size_t source, const std::string& key) {
+  return "prior[" + std::to_string(source) + "]." + key;
+}
+
+/// A path counts from the mission's folder.
+void make_absolute(std::filesystem::path& path, const std::filesystem::path& folder) {
+  if (path.empty()) return;
+  path = std::filesystem::absolute(folder / path);
+}
+
+void check_source(const MissionDocument& document, std::size_t i) {
+  const Source& source = document.prior[i];
+  if (source.place && !source.crs.empty()) {
+    document.refuse(key_of(i, "crs"), "excludes place; a file is put by one of the two");
+  }
+  if (!source.crs.empty() && !has_place(document)) {
+    document.refuse(key_of(i, "crs"),
+                    "needs the place of the mission's frame; give site.latitude_deg and "
+                    "site.longitude_deg");
+  }
+  if (source.base_on_terrain && source.role == Role::terrain) {
+    document.refuse(key_of(i, "base"), "of the terrain cannot be the terrain; give a number");
+  }
+  if (source.role == Role::truth && !document.scene.model.empty()) {
+    document.refuse(key_of(i, "role"),
+                    "of truth takes the place of scene.model; leave one of the two out");
+  }
+}
+
+/// What a package kept of a mission gives every key, most of them as they are by default.
+bool differs_from_default(const MissionDocument& document, const char* path) {
+  const Key& key = *find_key(path);
+  const auto text = [&](const MissionDocument& given) {
+    const auto value = key.get(given);
+    return value ? to_text(*value) : std::string();
+  };
+  return text(document) != text(MissionDocument());
+}
+
+}  // namespace
+
+void make_sources_absolute(MissionDocument& document) {
+  const std::filesystem::path folder = std::filesystem::path(document.file).parent_path();
+  for (Source& source : document.prior) {
+    make_absolute(source.file, folder);
+    make_absolute(source.select.within, folder);
+  }
+}
+
+site_data::SiteFrame site_frame(const MissionDocument& document, std::optional<double> geoid) {
+  const std::optional<double>& given = document.georeference.geoid_undulation;
+  site_data::SiteFrame frame{.ground_z = document.scene.position.z(),
+                             .undulation = given ? given : geoid};
+  if (const auto& takeoff = document.flight.options.takeoff) {
+    frame.takeoff_z = takeoff->z();
+    frame.ground_z = *frame.takeoff_z;
+  }
+  if (has_place(document)) frame.origin = site_of(document).origin;
+  return frame;
+}
+
+std::shared_ptr<const site_data::SitePriors> read_priors(const MissionDocument& document,
+                                                         const site_data::SiteFrame& frame,
+                                                         const Report& report) {
+  if (document.prior.empty()) return nullptr;
+  MissionDocument placed = document;
+  make_sources_absolute(placed);
+  const std::vector<Source>& sources = placed.prior;
+  for (std::size_t i = 0; i < sources.size(); ++i) check_source(document, i);
+  const auto failed = [&](std::size_t i, const std::string& what) {
+    document.refuse(key_of(i, "file"), what);
+  };
+  std::size_t begun = 0;
+  const auto reading = [&](std::size_t i) {
+    if (!report) return;
+    report("reading file " + std::to_string(++begun) + " of " + std::to_string(sources.size()) +
+           " of prior data, " + sources[i].file.filename().string());
+  };
+  return std::make_shared<const site_data::SitePriors>(
+      site_data::read_site_priors(sources, frame, failed, reading));
+}
+
+void check_truth(const MissionDocument& document) {
+  if (!document.scene.is_truth_prior()) return;
+  if (prior_truth(document.scene).triangles.empty()) {
+    document.refuse("scene.model", "is prior data, but no target or truth among it has a surface");
+  }
+  for (const char* key : {"scene.up_axis", "scene.rotation_deg", "scene.longest_side",
+                          "scene.scale", "scene.copies", "scene.materials"}) {
+    if (differs_from_default(document, key)) {
+      document.refuse(key,
+                      "does not go with a truth from prior data, which is "
+                      "placed by its own keys; leave it out");
+    }
+  }
+}
+
+}  // namespace skycap::missions::config

@@ -1,0 +1,143 @@
+#include "missions/online/live/answer.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <span>
+#include <vector>
+
+#include <Eigen/Geometry>
+#include <fmt/format.h>
+
+#include "flight/export/geodesy.h"
+#include "flight/route/route.h"
+#include "geometry/angle.h"
+#include "geometry/place/pose.h"
+#include "missions/online/live/live_journal.h"
+#include "missions/support/journal_text.h"
+#include "missions/support/json_text.h"
+#include "survey/coverage_estimator.h"
+
+namespace skycap::missions::online {
+namespace {
+
+using Eigen::Vector3d;
+using Json = nlohmann::ordered_json;
+using support::json_of;
+
+Json view_json(const geometry::View& view, const flight::FlightOptions& flight) {
+  const Eigen::Quaterniond turn(geometry::camera_pose(view).linear());
+  Json json{{"position", json_of(view.position)},
+            {"direction", json_of(view.direction)},
+            {"quaternion_xyzw", {turn.x(), turn.y(), turn.z(), turn.w()}},
+            {"heading_deg", flight::yaw_of(view) / geometry::radians_per_degree},
+            {"gimbal_pitch_deg", flight::pitch_of(view) / geometry::radians_per_degree}};
+  if (!flight.has_place) return json;
+  const flight::Site& site = flight.site;
+  const flight::GeodeticPoint place = flight::LocalFrame(site.origin).to_geodetic(view.position);
+  json["latitude_deg"] = place.latitude_deg;
+  json["longitude_deg"] = place.longitude_deg;
+  json["height_ellipsoid_m"] = place.height;
+  if (site.geoid_undulation) json["height_geoid_m"] = place.height - *site.geoid_undulation;
+  return json;
+}
+
+Json way_json(const session::FlownLeg& way) {
+  Json points = Json::array();
+  for (const Vector3d& point : way.points) points.push_back(json_of(point));
+  return points;
+}
+
+/// The next frames on the way, as many as go into the header of a message.
+Json frames_json(const std::vector<session::ViewInFlight>& frames,
+                 const flight::FlightOptions& flight) {
+  constexpr std::size_t most = 64;
+  Json json = Json::array();
+  for (const session::ViewInFlight& frame :
+       std::span(frames).first(std::min(frames.size(), most))) {
+    Json one = view_json(frame.view, flight);
+    one["time_s"] = frame.time;
+    json.push_back(std::move(one));
+  }
+  return json;
+}
+
+/// What a motion is like that brings a scan onto what is known.
+std::string motion_text(const PoseFinding& pose) {
+  std::string text = fmt::format("moved by {:.3f} m and turned by {:.2f} deg", pose.shift,
+                                 pose.turn / geometry::radians_per_degree);
+  if (pose.unobservable > 0) {
+    text += fmt::format(" ({} of 6 ways to move do not show in what both have)", pose.unobservable);
+  }
+  return text;
+}
+
+std::string pose_text(const PoseFinding& pose) {
+  if (pose.is_wrong) {
+    const std::string seen =
+        fmt::format("it saw through {:.0f} % of what was known", 100.0 * pose.seen_through);
+    return "; warning: pose: the scan is set aside, its pose is wrong: " +
+           (pose.is_checked ? "it would fit " + motion_text(pose) + ", " + seen : seen) +
+           "; hold position, mend the pose and scan again";
+  }
+  if (pose.correction) return "; pose " + motion_text(pose);
+  return "";
+}
+
+const char* state_of(const Proposal& proposal) {
+  if (proposal.end) return session::name_of(*proposal.end);
+  return proposal.view ? "view" : "first_scan";
+}
+
+}  // namespace
+
+std::string answer_json(const LiveSurvey& survey, const flight::FlightOptions& flight) {
+  const Proposal& proposal = survey.proposal();
+  Json json{{"id", proposal.number},
+            {"state", state_of(proposal)},
+            {"scans", survey.views().size()},
+            {"points", survey.planner().cloud().size()},
+            {"set_aside", survey.set_aside()},
+            {"view", proposal.view ? view_json(*proposal.view, flight) : Json()}};
+  if (flight.capture.is_moving) {
+    json["on_way"] = survey.on_way();
+    json["frame_period_s"] = flight.capture.frame_period;
+  }
+  if (proposal.view && !proposal.way.points.empty()) {
+    json["path"] = way_json(proposal.way);
+    json["clearance_m"] = proposal.way.clearance;
+    if (flight.capture.is_moving) json["frames"] = frames_json(survey.frames(), flight);
+  }
+  if (proposal.warns_of_pose()) json["warning"] = "pose";
+  if (proposal.pose) json["pose"] = finding_json(*proposal.pose);
+  if (const survey::CoverageEstimator* estimator = survey.planner().estimator();
+      estimator != nullptr && !survey.views().empty()) {
+    json["believed_coverage"] = estimator->predicted_coverage();
+  }
+  return support::journal_line(json);
+}
+
+std::string answer_text(const LiveSurvey& survey) {
+  const Proposal& proposal = survey.proposal();
+  std::string scans =
+      fmt::format("{} scans, {} points", survey.views().size(), survey.planner().cloud().size());
+  if (survey.set_aside() > 0) scans += fmt::format(", {} scans set aside", survey.set_aside());
+  if (proposal.pose) scans += pose_text(*proposal.pose);
+  if (proposal.end) return std::string(state_of(proposal)) + " after " + scans;
+  if (!proposal.view) return "take the first scan from any place that sees the scene";
+  const Vector3d& at = proposal.view->position;
+  std::string text = fmt::format(
+      "view {}: {:.3f} {:.3f} {:.3f}, heading {:.1f} deg, pitch {:.1f} deg", proposal.number,
+      at.x(), at.y(), at.z(), flight::yaw_of(*proposal.view) / geometry::radians_per_degree,
+      flight::pitch_of(*proposal.view) / geometry::radians_per_degree);
+  if (!proposal.way.points.empty()) {
+    text += fmt::format("; {} legs, clearance {:.2f} m", proposal.way.points.size() - 1,
+                        proposal.way.clearance);
+    if (const std::size_t frames = survey.frames().size(); frames > 0) {
+      text += fmt::format(", {} scans on the way", frames);
+    }
+  }
+  return text + "; " + scans;
+}
+
+}  // namespace skycap::missions::online

@@ -1,0 +1,13 @@
+#include "missions/scan/scan_options.h"
+
+#include "geometry/place/platform.h"
+
+namespace skycap::missions::scan {
+
+Eigen::Isometry3d FlownScanOptions::mount() const {
+  Eigen::Isometry3d mount(geometry::rotation_of(mount_rotation));
+  mount.translation() = mount_position;
+  return mount;
+}
+
+}  // namespace skycap::missions::scan

@@ -1,0 +1,225 @@
+#include "sim/sensors/scanner_field.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <vector>
+
+#include "geometry/error.h"
+#include "sim/sensors/scan_pattern.h"
+
+namespace skycap::sim {
+namespace {
+
+using Eigen::Matrix3d;
+using Eigen::Vector2d;
+using Eigen::Vector3d;
+
+/// Of the angles of view of an image, and of its pixels.
+DepthCameraConfig image_of(const LidarConfig& lidar, double wide, int columns, double high,
+                           int rows) {
+  DepthCameraConfig config;
+  config.camera = {.width = columns,
+                   .height = rows,
+                   .horizontal_fov = wide,
+                   .vertical_fov = high,
+                   .min_range = lidar.min_range,
+                   .max_range = lidar.max_range};
+  config.noise.sigma = lidar.errors.sigma;
+  config.noise.direction = NoiseDirection::along_ray;
+  return config;
+}
+
+/// An image as wide and as high as these angles, with a pixel to each ray in its middle.
+DepthCameraConfig ray_camera(const LidarConfig& lidar, double wide, double columns_step,
+                             double high, double rows_step) {
+  // As many pixels as make the middle of the image as dense as the rays.
+  const auto pixels = [](double angle, double step) {
+    return std::max(1, static_cast<int>(std::lround(2.0 * std::tan(0.5 * angle) / step)));
+  };
+  return image_of(lidar, wide, pixels(wide, columns_step), high, pixels(high, rows_step));
+}
+
+/// Of a ring, by its description.
+struct Field {
+  double around, around_step;  ///< what is looked at of a turn, and the angle between firings [rad]
+  double up, up_step;          ///< across the turn, and between neighbouring lasers
+};
+
+Field field_of(const LidarConfig& lidar) {
+  const auto [lowest, highest] = elevations(lidar);
+  const double step = (highest - lowest) / static_cast<double>(lidar.channels.size() - 1);
+  return {std::min(lidar.field_of_view, 0.5 * std::numbers::pi), azimuth_step(lidar),
+          highest - lowest + step, step};
+}
+
+/// Of all shots in a period, in an image whose optical frame is turned so.
+std::vector<Vector3d> directions_in(const LidarConfig& lidar, double period,
+                                    const Matrix3d& optical_from_scanner) {
+  const ScanPattern pattern(lidar);
+  const auto blocks = static_cast<std::uint64_t>(
+      std::ceil(period / lidar.firing_period / ScanPattern::firings_in_block));
+  Shots shots;
+  std::vector<Vector3d> directions;
+  for (std::uint64_t block = 0; block < blocks; ++block) {
+    pattern.aim(block, shots);
+    for (std::size_t slot = 0; slot < pattern.slots(); ++slot) {
+      if (shots.is_shot[slot] == 0) continue;
+      const Vector3d direction(shots.direction[0][slot], shots.direction[1][slot],
+                               shots.direction[2][slot]);
+      directions.emplace_back(optical_from_scanner * direction);
+    }
+  }
+  return directions;
+}
+
+/// Azimuth and elevation about the x axis [rad] of what looks ahead.
+std::vector<Vector2d> angles_of(const std::vector<Vector3d>& directions) {
+  std::vector<Vector2d> angles;
+  for (const Vector3d& d : directions) {
+    if (d.z() <= 0.0) continue;
+    angles.emplace_back(std::atan2(d.y(), d.z()), std::asin(std::clamp(d.x(), -1.0, 1.0)));
+  }
+  return angles;
+}
+
+/// The share of the cells, so wide in azimuth and elevation about the x axis, in a rectangle of the
+/// image plane that hold a ray.
+double filled_share(const std::vector<Vector2d>& angles, const Vector2d& half_slopes,
+                    double width) {
+  const auto cells = static_cast<int>(std::ceil(0.5 * std::numbers::pi / width));  // each way
+  const int across = 2 * cells;
+  std::vector<char> is_filled(static_cast<std::size_t>(across) * across, 0);
+  for (const Vector2d& angle : angles) {
+    const int column = cells + static_cast<int>(std::floor(angle.x() / width));
+    const int row = cells + static_cast<int>(std::floor(angle.y() / width));
+    is_filled[static_cast<std::size_t>(row) * across + column] = 1;
+  }
+  std::size_t all = 0, filled = 0;
+  const auto is_within = [&](int row, int column) {
+    const double elevation = (row - cells) * width, azimuth = (column - cells) * width;
+    const Vector3d d(std::sin(elevation), std::cos(elevation) * std::sin(azimuth),
+                     std::cos(elevation) * std::cos(azimuth));
+    return d.z() > 0.0 && std::abs(d.x()) <= half_slopes.x() * d.z() &&
+           std::abs(d.y()) <= half_slopes.y() * d.z();
+  };
+  for (int row = 0; row < across; ++row) {
+    for (int column = 0; column < across; ++column) {
+      if (!is_within(row, column) || !is_within(row + 1, column) || !is_within(row, column + 1) ||
+          !is_within(row + 1, column + 1)) {
+        continue;
+      }
+      ++all;
+      filled +=
+          static_cast<std::size_t>(is_filled[static_cast<std::size_t>(row) * across + column]);
+    }
+  }
+  return all == 0 ? 0.0 : static_cast<double>(filled) / static_cast<double>(all);
+}
+
+}  // namespace
+
+ScannerKind kind_of(const LidarConfig& lidar) {
+  if (!lidar.prisms.empty()) return ScannerKind::rosette;
+  if (lidar.rotation_rate == 0.0) {
+    throw Error(ErrorKind::bad_config,
+                "this scanner neither spins nor has prisms; a survey needs one that does, such as "
+                "ouster_os1_128 or livox_avia");
+  }
+  const auto [lowest, highest] = elevations(lidar);
+  constexpr double least_spread = 0.01;
+  return highest - lowest < least_spread ? ScannerKind::line : ScannerKind::ring;
+}
+
+Elevations elevations(const LidarConfig& lidar) {
+  const auto [lowest, highest] =
+      std::ranges::minmax_element(lidar.channels, {}, &Channel::elevation);
+  return {lowest->elevation, highest->elevation};
+}
+
+double azimuth_step(const LidarConfig& lidar) {
+  return 2.0 * std::numbers::pi * std::abs(lidar.rotation_rate) * lidar.firing_period;
+}
+
+DepthCameraConfig forward_camera(const LidarConfig& lidar) {
+  switch (kind_of(lidar)) {
+    case ScannerKind::line:
+      throw Error(ErrorKind::bad_config,
+                  "this scanner measures a line, which is no field unless it is flown: give "
+                  "flight.vehicle, or a scanner with several lasers, such as ouster_os1_128");
+    case ScannerKind::rosette: {
+      Matrix3d optical_from_scanner;  // x right, y down, z forward, of x forward, y left, z up
+      optical_from_scanner << 0, -1, 0, 0, 0, -1, 1, 0, 0;
+      return rosette_camera(lidar, rosette_field(lidar, rosette_period, optical_from_scanner));
+    }
+    case ScannerKind::ring:
+      break;
+  }
+  const Field field = field_of(lidar);
+  return ray_camera(lidar, field.around, field.around_step, field.up, field.up_step);
+}
+
+DepthCameraConfig side_camera(const LidarConfig& lidar, std::size_t turns) {
+  const Field field = field_of(lidar);
+  // Across the axis is the middle of the image, though not of the lasers if more of them look ahead
+  // than back: as wide as there are lasers on both sides.
+  const auto [lowest, highest] = elevations(lidar);
+  const double wide = 2.0 * std::max(std::min(-lowest, highest), field.up_step) + field.up_step;
+  const double denser = std::sqrt(static_cast<double>(turns));  // each way
+  return ray_camera(lidar, wide, field.up_step / denser, field.around, field.around_step / denser);
+}
+
+DepthCameraConfig line_camera(const LidarConfig& lidar, double period, double way) {
+  const double around = std::min(lidar.field_of_view, 0.5 * std::numbers::pi);
+  const double lines = std::max(1.0, std::round(period * std::abs(lidar.rotation_rate)));
+  return ray_camera(lidar, 2.0 * std::atan(0.5 * way), way / lines, around, azimuth_step(lidar));
+}
+
+RosetteField rosette_field(const LidarConfig& lidar, double period,
+                           const Matrix3d& optical_from_scanner) {
+  const std::vector<Vector3d> directions = directions_in(lidar, period, optical_from_scanner);
+  RosetteField field{Vector2d::Zero(), 0, 0.0};
+  for (const Vector3d& d : directions) {
+    field.half_slopes = field.half_slopes.cwiseMax(d.head<2>().cwiseAbs() / d.z());
+  }
+  field.half_slopes /= std::numbers::sqrt2;  // the largest rectangle in an ellipse
+  for (const Vector3d& d : directions) {
+    const Vector2d slopes = d.head<2>().cwiseAbs() / d.z();
+    field.rays += (slopes.array() <= field.half_slopes.array()).all() ? 1 : 0;
+  }
+  constexpr double finest = 0.003, coarsest = 0.2, step = 1.15, enough = 0.995;
+  const std::vector<Vector2d> angles = angles_of(directions);
+  field.gap = finest;
+  while (field.gap < coarsest && filled_share(angles, field.half_slopes, field.gap) < enough) {
+    field.gap *= step;
+  }
+  return field;
+}
+
+DepthCameraConfig rosette_camera(const LidarConfig& lidar, const RosetteField& field) {
+  const double pixel = std::sqrt(4.0 * field.half_slopes.prod() / static_cast<double>(field.rays));
+  const auto pixels = [&](double half_slope) {
+    return std::max(1, static_cast<int>(std::lround(2.0 * half_slope / pixel)));
+  };
+  return image_of(lidar, 2.0 * std::atan(field.half_slopes.x()), pixels(field.half_slopes.x()),
+                  2.0 * std::atan(field.half_slopes.y()), pixels(field.half_slopes.y()));
+}
+
+double ray_spacing(const LidarConfig& lidar) {
+  std::vector<double> lasers;
+  for (const Channel& channel : lidar.channels) lasers.push_back(channel.elevation);
+  std::ranges::sort(lasers);
+  double spacing = azimuth_step(lidar);
+  for (std::size_t i = 1; i < lasers.size(); ++i) {
+    spacing = std::max(spacing, lasers[i] - lasers[i - 1]);
+  }
+  return spacing;
+}
+
+double range_noise(const LidarConfig& lidar, double range) {
+  const auto& errors = lidar.errors;
+  return std::hypot(errors.sigma, errors.sigma_per_metre * range,
+                    errors.sigma_per_square_metre * range * range);
+}
+
+}  // namespace skycap::sim

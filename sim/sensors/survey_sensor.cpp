@@ -1,0 +1,292 @@
+#include "sim/sensors/survey_sensor.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "geometry/error.h"
+#include "geometry/parallel.h"
+#include "sim/sensors/trajectory.h"
+
+namespace skycap::sim {
+namespace {
+
+using Eigen::Vector3d;
+using geometry::View;
+
+/// Of the optical frame in the scanner's (x forward, y left, z up): the axis is level in azimuth
+/// and in the middle of the lasers.
+Eigen::Isometry3d scanner_from_optical(const LidarConfig& lidar) {
+  const auto [lowest, highest] = elevations(lidar);
+  const double middle = 0.5 * (lowest + highest);
+  const Vector3d forward(std::cos(middle), 0.0, std::sin(middle)), right(0.0, -1.0, 0.0);
+  Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
+  pose.linear() << right, forward.cross(right), forward;
+  return pose;
+}
+
+std::uint64_t firings_in_turn(const LidarConfig& lidar) {
+  return static_cast<std::uint64_t>(std::ceil(2.0 * std::numbers::pi / azimuth_step(lidar)));
+}
+
+void append(const std::vector<LidarReturns>& returns, std::vector<Eigen::Vector3f>& points) {
+  for (const LidarReturns& part : returns) {
+    for (const Eigen::Vector3f& point : part.points) {
+      points.emplace_back((part.origin + point.cast<double>()).cast<float>());
+    }
+  }
+}
+
+/// Turn after turn, each from a pose of the scanner, world_from_scanner; `first_turn` numbers them.
+void append_turns(const Lidar& lidar, const Scene& scene,
+                  const std::vector<Eigen::Isometry3d>& poses, const Carriage& carriage,
+                  std::uint64_t first_turn, unsigned threads,
+                  std::vector<Eigen::Vector3f>& points) {
+  const std::uint64_t firings = firings_in_turn(lidar.config());
+  constexpr std::uint64_t firings_in_task = 128;
+  const std::uint64_t tasks = (firings + firings_in_task - 1) / firings_in_task;
+  const auto standing = [](const Eigen::Isometry3d& pose) {
+    return Trajectory(
+        {{.position = pose.translation(), .attitude = Eigen::Quaterniond(pose.linear())}});
+  };
+  std::vector<Trajectory> flown, believed;
+  for (const Eigen::Isometry3d& pose : poses) {
+    flown.push_back(standing(carriage.true_pose(pose)));
+    believed.push_back(standing(pose));
+  }
+  std::vector<LidarReturns> returns(tasks * poses.size());
+  geometry::parallel_for(returns.size(), threads, [&](std::size_t task) {
+    const std::size_t turn = task / tasks;
+    const std::uint64_t first = task % tasks * firings_in_task;
+    returns[task] = lidar.measure(
+        scene, {flown[turn], believed[turn]},
+        {(first_turn + turn) * firings + first, std::min(firings_in_task, firings - first)});
+  });
+  append(returns, points);
+}
+
+Eigen::Isometry3d world_from_body(const View& nose) {
+  Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
+  pose.translation() = nose.position;
+  pose.linear() =
+      Eigen::AngleAxisd(std::atan2(nose.direction.y(), nose.direction.x()), Vector3d::UnitZ())
+          .toRotationMatrix();
+  return pose;
+}
+
+/// A way of the body, flown from one nose view to the other from some firing on, and all firings
+/// numbered from zero: it stands before and after.
+Trajectory way_of(const Eigen::Isometry3d& from, const Eigen::Isometry3d& to, double begin,
+                  double end) {
+  const auto stamped = [](double time, const Eigen::Isometry3d& pose) {
+    return StampedPose{time, pose.translation(), Eigen::Quaterniond(pose.linear())};
+  };
+  std::vector<StampedPose> poses{stamped(begin, from), stamped(end, to)};
+  if (begin > 0.0) poses.insert(poses.begin(), stamped(0.0, from));
+  return Trajectory(std::move(poses));
+}
+
+}  // namespace
+
+std::size_t turns_of(const SurveySensorOptions& sensor) {
+  if (!sensor.mount || !sensor.is_moving()) return 1;
+  const double turns = sensor.frame_period * std::abs(sensor.scanner->rotation_rate);
+  return static_cast<std::size_t>(std::max(1L, std::lround(turns)));
+}
+
+geometry::ScannerMount scanner_mount(const LidarConfig& lidar,
+                                     const Eigen::Isometry3d& body_from_scanner) {
+  if (kind_of(lidar) == ScannerKind::rosette) {
+    const Vector3d look = body_from_scanner.linear().col(0);
+    return {body_from_scanner, std::atan2(look.y(), look.x()),
+            std::asin(std::clamp(look.z(), -1.0, 1.0))};
+  }
+  const Vector3d axis = body_from_scanner.linear().col(2);
+  return {body_from_scanner, std::atan2(axis.y(), axis.x()) + 0.5 * std::numbers::pi, 0.0};
+}
+
+DepthCameraConfig planning_camera(const SurveySensorOptions& sensor) {
+  const LidarConfig& lidar = sensor.scanner.value();
+  if (!sensor.mount) return forward_camera(lidar);
+  switch (kind_of(lidar)) {
+    case ScannerKind::ring:
+      return side_camera(lidar, turns_of(sensor));
+    case ScannerKind::line:
+      return line_camera(lidar, sensor.frame_period,
+                         static_cast<double>(turns_of(sensor)) * azimuth_step(lidar));
+    case ScannerKind::rosette:
+      break;
+  }
+  return rosette_camera(lidar, rosette_of(sensor));
+}
+
+RosetteField rosette_of(const SurveySensorOptions& sensor) {
+  const geometry::ScannerMount& mount = sensor.mount.value();
+  const View look = geometry::scanner_view(mount, {Vector3d::Zero(), Vector3d::UnitX()});
+  return rosette_field(
+      sensor.scanner.value(), sensor.is_moving() ? sensor.frame_period : rosette_period,
+      geometry::camera_pose(look).linear().transpose() * mount.body_from_scanner.linear());
+}
+
+Eigen::Isometry3d Carriage::true_pose(const Eigen::Isometry3d& believed) const {
+  if (is_exact()) return believed;
+  Eigen::Isometry3d pose(geometry::rotation_of(turn) * believed.linear());
+  pose.translation() = believed.translation() + shift;
+  return pose;
+}
+
+SurveySensor::SurveySensor(const SurveySensorOptions& config, std::uint64_t seed)
+    : sensor_([&]() -> std::variant<DepthCamera, Lidar> {
+        if (config.scanner) {
+          LidarConfig lidar = *config.scanner;
+          lidar.seed = seed;
+          return Lidar(lidar);
+        }
+        DepthCameraConfig camera = config.camera;
+        camera.noise.seed = seed;
+        return DepthCamera(camera);
+      }()),
+      shutter_(config.shutter) {
+  if (!config.scanner) return;
+  kind_ = kind_of(*config.scanner);
+  if (!config.mount) return;
+  mount_ = config.mount;
+  turns_ = turns_of(config);
+  if (config.is_moving()) period_ = config.frame_period;
+}
+
+std::vector<Eigen::Isometry3d> SurveySensor::turns(const View& view) const {
+  const LidarConfig& lidar = std::get<Lidar>(sensor_).config();
+  if (!mount_) return {geometry::camera_pose(view) * scanner_from_optical(lidar).inverse()};
+  // The rays of turns on a way fall between each other's: spread by the R2 sequence, along the axis
+  // (some rays of a turn are as far apart at twenty metres) and between two firings.
+  constexpr double first_ratio = 0.7548776662466927, second_ratio = 0.5698402909980532;
+  const Eigen::Isometry3d world_from_scanner =
+      world_from_body(geometry::nose_view(*mount_, view)) * mount_->body_from_scanner;
+  std::vector<Eigen::Isometry3d> poses;
+  for (std::size_t turn = 0; turn < turns_; ++turn) {
+    const auto share = [&](double ratio) {
+      const double sum = ratio * static_cast<double>(turn);
+      return sum - std::floor(sum);
+    };
+    Eigen::Isometry3d pose = world_from_scanner;
+    pose.translation() += spread_of_turns * (share(first_ratio) - 0.5) * pose.linear().col(2);
+    pose.rotate(Eigen::AngleAxisd(share(second_ratio) * azimuth_step(lidar), Vector3d::UnitZ()));
+    poses.push_back(pose);
+  }
+  return poses;
+}
+
+void SurveySensor::measure_way(const Lidar& lidar, const Scene& scene, const View& view,
+                               const Carriage& carriage, std::uint64_t frame, unsigned threads,
+                               std::vector<Eigen::Vector3f>& points) const {
+  constexpr double most_periods = 2.0;  // of a stretch, so that no firing is another scan's
+  const double firing = lidar.config().firing_period;
+  const auto apart = static_cast<std::uint64_t>(std::ceil(most_periods * period_ / firing));
+  Eigen::Isometry3d from =
+      geometry::camera_pose(view) * scanner_from_optical(lidar.config()).inverse();
+  if (mount_) from = world_from_body(geometry::nose_view(*mount_, view));
+  Eigen::Isometry3d to = from;
+  // At rest a line shows in a turn what there is to see.
+  double duration =
+      kind_ == ScannerKind::line ? 1.0 / std::abs(lidar.config().rotation_rate) : period_;
+  if (carriage.stretch) {
+    from = world_from_body(carriage.stretch->from);
+    to = world_from_body(carriage.stretch->to);
+    duration = carriage.stretch->duration;
+  }
+  const auto count = std::clamp<std::uint64_t>(
+      static_cast<std::uint64_t>(std::llround(duration / firing)), 1, apart);
+  const double begin = static_cast<double>(frame * apart) * firing;
+  const double end = begin + static_cast<double>(count) * firing;
+  const Trajectory believed = way_of(from, to, begin, end);
+  const Trajectory flown = way_of(carriage.true_pose(from), carriage.true_pose(to), begin, end);
+  const Eigen::Isometry3d body_from_scanner =
+      mount_ ? mount_->body_from_scanner : Eigen::Isometry3d::Identity();
+  const LidarFlight flight{flown, carriage.is_exact() ? flown : believed, body_from_scanner,
+                           body_from_scanner};
+  constexpr std::uint64_t firings_in_task = 4096;
+  std::vector<LidarReturns> returns((count + firings_in_task - 1) / firings_in_task);
+  geometry::parallel_for(returns.size(), threads, [&](std::size_t task) {
+    const std::uint64_t first = task * firings_in_task;
+    returns[task] = lidar.measure(
+        scene, flight, {frame * apart + first, std::min(firings_in_task, count - first)});
+  });
+  append(returns, points);
+}
+
+geometry::Scan SurveySensor::scan(const Scene& scene, const View& view, std::uint64_t frame,
+                                  unsigned threads, geometry::Scan recycled) const {
+  return scan(scene, view, {}, frame, threads, std::move(recycled));
+}
+
+geometry::Scan SurveySensor::scan(const Scene& scene, const View& view, const Carriage& carriage,
+                                  std::uint64_t frame, unsigned threads,
+                                  geometry::Scan recycled) const {
+  if (const auto* lidar = std::get_if<Lidar>(&sensor_)) {
+    geometry::Scan scan = std::move(recycled);
+    // What is fixed to the vehicle looks as its mount has it, whatever was wished for.
+    const bool is_fixed = mount_ && kind_ == ScannerKind::rosette;
+    scan.world_from_sensor = geometry::camera_pose(
+        is_fixed ? geometry::scanner_view(*mount_, geometry::nose_view(*mount_, view)) : view);
+    scan.points.clear();
+    scan.pixels.clear();
+    if (kind_ == ScannerKind::ring) {
+      append_turns(*lidar, scene, turns(view), carriage, frame * turns_, threads, scan.points);
+    } else {
+      measure_way(*lidar, scene, view, carriage, frame, threads, scan.points);
+    }
+    return scan;
+  }
+  const auto& camera = std::get<DepthCamera>(sensor_);
+  const Eigen::Isometry3d believed = geometry::camera_pose(view);
+  if (carriage.instants == 0 && carriage.is_exact()) {
+    return camera.scan(scene, believed, frame, threads, std::move(recycled));
+  }
+  FrameMotion motion{.world_from_camera = carriage.true_pose(believed)};
+  if (carriage.instants > 0) {
+    motion.velocity = carriage.velocity;
+    motion.turn_rate = carriage.turn_rate;
+    motion.exposure = shutter_.exposure;
+    motion.readout = shutter_.readout;
+    motion.instants = carriage.instants;
+  }
+  return camera.scan(scene, believed, motion, frame, threads, std::move(recycled));
+}
+
+namespace {
+
+/// Points a second on each metre along the way and each across it, at the view distance.
+double points_abeam(const SurveySensorOptions& sensor, double distance) {
+  const LidarConfig& lidar = *sensor.scanner;
+  const double swath = 2.0 * distance * std::tan(0.5 * sensor.camera.camera.horizontal_fov);
+  switch (kind_of(lidar)) {
+    case ScannerKind::ring: {
+      const geometry::Camera camera(side_camera(lidar).camera);
+      const double rays = camera.focal_length_px().prod() / (distance * distance);  // on a m^2
+      return swath * std::abs(lidar.rotation_rate) * rays;
+    }
+    case ScannerKind::line:
+      return std::abs(lidar.rotation_rate) / (distance * azimuth_step(lidar));
+    case ScannerKind::rosette:
+      break;
+  }
+  const geometry::Camera camera(sensor.camera.camera);
+  const double period = sensor.is_moving() ? sensor.frame_period : rosette_period;
+  return swath * camera.focal_length_px().prod() / (distance * distance) / period;
+}
+
+}  // namespace
+
+double scanning_speed(const SurveySensorOptions& sensor, double distance, double spacing,
+                      double fastest) {
+  // Lines are even, and lie over each other nowhere: what is stored of them is most of what comes.
+  const bool is_even = kind_of(*sensor.scanner) == ScannerKind::line;
+  const double apart = (is_even ? 1.0 : 0.5) * spacing;
+  return std::min(points_abeam(sensor, distance) * apart * apart, 0.5 * fastest);
+}
+
+}  // namespace skycap::sim

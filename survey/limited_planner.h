@@ -1,0 +1,45 @@
+/// A planner that knows nothing of limits, kept from breaking them: what it proposes outside of
+/// them is refused in its name, until it proposes a view within them.
+#pragma once
+
+#include <cstddef>
+#include <memory>
+#include <optional>
+#include <stop_token>
+#include <utility>
+
+#include "geometry/points/point_grid.h"
+#include "survey/planner.h"
+#include "survey/view_limits.h"
+
+namespace skycap::survey {
+
+class LimitedPlanner final : public Planner {
+ public:
+  LimitedPlanner(std::unique_ptr<Planner> planner, const ViewLimits& limits);
+
+  std::optional<geometry::View> next_view(const geometry::ScanSpan& scan) override;
+  void pass(const geometry::ScanSpan& scan) override { planner_->pass(scan); }
+  std::optional<geometry::View> next_view_instead() override;
+  void keep_to(PlaceCheck may_be_at) override { planner_->keep_to(std::move(may_be_at)); }
+  bool allows(const geometry::View& view) override;
+  void stop_on(const std::stop_token& stop) override;
+  const geometry::PointCloud& cloud() const override { return planner_->cloud(); }
+  geometry::PointCloud release_cloud() override { return planner_->release_cloud(); }
+  const PlanningStep& last_step() const override { return step_; }
+  StopReason stop_reason() const override;
+  const CoverageEstimator* estimator() const override { return planner_->estimator(); }
+
+ private:
+  std::optional<geometry::View> within_limits(std::optional<geometry::View> view);
+
+  std::unique_ptr<Planner> planner_;
+  ViewLimits limits_;
+  geometry::PointGrid measured_;  ///< the planner's points so far, if the stand-off asks for them
+  std::size_t points_known_ = 0;
+  PlanningStep step_;
+  std::stop_token stop_;
+  bool has_refused_ = false;  ///< a view since the last next_view()
+};
+
+}  // namespace skycap::survey

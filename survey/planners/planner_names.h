@@ -1,0 +1,57 @@
+/// What planners are called, in files and in tables: the one list of their names.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <optional>
+#include <string_view>
+
+#include "survey/volumetric/volumetric_config.h"
+
+namespace skycap::survey {
+
+enum class PlannerName { see_plus_plus, see, skycap, rsv, rse, oa, uv, pc, af, ae };
+
+struct PlannerTitle {
+  PlannerName name;
+  std::string_view word;   ///< planner.name in mission files and on the command line
+  std::string_view title;  ///< in tables and plots
+  /// The gain that a volumetric planner goes by; nothing for the others.
+  std::optional<volumetric::VolumetricMetric> metric = std::nullopt;
+};
+
+/// In the order of PlannerName.
+inline constexpr std::array<PlannerTitle, 10> planner_titles = [] {
+  using enum PlannerName;
+  using enum volumetric::VolumetricMetric;
+  return std::array<PlannerTitle, 10>{{{see_plus_plus, "see++", "SEE++"},
+                                       {see, "see", "SEE"},
+                                       {skycap, "skycap", "Skycap"},
+                                       {rsv, "rsv", "RSV", rear_side_voxel},
+                                       {rse, "rse", "RSE", rear_side_entropy},
+                                       {oa, "oa", "OA", occlusion_aware},
+                                       {uv, "uv", "UV", unobserved_voxel},
+                                       {pc, "pc", "PC", proximity_count},
+                                       {af, "af", "AF", area_factor},
+                                       {ae, "ae", "AE", average_entropy}}};
+}();
+
+static_assert([] {
+  for (std::size_t i = 0; i < planner_titles.size(); ++i) {
+    if (planner_titles[i].name != static_cast<PlannerName>(i)) return false;
+  }
+  return true;
+}());
+
+constexpr const PlannerTitle& title_of(PlannerName name) {
+  return planner_titles[static_cast<std::size_t>(name)];
+}
+
+/// The planner that files call so; nothing if none is.
+constexpr std::optional<PlannerName> planner_called(std::string_view word) {
+  const auto found = std::ranges::find(planner_titles, word, &PlannerTitle::word);
+  return found == planner_titles.end() ? std::nullopt : std::optional(found->name);
+}
+
+}  // namespace skycap::survey

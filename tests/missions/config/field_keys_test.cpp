@@ -1,0 +1,81 @@
+#include "missions/config/field_keys.h"
+
+#include <fstream>
+#include <regex>
+#include <set>
+#include <sstream>
+#include <string>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "missions/config/mission_keys.h"
+#include "missions/config/resolve.h"
+#include "tests/support/complaint.h"
+
+namespace skycap::missions {
+namespace {
+
+using testing::HasSubstr;
+using testing::Not;
+
+std::string text_of(const std::string& source) {
+  std::ifstream file(std::string(SKYCAP_SOURCE_DIR) + "/" + source);
+  std::ostringstream text;
+  text << file.rdbuf();
+  return text.str();
+}
+
+/// The fields that the validate() functions of a source complain of: names in quotes, and the first
+/// word of sentences.
+std::set<std::string> fields_of(const std::string& source) {
+  static const std::regex field(R"re("([a-z]+(?:[_.][a-z]+)*)(?:"|(?= (?:is|has|must)\b)))re");
+  const std::string text = text_of(source);
+  std::set<std::string> fields;
+  for (std::sregex_iterator found(text.begin(), text.end(), field), end; found != end; ++found) {
+    fields.insert((*found)[1]);
+  }
+  return fields;
+}
+
+/// Words in quotes that are rules, not fields, and fields that no mission sets.
+const std::set<std::string> not_from_missions = {
+    "continuation_steps",                                    // a constant of the planner
+    "stereo.disparity_sigma_px", "stereo.disparity_step_px"  // descriptions of sensors alone
+};
+
+TEST(FieldKeys, NameKeysOfTheMissionFile) {
+  ASSERT_FALSE(config::field_keys.empty());
+  for (const config::FieldKey& known : config::field_keys) {
+    EXPECT_NE(config::find_key(known.key), nullptr) << known.field << ": " << known.key;
+  }
+}
+
+TEST(FieldKeys, KnowEveryFieldThatLibrariesComplainOf) {
+  std::size_t fields = 0;
+  for (const char* source :
+       {"geometry/place/camera.cpp", "sim/sensors/depth_camera_config.cpp", "sim/sensors/noise.cpp",
+        "survey/view_limits.cpp", "survey/see/see_config.cpp", "survey/skycap/skycap_config.cpp",
+        "survey/volumetric/volumetric_config.cpp"}) {
+    for (const std::string& field : fields_of(source)) {
+      if (not_from_missions.contains(field)) continue;
+      EXPECT_NE(config::key_of_field(field), "") << source << " complains of " << field;
+      ++fields;
+    }
+  }
+  EXPECT_GE(fields, 40U);
+}
+
+TEST(FieldKeys, PutTheKeyAndItsLineIntoTheMessage) {
+  const std::string message = testing_support::complaint_of([] {
+    config::parse_mission(
+        "scene: {model: 'builtin:teapot'}\nevaluation: {registration_distance: 0.005}\n"
+        "planner:\n  name: skycap\n  ideas: {dose: true}\n  least_gain: 1\n",
+        "m.yaml");
+  });
+  EXPECT_THAT(message, HasSubstr("m.yaml:6: key planner.least_gain: is 1; it must be"));
+  EXPECT_THAT(message, Not(HasSubstr("stop.least_gain")));
+}
+
+}  // namespace
+}  // namespace skycap::missions

@@ -1,0 +1,255 @@
+#include "missions/config/resolve.h"
+
+#include <string>
+#include <variant>
+#include <vector>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "geometry/error.h"
+#include "missions/support/number_text.h"
+#include "tests/support/complaint.h"
+
+namespace skycap::missions {
+namespace {
+
+using survey::see::SeeConfig;
+using survey::skycap::SkycapConfig;
+using testing::HasSubstr;
+
+const std::string smallest =
+    "scene: {model: 'builtin:teapot'}\nevaluation: {registration_distance: 0.005}\n";
+
+config::MissionSetup parsed(const std::string& more) {
+  return config::parse_mission(smallest + more, "some/folder/vase.yaml");
+}
+
+const SeeConfig& see_of(const config::MissionSetup& setup) {
+  return std::get<SeeConfig>(setup.survey().planner.method);
+}
+
+std::string complaint(const std::string& text) {
+  return testing_support::complaint_of([&] { config::parse_mission(text, "m.yaml"); });
+}
+
+// echo 51.7534 -1.254 0 | cs2cs EPSG:4326+5773 EPSG:4979 -f %.6f
+TEST(Resolve, TakesEgm96WhereAGeoidIsAskedForAndNoneIsGiven) {
+  const std::string place = "site: {latitude_deg: 51.7534, longitude_deg: -1.254";
+  const auto undulation = [&](const std::string& text) {
+    return parsed(text).flight().site.geoid_undulation;
+  };
+  const std::string flight =
+      "}\nflight: {vehicle: generic, unknown_box: {min: [0, 0, 0], max: [1, 1, 1]}}\n";
+  EXPECT_NEAR(undulation(place + flight).value(), 47.760744, 1e-6);
+  EXPECT_EQ(undulation(place + ", geoid_undulation: 40" + flight), 40.0);
+  EXPECT_FALSE(undulation(place + "}\n")) << "nobody asks";
+  EXPECT_FALSE(undulation(place + "}\nscan: {crs: utm}\n")) << "maps have ellipsoid heights, too";
+  EXPECT_FALSE(undulation("flight: {vehicle: none}\n"));
+}
+
+// spec: psi = d, one frontier a twentieth of d, occluders 2 r apart, tau above the number of
+// clusters.
+TEST(Resolve, DerivesTheBuildingPresetFromTheSensorAndTheDensity) {
+  const std::string building =
+      "sensor: {preset: high_resolution}\n"
+      "planner: {preset: building, density: 213, spacing: 0.0685, resolution_radius: 0.15";
+  const SeeConfig see = see_of(parsed(building + "}"));
+  EXPECT_NEAR(see.occlusion_search_distance, 41.29, 5e-3);  // d, as published
+  EXPECT_NEAR(see.frontier_spacing, 2.0645, 5e-4);
+  EXPECT_DOUBLE_EQ(see.occluder_spacing, 0.3);
+  EXPECT_EQ(see.visibility_update_limit, 1000U);
+  EXPECT_EQ(see.still_occluded, survey::see::StillOccluded::put_off);
+  EXPECT_EQ(see.core_threshold, 5);  // 10.5 on a disc of points so far apart
+
+  const SeeConfig overridden =
+      see_of(parsed(building + ", occlusion_search_distance: 10, visibility_update_limit: 5}"));
+  EXPECT_EQ(overridden.occlusion_search_distance, 10.0);
+  EXPECT_EQ(overridden.visibility_update_limit, 5U);
+  EXPECT_NEAR(overridden.frontier_spacing, 2.0645, 5e-4);
+  EXPECT_EQ(see_of(parsed(building + ", core_threshold: 4}")).core_threshold, 4);
+  const config::MissionSetup published = parsed("planner: {density: 213, resolution_radius: 0.15}");
+  EXPECT_EQ(see_of(published).core_threshold, std::nullopt);
+}
+
+// Points as far apart as the paper's would leave gaps that do not count as covered.
+TEST(Resolve, StoresPointsSoThatTheyCanCover) {
+  const auto spacing = [](const std::string& distance, const std::string& more) {
+    return config::parse_mission(
+               "scene: {model: 'builtin:teapot'}\n"
+               "planner: {density: 400, resolution_radius: 0.15" +
+                   more + "}\nevaluation: {registration_distance: " + distance + "}\n",
+               "m.yaml")
+        .survey()
+        .planner.spacing;
+  };
+  EXPECT_DOUBLE_EQ(spacing("0.1", ""), 0.05) << "the paper's, rho^(-1/2)";
+  EXPECT_DOUBLE_EQ(spacing("0.05", ""), 0.04);
+  EXPECT_DOUBLE_EQ(spacing("0.05", ", spacing: 0.06"), 0.06) << "as the mission says";
+  // A D435's image is 2 tan(69.4 deg / 2) = 1.385 m wide at a metre.
+  EXPECT_NEAR(spacing("0.001", ", view_distance: 10"), 10 * 1.385 / 848, 1e-4) << "as rays meet it";
+}
+
+// A moving sensor measures on the way, so that stops are what is left to spare.
+TEST(Resolve, SparesMinutesWhereTheWaysMeasure) {
+  const auto goal = [](const std::string& more) {
+    return parsed("planner: {name: skycap" + more).text("planner.goal");
+  };
+  const std::string moving =
+      "}\nflight: {vehicle: generic, unknown_box: {min: [0, 0, 0], max: [1, 1, 1]}}\n"
+      "sensor: {capture: moving}\n";
+  EXPECT_EQ(goal("}\n"), "views");
+  EXPECT_EQ(goal(moving), "minutes");
+  EXPECT_EQ(goal(", goal: views" + moving), "views");
+}
+
+// Of surveys by the M350 at 4 m/s a view was measured to cost 6.5 to 8 s, and half a second of rest
+// was added since.
+TEST(ViewPrice, IsOfDistancesOrOfTheStop) {
+  const auto price = [](const std::string& more) {
+    const config::MissionSetup setup =
+        parsed("planner: {name: skycap, view_distance: 20, goal: " + more);
+    return std::get<SkycapConfig>(setup.survey().planner.method).view_price;
+  };
+  EXPECT_EQ(price("views}\n"), std::nullopt);
+  EXPECT_EQ(price("minutes}\n"), 20.0);
+  const std::string flown =
+      "}\nflight: {vehicle: m350_rtk, unknown_box: {min: [0, 0, 0], max: [1, 1, 1]}}\n";
+  EXPECT_EQ(price("views" + flown), std::nullopt);
+  EXPECT_GE(price("minutes" + flown), 26.0);
+  EXPECT_LE(price("minutes" + flown), 34.0);
+}
+
+TEST(Resolve, ReadsTheSitesAirspace) {
+  const config::MissionSetup mission = parsed(
+      "site:\n"
+      "  geofence: [[-50, -40], [50, -40], [50.5, 40]]\n"
+      "  no_fly:\n"
+      "    - {corners: [[0, 0], [5, 0], [0, 5]], bottom: 0, top: 30}\n"
+      "  lowest_height: 3\n"
+      "  highest_height: 120\n"
+      "limits: {ground_clearance: 5, stand_off: 2, lowest_pitch_deg: -90, highest_pitch_deg: "
+      "30}\n");
+  const survey::ViewLimits& limits = mission.survey().planner.limits;
+  ASSERT_EQ(limits.geofence.size(), 3U);
+  EXPECT_EQ(limits.geofence[2], Eigen::Vector2d(50.5, 40.0));
+  ASSERT_EQ(limits.no_fly.size(), 1U);
+  EXPECT_EQ(limits.no_fly[0].footprint[1], Eigen::Vector2d(5.0, 0.0));
+  EXPECT_EQ(limits.no_fly[0].ceiling, 30.0);
+  EXPECT_EQ(limits.least_height, 5.0);  // the higher of the two
+  EXPECT_EQ(limits.most_height, 120.0);
+  EXPECT_EQ(limits.stand_off, 2.0);
+  EXPECT_NEAR(limits.most_pitch, 0.5235988, 1e-6);
+  EXPECT_NO_THROW(limits.validate());
+}
+
+TEST(Resolve, RefusesAirspacesThatCannotBe) {
+  EXPECT_THAT(complaint("site: {geofence: [[0, 0], [1, 0]]}"), HasSubstr("three or more corners"));
+  EXPECT_THAT(complaint("site: {geofence: [[0, 0], [1, 0], [1, x]]}"), HasSubstr("site.geofence"));
+  const std::string corners = "corners: [[0, 0], [1, 0], [0, 1]]";
+  EXPECT_THAT(complaint("site: {no_fly: [{" + corners + ", bottom: 3, top: 3}]}"),
+              HasSubstr("site.no_fly"));
+  EXPECT_THAT(complaint("site: {no_fly: [{" + corners + ", bottom: 0, roof: 3}]}"),
+              HasSubstr("a list of {corners, bottom, top}"));
+  EXPECT_THAT(parsed("site: {no_fly: []}").flight().airspace.no_fly, testing::IsEmpty());
+  EXPECT_THAT(complaint(std::string(smallest) + "site: {lowest_height: 5, highest_height: 5}"),
+              HasSubstr("site.highest_height: is not above"));
+  EXPECT_THAT(
+      complaint(std::string(smallest) + "limits: {lowest_pitch_deg: 9, highest_pitch_deg: -9}"),
+      HasSubstr("limits.highest_pitch_deg: is not above"));
+}
+
+TEST(Resolve, MeasuresTheGroundClearanceFromTheScenesBase) {
+  const config::MissionSetup mission = config::parse_mission(
+      "scene: {model: 'builtin:teapot', position: [0, 0, 60]}\n"
+      "evaluation: {registration_distance: 0.005}\nlimits: {ground_clearance: 2}\n",
+      "m.yaml");
+  EXPECT_EQ(see_of(mission).least_height, 62.0);
+  EXPECT_EQ(mission.survey().planner.limits.least_height, 62.0);
+}
+
+TEST(Resolve, WhatFliesIsPlannedBySkycapUnlessTheMissionSaysOtherwise) {
+  const std::string flown = smallest +
+                            "flight: {vehicle: generic, unknown_box: {min: [0, 0, 0], "
+                            "max: [1, 1, 1]}}\n";
+  const auto planner = [](const std::string& text) {
+    return config::parse_mission(text, "m.yaml").survey().planner.name;
+  };
+  EXPECT_EQ(planner(smallest), survey::PlannerName::see_plus_plus);
+  EXPECT_EQ(planner(flown), survey::PlannerName::skycap);
+  EXPECT_EQ(planner(flown + "planner: {name: see}\n"), survey::PlannerName::see);
+}
+
+// k = 1 admits no frontier: SEE cannot work with it, and no other planner looks at k.
+TEST(Resolve, ChecksSeesDensityOnlyForSee) {
+  const std::string sparse = smallest + "planner: {density: 1000, resolution_radius: 0.05, name: ";
+  for (const char* name : {"see", "see++"}) {
+    EXPECT_THAT(complaint(sparse + name + "}\n"), HasSubstr("which admits no frontier")) << name;
+  }
+  for (const char* name : {"skycap", "rsv", "rse", "oa", "uv", "pc", "af", "ae"}) {
+    EXPECT_EQ(complaint(sparse + name + "}\n"), "") << name;
+  }
+}
+
+// 51.7534 is no binary fraction: by way of radians it came back as 51.753399999999999.
+TEST(Resolve, KeepsThePlaceAsItIsWritten) {
+  for (const double latitude : {51.7534, -33.856784, 0.1, 47.3}) {
+    const flight::GeodeticPoint origin =
+        parsed("site: {latitude_deg: " + support::exact_text(latitude) +
+               ", longitude_deg: -1.254}\n")
+            .flight()
+            .site.origin;
+    EXPECT_EQ(origin.latitude_deg, latitude);
+    EXPECT_EQ(origin.longitude_deg, -1.254);
+  }
+}
+
+/// A setting that its own planner refuses, and others do not look at.
+struct RefusedSetting {
+  const char* planner;
+  const char* more;
+  const char* message;  ///< how it begins
+};
+
+TEST(Resolve, ChecksEachPlannersOwnSettingsWithTheirPlace) {
+  const std::vector<RefusedSetting> settings{
+      {"see", "planner:\n  core_threshold: 3\n",
+       "m.yaml:4: key planner.core_threshold: is 3; it must be at least 4"},
+      {"skycap", "planner:\n  least_gain: 1\n",
+       "m.yaml:4: key planner.least_gain: is 1; it must be at least 0 and below 1"},
+      {"oa", "volumetric:\n  thinned: true\n  shadow_length: 1e3\n",
+       "m.yaml:5: key volumetric.shadow_length: is 1000; it must be positive and less than"},
+      {"ae", "volumetric: {window_begin: 0.6, window_end: 0.5}\n",
+       "m.yaml:3: key volumetric.window_begin: is 0.6; it must be at least 0 and below "
+       "window_end"},
+      {"uv", "volumetric: {view_limit: 1, candidates_per_view: 0.1}\n",
+       "m.yaml:3: key volumetric.candidates_per_view: is 0.1; it must be large enough"},
+      {"af",
+       "limits: {ground_clearance: 3}\nvolumetric: {sphere_centre: [0, 0, 0], sphere_radius: "
+       "2}\n",
+       "m.yaml:4: key volumetric.sphere_radius: is 2; it must be large enough for the sphere to "
+       "reach above the least height of 3 m"},
+  };
+  for (const RefusedSetting& setting : settings) {
+    const std::string mission = smallest + setting.more;
+    for (const char* name : {"see", "skycap", "oa"}) {
+      const bool is_volumetric = std::string(setting.more).find("volumetric:") != std::string::npos;
+      const bool is_its_own =
+          name == std::string(setting.planner) || (is_volumetric && name == std::string("oa"));
+      std::string message;
+      try {
+        config::parse_mission(mission, "m.yaml", {{"--planner", "planner.name", name}});
+      } catch (const Error& error) {
+        message = error.what();
+      }
+      if (is_its_own) {
+        EXPECT_THAT(message, testing::StartsWith(setting.message)) << name;
+      } else {
+        EXPECT_EQ(message, "") << name << ": " << setting.more;
+      }
+    }
+  }
+}
+
+}  // namespace
+}  // namespace skycap::missions

@@ -1,0 +1,65 @@
+#include "missions/support/journal_text.h"
+
+#include <string>
+
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include "missions/version.h"
+#include "tests/support/complaint.h"
+
+namespace skycap::missions::support {
+namespace {
+
+const Identity run{7, {{"scene.model", "builtin:teapot"}, {"limits.max_views", "12"}}};
+const std::string cure = "begin anew without --resume";
+
+std::string identity_of(const Identity& given) {
+  return identity_text(given, {{"format", journal_format}, {"surface", "abc"}});
+}
+
+std::string complaint(const std::string& found, const std::string& wanted) {
+  return testing_support::complaint_of([&] { require_same_survey("j", found, wanted, cure); });
+}
+
+TEST(JournalText, TellsASurveyByVersionSeedAndKeys) {
+  const auto json = nlohmann::ordered_json::parse(identity_of(run));
+  EXPECT_EQ(json.at("version"), version);
+  EXPECT_EQ(json.at("seed"), 7);
+  EXPECT_EQ(json.at("format"), journal_format);
+  EXPECT_EQ(json.at("limits.max_views"), "12");
+  EXPECT_NO_THROW(require_same_survey("j", identity_of(run), identity_of(run), cure));
+}
+
+TEST(JournalText, NamesWhatIsDifferent) {
+  Identity other = run;
+  other.settings[1].value = "13";
+  EXPECT_EQ(
+      complaint(identity_of(run), identity_of(other)),
+      "j: was begun otherwise: limits.max_views was \"12\" and is \"13\"; take that back, or " +
+          cure);
+}
+
+// Earlier journals count what limits refuse as unreachable, and say nothing of a format.
+TEST(JournalText, SaysWhichVersionWroteAJournalOfAnotherFormat) {
+  const std::string end = ", whose journals this version cannot continue; " + cure;
+  EXPECT_EQ(complaint(R"({"version": "0.1.0", "seed": 7})", identity_of(run)),
+            "j: was written by version 0.1.0" + end);
+  EXPECT_EQ(complaint(R"({"version": "9.0.0", "seed": 7, "format": 3})", identity_of(run)),
+            "j: was written by version 9.0.0" + end);
+  EXPECT_EQ(complaint(R"({"version": 3, "seed": 7})", identity_of(run)),
+            "j: was written by version (unknown)" + end);
+}
+
+// Those of scans have none.
+TEST(JournalText, AsksForAFormatOnlyWhereThereIsOne) {
+  const std::string identity = identity_text(run, {{"formats", "las"}});
+  EXPECT_NO_THROW(require_same_survey("j", identity, identity, cure));
+}
+
+TEST(JournalText, RejectsWhatIsNotAnIdentity) {
+  EXPECT_EQ(complaint("[1, 2]", identity_of(run)), "j: does not begin as a journal");
+}
+
+}  // namespace
+}  // namespace skycap::missions::support

@@ -1,0 +1,174 @@
+#include "survey/limited_planner.h"
+
+#include <cstddef>
+#include <memory>
+#include <optional>
+#include <stop_token>
+#include <utility>
+#include <vector>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "survey/survey_loop.h"
+
+namespace skycap::survey {
+namespace {
+
+using Eigen::Vector3f;
+using geometry::Scan;
+using geometry::View;
+using testing::ElementsAre;
+
+View view_at(double x, double z) { return {{x, 0, z}, {1, 0, 0}}; }
+
+/// Proposes the views of a list, one after the other; of a refused one it offers the next.
+class ListPlanner final : public Planner {
+ public:
+  explicit ListPlanner(std::vector<View> views) : views_(std::move(views)) {}
+
+  std::optional<View> next_view(const geometry::ScanSpan& scan) override {
+    cloud_.positions.insert(cloud_.positions.end(), scan.points.begin(), scan.points.end());
+    step_ = {.points_new = scan.points.size()};
+    return next();
+  }
+  std::optional<View> next_view_instead() override {
+    step_ = {};
+    return next();
+  }
+  void pass(const geometry::ScanSpan& scan) override { passed_ += scan.points.size(); }
+  void keep_to(PlaceCheck may_be_at) override { may_be_at_ = std::move(may_be_at); }
+  const geometry::PointCloud& cloud() const override { return cloud_; }
+  geometry::PointCloud release_cloud() override { return std::move(cloud_); }
+  const PlanningStep& last_step() const override { return step_; }
+
+  std::size_t passed() const { return passed_; }
+  bool may_be_at(const Eigen::Vector3d& place) const { return may_be_at_(place); }
+
+ private:
+  std::optional<View> next() {
+    if (proposed_ == views_.size()) return std::nullopt;
+    return views_[proposed_++];
+  }
+
+  std::vector<View> views_;
+  std::size_t proposed_ = 0, passed_ = 0;
+  PlaceCheck may_be_at_;
+  geometry::PointCloud cloud_;
+  PlanningStep step_;
+};
+
+/// Heights are limited in all tests but those of the stand-off.
+const ViewLimits two_to_four{.least_height = 2.0, .most_height = 4.0};
+
+std::unique_ptr<ListPlanner> planner_at_heights(const std::vector<double>& heights) {
+  std::vector<View> views;
+  for (std::size_t i = 0; i < heights.size(); ++i) {
+    views.push_back(view_at(static_cast<double>(i + 1), heights[i]));
+  }
+  return std::make_unique<ListPlanner>(std::move(views));
+}
+
+Scan scan_of(const std::vector<Vector3f>& points) {
+  return {.world_from_sensor = geometry::camera_pose(view_at(0, 3)), .points = points};
+}
+
+const Scan scan = scan_of({{0, 0, 0}, {0, 0, 1}});
+
+TEST(LimitedPlanner, ProposesOnlyViewsWithinTheLimits) {
+  LimitedPlanner planner(planner_at_heights({1, 3, 5, 9, 2, 4, 6}), two_to_four);
+  std::vector<double> heights;
+  for (auto view = planner.next_view(scan); view; view = planner.next_view(scan)) {
+    EXPECT_TRUE(two_to_four.allow(*view));
+    heights.push_back(view->position.z());
+  }
+  EXPECT_THAT(heights, ElementsAre(3, 2, 4));
+}
+
+TEST(LimitedPlanner, ProposesOnlyViewsWithinTheLimitsInPlaceOfOthers) {
+  LimitedPlanner planner(planner_at_heights({3, 5, 1, 2, 6}), two_to_four);
+  EXPECT_EQ(planner.next_view(scan)->position.z(), 3.0);
+  EXPECT_EQ(planner.next_view_instead()->position.z(), 2.0);
+  EXPECT_FALSE(planner.next_view_instead());
+}
+
+// What a scan shows counts from the scan on; what was measured before counts as well.
+TEST(LimitedPlanner, KeepsTheStandOffFromAllThatWasMeasured) {
+  auto list = std::make_unique<ListPlanner>(std::vector<View>{
+      view_at(2.9, 0), view_at(3.1, 0), view_at(3.1, 0), view_at(-0.9, 0), view_at(-1.1, 0)});
+  LimitedPlanner planner(std::move(list), {.stand_off = 1.0});
+  EXPECT_EQ(planner.next_view(scan_of({{2, 0, 0}}))->position.x(), 3.1);
+  EXPECT_EQ(planner.next_view(scan_of({{4, 0, 0}, {0, 0, 0}}))->position.x(), -1.1);
+  EXPECT_FALSE(planner.allows(view_at(2.9, 0)));
+  EXPECT_TRUE(planner.allows(view_at(-1.1, 0)));
+}
+
+TEST(LimitedPlanner, SaysThatThereIsNowhereToGoWhenAllViewsAreRefused) {
+  LimitedPlanner planner(planner_at_heights({1, 5, 3}), two_to_four);
+  ASSERT_TRUE(planner.next_view(scan));
+  EXPECT_FALSE(planner.next_view_instead());
+  EXPECT_EQ(planner.stop_reason(), StopReason::nowhere_to_go);
+  // Nothing was wanted any more, so that nothing was refused either.
+  EXPECT_FALSE(planner.next_view(scan));
+  EXPECT_EQ(planner.stop_reason(), StopReason::complete);
+}
+
+TEST(LimitedPlanner, EndsASurveyForWhatItsLimitsRefuse) {
+  const auto sense = [](const View& view, const Scan&) {
+    return Scan{.world_from_sensor = geometry::camera_pose(view), .points = {{0, 0, 0}}};
+  };
+  LimitedPlanner refused(planner_at_heights({3, 5, 1}), two_to_four);
+  const SurveyResult result = run_survey(refused, view_at(0, 3), {}, {.sense = sense});
+  EXPECT_EQ(result.stop_reason, StopReason::nowhere_to_go);
+  EXPECT_EQ(result.views.size(), 2U);
+  LimitedPlanner done(planner_at_heights({5, 3}), two_to_four);
+  EXPECT_EQ(run_survey(done, view_at(0, 3), {}, {.sense = sense}).stop_reason,
+            StopReason::complete);
+}
+
+// An opening is not the planner's, but its limits are the survey's.
+TEST(LimitedPlanner, LeavesOutWhatItsLimitsRefuseOfAnOpening) {
+  const auto sense = [](const View& view, const Scan&) {
+    return Scan{.world_from_sensor = geometry::camera_pose(view), .points = {{0, 0, 0}}};
+  };
+  LimitedPlanner planner(planner_at_heights({}), two_to_four);
+  const SurveyResult result =
+      run_survey(planner, view_at(0, 3), {},
+                 {.opening = {view_at(1, 5), view_at(2, 4), view_at(3, 1)}, .sense = sense});
+  ASSERT_EQ(result.views.size(), 2U);
+  EXPECT_LT((result.views[1].view.position - view_at(2, 4).position).norm(), 1e-12);
+}
+
+// The step is that of the scan, whatever the planner does in search of another view.
+TEST(LimitedPlanner, KeepsTheStepOfTheScan) {
+  LimitedPlanner planner(planner_at_heights({1, 5, 3, 2}), two_to_four);
+  ASSERT_TRUE(planner.next_view(scan));
+  EXPECT_EQ(planner.last_step().points_new, 2U);
+  ASSERT_TRUE(planner.next_view_instead());
+  EXPECT_EQ(planner.last_step().points_new, 2U);
+}
+
+TEST(LimitedPlanner, StopsInTheSearchForAView) {
+  LimitedPlanner planner(planner_at_heights({1, 5, 3}), two_to_four);
+  std::stop_source stop;
+  planner.stop_on(stop.get_token());
+  stop.request_stop();
+  EXPECT_THROW(planner.next_view(scan), Interrupted);
+}
+
+TEST(LimitedPlanner, HandsOnWhatThePlannerIsTold) {
+  auto list = planner_at_heights({3});
+  const ListPlanner& inside = *list;
+  LimitedPlanner planner(std::move(list), two_to_four);
+  ASSERT_TRUE(planner.next_view(scan));
+  planner.pass(scan);
+  EXPECT_EQ(inside.passed(), 2U);
+  EXPECT_EQ(planner.cloud().size(), 2U);
+  planner.keep_to([](const Eigen::Vector3d& place) { return place.x() > 0.0; });
+  EXPECT_TRUE(inside.may_be_at({1, 0, 0}));
+  EXPECT_FALSE(inside.may_be_at({-1, 0, 0}));
+  EXPECT_EQ(planner.release_cloud().size(), 2U);
+}
+
+}  // namespace
+}  // namespace skycap::survey
