@@ -9,6 +9,7 @@
 #include "flight/export/geodesy.h"
 #include "flight/export/mission_items.h"
 #include "flight/export/text.h"
+#include "flight/motion/hover_power.h"
 #include "flight/motion/motion.h"
 #include "geometry/angle.h"
 #include "geometry/error.h"
@@ -20,20 +21,34 @@ using Eigen::Vector3d;
 
 constexpr double degree = geometry::radians_per_degree;
 
-/// How much of a kind of flight a log must hold [s], and what is counted as that kind.
+/// How much of a kind of flight a log must hold [s], what is counted as that kind, and a flight
+/// that holds enough.
 struct Needed {
   const char* what;
   double time;
   bool (*is_it)(const Vector3d& velocity);
+  const char* remedy;
 };
 
 bool is_hover(const Vector3d& v) { return v.norm() < 0.5; }
 bool is_cruise(const Vector3d& v) { return v.head<2>().norm() > 2.5 && std::abs(v.z()) < 0.5; }
 bool is_any(const Vector3d&) { return true; }
 
-constexpr std::array needed{Needed{"steady flight", 120.0, is_any},
-                            Needed{"hovering", 20.0, is_hover},
-                            Needed{"level flight faster than 2.5 m/s", 30.0, is_cruise}};
+constexpr std::array needed{
+    Needed{"steady flight", 120.0, is_any,
+           "hover for 60 s and fly 4 level legs of 100 m at 5 m/s, one in each direction"},
+    Needed{"hovering", 20.0, is_hover, "hover for 30 s at one place"},
+    Needed{"level flight faster than 2.5 m/s", 30.0, is_cruise,
+           "fly 4 level legs of 100 m at 5 m/s, one in each direction"}};
+
+/// A fit whose scatter, or whose error in unseen parts, is a larger share of the hover power is
+/// none.
+constexpr double most_scatter = 0.2, most_unseen_error = 0.3;
+
+double median(std::vector<double> values) {
+  std::ranges::sort(values);
+  return values[values.size() / 2];
+}
 
 double time_of(const std::vector<LogWindow>& windows, const Needed& kind) {
   double time = 0.0;
@@ -48,13 +63,66 @@ void require_enough(const std::vector<LogWindow>& windows) {
     const double time = time_of(windows, kind);
     if (time >= kind.time) continue;
     throw Error(ErrorKind::bad_file, "holds " + fixed(time, 0) + " s of " + kind.what +
-                                         "; at least " + fixed(kind.time, 0) + " s are needed");
+                                         "; at least " + fixed(kind.time, 0) +
+                                         " s are needed: " + kind.remedy);
   }
+}
+
+/// A current sensor that is missing or dead reads zero, or the same offset all the time.
+void require_power(const std::vector<LogSample>& samples) {
+  constexpr double least_power = 1.0;  // [W]
+  const auto is_some = [](const LogSample& sample) { return sample.power > least_power; };
+  const auto count = static_cast<std::size_t>(std::ranges::count_if(samples, is_some));
+  if (2 * count > samples.size()) return;
+  throw Error(ErrorKind::bad_file,
+              "measures no power: current or voltage are zero in " +
+                  std::to_string(samples.size() - count) + " of " + std::to_string(samples.size()) +
+                  " readings; the vehicle needs a current sensor (BATT_MONITOR 4 or higher)");
+}
+
+/// What hovering takes by the log, at sea level [W].
+double measured_hover(const std::vector<LogWindow>& windows, double air_density) {
+  std::vector<double> powers;
+  for (const LogWindow& window : windows) {
+    if (std::ranges::all_of(window.velocities, is_hover)) powers.push_back(window.power);
+  }
+  constexpr double sea_level = 1.225;
+  return median(powers) * std::sqrt(air_density / sea_level);
+}
+
+std::string text_of(const Vehicle& vehicle) {
+  return fixed(vehicle.mass, 2) + " kg on " + std::to_string(vehicle.rotors) + " rotors of " +
+         fixed(vehicle.rotor_diameter, 3) + " m";
+}
+
+/// The vehicle of that mass, if one is given, with rotors that carry it at the hover power.
+Vehicle with_mass(Vehicle vehicle, std::optional<double> mass, double hover_power,
+                  std::vector<std::string>& warnings) {
+  const double preset = vehicle.mass;
+  vehicle.mass = mass.value_or(preset);
+  const auto is_carried = [&] { return hover_power > 1.01 * min_rotor_power(vehicle); };
+  if (is_carried()) return vehicle;
+  const Vehicle given = vehicle;
+  if (mass && *mass > preset) {
+    vehicle.rotor_diameter *= std::sqrt(*mass / preset);  // the same disc loading
+    if (is_carried()) {
+      warnings.push_back("rotor_diameter is set to " + fixed(vehicle.rotor_diameter, 3) +
+                         " m: " + text_of(given) + " take at least " +
+                         fixed(min_rotor_power(given), 0) + " W to hover, and the log has " +
+                         fixed(hover_power, 0) + " W; set the diameter that flew");
+      return vehicle;
+    }
+  }
+  throw Error(ErrorKind::bad_file,
+              "hovers at " + fixed(hover_power, 1) + " W; " + text_of(given) + " take at least " +
+                  fixed(min_rotor_power(given), 1) +
+                  " W: give the mass that flew (--mass), or calibrate the current sensor "
+                  "(BATT_AMP_PERVLT)");
 }
 
 /// The energy of each fifth of the windows by a fit of the others, against what it took.
 double unseen_error(const std::vector<LogWindow>& windows, const Vehicle& vehicle,
-                    double air_density) {
+                    double air_density, double hover_power) {
   constexpr std::size_t parts = 5;
   double squares = 0.0;
   for (std::size_t part = 0; part < parts; ++part) {
@@ -63,7 +131,7 @@ double unseen_error(const std::vector<LogWindow>& windows, const Vehicle& vehicl
     std::vector<LogWindow> others(windows.begin(),
                                   windows.begin() + static_cast<std::ptrdiff_t>(begin));
     others.insert(others.end(), windows.begin() + static_cast<std::ptrdiff_t>(end), windows.end());
-    const PowerFit fit = fit_power(others, vehicle, air_density);
+    const PowerFit fit = fit_power(others, vehicle, air_density, hover_power);
     double taken = 0.0, modelled = 0.0;
     for (std::size_t i = begin; i < end; ++i) {
       taken += windows[i].duration * windows[i].power;
@@ -74,11 +142,44 @@ double unseen_error(const std::vector<LogWindow>& windows, const Vehicle& vehicl
   return std::sqrt(squares / static_cast<double>(parts));
 }
 
-/// A parameter of ArduCopter that is a limit of its mission mode, in our units.
+void require_fit(const Calibration& fit) {
+  if (fit.scatter > most_scatter * fit.hover_power) {
+    throw Error(ErrorKind::bad_file,
+                "fits no power model: its power scatters by " + fixed(fit.scatter, 0) +
+                    " W about a hover of " + fixed(fit.hover_power, 0) +
+                    " W; check the current sensor, or calibrate with another log");
+  }
+  if (fit.energy_error > most_unseen_error) {
+    throw Error(ErrorKind::bad_file,
+                "fits no power model: the energy of its parts is off by " +
+                    fixed(100.0 * fit.energy_error, 0) +
+                    " % from a fit of the others; calibrate with a flight on one battery, in "
+                    "steady wind");
+  }
+}
+
+std::vector<std::string> warnings_of(const PowerFit& fit, const Vehicle& vehicle) {
+  std::vector<std::string> warnings;
+  for (const std::string& name : fit.at_bound) {
+    if (name == "rotors") {
+      warnings.push_back("the rotors' efficiency is at its bound of 1: " + text_of(vehicle) +
+                         " may not be what flew; give --mass, and check the current sensor");
+    } else {
+      warnings.push_back(name +
+                         " is at its bound of 0: the log does not show it; fly level legs at "
+                         "several speeds up to 8 m/s");
+    }
+  }
+  return warnings;
+}
+
+/// A parameter of ArduCopter that is a limit of its mission mode, in our units. Values beyond
+/// `largest` are damaged: ten times what ArduPilot's descriptions allow.
 struct ModeParameter {
   const char* name;
   double MissionMode::*field;
   double unit;
+  double largest = 200.0;
 };
 
 // Both names, before 4.7 and since.
@@ -103,22 +204,32 @@ constexpr std::array mode_parameters{
     ModeParameter{"LAND_ALT_LOW", &MissionMode::landing_height, 0.01},
     ModeParameter{"LAND_ALT_LOW_M", &MissionMode::landing_height, 1}};
 
+constexpr double least_limit = 1e-3;
+
 std::size_t take_over(const std::vector<LogParameter>& parameters, MissionMode& mode) {
   std::size_t taken = 0;
   for (const LogParameter& parameter : parameters) {
     const auto known = std::ranges::find_if(
         mode_parameters, [&](const auto& m) { return parameter.name == m.name; });
-    if (known == mode_parameters.end() || !(parameter.value > 0.0)) continue;
-    mode.*(known->field) = known->unit * parameter.value;
+    if (known == mode_parameters.end()) continue;
+    const double value = known->unit * parameter.value;
+    if (!(value > least_limit && value < known->largest)) continue;
+    mode.*(known->field) = value;
     ++taken;
   }
   return taken;
 }
 
-/// What each leg that ended in a stop took beyond its law [s].
-std::vector<double> settlings(const std::vector<LogCommand>& commands, const Vehicle& vehicle) {
-  constexpr int last_navigation = 95;
+/// What each leg that ended in a stop took beyond its law [s]; those that took less than half of it
+/// were not flown when the log says.
+struct LegTimes {
   std::vector<double> excesses;
+  std::size_t without_time = 0;
+};
+
+LegTimes settlings(const std::vector<LogCommand>& commands, const Vehicle& vehicle) {
+  constexpr int last_navigation = 95;
+  LegTimes times;
   std::vector<Vector3d> way;  // where legs have ended since take-off
   const LogCommand* under_way = nullptr;
   Conditions conditions;
@@ -140,44 +251,57 @@ std::vector<double> settlings(const std::vector<LogCommand>& commands, const Veh
       if (!way.empty() && stops && (end - way.back()).norm() > 1.0) {
         const Motion motion(vehicle, conditions);
         const double law = motion.leg_time(end - way.back()) - vehicle.mode.settle_time;
-        excesses.push_back(item.time - under_way->time - under_way->first_parameter - law);
+        const double flown = item.time - under_way->time - under_way->first_parameter;
+        if (flown < 0.5 * law) {
+          ++times.without_time;
+        } else {
+          times.excesses.push_back(flown - law);
+        }
       }
       way.push_back(end);
     }
     under_way = item.command == command::waypoint ? &item : nullptr;
     if (item.command == command::takeoff || item.command == command::land) way.clear();
   }
-  return excesses;
-}
-
-double median(std::vector<double> values) {
-  std::ranges::sort(values);
-  return values[values.size() / 2];
+  return times;
 }
 
 }  // namespace
 
-Calibration calibrate(const FlightLog& log, const Vehicle& vehicle, double air_density) {
-  const std::vector<LogWindow> windows = windows_of(log.samples);
+Calibration calibrate(const FlightLog& log, const Vehicle& preset, double air_density,
+                      std::optional<double> mass) {
+  require_power(log.samples);
+  const std::vector<LogSample> samples = without_outliers(log.samples);
+  const std::vector<LogWindow> windows = windows_of(samples);
   require_enough(windows);
-  const PowerFit fit = fit_power(windows, vehicle, air_density);
+  const double hover_power = measured_hover(windows, air_density);
+  std::vector<std::string> warnings;
+  const Vehicle vehicle = with_mass(preset, mass, hover_power, warnings);
+  const PowerFit fit = fit_power(windows, vehicle, air_density, hover_power);
   Calibration result{.vehicle = fit.vehicle, .wind = fit.wind, .windows = windows.size()};
+  result.outliers = log.samples.size() - samples.size() + log.damaged;
+  for (const std::string& warning : warnings_of(fit, vehicle)) warnings.push_back(warning);
+  result.warnings = std::move(warnings);
   double squares = 0.0;
   for (const LogWindow& window : windows) {
     result.flown += window.duration;
     squares += std::pow(modelled_power(fit, window, air_density) - window.power, 2);
   }
   result.scatter = std::sqrt(squares / static_cast<double>(windows.size()));
-  result.energy_error = unseen_error(windows, vehicle, air_density);
+  // From the fit on, which the parts' fits are near.
+  result.energy_error =
+      unseen_error(windows, fit.vehicle, air_density, data_sheet_power(fit.vehicle));
   result.vehicle.energy_error = std::clamp(2.0 * result.energy_error, least_energy_error, 0.9);
   result.hover_power = Motion(result.vehicle, {.cruise_speed = vehicle.max_speed}).hover_power();
+  require_fit(result);
 
   constexpr std::size_t least_legs = 5;
   result.parameters = take_over(log.parameters, result.vehicle.mode);
-  const std::vector<double> excesses = settlings(log.commands, result.vehicle);
-  result.legs = excesses.size();
-  if (excesses.size() >= least_legs) {
-    result.settling = std::clamp(median(excesses), 0.0, 60.0);
+  const LegTimes times = settlings(log.commands, result.vehicle);
+  result.legs = times.excesses.size();
+  result.legs_without_time = times.without_time;
+  if (result.legs >= least_legs) {
+    result.settling = std::clamp(median(times.excesses), 0.0, 60.0);
     result.vehicle.mode.settle_time = *result.settling;
   }
   return result;

@@ -10,6 +10,7 @@
 #include "flight/calibration/flight_log.h"
 #include "flight/export/text.h"
 #include "geometry/error.h"
+#include "geometry/text_parts.h"
 
 namespace skycap::flight {
 namespace {
@@ -109,11 +110,11 @@ Format format_of(std::string_view body) {
   std::size_t offset = 0;
   for (std::size_t i = 0; i < std::min(letters.size(), labels.size()); ++i) {
     const FieldType* type = find_type(letters[i]);
-    if (type == nullptr) break;  // a letter that is not known: nothing after it is in its place
+    if (type == nullptr) break;  // a letter that is not known: the sizes do not agree
     format.fields.push_back({labels[i], *type, offset});
     offset += type->width;
   }
-  const bool is_whole = header_size + offset <= format.size;
+  const bool is_whole = header_size + offset == format.size;
   if (!is_whole) format.fields.clear();
   return format;
 }
@@ -137,11 +138,55 @@ class Message {
     const Field* field = format_.find(label);
     return field == nullptr ? "" : text_at(body_.substr(field->offset, field->type.width));
   }
-  double time() const { return 1e-6 * number_or("TimeUS", 0.0); }
+  /// [s]; before Copter 3.3 in milliseconds.
+  double time() const {
+    const std::optional<double> microseconds = number("TimeUS");
+    return microseconds ? 1e-6 * *microseconds : 1e-3 * number_or("TimeMS", 0.0);
+  }
+
+  /// A reading that logs before Copter 3.3 hold in hundredths, as an integer.
+  std::optional<double> reading(std::string_view label) const {
+    const Field* field = format_.find(label);
+    if (field == nullptr) return std::nullopt;
+    const double value = number_at(body_.data() + field->offset, field->type);
+    return field->type.letter == 'h' || field->type.letter == 'H' ? 0.01 * value : value;
+  }
 
  private:
   const Format& format_;
   std::string_view body_;
+};
+
+/// Times of messages, which ascend but for damage and restarts.
+class Clock {
+ public:
+  /// The time that goes on from those before [s]; nothing for one that is damaged.
+  std::optional<double> read(double stated) {
+    const double time = stated + offset_;
+    const bool is_next = last_ && time > *last_ - backwards && time < *last_ + forwards;
+    if (!last_ || is_next) {
+      last_ = last_ ? std::max(*last_, time) : time;
+      strangers_ = 0;
+      return time;
+    }
+    // Many messages of one other time are a restart, or a log that was switched off for a while.
+    const bool is_same = strangers_ > 0 && std::abs(stated - stranger_) < forwards;
+    strangers_ = is_same ? strangers_ + 1 : 1;
+    stranger_ = stated;
+    if (strangers_ < enough) return std::nullopt;
+    offset_ = *last_ + forwards - stated;
+    last_ = stated + offset_;
+    strangers_ = 0;
+    return last_;
+  }
+
+ private:
+  static constexpr double backwards = 1.0, forwards = 10.0;  ///< of neighbouring messages [s]
+  static constexpr int enough = 10;
+
+  double offset_ = 0.0, stranger_ = 0.0;
+  std::optional<double> last_;
+  int strangers_ = 0;
 };
 
 /// Takes in message after message.
@@ -150,71 +195,159 @@ class LogBuilder {
   explicit LogBuilder(std::size_t most_entries) : most_entries_(most_entries) {}
 
   void add(const Message& message) {
-    if (message.name() == "XKF1" || message.name() == "NKF1") set_velocity(message);
-    if (message.name() == "BAT") add_sample(message);
-    if (message.name() == "PARM") {
+    const std::string& name = message.name();
+    if (name == "XKF1" || name == "NKF1" || name == "EKF1") set_velocity(message);
+    if (const std::optional<double> battery = battery_of(message)) add_sample(message, *battery);
+    if (name == "PARM") {
       log_.parameters.push_back({message.text("Name"), message.number_or("Value", 0.0)});
     }
-    if (message.name() == "CMD") add_command(message);
-    if (log_.samples.size() + log_.parameters.size() + log_.commands.size() > most_entries_) {
+    if (name == "CMD") add_command(message, listed_);
+    if (name == "MISE") add_command(message, log_.commands);
+    if (log_.samples.size() + log_.parameters.size() + log_.commands.size() + listed_.size() >
+        most_entries_) {
       throw Error(ErrorKind::bad_file, "holds more than " + std::to_string(most_entries_) +
                                            " samples, parameters and commands");
     }
   }
 
-  FlightLog finish() {
+  /// `skipped`: bytes of the log that belong to no message.
+  FlightLog finish(std::size_t skipped) {
+    const std::string damage =
+        skipped == 0 ? "" : "; " + std::to_string(skipped) + " of its bytes are damaged";
     if (!has_velocity_) {
-      throw Error(ErrorKind::bad_file, "holds no velocity (XKF1); log the estimator's state");
+      throw Error(ErrorKind::bad_file,
+                  "holds no velocity (XKF1); log the estimator's state" + damage);
+    }
+    if (log_.samples.empty() && has_voltage_ && !has_current_) {
+      throw Error(
+          ErrorKind::bad_file,
+          "measures no current (BAT.Curr); the vehicle needs a current sensor (BATT_MONITOR "
+          "4 or higher)" +
+              damage);
     }
     if (log_.samples.empty()) {
-      throw Error(ErrorKind::bad_file, "holds no battery (BAT); the vehicle needs a power monitor");
+      throw Error(ErrorKind::bad_file,
+                  "holds no battery (BAT); the vehicle needs a power monitor" + damage);
     }
+    // Since October 2024 CMD lists the mission at its upload alone.
+    if (log_.commands.empty()) log_.commands = std::move(listed_);
     return std::move(log_);
   }
 
  private:
+  /// Which battery a message is of; nothing if of none. Before Copter 4.0 the second has a message
+  /// of its own.
+  static std::optional<double> battery_of(const Message& message) {
+    const std::string& name = message.name();
+    if (name == "BAT" || name == "CURR") {
+      for (const char* label : {"Inst", "Instance"}) {
+        if (const auto number = message.number(label)) return number;
+      }
+      return 0.0;
+    }
+    if (name == "BAT2" || name == "CUR2") return 1.0;
+    return std::nullopt;
+  }
+
   // Of several cores of the estimator, the first.
   void set_velocity(const Message& message) {
+    constexpr double fastest = 100.0;  // of any multicopter [m/s]
     const auto north = message.number("VN"), east = message.number("VE"),
                down = message.number("VD");
     if (!north || !east || !down || message.number_or("C", 0.0) != 0.0) return;
-    velocity_ = {*east, *north, -*down};
-    has_velocity_ = velocity_.allFinite();
+    const Eigen::Vector3d velocity(*east, *north, -*down);
+    const std::optional<double> time = clock_.read(message.time());
+    if (!time || !(velocity.norm() < fastest)) {
+      ++log_.damaged;
+      return;
+    }
+    velocity_ = velocity;
+    velocity_time_ = *time;
+    has_velocity_ = true;
   }
 
-  void add_sample(const Message& message) {
-    const auto volts = message.number("Volt"), amperes = message.number("Curr");
-    if (!volts || !amperes || !has_velocity_) return;
-    const double battery = message.number_or("Inst", message.number_or("Instance", 0.0));
-    if (!(battery >= 0.0 && battery <= 255.0)) return;
+  void add_sample(const Message& message, double battery) {
+    constexpr double most_volts = 1000.0, most_amperes = 5000.0, oldest = 2.0;
+    const auto volts = message.reading("Volt"), amperes = message.reading("Curr");
+    if (!volts) return;
+    has_voltage_ = true;
+    if (!amperes || std::isnan(*amperes)) return;
+    has_current_ = true;
+    if (!has_velocity_) return;
+    const std::optional<double> time = clock_.read(message.time());
+    const bool is_possible = battery >= 0.0 && battery <= 255.0 && *volts >= 0.0 &&
+                             *volts < most_volts && std::abs(*amperes) < most_amperes;
+    if (!time || !is_possible) {
+      ++log_.damaged;
+      return;
+    }
     power_[battery] = *volts * *amperes;
     double power = 0.0;
     for (const auto& [number, one] : power_) power += one;
-    if (!std::isfinite(power)) return;
-    // A time that was damaged is later than the one before and than the one after it.
+    if (*time - velocity_time_ > oldest) return;
     std::vector<LogSample>& samples = log_.samples;
-    const auto is_after = [&](std::size_t from_end) {
-      return samples.size() < from_end || message.time() > samples[samples.size() - from_end].time;
-    };
-    if (!is_after(1) && is_after(2)) samples.pop_back();
-    if (is_after(1)) samples.push_back({message.time(), velocity_, power});
+    if (samples.empty() || *time > samples.back().time) {
+      samples.push_back({*time, velocity_, power});
+    }
   }
 
-  void add_command(const Message& message) {
+  void add_command(const Message& message, std::vector<LogCommand>& commands) {
     const double command = message.number_or("CId", 0.0);
     if (!(command >= 0.0 && command <= 65535.0)) return;
-    log_.commands.push_back({message.time(), static_cast<int>(command),
-                             message.number_or("Prm1", 0.0), message.number_or("Prm2", 0.0),
-                             message.number_or("Lat", 0.0), message.number_or("Lng", 0.0),
-                             message.number_or("Alt", 0.0)});
+    const std::optional<double> time = clock_.read(message.time());
+    if (!time) return;
+    commands.push_back({*time, static_cast<int>(command), message.number_or("Prm1", 0.0),
+                        message.number_or("Prm2", 0.0), message.number_or("Lat", 0.0),
+                        message.number_or("Lng", 0.0), message.number_or("Alt", 0.0)});
   }
 
   std::size_t most_entries_;
   FlightLog log_;
+  std::vector<LogCommand> listed_;  ///< CMD
+  Clock clock_;
   Eigen::Vector3d velocity_ = Eigen::Vector3d::Zero();
-  bool has_velocity_ = false;
+  double velocity_time_ = 0.0;
+  bool has_velocity_ = false, has_voltage_ = false, has_current_ = false;
   std::map<double, double> power_;  ///< by battery
 };
+
+/// What the bytes are instead, with what to do; empty if that is not known.
+std::string foreign_kind(std::string_view bytes) {
+  struct Kind {
+    std::string_view beginning;
+    const char* what;
+  };
+  constexpr const char* give_bin = "; give the vehicle's own .bin log";
+  static const std::array kinds{
+      Kind{"ULog\x01\x12\x35",
+           "a ULog of PX4; give a CSV table with time_s, east_m_s, north_m_s, "
+           "up_m_s and power_w"},
+      Kind{"FMT,", "a text log of ArduPilot; give the .bin file that it was made from"},
+      Kind{"\x1f\x8b", "compressed (gzip); unpack it first"},
+      Kind{"PK\x03\x04", "a zip archive; unpack it first"},
+      Kind{"#ROSBAG", "a ROS bag; give the vehicle's own .bin log"},
+      Kind{"MATLAB", "a MATLAB file; give the .bin file that it was made from"},
+      Kind{"H Product:Blackbox",
+           "a Blackbox log of Betaflight or INAV; give a CSV table with "
+           "time_s, east_m_s, north_m_s, up_m_s and power_w"}};
+  for (const Kind& kind : kinds) {
+    if (geometry::without_mark(bytes).starts_with(kind.beginning)) return kind.what;
+  }
+  // A ground station's telemetry log: a time of 8 bytes before each MAVLink frame.
+  constexpr std::size_t frame = 8;
+  const auto byte = [&](std::size_t i) { return static_cast<unsigned char>(bytes[i]); };
+  const auto is_frame = [&](std::size_t i) { return byte(i) == 0xFE || byte(i) == 0xFD; };
+  if (bytes.size() > frame && is_frame(frame) && byte(0) == 0) {
+    return std::string("a telemetry log of a ground station (.tlog)") + give_bin;
+  }
+  if (bytes.size() > 1 && is_frame(0)) return std::string("a raw MAVLink stream") + give_bin;
+  const std::string_view start = bytes.substr(0, 1000);
+  const bool is_text = !start.empty() && std::ranges::all_of(start, [](char c) {
+    return c == '\t' || c == '\n' || c == '\r' || (c >= ' ' && c <= '~');
+  });
+  if (is_text) return "a text file; a CSV table's name must end in .csv";
+  return bytes.empty() ? "empty" : "";
+}
 
 }  // namespace
 
@@ -222,28 +355,41 @@ FlightLog read_dataflash(std::string_view bytes, std::size_t most_entries) {
   std::array<std::optional<Format>, 256> formats;
   LogBuilder builder(most_entries);
   bool has_format = false;
+  std::size_t skipped = 0;
+  const auto has_marks = [&](std::size_t k) {
+    return k + 1 < bytes.size() && static_cast<unsigned char>(bytes[k]) == first_mark &&
+           static_cast<unsigned char>(bytes[k + 1]) == second_mark;
+  };
   std::size_t i = 0;
   while (i + header_size <= bytes.size()) {
-    const auto byte = [&](std::size_t k) { return static_cast<unsigned char>(bytes[i + k]); };
-    const std::uint8_t type = byte(2);
+    const auto type = static_cast<std::uint8_t>(bytes[i + 2]);
     const bool is_format = type == format_type;
     const std::size_t size = is_format ? format_size : formats[type] ? formats[type]->size : 0;
-    if (byte(0) != first_mark || byte(1) != second_mark || size < header_size) {
-      ++i;
+    const bool is_message = has_marks(i) && size >= header_size;
+    // A message that has lost bytes reaches into the next: nothing begins where it ends.
+    if (is_message && i + size > bytes.size()) break;
+    if (!is_message || (i + size != bytes.size() && !has_marks(i + size))) {
+      ++i, ++skipped;
       continue;
     }
-    if (i + size > bytes.size()) break;
     const std::string_view body = bytes.substr(i + header_size, size - header_size);
     if (is_format) {
-      formats[static_cast<unsigned char>(body[0])] = format_of(body);
+      Format format = format_of(body);
+      std::optional<Format>& known = formats[static_cast<unsigned char>(body[0])];
+      if (!known || known->fields.empty() || !format.fields.empty()) known = std::move(format);
       has_format = true;
     } else {
       builder.add({*formats[type], body});
     }
     i += size;
   }
-  if (!has_format) throw Error(ErrorKind::bad_file, "is no dataflash log: it describes no message");
-  return builder.finish();
+  if (!has_format) {
+    const std::string kind = foreign_kind(bytes);
+    throw Error(ErrorKind::bad_file, kind.empty()
+                                         ? "is no dataflash log: it describes no message"
+                                         : "is no dataflash log of ArduPilot: it is " + kind);
+  }
+  return builder.finish(skipped);
 }
 
 }  // namespace skycap::flight

@@ -8,6 +8,7 @@
 #include "flight/export/text.h"
 #include "geometry/error.h"
 #include "geometry/io/file.h"
+#include "geometry/text_parts.h"
 
 namespace skycap::flight {
 namespace {
@@ -51,12 +52,15 @@ FlightLog read_csv_log(std::string_view text, std::size_t most_samples) {
   FlightLog log;
   Columns columns{};
   std::size_t number = 0;
-  for (std::string_view rest = text; !rest.empty();) {
+  bool has_header = false;
+  for (std::string_view rest = geometry::without_mark(text); !rest.empty();) {
     const std::string_view line = next_line(rest);
     ++number;
-    if (line.empty()) continue;
-    const std::vector<std::string> fields = split(line, ',');
-    if (number == 1) {
+    if (geometry::trimmed(line).empty()) continue;
+    std::vector<std::string> fields = split(line, ',');
+    for (std::string& field : fields) field = geometry::trimmed(field);
+    if (!has_header) {
+      has_header = true;
       columns = columns_of(fields);
       continue;
     }

@@ -34,14 +34,18 @@ struct LogCommand {
 struct FlightLog {
   std::vector<LogSample> samples;        ///< times ascend
   std::vector<LogParameter> parameters;  ///< as they were when the log began, or changed to
-  std::vector<LogCommand> commands;
+  std::vector<LogCommand> commands;      ///< as they were executed
+  std::size_t damaged = 0;               ///< messages with values that cannot be
 };
 
 inline constexpr std::size_t largest_log = std::size_t{512} << 20, most_log_samples = 10'000'000;
 
-/// ArduPilot's dataflash log (.bin): BAT for the power, XKF1 or NKF1 for the velocity, PARM, CMD;
-/// formats are those that the log itself describes (FMT; AP_Logger/LogStructure.h). What is damaged
-/// is skipped. Throws Error{bad_file} if it is no such log or lacks one of the first two.
+/// ArduPilot's dataflash log (.bin): BAT, before Copter 3.5 CURR, for the power; XKF1, NKF1 or EKF1
+/// for the velocity; PARM; MISE for the items executed, in logs before October 2024 CMD. Formats
+/// are those that the log itself describes (FMT; AP_Logger/LogStructure.h). What is damaged is
+/// skipped: messages that no other follows, and readings that no vehicle has. Times that begin
+/// again after a restart go on. Throws Error{bad_file} if it is no such log, saying which kind it
+/// is, or lacks one of the first two.
 FlightLog read_dataflash(std::string_view bytes, std::size_t most_entries = most_log_samples);
 
 /// Text with a header line that names the columns time_s, east_m_s, north_m_s, up_m_s and power_w,

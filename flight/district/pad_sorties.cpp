@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <optional>
 
+#include "flight/motion/flight_time_range.h"
 #include "flight/route/leg_certifier.h"
 #include "flight/route/sortie_split.h"
 #include "flight/route/tour.h"
@@ -111,7 +112,7 @@ PadSorties sorties_from_pads(std::span<const Station> stations,
   if (stations.empty() || pads.empty()) return result;
   const StraightCosts costs(motion, climb);
   SplitProblem problem{.pads = std::vector<SplitProblem::Pad>(pads.size()),
-                       .energy_per_sortie = motion.usable_energy(),
+                       .energy_per_sortie = plannable_energy(motion),
                        .stations_per_sortie = most_stations(motion.vehicle())};
   const Vector3d up = climb * Vector3d::UnitZ();
   for (const std::uint32_t i : ordered(stations, targets, pads[0] + up)) {
@@ -122,8 +123,9 @@ PadSorties sorties_from_pads(std::span<const Station> stations,
       pad.out.push_back(costs.out(pads[p] + up, station));
       pad.back.push_back(costs.back(station, pads[p] + up));
       const LegCost there = in_turn(pad.out.back(), costs.at(station));
+      const LegCost total = in_turn(there, pad.back.back());
       is_in_reach =
-          is_in_reach || in_turn(there, pad.back.back()).energy <= problem.energy_per_sortie;
+          is_in_reach || std::max(total.energy, total.emergency) <= problem.energy_per_sortie;
     }
     if (!is_in_reach) {
       result.out_of_reach.push_back(i);

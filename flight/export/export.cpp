@@ -13,6 +13,7 @@
 #include "geometry/error.h"
 #include "geometry/io/file.h"
 #include "geometry/place/world.h"
+#include "geometry/text_parts.h"
 
 namespace skycap::flight {
 namespace {
@@ -98,8 +99,10 @@ const std::array<FormatRecord, 9> records{{
     {.info = {Format::kmz, "kmz", ".kmz", "above take-off"},
      .write = write_kmz,
      .validate = validate_kmz,
-     .places = [](const auto& content, const auto& site,
-                  const auto& pad) { return earth_places(content, site, pad, read_kmz); }},
+     .places =
+         [](const auto& content, const auto& site, const auto& pad) {
+           return earth_places(content, site, pad, [](const auto& text) { return read_kmz(text); });
+         }},
     {.info = {Format::kml, "kml", ".kml", "above mean sea level"},
      .holds_curves = true,
      .write = write_kml,
@@ -189,7 +192,7 @@ std::vector<Vector3d> places_of(const std::string& content, Format format, const
 Format format_of_file(const std::filesystem::path& path, const std::string& content) {
   const std::string name = path.filename().string();
   if (path.extension() == ".csv") {
-    return content.starts_with("latitude,") ? Format::litchi : Format::csv;
+    return geometry::without_mark(content).starts_with("latitude,") ? Format::litchi : Format::csv;
   }
   if (path.extension() == ".txt") return Format::waypoints;
   for (const FormatInfo& info : formats()) {

@@ -1,4 +1,7 @@
+#include <algorithm>
 #include <memory>
+#include <optional>
+#include <string_view>
 
 #include <zip.h>
 
@@ -27,16 +30,55 @@ struct CloseFile {
 using Source = std::unique_ptr<zip_source_t, CloseSource>;
 using Archive = std::unique_ptr<zip_t, DiscardArchive>;
 
-std::string extract(zip_t* archive, const char* name) {
+/// The last part of a member's name; some programs separate parts by backslashes.
+std::string_view last_name(std::string_view name) {
+  return name.substr(name.find_last_of("/\\") + 1);
+}
+
+std::string name_of(zip_t* archive, zip_uint64_t index) {
+  const char* name = zip_get_name(archive, index, 0);
+  return name == nullptr ? "" : name;
+}
+
+/// What the archive holds, for messages: at most three names.
+std::string names_of(zip_t* archive) {
+  const auto count = static_cast<zip_uint64_t>(zip_get_num_entries(archive, 0));
+  std::string names;
+  for (zip_uint64_t i = 0; i < std::min<zip_uint64_t>(count, 3); ++i) {
+    names += (i == 0 ? "" : ", ") + name_of(archive, i);
+  }
+  return count == 0 ? "no files" : names + (count > 3 ? ", ..." : "");
+}
+
+/// The member of that name, else the only one whose last name is the same: archives that were
+/// packed again have "./" or a folder before it. Nothing if there is none.
+std::optional<zip_uint64_t> find(zip_t* archive, const char* name) {
+  const zip_int64_t exact = zip_name_locate(archive, name, 0);
+  if (exact >= 0) return static_cast<zip_uint64_t>(exact);
+  std::optional<zip_uint64_t> found;
+  const auto count = static_cast<zip_uint64_t>(zip_get_num_entries(archive, 0));
+  for (zip_uint64_t i = 0; i < count; ++i) {
+    if (last_name(name_of(archive, i)) != last_name(name)) continue;
+    if (found) {
+      fail("it holds both " + name_of(archive, *found) + " and " + name_of(archive, i) +
+           "; remove one");
+    }
+    found = i;
+  }
+  return found;
+}
+
+std::string extract(zip_t* archive, zip_uint64_t index) {
+  const std::string name = name_of(archive, index);
   zip_stat_t stat;
   zip_stat_init(&stat);
-  if (zip_stat(archive, name, 0, &stat) != 0) fail(std::string(name) + " is missing");
-  if (stat.size > 100'000'000) fail(std::string(name) + " is larger than 100 MB");
-  const std::unique_ptr<zip_file_t, CloseFile> file(zip_fopen(archive, name, 0));
+  if (zip_stat_index(archive, index, 0, &stat) != 0) fail(name + " cannot be unpacked");
+  if (stat.size > 100'000'000) fail(name + " is larger than 100 MB");
+  const std::unique_ptr<zip_file_t, CloseFile> file(zip_fopen_index(archive, index, 0));
   std::string content(stat.size, '\0');
   if (!file || zip_fread(file.get(), content.data(), content.size()) !=
                    static_cast<zip_int64_t>(content.size())) {
-    fail(std::string(name) + " cannot be unpacked");
+    fail(name + " cannot be unpacked");
   }
   return content;
 }
@@ -58,7 +100,13 @@ KmzContent unpack_kmz(const std::string& bytes) {
   Archive archive(source ? zip_open_from_source(source.get(), ZIP_RDONLY, &error) : nullptr);
   if (!archive) fail("it is not a zip archive");
   static_cast<void>(source.release());  // the archive owns it now
-  return {extract(archive.get(), template_name), extract(archive.get(), waylines_name)};
+  const auto edited = find(archive.get(), template_name);
+  const auto flown = find(archive.get(), waylines_name);
+  if (!flown) {
+    fail(std::string(edited ? "" : template_name) + (edited ? "" : " is missing, and ") +
+         waylines_name + " is missing; it holds " + names_of(archive.get()));
+  }
+  return {edited ? extract(archive.get(), *edited) : "", extract(archive.get(), *flown)};
 }
 
 std::string pack_kmz(const KmzContent& content) {

@@ -3,6 +3,7 @@
 #include "flight/export/map_files.h"
 #include "geometry/angle.h"
 #include "geometry/error.h"
+#include "geometry/text_parts.h"
 
 namespace skycap::flight {
 namespace {
@@ -57,11 +58,13 @@ struct Reading {
 
   explicit Reading(const std::string& text) {
     const std::vector<std::string> lines = lines_of(text);
-    if (lines.empty() || lines[0] != header()) {
+    if (lines.empty() || geometry::trimmed(lines[0]) != header()) {
       problems.emplace_back("line 1 is not Litchi's header");
       return;
     }
-    for (std::size_t i = 1; i < lines.size(); ++i) read_line(lines[i], i + 1);
+    for (std::size_t i = 1; i < lines.size(); ++i) {
+      if (!geometry::trimmed(lines[i]).empty()) read_line(lines[i], i + 1);
+    }
     if (problems.empty() && route.points.size() < 2) {
       problems.emplace_back("there are fewer than two waypoints");
     }

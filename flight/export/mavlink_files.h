@@ -1,7 +1,8 @@
 /// Mission files of the MAVLink world: QGroundControl's .plan and the "QGC WPL 110" text format.
 ///
 /// There is no official schema of either: the loaders of QGroundControl, MAVSDK and Mission Planner
-/// are. The validators ask for what the strictest of them asks for.
+/// are. The validators ask for what the strictest of them asks for; the readers read what each
+/// program reads of its own files.
 #pragma once
 
 #include <optional>

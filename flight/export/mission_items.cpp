@@ -234,6 +234,10 @@ bool is_above_home(const MissionItem& item) {
   return item.frame == frame::relative || item.frame == frame::relative_int;
 }
 
+bool has_coordinates(const MissionItem& item) {
+  return item.params[4] != 0.0 || item.params[5] != 0.0;
+}
+
 std::vector<MissionItem> mission_items(const FlightPlan& plan) {
   if (plan.vehicle.dialect == Dialect::dji) {
     throw Error(ErrorKind::bad_config, "vehicle \"" + plan.vehicle.name +
@@ -278,8 +282,9 @@ RouteFile route_of(const std::vector<MissionItem>& items) {
       route.points.back().hold += std::max(0.0, item.params[0]);
     }
     // The landing is straight down from the last waypoint: the pad itself is no place to keep
-    // clear.
-    if (!has_place(item.command) || item.command == command::land) continue;
+    // clear. Items without a place are flown from where the vehicle is.
+    if (!has_place(item.command) || item.command == command::land || !has_coordinates(item))
+      continue;
     FilePoint point{item.params[4], item.params[5], item.params[6]};
     point.datum = is_above_sea(item) ? HeightDatum::mean_sea_level : HeightDatum::takeoff;
     point.yaw_deg = std::isnan(item.params[3]) ? yaw_deg : item.params[3];

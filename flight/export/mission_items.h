@@ -42,6 +42,10 @@ std::string name_of(const MissionItem& item);
 bool is_above_sea(const MissionItem& item);
 bool is_above_home(const MissionItem& item);
 
+/// Whether it has a latitude or a longitude other than zero: stations write both as zero where a
+/// place is unknown or not meant.
+bool has_coordinates(const MissionItem& item);
+
 /// The items of a sortie, numbered from 1: take-off, speed, and for each stop what the dialect
 /// needs in the order that it needs it; the last lands on the pad. Throws Error{bad_config} for
 /// vehicles that do not fly MAVLink missions, and if there are more items than the vehicle takes.

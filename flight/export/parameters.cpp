@@ -8,6 +8,7 @@
 #include "flight/way_home/least_return.h"
 #include "flight/way_home/return_law.h"
 #include "geometry/error.h"
+#include "geometry/text_parts.h"
 
 namespace skycap::flight {
 namespace {
@@ -205,13 +206,17 @@ class ParameterWriter {
 };
 
 /// The parameter in a line of either kind; nothing if it is none.
+/// Mission Planner separates name and value by a comma, MAVProxy by blanks, QGroundControl five
+/// fields by tabs.
 std::optional<Parameter> parameter_in(const std::string& line) {
-  const std::vector<std::string> tabbed = split(line, '\t'), plain_fields = split(line, ',');
+  const std::vector<std::string> tabbed = split(line, '\t');
   const bool is_qgc = tabbed.size() == 5;
-  if (!is_qgc && plain_fields.size() != 2) return std::nullopt;
-  const std::optional<double> value = to_number(is_qgc ? tabbed[3] : plain_fields[1]);
+  std::vector<std::string> pair = split(line, ',');
+  if (pair.size() != 2) pair = geometry::words_of(line);
+  if (!is_qgc && pair.size() != 2) return std::nullopt;
+  const std::optional<double> value = to_number(geometry::trimmed(is_qgc ? tabbed[3] : pair[1]));
   if (!value) return std::nullopt;
-  return Parameter{is_qgc ? tabbed[2] : plain_fields[0], *value};
+  return Parameter{std::string(geometry::trimmed(is_qgc ? tabbed[2] : pair[0])), *value};
 }
 
 const Parameter* find(const std::vector<Parameter>& parameters, const std::string& name) {
@@ -239,7 +244,7 @@ std::vector<Parameter> read_parameters(const std::string& text) {
   std::size_t number = 0;
   for (const std::string& line : lines_of(text)) {
     ++number;
-    if (line.empty() || line.starts_with('#')) continue;
+    if (geometry::trimmed(line).empty() || geometry::trimmed(line).starts_with('#')) continue;
     const std::optional<Parameter> parameter = parameter_in(line);
     if (!parameter) {
       throw Error(ErrorKind::bad_file,
@@ -282,5 +287,7 @@ Problems return_problems(const std::vector<Parameter>& parameters, Dialect diale
   }
   return problems;
 }
+
+std::string return_altitude_text(double height) { return plain(height); }
 
 }  // namespace skycap::flight

@@ -44,4 +44,8 @@ std::optional<double> return_height(const std::vector<Parameter>& parameters, Di
 /// "RTL_CONE_SLOPE is 3; it must be 0". A parameter that is missing is at its default.
 Problems return_problems(const std::vector<Parameter>& parameters, Dialect dialect);
 
+/// A return altitude [m] as files and summaries state it: in full, such as "62" and "42.7". Rounded
+/// to whole metres it could be above a ceiling or below what is proven.
+std::string return_altitude_text(double height);
+
 }  // namespace skycap::flight

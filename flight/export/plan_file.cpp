@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -45,10 +46,13 @@ Json item_json(const MissionItem& item, std::size_t id) {
   return json;
 }
 
-/// The checks of one file; problems are collected, in the order of the file.
+/// The checks of one file; problems are collected, in the order of the file. Strict: as the
+/// strictest loader asks for; otherwise as QGroundControl reads its own files since version 3.2,
+/// which lack parts that later versions write.
 class PlanChecker {
  public:
-  explicit PlanChecker(const std::string& text) : plan_(geometry::parse_json<Json>(text)) {}
+  PlanChecker(const std::string& text, bool is_strict)
+      : is_strict_(is_strict), plan_(geometry::parse_json<Json>(text)) {}
 
   Problems check() {
     if (plan_.is_discarded() || !plan_.is_object()) {
@@ -57,12 +61,16 @@ class PlanChecker {
     }
     if (plan_.value("fileType", Json()) != Json("Plan")) complain("fileType must be \"Plan\"");
     require_version(plan_, "version", 1);
-    if (!plan_.contains("groundStation") || !plan_["groundStation"].is_string()) {
+    if (is_strict_ && (!plan_.contains("groundStation") || !plan_["groundStation"].is_string())) {
       complain("groundStation must be a text");
     }
     if (const Json* mission = section("mission", 2)) check_mission(*mission);
-    if (const Json* fence = section("geoFence", 2)) check_fence(*fence);
-    if (const Json* rally = section("rallyPoints", 2)) check_rally(*rally);
+    if (is_needed("geoFence")) {
+      if (const Json* fence = section("geoFence", 2)) check_fence(*fence);
+    }
+    if (is_needed("rallyPoints")) {
+      if (const Json* rally = section("rallyPoints", 2)) check_rally(*rally);
+    }
     return std::move(problems_);
   }
 
@@ -70,6 +78,17 @@ class PlanChecker {
 
  private:
   void complain(const std::string& what) { problems_.push_back(what); }
+
+  /// Whether a section must be read. Files of QGroundControl 3.2 and of programs that write
+  /// missions alone lack it, or have an empty one of version 1, which holds nothing.
+  bool is_needed(const char* name) const {
+    if (is_strict_) return true;
+    if (!plan_.contains(name) || plan_[name].is_null()) return false;
+    const Json& part = plan_[name];
+    if (!part.is_object() || part.value("version", Json()) != Json(1)) return true;
+    return std::ranges::any_of(
+        part, [](const Json& value) { return value.is_structured() && !value.empty(); });
+  }
 
   void require_version(const Json& object, const std::string& where, int version) {
     if (!object.contains("version") || object["version"] != Json(version)) {
@@ -92,15 +111,11 @@ class PlanChecker {
   }
 
   void check_mission(const Json& mission) {
-    if (!mission.contains("plannedHomePosition") ||
-        !are_numbers(mission["plannedHomePosition"], 3)) {
-      complain("mission.plannedHomePosition must be three numbers");
-    } else {
-      const Json& home = mission["plannedHomePosition"];
-      file_.home = GeodeticPoint{home[0], home[1], home[2]};
-    }
+    check_home(mission.value("plannedHomePosition", Json()));
     if (!mission.contains("firmwareType") || !mission["firmwareType"].is_number_integer()) {
-      complain("mission.firmwareType must be an integer");
+      if (is_strict_ || mission.contains("firmwareType")) {
+        complain("mission.firmwareType must be an integer");
+      }
     } else if (mission["firmwareType"] == px4) {
       file_.dialect = Dialect::px4;
     } else if (mission["firmwareType"] == ardupilot) {
@@ -116,12 +131,69 @@ class PlanChecker {
     for (const std::string& problem : check_items(file_.items, file_.dialect)) complain(problem);
   }
 
+  /// A home of zeros or nulls is unknown.
+  void check_home(const Json& home) {
+    const bool is_unknown = home.is_null() || home == Json({nullptr, nullptr, nullptr}) ||
+                            (are_numbers(home, 3) && home[0] == 0.0 && home[1] == 0.0);
+    if (!is_strict_ && is_unknown) return;
+    if (!are_numbers(home, 3)) {
+      return complain("mission.plannedHomePosition must be three numbers");
+    }
+    file_.home = GeodeticPoint{home[0], home[1], home[2]};
+  }
+
+  /// The seven parameters; before QGroundControl 3.3 four, and the place beside them. Null:
+  /// neither.
+  Json params_of(const Json& json) const {
+    const auto is_list = [&](const char* key, std::size_t count) {
+      return json.contains(key) && json[key].is_array() && json[key].size() == count;
+    };
+    if (is_list("params", 7)) return json["params"];
+    if (is_strict_ || !is_list("coordinate", 3)) return nullptr;
+    Json params = Json::array();
+    for (std::size_t p = 0; p < 4; ++p) {
+      const std::string key = "param" + std::to_string(p + 1);
+      if (is_list("params", 4)) {
+        params.push_back(json["params"][p]);
+      } else if (json.contains(key)) {
+        params.push_back(json[key]);
+      } else {
+        return nullptr;
+      }
+    }
+    for (const Json& number : json["coordinate"]) params.push_back(number);
+    return params;
+  }
+
+  /// The number that stations show. Missing in files of other programs, where the order counts.
+  bool check_jump_id(const Json& json, std::size_t i, const std::string& who) {
+    const bool is_missing = !json.contains("doJumpId");
+    if (!is_strict_ && is_missing) return true;
+    const bool is_integer = !is_missing && json["doJumpId"].is_number_integer();
+    if (is_strict_ && (!is_integer || json["doJumpId"] != Json(i + 1))) {
+      complain(who + ".doJumpId must be " + std::to_string(i + 1));
+      return false;
+    }
+    const long before = i == 0 ? 0 : static_cast<long>(file_.items.back().number);
+    if (is_integer && json["doJumpId"] > Json(before) && json["doJumpId"] < Json(1'000'000)) {
+      return true;
+    }
+    complain(who + ".doJumpId must be an integer above that of the item before");
+    return false;
+  }
+
   void check_item(const Json& json, std::size_t i) {
     const std::string who = "mission.items[" + std::to_string(i) + "]";
     const auto is = [&](const char* key, auto test) {
       return json.contains(key) && test(json[key]);
     };
     const auto integer = [](const Json& value) { return value.is_number_integer(); };
+    if (json.is_object() && json.value("type", Json()) == Json("ComplexItem")) {
+      const Json kind = json.value("complexItemType", Json());
+      return complain(who + ".type must be \"SimpleItem\"; it is a " +
+                      (kind.is_string() ? kind.get<std::string>() : "pattern") +
+                      " (ComplexItem): save it as waypoints first");
+    }
     if (!json.is_object() || !is("type", [](const Json& v) { return v == "SimpleItem"; })) {
       return complain(who + ".type must be \"SimpleItem\"");
     }
@@ -130,15 +202,14 @@ class PlanChecker {
     if (!is("autoContinue", [](const Json& v) { return v.is_boolean(); })) {
       return complain(who + ".autoContinue must be true or false");
     }
-    if (!is("doJumpId", integer) || json["doJumpId"] != Json(i + 1)) {
-      return complain(who + ".doJumpId must be " + std::to_string(i + 1));
-    }
-    if (!is("params", [](const Json& v) { return v.is_array() && v.size() == 7; })) {
-      return complain(who + ".params must be 7 numbers or nulls");
-    }
-    MissionItem item{json["command"], json["frame"], {}, json["autoContinue"], i + 1};
+    if (file_.items.size() != i || !check_jump_id(json, i, who)) return;
+    const Json params = params_of(json);
+    if (params.is_null()) return complain(who + ".params must be 7 numbers or nulls");
+    const std::size_t number =
+        json.contains("doJumpId") ? json["doJumpId"].get<std::size_t>() : i + 1;
+    MissionItem item{json["command"], json["frame"], {}, json["autoContinue"], number};
     for (std::size_t p = 0; p < 7; ++p) {
-      const Json& value = json["params"][p];
+      const Json& value = params[p];
       if (!value.is_number() && !value.is_null()) {
         return complain(who + ".params must be 7 numbers or nulls");
       }
@@ -149,15 +220,17 @@ class PlanChecker {
   }
 
   void check_altitude(const Json& json, const MissionItem& item, const std::string& who) {
-    const int present = static_cast<int>(json.contains("AltitudeMode") + json.contains("Altitude") +
-                                         json.contains("AMSLAltAboveTerrain"));
-    if (present == 0) return;
-    if (present < 3) {
+    const bool has_mode = json.contains("AltitudeMode"), has_height = json.contains("Altitude");
+    const bool has_terrain = json.contains("AMSLAltAboveTerrain");
+    if (!has_mode && !has_height && !has_terrain) return;
+    if (!is_strict_ && !has_mode) return;  // the frame and the params say all
+    if (is_strict_ && !(has_mode && has_height && has_terrain)) {
       return complain(who +
                       " must have all of AltitudeMode, Altitude, AMSLAltAboveTerrain or none");
     }
-    const Json &mode = json["AltitudeMode"], &above = json["AMSLAltAboveTerrain"];
-    if (!mode.is_number_integer() || !json["Altitude"].is_number() ||
+    const Json mode = json["AltitudeMode"], above = json.value("AMSLAltAboveTerrain", Json());
+    const Json height = json.value("Altitude", Json(item.params[6]));
+    if (!mode.is_number_integer() || !height.is_number() ||
         !(above.is_null() || above.is_number())) {
       return complain(who +
                       " has an AltitudeMode, Altitude or AMSLAltAboveTerrain of a wrong type");
@@ -166,7 +239,7 @@ class PlanChecker {
                         ((mode == 2 || mode == 3) && item.frame == frame::global) ||
                         (mode == 4 && item.frame == frame::terrain);
     if (!agrees) complain(who + " has an AltitudeMode that does not go with its frame");
-    if (mode == 1 && json["Altitude"] != json["params"][6]) {
+    if (mode == 1 && height != Json(item.params[6])) {
       complain(who + ".Altitude is not the height in its params");
     }
   }
@@ -236,6 +309,7 @@ class PlanChecker {
     }
   }
 
+  bool is_strict_;
   Json plan_;
   MissionFile file_{.home_name = "mission.plannedHomePosition", .holds_fence = true};
   Problems problems_;
@@ -284,10 +358,10 @@ std::string write_plan(const FlightPlan& plan) {
   return file.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 
-Problems validate_plan(const std::string& text) { return PlanChecker(text).check(); }
+Problems validate_plan(const std::string& text) { return PlanChecker(text, true).check(); }
 
 MissionFile read_plan(const std::string& text) {
-  PlanChecker checker(text);
+  PlanChecker checker(text, false);
   throw_first(checker.check(), "not a good .plan file");
   return checker.file();
 }

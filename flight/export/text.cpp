@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "geometry/error.h"
+#include "geometry/text_parts.h"
 
 namespace skycap::flight {
 
@@ -42,15 +43,15 @@ std::vector<std::string> split(std::string_view text, char separator) {
 
 std::vector<std::string> lines_of(std::string_view text) {
   std::vector<std::string> lines;
-  while (!text.empty()) lines.emplace_back(next_line(text));
+  for (text = geometry::without_mark(text); !text.empty();) lines.emplace_back(next_line(text));
   return lines;
 }
 
 std::string_view next_line(std::string_view& rest) {
-  const std::size_t end = std::min(rest.find('\n'), rest.size());
-  std::string_view line = rest.substr(0, end);
-  rest.remove_prefix(std::min(end + 1, rest.size()));
-  if (line.ends_with('\r')) line.remove_suffix(1);
+  const std::size_t end = std::min(rest.find_first_of("\r\n"), rest.size());
+  const std::string_view line = rest.substr(0, end);
+  const std::size_t mark = rest.substr(end).starts_with("\r\n") ? 2 : 1;
+  rest.remove_prefix(std::min(end + mark, rest.size()));
   return line;
 }
 

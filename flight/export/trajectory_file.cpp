@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "geometry/error.h"
+#include "geometry/text_parts.h"
 
 namespace skycap::flight {
 namespace {
@@ -158,7 +159,9 @@ class TrajectorySampler {
   std::vector<TimedState> states_;
 };
 
-bool is_comment(const std::string& line) { return line.empty() || line.front() == '#'; }
+bool is_comment(const std::string& line) {
+  return geometry::trimmed(line).empty() || geometry::trimmed(line).front() == '#';
+}
 
 /// Rows of numbers; problems name the line.
 std::vector<std::vector<double>> rows_of(const std::vector<std::string>& lines, std::size_t first,
@@ -169,7 +172,8 @@ std::vector<std::vector<double>> rows_of(const std::vector<std::string>& lines, 
     if (is_comment(lines[i])) continue;
     const std::string who = "line " + std::to_string(i + 1) + " ";
     const std::optional<std::vector<double>> row =
-        to_numbers(split(lines[i], separator), who, problems);
+        to_numbers(separator == ' ' ? geometry::words_of(lines[i]) : split(lines[i], separator),
+                   who, problems);
     if (!row) return rows;
     if (row->size() != count) {
       problems.push_back(who + "has " + std::to_string(row->size()) + " numbers; it must have " +

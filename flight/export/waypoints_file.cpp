@@ -1,6 +1,8 @@
+#include <algorithm>
 #include <cmath>
 
 #include "flight/export/mavlink_files.h"
+#include "geometry/text_parts.h"
 
 namespace skycap::flight {
 namespace {
@@ -18,44 +20,73 @@ std::string line(std::size_t index, bool is_current, const MissionItem& item) {
   return text + "\t1\n";
 }
 
-/// Checks and reads at once: the items are whole if there are no problems.
+/// Checks and reads at once: the items are complete if there are no problems. Strict: as the
+/// strictest station asks for; otherwise as Mission Planner, MAVProxy and APM Planner read files,
+/// with blank lines, comments, columns separated by blanks and a home without a place.
 struct Reading {
   Problems problems;
   std::vector<MissionItem> items;
   std::optional<MissionItem> home;
+  bool is_strict;
 
-  explicit Reading(const std::string& text) {
+  explicit Reading(const std::string& text, bool strict) : is_strict(strict) {
     const std::vector<std::string> lines = lines_of(text);
-    if (lines.empty() || lines[0] != header) {
-      problems.emplace_back("line 1 must be \"QGC WPL 110\"");
-      return;
-    }
-    for (std::size_t i = 1; i < lines.size(); ++i) read_line(lines[i], i);
-    if (!problems.empty()) return;
-    // ArduPilot's files begin with home: a waypoint in absolute height before the take-off.
-    const bool has_home =
-        !items.empty() && items[0].command == command::waypoint && items[0].frame == frame::global;
-    if (!has_home) return;
+    const std::size_t first = is_strict ? 0 : first_line(lines);
+    if (!check_header(first < lines.size() ? lines[first] : "", first + 1)) return;
+    for (std::size_t i = first + 1; i < lines.size(); ++i) read_line(lines[i], i + 1);
+    if (!problems.empty() || items.empty() || !is_home(items.front())) return;
     home = items.front();
     items.erase(items.begin());
   }
 
-  void read_line(const std::string& text, std::size_t number) {
-    const std::string who = "line " + std::to_string(number + 1) + " ";
-    const std::vector<std::string> fields = split(text, '\t');
+  static std::size_t first_line(const std::vector<std::string>& lines) {
+    const auto is_full = [](const std::string& line) { return !geometry::words_of(line).empty(); };
+    return static_cast<std::size_t>(std::ranges::find_if(lines, is_full) - lines.begin());
+  }
+
+  bool check_header(const std::string& line, std::size_t number) {
+    const std::string who = "line " + std::to_string(number) + " ";
+    if (line == header) return true;
+    const std::vector<std::string> words = geometry::words_of(line);
+    const bool is_wpl = words.size() == 3 && words[0] == "QGC" && words[1] == "WPL";
+    // Files of APM Planner 2 say 120 and have the same columns.
+    if (!is_strict && is_wpl && (words[2] == "110" || words[2] == "120")) return true;
+    if (is_wpl && (words[2] == "100" || words[2] == "101")) {
+      problems.push_back(who + "has version " + words[2] +
+                         ", whose columns have another order; save the mission again as QGC WPL "
+                         "110");
+    } else {
+      problems.push_back(who + "must be \"QGC WPL 110\"");
+    }
+    return false;
+  }
+
+  /// ArduPilot's files begin with home: a waypoint in absolute height before the take-off. Mission
+  /// Planner writes a home that it does not know as zeros, its command included.
+  bool is_home(const MissionItem& item) const {
+    if (item.command == command::waypoint && item.frame == frame::global) return true;
+    return !is_strict &&
+           (item.command == 0 || (item.command == command::waypoint && !has_coordinates(item)));
+  }
+
+  void read_line(const std::string& text, std::size_t line_number) {
+    const std::string who = "line " + std::to_string(line_number) + " ";
+    const std::vector<std::string> fields =
+        is_strict ? split(text, '\t') : geometry::words_of(text);
+    if (!is_strict && (fields.empty() || fields.front().starts_with('#'))) return;
     if (fields.size() != fields_per_line) {
-      problems.push_back(who + "has " + std::to_string(fields.size()) +
-                         " fields separated by tabs; it must have 12");
+      problems.push_back(who + "has " + std::to_string(fields.size()) + " fields separated by " +
+                         (is_strict ? "tabs" : "tabs or blanks") + "; it must have 12");
       return;
     }
     const std::optional<std::vector<double>> numbers = to_numbers(fields, who, problems);
     if (!numbers) return;
     const std::vector<double>& values = *numbers;
-    if (values[0] != static_cast<double>(number - 1)) {
-      problems.push_back(who + "has index " + fields[0] + "; it must be " +
-                         std::to_string(number - 1));
+    const std::size_t index = items.size();
+    if (values[0] != static_cast<double>(index)) {
+      problems.push_back(who + "has index " + fields[0] + "; it must be " + std::to_string(index));
     }
-    if (values[1] != (number == 1 ? 1.0 : 0.0)) {
+    if (is_strict && values[1] != (index == 0 ? 1.0 : 0.0)) {
       problems.push_back(who + "must be current (1) on the first line only");
     }
     for (const std::size_t whole : {2U, 3U, 11U}) {
@@ -65,11 +96,25 @@ struct Reading {
       }
     }
     MissionItem item{
-        static_cast<int>(values[3]), static_cast<int>(values[2]), {}, values[11] == 1, number - 1};
+        static_cast<int>(values[3]), static_cast<int>(values[2]), {}, values[11] == 1, index};
     std::copy(values.begin() + 4, values.begin() + 11, item.params.begin());
     items.push_back(item);
   }
 };
+
+Problems problems_of(Reading& reading, std::optional<Dialect> dialect) {
+  if (!reading.problems.empty()) return reading.problems;
+  if (dialect == Dialect::ardupilot && !reading.home) {
+    reading.problems.emplace_back("line 2 must be home: frame 0, command 16");
+  }
+  if (dialect == Dialect::px4 && reading.home) {
+    reading.problems.emplace_back("line 2 is a home, which PX4's files do not have");
+  }
+  for (const std::string& problem : check_items(reading.items, dialect)) {
+    reading.problems.push_back(problem);
+  }
+  return reading.problems;
+}
 
 }  // namespace
 
@@ -99,26 +144,16 @@ std::string write_waypoints(const FlightPlan& plan) {
 }
 
 Problems validate_waypoints(const std::string& text, std::optional<Dialect> dialect) {
-  Reading reading(text);
-  if (!reading.problems.empty()) return reading.problems;
-  if (dialect == Dialect::ardupilot && !reading.home) {
-    reading.problems.emplace_back("line 2 must be home: frame 0, command 16");
-  }
-  if (dialect == Dialect::px4 && reading.home) {
-    reading.problems.emplace_back("line 2 is a home, which PX4's files do not have");
-  }
-  for (const std::string& problem : check_items(reading.items, dialect)) {
-    reading.problems.push_back(problem);
-  }
-  return reading.problems;
+  Reading reading(text, true);
+  return problems_of(reading, dialect);
 }
 
 MissionFile read_waypoints(const std::string& text) {
-  throw_first(validate_waypoints(text), "not a good .waypoints file");
-  const Reading reading(text);
+  Reading reading(text, false);
+  throw_first(problems_of(reading, {}), "not a good .waypoints file");
   MissionFile file{.items = reading.items,
                    .dialect = reading.home ? Dialect::ardupilot : Dialect::px4};
-  if (reading.home) {
+  if (reading.home && has_coordinates(*reading.home)) {
     const std::array<double, 7>& place = reading.home->params;
     file.home = GeodeticPoint{place[4], place[5], place[6]};
     file.home_name = "item 0";

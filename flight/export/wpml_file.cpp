@@ -8,15 +8,17 @@
 #include "flight/export/kml_document.h"
 #include "flight/export/wpml_writer.h"
 #include "geometry/error.h"
+#include "geometry/text_parts.h"
 
 namespace skycap::flight {
 namespace {
 
-/// Checks either file and reads its places.
+/// Checks either file and reads its places. Strict: as our own files are written; otherwise the
+/// return altitude may be missing, as in the samples of DJI's documentation.
 class WpmlChecker {
  public:
-  WpmlChecker(const std::string& text, const std::string& file)
-      : file_(file), is_template_(file == "template.kml") {
+  WpmlChecker(const std::string& text, const std::string& file, bool is_strict)
+      : file_(file), is_template_(file == "template.kml"), is_strict_(is_strict) {
     const pugi::xml_parse_result parsed = document_.load_buffer(text.data(), text.size());
     if (!parsed) {
       complain(std::string("is not well-formed XML: ") + parsed.description());
@@ -27,13 +29,15 @@ class WpmlChecker {
 
   Problems problems;
   RouteFile route;
-  std::string version;  ///< of the namespace
+  std::vector<double> ellipsoid_heights;  ///< of the template's waypoints [m]
+  std::string version;                    ///< of the namespace
 
  private:
   void complain(const std::string& what) { problems.push_back(file_ + " " + what); }
 
   static std::string text_of(pugi::xml_node node, const char* name) {
-    return node.child((std::string("wpml:") + name).c_str()).text().get();
+    return std::string(
+        geometry::trimmed(node.child((std::string("wpml:") + name).c_str()).text().get()));
   }
 
   void require_one_of(pugi::xml_node node, const char* name, const std::set<std::string>& values) {
@@ -110,7 +114,9 @@ class WpmlChecker {
     }
     require_number(config, "takeOffSecurityHeight", 1.2, 1500);
     require_number(config, "globalTransitionalSpeed", 0.01, 15);
-    if (!is_template_) route.return_height = require_number(config, "globalRTHHeight", 2, 1500);
+    if (!is_template_ && (is_strict_ || !text_of(config, "globalRTHHeight").empty())) {
+      route.return_height = require_number(config, "globalRTHHeight", 2, 1500);
+    }
     require_one_of(config.child("wpml:droneInfo"), "droneEnumValue",
                    {"60", "67", "77", "89", "91", "99", "100", "103"});
     require_number(config.child("wpml:droneInfo"), "droneSubEnumValue", 0, 3);
@@ -119,10 +125,12 @@ class WpmlChecker {
   }
 
   void check_waypoint(pugi::xml_node mark) {
-    const std::string place = mark.child("Point").child("coordinates").text().get();
+    const std::string place(
+        geometry::trimmed(mark.child("Point").child("coordinates").text().get()));
     const std::vector<std::string> parts = split(place, ',');
-    const std::optional<double> longitude = to_number(parts[0]);
-    const std::optional<double> latitude = to_number(parts.size() == 2 ? parts[1] : "");
+    const std::optional<double> longitude = to_number(geometry::trimmed(parts[0]));
+    const std::optional<double> latitude =
+        to_number(parts.size() == 2 ? geometry::trimmed(parts[1]) : "");
     FilePoint point;
     point.datum = datum_;
     if (!longitude || !latitude || std::abs(*longitude) > 180.0 || std::abs(*latitude) > 90.0) {
@@ -136,7 +144,7 @@ class WpmlChecker {
     }
     if (is_template_) {
       point.height = require_number(mark, "height", -500, 10000);
-      require_number(mark, "ellipsoidHeight", -500, 10000);
+      ellipsoid_heights.push_back(require_number(mark, "ellipsoidHeight", -500, 10000));
     } else {
       point.height = require_number(mark, "executeHeight", -500, 10000);
       require_number(mark, "waypointSpeed", 0.01, 15);
@@ -193,7 +201,7 @@ class WpmlChecker {
   }
 
   std::string file_;
-  bool is_template_;
+  bool is_template_, is_strict_;
   pugi::xml_document document_;
   std::set<double> group_ids_;
   HeightDatum datum_ = HeightDatum::ellipsoid;
@@ -215,33 +223,61 @@ std::string write_kmz(const FlightPlan& plan) {
   return pack_kmz({template_kml(plan), waylines_wpml(plan)});
 }
 
-Problems validate_kmz(const std::string& bytes) {
-  KmzContent content;
-  try {
-    content = unpack_kmz(bytes);
-  } catch (const Error& error) {
-    return {error.what()};
+namespace {
+
+/// Whether both files lead to the same places with the same photographs. Pilot 2 writes a template
+/// above the geoid beside waylines above the ellipsoid; the template then holds both heights.
+bool agree(const WpmlChecker& edited, const WpmlChecker& flown) {
+  constexpr double same_degrees = 1e-8, same_height = 1e-3;
+  if (edited.version != flown.version) return false;
+  if (edited.route.points.size() != flown.route.points.size()) return false;
+  for (std::size_t i = 0; i < flown.route.points.size(); ++i) {
+    const FilePoint &a = edited.route.points[i], &b = flown.route.points[i];
+    const bool are_both =
+        a.datum == HeightDatum::mean_sea_level && b.datum == HeightDatum::ellipsoid;
+    const double height = are_both ? edited.ellipsoid_heights[i] : a.height;
+    if (std::abs(a.latitude_deg - b.latitude_deg) > same_degrees ||
+        std::abs(a.longitude_deg - b.longitude_deg) > same_degrees ||
+        std::abs(height - b.height) > same_height || (a.datum != b.datum && !are_both) ||
+        a.shots != b.shots) {
+      return false;
+    }
   }
-  WpmlChecker edited(content.template_kml, "template.kml");
-  const WpmlChecker flown(content.waylines_wpml, "waylines.wpml");
+  return true;
+}
+
+/// Without a template only the waylines are checked: aircraft fly nothing else.
+Problems problems_of(const KmzContent& content, bool is_strict) {
+  const WpmlChecker flown(content.waylines_wpml, "waylines.wpml", is_strict);
+  if (content.template_kml.empty()) {
+    if (is_strict) return {"wpmz/template.kml is missing"};
+    return flown.problems;
+  }
+  const WpmlChecker edited(content.template_kml, "template.kml", is_strict);
   Problems problems = edited.problems;
   problems.insert(problems.end(), flown.problems.begin(), flown.problems.end());
-  if (!problems.empty()) return problems;
   // Pilot 2 may make the waylines anew from the template: the two must say the same.
-  bool agree =
-      edited.version == flown.version && edited.route.points.size() == flown.route.points.size();
-  for (std::size_t i = 0; agree && i < flown.route.points.size(); ++i) {
-    const FilePoint &a = edited.route.points[i], &b = flown.route.points[i];
-    agree = a.latitude_deg == b.latitude_deg && a.longitude_deg == b.longitude_deg &&
-            a.height == b.height && a.datum == b.datum && a.shots == b.shots;
+  if (problems.empty() && !agree(edited, flown)) {
+    problems.emplace_back("template.kml and waylines.wpml do not agree");
   }
-  if (!agree) problems.emplace_back("template.kml and waylines.wpml do not agree");
   return problems;
 }
 
-RouteFile read_kmz(const std::string& bytes) {
-  throw_first(validate_kmz(bytes), "not a good .kmz file");
-  return WpmlChecker(unpack_kmz(bytes).waylines_wpml, "waylines.wpml").route;
+}  // namespace
+
+Problems validate_kmz(const std::string& bytes) {
+  try {
+    return problems_of(unpack_kmz(bytes), true);
+  } catch (const Error& error) {
+    return {error.what()};
+  }
+}
+
+RouteFile read_kmz(const std::string& bytes) { return read_kmz(unpack_kmz(bytes)); }
+
+RouteFile read_kmz(const KmzContent& content) {
+  throw_first(problems_of(content, false), "not a good .kmz file");
+  return WpmlChecker(content.waylines_wpml, "waylines.wpml", false).route;
 }
 
 }  // namespace skycap::flight

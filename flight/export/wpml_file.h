@@ -20,17 +20,19 @@ std::string write_kmz(const FlightPlan& plan);
 /// What is wrong with a .kmz file, naming file and element; empty when it is good.
 Problems validate_kmz(const std::string& bytes);
 
-/// The waylines' places. Throws Error{bad_file} with the first problem.
-RouteFile read_kmz(const std::string& bytes);
-
-/// The two files inside, for inspection. Throws Error{bad_file} if the zip lacks one.
+/// The two files inside, for inspection. Members are found by their last names, whatever folder
+/// they are in. Throws Error{bad_file} if the archive lacks the waylines or holds two of a name.
 struct KmzContent {
-  std::string template_kml;
+  std::string template_kml;  ///< empty: the archive lacks it, and the mission cannot be edited
   std::string waylines_wpml;
 };
 KmzContent unpack_kmz(const std::string& bytes);
 
 /// The inverse of unpack_kmz(); the same content gives the same bytes.
 std::string pack_kmz(const KmzContent& content);
+
+/// The waylines' places. Throws Error{bad_file} with the first problem.
+RouteFile read_kmz(const std::string& bytes);
+RouteFile read_kmz(const KmzContent& content);
 
 }  // namespace skycap::flight

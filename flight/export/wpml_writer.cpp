@@ -7,6 +7,7 @@
 #include <pugixml.hpp>
 
 #include "flight/export/kml_document.h"
+#include "flight/export/parameters.h"
 #include "flight/export/text.h"
 #include "geometry/angle.h"
 
@@ -68,7 +69,7 @@ class WpmlWriter {
     const double first = height(plan_.waypoints.front());
     add(config, "takeOffSecurityHeight", fixed(std::clamp(first, 1.2, 1500.0), 2));
     add(config, "globalTransitionalSpeed", speed());
-    add(config, "globalRTHHeight", fixed(plan_.certified_returns().height, 0));
+    add(config, "globalRTHHeight", return_altitude_text(plan_.certified_returns().height));
     if (is_template_) {
       add(config, "takeOffRefPoint",
           degrees(pad_.latitude_deg) + "," + degrees(pad_.longitude_deg) + "," +

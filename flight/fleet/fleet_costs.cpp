@@ -5,6 +5,7 @@
 #include <limits>
 #include <optional>
 
+#include "flight/motion/flight_time_range.h"
 #include "flight/route/leg_certifier.h"
 #include "flight/space/obstacles.h"
 
@@ -101,7 +102,7 @@ FleetVehicle least_costs(std::span<const Station> stations, const FleetMember& m
     return list.empty() ? 0.0 : list[i];
   };
   const double climb = member.options.takeoff_climb;
-  FleetVehicle vehicle{.energy_per_sortie = motion.usable_energy(),
+  FleetVehicle vehicle{.energy_per_sortie = plannable_energy(motion),
                        .stations_per_sortie = most_stations(motion.vehicle())};
   vehicle.legs.resize(stations.size() * stations.size());
   for (std::uint32_t i = 0; i < stations.size(); ++i) {

@@ -8,6 +8,7 @@
 #include "flight/autopilot/mission_mode.h"
 #include "flight/interpreter/command_table.h"
 #include "flight/interpreter/fence_check.h"
+#include "flight/interpreter/home_check.h"
 #include "flight/interpreter/item_order.h"
 #include "flight/interpreter/pad_column.h"
 #include "flight/interpreter/photographs.h"
@@ -49,8 +50,10 @@ class MissionFlight {
       step(item);
     }
     if (!has_landed_) add("the mission ends in the air, without a landing (21)");
-    check_home();
-    check_rally();
+    std::optional<Vector3d> pad;  // known from the mission or from the take-off
+    if (has_taken_off_) pad = pad_;
+    for (const std::string& problem : check_home(file_, pad, facts_)) add(problem);
+    for (const std::string& problem : check_rally(file_, facts_)) add(problem);
     for (const std::string& problem : check_photographs(route_.stops, facts_)) add(problem);
     for (const std::string& problem : check_fence(file_, route_, facts_)) add(problem);
     return std::move(route_);
@@ -99,11 +102,19 @@ class MissionFlight {
   }
 
   bool check_place(const MissionItem& item, const CommandRow& row) {
-    const bool is_nowhere = item.params[4] == 0.0 && item.params[5] == 0.0;
+    const bool is_nowhere = !has_coordinates(item) && !takes_present_place(row);
     if (is_nowhere) complain(item, "has no place: 0 degrees north and east mean \"as before\"");
     const bool is_without_height = row.meaning == Meaning::fly_to && item.params[6] == 0.0;
     if (is_without_height) complain(item, "has height 0, which ArduPilot takes for \"as before\"");
     return !is_nowhere && !is_without_height;
+  }
+
+  /// ArduCopter takes off and lands where it is if the item has no place (AP_Mission's default
+  /// location); a take-off's place is known from the mission or from the file's home.
+  bool takes_present_place(const CommandRow& row) const {
+    if (dialect_ != Dialect::ardupilot) return false;
+    if (row.meaning == Meaning::take_off) return facts_.is_pad_known || file_.home;
+    return row.meaning == Meaning::land;
   }
 
   void execute(const MissionItem& item, const CommandRow& row) {
@@ -146,14 +157,25 @@ class MissionFlight {
     double height = item.params[6];
     height += is_above_sea(item) ? facts_.site.undulation_for(name_of(item) + ", above sea level,")
                                  : frame_.to_geodetic(facts_.pad).height;
-    return frame_.to_local({item.params[4], item.params[5], height});
+    GeodeticPoint place{item.params[4], item.params[5], height};
+    if (!has_coordinates(item)) {
+      const GeodeticPoint here = present_place();
+      place.latitude_deg = here.latitude_deg, place.longitude_deg = here.longitude_deg;
+    }
+    return frame_.to_local(place);
+  }
+
+  /// Where the vehicle is over ground: before the take-off on the pad, else where it flew to.
+  GeodeticPoint present_place() const {
+    if (has_taken_off_) return frame_.to_geodetic(position_);
+    return facts_.is_pad_known || !file_.home ? frame_.to_geodetic(facts_.pad) : *file_.home;
   }
 
   // Autopilots climb where they stand: of a take-off only the height counts.
   void take_off(const MissionItem& item) {
     if (has_taken_off_) return complain(item, "takes off again in mid-flight");
-    has_taken_off_ = true;
     const Vector3d place = place_of(item);
+    has_taken_off_ = true;
     pad_ = facts_.pad;
     if (!facts_.is_pad_known) pad_.head<2>() = place.head<2>();
     if (const double away = (place - pad_).head<2>().norm(); away > pad_tolerance) {
@@ -307,50 +329,6 @@ class MissionFlight {
       return;
     }
     route_.stops.push_back({position_, name_of(*last_), hold_, yaw_deg_, pitch_deg_, 1});
-  }
-
-  /// The file's home is what the pilot sees; relative heights count from the real one.
-  void check_home() {
-    if (!file_.home) return;
-    if (!facts_.site.geoid_undulation) {
-      return add(file_.home_name +
-                 " is above sea level; give site.geoid_undulation to compare it with the pad");
-    }
-    GeodeticPoint home = *file_.home;
-    home.height += *facts_.site.geoid_undulation;
-    const Vector3d away = frame_.to_local(home) - (has_taken_off_ ? pad_ : facts_.pad);
-    const double level = away.head<2>().norm();
-    if (level > pad_tolerance && (has_taken_off_ || facts_.is_pad_known)) {
-      add(file_.home_name + " is " + fixed(level, 1) + " m from the pad");
-    }
-    if (std::abs(away.z()) > pad_height_tolerance) {
-      add(file_.home_name + " is " + fixed(std::abs(away.z()), 1) + " m " +
-          (away.z() > 0.0 ? "above" : "below") + " the pad");
-    }
-  }
-
-  /// Returns go to the nearest place to land: those of the file must be those that are proven, at
-  /// home's height, which the height of return counts from.
-  void check_rally() {
-    std::vector<Vector3d> missing = facts_.rally;
-    for (std::size_t i = 0; i < file_.rally.size(); ++i) {
-      const std::string name = "rallyPoints.points[" + std::to_string(i) + "]";
-      const Vector3d place = frame_.to_local(file_.rally[i]);
-      const auto known = std::ranges::find_if(missing, [&](const Vector3d& rally) {
-        return (rally - place).head<2>().norm() <= pad_tolerance;
-      });
-      if (known == missing.end()) {
-        add(name + " is none of the mission's flight.rally: returns to it are not proven");
-        continue;
-      }
-      missing.erase(known);
-      if (std::abs(file_.rally[i].height) <= pad_height_tolerance) continue;
-      add(name + " is " + fixed(file_.rally[i].height, 1) +
-          " m above home, and PX4 returns by as much higher; it must be 0");
-    }
-    if (missing.empty()) return;
-    add("the file lacks " + std::to_string(missing.size()) + " of the mission's " +
-        std::to_string(facts_.rally.size()) + " rally points, which returns are proven to");
   }
 
   const MissionFile& file_;

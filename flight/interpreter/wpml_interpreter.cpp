@@ -11,6 +11,7 @@
 #include "flight/interpreter/pad_column.h"
 #include "flight/interpreter/photographs.h"
 #include "geometry/error.h"
+#include "geometry/text_parts.h"
 
 namespace skycap::flight {
 namespace {
@@ -124,8 +125,9 @@ class WpmlFlight {
   std::optional<Vector3d> reference_pad() {
     const std::vector<std::string> parts = split(text_of(config_, "takeOffRefPoint"), ',');
     if (parts.size() != 3) return std::nullopt;
-    const auto latitude = to_number(parts[0]), longitude = to_number(parts[1]),
-               height = to_number(parts[2]);
+    const auto latitude = to_number(geometry::trimmed(parts[0])),
+               longitude = to_number(geometry::trimmed(parts[1])),
+               height = to_number(geometry::trimmed(parts[2]));
     if (!latitude || !longitude || !height) return std::nullopt;
     return frame_.to_local({*latitude, *longitude, *height});
   }
@@ -164,7 +166,8 @@ class WpmlFlight {
   static std::string waypoint(std::size_t index) { return "waypoint " + std::to_string(index); }
 
   static std::string text_of(pugi::xml_node node, const char* name) {
-    return node.child((std::string("wpml:") + name).c_str()).text().get();
+    return std::string(
+        geometry::trimmed(node.child((std::string("wpml:") + name).c_str()).text().get()));
   }
 
   /// `who` is the waypoint; empty: the file.
@@ -347,8 +350,10 @@ void check_pad(const Vector3d& said, const Vector3d& pad, Problems& problems) {
 }  // namespace
 
 FlownRoute interpret(const KmzContent& kmz, const FlightFacts& facts) {
-  const RouteFile file = read_kmz(pack_kmz(kmz));
-  WpmlFlight edited(kmz.template_kml, "template.kml", facts);
+  const RouteFile file = read_kmz(kmz);
+  const bool is_editable = !kmz.template_kml.empty();
+  WpmlFlight edited(is_editable ? kmz.template_kml : kmz.waylines_wpml,
+                    is_editable ? "template.kml" : "waylines.wpml", facts);
   WpmlFlight flown(kmz.waylines_wpml, "waylines.wpml", facts);
   const std::optional<Vector3d> said = edited.reference_pad();
   const std::vector<Vector3d> places = local_points(file, facts.site, facts.pad);
@@ -356,6 +361,7 @@ FlownRoute interpret(const KmzContent& kmz, const FlightFacts& facts) {
   if (!facts.is_pad_known) pad.head<2>() = said.value_or(places.front()).head<2>();
   FlownRoute route = flown.fly(places, pad);
   if (said) check_pad(*said, pad, route.problems);
+  if (!is_editable) return route;
   for (const std::string& problem : edited.fly(places, pad).problems) {
     if (std::ranges::find(route.problems, problem) == route.problems.end()) {
       route.problems.push_back(problem);

@@ -70,6 +70,7 @@ void VehicleState::hear_autopilot(const Frame& frame, double now) {
     hear_position(*position, now);
   } else if (const auto attitude = decode<Attitude>(frame)) {
     if (std::isfinite(attitude->yaw)) yaw_ = attitude->yaw;
+    if (std::isfinite(attitude->pitch)) body_pitch_ = attitude->pitch;
   } else if (const auto status = decode<SystemStatus>(frame)) {
     const int percent = status->battery_remaining;
     battery_ = percent >= 0 && percent <= 100 ? std::optional(0.01 * percent) : std::nullopt;

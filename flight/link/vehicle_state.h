@@ -44,7 +44,8 @@ class VehicleState {
   const std::optional<HeardHeartbeat>& heartbeat() const { return heartbeat_; }
   const std::optional<HeardPosition>& position() const { return position_; }
   std::optional<double> yaw() const { return yaw_; }             ///< clockwise from north [rad]
-  std::optional<double> gimbal_pitch() const { return pitch_; }  ///< 0: the horizon [rad]
+  std::optional<double> pitch() const { return body_pitch_; }    ///< of the vehicle, nose up [rad]
+  std::optional<double> gimbal_pitch() const { return pitch_; }  ///< as reported, 0: horizon [rad]
   std::optional<double> battery() const { return battery_; }     ///< share that is left
   std::optional<std::uint16_t> estimator() const { return estimator_; }  ///< EKF_STATUS_FLAGS
 
@@ -65,7 +66,7 @@ class VehicleState {
   std::map<std::uint8_t, std::uint8_t> sequences_;  ///< last heard, by component
   std::optional<HeardHeartbeat> heartbeat_;
   std::optional<HeardPosition> position_;
-  std::optional<double> yaw_, pitch_, battery_;
+  std::optional<double> yaw_, body_pitch_, pitch_, battery_;
   std::optional<std::uint16_t> estimator_;
   std::map<std::uint16_t, std::uint8_t> answers_;
   std::string warning_;

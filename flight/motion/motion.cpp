@@ -5,6 +5,7 @@
 #include <numbers>
 #include <string>
 
+#include "flight/motion/hover_power.h"
 #include "geometry/error.h"
 
 namespace skycap::flight {
@@ -24,6 +25,16 @@ constexpr double loss_per_degree = 0.01;
 /// enters it by 3 (v / tip)^2 (Leishman, Principles of Helicopter Aerodynamics, section 5.4).
 constexpr double profile_share = 0.2;
 constexpr double tip_speed = 120.0;
+
+double disc_area(const Vehicle& vehicle) {
+  return vehicle.rotors * std::numbers::pi * vehicle.rotor_diameter * vehicle.rotor_diameter / 4.0;
+}
+
+/// Of hovering at sea level by momentum theory [W].
+double ideal_power(const Vehicle& vehicle) {
+  return std::pow(vehicle.mass * gravity, 1.5) /
+         std::sqrt(2.0 * sea_level_density * disc_area(vehicle));
+}
 
 }  // namespace
 
@@ -101,25 +112,34 @@ double turn_time(double angle, double rate, double acceleration) {
   return 2.0 * std::sqrt(turn / acceleration);
 }
 
+double data_sheet_power(const Vehicle& vehicle) {
+  return aged_capacity * vehicle.battery_wh * 60.0 / vehicle.endurance_min;
+}
+
+double endurance_at(const Vehicle& vehicle, double hover_power) {
+  return aged_capacity * vehicle.battery_wh * 60.0 / hover_power;
+}
+
+double min_rotor_power(const Vehicle& vehicle) {
+  return ideal_power(vehicle) / (1.0 - profile_share);
+}
+
 Motion::Motion(const Vehicle& vehicle, const Conditions& conditions)
     : vehicle_(vehicle), conditions_(conditions) {
   vehicle.validate();
   conditions.validate(vehicle);
   const double thrust = vehicle.mass * gravity;
-  const double disc_area =
-      vehicle.rotors * std::numbers::pi * vehicle.rotor_diameter * vehicle.rotor_diameter / 4.0;
-  const double data_sheet_power = aged_capacity * vehicle.battery_wh * 60.0 / vehicle.endurance_min;
-  const double rotor_power = data_sheet_power - vehicle.avionics_power;
-  const double ideal_power = std::pow(thrust, 1.5) / std::sqrt(2.0 * sea_level_density * disc_area);
-  efficiency_ = ideal_power / ((1.0 - profile_share) * rotor_power);
+  const double rotor_power = data_sheet_power(vehicle) - vehicle.avionics_power;
+  efficiency_ = ideal_power(vehicle) / ((1.0 - profile_share) * rotor_power);
   if (!(rotor_power > 0.0) || !(efficiency_ < 1.0)) {
     throw Error(ErrorKind::bad_config, "vehicle \"" + vehicle.name + "\": an endurance of " +
                                            std::to_string(vehicle.endurance_min) +
-                                           " min would need " + std::to_string(data_sheet_power) +
+                                           " min would need " +
+                                           std::to_string(data_sheet_power(vehicle)) +
                                            " W, less than its mass takes to hover");
   }
   const double density_ratio = conditions.air_density / sea_level_density;
-  induced_speed_ = std::sqrt(thrust / (2.0 * conditions.air_density * disc_area));
+  induced_speed_ = std::sqrt(thrust / (2.0 * conditions.air_density * disc_area(vehicle)));
   induced_power_ = (1.0 - profile_share) * rotor_power / std::sqrt(density_ratio);
   profile_power_ = profile_share * rotor_power * density_ratio;
 }

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <optional>
 
+#include "flight/motion/flight_time_range.h"
 #include "flight/route/curved_flight.h"
 #include "flight/route/pad_check.h"
 #include "flight/route/route_legs.h"
@@ -34,8 +35,6 @@ class RoutePlanner {
     stations = legs_.allowed(std::move(stations));
     if (route_.options.order_is_free) choose_order(stations);
     legs_.admit(stations);
-    route_.stations = legs_.stations();
-    route_.unreached = legs_.unreached();
     connect();
     split();
     add_up();
@@ -60,6 +59,10 @@ class RoutePlanner {
   }
 
   void connect() {
+    route_.stations = legs_.stations();
+    route_.unreached = legs_.unreached();
+    route_.legs.clear();
+    route_.station_length = route_.straight_length = 0.0;
     for (std::size_t i = 1; i < route_.stations.size(); ++i) {
       const Station &from = route_.stations[i - 1], &to = route_.stations[i];
       route_.legs.push_back(legs_.between(i - 1, i));
@@ -70,10 +73,16 @@ class RoutePlanner {
 
   void split() {
     if (route_.stations.empty()) return;
-    // Ways that no sortie takes need no returns.
+    // Ways that no sortie takes need no returns. One view that has become too far for a battery
+    // would leave no split of all.
     do {
+      if (legs_.drop_out_of_range()) connect();
       split_once();
     } while (give_returns());
+    if (route_.sorties.empty() && !route_.stations.empty()) {
+      throw Error(ErrorKind::bad_config,
+                  "no split of the route into flights fits the battery; lower flight.reserve");
+    }
   }
 
   void split_once() {
@@ -85,7 +94,7 @@ class RoutePlanner {
       problem.station.push_back(legs_.station_cost(i));
       if (i > 0) problem.leg.push_back(cost_of(route_.legs[i - 1]));
     }
-    problem.energy_per_sortie = legs_.motion().usable_energy();
+    problem.energy_per_sortie = plannable_energy(legs_.motion());
     problem.stations_per_sortie = most_stations(legs_.motion().vehicle());
 
     const SortieSplit split = split_into_sorties(problem);
@@ -123,7 +132,7 @@ class RoutePlanner {
     }
     sortie.duration = total.time;
     sortie.energy = total.energy;
-    sortie.energy_left = problem.energy_per_sortie - total.energy;
+    sortie.energy_left = legs_.motion().usable_energy() - total.energy;
     sortie.length = length;
     sortie.clearance = clearance;
     route_.sorties.push_back(std::move(sortie));

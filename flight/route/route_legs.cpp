@@ -4,6 +4,7 @@
 #include <string>
 #include <utility>
 
+#include "flight/motion/flight_time_range.h"
 #include "flight/space/place_text.h"
 
 namespace skycap::flight {
@@ -102,9 +103,31 @@ std::string RouteLegs::why_out_of_range(const Station& station, const Ends& ends
   const LegCost home = in_turn(cost_of(ends.back), landing_cost_);
   const LegCost total = in_turn(in_turn(there, legs_.station_cost(station)), home);
   const double needed = std::max(total.energy, total.emergency);
-  if (needed <= motion_.usable_energy()) return "";
+  const double held = plannable_energy(motion_), longest = longest_flight(motion_.vehicle());
+  if (needed <= held) return "";
   return "getting there and back takes " + std::to_string(needed / 3600) + " Wh; the battery has " +
-         std::to_string(motion_.usable_energy() / 3600) + " Wh above its reserve";
+         std::to_string(held / 3600) + " Wh above its reserve" +
+         (longest > 1.0 ? " for a flight that may take " + std::to_string(longest) +
+                              " times as long as predicted"
+                        : "");
+}
+
+bool RouteLegs::drop_out_of_range() {
+  std::vector<Station> stations;
+  std::vector<Ends> ends;
+  for (std::size_t i = 0; i < stations_.size(); ++i) {
+    const std::string why = why_out_of_range(stations_[i], ends_[i]);
+    if (!why.empty()) {
+      refuse(stations_[i], why);
+      continue;
+    }
+    stations.push_back(stations_[i]);
+    ends.push_back(ends_[i]);
+  }
+  if (stations.size() == stations_.size()) return false;
+  stations_ = std::move(stations);
+  ends_ = std::move(ends);
+  return true;
 }
 
 bool RouteLegs::give_returns(std::size_t station) {

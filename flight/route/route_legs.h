@@ -34,6 +34,10 @@ class RouteLegs {
   /// and that a full battery holds; once. The others go to unreached().
   void admit(const std::vector<Station>& allowed);
 
+  /// Has those go to unreached() whose ways have become longer than a full battery holds, by
+  /// give_returns(); whether there are any. Stations have other places then.
+  bool drop_out_of_range();
+
   const std::vector<Station>& stations() const { return stations_; }
   const std::vector<Unreached>& unreached() const { return unreached_; }
 

@@ -31,6 +31,7 @@ std::string vehicle_text(const Calibration& calibration, const std::string& pres
       "name: {}\n"
       "like: {}\n"
       "mass: {}\n"
+      "rotor_diameter: {}\n"
       "battery_wh: {}\n"
       "endurance_min: {}\n"
       "avionics_power: {}\n"
@@ -50,12 +51,13 @@ std::string vehicle_text(const Calibration& calibration, const std::string& pres
       "  landing_height: {}\n",
       log, calibration.windows, calibration.flown, calibration.scatter,
       100.0 * calibration.energy_error, name, preset, figure(vehicle.mass),
-      figure(vehicle.battery_wh), figure(vehicle.endurance_min), figure(vehicle.avionics_power),
-      figure(vehicle.drag_area), figure(vehicle.energy_error), figure(mode.max_ascent),
-      figure(mode.max_descent), figure(mode.acceleration), figure(mode.vertical_acceleration),
-      figure(mode.jerk), figure(mode.jerk_rise), figure(mode.settle_time),
-      figure(mode.yaw_rate / degree), figure(mode.yaw_acceleration / degree),
-      figure(mode.landing_speed), figure(mode.landing_height));
+      figure(vehicle.rotor_diameter), figure(vehicle.battery_wh), figure(vehicle.endurance_min),
+      figure(vehicle.avionics_power), figure(vehicle.drag_area), figure(vehicle.energy_error),
+      figure(mode.max_ascent), figure(mode.max_descent), figure(mode.acceleration),
+      figure(mode.vertical_acceleration), figure(mode.jerk), figure(mode.jerk_rise),
+      figure(mode.settle_time), figure(mode.yaw_rate / degree),
+      figure(mode.yaw_acceleration / degree), figure(mode.landing_speed),
+      figure(mode.landing_height));
 }
 
 std::string report(const Calibration& calibration, const flight::Vehicle& before) {
@@ -69,13 +71,34 @@ std::string report(const Calibration& calibration, const flight::Vehicle& before
       calibration.hover_power, vehicle.endurance_min, before.endurance_min, vehicle.avionics_power,
       vehicle.drag_area, calibration.windows, calibration.flown, calibration.scatter,
       100.0 * calibration.energy_error, vehicle.energy_error, calibration.wind.norm());
+  if (calibration.outliers > 0) {
+    text += fmt::format("  damage    {} readings left out\n", calibration.outliers);
+  }
   text += fmt::format("  minutes   {} of the autopilot's parameters", calibration.parameters);
   if (calibration.settling) {
-    return text + fmt::format(", {:.2f} s to settle by {} legs\n", *calibration.settling,
-                              calibration.legs);
+    text +=
+        fmt::format(", {:.2f} s to settle by {} legs\n", *calibration.settling, calibration.legs);
+  } else if (calibration.legs_without_time > calibration.legs) {
+    text += fmt::format(
+        "; settle_time unchanged: {} legs have no durations (the log lists the "
+        "mission, not its execution)\n",
+        calibration.legs_without_time);
+  } else {
+    text += fmt::format("; {} legs with a stop are too few to say how long it settles\n",
+                        calibration.legs);
   }
-  return text + fmt::format("; {} legs with a stop are too few to say how long it settles\n",
-                            calibration.legs);
+  for (const std::string& warning : calibration.warnings) text += "  Warning: " + warning + "\n";
+  return text;
+}
+
+/// Throws Error{bad_file} if the fitted figures are none that a mission can name.
+void require_readable(const std::string& text, const std::string& name) {
+  try {
+    config::read_vehicle(text, name);
+  } catch (const Error& error) {
+    throw Error(ErrorKind::bad_file,
+                std::string("the fitted figures make no vehicle: ") + error.what());
+  }
 }
 
 }  // namespace
@@ -86,7 +109,6 @@ int calibrate(const CalibrateOptions& options, const Console& console) {
                                           "; it must be a preset, which the new file can be like");
   }
   flight::Vehicle vehicle = config::find_vehicle(options.vehicle);
-  if (options.mass) vehicle.mass = *options.mass;
   if (options.battery_wh) vehicle.battery_wh = *options.battery_wh;
   ProgressLine progress(console, false);
   progress.show("reading " + options.log.string());
@@ -94,7 +116,7 @@ int calibrate(const CalibrateOptions& options, const Console& console) {
   progress.show("fitting " + options.vehicle + " to " + options.log.string());
   Calibration calibration;
   try {
-    calibration = flight::calibrate(log, vehicle, options.air_density);
+    calibration = flight::calibrate(log, vehicle, options.air_density, options.mass);
   } catch (const Error& error) {
     throw Error(error.kind(), options.log.string() + ": " + error.what());
   }
@@ -103,7 +125,7 @@ int calibrate(const CalibrateOptions& options, const Console& console) {
   const std::string name = file.stem().string();
   const std::string text =
       vehicle_text(calibration, options.vehicle, options.log.filename().string(), name);
-  config::read_vehicle(text, file.string());  // what is written must be what missions can name
+  require_readable(text, "the new vehicle file");
   geometry::OutputFolder folder(file.has_parent_path() ? file.parent_path() : ".");
   folder.write(file.filename().string(), text);
   folder.commit();

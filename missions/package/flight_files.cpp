@@ -161,7 +161,11 @@ class RouteFiles {
         for (const FlightFile& written : files_.written) folder_.drop(written.name);
         throw;
       }
-      leave_out(format, error.what(), error.kind());
+      // The file has a temporary name until all are written.
+      std::string why = error.what();
+      const std::size_t place = why.find(file.string());
+      if (place != std::string::npos) why.replace(place, file.string().size(), name);
+      leave_out(format, why, error.kind());
     }
   }
 

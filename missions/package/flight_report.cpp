@@ -5,6 +5,8 @@
 
 #include <fmt/format.h>
 
+#include "flight/export/parameters.h"
+#include "flight/motion/flight_time_range.h"
 #include "flight/route/route.h"
 #include "missions/package/anew_mission.h"
 #include "missions/package/fleet_report.h"
@@ -18,8 +20,8 @@ namespace {
 std::string return_text(const SurveyMission& flight) {
   if (!flight.route.returns) return "";
   const flight::Returns& returns = *flight.route.returns;
-  std::string text = fmt::format("  return    certified at {:.0f} m above the pad, least {:.2f} m",
-                                 returns.height, returns.clearance);
+  std::string text = fmt::format("  return    certified at {} m above the pad, least {:.2f} m",
+                                 flight::return_altitude_text(returns.height), returns.clearance);
   if (!returns.obstacle.empty()) text += " from " + returns.obstacle;
   const std::vector<std::string>& files = flight.files.parameters;
   for (std::size_t i = 0; i < files.size(); ++i) text += (i == 0 ? "; set by " : ", ") + files[i];
@@ -47,6 +49,17 @@ std::string passage_text(const flight::Route& route) {
       "  passing   {} views at up to {:.1f} m/s, {} stops, {:.1f} m in {:.1f} min, by the "
       "trajectory and KML files\n",
       views, speed, stops, length, flight::least_duration(route) / 60.0);
+}
+
+/// Minutes that are a range, with its upper end.
+std::string time_range_text(const flight::Route& route) {
+  const double longest = flight::longest_flight(route.vehicle);
+  if (longest == 1.0 || route.sorties.empty()) return "";
+  return fmt::format(
+      "  Warning: {:.1f} to {:.1f} min: PX4 took up to {:.1f} times as long as predicted in its "
+      "simulator; {} hold the longer time, one battery each\n",
+      route.duration / 60.0, longest * route.duration / 60.0, longest,
+      support::counted(route.sorties.size(), "sortie"));
 }
 
 std::string pictures_text(const SurveyMission& flight) {
@@ -122,6 +135,7 @@ std::string flight_text(const SurveyMission& flight) {
   if (!files.empty()) text += "  files    " + files + "\n";
   if (flight.fleet) text += fleet_text(*flight.fleet);
   for (const std::string& note : flight.files.notes) text += "  note      " + note + "\n";
+  text += time_range_text(route);
   return text;
 }
 

@@ -11,6 +11,8 @@
 #include "flight/export/mission_items.h"
 #include "flight/route/route.h"
 #include "geometry/angle.h"
+#include "missions/online/guided/aim_errors.h"
+#include "missions/online/guided/leg_set_points.h"
 #include "missions/online/guided/link_watch.h"
 
 namespace skycap::missions::online {
@@ -24,15 +26,13 @@ namespace mavlink = flight::mavlink;
 constexpr std::uint16_t set_mode = 176, arm = 400;
 constexpr std::uint32_t guided_mode = 4, land_mode = 9;
 
-constexpr double period = 0.1;      ///< of set points [s]
-constexpr double rest_speed = 0.2;  ///< [m/s]
-constexpr double aim_tolerance = 2.0 * radians_per_degree;
+constexpr double period = 0.1;            ///< of set points [s]
 constexpr double settle_patience = 20.0;  ///< for rest and aim, beyond what a leg takes [s]
 constexpr double mode_patience = 5.0;     ///< [s]
 
-/// GUID_TIMEOUT: so long ArduCopter flies on with the velocity of its last set point [s].
-constexpr double set_point_life = 3.0;
-constexpr double reaction = 1.0;  ///< until it has begun to brake [s]
+/// Set points that come later than this one after the other: the vehicle is stopped [s]. Up to then
+/// it has flown on as far as they would have led it.
+constexpr double longest_stall = 1.0;
 
 double turn_between(double a, double b) {
   return std::abs(std::remainder(a - b, 2.0 * std::numbers::pi));
@@ -43,6 +43,13 @@ std::string place_text(const Vector3d& place) {
 }
 
 Trouble refused(std::string what) { return {TroubleKind::refused, std::move(what)}; }
+
+/// A trouble, and what has come up while the vehicle came to rest: the later one decides what may
+/// be done.
+Trouble joined(const Trouble& first, const MaybeTrouble& later) {
+  if (!later) return first;
+  return {later->kind, first.what + "; then " + later->what};
+}
 
 }  // namespace
 
@@ -55,11 +62,25 @@ GuidedFlight::GuidedFlight(mavlink::AutopilotLink& link, FlightFrame frame,
       limits_(limits),
       stop_(std::move(stop)) {}
 
+void GuidedFlight::listen() {
+  link_.spin(period);
+  const mavlink::VehicleState& state = link_.state();
+  if (state.gimbal_pitch() && state.pitch()) {
+    gimbal_.hear(link_.now(), *state.gimbal_pitch(), *state.pitch());
+  }
+}
+
+double GuidedFlight::camera_pitch() const {
+  const mavlink::VehicleState& state = link_.state();
+  if (!state.gimbal_pitch()) return pitch_;
+  return gimbal_.camera_pitch(*state.gimbal_pitch(), state.pitch().value_or(0.0));
+}
+
 Vector3d GuidedFlight::position() const { return place_of(link_.state(), frame_); }
 
 geometry::View GuidedFlight::view() const {
   const double yaw = link_.state().yaw().value_or(yaw_);
-  const double pitch = link_.state().gimbal_pitch().value_or(pitch_);
+  const double pitch = camera_pitch();
   return {position(),
           {std::sin(yaw) * std::cos(pitch), std::cos(yaw) * std::cos(pitch), std::sin(pitch)}};
 }
@@ -83,7 +104,7 @@ MaybeTrouble GuidedFlight::enter_mode(std::uint32_t mode, const std::string& nam
   const double end = link_.now() + mode_patience;
   while (link_.state().heartbeat()->mode != mode) {
     if (link_.now() > end) return refused("the autopilot does not enter mode " + name);
-    link_.spin(period);
+    listen();
   }
   mode_ = mode;
   return std::nullopt;
@@ -94,7 +115,7 @@ MaybeTrouble GuidedFlight::arm_motors() {
   const double end = link_.now() + mode_patience;
   while (!link_.state().heartbeat()->is_armed) {
     if (link_.now() > end) return refused("the vehicle does not arm");
-    link_.spin(period);
+    listen();
   }
   return std::nullopt;
 }
@@ -114,20 +135,22 @@ MaybeTrouble GuidedFlight::take_off(const Vector3d& above) {
   flown_ = {above};
   const double end = link_.now() + 2.0 * motion_.takeoff_time(climb) + settle_patience;
   while (!is_at(place_)) {
-    link_.spin(period);
+    listen();
     MaybeTrouble trouble = watch({begin, place_});
     if (!trouble && link_.now() > end)
       trouble = refused("the vehicle does not climb to its height");
     if (!trouble) continue;
-    place_ = position();
+    place_ = stopping_place({begin, above});
     flown_ = {place_};
-    return trouble;
+    if (trouble->kind == TroubleKind::pilot) return trouble;
+    return joined(*trouble, come_to_rest({begin, above}));
   }
   return std::nullopt;
 }
 
 MaybeTrouble GuidedFlight::aim(const geometry::View& view) {
   yaw_ = flight::yaw_of(view), pitch_ = flight::pitch_of(view);
+  gimbal_.begin_aim(link_.now(), pitch_);
   constexpr float by_angles = 2.0F;
   return command(flight::command::mount_control,
                  {static_cast<float>(pitch_ / radians_per_degree), 0, 0, 0, 0, 0, by_angles},
@@ -144,24 +167,30 @@ MaybeTrouble GuidedFlight::fly(const std::vector<Vector3d>& way) {
 
 MaybeTrouble GuidedFlight::fly_leg(const Vector3d& to) {
   const flight::ScriptedLeg leg = flight::scripted_leg(motion_, place_, to);
-  const flight::Segment line{leg.from, leg.to};
+  leg_ = {leg.from, leg.to};
   double flown = 0.0, last = link_.now();
   const double end = last + leg.moving + settle_patience;
   while (flown < leg.moving || !is_at(to)) {
-    send_on(leg, flight::set_point(leg, motion_.vehicle().mode.jerk, flown));
-    link_.spin(period);
-    MaybeTrouble trouble = watch(line);
+    const flight::SetPoint sent =
+        send_on(leg, flight::set_point(leg, motion_.vehicle().mode.jerk, flown));
+    listen();
+    const double late = link_.now() - last;
+    MaybeTrouble trouble;
+    if (late > longest_stall) {
+      listen();  // what was said meanwhile
+      trouble = Trouble{TroubleKind::stalled,
+                        fmt::format("no set points were sent for {:.1f} s: this program stood "
+                                    "still; stopping where the vehicle is",
+                                    late)};
+    } else {
+      trouble = watch(leg_);
+    }
     if (!trouble && link_.now() > end) {
       trouble =
           Trouble{TroubleKind::off_leg, "the vehicle does not come to rest at " + place_text(to)};
     }
-    if (trouble) {
-      if (trouble->kind != TroubleKind::pilot) brake(leg, flown);
-      hold_after(*trouble);
-      return trouble;
-    }
-    // However late this program is, the set point does not jump.
-    flown += std::min(link_.now() - last, 2.0 * period);
+    flown = time_after(leg, motion_.vehicle().mode.jerk, flown, sent, late);
+    if (trouble) return give_up(leg, flown, *trouble);
     last = link_.now();
   }
   place_ = to;
@@ -169,7 +198,27 @@ MaybeTrouble GuidedFlight::fly_leg(const Vector3d& to) {
   return std::nullopt;
 }
 
-/// Who is off his leg holds where he is: no way back to it is proven.
+/// Stops on the leg and holds there. Returns what is wrong then: the trouble, and what has come up
+/// since.
+Trouble GuidedFlight::give_up(const flight::ScriptedLeg& leg, double time, const Trouble& trouble) {
+  if (trouble.kind == TroubleKind::pilot) return trouble;
+  if (trouble.kind == TroubleKind::stalled) {
+    if (MaybeTrouble silent = watch_link(link_.state(), mode_, link_.now())) {
+      brake(leg, time);
+      return joined(trouble, silent);
+    }
+    place_ = stopping_place(leg_);
+    flown_.push_back(place_);
+  } else {
+    brake(leg, time);
+  }
+  const bool is_heard = trouble.kind != TroubleKind::link && trouble.kind != TroubleKind::position;
+  // Who is off his leg holds where he is: no way back to it is proven.
+  hold_after(trouble);
+  if (!is_heard || trouble.kind == TroubleKind::off_leg) return trouble;
+  return joined(trouble, come_to_rest(leg_));
+}
+
 void GuidedFlight::hold_after(const Trouble& trouble) {
   if (trouble.kind == TroubleKind::off_leg) place_ = position();
 }
@@ -179,10 +228,27 @@ void GuidedFlight::brake(const flight::ScriptedLeg& leg, double time) {
   const double braking = flight::braking_time(leg, jerk, time), begin = link_.now();
   while (link_.now() - begin < braking) {
     send_on(leg, flight::braking_point(leg, jerk, time, link_.now() - begin));
-    link_.spin(period);
+    listen();
   }
   place_ = flight::braking_point(leg, jerk, time, braking).position;
   flown_.push_back(place_);
+}
+
+/// Holds until the vehicle is at rest at its place, on the leg that it came on.
+MaybeTrouble GuidedFlight::come_to_rest(const flight::Segment& leg) {
+  const double end = link_.now() + settle_patience;
+  while (!is_at(place_)) {
+    hold_for_a_moment();
+    MaybeTrouble trouble = watch_place(leg);
+    if (!trouble && link_.now() > end) {
+      trouble = Trouble{TroubleKind::off_leg,
+                        "the vehicle does not come to rest at " + place_text(place_)};
+    }
+    if (!trouble) continue;
+    hold_after(*trouble);
+    return trouble;
+  }
+  return std::nullopt;
 }
 
 MaybeTrouble GuidedFlight::settle(const geometry::View& view) {
@@ -194,10 +260,12 @@ MaybeTrouble GuidedFlight::settle(const geometry::View& view) {
       hold_after(*trouble);
       return trouble;
     }
-    if (!is_at(place_) || !looks_at(view)) since = link_.now();
+    const std::string failures = failures_of(errors_at(view), limits_.arrival);
+    if (!failures.empty()) since = link_.now();
     if (link_.now() > end) {
       return refused("the camera does not come to rest at " + place_text(place_) +
-                     " to look where it is asked to");
+                     " to look where it is asked to: " +
+                     (failures.empty() ? "it does not stay so for flight.hold" : failures));
     }
   }
   return std::nullopt;
@@ -220,10 +288,14 @@ MaybeTrouble GuidedFlight::hold_until(const std::function<bool()>& is_done, doub
 Trouble GuidedFlight::hold_on() {
   is_returning_ = true;
   double heard = link_.now();
+  bool is_lost = false;
   while (true) {
     hold_for_a_moment();
     const MaybeTrouble trouble = watch_link(link_.state(), mode_, link_.now());
     if (!trouble) heard = link_.now();
+    // Heard again, it holds where it has flown on to meanwhile.
+    if (!trouble && is_lost) place_ = stopping_place(leg_);
+    is_lost = trouble && trouble->kind == TroubleKind::link;
     if (trouble && trouble->kind == TroubleKind::pilot) return *trouble;
     if (trouble && link_.now() - heard > limits_.patience) return *trouble;
   }
@@ -231,7 +303,7 @@ Trouble GuidedFlight::hold_on() {
 
 void GuidedFlight::hold_for_a_moment() {
   send({place_});
-  link_.spin(period);
+  listen();
 }
 
 MaybeTrouble GuidedFlight::land(const Vector3d& pad) {
@@ -239,7 +311,7 @@ MaybeTrouble GuidedFlight::land(const Vector3d& pad) {
   const double end =
       link_.now() + 2.0 * motion_.landing_time(place_.z() - pad.z()) + limits_.patience;
   while (link_.state().heartbeat()->is_armed) {
-    link_.spin(period);
+    listen();
     const MaybeTrouble trouble = watch({place_, {place_.x(), place_.y(), pad.z()}});
     if (trouble && link_.state().heartbeat()->is_armed) return trouble;
     if (link_.now() > end) return refused("the vehicle does not land");
@@ -248,15 +320,19 @@ MaybeTrouble GuidedFlight::land(const Vector3d& pad) {
   return std::nullopt;
 }
 
-/// Were it the last set point that arrives, the vehicle would come to rest before the leg's end.
-void GuidedFlight::send_on(const flight::ScriptedLeg& leg, flight::SetPoint point) {
-  const double left = (leg.to - point.position).norm(), speed = point.velocity.norm();
-  if (speed == 0.0) return send(point);
-  // Of t v + v^2 / (2 a) = left: it flies on, and brakes.
-  constexpr double t = set_point_life + reaction;
-  const double most = leg.acceleration * (std::sqrt(t * t + 2.0 * left / leg.acceleration) - t);
-  if (speed > most) point.velocity *= most / speed;
-  send(point);
+/// Sent so that the vehicle would come to rest before the leg's end if nothing else arrived.
+flight::SetPoint GuidedFlight::send_on(const flight::ScriptedLeg& leg,
+                                       const flight::SetPoint& point) {
+  const flight::SetPoint sent = with_stopping_speed(leg, point);
+  send(sent);
+  return sent;
+}
+
+Vector3d GuidedFlight::stopping_place(const flight::Segment& leg) const {
+  const Vector3d way = leg.to - leg.from;
+  const double acceleration = way.norm() == 0.0 ? motion_.vehicle().mode.acceleration
+                                                : motion_.leg_acceleration(way.normalized());
+  return online::stopping_place(leg, position(), link_.state().position()->velocity, acceleration);
 }
 
 void GuidedFlight::send(const flight::SetPoint& point) {
@@ -280,14 +356,17 @@ bool GuidedFlight::is_at(const Vector3d& place) const {
          link_.state().position()->velocity.norm() <= rest_speed;
 }
 
-bool GuidedFlight::looks_at(const geometry::View& view) const {
-  const double yaw = link_.state().yaw().value_or(yaw_);
-  const double pitch = link_.state().gimbal_pitch().value_or(pitch_);
-  return turn_between(yaw, flight::yaw_of(view)) <= aim_tolerance &&
-         std::abs(pitch - flight::pitch_of(view)) <= aim_tolerance;
+AimErrors GuidedFlight::errors_at(const geometry::View& view) const {
+  return {.position = (position() - place_).norm(),
+          .speed = link_.state().position()->velocity.norm(),
+          .turn = turn_between(link_.state().yaw().value_or(yaw_), flight::yaw_of(view)),
+          .pitch = camera_pitch(),
+          .asked_pitch = flight::pitch_of(view),
+          .vehicle_pitch = link_.state().pitch().value_or(0.0)};
 }
 
-MaybeTrouble GuidedFlight::watch(const flight::Segment& leg) const {
+/// What makes it unknown where the vehicle is, or whose it is.
+MaybeTrouble GuidedFlight::watch_place(const flight::Segment& leg) const {
   if (MaybeTrouble trouble = watch_link(link_.state(), mode_, link_.now())) return trouble;
   const double off = std::sqrt(nearest(leg, position()).squared_distance);
   if (off > limits_.corridor) {
@@ -296,6 +375,11 @@ MaybeTrouble GuidedFlight::watch(const flight::Segment& leg) const {
                                "{:.1f} m",
                                off, place_text(position()), limits_.corridor)};
   }
+  return std::nullopt;
+}
+
+MaybeTrouble GuidedFlight::watch(const flight::Segment& leg) const {
+  if (MaybeTrouble trouble = watch_place(leg)) return trouble;
   if (is_returning_) return std::nullopt;
   if (stop_.stop_requested()) return Trouble{TroubleKind::interrupted, "interrupted"};
   const double battery = this->battery().value_or(0.0);

@@ -6,6 +6,11 @@
 /// flies on for three seconds with the velocity of the last (GUID_TIMEOUT), which is therefore
 /// never more than what comes to rest before the leg's end. Nothing is sent that is not on a leg.
 ///
+/// A leg that is given up is braked on, and counts as the vehicle's leg until it is at rest: the
+/// vehicle lags behind its set points and flies past the last of them. If this program stands still
+/// for longer than a second, the vehicle stops where it has flown on to, not where the set points
+/// ended.
+///
 /// Sources: ArduPilot's ArduCopter/GCS_Mavlink.cpp, mode_guided.cpp and mode.h; MAVLink's common
 /// message set.
 #pragma once
@@ -23,7 +28,9 @@
 #include "flight/motion/motion.h"
 #include "flight/space/segment_distance.h"
 #include "geometry/place/pose.h"
+#include "missions/online/guided/aim_errors.h"
 #include "missions/online/guided/flight_frame.h"
+#include "missions/online/guided/gimbal_report.h"
 #include "missions/online/guided/guided_limits.h"
 #include "missions/online/guided/trouble.h"
 
@@ -74,6 +81,8 @@ class GuidedFlight {
 
   /// Where the vehicle takes itself to be, and the camera to look.
   geometry::View view() const;
+  /// Whether the gimbal was found to report its pitch against the vehicle (gimbal_report.h).
+  bool reports_against_vehicle() const { return gimbal_.is_against_vehicle(); }
   std::optional<double> battery() const { return link_.state().battery(); }
 
  private:
@@ -82,12 +91,18 @@ class GuidedFlight {
   MaybeTrouble enter_mode(std::uint32_t mode, const std::string& name);
   MaybeTrouble fly_leg(const Eigen::Vector3d& to);
   MaybeTrouble watch(const flight::Segment& leg) const;
+  MaybeTrouble watch_place(const flight::Segment& leg) const;
+  Trouble give_up(const flight::ScriptedLeg& leg, double time, const Trouble& trouble);
   void brake(const flight::ScriptedLeg& leg, double time);
-  void send_on(const flight::ScriptedLeg& leg, flight::SetPoint point);
+  MaybeTrouble come_to_rest(const flight::Segment& leg);
+  Eigen::Vector3d stopping_place(const flight::Segment& leg) const;
+  flight::SetPoint send_on(const flight::ScriptedLeg& leg, const flight::SetPoint& point);
+  void listen();
+  double camera_pitch() const;
+  AimErrors errors_at(const geometry::View& view) const;
   void send(const flight::SetPoint& point);
   void hold_for_a_moment();
   bool is_at(const Eigen::Vector3d& place) const;
-  bool looks_at(const geometry::View& view) const;
   MaybeTrouble arm_motors();
   void hold_after(const Trouble& trouble);
   Eigen::Vector3d position() const;
@@ -100,6 +115,8 @@ class GuidedFlight {
   std::uint32_t mode_ = 0;                           ///< that we have set
   Eigen::Vector3d place_ = Eigen::Vector3d::Zero();  ///< where it holds, or shall
   std::vector<Eigen::Vector3d> flown_;
+  flight::Segment leg_{Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero()};  ///< flown last
+  GimbalReport gimbal_;
   double yaw_ = 0.0, pitch_ = 0.0;  ///< asked for [rad]
   double battery_needed_ = 0.0;
   bool is_flying_ = false, is_returning_ = false;

@@ -79,6 +79,12 @@ MaybeTrouble LiveFlight::visit(const geometry::View& view) {
   if (MaybeTrouble trouble = vehicle_.fly(way_)) return trouble;
   here_ = way_.back();
   if (MaybeTrouble trouble = vehicle_.settle(view)) return trouble;
+  if (vehicle_.reports_against_vehicle() && !std::exchange(is_gimbal_noted_, true)) {
+    options_.note(
+        "the gimbal reports its pitch against the vehicle, not the horizon: the vehicle's own "
+        "pitch "
+        "is added");
+  }
   if (MaybeTrouble trouble = sense(view)) return trouble;
   return plan();
 }

@@ -83,7 +83,8 @@ class LiveFlight {
   Eigen::Vector3d here_ = Eigen::Vector3d::Zero();  ///< where the last way ended
   std::vector<Eigen::Vector3d> home_;  ///< proven, from where the last way began to above the pad
 
-  bool has_climbed_ = false;  ///< else it lands where it is
+  bool has_climbed_ = false;      ///< else it lands where it is
+  bool is_gimbal_noted_ = false;  ///< that its reports are against the vehicle
 
   // What goes on beside the flight leaves its results here, and may do so after the flight.
   std::vector<Eigen::Vector3d> way_;  ///< to the next view

@@ -17,6 +17,7 @@ enum class TroubleKind {
   planner,      ///< the next leg does not come
   sensor,       ///< the scan does not come
   pose,         ///< the scan does not fit what is known: nobody knows where the vehicle is
+  stalled,      ///< this program stood still, and the vehicle flew on
   interrupted,  ///< the user asked to stop
 };
 

@@ -5,6 +5,8 @@
 #include <tuple>
 #include <utility>
 
+#include <fmt/format.h>
+
 #include "geometry/error.h"
 #include "geometry/io/cloud_io.h"
 #include "geometry/io/text_scanner.h"
@@ -110,6 +112,25 @@ std::vector<Vector3d> points_in_sensor(const ScanInput& input) {
   return points;
 }
 
+/// A lens whose principal point is far from the image's middle, by the same factor in both
+/// directions, is that of an image of another size.
+void require_same_size(const geometry::DepthImage& image, const Lens& lens) {
+  const Vector2d middle(0.5 * (image.width - 1), 0.5 * (image.height - 1));
+  const Vector2d factor = middle.cwiseQuotient(lens.principal_point_px);
+  constexpr double most = 1.4, same = 1.25;
+  const double size = std::sqrt(factor.x() * factor.y()), skew = factor.x() / factor.y();
+  const bool is_same_size = size < most && size > 1.0 / most;
+  // A single row or column, and a cropped image, say nothing.
+  if (!(size > 0.0) || is_same_size || !(skew < same && skew > 1.0 / same)) return;
+  throw Error(
+      ErrorKind::bad_file,
+      fmt::format("the lens is of an image of about {:.0f} x {:.0f} pixels (principal point "
+                  "{:g}, {:g}), and the image has {} x {}; multiply fx fy cx cy by {:.3g}",
+                  2.0 * lens.principal_point_px.x(), 2.0 * lens.principal_point_px.y(),
+                  lens.principal_point_px.x(), lens.principal_point_px.y(), image.width,
+                  image.height, size));
+}
+
 }  // namespace
 
 std::optional<Vector3d> Lens::ray(const Vector2d& pixel) const {
@@ -135,11 +156,11 @@ std::vector<double> parse_numbers(const std::string& text, const std::string& wh
 
 Lens parse_lens(const std::string& text, const std::string& what) {
   const std::vector<double> n = parse_numbers(text, what);
-  if ((n.size() != 4 && n.size() != 9) || !(n[0] > 0.0) || !(n[1] > 0.0)) {
+  if ((n.size() != 4 && n.size() != 9) || n[0] == 0.0 || n[1] == 0.0) {
     throw Error(ErrorKind::bad_usage,
                 what +
                     ": give \"fx fy cx cy\" or \"fx fy cx cy k1 k2 p1 p2 k3\", with focal lengths "
-                    "above zero");
+                    "other than zero");
   }
   Lens lens{.focal_length_px = {n[0], n[1]}, .principal_point_px = {n[2], n[3]}, .distortion = {}};
   if (n.size() == 9) std::copy(n.begin() + 4, n.end(), lens.distortion.begin());
@@ -186,8 +207,12 @@ std::vector<Vector3d> points_of(const geometry::DepthImage& image, const Lens& l
 ScanFound read_scan(const ScanInput& input, const flight::CaptureOptions& capture,
                     const LiveOptions& live) {
   if (input.file.extension() == ".png") {
-    return scan_of(geometry::read_depth_png(input.file), input.lens, input.depth_unit,
-                   input.world_from_sensor, capture, live);
+    const geometry::DepthImage image = geometry::read_depth_png(input.file);
+    try {
+      return scan_of(image, input.lens, input.depth_unit, input.world_from_sensor, capture, live);
+    } catch (const Error& error) {
+      throw Error(error.kind(), input.file.string() + ": " + error.what());
+    }
   }
   return scan_of(points_in_sensor(input), input.world_from_sensor, capture, live);
 }
@@ -213,8 +238,9 @@ ScanFound scan_of(const geometry::DepthImage& image, const std::optional<Lens>& 
   const geometry::Camera camera(capture.camera);
   ScanFound found;
   found.scan.world_from_sensor = world_from_sensor;
-  organise(points_of(image, lens.value_or(lens_of(camera)), unit, found.without_return), camera,
-           found);
+  const Lens used = lens.value_or(lens_of(camera));
+  require_same_size(image, used);
+  organise(points_of(image, used, unit, found.without_return), camera, found);
   found.left_out = filter(found.scan, capture.camera, live);
   return found;
 }

@@ -39,7 +39,11 @@ RawlogSequence::RawlogSequence(std::filesystem::path file, const RawlogChoice& c
                                std::function<void(const std::string&)> note,
                                const std::function<void(const std::string&)>& report)
     : file_(std::move(file)), choice_(choice), note_(std::move(note)) {
-  if (choice_.poses) trajectory_ = read_list(*choice_.poses);
+  if (choice_.poses) {
+    StampedList list = read_list(*choice_.poses);
+    if (note_) std::ranges::for_each(list.notes, note_);
+    trajectory_ = std::move(list.lines);
+  }
   survey_file(report);
   reader_ = open_rawlog(file_);
 }

@@ -27,14 +27,29 @@ void add_frame(RecordedSequence& sequence, const std::string& id, const fs::path
   }
 }
 
+/// The file that a list names: paths may be in quotes, and separated as on Windows.
+fs::path listed_file(const fs::path& folder, std::string name) {
+  if (name.size() > 1 && name.front() == name.back() &&
+      (name.front() == '"' || name.front() == '\'')) {
+    name = name.substr(1, name.size() - 2);
+  }
+  if (fs::exists(folder / name)) return folder / name;
+  std::ranges::replace(name, '\\', '/');
+  return folder / name;
+}
+
 RecordedSequence read_tum(const fs::path& folder, std::size_t count) {
   const fs::path poses_file = folder / "groundtruth.txt";
-  const std::vector<Stamped> images = read_list(folder / "depth.txt");
-  const std::vector<Stamped> poses = read_list(poses_file);
+  const StampedList image_list = read_list(folder / "depth.txt");
+  const StampedList pose_list = read_list(poses_file);
+  const std::vector<Stamped>&images = image_list.lines, &poses = pose_list.lines;
   RecordedSequence sequence;
+  for (const StampedList* list : {&image_list, &pose_list}) {
+    sequence.remarks.insert(sequence.remarks.end(), list->notes.begin(), list->notes.end());
+  }
   for (std::size_t i = 0; i < std::min(count, images.size()); ++i) {
     const Stamped& image = images[i];
-    add_frame(sequence, image.time_text, folder / image.rest,
+    add_frame(sequence, image.time_text, listed_file(folder, image.rest),
               [&] { return pose_at(poses, image.time, poses_file.string()); });
   }
   return sequence;

@@ -19,6 +19,7 @@ struct RecordedFrame {
 struct RecordedSequence {
   std::vector<RecordedFrame> frames;  ///< in the order of the recording
   std::vector<std::string> notes;     ///< a line for each frame that is left out, and why
+  std::vector<std::string> remarks;   ///< what else was not taken as it stands in the lists
 };
 
 /// The first `count` frames, usable or not, of a folder in one of two layouts:

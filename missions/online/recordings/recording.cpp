@@ -80,6 +80,7 @@ std::unique_ptr<Recording> open_recording(const std::filesystem::path& place,
     throw Error(ErrorKind::bad_usage, "--poses and --sensor are for rawlogs");
   }
   RecordedSequence sequence = read_sequence(place, choice.count);
+  for (const std::string& remark : sequence.remarks) note(remark);
   for (const std::string& left_out : sequence.notes) note(left_out);
   return std::make_unique<Folder>(std::move(sequence), choice.image, capture, live);
 }

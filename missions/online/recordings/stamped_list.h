@@ -20,9 +20,14 @@ struct Stamped {
   std::string time_text, rest;
 };
 
-/// The lines of a list that are not comments. Throws Error{bad_file} with file and line unless
-/// times ascend.
-std::vector<Stamped> read_list(const std::filesystem::path& file);
+struct StampedList {
+  std::vector<Stamped> lines;      ///< times ascend
+  std::vector<std::string> notes;  ///< what was not taken as it stands in the file
+};
+
+/// The lines of a list that are not comments. Of lines of one time, which trackers write when they
+/// correct a pose, the last counts. Throws Error{bad_file} with file and line if times descend.
+StampedList read_list(const std::filesystem::path& file);
 
 /// The pose of a trajectory, `x y z qx qy qz qw` behind each time, that is nearest to a time.
 /// Throws Error{bad_file} naming `file` if it is none, or more than 20 ms off.

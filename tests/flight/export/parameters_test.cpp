@@ -7,6 +7,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "flight/export/wpml_file.h"
 #include "geometry/error.h"
 #include "tests/flight/export/sample_plan.h"
 
@@ -140,6 +141,19 @@ TEST(Parameters, AreNotWrittenWithoutCertifiedReturns) {
   plan.returns.reset();
   EXPECT_THROW(write_parameters(plan), Error);
   EXPECT_THROW(write_parameters(plan_of("m350_rtk")), Error);
+}
+
+// A ceiling leaves heights that are not whole metres: files and summaries state the same.
+TEST(ReturnAltitude, IsStatedInFull) {
+  EXPECT_EQ(return_altitude_text(62.0), "62");
+  EXPECT_EQ(return_altitude_text(42.7), "42.7");
+  EXPECT_EQ(return_altitude_text(11.25), "11.25");
+  FlightPlan plan = sample_plan(vehicle_profile("m350_rtk"));
+  plan.returns->height = 42.7;
+  EXPECT_EQ(read_kmz(write_kmz(plan)).return_height, 42.7);
+  FlightPlan own = sample_plan(vehicle_profile("generic_ardupilot"));
+  own.returns->height = 42.7;
+  EXPECT_EQ(return_height(read_parameters(write_parameters(own)), Dialect::ardupilot), 42.7);
 }
 
 }  // namespace

@@ -212,6 +212,34 @@ TEST(WaysHome, LegsLeadWhereEveryPointHasAWayHome) {
   EXPECT_GT(route.legs[0].length, 28.0);
 }
 
+// The way with returns is half as long again. Whatever the battery, each view is flown or named:
+// one that has become too far does not cost all of them.
+TEST(WaysHome, AViewTooFarForTheBatteryIsLeftOutAndNamed) {
+  MeasuredSpace measured = cellar();
+  measured.declare_free(Eigen::AlignedBox3d(Vector3d(-20, -20, 0), Vector3d(-8, 20, 30)));
+  Obstacles rules;
+  rules.ground_height = 0.0;
+  const KnownSpace known(rules);
+  const JointSpace space({&measured, &known});
+  const std::vector<Station> stations{{geometry::look_at({14, 0, 8}, {0, 0, 8}), 1.0, 1, 0},
+                                      {geometry::look_at({-14, 0, 8}, {0, 0, 8}), 1.0, 1, 1}};
+  int left_out = 0;
+  for (double battery = 4.0; battery < 30.0; battery += 0.5) {
+    Vehicle vehicle;
+    vehicle.battery_wh = battery;
+    vehicle.endurance_min = 0.3 * battery;
+    const Route route = plan_route(stations, vehicle, space, nullptr, options_with_returns());
+    EXPECT_EQ(route.stations.size() + route.unreached.size(), 2U) << battery << " Wh";
+    EXPECT_EQ(route.sorties.empty(), route.stations.empty()) << battery << " Wh";
+    for (const Sortie& sortie : route.sorties) EXPECT_GE(sortie.energy_left, 0.0);
+    if (route.stations.size() != 1) continue;
+    ++left_out;
+    EXPECT_EQ(route.unreached[0].station.view_index, 1U);
+    EXPECT_THAT(route.unreached[0].reason, HasSubstr("Wh above its reserve"));
+  }
+  EXPECT_GT(left_out, 2);
+}
+
 TEST(WaysHome, RefusesARouteWithoutASafeHeightOfReturn) {
   Obstacles obstacles = tower(30.0);
   obstacles.fence = Prism{"site", {{-90, -90}, {90, -90}, {90, 90}, {-90, 90}}, -1.0, 33.0};

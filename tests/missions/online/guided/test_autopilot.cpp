@@ -19,6 +19,19 @@ constexpr double guided_timeout = 3.0;                  ///< GUID_TIMEOUT
 constexpr std::uint32_t guided = 4, loiter = 5, landing = 9;
 constexpr mavlink::Address itself{1, 1};
 
+/// A correction of an error: in proportion where it is small, else such that braking with `limit`
+/// is possible (AP_Math/control.cpp, sqrt_controller).
+Vector3d square_root_controller(const Vector3d& error, double gain, double limit) {
+  const double size = error.norm(), linear = limit / (gain * gain);
+  if (size <= linear) return gain * error;
+  return std::sqrt(2.0 * limit * (size - 0.5 * linear)) / size * error;
+}
+
+Vector3d bounded(const Vector3d& value, double most) {
+  const double size = value.norm();
+  return size > most ? Vector3d(most / size * value) : value;
+}
+
 double turned(double from, double to, double most) {
   return from + std::clamp(std::remainder(to - from, 2.0 * std::numbers::pi), -most, most);
 }
@@ -102,6 +115,27 @@ flight::SetPoint TestAutopilot::wanted() {
   return point;
 }
 
+flight::SetPoint TestAutopilot::shaped(const flight::SetPoint& wanted) {
+  const double jerk = *faults_.jerk, most = motion_.vehicle().mode.acceleration;
+  if (!shaped_) shaped_ = flight::SetPoint{vehicle_.position(), vehicle_.velocity()};
+  flight::SetPoint& now = *shaped_;
+  const double acceleration_gain = jerk / most, speed_gain = 0.5 * acceleration_gain;
+  const Vector3d velocity =
+      wanted.velocity + square_root_controller(wanted.position - now.position, speed_gain, most);
+  const Vector3d asked =
+      bounded(square_root_controller(velocity - now.velocity, acceleration_gain, jerk), most);
+  now.acceleration += bounded(asked - now.acceleration, jerk * step_time);
+  now.position += step_time * now.velocity;
+  now.velocity += step_time * now.acceleration;
+  return now;
+}
+
+double TestAutopilot::vehicle_pitch() const {
+  constexpr double gravity = 9.80665;
+  const double forward = acceleration_.x() * std::sin(yaw_) + acceleration_.y() * std::cos(yaw_);
+  return faults_.wind_pitch - std::atan(forward / gravity);
+}
+
 void TestAutopilot::step() {
   time_ += step_time;
   if (is_past(faults_.pilot_takes_over)) {
@@ -112,10 +146,19 @@ void TestAutopilot::step() {
   pitch_ = turned(pitch_, wanted_pitch_, step_time * motion_.vehicle().gimbal_rate);
   if (is_armed_ && taken_off_) {
     flight::SetPoint point = wanted();
+    if (faults_.jerk && mode_ == guided && !climb_) {
+      point = shaped(point);
+    } else {
+      shaped_.reset();
+    }
+    point.position += faults_.drift * Vector3d(std::sin(0.7 * time_), std::cos(0.5 * time_),
+                                               0.5 * std::sin(0.9 * time_));
     if (is_past(faults_.blown_away)) {
       point.position.x() += 0.5 * (time_ - *taken_off_ - *faults_.blown_away);
     }
+    const Vector3d before = vehicle_.velocity();
     vehicle_.fly(point, Vector3d::Zero(), Vector3d::Zero(), step_time);
+    acceleration_ = (vehicle_.velocity() - before) / step_time;
     track_.push_back(vehicle_.position());
     if (mode_ == landing && vehicle_.position().z() <= pad_.z()) is_armed_ = false;
   }
@@ -153,10 +196,13 @@ void TestAutopilot::speak() {
   if (!is_past(faults_.position_stops)) say(position);
   mavlink::Attitude attitude;
   attitude.yaw = static_cast<float>(std::remainder(yaw_, 2.0 * std::numbers::pi));
+  attitude.pitch = static_cast<float>(vehicle_pitch());
   say(attitude);
   mavlink::GimbalAttitude gimbal;
-  gimbal.turn = {static_cast<float>(std::cos(0.5 * pitch_)), 0.0F,
-                 static_cast<float>(std::sin(0.5 * pitch_)), 0.0F};
+  double reported = faults_.gimbal_stuck ? 0.0 : pitch_;
+  if (faults_.gimbal_against_vehicle) reported -= vehicle_pitch();
+  gimbal.turn = {static_cast<float>(std::cos(0.5 * reported)), 0.0F,
+                 static_cast<float>(std::sin(0.5 * reported)), 0.0F};
   say(gimbal);
   if (words_++ % a_second != 0) return;
   mavlink::Heartbeat heartbeat;
@@ -179,6 +225,15 @@ Bytes TestAutopilot::fly_on(double duration) {
   const double end = time_ + duration;
   while (time_ < end) step();
   return std::exchange(said_, {});
+}
+
+Bytes StallingPort::receive(double patience) {
+  const bool is_due = !woken_at_ && autopilot_.has_taken_off() &&
+                      autopilot_.time() - autopilot_.taken_off() >= begin_;
+  if (!is_due) return SteppedPort::receive(patience);
+  Bytes heard = SteppedPort::receive(duration_);
+  woken_at_ = autopilot_.position();
+  return heard;
 }
 
 void fly_in_real_time(TestAutopilot& autopilot, flight::mavlink::Port& port,

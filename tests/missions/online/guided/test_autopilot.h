@@ -1,5 +1,9 @@
 /// An autopilot that speaks MAVLink as ArduCopter does, flies the simulated vehicle of fly-test,
 /// and has what faults a test wants. Its time is what it is told to fly on.
+///
+/// With a jerk it follows set points as ArduCopter does: they are shaped by limits of acceleration
+/// and jerk, so that the vehicle lags behind them and flies past the last of them
+/// (AC_PosControl::input_pos_vel_accel_xy; AP_Math/control.cpp, shape_pos_vel_accel).
 #pragma once
 
 #include <cstdint>
@@ -30,6 +34,11 @@ struct Faults {
   std::optional<double> blown_away = {};        ///< half a metre a second to the east
   std::optional<double> battery_fails = {};     ///< it is nearly empty at once
   double battery = 1.0;                         ///< share at the beginning
+  std::optional<double> jerk = {};              ///< of the shaped set points [m/s^3]
+  double drift = 0.0;                           ///< about the set points: amplitude [m]
+  double wind_pitch = 0.0;                      ///< that it leans against the wind with [rad]
+  bool gimbal_against_vehicle = false;          ///< what its gimbal reports, as servo gimbals do
+  bool gimbal_stuck = false;                    ///< at the horizon
   bool refuses_arming = false;
   bool is_armed = false;
   std::uint8_t autopilot = 3;
@@ -49,6 +58,7 @@ class TestAutopilot {
 
   double time() const { return time_; }
   double taken_off() const { return taken_off_.value(); }  ///< when
+  bool has_taken_off() const { return taken_off_.has_value(); }
   bool is_armed() const { return is_armed_; }
   bool has_landed() const { return taken_off_ && !is_armed_; }
   std::uint32_t mode() const { return mode_; }
@@ -61,6 +71,8 @@ class TestAutopilot {
  private:
   void step();
   flight::SetPoint wanted();
+  flight::SetPoint shaped(const flight::SetPoint& wanted);
+  double vehicle_pitch() const;
   void obey(const flight::mavlink::CommandLong& command);
   void aim_at(const flight::mavlink::PositionTarget& target);
   void speak();
@@ -81,6 +93,8 @@ class TestAutopilot {
   std::uint64_t words_ = 0;
   std::optional<double> taken_off_;
   std::optional<flight::ScriptedLeg> climb_;
+  std::optional<flight::SetPoint> shaped_;
+  Eigen::Vector3d acceleration_ = Eigen::Vector3d::Zero();
   bool is_armed_ = false;
   std::uint32_t mode_ = 0;
   flight::SetPoint target_;
@@ -99,6 +113,25 @@ class SteppedPort : public flight::mavlink::Port {
 
  private:
   TestAutopilot& autopilot_;
+};
+
+/// The same, and from a moment on nothing is heard or sent for a while, as if the program that uses
+/// it had stood still; what was said meanwhile comes at once.
+class StallingPort : public SteppedPort {
+ public:
+  /// Both since the vehicle took off [s].
+  StallingPort(TestAutopilot& autopilot, double begin, double duration)
+      : SteppedPort(autopilot), autopilot_(autopilot), begin_(begin), duration_(duration) {}
+
+  flight::mavlink::Bytes receive(double patience) override;
+
+  /// Where the vehicle was when the program went on.
+  const std::optional<Eigen::Vector3d>& woken_at() const { return woken_at_; }
+
+ private:
+  TestAutopilot& autopilot_;
+  double begin_, duration_;
+  std::optional<Eigen::Vector3d> woken_at_;
 };
 
 /// Has it fly by the clock of a port, over which it speaks and hears, until `is_over`.

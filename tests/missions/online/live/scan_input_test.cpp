@@ -128,6 +128,37 @@ TEST(DepthImage, BecomesPointsAlongTheRays) {
   EXPECT_LT((found.scan.points[0].cast<double>() - expected).norm(), 1e-6);
 }
 
+// ICL-NUIM's images have a negative focal length: the axis points the other way.
+TEST(Lens, OfNegativeFocalLengthFlipsItsAxis) {
+  const auto up = parse_lens("480 -480 319.5 239.5").ray({400, 100});
+  const auto down = parse_lens("480 480 319.5 239.5").ray({400, 100});
+  ASSERT_TRUE(up && down);
+  EXPECT_EQ(up->x(), down->x());
+  EXPECT_EQ(up->y(), -down->y());
+  EXPECT_THAT(complaint_of([] { parse_lens("480 0 319.5 239.5"); }), HasSubstr("other than zero"));
+}
+
+// By a factor in both directions; a cropped image, or a lens off its middle, is what it is.
+TEST(DepthImage, OfAnotherSizeThanItsLensIsRefused) {
+  const testing_support::TemporaryFolder folder;
+  const auto complaint = [&](int width, int height, const std::optional<Lens>& lens) {
+    const auto file = folder.path() / "size.png";
+    const auto count = static_cast<std::size_t>(width) * static_cast<std::size_t>(height);
+    geometry::write_depth_png({width, height, std::vector<std::uint16_t>(count, 1500)}, file);
+    return complaint_of([&] { read({.file = file, .lens = lens}); });
+  };
+  EXPECT_THAT(complaint(320, 240, parse_lens("145 145 80 60")),
+              testing::AllOf(HasSubstr("size.png"),
+                             HasSubstr("the lens is of an image of about 160 x 120 pixels"),
+                             HasSubstr("the image has 320 x 240; multiply fx fy cx cy by 1.99")));
+  EXPECT_THAT(complaint(160, 120, parse_lens("517 517 318.6 255.3")),
+              HasSubstr("multiply fx fy cx cy by 0.24"));
+  EXPECT_THAT(complaint(160, 120, std::nullopt), HasSubstr("about 63 x 47 pixels"));
+  EXPECT_EQ(complaint(64, 48, parse_lens("40 40 30 25")), "");
+  EXPECT_EQ(complaint(160, 120, parse_lens("145 145 95 50")), "");
+  EXPECT_EQ(complaint(160, 60, parse_lens("145 145 80 60")), "");
+}
+
 /// The lens looks elsewhere than the mission's camera: points stay true, and pixels follow them.
 TEST(DepthImage, OfAnotherLensIsPutIntoTheMissionsPixels) {
   const testing_support::TemporaryFolder folder;

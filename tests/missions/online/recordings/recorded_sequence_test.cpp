@@ -56,6 +56,39 @@ TEST_F(Recording, OfTumIsPairedByTime) {
                                 HasSubstr("0.075 s off"))));
 }
 
+// Trackers that correct a pose write it once more under the same time.
+TEST_F(Recording, TakesTheLastOfLinesOfOneTimeAndSaysSo) {
+  write_tum(
+      "1.00 0 0 0 0 0 0 1\n1.000 5 0 0 0 0 0 1\n1.10 1 0 0 0 0 0 1\n1.10 2 0 0 0 0 0 1\n"
+      "1.10 3 0 0 0 0 0 1\n1.20 9 0 0 0 0 0 1\n");
+  const RecordedSequence sequence = read();
+  EXPECT_THAT(ids(sequence), ElementsAre("1.00", "1.10", "1.20"));
+  EXPECT_EQ(sequence.frames[0].world_from_sensor.translation().x(), 5.0);
+  EXPECT_EQ(sequence.frames[1].world_from_sensor.translation().x(), 3.0);
+  EXPECT_THAT(
+      sequence.remarks,
+      ElementsAre(AllOf(HasSubstr("groundtruth.txt"),
+                        HasSubstr("3 times are listed more than once; the last line of each "
+                                  "is used"))));
+}
+
+// As Windows programs write lists: a byte-order mark, backslashes, quotes, line ends of their own.
+TEST_F(Recording, ReadsListsOfWindowsPrograms) {
+  write_tum(
+      "\xEF\xBB\xBF"
+      "1.00 0 0 0 0 0 0 1\r\n1.10 0 0 0 0 0 0 1\r\n1.20 0 0 0 0 0 0 1\r\n");
+  std::filesystem::create_directory(folder_.path() / "depth");
+  for (const char* name : {"a.png", "b.png", "c.png"}) write(std::string("depth/") + name, "");
+  write("depth.txt",
+        "\xEF\xBB\xBF"
+        "1.00 depth\\a.png\r\n1.10 \"depth/b.png\"\r\n1.20 'depth\\c.png'\r\n");
+  const RecordedSequence sequence = read();
+  EXPECT_THAT(sequence.notes, testing::IsEmpty());
+  ASSERT_THAT(ids(sequence), ElementsAre("1.00", "1.10", "1.20"));
+  EXPECT_EQ(sequence.frames[0].file, folder_.path() / "depth/a.png");
+  EXPECT_EQ(sequence.frames[2].file, folder_.path() / "depth/c.png");
+}
+
 TEST_F(Recording, EndsWhereItIsToldTo) {
   write_tum("1.00 0 0 0 0 0 0 1\n1.10 0 0 0 0 0 0 1\n1.20 0 0 0 0 0 0 1\n");
   EXPECT_THAT(ids(read(2)), ElementsAre("1.00", "1.10"));

@@ -1,0 +1,60 @@
+#include "flight/interpreter/home_check.h"
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+namespace skycap::flight {
+
+using Eigen::Vector3d;
+
+Problems check_home(const MissionFile& file, const std::optional<Vector3d>& pad,
+                    const FlightFacts& facts) {
+  if (!file.home) return {};
+  if (!facts.site.geoid_undulation) {
+    return {file.home_name +
+            " is above sea level; give site.geoid_undulation to compare it with the pad"};
+  }
+  Problems problems;
+  GeodeticPoint home = *file.home;
+  home.height += *facts.site.geoid_undulation;
+  const Vector3d away = LocalFrame(facts.site.origin).to_local(home) - pad.value_or(facts.pad);
+  const double level = away.head<2>().norm();
+  if (level > pad_tolerance && (pad || facts.is_pad_known)) {
+    problems.push_back(file.home_name + " is " + fixed(level, 1) + " m from the pad");
+  }
+  if (std::abs(away.z()) > pad_height_tolerance) {
+    problems.push_back(file.home_name + " is " + fixed(std::abs(away.z()), 1) + " m " +
+                       (away.z() > 0.0 ? "above" : "below") + " the pad");
+  }
+  return problems;
+}
+
+Problems check_rally(const MissionFile& file, const FlightFacts& facts) {
+  Problems problems;
+  const LocalFrame frame(facts.site.origin);
+  std::vector<Vector3d> missing = facts.rally;
+  for (std::size_t i = 0; i < file.rally.size(); ++i) {
+    const std::string name = "rallyPoints.points[" + std::to_string(i) + "]";
+    const Vector3d place = frame.to_local(file.rally[i]);
+    const auto known = std::ranges::find_if(missing, [&](const Vector3d& rally) {
+      return (rally - place).head<2>().norm() <= pad_tolerance;
+    });
+    if (known == missing.end()) {
+      problems.push_back(name +
+                         " is none of the mission's flight.rally: returns to it are not proven");
+      continue;
+    }
+    missing.erase(known);
+    if (std::abs(file.rally[i].height) <= pad_height_tolerance) continue;
+    problems.push_back(name + " is " + fixed(file.rally[i].height, 1) +
+                       " m above home, and PX4 returns by as much higher; it must be 0");
+  }
+  if (missing.empty()) return problems;
+  problems.push_back("the file lacks " + std::to_string(missing.size()) + " of the mission's " +
+                     std::to_string(facts.rally.size()) +
+                     " rally points, which returns are proven to");
+  return problems;
+}
+
+}  // namespace skycap::flight

@@ -1,0 +1,52 @@
+#include "missions/online/guided/gimbal_report.h"
+
+#include <cmath>
+
+#include "geometry/angle.h"
+
+namespace skycap::missions::online {
+namespace {
+
+constexpr double degree = geometry::radians_per_degree;
+
+constexpr double turning = 2.0;  ///< after which the camera stands still [s]
+
+/// So much motion of the vehicle is needed to tell, and the slope of the report by it that decides:
+/// 0 against the horizon, -1 against the vehicle.
+constexpr double needed_squares = 20.0 * degree * degree;
+constexpr double decisive_slope = -0.5;
+
+/// In steady wind the vehicle's tilt does not change: the report is off by it, for so many reports.
+constexpr double least_tilt = 1.5 * degree, tolerance = 1.0 * degree;
+constexpr std::size_t enough_steady = 10;
+
+}  // namespace
+
+void GimbalReport::begin_aim(double now, double asked) {
+  begin_ = now;
+  asked_ = asked;
+  count_ = steady_ = 0;
+}
+
+void GimbalReport::hear(double now, double reported, double vehicle_pitch) {
+  if (is_against_vehicle_ || now - begin_ < turning) return;
+  weigh(reported, vehicle_pitch);
+  const bool is_off = std::abs(reported - asked_) > tolerance + 0.5 * least_tilt;
+  const bool is_right = std::abs(reported + vehicle_pitch - asked_) < tolerance;
+  steady_ = is_off && is_right && std::abs(vehicle_pitch) > least_tilt ? steady_ + 1 : 0;
+  is_against_vehicle_ = steady_ >= enough_steady || (vehicle_squares_ > needed_squares &&
+                                                     products_ < decisive_slope * vehicle_squares_);
+}
+
+// Welford's sums, about the means of each aim.
+void GimbalReport::weigh(double reported, double vehicle_pitch) {
+  if (count_++ == 0) mean_reported_ = mean_vehicle_ = 0.0;
+  const double share = 1.0 / static_cast<double>(count_);
+  const double off = vehicle_pitch - mean_vehicle_;
+  mean_vehicle_ += share * off;
+  mean_reported_ += share * (reported - mean_reported_);
+  vehicle_squares_ += off * (vehicle_pitch - mean_vehicle_);
+  products_ += off * (reported - mean_reported_);
+}
+
+}  // namespace skycap::missions::online

@@ -1,0 +1,52 @@
+#include "missions/online/guided/leg_set_points.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace skycap::missions::online {
+namespace {
+
+using Eigen::Vector3d;
+
+/// GUID_TIMEOUT: so long ArduCopter flies on with the velocity of its last set point [s].
+constexpr double set_point_life = 3.0;
+constexpr double reaction = 1.0;       ///< until it has begun to brake [s]
+constexpr double least_advance = 0.2;  ///< two periods of set points [s]
+
+}  // namespace
+
+flight::SetPoint with_stopping_speed(const flight::ScriptedLeg& leg, flight::SetPoint point) {
+  const double left = (leg.to - point.position).norm(), speed = point.velocity.norm();
+  // Of t v + v^2 / (2 a) = left: it flies on, and brakes.
+  constexpr double t = set_point_life + reaction;
+  const double most = leg.acceleration * (std::sqrt(t * t + 2.0 * left / leg.acceleration) - t);
+  if (speed > most) point.velocity *= most / speed;
+  return point;
+}
+
+double time_after(const flight::ScriptedLeg& leg, double jerk, double time,
+                  const flight::SetPoint& sent, double late) {
+  if (late <= least_advance) return time + late;
+  const double led = std::min(late, set_point_life);
+  const double reached = (sent.position - leg.from).norm() + led * sent.velocity.norm();
+  double low = time + least_advance, high = time + led;
+  for (int i = 0; i < 30; ++i) {
+    const double middle = 0.5 * (low + high);
+    const Vector3d place = flight::set_point(leg, jerk, middle).position;
+    ((place - leg.from).norm() <= reached ? low : high) = middle;
+  }
+  return low;
+}
+
+Vector3d stopping_place(const flight::Segment& leg, const Vector3d& position,
+                        const Vector3d& velocity, double acceleration) {
+  const Vector3d way = leg.to - leg.from;
+  const double length = way.norm();
+  if (length == 0.0) return leg.to;
+  const Vector3d direction = way / length;
+  const double speed = std::max(0.0, velocity.dot(direction));
+  const double along = (position - leg.from).dot(direction) + 0.5 * speed * speed / acceleration;
+  return leg.from + std::clamp(along, 0.0, length) * direction;
+}
+
+}  // namespace skycap::missions::online

@@ -1,0 +1,325 @@
+// A vehicle guided along legs by an autopilot that follows set points as ArduCopter does: it lags
+// behind them, flies past the last of them, drifts, and is stopped at any moment.
+#include "missions/online/guided/guided_flight.h"
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <random>
+#include <string>
+#include <vector>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "flight/space/segment_distance.h"
+#include "missions/config/resolve.h"
+#include "missions/online/guided/preflight.h"
+#include "tests/missions/flown_mission.h"
+#include "tests/missions/online/guided/test_autopilot.h"
+
+namespace skycap::missions::online {
+namespace {
+
+using Eigen::Vector3d;
+using testing::HasSubstr;
+
+const Vector3d pad(-75, 0, 0);
+
+const flight::FlightOptions& options() {
+  static const flight::FlightOptions options = [] {
+    std::string text = tests::flown_mission();
+    const std::string vehicle = "vehicle: generic";
+    text.insert(text.find(vehicle) + vehicle.size(), "_ardupilot");
+    return config::parse_mission(text, "m.yaml").flight();
+  }();
+  return options;
+}
+
+/// Out over four stops; the first is above the pad.
+const std::vector<Vector3d>& way() {
+  static const std::vector<Vector3d> places = {
+      {-75, 0, 8}, {-45, 0, 8}, {-45, 25, 14}, {-15, 25, 14}, {-15, 25, 30}};
+  return places;
+}
+
+/// ArduCopter's guided mode (PSC_JERK_XY), and a vehicle that is slower to tilt [m/s^3].
+constexpr double default_jerk = 5.0, heavy_jerk = 2.0;
+
+/// Calls something when a moment has come.
+class WatchedPort : public SteppedPort {
+ public:
+  WatchedPort(TestAutopilot& autopilot, std::function<void()> look)
+      : SteppedPort(autopilot), look_(std::move(look)) {}
+
+  flight::mavlink::Bytes receive(double patience) override {
+    look_();
+    return SteppedPort::receive(patience);
+  }
+
+ private:
+  std::function<void()> look_;
+};
+
+struct Flight {
+  explicit Flight(const Faults& faults) : autopilot(options(), pad, faults) {}
+
+  /// Takes off and flies the way; what ended it.
+  MaybeTrouble fly(flight::mavlink::Port& port, std::stop_token stop) {
+    const flight::GeodeticPoint origin = options().site.origin;
+    link = std::make_unique<flight::mavlink::AutopilotLink>(port);
+    if (MaybeTrouble trouble = prepare(*link, {origin, pad}, pad, limits, stop)) return trouble;
+    vehicle = std::make_unique<GuidedFlight>(*link, FlightFrame(origin, pad), motion, limits, stop);
+    if (MaybeTrouble trouble = vehicle->take_off(way().front())) return trouble;
+    has_climbed = true;
+    return vehicle->fly(way());
+  }
+
+  /// As a live flight goes home: back along what was flown, and down.
+  MaybeTrouble go_home() {
+    vehicle->begin_return();
+    if (MaybeTrouble trouble = vehicle->fly(vehicle->way_back())) return trouble;
+    return vehicle->land(pad);
+  }
+
+  double off_the_way(const Vector3d& place) const {
+    double nearest = (place - pad).norm();
+    Vector3d from = pad;
+    for (const Vector3d& to : way()) {
+      nearest = std::min(
+          nearest, std::sqrt(flight::nearest(flight::Segment{from, to}, place).squared_distance));
+      from = to;
+    }
+    return nearest;
+  }
+
+  double farthest_off() const {
+    double farthest = 0.0;
+    for (const Vector3d& place : autopilot.track()) {
+      farthest = std::max(farthest, off_the_way(place));
+    }
+    return farthest;
+  }
+
+  const flight::Motion motion{options().flown(), options().route(pad).conditions};
+  GuidedLimits limits{.corridor = 1.3, .arrival = 0.3};
+  TestAutopilot autopilot;
+  std::unique_ptr<flight::mavlink::AutopilotLink> link;
+  std::unique_ptr<GuidedFlight> vehicle;
+  bool has_climbed = false;
+};
+
+/// The whole way and back, without an interruption: how long it takes, and that it is flown.
+double whole_time(const Faults& faults) {
+  Flight flight(faults);
+  SteppedPort port(flight.autopilot);
+  const MaybeTrouble trouble = flight.fly(port, {});
+  EXPECT_FALSE(trouble) << trouble->what;
+  return flight.autopilot.time() - flight.autopilot.taken_off();
+}
+
+// The fault of old: at the end of braking the vehicle is still ahead of its set point, by more than
+// legs are proven for.
+TEST(GuidedFlight, TheTestAutopilotFliesPastItsSetPoints) {
+  Flight flight({.jerk = heavy_jerk});
+  std::stop_source stop;
+  double most = 0.0;
+  WatchedPort port(flight.autopilot, [&] {
+    if (flight.autopilot.has_taken_off() &&
+        flight.autopilot.time() - flight.autopilot.taken_off() > 13.0) {
+      stop.request_stop();
+    }
+    const auto& sent = flight.autopilot.set_points();
+    if (!stop.stop_requested() || sent.empty()) return;
+    most = std::max(most, (flight.autopilot.position() - sent.back()).norm());
+  });
+  ASSERT_TRUE(flight.fly(port, stop.get_token()));
+  EXPECT_GT(most, 1.3);
+}
+
+struct Kind {
+  const char* name;
+  Faults faults;
+};
+
+class Interruptions : public testing::TestWithParam<Kind> {};
+
+INSTANTIATE_TEST_SUITE_P(
+    GuidedFlight, Interruptions,
+    testing::Values(Kind{"exact", {}}, Kind{"default_jerk", {.jerk = default_jerk}},
+                    Kind{"heavy", {.jerk = heavy_jerk}},
+                    Kind{"heavy_and_drifting", {.jerk = heavy_jerk, .drift = 0.1}}),
+    [](const auto& test) { return std::string(test.param.name); });
+
+// Two hundred at random moments: all go home along the way that they came by, and land.
+TEST_P(Interruptions, EndOnThePad) {
+  const double whole = whole_time(GetParam().faults);
+  std::mt19937_64 random(11);
+  std::uniform_real_distribution<double> moments(0.5, whole);
+  for (int i = 0; i < 200; ++i) {
+    const double moment = moments(random);
+    Flight flight(GetParam().faults);
+    std::stop_source stop;
+    WatchedPort port(flight.autopilot, [&] {
+      if (flight.autopilot.has_taken_off() &&
+          flight.autopilot.time() - flight.autopilot.taken_off() >= moment) {
+        stop.request_stop();
+      }
+    });
+    const MaybeTrouble trouble = flight.fly(port, stop.get_token());
+    if (!trouble) continue;  // drawn behind the last leg
+    ASSERT_EQ(trouble->kind, TroubleKind::interrupted)
+        << "after " << moment << " s: " << trouble->what;
+    const MaybeTrouble home = flight.go_home();
+    ASSERT_FALSE(home) << "after " << moment << " s: " << home->what;
+    EXPECT_FALSE(flight.autopilot.is_armed());
+    EXPECT_LT((flight.autopilot.position() - pad).norm(), 0.6) << "after " << moment << " s";
+    EXPECT_LT(flight.farthest_off(), flight.limits.corridor) << "after " << moment << " s";
+  }
+}
+
+// Where it holds is on the leg that it came on, and it is at rest there.
+TEST(GuidedFlight, HoldsAtRestOnItsLegWhenInterrupted) {
+  for (const double moment : {9.0, 12.0, 15.0, 21.0, 27.0, 33.0}) {
+    Flight flight({.jerk = heavy_jerk});
+    std::stop_source stop;
+    WatchedPort port(flight.autopilot, [&] {
+      if (flight.autopilot.has_taken_off() &&
+          flight.autopilot.time() - flight.autopilot.taken_off() >= moment) {
+        stop.request_stop();
+      }
+    });
+    ASSERT_TRUE(flight.fly(port, stop.get_token()));
+    const Vector3d& place = flight.autopilot.position();
+    EXPECT_LT((place - flight.autopilot.set_points().back()).norm(), flight.limits.arrival + 0.02);
+    EXPECT_LT(flight.off_the_way(place), flight.limits.arrival + 0.02);
+  }
+}
+
+struct Stall {
+  double begin, duration;
+};
+
+class Stalls : public testing::TestWithParam<Stall> {};
+
+INSTANTIATE_TEST_SUITE_P(GuidedFlight, Stalls,
+                         testing::Values(Stall{10.0, 1.5}, Stall{10.0, 3.0}, Stall{10.0, 6.0},
+                                         Stall{11.5, 6.0}, Stall{20.0, 6.0}, Stall{24.0, 20.0}),
+                         [](const auto& test) {
+                           return "after" + std::to_string(static_cast<int>(test.param.begin)) +
+                                  "for" + std::to_string(static_cast<int>(test.param.duration));
+                         });
+
+// The set points that follow are where the vehicle is, not where they ended.
+TEST_P(Stalls, EndWhereTheVehicleIs) {
+  Flight flight({.jerk = default_jerk});
+  StallingPort port(flight.autopilot, GetParam().begin, GetParam().duration);
+  const MaybeTrouble trouble = flight.fly(port, {});
+  ASSERT_TRUE(port.woken_at());
+  if (!trouble) GTEST_SKIP() << "it fell between two legs";
+  EXPECT_EQ(trouble->kind, TroubleKind::stalled);
+  EXPECT_THAT(trouble->what, HasSubstr("this program stood still; stopping where the vehicle is"));
+  EXPECT_LT(flight.off_the_way(flight.autopilot.position()), 0.35);
+  // From its top speed it comes to rest in less than 4 m.
+  EXPECT_LT((flight.autopilot.position() - *port.woken_at()).norm(), 4.0);
+  const MaybeTrouble home = flight.go_home();
+  EXPECT_FALSE(home) << home->what;
+  EXPECT_FALSE(flight.autopilot.is_armed());
+}
+
+// Shorter ones are flown through: the vehicle never flies back.
+TEST(GuidedFlight, DoesNotFlyBackAfterAShortStall) {
+  for (const double duration : {0.3, 0.6, 0.9}) {
+    Flight flight({.jerk = default_jerk});
+    StallingPort port(flight.autopilot, 9.0, duration);
+    const MaybeTrouble trouble = flight.fly(port, {});
+    ASSERT_FALSE(trouble) << trouble->what;
+    const std::vector<Vector3d>& track = flight.autopilot.track();
+    double farthest = -75.0;
+    for (const Vector3d& place : track) {
+      if (place.y() > 0.5) break;  // the first leg leads east
+      EXPECT_GT(place.x(), farthest - 0.3) << duration;
+      farthest = std::max(farthest, place.x());
+    }
+  }
+}
+
+// ---- gimbals ---------------------------------------------------------------------------------
+
+geometry::View view_at_the_end(double pitch) {
+  return {way()[1], {std::cos(pitch), 0.0, std::sin(pitch)}};
+}
+
+MaybeTrouble aimed(Flight& flight, SteppedPort& port, double pitch) {
+  const flight::GeodeticPoint origin = options().site.origin;
+  flight.link = std::make_unique<flight::mavlink::AutopilotLink>(port);
+  if (MaybeTrouble trouble = prepare(*flight.link, {origin, pad}, pad, flight.limits, {}))
+    return trouble;
+  flight.vehicle = std::make_unique<GuidedFlight>(*flight.link, FlightFrame(origin, pad),
+                                                  flight.motion, flight.limits, std::stop_token());
+  if (MaybeTrouble trouble = flight.vehicle->take_off(way()[0])) return trouble;
+  if (MaybeTrouble trouble = flight.vehicle->aim(view_at_the_end(pitch))) return trouble;
+  if (MaybeTrouble trouble = flight.vehicle->fly({way()[0], way()[1]})) return trouble;
+  return flight.vehicle->settle(view_at_the_end(pitch));
+}
+
+constexpr double degree = M_PI / 180.0;
+
+double pitch_of_view(const Flight& flight) {
+  return std::asin(flight.vehicle->view().direction.z());
+}
+
+TEST(Gimbals, ThatReportAgainstTheVehicleAreCompensated) {
+  for (const double wind_pitch : {0.0, 1.0, 3.8, -6.0, 12.0}) {
+    Flight flight({.wind_pitch = wind_pitch * degree, .gimbal_against_vehicle = true});
+    SteppedPort port(flight.autopilot);
+    const MaybeTrouble trouble = aimed(flight, port, -6.2 * degree);
+    ASSERT_FALSE(trouble) << trouble->what;
+    EXPECT_TRUE(flight.vehicle->reports_against_vehicle()) << wind_pitch;
+    EXPECT_NEAR(pitch_of_view(flight), -6.2 * degree, 0.2 * degree) << wind_pitch;
+  }
+}
+
+TEST(Gimbals, ThatReportAgainstTheHorizonAreBelieved) {
+  for (const double wind_pitch : {0.0, 3.8, -6.0}) {
+    Flight flight({.wind_pitch = wind_pitch * degree});
+    SteppedPort port(flight.autopilot);
+    const MaybeTrouble trouble = aimed(flight, port, -6.2 * degree);
+    ASSERT_FALSE(trouble) << trouble->what;
+    EXPECT_FALSE(flight.vehicle->reports_against_vehicle());
+    EXPECT_NEAR(pitch_of_view(flight), -6.2 * degree, 0.2 * degree);
+  }
+}
+
+// A tilt that does not change tells only what the gimbal would have to say at the view.
+TEST(Gimbals, SteadyTiltIsToldFromTheViewAlone) {
+  GimbalReport report;
+  report.begin_aim(0.0, -0.1);
+  for (double time = 0.0; time < 5.0; time += 0.1) report.hear(time, -0.1 - 0.06, 0.06);
+  EXPECT_TRUE(report.is_against_vehicle());
+  EXPECT_NEAR(report.camera_pitch(-0.16, 0.06), -0.1, 1e-12);
+  GimbalReport horizon;
+  horizon.begin_aim(0.0, -0.1);
+  for (double time = 0.0; time < 5.0; time += 0.1) horizon.hear(time, -0.1, 0.06);
+  EXPECT_FALSE(horizon.is_against_vehicle());
+}
+
+TEST(Gimbals, ThatDoNotTurnAreNamed) {
+  Flight flight({.gimbal_stuck = true});
+  SteppedPort port(flight.autopilot);
+  const MaybeTrouble trouble = aimed(flight, port, -20.0 * degree);
+  ASSERT_TRUE(trouble);
+  EXPECT_THAT(trouble->what, HasSubstr("look where it is asked to: gimbal pitch is 0.0 degrees "
+                                       "instead of -20.0 (at most 2 off)"));
+  EXPECT_THAT(trouble->what, testing::Not(HasSubstr("position")));
+}
+
+TEST(AimErrors, NameWhatIsOff) {
+  EXPECT_EQ(failures_of({}, 0.3), "");
+  EXPECT_EQ(failures_of({.position = 0.5}, 0.3), "position is off by 0.50 m (at most 0.30)");
+  EXPECT_EQ(failures_of({.speed = 0.4, .turn = 5.0 * degree}, 0.3),
+            "speed is 0.40 m/s (at most 0.2); heading is off by 5.0 degrees (at most 2)");
+}
+
+}  // namespace
+}  // namespace skycap::missions::online
