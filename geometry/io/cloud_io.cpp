@@ -6,7 +6,6 @@
 #include <cmath>
 #include <functional>
 #include <limits>
-#include <map>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -14,8 +13,8 @@
 #include "geometry/error.h"
 #include "geometry/io/cloud_parsers.h"
 #include "geometry/io/file.h"
-#include "geometry/io/ply.h"
-#include "geometry/io/text_scanner.h"
+#include "geometry/io/text/plain_text.h"
+#include "geometry/io/text/ply.h"
 
 namespace skycap::geometry {
 namespace {
@@ -25,15 +24,60 @@ namespace fs = std::filesystem;
 // Beyond this, neighbouring single-precision numbers are 2 mm apart.
 constexpr double farthest_coordinate = 16384.0;
 
-/// Takes a piece of a cloud whose first point has that number, of so many.
+/// Takes a piece of a cloud; with it so many points of the file are read, of all that it has.
 using TakePiece =
-    std::function<void(const AttributedCloud& piece, std::size_t first, std::size_t count)>;
+    std::function<void(const AttributedCloud& piece, std::size_t read, std::size_t all)>;
 
 constexpr std::array<std::string_view, 10> ply_names{"x",  "y",    "z",   "nx",    "ny",
                                                      "nz", "view", "red", "green", "blue"};
 
-AttributedCloud ply_piece(const fs::path& path, const PlyTable& table, std::size_t first,
-                          std::size_t count) {
+/// What a PLY file's colours are in.
+enum class ColourScale { none, bytes, words, reals };
+
+ColourScale colour_scale_of(const PlyElement& element) {
+  ColourScale scale = ColourScale::none;
+  for (const std::string_view name : {"red", "green", "blue"}) {
+    const auto property = std::ranges::find(element.properties, name, &PlyProperty::name);
+    if (property == element.properties.end()) return ColourScale::none;
+    const bool is_real = property->type == PlyType::float32 || property->type == PlyType::float64;
+    scale = is_real                             ? ColourScale::reals
+            : property->type == PlyType::uint16 ? ColourScale::words
+                                                : ColourScale::bytes;
+  }
+  return scale;
+}
+
+/// A colour in bytes; nothing if its numbers are none in that scale.
+std::optional<std::array<std::uint8_t, 3>> colour_of(const std::array<double, 3>& numbers,
+                                                     ColourScale scale) {
+  const double most = scale == ColourScale::bytes   ? 255.0
+                      : scale == ColourScale::words ? 65535.0
+                                                    : 1.0;
+  std::array<std::uint8_t, 3> colour{};
+  for (std::size_t channel = 0; channel < 3; ++channel) {
+    const double value = numbers[channel];
+    if (!(value >= 0.0 && value <= most)) return std::nullopt;
+    const double byte = scale == ColourScale::words   ? std::floor(value / 256.0)
+                        : scale == ColourScale::reals ? std::round(255.0 * value)
+                                                      : value;
+    if (byte != std::floor(byte)) return std::nullopt;
+    colour[channel] = static_cast<std::uint8_t>(byte);
+  }
+  return colour;
+}
+
+std::uint32_t view_of(const fs::path& path, std::size_t point, double value) {
+  constexpr double most = std::numeric_limits<std::uint32_t>::max();
+  if (value >= 0.0 && value <= most && value == std::floor(value)) {
+    return static_cast<std::uint32_t>(value);
+  }
+  fail_cloud(path, "point " + std::to_string(point) + " has the view " + std::to_string(value) +
+                       "; it must be a whole number from 0 to 4294967295");
+}
+
+/// Without colours if one of them is in no known scale: nothing is told from them.
+AttributedCloud ply_piece(const fs::path& path, const PlyTable& table, ColourScale scale,
+                          std::size_t first, std::size_t count) {
   const auto& columns = table.columns;
   const auto has = [&](std::size_t begin, std::size_t last) {
     for (std::size_t i = begin; i <= last; ++i) {
@@ -42,36 +86,28 @@ AttributedCloud ply_piece(const fs::path& path, const PlyTable& table, std::size
     return true;
   };
   if (!has(0, 2)) fail_cloud(path, "the element 'vertex' must have the properties x, y and z");
-  const bool has_normals = has(3, 5), has_views = has(6, 6), has_colours = has(7, 9);
-  const auto integer = [&](std::size_t column, std::size_t row, double largest) {
-    const double value = columns[column][row];
-    if (!(value >= 0.0 && value <= largest && value == std::floor(value))) {
-      fail_cloud(path, "point " + std::to_string(first + row) + " has the " +
-                           std::string(ply_names[column]) + " " + std::to_string(value) +
-                           "; it must be a whole number from 0 to " +
-                           std::to_string(static_cast<std::uint64_t>(largest)));
-    }
-    return value;
-  };
+  const bool has_normals = has(3, 5), has_views = has(6, 6);
+  bool has_colours = has(7, 9) && scale != ColourScale::none;
   AttributedCloud cloud;
   cloud.positions.reserve(count);
   for (std::size_t i = 0; i < count; ++i) {
-    cloud.positions.push_back(
-        cloud_position(path, first + i, columns[0][i], columns[1][i], columns[2][i]));
+    const Eigen::Vector3d place(columns[0][i], columns[1][i], columns[2][i]);
+    if (!place.allFinite()) {
+      ++cloud.skipped;
+      continue;
+    }
+    cloud.positions.push_back(cloud_position(path, first + i, place.x(), place.y(), place.z()));
     if (has_normals) {
       cloud.normals.push_back(
           Eigen::Vector3d(columns[3][i], columns[4][i], columns[5][i]).cast<float>());
     }
-    if (has_views) {
-      constexpr double largest = std::numeric_limits<std::uint32_t>::max();
-      cloud.views.push_back(static_cast<std::uint32_t>(integer(6, i, largest)));
-    }
+    if (has_views) cloud.views.push_back(view_of(path, first + i, columns[6][i]));
     if (!has_colours) continue;
-    auto& colour = cloud.colours.emplace_back();
-    for (std::size_t channel = 0; channel < 3; ++channel) {
-      colour[channel] = static_cast<std::uint8_t>(integer(7 + channel, i, 255.0));
-    }
+    const auto colour = colour_of({columns[7][i], columns[8][i], columns[9][i]}, scale);
+    has_colours = colour.has_value();
+    if (colour) cloud.colours.push_back(*colour);
   }
+  if (!has_colours) cloud.colours.clear();
   return cloud;
 }
 
@@ -83,11 +119,12 @@ void take_ply(const fs::path& path, std::string_view bytes, const TakePiece& tak
       reader.read_element({});
       continue;
     }
+    const ColourScale scale = colour_scale_of(element);
     std::size_t first = 0;
     do {
       const PlyTable table = reader.read_rows(ply_names, {}, piece_size);
       const std::size_t count = std::min<std::size_t>(piece_size, element.count - first);
-      take(ply_piece(path, table, first, count), first, element.count);
+      take(ply_piece(path, table, scale, first, count), first + count, element.count);
       first += count;
     } while (first < element.count);
     return;
@@ -107,41 +144,31 @@ AttributedCloud parse_ply_cloud(const fs::path& path, std::string_view bytes) {
     append(cloud.normals, piece.normals, count);
     append(cloud.views, piece.views, count);
     append(cloud.colours, piece.colours, count);
+    cloud.skipped += piece.skipped;
   });
+  if (cloud.colours.size() != cloud.positions.size()) cloud.colours.clear();
   return cloud;
 }
 
-/// Hands on pieces, and how many bytes are read with them.
-void take_xyz(const fs::path& path, std::string_view text,
-              const std::function<void(std::span<const Eigen::Vector3f>, std::size_t)>& take) {
-  const std::string name = path.string();
-  TextScanner scanner(name, text);
-  std::vector<Eigen::Vector3f> piece;
-  std::size_t count = 0;
-  const auto hand_on = [&] {
-    if (!piece.empty()) take(piece, text.size() - scanner.remaining());
-    piece.clear();
-  };
-  do {
-    const auto x = scanner.word_in_line();
-    if (!x || x->starts_with('#')) continue;
-    std::array<double, 3> position{};
-    position[0] = scanner.number<double>(x, "a coordinate");
-    position[1] = scanner.number<double>(scanner.word_in_line(), "a coordinate");
-    position[2] = scanner.number<double>(scanner.word_in_line(), "a coordinate");
-    piece.push_back(cloud_position(path, count++, position[0], position[1], position[2]));
-    if (piece.size() == piece_size) hand_on();
-  } while (scanner.next_line());
-  hand_on();
-}
-
-AttributedCloud parse_xyz_cloud(const fs::path& path, std::string_view text) {
+AttributedCloud parse_text_cloud(const fs::path& path, std::string_view text) {
   AttributedCloud cloud;
-  take_xyz(path, text, [&](std::span<const Eigen::Vector3f> piece, std::size_t) {
-    cloud.positions.insert(cloud.positions.end(), piece.begin(), piece.end());
-    require_few_points(path, cloud.positions.size());
-  });
+  cloud.skipped =
+      take_text_cloud(path, text, [&](std::span<const Eigen::Vector3f> piece, std::size_t) {
+        cloud.positions.insert(cloud.positions.end(), piece.begin(), piece.end());
+        require_few_points(path, cloud.positions.size());
+      });
   return cloud;
+}
+
+bool is_text_cloud(const fs::path& path) {
+  constexpr std::array<std::string_view, 5> endings{".xyz", ".txt", ".asc", ".pts", ".csv"};
+  return std::ranges::find(endings, ending_of(path)) != endings.end();
+}
+
+/// All bytes; text of 16 bits as UTF-8.
+std::string whole_file(const fs::path& path) {
+  std::string bytes = read_file(path, largest_whole_file, largest_unpacked_cloud);
+  return is_text_cloud(path) ? as_utf8(std::move(bytes)) : bytes;
 }
 
 template <typename Value>
@@ -153,7 +180,7 @@ void append_bytes(std::string& bytes, const Value& value) {
 /// Readers of formats that are not read whole before they are parsed.
 struct PiecewiseReader {
   AttributedCloud (*cloud)(const fs::path& path);
-  void (*positions)(const fs::path& path, const TakePositions& take);
+  std::size_t (*positions)(const fs::path& path, const TakePositions& take);
 };
 
 std::optional<PiecewiseReader> piecewise_reader(std::string_view ending) {
@@ -171,10 +198,6 @@ void fail_cloud(const fs::path& path, const std::string& what) {
 Eigen::Vector3f cloud_position(const fs::path& path, std::size_t point, double x, double y,
                                double z) {
   const Eigen::Vector3d position(x, y, z);
-  if (!position.allFinite()) {
-    fail_cloud(path,
-               "point " + std::to_string(point) + " has a coordinate that is not a finite number");
-  }
   if (position.cwiseAbs().maxCoeff() > farthest_coordinate) {
     fail_cloud(path, "point " + std::to_string(point) + " is " +
                          std::to_string(position.cwiseAbs().maxCoeff()) +
@@ -198,39 +221,36 @@ void require_few_points(const fs::path& path, std::size_t points) {
                        "piece");
 }
 
+void fail_without_points(const fs::path& path, std::size_t skipped) {
+  fail_cloud(path, skipped == 0 ? std::string("holds no points")
+                                : "holds no points but " + std::to_string(skipped) +
+                                      " that are NaN or infinite");
+}
+
 AttributedCloud read_cloud(const fs::path& path) {
   const std::string ending = ending_of(path);
-  using Parse = AttributedCloud (*)(const fs::path&, std::string_view);
-  const std::map<std::string, Parse> formats = {{".ply", parse_ply_cloud},
-                                                {".pcd", parse_pcd_cloud},
-                                                {".xyz", parse_xyz_cloud},
-                                                {".txt", parse_xyz_cloud},
-                                                {".asc", parse_xyz_cloud}};
-  const auto format = formats.find(ending);
   const auto piecewise = piecewise_reader(ending);
-  if (format == formats.end() && !piecewise) {
+  const auto parser = ending == ".ply"      ? parse_ply_cloud
+                      : ending == ".pcd"    ? parse_pcd_cloud
+                      : is_text_cloud(path) ? parse_text_cloud
+                                            : nullptr;
+  if (parser == nullptr && !piecewise) {
     fail_cloud(path,
-               "a cloud file must end in .ply, .pcd, .las, .laz, .e57, .xyz, .txt or .asc (or with "
-               ".gz after it)");
+               "a cloud file must end in .ply, .pcd, .las, .laz, .e57, .xyz, .txt, .asc, .pts or "
+               ".csv (or with .gz after it)");
   }
-  AttributedCloud cloud =
-      piecewise ? piecewise->cloud(path)
-                : format->second(path, read_file(path, largest_whole_file, largest_unpacked_cloud));
-  if (cloud.positions.empty()) fail_cloud(path, "holds no points");
+  AttributedCloud cloud = piecewise ? piecewise->cloud(path) : parser(path, whole_file(path));
+  if (cloud.positions.empty()) fail_without_points(path, cloud.skipped);
   return cloud;
 }
 
 namespace {
 
-bool is_text_cloud(const fs::path& path) {
-  const std::string ending = ending_of(path);
-  return ending == ".xyz" || ending == ".txt" || ending == ".asc";
-}
-
 /// Of files that are read whole, but whose points are not held at once.
-void read_file_positions(const fs::path& path, const TakePositions& take) {
-  const std::string bytes = read_file(path, largest_whole_file, largest_unpacked_cloud);
+std::size_t read_file_positions(const fs::path& path, const TakePositions& take) {
+  const std::string bytes = whole_file(path);
   bool has_points = false;
+  std::size_t skipped = 0;
   const auto hand_on = [&](std::span<const Eigen::Vector3f> piece, double read, double all) {
     if (piece.empty()) return;
     has_points = true;
@@ -238,31 +258,35 @@ void read_file_positions(const fs::path& path, const TakePositions& take) {
   };
   if (is_text_cloud(path)) {
     const auto all = static_cast<double>(bytes.size());
-    take_xyz(path, bytes, [&](std::span<const Eigen::Vector3f> piece, std::size_t read) {
-      hand_on(piece, static_cast<double>(read), all);
-    });
+    skipped =
+        take_text_cloud(path, bytes, [&](std::span<const Eigen::Vector3f> piece, std::size_t read) {
+          hand_on(piece, static_cast<double>(read), all);
+        });
   } else {
-    take_ply(path, bytes, [&](const AttributedCloud& piece, std::size_t first, std::size_t all) {
-      hand_on(piece.positions, static_cast<double>(first + piece.positions.size()),
-              static_cast<double>(all));
+    take_ply(path, bytes, [&](const AttributedCloud& piece, std::size_t read, std::size_t all) {
+      skipped += piece.skipped;
+      hand_on(piece.positions, static_cast<double>(read), static_cast<double>(all));
     });
   }
-  if (!has_points) fail_cloud(path, "holds no points");
+  if (!has_points) fail_without_points(path, skipped);
+  return skipped;
 }
 
 }  // namespace
 
-void read_positions(const fs::path& path, const TakePositions& take) {
+std::size_t read_positions(const fs::path& path, const TakePositions& take) {
   if (const auto piecewise = piecewise_reader(ending_of(path))) {
     return piecewise->positions(path, take);
   }
   if (is_text_cloud(path) || ending_of(path) == ".ply") return read_file_positions(path, take);
-  const std::vector<Eigen::Vector3f> positions = read_cloud(path).positions;
+  const AttributedCloud cloud = read_cloud(path);
+  const std::vector<Eigen::Vector3f>& positions = cloud.positions;
   for (std::size_t begin = 0; begin < positions.size(); begin += piece_size) {
     const std::size_t count = std::min(piece_size, positions.size() - begin);
     take(std::span(positions).subspan(begin, count),
          static_cast<double>(begin + count) / static_cast<double>(positions.size()));
   }
+  return cloud.skipped;
 }
 
 void write_cloud(const fs::path& path, const CloudColumns& cloud) {

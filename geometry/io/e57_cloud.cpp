@@ -40,6 +40,7 @@ AttributedCloud read_e57_cloud(const std::filesystem::path& path) {
     cloud.colours.insert(cloud.colours.end(), points.colours.begin(), points.colours.end());
     if (reader.scans() > 1) cloud.views.resize(cloud.positions.size(), points.scan);
   }
+  cloud.skipped = reader.skipped();
   return cloud;
 }
 
@@ -63,7 +64,7 @@ std::string e57_bytes(const CloudColumns& cloud) {
   return e57::beginning_of(scan) + e57::sealed(packets);
 }
 
-void read_e57_positions(const std::filesystem::path& path, const TakePositions& take) {
+std::size_t read_e57_positions(const std::filesystem::path& path, const TakePositions& take) {
   E57Reader reader(path);
   E57Points points;
   std::vector<Eigen::Vector3f> piece;
@@ -82,7 +83,8 @@ void read_e57_positions(const std::filesystem::path& path, const TakePositions& 
     if (piece.size() == piece_size) hand_out();
   }
   hand_out();
-  if (count == 0) fail_cloud(path, "holds no points");
+  if (count == 0) fail_without_points(path, reader.skipped());
+  return reader.skipped();
 }
 
 }  // namespace skycap::geometry

@@ -130,7 +130,7 @@ bool E57Reader::next(E57Points& points, std::size_t most) {
   });
 }
 
-void E57Reader::add_points(std::size_t count, E57Points& points) const {
+void E57Reader::add_points(std::size_t count, E57Points& points) {
   const e57::ScanDescription& scan = description_.scans[points.scan];
   const auto values = records_->values();
   const auto three = [&](std::size_t first, std::size_t i) {
@@ -144,7 +144,10 @@ void E57Reader::add_points(std::size_t count, E57Points& points) const {
   for (std::size_t i = 0; i < count; ++i) {
     if (places_.state != 0 && values[places_.state][i] != 0.0) continue;
     const Eigen::Vector3d stored = three(0, i);
-    if (stored.hasNaN()) continue;
+    if (!stored.allFinite()) {
+      ++skipped_;
+      continue;
+    }
     const Eigen::Vector3d position =
         scan.file_from_scan * (places_.is_spherical ? cartesian_of(stored) : stored);
     if (!position.allFinite()) e57::refuse("has a point whose coordinates are not finite numbers");

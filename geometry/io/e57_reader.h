@@ -30,7 +30,8 @@ struct E57Points {
 };
 
 /// Points are given by cartesianX, Y, Z or else by sphericalRange, Azimuth, Elevation. Those that
-/// their invalid state marks, and those that are NaN, are passed over.
+/// their invalid state marks are passed over, and those that are NaN or infinite are skipped and
+/// counted.
 class E57Reader {
  public:
   /// Throws Error{bad_file} if the file cannot be read, has no such header, or does not say where
@@ -41,6 +42,10 @@ class E57Reader {
   const std::string& reference_system() const { return description_.reference_system; }
   std::size_t scans() const { return description_.scans.size(); }
   std::uint64_t points() const;
+  /// Points so far that were skipped, since a coordinate is NaN or infinite.
+  std::size_t skipped() const { return skipped_; }
+  /// Scans whose rotation is a quaternion of four zeros, which is taken for none.
+  std::size_t zero_rotations() const { return description_.zero_rotations; }
 
   /// Replaces `points` by the next of the file, from at most `most` of a scan's records: there may
   /// be none that is valid. False at the end. Throws Error{bad_file} if the file is damaged.
@@ -54,13 +59,13 @@ class E57Reader {
     std::size_t state = 0, colours = 0, normals = 0;  ///< places among them; 0: not there
   };
   Places places_of(const e57::ScanDescription& scan) const;
-  void add_points(std::size_t count, E57Points& points) const;
+  void add_points(std::size_t count, E57Points& points);
 
   std::unique_ptr<SeekableFile> file_;  ///< which stays where it is when its reader is moved
   std::unique_ptr<e57::Pages> pages_;
   e57::Description description_;
   bool has_colours_ = false, has_normals_ = false;
-  std::size_t next_scan_ = 0;
+  std::size_t next_scan_ = 0, skipped_ = 0;
   Places places_;
   std::optional<e57::RecordStream> records_;
 };

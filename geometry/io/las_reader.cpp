@@ -49,7 +49,9 @@ LasHeader fields_of(std::string_view beginning) {
   header.point_size = value_at<std::uint16_t>(bytes, las::header::point_size);
   header.points = value_at<std::uint32_t>(bytes, las::header::old_points);
   if (header.minor == 4) {
-    header.points = value_at<std::uint64_t>(bytes, las::header::points);
+    // Some writers of 1.4 fill in the count of the versions before alone.
+    const auto points = value_at<std::uint64_t>(bytes, las::header::points);
+    if (points != 0) header.points = points;
     header.first_extended_record =
         value_at<std::uint64_t>(bytes, las::header::first_extended_record);
     header.extended_records = value_at<std::uint32_t>(bytes, las::header::extended_records);
@@ -114,8 +116,7 @@ void add_point(const LasHeader& header, const char* point, LasPoints& points) {
   if (!header.has_colours()) return;
   auto& colour = points.colours.emplace_back();
   for (std::size_t channel = 0; channel < 3; ++channel) {
-    colour[channel] = static_cast<std::uint8_t>(
-        value_at<std::uint16_t>(point, colour_place(header) + 2 * channel) >> 8);
+    colour[channel] = value_at<std::uint16_t>(point, colour_place(header) + 2 * channel);
   }
 }
 

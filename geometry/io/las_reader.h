@@ -37,8 +37,8 @@ struct LasHeader {
 /// Some points of a file. Coordinates are as they are, whatever their unit.
 struct LasPoints {
   std::vector<Eigen::Vector3d> positions;
-  std::vector<std::uint8_t> classes;                 ///< ASPRS's, of each
-  std::vector<std::array<std::uint8_t, 3>> colours;  ///< of each, if the format has them
+  std::vector<std::uint8_t> classes;                  ///< ASPRS's, of each
+  std::vector<std::array<std::uint16_t, 3>> colours;  ///< of each, if the format has them
 };
 
 class LasReader {

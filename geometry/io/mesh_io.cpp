@@ -15,6 +15,7 @@
 #include "geometry/error.h"
 #include "geometry/io/file.h"
 #include "geometry/io/mesh_formats.h"
+#include "geometry/io/text/plain_text.h"
 #include "geometry/surfaces/mesh_repair.h"
 
 namespace skycap::geometry {
@@ -52,7 +53,9 @@ PolygonSoup parse(const fs::path& path) {
   if (parser == nullptr) {
     fail(path, "a mesh file must end in .ply, .obj, .stl, .off or .drc (or with .gz after it)");
   }
-  const std::string bytes = read_file(path, largest_whole_file, largest_unpacked_mesh);
+  const bool is_always_text = format == ".obj" || format == ".off";
+  std::string bytes = read_file(path, largest_whole_file, largest_unpacked_mesh);
+  if (is_always_text) bytes = as_utf8(std::move(bytes));
   if (bytes.empty()) fail(path, "is empty");
   return parser(path.string(), bytes, {});
 }
@@ -210,6 +213,11 @@ bool is_mesh_file(const fs::path& path) {
 Mesh read_mesh(const fs::path& path, const MeshOptions& options) {
   PolygonSoup soup = parse(path);
   require_faces(path, soup);
+  const std::size_t skipped = options.note ? drop_infinite_polygons(soup) : 0;
+  if (skipped > 0) {
+    options.note(std::to_string(skipped) +
+                 " faces skipped, since a corner is NaN or infinite: nothing is known there");
+  }
   Mesh mesh = clean_mesh(path, std::move(soup));
   if (mesh.triangles.empty()) fail(path, "holds no triangle with an area");
   if (options.orient_outward) orient_outward(mesh);

@@ -1,6 +1,8 @@
 /// Triangle meshes from and to files: PLY (ascii and both binary byte orders), OBJ, STL (ascii and
 /// binary), OFF, and Draco for reading. Any of them may be gzip-compressed.
 ///
+/// Text may begin with a mark of UTF-8, and its lines may end with \n, \r\n or \r.
+///
 /// Only positions and polygons are read, and the names of an OBJ's materials if they are asked for;
 /// normals, colours, textures are passed over.
 /// Polygons are cut into triangles, vertices of equal coordinates are joined, vertices that no
@@ -10,6 +12,7 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -20,6 +23,9 @@ namespace skycap::geometry {
 
 struct MeshOptions {
   bool orient_outward = false;  ///< turn triangles as orient_outward() of mesh_repair.h does
+  /// Is told in a sentence of polygons that are skipped, since a corner is NaN or infinite. Without
+  /// it a file that has such a polygon is refused.
+  std::function<void(const std::string&)> note = {};
 };
 
 /// The format goes by the name's ending: .ply, .obj, .stl, .off or .drc, and .gz after any of them.

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <span>
@@ -90,6 +91,42 @@ void clip_ears(Mesh& mesh, std::span<const std::uint32_t> polygon,
 }
 
 }  // namespace
+
+std::size_t drop_infinite_polygons(PolygonSoup& soup) {
+  PolygonSoup kept;
+  const std::size_t count = soup.polygon_begin.size() - 1;
+  std::size_t dropped = 0;
+  for (std::size_t i = 0; i < count; ++i) {
+    const auto first = soup.corners.begin() + static_cast<std::ptrdiff_t>(soup.polygon_begin[i]);
+    const auto last = soup.corners.begin() + static_cast<std::ptrdiff_t>(soup.polygon_begin[i + 1]);
+    const bool is_finite =
+        std::all_of(first, last, [&](std::uint32_t v) { return soup.vertices[v].allFinite(); });
+    if (is_finite && dropped == 0) continue;
+    if (dropped == 0) {  // only a file with such a polygon is copied
+      kept.corners.assign(soup.corners.begin(), first);
+      kept.polygon_begin.assign(soup.polygon_begin.begin(),
+                                soup.polygon_begin.begin() + static_cast<std::ptrdiff_t>(i) + 1);
+      kept.polygon_materials.assign(
+          soup.polygon_materials.begin(),
+          soup.polygon_materials.begin() +
+              static_cast<std::ptrdiff_t>(std::min(i, soup.polygon_materials.size())));
+    }
+    if (!is_finite) {
+      ++dropped;
+      continue;
+    }
+    kept.corners.insert(kept.corners.end(), first, last);
+    kept.polygon_begin.push_back(kept.corners.size());
+    if (!soup.polygon_materials.empty()) {
+      kept.polygon_materials.push_back(soup.polygon_materials[i]);
+    }
+  }
+  if (dropped == 0) return 0;
+  soup.corners = std::move(kept.corners);
+  soup.polygon_begin = std::move(kept.polygon_begin);
+  soup.polygon_materials = std::move(kept.polygon_materials);
+  return dropped;
+}
 
 Mesh triangulate(std::string_view name, PolygonSoup soup) {
   const auto fail = [name](std::size_t polygon, const std::string& what) {

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "geometry/io/cloud_parsers.h"
-#include "geometry/io/text_scanner.h"
+#include "geometry/io/text/text_scanner.h"
 
 namespace skycap::geometry {
 namespace {
@@ -70,6 +70,19 @@ void lay_out(TextScanner& scanner, PcdHeader& header) {
   }
 }
 
+/// Behind the line of DATA. Bytes that follow a bare \r belong to the data.
+void go_to_data(TextScanner& scanner, std::string_view bytes, PcdHeader& header) {
+  const std::size_t end = bytes.size() - scanner.remaining();
+  scanner.next_line();
+  header.end = bytes.size() - scanner.remaining();
+  header.first_line = scanner.line();
+  const std::size_t first_end = bytes.find_first_of("\r\n");
+  const bool has_bare_returns = first_end != std::string_view::npos && bytes[first_end] == '\r' &&
+                                !bytes.substr(first_end).starts_with("\r\n");
+  const bool is_cut = bytes.substr(end, header.end - end).ends_with("\r\n");
+  if (has_bare_returns && is_cut && header.data != PcdData::text) --header.end;
+}
+
 PcdHeader header_of(const fs::path& path, const std::string& name, std::string_view bytes) {
   TextScanner scanner(name, bytes);
   PcdHeader header;
@@ -77,7 +90,8 @@ PcdHeader header_of(const fs::path& path, const std::string& name, std::string_v
   do {
     const auto key_word = scanner.word_in_line();
     if (!key_word || key_word->starts_with('#')) continue;
-    const std::string key(*key_word);
+    // Version 0.5 has COLUMNS for FIELDS.
+    const std::string key = *key_word == "COLUMNS" ? "FIELDS" : std::string(*key_word);
     const auto count = [&](const std::string& word) {
       return scanner.number<std::size_t>(std::string_view(word), "a number of " + key);
     };
@@ -95,17 +109,17 @@ PcdHeader header_of(const fs::path& path, const std::string& name, std::string_v
       const auto number = scanner.number<std::uint32_t>(scanner.word_in_line(), "a number");
       (key == "WIDTH" ? width : key == "HEIGHT" ? height : points) = number;
     } else if (key == "DATA") {
-      const std::string kind(scanner.word_in_line().value_or(""));
+      const std::string_view as_written = scanner.word_in_line().value_or("");
+      const std::string kind = lower_case(as_written);
       if (kind != "ascii" && kind != "binary" && kind != "binary_compressed") {
-        scanner.fail("DATA is '" + kind + "'; it must be ascii, binary or binary_compressed");
+        scanner.fail("DATA is '" + std::string(as_written) +
+                     "'; it must be ascii, binary or binary_compressed");
       }
       header.data = kind == "ascii"    ? PcdData::text
                     : kind == "binary" ? PcdData::binary
                                        : PcdData::compressed;
       lay_out(scanner, header);
-      scanner.next_line();
-      header.end = bytes.size() - scanner.remaining();
-      header.first_line = scanner.line();
+      go_to_data(scanner, bytes, header);
       if (!points && !(width && height)) {
         fail_cloud(path, "has neither POINTS nor WIDTH and HEIGHT in its header");
       }
@@ -236,7 +250,10 @@ class Points {
 
   void add(std::size_t point, const Values& values) {
     if (point >= header_.points) return;
-    if (std::isnan(values[0]) || std::isnan(values[1]) || std::isnan(values[2])) return;
+    if (!std::isfinite(values[0]) || !std::isfinite(values[1]) || !std::isfinite(values[2])) {
+      ++cloud_.skipped;
+      return;
+    }
     cloud_.positions.push_back(cloud_position(path_, point, values[0], values[1], values[2]));
     if (!has_normals_) return;
     cloud_.normals.push_back(Eigen::Vector3d(values[3], values[4], values[5]).cast<float>());

@@ -7,9 +7,13 @@
 #include "geometry/io/cloud_io.h"
 #include "geometry/io/file.h"
 #include "geometry/io/mesh_io.h"
+#include "geometry/io/text/plain_text.h"
+#include "missions/site_data/formats/building_heights.h"
 #include "missions/site_data/formats/cell_set.h"
 #include "missions/site_data/formats/cloud_files.h"
+#include "missions/site_data/formats/dxf_header.h"
 #include "missions/site_data/formats/geodata_file.h"
+#include "missions/site_data/formats/scene_facts.h"
 #include "missions/site_data/site_transform.h"
 
 namespace skycap::missions::site_data {
@@ -30,7 +34,6 @@ bool begins_with_one_of(string_view text, std::initializer_list<string_view> wan
 
 /// The local name of an XML text's first element; empty if it is no XML.
 string_view root_of(string_view text) {
-  if (text.starts_with("\xEF\xBB\xBF")) text.remove_prefix(3);
   const std::size_t first = text.find_first_not_of(" \t\r\n");
   if (first == string_view::npos || text[first] != '<') return {};
   std::size_t place = first;
@@ -55,22 +58,33 @@ std::optional<Format> format_of_xml(string_view root, string_view text) {
   return std::nullopt;
 }
 
+/// By the words that GDAL knows Arc/Info's grids by; other text in .asc is a cloud.
+bool is_ascii_grid(string_view beginning) {
+  const std::string text = geometry::lower_case(beginning.substr(0, 40));
+  return begins_with_one_of(text, {"ncols", "nrows", "xllcorner", "yllcorner", "xllcenter",
+                                   "yllcenter", "cellsize", "dx ", "dy "});
+}
+
 std::optional<Format> format_by_content(string_view beginning) {
   using namespace std::string_view_literals;
   if (beginning.starts_with("LASF")) return Format::las;
   if (beginning.starts_with("ASTM-E57")) return Format::e57;
-  if (begins_with_one_of(beginning, {"glTF", "Kaydara FBX", "; FBX", "ISO-10303-21"})) {
+  if (begins_with_one_of(beginning, {"glTF", "Kaydara FBX", "; FBX"}) ||
+      geometry::trimmed(beginning).starts_with("ISO-10303-21")) {
     return Format::scene;
   }
   if (begins_with_one_of(beginning, {"SQLite format 3", "\0\0\x27\x0A"sv, "fgb\3fgb"})) {
     return Format::map;
   }
-  if (begins_with_one_of(beginning, {"II*\0"sv, "MM\0*"sv, "II+\0"sv, "MM\0+"sv, "\0\0\0\x0CjP"sv,
-                                     "ncols", "NCOLS"})) {
+  if (begins_with_one_of(beginning,
+                         {"II*\0"sv, "MM\0*"sv, "II+\0"sv, "MM\0+"sv, "\0\0\0\x0CjP"sv}) ||
+      is_ascii_grid(beginning)) {
     return Format::raster;
   }
   if (begins_with_one_of(beginning, {"ply\n", "ply\r"})) {
-    return beginning.find("element face") != string_view::npos ? Format::mesh : Format::cloud;
+    const bool has_faces = beginning.find("element face") != string_view::npos ||
+                           beginning.find("element tristrips") != string_view::npos;
+    return has_faces ? Format::mesh : Format::cloud;
   }
   if (begins_with_one_of(beginning, {"# .PCD", "VERSION"})) return Format::cloud;
   if (begins_with_one_of(beginning, {"OFF", "DRACO"})) return Format::mesh;
@@ -79,10 +93,12 @@ std::optional<Format> format_by_content(string_view beginning) {
 
 std::optional<Format> format_by_ending(const std::string& ending, Role role) {
   if (is_one_of(ending, {".obj", ".off", ".stl", ".drc", ".ply"})) return Format::mesh;
-  if (is_one_of(ending, {".pcd", ".txt"})) return Format::cloud;
+  if (is_one_of(ending, {".pcd", ".txt", ".asc", ".pts", ".csv"})) return Format::cloud;
   if (is_one_of(ending, {".dae", ".fbx", ".3ds", ".ifc", ".gltf", ".glb"})) return Format::scene;
-  if (is_one_of(ending, {".dxf", ".pbf", ".shp", ".geojson", ".fgb", ".gpkg"})) return Format::map;
-  if (is_one_of(ending, {".tif", ".tiff", ".asc", ".jp2"})) return Format::raster;
+  if (is_one_of(ending, {".dxf", ".pbf", ".shp", ".geojson", ".fgb", ".gpkg", ".kmz"})) {
+    return Format::map;
+  }
+  if (is_one_of(ending, {".tif", ".tiff", ".jp2"})) return Format::raster;
   // Surveys give terrain as lines of x y z, on a grid.
   if (ending == ".xyz") return role == Role::terrain ? Format::raster : Format::cloud;
   return std::nullopt;
@@ -163,20 +179,24 @@ Opened open_file(const fs::path& file, Role role) {
   Opened opened{Format::mesh, {}};
   const bool is_compressed = beginning.starts_with("\x1F\x8B");
   if (is_compressed) opened.bytes = geometry::read_file(file, most_bytes);
-  const string_view text = is_compressed ? string_view(opened.bytes) : string_view(beginning);
-  std::optional<Format> format = format_by_content(text.substr(0, 1 << 16));
-  const std::size_t first = text.find_first_not_of(" \t\r\n");
-  if (!format && first != string_view::npos && text[first] == '{') {
+  const string_view bytes = is_compressed ? string_view(opened.bytes) : string_view(beginning);
+  const std::string text = geometry::as_utf8(std::string(bytes.substr(0, 1 << 16)));
+  std::optional<Format> format = format_by_content(text);
+  if (!format && geometry::trimmed(text).starts_with('{')) {
     if (!is_compressed) opened.bytes = geometry::read_file(file, most_bytes);
+    opened.bytes = geometry::as_utf8(std::move(opened.bytes));
     format = format_of_json(ending, opened.bytes);
   }
   if (!format) format = format_by_ending(ending, role);
+  if (!format && text.starts_with("PK\3\4")) {
+    fail_file(file, "is a zip archive; unpack it and name the file in it");
+  }
   if (!format) {
-    fail_file(
-        file,
-        "is of no format that is known here: CityGML, CityJSON, GeoJSON, GPKG, Shapefile, "
-        "KML, OSM, DXF, GeoTIFF, ASCII grid, XYZ, LAS, E57, glTF, Collada, FBX, IFC, PLY, OBJ, "
-        "STL, OFF, PCD");
+    fail_file(file,
+              "is of no format that is known here: CityGML, CityJSON, GeoJSON, GPKG, Shapefile, "
+              "KML, KMZ, OSM, DXF, GeoTIFF, ASCII grid, XYZ, LAS, E57, glTF, Collada, FBX, IFC, "
+              "PLY, OBJ, "
+              "STL, OFF, PCD");
   }
   opened.format = *format;
   const bool is_parsed_here = *format == Format::citygml || *format == Format::cityjson;
@@ -186,6 +206,7 @@ Opened open_file(const fs::path& file, Role role) {
     if (opened.bytes.size() > most) {
       fail_file(file, "is larger than " + std::to_string(most >> 20) + " MiB");
     }
+    opened.bytes = geometry::as_utf8(std::move(opened.bytes));
   }
   if (is_compressed && !is_parsed_here && *format != Format::mesh && *format != Format::cloud) {
     fail_file(file, "is compressed by gzip; decompress it first");
@@ -199,7 +220,9 @@ FileContents mesh_contents(const fs::path& file) {
   contents.is_scene = true;
   FileObject& object = contents.objects.emplace_back();
   object.id = file.stem().string();
-  object.mesh = geometry::read_mesh(file);
+  geometry::MeshOptions options;
+  options.note = [&](const std::string& note) { contents.notes.push_back(note); };
+  object.mesh = geometry::read_mesh(file, options);
   return contents;
 }
 
@@ -210,12 +233,40 @@ FileContents cloud_contents(const Source& source) {
   CellSet cells;
   const double unit = source.unit.value_or(1.0);
   const double cells_per_unit = unit / source.spacing.value_or(usual_spacing);
-  geometry::read_positions(source.file, [&](std::span<const Eigen::Vector3f> piece, double) {
+  const auto take = [&](std::span<const Eigen::Vector3f> piece, double) {
     for (const Eigen::Vector3f& point : piece) {
       const Eigen::Vector3d place = point.cast<double>();
       if (cells.add(place * cells_per_unit)) contents.points.push_back(place);
     }
-  });
+  };
+  note_skipped(geometry::read_positions(source.file, take), contents);
+  return contents;
+}
+
+FileContents map_contents(const Source& source) {
+  FileContents contents = read_map(source.file, source.select.layer);
+  if (contents.format == "DXF") {
+    take_dxf_unit(source.file, geometry::read_file(source.file, most_bytes),
+                  source.unit.has_value(), contents);
+  }
+  read_building_heights(contents, source.height_attribute);
+  return contents;
+}
+
+FileContents scene_contents(const Source& source) {
+  const fs::path& file = source.file;
+  const std::string ending = geometry::ending_of(file);
+  const bool is_gltf =
+      ending == ".gltf" || ending == ".glb" || begins_with_one_of(beginning_of(file), {"glTF"});
+  // What assimp would pass over is known before it reads.
+  SceneFacts facts = is_gltf ? gltf_facts(file, gltf_json(file)) : SceneFacts{};
+  FileContents contents = read_scene(file);
+  if (ending == ".ifc") {
+    facts = ifc_facts(file, geometry::read_file(file, most_bytes), source.unit.has_value());
+  }
+  if (facts.unit) contents.unit = facts.unit;
+  contents.notes.insert(contents.notes.end(), facts.notes.begin(), facts.notes.end());
+  contents.format = "scene" + ending;
   return contents;
 }
 
@@ -234,18 +285,15 @@ FileContents read_contents(const Source& source, const SiteFrame& site) {
     case Format::cityjson:
       return parse_cityjson(file, opened.bytes);
     case Format::map:
-      return read_map(file, source.select.layer);
+      return map_contents(source);
     case Format::raster:
       return read_raster(file);
     case Format::las:
       return read_las(file, source.select.classes, thinning);
     case Format::e57:
       return read_e57(file, thinning);
-    case Format::scene: {
-      FileContents contents = read_scene(file);
-      contents.format = "scene" + geometry::ending_of(file);
-      return contents;
-    }
+    case Format::scene:
+      return scene_contents(source);
     case Format::mesh:
       return mesh_contents(file);
     case Format::cloud:

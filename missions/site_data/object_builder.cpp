@@ -1,12 +1,14 @@
 #include "missions/site_data/object_builder.h"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 #include "geometry/error.h"
 #include "geometry/surfaces/mesh_repair.h"
 #include "geometry/surfaces/polygon_triangulation.h"
 #include "missions/site_data/extrusion.h"
+#include "missions/site_data/formats/building_heights.h"
 
 namespace skycap::missions::site_data {
 namespace {
@@ -25,6 +27,7 @@ ObjectBuilder::ObjectBuilder(const Source& source, const FileContents& contents,
     : source_(source),
       contents_(contents),
       terrain_(terrain),
+      ground_z_(site.ground_z),
       transform_(source, contents, site, needs_heights(source, contents)) {}
 
 Object ObjectBuilder::build(const SelectedObject& selected) {
@@ -32,7 +35,9 @@ Object ObjectBuilder::build(const SelectedObject& selected) {
   Object result{named.id, named.kind, named.attributes, {}, {}};
   for (const std::size_t member : selected.members) {
     const FileObject& object = contents_.objects[member];
-    if (is_extruded(object)) {
+    if (object.reaches_ground && object.has_heights && !source_.base && !source_.base_on_terrain) {
+      add_draped(object, result);
+    } else if (is_extruded(object)) {
       add_solids(object, result);
     } else {
       add_surfaces(object, result);
@@ -82,32 +87,87 @@ void ObjectBuilder::add_surfaces(const FileObject& object, Object& result) {
   }
 }
 
-void ObjectBuilder::add_solids(const FileObject& object, Object& result) {
+/// How high an outline's solid is above its base [m].
+double ObjectBuilder::height_of(const FileObject& object) const {
+  const std::string name = source_.file.string() + ": ";
+  // Another height in its place might be lower than what is there.
+  if (!object.height_problem.empty()) {
+    throw Error(ErrorKind::bad_config, name + one_line(object.id) + " " +
+                                           one_line(object.height_problem) +
+                                           "; correct it, or leave the object out by select");
+  }
   std::optional<double> height = source_.height ? source_.height : object.height;
   // What is in the way is as high as anybody says.
   if (source_.role == Role::obstacle && object.height) {
     height = std::max(*height, *object.height);
   }
   if (!height) {
-    throw Error(ErrorKind::bad_config, source_.file.string() + ": does not say how high " +
-                                           one_line(object.id) +
-                                           " is; give height, in metres above its base");
+    throw Error(ErrorKind::bad_config,
+                name + "does not say how high " + one_line(object.id) +
+                    " is; give height, in metres above its base, or height_attribute (it has the "
+                    "attributes " +
+                    attribute_names(object) + ")");
   }
+  return *height;
+}
+
+void ObjectBuilder::add_solids(const FileObject& object, Object& result) {
+  const double height = height_of(object);
   const double least =
       source_.min_height > 0.0 ? source_.min_height : object.min_height.value_or(0.0);
-  if (!(*height > least)) {
+  if (!(height > least)) {
     throw Error(ErrorKind::bad_config, source_.file.string() + ": the height of " +
-                                           one_line(object.id) + ", " + std::to_string(*height) +
+                                           one_line(object.id) + ", " + std::to_string(height) +
                                            " m, is not above where it begins, " +
                                            std::to_string(least) + " m");
   }
   has_extruded_ = true;
   Rings bottom = rings_of(object), top = bottom;
   if (source_.base_on_terrain) {
-    place_on_terrain(bottom, top, least, *height);
+    place_on_terrain(bottom, top, least, height);
   } else {
-    place_on_base(object.has_heights, bottom, top, least, *height);
+    place_on_base(object.has_heights, bottom, top, least, height);
   }
+  add_columns(bottom, top, result);
+}
+
+/// The solid from a polygon with heights, on top, down to the ground. Where no terrain is known it
+/// reaches below the plane that is taken for the ground: an obstacle by more than any slope.
+void ObjectBuilder::add_draped(const FileObject& object, Object& result) {
+  constexpr double below_plane = 100.0;  // [m]
+  has_extruded_ = true;
+  Rings top = rings_of(object);
+  transform_.to_site(top.corners);
+  for (Vector3d& corner : top.corners) corner.z() += source_.height.value_or(0.0);
+  double ground = ground_below(top.corners);
+  if (!std::isfinite(ground)) {
+    double lowest = ground_z_;
+    for (const Vector3d& corner : top.corners) lowest = std::min(lowest, corner.z());
+    const bool is_obstacle = source_.role == Role::obstacle;
+    ground = lowest - (is_obstacle ? below_plane : 0.0);
+    if (notes_.empty()) {
+      notes_.emplace_back(is_obstacle ? "no terrain is known there: extruded polygons reach 100 m "
+                                        "below the plane that is taken for the ground"
+                                      : "no terrain is known there: extruded polygons reach the "
+                                        "plane that is taken for the ground");
+    }
+  }
+  Rings bottom = top;
+  for (Vector3d& corner : bottom.corners) corner.z() = std::min(corner.z(), ground);
+  add_columns(bottom, top, result);
+}
+
+/// z of the lowest ground below the corners; infinite where it is not known.
+double ObjectBuilder::ground_below(std::span<const Vector3d> corners) const {
+  double lowest = std::numeric_limits<double>::infinity();
+  for (const Vector3d& corner : corners) {
+    const std::optional<double> ground = terrain_ ? terrain_(corner.head<2>()) : std::nullopt;
+    if (ground) lowest = std::min(lowest, *ground);
+  }
+  return lowest;
+}
+
+void ObjectBuilder::add_columns(const Rings& bottom, const Rings& top, Object& result) {
   for (std::size_t i = 0; i < bottom.kinds.size(); ++i) {
     const std::size_t first = bottom.first_ring[i], end = bottom.first_ring[i + 1];
     const std::uint32_t shift = bottom.begin[first];
@@ -146,12 +206,7 @@ void ObjectBuilder::place_on_terrain(Rings& bottom, Rings& top, double least, do
                 source_.file.string() + ": base is terrain, but no prior has the role terrain");
   }
   transform_.to_site(bottom.corners);
-  double base = std::numeric_limits<double>::infinity();
-  for (const Vector3d& corner : bottom.corners) {
-    if (const std::optional<double> ground = terrain_(corner.head<2>())) {
-      base = std::min(base, *ground);
-    }
-  }
+  const double base = ground_below(bottom.corners);
   if (!std::isfinite(base)) {
     throw Error(ErrorKind::bad_config,
                 source_.file.string() + ": an outline stands where the terrain is not known");

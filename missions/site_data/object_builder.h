@@ -21,6 +21,7 @@ class ObjectBuilder {
   const SiteTransform& transform() const { return transform_; }
   std::size_t dropped_polygons() const { return dropped_; }
   bool has_extruded() const { return has_extruded_; }
+  const std::vector<std::string>& notes() const { return notes_; }
 
  private:
   struct Rings {
@@ -34,15 +35,21 @@ class ObjectBuilder {
   bool is_extruded(const FileObject& object) const;
   void add_surfaces(const FileObject& object, Object& result);
   void add_solids(const FileObject& object, Object& result);
+  void add_draped(const FileObject& object, Object& result);
+  double height_of(const FileObject& object) const;
+  void add_columns(const Rings& bottom, const Rings& top, Object& result);
+  double ground_below(std::span<const Eigen::Vector3d> corners) const;
   void place_on_base(bool has_heights, Rings& bottom, Rings& top, double least, double most) const;
   void place_on_terrain(Rings& bottom, Rings& top, double least, double most) const;
 
   const Source& source_;
   const FileContents& contents_;
   const TerrainHeight& terrain_;
+  double ground_z_;  ///< of the plane that is the ground where no terrain is known
   SiteTransform transform_;
   std::size_t dropped_ = 0;
   bool has_extruded_ = false;
+  std::vector<std::string> notes_;
 };
 
 }  // namespace skycap::missions::site_data

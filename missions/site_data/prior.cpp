@@ -5,6 +5,8 @@
 #include <cmath>
 #include <limits>
 
+#include <fmt/format.h>
+
 #include "geometry/error.h"
 #include "geometry/place/prism.h"
 #include "missions/site_data/file_reader.h"
@@ -69,8 +71,9 @@ double add_objects(const Source& source, const SiteFrame& site, const FileConten
   }
   prior.dropped_polygons = builder.dropped_polygons();
   prior.crs = builder.transform().crs();
-  const std::vector<std::string>& notes = builder.transform().notes();
-  prior.notes.insert(prior.notes.end(), notes.begin(), notes.end());
+  for (const auto& notes : {builder.transform().notes(), builder.notes()}) {
+    prior.notes.insert(prior.notes.end(), notes.begin(), notes.end());
+  }
   if (outside > 0) prior.notes.push_back(std::to_string(outside) + " objects outside of within");
   if (without_level > 0) {
     prior.notes.push_back(std::to_string(without_level) + " objects without surfaces of that lod");
@@ -100,6 +103,36 @@ void add_steps(const FileContents& contents, const SiteTransform& transform, Hei
   transform.to_site(places);
   grid.right = (places[1] - places[0]).head<2>().cast<float>();
   grid.down = (places[2] - places[0]).head<2>().cast<float>();
+}
+
+/// What no ground on the Earth is outside of, in metres above any datum.
+constexpr double lowest_ground = -500.0, highest_ground = 9000.0;
+
+/// Takes heights away that are none: marks of nothing that the file does not declare.
+void drop_impossible_heights(const Source& source, const SiteTransform& transform,
+                             FileContents& contents, Prior& prior) {
+  const double unit = transform.metres_per_unit().z();
+  std::size_t dropped = 0, kept = 0;
+  double first = 0.0;
+  for (Vector3d& node : contents.nodes) {
+    if (!std::isfinite(node.z())) continue;
+    const double height = node.z() * unit;
+    if (height >= lowest_ground && height <= highest_ground) {
+      ++kept;
+    } else {
+      if (dropped++ == 0) first = height;
+      node.z() = std::numeric_limits<double>::quiet_NaN();
+    }
+  }
+  if (dropped == 0) return;
+  const std::string example = fmt::format("{:.6g} m", first);
+  if (kept == 0) {
+    throw Error(ErrorKind::bad_config, source.file.string() +
+                                           ": has no height from -500 to 9000 m, but " + example +
+                                           "; set unit, or correct its heights");
+  }
+  prior.notes.push_back(std::to_string(dropped) + " cells without ground: heights such as " +
+                        example + " are not from -500 to 9000 m");
 }
 
 void add_grid(FileContents& contents, const SiteTransform& transform, const Region& region,
@@ -159,6 +192,31 @@ void measure(const SiteFrame& site, Prior& prior) {
   prior.sea_level_heights = {low.height - *site.undulation, high.height - *site.undulation};
 }
 
+/// Warns of a size that mostly comes from a wrong unit or a lost reference system.
+void warn_of_size(Prior& prior) {
+  constexpr double smallest = 1.0, largest = 5000.0;
+  const double size = prior.box.sizes().maxCoeff();
+  if (size < smallest) {
+    prior.notes.push_back(
+        fmt::format("Warning: all of it is {:.3g} m in size. Check unit, crs and place.", size));
+  } else if (prior.box.sizes().head<2>().maxCoeff() > largest) {
+    prior.notes.push_back(fmt::format(
+        "Warning: it is {:.1f} km in size. Check unit, crs and place, or select a part.",
+        prior.box.sizes().head<2>().maxCoeff() / 1000.0));
+  }
+}
+
+/// Counts objects without an area, which are in the way of nothing, and refuses a file of such.
+void note_flat_objects(const Source& source, Prior& prior) {
+  const auto is_nothing = [](const Object& object) { return !has_area(object.mesh); };
+  const auto count = std::ranges::count_if(prior.objects, is_nothing);
+  if (count == 0) return;
+  if (count == std::ssize(prior.objects) && prior.points.empty() && prior.grid.nodes.empty()) {
+    fail_file(source.file, "holds no surface with an area");
+  }
+  prior.notes.push_back(std::to_string(count) + " objects without an area are ignored");
+}
+
 /// Throws unless the file has what the role needs.
 void require_use(const Source& source, const Prior& prior) {
   const auto refuse = [&](const std::string& what) {
@@ -194,6 +252,7 @@ Prior prior_of(FileContents contents, const Source& source, const SiteFrame& sit
     stand_in_error = add_objects(source, site, contents, region, terrain, prior);
   } else {
     const SiteTransform transform(source, contents, site);
+    drop_impossible_heights(source, transform, contents, prior);
     add_points(contents, transform, region, prior);
     if (!contents.nodes.empty()) add_grid(contents, transform, region, prior);
     stand_in_error = transform.stand_in_error();
@@ -205,7 +264,9 @@ Prior prior_of(FileContents contents, const Source& source, const SiteFrame& sit
   if (prior.box.isEmpty()) {
     fail_file(source.file, "holds neither surfaces nor points that select lets through");
   }
+  note_flat_objects(source, prior);
   require_use(source, prior);
+  warn_of_size(prior);
   return prior;
 }
 

@@ -190,8 +190,14 @@ System system_of(PJ_CONTEXT* context, const std::string& crs) {
   const std::string quoted = "the reference system '" + crs.substr(0, 200) + "'";
   System system;
   system.whole.reset(proj_create(context, proj_name(crs).c_str()));
-  if (!system.whole || proj_is_crs(system.whole.get()) == 0) {
-    fail("PROJ does not know " + quoted + "; give crs, such as \"EPSG:25832+7837\"");
+  const auto is_known = [&] { return system.whole && proj_is_crs(system.whole.get()) != 0; };
+  const std::string by_numbers = is_known() ? std::string() : name_by_numbers(crs);
+  if (!by_numbers.empty()) system.whole.reset(proj_create(context, by_numbers.c_str()));
+  if (!is_known()) {
+    const std::string likely = likely_name(crs);
+    fail("PROJ does not know " + quoted + "; " +
+         (likely.empty() ? std::string("set crs to the name that PROJ has for it")
+                         : "set crs: " + likely + " if that is meant"));
   }
   ObjectPtr plain = unbound(context, ObjectPtr(proj_clone(context, system.whole.get())));
   if (proj_get_type(plain.get()) == PJ_TYPE_COMPOUND_CRS) {

@@ -1,4 +1,6 @@
+#include <algorithm>
 #include <array>
+#include <cctype>
 #include <string_view>
 
 #include "missions/site_data/reference_system.h"
@@ -34,6 +36,12 @@ constexpr std::array<Name, 4> vertical_names = {{
     {"DE_DHHN85_NOH", "5784"},
 }};
 
+std::string_view trimmed(std::string_view text) {
+  while (text.starts_with(' ')) text.remove_prefix(1);
+  while (text.ends_with(' ')) text.remove_suffix(1);
+  return text;
+}
+
 template <typename Names>
 std::string_view number_of(const Names& names, std::string_view authority) {
   for (const Name& name : names) {
@@ -42,19 +50,60 @@ std::string_view number_of(const Names& names, std::string_view authority) {
   return {};
 }
 
+/// What a name of the German surveys means: a map, heights, and a model of the geoid, which PROJ
+/// chooses itself, with stars and perhaps blanks between.
+struct AdvName {
+  std::string_view horizontal, vertical;  ///< EPSG numbers; empty: not known
+  bool names_heights = false;
+};
+
+AdvName adv_name(std::string_view names) {
+  AdvName result;
+  const std::size_t star = names.find('*');
+  result.horizontal = number_of(horizontal_names, trimmed(names.substr(0, star)));
+  result.names_heights = star != std::string_view::npos;
+  if (!result.names_heights) return result;
+  const std::string_view rest = names.substr(star + 1);
+  result.vertical = number_of(vertical_names, trimmed(rest.substr(0, rest.find('*'))));
+  return result;
+}
+
 }  // namespace
 
 std::string proj_name(const std::string& crs) {
   constexpr std::string_view adv = "urn:adv:crs:";
   if (!crs.starts_with(adv)) return crs;
-  const std::string_view names = std::string_view(crs).substr(adv.size());
-  const std::size_t star = names.find('*');
-  const std::string_view horizontal = number_of(horizontal_names, names.substr(0, star));
-  if (horizontal.empty()) return crs;
-  if (star == std::string_view::npos) return "EPSG:" + std::string(horizontal);
-  const std::string_view vertical = number_of(vertical_names, names.substr(star + 1));
-  if (vertical.empty()) return crs;
-  return "EPSG:" + std::string(horizontal) + "+" + std::string(vertical);
+  const AdvName name = adv_name(std::string_view(crs).substr(adv.size()));
+  if (name.horizontal.empty() || (name.names_heights && name.vertical.empty())) return crs;
+  std::string known = "EPSG:" + std::string(name.horizontal);
+  if (name.names_heights) known += "+" + std::string(name.vertical);
+  return known;
+}
+
+std::string name_by_numbers(const std::string& crs) {
+  std::string upper;
+  for (const char c : crs) upper += static_cast<char>(std::toupper(static_cast<unsigned char>(c)));
+  std::string name;
+  int systems = 0;
+  for (std::size_t at = upper.find("EPSG"); at != std::string::npos; at = upper.find("EPSG", at)) {
+    // "EPSG::25832", "EPSG:6.9:25832", "EPSG/0/25832", "epsg.xml#25832".
+    const std::size_t end = std::min(upper.find_first_of(", +", at), upper.size());
+    std::size_t last = end;
+    while (last > at && std::isdigit(static_cast<unsigned char>(upper[last - 1])) != 0) --last;
+    if (end - last >= 4) {
+      name += (systems++ == 0 ? "EPSG:" : "+") + upper.substr(last, end - last);
+    }
+    at = end;
+  }
+  return systems <= 2 ? name : std::string();
+}
+
+std::string likely_name(const std::string& crs) {
+  constexpr std::string_view adv = "urn:adv:crs:";
+  const std::string by_numbers = name_by_numbers(crs);
+  if (!by_numbers.empty() || !crs.starts_with(adv)) return by_numbers;
+  const AdvName name = adv_name(std::string_view(crs).substr(adv.size()));
+  return name.horizontal.empty() ? std::string() : "EPSG:" + std::string(name.horizontal);
 }
 
 }  // namespace skycap::missions::site_data

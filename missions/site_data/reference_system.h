@@ -49,7 +49,16 @@ struct GeodeticTransform {
 GeodeticTransform geodetic_transform(const ReferenceRequest& request);
 
 /// A name that authorities' files use in place of one that PROJ knows, translated; others as they
-/// are. "urn:adv:crs:ETRS89_UTM32*DE_DHHN2016_NH" is EPSG:25832+7837, and so its siblings.
+/// are. "urn:adv:crs:ETRS89_UTM32*DE_DHHN2016_NH" is EPSG:25832+7837, and so its siblings, with
+/// blanks or the name of a geoid behind.
 std::string proj_name(const std::string& crs);
+
+/// By the numbers of the EPSG in a name that PROJ does not know, such as
+/// "urn:ogc:def:crs:EPSG:2056, crs:EPSG:5728" of swisstopo: a system, or a map and heights. Empty
+/// if there are none, or more than two.
+std::string name_by_numbers(const std::string& crs);
+
+/// What a name that is not understood may mean, as a remedy; empty: nothing is known of it.
+std::string likely_name(const std::string& crs);
 
 }  // namespace skycap::missions::site_data

@@ -126,9 +126,10 @@ void refuse_unused(const Source& source, const FileContents& contents) {
   const bool has_extruded = has_solids(source, contents);
   const bool has_uncertainty_in_use = source.role != Role::truth;
   const bool stands_on_terrain = is_outlines && source.base_on_terrain;
-  const std::array<KeyUse, 12> uses{{
+  const std::array<KeyUse, 13> uses{{
       {"base", is_based, has_extruded, "outlines that are extruded"},
       {"height", source.height.has_value(), is_outlines, "polygons of maps"},
+      {"height_attribute", !source.height_attribute.empty(), is_outlines, "polygons of maps"},
       {"min_height", source.min_height > 0.0, has_extruded, "outlines that are extruded"},
       {"spacing", source.spacing.has_value(), !contents.points.empty(), "points"},
       {"select.classes", !select.classes.empty(), contents.has_classes, "LAS files"},

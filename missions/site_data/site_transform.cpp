@@ -1,5 +1,6 @@
 #include "missions/site_data/site_transform.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdio>
@@ -30,6 +31,21 @@ Eigen::Matrix3d upright(const Source& source, const FileContents& contents) {
   return turn;
 }
 
+/// Whether coordinates may well be longitude and latitude: all of them are within their limits, and
+/// either it is a map, or the cells of a raster would be smaller than a centimetre.
+bool may_be_degrees(const FileContents& contents) {
+  const auto is_geodetic = [](const Vector3d& place) {
+    return std::abs(place.x()) <= 180.0 && std::abs(place.y()) <= 90.0;
+  };
+  constexpr double smallest_cell = 0.01;  // in metres or degrees
+  if (!contents.nodes.empty()) {
+    return contents.right.norm() < smallest_cell &&
+           std::ranges::all_of(contents.nodes, is_geodetic);
+  }
+  return contents.is_map && !contents.corners.empty() &&
+         std::ranges::all_of(contents.corners, is_geodetic);
+}
+
 flight::GeodeticPoint geodetic_point(const Vector3d& place) {
   return {place.y(), place.x(), place.z()};
 }
@@ -40,6 +56,14 @@ SiteTransform::SiteTransform(const Source& source, const FileContents& contents,
                              const SiteFrame& site, bool needs_heights)
     : file_(source.file), needs_heights_(needs_heights), origin_(site.origin) {
   if (source.place || (contents.crs.empty() && source.crs.empty())) {
+    if (!source.place && !contents.is_local_frame && may_be_degrees(contents)) {
+      const Vector3d& some =
+          contents.nodes.empty() ? contents.corners.front() : contents.nodes.front();
+      throw Error(ErrorKind::bad_config,
+                  file_.string() + ": names no reference system, and its coordinates (" +
+                      decimal(some.x(), 4) + ", " + decimal(some.y(), 4) +
+                      ") may be degrees; set crs: EPSG:4326, or place if they are metres");
+    }
     prepare_place(source, contents);
     if (!source.place && !contents.is_local_frame) {
       notes_.push_back("it names no reference system: taken to be in the mission's frame");
@@ -49,7 +73,16 @@ SiteTransform::SiteTransform(const Source& source, const FileContents& contents,
   }
 }
 
+/// Throws if the file's heights are in a unit that is not known, and the source does not say it.
+void SiteTransform::require_unit(const Source& source, const FileContents& contents) const {
+  if (contents.unknown_unit.empty() || source.unit) return;
+  throw Error(ErrorKind::bad_config, file_.string() + ": has heights in the unknown unit '" +
+                                         one_line(contents.unknown_unit.substr(0, 40)) +
+                                         "'; set unit, its length in metres");
+}
+
 void SiteTransform::prepare_place(const Source& source, const FileContents& contents) {
+  require_unit(source, contents);
   if (!source.crs.empty()) {
     throw Error(ErrorKind::bad_config,
                 file_.string() + ": has both a place and a crs; one of them puts it on the site");
@@ -64,10 +97,12 @@ void SiteTransform::prepare_place(const Source& source, const FileContents& cont
   const double unit = source.unit.value_or(contents.unit.value_or(1.0));
   const Eigen::AngleAxisd heading(-place.heading, Vector3d::UnitZ());
   // A transform times a mere matrix would take its columns for points.
-  const Eigen::Affine3d upright_metres(Eigen::Matrix3d(unit * upright(source, contents)));
+  const double up = source.unit ? unit : contents.height_unit.value_or(unit);
+  const Eigen::Affine3d upright_metres(
+      Eigen::Matrix3d(Vector3d(unit, unit, up).asDiagonal() * upright(source, contents)));
   prepared_ = Eigen::Translation3d(place.position) * heading * Eigen::Translation3d(source.offset) *
               upright_metres;
-  metres_per_unit_ = Vector3d::Constant(unit);
+  metres_per_unit_ = Vector3d(unit, unit, up);
   name_ = "the mission's frame";
 }
 
@@ -101,6 +136,10 @@ void SiteTransform::prepare_crs(const Source& source, const FileContents& conten
 }
 
 void SiteTransform::prepare_units(const Source& source, const FileContents& contents) {
+  if (!geodetic_->has_own_heights) require_unit(source, contents);
+  if (contents.unit && !contents.is_scene && *contents.unit != 1.0) {
+    notes_.push_back("the unit that it names is not applied: crs says what it is in");
+  }
   if (source.unit && geodetic_->has_own_heights && !contents.is_scene) {
     throw Error(ErrorKind::bad_config, file_.string() + ": unit does not go with " + name_ +
                                            ", which says itself what its heights are in");

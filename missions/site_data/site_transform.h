@@ -48,6 +48,7 @@ class SiteTransform {
  private:
   void prepare_place(const Source& source, const FileContents& contents);
   void prepare_crs(const Source& source, const FileContents& contents, const SiteFrame& site);
+  void require_unit(const Source& source, const FileContents& contents) const;
   void prepare_units(const Source& source, const FileContents& contents);
   [[noreturn]] void refuse(const Eigen::Vector3d& coordinate, const Eigen::Vector3d& place) const;
 

@@ -58,6 +58,7 @@ struct Source {
   bool base_on_terrain = false;       ///< of extruded polygons: where the lowest corner stands
   std::optional<double> base;         ///< or this height, in the file's vertical datum
   std::optional<double> height;       ///< of extruded polygons above their base
+  std::string height_attribute;       ///< of maps: the one that is it; empty: those that are known
   double min_height = 0.0;            ///< they begin so far above their base
   std::optional<double> uncertainty;  ///< bound of what the file's surfaces may be off; see prior.h
   std::optional<double> spacing;      ///< else usual_spacing: clouds keep one point a cube of it

@@ -24,7 +24,8 @@ using testing::IsEmpty;
 Rooms house() {
   const std::vector<std::string> geometry = {
       "geometry",          "geometry/place", "geometry/points", "geometry/directions",
-      "geometry/surfaces", "geometry/io",    "geometry/io/laz", "geometry/io/e57"};
+      "geometry/surfaces", "geometry/io",    "geometry/io/laz", "geometry/io/e57",
+      "geometry/io/text"};
   Rooms rooms = {
       {"geometry", {}},
       {"geometry/place", {"geometry"}},
@@ -33,9 +34,10 @@ Rooms house() {
       {"geometry/surfaces", {"geometry", "geometry/place"}},
       {"geometry/io/laz", {"geometry"}},
       {"geometry/io/e57", {"geometry"}},
+      {"geometry/io/text", {"geometry"}},
       {"geometry/io",
        {"geometry", "geometry/place", "geometry/points", "geometry/surfaces", "geometry/io/laz",
-        "geometry/io/e57"}},
+        "geometry/io/e57", "geometry/io/text"}},
   };
   const auto add = [&](const std::string& room, std::vector<std::string> others) {
     others.insert(others.end(), geometry.begin(), geometry.end());

@@ -98,15 +98,23 @@ Field parse_field(const pugi::xml_node& node) {
   return field;
 }
 
+/// A rotation of four zeros, which some programs write for none.
+bool is_zero_rotation(const pugi::xml_node& pose) {
+  const pugi::xml_node rotation = pose.child("rotation");
+  const auto is_zero = [&](const char* name) { return child_number(rotation, name) == 0.0; };
+  return rotation && is_zero("w") && is_zero("x") && is_zero("y") && is_zero("z");
+}
+
 Eigen::Isometry3d parse_pose(const pugi::xml_node& pose) {
   Eigen::Isometry3d file_from_scan = Eigen::Isometry3d::Identity();
-  if (const pugi::xml_node rotation = pose.child("rotation")) {
+  const pugi::xml_node rotation = pose.child("rotation");
+  if (rotation && !is_zero_rotation(pose)) {
     const Eigen::Quaterniond turn(child_number(rotation, "w"), child_number(rotation, "x"),
                                   child_number(rotation, "y"), child_number(rotation, "z"));
     constexpr double tolerance = 0.01;  // of what was rounded
     if (std::abs(turn.norm() - 1.0) > tolerance) {
       refuse("has a scan whose rotation is a quaternion of length " + std::to_string(turn.norm()) +
-             "; it must be 1");
+             "; it must be 1: save the scan again with a valid pose, or without one");
     }
     file_from_scan.linear() = turn.normalized().toRotationMatrix();
   }
@@ -193,7 +201,9 @@ Description parse_description(std::string xml) {
     const pugi::xml_node points = node.child("points");
     if (!points) continue;
     ScanDescription scan = parse_scan(node, points);
-    if (scan.records > 0) description.scans.push_back(std::move(scan));
+    if (scan.records == 0) continue;
+    description.scans.push_back(std::move(scan));
+    if (is_zero_rotation(node.child("pose"))) ++description.zero_rotations;
   }
   return description;
 }

@@ -49,6 +49,7 @@ struct ScanDescription {
 struct Description {
   std::string reference_system;  ///< coordinateMetadata, WKT as a rule; empty: the file has none
   std::vector<ScanDescription> scans;
+  std::size_t zero_rotations = 0;  ///< scans whose quaternion is four zeros: not rotated
 };
 
 /// More bytes of XML are refused: a file of 8000 pictures has about as many.

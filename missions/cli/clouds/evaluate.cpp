@@ -26,15 +26,21 @@ bool is_mission_file(const std::filesystem::path& file) {
 
 /// Piece by piece: laser scans are longer than memory.
 evaluation::CloudJudgement judged_cloud(const EvaluateOptions& options, const Truth& truth,
-                                        ProgressLine& progress, const std::stop_token& stop) {
+                                        ProgressLine& progress, const Console& console) {
   const std::filesystem::path& file = options.cloud;
   evaluation::CloudJudge judge(truth.model, truth.samples, truth.registration_distance,
                                options.threads, truth.beside);
-  geometry::read_positions(file, [&](std::span<const Eigen::Vector3f> piece, double share) {
-    if (stop.stop_requested()) throw Error(ErrorKind::bad_usage, "interrupted");
+  const auto take = [&](std::span<const Eigen::Vector3f> piece, double share) {
+    if (console.stop.stop_requested()) throw Error(ErrorKind::bad_usage, "interrupted");
     progress.show(fmt::format("{}: {:.0f} %", file.string(), 100.0 * share));
     judge.add(piece);
-  });
+  };
+  const std::size_t skipped = geometry::read_positions(file, take);
+  progress.clear();
+  if (skipped > 0) {
+    warn(console,
+         fmt::format("{}: {} points skipped that are NaN or infinite", file.string(), skipped));
+  }
   return judge.judgement();
 }
 
@@ -151,7 +157,7 @@ int evaluate(const EvaluateOptions& options, const Console& console) {
   const bool is_mesh = !options.mesh.empty();
   progress.show("reading " + (is_mesh ? options.mesh : options.cloud).string());
   const evaluation::CloudJudgement judged =
-      is_mesh ? judged_mesh(options, truth) : judged_cloud(options, truth, progress, console.stop);
+      is_mesh ? judged_mesh(options, truth) : judged_cloud(options, truth, progress, console);
   progress.clear();
   print_evaluation(options, truth, judged, console.out);
   return 0;

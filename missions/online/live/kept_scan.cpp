@@ -9,7 +9,7 @@
 
 #include "geometry/error.h"
 #include "geometry/io/file.h"
-#include "geometry/io/ply.h"
+#include "geometry/io/text/ply.h"
 #include "missions/support/sha256.h"
 
 namespace skycap::missions::online {

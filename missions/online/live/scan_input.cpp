@@ -9,7 +9,7 @@
 
 #include "geometry/error.h"
 #include "geometry/io/cloud_io.h"
-#include "geometry/io/text_scanner.h"
+#include "geometry/io/text/text_scanner.h"
 #include "geometry/place/camera.h"
 #include "geometry/place/world.h"
 #include "geometry/points/usable_scan.h"

@@ -3,7 +3,7 @@
 #include <utility>
 
 #include "geometry/io/file.h"
-#include "geometry/io/text_scanner.h"
+#include "geometry/io/text/text_scanner.h"
 #include "geometry/text_parts.h"
 #include "missions/online/live/scan_input.h"
 

@@ -1,6 +1,5 @@
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <cmath>
 #include <unordered_map>
 #include <utility>
@@ -9,6 +8,7 @@
 
 #include "geometry/error.h"
 #include "missions/site_data/formats/file_contents.h"
+#include "missions/site_data/formats/gml_numbers.h"
 
 namespace skycap::missions::site_data {
 namespace {
@@ -124,7 +124,7 @@ class Walker final : public pugi::xml_tree_walker {
   void read_attribute(pugi::xml_node node, Name name, const Surroundings& here);
   void read_polygon(pugi::xml_node node, Surroundings& here);
   void read_ring(pugi::xml_node boundary, int dimension);
-  void read_numbers(const char* text, std::vector<double>& numbers) const;
+  void read_positions(pugi::xml_node part, int& dimension);
 
   struct Place {
     std::size_t object, polygon;
@@ -254,10 +254,13 @@ void Walker::read_ring(pugi::xml_node boundary, int dimension) {
   numbers_.clear();
   for (const pugi::xml_node part : ring.children()) {
     const Name name = local_name(part.name());
-    if (name != "posList" && name != "pos" && name != "coordinates") continue;
-    take_system(part);
-    if (const pugi::xml_attribute own = attribute(part, "srsDimension")) dimension = own.as_int();
-    for (const pugi::xml_node text : part.children()) read_numbers(text.value(), numbers_);
+    if (name == "pointProperty" || name == "pointRep") {
+      const pugi::xml_node point = child(part, "Point");
+      take_system(point);
+      for (const pugi::xml_node position : point.children()) read_positions(position, dimension);
+    } else {
+      read_positions(part, dimension);
+    }
   }
   if (dimension != 2 && dimension != 3) {
     fail_file(file_, "has coordinates of " + std::to_string(dimension) +
@@ -281,28 +284,19 @@ void Walker::read_ring(pugi::xml_node boundary, int dimension) {
   }
 }
 
-/// Numbers apart by white space, or by commas as `coordinates` has them.
-void Walker::read_numbers(const char* text, std::vector<double>& numbers) const {
-  const Name all(text);
-  const auto is_gap = [](char c) {
-    return c == ' ' || c == '\n' || c == '\t' || c == '\r' || c == ',';
-  };
-  for (std::size_t i = 0; i < all.size();) {
-    if (is_gap(all[i])) {
-      ++i;
-      continue;
-    }
-    if (all[i] == '+') ++i;
-    double number = 0.0;
-    const auto [end, error] = std::from_chars(all.data() + i, all.data() + all.size(), number);
-    const auto next = static_cast<std::size_t>(end - all.data());
-    if (error != std::errc() || !std::isfinite(number) ||
-        (next < all.size() && !is_gap(all[next]))) {
-      fail_file(file_,
-                "has the coordinate '" + std::string(all.substr(i, 20)) + "'; a number is wanted");
-    }
-    numbers.push_back(number);
-    i = next;
+/// Of pos, posList or coordinates; the last may say what is between its numbers (GML 3.1.1, 9.1).
+void Walker::read_positions(pugi::xml_node part, int& dimension) {
+  const Name name = local_name(part.name());
+  if (name != "posList" && name != "pos" && name != "coordinates") return;
+  take_system(part);
+  if (const pugi::xml_attribute own = attribute(part, "srsDimension")) dimension = own.as_int();
+  GmlSeparators separators;
+  if (name == "coordinates") {
+    separators = {attribute(part, "decimal").as_string(), attribute(part, "cs").as_string(),
+                  attribute(part, "ts").as_string()};
+  }
+  for (const pugi::xml_node text : part.children()) {
+    append_gml_numbers(file_, text.value(), separators, numbers_);
   }
 }
 

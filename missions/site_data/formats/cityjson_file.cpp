@@ -1,10 +1,12 @@
 #include <array>
 #include <cmath>
+#include <cstdint>
 
 #include <nlohmann/json.hpp>
 
 #include "geometry/error.h"
 #include "geometry/io/json.h"
+#include "geometry/io/text/plain_text.h"
 #include "missions/site_data/formats/file_contents.h"
 
 namespace skycap::missions::site_data {
@@ -70,13 +72,16 @@ class Reader {
   void read_geometry(const Json& geometry, FileObject& object);
   void read_boundaries(const Json& boundaries, int nesting, const Json* values);
   void read_surface(const Json& rings, const Json* value);
+  std::optional<double> level_of(const Json& geometry);
+  const Json* surface_of(const Json* value);
   void read_instance(const Json& geometry, FileObject& object);
 
   const std::filesystem::path& file_;
   FileContents& contents_;
   Vector3d scale_ = Vector3d::Ones(), translation_ = Vector3d::Zero();
   Json templates_;  ///< geometry-templates
-  std::size_t polygons_ = 0, left_out_ = 0, without_surfaces_ = 0;
+  std::size_t polygons_ = 0, left_out_ = 0, without_surfaces_ = 0, without_level_ = 0,
+              without_kind_ = 0;
 
   // Of the geometry that is being read.
   FileObject* object_ = nullptr;
@@ -132,12 +137,34 @@ void Reader::read_objects(const Json& root) {
     }
     const auto geometries = value.find("geometry");
     if (geometries == value.end()) continue;
-    for (const Json& geometry : *geometries) {
-      places_ = {&root.at("vertices"), scale_, translation_};
-      placed_.setIdentity();
-      read_geometry(geometry, object);
+    if (geometries->is_null()) continue;
+    try {
+      for (const Json& geometry : *geometries) {
+        places_ = {&root.at("vertices"), scale_, translation_};
+        placed_.setIdentity();
+        read_geometry(geometry, object);
+      }
+    } catch (const Json::exception& error) {
+      fail_file(file_, "is not CityJSON as its specification has it in the object " +
+                           id.substr(0, 100) + " (" + error.what() + ")");
     }
   }
+}
+
+/// A level of detail, as a number or as text; nothing if it is none: drawn at all levels.
+std::optional<double> Reader::level_of(const Json& geometry) {
+  const auto found = geometry.find("lod");
+  if (found == geometry.end()) return std::nullopt;
+  std::optional<double> level;
+  if (found->is_number()) level = found->get<double>();
+  if (found->is_string()) {
+    std::string text = geometry::lower_case(geometry::trimmed(found->get<std::string>()));
+    if (text.starts_with("lod")) text.erase(0, 3);
+    level = geometry::number_in(geometry::trimmed(text));
+  }
+  if (level && std::isfinite(*level) && *level >= 0.0) return level;
+  ++without_level_;
+  return std::nullopt;
 }
 
 void Reader::read_geometry(const Json& geometry, FileObject& object) {
@@ -149,15 +176,18 @@ void Reader::read_geometry(const Json& geometry, FileObject& object) {
     return;
   }
   object_ = &object;
-  lod_.reset();
-  if (const auto lod = geometry.find("lod"); lod != geometry.end()) {
-    lod_ = lod->is_string() ? std::stod(lod->get<std::string>()) : lod->get<double>();
-  }
+  lod_ = level_of(geometry);
   const Json* values = nullptr;
   surfaces_ = nullptr;
   if (const auto semantics = geometry.find("semantics"); semantics != geometry.end()) {
-    surfaces_ = &semantics->at("surfaces");
-    values = &semantics->at("values");
+    const auto list_of = [&](const char* key) -> const Json* {
+      if (!semantics->is_object()) return nullptr;
+      const auto list = semantics->find(key);
+      return list != semantics->end() && list->is_array() ? &*list : nullptr;
+    };
+    surfaces_ = list_of("surfaces");
+    values = list_of("values");
+    if (surfaces_ == nullptr || values == nullptr) ++without_kind_;
   }
   read_boundaries(geometry.at("boundaries"), *nesting, values);
 }
@@ -190,10 +220,21 @@ void Reader::read_boundaries(const Json& boundaries, int nesting, const Json* va
   }
 }
 
+/// What the semantics say of a surface; null: nothing.
+const Json* Reader::surface_of(const Json* value) {
+  if (value == nullptr || !value->is_number_integer() || surfaces_ == nullptr) return nullptr;
+  const auto index = value->get<std::int64_t>();
+  const bool is_there = index >= 0 && index < std::ssize(*surfaces_) &&
+                        surfaces_->at(static_cast<std::size_t>(index)).is_object();
+  if (is_there) return &surfaces_->at(static_cast<std::size_t>(index));
+  ++without_kind_;
+  return nullptr;
+}
+
 void Reader::read_surface(const Json& rings, const Json* value) {
   SurfaceKind kind = SurfaceKind::unknown;
-  if (value != nullptr && value->is_number_integer() && surfaces_ != nullptr) {
-    const std::string type = surfaces_->at(value->get<std::size_t>()).at("type").get<std::string>();
+  if (const Json* const surface = surface_of(value)) {
+    const std::string type = surface->value("type", std::string());
     if (is_inside_a_building(type)) {
       ++left_out_;
       return;
@@ -223,6 +264,14 @@ void Reader::finish() {
   if (without_surfaces_ > 0) {
     contents_.notes.push_back(std::to_string(without_surfaces_) +
                               " geometries of points or lines left out");
+  }
+  if (without_level_ > 0) {
+    contents_.notes.push_back(std::to_string(without_level_) +
+                              " geometries have a lod that is no number: taken for all levels");
+  }
+  if (without_kind_ > 0) {
+    contents_.notes.push_back(std::to_string(without_kind_) +
+                              " semantics are incomplete: surfaces without a kind");
   }
 }
 
@@ -272,8 +321,6 @@ FileContents parse_cityjson(const std::filesystem::path& file, std::string_view 
   } catch (const Json::exception& error) {
     fail_file(file,
               std::string("is not CityJSON as its specification has it (") + error.what() + ")");
-  } catch (const std::logic_error& error) {  // of stod
-    fail_file(file, "has a lod that is not a number");
   }
   return contents;
 }

@@ -18,6 +18,11 @@ FileContents read_e57(const std::filesystem::path& file, const CloudThinning& th
       if (cells.add(place.cwiseProduct(cells_per_unit))) contents.points.push_back(place);
     }
   }
+  note_skipped(input.skipped(), contents);
+  if (input.zero_rotations() > 0) {
+    contents.notes.push_back(std::to_string(input.zero_rotations()) +
+                             " scans have a rotation of four zeros, which is taken for none");
+  }
   return contents;
 }
 

@@ -23,6 +23,11 @@ void require_tree_fits(const std::filesystem::path& file, std::size_t bytes) {
   }
 }
 
+void note_skipped(std::size_t points, FileContents& contents) {
+  if (points == 0) return;
+  contents.notes.push_back(std::to_string(points) + " points skipped that are NaN or infinite");
+}
+
 void set_wkt(FileContents& contents, const std::string& wkt) {
   contents.is_local_frame = wkt.starts_with("LOCAL_CS[\"local east-north-up\"");
   if (!contents.is_local_frame) contents.crs = wkt;

@@ -35,6 +35,12 @@ struct FileObject {
   /// Of flat outlines that stand for solids [m]; none: the polygons are surfaces, or the source
   /// has to say it.
   std::optional<double> height, min_height;
+  /// The height that the file states, but that nothing can be made of: what a message says behind
+  /// the object's name. Empty: there is none.
+  std::string height_problem;
+  /// Its corners are those of its top, and it reaches down to the ground (KML's extrude).
+  bool reaches_ground = false;
+  bool is_thin = false;  ///< drawn around a point or a line: it counts only with a height
 };
 
 // In the order in which it is told.
@@ -53,6 +59,9 @@ struct FileContents {
   std::optional<bool> is_y_up;          ///< if the file says it
   std::optional<HeightDatum> vertical;  ///< that the format prescribes where the CRS is silent
   bool is_outlines = false;             ///< flat polygons: they are extruded
+  bool is_map = false;           ///< of a format of maps: without a system degrees are likely
+  bool has_short_names = false;  ///< attributes have ten characters at most (Shapefile)
+  std::string unknown_unit;      ///< of heights, that the file names and is not known
   std::vector<Eigen::Vector3d> corners;      ///< of all rings
   std::vector<std::uint32_t> ring_begin{0};  ///< ring i is corners [begin[i], begin[i + 1])
   std::vector<FileObject> objects;
@@ -93,6 +102,9 @@ std::string one_line(std::string text);
 
 /// Throws Error{bad_file}: "FILE: WHAT", in one line.
 [[noreturn]] void fail_file(const std::filesystem::path& file, const std::string& what);
+
+/// Notes how many points of a cloud were skipped, since they are NaN or infinite.
+void note_skipped(std::size_t points, FileContents& contents);
 
 /// The reference system of a cloud, or the mission's frame, as our own scans name it.
 void set_wkt(FileContents& contents, const std::string& wkt);

@@ -1,7 +1,11 @@
 #include "missions/site_data/formats/gdal_dataset.h"
 
 #include <algorithm>
+#include <array>
+#include <cstdlib>
+#include <fstream>
 #include <mutex>
+#include <system_error>
 
 #include <cpl_conv.h>
 #include <gdal_priv.h>
@@ -13,6 +17,8 @@
 namespace skycap::missions::site_data {
 namespace {
 
+namespace fs = std::filesystem;
+
 /// Once: the settings hold for the whole program, in which nothing else uses GDAL.
 void prepare_gdal() {
   static std::once_flag once;
@@ -23,38 +29,115 @@ void prepare_gdal() {
     CPLSetConfigOption("GDAL_HTTP_MAX_RETRY", "0");
     CPLSetConfigOption("OGR_SQLITE_LOAD_EXTENSIONS", nullptr);
     CPLSetConfigOption("OSM_USE_CUSTOM_INDEXING", "NO");  // wants nodes in the order of their ids
+    // Indices of large .osm files go there, not to the folder that the program was started in.
+    std::error_code failure;
+    const fs::path temporary = fs::temp_directory_path(failure);
+    if (!failure) CPLSetConfigOption("CPL_TMPDIR", temporary.c_str());
     OSRSetPROJEnableNetwork(0);
     GDALAllRegister();
   });
 }
 
+bool is_database(const fs::path& file) {
+  std::array<char, 16> beginning{};
+  std::ifstream(file, std::ios::binary).read(beginning.data(), beginning.size());
+  return std::string(beginning.data(), 15) == "SQLite format 3";
+}
+
+/// The file whose name goes on with `more`, such as "town.gpkg-wal", if something is in it.
+bool has_beside(const fs::path& file, const char* more) {
+  std::error_code failure;
+  const auto size = fs::file_size(file.string() + more, failure);
+  return !failure && size > 0;
+}
+
+void copy_file(const fs::path& file, const fs::path& from, const fs::path& to) {
+  std::error_code failure;
+  fs::copy_file(from, to, failure);
+  if (!failure) fs::permissions(to, fs::perms::owner_read | fs::perms::owner_write, failure);
+  if (failure) {
+    fail_file(file,
+              "cannot be read: it needs a copy, which cannot be made (" + failure.message() + ")");
+  }
+}
+
 }  // namespace
 
-void CloseDataset::operator()(GDALDataset* dataset) const { GDALClose(dataset); }
+CopyFolder::~CopyFolder() {
+  std::error_code ignored;
+  if (!path_.empty()) fs::remove_all(path_, ignored);
+}
+
+void CopyFolder::make(const fs::path& file) {
+  std::error_code failure;
+  std::string name = (fs::temp_directory_path(failure) / "skycap-XXXXXX").string();
+  if (failure || ::mkdtemp(name.data()) == nullptr) {
+    fail_file(file, "cannot be read: it needs a copy, and there is no folder for temporary files");
+  }
+  path_ = name;
+}
+
+/// The file itself, or a copy where reading would write beside it: a database with a log, and a
+/// Shapefile whose index is missing.
+fs::path OpenDataset::readable(const fs::path& file) {
+  if (is_database(file)) {
+    const bool has_log = has_beside(file, "-wal") || has_beside(file, "-journal");
+    is_immutable_ = !has_log;
+    if (!has_log) return file;
+    copy_.make(file);
+    const fs::path copy = copy_.path() / file.filename();
+    for (const char* more : {"", "-wal", "-journal"}) {
+      if (more[0] == '\0' || has_beside(file, more)) {
+        copy_file(file, file.string() + more, copy.string() + more);
+      }
+    }
+    notes_.emplace_back("read from a copy, with the changes in the log beside it");
+    return copy;
+  }
+  std::string ending = file.extension().string();
+  std::ranges::transform(ending, ending.begin(),
+                         [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  const auto beside = [&](const char* other) { return fs::path(file).replace_extension(other); };
+  if (ending != ".shp" || fs::exists(beside(".shx")) || fs::exists(beside(".SHX"))) return file;
+  copy_.make(file);
+  const fs::path copy = copy_.path() / (file.stem().string() + ".shp");
+  copy_file(file, file, copy);
+  for (const char* other : {".dbf", ".prj", ".cpg", ".DBF", ".PRJ", ".CPG"}) {
+    if (fs::exists(beside(other))) {
+      copy_file(file, beside(other), fs::path(copy).replace_extension(other));
+    }
+  }
+  CPLSetConfigOption("SHAPE_RESTORE_SHX", "YES");
+  notes_.emplace_back("read from a copy, whose missing index (.shx) was made anew");
+  return copy;
+}
+
+OpenDataset::OpenDataset(const fs::path& file, unsigned kind,
+                         const std::vector<const char*>& drivers) {
+  prepare_gdal();
+  std::vector<const char*> list = drivers;
+  list.push_back(nullptr);
+  CPLErrorReset();
+  CPLSetConfigOption("SHAPE_RESTORE_SHX", "NO");  // writes beside the file
+  // An absolute name is never one of GDAL's own, such as /vsicurl/ or "MEM:".
+  const std::string name = fs::absolute(file).lexically_normal().string();
+  if (name.starts_with("/vsi")) fail_file(file, "has a name that GDAL would not take for a file's");
+  const std::string opened = readable(name).string();
+  const std::array<const char*, 2> immutable{"IMMUTABLE=YES", nullptr};
+  dataset_ = GDALDataset::Open(opened.c_str(), kind | GDAL_OF_READONLY | GDAL_OF_VERBOSE_ERROR,
+                               list.data(), is_immutable_ ? immutable.data() : nullptr, nullptr);
+  if (dataset_ == nullptr) {
+    const std::string complaint = gdal_complaint();
+    fail_file(file, "cannot be read" + (complaint.empty() ? "" : " (GDAL: " + complaint + ")"));
+  }
+}
+
+OpenDataset::~OpenDataset() { GDALClose(dataset_); }
 
 std::string gdal_complaint() {
   std::string text = CPLGetLastErrorMsg();
   std::ranges::replace(text, '\n', ' ');
   return text.substr(0, 300);
-}
-
-DatasetPtr open_dataset(const std::filesystem::path& file, unsigned kind,
-                        const std::vector<const char*>& drivers) {
-  prepare_gdal();
-  std::vector<const char*> list = drivers;
-  list.push_back(nullptr);
-  CPLErrorReset();
-  // An absolute name is never one of GDAL's own, such as /vsicurl/ or "MEM:".
-  const std::string name = std::filesystem::absolute(file).lexically_normal().string();
-  if (name.starts_with("/vsi")) fail_file(file, "has a name that GDAL would not take for a file's");
-  DatasetPtr dataset(GDALDataset::Open(name.c_str(),
-                                       kind | GDAL_OF_READONLY | GDAL_OF_VERBOSE_ERROR, list.data(),
-                                       nullptr, nullptr));
-  if (!dataset) {
-    const std::string complaint = gdal_complaint();
-    fail_file(file, "cannot be read" + (complaint.empty() ? "" : " (GDAL: " + complaint + ")"));
-  }
-  return dataset;
 }
 
 std::string wkt_of(const OGRSpatialReference* system) {

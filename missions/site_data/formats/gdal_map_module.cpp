@@ -1,8 +1,8 @@
 // Maps of polygons by GDAL; geodata_file.cpp loads the module.
 #include <algorithm>
-#include <charconv>
+#include <array>
 #include <cmath>
-#include <set>
+#include <memory>
 
 #include <gdal_priv.h>
 #include <ogrsf_frmts.h>
@@ -10,40 +10,13 @@
 #include "geometry/error.h"
 #include "missions/site_data/formats/gdal_dataset.h"
 #include "missions/site_data/formats/geodata_file.h"
+#include "missions/site_data/formats/map_tags.h"
 
 namespace skycap::missions::site_data {
 namespace {
 
-constexpr double storey =
-    3.0;  ///< height of a level of a building where only those are counted [m]
-
-/// The number that a text begins with, such as "12.5 m"; none if a unit other than metres follows.
-std::optional<double> metres_of(const std::string& text) {
-  const std::size_t begin = text.find_first_not_of(" +");
-  if (begin == std::string::npos) return std::nullopt;
-  double number = 0.0;
-  const auto [end, error] = std::from_chars(text.data() + begin, text.data() + text.size(), number);
-  if (error != std::errc() || !std::isfinite(number)) return std::nullopt;
-  std::string rest(end, text.data() + text.size());
-  std::erase(rest, ' ');
-  if (!rest.empty() && rest != "m") return std::nullopt;
-  return number;
-}
-
-/// OSM's further tags, as GDAL writes them: "key"=>"value","key"=>"value", with \ before quotes.
-void add_tags(const std::string& text, std::map<std::string, std::string>& attributes) {
-  std::vector<std::string> quoted;
-  for (std::size_t i = 0; i < text.size(); ++i) {
-    if (text[i] != '"') continue;
-    std::string& part = quoted.emplace_back();
-    for (++i; i < text.size() && text[i] != '"'; ++i) {
-      if (text[i] == '\\' && i + 1 < text.size()) ++i;
-      part += text[i];
-    }
-  }
-  for (std::size_t i = 0; i + 1 < quoted.size(); i += 2)
-    attributes.emplace(quoted[i], quoted[i + 1]);
-}
+/// Half the width of what is made of points and lines that state a height [m].
+constexpr double pole_radius = 0.5, wall_radius = 0.25;
 
 class MapReader {
  public:
@@ -56,12 +29,18 @@ class MapReader {
   bool is_kml() const { return driver_ == "LIBKML" || driver_ == "KML"; }
   void require_layer(const std::string& layer);
   void take_system(OGRLayer& layer);
+  void take_units(OGRLayer& layer, double latitude);
   void read_feature(OGRLayer& layer, OGRFeature& feature);
   void read_attributes(OGRFeature& feature, FileObject& object);
-  void read_heights(FileObject& object);
+  void read_altitudes(FileObject& object, double highest);
   void read_geometry(const OGRGeometry& geometry, FileObject& object);
   void read_polygon(const OGRPolygon& polygon, FileObject& object);
   void read_ring(const OGRSimpleCurve& ring, FilePolygon& polygon);
+  void read_line(const OGRLineString& line, FileObject& object);
+  void add_pole(const OGRPoint& point, FileObject& object);
+  void add_wall(const OGRLineString& line, FileObject& object);
+  void add_corner(double x, double y, double z);
+  void leave_out(const FileObject& object);
   void add_notes();
 
   const std::filesystem::path& file_;
@@ -69,7 +48,9 @@ class MapReader {
   FileContents& contents_;
   std::string driver_;
   bool has_system_ = false;
-  std::size_t polygons_ = 0, others_ = 0, by_height_ = 0, by_levels_ = 0;
+  Eigen::Vector2d units_per_metre_ = Eigen::Vector2d::Ones();  ///< of the layer, at the feature
+  std::size_t polygons_ = 0, others_ = 0, cables_ = 0, no_structures_ = 0, without_geometry_ = 0,
+              thin_ = 0, raised_ = 0, extruded_ = 0;
 };
 
 void MapReader::require_layer(const std::string& layer) {
@@ -87,6 +68,8 @@ void MapReader::read(const std::string& layer) {
   driver_ = dataset_.GetDriverName();
   contents_.format = driver_;
   contents_.is_outlines = true;
+  contents_.is_map = driver_ != "DXF";  // a drawing is in metres or another unit of length
+  contents_.has_short_names = driver_ == "ESRI Shapefile";
   if (is_kml()) contents_.vertical = HeightDatum::geoid;
   if (driver_ == "GeoJSON") contents_.vertical = HeightDatum::ellipsoid;  // RFC 7946
   if (!layer.empty()) require_layer(layer);
@@ -103,7 +86,9 @@ void MapReader::read(const std::string& layer) {
 }
 
 void MapReader::take_system(OGRLayer& layer) {
-  const std::string wkt = wkt_of(layer.GetSpatialRef());
+  std::string wkt = wkt_of(layer.GetSpatialRef());
+  // A GeoPackage has names for systems that nobody named.
+  if (wkt.find("\"Undefined ") != std::string::npos) wkt.clear();
   if (!has_system_) contents_.crs = wkt;
   has_system_ = true;
   if (wkt != contents_.crs) {
@@ -115,13 +100,34 @@ void MapReader::take_system(OGRLayer& layer) {
   }
 }
 
+/// How long a metre is in the layer's units.
+void MapReader::take_units(OGRLayer& layer, double latitude) {
+  const OGRSpatialReference* const system = layer.GetSpatialRef();
+  if (system == nullptr) {
+    units_per_metre_.setOnes();
+  } else if (system->IsGeographic() != 0) {
+    constexpr double degrees_per_metre = 1.0 / 111'320.0, radian = M_PI / 180.0;
+    const double narrow = std::max(0.01, std::cos(latitude * radian));
+    units_per_metre_ = {degrees_per_metre / narrow, degrees_per_metre};
+  } else {
+    units_per_metre_.setConstant(1.0 / system->GetLinearUnits());
+  }
+}
+
 void MapReader::read_feature(OGRLayer& layer, OGRFeature& feature) {
   const OGRGeometry* const given = feature.GetGeometryRef();
-  if (given == nullptr || given->IsEmpty()) return;
+  if (given == nullptr || given->IsEmpty()) {
+    ++without_geometry_;
+    return;
+  }
   FileObject object;
   object.has_heights = false;
   read_attributes(feature, object);
   object.kind = layer.GetName();
+  OGREnvelope envelope;
+  given->getEnvelope(&envelope);
+  take_units(layer, 0.5 * (envelope.MinY + envelope.MaxY));
+  const std::size_t first_corner = contents_.corners.size();
   if (given->hasCurveGeometry() != 0) {
     const std::unique_ptr<OGRGeometry> straight(given->getLinearGeometry());
     if (straight) read_geometry(*straight, object);
@@ -129,14 +135,39 @@ void MapReader::read_feature(OGRLayer& layer, OGRFeature& feature) {
     read_geometry(*given, object);
   }
   if (object.polygons.empty()) return;
-  // Elsewhere a third coordinate is a height; here it counts for nothing without the mode.
+  if (driver_ == "OSM" && !is_structure(object)) {
+    ++no_structures_;
+    return;
+  }
   if (is_kml()) {
-    const auto mode = object.attributes.find("altitudeMode");
-    object.has_heights &= mode != object.attributes.end() && mode->second == "absolute";
+    double highest = 0.0;
+    for (std::size_t i = first_corner; i < contents_.corners.size(); ++i) {
+      highest = std::max(highest, contents_.corners[i].z());
+    }
+    read_altitudes(object, highest);
   }
   take_system(layer);
-  read_heights(object);
   contents_.objects.push_back(std::move(object));
+}
+
+/// Elsewhere a third coordinate is a height; in KML its mode says what it is. `highest` is that of
+/// the highest corner.
+void MapReader::read_altitudes(FileObject& object, double highest) {
+  const auto mode = object.attributes.find("altitudeMode");
+  const std::string name = mode == object.attributes.end() ? "" : mode->second;
+  const bool is_extruded = number_of(object, "extrude") != 0.0;
+  const bool has_corners = object.has_heights;
+  object.has_heights = has_corners && name == "absolute";
+  if (object.has_heights && is_extruded) {
+    object.reaches_ground = true;
+    ++extruded_;
+  }
+  // On land the floor of the sea is the ground.
+  const bool is_relative = name == "relativeToGround" || name == "relativeToSeaFloor";
+  if (has_corners && is_relative && highest > 0.0) {
+    object.height = highest;
+    if (!is_extruded) ++raised_;
+  }
 }
 
 void MapReader::read_attributes(OGRFeature& feature, FileObject& object) {
@@ -162,25 +193,6 @@ void MapReader::read_attributes(OGRFeature& feature, FileObject& object) {
   object.id = std::to_string(feature.GetFID());
 }
 
-/// OSM's keys, which others use, too: wiki.openstreetmap.org/wiki/Simple_3D_Buildings.
-void MapReader::read_heights(FileObject& object) {
-  const auto number = [&](const char* key) -> std::optional<double> {
-    const auto found = object.attributes.find(key);
-    return found == object.attributes.end() ? std::nullopt : metres_of(found->second);
-  };
-  object.min_height = number("min_height");
-  if (!object.min_height && number("building:min_level")) {
-    object.min_height = storey * *number("building:min_level");
-  }
-  object.height = number("height");
-  if (object.height) {
-    ++by_height_;
-  } else if (const std::optional<double> levels = number("building:levels")) {
-    object.height = storey * *levels;
-    ++by_levels_;
-  }
-}
-
 void MapReader::read_geometry(const OGRGeometry& geometry, FileObject& object) {
   switch (wkbFlatten(geometry.getGeometryType())) {
     case wkbPolygon:
@@ -195,15 +207,91 @@ void MapReader::read_geometry(const OGRGeometry& geometry, FileObject& object) {
       for (const OGRPolygon* part : *geometry.toPolyhedralSurface()) read_polygon(*part, object);
       return;
     case wkbLineString:
-      if (driver_ == "DXF" && geometry.toLineString()->get_IsClosed() != 0) {
-        object.has_heights |= geometry.Is3D() != 0;
-        read_ring(*geometry.toLineString(), contents_.add_polygon(object));
-        return;
+      return read_line(*geometry.toLineString(), object);
+    case wkbMultiLineString:
+    case wkbMultiPoint:
+      for (const OGRGeometry* part : *geometry.toGeometryCollection()) read_geometry(*part, object);
+      return;
+    case wkbPoint:
+      if (may_state_height(object) || number_of(object, "extrude") != 0.0) {
+        return add_pole(*geometry.toPoint(), object);
       }
       [[fallthrough]];
     default:
-      ++others_;
+      leave_out(object);
   }
+}
+
+/// Closed lines of drawings are polygons, and those of OpenStreetMap that are parts of buildings or
+/// other structures. A line with a height is a wall.
+void MapReader::read_line(const OGRLineString& line, FileObject& object) {
+  const bool is_closed = line.get_IsClosed() != 0 && line.getNumPoints() > 3;
+  const bool is_part =
+      driver_ == "OSM" && (has_tag(object, "building:part") || has_tag(object, "building") ||
+                           has_tag(object, "man_made"));
+  if (is_closed && (driver_ == "DXF" || is_part)) {
+    object.has_heights |= line.Is3D() != 0;
+    if (++polygons_ > most_polygons) fail_file(file_, "has more than 50 million polygons");
+    read_ring(line, contents_.add_polygon(object));
+  } else if (may_state_height(object) || number_of(object, "extrude") != 0.0) {
+    add_wall(line, object);
+  } else {
+    leave_out(object);
+  }
+}
+
+void MapReader::leave_out(const FileObject& object) { ++(is_cable(object) ? cables_ : others_); }
+
+void MapReader::add_corner(double x, double y, double z) {
+  const Eigen::Vector3d corner(x, y, z);
+  if (!corner.allFinite()) fail_file(file_, "has a corner that is not finite");
+  if (contents_.corners.size() == most_corners) {
+    fail_file(file_, "has more than a thousand million corners");
+  }
+  contents_.corners.push_back(corner);
+}
+
+/// Eight corners around a circle, as wide as the object says that it is.
+void MapReader::add_pole(const OGRPoint& point, FileObject& object) {
+  object.is_thin = true;
+  object.has_heights |= point.Is3D() != 0;
+  double radius = pole_radius;
+  for (const char* key : {"diameter", "diameter_crown", "width"}) {
+    radius = std::max(radius, 0.5 * std::min(100.0, number_of(object, key)));
+  }
+  radius /= std::cos(M_PI / 8.0);
+  FilePolygon& polygon = contents_.add_polygon(object);
+  for (int i = 0; i < 8; ++i) {
+    const double angle = i * M_PI / 4.0;
+    add_corner(point.getX() + radius * units_per_metre_.x() * std::cos(angle),
+               point.getY() + radius * units_per_metre_.y() * std::sin(angle), point.getZ());
+  }
+  contents_.close_ring(polygon);
+  ++thin_;
+}
+
+/// A rectangle around each piece.
+void MapReader::add_wall(const OGRLineString& line, FileObject& object) {
+  object.is_thin = true;
+  object.has_heights |= line.Is3D() != 0;
+  for (int i = 0; i + 1 < line.getNumPoints(); ++i) {
+    const Eigen::Vector2d from(line.getX(i), line.getY(i)), to(line.getX(i + 1), line.getY(i + 1));
+    const Eigen::Vector2d metres = (to - from).cwiseQuotient(units_per_metre_);
+    if (!(metres.norm() > 0.0)) continue;
+    const Eigen::Vector2d along = metres.normalized() * wall_radius, across(-along.y(), along.x());
+    if (++polygons_ > most_polygons) fail_file(file_, "has more than 50 million polygons");
+    FilePolygon& polygon = contents_.add_polygon(object);
+    const auto add = [&](const Eigen::Vector2d& place, const Eigen::Vector2d& beside, double z) {
+      const Eigen::Vector2d corner = place + beside.cwiseProduct(units_per_metre_);
+      add_corner(corner.x(), corner.y(), z);
+    };
+    add(from, -along - across, line.getZ(i));
+    add(to, along - across, line.getZ(i + 1));
+    add(to, along + across, line.getZ(i + 1));
+    add(from, across - along, line.getZ(i));
+    contents_.close_ring(polygon);
+  }
+  ++thin_;
 }
 
 void MapReader::read_polygon(const OGRPolygon& polygon, FileObject& object) {
@@ -214,37 +302,43 @@ void MapReader::read_polygon(const OGRPolygon& polygon, FileObject& object) {
 }
 
 void MapReader::read_ring(const OGRSimpleCurve& ring, FilePolygon& polygon) {
-  if (contents_.corners.size() + static_cast<std::size_t>(ring.getNumPoints()) > most_corners) {
-    fail_file(file_, "has more than a thousand million corners");
-  }
   for (int i = 0; i < ring.getNumPoints(); ++i) {
-    const Eigen::Vector3d corner(ring.getX(i), ring.getY(i), ring.getZ(i));
-    if (!corner.allFinite()) fail_file(file_, "has a corner that is not finite");
-    contents_.corners.push_back(corner);
+    add_corner(ring.getX(i), ring.getY(i), ring.getZ(i));
   }
   contents_.close_ring(polygon);
 }
 
 void MapReader::add_notes() {
-  if (others_ > 0) {
-    contents_.notes.push_back(std::to_string(others_) + " points and lines left out");
+  std::vector<std::string> left_out;
+  const auto add = [&](std::size_t count, const char* what, std::vector<std::string>& notes) {
+    if (count > 0) notes.push_back(std::to_string(count) + what);
+  };
+  add(others_, " points and lines left out", left_out);
+  add(cables_, " power lines and cableways left out: they state no height", left_out);
+  add(no_structures_, " areas left out that are no building, part of one or other structure",
+      left_out);
+  add(without_geometry_, " objects left out whose geometry is empty or of no known kind", left_out);
+  if (contents_.objects.empty() && !left_out.empty()) {
+    std::string all;
+    for (const std::string& note : left_out) all += (all.empty() ? "" : ", ") + note;
+    fail_file(file_, "holds no outlines and nothing else with a height (" + all + ")");
   }
-  if (by_height_ > 0) {
-    contents_.notes.push_back(std::to_string(by_height_) + " outlines have a height of their own");
-  }
-  if (by_levels_ > 0) {
-    contents_.notes.push_back(std::to_string(by_levels_) +
-                              " outlines state levels alone: 3 m are taken for each");
-  }
+  contents_.notes.insert(contents_.notes.end(), left_out.begin(), left_out.end());
+  add(thin_, " points and lines with a height are poles and walls of 0.5 to 1 m", contents_.notes);
+  add(extruded_, " polygons with extrude reach from their altitude down to the ground",
+      contents_.notes);
+  add(raised_, " polygons above the ground without extrude are taken to stand on it",
+      contents_.notes);
 }
 
 }  // namespace
 
 extern "C" void skycap_read_map(const std::filesystem::path& file, const std::string& layer,
                                 FileContents& contents) {
-  const DatasetPtr dataset = open_dataset(
+  const OpenDataset dataset(
       file, GDAL_OF_VECTOR,
       {"GeoJSON", "GPKG", "ESRI Shapefile", "LIBKML", "KML", "OSM", "DXF", "FlatGeobuf"});
+  contents.notes = dataset.notes();
   MapReader(file, *dataset, contents).read(layer);
 }
 

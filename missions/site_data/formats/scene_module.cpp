@@ -1,11 +1,16 @@
 // Scenes by assimp; scene_file.cpp loads the module, in a process of its own.
 #include <algorithm>
+#include <array>
+#include <charconv>
 #include <cmath>
+#include <cstdint>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include <assimp/DefaultIOSystem.h>
 #include <assimp/Importer.hpp>
+#include <assimp/MemoryIOWrapper.h>
 #include <assimp/postprocess.h>
 #include <assimp/scene.h>
 
@@ -17,19 +22,57 @@ namespace {
 
 constexpr int deepest = 60;  ///< of nodes, as of objects in selection.cpp
 
-/// Opens files of one folder alone: buffers and materials beside a scene, and nothing that a scene
-/// names elsewhere.
+/// "%20" and the like as the characters that they stand for.
+std::string decoded(const std::string& name) {
+  std::string result;
+  for (std::size_t i = 0; i < name.size(); ++i) {
+    unsigned code = 0;
+    const bool is_code =
+        name[i] == '%' && i + 2 < name.size() &&
+        std::from_chars(&name[i + 1], &name[i + 1] + 2, code, 16).ptr == &name[i + 1] + 2;
+    result += is_code ? static_cast<char>(code) : name[i];
+    if (is_code) i += 2;
+  }
+  return result;
+}
+
+/// Opens files of one folder and those below it: buffers and materials of a scene, and nothing that
+/// a scene names elsewhere. Names may be those of addresses (RFC 3986).
 class OneFolder final : public Assimp::DefaultIOSystem {
  public:
   explicit OneFolder(const std::filesystem::path& file) : folder_(folder_of(file)) {}
 
   Assimp::IOStream* Open(const char* file, const char* mode) override {
     const bool is_for_reading = mode != nullptr && mode[0] == 'r';
-    if (!is_for_reading || folder_of(file) != folder_) return nullptr;
-    return Assimp::DefaultIOSystem::Open(file, mode);
+    if (!is_for_reading) return nullptr;
+    std::error_code failure;
+    std::string name = file;
+    if (!std::filesystem::exists(name, failure)) name = decoded(name);
+    if (!is_below(folder_of(name))) return nullptr;
+    Assimp::IOStream* const stream = Assimp::DefaultIOSystem::Open(name.c_str(), mode);
+    return stream == nullptr ? nullptr : without_mark(stream);
   }
 
  private:
+  bool is_below(const std::filesystem::path& folder) const {
+    return std::mismatch(folder_.begin(), folder_.end(), folder.begin(), folder.end()).first ==
+           folder_.end();
+  }
+  /// A text with a mark of UTF-8 is handed on without it: most of assimp's readers do not know it.
+  static Assimp::IOStream* without_mark(Assimp::IOStream* stream) {
+    std::array<char, 3> beginning{};
+    const bool is_marked = stream->Read(beginning.data(), 1, 3) == 3 &&
+                           std::string_view(beginning.data(), 3) == "\xEF\xBB\xBF";
+    if (!is_marked) {
+      stream->Seek(0, aiOrigin_SET);
+      return stream;
+    }
+    const std::size_t size = stream->FileSize() - 3;
+    auto* const bytes = new std::uint8_t[size];  // its owner is the stream
+    const std::size_t read = stream->Read(bytes, 1, size);
+    delete stream;
+    return new Assimp::MemoryIOStream(bytes, read, true);
+  }
   /// Links are followed, so that none leads out.
   static std::filesystem::path folder_of(const std::filesystem::path& file) {
     std::error_code failure;

@@ -236,7 +236,7 @@ TEST(CloudIo, SaysWhatIsWrongWithAPcdFile) {
       {head + "DATA zipped\n", "DATA is 'zipped'; it must be ascii, binary or"},
       {head + "DATA ascii\n1 2 3\n", "ends after 1 of its 2 points"},
       {head + "DATA ascii\n1 2 3\n1 2\n", "line 10: ends where z is expected"},
-      {head + "DATA ascii\n1 2 3\n1 2 inf\n", "point 1 has a coordinate that is not a finite"},
+      {head + "DATA ascii\n1 nan 3\n1 2 inf\n", "holds no points but 2 that are NaN or infinite"},
       {head + "DATA ascii\n1 2 3\n1 2 1e9\n", "coordinates must be local"},
       {head + "DATA binary\n" + std::string(13, '\0'), "ends after 1 of its 2 points"},
       {head + "DATA binary_compressed\n1234", "ends before its compressed data"},
@@ -266,14 +266,15 @@ TEST(CloudIo, SaysWhatIsWrongWithAFile) {
        "holds no points"},
       {"word.xyz", "1 2 3\n1 two 3\n", "line 2: 'two' stands where a coordinate is expected"},
       {"short.xyz", "1 2\n", "line 1: ends where a coordinate is expected"},
-      {"nan.ply", head + "end_header\n0 nan 0\n", "point 0 has a coordinate that is not a finite"},
+      {"nan.ply", head + "end_header\n0 nan 0\n", "holds no points but 1 that are NaN or infinite"},
       {"far.ply", head + "end_header\n0 4512345.5 0\n", "coordinates must be local"},
       {"view.ply", head + "property float view\nend_header\n0 0 0 1.5\n",
        "point 0 has the view 1.5"},
       {"faces.ply", "ply\nformat ascii 1.0\nelement face 0\nproperty int a\nend_header\n",
        "there is no element 'vertex'"},
       {"cloud.doc", "ASTM",
-       "a cloud file must end in .ply, .pcd, .las, .laz, .e57, .xyz, .txt or .asc"},
+       "a cloud file must end in .ply, .pcd, .las, .laz, .e57, .xyz, .txt, .asc, .pts or "
+       ".csv"},
   };
   for (const auto& broken : cases) {
     EXPECT_THAT([&] { read_cloud(folder.file(broken.name, broken.bytes)); },
@@ -337,10 +338,14 @@ TEST(ReadPositions, CountsThePointsOfAllPieces) {
   const TemporaryFolder folder;
   AttributedCloud cloud;
   cloud.positions.assign(1'200'000, Vector3f::Zero());
+  cloud.positions[5].x() = std::numeric_limits<float>::infinity();
   cloud.positions[1'100'000].y() = std::numeric_limits<float>::quiet_NaN();
   write_cloud(folder.path() / "long.ply", columns_of(cloud));
-  EXPECT_THAT([&] { read_positions(folder.path() / "long.ply", [](auto&&...) {}); },
-              testing::ThrowsMessage<Error>(HasSubstr("point 1100000 has a coordinate that is")));
+  EXPECT_EQ(read_positions(folder.path() / "long.ply", [](auto&&...) {}), 2U);
+  cloud.positions[1'100'001].y() = 20'000.0F;
+  write_cloud(folder.path() / "far.ply", columns_of(cloud));
+  EXPECT_THAT([&] { read_positions(folder.path() / "far.ply", [](auto&&...) {}); },
+              testing::ThrowsMessage<Error>(HasSubstr("point 1100001 is 20000")));
 }
 
 }  // namespace

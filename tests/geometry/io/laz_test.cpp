@@ -37,12 +37,12 @@ Eigen::Vector3d position_of(int i) {
           (i / 10 * 3 + i % 4 * 150) * 0.001};
 }
 
-std::array<std::uint8_t, 3> colour_of(int i) {
+std::array<std::uint16_t, 3> colour_of(int i) {
   const int red = 256 * (i % 200) + i % 7;
   const int green = i % 3 == 0 ? red : 65535 - red;
   const int blue = i % 3 == 0 ? red : (green + i) % 65536;
-  const auto high = [](int channel) { return static_cast<std::uint8_t>(channel >> 8); };
-  return {high(red), high(green), high(blue)};
+  const auto word = [](int channel) { return static_cast<std::uint16_t>(channel); };
+  return {word(red), word(green), word(blue)};
 }
 
 /// Reads in pieces of so many points, and compares with the formula; every 60th is withheld.

@@ -35,6 +35,7 @@ TEST(PriorKeys, SayAllThatASourceHas) {
       "    role: target\n"
       "    base: terrain\n"
       "    height: 18\n"
+      "    height_attribute: HEIGHT_M\n"
       "    uncertainty: 1.5\n"
       "    select: {attribute: {use: church}, layer: roofs, within: area.geojson}\n"
       "  - {file: scan.laz, role: truth, crs: 'EPSG:25832+7837', vertical: geoid,\n"
@@ -49,6 +50,7 @@ TEST(PriorKeys, SayAllThatASourceHas) {
   EXPECT_EQ(sources[0].select.lod, 2.0);
   EXPECT_TRUE(sources[1].base_on_terrain);
   EXPECT_EQ(sources[1].height, 18.0);
+  EXPECT_EQ(sources[1].height_attribute, "HEIGHT_M");
   EXPECT_EQ(sources[1].uncertainty, 1.5);
   EXPECT_EQ(sources[1].select.attributes.at("use"), "church");
   EXPECT_EQ(sources[1].select.layer, "roofs");

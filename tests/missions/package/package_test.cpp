@@ -12,7 +12,7 @@
 
 #include "geometry/error.h"
 #include "geometry/io/cloud_io.h"
-#include "geometry/io/ply.h"
+#include "geometry/io/text/ply.h"
 #include "geometry/place/pose.h"
 #include "missions/config/resolve.h"
 #include "missions/evaluation/coverage.h"

@@ -1,4 +1,4 @@
-#include "geometry/io/ply.h"
+#include "geometry/io/text/ply.h"
 
 #include <algorithm>
 #include <array>
@@ -9,7 +9,7 @@
 #include <utility>
 
 #include "geometry/error.h"
-#include "geometry/io/text_scanner.h"
+#include "geometry/io/text/text_scanner.h"
 
 namespace skycap::geometry {
 namespace {
@@ -133,6 +133,17 @@ struct PlyReader::Rows {
   std::uint64_t begin, end;
 };
 
+namespace {
+
+/// Whether the line 'ply' ends with \r alone, as old programs of the Macintosh have it.
+bool ends_lines_with_return(std::string_view bytes) {
+  const std::size_t end = bytes.find_first_of("\r\n");
+  return end != std::string_view::npos && bytes[end] == '\r' &&
+         !bytes.substr(end).starts_with("\r\n");
+}
+
+}  // namespace
+
 PlyReader::PlyReader(std::string_view name, std::string_view bytes) : name_(name), bytes_(bytes) {
   read_header();
 }
@@ -180,9 +191,13 @@ void PlyReader::read_header() {
     }
   }
   if (!has_format) scanner.fail("the header must have a line 'format ...'");
+  const std::size_t end = bytes_.size() - scanner.remaining();
   scanner.next_line();
   at_ = bytes_.size() - scanner.remaining();
   line_ = scanner.line();
+  // Where lines end with \r alone, a first byte of data that is \n belongs to the data.
+  const bool has_bare_returns = format_ != Format::ascii && ends_lines_with_return(bytes_);
+  if (has_bare_returns && bytes_.substr(end, at_ - end).ends_with("\r\n")) --at_;
 }
 
 PlyReader::Wanted PlyReader::wanted_of(const PlyElement& element,
@@ -199,9 +214,6 @@ PlyReader::Wanted PlyReader::wanted_of(const PlyElement& element,
     if (!property.count_type) {
       wanted.column[p] = static_cast<int>(name - names.begin());
     } else if (wanted.list == element.properties.size()) {
-      if (!is_integer(property.type)) {
-        fail("the list '" + property.name + "' must be of an integer type");
-      }
       wanted.list = p;
     }
   }
@@ -259,6 +271,15 @@ void PlyReader::require_short(const Rows& rows, const PlyTable& table, std::uint
   if (values <= longest_ply_list) return;
   fail(rows.element.name + " " + std::to_string(rows.begin + table.rows) + " has a list of " +
        std::to_string(values) + " values; at most 1e6 are read");
+}
+
+std::int64_t PlyReader::index_of(const Rows& rows, double value) const {
+  constexpr double most = 1e15;  // whole numbers are exact up to here
+  if (std::abs(value) <= most && value == std::floor(value)) {
+    return static_cast<std::int64_t>(value);
+  }
+  fail(rows.element.name + " has a list with " + std::to_string(value) +
+       "; its values must be whole numbers");
 }
 
 void PlyReader::read_scalars(const Rows& rows, const Wanted& wanted, PlyTable& table) {
@@ -320,7 +341,7 @@ void PlyReader::read_binary(const Rows& rows, const Wanted& wanted, PlyTable& ta
       if (p != wanted.list) continue;
       require_short(rows, table, values);
       for (std::size_t i = 0; i < values; ++i) {
-        table.list_values.push_back(static_cast<std::int64_t>(load(type, start + i * size, swap)));
+        table.list_values.push_back(index_of(rows, load(type, start + i * size, swap)));
       }
       table.list_begin.push_back(table.list_values.size());
     }
@@ -347,7 +368,10 @@ void PlyReader::read_ascii(const Rows& rows, const Wanted& wanted, PlyTable& tab
       for (std::uint32_t i = 0; i < count; ++i) {
         const auto word = scanner.word();
         if (p != wanted.list && word) continue;
-        const auto value = scanner.number<std::int64_t>(word, "an index");
+        // Some programs write indices as real numbers.
+        const auto value = is_integer(property.type)
+                               ? scanner.number<std::int64_t>(word, "an index")
+                               : index_of(rows, scanner.number<double>(word, "an index"));
         if (p == wanted.list) table.list_values.push_back(value);
       }
       if (p == wanted.list) table.list_begin.push_back(table.list_values.size());

@@ -65,6 +65,7 @@ class PlyReader {
   void pass_rows(std::uint64_t count);
   void read_scalars(const Rows& rows, const Wanted& wanted, PlyTable& table);
   void require_short(const Rows& rows, const PlyTable& table, std::uint64_t values) const;
+  std::int64_t index_of(const Rows& rows, double value) const;
   void read_binary(const Rows& rows, const Wanted& wanted, PlyTable& table);
   void read_ascii(const Rows& rows, const Wanted& wanted, PlyTable& table);
   [[noreturn]] void fail_within(const PlyElement& element, std::uint64_t row) const;

@@ -1,0 +1,143 @@
+// Wavefront OBJ: polygons and their materials.
+#include <limits>
+#include <optional>
+#include <string>
+#include <unordered_map>
+
+#include "geometry/io/mesh_formats.h"
+#include "geometry/io/text/text_scanner.h"
+
+namespace skycap::geometry {
+namespace {
+
+using std::string_view;
+
+/// A name up to a comment, whose sign has blanks around it. "Glass #2" is a name.
+string_view without_comment(string_view name) {
+  const auto is_blank = [](char c) { return c == ' ' || c == '\t'; };
+  for (std::size_t i = 1; i + 1 < name.size(); ++i) {
+    if (name[i] == '#' && is_blank(name[i - 1]) && is_blank(name[i + 1])) {
+      return trimmed(name.substr(0, i));
+    }
+  }
+  return name;
+}
+
+class ObjReader {
+ public:
+  ObjReader(string_view name, string_view text, const MeshLimits& limits)
+      : scanner_(name, text), most_materials_(limits.materials), polygons_(name, limits) {}
+
+  PolygonSoup read() {
+    do {
+      const auto keyword = scanner_.word_in_line();
+      if (!keyword || keyword->starts_with('#')) continue;
+      read_statement(*keyword);
+    } while (scanner_.next_line());
+    check_corners();
+    return std::move(soup_);
+  }
+
+ private:
+  void read_statement(string_view keyword) {
+    if (keyword == "v" || keyword == "V") return read_vertex();
+    if (keyword == "f" || keyword == "F" || keyword == "fo") return read_face();
+    if (keyword == "usemtl") return read_material();
+    if (keyword == "surf") {
+      scanner_.fail("free-form surfaces (surf) are not read; save the model as polygons");
+    }
+    if (keyword == "call" || keyword == "csh") {
+      scanner_.fail("'" + std::string(keyword) +
+                    "' includes another file, which is not read; save the model as one file");
+    }
+  }
+
+  /// The next word of a statement, which goes on in the next line behind a backslash.
+  std::optional<string_view> next() {
+    while (true) {
+      auto word = scanner_.word_in_line();
+      if (!word || word->starts_with('#')) return std::nullopt;
+      if (!word->ends_with('\\')) return word;
+      word->remove_suffix(1);
+      const bool has_more = scanner_.next_line();
+      if (!word->empty()) return word;
+      if (!has_more) return std::nullopt;
+    }
+  }
+
+  void read_vertex() {
+    Eigen::Vector3d vertex;
+    for (double& coordinate : vertex) {
+      coordinate = scanner_.number<double>(next(), "a coordinate");
+    }
+    polygons_.add_vertex(vertex);
+  }
+
+  void read_material() {
+    // Faces before the first one have the material without a name.
+    if (soup_.materials.empty() && !lines_.empty()) use_material("");
+    soup_.polygon_materials.resize(lines_.size(), 0);
+    use_material(std::string(without_comment(scanner_.rest_of_line())));
+  }
+
+  void use_material(const std::string& wanted) {
+    const auto number = static_cast<std::uint32_t>(soup_.materials.size());
+    const auto [known, is_new] = materials_.emplace(wanted, number);
+    if (is_new && number == most_materials_) {
+      scanner_.fail("names more than " + std::to_string(most_materials_) + " materials");
+    }
+    material_ = known->second;
+    if (is_new) soup_.materials.push_back(wanted);
+  }
+
+  void read_face() {
+    if (!soup_.materials.empty()) soup_.polygon_materials.push_back(material_);
+    lines_.push_back(static_cast<std::uint32_t>(scanner_.line()));
+    while (const auto corner = next()) polygons_.add_corner(vertex_of(*corner));
+    polygons_.close_polygon();
+  }
+
+  std::uint32_t vertex_of(string_view corner) {
+    const auto position = corner.substr(0, corner.find('/'));
+    const auto index = scanner_.number<std::int64_t>(position, "a vertex index");
+    // Counted from 1, or backwards from the latest vertex.
+    const auto count = static_cast<std::int64_t>(soup_.vertices.size());
+    const std::int64_t vertex = index > 0 ? index - 1 : index + count;
+    if (index == 0 || vertex < 0 || vertex > std::numeric_limits<std::uint32_t>::max()) {
+      scanner_.fail("the face names vertex " + std::to_string(index) + ", but the " +
+                    std::to_string(count) + " vertices so far are counted from 1, or from -1 " +
+                    "backwards");
+    }
+    return static_cast<std::uint32_t>(vertex);
+  }
+
+  /// Faces may come before their vertices.
+  void check_corners() const {
+    for (std::size_t polygon = 0; polygon < lines_.size(); ++polygon) {
+      for (std::size_t i = soup_.polygon_begin[polygon]; i < soup_.polygon_begin[polygon + 1];
+           ++i) {
+        if (soup_.corners[i] < soup_.vertices.size()) continue;
+        scanner_.fail_at(lines_[polygon], "the face names vertex " +
+                                              std::to_string(soup_.corners[i] + std::uint64_t{1}) +
+                                              ", but there are only " +
+                                              std::to_string(soup_.vertices.size()));
+      }
+    }
+  }
+
+  TextScanner scanner_;
+  std::size_t most_materials_;
+  BoundedSoup polygons_;
+  PolygonSoup& soup_ = polygons_.soup();
+  std::vector<std::uint32_t> lines_;  // of each polygon, for the check of its corners
+  std::uint32_t material_ = 0;
+  std::unordered_map<std::string, std::uint32_t> materials_;  // numbers by names
+};
+
+}  // namespace
+
+PolygonSoup parse_obj(string_view name, string_view text, const MeshLimits& limits) {
+  return ObjReader(name, text, limits).read();
+}
+
+}  // namespace skycap::geometry

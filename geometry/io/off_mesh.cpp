@@ -1,0 +1,172 @@
+// OFF of Geomview and ModelNet: free-form, or a line for each vertex and face.
+#include <algorithm>
+#include <optional>
+#include <string>
+
+#include "geometry/io/mesh_formats.h"
+#include "geometry/io/text/text_scanner.h"
+
+namespace skycap::geometry {
+namespace {
+
+using std::string_view;
+
+/// What stands before the counts.
+struct OffHeader {
+  std::size_t more_of_vertex = 0;  ///< numbers behind the coordinates: normal, colour, texture
+  std::string_view glued;          ///< the first count, if it stands in one word with the format
+};
+
+/// The first word, such as "OFF", "COFF", "STNOFF" or ModelNet's "OFF8".
+std::optional<OffHeader> header_of(string_view word) {
+  OffHeader header;
+  const auto take = [&](string_view prefix, std::size_t numbers) {
+    if (!word.starts_with(prefix)) return;
+    word.remove_prefix(prefix.size());
+    header.more_of_vertex += numbers;
+  };
+  take("ST", 2);
+  take("C", 4);
+  take("N", 3);
+  if (!word.starts_with("OFF") && !word.starts_with("off")) return std::nullopt;
+  header.glued = word.substr(3);
+  if (header.glued.find_first_not_of("0123456789") != string_view::npos) return std::nullopt;
+  return header;
+}
+
+class OffReader {
+ public:
+  OffReader(string_view name, string_view text, const MeshLimits& limits)
+      : scanner_(name, text), soup_(name, limits) {}
+
+  PolygonSoup read() {
+    read_header();
+    has_own_lines_ = has_line_for_each();
+    for (std::uint64_t v = 0; v < vertices_; ++v) read_vertex();
+    for (std::uint64_t face = 0; face < faces_; ++face) read_face();
+    return std::move(soup_.soup());
+  }
+
+ private:
+  /// The next word anywhere that belongs to no comment.
+  std::optional<string_view> next() {
+    while (true) {
+      const auto word = scanner_.word();
+      if (!word || !word->starts_with('#')) return word;
+      scanner_.next_line();
+    }
+  }
+
+  /// The next word, of this line where each thing has one of its own.
+  std::optional<string_view> next_of_thing() {
+    if (!has_own_lines_) return next();
+    const auto word = scanner_.word_in_line();
+    return word && word->starts_with('#') ? std::nullopt : word;
+  }
+
+  void read_header() {
+    const auto word = next();
+    const std::optional<OffHeader> header = header_of(word.value_or(""));
+    if (!header) {
+      scanner_.fail("an OFF file of points in space begins with 'OFF', 'COFF', 'NOFF' or 'STOFF'");
+    }
+    header_ = *header;
+    const auto count = header_.glued.empty() ? next() : std::optional(header_.glued);
+    if (count == "BINARY") {
+      scanner_.fail("binary OFF is not read; save it as ascii OFF or as PLY");
+    }
+    vertices_ = scanner_.number<std::uint64_t>(count, "the number of vertices");
+    faces_ = scanner_.number<std::uint64_t>(next(), "the number of faces");
+    // A vertex takes 6 characters or more, a face 2.
+    if (vertices_ > scanner_.remaining() / 6 + 1 || faces_ > scanner_.remaining() / 2 + 1) {
+      scanner_.fail(std::to_string(vertices_) + " vertices and " + std::to_string(faces_) +
+                    " faces are promised, but the file is too short for so many");
+    }
+    skip_edges();
+    soup_.require(vertices_, faces_);
+    soup_.soup().vertices.reserve(vertices_);
+  }
+
+  /// The number of edges, which is mostly wrong and may be left out.
+  void skip_edges() {
+    TextScanner ahead = scanner_;
+    const auto edges = ahead.word_in_line();
+    if (edges && !edges->starts_with('#')) scanner_ = ahead;
+    if (edges) return;
+    // In a line of its own only if nothing else is there.
+    ahead = scanner_;
+    ahead.next_line();
+    const auto first = ahead.word_in_line();
+    const bool is_count = first && first->find_first_not_of("0123456789") == string_view::npos;
+    if (is_count && !ahead.word_in_line()) scanner_ = ahead;
+  }
+
+  /// Whether there are as many lines as vertices and faces, of which the first is a vertex's.
+  bool has_line_for_each() const {
+    TextScanner ahead = scanner_;
+    std::uint64_t lines = 0, numbers_of_first = 0;
+    while (ahead.next_line()) {
+      const auto word = ahead.word_in_line();
+      if (!word || word->starts_with('#')) continue;
+      if (lines++ == 0) {
+        numbers_of_first = 1;
+        for (auto more = ahead.word_in_line(); more && !more->starts_with('#');
+             more = ahead.word_in_line()) {
+          ++numbers_of_first;
+        }
+      }
+      if (lines == vertices_ + faces_) break;
+    }
+    // What is cut short is to be told so by its line.
+    const bool is_short = lines < vertices_ + faces_;
+    return numbers_of_first >= 3 && (!is_short || numbers_of_first < 6);
+  }
+
+  /// Goes to the next line that holds something, where each thing has one of its own.
+  void begin_thing() {
+    if (!has_own_lines_) return;
+    while (scanner_.next_line()) {
+      TextScanner ahead = scanner_;
+      const auto word = ahead.word_in_line();
+      if (word && !word->starts_with('#')) return;
+    }
+  }
+
+  void read_vertex() {
+    begin_thing();
+    Eigen::Vector3d vertex;
+    for (double& coordinate : vertex) {
+      coordinate = scanner_.number<double>(next_of_thing(), "a coordinate");
+    }
+    for (std::size_t i = 0; i < header_.more_of_vertex && !has_own_lines_; ++i) next();
+    soup_.add_vertex(vertex);
+  }
+
+  void read_face() {
+    begin_thing();
+    const auto corners =
+        scanner_.number<std::uint32_t>(next_of_thing(), "the number of a face's corners");
+    for (std::uint32_t i = 0; i < corners; ++i) {
+      const auto vertex = scanner_.number<std::int64_t>(next_of_thing(), "a vertex index");
+      if (vertex < 0 || static_cast<std::uint64_t>(vertex) >= vertices_) {
+        scanner_.fail("the face " + no_such_vertex(vertex, vertices_));
+      }
+      soup_.add_corner(static_cast<std::uint32_t>(vertex));
+    }
+    soup_.close_polygon();
+  }
+
+  TextScanner scanner_;
+  BoundedSoup soup_;
+  OffHeader header_;
+  std::uint64_t vertices_ = 0, faces_ = 0;
+  bool has_own_lines_ = true;
+};
+
+}  // namespace
+
+PolygonSoup parse_off(string_view name, string_view text, const MeshLimits& limits) {
+  return OffReader(name, text, limits).read();
+}
+
+}  // namespace skycap::geometry

@@ -1,0 +1,113 @@
+/// Words and numbers of a text file, with the line they are on for messages. For readers' sources.
+/// A mark of UTF-8 at the beginning is passed over; lines end with \n, \r\n or \r.
+#pragma once
+
+#include <charconv>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <type_traits>
+
+#include "geometry/error.h"
+#include "geometry/io/text/plain_text.h"
+
+namespace skycap::geometry {
+
+class TextScanner {
+ public:
+  /// `name` (a path) opens every message. Both must outlive the scanner.
+  TextScanner(std::string_view name, std::string_view text, std::size_t first_line = 1)
+      : name_(name), text_(text), line_(first_line) {
+    if (first_line == 1) at_ = text.size() - without_mark(text).size();
+  }
+
+  std::size_t line() const { return line_; }
+  std::size_t remaining() const { return text_.size() - at_; }
+
+  /// The next word, on this line or a later one; nothing at the end of the text.
+  std::optional<std::string_view> word() {
+    while (true) {
+      if (const auto found = word_in_line()) return found;
+      if (!next_line()) return std::nullopt;
+    }
+  }
+
+  /// The next word on this line; nothing at its end.
+  std::optional<std::string_view> word_in_line() {
+    while (at_ < text_.size() && is_blank(text_[at_])) ++at_;
+    const std::size_t begin = at_;
+    while (at_ < text_.size() && !is_blank(text_[at_]) && !is_line_end(text_[at_])) ++at_;
+    if (at_ == begin) return std::nullopt;
+    return text_.substr(begin, at_ - begin);
+  }
+
+  /// What is left of this line, without blanks around it.
+  std::string_view rest_of_line() {
+    const std::size_t begin = at_;
+    at_ = end_of_line();
+    return trimmed(text_.substr(begin, at_ - begin));
+  }
+
+  /// Goes to the start of the next line; false if there is none.
+  bool next_line() {
+    const std::size_t end = end_of_line();
+    at_ = end;
+    if (end == text_.size()) return false;
+    at_ += text_.substr(end).starts_with("\r\n") ? 2 : 1;
+    ++line_;
+    return at_ < text_.size();
+  }
+
+  /// `word` as a number; `what` names it in the message, as in "a coordinate". Real numbers may be
+  /// NaN or infinite.
+  template <typename Number>
+  Number number(std::optional<std::string_view> word, std::string_view what) const {
+    if (!word) fail("ends where " + std::string(what) + " is expected");
+    if constexpr (std::is_floating_point_v<Number>) {
+      if (const auto value = number_in(*word)) return static_cast<Number>(*value);
+    } else {
+      std::string_view digits = *word;
+      if (digits.starts_with('+')) digits.remove_prefix(1);
+      Number value{};
+      const auto [end, error] =
+          std::from_chars(digits.data(), digits.data() + digits.size(), value);
+      if (error == std::errc() && end == digits.data() + digits.size()) return value;
+    }
+    fail_of(*word, what);
+  }
+
+  /// The message for a word that stands where something else is expected.
+  [[noreturn]] void fail_of(std::string_view word, std::string_view what) const {
+    const std::string quoted = "'" + std::string(word.substr(0, 40)) + "'";
+    if (has_decimal_comma(word)) {
+      fail(quoted + " has a comma for the decimal point; write numbers with points");
+    }
+    fail(quoted + " stands where " + std::string(what) + " is expected");
+  }
+
+  [[noreturn]] void fail(const std::string& what) const { fail_at(line_, what); }
+  [[noreturn]] void fail_at(std::size_t line, const std::string& what) const {
+    throw Error(ErrorKind::bad_file,
+                std::string(name_) + ": line " + std::to_string(line) + ": " + what);
+  }
+
+ private:
+  static bool is_blank(char c) { return c == ' ' || c == '\t' || c == '\f' || c == '\v'; }
+  static bool is_line_end(char c) { return c == '\n' || c == '\r'; }
+  /// Where the line's end is, or the text's.
+  std::size_t end_of_line() const {
+    std::size_t end = at_;
+    while (end < text_.size() && !is_line_end(text_[end])) ++end;
+    return end;
+  }
+
+  std::string_view name_;
+  std::string_view text_;
+  std::size_t at_ = 0;
+  std::size_t line_;
+};
+
+}  // namespace skycap::geometry

@@ -1,0 +1,265 @@
+// Clouds as text: what CloudCompare, laser scanners and spreadsheets write.
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "geometry/io/cloud_parsers.h"
+#include "geometry/io/text/text_scanner.h"
+
+namespace skycap::geometry {
+namespace {
+
+namespace fs = std::filesystem;
+using std::string_view;
+
+/// More numbers than any point has: the ends of the lines are lost.
+constexpr std::size_t most_columns = 200;
+
+/// How the lines of a file are made up.
+struct Layout {
+  char separator = ' ';  ///< ' ', ',' or ';'; blanks may stand beside it
+  bool has_decimal_commas = false;
+  std::array<std::size_t, 3> columns{0, 1, 2};  ///< of x, y and z
+
+  bool is_plain() const {
+    return separator == ' ' && !has_decimal_commas &&
+           columns == std::array<std::size_t, 3>{0, 1, 2};
+  }
+};
+
+string_view without_quotes(string_view text) {
+  text = trimmed(text);
+  if (text.size() >= 2 && (text.front() == '"' || text.front() == '\'') &&
+      text.front() == text.back()) {
+    text = trimmed(text.substr(1, text.size() - 2));
+  }
+  return text;
+}
+
+std::vector<string_view> fields_of(string_view line, char separator) {
+  std::vector<string_view> fields;
+  if (separator == ' ') {
+    constexpr string_view blanks = " \t\f\v";
+    for (std::size_t begin = line.find_first_not_of(blanks); begin != string_view::npos;) {
+      const std::size_t end = std::min(line.find_first_of(blanks, begin), line.size());
+      fields.push_back(without_quotes(line.substr(begin, end - begin)));
+      begin = line.find_first_not_of(blanks, end);
+    }
+    return fields;
+  }
+  for (std::size_t begin = 0; begin <= line.size();) {
+    const std::size_t end = std::min(line.find(separator, begin), line.size());
+    fields.push_back(without_quotes(line.substr(begin, end - begin)));
+    begin = end + 1;
+  }
+  return fields;
+}
+
+/// By a line of a point or of a header.
+Layout layout_of(string_view line) {
+  Layout layout;
+  if (line.find(';') != string_view::npos) {
+    layout.separator = ';';
+    layout.has_decimal_commas = true;
+    return layout;
+  }
+  if (line.find(',') == string_view::npos) return layout;
+  const std::vector<string_view> words = fields_of(line, ' ');
+  const auto is_number = [](string_view word) {
+    return !word.starts_with(',') && !word.ends_with(',') && number_with_comma(word).has_value();
+  };
+  const bool has_blanks =
+      words.size() >= 3 && std::all_of(words.begin(), words.begin() + 3, is_number);
+  if (!has_blanks) layout.separator = ',';
+  layout.has_decimal_commas =
+      has_blanks && std::any_of(words.begin(), words.begin() + 3, has_decimal_comma);
+  return layout;
+}
+
+/// The name of a column without its unit: "x" of "//X[m]".
+std::string column_name(string_view field) {
+  const std::size_t begin = field.find_first_not_of("/#");
+  field = without_quotes(field.substr(std::min(begin, field.size())));
+  return lower_case(trimmed(field.substr(0, field.find_first_of("[("))));
+}
+
+std::optional<std::array<std::size_t, 3>> columns_named(const std::vector<string_view>& fields) {
+  constexpr std::array<std::array<string_view, 3>, 3> names{
+      {{"x", "east", "easting"}, {"y", "north", "northing"}, {"z", "height", "elevation"}}};
+  std::array<std::size_t, 3> columns{};
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    bool is_there = false;
+    for (const string_view name : names[axis]) {
+      for (std::size_t i = 0; i < fields.size() && !is_there; ++i) {
+        if (column_name(fields[i]) != name) continue;
+        columns[axis] = i;
+        is_there = true;
+      }
+    }
+    if (!is_there) return std::nullopt;
+  }
+  return columns;
+}
+
+bool is_count(string_view line) {
+  return !line.empty() && line.size() < 19 &&
+         line.find_first_not_of("0123456789") == string_view::npos;
+}
+
+class TextCloud {
+ public:
+  TextCloud(const fs::path& path, string_view text, const TakeTextPiece& take)
+      : path_(path), name_(path.string()), text_(text), scanner_(name_, text), take_(take) {}
+
+  std::size_t read() {
+    do {
+      const auto first = scanner_.word_in_line();
+      if (!first) continue;
+      if (first->starts_with('#') || first->starts_with("//")) {
+        read_comment(*first);
+      } else if (layout_ && layout_->is_plain()) {
+        read_plain_point(*first);
+      } else {
+        read_line(*first);
+      }
+    } while (scanner_.next_line());
+    hand_on();
+    require_all();
+    return skipped_;
+  }
+
+ private:
+  /// A comment before the first point may name the columns.
+  void read_comment(string_view first) {
+    if (layout_) return;
+    const string_view line = whole_line(first);
+    const string_view names = line.substr(std::min(line.find_first_not_of("/# \t"), line.size()));
+    const std::vector<string_view> fields = fields_of(names, layout_of(names).separator);
+    if (const auto columns = columns_named(fields)) {
+      named_columns_ = columns;
+      named_fields_ = fields.size();
+    }
+  }
+
+  string_view whole_line(string_view first) {
+    const string_view rest = scanner_.rest_of_line();
+    const char* const end = rest.empty() ? first.data() + first.size() : rest.data() + rest.size();
+    return {first.data(), static_cast<std::size_t>(end - first.data())};
+  }
+
+  void read_plain_point(string_view first) {
+    std::array<double, 3> place{};
+    place[0] = scanner_.number<double>(first, "a coordinate");
+    const auto second = scanner_.word_in_line();
+    if (!second && has_count_ && is_count(first)) return add_count(first);
+    place[1] = scanner_.number<double>(second, "a coordinate");
+    place[2] = scanner_.number<double>(scanner_.word_in_line(), "a coordinate");
+    add(place);
+  }
+
+  void read_line(string_view first) {
+    const string_view line = whole_line(first);
+    if (is_count(line)) return add_count(line);
+    if (!layout_) {
+      if (read_header(line)) return;
+      layout_ = layout_of(line);
+      // A comment that names x, y and z is a header only if it has a name for each column.
+      const std::size_t count = fields_of(line, layout_->separator).size();
+      const bool is_named = named_columns_ && (has_header_ || named_fields_ == count);
+      if (is_named) layout_->columns = *named_columns_;
+    }
+    const std::vector<string_view> fields = fields_of(line, layout_->separator);
+    if (fields.size() > most_columns) {
+      scanner_.fail("has " + std::to_string(fields.size()) +
+                    " numbers; a text cloud has one point in a line");
+    }
+    std::array<double, 3> place{};
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      const std::size_t column = layout_->columns[axis];
+      if (column >= fields.size() || fields[column].empty()) {
+        scanner_.fail("ends where a coordinate is expected");
+      }
+      const auto value = layout_->has_decimal_commas ? number_with_comma(fields[column])
+                                                     : number_in(fields[column]);
+      if (!value) scanner_.fail_of(fields[column], "a coordinate");
+      place[axis] = *value;
+    }
+    columns_of_last_ = fields.size();
+    add(place);
+  }
+
+  /// Whether the line, the first that holds something, names the columns.
+  bool read_header(string_view line) {
+    if (has_header_) return false;
+    const std::vector<string_view> fields = fields_of(line, layout_of(line).separator);
+    const auto is_number = [](string_view field) { return number_with_comma(field).has_value(); };
+    if (fields.size() < 3 || std::ranges::any_of(fields, is_number)) return false;
+    has_header_ = true;
+    const auto columns = columns_named(fields);
+    if (!columns) scanner_.fail("is a header that does not name the columns x, y and z");
+    named_columns_ = columns;
+    return true;
+  }
+
+  void add_count(string_view line) {
+    const bool is_second = has_count_ && points_ + skipped_ == 0;
+    if (is_second) {
+      scanner_.fail(
+          "is a second number alone, as in PTX, which is not read; save it as E57 or PTS");
+    }
+    has_count_ = true;
+    declared_ += std::stoull(std::string(line));
+  }
+
+  void add(const std::array<double, 3>& place) {
+    if (!std::isfinite(place[0]) || !std::isfinite(place[1]) || !std::isfinite(place[2])) {
+      ++skipped_;
+      return;
+    }
+    piece_.push_back(cloud_position(path_, points_ + skipped_, place[0], place[1], place[2]));
+    ++points_;
+    if (piece_.size() == piece_size) hand_on();
+  }
+
+  void hand_on() {
+    if (!piece_.empty()) take_(piece_, text_.size() - scanner_.remaining());
+    piece_.clear();
+  }
+
+  void require_all() const {
+    if (points_ + skipped_ < declared_) {
+      fail_cloud(path_, "ends after " + std::to_string(points_ + skipped_) + " of its " +
+                            std::to_string(declared_) + " points");
+    }
+    // A whole cloud in one line.
+    constexpr std::size_t three_points = 9;
+    if (points_ == 1 && columns_of_last_ > three_points && columns_of_last_ % 3 == 0) {
+      fail_cloud(path_, "has " + std::to_string(columns_of_last_) +
+                            " numbers in its only line; write one point in a line");
+    }
+  }
+
+  const fs::path& path_;
+  const std::string name_;
+  string_view text_;
+  TextScanner scanner_;
+  const TakeTextPiece& take_;
+  std::optional<Layout> layout_;  ///< once a point was read
+  std::optional<std::array<std::size_t, 3>> named_columns_;
+  std::size_t named_fields_ = 0;  ///< of the comment that names them
+  bool has_header_ = false, has_count_ = false;
+  std::size_t declared_ = 0, points_ = 0, skipped_ = 0, columns_of_last_ = 0;
+  std::vector<Eigen::Vector3f> piece_;
+};
+
+}  // namespace
+
+std::size_t take_text_cloud(const fs::path& path, string_view text, const TakeTextPiece& take) {
+  return TextCloud(path, text, take).read();
+}
+
+}  // namespace skycap::geometry
