@@ -10,11 +10,13 @@ import subprocess
 
 CODE_SPAN = re.compile(r"`([^`]+)`")
 LINK = re.compile(r"\]\(([^)\s]+)\)")
-COMMAND = re.compile(r"(?<!\S)(?:(?:\./)?skycap |cmake --|ctest --|build/|tests/checks/)")
+COMMAND = re.compile(
+    r"(?<!\S)(?:(?:\./)?skycap |skycap_ros2 |cmake --|ctest --|build/|tests/checks/|docs/)")
 PATH = re.compile(r"[\w./-]+/[\w.-]+\.\w+")
 TEST_NAME = re.compile(r"[A-Z]\w+\.[A-Z]\w+\*?")
 KEY = re.compile(r"[a-z_]+(?:\.[a-z_]+)+")
 IDENTIFIER = re.compile(r"(?:\w+::)*([a-z]+(?:_[a-z0-9]+)+)(?:\(\))?|(?:\w+::)+(\w+)")
+MESSAGES = re.compile(r"<!-- generated: messages -->.*?<!-- end of generated -->", re.DOTALL)
 FILE_TYPES = ("bin", "csv", "html", "json", "las", "pcd", "plan", "ply", "rawlog", "tum", "xyz")
 PLACEHOLDER = re.compile(r"[A-Z]{2,}|\.\.\.|\bN\b")
 
@@ -50,6 +52,15 @@ class Names:
                               text=True, check=True).stdout
 
     @functools.cache
+    def ros2_help(self):
+        """What `skycap_ros2 --help` prints; nothing if it is not built."""
+        program = self.program / "skycap_ros2"
+        if not program.exists():
+            return None
+        return subprocess.run([program, "--help"], capture_output=True, text=True,
+                              check=True).stdout
+
+    @functools.cache
     def verbs(self):
         text = subprocess.run([self.program / "skycap", "--help"], capture_output=True, text=True,
                               check=True).stdout
@@ -67,13 +78,21 @@ def keys_of(schema, prefix=""):
 
 
 def complaints(page, text, names):
-    """Yields (line number from 1, what is wrong) for a page, a path relative to the root."""
+    """Yields (line number from 1, what is wrong) for a page, a path relative to the root. Records of
+    other versions and messages of the program may mention names that do not exist."""
     lines = text.split("\n")
     for number, line in enumerate(lines, 1):
-        for target in LINK.findall(line):
+        for target in LINK.findall(CODE_SPAN.sub("", line)):
             yield from ((number, wrong) for wrong in link_complaints(page, target, names))
-    for number, code in code_of(lines):
+    if str(page) == "CHANGELOG.md" or str(page).startswith("docs/development/results/"):
+        return
+    for number, code in code_of(without_messages(text).split("\n")):
         yield from ((number, wrong) for wrong in code_complaints(code, names))
+
+
+def without_messages(text):
+    """The page with blank lines in place of the generated list of messages."""
+    return MESSAGES.sub(lambda match: "\n" * match[0].count("\n"), text)
 
 
 def code_of(lines):
@@ -139,6 +158,10 @@ def command_complaints(command, names):
     words = shlex.split(command)
     if words[0] in ("skycap", "./skycap"):
         yield from skycap_complaints(words[1:], names)
+    elif words[0] == "skycap_ros2":
+        for option in (word.split("=")[0] for word in words[1:] if word.startswith("--")):
+            if names.ros2_help() and option not in names.ros2_help():
+                yield f"skycap_ros2 has no option {option}"
     elif "--preset" in words:
         preset = words[words.index("--preset") + 1]
         if preset not in names.presets:
@@ -146,7 +169,7 @@ def command_complaints(command, names):
     elif words[0].count("/") > 1 and words[0].startswith("build/"):
         if not names.has_path(source_of(words[0].split("/", 2)[2])):
             yield f"nothing builds {words[0]}"
-    elif words[0].startswith("tests/") and not names.has_path(words[0]):
+    elif words[0].startswith(("tests/", "docs/")) and not names.has_path(words[0]):
         yield f"there is no {words[0]}"
 
 
@@ -199,4 +222,5 @@ def normal_parts(path):
 
 def anchors(page):
     headings = re.findall(r"^#+ (.+)$", page.read_text(encoding="utf-8"), re.MULTILINE)
-    return {re.sub(r"[^\w\- ]", "", heading.lower()).replace(" ", "-") for heading in headings}
+    return {re.sub(r"[^\w\- ]", "", re.sub(r"\\(.)", r"\1", heading).lower()).replace(" ", "-")
+            for heading in headings}
