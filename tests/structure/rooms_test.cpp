@@ -1,5 +1,5 @@
-// The house: which room may know which, and how large its things may be. docs/architecture.md draws
-// the same table.
+// The house: which room may know which, and how large its things may be.
+// docs/development/architecture.md draws the same table.
 
 #include <fstream>
 
