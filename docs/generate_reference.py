@@ -60,7 +60,7 @@ class Help:
         text = subprocess.run([program, *command, "--help"], capture_output=True, text=True,
                               check=True).stdout
         self.text = text
-        self.purpose = text.split("\n")[0]
+        self.purpose = text.strip().split("\n")[0]
         self.usage = re.search(r"Usage: (.*)", text)[1]
         self.groups = {}
         self._read_groups(text.split("\n"))
@@ -71,6 +71,8 @@ class Help:
             title = re.fullmatch(r"(?:\[Option Group: )?([A-Za-z][\w ]*?)(?:\])?:?\s*", line)
             if title and (line.endswith(":") or line.startswith("[Option Group")):
                 rows = self.groups.setdefault(title[1], [])
+            elif re.match(r" +(?:\[Exactly|Options:)", line):  # within a group of options
+                continue
             elif rows is not None and re.match(r" {2,4}\S", line):
                 head, _, meaning = re.match(r"\s+(.*?)(\s{2,}|$)(.*)", line).groups()
                 rows.append([*name_and_value(head), meaning])
@@ -101,10 +103,22 @@ def argument_rows(rows):
         meaning = re.sub(r"\s*Excludes: .*", "", meaning)
         required = "REQUIRED" in value
         value = re.sub(r"\s*REQUIRED", "", value).strip()
-        value = re.sub(r"^(?:TEXT|INT|UINT|FLOAT):(?=\S)", "", value).replace(" ...", ", …")
         meaning = meaning + (" (required)" if required else "")
-        found.append([", ".join(map(code, name.split(","))), cell(value), cell(meaning)])
+        names = name.replace("{false}", "").split(",")
+        found.append([", ".join(map(code, names)), cell(value_text(value)), cell(meaning)])
     return found
+
+
+def value_text(value):
+    """What an option takes, in words: "UINT:INT in [1 - 100]" is an integer from 1 to 100."""
+    value = re.sub(r"^(?:TEXT|UINT|FLOAT|INT):(?=\S)", "", value)
+    if choices := re.fullmatch(r"\{(.*)\}", value):
+        return " or ".join(choices[1].split(","))
+    value = re.sub(r"\bTEXT\b", "string", value)
+    value = re.sub(r"\bU?INT\b", "integer", value)
+    value = re.sub(r"\bFLOAT\b", "number", value)
+    value = re.sub(r"in \[(\S+) - (\S+)\]", r"from \1 to \2", value)
+    return value.replace(" ...", ", repeatable")
 
 
 def commands_part(build):

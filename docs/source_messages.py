@@ -1,5 +1,5 @@
-"""Extracts the texts of errors and warnings from C++ sources: every call of a function that raises or
-reports one, with its string literals joined and an ellipsis for each value."""
+"""Extracts the texts of errors and warnings from C++ sources: every call of a function that raises
+or reports one, with its string literals joined and an ellipsis for each value."""
 
 import re
 
@@ -8,8 +8,8 @@ TOKEN = re.compile(
     r"|'(?:[^'\\\n]|\\.)*'|[A-Za-z_]\w*|\d[\w.']*|<<|>>|::|->|.", re.DOTALL)
 CALL = re.compile(r"Error|Trouble|error_message|problem_?|complain|warn|failed|"
                   r"(?:fail|refuse|require|reject|throw|report_fail|fault)\w*")
-RETURNS = re.compile(r"fault_of\w*|why_\w+|what_is_\w+|\w+_complaint")
-RULE = re.compile(r"(?:a|an|above|at|between|from|finite|greater|large|less|more|not|one|positive|zero)\b")
+RETURNS = re.compile(r"fault_of\w*|why_\w+|what_is_\w+|\w+_complaint|\w+_key_message")
+RULE = re.compile(r"(?:an?|above|at|between|from|finite|greater|large|less|more|not|one|positive|zero)\b")
 VALUE = "…"
 OPENING, CLOSING = "([{", ")]}"
 
@@ -56,7 +56,7 @@ def text_of(parts):
     terms = split(parts, "+")
     if len(terms) > 1:
         return "".join(text_of(term) for term in terms)
-    if "?" in parts and ":" in split(parts, "?")[-1]:
+    if len(split(parts, "?")) > 1 and ":" in split(parts, "?")[-1]:
         return choice_of(parts)
     if parts and all(is_literal(token) for token in parts):
         return "".join(unquoted(token) for token in parts)
@@ -69,9 +69,8 @@ def text_of(parts):
 
 def choice_of(parts):
     """Both texts of a conditional expression, where both are texts."""
-    words = split(parts, "?")
-    yes, _, no = (text_of(words[-1][:words[-1].index(":")]), None,
-                  text_of(words[-1][words[-1].index(":") + 1:]))
+    last = split(parts, "?")[-1]
+    yes, no = text_of(last[:last.index(":")]), text_of(last[last.index(":") + 1:])
     if VALUE in (yes, no) or not yes or not no:
         return VALUE
     return f"{yes}/{no}"
@@ -108,8 +107,8 @@ def texts_in(source):
 
 
 def texts_of_call(arguments):
-    """The texts among a call's arguments. require("width", value, value > 0, "positive") and its
-    kin print a sentence of the field's name and the rule; refuse("width", "is missing") does not."""
+    """The texts among a call's arguments. require("width", value, value > 0, "positive") prints a
+    sentence with the field's name and the rule; refuse("width", "is missing") prints both."""
     texts = [text_of(argument) for argument in arguments if any(map(is_literal, argument))]
     if len(texts) < 2 or not re.fullmatch(r"[a-z_.]+", texts[0]):
         return texts

@@ -8,6 +8,8 @@ import re
 import shlex
 import subprocess
 
+import docs_results
+
 CODE_SPAN = re.compile(r"`([^`]+)`")
 LINK = re.compile(r"\]\(([^)\s]+)\)")
 COMMAND = re.compile(
@@ -17,7 +19,9 @@ TEST_NAME = re.compile(r"[A-Z]\w+\.[A-Z]\w+\*?")
 KEY = re.compile(r"[a-z_]+(?:\.[a-z_]+)+")
 IDENTIFIER = re.compile(r"(?:\w+::)*([a-z]+(?:_[a-z0-9]+)+)(?:\(\))?|(?:\w+::)+(\w+)")
 MESSAGES = re.compile(r"<!-- generated: messages -->.*?<!-- end of generated -->", re.DOTALL)
-FILE_TYPES = ("bin", "csv", "html", "json", "las", "pcd", "plan", "ply", "rawlog", "tum", "xyz")
+FILE_TYPES = ("bin", "csv", "html", "journal", "json", "las", "pcd", "plan", "ply", "rawlog", "tum",
+              "xyz")
+SCRIPTS = re.compile(r"skycap|docs/[^/]+\.py|docs/build_site|tests/(checks|fuzz|faults)/\w+")
 PLACEHOLDER = re.compile(r"[A-Z]{2,}|\.\.\.|\bN\b")
 
 
@@ -40,6 +44,13 @@ class Names:
                 r"TEST(?:_F|_P)?\(\s*(\w+),\s*(\w+)\)", text))
         schema = json.loads((root / "missions/mission.schema.json").read_text())
         self.keys = set(keys_of(schema))
+        self.fields = set()
+        for fields in docs_results.listed_fields(
+                (root / docs_results.PAGE).read_text(encoding="utf-8")).values():
+            self.fields |= {part for field in fields for part in with_parents(field)}
+        scripts = [root / name for name in self.files if SCRIPTS.fullmatch(name)]
+        self.script_options = set(re.findall(
+            r"--[a-z][a-z-]+", " ".join(script.read_text(encoding="utf-8") for script in scripts)))
         self.presets = {preset["name"] for preset in json.loads(
             (root / "CMakePresets.json").read_text())["configurePresets"]}
 
@@ -71,6 +82,15 @@ class Names:
         return path in self.files or any(name.startswith(path + "/") for name in self.files)
 
 
+def with_parents(field):
+    """A field's name and those of the objects that hold it, with and without marks of lists."""
+    parts = field.split(".")
+    for count in range(1, len(parts) + 1):
+        name = ".".join(parts[:count])
+        yield name
+        yield name.replace("[]", "")
+
+
 def keys_of(schema, prefix=""):
     for name, property in schema.get("properties", {}).items():
         yield prefix + name
@@ -78,8 +98,8 @@ def keys_of(schema, prefix=""):
 
 
 def complaints(page, text, names):
-    """Yields (line number from 1, what is wrong) for a page, a path relative to the root. Records of
-    other versions and messages of the program may mention names that do not exist."""
+    """Yields (line number from 1, what is wrong) for a page, a path relative to the root. Records
+    of other versions and messages of the program may mention names that do not exist."""
     lines = text.split("\n")
     for number, line in enumerate(lines, 1):
         for target in LINK.findall(CODE_SPAN.sub("", line)):
@@ -136,13 +156,15 @@ def code_complaints(code, names):
             yield from command_complaints(command, names)
     elif code.startswith("--"):
         option = re.split(r"[ =]", code)[0]
-        if not any(option in names.help(verb) for verb in names.verbs()):
-            yield f"no verb has the option {option}"
+        if (option not in names.script_options
+                and not any(option in names.help(verb) for verb in names.verbs())):
+            yield f"no command has the option {option}"
     elif TEST_NAME.fullmatch(code):
         if not any(re.fullmatch(code.replace("*", ".*"), test) for test in names.tests):
             yield f"there is no test {code}"
     elif KEY.fullmatch(code) and code.split(".")[0] in names.keys:
-        if code not in names.keys and code.split(".")[-1] not in FILE_TYPES:
+        if (code not in names.keys and code not in names.fields
+                and code.split(".")[-1] not in FILE_TYPES):
             yield f"there is no key {code}"
     elif PATH.fullmatch(code):
         if code.split("/")[0] in {name.split("/")[0] for name in names.files}:
@@ -167,7 +189,8 @@ def command_complaints(command, names):
         if preset not in names.presets:
             yield f"there is no preset {preset}"
     elif words[0].count("/") > 1 and words[0].startswith("build/"):
-        if not names.has_path(source_of(words[0].split("/", 2)[2])):
+        built = words[0].split("/", 2)[2]
+        if not names.has_path(source_of(built)) and not names.has_path(built):
             yield f"nothing builds {words[0]}"
     elif words[0].startswith(("tests/", "docs/")) and not names.has_path(words[0]):
         yield f"there is no {words[0]}"

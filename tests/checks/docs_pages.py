@@ -30,6 +30,8 @@ def words(text):
 
 def page_complaints(name, text):
     """Yields (line number, what is wrong) for a page."""
+    if is_stub(name):
+        return
     headings = re.findall(r"^# (.+)$", re.sub(r"^```.*?^```", "", text, flags=re.S | re.M), re.M)
     if len(headings) != 1:
         yield 1, f"the page has {len(headings)} headings of the first level; it needs one"
@@ -71,8 +73,8 @@ def tree_complaints(root, files):
         linked.update(linked_pages(pathlib.PurePosixPath(name), text))
         sizes += [words(text)] if name.startswith(USER_PAGES) else []
     if sizes and statistics.median(sizes) > MEDIAN_WORDS:
-        yield "docs", (f"half of the user pages have more than {statistics.median(sizes):.0f} words; "
-                       f"at most {MEDIAN_WORDS} are allowed")
+        yield "docs", (f"the median user page has {statistics.median(sizes):.0f} words; at most "
+                       f"{MEDIAN_WORDS} are allowed")
     for name in sorted(files):
         if name.endswith(".md") and name.startswith("docs/") and not is_stub(name):
             if name not in linked and name != "docs/index.md":

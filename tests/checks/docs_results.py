@@ -12,6 +12,8 @@ import tempfile
 PAGE = pathlib.PurePosixPath("docs/reference/results.md")
 LIST = re.compile(r"<!-- fields: (\S+) -->\n(.*?)<!-- end of fields -->", re.DOTALL)
 SPAN = re.compile(r"`([^`]+)`")
+# Objects that are listed once and occur at two places.
+ALIASES = {"flight.fleet.vehicles[].sorties[]": "flight.route.sorties[]"}
 # Maps whose keys are names of parts or settings: their fields are not listed one by one.
 MAPS = ("settings", "planning_time_parts_s", "per_view[].planning_time_parts_s")
 
@@ -21,31 +23,29 @@ sensor: {width: 160, height: 100, noise: {sigma: 0.03}}
 planner: {name: skycap, preset: building, density: 100, resolution_radius: 0.3,
           view_distance: 12}
 evaluation: {registration_distance: 0.2, samples: 2000, visible_directions: 20, ceiling_views: 0}
-flight: {vehicle: m350_rtk, clearance: 2.0, unknown_box: {min: [-7, -7, 0], max: [7, 7, 7]}}
+flight: {vehicle: m350_rtk, clearance: 2.0, pad_slope_deg: 1,
+         unknown_box: {min: [-7, -7, 0], max: [7, 7, 7]}}
 site: {latitude_deg: 51.75, longitude_deg: -1.25, ellipsoid_height: 100, geoid_undulation: 47}
 limits: {max_views: 6}
 """
-TARGET = "prior:\n  - {file: box.obj, role: target}\n"
-BOX = """v -3 -3 0
-v 3 -3 0
-v 3 3 0
-v -3 3 0
-v -3 -3 4
-v 3 -3 4
-v 3 3 4
-v -3 3 4
-f 1 4 3 2
-f 5 6 7 8
-f 1 2 6 5
-f 2 3 7 6
-f 3 4 8 7
-f 4 1 5 8
-"""
+TARGET = "prior:\n  - {file: house.city.json, role: target}\n"
+CORNERS = [(x, y, z) for z in (0, 4) for x, y in ((-3, -3), (3, -3), (3, 3), (-3, 3))]
+SIDES = [[0, 1, 5, 4], [1, 2, 6, 5], [2, 3, 7, 6], [3, 0, 4, 7], [4, 5, 6, 7], [0, 3, 2, 1]]
+HOUSE = {
+    "type": "CityJSON", "version": "2.0",
+    "transform": {"scale": [1, 1, 1], "translate": [0, 0, 0]},
+    "vertices": CORNERS,
+    "CityObjects": {"house": {"type": "Building", "geometry": [{
+        "type": "MultiSurface", "lod": "2", "boundaries": [[side] for side in SIDES],
+        "semantics": {"surfaces": [{"type": "WallSurface"}, {"type": "RoofSurface"},
+                                   {"type": "GroundSurface"}],
+                      "values": [0, 0, 0, 0, 1, 2]}}]}}}
 # What each survey is there for.
 SURVEYS = {
     "fly-through": (TEAPOT, ["--set", "flight.views=anew", "--set", "flight.style=pass",
                              "--set", "sensor.exposure=0.001"]),
-    "fleet": (TEAPOT, ["--set", "flight.vehicles=[m350_rtk, m350_rtk]"]),
+    "fleet": (TEAPOT, ["--set", "flight.vehicles=[m350_rtk, m350_rtk]",
+                       "--set", "flight.pads=[[-16, -14, 0], [16, 14, 0]]"]),
     "re-flight": (TEAPOT, ["--set", "flight.style=pass", "--set", "sensor.exposure=0.001",
                            "--set", "sensor.capture=moving"]),
     "target": (TEAPOT + TARGET, ["--set", "limits.max_views=2"]),
@@ -79,7 +79,8 @@ def fields_of(spans):
 
 
 def written_fields(value, path=""):
-    """The fields of a JSON value, and those that are null, empty or scalars."""
+    """Yields the fields of a JSON value: lists without objects, empty values and scalars."""
+    path = ALIASES.get(path, path)
     if isinstance(value, dict) and value and path not in MAPS:
         for name, entry in value.items():
             yield from written_fields(entry, f"{path}.{name}" if path else name)
@@ -100,7 +101,7 @@ def run(program, folder, *arguments):
 
 def documents(program, folder):
     """Yields (file, its content) of small commands."""
-    (folder / "box.obj").write_text(BOX, encoding="utf-8")
+    (folder / "house.city.json").write_text(json.dumps(HOUSE), encoding="utf-8")
     for name, (mission, options) in SURVEYS.items():
         file = folder / f"{name}.yaml"
         file.write_text(mission, encoding="utf-8")
