@@ -94,16 +94,16 @@ def texts_in(source):
     """Yields the texts of a source's messages."""
     parts = tokens(source)
     for index, token in enumerate(parts[:-1]):
-        if parts[index + 1] in ("(", "{") and CALL.fullmatch(token):
+        is_definition = parts[index - 1] in ("string", ">", "*")
+        if is_definition and RETURNS.fullmatch(token) and parts[index + 1] == "(":
+            yield from returned(parts, index)
+        elif parts[index + 1] in ("(", "{") and CALL.fullmatch(token):
             end = end_of_group(parts, index + 1)
             yield from texts_of_call(split(parts[index + 2:end], ","))
         elif token == "<<" and parts[index - 1] == "message" and parts[index - 2] in ";{})":
             end = parts.index(";", index)
             terms = split(parts[index:end], "<<")[1:]
             yield "".join(text_of(term) for term in terms)
-        elif RETURNS.fullmatch(token) and parts[index + 1] == "(" and parts[index - 1] in (
-                "string", ">", "*"):
-            yield from returned(parts, index)
 
 
 def texts_of_call(arguments):

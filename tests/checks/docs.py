@@ -13,6 +13,7 @@ import sys
 import tempfile
 
 import docs_blocks
+import docs_messages
 import docs_names
 import docs_pages
 import docs_results
@@ -69,6 +70,8 @@ def check(page, names, program, write):
     wrong = [(number, complaint) for number, complaint in docs_names.complaints(page, text, names)
              if number not in checked]
     wrong += docs_pages.page_complaints(str(page), text)
+    if not str(page).startswith(docs_names.RECORDS):
+        wrong += docs_messages.complaints(text, names.messages)
     for number, complaint in wrong:
         print(f"{page}:{number}: {complaint}")
     if renewed != text and write:

@@ -8,6 +8,7 @@ import re
 import shlex
 import subprocess
 
+import docs_messages
 import docs_results
 
 CODE_SPAN = re.compile(r"`([^`]+)`")
@@ -18,10 +19,11 @@ PATH = re.compile(r"[\w./-]+/[\w.-]+\.\w+")
 TEST_NAME = re.compile(r"[A-Z]\w+\.[A-Z]\w+\*?")
 KEY = re.compile(r"[a-z_]+(?:\.[a-z_]+)+")
 IDENTIFIER = re.compile(r"(?:\w+::)*([a-z]+(?:_[a-z0-9]+)+)(?:\(\))?|(?:\w+::)+(\w+)")
+RECORDS = "docs/development/results/"
 MESSAGES = re.compile(r"<!-- generated: messages -->.*?<!-- end of generated -->", re.DOTALL)
 FILE_TYPES = ("bin", "csv", "html", "journal", "json", "las", "pcd", "plan", "ply", "rawlog", "tum",
               "xyz")
-SCRIPTS = re.compile(r"skycap|docs/[^/]+\.py|docs/build_site|tests/(checks|fuzz|faults)/\w+")
+SCRIPTS = re.compile(r"skycap|docs/[^/]+\.py|docs/build_site|docs/pictures/\w+|tests/(checks|fuzz|faults)/\w+")
 PLACEHOLDER = re.compile(r"[A-Z]{2,}|\.\.\.|\bN\b")
 
 
@@ -44,6 +46,8 @@ class Names:
                 r"TEST(?:_F|_P)?\(\s*(\w+),\s*(\w+)\)", text))
         schema = json.loads((root / "missions/mission.schema.json").read_text())
         self.keys = set(keys_of(schema))
+        self.messages = docs_messages.listed(
+            (root / docs_messages.PAGE).read_text(encoding="utf-8"))
         self.fields = set()
         for fields in docs_results.listed_fields(
                 (root / docs_results.PAGE).read_text(encoding="utf-8")).values():
@@ -104,7 +108,7 @@ def complaints(page, text, names):
     for number, line in enumerate(lines, 1):
         for target in LINK.findall(CODE_SPAN.sub("", line)):
             yield from ((number, wrong) for wrong in link_complaints(page, target, names))
-    if str(page) == "CHANGELOG.md" or str(page).startswith("docs/development/results/"):
+    if str(page) == "CHANGELOG.md" or str(page).startswith(RECORDS):
         return
     for number, code in code_of(without_messages(text).split("\n")):
         yield from ((number, wrong) for wrong in code_complaints(code, names))

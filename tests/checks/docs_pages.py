@@ -8,9 +8,8 @@ WORDS_OF_A_USER_PAGE = 1800
 WORDS_OF_A_TUTORIAL = 900
 MEDIAN_WORDS = 700
 USER_PAGES = ("docs/tutorials/", "docs/howto/", "docs/explanation/")
-RECORDS = "docs/development/results/"
 PICTURE = re.compile(r"!\[([^\]]*)\]\(([^)\s]+)\)|<img [^>]*src=\"([^\"]+)\"")
-PICTURE_FOLDERS = ("docs/images/", "docs/pictures/")
+PICTURE_FOLDER = "docs/images/"
 PICTURE_TYPES = (".png", ".jpg", ".svg")
 
 
@@ -79,6 +78,6 @@ def tree_complaints(root, files):
         if name.endswith(".md") and name.startswith("docs/") and not is_stub(name):
             if name not in linked and name != "docs/index.md":
                 yield name, "no page links to it"
-        elif name.startswith(PICTURE_FOLDERS) and name.endswith(PICTURE_TYPES):
+        elif name.startswith(PICTURE_FOLDER) and name.endswith(PICTURE_TYPES):
             if name not in linked:
                 yield name, "no page shows this picture"
