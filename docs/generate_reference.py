@@ -312,7 +312,8 @@ def messages_part(_build):
         for message in source_messages.messages_in(source):
             found[area_of(name)].setdefault(message)
     text = ""
-    for title, messages in found.items():
+    titles = sorted(found, key=lambda title: title == "skycap_ros2")  # the program itself first
+    for title, messages in ((title, found[title]) for title in titles):
         if messages:
             rows = [[message_code(problem), cell(remedy)] for problem, remedy in
                     sorted(messages, key=lambda message: message[0].lstrip("…'\" ").lower())]

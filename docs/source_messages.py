@@ -9,7 +9,11 @@ TOKEN = re.compile(
 CALL = re.compile(r"Error|Trouble|error_message|problem_?|complain|warn|failed|"
                   r"(?:fail|refuse|require|reject|throw|report_fail|fault)\w*")
 RETURNS = re.compile(r"fault_of\w*|why_\w+|what_is_\w+|\w+_complaint|\w+_key_message")
-RULE = re.compile(r"(?:an?|above|at|between|from|finite|greater|large|less|more|not|one|positive|zero)\b")
+RULE = re.compile(  # how a rule for a value begins
+    r"(?:an?|above|at|between|from|finite|greater|large|less|more|not|one|positive|zero)\b")
+VERB = re.compile(  # a word that makes a sentence
+    r"\b(?:is|are|was|were|has|have|had|must|can|cannot|does|do|may|would|no|not|missing|lost"
+    r"|more than|\w{3,}s|go|fail|refuse\w*)\b")
 VALUE = "…"
 OPENING, CLOSING = "([{", ")]}"
 
@@ -110,7 +114,9 @@ def texts_of_call(arguments):
     """The texts among a call's arguments. require("width", value, value > 0, "positive") prints a
     sentence with the field's name and the rule; refuse("width", "is missing") prints both."""
     texts = [text_of(argument) for argument in arguments if any(map(is_literal, argument))]
-    if len(texts) < 2 or not re.fullmatch(r"[a-z_.]+", texts[0]):
+    if len(texts) == 1 and RULE.match(texts[0]) and len(arguments) > 2:
+        return [f"{VALUE} is {VALUE}; it must be {texts[0]}"]
+    if len(texts) < 2 or not re.fullmatch(f"{VALUE}?[a-z_.]+", texts[0]):
         return texts
     if RULE.match(texts[-1]):
         return [f"{texts[0]} is {VALUE}; it must be {texts[-1]}"]
@@ -133,7 +139,7 @@ def returned(parts, index):
 def is_message(text):
     """Whether a text is a sentence: names of keys, options and fields are arguments, too."""
     words = re.findall(r"[A-Za-z]{2,}", text)
-    return len(words) >= 3 and " " in text.strip()
+    return len(words) >= 3 and ("; " in text or VERB.search(text) is not None)
 
 
 def messages_in(source):
