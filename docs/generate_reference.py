@@ -75,7 +75,10 @@ class Help:
                 continue
             elif rows is not None and re.match(r" {2,4}\S", line):
                 head, _, meaning = re.match(r"\s+(.*?)(\s{2,}|$)(.*)", line).groups()
-                rows.append([*name_and_value(head), meaning])
+                name, value = name_and_value(head)
+                if default := re.fullmatch(r"(\w+=\S+) (.+)", value):  # one blank before the text
+                    value, meaning = default.groups()
+                rows.append([name, value, meaning])
             elif rows and line.startswith("     "):
                 rows[-1][2] = (rows[-1][2] + " " + line.strip()).strip()
 
@@ -118,6 +121,7 @@ def value_text(value):
     value = re.sub(r"\bU?INT\b", "integer", value)
     value = re.sub(r"\bFLOAT\b", "number", value)
     value = re.sub(r"in \[(\S+) - (\S+)\]", r"from \1 to \2", value)
+    value = re.sub(r"=(\S+)", r" (default: \1)", value)
     return value.replace(" ...", ", repeatable")
 
 
@@ -235,7 +239,9 @@ def signature(node, prefix="", skips_self=False):
 
 
 def function_text(node, thing):
-    return f"\n```python\n{signature(node, 'skycap.')}\n```\n\n{markdown(documentation(thing))}\n"
+    paragraphs = map(markdown, documentation(thing).split("\n\n"))
+    text = "\n\n".join(paragraphs)
+    return f"\n```python\n{signature(node, 'skycap.')}\n```\n\n{text}\n"
 
 
 def class_text(node, thing):
@@ -244,7 +250,7 @@ def class_text(node, thing):
     for member in node.body:
         if isinstance(member, ast.AnnAssign):
             rows.append([code(member.target.id), code(ast.unparse(member.annotation)), ""])
-        elif isinstance(member, ast.FunctionDef):
+        elif isinstance(member, ast.FunctionDef) and member.name not in ("__iter__", "__next__"):
             rows.append(member_row(node, member, thing))
     return text + ("\n" + table(["Member", "Type", "Meaning"], rows) if rows else "")
 
