@@ -20,7 +20,7 @@ TEST_NAME = re.compile(r"[A-Z]\w+\.[A-Z]\w+\*?")
 KEY = re.compile(r"[a-z_]+(?:\.[a-z_]+)+")
 IDENTIFIER = re.compile(r"(?:\w+::)*([a-z]+(?:_[a-z0-9]+)+)(?:\(\))?|(?:\w+::)+(\w+)")
 RECORDS = "docs/development/results/"
-MESSAGES = re.compile(r"<!-- generated: messages -->.*?<!-- end of generated -->", re.DOTALL)
+GENERATED = re.compile(r"<!-- generated: .*?<!-- end of generated -->", re.DOTALL)
 FILE_TYPES = ("bin", "csv", "html", "journal", "json", "las", "pcd", "plan", "ply", "rawlog", "tum",
               "xyz")
 SCRIPTS = re.compile(r"skycap|docs/[^/]+\.py|docs/build_site|docs/pictures/\w+|tests/(checks|fuzz|faults)/\w+")
@@ -103,20 +103,20 @@ def keys_of(schema, prefix=""):
 
 def complaints(page, text, names):
     """Yields (line number from 1, what is wrong) for a page, a path relative to the root. Records
-    of other versions and messages of the program may mention names that do not exist."""
+    of other versions and generated parts may mention names that do not exist."""
     lines = text.split("\n")
     for number, line in enumerate(lines, 1):
         for target in LINK.findall(CODE_SPAN.sub("", line)):
             yield from ((number, wrong) for wrong in link_complaints(page, target, names))
     if str(page) == "CHANGELOG.md" or str(page).startswith(RECORDS):
         return
-    for number, code in code_of(without_messages(text).split("\n")):
+    for number, code in code_of(without_generated(text).split("\n")):
         yield from ((number, wrong) for wrong in code_complaints(code, names))
 
 
-def without_messages(text):
-    """The page with blank lines in place of the generated list of messages."""
-    return MESSAGES.sub(lambda match: "\n" * match[0].count("\n"), text)
+def without_generated(text):
+    """The page with blank lines instead of its generated parts (docs/generate_reference.py)."""
+    return GENERATED.sub(lambda match: "\n" * match[0].count("\n"), text)
 
 
 def code_of(lines):
