@@ -1,5 +1,5 @@
-/// A client of `skycap serve`, in one header for C++17 and POSIX: docs/live.md describes the
-/// messages. Link zlib.
+/// A client of `skycap serve` in one header for C++17 and POSIX; docs/reference/live-protocol.md
+/// describes the messages. Link zlib.
 ///
 ///     skycap_live::Survey survey("unix:survey.sock");
 ///     std::string answer = survey.next();     // JSON, as `skycap next --json` prints it

@@ -1,4 +1,5 @@
-"""A client of `skycap serve`: docs/live.md describes the messages. Needs Python 3.8 and nothing else.
+"""A client of `skycap serve`; docs/reference/live-protocol.md describes the messages. Needs Python
+3.8 and nothing else.
 
     with Survey("unix:survey.sock") as survey:
         answer = survey.next()

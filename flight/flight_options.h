@@ -97,7 +97,7 @@ struct FlightOptions {
   double map_error = 0.1;
 
   Eigen::AlignedBox3d unknown_box;  ///< where space must be measured to be free; may be empty
-  bool has_own_box = false;  ///< unknown_box is given; else it is the box around the scene
+  bool has_own_box = false;         ///< unknown_box is given; else it is the box around the scene
   std::vector<Eigen::AlignedBox3d> unknown_beside;  ///< further boxes where it must
   double free_without_return = 0.0;
   AirspaceOptions airspace;

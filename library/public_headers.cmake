@@ -1,5 +1,4 @@
-# The public face, documented in docs/library.md: what is here keeps its meaning within a minor
-# version.
+# The public headers (docs/reference/cpp-api.md). They keep their meaning within a minor version.
 set(public_headers
   geometry/error.h
   geometry/io/cloud_io.h

@@ -36,7 +36,24 @@ folder in which model:NAME is looked for first
 .B SKYCAP_PLUGINS
 folder of the plug-ins, where they are not with the program
 .SH EXIT STATUS
-0: done; 1: the answer is no, or it was interrupted; 2: bad input; 3: failed
+.TP
+.B 0
+done
+.TP
+.B 1
+negative result, incomplete or interrupted
+.TP
+.B 2
+bad input
+.TP
+.B 3
+failed
+.TP
+.B 10, 11, 12
+skycap next: the survey is over; no view is left; the scan is rejected
+.TP
+.B 143
+a task was ended by SIGTERM
 ")
 string(REGEX REPLACE "\\.gz$" "" plain ${PAGE})
 file(WRITE ${plain} "${page}")

@@ -1,4 +1,4 @@
-"""Plans and simulates aerial surveys of buildings: docs/python.md is a tour of it.
+"""Plans and simulates aerial surveys of buildings (docs/tutorials/first-steps-in-python.md).
 
 All lengths are in metres, times in seconds, angles in radians; the world frame is x east, y north,
 z up. What goes wrong is raised as skycap.Error. numpy is imported by the first array.

@@ -142,8 +142,7 @@ void bind_missions(py::module_& module) {
   module.def("sensors", &missions::api::sensor_names,
              "sensors()\n--\n\nThe names of the sensors that come with Skycap.");
   module.def(
-      "camera",
-      [](const std::string& name) { return missions::api::depth_camera(name).camera; },
+      "camera", [](const std::string& name) { return missions::api::depth_camera(name).camera; },
       py::arg("name"),
       "camera(name)\n--\n\n"
       "The depth camera of that name, or that a .yaml file describes; see sensors().");

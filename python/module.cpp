@@ -1,5 +1,5 @@
 // skycap._skycap: what `import skycap` shows. It uses public headers alone, as any program of users
-// does (docs/library.md).
+// does (docs/reference/cpp-api.md).
 #include "python/bindings.h"
 
 namespace py = pybind11;

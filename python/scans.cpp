@@ -86,8 +86,8 @@ class ScanPieces {
 std::unique_ptr<ScanPieces> scan(const Mission& mission, const std::optional<std::string>& sensor,
                                  const std::optional<std::filesystem::path>& route) {
   py::gil_scoped_release others_go_on;
-  return std::make_unique<ScanPieces>(
-      mission, missions::api::ScanRequest{.sensor = sensor, .route = route});
+  return std::make_unique<ScanPieces>(mission,
+                                      missions::api::ScanRequest{.sensor = sensor, .route = route});
 }
 
 }  // namespace

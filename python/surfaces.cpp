@@ -50,8 +50,7 @@ Evaluation evaluate(const Array<float>& points, const Mesh& model, double distan
   const auto cloud = points_in(points, "points");
   Evaluation evaluation;
   run_interruptibly([&](const std::stop_token&) {
-    evaluation =
-        missions::api::evaluate(cloud, model, {.distance = distance, .samples = samples});
+    evaluation = missions::api::evaluate(cloud, model, {.distance = distance, .samples = samples});
   });
   return evaluation;
 }

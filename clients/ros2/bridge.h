@@ -87,7 +87,7 @@ class Bridge {
   /// gives up one that has waited too long, and notices that nobody serves the survey any more.
   void proceed(double now);
 
-  /// What is going on, in a word or two of docs/live.md, for the status.
+  /// What is going on, in a word or two of docs/reference/ros2-topics.md, for the status.
   void say(const std::string& doing);
 
   bool is_finished() const { return is_finished_; }

@@ -1,4 +1,4 @@
-// skycap_ros2: a live survey for robots of ROS 2, over DDS and without ROS. docs/live.md.
+// skycap_ros2: a live survey with a ROS 2 robot over DDS (docs/reference/ros2-topics.md).
 
 #include <atomic>
 #include <csignal>
@@ -129,7 +129,7 @@ NodeConfig node_of(const Options& options) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  CLI::App app("A live survey for robots of ROS 2 (docs/live.md)", "skycap_ros2");
+  CLI::App app("A live survey for robots of ROS 2 (docs/reference/ros2-topics.md)", "skycap_ros2");
   Options options;
   add_topics(app, options);
   add_rules(app, options);

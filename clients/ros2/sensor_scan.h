@@ -1,4 +1,5 @@
-/// Clouds and depth images of ROS as scans that `skycap serve` takes (docs/live.md).
+/// Clouds and depth images of ROS as scans that `skycap serve` takes
+/// (docs/reference/live-protocol.md).
 ///
 /// All lengths and counts of a message are checked before its bytes are looked at.
 #pragma once

@@ -1,7 +1,8 @@
 /// How much longer than Motion says an autopilot may fly, and the energy that is planned with then.
 ///
 /// PX4's law of a leg is the one of its source, but two missions flown in its simulator took 1.5 to
-/// 1.8 times as long as it says (docs/flight.md, Minutes): its minutes are a range.
+/// 1.8 times as long as it says (docs/explanation/sensor-and-flight-models.md): its time is a
+/// range.
 #pragma once
 
 #include "flight/motion/motion.h"

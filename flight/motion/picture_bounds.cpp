@@ -18,8 +18,8 @@ double pixels_per_radian(const geometry::Camera& camera) {
 
 }  // namespace
 
-double sharp_speed(const Vehicle& vehicle, const geometry::Camera& camera, const geometry::Shutter& shutter,
-                   double distance) {
+double sharp_speed(const Vehicle& vehicle, const geometry::Camera& camera,
+                   const geometry::Shutter& shutter, double distance) {
   const double time = std::max(shutter.exposure, shutter.readout);
   if (time == 0.0) return std::numeric_limits<double>::infinity();
   const double turning = PictureBounds::sharp_px / (pixels_per_radian(camera) * time);  // [rad/s]

@@ -24,7 +24,7 @@ PictureBounds picture_bounds(const Vehicle& vehicle, const geometry::Camera& cam
 
 /// The greatest speed over the ground at which pictures are sharp [m/s]: infinite for a shutter
 /// that takes no time, zero where they are not even at rest.
-double sharp_speed(const Vehicle& vehicle, const geometry::Camera& camera, const geometry::Shutter& shutter,
-                   double distance);
+double sharp_speed(const Vehicle& vehicle, const geometry::Camera& camera,
+                   const geometry::Shutter& shutter, double distance);
 
 }  // namespace skycap::flight

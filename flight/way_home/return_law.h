@@ -12,7 +12,8 @@
 ///   models 20 m; nearer it flies home level at the height it has, and within 5 m it lands where it
 ///   is. Both ways of flying are asked for between 5 and 50 m.
 ///
-/// docs/flight.md, "The way home", says which settings that takes.
+/// docs/reference/route-formats.md, "Return: parameters per autopilot", says which settings that
+/// takes.
 #pragma once
 
 #include <cstdint>

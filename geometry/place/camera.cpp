@@ -15,16 +15,14 @@ bool is_angle_of_view(double angle) { return angle > 0.0 && angle < std::numbers
 void CameraConfig::validate() const {
   constexpr int most_pixels = 1 << 15;
   require(width > 0 && width <= most_pixels, "width", width, "between 1 and 32768 pixels");
-  require(height > 0 && height <= most_pixels, "height", height,
-          "between 1 and 32768 pixels");
+  require(height > 0 && height <= most_pixels, "height", height, "between 1 and 32768 pixels");
   require(static_cast<double>(width) * height <= 1e8, "width", width,
           "such that width times height is at most 1e8 pixels");
   require(is_angle_of_view(horizontal_fov), "horizontal_fov", horizontal_fov,
           "between 0 and pi radians (exclusive)");
   require(is_angle_of_view(vertical_fov), "vertical_fov", vertical_fov,
           "between 0 and pi radians (exclusive)");
-  require(min_range >= 0.0 && std::isfinite(min_range), "min_range", min_range,
-          "zero or more");
+  require(min_range >= 0.0 && std::isfinite(min_range), "min_range", min_range, "zero or more");
   require(max_range > min_range && std::isfinite(max_range), "max_range", max_range,
           "finite and greater than min_range");
 }

@@ -39,7 +39,8 @@ void add_plan(CLI::App& app, const Console& console, Action& action) {
       "plan", "Survey a mission's scene in simulation and write the mission package");
   const auto options = std::make_shared<PlanOptions>();
   const auto keys = std::make_shared<KeyOptions>();
-  verb->add_option("mission", options->mission, "Mission file (docs/mission_file.md)")->required();
+  verb->add_option("mission", options->mission, "Mission file (docs/reference/mission-file.md)")
+      ->required();
   verb->add_option("--out", options->out, "Folder for the results; default results/NAME");
   verb->add_option("--planner", keys->planner, planner_list() + ", in place of the mission's");
   verb->add_option("--seed", keys->seed, "Seed, in place of the mission's");
@@ -93,7 +94,8 @@ void add_scan(CLI::App& app, const Console& console, Action& action) {
       "scan", "Fly a route in the simulator and record what a sensor measures on the way");
   const auto options = std::make_shared<ScanVerbOptions>();
   const auto keys = std::make_shared<KeyOptions>();
-  verb->add_option("mission", options->mission, "Mission file (docs/scan.md)")->required();
+  verb->add_option("mission", options->mission, "Mission file (docs/howto/simulate-lidar.md)")
+      ->required();
   verb->add_option("--route", options->route,
                    "Route file, or the folder of a mission package; default: the mission's");
   verb->add_option("--sensor", options->sensor,

@@ -164,7 +164,8 @@ Finished write_package(const LiveOptions& options, const config::MissionSetup& s
 }
 
 void add_live_options(CLI::App& verb, LiveOptions& options, KeyOptions& keys) {
-  verb.add_option("mission", options.mission, "Mission file (docs/live.md)")->required();
+  verb.add_option("mission", options.mission, "Mission file (docs/howto/use-your-own-sensor.md)")
+      ->required();
   verb.add_option("--survey", options.survey, "The survey's folder")->required();
   verb.add_flag("!--no-report", options.has_report, "Leave out the page");
   verb.add_option("--seed", keys.seed, "Seed, in place of the mission's");
@@ -216,7 +217,8 @@ void add_next(CLI::App& app, const Console& console, Action& action) {
 }
 
 void add_serve(CLI::App& app, const Console& console, Action& action) {
-  CLI::App* verb = app.add_subcommand("serve", "Serve a live survey on a socket (docs/live.md)");
+  CLI::App* verb = app.add_subcommand(
+      "serve", "Serve a live survey on a socket (docs/reference/live-protocol.md)");
   const auto options = std::make_shared<ServeOptions>();
   const auto keys = std::make_shared<KeyOptions>();
   add_live_options(*verb, *options, *keys);
@@ -357,8 +359,9 @@ int fly_live(const FlyOptions& options, const Console& console) {
 }
 
 void add_fly(CLI::App& app, const Console& console, Action& action) {
-  CLI::App* verb = app.add_subcommand(
-      "fly", "Fly a live survey on an autopilot, one proven leg after another (docs/live.md)");
+  CLI::App* verb = app.add_subcommand("fly",
+                                      "Fly a live survey on an autopilot, one proven leg after "
+                                      "another (docs/howto/fly-live-on-arducopter.md)");
   const auto options = std::make_shared<FlyOptions>();
   const auto keys = std::make_shared<KeyOptions>();
   add_live_options(*verb, *options, *keys);

@@ -123,7 +123,7 @@ void add_site(CLI::App& app, const Console& console, Action& action) {
       "site", "Propose a first mission from a map, a city model, a terrain or an earlier scan");
   const auto options = std::make_shared<SiteOptions>();
   verb->add_option("map", options->map,
-                   "File with the target and what is around it (docs/sites.md)")
+                   "File with the target and what is around it (docs/reference/prior-formats.md)")
       ->required();
   verb->add_option("--id", options->ids, "Target by its name in the file; may be given again")
       ->type_size(1)

@@ -1,7 +1,7 @@
 /// A mission as its file says it. Plain data: a section for each of the file's, which holds the
 /// options of the libraries by value for keys that are used as they stand, and optionals for those
 /// that follow from others where they are not given. read_mission_document() fills it,
-/// docs/mission_file.md lists every key.
+/// docs/reference/mission-file.md lists every key.
 #pragma once
 
 #include <cstddef>
@@ -48,7 +48,7 @@ struct SensorSection {
 
 enum class PlannerPreset {
   paper,     ///< the published parameters
-  building,  ///< what keeps SEE++ from stalling on large scenes: docs/mission_file.md
+  building,  ///< what keeps SEE++ from stalling on large scenes: docs/explanation/see.md
 };
 
 /// What the planner skycap spares.

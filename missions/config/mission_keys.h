@@ -1,5 +1,5 @@
 /// Every key of the mission file, in one table: the reader, the JSON Schema and the page
-/// docs/mission_file.md are all made from it.
+/// docs/reference/mission-file.md are all made from it.
 #pragma once
 
 #include <span>
@@ -25,7 +25,7 @@ std::string to_text(const KeyValue& value);
 /// The JSON Schema of the mission file, for editors: missions/mission.schema.json.
 std::string mission_json_schema();
 
-/// The table of keys of docs/mission_file.md.
+/// The table of keys of docs/reference/mission-file.md.
 std::string mission_key_table();
 
 }  // namespace skycap::missions::config

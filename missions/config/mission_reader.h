@@ -1,5 +1,5 @@
-/// Reads mission files and checks each key by itself. docs/mission_file.md is the manual of the
-/// format; config/resolve.h checks the keys against each other and completes them.
+/// Reads mission files and checks each key by itself. docs/reference/mission-file.md is the manual
+/// of the format; config/resolve.h checks the keys against each other and completes them.
 #pragma once
 
 #include <filesystem>

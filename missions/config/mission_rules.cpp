@@ -239,7 +239,11 @@ void lead_fleet(MissionDocument& given) {
   flight::FleetOptions& fleet = flight.fleet;
   if (fleet.names.empty()) {
     // A fleet of one is a vehicle once it is resolved.
-    if (given.gives("flight.vehicles") && given.flight.is_flown()) return;
+    if (given.gives("flight.vehicles") && given.flight.is_flown()) {
+      if (!flight.vehicle && !fleet.vehicles.empty()) flight.vehicle = fleet.vehicles.front();
+      fleet = {};
+      return;
+    }
     for (const char* key : keys_of_fleets) {
       if (given.gives(key)) given.refuse(key, "is for several vehicles; give flight.vehicles");
     }

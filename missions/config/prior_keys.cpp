@@ -152,7 +152,7 @@ std::vector<Key> place_keys() {
       required(path_key(
           "file", source(&Source::file),
           "A map, model, terrain or scan, relative to the mission file; its format is told by its "
-          "content (docs/sites.md).")),
+          "content (docs/reference/prior-formats.md).")),
       required(choice_key(
           "role", names_of({Role::target, Role::obstacle, Role::terrain, Role::truth}),
           source(&Source::role),
@@ -229,7 +229,7 @@ std::vector<Key> meaning_keys() {
 std::vector<Key> prior_keys() {
   Key key = key_for(
       "prior", KeyType::sources, [](auto& m) -> auto& { return m.prior; },
-      "What is known of the site before it is measured; docs/sites.md.");
+      "What is known of the site before it is measured; docs/howto/use-prior-data.md.");
   key.get = [](const MissionDocument& mission) -> std::optional<KeyValue> {
     return mission.prior.empty() ? std::nullopt : std::optional<KeyValue>(mission.prior);
   };

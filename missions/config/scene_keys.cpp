@@ -57,9 +57,10 @@ Key model_key() {
   Key key = text_key(
       "scene.model", [](auto& m) -> auto& { return m.scene.model; },
       "What is surveyed: builtin:NAME, model:NAME, or the path of a PLY, OBJ, STL or OFF file, "
-      "relative to the mission file, or NAME.tiles of many (docs/scan.md); prior: the targets "
+      "relative to the mission file, or NAME.tiles of many (docs/reference/batch-files.md); prior: "
+      "the targets "
       "among the prior data stand in for it. A "
-      "mission without it is for live surveys (docs/live.md).");
+      "mission without it is for live surveys (docs/howto/use-your-own-sensor.md).");
   key.fallback = "none";
   key.get = [](const MissionDocument& mission) -> std::optional<KeyValue> {
     if (mission.scene.model.empty()) return std::nullopt;

@@ -1,5 +1,5 @@
 /// How much of the scene's surface a cloud covers. The evaluation alone knows the truth; planners
-/// never see any of this. Definitions: docs/mission_file.md, "evaluation".
+/// never see any of this. Definitions: docs/explanation/coverage.md.
 #pragma once
 
 #include <cstddef>

@@ -1,4 +1,5 @@
-/// The mission package: the files that a survey leaves behind. docs/mission_file.md is the manual.
+/// The mission package: the files that a survey leaves behind. docs/reference/results.md is the
+/// manual.
 #pragma once
 
 #include <cstdint>
@@ -131,7 +132,7 @@ std::string views_csv(const session::SurveyRecord& record);
 /// format of the TUM RGB-D benchmark. Nothing was flown, so a view's number is its timestamp.
 std::string trajectory_tum(const session::SurveyRecord& record);
 
-/// summary.json, as docs/mission_file.md describes it.
+/// summary.json, as docs/reference/results.md describes it.
 std::string summary_json(const config::MissionSetup& setup, const session::SurveyRecord& record,
                          const CoverageFigures& coverage,
                          const std::optional<SurveyMission>& flight = {});

@@ -5,9 +5,9 @@
 
 #include <nlohmann/json.hpp>
 
-#include "missions/support/number_text.h"
 #include "missions/report/page.h"
 #include "missions/report/verdict.h"
+#include "missions/support/number_text.h"
 
 namespace skycap::missions::report {
 
@@ -28,8 +28,8 @@ std::string benchmark_page(const ResultFinder& results) {
         {"kind", "comparison"},
         {"title", "Comparison of planners"},
         {"facts",
-         {support::counted(missions.size(), "mission"), support::counted(planners.size(), "planner"),
-          support::counted(trials, "survey")}},
+         {support::counted(missions.size(), "mission"),
+          support::counted(planners.size(), "planner"), support::counted(trials, "survey")}},
         {"summary", summary},
         {"files", files_json({"results.json", "table1.csv", "trials.csv", "report.md"}, results)}};
     return page_text(data.at("title"), data, {});
@@ -51,10 +51,10 @@ std::string trials_page(const ResultFinder& results) {
         {"facts",
          {"planner " + summary.at("planner").get<std::string>(),
           "first seed " + std::to_string(summary.at("first_seed").get<std::uint64_t>())}},
-        {"verdict",
-         json_of(Verdict{.is_complete = is_whole,
-                         .because = std::to_string(done) + " of " + support::counted(asked, "trial"),
-                         .lights = {}})},
+        {"verdict", json_of(Verdict{
+                        .is_complete = is_whole,
+                        .because = std::to_string(done) + " of " + support::counted(asked, "trial"),
+                        .lights = {}})},
         {"summary", summary},
         {"stop_words", stop_words()},
         {"files", files_json({"trials.json", "trials.csv"}, results)}};

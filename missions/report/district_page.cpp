@@ -4,9 +4,9 @@
 
 #include <nlohmann/json.hpp>
 
-#include "missions/support/number_text.h"
 #include "missions/report/page.h"
 #include "missions/report/verdict.h"
+#include "missions/support/number_text.h"
 
 namespace skycap::missions::report {
 namespace {

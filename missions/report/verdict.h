@@ -14,7 +14,7 @@ struct Light {
   std::string form;          ///< how it is shown: share, metres, minutes, count
   nlohmann::ordered_json value;
   std::string light = "none";  ///< green, amber, red, or none where nothing is asked of the figure
-  std::string rule;            ///< which value gives which light; docs/report.md lists them
+  std::string rule;  ///< which value gives which light; docs/reference/report.md lists them
 };
 
 struct Verdict {

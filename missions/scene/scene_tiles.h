@@ -1,7 +1,7 @@
-/// Scenes of many tiles, which a file NAME.tiles in the place of a mesh describes (docs/scan.md):
-/// mesh files that patterns name, and models that stand there again and again in rows and columns.
-/// Such a scene may be larger than memory, since sensors ask for those tiles alone that they can
-/// reach.
+/// Scenes of many tiles, which a file NAME.tiles in the place of a mesh describes
+/// (docs/reference/batch-files.md): mesh files that patterns name, and models that stand there
+/// again and again in rows and columns. Such a scene may be larger than memory, since sensors ask
+/// for those tiles alone that they can reach.
 #pragma once
 
 #include <cstdint>

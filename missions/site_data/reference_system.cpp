@@ -1,7 +1,7 @@
 #include "missions/site_data/reference_system.h"
 
-#include "missions/support/module.h"
 #include "missions/site_data/prior.h"
+#include "missions/support/module.h"
 
 namespace skycap::missions::site_data {
 namespace {

@@ -1,5 +1,5 @@
 /// What a mission file says of one file of prior data: maps, city models, terrain, earlier scans.
-/// Plain data under `prior`; docs/sites.md lists the keys.
+/// Plain data under `prior`; docs/reference/mission-file.md lists the keys.
 #pragma once
 
 #include <filesystem>

@@ -2,16 +2,16 @@
 
 #include <fmt/format.h>
 
-#include "missions/support/flow_text.h"
 #include "missions/site_data/prior_text.h"
+#include "missions/support/flow_text.h"
 
 namespace skycap::missions::wizard {
 namespace {
 
 using Eigen::Vector2d;
 using Eigen::Vector3d;
-using support::yaml_quoted;
 using site_data::Source;
+using support::yaml_quoted;
 
 std::string vector_text(const Vector3d& place) {
   return fmt::format("[{:g}, {:g}, {:g}]", place.x(), place.y(), place.z());

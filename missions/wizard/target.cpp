@@ -99,7 +99,7 @@ std::vector<Source> files_of(const Wishes& wishes) {
     return source;
   };
   const site_data::Assumptions assumed{wishes.reading.crs, wishes.reading.vertical,
-                                   wishes.terrain.has_value()};
+                                       wishes.terrain.has_value()};
   Source map = file(wishes.map, Role::obstacle);
   map.base = wishes.reading.base;
   map.height = wishes.reading.height;
@@ -123,7 +123,7 @@ std::vector<Source> sources_of(const std::vector<Source>& files,
 }
 
 site_data::Prior read_things(const std::vector<Source>& files, const site_data::Selection& select,
-                         const flight::GeodeticPoint& origin) {
+                             const flight::GeodeticPoint& origin) {
   std::vector<Source> sources = sources_of(files, {});
   sources[0].select = select;
   std::erase_if(sources, [](const Source& source) {

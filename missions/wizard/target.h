@@ -27,12 +27,13 @@ std::vector<site_data::Source> files_of(const Wishes& wishes);
 
 /// The prior data of a mission: the target, of the first of the files, and all of them.
 std::vector<site_data::Source> sources_of(const std::vector<site_data::Source>& files,
-                                      const std::vector<std::string>& target);
+                                          const std::vector<std::string>& target);
 
 /// What `select` means of the first of the files, on the terrain, about an origin. Throws what
 /// site_data::read_prior() throws.
-site_data::Prior read_things(const std::vector<site_data::Source>& files, const site_data::Selection& select,
-                         const flight::GeodeticPoint& origin);
+site_data::Prior read_things(const std::vector<site_data::Source>& files,
+                             const site_data::Selection& select,
+                             const flight::GeodeticPoint& origin);
 
 /// Throws Error{bad_config} if several of a file's things have that name.
 void require_single(const std::vector<site_data::Object>& objects, const std::string& id,

@@ -69,24 +69,20 @@ void LidarConfig::validate() const {
   require_between(errors.sigma_per_square_metre, 0.0, farthest_range,
                   "errors.sigma_per_square_metre");
   require_between(errors.incidence_power, 0.0, 100.0, "errors.incidence_power");
-  require_between(errors.channel_bias_sigma, 0.0, farthest_range,
-                  "errors.channel_bias_sigma");
+  require_between(errors.channel_bias_sigma, 0.0, farthest_range, "errors.channel_bias_sigma");
   require_between(errors.range_step, 0.0, farthest_range, "errors.range_step");
   require_between(errors.angle_sigma, 0.0, largest_angle, "errors.angle_sigma");
-  require_between(sensitivity.reference_range, 0.0, farthest_range,
-                  "sensitivity.reference_range");
+  require_between(sensitivity.reference_range, 0.0, farthest_range, "sensitivity.reference_range");
   require(sensitivity.reference_reflectance > 0.0 && sensitivity.reference_reflectance <= 1.0,
           "sensitivity.reference_reflectance", sensitivity.reference_reflectance,
           "above 0 and at most 1");
   require_between(sensitivity.attenuation, 0.0, 1e3, "sensitivity.attenuation");
   require(beam.rings >= 0 && beam.rings <= 8, "beam.rings", beam.rings, "between 0 and 8");
-  require_between(beam.divergence_horizontal, 0.0, std::numbers::pi,
-                  "beam.divergence_horizontal");
-  require_between(beam.divergence_vertical, 0.0, std::numbers::pi,
-                  "beam.divergence_vertical");
+  require_between(beam.divergence_horizontal, 0.0, std::numbers::pi, "beam.divergence_horizontal");
+  require_between(beam.divergence_vertical, 0.0, std::numbers::pi, "beam.divergence_vertical");
   require_between(beam.pulse_length, 0.0, 1.0, "beam.pulse_length");
-  require(beam.max_returns >= 1 && beam.max_returns <= 15, "beam.max_returns",
-          beam.max_returns, "between 1 and 15");
+  require(beam.max_returns >= 1 && beam.max_returns <= 15, "beam.max_returns", beam.max_returns,
+          "between 1 and 15");
 }
 
 }  // namespace skycap::sim

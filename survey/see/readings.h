@@ -1,5 +1,5 @@
 /// Where the SEE++ paper leaves a choice, or its released code does otherwise: each reading by
-/// name. docs/see.md tells what each does to the results.
+/// name. docs/explanation/see.md tells what each does to the results.
 #pragma once
 
 namespace skycap::survey::see {

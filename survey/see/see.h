@@ -4,8 +4,8 @@
 /// Source: Border and Gammell, "Proactive Estimation of Occlusions and Scene Coverage for Planning
 /// Next Best Views in an Unstructured Representation" (SEE++), and Border, Gammell and Newman,
 /// "Surface Edge Explorer (SEE)", 2018. Symbols of the paper stand beside our names. Where the
-/// paper leaves a choice, each reading is a field of SeeConfig; docs/see.md tells what each does to
-/// the results.
+/// paper leaves a choice, each reading is a field of SeeConfig; docs/explanation/see.md tells what
+/// each does to the results.
 #pragma once
 
 #include <memory>

@@ -45,8 +45,8 @@ void SeeConfig::validate() const {
   require(effective_spacing() < resolution_radius, "spacing", effective_spacing(),
           "less than resolution_radius, or no point has neighbours (by default it is "
           "density^(-1/2))");
-  require(!view_distance || is_length(*view_distance), "view_distance",
-          view_distance.value_or(0.0), length);
+  require(!view_distance || is_length(*view_distance), "view_distance", view_distance.value_or(0.0),
+          length);
   if (scene_box && (scene_box->isEmpty() || !scene_box->diagonal().allFinite())) {
     throw Error(ErrorKind::bad_config,
                 "scene_box is empty; it must be a box whose minimum is below its maximum");
@@ -55,16 +55,15 @@ void SeeConfig::validate() const {
           frame_neighbours.value_or(0), "at least 3");
   require(
       !occlusion_radius || (is_length(*occlusion_radius) && *occlusion_radius <= resolution_radius),
-      "occlusion_radius", occlusion_radius.value_or(0.0),
-      "positive and at most resolution_radius");
+      "occlusion_radius", occlusion_radius.value_or(0.0), "positive and at most resolution_radius");
   require(is_length(occluder_spacing), "occluder_spacing", occluder_spacing, length);
   require(std::isfinite(first_view_weight) && first_view_weight >= 0.0, "first_view_weight",
           first_view_weight, "zero or more");
   require(max_attempts >= 1, "max_attempts", max_attempts, "at least 1");
   require(std::isfinite(frontier_spacing) && frontier_spacing >= 0.0, "frontier_spacing",
           frontier_spacing, "zero or a positive number of metres");
-  require(!least_height || std::isfinite(*least_height), "least_height",
-          least_height.value_or(0.0), "a finite height");
+  require(!least_height || std::isfinite(*least_height), "least_height", least_height.value_or(0.0),
+          "a finite height");
   cap.validate();
 
   const int k = effective_core_threshold();
@@ -72,8 +71,8 @@ void SeeConfig::validate() const {
     require(k >= 4, "core_threshold", k, "at least 4, or no point can be a frontier");
   } else if (k < 4) {
     std::ostringstream message;
-    message << "density " << density << " and resolution_radius "
-            << resolution_radius << " give a core threshold of " << k
+    message << "density " << density << " and resolution_radius " << resolution_radius
+            << " give a core threshold of " << k
             << ", which admits no frontier; with this radius the density must be above "
             << 9.0 / (4.0 * std::numbers::pi * std::pow(resolution_radius, 3))
             << ", or with this density the radius above "

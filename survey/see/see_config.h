@@ -56,7 +56,7 @@ struct SeeConfig {
   std::optional<double> least_height;  ///< lowest z of a proposed view
 
   /// Throws Error{bad_config} naming the first field that is out of its interval, or the density
-  /// and radius if they admit no frontier (k < 4, see docs/see.md).
+  /// and radius if they admit no frontier (k < 4, see docs/explanation/see.md).
   void validate() const;
 
   /// k as given, or ceil(4/3 pi r^3 rho).

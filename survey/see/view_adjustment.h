@@ -1,7 +1,7 @@
 /// How SEE moves a view that did not resolve its frontier: the reactive handling of occlusions.
 ///
 /// Source: the authors' released code, which SEE++ keeps from SEE; the paper says only that
-/// "incremental view adjustments" are applied. Letters as in docs/see.md.
+/// "incremental view adjustments" are applied. Letters as in docs/explanation/see.md.
 #pragma once
 
 #include <limits>

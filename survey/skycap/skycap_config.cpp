@@ -28,23 +28,23 @@ void SkycapConfig::validate() const {
           max_incidence, "above 0 and at most pi/2 radians");
   require(stop.wanted_coverage > 0.0 && stop.wanted_coverage <= 1.0, "stop.wanted_coverage",
           stop.wanted_coverage, "above 0 and at most 1");
-  require(stop.least_gain >= 0.0 && stop.least_gain < 1.0, "stop.least_gain",
-          stop.least_gain, "at least 0 and below 1");
+  require(stop.least_gain >= 0.0 && stop.least_gain < 1.0, "stop.least_gain", stop.least_gain,
+          "at least 0 and below 1");
   require_optional(stop.most_length, "stop.most_length");
   require(!stop.most_time || is_positive(*stop.most_time), "stop.most_time",
           stop.most_time.value_or(0.0), "a positive number of seconds");
   require(is_positive(stop.speed), "stop.speed", stop.speed,
           "a positive number of metres per second");
-  require(stop.time_per_view >= 0.0 && std::isfinite(stop.time_per_view),
-          "stop.time_per_view", stop.time_per_view, "zero or more seconds");
+  require(stop.time_per_view >= 0.0 && std::isfinite(stop.time_per_view), "stop.time_per_view",
+          stop.time_per_view, "zero or more seconds");
   require(continuation_steps >= 1 && continuation_steps <= 5, "continuation_steps",
           continuation_steps, "between 1 and 5");
   require(place_error >= 0.0 && std::isfinite(place_error), "place_error", place_error,
           "zero or more metres");
   require(angle_error >= 0.0 && std::isfinite(angle_error), "angle_error", angle_error,
           "zero or more radians");
-  require(frame_spacing >= 0.0 && std::isfinite(frame_spacing), "frame_spacing",
-          frame_spacing, "zero or more metres");
+  require(frame_spacing >= 0.0 && std::isfinite(frame_spacing), "frame_spacing", frame_spacing,
+          "zero or more metres");
   require(!scene_box || !scene_box->isEmpty(), "scene_box", 0.0, "a box of positive size");
   limits.validate();
 }

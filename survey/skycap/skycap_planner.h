@@ -4,8 +4,8 @@
 /// where the surface goes on (unseen_surface.h). A view is worth the area that it is expected to
 /// cover newly; the next one is the first stop of a short tour through views that complement each
 /// other (chooser.h). Nothing needs tuning to a scene: every length derives from the sensor, the
-/// coverage radius and the first scan. docs/skycap_planner.md has the formulas and what each idea
-/// is worth.
+/// coverage radius and the first scan. docs/explanation/skycap-planner.md has the formulas and what
+/// each idea is worth.
 #pragma once
 
 #include <memory>

@@ -23,8 +23,8 @@ void VolumetricConfig::validate() const {
   require(is_length(sphere_radius), "sphere_radius", sphere_radius, length);
   require(candidates >= 1, "candidates_per_view", settings.candidates_per_view,
           "large enough for one candidate");
-  require(std::isfinite(settings.cost_weight) && settings.cost_weight >= 0.0,
-          "cost_weight", settings.cost_weight, "zero or more");
+  require(std::isfinite(settings.cost_weight) && settings.cost_weight >= 0.0, "cost_weight",
+          settings.cost_weight, "zero or more");
   require(is_length(ray_depth()), "ray_depth", ray_depth(), length);
   // A diagonal shadow takes sqrt(3) times as many voxels.
   constexpr double longest_shadow = OccupancyStates::deepest_shadow / 2.0;
@@ -33,8 +33,8 @@ void VolumetricConfig::validate() const {
   const RayPattern& rays = settings.rays;
   require(rays.rays_per_pixel > 0.0 && rays.rays_per_pixel <= 1.0, "rays.rays_per_pixel",
           rays.rays_per_pixel, "above 0 and at most 1");
-  require(rays.window_begin >= 0.0 && rays.window_begin < rays.window_end,
-          "rays.window_begin", rays.window_begin, "at least 0 and below window_end");
+  require(rays.window_begin >= 0.0 && rays.window_begin < rays.window_end, "rays.window_begin",
+          rays.window_begin, "at least 0 and below window_end");
   require(rays.window_end < 1.0 + 1e-12, "rays.window_end", rays.window_end, "at most 1");
 }
 

@@ -1,5 +1,5 @@
 /// How much a view promises: the information gains of seven volumetric planners, each a sum over
-/// the rays of the view through what the map knows. docs/volumetric.md writes them out.
+/// the rays of the view through what the map knows. docs/explanation/volumetric.md writes them out.
 ///
 /// Sources: Delmerico et al., Autonomous Robots 42 (2018), for RSV, RSE, OA, UV and PC;
 /// Vasquez-Gomez et al., Robotica 33 (2015), for AF; Kriegel et al., Journal of Real-Time Image

@@ -1,5 +1,5 @@
 /// The volumetric planners: of views given beforehand on a sphere around the scene, take the one
-/// that promises most for its way. docs/volumetric.md describes them.
+/// that promises most for its way. docs/explanation/volumetric.md describes them.
 ///
 /// Source: Delmerico et al., Autonomous Robots 42 (2018), whose evaluation code the SEE++ paper
 /// compares with (§IV).

@@ -234,7 +234,7 @@ void fly_into_file(const Ground& ground, sim::LidarConfig config, const Eigen::V
     std::vector<missions::scan::CloudFile> files;
     files.emplace_back(path, missions::scan::las_format({}));
     result = missions::scan::run_scan(ground.scene, lidar, {trajectory, trajectory}, files,
-                                           {.threads = threads, .report = {}, .stop = {}});
+                                      {.threads = threads, .report = {}, .stop = {}});
     files[0].finish();
     bytes = files[0].bytes();
   };

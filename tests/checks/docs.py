@@ -1,18 +1,25 @@
-"""Checks README.md and docs/*.md, or the pages that are named: runs their checked blocks
-(docs_blocks.py) and looks up the names they mention (docs_names.py). With --write it puts what the
-commands print into the pages. Exit code 1: something is stale."""
+"""Checks README.md, CONTRIBUTING.md, CHANGELOG.md and docs/**/*.md, or the named pages: runs their
+checked blocks (docs_blocks.py), looks up the names that they mention (docs_names.py), and checks
+their size and form (docs_pages.py). Without named pages it also compares the generated reference
+(docs/generate_reference.py) and the fields of results (docs_results.py) with the program. With
+--write it puts what the commands print into the pages. Exit code 1: something is stale."""
 
 import argparse
 import difflib
 import os
 import pathlib
+import subprocess
 import sys
 import tempfile
 
 import docs_blocks
+import docs_messages
 import docs_names
+import docs_pages
+import docs_results
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
+ROOT_PAGES = ("README.md", "CONTRIBUTING.md", "CHANGELOG.md")
 
 
 def scratch_folder(folder, program):
@@ -62,6 +69,9 @@ def check(page, names, program, write):
     checked = {block.first + 1 + i for block in run for i in range(len(block.lines))}
     wrong = [(number, complaint) for number, complaint in docs_names.complaints(page, text, names)
              if number not in checked]
+    wrong += docs_pages.page_complaints(str(page), text)
+    if not str(page).startswith(docs_names.RECORDS):
+        wrong += docs_messages.complaints(text, names.messages)
     for number, complaint in wrong:
         print(f"{page}:{number}: {complaint}")
     if renewed != text and write:
@@ -73,22 +83,36 @@ def check(page, names, program, write):
     return not wrong and (write or renewed == text), len(run)
 
 
+def check_tree(names, program, write):
+    """Whether the pages as a whole are right: the index, the pictures and the reference."""
+    wrong = list(docs_pages.tree_complaints(ROOT, names.files))
+    text = (ROOT / docs_results.PAGE).read_text(encoding="utf-8")
+    wrong += [(docs_results.PAGE, complaint)
+              for complaint in docs_results.complaints(text, program)]
+    for name, complaint in wrong:
+        print(f"{name}: {complaint}")
+    generator = [sys.executable, ROOT / "docs" / "generate_reference.py", "--program", program,
+                 "--skip-missing", *([] if write else ["--check"])]
+    return subprocess.run(generator, check=False).returncode == 0 and not wrong
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--program", type=pathlib.Path, required=True, help="build folder")
     parser.add_argument("--write", action="store_true", help="renew the pages")
-    parser.add_argument("pages", nargs="*", help="relative to the root; default all")
+    parser.add_argument("pages", nargs="*", help="relative to the root; default: all")
     arguments = parser.parse_args()
     program = (ROOT / arguments.program).resolve()
     names = docs_names.Names(ROOT, program)
+    is_tree_right = bool(arguments.pages) or check_tree(names, program, arguments.write)
     pages = arguments.pages or sorted(
         name for name in names.files
-        if name == "README.md" or (name.startswith("docs/") and name.endswith(".md")))
+        if name in ROOT_PAGES or (name.startswith("docs/") and name.endswith(".md")))
     results = [check(pathlib.PurePosixPath(page), names, program, arguments.write)
                for page in pages]
     print(f"docs: {len(pages)} pages, {sum(count for _, count in results)} blocks run, "
           f"{sum(not good for good, _ in results)} pages stale")
-    return 0 if all(good for good, _ in results) else 1
+    return 0 if is_tree_right and all(good for good, _ in results) else 1
 
 
 if __name__ == "__main__":

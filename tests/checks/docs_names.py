@@ -8,14 +8,22 @@ import re
 import shlex
 import subprocess
 
+import docs_messages
+import docs_results
+
 CODE_SPAN = re.compile(r"`([^`]+)`")
 LINK = re.compile(r"\]\(([^)\s]+)\)")
-COMMAND = re.compile(r"(?<!\S)(?:(?:\./)?skycap |cmake --|ctest --|build/|tests/checks/)")
+COMMAND = re.compile(
+    r"(?<!\S)(?:(?:\./)?skycap |skycap_ros2 |cmake --|ctest --|build/|tests/checks/|docs/)")
 PATH = re.compile(r"[\w./-]+/[\w.-]+\.\w+")
 TEST_NAME = re.compile(r"[A-Z]\w+\.[A-Z]\w+\*?")
 KEY = re.compile(r"[a-z_]+(?:\.[a-z_]+)+")
 IDENTIFIER = re.compile(r"(?:\w+::)*([a-z]+(?:_[a-z0-9]+)+)(?:\(\))?|(?:\w+::)+(\w+)")
-FILE_TYPES = ("bin", "csv", "html", "json", "las", "pcd", "plan", "ply", "rawlog", "tum", "xyz")
+RECORDS = "docs/development/results/"
+GENERATED = re.compile(r"<!-- generated: .*?<!-- end of generated -->", re.DOTALL)
+FILE_TYPES = ("bin", "csv", "html", "journal", "json", "las", "pcd", "plan", "ply", "rawlog", "tum",
+              "xyz")
+SCRIPTS = re.compile(r"skycap|docs/[^/]+\.py|docs/build_site|docs/pictures/\w+|tests/(checks|fuzz|faults)/\w+")
 PLACEHOLDER = re.compile(r"[A-Z]{2,}|\.\.\.|\bN\b")
 
 
@@ -38,6 +46,15 @@ class Names:
                 r"TEST(?:_F|_P)?\(\s*(\w+),\s*(\w+)\)", text))
         schema = json.loads((root / "missions/mission.schema.json").read_text())
         self.keys = set(keys_of(schema))
+        self.messages = docs_messages.listed(
+            (root / docs_messages.PAGE).read_text(encoding="utf-8"))
+        self.fields = set()
+        for fields in docs_results.listed_fields(
+                (root / docs_results.PAGE).read_text(encoding="utf-8")).values():
+            self.fields |= {part for field in fields for part in with_parents(field)}
+        scripts = [root / name for name in self.files if SCRIPTS.fullmatch(name)]
+        self.script_options = set(re.findall(
+            r"--[a-z][a-z-]+", " ".join(script.read_text(encoding="utf-8") for script in scripts)))
         self.presets = {preset["name"] for preset in json.loads(
             (root / "CMakePresets.json").read_text())["configurePresets"]}
 
@@ -50,6 +67,15 @@ class Names:
                               text=True, check=True).stdout
 
     @functools.cache
+    def ros2_help(self):
+        """What `skycap_ros2 --help` prints; nothing if it is not built."""
+        program = self.program / "skycap_ros2"
+        if not program.exists():
+            return None
+        return subprocess.run([program, "--help"], capture_output=True, text=True,
+                              check=True).stdout
+
+    @functools.cache
     def verbs(self):
         text = subprocess.run([self.program / "skycap", "--help"], capture_output=True, text=True,
                               check=True).stdout
@@ -60,6 +86,15 @@ class Names:
         return path in self.files or any(name.startswith(path + "/") for name in self.files)
 
 
+def with_parents(field):
+    """A field's name and those of the objects that hold it, with and without marks of lists."""
+    parts = field.split(".")
+    for count in range(1, len(parts) + 1):
+        name = ".".join(parts[:count])
+        yield name
+        yield name.replace("[]", "")
+
+
 def keys_of(schema, prefix=""):
     for name, property in schema.get("properties", {}).items():
         yield prefix + name
@@ -67,13 +102,21 @@ def keys_of(schema, prefix=""):
 
 
 def complaints(page, text, names):
-    """Yields (line number from 1, what is wrong) for a page, a path relative to the root."""
+    """Yields (line number from 1, what is wrong) for a page, a path relative to the root. Records
+    of other versions and generated parts may mention names that do not exist."""
     lines = text.split("\n")
     for number, line in enumerate(lines, 1):
-        for target in LINK.findall(line):
+        for target in LINK.findall(CODE_SPAN.sub("", line)):
             yield from ((number, wrong) for wrong in link_complaints(page, target, names))
-    for number, code in code_of(lines):
+    if str(page) == "CHANGELOG.md" or str(page).startswith(RECORDS):
+        return
+    for number, code in code_of(without_generated(text).split("\n")):
         yield from ((number, wrong) for wrong in code_complaints(code, names))
+
+
+def without_generated(text):
+    """The page with blank lines instead of its generated parts (docs/generate_reference.py)."""
+    return GENERATED.sub(lambda match: "\n" * match[0].count("\n"), text)
 
 
 def code_of(lines):
@@ -117,13 +160,15 @@ def code_complaints(code, names):
             yield from command_complaints(command, names)
     elif code.startswith("--"):
         option = re.split(r"[ =]", code)[0]
-        if not any(option in names.help(verb) for verb in names.verbs()):
-            yield f"no verb has the option {option}"
+        if (option not in names.script_options
+                and not any(option in names.help(verb) for verb in names.verbs())):
+            yield f"no command has the option {option}"
     elif TEST_NAME.fullmatch(code):
         if not any(re.fullmatch(code.replace("*", ".*"), test) for test in names.tests):
             yield f"there is no test {code}"
     elif KEY.fullmatch(code) and code.split(".")[0] in names.keys:
-        if code not in names.keys and code.split(".")[-1] not in FILE_TYPES:
+        if (code not in names.keys and code not in names.fields
+                and code.split(".")[-1] not in FILE_TYPES):
             yield f"there is no key {code}"
     elif PATH.fullmatch(code):
         if code.split("/")[0] in {name.split("/")[0] for name in names.files}:
@@ -139,14 +184,19 @@ def command_complaints(command, names):
     words = shlex.split(command)
     if words[0] in ("skycap", "./skycap"):
         yield from skycap_complaints(words[1:], names)
+    elif words[0] == "skycap_ros2":
+        for option in (word.split("=")[0] for word in words[1:] if word.startswith("--")):
+            if names.ros2_help() and option not in names.ros2_help():
+                yield f"skycap_ros2 has no option {option}"
     elif "--preset" in words:
         preset = words[words.index("--preset") + 1]
         if preset not in names.presets:
             yield f"there is no preset {preset}"
     elif words[0].count("/") > 1 and words[0].startswith("build/"):
-        if not names.has_path(source_of(words[0].split("/", 2)[2])):
+        built = words[0].split("/", 2)[2]
+        if not names.has_path(source_of(built)) and not names.has_path(built):
             yield f"nothing builds {words[0]}"
-    elif words[0].startswith("tests/") and not names.has_path(words[0]):
+    elif words[0].startswith(("tests/", "docs/")) and not names.has_path(words[0]):
         yield f"there is no {words[0]}"
 
 
@@ -199,4 +249,5 @@ def normal_parts(path):
 
 def anchors(page):
     headings = re.findall(r"^#+ (.+)$", page.read_text(encoding="utf-8"), re.MULTILINE)
-    return {re.sub(r"[^\w\- ]", "", heading.lower()).replace(" ", "-") for heading in headings}
+    return {re.sub(r"[^\w\- ]", "", re.sub(r"\\(.)", r"\1", heading).lower()).replace(" ", "-")
+            for heading in headings}

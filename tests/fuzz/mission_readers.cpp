@@ -10,12 +10,12 @@
 #include "missions/batch/benchmark/trial_files.h"
 #include "missions/batch/campaign/campaign_file.h"
 #include "missions/batch/campaign/manifest.h"
-#include "missions/config/resolve.h"
 #include "missions/batch/district/district_file.h"
 #include "missions/batch/district/prepared.h"
+#include "missions/config/mission_keys.h"
+#include "missions/config/resolve.h"
 #include "missions/config/sensor_reader.h"
 #include "missions/config/vehicle_reader.h"
-#include "missions/config/mission_keys.h"
 #include "missions/package/package.h"
 #include "tests/fuzz/readers.h"
 #include "tests/fuzz/trial_run.h"
@@ -57,9 +57,8 @@ int run_sensor(const std::uint8_t* bytes, std::size_t size) {
 }
 
 int run_vehicle(const std::uint8_t* bytes, std::size_t size) {
-  return run_reader("v.yaml", [&] {
-    missions::config::read_vehicle(text_of(bytes, size), "v.yaml").validate();
-  });
+  return run_reader(
+      "v.yaml", [&] { missions::config::read_vehicle(text_of(bytes, size), "v.yaml").validate(); });
 }
 
 int run_summary(const std::uint8_t* bytes, std::size_t size) {

@@ -50,8 +50,9 @@ int run(const char* name, const std::uint8_t* bytes, std::size_t size, Parse par
 }
 
 int run_citygml(const std::uint8_t* bytes, std::size_t size) {
-  return run("city.gml", bytes, size,
-             [](std::string text) { return site_data::parse_citygml("city.gml", std::move(text)); });
+  return run("city.gml", bytes, size, [](std::string text) {
+    return site_data::parse_citygml("city.gml", std::move(text));
+  });
 }
 
 int run_cityjson(const std::uint8_t* bytes, std::size_t size) {

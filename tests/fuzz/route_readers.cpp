@@ -37,8 +37,7 @@ int run_route(const char* name, const std::uint8_t* bytes, std::size_t size) {
 int run_scan_route(const char* name, const std::uint8_t* bytes, std::size_t size) {
   return run_reader(name, [&] {
     const auto path = file_with(name, text_of(bytes, size));
-    const auto route =
-        missions::scan::read_scan_route(path, {}, missions::scan::Carrier::gimbal);
+    const auto route = missions::scan::read_scan_route(path, {}, missions::scan::Carrier::gimbal);
     for (const sim::StampedPose& pose : route.carrier.poses()) {
       require(geometry::is_place(pose.position), "a pose out of the world");
       require(std::isfinite(pose.time), "a pose at no time");

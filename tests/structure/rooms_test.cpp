@@ -1,5 +1,6 @@
-// Which folder may include which: the same table as in docs/architecture.md. Between libraries the
-// linker keeps to it, too (the tests links/NAME); within a library this test alone does.
+// Which folder may include which: the same table as in docs/development/architecture.md. Between
+// libraries the linker keeps to it, too (the tests links/NAME); within a library this test alone
+// does.
 
 #include <fstream>
 #include <map>
@@ -54,8 +55,8 @@ Rooms house() {
   add("survey/skycap/raster", {"survey"});
   add("survey/skycap", {"survey", "survey/skycap/raster"});
   add("survey/volumetric", {"survey"});
-  add("survey/planners", {"survey", "survey/see", "survey/skycap", "survey/skycap/raster",
-                          "survey/volumetric"});
+  add("survey/planners",
+      {"survey", "survey/see", "survey/skycap", "survey/skycap/raster", "survey/volumetric"});
 
   add("flight/space", {});
   add("flight/autopilot", {});
@@ -73,9 +74,9 @@ Rooms house() {
   add("flight/fleet", {"flight/space", "flight/motion", "flight/paths", "flight/way_home",
                        "flight/route", "flight/fly_test"});
   add("flight/district", {"flight/space", "flight/motion", "flight/way_home", "flight/route"});
-  add("flight", {"flight/space", "flight/motion", "flight/autopilot", "flight/paths",
-                 "flight/way_home", "flight/route", "flight/export", "flight/interpreter",
-                 "flight/fly_test", "flight/fleet"});
+  add("flight",
+      {"flight/space", "flight/motion", "flight/autopilot", "flight/paths", "flight/way_home",
+       "flight/route", "flight/export", "flight/interpreter", "flight/fly_test", "flight/fleet"});
 
   std::map<std::string, std::vector<std::string>> rooms_of;  // of each library below missions/
   for (const auto& [room, others] : rooms) {
@@ -102,51 +103,37 @@ Rooms house() {
       rooms_of["missions/" + name].push_back(room);
     }
   };
-  add_library({"support"},
-              {"geometry"},
-              {});
-  add_library({"site_data/formats", "site_data"},
-              {"flight"},
-              {"support"});
-  add_library({"scene"},
-              {"sim", "flight"},
-              {"site_data", "support"});
-  add_library({"session"},
-              {"survey", "flight"},
-              {"support"});
-  add_library({"evaluation"},
-              {"sim", "survey", "flight"},
+  add_library({"support"}, {"geometry"}, {});
+  add_library({"site_data/formats", "site_data"}, {"flight"}, {"support"});
+  add_library({"scene"}, {"sim", "flight"}, {"site_data", "support"});
+  add_library({"session"}, {"survey", "flight"}, {"support"});
+  add_library({"evaluation"}, {"sim", "survey", "flight"},
               {"scene", "session", "site_data", "support"});
-  add_library({"simulation"},
-              {"sim", "survey", "flight"},
+  add_library({"simulation"}, {"sim", "survey", "flight"},
               {"evaluation", "scene", "session", "support"});
-  add_library({"scan"},
-              {"sim", "flight"},
-              {"scene", "support"});
-  add_library({"online/live", "online/guided", "online/recordings"},
-              {"survey", "flight"},
+  add_library({"scan"}, {"sim", "flight"}, {"scene", "support"});
+  add_library({"online/live", "online/guided", "online/recordings"}, {"survey", "flight"},
               {"session", "support"});
-  add_library({"config"},
-              {"sim", "survey", "flight"},
-              {"online", "scan", "simulation", "evaluation", "session", "scene", "site_data", "support"});
-  add_library({"package/fleet", "package/replan", "package/verification", "package"},
-              {"sim", "survey", "flight"},
-              {"config", "scan", "simulation", "evaluation", "session", "scene", "site_data", "support"});
-  add_library({"wizard"},
-              {"flight"},
-              {"config", "site_data", "support"});
-  add_library({"report"},
-              {"sim", "survey", "flight"},
-              {"package", "config", "scan", "simulation", "evaluation", "session", "scene", "site_data", "support"});
-  add_library({"batch/benchmark", "batch/campaign", "batch/district"},
-              {"sim", "survey", "flight"},
-              {"package", "wizard", "config", "simulation", "evaluation", "session", "scene", "site_data", "support"});
-  add_library({"api"},
-              {"sim", "survey", "flight"},
-              {"package", "config", "scan", "simulation", "evaluation", "session", "scene", "site_data", "support"});
-  add_library({"cli", "cli/clouds", "cli/items"},
-              {"sim", "survey", "flight"},
-              {"report", "batch", "wizard", "package", "config", "online", "scan", "simulation", "evaluation", "session", "scene", "site_data", "support"});
+  add_library(
+      {"config"}, {"sim", "survey", "flight"},
+      {"online", "scan", "simulation", "evaluation", "session", "scene", "site_data", "support"});
+  add_library(
+      {"package/fleet", "package/replan", "package/verification", "package"},
+      {"sim", "survey", "flight"},
+      {"config", "scan", "simulation", "evaluation", "session", "scene", "site_data", "support"});
+  add_library({"wizard"}, {"flight"}, {"config", "site_data", "support"});
+  add_library({"report"}, {"sim", "survey", "flight"},
+              {"package", "config", "scan", "simulation", "evaluation", "session", "scene",
+               "site_data", "support"});
+  add_library({"batch/benchmark", "batch/campaign", "batch/district"}, {"sim", "survey", "flight"},
+              {"package", "wizard", "config", "simulation", "evaluation", "session", "scene",
+               "site_data", "support"});
+  add_library({"api"}, {"sim", "survey", "flight"},
+              {"package", "config", "scan", "simulation", "evaluation", "session", "scene",
+               "site_data", "support"});
+  add_library({"cli", "cli/clouds", "cli/items"}, {"sim", "survey", "flight"},
+              {"report", "batch", "wizard", "package", "config", "online", "scan", "simulation",
+               "evaluation", "session", "scene", "site_data", "support"});
   // As a user of the library: public headers.
   add("python",
       {"sim/models", "sim/sensors", "survey", "flight/space", "flight/route", "missions/api"});

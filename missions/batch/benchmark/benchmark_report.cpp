@@ -334,7 +334,8 @@ std::string table_1_csv(const std::vector<BenchmarkCell>& cells, Times times) {
                          support::exact_text(ours.mean / (*paper).*column.papers)
                    : ",,";
     }
-    csv += "," + (figures.coverage_visible ? support::exact_text(figures.coverage_visible->mean) : "");
+    csv +=
+        "," + (figures.coverage_visible ? support::exact_text(figures.coverage_visible->mean) : "");
     csv += "," + (figures.ceiling ? support::exact_text(*figures.ceiling) : "") + "\n";
   }
   return csv;
@@ -362,7 +363,7 @@ std::string report_markdown(const std::vector<BenchmarkCell>& cells, const std::
       "\n\n"
       "Means over the trials; in brackets the SEE++ paper's (100 trials). ± is the half width of "
       "the mean's 95 % interval, sd the standard deviation over the trials, and × the ratio to the "
-      "paper. docs/benchmark.md explains the figures.\n\n"
+      "paper. docs/howto/compare-planners.md explains the figures.\n\n"
       "## Table 1\n\n" +
       table_1(cells, times);
   for (const std::string& mission : distinct(cells, &BenchmarkCell::mission)) {

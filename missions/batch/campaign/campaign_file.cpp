@@ -114,7 +114,7 @@ class CampaignReader {
   }
 
   std::vector<config::KeyOverride> changes_in(const std::vector<support::YamlEntry>& entries,
-                                            const std::string& path) const {
+                                              const std::string& path) const {
     static const FollowingKeys following{
         {"name", "seed", "threads", "planner.name"},
         "the campaign; give its own name, planners, seeds or first_seed"};

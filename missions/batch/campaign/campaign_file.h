@@ -1,5 +1,5 @@
 /// A campaign file: which missions are surveyed, by which planners, with which seeds and changes.
-/// docs/campaigns.md is the manual of the format.
+/// docs/reference/batch-files.md is the manual of the format.
 #pragma once
 
 #include <cstddef>

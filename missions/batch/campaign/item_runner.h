@@ -33,8 +33,8 @@ std::vector<std::optional<batch::TrialRecord>> finished_items(const std::vector<
 /// in one thread, and returns the records of all; nothing for those that failed or that `stop` came
 /// before. A scene is kept until the last of its items is done. Throws Error, see RunEvents.
 std::vector<std::optional<batch::TrialRecord>> run_items(const std::vector<Item>& items,
-                                                             unsigned threads,
-                                                             const std::stop_token& stop,
-                                                             const RunEvents& events);
+                                                         unsigned threads,
+                                                         const std::stop_token& stop,
+                                                         const RunEvents& events);
 
 }  // namespace skycap::missions::batch

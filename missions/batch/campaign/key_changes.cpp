@@ -4,9 +4,9 @@
 #include <utility>
 
 #include "geometry/error.h"
-#include "missions/support/flow_text.h"
 #include "missions/config/mission_keys.h"
 #include "missions/config/unknown_key.h"
+#include "missions/support/flow_text.h"
 
 namespace skycap::missions::batch {
 namespace {
@@ -55,8 +55,8 @@ bool FollowingKeys::holds(const std::string& key) const {
 }
 
 std::vector<config::KeyOverride> key_changes(const std::vector<support::YamlEntry>& entries,
-                                           const std::string& path, const std::string& file,
-                                           const FollowingKeys& following) {
+                                             const std::string& path, const std::string& file,
+                                             const FollowingKeys& following) {
   ChangeReader reader(path, file, following);
   reader.read(entries, "");
   return reader.changes();

@@ -12,9 +12,8 @@ namespace skycap::missions::batch {
 
 /// Stages report.md, results.json, table1.csv and trials.csv; returns the first. Of planning times
 /// only results.json tells in any case.
-std::string stage_tables(const std::vector<batch::BenchmarkCell>& cells,
-                         const std::string& title, batch::Times times,
-                         geometry::OutputFolder& folder);
+std::string stage_tables(const std::vector<batch::BenchmarkCell>& cells, const std::string& title,
+                         batch::Times times, geometry::OutputFolder& folder);
 
 /// An item that is finished, as a line of times.csv.
 struct ItemTimes {

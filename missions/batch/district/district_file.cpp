@@ -12,8 +12,8 @@
 #include "missions/batch/benchmark/contestants.h"
 #include "missions/batch/campaign/campaign_file.h"
 #include "missions/batch/campaign/key_changes.h"
-#include "missions/support/yaml_section.h"
 #include "missions/support/flow_text.h"
+#include "missions/support/yaml_section.h"
 
 namespace skycap::missions::batch {
 namespace {
@@ -63,8 +63,8 @@ class DistrictReader {
     reading.crs = root_.text("crs", "");
     if (root_.has("vertical")) {
       reading.vertical = root_.choice<site_data::HeightDatum>(
-          "vertical",
-          {{"ellipsoid", site_data::HeightDatum::ellipsoid}, {"geoid", site_data::HeightDatum::geoid}});
+          "vertical", {{"ellipsoid", site_data::HeightDatum::ellipsoid},
+                       {"geoid", site_data::HeightDatum::geoid}});
     }
     if (root_.has("base")) reading.base = bounded("base", 0.0, -1e4, 1e4);
     if (root_.has("height")) reading.height = bounded("height", 0.0, 0.01, 1e4);
@@ -132,9 +132,11 @@ class DistrictReader {
     return number;
   }
 
-  static wizard::Click click(YamlSection& section, const std::string& key, const std::string& text) {
+  static wizard::Click click(YamlSection& section, const std::string& key,
+                             const std::string& text) {
     const auto found = wizard::click_in(text);
-    if (!found) section.fail_at(key, "has " + text + "; give " + wizard::click_form + ", in quotes");
+    if (!found)
+      section.fail_at(key, "has " + text + "; give " + wizard::click_form + ", in quotes");
     return *found;
   }
 

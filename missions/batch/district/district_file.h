@@ -1,5 +1,5 @@
-/// A district file: which buildings of a map are surveyed, and how. docs/districts.md is the manual
-/// of the format.
+/// A district file: which buildings of a map are surveyed, and how. docs/reference/batch-files.md
+/// is the manual of the format.
 #pragma once
 
 #include <cstdint>

@@ -9,9 +9,9 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "missions/package/route_json.h"
 #include "missions/support/json_text.h"
 #include "missions/support/number_text.h"
-#include "missions/package/route_json.h"
 #include "missions/version.h"
 
 namespace skycap::missions::batch {

@@ -114,15 +114,15 @@ std::string digest_of(const DistrictFile& district) {
 }
 
 batch::CampaignFile campaign_of(const DistrictFile& district, const Prepared& prepared,
-                                   const fs::path& out) {
+                                const fs::path& out) {
   batch::CampaignFile file{.name = district.name,
-                              .folder = out / missions_folder,
-                              .missions = {},
-                              .planners = {district.planner},
-                              .seeds = 1,
-                              .first_seed = district.seed,
-                              .variants = {{"", district.set}},
-                              .results = batch::ItemResults::package};
+                           .folder = out / missions_folder,
+                           .missions = {},
+                           .planners = {district.planner},
+                           .seeds = 1,
+                           .first_seed = district.seed,
+                           .variants = {{"", district.set}},
+                           .results = batch::ItemResults::package};
   for (const PreparedTarget& target : prepared.targets) {
     if (target.refusal.empty()) file.missions.push_back(target.title + ".yaml");
   }

@@ -52,6 +52,6 @@ std::string digest_of(const DistrictFile& district);
 
 /// The surveys of the targets that have missions, as a campaign whose missions are in `out`.
 batch::CampaignFile campaign_of(const DistrictFile& district, const Prepared& prepared,
-                                   const std::filesystem::path& out);
+                                const std::filesystem::path& out);
 
 }  // namespace skycap::missions::batch

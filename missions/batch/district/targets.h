@@ -24,7 +24,8 @@ struct ChosenTargets {
 /// Of the first of `files`. Throws Error{bad_config} if nothing is chosen, if the map calls two of
 /// those the same, or if without terrain their feet differ by more than 2 m in height; what
 /// site_data::read_prior() throws.
-ChosenTargets choose_targets(const DistrictFile& district, const std::vector<site_data::Source>& files);
+ChosenTargets choose_targets(const DistrictFile& district,
+                             const std::vector<site_data::Source>& files);
 
 /// Numbers of objects.
 using Group = std::vector<std::size_t>;

@@ -10,10 +10,10 @@
 #include "geometry/io/cloud_io.h"
 #include "geometry/io/record_log.h"
 #include "geometry/parallel.h"
-#include "missions/support/json_text.h"
-#include "missions/evaluation/tally_file.h"
 #include "missions/cli/clouds/evaluation.h"
 #include "missions/cli/clouds/split_work.h"
+#include "missions/evaluation/tally_file.h"
+#include "missions/support/json_text.h"
 #include "missions/version.h"
 
 namespace skycap::missions::cli {
@@ -45,7 +45,7 @@ class PiecesOfCloud final : public PieceWork {
     geometry::OutputFolder folder(piece_folder(number));
     if (evaluation::has_tally(folder.path(), identity(number))) return true;
     evaluation::CloudJudge judge(truth_.model, truth_.samples, truth_.registration_distance,
-                            options_.threads, truth_.beside);
+                                 options_.threads, truth_.beside);
     double begin = 0.0;  // of what is read next, as a share of the file
     geometry::read_positions(
         options_.cloud, [&](std::span<const Eigen::Vector3f> points, double end) {
@@ -70,7 +70,8 @@ class PiecesOfCloud final : public PieceWork {
   }
 
   int join(geometry::OutputFolder& folder) override {
-    const evaluation::CloudJudgement judged = judgement_of(all_, geometry::surface_area(truth_.model));
+    const evaluation::CloudJudgement judged =
+        judgement_of(all_, geometry::surface_area(truth_.model));
     nlohmann::ordered_json json = evaluation_json(options_, truth_, judged);
     json["complete"] = true;
     folder.write(evaluation_name, support::json_text(json));
@@ -112,16 +113,16 @@ batch::Words command_of(const EvaluateOptions& options) {
   std::error_code missing;
   const bool is_file = fs::exists(options.model, missing);
   batch::Words words{"evaluate",
-                        "--cloud",
-                        fs::absolute(options.cloud),
-                        "--model",
-                        is_file ? fs::absolute(options.model).string() : options.model,
-                        "--out",
-                        fs::absolute(*options.out),
-                        "--pieces",
-                        std::to_string(options.pieces),
-                        "--samples",
-                        std::to_string(options.samples)};
+                     "--cloud",
+                     fs::absolute(options.cloud),
+                     "--model",
+                     is_file ? fs::absolute(options.model).string() : options.model,
+                     "--out",
+                     fs::absolute(*options.out),
+                     "--pieces",
+                     std::to_string(options.pieces),
+                     "--samples",
+                     std::to_string(options.samples)};
   if (options.distance) {
     words.insert(words.end(), {"--distance", fmt::format("{}", *options.distance)});
   }

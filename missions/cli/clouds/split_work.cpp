@@ -5,8 +5,8 @@
 
 #include <fmt/format.h>
 
-#include "missions/package/package.h"
 #include "missions/cli/tasks.h"
+#include "missions/package/package.h"
 
 namespace skycap::missions::cli {
 namespace {
@@ -58,11 +58,11 @@ int run_split(const SplitWork& split, const TaskOptions& task, const Console& co
   if (task.engine) {
     geometry::OutputFolder folder(split.out);
     const batch::JobRequest job{.command = split.command,
-                                   .out = fs::absolute(split.out),
-                                   .title = split.title,
-                                   .name = split.name,
-                                   .items = split.pieces,
-                                   .jobs = split.jobs};
+                                .out = fs::absolute(split.out),
+                                .title = split.title,
+                                .name = split.name,
+                                .items = split.pieces,
+                                .jobs = split.jobs};
     return submit_job(task, job, folder, split.is_quiet, console,
                       [&] { return collect(split, *split.begin(), folder, console); });
   }

@@ -44,7 +44,7 @@ struct SplitWork {
   std::string summary;        ///< the file that says in it whether they are complete
   std::string title;          ///< such as "Scan roofs"
   std::string name;           ///< of a job
-  batch::Words command{};  ///< the verb and what decides the results; absolute paths
+  batch::Words command{};     ///< the verb and what decides the results; absolute paths
   unsigned jobs = 1;          ///< at a time
   bool is_quiet = false;
   std::function<std::unique_ptr<PieceWork>()> begin{};  ///< reads what the work is about

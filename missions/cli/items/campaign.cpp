@@ -67,7 +67,7 @@ void add_campaign(CLI::App& app, const Console& console, Action& action) {
   CLI::App* verb = app.add_subcommand(
       "campaign", "Run missions x planners x seeds x changes, here or on an engine for many jobs");
   const auto options = std::make_shared<ItemOptions>();
-  add_item_options(*verb, *options, "Campaign file (docs/campaigns.md)");
+  add_item_options(*verb, *options, "Campaign file (docs/reference/batch-files.md)");
   run(*verb, options, campaign_verb, console, action);
 }
 

@@ -41,8 +41,8 @@ class DistrictVerb {
       }
     };
     const auto collect = [this](geometry::OutputFolder& folder) { return this->collect(folder); };
-    run_ = std::make_unique<ItemRun>(options_, batch::campaign_of(district_, prepared_, out_),
-                                     out_, ItemVerb{"district", keep, collect}, console_);
+    run_ = std::make_unique<ItemRun>(options_, batch::campaign_of(district_, prepared_, out_), out_,
+                                     ItemVerb{"district", keep, collect}, console_);
     return run_->run();
   }
 
@@ -107,7 +107,7 @@ void add_district(CLI::App& app, const Console& console, Action& action) {
   CLI::App* verb = app.add_subcommand(
       "district", "Survey the buildings of a map, here or on an engine, and fly all of them");
   const auto options = std::make_shared<ItemOptions>();
-  add_item_options(*verb, *options, "District file (docs/districts.md)");
+  add_item_options(*verb, *options, "District file (docs/reference/batch-files.md)");
   run(*verb, options, district_verb, console, action);
 }
 

@@ -15,9 +15,9 @@
 #include "geometry/error.h"
 #include "geometry/parallel.h"
 #include "missions/batch/campaign/item_runner.h"
-#include "missions/package/package.h"
 #include "missions/cli/tasks.h"
 #include "missions/cli/write_page.h"
+#include "missions/package/package.h"
 
 namespace skycap::missions::cli {
 
@@ -27,8 +27,8 @@ fs::path ItemOptions::folder(const std::string& name) const {
   return out.value_or(fs::path("results") / name);
 }
 
-ItemRun::ItemRun(const ItemOptions& options, batch::CampaignFile file, fs::path out,
-                 ItemVerb verb, const Console& console)
+ItemRun::ItemRun(const ItemOptions& options, batch::CampaignFile file, fs::path out, ItemVerb verb,
+                 const Console& console)
     : options_(options),
       console_(console),
       manifest_(std::move(file)),
@@ -94,7 +94,7 @@ std::size_t ItemRun::work_on(const batch::ItemRange& range, bool runs) {
     if (!runs) keep(batch, records);
   };
   batch::for_each_batch(manifest_, out_, range,
-                           {work, tell, [&](const std::string& what) { progress_.say(what); }});
+                        {work, tell, [&](const std::string& what) { progress_.say(what); }});
   progress_.clear();
   return done;
 }

@@ -8,8 +8,8 @@
 
 namespace skycap::missions::online {
 
-/// What to do next as a JSON object in one line: docs/live.md describes it. `flight` is that of the
-/// survey's options.
+/// What to do next as a JSON object in one line: docs/reference/live-protocol.md describes it.
+/// `flight` is that of the survey's options.
 std::string answer_json(const LiveSurvey& survey, const flight::FlightOptions& flight);
 
 /// The same in one line for people.

@@ -153,8 +153,9 @@ Message Session::answer(const Message& message) {
   try {
     return answer_unguarded(message);
   } catch (const Json::exception& failure) {
-    return error_message(std::string("the header is not as docs/live.md has it: ") +
-                         failure.what());
+    return error_message(
+        std::string("the header is not as docs/reference/live-protocol.md has it: ") +
+        failure.what());
   } catch (const Error& failure) {
     return error_message(failure.what());
   }

@@ -1,4 +1,5 @@
-/// What a live survey answers to a client's messages: docs/live.md describes them.
+/// What a live survey answers to a client's messages: docs/reference/live-protocol.md describes
+/// them.
 #pragma once
 
 #include <functional>

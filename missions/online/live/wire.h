@@ -1,4 +1,4 @@
-/// Messages of live surveys on a socket: docs/live.md describes them. A frame is
+/// Messages of live surveys on a socket: docs/reference/live-protocol.md describes them. A frame is
 ///
 ///     u32 bytes of the header    u32 bytes of the payload    u32 CRC-32 of both
 ///     header: a JSON object      payload: numbers

@@ -8,10 +8,10 @@
 #include <vector>
 
 #include "geometry/error.h"
-#include "missions/support/child_process.h"
-#include "missions/support/module.h"
 #include "missions/site_data/formats/geodata_file.h"
 #include "missions/site_data/formats/scene_nodes.h"
+#include "missions/support/child_process.h"
+#include "missions/support/module.h"
 
 namespace skycap::missions::site_data {
 namespace {

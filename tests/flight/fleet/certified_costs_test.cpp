@@ -67,7 +67,7 @@ TEST_F(CertifiedCostsOfABlock, AreWhatCertifiedRoutesTake) {
   constexpr std::uint32_t count = 14;
   const std::vector<Station> stations = stations_in(space, count);
   std::mt19937_64 random(3);
-  for (const double reserve : {0.2, 0.8}) {
+  for (const double reserve : {0.2, 0.7}) {
     for (FleetMember& member : fleet) member.options.conditions.reserve = reserve;
     CertifiedCosts costs(stations, fleet, space);
     EXPECT_TRUE(costs.unreached().empty());

@@ -67,7 +67,8 @@ TEST(PictureBounds, HoldForAnyMotionAndPixel) {
 TEST(PictureBounds, ArePixelsAtTheSharpSpeed) {
   const geometry::Camera camera = wide_camera();
   Vehicle vehicle{.sway_speed = 0.1, .sway_rate = 0.002};
-  for (const geometry::Shutter& shutter : {geometry::Shutter{0.002, 0.0}, geometry::Shutter{0.001, 0.004}}) {
+  for (const geometry::Shutter& shutter :
+       {geometry::Shutter{0.002, 0.0}, geometry::Shutter{0.001, 0.004}}) {
     const double speed = sharp_speed(vehicle, camera, shutter, 12.0);
     ASSERT_GT(speed, 0.5);
     Vehicle moving = vehicle;

@@ -1,5 +1,5 @@
-// Faults that once lost results or said nothing; docs/security.md lists which test stands for
-// which.
+// Faults that once lost results or said nothing; docs/development/testing.md lists the test of
+// each.
 #include <array>
 #include <atomic>
 #include <chrono>

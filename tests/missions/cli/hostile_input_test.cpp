@@ -17,9 +17,9 @@
 #include <unistd.h>
 
 #include "geometry/io/mesh_io.h"
+#include "missions/cli/printable.h"
 #include "missions/config/resolve.h"
 #include "missions/evaluation/survey_scene.h"
-#include "missions/cli/printable.h"
 #include "tests/missions/run_skycap.h"
 
 namespace skycap::missions {

@@ -7,11 +7,11 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
+#include "geometry/points/depth_image.h"
 #include "missions/config/resolve.h"
 #include "missions/support/number_text.h"
 #include "sim/models/models.h"
 #include "sim/sensors/depth_camera.h"
-#include "geometry/points/depth_image.h"
 #include "tests/missions/run_skycap.h"
 
 namespace skycap::missions {

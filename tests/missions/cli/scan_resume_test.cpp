@@ -11,8 +11,8 @@
 #include <nlohmann/json.hpp>
 
 #include "missions/cli/command_line.h"
-#include "tests/missions/ctrl_c.h"
 #include "tests/missions/cli/cube_scan.h"
+#include "tests/missions/ctrl_c.h"
 
 namespace skycap::missions {
 namespace {
@@ -30,7 +30,7 @@ class ResumedScan : public tests::CubeScan {
     std::ostringstream out;
     std::ostream err(&keys);
     ASSERT_EQ(cli::run_command_line(scan("part", with(more, {"--threads", "1"})),
-                                      {out, err, true, keys.token()}),
+                                    {out, err, true, keys.token()}),
               1);
     ASSERT_TRUE(fs::exists(journal_));
     ASSERT_THAT(content_of(folder_ / "part/scan.json"), HasSubstr("\"complete\": false"));

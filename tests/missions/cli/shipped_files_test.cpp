@@ -15,10 +15,10 @@
 #include "flight/interpreter/wpml_interpreter.h"
 #include "geometry/error.h"
 #include "geometry/io/file.h"
+#include "missions/evaluation/survey_scene.h"
 #include "missions/package/package.h"
 #include "missions/package/verification/stated_return.h"
 #include "missions/package/verification/true_space.h"
-#include "missions/evaluation/survey_scene.h"
 #include "tests/flight/interpreter/random_spoiling.h"
 
 namespace skycap::missions::cli {

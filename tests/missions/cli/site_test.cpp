@@ -13,10 +13,10 @@
 
 #include "geometry/place/prism.h"
 #include "missions/config/resolve.h"
-#include "missions/site_data/prior.h"
 #include "missions/evaluation/survey_scene.h"
-#include "tests/missions/site_data/cube_files.h"
+#include "missions/site_data/prior.h"
 #include "tests/missions/run_skycap.h"
+#include "tests/missions/site_data/cube_files.h"
 
 namespace skycap::missions {
 namespace {

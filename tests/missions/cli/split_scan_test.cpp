@@ -11,8 +11,8 @@
 #include <nlohmann/json.hpp>
 
 #include "missions/cli/command_line.h"
-#include "tests/missions/ctrl_c.h"
 #include "tests/missions/cli/cube_scan.h"
+#include "tests/missions/ctrl_c.h"
 
 namespace skycap::missions {
 namespace {

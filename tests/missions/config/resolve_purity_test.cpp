@@ -127,6 +127,7 @@ class DerivedValues {
     add("rest after", flight.rest_after());
     add("frame period", flight.capture.frame_period);
     add("moves", flight.capture.is_moving ? 1.0 : 0.0);
+    add("fleet", static_cast<double>(flight.fleet.vehicles.size()));
     const flight::MeasuredSpaceConfig space = flight.measured_space();
     add("voxel", space.voxel);
     add("max depth", space.max_depth);

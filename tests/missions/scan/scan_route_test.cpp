@@ -161,11 +161,11 @@ TEST_F(ScanRouteFile, PointsOnEarthAreFlownLookingAhead) {
   const std::string file =
       folder.write("route.waypoints",
                    "QGC WPL 110\n"
-                   "0\t1\t0\t16\t0\t0\t0\t0\t0.0000000\t0.0000000\t0.000000\t1\n"
-                   "1\t0\t3\t22\t0\t0\t0\t0\t0.0000000\t0.0000000\t10.000000\t1\n"
-                   "2\t0\t3\t16\t0\t0\t0\t0\t0.0000000\t0.0000200\t10.000000\t1\n"
-                   "3\t0\t3\t16\t0\t0\t0\t0\t0.0000000\t0.0000200\t12.000000\t1\n"
-                   "4\t0\t3\t21\t0\t0\t0\t0\t0.0000000\t0.0000200\t0.000000\t1\n");
+                   "0\t1\t0\t16\t0\t0\t0\t0\t0.0000000\t0.0010000\t0.000000\t1\n"
+                   "1\t0\t3\t22\t0\t0\t0\t0\t0.0000000\t0.0010000\t10.000000\t1\n"
+                   "2\t0\t3\t16\t0\t0\t0\t0\t0.0000000\t0.0010200\t10.000000\t1\n"
+                   "3\t0\t3\t16\t0\t0\t0\t0\t0.0000000\t0.0010200\t12.000000\t1\n"
+                   "4\t0\t3\t21\t0\t0\t0\t0\t0.0000000\t0.0010200\t0.000000\t1\n");
   try {
     scan::read_scan_route(file, options, scan::Carrier::airframe);
     FAIL() << "read without a georeference";
@@ -173,6 +173,7 @@ TEST_F(ScanRouteFile, PointsOnEarthAreFlownLookingAhead) {
     EXPECT_THAT(error.what(), testing::HasSubstr("give site.latitude_deg and site.longitude_deg"));
   }
   options.site = flight::Site{};
+  options.site->origin.longitude_deg = 1e-3;
   options.speed = 2.0;
   const scan::ScanRoute route = scan::read_scan_route(file, options, scan::Carrier::airframe);
   const double way = 2e-5 * pi / 180.0 * 6378137.0;

@@ -73,9 +73,8 @@ TEST(CoverageCurve, OverTheTimeInTheAirIsOfFlights) {
   EXPECT_DOUBLE_EQ(curve[1].mean, 0.4);
   EXPECT_DOUBLE_EQ(curve[3].mean, 0.4);
   EXPECT_DOUBLE_EQ(curve[4].mean, 0.8);
-  EXPECT_TRUE(
-      batch::coverage_curve({flown, trial(0.2, 0.4, 0.8)}, batch::CurveAxis::flown_time, 5)
-          .empty());
+  EXPECT_TRUE(batch::coverage_curve({flown, trial(0.2, 0.4, 0.8)}, batch::CurveAxis::flown_time, 5)
+                  .empty());
 }
 
 TEST(CoverageCurve, WithoutTrialsIsEmpty) {

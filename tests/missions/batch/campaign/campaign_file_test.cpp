@@ -11,8 +11,8 @@
 #include "geometry/error.h"
 #include "missions/batch/campaign/manifest.h"
 #include "missions/batch/campaign/manifest_batches.h"
-#include "missions/support/flow_text.h"
 #include "missions/config/mission_reader.h"
+#include "missions/support/flow_text.h"
 
 namespace skycap::missions::batch {
 namespace {

@@ -10,10 +10,10 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
-#include "missions/config/resolve.h"
 #include "missions/batch/district/prepared.h"
-#include "tests/missions/site_data/cube_files.h"
+#include "missions/config/resolve.h"
 #include "tests/missions/run_skycap.h"
+#include "tests/missions/site_data/cube_files.h"
 
 namespace skycap::missions {
 namespace {

@@ -42,7 +42,8 @@ TEST(Wire, GivesBackMessagesHoweverTheyArrive) {
   }
 }
 
-/// Written by hand from docs/live.md, the checksum by Python's zlib.crc32(b'{"type":"next"}').
+/// Written by hand from docs/reference/live-protocol.md; the checksum is Python's
+/// zlib.crc32(b'{"type":"next"}').
 TEST(Wire, IsWhatTheDocumentationSays) {
   const std::string frame("\x0f\0\0\0\0\0\0\0\x1c\xab\x42\xde{\"type\":\"next\"}", 27);
   EXPECT_EQ(frame_of({{{"type", "next"}}, {}}), frame);

@@ -1,0 +1,42 @@
+"""Looks up the errors that pages show in docs/reference/messages.md."""
+
+import re
+
+PAGE = "docs/reference/messages.md"
+ROW = re.compile(r"\| `(.*)` \| (.*) \|")
+ERROR = re.compile(r"skycap(?:_ros2)?: error: (.*)")
+VALUE = "…"
+
+
+def listed(text):
+    """The messages of the page as lists of their fixed parts, in order."""
+    found = []
+    for problem, remedy in ROW.findall(text):
+        message = f"{problem}; {plain(remedy)}" if remedy.strip() else problem
+        parts = [part.strip() for part in message.replace("\\|", "|").split(VALUE)]
+        found.append([part for part in parts if part])
+    return found
+
+
+def plain(cell):
+    """A cell's text without what keeps Markdown from formatting it."""
+    return re.sub(r"\\([|*_])", r"\1", cell).replace("&lt;", "<").replace("&amp;", "&")
+
+
+def holds(message, parts):
+    place = 0
+    for part in parts:
+        place = message.find(part, place)
+        if place < 0:
+            return False
+        place += len(part)
+    return True
+
+
+def complaints(text, messages):
+    """Yields (line number, what is wrong) for the errors that a page shows."""
+    for number, line in enumerate(text.split("\n"), 1):
+        for message in ERROR.findall(line.strip()):
+            is_pattern = "FILE:LINE" in message or VALUE in message or "..." in message
+            if not is_pattern and not any(holds(message, parts) for parts in messages):
+                yield number, f"{PAGE} does not list the error '{message}'"
