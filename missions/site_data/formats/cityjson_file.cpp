@@ -314,6 +314,7 @@ FileContents parse_cityjson(const std::filesystem::path& file, std::string_view 
   FileContents contents;
   try {
     Reader reader(file, contents);
+    if (texts.empty()) fail_file(file, "is empty; give a CityJSON file");
     reader.read_header(texts.at(0));
     for (const Json& text : texts) reader.read_objects(text);
     reader.finish();

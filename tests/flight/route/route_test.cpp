@@ -277,7 +277,7 @@ TEST(Route, AViewThatCannotBeReachedIsReportedAndTheRestIsFlown) {
 // The bar: a small battery, no sortie below its reserve, at most 15 % over the printed bound.
 TEST(Route, SplitsIntoSortiesThatKeepTheirReserve) {
   Vehicle small;
-  small.battery_wh = 12.0, small.endurance_min = 3.6;
+  small.battery_wh = 21.6, small.endurance_min = 6.48;
   const Route route = plan(ring(60, 18, 8), site(), options(), small);
   EXPECT_EQ(route.stations.size(), 60U);
   EXPECT_GT(route.sorties.size(), 2U);
