@@ -1,5 +1,6 @@
 #include "missions/config/field_keys.h"
 
+#include <filesystem>
 #include <fstream>
 #include <regex>
 #include <set>
@@ -20,7 +21,7 @@ using testing::HasSubstr;
 using testing::Not;
 
 std::string text_of(const std::string& source) {
-  std::ifstream file(std::string(SKYCAP_SOURCE_DIR) + "/" + source);
+  std::ifstream file(std::filesystem::path(SKYCAP_SOURCE_DIR) / source);
   std::ostringstream text;
   text << file.rdbuf();
   return text.str();
