@@ -5,6 +5,7 @@
 #include <cmath>
 #include <utility>
 
+#include "flight/motion/flight_time_range.h"
 #include "flight/space/prior_obstacle.h"
 #include "flight/way_home/return_law.h"
 
@@ -238,6 +239,7 @@ RouteOptions FlightOptions::route(const Vector3d& pad) const {
   options.conditions.temperature_c = temperature;
   options.conditions.cruise_speed = cruise_speed;
   options.conditions.reserve = reserve;
+  options.conditions.longest_flight = longest_flight(flown());
   options.returns = ReturnOptions{dialects_of(flown()), highest_return(pad.z(), pad.z()), rally};
   return options;
 }

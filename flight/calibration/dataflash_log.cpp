@@ -8,9 +8,9 @@
 #include <optional>
 
 #include "flight/calibration/flight_log.h"
+#include "flight/calibration/foreign_log.h"
 #include "flight/export/text.h"
 #include "geometry/error.h"
-#include "geometry/text_parts.h"
 
 namespace skycap::flight {
 namespace {
@@ -203,7 +203,7 @@ class LogBuilder {
     }
     if (name == "CMD") add_command(message, listed_);
     if (name == "MISE") add_command(message, log_.commands);
-    if (log_.samples.size() + log_.parameters.size() + log_.commands.size() + listed_.size() >
+    if (readings_.size() + log_.parameters.size() + log_.commands.size() + listed_.size() >
         most_entries_) {
       throw Error(ErrorKind::bad_file, "holds more than " + std::to_string(most_entries_) +
                                            " samples, parameters and commands");
@@ -214,6 +214,7 @@ class LogBuilder {
   FlightLog finish(std::size_t skipped) {
     const std::string damage =
         skipped == 0 ? "" : "; " + std::to_string(skipped) + " of its bytes are damaged";
+    add_samples();
     if (!has_velocity_) {
       throw Error(ErrorKind::bad_file,
                   "holds no velocity (XKF1); log the estimator's state" + damage);
@@ -281,13 +282,29 @@ class LogBuilder {
       ++log_.damaged;
       return;
     }
-    power_[battery] = *volts * *amperes;
-    double power = 0.0;
-    for (const auto& [number, one] : power_) power += one;
     if (*time - velocity_time_ > oldest) return;
-    std::vector<LogSample>& samples = log_.samples;
-    if (samples.empty() || *time > samples.back().time) {
-      samples.push_back({*time, velocity_, power});
+    readings_.push_back({*time, velocity_, static_cast<std::uint8_t>(battery), *volts * *amperes});
+  }
+
+  /// Sums the batteries up. One that has hardly any reading is another's, whose number is damaged.
+  void add_samples() {
+    constexpr std::size_t least_share = 20;
+    std::array<std::size_t, 256> counts{};
+    for (const Reading& reading : readings_) ++counts[reading.battery];
+    const std::size_t least = *std::ranges::max_element(counts) / least_share;
+    std::map<std::uint8_t, double> powers;
+    for (const Reading& reading : readings_) {
+      if (counts[reading.battery] < least) {
+        ++log_.damaged;
+        continue;
+      }
+      powers[reading.battery] = reading.power;
+      double power = 0.0;
+      for (const auto& [battery, one] : powers) power += one;
+      std::vector<LogSample>& samples = log_.samples;
+      if (samples.empty() || reading.time > samples.back().time) {
+        samples.push_back({reading.time, reading.velocity, power});
+      }
     }
   }
 
@@ -301,6 +318,14 @@ class LogBuilder {
                         message.number_or("Lng", 0.0), message.number_or("Alt", 0.0)});
   }
 
+  /// One battery's power at a time.
+  struct Reading {
+    double time = 0.0;
+    Eigen::Vector3d velocity = Eigen::Vector3d::Zero();
+    std::uint8_t battery = 0;
+    double power = 0.0;
+  };
+
   std::size_t most_entries_;
   FlightLog log_;
   std::vector<LogCommand> listed_;  ///< CMD
@@ -308,46 +333,8 @@ class LogBuilder {
   Eigen::Vector3d velocity_ = Eigen::Vector3d::Zero();
   double velocity_time_ = 0.0;
   bool has_velocity_ = false, has_voltage_ = false, has_current_ = false;
-  std::map<double, double> power_;  ///< by battery
+  std::vector<Reading> readings_;
 };
-
-/// What the bytes are instead, with what to do; empty if that is not known.
-std::string foreign_kind(std::string_view bytes) {
-  struct Kind {
-    std::string_view beginning;
-    const char* what;
-  };
-  constexpr const char* give_bin = "; give the vehicle's own .bin log";
-  static const std::array kinds{
-      Kind{"ULog\x01\x12\x35",
-           "a ULog of PX4; give a CSV table with time_s, east_m_s, north_m_s, "
-           "up_m_s and power_w"},
-      Kind{"FMT,", "a text log of ArduPilot; give the .bin file that it was made from"},
-      Kind{"\x1f\x8b", "compressed (gzip); unpack it first"},
-      Kind{"PK\x03\x04", "a zip archive; unpack it first"},
-      Kind{"#ROSBAG", "a ROS bag; give the vehicle's own .bin log"},
-      Kind{"MATLAB", "a MATLAB file; give the .bin file that it was made from"},
-      Kind{"H Product:Blackbox",
-           "a Blackbox log of Betaflight or INAV; give a CSV table with "
-           "time_s, east_m_s, north_m_s, up_m_s and power_w"}};
-  for (const Kind& kind : kinds) {
-    if (geometry::without_mark(bytes).starts_with(kind.beginning)) return kind.what;
-  }
-  // A ground station's telemetry log: a time of 8 bytes before each MAVLink frame.
-  constexpr std::size_t frame = 8;
-  const auto byte = [&](std::size_t i) { return static_cast<unsigned char>(bytes[i]); };
-  const auto is_frame = [&](std::size_t i) { return byte(i) == 0xFE || byte(i) == 0xFD; };
-  if (bytes.size() > frame && is_frame(frame) && byte(0) == 0) {
-    return std::string("a telemetry log of a ground station (.tlog)") + give_bin;
-  }
-  if (bytes.size() > 1 && is_frame(0)) return std::string("a raw MAVLink stream") + give_bin;
-  const std::string_view start = bytes.substr(0, 1000);
-  const bool is_text = !start.empty() && std::ranges::all_of(start, [](char c) {
-    return c == '\t' || c == '\n' || c == '\r' || (c >= ' ' && c <= '~');
-  });
-  if (is_text) return "a text file; a CSV table's name must end in .csv";
-  return bytes.empty() ? "empty" : "";
-}
 
 }  // namespace
 

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <memory>
+#include <optional>
 
 #include <ceres/dynamic_numeric_diff_cost_function.h>
 #include <ceres/problem.h>
@@ -31,14 +32,22 @@ constexpr double most_deviations = 6.0, power_tolerance = 0.3 /* of the median *
 constexpr std::size_t neighbours = 5;   ///< on each side
 constexpr double neighbour_time = 1.0;  ///< [s]
 
-/// Power of the rotors in hover at sea level [W], avionics' power [W], drag area [m^2], wind east
-/// and north [m/s].
+/// Power of the rotors in hover at sea level [W], avionics' power [W], the product of the former
+/// and the drag area [W m^2], wind east and north [m/s]. For a given wind the model is linear in
+/// them.
 using Unknowns = std::array<double, 5>;
 constexpr std::size_t rotors = 0, avionics = 1, drag = 2, wind_east = 3, wind_north = 4;
 
 /// Above the rotors' least power by a share that rounding of the written figures keeps.
 constexpr double rotor_margin = 1e-4;
+/// The fit itself may go below the rotors' least power, down to this share of it: so hover and wind
+/// are right even where mass or rotors are not those that flew.
+constexpr double least_rotor_share = 0.05;
 constexpr double least_avionics = 1e-3, least_drag = 1e-6;
+
+/// What a metre a second of wind counts as [W]: far less than in a log that was flown in several
+/// directions, it lets the wind be none where the log cannot tell.
+constexpr double wind_weight = 1.0;
 
 /// Windows beyond so many robust standard deviations count less and less.
 constexpr double huber_deviations = 2.0;
@@ -56,6 +65,19 @@ double median(std::vector<double> values) {
   return *middle;
 }
 
+/// The means of every few velocities that follow each other: within a window they hardly change.
+std::vector<Vector3d> means_of(const std::vector<Vector3d>& velocities) {
+  constexpr std::size_t together = 5;
+  std::vector<Vector3d> means;
+  for (std::size_t i = 0; i < velocities.size(); i += together) {
+    const std::size_t end = std::min(velocities.size(), i + together);
+    Vector3d sum = Vector3d::Zero();
+    for (std::size_t k = i; k < end; ++k) sum += velocities[k];
+    means.push_back(sum / static_cast<double>(end - i));
+  }
+  return means;
+}
+
 /// Whether a value is beyond its neighbours' spread and the tolerance, which is for values about
 /// their median.
 template <class Tolerance>
@@ -67,19 +89,23 @@ bool is_outlier(double value, const std::vector<double>& around, const Tolerance
          std::max(tolerance(middle), most_deviations * median(deviations));
 }
 
+double least_rotors(const Vehicle& vehicle) {
+  return (1.0 + rotor_margin) * min_rotor_power(vehicle);
+}
+
 PowerFit fit_of(const Unknowns& x, Vehicle vehicle) {
   vehicle.endurance_min = endurance_at(vehicle, x[rotors] + x[avionics]);
   vehicle.avionics_power = x[avionics];
-  vehicle.drag_area = x[drag];
+  vehicle.drag_area = x[drag] / x[rotors];
   return {vehicle, {x[wind_east], x[wind_north]}, {}};
 }
 
-Motion motion_of(const PowerFit& fit, double air_density) {
+Motion motion_of(const Vehicle& vehicle, const Eigen::Vector2d& wind, double air_density) {
   Conditions conditions;
-  conditions.wind = fit.wind;
+  conditions.wind = wind;
   conditions.air_density = air_density;
-  conditions.cruise_speed = std::min(conditions.cruise_speed, fit.vehicle.max_speed);
-  return {fit.vehicle, conditions};
+  conditions.cruise_speed = std::min(conditions.cruise_speed, vehicle.max_speed);
+  return {vehicle, conditions};
 }
 
 double mean_power(const Motion& motion, const LogWindow& window) {
@@ -88,12 +114,40 @@ double mean_power(const Motion& motion, const LogWindow& window) {
   return sum / static_cast<double>(window.velocities.size());
 }
 
+/// What the model's power is linear in, for one wind.
+class Basis {
+ public:
+  Basis(Vehicle vehicle, const Eigen::Vector2d& wind, double air_density) {
+    rotor_power_ = 2.0 * min_rotor_power(vehicle);  // any that is possible
+    vehicle.avionics_power = 0.0;
+    vehicle.endurance_min = endurance_at(vehicle, rotor_power_);
+    vehicle.drag_area = 0.0;
+    without_drag_.emplace(motion_of(vehicle, wind, air_density));
+    vehicle.drag_area = 1.0;
+    with_drag_.emplace(motion_of(vehicle, wind, air_density));
+  }
+
+  /// Of the rotors' power in hover, its share in a window; and what a unit of `drag` adds [1/m^2].
+  std::array<double, 2> of(const LogWindow& window) const {
+    const double without = mean_power(*without_drag_, window);
+    return {without / rotor_power_, (mean_power(*with_drag_, window) - without) / rotor_power_};
+  }
+
+ private:
+  double rotor_power_ = 0.0;
+  std::optional<Motion> without_drag_, with_drag_;
+};
+
+double power_of(const Unknowns& x, const std::array<double, 2>& basis) {
+  return x[avionics] + x[rotors] * basis[0] + x[drag] * basis[1];
+}
+
 bool is_hover(const LogWindow& window) {
   return std::ranges::all_of(window.velocities,
                              [](const Vector3d& v) { return v.norm() < hover_speed; });
 }
 
-/// The weighted errors of all windows [W].
+/// The weighted errors of all windows, and of the wind [W].
 struct Errors {
   std::span<const LogWindow> windows;
   const Vehicle& vehicle;
@@ -105,10 +159,12 @@ struct Errors {
     Unknowns x;
     std::copy_n(parameters[0], x.size(), x.begin());
     try {
-      const Motion motion = motion_of(fit_of(x, vehicle), air_density);
+      const Basis basis(vehicle, {x[wind_east], x[wind_north]}, air_density);
       for (std::size_t i = 0; i < windows.size(); ++i) {
-        errors[i] = weights[i] * (mean_power(motion, windows[i]) - windows[i].power);
+        errors[i] = weights[i] * (power_of(x, basis.of(windows[i])) - windows[i].power);
       }
+      errors[windows.size()] = wind_weight * x[wind_east];
+      errors[windows.size() + 1] = wind_weight * x[wind_north];
       return true;
     } catch (const Error&) {
       return false;
@@ -122,10 +178,10 @@ Unknowns solved(Unknowns x, const Errors& errors) {
   auto cost = std::make_unique<ceres::DynamicNumericDiffCostFunction<Errors, ceres::CENTRAL>>(
       new Errors(errors));
   cost->AddParameterBlock(static_cast<int>(x.size()));
-  cost->SetNumResiduals(static_cast<int>(errors.windows.size()));
+  cost->SetNumResiduals(static_cast<int>(errors.windows.size()) + 2);
   problem.AddResidualBlock(cost.release(), nullptr, x.data());
   problem.SetParameterLowerBound(x.data(), rotors,
-                                 (1.0 + rotor_margin) * min_rotor_power(errors.vehicle));
+                                 least_rotor_share * min_rotor_power(errors.vehicle));
   problem.SetParameterLowerBound(x.data(), avionics, least_avionics);
   problem.SetParameterLowerBound(x.data(), drag, least_drag);
   ceres::Solver::Options options;
@@ -146,26 +202,46 @@ Unknowns solved(Unknowns x, const Errors& errors) {
 }
 
 /// Huber's weights of the windows' errors, whose deviation is by their median.
-void reweight(std::vector<double>& weights, std::span<const LogWindow> windows, const PowerFit& fit,
-              double air_density) {
-  const Motion motion = motion_of(fit, air_density);
+void reweight(std::vector<double>& weights, const Errors& problem, const Unknowns& x) {
+  const Basis basis(problem.vehicle, {x[wind_east], x[wind_north]}, problem.air_density);
   std::vector<double> errors;
-  for (const LogWindow& window : windows) {
-    errors.push_back(std::abs(mean_power(motion, window) - window.power));
+  for (const LogWindow& window : problem.windows) {
+    errors.push_back(std::abs(power_of(x, basis.of(window)) - window.power));
   }
   constexpr double normal = 1.4826;  // standard deviations in a median absolute deviation
   const double deviation =
-      std::max(normal * median(errors), least_deviation * data_sheet_power(fit.vehicle));
+      std::max(normal * median(errors), least_deviation * (x[rotors] + x[avionics]));
   for (std::size_t i = 0; i < errors.size(); ++i) {
     weights[i] = std::sqrt(std::min(1.0, huber_deviations * deviation / errors[i]));
   }
 }
 
+/// The nearest that is possible, at the same wind and hover power: rotors with their least power,
+/// and the drag that fits best then.
+Unknowns with_possible_rotors(Unknowns x, const Errors& problem) {
+  const double least = least_rotors(problem.vehicle);
+  if (x[rotors] >= least) return x;
+  x[avionics] = std::max(least_avionics, x[rotors] + x[avionics] - least);
+  x[rotors] = least;
+  x[drag] = 0.0;
+  const Basis basis(problem.vehicle, {x[wind_east], x[wind_north]}, problem.air_density);
+  double products = 0.0, squares = 0.0;
+  for (std::size_t i = 0; i < problem.windows.size(); ++i) {
+    const LogWindow& window = problem.windows[i];
+    const std::array<double, 2> parts = basis.of(window);
+    const double weight = problem.weights[i] * problem.weights[i];
+    products += weight * parts[1] * (window.power - power_of(x, parts));
+    squares += weight * parts[1] * parts[1];
+  }
+  x[drag] = std::max(least_drag * x[rotors], squares > 0.0 ? products / squares : 0.0);
+  return x;
+}
+
 std::vector<std::string> bounds_met(const Unknowns& x, const Vehicle& vehicle) {
   std::vector<std::string> met;
-  if (x[rotors] < (1.0 + 2.0 * rotor_margin) * min_rotor_power(vehicle)) met.emplace_back("rotors");
+  if (x[rotors] <= least_rotors(vehicle)) met.emplace_back("rotors");
   if (x[avionics] < 2.0 * least_avionics) met.emplace_back("avionics_power");
-  if (x[drag] < 2.0 * least_drag) met.emplace_back("drag_area");
+  if (x[drag] < 2.0 * least_drag * x[rotors]) met.emplace_back("drag_area");
   return met;
 }
 
@@ -222,6 +298,7 @@ std::vector<LogWindow> windows_of(const std::vector<LogSample>& samples) {
     const double change = (samples[end].velocity - samples[begin].velocity).norm();
     if (window.duration >= window_time && change < steady) {
       window.power = energy / window.duration;
+      window.velocities = means_of(window.velocities);
       windows.push_back(std::move(window));
     }
     begin = std::max(end, begin + 1);
@@ -230,27 +307,26 @@ std::vector<LogWindow> windows_of(const std::vector<LogSample>& samples) {
 }
 
 double modelled_power(const PowerFit& fit, const LogWindow& window, double air_density) {
-  return mean_power(motion_of(fit, air_density), window);
+  return mean_power(motion_of(fit.vehicle, fit.wind, air_density), window);
 }
 
 PowerFit fit_power(std::span<const LogWindow> windows, const Vehicle& vehicle, double air_density,
                    double hover_power) {
-  const double least = (1.0 + rotor_margin) * min_rotor_power(vehicle);
   constexpr double inside = 1.02;
   Unknowns x{};
-  x[rotors] = std::max(inside * least, hover_power - vehicle.avionics_power);
+  x[rotors] = std::max(inside * least_rotors(vehicle), hover_power - vehicle.avionics_power);
   x[avionics] = std::max(2.0 * least_avionics, hover_power - x[rotors]);
-  x[drag] = std::max(2.0 * least_drag, vehicle.drag_area);
+  x[drag] = x[rotors] * std::max(2.0 * least_drag, vehicle.drag_area);
   std::vector<double> weights(windows.size(), 1.0);
   const Errors errors{windows, vehicle, air_density, weights};
   for (int i = 0; i < reweightings; ++i) {
     x = solved(x, errors);
-    reweight(weights, windows, fit_of(x, vehicle), air_density);
+    reweight(weights, errors, x);
   }
   for (std::size_t i = 0; i < windows.size(); ++i) {
     if (is_hover(windows[i])) weights[i] *= hover_weight;
   }
-  x = solved(x, errors);
+  x = with_possible_rotors(solved(x, errors), errors);
   PowerFit fit = fit_of(x, vehicle);
   fit.at_bound = bounds_met(x, vehicle);
   return fit;

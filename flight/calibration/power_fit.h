@@ -19,7 +19,7 @@ namespace skycap::flight {
 
 /// Samples that follow each other, of nearly steady flight.
 struct LogWindow {
-  std::vector<Eigen::Vector3d> velocities;  ///< [m/s]
+  std::vector<Eigen::Vector3d> velocities;  ///< means of a few samples each [m/s]
   double power = 0.0;                       ///< mean [W]
   double duration = 0.0;                    ///< [s]
 };

@@ -17,9 +17,9 @@ inline double longest_flight(const Vehicle& vehicle) {
 }
 
 /// Of full batteries, what a sortie may take by Motion's prediction, so that the battery lasts if
-/// it takes as long as the upper end; power is taken to be the same all the time [J].
+/// it takes as long as its conditions allow; power is taken to be the same all the time [J].
 inline double plannable_energy(const Motion& motion) {
-  return motion.usable_energy() / longest_flight(motion.vehicle());
+  return motion.usable_energy() / motion.conditions().longest_flight;
 }
 
 }  // namespace skycap::flight

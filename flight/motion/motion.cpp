@@ -51,6 +51,10 @@ void Conditions::validate(const Vehicle& vehicle) const {
   if (!(reserve >= 0.0 && reserve < 1.0)) {
     fail("the battery reserve is " + std::to_string(reserve) + "; it must be in [0, 1)");
   }
+  if (!(longest_flight >= 1.0)) {
+    fail("the longest flight is " + std::to_string(longest_flight) +
+         " times as long as predicted; it must be 1 or more");
+  }
   if (!(air_density > 0.3 && air_density < 2.0)) {
     fail("the air density is " + std::to_string(air_density) + " kg/m^3; it must be in (0.3, 2)");
   }

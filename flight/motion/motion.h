@@ -21,6 +21,9 @@ struct Conditions {
   double temperature_c = 15.0;                     ///< of the battery
   double cruise_speed = 4.0;                       ///< wanted on legs [m/s]
   double reserve = 0.25;  ///< share of the battery that is left at landing, in [0, 1)
+  /// Flights may take so many times as long as predicted, 1 or more: each sortie must fit its
+  /// battery then (flight_time_range.h).
+  double longest_flight = 1.0;
 
   /// Throws Error{bad_config} naming the first value that is out of its interval or that the
   /// vehicle cannot fly in.

@@ -103,7 +103,7 @@ std::string RouteLegs::why_out_of_range(const Station& station, const Ends& ends
   const LegCost home = in_turn(cost_of(ends.back), landing_cost_);
   const LegCost total = in_turn(in_turn(there, legs_.station_cost(station)), home);
   const double needed = std::max(total.energy, total.emergency);
-  const double held = plannable_energy(motion_), longest = longest_flight(motion_.vehicle());
+  const double held = plannable_energy(motion_), longest = options_.conditions.longest_flight;
   if (needed <= held) return "";
   return "getting there and back takes " + std::to_string(needed / 3600) + " Wh; the battery has " +
          std::to_string(held / 3600) + " Wh above its reserve" +

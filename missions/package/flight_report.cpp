@@ -53,7 +53,7 @@ std::string passage_text(const flight::Route& route) {
 
 /// Minutes that are a range, with its upper end.
 std::string time_range_text(const flight::Route& route) {
-  const double longest = flight::longest_flight(route.vehicle);
+  const double longest = route.options.conditions.longest_flight;
   if (longest == 1.0 || route.sorties.empty()) return "";
   return fmt::format(
       "  Warning: {:.1f} to {:.1f} min: PX4 took up to {:.1f} times as long as predicted in its "

@@ -18,7 +18,7 @@ constexpr double storey =
     3.0;  ///< height of a level of a building where only those are counted [m]
 constexpr double foot = 0.3048, inch = 0.0254;
 
-/// Attributes of Shapefiles have so many characters at most.
+/// Attributes of Shapefiles have so many characters at most, and keep them in other formats.
 constexpr std::size_t longest_shapefile_name = 10;
 
 /// A number that a text begins with, and what follows it without blanks between.
@@ -164,15 +164,13 @@ class HeightReader {
   }
 
  private:
-  /// The attribute with one of the names, written in any way; of a Shapefile also what is left of
-  /// the name.
+  /// The attribute with one of the names, written in any way, or what a Shapefile left of it.
   std::optional<Found> find(const FileObject& object, std::span<const string_view> names) const {
     for (const string_view name : names) {
       for (const auto& [key, value] : object.attributes) {
         if (geometry::trimmed(value).empty()) continue;
         const std::string plain = plain_name(key);
-        const bool is_cut = contents_.has_short_names && plain.size() == longest_shapefile_name &&
-                            name.starts_with(plain);
+        const bool is_cut = plain.size() == longest_shapefile_name && name.starts_with(plain);
         if (plain == name || is_cut) return Found{key, value};
       }
     }

@@ -59,9 +59,8 @@ struct FileContents {
   std::optional<bool> is_y_up;          ///< if the file says it
   std::optional<HeightDatum> vertical;  ///< that the format prescribes where the CRS is silent
   bool is_outlines = false;             ///< flat polygons: they are extruded
-  bool is_map = false;           ///< of a format of maps: without a system degrees are likely
-  bool has_short_names = false;  ///< attributes have ten characters at most (Shapefile)
-  std::string unknown_unit;      ///< of heights, that the file names and is not known
+  bool is_map = false;       ///< of a format of maps: without a system degrees are likely
+  std::string unknown_unit;  ///< of heights, that the file names and is not known
   std::vector<Eigen::Vector3d> corners;      ///< of all rings
   std::vector<std::uint32_t> ring_begin{0};  ///< ring i is corners [begin[i], begin[i + 1])
   std::vector<FileObject> objects;

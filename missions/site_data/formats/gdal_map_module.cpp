@@ -69,7 +69,6 @@ void MapReader::read(const std::string& layer) {
   contents_.format = driver_;
   contents_.is_outlines = true;
   contents_.is_map = driver_ != "DXF";  // a drawing is in metres or another unit of length
-  contents_.has_short_names = driver_ == "ESRI Shapefile";
   if (is_kml()) contents_.vertical = HeightDatum::geoid;
   if (driver_ == "GeoJSON") contents_.vertical = HeightDatum::ellipsoid;  // RFC 7946
   if (!layer.empty()) require_layer(layer);

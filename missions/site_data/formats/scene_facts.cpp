@@ -264,6 +264,11 @@ SceneFacts ifc_facts(const std::filesystem::path& file, string_view text, bool h
                                    Json(*unit->metres).dump() + " m"));
   }
   note_map_conversion(entities, facts);
+  // What files of IFC2X3 have for it.
+  if (geometry::lower_case(text).find("'epset_mapconversion'") != std::string::npos) {
+    facts.notes.emplace_back(
+        "it names a place on the Earth (ePset_MapConversion), which is not read; set place");
+  }
   return facts;
 }
 

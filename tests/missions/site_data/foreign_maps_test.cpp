@@ -87,6 +87,7 @@ TEST_F(ForeignMap, IsAsHighAsItsAttributesSay) {
                {R"("building:levels":"2;5")", 15.0},
                {R"("building:levels":"3+1")", 12.0},
                {R"("num_floors":5)", 15.0},
+               {R"("building_l":"4")", 12.0},
                {R"("height":-1,"building:levels":3)", 9.0}};
   for (const auto& [properties, height] : cases) {
     SCOPED_TRACE(properties);

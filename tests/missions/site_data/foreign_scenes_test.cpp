@@ -204,6 +204,12 @@ TEST_F(ForeignScene, OfIfcNotesAPlaceOnAMap) {
   EXPECT_THAT(prior.notes,
               Contains(AllOf(HasSubstr("IfcMapConversion"), HasSubstr("678193 5404280 420"),
                              HasSubstr("EPSG:25832"), HasSubstr("set crs, vertical and offset"))));
+  const Prior older = read(
+      "a.ifc", ifc(si("$"), 1.0,
+                   "#80=IFCPROPERTYSINGLEVALUE('Eastings',$,IFCREAL(678193.),$);\n"
+                   "#81=IFCPROPERTYSET('0000000000000000000009',#5,'ePSet_MapConversion',$,(#80));"
+                   "\n"));
+  EXPECT_THAT(older.notes, Contains(HasSubstr("(ePset_MapConversion), which is not read")));
 }
 
 }  // namespace
