@@ -221,6 +221,8 @@ TEST(Fleet, KeysThatContradictEachOtherAreRefused) {
               HasSubstr("key flight.takeoff: is not the first of flight.pads"));
   EXPECT_THAT(complaint("vehicle: generic, separation: 8"),
               HasSubstr("key flight.separation: is for several vehicles"));
+  EXPECT_THAT(complaint("vehicle: generic, vehicles: [], pads: [[-75, 0, 0]]"),
+              HasSubstr("key flight.pads: is for several vehicles"));
   EXPECT_THAT(complaint("vehicles: [generic, generic], separation: 1"),
               HasSubstr("key flight.separation: is less than"));
   EXPECT_THAT(complaint("vehicles: [generic, generic], style: pass"),
