@@ -124,9 +124,11 @@ std::vector<Key> safety_keys() {
       number_key("flight.clearance", "m", above(0, 1000), flight(&flight::FlightOptions::clearance),
                  "Every leg is proven to keep this from everything that is not known to be free: "
                  "the vehicle's radius, the three errors below, and what is left as margin."),
-      number_key("flight.position_error", "m", between(0, 100),
-                 flight(&flight::FlightOptions::position_error),
-                 "How far off the vehicle may take itself to be: 0.05 with RTK, 1.5 to 3 without."),
+      otherwise("the vehicle's",
+                number_key("flight.position_error", "m", between(0, 100),
+                           flight(&flight::FlightOptions::position_error),
+                           "Maximum navigation error. Typical: 0.05 m with RTK, 1.5 to 3 m "
+                           "without.")),
       number_key("flight.tracking_error", "m", between(0, 100),
                  flight(&flight::FlightOptions::tracking_error),
                  "How far the vehicle may stray from a straight leg with stops."),

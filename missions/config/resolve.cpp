@@ -263,6 +263,12 @@ void complete_own_keys(MissionDocument& document, const Profiles& profiles) {
   for (std::string& name : flight.fleet.names) name = vehicle_name(document, name);
   flight.fleet.vehicles = profiles.fleet;
   lead_fleet(document);
+  if (document.flight.is_flown() && !document.gives("flight.position_error")) {
+    flight.position_error = flight.flown().position_error;
+    for (const flight::Vehicle& vehicle : flight.fleet.vehicles) {
+      flight.position_error = std::max(flight.position_error, vehicle.position_error);
+    }
+  }
   // What flies is there to be done soon: the paper's planners are for comparison.
   if (document.flight.is_flown() && !document.gives("planner.name")) {
     document.planner.name = survey::PlannerName::skycap;
