@@ -7,14 +7,15 @@
 #include <string_view>
 
 #include "geometry/angle.h"
+#include "geometry/byte_values.h"
 #include "geometry/error.h"
 #include "geometry/io/las_layout.h"
-#include "missions/scan/little_endian.h"
 
 namespace skycap::missions::scan {
 namespace {
 
 namespace las = geometry::las;
+using geometry::put_value;
 
 constexpr double scan_angle_unit = 0.006 * geometry::radians_per_degree;
 
@@ -43,7 +44,7 @@ void LasFormat::encode(const sim::LidarReturns& returns, ReturnPosition position
   chunk.totals.points = returns.size();
   chunk.bytes.resize(returns.size() * point_size_);
   if (returns.size() == 0) return;
-  const auto& points = position == ReturnPosition::reported ? returns.points : returns.true_points;
+  const auto& points = positions_of(returns, position);
   chunk.totals.bounds = encode_on_grid(config_.grid, returns, points, [&](const auto& units) {
     encode_points(returns, points, units, chunk);
   });
@@ -57,11 +58,11 @@ void LasFormat::encode_points(const sim::LidarReturns& returns,
   for (std::size_t i = 0; i < returns.size(); ++i, out += point_size_) {
     const Eigen::Vector3d place = units(points[i]);
     for (int axis = 0; axis < 3; ++axis) {
-      store(out + las::point::position + 4UL * axis, nearest(place[axis]));
+      put_value(out, las::point::position + 4UL * axis, nearest(place[axis]));
     }
     const double brightness = 65535.0 * std::clamp(returns.intensities[i], 0.0F, 1.0F);
     const auto intensity = static_cast<std::uint16_t>(nearest(brightness));
-    store(out + las::point::intensity, intensity);
+    put_value(out, las::point::intensity, intensity);
     const std::uint8_t number = returns.return_numbers[i];
     out[las::point::returns] =
         static_cast<std::uint8_t>(number | (returns.returns_of_shots[i] << 4));
@@ -69,13 +70,13 @@ void LasFormat::encode_points(const sim::LidarReturns& returns,
     out[las::point::classification] = 0;  // never classified
     out[las::point::user_data] = static_cast<std::uint8_t>(returns.channels[i] & 0xFFU);
     const double angle = static_cast<double>(returns.scan_angles[i]) * (1.0 / scan_angle_unit);
-    store(out + las::point::scan_angle, static_cast<std::int16_t>(nearest(angle)));
-    store(out + las::point::source, std::uint16_t{1});  // the first and only flight line
-    store(out + las::point::time, returns.times[i]);
+    put_value(out, las::point::scan_angle, static_cast<std::int16_t>(nearest(angle)));
+    put_value(out, las::point::source, std::uint16_t{1});  // the first and only flight line
+    put_value(out, las::point::time, returns.times[i]);
     ++chunk.totals.points_by_return[number - 1];
     if (config_.point_format == 6) continue;
     for (int colour = 0; colour < 3; ++colour) {
-      store(out + las::point::colour + 2UL * colour, intensity);
+      put_value(out, las::point::colour + 2UL * colour, intensity);
     }
   }
 }
@@ -91,7 +92,7 @@ std::vector<std::uint8_t> LasFormat::header(const CloudState& grown) const {
   constexpr std::size_t record = las::header::end, wkt = record + las::record::end;
   constexpr std::uint16_t adjusted_time = 1, is_wkt = 1 << 4, wkt_record = 2112;
   std::vector<std::uint8_t> bytes(wkt + wkt_size);
-  const auto put = [&](std::size_t place, auto value) { store(bytes.data() + place, value); };
+  const auto put = [&](std::size_t place, auto value) { put_value(bytes.data(), place, value); };
   const auto put_text = [&](std::size_t place, std::string_view text) {
     std::ranges::copy(text, bytes.begin() + static_cast<std::ptrdiff_t>(place));
   };
