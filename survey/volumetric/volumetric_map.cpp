@@ -80,12 +80,6 @@ VolumetricMap::Code VolumetricMap::code_of(const VoxelIndex& voxel) const {
                : OccupancyStates::untouched;
 }
 
-std::optional<float> VolumetricMap::log_odds_at(const Vector3f& point) const {
-  const Code code = code_at(point);
-  if (!OccupancyStates::is_measured(code)) return std::nullopt;
-  return states_.log_odds(code);
-}
-
 std::size_t VolumetricMap::memory() const {
   return blocks_.size() * sizeof(Block) + index_.memory() +
          states_.size() * (sizeof(VoxelState) + 40);

@@ -52,8 +52,6 @@ class VolumetricMap {
   const VoxelState& state_at(const Eigen::Vector3f& point) const {
     return states_.state(code_at(point));
   }
-  /// Log-odds of the voxel at a point; nothing unless it was measured.
-  std::optional<float> log_odds_at(const Eigen::Vector3f& point) const;
 
   /// 2 s / res, for shadows of length s: what shadow depths are subtracted from.
   double shadow_ceiling() const { return 2.0 * shadow_length_ / resolution_; }
