@@ -4,7 +4,7 @@
 #include <utility>
 
 #include "flight/fleet/fleet_split.h"
-#include "flight/fly_test/random_numbers.h"
+#include "geometry/random_numbers.h"
 
 namespace skycap::flight {
 namespace {
@@ -188,7 +188,7 @@ class Annealing {
   Order one_, other_, chain_;  ///< that are tried
   std::vector<double> tried_;
   double cost_ = 0.0, best_cost_ = 0.0, temperature_ = 1.0;
-  RandomNumbers random_;
+  geometry::RandomNumbers random_;
 };
 
 }  // namespace

@@ -56,8 +56,6 @@ static_assert(std::ranges::is_sorted(table, {}, &CommandRow::id));
 
 }  // namespace
 
-std::span<const CommandRow> known_commands() { return table; }
-
 const CommandRow* find_command(int id) {
   const auto row = std::ranges::lower_bound(table, id, {}, &CommandRow::id);
   return row != table.end() && row->id == id ? &*row : nullptr;

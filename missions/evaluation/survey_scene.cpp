@@ -12,6 +12,7 @@
 
 #include "geometry/error.h"
 #include "geometry/io/file.h"
+#include "geometry/random_numbers.h"
 #include "missions/scene/model_store.h"
 #include "missions/scene/scene_source.h"
 #include "missions/session/opening_flight.h"
@@ -52,7 +53,7 @@ sim::Scene scene_of(const geometry::Mesh& model, const SimulationOptions& option
 
 std::string metres_text(double length) { return fmt::format("{:.12g}", length); }
 
-Vector3d uniform_direction(std::mt19937_64& random) {
+Vector3d uniform_direction(geometry::RandomNumbers& random) {
   std::normal_distribution<double> normal;
   for (;;) {
     // From z to x, one a declarator: arguments of a call are drawn in an order that is each
@@ -183,7 +184,7 @@ geometry::View SurveyScene::first_view(std::uint64_t seed) const {
   }
 
   const survey::ViewLimits& limits = options_.survey.planner.limits;
-  std::mt19937_64 random(seed);
+  geometry::RandomNumbers random(seed);
   constexpr int most_attempts = 10'000;
   for (int attempt = 0; attempt < most_attempts; ++attempt) {
     const Vector3d position = view_sphere_.centre + view_sphere_.radius * uniform_direction(random);

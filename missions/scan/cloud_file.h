@@ -40,6 +40,11 @@ enum class ReturnPosition {
   actual,    ///< of the surface that was met
 };
 
+inline const std::vector<Eigen::Vector3f>& positions_of(const sim::LidarReturns& returns,
+                                                        ReturnPosition position) {
+  return position == ReturnPosition::reported ? returns.points : returns.true_points;
+}
+
 /// How far a file has grown.
 struct CloudState {
   CloudTotals totals;

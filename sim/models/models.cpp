@@ -80,7 +80,7 @@ Mesh teapot(const ModelOptions& options) {
 }
 
 models::FamilyScene family_scene(const models::Family& family, const ModelOptions& options) {
-  models::Draw draw(options.seed);
+  geometry::RandomNumbers draw(options.seed);
   return family.make(draw, fineness(options.detail));
 }
 

@@ -11,6 +11,7 @@
 #include "geometry/parallel.h"
 #include "geometry/points/point_grid.h"
 #include "geometry/points/spaced_points.h"
+#include "geometry/random_numbers.h"
 #include "survey/stopwatch.h"
 #include "survey/volumetric/volumetric_gain.h"
 
@@ -44,7 +45,7 @@ std::vector<Vector3f> ends_of_no_returns(const ScanSpan& scan, const geometry::C
 
 std::vector<View> sphere_views(std::size_t count, const Vector3d& centre, double radius,
                                const std::optional<double>& least_height, std::uint64_t seed) {
-  std::mt19937_64 random(seed);
+  geometry::RandomNumbers random(seed);
   std::normal_distribution<double> normal;
   std::vector<View> views;
   views.reserve(count);

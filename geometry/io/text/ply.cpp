@@ -118,7 +118,37 @@ PlyProperty parse_property(TextScanner& scanner) {
   return property;
 }
 
+std::string_view name_of(PlyType type) {
+  return std::ranges::find(type_names, type, [](const auto& row) { return row.second; })->first;
+}
+
 }  // namespace
+
+void PlyElement::add(PlyType type, std::initializer_list<std::string_view> names) {
+  for (const std::string_view scalar : names) {
+    properties.push_back({std::string(scalar), type, {}});
+  }
+}
+
+std::string ply_header(std::span<const PlyElement> elements, std::string_view comment) {
+  std::string text = "ply\nformat binary_little_endian 1.0\n";
+  if (!comment.empty()) text.append("comment ").append(comment).append("\n");
+  for (const PlyElement& element : elements) {
+    text += "element " + element.name + " " + std::to_string(element.count) + "\n";
+    for (const PlyProperty& property : element.properties) {
+      text += "property ";
+      if (property.count_type) text.append("list ").append(name_of(*property.count_type)) += ' ';
+      text.append(name_of(property.type)).append(" ").append(property.name) += '\n';
+    }
+  }
+  return text + "end_header\n";
+}
+
+std::string growing_ply_header(const PlyElement& element) {
+  constexpr std::size_t most_digits = 20;  // of 64 bits
+  const std::size_t digits = std::to_string(element.count).size();
+  return ply_header({&element, 1}, "written by Skycap" + std::string(most_digits - digits, ' '));
+}
 
 // For each property of an element: the column it goes to, or -1; and which of them is the list.
 struct PlyReader::Wanted {

@@ -5,7 +5,7 @@
 #include <optional>
 #include <utility>
 
-#include "flight/fly_test/random_numbers.h"
+#include "geometry/random_numbers.h"
 #include "missions/package/replan/dose_sum.h"
 #include "missions/package/replan/leg_times.h"
 #include "missions/package/replan/tour_moves.h"
@@ -143,7 +143,7 @@ class Search {
 
   const TourProblem& problem_;
   double wanted_;
-  flight::RandomNumbers random_;
+  geometry::RandomNumbers random_;
   TourMoves moves_;
   LegTimes legs_;
   WayDoses ways_;

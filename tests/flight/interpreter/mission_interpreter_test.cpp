@@ -65,12 +65,16 @@ TEST_P(BothAutopilots, EveryUnknownCommandIsRefused) {
 }
 
 TEST_P(BothAutopilots, CommandsThatAreNotFlownOrNotProvenAreRefused) {
-  for (const CommandRow& row : known_commands()) {
-    if (row.meaning != Meaning::refused) continue;
+  int refused = 0;
+  for (int id = 0; id < 65536; ++id) {
+    const CommandRow* const row = find_command(id);
+    if (row == nullptr || row->meaning != Meaning::refused) continue;
+    ++refused;
     const std::size_t i = index_of(good(), command::waypoint, 1);
-    EXPECT_THAT(after([&](MissionFile& f) { f.items[i].command = row.id; }),
-                names(good(), i, row.name));
+    EXPECT_THAT(after([&](MissionFile& f) { f.items[i].command = id; }),
+                names(good(), i, row->name));
   }
+  EXPECT_GT(refused, 10);
 }
 
 TEST_P(BothAutopilots, ALoiterInTheWallIsFlownTo) {

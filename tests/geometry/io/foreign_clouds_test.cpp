@@ -8,7 +8,7 @@
 
 #include "geometry/error.h"
 #include "geometry/io/cloud_io.h"
-#include "geometry/io/las_layout.h"
+#include "geometry/io/las/layout.h"
 #include "tests/support/complaint.h"
 #include "tests/support/e57_bytes.h"
 #include "tests/support/temporary_folder.h"

@@ -11,7 +11,7 @@
 
 #include "geometry/error.h"
 #include "geometry/io/cloud_io.h"
-#include "geometry/io/las_reader.h"
+#include "geometry/io/las/las_reader.h"
 #include "tests/support/temporary_folder.h"
 
 namespace skycap::geometry {

@@ -8,6 +8,7 @@
 
 #include "flight/motion/motion.h"
 #include "geometry/error.h"
+#include "missions/config/preset_files.h"
 #include "tests/support/complaint.h"
 #include "tests/support/temporary_folder.h"
 
@@ -25,8 +26,8 @@ std::string complaint(const std::string& text) {
 }
 
 TEST(VehiclePresets, AllAreValidAndNamedAsTheirFiles) {
-  EXPECT_EQ(config::vehicle_presets().size(), 7U);
-  for (const std::string_view preset : config::vehicle_presets()) {
+  EXPECT_EQ(config::vehicle_preset_files().size(), 7U);
+  for (const auto& [preset, text] : config::vehicle_preset_files()) {
     const flight::Vehicle vehicle = config::find_vehicle(std::string(preset));
     EXPECT_EQ(vehicle.name, preset);
     EXPECT_NO_THROW(vehicle.validate()) << preset;
@@ -37,7 +38,7 @@ TEST(VehiclePresets, AllAreValidAndNamedAsTheirFiles) {
 // The energy model's calibration holds for every one: a full battery hovers as long as the sheet
 // says.
 TEST(VehiclePresets, HoverAsLongAsTheDataSheetsSay) {
-  for (const std::string_view preset : config::vehicle_presets()) {
+  for (const auto& [preset, text] : config::vehicle_preset_files()) {
     const flight::Vehicle vehicle = config::find_vehicle(std::string(preset));
     const flight::Motion motion(vehicle, {.reserve = 0.0});
     const double battery = motion.usable_energy() * (1.0 + vehicle.energy_error);

@@ -8,6 +8,7 @@
 
 #include "missions/config/resolve.h"
 #include "missions/simulation/survey_runner.h"
+#include "sim/sensors/survey_sensor.h"
 #include "tests/missions/flown_mission.h"
 #include "tests/sim/shapes.h"
 
@@ -38,7 +39,8 @@ TEST(CarriedSensor, StandsWhereItMovesByLessThanHalfAPixel) {
   const config::MissionSetup mission = mission_with({});
   simulation::CarriedSensor carried(mission.simulation, 3);
   const Scan scan = carried.scan(wall, {.view = at_wall}, 5, 1);
-  EXPECT_EQ(scan.points, carried.at_rest().scan(wall, at_wall, 5, 1).points);
+  sim::SurveySensor at_rest(mission.simulation.sensor, 3);
+  EXPECT_EQ(scan.points, at_rest.scan(wall, at_wall, 5, 1).points);
 }
 
 // 160 pixels of 69.4 degrees: f = 116 px. At 16 m, 8 m/s and 0.2 s are 11.5 of them and more.
@@ -98,8 +100,8 @@ TEST(CarriedSensor, WithoutAVehicleNavigationIsThatOfScansAlone) {
   const config::MissionSetup mission = config::parse_mission(text, "m.yaml");
   simulation::CarriedSensor carried(mission.simulation, 1);
   const geometry::View near{{10, 0, 0}, Vector3d::UnitX()};
-  EXPECT_EQ(carried.scan(wall, {.view = near}, 0, 1).points,
-            carried.at_rest().scan(wall, near, 0, 1).points);
+  sim::SurveySensor at_rest(mission.simulation.sensor, 1);
+  EXPECT_EQ(carried.scan(wall, {.view = near}, 0, 1).points, at_rest.scan(wall, near, 0, 1).points);
 }
 
 // A survey whose poses are off by as much as points may be covers less than it would, and knows it.

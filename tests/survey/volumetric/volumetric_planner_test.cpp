@@ -197,7 +197,7 @@ TEST(VolumetricPlanner, CarvesPixelsWithoutReturnIfAsked) {
     config.settings.carve_no_returns = carves;
     volumetric::VolumetricPlanner planner(config, camera);
     planner.next_view(scan);
-    EXPECT_EQ(planner.map().log_odds_at(beside).has_value(), carves);
+    EXPECT_EQ(planner.map().state_at(beside).kind == volumetric::VoxelKind::free, carves);
   }
 }
 
@@ -207,7 +207,7 @@ TEST(VolumetricPlanner, DropsMeasurementsOutsideTheBox) {
   volumetric::VolumetricPlanner planner(config, camera);
   planner.next_view(tests::scan_spheres({{}}, camera, look_at({2.0, 0.0, 0.0}, Vector3d::Zero())));
   for (const auto& point : planner.cloud().positions) EXPECT_GE(point.z(), 0.0F);
-  EXPECT_FALSE(planner.map().log_odds_at({0.45F, 0.0F, -0.2F}));
+  EXPECT_EQ(planner.map().state_at({0.45F, 0.0F, -0.2F}).kind, volumetric::VoxelKind::untouched);
 }
 
 TEST(VolumetricPlanner, OffersTheNextBestInPlaceOfARefusedView) {

@@ -1,4 +1,4 @@
-#include "geometry/io/laz/colour_decoder.h"
+#include "geometry/io/las/colour_decoder.h"
 
 #include <algorithm>
 #include <cstddef>

@@ -1,23 +1,18 @@
+#include "geometry/surfaces/ear_clipping.h"
+
 #include <algorithm>
-#include <cassert>
 #include <cmath>
 #include <cstddef>
 #include <limits>
 #include <utility>
 
-#include "sim/models/masonry/solids.h"
+#include "geometry/place/prism.h"
 
-namespace skycap::sim::models {
+namespace skycap::geometry {
 namespace {
 
 using Eigen::Vector2d;
 using Triangles = std::vector<std::array<std::uint32_t, 3>>;
-
-/// Twice the signed area of a triangle.
-double turn(const Vector2d& a, const Vector2d& b, const Vector2d& c) {
-  const Vector2d ab = b - a, ac = c - a;
-  return ab.x() * ac.y() - ab.y() * ac.x();
-}
 
 /// 1 for an equilateral triangle, 0 for a collapsed one, negative for a clockwise one.
 double roundness(const Vector2d& a, const Vector2d& b, const Vector2d& c) {
@@ -25,10 +20,10 @@ double roundness(const Vector2d& a, const Vector2d& b, const Vector2d& c) {
   return 2.0 * std::sqrt(3.0) * turn(a, b, c) / squares;
 }
 
-/// Cuts ears off a simple polygon, the roundest first, until a triangle is left.
+/// Cuts ears off a polygon, the roundest first, until a triangle is left.
 class EarClipper {
  public:
-  explicit EarClipper(const Polyline2& polygon)
+  explicit EarClipper(std::span<const Vector2d> polygon)
       : polygon_(polygon), before_(polygon.size()), after_(polygon.size()) {
     const std::size_t size = polygon.size();
     for (std::size_t i = 0; i < size; ++i) {
@@ -54,9 +49,10 @@ class EarClipper {
   double ear_quality(std::size_t i) const {
     const Vector2d &a = polygon_[before_[i]], &b = polygon_[i], &c = polygon_[after_[i]];
     const double quality = roundness(a, b, c);
-    if (quality <= 1e-12) return -1.0;
+    if (!(quality > 1e-12)) return -1.0;
     for (std::size_t j = after_[after_[i]]; j != before_[i]; j = after_[j]) {
       const Vector2d& p = polygon_[j];
+      if (p == a || p == b || p == c) continue;  // of a bridge to a hole
       if (std::min({turn(a, b, p), turn(b, c, p), turn(c, a, p)}) >= touching_) return -1.0;
     }
     return quality;
@@ -66,6 +62,8 @@ class EarClipper {
     return turn(polygon_[before_[i]], polygon_[i], polygon_[after_[i]]);
   }
 
+  /// Without any ear, as in a polygon that crosses itself or a flat remainder, returns a corner
+  /// that is left: any cut is as good.
   std::size_t best_ear() {
     const auto best = [&] {
       return static_cast<std::size_t>(std::ranges::max_element(qualities_) - qualities_.begin());
@@ -76,7 +74,6 @@ class EarClipper {
       qualities_[ear] = -1.0;
       ear = best();
     }
-    assert(qualities_[ear] > 0.0 && "the polygon is not simple and counter-clockwise");
     return ear;
   }
 
@@ -101,7 +98,7 @@ class EarClipper {
                           static_cast<std::uint32_t>(c)});
   }
 
-  const Polyline2& polygon_;
+  std::span<const Vector2d> polygon_;
   std::vector<std::size_t> before_, after_;  ///< neighbours among the corners that are left
   std::vector<double> qualities_;
   double area_ = 0.0, nothing_ = 0.0;  ///< twice the area that is left, and what counts as none
@@ -113,6 +110,6 @@ class EarClipper {
 
 }  // namespace
 
-Triangles triangulate(const Polyline2& polygon) { return EarClipper(polygon).clip(); }
+Triangles clip_ears(std::span<const Vector2d> polygon) { return EarClipper(polygon).clip(); }
 
-}  // namespace skycap::sim::models
+}  // namespace skycap::geometry

@@ -3,7 +3,7 @@
 
 #include <memory>
 
-#include "geometry/io/laz/byte_window.h"
+#include "geometry/io/las/byte_window.h"
 
 namespace skycap::geometry::las {
 

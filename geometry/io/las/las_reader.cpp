@@ -1,12 +1,13 @@
-#include "geometry/io/las_reader.h"
+#include "geometry/io/las/las_reader.h"
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <utility>
 
 #include "geometry/byte_values.h"
 #include "geometry/io/cloud_parsers.h"
-#include "geometry/io/las_layout.h"
+#include "geometry/io/las/layout.h"
 
 namespace skycap::geometry {
 namespace {
@@ -120,6 +121,37 @@ void add_point(const LasHeader& header, const char* point, LasPoints& points) {
   }
 }
 
+std::string_view text_of(std::string_view bytes) { return bytes.substr(0, bytes.find('\0')); }
+
+std::string_view user_of(std::string_view record) {
+  return text_of(record.substr(las::record::user, las::record::user_size));
+}
+
+int id_of(std::string_view record) {
+  return value_at<std::uint16_t>(record.data(), las::record::id);
+}
+
+/// Reads the directory of GeoKeys (GeoTIFF 1.1, OGC 19-008r4): key, place of the value, count,
+/// value.
+void read_geo_keys(std::string_view directory, LasReferenceSystem& system) {
+  constexpr int geographic = 2048, projected = 3072, vertical = 4096, vertical_unit = 4099;
+  constexpr int user_defined = 32767;
+  for (std::size_t i = 8; i + 8 <= directory.size(); i += 8) {
+    const int key = value_at<std::uint16_t>(directory.data(), i),
+              place = value_at<std::uint16_t>(directory.data(), i + 2),
+              value = value_at<std::uint16_t>(directory.data(), i + 6);
+    if (place != 0) continue;
+    if (value == user_defined) {
+      if (key == projected || key == geographic) system.is_user_defined = true;
+      continue;
+    }
+    if (key == projected) system.projected = value;
+    if (key == geographic) system.geographic = value;
+    if (key == vertical) system.vertical = value;
+    if (key == vertical_unit) system.vertical_unit = value;
+  }
+}
+
 }  // namespace
 
 bool LasHeader::has_colours() const { return colour_place(*this) != 0; }
@@ -134,21 +166,53 @@ std::string LasReader::bytes(std::uint64_t place, std::uint64_t count) {
   return file_->with_name([&] { return file_->bytes(place, count); });
 }
 
-std::string LasReader::compression_record() {
+void LasReader::visit_records(const TakeRecord& take) {
   std::uint64_t place = header_.header_size;
   for (std::uint32_t i = 0; i < header_.records && place < header_.first_point; ++i) {
     const std::string head = bytes(place, las::record::end);
-    if (head.size() < las::record::end) break;
-    const auto id = value_at<std::uint16_t>(head.data(), las::record::id);
+    if (head.size() < las::record::end) return;
     const auto length = value_at<std::uint16_t>(head.data(), las::record::length);
-    const std::string_view user = std::string_view(head).substr(las::record::user, 16);
-    place += las::record::end;
-    if (id == las::compression_id && user.starts_with(las::compression_user)) {
-      return bytes(place, length);
-    }
-    place += length;
+    const std::string content = bytes(place + las::record::end, length);
+    if (!take(user_of(head), id_of(head), content)) return;
+    place += las::record::end + length;
   }
-  fail_cloud(file_->path(), "is compressed (LAZ), but has no record that says how");
+}
+
+void LasReader::visit_extended_records(const TakeRecord& take) {
+  constexpr std::uint64_t longest = 1 << 20;  // of what is read of a record
+  constexpr std::uint32_t most_records = 1000;
+  std::uint64_t place = header_.first_extended_record;
+  for (std::uint32_t i = 0; i < std::min(header_.extended_records, most_records); ++i) {
+    const std::string head = bytes(place, las::record::extended_end);
+    if (head.size() < las::record::extended_end) return;
+    const auto length = value_at<std::uint64_t>(head.data(), las::record::length);
+    const std::string content = bytes(place + las::record::extended_end, std::min(length, longest));
+    if (!take(user_of(head), id_of(head), content) || length > file_->size()) return;
+    place += las::record::extended_end + length;
+  }
+}
+
+LasReferenceSystem LasReader::reference_system() {
+  LasReferenceSystem system;
+  const auto take = [&](std::string_view user, int id, std::string_view content) {
+    if (user != las::record::projection && user != "liblas") return true;
+    if (id == las::record::wkt && system.wkt.empty()) system.wkt = text_of(content);
+    if (id == las::record::geo_keys) read_geo_keys(content, system);
+    return true;
+  };
+  visit_records(take);
+  visit_extended_records(take);
+  return system;
+}
+
+std::string LasReader::compression_record() {
+  std::optional<std::string> record;
+  visit_records([&](std::string_view user, int id, std::string_view content) {
+    if (id == las::compression_id && user.starts_with(las::compression_user)) record = content;
+    return !record;
+  });
+  if (!record) fail_cloud(file_->path(), "is compressed (LAZ), but has no record that says how");
+  return *record;
 }
 
 void LasReader::open_compressed() {

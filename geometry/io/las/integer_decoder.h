@@ -7,7 +7,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "geometry/io/laz/arithmetic_decoder.h"
+#include "geometry/io/las/arithmetic_decoder.h"
 
 namespace skycap::geometry::las {
 

@@ -7,7 +7,7 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "geometry/io/laz/integer_decoder.h"
+#include "geometry/io/las/integer_decoder.h"
 
 namespace skycap::geometry::las {
 

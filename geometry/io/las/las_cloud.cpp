@@ -1,7 +1,7 @@
 #include <algorithm>
 
 #include "geometry/io/cloud_parsers.h"
-#include "geometry/io/las_reader.h"
+#include "geometry/io/las/las_reader.h"
 
 namespace skycap::geometry {
 namespace {

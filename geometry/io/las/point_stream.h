@@ -3,8 +3,8 @@
 
 #include <memory>
 
-#include "geometry/io/laz/chunk_decoder.h"
-#include "geometry/io/laz/compression.h"
+#include "geometry/io/las/chunk_decoder.h"
+#include "geometry/io/las/compression.h"
 
 namespace skycap::geometry::las {
 

@@ -6,8 +6,8 @@
 #include <cstdint>
 #include <string_view>
 
-#include "geometry/io/laz/byte_window.h"
-#include "geometry/io/laz/integer_decoder.h"
+#include "geometry/io/las/byte_window.h"
+#include "geometry/io/las/integer_decoder.h"
 
 namespace skycap::geometry::las {
 

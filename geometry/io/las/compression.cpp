@@ -1,4 +1,4 @@
-#include "geometry/io/laz/compression.h"
+#include "geometry/io/las/compression.h"
 
 #include <string>
 #include <vector>

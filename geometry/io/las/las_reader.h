@@ -1,12 +1,13 @@
 /// LAS files of any size, piece by piece: versions 1.0 to 1.4 (ASPRS specification R15), points of
 /// format 0 to 10, and those of format 0 to 3 and 6 to 8 also compressed (LAZ, COPC:
-/// laz/point_stream.h). gzip may have compressed the whole file.
+/// point_stream.h). gzip may have compressed the whole file.
 #pragma once
 
 #include <array>
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <string>
 #include <string_view>
@@ -14,7 +15,7 @@
 
 #include <Eigen/Core>
 
-#include "geometry/io/laz/point_stream.h"
+#include "geometry/io/las/point_stream.h"
 #include "geometry/io/seekable_file.h"
 
 namespace skycap::geometry {
@@ -41,6 +42,14 @@ struct LasPoints {
   std::vector<std::array<std::uint16_t, 3>> colours;  ///< of each, if the format has them
 };
 
+/// The coordinate reference system that a file states: WKT, or EPSG codes of its GeoKeys.
+struct LasReferenceSystem {
+  std::string wkt;
+  int projected = 0, geographic = 0, vertical = 0;  ///< EPSG codes; 0: not stated
+  int vertical_unit = 0;                            ///< EPSG code; 0: not stated
+  bool is_user_defined = false;                     ///< by parameters that are not read
+};
+
 class LasReader {
  public:
   /// Throws Error{bad_file} if the file cannot be read, has no such header, is compressed in
@@ -54,10 +63,17 @@ class LasReader {
   /// Error{bad_file} if the file cannot be read, or what is compressed is damaged.
   bool next(LasPoints& points, std::size_t most = 1 << 16);
 
-  /// Bytes from a place of the file, fewer if it ends: for records beside the points.
-  std::string bytes(std::uint64_t place, std::uint64_t count);
+  /// Reads the reference system from the records before and behind the points; the first WKT
+  /// counts. Throws Error{bad_file} if the file cannot be read.
+  LasReferenceSystem reference_system();
 
  private:
+  /// Takes a record's user, number and content; returns whether to go on.
+  using TakeRecord = std::function<bool(std::string_view user, int id, std::string_view content)>;
+
+  std::string bytes(std::uint64_t place, std::uint64_t count);
+  void visit_records(const TakeRecord& take);
+  void visit_extended_records(const TakeRecord& take);
   std::string compression_record();
   void open_compressed();
   void decompress(LasPoints& points, std::uint64_t count);

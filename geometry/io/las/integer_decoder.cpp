@@ -1,4 +1,4 @@
-#include "geometry/io/laz/integer_decoder.h"
+#include "geometry/io/las/integer_decoder.h"
 
 #include <algorithm>
 

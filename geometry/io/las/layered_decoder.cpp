@@ -7,18 +7,16 @@
 #include <vector>
 
 #include "geometry/byte_values.h"
-#include "geometry/io/laz/chunk_decoder.h"
-#include "geometry/io/laz/colour_decoder.h"
-#include "geometry/io/laz/position_decoder.h"
-#include "geometry/io/laz/return_contexts.h"
+#include "geometry/io/las/chunk_decoder.h"
+#include "geometry/io/las/colour_decoder.h"
+#include "geometry/io/las/layout.h"
+#include "geometry/io/las/position_decoder.h"
+#include "geometry/io/las/return_contexts.h"
 
 namespace skycap::geometry::las {
 namespace {
 
 constexpr std::size_t channels = 4;
-
-// Where a point of format 6 and more keeps what (las_layout.h).
-constexpr std::size_t returns_place = 14, flags_place = 15, class_place = 16, colour_place = 30;
 
 /// The layers that are decoded, by their place among a chunk's.
 enum Layer : std::size_t { steps = 0, heights = 1, classes = 2, flags = 3, colours = 9 };
@@ -240,11 +238,11 @@ class LayeredDecoder : public ChunkDecoder {
 Point14 decoded_part(const char* bytes) {
   Point14 point;
   std::memcpy(&point.x, bytes, 12);
-  const auto returns = value_at<std::uint8_t>(bytes, returns_place);
-  const auto flag_bits = value_at<std::uint8_t>(bytes, flags_place);
+  const auto returns = value_at<std::uint8_t>(bytes, point::returns);
+  const auto flag_bits = value_at<std::uint8_t>(bytes, point::flags);
   point.return_number = returns & 15;
   point.number_of_returns = returns >> 4;
-  point.classification = value_at<std::uint8_t>(bytes, class_place);
+  point.classification = value_at<std::uint8_t>(bytes, point::classification);
   point.flags = static_cast<std::uint8_t>((flag_bits & 15) | (flag_bits >> 6) << 4);
   return point;
 }
@@ -253,20 +251,20 @@ void put_decoded_part(const Point14& point, std::size_t channel, char* bytes) {
   put_value(bytes, 0, point.x);
   put_value(bytes, 4, point.y);
   put_value(bytes, 8, point.z);
-  put_value(bytes, returns_place,
+  put_value(bytes, point::returns,
             static_cast<std::uint8_t>(point.number_of_returns << 4 | point.return_number));
-  put_value(bytes, flags_place,
+  put_value(bytes, point::flags,
             static_cast<std::uint8_t>((point.flags & 15) | channel << 4 | (point.flags >> 4) << 6));
-  put_value(bytes, class_place, point.classification);
+  put_value(bytes, point::classification, point.classification);
 }
 
 void LayeredDecoder::begin(ByteWindow chunk, char* point) {
   chunk.take(first_.data(), first_.size());
   std::memcpy(point, first_.data(), first_.size());
   find_layers(chunk);
-  const std::size_t channel = value_at<std::uint8_t>(first_.data(), flags_place) >> 4 & 3U;
+  const std::size_t channel = value_at<std::uint8_t>(first_.data(), point::flags) >> 4 & 3U;
   points_.begin(decoded_part(first_.data()), channel);
-  if (has_colour_) colours_.begin(value_at<Colour>(first_.data(), colour_place), channel);
+  if (has_colour_) colours_.begin(value_at<Colour>(first_.data(), point::colour), channel);
   is_open_ = false;
 }
 
@@ -301,7 +299,7 @@ void LayeredDecoder::next(char* point) {
   if (!has_colour_) return;
   const bool is_told = version_ > 3 || points_.channel_is_new();
   const std::size_t channel = is_told ? points_.channel() : 0;
-  put_value(point, colour_place, colours_.read(layers_[colours], channel, version_));
+  put_value(point, point::colour, colours_.read(layers_[colours], channel, version_));
 }
 
 }  // namespace

@@ -1,5 +1,5 @@
-/// Where LAS 1.0 to 1.4 (ASPRS specification R15) keep what, for readers (las_reader.h) and the
-/// writer (missions/scan/las_format.h): places in bytes, of little-endian values.
+/// Layout of LAS 1.0 to 1.4 (ASPRS specification R15), for the reader (las_reader.h) and the writer
+/// (las_writer.h): places in bytes, of little-endian values.
 #pragma once
 
 #include <array>
@@ -24,6 +24,9 @@ inline constexpr std::size_t old_end = 227;  // of versions before 1.3
 namespace record {
 inline constexpr std::size_t user = 2, id = 18, length = 20, description = 22, end = 54;
 inline constexpr std::size_t extended_end = 60;  // the length has 8 bytes
+inline constexpr std::size_t user_size = 16;
+inline constexpr const char* projection = "LASF_Projection";  // user of the following numbers
+inline constexpr std::uint16_t wkt = 2112, geo_keys = 34735;
 }  // namespace record
 
 /// Of a point of format 6 to 10, from its beginning.
@@ -32,6 +35,7 @@ inline constexpr std::size_t position = 0, intensity = 12, returns = 14, flags =
                              classification = 16, user_data = 17, scan_angle = 18, source = 20,
                              time = 22, colour = 30;
 inline constexpr std::uint8_t withheld = 1 << 2;  // of the flags
+inline constexpr double scan_angle_unit_deg = 0.006;
 }  // namespace point
 
 /// Of a point of format 0 to 5, where that differs.

@@ -1,4 +1,4 @@
-#include "geometry/io/laz/time_decoder.h"
+#include "geometry/io/las/time_decoder.h"
 
 namespace skycap::geometry::las {
 namespace {

@@ -7,7 +7,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "geometry/io/laz/byte_window.h"
+#include "geometry/io/las/byte_window.h"
 
 namespace skycap::geometry::las {
 

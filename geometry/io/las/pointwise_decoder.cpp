@@ -7,11 +7,11 @@
 #include <vector>
 
 #include "geometry/byte_values.h"
-#include "geometry/io/laz/chunk_decoder.h"
-#include "geometry/io/laz/colour_decoder.h"
-#include "geometry/io/laz/position_decoder.h"
-#include "geometry/io/laz/return_contexts.h"
-#include "geometry/io/laz/time_decoder.h"
+#include "geometry/io/las/chunk_decoder.h"
+#include "geometry/io/las/colour_decoder.h"
+#include "geometry/io/las/position_decoder.h"
+#include "geometry/io/las/return_contexts.h"
+#include "geometry/io/las/time_decoder.h"
 
 namespace skycap::geometry::las {
 namespace {

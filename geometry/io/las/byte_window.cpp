@@ -1,4 +1,4 @@
-#include "geometry/io/laz/byte_window.h"
+#include "geometry/io/las/byte_window.h"
 
 #include <algorithm>
 

@@ -5,7 +5,7 @@
 #include <array>
 #include <cstdint>
 
-#include "geometry/io/laz/arithmetic_decoder.h"
+#include "geometry/io/las/arithmetic_decoder.h"
 
 namespace skycap::geometry::las {
 

@@ -1,4 +1,4 @@
-#include "geometry/io/laz/point_stream.h"
+#include "geometry/io/las/point_stream.h"
 
 #include <utility>
 

@@ -1,15 +1,9 @@
-#include "flight/fly_test/random_numbers.h"
+#include "geometry/random_numbers.h"
 
 #include <cmath>
 #include <numbers>
 
-#include "geometry/split_mix.h"
-
-namespace skycap::flight {
-RandomNumbers::RandomNumbers(std::uint64_t seed, std::uint64_t stream)
-    : engine_(geometry::split_mix(geometry::split_mix(seed) ^ stream)) {}
-
-double RandomNumbers::uniform() { return static_cast<double>(engine_() >> 11) * 0x1p-53; }
+namespace skycap::geometry {
 
 // Box and Muller 1958.
 double RandomNumbers::normal() {
@@ -24,4 +18,4 @@ double RandomNumbers::normal() {
   return radius * std::cos(angle);
 }
 
-}  // namespace skycap::flight
+}  // namespace skycap::geometry

@@ -1,4 +1,4 @@
-#include "geometry/io/laz/arithmetic_decoder.h"
+#include "geometry/io/las/arithmetic_decoder.h"
 
 #include <algorithm>
 #include <utility>

@@ -6,8 +6,8 @@
 #include <array>
 #include <cstdint>
 
-#include "geometry/io/laz/integer_decoder.h"
-#include "geometry/io/laz/running_median.h"
+#include "geometry/io/las/integer_decoder.h"
+#include "geometry/io/las/running_median.h"
 
 namespace skycap::geometry::las {
 
