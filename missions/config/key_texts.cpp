@@ -44,7 +44,7 @@ std::vector<support::Setting> survey_settings(const MissionDocument& document) {
     // Of a description in a file what it says, wherever it lies.
     const std::string& vehicle = document.flight.options.vehicle_name;
     if (key.path == "flight.vehicle" && vehicle.ends_with(".yaml")) {
-      text = fmt::format("description {:08x}",
+      text = fmt::format("vehicle file {:08x}",
                          geometry::crc32_of(geometry::read_file(vehicle, largest)));
     }
     if (key.path == "prior") text = to_text(wherever_they_lie(document.prior));

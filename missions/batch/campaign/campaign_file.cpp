@@ -9,6 +9,7 @@
 #include "geometry/io/file.h"
 #include "missions/batch/benchmark/contestants.h"
 #include "missions/batch/campaign/key_changes.h"
+#include "missions/support/key_text.h"
 #include "missions/support/yaml_section.h"
 
 namespace skycap::missions::batch {
@@ -134,7 +135,7 @@ class CampaignReader {
   std::string place(int line) const { return file_ + ":" + std::to_string(line); }
 
   [[noreturn]] void fail(int line, const std::string& key, const std::string& what) const {
-    throw Error(ErrorKind::bad_config, place(line) + ": key " + key + ": " + what);
+    throw Error(ErrorKind::bad_config, place(line) + ": key " + support::about_key(key, what));
   }
 
   YamlSection root_;

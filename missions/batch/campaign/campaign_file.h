@@ -50,7 +50,7 @@ inline constexpr std::string_view plain_names =
 std::string mission_title(const std::string& path);
 
 /// Reads the file but none of the missions. Throws Error{bad_file} if it cannot be read, and
-/// Error{bad_config}, "FILE:LINE: key KEY: what is wrong; what would be right".
+/// Error{bad_config}, "FILE:LINE: key KEY WHAT IS WRONG; what would be right".
 CampaignFile read_campaign(const std::filesystem::path& file);
 
 /// The same of a text; `name` stands for the file in messages.

@@ -191,7 +191,8 @@ class FlightPlanner {
       tell_(fmt::format("writing {} sorties from pad {}", routes_[pad]->sorties.size(), pad + 1));
       PadFlight own{pad, *std::move(routes_[pad])};
       own.files = package::stage_flight(names_[pad], flights_[pad], own.route, *measured_,
-                                        package::package_formats(), folder, pad_name(pad));
+                                        package::package_formats(flights_[pad].flown().dialect),
+                                        folder, pad_name(pad));
       for (const std::string& note : own.files.notes) flight_.notes.push_back(note);
       flight_.pads.push_back(std::move(own));
     }

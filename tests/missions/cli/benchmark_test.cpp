@@ -168,8 +168,7 @@ TEST_F(BenchmarkVerb, DrawsASceneOfAFamilyForEachSeed) {
 TEST_F(BenchmarkVerb, RefusesFamiliesThatItDoesNotKnow) {
   const ProgramRun result = run("see", {"--scenes", "garage,castle"});
   EXPECT_EQ(result.exit_code, 2);
-  EXPECT_THAT(result.err,
-              HasSubstr("--scenes: there is no family 'castle'; there are all, bridge"));
+  EXPECT_THAT(result.err, HasSubstr("--scenes: unknown family 'castle'; expected all or bridge"));
 }
 
 TEST_F(BenchmarkVerb, RefusesMissionsOfTheSameName) {

@@ -146,7 +146,7 @@ TEST_F(CampaignVerb, TakesItsIndexFromTheEngine) {
   EXPECT_EQ(last.exit_code, 0) << last.err;
   EXPECT_EQ(records("out").count("quick/short/oa/seed_2/item.json"), 1U);
   EXPECT_EQ(beyond.exit_code, 0);
-  EXPECT_THAT(beyond.err, HasSubstr("task 8 has no items; there are 8"));
+  EXPECT_THAT(beyond.err, HasSubstr("task 8 has no runs; there are 8"));
   EXPECT_EQ(records("out").size(), 1U);
 }
 
@@ -255,8 +255,7 @@ TEST_F(CampaignVerb, GoesOnWithoutWhatCannotBeRun) {
                               "seeds: 1\nset: {limits.max_views: 3}\n";
   const ProgramRun result = run("out");
   EXPECT_EQ(result.exit_code, 1);
-  EXPECT_THAT(result.err,
-              HasSubstr("broken.yaml:1: key evaluation.registration_distance: is miss"));
+  EXPECT_THAT(result.err, HasSubstr("broken.yaml:1: key evaluation.registration_distance is miss"));
   EXPECT_THAT(result.err, HasSubstr("lost.ply"));
   EXPECT_THAT(result.out, HasSubstr("1 of 3 items"));
   const ProgramRun alone = run("out", {"--index", "0"});

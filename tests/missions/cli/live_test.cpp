@@ -153,12 +153,12 @@ TEST_F(LiveVerbs, SayWhatIsMissing) {
     EXPECT_EQ(run.exit_code, 2) << run.out;
     return run.err;
   };
-  EXPECT_THAT(refusal({"plan", mission_}), HasSubstr("scene.model: is missing"));
-  EXPECT_THAT(refusal({"scan", mission_}), HasSubstr("scene.model: is missing"));
-  EXPECT_THAT(refusal(verb("finish")), HasSubstr("has no scan yet"));
+  EXPECT_THAT(refusal({"plan", mission_}), HasSubstr("scene.model is missing"));
+  EXPECT_THAT(refusal({"scan", mission_}), HasSubstr("scene.model is missing"));
+  EXPECT_THAT(refusal(verb("finish")), HasSubstr("contains no scan yet"));
   EXPECT_THAT(refusal(verb("next", {"--scan", "x.ply"})), HasSubstr("--pose"));
   EXPECT_THAT(refusal(verb("next", {"--refuse", "no"})), HasSubstr("no view to refuse"));
-  EXPECT_THAT(refusal(verb("next", {"--on-way"})), HasSubstr("--on-way goes with --scan"));
+  EXPECT_THAT(refusal(verb("next", {"--on-way"})), HasSubstr("--on-way requires --scan"));
   std::vector<std::string> on_way =
       measured(geometry::look_at({2.5, 1.0, 1.2}, {0.0, 0.0, 0.3}), 0);
   on_way.emplace_back("--on-way");

@@ -336,7 +336,7 @@ TEST_F(ScanVerb, CtrlCLeavesWholeFilesOfTheBeginning) {
   EXPECT_THAT(run.out, HasSubstr("interrupted"));
   EXPECT_EQ(summary()["complete"], false);
   EXPECT_THAT(tests::content_of(folder / "out/scan.ply"), HasSubstr("element vertex 0\n"));
-  EXPECT_THAT(run.err, HasSubstr("no report after Ctrl-C; skycap report makes it"));
+  EXPECT_THAT(run.err, HasSubstr("no report after Ctrl-C; skycap report writes it"));
 }
 
 TEST_F(ScanVerb, ARawlogOfNothingIsNotWritten) {
@@ -363,7 +363,7 @@ TEST_F(ScanVerb, RefusesInOneLineAndLeavesNothing) {
   EXPECT_THAT(refused({"--route", folder / "none.tum"}), HasSubstr("none.tum"));
   EXPECT_THAT(refused({"--set", "scan.orbit.radius=0"}), HasSubstr("key scan.orbit.radius"));
   EXPECT_THAT(refused({"--set", "scan.crs=utm"}),
-              HasSubstr("scan.crs is utm, but the mission has no place"));
+              HasSubstr("scan.crs: utm requires a georeference"));
   EXPECT_THAT(refused({"--set", "scene.copies=[[6, 1]]"}), HasSubstr("key scene.copies"));
 }
 

@@ -197,9 +197,9 @@ TEST_F(Site, SaysWhatIsMissing) {
   EXPECT_THAT(propose("").err, AllOf(HasSubstr("holds 3 things, DEBY_0, DEBY_1, DEBY_2"),
                                      HasSubstr("--id, --at or --attribute")));
   EXPECT_THAT(propose("--id DEBY_7").err, HasSubstr("no object with the id DEBY_7"));
-  EXPECT_THAT(propose("--at 48.75,11.39").err, HasSubstr("has nothing within 10 m"));
+  EXPECT_THAT(propose("--at 48.75,11.39").err, HasSubstr("contains nothing within 10 m"));
   EXPECT_THAT(propose("--at north").err, HasSubstr("--at is north; give LATITUDE,LONGITUDE"));
-  EXPECT_THAT(propose("--id DEBY_1 --at 48,11").err, HasSubstr("give one of them"));
+  EXPECT_THAT(propose("--id DEBY_1 --at 48,11").err, HasSubstr("exclude each other"));
   EXPECT_FALSE(std::filesystem::exists(folder_.path() / "house.yaml"));
   std::ofstream(folder_.path() / "house.yaml") << "mine";
   EXPECT_THAT(propose("--id DEBY_1").err, HasSubstr("house.yaml is there already"));

@@ -126,10 +126,10 @@ TEST(StatedReturns, AreRefusedAtAHeightThatLeadsThroughTheBuilding) {
   };
   const auto low = check_return("5");
   EXPECT_EQ(low.exit_code, 1);
-  EXPECT_THAT(low.out, HasSubstr(": fine, 0 of "));  // the mission itself is
+  EXPECT_THAT(low.out, HasSubstr(": verified, 0 of "));  // the mission itself is
   EXPECT_THAT(low.out, HasSubstr("not safe, at 5 m (--return-height) "));
   EXPECT_THAT(low.out, HasSubstr(" of the scene"));
-  const std::string least = "the least safe height of return is ";
+  const std::string least = "the lowest safe return altitude is ";
   ASSERT_THAT(low.out, HasSubstr(least));
   const double height = std::stod(low.out.substr(low.out.find(least) + least.size()));
   EXPECT_GE(height, building_height + 2.0 - 0.1);  // the clearance, less what proofs lose
@@ -155,7 +155,7 @@ TEST(Pads, TooSteepByWhatIsDeclaredAreRefusedBeforeTheSurvey) {
   EXPECT_EQ(exported({}).exit_code, 2);
   const auto allowed = exported({"--set", "flight.steepest_pad_deg=15"});
   EXPECT_EQ(allowed.exit_code, 0) << allowed.err;
-  EXPECT_THAT(allowed.out, HasSubstr("  pad       12.0 degrees steep as declared\n"));
+  EXPECT_THAT(allowed.out, HasSubstr("  pad       slope 12.0 degrees as declared\n"));
 }
 
 TEST(Pads, TooSteepByTheTerrainAreRefused) {
@@ -180,8 +180,8 @@ TEST(Pads, OfRouteFilesAreHeldToTheSceneAsItIs) {
   };
   const auto steep = with("steep.obj");
   EXPECT_EQ(steep.exit_code, 1);
-  EXPECT_THAT(steep.out, HasSubstr(": fine, 0 of "));
-  EXPECT_THAT(steep.out, HasSubstr("not safe, the place to land at (-75.00, 0.00, 0.00) is 14.0 "
+  EXPECT_THAT(steep.out, HasSubstr(": verified, 0 of "));
+  EXPECT_THAT(steep.out, HasSubstr("not safe, the landing point at (-75.00, 0.00, 0.00) is 14.0 "
                                    "degrees steep in the scene"));
   EXPECT_EQ(with("gentle.obj").exit_code, 0);
 }

@@ -214,13 +214,13 @@ std::string refusal_of(const std::string& text, const std::vector<config::KeyOve
 TEST(MovingSurvey, NeedsAVehicleAndAPlannerThatLearnsOnTheWay) {
   const config::KeyOverride moving{"--set", "sensor.capture", "moving"};
   EXPECT_THAT(refusal_of(flown_mission(), {moving, {"--planner", "planner.name", "see++"}}),
-              HasSubstr("sensor.capture: is moving; it needs a planner that learns"));
+              HasSubstr("sensor.capture: moving requires a planner that uses"));
   EXPECT_THAT(refusal_of("scene: {model: 'builtin:teapot'}\n"
                          "evaluation: {registration_distance: 0.005}\n",
                          {moving}),
-              HasSubstr("sensor.capture: is moving; it needs a vehicle"));
+              HasSubstr("sensor.capture: moving requires a vehicle"));
   EXPECT_THAT(refusal_of(flown_mission(), {{"--set", "sensor.frame_period", "2"}}),
-              HasSubstr("sensor.frame_period: is for frames on the way"));
+              HasSubstr("sensor.frame_period requires sensor.capture: moving"));
 }
 
 }  // namespace

@@ -113,16 +113,16 @@ TEST(PriorSurvey, SaysAtWhichKeyASourceIsWrong) {
   EXPECT_THAT(complaint("{file: none.obj, role: target}"),
               testing::MatchesRegex("m.yaml:[0-9]+: key prior.0..file: .*none.obj.*"));
   EXPECT_THAT(complaint("{file: a.obj, role: target, crs: 'EPSG:25832', place: {heading_deg: 1}}"),
-              HasSubstr("key prior[0].crs: excludes place"));
+              HasSubstr("key prior[0].crs excludes place"));
   EXPECT_THAT(complaint("{file: a.obj, role: terrain, base: terrain}"),
-              HasSubstr("key prior[0].base: of the terrain"));
+              HasSubstr("key prior[0].base of the terrain"));
   const TestFolder folder;
   geometry::write_mesh(folder.path() / "a.obj", flight::scenes::box({0, 0, 0}, {1, 1, 1}));
   const std::string file = "{file: '" + (folder.path() / "a.obj").string() + "', role: obstacle, ";
   EXPECT_THAT(complaint(file + "height: 3}"), HasSubstr("a.obj: height has no use here"));
-  EXPECT_THAT(complaint(file + "spacing: 0}"), HasSubstr("key prior[0].spacing: is 0"));
+  EXPECT_THAT(complaint(file + "spacing: 0}"), HasSubstr("key prior[0].spacing is 0"));
   EXPECT_THAT(complaint("{file: a.obj, role: truth}"),
-              HasSubstr("key prior[0].role: of truth takes the place of scene.model"));
+              HasSubstr("key prior[0].role of truth takes the place of scene.model"));
 }
 
 /// A plane that rises eastward by a metre in 20, 100 m each way.

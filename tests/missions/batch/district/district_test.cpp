@@ -188,7 +188,7 @@ TEST_F(District, ChoosesTargetsByPlaceAndAttribute) {
 
 TEST_F(District, SaysWhyThereIsNothingToSurvey) {
   write("map: town.city.json\nvertical: ellipsoid\ntargets: {near: '48.0,11.0', distance: 10}\n");
-  EXPECT_THAT(run().err, HasSubstr("key targets: leaves none of the 4 things of"));
+  EXPECT_THAT(run().err, HasSubstr("key targets leaves none of the 4 things of"));
   write("map: town.city.json\nvertical: ellipsoid\ntargets: {id: [castle]}\n");
   EXPECT_THAT(run().err, HasSubstr("castle"));
 }

@@ -121,7 +121,7 @@ TEST(FlyVerb, SaysWhatTheAutopilotSays) {
   is_over = true;
   EXPECT_EQ(run.exit_code, 1);
   EXPECT_THAT(run.err, HasSubstr("the autopilot refuses to arm (result 4): PreArm: Compass"));
-  EXPECT_THAT(run.err, HasSubstr("goes on when it is flown again"));
+  EXPECT_THAT(run.err, HasSubstr("resume the survey in "));
   EXPECT_EQ(run.out, "");
 }
 

@@ -208,7 +208,7 @@ TEST_F(Rawlog, IsTakenInAsItsImagesWouldBe) {
     return tests::run_skycap(all);
   };
   const tests::ProgramRun all = next("all", {"--dataset", rawlog});
-  EXPECT_THAT(all.err, AllOf(HasSubstr("poses are from its CObservationRobotPose"),
+  EXPECT_THAT(all.err, AllOf(HasSubstr("poses from its CObservationRobotPose"),
                              HasSubstr("DEPTH 1: "), HasSubstr("DEPTH 3: ")));
   EXPECT_THAT(next("all", {"--dataset", rawlog}).err, testing::Not(HasSubstr("points")));
   for (const double time : {1.0, 2.0}) {
