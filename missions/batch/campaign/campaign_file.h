@@ -44,7 +44,7 @@ bool is_plain(std::string_view name);
 
 /// What to give instead, for messages.
 inline constexpr std::string_view plain_names =
-    "give one of at most 100 bytes, without / \\ , \" | and not beginning with a dot";
+    "use at most 100 bytes without / \\ , \" | and no leading dot";
 
 /// The name of a mission among the campaign's: its file's, without folder and ending.
 std::string mission_title(const std::string& path);

@@ -168,11 +168,11 @@ std::vector<BadInput> bad_inputs() {
        "MISSION:3: key site.longitude_deg is half a place"},
       {"FirstViewInTheBuilding",
        whole + flown(around) + "start: {position: [1, 1, 9], look_at: [0, 0, 0]}\n",
-       "MISSION: the first view at (1, 1, 9) is 0 m from space that was never seen free"},
+       "MISSION: the first view at (1, 1, 9) is 0 m from unobserved space"},
       {"FirstViewTooNear",
        whole + flown(around) + "start: {position: [0, -21, 9], look_at: [0, 0, 0]}\n",
-       "MISSION: the first view at (0, -21, 9) is 1 m from space that was never seen free, with a "
-       "clearance of 2 m"},
+       "MISSION: the first view at (0, -21, 9) is 1 m from unobserved space, with a clearance of 2 "
+       "m"},
       {"PadInTheBuilding",
        whole + flown(around, "takeoff: [3, 0, 0]") +
            "start: {position: [0, -25, 9], look_at: [0, 0, 0]}\n",

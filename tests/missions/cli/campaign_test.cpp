@@ -343,7 +343,7 @@ TEST_F(CampaignVerb, SaysThatThereIsNoEngine) {
   for (const std::string& word : words("out", {"--submit", "parallel"})) submit.push_back(word);
   const auto result = support::run_external_program(submit, folder_.path());
   EXPECT_EQ(result.exit_code, 2);
-  EXPECT_THAT(result.output, HasSubstr("there is no program parallel"));
+  EXPECT_THAT(result.output, HasSubstr("unknown program parallel"));
 }
 
 }  // namespace

@@ -357,7 +357,7 @@ TEST_F(ScanVerb, RefusesInOneLineAndLeavesNothing) {
     return run.err;
   };
   EXPECT_THAT(refused({"--format", "zip"}),
-              HasSubstr("no point format 'zip'; the formats are las"));
+              HasSubstr("unknown point format 'zip'; expected one of: las"));
   EXPECT_THAT(refused({"--format", "las,las7"}), HasSubstr("two files scan.las"));
   EXPECT_THAT(refused({"--sensor", "sonar"}), HasSubstr("there is no sensor sonar"));
   EXPECT_THAT(refused({"--route", folder / "none.tum"}), HasSubstr("none.tum"));

@@ -132,7 +132,7 @@ TEST_F(SplitScan, SaysWhatItCannotSplit) {
   };
   EXPECT_THAT(refusal({"--index", "1"}), HasSubstr("require --pieces"));
   EXPECT_THAT(refusal({"--pieces", "2", "--index", "one"}),
-              HasSubstr("--index is 'one'; it must be an integer from 0 on"));
+              HasSubstr("--index is 'one'; it must be an integer of at least 0"));
   EXPECT_THAT(refusal({"--pieces", "2", "--sensor", folder_ / "camera.yaml"}),
               HasSubstr("Test camera is a camera; only scans of laser scanners can be split"));
   EXPECT_THAT(refusal({"--pieces", "2", "--resume"}), HasSubstr("--resume excludes --pieces"));

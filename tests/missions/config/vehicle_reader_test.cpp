@@ -87,7 +87,7 @@ TEST(VehicleReader, WhatIsWrongIsNamedByLine) {
   EXPECT_THAT(complaint(base + "rotors: 4.5\n"), HasSubstr("key rotors must be an integer"));
   EXPECT_THAT(complaint(base + "gimbal_max_deg: -90\n"),
               HasSubstr("must be greater than gimbal_min_deg"));
-  EXPECT_THAT(complaint(base + "mass: 20\n"), HasSubstr("less than its mass takes to hover"));
+  EXPECT_THAT(complaint(base + "mass: 20\n"), HasSubstr("less than its mass needs to hover"));
   EXPECT_THAT(
       complaint("name: kite\nlike: dragon\n"),
       HasSubstr("kite.yaml:2: key like unknown vehicle dragon; expected one of: generic, "));

@@ -141,8 +141,9 @@ TEST(Pads, TooSteepByWhatIsDeclaredAreRefusedBeforeTheSurvey) {
   const auto run = run_skycap(
       {"plan", folder / "m.yaml", "--out", folder / "steep", "--set", "flight.pad_slope_deg=12"});
   EXPECT_EQ(run.exit_code, 2);
-  EXPECT_THAT(run.err, HasSubstr("the place to land at (-75.00, 0.00, 0.00) is 12.0 degrees steep "
-                                 "as declared; at most 10.0 degrees (flight.steepest_pad_deg)"));
+  EXPECT_THAT(run.err,
+              HasSubstr("the landing point at (-75.00, 0.00, 0.00) has a slope of 12.0 degrees as "
+                        "declared; the maximum is 10.0 degrees (flight.steepest_pad_deg)"));
   EXPECT_FALSE(std::filesystem::exists(folder / "steep/summary.json"));
 
   const auto exported = [&](const std::vector<std::string>& more) {
@@ -169,7 +170,7 @@ TEST(Pads, TooSteepByTheTerrainAreRefused) {
   const auto run = run_skycap({"check", mission});
   EXPECT_EQ(run.exit_code, 1) << run.err;
   // A rise of 2.5 m on 10 m.
-  EXPECT_THAT(run.out, HasSubstr("is 14.0 degrees steep by the terrain")) << run.out;
+  EXPECT_THAT(run.out, HasSubstr("has a slope of 14.0 degrees by the terrain")) << run.out;
 }
 
 TEST(Pads, OfRouteFilesAreHeldToTheSceneAsItIs) {
@@ -181,8 +182,8 @@ TEST(Pads, OfRouteFilesAreHeldToTheSceneAsItIs) {
   const auto steep = with("steep.obj");
   EXPECT_EQ(steep.exit_code, 1);
   EXPECT_THAT(steep.out, HasSubstr(": verified, 0 of "));
-  EXPECT_THAT(steep.out, HasSubstr("not safe, the landing point at (-75.00, 0.00, 0.00) is 14.0 "
-                                   "degrees steep in the scene"));
+  EXPECT_THAT(steep.out, HasSubstr("not safe, the landing point at (-75.00, 0.00, 0.00) has a "
+                                   "slope of 14.0 degrees in the scene"));
   EXPECT_EQ(with("gentle.obj").exit_code, 0);
 }
 
@@ -222,7 +223,7 @@ TEST(Pads, AreMeasuredByTheSurveyAndRefusedInItsRoute) {
                 package::plan_flight(survey.flight, survey.measured, survey.pad, survey.views,
                                      survey.ways, flown.grounds);
               }),
-              HasSubstr("degrees steep as measured; at most 10.0 degrees"));
+              HasSubstr("degrees as measured; the maximum is 10.0 degrees"));
 }
 
 }  // namespace

@@ -244,7 +244,8 @@ TEST(FlownPackage, ChecksNameTheItemsOfSpoiledFiles) {
   moved["mission"]["plannedHomePosition"][2] =
       moved["mission"]["plannedHomePosition"][2].get<double>() + 30.0;
   EXPECT_EQ(check(moved).exit_code, 1);
-  EXPECT_THAT(check(moved).out, HasSubstr("mission.plannedHomePosition is 30.0 m above the pad"));
+  EXPECT_THAT(check(moved).out,
+              HasSubstr("mission.plannedHomePosition is 30.0 m above the take-off point"));
   json skipping = plan;
   const std::size_t last = skipping["mission"]["items"].size() - 2;
   skipping["mission"]["items"][last]["command"] = 82;
@@ -413,7 +414,7 @@ TEST(FlownPackage, BrokenPackagesAndRoutesAreNamed) {
   EXPECT_THAT(message({"export", folder / "nowhere", "--format", "kml"}),
               HasSubstr("summary.json: there is no such file"));
   EXPECT_THAT(message({"export", folder / "out", "--format", "pdf"}),
-              HasSubstr("format \"pdf\" is not known; there are plan, "));
+              HasSubstr("unknown format \"pdf\"; expected one of: plan, "));
   const TestFolder broken;
   broken.write("summary.json", "{\"mission\": 3");
   EXPECT_THAT(message({"export", broken.path().string(), "--format", "kml"}),

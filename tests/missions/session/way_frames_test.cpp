@@ -196,7 +196,7 @@ TEST(MovingSurvey, PackageNamesTheViewThatEachPointWasTakenOnTheWayTo) {
   const auto run = tests::run_skycap({"plan", mission, "--set", "sensor.capture=moving", "--set",
                                       "limits.max_views=3", "--out", folder / "out"});
   ASSERT_EQ(run.exit_code, 0) << run.err;
-  EXPECT_THAT(run.out, HasSubstr(" frames on the way, blurred by at most "));
+  EXPECT_THAT(run.out, HasSubstr(" en-route frames, motion blur up to "));
   const auto summary = nlohmann::json::parse(tests::content_of(folder / "out/summary.json"));
   EXPECT_EQ(summary["per_view"][0]["frames_on_way"], 0);
   EXPECT_GT(summary["per_view"][1]["frames_on_way"], 0);

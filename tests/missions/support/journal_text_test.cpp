@@ -12,7 +12,7 @@ namespace skycap::missions::support {
 namespace {
 
 const Identity run{7, {{"scene.model", "builtin:teapot"}, {"limits.max_views", "12"}}};
-const std::string cure = "begin anew without --resume";
+const std::string cure = "start again without --resume";
 
 std::string identity_of(const Identity& given) {
   return identity_text(given, {{"format", journal_format}, {"surface", "abc"}});

@@ -124,22 +124,23 @@ TEST(Campaign, RefusesWhatItDoesNotUnderstandWhereItStands) {
               HasSubstr("c.yaml:2: key seed is unknown; expected one of: first_seed, missions"));
   EXPECT_THAT(refusal_of("missions: [a.yaml]\nseeds: 0\n"),
               HasSubstr("c.yaml:2: key seeds is 0; it must be from 1 to 100000"));
-  EXPECT_THAT(refusal_of("missions: [a.yaml]\nplanners: [frontier]\n"),
-              HasSubstr("c.yaml:2: key planners there is no planner 'frontier'; give all or some"));
+  EXPECT_THAT(
+      refusal_of("missions: [a.yaml]\nplanners: [frontier]\n"),
+      HasSubstr("c.yaml:2: key planners: unknown planner 'frontier'; expected all or some"));
   EXPECT_THAT(refusal_of("missions: [a.yaml]\nset:\n  planner.densty: 3\n"),
               HasSubstr("c.yaml:3: key set.planner.densty is unknown"));
   EXPECT_THAT(refusal_of("missions: [a.yaml]\nvariants:\n  v: {seed: 3}\n"),
               HasSubstr("c.yaml:3: key variants.v.seed follows from the campaign"));
   EXPECT_THAT(refusal_of("missions: [a.yaml]\nvariants:\n  ../v: {}\n"),
-              HasSubstr("c.yaml:3: key variants.../v: is no name of a folder"));
+              HasSubstr("c.yaml:3: key variants.../v: is not a valid folder name"));
   EXPECT_THAT(refusal_of("missions: [a.yaml]\nvariants:\n  v: 3\n"),
               HasSubstr("c.yaml:3: key variants.v must be a map"));
   EXPECT_THAT(refusal_of("missions: [a.yaml, b/a.yaml]\n"),
               HasSubstr("a.yaml and b/a.yaml have the same name"));
-  EXPECT_THAT(refusal_of("missions: ['a,b.yaml']\n"), HasSubstr("does not fit in tables"));
-  EXPECT_THAT(refusal_of("missions: ['..']\n"), HasSubstr("does not fit in tables"));
+  EXPECT_THAT(refusal_of("missions: ['a,b.yaml']\n"), HasSubstr("cannot be used in tables"));
+  EXPECT_THAT(refusal_of("missions: ['..']\n"), HasSubstr("cannot be used in tables"));
   EXPECT_THAT(refusal_of("missions: [a.yaml]\nname: ../../etc\n"),
-              HasSubstr("c.yaml:2: key name is no name of a folder"));
+              HasSubstr("c.yaml:2: key name is not a valid folder name"));
   EXPECT_THAT(refusal_of("missions: [a.yaml]\nresults: all\n"),
               HasSubstr("c.yaml:2: key results is all; it must be one of figures, package"));
 }

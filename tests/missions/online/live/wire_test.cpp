@@ -60,7 +60,7 @@ TEST(Wire, WaitsForTheRestOfAMessage) {
 }
 
 TEST(Wire, RefusesWhatIsNoMessage) {
-  EXPECT_THAT(refusal(std::string(12, '\xff')), HasSubstr("more bytes than any may have"));
+  EXPECT_THAT(refusal(std::string(12, '\xff')), HasSubstr("larger than allowed"));
   std::string damaged = frame_of(sample);
   damaged.back() ^= 1;
   EXPECT_THAT(refusal(damaged), HasSubstr("checksum"));

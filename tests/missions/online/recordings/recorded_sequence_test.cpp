@@ -52,7 +52,7 @@ TEST_F(Recording, OfTumIsPairedByTime) {
   EXPECT_EQ(sequence.frames[1].world_from_sensor.translation(), Eigen::Vector3d(4, 5, 6));
   EXPECT_EQ(sequence.frames[1].file, folder_.path() / "b.png");
   EXPECT_THAT(sequence.notes,
-              ElementsAre(AllOf(HasSubstr("1.20 is left out"), HasSubstr("no pose within 20 ms"),
+              ElementsAre(AllOf(HasSubstr("1.20 is skipped"), HasSubstr("no pose within 20 ms"),
                                 HasSubstr("0.075 s off"))));
 }
 
@@ -101,7 +101,7 @@ TEST_F(Recording, SaysWhatIsWrongWithAFrame) {
   EXPECT_THAT(ids(sequence), ElementsAre("1.00"));
   EXPECT_THAT(sequence.notes,
               ElementsAre(AllOf(HasSubstr("groundtruth.txt: time 1.10"), HasSubstr("quaternion")),
-                          HasSubstr("c.png: is not there")));
+                          HasSubstr("c.png: does not exist")));
 }
 
 TEST_F(Recording, WithTimesThatGoBackIsRefused) {
@@ -122,11 +122,11 @@ TEST_F(Recording, OfSevenScenesHasItsPosesBesideTheImages) {
   EXPECT_THAT(ids(sequence), ElementsAre("frame-000000", "frame-000005"));
   EXPECT_EQ(sequence.frames[1].world_from_sensor.translation(), Eigen::Vector3d(4, 5, 6));
   EXPECT_THAT(sequence.notes,
-              ElementsAre(HasSubstr("without stretching"), HasSubstr("frame-000015.pose.txt")));
+              ElementsAre(HasSubstr("without scale"), HasSubstr("frame-000015.pose.txt")));
 }
 
 TEST_F(Recording, ThatIsNoneIsRefused) {
-  EXPECT_THAT(complaint(), HasSubstr("has neither depth.txt and groundtruth.txt"));
+  EXPECT_THAT(complaint(), HasSubstr("contains neither depth.txt and groundtruth.txt"));
   EXPECT_THAT(complaint_of([&] { read_sequence(folder_.path() / "x", all); }),
               HasSubstr("is no folder"));
   write("depth.txt", "1.0 a.png\n");
