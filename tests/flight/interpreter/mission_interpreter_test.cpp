@@ -88,9 +88,9 @@ TEST_P(BothAutopilots, LandingsAreOnThePadOrRefused) {
   const auto landing_at = [&](const Eigen::Vector3d& place) {
     return after([&](MissionFile& f) { move(f.items[i], place); });
   };
-  EXPECT_THAT(landing_at({0, 0, 0}), names(good(), i, "m from the pad"));
+  EXPECT_THAT(landing_at({0, 0, 0}), names(good(), i, "m from the take-off point"));
   EXPECT_THAT(landing_at({0, 0, 0}), Contains(HasSubstr("leg from item")));
-  EXPECT_THAT(landing_at({-30, 25, 0}), names(good(), i, "lands 50.0 m from the pad"));
+  EXPECT_THAT(landing_at({-30, 25, 0}), names(good(), i, "lands 50.0 m from the take-off point"));
   EXPECT_THAT(after([&](MissionFile& f) { f.items[i].command = command::return_to_launch; }),
               names(good(), i, "RETURN_TO_LAUNCH"));
   EXPECT_THAT(after([&](MissionFile& f) { f.items[i - 1].command = command::return_to_launch; }),
@@ -98,7 +98,7 @@ TEST_P(BothAutopilots, LandingsAreOnThePadOrRefused) {
   // A landing in mid-route ends the flight there.
   const std::size_t middle = index_of(good(), command::waypoint, 2);
   EXPECT_THAT(after([&](MissionFile& f) { f.items[middle].command = command::land; }),
-              AllOf(names(good(), middle, "m from the pad"),
+              AllOf(names(good(), middle, "m from the take-off point"),
                     names(good(), middle + 1, "after the landing")));
 }
 
@@ -152,7 +152,7 @@ TEST_P(BothAutopilots, HomeIsThePad) {
       after([](MissionFile& f) { f.home->height += 30.0; }),
       Contains(AllOf(HasSubstr(sample_file(GetParam()).home_name), HasSubstr("30.0 m above"))));
   EXPECT_THAT(after([](MissionFile& f) { f.home->latitude_deg += 60.0 / 111250.0; }),
-              Contains(HasSubstr("m from the pad")));
+              Contains(HasSubstr("m from the take-off point")));
   const std::size_t i = index_of(good(), command::takeoff);
   EXPECT_THAT(after([&](MissionFile& f) {
                 move(f.items[i], {-30, 0, 5});

@@ -64,7 +64,7 @@ TEST(Wire, RefusesWhatIsNoMessage) {
   std::string damaged = frame_of(sample);
   damaged.back() ^= 1;
   EXPECT_THAT(refusal(damaged), HasSubstr("checksum"));
-  EXPECT_THAT(refusal(frame_of({"text", {}})), HasSubstr("no JSON object"));
+  EXPECT_THAT(refusal(frame_of({"text", {}})), HasSubstr("not a JSON object"));
   EXPECT_THAT(refusal(frame_of({nlohmann::ordered_json::array(), {}})), HasSubstr("JSON object"));
 }
 
