@@ -157,7 +157,7 @@ Mesh triangulate(std::string_view name, PolygonSoup soup) {
       clip_ears(mesh, polygon, flat);
     } else {
       fail(i, "is not convex and has " + std::to_string(polygon.size()) +
-                  " corners; at most 1000 are read, triangulate it first");
+                  " corners; the maximum is 1000; triangulate it first");
     }
   }
   return mesh;

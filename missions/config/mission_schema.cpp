@@ -185,7 +185,7 @@ std::string expected_value(const Key& key) {
   const std::string unit = key.unit.empty() ? "" : " [" + key.unit + "]";
   switch (key.type) {
     case KeyType::text:
-      return "a text";
+      return "a string";
     case KeyType::number:
       return (key.choices.empty() ? "" : listed(key.choices) + " or ") + "a number" +
              range_text(key.range) + unit;

@@ -91,7 +91,8 @@ void name_reference_system(const GeoRecords& records, FileContents& contents) {
     if (is_system) contents.crs += "+" + std::to_string(records.vertical);
   }
   if (records.wkt.empty() && horizontal == 0 && records.is_user_defined) {
-    contents.notes.push_back("its reference system is given by parameters, which are not read");
+    contents.notes.push_back(
+        "its reference system is given by GeoTIFF parameters, which are not supported");
   }
   contents.height_unit = metres_of_unit(records.vertical_unit);
 }

@@ -59,9 +59,9 @@ TEST(Kmz, MissionConfigRules) {
   EXPECT_THAT(with_waylines("<wpml:flyToWaylineMode>safely", "<wpml:flyToWaylineMode>boldly"),
               Contains(HasSubstr("flyToWaylineMode \"boldly\"")));
   EXPECT_THAT(with_waylines("<wpml:finishAction>goHome</wpml:finishAction>", ""),
-              Contains(HasSubstr("lacks wpml:finishAction")));
+              Contains(HasSubstr("has no wpml:finishAction")));
   EXPECT_THAT(with_waylines("<wpml:executeRCLostAction>goBack</wpml:executeRCLostAction>", ""),
-              Contains(HasSubstr("lacks wpml:executeRCLostAction")));
+              Contains(HasSubstr("has no wpml:executeRCLostAction")));
   EXPECT_THAT(with_waylines("<wpml:takeOffSecurityHeight>5.00", "<wpml:takeOffSecurityHeight>1.00"),
               Contains(HasSubstr("takeOffSecurityHeight 1.00")));
   EXPECT_THAT(

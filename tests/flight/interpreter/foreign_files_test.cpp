@@ -207,7 +207,7 @@ TEST(PlansOfOthersRefused, NameTheTrueReason) {
               HasSubstr("mission.items[2].type must be \"SimpleItem\", but is survey "
                         "(ComplexItem); save it as waypoints first"));
   EXPECT_THAT(complaint([](json& p) { p["mission"]["items"][2]["doJumpId"] = 1; }),
-              HasSubstr("mission.items[2].doJumpId must be an integer above"));
+              HasSubstr("mission.items[2].doJumpId must be an integer greater than"));
   EXPECT_THAT(complaint([](json& p) {
                 p["geoFence"] = {{"polygon", {{1, 2}, {3, 4}, {5, 6}}}, {"version", 1}};
               }),
@@ -309,7 +309,7 @@ TEST(KmzOfOthersRefused, NameTheTrueReason) {
               HasSubstr("wpmz/waylines.wpml is missing; it contains doc.kml"));
   EXPECT_THAT(complaint(archive_of({{"a/waylines.wpml", good.waylines_wpml},
                                     {"b/waylines.wpml", good.waylines_wpml}})),
-              HasSubstr("it holds both a/waylines.wpml and b/waylines.wpml; remove one"));
+              HasSubstr("it contains both a/waylines.wpml and b/waylines.wpml; remove one"));
   KmzContent moved = good;
   const std::size_t height = moved.waylines_wpml.find("<wpml:executeHeight>") + 20;
   moved.waylines_wpml.insert(height, "1");

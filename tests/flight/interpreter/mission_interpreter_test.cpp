@@ -112,7 +112,7 @@ TEST_P(BothAutopilots, HoldsRadiiAndSpeedsAreTheMissions) {
               }),
               Not(IsEmpty()));
   EXPECT_THAT(after([&](MissionFile& f) { f.items[hold].params[0] = 1.0; }),
-              names(good(), station, "holds 1.00 s before its photograph"));
+              names(good(), station, "holds 1.00 s before its image"));
   EXPECT_THAT(after([&](MissionFile& f) { f.items[station].params[1] = 20.0; }),
               Contains(HasSubstr("captures an image where the vehicle does not stop")));
   const std::size_t speed = index_of(good(), command::change_speed);

@@ -88,7 +88,7 @@ TEST(WpmlInterpreter, WaypointsAreNamedByTheirIndex) {
               Contains(StartsWith("waypoint 3 has wpml:waypointSpeed 15.00")));
   EXPECT_THAT(
       with_waylines("<wpml:useStraightLine>", "<wpml:wind>1</wpml:wind><wpml:useStraightLine>", 1),
-      Contains(StartsWith("waypoint 1 has wpml:wind, which is not known here")));
+      Contains(StartsWith("waypoint 1 has wpml:wind, which is not supported")));
   EXPECT_THAT(with_template("<wpml:useGlobalTurnParam>1", "<wpml:useGlobalTurnParam>0", 2),
               Contains(StartsWith("waypoint 2 has wpml:useGlobalTurnParam 0")));
   EXPECT_THAT(with_template("<wpml:useGlobalHeight>0", "<wpml:useGlobalHeight>1", 2),
@@ -101,7 +101,7 @@ TEST(WpmlInterpreter, WaypointsAreNamedByTheirIndex) {
 
 TEST(WpmlInterpreter, PhotographsAreTheMissions) {
   EXPECT_THAT(with_waylines("<wpml:hoverTime>2.00", "<wpml:hoverTime>0.00"),
-              Contains(HasSubstr("holds 0.00 s before its photograph")));
+              Contains(HasSubstr("holds 0.00 s before its image")));
   std::string ahead = good().waylines_wpml;
   for (std::size_t i = 0; (i = ahead.find("smoothTransition", i)) != std::string::npos;) {
     ahead.replace(i, 16, "followWayline");

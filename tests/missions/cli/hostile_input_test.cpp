@@ -172,7 +172,7 @@ TEST(HostileInput, WhatNamesNoModelIsNamedItself) {
               HasSubstr("m.yaml:1: key scene.model is builtin:nope; there are builtin:bridge, "));
   const std::string cloud = folder.write("c.xyz", "0 0 0\n");
   EXPECT_THAT(refusal({"evaluate", "--cloud", cloud, "--model", "builtin:nope", "--distance", "1"}),
-              HasSubstr("--model: there is no built-in model named 'nope'"));
+              HasSubstr("--model: unknown builtin model 'nope'"));
 }
 
 TEST(HostileInput, CopiesThatNoMemoryHoldsAreRefused) {
@@ -201,7 +201,7 @@ TEST(HostileInput, PointsOnALineAreNoSurface) {
     std::string line;
     for (int i = 0; i < 500; ++i) line += std::to_string(step * i) + " 1 2\n";
     EXPECT_THAT(refusal({"reconstruct", folder.write("line.xyz", line), "--out", folder / "m.ply"}),
-                HasSubstr("line.xyz: all points lie on one line"));
+                HasSubstr("line.xyz: all points are on one line"));
   }
 }
 

@@ -107,7 +107,7 @@ TEST_F(ResumedScan, WhoseFilesHaveShrunkIsRefused) {
     std::ofstream(file, std::ios::binary) << content.substr(0, content.size() - 1);
     const auto run = run_skycap(scan("part", with(options, {"--resume"})));
     EXPECT_EQ(run.exit_code, 2);
-    EXPECT_THAT(run.err, HasSubstr(std::string(name) + ": holds "));
+    EXPECT_THAT(run.err, HasSubstr(std::string(name) + ": contains "));
     fs::remove_all(folder_ / "part");
   }
 }

@@ -80,7 +80,7 @@ TEST_F(ScanVerb, SaysAllOfTheSummaryWhateverTheNamesLength) {
   const ProgramRun run = scan({"--set", "name=" + name});
   EXPECT_EQ(run.exit_code, 0) << run.err;
   EXPECT_THAT(run.out, testing::StartsWith(name + ": Test laser, 0.3 s of flight\n"));
-  EXPECT_THAT(run.out, HasSubstr(" M shots/s\n  results   "));
+  EXPECT_THAT(run.out, HasSubstr(" M pulses/s\n  results   "));
 }
 
 TEST_F(ScanVerb, LeavesTheCloudBothTrajectoriesAndASummary) {
@@ -358,8 +358,9 @@ TEST_F(ScanVerb, RefusesInOneLineAndLeavesNothing) {
   };
   EXPECT_THAT(refused({"--format", "zip"}),
               HasSubstr("unknown point format 'zip'; expected one of: las"));
-  EXPECT_THAT(refused({"--format", "las,las7"}), HasSubstr("two files scan.las"));
-  EXPECT_THAT(refused({"--sensor", "sonar"}), HasSubstr("there is no sensor sonar"));
+  EXPECT_THAT(refused({"--format", "las,las7"}),
+              HasSubstr("two formats have the file name scan.las"));
+  EXPECT_THAT(refused({"--sensor", "sonar"}), HasSubstr("unknown sensor sonar"));
   EXPECT_THAT(refused({"--route", folder / "none.tum"}), HasSubstr("none.tum"));
   EXPECT_THAT(refused({"--set", "scan.orbit.radius=0"}), HasSubstr("key scan.orbit.radius"));
   EXPECT_THAT(refused({"--set", "scan.crs=utm"}),

@@ -112,7 +112,7 @@ TEST_F(SplitEvaluation, TellsGroundFromTheModel) {
   EXPECT_EQ(figures.at("points"), 500);
   EXPECT_EQ(figures.at("points_beside"), 500);
   EXPECT_NEAR(figures.at("distance_to_model_m").at("mean").get<double>(), 0.01, 0.02);
-  EXPECT_THAT(json_of({}), HasSubstr("500 more are of the ground"));
+  EXPECT_THAT(json_of({}), HasSubstr("500 more on the ground"));
   EXPECT_EQ(json_of({"--json", "--out", folder_ / "out", "--pieces", "2"}), whole);
 }
 
@@ -150,7 +150,7 @@ TEST_F(SplitEvaluation, SaysWhatItCannotSplit) {
       HasSubstr("require --pieces"));
   EXPECT_THAT(refusal({"evaluate", "--cloud", folder_ / "none.las", "--model", model, "--distance",
                        "0.1", "--pieces", "2", "--out", out}),
-              HasSubstr("none.las: there is no such file"));
+              HasSubstr("none.las: does not exist"));
 }
 
 }  // namespace

@@ -286,7 +286,7 @@ TEST(MissionReader, SuggestsTheKeyInItsRightSection) {
   EXPECT_EQ(complaint(smallest + "sensor:\n  sigma: 0.1\n"),
             "m.yaml:4: key sensor.sigma is unknown; did you mean sensor.noise.sigma?");
   EXPECT_THAT(complaint(smallest + "colour_of_the_sky: blue\n"),
-              HasSubstr("known are name, seed, threads, scene, sensor, planner, volumetric, "
+              HasSubstr("expected one of: name, seed, threads, scene, sensor, planner, volumetric, "
                         "start, limits, evaluation, paper, site, flight, scan"));
 }
 

@@ -89,7 +89,7 @@ TEST(PriorKeys, AreNamedWithTheirLineWhenTheyAreWrong) {
       "m.yaml:3: key prior is a map; give a list of maps, each with file, role and further keys");
   EXPECT_EQ(complaint("prior: [a.obj]\n"), "m.yaml:3: key prior[0] is a.obj; it must be a map");
   EXPECT_THAT(complaint("prior:\n  - {file: a.obj, role: target}\n  - {role: target}\n"),
-              StartsWith("m.yaml:5: key prior[1].file is missing; give a text"));
+              StartsWith("m.yaml:5: key prior[1].file is missing; give a string"));
   EXPECT_THAT(
       complaint("prior:\n  - file: a.obj\n    role: wall\n"),
       StartsWith("m.yaml:5: key prior[0].role is wall; give target, obstacle, terrain or truth"));

@@ -122,7 +122,7 @@ TEST(FindSensor, SaysWhichSensorsThereAre) {
     config::find_sensor("ouster");
     FAIL() << "found";
   } catch (const Error& error) {
-    EXPECT_THAT(error.what(), HasSubstr("known are dji_zenmuse_l1"));
+    EXPECT_THAT(error.what(), HasSubstr("expected one of: dji_zenmuse_l1"));
   }
   EXPECT_THROW(config::find_sensor("no/such/file.yaml"), Error);
 }

@@ -90,7 +90,7 @@ TEST(VehicleReader, WhatIsWrongIsNamedByLine) {
   EXPECT_THAT(complaint(base + "mass: 20\n"), HasSubstr("less than its mass needs to hover"));
   EXPECT_THAT(
       complaint("name: kite\nlike: dragon\n"),
-      HasSubstr("kite.yaml:2: key like unknown vehicle dragon; expected one of: generic, "));
+      HasSubstr("kite.yaml:2: key like: unknown vehicle dragon; expected one of: generic, "));
   EXPECT_THAT(complaint("name: kite\n"), HasSubstr("key dialect is missing"));
   EXPECT_THAT(complaint("like: generic\n"), HasSubstr("key name is missing"));
 }

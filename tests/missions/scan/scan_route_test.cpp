@@ -170,7 +170,7 @@ TEST_F(ScanRouteFile, PointsOnEarthAreFlownLookingAhead) {
     scan::read_scan_route(file, options, scan::Carrier::airframe);
     FAIL() << "read without a georeference";
   } catch (const Error& error) {
-    EXPECT_THAT(error.what(), testing::HasSubstr("give site.latitude_deg and site.longitude_deg"));
+    EXPECT_THAT(error.what(), testing::HasSubstr("set site.latitude_deg and site.longitude_deg"));
   }
   options.site = flight::Site{};
   options.site->origin.longitude_deg = 1e-3;

@@ -180,7 +180,7 @@ TEST_F(TileScan, AreRefusedInOneLineWhereSomethingIsWrong) {
   }
   write_tiles("[{files: 'tile_?.ply'}]");
   write_mission("scene.tiles", ", copies: [[0, 100, 0]]");
-  EXPECT_THAT(refusal(), HasSubstr("scene.copies is not for scenes of tiles"));
+  EXPECT_THAT(refusal(), HasSubstr("scene.copies conflicts with a tile list"));
   write_mission("scene.tiles");
   folder_.write("tile_4.ply", "ply\n");
   EXPECT_THAT(refusal(), HasSubstr("tile_4.ply"));

@@ -412,7 +412,7 @@ TEST(FlownPackage, BrokenPackagesAndRoutesAreNamed) {
     return run.err;
   };
   EXPECT_THAT(message({"export", folder / "nowhere", "--format", "kml"}),
-              HasSubstr("summary.json: there is no such file"));
+              HasSubstr("summary.json: does not exist"));
   EXPECT_THAT(message({"export", folder / "out", "--format", "pdf"}),
               HasSubstr("unknown format \"pdf\"; expected one of: plan, "));
   const TestFolder broken;
@@ -424,11 +424,11 @@ TEST(FlownPackage, BrokenPackagesAndRoutesAreNamed) {
               HasSubstr("free_space.bin: cannot be read; plan the mission again"));
   broken.write("free_space.bin", "skycap free v1");
   EXPECT_THAT(message({"export", broken.path().string(), "--format", "kml"}),
-              HasSubstr("free_space.bin: is not a file of measured free space"));
+              HasSubstr("free_space.bin: is not a free-space file"));
   EXPECT_THAT(message({"check", folder / "m.yaml", "--route", folder / "out/cloud.ply"}),
               HasSubstr("cloud.ply is no route file: its name must end in .plan"));
   EXPECT_THAT(message({"check", folder / "m.yaml", "--route", folder / "no.plan"}),
-              HasSubstr("no.plan: there is no such file"));
+              HasSubstr("no.plan: does not exist"));
 }
 
 }  // namespace

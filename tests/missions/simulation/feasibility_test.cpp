@@ -51,7 +51,8 @@ const std::string box_min = "planner.scene_box.min", box_max = "planner.scene_bo
 
 TEST(Feasibility, SaysWhatCannotWork) {
   const std::vector<Flaw> flaws{
-      {{{"limits.stand_off", "100"}}, "limits.stand_off of 100 m is not less than the view dist"},
+      {{{"limits.stand_off", "100"}},
+       "limits.stand_off (100 m) must be smaller than the view dist"},
       {{{"scene.longest_side", "5000"}}, "in millimetres, set scene.scale: 0.001"},
       {{{"scene.longest_side", "0.05"}}, "must be at least twice evaluation.registration_distance"},
       {{{"sensor.max_range", "0.1"}}, "the maximum range of the sensor (0.1 m)"},
@@ -86,7 +87,7 @@ TEST(Feasibility, WarnsOfWhatIsHardlyMeant) {
 TEST(Feasibility, IsAskedBeforeASurveyBegins) {
   const TestFolder folder;
   const std::string mission = folder.write("m.yaml", quick_mission());
-  const std::string sentence = "limits.stand_off of 100 m is not less than the view distance";
+  const std::string sentence = "limits.stand_off (100 m) must be smaller than the view distance";
   const auto checked = run_skycap({"check", mission, "--set", "limits.stand_off=100"});
   EXPECT_EQ(checked.exit_code, 1);
   EXPECT_THAT(checked.out, HasSubstr("m.yaml: cannot be surveyed"));

@@ -118,7 +118,7 @@ TEST_F(ReconstructVerb, SaysWhichCloudHasTooFewPoints) {
   const std::string cloud = folder.write("few.xyz", "0 0 0\n1 0 0\n0 1 0\n");
   const tests::ProgramRun run = tests::run_skycap({"reconstruct", cloud});
   EXPECT_EQ(run.exit_code, 2);
-  EXPECT_THAT(run.err, testing::HasSubstr("few.xyz: there are 3 points; a surface needs"));
+  EXPECT_THAT(run.err, testing::HasSubstr("few.xyz: too few points: 3; a surface requires"));
   EXPECT_FALSE(std::filesystem::exists(folder / "few_mesh.ply"));
 }
 

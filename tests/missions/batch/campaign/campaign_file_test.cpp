@@ -149,7 +149,7 @@ TEST(Campaign, RefusesMoreItemsThanItsBound) {
   std::string missions = "m0.yaml";
   for (int i = 1; i < 12; ++i) missions += ", m" + std::to_string(i) + ".yaml";
   EXPECT_THAT(refusal_of("missions: [" + missions + "]\nseeds: 100000\n"),
-              HasSubstr("make more than 1000000 items"));
+              HasSubstr("more than 1000000 runs"));
 }
 
 // A wrong value is known when a mission is read with it; the message says where it stands.

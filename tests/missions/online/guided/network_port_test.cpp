@@ -135,7 +135,7 @@ TEST(FlyVerb, RefusesMissionsThatItCannotFly) {
   const std::string here = "udp:127.0.0.1:1";
   const tests::ProgramRun px4 = refusal(tests::flown_mission(), here);
   EXPECT_EQ(px4.exit_code, 2);
-  EXPECT_THAT(px4.err, HasSubstr("flight.vehicle generic is no ArduPilot's"));
+  EXPECT_THAT(px4.err, HasSubstr("flight.vehicle generic does not use ArduPilot"));
   EXPECT_THAT(refusal(tests::quick_mission(), here).err, HasSubstr("flight.vehicle is missing"));
   std::string moving = flyable(tests::flown_mission());
   moving.insert(moving.find("sensor: {") + 9, "capture: moving, ");

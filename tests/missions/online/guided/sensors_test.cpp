@@ -62,7 +62,7 @@ TEST_F(FolderSensor, GivesUp) {
   EXPECT_THAT(complaint_of([&] {
                 folder_sensor(setup_.flight(), setup_.live, folder_.path() / "none", {}, 1.0, {});
               }),
-              HasSubstr("is no folder"));
+              HasSubstr("is not a folder"));
 }
 
 }  // namespace

@@ -240,9 +240,8 @@ TEST(LiveSurvey, TakesNoScansFromWaysThatAreNotMeasuredOn) {
   rehearsal.add_one(survey);
   EXPECT_TRUE(survey.frames().empty());
   const geometry::Scan scan = rehearsal.scan(survey);
-  EXPECT_THAT(
-      complaint_of([&] { survey.add_on_way(scan, "a"); }),
-      HasSubstr("measures at its views only; en-route scans require sensor.capture: moving"));
+  EXPECT_THAT(complaint_of([&] { survey.add_on_way(scan, "a"); }),
+              HasSubstr("en-route scans require sensor.capture: moving"));
 }
 
 // Of houses, whose walls and roofs show every way to move and are large beside the patches that are

@@ -227,7 +227,7 @@ TEST(RequireUsable, RefusesScansThatWouldHarm) {
   scan.pixels = {5};
   EXPECT_THAT(message(scan), HasSubstr("1 pixels for 2 points"));
   scan.pixels = {5, 5};
-  EXPECT_THAT(message(scan), HasSubstr("do not ascend"));
+  EXPECT_THAT(message(scan), HasSubstr("are not ascending"));
   scan.pixels = {5, 64 * 48};
   EXPECT_THAT(message(scan), HasSubstr("has not"));
   scan.pixels = {5, 6};

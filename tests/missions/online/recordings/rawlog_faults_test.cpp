@@ -20,7 +20,7 @@ using testing::IsEmpty;
 
 TEST_F(Rawlog, WithoutPosesScansOrAChoiceIsRefused) {
   EXPECT_THAT(complaint(write({range_scan(1.0), std::make_shared<mrpt::obs::CObservationGPS>()})),
-              AllOf(HasSubstr("x.rawlog: does not say where"), HasSubstr("--poses")));
+              AllOf(HasSubstr("x.rawlog: contains no poses of its scans"), HasSubstr("--poses")));
   EXPECT_THAT(complaint(write({robot_pose(1.0, {})})), HasSubstr("contains no usable scan"));
   const std::string two = write({robot_pose(1.0, {}), range_scan(1.0, "L"), range_scan(1.0, "R")});
   EXPECT_THAT(complaint(two), AllOf(HasSubstr("'L', 'R'"), HasSubstr("--sensor")));

@@ -108,7 +108,7 @@ TEST_F(Recording, WithTimesThatGoBackIsRefused) {
   write_tum("1.00 0 0 0 0 0 0 1\n0.90 0 0 0 0 0 0 1\n");
   EXPECT_THAT(complaint(), AllOf(HasSubstr("groundtruth.txt: line 2"), HasSubstr("0.90")));
   write("groundtruth.txt", "now 0 0 0 0 0 0 1\n");
-  EXPECT_THAT(complaint(), HasSubstr("'now' stands where a time is expected"));
+  EXPECT_THAT(complaint(), HasSubstr("'now' is found where a time is expected"));
 }
 
 TEST_F(Recording, OfSevenScenesHasItsPosesBesideTheImages) {
@@ -128,7 +128,7 @@ TEST_F(Recording, OfSevenScenesHasItsPosesBesideTheImages) {
 TEST_F(Recording, ThatIsNoneIsRefused) {
   EXPECT_THAT(complaint(), HasSubstr("contains neither depth.txt and groundtruth.txt"));
   EXPECT_THAT(complaint_of([&] { read_sequence(folder_.path() / "x", all); }),
-              HasSubstr("is no folder"));
+              HasSubstr("is not a folder"));
   write("depth.txt", "1.0 a.png\n");
   EXPECT_THAT(complaint(), HasSubstr("groundtruth.txt"));
   write("groundtruth.txt", "");

@@ -158,7 +158,7 @@ TEST(Fleet, SpoiledRowsAreRefusedWithTheirLine) {
     EXPECT_EQ(run.exit_code, 2) << run.out;
     return run.err;
   };
-  EXPECT_THAT(complaint(1, 1, "drone"), HasSubstr("timetable.csv:1: is no timetable"));
+  EXPECT_THAT(complaint(1, 1, "drone"), HasSubstr("timetable.csv:1: is not a timetable"));
   EXPECT_THAT(complaint(3, 1, "3"), HasSubstr("timetable.csv:3: unknown vehicle 3"));
   EXPECT_THAT(complaint(3, 1, "x"), HasSubstr("timetable.csv:3: vehicle is \"x\""));
   EXPECT_THAT(complaint(2, 2, "m30t"), HasSubstr("timetable.csv:2: vehicle 1 is generic in"));
@@ -167,7 +167,7 @@ TEST(Fleet, SpoiledRowsAreRefusedWithTheirLine) {
   EXPECT_THAT(complaint(3, 4, "fleet-2.plan"), HasSubstr("fleet-2.plan"));
   EXPECT_THAT(complaint(3, 4, "fleet-2.plan/../../x.plan"), HasSubstr("is not one of fleet-2.*"));
   EXPECT_THAT(complaint(2, 5, "soon"), HasSubstr("timetable.csv:2: start_s is \"soon\""));
-  EXPECT_THAT(complaint(2, 6, "-1"), HasSubstr("timetable.csv:2: it does not land after"));
+  EXPECT_THAT(complaint(2, 6, "-1"), HasSubstr("timetable.csv:2: the landing must be after"));
   EXPECT_THAT(complaint(2, 9, "1e300"), HasSubstr("timetable.csv:2: pad"));
 }
 
